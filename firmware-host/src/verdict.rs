@@ -1,0 +1,84 @@
+//! What a run came to: one outcome and the figures behind it.
+
+use serde::Serialize;
+
+/// How a run ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Outcome {
+    /// Back in the middle (r < 0.3 c, held) and not touching again.
+    Recovered,
+    /// Free vibration without contact.
+    Decayed,
+    /// Touching still, without whirl and without speed.
+    Resting,
+    /// Held on the stator by a load that is still on.
+    Pinned,
+    /// Still hitting the stator when the run ended, without whirl.
+    Bouncing,
+    /// Backward whirl: the contact speed passed the scene's limit.
+    Whirl,
+}
+
+/// Figures of one policy on one scene, SI units.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Verdict {
+    /// How it ended.
+    pub outcome: Outcome,
+    /// True for recovered or decayed.
+    pub recovered: bool,
+    /// Number of touches.
+    pub impacts: u64,
+    /// Time in contact \[s\].
+    pub contact_time_s: f64,
+    /// Largest penetration of the clearance circle by the contact \[m\].
+    pub peak_penetration_m: f64,
+    /// Largest normal force \[N\].
+    pub peak_contact_force_n: f64,
+    /// Largest friction torque on the spin \[N m\].
+    pub peak_friction_torque_n_m: f64,
+    /// Spin lost from start to end \[Hz\].
+    pub spin_lost_hz: f64,
+    /// Largest backward tangential speed in contact \[m/s\].
+    pub peak_backward_speed_m_s: f64,
+    /// Largest backward whirl frequency over 1 ms of continuous contact \[Hz\]; `None` without such a contact.
+    pub max_backward_whirl_hz: Option<f64>,
+    /// From the end of the disturbance to the beginning of the stay in the middle \[s\]; `None` if never.
+    pub relevitation_time_s: Option<f64>,
+    /// Energy-audit residual: energy from nowhere over energy turned over.
+    pub energy_residual: f64,
+    /// Wall-clock time of the run \[s\].
+    pub run_time_s: f64,
+    /// Simulated time over wall-clock time.
+    pub real_time_ratio: f64,
+}
+
+/// One policy's run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PolicyRun {
+    /// Name of the policy, e.g. `supervisor`.
+    pub name: String,
+    /// What it came to.
+    pub verdict: Verdict,
+    /// What happened.
+    pub trace: crate::trace::Trace,
+}
+
+/// What a report needs to know of the scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SceneSummary {
+    /// Title of the scene, one line.
+    pub title: String,
+    /// Its story, a few sentences of plain text.
+    pub story: String,
+    /// Clearance c \[m\].
+    pub clearance_m: f64,
+    /// Force cap of the magnet \[N\], if there is one.
+    pub force_max_n: Option<f64>,
+    /// Backward contact speed above which a run counts as whirl \[m/s\].
+    pub whirl_speed_m_s: f64,
+    /// Intervals in which an external force acts: (from \[s\], to \[s\]).
+    pub disturbances_s: Vec<(f64, f64)>,
+    /// Duration of the run \[s\].
+    pub duration_s: f64,
+}

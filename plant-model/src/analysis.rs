@@ -1,0 +1,4 @@
+//! Figures read off a run, and closed forms to hold them against.
+
+pub mod onset;
+pub mod whirl;

@@ -1,0 +1,92 @@
+//! The contact law f_n = k_c·A + d_c·B, eqs (2.8), (2.9), and its restitution.
+
+use crate::params::ContactParams;
+
+impl ContactParams {
+    /// Normal force \[N\] for a penetration A \[m\] and its rate B \[m/s\]. Negative values mean that
+    /// contact has ended: a wall does not pull.
+    #[inline]
+    pub fn normal_force_n(&self, penetration_m: f64, penetration_rate_m_s: f64) -> f64 {
+        self.stiffness_n_m * penetration_m + self.damping_n_s_m * penetration_rate_m_s
+    }
+
+    /// Energy in the contact spring \[J\].
+    #[inline]
+    pub fn stored_j(&self, penetration_m: f64) -> f64 {
+        0.5 * self.stiffness_n_m * penetration_m * penetration_m
+    }
+}
+
+/// Restitution e of a normal impact with contact damping ratio ζ = d_c/(2√(k_c·m)), contact ending
+/// where the force falls to zero: e = exp(−2ζ·acos ζ/√(1 − ζ²)), continued by acosh beyond ζ = 1.
+///
+/// Derivation: with x(0) = 0 the force vanishes with the acceleration, at ω_d·t = 2·acos ζ, and the
+/// velocity there is −v·exp(−ζω·t).
+pub fn restitution_of(damping_ratio: f64) -> f64 {
+    let z = damping_ratio;
+    let near_one = (1.0 - z).abs() < 1e-9;
+    let exponent = if near_one {
+        2.0
+    } else if z < 1.0 {
+        2.0 * z * z.acos() / (1.0 - z * z).sqrt()
+    } else {
+        2.0 * z * z.acosh() / (z * z - 1.0).sqrt()
+    };
+    (-exponent).exp()
+}
+
+/// Contact damping d_c \[N s/m\] that gives the restitution e in (0, 1] for the reduced mass of the
+/// contact. Solved by bisection on the exact relation of [`restitution_of`].
+///
+/// Returns `None` for e outside (0, 1].
+pub fn damping_for_restitution(
+    restitution: f64,
+    stiffness_n_m: f64,
+    contact_mass_kg: f64,
+) -> Option<f64> {
+    if !(restitution > 0.0 && restitution <= 1.0) {
+        return None;
+    }
+    if restitution == 1.0 {
+        return Some(0.0);
+    }
+    // e falls monotonically with ζ, and e < (2ζ)^-2 beyond critical damping.
+    let (mut low, mut high) = (0.0, 1.0 + 1.0 / restitution);
+    while high - low > 1e-15 * high {
+        let middle = 0.5 * (low + high);
+        if middle <= low || middle >= high {
+            break;
+        }
+        if restitution_of(middle) > restitution {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    Some((low + high) * (stiffness_n_m * contact_mass_kg).sqrt())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn restitution_and_damping_invert_each_other() {
+        for e in [0.01, 0.1, (-2.0_f64).exp(), 0.3, 0.7, 0.99, 0.999_999] {
+            let (k, m) = (1e8, 10.0);
+            let d = damping_for_restitution(e, k, m).unwrap();
+            let zeta = d / (2.0 * (k * m).sqrt());
+            assert!((restitution_of(zeta) - e).abs() < 1e-9, "e = {e}");
+        }
+        assert_eq!(damping_for_restitution(1.0, 1e8, 10.0), Some(0.0));
+        assert_eq!(damping_for_restitution(0.0, 1e8, 10.0), None);
+    }
+
+    #[test]
+    fn restitution_is_continuous_at_critical_damping() {
+        let at_one = (-2.0_f64).exp();
+        for z in [1.0 - 1e-6, 1.0, 1.0 + 1e-6] {
+            assert!((restitution_of(z) - at_one).abs() < 1e-5);
+        }
+    }
+}

@@ -1,0 +1,234 @@
+//! The explicit pair of order 8 with embedded orders 5 and 3 and dense output of order 7, by Dormand
+//! and Prince (Hairer, Nørsett, Wanner: Solving Ordinary Differential Equations I, section II.10).
+//! The coefficients are the published ones.
+
+use crate::part::{Part, Weights};
+
+/// Stages of one step, the derivative at its end, and three more for dense output.
+const STAGES: usize = 16;
+/// Stages that a step itself needs.
+pub(crate) const STEP_STAGES: usize = 12;
+/// Index of the evaluation at the end of the step.
+pub(crate) const END: usize = 12;
+
+/// What the integrator needs of an evaluation of the field.
+pub(crate) trait Rates<Y>: Copy + Default {
+    fn rates(&self) -> &Y;
+}
+
+type Row = &'static [(usize, f64)];
+
+#[rustfmt::skip]
+#[allow(clippy::excessive_precision, reason = "published digits")]
+const C: [f64; STAGES] = [
+    0.0, 0.05260015195876773, 0.0789002279381516, 0.1183503419072274, 0.2816496580927726,
+    0.3333333333333333, 0.25, 0.3076923076923077, 0.6512820512820513, 0.6, 0.8571428571428571,
+    1.0, 1.0, 0.1, 0.2, 0.7777777777777778,
+];
+
+#[rustfmt::skip]
+#[allow(clippy::excessive_precision, reason = "published digits")]
+const A: [Row; STAGES] = [
+    &[],
+    &[(0, 0.05260015195876773)],
+    &[(0, 0.0197250569845379), (1, 0.0591751709536137)],
+    &[(0, 0.02958758547680685), (2, 0.08876275643042054)],
+    &[(0, 0.2413651341592667), (2, -0.8845494793282861), (3, 0.924834003261792)],
+    &[(0, 0.037037037037037035), (3, 0.17082860872947386), (4, 0.12546768756682242)],
+    &[(0, 0.037109375), (3, 0.17025221101954405), (4, 0.06021653898045596), (5, -0.017578125)],
+    &[(0, 0.03709200011850479), (3, 0.17038392571223998), (4, 0.10726203044637328), (5, -0.015319437748624402), (6, 0.008273789163814023)],
+    &[(0, 0.6241109587160757), (3, -3.3608926294469414), (4, -0.868219346841726), (5, 27.59209969944671), (6, 20.154067550477894), (7, -43.48988418106996)],
+    &[(0, 0.47766253643826434), (3, -2.4881146199716677), (4, -0.590290826836843), (5, 21.230051448181193), (6, 15.279233632882423), (7, -33.28821096898486), (8, -0.020331201708508627)],
+    &[(0, -0.9371424300859873), (3, 5.186372428844064), (4, 1.0914373489967295), (5, -8.149787010746927), (6, -18.52006565999696), (7, 22.739487099350505), (8, 2.4936055526796523), (9, -3.0467644718982196)],
+    &[(0, 2.273310147516538), (3, -10.53449546673725), (4, -2.0008720582248625), (5, -17.9589318631188), (6, 27.94888452941996), (7, -2.8589982771350235), (8, -8.87285693353063), (9, 12.360567175794303), (10, 0.6433927460157636)],
+    &[(0, 0.054293734116568765), (5, 4.450312892752409), (6, 1.8915178993145003), (7, -5.801203960010585), (8, 0.3111643669578199), (9, -0.1521609496625161), (10, 0.20136540080403034), (11, 0.04471061572777259)],
+    &[(0, 0.056167502283047954), (6, 0.25350021021662483), (7, -0.2462390374708025), (8, -0.12419142326381637), (9, 0.15329179827876568), (10, 0.00820105229563469), (11, 0.007567897660545699), (12, -0.008298)],
+    &[(0, 0.03183464816350214), (5, 0.028300909672366776), (6, 0.053541988307438566), (7, -0.05492374857139099), (10, -0.00010834732869724932), (11, 0.0003825710908356584), (12, -0.00034046500868740456), (13, 0.1413124436746325)],
+    &[(0, -0.42889630158379194), (5, -4.697621415361164), (6, 7.683421196062599), (7, 4.06898981839711), (8, 0.3567271874552811), (12, -0.0013990241651590145), (13, 2.9475147891527724), (14, -9.15095847217987)],
+];
+
+#[rustfmt::skip]
+#[allow(clippy::excessive_precision, reason = "published digits")]
+pub(crate) const B: Row = &[(0, 0.054293734116568765), (5, 4.450312892752409), (6, 1.8915178993145003), (7, -5.801203960010585), (8, 0.3111643669578199), (9, -0.1521609496625161), (10, 0.20136540080403034), (11, 0.04471061572777259)];
+
+#[rustfmt::skip]
+#[allow(clippy::excessive_precision, reason = "published digits")]
+const E3: Row = &[(0, -0.18980075407240762), (5, 4.450312892752409), (6, 1.8915178993145003), (7, -5.801203960010585), (8, -0.4226823213237919), (9, -0.1521609496625161), (10, 0.20136540080403034), (11, 0.02265179219836082)];
+
+#[rustfmt::skip]
+#[allow(clippy::excessive_precision, reason = "published digits")]
+const E5: Row = &[(0, 0.01312004499419488), (5, -1.2251564463762044), (6, -0.4957589496572502), (7, 1.6643771824549864), (8, -0.35032884874997366), (9, 0.3341791187130175), (10, 0.08192320648511571), (11, -0.022355307863886294)];
+
+#[rustfmt::skip]
+#[allow(clippy::excessive_precision, reason = "published digits")]
+const D: [Row; 4] = [
+    &[(0, -8.428938276109013), (5, 0.5667149535193777), (6, -3.0689499459498917), (7, 2.38466765651207), (8, 2.117034582445028), (9, -0.871391583777973), (10, 2.2404374302607883), (11, 0.6315787787694688), (12, -0.08899033645133331), (13, 18.148505520854727), (14, -9.194632392478356), (15, -4.436036387594894)],
+    &[(0, 10.427508642579134), (5, 242.28349177525817), (6, 165.20045171727028), (7, -374.5467547226902), (8, -22.113666853125306), (9, 7.733432668472264), (10, -30.674084731089398), (11, -9.332130526430229), (12, 15.697238121770845), (13, -31.139403219565178), (14, -9.35292435884448), (15, 35.81684148639408)],
+    &[(0, 19.985053242002433), (5, -387.0373087493518), (6, -189.17813819516758), (7, 527.8081592054236), (8, -11.57390253995963), (9, 6.8812326946963), (10, -1.0006050966910838), (11, 0.7777137798053443), (12, -2.778205752353508), (13, -60.19669523126412), (14, 84.32040550667716), (15, 11.99229113618279)],
+    &[(0, -25.69393346270375), (5, -154.18974869023643), (6, -231.5293791760455), (7, 357.6391179106141), (8, 93.40532418362432), (9, -37.45832313645163), (10, 104.0996495089623), (11, 29.8402934266605), (12, -43.53345659001114), (13, 96.32455395918828), (14, -39.17726167561544), (15, -149.72683625798564)],
+];
+
+/// One attempted step and its stages; reused from step to step, so that no step allocates.
+#[derive(Debug, Clone)]
+pub(crate) struct Dop853<Y, E> {
+    pub(crate) evaluations: [E; STAGES],
+    start: Y,
+    end: Y,
+    step_s: f64,
+}
+
+impl<Y: Part, E: Rates<Y>> Dop853<Y, E> {
+    pub(crate) fn new() -> Self {
+        Self {
+            evaluations: [E::default(); STAGES],
+            start: Y::default(),
+            end: Y::default(),
+            step_s: 0.0,
+        }
+    }
+
+    fn combine(&self, row: Row) -> Y {
+        let mut sum = Y::default();
+        for &(j, a) in row {
+            sum.add_scaled(a, self.evaluations[j].rates());
+        }
+        sum
+    }
+
+    fn stage(&mut self, i: usize, t_s: f64, field: &mut impl FnMut(f64, &Y) -> E) {
+        let mut y = self.start;
+        let h = self.step_s;
+        for &(j, a) in A[i] {
+            y.add_scaled(h * a, self.evaluations[j].rates());
+        }
+        self.evaluations[i] = field(t_s + C[i] * h, &y);
+    }
+
+    /// Steps from `y` by `step_s`; `first` is the field there. Returns the end point and the error
+    /// norm, below 1 where the step meets the weights.
+    pub(crate) fn step(
+        &mut self,
+        t_s: f64,
+        y: &Y,
+        first: &E,
+        step_s: f64,
+        weights: &Weights,
+        field: &mut impl FnMut(f64, &Y) -> E,
+    ) -> (Y, f64) {
+        self.start = *y;
+        self.step_s = step_s;
+        self.evaluations[0] = *first;
+        for i in 1..STEP_STAGES {
+            self.stage(i, t_s, field);
+        }
+        self.end = *y;
+        for &(j, b) in B {
+            self.end.add_scaled(step_s * b, self.evaluations[j].rates());
+        }
+        let fifth = self.combine(E5).weighed_square(weights);
+        let third = self.combine(E3).weighed_square(weights);
+        let scale = (fifth + 0.01 * third) * Y::STATES as f64;
+        let error = if scale > 0.0 { step_s * fifth / scale.sqrt() } else { 0.0 };
+        (self.end, error)
+    }
+
+    /// Dense output of the last step; `field` at its end must stand in `evaluations[END]`.
+    pub(crate) fn dense(&mut self, t_s: f64, field: &mut impl FnMut(f64, &Y) -> E) -> Dense<Y> {
+        for i in END + 1..STAGES {
+            self.stage(i, t_s, field);
+        }
+        let h = self.step_s;
+        let mut difference = self.end;
+        difference.add_scaled(-1.0, &self.start);
+        let mut f = [Y::default(); 7];
+        f[0] = difference;
+        f[1].add_scaled(h, self.evaluations[0].rates());
+        f[1].add_scaled(-1.0, &difference);
+        f[2].add_scaled(2.0, &difference);
+        f[2].add_scaled(-h, self.evaluations[END].rates());
+        f[2].add_scaled(-h, self.evaluations[0].rates());
+        for (f, row) in f[3..].iter_mut().zip(D) {
+            f.add_scaled(h, &self.combine(row));
+        }
+        Dense {
+            start: self.start,
+            f,
+        }
+    }
+}
+
+/// Interpolant of order 7 over one step.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Dense<Y> {
+    start: Y,
+    f: [Y; 7],
+}
+
+impl<Y: Part> Dense<Y> {
+    /// State at θ in [0, 1].
+    pub(crate) fn at(&self, theta: f64) -> Y {
+        let mut y = self.start;
+        let mut factor = 1.0;
+        for (i, f) in self.f.iter().enumerate() {
+            factor *= if i % 2 == 0 { theta } else { 1.0 - theta };
+            y.add_scaled(factor, f);
+        }
+        y
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::V2;
+    use crate::part::Body;
+
+    impl Rates<Body> for Body {
+        fn rates(&self) -> &Body {
+            self
+        }
+    }
+
+    /// Harmonic oscillator with circular orbit.
+    fn field(_t: f64, y: &Body) -> Body {
+        Body {
+            position: y.velocity,
+            velocity: -y.position,
+        }
+    }
+
+    fn errors(h: f64) -> (f64, f64) {
+        let y = Body {
+            position: V2::new(1.0, 0.0),
+            velocity: V2::new(0.0, 1.0),
+        };
+        let weights = Weights {
+            position: 1.0,
+            velocity: 1.0,
+            spin: 1.0,
+            phase: 1.0,
+            force: 1.0,
+        };
+        let mut pair = Dop853::new();
+        let (end, _) = pair.step(0.0, &y, &field(0.0, &y), h, &weights, &mut field);
+        pair.evaluations[END] = field(h, &end);
+        let middle = pair.dense(0.0, &mut field).at(0.3);
+        let exact = |t: f64| V2::new(t.cos(), t.sin());
+        (
+            (end.position - exact(h)).norm(),
+            (middle.position - exact(0.3 * h)).norm(),
+        )
+    }
+
+    /// Local errors fall as h^9 (step) and h^8 (dense output): a wrong digit in the tableau breaks this.
+    #[test]
+    fn orders_are_eight_and_seven() {
+        let (step_coarse, dense_coarse) = errors(1.0);
+        let (step_fine, dense_fine) = errors(0.5);
+        let order = |a: f64, b: f64| (a / b).log2();
+        let (step, dense) = (order(step_coarse, step_fine), order(dense_coarse, dense_fine));
+        assert!((8.5..9.7).contains(&step), "step order {step}");
+        assert!((7.5..8.7).contains(&dense), "dense order {dense}");
+        assert!(step_coarse < 1e-7 && dense_coarse < 1e-6);
+    }
+}

@@ -1,0 +1,40 @@
+//! The rotor–stator contact model of dry friction backward whirl, and the integrator that runs it.
+//!
+//! Signs and frames: x right, y up, angles counter-clockwise; r̂ points from the centre of the ring to
+//! the centre of the rotor, t̂ is r̂ turned counter-clockwise. Spin Ω > 0 is counter-clockwise, whirl
+//! with a tangential speed of the other sign is *backward*. SI units throughout, named in the field.
+//!
+//! ```text
+//! params ─► build ─► Plant::advance(t_end, Inputs) ─► Snapshot, Meters, Audit
+//!                      flight:  power series, exact; wall crossing on the exact solution
+//!                      contact: explicit pair of order 8(5,3), guards of the mode on dense output
+//! ```
+//!
+//! Files, each importing only from those above it: [`params`], [`contact`], [`friction`], `mode`,
+//! [`energy`], `part`, `series`, `stator`, `spin`, `magnet`, `system`, `integrate`, [`plant`],
+//! [`analysis`].
+
+#![forbid(unsafe_code)]
+
+pub mod analysis;
+pub mod contact;
+pub mod energy;
+mod friction;
+mod integrate;
+mod magnet;
+mod mode;
+pub mod params;
+mod part;
+pub mod plant;
+mod series;
+mod spin;
+mod stator;
+mod system;
+
+/// A vector in the plane.
+pub type V2 = nalgebra::Vector2<f64>;
+
+pub use mode::Mode;
+pub use part::Body;
+pub use plant::{BuildError, Meters, Options, Plant, PlantError, Snapshot, Work, build};
+pub use system::Inputs;

@@ -1,0 +1,295 @@
+//! What a plant is made of: plain SI data, checked once by [`PlantParams::validate`].
+
+use crate::V2;
+
+/// A value outside its range. `field` is the dotted path a scene file uses.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error("{field} = {value}: expected {expected}")]
+pub struct ParamError {
+    /// Dotted path of the field, e.g. `rotor.mass_kg`.
+    pub field: &'static str,
+    /// The value that was refused.
+    pub value: f64,
+    /// The range that was expected.
+    pub expected: &'static str,
+}
+
+/// Jeffcott rotor, eqs (2.1), (2.2).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RotorParams {
+    /// Mass m_r \[kg\], > 0.
+    pub mass_kg: f64,
+    /// Shaft stiffness k_r plus any negative stiffness of a magnet \[N/m\], either sign.
+    pub stiffness_n_m: f64,
+    /// Viscous damping d_r \[N s/m\], ≥ 0.
+    pub damping_n_s_m: f64,
+    /// Unbalance: eccentricity ε_r of the mass centre \[m\], ≥ 0.
+    pub eccentricity_m: f64,
+    /// Radius R_r at the contact \[m\], > 0.
+    pub contact_radius_m: f64,
+}
+
+/// How the rotor spins.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum SpinParams {
+    /// A drive holds the speed whatever the friction; no state.
+    Held,
+    /// Eq. (2.7): friction and the drive torque change the speed; one state (two with unbalance).
+    Free {
+        /// Polar moment of inertia J_r \[kg m²\], > 0.
+        inertia_kg_m2: f64,
+        /// Drive torque t_d \[N m\], positive drives the spin up.
+        drive_torque_n_m: f64,
+    },
+}
+
+/// One ring of the stator with its mounting, per axis (x, y).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RingParams {
+    /// Mass \[kg\], > 0.
+    pub mass_kg: f64,
+    /// Stiffness of the mounting along x and y \[N/m\], ≥ 0.
+    pub stiffness_n_m: V2,
+    /// Damping of the mounting along x and y \[N s/m\], ≥ 0.
+    pub damping_n_s_m: V2,
+}
+
+/// How far the stator is modelled.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum StatorParams {
+    /// The stator does not move; no state.
+    Rigid,
+    /// One ring on a mounting to ground; four states.
+    OneMass(RingParams),
+    /// The paper's two nested rings, eqs (2.3)–(2.6); eight states.
+    TwoMass {
+        /// Ring that the rotor touches (m_s, k_s, d_s), mounted in the outer ring.
+        inner: RingParams,
+        /// Outer ring (m_z, k_z, d_z), mounted to ground.
+        outer: RingParams,
+    },
+}
+
+/// Linear visco-elastic contact, f_n = k_c·A + d_c·B while positive.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContactParams {
+    /// Radial clearance c \[m\], > 0.
+    pub clearance_m: f64,
+    /// Contact stiffness k_c \[N/m\], > 0.
+    pub stiffness_n_m: f64,
+    /// Contact damping d_c \[N s/m\], ≥ 0; see [`crate::contact::damping_for_restitution`].
+    pub damping_n_s_m: f64,
+}
+
+/// Coefficient of sliding friction μ as a function of the sliding speed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum SlidingFriction {
+    /// The same at every speed.
+    Constant {
+        /// μ, ≥ 0.
+        coefficient: f64,
+    },
+    /// μ(v) = μ_∞ + (μ_0 − μ_∞)·exp(−|v|/v_0).
+    Falling {
+        /// μ_0 at rest, ≥ μ_∞.
+        at_rest: f64,
+        /// μ_∞ at high sliding speed, ≥ 0.
+        at_speed: f64,
+        /// v_0 \[m/s\], > 0.
+        speed_scale_m_s: f64,
+    },
+}
+
+/// Friction between rotor and stator.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FrictionParams {
+    /// Sliding friction, against the sliding speed at the contact.
+    pub sliding: SlidingFriction,
+    /// Coefficient of rolling friction μ_r, ≥ 0, against the whirl.
+    pub rolling_coefficient: f64,
+}
+
+/// Magnet: what turns a commanded force into a delivered one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MagnetParams {
+    /// Largest force, as the length of the vector \[N\], > 0.
+    pub force_max_n: f64,
+    /// Time constant of the amplifier's first-order lag \[s\], ≥ 0; 0 means no lag and no state.
+    pub lag_s: f64,
+}
+
+/// Everything that does not change during a run.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlantParams {
+    /// The rotor.
+    pub rotor: RotorParams,
+    /// How it spins.
+    pub spin: SpinParams,
+    /// The stator.
+    pub stator: StatorParams,
+    /// The contact between them.
+    pub contact: ContactParams,
+    /// Friction in the contact.
+    pub friction: FrictionParams,
+    /// The magnet, if there is one.
+    pub magnet: Option<MagnetParams>,
+}
+
+/// Where a run starts; the stator starts at rest in the centre, the magnet without force.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Start {
+    /// Rotor position \[m\].
+    pub position_m: V2,
+    /// Rotor velocity \[m/s\].
+    pub velocity_m_s: V2,
+    /// Spin Ω \[rad/s\], counter-clockwise positive.
+    pub spin_rad_s: f64,
+    /// Angle σ of the unbalance at t = 0 \[rad\].
+    pub spin_phase_rad: f64,
+}
+
+const POSITIVE: &str = "a finite number greater than 0";
+const NOT_NEGATIVE: &str = "a finite number, 0 or greater";
+const FINITE: &str = "a finite number";
+
+fn check(
+    ok: bool,
+    field: &'static str,
+    value: f64,
+    expected: &'static str,
+) -> Result<(), ParamError> {
+    if ok && value.is_finite() {
+        Ok(())
+    } else {
+        Err(ParamError {
+            field,
+            value,
+            expected,
+        })
+    }
+}
+
+fn positive(field: &'static str, value: f64) -> Result<(), ParamError> {
+    check(value > 0.0, field, value, POSITIVE)
+}
+
+fn not_negative(field: &'static str, value: f64) -> Result<(), ParamError> {
+    check(value >= 0.0, field, value, NOT_NEGATIVE)
+}
+
+fn finite(field: &'static str, value: f64) -> Result<(), ParamError> {
+    check(true, field, value, FINITE)
+}
+
+impl RingParams {
+    fn validate(&self, fields: [&'static str; 3]) -> Result<(), ParamError> {
+        positive(fields[0], self.mass_kg)?;
+        for axis in [0, 1] {
+            not_negative(fields[1], self.stiffness_n_m[axis])?;
+            not_negative(fields[2], self.damping_n_s_m[axis])?;
+        }
+        Ok(())
+    }
+}
+
+impl PlantParams {
+    /// Checks every field against its range.
+    ///
+    /// # Errors
+    /// The first field that is out of range.
+    pub fn validate(&self) -> Result<(), ParamError> {
+        positive("rotor.mass_kg", self.rotor.mass_kg)?;
+        finite("rotor.stiffness_n_m", self.rotor.stiffness_n_m)?;
+        not_negative("rotor.damping_n_s_m", self.rotor.damping_n_s_m)?;
+        not_negative("rotor.eccentricity_m", self.rotor.eccentricity_m)?;
+        positive("rotor.contact_radius_m", self.rotor.contact_radius_m)?;
+        if let SpinParams::Free {
+            inertia_kg_m2,
+            drive_torque_n_m,
+        } = self.spin
+        {
+            positive("spin.inertia_kg_m2", inertia_kg_m2)?;
+            finite("spin.drive_torque_n_m", drive_torque_n_m)?;
+        }
+        const INNER: [&str; 3] = [
+            "stator.inner.mass_kg",
+            "stator.inner.stiffness_n_m",
+            "stator.inner.damping_n_s_m",
+        ];
+        const OUTER: [&str; 3] = [
+            "stator.outer.mass_kg",
+            "stator.outer.stiffness_n_m",
+            "stator.outer.damping_n_s_m",
+        ];
+        match &self.stator {
+            StatorParams::Rigid => {}
+            StatorParams::OneMass(ring) => ring.validate(INNER)?,
+            StatorParams::TwoMass { inner, outer } => {
+                inner.validate(INNER)?;
+                outer.validate(OUTER)?;
+            }
+        }
+        positive("contact.clearance_m", self.contact.clearance_m)?;
+        positive("contact.stiffness_n_m", self.contact.stiffness_n_m)?;
+        not_negative("contact.damping_n_s_m", self.contact.damping_n_s_m)?;
+        match self.friction.sliding {
+            SlidingFriction::Constant { coefficient } => {
+                not_negative("friction.coefficient", coefficient)?;
+            }
+            SlidingFriction::Falling {
+                at_rest,
+                at_speed,
+                speed_scale_m_s,
+            } => {
+                not_negative("friction.coefficient_at_speed", at_speed)?;
+                check(
+                    at_rest >= at_speed,
+                    "friction.coefficient",
+                    at_rest,
+                    "a finite number, at least friction.coefficient_at_speed",
+                )?;
+                positive("friction.speed_scale_m_s", speed_scale_m_s)?;
+            }
+        }
+        not_negative(
+            "friction.rolling_coefficient",
+            self.friction.rolling_coefficient,
+        )?;
+        if let Some(magnet) = &self.magnet {
+            positive("magnet.force_max_n", magnet.force_max_n)?;
+            not_negative("magnet.lag_s", magnet.lag_s)?;
+        }
+        Ok(())
+    }
+
+    /// Natural frequency of the shaft √(k/m) \[rad/s\]; `None` without a restoring stiffness.
+    pub fn natural_frequency_rad_s(&self) -> Option<f64> {
+        (self.rotor.stiffness_n_m > 0.0)
+            .then(|| (self.rotor.stiffness_n_m / self.rotor.mass_kg).sqrt())
+    }
+
+    /// Reduced mass of the contact: rotor against the ring it touches \[kg\].
+    pub fn contact_mass_kg(&self) -> f64 {
+        let ring = match &self.stator {
+            StatorParams::Rigid => return self.rotor.mass_kg,
+            StatorParams::OneMass(ring) => ring.mass_kg,
+            StatorParams::TwoMass { inner, .. } => inner.mass_kg,
+        };
+        1.0 / (1.0 / self.rotor.mass_kg + 1.0 / ring)
+    }
+}
+
+impl Start {
+    /// Checks that every value is finite.
+    ///
+    /// # Errors
+    /// The first field that is not.
+    pub fn validate(&self) -> Result<(), ParamError> {
+        for axis in [0, 1] {
+            finite("start.position_m", self.position_m[axis])?;
+            finite("start.velocity_m_s", self.velocity_m_s[axis])?;
+        }
+        finite("start.spin_rad_s", self.spin_rad_s)?;
+        finite("start.spin_phase_rad", self.spin_phase_rad)
+    }
+}

@@ -1,0 +1,89 @@
+//! States built of parts: what a scene lacks is the unit type and costs nothing.
+
+use crate::V2;
+
+/// Reciprocal scales against which the error of one step is weighed.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Weights {
+    /// Per metre.
+    pub position: f64,
+    /// Per metre per second.
+    pub velocity: f64,
+    /// Per radian per second.
+    pub spin: f64,
+    /// Per radian.
+    pub phase: f64,
+    /// Per newton.
+    pub force: f64,
+}
+
+/// A piece of the state as the integrators see it: a vector with a weighed length.
+pub(crate) trait Part: Copy + Default {
+    /// Number of scalar states.
+    const STATES: usize;
+    /// `self += factor · other`.
+    fn add_scaled(&mut self, factor: f64, other: &Self);
+    /// Σ (component / scale)².
+    fn weighed_square(&self, weights: &Weights) -> f64;
+    /// Whether every component is finite.
+    fn is_finite(&self) -> bool;
+}
+
+impl Part for () {
+    const STATES: usize = 0;
+    #[inline]
+    fn add_scaled(&mut self, _factor: f64, _other: &Self) {}
+    #[inline]
+    fn weighed_square(&self, _weights: &Weights) -> f64 {
+        0.0
+    }
+    #[inline]
+    fn is_finite(&self) -> bool {
+        true
+    }
+}
+
+/// A mass that moves in the plane.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Body {
+    /// Position \[m\].
+    pub position: V2,
+    /// Velocity \[m/s\].
+    pub velocity: V2,
+}
+
+impl Part for Body {
+    const STATES: usize = 4;
+    #[inline]
+    fn add_scaled(&mut self, factor: f64, other: &Self) {
+        self.position += factor * other.position;
+        self.velocity += factor * other.velocity;
+    }
+    #[inline]
+    fn weighed_square(&self, weights: &Weights) -> f64 {
+        self.position.norm_squared() * weights.position * weights.position
+            + self.velocity.norm_squared() * weights.velocity * weights.velocity
+    }
+    #[inline]
+    fn is_finite(&self) -> bool {
+        self.position.iter().chain(&self.velocity).all(|x| x.is_finite())
+    }
+}
+
+/// Two parts side by side.
+impl<A: Part, B: Part> Part for (A, B) {
+    const STATES: usize = A::STATES + B::STATES;
+    #[inline]
+    fn add_scaled(&mut self, factor: f64, other: &Self) {
+        self.0.add_scaled(factor, &other.0);
+        self.1.add_scaled(factor, &other.1);
+    }
+    #[inline]
+    fn weighed_square(&self, weights: &Weights) -> f64 {
+        self.0.weighed_square(weights) + self.1.weighed_square(weights)
+    }
+    #[inline]
+    fn is_finite(&self) -> bool {
+        self.0.is_finite() && self.1.is_finite()
+    }
+}

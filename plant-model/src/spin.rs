@@ -1,0 +1,187 @@
+//! Spin of the rotor, eq. (2.7): held, free, or free with the angle of an unbalance.
+
+use crate::part::{Part, Weights};
+
+/// A model of the spin.
+pub(crate) trait Spin: Copy {
+    /// What changes in time.
+    type State: Part;
+    /// State at the start of a run.
+    fn start(&self, spin_rad_s: f64, phase_rad: f64) -> Self::State;
+    /// Ω \[rad/s\].
+    fn spin_rad_s(&self, state: &Self::State) -> f64;
+    /// Ω replaced, where it is a state; says whether it was.
+    fn set_spin_rad_s(&self, state: &mut Self::State, spin_rad_s: f64) -> bool;
+    /// Angle σ of the rotor \[rad\]. Only called with an unbalance.
+    fn phase_rad(&self, state: &Self::State, t_s: f64) -> f64;
+    /// 1/J \[1/(kg m²)\]; 0 where the speed is held.
+    fn inverse_inertia(&self) -> f64;
+    /// Drive torque t_d \[N m\]; 0 where the speed is held, since friction decides it there.
+    fn drive_torque_n_m(&self) -> f64;
+    /// Time derivative for a spin acceleration \[rad/s²\].
+    fn rates(&self, state: &Self::State, acceleration: f64) -> Self::State;
+    /// State after `dt_s` of constant acceleration.
+    fn coast(&self, state: &Self::State, dt_s: f64) -> Self::State;
+}
+
+/// Speed held by the drive.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Held {
+    /// Ω \[rad/s\].
+    pub spin_rad_s: f64,
+    /// σ at t = 0 \[rad\].
+    pub phase_rad: f64,
+}
+
+impl Spin for Held {
+    type State = ();
+    #[inline]
+    fn start(&self, _spin_rad_s: f64, _phase_rad: f64) {}
+    #[inline]
+    fn spin_rad_s(&self, _state: &()) -> f64 {
+        self.spin_rad_s
+    }
+    fn set_spin_rad_s(&self, _state: &mut (), _spin_rad_s: f64) -> bool {
+        false
+    }
+    #[inline]
+    fn phase_rad(&self, _state: &(), t_s: f64) -> f64 {
+        self.phase_rad + self.spin_rad_s * t_s
+    }
+    #[inline]
+    fn inverse_inertia(&self) -> f64 {
+        0.0
+    }
+    #[inline]
+    fn drive_torque_n_m(&self) -> f64 {
+        0.0
+    }
+    #[inline]
+    fn rates(&self, _state: &(), _acceleration: f64) {}
+    #[inline]
+    fn coast(&self, _state: &(), _dt_s: f64) {}
+}
+
+/// Ω as a state.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct SpinState(f64);
+
+impl Part for SpinState {
+    const STATES: usize = 1;
+    #[inline]
+    fn add_scaled(&mut self, factor: f64, other: &Self) {
+        self.0 += factor * other.0;
+    }
+    #[inline]
+    fn weighed_square(&self, weights: &Weights) -> f64 {
+        (self.0 * weights.spin).powi(2)
+    }
+    #[inline]
+    fn is_finite(&self) -> bool {
+        self.0.is_finite()
+    }
+}
+
+/// σ as a state.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct PhaseState(f64);
+
+impl Part for PhaseState {
+    const STATES: usize = 1;
+    #[inline]
+    fn add_scaled(&mut self, factor: f64, other: &Self) {
+        self.0 += factor * other.0;
+    }
+    #[inline]
+    fn weighed_square(&self, weights: &Weights) -> f64 {
+        (self.0 * weights.phase).powi(2)
+    }
+    #[inline]
+    fn is_finite(&self) -> bool {
+        self.0.is_finite()
+    }
+}
+
+/// Speed driven and braked.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Free {
+    /// J \[kg m²\].
+    pub inertia_kg_m2: f64,
+    /// t_d \[N m\].
+    pub drive_torque_n_m: f64,
+}
+
+impl Spin for Free {
+    type State = SpinState;
+    fn start(&self, spin_rad_s: f64, _phase_rad: f64) -> SpinState {
+        SpinState(spin_rad_s)
+    }
+    #[inline]
+    fn spin_rad_s(&self, state: &SpinState) -> f64 {
+        state.0
+    }
+    fn set_spin_rad_s(&self, state: &mut SpinState, spin_rad_s: f64) -> bool {
+        state.0 = spin_rad_s;
+        true
+    }
+    fn phase_rad(&self, _state: &SpinState, _t_s: f64) -> f64 {
+        0.0
+    }
+    #[inline]
+    fn inverse_inertia(&self) -> f64 {
+        1.0 / self.inertia_kg_m2
+    }
+    #[inline]
+    fn drive_torque_n_m(&self) -> f64 {
+        self.drive_torque_n_m
+    }
+    #[inline]
+    fn rates(&self, _state: &SpinState, acceleration: f64) -> SpinState {
+        SpinState(acceleration)
+    }
+    #[inline]
+    fn coast(&self, state: &SpinState, dt_s: f64) -> SpinState {
+        SpinState(state.0 + self.drive_torque_n_m * self.inverse_inertia() * dt_s)
+    }
+}
+
+/// [`Free`] with the angle of the unbalance.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct FreePhased(pub Free);
+
+impl Spin for FreePhased {
+    type State = (SpinState, PhaseState);
+    fn start(&self, spin_rad_s: f64, phase_rad: f64) -> Self::State {
+        (SpinState(spin_rad_s), PhaseState(phase_rad))
+    }
+    #[inline]
+    fn spin_rad_s(&self, state: &Self::State) -> f64 {
+        state.0.0
+    }
+    fn set_spin_rad_s(&self, state: &mut Self::State, spin_rad_s: f64) -> bool {
+        state.0.0 = spin_rad_s;
+        true
+    }
+    #[inline]
+    fn phase_rad(&self, state: &Self::State, _t_s: f64) -> f64 {
+        state.1.0
+    }
+    #[inline]
+    fn inverse_inertia(&self) -> f64 {
+        self.0.inverse_inertia()
+    }
+    #[inline]
+    fn drive_torque_n_m(&self) -> f64 {
+        self.0.drive_torque_n_m
+    }
+    #[inline]
+    fn rates(&self, state: &Self::State, acceleration: f64) -> Self::State {
+        (SpinState(acceleration), PhaseState(state.0.0))
+    }
+    #[inline]
+    fn coast(&self, state: &Self::State, dt_s: f64) -> Self::State {
+        let acceleration = self.0.drive_torque_n_m * self.0.inverse_inertia();
+        let phase = state.1.0 + (state.0.0 + 0.5 * acceleration * dt_s) * dt_s;
+        (self.0.coast(&state.0, dt_s), PhaseState(phase))
+    }
+}

@@ -1,0 +1,326 @@
+//! The parts composed: eqs (2.1)–(2.9) as one smooth vector field per mode.
+
+use crate::V2;
+use crate::energy::Flows;
+use crate::magnet::Amplifier;
+use crate::mode::{Slide, Whirl};
+use crate::params::{ContactParams, FrictionParams, RotorParams};
+use crate::part::{Body, Part, Weights};
+use crate::spin::Spin;
+use crate::stator::Stator;
+
+/// What acts on the plant from outside, held until the next call.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Inputs {
+    /// Commanded magnet force \[N\]; limited to the magnet's cap, ignored without a magnet.
+    pub command_n: V2,
+    /// External force on the rotor, weight included \[N\].
+    pub external_n: V2,
+}
+
+/// The plant for one combination of parts.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct System<S, W, M> {
+    pub(crate) rotor: RotorParams,
+    pub(crate) contact: ContactParams,
+    pub(crate) friction: FrictionParams,
+    pub(crate) stator: S,
+    pub(crate) spin: W,
+    pub(crate) amplifier: M,
+}
+
+/// State of one combination of parts.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct State<S, W, M> {
+    pub(crate) rotor: Body,
+    pub(crate) stator: S,
+    pub(crate) spin: W,
+    pub(crate) force: M,
+}
+
+pub(crate) type StateOf<S, W, M> =
+    State<<S as Stator>::State, <W as Spin>::State, <M as Amplifier>::State>;
+
+impl<S: Part, W: Part, M: Part> Part for State<S, W, M> {
+    const STATES: usize = Body::STATES + S::STATES + W::STATES + M::STATES;
+    #[inline]
+    fn add_scaled(&mut self, factor: f64, other: &Self) {
+        self.rotor.add_scaled(factor, &other.rotor);
+        self.stator.add_scaled(factor, &other.stator);
+        self.spin.add_scaled(factor, &other.spin);
+        self.force.add_scaled(factor, &other.force);
+    }
+    #[inline]
+    fn weighed_square(&self, weights: &Weights) -> f64 {
+        self.rotor.weighed_square(weights)
+            + self.stator.weighed_square(weights)
+            + self.spin.weighed_square(weights)
+            + self.force.weighed_square(weights)
+    }
+    #[inline]
+    fn is_finite(&self) -> bool {
+        self.rotor.is_finite()
+            && self.stator.is_finite()
+            && self.spin.is_finite()
+            && self.force.is_finite()
+    }
+}
+
+/// Guards of a contact mode: each is positive while the mode holds; unused ones are infinite.
+pub(crate) type Guards = [f64; 5];
+/// Normal force.
+pub(crate) const NORMAL: usize = 0;
+/// Slip: speed in its direction. Roll: room to the upper edge of the friction cone.
+pub(crate) const SLIDE: usize = 1;
+/// Roll: room to the lower edge.
+pub(crate) const SLIDE_LOW: usize = 2;
+/// Whirl: speed in its direction. Still: room to the upper edge of the rolling cone.
+pub(crate) const WHIRL: usize = 3;
+/// Still: room to the lower edge.
+pub(crate) const WHIRL_LOW: usize = 4;
+
+/// Geometry of the rotor against the ring: no forces yet.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Geometry {
+    /// Distance ρ of the centres \[m\].
+    pub(crate) distance_m: f64,
+    /// r̂ from ring to rotor.
+    pub(crate) normal: V2,
+    /// t̂, counter-clockwise.
+    pub(crate) tangent: V2,
+    /// A of eq. (2.8) \[m\]; negative inside the clearance.
+    pub(crate) penetration_m: f64,
+    /// B of eq. (2.9) \[m/s\].
+    pub(crate) normal_speed_m_s: f64,
+    /// v_w, tangential speed of the rotor against the ring \[m/s\].
+    pub(crate) whirl_speed_m_s: f64,
+    /// v_rel = v_w + Ω·R_r \[m/s\].
+    pub(crate) sliding_speed_m_s: f64,
+}
+
+/// Forces in the contact.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Touch {
+    pub(crate) normal_n: f64,
+    pub(crate) normal_rate_n_s: f64,
+    /// Sliding part of the tangential force on the rotor, along t̂ \[N\].
+    pub(crate) sliding_n: f64,
+    /// Rolling part \[N\].
+    pub(crate) rolling_n: f64,
+    pub(crate) sliding_acceleration: f64,
+    pub(crate) whirl_acceleration: f64,
+    pub(crate) whirl_speed_m_s: f64,
+}
+
+/// The vector field at one point of a contact mode, with what the same terms give for free.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Evaluation<Y> {
+    pub(crate) rates: Y,
+    pub(crate) powers: Flows,
+    pub(crate) guards: Guards,
+    pub(crate) touch: Touch,
+}
+
+impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
+    #[inline]
+    pub(crate) fn geometry(&self, y: &StateOf<S, W, M>) -> Geometry {
+        let ring = S::inner(&y.stator);
+        let u = y.rotor.position - ring.position;
+        let w = y.rotor.velocity - ring.velocity;
+        let distance_m = u.norm();
+        // Concentric: every direction is as good; contact needs a clearance, so none is felt.
+        let normal = if distance_m > 0.0 { u / distance_m } else { V2::x() };
+        let tangent = V2::new(-normal.y, normal.x);
+        let whirl_speed_m_s = w.dot(&tangent);
+        let surface = self.spin.spin_rad_s(&y.spin) * self.rotor.contact_radius_m;
+        Geometry {
+            distance_m,
+            normal,
+            tangent,
+            penetration_m: distance_m - self.contact.clearance_m,
+            normal_speed_m_s: w.dot(&normal),
+            whirl_speed_m_s,
+            sliding_speed_m_s: whirl_speed_m_s + surface,
+        }
+    }
+
+    /// Unbalance: acceleration by the square of the speed, and acceleration per unit of spin
+    /// acceleration. `None` without eccentricity.
+    #[inline]
+    fn unbalance(&self, t_s: f64, y: &StateOf<S, W, M>) -> Option<(V2, V2)> {
+        let e = self.rotor.eccentricity_m;
+        if e == 0.0 {
+            return None;
+        }
+        let (sin, cos) = self.spin.phase_rad(&y.spin, t_s).sin_cos();
+        let spin = self.spin.spin_rad_s(&y.spin);
+        Some((e * spin * spin * V2::new(cos, sin), e * V2::new(sin, -cos)))
+    }
+
+    /// The field in contact. Smooth for given `slide` and `whirl`, also where a guard is negative.
+    pub(crate) fn contact(
+        &self,
+        t_s: f64,
+        y: &StateOf<S, W, M>,
+        inputs: &Inputs,
+        (slide, whirl): (Slide, Whirl),
+    ) -> Evaluation<StateOf<S, W, M>> {
+        let g = self.geometry(y);
+        let (n, t) = (g.normal, g.tangent);
+        let radius = self.rotor.contact_radius_m;
+        let velocity = y.rotor.velocity;
+        let normal_n = self.contact.normal_force_n(g.penetration_m, g.normal_speed_m_s);
+
+        let magnet_n = self.amplifier.force_n(&y.force, inputs.command_n);
+        let free_n = magnet_n + inputs.external_n
+            - self.rotor.stiffness_n_m * y.rotor.position
+            - self.rotor.damping_n_s_m * velocity;
+        let inverse_m = 1.0 / self.rotor.mass_kg;
+        let mut rotor_acceleration = (free_n - normal_n * n) * inverse_m;
+        let unbalance = self.unbalance(t_s, y);
+        let mut per_spin_acceleration = 0.0;
+        if let Some((by_speed, by_acceleration)) = unbalance {
+            rotor_acceleration += by_speed;
+            per_spin_acceleration = by_acceleration.dot(&t);
+        }
+        let ring_pushed = self.stator.rates(&y.stator, normal_n * n);
+        let ring_acceleration = S::inner(&ring_pushed).velocity;
+
+        // v̇_w = base + M·(s + q) + e_t·Ω̇ and Ω̇ = (t_d + R·s)/J for sliding part s, rolling part q.
+        let base = (rotor_acceleration - ring_acceleration).dot(&t)
+            - g.normal_speed_m_s * g.whirl_speed_m_s / g.distance_m;
+        let mobility = inverse_m + self.stator.inverse_mass();
+        let inverse_j = self.spin.inverse_inertia();
+        let torque = self.spin.drive_torque_n_m();
+        let whirl_by_torque = per_spin_acceleration * inverse_j;
+        let slide_by_torque = whirl_by_torque + radius * inverse_j;
+
+        let at = if slide == Slide::Rolling { 0.0 } else { g.sliding_speed_m_s };
+        let mu = self.friction.sliding.coefficient(at);
+        let mu_r = self.friction.rolling_coefficient;
+        let (sliding_n, rolling_n) = match (slide, whirl) {
+            (Slide::Rolling, Whirl::Still) => {
+                if inverse_j > 0.0 {
+                    let s = -torque / radius;
+                    (s, -base / mobility - s)
+                } else {
+                    let both = -base / mobility;
+                    let share = if mu + mu_r > 0.0 { mu / (mu + mu_r) } else { 0.0 };
+                    (both * share, both * (1.0 - share))
+                }
+            }
+            (Slide::Rolling, _) => {
+                let q = -whirl.sign() * mu_r * normal_n;
+                let s = -(base + slide_by_torque * torque + mobility * q)
+                    / (mobility + slide_by_torque * radius);
+                (s, q)
+            }
+            (_, Whirl::Still) => {
+                let s = -slide.sign() * mu * normal_n;
+                let pushed = base + whirl_by_torque * (torque + radius * s) + mobility * s;
+                (s, -pushed / mobility)
+            }
+            _ => (
+                -slide.sign() * mu * normal_n,
+                -whirl.sign() * mu_r * normal_n,
+            ),
+        };
+        let tangential_n = sliding_n + rolling_n;
+        let spin_acceleration = inverse_j * (torque + radius * sliding_n);
+        let whirl_acceleration =
+            base + mobility * tangential_n + per_spin_acceleration * spin_acceleration;
+
+        rotor_acceleration += tangential_n * inverse_m * t;
+        let mut unbalance_w = 0.0;
+        if let Some((by_speed, by_acceleration)) = unbalance {
+            rotor_acceleration += spin_acceleration * by_acceleration;
+            let force = self.rotor.mass_kg * (by_speed + spin_acceleration * by_acceleration);
+            unbalance_w = force.dot(&velocity);
+        }
+        let rates = State {
+            rotor: Body {
+                position: velocity,
+                velocity: rotor_acceleration,
+            },
+            stator: self.stator.rates(&y.stator, normal_n * n - tangential_n * t),
+            spin: self.spin.rates(&y.spin, spin_acceleration),
+            force: self.amplifier.rates(&y.force, inputs.command_n),
+        };
+
+        let spin = self.spin.spin_rad_s(&y.spin);
+        let drive_n_m = if inverse_j > 0.0 { torque } else { -radius * sliding_n };
+        let damper_n = self.contact.damping_n_s_m * g.normal_speed_m_s;
+        let powers = Flows {
+            control: magnet_n.dot(&velocity),
+            external: inputs.external_n.dot(&velocity),
+            drive: drive_n_m * spin,
+            unbalance: unbalance_w,
+            rotor_damping: self.rotor.damping_n_s_m * velocity.norm_squared(),
+            stator_damping: self.stator.damping_w(&y.stator),
+            contact_damping: damper_n * g.normal_speed_m_s,
+            sliding_friction: -sliding_n * g.sliding_speed_m_s,
+            rolling_friction: -rolling_n * g.whirl_speed_m_s,
+            normal_impulse_n_s: normal_n,
+        };
+
+        let mut guards = [f64::INFINITY; 5];
+        guards[NORMAL] = normal_n;
+        match slide {
+            Slide::Rolling => {
+                guards[SLIDE] = mu * normal_n - sliding_n;
+                guards[SLIDE_LOW] = mu * normal_n + sliding_n;
+            }
+            // Without friction the direction of slip changes nothing.
+            _ if mu == 0.0 => {}
+            _ => guards[SLIDE] = slide.sign() * g.sliding_speed_m_s,
+        }
+        match whirl {
+            Whirl::Ignored => {}
+            Whirl::Still => {
+                guards[WHIRL] = mu_r * normal_n - rolling_n;
+                guards[WHIRL_LOW] = mu_r * normal_n + rolling_n;
+            }
+            _ => guards[WHIRL] = whirl.sign() * g.whirl_speed_m_s,
+        }
+
+        let normal_acceleration = (rotor_acceleration - S::inner(&rates.stator).velocity).dot(&n)
+            + g.whirl_speed_m_s * g.whirl_speed_m_s / g.distance_m;
+        Evaluation {
+            rates,
+            powers,
+            guards,
+            touch: Touch {
+                normal_n,
+                normal_rate_n_s: self.contact.normal_force_n(g.normal_speed_m_s, normal_acceleration),
+                sliding_n,
+                rolling_n,
+                sliding_acceleration: whirl_acceleration + radius * spin_acceleration,
+                whirl_acceleration,
+                whirl_speed_m_s: g.whirl_speed_m_s,
+            },
+        }
+    }
+
+    /// Kinetic and elastic energy, the contact spring included while `touching` \[J\].
+    pub(crate) fn stored_j(&self, y: &StateOf<S, W, M>, touching: bool) -> f64 {
+        let spin = self.spin.spin_rad_s(&y.spin);
+        let inverse_j = self.spin.inverse_inertia();
+        let turning = if inverse_j > 0.0 { 0.5 * spin * spin / inverse_j } else { 0.0 };
+        let dent = if touching {
+            self.contact.stored_j(self.geometry(y).penetration_m)
+        } else {
+            0.0
+        };
+        0.5 * self.rotor.mass_kg * y.rotor.velocity.norm_squared()
+            + 0.5 * self.rotor.stiffness_n_m * y.rotor.position.norm_squared()
+            + self.stator.stored_j(&y.stator)
+            + turning
+            + dent
+    }
+
+    /// Angular frequency of the rotor on the contact spring, with its damping \[rad/s\].
+    pub(crate) fn contact_rate_rad_s(&self) -> f64 {
+        let mobility = 1.0 / self.rotor.mass_kg + self.stator.inverse_mass();
+        (self.contact.stiffness_n_m * mobility).sqrt() + self.contact.damping_n_s_m * mobility
+    }
+}

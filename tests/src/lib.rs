@@ -1,0 +1,3 @@
+//! Plants that several tests share.
+
+pub mod plants;
