@@ -95,13 +95,20 @@ impl Audit {
 
     /// Energy turned over \[J\]: everything that moved, and the most that was stored.
     pub fn turnover_j(&self) -> f64 {
-        let moved: f64 = self.flows.array()[..FLOWS - 1].iter().map(|x| x.abs()).sum();
+        let moved: f64 = self.flows.array()[..FLOWS - 1]
+            .iter()
+            .map(|x| x.abs())
+            .sum();
         moved + self.stored_peak_j
     }
 
     /// |gap| over turnover; 0 where nothing ever moved.
     pub fn residual(&self) -> f64 {
         let turnover = self.turnover_j();
-        if turnover > 0.0 { self.gap_j().abs() / turnover } else { 0.0 }
+        if turnover > 0.0 {
+            self.gap_j().abs() / turnover
+        } else {
+            0.0
+        }
     }
 }

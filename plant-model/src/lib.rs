@@ -11,10 +11,12 @@
 //! ```
 //!
 //! Files, each importing only from those above it: [`params`], [`contact`], [`friction`], `mode`,
-//! [`energy`], `part`, `series`, `stator`, `spin`, `magnet`, `system`, `integrate`, [`plant`],
+//! [`energy`], `part`, `series`, `stator`, `spin`, `magnet`, `system`,
+//! [`readout`], `integrate`, [`plant`],
 //! [`analysis`].
 
 #![forbid(unsafe_code)]
+#![warn(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 pub mod analysis;
 pub mod contact;
@@ -26,6 +28,7 @@ mod mode;
 pub mod params;
 mod part;
 pub mod plant;
+pub mod readout;
 mod series;
 mod spin;
 mod stator;
@@ -34,7 +37,9 @@ mod system;
 /// A vector in the plane.
 pub type V2 = nalgebra::Vector2<f64>;
 
+pub use integrate::{Options, PlantError};
 pub use mode::Mode;
 pub use part::Body;
-pub use plant::{BuildError, Meters, Options, Plant, PlantError, Snapshot, Work, build};
+pub use plant::{BuildError, Plant, build};
+pub use readout::{Meters, Snapshot, Work};
 pub use system::Inputs;

@@ -53,7 +53,11 @@ pub(crate) enum Whirl {
 
 impl Slide {
     pub(crate) fn of(speed: f64) -> Self {
-        if speed < 0.0 { Self::Negative } else { Self::Positive }
+        if speed < 0.0 {
+            Self::Negative
+        } else {
+            Self::Positive
+        }
     }
 
     pub(crate) fn sign(self) -> f64 {
@@ -67,7 +71,11 @@ impl Slide {
 
 impl Whirl {
     pub(crate) fn of(speed: f64) -> Self {
-        if speed < 0.0 { Self::Negative } else { Self::Positive }
+        if speed < 0.0 {
+            Self::Negative
+        } else {
+            Self::Positive
+        }
     }
 
     pub(crate) fn sign(self) -> f64 {

@@ -66,7 +66,10 @@ impl Part for Body {
     }
     #[inline]
     fn is_finite(&self) -> bool {
-        self.position.iter().chain(&self.velocity).all(|x| x.is_finite())
+        self.position
+            .iter()
+            .chain(&self.velocity)
+            .all(|x| x.is_finite())
     }
 }
 

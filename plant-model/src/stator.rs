@@ -34,8 +34,6 @@ pub(crate) trait Stator: Copy {
     fn inner_series(series: &Self::Series) -> Option<&Series>;
     /// State at θ.
     fn at(series: &Self::Series, theta: f64, order: usize) -> Self::State;
-    /// ∫ [`Stator::damping_w`] dθ from 0 to θ \[W\].
-    fn damping_integral_w(&self, series: &Self::Series, theta: f64, order: usize) -> f64;
 }
 
 /// A stator that does not move: part of no size.
@@ -77,10 +75,6 @@ impl Stator for Rigid {
     }
     #[inline]
     fn at(_series: &(), _theta: f64, _order: usize) {}
-    #[inline]
-    fn damping_integral_w(&self, _series: &(), _theta: f64, _order: usize) -> f64 {
-        0.0
-    }
 }
 
 /// Position and velocity series of one ring.
@@ -178,10 +172,6 @@ impl Stator for OneMass {
     fn at(series: &BodySeries, theta: f64, order: usize) -> Body {
         series.at(theta, order)
     }
-    fn damping_integral_w(&self, series: &BodySeries, theta: f64, order: usize) -> f64 {
-        let v = &series.velocity;
-        v.integral_of_weighed_square(self.0.damping_n_s_m, theta, order)
-    }
 }
 
 /// Two nested rings: the inner one mounted in the outer one, the outer one to ground.
@@ -209,8 +199,11 @@ impl Stator for TwoMass {
     }
     #[inline]
     fn rates(&self, (s, z): &Self::State, force_n: V2) -> Self::State {
-        let between =
-            mounting_force(&self.inner, s.position - z.position, s.velocity - z.velocity);
+        let between = mounting_force(
+            &self.inner,
+            s.position - z.position,
+            s.velocity - z.velocity,
+        );
         let ground = mounting_force(&self.outer, z.position, z.velocity);
         (
             Body {
@@ -263,14 +256,5 @@ impl Stator for TwoMass {
     }
     fn at((s, z): &Self::Series, theta: f64, order: usize) -> Self::State {
         (s.at(theta, order), z.at(theta, order))
-    }
-    fn damping_integral_w(&self, (s, z): &Self::Series, theta: f64, order: usize) -> f64 {
-        let mut across = s.velocity;
-        for (a, b) in across.0[..=order].iter_mut().zip(&z.velocity.0) {
-            *a -= b;
-        }
-        across.integral_of_weighed_square(self.inner.damping_n_s_m, theta, order)
-            + z.velocity
-                .integral_of_weighed_square(self.outer.damping_n_s_m, theta, order)
     }
 }

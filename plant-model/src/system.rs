@@ -110,6 +110,8 @@ pub(crate) struct Touch {
     pub(crate) sliding_acceleration: f64,
     pub(crate) whirl_acceleration: f64,
     pub(crate) whirl_speed_m_s: f64,
+    pub(crate) penetration_m: f64,
+    pub(crate) normal_speed_m_s: f64,
 }
 
 /// The vector field at one point of a contact mode, with what the same terms give for free.
@@ -129,7 +131,11 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
         let w = y.rotor.velocity - ring.velocity;
         let distance_m = u.norm();
         // Concentric: every direction is as good; contact needs a clearance, so none is felt.
-        let normal = if distance_m > 0.0 { u / distance_m } else { V2::x() };
+        let normal = if distance_m > 0.0 {
+            u / distance_m
+        } else {
+            V2::x()
+        };
         let tangent = V2::new(-normal.y, normal.x);
         let whirl_speed_m_s = w.dot(&tangent);
         let surface = self.spin.spin_rad_s(&y.spin) * self.rotor.contact_radius_m;
@@ -169,7 +175,9 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
         let (n, t) = (g.normal, g.tangent);
         let radius = self.rotor.contact_radius_m;
         let velocity = y.rotor.velocity;
-        let normal_n = self.contact.normal_force_n(g.penetration_m, g.normal_speed_m_s);
+        let normal_n = self
+            .contact
+            .normal_force_n(g.penetration_m, g.normal_speed_m_s);
 
         let magnet_n = self.amplifier.force_n(&y.force, inputs.command_n);
         let free_n = magnet_n + inputs.external_n
@@ -195,7 +203,11 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
         let whirl_by_torque = per_spin_acceleration * inverse_j;
         let slide_by_torque = whirl_by_torque + radius * inverse_j;
 
-        let at = if slide == Slide::Rolling { 0.0 } else { g.sliding_speed_m_s };
+        let at = if slide == Slide::Rolling {
+            0.0
+        } else {
+            g.sliding_speed_m_s
+        };
         let mu = self.friction.sliding.coefficient(at);
         let mu_r = self.friction.rolling_coefficient;
         let (sliding_n, rolling_n) = match (slide, whirl) {
@@ -205,7 +217,11 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
                     (s, -base / mobility - s)
                 } else {
                     let both = -base / mobility;
-                    let share = if mu + mu_r > 0.0 { mu / (mu + mu_r) } else { 0.0 };
+                    let share = if mu + mu_r > 0.0 {
+                        mu / (mu + mu_r)
+                    } else {
+                        0.0
+                    };
                     (both * share, both * (1.0 - share))
                 }
             }
@@ -242,13 +258,19 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
                 position: velocity,
                 velocity: rotor_acceleration,
             },
-            stator: self.stator.rates(&y.stator, normal_n * n - tangential_n * t),
+            stator: self
+                .stator
+                .rates(&y.stator, normal_n * n - tangential_n * t),
             spin: self.spin.rates(&y.spin, spin_acceleration),
             force: self.amplifier.rates(&y.force, inputs.command_n),
         };
 
         let spin = self.spin.spin_rad_s(&y.spin);
-        let drive_n_m = if inverse_j > 0.0 { torque } else { -radius * sliding_n };
+        let drive_n_m = if inverse_j > 0.0 {
+            torque
+        } else {
+            -radius * sliding_n
+        };
         let damper_n = self.contact.damping_n_s_m * g.normal_speed_m_s;
         let powers = Flows {
             control: magnet_n.dot(&velocity),
@@ -291,12 +313,16 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
             guards,
             touch: Touch {
                 normal_n,
-                normal_rate_n_s: self.contact.normal_force_n(g.normal_speed_m_s, normal_acceleration),
+                normal_rate_n_s: self
+                    .contact
+                    .normal_force_n(g.normal_speed_m_s, normal_acceleration),
                 sliding_n,
                 rolling_n,
                 sliding_acceleration: whirl_acceleration + radius * spin_acceleration,
                 whirl_acceleration,
                 whirl_speed_m_s: g.whirl_speed_m_s,
+                penetration_m: g.penetration_m,
+                normal_speed_m_s: g.normal_speed_m_s,
             },
         }
     }
@@ -305,7 +331,11 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
     pub(crate) fn stored_j(&self, y: &StateOf<S, W, M>, touching: bool) -> f64 {
         let spin = self.spin.spin_rad_s(&y.spin);
         let inverse_j = self.spin.inverse_inertia();
-        let turning = if inverse_j > 0.0 { 0.5 * spin * spin / inverse_j } else { 0.0 };
+        let turning = if inverse_j > 0.0 {
+            0.5 * spin * spin / inverse_j
+        } else {
+            0.0
+        };
         let dent = if touching {
             self.contact.stored_j(self.geometry(y).penetration_m)
         } else {

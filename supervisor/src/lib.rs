@@ -1,2 +1,78 @@
+//! Real-time supervisor that keeps a rotor on active magnetic bearings out of dry friction backward
+//! whirl when it touches its retainer bearing. `no_std`, no allocation, no panic, no unsafe.
+//!
+//! ```
+//! use supervisor::{Config, Sample, Status, Supervisor};
+//!
+//! let config = Config {
+//!     sample_period_s: 50e-6,
+//!     mass_kg: 10.0,
+//!     stiffness_n_m: -2e5,
+//!     damping_n_s_m: 0.0,
+//!     clearance_m: 2e-4,
+//!     force_max_n: 1000.0,
+//!     amplifier_lag_s: 1.6e-4,
+//!     delay_samples: 1.0,
+//!     friction_coefficient: 0.15,
+//!     restitution: 0.7,
+//!     observer_pole_flight: 0.5,
+//!     observer_pole_contact: 0.2,
+//!     contact_band: 0.02,
+//!     position_limit: 4.0,
+//!     whirl_time_s: 2e-3,
+//!     hold_share: 0.8,
+//!     handover_dwell_s: 1e-3,
+//!     handover_blend_s: 2e-3,
+//!     fault_blend_s: 1e-3,
+//!     fault_ticks: 10.0,
+//! };
+//! let mut supervisor = Supervisor::<512>::new(&config)?;
+//! let command = supervisor.tick(&Sample {
+//!     sequence: 0,
+//!     status: Status::SPIN_VALID,
+//!     position_m: [1e-5, -2e-5],
+//!     spin_rad_s: 1000.0,
+//!     levitation_n: [-12.5, 25.0],
+//! });
+//! assert_eq!(command.force_n, [-12.5, 25.0]); // transparent while levitated
+//! # Ok::<(), supervisor::ConfigError>(())
+//! ```
+//!
+//! Signs and frames: x right, y up, angles and spin counter-clockwise positive; r̂ outwards from the
+//! centre of the retainer bearing, t̂ = r̂ turned counter-clockwise. Backward means against the spin.
+//! SI at the border, per unit inside (lengths in clearances, forces in caps, time in ticks).
+//!
+//! ```text
+//! Sample ─► guard ─► detect ─► estimate ─► classify ─► phase ─► law ─► limit ─► handover ─► Command
+//!                                                                                 └─► recorder
+//! ```
+//!
+//! Files, each importing only from those above it: `math`, `vec2`, `signal`, `config`, `coeffs`,
+//! `guard`, `estimate`, `detect`, `classify`, `phase`, `law`, `limit`, `handover`, `recorder`,
+//! `supervisor`.
+
+// Unconditional: under `cfg(test)` std's own methods would silently replace micromath's.
 #![no_std]
-//! x
+#![forbid(unsafe_code)]
+#![warn(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+mod classify;
+mod coeffs;
+mod config;
+mod detect;
+mod estimate;
+mod guard;
+mod handover;
+mod law;
+mod limit;
+mod math;
+mod phase;
+mod recorder;
+mod signal;
+mod supervisor;
+mod vec2;
+
+pub use config::{Config, ConfigError, PARAMETERS, Parameter};
+pub use recorder::{Entry, PER_UNIT, QueuedEvent, RECORD_VERSION, Record, crc_of};
+pub use signal::{Command, Events, IntegratorHint, Limits, Mode, Sample, Status};
+pub use supervisor::Supervisor;

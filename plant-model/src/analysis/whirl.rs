@@ -48,8 +48,7 @@ impl WhirlMeter {
             return;
         }
         let backward = if spin_rad_s < 0.0 { 1.0 } else { -1.0 };
-        let backward_hz =
-            backward * (angle_rad - angle0) / (t_s - t0) / std::f64::consts::TAU;
+        let backward_hz = backward * (angle_rad - angle0) / (t_s - t0) / std::f64::consts::TAU;
         if self.fastest.is_none_or(|f| backward_hz > f.backward_hz) {
             self.fastest = Some(WhirlReading {
                 t_s: 0.5 * (t0 + t_s),

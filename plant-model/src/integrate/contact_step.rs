@@ -2,10 +2,11 @@
 
 use super::dop853::{B, Dop853, END, Rates, STEP_STAGES};
 use crate::energy::Flows;
+use crate::integrate::PlantError;
 use crate::magnet::Amplifier;
 use crate::mode::{Slide, Whirl};
 use crate::part::Weights;
-use crate::plant::{PlantError, Work};
+use crate::readout::Work;
 use crate::spin::Spin;
 use crate::stator::Stator;
 use crate::system::{Evaluation, Guards, Inputs, NORMAL, StateOf, System, Touch};
@@ -35,7 +36,7 @@ pub(crate) struct ContactStep<Y> {
 
 /// Step-size memory, stages and counters.
 pub(crate) struct ContactStepper<S: Stator, W: Spin, M: Amplifier> {
-    pair: Dop853<StateOf<S, W, M>, Evaluation<StateOf<S, W, M>>>,
+    pair: Pair<StateOf<S, W, M>>,
     rtol: f64,
     step_s: f64,
     fastest_m_s: f64,
@@ -43,6 +44,7 @@ pub(crate) struct ContactStepper<S: Stator, W: Spin, M: Amplifier> {
 }
 
 type Mode = (Slide, Whirl);
+type Pair<Y> = Dop853<Y, Evaluation<Y>>;
 
 impl<S: Stator, W: Spin, M: Amplifier> ContactStepper<S, W, M> {
     pub(crate) fn new(system: &System<S, W, M>, rtol: f64, speed_m_s: f64) -> Self {
@@ -62,7 +64,10 @@ impl<S: Stator, W: Spin, M: Amplifier> ContactStepper<S, W, M> {
         let rate = system.contact_rate_rad_s();
         // A rotor that comes to rest is followed to a thousandth of its fastest motion; one that
         // never moved, to a thousandth of its weightless creep over the clearance.
-        let floor = 1e-3 * self.fastest_m_s.max(1e-3 * system.contact.clearance_m * rate);
+        let floor = 1e-3
+            * self
+                .fastest_m_s
+                .max(1e-3 * system.contact.clearance_m * rate);
         let speed = now.max(floor);
         let length = (speed / rate).min(system.contact.clearance_m);
         let spin = (speed / system.rotor.contact_radius_m)
@@ -98,7 +103,11 @@ impl<S: Stator, W: Spin, M: Amplifier> ContactStepper<S, W, M> {
             let (end, error) = self.pair.step(t_s, y, &first, h, &weights, &mut field);
             self.work.evaluations += STEP_STAGES as u64 - 1;
             if error <= 1.0 {
-                let growth = if error > 0.0 { 0.9 * error.powf(-0.125) } else { 5.0 };
+                let growth = if error > 0.0 {
+                    0.9 * error.powf(-0.125)
+                } else {
+                    5.0
+                };
                 // A step cut short by the end of the sample says nothing against the longer one.
                 let grown = h * growth.clamp(0.3, 5.0);
                 self.step_s = if last { grown.max(self.step_s) } else { grown };
@@ -106,7 +115,11 @@ impl<S: Stator, W: Spin, M: Amplifier> ContactStepper<S, W, M> {
                 break (end, last);
             }
             self.work.rejected += 1;
-            let shrink = if error.is_finite() { (0.9 * error.powf(-0.125)).clamp(0.1, 0.9) } else { 0.1 };
+            let shrink = if error.is_finite() {
+                (0.9 * error.powf(-0.125)).clamp(0.1, 0.9)
+            } else {
+                0.1
+            };
             step = h * shrink;
             if t_s + 1e-3 * step == t_s && step < 1e-6 / system.contact_rate_rad_s() {
                 return Err(PlantError::StepTooSmall { t_s });
@@ -135,7 +148,11 @@ impl<S: Stator, W: Spin, M: Amplifier> ContactStepper<S, W, M> {
         }
         let (a, b) = (system.geometry(y).normal, system.geometry(&y_end).normal);
         Ok(ContactStep {
-            t_s: if last && event.is_none() { t_end_s } else { t_s + h },
+            t_s: if last && event.is_none() {
+                t_end_s
+            } else {
+                t_s + h
+            },
             step_s: h,
             y: y_end,
             flows,
@@ -210,7 +227,10 @@ impl<S: Stator, W: Spin, M: Amplifier> ContactStepper<S, W, M> {
 
     /// Repeats the step with its end on the event, so that the state there has the accuracy of the
     /// pair and not of the dense output.
-    #[allow(clippy::too_many_arguments, reason = "one step's whole context, used once")]
+    #[allow(
+        clippy::too_many_arguments,
+        reason = "one step's whole context, used once"
+    )]
     fn step_onto(
         &mut self,
         t_s: f64,
@@ -237,7 +257,10 @@ impl<S: Stator, W: Spin, M: Amplifier> ContactStepper<S, W, M> {
             };
             let correction = value / slope;
             earlier = Some((h, value));
-            if !correction.is_finite() || correction.abs() <= 1e-13 * h || correction.abs() > 0.1 * h {
+            if !correction.is_finite()
+                || correction.abs() <= 1e-13 * h
+                || correction.abs() > 0.1 * h
+            {
                 break;
             }
             h -= correction;

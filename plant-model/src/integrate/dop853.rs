@@ -128,7 +128,11 @@ impl<Y: Part, E: Rates<Y>> Dop853<Y, E> {
         let fifth = self.combine(E5).weighed_square(weights);
         let third = self.combine(E3).weighed_square(weights);
         let scale = (fifth + 0.01 * third) * Y::STATES as f64;
-        let error = if scale > 0.0 { step_s * fifth / scale.sqrt() } else { 0.0 };
+        let error = if scale > 0.0 {
+            step_s * fifth / scale.sqrt()
+        } else {
+            0.0
+        };
         (self.end, error)
     }
 
@@ -226,7 +230,10 @@ mod tests {
         let (step_coarse, dense_coarse) = errors(1.0);
         let (step_fine, dense_fine) = errors(0.5);
         let order = |a: f64, b: f64| (a / b).log2();
-        let (step, dense) = (order(step_coarse, step_fine), order(dense_coarse, dense_fine));
+        let (step, dense) = (
+            order(step_coarse, step_fine),
+            order(dense_coarse, dense_fine),
+        );
         assert!((8.5..9.7).contains(&step), "step order {step}");
         assert!((7.5..8.7).contains(&dense), "dense order {dense}");
         assert!(step_coarse < 1e-7 && dense_coarse < 1e-6);

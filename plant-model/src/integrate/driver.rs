@@ -3,10 +3,11 @@
 use super::contact_step::ContactStepper;
 use super::flight::Crossing;
 use crate::energy::{Audit, Flows};
+use crate::integrate::{Options, PlantError};
 use crate::magnet::Amplifier;
 use crate::mode::{Mode, Phase, Slide, Whirl};
 use crate::part::Part;
-use crate::plant::{Meters, Options, PlantError, Snapshot};
+use crate::readout::{Meters, Snapshot, Work};
 use crate::spin::Spin;
 use crate::stator::Stator;
 use crate::system::{Geometry, Inputs, NORMAL, SLIDE, SLIDE_LOW, StateOf, System, WHIRL};
@@ -139,7 +140,11 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
         let flows = (self.system).flight_flows(&segment, &self.y, &end, &self.inputs, theta);
         self.flows.add_scaled(1.0, &flows);
         self.y = end;
-        self.t_s = if last && theta == 1.0 { t_end_s } else { self.t_s + theta * step };
+        self.t_s = if last && theta == 1.0 {
+            t_end_s
+        } else {
+            self.t_s + theta * step
+        };
         if hit {
             self.meters.impacts += 1;
             let g = self.system.geometry(&self.y);
@@ -161,7 +166,9 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
         let segment = self.system.fly(self.t_s, &self.y, &self.inputs, step);
         // Positive while beyond: (penetration, lack of force).
         let room = |theta: f64| {
-            let g = self.system.geometry(&self.system.flown(&segment, &self.y, theta));
+            let g = self
+                .system
+                .geometry(&self.system.flown(&segment, &self.y, theta));
             (g.penetration_m, -self.normal_n(&g))
         };
         let mut theta = 1.0;
@@ -172,9 +179,19 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
             let (inside, force) = room(at);
             if inside <= 0.0 || force < 0.0 {
                 let leaves = inside <= 0.0;
-                let hold = |th: f64| if leaves { room(th).0 > 0.0 } else { room(th).1 >= 0.0 };
+                let hold = |th: f64| {
+                    if leaves {
+                        room(th).0 > 0.0
+                    } else {
+                        room(th).1 >= 0.0
+                    }
+                };
                 theta = bisect(valid, at, hold);
-                next = if leaves { Phase::Inside } else { Phase::Contact(Slide::Rolling, Whirl::Still) };
+                next = if leaves {
+                    Phase::Inside
+                } else {
+                    Phase::Contact(Slide::Rolling, Whirl::Still)
+                };
                 break;
             }
             valid = at;
@@ -183,7 +200,11 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
         let flows = (self.system).flight_flows(&segment, &self.y, &end, &self.inputs, theta);
         self.flows.add_scaled(1.0, &flows);
         self.y = end;
-        self.t_s = if last && theta == 1.0 { t_end_s } else { self.t_s + theta * step };
+        self.t_s = if last && theta == 1.0 {
+            t_end_s
+        } else {
+            self.t_s + theta * step
+        };
         if matches!(next, Phase::Contact(..)) {
             // The dent whose energy was written off at lift-off is felt again.
             let g = self.system.geometry(&self.y);
@@ -203,7 +224,8 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
             pair,
         )?;
         self.flows.add_scaled(1.0, &outcome.flows);
-        self.meters.contact_step(&outcome.start, &outcome.end, outcome.step_s, outcome.turn);
+        self.meters
+            .contact_step(&outcome.start, &outcome.end, outcome.step_s, outcome.turn);
         let spin_sign = self.system.spin.spin_rad_s(&self.y.spin).signum();
         let backward = -spin_sign * outcome.end.whirl_speed_m_s;
         self.meters.peak_backward_speed_m_s = self.meters.peak_backward_speed_m_s.max(backward);
@@ -273,7 +295,9 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
                 let now = self.system.contact(self.t_s, &self.y, &self.inputs, pair);
                 let mut later = self.y;
                 later.add_scaled(moment_s, &now.rates);
-                let e = self.system.contact(self.t_s + moment_s, &later, &self.inputs, pair);
+                let e = self
+                    .system
+                    .contact(self.t_s + moment_s, &later, &self.inputs, pair);
                 let slide_holds = match slide {
                     Slide::Rolling => e.guards[SLIDE] >= 0.0 && e.guards[SLIDE_LOW] >= 0.0,
                     _ => !slide_at_zero || slide.sign() * e.touch.sliding_acceleration >= 0.0,
@@ -331,7 +355,9 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
             whirl_angle_rad: self.meters.whirl_angle_rad,
         };
         if let Phase::Contact(slide, whirl) = self.phase {
-            let e = self.system.contact(self.t_s, &self.y, &self.inputs, (slide, whirl));
+            let e = self
+                .system
+                .contact(self.t_s, &self.y, &self.inputs, (slide, whirl));
             snapshot.normal_force_n = e.touch.normal_n.max(0.0);
             snapshot.sliding_force_n = e.touch.sliding_n;
             snapshot.rolling_force_n = e.touch.rolling_n;
@@ -352,7 +378,7 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
         }
     }
 
-    pub(crate) fn work(&self) -> crate::plant::Work {
+    pub(crate) fn work(&self) -> Work {
         self.stepper.work
     }
 }
@@ -360,7 +386,11 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
 /// Vector limited to a length.
 fn limited(v: crate::V2, length: f64) -> crate::V2 {
     let norm = v.norm();
-    if norm > length { v * (length / norm) } else { v }
+    if norm > length {
+        v * (length / norm)
+    } else {
+        v
+    }
 }
 
 /// Last θ in [low, high] for which `holds` is true, to round-off; `holds(low)` is taken for granted.

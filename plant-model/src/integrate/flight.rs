@@ -6,7 +6,7 @@ use crate::energy::Flows;
 use crate::magnet::Amplifier;
 use crate::params::RotorParams;
 use crate::part::Body;
-use crate::series::{MAX_PHASE, Series, order_for};
+use crate::series::{MAX_PHASE, Series, order_for, quadrature};
 use crate::spin::Spin;
 use crate::stator::Stator;
 use crate::system::{Inputs, State, StateOf, System};
@@ -25,6 +25,8 @@ pub(crate) enum Crossing {
 /// Exact solution over one step of flight.
 pub(crate) struct Segment<S: Stator> {
     pub(crate) step_s: f64,
+    /// Step times the fastest rate.
+    phase: f64,
     order: usize,
     position: Series,
     velocity: Series,
@@ -64,8 +66,11 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
         inputs: &Inputs,
         step_s: f64,
     ) -> Segment<S> {
-        let order = order_for(step_s * self.fastest_flight_rate(y, step_s));
-        let force = self.amplifier.series(&y.force, inputs.command_n, step_s, order);
+        let phase = step_s * self.fastest_flight_rate(y, step_s);
+        let order = order_for(phase);
+        let force = self
+            .amplifier
+            .series(&y.force, inputs.command_n, step_s, order);
         let unbalance = (self.rotor.eccentricity_m != 0.0)
             .then(|| self.unbalance_series(t_s, y, step_s, order));
         let (mut position, mut velocity) = (
@@ -94,6 +99,7 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
         }
         Segment {
             step_s,
+            phase,
             order,
             position,
             velocity,
@@ -165,37 +171,41 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
         inputs: &Inputs,
         theta: f64,
     ) -> Flows {
-        let (h, order, v) = (segment.step_s, segment.order, &segment.velocity);
         let path = end.rotor.position - y.rotor.position;
         let inverse_j = self.spin.inverse_inertia();
         let drive = if inverse_j > 0.0 && self.spin.drive_torque_n_m() != 0.0 {
-            let (a, b) = (self.spin.spin_rad_s(&y.spin), self.spin.spin_rad_s(&end.spin));
+            let (a, b) = (
+                self.spin.spin_rad_s(&y.spin),
+                self.spin.spin_rad_s(&end.spin),
+            );
             0.5 * (b * b - a * a) / inverse_j
         } else {
             0.0
         };
-        let control = if M::LAGS {
-            h * segment.force.integral_of_dot(v, theta, order)
-        } else {
-            segment.force.0[0].dot(&path)
-        };
-        let unbalance = (segment.unbalance.as_ref())
-            .map_or(0.0, |u| h * u.integral_of_dot(v, theta, order));
-        let damping = self.rotor.damping_n_s_m;
-        let rotor_damping = if damping > 0.0 {
-            h * damping * v.integral_of_dot(v, theta, order)
-        } else {
-            0.0
-        };
-        Flows {
-            control,
+        let mut flows = Flows {
             external: inputs.external_n.dot(&path),
             drive,
-            unbalance,
-            rotor_damping,
-            stator_damping: h * self.stator.damping_integral_w(&segment.stator, theta, order),
             ..Flows::default()
+        };
+        if !M::LAGS {
+            flows.control = inputs.command_n.dot(&path);
         }
+        let order = segment.order;
+        for (node, weight) in quadrature(segment.phase * theta) {
+            let at = theta * node;
+            let weight = theta * segment.step_s * weight;
+            let v = segment.velocity.at(at, order);
+            if M::LAGS {
+                flows.control += weight * segment.force.at(at, order).dot(&v);
+            }
+            if let Some(unbalance) = &segment.unbalance {
+                flows.unbalance += weight * unbalance.at(at, order).dot(&v);
+            }
+            flows.rotor_damping += weight * self.rotor.damping_n_s_m * v.norm_squared();
+            let stator = S::at(&segment.stator, at, order);
+            flows.stator_damping += weight * self.stator.damping_w(&stator);
+        }
+        flows
     }
 }
 
@@ -224,7 +234,11 @@ impl<S: Stator> Segment<S> {
     pub(crate) fn wall_crossing(&self, clearance_m: f64) -> Crossing {
         let bound = |derivative: usize| {
             let mut sum = 0.0;
-            for (k, c) in self.gap.0[..=self.order].iter().enumerate().skip(derivative) {
+            for (k, c) in self.gap.0[..=self.order]
+                .iter()
+                .enumerate()
+                .skip(derivative)
+            {
                 let factor = match derivative {
                     0 => 1.0,
                     1 => k as f64,

@@ -1,0 +1,200 @@
+//! `run SCENE.toml`: every policy of the scene, one table, traces and a report.
+
+use crate::closed_loop::{Keep, RunError, run};
+use crate::output::{OutputError, Staging};
+use crate::policy_kind::PolicyKind;
+use crate::scene::Scene;
+use crate::scene_error::SceneError;
+use crate::verdict::{PolicyRun, SceneSummary};
+use crate::{report, table, trace_file};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+/// Arguments of `run`.
+#[derive(Debug, Clone, clap::Args)]
+pub struct RunArgs {
+    /// Scene file, e.g. firmware-host/scenes/impact_at_40_hz.toml.
+    pub scene: PathBuf,
+    /// Folder for verdict.json, the traces and report.html [default: runs/<name of the scene file>].
+    #[arg(long)]
+    pub out: Option<PathBuf>,
+    /// Print the verdicts as JSON instead of the table.
+    #[arg(long)]
+    pub json: bool,
+    /// Threads to use [default: all cores]. Results do not depend on it.
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+}
+
+/// Why `run` failed.
+#[derive(Debug, thiserror::Error, miette::Diagnostic)]
+pub enum CommandError {
+    /// The scene is wrong.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Scene(#[from] SceneError),
+    /// The results cannot be written.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Output(#[from] OutputError),
+    /// A run ended without a result that can be trusted.
+    #[error("{0}")]
+    #[diagnostic(help("nothing was written; a smaller run.rtol or other contact data may help"))]
+    Run(#[from] RunError),
+    /// Something else stopped it.
+    #[error("{what}: {reason}")]
+    Other {
+        /// What was being done.
+        what: &'static str,
+        /// What went wrong.
+        reason: String,
+    },
+}
+
+impl CommandError {
+    /// Exit code: 2 for what the user gave, 1 for the rest.
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            Self::Scene(_) | Self::Output(_) => 2,
+            Self::Run(_) | Self::Other { .. } => 1,
+        }
+    }
+
+    fn other(what: &'static str, reason: impl std::fmt::Display) -> Self {
+        Self::Other {
+            what,
+            reason: reason.to_string(),
+        }
+    }
+}
+
+/// Runs the scene and writes its results.
+///
+/// # Errors
+/// [`CommandError`]; nothing is left behind then.
+pub fn execute(args: &RunArgs) -> Result<(), CommandError> {
+    let scene = Scene::load(&args.scene)?;
+    let out = args
+        .out
+        .clone()
+        .unwrap_or_else(|| default_folder(&args.scene));
+    let staging = Staging::beside(&out)?;
+    let runs = run_all(&scene, args.threads)?;
+    let verdicts = table::json(&scene, &runs);
+    let pretty = serde_json::to_string_pretty(&verdicts)
+        .map_err(|e| CommandError::other("formatting verdict.json", e))?;
+    write_results(&staging, &scene, &runs, &pretty)?;
+    let out = staging.publish()?;
+    if args.json {
+        println!("{pretty}");
+    } else {
+        println!("{}", table::text(&scene, &runs));
+        println!("report: {}", out.join("report.html").display());
+    }
+    Ok(())
+}
+
+fn default_folder(scene: &Path) -> PathBuf {
+    Path::new("runs").join(scene.file_stem().unwrap_or(scene.as_os_str()))
+}
+
+/// Every policy of the scene, in the scene's order whatever finishes first.
+fn run_all(scene: &Scene, threads: Option<u16>) -> Result<Vec<PolicyRun>, CommandError> {
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(threads.map_or(0, usize::from))
+        .build()
+        .map_err(|e| CommandError::other("starting threads", e))?;
+    let progress = LateProgress::new(scene);
+    let one = |kind: &PolicyKind| {
+        let (verdict, trace) = run(scene, *kind, Keep::Trace, &mut |ticks| progress.add(ticks))?;
+        Ok::<_, RunError>(PolicyRun {
+            name: kind.name().to_owned(),
+            verdict,
+            trace,
+        })
+    };
+    let runs = pool.install(|| {
+        scene
+            .policies
+            .par_iter()
+            .map(one)
+            .collect::<Result<Vec<_>, _>>()
+    });
+    progress.bar.finish_and_clear();
+    Ok(runs?)
+}
+
+fn write_results(
+    staging: &Staging,
+    scene: &Scene,
+    runs: &[PolicyRun],
+    verdicts: &str,
+) -> Result<(), CommandError> {
+    let in_file = |path: &Path| {
+        let path = path.to_owned();
+        move |reason| OutputError { path, reason }
+    };
+    let path = staging.path("verdict.json");
+    std::fs::write(&path, format!("{verdicts}\n")).map_err(in_file(&path))?;
+    for run in runs {
+        let path = staging.path(&format!("trace_{}.parquet", run.name));
+        let file = std::fs::File::create(&path).map_err(in_file(&path))?;
+        trace_file::write(&run.trace, file)
+            .map_err(|e| CommandError::other("writing a trace", e))?;
+    }
+    let html = report::html(&summary(scene), runs)
+        .map_err(|e| CommandError::other("drawing the report", e))?;
+    let path = staging.path("report.html");
+    std::fs::write(&path, html).map_err(in_file(&path))?;
+    Ok(())
+}
+
+fn summary(scene: &Scene) -> SceneSummary {
+    SceneSummary {
+        title: scene.title.clone(),
+        story: scene.story.clone(),
+        clearance_m: scene.plant.contact.clearance_m,
+        force_max_n: scene.plant.magnet.map(|m| m.force_max_n),
+        whirl_speed_m_s: scene.whirl_speed_m_s,
+        disturbances_s: scene
+            .disturbances
+            .iter()
+            .map(|d| (d.start_s, d.end_s()))
+            .collect(),
+        duration_s: scene.duration_s,
+    }
+}
+
+/// A progress bar that shows itself only when the work takes longer than a second.
+struct LateProgress {
+    bar: ProgressBar,
+    started: Instant,
+}
+
+impl LateProgress {
+    fn new(scene: &Scene) -> Self {
+        let ticks = (scene.duration_s * scene.sample_rate_hz).round() as u64;
+        let bar = ProgressBar::with_draw_target(
+            Some(ticks * scene.policies.len() as u64),
+            ProgressDrawTarget::hidden(),
+        );
+        if let Ok(style) =
+            ProgressStyle::with_template("{bar:40} {percent:>3} % of ticks, {eta} left")
+        {
+            bar.set_style(style);
+        }
+        Self {
+            bar,
+            started: Instant::now(),
+        }
+    }
+
+    fn add(&self, ticks: u64) {
+        self.bar.inc(ticks);
+        if self.bar.is_hidden() && self.started.elapsed() > Duration::from_secs(1) {
+            self.bar.set_draw_target(ProgressDrawTarget::stderr());
+        }
+    }
+}

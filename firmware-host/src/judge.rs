@@ -1,0 +1,135 @@
+//! Watches a run and says what it came to.
+
+use crate::scene::{Disturbance, Scene};
+use crate::verdict::{Outcome, Verdict};
+use plant_model::analysis::whirl::WhirlMeter;
+use plant_model::{Plant, Snapshot};
+use std::f64::consts::TAU;
+use std::time::Duration;
+
+/// Inside this share of the clearance the rotor is back in the middle …
+const MIDDLE: f64 = 0.3;
+/// … once it has stayed there for so long \[s\].
+const STAY_S: f64 = 5e-3;
+/// Window of the whirl frequency \[s\].
+const WHIRL_WINDOW_S: f64 = 1e-3;
+/// A rotor that touches and is slower than this share of c·√(k_c/m) rests.
+const REST_SPEED: f64 = 1e-3;
+
+/// Collects what a verdict needs, sample by sample.
+#[derive(Debug, Clone)]
+pub(crate) struct Judge {
+    middle_m: f64,
+    clock_starts_s: f64,
+    whirl: WhirlMeter,
+    /// Since when the rotor has been in the middle.
+    in_middle_since_s: Option<f64>,
+    /// When it came back for good, as far as is known.
+    back_since_s: Option<f64>,
+    last_contact_s: Option<f64>,
+    /// Spin at the first sample \[rad/s\].
+    first_spin: Option<f64>,
+    last: Option<Snapshot>,
+}
+
+impl Judge {
+    pub(crate) fn new(scene: &Scene) -> Self {
+        Self {
+            middle_m: MIDDLE * scene.plant.contact.clearance_m,
+            clock_starts_s: (scene.disturbances.iter().map(Disturbance::end_s)).fold(0.0, f64::max),
+            whirl: WhirlMeter::new(WHIRL_WINDOW_S),
+            in_middle_since_s: None,
+            back_since_s: None,
+            last_contact_s: None,
+            first_spin: None,
+            last: None,
+        }
+    }
+
+    /// A control sample.
+    pub(crate) fn sample(&mut self, now: &Snapshot) {
+        let spin = *self.first_spin.get_or_insert(now.spin_rad_s);
+        self.follow_contact(now, spin);
+        if now.position_m.norm() < self.middle_m && now.t_s >= self.clock_starts_s {
+            let since = *self.in_middle_since_s.get_or_insert(now.t_s);
+            // Sample times carry round-off.
+            if now.t_s - since >= STAY_S * (1.0 - 1e-9) && self.back_since_s.is_none() {
+                self.back_since_s = Some(since);
+            }
+        } else {
+            self.in_middle_since_s = None;
+        }
+        self.last = Some(*now);
+    }
+
+    /// A change of mode between samples.
+    pub(crate) fn change(&mut self, now: &Snapshot) {
+        self.follow_contact(now, self.first_spin.unwrap_or(now.spin_rad_s));
+    }
+
+    fn follow_contact(&mut self, now: &Snapshot, spin_rad_s: f64) {
+        let touches = now.mode.in_contact();
+        self.whirl
+            .push(now.t_s, now.whirl_angle_rad, touches, spin_rad_s);
+        if touches {
+            self.last_contact_s = Some(now.t_s);
+            self.back_since_s = None;
+        }
+    }
+
+    pub(crate) fn verdict(&self, scene: &Scene, plant: &dyn Plant, elapsed: Duration) -> Verdict {
+        let meters = plant.meters();
+        let outcome = self.outcome(scene, meters.peak_backward_speed_m_s);
+        let spin_now = self.last.map_or(0.0, |s| s.spin_rad_s);
+        let run_time_s = elapsed.as_secs_f64();
+        Verdict {
+            outcome,
+            recovered: matches!(outcome, Outcome::Recovered | Outcome::Decayed),
+            impacts: meters.impacts,
+            contact_time_s: meters.contact_time_s,
+            peak_penetration_m: meters.peak_penetration_m,
+            peak_contact_force_n: meters.peak_contact_force_n,
+            peak_friction_torque_n_m: meters.peak_friction_torque_n_m,
+            spin_lost_hz: (self.first_spin.unwrap_or(0.0) - spin_now) / TAU,
+            peak_backward_speed_m_s: meters.peak_backward_speed_m_s,
+            max_backward_whirl_hz: self.whirl.fastest().map(|w| w.backward_hz),
+            relevitation_time_s: match outcome {
+                Outcome::Recovered => self.back_since_s.map(|t| t - self.clock_starts_s),
+                _ => None,
+            },
+            energy_residual: plant.audit().residual(),
+            run_time_s,
+            real_time_ratio: scene.duration_s / run_time_s,
+        }
+    }
+
+    fn outcome(&self, scene: &Scene, peak_backward_m_s: f64) -> Outcome {
+        if peak_backward_m_s > scene.whirl_speed_m_s {
+            return Outcome::Whirl;
+        }
+        if self.back_since_s.is_some() {
+            return Outcome::Recovered;
+        }
+        let Some(last) = self.last else {
+            return Outcome::Decayed;
+        };
+        let period = (scene.plant.natural_frequency_rad_s()).map_or(0.0, |w| TAU / w);
+        let free_s = self.last_contact_s.map_or(last.t_s, |t| last.t_s - t);
+        if free_s >= period.max(STAY_S) {
+            return Outcome::Decayed;
+        }
+        let plant = &scene.plant;
+        let rest = REST_SPEED
+            * plant.contact.clearance_m
+            * (plant.contact.stiffness_n_m / plant.contact_mass_kg()).sqrt();
+        let loaded = scene
+            .disturbances
+            .iter()
+            .any(|d| d.start_s < last.t_s && last.t_s <= d.end_s());
+        match (last.mode.in_contact(), loaded) {
+            (true, true) => Outcome::Pinned,
+            (true, false) if last.velocity_m_s.norm() < rest => Outcome::Resting,
+            _ => Outcome::Bouncing,
+        }
+    }
+}

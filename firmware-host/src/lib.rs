@@ -1,0 +1,29 @@
+//! Runs plant and supervisor in closed loop as firmware would, on scenes, and shows what happened.
+//!
+//! Files, each importing only from those above it: `trace`, `verdict`, `scene_error`, `scene_file`,
+//! `plant_setup`, `supervisor_setup`, `instruments`, `levitation`, `policy_kind`, `scene`,
+//! `policies`, `judge`, `closed_loop`, `trace_file`, `plot`, `report`, `table`, `output`,
+//! `commands`.
+
+#![forbid(unsafe_code)]
+#![warn(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+pub mod closed_loop;
+pub mod commands;
+pub mod instruments;
+mod judge;
+pub mod levitation;
+pub mod output;
+mod plant_setup;
+mod plot;
+pub mod policies;
+pub mod policy_kind;
+pub mod report;
+pub mod scene;
+pub mod scene_error;
+mod scene_file;
+mod supervisor_setup;
+pub mod table;
+pub mod trace;
+pub mod trace_file;
+pub mod verdict;

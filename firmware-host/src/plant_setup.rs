@@ -1,0 +1,163 @@
+//! The plant from the scene's keys: alternatives resolved, every value checked.
+
+use crate::scene_error::{Checks, SceneError, SceneText};
+use crate::scene_file::{PerAxis, RingFile, RotorFile, SceneFile};
+use plant_model::V2;
+use plant_model::contact::damping_for_restitution;
+use plant_model::params::{
+    ContactParams, FrictionParams, MagnetParams, PlantParams, RingParams, RotorParams,
+    SlidingFriction, SpinParams, StatorParams,
+};
+use std::f64::consts::TAU;
+
+/// The plant that a scene file describes, checked.
+pub(crate) fn plant_of(file: &SceneFile, text: &SceneText) -> Result<PlantParams, SceneError> {
+    let check = Checks { text };
+    let negative = file
+        .magnet
+        .as_ref()
+        .map_or(0.0, |m| m.negative_stiffness_n_m);
+    check.within("magnet.negative_stiffness_n_m", negative, 0.0, 1e12)?;
+    let mut plant = PlantParams {
+        rotor: rotor_of(&file.rotor, negative, &check)?,
+        spin: match (file.spin.inertia_kg_m2, file.spin.drive_torque_n_m) {
+            (Some(inertia_kg_m2), torque) => SpinParams::Free {
+                inertia_kg_m2,
+                drive_torque_n_m: torque.unwrap_or(0.0),
+            },
+            (None, None) => SpinParams::Held,
+            (None, Some(_)) => {
+                let message = "has no effect while the speed is held".to_owned();
+                let help = Some("give spin.inertia_kg_m2, or remove the torque".to_owned());
+                return Err(text.error_at_key("spin.drive_torque_n_m", message, help));
+            }
+        },
+        stator: match (&file.stator.inner, &file.stator.outer) {
+            (None, None) => StatorParams::Rigid,
+            (Some(inner), None) => StatorParams::OneMass(ring_of(inner)),
+            (Some(inner), Some(outer)) => StatorParams::TwoMass {
+                inner: ring_of(inner),
+                outer: ring_of(outer),
+            },
+            (None, Some(_)) => {
+                let message = "an outer ring without an inner one".to_owned();
+                let help = Some("describe a single ring as stator.inner".to_owned());
+                return Err(text.error_at_key("stator.outer", message, help));
+            }
+        },
+        contact: ContactParams {
+            clearance_m: file.contact.clearance_m,
+            stiffness_n_m: file.contact.stiffness_n_m,
+            damping_n_s_m: file.contact.damping_n_s_m.unwrap_or(0.0),
+        },
+        friction: FrictionParams {
+            sliding: sliding_of(file, &check)?,
+            rolling_coefficient: file.friction.rolling_coefficient,
+        },
+        magnet: file.magnet.as_ref().map(|m| MagnetParams {
+            force_max_n: m.force_max_n,
+            lag_s: m.lag_s,
+        }),
+    };
+    plant
+        .validate()
+        .map_err(|e| check.refused(e.field, e.value, e.expected))?;
+    check.either(
+        ("contact.damping_n_s_m", file.contact.damping_n_s_m),
+        ("contact.restitution", file.contact.restitution),
+    )?;
+    if let Some(e) = file.contact.restitution {
+        plant.contact.damping_n_s_m =
+            damping_for_restitution(e, plant.contact.stiffness_n_m, plant.contact_mass_kg())
+                .ok_or_else(|| {
+                    check.refused(
+                        "contact.restitution",
+                        e,
+                        "a number greater than 0, at most 1",
+                    )
+                })?;
+    }
+    Ok(plant)
+}
+
+fn rotor_of(
+    file: &RotorFile,
+    negative_n_m: f64,
+    check: &Checks<'_>,
+) -> Result<RotorParams, SceneError> {
+    if !(file.mass_kg > 0.0 && file.mass_kg.is_finite()) {
+        return Err(check.refused(
+            "rotor.mass_kg",
+            file.mass_kg,
+            "a finite number greater than 0",
+        ));
+    }
+    if let Some(f) = file.natural_frequency_hz {
+        check.within("rotor.natural_frequency_hz", f, 0.0, 1e6)?;
+    }
+    if let Some(ratio) = file.damping_ratio {
+        check.within("rotor.damping_ratio", ratio, 0.0, 100.0)?;
+    }
+    let shaft_n_m = check
+        .either(
+            ("rotor.stiffness_n_m", file.stiffness_n_m),
+            (
+                "rotor.natural_frequency_hz",
+                file.natural_frequency_hz
+                    .map(|f| file.mass_kg * (f * TAU).powi(2)),
+            ),
+        )?
+        .unwrap_or(0.0);
+    let by_ratio = file
+        .damping_ratio
+        .map(|ratio| 2.0 * ratio * (file.mass_kg * shaft_n_m.max(0.0)).sqrt());
+    let damping_n_s_m = check
+        .either(
+            ("rotor.damping_n_s_m", file.damping_n_s_m),
+            ("rotor.damping_ratio", by_ratio),
+        )?
+        .unwrap_or(0.0);
+    Ok(RotorParams {
+        mass_kg: file.mass_kg,
+        stiffness_n_m: shaft_n_m - negative_n_m,
+        damping_n_s_m,
+        eccentricity_m: file.eccentricity_m,
+        contact_radius_m: file.contact_radius_m,
+    })
+}
+
+fn ring_of(file: &RingFile) -> RingParams {
+    let vector = |p: PerAxis| match p {
+        PerAxis::Both(x) => V2::repeat(x),
+        PerAxis::Each(xy) => xy.into(),
+    };
+    RingParams {
+        mass_kg: file.mass_kg,
+        stiffness_n_m: vector(file.stiffness_n_m),
+        damping_n_s_m: vector(file.damping_n_s_m),
+    }
+}
+
+fn sliding_of(file: &SceneFile, check: &Checks<'_>) -> Result<SlidingFriction, SceneError> {
+    let f = &file.friction;
+    match (f.coefficient_at_speed, f.speed_scale_m_s) {
+        (None, None) => Ok(SlidingFriction::Constant {
+            coefficient: f.coefficient,
+        }),
+        (Some(at_speed), Some(speed_scale_m_s)) => Ok(SlidingFriction::Falling {
+            at_rest: f.coefficient,
+            at_speed,
+            speed_scale_m_s,
+        }),
+        (at_speed, _) => {
+            let (have, want) = match at_speed {
+                Some(_) => ("friction.coefficient_at_speed", "friction.speed_scale_m_s"),
+                None => ("friction.speed_scale_m_s", "friction.coefficient_at_speed"),
+            };
+            let help = Some("friction that falls with speed needs both keys".to_owned());
+            Err(check
+                .text
+                .error_at_key(have, format!("given without {want}"), help))
+        }
+    }
+}

@@ -1,0 +1,44 @@
+//! The policies by name.
+
+/// A policy by name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PolicyKind {
+    /// No force.
+    Passive,
+    /// The whole capacity inwards outside a band.
+    Radial,
+    /// The saturated levitation controller alone.
+    Levitation,
+    /// The supervisor with that levitation controller behind it.
+    Supervisor,
+}
+
+impl PolicyKind {
+    /// All of them.
+    pub const ALL: [Self; 4] = [
+        Self::Passive,
+        Self::Radial,
+        Self::Levitation,
+        Self::Supervisor,
+    ];
+
+    /// Name in scene files and tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Passive => "passive",
+            Self::Radial => "radial",
+            Self::Levitation => "levitation",
+            Self::Supervisor => "supervisor",
+        }
+    }
+
+    /// The policy of a name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|p| p.name() == name)
+    }
+
+    /// Whether it needs a levitation controller.
+    pub fn levitates(self) -> bool {
+        matches!(self, Self::Levitation | Self::Supervisor)
+    }
+}

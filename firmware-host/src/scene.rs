@@ -1,0 +1,244 @@
+//! A scene: the plant, its instruments and controllers, what happens to it, and what is asked.
+
+use crate::instruments::SensorParams;
+use crate::levitation::LevitationParams;
+use crate::plant_setup::plant_of;
+use crate::policy_kind::PolicyKind;
+use crate::scene_error::{Checks, SceneError, SceneText};
+use crate::scene_file::{LevitationFile, SceneFile};
+use plant_model::V2;
+use plant_model::analysis::onset::lift_off_speed_m_s;
+use plant_model::params::{PlantParams, Start};
+use std::f64::consts::TAU;
+use std::path::Path;
+
+/// A constant force on the rotor for a while.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Disturbance {
+    /// Beginning \[s\].
+    pub start_s: f64,
+    /// Duration \[s\].
+    pub duration_s: f64,
+    /// Force \[N\].
+    pub force_n: V2,
+}
+
+impl Disturbance {
+    /// End \[s\].
+    pub fn end_s(&self) -> f64 {
+        self.start_s + self.duration_s
+    }
+}
+
+/// A scene that can be run: every value checked.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scene {
+    /// Title, one line.
+    pub title: String,
+    /// What is shown and why.
+    pub story: String,
+    /// The plant.
+    pub plant: PlantParams,
+    /// Where it starts.
+    pub start: Start,
+    /// Weight of the rotor \[N\].
+    pub weight_n: V2,
+    /// Forces that come and go.
+    pub disturbances: Vec<Disturbance>,
+    /// End of the run \[s\].
+    pub duration_s: f64,
+    /// Control rate \[Hz\].
+    pub sample_rate_hz: f64,
+    /// Tolerance of a contact step.
+    pub rtol: f64,
+    /// Seed of the sensor noise.
+    pub seed: u64,
+    /// Policies to run.
+    pub policies: Vec<PolicyKind>,
+    /// The position sensor.
+    pub sensor: SensorParams,
+    /// The levitation controller; needed by the policies that use one.
+    pub levitation: Option<LevitationParams>,
+    /// `radial` pushes beyond this share of the clearance.
+    pub radial_band: f64,
+    /// Configuration of the supervisor; needed by the policy of that name.
+    pub supervisor: Option<supervisor::Config>,
+    /// Backward contact speed above which a run is whirl \[m/s\].
+    pub whirl_speed_m_s: f64,
+}
+
+impl Scene {
+    /// Reads and checks a scene file.
+    ///
+    /// # Errors
+    /// [`SceneError`] with file, line and key.
+    pub fn load(path: &Path) -> Result<Self, SceneError> {
+        Self::from_text(&SceneText::read(path)?)
+    }
+
+    fn from_text(text: &SceneText) -> Result<Self, SceneError> {
+        let file: SceneFile = toml::from_str(&text.text).map_err(|error| {
+            let message = error.message().to_owned();
+            text.error_at(error.span().unwrap_or(0..0), message, None)
+        })?;
+        Self::from_file(&file, text)
+    }
+
+    fn from_file(file: &SceneFile, text: &SceneText) -> Result<Self, SceneError> {
+        let plant = plant_of(file, text)?;
+        let start = Start {
+            position_m: file.start.position_m.into(),
+            velocity_m_s: file.start.velocity_m_s.into(),
+            spin_rad_s: file.spin.frequency_hz * TAU,
+            spin_phase_rad: file.start.spin_phase_rad,
+        };
+        let check = Checks { text };
+        (start.validate()).map_err(|e| {
+            let key = if e.field == "start.spin_rad_s" {
+                "spin.frequency_hz"
+            } else {
+                e.field
+            };
+            check.refused(key, e.value, e.expected)
+        })?;
+        check.within("run.duration_s", file.run.duration_s, 1e-9, 1e5)?;
+        check.within("run.sample_rate_hz", file.run.sample_rate_hz, 1e2, 1e6)?;
+        check.within("run.rtol", file.run.rtol, 1e-14, 1e-2)?;
+        let ticks = file.run.duration_s * file.run.sample_rate_hz;
+        if ticks > 2e7 {
+            let help = "shorten run.duration_s or lower run.sample_rate_hz".to_owned();
+            let message = format!("{ticks:.0} control samples: expected at most 20 million");
+            return Err(text.error_at_key("run.duration_s", message, Some(help)));
+        }
+        check.within("sensor.quantum_m", file.sensor.quantum_m, 0.0, 1.0)?;
+        check.within("sensor.noise_rms_m", file.sensor.noise_rms_m, 0.0, 1.0)?;
+        check.within("radial.band", file.radial.band, 0.0, 1.0)?;
+        for axis in file.rotor.gravity_m_s2 {
+            check.within("rotor.gravity_m_s2", axis, -1e4, 1e4)?;
+        }
+        let levitation = file.levitation.as_ref().map(|l| levitation_of(l, &check));
+        let levitation = levitation.transpose()?;
+        let policies = policies_of(file, text)?;
+        let mut disturbances = Vec::with_capacity(file.disturbance.len());
+        for (i, d) in file.disturbance.iter().enumerate() {
+            check.within(&format!("disturbance[{i}].start_s"), d.start_s, 0.0, 1e5)?;
+            check.within(
+                &format!("disturbance[{i}].duration_s"),
+                d.duration_s,
+                0.0,
+                1e5,
+            )?;
+            for force in d.force_n {
+                check.within(&format!("disturbance[{i}].force_n"), force, -1e9, 1e9)?;
+            }
+            disturbances.push(Disturbance {
+                start_s: d.start_s,
+                duration_s: d.duration_s,
+                force_n: d.force_n.into(),
+            });
+        }
+        let supervisor = match policies.contains(&PolicyKind::Supervisor) {
+            true => Some(crate::supervisor_setup::config(&plant, file, text)?),
+            false => None,
+        };
+        let gravity: V2 = file.rotor.gravity_m_s2.into();
+        Ok(Self {
+            title: file.title.clone(),
+            story: file.story.trim().to_owned(),
+            whirl_speed_m_s: whirl_speed_of(file, &plant, &check)?,
+            weight_n: plant.rotor.mass_kg * gravity,
+            plant,
+            start,
+            disturbances,
+            duration_s: file.run.duration_s,
+            sample_rate_hz: file.run.sample_rate_hz,
+            rtol: file.run.rtol,
+            seed: file.run.seed,
+            policies,
+            sensor: SensorParams {
+                quantum_m: file.sensor.quantum_m,
+                noise_rms_m: file.sensor.noise_rms_m,
+            },
+            levitation,
+            radial_band: file.radial.band,
+            supervisor,
+        })
+    }
+}
+
+fn levitation_of(l: &LevitationFile, check: &Checks<'_>) -> Result<LevitationParams, SceneError> {
+    check.within("levitation.proportional_n_m", l.proportional_n_m, 0.0, 1e12)?;
+    check.within("levitation.integral_n_m_s", l.integral_n_m_s, 0.0, 1e15)?;
+    check.within("levitation.derivative_n_s_m", l.derivative_n_s_m, 0.0, 1e9)?;
+    check.within(
+        "levitation.derivative_filter_s",
+        l.derivative_filter_s,
+        0.0,
+        1.0,
+    )?;
+    Ok(LevitationParams {
+        proportional_n_m: l.proportional_n_m,
+        integral_n_m_s: l.integral_n_m_s,
+        derivative_n_s_m: l.derivative_n_s_m,
+        derivative_filter_s: l.derivative_filter_s,
+    })
+}
+
+fn policies_of(file: &SceneFile, text: &SceneText) -> Result<Vec<PolicyKind>, SceneError> {
+    let key = "run.policies";
+    let names = PolicyKind::ALL.map(PolicyKind::name).join(", ");
+    let mut policies = Vec::new();
+    for name in &file.run.policies {
+        let kind = PolicyKind::from_name(name).ok_or_else(|| {
+            let message = format!("there is no policy \"{name}\"");
+            text.error_at_key(key, message, Some(format!("policies are {names}")))
+        })?;
+        if policies.contains(&kind) {
+            let help = Some("name each policy once".to_owned());
+            return Err(text.error_at_key(key, format!("\"{name}\" is named twice"), help));
+        }
+        if kind != PolicyKind::Passive && file.magnet.is_none() {
+            let help = Some("add a [magnet], or run only \"passive\"".to_owned());
+            return Err(text.error_at_key(key, format!("\"{name}\" needs a magnet"), help));
+        }
+        if kind.levitates() && file.levitation.is_none() {
+            let help = Some("add [levitation] with its gains".to_owned());
+            return Err(text.error_at_key(
+                key,
+                format!("\"{name}\" needs a levitation controller"),
+                help,
+            ));
+        }
+        policies.push(kind);
+    }
+    if policies.is_empty() {
+        let help = Some(format!("name at least one of {names}"));
+        return Err(text.error_at_key(key, "is empty".to_owned(), help));
+    }
+    Ok(policies)
+}
+
+/// The scene's own limit; else 3·ω0·c with a shaft, and three times the speed at which the magnet can
+/// still lift the rotor off without one.
+fn whirl_speed_of(
+    file: &SceneFile,
+    plant: &PlantParams,
+    check: &Checks<'_>,
+) -> Result<f64, SceneError> {
+    const KEY: &str = "verdict.whirl_speed_m_s";
+    if let Some(speed) = file.verdict.whirl_speed_m_s {
+        check.within(KEY, speed, 1e-9, 1e6)?;
+        return Ok(speed);
+    }
+    if let Some(natural) = plant.natural_frequency_rad_s() {
+        return Ok(3.0 * natural * plant.contact.clearance_m);
+    }
+    let force = plant.magnet.map_or(0.0, |m| m.force_max_n);
+    let speed = 3.0 * lift_off_speed_m_s(plant, force);
+    if speed > 0.0 {
+        return Ok(speed);
+    }
+    let message = "is missing: without shaft stiffness and magnet it has no default".to_owned();
+    let help = Some("say which backward contact speed counts as whirl".to_owned());
+    Err(check.text.error_at_key(KEY, message, help))
+}

@@ -1,0 +1,170 @@
+//! Errors for people: which file, which line, which key, what was expected.
+
+use miette::{Diagnostic, NamedSource, SourceSpan};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Why a scene could not be used.
+#[derive(Debug, thiserror::Error, Diagnostic)]
+pub enum SceneError {
+    /// The file could not be read.
+    #[error("cannot read scene {}: {reason}", path.display())]
+    #[diagnostic(help(
+        "give the path of a scene file, e.g. firmware-host/scenes/impact_at_40_hz.toml"
+    ))]
+    Read {
+        /// The path given.
+        path: PathBuf,
+        /// What the system said.
+        reason: std::io::Error,
+    },
+    /// Something in the file is wrong.
+    #[error("{}:{line}: {message}", path.display())]
+    Content {
+        /// The file.
+        path: PathBuf,
+        /// Line, counted from 1.
+        line: usize,
+        /// Key and what was expected.
+        message: String,
+        /// The text of the file.
+        #[source_code]
+        source_code: Arc<NamedSource<String>>,
+        /// Where in it.
+        #[label("here")]
+        span: SourceSpan,
+        /// What to do.
+        #[help]
+        help: Option<String>,
+    },
+}
+
+/// A scene file's text, able to point into itself.
+#[derive(Debug, Clone)]
+pub(crate) struct SceneText {
+    pub(crate) path: PathBuf,
+    pub(crate) text: String,
+}
+
+impl SceneText {
+    pub(crate) fn read(path: &Path) -> Result<Self, SceneError> {
+        let text = std::fs::read_to_string(path).map_err(|reason| SceneError::Read {
+            path: path.to_owned(),
+            reason,
+        })?;
+        Ok(Self {
+            path: path.to_owned(),
+            text,
+        })
+    }
+
+    /// An error at a byte range.
+    pub(crate) fn error_at(
+        &self,
+        range: std::ops::Range<usize>,
+        message: String,
+        help: Option<String>,
+    ) -> SceneError {
+        let start = range.start.min(self.text.len());
+        let end = range.end.clamp(start, self.text.len());
+        let line = 1 + self.text.as_bytes()[..start]
+            .iter()
+            .filter(|b| **b == b'\n')
+            .count();
+        SceneError::Content {
+            path: self.path.clone(),
+            line,
+            message,
+            source_code: Arc::new(NamedSource::new(
+                self.path.display().to_string(),
+                self.text.clone(),
+            )),
+            span: (start, end - start).into(),
+            help,
+        }
+    }
+
+    /// An error at a dotted key, or at its longest part that is there, or at the top of the file.
+    pub(crate) fn error_at_key(
+        &self,
+        key: &str,
+        message: String,
+        help: Option<String>,
+    ) -> SceneError {
+        self.error_at(
+            self.find(key).unwrap_or(0..0),
+            format!("{key}: {message}"),
+            help,
+        )
+    }
+
+    fn find(&self, key: &str) -> Option<std::ops::Range<usize>> {
+        use toml::de::{DeTable, DeValue};
+        let document = DeTable::parse(&self.text).ok()?;
+        let mut table = document.get_ref();
+        let mut span = None;
+        for part in key.split('.') {
+            // `disturbance[1]` is the second of an array of tables.
+            let (name, index) = match part.split_once('[') {
+                Some((name, rest)) => (name, rest.trim_end_matches(']').parse::<usize>().ok()),
+                None => (part, None),
+            };
+            let Some(mut value) = table.get(name) else {
+                break;
+            };
+            if let (Some(index), DeValue::Array(array)) = (index, value.get_ref()) {
+                match array.get(index) {
+                    Some(element) => value = element,
+                    None => break,
+                }
+            }
+            span = Some(value.span());
+            match value.get_ref() {
+                DeValue::Table(inner) => table = inner,
+                _ => break,
+            }
+        }
+        span
+    }
+}
+
+/// Range checks that point at the key.
+pub(crate) struct Checks<'a> {
+    pub(crate) text: &'a SceneText,
+}
+
+impl Checks<'_> {
+    pub(crate) fn refused(&self, key: &str, value: f64, expected: &str) -> SceneError {
+        let help = Some(format!("give {expected}"));
+        self.text
+            .error_at_key(key, format!("is {value}, expected {expected}"), help)
+    }
+
+    pub(crate) fn within(
+        &self,
+        key: &str,
+        value: f64,
+        low: f64,
+        high: f64,
+    ) -> Result<(), SceneError> {
+        if value >= low && value <= high {
+            Ok(())
+        } else {
+            Err(self.refused(key, value, &format!("a number from {low} to {high}")))
+        }
+    }
+
+    /// One of two keys that say the same.
+    pub(crate) fn either(
+        &self,
+        (first, a): (&str, Option<f64>),
+        (second, b): (&str, Option<f64>),
+    ) -> Result<Option<f64>, SceneError> {
+        if a.is_some() && b.is_some() {
+            let message = format!("given together with {second}, which says the same");
+            let help = Some(format!("remove {first} or {second}"));
+            return Err(self.text.error_at_key(first, message, help));
+        }
+        Ok(a.or(b))
+    }
+}

@@ -1,0 +1,203 @@
+//! The scene file as it is written: keys, types and defaults. What the values mean is decided in
+//! [`crate::scene`].
+
+use serde::Deserialize;
+
+/// A whole file.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct SceneFile {
+    pub(crate) title: String,
+    #[serde(default)]
+    pub(crate) story: String,
+    pub(crate) run: RunFile,
+    pub(crate) rotor: RotorFile,
+    pub(crate) spin: SpinFile,
+    #[serde(default)]
+    pub(crate) start: StartFile,
+    #[serde(default)]
+    pub(crate) stator: StatorFile,
+    pub(crate) contact: ContactFile,
+    pub(crate) friction: FrictionFile,
+    pub(crate) magnet: Option<MagnetFile>,
+    #[serde(default)]
+    pub(crate) sensor: SensorFile,
+    pub(crate) levitation: Option<LevitationFile>,
+    #[serde(default)]
+    pub(crate) radial: RadialFile,
+    #[serde(default)]
+    pub(crate) supervisor: toml::Table,
+    #[serde(default)]
+    pub(crate) disturbance: Vec<DisturbanceFile>,
+    #[serde(default)]
+    pub(crate) verdict: VerdictFile,
+}
+
+/// Time, accuracy, policies.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct RunFile {
+    pub(crate) duration_s: f64,
+    pub(crate) sample_rate_hz: f64,
+    pub(crate) policies: Vec<String>,
+    #[serde(default = "default_rtol")]
+    pub(crate) rtol: f64,
+    #[serde(default)]
+    pub(crate) seed: u64,
+}
+
+fn default_rtol() -> f64 {
+    1e-9
+}
+
+/// The rotor; stiffness and damping directly or as frequency and damping ratio.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct RotorFile {
+    pub(crate) mass_kg: f64,
+    pub(crate) stiffness_n_m: Option<f64>,
+    pub(crate) natural_frequency_hz: Option<f64>,
+    pub(crate) damping_n_s_m: Option<f64>,
+    pub(crate) damping_ratio: Option<f64>,
+    #[serde(default)]
+    pub(crate) eccentricity_m: f64,
+    pub(crate) contact_radius_m: f64,
+    #[serde(default)]
+    pub(crate) gravity_m_s2: [f64; 2],
+}
+
+/// Spin: held unless an inertia is given.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct SpinFile {
+    pub(crate) frequency_hz: f64,
+    pub(crate) inertia_kg_m2: Option<f64>,
+    pub(crate) drive_torque_n_m: Option<f64>,
+}
+
+/// Where the rotor starts.
+#[derive(Debug, Clone, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct StartFile {
+    #[serde(default)]
+    pub(crate) position_m: [f64; 2],
+    #[serde(default)]
+    pub(crate) velocity_m_s: [f64; 2],
+    #[serde(default)]
+    pub(crate) spin_phase_rad: f64,
+}
+
+/// Rings of the stator; none means rigid.
+#[derive(Debug, Clone, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct StatorFile {
+    pub(crate) inner: Option<RingFile>,
+    pub(crate) outer: Option<RingFile>,
+}
+
+/// One number for both axes, or one for each.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(untagged, expecting = "a number, or two numbers [x, y]")]
+pub(crate) enum PerAxis {
+    Both(f64),
+    Each([f64; 2]),
+}
+
+/// One ring with its mounting.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct RingFile {
+    pub(crate) mass_kg: f64,
+    pub(crate) stiffness_n_m: PerAxis,
+    pub(crate) damping_n_s_m: PerAxis,
+}
+
+/// The contact; damping directly or as restitution.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct ContactFile {
+    pub(crate) clearance_m: f64,
+    pub(crate) stiffness_n_m: f64,
+    pub(crate) damping_n_s_m: Option<f64>,
+    pub(crate) restitution: Option<f64>,
+}
+
+/// Friction; constant unless the coefficient at speed is given.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct FrictionFile {
+    pub(crate) coefficient: f64,
+    pub(crate) coefficient_at_speed: Option<f64>,
+    pub(crate) speed_scale_m_s: Option<f64>,
+    #[serde(default)]
+    pub(crate) rolling_coefficient: f64,
+}
+
+/// The magnet.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct MagnetFile {
+    pub(crate) force_max_n: f64,
+    #[serde(default)]
+    pub(crate) lag_s: f64,
+    #[serde(default)]
+    pub(crate) negative_stiffness_n_m: f64,
+}
+
+/// The position sensor.
+#[derive(Debug, Clone, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct SensorFile {
+    #[serde(default)]
+    pub(crate) quantum_m: f64,
+    #[serde(default)]
+    pub(crate) noise_rms_m: f64,
+}
+
+/// The stand-in firmware's levitation controller.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct LevitationFile {
+    pub(crate) proportional_n_m: f64,
+    #[serde(default)]
+    pub(crate) integral_n_m_s: f64,
+    pub(crate) derivative_n_s_m: f64,
+    #[serde(default)]
+    pub(crate) derivative_filter_s: f64,
+}
+
+/// The whole-capacity-inwards baseline.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct RadialFile {
+    #[serde(default = "default_band")]
+    pub(crate) band: f64,
+}
+
+fn default_band() -> f64 {
+    0.7
+}
+
+impl Default for RadialFile {
+    fn default() -> Self {
+        Self {
+            band: default_band(),
+        }
+    }
+}
+
+/// A force on the rotor for a while.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct DisturbanceFile {
+    pub(crate) start_s: f64,
+    pub(crate) duration_s: f64,
+    pub(crate) force_n: [f64; 2],
+}
+
+/// How the end is judged.
+#[derive(Debug, Clone, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct VerdictFile {
+    pub(crate) whirl_speed_m_s: Option<f64>,
+}

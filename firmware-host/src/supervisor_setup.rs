@@ -1,0 +1,97 @@
+//! Configuration of the supervisor from the scene's nominal plant data, with the scene's overrides.
+
+use crate::scene_error::{SceneError, SceneText};
+use crate::scene_file::SceneFile;
+use plant_model::params::PlantParams;
+use supervisor::{Config, PARAMETERS};
+
+/// Derives the configuration as an engineer would from data sheets; a key of the same name in
+/// `[supervisor]` replaces a value.
+pub(crate) fn config(
+    plant: &PlantParams,
+    file: &SceneFile,
+    text: &SceneText,
+) -> Result<Config, SceneError> {
+    let mut values = suggested(plant, file).values();
+    for (key, value) in &file.supervisor {
+        let path = format!("supervisor.{key}");
+        let Some(index) = PARAMETERS.iter().position(|p| p.name == key) else {
+            let names: Vec<&str> = PARAMETERS.iter().map(|p| p.name).collect();
+            let help = format!("parameters are {}", names.join(", "));
+            return Err(text.error_at_key(&path, "unknown parameter".to_owned(), Some(help)));
+        };
+        let number = value
+            .as_float()
+            .or_else(|| value.as_integer().map(|i| i as f64));
+        let Some(number) = number else {
+            let help = Some(format!("unit: {}", PARAMETERS[index].unit));
+            return Err(text.error_at_key(&path, "expected a number".to_owned(), help));
+        };
+        values[index] = number as f32;
+    }
+    let config = Config::from_values(values);
+    config.validate().map_err(|e| {
+        let path = format!("supervisor.{}", e.parameter.name);
+        text.error_at_key(&path, e.to_string(), Some(e.parameter.text.to_owned()))
+    })?;
+    Ok(config)
+}
+
+fn suggested(plant: &PlantParams, file: &SceneFile) -> Config {
+    let period_s = 1.0 / file.run.sample_rate_hz;
+    let contact_rate = (plant.contact.stiffness_n_m / plant.contact_mass_kg()).sqrt();
+    let noise_share =
+        file.sensor.noise_rms_m.max(file.sensor.quantum_m) / plant.contact.clearance_m;
+    let mass = plant.rotor.mass_kg;
+    let force_max_n = plant.magnet.map_or(0.0, |m| m.force_max_n);
+    // Noise of the estimated speed in units of the speed that the force can still lift off.
+    let sensor = &file.sensor;
+    let noise_m = (sensor.noise_rms_m.powi(2) + sensor.quantum_m.powi(2) / 12.0).sqrt();
+    let lift_off_m_s = (force_max_n * plant.contact.clearance_m / mass).sqrt();
+    let noise = noise_m / period_s / lift_off_m_s;
+    Config {
+        sample_period_s: period_s as f32,
+        mass_kg: mass as f32,
+        stiffness_n_m: plant.rotor.stiffness_n_m as f32,
+        damping_n_s_m: plant.rotor.damping_n_s_m as f32,
+        clearance_m: plant.contact.clearance_m as f32,
+        force_max_n: force_max_n as f32,
+        amplifier_lag_s: plant.magnet.map_or(0.0, |m| m.lag_s) as f32,
+        delay_samples: 1.0,
+        friction_coefficient: plant.friction.sliding.coefficient(0.0) as f32,
+        restitution: file.contact.restitution.unwrap_or(0.7).min(0.95) as f32,
+        observer_pole_flight: pole_for(noise, 0.5, second_order_noise),
+        observer_pole_contact: pole_for(noise, 0.2, first_order_noise),
+        contact_band: (4.0 * noise_share).max(0.01) as f32,
+        position_limit: 20.0,
+        // Two half periods on the contact spring, but no less than a millisecond.
+        whirl_time_s: (std::f64::consts::TAU / contact_rate).max(1e-3) as f32,
+        hold_share: 0.8,
+        handover_dwell_s: 5e-4,
+        handover_blend_s: 2e-3,
+        fault_blend_s: 1e-3,
+        fault_ticks: 10.0,
+    }
+}
+
+/// Speed noise over position noise per tick of the critically damped filters with a pole ρ: the
+/// known variances of fading-memory filters of second …
+fn second_order_noise(p: f64) -> f64 {
+    ((1.0 - p).powi(3) / (1.0 + p).powi(5) * (49.0 + 50.0 * p + 13.0 * p * p) / 2.0).sqrt()
+}
+
+/// … and of first order.
+fn first_order_noise(p: f64) -> f64 {
+    (2.0 * ((1.0 - p) / (1.0 + p)).powi(3)).sqrt()
+}
+
+/// The quickest pole, not below `quickest`, whose speed noise is at most a share of the lift-off
+/// speed that the laws do not feel.
+fn pole_for(noise: f64, quickest: f64, gain: fn(f64) -> f64) -> f32 {
+    const TOLERABLE: f64 = 0.04;
+    let mut pole = quickest;
+    while pole < 0.95 && noise * gain(pole) > TOLERABLE {
+        pole += 0.01;
+    }
+    pole as f32
+}

@@ -1,0 +1,121 @@
+//! What can be read off a run.
+
+use crate::V2;
+use crate::mode::Mode;
+use crate::part::Body;
+use crate::system::Touch;
+
+/// What can be read off at an instant, SI units.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Snapshot {
+    /// Time \[s\].
+    pub t_s: f64,
+    /// Rotor position \[m\].
+    pub position_m: V2,
+    /// Rotor velocity \[m/s\].
+    pub velocity_m_s: V2,
+    /// Ring that the rotor touches; at rest in the centre for a rigid stator.
+    pub inner_ring: Body,
+    /// Outer ring; at rest in the centre where there is none.
+    pub outer_ring: Body,
+    /// Spin Ω \[rad/s\].
+    pub spin_rad_s: f64,
+    /// What the rotor does.
+    pub mode: Mode,
+    /// A of eq. (2.8) \[m\]; negative inside the clearance.
+    pub penetration_m: f64,
+    /// f_n \[N\]; 0 without contact.
+    pub normal_force_n: f64,
+    /// Sliding friction on the rotor along t̂ \[N\].
+    pub sliding_force_n: f64,
+    /// Rolling friction on the rotor along t̂ \[N\].
+    pub rolling_force_n: f64,
+    /// Tangential speed of the rotor against the ring about its centre \[m/s\].
+    pub contact_tangential_speed_m_s: f64,
+    /// Force that the magnet delivers \[N\].
+    pub delivered_n: V2,
+    /// Angle of the contact point, summed over all contact so far \[rad\]; differences are meaningful
+    /// within one contact.
+    pub whirl_angle_rad: f64,
+}
+
+/// Extremes and sums over a run, taken at every step and not only at samples.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Meters {
+    /// Number of touches.
+    pub impacts: u64,
+    /// Time in contact \[s\].
+    pub contact_time_s: f64,
+    /// Largest normal speed at a touch \[m/s\].
+    pub peak_impact_speed_m_s: f64,
+    /// Largest A of eq. (2.8) \[m\].
+    pub peak_penetration_m: f64,
+    /// Largest f_n \[N\].
+    pub peak_contact_force_n: f64,
+    /// Largest sliding-friction torque on the spin \[N m\].
+    pub peak_friction_torque_n_m: f64,
+    /// Largest tangential speed against the spin while in contact \[m/s\].
+    pub peak_backward_speed_m_s: f64,
+    /// Angle of the contact point summed over all contact \[rad\].
+    pub whirl_angle_rad: f64,
+}
+
+impl Meters {
+    pub(crate) fn contact_step(&mut self, start: &Touch, end: &Touch, step_s: f64, turn_rad: f64) {
+        self.contact_time_s += step_s;
+        self.whirl_angle_rad += turn_rad;
+        let force = maximum_over_step(
+            (start.normal_n, start.normal_rate_n_s),
+            (end.normal_n, end.normal_rate_n_s),
+            step_s,
+        );
+        self.peak_contact_force_n = self.peak_contact_force_n.max(force);
+        let penetration = maximum_over_step(
+            (start.penetration_m, start.normal_speed_m_s),
+            (end.penetration_m, end.normal_speed_m_s),
+            step_s,
+        );
+        self.peak_penetration_m = self.peak_penetration_m.max(penetration);
+    }
+}
+
+/// Maximum of a smooth quantity over a step from its value and rate at both ends: where it rises and
+/// then falls, the top of the cubic through them.
+fn maximum_over_step((f0, rate0): (f64, f64), (f1, rate1): (f64, f64), step_s: f64) -> f64 {
+    if rate0 > 0.0 && rate1 < 0.0 {
+        cubic_maximum(f0, f1, rate0 * step_s, rate1 * step_s)
+    } else {
+        f0.max(f1)
+    }
+}
+
+/// Maximum over [0, 1] of the cubic with the given end values and slopes (rising, then falling).
+fn cubic_maximum(f0: f64, f1: f64, d0: f64, d1: f64) -> f64 {
+    let a = 2.0 * (f0 - f1) + d0 + d1;
+    let b = 3.0 * (f1 - f0) - 2.0 * d0 - d1;
+    // 3a·x² + 2b·x + d0 = 0; the root with falling slope, in the form that does not cancel.
+    let root = (b * b - 3.0 * a * d0).max(0.0).sqrt();
+    let x = if b <= 0.0 {
+        d0 / (root - b)
+    } else {
+        -(b + root) / (3.0 * a)
+    };
+    if x > 0.0 && x < 1.0 {
+        f0 + x * (d0 + x * (b + x * a))
+    } else {
+        f0.max(f1)
+    }
+}
+
+/// How much work the contact integrator did.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Work {
+    /// Accepted steps.
+    pub steps: u64,
+    /// Rejected steps.
+    pub rejected: u64,
+    /// Evaluations of the right-hand side.
+    pub evaluations: u64,
+    /// Events found.
+    pub events: u64,
+}

@@ -1,0 +1,143 @@
+//! The only unit conversion: [`Config`] in SI becomes coefficients per unit. Inside the supervisor
+//! lengths are in clearances, forces in force caps, and time in ticks.
+
+use crate::config::Config;
+use crate::math::{exp_neg, max};
+use crate::vec2::Vec2;
+
+/// Longest delay between a sample and its force \[ticks\].
+pub(crate) const MAX_DELAY: usize = 8;
+
+/// Immutable coefficients of the tick.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Coeffs {
+    /// Clearances per metre.
+    per_m: f32,
+    /// Caps per newton.
+    per_n: f32,
+    /// Newtons per cap.
+    pub(crate) force_max_n: f32,
+    /// Acceleration by one cap of force \[clearances/tick²\].
+    pub(crate) force_gain: f32,
+    /// k·T²/m \[1/tick²\].
+    pub(crate) stiffness: f32,
+    /// d·T/m \[1/tick\].
+    pub(crate) damping: f32,
+    /// Share of the way that the delivered force goes in a tick towards the command.
+    pub(crate) lag_step: f32,
+    /// Amplifier lag \[ticks\].
+    pub(crate) lag: f32,
+    /// Ticks between a sample and the start of its force.
+    pub(crate) delay: usize,
+    /// Mean time from a sample to the delivered force that answers it \[ticks\].
+    pub(crate) horizon: f32,
+    /// μ.
+    pub(crate) friction: f32,
+    /// e.
+    pub(crate) restitution: f32,
+    /// Backward speed that all impacts to come will add, per normal speed of the next one:
+    /// μ(1 + e)(1 + e + e² + …) = μ(1 + e)/(1 − e).
+    pub(crate) bounce_gain: f32,
+    /// Observer gains (position, velocity, disturbance) in flight.
+    pub(crate) flight_gains: [f32; 3],
+    /// Observer gains (position, velocity) in contact.
+    pub(crate) contact_gains: [f32; 2],
+    /// Touching begins above this radius …
+    pub(crate) touch_radius: f32,
+    /// … and ends below this one.
+    pub(crate) leave_radius: f32,
+    /// Largest plausible radius.
+    pub(crate) position_limit: f32,
+    /// Filter step of the contact share, 1/ticks of the whirl time.
+    pub(crate) contact_share_step: f32,
+    /// Square of the lift-off speed at rest of a full inward force, F·c/m \[(clearances/tick)²\].
+    pub(crate) slow_squared: f32,
+    pub(crate) hold_share: f32,
+    /// Force per speed of the damping law \[caps per clearance/tick\].
+    pub(crate) damper: f32,
+    pub(crate) whirl_ticks: u32,
+    pub(crate) dwell_ticks: u32,
+    /// Weight of the levitation controller gained per tick of hand-over.
+    pub(crate) blend_step: f32,
+    /// Weight of the force lost per tick of a fault.
+    pub(crate) fault_step: f32,
+    pub(crate) fault_ticks: u32,
+}
+
+fn per_tick(time_s: f32, period_s: f32) -> f32 {
+    1.0 / max(time_s / period_s, 1.0)
+}
+
+impl Coeffs {
+    /// From a valid configuration.
+    pub(crate) fn new(config: &Config) -> Self {
+        let t = config.sample_period_s;
+        let (c, f, m) = (config.clearance_m, config.force_max_n, config.mass_kg);
+        let force_gain = f * t * t / (m * c);
+        let lag = config.amplifier_lag_s / t;
+        let horizon = config.delay_samples + 0.5 + lag;
+        let (mu, e) = (config.friction_coefficient, config.restitution);
+        let (pole, free) = (
+            config.observer_pole_flight,
+            1.0 - config.observer_pole_flight,
+        );
+        let (touch_pole, touch_free) = (
+            config.observer_pole_contact,
+            1.0 - config.observer_pole_contact,
+        );
+        Self {
+            per_m: 1.0 / c,
+            per_n: 1.0 / f,
+            force_max_n: f,
+            force_gain,
+            stiffness: config.stiffness_n_m * t * t / m,
+            damping: config.damping_n_s_m * t / m,
+            lag_step: if lag > 0.0 {
+                1.0 - exp_neg(1.0 / lag)
+            } else {
+                1.0
+            },
+            lag,
+            delay: config.delay_samples as usize,
+            horizon,
+            friction: mu,
+            restitution: e,
+            bounce_gain: mu * (1.0 + e) / (1.0 - e),
+            // Critically damped fading-memory filters of second and first order.
+            flight_gains: [
+                1.0 - pole * pole * pole,
+                1.5 * free * free * (1.0 + pole),
+                free * free * free,
+            ],
+            contact_gains: [1.0 - touch_pole * touch_pole, touch_free * touch_free],
+            touch_radius: 1.0 - config.contact_band,
+            leave_radius: 1.0 - 1.5 * config.contact_band,
+            position_limit: config.position_limit,
+            contact_share_step: per_tick(config.whirl_time_s, t),
+            slow_squared: force_gain,
+            hold_share: config.hold_share,
+            // A full force stops this speed within twice the reaction time.
+            damper: 1.0 / (force_gain * (2.0 * horizon + 2.0)),
+            whirl_ticks: (config.whirl_time_s / t) as u32,
+            dwell_ticks: (config.handover_dwell_s / t) as u32,
+            blend_step: per_tick(config.handover_blend_s, t),
+            fault_step: per_tick(config.fault_blend_s, t),
+            fault_ticks: config.fault_ticks as u32,
+        }
+    }
+
+    #[inline]
+    pub(crate) fn position(&self, position_m: [f32; 2]) -> Vec2 {
+        Vec2::from_array(position_m) * self.per_m
+    }
+
+    #[inline]
+    pub(crate) fn force(&self, force_n: [f32; 2]) -> Vec2 {
+        Vec2::from_array(force_n) * self.per_n
+    }
+
+    #[inline]
+    pub(crate) fn force_n(&self, force: Vec2) -> [f32; 2] {
+        (force * self.force_max_n).to_array()
+    }
+}

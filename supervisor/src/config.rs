@@ -1,0 +1,111 @@
+//! The parameters: one table gives the struct, its check, its documentation and its test cases.
+
+/// One row of the table.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Parameter {
+    /// Name of the field of [`Config`].
+    pub name: &'static str,
+    /// Unit.
+    pub unit: &'static str,
+    /// Smallest valid value.
+    pub low: f32,
+    /// Largest valid value.
+    pub high: f32,
+    /// What it is and how to choose it.
+    pub text: &'static str,
+}
+
+/// A parameter outside its range.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ConfigError {
+    /// Which one.
+    pub parameter: &'static Parameter,
+    /// The refused value.
+    pub value: f32,
+}
+
+impl core::fmt::Display for ConfigError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        let Parameter {
+            name,
+            unit,
+            low,
+            high,
+            ..
+        } = self.parameter;
+        write!(
+            f,
+            "{name} = {} {unit}: expected {low} to {high} {unit}",
+            self.value
+        )
+    }
+}
+
+impl core::error::Error for ConfigError {}
+
+macro_rules! parameters {
+    ($($name:ident, $unit:literal, $low:literal ..= $high:literal, $text:literal;)*) => {
+        /// Everything the supervisor must be told about its bearing, SI units.
+        #[derive(Debug, Clone, Copy, PartialEq)]
+        #[repr(C)]
+        pub struct Config {
+            $(#[doc = $text] #[doc = concat!("\nUnit: ", $unit, "; ", stringify!($low), " to ", stringify!($high), ".")]
+            pub $name: f32,)*
+        }
+
+        /// The table: one row a field of [`Config`], in its order.
+        pub const PARAMETERS: &[Parameter] = &[
+            $(Parameter { name: stringify!($name), unit: $unit, low: $low, high: $high, text: $text },)*
+        ];
+
+        impl Config {
+            /// Values in the order of [`PARAMETERS`].
+            pub const fn values(&self) -> [f32; PARAMETERS.len()] {
+                [$(self.$name),*]
+            }
+
+            /// A configuration from values in the order of [`PARAMETERS`].
+            pub const fn from_values([$($name),*]: [f32; PARAMETERS.len()]) -> Self {
+                Self { $($name),* }
+            }
+        }
+    };
+}
+
+parameters! {
+    sample_period_s, "s", 1e-6 ..= 1e-2, "Period of the tick.";
+    mass_kg, "kg", 1e-4 ..= 1e6, "Mass of the rotor that this bearing plane carries.";
+    stiffness_n_m, "N/m", -1e10 ..= 1e10, "Shaft stiffness plus the magnets' negative stiffness, either sign.";
+    damping_n_s_m, "N s/m", 0.0 ..= 1e8, "Passive damping of the rotor in flight.";
+    clearance_m, "m", 1e-6 ..= 0.1, "Radial clearance of the retainer bearing.";
+    force_max_n, "N", 1e-3 ..= 1e7, "Force cap of the magnet, as the length of the vector.";
+    amplifier_lag_s, "s", 0.0 ..= 0.1, "Time constant of the amplifier with the magnet.";
+    delay_samples, "ticks", 0.0 ..= 7.0, "Whole ticks between a sample and the start of the force computed from it.";
+    friction_coefficient, "1", 0.0 ..= 2.0, "Coefficient of friction on the retainer bearing; choose the upper end of what is likely.";
+    restitution, "1", 0.0 ..= 0.99, "Restitution of a radial impact on the retainer bearing.";
+    observer_pole_flight, "1", 0.0 ..= 0.98, "Pole of the observer in flight: nearer to 1 smooths sensor noise more and follows later.";
+    observer_pole_contact, "1", 0.0 ..= 0.98, "Pole of the observer in contact, where the model knows nothing of the contact force.";
+    contact_band, "clearance", 0.001 ..= 0.3, "The rotor counts as touching within this band below the clearance; at least three times the sensor noise and the retainer's offset.";
+    position_limit, "clearance", 1.5 ..= 1000.0, "A measured radius beyond this is refused as implausible.";
+    whirl_time_s, "s", 1e-5 ..= 0.1, "Contact that lasts this long is whirl or rest, not a bounce: some periods of the rotor on the contact stiffness.";
+    hold_share, "1", 0.1 ..= 0.95, "Largest share of the cap that may push inwards.";
+    handover_dwell_s, "s", 0.0 ..= 1.0, "Contact must be avoidable for this long before hand-over begins.";
+    handover_blend_s, "s", 0.0 ..= 1.0, "Time of the blend to the levitation controller.";
+    fault_blend_s, "s", 0.0 ..= 1.0, "Time in which the force goes to zero when the position cannot be trusted.";
+    fault_ticks, "ticks", 1.0 ..= 10000.0, "Implausible ticks in a row that make a sensor fault, and plausible ones that end it.";
+}
+
+impl Config {
+    /// Checks every value against the table.
+    ///
+    /// # Errors
+    /// The first value outside its range; NaN is outside every range.
+    pub fn validate(&self) -> Result<(), ConfigError> {
+        for (parameter, value) in PARAMETERS.iter().zip(self.values()) {
+            if !(value >= parameter.low && value <= parameter.high) {
+                return Err(ConfigError { parameter, value });
+            }
+        }
+        Ok(())
+    }
+}

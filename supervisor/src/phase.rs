@@ -1,0 +1,128 @@
+//! The one state machine, and the only writer of [`Mode`] and of the events that belong to it.
+//!
+//! ```text
+//!   Levitated ──unavoidable──► Approach ──touch──► Bounce ◄──► BackwardWhirl
+//!       ▲  └───────────touch──────┼─────────────────▲ ▲ └────► Pinned ──left──► Bounce
+//!       └──blended── Handover ◄───┴──calm for dwell─┘ │
+//!                        └──────touch, unavoidable────┘          any ◄──► SensorFault
+//! ```
+
+use crate::classify::Class;
+use crate::coeffs::Coeffs;
+use crate::detect::Findings;
+use crate::signal::{Events, Mode};
+
+/// A mode with the memory that belongs to it.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) enum Phase {
+    /// The levitation controller has the bearing.
+    #[default]
+    Levitated,
+    /// Contact is coming. `calm_ticks`: since when it could be avoided after all.
+    Approach { calm_ticks: u32 },
+    /// Between and during short contacts.
+    Bounce { calm_ticks: u32 },
+    /// Sliding around the clearance without leaving it.
+    BackwardWhirl,
+    /// Lying on the bearing.
+    Pinned,
+    /// The levitation controller's share grows from 0 to 1.
+    Handover { weight: f32 },
+    /// The force goes from its last value to zero with `weight`.
+    SensorFault { weight: f32 },
+}
+
+impl Phase {
+    pub(crate) fn mode(self) -> Mode {
+        match self {
+            Self::Levitated => Mode::Levitated,
+            Self::Approach { .. } => Mode::Approach,
+            Self::Bounce { .. } => Mode::Bounce,
+            Self::BackwardWhirl => Mode::BackwardWhirl,
+            Self::Pinned => Mode::Pinned,
+            Self::Handover { .. } => Mode::Handover,
+            Self::SensorFault { .. } => Mode::SensorFault,
+        }
+    }
+
+    /// The phase of this tick, and what changed.
+    pub(crate) fn next(
+        self,
+        found: &Findings,
+        class: Class,
+        faulty: bool,
+        coeffs: &Coeffs,
+    ) -> (Self, Events) {
+        let next = self.follow(found, class, faulty, coeffs);
+        let mut events = Events::empty();
+        if found.touched {
+            events |= Events::TOUCHED;
+        }
+        if found.left {
+            events |= Events::LIFTED_OFF;
+        }
+        if next.mode() != self.mode() {
+            events |= match next {
+                Self::Levitated => Events::LEVITATED,
+                Self::BackwardWhirl => Events::WHIRL,
+                Self::Pinned => Events::PINNED,
+                Self::Handover { .. } => Events::HANDOVER,
+                _ => Events::empty(),
+            };
+            if matches!(self, Self::Levitated) {
+                events |= Events::ENGAGED;
+            }
+        }
+        (next, events)
+    }
+
+    fn follow(self, found: &Findings, class: Class, faulty: bool, coeffs: &Coeffs) -> Self {
+        const NEW_BOUNCE: Phase = Phase::Bounce { calm_ticks: 0 };
+        if faulty {
+            return match self {
+                Self::SensorFault { weight } => Self::SensorFault {
+                    weight: weight - coeffs.fault_step,
+                },
+                _ => Self::SensorFault { weight: 1.0 },
+            };
+        }
+        if found.touching {
+            return match class {
+                Class::Bounce => NEW_BOUNCE,
+                Class::BackwardWhirl => Self::BackwardWhirl,
+                Class::Pinned => Self::Pinned,
+            };
+        }
+        match self {
+            Self::Levitated if found.unavoidable => Self::Approach { calm_ticks: 0 },
+            Self::Levitated => self,
+            Self::Approach { calm_ticks } => match after_calm(calm_ticks, found, coeffs) {
+                Some(calm_ticks) => Self::Approach { calm_ticks },
+                None => Self::Handover { weight: 0.0 },
+            },
+            Self::Bounce { calm_ticks } => match after_calm(calm_ticks, found, coeffs) {
+                Some(calm_ticks) => Self::Bounce { calm_ticks },
+                None => Self::Handover { weight: 0.0 },
+            },
+            Self::BackwardWhirl if class == Class::BackwardWhirl => self,
+            Self::BackwardWhirl | Self::Pinned | Self::SensorFault { .. } => NEW_BOUNCE,
+            Self::Handover { .. } if found.unavoidable => Self::Approach { calm_ticks: 0 },
+            Self::Handover { weight } => {
+                let weight = weight + coeffs.blend_step;
+                if weight < 1.0 {
+                    Self::Handover { weight }
+                } else {
+                    Self::Levitated
+                }
+            }
+        }
+    }
+}
+
+/// Calm ticks so far, or `None` once they are enough.
+fn after_calm(calm_ticks: u32, found: &Findings, coeffs: &Coeffs) -> Option<u32> {
+    if !found.calm {
+        return Some(0);
+    }
+    (calm_ticks < coeffs.dwell_ticks).then_some(calm_ticks + 1)
+}

@@ -1,0 +1,424 @@
+//! The command line as a person uses it: results, errors, exit codes, and what is left behind.
+
+use parquet::file::reader::{FileReader, SerializedFileReader};
+use parquet::record::RowAccessor;
+use serde_json::Value;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use system_tests::scene_path;
+use tempfile::TempDir;
+
+/// The host's binary, built by the same cargo call (tests/run builds it before the tests).
+fn host() -> Command {
+    let test = std::env::current_exe().expect("a test has a path");
+    let folder = test
+        .ancestors()
+        .nth(2)
+        .expect("target/<profile>/deps/<test>");
+    let binary = folder.join(format!("firmware-host{}", std::env::consts::EXE_SUFFIX));
+    assert!(
+        binary.exists(),
+        "{} is missing: run tests/run",
+        binary.display()
+    );
+    Command::new(binary)
+}
+
+fn run(scene: &Path, out: &Path, more: &[&str]) -> Output {
+    host()
+        .arg("run")
+        .arg(scene)
+        .arg("--out")
+        .arg(out)
+        .args(more)
+        .output()
+        .expect("the host starts")
+}
+
+/// A short scene with noise and all policies, in a folder of its own.
+fn short_scene(folder: &Path, edit: impl Fn(String) -> String) -> PathBuf {
+    let text = fs::read_to_string(scene_path("overload_then_release")).expect("a scene");
+    let text = text
+        .replace("duration_s = 0.2", "duration_s = 0.03")
+        .replace("duration_s = 0.05", "duration_s = 0.005");
+    let path = folder.join("short.toml");
+    fs::write(&path, edit(text)).expect("a writable folder");
+    path
+}
+
+fn names(folder: &Path) -> Vec<String> {
+    let mut names: Vec<String> = (fs::read_dir(folder).expect("a folder"))
+        .map(|e| {
+            e.expect("an entry")
+                .file_name()
+                .to_string_lossy()
+                .into_owned()
+        })
+        .collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn the_impact_scene_shows_the_table_and_writes_everything() {
+    let folder = TempDir::new().unwrap();
+    let out = folder.path().join("new").join("results");
+    let result = run(&scene_path("impact_at_40_hz"), &out, &[]);
+    let table = String::from_utf8(result.stdout).unwrap();
+    assert!(
+        result.status.success(),
+        "{}",
+        String::from_utf8_lossy(&result.stderr)
+    );
+    for word in [
+        "passive",
+        "radial",
+        "levitation",
+        "supervisor",
+        "whirl",
+        "recovered",
+        "impacts",
+    ] {
+        assert!(table.contains(word), "{word} is missing in\n{table}");
+    }
+    assert_eq!(
+        names(&out),
+        [
+            "report.html",
+            "trace_levitation.parquet",
+            "trace_passive.parquet",
+            "trace_radial.parquet",
+            "trace_supervisor.parquet",
+            "verdict.json"
+        ]
+    );
+    let report = fs::read_to_string(out.join("report.html")).unwrap();
+    assert!(report.contains("<svg") && report.contains("Impact at 40 Hz"));
+    assert!(!report.contains("<script") && !report.contains("src=\"http"));
+
+    let verdict: Value =
+        serde_json::from_slice(&fs::read(out.join("verdict.json")).unwrap()).unwrap();
+    for (policy, outcome) in [
+        ("passive", "whirl"),
+        ("levitation", "whirl"),
+        ("supervisor", "recovered"),
+    ] {
+        assert_eq!(verdict["policies"][policy]["outcome"], outcome);
+        assert_eq!(
+            verdict["policies"][policy]["recovered"],
+            outcome == "recovered"
+        );
+    }
+    let numbers = [
+        "impacts",
+        "contact_time_s",
+        "peak_penetration_m",
+        "peak_contact_force_n",
+        "relevitation_time_s",
+        "energy_residual",
+        "run_time_s",
+        "real_time_ratio",
+    ];
+    for key in numbers {
+        assert!(verdict["policies"]["supervisor"][key].is_number(), "{key}");
+    }
+    assert!(
+        verdict["policies"]["supervisor"]["max_backward_whirl_hz"].is_null(),
+        "no whirl, no frequency"
+    );
+    assert!(
+        verdict["policies"]["passive"]["max_backward_whirl_hz"]
+            .as_f64()
+            .unwrap()
+            > 100.0
+    );
+}
+
+#[test]
+fn traces_hold_every_sample_and_every_mode_change() {
+    let folder = TempDir::new().unwrap();
+    let scene = short_scene(folder.path(), |t| t);
+    let out = folder.path().join("out");
+    assert!(run(&scene, &out, &[]).status.success());
+    let reader =
+        SerializedFileReader::new(fs::File::open(out.join("trace_supervisor.parquet")).unwrap())
+            .unwrap();
+    let schema = reader.metadata().file_metadata().schema_descr();
+    let columns: Vec<&str> = (0..schema.num_columns())
+        .map(|i| schema.column(i).name().to_owned().leak() as &str)
+        .collect();
+    for name in [
+        "t_s",
+        "rotor_x_m",
+        "rotor_vy_m_s",
+        "inner_ring_x_m",
+        "outer_ring_vy_m_s",
+        "spin_rad_s",
+        "contact_force_n",
+        "commanded_x_n",
+        "delivered_y_n",
+        "mode",
+        "supervisor_mode",
+    ] {
+        assert!(columns.contains(&name), "{name}");
+    }
+    let at = |name: &str| columns.iter().position(|c| *c == name).unwrap();
+    let (time, mode, change) = (at("t_s"), at("mode"), at("mode_change"));
+    let (mut samples, mut changes, mut last) = (0, 0, (-1.0, String::new()));
+    for row in reader.get_row_iter(None).unwrap() {
+        let row = row.unwrap();
+        let (t, m) = (
+            row.get_double(time).unwrap(),
+            row.get_string(mode).unwrap().clone(),
+        );
+        assert!(t >= last.0, "time runs backwards at {t}");
+        if row.get_bool(change).unwrap() {
+            changes += 1;
+            assert_ne!(m, last.1, "no change at {t}");
+        } else {
+            samples += 1;
+        }
+        last = (t, m);
+    }
+    assert_eq!(samples, 601, "30 ms at 20 kHz, both ends");
+    let verdict: Value =
+        serde_json::from_slice(&fs::read(out.join("verdict.json")).unwrap()).unwrap();
+    let impacts = verdict["policies"]["supervisor"]["impacts"]
+        .as_u64()
+        .unwrap();
+    assert!(
+        impacts >= 1 && changes >= impacts,
+        "{changes} changes, {impacts} impacts"
+    );
+}
+
+/// Everything but the wall-clock times, which differ from run to run.
+fn stripped(out: &Path) -> Vec<(String, Vec<u8>)> {
+    let strip = |name: &str| {
+        let bytes = fs::read(out.join(name)).expect("a result");
+        if name != "verdict.json" {
+            return bytes;
+        }
+        let text = String::from_utf8(bytes).expect("text");
+        let kept = text
+            .lines()
+            .filter(|l| !l.contains("run_time_s") && !l.contains("real_time_ratio"));
+        kept.collect::<Vec<_>>().join("\n").into_bytes()
+    };
+    (names(out).into_iter())
+        .filter(|name| name != "report.html")
+        .map(|name| (name.clone(), strip(&name)))
+        .collect()
+}
+
+/// The report without the cells that show wall-clock times.
+fn plots(out: &Path) -> String {
+    let report = fs::read_to_string(out.join("report.html")).expect("a report");
+    report.split("<svg").skip(1).collect()
+}
+
+#[test]
+fn the_same_scene_and_seed_give_the_same_bits_on_any_number_of_threads() {
+    let folder = TempDir::new().unwrap();
+    let scene = short_scene(folder.path(), |t| t);
+    let outs: Vec<PathBuf> = ["1", "1", "2", "3"]
+        .iter()
+        .enumerate()
+        .map(|(i, threads)| {
+            let out = folder.path().join(format!("out{i}"));
+            assert!(run(&scene, &out, &["--threads", threads]).status.success());
+            out
+        })
+        .collect();
+    for out in &outs[1..] {
+        assert_eq!(stripped(&outs[0]), stripped(out));
+        assert_eq!(plots(&outs[0]), plots(out));
+    }
+    let other = short_scene(folder.path(), |t| t.replace("seed = 1", "seed = 2"));
+    let out = folder.path().join("other_seed");
+    assert!(run(&other, &out, &[]).status.success());
+    assert_ne!(stripped(&outs[0]), stripped(&out), "the seed must matter");
+}
+
+#[test]
+fn json_goes_to_standard_output() {
+    let folder = TempDir::new().unwrap();
+    let scene = short_scene(folder.path(), |t| t);
+    let result = run(&scene, &folder.path().join("out"), &["--json"]);
+    assert!(result.status.success());
+    let printed: Value = serde_json::from_slice(&result.stdout).unwrap();
+    assert_eq!(printed["policies"].as_object().unwrap().len(), 4);
+}
+
+/// Bad scenes: what is changed in a good one, the line and key that the error must name, and what it
+/// must say was expected.
+#[test]
+fn bad_scenes_are_refused_with_file_line_key_and_expectation() {
+    let cases: &[(&str, &str, &str, &str)] = &[
+        (
+            "mass_kg = 10.0",
+            "mass_kg = 10.0\ncolour = 3",
+            "colour",
+            "expected one of",
+        ),
+        (
+            "mass_kg = 10.0",
+            "mass_kg = \"ten\"",
+            "mass_kg",
+            "expected f64",
+        ),
+        (
+            "mass_kg = 10.0",
+            "mass_kg = -10.0",
+            "rotor.mass_kg",
+            "greater than 0",
+        ),
+        (
+            "mass_kg = 10.0",
+            "mass_kg = nan",
+            "rotor.mass_kg",
+            "greater than 0",
+        ),
+        (
+            "clearance_m = 2e-4",
+            "clearance_m = 0.0",
+            "contact.clearance_m",
+            "greater than 0",
+        ),
+        (
+            "restitution = 0.7",
+            "restitution = 1.5",
+            "contact.restitution",
+            "at most 1",
+        ),
+        (
+            "sample_rate_hz = 20000",
+            "sample_rate_hz = inf",
+            "run.sample_rate_hz",
+            "a number from",
+        ),
+        (
+            "coefficient = 0.15",
+            "coefficient = 0.15\nspeed_scale_m_s = 1.0",
+            "friction.speed_scale_m_s",
+            "needs both",
+        ),
+        ("\"radial\"", "\"sideways\"", "run.policies", "policies are"),
+        (
+            "noise_rms_m = 1e-6",
+            "noise_rms_m = -1e-6",
+            "sensor.noise_rms_m",
+            "a number from",
+        ),
+        (
+            "duration_s = 0.03",
+            "duration_s = 1e5",
+            "run.duration_s",
+            "20 million",
+        ),
+        (
+            "force_n = [1300.0, 750.0]",
+            "force_n = [1300.0, inf]",
+            "disturbance[0].force_n",
+            "a number from",
+        ),
+        (
+            "[[disturbance]]",
+            "[supervisor]\nhold_share = 2.0\n[[disturbance]]",
+            "supervisor.hold_share",
+            "0.1 to 0.95",
+        ),
+        (
+            "[[disturbance]]",
+            "[supervisor]\nhold = 2.0\n[[disturbance]]",
+            "supervisor.hold",
+            "parameters are",
+        ),
+        ("title = ", "title = = ", "title", ""),
+        ("[contact]", "[contract]", "contract", "expected one of"),
+    ];
+    let folder = TempDir::new().unwrap();
+    for (from, to, key, expected) in cases {
+        let mut line = 0;
+        let scene = short_scene(folder.path(), |t| {
+            assert!(t.contains(from), "{from} is not in the scene");
+            t.replacen(from, to, 1)
+        });
+        let text = fs::read_to_string(&scene).unwrap();
+        let last_key = key.rsplit('.').next().unwrap().split('[').next().unwrap();
+        for (i, l) in text.lines().enumerate() {
+            let changed = to.lines().any(|t| !t.is_empty() && l.contains(t));
+            if changed && l.contains(last_key) {
+                line = i + 1;
+            }
+        }
+        let out = folder.path().join("out");
+        let result = run(&scene, &out, &[]);
+        let error = String::from_utf8(result.stderr).unwrap();
+        let flat: String = error
+            .replace("│", " ")
+            .split_whitespace()
+            .collect::<Vec<_>>()
+            .join(" ");
+        assert_eq!(result.status.code(), Some(2), "{to}\n{error}");
+        assert!(flat.contains(key), "{to}: no {key} in\n{error}");
+        assert!(
+            flat.contains(expected),
+            "{to}: no \"{expected}\" in\n{error}"
+        );
+        assert!(
+            error.contains(&format!("short.toml:{line}:")),
+            "{to}: not line {line} in\n{error}"
+        );
+        assert_eq!(
+            names(folder.path()),
+            ["short.toml"],
+            "{to}: left something behind"
+        );
+        assert!(result.stdout.is_empty());
+    }
+}
+
+#[test]
+fn missing_scenes_and_unwritable_folders_are_refused() {
+    let folder = TempDir::new().unwrap();
+    let result = run(
+        Path::new("no_such_scene.toml"),
+        &folder.path().join("out"),
+        &[],
+    );
+    assert_eq!(result.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&result.stderr).contains("no_such_scene.toml"));
+
+    // A file where a folder should be stops everyone, also the superuser.
+    let scene = short_scene(folder.path(), |t| t);
+    for out in [
+        scene.clone(),
+        scene.join("below_a_file"),
+        PathBuf::from("/proc/no_folder_here/out"),
+    ] {
+        let result = run(&scene, &out, &[]);
+        let error = String::from_utf8_lossy(&result.stderr).into_owned();
+        assert_eq!(result.status.code(), Some(2), "{error}");
+        assert!(error.contains("cannot write results"), "{error}");
+        assert_eq!(names(folder.path()), ["short.toml"]);
+    }
+    let no_arguments = host().arg("run").output().unwrap();
+    assert_eq!(no_arguments.status.code(), Some(2));
+}
+
+/// Results of an earlier run are replaced, other files in the folder stay.
+#[test]
+fn a_folder_can_be_used_again() {
+    let folder = TempDir::new().unwrap();
+    let scene = short_scene(folder.path(), |t| t);
+    let out = folder.path().join("out");
+    fs::create_dir(&out).unwrap();
+    fs::write(out.join("notes.txt"), "mine").unwrap();
+    fs::write(out.join("verdict.json"), "old").unwrap();
+    assert!(run(&scene, &out, &[]).status.success());
+    assert_eq!(fs::read_to_string(out.join("notes.txt")).unwrap(), "mine");
+    assert_ne!(fs::read_to_string(out.join("verdict.json")).unwrap(), "old");
+    assert_eq!(names(folder.path()), ["out", "short.toml"]);
+}

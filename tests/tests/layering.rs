@@ -1,0 +1,110 @@
+//! Walls of the house: a file imports only from files that its crate's `lib.rs` lists before it.
+
+use std::collections::BTreeSet;
+use std::path::Path;
+
+/// Names in backticks or brackets after "above it:" in the crate's documentation, in order.
+fn listed(lib: &str) -> Vec<String> {
+    let doc: String = (lib.lines())
+        .filter_map(|l| l.strip_prefix("//!"))
+        .collect::<Vec<_>>()
+        .join(" ");
+    let list = doc
+        .split("above it:")
+        .nth(1)
+        .expect("lib.rs lists its files");
+    let list = list.split('.').next().unwrap_or(list);
+    list.split('`')
+        .skip(1)
+        .step_by(2)
+        .map(str::to_owned)
+        .collect()
+}
+
+/// Top-level modules that a file's code refers to by `crate::` or, from a submodule, `super::super`.
+fn imports(text: &str) -> BTreeSet<String> {
+    let code = text.split("#[cfg(test)]").next().unwrap_or(text);
+    let mut found = BTreeSet::new();
+    for line in code.lines().filter(|l| !l.trim_start().starts_with("//")) {
+        for part in line.split("crate::").skip(1) {
+            if let Some(group) = part.strip_prefix('{') {
+                let group = group.split('}').next().unwrap_or(group);
+                for name in group.split(',') {
+                    found.insert(name.split("::").next().unwrap_or("").trim().to_owned());
+                }
+            } else {
+                let name = part
+                    .split(|c: char| !(c.is_alphanumeric() || c == '_'))
+                    .next();
+                found.insert(name.unwrap_or("").to_owned());
+            }
+        }
+    }
+    found.remove("");
+    found
+}
+
+fn check(krate: &str) {
+    let src = system_tests::root().join(krate).join("src");
+    let lib = std::fs::read_to_string(src.join("lib.rs")).unwrap();
+    let order = listed(&lib);
+    let rank = |name: &str| order.iter().position(|n| n == name);
+    let mut checked = 0;
+    let mut visit = |path: &Path, module: &str| {
+        let text = std::fs::read_to_string(path).unwrap();
+        let here = rank(module)
+            .unwrap_or_else(|| panic!("{} is not listed in {krate}/src/lib.rs", path.display()));
+        for name in imports(&text) {
+            // Items re-exported at the root of the crate (types, aliases) start with a capital.
+            if name.starts_with(char::is_uppercase) {
+                continue;
+            }
+            let there =
+                rank(&name).unwrap_or_else(|| panic!("{}: {name} is not listed", path.display()));
+            assert!(
+                there <= here,
+                "{} imports {name}, which is below it",
+                path.display()
+            );
+        }
+        checked += 1;
+    };
+    for entry in std::fs::read_dir(&src).unwrap() {
+        let path = entry.unwrap().path();
+        let stem = path.file_stem().unwrap().to_str().unwrap().to_owned();
+        if path.is_dir() {
+            for inner in std::fs::read_dir(&path).unwrap() {
+                let inner = inner.unwrap().path();
+                if inner.extension().is_some_and(|e| e == "rs") {
+                    visit(&inner, &stem);
+                }
+            }
+        } else if path.extension().is_some_and(|e| e == "rs") && stem != "lib" && stem != "main" {
+            visit(&path, &stem);
+        }
+    }
+    assert!(
+        checked >= order.len(),
+        "{krate}: {checked} files for {} names",
+        order.len()
+    );
+}
+
+#[test]
+fn files_import_only_upwards() {
+    check("supervisor");
+    check("plant-model");
+    check("firmware-host");
+}
+
+/// The plant knows no control, the supervisor no plant.
+#[test]
+fn crates_keep_their_distance() {
+    let manifest = |krate: &str| {
+        std::fs::read_to_string(system_tests::root().join(krate).join("Cargo.toml")).unwrap()
+    };
+    assert!(!manifest("plant-model").contains("supervisor ="));
+    assert!(!manifest("supervisor").contains("plant-model"));
+    let lib = std::fs::read_to_string(system_tests::root().join("supervisor/src/lib.rs")).unwrap();
+    assert!(lib.contains("\n#![no_std]") && lib.contains("\n#![forbid(unsafe_code)]"));
+}

@@ -1,0 +1,397 @@
+//! What the supervisor promises at its border, whatever comes in.
+
+use proptest::prelude::*;
+use supervisor::{
+    Command, Config, Entry, Events, IntegratorHint, Limits, Mode, PARAMETERS, Sample, Status,
+    Supervisor, crc_of,
+};
+
+/// An AMB rotor: 10 kg, 0.2 mm, 1000 N, 20 kHz.
+fn config() -> Config {
+    Config {
+        sample_period_s: 50e-6,
+        mass_kg: 10.0,
+        stiffness_n_m: -2e5,
+        damping_n_s_m: 0.0,
+        clearance_m: 2e-4,
+        force_max_n: 1000.0,
+        amplifier_lag_s: 1.6e-4,
+        delay_samples: 1.0,
+        friction_coefficient: 0.15,
+        restitution: 0.7,
+        observer_pole_flight: 0.6,
+        observer_pole_contact: 0.4,
+        contact_band: 0.02,
+        position_limit: 20.0,
+        whirl_time_s: 1e-3,
+        hold_share: 0.8,
+        handover_dwell_s: 5e-4,
+        handover_blend_s: 2e-3,
+        fault_blend_s: 1e-3,
+        fault_ticks: 10.0,
+    }
+}
+
+fn new() -> Supervisor<64> {
+    Supervisor::new(&config()).unwrap()
+}
+
+fn sample(sequence: u32, position_m: [f32; 2]) -> Sample {
+    Sample {
+        sequence,
+        status: Status::SPIN_VALID,
+        position_m,
+        spin_rad_s: 1000.0,
+        levitation_n: [3.0, -4.0],
+    }
+}
+
+fn length(force_n: [f32; 2]) -> f64 {
+    f64::hypot(f64::from(force_n[0]), f64::from(force_n[1]))
+}
+
+/// Any bit pattern of a float: every exponent, NaN payloads, infinities, subnormals.
+fn any_bits() -> impl Strategy<Value = f32> {
+    prop_oneof![
+        3 => any::<u32>().prop_map(f32::from_bits),
+        4 => -3e-4..3e-4_f32,
+        1 => prop_oneof![
+            Just(f32::NAN), Just(f32::INFINITY), Just(f32::NEG_INFINITY), Just(f32::MAX),
+            Just(f32::MIN_POSITIVE), Just(0.0), Just(-0.0),
+        ],
+    ]
+}
+
+fn any_sample() -> impl Strategy<Value = Sample> {
+    let sequence = prop_oneof![Just(None), any::<u32>().prop_map(Some)];
+    (
+        sequence,
+        any::<u32>(),
+        [any_bits(), any_bits()],
+        any_bits(),
+        [any_bits(), any_bits()],
+    )
+        .prop_map(
+            |(sequence, status, position_m, spin_rad_s, levitation_n)| Sample {
+                sequence: sequence.unwrap_or(0),
+                status: Status::from_bits_retain(status),
+                position_m,
+                spin_rad_s,
+                levitation_n,
+            },
+        )
+}
+
+fn any_config() -> impl Strategy<Value = Config> {
+    let edges = prop::collection::vec(0.0..=1.0_f32, PARAMETERS.len());
+    edges.prop_map(|shares| {
+        let mut values = [0.0; PARAMETERS.len()];
+        for ((value, p), share) in values.iter_mut().zip(PARAMETERS).zip(shares) {
+            // Both ends often; what lies between on the scale of the parameter.
+            let inside = if p.low > 0.0 {
+                p.low * (p.high / p.low).powf(share)
+            } else {
+                p.low + share * (p.high - p.low)
+            };
+            *value = if share < 0.1 {
+                p.low
+            } else if share > 0.9 {
+                p.high
+            } else {
+                inside.clamp(p.low, p.high)
+            };
+        }
+        Config::from_values(values)
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 2000, ..ProptestConfig::default() })]
+
+    /// Any bits in every field, any valid configuration: a finite force no longer than the cap.
+    #[test]
+    fn any_bits_give_a_finite_capped_force(
+        config in any_config(),
+        samples in prop::collection::vec(any_sample(), 1..60),
+    ) {
+        let mut supervisor = Supervisor::<16>::new(&config).unwrap();
+        for sample in &samples {
+            let command = supervisor.tick(sample);
+            prop_assert!(command.force_n.iter().all(|f| f.is_finite()), "{:?}", command);
+            let cap = f64::from(config.force_max_n);
+            prop_assert!(length(command.force_n) <= cap * (1.0 + 1e-7), "{:?} over {}", command, cap);
+        }
+    }
+
+    /// In the middle the levitation command goes through bit for bit, signed zeros included.
+    #[test]
+    fn levitated_is_transparent(
+        positions in prop::collection::vec([-2e-5..2e-5_f32, -2e-5..2e-5_f32], 1..50),
+        forces in prop::collection::vec([-700.0..700.0_f32, -700.0..700.0_f32], 50),
+    ) {
+        // An orbit that a sensor could see: positions that move slowly.
+        let mut supervisor = new();
+        let mut at = [0.0_f32; 2];
+        for (i, (target, levitation_n)) in positions.iter().zip(&forces).enumerate() {
+            for axis in 0..2 {
+                at[axis] += 0.01 * (target[axis] - at[axis]);
+            }
+            let mut s = sample(i as u32, at);
+            s.levitation_n = *levitation_n;
+            let command = supervisor.tick(&s);
+            prop_assert_eq!(command.mode, Mode::Levitated);
+            prop_assert_eq!(command.force_n.map(f32::to_bits), levitation_n.map(f32::to_bits));
+            prop_assert_eq!(command.limits, Limits::empty());
+        }
+    }
+
+    /// Mirrored samples give mirrored commands, to the bit.
+    #[test]
+    fn mirror(samples in prop::collection::vec(any_sample(), 1..60)) {
+        let (mut left, mut right) = (new(), new());
+        for s in &samples {
+            let mut m = *s;
+            m.position_m[0] = -s.position_m[0];
+            m.levitation_n[0] = -s.levitation_n[0];
+            m.spin_rad_s = -s.spin_rad_s;
+            // Without spin and without whirl there is no direction to mirror.
+            let known = s.status.contains(Status::SPIN_VALID) && s.spin_rad_s.is_finite() && s.spin_rad_s != 0.0;
+            if !known {
+                continue;
+            }
+            let (a, b) = (left.tick(s), right.tick(&m));
+            prop_assert_eq!(a.mode, b.mode);
+            prop_assert_eq!([-a.force_n[0], a.force_n[1]], b.force_n);
+        }
+    }
+}
+
+/// Every parameter is refused just outside its range and for NaN, and named.
+#[test]
+fn config_errors_name_field_value_and_range() {
+    for (i, p) in PARAMETERS.iter().enumerate() {
+        let below = p.low - p.low.abs().max(1e-3);
+        for wrong in [f32::NAN, f32::INFINITY, below, p.high * 2.0 + 1.0] {
+            let mut values = config().values();
+            values[i] = wrong;
+            let error = Config::from_values(values).validate().unwrap_err();
+            assert_eq!(error.parameter.name, p.name);
+            let text = error.to_string();
+            let parts = [p.name.to_owned(), p.low.to_string(), p.high.to_string()];
+            assert!(parts.iter().all(|part| text.contains(part)), "{text}");
+        }
+        for edge in [p.low, p.high] {
+            let mut values = config().values();
+            values[i] = edge;
+            assert!(
+                Config::from_values(values).validate().is_ok(),
+                "{} at {edge}",
+                p.name
+            );
+        }
+    }
+}
+
+/// A command beyond the cap is shortened in its direction; one that is no number becomes zero.
+#[test]
+fn levitation_commands_are_limited_with_a_flag() {
+    let mut supervisor = new();
+    let mut s = sample(0, [0.0; 2]);
+    s.levitation_n = [3000.0, 0.0];
+    let Command {
+        force_n, limits, ..
+    } = supervisor.tick(&s);
+    assert!(
+        force_n[0] > 999.9 && force_n[0] <= 1000.0 && force_n[1] == 0.0,
+        "{force_n:?}"
+    );
+    assert_eq!(limits, Limits::LEVITATION_CLAMPED);
+    s.sequence = 1;
+    s.levitation_n = [f32::NAN, 5.0];
+    let command = supervisor.tick(&s);
+    assert_eq!(command.force_n, [0.0, 5.0]);
+    assert_eq!(command.limits, Limits::LEVITATION_CLAMPED);
+}
+
+/// On its way to the wall the rotor is pushed forward along it before it touches, and never with the
+/// whole capacity inwards.
+#[test]
+fn approach_is_tangential_and_not_all_inward() {
+    // 0.4 m/s along x, spin counter-clockwise: backward is −y at the wall ahead.
+    const STEP_M: f32 = 2e-5;
+    let mut supervisor = new();
+    let mut engaged = None;
+    for i in 0..12_u32 {
+        let x = STEP_M * i as f32 - 6e-5;
+        let command = supervisor.tick(&sample(i, [x, 0.0]));
+        if command.mode != Mode::Approach {
+            continue;
+        }
+        engaged.get_or_insert(command);
+        let [inward, tangential] = [-command.force_n[0], command.force_n[1]];
+        assert!(inward < 0.9 * 1000.0, "{command:?}");
+        // While a force decided now still comes before the impact: 1.5 ticks and 3.2 ticks of lag.
+        if (2e-4 - x) / STEP_M > 5.5 {
+            assert!(
+                tangential > 0.7 * length(command.force_n) as f32,
+                "{command:?}"
+            );
+            assert!(tangential > 500.0, "{command:?}");
+        }
+    }
+    let engaged = engaged.expect("0.4 m/s cannot be stopped in 0.2 mm with 100 m/s²");
+    assert!(engaged.events.contains(Events::ENGAGED));
+    assert_eq!(engaged.integrator, IntegratorHint::Hold);
+}
+
+/// In sustained backward whirl the force brakes: against the motion, and mostly along the wall.
+#[test]
+fn whirl_is_braked_along_the_wall() {
+    for spin in [1000.0_f32, -1000.0] {
+        let mut supervisor = new();
+        let whirl = -spin.signum();
+        let mut last = Command::default();
+        let mut at = 0.0_f32;
+        for i in 0..400_u32 {
+            at = whirl * 500.0 * 50e-6 * i as f32;
+            let mut s = sample(i, [2.05e-4 * at.cos(), 2.05e-4 * at.sin()]);
+            s.spin_rad_s = spin;
+            last = supervisor.tick(&s);
+        }
+        assert_eq!(last.mode, Mode::BackwardWhirl);
+        // Delivered force: later by 1.5 ticks and the lag's atan(ωτ).
+        let turn = whirl * 500.0 * 1.5 * 50e-6;
+        let lag = whirl * (500.0_f32 * 1.6e-4).atan();
+        let (n, t) = ((at + turn).cos(), (at + turn).sin());
+        let rotate = |v: [f32; 2], a: f32| {
+            [
+                v[0] * a.cos() - v[1] * a.sin(),
+                v[0] * a.sin() + v[1] * a.cos(),
+            ]
+        };
+        let delivered = rotate(last.force_n, -lag);
+        let radial = delivered[0] * n + delivered[1] * t;
+        let along = whirl * (-delivered[0] * t + delivered[1] * n);
+        assert!(along < -0.95 * 1000.0, "brakes with {along} N");
+        // Inward of tangential by atan μ, never ahead of it.
+        assert!((-0.2 * 1000.0..0.0).contains(&radial), "radial {radial} N");
+    }
+}
+
+/// NaN for longer than the configured ticks: a sensor fault, and the force goes to zero in the
+/// configured time; plausible samples for as long end it.
+#[test]
+fn sensor_fault_blends_to_zero_and_ends() {
+    let mut supervisor = new();
+    let mut sequence = 0..;
+    let mut tick = |position_m| supervisor.tick(&sample(sequence.next().unwrap(), position_m));
+    for _ in 0..20 {
+        assert_eq!(tick([1e-5, 0.0]).mode, Mode::Levitated);
+    }
+    let refused: Vec<Command> = (0..40).map(|_| tick([f32::NAN, 0.0])).collect();
+    assert!(
+        refused
+            .iter()
+            .all(|c| c.limits.contains(Limits::SAMPLE_REFUSED))
+    );
+    let fault = refused
+        .iter()
+        .position(|c| c.mode == Mode::SensorFault)
+        .unwrap();
+    assert_eq!(fault, 9, "ten ticks");
+    assert!(refused[fault].events.contains(Events::SENSOR_FAULT));
+    let forces: Vec<f64> = refused[fault..].iter().map(|c| length(c.force_n)).collect();
+    assert!(forces.windows(2).all(|w| w[1] <= w[0]));
+    assert!(
+        forces[10] > 0.3 * forces[0] && forces[20] == 0.0,
+        "{forces:?}"
+    );
+    let good: Vec<Command> = (0..10).map(|_| tick([1e-5, 0.0])).collect();
+    assert!(good[9].events.contains(Events::SENSOR_OK));
+    assert_ne!(good[9].mode, Mode::SensorFault);
+}
+
+/// The record holds the ticks around the engagement, oldest first, under a checksum that any other
+/// implementation of CRC-32 gives.
+#[test]
+fn recorder_freezes_around_the_engagement() {
+    let mut supervisor = new();
+    let mut frozen_at = None;
+    for i in 0..200_u32 {
+        let x = if i < 100 {
+            0.0
+        } else {
+            (3e-5 * (i - 99) as f32).min(2.02e-4)
+        };
+        let command = supervisor.tick(&sample(i, [x, 0.0]));
+        if command.events.contains(Events::RECORD_FROZEN) {
+            frozen_at = Some(i);
+        }
+    }
+    assert!(frozen_at.is_some());
+    let record = supervisor.record().expect("frozen");
+    let entries: Vec<Entry> = record.entries().copied().collect();
+    assert_eq!(entries.len(), 64);
+    assert!(
+        entries
+            .windows(2)
+            .all(|w| w[1].sequence == w[0].sequence + 1)
+    );
+    let engaged = entries
+        .iter()
+        .position(|e| Events::from_bits_retain(e.events.into()).contains(Events::ENGAGED));
+    assert_eq!(engaged, Some(15), "a quarter before the trigger");
+    assert_eq!(record.crc, crc_of(entries.iter()));
+    let known = Entry {
+        sequence: u32::from_le_bytes(*b"1234"),
+        position: [i16::from_le_bytes(*b"56"), i16::from_le_bytes(*b"78")],
+        ..Entry::default()
+    };
+    let bytes = [b"12345678".as_slice(), &[0; 8]].concat();
+    assert_eq!(crc_of([known].iter()), bitwise_crc(&bytes));
+    assert_eq!(
+        bitwise_crc(b"123456789"),
+        0xCBF4_3926,
+        "the published check value"
+    );
+
+    let mut seen = Events::empty();
+    while let Some(event) = supervisor.next_event() {
+        seen |= event.events;
+    }
+    assert!(seen.contains(Events::ENGAGED | Events::TOUCHED | Events::RECORD_FROZEN));
+}
+
+fn bitwise_crc(bytes: &[u8]) -> u32 {
+    let mut crc = !0_u32;
+    for byte in bytes {
+        crc ^= u32::from(*byte);
+        for _ in 0..8 {
+            crc = if crc & 1 == 1 {
+                (crc >> 1) ^ 0xEDB8_8320
+            } else {
+                crc >> 1
+            };
+        }
+    }
+    !crc
+}
+
+/// Missed and repeated samples are reported, and a repeated one is not used twice.
+#[test]
+fn sequence_is_watched() {
+    let mut supervisor = new();
+    supervisor.tick(&sample(7, [0.0; 2]));
+    assert!(
+        !supervisor
+            .tick(&sample(8, [0.0; 2]))
+            .events
+            .contains(Events::SEQUENCE)
+    );
+    let repeated = supervisor.tick(&sample(8, [0.0; 2]));
+    assert!(repeated.events.contains(Events::SEQUENCE));
+    assert!(repeated.limits.contains(Limits::SAMPLE_REFUSED));
+    let missed = supervisor.tick(&sample(12, [0.0; 2]));
+    assert!(missed.events.contains(Events::SEQUENCE));
+    assert!(!missed.limits.contains(Limits::SAMPLE_REFUSED));
+}
