@@ -10,10 +10,10 @@
 //!                      contact: explicit pair of order 8(5,3), guards of the mode on dense output
 //! ```
 //!
-//! Files, each importing only from those above it: [`params`], [`contact`], [`friction`], `mode`,
-//! [`energy`], `part`, `series`, `stator`, `spin`, `magnet`, `system`,
-//! [`readout`], `integrate`, [`plant`],
-//! [`analysis`].
+//! Files, each importing only from those above it: `params`, `contact`, `friction`, `mode`,
+//! `energy`, `part`, `series`, `stator`, `spin`, `magnet`, `system`,
+//! `readout`, `integrate`, `plant`,
+//! `analysis`.
 
 #![forbid(unsafe_code)]
 #![warn(clippy::unwrap_used, clippy::expect_used, clippy::panic)]

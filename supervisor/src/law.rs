@@ -14,7 +14,7 @@ use crate::math::{max, min, sqrt};
 use crate::signal::Mode;
 use crate::vec2::Vec2;
 
-/// Wanted forces in the order in which they may use the capacity [caps].
+/// Wanted forces in the order in which they may use the capacity \[caps\].
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(crate) struct Wanted {
     /// Against the backward tangential speed, tilted inwards by what friction is worth.

@@ -35,7 +35,7 @@ fn largest_share(sum: Vec2, part: Vec2) -> f32 {
     )
 }
 
-/// A levitation command within finite bounds [N], and whether it had to be changed.
+/// A levitation command within finite bounds \[N\], and whether it had to be changed.
 pub(crate) fn levitation(command_n: [f32; 2], coeffs: &Coeffs) -> ([f32; 2], Limits) {
     let cap = coeffs.force_max_n;
     let v = Vec2::from_array(command_n);

@@ -17,7 +17,7 @@ use std::time::{Duration, Instant};
 pub struct RunArgs {
     /// Scene file, e.g. firmware-host/scenes/impact_at_40_hz.toml.
     pub scene: PathBuf,
-    /// Folder for verdict.json, the traces and report.html [default: runs/<name of the scene file>].
+    /// Folder for verdict.json, the traces and report.html [default: runs/ and the name of the scene file].
     #[arg(long)]
     pub out: Option<PathBuf>,
     /// Print the verdicts as JSON instead of the table.
