@@ -13,6 +13,8 @@ const MIDDLE: f64 = 0.3;
 const STAY_S: f64 = 5e-3;
 /// Window of the whirl frequency \[s\].
 const WHIRL_WINDOW_S: f64 = 1e-3;
+/// A free rotor that moves less than this share of the middle in that time stands still.
+const STANDS_STILL: f64 = 0.05;
 /// A rotor that touches and is slower than this share of c·√(k_c/m) rests.
 const REST_SPEED: f64 = 1e-3;
 
@@ -110,12 +112,19 @@ impl Judge {
         if self.back_since_s.is_some() {
             return Outcome::Recovered;
         }
-        let Some(last) = self.last else {
+        let (Some(last), Some(last_contact_s)) = (self.last, self.last_contact_s) else {
+            // Never touched.
             return Outcome::Decayed;
         };
-        let period = (scene.plant.natural_frequency_rad_s()).map_or(0.0, |w| TAU / w);
-        let free_s = self.last_contact_s.map_or(last.t_s, |t| last.t_s - t);
-        if free_s >= period.max(STAY_S) {
+        // Free for long enough to have touched again if it were going to: a period of the shaft, or,
+        // without one, time to cross the clearance, unless it stands still.
+        let speed = last.velocity_m_s.norm();
+        let settled_s = match scene.plant.natural_frequency_rad_s() {
+            Some(natural) => TAU / natural,
+            None if speed * STAY_S < STANDS_STILL * self.middle_m => 0.0,
+            None => 4.0 * scene.plant.contact.clearance_m / speed,
+        };
+        if last.t_s - last_contact_s >= settled_s.max(STAY_S) {
             return Outcome::Decayed;
         }
         let plant = &scene.plant;

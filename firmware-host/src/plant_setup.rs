@@ -108,9 +108,16 @@ fn rotor_of(
             ),
         )?
         .unwrap_or(0.0);
+    if file.damping_ratio.is_some() && shaft_n_m <= 0.0 {
+        let message = "has no meaning without shaft stiffness".to_owned();
+        let help = Some("give rotor.damping_n_s_m instead".to_owned());
+        return Err(check
+            .text
+            .error_at_key("rotor.damping_ratio", message, help));
+    }
     let by_ratio = file
         .damping_ratio
-        .map(|ratio| 2.0 * ratio * (file.mass_kg * shaft_n_m.max(0.0)).sqrt());
+        .map(|ratio| 2.0 * ratio * (file.mass_kg * shaft_n_m).sqrt());
     let damping_n_s_m = check
         .either(
             ("rotor.damping_n_s_m", file.damping_n_s_m),

@@ -77,7 +77,7 @@ fn suggested(plant: &PlantParams, file: &SceneFile) -> Config {
 /// Speed noise over position noise per tick of the critically damped filters with a pole ρ: the
 /// known variances of fading-memory filters of second …
 fn second_order_noise(p: f64) -> f64 {
-    ((1.0 - p).powi(3) / (1.0 + p).powi(5) * (49.0 + 50.0 * p + 13.0 * p * p) / 2.0).sqrt()
+    ((1.0 - p).powi(3) / (1.0 + p).powi(5) * (13.0 + 50.0 * p + 49.0 * p * p) / 2.0).sqrt()
 }
 
 /// … and of first order.

@@ -54,7 +54,8 @@ pub struct Meters {
     pub peak_contact_force_n: f64,
     /// Largest sliding-friction torque on the spin \[N m\].
     pub peak_friction_torque_n_m: f64,
-    /// Largest tangential speed against the spin while in contact \[m/s\].
+    /// Largest tangential speed in contact against the spin at the start (taken as positive where it
+    /// is zero) \[m/s\].
     pub peak_backward_speed_m_s: f64,
     /// Angle of the contact point summed over all contact \[rad\].
     pub whirl_angle_rad: f64,

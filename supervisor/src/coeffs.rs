@@ -25,6 +25,8 @@ pub(crate) struct Coeffs {
     pub(crate) damping: f32,
     /// Share of the way that the delivered force goes in a tick towards the command.
     pub(crate) lag_step: f32,
+    /// Mean over a tick of what is left of that way: (τ/T)·(1 − exp(−T/τ)).
+    pub(crate) lag_mean: f32,
     /// Amplifier lag \[ticks\].
     pub(crate) lag: f32,
     /// Ticks between a sample and the start of its force.
@@ -75,6 +77,11 @@ impl Coeffs {
         let (c, f, m) = (config.clearance_m, config.force_max_n, config.mass_kg);
         let force_gain = f * t * t / (m * c);
         let lag = config.amplifier_lag_s / t;
+        let lag_step = if lag > 0.0 {
+            1.0 - exp_neg(1.0 / lag)
+        } else {
+            1.0
+        };
         let horizon = config.delay_samples + 0.5 + lag;
         let (mu, e) = (config.friction_coefficient, config.restitution);
         let (pole, free) = (
@@ -92,11 +99,8 @@ impl Coeffs {
             force_gain,
             stiffness: config.stiffness_n_m * t * t / m,
             damping: config.damping_n_s_m * t / m,
-            lag_step: if lag > 0.0 {
-                1.0 - exp_neg(1.0 / lag)
-            } else {
-                1.0
-            },
+            lag_step,
+            lag_mean: lag * lag_step,
             lag,
             delay: config.delay_samples as usize,
             horizon,

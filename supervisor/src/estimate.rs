@@ -41,8 +41,9 @@ impl Observer {
     ) -> Motion {
         let index = self.newest.wrapping_sub(coeffs.delay) & (MAX_DELAY - 1);
         let command = self.commands.get(index).copied().unwrap_or_default();
-        let before = self.delivered;
-        self.delivered = before + (command - before) * coeffs.lag_step;
+        let away = self.delivered - command;
+        self.delivered = command + away * (1.0 - coeffs.lag_step);
+        let mean = command + away * coeffs.lag_mean;
 
         if let Some(position) = sample
             && !self.started
@@ -56,9 +57,8 @@ impl Observer {
         }
         let m = &mut self.motion;
         let middle = m.position + m.velocity * 0.5;
-        let mut acceleration = (before + self.delivered) * (0.5 * coeffs.force_gain)
-            - middle * coeffs.stiffness
-            - m.velocity * coeffs.damping;
+        let mut acceleration =
+            mean * coeffs.force_gain - middle * coeffs.stiffness - m.velocity * coeffs.damping;
         if !in_contact {
             acceleration = acceleration + m.load;
         }

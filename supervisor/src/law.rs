@@ -3,14 +3,16 @@
 //! What drives a rotor into backward whirl is friction at impacts: an impact with normal speed v_n
 //! adds μ(1 + e)·v_n to the backward tangential speed, and the bounces that follow add their share of
 //! what is left. Over all of them the backward speed comes to S = v_b + K·v_n with
-//! K = μ(1 + e)/(1 − e). A force lowers S fastest along −(b̂ + K·n̂) of the *next* impact, b̂ being its
-//! backward direction and n̂ its normal. In continuous contact only −b̂ brakes, and an inward part
-//! of μ takes away some of the driving friction: −(b̂ + μ·n̂).
+//! K = μ(1 + e)/(1 − e). A force lowers S fastest against its gradient in the velocity: at the wall
+//! b̂ + K·n̂, b̂ being the backward direction and n̂ the normal of the *next* impact; farther inside a
+//! force has less of an arm about the centre, and damping the speed itself counts for more. In
+//! continuous contact only −b̂ brakes, and an inward part of μ takes away some of the driving
+//! friction: −(b̂ + μ·n̂).
 
 use crate::coeffs::Coeffs;
 use crate::detect::Findings;
 use crate::estimate::Motion;
-use crate::math::{max, min, sqrt};
+use crate::math::{between, max, min, sqrt};
 use crate::signal::Mode;
 use crate::vec2::Vec2;
 
@@ -47,23 +49,16 @@ pub(crate) fn wanted(
     }
 }
 
-/// Backward direction at a contact with normal `n`: against the surface speed of the spin, or, with
-/// unknown spin, along the whirl that is there.
-fn backward(n: Vec2, velocity: Vec2, spin_sign: f32) -> Vec2 {
-    let t = n.turned();
-    let forward = if spin_sign != 0.0 {
-        spin_sign
-    } else if velocity.dot(t) > 0.0 {
-        -1.0
-    } else {
+/// Sense of backward at a contact with normal `n`, +1 counter-clockwise: against the surface speed of
+/// the spin, or, with unknown spin, along the whirl that is there.
+fn backward(n: Vec2, velocity: Vec2, spin_sign: f32) -> f32 {
+    if spin_sign != 0.0 {
+        -spin_sign
+    } else if velocity.dot(n.turned()) > 0.0 {
         1.0
-    };
-    t * -forward
-}
-
-/// Unit vector of b̂ + share·n̂, opposed.
-fn opposed(b: Vec2, n: Vec2, share: f32) -> Vec2 {
-    -(b + n * share) * (1.0 / sqrt(1.0 + share * share))
+    } else {
+        -1.0
+    }
 }
 
 /// In flight: the next impact is at the end of the chord. If it comes before a force decided now can
@@ -72,32 +67,42 @@ fn before_impact(motion: &Motion, spin_sign: f32, coeffs: &Coeffs) -> Wanted {
     let damping = -motion.velocity * coeffs.damper;
     // What speed leaves of the capacity brings the rotor back: damping alone would let it lie.
     let restoring = -motion.position * coeffs.hold_share;
+    let rest = Wanted {
+        braking: Vec2::ZERO,
+        damping,
+        restoring,
+    };
     let (mut position, mut velocity) = (motion.position, motion.velocity);
     let Some(mut impact) = Impact::ahead(position, velocity) else {
-        return Wanted {
-            braking: Vec2::ZERO,
-            damping,
-            restoring,
-        };
+        return rest;
     };
-    if impact.ticks < coeffs.horizon {
-        let b = backward(impact.normal, velocity, spin_sign);
-        let normal_speed = velocity.dot(impact.normal);
-        velocity = velocity - impact.normal * ((1.0 + coeffs.restitution) * normal_speed)
-            + b * (coeffs.friction * (1.0 + coeffs.restitution) * normal_speed);
-        position = impact.normal;
-        if let Some(after) = Impact::ahead(position * 0.999, velocity) {
-            impact = after;
+    let mut act_after = coeffs.horizon;
+    if impact.ticks < act_after {
+        let b = impact.normal.turned() * backward(impact.normal, velocity, spin_sign);
+        let lost = (1.0 + coeffs.restitution) * velocity.dot(impact.normal);
+        velocity = velocity - impact.normal * lost + b * (coeffs.friction * lost);
+        act_after -= impact.ticks;
+        // A hair inside, so that the chord ahead is not the point itself.
+        position = impact.normal * 0.999;
+        match Impact::ahead(position, velocity) {
+            Some(after) => impact = after,
+            None => return rest,
         }
+        act_after = min(act_after, impact.ticks);
     }
+    let acts_at = position + velocity * act_after;
     let n = impact.normal;
-    let b = backward(n, velocity, spin_sign);
-    let sum = velocity.dot(b) + coeffs.bounce_gain * velocity.dot(n);
+    let sense = backward(n, velocity, spin_sign);
+    let (v_n, v_b) = (velocity.dot(n), velocity.dot(n.turned()) * sense);
+    let sum = v_b + coeffs.bounce_gain * v_n;
     let strength = min(max(sum, 0.0) * coeffs.damper, 1.0);
+    // Gradient of S, times v_n: v_b = r × v about the centre, v_n = √(v² − v_b²).
+    let (gradient, _) = (acts_at.turned() * (sense * (v_n - coeffs.bounce_gain * v_b))
+        + velocity * coeffs.bounce_gain)
+        .direction();
     Wanted {
-        braking: opposed(b, n, coeffs.bounce_gain) * strength,
-        damping: -velocity * coeffs.damper,
-        restoring: Vec2::ZERO,
+        braking: gradient * -strength,
+        ..rest
     }
 }
 
@@ -127,16 +132,12 @@ impl Impact {
 /// In contact: brake along the wall, aimed at where the rotor will be when the force has come.
 fn braking(motion: &Motion, found: &Findings, spin_sign: f32, coeffs: &Coeffs) -> Wanted {
     let n = found.normal;
-    let b = backward(n, motion.velocity, spin_sign);
-    let speed = motion.velocity.dot(b);
-    let strength = min(
-        max(
-            speed + coeffs.bounce_gain * max(found.radial_speed, 0.0),
-            0.0,
-        ) * coeffs.damper,
-        1.0,
-    );
-    let aim = opposed(b, n, coeffs.friction) * strength;
+    let b = n.turned() * backward(n, motion.velocity, spin_sign);
+    let sum = motion.velocity.dot(b) + coeffs.bounce_gain * max(found.radial_speed, 0.0);
+    let strength = min(max(sum, 0.0) * coeffs.damper, 1.0);
+    // Unit vector against b̂ + μ·n̂.
+    let mu = coeffs.friction;
+    let aim = (b + n * mu) * (-strength / sqrt(1.0 + mu * mu));
     Wanted {
         braking: aim.rotated(lead(found.tangential_speed, coeffs)),
         damping: -motion.velocity * coeffs.damper,
@@ -144,18 +145,25 @@ fn braking(motion: &Motion, found: &Findings, spin_sign: f32, coeffs: &Coeffs) -
     }
 }
 
-/// Rotation that makes up for delay and lag on a circle at `rate` radians per tick: a lag of τ turns
-/// a rotating force by atan(ω·τ), a delay of h by ω·h.
+/// Rotation that makes up for delay and lag on a circle at `rate` radians per tick: a delay of h turns
+/// a rotating force by ω·h, a lag of τ by atan(ω·τ).
 fn lead(rate: f32, coeffs: &Coeffs) -> Vec2 {
-    let delay = rate * (coeffs.delay as f32 + 0.5);
-    let lag = rate * coeffs.lag;
-    let both = Vec2::new(1.0, delay).rotated(Vec2::new(1.0, lag));
-    both.direction().0
+    // The series of sine and cosine are good to 1 % up to a radian, beyond which no lead would help.
+    let angle = between(rate * (coeffs.delay as f32 + 0.5), -1.0, 1.0);
+    let square = angle * angle;
+    let delay = Vec2::new(
+        1.0 - square * (0.5 - square / 24.0),
+        angle * (1.0 - square / 6.0),
+    );
+    delay
+        .rotated(Vec2::new(1.0, rate * coeffs.lag))
+        .direction()
+        .0
 }
 
 /// On the wall under a load: push inwards with what the load leaves useful, keep still.
 fn hold(motion: &Motion, found: &Findings, spin_sign: f32, coeffs: &Coeffs) -> Wanted {
-    let b = backward(found.normal, motion.velocity, spin_sign);
+    let b = found.normal.turned() * backward(found.normal, motion.velocity, spin_sign);
     let speed = max(motion.velocity.dot(b), 0.0);
     Wanted {
         braking: b * -min(speed * coeffs.damper, 1.0),

@@ -335,6 +335,12 @@ fn bad_scenes_are_refused_with_file_line_key_and_expectation() {
             "supervisor.hold",
             "parameters are",
         ),
+        (
+            "mass_kg = 10.0",
+            "mass_kg = 10.0\ndamping_ratio = 0.1",
+            "rotor.damping_ratio",
+            "damping_n_s_m instead",
+        ),
         ("title = ", "title = = ", "title", ""),
         ("[contact]", "[contract]", "contract", "expected one of"),
     ];

@@ -2,21 +2,23 @@
 
 use crate::params::PlantParams;
 
-/// Critical tangential speed v_t,crit \[m/s\] of sliding whirl on a rigid stator:
-/// c·ω0·(D/μ + √(1 + (D/μ)²)) with D = d/(2·m·ω0) and μ the coefficient that drives the whirl, here
-/// the coefficient at rest less the rolling coefficient.
+/// Critical tangential speed v_t,crit \[m/s\] of sliding whirl on a rigid stator, above which friction
+/// μ·(m·v²/c − k·c) outweighs damping d·v: v = a + √(a² + k·c²/m) with a = c·d/(2μm). With a shaft that is
+/// c·ω0·(D/μ + √(1 + (D/μ)²)), D = d/(2·m·ω0). μ is the coefficient that drives the whirl: at rest,
+/// less the rolling coefficient.
 ///
-/// `None` where friction has no threshold to overcome (no restoring stiffness) or drives nothing.
+/// `None` for a negative stiffness, which presses the rotor onto the wall at any speed, and where
+/// friction drives nothing.
 pub fn critical_tangential_speed_m_s(params: &PlantParams) -> Option<f64> {
-    let natural = params.natural_frequency_rad_s()?;
     let friction = &params.friction;
     let mu = friction.sliding.coefficient(0.0) - friction.rolling_coefficient;
-    if mu <= 0.0 {
+    let (c, rotor) = (params.contact.clearance_m, &params.rotor);
+    if mu <= 0.0 || rotor.stiffness_n_m < 0.0 {
         return None;
     }
-    let damping_ratio = params.rotor.damping_n_s_m / (2.0 * params.rotor.mass_kg * natural);
-    let ratio = damping_ratio / mu;
-    Some(params.contact.clearance_m * natural * (ratio + (1.0 + ratio * ratio).sqrt()))
+    let damped = c * rotor.damping_n_s_m / (2.0 * mu * rotor.mass_kg);
+    let shaft = c * c * rotor.stiffness_n_m / rotor.mass_kg;
+    Some(damped + (damped * damped + shaft).sqrt())
 }
 
 /// Speed below which an inward force F can break a whirling contact on a rigid wall \[m/s\]:
@@ -61,6 +63,10 @@ mod tests {
         params.friction.rolling_coefficient = 0.0;
         let v = critical_tangential_speed_m_s(&params).unwrap();
         assert!((v - 0.0617).abs() < 8e-5, "{v}");
+        // Without a shaft damping alone holds it: μ·m·v²/c = d·v.
+        params.rotor.stiffness_n_m = 0.0;
+        let v = critical_tangential_speed_m_s(&params).unwrap();
+        assert!((v - 2e-4 * 20.5 / (0.15 * 10.0)).abs() < 1e-15);
         params.rotor.stiffness_n_m = -1e5;
         assert_eq!(critical_tangential_speed_m_s(&params), None);
     }

@@ -23,6 +23,8 @@ pub(crate) struct Run<S: Stator, W: Spin, M: Amplifier> {
     pub(crate) meters: Meters,
     stepper: ContactStepper<S, W, M>,
     inputs: Inputs,
+    /// Sense of backward whirl: against the spin at the start, which friction may reverse later.
+    backward: f64,
     stored_at_start_j: f64,
     stored_peak_j: f64,
     options: Options,
@@ -46,11 +48,15 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
             flows: Flows::default(),
             meters: Meters::default(),
             inputs: Inputs::default(),
+            backward: 1.0,
             stored_at_start_j: 0.0,
             stored_peak_j: 0.0,
             options,
             events_without_progress: 0,
         };
+        if run.system.spin.spin_rad_s(&run.y.spin) >= 0.0 {
+            run.backward = -1.0;
+        }
         let g = run.system.geometry(&run.y);
         if g.penetration_m > 0.0 {
             run.phase = match run.normal_n(&g) > 0.0 {
@@ -226,8 +232,7 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
         self.flows.add_scaled(1.0, &outcome.flows);
         self.meters
             .contact_step(&outcome.start, &outcome.end, outcome.step_s, outcome.turn);
-        let spin_sign = self.system.spin.spin_rad_s(&self.y.spin).signum();
-        let backward = -spin_sign * outcome.end.whirl_speed_m_s;
+        let backward = self.backward * outcome.end.whirl_speed_m_s;
         self.meters.peak_backward_speed_m_s = self.meters.peak_backward_speed_m_s.max(backward);
         let radius = self.system.rotor.contact_radius_m;
         self.meters.peak_friction_torque_n_m =

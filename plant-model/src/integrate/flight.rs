@@ -51,8 +51,10 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
             .max(self.stator.fastest_rate_rad_s())
             .max(self.amplifier.fastest_rate_rad_s());
         if self.rotor.eccentricity_m != 0.0 {
-            let gain = self.spin.drive_torque_n_m().abs() * self.spin.inverse_inertia() * dt_s;
-            fastest = fastest.max(self.spin.spin_rad_s(&y.spin).abs() + gain);
+            // Phase Ω·t + α·t²/2: the second part alone is a series in √α·t.
+            let gain = self.spin.drive_torque_n_m().abs() * self.spin.inverse_inertia();
+            let turning = self.spin.spin_rad_s(&y.spin).abs() + gain * dt_s + gain.sqrt();
+            fastest = fastest.max(turning);
         }
         // Without any dynamics (no stiffness, no damping, no lag) three terms are the solution.
         fastest.max(1e-6 / dt_s)

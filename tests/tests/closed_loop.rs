@@ -1,0 +1,141 @@
+//! Plant, instruments, controllers and supervisor together.
+
+use firmware_host::closed_loop::{Keep, run};
+use firmware_host::policy_kind::PolicyKind;
+use firmware_host::scene::Scene;
+use firmware_host::verdict::{Outcome, Verdict};
+use plant_model::V2;
+use system_tests::{golden, scene};
+
+fn verdict(scene: &Scene, policy: PolicyKind) -> Verdict {
+    run(scene, policy, Keep::Verdict, &mut |_| {}).unwrap().0
+}
+
+/// The whole chain sees a mirrored scene as the mirror image, to the bit.
+#[test]
+fn a_mirrored_scene_has_the_mirrored_run() {
+    let scene = scene("impact_at_40_hz");
+    let mirror = |v: V2| V2::new(-v.x, v.y);
+    let mut mirrored = scene.clone();
+    mirrored.start.position_m = mirror(scene.start.position_m);
+    mirrored.start.velocity_m_s = mirror(scene.start.velocity_m_s);
+    mirrored.start.spin_rad_s = -scene.start.spin_rad_s;
+    for policy in PolicyKind::ALL {
+        let (a, left) = run(&scene, policy, Keep::Trace, &mut |_| {}).unwrap();
+        let (b, right) = run(&mirrored, policy, Keep::Trace, &mut |_| {}).unwrap();
+        assert_eq!((a.outcome, a.impacts), (b.outcome, b.impacts));
+        assert_eq!(left.rows.len(), right.rows.len());
+        for (a, b) in left.rows.iter().zip(&right.rows) {
+            assert_eq!(
+                mirror(a.plant.position_m),
+                b.plant.position_m,
+                "{}",
+                policy.name()
+            );
+            assert_eq!(mirror(a.commanded_n), b.commanded_n, "{}", policy.name());
+            assert_eq!(a.supervisor_mode, b.supervisor_mode);
+        }
+    }
+}
+
+/// A rotor that only vibrates inside its clearance is the levitation controller's business alone.
+#[test]
+fn without_contact_the_supervisor_changes_nothing() {
+    let mut scene = scene("overload_then_release");
+    scene.disturbances.clear();
+    // A converter's step would turn a rounding difference into a whole count.
+    scene.sensor.quantum_m = 0.0;
+    scene.start.position_m = V2::new(3e-5, -2e-5);
+    let (_, alone) = run(&scene, PolicyKind::Levitation, Keep::Trace, &mut |_| {}).unwrap();
+    let (_, supervised) = run(&scene, PolicyKind::Supervisor, Keep::Trace, &mut |_| {}).unwrap();
+    for (a, b) in alone.rows.iter().zip(&supervised.rows) {
+        // The supervisor's border is single precision.
+        let single = a.commanded_n.map(|x| f64::from(x as f32));
+        assert!(
+            (single - b.commanded_n).norm() <= 1e-6 * (1.0 + single.norm()),
+            "{}",
+            a.plant.t_s
+        );
+        assert_eq!(b.supervisor_mode, Some(supervisor::Mode::Levitated));
+    }
+}
+
+#[test]
+fn scenes_end_as_their_stories_say() {
+    let impact = scene("impact_at_40_hz");
+    let overload = scene("overload_then_release");
+    let outcome = |scene: &Scene, policy| verdict(scene, policy).outcome;
+    assert_eq!(outcome(&impact, PolicyKind::Passive), Outcome::Whirl);
+    assert_eq!(outcome(&impact, PolicyKind::Radial), Outcome::Whirl);
+    assert_eq!(outcome(&impact, PolicyKind::Levitation), Outcome::Whirl);
+    assert_eq!(outcome(&overload, PolicyKind::Passive), Outcome::Whirl);
+    assert_eq!(
+        outcome(&overload, PolicyKind::Levitation),
+        Outcome::Recovered
+    );
+
+    let saved = verdict(&impact, PolicyKind::Supervisor);
+    let released = verdict(&overload, PolicyKind::Supervisor);
+    let alone = verdict(&overload, PolicyKind::Levitation);
+    let measured = [
+        (
+            "impact_recovered",
+            f64::from(u8::from(saved.outcome == Outcome::Recovered)),
+        ),
+        ("impact_touches", saved.impacts as f64),
+        ("impact_peak_contact_force_n", saved.peak_contact_force_n),
+        (
+            "impact_relevitated_s",
+            saved.relevitation_time_s.unwrap_or(f64::NAN),
+        ),
+        (
+            "overload_recovered",
+            f64::from(u8::from(released.outcome == Outcome::Recovered)),
+        ),
+        (
+            "overload_relevitated_s",
+            released.relevitation_time_s.unwrap_or(f64::NAN),
+        ),
+        ("overload_touches", released.impacts as f64),
+        (
+            "overload_peak_force_over_levitation",
+            released.peak_contact_force_n / alone.peak_contact_force_n,
+        ),
+        (
+            "overload_spin_lost_over_levitation",
+            released.spin_lost_hz / alone.spin_lost_hz,
+        ),
+    ];
+    golden::compare("scenes", &measured).unwrap_or_else(|e| panic!("{e}"));
+}
+
+/// A rotor that drifts between two impacts, however slowly, is bouncing; one that never touches is free.
+#[test]
+fn a_drifting_rotor_has_not_settled() {
+    let mut scene = scene("overload_then_release");
+    scene.disturbances.clear();
+    scene.plant.rotor.stiffness_n_m = 0.0;
+    scene.start.velocity_m_s = V2::new(0.02, 0.0);
+    let mut after = |duration_s: f64| {
+        scene.duration_s = duration_s;
+        verdict(&scene, PolicyKind::Passive)
+    };
+    assert_eq!(
+        after(0.005).outcome,
+        Outcome::Decayed,
+        "has not reached the wall yet"
+    );
+    let drifting = after(0.02);
+    assert_eq!((drifting.outcome, drifting.impacts), (Outcome::Bouncing, 1));
+    assert!(!drifting.recovered);
+}
+
+/// While a load that the magnet cannot hold is on, the rotor is pinned; that is no whirl and no rest.
+#[test]
+fn a_load_that_stays_pins_the_rotor() {
+    let mut scene = scene("overload_then_release");
+    scene.disturbances[0].duration_s = 1.0;
+    let held = verdict(&scene, PolicyKind::Supervisor);
+    assert_eq!(held.outcome, Outcome::Pinned);
+    assert_eq!(held.relevitation_time_s, None);
+}
