@@ -25,6 +25,19 @@ pub enum RunError {
         /// Why.
         reason: PlantError,
     },
+    /// The energy audit does not close: the run made or lost energy.
+    #[error(
+        "policy {policy}: the energy audit misses {residual:.1e} of the energy turned over, more than \
+         {limit:.1e}; a smaller run.rtol may help, or the scene asks for more than the model can say"
+    )]
+    Energy {
+        /// The policy that was running.
+        policy: &'static str,
+        /// Energy from nowhere over energy turned over.
+        residual: f64,
+        /// Largest residual that is trusted.
+        limit: f64,
+    },
     /// The scene lacks something that the policy needs.
     #[error("policy {policy} needs more than the scene gives")]
     Incomplete {
@@ -32,6 +45,9 @@ pub enum RunError {
         policy: &'static str,
     },
 }
+
+/// A run whose energy residual exceeds this many tolerances is not trusted. Runs keep within ten.
+const TRUSTED_RESIDUAL: f64 = 1e3;
 
 /// Whether a run keeps its rows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -88,6 +104,14 @@ pub fn run(
     let verdict = bench
         .judge
         .verdict(scene, bench.plant.as_ref(), started.elapsed());
+    let (residual, limit) = (verdict.energy_residual, TRUSTED_RESIDUAL * scene.rtol);
+    if residual.is_nan() || residual > limit {
+        return Err(RunError::Energy {
+            policy,
+            residual,
+            limit,
+        });
+    }
     Ok((verdict, bench.trace))
 }
 

@@ -48,9 +48,6 @@ impl Levitation {
         self.last_m = Some(measured_m);
         let share = self.period_s / (self.period_s + p.derivative_filter_s);
         self.velocity_m_s += share * (difference - self.velocity_m_s);
-        if hint == IntegratorHint::Reset {
-            self.integral_n = V2::zeros();
-        }
         let wanted = -p.proportional_n_m * measured_m - p.derivative_n_s_m * self.velocity_m_s
             + self.integral_n;
         let size = wanted.norm();

@@ -13,7 +13,7 @@ pub struct Staging {
 
 /// Why results could not be written.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
-#[error("cannot write results to {}: {reason}", path.display())]
+#[error("cannot write results to {}: {}", path.display(), reason.kind())]
 #[diagnostic(help("give a folder that can be written to with --out"))]
 pub struct OutputError {
     /// The folder asked for.
@@ -22,25 +22,45 @@ pub struct OutputError {
     pub reason: io::Error,
 }
 
+/// Finds out whether results could be written to a folder, and leaves nothing behind.
+///
+/// # Errors
+/// [`OutputError`].
+pub fn probe(final_place: &Path) -> Result<(), OutputError> {
+    let refused = |reason| OutputError {
+        path: final_place.to_owned(),
+        reason,
+    };
+    // The nearest folder that exists: the others would be made in it.
+    let mut place = final_place;
+    loop {
+        if place.is_dir() {
+            return TempDir::with_prefix_in(".probe", place)
+                .map(drop)
+                .map_err(refused);
+        }
+        if place.exists() {
+            return Err(refused(io::Error::from(io::ErrorKind::NotADirectory)));
+        }
+        place = match place.parent() {
+            Some(parent) if !parent.as_os_str().is_empty() => parent,
+            _ => Path::new("."),
+        };
+    }
+}
+
 impl Staging {
-    /// Prepares a folder for `final_place`; fails before any work is done if that cannot be written.
+    /// Prepares a folder beside `final_place`.
     ///
     /// # Errors
     /// [`OutputError`].
     pub fn beside(final_place: &Path) -> Result<Self, OutputError> {
         let prepare = || {
-            if final_place.exists() && !final_place.is_dir() {
-                return Err(io::Error::from(io::ErrorKind::NotADirectory));
-            }
             let parent = match final_place.parent() {
                 Some(p) if !p.as_os_str().is_empty() => p,
                 _ => Path::new("."),
             };
             std::fs::create_dir_all(parent)?;
-            if final_place.is_dir() {
-                // An existing folder may be read-only although its parent is not.
-                drop(TempDir::with_prefix_in(".probe", final_place)?);
-            }
             TempDir::with_prefix_in(".results", parent)
         };
         let folder = prepare().map_err(|reason| OutputError {

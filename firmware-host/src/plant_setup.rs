@@ -69,6 +69,7 @@ pub(crate) fn plant_of(file: &SceneFile, text: &SceneText) -> Result<PlantParams
     if let Some(e) = file.contact.restitution {
         plant.contact.damping_n_s_m =
             damping_for_restitution(e, plant.contact.stiffness_n_m, plant.contact_mass_kg())
+                .filter(|d| d.is_finite())
                 .ok_or_else(|| {
                     check.refused(
                         "contact.restitution",
@@ -136,7 +137,7 @@ fn rotor_of(
 fn ring_of(file: &RingFile) -> RingParams {
     let vector = |p: PerAxis| match p {
         PerAxis::Both(x) => V2::repeat(x),
-        PerAxis::Each(xy) => xy.into(),
+        PerAxis::Each(xy) => xy.0.into(),
     };
     RingParams {
         mass_kg: file.mass_kg,

@@ -80,7 +80,7 @@ impl Policy {
                 let single = |v: V2| [v.x as f32, v.y as f32];
                 let command = supervisor.tick(&Sample {
                     sequence: *sequence,
-                    status: Status::SPIN_VALID,
+                    status: Status::SPIN_VALID | Status::BEARING_ON,
                     position_m: single(measured_m),
                     spin_rad_s: spin_rad_s as f32,
                     levitation_n: single(levitation.force_n(measured_m, *hint)),

@@ -6,6 +6,7 @@ use crate::plant_setup::plant_of;
 use crate::policy_kind::PolicyKind;
 use crate::scene_error::{Checks, SceneError, SceneText};
 use crate::scene_file::{LevitationFile, SceneFile};
+use crate::supervisor_setup;
 use plant_model::V2;
 use plant_model::analysis::onset::lift_off_speed_m_s;
 use plant_model::params::{PlantParams, Start};
@@ -77,18 +78,16 @@ impl Scene {
     }
 
     fn from_text(text: &SceneText) -> Result<Self, SceneError> {
-        let file: SceneFile = toml::from_str(&text.text).map_err(|error| {
-            let message = error.message().to_owned();
-            text.error_at(error.span().unwrap_or(0..0), message, None)
-        })?;
+        let file: SceneFile = toml::from_str(&text.text)
+            .map_err(|error| text.error_in_toml(error.span().unwrap_or(0..0), error.message()))?;
         Self::from_file(&file, text)
     }
 
     fn from_file(file: &SceneFile, text: &SceneText) -> Result<Self, SceneError> {
         let plant = plant_of(file, text)?;
         let start = Start {
-            position_m: file.start.position_m.into(),
-            velocity_m_s: file.start.velocity_m_s.into(),
+            position_m: file.start.position_m.0.into(),
+            velocity_m_s: file.start.velocity_m_s.0.into(),
             spin_rad_s: file.spin.frequency_hz * TAU,
             spin_phase_rad: file.start.spin_phase_rad,
         };
@@ -113,7 +112,7 @@ impl Scene {
         check.within("sensor.quantum_m", file.sensor.quantum_m, 0.0, 1.0)?;
         check.within("sensor.noise_rms_m", file.sensor.noise_rms_m, 0.0, 1.0)?;
         check.within("radial.band", file.radial.band, 0.0, 1.0)?;
-        for axis in file.rotor.gravity_m_s2 {
+        for axis in file.rotor.gravity_m_s2.0 {
             check.within("rotor.gravity_m_s2", axis, -1e4, 1e4)?;
         }
         let levitation = file.levitation.as_ref().map(|l| levitation_of(l, &check));
@@ -128,20 +127,27 @@ impl Scene {
                 0.0,
                 1e5,
             )?;
-            for force in d.force_n {
+            if d.start_s >= file.run.duration_s {
+                let key = format!("disturbance[{i}].start_s");
+                let end = file.run.duration_s;
+                let message = format!("is {}, after the end of the run at {end}", d.start_s);
+                let help = Some("start it earlier, or lengthen run.duration_s".to_owned());
+                return Err(text.error_at_key(&key, message, help));
+            }
+            for force in d.force_n.0 {
                 check.within(&format!("disturbance[{i}].force_n"), force, -1e9, 1e9)?;
             }
             disturbances.push(Disturbance {
                 start_s: d.start_s,
                 duration_s: d.duration_s,
-                force_n: d.force_n.into(),
+                force_n: d.force_n.0.into(),
             });
         }
-        let supervisor = match policies.contains(&PolicyKind::Supervisor) {
-            true => Some(crate::supervisor_setup::config(&plant, file, text)?),
-            false => None,
-        };
-        let gravity: V2 = file.rotor.gravity_m_s2.into();
+        let supervised = policies.contains(&PolicyKind::Supervisor);
+        let supervisor = supervised
+            .then(|| supervisor_setup::config(&plant, file, text))
+            .transpose()?;
+        let gravity: V2 = file.rotor.gravity_m_s2.0.into();
         Ok(Self {
             title: file.title.clone(),
             story: file.story.trim().to_owned(),

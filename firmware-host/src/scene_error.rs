@@ -84,6 +84,30 @@ impl SceneText {
         }
     }
 
+    /// An error of the TOML reader: its message in the words of the file, with the key of the line.
+    pub(crate) fn error_in_toml(&self, range: std::ops::Range<usize>, message: &str) -> SceneError {
+        let mut message = message.to_owned();
+        for (code, words) in [
+            ("expected f64", "expected a number"),
+            ("expected u64", "expected a whole number, 0 or greater"),
+            ("expected a string", "expected a text in quotes"),
+            ("expected a sequence", "expected a list in square brackets"),
+            ("integer `", "the number `"),
+            ("floating point `", "the number `"),
+        ] {
+            message = message.replace(code, words);
+        }
+        let start = range.start.min(self.text.len());
+        let line_start = self.text[..start].rfind('\n').map_or(0, |i| i + 1);
+        let line = self.text[line_start..].lines().next().unwrap_or_default();
+        if let Some((key, _)) = line.split_once('=')
+            && !message.contains(key.trim())
+        {
+            message = format!("{}: {message}", key.trim());
+        }
+        self.error_at(range, message, None)
+    }
+
     /// An error at a dotted key, or at its longest part that is there, or at the top of the file.
     pub(crate) fn error_at_key(
         &self,

@@ -3,9 +3,25 @@
 
 use serde::Deserialize;
 
+/// Two numbers [x, y]; fewer or more are refused.
+#[derive(Debug, Clone, Copy, Default, Deserialize)]
+#[serde(try_from = "Vec<f64>")]
+pub(crate) struct Pair(pub(crate) [f64; 2]);
+
+impl TryFrom<Vec<f64>> for Pair {
+    type Error = String;
+
+    fn try_from(numbers: Vec<f64>) -> Result<Self, String> {
+        let found = numbers.len();
+        <[f64; 2]>::try_from(numbers)
+            .map(Self)
+            .map_err(|_| format!("{found} numbers, expected two: [x, y]"))
+    }
+}
+
 /// A whole file.
 #[derive(Debug, Clone, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a table with keys")]
 pub(crate) struct SceneFile {
     pub(crate) title: String,
     #[serde(default)]
@@ -35,7 +51,7 @@ pub(crate) struct SceneFile {
 
 /// Time, accuracy, policies.
 #[derive(Debug, Clone, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a table with keys")]
 pub(crate) struct RunFile {
     pub(crate) duration_s: f64,
     pub(crate) sample_rate_hz: f64,
@@ -52,7 +68,7 @@ fn default_rtol() -> f64 {
 
 /// The rotor; stiffness and damping directly or as frequency and damping ratio.
 #[derive(Debug, Clone, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a table with keys")]
 pub(crate) struct RotorFile {
     pub(crate) mass_kg: f64,
     pub(crate) stiffness_n_m: Option<f64>,
@@ -63,12 +79,12 @@ pub(crate) struct RotorFile {
     pub(crate) eccentricity_m: f64,
     pub(crate) contact_radius_m: f64,
     #[serde(default)]
-    pub(crate) gravity_m_s2: [f64; 2],
+    pub(crate) gravity_m_s2: Pair,
 }
 
 /// Spin: held unless an inertia is given.
 #[derive(Debug, Clone, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a table with keys")]
 pub(crate) struct SpinFile {
     pub(crate) frequency_hz: f64,
     pub(crate) inertia_kg_m2: Option<f64>,
@@ -77,19 +93,19 @@ pub(crate) struct SpinFile {
 
 /// Where the rotor starts.
 #[derive(Debug, Clone, Default, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a table with keys")]
 pub(crate) struct StartFile {
     #[serde(default)]
-    pub(crate) position_m: [f64; 2],
+    pub(crate) position_m: Pair,
     #[serde(default)]
-    pub(crate) velocity_m_s: [f64; 2],
+    pub(crate) velocity_m_s: Pair,
     #[serde(default)]
     pub(crate) spin_phase_rad: f64,
 }
 
 /// Rings of the stator; none means rigid.
 #[derive(Debug, Clone, Default, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a table with keys")]
 pub(crate) struct StatorFile {
     pub(crate) inner: Option<RingFile>,
     pub(crate) outer: Option<RingFile>,
@@ -100,12 +116,12 @@ pub(crate) struct StatorFile {
 #[serde(untagged, expecting = "a number, or two numbers [x, y]")]
 pub(crate) enum PerAxis {
     Both(f64),
-    Each([f64; 2]),
+    Each(Pair),
 }
 
 /// One ring with its mounting.
 #[derive(Debug, Clone, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a table with keys")]
 pub(crate) struct RingFile {
     pub(crate) mass_kg: f64,
     pub(crate) stiffness_n_m: PerAxis,
@@ -114,7 +130,7 @@ pub(crate) struct RingFile {
 
 /// The contact; damping directly or as restitution.
 #[derive(Debug, Clone, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a table with keys")]
 pub(crate) struct ContactFile {
     pub(crate) clearance_m: f64,
     pub(crate) stiffness_n_m: f64,
@@ -124,7 +140,7 @@ pub(crate) struct ContactFile {
 
 /// Friction; constant unless the coefficient at speed is given.
 #[derive(Debug, Clone, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a table with keys")]
 pub(crate) struct FrictionFile {
     pub(crate) coefficient: f64,
     pub(crate) coefficient_at_speed: Option<f64>,
@@ -135,7 +151,7 @@ pub(crate) struct FrictionFile {
 
 /// The magnet.
 #[derive(Debug, Clone, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a table with keys")]
 pub(crate) struct MagnetFile {
     pub(crate) force_max_n: f64,
     #[serde(default)]
@@ -146,7 +162,7 @@ pub(crate) struct MagnetFile {
 
 /// The position sensor.
 #[derive(Debug, Clone, Default, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a table with keys")]
 pub(crate) struct SensorFile {
     #[serde(default)]
     pub(crate) quantum_m: f64,
@@ -156,7 +172,7 @@ pub(crate) struct SensorFile {
 
 /// The stand-in firmware's levitation controller.
 #[derive(Debug, Clone, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a table with keys")]
 pub(crate) struct LevitationFile {
     pub(crate) proportional_n_m: f64,
     #[serde(default)]
@@ -168,7 +184,7 @@ pub(crate) struct LevitationFile {
 
 /// The whole-capacity-inwards baseline.
 #[derive(Debug, Clone, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a table with keys")]
 pub(crate) struct RadialFile {
     #[serde(default = "default_band")]
     pub(crate) band: f64,
@@ -188,16 +204,16 @@ impl Default for RadialFile {
 
 /// A force on the rotor for a while.
 #[derive(Debug, Clone, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a table with keys")]
 pub(crate) struct DisturbanceFile {
     pub(crate) start_s: f64,
     pub(crate) duration_s: f64,
-    pub(crate) force_n: [f64; 2],
+    pub(crate) force_n: Pair,
 }
 
 /// How the end is judged.
 #[derive(Debug, Clone, Default, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a table with keys")]
 pub(crate) struct VerdictFile {
     pub(crate) whirl_speed_m_s: Option<f64>,
 }

@@ -5,6 +5,21 @@ use crate::scene_file::SceneFile;
 use plant_model::params::PlantParams;
 use supervisor::{Config, PARAMETERS};
 
+/// Where the suggested value of a parameter comes from.
+const SOURCES: [(&str, &str); 11] = [
+    ("sample_period_s", "run.sample_rate_hz"),
+    ("mass_kg", "rotor.mass_kg"),
+    ("stiffness_n_m", "rotor"),
+    ("damping_n_s_m", "rotor"),
+    ("clearance_m", "contact.clearance_m"),
+    ("force_max_n", "magnet.force_max_n"),
+    ("amplifier_lag_s", "magnet.lag_s"),
+    ("friction_coefficient", "friction.coefficient"),
+    ("restitution", "contact.restitution"),
+    ("contact_band", "sensor"),
+    ("whirl_time_s", "contact.stiffness_n_m"),
+];
+
 /// Derives the configuration as an engineer would from data sheets; a key of the same name in
 /// `[supervisor]` replaces a value.
 pub(crate) fn config(
@@ -31,8 +46,16 @@ pub(crate) fn config(
     }
     let config = Config::from_values(values);
     config.validate().map_err(|e| {
-        let path = format!("supervisor.{}", e.parameter.name);
-        text.error_at_key(&path, e.to_string(), Some(e.parameter.text.to_owned()))
+        let name = e.parameter.name;
+        let given = file.supervisor.contains_key(name);
+        let source = SOURCES.iter().find(|(n, _)| *n == name && !given);
+        let Some((_, source)) = source else {
+            let path = format!("supervisor.{name}");
+            return text.error_at_key(&path, e.to_string(), Some(e.parameter.text.to_owned()));
+        };
+        let message = format!("the supervisor derives {e} from this");
+        let help = format!("correct {source}, set {name} in [supervisor], or drop the policy");
+        text.error_at_key(source, message, Some(help))
     })?;
     Ok(config)
 }
@@ -90,7 +113,7 @@ fn first_order_noise(p: f64) -> f64 {
 fn pole_for(noise: f64, quickest: f64, gain: fn(f64) -> f64) -> f32 {
     const TOLERABLE: f64 = 0.04;
     let mut pole = quickest;
-    while pole < 0.95 && noise * gain(pole) > TOLERABLE {
+    while pole < 0.97 && noise * gain(pole) > TOLERABLE {
         pole += 0.01;
     }
     pole as f32

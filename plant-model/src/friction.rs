@@ -3,9 +3,12 @@
 use crate::params::SlidingFriction;
 
 impl SlidingFriction {
-    /// Coefficient μ at a sliding speed \[m/s\] of either sign.
+    /// Coefficient μ at a sliding speed \[m/s\], counted along the direction of slip.
+    ///
+    /// The law holds from zero upwards. A step that ends the slip looks a little beyond, at negative
+    /// speeds; there the law is continued smoothly, and held once it has grown by e.
     #[inline]
-    pub fn coefficient(&self, sliding_speed_m_s: f64) -> f64 {
+    pub fn coefficient(&self, along_slip_m_s: f64) -> f64 {
         match *self {
             Self::Constant { coefficient } => coefficient,
             Self::Falling {
@@ -13,7 +16,8 @@ impl SlidingFriction {
                 at_speed,
                 speed_scale_m_s,
             } => {
-                at_speed + (at_rest - at_speed) * (-sliding_speed_m_s.abs() / speed_scale_m_s).exp()
+                let exponent = (-along_slip_m_s / speed_scale_m_s).min(1.0);
+                at_speed + (at_rest - at_speed) * exponent.exp()
             }
         }
     }

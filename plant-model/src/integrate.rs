@@ -1,25 +1,44 @@
 //! How time passes: exact flight, a high-order explicit pair in contact, events between them.
 
+pub(crate) mod contact_series;
 pub(crate) mod contact_step;
 pub(crate) mod dop853;
 pub(crate) mod driver;
 pub(crate) mod flight;
+pub(crate) mod series_step;
+pub(crate) mod transitions;
+
+/// How contact is integrated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Method {
+    /// Power series of the order that the tolerance asks for.
+    #[default]
+    Series,
+    /// The explicit pair of order 8(5,3).
+    Explicit,
+}
 
 /// Accuracy and work limits of a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Options {
-    /// Relative tolerance of one contact step, in (0, 1e-2].
+    /// Relative tolerance of one contact step, from 1e-14 to 1e-2.
     pub rtol: f64,
+    /// How contact is integrated.
+    pub method: Method,
     /// Steps allowed between two control samples before the run gives up with
     /// [`PlantError::WorkLimit`].
-    pub steps_per_sample: u32,
+    pub steps_per_sample: u64,
+    /// Steps allowed in the whole run.
+    pub steps: u64,
 }
 
 impl Default for Options {
     fn default() -> Self {
         Self {
             rtol: 1e-9,
-            steps_per_sample: 1_000_000,
+            method: Method::default(),
+            steps_per_sample: 200_000,
+            steps: 50_000_000,
         }
     }
 }
@@ -28,27 +47,40 @@ impl Default for Options {
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum PlantError {
     /// An input or the state is not finite.
-    #[error("at t = {t_s} s: a force or the state is not finite")]
+    #[error("at t = {t_s:e} s: a force or the state is not finite")]
     NotFinite {
         /// When \[s\].
         t_s: f64,
     },
     /// The tolerance cannot be met with a step the clock can resolve.
-    #[error("at t = {t_s} s: the step needed for the tolerance is too small for the clock")]
+    #[error("at t = {t_s:e} s: the step needed for the tolerance is too small for the clock")]
     StepTooSmall {
         /// When \[s\].
         t_s: f64,
     },
-    /// Too many steps between two samples.
-    #[error("at t = {t_s} s: {steps} steps within one control sample are not enough")]
+    /// Too many steps, between two samples or in all.
+    #[error(
+        "at t = {t_s:e} s: {steps} steps are not enough; something moves too fast for this scene"
+    )]
     WorkLimit {
         /// When \[s\].
         t_s: f64,
         /// The limit.
-        steps: u32,
+        steps: u64,
+    },
+    /// The rotor has left everything that the model describes.
+    #[error(
+        "at t = {t_s:e} s: the rotor is {radius_m:e} m from the centre, far beyond its stator; \
+         is a stiffness too low, or a force too large?"
+    )]
+    Diverged {
+        /// When \[s\].
+        t_s: f64,
+        /// How far \[m\].
+        radius_m: f64,
     },
     /// Modes follow each other without time passing.
-    #[error("at t = {t_s} s: the contact mode cannot be decided")]
+    #[error("at t = {t_s:e} s: the contact mode cannot be decided")]
     ModeUndecided {
         /// When \[s\].
         t_s: f64,

@@ -37,7 +37,7 @@ mod system;
 /// A vector in the plane.
 pub type V2 = nalgebra::Vector2<f64>;
 
-pub use integrate::{Options, PlantError};
+pub use integrate::{Method, Options, PlantError};
 pub use mode::Mode;
 pub use part::Body;
 pub use plant::{BuildError, Plant, build};

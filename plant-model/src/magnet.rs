@@ -5,7 +5,7 @@ use crate::part::{Part, Weights};
 use crate::series::Series;
 
 /// A model of the amplifier. Commands arrive already limited to the force cap.
-pub(crate) trait Amplifier: Copy {
+pub(crate) trait Amplifier: Copy + Send + 'static {
     /// What changes in time.
     type State: Part;
     /// Whether the delivered force lags behind the command.

@@ -18,7 +18,7 @@ pub(crate) struct Weights {
 }
 
 /// A piece of the state as the integrators see it: a vector with a weighed length.
-pub(crate) trait Part: Copy + Default {
+pub(crate) trait Part: Copy + Default + Send + 'static {
     /// Number of scalar states.
     const STATES: usize;
     /// `self += factor · other`.

@@ -47,13 +47,7 @@ pub trait Plant: Send {
     fn states(&self) -> usize;
 }
 
-impl<S, W, M> Plant for Run<S, W, M>
-where
-    S: Stator + Send,
-    W: Spin + Send,
-    M: Amplifier + Send,
-    StateOf<S, W, M>: Send,
-{
+impl<S: Stator, W: Spin, M: Amplifier> Plant for Run<S, W, M> {
     fn advance(
         &mut self,
         t_end_s: f64,
@@ -94,11 +88,11 @@ pub fn build(
 ) -> Result<Box<dyn Plant>, BuildError> {
     params.validate()?;
     start.validate()?;
-    if !(options.rtol > 0.0 && options.rtol <= 1e-2) {
+    if !(options.rtol >= 1e-14 && options.rtol <= 1e-2) {
         return Err(BuildError::Param(ParamError {
             field: "run.rtol",
             value: options.rtol,
-            expected: "a number greater than 0, at most 0.01",
+            expected: "a number from 1e-14 to 0.01",
         }));
     }
     Ok(match &params.stator {
@@ -114,11 +108,12 @@ pub fn build(
     })
 }
 
-fn with_stator<S>(params: &PlantParams, start: &Start, o: Options, stator: S) -> Box<dyn Plant>
-where
-    S: Stator + Send + 'static,
-    S::State: Send,
-{
+fn with_stator<S: Stator>(
+    params: &PlantParams,
+    start: &Start,
+    o: Options,
+    stator: S,
+) -> Box<dyn Plant> {
     match params.spin {
         SpinParams::Held => {
             let held = Held {
@@ -144,19 +139,13 @@ where
     }
 }
 
-fn with_spin<S, W>(
+fn with_spin<S: Stator, W: Spin>(
     params: &PlantParams,
     start: &Start,
     options: Options,
     stator: S,
     spin: W,
-) -> Box<dyn Plant>
-where
-    S: Stator + Send + 'static,
-    S::State: Send,
-    W: Spin + Send + 'static,
-    W::State: Send,
-{
+) -> Box<dyn Plant> {
     match params.magnet {
         Some(magnet) if magnet.lag_s > 0.0 => {
             let lagged = Lagged {
@@ -168,22 +157,14 @@ where
     }
 }
 
-fn compose<S, W, M>(
+fn compose<S: Stator, W: Spin, M: Amplifier>(
     params: &PlantParams,
     start: &Start,
     options: Options,
     stator: S,
     spin: W,
     amplifier: M,
-) -> Box<dyn Plant>
-where
-    S: Stator + Send + 'static,
-    S::State: Send,
-    W: Spin + Send + 'static,
-    W::State: Send,
-    M: Amplifier + Send + 'static,
-    M::State: Send,
-{
+) -> Box<dyn Plant> {
     let system = System {
         rotor: params.rotor,
         contact: params.contact,

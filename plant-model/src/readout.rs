@@ -2,6 +2,7 @@
 
 use crate::V2;
 use crate::mode::Mode;
+use crate::params::RotorParams;
 use crate::part::Body;
 use crate::system::Touch;
 
@@ -62,7 +63,16 @@ pub struct Meters {
 }
 
 impl Meters {
-    pub(crate) fn contact_step(&mut self, start: &Touch, end: &Touch, step_s: f64, turn_rad: f64) {
+    /// Takes a step of contact in: both ends, its length, how far the contact point turned, the sense
+    /// of backward whirl.
+    pub(crate) fn contact_step(
+        &mut self,
+        [start, end]: &[Touch; 2],
+        step_s: f64,
+        turn_rad: f64,
+        backward: f64,
+        rotor: &RotorParams,
+    ) {
         self.contact_time_s += step_s;
         self.whirl_angle_rad += turn_rad;
         let force = maximum_over_step(
@@ -77,6 +87,17 @@ impl Meters {
             step_s,
         );
         self.peak_penetration_m = self.peak_penetration_m.max(penetration);
+        for touch in [start, end] {
+            let speed = backward * touch.whirl_speed_m_s;
+            self.peak_backward_speed_m_s = self.peak_backward_speed_m_s.max(speed);
+            // Where slip ends inside the step the friction at its end belongs to no mode: no more than
+            // the cone holds. Between the ends it follows the normal force.
+            let share = touch.sliding_n.abs().min(touch.cone_n) / touch.normal_n;
+            if touch.normal_n > 0.0 && share.is_finite() {
+                let torque = share * force * rotor.contact_radius_m;
+                self.peak_friction_torque_n_m = self.peak_friction_torque_n_m.max(torque);
+            }
+        }
     }
 }
 

@@ -4,7 +4,10 @@
 use crate::V2;
 
 /// Highest power kept.
-pub(crate) const MAX_ORDER: usize = 22;
+pub(crate) const MAX_ORDER: usize = 24;
+
+/// Room for one power more: positions run ahead of velocities.
+const LENGTH: usize = MAX_ORDER + 2;
 
 /// Gauss–Legendre rule on [0, 1]: (node, weight). Products of two series with phase p are integrated
 /// with a relative error below (n!)⁴/((2n + 1)·(2n)!³)·(2p)^2n: 1e-15 for seven nodes at p = 1.
@@ -36,15 +39,27 @@ pub(crate) fn quadrature(phase: f64) -> &'static [(f64, f64)] {
 /// Largest product of step and fastest rate; 1^23/23! = 4e-23 is far below round-off.
 pub(crate) const MAX_PHASE: f64 = 1.0;
 
-/// Coefficients of a plane vector over θ in [0, 1], θ = time / step. Entry k already holds step^k.
+/// Coefficients of a plane vector over θ = time / step. Entry k already holds step^k.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Series(pub(crate) [V2; MAX_ORDER + 1]);
+pub(crate) struct Series(pub(crate) [V2; LENGTH]);
+
+impl Default for Series {
+    fn default() -> Self {
+        Self([V2::zeros(); LENGTH])
+    }
+}
+
+/// A quarter turn counter-clockwise.
+#[inline]
+pub(crate) fn turned(v: V2) -> V2 {
+    V2::new(-v.y, v.x)
+}
 
 impl Series {
     pub(crate) fn start(value: V2) -> Self {
-        let mut coefficients = [V2::zeros(); MAX_ORDER + 1];
-        coefficients[0] = value;
-        Self(coefficients)
+        let mut series = Self::default();
+        series.0[0] = value;
+        series
     }
 
     /// Value at θ.
@@ -56,6 +71,113 @@ impl Series {
         }
         sum
     }
+
+    /// Coefficient k of a·b.
+    #[inline]
+    pub(crate) fn dot_coefficient(&self, other: &Self, k: usize) -> f64 {
+        let terms = self.0[..=k].iter().zip(other.0[..=k].iter().rev());
+        let sum = terms.fold(V2::zeros(), |sum, (a, b)| sum + a.component_mul(b));
+        sum.x + sum.y
+    }
+
+    /// Coefficient k of a × b.
+    #[inline]
+    pub(crate) fn cross_coefficient(&self, other: &Self, k: usize) -> f64 {
+        let terms = self.0[..=k].iter().zip(other.0[..=k].iter().rev());
+        let sum = terms.fold(V2::zeros(), |sum, (a, b)| {
+            sum + V2::new(a.x * b.y, a.y * b.x)
+        });
+        sum.x - sum.y
+    }
+
+    /// Coefficient k of the product with a scalar series.
+    #[inline]
+    pub(crate) fn times_coefficient(&self, other: &Scalar, k: usize) -> V2 {
+        let terms = self.0[..=k].iter().zip(other.0[..=k].iter().rev());
+        terms.fold(V2::zeros(), |sum, (a, b)| sum + a * *b)
+    }
+
+    /// The same without the term that holds this series' own coefficient k.
+    #[inline]
+    pub(crate) fn times_coefficient_below(&self, other: &Scalar, k: usize) -> V2 {
+        let terms = self.0[..k].iter().zip(other.0[1..=k].iter().rev());
+        terms.fold(V2::zeros(), |sum, (a, b)| sum + a * *b)
+    }
+
+    /// ∫ a·b dθ from 0 to θ; products beyond the order are below what the order leaves out.
+    pub(crate) fn integral_of_dot(&self, other: &Self, theta: f64, order: usize) -> f64 {
+        integral(theta, order, |k| self.dot_coefficient(other, k))
+    }
+}
+
+/// Coefficients of a number over θ.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Scalar(pub(crate) [f64; LENGTH]);
+
+impl Default for Scalar {
+    fn default() -> Self {
+        Self([0.0; LENGTH])
+    }
+}
+
+impl Scalar {
+    /// Value at θ.
+    #[inline]
+    pub(crate) fn at(&self, theta: f64, order: usize) -> f64 {
+        self.0[..=order]
+            .iter()
+            .rev()
+            .fold(0.0, |sum, c| sum * theta + c)
+    }
+
+    /// Coefficient k of the product.
+    #[inline]
+    pub(crate) fn product_coefficient(&self, other: &Self, k: usize) -> f64 {
+        let terms = self.0[..=k].iter().zip(other.0[..=k].iter().rev());
+        terms.map(|(a, b)| a * b).sum()
+    }
+
+    /// The same without the term that holds the other series' coefficient k.
+    #[inline]
+    pub(crate) fn product_coefficient_below(&self, other: &Self, k: usize) -> f64 {
+        let terms = self.0[1..=k].iter().zip(other.0[..k].iter().rev());
+        terms.map(|(a, b)| a * b).sum()
+    }
+
+    /// Coefficient k of the square without the two terms that hold coefficient k itself.
+    #[inline]
+    pub(crate) fn inner_square_coefficient(&self, k: usize) -> f64 {
+        let terms = self.0[1..k].iter().zip(self.0[1..k].iter().rev());
+        terms.map(|(a, b)| a * b).sum()
+    }
+
+    /// a·self + b·other, up to the order.
+    pub(crate) fn combined(&self, a: f64, other: &Self, b: f64, order: usize) -> Self {
+        let mut out = Self::default();
+        for (o, (x, y)) in out.0[..=order].iter_mut().zip(self.0.iter().zip(&other.0)) {
+            *o = a * x + b * y;
+        }
+        out
+    }
+
+    /// ∫ dθ from 0 to θ.
+    pub(crate) fn integral(&self, theta: f64, order: usize) -> f64 {
+        integral(theta, order, |k| self.0[k])
+    }
+
+    /// ∫ a·b dθ from 0 to θ.
+    pub(crate) fn integral_of_product(&self, other: &Self, theta: f64, order: usize) -> f64 {
+        integral(theta, order, |k| self.product_coefficient(other, k))
+    }
+}
+
+/// ∫ of the series with these coefficients from 0 to θ.
+fn integral(theta: f64, order: usize, coefficient: impl Fn(usize) -> f64) -> f64 {
+    let mut sum = 0.0;
+    for k in (0..=order).rev() {
+        sum = (sum + coefficient(k) / (k + 1) as f64) * theta;
+    }
+    sum
 }
 
 /// Number of terms after which the remainder of a series with the given phase (fastest rate × step,

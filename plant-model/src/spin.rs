@@ -3,7 +3,7 @@
 use crate::part::{Part, Weights};
 
 /// A model of the spin.
-pub(crate) trait Spin: Copy {
+pub(crate) trait Spin: Copy + Send + 'static {
     /// What changes in time.
     type State: Part;
     /// State at the start of a run.
@@ -20,6 +20,8 @@ pub(crate) trait Spin: Copy {
     fn drive_torque_n_m(&self) -> f64;
     /// Time derivative for a spin acceleration \[rad/s²\].
     fn rates(&self, state: &Self::State, acceleration: f64) -> Self::State;
+    /// Angle of the rotor moved on \[rad\], where it is a state.
+    fn turn(&self, _state: &mut Self::State, _angle_rad: f64) {}
     /// State after `dt_s` of constant acceleration.
     fn coast(&self, state: &Self::State, dt_s: f64) -> Self::State;
 }
@@ -151,6 +153,9 @@ pub(crate) struct FreePhased(pub Free);
 
 impl Spin for FreePhased {
     type State = (SpinState, PhaseState);
+    fn turn(&self, state: &mut Self::State, angle_rad: f64) {
+        state.1.0 += angle_rad;
+    }
     fn start(&self, spin_rad_s: f64, phase_rad: f64) -> Self::State {
         (SpinState(spin_rad_s), PhaseState(phase_rad))
     }

@@ -9,15 +9,17 @@ use crate::part::{Body, Part};
 use crate::series::Series;
 
 /// A model of the stator. In flight nothing drives it; in contact the contact force does.
-pub(crate) trait Stator: Copy {
+pub(crate) trait Stator: Copy + Send + 'static {
     /// What changes in time.
     type State: Part;
     /// The same over one step of flight.
-    type Series: Copy;
+    type Series: Copy + Default + Send + std::fmt::Debug;
     /// The ring that the rotor touches.
     fn inner(state: &Self::State) -> Body;
     /// The outer ring, if there is one.
     fn outer(state: &Self::State) -> Option<Body>;
+    /// Changes the velocity of the ring that the rotor touches \[m/s\].
+    fn kick(state: &mut Self::State, change_m_s: V2);
     /// 1/m of the ring that the rotor touches \[1/kg\]; 0 for a rigid stator.
     fn inverse_mass(&self) -> f64;
     /// Time derivative under a force on the inner ring \[N\].
@@ -28,10 +30,36 @@ pub(crate) trait Stator: Copy {
     fn damping_w(&self, state: &Self::State) -> f64;
     /// Upper bound of the fastest rate of the free stator \[rad/s\].
     fn fastest_rate_rad_s(&self) -> f64;
+    /// Series that holds the state as its coefficient 0.
+    fn start_series(&self, state: &Self::State) -> Self::Series;
+    /// Position coefficients k + 1 from velocity coefficients k; `next_s` is step / (k + 1).
+    fn extend_position(&self, series: &mut Self::Series, k: usize, next_s: f64);
+    /// Velocity coefficients k + 1 under coefficient k of a force on the inner ring \[N\].
+    fn extend_velocity(&self, series: &mut Self::Series, k: usize, next_s: f64, force_n: V2);
+    /// Coefficient k of the inner ring's acceleration under that force.
+    fn inner_acceleration(&self, series: &Self::Series, k: usize, force_n: V2) -> V2;
+    /// Coefficient k of everything.
+    fn coefficient(series: &Self::Series, k: usize) -> Self::State;
+    /// Coefficients k of the inner ring's position and velocity.
+    #[inline]
+    fn inner_coefficient(series: &Self::Series, k: usize) -> (V2, V2) {
+        let ring = Self::inner(&Self::coefficient(series, k));
+        (ring.position, ring.velocity)
+    }
     /// Free motion over `step_s` as a power series.
-    fn series(&self, state: &Self::State, step_s: f64, order: usize) -> Self::Series;
+    fn series(&self, state: &Self::State, step_s: f64, order: usize) -> Self::Series {
+        let mut series = self.start_series(state);
+        for k in 0..order {
+            let next_s = step_s / (k + 1) as f64;
+            self.extend_position(&mut series, k, next_s);
+            self.extend_velocity(&mut series, k, next_s, V2::zeros());
+        }
+        series
+    }
     /// Position series of the inner ring, if it moves.
     fn inner_series(series: &Self::Series) -> Option<&Series>;
+    /// ∫ of the power lost in the mountings' dampers over θ \[W\].
+    fn damping_integral_w(&self, series: &Self::Series, theta: f64, order: usize) -> f64;
     /// State at θ.
     fn at(series: &Self::Series, theta: f64, order: usize) -> Self::State;
 }
@@ -50,6 +78,7 @@ impl Stator for Rigid {
     fn outer(_state: &()) -> Option<Body> {
         None
     }
+    fn kick(_state: &mut (), _change_m_s: V2) {}
     #[inline]
     fn inverse_mass(&self) -> f64 {
         0.0
@@ -68,7 +97,21 @@ impl Stator for Rigid {
         0.0
     }
     #[inline]
-    fn series(&self, _state: &(), _step_s: f64, _order: usize) {}
+    fn start_series(&self, _state: &()) {}
+    #[inline]
+    fn extend_position(&self, _series: &mut (), _k: usize, _next_s: f64) {}
+    #[inline]
+    fn extend_velocity(&self, _series: &mut (), _k: usize, _next_s: f64, _force_n: V2) {}
+    #[inline]
+    fn inner_acceleration(&self, _series: &(), _k: usize, _force_n: V2) -> V2 {
+        V2::zeros()
+    }
+    #[inline]
+    fn coefficient(_series: &(), _k: usize) {}
+    #[inline]
+    fn damping_integral_w(&self, _series: &(), _theta: f64, _order: usize) -> f64 {
+        0.0
+    }
     #[inline]
     fn inner_series(_series: &()) -> Option<&Series> {
         None
@@ -78,7 +121,7 @@ impl Stator for Rigid {
 }
 
 /// Position and velocity series of one ring.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct BodySeries {
     position: Series,
     velocity: Series,
@@ -90,6 +133,29 @@ impl BodySeries {
             position: Series::start(body.position),
             velocity: Series::start(body.velocity),
         }
+    }
+
+    #[inline]
+    fn coefficient(&self, k: usize) -> Body {
+        Body {
+            position: self.position.0[k],
+            velocity: self.velocity.0[k],
+        }
+    }
+
+    /// ∫ vᵀ·diag(damping)·v dθ, v being this velocity less that of `carrier`.
+    fn loss(&self, carrier: Option<&Self>, damping: V2, theta: f64, order: usize) -> f64 {
+        let mut across = self.velocity;
+        if let Some(carrier) = carrier {
+            for (a, b) in across.0[..=order].iter_mut().zip(&carrier.velocity.0) {
+                *a -= b;
+            }
+        }
+        let mut weighed = across;
+        for c in &mut weighed.0[..=order] {
+            c.component_mul_assign(&damping);
+        }
+        across.integral_of_dot(&weighed, theta, order)
     }
 
     fn at(&self, theta: f64, order: usize) -> Body {
@@ -130,6 +196,9 @@ impl Stator for OneMass {
     fn outer(_state: &Body) -> Option<Body> {
         None
     }
+    fn kick(state: &mut Body, change_m_s: V2) {
+        state.velocity += change_m_s;
+    }
     #[inline]
     fn inverse_mass(&self) -> f64 {
         1.0 / self.0.mass_kg
@@ -155,15 +224,28 @@ impl Stator for OneMass {
         let ring = &self.0;
         (ring.stiffness_n_m.max() / ring.mass_kg).sqrt() + ring.damping_n_s_m.max() / ring.mass_kg
     }
-    fn series(&self, state: &Body, step_s: f64, order: usize) -> BodySeries {
-        let mut s = BodySeries::start(state);
-        for k in 0..order {
-            let scale = step_s / (k + 1) as f64;
-            let force = mounting_force(&self.0, s.position.0[k], s.velocity.0[k]);
-            s.position.0[k + 1] = scale * s.velocity.0[k];
-            s.velocity.0[k + 1] = scale / self.0.mass_kg * force;
-        }
-        s
+    fn start_series(&self, state: &Body) -> BodySeries {
+        BodySeries::start(state)
+    }
+    #[inline]
+    fn extend_position(&self, s: &mut BodySeries, k: usize, next_s: f64) {
+        s.position.0[k + 1] = next_s * s.velocity.0[k];
+    }
+    #[inline]
+    fn extend_velocity(&self, s: &mut BodySeries, k: usize, next_s: f64, force_n: V2) {
+        s.velocity.0[k + 1] = next_s * self.inner_acceleration(s, k, force_n);
+    }
+    #[inline]
+    fn inner_acceleration(&self, s: &BodySeries, k: usize, force_n: V2) -> V2 {
+        let mounting = mounting_force(&self.0, s.position.0[k], s.velocity.0[k]);
+        (force_n + mounting) / self.0.mass_kg
+    }
+    #[inline]
+    fn coefficient(series: &BodySeries, k: usize) -> Body {
+        series.coefficient(k)
+    }
+    fn damping_integral_w(&self, series: &BodySeries, theta: f64, order: usize) -> f64 {
+        series.loss(None, self.0.damping_n_s_m, theta, order)
     }
     #[inline]
     fn inner_series(series: &BodySeries) -> Option<&Series> {
@@ -183,6 +265,18 @@ pub(crate) struct TwoMass {
     pub outer: RingParams,
 }
 
+impl TwoMass {
+    /// Coefficient k of the inner mounting's force on the inner ring.
+    #[inline]
+    fn between(&self, (s, z): &(BodySeries, BodySeries), k: usize) -> V2 {
+        mounting_force(
+            &self.inner,
+            s.position.0[k] - z.position.0[k],
+            s.velocity.0[k] - z.velocity.0[k],
+        )
+    }
+}
+
 impl Stator for TwoMass {
     type State = (Body, Body);
     type Series = (BodySeries, BodySeries);
@@ -192,6 +286,9 @@ impl Stator for TwoMass {
     }
     fn outer(state: &Self::State) -> Option<Body> {
         Some(state.1)
+    }
+    fn kick(state: &mut Self::State, change_m_s: V2) {
+        state.0.velocity += change_m_s;
     }
     #[inline]
     fn inverse_mass(&self) -> f64 {
@@ -233,22 +330,33 @@ impl Stator for TwoMass {
         let damping = self.inner.damping_n_s_m.max() * 2.0 + self.outer.damping_n_s_m.max();
         (stiffness / mass).sqrt() + damping / mass
     }
-    fn series(&self, (s, z): &Self::State, step_s: f64, order: usize) -> Self::Series {
-        let (mut s, mut z) = (BodySeries::start(s), BodySeries::start(z));
-        for k in 0..order {
-            let scale = step_s / (k + 1) as f64;
-            let between = mounting_force(
-                &self.inner,
-                s.position.0[k] - z.position.0[k],
-                s.velocity.0[k] - z.velocity.0[k],
-            );
-            let ground = mounting_force(&self.outer, z.position.0[k], z.velocity.0[k]);
-            s.position.0[k + 1] = scale * s.velocity.0[k];
-            z.position.0[k + 1] = scale * z.velocity.0[k];
-            s.velocity.0[k + 1] = scale / self.inner.mass_kg * between;
-            z.velocity.0[k + 1] = scale / self.outer.mass_kg * (ground - between);
-        }
-        (s, z)
+    fn start_series(&self, (s, z): &Self::State) -> Self::Series {
+        (BodySeries::start(s), BodySeries::start(z))
+    }
+    #[inline]
+    fn extend_position(&self, (s, z): &mut Self::Series, k: usize, next_s: f64) {
+        s.position.0[k + 1] = next_s * s.velocity.0[k];
+        z.position.0[k + 1] = next_s * z.velocity.0[k];
+    }
+    #[inline]
+    fn extend_velocity(&self, series: &mut Self::Series, k: usize, next_s: f64, force_n: V2) {
+        let between = self.between(series, k);
+        let (s, z) = series;
+        let ground = mounting_force(&self.outer, z.position.0[k], z.velocity.0[k]);
+        s.velocity.0[k + 1] = next_s / self.inner.mass_kg * (force_n + between);
+        z.velocity.0[k + 1] = next_s / self.outer.mass_kg * (ground - between);
+    }
+    #[inline]
+    fn inner_acceleration(&self, series: &Self::Series, k: usize, force_n: V2) -> V2 {
+        (force_n + self.between(series, k)) / self.inner.mass_kg
+    }
+    #[inline]
+    fn coefficient((s, z): &Self::Series, k: usize) -> Self::State {
+        (s.coefficient(k), z.coefficient(k))
+    }
+    fn damping_integral_w(&self, (s, z): &Self::Series, theta: f64, order: usize) -> f64 {
+        s.loss(Some(z), self.inner.damping_n_s_m, theta, order)
+            + z.loss(None, self.outer.damping_n_s_m, theta, order)
     }
     #[inline]
     fn inner_series(series: &Self::Series) -> Option<&Series> {

@@ -107,6 +107,8 @@ pub(crate) struct Touch {
     pub(crate) sliding_n: f64,
     /// Rolling part \[N\].
     pub(crate) rolling_n: f64,
+    /// Largest sliding friction, μ·f_n \[N\].
+    pub(crate) cone_n: f64,
     pub(crate) sliding_acceleration: f64,
     pub(crate) whirl_acceleration: f64,
     pub(crate) whirl_speed_m_s: f64,
@@ -203,11 +205,7 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
         let whirl_by_torque = per_spin_acceleration * inverse_j;
         let slide_by_torque = whirl_by_torque + radius * inverse_j;
 
-        let at = if slide == Slide::Rolling {
-            0.0
-        } else {
-            g.sliding_speed_m_s
-        };
+        let at = slide.sign() * g.sliding_speed_m_s;
         let mu = self.friction.sliding.coefficient(at);
         let mu_r = self.friction.rolling_coefficient;
         let (sliding_n, rolling_n) = match (slide, whirl) {
@@ -318,6 +316,7 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
                     .normal_force_n(g.normal_speed_m_s, normal_acceleration),
                 sliding_n,
                 rolling_n,
+                cone_n: mu * normal_n,
                 sliding_acceleration: whirl_acceleration + radius * spin_acceleration,
                 whirl_acceleration,
                 whirl_speed_m_s: g.whirl_speed_m_s,

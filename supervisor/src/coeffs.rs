@@ -82,7 +82,9 @@ impl Coeffs {
         } else {
             1.0
         };
-        let horizon = config.delay_samples + 0.5 + lag;
+        // Whole ticks: the line of delayed commands knows no others.
+        let delay = (config.delay_samples + 0.5) as usize;
+        let horizon = delay as f32 + 0.5 + lag;
         let (mu, e) = (config.friction_coefficient, config.restitution);
         let (pole, free) = (
             config.observer_pole_flight,
@@ -102,7 +104,7 @@ impl Coeffs {
             lag_step,
             lag_mean: lag * lag_step,
             lag,
-            delay: config.delay_samples as usize,
+            delay,
             horizon,
             friction: mu,
             restitution: e,

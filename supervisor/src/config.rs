@@ -35,7 +35,7 @@ impl core::fmt::Display for ConfigError {
         } = self.parameter;
         write!(
             f,
-            "{name} = {} {unit}: expected {low} to {high} {unit}",
+            "{name} = {:e} {unit}: expected {low:e} to {high:e} {unit}",
             self.value
         )
     }
@@ -80,7 +80,7 @@ parameters! {
     clearance_m, "m", 1e-6 ..= 0.1, "Radial clearance of the retainer bearing.";
     force_max_n, "N", 1e-3 ..= 1e7, "Force cap of the magnet, as the length of the vector.";
     amplifier_lag_s, "s", 0.0 ..= 0.1, "Time constant of the amplifier with the magnet.";
-    delay_samples, "ticks", 0.0 ..= 7.0, "Whole ticks between a sample and the start of the force computed from it.";
+    delay_samples, "ticks", 0.0 ..= 7.0, "Ticks between a sample and the start of the force computed from it; rounded to whole ticks.";
     friction_coefficient, "1", 0.0 ..= 2.0, "Coefficient of friction on the retainer bearing; choose the upper end of what is likely.";
     restitution, "1", 0.0 ..= 0.99, "Restitution of a radial impact on the retainer bearing.";
     observer_pole_flight, "1", 0.0 ..= 0.98, "Pole of the observer in flight: nearer to 1 smooths sensor noise more and follows later.";

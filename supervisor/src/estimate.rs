@@ -87,6 +87,12 @@ impl Observer {
         *m
     }
 
+    /// Starts anew at the next sample: without samples the model runs away.
+    pub(crate) fn forget(&mut self) {
+        self.started = false;
+        self.motion = Motion::default();
+    }
+
     /// Tells the observer what was commanded at this tick.
     pub(crate) fn commanded(&mut self, force: Vec2) {
         self.newest = self.newest.wrapping_add(1) & (MAX_DELAY - 1);

@@ -13,6 +13,8 @@ pub(crate) struct Reading {
     pub(crate) spin_sign: f32,
     /// Position has been implausible for too long.
     pub(crate) faulty: bool,
+    /// The bearing may act.
+    pub(crate) bearing_on: bool,
     pub(crate) limits: Limits,
     pub(crate) events: Events,
 }
@@ -71,6 +73,7 @@ impl Guard {
             position: used.then_some(position),
             spin_sign,
             faulty: self.faulty,
+            bearing_on: sample.status.contains(Status::BEARING_ON),
             limits,
             events,
         }

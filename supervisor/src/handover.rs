@@ -26,13 +26,37 @@ pub(crate) fn blend(
     }
 }
 
-/// While the supervisor acts the controller does not have the bearing and must not integrate; what it
-/// integrated before the contact is forgotten when it gets the bearing back.
-pub(crate) fn integrator_hint(before: Phase, now: Phase) -> IntegratorHint {
-    match (before, now) {
-        (Phase::Handover { .. }, Phase::Handover { .. }) => IntegratorHint::Run,
-        (_, Phase::Handover { .. }) => IntegratorHint::Reset,
-        (_, Phase::Levitated) => IntegratorHint::Run,
+/// Whether the levitation controller would hold the rotor as well as the supervisor does.
+///
+/// It may be calm only because the supervisor carries a load; a controller whose integrator does not
+/// carry it yet would drop the rotor. It gets the bearing when it asks for as much.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Readiness {
+    /// Inward force that the controller asks for less than the supervisor, filtered \[caps\].
+    shortfall: f32,
+}
+
+/// Shortfall that the blend can cover \[caps\].
+const COVERED: f32 = 0.15;
+
+impl Readiness {
+    pub(crate) fn ready(&self) -> bool {
+        self.shortfall < COVERED
+    }
+
+    /// Compares the forces of this tick along the outward direction.
+    pub(crate) fn compare(&mut self, own: Vec2, levitation: Vec2, outward: Vec2, coeffs: &Coeffs) {
+        let short = (levitation - own).dot(outward);
+        self.shortfall += (short - self.shortfall) * coeffs.blend_step;
+    }
+}
+
+/// While the supervisor acts the controller does not have the bearing and must not integrate. Once
+/// contact could be avoided it may, so that it becomes ready.
+pub(crate) fn integrator_hint(phase: Phase, calm: bool) -> IntegratorHint {
+    match phase {
+        Phase::Levitated | Phase::Handover { .. } => IntegratorHint::Run,
+        Phase::Approach { .. } | Phase::Bounce { .. } if calm => IntegratorHint::Run,
         _ => IntegratorHint::Hold,
     }
 }

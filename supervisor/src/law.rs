@@ -27,6 +27,11 @@ pub(crate) struct Wanted {
     pub(crate) restoring: Vec2,
 }
 
+/// Slow is below this share of the square of the lift-off speed.
+const SLOW_SQUARED: f32 = 0.05;
+/// Largest share of the cap that ever pushes inwards.
+const NEARLY_ALL: f32 = 0.95;
+
 /// The wanted force of a mode; zero for the modes in which the supervisor wants nothing itself.
 pub(crate) fn wanted(
     mode: Mode,
@@ -65,8 +70,11 @@ fn backward(n: Vec2, velocity: Vec2, spin_sign: f32) -> f32 {
 /// act, the flight after it counts instead, with the velocity that the impact will leave.
 fn before_impact(motion: &Motion, spin_sign: f32, coeffs: &Coeffs) -> Wanted {
     let damping = -motion.velocity * coeffs.damper;
-    // What speed leaves of the capacity brings the rotor back: damping alone would let it lie.
-    let restoring = -motion.position * coeffs.hold_share;
+    // What speed leaves of the capacity brings the rotor back: damping alone would let it lie. When
+    // slow, a little more of it than a hold on the wall has, or the two would take turns.
+    let slow = motion.velocity.length_squared() < SLOW_SQUARED * coeffs.slow_squared;
+    let share = if slow { NEARLY_ALL } else { coeffs.hold_share };
+    let restoring = -motion.position * share;
     let rest = Wanted {
         braking: Vec2::ZERO,
         damping,
@@ -76,11 +84,18 @@ fn before_impact(motion: &Motion, spin_sign: f32, coeffs: &Coeffs) -> Wanted {
     let Some(mut impact) = Impact::ahead(position, velocity) else {
         return rest;
     };
+    // With unknown spin nobody knows which way an impact will push: only the whirl counts that is
+    // there, or its sense, and the force with it, would change from tick to tick.
+    let (gain, friction) = if spin_sign != 0.0 {
+        (coeffs.bounce_gain, coeffs.friction)
+    } else {
+        (0.0, 0.0)
+    };
     let mut act_after = coeffs.horizon;
     if impact.ticks < act_after {
         let b = impact.normal.turned() * backward(impact.normal, velocity, spin_sign);
         let lost = (1.0 + coeffs.restitution) * velocity.dot(impact.normal);
-        velocity = velocity - impact.normal * lost + b * (coeffs.friction * lost);
+        velocity = velocity - impact.normal * lost + b * (friction * lost);
         act_after -= impact.ticks;
         // A hair inside, so that the chord ahead is not the point itself.
         position = impact.normal * 0.999;
@@ -94,12 +109,11 @@ fn before_impact(motion: &Motion, spin_sign: f32, coeffs: &Coeffs) -> Wanted {
     let n = impact.normal;
     let sense = backward(n, velocity, spin_sign);
     let (v_n, v_b) = (velocity.dot(n), velocity.dot(n.turned()) * sense);
-    let sum = v_b + coeffs.bounce_gain * v_n;
+    let sum = v_b + gain * v_n;
     let strength = min(max(sum, 0.0) * coeffs.damper, 1.0);
     // Gradient of S, times v_n: v_b = r × v about the centre, v_n = √(v² − v_b²).
-    let (gradient, _) = (acts_at.turned() * (sense * (v_n - coeffs.bounce_gain * v_b))
-        + velocity * coeffs.bounce_gain)
-        .direction();
+    let (gradient, _) =
+        (acts_at.turned() * (sense * (v_n - gain * v_b)) + velocity * gain).direction();
     Wanted {
         braking: gradient * -strength,
         ..rest

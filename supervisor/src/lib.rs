@@ -29,7 +29,7 @@
 //! let mut supervisor = Supervisor::<512>::new(&config)?;
 //! let command = supervisor.tick(&Sample {
 //!     sequence: 0,
-//!     status: Status::SPIN_VALID,
+//!     status: Status::SPIN_VALID | Status::BEARING_ON,
 //!     position_m: [1e-5, -2e-5],
 //!     spin_rad_s: 1000.0,
 //!     levitation_n: [-12.5, 25.0],

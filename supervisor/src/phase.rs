@@ -10,6 +10,7 @@
 use crate::classify::Class;
 use crate::coeffs::Coeffs;
 use crate::detect::Findings;
+use crate::guard::Reading;
 use crate::signal::{Events, Mode};
 
 /// A mode with the memory that belongs to it.
@@ -50,10 +51,14 @@ impl Phase {
         self,
         found: &Findings,
         class: Class,
-        faulty: bool,
+        reading: &Reading,
         coeffs: &Coeffs,
     ) -> (Self, Events) {
-        let next = self.follow(found, class, faulty, coeffs);
+        let next = if reading.bearing_on {
+            self.follow(found, class, reading.faulty, coeffs)
+        } else {
+            Self::Levitated
+        };
         let mut events = Events::empty();
         if found.touched {
             events |= Events::TOUCHED;

@@ -24,6 +24,9 @@ bitflags::bitflags! {
     pub struct Status: u32 {
         /// `spin_rad_s` is measured. Without it the supervisor works against the observed whirl.
         const SPIN_VALID = 1;
+        /// The bearing is switched on and may act. Without it the supervisor watches and records,
+        /// and lets the levitation command through.
+        const BEARING_ON = 1 << 1;
     }
 
     /// What binds the command of this tick.
@@ -114,16 +117,15 @@ pub enum IntegratorHint {
     /// Integrate as usual.
     #[default]
     Run = 0,
-    /// Keep its value: the bearing does not do what the controller wants.
+    /// Keep its value: the bearing does not do what the controller wants. It holds what carried the
+    /// rotor's load before the contact, and will have to carry it again.
     Hold = 1,
-    /// Start from zero: what was integrated belongs to the time before the contact.
-    Reset = 2,
 }
 
 /// What to do until the next tick.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Command {
-    /// Force to command \[N\]: finite, at most the cap long.
+    /// Force to command \[N\]: finite, no longer than the cap (to the last bit of `f32`).
     pub force_n: [f32; 2],
     /// What the supervisor is doing.
     pub mode: Mode,

@@ -6,6 +6,7 @@ use crate::config::{Config, ConfigError};
 use crate::detect::Detector;
 use crate::estimate::Observer;
 use crate::guard::Guard;
+use crate::handover::Readiness;
 use crate::phase::Phase;
 use crate::recorder::{QueuedEvent, Record, Recorder};
 use crate::signal::{Command, Limits, Mode, Sample};
@@ -20,6 +21,7 @@ pub struct Supervisor<const RECORD: usize = 512> {
     observer: Observer,
     detector: Detector,
     classifier: Classifier,
+    readiness: Readiness,
     phase: Phase,
     /// Last force \[caps\].
     force: Vec2,
@@ -39,6 +41,7 @@ impl<const RECORD: usize> Supervisor<RECORD> {
             observer: Observer::default(),
             detector: Detector::default(),
             classifier: Classifier::default(),
+            readiness: Readiness::default(),
             phase: Phase::default(),
             force: Vec2::ZERO,
             recorder: Recorder::new(),
@@ -50,18 +53,24 @@ impl<const RECORD: usize> Supervisor<RECORD> {
         let coeffs = &self.coeffs;
         let reading = self.guard.judge(sample, coeffs);
         let contact = self.detector.sample(reading.position, coeffs);
+        if reading.faulty && reading.position.is_none() {
+            self.observer.forget();
+        }
         let motion =
             (self.observer).advance(reading.position, self.detector.near_contact(), coeffs);
-        let found = self.detector.findings(&motion, contact, coeffs);
+        let mut found = self.detector.findings(&motion, contact, coeffs);
+        let calm = found.calm;
+        found.calm &= self.readiness.ready();
         let class = (self.classifier).classify(&found, reading.spin_sign, coeffs);
         let before = self.phase;
-        let (phase, events) = before.next(&found, class, reading.faulty, coeffs);
+        let (phase, events) = before.next(&found, class, &reading, coeffs);
         self.phase = phase;
 
         let wanted = law::wanted(phase.mode(), &motion, &found, reading.spin_sign, coeffs);
         let (own, own_limits) = limit::allocate(&wanted);
         let (levitation_n, levitation_limits) = limit::levitation(sample.levitation_n, coeffs);
         let levitation = coeffs.force(levitation_n);
+        (self.readiness).compare(own, levitation, found.normal, coeffs);
         let force = handover::blend(phase, own, levitation, self.force, coeffs);
 
         // Levitated is transparent bit for bit: the command does not go through per unit and back.
@@ -86,7 +95,7 @@ impl<const RECORD: usize> Supervisor<RECORD> {
             mode: phase.mode(),
             limits,
             events: events | reading.events,
-            integrator: handover::integrator_hint(before, phase),
+            integrator: handover::integrator_hint(phase, calm),
         };
         let position = reading.position.unwrap_or(motion.position);
         command.events |= (self.recorder).push(sample, position, self.force, &command);

@@ -1,8 +1,9 @@
 //! Plant, instruments, controllers and supervisor together.
 
 use firmware_host::closed_loop::{Keep, run};
+use firmware_host::levitation::LevitationParams;
 use firmware_host::policy_kind::PolicyKind;
-use firmware_host::scene::Scene;
+use firmware_host::scene::{Disturbance, Scene};
 use firmware_host::verdict::{Outcome, Verdict};
 use plant_model::V2;
 use system_tests::{golden, scene};
@@ -138,4 +139,51 @@ fn a_load_that_stays_pins_the_rotor() {
     let held = verdict(&scene, PolicyKind::Supervisor);
     assert_eq!(held.outcome, Outcome::Pinned);
     assert_eq!(held.relevitation_time_s, None);
+}
+
+/// A horizontal rotor whose weight the controller's integrator carries: a push to the wall must not
+/// make the hand-over drop it.
+#[test]
+fn a_carried_weight_is_not_dropped_at_hand_over() {
+    let mut scene = scene("overload_then_release");
+    scene.weight_n = V2::new(0.0, -98.1);
+    scene.levitation = scene.levitation.map(|l| LevitationParams {
+        integral_n_m_s: 2e7,
+        ..l
+    });
+    scene.duration_s = 0.4;
+    for (push_n, seed) in [(3000.0, 1), (5000.0, 2), (7000.0, 3)] {
+        scene.seed = seed;
+        scene.disturbances = vec![Disturbance {
+            start_s: 0.2,
+            duration_s: 1e-3,
+            force_n: V2::new(0.6 * push_n, 0.8 * push_n),
+        }];
+        let alone = verdict(&scene, PolicyKind::Levitation);
+        let supervised = verdict(&scene, PolicyKind::Supervisor);
+        assert_eq!(supervised.outcome, Outcome::Recovered, "{push_n} N");
+        assert!(
+            supervised.impacts <= alone.impacts.max(8),
+            "{} impacts",
+            supervised.impacts
+        );
+    }
+}
+
+/// A load near the share of the cap that holds a rotor on the wall does not make it chatter.
+#[test]
+fn a_load_near_the_hold_does_not_chatter() {
+    let mut scene = scene("overload_then_release");
+    scene.duration_s = 0.6;
+    for share in [0.75, 0.8, 1.0, 1.1] {
+        scene.disturbances[0].duration_s = 0.5;
+        scene.disturbances[0].force_n = V2::new(share * 1000.0, 0.0);
+        let supervised = verdict(&scene, PolicyKind::Supervisor);
+        assert_eq!(supervised.outcome, Outcome::Recovered, "{share} of the cap");
+        assert!(
+            supervised.impacts <= 12,
+            "{} impacts at {share}",
+            supervised.impacts
+        );
+    }
 }

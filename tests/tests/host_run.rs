@@ -266,7 +266,19 @@ fn bad_scenes_are_refused_with_file_line_key_and_expectation() {
             "mass_kg = 10.0",
             "mass_kg = \"ten\"",
             "mass_kg",
-            "expected f64",
+            "expected a number",
+        ),
+        (
+            "force_n = [1300.0, 750.0]",
+            "force_n = [1300.0, 750.0, 0.0]",
+            "force_n",
+            "expected two",
+        ),
+        (
+            "start_s = 0.02",
+            "start_s = 0.2",
+            "disturbance[0].start_s",
+            "after the end of the run",
         ),
         (
             "mass_kg = 10.0",
@@ -327,7 +339,7 @@ fn bad_scenes_are_refused_with_file_line_key_and_expectation() {
             "[[disturbance]]",
             "[supervisor]\nhold_share = 2.0\n[[disturbance]]",
             "supervisor.hold_share",
-            "0.1 to 0.95",
+            "1e-1 to 9.5e-1",
         ),
         (
             "[[disturbance]]",
@@ -427,4 +439,45 @@ fn a_folder_can_be_used_again() {
     assert_eq!(fs::read_to_string(out.join("notes.txt")).unwrap(), "mine");
     assert_ne!(fs::read_to_string(out.join("verdict.json")).unwrap(), "old");
     assert_eq!(names(folder.path()), ["out", "short.toml"]);
+}
+
+/// A reader that stops reading is no error, and what was asked for is written.
+#[test]
+fn a_closed_pipe_is_no_panic() {
+    let folder = TempDir::new().unwrap();
+    let scene = short_scene(folder.path(), |t| t);
+    let out = folder.path().join("out");
+    let mut child = host()
+        .arg("run")
+        .arg(&scene)
+        .arg("--out")
+        .arg(&out)
+        .stdout(std::process::Stdio::piped())
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    drop(child.stdout.take());
+    let result = child.wait_with_output().unwrap();
+    let error = String::from_utf8_lossy(&result.stderr).into_owned();
+    assert!(result.status.success() && error.is_empty(), "{error}");
+    assert!(out.join("verdict.json").exists());
+}
+
+/// A run that leaves what the model describes ends with a named error, exit code 1 and no results.
+#[test]
+fn a_run_that_cannot_be_trusted_ends_with_an_error() {
+    let folder = TempDir::new().unwrap();
+    // A magnet that pulls harder than the ring it is to be caught by is held.
+    let soft =
+        "[stator.inner]\nmass_kg = 1.0\nstiffness_n_m = 1e4\ndamping_n_s_m = 0.0\n\n[contact]";
+    let scene = short_scene(folder.path(), |t| {
+        t.replace("[contact]", soft)
+            .replace("duration_s = 0.03", "duration_s = 1.0")
+    });
+    let out = folder.path().join("out");
+    let result = run(&scene, &out, &[]);
+    let error = String::from_utf8(result.stderr).unwrap();
+    assert_eq!(result.status.code(), Some(1), "{error}");
+    assert!(error.contains("from the centre"), "{error}");
+    assert_eq!(names(folder.path()), ["short.toml"]);
 }

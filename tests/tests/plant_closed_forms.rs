@@ -9,6 +9,8 @@ use system_tests::plants::{bouncing, bouncing_start, onset_rig};
 const TIGHT: Options = Options {
     rtol: 1e-12,
     steps_per_sample: 10_000_000,
+    steps: 10_000_000,
+    method: plant_model::Method::Series,
 };
 
 fn run_to(plant: &mut dyn Plant, t_s: f64) {

@@ -39,7 +39,7 @@ fn new() -> Supervisor<64> {
 fn sample(sequence: u32, position_m: [f32; 2]) -> Sample {
     Sample {
         sequence,
-        status: Status::SPIN_VALID,
+        status: Status::SPIN_VALID | Status::BEARING_ON,
         position_m,
         spin_rad_s: 1000.0,
         levitation_n: [3.0, -4.0],
@@ -177,7 +177,11 @@ fn config_errors_name_field_value_and_range() {
             let error = Config::from_values(values).validate().unwrap_err();
             assert_eq!(error.parameter.name, p.name);
             let text = error.to_string();
-            let parts = [p.name.to_owned(), p.low.to_string(), p.high.to_string()];
+            let parts = [
+                p.name.to_owned(),
+                format!("{:e}", p.low),
+                format!("{:e}", p.high),
+            ];
             assert!(parts.iter().all(|part| text.contains(part)), "{text}");
         }
         for edge in [p.low, p.high] {
@@ -395,4 +399,68 @@ fn sequence_is_watched() {
     let missed = supervisor.tick(&sample(12, [0.0; 2]));
     assert!(missed.events.contains(Events::SEQUENCE));
     assert!(!missed.limits.contains(Limits::SAMPLE_REFUSED));
+}
+
+/// A bearing that is switched off is left alone, wherever the rotor lies; switched on, it is not.
+#[test]
+fn nothing_happens_while_the_bearing_is_off() {
+    let mut supervisor = new();
+    let mut s = sample(0, [2.01e-4, 0.0]);
+    s.levitation_n = [0.0; 2];
+    for i in 0..200 {
+        s.sequence = i;
+        s.status = Status::SPIN_VALID;
+        let command = supervisor.tick(&s);
+        assert_eq!((command.mode, command.force_n), (Mode::Levitated, [0.0; 2]));
+    }
+    s.status |= Status::BEARING_ON;
+    s.sequence = 200;
+    assert_ne!(supervisor.tick(&s).mode, Mode::Levitated);
+}
+
+/// However long the fault was, what it left in the observer is forgotten.
+#[test]
+fn a_long_sensor_fault_leaves_nothing_behind() {
+    let after = |fault_ticks: u32| {
+        let mut supervisor = new();
+        for i in 0..20 {
+            supervisor.tick(&sample(i, [1e-5, 0.0]));
+        }
+        for i in 0..fault_ticks {
+            supervisor.tick(&sample(20 + i, [f32::NAN, 0.0]));
+        }
+        let forces: Vec<[f32; 2]> = (0..40)
+            .map(|i| {
+                supervisor
+                    .tick(&sample(20 + fault_ticks + i, [1e-5, 0.0]))
+                    .force_n
+            })
+            .collect();
+        forces
+    };
+    assert_eq!(after(1000), after(5000));
+    let strongest = after(5000).iter().map(|f| length(*f)).fold(0.0, f64::max);
+    assert!(
+        strongest < 100.0,
+        "a rotor at rest near the middle needs no {strongest} N"
+    );
+}
+
+/// With unknown spin and no whirl there is no sense to push in, and noise must not make one up.
+#[test]
+fn unknown_spin_does_not_make_the_force_jump() {
+    let mut supervisor = new();
+    let mut last = 0.0;
+    let mut jumps = 0;
+    for i in 0..18_u32 {
+        let noise = if i % 2 == 0 { 1e-6 } else { -1e-6 };
+        let mut s = sample(i, [1e-5 * i as f32, noise]);
+        s.status = Status::BEARING_ON;
+        let command = supervisor.tick(&s);
+        if command.mode != Mode::Levitated {
+            jumps += u32::from((command.force_n[1] - last).abs() > 600.0);
+            last = command.force_n[1];
+        }
+    }
+    assert_eq!(jumps, 0);
 }

@@ -1,7 +1,7 @@
 //! `run SCENE.toml`: every policy of the scene, one table, traces and a report.
 
 use crate::closed_loop::{Keep, RunError, run};
-use crate::output::{OutputError, Staging};
+use crate::output::{self, OutputError, Staging};
 use crate::policy_kind::PolicyKind;
 use crate::scene::Scene;
 use crate::scene_error::SceneError;
@@ -9,6 +9,7 @@ use crate::verdict::{PolicyRun, SceneSummary};
 use crate::{report, table, trace_file};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -40,8 +41,8 @@ pub enum CommandError {
     #[diagnostic(transparent)]
     Output(#[from] OutputError),
     /// A run ended without a result that can be trusted.
-    #[error("{0}")]
-    #[diagnostic(help("nothing was written; a smaller run.rtol or other contact data may help"))]
+    #[error(transparent)]
+    #[diagnostic(help("nothing was written"))]
     Run(#[from] RunError),
     /// Something else stopped it.
     #[error("{what}: {reason}")]
@@ -80,20 +81,30 @@ pub fn execute(args: &RunArgs) -> Result<(), CommandError> {
         .out
         .clone()
         .unwrap_or_else(|| default_folder(&args.scene));
-    let staging = Staging::beside(&out)?;
+    // Before any work: a folder that cannot be written to is the user's to know at once.
+    output::probe(&out)?;
     let runs = run_all(&scene, args.threads)?;
     let verdicts = table::json(&scene, &runs);
     let pretty = serde_json::to_string_pretty(&verdicts)
         .map_err(|e| CommandError::other("formatting verdict.json", e))?;
+    let staging = Staging::beside(&out)?;
     write_results(&staging, &scene, &runs, &pretty)?;
     let out = staging.publish()?;
-    if args.json {
-        println!("{pretty}");
+    let text = if args.json {
+        format!("{pretty}\n")
     } else {
-        println!("{}", table::text(&scene, &runs));
-        println!("report: {}", out.join("report.html").display());
+        let report = out.join("report.html");
+        format!(
+            "{}\nreport: {}\n",
+            table::text(&scene, &runs),
+            report.display()
+        )
+    };
+    match std::io::stdout().write_all(text.as_bytes()) {
+        // Whoever reads the table may stop reading; the results are written.
+        Err(e) if e.kind() == std::io::ErrorKind::BrokenPipe => Ok(()),
+        result => result.map_err(|e| CommandError::other("printing", e)),
     }
-    Ok(())
 }
 
 fn default_folder(scene: &Path) -> PathBuf {

@@ -105,7 +105,8 @@ pub(super) const CONTROL_FORCE: Chart = Chart {
 pub(super) const TANGENTIAL_SPEED: Chart = Chart {
     heading: "Tangential speed",
     note: "Rotor about the centre of the inner ring, counter-clockwise positive: whirl with the sign \
-           of the dashed limit is backward. The limit is drawn where it is near.",
+           of the dashed limit is backward. It counts against the limit in contact only. The limit is drawn \
+           where it is near.",
     y_name: "v_t / (m/s)",
     lines: &[Quantity {
         name: "v_t",

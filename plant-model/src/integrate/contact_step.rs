@@ -20,45 +20,52 @@ impl<Y: Copy + Default> Rates<Y> for Evaluation<Y> {
     }
 }
 
+/// What a step is asked for.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Task<'a> {
+    /// From, and to at most \[s\].
+    pub(crate) span: (f64, f64),
+    pub(crate) inputs: &'a Inputs,
+    pub(crate) mode: (Slide, Whirl),
+    /// Guard that is not to be asked.
+    pub(crate) muted: Option<usize>,
+}
+
 /// Result of one accepted step.
 pub(crate) struct ContactStep<Y> {
     pub(crate) t_s: f64,
     pub(crate) step_s: f64,
     pub(crate) y: Y,
     pub(crate) flows: Flows,
-    pub(crate) start: Touch,
-    pub(crate) end: Touch,
+    /// Forces at its start and end.
+    pub(crate) ends: [Touch; 2],
     /// Contact normals at start and end turn by this angle \[rad\].
     pub(crate) turn: f64,
     /// Guard that ended the step.
     pub(crate) event: Option<usize>,
 }
 
-/// Step-size memory, stages and counters.
-pub(crate) struct ContactStepper<S: Stator, W: Spin, M: Amplifier> {
-    pair: Pair<StateOf<S, W, M>>,
+/// Scales of the motion, against which errors are weighed.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Scales {
     rtol: f64,
-    step_s: f64,
     fastest_m_s: f64,
-    pub(crate) work: Work,
 }
 
-type Mode = (Slide, Whirl);
-type Pair<Y> = Dop853<Y, Evaluation<Y>>;
-
-impl<S: Stator, W: Spin, M: Amplifier> ContactStepper<S, W, M> {
-    pub(crate) fn new(system: &System<S, W, M>, rtol: f64, speed_m_s: f64) -> Self {
+impl Scales {
+    pub(crate) fn new(rtol: f64, speed_m_s: f64) -> Self {
         Self {
-            pair: Dop853::new(),
             rtol,
-            step_s: 0.05 / system.contact_rate_rad_s(),
             fastest_m_s: speed_m_s,
-            work: Work::default(),
         }
     }
 
     /// Scales of the motion: speed of the rotor, and the penetration that this speed makes.
-    fn weights(&mut self, system: &System<S, W, M>, y: &StateOf<S, W, M>) -> Weights {
+    pub(crate) fn weights<S: Stator, W: Spin, M: Amplifier>(
+        &mut self,
+        system: &System<S, W, M>,
+        y: &StateOf<S, W, M>,
+    ) -> Weights {
         let now = y.rotor.velocity.norm();
         self.fastest_m_s = self.fastest_m_s.max(now);
         let rate = system.contact_rate_rad_s();
@@ -80,86 +87,105 @@ impl<S: Stator, W: Spin, M: Amplifier> ContactStepper<S, W, M> {
             force: 1.0 / (self.rtol * system.rotor.mass_kg * speed * rate),
         }
     }
+}
 
-    /// Steps from `t_s` towards `t_end_s` until the tolerance, the end or an event stops it.
+/// Step-size memory, stages and counters.
+pub(crate) struct ContactStepper<S: Stator, W: Spin, M: Amplifier> {
+    pair: Pair<StateOf<S, W, M>>,
+    step_s: f64,
+}
+
+type Pair<Y> = Dop853<Y, Evaluation<Y>>;
+
+impl<S: Stator, W: Spin, M: Amplifier> ContactStepper<S, W, M> {
+    pub(crate) fn new(contact_rate_rad_s: f64) -> Self {
+        Self {
+            pair: Dop853::new(),
+            step_s: 0.05 / contact_rate_rad_s,
+        }
+    }
+
+    /// Steps towards the end of the span until the tolerance, the end or an event stops it.
     pub(crate) fn step(
         &mut self,
         system: &System<S, W, M>,
-        (t_s, t_end_s): (f64, f64),
         y: &StateOf<S, W, M>,
-        inputs: &Inputs,
-        mode: Mode,
+        task: &Task<'_>,
+        (scales, work): (&mut Scales, &mut Work),
     ) -> Result<ContactStep<StateOf<S, W, M>>, PlantError> {
-        let weights = self.weights(system, y);
-        let mut field = |t: f64, y: &StateOf<S, W, M>| system.contact(t, y, inputs, mode);
+        let (t_s, t_end_s) = task.span;
+        let weights = scales.weights(system, y);
+        let mut field = |t: f64, y: &StateOf<S, W, M>| system.contact(t, y, task.inputs, task.mode);
         let first = field(t_s, y);
-        self.work.evaluations += 1;
+        work.evaluations += 1;
         let remaining = t_end_s - t_s;
         let mut step = self.step_s;
-        let (end, last) = loop {
+        let (y_end, h, last, event) = loop {
             // A last sliver shorter than a tenth of the step is taken along.
             let last = step * 1.1 >= remaining;
             let h = if last { remaining } else { step };
             let (end, error) = self.pair.step(t_s, y, &first, h, &weights, &mut field);
-            self.work.evaluations += STEP_STAGES as u64 - 1;
-            if error <= 1.0 {
+            work.evaluations += STEP_STAGES as u64 - 1;
+            if error.is_nan() || error > 1.0 {
+                work.rejected += 1;
+                let shrink = (0.9 * error.powf(-0.125)).clamp(0.1, 0.9);
+                step = h * if error.is_finite() { shrink } else { 0.1 };
+                if t_s + step == t_s || step < 1e-9 * system.moment_s() {
+                    return Err(PlantError::StepTooSmall { t_s });
+                }
+                continue;
+            }
+            self.pair.evaluations[END] = field(t_s + h, &end);
+            work.evaluations += 1;
+            let event = match self.suspicious() {
+                true => self.locate(t_s, h, task.muted, &mut field, work),
+                false => None,
+            };
+            let Some((guard, theta)) = event else {
                 let growth = if error > 0.0 {
                     0.9 * error.powf(-0.125)
                 } else {
                     5.0
                 };
                 // A step cut short by the end of the sample says nothing against the longer one.
-                let grown = h * growth.clamp(0.3, 5.0);
+                let grown = (h * growth.clamp(0.3, 5.0)).min(10.0 / system.contact_rate_rad_s());
                 self.step_s = if last { grown.max(self.step_s) } else { grown };
-                step = h;
-                break (end, last);
-            }
-            self.work.rejected += 1;
-            let shrink = if error.is_finite() {
-                (0.9 * error.powf(-0.125)).clamp(0.1, 0.9)
-            } else {
-                0.1
+                break (end, h, last, None);
             };
-            step = h * shrink;
-            if t_s + 1e-3 * step == t_s && step < 1e-6 / system.contact_rate_rad_s() {
-                return Err(PlantError::StepTooSmall { t_s });
+            let context = (t_s, &weights, &mut *work);
+            let reach = (theta * h, remaining);
+            let onto = self.step_onto(context, y, &first, reach, guard, &mut field);
+            // Almost a double root right at the start: the event is here.
+            let here = || (theta * h <= system.moment_s()).then_some((*y, 0.0));
+            match onto.or_else(here) {
+                Some((y_end, taken)) => {
+                    work.events += 1;
+                    break (y_end, taken, false, Some(guard));
+                }
+                // The dense output has promised an event that the shorter step does not see.
+                None => step = 0.5 * theta * h,
             }
         };
-        // A step that only the sample's end kept short may not let the next one grow without bound.
-        self.step_s = self.step_s.min(1.0 / system.contact_rate_rad_s() * 10.0);
-        self.work.steps += 1;
-        self.pair.evaluations[END] = field(t_s + step, &end);
-        self.work.evaluations += 1;
-
-        let event = match self.suspicious() {
-            true => self.locate(t_s, step, &mut field),
-            false => None,
-        };
-        let (y_end, h) = match event {
-            None => (end, step),
-            Some((guard, theta)) => {
-                self.work.events += 1;
-                self.step_onto(t_s, y, &first, theta * step, guard, &weights, &mut field)
-            }
-        };
+        work.steps += 1;
         let mut flows = Flows::default();
+        // A step of no length leaves the stages of the attempt before it, which weigh nothing.
         for &(j, b) in B {
             flows.add_scaled(h * b, &self.pair.evaluations[j].powers);
         }
+        let last_touch = if h > 0.0 {
+            self.pair.evaluations[END].touch
+        } else {
+            first.touch
+        };
         let (a, b) = (system.geometry(y).normal, system.geometry(&y_end).normal);
         Ok(ContactStep {
-            t_s: if last && event.is_none() {
-                t_end_s
-            } else {
-                t_s + h
-            },
+            t_s: if last { t_end_s } else { t_s + h },
             step_s: h,
             y: y_end,
             flows,
-            start: first.touch,
-            end: self.pair.evaluations[END].touch,
+            ends: [first.touch, last_touch],
             turn: a.perp(&b).atan2(a.dot(&b)),
-            event: event.map(|(guard, _)| guard),
+            event,
         })
     }
 
@@ -170,7 +196,7 @@ impl<S: Stator, W: Spin, M: Amplifier> ContactStepper<S, W, M> {
         (0..e[0].guards.len()).any(|i| {
             let (start, end) = (e[0].guards[i], e[END].guards[i]);
             let near = 0.1 * start.abs().max(end.abs());
-            end < near || e[1..STEP_STAGES].iter().any(|s| s.guards[i] < near)
+            start < 0.0 || end < near || e[1..STEP_STAGES].iter().any(|s| s.guards[i] < near)
         })
     }
 
@@ -179,23 +205,31 @@ impl<S: Stator, W: Spin, M: Amplifier> ContactStepper<S, W, M> {
         &mut self,
         t_s: f64,
         step_s: f64,
+        muted: Option<usize>,
         field: &mut impl FnMut(f64, &StateOf<S, W, M>) -> Evaluation<StateOf<S, W, M>>,
+        work: &mut Work,
     ) -> Option<(usize, f64)> {
         let dense = self.pair.dense(t_s, field);
         let start = self.pair.evaluations[0].guards;
         let scale = self.guard_scales();
-        let mut evaluations = 3_u64;
+        let mut evaluations = 3_u64; // of the dense output
         let mut guards_at = |theta: f64| {
             evaluations += 1;
             field(t_s + theta * step_s, &dense.at(theta)).guards
         };
+        // A force that has just jumped may have left the cone, whichever way it moves now.
+        let jumped = |(guard, g): (usize, &f64)| *g < -1e-12 * scale[guard] && muted != Some(guard);
+        if let Some(guard) = start.iter().enumerate().position(jumped) {
+            work.evaluations += evaluations;
+            return Some((guard, 0.0));
+        }
         let mut found: Option<(usize, f64)> = None;
         let (mut low, mut at_low) = (0.0, start);
         for i in 1..=SCANS {
             let high = i as f64 / SCANS as f64;
             let at_high = guards_at(high);
             for (guard, value) in at_high.iter().enumerate() {
-                if *value >= -1e-13 * scale[guard] {
+                if *value >= -1e-13 * scale[guard] || muted == Some(guard) {
                     continue;
                 }
                 let theta = first_root(guard, (low, at_low[guard]), (high, *value), &mut guards_at);
@@ -208,7 +242,7 @@ impl<S: Stator, W: Spin, M: Amplifier> ContactStepper<S, W, M> {
             }
             (low, at_low) = (high, at_high);
         }
-        self.work.evaluations += evaluations;
+        work.evaluations += evaluations;
         found
     }
 
@@ -226,47 +260,47 @@ impl<S: Stator, W: Spin, M: Amplifier> ContactStepper<S, W, M> {
     }
 
     /// Repeats the step with its end on the event, so that the state there has the accuracy of the
-    /// pair and not of the dense output.
-    #[allow(
-        clippy::too_many_arguments,
-        reason = "one step's whole context, used once"
-    )]
+    /// pair and not of the dense output. `None` where the shorter step misses the tolerance or does
+    /// not meet the event.
     fn step_onto(
         &mut self,
-        t_s: f64,
+        (t_s, weights, work): (f64, &Weights, &mut Work),
         y: &StateOf<S, W, M>,
         first: &Evaluation<StateOf<S, W, M>>,
-        step_s: f64,
+        (step_s, longest_s): (f64, f64),
         guard: usize,
-        weights: &Weights,
         field: &mut impl FnMut(f64, &StateOf<S, W, M>) -> Evaluation<StateOf<S, W, M>>,
-    ) -> (StateOf<S, W, M>, f64) {
+    ) -> Option<(StateOf<S, W, M>, f64)> {
+        if step_s == 0.0 {
+            return Some((*y, 0.0));
+        }
+        let scale = self.guard_scales()[guard];
         let mut h = step_s;
-        let mut end = *y;
-        let mut earlier: Option<(f64, f64)> = None;
-        for _ in 0..4 {
-            end = self.pair.step(t_s, y, first, h, weights, field).0;
+        let mut before = (0.0, first.guards[guard]);
+        for _ in 0..6 {
+            let (end, error) = self.pair.step(t_s, y, first, h, weights, field);
             self.pair.evaluations[END] = field(t_s + h, &end);
-            self.work.evaluations += STEP_STAGES as u64;
+            work.evaluations += STEP_STAGES as u64;
+            if error.is_nan() || error > 1.0 {
+                return None;
+            }
             let value = self.pair.evaluations[END].guards[guard];
             // Slope of the guard: known for the normal force, by secant for the others.
-            let slope = match (guard, earlier) {
-                (NORMAL, _) => self.pair.evaluations[END].touch.normal_rate_n_s,
-                (_, Some((h0, v0))) if h != h0 => (value - v0) / (h - h0),
-                _ => (value - first.guards[guard]) / h,
+            let slope = match guard {
+                NORMAL => self.pair.evaluations[END].touch.normal_rate_n_s,
+                _ => (value - before.1) / (h - before.0),
             };
             let correction = value / slope;
-            earlier = Some((h, value));
-            if !correction.is_finite()
-                || correction.abs() <= 1e-13 * h
-                || correction.abs() > 0.1 * h
-            {
-                break;
+            if value.abs() <= 1e-12 * scale || correction.abs() <= 1e-12 * h {
+                return Some((end, h));
             }
-            h -= correction;
+            if !correction.is_finite() || correction.abs() > 0.1 * h {
+                return None;
+            }
+            before = (h, value);
+            h = (h - correction).min(longest_s);
         }
-        let h = earlier.map_or(h, |(taken, _)| taken);
-        (end, h)
+        None
     }
 }
 

@@ -1,16 +1,18 @@
 //! Carries a plant from control sample to control sample, mode by mode.
 
-use super::contact_step::ContactStepper;
-use super::flight::Crossing;
+use super::contact_step::{ContactStepper, Scales, Task};
+use super::flight::{Crossing, Segment};
+use super::series_step::SeriesStepper;
+use super::transitions::AtZero;
 use crate::energy::{Audit, Flows};
-use crate::integrate::{Options, PlantError};
+use crate::integrate::{Method, Options, PlantError};
 use crate::magnet::Amplifier;
 use crate::mode::{Mode, Phase, Slide, Whirl};
 use crate::part::Part;
 use crate::readout::{Meters, Snapshot, Work};
 use crate::spin::Spin;
 use crate::stator::Stator;
-use crate::system::{Geometry, Inputs, NORMAL, SLIDE, SLIDE_LOW, StateOf, System, WHIRL};
+use crate::system::{Geometry, Inputs, NORMAL, StateOf, System};
 
 /// A run of one combination of parts.
 pub(crate) struct Run<S: Stator, W: Spin, M: Amplifier> {
@@ -21,7 +23,10 @@ pub(crate) struct Run<S: Stator, W: Spin, M: Amplifier> {
     pub(crate) phase: Phase,
     pub(crate) flows: Flows,
     pub(crate) meters: Meters,
-    stepper: ContactStepper<S, W, M>,
+    scales: Scales,
+    work: Work,
+    series: SeriesStepper<S>,
+    explicit: ContactStepper<S, W, M>,
     inputs: Inputs,
     /// Sense of backward whirl: against the spin at the start, which friction may reverse later.
     backward: f64,
@@ -29,6 +34,15 @@ pub(crate) struct Run<S: Stator, W: Spin, M: Amplifier> {
     stored_peak_j: f64,
     options: Options,
     events_without_progress: u32,
+    steps: u64,
+    /// Guard that is not asked in the next step.
+    muted: Option<usize>,
+    /// The rotor has left the wall at this instant.
+    just_left: bool,
+    /// When it left last \[s\].
+    left_at_s: f64,
+    /// Beyond this radius the model means nothing \[m\].
+    farthest_m: f64,
 }
 
 impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
@@ -39,7 +53,10 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
         options: Options,
     ) -> Self {
         let mut run = Self {
-            stepper: ContactStepper::new(&system, options.rtol, y.rotor.velocity.norm()),
+            scales: Scales::new(options.rtol, y.rotor.velocity.norm()),
+            work: Work::default(),
+            series: SeriesStepper::new(options.rtol, system.contact_rate_rad_s()),
+            explicit: ContactStepper::new(system.contact_rate_rad_s()),
             system,
             force_max_n,
             t_s: 0.0,
@@ -53,14 +70,21 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
             stored_peak_j: 0.0,
             options,
             events_without_progress: 0,
+            steps: 0,
+            muted: None,
+            just_left: false,
+            left_at_s: f64::NEG_INFINITY,
+            farthest_m: 0.0,
         };
+        let params = &run.system;
+        run.farthest_m = (1e3 * params.contact.clearance_m).max(params.rotor.contact_radius_m);
         if run.system.spin.spin_rad_s(&run.y.spin) >= 0.0 {
             run.backward = -1.0;
         }
         let g = run.system.geometry(&run.y);
         if g.penetration_m > 0.0 {
             run.phase = match run.normal_n(&g) > 0.0 {
-                true => run.settle(false, false),
+                true => run.settled(),
                 false => Phase::Beyond,
             };
         }
@@ -89,44 +113,59 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
         }
         self.inputs = *inputs;
         self.inputs.command_n = limited(inputs.command_n, self.force_max_n);
-        let mut work = 0_u32;
+        if !t_end_s.is_finite() {
+            return Err(PlantError::NotFinite { t_s: self.t_s });
+        }
+        let mut steps = 0;
         while self.t_s < t_end_s {
-            work += 1;
-            if work > self.options.steps_per_sample {
-                return Err(PlantError::WorkLimit {
-                    t_s: self.t_s,
-                    steps: self.options.steps_per_sample,
-                });
+            steps += 1;
+            self.steps += 1;
+            for (done, limit) in [
+                (steps, self.options.steps_per_sample),
+                (self.steps, self.options.steps),
+            ] {
+                if done > limit {
+                    let t_s = self.t_s;
+                    return Err(PlantError::WorkLimit { t_s, steps: limit });
+                }
             }
-            let before = (self.t_s, self.phase);
+            let (t_before, phase_before) = (self.t_s, self.phase);
             match self.phase {
                 Phase::Inside => self.fly_inside(t_end_s),
                 Phase::Beyond => self.fly_beyond(t_end_s),
                 Phase::Contact(slide, whirl) => self.touch(t_end_s, (slide, whirl))?,
             }
-            if !self.y.is_finite() {
-                return Err(PlantError::NotFinite { t_s: self.t_s });
-            }
-            self.stored_peak_j =
-                (self.system.stored_j(&self.y, self.in_contact()).abs()).max(self.stored_peak_j);
-            if self.phase != before.1 {
-                self.count_progress(self.t_s > before.0)?;
-            }
-            if self.phase.mode() != before.1.mode() {
+            self.check_state()?;
+            self.count_progress(self.t_s > t_before)?;
+            if self.phase.mode() != phase_before.mode() {
                 on_change(&self.snapshot());
             }
         }
         Ok(())
     }
 
+    fn check_state(&mut self) -> Result<(), PlantError> {
+        let t_s = self.t_s;
+        if !self.y.is_finite() {
+            return Err(PlantError::NotFinite { t_s });
+        }
+        let radius_m = self.y.rotor.position.norm();
+        if radius_m > self.farthest_m {
+            return Err(PlantError::Diverged { t_s, radius_m });
+        }
+        let stored = self.system.stored_j(&self.y, self.in_contact()).abs();
+        self.stored_peak_j = self.stored_peak_j.max(stored);
+        Ok(())
+    }
+
     /// Modes may follow each other at one instant, but not for ever.
     fn count_progress(&mut self, moved: bool) -> Result<(), PlantError> {
-        if moved {
-            self.events_without_progress = 0;
-            return Ok(());
-        }
-        self.events_without_progress += 1;
-        if self.events_without_progress > 20 {
+        self.events_without_progress = if moved {
+            0
+        } else {
+            self.events_without_progress + 1
+        };
+        if self.events_without_progress > 50 {
             return Err(PlantError::ModeUndecided { t_s: self.t_s });
         }
         Ok(())
@@ -137,27 +176,33 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
         let step = remaining.min(self.system.longest_flight_s(&self.y, remaining));
         let last = step >= remaining;
         let segment = self.system.fly(self.t_s, &self.y, &self.inputs, step);
-        let (theta, hit) = match segment.wall_crossing(self.system.contact.clearance_m) {
-            Crossing::Nowhere => (1.0, false),
-            Crossing::At(theta) => (theta, true),
-            Crossing::ClearUntil(theta) => (theta.min(1.0), false),
-        };
-        let end = self.system.flown(&segment, &self.y, theta);
-        let flows = (self.system).flight_flows(&segment, &self.y, &end, &self.inputs, theta);
-        self.flows.add_scaled(1.0, &flows);
-        self.y = end;
-        self.t_s = if last && theta == 1.0 {
-            t_end_s
-        } else {
-            self.t_s + theta * step
-        };
+        let (theta, hit) =
+            match segment.wall_crossing(self.system.contact.clearance_m, self.just_left) {
+                Crossing::Nowhere => (1.0, false),
+                Crossing::At(theta) => (theta, true),
+                Crossing::ClearUntil(theta) => (theta.min(1.0), false),
+            };
+        self.just_left = false;
+        self.fly(&segment, theta, last.then_some(t_end_s));
         if hit {
             self.meters.impacts += 1;
             let g = self.system.geometry(&self.y);
             self.meters.peak_impact_speed_m_s =
                 self.meters.peak_impact_speed_m_s.max(g.normal_speed_m_s);
-            self.phase = self.settle(false, false);
+            self.touch_down();
         }
+    }
+
+    /// Takes the flight up to θ; a whole last segment ends exactly at `end_s`.
+    fn fly(&mut self, segment: &Segment<S>, theta: f64, end_s: Option<f64>) {
+        let end = self.system.flown(segment, &self.y, theta);
+        let flows = (self.system).flight_flows(segment, &self.y, &end, &self.inputs, theta);
+        self.flows.add_scaled(1.0, &flows);
+        self.y = end;
+        self.t_s = match end_s {
+            Some(end_s) if theta == 1.0 => end_s,
+            _ => self.t_s + theta * segment.step_s,
+        };
     }
 
     /// The wall is still dented but the force is gone. Short: the rotor leaves at impact speed.
@@ -202,55 +247,83 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
             }
             valid = at;
         }
-        let end = self.system.flown(&segment, &self.y, theta);
-        let flows = (self.system).flight_flows(&segment, &self.y, &end, &self.inputs, theta);
-        self.flows.add_scaled(1.0, &flows);
-        self.y = end;
-        self.t_s = if last && theta == 1.0 {
-            t_end_s
-        } else {
-            self.t_s + theta * step
-        };
+        self.fly(&segment, theta, last.then_some(t_end_s));
         if matches!(next, Phase::Contact(..)) {
             // The dent whose energy was written off at lift-off is felt again.
             let g = self.system.geometry(&self.y);
             self.flows.contact_damping -= self.system.contact.stored_j(g.penetration_m);
-            self.phase = self.settle(false, false);
+            self.touch_down();
         } else {
             self.phase = next;
         }
     }
 
     fn touch(&mut self, t_end_s: f64, pair: (Slide, Whirl)) -> Result<(), PlantError> {
-        let outcome = self.stepper.step(
-            &self.system,
-            (self.t_s, t_end_s),
-            &self.y,
-            &self.inputs,
-            pair,
-        )?;
+        // A guard that ended this very mode at this very instant is not asked again for a moment.
+        let muted = self.muted.take();
+        let t_end_s = match muted {
+            Some(_) => t_end_s.min(self.t_s + 100.0 * self.system.moment_s()),
+            None => t_end_s,
+        };
+        let task = Task {
+            span: (self.t_s, t_end_s),
+            inputs: &self.inputs,
+            mode: pair,
+            muted,
+        };
+        let books = (&mut self.scales, &mut self.work);
+        let outcome = match self.options.method {
+            Method::Series => self.series.step(&self.system, &self.y, &task, books)?,
+            Method::Explicit => self.explicit.step(&self.system, &self.y, &task, books)?,
+        };
         self.flows.add_scaled(1.0, &outcome.flows);
-        self.meters
-            .contact_step(&outcome.start, &outcome.end, outcome.step_s, outcome.turn);
-        let backward = self.backward * outcome.end.whirl_speed_m_s;
-        self.meters.peak_backward_speed_m_s = self.meters.peak_backward_speed_m_s.max(backward);
-        let radius = self.system.rotor.contact_radius_m;
-        self.meters.peak_friction_torque_n_m =
-            (self.meters.peak_friction_torque_n_m).max(outcome.end.sliding_n.abs() * radius);
+        let rotor = &self.system.rotor;
+        self.meters.contact_step(
+            &outcome.ends,
+            outcome.step_s,
+            outcome.turn,
+            self.backward,
+            rotor,
+        );
+        let stood_still = outcome.t_s == self.t_s;
         self.y = outcome.y;
         self.t_s = outcome.t_s;
         match outcome.event {
-            None => {}
+            None => self.system.zero_speeds(&mut self.y, AtZero::held(pair)),
             Some(NORMAL) => self.lift_off(),
-            Some(guard) => self.phase = self.next_in_contact(pair, guard),
-        }
-        if let Phase::Contact(slide, whirl) = self.phase {
-            self.hold_constraints(slide, whirl);
+            Some(guard) => {
+                self.system
+                    .zero_speeds(&mut self.y, AtZero::after(pair, guard));
+                let here = (self.t_s, &self.y);
+                let next = self.system.next_in_contact(here, &self.inputs, pair, guard);
+                if next == pair && stood_still {
+                    self.muted = Some(guard);
+                }
+                self.phase = Phase::Contact(next.0, next.1);
+            }
         }
         Ok(())
     }
 
+    /// Contact begins. Where it has only just ended, the normal force is at zero and hardly moves; it
+    /// is not asked for a moment.
+    fn touch_down(&mut self) {
+        if self.t_s - self.left_at_s <= self.system.moment_s() {
+            self.muted = Some(NORMAL);
+        }
+        self.phase = self.settled();
+    }
+
+    /// Contact in the mode that fits the speeds.
+    fn settled(&self) -> Phase {
+        let here = (self.t_s, &self.y);
+        let (slide, whirl) = self.system.settle(here, &self.inputs, AtZero::default());
+        Phase::Contact(slide, whirl)
+    }
+
     fn lift_off(&mut self) {
+        self.just_left = true;
+        self.left_at_s = self.t_s;
         let g = self.system.geometry(&self.y);
         self.phase = if self.system.contact.damping_n_s_m > 0.0 && g.penetration_m > 0.0 {
             // The dent relaxes on the contact damper alone.
@@ -259,84 +332,6 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
         } else {
             Phase::Inside
         };
-    }
-
-    fn next_in_contact(&self, (slide, whirl): (Slide, Whirl), guard: usize) -> Phase {
-        match guard {
-            SLIDE if slide == Slide::Rolling => Phase::Contact(Slide::Negative, whirl),
-            SLIDE_LOW => Phase::Contact(Slide::Positive, whirl),
-            SLIDE => self.settle(true, whirl == Whirl::Still),
-            WHIRL if whirl == Whirl::Still => Phase::Contact(slide, Whirl::Negative),
-            WHIRL => self.settle(slide == Slide::Rolling, true),
-            // WHIRL_LOW: the force needed to hold the whirl is at the lower edge of the cone.
-            _ => Phase::Contact(slide, Whirl::Positive),
-        }
-    }
-
-    /// The contact mode that is consistent just after this instant, given which speeds are known to
-    /// be zero. Forces are judged a moment later, because at a touch they all start from zero.
-    fn settle(&self, slide_at_zero: bool, whirl_at_zero: bool) -> Phase {
-        let g = self.system.geometry(&self.y);
-        let speed = self.y.rotor.velocity.norm();
-        let zero = 1e-13 * speed;
-        let slide_at_zero = slide_at_zero || g.sliding_speed_m_s.abs() <= zero;
-        let whirl_at_zero = whirl_at_zero || g.whirl_speed_m_s.abs() <= zero;
-        let slides: &[Slide] = if slide_at_zero {
-            &[Slide::Rolling, Slide::Positive, Slide::Negative]
-        } else {
-            &[Slide::of(g.sliding_speed_m_s)]
-        };
-        let whirls: &[Whirl] = if self.system.friction.rolling_coefficient == 0.0 {
-            &[Whirl::Ignored]
-        } else if whirl_at_zero {
-            &[Whirl::Still, Whirl::Positive, Whirl::Negative]
-        } else {
-            &[Whirl::of(g.whirl_speed_m_s)]
-        };
-        let moment_s = 1e-6 / self.system.contact_rate_rad_s();
-        for &slide in slides {
-            for &whirl in whirls {
-                let pair = (slide, whirl);
-                let now = self.system.contact(self.t_s, &self.y, &self.inputs, pair);
-                let mut later = self.y;
-                later.add_scaled(moment_s, &now.rates);
-                let e = self
-                    .system
-                    .contact(self.t_s + moment_s, &later, &self.inputs, pair);
-                let slide_holds = match slide {
-                    Slide::Rolling => e.guards[SLIDE] >= 0.0 && e.guards[SLIDE_LOW] >= 0.0,
-                    _ => !slide_at_zero || slide.sign() * e.touch.sliding_acceleration >= 0.0,
-                };
-                let whirl_holds = match whirl {
-                    Whirl::Still => e.guards[WHIRL].min(e.guards[WHIRL + 1]) >= 0.0,
-                    _ => !whirl_at_zero || whirl.sign() * e.touch.whirl_acceleration >= 0.0,
-                };
-                if slide_holds && whirl_holds {
-                    return Phase::Contact(slide, whirl);
-                }
-            }
-        }
-        Phase::Contact(slides[0], whirls[0])
-    }
-
-    /// Removes the drift of a speed that the mode holds at zero; it is within the tolerance.
-    fn hold_constraints(&mut self, slide: Slide, whirl: Whirl) {
-        if slide != Slide::Rolling && whirl != Whirl::Still {
-            return;
-        }
-        let g = self.system.geometry(&self.y);
-        let mut whirl_speed = g.whirl_speed_m_s;
-        if whirl == Whirl::Still {
-            self.y.rotor.velocity -= whirl_speed * g.tangent;
-            whirl_speed = 0.0;
-        }
-        if slide == Slide::Rolling {
-            let spin = -whirl_speed / self.system.rotor.contact_radius_m;
-            let is_state = self.system.spin.set_spin_rad_s(&mut self.y.spin, spin);
-            if !is_state && whirl != Whirl::Still {
-                self.y.rotor.velocity -= g.sliding_speed_m_s * g.tangent;
-            }
-        }
     }
 
     pub(crate) fn snapshot(&self) -> Snapshot {
@@ -384,7 +379,7 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
     }
 
     pub(crate) fn work(&self) -> Work {
-        self.stepper.work
+        self.work
     }
 }
 

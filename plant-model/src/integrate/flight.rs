@@ -233,7 +233,7 @@ impl<S: Stator> Segment<S> {
     /// Conservative advancement on G = |u|² − c²: with M an upper bound of |G̈| over the step, no root
     /// lies before the root of G + Ġ·τ + M·τ²/2. Each move is therefore safe, and near a simple root
     /// the moves converge as fast as Newton's. A start on the wall moving inwards counts as inside.
-    pub(crate) fn wall_crossing(&self, clearance_m: f64) -> Crossing {
+    pub(crate) fn wall_crossing(&self, clearance_m: f64, just_left: bool) -> Crossing {
         let bound = |derivative: usize| {
             let mut sum = 0.0;
             for (k, c) in self.gap.0[..=self.order]
@@ -256,6 +256,10 @@ impl<S: Stator> Segment<S> {
         }
         let speed = bound(1);
         let curvature = 2.0 * (speed * speed + farthest * bound(2));
+        if curvature == 0.0 {
+            // At rest on the wall, and nothing moves it.
+            return Crossing::Nowhere;
+        }
         let square = clearance_m * clearance_m;
         let tiny = 4.0 * f64::EPSILON * square;
         let value = |theta: f64| {
@@ -263,9 +267,15 @@ impl<S: Stator> Segment<S> {
             let rate = self.gap_rate(theta);
             (u.norm_squared() - square, 2.0 * u.dot(&rate))
         };
+        // A rotor at rest on the wall moves at least this far before it is judged.
+        let least = 1e-9 * (clearance_m / speed).min(1.0);
         let mut theta = 0.0;
         for _ in 0..200 {
-            let (g, rate) = value(theta);
+            let (g, mut rate) = value(theta);
+            if just_left && theta == 0.0 {
+                // Whatever rounding says: the contact force has just fallen to zero.
+                rate = rate.min(0.0);
+            }
             if g >= -tiny && rate > 0.0 {
                 return Crossing::At(theta);
             }
@@ -276,8 +286,7 @@ impl<S: Stator> Segment<S> {
             } else {
                 ((rate * rate - 2.0 * curvature * g).sqrt() - rate) / curvature
             };
-            // Resting on the wall (G = Ġ = 0): let it move before it is judged.
-            advance = advance.max(1e-9);
+            advance = advance.max(least);
             theta += advance;
             if theta > 1.0 {
                 return Crossing::Nowhere;

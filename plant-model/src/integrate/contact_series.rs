@@ -1,0 +1,519 @@
+//! Contact as a power series: inside one mode the equations are analytic, so the solution's Taylor
+//! coefficients follow one from another by sums and products of series, to any order, and the guards
+//! of the mode come out as polynomials on which no first root can be missed.
+//!
+//! All series run over θ = time / reference step; entry k holds the k-th coefficient times step^k.
+
+use super::contact_step::Task;
+use crate::V2;
+use crate::energy::Flows;
+use crate::magnet::Amplifier;
+use crate::mode::{Slide, Whirl};
+use crate::params::SlidingFriction;
+use crate::part::{Body, Part, Weights};
+use crate::series::{Scalar, Series, turned};
+use crate::spin::Spin;
+use crate::stator::Stator;
+use crate::system::{Inputs, NORMAL, SLIDE, SLIDE_LOW, State, StateOf, System, WHIRL, WHIRL_LOW};
+
+/// Series of everything in contact over one step. Reused from step to step.
+#[derive(Debug, Clone)]
+pub(crate) struct ContactSeries<S: Stator> {
+    pub(crate) step_s: f64,
+    pub(crate) order: usize,
+    position: Series,
+    velocity: Series,
+    stator: S::Series,
+    /// Delivered magnet force \[N\].
+    magnet: Series,
+    /// Ω \[rad/s\].
+    spin: Scalar,
+    /// Direction of the unbalance, and its force per mass \[m/s²\]; zero without one.
+    direction: Series,
+    unbalance: Series,
+    /// Rotor against ring, and its velocity.
+    gap: Series,
+    gap_rate: Series,
+    /// ρ, its rate, r̂.
+    distance: Scalar,
+    normal_speed: Scalar,
+    normal: Series,
+    /// f_n and f_n·r̂.
+    force: Scalar,
+    push: Series,
+    /// v_w, sliding and rolling part of the tangential force.
+    whirl_speed: Scalar,
+    sliding: Scalar,
+    rolling: Scalar,
+    /// Their sum, where it is no multiple of f_n; and the force as a vector.
+    grip: Scalar,
+    tangential: Series,
+    /// Friction that falls with speed: exponent and exponential.
+    exponent: Scalar,
+    exponential: Scalar,
+    /// Constrained modes: v_w/ρ, free relative acceleration, and e_t/J.
+    whirl_rate: Scalar,
+    difference: Series,
+    eccentric: Scalar,
+}
+
+impl<S: Stator> ContactSeries<S> {
+    pub(crate) fn new() -> Self
+    where
+        S::Series: Default,
+    {
+        Self {
+            step_s: 0.0,
+            order: 0,
+            position: Series::default(),
+            velocity: Series::default(),
+            stator: S::Series::default(),
+            magnet: Series::default(),
+            spin: Scalar::default(),
+            direction: Series::default(),
+            unbalance: Series::default(),
+            gap: Series::default(),
+            gap_rate: Series::default(),
+            distance: Scalar::default(),
+            normal_speed: Scalar::default(),
+            normal: Series::default(),
+            force: Scalar::default(),
+            push: Series::default(),
+            whirl_speed: Scalar::default(),
+            sliding: Scalar::default(),
+            rolling: Scalar::default(),
+            grip: Scalar::default(),
+            tangential: Series::default(),
+            exponent: Scalar::default(),
+            exponential: Scalar::default(),
+            whirl_rate: Scalar::default(),
+            difference: Series::default(),
+            eccentric: Scalar::default(),
+        }
+    }
+}
+
+/// One step's context: what does not change from order to order.
+struct Context<'a, S, W, M> {
+    system: &'a System<S, W, M>,
+    external_n: V2,
+    slide: Slide,
+    whirl: Whirl,
+    step_s: f64,
+    mobility: f64,
+    inverse_j: f64,
+    torque: f64,
+    unbalanced: bool,
+}
+
+impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
+    /// Fills `out` with the solution from `y` in the task's mode, to `order`.
+    pub(crate) fn contact_series(
+        &self,
+        out: &mut ContactSeries<S>,
+        (t_s, y): (f64, &StateOf<S, W, M>),
+        task: &Task<'_>,
+        (step_s, order): (f64, usize),
+    ) {
+        let context = Context {
+            system: self,
+            external_n: task.inputs.external_n,
+            slide: task.mode.0,
+            whirl: task.mode.1,
+            step_s,
+            mobility: 1.0 / self.rotor.mass_kg + self.stator.inverse_mass(),
+            inverse_j: self.spin.inverse_inertia(),
+            torque: self.spin.drive_torque_n_m(),
+            unbalanced: self.rotor.eccentricity_m != 0.0,
+        };
+        out.step_s = step_s;
+        out.order = order;
+        out.position.0[0] = y.rotor.position;
+        out.velocity.0[0] = y.rotor.velocity;
+        out.stator = self.stator.start_series(&y.stator);
+        out.magnet = self
+            .amplifier
+            .series(&y.force, task.inputs.command_n, step_s, order);
+        out.spin = Scalar::default();
+        out.spin.0[0] = self.spin.spin_rad_s(&y.spin);
+        if context.unbalanced {
+            let (sin, cos) = self.spin.phase_rad(&y.spin, t_s).sin_cos();
+            out.direction.0[0] = V2::new(cos, sin);
+        }
+        let (ring, ring_rate) = S::inner_coefficient(&out.stator, 0);
+        out.gap.0[0] = y.rotor.position - ring;
+        out.gap_rate.0[0] = y.rotor.velocity - ring_rate;
+        out.distance.0[0] = out.gap.0[0].norm();
+        for k in 0..=order {
+            context.positions(out, k);
+            context.forces(out, k);
+            if k < order {
+                context.velocities(out, k);
+            }
+        }
+    }
+}
+
+impl<S: Stator, W: Spin, M: Amplifier> Context<'_, S, W, M> {
+    /// Coefficients k + 1 of the positions, which run one order ahead so that ρ̇ is the derivative of ρ.
+    fn positions(&self, out: &mut ContactSeries<S>, k: usize) {
+        let next = self.step_s / (k + 1) as f64;
+        out.position.0[k + 1] = next * out.velocity.0[k];
+        self.system.stator.extend_position(&mut out.stator, k, next);
+        out.gap.0[k + 1] = next * out.gap_rate.0[k];
+        // ρ² = u·u.
+        let square = out.gap.dot_coefficient(&out.gap, k + 1);
+        let mixed = out.distance.inner_square_coefficient(k + 1);
+        out.distance.0[k + 1] = (square - mixed) / (2.0 * out.distance.0[0]);
+        out.normal_speed.0[k] = out.distance.0[k + 1] / next;
+    }
+
+    /// Coefficients k + 1 of the velocities from coefficients k of the forces.
+    fn velocities(&self, out: &mut ContactSeries<S>, k: usize) {
+        let next = self.step_s / (k + 1) as f64;
+        let mut acceleration =
+            (self.free_force(out, k) + out.tangential.0[k]) / self.system.rotor.mass_kg;
+        if self.unbalanced {
+            acceleration += out.unbalance.0[k];
+        }
+        out.velocity.0[k + 1] = next * acceleration;
+        let on_ring = out.push.0[k] - out.tangential.0[k];
+        (self.system.stator).extend_velocity(&mut out.stator, k, next, on_ring);
+        let (_, ring_rate) = S::inner_coefficient(&out.stator, k + 1);
+        out.gap_rate.0[k + 1] = out.velocity.0[k + 1] - ring_rate;
+    }
+
+    /// Everything that acts on the rotor but friction and unbalance.
+    fn free_force(&self, out: &ContactSeries<S>, k: usize) -> V2 {
+        let rotor = &self.system.rotor;
+        let force = out.magnet.0[k]
+            - rotor.stiffness_n_m * out.position.0[k]
+            - rotor.damping_n_s_m * out.velocity.0[k]
+            - out.push.0[k];
+        if k == 0 {
+            force + self.external_n
+        } else {
+            force
+        }
+    }
+
+    /// Coefficients k of normal force and friction, and k + 1 of the spin.
+    fn forces(&self, out: &mut ContactSeries<S>, k: usize) {
+        let contact = &self.system.contact;
+        // n·ρ = u.
+        let mixed = out.normal.times_coefficient_below(&out.distance, k);
+        out.normal.0[k] = (out.gap.0[k] - mixed) / out.distance.0[0];
+        let penetration = if k == 0 {
+            out.distance.0[0] - contact.clearance_m
+        } else {
+            out.distance.0[k]
+        };
+        out.force.0[k] = contact.normal_force_n(penetration, out.normal_speed.0[k]);
+        out.push.0[k] = out.normal.times_coefficient(&out.force, k);
+        // v_w = ẇ·t̂ with t̂ = r̂ turned.
+        out.whirl_speed.0[k] = out.normal.cross_coefficient(&out.gap_rate, k);
+        if self.unbalanced {
+            self.turn_unbalance(out, k);
+        }
+
+        let mu_r = self.system.friction.rolling_coefficient;
+        let proportional = self.slide != Slide::Rolling
+            && self.whirl != Whirl::Still
+            && matches!(
+                self.system.friction.sliding,
+                SlidingFriction::Constant { .. }
+            );
+        if proportional {
+            let mu = self.system.friction.sliding.coefficient(0.0);
+            let (s, q) = (-self.slide.sign() * mu, -self.whirl.sign() * mu_r);
+            out.sliding.0[k] = s * out.force.0[k];
+            out.rolling.0[k] = q * out.force.0[k];
+            out.tangential.0[k] = (s + q) * turned(out.push.0[k]);
+        } else {
+            self.friction(out, k);
+            out.grip.0[k] = out.sliding.0[k] + out.rolling.0[k];
+            out.tangential.0[k] = turned(out.normal.times_coefficient(&out.grip, k));
+        }
+        self.spin_up(out, k);
+    }
+
+    /// Sliding and rolling part where they are not in proportion to the normal force.
+    fn friction(&self, out: &mut ContactSeries<S>, k: usize) {
+        let friction = &self.system.friction;
+        let radius = self.system.rotor.contact_radius_m;
+        let first = |x: f64| if k == 0 { x } else { 0.0 };
+        let constrained = self.slide == Slide::Rolling || self.whirl == Whirl::Still;
+        // What turns the contact point without friction, and what the torque does to it.
+        let base = if constrained {
+            self.free_whirl_acceleration(out, k)
+        } else {
+            0.0
+        };
+        let eccentric = if constrained && self.unbalanced && self.inverse_j > 0.0 {
+            // Tangential acceleration per unit of spin acceleration, over J.
+            out.eccentric.0[k] = -self.system.rotor.eccentricity_m
+                * self.inverse_j
+                * out.direction.dot_coefficient(&out.normal, k);
+            true
+        } else {
+            out.eccentric.0[k] = 0.0;
+            false
+        };
+        if self.slide != Slide::Rolling {
+            self.slip(out, k);
+        }
+        if self.whirl != Whirl::Still {
+            out.rolling.0[k] = -self.whirl.sign() * friction.rolling_coefficient * out.force.0[k];
+        }
+        let m = self.mobility;
+        match (self.slide, self.whirl) {
+            (Slide::Rolling, Whirl::Still) => {
+                if self.inverse_j > 0.0 {
+                    out.sliding.0[k] = first(-self.torque / radius);
+                    out.rolling.0[k] = -base / m - out.sliding.0[k];
+                } else {
+                    let mu = friction.sliding.coefficient(0.0);
+                    let share = mu / (mu + friction.rolling_coefficient).max(f64::MIN_POSITIVE);
+                    out.sliding.0[k] = -base / m * share;
+                    out.rolling.0[k] = -base / m * (1.0 - share);
+                }
+            }
+            (Slide::Rolling, _) => {
+                // (M + R·B)·s = −(base + B·t_d + M·q), B = (e_t + R)/J.
+                let by_torque = out.eccentric.0[k] + first(radius * self.inverse_j);
+                let mut right = -(base + by_torque * self.torque + m * out.rolling.0[k]);
+                if eccentric {
+                    right -= radius * out.eccentric.product_coefficient_below(&out.sliding, k);
+                }
+                let pivot = m + radius * (out.eccentric.0[0] + radius * self.inverse_j);
+                out.sliding.0[k] = right / pivot;
+            }
+            (_, Whirl::Still) => {
+                let s = out.sliding.0[k];
+                let mut right = base + m * s + out.eccentric.0[k] * self.torque;
+                if eccentric {
+                    right += radius * out.eccentric.product_coefficient(&out.sliding, k);
+                }
+                out.rolling.0[k] = -right / m;
+            }
+            _ => {}
+        }
+    }
+
+    /// −σ·μ(v_rel)·f_n.
+    fn slip(&self, out: &mut ContactSeries<S>, k: usize) {
+        let sign = self.slide.sign();
+        let (at_speed, fall, speed_scale) = match self.system.friction.sliding {
+            SlidingFriction::Constant { coefficient } => {
+                out.sliding.0[k] = -sign * coefficient * out.force.0[k];
+                return;
+            }
+            SlidingFriction::Falling {
+                at_rest,
+                at_speed,
+                speed_scale_m_s,
+            } => (at_speed, at_rest - at_speed, speed_scale_m_s),
+        };
+        // e = exp(a) with a = −σ·v_rel/v_0: e_k = Σ i·a_i·e_{k−i}/k.
+        let v_rel = out.whirl_speed.0[k] + self.system.rotor.contact_radius_m * out.spin.0[k];
+        out.exponent.0[k] = -sign * v_rel / speed_scale;
+        out.exponential.0[k] = if k == 0 {
+            out.exponent.0[0].exp()
+        } else {
+            let terms = (1..=k).map(|i| i as f64 * out.exponent.0[i] * out.exponential.0[k - i]);
+            terms.sum::<f64>() / k as f64
+        };
+        let falling = fall * out.exponential.product_coefficient(&out.force, k);
+        out.sliding.0[k] = -sign * (at_speed * out.force.0[k] + falling);
+    }
+
+    /// (a_rotor − a_ring)·t̂ − v_n·v_w/ρ without tangential force and without spin acceleration.
+    fn free_whirl_acceleration(&self, out: &mut ContactSeries<S>, k: usize) -> f64 {
+        let ring = (self.system.stator).inner_acceleration(&out.stator, k, out.push.0[k]);
+        let mut difference = self.free_force(out, k) / self.system.rotor.mass_kg - ring;
+        if self.unbalanced {
+            difference += out.unbalance.0[k];
+        }
+        out.difference.0[k] = difference;
+        let mixed = out.distance.product_coefficient_below(&out.whirl_rate, k);
+        out.whirl_rate.0[k] = (out.whirl_speed.0[k] - mixed) / out.distance.0[0];
+        out.normal.cross_coefficient(&out.difference, k)
+            - out.normal_speed.product_coefficient(&out.whirl_rate, k)
+    }
+
+    /// Unbalance per mass at order k, by the square of the speed; direction at k + 1.
+    fn turn_unbalance(&self, out: &mut ContactSeries<S>, k: usize) {
+        let e = self.system.rotor.eccentricity_m;
+        let next = self.step_s / (k + 1) as f64;
+        let turning = out.direction.times_coefficient(&out.spin, k);
+        out.direction.0[k + 1] = next * turned(turning);
+        // Ω²·d = Ω·(Ω·d); the inner product's coefficients are those of the derivative, turned back.
+        let mut sum = V2::zeros();
+        for i in 0..=k {
+            let inner = -turned(out.direction.0[i + 1]) * ((i + 1) as f64 / self.step_s);
+            sum += out.spin.0[k - i] * inner;
+        }
+        out.unbalance.0[k] = e * sum;
+    }
+
+    /// Spin at k + 1, and the unbalance's share by spin acceleration at k.
+    fn spin_up(&self, out: &mut ContactSeries<S>, k: usize) {
+        if self.inverse_j == 0.0 {
+            return;
+        }
+        let torque = if k == 0 { self.torque } else { 0.0 };
+        let next = self.step_s / (k + 1) as f64;
+        let radius = self.system.rotor.contact_radius_m;
+        let acceleration = self.inverse_j * (torque + radius * out.sliding.0[k]);
+        out.spin.0[k + 1] = next * acceleration;
+        if self.unbalanced {
+            let e = self.system.rotor.eccentricity_m;
+            for i in 0..=k {
+                let rate = out.spin.0[i + 1] * ((i + 1) as f64 / self.step_s);
+                out.unbalance.0[k] -= e * rate * turned(out.direction.0[k - i]);
+            }
+        }
+    }
+}
+
+impl<S: Stator> ContactSeries<S> {
+    /// State at θ of a step that started at `y`.
+    pub(crate) fn at<W: Spin, M: Amplifier>(
+        &self,
+        spin: &W,
+        y: &StateOf<S, W, M>,
+        theta: f64,
+    ) -> StateOf<S, W, M> {
+        let order = self.order;
+        let mut spun = y.spin;
+        spin.set_spin_rad_s(&mut spun, self.spin.at(theta, order));
+        spin.turn(&mut spun, self.step_s * self.spin.integral(theta, order));
+        State {
+            rotor: Body {
+                position: self.position.at(theta, order),
+                velocity: self.velocity.at(theta, order),
+            },
+            stator: S::at(&self.stator, theta, order),
+            spin: spun,
+            force: M::at(&self.magnet, theta, order),
+        }
+    }
+
+    /// Weighed size of the coefficients k.
+    pub(crate) fn size(&self, k: usize, weights: &Weights) -> f64 {
+        let rotor = Body {
+            position: self.position.0[k],
+            velocity: self.velocity.0[k],
+        };
+        let spin = self.spin.0[k] * weights.spin;
+        let stator = S::coefficient(&self.stator, k).weighed_square(weights);
+        (rotor.weighed_square(weights) + stator + spin * spin).sqrt()
+    }
+
+    /// Guards of the mode as series; only those in use.
+    pub(crate) fn guards<W: Spin, M: Amplifier>(
+        &self,
+        system: &System<S, W, M>,
+        (slide, whirl): (Slide, Whirl),
+    ) -> [Option<Scalar>; 5] {
+        let order = self.order;
+        let mut guards = [None; 5];
+        guards[NORMAL] = Some(self.force);
+        let radius = system.rotor.contact_radius_m;
+        let mu = system.friction.sliding.coefficient(0.0);
+        match slide {
+            Slide::Rolling => {
+                guards[SLIDE] = Some(self.force.combined(mu, &self.sliding, -1.0, order));
+                guards[SLIDE_LOW] = Some(self.force.combined(mu, &self.sliding, 1.0, order));
+            }
+            _ if mu == 0.0 => {}
+            _ => {
+                let sign = slide.sign();
+                guards[SLIDE] =
+                    Some(
+                        self.whirl_speed
+                            .combined(sign, &self.spin, sign * radius, order),
+                    );
+            }
+        }
+        let mu_r = system.friction.rolling_coefficient;
+        match whirl {
+            Whirl::Ignored => {}
+            Whirl::Still => {
+                guards[WHIRL] = Some(self.force.combined(mu_r, &self.rolling, -1.0, order));
+                guards[WHIRL_LOW] = Some(self.force.combined(mu_r, &self.rolling, 1.0, order));
+            }
+            _ => {
+                guards[WHIRL] =
+                    Some(
+                        self.whirl_speed
+                            .combined(whirl.sign(), &self.spin, 0.0, order),
+                    );
+            }
+        }
+        guards
+    }
+
+    /// Energy through each door from 0 to θ.
+    pub(crate) fn flows<W: Spin, M: Amplifier>(
+        &self,
+        system: &System<S, W, M>,
+        (start, end): (&Body, &Body),
+        inputs: &Inputs,
+        theta: f64,
+    ) -> Flows {
+        let (h, order) = (self.step_s, self.order);
+        let path = end.position - start.position;
+        let radius = system.rotor.contact_radius_m;
+        let control = if M::LAGS {
+            h * self.magnet.integral_of_dot(&self.velocity, theta, order)
+        } else {
+            inputs.command_n.dot(&path)
+        };
+        let free = system.spin.inverse_inertia() > 0.0;
+        let spin_work = if free {
+            self.sliding.integral_of_product(&self.spin, theta, order)
+        } else {
+            self.spin.0[0] * self.sliding.integral(theta, order)
+        };
+        let drive = if free {
+            system.spin.drive_torque_n_m() * h * self.spin.integral(theta, order)
+        } else {
+            -radius * h * spin_work
+        };
+        let whirl_work = self
+            .sliding
+            .integral_of_product(&self.whirl_speed, theta, order);
+        let damping = system.rotor.damping_n_s_m;
+        let contact_damping = system.contact.damping_n_s_m;
+        let unbalance = if system.rotor.eccentricity_m > 0.0 {
+            system.rotor.mass_kg * h * self.unbalance.integral_of_dot(&self.velocity, theta, order)
+        } else {
+            0.0
+        };
+        let or_zero = |present: bool, value: &dyn Fn() -> f64| if present { value() } else { 0.0 };
+        Flows {
+            control,
+            external: inputs.external_n.dot(&path),
+            drive,
+            unbalance,
+            rotor_damping: or_zero(damping > 0.0, &|| {
+                damping * h * self.velocity.integral_of_dot(&self.velocity, theta, order)
+            }),
+            stator_damping: h * system.stator.damping_integral_w(&self.stator, theta, order),
+            contact_damping: or_zero(contact_damping > 0.0, &|| {
+                let square =
+                    self.normal_speed
+                        .integral_of_product(&self.normal_speed, theta, order);
+                contact_damping * h * square
+            }),
+            sliding_friction: -h * (whirl_work + radius * spin_work),
+            rolling_friction: or_zero(system.friction.rolling_coefficient > 0.0, &|| {
+                -h * self
+                    .rolling
+                    .integral_of_product(&self.whirl_speed, theta, order)
+            }),
+            normal_impulse_n_s: h * self.force.integral(theta, order),
+        }
+    }
+}

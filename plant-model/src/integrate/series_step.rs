@@ -1,0 +1,173 @@
+//! One step of contact by power series: as far as the series can be trusted, or to the first event.
+
+use super::contact_series::ContactSeries;
+use super::contact_step::{ContactStep, Scales, Task};
+use crate::integrate::PlantError;
+use crate::magnet::Amplifier;
+use crate::readout::Work;
+use crate::series::{MAX_ORDER, Scalar};
+use crate::spin::Spin;
+use crate::stator::Stator;
+use crate::system::{StateOf, System};
+
+/// Steps contact by series; remembers the last step as the next one's reference.
+pub(crate) struct SeriesStepper<S: Stator> {
+    series: ContactSeries<S>,
+    order: usize,
+    step_s: f64,
+}
+
+impl<S: Stator> SeriesStepper<S> {
+    pub(crate) fn new(rtol: f64, contact_rate_rad_s: f64) -> Self {
+        // The cost of a step grows with the square of the order, its length with what the tolerance
+        // leaves: an order of about one and a half times the digits does the least work.
+        let digits = -rtol.log10();
+        Self {
+            series: ContactSeries::new(),
+            order: ((1.5 * digits) as usize + 4).clamp(8, MAX_ORDER),
+            step_s: 1.0 / contact_rate_rad_s,
+        }
+    }
+
+    /// Steps towards the end of the span until the series, the end or an event stops it.
+    pub(crate) fn step<W: Spin, M: Amplifier>(
+        &mut self,
+        system: &System<S, W, M>,
+        y: &StateOf<S, W, M>,
+        task: &Task<'_>,
+        (scales, work): (&mut Scales, &mut Work),
+    ) -> Result<ContactStep<StateOf<S, W, M>>, PlantError> {
+        let (t_s, t_end_s) = task.span;
+        let weights = scales.weights(system, y);
+        let remaining = t_end_s - t_s;
+        let reference = self.step_s.min(remaining);
+        let order = self.order;
+        system.contact_series(&mut self.series, (t_s, y), task, (reference, order));
+        work.steps += 1;
+        work.evaluations += 1;
+
+        // The two highest coefficients say how far the rest can be left out.
+        let reach = |k: usize| self.series.size(k, &weights).powf(-1.0 / k as f64);
+        let trusted = 0.9 * reach(order).min(reach(order - 1));
+        let last = trusted * reference >= remaining;
+        let mut theta = if last { remaining / reference } else { trusted };
+        if !(theta > 0.0 && t_s + theta * reference > t_s) {
+            return Err(PlantError::StepTooSmall { t_s });
+        }
+        self.step_s = (trusted * reference).min(1e3 * reference);
+
+        let (mut event, mut whole) = (None, last);
+        for (i, guard) in self.series.guards(system, task.mode).iter().enumerate() {
+            let Some(guard) = guard.as_ref().filter(|_| task.muted != Some(i)) else {
+                continue;
+            };
+            let (stop, by) = match first_fall(guard, theta, order) {
+                Fall::Never => continue,
+                Fall::At(stop) => (stop, Some(i)),
+                Fall::ClearUntil(stop) => (stop, None),
+            };
+            if stop < theta || (stop == theta && by.is_some()) {
+                (theta, event, whole) = (stop, by, false);
+            }
+        }
+        work.events += u64::from(event.is_some());
+        let end = self.series.at::<W, M>(&system.spin, y, theta);
+        let flows = self
+            .series
+            .flows(system, (&y.rotor, &end.rotor), task.inputs, theta);
+        let (a, b) = (system.geometry(y).normal, system.geometry(&end).normal);
+        let t_new = if whole {
+            t_end_s
+        } else {
+            t_s + theta * reference
+        };
+        let touch =
+            |t: f64, y: &StateOf<S, W, M>| system.contact(t, y, task.inputs, task.mode).touch;
+        Ok(ContactStep {
+            t_s: t_new,
+            step_s: theta * reference,
+            flows,
+            ends: [touch(t_s, y), touch(t_new, &end)],
+            y: end,
+            turn: a.perp(&b).atan2(a.dot(&b)),
+            event,
+        })
+    }
+}
+
+/// Where a guard falls to zero.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Fall {
+    /// Nowhere in the step.
+    Never,
+    /// At this θ.
+    At(f64),
+    /// Not before this θ; what comes after is too close to decide in one go.
+    ClearUntil(f64),
+}
+
+/// First θ in [0, `end`] at which a guard that starts positive, or at zero and rising, falls to zero.
+///
+/// Conservative advancement: with M an upper bound of |g̈| over a window, no root lies before that of
+/// g + ġ·τ − M·τ²/2. Windows shrink and grow with the moves, so that the bound stays close.
+fn first_fall(guard: &Scalar, end: f64, order: usize) -> Fall {
+    let c = &guard.0[..=order];
+    let swing = c[1..]
+        .iter()
+        .rev()
+        .fold(0.0, |sum, c| (sum + c.abs()) * end);
+    if c[0] > swing {
+        return Fall::Never;
+    }
+    let bound = |window: f64| {
+        let terms = c.iter().enumerate().skip(2).rev();
+        terms.fold(0.0, |sum, (k, c)| {
+            sum * window + (k * (k - 1)) as f64 * c.abs()
+        })
+    };
+    // The state that the mode starts from carries the round-off of a whole step before.
+    let start_tiny = 1e-12 * (c[0].abs() + swing);
+    let tiny = 1e-15 * (c[0].abs() + swing);
+    let (mut theta, mut window, mut curvature) = (0.0, end, bound(end));
+    for _ in 0..200 {
+        let (mut g, mut rate) = (0.0, 0.0);
+        for c in c.iter().rev() {
+            rate = rate * theta + g;
+            g = g * theta + c;
+        }
+        if theta == 0.0 {
+            // A force that has just jumped may have left the cone, whichever way it moves now.
+            if g < -start_tiny {
+                return Fall::At(0.0);
+            }
+            if g <= start_tiny {
+                g = 0.0;
+            }
+        }
+        if g <= tiny && rate < 0.0 {
+            return Fall::At(theta);
+        }
+        let g = g.max(0.0);
+        let root = (rate * rate + 2.0 * curvature * g).sqrt();
+        let advance = if rate >= 0.0 {
+            (rate + root) / curvature
+        } else {
+            2.0 * g / (root - rate)
+        };
+        if advance < 0.05 * (window - theta) {
+            window = theta + 8.0 * advance.max(1e-9 * end);
+            curvature = bound(window.min(end));
+        }
+        // At zero without slope: let it move before it is judged.
+        let least = if g == 0.0 { 1e-9 * end } else { 0.0 };
+        theta += advance.max(least).min(window - theta).max(least);
+        if theta >= end {
+            return Fall::Never;
+        }
+        if theta >= window {
+            window = (theta * 4.0).min(end);
+            curvature = bound(window);
+        }
+    }
+    Fall::ClearUntil(theta)
+}
