@@ -74,6 +74,7 @@ pub fn run(
     let started = Instant::now();
     let options = Options {
         rtol: scene.rtol,
+        method: scene.method,
         ..Options::default()
     };
     let plant = build(&scene.plant, &scene.start, options)?;

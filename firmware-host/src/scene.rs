@@ -5,11 +5,11 @@ use crate::levitation::LevitationParams;
 use crate::plant_setup::plant_of;
 use crate::policy_kind::PolicyKind;
 use crate::scene_error::{Checks, SceneError, SceneText};
-use crate::scene_file::{LevitationFile, SceneFile};
+use crate::scene_file::{LevitationFile, MethodFile, SceneFile};
 use crate::supervisor_setup;
-use plant_model::V2;
 use plant_model::analysis::onset::lift_off_speed_m_s;
 use plant_model::params::{PlantParams, Start};
+use plant_model::{Method, V2};
 use std::f64::consts::TAU;
 use std::path::Path;
 
@@ -52,6 +52,8 @@ pub struct Scene {
     pub sample_rate_hz: f64,
     /// Tolerance of a contact step.
     pub rtol: f64,
+    /// How contact is integrated.
+    pub method: Method,
     /// Seed of the sensor noise.
     pub seed: u64,
     /// Policies to run.
@@ -159,6 +161,10 @@ impl Scene {
             duration_s: file.run.duration_s,
             sample_rate_hz: file.run.sample_rate_hz,
             rtol: file.run.rtol,
+            method: match file.run.method {
+                MethodFile::Series => Method::Series,
+                MethodFile::Explicit => Method::Explicit,
+            },
             seed: file.run.seed,
             policies,
             sensor: SensorParams {

@@ -59,7 +59,18 @@ pub(crate) struct RunFile {
     #[serde(default = "default_rtol")]
     pub(crate) rtol: f64,
     #[serde(default)]
+    pub(crate) method: MethodFile,
+    #[serde(default)]
     pub(crate) seed: u64,
+}
+
+/// How contact is integrated.
+#[derive(Debug, Clone, Copy, Default, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum MethodFile {
+    #[default]
+    Series,
+    Explicit,
 }
 
 fn default_rtol() -> f64 {

@@ -5,6 +5,7 @@ pub(crate) mod contact_step;
 pub(crate) mod dop853;
 pub(crate) mod driver;
 pub(crate) mod flight;
+mod series_readout;
 pub(crate) mod series_step;
 pub(crate) mod transitions;
 

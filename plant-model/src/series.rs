@@ -39,6 +39,30 @@ pub(crate) fn quadrature(phase: f64) -> &'static [(f64, f64)] {
 /// Largest product of step and fastest rate; 1^23/23! = 4e-23 is far below round-off.
 pub(crate) const MAX_PHASE: f64 = 1.0;
 
+/// Σ a_i·b_{n−i} over two slices of the same length. Four sums side by side: one alone would wait for
+/// each addition to finish before it began the next.
+#[inline(always)]
+fn convolve<A, B, T>(a: &[A], b: &[B], times: impl Fn(A, B) -> T) -> T
+where
+    A: Copy,
+    B: Copy,
+    T: Copy + Default + std::ops::Add<Output = T>,
+{
+    let mut sums = [T::default(); 4];
+    let (front, back) = (a.chunks_exact(4), b.rchunks_exact(4));
+    let (rest_a, rest_b) = (front.remainder(), back.remainder());
+    for (a, b) in front.zip(back) {
+        sums[0] = sums[0] + times(a[0], b[3]);
+        sums[1] = sums[1] + times(a[1], b[2]);
+        sums[2] = sums[2] + times(a[2], b[1]);
+        sums[3] = sums[3] + times(a[3], b[0]);
+    }
+    for (a, b) in rest_a.iter().zip(rest_b.iter().rev()) {
+        sums[0] = sums[0] + times(*a, *b);
+    }
+    (sums[0] + sums[1]) + (sums[2] + sums[3])
+}
+
 /// Coefficients of a plane vector over θ = time / step. Entry k already holds step^k.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Series(pub(crate) [V2; LENGTH]);
@@ -75,17 +99,15 @@ impl Series {
     /// Coefficient k of a·b.
     #[inline]
     pub(crate) fn dot_coefficient(&self, other: &Self, k: usize) -> f64 {
-        let terms = self.0[..=k].iter().zip(other.0[..=k].iter().rev());
-        let sum = terms.fold(V2::zeros(), |sum, (a, b)| sum + a.component_mul(b));
+        let sum = convolve(&self.0[..=k], &other.0[..=k], |a, b| a.component_mul(&b));
         sum.x + sum.y
     }
 
     /// Coefficient k of a × b.
     #[inline]
     pub(crate) fn cross_coefficient(&self, other: &Self, k: usize) -> f64 {
-        let terms = self.0[..=k].iter().zip(other.0[..=k].iter().rev());
-        let sum = terms.fold(V2::zeros(), |sum, (a, b)| {
-            sum + V2::new(a.x * b.y, a.y * b.x)
+        let sum = convolve(&self.0[..=k], &other.0[..=k], |a, b| {
+            V2::new(a.x * b.y, a.y * b.x)
         });
         sum.x - sum.y
     }
@@ -93,15 +115,13 @@ impl Series {
     /// Coefficient k of the product with a scalar series.
     #[inline]
     pub(crate) fn times_coefficient(&self, other: &Scalar, k: usize) -> V2 {
-        let terms = self.0[..=k].iter().zip(other.0[..=k].iter().rev());
-        terms.fold(V2::zeros(), |sum, (a, b)| sum + a * *b)
+        convolve(&self.0[..=k], &other.0[..=k], |a, b| a * b)
     }
 
     /// The same without the term that holds this series' own coefficient k.
     #[inline]
     pub(crate) fn times_coefficient_below(&self, other: &Scalar, k: usize) -> V2 {
-        let terms = self.0[..k].iter().zip(other.0[1..=k].iter().rev());
-        terms.fold(V2::zeros(), |sum, (a, b)| sum + a * *b)
+        convolve(&self.0[..k], &other.0[1..=k], |a, b| a * b)
     }
 
     /// ∫ a·b dθ from 0 to θ; products beyond the order are below what the order leaves out.
@@ -133,22 +153,19 @@ impl Scalar {
     /// Coefficient k of the product.
     #[inline]
     pub(crate) fn product_coefficient(&self, other: &Self, k: usize) -> f64 {
-        let terms = self.0[..=k].iter().zip(other.0[..=k].iter().rev());
-        terms.map(|(a, b)| a * b).sum()
+        convolve(&self.0[..=k], &other.0[..=k], |a, b| a * b)
     }
 
     /// The same without the term that holds the other series' coefficient k.
     #[inline]
     pub(crate) fn product_coefficient_below(&self, other: &Self, k: usize) -> f64 {
-        let terms = self.0[1..=k].iter().zip(other.0[..k].iter().rev());
-        terms.map(|(a, b)| a * b).sum()
+        convolve(&self.0[1..=k], &other.0[..k], |a, b| a * b)
     }
 
     /// Coefficient k of the square without the two terms that hold coefficient k itself.
     #[inline]
     pub(crate) fn inner_square_coefficient(&self, k: usize) -> f64 {
-        let terms = self.0[1..k].iter().zip(self.0[1..k].iter().rev());
-        terms.map(|(a, b)| a * b).sum()
+        convolve(&self.0[1..k], &self.0[1..k], |a, b| a * b)
     }
 
     /// a·self + b·other, up to the order.

@@ -353,6 +353,12 @@ fn bad_scenes_are_refused_with_file_line_key_and_expectation() {
             "rotor.damping_ratio",
             "damping_n_s_m instead",
         ),
+        (
+            "seed = 1",
+            "seed = 1\nmethod = \"euler\"",
+            "method",
+            "series",
+        ),
         ("title = ", "title = = ", "title", ""),
         ("[contact]", "[contract]", "contract", "expected one of"),
     ];

@@ -6,55 +6,53 @@
 
 use super::contact_step::Task;
 use crate::V2;
-use crate::energy::Flows;
 use crate::magnet::Amplifier;
 use crate::mode::{Slide, Whirl};
 use crate::params::SlidingFriction;
-use crate::part::{Body, Part, Weights};
 use crate::series::{Scalar, Series, turned};
 use crate::spin::Spin;
 use crate::stator::Stator;
-use crate::system::{Inputs, NORMAL, SLIDE, SLIDE_LOW, State, StateOf, System, WHIRL, WHIRL_LOW};
+use crate::system::{StateOf, System};
 
 /// Series of everything in contact over one step. Reused from step to step.
 #[derive(Debug, Clone)]
 pub(crate) struct ContactSeries<S: Stator> {
     pub(crate) step_s: f64,
     pub(crate) order: usize,
-    position: Series,
-    velocity: Series,
-    stator: S::Series,
+    pub(super) position: Series,
+    pub(super) velocity: Series,
+    pub(super) stator: S::Series,
     /// Delivered magnet force \[N\].
-    magnet: Series,
+    pub(super) magnet: Series,
     /// Ω \[rad/s\].
-    spin: Scalar,
+    pub(super) spin: Scalar,
     /// Direction of the unbalance, and its force per mass \[m/s²\]; zero without one.
-    direction: Series,
-    unbalance: Series,
+    pub(super) direction: Series,
+    pub(super) unbalance: Series,
     /// Rotor against ring, and its velocity.
-    gap: Series,
-    gap_rate: Series,
+    pub(super) gap: Series,
+    pub(super) gap_rate: Series,
     /// ρ, its rate, r̂.
-    distance: Scalar,
-    normal_speed: Scalar,
-    normal: Series,
+    pub(super) distance: Scalar,
+    pub(super) normal_speed: Scalar,
+    pub(super) normal: Series,
     /// f_n and f_n·r̂.
-    force: Scalar,
-    push: Series,
+    pub(super) force: Scalar,
+    pub(super) push: Series,
     /// v_w, sliding and rolling part of the tangential force.
-    whirl_speed: Scalar,
-    sliding: Scalar,
-    rolling: Scalar,
+    pub(super) whirl_speed: Scalar,
+    pub(super) sliding: Scalar,
+    pub(super) rolling: Scalar,
     /// Their sum, where it is no multiple of f_n; and the force as a vector.
-    grip: Scalar,
-    tangential: Series,
+    pub(super) grip: Scalar,
+    pub(super) tangential: Series,
     /// Friction that falls with speed: exponent and exponential.
-    exponent: Scalar,
-    exponential: Scalar,
+    pub(super) exponent: Scalar,
+    pub(super) exponential: Scalar,
     /// Constrained modes: v_w/ρ, free relative acceleration, and e_t/J.
-    whirl_rate: Scalar,
-    difference: Series,
-    eccentric: Scalar,
+    pub(super) whirl_rate: Scalar,
+    pub(super) difference: Series,
+    pub(super) eccentric: Scalar,
 }
 
 impl<S: Stator> ContactSeries<S> {
@@ -345,6 +343,12 @@ impl<S: Stator, W: Spin, M: Amplifier> Context<'_, S, W, M> {
     fn turn_unbalance(&self, out: &mut ContactSeries<S>, k: usize) {
         let e = self.system.rotor.eccentricity_m;
         let next = self.step_s / (k + 1) as f64;
+        if self.inverse_j == 0.0 {
+            let spin = out.spin.0[0];
+            out.direction.0[k + 1] = next * spin * turned(out.direction.0[k]);
+            out.unbalance.0[k] = e * spin * spin * out.direction.0[k];
+            return;
+        }
         let turning = out.direction.times_coefficient(&out.spin, k);
         out.direction.0[k + 1] = next * turned(turning);
         // Ω²·d = Ω·(Ω·d); the inner product's coefficients are those of the derivative, turned back.
@@ -372,148 +376,6 @@ impl<S: Stator, W: Spin, M: Amplifier> Context<'_, S, W, M> {
                 let rate = out.spin.0[i + 1] * ((i + 1) as f64 / self.step_s);
                 out.unbalance.0[k] -= e * rate * turned(out.direction.0[k - i]);
             }
-        }
-    }
-}
-
-impl<S: Stator> ContactSeries<S> {
-    /// State at θ of a step that started at `y`.
-    pub(crate) fn at<W: Spin, M: Amplifier>(
-        &self,
-        spin: &W,
-        y: &StateOf<S, W, M>,
-        theta: f64,
-    ) -> StateOf<S, W, M> {
-        let order = self.order;
-        let mut spun = y.spin;
-        spin.set_spin_rad_s(&mut spun, self.spin.at(theta, order));
-        spin.turn(&mut spun, self.step_s * self.spin.integral(theta, order));
-        State {
-            rotor: Body {
-                position: self.position.at(theta, order),
-                velocity: self.velocity.at(theta, order),
-            },
-            stator: S::at(&self.stator, theta, order),
-            spin: spun,
-            force: M::at(&self.magnet, theta, order),
-        }
-    }
-
-    /// Weighed size of the coefficients k.
-    pub(crate) fn size(&self, k: usize, weights: &Weights) -> f64 {
-        let rotor = Body {
-            position: self.position.0[k],
-            velocity: self.velocity.0[k],
-        };
-        let spin = self.spin.0[k] * weights.spin;
-        let stator = S::coefficient(&self.stator, k).weighed_square(weights);
-        (rotor.weighed_square(weights) + stator + spin * spin).sqrt()
-    }
-
-    /// Guards of the mode as series; only those in use.
-    pub(crate) fn guards<W: Spin, M: Amplifier>(
-        &self,
-        system: &System<S, W, M>,
-        (slide, whirl): (Slide, Whirl),
-    ) -> [Option<Scalar>; 5] {
-        let order = self.order;
-        let mut guards = [None; 5];
-        guards[NORMAL] = Some(self.force);
-        let radius = system.rotor.contact_radius_m;
-        let mu = system.friction.sliding.coefficient(0.0);
-        match slide {
-            Slide::Rolling => {
-                guards[SLIDE] = Some(self.force.combined(mu, &self.sliding, -1.0, order));
-                guards[SLIDE_LOW] = Some(self.force.combined(mu, &self.sliding, 1.0, order));
-            }
-            _ if mu == 0.0 => {}
-            _ => {
-                let sign = slide.sign();
-                guards[SLIDE] =
-                    Some(
-                        self.whirl_speed
-                            .combined(sign, &self.spin, sign * radius, order),
-                    );
-            }
-        }
-        let mu_r = system.friction.rolling_coefficient;
-        match whirl {
-            Whirl::Ignored => {}
-            Whirl::Still => {
-                guards[WHIRL] = Some(self.force.combined(mu_r, &self.rolling, -1.0, order));
-                guards[WHIRL_LOW] = Some(self.force.combined(mu_r, &self.rolling, 1.0, order));
-            }
-            _ => {
-                guards[WHIRL] =
-                    Some(
-                        self.whirl_speed
-                            .combined(whirl.sign(), &self.spin, 0.0, order),
-                    );
-            }
-        }
-        guards
-    }
-
-    /// Energy through each door from 0 to θ.
-    pub(crate) fn flows<W: Spin, M: Amplifier>(
-        &self,
-        system: &System<S, W, M>,
-        (start, end): (&Body, &Body),
-        inputs: &Inputs,
-        theta: f64,
-    ) -> Flows {
-        let (h, order) = (self.step_s, self.order);
-        let path = end.position - start.position;
-        let radius = system.rotor.contact_radius_m;
-        let control = if M::LAGS {
-            h * self.magnet.integral_of_dot(&self.velocity, theta, order)
-        } else {
-            inputs.command_n.dot(&path)
-        };
-        let free = system.spin.inverse_inertia() > 0.0;
-        let spin_work = if free {
-            self.sliding.integral_of_product(&self.spin, theta, order)
-        } else {
-            self.spin.0[0] * self.sliding.integral(theta, order)
-        };
-        let drive = if free {
-            system.spin.drive_torque_n_m() * h * self.spin.integral(theta, order)
-        } else {
-            -radius * h * spin_work
-        };
-        let whirl_work = self
-            .sliding
-            .integral_of_product(&self.whirl_speed, theta, order);
-        let damping = system.rotor.damping_n_s_m;
-        let contact_damping = system.contact.damping_n_s_m;
-        let unbalance = if system.rotor.eccentricity_m > 0.0 {
-            system.rotor.mass_kg * h * self.unbalance.integral_of_dot(&self.velocity, theta, order)
-        } else {
-            0.0
-        };
-        let or_zero = |present: bool, value: &dyn Fn() -> f64| if present { value() } else { 0.0 };
-        Flows {
-            control,
-            external: inputs.external_n.dot(&path),
-            drive,
-            unbalance,
-            rotor_damping: or_zero(damping > 0.0, &|| {
-                damping * h * self.velocity.integral_of_dot(&self.velocity, theta, order)
-            }),
-            stator_damping: h * system.stator.damping_integral_w(&self.stator, theta, order),
-            contact_damping: or_zero(contact_damping > 0.0, &|| {
-                let square =
-                    self.normal_speed
-                        .integral_of_product(&self.normal_speed, theta, order);
-                contact_damping * h * square
-            }),
-            sliding_friction: -h * (whirl_work + radius * spin_work),
-            rolling_friction: or_zero(system.friction.rolling_coefficient > 0.0, &|| {
-                -h * self
-                    .rolling
-                    .integral_of_product(&self.whirl_speed, theta, order)
-            }),
-            normal_impulse_n_s: h * self.force.integral(theta, order),
         }
     }
 }
