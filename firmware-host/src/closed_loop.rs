@@ -161,15 +161,9 @@ impl Bench<'_> {
     }
 
     fn advance(&mut self, from_s: f64, to_s: f64, measured_m: V2) -> Result<(), PlantError> {
-        let mut external_n = self.scene.weight_n;
-        for d in &self.scene.disturbances {
-            if d.start_s <= from_s && from_s < d.end_s() {
-                external_n += d.force_n;
-            }
-        }
         let inputs = Inputs {
             command_n: self.register_n,
-            external_n,
+            external_n: self.scene.external_n(from_s),
         };
         let mut changes: [Option<Snapshot>; 8] = [None; 8];
         let mut extra = Vec::new();

@@ -1,3 +1,5 @@
 //! The commands, one file each.
 
+pub mod accuracy;
+pub mod error;
 pub mod run;

@@ -2,12 +2,13 @@
 //!
 //! Files, each importing only from those above it: `trace`, `verdict`, `scene_error`, `scene_file`,
 //! `plant_setup`, `supervisor_setup`, `instruments`, `levitation`, `policy_kind`, `scene`,
-//! `policies`, `judge`, `closed_loop`, `trace_file`, `plot`, `report`, `table`, `output`,
+//! `policies`, `judge`, `closed_loop`, `accuracy`, `trace_file`, `plot`, `report`, `table`, `output`,
 //! `commands`.
 
 #![forbid(unsafe_code)]
 #![warn(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+pub mod accuracy;
 pub mod closed_loop;
 pub mod commands;
 pub mod instruments;

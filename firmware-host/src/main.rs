@@ -1,7 +1,7 @@
 //! Command line of the host.
 
 use clap::{Parser, Subcommand};
-use firmware_host::commands::run;
+use firmware_host::commands::{accuracy, run};
 use std::process::ExitCode;
 
 /// Simulates AMB rotors on their retainer bearings with the supervisor in the loop.
@@ -16,12 +16,15 @@ struct Cli {
 enum Command {
     /// Run a scene under each of its policies; print a table, write traces and a report.
     Run(run::RunArgs),
+    /// Error against run time of a scene's plant, over tolerances and methods.
+    Accuracy(accuracy::AccuracyArgs),
 }
 
 fn main() -> ExitCode {
     let cli = Cli::parse();
     let result = match &cli.command {
         Command::Run(args) => run::execute(args),
+        Command::Accuracy(args) => accuracy::execute(args),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -3,6 +3,7 @@
 //! The canvas has [`SCALE`] units per CSS pixel, because the backend rounds to whole units; the browser
 //! scales it back. All figures have one width and the same margins, so that time axes line up.
 
+mod log_log;
 pub(crate) mod text;
 pub(crate) mod thin;
 
@@ -20,6 +21,8 @@ use plotters::style::{Color, IntoFont, RGBColor, TextStyle};
 
 use crate::plot::text::{escape, number};
 use crate::plot::thin::{Band, Interval, PathPoint, one_band_a_column, trail};
+
+pub(crate) use crate::plot::log_log::{LogLine, log_log};
 
 /// Why a figure could not be drawn.
 #[derive(Debug, thiserror::Error)]

@@ -79,6 +79,13 @@ impl Scene {
         Self::from_text(&SceneText::read(path)?)
     }
 
+    /// Weight and disturbances that act from a time on \[N\].
+    pub fn external_n(&self, from_s: f64) -> V2 {
+        let acting = |d: &&Disturbance| d.start_s <= from_s && from_s < d.end_s();
+        let forces = self.disturbances.iter().filter(acting);
+        forces.fold(self.weight_n, |sum, d| sum + d.force_n)
+    }
+
     fn from_text(text: &SceneText) -> Result<Self, SceneError> {
         let file: SceneFile = toml::from_str(&text.text)
             .map_err(|error| text.error_in_toml(error.span().unwrap_or(0..0), error.message()))?;
@@ -103,7 +110,7 @@ impl Scene {
             check.refused(key, e.value, e.expected)
         })?;
         check.within("run.duration_s", file.run.duration_s, 1e-9, 1e5)?;
-        check.within("run.sample_rate_hz", file.run.sample_rate_hz, 1e2, 1e6)?;
+        check.within("run.sample_rate_hz", file.run.sample_rate_hz, 1.0, 1e6)?;
         check.within("run.rtol", file.run.rtol, 1e-14, 1e-2)?;
         let ticks = file.run.duration_s * file.run.sample_rate_hz;
         if ticks > 2e7 {

@@ -1,15 +1,14 @@
 //! `run SCENE.toml`: every policy of the scene, one table, traces and a report.
 
 use crate::closed_loop::{Keep, RunError, run};
+use crate::commands::error::{CommandError, print};
 use crate::output::{self, OutputError, Staging};
 use crate::policy_kind::PolicyKind;
 use crate::scene::Scene;
-use crate::scene_error::SceneError;
 use crate::verdict::{PolicyRun, SceneSummary};
 use crate::{report, table, trace_file};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
-use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -27,48 +26,6 @@ pub struct RunArgs {
     /// Threads to use [default: all cores]. Results do not depend on it.
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
-}
-
-/// Why `run` failed.
-#[derive(Debug, thiserror::Error, miette::Diagnostic)]
-pub enum CommandError {
-    /// The scene is wrong.
-    #[error(transparent)]
-    #[diagnostic(transparent)]
-    Scene(#[from] SceneError),
-    /// The results cannot be written.
-    #[error(transparent)]
-    #[diagnostic(transparent)]
-    Output(#[from] OutputError),
-    /// A run ended without a result that can be trusted.
-    #[error(transparent)]
-    #[diagnostic(help("nothing was written"))]
-    Run(#[from] RunError),
-    /// Something else stopped it.
-    #[error("{what}: {reason}")]
-    Other {
-        /// What was being done.
-        what: &'static str,
-        /// What went wrong.
-        reason: String,
-    },
-}
-
-impl CommandError {
-    /// Exit code: 2 for what the user gave, 1 for the rest.
-    pub fn exit_code(&self) -> u8 {
-        match self {
-            Self::Scene(_) | Self::Output(_) => 2,
-            Self::Run(_) | Self::Other { .. } => 1,
-        }
-    }
-
-    fn other(what: &'static str, reason: impl std::fmt::Display) -> Self {
-        Self::Other {
-            what,
-            reason: reason.to_string(),
-        }
-    }
 }
 
 /// Runs the scene and writes its results.
@@ -100,11 +57,7 @@ pub fn execute(args: &RunArgs) -> Result<(), CommandError> {
             report.display()
         )
     };
-    match std::io::stdout().write_all(text.as_bytes()) {
-        // Whoever reads the table may stop reading; the results are written.
-        Err(e) if e.kind() == std::io::ErrorKind::BrokenPipe => Ok(()),
-        result => result.map_err(|e| CommandError::other("printing", e)),
-    }
+    print(&text)
 }
 
 fn default_folder(scene: &Path) -> PathBuf {

@@ -1,0 +1,59 @@
+//! Why a command failed, and how its text reaches the terminal.
+
+use crate::closed_loop::RunError;
+use crate::output::OutputError;
+use crate::scene_error::SceneError;
+use std::io::Write;
+
+/// Why a command failed.
+#[derive(Debug, thiserror::Error, miette::Diagnostic)]
+pub enum CommandError {
+    /// The scene is wrong.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Scene(#[from] SceneError),
+    /// The results cannot be written.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Output(#[from] OutputError),
+    /// A run ended without a result that can be trusted.
+    #[error(transparent)]
+    #[diagnostic(help("nothing was written"))]
+    Run(#[from] RunError),
+    /// Something else stopped it.
+    #[error("{what}: {reason}")]
+    Other {
+        /// What was being done.
+        what: &'static str,
+        /// What went wrong.
+        reason: String,
+    },
+}
+
+impl CommandError {
+    /// Exit code: 2 for what the user gave, 1 for the rest.
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            Self::Scene(_) | Self::Output(_) => 2,
+            Self::Run(_) | Self::Other { .. } => 1,
+        }
+    }
+
+    pub(crate) fn other(what: &'static str, reason: impl std::fmt::Display) -> Self {
+        Self::Other {
+            what,
+            reason: reason.to_string(),
+        }
+    }
+}
+
+/// Prints a command's result.
+///
+/// # Errors
+/// What the system said; a reader that has stopped reading is none.
+pub(crate) fn print(text: &str) -> Result<(), CommandError> {
+    match std::io::stdout().write_all(text.as_bytes()) {
+        Err(e) if e.kind() == std::io::ErrorKind::BrokenPipe => Ok(()),
+        result => result.map_err(|e| CommandError::other("printing", e)),
+    }
+}

@@ -1,0 +1,125 @@
+//! Runs that end without an error and are wrong all the same: there must be none, at any tolerance.
+
+use plant_model::params::{PlantParams, RingParams, StatorParams};
+use plant_model::{Inputs, Method, Mode, Options, V2, build};
+use system_tests::plants::{bouncing, bouncing_start};
+
+/// Where a run ends and how it came there.
+struct Ending {
+    position_m: V2,
+    changes: Vec<Mode>,
+}
+
+fn run(params: &PlantParams, speed_m_s: f64, forced: bool, method: Method, rtol: f64) -> Ending {
+    let mut start = bouncing_start();
+    start.velocity_m_s = V2::new(speed_m_s, 0.0);
+    let options = Options {
+        rtol,
+        method,
+        ..Options::default()
+    };
+    let mut plant = build(params, &start, options).unwrap();
+    let mut changes = Vec::new();
+    let samples = if forced { 400 } else { 1 };
+    for i in 0..samples {
+        // A held force that turns, as a controller's would, but given beforehand.
+        let angle = 0.37 * f64::from(i);
+        let inputs = Inputs {
+            command_n: V2::zeros(),
+            external_n: if forced {
+                40.0 * V2::new(angle.cos(), angle.sin())
+            } else {
+                V2::zeros()
+            },
+        };
+        let t = 0.2 * f64::from(i + 1) / f64::from(samples);
+        plant
+            .advance(t, &inputs, &mut |s| changes.push(s.mode))
+            .unwrap();
+    }
+    Ending {
+        position_m: plant.snapshot().position_m,
+        changes,
+    }
+}
+
+/// Numbers of wrong runs (another sequence of modes, or half a clearance off) for each tolerance, and
+/// of starts left out because the reference itself does not survive a change of method.
+fn sweep(params: &PlantParams, forced: bool, starts: u32, tolerances: &[f64]) -> (Vec<u32>, u32) {
+    let clearance_m = params.contact.clearance_m;
+    let agree = |a: &Ending, b: &Ending| {
+        a.changes == b.changes && (a.position_m - b.position_m).norm() < 0.5 * clearance_m
+    };
+    let mut wrong = vec![0; tolerances.len()];
+    let mut left_out = 0;
+    for i in 0..starts {
+        let speed = 0.05 + 0.399 * f64::from(i) / f64::from(starts - 1);
+        let reference = run(params, speed, forced, Method::Series, 1e-13);
+        let second = run(
+            params,
+            speed * (1.0 + 1e-12),
+            forced,
+            Method::Explicit,
+            1e-12,
+        );
+        if !agree(&reference, &second) {
+            left_out += 1;
+            continue;
+        }
+        for (wrong, rtol) in wrong.iter_mut().zip(tolerances) {
+            *wrong += u32::from(!agree(
+                &reference,
+                &run(params, speed, forced, Method::Series, *rtol),
+            ));
+        }
+    }
+    (wrong, left_out)
+}
+
+const TOLERANCES: [f64; 5] = [1e-4, 1e-6, 1e-8, 1e-10, 1e-12];
+
+fn elastic(mut params: PlantParams) -> PlantParams {
+    params.stator = StatorParams::OneMass(RingParams {
+        mass_kg: 5.0,
+        stiffness_n_m: V2::repeat(2e7),
+        damping_n_s_m: V2::repeat(3000.0),
+    });
+    params
+}
+
+fn assert_none_wrong(name: &str, params: &PlantParams, forced: bool, starts: u32) {
+    let (wrong, left_out) = sweep(params, forced, starts, &TOLERANCES);
+    println!("{name}: wrong {wrong:?} of {starts} at {TOLERANCES:?}, {left_out} left out");
+    assert_eq!(wrong, vec![0; TOLERANCES.len()], "{name}");
+    assert!(
+        left_out * 50 <= starts,
+        "{name}: {left_out} of {starts} left out"
+    );
+}
+
+#[test]
+fn bouncing_soft() {
+    assert_none_wrong("k_c = 1e8", &bouncing(1e8), false, 400);
+}
+
+#[test]
+fn bouncing_stiff() {
+    assert_none_wrong("k_c = 1e10", &bouncing(1e10), false, 400);
+}
+
+#[test]
+fn bouncing_without_unbalance() {
+    let mut params = bouncing(1e8);
+    params.rotor.eccentricity_m = 0.0;
+    assert_none_wrong("no unbalance", &params, false, 400);
+}
+
+#[test]
+fn bouncing_in_an_elastic_stator() {
+    assert_none_wrong("elastic stator", &elastic(bouncing(1e8)), false, 400);
+}
+
+#[test]
+fn bouncing_under_held_forces() {
+    assert_none_wrong("held forces", &bouncing(1e8), true, 400);
+}
