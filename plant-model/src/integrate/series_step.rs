@@ -13,7 +13,9 @@ use crate::system::{StateOf, System};
 /// Steps contact by series; remembers the last step as the next one's reference.
 pub(crate) struct SeriesStepper<S: Stator> {
     series: ContactSeries<S>,
+    /// Order of the next step, and the largest that pays.
     order: usize,
+    highest_order: usize,
     step_s: f64,
 }
 
@@ -29,6 +31,7 @@ impl<S: Stator> SeriesStepper<S> {
         Self {
             series: ContactSeries::new(),
             order,
+            highest_order: order,
             step_s: 1.0 / contact_rate_rad_s,
         }
     }
@@ -59,6 +62,14 @@ impl<S: Stator> SeriesStepper<S> {
             return Err(PlantError::StepTooSmall { t_s });
         }
         self.step_s = (trusted * reference).min(1e3 * reference);
+        // Where the samples cut the steps short a lower order reaches far enough.
+        self.order = if trusted * reference > 1.5 * remaining {
+            (order - 1).max(LOWEST_ORDER)
+        } else if last {
+            order
+        } else {
+            (order + 4).min(self.highest_order)
+        };
 
         let (mut event, mut whole) = (None, last);
         for (i, guard) in self.series.guards(system, task.mode).iter().enumerate() {
@@ -98,6 +109,9 @@ impl<S: Stator> SeriesStepper<S> {
         })
     }
 }
+
+/// Below this order the last two terms say too little about the rest.
+const LOWEST_ORDER: usize = 6;
 
 /// Where a guard falls to zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
