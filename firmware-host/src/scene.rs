@@ -169,8 +169,10 @@ impl Scene {
             sample_rate_hz: file.run.sample_rate_hz,
             rtol: file.run.rtol,
             method: match file.run.method {
+                MethodFile::Auto => Method::Auto,
                 MethodFile::Series => Method::Series,
                 MethodFile::Explicit => Method::Explicit,
+                MethodFile::Stiff => Method::Stiff,
             },
             seed: file.run.seed,
             policies,

@@ -69,8 +69,10 @@ pub(crate) struct RunFile {
 #[serde(rename_all = "lowercase")]
 pub(crate) enum MethodFile {
     #[default]
+    Auto,
     Series,
     Explicit,
+    Stiff,
 }
 
 fn default_rtol() -> f64 {

@@ -21,4 +21,22 @@ impl SlidingFriction {
             }
         }
     }
+
+    /// Change of [`SlidingFriction::coefficient`] per speed \[s/m\].
+    pub fn slope(&self, along_slip_m_s: f64) -> f64 {
+        match *self {
+            Self::Constant { .. } => 0.0,
+            Self::Falling {
+                at_rest,
+                at_speed,
+                speed_scale_m_s,
+            } => {
+                let exponent = -along_slip_m_s / speed_scale_m_s;
+                if exponent > 1.0 {
+                    return 0.0;
+                }
+                -(at_rest - at_speed) / speed_scale_m_s * exponent.exp()
+            }
+        }
+    }
 }

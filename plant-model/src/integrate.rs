@@ -5,6 +5,8 @@ pub(crate) mod contact_step;
 pub(crate) mod dop853;
 pub(crate) mod driver;
 pub(crate) mod flight;
+mod pair;
+pub(crate) mod rodas5p;
 mod series_readout;
 pub(crate) mod series_step;
 pub(crate) mod transitions;
@@ -12,11 +14,40 @@ pub(crate) mod transitions;
 /// How contact is integrated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Method {
-    /// Power series of the order that the tolerance asks for.
+    /// [`Method::Series`], or [`Method::Stiff`] where the contact is so overdamped that stability and
+    /// not the tolerance would set the steps of the series.
     #[default]
+    Auto,
+    /// Power series of the order that the tolerance asks for.
     Series,
     /// The explicit pair of order 8(5,3).
     Explicit,
+    /// The linearly implicit, L-stable pair of order 5(4).
+    Stiff,
+}
+
+impl Method {
+    /// What [`Method::Auto`] comes to for a contact damping ratio ζ = d_c/(2√(k_c·m)); the others stay.
+    ///
+    /// Measured on an elastic stator with k_c = 1e10 N/m: at ζ = 10 the series is twice as fast, at
+    /// ζ = 32 the stiff pair four times at 1e-5 and no longer at 1e-8.
+    pub(crate) fn resolved(self, contact_damping_ratio: f64, rtol: f64) -> Self {
+        match self {
+            Self::Auto if contact_damping_ratio > 15.0 && rtol > 2e-8 => Self::Stiff,
+            Self::Auto => Self::Series,
+            chosen => chosen,
+        }
+    }
+
+    /// Name as in scene files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Auto => "auto",
+            Self::Series => "series",
+            Self::Explicit => "explicit",
+            Self::Stiff => "stiff",
+        }
+    }
 }
 
 /// Accuracy and work limits of a run.

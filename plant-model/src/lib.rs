@@ -12,6 +12,7 @@
 //!
 //! Files, each importing only from those above it: `params`, `contact`, `friction`, `mode`,
 //! `energy`, `part`, `series`, `stator`, `spin`, `magnet`, `system`,
+//! `tangent`,
 //! `readout`, `integrate`, `plant`,
 //! `analysis`.
 
@@ -33,6 +34,7 @@ mod series;
 mod spin;
 mod stator;
 mod system;
+mod tangent;
 
 /// A vector in the plane.
 pub type V2 = nalgebra::Vector2<f64>;

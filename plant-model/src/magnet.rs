@@ -52,6 +52,13 @@ pub(crate) struct ForceState(V2);
 
 impl Part for ForceState {
     const STATES: usize = 2;
+    fn write(&self, out: &mut [f64]) {
+        out[0] = self.0.x;
+        out[1] = self.0.y;
+    }
+    fn read(from: &[f64]) -> Self {
+        Self(V2::new(from[0], from[1]))
+    }
     #[inline]
     fn add_scaled(&mut self, factor: f64, other: &Self) {
         self.0 += factor * other.0;

@@ -27,9 +27,15 @@ pub(crate) trait Part: Copy + Default + Send + 'static {
     fn weighed_square(&self, weights: &Weights) -> f64;
     /// Whether every component is finite.
     fn is_finite(&self) -> bool;
+    /// Writes the components to the first [`Part::STATES`] places.
+    fn write(&self, out: &mut [f64]);
+    /// Reads them back.
+    fn read(from: &[f64]) -> Self;
 }
 
 impl Part for () {
+    fn write(&self, _out: &mut [f64]) {}
+    fn read(_from: &[f64]) -> Self {}
     const STATES: usize = 0;
     #[inline]
     fn add_scaled(&mut self, _factor: f64, _other: &Self) {}
@@ -54,6 +60,20 @@ pub struct Body {
 
 impl Part for Body {
     const STATES: usize = 4;
+    fn write(&self, out: &mut [f64]) {
+        let Self { position, velocity } = self;
+        let components = [position.x, position.y, velocity.x, velocity.y];
+        for (o, x) in out.iter_mut().zip(components) {
+            *o = x;
+        }
+    }
+    fn read(from: &[f64]) -> Self {
+        let at = |i: usize| from.get(i).copied().unwrap_or_default();
+        Self {
+            position: V2::new(at(0), at(1)),
+            velocity: V2::new(at(2), at(3)),
+        }
+    }
     #[inline]
     fn add_scaled(&mut self, factor: f64, other: &Self) {
         self.position += factor * other.position;
@@ -76,6 +96,15 @@ impl Part for Body {
 /// Two parts side by side.
 impl<A: Part, B: Part> Part for (A, B) {
     const STATES: usize = A::STATES + B::STATES;
+    fn write(&self, out: &mut [f64]) {
+        let (a, b) = out.split_at_mut(A::STATES);
+        self.0.write(a);
+        self.1.write(b);
+    }
+    fn read(from: &[f64]) -> Self {
+        let (a, b) = from.split_at(A::STATES);
+        (A::read(a), B::read(b))
+    }
     #[inline]
     fn add_scaled(&mut self, factor: f64, other: &Self) {
         self.0.add_scaled(factor, &other.0);

@@ -2,7 +2,7 @@
 
 use crate::energy::Audit;
 use crate::integrate::driver::Run;
-use crate::integrate::{Options, PlantError};
+use crate::integrate::{Method, Options, PlantError};
 use crate::magnet::{Amplifier, Direct, Lagged};
 use crate::mode::Mode;
 use crate::params::{ParamError, PlantParams, SpinParams, Start, StatorParams};
@@ -43,6 +43,8 @@ pub trait Plant: Send {
     fn audit(&self) -> Audit;
     /// Work done so far.
     fn work(&self) -> Work;
+    /// Method that integrates contact; never [`Method::Auto`].
+    fn method(&self) -> Method;
     /// Number of scalar states that this plant integrates in contact.
     fn states(&self) -> usize;
 }
@@ -70,6 +72,9 @@ impl<S: Stator, W: Spin, M: Amplifier> Plant for Run<S, W, M> {
     }
     fn work(&self) -> Work {
         Run::work(self)
+    }
+    fn method(&self) -> Method {
+        Run::method(self)
     }
     fn states(&self) -> usize {
         <StateOf<S, W, M> as Part>::STATES

@@ -136,8 +136,10 @@ pub struct Work {
     pub steps: u64,
     /// Rejected steps.
     pub rejected: u64,
-    /// Evaluations of the right-hand side.
+    /// Evaluations of the right-hand side; a series and a Jacobian count as one each.
     pub evaluations: u64,
+    /// Jacobians taken, each with as many factorisations as steps were tried from it.
+    pub jacobians: u64,
     /// Events found.
     pub events: u64,
 }

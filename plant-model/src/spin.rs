@@ -20,6 +20,10 @@ pub(crate) trait Spin: Copy + Send + 'static {
     fn drive_torque_n_m(&self) -> f64;
     /// Time derivative for a spin acceleration \[rad/s²\].
     fn rates(&self, state: &Self::State, acceleration: f64) -> Self::State;
+    /// What a change of the state changes in spin and angle.
+    fn change(_change: &Self::State) -> (f64, f64) {
+        (0.0, 0.0)
+    }
     /// Angle of the rotor moved on \[rad\], where it is a state.
     fn turn(&self, _state: &mut Self::State, _angle_rad: f64) {}
     /// State after `dt_s` of constant acceleration.
@@ -70,6 +74,12 @@ pub(crate) struct SpinState(f64);
 
 impl Part for SpinState {
     const STATES: usize = 1;
+    fn write(&self, out: &mut [f64]) {
+        out[0] = self.0;
+    }
+    fn read(from: &[f64]) -> Self {
+        Self(from[0])
+    }
     #[inline]
     fn add_scaled(&mut self, factor: f64, other: &Self) {
         self.0 += factor * other.0;
@@ -90,6 +100,12 @@ pub(crate) struct PhaseState(f64);
 
 impl Part for PhaseState {
     const STATES: usize = 1;
+    fn write(&self, out: &mut [f64]) {
+        out[0] = self.0;
+    }
+    fn read(from: &[f64]) -> Self {
+        Self(from[0])
+    }
     #[inline]
     fn add_scaled(&mut self, factor: f64, other: &Self) {
         self.0 += factor * other.0;
@@ -115,6 +131,9 @@ pub(crate) struct Free {
 
 impl Spin for Free {
     type State = SpinState;
+    fn change(change: &SpinState) -> (f64, f64) {
+        (change.0, 0.0)
+    }
     fn start(&self, spin_rad_s: f64, _phase_rad: f64) -> SpinState {
         SpinState(spin_rad_s)
     }
@@ -153,6 +172,9 @@ pub(crate) struct FreePhased(pub Free);
 
 impl Spin for FreePhased {
     type State = (SpinState, PhaseState);
+    fn change(change: &Self::State) -> (f64, f64) {
+        (change.0.0, change.1.0)
+    }
     fn turn(&self, state: &mut Self::State, angle_rad: f64) {
         state.1.0 += angle_rad;
     }

@@ -43,6 +43,26 @@ pub(crate) type StateOf<S, W, M> =
 
 impl<S: Part, W: Part, M: Part> Part for State<S, W, M> {
     const STATES: usize = Body::STATES + S::STATES + W::STATES + M::STATES;
+    fn write(&self, out: &mut [f64]) {
+        let (rotor, rest) = out.split_at_mut(Body::STATES);
+        let (stator, rest) = rest.split_at_mut(S::STATES);
+        let (spin, force) = rest.split_at_mut(W::STATES);
+        self.rotor.write(rotor);
+        self.stator.write(stator);
+        self.spin.write(spin);
+        self.force.write(force);
+    }
+    fn read(from: &[f64]) -> Self {
+        let (rotor, rest) = from.split_at(Body::STATES);
+        let (stator, rest) = rest.split_at(S::STATES);
+        let (spin, force) = rest.split_at(W::STATES);
+        Self {
+            rotor: Body::read(rotor),
+            stator: S::read(stator),
+            spin: W::read(spin),
+            force: M::read(force),
+        }
+    }
     #[inline]
     fn add_scaled(&mut self, factor: f64, other: &Self) {
         self.rotor.add_scaled(factor, &other.rotor);
@@ -155,7 +175,7 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
     /// Unbalance: acceleration by the square of the speed, and acceleration per unit of spin
     /// acceleration. `None` without eccentricity.
     #[inline]
-    fn unbalance(&self, t_s: f64, y: &StateOf<S, W, M>) -> Option<(V2, V2)> {
+    pub(crate) fn unbalance(&self, t_s: f64, y: &StateOf<S, W, M>) -> Option<(V2, V2)> {
         let e = self.rotor.eccentricity_m;
         if e == 0.0 {
             return None;
@@ -163,6 +183,15 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
         let (sin, cos) = self.spin.phase_rad(&y.spin, t_s).sin_cos();
         let spin = self.spin.spin_rad_s(&y.spin);
         Some((e * spin * spin * V2::new(cos, sin), e * V2::new(sin, -cos)))
+    }
+
+    /// How fast the angle of the unbalance runs with time itself: where it is no state.
+    pub(crate) fn held_turn_rad_s(&self, spin: &W::State) -> f64 {
+        if self.spin.inverse_inertia() == 0.0 {
+            self.spin.spin_rad_s(spin)
+        } else {
+            0.0
+        }
     }
 
     /// The field in contact. Smooth for given `slide` and `whirl`, also where a guard is negative.
@@ -351,5 +380,11 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
     pub(crate) fn contact_rate_rad_s(&self) -> f64 {
         let mobility = 1.0 / self.rotor.mass_kg + self.stator.inverse_mass();
         (self.contact.stiffness_n_m * mobility).sqrt() + self.contact.damping_n_s_m * mobility
+    }
+
+    /// Damping ratio ζ of the rotor on the contact spring.
+    pub(crate) fn contact_damping_ratio(&self) -> f64 {
+        let mobility = 1.0 / self.rotor.mass_kg + self.stator.inverse_mass();
+        0.5 * self.contact.damping_n_s_m * (mobility / self.contact.stiffness_n_m).sqrt()
     }
 }

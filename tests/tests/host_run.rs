@@ -509,7 +509,7 @@ fn accuracy_follows_the_tolerance() {
     assert_eq!(printed["references_agree"], true);
     assert!(printed["reference_uncertainty"].as_f64().unwrap() < 1e-9);
     let rows = printed["rows"].as_array().unwrap();
-    assert_eq!(rows.len(), 18);
+    assert_eq!(rows.len(), 24);
     for row in rows {
         for key in ["problem", "method"] {
             assert!(row[key].is_string(), "{key}");

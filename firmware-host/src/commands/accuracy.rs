@@ -95,6 +95,7 @@ fn figure(accuracy: &Accuracy) -> Result<String, CommandError> {
             .collect()
     };
     let (series, explicit) = (points("series"), points("explicit"));
+    let stiff = points("stiff");
     let lines = [
         plot::LogLine {
             name: "series",
@@ -105,6 +106,11 @@ fn figure(accuracy: &Accuracy) -> Result<String, CommandError> {
             name: "explicit pair 8(5,3)",
             points: &explicit,
             colour: plot::FREE,
+        },
+        plot::LogLine {
+            name: "stiff pair 5(4)",
+            points: &stiff,
+            colour: plot::LIMIT,
         },
     ];
     plot::log_log(("error / clearance", "time / ms"), &lines)

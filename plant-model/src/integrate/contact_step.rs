@@ -1,11 +1,11 @@
 //! One step of contact: the high-order pair, its error control, and the guards of the mode.
 
-use super::dop853::{B, Dop853, END, Rates, STEP_STAGES};
+use super::pair::{Field, Origin, Pair, Rates};
 use crate::energy::Flows;
 use crate::integrate::PlantError;
 use crate::magnet::Amplifier;
 use crate::mode::{Slide, Whirl};
-use crate::part::Weights;
+use crate::part::{Part, Weights};
 use crate::readout::Work;
 use crate::spin::Spin;
 use crate::stator::Stator;
@@ -17,6 +17,40 @@ const SCANS: usize = 8;
 impl<Y: Copy + Default> Rates<Y> for Evaluation<Y> {
     fn rates(&self) -> &Y {
         &self.rates
+    }
+    fn powers(&self) -> Flows {
+        self.powers
+    }
+}
+
+/// The contact field of one mode under held inputs, counting its calls.
+struct ContactField<'a, S, W, M> {
+    system: &'a System<S, W, M>,
+    inputs: &'a Inputs,
+    mode: (Slide, Whirl),
+    evaluations: u64,
+    jacobians: u64,
+}
+
+impl<S: Stator, W: Spin, M: Amplifier> Field<StateOf<S, W, M>, Evaluation<StateOf<S, W, M>>>
+    for ContactField<'_, S, W, M>
+{
+    fn at(&mut self, t_s: f64, y: &StateOf<S, W, M>) -> Evaluation<StateOf<S, W, M>> {
+        self.evaluations += 1;
+        self.system.contact(t_s, y, self.inputs, self.mode)
+    }
+
+    fn along(
+        &mut self,
+        t_s: f64,
+        y: &StateOf<S, W, M>,
+        dy: &StateOf<S, W, M>,
+        dt: f64,
+    ) -> StateOf<S, W, M> {
+        // The direction of time is taken once a Jacobian.
+        self.jacobians += u64::from(dt != 0.0);
+        let turn_rad = dt * self.system.held_turn_rad_s(&y.spin);
+        (self.system).contact_tangent((t_s, y), self.inputs, self.mode, (dy, turn_rad))
     }
 }
 
@@ -89,72 +123,85 @@ impl Scales {
     }
 }
 
-/// Step-size memory, stages and counters.
-pub(crate) struct ContactStepper<S: Stator, W: Spin, M: Amplifier> {
-    pair: Pair<StateOf<S, W, M>>,
+/// A pair with its step-size memory.
+pub(crate) struct ContactStepper<P> {
+    pair: P,
     step_s: f64,
 }
 
-type Pair<Y> = Dop853<Y, Evaluation<Y>>;
-
-impl<S: Stator, W: Spin, M: Amplifier> ContactStepper<S, W, M> {
-    pub(crate) fn new(contact_rate_rad_s: f64) -> Self {
+impl<P> ContactStepper<P> {
+    pub(crate) fn new<Y: Part>(contact_rate_rad_s: f64) -> Self
+    where
+        P: Pair<Y, Evaluation<Y>>,
+    {
         Self {
-            pair: Dop853::new(),
+            pair: P::new(),
             step_s: 0.05 / contact_rate_rad_s,
         }
     }
 
     /// Steps towards the end of the span until the tolerance, the end or an event stops it.
-    pub(crate) fn step(
+    pub(crate) fn step<S: Stator, W: Spin, M: Amplifier>(
         &mut self,
         system: &System<S, W, M>,
         y: &StateOf<S, W, M>,
         task: &Task<'_>,
         (scales, work): (&mut Scales, &mut Work),
-    ) -> Result<ContactStep<StateOf<S, W, M>>, PlantError> {
+    ) -> Result<ContactStep<StateOf<S, W, M>>, PlantError>
+    where
+        P: Pair<StateOf<S, W, M>, Evaluation<StateOf<S, W, M>>>,
+    {
         let (t_s, t_end_s) = task.span;
         let weights = scales.weights(system, y);
-        let mut field = |t: f64, y: &StateOf<S, W, M>| system.contact(t, y, task.inputs, task.mode);
-        let first = field(t_s, y);
-        work.evaluations += 1;
+        let mut field = ContactField {
+            system,
+            inputs: task.inputs,
+            mode: task.mode,
+            evaluations: 0,
+            jacobians: 0,
+        };
+        let first = field.at(t_s, y);
+        let origin = Origin {
+            t_s,
+            y,
+            first: &first,
+        };
+        let power = -1.0 / P::ERROR_POWER;
         let remaining = t_end_s - t_s;
         let mut step = self.step_s;
         let (y_end, h, last, event) = loop {
             // A last sliver shorter than a tenth of the step is taken along.
             let last = step * 1.1 >= remaining;
             let h = if last { remaining } else { step };
-            let (end, error) = self.pair.step(t_s, y, &first, h, &weights, &mut field);
-            work.evaluations += STEP_STAGES as u64 - 1;
+            let (end, error) = self.pair.step(&origin, h, &weights, &mut field);
             if error.is_nan() || error > 1.0 {
                 work.rejected += 1;
-                let shrink = (0.9 * error.powf(-0.125)).clamp(0.1, 0.9);
+                let shrink = (0.9 * error.powf(power)).clamp(0.1, 0.9);
                 step = h * if error.is_finite() { shrink } else { 0.1 };
                 if t_s + step == t_s || step < 1e-9 * system.moment_s() {
                     return Err(PlantError::StepTooSmall { t_s });
                 }
                 continue;
             }
-            self.pair.evaluations[END] = field(t_s + h, &end);
-            work.evaluations += 1;
-            let event = match self.suspicious() {
-                true => self.locate(t_s, h, task.muted, &mut field, work),
+            self.pair.set_end(field.at(t_s + h, &end));
+            let event = match suspicious(self.pair.seen()) {
+                true => self.locate(t_s, h, task.muted, &mut field),
                 false => None,
             };
             let Some((guard, theta)) = event else {
                 let growth = if error > 0.0 {
-                    0.9 * error.powf(-0.125)
+                    0.9 * error.powf(power)
                 } else {
                     5.0
                 };
                 // A step cut short by the end of the sample says nothing against the longer one.
-                let grown = (h * growth.clamp(0.3, 5.0)).min(10.0 / system.contact_rate_rad_s());
+                let grown =
+                    (h * growth.clamp(0.3, 5.0)).min(P::LONGEST / system.contact_rate_rad_s());
                 self.step_s = if last { grown.max(self.step_s) } else { grown };
                 break (end, h, last, None);
             };
-            let context = (t_s, &weights, &mut *work);
             let reach = (theta * h, remaining);
-            let onto = self.step_onto(context, y, &first, reach, guard, &mut field);
+            let onto = self.step_onto(&origin, reach, guard, &weights, &mut field);
             // Almost a double root right at the start: the event is here.
             let here = || (theta * h <= system.moment_s()).then_some((*y, 0.0));
             match onto.or_else(here) {
@@ -167,16 +214,16 @@ impl<S: Stator, W: Spin, M: Amplifier> ContactStepper<S, W, M> {
             }
         };
         work.steps += 1;
-        let mut flows = Flows::default();
-        // A step of no length leaves the stages of the attempt before it, which weigh nothing.
-        for &(j, b) in B {
-            flows.add_scaled(h * b, &self.pair.evaluations[j].powers);
-        }
-        let last_touch = if h > 0.0 {
-            self.pair.evaluations[END].touch
-        } else {
-            first.touch
+        // A step of no length leaves the stages of the attempt before it.
+        let (flows, last_touch) = match self.pair.seen().last() {
+            Some(end) if h > 0.0 => {
+                let touch = end.touch;
+                (self.pair.flows(&mut field), touch)
+            }
+            _ => (Flows::default(), first.touch),
         };
+        work.evaluations += field.evaluations + field.jacobians;
+        work.jacobians += field.jacobians;
         let (a, b) = (system.geometry(y).normal, system.geometry(&y_end).normal);
         Ok(ContactStep {
             t_s: if last { t_end_s } else { t_s + h },
@@ -189,38 +236,28 @@ impl<S: Stator, W: Spin, M: Amplifier> ContactStepper<S, W, M> {
         })
     }
 
-    /// Whether a guard is negative at the end, or comes near zero at any stage. The stages are rough
-    /// looks at the inside of the step, and cost nothing.
-    fn suspicious(&self) -> bool {
-        let e = &self.pair.evaluations;
-        (0..e[0].guards.len()).any(|i| {
-            let (start, end) = (e[0].guards[i], e[END].guards[i]);
-            let near = 0.1 * start.abs().max(end.abs());
-            start < 0.0 || end < near || e[1..STEP_STAGES].iter().any(|s| s.guards[i] < near)
-        })
-    }
-
     /// First event inside the last step: the guard, and θ to the accuracy of the dense output.
-    fn locate(
+    fn locate<Y: Part>(
         &mut self,
         t_s: f64,
         step_s: f64,
         muted: Option<usize>,
-        field: &mut impl FnMut(f64, &StateOf<S, W, M>) -> Evaluation<StateOf<S, W, M>>,
-        work: &mut Work,
-    ) -> Option<(usize, f64)> {
-        let dense = self.pair.dense(t_s, field);
-        let start = self.pair.evaluations[0].guards;
-        let scale = self.guard_scales();
-        let mut evaluations = 3_u64; // of the dense output
+        field: &mut impl Field<Y, Evaluation<Y>>,
+    ) -> Option<(usize, f64)>
+    where
+        P: Pair<Y, Evaluation<Y>>,
+    {
+        let dense = self.pair.dense(field);
+        let start = self.pair.seen().first()?.guards;
+        let scale = guard_scales(self.pair.seen());
         let mut guards_at = |theta: f64| {
-            evaluations += 1;
-            field(t_s + theta * step_s, &dense.at(theta)).guards
+            field
+                .at(t_s + theta * step_s, &P::dense_at(&dense, theta))
+                .guards
         };
         // A force that has just jumped may have left the cone, whichever way it moves now.
         let jumped = |(guard, g): (usize, &f64)| *g < -1e-12 * scale[guard] && muted != Some(guard);
         if let Some(guard) = start.iter().enumerate().position(jumped) {
-            work.evaluations += evaluations;
             return Some((guard, 0.0));
         }
         let mut found: Option<(usize, f64)> = None;
@@ -242,52 +279,40 @@ impl<S: Stator, W: Spin, M: Amplifier> ContactStepper<S, W, M> {
             }
             (low, at_low) = (high, at_high);
         }
-        work.evaluations += evaluations;
         found
-    }
-
-    /// Size of each guard over the last step, against which zero is judged.
-    fn guard_scales(&self) -> Guards {
-        let mut scale = [0.0; 5];
-        for e in &self.pair.evaluations[..=END] {
-            for (s, g) in scale.iter_mut().zip(&e.guards) {
-                if g.is_finite() {
-                    *s = g.abs().max(*s);
-                }
-            }
-        }
-        scale
     }
 
     /// Repeats the step with its end on the event, so that the state there has the accuracy of the
     /// pair and not of the dense output. `None` where the shorter step misses the tolerance or does
     /// not meet the event.
-    fn step_onto(
+    fn step_onto<Y: Part>(
         &mut self,
-        (t_s, weights, work): (f64, &Weights, &mut Work),
-        y: &StateOf<S, W, M>,
-        first: &Evaluation<StateOf<S, W, M>>,
+        origin: &Origin<'_, Y, Evaluation<Y>>,
         (step_s, longest_s): (f64, f64),
         guard: usize,
-        field: &mut impl FnMut(f64, &StateOf<S, W, M>) -> Evaluation<StateOf<S, W, M>>,
-    ) -> Option<(StateOf<S, W, M>, f64)> {
+        weights: &Weights,
+        field: &mut impl Field<Y, Evaluation<Y>>,
+    ) -> Option<(Y, f64)>
+    where
+        P: Pair<Y, Evaluation<Y>>,
+    {
         if step_s == 0.0 {
-            return Some((*y, 0.0));
+            return Some((*origin.y, 0.0));
         }
-        let scale = self.guard_scales()[guard];
+        let scale = guard_scales(self.pair.seen())[guard];
         let mut h = step_s;
-        let mut before = (0.0, first.guards[guard]);
+        let mut before = (0.0, origin.first.guards[guard]);
         for _ in 0..6 {
-            let (end, error) = self.pair.step(t_s, y, first, h, weights, field);
-            self.pair.evaluations[END] = field(t_s + h, &end);
-            work.evaluations += STEP_STAGES as u64;
+            let (end, error) = self.pair.step(origin, h, weights, field);
+            let at_end = field.at(origin.t_s + h, &end);
+            self.pair.set_end(at_end);
             if error.is_nan() || error > 1.0 {
                 return None;
             }
-            let value = self.pair.evaluations[END].guards[guard];
+            let value = at_end.guards[guard];
             // Slope of the guard: known for the normal force, by secant for the others.
             let slope = match guard {
-                NORMAL => self.pair.evaluations[END].touch.normal_rate_n_s,
+                NORMAL => at_end.touch.normal_rate_n_s,
                 _ => (value - before.1) / (h - before.0),
             };
             let correction = value / slope;
@@ -302,6 +327,31 @@ impl<S: Stator, W: Spin, M: Amplifier> ContactStepper<S, W, M> {
         }
         None
     }
+}
+
+/// Whether a guard is negative at the end, or comes near zero at any stage. The stages are rough
+/// looks at the inside of the step, and cost nothing.
+fn suspicious<Y>(seen: &[Evaluation<Y>]) -> bool {
+    let (Some(first), Some(last)) = (seen.first(), seen.last()) else {
+        return false;
+    };
+    (0..first.guards.len()).any(|i| {
+        let near = 0.1 * first.guards[i].abs().max(last.guards[i].abs());
+        first.guards[i] < 0.0 || seen.iter().skip(1).any(|e| e.guards[i] < near)
+    })
+}
+
+/// Size of each guard over the last step, against which zero is judged.
+fn guard_scales<Y>(seen: &[Evaluation<Y>]) -> Guards {
+    let mut scale = [0.0; 5];
+    for e in seen {
+        for (s, g) in scale.iter_mut().zip(&e.guards) {
+            if g.is_finite() {
+                *s = g.abs().max(*s);
+            }
+        }
+    }
+    scale
 }
 
 /// First sign change of one guard in a bracket whose high end is negative. A low end at zero (the

@@ -2,19 +2,16 @@
 //! and Prince (Hairer, Nørsett, Wanner: Solving Ordinary Differential Equations I, section II.10).
 //! The coefficients are the published ones.
 
+use super::pair::{Field, Origin, Pair, Rates};
+use crate::energy::Flows;
 use crate::part::{Part, Weights};
 
 /// Stages of one step, the derivative at its end, and three more for dense output.
 const STAGES: usize = 16;
 /// Stages that a step itself needs.
-pub(crate) const STEP_STAGES: usize = 12;
+const STEP_STAGES: usize = 12;
 /// Index of the evaluation at the end of the step.
-pub(crate) const END: usize = 12;
-
-/// What the integrator needs of an evaluation of the field.
-pub(crate) trait Rates<Y>: Copy + Default {
-    fn rates(&self) -> &Y;
-}
+const END: usize = 12;
 
 type Row = &'static [(usize, f64)];
 
@@ -49,7 +46,7 @@ const A: [Row; STAGES] = [
 
 #[rustfmt::skip]
 #[allow(clippy::excessive_precision, reason = "published digits")]
-pub(crate) const B: Row = &[(0, 0.054293734116568765), (5, 4.450312892752409), (6, 1.8915178993145003), (7, -5.801203960010585), (8, 0.3111643669578199), (9, -0.1521609496625161), (10, 0.20136540080403034), (11, 0.04471061572777259)];
+const B: Row = &[(0, 0.054293734116568765), (5, 4.450312892752409), (6, 1.8915178993145003), (7, -5.801203960010585), (8, 0.3111643669578199), (9, -0.1521609496625161), (10, 0.20136540080403034), (11, 0.04471061572777259)];
 
 #[rustfmt::skip]
 #[allow(clippy::excessive_precision, reason = "published digits")]
@@ -71,22 +68,14 @@ const D: [Row; 4] = [
 /// One attempted step and its stages; reused from step to step, so that no step allocates.
 #[derive(Debug, Clone)]
 pub(crate) struct Dop853<Y, E> {
-    pub(crate) evaluations: [E; STAGES],
+    evaluations: [E; STAGES],
+    t_s: f64,
     start: Y,
     end: Y,
     step_s: f64,
 }
 
 impl<Y: Part, E: Rates<Y>> Dop853<Y, E> {
-    pub(crate) fn new() -> Self {
-        Self {
-            evaluations: [E::default(); STAGES],
-            start: Y::default(),
-            end: Y::default(),
-            step_s: 0.0,
-        }
-    }
-
     fn combine(&self, row: Row) -> Y {
         let mut sum = Y::default();
         for &(j, a) in row {
@@ -95,33 +84,46 @@ impl<Y: Part, E: Rates<Y>> Dop853<Y, E> {
         sum
     }
 
-    fn stage(&mut self, i: usize, t_s: f64, field: &mut impl FnMut(f64, &Y) -> E) {
+    fn stage(&mut self, i: usize, field: &mut impl Field<Y, E>) {
         let mut y = self.start;
         let h = self.step_s;
         for &(j, a) in A[i] {
             y.add_scaled(h * a, self.evaluations[j].rates());
         }
-        self.evaluations[i] = field(t_s + C[i] * h, &y);
+        self.evaluations[i] = field.at(self.t_s + C[i] * h, &y);
+    }
+}
+
+impl<Y: Part, E: Rates<Y>> Pair<Y, E> for Dop853<Y, E> {
+    type Dense = Dense<Y>;
+    const ERROR_POWER: f64 = 8.0;
+    const LONGEST: f64 = 10.0;
+
+    fn new() -> Self {
+        Self {
+            evaluations: [E::default(); STAGES],
+            t_s: 0.0,
+            start: Y::default(),
+            end: Y::default(),
+            step_s: 0.0,
+        }
     }
 
-    /// Steps from `y` by `step_s`; `first` is the field there. Returns the end point and the error
-    /// norm, below 1 where the step meets the weights.
-    pub(crate) fn step(
+    fn step(
         &mut self,
-        t_s: f64,
-        y: &Y,
-        first: &E,
+        origin: &Origin<'_, Y, E>,
         step_s: f64,
         weights: &Weights,
-        field: &mut impl FnMut(f64, &Y) -> E,
+        field: &mut impl Field<Y, E>,
     ) -> (Y, f64) {
-        self.start = *y;
+        self.t_s = origin.t_s;
+        self.start = *origin.y;
         self.step_s = step_s;
-        self.evaluations[0] = *first;
+        self.evaluations[0] = *origin.first;
         for i in 1..STEP_STAGES {
-            self.stage(i, t_s, field);
+            self.stage(i, field);
         }
-        self.end = *y;
+        self.end = *origin.y;
         for &(j, b) in B {
             self.end.add_scaled(step_s * b, self.evaluations[j].rates());
         }
@@ -136,10 +138,17 @@ impl<Y: Part, E: Rates<Y>> Dop853<Y, E> {
         (self.end, error)
     }
 
-    /// Dense output of the last step; `field` at its end must stand in `evaluations[END]`.
-    pub(crate) fn dense(&mut self, t_s: f64, field: &mut impl FnMut(f64, &Y) -> E) -> Dense<Y> {
+    fn set_end(&mut self, end: E) {
+        self.evaluations[END] = end;
+    }
+
+    fn seen(&self) -> &[E] {
+        &self.evaluations[..=END]
+    }
+
+    fn dense(&mut self, field: &mut impl Field<Y, E>) -> Dense<Y> {
         for i in END + 1..STAGES {
-            self.stage(i, t_s, field);
+            self.stage(i, field);
         }
         let h = self.step_s;
         let mut difference = self.end;
@@ -159,6 +168,19 @@ impl<Y: Part, E: Rates<Y>> Dop853<Y, E> {
             f,
         }
     }
+
+    fn dense_at(dense: &Dense<Y>, theta: f64) -> Y {
+        dense.at(theta)
+    }
+
+    /// The pair's own weights: powers are integrated like states that nothing depends on.
+    fn flows(&mut self, _field: &mut impl Field<Y, E>) -> Flows {
+        let mut flows = Flows::default();
+        for &(j, b) in B {
+            flows.add_scaled(self.step_s * b, &self.evaluations[j].powers());
+        }
+        flows
+    }
 }
 
 /// Interpolant of order 7 over one step.
@@ -170,7 +192,7 @@ pub(crate) struct Dense<Y> {
 
 impl<Y: Part> Dense<Y> {
     /// State at θ in [0, 1].
-    pub(crate) fn at(&self, theta: f64) -> Y {
+    fn at(&self, theta: f64) -> Y {
         let mut y = self.start;
         let mut factor = 1.0;
         for (i, f) in self.f.iter().enumerate() {
@@ -182,7 +204,7 @@ impl<Y: Part> Dense<Y> {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
     use crate::V2;
     use crate::part::Body;
@@ -191,17 +213,28 @@ mod tests {
         fn rates(&self) -> &Body {
             self
         }
-    }
-
-    /// Harmonic oscillator with circular orbit.
-    fn field(_t: f64, y: &Body) -> Body {
-        Body {
-            position: y.velocity,
-            velocity: -y.position,
+        fn powers(&self) -> Flows {
+            Flows::default()
         }
     }
 
-    fn errors(h: f64) -> (f64, f64) {
+    /// Harmonic oscillator with circular orbit.
+    struct Circle;
+
+    impl Field<Body, Body> for Circle {
+        fn at(&mut self, _t_s: f64, y: &Body) -> Body {
+            Body {
+                position: y.velocity,
+                velocity: -y.position,
+            }
+        }
+        fn along(&mut self, t_s: f64, _y: &Body, dy: &Body, _dt: f64) -> Body {
+            self.at(t_s, dy)
+        }
+    }
+
+    /// Errors of end and dense output over one step.
+    pub(crate) fn errors<P: Pair<Body, Body>>(h: f64) -> (f64, f64) {
         let y = Body {
             position: V2::new(1.0, 0.0),
             velocity: V2::new(0.0, 1.0),
@@ -213,10 +246,17 @@ mod tests {
             phase: 1.0,
             force: 1.0,
         };
-        let mut pair = Dop853::new();
-        let (end, _) = pair.step(0.0, &y, &field(0.0, &y), h, &weights, &mut field);
-        pair.evaluations[END] = field(h, &end);
-        let middle = pair.dense(0.0, &mut field).at(0.3);
+        let mut pair = P::new();
+        let first = Circle.at(0.0, &y);
+        let origin = Origin {
+            t_s: 0.0,
+            y: &y,
+            first: &first,
+        };
+        let (end, _) = pair.step(&origin, h, &weights, &mut Circle);
+        pair.set_end(Circle.at(h, &end));
+        let dense = pair.dense(&mut Circle);
+        let middle = P::dense_at(&dense, 0.3);
         let exact = |t: f64| V2::new(t.cos(), t.sin());
         (
             (end.position - exact(h)).norm(),
@@ -227,8 +267,8 @@ mod tests {
     /// Local errors fall as h^9 (step) and h^8 (dense output): a wrong digit in the tableau breaks this.
     #[test]
     fn orders_are_eight_and_seven() {
-        let (step_coarse, dense_coarse) = errors(1.0);
-        let (step_fine, dense_fine) = errors(0.5);
+        let (step_coarse, dense_coarse) = errors::<Dop853<Body, Body>>(1.0);
+        let (step_fine, dense_fine) = errors::<Dop853<Body, Body>>(0.5);
         let order = |a: f64, b: f64| (a / b).log2();
         let (step, dense) = (
             order(step_coarse, step_fine),

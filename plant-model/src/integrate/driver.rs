@@ -1,7 +1,9 @@
 //! Carries a plant from control sample to control sample, mode by mode.
 
 use super::contact_step::{ContactStepper, Scales, Task};
+use super::dop853::Dop853;
 use super::flight::{Crossing, Segment};
+use super::rodas5p::Rodas5p;
 use super::series_step::SeriesStepper;
 use super::transitions::AtZero;
 use crate::energy::{Audit, Flows};
@@ -12,7 +14,7 @@ use crate::part::Part;
 use crate::readout::{Meters, Snapshot, Work};
 use crate::spin::Spin;
 use crate::stator::Stator;
-use crate::system::{Geometry, Inputs, NORMAL, StateOf, System};
+use crate::system::{Evaluation, Geometry, Inputs, NORMAL, StateOf, System};
 
 /// A run of one combination of parts.
 pub(crate) struct Run<S: Stator, W: Spin, M: Amplifier> {
@@ -26,7 +28,8 @@ pub(crate) struct Run<S: Stator, W: Spin, M: Amplifier> {
     scales: Scales,
     work: Work,
     series: SeriesStepper<S>,
-    explicit: ContactStepper<S, W, M>,
+    explicit: ContactStepper<Dop853<StateOf<S, W, M>, Evaluation<StateOf<S, W, M>>>>,
+    stiff: ContactStepper<Rodas5p<StateOf<S, W, M>, Evaluation<StateOf<S, W, M>>>>,
     inputs: Inputs,
     /// Sense of backward whirl: against the spin at the start, which friction may reverse later.
     backward: f64,
@@ -50,13 +53,16 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
         system: System<S, W, M>,
         y: StateOf<S, W, M>,
         force_max_n: f64,
-        options: Options,
+        mut options: Options,
     ) -> Self {
+        let ratio = system.contact_damping_ratio();
+        options.method = options.method.resolved(ratio, options.rtol);
         let mut run = Self {
             scales: Scales::new(options.rtol, y.rotor.velocity.norm()),
             work: Work::default(),
             series: SeriesStepper::new(options.rtol, system.contact_rate_rad_s()),
-            explicit: ContactStepper::new(system.contact_rate_rad_s()),
+            explicit: ContactStepper::new::<StateOf<S, W, M>>(system.contact_rate_rad_s()),
+            stiff: ContactStepper::new::<StateOf<S, W, M>>(system.contact_rate_rad_s()),
             system,
             force_max_n,
             t_s: 0.0,
@@ -273,8 +279,11 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
         };
         let books = (&mut self.scales, &mut self.work);
         let outcome = match self.options.method {
-            Method::Series => self.series.step(&self.system, &self.y, &task, books)?,
+            Method::Auto | Method::Series => {
+                self.series.step(&self.system, &self.y, &task, books)?
+            }
             Method::Explicit => self.explicit.step(&self.system, &self.y, &task, books)?,
+            Method::Stiff => self.stiff.step(&self.system, &self.y, &task, books)?,
         };
         self.flows.add_scaled(1.0, &outcome.flows);
         let rotor = &self.system.rotor;
@@ -363,6 +372,10 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
             snapshot.rolling_force_n = e.touch.rolling_n;
         }
         snapshot
+    }
+
+    pub(crate) fn method(&self) -> Method {
+        self.options.method
     }
 
     pub(crate) fn mode(&self) -> Mode {

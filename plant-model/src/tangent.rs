@@ -1,0 +1,246 @@
+//! The derivative of the contact field along a direction: the analytic Jacobian, column by column.
+
+use crate::V2;
+use crate::magnet::Amplifier;
+use crate::mode::{Slide, Whirl};
+use crate::part::Body;
+use crate::spin::Spin;
+use crate::stator::Stator;
+use crate::system::{Inputs, State, StateOf, System};
+
+impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
+    /// d/dε of the field at y + ε·change, with the angle of a held spin moved on by `turn_rad`·ε.
+    ///
+    /// Names follow [`System::contact`]; a leading d is the derivative.
+    pub(crate) fn contact_tangent(
+        &self,
+        (t_s, y): (f64, &StateOf<S, W, M>),
+        inputs: &Inputs,
+        (slide, whirl): (Slide, Whirl),
+        (change, turn_rad): (&StateOf<S, W, M>, f64),
+    ) -> StateOf<S, W, M> {
+        let g = self.geometry(y);
+        let (n, t, distance) = (g.normal, g.tangent, g.distance_m);
+        let now = self.contact(t_s, y, inputs, (slide, whirl));
+        let radius = self.rotor.contact_radius_m;
+        let inverse_m = 1.0 / self.rotor.mass_kg;
+        let (normal_n, sliding_n) = (now.touch.normal_n, now.touch.sliding_n);
+        let tangential_n = sliding_n + now.touch.rolling_n;
+        let turned = |v: V2| V2::new(-v.y, v.x);
+
+        let d_ring = S::inner(&change.stator);
+        let d_gap = change.rotor.position - d_ring.position;
+        let d_gap_rate = change.rotor.velocity - d_ring.velocity;
+        let ring = S::inner(&y.stator);
+        let gap_rate = y.rotor.velocity - ring.velocity;
+        let d_distance = n.dot(&d_gap);
+        let d_n = (d_gap - n * d_distance) / distance;
+        let d_t = turned(d_n);
+        let d_normal_speed = d_gap_rate.dot(&n) + gap_rate.dot(&d_n);
+        let d_whirl_speed = d_gap_rate.dot(&t) + gap_rate.dot(&d_t);
+        let (d_spin, d_phase) = W::change(&change.spin);
+        let d_phase = d_phase + turn_rad;
+        let d_sliding_speed = d_whirl_speed + radius * d_spin;
+        let d_normal = self.contact.normal_force_n(d_distance, d_normal_speed);
+        let d_push = d_normal * n + normal_n * d_n;
+
+        // Accelerations without friction.
+        let magnet_n = self.amplifier.force_n(&y.force, inputs.command_n);
+        let d_magnet = if M::LAGS {
+            self.amplifier.force_n(&change.force, V2::zeros())
+        } else {
+            V2::zeros()
+        };
+        let free_n = magnet_n + inputs.external_n
+            - self.rotor.stiffness_n_m * y.rotor.position
+            - self.rotor.damping_n_s_m * y.rotor.velocity;
+        let d_free = d_magnet
+            - self.rotor.stiffness_n_m * change.rotor.position
+            - self.rotor.damping_n_s_m * change.rotor.velocity;
+        let mut acceleration = (free_n - normal_n * n) * inverse_m;
+        let mut d_acceleration = (d_free - d_push) * inverse_m;
+        let (mut by_spin_up, mut d_by_spin_up) = (V2::zeros(), V2::zeros());
+        if let Some((by_speed, by_acceleration)) = self.unbalance(t_s, y) {
+            let spin = self.spin.spin_rad_s(&y.spin);
+            acceleration += by_speed;
+            d_acceleration += d_phase * turned(by_speed);
+            if spin != 0.0 {
+                d_acceleration += 2.0 * d_spin / spin * by_speed;
+            }
+            by_spin_up = by_acceleration;
+            d_by_spin_up = d_phase * turned(by_acceleration);
+        }
+        let ring_acceleration = S::inner(&self.stator.rates(&y.stator, normal_n * n)).velocity;
+        let d_ring_acceleration = S::inner(&self.stator.rates(&change.stator, d_push)).velocity;
+        let (relative, d_relative) = (
+            acceleration - ring_acceleration,
+            d_acceleration - d_ring_acceleration,
+        );
+        let turning = g.normal_speed_m_s * g.whirl_speed_m_s / distance;
+        let d_turning = (d_normal_speed * g.whirl_speed_m_s + g.normal_speed_m_s * d_whirl_speed
+            - turning * d_distance)
+            / distance;
+        let d_base = d_relative.dot(&t) + relative.dot(&d_t) - d_turning;
+
+        // Friction.
+        let mobility = inverse_m + self.stator.inverse_mass();
+        let inverse_j = self.spin.inverse_inertia();
+        let torque = self.spin.drive_torque_n_m();
+        let eccentric = by_spin_up.dot(&t) * inverse_j;
+        let d_eccentric = (d_by_spin_up.dot(&t) + by_spin_up.dot(&d_t)) * inverse_j;
+        let sign = slide.sign();
+        let along = sign * g.sliding_speed_m_s;
+        let mu = self.friction.sliding.coefficient(along);
+        let d_mu = self.friction.sliding.slope(along) * sign * d_sliding_speed;
+        let d_slip = -sign * (mu * d_normal + d_mu * normal_n);
+        let mu_r = self.friction.rolling_coefficient;
+        let d_rolling = -whirl.sign() * mu_r * d_normal;
+        let (d_sliding, d_rolling) = match (slide, whirl) {
+            (Slide::Rolling, Whirl::Still) if inverse_j > 0.0 => (0.0, -d_base / mobility),
+            (Slide::Rolling, Whirl::Still) => {
+                let share = if mu + mu_r > 0.0 {
+                    mu / (mu + mu_r)
+                } else {
+                    0.0
+                };
+                (
+                    -d_base / mobility * share,
+                    -d_base / mobility * (1.0 - share),
+                )
+            }
+            (Slide::Rolling, _) => {
+                let pivot = mobility + (eccentric + radius * inverse_j) * radius;
+                let d_pivot = d_eccentric * radius;
+                let d_right = d_base + d_eccentric * torque + mobility * d_rolling;
+                (-(d_right + sliding_n * d_pivot) / pivot, d_rolling)
+            }
+            (_, Whirl::Still) => {
+                let d_pushed = d_base
+                    + d_eccentric * (torque + radius * sliding_n)
+                    + (eccentric * radius + mobility) * d_slip;
+                (d_slip, -d_pushed / mobility)
+            }
+            _ => (d_slip, d_rolling),
+        };
+        let d_tangential = d_sliding + d_rolling;
+        let d_friction = d_tangential * t + tangential_n * d_t;
+        let spin_up = inverse_j * (torque + radius * sliding_n);
+        let d_spin_up = inverse_j * radius * d_sliding;
+        State {
+            rotor: Body {
+                position: change.rotor.velocity,
+                velocity: d_acceleration
+                    + d_friction * inverse_m
+                    + d_spin_up * by_spin_up
+                    + spin_up * d_by_spin_up,
+            },
+            stator: self.stator.rates(&change.stator, d_push - d_friction),
+            spin: self.spin.rates(&change.spin, d_spin_up),
+            force: self.amplifier.rates(&change.force, V2::zeros()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::magnet::Lagged;
+    use crate::params::*;
+    use crate::part::Part;
+    use crate::spin::{Free, FreePhased};
+    use crate::stator::TwoMass;
+
+    /// Every column in every mode against central differences of the field.
+    #[test]
+    fn columns_are_the_fields_differences() {
+        let ring = |k: f64| RingParams {
+            mass_kg: 7.0,
+            stiffness_n_m: V2::new(k, 1.2 * k),
+            damping_n_s_m: V2::new(2e4, 1e4),
+        };
+        let system = System {
+            rotor: RotorParams {
+                mass_kg: 10.0,
+                stiffness_n_m: 4e5,
+                damping_n_s_m: 200.0,
+                eccentricity_m: 2e-5,
+                contact_radius_m: 0.05,
+            },
+            contact: ContactParams {
+                clearance_m: 2e-4,
+                stiffness_n_m: 1e8,
+                damping_n_s_m: 5e3,
+            },
+            friction: FrictionParams {
+                sliding: SlidingFriction::Falling {
+                    at_rest: 0.3,
+                    at_speed: 0.1,
+                    speed_scale_m_s: 2.0,
+                },
+                rolling_coefficient: 0.02,
+            },
+            stator: TwoMass {
+                inner: ring(8e8),
+                outer: ring(3e9),
+            },
+            spin: FreePhased(Free {
+                inertia_kg_m2: 0.05,
+                drive_torque_n_m: 3.0,
+            }),
+            amplifier: Lagged { lag_s: 1e-4 },
+        };
+        type Y = StateOf<TwoMass, FreePhased, Lagged>;
+        const SCALES: [f64; 16] = [
+            1e-4, 1e-4, 0.5, 0.5, 1e-5, 1e-5, 0.1, 0.1, 1e-5, 1e-5, 0.1, 0.1, 50.0, 1.0, 100.0,
+            100.0,
+        ];
+        let point: Vec<f64> = [
+            1.9, 1.1, -0.4, 0.3, 0.2, -0.5, 0.7, -0.1, 0.3, 0.4, -0.2, 0.6, 0.9, 0.4, 0.5, -0.8,
+        ]
+        .iter()
+        .zip(SCALES)
+        .map(|(x, s)| x * s)
+        .collect();
+        let inputs = Inputs {
+            command_n: V2::new(30.0, -20.0),
+            external_n: V2::new(5.0, 7.0),
+        };
+        let slides = [Slide::Positive, Slide::Negative, Slide::Rolling];
+        for slide in slides {
+            for whirl in [Whirl::Positive, Whirl::Negative, Whirl::Still] {
+                for i in 0..Y::STATES {
+                    let mut direction = [0.0; 16];
+                    direction[i] = SCALES[i];
+                    let moved = |h: f64| {
+                        let mut at = point.clone();
+                        at[i] += h * SCALES[i];
+                        let mut out = [0.0; 16];
+                        let e = system.contact(0.0, &Y::read(&at), &inputs, (slide, whirl));
+                        e.rates.write(&mut out);
+                        out
+                    };
+                    let h = 1e-4;
+                    let (up, down) = (moved(h), moved(-h));
+                    let mut exact = [0.0; 16];
+                    system
+                        .contact_tangent(
+                            (0.0, &Y::read(&point)),
+                            &inputs,
+                            (slide, whirl),
+                            (&Y::read(&direction), 0.0),
+                        )
+                        .write(&mut exact);
+                    let size = exact.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+                    for j in 0..16 {
+                        let difference = (up[j] - down[j]) / (2.0 * h);
+                        assert!(
+                            (difference - exact[j]).abs() < 1e-5 * size,
+                            "{slide:?} {whirl:?} d{j}/d{i}: {difference:e} against {:e}",
+                            exact[j]
+                        );
+                    }
+                }
+            }
+        }
+    }
+}
