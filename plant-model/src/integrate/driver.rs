@@ -16,6 +16,9 @@ use crate::spin::Spin;
 use crate::stator::Stator;
 use crate::system::{Evaluation, Geometry, Inputs, NORMAL, StateOf, System};
 
+type Explicit<Y> = Dop853<Y, Evaluation<Y>>;
+type Stiff<Y> = Rodas5p<Y, Evaluation<Y>>;
+
 /// A run of one combination of parts.
 pub(crate) struct Run<S: Stator, W: Spin, M: Amplifier> {
     pub(crate) system: System<S, W, M>,
@@ -28,8 +31,8 @@ pub(crate) struct Run<S: Stator, W: Spin, M: Amplifier> {
     scales: Scales,
     work: Work,
     series: SeriesStepper<S>,
-    explicit: ContactStepper<Dop853<StateOf<S, W, M>, Evaluation<StateOf<S, W, M>>>>,
-    stiff: ContactStepper<Rodas5p<StateOf<S, W, M>, Evaluation<StateOf<S, W, M>>>>,
+    explicit: ContactStepper<Explicit<StateOf<S, W, M>>>,
+    stiff: ContactStepper<Stiff<StateOf<S, W, M>>>,
     inputs: Inputs,
     /// Sense of backward whirl: against the spin at the start, which friction may reverse later.
     backward: f64,
