@@ -7,13 +7,12 @@
 //! ```text
 //! params ─► build ─► Plant::advance(t_end, Inputs) ─► Snapshot, Meters, Audit
 //!                      flight:  power series, exact; wall crossing on the exact solution
-//!                      contact: explicit pair of order 8(5,3), guards of the mode on dense output
+//!                      contact: power series too, guards of the mode as polynomials; an explicit and a
+//!                               stiff pair for checks and for overdamped contact
 //! ```
 //!
-//! Files, each importing only from those above it: `params`, `contact`, `friction`, `mode`,
-//! `energy`, `part`, `series`, `stator`, `spin`, `magnet`, `system`,
-//! `tangent`,
-//! `readout`, `integrate`, `plant`,
+//! Files, each importing only from those above it: `params`, `contact`, `friction`, `mode`, `energy`,
+//! `part`, `series`, `stator`, `spin`, `magnet`, `system`, `tangent`, `readout`, `integrate`, `plant`,
 //! `analysis`.
 
 #![forbid(unsafe_code)]
