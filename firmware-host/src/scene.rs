@@ -139,7 +139,7 @@ impl Scene {
             if d.start_s >= file.run.duration_s {
                 let key = format!("disturbance[{i}].start_s");
                 let end = file.run.duration_s;
-                let message = format!("is {}, after the end of the run at {end}", d.start_s);
+                let message = format!("is {}, not before the end of the run at {end}", d.start_s);
                 let help = Some("start it earlier, or lengthen run.duration_s".to_owned());
                 return Err(text.error_at_key(&key, message, help));
             }

@@ -1,4 +1,5 @@
-//! How time passes: exact flight, a high-order explicit pair in contact, events between them.
+//! How time passes: flight and contact by power series, an explicit and a stiff pair beside them, and
+//! the events between modes.
 
 pub(crate) mod contact_series;
 pub(crate) mod contact_step;

@@ -36,7 +36,7 @@ pub(crate) fn quadrature(phase: f64) -> &'static [(f64, f64)] {
     }
 }
 
-/// Largest product of step and fastest rate; 1^23/23! = 4e-23 is far below round-off.
+/// Largest product of step and fastest rate; twenty terms leave 1/21! = 2e-20, below round-off.
 pub(crate) const MAX_PHASE: f64 = 1.0;
 
 /// Σ a_i·b_{n−i} over two slices of the same length. Four sums side by side: one alone would wait for

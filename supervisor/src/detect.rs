@@ -25,7 +25,8 @@ pub(crate) struct Findings {
     pub(crate) calm: bool,
 }
 
-/// Ticks after contact for which the observer stays quick: its velocity must get over the impact.
+/// Ticks for which the observer stays quick from the last tick in contact on: its velocity must get
+/// over the impact.
 const RECOVERY_TICKS: u8 = 3;
 
 /// Below this radius a load estimate alone does not make contact unavoidable; it may be noise.

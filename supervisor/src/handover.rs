@@ -51,10 +51,11 @@ impl Readiness {
     }
 }
 
-/// While the supervisor acts the controller does not have the bearing and must not integrate. Once
-/// contact could be avoided it may, so that it becomes ready.
-pub(crate) fn integrator_hint(phase: Phase, calm: bool) -> IntegratorHint {
+/// While the supervisor acts, or the bearing is off, the controller does not have the bearing and must
+/// not integrate. Once contact could be avoided it may, so that it becomes ready.
+pub(crate) fn integrator_hint(phase: Phase, calm: bool, bearing_on: bool) -> IntegratorHint {
     match phase {
+        _ if !bearing_on => IntegratorHint::Hold,
         Phase::Levitated | Phase::Handover { .. } => IntegratorHint::Run,
         Phase::Approach { .. } | Phase::Bounce { .. } if calm => IntegratorHint::Run,
         _ => IntegratorHint::Hold,

@@ -147,7 +147,13 @@ impl Impact {
 fn braking(motion: &Motion, found: &Findings, spin_sign: f32, coeffs: &Coeffs) -> Wanted {
     let n = found.normal;
     let b = n.turned() * backward(n, motion.velocity, spin_sign);
-    let sum = motion.velocity.dot(b) + coeffs.bounce_gain * max(found.radial_speed, 0.0);
+    // With unknown spin only the whirl counts that is there, as in flight.
+    let gain = if spin_sign != 0.0 {
+        coeffs.bounce_gain
+    } else {
+        0.0
+    };
+    let sum = motion.velocity.dot(b) + gain * max(found.radial_speed, 0.0);
     let strength = min(max(sum, 0.0) * coeffs.damper, 1.0);
     // Unit vector against b̂ + μ·n̂.
     let mu = coeffs.friction;

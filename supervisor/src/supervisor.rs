@@ -95,7 +95,7 @@ impl<const RECORD: usize> Supervisor<RECORD> {
             mode: phase.mode(),
             limits,
             events: events | reading.events,
-            integrator: handover::integrator_hint(phase, calm),
+            integrator: handover::integrator_hint(phase, calm, reading.bearing_on),
         };
         let position = reading.position.unwrap_or(motion.position);
         command.events |= (self.recorder).push(sample, position, self.force, &command);

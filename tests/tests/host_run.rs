@@ -278,7 +278,7 @@ fn bad_scenes_are_refused_with_file_line_key_and_expectation() {
             "start_s = 0.02",
             "start_s = 0.2",
             "disturbance[0].start_s",
-            "after the end of the run",
+            "not before the end of the run",
         ),
         (
             "mass_kg = 10.0",

@@ -315,19 +315,35 @@ fn a_load_seats_the_rotor_within_the_friction_cones() {
     );
 }
 
-/// Mode changes and end state of a problem with flight, slip and roll, from an independent code.
+/// Mode changes and end state of a problem with flight, slip and roll, from an independent code, at two
+/// contact stiffnesses.
 #[test]
 fn bouncing_into_rolling_matches_an_independent_solution() {
-    let mut plant = build(&bouncing(1e8), &bouncing_start(), TIGHT).unwrap();
-    let mut changes = Vec::new();
-    plant
-        .advance(0.2, &Inputs::default(), &mut |s| {
-            changes.push((s.t_s, s.mode));
-        })
-        .unwrap();
-    let (t, mode) = *changes.last().unwrap();
-    assert_eq!((changes.len(), mode), (6, Mode::Roll));
-    assert!((t - 0.008_847_779_416).abs() < 2e-12, "{t}");
-    let error = plant.snapshot().position_m - V2::new(-4.205_650_712_3e-4, -2.680_261_826_5e-4);
-    assert!(error.norm() < 1e-8 * 3e-4, "{error:e}");
+    let soft = (
+        1e8,
+        6,
+        0.008_847_779_416,
+        [-4.205_650_712_3e-4, -2.680_261_826_5e-4],
+    );
+    let stiff = (
+        1e10,
+        14,
+        0.005_794_092_835,
+        [2.999_149_339_61e-4, -4.508_778_178_1e-5],
+    );
+    for (contact_stiffness_n_m, count, last_s, end_m) in [soft, stiff] {
+        let params = bouncing(contact_stiffness_n_m);
+        let mut plant = build(&params, &bouncing_start(), TIGHT).unwrap();
+        let mut changes = Vec::new();
+        plant
+            .advance(0.2, &Inputs::default(), &mut |s| {
+                changes.push((s.t_s, s.mode));
+            })
+            .unwrap();
+        let (t, mode) = *changes.last().unwrap();
+        assert_eq!((changes.len(), mode), (count, Mode::Roll));
+        assert!((t - last_s).abs() < 1e-12, "{t}");
+        let error = plant.snapshot().position_m - V2::from(end_m);
+        assert!(error.norm() < 3e-10 * 3e-4, "{error:e}");
+    }
 }

@@ -202,8 +202,8 @@ proptest! {
     fn energy_closes(params in any_plant(), start in any_start()) {
         for method in [Method::Series, Method::Explicit, Method::Stiff] {
             // A pair of order five would take its time at the last.
-            let tightest = if method == Method::Stiff { 1e-6 } else { 1e-9 };
-            for rtol in [1e-4, 1e-6, tightest] {
+            let tolerances = if method == Method::Stiff { 2 } else { 3 };
+            for &rtol in &[1e-4, 1e-6, 1e-9][..tolerances] {
                 let (_, residual) = run(&params, &start, same, (method, rtol));
                 prop_assert!(
                     residual < 10.0 * rtol,

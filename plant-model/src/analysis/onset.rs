@@ -7,7 +7,7 @@ use crate::params::PlantParams;
 /// c·ω0·(D/μ + √(1 + (D/μ)²)), D = d/(2·m·ω0). μ is the coefficient that drives the whirl: at rest,
 /// less the rolling coefficient.
 ///
-/// `None` for a negative stiffness, which presses the rotor onto the wall at any speed, and where
+/// `None` for a negative stiffness, which presses the rotor onto the wall even at rest, and where
 /// friction drives nothing.
 pub fn critical_tangential_speed_m_s(params: &PlantParams) -> Option<f64> {
     let friction = &params.friction;

@@ -286,7 +286,9 @@ impl<S: Stator> Segment<S> {
             } else {
                 ((rate * rate - 2.0 * curvature * g).sqrt() - rate) / curvature
             };
-            advance = advance.max(least);
+            if g >= -tiny {
+                advance = advance.max(least);
+            }
             theta += advance;
             if theta > 1.0 {
                 return Crossing::Nowhere;
