@@ -1,0 +1,65 @@
+//! The project's own integrator.
+
+use crate::problem::Problem;
+use crate::ride::Ending;
+use plant_model::params::*;
+use plant_model::{Inputs, Method, Options, V2, build};
+
+pub fn run(problem: &Problem, method: Method, rtol: f64) -> Result<Ending, String> {
+    let p = problem;
+    let stator = if p.m_s > 0.0 {
+        StatorParams::OneMass(RingParams {
+            mass_kg: p.m_s,
+            stiffness_n_m: V2::repeat(p.k_s),
+            damping_n_s_m: V2::repeat(p.d_s),
+        })
+    } else {
+        StatorParams::Rigid
+    };
+    let params = PlantParams {
+        rotor: RotorParams {
+            mass_kg: p.m,
+            stiffness_n_m: p.k,
+            damping_n_s_m: p.d,
+            eccentricity_m: p.eccentricity,
+            contact_radius_m: p.radius,
+        },
+        spin: SpinParams::Held,
+        stator,
+        contact: ContactParams {
+            clearance_m: p.clearance,
+            stiffness_n_m: p.k_c,
+            damping_n_s_m: p.d_c,
+        },
+        friction: FrictionParams {
+            sliding: SlidingFriction::Constant { coefficient: p.mu },
+            rolling_coefficient: 0.0,
+        },
+        magnet: None,
+    };
+    let start = Start {
+        position_m: V2::zeros(),
+        velocity_m_s: V2::new(p.start_speed, 0.0),
+        spin_rad_s: p.spin,
+        spin_phase_rad: 0.0,
+    };
+    // The run is one sample long: leave no limit but that of the whole run.
+    let options = Options {
+        rtol,
+        method,
+        steps_per_sample: Options::default().steps,
+        ..Options::default()
+    };
+    let mut plant = build(&params, &start, options).map_err(|e| e.to_string())?;
+    let mut changes = 0;
+    plant
+        .advance(p.t_end, &Inputs::default(), &mut |_| changes += 1)
+        .map_err(|e| e.to_string())?;
+    let position = plant.snapshot().position_m;
+    Ok(Ending {
+        x: position.x,
+        y: position.y,
+        changes,
+        evaluations: plant.work().evaluations,
+    })
+}
