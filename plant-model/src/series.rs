@@ -124,9 +124,15 @@ impl Series {
         convolve(&self.0[..k], &other.0[1..=k], |a, b| a * b)
     }
 
-    /// ∫ a·b dθ from 0 to θ; products beyond the order are below what the order leaves out.
+    /// ∫ a·b dθ from 0 to θ, of the whole product: its coefficients fall 2^k times more slowly than
+    /// those of its factors.
     pub(crate) fn integral_of_dot(&self, other: &Self, theta: f64, order: usize) -> f64 {
-        integral(theta, order, |k| self.dot_coefficient(other, k))
+        integral(theta, 2 * order, |k| {
+            let (low, high) = (k.saturating_sub(order), k.min(order));
+            let (a, b) = (&self.0[low..=high], &other.0[low..=high]);
+            let sum = convolve(a, b, |a, b| a.component_mul(&b));
+            sum.x + sum.y
+        })
     }
 }
 
@@ -184,7 +190,10 @@ impl Scalar {
 
     /// ∫ a·b dθ from 0 to θ.
     pub(crate) fn integral_of_product(&self, other: &Self, theta: f64, order: usize) -> f64 {
-        integral(theta, order, |k| self.product_coefficient(other, k))
+        integral(theta, 2 * order, |k| {
+            let (low, high) = (k.saturating_sub(order), k.min(order));
+            convolve(&self.0[low..=high], &other.0[low..=high], |a, b| a * b)
+        })
     }
 }
 

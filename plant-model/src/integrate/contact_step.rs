@@ -256,7 +256,11 @@ impl<P> ContactStepper<P> {
                 .guards
         };
         // A force that has just jumped may have left the cone, whichever way it moves now.
-        let jumped = |(guard, g): (usize, &f64)| *g < -1e-12 * scale[guard] && muted != Some(guard);
+        // A normal force that rises from zero has not: the touch was found to round-off only.
+        let rising = self.pair.seen().first()?.touch.normal_rate_n_s > 0.0;
+        let jumped = |(guard, g): (usize, &f64)| {
+            *g < -1e-12 * scale[guard] && muted != Some(guard) && !(guard == NORMAL && rising)
+        };
         if let Some(guard) = start.iter().enumerate().position(jumped) {
             return Some((guard, 0.0));
         }

@@ -184,6 +184,12 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
         let remaining = t_end_s - self.t_s;
         let step = remaining.min(self.system.longest_flight_s(&self.y, remaining));
         let last = step >= remaining;
+        // A step that the clock can show.
+        let step = if last {
+            step
+        } else {
+            (self.t_s + step) - self.t_s
+        };
         let segment = self.system.fly(self.t_s, &self.y, &self.inputs, step);
         let (theta, hit) =
             match segment.wall_crossing(self.system.contact.clearance_m, self.just_left) {
@@ -233,11 +239,12 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
         };
         let mut theta = 1.0;
         let mut next = Phase::Beyond;
-        let mut valid = 0.0;
+        let (mut valid, mut lack) = (0.0, room(0.0).1);
         for i in 1..=SCANS {
             let at = f64::from(i) / f64::from(SCANS);
             let (inside, force) = room(at);
-            if inside <= 0.0 || force < 0.0 {
+            // A lift-off found a moment early leaves a force that is still falling.
+            if inside <= 0.0 || (force < 0.0 && force < lack) {
                 let leaves = inside <= 0.0;
                 let hold = |th: f64| {
                     if leaves {
@@ -254,7 +261,7 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
                 };
                 break;
             }
-            valid = at;
+            (valid, lack) = (at, force);
         }
         self.fly(&segment, theta, last.then_some(t_end_s));
         if matches!(next, Phase::Contact(..)) {
@@ -300,7 +307,10 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
         let stood_still = outcome.t_s == self.t_s;
         self.y = outcome.y;
         self.t_s = outcome.t_s;
-        match outcome.event {
+        // As the normal force dies the friction cones close with it: that is one event, lift-off.
+        let end = &outcome.ends[1];
+        let over = end.normal_n < -end.normal_rate_n_s * self.system.moment_s();
+        match outcome.event.map(|guard| if over { NORMAL } else { guard }) {
             None => self.system.zero_speeds(&mut self.y, AtZero::held(pair)),
             Some(NORMAL) => self.lift_off(),
             Some(guard) => {

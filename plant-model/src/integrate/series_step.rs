@@ -8,7 +8,7 @@ use crate::readout::Work;
 use crate::series::{MAX_ORDER, Scalar};
 use crate::spin::Spin;
 use crate::stator::Stator;
-use crate::system::{StateOf, System};
+use crate::system::{NORMAL, StateOf, System};
 
 /// Steps contact by series; remembers the last step as the next one's reference.
 pub(crate) struct SeriesStepper<S: Stator> {
@@ -47,15 +47,25 @@ impl<S: Stator> SeriesStepper<S> {
         let (t_s, t_end_s) = task.span;
         let weights = scales.weights(system, y);
         let remaining = t_end_s - t_s;
-        let reference = self.step_s.min(remaining);
+        let mut reference = self.step_s.min(remaining);
         let order = self.order;
-        system.contact_series(&mut self.series, (t_s, y), task, (reference, order));
         work.steps += 1;
-        work.evaluations += 1;
-
-        // The two highest coefficients say how far the rest can be left out.
-        let reach = |k: usize| self.series.size(k, &weights).powf(-1.0 / k as f64);
-        let trusted = 0.9 * reach(order).min(reach(order - 1));
+        // The two highest coefficients say how far the rest can be left out. Where the reference was
+        // far too long they have lost their digits, or overflowed.
+        let trusted = loop {
+            system.contact_series(&mut self.series, (t_s, y), task, (reference, order));
+            work.evaluations += 1;
+            let reach = |k: usize| self.series.size(k, &weights).powf(-1.0 / k as f64);
+            let (a, b) = (reach(order), reach(order - 1));
+            let trusted = 0.9 * if a < b || a.is_nan() { a } else { b };
+            if trusted > 1e-2 {
+                break trusted;
+            }
+            reference *= if trusted > 1e-6 { trusted } else { 1e-6 };
+            if t_s + reference == t_s {
+                return Err(PlantError::StepTooSmall { t_s });
+            }
+        };
         let last = trusted * reference >= remaining;
         let mut theta = if last { remaining / reference } else { trusted };
         if !(theta > 0.0 && t_s + theta * reference > t_s) {
@@ -76,7 +86,7 @@ impl<S: Stator> SeriesStepper<S> {
             let Some(guard) = guard.as_ref().filter(|_| task.muted != Some(i)) else {
                 continue;
             };
-            let (stop, by) = match first_fall(guard, theta, order) {
+            let (stop, by) = match first_fall(guard, theta, order, i == NORMAL) {
                 Fall::Never => continue,
                 Fall::At(stop) => (stop, Some(i)),
                 Fall::ClearUntil(stop) => (stop, None),
@@ -128,7 +138,7 @@ enum Fall {
 ///
 /// Conservative advancement: with M an upper bound of |g̈| over a window, no root lies before that of
 /// g + ġ·τ − M·τ²/2. Windows shrink and grow with the moves, so that the bound stays close.
-fn first_fall(guard: &Scalar, end: f64, order: usize) -> Fall {
+fn first_fall(guard: &Scalar, end: f64, order: usize, normal: bool) -> Fall {
     let c = &guard.0[..=order];
     let swing = c[1..]
         .iter()
@@ -154,8 +164,9 @@ fn first_fall(guard: &Scalar, end: f64, order: usize) -> Fall {
             g = g * theta + c;
         }
         if theta == 0.0 {
-            // A force that has just jumped may have left the cone, whichever way it moves now.
-            if g < -start_tiny {
+            // A force that has just jumped may have left the cone, whichever way it moves now. A
+            // normal force that rises has not: the touch was found to round-off only.
+            if g < -start_tiny && !(normal && rate > 0.0) {
                 return Fall::At(0.0);
             }
             if g <= start_tiny {

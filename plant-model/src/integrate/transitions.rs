@@ -97,7 +97,9 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
     ) -> (Slide, Whirl) {
         let g = self.geometry(y);
         let zero = 1e-13 * y.rotor.velocity.norm();
-        let slide_at_zero = at_zero.slide || g.sliding_speed_m_s.abs() <= zero;
+        // Without friction the direction of slip changes nothing, and there is nothing to hold it.
+        let frictionless = self.friction.sliding.coefficient(0.0) == 0.0;
+        let slide_at_zero = !frictionless && (at_zero.slide || g.sliding_speed_m_s.abs() <= zero);
         let whirl_at_zero = at_zero.whirl || g.whirl_speed_m_s.abs() <= zero;
         let slides: &[Slide] = if slide_at_zero {
             &[Slide::Rolling, Slide::Positive, Slide::Negative]
