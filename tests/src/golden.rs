@@ -2,7 +2,36 @@
 //! better than its bound also fails, and the bound moves with the code.
 
 use std::fmt::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+
+fn path(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("golden")
+        .join(format!("{name}.txt"))
+}
+
+/// Puts bounds of `relative` on either side of the measured values into `tests/golden/<name>.txt`;
+/// comments stay.
+///
+/// # Errors
+/// Of reading and writing the file.
+pub fn rewrite(name: &str, measured: &[(&str, f64)], relative: f64) -> std::io::Result<()> {
+    let text = std::fs::read_to_string(path(name))?;
+    let mut table: String = text
+        .split_inclusive('\n')
+        .filter(|l| l.starts_with('#'))
+        .collect();
+    for (quantity, value) in measured {
+        let (low, high) = (value * (1.0 - relative), value * (1.0 + relative));
+        let _ = writeln!(
+            table,
+            "{quantity:<34} {:>8} {:>8}",
+            low.floor(),
+            high.ceil()
+        );
+    }
+    std::fs::write(path(name), table)
+}
 
 /// Compares measured values with the table `tests/golden/<name>.txt`.
 ///
@@ -11,9 +40,7 @@ use std::path::Path;
 /// # Errors
 /// The whole table with what was measured and what is wrong with it.
 pub fn compare(name: &str, measured: &[(&str, f64)]) -> Result<(), String> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("golden")
-        .join(format!("{name}.txt"));
+    let path = path(name);
     let text = std::fs::read_to_string(&path).map_err(|e| format!("{}: {e}", path.display()))?;
     let mut report = format!(
         "{}\n{:<34}{:>14}{:>14}{:>16}\n",
