@@ -7,8 +7,8 @@
 //! ```text
 //! params ─► build ─► Plant::advance(t_end, Inputs) ─► Snapshot, Meters, Audit
 //!                      flight:  power series, exact; wall crossing on the exact solution
-//!                      contact: power series too, guards of the mode as polynomials; an explicit and a
-//!                               stiff pair for checks and for overdamped contact
+//!                      contact: power series too, guards of the mode as polynomials; an explicit
+//!                               pair for checks, Radau IIA for overdamped contact
 //! ```
 //!
 //! Files, each importing only from those above it: `params`, `contact`, `friction`, `mode`, `energy`,

@@ -1,7 +1,7 @@
 //! The magnet's amplifier: a delivered force that follows the command at once or with a lag.
 
 use crate::V2;
-use crate::part::{Part, Weights};
+use crate::part::{Part, Weights, turned};
 use crate::series::Series;
 
 /// A model of the amplifier. Commands arrive already limited to the force cap.
@@ -70,6 +70,13 @@ impl Part for ForceState {
     #[inline]
     fn is_finite(&self) -> bool {
         self.0.iter().all(|x| x.is_finite())
+    }
+    #[inline]
+    fn turned(&self, turn: V2) -> Self {
+        Self(turned(self.0, turn))
+    }
+    fn turning(&self) -> Self {
+        Self(crate::series::turned(self.0))
     }
 }
 

@@ -7,6 +7,8 @@ use crate::V2;
 pub(crate) struct Weights {
     /// Per metre.
     pub position: f64,
+    /// Per metre of the rotor against its ring, on which the contact force acts.
+    pub gap: f64,
     /// Per metre per second.
     pub velocity: f64,
     /// Per radian per second.
@@ -31,7 +33,20 @@ pub(crate) trait Part: Copy + Default + Send + 'static {
     fn write(&self, out: &mut [f64]);
     /// Reads them back.
     fn read(from: &[f64]) -> Self;
+    /// Every plane vector turned counter-clockwise; `turn` holds cosine and sine of the angle.
+    fn turned(&self, turn: V2) -> Self;
+    /// Every plane vector turned by a quarter, everything else zero: what turning at 1 rad/s adds to
+    /// the rates.
+    fn turning(&self) -> Self;
 }
+
+/// A vector turned counter-clockwise; `turn` holds cosine and sine of the angle.
+#[inline]
+pub(crate) fn turned(v: V2, turn: V2) -> V2 {
+    V2::new(turn.x * v.x - turn.y * v.y, turn.y * v.x + turn.x * v.y)
+}
+
+const QUARTER: V2 = V2::new(0.0, 1.0);
 
 impl Part for () {
     fn write(&self, _out: &mut [f64]) {}
@@ -47,6 +62,8 @@ impl Part for () {
     fn is_finite(&self) -> bool {
         true
     }
+    fn turned(&self, _turn: V2) -> Self {}
+    fn turning(&self) -> Self {}
 }
 
 /// A mass that moves in the plane.
@@ -91,6 +108,16 @@ impl Part for Body {
             .chain(&self.velocity)
             .all(|x| x.is_finite())
     }
+    #[inline]
+    fn turned(&self, turn: V2) -> Self {
+        Self {
+            position: turned(self.position, turn),
+            velocity: turned(self.velocity, turn),
+        }
+    }
+    fn turning(&self) -> Self {
+        self.turned(QUARTER)
+    }
 }
 
 /// Two parts side by side.
@@ -117,5 +144,12 @@ impl<A: Part, B: Part> Part for (A, B) {
     #[inline]
     fn is_finite(&self) -> bool {
         self.0.is_finite() && self.1.is_finite()
+    }
+    #[inline]
+    fn turned(&self, turn: V2) -> Self {
+        (self.0.turned(turn), self.1.turned(turn))
+    }
+    fn turning(&self) -> Self {
+        (self.0.turning(), self.1.turning())
     }
 }

@@ -136,10 +136,13 @@ pub struct Work {
     pub steps: u64,
     /// Rejected steps.
     pub rejected: u64,
-    /// Evaluations of the right-hand side; a series and a Jacobian count as one each.
+    /// Evaluations of the right-hand side. A series counts as many as it has coefficients, a Jacobian
+    /// as one.
     pub evaluations: u64,
-    /// Jacobians taken, each with as many factorisations as steps were tried from it.
+    /// Jacobians taken.
     pub jacobians: u64,
+    /// Factorisations of the stiff method's matrices, once for each step size tried.
+    pub factorisations: u64,
     /// Events found.
     pub events: u64,
 }

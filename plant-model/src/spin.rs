@@ -1,5 +1,6 @@
 //! Spin of the rotor, eq. (2.7): held, free, or free with the angle of an unbalance.
 
+use crate::V2;
 use crate::part::{Part, Weights};
 
 /// A model of the spin.
@@ -92,6 +93,13 @@ impl Part for SpinState {
     fn is_finite(&self) -> bool {
         self.0.is_finite()
     }
+    #[inline]
+    fn turned(&self, _turn: V2) -> Self {
+        *self
+    }
+    fn turning(&self) -> Self {
+        Self::default()
+    }
 }
 
 /// σ as a state.
@@ -117,6 +125,13 @@ impl Part for PhaseState {
     #[inline]
     fn is_finite(&self) -> bool {
         self.0.is_finite()
+    }
+    #[inline]
+    fn turned(&self, _turn: V2) -> Self {
+        *self
+    }
+    fn turning(&self) -> Self {
+        Self::default()
     }
 }
 

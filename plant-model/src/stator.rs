@@ -8,16 +8,46 @@ use crate::params::RingParams;
 use crate::part::{Body, Part};
 use crate::series::Series;
 
+/// What moves of a stator.
+pub(crate) trait Rings: Part {
+    /// The ring that the rotor touches.
+    fn inner(&self) -> Body;
+    /// The outer ring, if there is one.
+    fn outer(&self) -> Option<Body> {
+        None
+    }
+}
+
+impl Rings for () {
+    #[inline]
+    fn inner(&self) -> Body {
+        Body::default()
+    }
+}
+
+impl Rings for Body {
+    #[inline]
+    fn inner(&self) -> Body {
+        *self
+    }
+}
+
+impl Rings for (Body, Body) {
+    #[inline]
+    fn inner(&self) -> Body {
+        self.0
+    }
+    fn outer(&self) -> Option<Body> {
+        Some(self.1)
+    }
+}
+
 /// A model of the stator. In flight nothing drives it; in contact the contact force does.
 pub(crate) trait Stator: Copy + Send + 'static {
     /// What changes in time.
-    type State: Part;
+    type State: Rings;
     /// The same over one step of flight.
     type Series: Copy + Default + Send + std::fmt::Debug;
-    /// The ring that the rotor touches.
-    fn inner(state: &Self::State) -> Body;
-    /// The outer ring, if there is one.
-    fn outer(state: &Self::State) -> Option<Body>;
     /// Changes the velocity of the ring that the rotor touches \[m/s\].
     fn kick(state: &mut Self::State, change_m_s: V2);
     /// 1/m of the ring that the rotor touches \[1/kg\]; 0 for a rigid stator.
@@ -28,6 +58,8 @@ pub(crate) trait Stator: Copy + Send + 'static {
     fn stored_j(&self, state: &Self::State) -> f64;
     /// Power lost in the mountings' dampers \[W\].
     fn damping_w(&self, state: &Self::State) -> f64;
+    /// Upper bound of the fastest rate of the free stator without its dampers \[rad/s\].
+    fn undamped_rate_rad_s(&self) -> f64;
     /// Upper bound of the fastest rate of the free stator \[rad/s\].
     fn fastest_rate_rad_s(&self) -> f64;
     /// Series that holds the state as its coefficient 0.
@@ -43,7 +75,7 @@ pub(crate) trait Stator: Copy + Send + 'static {
     /// Coefficients k of the inner ring's position and velocity.
     #[inline]
     fn inner_coefficient(series: &Self::Series, k: usize) -> (V2, V2) {
-        let ring = Self::inner(&Self::coefficient(series, k));
+        let ring = Self::coefficient(series, k).inner();
         (ring.position, ring.velocity)
     }
     /// Free motion over `step_s` as a power series.
@@ -71,13 +103,6 @@ pub(crate) struct Rigid;
 impl Stator for Rigid {
     type State = ();
     type Series = ();
-    #[inline]
-    fn inner(_state: &()) -> Body {
-        Body::default()
-    }
-    fn outer(_state: &()) -> Option<Body> {
-        None
-    }
     fn kick(_state: &mut (), _change_m_s: V2) {}
     #[inline]
     fn inverse_mass(&self) -> f64 {
@@ -91,6 +116,9 @@ impl Stator for Rigid {
     }
     #[inline]
     fn damping_w(&self, _state: &()) -> f64 {
+        0.0
+    }
+    fn undamped_rate_rad_s(&self) -> f64 {
         0.0
     }
     fn fastest_rate_rad_s(&self) -> f64 {
@@ -189,13 +217,6 @@ pub(crate) struct OneMass(pub RingParams);
 impl Stator for OneMass {
     type State = Body;
     type Series = BodySeries;
-    #[inline]
-    fn inner(state: &Body) -> Body {
-        *state
-    }
-    fn outer(_state: &Body) -> Option<Body> {
-        None
-    }
     fn kick(state: &mut Body, change_m_s: V2) {
         state.velocity += change_m_s;
     }
@@ -220,9 +241,11 @@ impl Stator for OneMass {
     fn damping_w(&self, state: &Body) -> f64 {
         weighed_square(self.0.damping_n_s_m, state.velocity)
     }
+    fn undamped_rate_rad_s(&self) -> f64 {
+        (self.0.stiffness_n_m.max() / self.0.mass_kg).sqrt()
+    }
     fn fastest_rate_rad_s(&self) -> f64 {
-        let ring = &self.0;
-        (ring.stiffness_n_m.max() / ring.mass_kg).sqrt() + ring.damping_n_s_m.max() / ring.mass_kg
+        self.undamped_rate_rad_s() + self.0.damping_n_s_m.max() / self.0.mass_kg
     }
     fn start_series(&self, state: &Body) -> BodySeries {
         BodySeries::start(state)
@@ -280,13 +303,6 @@ impl TwoMass {
 impl Stator for TwoMass {
     type State = (Body, Body);
     type Series = (BodySeries, BodySeries);
-    #[inline]
-    fn inner(state: &Self::State) -> Body {
-        state.0
-    }
-    fn outer(state: &Self::State) -> Option<Body> {
-        Some(state.1)
-    }
     fn kick(state: &mut Self::State, change_m_s: V2) {
         state.0.velocity += change_m_s;
     }
@@ -324,11 +340,15 @@ impl Stator for TwoMass {
         weighed_square(self.inner.damping_n_s_m, s.velocity - z.velocity)
             + weighed_square(self.outer.damping_n_s_m, z.velocity)
     }
-    fn fastest_rate_rad_s(&self) -> f64 {
+    fn undamped_rate_rad_s(&self) -> f64 {
         let mass = self.inner.mass_kg.min(self.outer.mass_kg);
         let stiffness = self.inner.stiffness_n_m.max() * 2.0 + self.outer.stiffness_n_m.max();
+        (stiffness / mass).sqrt()
+    }
+    fn fastest_rate_rad_s(&self) -> f64 {
+        let mass = self.inner.mass_kg.min(self.outer.mass_kg);
         let damping = self.inner.damping_n_s_m.max() * 2.0 + self.outer.damping_n_s_m.max();
-        (stiffness / mass).sqrt() + damping / mass
+        self.undamped_rate_rad_s() + damping / mass
     }
     fn start_series(&self, (s, z): &Self::State) -> Self::Series {
         (BodySeries::start(s), BodySeries::start(z))

@@ -7,7 +7,7 @@ use crate::mode::{Slide, Whirl};
 use crate::params::{ContactParams, FrictionParams, RotorParams};
 use crate::part::{Body, Part, Weights};
 use crate::spin::Spin;
-use crate::stator::Stator;
+use crate::stator::{Rings, Stator};
 
 /// What acts on the plant from outside, held until the next call.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -41,7 +41,7 @@ pub(crate) struct State<S, W, M> {
 pub(crate) type StateOf<S, W, M> =
     State<<S as Stator>::State, <W as Spin>::State, <M as Amplifier>::State>;
 
-impl<S: Part, W: Part, M: Part> Part for State<S, W, M> {
+impl<S: Rings, W: Part, M: Part> Part for State<S, W, M> {
     const STATES: usize = Body::STATES + S::STATES + W::STATES + M::STATES;
     fn write(&self, out: &mut [f64]) {
         let (rotor, rest) = out.split_at_mut(Body::STATES);
@@ -72,7 +72,9 @@ impl<S: Part, W: Part, M: Part> Part for State<S, W, M> {
     }
     #[inline]
     fn weighed_square(&self, weights: &Weights) -> f64 {
-        self.rotor.weighed_square(weights)
+        let gap = self.rotor.position - self.stator.inner().position;
+        gap.norm_squared() * weights.gap * weights.gap
+            + self.rotor.weighed_square(weights)
             + self.stator.weighed_square(weights)
             + self.spin.weighed_square(weights)
             + self.force.weighed_square(weights)
@@ -83,6 +85,23 @@ impl<S: Part, W: Part, M: Part> Part for State<S, W, M> {
             && self.stator.is_finite()
             && self.spin.is_finite()
             && self.force.is_finite()
+    }
+    #[inline]
+    fn turned(&self, turn: V2) -> Self {
+        Self {
+            rotor: self.rotor.turned(turn),
+            stator: self.stator.turned(turn),
+            spin: self.spin.turned(turn),
+            force: self.force.turned(turn),
+        }
+    }
+    fn turning(&self) -> Self {
+        Self {
+            rotor: self.rotor.turning(),
+            stator: self.stator.turning(),
+            spin: self.spin.turning(),
+            force: self.force.turning(),
+        }
     }
 }
 
@@ -148,7 +167,7 @@ pub(crate) struct Evaluation<Y> {
 impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
     #[inline]
     pub(crate) fn geometry(&self, y: &StateOf<S, W, M>) -> Geometry {
-        let ring = S::inner(&y.stator);
+        let ring = y.stator.inner();
         let u = y.rotor.position - ring.position;
         let w = y.rotor.velocity - ring.velocity;
         let distance_m = u.norm();
@@ -185,15 +204,6 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
         Some((e * spin * spin * V2::new(cos, sin), e * V2::new(sin, -cos)))
     }
 
-    /// How fast the angle of the unbalance runs with time itself: where it is no state.
-    pub(crate) fn held_turn_rad_s(&self, spin: &W::State) -> f64 {
-        if self.spin.inverse_inertia() == 0.0 {
-            self.spin.spin_rad_s(spin)
-        } else {
-            0.0
-        }
-    }
-
     /// The field in contact. Smooth for given `slide` and `whirl`, also where a guard is negative.
     pub(crate) fn contact(
         &self,
@@ -223,7 +233,7 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
             per_spin_acceleration = by_acceleration.dot(&t);
         }
         let ring_pushed = self.stator.rates(&y.stator, normal_n * n);
-        let ring_acceleration = S::inner(&ring_pushed).velocity;
+        let ring_acceleration = ring_pushed.inner().velocity;
 
         // v̇_w = base + M·(s + q) + e_t·Ω̇ and Ω̇ = (t_d + R·s)/J for sliding part s, rolling part q.
         let base = (rotor_acceleration - ring_acceleration).dot(&t)
@@ -332,7 +342,7 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
             _ => guards[WHIRL] = whirl.sign() * g.whirl_speed_m_s,
         }
 
-        let normal_acceleration = (rotor_acceleration - S::inner(&rates.stator).velocity).dot(&n)
+        let normal_acceleration = (rotor_acceleration - rates.stator.inner().velocity).dot(&n)
             + g.whirl_speed_m_s * g.whirl_speed_m_s / g.distance_m;
         Evaluation {
             rates,
@@ -353,6 +363,24 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
                 normal_speed_m_s: g.normal_speed_m_s,
             },
         }
+    }
+
+    /// What rounding may leave of a guard that is zero: guards are differences of larger terms.
+    pub(crate) fn guard_round_off(
+        &self,
+        y: &StateOf<S, W, M>,
+        (slide, whirl): (Slide, Whirl),
+    ) -> Guards {
+        const ULPS: f64 = 4.0 * f64::EPSILON;
+        let g = self.geometry(y);
+        let surface = self.spin.spin_rad_s(&y.spin) * self.rotor.contact_radius_m;
+        let force = ULPS
+            * (self.contact.stiffness_n_m * g.distance_m
+                + self.contact.damping_n_s_m * y.rotor.velocity.norm());
+        let speed = ULPS * (y.rotor.velocity.norm() + surface.abs());
+        let of = |held: bool| if held { force } else { speed };
+        let (slide, whirl) = (of(slide == Slide::Rolling), of(whirl == Whirl::Still));
+        [force, slide, slide, whirl, whirl]
     }
 
     /// Kinetic and elastic energy, the contact spring included while `touching` \[J\].
@@ -376,15 +404,22 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
             + dent
     }
 
-    /// Angular frequency of the rotor on the contact spring, with its damping \[rad/s\].
-    pub(crate) fn contact_rate_rad_s(&self) -> f64 {
+    /// Angular frequency of the rotor on the contact spring \[rad/s\].
+    pub(crate) fn undamped_contact_rate_rad_s(&self) -> f64 {
         let mobility = 1.0 / self.rotor.mass_kg + self.stator.inverse_mass();
-        (self.contact.stiffness_n_m * mobility).sqrt() + self.contact.damping_n_s_m * mobility
+        (self.contact.stiffness_n_m * mobility).sqrt()
     }
 
-    /// Damping ratio ζ of the rotor on the contact spring.
-    pub(crate) fn contact_damping_ratio(&self) -> f64 {
+    /// The same with its damping: the fastest rate in contact \[rad/s\].
+    pub(crate) fn contact_rate_rad_s(&self) -> f64 {
         let mobility = 1.0 / self.rotor.mass_kg + self.stator.inverse_mass();
-        0.5 * self.contact.damping_n_s_m * (mobility / self.contact.stiffness_n_m).sqrt()
+        self.undamped_contact_rate_rad_s() + self.contact.damping_n_s_m * mobility
+    }
+
+    /// Damping ratio ζ of the rotor on the contact spring, and d_c/m \[1/s\].
+    pub(crate) fn contact_damping(&self) -> (f64, f64) {
+        let mobility = 1.0 / self.rotor.mass_kg + self.stator.inverse_mass();
+        let rate = self.contact.damping_n_s_m * mobility;
+        (0.5 * rate / self.undamped_contact_rate_rad_s(), rate)
     }
 }

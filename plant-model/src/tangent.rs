@@ -5,11 +5,11 @@ use crate::magnet::Amplifier;
 use crate::mode::{Slide, Whirl};
 use crate::part::Body;
 use crate::spin::Spin;
-use crate::stator::Stator;
+use crate::stator::{Rings, Stator};
 use crate::system::{Inputs, State, StateOf, System};
 
 impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
-    /// d/dε of the field at y + ε·change, with the angle of a held spin moved on by `turn_rad`·ε.
+    /// d/dε of the field at y + ε·change.
     ///
     /// Names follow [`System::contact`]; a leading d is the derivative.
     pub(crate) fn contact_tangent(
@@ -17,7 +17,7 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
         (t_s, y): (f64, &StateOf<S, W, M>),
         inputs: &Inputs,
         (slide, whirl): (Slide, Whirl),
-        (change, turn_rad): (&StateOf<S, W, M>, f64),
+        change: &StateOf<S, W, M>,
     ) -> StateOf<S, W, M> {
         let g = self.geometry(y);
         let (n, t, distance) = (g.normal, g.tangent, g.distance_m);
@@ -28,10 +28,10 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
         let tangential_n = sliding_n + now.touch.rolling_n;
         let turned = |v: V2| V2::new(-v.y, v.x);
 
-        let d_ring = S::inner(&change.stator);
+        let d_ring = change.stator.inner();
         let d_gap = change.rotor.position - d_ring.position;
         let d_gap_rate = change.rotor.velocity - d_ring.velocity;
-        let ring = S::inner(&y.stator);
+        let ring = y.stator.inner();
         let gap_rate = y.rotor.velocity - ring.velocity;
         let d_distance = n.dot(&d_gap);
         let d_n = (d_gap - n * d_distance) / distance;
@@ -39,7 +39,6 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
         let d_normal_speed = d_gap_rate.dot(&n) + gap_rate.dot(&d_n);
         let d_whirl_speed = d_gap_rate.dot(&t) + gap_rate.dot(&d_t);
         let (d_spin, d_phase) = W::change(&change.spin);
-        let d_phase = d_phase + turn_rad;
         let d_sliding_speed = d_whirl_speed + radius * d_spin;
         let d_normal = self.contact.normal_force_n(d_distance, d_normal_speed);
         let d_push = d_normal * n + normal_n * d_n;
@@ -70,8 +69,8 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
             by_spin_up = by_acceleration;
             d_by_spin_up = d_phase * turned(by_acceleration);
         }
-        let ring_acceleration = S::inner(&self.stator.rates(&y.stator, normal_n * n)).velocity;
-        let d_ring_acceleration = S::inner(&self.stator.rates(&change.stator, d_push)).velocity;
+        let ring_acceleration = self.stator.rates(&y.stator, normal_n * n).inner().velocity;
+        let d_ring_acceleration = self.stator.rates(&change.stator, d_push).inner().velocity;
         let (relative, d_relative) = (
             acceleration - ring_acceleration,
             d_acceleration - d_ring_acceleration,
@@ -227,7 +226,7 @@ mod tests {
                             (0.0, &Y::read(&point)),
                             &inputs,
                             (slide, whirl),
-                            (&Y::read(&direction), 0.0),
+                            &Y::read(&direction),
                         )
                         .write(&mut exact);
                     let size = exact.iter().fold(0.0_f64, |m, x| m.max(x.abs()));

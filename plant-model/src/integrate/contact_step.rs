@@ -29,7 +29,7 @@ struct ContactField<'a, S, W, M> {
     inputs: &'a Inputs,
     mode: (Slide, Whirl),
     evaluations: u64,
-    jacobians: u64,
+    factorisations: u64,
 }
 
 impl<S: Stator, W: Spin, M: Amplifier> Field<StateOf<S, W, M>, Evaluation<StateOf<S, W, M>>>
@@ -40,17 +40,17 @@ impl<S: Stator, W: Spin, M: Amplifier> Field<StateOf<S, W, M>, Evaluation<StateO
         self.system.contact(t_s, y, self.inputs, self.mode)
     }
 
-    fn along(
-        &mut self,
-        t_s: f64,
-        y: &StateOf<S, W, M>,
-        dy: &StateOf<S, W, M>,
-        dt: f64,
-    ) -> StateOf<S, W, M> {
-        // The direction of time is taken once a Jacobian.
-        self.jacobians += u64::from(dt != 0.0);
-        let turn_rad = dt * self.system.held_turn_rad_s(&y.spin);
-        (self.system).contact_tangent((t_s, y), self.inputs, self.mode, (dy, turn_rad))
+    fn along(&mut self, t_s: f64, y: &StateOf<S, W, M>, dy: &StateOf<S, W, M>) -> StateOf<S, W, M> {
+        (self.system).contact_tangent((t_s, y), self.inputs, self.mode, dy)
+    }
+
+    fn turn_rad_s(&self, y: &StateOf<S, W, M>) -> f64 {
+        let g = self.system.geometry(y);
+        g.whirl_speed_m_s / g.distance_m
+    }
+
+    fn factorised(&mut self) {
+        self.factorisations += 1;
     }
 }
 
@@ -94,7 +94,8 @@ impl Scales {
         }
     }
 
-    /// Scales of the motion: speed of the rotor, and the penetration that this speed makes.
+    /// Scales of the motion, by energy: speed of the rotor, the penetration in which the contact spring
+    /// takes its energy up, and the displacement in which shaft and mountings do.
     pub(crate) fn weights<S: Stator, W: Spin, M: Amplifier>(
         &mut self,
         system: &System<S, W, M>,
@@ -102,7 +103,7 @@ impl Scales {
     ) -> Weights {
         let now = y.rotor.velocity.norm();
         self.fastest_m_s = self.fastest_m_s.max(now);
-        let rate = system.contact_rate_rad_s();
+        let rate = system.undamped_contact_rate_rad_s();
         // A rotor that comes to rest is followed to a thousandth of its fastest motion; one that
         // never moved, to a thousandth of its weightless creep over the clearance.
         let floor = 1e-3
@@ -110,11 +111,14 @@ impl Scales {
                 .fastest_m_s
                 .max(1e-3 * system.contact.clearance_m * rate);
         let speed = now.max(floor);
-        let length = (speed / rate).min(system.contact.clearance_m);
+        let clearance = system.contact.clearance_m;
+        let shaft = (system.rotor.stiffness_n_m.abs() / system.rotor.mass_kg).sqrt();
+        let length = speed / shaft.max(system.stator.undamped_rate_rad_s());
         let spin = (speed / system.rotor.contact_radius_m)
             .max(system.spin.spin_rad_s(&y.spin).abs() * 1e-2);
         Weights {
-            position: 1.0 / (self.rtol * length),
+            position: 1.0 / (self.rtol * length.min(clearance)),
+            gap: 1.0 / (self.rtol * (speed / rate).min(clearance)),
             velocity: 1.0 / (self.rtol * speed),
             spin: 1.0 / (self.rtol * spin),
             phase: 1.0 / self.rtol,
@@ -127,6 +131,11 @@ impl Scales {
 pub(crate) struct ContactStepper<P> {
     pair: P,
     step_s: f64,
+    /// Where the last step ended.
+    end_s: f64,
+    /// Inputs and mode of the last step, if the field at its end is the field that the next one starts
+    /// with.
+    carried: Option<(Inputs, (Slide, Whirl))>,
 }
 
 impl<P> ContactStepper<P> {
@@ -137,6 +146,8 @@ impl<P> ContactStepper<P> {
         Self {
             pair: P::new(),
             step_s: 0.05 / contact_rate_rad_s,
+            end_s: f64::NAN,
+            carried: None,
         }
     }
 
@@ -158,17 +169,27 @@ impl<P> ContactStepper<P> {
             inputs: task.inputs,
             mode: task.mode,
             evaluations: 0,
-            jacobians: 0,
+            factorisations: 0,
         };
-        let first = field.at(t_s, y);
+        let follows = t_s == self.end_s;
+        let carried = follows && self.carried == Some((*task.inputs, task.mode));
+        let first = match self.pair.seen().last() {
+            Some(end) if carried => *end,
+            _ => field.at(t_s, y),
+        };
         let origin = Origin {
             t_s,
             y,
             first: &first,
         };
+        self.pair.begin(&origin, &mut field);
+        let round_off = system.guard_round_off(y, task.mode);
         let power = -1.0 / P::ERROR_POWER;
         let remaining = t_end_s - t_s;
         let mut step = self.step_s;
+        if !follows {
+            step = step.min(P::FIRST / system.contact_rate_rad_s());
+        }
         let (y_end, h, last, event) = loop {
             // A last sliver shorter than a tenth of the step is taken along.
             let last = step * 1.1 >= remaining;
@@ -185,7 +206,7 @@ impl<P> ContactStepper<P> {
             }
             self.pair.set_end(field.at(t_s + h, &end));
             let event = match suspicious(self.pair.seen()) {
-                true => self.locate(t_s, h, task.muted, &mut field),
+                true => self.locate((t_s, h), (task.muted, &round_off), &mut field),
                 false => None,
             };
             let Some((guard, theta)) = event else {
@@ -201,7 +222,13 @@ impl<P> ContactStepper<P> {
                 break (end, h, last, None);
             };
             let reach = (theta * h, remaining);
-            let onto = self.step_onto(&origin, reach, guard, &weights, &mut field);
+            let onto = self.step_onto(
+                &origin,
+                reach,
+                (guard, round_off[guard]),
+                &weights,
+                &mut field,
+            );
             // Almost a double root right at the start: the event is here.
             let here = || (theta * h <= system.moment_s()).then_some((*y, 0.0));
             match onto.or_else(here) {
@@ -222,11 +249,18 @@ impl<P> ContactStepper<P> {
             }
             _ => (Flows::default(), first.touch),
         };
-        work.evaluations += field.evaluations + field.jacobians;
-        work.jacobians += field.jacobians;
+        // Each column of a Jacobian is a share of one evaluation.
+        let jacobians = u64::from(field.factorisations > 0);
+        work.evaluations += field.evaluations + jacobians;
+        work.jacobians += jacobians;
+        work.factorisations += field.factorisations;
         let (a, b) = (system.geometry(y).normal, system.geometry(&y_end).normal);
+        self.end_s = if last { t_end_s } else { t_s + h };
+        // An event and a speed held at zero move the state at the end.
+        let held = task.mode.0 == Slide::Rolling || task.mode.1 == Whirl::Still;
+        self.carried = (event.is_none() && !held).then_some((*task.inputs, task.mode));
         Ok(ContactStep {
-            t_s: if last { t_end_s } else { t_s + h },
+            t_s: self.end_s,
             step_s: h,
             y: y_end,
             flows,
@@ -239,9 +273,8 @@ impl<P> ContactStepper<P> {
     /// First event inside the last step: the guard, and θ to the accuracy of the dense output.
     fn locate<Y: Part>(
         &mut self,
-        t_s: f64,
-        step_s: f64,
-        muted: Option<usize>,
+        (t_s, step_s): (f64, f64),
+        (muted, round_off): (Option<usize>, &Guards),
         field: &mut impl Field<Y, Evaluation<Y>>,
     ) -> Option<(usize, f64)>
     where
@@ -259,7 +292,9 @@ impl<P> ContactStepper<P> {
         // A normal force that rises from zero has not: the touch was found to round-off only.
         let rising = self.pair.seen().first()?.touch.normal_rate_n_s > 0.0;
         let jumped = |(guard, g): (usize, &f64)| {
-            *g < -1e-12 * scale[guard] && muted != Some(guard) && !(guard == NORMAL && rising)
+            *g < -1e-12 * scale[guard] - round_off[guard]
+                && muted != Some(guard)
+                && !(guard == NORMAL && rising)
         };
         if let Some(guard) = start.iter().enumerate().position(jumped) {
             return Some((guard, 0.0));
@@ -270,7 +305,7 @@ impl<P> ContactStepper<P> {
             let high = i as f64 / SCANS as f64;
             let at_high = guards_at(high);
             for (guard, value) in at_high.iter().enumerate() {
-                if *value >= -1e-13 * scale[guard] || muted == Some(guard) {
+                if *value >= -1e-13 * scale[guard] - round_off[guard] || muted == Some(guard) {
                     continue;
                 }
                 let theta = first_root(guard, (low, at_low[guard]), (high, *value), &mut guards_at);
@@ -293,7 +328,7 @@ impl<P> ContactStepper<P> {
         &mut self,
         origin: &Origin<'_, Y, Evaluation<Y>>,
         (step_s, longest_s): (f64, f64),
-        guard: usize,
+        (guard, round_off): (usize, f64),
         weights: &Weights,
         field: &mut impl Field<Y, Evaluation<Y>>,
     ) -> Option<(Y, f64)>
@@ -320,7 +355,7 @@ impl<P> ContactStepper<P> {
                 _ => (value - before.1) / (h - before.0),
             };
             let correction = value / slope;
-            if value.abs() <= 1e-12 * scale || correction.abs() <= 1e-12 * h {
+            if value.abs() <= 1e-12 * scale + round_off || correction.abs() <= 1e-12 * h {
                 return Some((end, h));
             }
             if !correction.is_finite() || correction.abs() > 0.1 * h {

@@ -98,6 +98,7 @@ impl<Y: Part, E: Rates<Y>> Pair<Y, E> for Dop853<Y, E> {
     type Dense = Dense<Y>;
     const ERROR_POWER: f64 = 8.0;
     const LONGEST: f64 = 10.0;
+    const FIRST: f64 = Self::LONGEST;
 
     fn new() -> Self {
         Self {
@@ -228,7 +229,7 @@ pub(crate) mod tests {
                 velocity: -y.position,
             }
         }
-        fn along(&mut self, t_s: f64, _y: &Body, dy: &Body, _dt: f64) -> Body {
+        fn along(&mut self, t_s: f64, _y: &Body, dy: &Body) -> Body {
             self.at(t_s, dy)
         }
     }
@@ -241,6 +242,7 @@ pub(crate) mod tests {
         };
         let weights = Weights {
             position: 1.0,
+            gap: 1.0,
             velocity: 1.0,
             spin: 1.0,
             phase: 1.0,
@@ -253,6 +255,7 @@ pub(crate) mod tests {
             y: &y,
             first: &first,
         };
+        pair.begin(&origin, &mut Circle);
         let (end, _) = pair.step(&origin, h, &weights, &mut Circle);
         pair.set_end(Circle.at(h, &end));
         let dense = pair.dense(&mut Circle);

@@ -3,7 +3,7 @@
 use super::contact_step::{ContactStepper, Scales, Task};
 use super::dop853::Dop853;
 use super::flight::{Crossing, Segment};
-use super::rodas5p::Rodas5p;
+use super::radau::Radau;
 use super::series_step::SeriesStepper;
 use super::transitions::AtZero;
 use crate::energy::{Audit, Flows};
@@ -13,11 +13,11 @@ use crate::mode::{Mode, Phase, Slide, Whirl};
 use crate::part::Part;
 use crate::readout::{Meters, Snapshot, Work};
 use crate::spin::Spin;
-use crate::stator::Stator;
+use crate::stator::{Rings, Stator};
 use crate::system::{Evaluation, Geometry, Inputs, NORMAL, StateOf, System};
 
 type Explicit<Y> = Dop853<Y, Evaluation<Y>>;
-type Stiff<Y> = Rodas5p<Y, Evaluation<Y>>;
+type Stiff<Y> = Radau<Y, Evaluation<Y>>;
 
 /// A run of one combination of parts.
 pub(crate) struct Run<S: Stator, W: Spin, M: Amplifier> {
@@ -58,8 +58,8 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
         force_max_n: f64,
         mut options: Options,
     ) -> Self {
-        let ratio = system.contact_damping_ratio();
-        options.method = options.method.resolved(ratio, options.rtol);
+        let (ratio, rate) = system.contact_damping();
+        options.method = options.method.resolved(ratio, rate, options.rtol);
         let mut run = Self {
             scales: Scales::new(options.rtol, y.rotor.velocity.norm()),
             work: Work::default(),
@@ -358,8 +358,8 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
 
     pub(crate) fn snapshot(&self) -> Snapshot {
         let g = self.system.geometry(&self.y);
-        let ring = S::inner(&self.y.stator);
-        let outer = S::outer(&self.y.stator);
+        let ring = self.y.stator.inner();
+        let outer = self.y.stator.outer();
         let mut snapshot = Snapshot {
             t_s: self.t_s,
             position_m: self.y.rotor.position,

@@ -24,8 +24,14 @@ pub(crate) struct Origin<'a, Y, E> {
 pub(crate) trait Field<Y, E> {
     /// The field at a point.
     fn at(&mut self, t_s: f64, y: &Y) -> E;
-    /// d/dε of the rates at (t + ε·dt, y + ε·dy).
-    fn along(&mut self, t_s: f64, y: &Y, dy: &Y, dt: f64) -> Y;
+    /// d/dε of the rates at (t, y + ε·dy).
+    fn along(&mut self, t_s: f64, y: &Y, dy: &Y) -> Y;
+    /// How fast the direction in which the field is stiff turns \[rad/s\].
+    fn turn_rad_s(&self, _y: &Y) -> f64 {
+        0.0
+    }
+    /// Takes note of matrices factorised for one step size.
+    fn factorised(&mut self) {}
 }
 
 /// An embedded pair with dense output. Stages are kept from step to step, so that no step allocates.
@@ -36,8 +42,12 @@ pub(crate) trait Pair<Y: Part, E: Rates<Y>> {
     const ERROR_POWER: f64;
     /// Longest step that can be stable, in periods of the fastest contact motion over 2π.
     const LONGEST: f64;
+    /// Longest first step of a contact, in the same unit.
+    const FIRST: f64;
     /// A pair that has done nothing.
     fn new() -> Self;
+    /// Prepares for attempts from `origin`.
+    fn begin(&mut self, _origin: &Origin<'_, Y, E>, _field: &mut impl Field<Y, E>) {}
     /// Steps from `origin` by `step_s`. Returns the end point and the error norm, below 1 where the
     /// step meets the weights.
     fn step(

@@ -41,7 +41,8 @@ impl<S: Stator> ContactSeries<S> {
         };
         let spin = self.spin.0[k] * weights.spin;
         let stator = S::coefficient(&self.stator, k).weighed_square(weights);
-        (rotor.weighed_square(weights) + stator + spin * spin).sqrt()
+        let gap = self.gap.0[k].norm_squared() * weights.gap * weights.gap;
+        (gap + rotor.weighed_square(weights) + stator + spin * spin).sqrt()
     }
 
     /// Guards of the mode as series; only those in use.

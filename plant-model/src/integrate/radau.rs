@@ -1,0 +1,421 @@
+//! Radau IIA with five stages: collocation of order 9, L-stable and stiffly accurate (Hairer, Wanner:
+//! Solving Ordinary Differential Equations II, sections IV.5 and IV.8), solved by Newton's method with
+//! the analytic Jacobian of the start.
+//!
+//! The step is taken in a frame that turns with the contact point. What makes contact stiff acts along
+//! the contact normal; in fixed axes that direction turns away from the Jacobian within a step, which
+//! stops Newton's method long before accuracy would. Seen from the turning frame it stands still, and
+//! steady whirl is a state at rest.
+
+use super::lu::{Lu, MOST};
+use super::pair::{Field, Origin, Pair, Rates};
+use crate::V2;
+use crate::energy::Flows;
+use crate::part::{Part, Weights};
+use nalgebra::Complex;
+
+/// Stages of a step.
+const STAGES: usize = 5;
+
+/// Collocation points: zeros of P₅ − P₄ (Legendre polynomials on [0, 1]).
+#[rustfmt::skip]
+const NODES: [f64; STAGES] = [0.05710419611451768, 0.2768430136381238, 0.5835904323689168, 0.8602401356562195, 1.0];
+
+/// Quadrature weights.
+#[rustfmt::skip]
+const WEIGHTS: [f64; STAGES] = [0.14371356079122594, 0.28135601514946207, 0.31182652297574126, 0.22310390108357075, 0.04];
+
+/// Real eigenvalue of the inverse of the method's matrix A.
+const REAL: f64 = 6.2867047517292765;
+
+/// Its complex ones, as real and imaginary part.
+#[rustfmt::skip]
+const PAIRS: [(f64, f64); STAGES / 2] = [(5.70095329867179, 3.2102656003085497), (3.655694325463572, 6.543736899360077)];
+
+/// Eigenvectors in columns: the real one, then real and imaginary part of each other.
+#[rustfmt::skip]
+const T: [[f64; STAGES]; STAGES] = [
+    [0.013576867344947943, -0.011478515255229515, 0.01401985889287541, -0.010242047817908826, -0.04767387729029572],
+    [0.0016179004017190875, -0.007668830749180163, -0.024708578426518527, 0.05017286451737106, 0.09433181918161143],
+    [0.07915785334744721, 0.01939846399882895, -0.08180035370375117, -0.23053953404341795, -0.1027030453801259],
+    [0.41225608268046143, 0.40760117128019907, -0.19968242788680252, 0.37789390224886127, -0.46674413033249434],
+    [1.0, 1.0, 0.0, 1.0, 0.0],
+];
+#[rustfmt::skip]
+const T_INVERSE: [[f64; STAGES]; STAGES] = [
+    [27.697693775684087, 12.783337911304406, 3.20848938671343, -0.9514904122489162, 0.7415504960259897],
+    [-33.041880213519, -17.376953479063566, -0.17212906325400557, -0.09916977798254265, 0.5312281158383066],
+    [8.611443979875292, -9.699991409528808, -1.9147286396968743, -2.41869200608494, 1.0474634879353375],
+    [5.344186437834912, 4.593615567759161, -3.0363603234594243, 1.050660190231459, -0.27277861186429625],
+    [-3.748059807439805, 3.984965736343885, 1.0444156416080188, -1.1840985681379486, 0.44991777015678036],
+];
+
+/// Quadrature with the start as one more node of weight 1/`REAL`, less the method, times A⁻¹.
+#[rustfmt::skip]
+const ERROR: [f64; STAGES] = [-4.418997716796381, 0.57923485225667, -0.199237560953468, 0.09416748369194548, -0.03181316888549383];
+
+/// Powers of θ of the collocation polynomial from the stages: inverse of NODES_i^(k + 1).
+#[rustfmt::skip]
+const POWERS: [[f64; STAGES]; STAGES] = [
+    [27.78093394406464, -3.641478498049213, 1.2525477211691187, -0.5920031671845428, 0.2],
+    [-208.02785730090133, 77.88337605511782, -29.167414317829696, 14.111895563613205, -4.8],
+    [524.1878839694918, -264.89491356822634, 137.90290440413477, -72.39587480540027, 25.2],
+    [-543.8283560361325, 317.67586907995275, -202.09087094360743, 123.04335789978718, -44.8],
+    [199.88739542347736, -127.022853068795, 92.10283313613321, -64.16737549081559, 25.2],
+];
+
+/// Newton iterations tried before the step is called too long.
+const ITERATIONS: usize = 10;
+/// The iteration ends where what it leaves is below this part of the tolerance.
+const LEFT: f64 = 1e-3;
+
+/// One attempted step and its stages.
+#[derive(Debug, Clone)]
+pub(crate) struct Radau<Y, E> {
+    /// Start, stages (the last is at the end, but one iteration behind it), end.
+    evaluations: [E; STAGES + 2],
+    /// Stage i less the start.
+    z: [Y; STAGES],
+    /// The collocation polynomial: start + Σ powers_k·θ^(k + 1).
+    powers: [Y; STAGES],
+    jacobian: Jacobian,
+    /// The frame in which the step is taken turns at this rate, and is at rest in axes at the start.
+    turn_rad_s: f64,
+    t_s: f64,
+    start: Y,
+    step_s: f64,
+    /// Whether the iteration of the last attempt came to an end.
+    converged: bool,
+    /// θ/(1 − θ) of the last iteration, θ being the factor from change to change.
+    eta: f64,
+}
+
+impl<Y: Part, E: Rates<Y>> Radau<Y, E> {
+    /// First guess: the polynomial of the attempt before, where it starts or ends here.
+    fn guess(&mut self, origin: &Origin<'_, Y, E>, step_s: f64, turn_rad_s: f64) {
+        let ratio = step_s / self.step_s;
+        let ahead = if origin.t_s == self.t_s { 0.0 } else { 1.0 };
+        let follows = origin.t_s == self.t_s || origin.t_s == self.t_s + self.step_s;
+        for (i, z) in self.z.iter_mut().enumerate() {
+            *z = Y::default();
+            if self.converged && follows && ratio < 6.0 {
+                let theta = ahead + ratio * NODES[i];
+                let angle = self.turn_rad_s * theta * self.step_s - turn_rad_s * NODES[i] * step_s;
+                *z = at(&self.start, &self.powers, theta).turned(direction(angle));
+                z.add_scaled(-1.0, origin.y);
+            }
+        }
+    }
+
+    /// Evaluates stage i; the rates in the turning frame.
+    fn stage(&mut self, i: usize, field: &mut impl Field<Y, E>) -> Y {
+        let mut y = self.start;
+        y.add_scaled(1.0, &self.z[i]);
+        let elapsed_s = NODES[i] * self.step_s;
+        let mut turn = direction(self.turn_rad_s * elapsed_s);
+        self.evaluations[i + 1] = field.at(self.t_s + elapsed_s, &y.turned(turn));
+        turn.y = -turn.y;
+        let mut rates = self.evaluations[i + 1].rates().turned(turn);
+        rates.add_scaled(-self.turn_rad_s, &y.turning());
+        rates
+    }
+
+    /// Solves for the stages. False where the iteration does not come to an end.
+    fn iterate(
+        &mut self,
+        factors: &Factors,
+        weights: &Weights,
+        field: &mut impl Field<Y, E>,
+    ) -> bool {
+        let h = self.step_s;
+        let mut w: [Y; STAGES] = combine(&T_INVERSE, &self.z);
+        let mut before = 0.0;
+        self.eta = self.eta.max(1e-16).powf(0.8);
+        for iteration in 0..ITERATIONS {
+            let mut f = [Y::default(); STAGES];
+            for i in 0..STAGES {
+                f[i] = self.stage(i, field);
+            }
+            let mut right: [Y; STAGES] = combine(&T_INVERSE, &f);
+            right[0].add_scaled(-REAL / h, &w[0]);
+            for (p, (a, b)) in PAIRS.iter().enumerate() {
+                let (i, j) = (2 * p + 1, 2 * p + 2);
+                let (u, v) = (w[i], w[j]);
+                right[i].add_scaled(-a / h, &u);
+                right[i].add_scaled(-b / h, &v);
+                right[j].add_scaled(b / h, &u);
+                right[j].add_scaled(-a / h, &v);
+            }
+            factors.solve(&mut right);
+            for (w, change) in w.iter_mut().zip(&right) {
+                w.add_scaled(1.0, change);
+            }
+            let change: [Y; STAGES] = combine(&T, &right);
+            self.z = combine(&T, &w);
+            let squares: f64 = change.iter().map(|c| c.weighed_square(weights)).sum();
+            let size = (squares / (Y::STATES * STAGES) as f64).sqrt();
+            if !size.is_finite() {
+                return false;
+            }
+            if iteration > 0 {
+                let rate = size / before;
+                if rate >= 0.9 {
+                    return false;
+                }
+                self.eta = rate / (1.0 - rate);
+                let left = (ITERATIONS - 1 - iteration) as i32;
+                if self.eta * rate.powi(left) * size > LEFT {
+                    return false;
+                }
+            }
+            if self.eta * size <= LEFT {
+                return true;
+            }
+            before = size;
+        }
+        false
+    }
+}
+
+/// Start + Σ powers_k·θ^(k + 1).
+fn at<Y: Part>(start: &Y, powers: &[Y; STAGES], theta: f64) -> Y {
+    let mut y = *start;
+    let mut factor = 1.0;
+    for power in powers {
+        factor *= theta;
+        y.add_scaled(factor, power);
+    }
+    y
+}
+
+/// Matrix of numbers times a column of states.
+fn combine<Y: Part>(matrix: &[[f64; STAGES]; STAGES], column: &[Y; STAGES]) -> [Y; STAGES] {
+    matrix.map(|row| {
+        let mut sum = Y::default();
+        for (a, y) in row.iter().zip(column) {
+            sum.add_scaled(*a, y);
+        }
+        sum
+    })
+}
+
+impl<Y: Part, E: Rates<Y>> Pair<Y, E> for Radau<Y, E> {
+    type Dense = Dense<Y>;
+    const ERROR_POWER: f64 = (STAGES + 1) as f64;
+    const LONGEST: f64 = f64::INFINITY;
+    const FIRST: f64 = 1.0;
+
+    fn new() -> Self {
+        Self {
+            evaluations: [E::default(); STAGES + 2],
+            z: [Y::default(); STAGES],
+            powers: [Y::default(); STAGES],
+            jacobian: [[0.0; MOST]; MOST],
+            turn_rad_s: 0.0,
+            t_s: f64::NAN,
+            start: Y::default(),
+            step_s: 0.0,
+            converged: false,
+            eta: 1.0,
+        }
+    }
+
+    fn begin(&mut self, origin: &Origin<'_, Y, E>, field: &mut impl Field<Y, E>) {
+        let turn_rad_s = field.turn_rad_s(origin.y);
+        for i in 0..Y::STATES {
+            let mut direction = [0.0; MOST];
+            direction[i] = 1.0;
+            let direction = Y::read(&direction);
+            let mut column = field.along(origin.t_s, origin.y, &direction);
+            column.add_scaled(-turn_rad_s, &direction.turning());
+            let mut out = [0.0; MOST];
+            column.write(&mut out);
+            for (row, value) in self.jacobian.iter_mut().zip(out) {
+                row[i] = value;
+            }
+        }
+    }
+
+    fn step(
+        &mut self,
+        origin: &Origin<'_, Y, E>,
+        step_s: f64,
+        weights: &Weights,
+        field: &mut impl Field<Y, E>,
+    ) -> (Y, f64) {
+        let turn_rad_s = field.turn_rad_s(origin.y);
+        self.guess(origin, step_s, turn_rad_s);
+        self.turn_rad_s = turn_rad_s;
+        self.t_s = origin.t_s;
+        self.start = *origin.y;
+        self.step_s = step_s;
+        self.evaluations[0] = *origin.first;
+        field.factorised();
+        let Some(factors) = Factors::new(&self.jacobian, step_s, Y::STATES) else {
+            self.converged = false;
+            return (self.start, f64::NAN);
+        };
+        self.converged = self.iterate(&factors, weights, field);
+        if !self.converged {
+            self.eta = 1.0;
+            return (self.start, f64::NAN);
+        }
+        self.powers = combine(&POWERS, &self.z);
+        let mut end = self.start;
+        end.add_scaled(1.0, &self.z[STAGES - 1]);
+        let end = end.turned(direction(turn_rad_s * step_s));
+        // The quadrature that takes the start for one more node, less the method.
+        let mut gap = Y::default();
+        for (e, z) in ERROR.iter().zip(&self.z) {
+            gap.add_scaled(REAL * e / step_s, z);
+        }
+        let estimate = |y: &Y, first: &E| {
+            let mut error = gap;
+            error.add_scaled(1.0, first.rates());
+            error.add_scaled(-turn_rad_s, &y.turning());
+            solve_part(&factors.real, &mut error);
+            (
+                error,
+                (error.weighed_square(weights) / Y::STATES as f64).sqrt(),
+            )
+        };
+        let (error, mut size) = estimate(origin.y, origin.first);
+        if size > 1.0 {
+            // A fast decaying part is overrated; the field at the start and its error tells.
+            let mut moved = self.start;
+            moved.add_scaled(1.0, &error);
+            size = estimate(&moved, &field.at(self.t_s, &moved)).1;
+        }
+        (end, size)
+    }
+
+    fn set_end(&mut self, end: E) {
+        self.evaluations[STAGES + 1] = end;
+    }
+
+    fn seen(&self) -> &[E] {
+        &self.evaluations
+    }
+
+    fn dense(&mut self, _field: &mut impl Field<Y, E>) -> Dense<Y> {
+        Dense {
+            start: self.start,
+            powers: self.powers,
+            turn_rad: self.turn_rad_s * self.step_s,
+        }
+    }
+
+    fn dense_at(dense: &Dense<Y>, theta: f64) -> Y {
+        at(&dense.start, &dense.powers, theta).turned(direction(dense.turn_rad * theta))
+    }
+
+    /// The method's own quadrature, at the stages as they ended up.
+    fn flows(&mut self, field: &mut impl Field<Y, E>) -> Flows {
+        let mut flows = Flows::default();
+        // The stages have moved on since they were evaluated, by more than the audit may be off.
+        for i in 0..STAGES {
+            self.stage(i, field);
+        }
+        for (weight, stage) in WEIGHTS.iter().zip(&self.evaluations[1..=STAGES]) {
+            flows.add_scaled(self.step_s * weight, &stage.powers());
+        }
+        flows
+    }
+}
+
+/// The collocation polynomial.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Dense<Y> {
+    start: Y,
+    powers: [Y; STAGES],
+    turn_rad: f64,
+}
+
+/// Cosine and sine of an angle.
+fn direction(angle_rad: f64) -> V2 {
+    let (sin, cos) = angle_rad.sin_cos();
+    V2::new(cos, sin)
+}
+
+type Jacobian = [[f64; MOST]; MOST];
+
+/// Factors of λ/h − J for the real and one of each pair of complex λ.
+struct Factors {
+    real: Lu<f64>,
+    pairs: [Option<Lu<Complex<f64>>>; STAGES / 2],
+}
+
+impl Factors {
+    fn new(jacobian: &Jacobian, h: f64, n: usize) -> Option<Self> {
+        let real = Lu::new(jacobian, REAL / h, n)?;
+        let mut pairs = [None; STAGES / 2];
+        for (lu, (a, b)) in pairs.iter_mut().zip(PAIRS) {
+            *lu = Some(Lu::new(jacobian, Complex::new(a / h, -b / h), n)?);
+        }
+        Some(Self { real, pairs })
+    }
+
+    fn solve<Y: Part>(&self, right: &mut [Y; STAGES]) {
+        solve_part(&self.real, &mut right[0]);
+        for (p, lu) in self.pairs.iter().flatten().enumerate() {
+            let (mut u, mut v) = ([0.0; MOST], [0.0; MOST]);
+            right[2 * p + 1].write(&mut u);
+            right[2 * p + 2].write(&mut v);
+            let mut both = [Complex::new(0.0, 0.0); MOST];
+            for (b, (u, v)) in both.iter_mut().zip(u.iter().zip(&v)) {
+                *b = Complex::new(*u, *v);
+            }
+            lu.solve(&mut both);
+            right[2 * p + 1] = Y::read(&both.map(|b| b.re));
+            right[2 * p + 2] = Y::read(&both.map(|b| b.im));
+        }
+    }
+}
+
+/// (Diagonal·I − J)⁻¹·y in place.
+fn solve_part<Y: Part>(factors: &Lu<f64>, y: &mut Y) {
+    let mut b = [0.0; MOST];
+    y.write(&mut b);
+    factors.solve(&mut b);
+    *y = Y::read(&b);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::integrate::dop853::tests::errors;
+    use crate::part::Body;
+
+    /// Local errors fall as h^10 (step) and h^6 (collocation polynomial).
+    #[test]
+    fn orders_are_nine_and_five() {
+        let (step_coarse, dense_coarse) = errors::<Radau<Body, Body>>(2.0);
+        let (step_fine, dense_fine) = errors::<Radau<Body, Body>>(1.0);
+        let order = |a: f64, b: f64| (a / b).log2();
+        let (step, dense) = (
+            order(step_coarse, step_fine),
+            order(dense_coarse, dense_fine),
+        );
+        assert!((9.2..10.7).contains(&step), "step order {step}");
+        assert!((5.2..6.7).contains(&dense), "dense order {dense}");
+        assert!(step_fine < 1e-8 && dense_fine < 1e-4);
+    }
+
+    /// The quadrature of the error estimate is exact to the power 4, as its weights at the stages and
+    /// 1/`REAL` at the start must be.
+    #[test]
+    fn transforms_are_inverse_and_the_estimate_is_of_order_five() {
+        for (i, row) in T.iter().enumerate() {
+            for j in 0..STAGES {
+                let product: f64 = (0..STAGES).map(|k| row[k] * T_INVERSE[k][j]).sum();
+                assert!((product - f64::from(u8::from(i == j))).abs() < 1e-13);
+            }
+        }
+        // y = θ^p: z_i = NODES_i^p, y' at the start is 0 but for p = 1.
+        for p in 1..=5 {
+            let sum: f64 = ERROR.iter().zip(NODES).map(|(e, c)| e * c.powi(p)).sum();
+            let start = if p == 1 { 1.0 / REAL } else { 0.0 };
+            assert!((sum + start).abs() < 1e-14, "power {p}: {}", sum + start);
+        }
+    }
+}
