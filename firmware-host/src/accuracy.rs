@@ -1,14 +1,14 @@
 //! Error against run time: one scene without control, over tolerances and methods.
 
 use crate::scene::{Disturbance, Scene};
-use plant_model::{BuildError, Inputs, Method, Options, PlantError, V2, Work, build};
+use plant_model::{BuildError, Inputs, Method, Mode, Options, PlantError, V2, Work, build};
 use serde::Serialize;
 use std::time::{Duration, Instant};
 
 /// Tolerances that are tried.
 const TOLERANCES: [f64; 9] = [1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12];
 /// Tolerance of the references.
-const TIGHTEST: f64 = 1e-13;
+pub(crate) const TIGHTEST: f64 = 1e-13;
 /// A run is repeated for so long, and its best time counts; other work on the machine only adds.
 const REPEAT_FOR: Duration = Duration::from_millis(60);
 const REPEAT_AT_MOST: u32 = 50;
@@ -22,8 +22,9 @@ pub struct Row {
     pub method: &'static str,
     /// Tolerance of a contact step.
     pub rtol: f64,
-    /// Distance of the end position from the reference, in clearances.
-    pub error: f64,
+    /// Distance of the end position from the reference, in clearances; `None` where the reference is
+    /// not confirmed.
+    pub error: Option<f64>,
     /// Best wall-clock time \[s\].
     pub seconds: f64,
     /// Evaluations of the right-hand side, or series computed, in contact.
@@ -34,17 +35,24 @@ pub struct Row {
     pub mode_changes: u64,
 }
 
-/// What the sweep gave.
+/// What errors of one problem are measured against.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Accuracy {
-    /// All runs.
-    pub rows: Vec<Row>,
-    /// How far the references of the two methods lie apart, in clearances: errors below it mean
-    /// nothing.
-    pub reference_uncertainty: f64,
-    /// Whether both references went through the same number of modes.
-    pub references_agree: bool,
+pub struct Reference {
+    /// Title of the scene.
+    pub problem: String,
+    /// Distance of the end positions of the series and the explicit pair at 1e-13, in clearances:
+    /// errors below it mean nothing.
+    pub uncertainty: f64,
+    /// Whether both went through the same modes in the same order.
+    pub same_modes: bool,
+    /// Whether they do, and end closer to each other than [`CONFIRMED_CLEARANCES`].
+    pub confirmed: bool,
+    /// Evaluations of both in contact: what runs of this problem cost.
+    pub evaluations: u64,
 }
+
+/// References farther apart than this confirm nothing.
+pub const CONFIRMED_CLEARANCES: f64 = 1e-3;
 
 /// Why there is no answer.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -62,21 +70,34 @@ pub enum AccuracyError {
     },
 }
 
-struct Ending {
-    position_m: V2,
-    mode_changes: u64,
+/// Where a run ends and how it came there.
+pub(crate) struct Ending {
+    pub(crate) position_m: V2,
+    pub(crate) modes: Vec<Mode>,
+    pub(crate) method: Method,
     work: Work,
+}
+
+/// Distance of two ends in clearances.
+pub(crate) fn apart(scene: &Scene, a: &Ending, b: &Ending) -> f64 {
+    (a.position_m - b.position_m).norm() / scene.plant.contact.clearance_m
 }
 
 /// Runs the scene's plant without control under every method and tolerance.
 ///
 /// # Errors
 /// [`AccuracyError`].
-pub fn sweep(scene: &Scene) -> Result<Accuracy, AccuracyError> {
-    let reference = run(scene, Method::Series, TIGHTEST)?;
+pub fn sweep(scene: &Scene) -> Result<(Vec<Row>, Reference), AccuracyError> {
+    let first = run(scene, Method::Series, TIGHTEST)?;
     let second = run(scene, Method::Explicit, TIGHTEST)?;
-    let clearance_m = scene.plant.contact.clearance_m;
-    let apart = |a: &Ending, b: &Ending| (a.position_m - b.position_m).norm() / clearance_m;
+    let (uncertainty, same_modes) = (apart(scene, &first, &second), first.modes == second.modes);
+    let reference = Reference {
+        problem: scene.title.clone(),
+        uncertainty,
+        same_modes,
+        confirmed: same_modes && uncertainty < CONFIRMED_CLEARANCES,
+        evaluations: first.work.evaluations + second.work.evaluations,
+    };
     let mut rows = Vec::new();
     for method in [Method::Series, Method::Explicit, Method::Stiff] {
         // A pair of order five is not made for the tightest tolerances.
@@ -86,38 +107,41 @@ pub fn sweep(scene: &Scene) -> Result<Accuracy, AccuracyError> {
             &TOLERANCES
         };
         for &rtol in tolerances {
-            let (mut best, mut repeats) = (f64::INFINITY, 0);
-            let begun = Instant::now();
-            let ending = loop {
-                let started = Instant::now();
-                let ending = run(scene, method, rtol)?;
-                best = best.min(started.elapsed().as_secs_f64());
-                repeats += 1;
-                if repeats >= REPEAT_AT_MOST || begun.elapsed() > REPEAT_FOR {
-                    break ending;
-                }
-            };
+            let (seconds, ending) = timed(|| run(scene, method, rtol))?;
             rows.push(Row {
                 problem: scene.title.clone(),
                 method: method.name(),
                 rtol,
-                error: apart(&ending, &reference),
-                seconds: best,
+                error: reference.confirmed.then(|| apart(scene, &ending, &first)),
+                seconds,
                 evaluations: ending.work.evaluations,
                 steps: ending.work.steps,
-                mode_changes: ending.mode_changes,
+                mode_changes: ending.modes.len() as u64,
             });
         }
     }
-    Ok(Accuracy {
-        rows,
-        reference_uncertainty: apart(&reference, &second),
-        references_agree: reference.mode_changes == second.mode_changes,
-    })
+    Ok((rows, reference))
+}
+
+/// Best time \[s\] of a few runs, and the last of them.
+fn timed(
+    mut run: impl FnMut() -> Result<Ending, AccuracyError>,
+) -> Result<(f64, Ending), AccuracyError> {
+    let (mut best, mut repeats) = (f64::INFINITY, 0);
+    let begun = Instant::now();
+    loop {
+        let started = Instant::now();
+        let ending = run()?;
+        best = best.min(started.elapsed().as_secs_f64());
+        repeats += 1;
+        if repeats >= REPEAT_AT_MOST || begun.elapsed() > REPEAT_FOR {
+            return Ok((best, ending));
+        }
+    }
 }
 
 /// One run from edge to edge of the disturbances: no samples cut the integrator's steps.
-fn run(scene: &Scene, method: Method, rtol: f64) -> Result<Ending, AccuracyError> {
+pub(crate) fn run(scene: &Scene, method: Method, rtol: f64) -> Result<Ending, AccuracyError> {
     let options = Options {
         rtol,
         method,
@@ -132,20 +156,21 @@ fn run(scene: &Scene, method: Method, rtol: f64) -> Result<Ending, AccuracyError
         .collect();
     edges.push(scene.duration_s);
     edges.sort_by(f64::total_cmp);
-    let (mut from, mut mode_changes) = (0.0, 0);
+    let (mut from, mut modes) = (0.0, Vec::new());
     for to in edges {
         let inputs = Inputs {
             command_n: V2::zeros(),
             external_n: scene.external_n(from),
         };
         plant
-            .advance(to, &inputs, &mut |_| mode_changes += 1)
+            .advance(to, &inputs, &mut |s| modes.push(s.mode))
             .map_err(|reason| AccuracyError::Plant { rtol, reason })?;
         from = to;
     }
     Ok(Ending {
         position_m: plant.snapshot().position_m,
-        mode_changes,
+        modes,
+        method: plant.method(),
         work: plant.work(),
     })
 }

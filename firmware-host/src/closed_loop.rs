@@ -38,6 +38,16 @@ pub enum RunError {
         /// Largest residual that is trusted.
         limit: f64,
     },
+    /// The run is fine, and what should confirm it is not.
+    #[error("checked by {method} at rtol {rtol:e}: {reason}")]
+    Check {
+        /// Method of the check.
+        method: &'static str,
+        /// Its tolerance.
+        rtol: f64,
+        /// Why the check has no result.
+        reason: Box<RunError>,
+    },
     /// The scene lacks something that the policy needs.
     #[error("policy {policy} needs more than the scene gives")]
     Incomplete {

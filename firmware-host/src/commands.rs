@@ -2,4 +2,5 @@
 
 pub mod accuracy;
 pub mod error;
+mod progress;
 pub mod run;

@@ -100,6 +100,7 @@ impl Judge {
                 _ => None,
             },
             energy_residual: plant.audit().residual(),
+            method: plant.method().name(),
             run_time_s,
             real_time_ratio: scene.duration_s / run_time_s,
         }

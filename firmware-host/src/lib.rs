@@ -2,7 +2,7 @@
 //!
 //! Files, each importing only from those above it: `trace`, `verdict`, `scene_error`, `scene_file`,
 //! `plant_setup`, `supervisor_setup`, `instruments`, `levitation`, `policy_kind`, `scene`,
-//! `policies`, `judge`, `closed_loop`, `accuracy`, `trace_file`, `plot`, `report`, `table`, `output`,
+//! `policies`, `judge`, `closed_loop`, `verify`, `accuracy`, `wrong_runs`, `trace_file`, `plot`, `report`, `table`, `output`,
 //! `commands`.
 
 #![forbid(unsafe_code)]
@@ -28,3 +28,5 @@ pub mod table;
 pub mod trace;
 pub mod trace_file;
 pub mod verdict;
+pub mod verify;
+pub mod wrong_runs;

@@ -16,7 +16,7 @@ struct Cli {
 enum Command {
     /// Run a scene under each of its policies; print a table, write traces and a report.
     Run(run::RunArgs),
-    /// Error against run time of a scene's plant, over tolerances and methods.
+    /// Error against run time of a scene's plant, over tolerances and methods, and silently wrong runs.
     Accuracy(accuracy::AccuracyArgs),
 }
 

@@ -22,7 +22,7 @@ use plotters::style::{Color, IntoFont, RGBColor, TextStyle};
 use crate::plot::text::{escape, number};
 use crate::plot::thin::{Band, Interval, PathPoint, one_band_a_column, trail};
 
-pub(crate) use crate::plot::log_log::{LogLine, log_log};
+pub(crate) use crate::plot::log_log::{LogLine, LogPanel, log_log};
 
 /// Why a figure could not be drawn.
 #[derive(Debug, thiserror::Error)]

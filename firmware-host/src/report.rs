@@ -6,6 +6,7 @@ mod axes;
 mod fixture;
 mod panels;
 mod quantities;
+mod verification;
 
 use std::fmt::Write as _;
 
@@ -35,6 +36,7 @@ pub fn html(scene: &SceneSummary, runs: &[PolicyRun]) -> Result<String, PlotErro
     push_facts(&mut page, scene);
     page.push_str("</header>\n<main>\n");
     push_table(&mut page, runs);
+    verification::push_table(&mut page, runs);
     if !runs.is_empty() {
         push_sections(&mut page, scene, runs)?;
     }
@@ -103,7 +105,7 @@ fn disturbance_text(scene: &SceneSummary) -> String {
 /// A column of the table: heading, unit, content.
 type Column = (&'static str, &'static str, fn(&Verdict) -> String);
 
-const COLUMNS: [Column; 12] = [
+const COLUMNS: [Column; 13] = [
     ("Impacts", "", |v| v.impacts.to_string()),
     ("Contact time", "ms", |v| figures(1e3 * v.contact_time_s)),
     ("Peak penetration", "µm", |v| {
@@ -126,6 +128,7 @@ const COLUMNS: [Column; 12] = [
         optional(v.relevitation_time_s, 1e3)
     }),
     ("Energy residual", "", |v| figures(v.energy_residual)),
+    ("Method", "", |v| v.method.to_owned()),
     ("Run time", "s", |v| figures(v.run_time_s)),
     ("Real-time ratio", "", |v| figures(v.real_time_ratio)),
 ];

@@ -4,7 +4,7 @@ use crate::instruments::SensorParams;
 use crate::levitation::LevitationParams;
 use crate::plant_setup::plant_of;
 use crate::policy_kind::PolicyKind;
-use crate::scene_error::{Checks, SceneError, SceneText};
+use crate::scene_error::{Checks, SceneError, SceneText, with_guess};
 use crate::scene_file::{LevitationFile, MethodFile, SceneFile};
 use crate::supervisor_setup;
 use plant_model::analysis::onset::lift_off_speed_m_s;
@@ -68,6 +68,8 @@ pub struct Scene {
     pub supervisor: Option<supervisor::Config>,
     /// Backward contact speed above which a run is whirl \[m/s\].
     pub whirl_speed_m_s: f64,
+    /// What is allowed and yet unlikely to be meant, with file and line.
+    pub warnings: Vec<String>,
 }
 
 impl Scene {
@@ -77,6 +79,17 @@ impl Scene {
     /// [`SceneError`] with file, line and key.
     pub fn load(path: &Path) -> Result<Self, SceneError> {
         Self::from_text(&SceneText::read(path)?)
+    }
+
+    /// A scene from the text of a file; errors name it `name`.
+    ///
+    /// # Errors
+    /// [`SceneError`] with line and key.
+    pub fn parse(name: &str, text: &str) -> Result<Self, SceneError> {
+        Self::from_text(&SceneText {
+            path: name.into(),
+            text: text.to_owned(),
+        })
     }
 
     /// Weight and disturbances that act from a time on \[N\].
@@ -182,6 +195,7 @@ impl Scene {
             },
             levitation,
             radial_band: file.radial.band,
+            warnings: warnings_of(file, text, supervised),
             supervisor,
         })
     }
@@ -205,6 +219,19 @@ fn levitation_of(l: &LevitationFile, check: &Checks<'_>) -> Result<LevitationPar
     })
 }
 
+/// Control rates that the supervisor is made for \[Hz\].
+const SUPERVISED_RATES_HZ: std::ops::RangeInclusive<f64> = 1e4..=5e4;
+
+fn warnings_of(file: &SceneFile, text: &SceneText, supervised: bool) -> Vec<String> {
+    let (key, rate) = ("run.sample_rate_hz", file.run.sample_rate_hz);
+    let mut warnings = Vec::new();
+    if supervised && !SUPERVISED_RATES_HZ.contains(&rate) {
+        let message = format!("is {rate}; the supervisor is made for 10 to 50 kHz");
+        warnings.push(text.error_at_key(key, message, None).to_string());
+    }
+    warnings
+}
+
 fn policies_of(file: &SceneFile, text: &SceneText) -> Result<Vec<PolicyKind>, SceneError> {
     let key = "run.policies";
     let names = PolicyKind::ALL.map(PolicyKind::name).join(", ");
@@ -212,7 +239,9 @@ fn policies_of(file: &SceneFile, text: &SceneText) -> Result<Vec<PolicyKind>, Sc
     for name in &file.run.policies {
         let kind = PolicyKind::from_name(name).ok_or_else(|| {
             let message = format!("there is no policy \"{name}\"");
-            text.error_at_key(key, message, Some(format!("policies are {names}")))
+            let known = PolicyKind::ALL.map(PolicyKind::name);
+            let help = with_guess(format!("policies are {names}"), name, known);
+            text.error_at_key(key, message, Some(help))
         })?;
         if policies.contains(&kind) {
             let help = Some("name each policy once".to_owned());

@@ -105,7 +105,7 @@ impl SceneText {
         {
             message = format!("{}: {message}", key.trim());
         }
-        self.error_at(range, message, None)
+        self.error_at(range, message.clone(), guess_from(&message))
     }
 
     /// An error at a dotted key, or at its longest part that is there, or at the top of the file.
@@ -150,6 +150,40 @@ impl SceneText {
         }
         span
     }
+}
+
+/// What serde says of an unknown name lists the known ones, all in backticks.
+fn guess_from(message: &str) -> Option<String> {
+    if !message.contains("unknown field") && !message.contains("unknown variant") {
+        return None;
+    }
+    let (_, names) = message.split_once("unknown")?;
+    let mut names = names.split('`').skip(1).step_by(2);
+    let word = names.next()?;
+    guess(word, names)
+}
+
+/// The known name that a misspelt one comes close to, as a question.
+fn guess<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Option<String> {
+    let limit = word.chars().count().div_ceil(3);
+    // A key without its unit is the commonest mistake.
+    let distance = |name: &str| match name.strip_prefix(word) {
+        Some(unit) if unit.starts_with('_') => 1,
+        _ => strsim::damerau_levenshtein(word, name),
+    };
+    let (distance, name) = (known.into_iter())
+        .map(|name| (distance(name), name))
+        .min_by_key(|(distance, _)| *distance)?;
+    (distance <= limit).then(|| format!("did you mean `{name}`?"))
+}
+
+/// Advice with a guess before it, where there is one.
+pub(crate) fn with_guess<'a>(
+    help: String,
+    word: &str,
+    known: impl IntoIterator<Item = &'a str>,
+) -> String {
+    guess(word, known).map_or(help.clone(), |guess| format!("{guess} {help}"))
 }
 
 /// Range checks that point at the key.

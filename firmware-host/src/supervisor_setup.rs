@@ -1,6 +1,6 @@
 //! Configuration of the supervisor from the scene's nominal plant data, with the scene's overrides.
 
-use crate::scene_error::{SceneError, SceneText};
+use crate::scene_error::{SceneError, SceneText, with_guess};
 use crate::scene_file::SceneFile;
 use plant_model::params::PlantParams;
 use supervisor::{Config, PARAMETERS};
@@ -33,6 +33,7 @@ pub(crate) fn config(
         let Some(index) = PARAMETERS.iter().position(|p| p.name == key) else {
             let names: Vec<&str> = PARAMETERS.iter().map(|p| p.name).collect();
             let help = format!("parameters are {}", names.join(", "));
+            let help = with_guess(help, key, names);
             return Err(text.error_at_key(&path, "unknown parameter".to_owned(), Some(help)));
         };
         let number = value

@@ -1,7 +1,7 @@
 //! The verdicts as a table for people and as JSON for programs.
 
 use crate::scene::Scene;
-use crate::verdict::{Outcome, PolicyRun, Verdict};
+use crate::verdict::{Check, Outcome, PolicyRun, Verdict, Verification};
 use comfy_table::{Cell, CellAlignment, Table, presets};
 
 /// Rows of the table: name with unit, and the value as text.
@@ -32,11 +32,47 @@ const FIGURES: &[Figure] = &[
     ("energy-audit residual", |v| {
         format!("{:.1e}", v.energy_residual)
     }),
+    ("method", |v| v.method.to_owned()),
     ("run time [ms]", |v| format!("{:.1}", v.run_time_s * 1e3)),
     ("ratio to real time", |v| {
         format!("{:.0}", v.real_time_ratio)
     }),
 ];
+
+/// Rows below those, where runs were checked.
+type CheckFigure = (&'static str, fn(&Verification) -> String);
+
+const CHECK_FIGURES: &[CheckFigure] = &[
+    ("checked by", |v| {
+        each(v, |c| format!("{} {:.0e}", c.method, c.rtol))
+    }),
+    ("outcome when checked", |v| match v.same_outcome {
+        true => "the same".to_owned(),
+        false => format!("OTHER: {}", each(v, |c| outcome(c.outcome).to_owned())),
+    }),
+    ("modes when checked", |v| match v.same_modes {
+        true => format!("the same {}", v.mode_changes),
+        false => format!(
+            "{}, not {}",
+            each(v, |c| c.mode_changes.to_string()),
+            v.mode_changes
+        ),
+    }),
+    ("estimated error at the end [c]", |v| {
+        format!("{:.1e}", v.estimated_error_clearances)
+    }),
+    ("largest difference [c]", |v| {
+        format!("{:.1e}", v.largest_difference_clearances)
+    }),
+    ("apart by 1e-3 c from [ms]", |v| {
+        or_dash(v.differs_from_s, 1e3, 2)
+    }),
+];
+
+/// A word for each check.
+pub(crate) fn each(v: &Verification, word: impl Fn(&Check) -> String) -> String {
+    v.checks.iter().map(word).collect::<Vec<_>>().join(", ")
+}
 
 fn or_dash(value: Option<f64>, factor: f64, digits: usize) -> String {
     value.map_or("–".to_owned(), |x| format!("{:.digits$}", x * factor))
@@ -64,11 +100,17 @@ pub fn text(scene: &Scene, runs: &[PolicyRun]) -> String {
             .map(|r| Cell::new(&r.name).set_alignment(CellAlignment::Right)),
     );
     table.set_header(header);
+    let right = |text: String| Cell::new(text).set_alignment(CellAlignment::Right);
     for (name, value) in FIGURES {
-        let mut row = vec![Cell::new(name)];
-        let cell = |r: &PolicyRun| Cell::new(value(&r.verdict)).set_alignment(CellAlignment::Right);
-        row.extend(runs.iter().map(cell));
-        table.add_row(row);
+        let cells = runs.iter().map(|r| right(value(&r.verdict)));
+        table.add_row([Cell::new(name)].into_iter().chain(cells));
+    }
+    if runs.iter().any(|r| r.verification.is_some()) {
+        for (name, value) in CHECK_FIGURES {
+            let cells =
+                (runs.iter()).map(|r| right(r.verification.as_ref().map_or("–".to_owned(), value)));
+            table.add_row([Cell::new(name)].into_iter().chain(cells));
+        }
     }
     format!("{}\n{table}", scene.title)
 }
@@ -76,7 +118,13 @@ pub fn text(scene: &Scene, runs: &[PolicyRun]) -> String {
 /// The verdicts under stable keys: `policies.<name>.<figure>`.
 pub fn json(scene: &Scene, runs: &[PolicyRun]) -> serde_json::Value {
     let policies: serde_json::Map<String, serde_json::Value> = (runs.iter())
-        .map(|run| (run.name.clone(), serde_json::json!(run.verdict)))
+        .map(|run| {
+            let mut figures = serde_json::json!(run.verdict);
+            if let Some(verification) = &run.verification {
+                figures["verification"] = serde_json::json!(verification);
+            }
+            (run.name.clone(), figures)
+        })
         .collect();
     serde_json::json!({
         "scene": scene.title,

@@ -47,10 +47,54 @@ pub struct Verdict {
     pub relevitation_time_s: Option<f64>,
     /// Energy-audit residual: energy from nowhere over energy turned over.
     pub energy_residual: f64,
+    /// Method that integrated contact: `series`, `explicit` or `stiff`.
+    pub method: &'static str,
     /// Wall-clock time of the run \[s\].
     pub run_time_s: f64,
     /// Simulated time over wall-clock time.
     pub real_time_ratio: f64,
+}
+
+/// The run once more, by one method at one tolerance, against the run itself.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Check {
+    /// Method that integrated contact.
+    pub method: &'static str,
+    /// Its tolerance.
+    pub rtol: f64,
+    /// How it ended.
+    pub outcome: Outcome,
+    /// Changes of mode.
+    pub mode_changes: u64,
+    /// Whether the modes follow each other as in the run.
+    pub same_modes: bool,
+    /// Distance of the end positions, in clearances.
+    pub end_difference_clearances: f64,
+    /// Largest distance at a control sample, in clearances.
+    pub largest_difference_clearances: f64,
+    /// First control sample more than the threshold apart \[s\]; `None` if there is none.
+    pub differs_from_s: Option<f64>,
+}
+
+/// What the checks say of a run: the worst of each.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Verification {
+    /// Whether all checks end with the outcome of the run.
+    pub same_outcome: bool,
+    /// Whether the modes follow each other as in the run in all checks.
+    pub same_modes: bool,
+    /// Changes of mode of the run.
+    pub mode_changes: u64,
+    /// Estimated global error: largest distance of the end position from a check's, in clearances.
+    pub estimated_error_clearances: f64,
+    /// Largest distance from a check at a control sample, in clearances.
+    pub largest_difference_clearances: f64,
+    /// Distance above which runs count as different, in clearances.
+    pub threshold_clearances: f64,
+    /// First control sample at which a check is farther away \[s\]; `None`: they agree to the end.
+    pub differs_from_s: Option<f64>,
+    /// The checks.
+    pub checks: Vec<Check>,
 }
 
 /// One policy's run.
@@ -60,6 +104,8 @@ pub struct PolicyRun {
     pub name: String,
     /// What it came to.
     pub verdict: Verdict,
+    /// What running it again with other means says, where that was asked for.
+    pub verification: Option<Verification>,
     /// What happened.
     pub trace: crate::trace::Trace,
 }

@@ -6,6 +6,7 @@ pub mod plants;
 
 use firmware_host::scene::Scene;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 /// Root of the workspace.
 pub fn root() -> PathBuf {
@@ -24,4 +25,36 @@ pub fn scene_path(name: &str) -> PathBuf {
 /// If it cannot be loaded, with the reason.
 pub fn scene(name: &str) -> Scene {
     Scene::load(&scene_path(name)).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// Names of all the project's scenes, in order.
+///
+/// # Panics
+/// If their folder cannot be read.
+pub fn scene_names() -> Vec<String> {
+    let folder = root().join("firmware-host/scenes");
+    let entries =
+        std::fs::read_dir(&folder).unwrap_or_else(|e| panic!("{}: {e}", folder.display()));
+    let mut names: Vec<String> = entries
+        .filter_map(|e| Some(e.ok()?.path().file_stem()?.to_string_lossy().into_owned()))
+        .collect();
+    names.sort();
+    names
+}
+
+/// The host's binary, built by the same cargo call (tests/run builds it before the tests).
+///
+/// # Panics
+/// If it is not there.
+pub fn host() -> Command {
+    let test = std::env::current_exe().unwrap_or_default();
+    // target/<profile>/deps/<test>
+    let folder = test.ancestors().nth(2).unwrap_or(&test);
+    let binary = folder.join(format!("firmware-host{}", std::env::consts::EXE_SUFFIX));
+    assert!(
+        binary.exists(),
+        "{} is missing: run tests/run",
+        binary.display()
+    );
+    Command::new(binary)
 }

@@ -5,25 +5,9 @@ use parquet::record::RowAccessor;
 use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
-use system_tests::scene_path;
+use std::process::Output;
+use system_tests::{host, scene_path};
 use tempfile::TempDir;
-
-/// The host's binary, built by the same cargo call (tests/run builds it before the tests).
-fn host() -> Command {
-    let test = std::env::current_exe().expect("a test has a path");
-    let folder = test
-        .ancestors()
-        .nth(2)
-        .expect("target/<profile>/deps/<test>");
-    let binary = folder.join(format!("firmware-host{}", std::env::consts::EXE_SUFFIX));
-    assert!(
-        binary.exists(),
-        "{} is missing: run tests/run",
-        binary.display()
-    );
-    Command::new(binary)
-}
 
 fn run(scene: &Path, out: &Path, more: &[&str]) -> Output {
     host()
@@ -486,49 +470,4 @@ fn a_run_that_cannot_be_trusted_ends_with_an_error() {
     assert_eq!(result.status.code(), Some(1), "{error}");
     assert!(error.contains("from the centre"), "{error}");
     assert_eq!(names(folder.path()), ["short.toml"]);
-}
-
-/// `accuracy`: rows with stable keys, an error that follows the tolerance, and a plot.
-#[test]
-fn accuracy_follows_the_tolerance() {
-    let folder = TempDir::new().unwrap();
-    let out = folder.path().join("out");
-    let result = host()
-        .arg("accuracy")
-        .arg(scene_path("bouncing_into_rolling"))
-        .args(["--json", "--out"])
-        .arg(&out)
-        .output()
-        .unwrap();
-    assert!(
-        result.status.success(),
-        "{}",
-        String::from_utf8_lossy(&result.stderr)
-    );
-    let printed: Value = serde_json::from_slice(&result.stdout).unwrap();
-    assert_eq!(printed["references_agree"], true);
-    assert!(printed["reference_uncertainty"].as_f64().unwrap() < 1e-9);
-    let rows = printed["rows"].as_array().unwrap();
-    assert_eq!(rows.len(), 24);
-    for row in rows {
-        for key in ["problem", "method"] {
-            assert!(row[key].is_string(), "{key}");
-        }
-        for key in ["rtol", "error", "seconds", "evaluations", "mode_changes"] {
-            assert!(row[key].is_number(), "{key}");
-        }
-        assert_eq!(row["mode_changes"], 6);
-        let (rtol, error) = (
-            row["rtol"].as_f64().unwrap(),
-            row["error"].as_f64().unwrap(),
-        );
-        // The series keeps the tolerance; the pair adds its local errors up over hundreds of steps.
-        let allowed = if row["method"] == "series" {
-            3.0
-        } else {
-            2000.0
-        };
-        assert!(error < allowed * rtol, "{row}");
-    }
-    assert_eq!(names(&out), ["accuracy.json", "accuracy.svg"]);
 }

@@ -1,42 +1,118 @@
-//! `accuracy SCENE.toml`: error against run time, as a table, JSON and a plot.
+//! `accuracy [SCENE]`: error against run time, and silently wrong runs, as tables, JSON and a plot.
 
-use crate::accuracy::{Accuracy, Row, sweep};
+mod show;
+
+use crate::accuracy::{Reference, Row, sweep};
 use crate::commands::error::{CommandError, print};
+use crate::commands::progress::{LateProgress, pool};
 use crate::output::{self, OutputError, Staging};
-use crate::plot;
 use crate::scene::Scene;
-use comfy_table::{Cell, CellAlignment, Table, presets};
+use crate::wrong_runs::{self, STARTS, WrongRow};
+use serde::Serialize;
 use std::path::PathBuf;
+
+/// The benchmark problems of the integrator, as `firmware-host/scenes` has them.
+const BENCHMARKS: [(&str, &str); 5] = [
+    (
+        "benchmark_b1.toml",
+        include_str!("../../scenes/benchmark_b1.toml"),
+    ),
+    (
+        "benchmark_b2.toml",
+        include_str!("../../scenes/benchmark_b2.toml"),
+    ),
+    (
+        "benchmark_b3a.toml",
+        include_str!("../../scenes/benchmark_b3a.toml"),
+    ),
+    (
+        "benchmark_b3b.toml",
+        include_str!("../../scenes/benchmark_b3b.toml"),
+    ),
+    (
+        "benchmark_b3c.toml",
+        include_str!("../../scenes/benchmark_b3c.toml"),
+    ),
+];
+/// Problems whose references take more evaluations are swept only when asked to: with fewer, the sweep
+/// takes some ten seconds at most.
+const SHORT: u64 = 700_000;
 
 /// Arguments of `accuracy`.
 #[derive(Debug, Clone, clap::Args)]
 pub struct AccuracyArgs {
-    /// Scene file; its plant is run without control, from its start, with its disturbances.
-    #[arg(default_value = "firmware-host/scenes/bouncing_into_rolling.toml")]
-    pub scene: PathBuf,
-    /// Print JSON instead of the table.
+    /// Scene files, each run without control, from its start, with its disturbances [default: the
+    /// benchmark problems B1, B2, B3a, B3b and B3c].
+    pub scenes: Vec<PathBuf>,
+    /// Whether to look for silently wrong runs from 400 start speeds.
+    #[arg(long, value_name = "WHEN", default_value = "auto")]
+    pub wrong_runs: When,
+    /// Print JSON instead of the tables.
     #[arg(long)]
     pub json: bool,
     /// Folder for accuracy.json and the plot accuracy.svg; without it nothing is written.
     #[arg(long)]
     pub out: Option<PathBuf>,
+    /// Threads of the search for wrong runs [default: all cores]. Results do not depend on it.
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
 }
 
-/// Sweeps tolerances and methods.
+/// When to sweep.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum When {
+    /// On problems that are short.
+    Auto,
+    /// On all problems.
+    Always,
+    /// On none.
+    Never,
+}
+
+/// What was found.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+struct Accuracy {
+    /// Error against run time.
+    rows: Vec<Row>,
+    /// One for each problem.
+    references: Vec<Reference>,
+    /// Silently wrong runs of the problems that were swept.
+    wrong_runs: Vec<WrongRow>,
+    /// Problems that were not swept, and why.
+    not_swept: Vec<NotSwept>,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize)]
+struct NotSwept {
+    problem: String,
+    reason: &'static str,
+}
+
+/// Sweeps tolerances, methods and starts.
 ///
 /// # Errors
 /// [`CommandError`].
 pub fn execute(args: &AccuracyArgs) -> Result<(), CommandError> {
-    let scene = Scene::load(&args.scene)?;
+    let scenes = match args.scenes.as_slice() {
+        [] => (BENCHMARKS.iter())
+            .map(|(name, text)| Scene::parse(name, text))
+            .collect::<Result<Vec<_>, _>>()?,
+        paths => (paths.iter())
+            .map(|path| Scene::load(path))
+            .collect::<Result<Vec<_>, _>>()?,
+    };
     if let Some(out) = &args.out {
         output::probe(out)?;
     }
-    let accuracy = sweep(&scene).map_err(|e| CommandError::other("accuracy", e))?;
-    let pretty = serde_json::to_string_pretty(&accuracy)
+    let found = measure(&scenes, args)?;
+    for reference in found.references.iter().filter(|r| !r.confirmed) {
+        eprintln!("warning: {}", show::unconfirmed(reference));
+    }
+    let pretty = serde_json::to_string_pretty(&found)
         .map_err(|e| CommandError::other("formatting accuracy.json", e))?;
     if let Some(out) = &args.out {
         let staging = Staging::beside(out)?;
-        let svg = figure(&accuracy)?;
+        let svg = show::figure(&found)?;
         for (name, text) in [("accuracy.json", &pretty), ("accuracy.svg", &svg)] {
             let path = staging.path(name);
             std::fs::write(&path, text).map_err(|reason| OutputError { path, reason })?;
@@ -46,73 +122,51 @@ pub fn execute(args: &AccuracyArgs) -> Result<(), CommandError> {
     if args.json {
         print(&format!("{pretty}\n"))
     } else {
-        print(&table(&scene, &accuracy))
+        print(&show::tables(&found))
     }
 }
 
-fn table(scene: &Scene, accuracy: &Accuracy) -> String {
-    let mut table = Table::new();
-    table.load_style(presets::UTF8_HORIZONTAL_ONLY);
-    table.set_header([
-        "method",
-        "rtol",
-        "error [c]",
-        "time [ms]",
-        "steps",
-        "evaluations",
-        "mode changes",
-    ]);
-    let right = |text: String| Cell::new(text).set_alignment(CellAlignment::Right);
-    for row in &accuracy.rows {
-        table.add_row([
-            Cell::new(row.method),
-            right(format!("{:.0e}", row.rtol)),
-            right(format!("{:.1e}", row.error)),
-            right(format!("{:.3}", row.seconds * 1e3)),
-            right(row.steps.to_string()),
-            right(row.evaluations.to_string()),
-            right(row.mode_changes.to_string()),
-        ]);
+fn measure(scenes: &[Scene], args: &AccuracyArgs) -> Result<Accuracy, CommandError> {
+    let failed = |e| CommandError::other("accuracy", e);
+    let mut found = Accuracy {
+        rows: Vec::new(),
+        references: Vec::new(),
+        wrong_runs: Vec::new(),
+        not_swept: Vec::new(),
+    };
+    // Times first, while nothing else runs.
+    let progress = LateProgress::new(scenes.len() as u64, "problems timed");
+    for scene in scenes {
+        let (rows, reference) = sweep(scene).map_err(failed)?;
+        found.rows.extend(rows);
+        found.references.push(reference);
+        progress.add(1);
     }
-    let agreement = if accuracy.references_agree {
-        "the same"
-    } else {
-        "DIFFERENT"
-    };
-    format!(
-        "{}: end position against a run at rtol 1e-13\n{table}\nthe other method at 1e-13 ends {:.1e} c away, with {agreement} mode changes\n",
-        scene.title, accuracy.reference_uncertainty,
-    )
-}
-
-fn figure(accuracy: &Accuracy) -> Result<String, CommandError> {
-    let points = |method: &str| -> Vec<(f64, f64)> {
-        // Below the references' distance an error means nothing; it is drawn there.
-        let floor = accuracy.reference_uncertainty.max(1e-15);
-        let of = |r: &&Row| r.method == method;
-        let rows = accuracy.rows.iter().filter(of);
-        rows.map(|r| (r.error.max(floor), r.seconds * 1e3))
-            .collect()
-    };
-    let (series, explicit) = (points("series"), points("explicit"));
-    let stiff = points("stiff");
-    let lines = [
-        plot::LogLine {
-            name: "series",
-            points: &series,
-            colour: plot::TOUCHING,
-        },
-        plot::LogLine {
-            name: "explicit pair 8(5,3)",
-            points: &explicit,
-            colour: plot::FREE,
-        },
-        plot::LogLine {
-            name: "stiff pair 5(4)",
-            points: &stiff,
-            colour: plot::LIMIT,
-        },
-    ];
-    plot::log_log(("error / clearance", "time / ms"), &lines)
-        .map_err(|e| CommandError::other("drawing accuracy.svg", e))
+    progress.finish();
+    let mut swept = Vec::new();
+    for (scene, reference) in scenes.iter().zip(&found.references) {
+        let reason = match args.wrong_runs {
+            When::Never => Some("not asked for"),
+            _ if !wrong_runs::applies_to(scene) => Some("starts at rest"),
+            When::Auto if reference.evaluations > SHORT => {
+                Some("takes long: ask with --wrong-runs always")
+            }
+            _ => None,
+        };
+        match reason {
+            None => swept.push(scene),
+            Some(reason) => found.not_swept.push(NotSwept {
+                problem: scene.title.clone(),
+                reason,
+            }),
+        }
+    }
+    let progress = LateProgress::new(swept.len() as u64 * u64::from(STARTS), "starts");
+    let pool = pool(args.threads)?;
+    for scene in swept {
+        let rows = pool.install(|| wrong_runs::sweep(scene, &|| progress.add(1)));
+        found.wrong_runs.extend(rows.map_err(failed)?);
+    }
+    progress.finish();
+    Ok(found)
 }

@@ -20,6 +20,13 @@ pub enum CommandError {
     #[error(transparent)]
     #[diagnostic(help("nothing was written"))]
     Run(#[from] RunError),
+    /// A policy ends with another outcome when its run is checked.
+    #[error("{}", list(.0))]
+    #[diagnostic(help(
+        "results were written, with the checks in them; the outcome hangs on errors of integration: \
+         a smaller run.rtol may settle it, or the scene is too sensitive to be decided"
+    ))]
+    Contradicted(Vec<Contradiction>),
     /// Something else stopped it.
     #[error("{what}: {reason}")]
     Other {
@@ -30,12 +37,42 @@ pub enum CommandError {
     },
 }
 
+/// A check that ends with another outcome than its run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Contradiction {
+    /// The policy.
+    pub policy: String,
+    /// Outcome of its run.
+    pub outcome: &'static str,
+    /// Method of the check.
+    pub method: &'static str,
+    /// Tolerance of the check.
+    pub rtol: f64,
+    /// Outcome of the check.
+    pub other: &'static str,
+}
+
+fn list(contradictions: &[Contradiction]) -> String {
+    let line = |c: &Contradiction| {
+        let Contradiction {
+            policy,
+            outcome,
+            method,
+            rtol,
+            other,
+        } = c;
+        format!("policy {policy}: {outcome}, but {other} by {method} at rtol {rtol:.0e}")
+    };
+    let lines: Vec<String> = contradictions.iter().map(line).collect();
+    lines.join("\n")
+}
+
 impl CommandError {
     /// Exit code: 2 for what the user gave, 1 for the rest.
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Scene(_) | Self::Output(_) => 2,
-            Self::Run(_) | Self::Other { .. } => 1,
+            Self::Run(_) | Self::Contradicted(_) | Self::Other { .. } => 1,
         }
     }
 

@@ -1,16 +1,15 @@
 //! `run SCENE.toml`: every policy of the scene, one table, traces and a report.
 
 use crate::closed_loop::{Keep, RunError, run};
-use crate::commands::error::{CommandError, print};
+use crate::commands::error::{CommandError, Contradiction, print};
+use crate::commands::progress::{LateProgress, pool};
 use crate::output::{self, OutputError, Staging};
 use crate::policy_kind::PolicyKind;
 use crate::scene::Scene;
-use crate::verdict::{PolicyRun, SceneSummary};
-use crate::{report, table, trace_file};
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use crate::verdict::{Check, PolicyRun, SceneSummary};
+use crate::{report, table, trace_file, verify};
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
 
 /// Arguments of `run`.
 #[derive(Debug, Clone, clap::Args)]
@@ -20,6 +19,9 @@ pub struct RunArgs {
     /// Folder for verdict.json, the traces and report.html [default: runs/ and the name of the scene file].
     #[arg(long)]
     pub out: Option<PathBuf>,
+    /// Run each policy twice more, tighter and by another method, and say how far the runs lie apart.
+    #[arg(long)]
+    pub verify: bool,
     /// Print the verdicts as JSON instead of the table.
     #[arg(long)]
     pub json: bool,
@@ -31,16 +33,19 @@ pub struct RunArgs {
 /// Runs the scene and writes its results.
 ///
 /// # Errors
-/// [`CommandError`]; nothing is left behind then.
+/// [`CommandError`]; nothing is left behind then, except by [`CommandError::Contradicted`].
 pub fn execute(args: &RunArgs) -> Result<(), CommandError> {
     let scene = Scene::load(&args.scene)?;
+    for warning in &scene.warnings {
+        eprintln!("warning: {warning}");
+    }
     let out = args
         .out
         .clone()
         .unwrap_or_else(|| default_folder(&args.scene));
     // Before any work: a folder that cannot be written to is the user's to know at once.
     output::probe(&out)?;
-    let runs = run_all(&scene, args.threads)?;
+    let runs = run_all(&scene, args)?;
     let verdicts = table::json(&scene, &runs);
     let pretty = serde_json::to_string_pretty(&verdicts)
         .map_err(|e| CommandError::other("formatting verdict.json", e))?;
@@ -57,7 +62,30 @@ pub fn execute(args: &RunArgs) -> Result<(), CommandError> {
             report.display()
         )
     };
-    print(&text)
+    print(&text)?;
+    let contradictions = contradictions(&runs);
+    if contradictions.is_empty() {
+        Ok(())
+    } else {
+        Err(CommandError::Contradicted(contradictions))
+    }
+}
+
+/// Checks that end with another outcome than their run.
+fn contradictions(runs: &[PolicyRun]) -> Vec<Contradiction> {
+    let of_run = |run: &PolicyRun| {
+        let checks = run.verification.iter().flat_map(|v| &v.checks);
+        let other = checks.filter(|c| c.outcome != run.verdict.outcome);
+        let contradiction = |c: &Check| Contradiction {
+            policy: run.name.clone(),
+            outcome: table::outcome(run.verdict.outcome),
+            method: c.method,
+            rtol: c.rtol,
+            other: table::outcome(c.outcome),
+        };
+        other.map(contradiction).collect::<Vec<_>>()
+    };
+    runs.iter().flat_map(of_run).collect()
 }
 
 fn default_folder(scene: &Path) -> PathBuf {
@@ -65,29 +93,49 @@ fn default_folder(scene: &Path) -> PathBuf {
 }
 
 /// Every policy of the scene, in the scene's order whatever finishes first.
-fn run_all(scene: &Scene, threads: Option<u16>) -> Result<Vec<PolicyRun>, CommandError> {
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(threads.map_or(0, usize::from))
-        .build()
-        .map_err(|e| CommandError::other("starting threads", e))?;
-    let progress = LateProgress::new(scene);
-    let one = |kind: &PolicyKind| {
-        let (verdict, trace) = run(scene, *kind, Keep::Trace, &mut |ticks| progress.add(ticks))?;
-        Ok::<_, RunError>(PolicyRun {
+fn run_all(scene: &Scene, args: &RunArgs) -> Result<Vec<PolicyRun>, CommandError> {
+    let mut scenes = vec![scene.clone()];
+    if args.verify {
+        scenes.extend(verify::check_scenes(scene)?);
+    }
+    // A policy's run and its checks, one policy after the other.
+    let jobs: Vec<(PolicyKind, usize)> = (scene.policies.iter())
+        .flat_map(|kind| (0..scenes.len()).map(move |of| (*kind, of)))
+        .collect();
+    let ticks = (scene.duration_s * scene.sample_rate_hz).round() as u64;
+    let progress = LateProgress::new(ticks * jobs.len() as u64, "ticks");
+    let one = |(kind, of): &(PolicyKind, usize)| {
+        let on_tick = &mut |ticks| progress.add(ticks);
+        match of {
+            0 => run(scene, *kind, Keep::Trace, on_tick),
+            _ => verify::run_check(&scenes[*of], *kind, on_tick),
+        }
+    };
+    let results = pool(args.threads)?.install(|| {
+        jobs.par_iter()
+            .map(one)
+            .collect::<Result<Vec<_>, RunError>>()
+    });
+    progress.finish();
+    let mut results = results?.into_iter();
+    let mut runs = Vec::with_capacity(scene.policies.len());
+    for kind in &scene.policies {
+        let Some((verdict, trace)) = results.next() else {
+            break;
+        };
+        let checks: Vec<Check> = (scenes[1..].iter().zip(results.by_ref()))
+            .map(|(check, (v, t))| verify::compare(check, &trace, (&v, &t)))
+            .collect();
+        runs.push(PolicyRun {
             name: kind.name().to_owned(),
+            verification: args
+                .verify
+                .then(|| verify::verification(&verdict, &trace, checks)),
             verdict,
             trace,
-        })
-    };
-    let runs = pool.install(|| {
-        scene
-            .policies
-            .par_iter()
-            .map(one)
-            .collect::<Result<Vec<_>, _>>()
-    });
-    progress.bar.finish_and_clear();
-    Ok(runs?)
+        });
+    }
+    Ok(runs)
 }
 
 fn write_results(
@@ -128,37 +176,5 @@ fn summary(scene: &Scene) -> SceneSummary {
             .map(|d| (d.start_s, d.end_s()))
             .collect(),
         duration_s: scene.duration_s,
-    }
-}
-
-/// A progress bar that shows itself only when the work takes longer than a second.
-struct LateProgress {
-    bar: ProgressBar,
-    started: Instant,
-}
-
-impl LateProgress {
-    fn new(scene: &Scene) -> Self {
-        let ticks = (scene.duration_s * scene.sample_rate_hz).round() as u64;
-        let bar = ProgressBar::with_draw_target(
-            Some(ticks * scene.policies.len() as u64),
-            ProgressDrawTarget::hidden(),
-        );
-        if let Ok(style) =
-            ProgressStyle::with_template("{bar:40} {percent:>3} % of ticks, {eta} left")
-        {
-            bar.set_style(style);
-        }
-        Self {
-            bar,
-            started: Instant::now(),
-        }
-    }
-
-    fn add(&self, ticks: u64) {
-        self.bar.inc(ticks);
-        if self.bar.is_hidden() && self.started.elapsed() > Duration::from_secs(1) {
-            self.bar.set_draw_target(ProgressDrawTarget::stderr());
-        }
     }
 }

@@ -2,8 +2,9 @@
 
 use plotters::backend::SVGBackend;
 use plotters::chart::ChartBuilder;
+use plotters::coord::Shift;
 use plotters::coord::combinators::IntoLogRange;
-use plotters::drawing::IntoDrawingArea;
+use plotters::drawing::{DrawingArea, IntoDrawingArea};
 use plotters::element::{Circle, PathElement, Text};
 use plotters::style::{Color, IntoFont, RGBColor, WHITE};
 
@@ -13,60 +14,84 @@ use crate::plot::PlotError;
 pub(crate) struct LogLine<'a> {
     pub(crate) name: &'a str,
     /// Positive numbers.
-    pub(crate) points: &'a [(f64, f64)],
+    pub(crate) points: Vec<(f64, f64)>,
     pub(crate) colour: RGBColor,
 }
 
+/// Lines that belong together.
+pub(crate) struct LogPanel<'a> {
+    pub(crate) title: &'a str,
+    pub(crate) lines: Vec<LogLine<'a>>,
+}
+
+/// Size of a panel.
 const SIZE: (u32, u32) = (720, 480);
 const FONT: u32 = 16;
+/// Room right of the points for the names of lines, as a factor.
+const NAMES: f64 = 200.0;
 
-/// A complete SVG file; both axes logarithmic, their names as (x, y).
-pub(crate) fn log_log(names: (&str, &str), lines: &[LogLine<'_>]) -> Result<String, PlotError> {
-    let range = |pick: fn(&(f64, f64)) -> f64| {
-        let values = lines.iter().flat_map(|l| l.points).map(pick);
-        let values = values.filter(|v| *v > 0.0 && v.is_finite());
-        let (low, high) = values.fold((f64::INFINITY, 0.0_f64), |(a, b), v| (a.min(v), b.max(v)));
-        if low <= high {
-            (0.5 * low, 2.0 * high)
-        } else {
-            (0.1, 1.0)
-        }
-    };
-    let (x, y) = (range(|p| p.0), range(|p| p.1));
+/// A complete SVG file, two panels abreast; all axes logarithmic, their names as (x, y).
+pub(crate) fn log_log(names: (&str, &str), panels: &[LogPanel<'_>]) -> Result<String, PlotError> {
+    let columns = panels.len().clamp(1, 2);
+    let rows = panels.len().div_ceil(columns).max(1);
+    let size = (SIZE.0 * columns as u32, SIZE.1 * rows as u32);
     let mut svg = String::new();
     {
-        let area = SVGBackend::with_string(&mut svg, SIZE).into_drawing_area();
+        let area = SVGBackend::with_string(&mut svg, size).into_drawing_area();
         area.fill(&WHITE)?;
-        let mut chart = ChartBuilder::on(&area)
-            .margin(12)
-            .x_label_area_size(48)
-            .y_label_area_size(72)
-            .build_cartesian_2d((x.0..x.1).log_scale(), (y.0..y.1).log_scale())?;
-        let power = |v: &f64| format!("{v:.0e}");
-        chart
-            .configure_mesh()
-            .x_desc(names.0)
-            .y_desc(names.1)
-            .x_label_formatter(&power)
-            .y_label_formatter(&|v| format!("{v}"))
-            .label_style(("sans-serif", FONT))
-            .draw()?;
-        for line in lines {
-            let points: Vec<(f64, f64)> = line.points.to_vec();
-            chart.draw_series([PathElement::new(
-                points.clone(),
-                line.colour.stroke_width(2),
-            )])?;
-            let marks = points
-                .iter()
-                .map(|p| Circle::new(*p, 4, line.colour.filled()));
-            chart.draw_series(marks)?;
-            if let Some(last) = points.last() {
-                let style = ("sans-serif", FONT).into_font().color(&line.colour);
-                chart.draw_series([Text::new(line.name.to_owned(), *last, style)])?;
-            }
+        for (place, panel) in area.split_evenly((rows, columns)).iter().zip(panels) {
+            draw(place, names, panel)?;
         }
         area.present()?;
     }
     Ok(svg)
+}
+
+/// Least and largest value, with some room; the same everywhere where there is nothing to show.
+fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
+    let values = values.filter(|v| *v > 0.0 && v.is_finite());
+    let (low, high) = values.fold((f64::INFINITY, 0.0_f64), |(a, b), v| (a.min(v), b.max(v)));
+    if low <= high {
+        (0.5 * low, 2.0 * high)
+    } else {
+        (0.1, 1.0)
+    }
+}
+
+fn draw(
+    area: &DrawingArea<SVGBackend<'_>, Shift>,
+    names: (&str, &str),
+    panel: &LogPanel<'_>,
+) -> Result<(), PlotError> {
+    let points = || panel.lines.iter().flat_map(|l| &l.points);
+    let (x, y) = (range(points().map(|p| p.0)), range(points().map(|p| p.1)));
+    let mut chart = ChartBuilder::on(area)
+        .caption(panel.title, ("sans-serif", FONT))
+        .margin(12)
+        .x_label_area_size(48)
+        .y_label_area_size(72)
+        .build_cartesian_2d((x.0..x.1 * NAMES).log_scale(), (y.0..y.1).log_scale())?;
+    let power = |v: &f64| format!("{v:.0e}");
+    chart
+        .configure_mesh()
+        .x_desc(names.0)
+        .y_desc(names.1)
+        .x_label_formatter(&power)
+        .y_label_formatter(&power)
+        .label_style(("sans-serif", FONT))
+        .draw()?;
+    for line in &panel.lines {
+        chart.draw_series([PathElement::new(
+            line.points.clone(),
+            line.colour.stroke_width(2),
+        )])?;
+        let marks = (line.points.iter()).map(|p| Circle::new(*p, 4, line.colour.filled()));
+        chart.draw_series(marks)?;
+        // Named at the loosest tolerance, the end to the right.
+        if let Some((x, y)) = line.points.first() {
+            let style = ("sans-serif", FONT).into_font().color(&line.colour);
+            chart.draw_series([Text::new(line.name.to_owned(), (1.3 * x, *y), style)])?;
+        }
+    }
+    Ok(())
 }

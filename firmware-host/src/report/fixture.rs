@@ -26,6 +26,7 @@ pub(super) fn run(name: &str, outcome: Outcome, samples: &[(f64, bool)]) -> Poli
     PolicyRun {
         name: name.to_owned(),
         verdict: verdict(outcome),
+        verification: None,
         trace: Trace {
             rows: samples
                 .iter()
@@ -49,6 +50,7 @@ fn verdict(outcome: Outcome) -> Verdict {
         max_backward_whirl_hz: None,
         relevitation_time_s: Some(0.05),
         energy_residual: 1e-12,
+        method: "series",
         run_time_s: 0.1,
         real_time_ratio: 4.0,
     }

@@ -57,12 +57,12 @@ impl<T: ComplexField<RealField = f64> + Copy> Lu<T> {
         }
         for k in 0..self.n {
             for i in k + 1..self.n {
-                b[i] = b[i] - self.a[i][k] * b[k];
+                b[i] -= self.a[i][k] * b[k];
             }
         }
         for k in (0..self.n).rev() {
             for j in k + 1..self.n {
-                b[k] = b[k] - self.a[k][j] * b[j];
+                b[k] -= self.a[k][j] * b[j];
             }
             b[k] *= self.a[k][k];
         }

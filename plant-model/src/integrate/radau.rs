@@ -133,8 +133,8 @@ impl<Y: Part, E: Rates<Y>> Radau<Y, E> {
         self.eta = self.eta.max(1e-16).powf(0.8);
         for iteration in 0..ITERATIONS {
             let mut f = [Y::default(); STAGES];
-            for i in 0..STAGES {
-                f[i] = self.stage(i, field);
+            for (i, f) in f.iter_mut().enumerate() {
+                *f = self.stage(i, field);
             }
             let mut right: [Y; STAGES] = combine(&T_INVERSE, &f);
             right[0].add_scaled(-REAL / h, &w[0]);
@@ -407,7 +407,8 @@ mod tests {
     fn transforms_are_inverse_and_the_estimate_is_of_order_five() {
         for (i, row) in T.iter().enumerate() {
             for j in 0..STAGES {
-                let product: f64 = (0..STAGES).map(|k| row[k] * T_INVERSE[k][j]).sum();
+                let column = T_INVERSE.map(|row| row[j]);
+                let product: f64 = row.iter().zip(column).map(|(a, b)| a * b).sum();
                 assert!((product - f64::from(u8::from(i == j))).abs() < 1e-13);
             }
         }

@@ -294,7 +294,7 @@ fn a_scaled_problem_has_the_scaled_solution() {
         let one = run(1.0, method);
         assert!(one.iter().any(|s| s.mode.in_contact()));
         for lambda in [2_f64.powi(-9), 2_f64.powi(6), 1e-6 / 3e-4, 1e-2 / 3e-4] {
-            // The stiff pair solves linear systems, whose pivots depend on the units.
+            // The stiff method solves linear systems, whose pivots depend on the units.
             let exact = method != Method::Stiff && lambda.log2().fract() == 0.0;
             for (a, b) in one.iter().zip(run(lambda, method)) {
                 let apart = (lambda * a.position_m - b.position_m).norm();

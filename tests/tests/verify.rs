@@ -1,0 +1,300 @@
+//! `run --verify`: a run's own estimate of its global error, and hints for people on the way.
+
+use firmware_host::closed_loop::{Keep, run};
+use firmware_host::policy_kind::PolicyKind;
+use firmware_host::scene::Scene;
+use firmware_host::trace::Trace;
+use firmware_host::verdict::{Verdict, Verification};
+use firmware_host::verify::{check_scenes, compare, run_check, verification};
+use plant_model::Method;
+use serde_json::Value;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Output;
+use system_tests::{host, scene, scene_names, scene_path};
+use tempfile::TempDir;
+
+fn ridden(scene: &Scene, kind: PolicyKind) -> (Verdict, Trace) {
+    run(scene, kind, Keep::Trace, &mut |_| {}).unwrap()
+}
+
+fn verified(scene: &Scene, kind: PolicyKind) -> (Verdict, Trace, Verification) {
+    let (verdict, trace) = ridden(scene, kind);
+    let checks = check_scenes(scene).unwrap().map(|check| {
+        let (v, t) = run_check(&check, kind, &mut |_| {}).unwrap();
+        compare(&check, &trace, (&v, &t))
+    });
+    let verification = verification(&verdict, &trace, checks.into());
+    (verdict, trace, verification)
+}
+
+fn with(scene: &Scene, method: Method, rtol: f64) -> Scene {
+    Scene {
+        method,
+        rtol,
+        ..scene.clone()
+    }
+}
+
+/// Where errors neither drown in round-off nor grow for ever, the estimate is the true error within a
+/// factor of ten.
+#[test]
+fn the_estimate_is_of_the_size_of_the_error() {
+    let cases = [
+        ("benchmark_b1", PolicyKind::Passive),
+        ("benchmark_b3a", PolicyKind::Passive),
+        ("established_whirl_two_mass_stator", PolicyKind::Passive),
+    ];
+    for (name, kind) in cases {
+        let mut scene = scene(name);
+        // Long samples, so that the tolerance and not the sample sets the steps.
+        scene.sample_rate_hz = 500.0;
+        let end = |method| {
+            let (_, trace) = ridden(&with(&scene, method, 1e-13), kind);
+            trace.rows.last().unwrap().plant.position_m
+        };
+        let clearance_m = scene.plant.contact.clearance_m;
+        let (series, explicit) = (end(Method::Series), end(Method::Explicit));
+        let uncertainty = (series - explicit).norm() / clearance_m;
+        for (method, rtol) in [
+            (Method::Series, 1e-4),
+            (Method::Series, 1e-6),
+            (Method::Explicit, 1e-4),
+            (Method::Explicit, 1e-6),
+            (Method::Stiff, 1e-4),
+            (Method::Stiff, 1e-6),
+        ] {
+            let (_, trace, v) = verified(&with(&scene, method, rtol), kind);
+            let end = trace.rows.last().unwrap().plant.position_m;
+            // The one that is not the check.
+            let truth = match method {
+                Method::Series => series,
+                _ => explicit,
+            };
+            let error = (end - truth).norm() / clearance_m;
+            let estimate = v.estimated_error_clearances;
+            println!("{name} {method:?} {rtol:e}: error {error:.1e}, estimate {estimate:.1e}");
+            assert!(error > 3.0 * uncertainty, "{name} {method:?} {rtol:e}");
+            assert!(
+                estimate > 0.1 * error && estimate < 10.0 * error,
+                "{name} {method:?} {rtol:e}: {estimate:e} for {error:e}"
+            );
+            assert!(v.largest_difference_clearances >= estimate);
+            assert!(v.same_outcome && v.same_modes && v.checks.len() == 2);
+        }
+    }
+}
+
+/// Every scene file runs under each of its policies, and two methods confirm outcome and modes.
+#[test]
+fn every_scene_is_confirmed() {
+    for name in scene_names() {
+        let scene = scene(&name);
+        assert!(scene.warnings.is_empty(), "{name}: {:?}", scene.warnings);
+        for kind in &scene.policies {
+            let (verdict, _, v) = verified(&scene, *kind);
+            let about = format!("{name}, {}: {:?} {v:?}", kind.name(), verdict.outcome);
+            assert!(v.same_outcome && v.same_modes, "{about}");
+            // Where a converter's steps are in the loop, they set this.
+            assert!(v.estimated_error_clearances < 0.02, "{about}");
+        }
+    }
+}
+
+fn command(scene: &Path, out: &Path, more: &[&str]) -> Output {
+    host()
+        .arg("run")
+        .arg(scene)
+        .arg("--out")
+        .arg(out)
+        .args(more)
+        .output()
+        .expect("the host starts")
+}
+
+fn verdict(out: &Path) -> Value {
+    serde_json::from_slice(&fs::read(out.join("verdict.json")).unwrap()).unwrap()
+}
+
+/// A scene with something replaced, in a folder of its own.
+fn edited(folder: &Path, name: &str, edits: &[(&str, &str)]) -> PathBuf {
+    let mut text = fs::read_to_string(scene_path(name)).unwrap();
+    for (from, to) in edits {
+        assert!(text.contains(from), "{from} is not in {name}");
+        text = text.replacen(from, to, 1);
+    }
+    let path = folder.join("edited.toml");
+    fs::write(&path, text).unwrap();
+    path
+}
+
+/// All that `--verify` does to a verdict is to add to it, and nothing at all to the traces.
+#[test]
+fn checks_change_nothing_else() {
+    let folder = TempDir::new().unwrap();
+    let scene = edited(
+        folder.path(),
+        "overload_then_release",
+        &[("duration_s = 0.2", "duration_s = 0.04")],
+    );
+    let (plain, checked) = (folder.path().join("plain"), folder.path().join("checked"));
+    let result = command(&scene, &plain, &[]);
+    let table = String::from_utf8(result.stdout).unwrap();
+    assert!(result.status.success() && !table.contains("estimated error"));
+    let result = command(&scene, &checked, &["--verify", "--threads", "3"]);
+    let table = String::from_utf8(result.stdout).unwrap();
+    assert!(result.status.success(), "{:?}", result.stderr);
+    for words in [
+        "estimated error at the end [c]",
+        "series 1e-11, explicit 1e-13",
+    ] {
+        assert!(table.contains(words), "{words} is missing in\n{table}");
+    }
+
+    let (mut a, mut b) = (verdict(&plain), verdict(&checked));
+    for policy in ["passive", "radial", "levitation", "supervisor"] {
+        assert_eq!(a["policies"][policy]["method"], "series");
+        for v in [&mut a, &mut b] {
+            let figures = v["policies"][policy].as_object_mut().unwrap();
+            assert!(figures.remove("run_time_s").is_some());
+            assert!(figures.remove("real_time_ratio").is_some());
+        }
+        let figures = b["policies"][policy].as_object_mut().unwrap();
+        let v = figures.remove("verification").expect("asked for");
+        assert_eq!(v["same_outcome"], true);
+        assert_eq!(v["threshold_clearances"], 1e-3);
+        assert!(v["same_modes"].is_boolean() && v["mode_changes"].is_number());
+        let estimate = v["estimated_error_clearances"].as_f64().unwrap();
+        assert!(estimate <= v["largest_difference_clearances"].as_f64().unwrap());
+        assert!(v["differs_from_s"].is_null() || v["differs_from_s"].is_number());
+        assert_eq!(v["checks"][0]["method"], "series");
+        assert_eq!(v["checks"][1]["method"], "explicit");
+        let trace = format!("trace_{policy}.parquet");
+        assert_eq!(
+            fs::read(plain.join(&trace)).unwrap(),
+            fs::read(checked.join(&trace)).unwrap()
+        );
+    }
+    assert_eq!(a, b);
+    let report = |out: &Path| fs::read_to_string(out.join("report.html")).unwrap();
+    assert!(report(&checked).contains("<caption>Checks</caption>"));
+    assert!(!report(&plain).contains("<caption>Checks</caption>"));
+}
+
+/// A verdict that hangs on the error of integration: the limit of whirl between the peak speeds of a
+/// crude and of an exact run.
+#[test]
+fn a_contradicted_outcome_is_said_and_ends_with_exit_code_1() {
+    let name = "established_whirl_two_mass_stator";
+    let mut crude = with(&scene(name), Method::Explicit, 1e-2);
+    crude.sample_rate_hz = 500.0;
+    let exact = with(&crude, Method::Series, 1e-12);
+    let peak = |scene| ridden(scene, PolicyKind::Passive).0.peak_backward_speed_m_s;
+    let (a, b) = (peak(&crude), peak(&exact));
+    assert!((a - b).abs() > 1e-7, "{a} {b}");
+    let limit = format!(
+        "rtol = 1e-2\nmethod = \"explicit\"\n\n[verdict]\nwhirl_speed_m_s = {}\n\n[rotor]",
+        f64::midpoint(a, b)
+    );
+    let folder = TempDir::new().unwrap();
+    let edits = [
+        ("sample_rate_hz = 50000", "sample_rate_hz = 500"),
+        ("[rotor]", &limit),
+    ];
+    let scene = edited(folder.path(), name, &edits);
+    let out = folder.path().join("out");
+    assert!(command(&scene, &out, &[]).status.success());
+    let result = command(&scene, &out, &["--verify"]);
+    let error = String::from_utf8(result.stderr).unwrap();
+    let table = String::from_utf8(result.stdout).unwrap();
+    assert_eq!(result.status.code(), Some(1), "{error}");
+    assert!(
+        error.contains("policy passive") && error.contains("but"),
+        "{error}"
+    );
+    assert!(table.contains("OTHER"), "{table}");
+    assert_eq!(
+        verdict(&out)["policies"]["passive"]["verification"]["same_outcome"],
+        false
+    );
+    let report = fs::read_to_string(out.join("report.html")).unwrap();
+    assert!(report.contains("OTHER than the run"));
+}
+
+/// What `auto` came to is in the verdict.
+#[test]
+fn the_method_that_ran_is_named() {
+    let folder = TempDir::new().unwrap();
+    let scene = edited(
+        folder.path(),
+        "benchmark_b3c",
+        &[("[rotor]", "rtol = 1e-5\n\n[rotor]")],
+    );
+    let out = folder.path().join("out");
+    let result = command(&scene, &out, &[]);
+    assert!(result.status.success());
+    assert!(String::from_utf8_lossy(&result.stdout).contains("stiff"));
+    assert_eq!(verdict(&out)["policies"]["passive"]["method"], "stiff");
+    let report = fs::read_to_string(out.join("report.html")).unwrap();
+    assert!(report.contains("<td>stiff</td>"));
+}
+
+#[test]
+fn a_misspelt_name_is_answered_with_the_right_one() {
+    let folder = TempDir::new().unwrap();
+    for (from, to, meant) in [
+        ("restitution = ", "restituton = ", Some("`restitution`")),
+        ("mass_kg = ", "mass = ", Some("`mass_kg`")),
+        ("mass_kg = ", "mass_kq = ", Some("`mass_kg`")),
+        ("[contact]", "[contract]", Some("`contact`")),
+        ("seed = 1", "method = \"explict\"", Some("`explicit`")),
+        ("\"radial\"", "\"raidal\"", Some("`radial`")),
+        (
+            "[sensor]",
+            "[supervisor]\nhold_shar = 0.5\n\n[sensor]",
+            Some("`hold_share`"),
+        ),
+        ("mass_kg = 10.0", "mass_kg = 10.0\ncolour = 3", None),
+    ] {
+        let scene = edited(folder.path(), "overload_then_release", &[(from, to)]);
+        let result = command(&scene, &folder.path().join("out"), &[]);
+        let error = String::from_utf8(result.stderr).unwrap();
+        assert_eq!(result.status.code(), Some(2), "{error}");
+        let guess = meant.map(|name| format!("did you mean {name}?"));
+        let flat = error.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert_eq!(
+            flat.contains("did you mean"),
+            guess.is_some(),
+            "{to}\n{error}"
+        );
+        assert!(guess.is_none_or(|g| flat.contains(&g)), "{to}\n{error}");
+    }
+}
+
+/// The supervisor is made for 10 to 50 kHz; other rates run, with a word of warning.
+#[test]
+fn control_rates_beyond_the_supervisors_are_warned_of() {
+    let folder = TempDir::new().unwrap();
+    for (rate, warned) in [("50000", false), ("60000", true)] {
+        let scene = edited(
+            folder.path(),
+            "overload_then_release",
+            &[
+                (
+                    "sample_rate_hz = 20000",
+                    &format!("sample_rate_hz = {rate}"),
+                ),
+                ("duration_s = 0.2", "duration_s = 0.03"),
+            ],
+        );
+        let result = command(&scene, &folder.path().join("out"), &[]);
+        let error = String::from_utf8(result.stderr).unwrap();
+        assert!(result.status.success(), "{error}");
+        assert_eq!(
+            error.contains("edited.toml:12: run.sample_rate_hz"),
+            warned,
+            "{error}"
+        );
+        assert_eq!(error.contains("warning"), warned, "{error}");
+    }
+}
