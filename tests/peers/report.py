@@ -1,12 +1,20 @@
-"""Joins the measurements into result.json and prints them as Markdown.
+"""Joins the measurements into result.json and writes the page of the book with its plots.
 
-Usage: report.py MEASUREMENTS.jsonl...
+Usage: report.py MEASUREMENTS.jsonl...   (in this directory, after the stages of `run`)
 """
 
+import datetime
+import importlib.metadata
 import json
 import math
+import os
+import platform
+import re
+import subprocess
 import sys
 
+BOOK = "../../docs/src/theory/"
+PAGE = "error-against-run-time"
 CLEARANCE = 3e-4
 # Where the runs end, m: from reference/reference.c.
 REFERENCES = {
@@ -18,7 +26,45 @@ REFERENCES = {
 # B3c is too fast for 128-bit arithmetic: this solver's finest run.
 FINEST = "diffsol tsit45"
 TARGET = 1e-7  # error / clearance at which times are compared
-PROJECT = "project, series"
+LEVELS = (1e-3, 1e-5, 1e-7, 1e-9)
+SERIES, STIFF, AUTO = "project, series", "project, stiff", "project, auto"
+# Claim: on B1 the series reaches TARGET this many times as fast as the faster solver of each peer.
+CLAIMS = (("ivp", 2), ("CVODE", 10), ("SciPy", 100))
+PLOTTED = ("B1", "B2", "B3c")
+NO_BREAK = "\u00a0"  # between number and unit, where a narrow column must not break
+
+
+# ---------------------------------------------------------------------------------------- numbers
+
+
+def short(value):
+    """Two digits, without an exponent."""
+    return f"{float(f'{value:.2g}'):g}"
+
+
+def power(value, digits=0):
+    """Like 3e-7."""
+    mantissa, exponent = f"{value:.{digits}e}".split("e")
+    return f"{mantissa}e{int(exponent)}"
+
+
+def clearances(error):
+    return f"{power(error)}{NO_BREAK}δ"
+
+
+def seconds(value):
+    for factor, unit in ((1, "s"), (1e3, "ms")):
+        if value * factor >= 1:
+            break
+    return f"{short(value * factor)}{NO_BREAK}{unit}"
+
+
+def table(header, rows):
+    lines = [header, ["---"] * len(header), *rows]
+    return "\n".join("| " + " | ".join(map(str, line)) + " |" for line in lines)
+
+
+# ----------------------------------------------------------------------------------- measurements
 
 
 def read(paths):
@@ -27,102 +73,396 @@ def read(paths):
             yield from map(json.loads, lines)
 
 
-def add_errors(runs):
-    references = dict(REFERENCES)
-    for run in runs:
-        if run["solver"] == FINEST and run["rtol"] == 1e-12 and "x" in run:
-            references.setdefault(run["problem"], (run["x"], run["y"]))
-    for run in runs:
-        if "x" in run:
-            x, y = references[run["problem"]]
-            run["error"] = math.hypot(run["x"] - x, run["y"] - y) / CLEARANCE
+class Results:
+    def __init__(self, records):
+        self.runs = [r for r in records if "problem" in r]
+        self.sweeps = [r for r in records if "sweep" in r]
+        self.left_out = {r["references"]: r["left_out"] for r in records if "references" in r}
+        self.problems = list(dict.fromkeys(r["problem"] for r in self.runs))
+        self.solvers = [s for s in dict.fromkeys(r["solver"] for r in self.runs) if s != AUTO]
+        self.solvers.sort(key=list(STYLES).index)
+        references = dict(REFERENCES)
+        for run in self.of(None, FINEST):
+            if run["rtol"] == 1e-12:
+                references.setdefault(run["problem"], (run["x"], run["y"]))
+        for run in self.runs:
+            if "x" in run:
+                x, y = references[run["problem"]]
+                run["error"] = math.hypot(run["x"] - x, run["y"] - y) / CLEARANCE
+
+    def of(self, problem, solver):
+        """Runs that ended without an error."""
+        return [
+            r
+            for r in self.runs
+            if problem in (None, r["problem"]) and r["solver"] == solver and "x" in r
+        ]
+
+    def at(self, problem, solver, rtol):
+        return next((r for r in self.of(problem, solver) if r["rtol"] == rtol), None)
+
+    def to(self, problem, solver, target):
+        """What it takes to reach an error: log-log between the two tolerances where it is first
+        reached. `how` tells whether that is only a bound: "<" if the loosest tolerance is already
+        better, ">" if the tightest is not good enough. None for a solver that never succeeds."""
+        before = None
+        for run in sorted(self.of(problem, solver), key=lambda r: -r["rtol"]):
+            if run["error"] <= target:
+                if before is None:
+                    return run | {"how": "<"}
+                share = math.log(before["error"] / target)
+                share /= math.log(before["error"] / max(run["error"], 1e-16))
+                between = {
+                    key: before[key] * (run[key] / before[key]) ** share if before[key] else run[key]
+                    for key in ("seconds", "evaluations", "factorisations")
+                }
+                return run | between | {"how": ""}
+            before = run
+        return before and before | {"how": ">"}
+
+    def best(self, problem, target, solvers, key):
+        """The solver that reaches an error with least, or None."""
+        found = [self.to(problem, s, target) for s in solvers]
+        found = [f for f in found if f and f["how"] != ">"]
+        return min(found, key=lambda f: f[key], default=None)
 
 
-def time_to(runs, target):
-    """Seconds to reach an error, log-log between the two tolerances where it is first reached; and
-    whether that only bounds the time: "<" if the loosest tolerance is already better, ">" if the
-    tightest is not good enough. None for a solver that never succeeds."""
-    before = None
-    for run in sorted((r for r in runs if "error" in r), key=lambda r: -r["rtol"]):
-        if run["error"] <= target:
-            if before is None:
-                return run["seconds"], "<"
-            share = math.log(before["error"] / target) / math.log(before["error"] / run["error"])
-            ratio = run["seconds"] / before["seconds"]
-            return before["seconds"] * ratio**share, ""
-        before = run
-    return (before["seconds"], ">") if before else (None, "")
+def is_project(solver):
+    return solver.startswith("project")
 
 
-def table(title, header, rows):
-    print(f"\n## {title}\n")
-    print("| " + " | ".join(header) + " |")
-    print("|" + "---|" * len(header))
-    for row in rows:
-        print("| " + " | ".join(row) + " |")
+def peers(results):
+    return [s for s in results.solvers if not is_project(s)]
 
 
-def seconds(value):
-    return f"{value * 1e3:.3g} ms"
+# ------------------------------------------------------------------------------- parts of the page
+
+
+def choice(results, rtol):
+    """Error and time on each problem at a tolerance, as cells of a table."""
+    runs = [results.at(problem, AUTO, float(rtol)) for problem in results.problems]
+    return " | ".join(
+        f"{clearances(r['error'])}, {seconds(r['seconds'])}" if r else "fails" for r in runs
+    )
+
+
+def worst_factor(results):
+    """Largest error by tolerance, above what round-off leaves."""
+    return max(r["error"] / r["rtol"] for r in results.of(None, AUTO) if r["rtol"] > 1e-12)
+
+
+def cost_of_digits(results):
+    """How much longer a run at 1e-12 takes than at 1e-6."""
+    parts = []
+    for problem in results.problems:
+        loose, tight = (results.at(problem, AUTO, rtol) for rtol in (1e-6, 1e-12))
+        if loose and tight:
+            parts.append(f"{short(tight['seconds'] / loose['seconds'])} on {problem}")
+    return ", ".join(parts)
+
+
+def losses(results):
+    """Where a peer reaches an error sooner than the method that a user gets."""
+    rows = []
+    for problem in results.problems:
+        for level in LEVELS:
+            peer = results.best(problem, level, peers(results), "seconds")
+            own = results.best(problem, level, [AUTO], "seconds")
+            if not peer or (own and own["seconds"] <= peer["seconds"]):
+                continue
+            best = results.best(problem, level, filter(is_project, results.solvers), "seconds")
+            cells = [
+                f"{f['how']}{seconds(f['seconds'])}" if f else "not reached" for f in (peer, own, best)
+            ]
+            cells[0] = f"{peer['solver']}, {cells[0]}"
+            if best:
+                cells[2] = f"{best['solver'].removeprefix('project, ')}, {cells[2]}"
+            ratio = f"{own['seconds'] / peer['seconds']:.1f}" if own else "–"
+            rows.append([problem, clearances(level), *cells, ratio])
+    if not rows:
+        return "Nowhere in this measurement."
+    header = ["problem", "error", "fastest peer", "project (`auto`)", "project's best method"]
+    return table([*header, "peer faster by"], rows)
+
+
+def time_table(results):
+    rows = []
+    for solver in results.solvers:
+        row = [f"**{solver}**" if is_project(solver) else solver]
+        for problem in results.problems:
+            found, base = (results.to(problem, s, TARGET) for s in (solver, SERIES))
+            if not any(r["problem"] == problem and r["solver"] == solver for r in results.runs):
+                row.append("not run")
+            elif not found:
+                row.append("fails")
+            else:
+                ratio = short(found["seconds"] / base["seconds"])
+                row.append(f"{found['how']}{ratio} ({found['how']}{seconds(found['seconds'])})")
+        rows.append(row)
+    return table(["solver", *results.problems], rows)
+
+
+def count(found):
+    if not found:
+        return "–"
+    matrices = round(found["factorisations"])
+    return f"{found['how']}{round(found['evaluations'])}" + (f" + {matrices} LU" if matrices else "")
+
+
+def evaluations(results):
+    rows = []
+    for problem in (p for p in results.problems if results.of(p, STIFF)):
+        for level in LEVELS:
+            own = [results.best(problem, level, [s], "evaluations") for s in (SERIES, STIFF)]
+            peer = results.best(problem, level, peers(results), "evaluations")
+            name = f"{peer['solver']}: " if peer else ""
+            rows.append([problem, clearances(level), *map(count, own), name + count(peer)])
+            least = min((o["evaluations"] for o in own if o), default=None)
+            rows[-1].append(f"{peer['evaluations'] / least:.2f}" if peer and least else "–")
+    header = ["problem", "error", "project, series", "project, stiff", "best peer"]
+    return table([*header, "peer / project"], rows)
+
+
+def wrong_runs(results):
+    tolerances = sorted({s["rtol"] for s in results.sweeps}, reverse=True)
+    rows = []
+    for family, starts in results.left_out.items():
+        here = [s for s in results.sweeps if s["sweep"] == family]
+        for solver in results.solvers:
+            by_rtol = {s["rtol"]: s for s in here if s["solver"] == solver}
+            if not by_rtol:
+                continue
+            row = [family, len(starts), solver, next(iter(by_rtol.values()))["runs"]]
+            for rtol in tolerances:
+                s = by_rtol.get(rtol)
+                failed = f", {s['failed']} failed" if s and s["failed"] else ""
+                other = f" ({s['other_changes']})" if s and s["other_changes"] else ""
+                row.append(f"{s['wrong']}{other}{failed}" if s else "not run")
+            rows.append(row)
+    return table(["problem", "left out", "solver", "runs", *map(power, tolerances)], rows)
+
+
+def verdicts(results):
+    """Claim, what was measured, met or not."""
+    found = []
+    base = results.to("B1", SERIES, TARGET)
+    for peer, factor in CLAIMS:
+        solvers = [s for s in peers(results) if s.startswith(peer)]
+        best = results.best("B1", TARGET, solvers, "seconds")
+        claim = f"B1 to {power(TARGET)} δ: at least {factor} times as fast as {peer}"
+        if best:
+            ratio = best["seconds"] / base["seconds"]
+            found.append((claim, f"{short(ratio)} times ({best['solver']})", ratio >= factor))
+        else:
+            bound = min(results.to("B1", s, TARGET)["seconds"] for s in solvers) / base["seconds"]
+            found.append(
+                (claim, f"{peer} does not reach it in {short(bound)} times the time", bound >= factor)
+            )
+    tight = [s for s in results.sweeps if s["solver"] == SERIES and s["rtol"] <= 1e-6]
+    wrong, failed, runs = (sum(s[key] for s in tight) for key in ("wrong", "failed", "runs"))
+    claim = "no silently wrong run of the project's series at 1e-6 and below"
+    found.append((claim, f"{wrong} of {runs}, {failed} failed with an error", wrong == 0))
+    return found
+
+
+def b3c_uncertainty(results):
+    series = results.at("B3c", SERIES, 1e-12)
+    return clearances(series["error"]) if series else "(series fails)"
+
+
+def mode_changes(results):
+    parts = (f"{p} {results.at(p, SERIES, 1e-12)['changes']}" for p in results.problems)
+    return ", ".join(parts)
+
+
+def said_of_work(field):
+    """What the project itself says about a count."""
+    with open("../../plant-model/src/readout.rs") as source:
+        found = re.search(rf"((?: *///[^\n]*\n)+) *pub {field}: u64", source.read())
+    return " ".join(found[1].replace("///", "").split()) if found else "see `Work`"
+
+
+# ------------------------------------------------------------------------------------ the machine
+
+
+def first_line(*command):
+    return subprocess.run(command, capture_output=True, text=True, check=True).stdout.splitlines()[0]
+
+
+def content(path):
+    with open(path) as file:
+        return file.read()
+
+
+def found_in(path, pattern):
+    match = re.search(pattern, content(path), re.MULTILINE)
+    return match[1].strip() if match else "unknown"
+
+
+def machine():
+    lock = lambda crate: found_in("Cargo.lock", rf'name = "{crate}"\nversion = "(.*)"')
+    sundials = found_in("/usr/include/sundials/sundials_config.h", r'SUNDIALS_VERSION "(.*)"')
+    python = " ".join(f"{p} {importlib.metadata.version(p)}" for p in ("scipy", "numpy"))
+    return {
+        "date": datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%d"),
+        "cpu": found_in("/proc/cpuinfo", r"^model name\s*:(.*)$"),
+        "cores": os.cpu_count(),
+        "load": " and ".join(content("out/load").split()),
+        "minutes": f"{int(content('out/seconds')) / 60:.0f}",
+        "compilers": f"{first_line('rustc', '--version')}; {first_line('cc', '--version')}",
+        "libraries": f"SUNDIALS {sundials}, ivp {lock('ivp')}, diffsol {lock('diffsol')}, "
+        f"{python.replace(' numpy', ', numpy')}, Python {platform.python_version()}",
+    }
+
+
+# ------------------------------------------------------------------------------------------- plots
+
+# Colour, marker, dashes; all on white, told apart without colour too.
+STYLES = {
+    "project, series": ("#08306b", "circle", ""),
+    "project, explicit": ("#4292c6", "square", ""),
+    "project, stiff": ("#008080", "diamond", ""),
+    "ivp DOP853": ("#d62728", "triangle", ""),
+    "CVODE Adams": ("#e08214", "square", "6 3"),
+    "CVODE BDF": ("#8c510a", "circle", "6 3"),
+    "diffsol tsit45": ("#df65b0", "triangle", "2 3"),
+    "diffsol BDF": ("#7a0177", "diamond", "2 3"),
+    "SciPy DOP853": ("#7f7f7f", "square", "8 3 2 3"),
+    "SciPy Radau": ("#252525", "diamond", "8 3 2 3"),
+}
+SIZE = (820, 500)
+FRAME = (70, 40, 620, 440)  # left, top, right, bottom
+SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+def marker(shape, x, y, colour):
+    if shape == "circle":
+        return f'<circle cx="{x:.1f}" cy="{y:.1f}" r="3.5" fill="{colour}"/>'
+    offsets = {
+        "square": ((-3, -3), (3, -3), (3, 3), (-3, 3)),
+        "diamond": ((0, -4.5), (4.5, 0), (0, 4.5), (-4.5, 0)),
+        "triangle": ((0, -4.5), (4.2, 3), (-4.2, 3)),
+    }[shape]
+    points = " ".join(f"{x + dx:.1f},{y + dy:.1f}" for dx, dy in offsets)
+    return f'<polygon points="{points}" fill="{colour}"/>'
+
+
+def text(x, y, words, anchor="middle", extra=""):
+    return f'<text x="{x:.1f}" y="{y:.1f}" text-anchor="{anchor}"{extra}>{words}</text>'
+
+
+def line(x1, y1, x2, y2, colour, width=1):
+    place = f'x1="{x1:.1f}" y1="{y1:.1f}" x2="{x2:.1f}" y2="{y2:.1f}"'
+    return f'<line {place} stroke="{colour}" stroke-width="{width}"/>'
+
+
+def decades(values):
+    low, high = math.floor(math.log10(min(values))), math.ceil(math.log10(max(values)))
+    return low, max(high, low + 1)
+
+
+def plot(results, problem):
+    curves = {s: [r for r in results.of(problem, s) if r["error"] > 0] for s in results.solvers}
+    curves = {s: runs for s, runs in curves.items() if runs}
+    every = [r for runs in curves.values() for r in runs]
+    (x0, x1), (y0, y1) = (decades([r[key] for r in every]) for key in ("seconds", "error"))
+    left, top, right, bottom = FRAME
+    at_x = lambda value: left + (right - left) * (math.log10(value) - x0) / (x1 - x0)
+    at_y = lambda value: bottom - (bottom - top) * (math.log10(value) - y0) / (y1 - y0)
+    width, height = SIZE
+    area = f'width="{width}" height="{height}"'
+    font = 'font-family="sans-serif" font-size="12" fill="#222222"'
+    heading = f"{problem}: error at the end against run time"
+    parts = [
+        f'<svg xmlns="http://www.w3.org/2000/svg" {area} viewBox="0 0 {width} {height}" role="img" {font}>',
+        f"<title>{heading}</title>",
+        f'<rect {area} fill="#ffffff"/>',
+        text(left, top - 16, heading, "start", ' font-size="15"'),
+    ]
+    for exponent in range(x0, x1 + 1):
+        x = at_x(10.0**exponent)
+        if exponent < x1:
+            for digit in range(2, 10):
+                minor = at_x(digit * 10.0**exponent)
+                parts.append(line(minor, top, minor, bottom, "#f0f0f0"))
+        parts.append(line(x, top, x, bottom, "#c8c8c8"))
+        parts.append(text(x, bottom + 18, f"10{str(exponent).translate(SUPERSCRIPT)}"))
+    for exponent in range(y0, y1 + 1):
+        y = at_y(10.0**exponent)
+        labelled = exponent % 2 == 0
+        parts.append(line(left, y, right, y, "#c8c8c8" if labelled else "#e8e8e8"))
+        if labelled:
+            parts.append(text(left - 8, y + 4, f"10{str(exponent).translate(SUPERSCRIPT)}", "end"))
+    frame = f'x="{left}" y="{top}" width="{right - left}" height="{bottom - top}"'
+    parts.append(f'<rect {frame} fill="none" stroke="#555555"/>')
+    parts.append(text((left + right) / 2, bottom + 42, "run time [s]"))
+    middle = (top + bottom) / 2
+    turned = f' transform="rotate(-90 20 {middle:.1f})"'
+    parts.append(text(20, middle, "error [clearances δ]", extra=turned))
+    for i, (solver, runs) in enumerate(curves.items()):
+        colour, shape, dashes = STYLES[solver]
+        stroke = f'fill="none" stroke="{colour}" stroke-width="{2.6 if is_project(solver) else 1.5}"'
+        stroke += f' stroke-dasharray="{dashes}"' if dashes else ""
+        spots = [(at_x(r["seconds"]), at_y(r["error"])) for r in runs]
+        points = " ".join(f"{x:.1f},{y:.1f}" for x, y in spots)
+        parts.append(f"<g><title>{solver}</title>")
+        parts.append(f'<polyline points="{points}" {stroke}/>')
+        parts += [marker(shape, x, y, colour) for x, y in spots]
+        y = top + 10 + 22 * i
+        parts.append(f'<polyline points="{right + 16},{y} {right + 52},{y}" {stroke}/>')
+        parts.append(marker(shape, right + 34, y, colour))
+        parts.append(text(right + 60, y + 4, solver, "start") + "</g>")
+    return "\n".join([*parts, "</svg>", ""])
+
+
+# -------------------------------------------------------------------------------------------- main
+
+
+def page(results, claims):
+    values = {
+        "worst_factor": short(worst_factor(results)),
+        "cost_of_digits": cost_of_digits(results),
+        "losses": losses(results),
+        "target": clearances(TARGET),
+        "times": time_table(results),
+        "evaluations": evaluations(results),
+        "said_of_evaluations": said_of_work("evaluations"),
+        "wrong_runs": wrong_runs(results),
+        "b3c_uncertainty": b3c_uncertainty(results),
+        "mode_changes": mode_changes(results),
+        "verdicts": table(
+            ["claim", "measured", "met"], [[c, m, "yes" if met else "**no**"] for c, m, met in claims]
+        ),
+        **{key: str(value) for key, value in machine().items()},
+    }
+
+    def value(match):
+        name, *argument = match[1].split()
+        return choice(results, *argument) if name == "choice" else values[name]
+
+    return re.sub(r"\{\{(.*?)\}\}", value, content("page.md"))
 
 
 def main():
-    records = list(read(sys.argv[1:]))
-    runs = [r for r in records if "problem" in r]
-    sweeps = [r for r in records if "sweep" in r]
-    left_out = {r["references"]: r["left_out"] for r in records if "references" in r}
-    add_errors(runs)
-    problems = list(dict.fromkeys(r["problem"] for r in runs))
-    ratios = []
-    for problem in problems:
-        here = [r for r in runs if r["problem"] == problem]
-        table(
-            f"{problem}: error / δ, best time, right-hand sides, mode changes",
-            ["solver", "rtol", "error", "time", "evaluations", "changes"],
-            (
-                [r["solver"], f"{r['rtol']:.0e}"]
-                + (
-                    [f"{r['error']:.1e}", seconds(r["seconds"]), str(r["evaluations"]), str(r["changes"])]
-                    if "error" in r
-                    else ["failed", r["failed"], "", ""]
-                )
-                for r in here
-            ),
-        )
-        for solver in dict.fromkeys(r["solver"] for r in here):
-            time, how = time_to([r for r in here if r["solver"] == solver], TARGET)
-            ratios.append({"problem": problem, "solver": solver, "seconds": time, "how": how})
-    for ratio in ratios:
-        base = next(
-            r["seconds"] for r in ratios if r["problem"] == ratio["problem"] and r["solver"] == PROJECT
-        )
-        ratio["ratio"] = ratio["seconds"] / base if ratio["seconds"] and base else None
-    table(
-        f"Time to an error of {TARGET:g} δ, relative to {PROJECT}",
-        ["problem", "solver", "time", "ratio"],
-        (
-            [r["problem"], r["solver"]]
-            + (
-                [r["how"] + seconds(r["seconds"]), r["how"] + f"{r['ratio']:.2f}"]
-                if r["seconds"]
-                else ["–", "–"]
-            )
-            for r in ratios
-        ),
-    )
-    table(
-        "Silently wrong runs: another number of mode changes, or off by more than 0.5 δ",
-        ["problem", "solver", "rtol", "wrong", "failed with an error", "runs"],
-        (
-            [s["sweep"], s["solver"], f"{s['rtol']:.0e}", str(s["wrong"]), str(s["failed"]), str(s["runs"])]
-            for s in sweeps
-        ),
-    )
-    for problem, starts in left_out.items():
-        print(f"\n{problem}: {len(starts)} starts left out, their reference is not confirmed.")
+    results = Results(list(read(sys.argv[1:])))
+    claims = verdicts(results)
     with open("result.json", "w") as out:
-        json.dump({"runs": runs, "time_to_error": ratios, "sweeps": sweeps, "left_out": left_out}, out, indent=1)
+        record = {
+            "machine": machine(),
+            "runs": results.runs,
+            "sweeps": results.sweeps,
+            "left_out": results.left_out,
+            "claims": [dict(zip(("claim", "measured", "met"), c)) for c in claims],
+        }
+        json.dump(record, out, indent=1)
         out.write("\n")
+    for problem in PLOTTED:
+        with open(f"{BOOK}{PAGE}-{problem.lower()}.svg", "w") as out:
+            out.write(plot(results, problem))
+    with open(f"{BOOK}{PAGE}.md", "w") as out:
+        out.write(page(results, claims))
+    for claim, measured, met in claims:
+        print(f"{'met    ' if met else 'NOT MET'}  {claim}: {measured}")
 
 
 if __name__ == "__main__":

@@ -21,7 +21,7 @@ typedef struct {
 
 typedef struct {
     double x, y;
-    uint64_t changes, evaluations;
+    uint64_t changes, evaluations, factorisations;
 } Outcome;
 
 typedef enum { FLIGHT, SLIP_POSITIVE, SLIP_NEGATIVE, ROLL } Mode;
@@ -259,6 +259,10 @@ int cvode_run(const Problem *p, int family, double rtol, Outcome *out) {
     double t = 0;
     while (t < p->t_end) {
         flag = CVode(cvode, p->t_end, y, &t, CV_NORMAL);
+        /* Counted anew after each CVodeReInit. */
+        long setups = 0;
+        if (family == CV_BDF) CVodeGetNumLinSolvSetups(cvode, &setups);
+        out->factorisations += setups;
         if (flag != CV_ROOT_RETURN) break;
         if (++out->changes > TOO_MANY) {
             flag = CHATTERS;

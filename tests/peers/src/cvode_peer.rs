@@ -19,6 +19,7 @@ struct Outcome {
     y: f64,
     changes: u64,
     evaluations: u64,
+    factorisations: u64,
 }
 
 unsafe extern "C" {
@@ -38,5 +39,6 @@ pub fn run(problem: &Problem, family: Family, rtol: f64) -> Result<Ending, Strin
         y: out.y,
         changes: out.changes,
         evaluations: out.evaluations,
+        factorisations: out.factorisations,
     })
 }

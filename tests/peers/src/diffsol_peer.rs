@@ -38,7 +38,7 @@ pub fn run(problem: &Problem, solver: Solver, rtol: f64) -> Result<Ending, Strin
             .map_err(|e| e.to_string())?;
         // The limit counts over the whole segment, and the last one is long.
         equations.ode_options.max_nonlinear_solver_failures = 1_000_000;
-        let (t, y, guard) = match solver {
+        let (t, y, guard, factorisations) = match solver {
             Solver::Tsit45 => to_event(equations.tsit45(), problem.t_end),
             Solver::Bdf => to_event(equations.bdf::<NalgebraLU<f64>>(), problem.t_end),
         }
@@ -50,11 +50,13 @@ pub fn run(problem: &Problem, solver: Solver, rtol: f64) -> Result<Ending, Strin
             y,
             guard,
             evaluations,
+            factorisations,
         })
     })
 }
 
-type Reached = (f64, Vec<f64>, Option<usize>);
+/// Time, state, guard, factorisations.
+type Reached = (f64, Vec<f64>, Option<usize>, u64);
 
 fn to_event<'a, E, S>(
     solver: Result<S, diffsol::error::DiffsolError>,
@@ -66,19 +68,21 @@ where
 {
     let mut solver = solver?;
     solver.set_stop_time(t_end)?;
-    loop {
+    let (t, y, guard) = loop {
         match solver.step()? {
             OdeSolverStopReason::InternalTimestep => {}
             OdeSolverStopReason::TstopReached => {
-                return Ok((t_end, solver.state().y.clone_as_vec(), None));
+                break (t_end, solver.state().y.clone_as_vec(), None);
             }
             // A root beyond the end of the run is none; the end lies in this step.
             OdeSolverStopReason::RootFound(t, _) if t > t_end => {
-                return Ok((t_end, solver.interpolate(t_end)?.clone_as_vec(), None));
+                break (t_end, solver.interpolate(t_end)?.clone_as_vec(), None);
             }
             OdeSolverStopReason::RootFound(t, guard) => {
-                return Ok((t, solver.interpolate(t)?.clone_as_vec(), Some(guard)));
+                break (t, solver.interpolate(t)?.clone_as_vec(), Some(guard));
             }
         }
-    }
+    };
+    let setups = solver.get_statistics().number_of_linear_solver_setups;
+    Ok((t, y, guard, setups as u64))
 }

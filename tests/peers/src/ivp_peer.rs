@@ -66,6 +66,7 @@ pub fn dop853(problem: &Problem, rtol: f64) -> Result<Ending, String> {
             y,
             guard,
             evaluations: segment.evaluations.get(),
+            factorisations: 0,
         })
     })
 }

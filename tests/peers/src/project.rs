@@ -6,6 +6,16 @@ use plant_model::params::*;
 use plant_model::{Inputs, Method, Options, V2, build};
 
 pub fn run(problem: &Problem, method: Method, rtol: f64) -> Result<Ending, String> {
+    run_under(problem, &[V2::zeros()], method, rtol)
+}
+
+/// The same under external forces, each held for an equal part of the run.
+pub fn run_under(
+    problem: &Problem,
+    forces_n: &[V2],
+    method: Method,
+    rtol: f64,
+) -> Result<Ending, String> {
     let p = problem;
     let stator = if p.m_s > 0.0 {
         StatorParams::OneMass(RingParams {
@@ -43,7 +53,7 @@ pub fn run(problem: &Problem, method: Method, rtol: f64) -> Result<Ending, Strin
         spin_rad_s: p.spin,
         spin_phase_rad: 0.0,
     };
-    // The run is one sample long: leave no limit but that of the whole run.
+    // Samples are long here: leave no limit but that of the whole run.
     let options = Options {
         rtol,
         method,
@@ -52,14 +62,24 @@ pub fn run(problem: &Problem, method: Method, rtol: f64) -> Result<Ending, Strin
     };
     let mut plant = build(&params, &start, options).map_err(|e| e.to_string())?;
     let mut changes = 0;
-    plant
-        .advance(p.t_end, &Inputs::default(), &mut |_| changes += 1)
-        .map_err(|e| e.to_string())?;
+    for (i, force) in forces_n.iter().enumerate() {
+        let inputs = Inputs {
+            command_n: V2::zeros(),
+            external_n: *force,
+        };
+        let t = p.t_end * (i + 1) as f64 / forces_n.len() as f64;
+        plant
+            .advance(t, &inputs, &mut |_| changes += 1)
+            .map_err(|e| e.to_string())?;
+    }
     let position = plant.snapshot().position_m;
+    let work = plant.work();
     Ok(Ending {
         x: position.x,
         y: position.y,
         changes,
-        evaluations: plant.work().evaluations,
+        evaluations: work.evaluations,
+        // One for each Jacobian, but where a step was tried again from the same one.
+        factorisations: work.factorisations,
     })
 }

@@ -10,6 +10,8 @@ pub struct Ending {
     pub changes: u64,
     /// Right-hand sides; an analytic Jacobian counts as one.
     pub evaluations: u64,
+    /// Matrices factorised, as the solver itself counts them; 0 for explicit methods.
+    pub factorisations: u64,
 }
 
 /// Where one mode was left: by which guard, or none at the end of the run.
@@ -18,6 +20,7 @@ pub struct Stop {
     pub y: Vec<f64>,
     pub guard: Option<usize>,
     pub evaluations: u64,
+    pub factorisations: u64,
 }
 
 /// More changes than any of the problems has by far: the solver chatters.
@@ -34,6 +37,7 @@ pub fn ride(
         let stop = solve(mode, t, &y)?;
         (t, y) = (stop.t, stop.y);
         ending.evaluations += stop.evaluations;
+        ending.factorisations += stop.factorisations;
         let Some(guard) = stop.guard else { break };
         ending.changes += 1;
         if ending.changes > TOO_MANY {
