@@ -6,6 +6,7 @@ pub(crate) mod contact_step;
 pub(crate) mod dop853;
 pub(crate) mod driver;
 pub(crate) mod flight;
+pub(crate) mod flight_map;
 mod lu;
 mod pair;
 pub(crate) mod radau;

@@ -12,7 +12,7 @@
 //! ```
 //!
 //! Files, each importing only from those above it: `params`, `contact`, `friction`, `mode`, `energy`,
-//! `part`, `series`, `stator`, `spin`, `magnet`, `system`, `tangent`, `readout`, `integrate`, `plant`,
+//! `part`, `series`, `quadrature`, `stator`, `spin`, `magnet`, `system`, `tangent`, `readout`, `integrate`, `plant`,
 //! `analysis`.
 
 #![forbid(unsafe_code)]
@@ -28,6 +28,7 @@ mod mode;
 pub mod params;
 mod part;
 pub mod plant;
+mod quadrature;
 pub mod readout;
 mod series;
 mod spin;

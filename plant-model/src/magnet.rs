@@ -2,7 +2,7 @@
 
 use crate::V2;
 use crate::part::{Part, Weights, turned};
-use crate::series::Series;
+use crate::series::{INVERSE, Series};
 
 /// A model of the amplifier. Commands arrive already limited to the force cap.
 pub(crate) trait Amplifier: Copy + Send + 'static {
@@ -16,8 +16,9 @@ pub(crate) trait Amplifier: Copy + Send + 'static {
     fn rates(&self, state: &Self::State, command_n: V2) -> Self::State;
     /// Fastest rate \[1/s\].
     fn fastest_rate_rad_s(&self) -> f64;
-    /// Delivered force over `step_s` of a held command, as a power series \[N\].
-    fn series(&self, state: &Self::State, command_n: V2, step_s: f64, order: usize) -> Series;
+    /// Fills `out` with the delivered force over `step_s` from a state under a held command \[N\]. Where nothing lags
+    /// only entry 0 is touched.
+    fn series(&self, out: &mut Series, start: (&Self::State, V2), step_s: f64, order: usize);
     /// State at θ of that series.
     fn at(series: &Series, theta: f64, order: usize) -> Self::State;
 }
@@ -39,8 +40,8 @@ impl Amplifier for Direct {
         0.0
     }
     #[inline]
-    fn series(&self, _state: &(), command_n: V2, _step_s: f64, _order: usize) -> Series {
-        Series::start(command_n)
+    fn series(&self, out: &mut Series, (_state, command_n): (&(), V2), _: f64, _: usize) {
+        out.0[0] = command_n;
     }
     #[inline]
     fn at(_series: &Series, _theta: f64, _order: usize) {}
@@ -101,15 +102,20 @@ impl Amplifier for Lagged {
     fn fastest_rate_rad_s(&self) -> f64 {
         1.0 / self.lag_s
     }
-    fn series(&self, state: &ForceState, command_n: V2, step_s: f64, order: usize) -> Series {
-        let mut s = Series::start(state.0);
+    fn series(
+        &self,
+        out: &mut Series,
+        (state, command_n): (&ForceState, V2),
+        step_s: f64,
+        order: usize,
+    ) {
+        out.0[0] = state.0;
         let ratio = step_s / self.lag_s;
         let mut term = ratio * (command_n - state.0);
-        for k in 1..=order {
-            s.0[k] = term;
-            term *= -ratio / (k + 1) as f64;
+        for (k, c) in out.0[..=order].iter_mut().enumerate().skip(1) {
+            *c = term;
+            term *= -ratio * INVERSE[k + 1];
         }
-        s
     }
     #[inline]
     fn at(series: &Series, theta: f64, order: usize) -> ForceState {

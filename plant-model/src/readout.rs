@@ -62,12 +62,54 @@ pub struct Meters {
     pub whirl_angle_rad: f64,
 }
 
+/// Largest values over one step of contact.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Peaks {
+    pub(crate) normal_n: f64,
+    pub(crate) penetration_m: f64,
+    /// Without its sign.
+    pub(crate) sliding_n: f64,
+    /// At both ends.
+    pub(crate) whirl_m_s: [f64; 2],
+}
+
+impl Peaks {
+    /// From what is known at both ends of a step.
+    pub(crate) fn between([start, end]: &[Touch; 2], step_s: f64) -> Self {
+        let normal_n = maximum_over_step(
+            (start.normal_n, start.normal_rate_n_s),
+            (end.normal_n, end.normal_rate_n_s),
+            step_s,
+        );
+        // Where slip ends inside the step the friction at its end belongs to no mode: no more than
+        // the cone holds. Between the ends it follows the normal force.
+        let share = |touch: &Touch| {
+            let share = touch.sliding_n.abs().min(touch.cone_n) / touch.normal_n;
+            if touch.normal_n > 0.0 && share.is_finite() {
+                share
+            } else {
+                0.0
+            }
+        };
+        Self {
+            normal_n,
+            penetration_m: maximum_over_step(
+                (start.penetration_m, start.normal_speed_m_s),
+                (end.penetration_m, end.normal_speed_m_s),
+                step_s,
+            ),
+            sliding_n: share(start).max(share(end)) * normal_n,
+            whirl_m_s: [start.whirl_speed_m_s, end.whirl_speed_m_s],
+        }
+    }
+}
+
 impl Meters {
-    /// Takes a step of contact in: both ends, its length, how far the contact point turned, the sense
-    /// of backward whirl.
+    /// Takes a step of contact in: its largest values, its length, how far the contact point turned,
+    /// the sense of backward whirl.
     pub(crate) fn contact_step(
         &mut self,
-        [start, end]: &[Touch; 2],
+        peaks: &Peaks,
         step_s: f64,
         turn_rad: f64,
         backward: f64,
@@ -75,28 +117,12 @@ impl Meters {
     ) {
         self.contact_time_s += step_s;
         self.whirl_angle_rad += turn_rad;
-        let force = maximum_over_step(
-            (start.normal_n, start.normal_rate_n_s),
-            (end.normal_n, end.normal_rate_n_s),
-            step_s,
-        );
-        self.peak_contact_force_n = self.peak_contact_force_n.max(force);
-        let penetration = maximum_over_step(
-            (start.penetration_m, start.normal_speed_m_s),
-            (end.penetration_m, end.normal_speed_m_s),
-            step_s,
-        );
-        self.peak_penetration_m = self.peak_penetration_m.max(penetration);
-        for touch in [start, end] {
-            let speed = backward * touch.whirl_speed_m_s;
-            self.peak_backward_speed_m_s = self.peak_backward_speed_m_s.max(speed);
-            // Where slip ends inside the step the friction at its end belongs to no mode: no more than
-            // the cone holds. Between the ends it follows the normal force.
-            let share = touch.sliding_n.abs().min(touch.cone_n) / touch.normal_n;
-            if touch.normal_n > 0.0 && share.is_finite() {
-                let torque = share * force * rotor.contact_radius_m;
-                self.peak_friction_torque_n_m = self.peak_friction_torque_n_m.max(torque);
-            }
+        self.peak_contact_force_n = self.peak_contact_force_n.max(peaks.normal_n);
+        self.peak_penetration_m = self.peak_penetration_m.max(peaks.penetration_m);
+        let torque = peaks.sliding_n * rotor.contact_radius_m;
+        self.peak_friction_torque_n_m = self.peak_friction_torque_n_m.max(torque);
+        for speed in peaks.whirl_m_s {
+            self.peak_backward_speed_m_s = self.peak_backward_speed_m_s.max(backward * speed);
         }
     }
 }

@@ -6,7 +6,8 @@
 use crate::V2;
 use crate::params::RingParams;
 use crate::part::{Body, Part};
-use crate::series::Series;
+use crate::quadrature::Nodes;
+use crate::series::{INVERSE, Series};
 
 /// What moves of a stator.
 pub(crate) trait Rings: Part {
@@ -62,8 +63,8 @@ pub(crate) trait Stator: Copy + Send + 'static {
     fn undamped_rate_rad_s(&self) -> f64;
     /// Upper bound of the fastest rate of the free stator \[rad/s\].
     fn fastest_rate_rad_s(&self) -> f64;
-    /// Series that holds the state as its coefficient 0.
-    fn start_series(&self, state: &Self::State) -> Self::Series;
+    /// Sets coefficient 0 to the state.
+    fn start_series(series: &mut Self::Series, state: &Self::State);
     /// Position coefficients k + 1 from velocity coefficients k; `next_s` is step / (k + 1).
     fn extend_position(&self, series: &mut Self::Series, k: usize, next_s: f64);
     /// Velocity coefficients k + 1 under coefficient k of a force on the inner ring \[N\].
@@ -78,20 +79,42 @@ pub(crate) trait Stator: Copy + Send + 'static {
         let ring = Self::coefficient(series, k).inner();
         (ring.position, ring.velocity)
     }
-    /// Free motion over `step_s` as a power series.
-    fn series(&self, state: &Self::State, step_s: f64, order: usize) -> Self::Series {
-        let mut series = self.start_series(state);
+    /// Fills `series` with free motion over `step_s`.
+    fn series(&self, series: &mut Self::Series, state: &Self::State, step_s: f64, order: usize) {
+        Self::start_series(series, state);
         for k in 0..order {
-            let next_s = step_s / (k + 1) as f64;
-            self.extend_position(&mut series, k, next_s);
-            self.extend_velocity(&mut series, k, next_s, V2::zeros());
+            let next_s = step_s * INVERSE[k + 1];
+            self.extend_position(series, k, next_s);
+            self.extend_velocity(series, k, next_s, V2::zeros());
         }
-        series
     }
     /// Position series of the inner ring, if it moves.
     fn inner_series(series: &Self::Series) -> Option<&Series>;
     /// ∫ of the power lost in the mountings' dampers over θ \[W\].
-    fn damping_integral_w(&self, series: &Self::Series, theta: f64, order: usize) -> f64;
+    fn damping_integral_w<const N: usize>(
+        &self,
+        series: &Self::Series,
+        nodes: &Nodes<N>,
+        order: usize,
+    ) -> f64 {
+        let speeds = Self::damper_speeds(series, nodes, order);
+        let [inner, outer] = self.damper_constants();
+        nodes
+            .integral(|j| weighed_square(inner, speeds[0][j]) + weighed_square(outer, speeds[1][j]))
+    }
+    /// Speeds across the dampers of the inner and the outer mounting at the nodes \[m/s\]; zero where
+    /// there is none.
+    fn damper_speeds<const N: usize>(
+        series: &Self::Series,
+        nodes: &Nodes<N>,
+        order: usize,
+    ) -> [[V2; N]; 2];
+    /// Constants of these dampers \[N s/m\].
+    fn damper_constants(&self) -> [V2; 2];
+    /// Whether mountings have dampers.
+    fn is_damped(&self) -> bool {
+        self.damper_constants() != [V2::zeros(); 2]
+    }
     /// State at θ.
     fn at(series: &Self::Series, theta: f64, order: usize) -> Self::State;
 }
@@ -125,7 +148,7 @@ impl Stator for Rigid {
         0.0
     }
     #[inline]
-    fn start_series(&self, _state: &()) {}
+    fn start_series(_series: &mut (), _state: &()) {}
     #[inline]
     fn extend_position(&self, _series: &mut (), _k: usize, _next_s: f64) {}
     #[inline]
@@ -137,8 +160,11 @@ impl Stator for Rigid {
     #[inline]
     fn coefficient(_series: &(), _k: usize) {}
     #[inline]
-    fn damping_integral_w(&self, _series: &(), _theta: f64, _order: usize) -> f64 {
-        0.0
+    fn damper_speeds<const N: usize>(_: &(), _: &Nodes<N>, _: usize) -> [[V2; N]; 2] {
+        [[V2::zeros(); N]; 2]
+    }
+    fn damper_constants(&self) -> [V2; 2] {
+        [V2::zeros(); 2]
     }
     #[inline]
     fn inner_series(_series: &()) -> Option<&Series> {
@@ -156,11 +182,9 @@ pub(crate) struct BodySeries {
 }
 
 impl BodySeries {
-    fn start(body: &Body) -> Self {
-        Self {
-            position: Series::start(body.position),
-            velocity: Series::start(body.velocity),
-        }
+    fn start(&mut self, body: &Body) {
+        self.position.0[0] = body.position;
+        self.velocity.0[0] = body.velocity;
     }
 
     #[inline]
@@ -169,21 +193,6 @@ impl BodySeries {
             position: self.position.0[k],
             velocity: self.velocity.0[k],
         }
-    }
-
-    /// ∫ vᵀ·diag(damping)·v dθ, v being this velocity less that of `carrier`.
-    fn loss(&self, carrier: Option<&Self>, damping: V2, theta: f64, order: usize) -> f64 {
-        let mut across = self.velocity;
-        if let Some(carrier) = carrier {
-            for (a, b) in across.0[..=order].iter_mut().zip(&carrier.velocity.0) {
-                *a -= b;
-            }
-        }
-        let mut weighed = across;
-        for c in &mut weighed.0[..=order] {
-            c.component_mul_assign(&damping);
-        }
-        across.integral_of_dot(&weighed, theta, order)
     }
 
     fn at(&self, theta: f64, order: usize) -> Body {
@@ -247,8 +256,8 @@ impl Stator for OneMass {
     fn fastest_rate_rad_s(&self) -> f64 {
         self.undamped_rate_rad_s() + self.0.damping_n_s_m.max() / self.0.mass_kg
     }
-    fn start_series(&self, state: &Body) -> BodySeries {
-        BodySeries::start(state)
+    fn start_series(series: &mut BodySeries, state: &Body) {
+        series.start(state);
     }
     #[inline]
     fn extend_position(&self, s: &mut BodySeries, k: usize, next_s: f64) {
@@ -267,8 +276,17 @@ impl Stator for OneMass {
     fn coefficient(series: &BodySeries, k: usize) -> Body {
         series.coefficient(k)
     }
-    fn damping_integral_w(&self, series: &BodySeries, theta: f64, order: usize) -> f64 {
-        series.loss(None, self.0.damping_n_s_m, theta, order)
+    #[inline]
+    fn damper_speeds<const N: usize>(
+        series: &BodySeries,
+        nodes: &Nodes<N>,
+        order: usize,
+    ) -> [[V2; N]; 2] {
+        let speed = series.velocity.at_all(&nodes.theta, order);
+        [speed, [V2::zeros(); N]]
+    }
+    fn damper_constants(&self) -> [V2; 2] {
+        [self.0.damping_n_s_m, V2::zeros()]
     }
     #[inline]
     fn inner_series(series: &BodySeries) -> Option<&Series> {
@@ -350,8 +368,9 @@ impl Stator for TwoMass {
         let damping = self.inner.damping_n_s_m.max() * 2.0 + self.outer.damping_n_s_m.max();
         self.undamped_rate_rad_s() + damping / mass
     }
-    fn start_series(&self, (s, z): &Self::State) -> Self::Series {
-        (BodySeries::start(s), BodySeries::start(z))
+    fn start_series(series: &mut Self::Series, (s, z): &Self::State) {
+        series.0.start(s);
+        series.1.start(z);
     }
     #[inline]
     fn extend_position(&self, (s, z): &mut Self::Series, k: usize, next_s: f64) {
@@ -374,9 +393,21 @@ impl Stator for TwoMass {
     fn coefficient((s, z): &Self::Series, k: usize) -> Self::State {
         (s.coefficient(k), z.coefficient(k))
     }
-    fn damping_integral_w(&self, (s, z): &Self::Series, theta: f64, order: usize) -> f64 {
-        s.loss(Some(z), self.inner.damping_n_s_m, theta, order)
-            + z.loss(None, self.outer.damping_n_s_m, theta, order)
+    #[inline]
+    fn damper_speeds<const N: usize>(
+        (s, z): &Self::Series,
+        nodes: &Nodes<N>,
+        order: usize,
+    ) -> [[V2; N]; 2] {
+        let mut inner = s.velocity.at_all(&nodes.theta, order);
+        let outer = z.velocity.at_all(&nodes.theta, order);
+        for (a, b) in inner.iter_mut().zip(&outer) {
+            *a -= b;
+        }
+        [inner, outer]
+    }
+    fn damper_constants(&self) -> [V2; 2] {
+        [self.inner.damping_n_s_m, self.outer.damping_n_s_m]
     }
     #[inline]
     fn inner_series(series: &Self::Series) -> Option<&Series> {

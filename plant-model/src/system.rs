@@ -106,7 +106,8 @@ impl<S: Rings, W: Part, M: Part> Part for State<S, W, M> {
 }
 
 /// Guards of a contact mode: each is positive while the mode holds; unused ones are infinite.
-pub(crate) type Guards = [f64; 5];
+pub(crate) type Guards = [f64; GUARDS];
+pub(crate) const GUARDS: usize = 5;
 /// Normal force.
 pub(crate) const NORMAL: usize = 0;
 /// Slip: speed in its direction. Roll: room to the upper edge of the friction cone.
@@ -322,7 +323,7 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
             normal_impulse_n_s: normal_n,
         };
 
-        let mut guards = [f64::INFINITY; 5];
+        let mut guards = [f64::INFINITY; GUARDS];
         guards[NORMAL] = normal_n;
         match slide {
             Slide::Rolling => {

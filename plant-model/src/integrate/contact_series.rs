@@ -9,9 +9,9 @@ use crate::V2;
 use crate::magnet::Amplifier;
 use crate::mode::{Slide, Whirl};
 use crate::params::SlidingFriction;
-use crate::series::{Scalar, Series, turned};
+use crate::series::{INVERSE, Scalar, Series, turned};
 use crate::spin::Spin;
-use crate::stator::Stator;
+use crate::stator::{Rings, Stator};
 use crate::system::{StateOf, System};
 
 /// Series of everything in contact over one step. Reused from step to step.
@@ -26,6 +26,9 @@ pub(crate) struct ContactSeries<S: Stator> {
     pub(super) magnet: Series,
     /// Ω \[rad/s\].
     pub(super) spin: Scalar,
+    /// Ω̇ \[rad/s²\] and Ω times the direction, where an unbalance asks for them.
+    pub(super) spin_rate: Scalar,
+    pub(super) turning: Series,
     /// Direction of the unbalance, and its force per mass \[m/s²\]; zero without one.
     pub(super) direction: Series,
     pub(super) unbalance: Series,
@@ -68,6 +71,8 @@ impl<S: Stator> ContactSeries<S> {
             stator: S::Series::default(),
             magnet: Series::default(),
             spin: Scalar::default(),
+            spin_rate: Scalar::default(),
+            turning: Series::default(),
             direction: Series::default(),
             unbalance: Series::default(),
             gap: Series::default(),
@@ -98,6 +103,10 @@ struct Context<'a, S, W, M> {
     slide: Slide,
     whirl: Whirl,
     step_s: f64,
+    /// 1/step, 1/ρ at the start, 1/m.
+    per_step: f64,
+    inverse_distance: f64,
+    inverse_m: f64,
     mobility: f64,
     inverse_j: f64,
     torque: f64,
@@ -113,12 +122,19 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
         task: &Task<'_>,
         (step_s, order): (f64, usize),
     ) {
+        let ring = y.stator.inner();
+        out.gap.0[0] = y.rotor.position - ring.position;
+        out.gap_rate.0[0] = y.rotor.velocity - ring.velocity;
+        out.distance.0[0] = out.gap.0[0].norm();
         let context = Context {
             system: self,
             external_n: task.inputs.external_n,
             slide: task.mode.0,
             whirl: task.mode.1,
             step_s,
+            per_step: 1.0 / step_s,
+            inverse_distance: 1.0 / out.distance.0[0],
+            inverse_m: 1.0 / self.rotor.mass_kg,
             mobility: 1.0 / self.rotor.mass_kg + self.stator.inverse_mass(),
             inverse_j: self.spin.inverse_inertia(),
             torque: self.spin.drive_torque_n_m(),
@@ -128,20 +144,14 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
         out.order = order;
         out.position.0[0] = y.rotor.position;
         out.velocity.0[0] = y.rotor.velocity;
-        out.stator = self.stator.start_series(&y.stator);
-        out.magnet = self
-            .amplifier
-            .series(&y.force, task.inputs.command_n, step_s, order);
-        out.spin = Scalar::default();
+        S::start_series(&mut out.stator, &y.stator);
+        let magnet = (&y.force, task.inputs.command_n);
+        (self.amplifier).series(&mut out.magnet, magnet, step_s, order);
         out.spin.0[0] = self.spin.spin_rad_s(&y.spin);
         if context.unbalanced {
             let (sin, cos) = self.spin.phase_rad(&y.spin, t_s).sin_cos();
             out.direction.0[0] = V2::new(cos, sin);
         }
-        let (ring, ring_rate) = S::inner_coefficient(&out.stator, 0);
-        out.gap.0[0] = y.rotor.position - ring;
-        out.gap_rate.0[0] = y.rotor.velocity - ring_rate;
-        out.distance.0[0] = out.gap.0[0].norm();
         for k in 0..=order {
             context.positions(out, k);
             context.forces(out, k);
@@ -155,22 +165,35 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
 impl<S: Stator, W: Spin, M: Amplifier> Context<'_, S, W, M> {
     /// Coefficients k + 1 of the positions, which run one order ahead so that ρ̇ is the derivative of ρ.
     fn positions(&self, out: &mut ContactSeries<S>, k: usize) {
-        let next = self.step_s / (k + 1) as f64;
+        let next = self.step_s * INVERSE[k + 1];
         out.position.0[k + 1] = next * out.velocity.0[k];
         self.system.stator.extend_position(&mut out.stator, k, next);
         out.gap.0[k + 1] = next * out.gap_rate.0[k];
-        // ρ² = u·u.
-        let square = out.gap.dot_coefficient(&out.gap, k + 1);
-        let mixed = out.distance.inner_square_coefficient(k + 1);
-        out.distance.0[k + 1] = (square - mixed) / (2.0 * out.distance.0[0]);
-        out.normal_speed.0[k] = out.distance.0[k + 1] / next;
+        // ρ² = u·u: ρ_0·ρ_n = u_0·u_n + ½·Σ (u_i·u_(n−i) − ρ_i·ρ_(n−i)), 0 < i < n, by halves.
+        let n = k + 1;
+        let (half, odd) = (n / 2, n % 2 == 1);
+        let (gap, distance) = (&out.gap.0, &out.distance.0);
+        let mut products = V2::zeros();
+        let mut squares = 0.0;
+        let ends = gap[1..n].iter().zip(gap[1..n].iter().rev());
+        let lengths = distance[1..n].iter().zip(distance[1..n].iter().rev());
+        let pairs = if odd { half } else { half - 1 };
+        for ((a, b), (p, q)) in ends.zip(lengths).take(pairs) {
+            products += a.component_mul(b);
+            squares += p * q;
+        }
+        let mut sum = products.x + products.y - squares;
+        if !odd {
+            sum += 0.5 * (gap[half].norm_squared() - distance[half] * distance[half]);
+        }
+        out.distance.0[n] = (gap[0].dot(&gap[n]) + sum) * self.inverse_distance;
+        out.normal_speed.0[k] = out.distance.0[k + 1] * ((k + 1) as f64 * self.per_step);
     }
 
     /// Coefficients k + 1 of the velocities from coefficients k of the forces.
     fn velocities(&self, out: &mut ContactSeries<S>, k: usize) {
-        let next = self.step_s / (k + 1) as f64;
-        let mut acceleration =
-            (self.free_force(out, k) + out.tangential.0[k]) / self.system.rotor.mass_kg;
+        let next = self.step_s * INVERSE[k + 1];
+        let mut acceleration = (self.free_force(out, k) + out.tangential.0[k]) * self.inverse_m;
         if self.unbalanced {
             acceleration += out.unbalance.0[k];
         }
@@ -198,18 +221,27 @@ impl<S: Stator, W: Spin, M: Amplifier> Context<'_, S, W, M> {
     /// Coefficients k of normal force and friction, and k + 1 of the spin.
     fn forces(&self, out: &mut ContactSeries<S>, k: usize) {
         let contact = &self.system.contact;
-        // n·ρ = u.
-        let mixed = out.normal.times_coefficient_below(&out.distance, k);
-        out.normal.0[k] = (out.gap.0[k] - mixed) / out.distance.0[0];
         let penetration = if k == 0 {
             out.distance.0[0] - contact.clearance_m
         } else {
             out.distance.0[k]
         };
         out.force.0[k] = contact.normal_force_n(penetration, out.normal_speed.0[k]);
-        out.push.0[k] = out.normal.times_coefficient(&out.force, k);
-        // v_w = ẇ·t̂ with t̂ = r̂ turned.
-        out.whirl_speed.0[k] = out.normal.cross_coefficient(&out.gap_rate, k);
+        // r̂·ρ = u, f_n·r̂ and v_w = ẇ·t̂ = r̂ × ẇ: their sums run over the same coefficients of r̂.
+        let (mut mixed, mut push, mut cross) = (V2::zeros(), V2::zeros(), V2::zeros());
+        let below = out.normal.0[..k].iter();
+        let lengths = out.distance.0[1..=k].iter().rev();
+        let forces = out.force.0[1..=k].iter().rev();
+        let rates = out.gap_rate.0[1..=k].iter().rev();
+        for (((n, length), force), rate) in below.zip(lengths).zip(forces).zip(rates) {
+            mixed += *length * n;
+            push += *force * n;
+            cross += V2::new(n.x * rate.y, n.y * rate.x);
+        }
+        let normal = (out.gap.0[k] - mixed) * self.inverse_distance;
+        out.normal.0[k] = normal;
+        out.push.0[k] = push + out.force.0[0] * normal;
+        out.whirl_speed.0[k] = cross.x - cross.y + normal.perp(&out.gap_rate.0[0]);
         if self.unbalanced {
             self.turn_unbalance(out, k);
         }
@@ -328,13 +360,13 @@ impl<S: Stator, W: Spin, M: Amplifier> Context<'_, S, W, M> {
     /// (a_rotor − a_ring)·t̂ − v_n·v_w/ρ without tangential force and without spin acceleration.
     fn free_whirl_acceleration(&self, out: &mut ContactSeries<S>, k: usize) -> f64 {
         let ring = (self.system.stator).inner_acceleration(&out.stator, k, out.push.0[k]);
-        let mut difference = self.free_force(out, k) / self.system.rotor.mass_kg - ring;
+        let mut difference = self.free_force(out, k) * self.inverse_m - ring;
         if self.unbalanced {
             difference += out.unbalance.0[k];
         }
         out.difference.0[k] = difference;
         let mixed = out.distance.product_coefficient_below(&out.whirl_rate, k);
-        out.whirl_rate.0[k] = (out.whirl_speed.0[k] - mixed) / out.distance.0[0];
+        out.whirl_rate.0[k] = (out.whirl_speed.0[k] - mixed) * self.inverse_distance;
         out.normal.cross_coefficient(&out.difference, k)
             - out.normal_speed.product_coefficient(&out.whirl_rate, k)
     }
@@ -342,22 +374,17 @@ impl<S: Stator, W: Spin, M: Amplifier> Context<'_, S, W, M> {
     /// Unbalance per mass at order k, by the square of the speed; direction at k + 1.
     fn turn_unbalance(&self, out: &mut ContactSeries<S>, k: usize) {
         let e = self.system.rotor.eccentricity_m;
-        let next = self.step_s / (k + 1) as f64;
+        let next = self.step_s * INVERSE[k + 1];
         if self.inverse_j == 0.0 {
             let spin = out.spin.0[0];
             out.direction.0[k + 1] = next * spin * turned(out.direction.0[k]);
             out.unbalance.0[k] = e * spin * spin * out.direction.0[k];
             return;
         }
-        let turning = out.direction.times_coefficient(&out.spin, k);
-        out.direction.0[k + 1] = next * turned(turning);
-        // Ω²·d = Ω·(Ω·d); the inner product's coefficients are those of the derivative, turned back.
-        let mut sum = V2::zeros();
-        for i in 0..=k {
-            let inner = -turned(out.direction.0[i + 1]) * ((i + 1) as f64 / self.step_s);
-            sum += out.spin.0[k - i] * inner;
-        }
-        out.unbalance.0[k] = e * sum;
+        // Ω·d, and Ω²·d = Ω·(Ω·d).
+        out.turning.0[k] = out.direction.times_coefficient(&out.spin, k);
+        out.direction.0[k + 1] = next * turned(out.turning.0[k]);
+        out.unbalance.0[k] = e * out.turning.times_coefficient(&out.spin, k);
     }
 
     /// Spin at k + 1, and the unbalance's share by spin acceleration at k.
@@ -366,16 +393,14 @@ impl<S: Stator, W: Spin, M: Amplifier> Context<'_, S, W, M> {
             return;
         }
         let torque = if k == 0 { self.torque } else { 0.0 };
-        let next = self.step_s / (k + 1) as f64;
+        let next = self.step_s * INVERSE[k + 1];
         let radius = self.system.rotor.contact_radius_m;
         let acceleration = self.inverse_j * (torque + radius * out.sliding.0[k]);
         out.spin.0[k + 1] = next * acceleration;
         if self.unbalanced {
-            let e = self.system.rotor.eccentricity_m;
-            for i in 0..=k {
-                let rate = out.spin.0[i + 1] * ((i + 1) as f64 / self.step_s);
-                out.unbalance.0[k] -= e * rate * turned(out.direction.0[k - i]);
-            }
+            out.spin_rate.0[k] = acceleration;
+            let by_rate = turned(out.direction.times_coefficient(&out.spin_rate, k));
+            out.unbalance.0[k] -= self.system.rotor.eccentricity_m * by_rate;
         }
     }
 }

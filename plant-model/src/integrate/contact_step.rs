@@ -6,10 +6,10 @@ use crate::integrate::PlantError;
 use crate::magnet::Amplifier;
 use crate::mode::{Slide, Whirl};
 use crate::part::{Part, Weights};
-use crate::readout::Work;
+use crate::readout::{Peaks, Work};
 use crate::spin::Spin;
 use crate::stator::Stator;
-use crate::system::{Evaluation, Guards, Inputs, NORMAL, StateOf, System, Touch};
+use crate::system::{Evaluation, Guards, Inputs, NORMAL, StateOf, System};
 
 /// Points at which a step that may hold an event is searched.
 const SCANS: usize = 8;
@@ -71,8 +71,9 @@ pub(crate) struct ContactStep<Y> {
     pub(crate) step_s: f64,
     pub(crate) y: Y,
     pub(crate) flows: Flows,
-    /// Forces at its start and end.
-    pub(crate) ends: [Touch; 2],
+    pub(crate) peaks: Peaks,
+    /// Normal force at the end, and its rate.
+    pub(crate) end_normal: (f64, f64),
     /// Contact normals at start and end turn by this angle \[rad\].
     pub(crate) turn: f64,
     /// Guard that ended the step.
@@ -84,13 +85,23 @@ pub(crate) struct ContactStep<Y> {
 pub(crate) struct Scales {
     rtol: f64,
     fastest_m_s: f64,
+    /// Rate of the contact spring, and the largest of shaft and mountings \[1/s\].
+    contact_rate: f64,
+    slow_rate: f64,
 }
 
 impl Scales {
-    pub(crate) fn new(rtol: f64, speed_m_s: f64) -> Self {
+    pub(crate) fn new<S: Stator, W: Spin, M: Amplifier>(
+        rtol: f64,
+        system: &System<S, W, M>,
+        y: &StateOf<S, W, M>,
+    ) -> Self {
+        let shaft = (system.rotor.stiffness_n_m.abs() / system.rotor.mass_kg).sqrt();
         Self {
             rtol,
-            fastest_m_s: speed_m_s,
+            fastest_m_s: y.rotor.velocity.norm(),
+            contact_rate: system.undamped_contact_rate_rad_s(),
+            slow_rate: shaft.max(system.stator.undamped_rate_rad_s()),
         }
     }
 
@@ -103,7 +114,7 @@ impl Scales {
     ) -> Weights {
         let now = y.rotor.velocity.norm();
         self.fastest_m_s = self.fastest_m_s.max(now);
-        let rate = system.undamped_contact_rate_rad_s();
+        let rate = self.contact_rate;
         // A rotor that comes to rest is followed to a thousandth of its fastest motion; one that
         // never moved, to a thousandth of its weightless creep over the clearance.
         let floor = 1e-3
@@ -112,8 +123,7 @@ impl Scales {
                 .max(1e-3 * system.contact.clearance_m * rate);
         let speed = now.max(floor);
         let clearance = system.contact.clearance_m;
-        let shaft = (system.rotor.stiffness_n_m.abs() / system.rotor.mass_kg).sqrt();
-        let length = speed / shaft.max(system.stator.undamped_rate_rad_s());
+        let length = speed / self.slow_rate;
         let spin = (speed / system.rotor.contact_radius_m)
             .max(system.spin.spin_rad_s(&y.spin).abs() * 1e-2);
         Weights {
@@ -264,7 +274,8 @@ impl<P> ContactStepper<P> {
             step_s: h,
             y: y_end,
             flows,
-            ends: [first.touch, last_touch],
+            peaks: Peaks::between(&[first.touch, last_touch], h),
+            end_normal: (last_touch.normal_n, last_touch.normal_rate_n_s),
             turn: a.perp(&b).atan2(a.dot(&b)),
             event,
         })

@@ -3,6 +3,7 @@
 use super::contact_step::{ContactStepper, Scales, Task};
 use super::dop853::Dop853;
 use super::flight::{Crossing, Segment};
+use super::flight_map::FlightMaps;
 use super::radau::Radau;
 use super::series_step::SeriesStepper;
 use super::transitions::AtZero;
@@ -30,6 +31,8 @@ pub(crate) struct Run<S: Stator, W: Spin, M: Amplifier> {
     pub(crate) meters: Meters,
     scales: Scales,
     work: Work,
+    segment: Segment<S>,
+    maps: FlightMaps,
     series: SeriesStepper<S>,
     explicit: ContactStepper<Explicit<StateOf<S, W, M>>>,
     stiff: ContactStepper<Stiff<StateOf<S, W, M>>>,
@@ -61,8 +64,10 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
         let (ratio, rate) = system.contact_damping();
         options.method = options.method.resolved(ratio, rate, options.rtol);
         let mut run = Self {
-            scales: Scales::new(options.rtol, y.rotor.velocity.norm()),
+            scales: Scales::new(options.rtol, &system, &y),
             work: Work::default(),
+            maps: FlightMaps::default(),
+            segment: Segment::new(system.flight_rate_rad_s()),
             series: SeriesStepper::new(options.rtol, system.contact_rate_rad_s()),
             explicit: ContactStepper::new::<StateOf<S, W, M>>(system.contact_rate_rad_s()),
             stiff: ContactStepper::new::<StateOf<S, W, M>>(system.contact_rate_rad_s()),
@@ -125,6 +130,16 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
         if !t_end_s.is_finite() {
             return Err(PlantError::NotFinite { t_s: self.t_s });
         }
+        if self.phase == Phase::Inside && self.t_s < t_end_s {
+            let dt_s = t_end_s - self.t_s;
+            let flown = (self.system).fly_by_map(&mut self.maps, &self.y, &self.inputs, dt_s);
+            if let Some((end, flows)) = flown {
+                self.flows.add_scaled(1.0, &flows);
+                (self.y, self.t_s) = (end, t_end_s);
+                self.just_left = false;
+                return self.check_state();
+            }
+        }
         let mut steps = 0;
         while self.t_s < t_end_s {
             steps += 1;
@@ -182,23 +197,19 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
 
     fn fly_inside(&mut self, t_end_s: f64) {
         let remaining = t_end_s - self.t_s;
-        let step = remaining.min(self.system.longest_flight_s(&self.y, remaining));
-        let last = step >= remaining;
-        // A step that the clock can show.
-        let step = if last {
-            step
-        } else {
-            (self.t_s + step) - self.t_s
+        let here = (self.t_s, &self.y);
+        (self.system).fly(&mut self.segment, here, &self.inputs, remaining);
+        let last = self.segment.step_s >= remaining;
+        let (theta, hit) = match self
+            .segment
+            .wall_crossing(self.system.contact.clearance_m, self.just_left)
+        {
+            Crossing::Nowhere => (1.0, false),
+            Crossing::At(theta) => (theta, true),
+            Crossing::ClearUntil(theta) => (theta.min(1.0), false),
         };
-        let segment = self.system.fly(self.t_s, &self.y, &self.inputs, step);
-        let (theta, hit) =
-            match segment.wall_crossing(self.system.contact.clearance_m, self.just_left) {
-                Crossing::Nowhere => (1.0, false),
-                Crossing::At(theta) => (theta, true),
-                Crossing::ClearUntil(theta) => (theta.min(1.0), false),
-            };
         self.just_left = false;
-        self.fly(&segment, theta, last.then_some(t_end_s));
+        self.fly(theta, last.then_some(t_end_s));
         if hit {
             self.meters.impacts += 1;
             let g = self.system.geometry(&self.y);
@@ -209,7 +220,8 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
     }
 
     /// Takes the flight up to θ; a whole last segment ends exactly at `end_s`.
-    fn fly(&mut self, segment: &Segment<S>, theta: f64, end_s: Option<f64>) {
+    fn fly(&mut self, theta: f64, end_s: Option<f64>) {
+        let segment = &self.segment;
         let end = self.system.flown(segment, &self.y, theta);
         let flows = (self.system).flight_flows(segment, &self.y, &end, &self.inputs, theta);
         self.flows.add_scaled(1.0, &flows);
@@ -224,17 +236,17 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
     fn fly_beyond(&mut self, t_end_s: f64) {
         const SCANS: u32 = 16;
         let remaining = t_end_s - self.t_s;
-        let mut step = remaining.min(self.system.longest_flight_s(&self.y, remaining));
         let g = self.system.geometry(&self.y);
         let leave_s = g.penetration_m / g.normal_speed_m_s.abs();
-        step = step.min((2.0 * leave_s).max(1e-6 / self.system.contact_rate_rad_s()));
-        let last = step >= remaining;
-        let segment = self.system.fly(self.t_s, &self.y, &self.inputs, step);
+        let step = remaining.min((2.0 * leave_s).max(self.system.moment_s()));
+        let here = (self.t_s, &self.y);
+        (self.system).fly(&mut self.segment, here, &self.inputs, step);
+        let last = self.segment.step_s >= remaining;
         // Positive while beyond: (penetration, lack of force).
         let room = |theta: f64| {
             let g = self
                 .system
-                .geometry(&self.system.flown(&segment, &self.y, theta));
+                .geometry(&self.system.flown(&self.segment, &self.y, theta));
             (g.penetration_m, -self.normal_n(&g))
         };
         let mut theta = 1.0;
@@ -263,7 +275,7 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
             }
             (valid, lack) = (at, force);
         }
-        self.fly(&segment, theta, last.then_some(t_end_s));
+        self.fly(theta, last.then_some(t_end_s));
         if matches!(next, Phase::Contact(..)) {
             // The dent whose energy was written off at lift-off is felt again.
             let g = self.system.geometry(&self.y);
@@ -298,7 +310,7 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
         self.flows.add_scaled(1.0, &outcome.flows);
         let rotor = &self.system.rotor;
         self.meters.contact_step(
-            &outcome.ends,
+            &outcome.peaks,
             outcome.step_s,
             outcome.turn,
             self.backward,
@@ -308,8 +320,8 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
         self.y = outcome.y;
         self.t_s = outcome.t_s;
         // As the normal force dies the friction cones close with it: that is one event, lift-off.
-        let end = &outcome.ends[1];
-        let over = end.normal_n < -end.normal_rate_n_s * self.system.moment_s();
+        let (normal_n, rate_n_s) = outcome.end_normal;
+        let over = normal_n < -rate_n_s * self.system.moment_s();
         match outcome.event.map(|guard| if over { NORMAL } else { guard }) {
             None => self.system.zero_speeds(&mut self.y, AtZero::held(pair)),
             Some(NORMAL) => self.lift_off(),

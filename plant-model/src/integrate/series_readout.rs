@@ -1,14 +1,17 @@
-//! What a contact series gives: state, guards, energy.
+//! What a contact series gives: state, guards, energy, largest values.
 
 use super::contact_series::ContactSeries;
+use super::contact_step::Task;
 use crate::energy::Flows;
 use crate::magnet::Amplifier;
 use crate::mode::{Slide, Whirl};
 use crate::part::{Body, Part, Weights};
-use crate::series::Scalar;
+use crate::quadrature::{EIGHT, Nodes, SIX};
+use crate::readout::Peaks;
+use crate::series::{Scalar, Series};
 use crate::spin::Spin;
 use crate::stator::Stator;
-use crate::system::{Inputs, NORMAL, SLIDE, SLIDE_LOW, State, StateOf, System, WHIRL, WHIRL_LOW};
+use crate::system::{NORMAL, SLIDE, SLIDE_LOW, State, StateOf, System, WHIRL, WHIRL_LOW};
 
 impl<S: Stator> ContactSeries<S> {
     /// State at θ of a step that started at `y`.
@@ -45,110 +48,188 @@ impl<S: Stator> ContactSeries<S> {
         (gap + rotor.weighed_square(weights) + stator + spin * spin).sqrt()
     }
 
-    /// Guards of the mode as series; only those in use.
-    pub(crate) fn guards<W: Spin, M: Amplifier>(
+    /// Fills `out` with a guard of the mode; false if the mode has no such guard.
+    pub(crate) fn guard<W: Spin, M: Amplifier>(
         &self,
+        out: &mut Scalar,
         system: &System<S, W, M>,
         (slide, whirl): (Slide, Whirl),
-    ) -> [Option<Scalar>; 5] {
-        let order = self.order;
-        let mut guards = [None; 5];
-        guards[NORMAL] = Some(self.force);
-        let radius = system.rotor.contact_radius_m;
+        guard: usize,
+    ) -> bool {
+        let (slide_sign, whirl_sign) = (slide.sign(), whirl.sign());
         let mu = system.friction.sliding.coefficient(0.0);
-        match slide {
-            Slide::Rolling => {
-                guards[SLIDE] = Some(self.force.combined(mu, &self.sliding, -1.0, order));
-                guards[SLIDE_LOW] = Some(self.force.combined(mu, &self.sliding, 1.0, order));
-            }
-            _ if mu == 0.0 => {}
-            _ => {
-                let sign = slide.sign();
-                guards[SLIDE] =
-                    Some(
-                        self.whirl_speed
-                            .combined(sign, &self.spin, sign * radius, order),
-                    );
-            }
-        }
         let mu_r = system.friction.rolling_coefficient;
-        match whirl {
-            Whirl::Ignored => {}
-            Whirl::Still => {
-                guards[WHIRL] = Some(self.force.combined(mu_r, &self.rolling, -1.0, order));
-                guards[WHIRL_LOW] = Some(self.force.combined(mu_r, &self.rolling, 1.0, order));
+        let by_spin = slide_sign * system.rotor.contact_radius_m;
+        let (rolling, still) = (slide == Slide::Rolling, whirl == Whirl::Still);
+        let (a, b) = match guard {
+            NORMAL => ((1.0, &self.force), (0.0, &self.force)),
+            SLIDE if rolling => ((mu, &self.force), (-1.0, &self.sliding)),
+            SLIDE_LOW if rolling => ((mu, &self.force), (1.0, &self.sliding)),
+            SLIDE if mu != 0.0 => ((slide_sign, &self.whirl_speed), (by_spin, &self.spin)),
+            WHIRL if still => ((mu_r, &self.force), (-1.0, &self.rolling)),
+            WHIRL_LOW if still => ((mu_r, &self.force), (1.0, &self.rolling)),
+            WHIRL if whirl != Whirl::Ignored => {
+                ((whirl_sign, &self.whirl_speed), (0.0, &self.spin))
             }
-            _ => {
-                guards[WHIRL] =
-                    Some(
-                        self.whirl_speed
-                            .combined(whirl.sign(), &self.spin, 0.0, order),
-                    );
-            }
-        }
-        guards
+            _ => return false,
+        };
+        out.combine(a, b, self.order);
+        true
     }
 
     /// Energy through each door from 0 to θ.
     pub(crate) fn flows<W: Spin, M: Amplifier>(
         &self,
         system: &System<S, W, M>,
-        (start, end): (&Body, &Body),
-        inputs: &Inputs,
+        ends: (&Body, &Body),
+        task: &Task<'_>,
         theta: f64,
+    ) -> Flows {
+        // The coefficients of a product fall more slowly than those of its factors, but a rule is off
+        // little for the first powers that it does not hold exactly.
+        if self.order <= 8 {
+            self.flows_by(system, ends, task, (theta, &Nodes::stretched(&SIX, theta)))
+        } else {
+            self.flows_by(
+                system,
+                ends,
+                task,
+                (theta, &Nodes::stretched(&EIGHT, theta)),
+            )
+        }
+    }
+
+    fn flows_by<W: Spin, M: Amplifier, const N: usize>(
+        &self,
+        system: &System<S, W, M>,
+        (start, end): (&Body, &Body),
+        task: &Task<'_>,
+        (theta, nodes): (f64, &Nodes<N>),
     ) -> Flows {
         let (h, order) = (self.step_s, self.order);
         let path = end.position - start.position;
         let radius = system.rotor.contact_radius_m;
-        let control = if M::LAGS {
-            h * self.magnet.integral_of_dot(&self.velocity, theta, order)
-        } else {
-            inputs.command_n.dot(&path)
-        };
         let free = system.spin.inverse_inertia() > 0.0;
-        let spin_work = if free {
-            self.sliding.integral_of_product(&self.spin, theta, order)
-        } else {
-            self.spin.0[0] * self.sliding.integral(theta, order)
-        };
-        let drive = if free {
-            system.spin.drive_torque_n_m() * h * self.spin.integral(theta, order)
-        } else {
-            -radius * h * spin_work
-        };
-        let whirl_work = self
-            .sliding
-            .integral_of_product(&self.whirl_speed, theta, order);
-        let damping = system.rotor.damping_n_s_m;
-        let contact_damping = system.contact.damping_n_s_m;
-        let unbalance = if system.rotor.eccentricity_m > 0.0 {
-            system.rotor.mass_kg * h * self.unbalance.integral_of_dot(&self.velocity, theta, order)
-        } else {
-            0.0
-        };
-        let or_zero = |present: bool, value: &dyn Fn() -> f64| if present { value() } else { 0.0 };
-        Flows {
-            control,
-            external: inputs.external_n.dot(&path),
-            drive,
-            unbalance,
-            rotor_damping: or_zero(damping > 0.0, &|| {
-                damping * h * self.velocity.integral_of_dot(&self.velocity, theta, order)
-            }),
-            stator_damping: h * system.stator.damping_integral_w(&self.stator, theta, order),
-            contact_damping: or_zero(contact_damping > 0.0, &|| {
-                let square =
-                    self.normal_speed
-                        .integral_of_product(&self.normal_speed, theta, order);
-                contact_damping * h * square
-            }),
-            sliding_friction: -h * (whirl_work + radius * spin_work),
-            rolling_friction: or_zero(system.friction.rolling_coefficient > 0.0, &|| {
-                -h * self
-                    .rolling
-                    .integral_of_product(&self.whirl_speed, theta, order)
-            }),
+        let torque = system.spin.drive_torque_n_m();
+        let mut flows = Flows {
+            control: task.inputs.command_n.dot(&path),
+            external: task.inputs.external_n.dot(&path),
             normal_impulse_n_s: h * self.force.integral(theta, order),
+            ..Flows::default()
+        };
+        if !free {
+            flows.drive = -radius * h * self.spin.0[0] * self.sliding.integral(theta, order);
+        } else if torque != 0.0 {
+            flows.drive = torque * h * self.spin.integral(theta, order);
         }
+        let damping = system.rotor.damping_n_s_m;
+        let unbalanced = system.rotor.eccentricity_m > 0.0;
+        if M::LAGS || unbalanced || damping > 0.0 {
+            let v = self.velocity.at_all(&nodes.theta, order);
+            let with = |force: &Series| {
+                let force = force.at_all(&nodes.theta, order);
+                h * nodes.integral(|j| force[j].dot(&v[j]))
+            };
+            if M::LAGS {
+                flows.control = with(&self.magnet);
+            }
+            if unbalanced {
+                flows.unbalance = system.rotor.mass_kg * with(&self.unbalance);
+            }
+            if damping > 0.0 {
+                flows.rotor_damping = damping * h * nodes.integral(|j| v[j].norm_squared());
+            }
+        }
+        if system.stator.is_damped() {
+            let w = (system.stator).damping_integral_w(&self.stator, nodes, order);
+            flows.stator_damping = h * w;
+        }
+        if system.contact.damping_n_s_m > 0.0 {
+            let speed = self.normal_speed.at_all(&nodes.theta, order);
+            let square = nodes.integral(|j| speed[j] * speed[j]);
+            flows.contact_damping = system.contact.damping_n_s_m * h * square;
+        }
+        let (slips, whirls) = (task.mode.0 != Slide::Rolling, task.mode.1 != Whirl::Still);
+        let rolling = system.friction.rolling_coefficient > 0.0 && whirls;
+        if slips || rolling {
+            let whirl = self.whirl_speed.at_all(&nodes.theta, order);
+            if slips {
+                let friction = self.sliding.at_all(&nodes.theta, order);
+                let work = if free {
+                    let spin = self.spin.at_all(&nodes.theta, order);
+                    nodes.integral(|j| friction[j] * (whirl[j] + radius * spin[j]))
+                } else {
+                    let surface = radius * self.spin.0[0];
+                    nodes.integral(|j| friction[j] * (whirl[j] + surface))
+                };
+                flows.sliding_friction = -h * work;
+            }
+            if rolling {
+                let friction = self.rolling.at_all(&nodes.theta, order);
+                flows.rolling_friction = -h * nodes.integral(|j| friction[j] * whirl[j]);
+            }
+        }
+        flows
+    }
+
+    /// Largest values from 0 to θ.
+    pub(crate) fn peaks(&self, clearance_m: f64, theta: f64) -> Peaks {
+        let order = self.order;
+        let (force_at, normal_n) = highest(&self.force, theta, order);
+        let (_, distance_m) = highest(&self.distance, theta, order);
+        let at = |theta: f64| self.sliding.at(theta, order).abs();
+        Peaks {
+            normal_n,
+            penetration_m: distance_m - clearance_m,
+            sliding_n: self.sliding.0[0].abs().max(at(theta)).max(at(force_at)),
+            whirl_m_s: [self.whirl_speed.0[0], self.whirl_speed.at(theta, order)],
+        }
+    }
+
+    /// Normal force at θ, and its rate.
+    pub(crate) fn normal(&self, theta: f64) -> (f64, f64) {
+        let (force, slope) = self.force.with_slope(theta, self.order);
+        (force, slope / self.step_s)
+    }
+
+    /// Angle by which the contact normal turns from 0 to θ \[rad\].
+    pub(crate) fn turn(&self, theta: f64) -> f64 {
+        let (a, b) = (self.gap.0[0], self.gap.at(theta, self.order));
+        a.perp(&b).atan2(a.dot(&b))
+    }
+}
+
+/// Highest value over [0, θ], and where. What rises at the start and falls at the end has one top in
+/// between: a step is shorter than half a vibration.
+fn highest(series: &Scalar, theta: f64, order: usize) -> (f64, f64) {
+    let (end, end_slope) = series.with_slope(theta, order);
+    let start = series.0[0];
+    if series.0[1] > 0.0 && end_slope < 0.0 {
+        // Regula falsi on the slope, with the Illinois rule. The value is flat at the top.
+        let (mut low, mut high) = ((0.0, series.0[1]), (theta, end_slope));
+        let mut top = (0.0, start.max(end));
+        let mut rose = None;
+        for _ in 0..6 {
+            let at = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
+            let (value, slope) = series.with_slope(at, order);
+            if value > top.1 {
+                top = (at, value);
+            }
+            let rises = slope > 0.0;
+            let again = rose == Some(rises);
+            if rises {
+                low = (at, slope);
+                high.1 *= if again { 0.5 } else { 1.0 };
+            } else {
+                high = (at, slope);
+                low.1 *= if again { 0.5 } else { 1.0 };
+            }
+            rose = Some(rises);
+        }
+        top
+    } else if start > end {
+        (0.0, start)
+    } else {
+        (theta, end)
     }
 }

@@ -8,11 +8,13 @@ use crate::readout::Work;
 use crate::series::{MAX_ORDER, Scalar};
 use crate::spin::Spin;
 use crate::stator::Stator;
-use crate::system::{NORMAL, StateOf, System};
+use crate::system::{GUARDS, NORMAL, StateOf, System};
 
 /// Steps contact by series; remembers the last step as the next one's reference.
 pub(crate) struct SeriesStepper<S: Stator> {
     series: ContactSeries<S>,
+    /// Guard that is being searched.
+    guard: Scalar,
     /// Order of the next step, and the largest that pays.
     order: usize,
     highest_order: usize,
@@ -30,6 +32,7 @@ impl<S: Stator> SeriesStepper<S> {
         };
         Self {
             series: ContactSeries::new(),
+            guard: Scalar::default(),
             order,
             highest_order: order,
             step_s: 1.0 / contact_rate_rad_s,
@@ -73,7 +76,7 @@ impl<S: Stator> SeriesStepper<S> {
         }
         self.step_s = (trusted * reference).min(1e3 * reference);
         // Where the samples cut the steps short a lower order reaches far enough.
-        self.order = if trusted * reference > 1.5 * remaining {
+        self.order = if trusted * reference > 2.0 * remaining {
             (order - 1).max(LOWEST_ORDER)
         } else if last {
             order
@@ -82,10 +85,11 @@ impl<S: Stator> SeriesStepper<S> {
         };
 
         let (mut event, mut whole) = (None, last);
-        for (i, guard) in self.series.guards(system, task.mode).iter().enumerate() {
-            let Some(guard) = guard.as_ref().filter(|_| task.muted != Some(i)) else {
+        for i in 0..GUARDS {
+            let guard = &mut self.guard;
+            if task.muted == Some(i) || !self.series.guard(guard, system, task.mode, i) {
                 continue;
-            };
+            }
             let (stop, by) = match first_fall(guard, theta, order, i == NORMAL) {
                 Fall::Never => continue,
                 Fall::At(stop) => (stop, Some(i)),
@@ -97,24 +101,20 @@ impl<S: Stator> SeriesStepper<S> {
         }
         work.events += u64::from(event.is_some());
         let end = self.series.at::<W, M>(&system.spin, y, theta);
-        let flows = self
-            .series
-            .flows(system, (&y.rotor, &end.rotor), task.inputs, theta);
-        let (a, b) = (system.geometry(y).normal, system.geometry(&end).normal);
+        let ends = (&y.rotor, &end.rotor);
         let t_new = if whole {
             t_end_s
         } else {
             t_s + theta * reference
         };
-        let touch =
-            |t: f64, y: &StateOf<S, W, M>| system.contact(t, y, task.inputs, task.mode).touch;
         Ok(ContactStep {
             t_s: t_new,
             step_s: theta * reference,
-            flows,
-            ends: [touch(t_s, y), touch(t_new, &end)],
+            flows: self.series.flows(system, ends, task, theta),
+            peaks: self.series.peaks(system.contact.clearance_m, theta),
+            end_normal: self.series.normal(theta),
+            turn: self.series.turn(theta),
             y: end,
-            turn: a.perp(&b).atan2(a.dot(&b)),
             event,
         })
     }

@@ -1,0 +1,247 @@
+//! Flight over one control sample as a map. Without unbalance flight is linear and its axes do not
+//! couple, so where the rotor flies from sample to sample the end state is a constant matrix times
+//! state and inputs, and each work a constant quadratic form. The columns come from the series, flown
+//! from unit states; near the wall the series itself decides.
+
+use super::flight::Segment;
+use crate::V2;
+use crate::energy::Flows;
+use crate::magnet::Amplifier;
+use crate::part::{Body, Part};
+use crate::quadrature::{EIGHT, Nodes};
+use crate::spin::Spin;
+use crate::stator::Stator;
+use crate::system::{Inputs, State, StateOf, System};
+
+/// Most plane vectors that flight depends on: rotor 2, rings 4, delivered force 1, inputs 2.
+const SLOTS: usize = 9;
+
+/// A step length must come so often in a row before a map is made for it.
+const OFTEN: u32 = 16;
+
+/// Entry (i, k) belongs to slots i and k, its components to the two axes.
+type Matrix = [[V2; SLOTS]; SLOTS];
+
+/// Flight over one step length.
+#[derive(Debug, Clone)]
+struct FlightMap {
+    step_s: f64,
+    /// Slots that are state; the two inputs follow.
+    states: usize,
+    /// End state by start.
+    end: Matrix,
+    /// Largest part of each slot in the rotor's way from its ring, over the whole step.
+    reach: [V2; SLOTS],
+    /// Works as quadratic forms, on and above the diagonal.
+    control: Matrix,
+    rotor_damping: Matrix,
+    stator_damping: Matrix,
+}
+
+/// The map of the step length that recurs, once one does.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct FlightMaps {
+    map: Option<Box<FlightMap>>,
+    candidate_s: f64,
+    times: u32,
+}
+
+/// Lengths that differ by the rounding of the clock only.
+fn same(a_s: f64, b_s: f64) -> bool {
+    (a_s - b_s).abs() <= 1e-9 * a_s
+}
+
+impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
+    /// Flies the whole of `dt_s` by the map, if there is one and the wall is out of reach.
+    pub(crate) fn fly_by_map(
+        &self,
+        maps: &mut FlightMaps,
+        y: &StateOf<S, W, M>,
+        inputs: &Inputs,
+        dt_s: f64,
+    ) -> Option<(StateOf<S, W, M>, Flows)> {
+        if self.rotor.eccentricity_m != 0.0 {
+            return None;
+        }
+        if !maps.map.as_ref().is_some_and(|map| same(dt_s, map.step_s)) {
+            if same(dt_s, maps.candidate_s) {
+                maps.times += 1;
+            } else {
+                (maps.candidate_s, maps.times) = (dt_s, 0);
+            }
+            if maps.times < OFTEN {
+                return None;
+            }
+            maps.map = Some(Box::new(self.flight_map(dt_s)));
+        }
+        let map = maps.map.as_ref()?;
+        let start = gather::<S, W, M>(y, inputs);
+        let slots = map.states + 2;
+        let mut reach = 0.0;
+        for (reach_of, z) in map.reach[..slots].iter().zip(&start) {
+            reach += reach_of.dot(&z.abs());
+        }
+        if reach >= self.contact.clearance_m {
+            return None;
+        }
+        let mut end = [V2::zeros(); SLOTS];
+        for (end, row) in end[..map.states].iter_mut().zip(&map.end) {
+            for (a, z) in row[..slots].iter().zip(&start) {
+                *end += a.component_mul(z);
+            }
+        }
+        let end = scatter::<S, W, M>(&end, self.spin.coast(&y.spin, dt_s));
+        let work = |form: &Matrix| quadratic(form, &start[..slots]);
+        let path = end.rotor.position - y.rotor.position;
+        let flows = Flows {
+            control: match M::LAGS {
+                true => work(&map.control),
+                false => inputs.command_n.dot(&path),
+            },
+            external: inputs.external_n.dot(&path),
+            drive: self.drive_work(&y.spin, &end.spin),
+            rotor_damping: match self.rotor.damping_n_s_m != 0.0 {
+                true => work(&map.rotor_damping),
+                false => 0.0,
+            },
+            stator_damping: match self.stator.is_damped() {
+                true => work(&map.stator_damping),
+                false => 0.0,
+            },
+            ..Flows::default()
+        };
+        Some((end, flows))
+    }
+
+    fn flight_map(&self, dt_s: f64) -> FlightMap {
+        let states = (Body::STATES + S::State::STATES + M::State::STATES) / 2;
+        let mut map = FlightMap {
+            step_s: dt_s,
+            states,
+            end: [[V2::zeros(); SLOTS]; SLOTS],
+            reach: [V2::zeros(); SLOTS],
+            control: [[V2::zeros(); SLOTS]; SLOTS],
+            rotor_damping: [[V2::zeros(); SLOTS]; SLOTS],
+            stator_damping: [[V2::zeros(); SLOTS]; SLOTS],
+        };
+        // One unit start for each slot, flown piece by piece in step with the others.
+        let mut starts = [[V2::zeros(); SLOTS]; SLOTS];
+        for (i, start) in starts.iter_mut().enumerate() {
+            start[i] = V2::repeat(1.0);
+        }
+        let mut segment = Segment::<S>::new(self.flight_rate_rad_s());
+        let mut flown_s = 0.0;
+        while flown_s < dt_s {
+            let mut velocity = [[V2::zeros(); EIGHT.theta.len()]; SLOTS];
+            let mut force = velocity;
+            let mut dampers = [velocity; 2];
+            let mut step_s = 0.0;
+            for (i, start) in starts[..states + 2].iter_mut().enumerate() {
+                let y = scatter::<S, W, M>(start, W::State::default());
+                let inputs = Inputs {
+                    command_n: start[states],
+                    external_n: start[states + 1],
+                };
+                self.fly(&mut segment, (0.0, &y), &inputs, dt_s - flown_s);
+                step_s = segment.step_s;
+                let values = segment.values(&EIGHT);
+                (velocity[i], force[i]) = (values.velocity, values.force);
+                let [a, b] = S::damper_speeds(&segment.stator, &EIGHT, segment.order);
+                (dampers[0][i], dampers[1][i]) = (a, b);
+                map.reach[i] = map.reach[i].sup(&segment.reach());
+                let end = self.flown(&segment, &y, 1.0);
+                *start = gather::<S, W, M>(&end, &inputs);
+            }
+            let [inner, outer] = self.stator.damper_constants();
+            let damping = V2::repeat(self.rotor.damping_n_s_m);
+            let unit = V2::repeat(step_s);
+            let nodes = &EIGHT;
+            add_products(&mut map.control, unit, (&force, &velocity), nodes);
+            add_products(
+                &mut map.rotor_damping,
+                step_s * damping,
+                (&velocity, &velocity),
+                nodes,
+            );
+            for (constant, speed) in [inner, outer].iter().zip(&dampers) {
+                add_products(
+                    &mut map.stator_damping,
+                    step_s * constant,
+                    (speed, speed),
+                    nodes,
+                );
+            }
+            flown_s += step_s;
+        }
+        for (i, start) in starts[..states + 2].iter().enumerate() {
+            for (row, end) in map.end[..states].iter_mut().zip(start) {
+                row[i] = *end;
+            }
+        }
+        map
+    }
+}
+
+/// State and inputs as plane vectors.
+fn gather<S: Stator, W: Spin, M: Amplifier>(y: &StateOf<S, W, M>, inputs: &Inputs) -> [V2; SLOTS] {
+    let mut raw = [0.0; 2 * SLOTS];
+    let (rotor, rest) = raw.split_at_mut(Body::STATES);
+    y.rotor.write(rotor);
+    let (stator, rest) = rest.split_at_mut(S::State::STATES);
+    y.stator.write(stator);
+    let (force, rest) = rest.split_at_mut(M::State::STATES);
+    y.force.write(force);
+    rest[..2].copy_from_slice(inputs.command_n.as_slice());
+    rest[2..4].copy_from_slice(inputs.external_n.as_slice());
+    std::array::from_fn(|i| V2::new(raw[2 * i], raw[2 * i + 1]))
+}
+
+/// The state back from them.
+fn scatter<S: Stator, W: Spin, M: Amplifier>(
+    slots: &[V2; SLOTS],
+    spin: W::State,
+) -> StateOf<S, W, M> {
+    let mut raw = [0.0; 2 * SLOTS];
+    for (pair, slot) in raw.chunks_exact_mut(2).zip(slots) {
+        pair.copy_from_slice(slot.as_slice());
+    }
+    let (rotor, rest) = raw.split_at(Body::STATES);
+    let (stator, rest) = rest.split_at(S::State::STATES);
+    State {
+        rotor: Body::read(rotor),
+        stator: S::State::read(stator),
+        spin,
+        force: M::State::read(rest),
+    }
+}
+
+/// Adds factor·∫ a_i·b_k dθ to each entry, on and above the diagonal both halves together.
+fn add_products<const N: usize>(
+    form: &mut Matrix,
+    factor: V2,
+    (a, b): (&[[V2; N]; SLOTS], &[[V2; N]; SLOTS]),
+    nodes: &Nodes<N>,
+) {
+    for i in 0..SLOTS {
+        for k in 0..SLOTS {
+            let product = V2::new(
+                nodes.integral(|j| a[i][j].x * b[k][j].x),
+                nodes.integral(|j| a[i][j].y * b[k][j].y),
+            );
+            form[i.min(k)][i.max(k)] += factor.component_mul(&product);
+        }
+    }
+}
+
+/// Σ form_ik·z_i·z_k over both axes.
+fn quadratic(form: &Matrix, z: &[V2]) -> f64 {
+    let mut sum = V2::zeros();
+    for (i, (row, z_i)) in form.iter().zip(z).enumerate() {
+        let mut inner = V2::zeros();
+        for (q, z_k) in row[..z.len()].iter().zip(z).skip(i) {
+            inner += q.component_mul(z_k);
+        }
+        sum += inner.component_mul(z_i);
+    }
+    sum.x + sum.y
+}
