@@ -9,7 +9,6 @@ use plant_model::{Inputs, Method, Options, Plant, Snapshot, V2, build};
 pub(crate) const RTOL: f64 = 1e-10;
 
 pub(crate) const METHODS: [Method; 3] = [Method::Series, Method::Explicit, Method::Stiff];
-pub(crate) const PAIRS: [Method; 2] = [Method::Explicit, Method::Stiff];
 pub(crate) const MASS_KG: f64 = 10.0;
 pub(crate) const CLEARANCE_M: f64 = 2e-4;
 pub(crate) const RADIUS_M: f64 = 0.1;

@@ -39,7 +39,7 @@ fn a_grazing_orbit_touches_just_when_it_reaches_the_wall() {
             if delta <= 0.0 {
                 let apart = (half.position_m + from.position_m).norm();
                 assert!(apart <= 1e-5 * a, "δ = {delta:e}: {apart:e}");
-            } else if method != Method::Series {
+            } else {
                 // The radial speed vanishes: E − L²/2mρ² − kρ²/2 − k_c(ρ − c)²/2 = 0.
                 let energy = 0.5 * MASS_KG * v * v + 0.5 * k * a * a;
                 let left = |depth: f64| {
