@@ -10,6 +10,8 @@ pub(crate) mod flight_map;
 mod lu;
 mod pair;
 pub(crate) mod radau;
+mod radau_tableau;
+mod scales;
 mod series_readout;
 pub(crate) mod series_step;
 pub(crate) mod transitions;

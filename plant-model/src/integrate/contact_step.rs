@@ -1,6 +1,7 @@
 //! One step of contact: the high-order pair, its error control, and the guards of the mode.
 
 use super::pair::{Field, Origin, Pair, Rates};
+use super::scales::Scales;
 use crate::energy::Flows;
 use crate::integrate::PlantError;
 use crate::magnet::Amplifier;
@@ -78,63 +79,6 @@ pub(crate) struct ContactStep<Y> {
     pub(crate) turn: f64,
     /// Guard that ended the step.
     pub(crate) event: Option<usize>,
-}
-
-/// Scales of the motion, against which errors are weighed.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Scales {
-    rtol: f64,
-    fastest_m_s: f64,
-    /// Rate of the contact spring, and the largest of shaft and mountings \[1/s\].
-    contact_rate: f64,
-    slow_rate: f64,
-}
-
-impl Scales {
-    pub(crate) fn new<S: Stator, W: Spin, M: Amplifier>(
-        rtol: f64,
-        system: &System<S, W, M>,
-        y: &StateOf<S, W, M>,
-    ) -> Self {
-        let shaft = (system.rotor.stiffness_n_m.abs() / system.rotor.mass_kg).sqrt();
-        Self {
-            rtol,
-            fastest_m_s: y.rotor.velocity.norm(),
-            contact_rate: system.undamped_contact_rate_rad_s(),
-            slow_rate: shaft.max(system.stator.undamped_rate_rad_s()),
-        }
-    }
-
-    /// Scales of the motion, by energy: speed of the rotor, the penetration in which the contact spring
-    /// takes its energy up, and the displacement in which shaft and mountings do.
-    pub(crate) fn weights<S: Stator, W: Spin, M: Amplifier>(
-        &mut self,
-        system: &System<S, W, M>,
-        y: &StateOf<S, W, M>,
-    ) -> Weights {
-        let now = y.rotor.velocity.norm();
-        self.fastest_m_s = self.fastest_m_s.max(now);
-        let rate = self.contact_rate;
-        // A rotor that comes to rest is followed to a thousandth of its fastest motion; one that
-        // never moved, to a thousandth of its weightless creep over the clearance.
-        let floor = 1e-3
-            * self
-                .fastest_m_s
-                .max(1e-3 * system.contact.clearance_m * rate);
-        let speed = now.max(floor);
-        let clearance = system.contact.clearance_m;
-        let length = speed / self.slow_rate;
-        let spin = (speed / system.rotor.contact_radius_m)
-            .max(system.spin.spin_rad_s(&y.spin).abs() * 1e-2);
-        Weights {
-            position: 1.0 / (self.rtol * length.min(clearance)),
-            gap: 1.0 / (self.rtol * (speed / rate).min(clearance)),
-            velocity: 1.0 / (self.rtol * speed),
-            spin: 1.0 / (self.rtol * spin),
-            phase: 1.0 / self.rtol,
-            force: 1.0 / (self.rtol * system.rotor.mass_kg * speed * rate),
-        }
-    }
 }
 
 /// A pair with its step-size memory.

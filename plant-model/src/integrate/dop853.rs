@@ -235,7 +235,7 @@ pub(crate) mod tests {
     }
 
     /// Errors of end and dense output over one step.
-    pub(crate) fn errors<P: Pair<Body, Body>>(h: f64) -> (f64, f64) {
+    fn errors<P: Pair<Body, Body>>(h: f64) -> (f64, f64) {
         let y = Body {
             position: V2::new(1.0, 0.0),
             velocity: V2::new(0.0, 1.0),
@@ -267,18 +267,19 @@ pub(crate) mod tests {
         )
     }
 
+    /// Orders of end and dense output, from a step and its half; and the errors of the half.
+    pub(crate) fn orders<P: Pair<Body, Body>>(h: f64) -> ((f64, f64), (f64, f64)) {
+        let (coarse, fine) = (errors::<P>(h), errors::<P>(0.5 * h));
+        let orders = ((coarse.0 / fine.0).log2(), (coarse.1 / fine.1).log2());
+        (orders, fine)
+    }
+
     /// Local errors fall as h^9 (step) and h^8 (dense output): a wrong digit in the tableau breaks this.
     #[test]
     fn orders_are_eight_and_seven() {
-        let (step_coarse, dense_coarse) = errors::<Dop853<Body, Body>>(1.0);
-        let (step_fine, dense_fine) = errors::<Dop853<Body, Body>>(0.5);
-        let order = |a: f64, b: f64| (a / b).log2();
-        let (step, dense) = (
-            order(step_coarse, step_fine),
-            order(dense_coarse, dense_fine),
-        );
+        let ((step, dense), fine) = orders::<Dop853<Body, Body>>(1.0);
         assert!((8.5..9.7).contains(&step), "step order {step}");
         assert!((7.5..8.7).contains(&dense), "dense order {dense}");
-        assert!(step_coarse < 1e-7 && dense_coarse < 1e-6);
+        assert!(fine.0 < 1e-9 && fine.1 < 1e-8);
     }
 }

@@ -1,10 +1,13 @@
 //! Carries a plant from control sample to control sample, mode by mode.
 
-use super::contact_step::{ContactStepper, Scales, Task};
+mod flying;
+
+use super::contact_step::{ContactStepper, Task};
 use super::dop853::Dop853;
-use super::flight::{Crossing, Segment};
+use super::flight::Segment;
 use super::flight_map::FlightMaps;
 use super::radau::Radau;
+use super::scales::Scales;
 use super::series_step::SeriesStepper;
 use super::transitions::AtZero;
 use crate::energy::{Audit, Flows};
@@ -195,97 +198,6 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
         Ok(())
     }
 
-    fn fly_inside(&mut self, t_end_s: f64) {
-        let remaining = t_end_s - self.t_s;
-        let here = (self.t_s, &self.y);
-        (self.system).fly(&mut self.segment, here, &self.inputs, remaining);
-        let last = self.segment.step_s >= remaining;
-        let (theta, hit) = match self
-            .segment
-            .wall_crossing(self.system.contact.clearance_m, self.just_left)
-        {
-            Crossing::Nowhere => (1.0, false),
-            Crossing::At(theta) => (theta, true),
-            Crossing::ClearUntil(theta) => (theta.min(1.0), false),
-        };
-        self.just_left = false;
-        self.fly(theta, last.then_some(t_end_s));
-        if hit {
-            self.meters.impacts += 1;
-            let g = self.system.geometry(&self.y);
-            self.meters.peak_impact_speed_m_s =
-                self.meters.peak_impact_speed_m_s.max(g.normal_speed_m_s);
-            self.touch_down();
-        }
-    }
-
-    /// Takes the flight up to θ; a whole last segment ends exactly at `end_s`.
-    fn fly(&mut self, theta: f64, end_s: Option<f64>) {
-        let segment = &self.segment;
-        let end = self.system.flown(segment, &self.y, theta);
-        let flows = (self.system).flight_flows(segment, &self.y, &end, &self.inputs, theta);
-        self.flows.add_scaled(1.0, &flows);
-        self.y = end;
-        self.t_s = match end_s {
-            Some(end_s) if theta == 1.0 => end_s,
-            _ => self.t_s + theta * segment.step_s,
-        };
-    }
-
-    /// The wall is still dented but the force is gone. Short: the rotor leaves at impact speed.
-    fn fly_beyond(&mut self, t_end_s: f64) {
-        const SCANS: u32 = 16;
-        let remaining = t_end_s - self.t_s;
-        let g = self.system.geometry(&self.y);
-        let leave_s = g.penetration_m / g.normal_speed_m_s.abs();
-        let step = remaining.min((2.0 * leave_s).max(self.system.moment_s()));
-        let here = (self.t_s, &self.y);
-        (self.system).fly(&mut self.segment, here, &self.inputs, step);
-        let last = self.segment.step_s >= remaining;
-        // Positive while beyond: (penetration, lack of force).
-        let room = |theta: f64| {
-            let g = self
-                .system
-                .geometry(&self.system.flown(&self.segment, &self.y, theta));
-            (g.penetration_m, -self.normal_n(&g))
-        };
-        let mut theta = 1.0;
-        let mut next = Phase::Beyond;
-        let (mut valid, mut lack) = (0.0, room(0.0).1);
-        for i in 1..=SCANS {
-            let at = f64::from(i) / f64::from(SCANS);
-            let (inside, force) = room(at);
-            // A lift-off found a moment early leaves a force that is still falling.
-            if inside <= 0.0 || (force < 0.0 && force < lack) {
-                let leaves = inside <= 0.0;
-                let hold = |th: f64| {
-                    if leaves {
-                        room(th).0 > 0.0
-                    } else {
-                        room(th).1 >= 0.0
-                    }
-                };
-                theta = bisect(valid, at, hold);
-                next = if leaves {
-                    Phase::Inside
-                } else {
-                    Phase::Contact(Slide::Rolling, Whirl::Still)
-                };
-                break;
-            }
-            (valid, lack) = (at, force);
-        }
-        self.fly(theta, last.then_some(t_end_s));
-        if matches!(next, Phase::Contact(..)) {
-            // The dent whose energy was written off at lift-off is felt again.
-            let g = self.system.geometry(&self.y);
-            self.flows.contact_damping -= self.system.contact.stored_j(g.penetration_m);
-            self.touch_down();
-        } else {
-            self.phase = next;
-        }
-    }
-
     fn touch(&mut self, t_end_s: f64, pair: (Slide, Whirl)) -> Result<(), PlantError> {
         // A guard that ended this very mode at this very instant is not asked again for a moment.
         let muted = self.muted.take();
@@ -429,17 +341,4 @@ fn limited(v: crate::V2, length: f64) -> crate::V2 {
     } else {
         v
     }
-}
-
-/// Last θ in [low, high] for which `holds` is true, to round-off; `holds(low)` is taken for granted.
-fn bisect(mut low: f64, mut high: f64, holds: impl Fn(f64) -> bool) -> f64 {
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        if holds(middle) {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    high
 }

@@ -1,7 +1,8 @@
 //! One step of contact by power series: as far as the series can be trusted, or to the first event.
 
 use super::contact_series::ContactSeries;
-use super::contact_step::{ContactStep, Scales, Task};
+use super::contact_step::{ContactStep, Task};
+use super::scales::Scales;
 use crate::integrate::PlantError;
 use crate::magnet::Amplifier;
 use crate::readout::Work;
