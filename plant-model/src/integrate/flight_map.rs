@@ -41,7 +41,7 @@ struct FlightMap {
 /// The map of the step length that recurs, once one does.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct FlightMaps {
-    map: Option<Box<FlightMap>>,
+    map: Option<FlightMap>,
     candidate_s: f64,
     times: u32,
 }
@@ -72,7 +72,7 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
             if maps.times < OFTEN {
                 return None;
             }
-            maps.map = Some(Box::new(self.flight_map(dt_s)));
+            maps.map = Some(self.flight_map(dt_s));
         }
         let map = maps.map.as_ref()?;
         let start = gather::<S, W, M>(y, inputs);
