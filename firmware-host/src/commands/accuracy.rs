@@ -36,7 +36,7 @@ const BENCHMARKS: [(&str, &str); 5] = [
 ];
 /// Problems whose references take more evaluations are swept only when asked to: with fewer, the sweep
 /// takes some ten seconds at most.
-const SHORT: u64 = 700_000;
+const SHORT: u64 = 750_000;
 
 /// Arguments of `accuracy`.
 #[derive(Debug, Clone, clap::Args)]
