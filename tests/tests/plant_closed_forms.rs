@@ -3,14 +3,14 @@
 use nalgebra::Complex;
 use plant_model::contact::damping_for_restitution;
 use plant_model::params::*;
-use plant_model::{Inputs, Mode, Options, Plant, V2, build};
+use plant_model::{Inputs, Method, Mode, Options, Plant, V2, build};
 use system_tests::plants::{bouncing, bouncing_start, onset_rig};
 
 const TIGHT: Options = Options {
     rtol: 1e-12,
     steps_per_sample: 10_000_000,
     steps: 10_000_000,
-    method: plant_model::Method::Series,
+    method: Method::Series,
 };
 
 fn run_to(plant: &mut dyn Plant, t_s: f64) {
@@ -157,6 +157,40 @@ fn rolling_whirl_on_a_rigid_wall_keeps_its_circle() {
         "{}",
         now.sliding_force_n
     );
+}
+
+/// Fast rolling whirl turns several times within one step or sample: the contact angle counts them all.
+#[test]
+fn whole_turns_within_a_step_are_counted() {
+    let v = 5.0_f64;
+    for method in [Method::Series, Method::Explicit, Method::Stiff] {
+        for samples in [1_u32, 400] {
+            let mut params = bouncing(1e11);
+            params.rotor.eccentricity_m = 0.0;
+            params.rotor.damping_n_s_m = 0.0;
+            params.contact.damping_n_s_m = 6.0 * (1e11_f64 * 10.0).sqrt();
+            let (k, kc, m, c) = (4e5, 1e11, 10.0, 3e-4);
+            let half = kc * c / (2.0 * (k + kc));
+            let radius = half + (half * half + m * v * v / (k + kc)).sqrt();
+            let spin = v / params.rotor.contact_radius_m;
+            let from = start(V2::new(0.0, radius), V2::new(v, 0.0), spin);
+            let options = Options {
+                method,
+                rtol: 1e-7,
+                ..Options::default()
+            };
+            let mut plant = build(&params, &from, options).unwrap();
+            let t = 0.08;
+            for i in 1..=samples {
+                run_to(plant.as_mut(), t * f64::from(i) / f64::from(samples));
+            }
+            let angle = plant.snapshot().whirl_angle_rad;
+            assert!(
+                (angle / (-v / radius * t) - 1.0).abs() < 1e-5,
+                "{method:?}: {angle}"
+            );
+        }
+    }
 }
 
 /// An impact gives back e of the normal speed and takes μ(1 + e) of it along the wall, the more

@@ -1,7 +1,10 @@
 //! One step of contact: the high-order pair, its error control, and the guards of the mode.
 
+use std::f64::consts::TAU;
+
 use super::pair::{Field, Origin, Pair, Rates};
 use super::scales::Scales;
+use crate::V2;
 use crate::energy::Flows;
 use crate::integrate::PlantError;
 use crate::magnet::Amplifier;
@@ -208,7 +211,7 @@ impl<P> ContactStepper<P> {
         work.evaluations += field.evaluations + jacobians;
         work.jacobians += jacobians;
         work.factorisations += field.factorisations;
-        let (a, b) = (system.geometry(y).normal, system.geometry(&y_end).normal);
+        let (a, b) = (system.geometry(y), system.geometry(&y_end));
         self.end_s = if last { t_end_s } else { t_s + h };
         // An event and a speed held at zero move the state at the end.
         let held = task.mode.0 == Slide::Rolling || task.mode.1 == Whirl::Still;
@@ -220,7 +223,11 @@ impl<P> ContactStepper<P> {
             flows,
             peaks: Peaks::between(&[first.touch, last_touch], h),
             end_normal: (last_touch.normal_n, last_touch.normal_rate_n_s),
-            turn: a.perp(&b).atan2(a.dot(&b)),
+            turn: turn_rad(
+                (a.normal, a.whirl_speed_m_s / a.distance_m),
+                (b.normal, b.whirl_speed_m_s / b.distance_m),
+                h,
+            ),
             event,
         })
     }
@@ -321,6 +328,14 @@ impl<P> ContactStepper<P> {
         }
         None
     }
+}
+
+/// Angle by which a direction turns over a step \[rad\], from direction and rate \[rad/s\] at both ends:
+/// whole turns by the mean rate, since a step may take several.
+pub(crate) fn turn_rad((a, rate_a): (V2, f64), (b, rate_b): (V2, f64), step_s: f64) -> f64 {
+    let part = a.perp(&b).atan2(a.dot(&b));
+    let turns = (0.5 * (rate_a + rate_b) * step_s - part) / TAU;
+    part + TAU * turns.round()
 }
 
 /// Whether a guard is negative at the end, or comes near zero at any stage. The stages are rough

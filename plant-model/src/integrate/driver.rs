@@ -140,6 +140,7 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
                 self.flows.add_scaled(1.0, &flows);
                 (self.y, self.t_s) = (end, t_end_s);
                 self.just_left = false;
+                self.steps += 1;
                 return self.check_state();
             }
         }

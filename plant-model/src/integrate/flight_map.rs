@@ -63,12 +63,13 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
         if self.rotor.eccentricity_m != 0.0 {
             return None;
         }
-        if !maps.map.as_ref().is_some_and(|map| same(dt_s, map.step_s)) {
-            if same(dt_s, maps.candidate_s) {
-                maps.times += 1;
-            } else {
+        if maps.map.as_ref().is_some_and(|map| same(dt_s, map.step_s)) {
+            maps.times = 0;
+        } else {
+            if !same(dt_s, maps.candidate_s) {
                 (maps.candidate_s, maps.times) = (dt_s, 0);
             }
+            maps.times += 1;
             if maps.times < OFTEN {
                 return None;
             }
@@ -81,7 +82,7 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
         for (reach_of, z) in map.reach[..slots].iter().zip(&start) {
             reach += reach_of.dot(&z.abs());
         }
-        if reach >= self.contact.clearance_m {
+        if reach.is_nan() || reach >= self.contact.clearance_m {
             return None;
         }
         let mut end = [V2::zeros(); SLOTS];
@@ -90,7 +91,10 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
                 *end += a.component_mul(z);
             }
         }
-        let end = scatter::<S, W, M>(&end, self.spin.coast(&y.spin, dt_s));
+        let mut end = scatter::<S, W, M>(&end, self.spin.coast(&y.spin, dt_s));
+        // The map's length carries the rounding of the clock at which it was made, and would add it up.
+        let rates = self.flight_rates(&end, inputs);
+        end.add_scaled(dt_s - map.step_s, &rates);
         let work = |form: &Matrix| quadratic(form, &start[..slots]);
         let path = end.rotor.position - y.rotor.position;
         let flows = Flows {
@@ -111,6 +115,23 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
             ..Flows::default()
         };
         Some((end, flows))
+    }
+
+    /// Rates of everything but the spin, without unbalance.
+    fn flight_rates(&self, y: &StateOf<S, W, M>, inputs: &Inputs) -> StateOf<S, W, M> {
+        let magnet_n = self.amplifier.force_n(&y.force, inputs.command_n);
+        let force = magnet_n + inputs.external_n
+            - self.rotor.stiffness_n_m * y.rotor.position
+            - self.rotor.damping_n_s_m * y.rotor.velocity;
+        State {
+            rotor: Body {
+                position: y.rotor.velocity,
+                velocity: force / self.rotor.mass_kg,
+            },
+            stator: self.stator.rates(&y.stator, V2::zeros()),
+            spin: W::State::default(),
+            force: self.amplifier.rates(&y.force, inputs.command_n),
+        }
     }
 
     fn flight_map(&self, dt_s: f64) -> FlightMap {

@@ -337,12 +337,16 @@ mod tests {
     use crate::integrate::dop853::tests::orders;
     use crate::part::Body;
 
-    /// Local errors fall as h^10 (step) and h^6 (collocation polynomial).
+    /// Local errors fall as h^10 (step) and h^6 (collocation polynomial), the estimate as h^6; in axes
+    /// at rest and in axes that turn against the motion.
     #[test]
     fn orders_are_nine_and_five() {
-        let ((step, dense), fine) = orders::<Radau<Body, Body>>(2.0);
-        assert!((9.2..10.7).contains(&step), "step order {step}");
-        assert!((5.2..6.7).contains(&dense), "dense order {dense}");
-        assert!(fine.0 < 1e-8 && fine.1 < 1e-4);
+        for (h, turn_rad_s) in [(2.0, 0.0), (1.0, -0.7)] {
+            let ([step, dense, estimate], fine) = orders::<Radau<Body, Body>>(h, turn_rad_s);
+            assert!((9.2..10.7).contains(&step), "step order {step}");
+            assert!((5.2..6.7).contains(&dense), "dense order {dense}");
+            assert!((5.2..6.7).contains(&estimate), "estimate {estimate}");
+            assert!(fine[0] < 1e-8 && fine[1] < 1e-4, "{fine:?}");
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! What a contact series gives: state, guards, energy, largest values.
 
 use super::contact_series::ContactSeries;
-use super::contact_step::Task;
+use super::contact_step::{Task, turn_rad};
 use crate::energy::Flows;
 use crate::magnet::Amplifier;
 use crate::mode::{Slide, Whirl};
@@ -194,20 +194,40 @@ impl<S: Stator> ContactSeries<S> {
 
     /// Angle by which the contact normal turns from 0 to θ \[rad\].
     pub(crate) fn turn(&self, theta: f64) -> f64 {
-        let (a, b) = (self.gap.0[0], self.gap.at(theta, self.order));
-        a.perp(&b).atan2(a.dot(&b))
+        let order = self.order;
+        let end = self.whirl_speed.at(theta, order) / self.distance.at(theta, order);
+        let start = self.whirl_speed.0[0] / self.distance.0[0];
+        let normal = self.gap.at(theta, order);
+        turn_rad((self.gap.0[0], start), (normal, end), theta * self.step_s)
     }
 }
 
-/// Highest value over [0, θ], and where. What rises at the start and falls at the end has one top in
-/// between: a step is shorter than half a vibration.
+/// Highest value over [0, θ], and where. At loose tolerances a step may be a little longer than half a
+/// vibration, its halves are not.
 fn highest(series: &Scalar, theta: f64, order: usize) -> (f64, f64) {
-    let (end, end_slope) = series.with_slope(theta, order);
-    let start = series.0[0];
-    if series.0[1] > 0.0 && end_slope < 0.0 {
+    let [start, middle, end] = [0.0, 0.5 * theta, theta].map(|at| {
+        let (value, slope) = series.with_slope(at, order);
+        (at, value, slope)
+    });
+    let (a, b) = (
+        top_between(series, start, middle, order),
+        top_between(series, middle, end, order),
+    );
+    if a.1 > b.1 { a } else { b }
+}
+
+/// Highest value between two points (θ, value, slope), and where: what rises at the first and falls at
+/// the second has one top in between.
+fn top_between(
+    series: &Scalar,
+    (from, start, start_slope): (f64, f64, f64),
+    (to, end, end_slope): (f64, f64, f64),
+    order: usize,
+) -> (f64, f64) {
+    if start_slope > 0.0 && end_slope < 0.0 {
         // Regula falsi on the slope, with the Illinois rule. The value is flat at the top.
-        let (mut low, mut high) = ((0.0, series.0[1]), (theta, end_slope));
-        let mut top = (0.0, start.max(end));
+        let (mut low, mut high) = ((from, start_slope), (to, end_slope));
+        let mut top = (from, start.max(end));
         let mut rose = None;
         for _ in 0..6 {
             let at = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
@@ -228,8 +248,8 @@ fn highest(series: &Scalar, theta: f64, order: usize) -> (f64, f64) {
         }
         top
     } else if start > end {
-        (0.0, start)
+        (from, start)
     } else {
-        (theta, end)
+        (to, end)
     }
 }
