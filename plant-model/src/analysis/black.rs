@@ -240,6 +240,30 @@ impl SteadyWhirl {
         (circle, omega_rad_s * distance_m / contact_radius_m)
     }
 
+    /// Every steady rolling whirl at a spin Ω \[rad/s\] from `low_hz` to `high_hz`, sought in steps of 0.1 Hz.
+    pub fn rolling(
+        &self,
+        spin_rad_s: f64,
+        contact_radius_m: f64,
+        (low_hz, high_hz): (f64, f64),
+    ) -> Vec<Circle> {
+        const STEP_HZ: f64 = 0.1;
+        let steps = ((high_hz - low_hz) / STEP_HZ).ceil().max(0.0) as u32;
+        let at = |i: u32| std::f64::consts::TAU * (low_hz + STEP_HZ * f64::from(i));
+        // Clearance over distance instead of the distance: no pole, and positive where there is a circle.
+        let excess = |w: f64| {
+            let force = -self.receptance_m_n(w).inv();
+            let share = 1.0 - force.re * self.normal_compliance_m_n;
+            share - w * self.clearance_m / (spin_rad_s * contact_radius_m)
+        };
+        (0..steps)
+            .filter(|i| excess(at(*i)) * excess(at(i + 1)) < 0.0)
+            .map(|i| bisect(at(i), at(i + 1), excess))
+            .map(|w| self.rolling_at(w, contact_radius_m).0)
+            .filter(Circle::exists)
+            .collect()
+    }
+
     /// Smallest driving friction with which any steady sliding whirl from `low_hz` to `high_hz` exists, and
     /// its frequency \[Hz\]; sought in steps of 0.01 Hz. Below it friction never makes up for damping.
     pub fn least_friction(&self, low_hz: f64, high_hz: f64) -> Option<(f64, f64)> {
