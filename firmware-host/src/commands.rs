@@ -2,5 +2,6 @@
 
 pub mod accuracy;
 pub mod error;
+pub mod paper;
 mod progress;
 pub mod run;

@@ -2,7 +2,7 @@
 //!
 //! Files, each importing only from those above it: `trace`, `verdict`, `scene_error`, `scene_file`,
 //! `plant_setup`, `supervisor_setup`, `instruments`, `levitation`, `policy_kind`, `scene`,
-//! `policies`, `judge`, `closed_loop`, `verify`, `accuracy`, `wrong_runs`, `trace_file`, `plot`, `report`, `table`, `output`,
+//! `policies`, `judge`, `closed_loop`, `verify`, `accuracy`, `wrong_runs`, `trace_file`, `plot`, `report`, `paper`, `table`, `output`,
 //! `commands`.
 
 #![forbid(unsafe_code)]
@@ -15,6 +15,7 @@ pub mod instruments;
 mod judge;
 pub mod levitation;
 pub mod output;
+pub mod paper;
 mod plant_setup;
 mod plot;
 pub mod policies;

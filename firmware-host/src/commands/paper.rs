@@ -1,0 +1,80 @@
+//! `paper`: every number and figure of the paper, computed.
+
+use crate::commands::error::{CommandError, print};
+use crate::commands::progress::{LateProgress, pool};
+use crate::output::{self, OutputError, Staging};
+use crate::paper::{CHAPTERS, Chapter, Depth, html};
+use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
+use std::path::PathBuf;
+
+/// Arguments of `paper`.
+#[derive(Debug, Clone, clap::Args)]
+pub struct PaperArgs {
+    /// Folder for paper.html and paper.json.
+    #[arg(long, default_value = "runs/paper")]
+    pub out: PathBuf,
+    /// Print the rows as JSON instead of a summary.
+    #[arg(long)]
+    pub json: bool,
+    /// Coarser curves and maps.
+    #[arg(long)]
+    pub quick: bool,
+    /// Threads to use [default: all cores]. Results do not depend on it.
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+}
+
+/// Computes every chapter and writes the page.
+///
+/// # Errors
+/// [`CommandError`]; nothing is left behind then.
+pub fn execute(args: &PaperArgs) -> Result<(), CommandError> {
+    output::probe(&args.out)?;
+    let depth = if args.quick {
+        Depth::Quick
+    } else {
+        Depth::Full
+    };
+    let progress = LateProgress::new(CHAPTERS.len() as u64, "chapters");
+    let chapters = pool(args.threads)?.install(|| {
+        (CHAPTERS.par_iter())
+            .map(|(name, compute)| {
+                let chapter = compute(depth).map_err(|e| CommandError::other(name, e));
+                progress.add(1);
+                chapter
+            })
+            .collect::<Result<Vec<Chapter>, CommandError>>()
+    })?;
+    progress.finish();
+    let pretty = serde_json::to_string_pretty(&chapters)
+        .map_err(|e| CommandError::other("formatting paper.json", e))?;
+    let page = html(&chapters).map_err(|e| CommandError::other("drawing paper.html", e))?;
+    let staging = Staging::beside(&args.out)?;
+    for (name, text) in [("paper.json", &pretty), ("paper.html", &page)] {
+        let path = staging.path(name);
+        std::fs::write(&path, text).map_err(|reason| OutputError { path, reason })?;
+    }
+    let out = staging.publish()?;
+    if args.json {
+        return print(&format!("{pretty}\n"));
+    }
+    let mut text = String::new();
+    for chapter in &chapters {
+        text += &format!("{}\n", chapter.title);
+        for row in &chapter.rows {
+            let optional = |v: Option<f64>| v.map_or("–".to_owned(), |v| format!("{v:.4}"));
+            text += &format!(
+                "  {}: paper {} {unit}, computed {} {unit} ({:?})\n",
+                row.quantity,
+                optional(row.paper),
+                optional(row.computed),
+                row.kind,
+                unit = row.unit
+            );
+        }
+    }
+    print(&format!(
+        "{text}\npage: {}\n",
+        out.join("paper.html").display()
+    ))
+}

@@ -1,0 +1,155 @@
+//! The paper reproduced: every number and figure of "dry friction backward whirl" that the model can
+//! speak to, each as a row of paper, computed value and deviation, with its source and whether it was
+//! fitted, predicted or assumed. Rows that miss stay in, with the reason.
+//!
+//! One file a chapter; a chapter computes, and says nothing about how it is shown.
+
+mod levels;
+mod limits;
+mod mounting;
+mod page;
+mod whirl_runs;
+
+pub use self::page::html;
+pub use crate::plot::chart::{Axis, Chart, Curve, HeatMap, Mark};
+use plant_model::{BuildError, PlantError};
+use serde::Serialize;
+
+/// How a computed value came about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Kind {
+    /// A constant of the model was chosen so that this row fits.
+    Fitted,
+    /// Nothing was chosen for this row.
+    Predicted,
+    /// Hangs on a constant that the paper leaves out and that was not fitted to this row.
+    Assumed,
+}
+
+/// One number of the paper beside what the model gives.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Row {
+    /// What it is.
+    pub quantity: String,
+    /// Its unit; empty for a pure number.
+    pub unit: &'static str,
+    /// Where the paper has it: section, figure, footnote or equation.
+    pub source: &'static str,
+    /// The paper's value; `None` where it gives none.
+    pub paper: Option<f64>,
+    /// What the model gives; `None` where it gives none (the note says why).
+    pub computed: Option<f64>,
+    /// computed/paper − 1, where both are there.
+    pub deviation: Option<f64>,
+    /// How it came about.
+    pub kind: Kind,
+    /// What must be said beside it: an interval, a condition, the reason of a miss.
+    pub note: String,
+}
+
+impl Row {
+    /// A row with its deviation.
+    pub fn new(
+        (quantity, unit): (impl Into<String>, &'static str),
+        source: &'static str,
+        (paper, computed): (Option<f64>, Option<f64>),
+        kind: Kind,
+        note: impl Into<String>,
+    ) -> Self {
+        let deviation = paper
+            .zip(computed)
+            .filter(|(paper, _)| *paper != 0.0)
+            .map(|(paper, computed)| computed / paper - 1.0);
+        Self {
+            quantity: quantity.into(),
+            unit,
+            source,
+            paper,
+            computed,
+            deviation,
+            kind,
+            note: note.into(),
+        }
+    }
+}
+
+/// A table of computed numbers that the paper has no counterpart for.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Table {
+    /// What it shows.
+    pub caption: String,
+    /// Heading of each column, unit included.
+    pub columns: Vec<String>,
+    /// Cells as they are to be read.
+    pub rows: Vec<Vec<String>>,
+}
+
+/// A drawing.
+#[derive(Debug, Clone)]
+pub enum Drawing {
+    /// Curves over an axis.
+    Chart(Chart),
+    /// A value over a plane.
+    Map(HeatMap),
+}
+
+/// A drawing with what is to be seen in it.
+#[derive(Debug, Clone)]
+pub struct Figure {
+    /// Name of its file, without ending.
+    pub file: &'static str,
+    /// What is to be seen.
+    pub caption: String,
+    /// The drawing.
+    pub drawing: Drawing,
+}
+
+/// One chapter, computed.
+#[derive(Debug, Clone, Serialize)]
+pub struct Chapter {
+    /// Its heading.
+    pub title: &'static str,
+    /// What was computed, with which constants, and what comes of it: paragraphs.
+    pub story: Vec<String>,
+    /// Paper against model.
+    pub rows: Vec<Row>,
+    /// Model alone.
+    pub tables: Vec<Table>,
+    /// Drawings.
+    #[serde(skip)]
+    pub figures: Vec<Figure>,
+}
+
+/// How much is computed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Depth {
+    /// Coarser grids: the same rows to their printed digits, curves and maps with fewer points.
+    Quick,
+    /// Everything.
+    Full,
+}
+
+/// Why a chapter has no result.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum PaperError {
+    /// Parameters out of range.
+    #[error(transparent)]
+    Build(#[from] BuildError),
+    /// A run that cannot be trusted.
+    #[error(transparent)]
+    Plant(#[from] PlantError),
+    /// Something that the chapter looks for is not there.
+    #[error("{0}")]
+    Missing(String),
+}
+
+/// Computes a chapter.
+pub type Compute = fn(Depth) -> Result<Chapter, PaperError>;
+
+/// The chapters in order: a short name for progress and errors, and how each is computed.
+pub const CHAPTERS: &[(&str, Compute)] = &[
+    ("limits", limits::chapter),
+    ("levels", levels::chapter),
+    ("mounting", mounting::chapter),
+];

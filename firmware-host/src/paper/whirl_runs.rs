@@ -1,0 +1,132 @@
+//! Runs of established whirl: the stator levels of footnote 4, spin-down and held spin.
+
+use super::PaperError;
+use plant_model::analysis::whirl::WhirlMeter;
+use plant_model::params::*;
+use plant_model::{Inputs, Options, Plant, V2, build};
+use std::f64::consts::TAU;
+
+/// Between two readings \[s\].
+const SAMPLE_S: f64 = 20e-6;
+/// Whirl frequencies are means over this window \[s\].
+const WINDOW_S: f64 = 1e-3;
+/// Radial speed at the wall that starts the whirl \[m/s\].
+const IMPACT_M_S: f64 = 0.4;
+/// d_c \[N s/m\] at k_c = 1e9 N/m; elsewhere as √k_c, for the same damping ratio.
+const CONTACT_DAMPING_N_S_M: f64 = 1.6e4;
+
+/// A ring that is the same along x and y.
+pub(super) fn ring(mass_kg: f64, stiffness_n_m: f64, damping_n_s_m: f64) -> RingParams {
+    RingParams {
+        mass_kg,
+        stiffness_n_m: V2::repeat(stiffness_n_m),
+        damping_n_s_m: V2::repeat(damping_n_s_m),
+    }
+}
+
+/// Footnote 4 with free spin; k_c, d_c, J_r and R_r are ours.
+pub(super) fn footnote_4(contact_stiffness_n_m: f64) -> PlantParams {
+    PlantParams {
+        rotor: RotorParams {
+            mass_kg: 10.0,
+            stiffness_n_m: 9.1e5,
+            damping_n_s_m: 20.5,
+            eccentricity_m: 0.0,
+            contact_radius_m: 0.1,
+        },
+        spin: SpinParams::Free {
+            inertia_kg_m2: 0.05,
+            drive_torque_n_m: 0.0,
+        },
+        stator: StatorParams::TwoMass {
+            inner: ring(10.0, 8.9e8, 28_300.0),
+            outer: ring(10.0, 3.6e9, 18_970.0),
+        },
+        contact: ContactParams {
+            clearance_m: 2e-4,
+            stiffness_n_m: contact_stiffness_n_m,
+            damping_n_s_m: CONTACT_DAMPING_N_S_M * (contact_stiffness_n_m / 1e9).sqrt(),
+        },
+        friction: FrictionParams {
+            sliding: SlidingFriction::Constant { coefficient: 0.15 },
+            rolling_coefficient: 0.025,
+        },
+        magnet: None,
+    }
+}
+
+/// At the wall, moving outwards.
+pub(super) fn at_the_wall(params: &PlantParams, impact_m_s: f64, spin_hz: f64) -> Start {
+    Start {
+        position_m: V2::new(params.contact.clearance_m, 0.0),
+        velocity_m_s: V2::new(impact_m_s, 0.0),
+        spin_rad_s: spin_hz * TAU,
+        spin_phase_rad: 0.0,
+    }
+}
+
+fn carry(plant: &mut dyn Plant, t_s: f64) -> Result<(), PaperError> {
+    Ok(plant.advance(t_s, &Inputs::default(), &mut |_| {})?)
+}
+
+/// Fastest backward whirl \[Hz\] of a run from an impact at the wall.
+pub(super) fn fastest_hz(
+    params: &PlantParams,
+    spin_hz: f64,
+    duration_s: f64,
+) -> Result<f64, PaperError> {
+    let start = at_the_wall(params, IMPACT_M_S, spin_hz);
+    let mut plant = build(params, &start, Options::default())?;
+    let mut meter = WhirlMeter::new(WINDOW_S);
+    let samples = (duration_s / SAMPLE_S).round() as u32;
+    for i in 1..=samples {
+        carry(plant.as_mut(), f64::from(i) * SAMPLE_S)?;
+        let now = plant.snapshot();
+        meter.push(now.t_s, now.whirl_angle_rad, now.mode.in_contact(), 1.0);
+    }
+    let fastest = meter.fastest().ok_or_else(|| {
+        PaperError::Missing(format!("no whirl from {spin_hz} Hz within {duration_s} s"))
+    })?;
+    Ok(fastest.backward_hz)
+}
+
+/// Where whirl at held spin ends up.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Settled {
+    /// Whirl frequency \[Hz\], backward positive.
+    pub(super) whirl_hz: f64,
+    /// N \[N\].
+    pub(super) normal_force_n: f64,
+    /// Without sliding.
+    pub(super) rolls: bool,
+}
+
+/// Whirl at held spin, started as a circle at the wall near `from_hz`, stator at rest: what is left after
+/// `duration_s`, the frequency as a mean over the last tenth.
+pub(super) fn settled(
+    params: &PlantParams,
+    spin_hz: f64,
+    from_hz: f64,
+    duration_s: f64,
+) -> Result<Settled, PaperError> {
+    let held = PlantParams {
+        spin: SpinParams::Held,
+        ..*params
+    };
+    let radius = 1.01 * params.contact.clearance_m;
+    let start = Start {
+        position_m: V2::new(radius, 0.0),
+        velocity_m_s: V2::new(0.0, -radius * from_hz * TAU),
+        ..at_the_wall(params, 0.0, spin_hz)
+    };
+    let mut plant = build(&held, &start, Options::default())?;
+    carry(plant.as_mut(), 0.9 * duration_s)?;
+    let before = plant.snapshot().whirl_angle_rad;
+    carry(plant.as_mut(), duration_s)?;
+    let now = plant.snapshot();
+    Ok(Settled {
+        whirl_hz: (before - now.whirl_angle_rad) / TAU / (0.1 * duration_s),
+        normal_force_n: now.normal_force_n,
+        rolls: now.mode == plant_model::Mode::Roll,
+    })
+}
