@@ -1,4 +1,5 @@
 //! Figures read off a run, and closed forms to hold them against.
 
+pub mod impact;
 pub mod onset;
 pub mod whirl;
