@@ -4,7 +4,9 @@
 //!
 //! One file a chapter; a chapter computes, and says nothing about how it is shown.
 
+pub mod onset;
 mod page;
+pub mod rotors;
 
 pub use self::page::html;
 pub use crate::plot::chart::{Axis, Chart, Curve, HeatMap, Mark};
@@ -144,4 +146,4 @@ pub enum PaperError {
 pub type Compute = fn(Depth) -> Result<Chapter, PaperError>;
 
 /// The chapters in order: a short name for progress and errors, and how each is computed.
-pub const CHAPTERS: &[(&str, Compute)] = &[];
+pub const CHAPTERS: &[(&str, Compute)] =
