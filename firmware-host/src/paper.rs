@@ -4,6 +4,7 @@
 //!
 //! One file a chapter; a chapter computes, and says nothing about how it is shown.
 
+pub mod maps;
 pub mod onset;
 mod page;
 pub mod rotors;
@@ -147,3 +148,4 @@ pub type Compute = fn(Depth) -> Result<Chapter, PaperError>;
 
 /// The chapters in order: a short name for progress and errors, and how each is computed.
 pub const CHAPTERS: &[(&str, Compute)] =
+    &[("onset", onset::compute), ("stability maps", maps::compute)];
