@@ -6,8 +6,11 @@
 
 mod levels;
 mod limits;
+pub mod maps;
 mod mounting;
+pub mod onset;
 mod page;
+pub mod rotors;
 mod whirl_runs;
 
 pub use self::page::html;
@@ -149,6 +152,8 @@ pub type Compute = fn(Depth) -> Result<Chapter, PaperError>;
 
 /// The chapters in order: a short name for progress and errors, and how each is computed.
 pub const CHAPTERS: &[(&str, Compute)] = &[
+    ("onset", onset::chapter),
+    ("stability maps", maps::chapter),
     ("limits", limits::chapter),
     ("levels", levels::chapter),
     ("mounting", mounting::chapter),

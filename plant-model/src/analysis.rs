@@ -1,5 +1,6 @@
 //! Figures read off a run, and closed forms to hold them against.
 
 pub mod black;
+pub mod impact;
 pub mod onset;
 pub mod whirl;

@@ -1,0 +1,360 @@
+//! What becomes of a single impact that is left to itself: backward whirl, or free vibration; and the
+//! lowest speed that ends in whirl.
+//!
+//! *Whirl*: the backward tangential speed in contact reaches a multiple of v_t,crit of
+//! [`super::onset`]. Above v_t,crit itself friction gains on damping as long as contact lasts, but the
+//! rotor may still leave the wall; a multiple leaves no doubt, and which one hardly moves the result.
+//!
+//! *Free*: the rotor can never touch again. In flight the shaft turns it on a shrinking ellipse,
+//! r(t) = e^(−δt)·(**A**·cos ω_d·t + **B**·sin ω_d·t) with **A** = **r**, **B** = (**v** + δ·**r**)/ω_d,
+//! so r ≤ a with the larger semi-axis a² = (S + √(S² − 4P²))/2, S = A² + B², P = |**A** × **B**|. a < c
+//! settles it; no run has to wait for vibrations to decay. An unbalance at held spin adds the circle
+//! **p**, ε·Ω²·e^(iσ)/(ω0² − Ω² + 2iδΩ); the ellipse is then that of **r** − **p**, and a + p < c settles it.
+//!
+//! Without unbalance the whole is symmetric about the centre: from touch to touch only the normal and
+//! the tangential speed count, not where on the wall. With unbalance its phase comes in as well.
+
+use super::onset::critical_tangential_speed_m_s;
+use crate::contact::restitution_of;
+use crate::params::{PlantParams, SpinParams, Start};
+use crate::plant::build;
+use crate::{BuildError, Inputs, Options, PlantError, Snapshot, V2};
+use std::ops::ControlFlow;
+
+/// An impact: the rotor at the wall, concentric stator at rest.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Impact {
+    /// Speed, all of it \[m/s\].
+    pub speed_m_s: f64,
+    /// From the outward normal into the direction of backward whirl \[rad\]; 0 is a radial impact.
+    pub inclination_rad: f64,
+    /// Spin Ω \[rad/s\].
+    pub spin_rad_s: f64,
+    /// Angle of the unbalance at the touch, from the outward normal \[rad\].
+    pub spin_phase_rad: f64,
+}
+
+/// When a run is over.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Criterion {
+    /// Whirl is a backward tangential speed in contact of so many times v_t,crit.
+    pub whirl_multiple: f64,
+    /// Time after which a run is given up as [`Outcome::Undecided`] \[s\].
+    pub limit_s: f64,
+    /// Accuracy.
+    pub options: Options,
+}
+
+impl Default for Criterion {
+    /// Twice v_t,crit, 3 s, the tolerance of [`Options`].
+    fn default() -> Self {
+        Self {
+            whirl_multiple: 2.0,
+            limit_s: 3.0,
+            options: Options::default(),
+        }
+    }
+}
+
+/// What an impact ended in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Outcome {
+    /// Backward whirl.
+    Whirl,
+    /// Free vibration that never touches again.
+    Free,
+    /// Neither within the time allowed.
+    Undecided,
+}
+
+/// An impact and what followed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Aftermath {
+    /// What it ended in.
+    pub outcome: Outcome,
+    /// Touches in all, the first included.
+    pub impacts: u32,
+    /// Touches until the backward speed first passed v_t,crit, that one included; `None` if it never did.
+    pub impacts_to_threshold: Option<u32>,
+    /// When it was decided \[s\].
+    pub t_s: f64,
+}
+
+/// Why nothing can be said of an impact.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum ImpactError {
+    /// No tangential speed is critical: friction drives nothing, or the stiffness is negative.
+    #[error("the rotor has no critical tangential speed")]
+    NoThreshold,
+    /// A run that cannot be trusted.
+    #[error(transparent)]
+    Plant(#[from] PlantError),
+    /// Parameters out of range.
+    #[error("{field} = {value} is out of range")]
+    Param {
+        /// Dotted path of the field.
+        field: &'static str,
+        /// Its value.
+        value: f64,
+    },
+}
+
+impl From<BuildError> for ImpactError {
+    fn from(BuildError::Param(e): BuildError) -> Self {
+        Self::Param {
+            field: e.field,
+            value: e.value,
+        }
+    }
+}
+
+/// How far a run goes between two looks at it \[s\]: a share of a contact or of a turn of the shaft.
+const LOOK_S: f64 = 2e-3;
+
+/// Runs an impact until it is decided.
+///
+/// # Errors
+/// [`ImpactError`].
+pub fn aftermath(
+    params: &PlantParams,
+    impact: &Impact,
+    criterion: &Criterion,
+) -> Result<Aftermath, ImpactError> {
+    let threshold = critical_tangential_speed_m_s(params).ok_or(ImpactError::NoThreshold)?;
+    let backward = if impact.spin_rad_s < 0.0 { 1.0 } else { -1.0 };
+    let (sin, cos) = impact.inclination_rad.sin_cos();
+    let start = Start {
+        position_m: V2::new(params.contact.clearance_m, 0.0),
+        velocity_m_s: impact.speed_m_s * V2::new(cos, backward * sin),
+        spin_rad_s: impact.spin_rad_s,
+        spin_phase_rad: impact.spin_phase_rad,
+    };
+    let mut plant = build(params, &start, criterion.options)?;
+    let (mut impacts, mut touching, mut to_threshold) = (0_u32, false, None);
+    let mut follow = |now: &Snapshot| {
+        impacts += u32::from(now.mode.in_contact() && !touching);
+        touching = now.mode.in_contact();
+        if to_threshold.is_none() && backward * now.contact_tangential_speed_m_s >= threshold {
+            to_threshold = Some(impacts);
+        }
+    };
+    let mut looks = 0_u32;
+    let outcome = loop {
+        looks += 1;
+        let t_s = f64::from(looks) * LOOK_S;
+        if t_s > criterion.limit_s {
+            break Outcome::Undecided;
+        }
+        plant.advance(t_s, &Inputs::default(), &mut follow)?;
+        let now = plant.snapshot();
+        if now.mode.in_contact() {
+            follow(&now);
+        }
+        if plant.meters().peak_backward_speed_m_s >= criterion.whirl_multiple * threshold {
+            break Outcome::Whirl;
+        }
+        if !now.mode.in_contact() && stays_free(params, &now, impact.spin_phase_rad) {
+            break Outcome::Free;
+        }
+    };
+    Ok(Aftermath {
+        outcome,
+        impacts,
+        impacts_to_threshold: to_threshold,
+        t_s: f64::from(looks) * LOOK_S,
+    })
+}
+
+/// Whether a rotor in flight can never reach the wall again (module text). `false` also where that
+/// cannot be told: without a shaft, with overdamped flight, with unbalance at a spin that is not held.
+fn stays_free(params: &PlantParams, now: &Snapshot, spin_phase_rad: f64) -> bool {
+    let rotor = &params.rotor;
+    let decay = 0.5 * rotor.damping_n_s_m / rotor.mass_kg;
+    let natural_square = rotor.stiffness_n_m / rotor.mass_kg;
+    let damped_square = natural_square - decay * decay;
+    let unbalanced = rotor.eccentricity_m > 0.0;
+    if damped_square <= 0.0 || unbalanced && params.spin != SpinParams::Held {
+        return false;
+    }
+    let (circle, circle_rate) = if unbalanced {
+        let spin = now.spin_rad_s;
+        let (re, im) = (natural_square - spin * spin, 2.0 * decay * spin);
+        let size = rotor.eccentricity_m * spin * spin / re.hypot(im);
+        let (sin, cos) = (spin_phase_rad + spin * now.t_s - im.atan2(re)).sin_cos();
+        (size * V2::new(cos, sin), size * spin * V2::new(-sin, cos))
+    } else {
+        (V2::zeros(), V2::zeros())
+    };
+    let a = now.position_m - circle;
+    let b = (now.velocity_m_s - circle_rate + decay * a) / damped_square.sqrt();
+    let sum = a.norm_squared() + b.norm_squared();
+    let product = a.perp(&b);
+    let root = (sum * sum - 4.0 * product * product).max(0.0).sqrt();
+    (0.5 * (sum + root)).sqrt() + circle.norm() < params.contact.clearance_m
+}
+
+/// How the lowest speed that ends in whirl is looked for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Search {
+    /// Step upwards, as a share of the speed. A window of whirl narrower than that may be missed.
+    pub step: f64,
+    /// Width of the last bracket, as a share of the speed.
+    pub tolerance: f64,
+}
+
+impl Default for Search {
+    fn default() -> Self {
+        Self {
+            step: 0.005,
+            tolerance: 1e-5,
+        }
+    }
+}
+
+/// Critical impact speed \[m/s\] at an inclination: the lowest speed that ends in whirl. Upwards until
+/// the first whirl, then bisection of that change: above it the outcome need not be monotone.
+///
+/// The search begins at half of what all bounces together need if nothing is lost between them,
+/// v_t,crit/(K·cos θ + sin θ) with K = μ·(1 + e)/(1 − e), and ends at twice what a single impact needs,
+/// K = μ·(1 + e); `None` if nothing whirled up to there.
+///
+/// # Errors
+/// [`ImpactError`].
+pub fn critical_speed_m_s(
+    params: &PlantParams,
+    (inclination_rad, spin_rad_s): (f64, f64),
+    search: &Search,
+    criterion: &Criterion,
+) -> Result<Option<f64>, ImpactError> {
+    let whirls = |speed_m_s: f64| {
+        let impact = Impact {
+            speed_m_s,
+            inclination_rad,
+            spin_rad_s,
+            spin_phase_rad: 0.0,
+        };
+        aftermath(params, &impact, criterion).map(|a| a.outcome == Outcome::Whirl)
+    };
+    let (from, to) = search_range(params, inclination_rad)?;
+    let mut low = from;
+    let climb = loop {
+        let high = low * (1.0 + search.step);
+        if high > to {
+            break ControlFlow::Continue(());
+        }
+        if whirls(high)? {
+            break ControlFlow::Break(high);
+        }
+        low = high;
+    };
+    let ControlFlow::Break(mut high) = climb else {
+        return Ok(None);
+    };
+    while high - low > search.tolerance * high {
+        let middle = 0.5 * (low + high);
+        if whirls(middle)? {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    Ok(Some(high))
+}
+
+/// From half the speed that suffices if nothing is lost between bounces to twice that which suffices
+/// in one impact.
+fn search_range(params: &PlantParams, inclination_rad: f64) -> Result<(f64, f64), ImpactError> {
+    let threshold = critical_tangential_speed_m_s(params).ok_or(ImpactError::NoThreshold)?;
+    let friction = &params.friction;
+    let mu = friction.sliding.coefficient(0.0) - friction.rolling_coefficient;
+    let contact = &params.contact;
+    let critical = 2.0 * (contact.stiffness_n_m * params.contact_mass_kg()).sqrt();
+    let e = restitution_of(contact.damping_n_s_m / critical).min(0.99);
+    let (sin, cos) = inclination_rad.sin_cos();
+    let once = mu * (1.0 + e);
+    let lowest = 0.5 * threshold / (once / (1.0 - e) * cos + sin.max(0.0));
+    let highest = 2.0 * threshold / (once * cos + sin).max(0.1 * once);
+    Ok((lowest, highest))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::damping_for_restitution;
+    use crate::params::*;
+
+    fn rig(restitution: f64) -> PlantParams {
+        let (mass_kg, natural, k_c) = (10.0, std::f64::consts::TAU * 45.0, 1e10);
+        PlantParams {
+            rotor: RotorParams {
+                mass_kg,
+                stiffness_n_m: mass_kg * natural * natural,
+                damping_n_s_m: 0.0,
+                eccentricity_m: 0.0,
+                contact_radius_m: 0.1,
+            },
+            spin: SpinParams::Held,
+            stator: StatorParams::Rigid,
+            contact: ContactParams {
+                clearance_m: 2e-4,
+                stiffness_n_m: k_c,
+                damping_n_s_m: damping_for_restitution(restitution, k_c, mass_kg).unwrap(),
+            },
+            friction: FrictionParams {
+                sliding: SlidingFriction::Constant { coefficient: 0.125 },
+                rolling_coefficient: 0.0,
+            },
+            magnet: None,
+        }
+    }
+
+    /// Hard contact, nothing lost between bounces: the sum over all bounces, v_t,crit/K.
+    #[test]
+    fn undamped_hard_impacts_sum_up() {
+        let params = rig(0.7);
+        let threshold = critical_tangential_speed_m_s(&params).unwrap();
+        let search = Search {
+            step: 0.02,
+            tolerance: 1e-4,
+        };
+        for spin in [250.0, -250.0] {
+            let v = critical_speed_m_s(&params, (0.0, spin), &search, &Criterion::default())
+                .unwrap()
+                .unwrap();
+            let sum = threshold / (0.125 * 1.7 / 0.3);
+            assert!((v / sum - 1.0).abs() < 0.03, "{v} against {sum}");
+        }
+    }
+
+    /// The bound on what flight can reach holds, and without damping is what it reaches; with unbalance
+    /// it holds.
+    #[test]
+    fn free_is_told_by_the_ellipse() {
+        for (eccentricity_m, damping_n_s_m, slack) in
+            [(0.0, 0.0, 1.001), (0.0, 100.0, 1.05), (5e-6, 20.0, 1.5)]
+        {
+            let mut params = rig(0.7);
+            params.rotor.damping_n_s_m = damping_n_s_m;
+            params.rotor.eccentricity_m = eccentricity_m;
+            let start = Start {
+                position_m: V2::new(1e-4, 0.0),
+                velocity_m_s: V2::new(0.03, 0.03),
+                spin_rad_s: 200.0,
+                spin_phase_rad: 0.4,
+            };
+            let mut plant = build(&params, &start, Options::default()).unwrap();
+            let begin = plant.snapshot();
+            let mut largest = 0.0_f64;
+            for i in 1..=20_000 {
+                let t = f64::from(i) * 1e-5;
+                plant.advance(t, &Inputs::default(), &mut |_| {}).unwrap();
+                largest = largest.max(plant.snapshot().position_m.norm());
+            }
+            assert_eq!(plant.meters().impacts, 0);
+            params.contact.clearance_m = 0.9999 * largest;
+            assert!(!stays_free(&params, &begin, 0.4), "ε = {eccentricity_m}");
+            params.contact.clearance_m = slack * largest;
+            assert!(stays_free(&params, &begin, 0.4), "ε = {eccentricity_m}");
+        }
+    }
+}
