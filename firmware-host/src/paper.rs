@@ -4,7 +4,9 @@
 //!
 //! One file a chapter; a chapter computes, and says nothing about how it is shown.
 
+pub mod established;
 mod page;
+pub mod phases;
 
 pub use self::page::html;
 pub use crate::plot::chart::{Axis, Chart, Curve, HeatMap, Mark};
@@ -144,4 +146,7 @@ pub enum PaperError {
 pub type Compute = fn(Depth) -> Result<Chapter, PaperError>;
 
 /// The chapters in order: a short name for progress and errors, and how each is computed.
-pub const CHAPTERS: &[(&str, Compute)] = &[];
+pub const CHAPTERS: &[(&str, Compute)] = &[
+    ("established whirl", established::chapter),
+    ("the nine phases", phases::chapter),
+];
