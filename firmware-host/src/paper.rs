@@ -4,12 +4,14 @@
 //!
 //! One file a chapter; a chapter computes, and says nothing about how it is shown.
 
+pub mod established;
 mod levels;
 mod limits;
 pub mod maps;
 mod mounting;
 pub mod onset;
 mod page;
+pub mod phases;
 pub mod rotors;
 mod whirl_runs;
 
@@ -154,6 +156,8 @@ pub type Compute = fn(Depth) -> Result<Chapter, PaperError>;
 pub const CHAPTERS: &[(&str, Compute)] = &[
     ("onset", onset::chapter),
     ("stability maps", maps::chapter),
+    ("established whirl", established::chapter),
+    ("the nine phases", phases::chapter),
     ("limits", limits::chapter),
     ("levels", levels::chapter),
     ("mounting", mounting::chapter),

@@ -1,6 +1,6 @@
 //! The stability maps: what makes a rotor robust, and where the outcome is not monotone.
 
-use firmware_host::paper::maps::compute;
+use firmware_host::paper::maps::chapter;
 use firmware_host::paper::rotors::OnsetRig;
 use firmware_host::paper::{Chapter, Depth, Drawing};
 use plant_model::Options;
@@ -21,7 +21,7 @@ fn computed(chapter: &Chapter, quantity: &str) -> f64 {
 
 #[test]
 fn robustness_goes_the_way_the_paper_says() {
-    let chapter = compute(Depth::Quick).unwrap();
+    let chapter = chapter(Depth::Quick).unwrap();
     for (file, rises) in [
         ("maps_friction", false),
         ("maps_damping", true),

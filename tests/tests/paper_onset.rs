@@ -54,7 +54,7 @@ fn closed_form_of_the_threshold_is_met() {
 /// printed digits.
 #[test]
 fn choices_do_not_matter() {
-    let chapter = compute(Depth::Quick).unwrap();
+    let chapter = chapter(Depth::Quick).unwrap();
     let variants = &chapter.tables[1];
     let same = variants.rows.iter().filter(|row| !row[0].contains("k_c"));
     assert!(same.clone().count() >= 6);

@@ -9,6 +9,7 @@ pub struct WhirlMeter {
     /// (time, angle) within the present contact, a little more than one window.
     samples: VecDeque<(f64, f64)>,
     fastest: Option<WhirlReading>,
+    latest: Option<WhirlReading>,
 }
 
 /// One reading of a [`WhirlMeter`].
@@ -27,12 +28,14 @@ impl WhirlMeter {
             window_s,
             samples: VecDeque::new(),
             fastest: None,
+            latest: None,
         }
     }
 
     /// Takes a sample in time order: the contact angle summed so far, whether the rotor touches, and
     /// the direction of the spin (its sign says what backward is; 0 keeps counter-clockwise spin).
     pub fn push(&mut self, t_s: f64, angle_rad: f64, in_contact: bool, spin_rad_s: f64) {
+        self.latest = None;
         if !in_contact {
             self.samples.clear();
             return;
@@ -49,12 +52,20 @@ impl WhirlMeter {
         }
         let backward = if spin_rad_s < 0.0 { 1.0 } else { -1.0 };
         let backward_hz = backward * (angle_rad - angle0) / (t_s - t0) / std::f64::consts::TAU;
+        let reading = WhirlReading {
+            t_s: 0.5 * (t0 + t_s),
+            backward_hz,
+        };
+        self.latest = Some(reading);
         if self.fastest.is_none_or(|f| backward_hz > f.backward_hz) {
-            self.fastest = Some(WhirlReading {
-                t_s: 0.5 * (t0 + t_s),
-                backward_hz,
-            });
+            self.fastest = Some(reading);
         }
+    }
+
+    /// Reading of the window that ends with the last sample; `None` where it does not fit into the
+    /// contact.
+    pub fn latest(&self) -> Option<WhirlReading> {
+        self.latest
     }
 
     /// Fastest backward whirl so far; `None` without a contact as long as the window.
