@@ -1,7 +1,7 @@
 //! The paper's onset: critical tangential speed, and critical impact speeds of its five configurations.
 
 use firmware_host::paper::onset::{
-    compute, configurations, critical_m_s, fit, rms_log_error, simulated_threshold_m_s,
+    chapter, configurations, critical_m_s, fit, rms_log_error, simulated_threshold_m_s,
 };
 use firmware_host::paper::rotors::OnsetRig;
 use firmware_host::paper::{Depth, Kind};
