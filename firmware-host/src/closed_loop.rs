@@ -66,6 +66,19 @@ pub enum Keep {
     Trace,
     /// Only the verdict.
     Verdict,
+    /// Only the verdict, and the run ends as soon as nothing can change whether the rotor has recovered.
+    Decision,
+    /// As [`Keep::Decision`], with every row until then.
+    TraceToDecision,
+}
+
+impl Keep {
+    fn rows(self) -> bool {
+        matches!(self, Self::Trace | Self::TraceToDecision)
+    }
+    fn to_decision(self) -> bool {
+        matches!(self, Self::Decision | Self::TraceToDecision)
+    }
 }
 
 /// Runs one policy to the end of the scene. `on_tick` is called now and then with the number of ticks
@@ -79,8 +92,23 @@ pub fn run(
     keep: Keep,
     on_tick: &mut dyn FnMut(u64),
 ) -> Result<(Verdict, Trace), RunError> {
+    let policy = Policy::new(kind, scene).ok_or(RunError::Incomplete {
+        policy: kind.name(),
+    })?;
+    run_policy(scene, (policy, kind.name()), keep, on_tick)
+}
+
+/// Runs a policy that has been set up, under a name.
+///
+/// # Errors
+/// As [`run`].
+pub fn run_policy(
+    scene: &Scene,
+    (acting, policy): (Policy, &'static str),
+    keep: Keep,
+    on_tick: &mut dyn FnMut(u64),
+) -> Result<(Verdict, Trace), RunError> {
     const REPORT_EVERY: u64 = 1024;
-    let policy = kind.name();
     let started = Instant::now();
     let options = Options {
         rtol: scene.rtol,
@@ -92,7 +120,7 @@ pub fn run(
         scene,
         plant,
         sensor: Sensor::new(scene.sensor, scene.seed),
-        policy: Policy::new(kind, scene).ok_or(RunError::Incomplete { policy })?,
+        policy: acting,
         register_n: V2::zeros(),
         judge: Judge::new(scene),
         keep,
@@ -106,6 +134,9 @@ pub fn run(
             .map_err(|reason| RunError::Plant { policy, reason })?;
         if (tick + 1) % REPORT_EVERY == 0 {
             on_tick(REPORT_EVERY);
+        }
+        if keep.to_decision() && bench.judge.decided(bench.plant.as_ref()) {
+            break;
         }
     }
     on_tick(ticks % REPORT_EVERY);
@@ -156,6 +187,8 @@ impl Bench<'_> {
         let now = self.plant.snapshot();
         let measured_m = self.sensor.read(now.position_m);
         let next_n = self.policy.tick(measured_m, now.spin_rad_s);
+        let truth_n = self.policy.of_truth(&now);
+        self.register_n = truth_n.unwrap_or(self.register_n);
         self.judge.sample(&now);
         self.record(&now, measured_m, false);
 
@@ -172,7 +205,7 @@ impl Bench<'_> {
 
     fn advance(&mut self, from_s: f64, to_s: f64, measured_m: V2) -> Result<(), PlantError> {
         let inputs = Inputs {
-            command_n: self.register_n,
+            command_n: self.register_n + self.scene.feed_forward_n,
             external_n: self.scene.external_n(from_s),
         };
         let mut changes: [Option<Snapshot>; 8] = [None; 8];
@@ -193,13 +226,13 @@ impl Bench<'_> {
     }
 
     fn record(&mut self, plant: &Snapshot, measured_m: V2, mode_change: bool) {
-        if self.keep == Keep::Verdict {
+        if !self.keep.rows() {
             return;
         }
         self.trace.rows.push(TraceRow {
             plant: *plant,
             measured_m,
-            commanded_n: self.register_n,
+            commanded_n: self.register_n + self.scene.feed_forward_n,
             supervisor_mode: self.policy.supervisor_mode(),
             mode_change,
         });

@@ -11,6 +11,8 @@ use std::time::Duration;
 const MIDDLE: f64 = 0.3;
 /// … once it has stayed there for so long \[s\].
 const STAY_S: f64 = 5e-3;
+/// A rotor that has stayed there for so long will not leave it by itself \[s\].
+const DECIDED_S: f64 = 30e-3;
 /// Window of the whirl frequency \[s\].
 const WHIRL_WINDOW_S: f64 = 1e-3;
 /// A free rotor that moves less than this share of the middle in that time stands still.
@@ -22,6 +24,7 @@ const REST_SPEED: f64 = 1e-3;
 #[derive(Debug, Clone)]
 pub(crate) struct Judge {
     middle_m: f64,
+    whirl_speed_m_s: f64,
     clock_starts_s: f64,
     whirl: WhirlMeter,
     /// Since when the rotor has been in the middle.
@@ -37,6 +40,7 @@ pub(crate) struct Judge {
 impl Judge {
     pub(crate) fn new(scene: &Scene) -> Self {
         Self {
+            whirl_speed_m_s: scene.whirl_speed_m_s,
             middle_m: MIDDLE * scene.plant.contact.clearance_m,
             clock_starts_s: (scene.disturbances.iter().map(Disturbance::end_s)).fold(0.0, f64::max),
             whirl: WhirlMeter::new(WHIRL_WINDOW_S),
@@ -77,6 +81,13 @@ impl Judge {
             self.last_contact_s = Some(now.t_s);
             self.back_since_s = None;
         }
+    }
+
+    /// Whether the run may end: whirl, or back for so long that nothing will change.
+    pub(crate) fn decided(&self, plant: &dyn Plant) -> bool {
+        let now_s = self.last.map_or(0.0, |s| s.t_s);
+        plant.meters().peak_backward_speed_m_s > self.whirl_speed_m_s
+            || (self.in_middle_since_s).is_some_and(|since| now_s - since >= DECIDED_S)
     }
 
     pub(crate) fn verdict(&self, scene: &Scene, plant: &dyn Plant, elapsed: Duration) -> Verdict {

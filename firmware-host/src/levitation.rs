@@ -5,7 +5,8 @@ use plant_model::V2;
 use supervisor::IntegratorHint;
 
 /// Gains.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct LevitationParams {
     /// K_p \[N/m\].
     pub proportional_n_m: f64,

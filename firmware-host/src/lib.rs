@@ -1,20 +1,22 @@
 //! Runs plant and supervisor in closed loop as firmware would, on scenes, and shows what happened.
 //!
 //! Files, each importing only from those above it: `trace`, `verdict`, `scene_error`, `scene_file`,
-//! `plant_setup`, `supervisor_setup`, `instruments`, `levitation`, `policy_kind`, `scene`,
-//! `policies`, `judge`, `closed_loop`, `verify`, `accuracy`, `wrong_runs`, `trace_file`, `plot`, `report`, `paper`, `table`, `output`,
+//! `plant_setup`, `supervisor_setup`, `instruments`, `levitation`, `clairvoyant`, `policy_kind`, `scene`,
+//! `policies`, `judge`, `closed_loop`, `verify`, `accuracy`, `wrong_runs`, `trace_file`, `plot`, `report`, `paper`, `overloads`, `table`, `output`,
 //! `commands`.
 
 #![forbid(unsafe_code)]
 #![warn(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 pub mod accuracy;
+pub mod clairvoyant;
 pub mod closed_loop;
 pub mod commands;
 pub mod instruments;
 mod judge;
 pub mod levitation;
 pub mod output;
+pub mod overloads;
 pub mod paper;
 mod plant_setup;
 mod plot;

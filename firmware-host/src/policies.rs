@@ -1,9 +1,10 @@
 //! What may drive the magnet: baselines, and the supervisor in front of the levitation controller.
 
+use crate::clairvoyant::Clairvoyant;
 use crate::levitation::Levitation;
 use crate::policy_kind::PolicyKind;
 use crate::scene::Scene;
-use plant_model::V2;
+use plant_model::{Snapshot, V2};
 use supervisor::{IntegratorHint, Mode, Sample, Status, Supervisor};
 
 /// A policy at work.
@@ -20,6 +21,8 @@ pub enum Policy {
     },
     /// The saturated levitation controller alone.
     Levitation(Levitation),
+    /// The reference that knows the true state.
+    Clairvoyant(Clairvoyant),
     /// The supervisor with that controller behind it.
     Supervisor {
         /// The product.
@@ -61,7 +64,7 @@ impl Policy {
     /// One tick: measured position and spin in, commanded force \[N\] out.
     pub fn tick(&mut self, measured_m: V2, spin_rad_s: f64) -> V2 {
         match self {
-            Self::Passive => V2::zeros(),
+            Self::Passive | Self::Clairvoyant(_) => V2::zeros(),
             Self::Radial { band_m, force_n } => {
                 let radius = measured_m.norm();
                 if radius > *band_m {
@@ -90,6 +93,14 @@ impl Policy {
                 let [x, y] = command.force_n;
                 V2::new(f64::from(x), f64::from(y))
             }
+        }
+    }
+
+    /// Force for the true state \[N\], in effect at once; `None` for a policy that has to measure.
+    pub fn of_truth(&self, now: &Snapshot) -> Option<V2> {
+        match self {
+            Self::Clairvoyant(clairvoyant) => Some(clairvoyant.force_n(now)),
+            _ => None,
         }
     }
 

@@ -44,6 +44,8 @@ pub struct Scene {
     pub start: Start,
     /// Weight of the rotor \[N\].
     pub weight_n: V2,
+    /// Force that the firmware adds to whatever a policy asks for: minus the weight, where it is fed forward \[N\].
+    pub feed_forward_n: V2,
     /// Forces that come and go.
     pub disturbances: Vec<Disturbance>,
     /// End of the run \[s\].
@@ -99,10 +101,23 @@ impl Scene {
         forces.fold(self.weight_n, |sum, d| sum + d.force_n)
     }
 
+    /// As [`Scene::parse`], with the file's values edited before they are checked.
+    pub(crate) fn parse_with(
+        name: &str,
+        text: &str,
+        edit: &dyn Fn(&mut SceneFile),
+    ) -> Result<Self, SceneError> {
+        let text = SceneText {
+            path: name.into(),
+            text: text.to_owned(),
+        };
+        let mut file = keys_of(&text)?;
+        edit(&mut file);
+        Self::from_file(&file, &text)
+    }
+
     fn from_text(text: &SceneText) -> Result<Self, SceneError> {
-        let file: SceneFile = toml::from_str(&text.text)
-            .map_err(|error| text.error_in_toml(error.span().unwrap_or(0..0), error.message()))?;
-        Self::from_file(&file, text)
+        Self::from_file(&keys_of(text)?, text)
     }
 
     fn from_file(file: &SceneFile, text: &SceneText) -> Result<Self, SceneError> {
@@ -174,6 +189,10 @@ impl Scene {
             title: file.title.clone(),
             story: file.story.trim().to_owned(),
             whirl_speed_m_s: whirl_speed_of(file, &plant, &check)?,
+            feed_forward_n: match &file.levitation {
+                Some(l) if l.feed_forward_weight => -plant.rotor.mass_kg * gravity,
+                _ => V2::zeros(),
+            },
             weight_n: plant.rotor.mass_kg * gravity,
             plant,
             start,
@@ -199,6 +218,12 @@ impl Scene {
             supervisor,
         })
     }
+}
+
+/// The keys of a file, not yet checked against each other.
+fn keys_of(text: &SceneText) -> Result<SceneFile, SceneError> {
+    toml::from_str(&text.text)
+        .map_err(|error| text.error_in_toml(error.span().unwrap_or(0..0), error.message()))
 }
 
 fn levitation_of(l: &LevitationFile, check: &Checks<'_>) -> Result<LevitationParams, SceneError> {

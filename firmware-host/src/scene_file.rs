@@ -193,6 +193,8 @@ pub(crate) struct LevitationFile {
     pub(crate) derivative_n_s_m: f64,
     #[serde(default)]
     pub(crate) derivative_filter_s: f64,
+    #[serde(default)]
+    pub(crate) feed_forward_weight: bool,
 }
 
 /// The whole-capacity-inwards baseline.

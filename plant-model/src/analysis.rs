@@ -1,5 +1,6 @@
 //! Figures read off a run, and closed forms to hold them against.
 
+pub mod arrest;
 pub mod black;
 pub mod course;
 pub mod impact;

@@ -29,6 +29,9 @@ pub(crate) struct Wanted {
 
 /// Slow is below this share of the square of the lift-off speed.
 const SLOW_SQUARED: f32 = 0.05;
+/// Share of the cap that pushes inwards between impacts: more shortens the chords and with them the time
+/// in which braking takes speed out.
+const FLIGHT_SHARE: f32 = 0.15;
 /// Largest share of the cap that ever pushes inwards.
 const NEARLY_ALL: f32 = 0.95;
 
@@ -73,7 +76,7 @@ fn before_impact(motion: &Motion, spin_sign: f32, coeffs: &Coeffs) -> Wanted {
     // What speed leaves of the capacity brings the rotor back: damping alone would let it lie. When
     // slow, a little more of it than a hold on the wall has, or the two would take turns.
     let slow = motion.velocity.length_squared() < SLOW_SQUARED * coeffs.slow_squared;
-    let share = if slow { NEARLY_ALL } else { coeffs.hold_share };
+    let share = if slow { NEARLY_ALL } else { FLIGHT_SHARE };
     let restoring = -motion.position * share;
     let rest = Wanted {
         braking: Vec2::ZERO,

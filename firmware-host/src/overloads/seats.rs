@@ -1,0 +1,132 @@
+//! Who drives the magnet: the baselines, the supervisor, and the reference that knows everything.
+
+use super::found::Found;
+use super::plants::PlantCase;
+use crate::clairvoyant::{Clairvoyant, ClairvoyantLaw};
+use crate::levitation::{Levitation, LevitationParams};
+use crate::policies::Policy;
+use crate::policy_kind::PolicyKind;
+use crate::scene::Scene;
+use plant_model::contact::restitution_of;
+use plant_model::params::PlantParams;
+
+/// A policy of the catalogue.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Seat {
+    /// No force.
+    Passive,
+    /// The whole capacity inwards outside a band.
+    Radial,
+    /// Pure damping.
+    Damping,
+    /// An ordinary levitation loop: K_p ten times the (negative) stiffness.
+    Stiff,
+    /// The levitation loop tuned for its own best impact result.
+    Tuned,
+    /// The supervisor in front of the tuned loop.
+    Supervisor,
+    /// The supervisor in front of the ordinary loop.
+    SupervisorOnStiff,
+    /// True state, no delay, the best weights found.
+    Clairvoyant,
+}
+
+impl Seat {
+    /// All of them, from nothing to everything.
+    pub const ALL: [Self; 8] = [
+        Self::Passive,
+        Self::Radial,
+        Self::Damping,
+        Self::Stiff,
+        Self::Tuned,
+        Self::Supervisor,
+        Self::SupervisorOnStiff,
+        Self::Clairvoyant,
+    ];
+
+    /// Name in tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Passive => "passive",
+            Self::Radial => "radial",
+            Self::Damping => "damping",
+            Self::Stiff => "stiff",
+            Self::Tuned => "tuned",
+            Self::Supervisor => "supervisor",
+            Self::SupervisorOnStiff => "supervisor on stiff",
+            Self::Clairvoyant => "clairvoyant",
+        }
+    }
+
+    /// Whether sensor noise, and with it the seed, matters.
+    pub fn measures(self) -> bool {
+        !matches!(self, Self::Passive | Self::Clairvoyant)
+    }
+}
+
+/// What a task asks of the reference: its weights were searched for each.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Task {
+    /// Impacts and everything else.
+    Impact,
+    /// Established whirl at take-over.
+    Whirl,
+}
+
+/// The policy set up for a scene on this plant; `None` where the scene lacks what it needs.
+pub fn seated(seat: Seat, task: Task, found: &Found, scene: &Scene) -> Option<Policy> {
+    let with_loop = |kind: PolicyKind, params: LevitationParams| {
+        let scene = Scene {
+            levitation: Some(params),
+            ..scene.clone()
+        };
+        Policy::new(kind, &scene)
+    };
+    match seat {
+        Seat::Passive => Policy::new(PolicyKind::Passive, scene),
+        Seat::Radial => Policy::new(PolicyKind::Radial, scene),
+        Seat::Damping => with_loop(PolicyKind::Levitation, pure_damping(&scene.plant, found)),
+        Seat::Stiff => with_loop(PolicyKind::Levitation, found.stiff),
+        Seat::Tuned => with_loop(PolicyKind::Levitation, found.tuned),
+        Seat::Supervisor => with_loop(PolicyKind::Supervisor, found.tuned),
+        Seat::SupervisorOnStiff => with_loop(PolicyKind::Supervisor, found.stiff),
+        Seat::Clairvoyant => Some(Policy::Clairvoyant(clairvoyant(
+            match task {
+                Task::Impact => found.impact_law,
+                Task::Whirl => found.whirl_law,
+            },
+            scene,
+        ))),
+    }
+}
+
+/// The reference with given weights.
+pub fn clairvoyant(law: ClairvoyantLaw, scene: &Scene) -> Clairvoyant {
+    let plant = &scene.plant;
+    let critical = 2.0 * (plant.contact.stiffness_n_m * plant.contact_mass_kg()).sqrt();
+    let restitution = restitution_of(plant.contact.damping_n_s_m / critical);
+    Clairvoyant::new(law, plant, restitution, scene.sample_rate_hz)
+}
+
+/// The tuned loop's derivative with the damping that spends the whole cap at lift-off speed, and no spring.
+fn pure_damping(plant: &PlantParams, found: &Found) -> LevitationParams {
+    let force_n = plant.magnet.map_or(0.0, |m| m.force_max_n);
+    let lift_off = (force_n * plant.contact.clearance_m / plant.rotor.mass_kg).sqrt();
+    LevitationParams {
+        proportional_n_m: 0.0,
+        integral_n_m_s: 0.0,
+        derivative_n_s_m: force_n / lift_off,
+        ..found.tuned
+    }
+}
+
+/// The levitation controller alone.
+pub fn levitation(params: LevitationParams, scene: &Scene) -> Policy {
+    let force_n = scene.plant.magnet.map_or(0.0, |m| m.force_max_n);
+    Policy::Levitation(Levitation::new(params, 1.0 / scene.sample_rate_hz, force_n))
+}
+
+/// The scene of a plant with the supervisor's configuration checked to be there.
+pub fn is_supervised(case: &PlantCase) -> bool {
+    case.scene.supervisor.is_some()
+}

@@ -1,0 +1,56 @@
+//! Established backward whirl that the bearing is switched on into.
+
+use crate::closed_loop::{Keep, RunError, run_policy};
+use crate::policies::Policy;
+use crate::scene::Scene;
+use plant_model::V2;
+use plant_model::analysis::arrest::circle_radius_m;
+
+/// Whirl counts as arrested when the backward speed about the centre has fallen to this share of the start's.
+pub const ARRESTED: f64 = 0.25;
+
+/// What came of a take-over.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TakeOver {
+    /// Back in the middle in the end.
+    pub recovered: bool,
+    /// When the backward speed fell to [`ARRESTED`] of the start's \[s\]; `None` if never.
+    pub arrested_s: Option<f64>,
+}
+
+/// The scene with the rotor on its steady sliding circle at a backward speed \[m/s\], penetration in balance.
+pub fn whirling(scene: &Scene, speed_m_s: f64) -> Scene {
+    let mut scene = scene.clone();
+    let backward = -scene.start.spin_rad_s.signum();
+    let radius_m = circle_radius_m(&scene.plant, speed_m_s);
+    scene.start.position_m = V2::new(radius_m, 0.0);
+    scene.start.velocity_m_s = V2::new(0.0, backward * speed_m_s);
+    scene
+}
+
+/// Runs it.
+///
+/// # Errors
+/// [`RunError`] of a run that cannot be trusted.
+pub fn take_over(
+    scene: &Scene,
+    speed_m_s: f64,
+    acting: (Policy, &'static str),
+) -> Result<TakeOver, RunError> {
+    let mut scene = whirling(scene, speed_m_s);
+    // Faster than at the start: nobody holds it any more.
+    scene.whirl_speed_m_s = 1.5 * speed_m_s;
+    let backward = -scene.start.spin_rad_s.signum();
+    let (verdict, trace) = run_policy(&scene, acting, Keep::TraceToDecision, &mut |_| {})?;
+    let clearance_m = scene.plant.contact.clearance_m;
+    let arrested_s = (trace.rows.iter())
+        .find(|row| {
+            let (x, v) = (row.plant.position_m, row.plant.velocity_m_s);
+            backward * x.perp(&v) / clearance_m < ARRESTED * speed_m_s
+        })
+        .map(|row| row.plant.t_s);
+    Ok(TakeOver {
+        recovered: verdict.recovered,
+        arrested_s,
+    })
+}
