@@ -13,9 +13,12 @@ pub mod onset;
 mod page;
 pub mod phases;
 pub mod rotors;
+mod rows;
+mod summary;
 mod whirl_runs;
 
 pub use self::page::html;
+pub use self::rows::{json, text};
 pub use crate::plot::chart::{Axis, Chart, Curve, HeatMap, Mark};
 use plant_model::{BuildError, PlantError};
 use serde::Serialize;
@@ -32,8 +35,21 @@ pub enum Kind {
     Assumed,
 }
 
+/// What the paper says of a number, where it gives no plain value.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Claim {
+    /// A value.
+    Value,
+    /// "No more than", "under".
+    AtMost(f64),
+    /// "More than", "still too high".
+    AtLeast(f64),
+    /// "One to five".
+    Between(f64, f64),
+}
+
 /// One number of the paper beside what the model gives.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Row {
     /// What it is.
     pub quantity: String,
@@ -51,10 +67,15 @@ pub struct Row {
     pub kind: Kind,
     /// What must be said beside it: an interval, a condition, the reason of a miss.
     pub note: String,
+    /// In which sense the paper gives it.
+    pub claim: Claim,
 }
 
+/// A row farther than this from a value of the paper misses it: the paper's own numbers are "about".
+pub const MISS: f64 = 0.1;
+
 impl Row {
-    /// A row with its deviation.
+    /// A row with its deviation. A value that is no number counts as none.
     pub fn new(
         (quantity, unit): (impl Into<String>, &'static str),
         source: &'static str,
@@ -62,6 +83,7 @@ impl Row {
         kind: Kind,
         note: impl Into<String>,
     ) -> Self {
+        let computed = computed.filter(|value| value.is_finite());
         let deviation = paper
             .zip(computed)
             .filter(|(paper, _)| *paper != 0.0)
@@ -75,12 +97,30 @@ impl Row {
             deviation,
             kind,
             note: note.into(),
+            claim: Claim::Value,
+        }
+    }
+
+    /// The same row, where the paper gives a bound or a range.
+    #[must_use]
+    pub fn claiming(self, claim: Claim) -> Self {
+        Self { claim, ..self }
+    }
+
+    /// Whether the paper is met: its bound or range, or its value to [`MISS`]. `None` where there is
+    /// nothing to compare.
+    pub fn holds(&self) -> Option<bool> {
+        match self.claim {
+            Claim::Value => self.deviation.map(|d| d.abs() <= MISS),
+            Claim::AtMost(high) => self.computed.map(|v| v <= high),
+            Claim::AtLeast(low) => self.computed.map(|v| v >= low),
+            Claim::Between(low, high) => self.computed.map(|v| (low..=high).contains(&v)),
         }
     }
 }
 
 /// A table of computed numbers that the paper has no counterpart for.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Table {
     /// What it shows.
     pub caption: String,
@@ -102,7 +142,7 @@ pub enum Drawing {
 /// A drawing with what is to be seen in it.
 #[derive(Debug, Clone)]
 pub struct Figure {
-    /// Name of its file, without ending.
+    /// Short name, by which the page links to it; no two are alike.
     pub file: &'static str,
     /// What is to be seen.
     pub caption: String,
@@ -111,7 +151,7 @@ pub struct Figure {
 }
 
 /// One chapter, computed.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone)]
 pub struct Chapter {
     /// Its heading.
     pub title: &'static str,
@@ -122,14 +162,14 @@ pub struct Chapter {
     /// Model alone.
     pub tables: Vec<Table>,
     /// Drawings.
-    #[serde(skip)]
     pub figures: Vec<Figure>,
 }
 
 /// How much is computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Depth {
-    /// Coarser grids: the same rows to their printed digits, curves and maps with fewer points.
+    /// Coarser grids: curves and maps with fewer points, the same rows to their printed digits but for
+    /// counts over a grid.
     Quick,
     /// Everything.
     Full,

@@ -3,7 +3,7 @@
 use crate::commands::error::{CommandError, print};
 use crate::commands::progress::{LateProgress, pool};
 use crate::output::{self, OutputError, Staging};
-use crate::paper::{CHAPTERS, Chapter, Depth, html};
+use crate::paper::{CHAPTERS, Chapter, Depth, html, json, text};
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 use std::path::PathBuf;
 
@@ -13,7 +13,7 @@ pub struct PaperArgs {
     /// Folder for paper.html and paper.json.
     #[arg(long, default_value = "runs/paper")]
     pub out: PathBuf,
-    /// Print the rows as JSON instead of a summary.
+    /// Print the rows as JSON instead of tables.
     #[arg(long)]
     pub json: bool,
     /// Coarser curves and maps.
@@ -46,35 +46,19 @@ pub fn execute(args: &PaperArgs) -> Result<(), CommandError> {
             .collect::<Result<Vec<Chapter>, CommandError>>()
     })?;
     progress.finish();
-    let pretty = serde_json::to_string_pretty(&chapters)
+    let rows = serde_json::to_string_pretty(&json(&chapters))
         .map_err(|e| CommandError::other("formatting paper.json", e))?;
+    let rows = format!("{rows}\n");
     let page = html(&chapters).map_err(|e| CommandError::other("drawing paper.html", e))?;
     let staging = Staging::beside(&args.out)?;
-    for (name, text) in [("paper.json", &pretty), ("paper.html", &page)] {
+    for (name, content) in [("paper.json", &rows), ("paper.html", &page)] {
         let path = staging.path(name);
-        std::fs::write(&path, text).map_err(|reason| OutputError { path, reason })?;
+        std::fs::write(&path, content).map_err(|reason| OutputError { path, reason })?;
     }
     let out = staging.publish()?;
     if args.json {
-        return print(&format!("{pretty}\n"));
+        return print(&rows);
     }
-    let mut text = String::new();
-    for chapter in &chapters {
-        text += &format!("{}\n", chapter.title);
-        for row in &chapter.rows {
-            let optional = |v: Option<f64>| v.map_or("–".to_owned(), |v| format!("{v:.4}"));
-            text += &format!(
-                "  {}: paper {} {unit}, computed {} {unit} ({:?})\n",
-                row.quantity,
-                optional(row.paper),
-                optional(row.computed),
-                row.kind,
-                unit = row.unit
-            );
-        }
-    }
-    print(&format!(
-        "{text}\npage: {}\n",
-        out.join("paper.html").display()
-    ))
+    let page = out.join("paper.html");
+    print(&format!("{}\npage: {}\n", text(&chapters), page.display()))
 }

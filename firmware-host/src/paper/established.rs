@@ -4,11 +4,13 @@ mod falling;
 pub(super) mod figures;
 mod pareto;
 pub(super) mod rig;
+mod tables;
 
 use self::falling::Law;
 use self::pareto::Search;
 pub use self::rig::Violence;
-use super::{Chapter, Depth, Figure, Kind, PaperError, Row, Table};
+use super::{Chapter, Claim, Depth, Figure, Kind, PaperError, Row};
+use plant_model::analysis::black::SteadyWhirl;
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 
 /// Speeds of the tests \[Hz\]; the first four and the last are in every depth.
@@ -61,6 +63,10 @@ pub fn chapter(depth: Depth) -> Result<Chapter, PaperError> {
     );
     let (runs, search, laws, constant) = (runs?, search?, laws?, constant?);
     let used = (laws.get(2)).ok_or_else(|| PaperError::Missing("no friction law".to_owned()))?;
+    let limit_hz = SteadyWhirl::of(&rig::footnote_4())
+        .and_then(|whirl| whirl.upper_limit(5000.0))
+        .map(|circle| circle.frequency_hz())
+        .ok_or_else(|| PaperError::Missing("no upper whirl limit".to_owned()))?;
     let mut rows = spin_down_rows(&runs, &search)?;
     rows.extend(nearest_rows(&search));
     rows.extend(fast_rows(used, constant));
@@ -69,13 +75,14 @@ pub fn chapter(depth: Depth) -> Result<Chapter, PaperError> {
         story: story(&search, used),
         rows,
         tables: vec![
-            violence_table(&runs),
+            tables::violence(&runs, limit_hz),
             search.table,
-            law_table(&laws, constant),
+            tables::laws(&laws, constant),
         ],
         figures: vec![
-            figures::whirl_over_spin(&runs),
+            figures::whirl_over_spin(&runs, limit_hz),
             figures::force_over_spin(&runs),
+            figures::torque_over_spin(&runs),
             figures::displacement_over_spin(&runs),
             figures::fast_test(&used.course),
         ]
@@ -138,6 +145,17 @@ fn spin_down_rows(runs: &SpinDowns, search: &Search) -> Result<Vec<Row>, PaperEr
             note,
         )
     };
+    let unnamed = |what: &str, unit, computed: f64| {
+        let note = "the paper calls force and torque fatal, without a number";
+        assumed(
+            what,
+            unit,
+            "Results; Conclusions",
+            None,
+            computed,
+            note.to_owned(),
+        )
+    };
     let plateau = if search.met == 0 {
         "hangs on k_c and J; sets nearer to 660 Hz miss ring, standstill or the plateau itself (Pareto table)"
     } else {
@@ -147,7 +165,7 @@ fn spin_down_rows(runs: &SpinDowns, search: &Search) -> Result<Vec<Row>, PaperEr
         assumed(
             "Plateau of the maximum whirl frequency (166 Hz)",
             "Hz",
-            "§ Simulation Results",
+            "Results, simulation",
             Some(660.0),
             fast.whirl_hz,
             plateau.to_owned(),
@@ -155,7 +173,7 @@ fn spin_down_rows(runs: &SpinDowns, search: &Search) -> Result<Vec<Row>, PaperEr
         assumed(
             "The same, anisotropic stator",
             "Hz",
-            "§ Simulation Results, fn. 4",
+            "Results, simulation; footnote 4",
             Some(660.0),
             anisotropic.whirl_hz,
             format!(
@@ -174,7 +192,7 @@ fn spin_down_rows(runs: &SpinDowns, search: &Search) -> Result<Vec<Row>, PaperEr
         assumed(
             "Maximum whirl frequency from 40 Hz (measured)",
             "Hz",
-            "§ Test at 40 Hz",
+            "Results, test at 40 Hz",
             Some(530.0),
             slow.whirl_hz,
             "the paper's own model exceeds its tests too: 660 Hz as maximum".to_owned(),
@@ -182,7 +200,7 @@ fn spin_down_rows(runs: &SpinDowns, search: &Search) -> Result<Vec<Row>, PaperEr
         assumed(
             "Standstill from 40 Hz",
             "s",
-            "§ Test at 40 Hz",
+            "Results, test at 40 Hz",
             Some(0.012),
             slow.standstill_s,
             "90 % of the speed to 2 Hz".to_owned(),
@@ -190,54 +208,45 @@ fn spin_down_rows(runs: &SpinDowns, search: &Search) -> Result<Vec<Row>, PaperEr
         assumed(
             "Spin at the maximum, from 40 Hz",
             "Hz",
-            "§ Test at 40 Hz",
+            "Results, test at 40 Hz",
             Some(2.0),
             slow.spin_at_middle_hz,
             format!(
-                "middle of the window; {:.1} Hz at its end, where slip ends",
+                "middle of the window of 1 ms, in which the spin falls fast; {:.1} Hz at its end, where slip ends",
                 slow.spin_at_end_hz
             ),
         ),
         assumed(
             "Outer ring, from 40 Hz",
             "mm",
-            "§ Test at 40 Hz",
+            "Results, test at 40 Hz",
             Some(0.05),
             1e3 * slow.displacement_m[2],
             "paper: order of magnitude; a bound in its fit".to_owned(),
-        ),
+        )
+        .claiming(Claim::AtMost(0.05)),
         assumed(
             "Outer ring, from 166 Hz",
             "mm",
-            "§ Simulation Results",
+            "Results, simulation",
             Some(0.05),
             1e3 * fast.displacement_m[2],
             "the paper's fit kept it within the measured value".to_owned(),
-        ),
+        )
+        .claiming(Claim::AtMost(0.05)),
         assumed(
             "Rotor, from 40 Hz: displacement over clearance",
             "",
-            "§ Test at 40 Hz",
+            "Results, test at 40 Hz",
             None,
             slow.displacement_m[0] / rig::CLEARANCE_M,
             "paper: considerably larger than 1".to_owned(),
-        ),
-        assumed(
-            "Peak normal force, from 40 Hz",
-            "kN",
-            "–",
-            None,
-            1e-3 * slow.force_n,
-            "no number in the paper".to_owned(),
-        ),
-        assumed(
-            "Peak friction torque, from 40 Hz",
-            "N m",
-            "–",
-            None,
-            slow.torque_n_m,
-            "no number in the paper".to_owned(),
-        ),
+        )
+        .claiming(Claim::AtLeast(1.0)),
+        unnamed("Peak normal force, from 40 Hz", "kN", 1e-3 * slow.force_n),
+        unnamed("Peak normal force, from 166 Hz", "kN", 1e-3 * fast.force_n),
+        unnamed("Peak friction torque, from 40 Hz", "N m", slow.torque_n_m),
+        unnamed("Peak friction torque, from 166 Hz", "N m", fast.torque_n_m),
     ])
 }
 
@@ -256,11 +265,21 @@ fn nearest_rows(search: &Search) -> Vec<Row> {
             note,
         )
     };
+    let constant = |what: &str, unit, value: f64| {
+        let name = format!("Nearest set: {what}");
+        Row::new(
+            (name, unit),
+            "not in the paper",
+            (None, Some(value)),
+            Kind::Fitted,
+            CHOSEN,
+        )
+    };
     vec![
         row(
             "maximum whirl frequency (166 Hz)",
             "Hz",
-            "§ Simulation Results",
+            "Results, simulation",
             (plateau_hz, near.plateau_hz),
             Kind::Fitted,
             CHOSEN,
@@ -268,15 +287,16 @@ fn nearest_rows(search: &Search) -> Vec<Row> {
         row(
             "outer ring, larger of 40 and 166 Hz",
             "mm",
-            "§ Test at 40 Hz",
+            "Results, test at 40 Hz",
             (1e3 * ring_m, 1e3 * near.ring_m),
             Kind::Fitted,
             CHOSEN,
-        ),
+        )
+        .claiming(Claim::AtMost(0.05)),
         row(
             "standstill from 40 Hz",
             "s",
-            "§ Test at 40 Hz",
+            "Results, test at 40 Hz",
             (standstill_s, near.standstill_s),
             Kind::Fitted,
             CHOSEN,
@@ -284,20 +304,26 @@ fn nearest_rows(search: &Search) -> Vec<Row> {
         row(
             "maximum whirl frequency from 40 Hz (measured)",
             "Hz",
-            "§ Test at 40 Hz",
+            "Results, test at 40 Hz",
             (530.0, near.slow_hz),
             Kind::Predicted,
             "not chosen for; its maximum keeps rising with speed (Pareto table)",
         ),
+        constant("k_c", "N/m", near.left_out.contact_stiffness_n_m),
+        constant("J_r", "kg m²", near.left_out.inertia_kg_m2),
     ]
 }
 
 fn fast_rows(law: &Law, constant: [f64; 2]) -> Vec<Row> {
-    const SOURCE: &str = "§ Test at 166 Hz";
+    const SOURCE: &str = "Results, test at 166 Hz";
     let row = |what: &str, unit, paper: Option<f64>, computed: f64, kind, note: String| {
         Row::new((what, unit), SOURCE, (paper, Some(computed)), kind, note)
     };
     vec![
+        row(
+            "166 Hz: μ_∞ of the falling friction", "", None, law.at_speed,
+            Kind::Fitted, "fitted to the time to standstill alone".to_owned(),
+        ),
         row(
             "166 Hz: standstill", "s", Some(falling::PAPER_STANDSTILL_S), law.standstill_s[0],
             Kind::Fitted, format!("90 % of the speed to 2 Hz; μ_∞ = {:.4} chosen for it", law.at_speed),
@@ -321,87 +347,11 @@ fn fast_rows(law: &Law, constant: [f64; 2]) -> Vec<Row> {
                 "radial impact {:.2} against {:.2} m/s; paper: considerably higher; hangs on v_0",
                 law.critical_m_s[1], law.critical_m_s[0]
             ),
-        ),
+        )
+        .claiming(Claim::AtLeast(1.0)),
         row(
             "The same, constant μ", "", None, constant[1] / constant[0], Kind::Assumed,
             format!("{:.3} against {:.3} m/s: spin alone does not matter", constant[1], constant[0]),
         ),
     ]
-}
-
-fn violence_table(runs: &SpinDowns) -> Table {
-    let pair = |a: f64, b: f64, digits: usize| format!("{a:.digits$} / {b:.digits$}");
-    Table {
-        caption: "Spin-down to standstill at constant μ, isotropic / anisotropic stator".to_owned(),
-        columns: [
-            "From [Hz]",
-            "Whirl [Hz]",
-            "Force [kN]",
-            "Torque [N m]",
-            "Rotor [mm]",
-            "Inner ring [mm]",
-            "Outer ring [mm]",
-            "Spin at max [Hz]",
-            "Standstill [ms]",
-        ]
-        .map(str::to_owned)
-        .to_vec(),
-        rows: (runs.isotropic.iter().zip(&runs.anisotropic))
-            .map(|(a, b)| {
-                let ring = |i: usize| pair(1e3 * a.displacement_m[i], 1e3 * b.displacement_m[i], 3);
-                vec![
-                    format!("{:.0}", a.spin_hz),
-                    pair(a.whirl_hz, b.whirl_hz, 0),
-                    pair(1e-3 * a.force_n, 1e-3 * b.force_n, 1),
-                    pair(a.torque_n_m, b.torque_n_m, 0),
-                    ring(0),
-                    ring(1),
-                    ring(2),
-                    pair(a.spin_at_middle_hz, b.spin_at_middle_hz, 1),
-                    pair(1e3 * a.standstill_s, 1e3 * b.standstill_s, 1),
-                ]
-            })
-            .collect(),
-    }
-}
-
-fn law_table(laws: &[Law], constant: [f64; 2]) -> Table {
-    let impact = |v: f64| format!("{v:.3}");
-    let mut rows: Vec<Vec<String>> = (laws.iter())
-        .map(|law| {
-            vec![
-                format!("{}", law.speed_scale_m_s),
-                format!("{:.4}", law.at_speed),
-                format!("{:.3}", law.standstill_s[0]),
-                format!("{:.1}", 1e3 * law.standstill_s[1]),
-                format!("{:.0}", law.median_hz),
-                format!("{:.0} to {:.0}", law.lowest_hz, law.largest_hz),
-                impact(law.critical_m_s[0]),
-                impact(law.critical_m_s[1]),
-            ]
-        })
-        .collect();
-    let dash = || "–".to_owned();
-    rows.push(vec![
-        "constant".to_owned(),
-        "0.15".to_owned(),
-        dash(),
-        dash(),
-        dash(),
-        dash(),
-        impact(constant[0]),
-        impact(constant[1]),
-    ]);
-    Table {
-        caption: "Friction that falls with sliding speed, μ_∞ fitted to 0.8 s from 166 Hz: what else follows \
-                  (critical: lowest radial impact at the wall that ends in whirl)"
-            .to_owned(),
-        columns: [
-            "v_0 [m/s]", "μ_∞", "Standstill from 166 Hz [s]", "from 40 Hz [ms]", "Whirl at 166 Hz, median [Hz]",
-            "lowest to largest [Hz]", "Critical at 40 Hz [m/s]", "at 166 Hz [m/s]",
-        ]
-        .map(str::to_owned)
-        .to_vec(),
-        rows,
-    }
 }

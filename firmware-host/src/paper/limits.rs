@@ -4,7 +4,7 @@ mod tables;
 
 use super::whirl_runs::{fastest_hz, footnote_4, settled};
 use super::{
-    Axis, Chapter, Chart, Curve, Depth, Drawing, Figure, Kind, Mark, PaperError, Row, Table,
+    Axis, Chapter, Chart, Claim, Curve, Depth, Drawing, Figure, Kind, Mark, PaperError, Row, Table,
 };
 use plant_model::analysis::black::SteadyWhirl;
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
@@ -72,14 +72,14 @@ pub(super) fn chapter(depth: Depth) -> Result<Chapter, PaperError> {
     let rows = vec![
         Row::new(
             ("Upper whirl limit", "Hz"),
-            "Results, established whirl, simulation",
+            "Results, simulation",
             (Some(660.0), Some(limit_hz)),
             Kind::Predicted,
             "nothing but footnote 4 in it: neither k_c nor d_c, J_r, R_r, spin. Above the paper's computed maximum; why, the paper does not let us see",
         ),
         Row::new(
             ("First coupled natural frequency, joined rigidly", "Hz"),
-            "footnote 5",
+            "Footnote 5",
             (Some(660.0), coupled(f64::INFINITY)?),
             Kind::Predicted,
             "misses: with these constants the maximum is not this frequency; damping lets friction drive only to the limit below it",
@@ -89,14 +89,14 @@ pub(super) fn chapter(depth: Depth) -> Result<Chapter, PaperError> {
                 "First coupled natural frequency, joined by k_c = 1e9 N/m",
                 "Hz",
             ),
-            "footnote 5",
+            "Footnote 5",
             (Some(660.0), coupled(1e9)?),
             Kind::Assumed,
             "misses too",
         ),
         Row::new(
             ("Plateau: fastest whirl from 166 Hz", "Hz"),
-            "figure 7, simulation",
+            "Fig. 7, simulation",
             (Some(660.0), Some(at_1e9.fastest_hz[1])),
             Kind::Assumed,
             format!(
@@ -117,10 +117,11 @@ pub(super) fn chapter(depth: Depth) -> Result<Chapter, PaperError> {
             (Some(55.0), Some(onset.frequency_hz())),
             Kind::Predicted,
             "the lowest root is a lower bound: friction drives above it",
-        ),
+        )
+        .claiming(Claim::AtMost(55.0)),
         Row::new(
             ("Least μ − μ_r that keeps any sliding whirl", ""),
-            "footnote 4",
+            "Footnote 4",
             (None, Some(least)),
             Kind::Predicted,
             format!("at {least_hz:.0} Hz; footnote 4 has 0.125"),

@@ -9,6 +9,7 @@ use super::rotors::OnsetRig;
 use super::{
     Axis, Chapter, Chart, Curve, Depth, Drawing, Figure, HeatMap, Kind, Mark, PaperError, Row,
 };
+use crate::plot::text::figures;
 use plant_model::analysis::impact::{Criterion, Search, critical_speed_m_s};
 use rayon::prelude::{IntoParallelIterator, ParallelIterator};
 
@@ -119,30 +120,30 @@ pub fn chapter(depth: Depth) -> Result<Chapter, PaperError> {
         CLEARANCE,
         INCLINATION,
     ];
-    let mut figures = Vec::new();
+    let mut drawn = Vec::new();
     for varied in all {
-        figures.push(curves(&rig, varied, points)?);
+        drawn.push(curves(&rig, varied, points)?);
     }
     for (file, x, y) in [
         ("maps_friction_damping", FRICTION, DAMPING),
         ("maps_inclination_restitution", INCLINATION, RESTITUTION),
         ("maps_eigenfrequency_clearance", NATURAL, CLEARANCE),
     ] {
-        figures.push(map(&rig, file, (x, y), cells)?);
+        drawn.push(map(&rig, file, (x, y), cells)?);
     }
     let mut rows = sensitivities(&rig)?;
     let (outcome_figures, row) = outcomes::balanced(&rig, depth)?;
-    figures.extend(outcome_figures);
+    drawn.extend(outcome_figures);
     rows.push(row);
     let fringe = fringe::unbalanced(&rig, depth)?;
-    figures.extend(fringe.figures);
+    drawn.extend(fringe.figures);
     rows.push(fringe.row);
     Ok(Chapter {
         title: "Stability maps",
         story: story(),
         rows,
         tables: vec![fringe.table],
-        figures,
+        figures: drawn,
     })
 }
 
@@ -305,8 +306,9 @@ fn sensitivities(rig: &OnsetRig) -> Result<Vec<Row>, PaperError> {
             Ok(Row::new(
                 (
                     format!(
-                        "Exponent of v_r,crit in {} at {value:.3}{unit}",
-                        varied.name
+                        "Exponent of v_r,crit in {} at {}{unit}",
+                        varied.name,
+                        figures(value)
                     ),
                     "",
                 ),

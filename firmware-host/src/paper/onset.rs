@@ -6,7 +6,7 @@ mod impacts;
 mod variants;
 
 use super::rotors::OnsetRig;
-use super::{Chapter, Depth, Kind, PaperError, Row};
+use super::{Chapter, Claim, Depth, Kind, PaperError, Row};
 use plant_model::analysis::impact::{Criterion, Search, critical_speed_m_s};
 use plant_model::analysis::onset::critical_tangential_speed_m_s;
 use plant_model::params::Start;
@@ -260,7 +260,7 @@ pub fn chapter(depth: Depth) -> Result<Chapter, PaperError> {
     let mut rows = threshold_rows(&five)?;
     rows.push(Row::new(
         ("Restitution e", ""),
-        "left out",
+        "not in the paper",
         (None, Some(fit.restitution)),
         Kind::Fitted,
         "fitted on the solid disc at 0.3 % alone",
@@ -335,7 +335,8 @@ fn threshold_rows(five: &[Configuration; 5]) -> Result<Vec<Row>, PaperError> {
     for (configuration, kind) in [
         (&five[0], Kind::Predicted),
         (&five[1], Kind::Predicted),
-        (&five[4], Kind::Fitted),
+        // Its μ was fitted, to another row.
+        (&five[4], Kind::Assumed),
     ] {
         let closed = critical_tangential_speed_m_s(&configuration.rig.params()?);
         let simulated = simulated_threshold_m_s(&configuration.rig)?;
@@ -360,8 +361,8 @@ fn threshold_rows(five: &[Configuration; 5]) -> Result<Vec<Row>, PaperError> {
             critical_tangential_speed_m_s(&rig.params()?).map(|v| v / (TAU * rig.clearance_m)),
         ),
         Kind::Predicted,
-        "the lowest at which whirl can begin; the paper reads it off a whirl that has begun",
-    ));
+        "the lowest at which whirl can begin, so a lower bound; the paper reads 55 Hz off a whirl that has begun",
+    ).claiming(Claim::AtMost(55.0)));
     Ok(rows)
 }
 

@@ -3,7 +3,7 @@
 mod figures;
 
 use super::established::rig::{CLEARANCE_M, footnote_4, run};
-use super::{Chapter, Depth, Kind, PaperError, Row, Table};
+use super::{Chapter, Claim, Depth, Kind, PaperError, Row, Table};
 use plant_model::V2;
 use plant_model::analysis::course::{Course, Pulse, Watch};
 use plant_model::analysis::phases::{self, Bounds, NAMES};
@@ -145,7 +145,7 @@ pub fn chapter(_: Depth) -> Result<Chapter, PaperError> {
 }
 
 fn rows(whirl: &Whirl, [shortest_s, longest_s]: [f64; 2]) -> Option<Vec<Row>> {
-    const SOURCE: &str = "§ Test at 40 Hz";
+    const SOURCE: &str = "Results, test at 40 Hz";
     let (course, bounds) = (&whirl.course, &whirl.bounds);
     let first = course.whirl.iter().find(|r| r.t_s >= bounds[4])?;
     let turns = |from_s: f64, to_s: f64| {
@@ -208,9 +208,10 @@ fn rows(whirl: &Whirl, [shortest_s, longest_s]: [f64; 2]) -> Option<Vec<Row>> {
             turns(bounds[5], bounds[6]),
             Kind::Assumed,
             format!(
-                "paper: three to four revolutions; of the whirl, since the rotor makes only {rotor:.2} meanwhile"
+                "paper: three to four revolutions; of the whirl, since the rotor makes only {rotor:.2} meanwhile. Hangs on the 5 %"
             ),
-        ),
+        )
+        .claiming(Claim::Between(3.0, 4.0)),
         row(
             "Impacts before continuous contact",
             "",

@@ -8,9 +8,10 @@ use plotters::coord::Shift;
 use plotters::coord::combinators::IntoLogRange;
 use plotters::coord::ranged1d::{AsRangedCoord, ValueFormatter};
 use plotters::drawing::{DrawingArea, IntoDrawingArea};
-use plotters::element::{Circle, Cross, PathElement, Rectangle};
+use plotters::element::{Circle, Cross, PathElement};
 use plotters::prelude::Ranged;
 use plotters::style::{Color, RGBColor, WHITE};
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::ops::Range;
 
@@ -36,6 +37,8 @@ pub enum Mark {
     Dots,
     /// Crosses: what the paper measured.
     Crosses,
+    /// The curve's name, written at its points; not in the legend.
+    Name,
 }
 
 /// A curve with its entry in the legend.
@@ -47,7 +50,7 @@ pub struct Curve {
     pub points: Vec<(f64, f64)>,
     /// How it is drawn.
     pub mark: Mark,
-    /// Place among six colours.
+    /// Place among nine colours.
     pub colour: usize,
 }
 
@@ -80,19 +83,24 @@ pub struct HeatMap {
 }
 
 /// Colours that can be told apart, also without red and green.
-const COLOURS: [RGBColor; 6] = [
+const COLOURS: [RGBColor; 9] = [
     RGBColor(0x1f, 0x5f, 0x99),
     RGBColor(0xdd, 0x5a, 0x0b),
     RGBColor(0x2a, 0x8a, 0x6a),
     RGBColor(0x8a, 0x1c, 0x1c),
     RGBColor(0x7a, 0x4f, 0xa3),
     RGBColor(0x6b, 0x74, 0x7f),
+    RGBColor(0x3f, 0xa9, 0xd5),
+    RGBColor(0xb8, 0x92, 0x00),
+    RGBColor(0xd0, 0x5c, 0xa0),
 ];
 
 // CSS pixels.
 const WIDTH: u32 = 680;
 const HEIGHT: u32 = 380;
-const FONT: u32 = 15;
+const FONT: u32 = 17;
+/// Room for half of the last number of the x axis.
+const RIGHT: u32 = 24;
 
 /// Draws curves.
 pub(crate) fn chart(plot: &Chart) -> Result<String, PlotError> {
@@ -114,6 +122,7 @@ pub(crate) fn chart(plot: &Chart) -> Result<String, PlotError> {
             Mark::Dashed => "– –",
             Mark::Dots => "●",
             Mark::Crosses => "✕",
+            Mark::Name => continue,
         };
         let colour = hex(colour(curve.colour));
         let name = escape(&curve.name);
@@ -129,22 +138,15 @@ pub(crate) fn chart(plot: &Chart) -> Result<String, PlotError> {
 /// Draws a map.
 pub(crate) fn heat_map(plot: &HeatMap) -> Result<String, PlotError> {
     let picture = svg(&plot.label, |area| {
-        // Cells are laid out evenly; the axis says what their places mean.
+        // Cells are laid out evenly; a logarithmic axis says what their places mean.
+        let range = |axis: &Axis| if axis.log { 0.0..1.0 } else { linear(axis) };
+        let value = |axis: &Axis, place: f64| if axis.log { at(axis, place) } else { place };
         let mut chart = ChartBuilder::on(area)
             .margin(10)
+            .margin_right(RIGHT)
             .x_label_area_size(44)
             .y_label_area_size(70)
-            .build_cartesian_2d(0.0..1.0, 0.0..1.0)?;
-        let rows = plot.cells.len() as f64;
-        for (j, row) in plot.cells.iter().enumerate() {
-            let columns = row.len() as f64;
-            let cells = row.iter().enumerate().filter(|(_, v)| v.is_finite());
-            chart.draw_series(cells.map(|(i, v)| {
-                let (x, y) = (i as f64 / columns, j as f64 / rows);
-                let corner = (x + 1.0 / columns, y + 1.0 / rows);
-                Rectangle::new([(x, y), corner], shade(*v, &plot.scale).filled())
-            }))?;
-        }
+            .build_cartesian_2d(range(&plot.x), range(&plot.y))?;
         chart
             .configure_mesh()
             .disable_mesh()
@@ -152,42 +154,81 @@ pub(crate) fn heat_map(plot: &HeatMap) -> Result<String, PlotError> {
             .y_desc(&plot.y.name)
             .x_labels(6)
             .y_labels(6)
-            .x_label_formatter(&|share| figures(at(&plot.x, *share)))
-            .y_label_formatter(&|share| figures(at(&plot.y, *share)))
+            .x_label_formatter(&|place| figures(value(&plot.x, *place)))
+            .y_label_formatter(&|place| figures(value(&plot.y, *place)))
             .label_style(("sans-serif", FONT))
+            .axis_style(INK)
             .draw()?;
-        Ok(())
+        Ok(cells(plot, &chart.plotting_area().get_pixel_range()))
     })?;
     let (low, high, name) = &plot.scale;
-    let [from, to] = [*low, *high].map(|v| hex(shade(v, &plot.scale)));
-    let legend = format!(
-        "<ul class=\"legend\"><li>{}: <span style=\"color:{from}\">■</span> {} to \
-         <span style=\"color:{to}\">■</span> {}</li></ul>",
-        escape(name),
-        figures(*low),
-        figures(*high)
-    );
+    let mut legend = format!("<ul class=\"legend\"><li>{}:</li>", escape(name));
+    for third in 0..=3 {
+        let value = low + (high - low) * f64::from(third) / 3.0;
+        let (colour, value) = (hex(shade(value, &plot.scale)), figures(value));
+        let _ = write!(
+            legend,
+            "<li><span style=\"color:{colour}\">■</span> {value}</li>"
+        );
+    }
+    legend.push_str("</ul>");
     Ok(picture + &legend)
+}
+
+/// The cells, one path a colour and one rectangle for each run of it: a rectangle a cell would make pages of
+/// many megabytes.
+fn cells(plot: &HeatMap, (x, y): &(Range<i32>, Range<i32>)) -> String {
+    let mut paths: BTreeMap<String, String> = BTreeMap::new();
+    // Whole pixels, or the seams between cells would show.
+    let edge = |from: i32, to: i32, i: usize, n: usize| {
+        from + (f64::from(to - from) * i as f64 / n as f64).round() as i32
+    };
+    for (j, row) in plot.cells.iter().enumerate() {
+        let [low, high] = [j, j + 1].map(|j| edge(y.end, y.start, j, plot.cells.len()));
+        let colours: Vec<Option<String>> = (row.iter())
+            .map(|v| v.is_finite().then(|| hex(shade(*v, &plot.scale))))
+            .collect();
+        let mut from = 0;
+        for run in colours.chunk_by(|a, b| a == b) {
+            let [left, right] =
+                [from, from + run.len()].map(|i| edge(x.start, x.end, i, row.len()));
+            from += run.len();
+            if let Some(Some(colour)) = run.first() {
+                let path = paths.entry(colour.clone()).or_default();
+                let (wide, tall) = (right - left, low - high);
+                let _ = write!(path, "M{left} {high}h{wide}v{tall}h-{wide}z");
+            }
+        }
+    }
+    let mut out = String::from("<g shape-rendering=\"crispEdges\">\n");
+    for (colour, path) in paths {
+        let _ = writeln!(out, "<path fill=\"{colour}\" d=\"{path}\"/>");
+    }
+    out + "</g>\n"
 }
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
+/// A drawing; what `draw` returns is laid over it.
 fn svg(
     label: &str,
-    draw: impl FnOnce(&Area<'_>) -> Result<(), PlotError>,
+    draw: impl FnOnce(&Area<'_>) -> Result<String, PlotError>,
 ) -> Result<String, PlotError> {
     let mut svg = String::new();
-    {
+    let over = {
         let area = SVGBackend::with_string(&mut svg, (WIDTH, HEIGHT)).into_drawing_area();
         area.fill(&WHITE)?;
-        draw(&area)?;
+        let over = draw(&area)?;
         area.present()?;
-    }
+        over
+    };
     let begin = format!("<svg role=\"img\" aria-label=\"{}\" ", escape(label));
-    Ok(svg.replacen("<svg ", &begin, 1))
+    let end = format!("{over}</svg>");
+    Ok(svg.replacen("<svg ", &begin, 1).replacen("</svg>", &end, 1))
 }
 
-fn curves<X, Y>(area: &Area<'_>, plot: &Chart, x: X, y: Y) -> Result<(), PlotError>
+/// Draws the curves; returns what the backend has no element for.
+fn curves<X, Y>(area: &Area<'_>, plot: &Chart, x: X, y: Y) -> Result<String, PlotError>
 where
     X: AsRangedCoord<Value = f64>,
     Y: AsRangedCoord<Value = f64>,
@@ -196,6 +237,7 @@ where
 {
     let mut chart = ChartBuilder::on(area)
         .margin(10)
+        .margin_right(RIGHT)
         .x_label_area_size(44)
         .y_label_area_size(70)
         .build_cartesian_2d(x, y)?;
@@ -209,6 +251,7 @@ where
         .label_style(("sans-serif", FONT))
         .axis_style(INK)
         .draw()?;
+    let mut over = String::new();
     for curve in &plot.curves {
         let colour = colour(curve.colour);
         let finite = |p: &&(f64, f64)| p.0.is_finite() && p.1.is_finite();
@@ -221,32 +264,50 @@ where
                 let points = curve.points.iter().filter(finite);
                 chart.draw_series(points.map(|p| Cross::new(*p, 5, colour.stroke_width(2))))?;
             }
+            Mark::Name => {
+                for point in curve.points.iter().filter(finite) {
+                    let (x, y) = chart.backend_coord(point);
+                    let (colour, name) = (hex(colour), escape(&curve.name));
+                    let _ = writeln!(
+                        over,
+                        "<text x=\"{x}\" y=\"{y}\" text-anchor=\"middle\" font-size=\"12\" \
+                         font-weight=\"bold\" fill=\"{colour}\">{name}</text>"
+                    );
+                }
+            }
             Mark::Line | Mark::Dashed => {
-                let width = if curve.mark == Mark::Line { 2 } else { 1 };
-                for piece in curve
-                    .points
-                    .split(|p| !(p.0.is_finite() && p.1.is_finite()))
-                {
-                    chart.draw_series([PathElement::new(piece, colour.stroke_width(width))])?;
+                let pieces = (curve.points).split(|p| !(p.0.is_finite() && p.1.is_finite()));
+                for piece in pieces.filter(|piece| !piece.is_empty()) {
+                    if curve.mark == Mark::Line {
+                        chart.draw_series([PathElement::new(piece, colour.stroke_width(2))])?;
+                        continue;
+                    }
+                    let _ = write!(
+                        over,
+                        "<polyline fill=\"none\" stroke=\"{}\" stroke-width=\"1.5\" \
+                         stroke-dasharray=\"6 4\" points=\"",
+                        hex(colour)
+                    );
+                    for point in piece {
+                        let (x, y) = chart.backend_coord(point);
+                        let _ = write!(over, "{x},{y} ");
+                    }
+                    over.push_str("\"/>\n");
                 }
             }
         }
     }
-    Ok(())
+    Ok(over)
 }
 
 fn linear(axis: &Axis) -> Range<f64> {
     axis.range.0..axis.range.1
 }
 
-/// Value of the axis at a share of its length.
+/// Value of a logarithmic axis at a share of its length.
 fn at(axis: &Axis, share: f64) -> f64 {
     let (from, to) = axis.range;
-    if axis.log {
-        from * (to / from).powf(share)
-    } else {
-        from + share * (to - from)
-    }
+    from * (to / from).powf(share)
 }
 
 fn colour(place: usize) -> RGBColor {
@@ -261,7 +322,8 @@ fn shade(value: f64, (low, high, _): &(f64, f64, String)) -> RGBColor {
         (190.0, 50.0, 90.0),
         (45.0, 15.0, 70.0),
     ];
-    let share = ((value - low) / (high - low)).clamp(0.0, 1.0) * 3.0;
+    // In 36 steps, so that neighbours share colours; whole numbers from 1 to 10 stay apart.
+    let share = (((value - low) / (high - low)).clamp(0.0, 1.0) * 36.0).round() / 12.0;
     let i = (share as usize).min(2);
     let (a, b, part) = (STOPS[i], STOPS[i + 1], share - i as f64);
     let mix = |a: f64, b: f64| (a + part * (b - a)).round() as u8;

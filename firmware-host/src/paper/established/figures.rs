@@ -43,12 +43,12 @@ const SPIN: &str = "Spin at the start [Hz]";
 const SPIN_RANGE: (f64, f64) = (0.0, 170.0);
 
 /// Fig. 7.
-pub(super) fn whirl_over_spin(runs: &SpinDowns) -> Figure {
+pub(super) fn whirl_over_spin(runs: &SpinDowns, limit_hz: f64) -> Figure {
     let whirl = |of: &[Violence]| over_spin(of, |v| v.whirl_hz);
     figure(
         "established_whirl",
         "Maximum whirl frequency over the spin at the start (Fig. 7). Crosses: the paper's tests where its text \
-         gives a number; dashed: the maximum of its own simulation.",
+         gives a number. Dashed: the maximum of its own simulation, and the upper whirl limit by Black's condition.",
         Chart {
             label: "Maximum whirl frequency over spin".to_owned(),
             x: axis(SPIN, SPIN_RANGE),
@@ -56,6 +56,12 @@ pub(super) fn whirl_over_spin(runs: &SpinDowns) -> Figure {
             curves: vec![
                 curve("isotropic stator", whirl(&runs.isotropic), Mark::Line, 0),
                 curve("±10 % anisotropy", whirl(&runs.anisotropic), Mark::Line, 1),
+                curve(
+                    "Black's upper limit",
+                    vec![(0.0, limit_hz), (170.0, limit_hz)],
+                    Mark::Dashed,
+                    2,
+                ),
                 curve(
                     "paper, simulated",
                     vec![(0.0, 660.0), (170.0, 660.0)],
@@ -77,7 +83,7 @@ pub(super) fn force_over_spin(runs: &SpinDowns) -> Figure {
     let force = |of: &[Violence]| over_spin(of, |v| 1e-3 * v.force_n);
     figure(
         "established_force",
-        "Peak normal force over the spin at the start. The friction torque is 15 N m a kilonewton (μ·R).",
+        "Peak normal force over the spin at the start.",
         Chart {
             label: "Peak normal force over spin".to_owned(),
             x: axis(SPIN, SPIN_RANGE),
@@ -85,6 +91,23 @@ pub(super) fn force_over_spin(runs: &SpinDowns) -> Figure {
             curves: vec![
                 curve("isotropic stator", force(&runs.isotropic), Mark::Line, 0),
                 curve("±10 % anisotropy", force(&runs.anisotropic), Mark::Line, 1),
+            ],
+        },
+    )
+}
+
+pub(super) fn torque_over_spin(runs: &SpinDowns) -> Figure {
+    let torque = |of: &[Violence]| over_spin(of, |v| 1e-3 * v.torque_n_m);
+    figure(
+        "established_torque",
+        "Peak friction torque over the spin at the start: μ·R of the force, 15 N m a kilonewton.",
+        Chart {
+            label: "Peak friction torque over spin".to_owned(),
+            x: axis(SPIN, SPIN_RANGE),
+            y: axis("Peak friction torque [kN m]", (0.0, 2.25)),
+            curves: vec![
+                curve("isotropic stator", torque(&runs.isotropic), Mark::Line, 0),
+                curve("±10 % anisotropy", torque(&runs.anisotropic), Mark::Line, 1),
             ],
         },
     )
@@ -103,7 +126,12 @@ pub(super) fn displacement_over_spin(runs: &SpinDowns) -> Figure {
                 curve("rotor", of(0), Mark::Line, 0),
                 curve("inner ring", of(1), Mark::Line, 2),
                 curve("outer ring", of(2), Mark::Line, 1),
-                curve("0.05 mm", vec![(0.0, 0.05), (170.0, 0.05)], Mark::Dashed, 3),
+                curve(
+                    "paper, outer ring",
+                    vec![(0.0, 0.05), (170.0, 0.05)],
+                    Mark::Dashed,
+                    3,
+                ),
             ],
         },
     )

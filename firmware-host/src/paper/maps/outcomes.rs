@@ -42,7 +42,11 @@ pub(super) fn figure(
             },
             y,
             cells,
-            scale: (1.0, MOST_IMPACTS, "impacts until whirl".to_owned()),
+            scale: (
+                1.0,
+                MOST_IMPACTS,
+                "impacts until whirl (10: or more; white: no whirl)".to_owned(),
+            ),
         }),
         caption,
     }

@@ -38,25 +38,28 @@ pub(super) fn figure(five: &[Configuration; 5], values: &[[f64; 3]]) -> Figure {
                 range: (0.0, 1.1 * top),
                 log: false,
             },
-            curves: vec![
-                curve("μ ± 25 %", Mark::Line, 0, intervals.collect()),
-                curve(
-                    "measured (paper)",
-                    Mark::Crosses,
-                    1,
-                    (five.iter().enumerate())
-                        .map(|(i, c)| (place(i) - 0.08, c.measured_m_s))
-                        .collect(),
-                ),
-                curve(
-                    "computed",
-                    Mark::Dots,
-                    0,
-                    (values.iter().enumerate())
-                        .map(|(i, v)| (place(i) + 0.08, v[0]))
-                        .collect(),
-                ),
-            ],
+            curves: (five.iter().enumerate())
+                .map(|(i, c)| curve(c.name, Mark::Name, 5, vec![(place(i), 1.04 * top)]))
+                .chain([
+                    curve("μ ± 25 %", Mark::Line, 0, intervals.collect()),
+                    curve(
+                        "measured (paper)",
+                        Mark::Crosses,
+                        1,
+                        (five.iter().enumerate())
+                            .map(|(i, c)| (place(i) - 0.08, c.measured_m_s))
+                            .collect(),
+                    ),
+                    curve(
+                        "computed",
+                        Mark::Dots,
+                        0,
+                        (values.iter().enumerate())
+                            .map(|(i, v)| (place(i) + 0.08, v[0]))
+                            .collect(),
+                    ),
+                ])
+                .collect(),
         }),
     }
 }

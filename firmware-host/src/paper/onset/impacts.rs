@@ -2,7 +2,7 @@
 
 use super::Configuration;
 use crate::paper::rotors::OnsetRig;
-use crate::paper::{Kind, PaperError, Row, Table};
+use crate::paper::{Claim, Kind, PaperError, Row, Table};
 use plant_model::analysis::impact::{Criterion, Impact, aftermath};
 use rayon::prelude::{IntoParallelIterator, ParallelIterator};
 
@@ -44,8 +44,9 @@ pub(super) fn until_whirl(
             "Results, onset phase",
             (Some(5.0), high),
             Kind::Predicted,
-            format!("of the five configurations; fewest {low}; paper: one to five; {note}"),
+            format!("of the five configurations; fewest {low}; {note}"),
         )
+        .claiming(Claim::Between(1.0, 5.0))
     };
     let rows = vec![
         row(

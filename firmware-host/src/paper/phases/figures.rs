@@ -8,6 +8,8 @@ use plant_model::analysis::phases::NAMES;
 
 /// Points a curve has at most.
 const POINTS: usize = 1200;
+/// Of the phases 1 to 9, none like the clearance.
+const PHASE_COLOURS: [usize; 9] = [0, 1, 2, 3, 4, 8, 7, 6, 2];
 
 /// All of them.
 pub(super) fn all(whirl: &Whirl) -> Vec<Figure> {
@@ -43,7 +45,25 @@ pub(super) fn all(whirl: &Whirl) -> Vec<Figure> {
             samples(|s| s.spin_hz),
         ),
         displacement(whirl),
-        orbit(whirl),
+        orbit(
+            whirl,
+            (
+                "phases_orbit",
+                "Orbit of the rotor from the first impact on",
+                520.0,
+            ),
+            // Later phases would cover earlier ones: large orbits first.
+            &[5, 6, 4, 7, 8, 3, 2],
+        ),
+        orbit(
+            whirl,
+            (
+                "phases_orbit_begin",
+                "Orbit of the rotor up to the whirl",
+                260.0,
+            ),
+            &[8, 3, 2, 1, 0],
+        ),
     ]
 }
 
@@ -58,15 +78,33 @@ fn peaks(samples: &[Sample], quantity: fn(&Sample) -> f64) -> Vec<(f64, f64)> {
         .collect()
 }
 
-/// Vertical lines where the phases 2 to 9 begin.
-fn boundaries(whirl: &Whirl, (low, high): (f64, f64)) -> Vec<Curve> {
-    (1..9)
-        .map(|i| {
-            let t_ms = 1e3 * whirl.bounds[i];
-            let name = format!("{} {} from {t_ms:.1} ms", i + 1, NAMES[i]);
-            curve(&name, vec![(t_ms, low), (t_ms, high)], Mark::Dashed, i % 6)
-        })
-        .collect()
+/// Vertical lines where the phases 2 to 9 begin, and the number of each phase at the top, those of phases too
+/// short for a number of their own together.
+fn phases(whirl: &Whirl, (low, high): (f64, f64)) -> Vec<Curve> {
+    let ms = |i: usize| 1e3 * whirl.bounds[i];
+    let lines = (1..9).flat_map(|i| [(ms(i), low), (ms(i), high), (f64::NAN, f64::NAN)]);
+    let mut curves = vec![curve("a phase begins", lines.collect(), Mark::Dashed, 5)];
+    let closest_ms = 0.02 * (ms(9) - ms(0));
+    let mut labels: Vec<(f64, String)> = Vec::new();
+    for i in 0..9 {
+        let middle = 0.5 * (ms(i) + ms(i + 1));
+        match labels.last_mut() {
+            Some((at, name)) if middle - *at < closest_ms => *name += &format!(",{}", i + 1),
+            _ => labels.push((middle, (i + 1).to_string())),
+        }
+    }
+    let height = low + 0.95 * (high - low);
+    curves
+        .extend((labels.iter()).map(|(at, name)| curve(name, vec![(*at, height)], Mark::Name, 3)));
+    curves
+}
+
+/// The numbers with their names.
+fn names() -> String {
+    let names: Vec<String> = (NAMES.iter().enumerate())
+        .map(|(i, name)| format!("{} {name}", i + 1))
+        .collect();
+    format!("Phases: {}.", names.join(", "))
 }
 
 fn over_time(
@@ -75,11 +113,11 @@ fn over_time(
     caption: &str,
     points: Vec<(f64, f64)>,
 ) -> Figure {
-    let mut curves = boundaries(whirl, (0.0, largest));
+    let mut curves = phases(whirl, (0.0, largest));
     curves.push(curve(name, points, Mark::Line, 0));
     figure(
         file,
-        &format!("{caption} Vertical lines: where the phases 2 to 9 begin."),
+        &format!("{caption} {}", names()),
         Chart {
             label: format!("{name} over time"),
             x: axis("Time [ms]", (0.0, 1e3 * whirl.bounds[9])),
@@ -103,10 +141,13 @@ fn displacement(whirl: &Whirl) -> Figure {
         points.extend(ends.iter().map(|s| (1e3 * s.t_s, x(s))));
     }
     let mut curves = vec![curve("x displacement", points, Mark::Line, 0)];
-    curves.extend(boundaries(whirl, (-600.0, 600.0)));
+    curves.extend(phases(whirl, (-600.0, 600.0)));
     figure(
         "phases_displacement",
-        "Displacement of the rotor along x (Fig. 6, lower part).",
+        &format!(
+            "Displacement of the rotor along x (Fig. 6, lower part). {}",
+            names()
+        ),
         Chart {
             label: "Displacement along x over time".to_owned(),
             x: axis("Time [ms]", (0.0, 1e3 * whirl.bounds[9])),
@@ -116,12 +157,14 @@ fn displacement(whirl: &Whirl) -> Figure {
     )
 }
 
-fn orbit(whirl: &Whirl) -> Figure {
-    // Later phases would cover earlier ones: large orbits first.
-    const ORDER: [usize; 9] = [5, 6, 4, 7, 8, 3, 2, 1, 0];
+fn orbit(
+    whirl: &Whirl,
+    (file, label, half_height_um): (&'static str, &str, f64),
+    order: &[usize],
+) -> Figure {
     // Long phases are shown by their first turns.
     const LONGEST_S: f64 = 0.06;
-    let mut curves: Vec<Curve> = ORDER
+    let mut curves: Vec<Curve> = order
         .iter()
         .map(|&i| {
             let (from, to) = (whirl.bounds[i], whirl.bounds[i + 1]);
@@ -133,7 +176,7 @@ fn orbit(whirl: &Whirl) -> Figure {
                 .map(|s| (1e6 * s.position_m.x, 1e6 * s.position_m.y))
                 .collect();
             let name = format!("{} {}", i + 1, NAMES[i]);
-            curve(&name, points, Mark::Line, i % 6)
+            curve(&name, points, Mark::Line, PHASE_COLOURS[i])
         })
         .collect();
     let clearance = (0..=120)
@@ -144,13 +187,14 @@ fn orbit(whirl: &Whirl) -> Figure {
         .collect();
     curves.push(curve("clearance", clearance, Mark::Dashed, 5));
     // As wide against high as the drawing area: circles stay round.
+    let half_width_um = 1.823 * half_height_um;
     figure(
-        "phases_orbit",
-        "Orbit of the rotor (Fig. 5); of each phase the first 60 ms.",
+        file,
+        &format!("{label} (Fig. 5); of each phase the first 60 ms."),
         Chart {
-            label: "Orbit of the rotor with its phases".to_owned(),
-            x: axis("x [µm]", (-970.0, 970.0)),
-            y: axis("y [µm]", (-520.0, 520.0)),
+            label: label.to_owned(),
+            x: axis("x [µm]", (-half_width_um, half_width_um)),
+            y: axis("y [µm]", (-half_height_um, half_height_um)),
             curves,
         },
     )
