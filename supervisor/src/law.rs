@@ -27,8 +27,6 @@ pub(crate) struct Wanted {
     pub(crate) restoring: Vec2,
 }
 
-/// Slow is below this share of the square of the lift-off speed.
-const SLOW_SQUARED: f32 = 0.05;
 /// Share of the cap that pushes inwards between impacts: more shortens the chords and with them the time
 /// in which braking takes speed out.
 const FLIGHT_SHARE: f32 = 0.15;
@@ -73,10 +71,10 @@ fn backward(n: Vec2, velocity: Vec2, spin_sign: f32) -> f32 {
 /// act, the flight after it counts instead, with the velocity that the impact will leave.
 fn before_impact(motion: &Motion, spin_sign: f32, coeffs: &Coeffs) -> Wanted {
     let damping = -motion.velocity * coeffs.damper;
-    // What speed leaves of the capacity brings the rotor back: damping alone would let it lie. When
-    // slow, a little more of it than a hold on the wall has, or the two would take turns.
-    let slow = motion.velocity.length_squared() < SLOW_SQUARED * coeffs.slow_squared;
-    let share = if slow { NEARLY_ALL } else { FLIGHT_SHARE };
+    // What speed leaves of the capacity brings the rotor back: damping alone would let it lie. When slow,
+    // a little more of it than a hold on the wall has, or the two would take turns.
+    let of_lift_off = motion.velocity.length_squared() / coeffs.slow_squared;
+    let share = max(NEARLY_ALL - of_lift_off, FLIGHT_SHARE);
     let restoring = -motion.position * share;
     let rest = Wanted {
         braking: Vec2::ZERO,
