@@ -111,7 +111,8 @@ pub fn run(
         keep,
         trace: Trace::default(),
         edges_s: scene.edges(),
-        edges_done: 0,
+        edge_s: f64::NEG_INFINITY,
+        steady_n: None,
         changes_done: 0,
     };
     let ticks = (scene.duration_s * scene.sample_rate_hz).round().max(1.0) as u64;
@@ -150,8 +151,11 @@ struct Bench<'a> {
     keep: Keep,
     trace: Trace,
     edges_s: Vec<f64>,
-    /// Edges and changes that lie behind.
-    edges_done: usize,
+    /// The next of them.
+    edge_s: f64,
+    /// External force up to there, where it does not vary \[N\].
+    steady_n: Option<V2>,
+    /// Changes that lie behind.
     changes_done: usize,
 }
 
@@ -177,13 +181,15 @@ impl Bench<'_> {
 
         let mut from = t;
         while from < t_next {
-            while (self.edges_s.get(self.edges_done)).is_some_and(|edge| *edge <= from) {
-                self.edges_done += 1;
+            if from >= self.edge_s {
+                self.pass_edges(from)?;
             }
-            self.change(from)?;
-            let edge = self.edges_s.get(self.edges_done);
-            let to = edge.map_or(t_next, |e| e.min(t_next));
-            let parts = (self.scene.parts(from, to)).max(self.amplifier.parts(from));
+            let to = self.edge_s.min(t_next);
+            let parts = match self.steady_n {
+                Some(_) => 1,
+                None => self.scene.parts(from, to),
+            };
+            let parts = parts.max(self.amplifier.parts(from));
             let mut begin = from;
             for end in cuts((from, to), parts) {
                 self.advance(begin, end, reading.position_m)
@@ -206,8 +212,11 @@ impl Bench<'_> {
         status
     }
 
-    /// Makes the changes that are due.
-    fn change(&mut self, t_s: f64) -> Result<(), RunError> {
+    /// Makes the changes that are due, and looks at what acts up to the next edge.
+    fn pass_edges(&mut self, t_s: f64) -> Result<(), RunError> {
+        let next = self.edges_s.iter().find(|edge| **edge > t_s);
+        self.edge_s = next.copied().unwrap_or(f64::INFINITY);
+        self.steady_n = (!self.scene.varies(t_s)).then(|| self.scene.external_n(t_s, t_s));
         while let Some(due) = self.scene.changes.get(self.changes_done)
             && due.at_s <= t_s
         {
@@ -220,7 +229,10 @@ impl Bench<'_> {
     fn advance(&mut self, from_s: f64, to_s: f64, measured_m: V2) -> Result<(), PlantError> {
         let inputs = Inputs {
             command_n: self.amplifier.deliver(from_s, to_s),
-            external_n: self.scene.external_n(from_s, to_s),
+            external_n: match self.steady_n {
+                Some(steady_n) => steady_n,
+                None => self.scene.external_n(from_s, to_s),
+            },
         };
         let mut changes: [Option<Snapshot>; 8] = [None; 8];
         let mut extra = Vec::new();

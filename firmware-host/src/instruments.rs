@@ -136,7 +136,7 @@ impl Sensor {
 
     /// What the sensor's own properties and analogue faults make of a position, converted.
     fn conditioned(&mut self, t_s: f64, position_m: V2) -> V2 {
-        let p = self.params;
+        let p = &self.params;
         let mut x = position_m;
         let mut noise = V2::repeat(p.noise_rms_m);
         if p.swapped != (self.faults.as_ref()).is_some_and(|f| f.swapped(t_s)) {

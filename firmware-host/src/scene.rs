@@ -124,6 +124,12 @@ impl Scene {
         loads::mean_n(self.loads(), constant_n, (from_s, to_s))
     }
 
+    /// Whether a load that acts from a time on varies.
+    pub(crate) fn varies(&self, from_s: f64) -> bool {
+        let acting = |d: &Disturbance| d.start_s <= from_s && from_s < d.end_s();
+        (self.loads()).any(|d| acting(&d) && d.shape != Shape::Constant)
+    }
+
     /// Parts in which [`Self::external_n`] is to be held from one time to another.
     pub fn parts(&self, from_s: f64, to_s: f64) -> u32 {
         loads::parts(self.loads(), (from_s, to_s))
@@ -193,6 +199,8 @@ impl Scene {
             let message = format!("{ticks:.0} control samples: expected at most 20 million");
             return Err(text.error_at_key("run.duration_s", message, Some(help)));
         }
+        let sensor = sensor_of(file, &check)?;
+        let amplifier = amplifier_of(file, &check)?;
         check.within("radial.band", file.radial.band, 0.0, 1.0)?;
         for axis in file.rotor.gravity_m_s2.0 {
             check.within("rotor.gravity_m_s2", axis, -1e4, 1e4)?;
@@ -232,9 +240,9 @@ impl Scene {
             },
             seed: file.run.seed,
             policies,
-            amplifier: amplifier_of(file, &check)?,
+            amplifier,
             outages: events.outages,
-            sensor: sensor_of(file, &check)?,
+            sensor,
             faults: events.faults,
             spin_sensor: SpinSensorParams {
                 valid: file.spin_sensor.valid,
