@@ -1,7 +1,8 @@
 //! Error against run time: one scene without control, over tolerances and methods.
 
-use crate::scene::{Disturbance, Scene};
-use plant_model::{BuildError, Inputs, Method, Mode, Options, PlantError, V2, Work, build};
+use crate::loads;
+use crate::scene::Scene;
+use plant_model::{BuildError, Inputs, Method, Mode, Options, PlantError, V2, Work};
 use serde::Serialize;
 use std::time::{Duration, Instant};
 
@@ -149,23 +150,26 @@ pub(crate) fn run(scene: &Scene, method: Method, rtol: f64) -> Result<Ending, Ac
         steps_per_sample: Options::default().steps,
         ..Options::default()
     };
-    let mut plant = build(&scene.plant, &scene.start, options)?;
-    let mut edges: Vec<f64> = (scene.disturbances.iter())
-        .flat_map(|d: &Disturbance| [d.start_s, d.end_s()])
-        .filter(|t| *t > 0.0 && *t < scene.duration_s)
-        .collect();
+    let mut plant = scene.build(options)?;
+    let mut edges = scene.edges();
+    edges.retain(|t| *t > 0.0 && *t < scene.duration_s);
     edges.push(scene.duration_s);
-    edges.sort_by(f64::total_cmp);
+    let mut changes = scene.changes.iter().peekable();
     let (mut from, mut modes) = (0.0, Vec::new());
     for to in edges {
-        let inputs = Inputs {
-            command_n: V2::zeros(),
-            external_n: scene.external_n(from),
-        };
-        plant
-            .advance(to, &inputs, &mut |s| modes.push(s.mode))
-            .map_err(|reason| AccuracyError::Plant { rtol, reason })?;
-        from = to;
+        while let Some(due) = changes.next_if(|c| c.at_s <= from) {
+            plant.change(&due.change).map_err(BuildError::Param)?;
+        }
+        for cut in loads::cuts((from, to), scene.parts(from, to)) {
+            let inputs = Inputs {
+                command_n: V2::zeros(),
+                external_n: scene.external_n(from, cut),
+            };
+            plant
+                .advance(cut, &inputs, &mut |s| modes.push(s.mode))
+                .map_err(|reason| AccuracyError::Plant { rtol, reason })?;
+            from = cut;
+        }
     }
     Ok(Ending {
         position_m: plant.snapshot().position_m,

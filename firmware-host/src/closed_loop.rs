@@ -1,15 +1,19 @@
 //! One policy on one scene, as firmware would run it: sample, compute, and a command that takes
 //! effect at the next sample.
 
+use crate::amplifier::Amplifier;
 use crate::instruments::Sensor;
 use crate::judge::Judge;
-use crate::policies::Policy;
+use crate::loads::cuts;
+use crate::policies::{Policy, Seen};
 use crate::policy_kind::PolicyKind;
 use crate::scene::Scene;
 use crate::trace::{Trace, TraceRow};
 use crate::verdict::Verdict;
-use plant_model::{BuildError, Inputs, Options, Plant, PlantError, Snapshot, V2, build};
+use plant_model::params::StatorParams;
+use plant_model::{BuildError, Inputs, Options, Plant, PlantError, Snapshot, V2};
 use std::time::Instant;
+use supervisor::Status;
 
 /// Why a run has no result.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -48,6 +52,9 @@ pub enum RunError {
         /// Why the check has no result.
         reason: Box<RunError>,
     },
+    /// Rings would feel a base motion too, and the model has no such force.
+    #[error("base motion needs a rigid stator")]
+    BaseMotionOnRings,
     /// The scene lacks something that the policy needs.
     #[error("policy {policy} needs more than the scene gives")]
     Incomplete {
@@ -115,23 +122,30 @@ pub fn run_policy(
         method: scene.method,
         ..Options::default()
     };
-    let plant = build(&scene.plant, &scene.start, options)?;
+    if !scene.base_motions.is_empty() && scene.plant.stator != StatorParams::Rigid {
+        return Err(RunError::BaseMotionOnRings);
+    }
+    let plant = scene.build(options)?;
+    let period_s = 1.0 / scene.sample_rate_hz;
+    let force_max_n = scene.plant.magnet.map_or(0.0, |m| m.force_max_n);
     let mut bench = Bench {
         scene,
+        policy_name: policy,
         plant,
-        sensor: Sensor::new(scene.sensor, scene.seed),
+        sensor: Sensor::new(scene.sensor, &scene.faults, period_s, scene.seed),
         policy: acting,
-        register_n: V2::zeros(),
+        amplifier: Amplifier::new(scene.amplifier, force_max_n, &scene.outages),
         judge: Judge::new(scene),
         keep,
         trace: Trace::default(),
-        edges_s: edges(scene),
+        edges_s: scene.edges(),
+        edge_s: f64::NEG_INFINITY,
+        steady_n: None,
+        changes_done: 0,
     };
     let ticks = (scene.duration_s * scene.sample_rate_hz).round().max(1.0) as u64;
     for tick in 0..ticks {
-        bench
-            .tick(tick)
-            .map_err(|reason| RunError::Plant { policy, reason })?;
+        bench.tick(tick)?;
         if (tick + 1) % REPORT_EVERY == 0 {
             on_tick(REPORT_EVERY);
         }
@@ -142,7 +156,7 @@ pub fn run_policy(
     on_tick(ticks % REPORT_EVERY);
     let last = bench.plant.snapshot();
     bench.judge.sample(&last);
-    bench.record(&last, last.position_m, false);
+    bench.record(&last, scene.from_magnets_m(last.position_m), false);
     let verdict = bench
         .judge
         .verdict(scene, bench.plant.as_ref(), started.elapsed());
@@ -157,56 +171,103 @@ pub fn run_policy(
     Ok((verdict, bench.trace))
 }
 
-/// Times at which the external force changes \[s\], in order.
-fn edges(scene: &Scene) -> Vec<f64> {
-    let mut edges: Vec<f64> = (scene.disturbances.iter())
-        .flat_map(|d| [d.start_s, d.end_s()])
-        .collect();
-    edges.sort_by(f64::total_cmp);
-    edges.dedup();
-    edges
-}
-
 struct Bench<'a> {
     scene: &'a Scene,
+    policy_name: &'static str,
     plant: Box<dyn Plant>,
     sensor: Sensor,
     policy: Policy,
-    /// Command computed at the last sample, in effect from this one.
-    register_n: V2,
+    amplifier: Amplifier,
     judge: Judge,
     keep: Keep,
     trace: Trace,
     edges_s: Vec<f64>,
+    /// The next of them.
+    edge_s: f64,
+    /// External force up to there, where it does not vary \[N\].
+    steady_n: Option<V2>,
+    /// Changes that lie behind.
+    changes_done: usize,
 }
 
 impl Bench<'_> {
-    fn tick(&mut self, tick: u64) -> Result<(), PlantError> {
+    fn tick(&mut self, tick: u64) -> Result<(), RunError> {
         let period = 1.0 / self.scene.sample_rate_hz;
         let (t, t_next) = (tick as f64 * period, (tick + 1) as f64 * period);
+        self.amplifier.begin(tick);
         let now = self.plant.snapshot();
-        let measured_m = self.sensor.read(now.position_m);
-        let next_n = self.policy.tick(measured_m, now.spin_rad_s);
-        let truth_n = self.policy.of_truth(&now);
-        self.register_n = truth_n.unwrap_or(self.register_n);
+        let reading = (self.sensor).read(t, self.scene.from_magnets_m(now.position_m));
+        let command_n = self.policy.tick(&Seen {
+            reading,
+            spin_rad_s: if self.scene.spin_sensor.reversed {
+                -now.spin_rad_s
+            } else {
+                now.spin_rad_s
+            },
+            status: self.status(t),
+        });
+        let with_weight = |force_n: V2| force_n + self.scene.feed_forward_n;
+        match self.policy.of_truth(&now) {
+            Some(truth_n) => self.amplifier.command_at_once(with_weight(truth_n)),
+            None => self.amplifier.command(tick, with_weight(command_n)),
+        }
         self.judge.sample(&now);
-        self.record(&now, measured_m, false);
+        self.record(&now, reading.position_m, false);
 
         let mut from = t;
         while from < t_next {
-            let edge = self.edges_s.iter().copied().find(|e| *e > from);
-            let to = edge.map_or(t_next, |e| e.min(t_next));
-            self.advance(from, to, measured_m)?;
+            if from >= self.edge_s {
+                self.pass_edges(from)?;
+            }
+            let to = self.edge_s.min(t_next);
+            let parts = match self.steady_n {
+                Some(_) => 1,
+                None => self.scene.parts(from, to),
+            };
+            let parts = parts.max(self.amplifier.parts(from));
+            let mut begin = from;
+            for end in cuts((from, to), parts) {
+                self.advance(begin, end, reading.position_m)
+                    .map_err(|reason| RunError::Plant {
+                        policy: self.policy_name,
+                        reason,
+                    })?;
+                begin = end;
+            }
             from = to;
         }
-        self.register_n = next_n;
+        Ok(())
+    }
+
+    /// What the firmware knows to be valid and ready.
+    fn status(&self, t_s: f64) -> Status {
+        let mut status = Status::empty();
+        status.set(Status::SPIN_VALID, self.scene.spin_sensor.valid);
+        status.set(Status::BEARING_ON, !self.amplifier.known_off(t_s));
+        status
+    }
+
+    /// Makes the changes that are due, and looks at what acts up to the next edge.
+    fn pass_edges(&mut self, t_s: f64) -> Result<(), RunError> {
+        let next = self.edges_s.iter().find(|edge| **edge > t_s);
+        self.edge_s = next.copied().unwrap_or(f64::INFINITY);
+        self.steady_n = (!self.scene.varies(t_s)).then(|| self.scene.external_n(t_s, t_s));
+        while let Some(due) = self.scene.changes.get(self.changes_done)
+            && due.at_s <= t_s
+        {
+            self.plant.change(&due.change).map_err(BuildError::Param)?;
+            self.changes_done += 1;
+        }
         Ok(())
     }
 
     fn advance(&mut self, from_s: f64, to_s: f64, measured_m: V2) -> Result<(), PlantError> {
         let inputs = Inputs {
-            command_n: self.register_n + self.scene.feed_forward_n,
-            external_n: self.scene.external_n(from_s),
+            command_n: self.amplifier.deliver(from_s, to_s),
+            external_n: match self.steady_n {
+                Some(steady_n) => steady_n,
+                None => self.scene.external_n(from_s, to_s),
+            },
         };
         let mut changes: [Option<Snapshot>; 8] = [None; 8];
         let mut extra = Vec::new();
@@ -232,7 +293,7 @@ impl Bench<'_> {
         self.trace.rows.push(TraceRow {
             plant: *plant,
             measured_m,
-            commanded_n: self.register_n + self.scene.feed_forward_n,
+            commanded_n: self.amplifier.in_effect_n(),
             supervisor_mode: self.policy.supervisor_mode(),
             mode_change,
         });

@@ -1,17 +1,71 @@
-//! The plant's instruments as firmware sees them: a sampled, quantised, noisy position.
+//! The plant's instruments as firmware sees them: a sampled position, and what is known of the spin.
 
+use crate::faults::{Fault, Faults};
 use plant_model::V2;
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
+use std::collections::VecDeque;
 
-/// A position sensor with its converter.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+/// A position sensor with its converter: what it is always like. Swapped axes, gain, offset, noise,
+/// range and step apply in this order.
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SensorParams {
     /// Step of the converter \[m\]; 0 means none.
     pub quantum_m: f64,
     /// Noise, root mean square per axis \[m\].
     pub noise_rms_m: f64,
+    /// Reading in the centre of the magnets \[m\].
+    pub offset_m: V2,
+    /// Reading per position.
+    pub gain: V2,
+    /// Age of the position that is read \[samples\].
+    pub delay_samples: usize,
+    /// Whether x reads y and y reads x.
+    pub swapped: bool,
+    /// Largest reading to either side \[m\]; `None`: no limit.
+    pub range_m: Option<f64>,
+}
+
+impl Default for SensorParams {
+    fn default() -> Self {
+        Self {
+            quantum_m: 0.0,
+            noise_rms_m: 0.0,
+            offset_m: V2::zeros(),
+            gain: V2::repeat(1.0),
+            delay_samples: 0,
+            swapped: false,
+            range_m: None,
+        }
+    }
+}
+
+/// What is known of the spin.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct SpinSensorParams {
+    /// Whether the spin is marked valid.
+    pub valid: bool,
+    /// Whether it is reported with the wrong sign.
+    pub reversed: bool,
+}
+
+impl Default for SpinSensorParams {
+    fn default() -> Self {
+        Self {
+            valid: true,
+            reversed: false,
+        }
+    }
+}
+
+/// A position as it arrives.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reading {
+    /// Counts new samples from 0; a sample that did not come repeats the last number.
+    pub sequence: u32,
+    /// Position \[m\]; anything, under a fault.
+    pub position_m: V2,
 }
 
 /// A sensor with its own stream of noise. ChaCha is specified to the bit, so a seed means the same
@@ -20,33 +74,91 @@ pub struct SensorParams {
 pub struct Sensor {
     params: SensorParams,
     noise: ChaCha8Rng,
+    /// `None` without faults.
+    faults: Option<Faults>,
+    /// Positions back to the longest delay, the newest first; empty where nothing is delayed.
+    past_m: VecDeque<V2>,
+    longest_delay: usize,
+    last: Option<Reading>,
 }
 
 impl Sensor {
-    /// A sensor; the same seed gives the same noise.
-    pub fn new(params: SensorParams, seed: u64) -> Self {
+    /// A sensor that is read every `period_s`; the same seed gives the same noise.
+    pub fn new(params: SensorParams, faults: &[Fault], period_s: f64, seed: u64) -> Self {
+        let mut chance = ChaCha8Rng::seed_from_u64(seed);
+        chance.set_stream(1);
+        let faults =
+            (!faults.is_empty()).then(|| Faults::new(faults, period_s, params.range_m, chance));
+        let longest = faults.as_ref().map_or(0, Faults::longest_delay);
         Self {
             params,
             noise: ChaCha8Rng::seed_from_u64(seed),
+            faults,
+            past_m: VecDeque::new(),
+            longest_delay: params.delay_samples + longest,
+            last: None,
         }
     }
 
     /// Reads the position once.
-    pub fn read(&mut self, position_m: V2) -> V2 {
-        let SensorParams {
-            quantum_m,
-            noise_rms_m,
-        } = self.params;
-        position_m.map(|x| {
-            let mut x = x;
-            if noise_rms_m > 0.0 {
+    pub fn read(&mut self, t_s: f64, position_m: V2) -> Reading {
+        let position_m = self.delayed(t_s, position_m);
+        let mut x = self.conditioned(t_s, position_m);
+        let last = self.last;
+        let mut dropped = false;
+        if let Some(faults) = &self.faults {
+            x = faults.digital(t_s, x, last.map_or(x, |last| last.position_m));
+            dropped = faults.dropped(t_s);
+        }
+        let reading = match last {
+            Some(last) if dropped => last,
+            last => Reading {
+                sequence: last.map_or(0, |last| last.sequence.wrapping_add(1)),
+                position_m: x,
+            },
+        };
+        self.last = Some(reading);
+        reading
+    }
+
+    /// Before the run the rotor stood where it started.
+    fn delayed(&mut self, t_s: f64, position_m: V2) -> V2 {
+        if self.longest_delay == 0 {
+            return position_m;
+        }
+        self.past_m.push_front(position_m);
+        self.past_m.truncate(self.longest_delay + 1);
+        let by_fault = self.faults.as_ref().map_or(0, |f| f.delay(t_s));
+        let delay = self.params.delay_samples + by_fault;
+        let oldest = self.past_m.back().copied().unwrap_or(position_m);
+        self.past_m.get(delay).copied().unwrap_or(oldest)
+    }
+
+    /// What the sensor's own properties and analogue faults make of a position, converted.
+    fn conditioned(&mut self, t_s: f64, position_m: V2) -> V2 {
+        let p = &self.params;
+        let mut x = position_m;
+        let mut noise = V2::repeat(p.noise_rms_m);
+        if p.swapped != (self.faults.as_ref()).is_some_and(|f| f.swapped(t_s)) {
+            x = V2::new(x.y, x.x);
+        }
+        x = x.component_mul(&p.gain) + p.offset_m;
+        if let Some(faults) = &mut self.faults {
+            noise = noise.component_mul(&faults.noise(t_s));
+            x = faults.analogue(t_s, x);
+        }
+        for i in [0, 1] {
+            if p.noise_rms_m > 0.0 {
                 let n: f64 = StandardNormal.sample(&mut self.noise);
-                x += noise_rms_m * n;
+                x[i] += noise[i] * n;
             }
-            if quantum_m > 0.0 {
-                x = (x / quantum_m).round() * quantum_m;
+            if let Some(range) = p.range_m {
+                x[i] = x[i].clamp(-range, range);
             }
-            x
-        })
+            if p.quantum_m > 0.0 {
+                x[i] = (x[i] / p.quantum_m).round() * p.quantum_m;
+            }
+        }
+        x
     }
 }

@@ -1,9 +1,9 @@
 //! Watches a run and says what it came to.
 
-use crate::scene::{Disturbance, Scene};
+use crate::scene::Scene;
 use crate::verdict::{Outcome, Verdict};
 use plant_model::analysis::whirl::WhirlMeter;
-use plant_model::{Plant, Snapshot};
+use plant_model::{Plant, Snapshot, V2};
 use std::f64::consts::TAU;
 use std::time::Duration;
 
@@ -25,12 +25,15 @@ const REST_SPEED: f64 = 1e-3;
 pub(crate) struct Judge {
     middle_m: f64,
     whirl_speed_m_s: f64,
+    /// Where the retainer bearing is as seen from the middle.
+    centre_offset_m: V2,
     clock_starts_s: f64,
     whirl: WhirlMeter,
     /// Since when the rotor has been in the middle.
     in_middle_since_s: Option<f64>,
     /// When it came back for good, as far as is known.
     back_since_s: Option<f64>,
+    first_contact_s: Option<f64>,
     last_contact_s: Option<f64>,
     /// Spin at the first sample \[rad/s\].
     first_spin: Option<f64>,
@@ -41,11 +44,13 @@ impl Judge {
     pub(crate) fn new(scene: &Scene) -> Self {
         Self {
             whirl_speed_m_s: scene.whirl_speed_m_s,
+            centre_offset_m: scene.centre_offset_m,
             middle_m: MIDDLE * scene.plant.contact.clearance_m,
-            clock_starts_s: (scene.disturbances.iter().map(Disturbance::end_s)).fold(0.0, f64::max),
+            clock_starts_s: scene.clock_starts_s(),
             whirl: WhirlMeter::new(WHIRL_WINDOW_S),
             in_middle_since_s: None,
             back_since_s: None,
+            first_contact_s: None,
             last_contact_s: None,
             first_spin: None,
             last: None,
@@ -56,7 +61,8 @@ impl Judge {
     pub(crate) fn sample(&mut self, now: &Snapshot) {
         let spin = *self.first_spin.get_or_insert(now.spin_rad_s);
         self.follow_contact(now, spin);
-        if now.position_m.norm() < self.middle_m && now.t_s >= self.clock_starts_s {
+        let away_m = (now.position_m + self.centre_offset_m).norm();
+        if away_m < self.middle_m && now.t_s >= self.clock_starts_s {
             let since = *self.in_middle_since_s.get_or_insert(now.t_s);
             // Sample times carry round-off.
             if now.t_s - since >= STAY_S * (1.0 - 1e-9) && self.back_since_s.is_none() {
@@ -78,6 +84,7 @@ impl Judge {
         self.whirl
             .push(now.t_s, now.whirl_angle_rad, touches, spin_rad_s);
         if touches {
+            self.first_contact_s.get_or_insert(now.t_s);
             self.last_contact_s = Some(now.t_s);
             self.back_since_s = None;
         }
@@ -100,6 +107,9 @@ impl Judge {
             recovered: matches!(outcome, Outcome::Recovered | Outcome::Decayed),
             impacts: meters.impacts,
             contact_time_s: meters.contact_time_s,
+            contact_impulse_n_s: plant.audit().flows.normal_impulse_n_s,
+            contacts_over_20_mm_s: meters.hard_impacts,
+            first_contact_s: self.first_contact_s,
             peak_penetration_m: meters.peak_penetration_m,
             peak_contact_force_n: meters.peak_contact_force_n,
             peak_friction_torque_n_m: meters.peak_friction_torque_n_m,
@@ -144,8 +154,7 @@ impl Judge {
             * plant.contact.clearance_m
             * (plant.contact.stiffness_n_m / plant.contact_mass_kg()).sqrt();
         let loaded = scene
-            .disturbances
-            .iter()
+            .loads()
             .any(|d| d.start_s < last.t_s && last.t_s <= d.end_s());
         match (last.mode.in_contact(), loaded) {
             (true, true) => Outcome::Pinned,

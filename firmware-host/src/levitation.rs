@@ -18,14 +18,60 @@ pub struct LevitationParams {
     pub derivative_filter_s: f64,
 }
 
+/// Velocity from positions by differences, smoothed.
+#[derive(Debug, Clone)]
+pub struct VelocityFilter {
+    period_s: f64,
+    filter_s: f64,
+    last_m: Option<V2>,
+    velocity_m_s: V2,
+}
+
+impl VelocityFilter {
+    /// A filter at rest; a time constant of 0 takes the plain difference.
+    pub fn new(filter_s: f64, period_s: f64) -> Self {
+        Self {
+            period_s,
+            filter_s,
+            last_m: None,
+            velocity_m_s: V2::zeros(),
+        }
+    }
+
+    /// Velocity \[m/s\] after a position.
+    pub fn velocity_m_s(&mut self, measured_m: V2) -> V2 {
+        let difference = (measured_m - self.last_m.unwrap_or(measured_m)) / self.period_s;
+        self.last_m = Some(measured_m);
+        let share = self.period_s / (self.period_s + self.filter_s);
+        self.velocity_m_s += share * (difference - self.velocity_m_s);
+        self.velocity_m_s
+    }
+
+    /// A measured position, with the last one where a component is no number: one that got in would never
+    /// get out of the filter again.
+    pub fn usable_m(&self, measured_m: V2) -> V2 {
+        let last = self.last_m.unwrap_or_default();
+        measured_m.zip_map(&last, |new, old| if new.is_finite() { new } else { old })
+    }
+}
+
+/// A force limited as a vector.
+pub fn limited_n(wanted_n: V2, force_max_n: f64) -> V2 {
+    let size = wanted_n.norm();
+    if size > force_max_n {
+        wanted_n * (force_max_n / size)
+    } else {
+        wanted_n
+    }
+}
+
 /// The controller.
 #[derive(Debug, Clone)]
 pub struct Levitation {
     params: LevitationParams,
     period_s: f64,
     force_max_n: f64,
-    last_m: Option<V2>,
-    velocity_m_s: V2,
+    velocity: VelocityFilter,
     integral_n: V2,
 }
 
@@ -36,8 +82,7 @@ impl Levitation {
             params,
             period_s,
             force_max_n,
-            last_m: None,
-            velocity_m_s: V2::zeros(),
+            velocity: VelocityFilter::new(params.derivative_filter_s, period_s),
             integral_n: V2::zeros(),
         }
     }
@@ -45,21 +90,14 @@ impl Levitation {
     /// Force towards the centre for a measured position \[N\], limited to the cap.
     pub fn force_n(&mut self, measured_m: V2, hint: IntegratorHint) -> V2 {
         let p = &self.params;
-        let difference = (measured_m - self.last_m.unwrap_or(measured_m)) / self.period_s;
-        self.last_m = Some(measured_m);
-        let share = self.period_s / (self.period_s + p.derivative_filter_s);
-        self.velocity_m_s += share * (difference - self.velocity_m_s);
-        let wanted = -p.proportional_n_m * measured_m - p.derivative_n_s_m * self.velocity_m_s
-            + self.integral_n;
-        let size = wanted.norm();
-        let limited = size > self.force_max_n;
+        let measured_m = self.velocity.usable_m(measured_m);
+        let velocity_m_s = self.velocity.velocity_m_s(measured_m);
+        let wanted =
+            -p.proportional_n_m * measured_m - p.derivative_n_s_m * velocity_m_s + self.integral_n;
+        let limited = wanted.norm() > self.force_max_n;
         if !limited && hint != IntegratorHint::Hold {
             self.integral_n -= p.integral_n_m_s * self.period_s * measured_m;
         }
-        if limited {
-            wanted * (self.force_max_n / size)
-        } else {
-            wanted
-        }
+        limited_n(wanted, self.force_max_n)
     }
 }

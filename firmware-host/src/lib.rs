@@ -1,20 +1,24 @@
 //! Runs plant and supervisor in closed loop as firmware would, on scenes, and shows what happened.
 //!
-//! Files, each importing only from those above it: `trace`, `verdict`, `scene_error`, `scene_file`,
-//! `plant_setup`, `supervisor_setup`, `instruments`, `levitation`, `clairvoyant`, `policy_kind`, `scene`,
-//! `policies`, `judge`, `closed_loop`, `verify`, `accuracy`, `wrong_runs`, `trace_file`, `plot`, `report`, `paper`, `overloads`, `table`, `output`,
+//! Files, each importing only from those above it: `trace`, `verdict`, `scene_error`, `axis`, `loads`,
+//! `amplifier`, `faults`, `scene_pair`, `scene_event_file`, `scene_file`, `plant_setup`, `supervisor_setup`, `instruments`,
+//! `levitation`, `clairvoyant`, `policy_kind`, `scene_events`, `scene_instruments`, `scene`, `policies`, `judge`, `closed_loop`, `verify`, `accuracy`, `wrong_runs`, `trace_file`, `plot`, `report`, `paper`, `overloads`, `table`, `output`,
 //! `commands`.
 
 #![forbid(unsafe_code)]
 #![warn(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 pub mod accuracy;
+mod amplifier;
+mod axis;
 pub mod clairvoyant;
 pub mod closed_loop;
 pub mod commands;
+mod faults;
 pub mod instruments;
 mod judge;
 pub mod levitation;
+mod loads;
 pub mod output;
 pub mod overloads;
 pub mod paper;
@@ -25,7 +29,11 @@ pub mod policy_kind;
 pub mod report;
 pub mod scene;
 pub mod scene_error;
+mod scene_event_file;
+mod scene_events;
 mod scene_file;
+mod scene_instruments;
+mod scene_pair;
 mod supervisor_setup;
 pub mod table;
 pub mod trace;

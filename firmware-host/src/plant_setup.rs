@@ -1,8 +1,7 @@
 //! The plant from the scene's keys: alternatives resolved, every value checked.
 
 use crate::scene_error::{Checks, SceneError, SceneText};
-use crate::scene_file::{PerAxis, RingFile, RotorFile, SceneFile};
-use plant_model::V2;
+use crate::scene_file::{RingFile, RotorFile, SceneFile};
 use plant_model::contact::damping_for_restitution;
 use plant_model::params::{
     ContactParams, FrictionParams, MagnetParams, PlantParams, RingParams, RotorParams,
@@ -135,14 +134,10 @@ fn rotor_of(
 }
 
 fn ring_of(file: &RingFile) -> RingParams {
-    let vector = |p: PerAxis| match p {
-        PerAxis::Both(x) => V2::repeat(x),
-        PerAxis::Each(xy) => xy.0.into(),
-    };
     RingParams {
         mass_kg: file.mass_kg,
-        stiffness_n_m: vector(file.stiffness_n_m),
-        damping_n_s_m: vector(file.damping_n_s_m),
+        stiffness_n_m: file.stiffness_n_m.vector(),
+        damping_n_s_m: file.damping_n_s_m.vector(),
     }
 }
 

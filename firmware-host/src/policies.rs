@@ -1,7 +1,8 @@
 //! What may drive the magnet: baselines, and the supervisor in front of the levitation controller.
 
 use crate::clairvoyant::Clairvoyant;
-use crate::levitation::Levitation;
+use crate::instruments::Reading;
+use crate::levitation::{Levitation, VelocityFilter, limited_n};
 use crate::policy_kind::PolicyKind;
 use crate::scene::Scene;
 use plant_model::{Snapshot, V2};
@@ -19,6 +20,15 @@ pub enum Policy {
         /// Capacity \[N\].
         force_n: f64,
     },
+    /// Force against the speed only.
+    Damping {
+        /// Speed from positions.
+        velocity: VelocityFilter,
+        /// Force per speed \[N s/m\].
+        coefficient_n_s_m: f64,
+        /// Capacity \[N\].
+        force_max_n: f64,
+    },
     /// The saturated levitation controller alone.
     Levitation(Levitation),
     /// The reference that knows the true state.
@@ -31,9 +41,18 @@ pub enum Policy {
         levitation: Levitation,
         /// What it told the controller's integrator.
         hint: IntegratorHint,
-        /// Tick counter.
-        sequence: u32,
     },
+}
+
+/// What firmware knows at a tick.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Seen {
+    /// Position and its number.
+    pub reading: Reading,
+    /// Spin as reported \[rad/s\].
+    pub spin_rad_s: f64,
+    /// What is valid and ready.
+    pub status: Status,
 }
 
 impl Policy {
@@ -51,18 +70,26 @@ impl Policy {
                 band_m: scene.radial_band * scene.plant.contact.clearance_m,
                 force_n,
             },
+            PolicyKind::Damping => {
+                let filter_s = scene.levitation.map_or(0.0, |l| l.derivative_filter_s);
+                Self::Damping {
+                    velocity: VelocityFilter::new(filter_s, 1.0 / scene.sample_rate_hz),
+                    coefficient_n_s_m: scene.damping_n_s_m,
+                    force_max_n: force_n,
+                }
+            }
             PolicyKind::Levitation => Self::Levitation(levitation()?),
             PolicyKind::Supervisor => Self::Supervisor {
                 supervisor: Box::new(Supervisor::new(&scene.supervisor?).ok()?),
                 levitation: levitation()?,
                 hint: IntegratorHint::Run,
-                sequence: 0,
             },
         })
     }
 
-    /// One tick: measured position and spin in, commanded force \[N\] out.
-    pub fn tick(&mut self, measured_m: V2, spin_rad_s: f64) -> V2 {
+    /// One tick: what is seen in, commanded force \[N\] out.
+    pub fn tick(&mut self, seen: &Seen) -> V2 {
+        let measured_m = seen.reading.position_m;
         match self {
             Self::Passive | Self::Clairvoyant(_) => V2::zeros(),
             Self::Radial { band_m, force_n } => {
@@ -73,23 +100,29 @@ impl Policy {
                     V2::zeros()
                 }
             }
+            Self::Damping {
+                velocity,
+                coefficient_n_s_m,
+                force_max_n,
+            } => {
+                let speed = velocity.velocity_m_s(velocity.usable_m(measured_m));
+                limited_n(-*coefficient_n_s_m * speed, *force_max_n)
+            }
             Self::Levitation(levitation) => levitation.force_n(measured_m, IntegratorHint::Run),
             Self::Supervisor {
                 supervisor,
                 levitation,
                 hint,
-                sequence,
             } => {
                 let single = |v: V2| [v.x as f32, v.y as f32];
                 let command = supervisor.tick(&Sample {
-                    sequence: *sequence,
-                    status: Status::SPIN_VALID | Status::BEARING_ON,
+                    sequence: seen.reading.sequence,
+                    status: seen.status,
                     position_m: single(measured_m),
-                    spin_rad_s: spin_rad_s as f32,
+                    spin_rad_s: seen.spin_rad_s as f32,
                     levitation_n: single(levitation.force_n(measured_m, *hint)),
                 });
                 *hint = command.integrator;
-                *sequence = sequence.wrapping_add(1);
                 let [x, y] = command.force_n;
                 V2::new(f64::from(x), f64::from(y))
             }

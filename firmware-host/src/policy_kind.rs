@@ -7,6 +7,8 @@ pub enum PolicyKind {
     Passive,
     /// The whole capacity inwards outside a band.
     Radial,
+    /// Force against the speed only.
+    Damping,
     /// The saturated levitation controller alone.
     Levitation,
     /// The supervisor with that levitation controller behind it.
@@ -15,9 +17,10 @@ pub enum PolicyKind {
 
 impl PolicyKind {
     /// All of them.
-    pub const ALL: [Self; 4] = [
+    pub const ALL: [Self; 5] = [
         Self::Passive,
         Self::Radial,
+        Self::Damping,
         Self::Levitation,
         Self::Supervisor,
     ];
@@ -27,6 +30,7 @@ impl PolicyKind {
         match self {
             Self::Passive => "passive",
             Self::Radial => "radial",
+            Self::Damping => "damping",
             Self::Levitation => "levitation",
             Self::Supervisor => "supervisor",
         }

@@ -1,35 +1,27 @@
 //! A scene: the plant, its instruments and controllers, what happens to it, and what is asked.
 
-use crate::instruments::SensorParams;
+use crate::instruments::{SensorParams, SpinSensorParams};
 use crate::levitation::LevitationParams;
+use crate::loads;
 use crate::plant_setup::plant_of;
 use crate::policy_kind::PolicyKind;
 use crate::scene_error::{Checks, SceneError, SceneText, with_guess};
-use crate::scene_file::{LevitationFile, MethodFile, SceneFile};
+use crate::scene_events::events_of;
+use crate::scene_file::{MethodFile, SceneFile};
+use crate::scene_instruments::{
+    amplifier_of, centre_offset_of, damping_of, levitation_of, sensor_of,
+};
 use crate::supervisor_setup;
 use plant_model::analysis::onset::lift_off_speed_m_s;
 use plant_model::params::{PlantParams, Start};
-use plant_model::{Method, V2};
+use plant_model::{BuildError, Method, Options, Plant, V2, build, build_for_changes};
 use std::f64::consts::TAU;
 use std::path::Path;
 
-/// A constant force on the rotor for a while.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Disturbance {
-    /// Beginning \[s\].
-    pub start_s: f64,
-    /// Duration \[s\].
-    pub duration_s: f64,
-    /// Force \[N\].
-    pub force_n: V2,
-}
-
-impl Disturbance {
-    /// End \[s\].
-    pub fn end_s(&self) -> f64 {
-        self.start_s + self.duration_s
-    }
-}
+pub use crate::amplifier::{AmplifierParams, Outage};
+pub use crate::axis::Axis;
+pub use crate::faults::{Fault, FaultKind};
+pub use crate::loads::{BaseMotion, Disturbance, Shape, TimedChange};
 
 /// A scene that can be run: every value checked.
 #[derive(Debug, Clone, PartialEq)]
@@ -48,6 +40,13 @@ pub struct Scene {
     pub feed_forward_n: V2,
     /// Forces that come and go.
     pub disturbances: Vec<Disturbance>,
+    /// Motions of the housing; only for a rigid stator.
+    pub base_motions: Vec<BaseMotion>,
+    /// Parameters that change, in order of time.
+    pub changes: Vec<TimedChange>,
+    /// The centre of the retainer bearing as seen from the centre of magnets and sensors \[m\]. The plant
+    /// keeps the retainer bearing at its origin, so a levitated rotor stands at minus this.
+    pub centre_offset_m: V2,
     /// End of the run \[s\].
     pub duration_s: f64,
     /// Control rate \[Hz\].
@@ -60,12 +59,22 @@ pub struct Scene {
     pub seed: u64,
     /// Policies to run.
     pub policies: Vec<PolicyKind>,
+    /// The amplifier, beside what the plant has of it.
+    pub amplifier: AmplifierParams,
+    /// Its outages.
+    pub outages: Vec<Outage>,
     /// The position sensor.
     pub sensor: SensorParams,
+    /// Its faults.
+    pub faults: Vec<Fault>,
+    /// What is known of the spin.
+    pub spin_sensor: SpinSensorParams,
     /// The levitation controller; needed by the policies that use one.
     pub levitation: Option<LevitationParams>,
     /// `radial` pushes beyond this share of the clearance.
     pub radial_band: f64,
+    /// `damping` sets so much force against speed \[N s/m\].
+    pub damping_n_s_m: f64,
     /// Configuration of the supervisor; needed by the policy of that name.
     pub supervisor: Option<supervisor::Config>,
     /// Backward contact speed above which a run is whirl \[m/s\].
@@ -94,11 +103,70 @@ impl Scene {
         })
     }
 
-    /// Weight and disturbances that act from a time on \[N\].
-    pub fn external_n(&self, from_s: f64) -> V2 {
-        let acting = |d: &&Disturbance| d.start_s <= from_s && from_s < d.end_s();
-        let forces = self.disturbances.iter().filter(acting);
-        forces.fold(self.weight_n, |sum, d| sum + d.force_n)
+    /// A scene's plant at its start, with what its changes need.
+    ///
+    /// # Errors
+    /// [`BuildError`] for the first value out of range.
+    pub fn build(&self, options: Options) -> Result<Box<dyn Plant>, BuildError> {
+        let unbalances = (self.changes.iter()).any(|c| c.change.eccentricity_m.is_some());
+        let build = if unbalances { build_for_changes } else { build };
+        build(&self.plant, &self.start, options)
+    }
+
+    /// Position as seen from the centre of magnets and sensors \[m\].
+    pub fn from_magnets_m(&self, position_m: V2) -> V2 {
+        position_m + self.centre_offset_m
+    }
+
+    /// Mean external force on the rotor from one time to another, between which there is no
+    /// [edge](Self::edges) \[N\]: weight, loads, and what shaft and magnets do about their own centre more
+    /// than about that of the plant.
+    pub fn external_n(&self, from_s: f64, to_s: f64) -> V2 {
+        let constant_n = self.weight_n - self.plant.rotor.stiffness_n_m * self.centre_offset_m;
+        loads::mean_n(self.loads(), constant_n, (from_s, to_s))
+    }
+
+    /// Whether a load that acts from a time on varies.
+    pub(crate) fn varies(&self, from_s: f64) -> bool {
+        let acting = |d: &Disturbance| d.start_s <= from_s && from_s < d.end_s();
+        (self.loads()).any(|d| acting(&d) && d.shape != Shape::Constant)
+    }
+
+    /// Parts in which [`Self::external_n`] is to be held from one time to another.
+    pub fn parts(&self, from_s: f64, to_s: f64) -> u32 {
+        loads::parts(self.loads(), (from_s, to_s))
+    }
+
+    /// Times at which something sets in or ends \[s\], in order.
+    pub fn edges(&self) -> Vec<f64> {
+        let loads = self.loads().flat_map(|d| [d.start_s, d.end_s()]);
+        let outages = (self.outages.iter()).flat_map(|o| [o.start_s, o.end_s()]);
+        let changes = self.changes.iter().map(|c| c.at_s);
+        let mut edges: Vec<f64> = loads.chain(outages).chain(changes).collect();
+        edges.sort_by(f64::total_cmp);
+        edges.dedup();
+        edges
+    }
+
+    /// When the last thing that happens to the rotor is over \[s\]: the end of the last load, and of
+    /// outages and faults that end within the run (others count from their start), or the last change.
+    pub fn clock_starts_s(&self) -> f64 {
+        let within = |start_s: f64, end_s: f64| match end_s < self.duration_s {
+            true => end_s,
+            false => start_s,
+        };
+        (self.loads().map(|d| d.end_s()))
+            .chain(self.outages.iter().map(|o| within(o.start_s, o.end_s())))
+            .chain(self.faults.iter().map(|f| within(f.start_s, f.end_s())))
+            .chain(self.changes.iter().map(|c| c.at_s))
+            .fold(0.0, f64::max)
+    }
+
+    /// Disturbances, and base motions as the forces that the rotor feels.
+    pub(crate) fn loads(&self) -> impl Iterator<Item = Disturbance> {
+        let mass_kg = self.plant.rotor.mass_kg;
+        let inertial = self.base_motions.iter().map(move |b| b.on_mass(mass_kg));
+        self.disturbances.iter().copied().chain(inertial)
     }
 
     /// As [`Scene::parse`], with the file's values edited before they are checked.
@@ -122,7 +190,7 @@ impl Scene {
 
     fn from_file(file: &SceneFile, text: &SceneText) -> Result<Self, SceneError> {
         let plant = plant_of(file, text)?;
-        let start = Start {
+        let mut start = Start {
             position_m: file.start.position_m.0.into(),
             velocity_m_s: file.start.velocity_m_s.0.into(),
             spin_rad_s: file.spin.frequency_hz * TAU,
@@ -146,8 +214,8 @@ impl Scene {
             let message = format!("{ticks:.0} control samples: expected at most 20 million");
             return Err(text.error_at_key("run.duration_s", message, Some(help)));
         }
-        check.within("sensor.quantum_m", file.sensor.quantum_m, 0.0, 1.0)?;
-        check.within("sensor.noise_rms_m", file.sensor.noise_rms_m, 0.0, 1.0)?;
+        let sensor = sensor_of(file, &check)?;
+        let amplifier = amplifier_of(file, &check)?;
         check.within("radial.band", file.radial.band, 0.0, 1.0)?;
         for axis in file.rotor.gravity_m_s2.0 {
             check.within("rotor.gravity_m_s2", axis, -1e4, 1e4)?;
@@ -155,31 +223,11 @@ impl Scene {
         let levitation = file.levitation.as_ref().map(|l| levitation_of(l, &check));
         let levitation = levitation.transpose()?;
         let policies = policies_of(file, text)?;
-        let mut disturbances = Vec::with_capacity(file.disturbance.len());
-        for (i, d) in file.disturbance.iter().enumerate() {
-            check.within(&format!("disturbance[{i}].start_s"), d.start_s, 0.0, 1e5)?;
-            check.within(
-                &format!("disturbance[{i}].duration_s"),
-                d.duration_s,
-                0.0,
-                1e5,
-            )?;
-            if d.start_s >= file.run.duration_s {
-                let key = format!("disturbance[{i}].start_s");
-                let end = file.run.duration_s;
-                let message = format!("is {}, not before the end of the run at {end}", d.start_s);
-                let help = Some("start it earlier, or lengthen run.duration_s".to_owned());
-                return Err(text.error_at_key(&key, message, help));
-            }
-            for force in d.force_n.0 {
-                check.within(&format!("disturbance[{i}].force_n"), force, -1e9, 1e9)?;
-            }
-            disturbances.push(Disturbance {
-                start_s: d.start_s,
-                duration_s: d.duration_s,
-                force_n: d.force_n.0.into(),
-            });
-        }
+        let events = events_of(file, &check)?;
+        let centre_offset_m = centre_offset_of(file, &check)?;
+        start.position_m -= centre_offset_m;
+        let damps = policies.contains(&PolicyKind::Damping);
+        let damping_n_s_m = damping_of(file, &plant, &check, damps)?;
         let supervised = policies.contains(&PolicyKind::Supervisor);
         let supervisor = supervised
             .then(|| supervisor_setup::config(&plant, file, text))
@@ -196,7 +244,10 @@ impl Scene {
             weight_n: plant.rotor.mass_kg * gravity,
             plant,
             start,
-            disturbances,
+            disturbances: events.disturbances,
+            base_motions: events.base_motions,
+            changes: events.changes,
+            centre_offset_m,
             duration_s: file.run.duration_s,
             sample_rate_hz: file.run.sample_rate_hz,
             rtol: file.run.rtol,
@@ -208,12 +259,17 @@ impl Scene {
             },
             seed: file.run.seed,
             policies,
-            sensor: SensorParams {
-                quantum_m: file.sensor.quantum_m,
-                noise_rms_m: file.sensor.noise_rms_m,
+            amplifier,
+            outages: events.outages,
+            sensor,
+            faults: events.faults,
+            spin_sensor: SpinSensorParams {
+                valid: file.spin_sensor.valid,
+                reversed: file.spin_sensor.reversed,
             },
             levitation,
             radial_band: file.radial.band,
+            damping_n_s_m,
             warnings: warnings_of(file, text, supervised),
             supervisor,
         })
@@ -224,24 +280,6 @@ impl Scene {
 fn keys_of(text: &SceneText) -> Result<SceneFile, SceneError> {
     toml::from_str(&text.text)
         .map_err(|error| text.error_in_toml(error.span().unwrap_or(0..0), error.message()))
-}
-
-fn levitation_of(l: &LevitationFile, check: &Checks<'_>) -> Result<LevitationParams, SceneError> {
-    check.within("levitation.proportional_n_m", l.proportional_n_m, 0.0, 1e12)?;
-    check.within("levitation.integral_n_m_s", l.integral_n_m_s, 0.0, 1e15)?;
-    check.within("levitation.derivative_n_s_m", l.derivative_n_s_m, 0.0, 1e9)?;
-    check.within(
-        "levitation.derivative_filter_s",
-        l.derivative_filter_s,
-        0.0,
-        1.0,
-    )?;
-    Ok(LevitationParams {
-        proportional_n_m: l.proportional_n_m,
-        integral_n_m_s: l.integral_n_m_s,
-        derivative_n_s_m: l.derivative_n_s_m,
-        derivative_filter_s: l.derivative_filter_s,
-    })
 }
 
 /// Control rates that the supervisor is made for \[Hz\].

@@ -1,23 +1,10 @@
 //! The scene file as it is written: keys, types and defaults. What the values mean is decided in
 //! [`crate::scene`].
 
+use crate::scene_event_file::{BaseMotionFile, ChangeFile, DisturbanceFile, FaultFile, OutageFile};
+use crate::scene_pair::Pair;
+use plant_model::V2;
 use serde::Deserialize;
-
-/// Two numbers [x, y]; fewer or more are refused.
-#[derive(Debug, Clone, Copy, Default, Deserialize)]
-#[serde(try_from = "Vec<f64>")]
-pub(crate) struct Pair(pub(crate) [f64; 2]);
-
-impl TryFrom<Vec<f64>> for Pair {
-    type Error = String;
-
-    fn try_from(numbers: Vec<f64>) -> Result<Self, String> {
-        let found = numbers.len();
-        <[f64; 2]>::try_from(numbers)
-            .map(Self)
-            .map_err(|_| format!("{found} numbers, expected two: [x, y]"))
-    }
-}
 
 /// A whole file.
 #[derive(Debug, Clone, Deserialize)]
@@ -35,16 +22,30 @@ pub(crate) struct SceneFile {
     pub(crate) stator: StatorFile,
     pub(crate) contact: ContactFile,
     pub(crate) friction: FrictionFile,
+    #[serde(default)]
+    pub(crate) retainer: RetainerFile,
     pub(crate) magnet: Option<MagnetFile>,
     #[serde(default)]
     pub(crate) sensor: SensorFile,
+    #[serde(default)]
+    pub(crate) spin_sensor: SpinSensorFile,
     pub(crate) levitation: Option<LevitationFile>,
     #[serde(default)]
     pub(crate) radial: RadialFile,
     #[serde(default)]
+    pub(crate) damping: DampingFile,
+    #[serde(default)]
     pub(crate) supervisor: toml::Table,
     #[serde(default)]
     pub(crate) disturbance: Vec<DisturbanceFile>,
+    #[serde(default)]
+    pub(crate) base_motion: Vec<BaseMotionFile>,
+    #[serde(default)]
+    pub(crate) outage: Vec<OutageFile>,
+    #[serde(default)]
+    pub(crate) fault: Vec<FaultFile>,
+    #[serde(default)]
+    pub(crate) change: Vec<ChangeFile>,
     #[serde(default)]
     pub(crate) verdict: VerdictFile,
 }
@@ -132,6 +133,15 @@ pub(crate) enum PerAxis {
     Each(Pair),
 }
 
+impl PerAxis {
+    pub(crate) fn vector(self) -> V2 {
+        match self {
+            Self::Both(x) => V2::repeat(x),
+            Self::Each(xy) => xy.0.into(),
+        }
+    }
+}
+
 /// One ring with its mounting.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table with keys")]
@@ -162,6 +172,14 @@ pub(crate) struct FrictionFile {
     pub(crate) rolling_coefficient: f64,
 }
 
+/// The retainer bearing.
+#[derive(Debug, Clone, Default, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table with keys")]
+pub(crate) struct RetainerFile {
+    #[serde(default)]
+    pub(crate) centre_offset_m: Pair,
+}
+
 /// The magnet.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table with keys")]
@@ -171,6 +189,14 @@ pub(crate) struct MagnetFile {
     pub(crate) lag_s: f64,
     #[serde(default)]
     pub(crate) negative_stiffness_n_m: f64,
+    pub(crate) axis_force_max_n: Option<f64>,
+    pub(crate) slew_n_s: Option<f64>,
+    #[serde(default = "default_delay")]
+    pub(crate) delay_samples: u32,
+}
+
+fn default_delay() -> u32 {
+    1
 }
 
 /// The position sensor.
@@ -181,6 +207,37 @@ pub(crate) struct SensorFile {
     pub(crate) quantum_m: f64,
     #[serde(default)]
     pub(crate) noise_rms_m: f64,
+    #[serde(default)]
+    pub(crate) offset_m: Pair,
+    pub(crate) gain: Option<PerAxis>,
+    #[serde(default)]
+    pub(crate) delay_samples: u32,
+    #[serde(default)]
+    pub(crate) swapped: bool,
+    pub(crate) range_m: Option<f64>,
+}
+
+/// What is known of the spin.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table with keys")]
+pub(crate) struct SpinSensorFile {
+    #[serde(default = "default_valid")]
+    pub(crate) valid: bool,
+    #[serde(default)]
+    pub(crate) reversed: bool,
+}
+
+fn default_valid() -> bool {
+    true
+}
+
+impl Default for SpinSensorFile {
+    fn default() -> Self {
+        Self {
+            valid: default_valid(),
+            reversed: false,
+        }
+    }
 }
 
 /// The stand-in firmware's levitation controller.
@@ -217,13 +274,11 @@ impl Default for RadialFile {
     }
 }
 
-/// A force on the rotor for a while.
-#[derive(Debug, Clone, Deserialize)]
+/// The pure-damping baseline.
+#[derive(Debug, Clone, Default, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table with keys")]
-pub(crate) struct DisturbanceFile {
-    pub(crate) start_s: f64,
-    pub(crate) duration_s: f64,
-    pub(crate) force_n: Pair,
+pub(crate) struct DampingFile {
+    pub(crate) coefficient_n_s_m: Option<f64>,
 }
 
 /// How the end is judged.

@@ -6,7 +6,7 @@ use plant_model::params::PlantParams;
 use supervisor::{Config, PARAMETERS};
 
 /// Where the suggested value of a parameter comes from.
-const SOURCES: [(&str, &str); 11] = [
+const SOURCES: [(&str, &str); 12] = [
     ("sample_period_s", "run.sample_rate_hz"),
     ("mass_kg", "rotor.mass_kg"),
     ("stiffness_n_m", "rotor"),
@@ -14,6 +14,7 @@ const SOURCES: [(&str, &str); 11] = [
     ("clearance_m", "contact.clearance_m"),
     ("force_max_n", "magnet.force_max_n"),
     ("amplifier_lag_s", "magnet.lag_s"),
+    ("delay_samples", "magnet.delay_samples"),
     ("friction_coefficient", "friction.coefficient"),
     ("restitution", "contact.restitution"),
     ("contact_band", "sensor"),
@@ -81,7 +82,9 @@ fn suggested(plant: &PlantParams, file: &SceneFile) -> Config {
         clearance_m: plant.contact.clearance_m as f32,
         force_max_n: force_max_n as f32,
         amplifier_lag_s: plant.magnet.map_or(0.0, |m| m.lag_s) as f32,
-        delay_samples: 1.0,
+        // An old position is the same to it as a late force.
+        delay_samples: (file.magnet.as_ref().map_or(1, |m| m.delay_samples)
+            + file.sensor.delay_samples) as f32,
         friction_coefficient: plant.friction.sliding.coefficient(0.0) as f32,
         restitution: file.contact.restitution.unwrap_or(0.7).min(0.95) as f32,
         observer_pole_flight: pole_for(noise, 0.5, second_order_noise),

@@ -13,6 +13,13 @@ const FIGURES: &[Figure] = &[
     ("contact time [ms]", |v| {
         format!("{:.3}", v.contact_time_s * 1e3)
     }),
+    ("contact impulse [N s]", |v| {
+        format!("{:.3}", v.contact_impulse_n_s)
+    }),
+    ("contacts over 20 mm/s", |v| {
+        v.contacts_over_20_mm_s.to_string()
+    }),
+    ("first contact [ms]", |v| or_dash(v.first_contact_s, 1e3, 2)),
     ("peak penetration [µm]", |v| {
         format!("{:.2}", v.peak_penetration_m * 1e6)
     }),

@@ -31,6 +31,12 @@ pub struct Verdict {
     pub impacts: u64,
     /// Time in contact \[s\].
     pub contact_time_s: f64,
+    /// Impulse of the normal force, ∫ f_n dt \[N s\].
+    pub contact_impulse_n_s: f64,
+    /// Number of touches with a normal speed above 20 mm/s.
+    pub contacts_over_20_mm_s: u64,
+    /// When it touched first \[s\]; `None` if never.
+    pub first_contact_s: Option<f64>,
     /// Largest penetration of the clearance circle by the contact \[m\].
     pub peak_penetration_m: f64,
     /// Largest normal force \[N\].

@@ -6,7 +6,7 @@ use crate::policy_kind::PolicyKind;
 use crate::scene::Scene;
 use crate::trace::{Trace, TraceRow};
 use crate::verdict::{Check, Verdict, Verification};
-use plant_model::{Method, Mode, Options, build};
+use plant_model::{Method, Mode, Options};
 
 /// Number of checks of a run.
 pub const CHECKS: usize = 2;
@@ -28,7 +28,7 @@ pub fn check_scenes(scene: &Scene) -> Result<[Scene; CHECKS], RunError> {
         method: scene.method,
         ..Options::default()
     };
-    let own = build(&scene.plant, &scene.start, options)?.method();
+    let own = scene.build(options)?.method();
     let check = |method: Method, rtol: f64| Scene {
         method,
         rtol: rtol.max(TIGHTEST).min(scene.rtol),

@@ -91,6 +91,9 @@ fn resolved(scene: &Scene, rtol: f64) -> Result<&'static str, AccuracyError> {
     let at_once = Scene {
         duration_s: f64::MIN_POSITIVE,
         disturbances: Vec::new(),
+        base_motions: Vec::new(),
+        outages: Vec::new(),
+        changes: Vec::new(),
         ..scene.clone()
     };
     run(&at_once, scene.method, rtol).map(|ending| ending.method.name())

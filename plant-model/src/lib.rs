@@ -41,7 +41,8 @@ pub type V2 = nalgebra::Vector2<f64>;
 
 pub use integrate::{Method, Options, PlantError};
 pub use mode::Mode;
+pub use params::Change;
 pub use part::Body;
-pub use plant::{BuildError, Plant, build};
-pub use readout::{Meters, Snapshot, Work};
+pub use plant::{BuildError, Plant, build, build_for_changes};
+pub use readout::{HARD_IMPACT_M_S, Meters, Snapshot, Work};
 pub use system::Inputs;

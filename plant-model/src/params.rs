@@ -148,6 +148,39 @@ pub struct Start {
     pub spin_phase_rad: f64,
 }
 
+/// Parameters that take other values from an instant on; `None` stays as it is.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Change {
+    /// New eccentricity ε_r \[m\], ≥ 0: a lost blade. A plant that spins freely and starts balanced must be
+    /// built by [`crate::build_for_changes`].
+    pub eccentricity_m: Option<f64>,
+    /// New coefficient of sliding friction, the same at every speed, ≥ 0.
+    pub friction_coefficient: Option<f64>,
+    /// New drive torque \[N m\]; needs a free spin.
+    pub drive_torque_n_m: Option<f64>,
+}
+
+impl Change {
+    /// Checks every value against its range.
+    ///
+    /// # Errors
+    /// The first field that is out of range.
+    pub fn validate(&self) -> Result<(), ParamError> {
+        not_negative(
+            "rotor.eccentricity_m",
+            self.eccentricity_m.unwrap_or_default(),
+        )?;
+        not_negative(
+            "friction.coefficient",
+            self.friction_coefficient.unwrap_or_default(),
+        )?;
+        finite(
+            "spin.drive_torque_n_m",
+            self.drive_torque_n_m.unwrap_or_default(),
+        )
+    }
+}
+
 const POSITIVE: &str = "a finite number greater than 0";
 const NOT_NEGATIVE: &str = "a finite number, 0 or greater";
 const FINITE: &str = "a finite number";

@@ -5,7 +5,7 @@ use crate::integrate::driver::Run;
 use crate::integrate::{Method, Options, PlantError};
 use crate::magnet::{Amplifier, Direct, Lagged};
 use crate::mode::Mode;
-use crate::params::{ParamError, PlantParams, SpinParams, Start, StatorParams};
+use crate::params::{Change, ParamError, PlantParams, SpinParams, Start, StatorParams};
 use crate::part::{Body, Part};
 use crate::readout::{Meters, Snapshot, Work};
 use crate::spin::{Free, FreePhased, Held, Spin};
@@ -33,6 +33,12 @@ pub trait Plant: Send {
         inputs: &Inputs,
         on_change: &mut dyn FnMut(&Snapshot),
     ) -> Result<(), PlantError>;
+    /// Gives parameters other values from now on. Position, speeds and stored energy stay: none of these
+    /// parameters has a share in the stored energy, and what they do from here on is booked as before.
+    ///
+    /// # Errors
+    /// A value that is out of range, or that this plant has no part for. Then nothing has changed.
+    fn change(&mut self, change: &Change) -> Result<(), ParamError>;
     /// What can be read off now.
     fn snapshot(&self) -> Snapshot;
     /// Mode now.
@@ -57,6 +63,9 @@ impl<S: Stator, W: Spin, M: Amplifier> Plant for Run<S, W, M> {
         on_change: &mut dyn FnMut(&Snapshot),
     ) -> Result<(), PlantError> {
         Run::advance(self, t_end_s, inputs, on_change)
+    }
+    fn change(&mut self, change: &Change) -> Result<(), ParamError> {
+        Run::change(self, change)
     }
     fn snapshot(&self) -> Snapshot {
         Run::snapshot(self)
@@ -91,6 +100,29 @@ pub fn build(
     start: &Start,
     options: Options,
 ) -> Result<Box<dyn Plant>, BuildError> {
+    checked(params, start, options)?;
+    Ok(with_parts(
+        params,
+        start,
+        options,
+        params.rotor.eccentricity_m > 0.0,
+    ))
+}
+
+/// [`build`] with a rotor whose angle is followed from the start, so that an unbalance may come later.
+///
+/// # Errors
+/// As [`build`].
+pub fn build_for_changes(
+    params: &PlantParams,
+    start: &Start,
+    options: Options,
+) -> Result<Box<dyn Plant>, BuildError> {
+    checked(params, start, options)?;
+    Ok(with_parts(params, start, options, true))
+}
+
+fn checked(params: &PlantParams, start: &Start, options: Options) -> Result<(), BuildError> {
     params.validate()?;
     start.validate()?;
     if !(options.rtol >= 1e-14 && options.rtol <= 1e-2) {
@@ -100,23 +132,33 @@ pub fn build(
             expected: "a number from 1e-14 to 0.01",
         }));
     }
-    Ok(match &params.stator {
-        StatorParams::Rigid => with_stator(params, start, options, Rigid),
-        StatorParams::OneMass(ring) => with_stator(params, start, options, OneMass(*ring)),
+    Ok(())
+}
+
+fn with_parts(
+    params: &PlantParams,
+    start: &Start,
+    options: Options,
+    phased: bool,
+) -> Box<dyn Plant> {
+    let made = (options, phased);
+    match &params.stator {
+        StatorParams::Rigid => with_stator(params, start, made, Rigid),
+        StatorParams::OneMass(ring) => with_stator(params, start, made, OneMass(*ring)),
         StatorParams::TwoMass { inner, outer } => {
             let stator = TwoMass {
                 inner: *inner,
                 outer: *outer,
             };
-            with_stator(params, start, options, stator)
+            with_stator(params, start, made, stator)
         }
-    })
+    }
 }
 
 fn with_stator<S: Stator>(
     params: &PlantParams,
     start: &Start,
-    o: Options,
+    (o, phased): (Options, bool),
     stator: S,
 ) -> Box<dyn Plant> {
     match params.spin {
@@ -135,7 +177,7 @@ fn with_stator<S: Stator>(
                 inertia_kg_m2,
                 drive_torque_n_m,
             };
-            if params.rotor.eccentricity_m > 0.0 {
+            if phased {
                 with_spin(params, start, o, stator, FreePhased(free))
             } else {
                 with_spin(params, start, o, stator, free)

@@ -40,11 +40,16 @@ pub struct Snapshot {
     pub whirl_angle_rad: f64,
 }
 
+/// Normal speed above which a touch counts as a hard one \[m/s\].
+pub const HARD_IMPACT_M_S: f64 = 0.02;
+
 /// Extremes and sums over a run, taken at every step and not only at samples.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Meters {
     /// Number of touches.
     pub impacts: u64,
+    /// Touches with a normal speed above [`HARD_IMPACT_M_S`].
+    pub hard_impacts: u64,
     /// Time in contact \[s\].
     pub contact_time_s: f64,
     /// Largest normal speed at a touch \[m/s\].

@@ -7,6 +7,8 @@ use crate::part::{Part, Weights};
 pub(crate) trait Spin: Copy + Send + 'static {
     /// What changes in time.
     type State: Part;
+    /// Whether the angle of the rotor is known, which an unbalance needs.
+    const KNOWS_ANGLE: bool = true;
     /// State at the start of a run.
     fn start(&self, spin_rad_s: f64, phase_rad: f64) -> Self::State;
     /// Ω \[rad/s\].
@@ -19,6 +21,10 @@ pub(crate) trait Spin: Copy + Send + 'static {
     fn inverse_inertia(&self) -> f64;
     /// Drive torque t_d \[N m\]; 0 where the speed is held, since friction decides it there.
     fn drive_torque_n_m(&self) -> f64;
+    /// Drive torque replaced, where the speed is free; says whether it was.
+    fn set_drive_torque_n_m(&mut self, _torque_n_m: f64) -> bool {
+        false
+    }
     /// Time derivative for a spin acceleration \[rad/s²\].
     fn rates(&self, state: &Self::State, acceleration: f64) -> Self::State;
     /// What a change of the state changes in spin and angle.
@@ -146,6 +152,11 @@ pub(crate) struct Free {
 
 impl Spin for Free {
     type State = SpinState;
+    const KNOWS_ANGLE: bool = false;
+    fn set_drive_torque_n_m(&mut self, torque_n_m: f64) -> bool {
+        self.drive_torque_n_m = torque_n_m;
+        true
+    }
     fn change(change: &SpinState) -> (f64, f64) {
         (change.0, 0.0)
     }
@@ -187,6 +198,9 @@ pub(crate) struct FreePhased(pub Free);
 
 impl Spin for FreePhased {
     type State = (SpinState, PhaseState);
+    fn set_drive_torque_n_m(&mut self, torque_n_m: f64) -> bool {
+        self.0.set_drive_torque_n_m(torque_n_m)
+    }
     fn change(change: &Self::State) -> (f64, f64) {
         (change.0.0, change.1.0)
     }

@@ -3,7 +3,7 @@
 use firmware_host::closed_loop::{Keep, run};
 use firmware_host::levitation::LevitationParams;
 use firmware_host::policy_kind::PolicyKind;
-use firmware_host::scene::{Disturbance, Scene};
+use firmware_host::scene::{Disturbance, Scene, Shape};
 use firmware_host::verdict::{Outcome, Verdict};
 use plant_model::V2;
 use system_tests::{golden, scene};
@@ -158,6 +158,7 @@ fn a_carried_weight_is_not_dropped_at_hand_over() {
             start_s: 0.2,
             duration_s: 1e-3,
             force_n: V2::new(0.6 * push_n, 0.8 * push_n),
+            shape: Shape::Constant,
         }];
         let alone = verdict(&scene, PolicyKind::Levitation);
         let supervised = verdict(&scene, PolicyKind::Supervisor);

@@ -170,11 +170,7 @@ fn summary(scene: &Scene) -> SceneSummary {
         clearance_m: scene.plant.contact.clearance_m,
         force_max_n: scene.plant.magnet.map(|m| m.force_max_n),
         whirl_speed_m_s: scene.whirl_speed_m_s,
-        disturbances_s: scene
-            .disturbances
-            .iter()
-            .map(|d| (d.start_s, d.end_s()))
-            .collect(),
+        disturbances_s: scene.loads().map(|d| (d.start_s, d.end_s())).collect(),
         duration_s: scene.duration_s,
     }
 }

@@ -1,5 +1,6 @@
 //! Carries a plant from control sample to control sample, mode by mode.
 
+mod changing;
 mod flying;
 
 use super::contact_step::{ContactStepper, Task};

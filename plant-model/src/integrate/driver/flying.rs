@@ -4,6 +4,7 @@ use super::Run;
 use crate::integrate::flight::Crossing;
 use crate::magnet::Amplifier;
 use crate::mode::{Phase, Slide, Whirl};
+use crate::readout::HARD_IMPACT_M_S;
 use crate::spin::Spin;
 use crate::stator::Stator;
 
@@ -26,6 +27,7 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
         if hit {
             self.meters.impacts += 1;
             let g = self.system.geometry(&self.y);
+            self.meters.hard_impacts += u64::from(g.normal_speed_m_s > HARD_IMPACT_M_S);
             self.meters.peak_impact_speed_m_s =
                 self.meters.peak_impact_speed_m_s.max(g.normal_speed_m_s);
             self.touch_down();

@@ -1,0 +1,174 @@
+//! The amplifier between command and magnet: when a command takes effect, and what limits it. The lag
+//! that follows belongs to the plant.
+
+use crate::axis::Axis;
+use plant_model::V2;
+
+/// What a magnet's amplifier does beside the plant's cap and lag.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AmplifierParams {
+    /// Cap on each component of the force \[N\], beside the cap on the vector.
+    pub axis_force_max_n: Option<f64>,
+    /// Fastest change of each component \[N/s\]: the voltage limit. The lag follows it.
+    pub slew_n_s: Option<f64>,
+    /// Samples from a position to the effect of the command computed from it, 1 to 7.
+    pub delay_samples: usize,
+}
+
+/// Longest delay \[samples\].
+pub(crate) const MOST_DELAY: usize = 7;
+
+impl Default for AmplifierParams {
+    fn default() -> Self {
+        Self {
+            axis_force_max_n: None,
+            slew_n_s: None,
+            delay_samples: 1,
+        }
+    }
+}
+
+/// An amplifier that delivers nothing for a while: the field decays with the lag.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Outage {
+    /// Beginning \[s\].
+    pub start_s: f64,
+    /// Duration \[s\].
+    pub duration_s: f64,
+    /// What fails.
+    pub axis: Axis,
+    /// Whether the firmware knows.
+    pub known: bool,
+}
+
+impl Outage {
+    /// End \[s\].
+    pub fn end_s(&self) -> f64 {
+        self.start_s + self.duration_s
+    }
+
+    fn acts(&self, at_s: f64) -> bool {
+        self.start_s <= at_s && at_s < self.end_s()
+    }
+}
+
+/// Parts of a stretch in which a ramp is held, each at its mean.
+const RAMP_PARTS: u32 = 8;
+
+/// The amplifier at work.
+#[derive(Debug, Clone)]
+pub(crate) struct Amplifier {
+    params: AmplifierParams,
+    force_max_n: f64,
+    outages: Vec<Outage>,
+    /// Whether commands go to the plant as they are.
+    plain: bool,
+    /// Commands that wait, by the tick at which they take effect.
+    pending_n: [V2; MOST_DELAY + 1],
+    /// The command in effect.
+    register_n: V2,
+    /// Where the slew limit has got to.
+    ramped_n: V2,
+}
+
+impl Amplifier {
+    pub(crate) fn new(params: AmplifierParams, force_max_n: f64, outages: &[Outage]) -> Self {
+        let limited = params.axis_force_max_n.is_some() || params.slew_n_s.is_some();
+        Self {
+            params,
+            force_max_n,
+            outages: outages.to_vec(),
+            plain: outages.is_empty() && !limited,
+            pending_n: [V2::zeros(); MOST_DELAY + 1],
+            register_n: V2::zeros(),
+            ramped_n: V2::zeros(),
+        }
+    }
+
+    /// The command computed at a tick; what is no number is no command.
+    pub(crate) fn command(&mut self, tick: u64, command_n: V2) {
+        let finite = command_n.iter().all(|x| x.is_finite());
+        let delay = self.params.delay_samples.clamp(1, MOST_DELAY) as u64;
+        *self.slot(tick + delay) = if finite { command_n } else { V2::zeros() };
+    }
+
+    /// A command that takes effect without delay: only for a policy that needs no time.
+    pub(crate) fn command_at_once(&mut self, command_n: V2) {
+        self.register_n = command_n;
+    }
+
+    /// A tick begins.
+    pub(crate) fn begin(&mut self, tick: u64) {
+        self.register_n = *self.slot(tick);
+    }
+
+    fn slot(&mut self, tick: u64) -> &mut V2 {
+        &mut self.pending_n[tick as usize % (MOST_DELAY + 1)]
+    }
+
+    /// The command in effect, as the policy gave it.
+    pub(crate) fn in_effect_n(&self) -> V2 {
+        self.register_n
+    }
+
+    /// Whether the firmware knows at this time that no axis delivers anything.
+    pub(crate) fn known_off(&self, at_s: f64) -> bool {
+        let off = |component: usize| {
+            (self.outages.iter()).any(|o| o.known && o.axis.has(component) && o.acts(at_s))
+        };
+        off(0) && off(1)
+    }
+
+    /// Parts in which what is delivered from a time on is to be held.
+    pub(crate) fn parts(&self, from_s: f64) -> u32 {
+        if self.params.slew_n_s.is_some() && self.target_n(from_s) != self.ramped_n {
+            RAMP_PARTS
+        } else {
+            1
+        }
+    }
+
+    /// Where the command in effect leads.
+    fn target_n(&self, at_s: f64) -> V2 {
+        let mut target = self.register_n;
+        let size = target.norm();
+        if size > self.force_max_n {
+            target *= self.force_max_n / size;
+        }
+        if let Some(most) = self.params.axis_force_max_n {
+            target = target.map(|x| x.clamp(-most, most));
+        }
+        for outage in self.outages.iter().filter(|o| o.acts(at_s)) {
+            target = outage.axis.map(target, |_| 0.0);
+        }
+        target
+    }
+
+    /// Mean of the limited command over a part in which no outage begins or ends \[N\].
+    pub(crate) fn deliver(&mut self, from_s: f64, to_s: f64) -> V2 {
+        if self.plain {
+            return self.register_n;
+        }
+        let target = self.target_n(from_s);
+        let Some(slew) = self.params.slew_n_s else {
+            return target;
+        };
+        // No current flows where the amplifier is out.
+        for outage in self.outages.iter().filter(|o| o.acts(from_s)) {
+            self.ramped_n = outage.axis.map(self.ramped_n, |_| 0.0);
+        }
+        let step_s = to_s - from_s;
+        let mut mean = target;
+        for i in [0, 1] {
+            let (old, way) = (self.ramped_n[i], target[i] - self.ramped_n[i]);
+            let share = way.abs() / (slew * step_s);
+            if share > 1.0 {
+                let new = old + way.signum() * slew * step_s;
+                (mean[i], self.ramped_n[i]) = (0.5 * (old + new), new);
+            } else {
+                (mean[i], self.ramped_n[i]) = (target[i] - 0.5 * way * share, target[i]);
+            }
+        }
+        mean
+    }
+}

@@ -1,0 +1,122 @@
+//! Loads with a course, base motion, and the retainer bearing off the centre.
+
+use crate::{free_rotor, last, near, ridden, samples};
+use firmware_host::policy_kind::PolicyKind;
+use firmware_host::scene::{BaseMotion, Disturbance, Shape};
+use firmware_host::verdict::Outcome;
+use plant_model::V2;
+use std::f64::consts::{PI, TAU};
+use system_tests::scene;
+
+/// ∫ F·sin(πt/D) dt = 2FD/π, and what a double integral of it gives for the way.
+#[test]
+fn a_half_sine_gives_its_momentum_and_its_way() {
+    let mut scene = free_rotor();
+    // Neither begins nor ends at a sample.
+    let (start_s, duration_s, force_n) = (0.010_013, 0.011_007, 1500.0);
+    scene.disturbances = vec![Disturbance {
+        start_s,
+        duration_s,
+        force_n: V2::new(force_n, -0.5 * force_n),
+        shape: Shape::HalfSine,
+    }];
+    scene.duration_s = 0.03;
+    let end = last(&ridden(&scene, PolicyKind::Passive).1).plant;
+    let speed = 2.0 * force_n * duration_s / (PI * 10.0);
+    near("speed", end.velocity_m_s.x, speed, 1e-12);
+    near("speed y", end.velocity_m_s.y, -0.5 * speed, 1e-12);
+    // By symmetry half the speed on average during the shock.
+    let way = speed * (0.5 * duration_s + (0.03 - start_s - duration_s));
+    // Edges cut the first and the last period in two.
+    near("way", end.position_m.x, way, 1e-9);
+}
+
+/// r = F/(mω²)·(ωt − sin ωt) for a force F·sin ωt on a free mass at rest, within 1e-4 of the amplitude.
+#[test]
+fn a_sine_moves_a_free_rotor_by_its_closed_form() {
+    for frequency_hz in [100.0, 1730.0] {
+        let mut scene = free_rotor();
+        let (force_n, rate) = (1000.0, TAU * frequency_hz);
+        scene.duration_s = 0.02;
+        scene.disturbances = vec![Disturbance {
+            start_s: 0.0,
+            duration_s: 1.0,
+            force_n: V2::new(force_n, 0.0),
+            shape: Shape::Sine {
+                frequency_hz,
+                phase_rad: 0.0,
+            },
+        }];
+        let amplitude_m = force_n / (10.0 * rate * rate);
+        for row in samples(&ridden(&scene, PolicyKind::Passive).1) {
+            let phase = rate * row.plant.t_s;
+            let exact = amplitude_m * (phase - phase.sin());
+            let error = (row.plant.position_m.x - exact).abs() / amplitude_m;
+            assert!(error < 1e-4, "{frequency_hz} Hz: {error:e}");
+        }
+    }
+}
+
+/// Housing a·sin(ωt + π/2): a free rotor stays behind by a/ω²·(1 − cos ωt).
+#[test]
+fn base_motion_leaves_a_free_rotor_behind() {
+    let mut scene = free_rotor();
+    let (frequency_hz, a) = (50.0, 147.15);
+    let rate = TAU * frequency_hz;
+    scene.duration_s = 0.04;
+    scene.base_motions = vec![BaseMotion {
+        start_s: 0.0,
+        duration_s: 1.0,
+        acceleration_m_s2: V2::new(0.0, a),
+        shape: Shape::Sine {
+            frequency_hz,
+            phase_rad: 0.5 * PI,
+        },
+    }];
+    let amplitude_m = a / (rate * rate);
+    for row in samples(&ridden(&scene, PolicyKind::Passive).1) {
+        let exact = -amplitude_m * (1.0 - (rate * row.plant.t_s).cos());
+        let error = (row.plant.position_m.y - exact).abs() / amplitude_m;
+        assert!(error < 2e-4, "{error:e}");
+    }
+}
+
+/// A levitated rotor rests in the centre of the magnets, which is not that of the retainer bearing, and
+/// that is what counts as the middle.
+#[test]
+fn a_levitated_rotor_rests_in_the_centre_of_the_magnets() {
+    let mut scene = scene("overload_then_release");
+    scene.disturbances.clear();
+    scene.sensor = Default::default();
+    // A third of the clearance: not in the middle of the retainer bearing.
+    scene.centre_offset_m = V2::new(7e-5, -3e-5);
+    let (verdict, trace) = ridden(&scene, PolicyKind::Levitation);
+    let end = last(&trace).plant.position_m;
+    assert!((end + scene.centre_offset_m).norm() < 1e-9, "{end}");
+    assert_eq!(verdict.outcome, Outcome::Recovered);
+    // Without force it falls away from there, as e^(t·√(k/m)).
+    scene.start.position_m = V2::new(1e-6, 0.0) - scene.centre_offset_m;
+    scene.duration_s = 0.02;
+    let (_, trace) = ridden(&scene, PolicyKind::Passive);
+    let row = samples(&trace)[200];
+    let rate = (2e5f64 / 10.0).sqrt();
+    let away = row.plant.position_m + scene.centre_offset_m;
+    near("fall", away.x, 1e-6 * (rate * row.plant.t_s).cosh(), 1e-9);
+    near("as measured", row.measured_m.x, away.x, 1e-15);
+}
+
+/// A shaft that carries the rotor's weight, about the centre of the magnets.
+#[test]
+fn the_shaft_acts_about_the_centre_of_the_magnets() {
+    let mut scene = free_rotor();
+    scene.plant.rotor.stiffness_n_m = 1e5;
+    scene.plant.rotor.damping_n_s_m = 2e3;
+    scene.weight_n = V2::new(0.0, -98.1);
+    scene.centre_offset_m = V2::new(2e-5, 1e-5);
+    scene.duration_s = 2.0;
+    let end = last(&ridden(&scene, PolicyKind::Passive).1)
+        .plant
+        .position_m;
+    near("x", end.x, -2e-5, 1e-9);
+    near("y", end.y, -98.1 / 1e5 - 1e-5, 1e-9);
+}

@@ -1,0 +1,171 @@
+//! Cap per axis, slew limit, outages, delay, and the policy `damping`.
+
+use crate::{apart, free_rotor, last, near, ridden, samples};
+use firmware_host::policy_kind::PolicyKind;
+use firmware_host::scene::{Axis, Outage, Scene};
+use plant_model::V2;
+use system_tests::scene;
+
+/// `radial` outside its band pushes with the whole cap all the time: a constant command.
+fn pushed(direction: V2) -> Scene {
+    let mut scene = free_rotor();
+    scene.radial_band = 0.0;
+    scene.duration_s = 0.004;
+    // Far away, so that the direction does not change.
+    scene.start.position_m = -0.9 * direction;
+    scene.plant.magnet.as_mut().unwrap().force_max_n = 1000.0;
+    scene
+}
+
+fn without_lag(scene: &mut Scene) {
+    scene.plant.magnet.as_mut().unwrap().lag_s = 0.0;
+}
+
+#[test]
+fn each_axis_has_its_own_cap() {
+    let mut scene = pushed(V2::new(0.8, 0.6));
+    scene.amplifier.axis_force_max_n = Some(700.0);
+    without_lag(&mut scene);
+    let end = last(&ridden(&scene, PolicyKind::Radial).1).plant;
+    near("x", end.delivered_n.x, 700.0, 1e-12);
+    near("y", end.delivered_n.y, 600.0, 1e-4);
+}
+
+/// 1000 N at 1 MN/s take 1 ms; the momentum of the ramp is F²/(2·slew) less.
+#[test]
+fn a_slew_limit_makes_a_ramp() {
+    let mut scene = pushed(V2::new(1.0, 0.0));
+    scene.amplifier.slew_n_s = Some(1e6);
+    without_lag(&mut scene);
+    let trace = ridden(&scene, PolicyKind::Radial).1;
+    for row in samples(&trace) {
+        // In effect from the second sample on; what is read off is the mean of the last part.
+        let since = row.plant.t_s - 5e-5;
+        let part_s = 5e-5 / 8.0;
+        let expected = (1e6 * (since - 0.5 * part_s)).clamp(0.0, 1000.0);
+        if since > 0.0 && (since - 1e-3).abs() > 1e-6 {
+            assert!((row.plant.delivered_n.x - expected).abs() < 1e-6, "{since}");
+        }
+    }
+    let speed = 1000.0 * (0.004 - 5e-5 - 0.5e-3) / 10.0;
+    near("speed", last(&trace).plant.velocity_m_s.x, speed, 1e-12);
+    // Behind the lag the ramp arrives τ later.
+    let mut lagged = pushed(V2::new(1.0, 0.0));
+    lagged.amplifier.slew_n_s = Some(1e6);
+    let row = samples(&ridden(&lagged, PolicyKind::Radial).1)[20];
+    let (since, lag) = (row.plant.t_s - 5e-5, 1.6e-4);
+    let expected = 1e6 * (since - lag * (1.0 - (-since / lag).exp()));
+    near("behind the lag", row.plant.delivered_n.x, expected, 1e-3);
+}
+
+/// The field of a failed axis decays with the lag from the exact beginning of the outage, and comes back
+/// with it.
+#[test]
+fn an_outage_lets_the_force_decay() {
+    for (axis, fails) in [
+        (Axis::X, [true, false]),
+        (Axis::Y, [false, true]),
+        (Axis::Both, [true, true]),
+    ] {
+        let mut scene = pushed(V2::new(0.8, 0.6));
+        let (start_s, end_s) = (0.002_013, 0.003_027);
+        scene.outages = vec![Outage {
+            start_s,
+            duration_s: end_s - start_s,
+            axis,
+            known: false,
+        }];
+        let lag = 1.6e-4;
+        // The direction turns by some 1e-5 on the way.
+        for row in samples(&ridden(&scene, PolicyKind::Radial).1) {
+            let t = row.plant.t_s;
+            let risen = |t: f64| 1.0 - (-(t - 5e-5) / lag).exp();
+            for (i, failed) in fails.into_iter().enumerate() {
+                let full = [800.0, 600.0][i];
+                let share = if t < 5e-5 {
+                    0.0
+                } else if !failed || t < start_s {
+                    risen(t)
+                } else if t < end_s {
+                    risen(start_s) * (-(t - start_s) / lag).exp()
+                } else {
+                    let left = risen(start_s) * (-(end_s - start_s) / lag).exp();
+                    1.0 + (left - 1.0) * (-(t - end_s) / lag).exp()
+                };
+                let found = row.plant.delivered_n[i];
+                assert!((found - full * share).abs() < 5e-2, "{axis:?} {t}: {found}");
+            }
+        }
+    }
+}
+
+/// The command of the first sample is in effect so many samples later, and not before.
+#[test]
+fn commands_take_effect_after_their_delay() {
+    for delay in 1..=7 {
+        let mut scene = pushed(V2::new(1.0, 0.0));
+        scene.amplifier.delay_samples = delay;
+        without_lag(&mut scene);
+        let trace = ridden(&scene, PolicyKind::Radial).1;
+        let rows = samples(&trace);
+        let first = rows.iter().position(|r| r.commanded_n.x != 0.0).unwrap();
+        assert_eq!(first, delay);
+        let speed = 1000.0 * (0.004 - 5e-5 * delay as f64) / 10.0;
+        near("speed", last(&trace).plant.velocity_m_s.x, speed, 1e-12);
+    }
+}
+
+/// Firmware that knows of an outage of both axes switches the supervisor to watching.
+#[test]
+fn a_known_outage_of_both_axes_is_told() {
+    let mut scene = scene("overload_then_release");
+    let outage = |axis, known| Outage {
+        start_s: 0.0,
+        duration_s: 1.0,
+        axis,
+        known,
+    };
+    let modes = |scene: &Scene| -> Vec<_> {
+        let trace = ridden(scene, PolicyKind::Supervisor).1;
+        samples(&trace)
+            .iter()
+            .map(|r| (r.supervisor_mode, r.commanded_n))
+            .collect()
+    };
+    scene.duration_s = 0.04;
+    scene.outages = vec![outage(Axis::Both, false)];
+    let unknown = modes(&scene);
+    scene.outages = vec![outage(Axis::Both, true)];
+    let known = modes(&scene);
+    assert_ne!(unknown, known);
+    scene.outages = vec![outage(Axis::X, true), outage(Axis::Y, true)];
+    assert_eq!(modes(&scene), known, "one after the other");
+    scene.outages = vec![outage(Axis::X, true), outage(Axis::Y, false)];
+    assert_eq!(modes(&scene), unknown, "not told of one");
+}
+
+/// v̇ = −d/m·v, but for the delay; saturated it brakes with the cap.
+#[test]
+fn damping_brakes_and_does_not_centre() {
+    let mut scene = free_rotor();
+    without_lag(&mut scene);
+    scene.levitation = None;
+    scene.damping_n_s_m = 100.0;
+    scene.start.velocity_m_s = V2::new(0.3, 0.4);
+    scene.start.position_m = V2::new(1e-3, 0.0);
+    scene.duration_s = 0.2;
+    let end = last(&ridden(&scene, PolicyKind::Damping).1).plant;
+    // The first command is zero, the others come one sample late from a speed half a sample old.
+    let left = (-(0.2f64 - 2e-4) / 0.1).exp();
+    near("speed", end.velocity_m_s.norm(), 0.5 * left, 5e-3);
+    scene.damping_n_s_m = 1e6;
+    scene.duration_s = 2e-3;
+    let end = last(&ridden(&scene, PolicyKind::Damping).1).plant;
+    near(
+        "saturated",
+        end.velocity_m_s.norm(),
+        0.5 - 100.0 * (2e-3 - 1e-4),
+        1e-9,
+    );
+    assert!(apart(end.delivered_n, V2::new(-600.0, -800.0)) < 1e-6);
+}

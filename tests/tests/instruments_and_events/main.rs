@@ -1,0 +1,62 @@
+//! What scenes can ask of instruments and amplifier, and what can happen during a run: each against a
+//! closed form or an exact expectation.
+
+mod changes;
+mod faults;
+mod loads;
+mod magnet;
+mod refusals;
+
+use firmware_host::closed_loop::{Keep, run};
+use firmware_host::policy_kind::PolicyKind;
+use firmware_host::scene::Scene;
+use firmware_host::trace::{Trace, TraceRow};
+use firmware_host::verdict::Verdict;
+use plant_model::V2;
+use system_tests::scene;
+
+/// A free rotor in the middle of a clearance that it does not reach: no stiffness, no weight, an ideal
+/// sensor, a magnet with a lag of 0.16 ms, 20 kHz.
+fn free_rotor() -> Scene {
+    let mut scene = scene("overload_then_release");
+    scene.disturbances.clear();
+    scene.plant.rotor.stiffness_n_m = 0.0;
+    scene.plant.contact.clearance_m = 1.0;
+    scene.sensor = Default::default();
+    scene
+}
+
+fn ridden(scene: &Scene, kind: PolicyKind) -> (Verdict, Trace) {
+    let (verdict, trace) = run(scene, kind, Keep::Trace, &mut |_| {}).unwrap();
+    assert!(
+        verdict.energy_residual < 1e-8,
+        "{}",
+        verdict.energy_residual
+    );
+    (verdict, trace)
+}
+
+/// Rows at control samples.
+fn samples(trace: &Trace) -> Vec<TraceRow> {
+    trace
+        .rows
+        .iter()
+        .filter(|r| !r.mode_change)
+        .copied()
+        .collect()
+}
+
+fn last(trace: &Trace) -> TraceRow {
+    *trace.rows.last().unwrap()
+}
+
+fn near(what: &str, found: f64, expected: f64, relative: f64) {
+    assert!(
+        (found - expected).abs() <= relative * expected.abs().max(f64::MIN_POSITIVE),
+        "{what}: {found:e}, expected {expected:e}"
+    );
+}
+
+fn apart(a: V2, b: V2) -> f64 {
+    (a - b).norm()
+}
