@@ -74,9 +74,17 @@ pub struct Reading {
 pub struct Sensor {
     params: SensorParams,
     noise: ChaCha8Rng,
-    /// `None` without faults.
-    faults: Option<Faults>,
-    /// Positions back to the longest delay, the newest first; empty where nothing is delayed.
+    /// Number of the next new sample.
+    sequence: u32,
+    /// What is needed beside noise and converter; `None` where nothing is.
+    more: Option<Box<More>>,
+}
+
+/// A sensor's memory, and its faults.
+#[derive(Debug, Clone)]
+struct More {
+    faults: Faults,
+    /// Positions back to the longest delay, the newest first.
     past_m: VecDeque<V2>,
     longest_delay: usize,
     last: Option<Reading>,
@@ -85,67 +93,37 @@ pub struct Sensor {
 impl Sensor {
     /// A sensor that is read every `period_s`; the same seed gives the same noise.
     pub fn new(params: SensorParams, faults: &[Fault], period_s: f64, seed: u64) -> Self {
-        let mut chance = ChaCha8Rng::seed_from_u64(seed);
-        chance.set_stream(1);
-        let faults =
-            (!faults.is_empty()).then(|| Faults::new(faults, period_s, params.range_m, chance));
-        let longest = faults.as_ref().map_or(0, Faults::longest_delay);
+        let plain = SensorParams {
+            quantum_m: params.quantum_m,
+            noise_rms_m: params.noise_rms_m,
+            ..SensorParams::default()
+        };
+        let more = (params != plain || !faults.is_empty()).then(|| {
+            let mut chance = ChaCha8Rng::seed_from_u64(seed);
+            chance.set_stream(1);
+            let faults = Faults::new(faults, period_s, params.range_m, chance);
+            Box::new(More {
+                longest_delay: params.delay_samples + faults.longest_delay(),
+                faults,
+                past_m: VecDeque::new(),
+                last: None,
+            })
+        });
         Self {
             params,
             noise: ChaCha8Rng::seed_from_u64(seed),
-            faults,
-            past_m: VecDeque::new(),
-            longest_delay: params.delay_samples + longest,
-            last: None,
+            sequence: 0,
+            more,
         }
     }
 
     /// Reads the position once.
     pub fn read(&mut self, t_s: f64, position_m: V2) -> Reading {
-        let position_m = self.delayed(t_s, position_m);
-        let mut x = self.conditioned(t_s, position_m);
-        let last = self.last;
-        let mut dropped = false;
-        if let Some(faults) = &self.faults {
-            x = faults.digital(t_s, x, last.map_or(x, |last| last.position_m));
-            dropped = faults.dropped(t_s);
-        }
-        let reading = match last {
-            Some(last) if dropped => last,
-            last => Reading {
-                sequence: last.map_or(0, |last| last.sequence.wrapping_add(1)),
-                position_m: x,
-            },
-        };
-        self.last = Some(reading);
-        reading
-    }
-
-    /// Before the run the rotor stood where it started.
-    fn delayed(&mut self, t_s: f64, position_m: V2) -> V2 {
-        if self.longest_delay == 0 {
-            return position_m;
-        }
-        self.past_m.push_front(position_m);
-        self.past_m.truncate(self.longest_delay + 1);
-        let by_fault = self.faults.as_ref().map_or(0, |f| f.delay(t_s));
-        let delay = self.params.delay_samples + by_fault;
-        let oldest = self.past_m.back().copied().unwrap_or(position_m);
-        self.past_m.get(delay).copied().unwrap_or(oldest)
-    }
-
-    /// What the sensor's own properties and analogue faults make of a position, converted.
-    fn conditioned(&mut self, t_s: f64, position_m: V2) -> V2 {
         let p = &self.params;
-        let mut x = position_m;
-        let mut noise = V2::repeat(p.noise_rms_m);
-        if p.swapped != (self.faults.as_ref()).is_some_and(|f| f.swapped(t_s)) {
-            x = V2::new(x.y, x.x);
-        }
-        x = x.component_mul(&p.gain) + p.offset_m;
-        if let Some(faults) = &mut self.faults {
-            noise = noise.component_mul(&faults.noise(t_s));
-            x = faults.analogue(t_s, x);
+        let (mut x, mut noise) = (position_m, V2::repeat(p.noise_rms_m));
+        if let Some(more) = &mut self.more {
+            x = more.analogue(p, t_s, x);
+            noise = noise.component_mul(&more.faults.noise(t_s));
         }
         for i in [0, 1] {
             if p.noise_rms_m > 0.0 {
@@ -159,6 +137,46 @@ impl Sensor {
                 x[i] = (x[i] / p.quantum_m).round() * p.quantum_m;
             }
         }
-        x
+        let fresh = Reading {
+            sequence: self.sequence,
+            position_m: x,
+        };
+        let reading = match &mut self.more {
+            Some(more) => more.digital(t_s, fresh),
+            None => fresh,
+        };
+        self.sequence = reading.sequence.wrapping_add(1);
+        reading
+    }
+}
+
+impl More {
+    /// What reaches the converter, but for the noise. Before the run the rotor stood where it started.
+    fn analogue(&mut self, p: &SensorParams, t_s: f64, position_m: V2) -> V2 {
+        self.past_m.push_front(position_m);
+        self.past_m.truncate(self.longest_delay + 1);
+        let delay = p.delay_samples + self.faults.delay(t_s);
+        let oldest = self.past_m.back().copied().unwrap_or(position_m);
+        let mut x = self.past_m.get(delay).copied().unwrap_or(oldest);
+        if p.swapped != self.faults.swapped(t_s) {
+            x = V2::new(x.y, x.x);
+        }
+        x = x.component_mul(&p.gain) + p.offset_m;
+        self.faults.analogue(t_s, x)
+    }
+
+    /// What leaves the converter.
+    fn digital(&mut self, t_s: f64, fresh: Reading) -> Reading {
+        let last = self.last.unwrap_or(fresh);
+        let reading = if self.faults.dropped(t_s) {
+            last
+        } else {
+            Reading {
+                position_m: (self.faults).digital(t_s, fresh.position_m, last.position_m),
+                ..fresh
+            }
+        };
+        self.last = Some(reading);
+        reading
     }
 }

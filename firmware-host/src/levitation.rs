@@ -94,10 +94,15 @@ impl Levitation {
         let velocity_m_s = self.velocity.velocity_m_s(measured_m);
         let wanted =
             -p.proportional_n_m * measured_m - p.derivative_n_s_m * velocity_m_s + self.integral_n;
-        let limited = wanted.norm() > self.force_max_n;
+        let size = wanted.norm();
+        let limited = size > self.force_max_n;
         if !limited && hint != IntegratorHint::Hold {
             self.integral_n -= p.integral_n_m_s * self.period_s * measured_m;
         }
-        limited_n(wanted, self.force_max_n)
+        if limited {
+            wanted * (self.force_max_n / size)
+        } else {
+            wanted
+        }
     }
 }
