@@ -12,6 +12,7 @@ mod mounting;
 pub mod onset;
 mod page;
 pub mod phases;
+mod retainer;
 pub mod rotors;
 mod whirl_runs;
 
@@ -161,4 +162,5 @@ pub const CHAPTERS: &[(&str, Compute)] = &[
     ("limits", limits::chapter),
     ("levels", levels::chapter),
     ("mounting", mounting::chapter),
+    ("retainer bearing", retainer::chapter),
 ];

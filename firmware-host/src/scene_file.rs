@@ -35,6 +35,7 @@ pub(crate) struct SceneFile {
     pub(crate) stator: StatorFile,
     pub(crate) contact: ContactFile,
     pub(crate) friction: FrictionFile,
+    pub(crate) race: Option<RaceFile>,
     pub(crate) magnet: Option<MagnetFile>,
     #[serde(default)]
     pub(crate) sensor: SensorFile,
@@ -160,6 +161,17 @@ pub(crate) struct FrictionFile {
     pub(crate) speed_scale_m_s: Option<f64>,
     #[serde(default)]
     pub(crate) rolling_coefficient: f64,
+}
+
+/// The inner race of a retainer ball bearing; none means a bushing.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table with keys")]
+pub(crate) struct RaceFile {
+    pub(crate) inertia_kg_m2: f64,
+    #[serde(default)]
+    pub(crate) drag_n_m_s: f64,
+    #[serde(default)]
+    pub(crate) start_frequency_hz: f64,
 }
 
 /// The magnet.
