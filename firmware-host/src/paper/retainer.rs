@@ -77,7 +77,7 @@ pub(super) fn chapter(depth: Depth) -> Result<Chapter, PaperError> {
         || {
             rayon::join(
                 || tables::drags(depth),
-                || rayon::join(|| onset(depth), || without_shaft()),
+                || rayon::join(|| onset(depth), without_shaft),
             )
         },
     );
