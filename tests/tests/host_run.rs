@@ -191,7 +191,7 @@ fn last_of(out: &Path, column: &str) -> f64 {
 }
 
 /// Without the table the ring is a bushing; with it contact spins the race up, towards the rotor's spin
-/// of 200 Hz, or brakes it down to there.
+/// of 200 Hz, or brakes it towards there.
 #[test]
 fn a_race_spins_with_the_rotor() {
     let folder = TempDir::new().unwrap();
@@ -212,9 +212,9 @@ fn a_race_spins_with_the_rotor() {
     let light = of("[race]\ninertia_kg_m2 = 1e-3\n");
     let heavy = of("[race]\ninertia_kg_m2 = 1e-1\n");
     let ahead = of("[race]\ninertia_kg_m2 = 1e-3\nstart_frequency_hz = 300.0\ndrag_n_m_s = 1e-6\n");
-    assert!(light > 50.0 && light < 200.0, "{light}");
-    assert!(heavy > 0.0 && heavy < 0.1 * light, "{heavy}");
-    assert!(ahead > 150.0 && ahead < 300.0, "{ahead}");
+    assert!(light > 1.0 && light < 20.0, "{light}");
+    assert!(heavy > 0.0 && heavy < 0.02 * light, "{heavy}");
+    assert!(ahead > 280.0 && ahead < 299.0, "{ahead}");
 }
 
 /// Everything but the wall-clock times, which differ from run to run.
