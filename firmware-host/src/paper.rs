@@ -12,6 +12,7 @@ mod mounting;
 pub mod onset;
 mod page;
 pub mod phases;
+mod retainer;
 pub mod rotors;
 mod rows;
 mod summary;
@@ -201,4 +202,5 @@ pub const CHAPTERS: &[(&str, Compute)] = &[
     ("limits", limits::chapter),
     ("levels", levels::chapter),
     ("mounting", mounting::chapter),
+    ("retainer bearing", retainer::chapter),
 ];

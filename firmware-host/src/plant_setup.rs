@@ -4,7 +4,7 @@ use crate::scene_error::{Checks, SceneError, SceneText};
 use crate::scene_file::{RingFile, RotorFile, SceneFile};
 use plant_model::contact::damping_for_restitution;
 use plant_model::params::{
-    ContactParams, FrictionParams, MagnetParams, PlantParams, RingParams, RotorParams,
+    ContactParams, FrictionParams, MagnetParams, PlantParams, RaceParams, RingParams, RotorParams,
     SlidingFriction, SpinParams, StatorParams,
 };
 use std::f64::consts::TAU;
@@ -57,10 +57,19 @@ pub(crate) fn plant_of(file: &SceneFile, text: &SceneText) -> Result<PlantParams
             force_max_n: m.force_max_n,
             lag_s: m.lag_s,
         }),
+        race: file.race.as_ref().map(|race| RaceParams {
+            inertia_kg_m2: race.inertia_kg_m2,
+            drag_n_m_s: race.drag_n_m_s,
+            start_spin_rad_s: race.start_frequency_hz * TAU,
+        }),
     };
-    plant
-        .validate()
-        .map_err(|e| check.refused(e.field, e.value, e.expected))?;
+    plant.validate().map_err(|e| {
+        let key = match e.field {
+            "race.start_spin_rad_s" => "race.start_frequency_hz",
+            field => field,
+        };
+        check.refused(key, e.value, e.expected)
+    })?;
     check.either(
         ("contact.damping_n_s_m", file.contact.damping_n_s_m),
         ("contact.restitution", file.contact.restitution),

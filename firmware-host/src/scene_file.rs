@@ -24,6 +24,7 @@ pub(crate) struct SceneFile {
     pub(crate) friction: FrictionFile,
     #[serde(default)]
     pub(crate) retainer: RetainerFile,
+    pub(crate) race: Option<RaceFile>,
     pub(crate) magnet: Option<MagnetFile>,
     #[serde(default)]
     pub(crate) sensor: SensorFile,
@@ -178,6 +179,17 @@ pub(crate) struct FrictionFile {
 pub(crate) struct RetainerFile {
     #[serde(default)]
     pub(crate) centre_offset_m: Pair,
+}
+
+/// The inner race of a retainer ball bearing; none means a bushing.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table with keys")]
+pub(crate) struct RaceFile {
+    pub(crate) inertia_kg_m2: f64,
+    #[serde(default)]
+    pub(crate) drag_n_m_s: f64,
+    #[serde(default)]
+    pub(crate) start_frequency_hz: f64,
 }
 
 /// The magnet.

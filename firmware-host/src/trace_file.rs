@@ -29,6 +29,7 @@ const NUMBERS: &[Number] = &[
     ("outer_ring_vx_m_s", |r| r.plant.outer_ring.velocity.x),
     ("outer_ring_vy_m_s", |r| r.plant.outer_ring.velocity.y),
     ("spin_rad_s", |r| r.plant.spin_rad_s),
+    ("race_spin_rad_s", |r| r.plant.race_spin_rad_s),
     ("penetration_m", |r| r.plant.penetration_m),
     ("contact_force_n", |r| r.plant.normal_force_n),
     ("sliding_force_n", |r| r.plant.sliding_force_n),

@@ -16,7 +16,7 @@ pub struct Flows {
     pub unbalance: f64,
     /// Out: rotor damping d_r.
     pub rotor_damping: f64,
-    /// Out: dampers of the stator's mountings.
+    /// Out: dampers of the stator's mountings, and the drag of a race.
     pub stator_damping: f64,
     /// Out: contact damping d_c, and the dent left in the wall at lift-off.
     pub contact_damping: f64,

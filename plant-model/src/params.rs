@@ -118,6 +118,18 @@ pub struct MagnetParams {
     pub lag_s: f64,
 }
 
+/// Inner race of a retainer ball bearing: the ring's surface turns, by friction and against a drag.
+/// Its bore is the contact radius and the clearance, R_i = R_r + c. Without a race the ring is a bushing.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RaceParams {
+    /// Polar moment of inertia J_i, with the share of balls and cage \[kg m²\], > 0.
+    pub inertia_kg_m2: f64,
+    /// Viscous drag of the bearing per spin \[N m s\], ≥ 0.
+    pub drag_n_m_s: f64,
+    /// Spin Ω_i at the start \[rad/s\], counter-clockwise positive.
+    pub start_spin_rad_s: f64,
+}
+
 /// Everything that does not change during a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlantParams {
@@ -133,6 +145,8 @@ pub struct PlantParams {
     pub friction: FrictionParams,
     /// The magnet, if there is one.
     pub magnet: Option<MagnetParams>,
+    /// The race that the rotor touches; none for a bushing.
+    pub race: Option<RaceParams>,
 }
 
 /// Where a run starts; the stator starts at rest in the centre, the magnet without force.
@@ -292,6 +306,11 @@ impl PlantParams {
             positive("magnet.force_max_n", magnet.force_max_n)?;
             not_negative("magnet.lag_s", magnet.lag_s)?;
         }
+        if let Some(race) = &self.race {
+            positive("race.inertia_kg_m2", race.inertia_kg_m2)?;
+            not_negative("race.drag_n_m_s", race.drag_n_m_s)?;
+            finite("race.start_spin_rad_s", race.start_spin_rad_s)?;
+        }
         Ok(())
     }
 
@@ -299,6 +318,11 @@ impl PlantParams {
     pub fn natural_frequency_rad_s(&self) -> Option<f64> {
         (self.rotor.stiffness_n_m > 0.0)
             .then(|| (self.rotor.stiffness_n_m / self.rotor.mass_kg).sqrt())
+    }
+
+    /// Radius R_i of the bore that the rotor touches \[m\].
+    pub fn bore_radius_m(&self) -> f64 {
+        self.rotor.contact_radius_m + self.contact.clearance_m
     }
 
     /// Reduced mass of the contact: rotor against the ring it touches \[kg\].

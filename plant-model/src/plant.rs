@@ -8,6 +8,7 @@ use crate::mode::Mode;
 use crate::params::{Change, ParamError, PlantParams, SpinParams, Start, StatorParams};
 use crate::part::{Body, Part};
 use crate::readout::{Meters, Snapshot, Work};
+use crate::spin::race::{Race, Raced};
 use crate::spin::{Free, FreePhased, Held, Spin};
 use crate::stator::{OneMass, Rigid, Stator, TwoMass};
 use crate::system::{Inputs, State, StateOf, System};
@@ -161,6 +162,26 @@ fn with_stator<S: Stator>(
     (o, phased): (Options, bool),
     stator: S,
 ) -> Box<dyn Plant> {
+    if let Some(race) = &params.race {
+        let (inverse_inertia, drive_torque_n_m) = match params.spin {
+            SpinParams::Held => (0.0, 0.0),
+            SpinParams::Free {
+                inertia_kg_m2,
+                drive_torque_n_m,
+            } => (1.0 / inertia_kg_m2, drive_torque_n_m),
+        };
+        let raced = Raced {
+            inverse_inertia,
+            drive_torque_n_m,
+            race: Race {
+                radius_m: params.bore_radius_m(),
+                inertia_kg_m2: race.inertia_kg_m2,
+                drag_n_m_s: race.drag_n_m_s,
+                start_spin_rad_s: race.start_spin_rad_s,
+            },
+        };
+        return with_spin(params, start, o, stator, raced);
+    }
     match params.spin {
         SpinParams::Held => {
             let held = Held {

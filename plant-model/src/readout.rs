@@ -21,6 +21,8 @@ pub struct Snapshot {
     pub outer_ring: Body,
     /// Spin Ω \[rad/s\].
     pub spin_rad_s: f64,
+    /// Spin Ω_i of the race \[rad/s\]; 0 for a bushing.
+    pub race_spin_rad_s: f64,
     /// What the rotor does.
     pub mode: Mode,
     /// A of eq. (2.8) \[m\]; negative inside the clearance.
@@ -33,6 +35,8 @@ pub struct Snapshot {
     pub rolling_force_n: f64,
     /// Tangential speed of the rotor against the ring about its centre \[m/s\].
     pub contact_tangential_speed_m_s: f64,
+    /// v_rel, speed of the rotor's surface on the ring's, along t̂ \[m/s\].
+    pub sliding_speed_m_s: f64,
     /// Force that the magnet delivers \[N\].
     pub delivered_n: V2,
     /// Angle of the contact point, summed over all contact so far \[rad\]; differences are meaningful

@@ -1,7 +1,10 @@
-//! Spin of the rotor, eq. (2.7): held, free, or free with the angle of an unbalance.
+//! Spin of the rotor, eq. (2.7): held, free, free with the angle of an unbalance, or beside a race.
+
+pub(crate) mod race;
 
 use crate::V2;
 use crate::part::{Part, Weights};
+use race::Race;
 
 /// A model of the spin.
 pub(crate) trait Spin: Copy + Send + 'static {
@@ -25,15 +28,29 @@ pub(crate) trait Spin: Copy + Send + 'static {
     fn set_drive_torque_n_m(&mut self, _torque_n_m: f64) -> bool {
         false
     }
-    /// Time derivative for a spin acceleration \[rad/s²\].
-    fn rates(&self, state: &Self::State, acceleration: f64) -> Self::State;
+    /// Time derivative for a spin acceleration \[rad/s²\] and the sliding friction on the rotor \[N\].
+    /// Linear in all three.
+    fn rates(&self, state: &Self::State, acceleration: f64, sliding_n: f64) -> Self::State;
     /// What a change of the state changes in spin and angle.
     fn change(_change: &Self::State) -> (f64, f64) {
         (0.0, 0.0)
     }
     /// Angle of the rotor moved on \[rad\], where it is a state.
     fn turn(&self, _state: &mut Self::State, _angle_rad: f64) {}
-    /// State after `dt_s` of constant acceleration.
+    /// The race that the rotor touches, if there is one.
+    #[inline]
+    fn race(&self) -> Option<&Race> {
+        None
+    }
+    /// Its spin Ω_i \[rad/s\], in a state or a change of one; 0 without a race.
+    #[inline]
+    fn race_rad_s(_state: &Self::State) -> f64 {
+        0.0
+    }
+    /// Ω_i replaced, where there is a race.
+    #[inline]
+    fn set_race_rad_s(_state: &mut Self::State, _spin_rad_s: f64) {}
+    /// State after `dt_s` without contact.
     fn coast(&self, state: &Self::State, dt_s: f64) -> Self::State;
 }
 
@@ -70,7 +87,7 @@ impl Spin for Held {
         0.0
     }
     #[inline]
-    fn rates(&self, _state: &(), _acceleration: f64) {}
+    fn rates(&self, _state: &(), _acceleration: f64, _sliding_n: f64) {}
     #[inline]
     fn coast(&self, _state: &(), _dt_s: f64) {}
 }
@@ -183,7 +200,7 @@ impl Spin for Free {
         self.drive_torque_n_m
     }
     #[inline]
-    fn rates(&self, _state: &SpinState, acceleration: f64) -> SpinState {
+    fn rates(&self, _state: &SpinState, acceleration: f64, _sliding_n: f64) -> SpinState {
         SpinState(acceleration)
     }
     #[inline]
@@ -231,7 +248,7 @@ impl Spin for FreePhased {
         self.0.drive_torque_n_m
     }
     #[inline]
-    fn rates(&self, state: &Self::State, acceleration: f64) -> Self::State {
+    fn rates(&self, state: &Self::State, acceleration: f64, _sliding_n: f64) -> Self::State {
         (SpinState(acceleration), PhaseState(state.0.0))
     }
     #[inline]

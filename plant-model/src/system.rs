@@ -134,7 +134,7 @@ pub(crate) struct Geometry {
     pub(crate) normal_speed_m_s: f64,
     /// v_w, tangential speed of the rotor against the ring \[m/s\].
     pub(crate) whirl_speed_m_s: f64,
-    /// v_rel = v_w + Ω·R_r \[m/s\].
+    /// v_rel = v_w + Ω·R_r − Ω_i·R_i \[m/s\].
     pub(crate) sliding_speed_m_s: f64,
 }
 
@@ -180,7 +180,7 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
         };
         let tangent = V2::new(-normal.y, normal.x);
         let whirl_speed_m_s = w.dot(&tangent);
-        let surface = self.spin.spin_rad_s(&y.spin) * self.rotor.contact_radius_m;
+        let surface = self.surface_m_s(&y.spin);
         Geometry {
             distance_m,
             normal,
@@ -189,6 +189,16 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
             normal_speed_m_s: w.dot(&normal),
             whirl_speed_m_s,
             sliding_speed_m_s: whirl_speed_m_s + surface,
+        }
+    }
+
+    /// Speed of the rotor's surface by its spin, against that of a race \[m/s\].
+    #[inline]
+    pub(crate) fn surface_m_s(&self, spin: &W::State) -> f64 {
+        let own = self.spin.spin_rad_s(spin) * self.rotor.contact_radius_m;
+        match self.spin.race() {
+            Some(race) => own - race.radius_m * W::race_rad_s(spin),
+            None => own,
         }
     }
 
@@ -244,13 +254,21 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
         let torque = self.spin.drive_torque_n_m();
         let whirl_by_torque = per_spin_acceleration * inverse_j;
         let slide_by_torque = whirl_by_torque + radius * inverse_j;
+        let race = self.spin.race();
+        let race_rad_s = W::race_rad_s(&y.spin);
 
         let at = slide.sign() * g.sliding_speed_m_s;
         let mu = self.friction.sliding.coefficient(at);
         let mu_r = self.friction.rolling_coefficient;
         let (sliding_n, rolling_n) = match (slide, whirl) {
             (Slide::Rolling, Whirl::Still) => {
-                if inverse_j > 0.0 {
+                if let Some(race) = race {
+                    // The surfaces turn on together, held by friction that both give way to.
+                    let parting = radius * inverse_j * torque + race.falling_back_m_s2(race_rad_s);
+                    let s = -parting / (radius * radius * inverse_j + race.mobility());
+                    let pushed = base + whirl_by_torque * (torque + radius * s);
+                    (s, -pushed / mobility - s)
+                } else if inverse_j > 0.0 {
                     let s = -torque / radius;
                     (s, -base / mobility - s)
                 } else {
@@ -265,9 +283,13 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
             }
             (Slide::Rolling, _) => {
                 let q = -whirl.sign() * mu_r * normal_n;
-                let s = -(base + slide_by_torque * torque + mobility * q)
-                    / (mobility + slide_by_torque * radius);
-                (s, q)
+                let mut parting = base + slide_by_torque * torque + mobility * q;
+                let mut give = mobility + slide_by_torque * radius;
+                if let Some(race) = race {
+                    parting += race.falling_back_m_s2(race_rad_s);
+                    give += race.mobility();
+                }
+                (-parting / give, q)
             }
             (_, Whirl::Still) => {
                 let s = -slide.sign() * mu * normal_n;
@@ -299,7 +321,7 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
             stator: self
                 .stator
                 .rates(&y.stator, normal_n * n - tangential_n * t),
-            spin: self.spin.rates(&y.spin, spin_acceleration),
+            spin: self.spin.rates(&y.spin, spin_acceleration, sliding_n),
             force: self.amplifier.rates(&y.force, inputs.command_n),
         };
 
@@ -310,13 +332,19 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
             -radius * sliding_n
         };
         let damper_n = self.contact.damping_n_s_m * g.normal_speed_m_s;
+        let mut stator_w = self.stator.damping_w(&y.stator);
+        let mut sliding_acceleration = whirl_acceleration + radius * spin_acceleration;
+        if let Some(race) = race {
+            stator_w += race.drag_w(race_rad_s);
+            sliding_acceleration -= race.radius_m * race.acceleration(race_rad_s, sliding_n);
+        }
         let powers = Flows {
             control: magnet_n.dot(&velocity),
             external: inputs.external_n.dot(&velocity),
             drive: drive_n_m * spin,
             unbalance: unbalance_w,
             rotor_damping: self.rotor.damping_n_s_m * velocity.norm_squared(),
-            stator_damping: self.stator.damping_w(&y.stator),
+            stator_damping: stator_w,
             contact_damping: damper_n * g.normal_speed_m_s,
             sliding_friction: -sliding_n * g.sliding_speed_m_s,
             rolling_friction: -rolling_n * g.whirl_speed_m_s,
@@ -357,7 +385,7 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
                 sliding_n,
                 rolling_n,
                 cone_n: mu * normal_n,
-                sliding_acceleration: whirl_acceleration + radius * spin_acceleration,
+                sliding_acceleration,
                 whirl_acceleration,
                 whirl_speed_m_s: g.whirl_speed_m_s,
                 penetration_m: g.penetration_m,
@@ -374,11 +402,14 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
     ) -> Guards {
         const ULPS: f64 = 4.0 * f64::EPSILON;
         let g = self.geometry(y);
-        let surface = self.spin.spin_rad_s(&y.spin) * self.rotor.contact_radius_m;
+        let mut surface = (self.spin.spin_rad_s(&y.spin) * self.rotor.contact_radius_m).abs();
+        if let Some(race) = self.spin.race() {
+            surface += race.radius_m * W::race_rad_s(&y.spin).abs();
+        }
         let force = ULPS
             * (self.contact.stiffness_n_m * g.distance_m
                 + self.contact.damping_n_s_m * y.rotor.velocity.norm());
-        let speed = ULPS * (y.rotor.velocity.norm() + surface.abs());
+        let speed = ULPS * (y.rotor.velocity.norm() + surface);
         let of = |held: bool| if held { force } else { speed };
         let (slide, whirl) = (of(slide == Slide::Rolling), of(whirl == Whirl::Still));
         [force, slide, slide, whirl, whirl]
@@ -388,11 +419,14 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
     pub(crate) fn stored_j(&self, y: &StateOf<S, W, M>, touching: bool) -> f64 {
         let spin = self.spin.spin_rad_s(&y.spin);
         let inverse_j = self.spin.inverse_inertia();
-        let turning = if inverse_j > 0.0 {
+        let mut turning = if inverse_j > 0.0 {
             0.5 * spin * spin / inverse_j
         } else {
             0.0
         };
+        if let Some(race) = self.spin.race() {
+            turning += race.stored_j(W::race_rad_s(&y.spin));
+        }
         let dent = if touching {
             self.contact.stored_j(self.geometry(y).penetration_m)
         } else {

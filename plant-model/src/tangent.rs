@@ -39,7 +39,15 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
         let d_normal_speed = d_gap_rate.dot(&n) + gap_rate.dot(&d_n);
         let d_whirl_speed = d_gap_rate.dot(&t) + gap_rate.dot(&d_t);
         let (d_spin, d_phase) = W::change(&change.spin);
-        let d_sliding_speed = d_whirl_speed + radius * d_spin;
+        let mut d_sliding_speed = d_whirl_speed + radius * d_spin;
+        // By how much the surfaces part through a race's drag, and how easily it gives way.
+        let (mut d_falling_back, mut race_mobility) = (0.0, 0.0);
+        if let Some(race) = self.spin.race() {
+            let d_race = W::race_rad_s(&change.spin);
+            d_sliding_speed -= race.radius_m * d_race;
+            d_falling_back = race.falling_back_m_s2(d_race);
+            race_mobility = race.mobility();
+        }
         let d_normal = self.contact.normal_force_n(d_distance, d_normal_speed);
         let d_push = d_normal * n + normal_n * d_n;
 
@@ -95,6 +103,12 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
         let mu_r = self.friction.rolling_coefficient;
         let d_rolling = -whirl.sign() * mu_r * d_normal;
         let (d_sliding, d_rolling) = match (slide, whirl) {
+            (Slide::Rolling, Whirl::Still) if race_mobility > 0.0 => {
+                let d_s = -d_falling_back / (radius * radius * inverse_j + race_mobility);
+                let d_pushed =
+                    d_base + d_eccentric * (torque + radius * sliding_n) + eccentric * radius * d_s;
+                (d_s, -d_pushed / mobility - d_s)
+            }
             (Slide::Rolling, Whirl::Still) if inverse_j > 0.0 => (0.0, -d_base / mobility),
             (Slide::Rolling, Whirl::Still) => {
                 let share = if mu + mu_r > 0.0 {
@@ -108,9 +122,9 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
                 )
             }
             (Slide::Rolling, _) => {
-                let pivot = mobility + (eccentric + radius * inverse_j) * radius;
+                let pivot = mobility + (eccentric + radius * inverse_j) * radius + race_mobility;
                 let d_pivot = d_eccentric * radius;
-                let d_right = d_base + d_eccentric * torque + mobility * d_rolling;
+                let d_right = d_base + d_eccentric * torque + mobility * d_rolling + d_falling_back;
                 (-(d_right + sliding_n * d_pivot) / pivot, d_rolling)
             }
             (_, Whirl::Still) => {
@@ -134,7 +148,7 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
                     + spin_up * d_by_spin_up,
             },
             stator: self.stator.rates(&change.stator, d_push - d_friction),
-            spin: self.spin.rates(&change.spin, d_spin_up),
+            spin: self.spin.rates(&change.spin, d_spin_up, d_sliding),
             force: self.amplifier.rates(&change.force, V2::zeros()),
         }
     }
@@ -146,12 +160,38 @@ mod tests {
     use crate::magnet::Lagged;
     use crate::params::*;
     use crate::part::Part;
+    use crate::spin::race::{Race, Raced};
     use crate::spin::{Free, FreePhased};
     use crate::stator::TwoMass;
 
-    /// Every column in every mode against central differences of the field.
+    const FREE: Free = Free {
+        inertia_kg_m2: 0.05,
+        drive_torque_n_m: 3.0,
+    };
+
+    fn raced(inverse_inertia: f64, drive_torque_n_m: f64) -> Raced {
+        let race = Race {
+            radius_m: 0.0502,
+            inertia_kg_m2: 2e-3,
+            drag_n_m_s: 0.04,
+            start_spin_rad_s: 0.0,
+        };
+        Raced {
+            inverse_inertia,
+            drive_torque_n_m,
+            race,
+        }
+    }
+
     #[test]
     fn columns_are_the_fields_differences() {
+        check(FreePhased(FREE));
+        check(raced(20.0, 3.0));
+        check(raced(0.0, 0.0));
+    }
+
+    /// Every column in every mode against central differences of the field.
+    fn check<W: Spin>(spin: W) {
         let ring = |k: f64| RingParams {
             mass_kg: 7.0,
             stiffness_n_m: V2::new(k, 1.2 * k),
@@ -182,24 +222,24 @@ mod tests {
                 inner: ring(8e8),
                 outer: ring(3e9),
             },
-            spin: FreePhased(Free {
-                inertia_kg_m2: 0.05,
-                drive_torque_n_m: 3.0,
-            }),
+            spin,
             amplifier: Lagged { lag_s: 1e-4 },
         };
-        type Y = StateOf<TwoMass, FreePhased, Lagged>;
-        const SCALES: [f64; 16] = [
+        type Y<W> = StateOf<TwoMass, W, Lagged>;
+        const LENGTH: usize = 17;
+        let mut scales = vec![
             1e-4, 1e-4, 0.5, 0.5, 1e-5, 1e-5, 0.1, 0.1, 1e-5, 1e-5, 0.1, 0.1, 50.0, 1.0, 100.0,
             100.0,
         ];
-        let point: Vec<f64> = [
+        let mut shares = vec![
             1.9, 1.1, -0.4, 0.3, 0.2, -0.5, 0.7, -0.1, 0.3, 0.4, -0.2, 0.6, 0.9, 0.4, 0.5, -0.8,
-        ]
-        .iter()
-        .zip(SCALES)
-        .map(|(x, s)| x * s)
-        .collect();
+        ];
+        if system.spin.race().is_some() {
+            scales.insert(14, 50.0);
+            shares.insert(14, 0.3);
+        }
+        let states = Y::<W>::STATES;
+        let point: Vec<f64> = shares.iter().zip(&scales).map(|(x, s)| x * s).collect();
         let inputs = Inputs {
             command_n: V2::new(30.0, -20.0),
             external_n: V2::new(5.0, 7.0),
@@ -207,33 +247,34 @@ mod tests {
         let slides = [Slide::Positive, Slide::Negative, Slide::Rolling];
         for slide in slides {
             for whirl in [Whirl::Positive, Whirl::Negative, Whirl::Still] {
-                for i in 0..Y::STATES {
-                    let mut direction = [0.0; 16];
-                    direction[i] = SCALES[i];
+                for i in 0..states {
+                    let mut direction = [0.0; LENGTH];
+                    direction[i] = scales[i];
                     let moved = |h: f64| {
                         let mut at = point.clone();
-                        at[i] += h * SCALES[i];
-                        let mut out = [0.0; 16];
-                        let e = system.contact(0.0, &Y::read(&at), &inputs, (slide, whirl));
-                        e.rates.write(&mut out);
+                        at[i] += h * scales[i];
+                        let mut out = [0.0; LENGTH];
+                        let y = Y::<W>::read(&at);
+                        let e = system.contact(0.0, &y, &inputs, (slide, whirl));
+                        e.rates.write(&mut out[..states]);
                         out
                     };
                     let h = 1e-4;
                     let (up, down) = (moved(h), moved(-h));
-                    let mut exact = [0.0; 16];
+                    let mut exact = [0.0; LENGTH];
                     system
                         .contact_tangent(
-                            (0.0, &Y::read(&point)),
+                            (0.0, &Y::<W>::read(&point)),
                             &inputs,
                             (slide, whirl),
-                            &Y::read(&direction),
+                            &Y::<W>::read(&direction[..states]),
                         )
-                        .write(&mut exact);
+                        .write(&mut exact[..states]);
                     let size = exact.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
-                    for j in 0..16 {
+                    for j in 0..states {
                         let difference = (up[j] - down[j]) / (2.0 * h);
                         assert!(
-                            (difference - exact[j]).abs() < 1e-5 * size,
+                            (difference - exact[j]).abs() < 1e-5 * size.max(1.0),
                             "{slide:?} {whirl:?} d{j}/d{i}: {difference:e} against {:e}",
                             exact[j]
                         );

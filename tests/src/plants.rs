@@ -38,6 +38,7 @@ pub fn footnote_4() -> PlantParams {
             rolling_coefficient: 0.025,
         },
         magnet: None,
+        race: None,
     }
 }
 
@@ -68,6 +69,7 @@ pub fn onset_rig() -> PlantParams {
             rolling_coefficient: 0.0,
         },
         magnet: None,
+        race: None,
     }
 }
 
@@ -95,6 +97,7 @@ pub fn bouncing(contact_stiffness_n_m: f64) -> PlantParams {
             rolling_coefficient: 0.0,
         },
         magnet: None,
+        race: None,
     }
 }
 

@@ -139,6 +139,7 @@ fn traces_hold_every_sample_and_every_mode_change() {
         "inner_ring_x_m",
         "outer_ring_vy_m_s",
         "spin_rad_s",
+        "race_spin_rad_s",
         "contact_force_n",
         "commanded_x_n",
         "delivered_y_n",
@@ -175,6 +176,45 @@ fn traces_hold_every_sample_and_every_mode_change() {
         impacts >= 1 && changes >= impacts,
         "{changes} changes, {impacts} impacts"
     );
+}
+
+/// Last value of a column of the trace of the supervisor.
+fn last_of(out: &Path, column: &str) -> f64 {
+    let file = fs::File::open(out.join("trace_supervisor.parquet")).unwrap();
+    let reader = SerializedFileReader::new(file).unwrap();
+    let schema = reader.metadata().file_metadata().schema_descr();
+    let at = (0..schema.num_columns())
+        .position(|i| schema.column(i).name() == column)
+        .unwrap_or_else(|| panic!("no column {column}"));
+    let last = reader.get_row_iter(None).unwrap().last().unwrap().unwrap();
+    last.get_double(at).unwrap()
+}
+
+/// Without the table the ring is a bushing; with it contact spins the race up, towards the rotor's spin
+/// of 200 Hz, or brakes it towards there.
+#[test]
+fn a_race_spins_with_the_rotor() {
+    let folder = TempDir::new().unwrap();
+    let of = |keys: &str| {
+        let scene = short_scene(folder.path(), |t| {
+            t.replace("[friction]", &format!("{keys}\n[friction]"))
+        });
+        let out = folder.path().join("out");
+        let result = run(&scene, &out, &[]);
+        assert!(
+            result.status.success(),
+            "{}",
+            String::from_utf8_lossy(&result.stderr)
+        );
+        last_of(&out, "race_spin_rad_s") / std::f64::consts::TAU
+    };
+    assert_eq!(of(""), 0.0);
+    let light = of("[race]\ninertia_kg_m2 = 1e-3\n");
+    let heavy = of("[race]\ninertia_kg_m2 = 1e-1\n");
+    let ahead = of("[race]\ninertia_kg_m2 = 1e-3\nstart_frequency_hz = 300.0\ndrag_n_m_s = 1e-6\n");
+    assert!(light > 1.0 && light < 20.0, "{light}");
+    assert!(heavy > 0.0 && heavy < 0.02 * light, "{heavy}");
+    assert!(ahead > 280.0 && ahead < 299.0, "{ahead}");
 }
 
 /// Everything but the wall-clock times, which differ from run to run.
@@ -287,6 +327,30 @@ fn bad_scenes_are_refused_with_file_line_key_and_expectation() {
             "restitution = 1.5",
             "contact.restitution",
             "at most 1",
+        ),
+        (
+            "[friction]",
+            "[race]\ninertia_kg_m2 = 0.0\n\n[friction]",
+            "race.inertia_kg_m2",
+            "greater than 0",
+        ),
+        (
+            "[friction]",
+            "[race]\ninertia_kg_m2 = 1e-3\ndrag_n_m_s = -1.0\n\n[friction]",
+            "race.drag_n_m_s",
+            "0 or greater",
+        ),
+        (
+            "[friction]",
+            "[race]\ninertia_kg_m2 = 1e-3\nstart_frequency_hz = nan\n\n[friction]",
+            "race.start_frequency_hz",
+            "a finite number",
+        ),
+        (
+            "[friction]",
+            "[race]\ninertia_kg_m2 = 1e-3\ndrag = 1.0\n\n[friction]",
+            "drag",
+            "expected one of",
         ),
         (
             "sample_rate_hz = 20000",

@@ -81,6 +81,7 @@ fn steady_sliding_whirl_in_an_elastic_stator() {
             rolling_coefficient: 0.0,
         },
         magnet: None,
+        race: None,
     };
     let from = start(V2::new(radius, 0.0), V2::new(0.0, -radius * omega), 400.0);
     let mut plant = build(&params, &from, TIGHT).unwrap();

@@ -24,13 +24,14 @@ fn any_plant() -> impl Strategy<Value = PlantParams> {
         any::<bool>(),
         prop_oneof![Just(0.0), 5e-5..5e-4_f64],
         (-2.0..1.0_f64).prop_map(|x| 10_f64.powf(x)),
+        proptest::option::of((-4.0..0.0_f64, 0.0..5e-2_f64)),
     );
     (shaft, contact, friction, parts).prop_map(|(shaft, contact, friction, parts)| {
         let base = footnote_4();
         let StatorParams::TwoMass { inner, outer } = base.stator else {
             unreachable!("footnote 4 has two rings")
         };
-        let (rings, free, lag_s, inertia_kg_m2) = parts;
+        let (rings, free, lag_s, inertia_kg_m2, race) = parts;
         let mut params = PlantParams {
             rotor: RotorParams {
                 stiffness_n_m: shaft.0,
@@ -70,6 +71,11 @@ fn any_plant() -> impl Strategy<Value = PlantParams> {
             magnet: Some(MagnetParams {
                 force_max_n: 300.0,
                 lag_s,
+            }),
+            race: race.map(|(exponent, drag_n_m_s)| RaceParams {
+                inertia_kg_m2: 10_f64.powf(exponent),
+                drag_n_m_s,
+                start_spin_rad_s: 0.0,
             }),
         };
         let mass = params.contact_mass_kg();

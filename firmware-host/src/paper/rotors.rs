@@ -54,6 +54,7 @@ pub fn footnote_4() -> PlantParams {
             rolling_coefficient: 0.025,
         },
         magnet: None,
+        race: None,
     }
 }
 
@@ -140,6 +141,7 @@ impl OnsetRig {
                 rolling_coefficient: 0.0,
             },
             magnet: None,
+            race: None,
         })
     }
 }

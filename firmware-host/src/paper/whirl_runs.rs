@@ -52,6 +52,7 @@ pub(super) fn footnote_4(contact_stiffness_n_m: f64) -> PlantParams {
             rolling_coefficient: 0.025,
         },
         magnet: None,
+        race: None,
     }
 }
 

@@ -68,6 +68,7 @@ pub(super) fn row(t_s: f64, contact: bool) -> TraceRow {
         inner_ring: Body::default(),
         outer_ring: Body::default(),
         spin_rad_s: 600.0,
+        race_spin_rad_s: 0.0,
         mode: if contact {
             Mode::SlipPositive
         } else {
@@ -78,6 +79,7 @@ pub(super) fn row(t_s: f64, contact: bool) -> TraceRow {
         sliding_force_n: 0.0,
         rolling_force_n: 0.0,
         contact_tangential_speed_m_s: 0.2,
+        sliding_speed_m_s: 60.2,
         delivered_n: V2::new(100.0, 0.0),
         whirl_angle_rad: 0.0,
     };

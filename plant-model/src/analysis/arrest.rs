@@ -100,6 +100,7 @@ mod tests {
                 rolling_coefficient: 0.0,
             },
             magnet: None,
+            race: None,
         }
     }
 

@@ -47,6 +47,8 @@ pub struct Sample {
     pub outer_ring_m: V2,
     /// Spin Ω \[Hz\].
     pub spin_hz: f64,
+    /// Spin Ω_i of the race \[Hz\]; 0 for a bushing.
+    pub race_spin_hz: f64,
     /// What the rotor does.
     pub mode: Mode,
     /// f_n \[N\].
@@ -79,18 +81,18 @@ pub struct Course {
     pub pulse_s: Option<(f64, f64)>,
 }
 
-/// Carries a plant that was just built, with radius R_r at the contact, through the run. The spin at the start is taken as positive.
+/// Carries a plant that was just built through the run. The spin at the start is taken as positive.
 ///
 /// # Errors
 /// [`PlantError`] of the run.
-pub fn follow(plant: &mut dyn Plant, radius_m: f64, watch: &Watch) -> Result<Course, PlantError> {
+pub fn follow(plant: &mut dyn Plant, watch: &Watch) -> Result<Course, PlantError> {
     let mut course = Course::default();
     let mut meter = WhirlMeter::new(watch.window_s);
     let mut open: Option<f64> = None;
     let mut lifted_s: Option<f64> = None;
     let mut pulse_over = watch.pulse.is_none();
     let steps = (watch.end_s / watch.sample_s).round() as u64;
-    course.samples.push(sample(&plant.snapshot(), radius_m));
+    course.samples.push(sample(&plant.snapshot()));
     for i in 1..=steps {
         let mut inputs = Inputs::default();
         let before = plant.snapshot();
@@ -124,7 +126,7 @@ pub fn follow(plant: &mut dyn Plant, radius_m: f64, watch: &Watch) -> Result<Cou
             _ => {}
         })?;
         let now = plant.snapshot();
-        course.samples.push(sample(&now, radius_m));
+        course.samples.push(sample(&now));
         // Two contacts with a lift-off between two samples are two.
         let same = open.is_some_and(|from_s| from_s < before.t_s) || !now.mode.in_contact();
         if !same {
@@ -143,7 +145,7 @@ pub fn follow(plant: &mut dyn Plant, radius_m: f64, watch: &Watch) -> Result<Cou
     Ok(course)
 }
 
-fn sample(now: &Snapshot, radius_m: f64) -> Sample {
+fn sample(now: &Snapshot) -> Sample {
     let contact = now.mode.in_contact();
     let speed = now.contact_tangential_speed_m_s;
     Sample {
@@ -152,11 +154,12 @@ fn sample(now: &Snapshot, radius_m: f64) -> Sample {
         inner_ring_m: now.inner_ring.position,
         outer_ring_m: now.outer_ring.position,
         spin_hz: now.spin_rad_s / TAU,
+        race_spin_hz: now.race_spin_rad_s / TAU,
         mode: now.mode,
         normal_force_n: now.normal_force_n,
         backward_m_s: -speed,
         sliding_m_s: if contact {
-            speed + now.spin_rad_s * radius_m
+            now.sliding_speed_m_s
         } else {
             f64::NAN
         },

@@ -57,6 +57,7 @@ mod tests {
                 rolling_coefficient: 0.025,
             },
             magnet: None,
+            race: None,
         };
         let v = critical_tangential_speed_m_s(&params).unwrap();
         assert!((v - 0.0620).abs() < 5e-5, "{v}");

@@ -117,6 +117,7 @@ mod tests {
             inner_ring_m: V2::zeros(),
             outer_ring_m: V2::zeros(),
             spin_hz: 0.0,
+            race_spin_hz: 0.0,
             mode: Mode::Flight,
             normal_force_n: 0.0,
             backward_m_s: 0.0,

@@ -26,6 +26,9 @@ pub(crate) struct ContactSeries<S: Stator> {
     pub(super) magnet: Series,
     /// Ω \[rad/s\].
     pub(super) spin: Scalar,
+    /// Ω_i \[rad/s\] and R·Ω − R_i·Ω_i \[m/s\]; unused without a race.
+    pub(super) race: Scalar,
+    pub(super) surface: Scalar,
     /// Ω̇ \[rad/s²\] and Ω times the direction, where an unbalance asks for them.
     pub(super) spin_rate: Scalar,
     pub(super) turning: Series,
@@ -71,6 +74,8 @@ impl<S: Stator> ContactSeries<S> {
             stator: S::Series::default(),
             magnet: Series::default(),
             spin: Scalar::default(),
+            race: Scalar::default(),
+            surface: Scalar::default(),
             spin_rate: Scalar::default(),
             turning: Series::default(),
             direction: Series::default(),
@@ -148,6 +153,7 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
         let magnet = (&y.force, task.inputs.command_n);
         (self.amplifier).series(&mut out.magnet, magnet, step_s, order);
         out.spin.0[0] = self.spin.spin_rad_s(&y.spin);
+        out.race.0[0] = W::race_rad_s(&y.spin);
         if context.unbalanced {
             let (sin, cos) = self.spin.phase_rad(&y.spin, t_s).sin_cos();
             out.direction.0[0] = V2::new(cos, sin);
@@ -218,7 +224,7 @@ impl<S: Stator, W: Spin, M: Amplifier> Context<'_, S, W, M> {
         }
     }
 
-    /// Coefficients k of normal force and friction, and k + 1 of the spin.
+    /// Coefficients k of normal force and friction, and k + 1 of the spins.
     fn forces(&self, out: &mut ContactSeries<S>, k: usize) {
         let contact = &self.system.contact;
         let penetration = if k == 0 {
@@ -244,6 +250,10 @@ impl<S: Stator, W: Spin, M: Amplifier> Context<'_, S, W, M> {
         out.whirl_speed.0[k] = cross.x - cross.y + normal.perp(&out.gap_rate.0[0]);
         if self.unbalanced {
             self.turn_unbalance(out, k);
+        }
+        if let Some(race) = self.system.spin.race() {
+            let own = self.system.rotor.contact_radius_m * out.spin.0[k];
+            out.surface.0[k] = own - race.radius_m * out.race.0[k];
         }
 
         let mu_r = self.system.friction.rolling_coefficient;
@@ -298,7 +308,17 @@ impl<S: Stator, W: Spin, M: Amplifier> Context<'_, S, W, M> {
         let m = self.mobility;
         match (self.slide, self.whirl) {
             (Slide::Rolling, Whirl::Still) => {
-                if self.inverse_j > 0.0 {
+                if let Some(race) = self.system.spin.race() {
+                    let parting = first(radius * self.inverse_j * self.torque)
+                        + race.falling_back_m_s2(out.race.0[k]);
+                    let s = -parting / (radius * radius * self.inverse_j + race.mobility());
+                    out.sliding.0[k] = s;
+                    let mut pushed = base + out.eccentric.0[k] * self.torque;
+                    if eccentric {
+                        pushed += radius * out.eccentric.product_coefficient(&out.sliding, k);
+                    }
+                    out.rolling.0[k] = -pushed / m - s;
+                } else if self.inverse_j > 0.0 {
                     out.sliding.0[k] = first(-self.torque / radius);
                     out.rolling.0[k] = -base / m - out.sliding.0[k];
                 } else {
@@ -315,7 +335,11 @@ impl<S: Stator, W: Spin, M: Amplifier> Context<'_, S, W, M> {
                 if eccentric {
                     right -= radius * out.eccentric.product_coefficient_below(&out.sliding, k);
                 }
-                let pivot = m + radius * (out.eccentric.0[0] + radius * self.inverse_j);
+                let mut pivot = m + radius * (out.eccentric.0[0] + radius * self.inverse_j);
+                if let Some(race) = self.system.spin.race() {
+                    right -= race.falling_back_m_s2(out.race.0[k]);
+                    pivot += race.mobility();
+                }
                 out.sliding.0[k] = right / pivot;
             }
             (_, Whirl::Still) => {
@@ -345,7 +369,11 @@ impl<S: Stator, W: Spin, M: Amplifier> Context<'_, S, W, M> {
             } => (at_speed, at_rest - at_speed, speed_scale_m_s),
         };
         // e = exp(a) with a = −σ·v_rel/v_0: e_k = Σ i·a_i·e_{k−i}/k.
-        let v_rel = out.whirl_speed.0[k] + self.system.rotor.contact_radius_m * out.spin.0[k];
+        let surface = match self.system.spin.race() {
+            Some(_) => out.surface.0[k],
+            None => self.system.rotor.contact_radius_m * out.spin.0[k],
+        };
+        let v_rel = out.whirl_speed.0[k] + surface;
         out.exponent.0[k] = -sign * v_rel / speed_scale;
         out.exponential.0[k] = if k == 0 {
             out.exponent.0[0].exp()
@@ -387,8 +415,12 @@ impl<S: Stator, W: Spin, M: Amplifier> Context<'_, S, W, M> {
         out.unbalance.0[k] = e * out.turning.times_coefficient(&out.spin, k);
     }
 
-    /// Spin at k + 1, and the unbalance's share by spin acceleration at k.
+    /// Spins at k + 1, and the unbalance's share by spin acceleration at k.
     fn spin_up(&self, out: &mut ContactSeries<S>, k: usize) {
+        if let Some(race) = self.system.spin.race() {
+            let acceleration = race.acceleration(out.race.0[k], out.sliding.0[k]);
+            out.race.0[k + 1] = self.step_s * INVERSE[k + 1] * acceleration;
+        }
         if self.inverse_j == 0.0 {
             return;
         }

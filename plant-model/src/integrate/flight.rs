@@ -228,6 +228,9 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
         } else {
             self.add_flows_along(&mut flows, segment, &Nodes::stretched(&EIGHT, theta));
         }
+        if let Some(loss_j) = self.race_loss_j(&y.spin, &end.spin) {
+            flows.stator_damping += loss_j;
+        }
         flows
     }
 
@@ -240,6 +243,13 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
         } else {
             0.0
         }
+    }
+
+    /// Energy that the drag of a race takes from spin to spin \[J\]: in flight nothing else brakes it.
+    #[inline]
+    pub(crate) fn race_loss_j(&self, start: &W::State, end: &W::State) -> Option<f64> {
+        let race = self.spin.race()?;
+        Some(race.coasting_loss_j(W::race_rad_s(start), W::race_rad_s(end)))
     }
 
     /// What has to be integrated along the path. Products of two series with phase p are integrated by

@@ -97,6 +97,7 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
         end.add_scaled(dt_s - map.step_s, &rates);
         let work = |form: &Matrix| quadratic(form, &start[..slots]);
         let path = end.rotor.position - y.rotor.position;
+        let race_loss_j = self.race_loss_j(&y.spin, &end.spin);
         let flows = Flows {
             control: match M::LAGS {
                 true => work(&map.control),
@@ -108,9 +109,10 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
                 true => work(&map.rotor_damping),
                 false => 0.0,
             },
-            stator_damping: match self.stator.is_damped() {
-                true => work(&map.stator_damping),
-                false => 0.0,
+            stator_damping: match (self.stator.is_damped(), race_loss_j) {
+                (true, Some(loss_j)) => work(&map.stator_damping) + loss_j,
+                (true, None) => work(&map.stator_damping),
+                (false, loss_j) => loss_j.unwrap_or(0.0),
             },
             ..Flows::default()
         };

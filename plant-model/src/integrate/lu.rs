@@ -4,7 +4,7 @@
 use nalgebra::ComplexField;
 
 /// Most scalar states that a plant has.
-pub(super) const MOST: usize = 16;
+pub(super) const MOST: usize = 17;
 
 /// LU factors with row exchanges of diagonal·I − J.
 #[derive(Debug, Clone, Copy)]

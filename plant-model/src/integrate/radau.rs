@@ -157,6 +157,7 @@ impl<Y: Part, E: Rates<Y>> Pair<Y, E> for Radau<Y, E> {
     const FIRST: f64 = 1.0;
 
     fn new() -> Self {
+        const { assert!(Y::STATES <= MOST) };
         Self {
             evaluations: [E::default(); STAGES + 2],
             z: [Y::default(); STAGES],

@@ -50,8 +50,12 @@ impl Scales {
         let speed = now.max(floor);
         let clearance = system.contact.clearance_m;
         let length = speed / self.slow_rate;
-        let spin = (speed / system.rotor.contact_radius_m)
+        // A race counts as much as the rotor's spin: both make the sliding speed.
+        let mut spin = (speed / system.rotor.contact_radius_m)
             .max(system.spin.spin_rad_s(&y.spin).abs() * 1e-2);
+        if system.spin.race().is_some() {
+            spin = spin.max(W::race_rad_s(&y.spin).abs() * 1e-2);
+        }
         Weights {
             position: 1.0 / (self.rtol * length.min(clearance)),
             gap: 1.0 / (self.rtol * (speed / rate).min(clearance)),

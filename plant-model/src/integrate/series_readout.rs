@@ -25,6 +25,9 @@ impl<S: Stator> ContactSeries<S> {
         let mut spun = y.spin;
         spin.set_spin_rad_s(&mut spun, self.spin.at(theta, order));
         spin.turn(&mut spun, self.step_s * self.spin.integral(theta, order));
+        if spin.race().is_some() {
+            W::set_race_rad_s(&mut spun, self.race.at(theta, order));
+        }
         State {
             rotor: Body {
                 position: self.position.at(theta, order),
@@ -37,7 +40,7 @@ impl<S: Stator> ContactSeries<S> {
     }
 
     /// Weighed size of the coefficients k.
-    pub(crate) fn size(&self, k: usize, weights: &Weights) -> f64 {
+    pub(crate) fn size<W: Spin>(&self, k: usize, weights: &Weights, model: &W) -> f64 {
         let rotor = Body {
             position: self.position.0[k],
             velocity: self.velocity.0[k],
@@ -45,7 +48,11 @@ impl<S: Stator> ContactSeries<S> {
         let spin = self.spin.0[k] * weights.spin;
         let stator = S::coefficient(&self.stator, k).weighed_square(weights);
         let gap = self.gap.0[k].norm_squared() * weights.gap * weights.gap;
-        (gap + rotor.weighed_square(weights) + stator + spin * spin).sqrt()
+        let mut square = gap + rotor.weighed_square(weights) + stator + spin * spin;
+        if model.race().is_some() {
+            square += (self.race.0[k] * weights.spin).powi(2);
+        }
+        square.sqrt()
     }
 
     /// Fills `out` with a guard of the mode; false if the mode has no such guard.
@@ -65,6 +72,9 @@ impl<S: Stator> ContactSeries<S> {
             NORMAL => ((1.0, &self.force), (0.0, &self.force)),
             SLIDE if rolling => ((mu, &self.force), (-1.0, &self.sliding)),
             SLIDE_LOW if rolling => ((mu, &self.force), (1.0, &self.sliding)),
+            SLIDE if mu != 0.0 && system.spin.race().is_some() => {
+                ((slide_sign, &self.whirl_speed), (slide_sign, &self.surface))
+            }
             SLIDE if mu != 0.0 => ((slide_sign, &self.whirl_speed), (by_spin, &self.spin)),
             WHIRL if still => ((mu_r, &self.force), (-1.0, &self.rolling)),
             WHIRL_LOW if still => ((mu_r, &self.force), (1.0, &self.rolling)),
@@ -144,6 +154,10 @@ impl<S: Stator> ContactSeries<S> {
             let w = (system.stator).damping_integral_w(&self.stator, nodes, order);
             flows.stator_damping = h * w;
         }
+        if let Some(race) = system.spin.race() {
+            let spin = self.race.at_all(&nodes.theta, order);
+            flows.stator_damping += h * nodes.integral(|j| race.drag_w(spin[j]));
+        }
         if system.contact.damping_n_s_m > 0.0 {
             let speed = self.normal_speed.at_all(&nodes.theta, order);
             let square = nodes.integral(|j| speed[j] * speed[j]);
@@ -155,7 +169,10 @@ impl<S: Stator> ContactSeries<S> {
             let whirl = self.whirl_speed.at_all(&nodes.theta, order);
             if slips {
                 let friction = self.sliding.at_all(&nodes.theta, order);
-                let work = if free {
+                let work = if system.spin.race().is_some() {
+                    let surface = self.surface.at_all(&nodes.theta, order);
+                    nodes.integral(|j| friction[j] * (whirl[j] + surface[j]))
+                } else if free {
                     let spin = self.spin.at_all(&nodes.theta, order);
                     nodes.integral(|j| friction[j] * (whirl[j] + radius * spin[j]))
                 } else {

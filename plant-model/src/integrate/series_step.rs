@@ -59,7 +59,11 @@ impl<S: Stator> SeriesStepper<S> {
         let trusted = loop {
             system.contact_series(&mut self.series, (t_s, y), task, (reference, order));
             work.evaluations += order as u64 + 1;
-            let reach = |k: usize| self.series.size(k, &weights).powf(-1.0 / k as f64);
+            let reach = |k: usize| {
+                self.series
+                    .size::<W>(k, &weights, &system.spin)
+                    .powf(-1.0 / k as f64)
+            };
             let (a, b) = (reach(order), reach(order - 1));
             let trusted = 0.9 * if a < b || a.is_nan() { a } else { b };
             if trusted > 1e-2 {

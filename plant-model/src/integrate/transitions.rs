@@ -55,17 +55,30 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
         if !at_zero.slide {
             return;
         }
-        if at_zero.whirl {
+        if at_zero.whirl && self.spin.race().is_none() {
             // Both held: what is left can only be spin.
             self.spin.set_spin_rad_s(&mut y.spin, 0.0);
             return;
         }
         let spin = self.spin.spin_rad_s(&y.spin);
-        let give = inverse_m + inverse_ring + radius * radius * inverse_j;
-        let impulse = -(whirl_speed + radius * spin) / give;
-        push(y, impulse);
+        let mut give = radius * radius * inverse_j;
+        if let Some(race) = self.spin.race() {
+            give += race.mobility();
+        }
+        // With both held the surfaces alone give way to each other.
+        if !at_zero.whirl {
+            give += inverse_m + inverse_ring;
+        }
+        let impulse = -(whirl_speed + self.surface_m_s(&y.spin)) / give;
+        if !at_zero.whirl {
+            push(y, impulse);
+        }
         self.spin
             .set_spin_rad_s(&mut y.spin, spin + radius * inverse_j * impulse);
+        if let Some(race) = self.spin.race() {
+            let kicked = W::race_rad_s(&y.spin) - race.radius_m / race.inertia_kg_m2 * impulse;
+            W::set_race_rad_s(&mut y.spin, kicked);
+        }
     }
 
     /// The contact mode after a guard other than the normal force's has ended `pair`.

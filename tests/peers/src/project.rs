@@ -46,6 +46,7 @@ pub fn run_under(
             rolling_coefficient: 0.0,
         },
         magnet: None,
+        race: None,
     };
     let start = Start {
         position_m: V2::zeros(),

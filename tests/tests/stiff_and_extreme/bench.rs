@@ -42,6 +42,7 @@ pub(crate) fn free_mass(
             rolling_coefficient: 0.0,
         },
         magnet: None,
+        race: None,
     }
 }
 

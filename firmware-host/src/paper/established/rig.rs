@@ -64,6 +64,7 @@ pub(super) fn with(left_out: &LeftOut) -> PlantParams {
             rolling_coefficient: 0.025,
         },
         magnet: None,
+        race: None,
     }
 }
 
@@ -112,7 +113,7 @@ pub(in crate::paper) fn run(
     watch: &Watch,
 ) -> Result<(Course, Meters), PaperError> {
     let mut plant = build(params, start, Options::default())?;
-    let course = follow(&mut *plant, params.rotor.contact_radius_m, watch)?;
+    let course = follow(&mut *plant, watch)?;
     Ok((course, plant.meters()))
 }
 
