@@ -2,24 +2,8 @@
 //! [`crate::scene`].
 
 use crate::scene_event_file::{BaseMotionFile, ChangeFile, DisturbanceFile, FaultFile, OutageFile};
-use plant_model::V2;
+use crate::scene_values::{Pair, PerAxis};
 use serde::Deserialize;
-
-/// Two numbers [x, y]; fewer or more are refused.
-#[derive(Debug, Clone, Copy, Default, Deserialize)]
-#[serde(try_from = "Vec<f64>")]
-pub(crate) struct Pair(pub(crate) [f64; 2]);
-
-impl TryFrom<Vec<f64>> for Pair {
-    type Error = String;
-
-    fn try_from(numbers: Vec<f64>) -> Result<Self, String> {
-        let found = numbers.len();
-        <[f64; 2]>::try_from(numbers)
-            .map(Self)
-            .map_err(|_| format!("{found} numbers, expected two: [x, y]"))
-    }
-}
 
 /// A whole file.
 #[derive(Debug, Clone, Deserialize)]
@@ -138,23 +122,6 @@ pub(crate) struct StartFile {
 pub(crate) struct StatorFile {
     pub(crate) inner: Option<RingFile>,
     pub(crate) outer: Option<RingFile>,
-}
-
-/// One number for both axes, or one for each.
-#[derive(Debug, Clone, Copy, Deserialize)]
-#[serde(untagged, expecting = "a number, or two numbers [x, y]")]
-pub(crate) enum PerAxis {
-    Both(f64),
-    Each(Pair),
-}
-
-impl PerAxis {
-    pub(crate) fn vector(self) -> V2 {
-        match self {
-            Self::Both(x) => V2::repeat(x),
-            Self::Each(xy) => xy.0.into(),
-        }
-    }
 }
 
 /// One ring with its mounting.
