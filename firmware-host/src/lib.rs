@@ -1,7 +1,7 @@
 //! Runs plant and supervisor in closed loop as firmware would, on scenes, and shows what happened.
 //!
 //! Files, each importing only from those above it: `trace`, `verdict`, `scene_error`, `axis`, `loads`,
-//! `amplifier`, `faults`, `scene_pair`, `scene_event_file`, `scene_file`, `plant_setup`, `supervisor_setup`, `instruments`,
+//! `amplifier`, `faults`, `scene_values`, `scene_event_file`, `scene_file`, `plant_setup`, `supervisor_setup`, `instruments`,
 //! `levitation`, `clairvoyant`, `policy_kind`, `scene_events`, `scene_instruments`, `scene`, `policies`, `judge`, `closed_loop`, `verify`, `accuracy`, `wrong_runs`, `trace_file`, `plot`, `report`, `paper`, `overloads`, `table`, `output`,
 //! `commands`.
 
@@ -33,7 +33,7 @@ mod scene_event_file;
 mod scene_events;
 mod scene_file;
 mod scene_instruments;
-mod scene_pair;
+mod scene_values;
 mod supervisor_setup;
 pub mod table;
 pub mod trace;

@@ -1,6 +1,6 @@
 //! The tables of a scene file that say what happens during the run, as they are written.
 
-use crate::scene_pair::Pair;
+use crate::scene_values::Pair;
 use serde::Deserialize;
 
 /// Course of a load over its interval.

@@ -2,8 +2,7 @@
 //! [`crate::scene`].
 
 use crate::scene_event_file::{BaseMotionFile, ChangeFile, DisturbanceFile, FaultFile, OutageFile};
-use crate::scene_pair::Pair;
-use plant_model::V2;
+use crate::scene_values::{Pair, PerAxis};
 use serde::Deserialize;
 
 /// A whole file.
@@ -124,23 +123,6 @@ pub(crate) struct StartFile {
 pub(crate) struct StatorFile {
     pub(crate) inner: Option<RingFile>,
     pub(crate) outer: Option<RingFile>,
-}
-
-/// One number for both axes, or one for each.
-#[derive(Debug, Clone, Copy, Deserialize)]
-#[serde(untagged, expecting = "a number, or two numbers [x, y]")]
-pub(crate) enum PerAxis {
-    Both(f64),
-    Each(Pair),
-}
-
-impl PerAxis {
-    pub(crate) fn vector(self) -> V2 {
-        match self {
-            Self::Both(x) => V2::repeat(x),
-            Self::Each(xy) => xy.0.into(),
-        }
-    }
 }
 
 /// One ring with its mounting.

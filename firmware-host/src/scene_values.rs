@@ -1,5 +1,6 @@
-//! Two numbers in a scene file.
+//! Values of scene files with their own way to be written.
 
+use plant_model::V2;
 use serde::Deserialize;
 
 /// Two numbers [x, y]; fewer or more are refused.
@@ -15,5 +16,22 @@ impl TryFrom<Vec<f64>> for Pair {
         <[f64; 2]>::try_from(numbers)
             .map(Self)
             .map_err(|_| format!("{found} numbers, expected two: [x, y]"))
+    }
+}
+
+/// One number for both axes, or one for each.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(untagged, expecting = "a number, or two numbers [x, y]")]
+pub(crate) enum PerAxis {
+    Both(f64),
+    Each(Pair),
+}
+
+impl PerAxis {
+    pub(crate) fn vector(self) -> V2 {
+        match self {
+            Self::Both(x) => V2::repeat(x),
+            Self::Each(xy) => xy.0.into(),
+        }
     }
 }
