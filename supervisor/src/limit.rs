@@ -16,19 +16,23 @@ pub(crate) struct Room {
     axes: [f32; 2],
     /// Whether the box can bind before the disc does.
     boxed: bool,
+    /// The same in newtons.
+    cap_n: f32,
+    axes_n: [f32; 2],
 }
 
 impl Room {
     pub(crate) fn new(budget: &Budget, actuator: Actuator, coeffs: &Coeffs) -> Self {
-        let axes = actuator
-            .acts
-            .map(|acts| if acts { coeffs.axis_cap } else { 0.0 });
+        let of = |cap: f32| actuator.acts.map(|acts| if acts { cap } else { 0.0 });
         let cap = budget.cap(coeffs);
+        let axes = of(coeffs.axis_cap);
         let [x, y] = axes;
         Self {
             cap,
             axes,
             boxed: min(x, y) < cap,
+            cap_n: cap * coeffs.force_max_n,
+            axes_n: of(coeffs.axis_cap_n),
         }
     }
 
@@ -59,6 +63,9 @@ impl Room {
 
     /// Largest s in [0, 1] with sum + s·part in the room, for a sum in it; and whether the box says so.
     fn share(&self, sum: Vec2, part: Vec2) -> (f32, bool) {
+        if part.length_squared() <= NO_FORCE {
+            return (1.0, false);
+        }
         let disc = largest_share(self.cap, sum, part);
         if !self.boxed {
             return (disc, false);
@@ -85,20 +92,21 @@ impl Room {
 /// Share of a part for which an axis counts as used up: what rounding leaves.
 const ON_EDGE: f32 = 1e-4;
 
-/// Gives the room to braking first, then damping, then restoring. Braking is scaled, for its direction is
-/// what brakes; the others may use an axis alone, for each of their components does what the whole does.
+/// Square of a force that is as good as none \[caps²\].
+const NO_FORCE: f32 = 1e-12;
+
+/// Gives the room to braking first, then damping, then restoring. Each is scaled, for its direction is
+/// what it is good for; where braking has all it wants, the others may also use what is left of an axis
+/// alone, for each of their components does what the whole does.
 pub(crate) fn allocate(wanted: &Wanted, room: &Room) -> (Vec2, Limits) {
     let mut limits = Limits::empty();
     let mut sum = Vec2::ZERO;
     if room.lost() {
         limits |= Limits::AXIS_CAP;
     }
-    let parts = [
-        (room.braking(wanted.braking), false),
-        (wanted.damping, true),
-        (wanted.restoring, true),
-    ];
-    for (part, splits) in parts {
+    let braking = room.braking(wanted.braking);
+    let (braking_share, _) = room.share(sum, braking);
+    for part in [braking, wanted.damping, wanted.restoring] {
         let (share, by_box) = room.share(sum, part);
         sum = sum + part * share;
         if share < 1.0 {
@@ -110,7 +118,7 @@ pub(crate) fn allocate(wanted: &Wanted, room: &Room) -> (Vec2, Limits) {
                 Limits::FORCE_CAP
             };
         }
-        if by_box && splits {
+        if by_box && braking_share >= 1.0 {
             let rest = room.along_edge(sum, part * (1.0 - share));
             sum = sum + rest * room.share(sum, rest).0;
         }
@@ -118,12 +126,9 @@ pub(crate) fn allocate(wanted: &Wanted, room: &Room) -> (Vec2, Limits) {
     (sum, limits)
 }
 
-/// Largest s in [0, 1] with |sum + s·part| ≤ cap, for |sum| ≤ cap.
+/// Largest s in [0, 1] with |sum + s·part| ≤ cap, for |sum| ≤ cap and a part that is not nothing.
 fn largest_share(cap: f32, sum: Vec2, part: Vec2) -> f32 {
     let square = part.length_squared();
-    if square <= 1e-12 {
-        return 1.0;
-    }
     let along = sum.dot(part);
     let room = max(cap * cap - sum.length_squared(), 0.0);
     between(
@@ -162,7 +167,7 @@ pub(crate) fn levitation(command_n: [f32; 2], room: &Room, coeffs: &Coeffs) -> (
         };
         (Vec2::new(on(v.x), on(v.y)), Limits::LEVITATION_CLAMPED)
     };
-    let (limited, bound) = within_caps(number, room, coeffs);
+    let (limited, bound) = within_caps(number, room);
     if !bound.is_empty() {
         // That the whole cap was too small is what clamping says already.
         limits |= Limits::LEVITATION_CLAMPED | (bound - Limits::FORCE_CAP);
@@ -175,33 +180,45 @@ const SQUARE_FITS: f32 = 1e30;
 /// A few units in the last place below a limit, so that rounding cannot lift a scaled force above it.
 const JUST_BELOW: f32 = 1.0 - 4.0 * f32::EPSILON;
 
-/// A force \[N\] scaled into the room; untouched where it fits.
-fn within_caps(force: Vec2, room: &Room, coeffs: &Coeffs) -> (Vec2, Limits) {
+/// A finite force \[N\] scaled into the room; untouched where it fits.
+#[inline]
+fn within_caps(force: Vec2, room: &Room) -> (Vec2, Limits) {
+    let [x, y] = room.axes_n;
+    let fits = force.length_squared() <= room.cap_n * room.cap_n
+        && force.x <= x
+        && -force.x <= x
+        && force.y <= y
+        && -force.y <= y;
+    if fits {
+        (force, Limits::empty())
+    } else {
+        scaled(force, room)
+    }
+}
+
+/// A force that does not fit, in its direction but for an axis that is lost: that one takes nothing
+/// away from the other.
+#[cold]
+fn scaled(force: Vec2, room: &Room) -> (Vec2, Limits) {
     let mut limits = Limits::empty();
-    let [x, y] = room.axes;
-    let mut v = force;
-    // An axis that is lost takes nothing away from the other.
-    if (x <= 0.0 && v.x != 0.0) || (y <= 0.0 && v.y != 0.0) {
-        let on = |cap: f32, v: f32| if cap > 0.0 { v } else { 0.0 };
-        v = Vec2::new(on(x, v.x), on(y, v.y));
+    let [x, y] = room.axes_n;
+    let on = |cap: f32, v: f32| if cap > 0.0 { v } else { 0.0 };
+    let mut v = Vec2::new(on(x, force.x), on(y, force.y));
+    if v != force {
         limits |= Limits::AXIS_CAP;
     }
-    let cap = if room.cap < 1.0 {
-        room.cap * coeffs.force_max_n
-    } else {
-        coeffs.force_max_n
-    };
     let square = v.length_squared();
-    if square > cap * cap {
-        v = v * (cap * JUST_BELOW / sqrt(square));
+    if square > room.cap_n * room.cap_n {
+        v = v * (room.cap_n * JUST_BELOW / sqrt(square));
         limits |= Limits::FORCE_CAP;
         if room.cap < 1.0 {
             limits |= Limits::DERATED;
         }
     }
     let largest = max(max(v.x, -v.x), max(v.y, -v.y));
-    if largest > coeffs.axis_cap_n {
-        v = v * (coeffs.axis_cap_n * JUST_BELOW / largest);
+    let cap = max(x, y);
+    if largest > cap {
+        v = v * (cap * JUST_BELOW / largest);
         limits |= Limits::AXIS_CAP;
     }
     (v, limits)
@@ -218,7 +235,7 @@ pub(crate) fn final_force_n(
 ) -> ([f32; 2], Limits) {
     let wanted = Vec2::from_array(force_n);
     let (target, mut limits) = if wanted.length_squared() < SQUARE_FITS {
-        within_caps(wanted, room, coeffs)
+        within_caps(wanted, room)
     } else {
         (Vec2::ZERO, Limits::NOT_FINITE)
     };
