@@ -180,7 +180,7 @@ impl Guard {
         if !position.is_finite() {
             return Refusal::NotFinite;
         }
-        let stuck = self.still.watch(sensor_m, velocity, coeffs.sensor_steps);
+        let stuck = (self.still).watch(sensor_m, velocity, coeffs.sensor_steps, self.faulty);
         if position.length_squared() > coeffs.position_limit * coeffs.position_limit {
             return Refusal::Range;
         }
@@ -198,12 +198,17 @@ impl Guard {
 
     /// Fault and recovery.
     fn count(&mut self, refusal: Refusal, position: Vec2, coeffs: &Coeffs) -> Events {
+        if refusal == Refusal::None && !self.faulty {
+            self.last_good = Some((position, 0));
+            self.refused = Refused::default();
+            return Events::empty();
+        }
         let measured = !matches!(
             refusal,
             Refusal::NotFinite | Refusal::Range | Refusal::Dropout
         );
         // In a fault nobody knows where the rotor is: a sample has to fit to the one before it.
-        if refusal == Refusal::None || (self.faulty && measured) {
+        if self.faulty && measured {
             self.last_good = Some((position, 0));
         }
         if self.faulty {
@@ -219,10 +224,6 @@ impl Guard {
             self.faulty = false;
             self.refused = Refused::default();
             return Events::SENSOR_OK;
-        }
-        if refusal == Refusal::None {
-            self.refused = Refused::default();
-            return Events::empty();
         }
         let refused = &mut self.refused;
         refused.all += 1;
@@ -299,8 +300,8 @@ struct Still {
 }
 
 impl Still {
-    /// Whether a coordinate stands still for more than `most`. That holds until it changes.
-    fn watch(&mut self, sensor_m: [f32; 2], velocity: Vec2, most: f32) -> bool {
+    /// Whether a coordinate has stood still for more than `most`. That holds until it changes.
+    fn watch(&mut self, sensor_m: [f32; 2], velocity: Vec2, most: f32, faulty: bool) -> bool {
         let [x, y] = sensor_m.map(f32::to_bits);
         let [last_x, last_y] = self.last.replace([x, y]).unwrap_or([!x, !y]);
         let on = |way: f32, step: f32, same: bool| match same {
@@ -312,10 +313,12 @@ impl Still {
             on(self.way.x, velocity.x, x == last_x),
             on(self.way.y, velocity.y, y == last_y),
         );
-        let ([frozen_x, frozen_y], [awaited_x, awaited_y]) = (self.frozen, self.awaited);
-        self.awaited = [awaited_x && x == last_x, awaited_y && y == last_y];
-        self.measures =
-            ((frozen_x && x != last_x) || (frozen_y && y != last_y)) && self.awaited == [false; 2];
+        if faulty {
+            let ([frozen_x, frozen_y], [awaited_x, awaited_y]) = (self.frozen, self.awaited);
+            self.awaited = [awaited_x && x == last_x, awaited_y && y == last_y];
+            self.measures = ((frozen_x && x != last_x) || (frozen_y && y != last_y))
+                && self.awaited == [false; 2];
+        }
         farther(self.way.x, most) || farther(self.way.y, most)
     }
 

@@ -61,11 +61,9 @@ impl Room {
         Vec2::new(on(aim.x, x), on(aim.y, y))
     }
 
-    /// Largest s in [0, 1] with sum + s·part in the room, for a sum in it; and whether the box says so.
+    /// Largest s in [0, 1] with sum + s·part in the room, for a sum in it and a part that is not nothing; and whether the box says so.
+    #[inline(never)]
     fn share(&self, sum: Vec2, part: Vec2) -> (f32, bool) {
-        if part.length_squared() <= NO_FORCE {
-            return (1.0, false);
-        }
         let disc = largest_share(self.cap, sum, part);
         if !self.boxed {
             return (disc, false);
@@ -76,6 +74,7 @@ impl Room {
     }
 
     /// The rest of a part along the axis that still has room.
+    #[cold]
     fn along_edge(&self, sum: Vec2, rest: Vec2) -> Vec2 {
         let [x, y] = self.axes;
         let on = |cap: f32, sum: f32, rest: f32| {
@@ -104,9 +103,12 @@ pub(crate) fn allocate(wanted: &Wanted, room: &Room) -> (Vec2, Limits) {
     if room.lost() {
         limits |= Limits::AXIS_CAP;
     }
+    let mut whole = true;
     let braking = room.braking(wanted.braking);
-    let (braking_share, _) = room.share(sum, braking);
     for part in [braking, wanted.damping, wanted.restoring] {
+        if part.length_squared() <= NO_FORCE {
+            continue;
+        }
         let (share, by_box) = room.share(sum, part);
         sum = sum + part * share;
         if share < 1.0 {
@@ -118,10 +120,14 @@ pub(crate) fn allocate(wanted: &Wanted, room: &Room) -> (Vec2, Limits) {
                 Limits::FORCE_CAP
             };
         }
-        if by_box && braking_share >= 1.0 {
+        // The first part that is there comes first, whatever it is.
+        if by_box && whole && part != braking {
             let rest = room.along_edge(sum, part * (1.0 - share));
-            sum = sum + rest * room.share(sum, rest).0;
+            if rest.length_squared() > NO_FORCE {
+                sum = sum + rest * room.share(sum, rest).0;
+            }
         }
+        whole &= share >= 1.0 || part != braking;
     }
     (sum, limits)
 }
@@ -224,31 +230,39 @@ fn scaled(force: Vec2, room: &Room) -> (Vec2, Limits) {
     (v, limits)
 }
 
-/// The last word: finite, within the caps, and not farther from `last_n` than the slew limit, whatever
-/// came before. Where the room has shrunk faster than that, the slew limit holds, but for a lost axis.
+/// The last word on a force of the supervisor's own \[N\]: finite, within the caps, and not farther from
+/// `last` than the slew limit, whatever came before.
 pub(crate) fn final_force_n(
     force_n: [f32; 2],
-    last_n: [f32; 2],
+    last: Vec2,
     room: &Room,
-    actuator: Actuator,
     coeffs: &Coeffs,
 ) -> ([f32; 2], Limits) {
     let wanted = Vec2::from_array(force_n);
-    let (target, mut limits) = if wanted.length_squared() < SQUARE_FITS {
+    let (target, limits) = if wanted.length_squared() < SQUARE_FITS {
         within_caps(wanted, room)
     } else {
         (Vec2::ZERO, Limits::NOT_FINITE)
     };
-    let last = actuator.carried(Vec2::from_array(last_n));
-    let change = target - last;
+    let (force_n, slew) = slewed(target.to_array(), last, coeffs);
+    (force_n, limits | slew)
+}
+
+/// A force within the caps \[N\], no farther from `last` than the slew limit. Where the budget has
+/// lowered the cap faster than that, the slew limit holds.
+#[inline]
+pub(crate) fn slewed(target_n: [f32; 2], last: Vec2, coeffs: &Coeffs) -> ([f32; 2], Limits) {
+    let change = Vec2::from_array(target_n) - last;
     let square = change.length_squared();
     let step = coeffs.slew_step_n;
     if square <= step * step {
-        return (target.to_array(), limits);
+        return (target_n, Limits::empty());
     }
-    limits |= Limits::SLEW;
+    if square.is_nan() || square >= SQUARE_FITS {
+        return ([0.0; 2], Limits::NOT_FINITE);
+    }
     let force = last + change * (step * JUST_BELOW / sqrt(square));
-    (force.to_array(), limits)
+    (force.to_array(), Limits::SLEW)
 }
 
 /// Force–time budget: a first-order thermal state of (force/continuous force)².
@@ -268,7 +282,8 @@ impl Budget {
             return 1.0;
         };
         let x = between((self.state.value - 1.0) / FALL, 0.0, 1.0);
-        1.0 - (1.0 - continuous) * (x * x * (3.0 - 2.0 * x))
+        // So written it ends at the continuous force however small that is.
+        continuous + (1.0 - continuous) * (1.0 - x * x * (3.0 - 2.0 * x))
     }
 
     /// A tick with this force \[caps\].

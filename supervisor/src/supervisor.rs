@@ -104,13 +104,17 @@ impl<const RECORD: usize> Supervisor<RECORD> {
         (self.readiness).compare(held, levitation, found.normal, coeffs);
         let force = handover::blend(phase, own, levitation, self.force, coeffs);
 
+        // A lost axis has no force to start from.
+        let last_n = actuator.carried(Vec2::from_array(self.force_n));
         // Levitated is transparent bit for bit: the command does not go through per unit and back.
-        let (wanted_n, mut limits) = match phase.mode() {
-            Mode::Levitated => (levitation_n, levitation_limits),
-            Mode::SensorFault => (coeffs.force_n(force), Limits::empty()),
-            _ => (coeffs.force_n(force), own_limits),
+        let (force_n, last, mut limits) = if phase.mode() == Mode::Levitated {
+            let (force_n, last) = limit::slewed(levitation_n, last_n, coeffs);
+            (force_n, last | levitation_limits, Limits::empty())
+        } else {
+            let (force_n, last) =
+                limit::final_force_n(coeffs.force_n(force), last_n, &room, coeffs);
+            (force_n, last, own_limits)
         };
-        let (force_n, last) = limit::final_force_n(wanted_n, self.force_n, &room, actuator, coeffs);
         limits |= last | reading.limits;
         self.force_n = force_n;
         self.force = if last.is_empty() {
