@@ -1,6 +1,6 @@
 //! A supervisor on the bench: a configuration, samples, and what its border promises.
 
-use supervisor::{Command, Config, Sample, Status};
+use supervisor::{Command, Config, Sample, Status, Supervisor};
 
 /// An AMB rotor: 10 kg, 0.2 mm, 1000 N, 20 kHz; neither caps of the axes nor slew limit nor budget.
 pub fn config() -> Config {
@@ -53,6 +53,36 @@ pub fn sample(sequence: u32, position_m: [f32; 2]) -> Sample {
 /// Point of a backward whirl (clockwise) at this angle \[rad\].
 pub fn on_circle(radius_m: f32, angle: f32) -> [f32; 2] {
     [radius_m * angle.cos(), -radius_m * angle.sin()]
+}
+
+/// Radius of a whirl on the wall \[m\].
+pub const RADIUS_M: f32 = 2.05e-4;
+/// Angle of a whirl in a tick: 0.4 m/s.
+pub const WHIRL_STEP: f32 = 0.1;
+
+/// Ticks of a backward whirl, with status bits besides those of [`sample`].
+pub fn whirl(
+    supervisor: &mut Supervisor<64>,
+    ticks: std::ops::Range<u32>,
+    status: Status,
+) -> Vec<Command> {
+    whirl_by(WHIRL_STEP, supervisor, ticks, status)
+}
+
+/// The same at another angle in a tick \[rad\].
+pub fn whirl_by(
+    step: f32,
+    supervisor: &mut Supervisor<64>,
+    ticks: std::ops::Range<u32>,
+    status: Status,
+) -> Vec<Command> {
+    ticks
+        .map(|i| {
+            let mut s = sample(i, on_circle(RADIUS_M, step * i as f32));
+            s.status |= status;
+            supervisor.tick(&s)
+        })
+        .collect()
 }
 
 /// Length of a force \[N\].
