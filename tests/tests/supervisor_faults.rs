@@ -179,11 +179,13 @@ fn a_rotor_at_rest_is_no_stuck_sensor() {
     }
 }
 
-/// A single sample of any kind costs no force, makes no fault, and moves no estimate: the commands after
-/// it are those of a run in which the tick was only a dropout of the model's length.
+/// A single bad sample of any kind costs no force, makes no fault and gives the estimate no kick: the
+/// commands stay near those of a run without it.
 #[test]
 fn a_single_bad_sample_neither_drops_the_force_nor_kicks() {
-    let kinds: [fn([f32; 2]) -> Option<[f32; 2]>; 5] = [
+    /// What comes in place of a good sample; nothing new for `None`.
+    type Bad = fn([f32; 2]) -> Option<[f32; 2]>;
+    let kinds: [Bad; 5] = [
         |_| Some([f32::NAN, 0.0]),
         |[x, y]| Some([x + 7e-4, y]),
         |[x, y]| Some([x, y - 3e-4]),
