@@ -103,7 +103,7 @@ pub(crate) fn allocate(wanted: &Wanted, room: &Room) -> (Vec2, Limits) {
     if room.lost() {
         limits |= Limits::AXIS_CAP;
     }
-    let mut whole = true;
+    let mut braking_cut = false;
     let braking = room.braking(wanted.braking);
     for part in [braking, wanted.damping, wanted.restoring] {
         if part.length_squared() <= NO_FORCE {
@@ -120,14 +120,14 @@ pub(crate) fn allocate(wanted: &Wanted, room: &Room) -> (Vec2, Limits) {
                 Limits::FORCE_CAP
             };
         }
-        // The first part that is there comes first, whatever it is.
-        if by_box && whole && part != braking {
+        if part == braking {
+            braking_cut = share < 1.0;
+        } else if by_box && !braking_cut {
             let rest = room.along_edge(sum, part * (1.0 - share));
             if rest.length_squared() > NO_FORCE {
                 sum = sum + rest * room.share(sum, rest).0;
             }
         }
-        whole &= share >= 1.0 || part != braking;
     }
     (sum, limits)
 }

@@ -62,7 +62,8 @@ impl<const RECORD: usize> Supervisor<RECORD> {
         })
     }
 
-    /// One tick: total, bounded, without loops that depend on data.
+    /// One tick: total and bounded; the one loop that depends on data makes up for at most four missed
+    /// ticks.
     pub fn tick(&mut self, sample: &Sample) -> Command {
         let coeffs = &self.coeffs;
         let blind = self.detector.near_contact();
