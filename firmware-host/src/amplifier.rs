@@ -111,12 +111,11 @@ impl Amplifier {
         self.register_n
     }
 
-    /// Whether the firmware knows at this time that no axis delivers anything.
-    pub(crate) fn known_off(&self, at_s: f64) -> bool {
-        let off = |component: usize| {
+    /// Axes (x, y) of which the firmware knows at this time that they deliver nothing.
+    pub(crate) fn known_off(&self, at_s: f64) -> [bool; 2] {
+        [0, 1].map(|component| {
             (self.outages.iter()).any(|o| o.known && o.axis.has(component) && o.acts(at_s))
-        };
-        off(0) && off(1)
+        })
     }
 
     /// Parts in which what is delivered from a time on is to be held.

@@ -243,7 +243,10 @@ impl Bench<'_> {
     fn status(&self, t_s: f64) -> Status {
         let mut status = Status::empty();
         status.set(Status::SPIN_VALID, self.scene.spin_sensor.valid);
-        status.set(Status::BEARING_ON, !self.amplifier.known_off(t_s));
+        let [x_off, y_off] = self.amplifier.known_off(t_s);
+        status.set(Status::BEARING_ON, !(x_off && y_off));
+        status.set(Status::AXIS_X_LOST, x_off);
+        status.set(Status::AXIS_Y_LOST, y_off);
         status
     }
 

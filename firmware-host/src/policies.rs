@@ -121,6 +121,8 @@ impl Policy {
                     position_m: single(measured_m),
                     spin_rad_s: seen.spin_rad_s as f32,
                     levitation_n: single(levitation.force_n(measured_m, *hint)),
+                    // The stand-in firmware has no feedback of current or flux.
+                    applied_n: [0.0; 2],
                 });
                 *hint = command.integrator;
                 let [x, y] = command.force_n;

@@ -6,7 +6,7 @@ use plant_model::params::PlantParams;
 use supervisor::{Config, PARAMETERS};
 
 /// Where the suggested value of a parameter comes from.
-const SOURCES: [(&str, &str); 12] = [
+const SOURCES: [(&str, &str); 18] = [
     ("sample_period_s", "run.sample_rate_hz"),
     ("mass_kg", "rotor.mass_kg"),
     ("stiffness_n_m", "rotor"),
@@ -19,6 +19,12 @@ const SOURCES: [(&str, &str); 12] = [
     ("restitution", "contact.restitution"),
     ("contact_band", "sensor"),
     ("whirl_time_s", "contact.stiffness_n_m"),
+    ("axis_force_max_n", "magnet.force_max_n"),
+    ("force_slew_n_s", "magnet.force_max_n"),
+    ("continuous_force_n", "magnet.force_max_n"),
+    ("contact_stiffness_n_m", "contact.stiffness_n_m"),
+    ("speed_max_m_s", "contact.stiffness_n_m"),
+    ("sensor_step_m", "sensor"),
 ];
 
 /// Derives the configuration as an engineer would from data sheets; a key of the same name in
@@ -74,6 +80,15 @@ fn suggested(plant: &PlantParams, file: &SceneFile) -> Config {
     let noise_m = (sensor.noise_rms_m.powi(2) + sensor.quantum_m.powi(2) / 12.0).sqrt();
     let lift_off_m_s = (force_max_n * plant.contact.clearance_m / mass).sqrt();
     let noise = noise_m / period_s / lift_off_m_s;
+    let clearance_m = plant.contact.clearance_m;
+    let magnet = file.magnet.as_ref();
+    // What the magnet does not limit is limited by nothing that matters.
+    let axis_force_max_n = magnet
+        .and_then(|m| m.axis_force_max_n)
+        .unwrap_or(force_max_n);
+    let slew_n_s = magnet
+        .and_then(|m| m.slew_n_s)
+        .unwrap_or((1e3 * force_max_n / period_s).max(1.0));
     Config {
         sample_period_s: period_s as f32,
         mass_kg: mass as f32,
@@ -98,6 +113,20 @@ fn suggested(plant: &PlantParams, file: &SceneFile) -> Config {
         handover_blend_s: 2e-3,
         fault_blend_s: 1e-3,
         fault_ticks: 10.0,
+        axis_force_max_n: axis_force_max_n as f32,
+        force_slew_n_s: slew_n_s as f32,
+        continuous_force_n: force_max_n as f32,
+        thermal_time_s: 5.0,
+        contact_stiffness_n_m: plant.contact.stiffness_n_m as f32,
+        // Several periods of a whirl of some hundred hertz; the stop of the machine takes far longer.
+        coast_down_s: 5e-3,
+        severity_limit: 20.0,
+        retainer_plane_ratio: 1.0,
+        magnet_plane_ratio: 1.0,
+        // Whirl is no faster than the rotor on the contact spring; half more for its deflection.
+        speed_max_m_s: (1.5 * clearance_m * contact_rate).max(2.0) as f32,
+        // A sensor without noise and steps is not a thing that gets stuck.
+        sensor_step_m: (sensor.noise_rms_m.max(sensor.quantum_m)).max(5e-4 * clearance_m) as f32,
     }
 }
 

@@ -2,7 +2,7 @@
 //! lengths are in clearances, forces in force caps, and time in ticks.
 
 use crate::config::Config;
-use crate::math::{exp_neg, max};
+use crate::math::{exp_neg, max, min, sqrt};
 use crate::vec2::Vec2;
 
 /// Longest delay between a sample and its force \[ticks\].
@@ -11,13 +11,11 @@ pub(crate) const MAX_DELAY: usize = 8;
 /// Immutable coefficients of the tick.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Coeffs {
-    /// Clearances per metre.
-    per_m: f32,
     /// Caps per newton.
     per_n: f32,
     /// Newtons per cap.
     pub(crate) force_max_n: f32,
-    /// Acceleration by one cap of force \[clearances/tick²\].
+    /// Acceleration at the retainer bearing by one cap of force \[clearances/tick²\].
     pub(crate) force_gain: f32,
     /// k·T²/m \[1/tick²\].
     pub(crate) stiffness: f32,
@@ -64,6 +62,70 @@ pub(crate) struct Coeffs {
     /// Weight of the force lost per tick of a fault.
     pub(crate) fault_step: f32,
     pub(crate) fault_ticks: u32,
+    /// Clearances per metre at the sensor.
+    per_sensor_m: f32,
+    /// Cap of each axis \[caps\], at most 1 …
+    pub(crate) axis_cap: f32,
+    /// … and in newtons.
+    pub(crate) axis_cap_n: f32,
+    /// Longest change of the command in a tick \[N\].
+    pub(crate) slew_step_n: f32,
+    /// Continuous force \[caps\]; `None` without a budget.
+    pub(crate) continuous: Option<f32>,
+    /// Share of its way that the thermal state goes in a tick.
+    pub(crate) thermal_step: f32,
+    /// Weight of the force at the beginning of a tick in its mean, where both ends are measured.
+    pub(crate) applied_weight: f32,
+    /// Highest backward speed that the cap arrests \[clearances/tick\].
+    pub(crate) whirl_limit: f32,
+    pub(crate) coast_down_ticks: u32,
+    pub(crate) severity_limit: f32,
+    /// Farthest plausible way in a tick.
+    pub(crate) way_per_tick: f32,
+    /// Three steps of the sensor.
+    pub(crate) sensor_steps: f32,
+    /// Speed that the observer may make up in contact, being blind for the contact force.
+    pub(crate) blind_speed: f32,
+    /// Metres per second per unit of speed.
+    pub(crate) speed_m_s: f32,
+}
+
+/// Least coefficient of friction in the whirl limit: without friction there is neither whirl nor limit.
+const LEAST_FRICTION: f32 = 1e-3;
+
+/// Highest backward speed that the cap can arrest \[m/s\]: where drive by friction, μ·N, and a force
+/// tilted by the best angle atan μ are in balance, N = m·v²/r − k·r − F_inward, on the orbit r to which the
+/// normal force at that speed bends the contact.
+fn whirl_limit_m_s(config: &Config) -> f32 {
+    let (m, d, c) = (config.mass_kg, config.damping_n_s_m, config.clearance_m);
+    let mu = max(config.friction_coefficient, LEAST_FRICTION);
+    let tilt = sqrt(1.0 + mu * mu);
+    // What the actuator has in every direction.
+    let force = min(config.force_max_n, config.axis_force_max_n) * config.magnet_plane_ratio;
+    let normal = force / (mu * tilt);
+    // The estimate is one of a thin ring; a bend of more than the clearance is beyond it.
+    let r = c + min(normal / config.contact_stiffness_n_m, c);
+    let held = mu * config.stiffness_n_m * r + force * tilt;
+    let square = d * d + 4.0 * mu * m * held / r;
+    if square > 0.0 {
+        r / (2.0 * mu * m) * (d + sqrt(square))
+    } else {
+        0.0
+    }
+}
+
+/// Weight of the force at the beginning of a tick in its mean over it, for a first-order lag: with
+/// x = T/τ, 1/x − 1/(eˣ − 1). Half for a slow amplifier, nothing for one that follows at once.
+fn applied_weight(lag_ticks: f32) -> f32 {
+    if lag_ticks <= 0.0 {
+        return 0.0;
+    }
+    let x = 1.0 / lag_ticks;
+    if x < 0.5 {
+        return 0.5 - x / 12.0;
+    }
+    let left = exp_neg(x);
+    lag_ticks - left / (1.0 - left)
 }
 
 fn per_tick(time_s: f32, period_s: f32) -> f32 {
@@ -75,7 +137,7 @@ impl Coeffs {
     pub(crate) fn new(config: &Config) -> Self {
         let t = config.sample_period_s;
         let (c, f, m) = (config.clearance_m, config.force_max_n, config.mass_kg);
-        let force_gain = f * t * t / (m * c);
+        let force_gain = config.magnet_plane_ratio * f * t * t / (m * c);
         let lag = config.amplifier_lag_s / t;
         let lag_step = if lag > 0.0 {
             1.0 - exp_neg(1.0 / lag)
@@ -94,12 +156,14 @@ impl Coeffs {
             config.observer_pole_contact,
             1.0 - config.observer_pole_contact,
         );
+        let stiffness = config.stiffness_n_m * t * t / m;
+        // What the model may accelerate by while the wall holds against it.
+        let blind = force_gain + 1.5 * max(stiffness, -stiffness);
         Self {
-            per_m: 1.0 / c,
             per_n: 1.0 / f,
             force_max_n: f,
             force_gain,
-            stiffness: config.stiffness_n_m * t * t / m,
+            stiffness,
             damping: config.damping_n_s_m * t / m,
             lag_step,
             lag_mean: lag * lag_step,
@@ -129,12 +193,28 @@ impl Coeffs {
             blend_step: per_tick(config.handover_blend_s, t),
             fault_step: per_tick(config.fault_blend_s, t),
             fault_ticks: config.fault_ticks as u32,
+            per_sensor_m: config.retainer_plane_ratio / c,
+            axis_cap: min(config.axis_force_max_n / f, 1.0),
+            axis_cap_n: min(config.axis_force_max_n, f),
+            slew_step_n: config.force_slew_n_s * t,
+            continuous: (config.continuous_force_n < f).then_some(config.continuous_force_n / f),
+            thermal_step: min(t / config.thermal_time_s, 1.0),
+            applied_weight: applied_weight(lag),
+            // Divided by in every severity.
+            whirl_limit: max(whirl_limit_m_s(config) * t / c, 1e-6),
+            coast_down_ticks: (config.coast_down_s / t) as u32,
+            severity_limit: config.severity_limit,
+            way_per_tick: config.speed_max_m_s * t / c,
+            sensor_steps: 3.0 * config.sensor_step_m * config.retainer_plane_ratio / c,
+            blind_speed: blind * (1.0 + touch_pole) / touch_free,
+            speed_m_s: c / t,
         }
     }
 
+    /// Position at the retainer bearing from one at the sensor.
     #[inline]
-    pub(crate) fn position(&self, position_m: [f32; 2]) -> Vec2 {
-        Vec2::from_array(position_m) * self.per_m
+    pub(crate) fn position(&self, sensor_m: [f32; 2]) -> Vec2 {
+        Vec2::from_array(sensor_m) * self.per_sensor_m
     }
 
     #[inline]

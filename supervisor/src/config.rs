@@ -92,7 +92,18 @@ parameters! {
     handover_dwell_s, "s", 0.0 ..= 1.0, "Contact must be avoidable for this long before hand-over begins.";
     handover_blend_s, "s", 0.0 ..= 1.0, "Time of the blend to the levitation controller.";
     fault_blend_s, "s", 0.0 ..= 1.0, "Time in which the force goes to zero when the position cannot be trusted.";
-    fault_ticks, "ticks", 1.0 ..= 10000.0, "Implausible ticks in a row that make a sensor fault, and plausible ones that end it.";
+    fault_ticks, "ticks", 2.0 ..= 10000.0, "Good samples in a row that end a sensor fault, and refused ones that make it; jumps, dropouts and a stuck sensor make it sooner.";
+    axis_force_max_n, "N", 1e-3 ..= 1e7, "Force cap of each axis; none where it is at least force_max_n.";
+    force_slew_n_s, "N/s", 1.0 ..= 1e12, "Fastest change of the commanded force, as the length of the vector.";
+    continuous_force_n, "N", 1e-3 ..= 1e7, "Force that the magnet bears for ever; at least force_max_n means no budget.";
+    thermal_time_s, "s", 0.01 ..= 1e5, "Time constant of the force-time budget.";
+    contact_stiffness_n_m, "N/m", 1e3 ..= 1e13, "Stiffness of the contact with the retainer bearing.";
+    coast_down_s, "s", 0.0 ..= 100.0, "Whirl beyond what the cap can arrest for this long asks for coasting down.";
+    severity_limit, "1", 1e-3 ..= 1e8, "Severity index that asks for coasting down.";
+    retainer_plane_ratio, "1", 0.1 ..= 10.0, "Position at the retainer bearing over position at the sensor.";
+    magnet_plane_ratio, "1", 0.1 ..= 10.0, "Position at the magnet over position at the retainer bearing: the leverage of its force.";
+    speed_max_m_s, "m/s", 1e-3 ..= 1000.0, "No rotor is faster than this at the retainer bearing: a sample that would need it is refused.";
+    sensor_step_m, "m", 1e-9 ..= 1e-3, "Step of the sensor's converter or its noise (root mean square), whichever is larger, at the sensor.";
 }
 
 impl Config {

@@ -4,6 +4,7 @@
 //! observer may be slow and smooth. In contact it is blind for the contact force and must be quick.
 
 use crate::coeffs::{Coeffs, MAX_DELAY};
+use crate::guard::Actuator;
 use crate::math::between;
 use crate::vec2::Vec2;
 
@@ -37,13 +38,22 @@ impl Observer {
         &mut self,
         sample: Option<Vec2>,
         in_contact: bool,
+        actuator: Actuator,
         coeffs: &Coeffs,
     ) -> Motion {
         let index = self.newest.wrapping_sub(coeffs.delay) & (MAX_DELAY - 1);
         let command = self.commands.get(index).copied().unwrap_or_default();
-        let away = self.delivered - command;
-        self.delivered = command + away * (1.0 - coeffs.lag_step);
-        let mean = command + away * coeffs.lag_mean;
+        let command = actuator.carried(command);
+        let before = actuator.carried(self.delivered);
+        let away = before - command;
+        let (delivered, mean) = match actuator.applied {
+            Some(now) => (now, now + (before - now) * coeffs.applied_weight),
+            None => (
+                command + away * (1.0 - coeffs.lag_step),
+                command + away * coeffs.lag_mean,
+            ),
+        };
+        self.delivered = delivered;
 
         if let Some(position) = sample
             && !self.started

@@ -17,8 +17,9 @@ pub(crate) fn blend(
     match phase {
         Phase::Levitated => levitation,
         Phase::Handover { weight } => own * (1.0 - weight) + levitation * weight,
-        // The last force already carries the last weight: their ratio makes the fall linear.
-        Phase::SensorFault { weight } if weight > 0.0 => {
+        // The last force already carries the last weight: their ratio makes the fall linear. Less than half
+        // a step is what rounding leaves of nothing.
+        Phase::SensorFault { weight } if weight > 0.5 * coeffs.fault_step => {
             last * (weight / (weight + coeffs.fault_step))
         }
         Phase::SensorFault { .. } => Vec2::ZERO,

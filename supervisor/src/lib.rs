@@ -25,6 +25,17 @@
 //!     handover_blend_s: 2e-3,
 //!     fault_blend_s: 1e-3,
 //!     fault_ticks: 10.0,
+//!     axis_force_max_n: 1000.0,    // no cap of the axes
+//!     force_slew_n_s: 1e7,
+//!     continuous_force_n: 400.0,
+//!     thermal_time_s: 5.0,
+//!     contact_stiffness_n_m: 1e9,
+//!     coast_down_s: 5e-3,
+//!     severity_limit: 20.0,
+//!     retainer_plane_ratio: 1.0,
+//!     magnet_plane_ratio: 1.0,
+//!     speed_max_m_s: 2.0,
+//!     sensor_step_m: 1e-6,
 //! };
 //! let mut supervisor = Supervisor::<512>::new(&config)?;
 //! let command = supervisor.tick(&Sample {
@@ -33,6 +44,7 @@
 //!     position_m: [1e-5, -2e-5],
 //!     spin_rad_s: 1000.0,
 //!     levitation_n: [-12.5, 25.0],
+//!     ..Sample::default()
 //! });
 //! assert_eq!(command.force_n, [-12.5, 25.0]); // transparent while levitated
 //! # Ok::<(), supervisor::ConfigError>(())
@@ -44,12 +56,13 @@
 //!
 //! ```text
 //! Sample ─► guard ─► detect ─► estimate ─► classify ─► phase ─► law ─► limit ─► handover ─► Command
+//!                                                                                 ├─► severity
 //!                                                                                 └─► recorder
 //! ```
 //!
 //! Files, each importing only from those above it: `math`, `vec2`, `signal`, `config`, `coeffs`,
-//! `guard`, `estimate`, `detect`, `classify`, `phase`, `law`, `limit`, `handover`, `recorder`,
-//! `supervisor`.
+//! `guard`, `estimate`, `detect`, `classify`, `phase`, `law`, `limit`, `handover`, `severity`,
+//! `recorder`, `supervisor`.
 
 // Unconditional: under `cfg(test)` std's own methods would silently replace micromath's.
 #![no_std]
@@ -68,11 +81,12 @@ mod limit;
 mod math;
 mod phase;
 mod recorder;
+mod severity;
 mod signal;
 mod supervisor;
 mod vec2;
 
 pub use config::{Config, ConfigError, PARAMETERS, Parameter};
 pub use recorder::{Entry, PER_UNIT, QueuedEvent, RECORD_VERSION, Record, crc_of};
-pub use signal::{Command, Events, IntegratorHint, Limits, Mode, Sample, Status};
+pub use signal::{Command, Events, IntegratorHint, Limits, Mode, Refusal, Report, Sample, Status};
 pub use supervisor::Supervisor;

@@ -44,6 +44,23 @@ pub(crate) fn min(a: f32, b: f32) -> f32 {
     if a < b { a } else { b }
 }
 
+/// A sum that keeps what rounding would take from it: a slow state would stand still without.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Sum {
+    pub(crate) value: f32,
+    rest: f32,
+}
+
+impl Sum {
+    #[inline]
+    pub(crate) fn add(&mut self, x: f32) {
+        self.rest += x;
+        let sum = self.value + self.rest;
+        self.rest -= sum - self.value;
+        self.value = sum;
+    }
+}
+
 /// exp(−x) for x ≥ 0, to 1e-6: a Padé approximant near zero, squared back up.
 pub(crate) fn exp_neg(x: f32) -> f32 {
     let x = between(x, 0.0, 80.0);

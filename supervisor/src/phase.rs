@@ -88,7 +88,9 @@ impl Phase {
                 Self::SensorFault { weight } => Self::SensorFault {
                     weight: weight - coeffs.fault_step,
                 },
-                _ => Self::SensorFault { weight: 1.0 },
+                _ => Self::SensorFault {
+                    weight: 1.0 - coeffs.fault_step,
+                },
             };
         }
         if found.touching {

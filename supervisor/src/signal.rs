@@ -9,12 +9,15 @@ pub struct Sample {
     pub sequence: u32,
     /// What is valid and ready.
     pub status: Status,
-    /// Rotor position relative to the centre of the retainer bearing, x and y \[m\].
+    /// Rotor position at the sensor, relative to the centre of the retainer bearing, x and y \[m\].
     pub position_m: [f32; 2],
     /// Spin Ω \[rad/s\], counter-clockwise positive; used only with [`Status::SPIN_VALID`].
     pub spin_rad_s: f32,
     /// Force that the levitation controller wants \[N\].
     pub levitation_n: [f32; 2],
+    /// Force that the actuator delivers at this sampling instant \[N\], from current or flux feedback;
+    /// used only with [`Status::APPLIED_VALID`], while it is finite and at most two caps long.
+    pub applied_n: [f32; 2],
 }
 
 bitflags::bitflags! {
@@ -27,20 +30,34 @@ bitflags::bitflags! {
         /// The bearing is switched on and may act. Without it the supervisor watches and records,
         /// and lets the levitation command through.
         const BEARING_ON = 1 << 1;
+        /// `applied_n` is measured. Without it the supervisor models amplifier and delay.
+        const APPLIED_VALID = 1 << 2;
+        /// The drive cannot act along x: nothing is commanded there.
+        const AXIS_X_LOST = 1 << 3;
+        /// The drive cannot act along y: nothing is commanded there.
+        const AXIS_Y_LOST = 1 << 4;
     }
 
-    /// What binds the command of this tick.
+    /// What binds the command of this tick. Eight bits, so that the flight record keeps them all.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
     #[repr(transparent)]
     pub struct Limits: u32 {
         /// The wanted force was larger than the cap.
         const FORCE_CAP = 1;
-        /// The levitation command was not finite or larger than the cap.
+        /// The levitation command was not finite or beyond a limit.
         const LEVITATION_CLAMPED = 1 << 1;
-        /// Something that should have been a number was not; the force was set to zero.
+        /// Something that should have been a number was not; the force goes to zero.
         const NOT_FINITE = 1 << 2;
         /// The sample was not used: the estimate is running on its model.
         const SAMPLE_REFUSED = 1 << 3;
+        /// The force changes no faster than the slew limit allows.
+        const SLEW = 1 << 4;
+        /// An axis had less than was wanted: its cap, or it is lost.
+        const AXIS_CAP = 1 << 5;
+        /// The cap that bound was the one lowered by the force–time budget.
+        const DERATED = 1 << 6;
+        /// The rotor whirls backward in contact faster than the cap can arrest.
+        const BEYOND_WHIRL_LIMIT = 1 << 7;
     }
 
     /// What changed at this tick.
@@ -71,7 +88,33 @@ bitflags::bitflags! {
         const RECORD_FROZEN = 1 << 10;
         /// An event was lost because the background did not drain the queue.
         const QUEUE_FULL = 1 << 11;
+        /// The drive has lost an axis.
+        const AXIS_LOST = 1 << 12;
+        /// An axis is back.
+        const AXIS_BACK = 1 << 13;
+        /// The machine should coast down: whirl beyond the limit has lasted, or the severity index has
+        /// passed its limit. Once until the bearing is switched off.
+        const COAST_DOWN = 1 << 14;
     }
+}
+
+/// Why a sample is refused.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[repr(u8)]
+pub enum Refusal {
+    /// It is not.
+    #[default]
+    None = 0,
+    /// A coordinate is NaN or infinite.
+    NotFinite = 1,
+    /// The radius is beyond `position_limit`.
+    Range = 2,
+    /// No rotor moves so far in the time since the last good sample.
+    Slew = 3,
+    /// The sequence number is the last one: no new sample came.
+    Dropout = 4,
+    /// A coordinate does not change although the rotor moves.
+    Stuck = 5,
 }
 
 /// What the supervisor is doing.
@@ -125,7 +168,8 @@ pub enum IntegratorHint {
 /// What to do until the next tick.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Command {
-    /// Force to command \[N\]: finite, no longer than the cap (to the last bit of `f32`).
+    /// Force to command \[N\]: finite, within the cap, the caps of the axes and the slew limit (to the last
+    /// bits of `f32`).
     pub force_n: [f32; 2],
     /// What the supervisor is doing.
     pub mode: Mode,
@@ -135,4 +179,36 @@ pub struct Command {
     pub events: Events,
     /// Hint for the levitation controller's integrator.
     pub integrator: IntegratorHint,
+    /// Backward speed that is to be expected after the impacts to come, over the highest that the cap
+    /// can arrest; 0 while no contact is coming, 1e6 at most.
+    pub severity: f32,
+}
+
+/// What has happened since the supervisor was made. A flight record that is discarded takes nothing from it.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Report {
+    /// Engagements in which the rotor touched the retainer bearing.
+    pub landings: u32,
+    /// Touches in them.
+    pub impacts: u32,
+    /// Ticks in contact in them.
+    pub contact_ticks: u32,
+    /// Fastest normal speed before an impact, estimated \[m/s\].
+    pub impact_speed_max_m_s: f32,
+    /// Fastest backward speed in contact, estimated \[m/s\].
+    pub backward_speed_max_m_s: f32,
+    /// Highest backward speed that the cap can arrest, from the configuration \[m/s\].
+    pub whirl_limit_m_s: f32,
+    /// Energy of all impacts and of friction on the whirl over the energy at `whirl_limit_m_s`; 1e9 at most.
+    pub severity_index: f32,
+    /// Whether coasting down was asked for and the bearing has been on ever since.
+    pub coast_down: bool,
+    /// State of the force–time budget: above 1 the cap is lowered.
+    pub thermal_state: f32,
+    /// Force cap now \[N\].
+    pub force_cap_n: f32,
+    /// Why the last sample was refused, if it was.
+    pub refusal: Refusal,
+    /// Why the last sensor fault began.
+    pub fault: Refusal,
 }

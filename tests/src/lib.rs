@@ -3,6 +3,7 @@
 pub mod cost;
 pub mod golden;
 pub mod plants;
+pub mod rig;
 
 use firmware_host::scene::Scene;
 use std::path::{Path, PathBuf};

@@ -29,6 +29,17 @@ fn config() -> Config {
         handover_blend_s: 2e-3,
         fault_blend_s: 1e-3,
         fault_ticks: 10.0,
+        axis_force_max_n: 1000.0,
+        force_slew_n_s: 1e10,
+        continuous_force_n: 1000.0,
+        thermal_time_s: 5.0,
+        contact_stiffness_n_m: 1e9,
+        coast_down_s: 5e-3,
+        severity_limit: 20.0,
+        retainer_plane_ratio: 1.0,
+        magnet_plane_ratio: 1.0,
+        speed_max_m_s: 5.0,
+        sensor_step_m: 1e-6,
     }
 }
 
@@ -43,6 +54,7 @@ fn sample(sequence: u32, position_m: [f32; 2]) -> Sample {
         position_m,
         spin_rad_s: 1000.0,
         levitation_n: [3.0, -4.0],
+        ..Sample::default()
     }
 }
 
@@ -70,14 +82,16 @@ fn any_sample() -> impl Strategy<Value = Sample> {
         [any_bits(), any_bits()],
         any_bits(),
         [any_bits(), any_bits()],
+        [any_bits(), any_bits()],
     )
         .prop_map(
-            |(sequence, status, position_m, spin_rad_s, levitation_n)| Sample {
+            |(sequence, status, position_m, spin_rad_s, levitation_n, applied_n)| Sample {
                 sequence: sequence.unwrap_or(0),
                 status: Status::from_bits_retain(status),
                 position_m,
                 spin_rad_s,
                 levitation_n,
+                applied_n,
             },
         )
 }
@@ -153,6 +167,7 @@ proptest! {
             let mut m = *s;
             m.position_m[0] = -s.position_m[0];
             m.levitation_n[0] = -s.levitation_n[0];
+            m.applied_n[0] = -s.applied_n[0];
             m.spin_rad_s = -s.spin_rad_s;
             // Without spin and without whirl there is no direction to mirror.
             let known = s.status.contains(Status::SPIN_VALID) && s.spin_rad_s.is_finite() && s.spin_rad_s != 0.0;

@@ -31,6 +31,7 @@ mod image {
                 let sample: Sample = black_box(Sample::default());
                 black_box(supervisor.tick(&sample));
                 black_box(supervisor.mode());
+                black_box(supervisor.report());
                 if let Some(event) = supervisor.next_event() {
                     black_box(event);
                 }

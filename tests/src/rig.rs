@@ -1,0 +1,133 @@
+//! A supervisor on the bench: a configuration, samples, and what its border promises.
+
+use supervisor::{Command, Config, Sample, Status, Supervisor};
+
+/// An AMB rotor: 10 kg, 0.2 mm, 1000 N, 20 kHz; neither caps of the axes nor slew limit nor budget.
+pub fn config() -> Config {
+    Config {
+        sample_period_s: 50e-6,
+        mass_kg: 10.0,
+        stiffness_n_m: -2e5,
+        damping_n_s_m: 0.0,
+        clearance_m: 2e-4,
+        force_max_n: 1000.0,
+        amplifier_lag_s: 1.6e-4,
+        delay_samples: 1.0,
+        friction_coefficient: 0.15,
+        restitution: 0.7,
+        observer_pole_flight: 0.6,
+        observer_pole_contact: 0.4,
+        contact_band: 0.02,
+        position_limit: 20.0,
+        whirl_time_s: 1e-3,
+        hold_share: 0.8,
+        handover_dwell_s: 5e-4,
+        handover_blend_s: 2e-3,
+        fault_blend_s: 1e-3,
+        fault_ticks: 10.0,
+        axis_force_max_n: 1000.0,
+        force_slew_n_s: 1e10,
+        continuous_force_n: 1000.0,
+        thermal_time_s: 5.0,
+        contact_stiffness_n_m: 1e9,
+        coast_down_s: 5e-3,
+        severity_limit: 1e6,
+        retainer_plane_ratio: 1.0,
+        magnet_plane_ratio: 1.0,
+        speed_max_m_s: 2.0,
+        sensor_step_m: 1e-6,
+    }
+}
+
+/// A sample of a bearing that is on, spin counter-clockwise, levitation at rest.
+pub fn sample(sequence: u32, position_m: [f32; 2]) -> Sample {
+    Sample {
+        sequence,
+        status: Status::SPIN_VALID | Status::BEARING_ON,
+        position_m,
+        spin_rad_s: 1000.0,
+        ..Sample::default()
+    }
+}
+
+/// Point of a backward whirl (clockwise) at this angle \[rad\].
+pub fn on_circle(radius_m: f32, angle: f32) -> [f32; 2] {
+    [radius_m * angle.cos(), -radius_m * angle.sin()]
+}
+
+/// Radius of a whirl on the wall \[m\].
+pub const RADIUS_M: f32 = 2.05e-4;
+/// Angle of a whirl in a tick: 0.4 m/s.
+pub const WHIRL_STEP: f32 = 0.1;
+
+/// Ticks of a backward whirl, with status bits besides those of [`sample`].
+pub fn whirl(
+    supervisor: &mut Supervisor<64>,
+    ticks: std::ops::Range<u32>,
+    status: Status,
+) -> Vec<Command> {
+    whirl_by(WHIRL_STEP, supervisor, ticks, status)
+}
+
+/// The same at another angle in a tick \[rad\].
+pub fn whirl_by(
+    step: f32,
+    supervisor: &mut Supervisor<64>,
+    ticks: std::ops::Range<u32>,
+    status: Status,
+) -> Vec<Command> {
+    ticks
+        .map(|i| {
+            let mut s = sample(i, on_circle(RADIUS_M, step * i as f32));
+            s.status |= status;
+            supervisor.tick(&s)
+        })
+        .collect()
+}
+
+/// Length of a force \[N\].
+pub fn length(force_n: [f32; 2]) -> f64 {
+    f64::hypot(f64::from(force_n[0]), f64::from(force_n[1]))
+}
+
+/// Checks a command against the caps and, on axes that act, the slew limit; hands its force on.
+///
+/// # Errors
+/// What is broken.
+pub fn check(
+    command: &Command,
+    last_n: [f32; 2],
+    status: Status,
+    config: &Config,
+) -> Result<[f32; 2], String> {
+    let force = command.force_n.map(f64::from);
+    let lost = [Status::AXIS_X_LOST, Status::AXIS_Y_LOST].map(|axis| status.contains(axis));
+    let cap = f64::from(config.force_max_n);
+    let say = |what: &str| Err(format!("{what}: {command:?} after {last_n:?}"));
+    if force.iter().any(|f| !f.is_finite()) {
+        return say("not finite");
+    }
+    if length(command.force_n) > cap * (1.0 + 2e-7) {
+        return say("beyond the cap");
+    }
+    let axis_cap = f64::from(config.axis_force_max_n);
+    if force.iter().any(|f| f.abs() > axis_cap * (1.0 + 2e-7)) {
+        return say("beyond the cap of an axis");
+    }
+    let mut change = [0.0; 2];
+    for axis in 0..2 {
+        if lost[axis] {
+            if force[axis] != 0.0 {
+                return say("force on a lost axis");
+            }
+        } else {
+            change[axis] = force[axis] - f64::from(last_n[axis]);
+        }
+    }
+    let step = f64::from(config.force_slew_n_s) * f64::from(config.sample_period_s);
+    // The force itself has only so many digits.
+    if f64::hypot(change[0], change[1]) > step * (1.0 + 1e-6) + 3e-7 * cap {
+        return say("faster than the slew limit");
+    }
+    Ok(command.force_n)
+}

@@ -1,0 +1,225 @@
+//! How bad it was and will be: the whirl limit, severity, landings, and the request to coast down.
+
+use supervisor::{Command, Config, Events, Limits, Mode, Sample, Status, Supervisor};
+use system_tests::rig::{RADIUS_M, config, on_circle, sample, whirl, whirl_by};
+
+/// Root of d/dt v = 0 by bisection on forces in double precision: μ·N = d·v + F·cos, N = m·v²/r − k·r − F·sin.
+fn whirl_limit_m_s(config: &Config, force_n: f64) -> f64 {
+    let [m, k, d, c] = [
+        config.mass_kg,
+        config.stiffness_n_m,
+        config.damping_n_s_m,
+        config.clearance_m,
+    ]
+    .map(f64::from);
+    let mu = f64::from(config.friction_coefficient);
+    let tilt = (1.0 + mu * mu).sqrt();
+    let r = c + force_n / (mu * tilt) / f64::from(config.contact_stiffness_n_m);
+    let drive = |v: f64| {
+        let normal = m * v * v / r - k * r - force_n * mu / tilt;
+        mu * normal - d * v - force_n / tilt
+    };
+    let (mut low, mut high) = (0.0, 100.0);
+    for _ in 0..200 {
+        let v = 0.5 * (low + high);
+        if drive(v) < 0.0 {
+            low = v;
+        } else {
+            high = v;
+        }
+    }
+    low
+}
+
+/// The whirl limit in the report is the balance of forces on the bent orbit.
+#[test]
+fn the_whirl_limit_is_the_balance_of_forces() {
+    let cases = [
+        (1e9, 0.0, -2e5, 0.15, 1e7, 1.0),
+        (1e8, 0.0, 0.0, 0.15, 1e7, 1.0),
+        (1e9, 300.0, 8e5, 0.3, 600.0, 1.0),
+        (1e9, 20.0, -2e5, 0.05, 700.0, 1.4),
+    ];
+    for (stiffness, damping, shaft, mu, axis, lever) in cases {
+        let with = Config {
+            contact_stiffness_n_m: stiffness,
+            damping_n_s_m: damping,
+            stiffness_n_m: shaft,
+            friction_coefficient: mu,
+            axis_force_max_n: axis,
+            magnet_plane_ratio: lever,
+            ..config()
+        };
+        let force = f64::from(1000_f32.min(axis)) * f64::from(lever);
+        let limit = f64::from(
+            Supervisor::<16>::new(&with)
+                .unwrap()
+                .report()
+                .whirl_limit_m_s,
+        );
+        let exact = whirl_limit_m_s(&with, force);
+        assert!((limit / exact - 1.0).abs() < 1e-5, "{limit} {exact}");
+    }
+    // The figure of the soft contact that simulation meets.
+    let soft = Config {
+        contact_stiffness_n_m: 1e8,
+        ..config()
+    };
+    let report = Supervisor::<16>::new(&soft).unwrap().report();
+    assert!((report.whirl_limit_m_s - 0.422).abs() < 5e-4);
+}
+
+/// Severity before contact: backward speed after the impacts to come over the whirl limit, by hand.
+#[test]
+fn severity_is_predicted_before_contact() {
+    let mut supervisor = Supervisor::<64>::new(&config()).unwrap();
+    // 0.4 m/s along x at y = −0.3 c: angular momentum, over c, of 0.12 m/s counter-clockwise.
+    let mut before = 0;
+    for i in 0..17_u32 {
+        let x = 2e-5 * i as f32 - 1.6e-4;
+        // Nothing pushes it off this course.
+        let mut s = sample(i, [x, -6e-5]);
+        s.status |= Status::APPLIED_VALID;
+        let command = supervisor.tick(&s);
+        if command.mode == Mode::Levitated {
+            assert_eq!(command.severity, 0.0);
+            continue;
+        }
+        // By then the observer has the speed.
+        if i < 12 {
+            continue;
+        }
+        before += 1;
+        let (v_t, gain) = (0.12_f64, 0.15 * 1.7 / 0.3);
+        let v_n = (0.16_f64 - v_t * v_t).sqrt();
+        let expected = (-v_t + gain * v_n) / whirl_limit_m_s(&config(), 1000.0);
+        let severity = f64::from(command.severity);
+        assert!(
+            (severity / expected - 1.0).abs() < 0.03,
+            "{severity} {expected}"
+        );
+    }
+    assert!(before >= 4);
+}
+
+/// Landings, impacts, ticks, speeds and the index of a course that a hand can follow: two impacts in
+/// one engagement, then rest in the middle, then a third.
+#[test]
+fn landings_are_counted_and_weighed() {
+    let mut supervisor = Supervisor::<64>::new(&config()).unwrap();
+    let mut i = 0;
+    let mut fly = |supervisor: &mut Supervisor<64>, from: f32, to: f32, ticks: u32| {
+        let mut last = Command::default();
+        for k in 1..=ticks {
+            let x = from + (to - from) * k as f32 / ticks as f32;
+            last = supervisor.tick(&sample(i, [x, 1e-9 * (k % 2) as f32]));
+            i += 1;
+        }
+        last
+    };
+    fly(&mut supervisor, 0.0, 1e-6, 40);
+    // 0.4 m/s to the wall, 0.28 m/s across to the other.
+    fly(&mut supervisor, 1e-6, 2.01e-4, 10);
+    fly(&mut supervisor, 2.01e-4, -2.07e-4, 29);
+    let mid = supervisor.report();
+    assert_eq!((mid.landings, mid.impacts), (1, 2));
+    assert_eq!(mid.contact_ticks, 2);
+    assert!((mid.impact_speed_max_m_s - 0.4).abs() < 0.04, "{mid:?}");
+    let limit = whirl_limit_m_s(&config(), 1000.0);
+    let by_hand = (0.4_f64.powi(2) + 0.28_f64.powi(2)) / limit.powi(2);
+    let index = f64::from(mid.severity_index);
+    assert!((index / by_hand - 1.0).abs() < 0.15, "{index} {by_hand}");
+
+    fly(&mut supervisor, -2.07e-4, 0.0, 29);
+    fly(&mut supervisor, 0.0, 1e-7, 400);
+    assert_eq!(supervisor.mode(), Mode::Levitated);
+    supervisor.rearm();
+    fly(&mut supervisor, 0.0, 2.01e-4, 10);
+    let last = supervisor.report();
+    assert_eq!((last.landings, last.impacts), (2, 3));
+    assert!(last.severity_index > mid.severity_index);
+}
+
+/// Friction on a steady whirl: μ·N·v in each tick, with the normal force that holds the rotor on its
+/// circle against the force that acts.
+#[test]
+fn the_index_grows_by_friction_in_whirl() {
+    let mut supervisor = Supervisor::new(&config()).unwrap();
+    // 0.16 m/s. No force is applied.
+    const STEP: f32 = 0.04;
+    whirl_by(STEP, &mut supervisor, 0..300, Status::APPLIED_VALID);
+    let before = supervisor.report();
+    whirl_by(STEP, &mut supervisor, 300..700, Status::APPLIED_VALID);
+    let after = supervisor.report();
+    assert_eq!(after.contact_ticks - before.contact_ticks, 400);
+    let (v, c) = (f64::from(RADIUS_M * STEP) / 50e-6, 2e-4);
+    assert!((f64::from(after.backward_speed_max_m_s) / v - 1.0).abs() < 0.02);
+    let normal = 10.0 * v * v / c + 2e5 * c;
+    let energy = 0.15 * normal * v * 400.0 * 50e-6;
+    let by_hand = energy / (0.5 * 10.0 * whirl_limit_m_s(&config(), 1000.0).powi(2));
+    let index = f64::from(after.severity_index - before.severity_index);
+    assert!((index / by_hand - 1.0).abs() < 0.06, "{index} {by_hand}");
+}
+
+/// Whirl beyond the limit is named in each tick and asks for coasting down once, after its time; whirl
+/// below it is not and does not. Switched off and on, it may ask again.
+#[test]
+fn whirl_beyond_the_limit_asks_once_to_coast_down() {
+    let limit = whirl_limit_m_s(&config(), 1000.0) as f32;
+    for (share, beyond) in [(0.93, false), (1.08, true)] {
+        let mut supervisor = Supervisor::<64>::new(&config()).unwrap();
+        let step = share * limit * 50e-6 / RADIUS_M;
+        let mut sequence = 0;
+        let mut run = |status: Status, ticks: u32| {
+            let mut asked = Vec::new();
+            for _ in 0..ticks {
+                sequence += 1;
+                let s = Sample {
+                    status,
+                    ..sample(sequence, on_circle(RADIUS_M, step * sequence as f32))
+                };
+                let command = supervisor.tick(&s);
+                if command.events.contains(Events::COAST_DOWN) {
+                    asked.push(sequence);
+                }
+                if sequence > 100 && status.contains(Status::BEARING_ON) {
+                    let named = command.limits.contains(Limits::BEYOND_WHIRL_LIMIT);
+                    assert_eq!(named, beyond, "{share}");
+                }
+            }
+            asked
+        };
+        let on = Status::SPIN_VALID | Status::BEARING_ON;
+        let asked = run(on, 1000);
+        assert_eq!(asked.len(), usize::from(beyond));
+        if beyond {
+            // 5 ms are 100 ticks.
+            assert!((101..=110).contains(&asked[0]), "{asked:?}");
+        }
+        run(Status::SPIN_VALID, 10);
+        assert_eq!(run(on, 300).len(), usize::from(beyond));
+    }
+}
+
+/// So does the severity index, when it passes its limit.
+#[test]
+fn a_severity_index_beyond_its_limit_asks_once_to_coast_down() {
+    let with = Config {
+        severity_limit: 3.0,
+        coast_down_s: 100.0,
+        ..config()
+    };
+    let mut supervisor = Supervisor::new(&with).unwrap();
+    let mut asked = Vec::new();
+    for i in 0..2000 {
+        let command = whirl(&mut supervisor, i..i + 1, Status::empty())[0];
+        if command.events.contains(Events::COAST_DOWN) {
+            asked.push(supervisor.report().severity_index);
+        }
+    }
+    assert!(
+        matches!(asked[..], [index] if index > 3.0 && index < 3.2),
+        "{asked:?}"
+    );
+    assert!(supervisor.report().coast_down);
+}
