@@ -63,7 +63,7 @@ pub(crate) fn config(
 
 fn suggested(plant: &PlantParams, file: &SceneFile) -> Config {
     let period_s = 1.0 / file.run.sample_rate_hz;
-    let contact_rate = (plant.contact.stiffness_n_m / plant.contact_mass_kg()).sqrt();
+    let contact_rate = plant.contact_rate_rad_s();
     let noise_share =
         file.sensor.noise_rms_m.max(file.sensor.quantum_m) / plant.contact.clearance_m;
     let mass = plant.rotor.mass_kg;

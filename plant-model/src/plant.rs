@@ -13,11 +13,17 @@ use crate::stator::{OneMass, Rigid, Stator, TwoMass};
 use crate::system::{Inputs, State, StateOf, System};
 
 /// Why a plant could not be built.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum BuildError {
     /// A parameter is out of range.
     #[error(transparent)]
     Param(#[from] ParamError),
+    /// The power series is asked for with a contact law that has none.
+    #[error(
+        "run.method = series: Hunt and Crossley's contact has no power series at the touch; \
+         take auto, explicit or stiff"
+    )]
+    NoSeries,
 }
 
 /// A plant that is being run. Deterministic: the same calls give the same bits.
@@ -85,7 +91,7 @@ impl<S: Stator, W: Spin, M: Amplifier> Plant for Run<S, W, M> {
 /// right combination of types.
 ///
 /// # Errors
-/// [`BuildError::Param`] for the first value out of range.
+/// [`BuildError::Param`] for the first value out of range, [`BuildError::NoSeries`].
 pub fn build(
     params: &PlantParams,
     start: &Start,
@@ -99,6 +105,9 @@ pub fn build(
             value: options.rtol,
             expected: "a number from 1e-14 to 0.01",
         }));
+    }
+    if options.method == Method::Series && params.contact.law.linear().is_none() {
+        return Err(BuildError::NoSeries);
     }
     Ok(match &params.stator {
         StatorParams::Rigid => with_stator(params, start, options, Rigid),

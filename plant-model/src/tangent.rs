@@ -40,7 +40,8 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
         let d_whirl_speed = d_gap_rate.dot(&t) + gap_rate.dot(&d_t);
         let (d_spin, d_phase) = W::change(&change.spin);
         let d_sliding_speed = d_whirl_speed + radius * d_spin;
-        let d_normal = self.contact.normal_force_n(d_distance, d_normal_speed);
+        let law = (self.contact.law).at(g.penetration_m, g.normal_speed_m_s);
+        let d_normal = law.by_depth_n_m * d_distance + law.by_rate_n_s_m * d_normal_speed;
         let d_push = d_normal * n + normal_n * d_n;
 
         // Accelerations without friction.
@@ -167,8 +168,11 @@ mod tests {
             },
             contact: ContactParams {
                 clearance_m: 2e-4,
-                stiffness_n_m: 1e8,
-                damping_n_s_m: 5e3,
+                law: LinearContact {
+                    stiffness_n_m: 1e8,
+                    damping_n_s_m: 5e3,
+                }
+                .into(),
             },
             friction: FrictionParams {
                 sliding: SlidingFriction::Falling {

@@ -51,8 +51,11 @@ fn any_plant() -> impl Strategy<Value = PlantParams> {
                 _ => StatorParams::TwoMass { inner, outer },
             },
             contact: ContactParams {
-                stiffness_n_m: 10_f64.powf(contact.0),
-                ..base.contact
+                law: LinearContact {
+                    stiffness_n_m: 10_f64.powf(contact.0),
+                    ..base.contact
+                }
+                .into(),
             },
             friction: FrictionParams {
                 sliding: match friction.2 {
@@ -73,9 +76,12 @@ fn any_plant() -> impl Strategy<Value = PlantParams> {
             }),
         };
         let mass = params.contact_mass_kg();
-        params.contact.damping_n_s_m =
-            damping_for_restitution(contact.1, params.contact.stiffness_n_m, mass)
-                .expect("in range");
+        params.contact.law.linear_mut().unwrap().damping_n_s_m = damping_for_restitution(
+            contact.1,
+            params.contact.law.linear().unwrap().stiffness_n_m,
+            mass,
+        )
+        .expect("in range");
         params
     })
 }

@@ -144,10 +144,10 @@ impl<S: Stator> ContactSeries<S> {
             let w = (system.stator).damping_integral_w(&self.stator, nodes, order);
             flows.stator_damping = h * w;
         }
-        if system.contact.damping_n_s_m > 0.0 {
+        if self.law.damping_n_s_m > 0.0 {
             let speed = self.normal_speed.at_all(&nodes.theta, order);
             let square = nodes.integral(|j| speed[j] * speed[j]);
-            flows.contact_damping = system.contact.damping_n_s_m * h * square;
+            flows.contact_damping = self.law.damping_n_s_m * h * square;
         }
         let (slips, whirls) = (task.mode.0 != Slide::Rolling, task.mode.1 != Whirl::Still);
         let rolling = system.friction.rolling_coefficient > 0.0 && whirls;

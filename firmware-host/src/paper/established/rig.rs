@@ -3,8 +3,8 @@
 use crate::paper::PaperError;
 use plant_model::analysis::course::{Course, Watch, follow};
 use plant_model::params::{
-    ContactParams, FrictionParams, PlantParams, RingParams, RotorParams, SlidingFriction,
-    SpinParams, Start, StatorParams,
+    ContactParams, FrictionParams, LinearContact, PlantParams, RingParams, RotorParams,
+    SlidingFriction, SpinParams, Start, StatorParams,
 };
 use plant_model::{Meters, Options, V2, build};
 use std::f64::consts::TAU;
@@ -56,8 +56,11 @@ pub(super) fn with(left_out: &LeftOut) -> PlantParams {
         },
         contact: ContactParams {
             clearance_m: CLEARANCE_M,
-            stiffness_n_m: left_out.contact_stiffness_n_m,
-            damping_n_s_m: left_out.contact_damping_n_s_m,
+            law: LinearContact {
+                stiffness_n_m: left_out.contact_stiffness_n_m,
+                damping_n_s_m: left_out.contact_damping_n_s_m,
+            }
+            .into(),
         },
         friction: FrictionParams {
             sliding: SlidingFriction::Constant { coefficient: 0.15 },
