@@ -4,7 +4,6 @@
 pub mod hunt_crossley;
 
 use crate::params::{ContactLaw, ContactParams, LinearContact};
-use crate::system::Geometry;
 
 /// A dent shallower than this share of the clearance is round-off of a lift-off without one.
 const NO_DENT: f64 = 1e-12;
@@ -33,6 +32,22 @@ impl LinearContact {
     #[inline]
     pub fn normal_force_n(&self, penetration_m: f64, penetration_rate_m_s: f64) -> f64 {
         self.stiffness_n_m * penetration_m + self.damping_n_s_m * penetration_rate_m_s
+    }
+
+    /// The law at a penetration and its rate.
+    #[inline]
+    pub(crate) fn at(&self, penetration_m: f64, penetration_rate_m_s: f64) -> Normal {
+        let damper_n = self.damping_n_s_m * penetration_rate_m_s;
+        let force_n = self.stiffness_n_m * penetration_m + damper_n;
+        Normal {
+            force_n,
+            damper_n,
+            by_depth_n_m: self.stiffness_n_m,
+            by_rate_n_s_m: self.damping_n_s_m,
+            guard: force_n,
+            guard_by_depth: self.stiffness_n_m,
+            guard_by_rate: self.damping_n_s_m,
+        }
     }
 }
 
@@ -64,19 +79,7 @@ impl ContactLaw {
     #[inline]
     pub(crate) fn at(&self, penetration_m: f64, penetration_rate_m_s: f64) -> Normal {
         match self {
-            Self::Linear(law) => {
-                let damper_n = law.damping_n_s_m * penetration_rate_m_s;
-                let force_n = law.stiffness_n_m * penetration_m + damper_n;
-                Normal {
-                    force_n,
-                    damper_n,
-                    by_depth_n_m: law.stiffness_n_m,
-                    by_rate_n_s_m: law.damping_n_s_m,
-                    guard: force_n,
-                    guard_by_depth: law.stiffness_n_m,
-                    guard_by_rate: law.damping_n_s_m,
-                }
-            }
+            Self::Linear(law) => law.at(penetration_m, penetration_rate_m_s),
             Self::HuntCrossley(law) => law.at(penetration_m, penetration_rate_m_s),
         }
     }
@@ -100,17 +103,22 @@ impl ContactLaw {
 
     /// What rounding may leave of the guard and of the force where they are zero, for a distance of the
     /// centres and a speed that are known to a few `ulps`.
-    pub(crate) fn round_off(&self, g: &Geometry, ulps: f64, speed_m_s: f64) -> (f64, f64) {
+    pub(crate) fn round_off(
+        &self,
+        (penetration_m, normal_speed_m_s): (f64, f64),
+        (distance_m, speed_m_s): (f64, f64),
+        ulps: f64,
+    ) -> (f64, f64) {
         match self {
             Self::Linear(law) => {
                 let force_n =
-                    ulps * (law.stiffness_n_m * g.distance_m + law.damping_n_s_m * speed_m_s);
+                    ulps * (law.stiffness_n_m * distance_m + law.damping_n_s_m * speed_m_s);
                 (force_n, force_n)
             }
-            Self::HuntCrossley(_) => {
+            Self::HuntCrossley(law) => {
                 // The slope of the force is zero at A = 0: taken where rounding may have put A.
-                let (depth_m, rate_m_s) = (ulps * g.distance_m, ulps * speed_m_s);
-                let now = self.at(g.penetration_m.abs() + depth_m, g.normal_speed_m_s);
+                let (depth_m, rate_m_s) = (ulps * distance_m, ulps * speed_m_s);
+                let now = law.at(penetration_m.abs() + depth_m, normal_speed_m_s);
                 (
                     now.guard_by_depth.abs() * depth_m + now.guard_by_rate * rate_m_s,
                     now.by_depth_n_m.abs() * depth_m + now.by_rate_n_s_m * rate_m_s,

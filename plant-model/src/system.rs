@@ -1,10 +1,11 @@
 //! The parts composed: eqs (2.1)–(2.9) as one smooth vector field per mode.
 
 use crate::V2;
+use crate::contact::Normal;
 use crate::energy::Flows;
 use crate::magnet::Amplifier;
 use crate::mode::{Slide, Whirl};
-use crate::params::{ContactLaw, ContactParams, FrictionParams, RotorParams};
+use crate::params::{ContactLaw, ContactParams, FrictionParams, HuntCrossley, RotorParams};
 use crate::part::{Body, Part, Weights};
 use crate::spin::Spin;
 use crate::stator::{Rings, Stator};
@@ -213,13 +214,46 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
         t_s: f64,
         y: &StateOf<S, W, M>,
         inputs: &Inputs,
+        mode: (Slide, Whirl),
+    ) -> Evaluation<StateOf<S, W, M>> {
+        // Compiled once for each law, so that the linear one pays for a branch only.
+        match &self.contact.law {
+            ContactLaw::Linear(law) => {
+                self.contact_by(|depth, rate| law.at(depth, rate), t_s, y, inputs, mode)
+            }
+            ContactLaw::HuntCrossley(law) => self.hardening_contact(law, t_s, y, inputs, mode),
+        }
+    }
+
+    /// Apart, so that its registers are not saved for the linear law.
+    #[cold]
+    #[inline(never)]
+    fn hardening_contact(
+        &self,
+        law: &HuntCrossley,
+        t_s: f64,
+        y: &StateOf<S, W, M>,
+        inputs: &Inputs,
+        mode: (Slide, Whirl),
+    ) -> Evaluation<StateOf<S, W, M>> {
+        self.contact_by(|depth, rate| law.at(depth, rate), t_s, y, inputs, mode)
+    }
+
+    /// The field with a contact law.
+    #[inline]
+    fn contact_by(
+        &self,
+        law: impl Fn(f64, f64) -> Normal,
+        t_s: f64,
+        y: &StateOf<S, W, M>,
+        inputs: &Inputs,
         (slide, whirl): (Slide, Whirl),
     ) -> Evaluation<StateOf<S, W, M>> {
         let g = self.geometry(y);
         let (n, t) = (g.normal, g.tangent);
         let radius = self.rotor.contact_radius_m;
         let velocity = y.rotor.velocity;
-        let law = (self.contact.law).at(g.penetration_m, g.normal_speed_m_s);
+        let law = law(g.penetration_m, g.normal_speed_m_s);
         let normal_n = law.force_n;
 
         let magnet_n = self.amplifier.force_n(&y.force, inputs.command_n);
@@ -376,7 +410,11 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
         const ULPS: f64 = 4.0 * f64::EPSILON;
         let g = self.geometry(y);
         let surface = self.spin.spin_rad_s(&y.spin) * self.rotor.contact_radius_m;
-        let (normal, force) = (self.contact.law).round_off(&g, ULPS, y.rotor.velocity.norm());
+        let (normal, force) = self.contact.law.round_off(
+            (g.penetration_m, g.normal_speed_m_s),
+            (g.distance_m, y.rotor.velocity.norm()),
+            ULPS,
+        );
         let speed = ULPS * (y.rotor.velocity.norm() + surface.abs());
         let of = |held: bool| if held { force } else { speed };
         let (slide, whirl) = (of(slide == Slide::Rolling), of(whirl == Whirl::Still));

@@ -153,6 +153,21 @@ mod tests {
     /// Every column in every mode against central differences of the field.
     #[test]
     fn columns_are_the_fields_differences() {
+        let linear = LinearContact {
+            stiffness_n_m: 1e8,
+            damping_n_s_m: 5e3,
+        };
+        let hardening = HuntCrossley {
+            stiffness_n_mn: 1e10,
+            exponent: 1.5,
+            damping_s_m: 0.7,
+        };
+        for law in [ContactLaw::from(linear), hardening.into()] {
+            columns_are_differences(law);
+        }
+    }
+
+    fn columns_are_differences(law: ContactLaw) {
         let ring = |k: f64| RingParams {
             mass_kg: 7.0,
             stiffness_n_m: V2::new(k, 1.2 * k),
@@ -168,11 +183,7 @@ mod tests {
             },
             contact: ContactParams {
                 clearance_m: 2e-4,
-                law: LinearContact {
-                    stiffness_n_m: 1e8,
-                    damping_n_s_m: 5e3,
-                }
-                .into(),
+                law,
             },
             friction: FrictionParams {
                 sliding: SlidingFriction::Falling {

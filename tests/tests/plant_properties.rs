@@ -53,9 +53,10 @@ fn any_plant() -> impl Strategy<Value = PlantParams> {
             contact: ContactParams {
                 law: LinearContact {
                     stiffness_n_m: 10_f64.powf(contact.0),
-                    ..base.contact
+                    damping_n_s_m: 0.0,
                 }
                 .into(),
+                ..base.contact
             },
             friction: FrictionParams {
                 sliding: match friction.2 {

@@ -36,10 +36,9 @@ impl HuntCrossley {
     }
 
     /// The law, continued to A < 0 as an odd function of A: a step looks a little beyond the end of
-    /// contact. Not inlined, so that the linear law pays for a branch only.
-    #[cold]
+    /// contact.
     #[inline(never)]
-    pub(super) fn at(&self, penetration_m: f64, penetration_rate_m_s: f64) -> Normal {
+    pub(crate) fn at(&self, penetration_m: f64, penetration_rate_m_s: f64) -> Normal {
         let k = self.stiffness_n_mn * self.power(penetration_m.abs());
         let spring_n = k * penetration_m;
         let share = self.damping_s_m * penetration_rate_m_s;
@@ -61,7 +60,9 @@ impl HuntCrossley {
         }
     }
 
-    /// k_h·Aⁿ⁺¹/(n + 1) \[J\].
+    /// k_h·Aⁿ⁺¹/(n + 1) \[J\]. Apart, so that it costs a flight by the linear law nothing.
+    #[cold]
+    #[inline(never)]
     pub(super) fn stored_j(&self, penetration_m: f64) -> f64 {
         let depth_m = penetration_m.abs();
         self.spring_n(depth_m) * depth_m / (self.exponent + 1.0)

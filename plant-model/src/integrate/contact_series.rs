@@ -17,8 +17,6 @@ use crate::system::{StateOf, System};
 /// Series of everything in contact over one step. Reused from step to step.
 #[derive(Debug, Clone)]
 pub(crate) struct ContactSeries<S: Stator> {
-    /// The law that it is for: no other has a power series at the touch.
-    pub(super) law: LinearContact,
     pub(crate) step_s: f64,
     pub(crate) order: usize,
     pub(super) position: Series,
@@ -58,6 +56,8 @@ pub(crate) struct ContactSeries<S: Stator> {
     pub(super) whirl_rate: Scalar,
     pub(super) difference: Series,
     pub(super) eccentric: Scalar,
+    /// The law that it is for: no other has a power series at the touch.
+    pub(super) law: LinearContact,
 }
 
 impl<S: Stator> ContactSeries<S> {
@@ -66,7 +66,6 @@ impl<S: Stator> ContactSeries<S> {
         S::Series: Default,
     {
         Self {
-            law,
             step_s: 0.0,
             order: 0,
             position: Series::default(),
@@ -95,6 +94,7 @@ impl<S: Stator> ContactSeries<S> {
             whirl_rate: Scalar::default(),
             difference: Series::default(),
             eccentric: Scalar::default(),
+            law,
         }
     }
 }

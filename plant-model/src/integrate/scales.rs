@@ -53,7 +53,7 @@ impl Scales {
             // The spring takes the energy up in a depth that is not in proportion to the speed.
             ContactLaw::HuntCrossley(law) => {
                 let mobility = 1.0 / system.rotor.mass_kg + system.stator.inverse_mass();
-                speed / law.undamped_depth_m(speed, 1.0 / mobility)
+                speed / law.depth_m(speed, 1.0 / mobility)
             }
         };
         let clearance = system.contact.clearance_m;

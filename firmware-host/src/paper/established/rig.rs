@@ -14,7 +14,7 @@ pub(in crate::paper) const CLEARANCE_M: f64 = 2e-4;
 /// Radius of the disc \[m\].
 const RADIUS_M: f64 = 0.1;
 /// Radial speed at the wall at the start \[m/s\].
-pub(super) const IMPACT_M_S: f64 = 0.4;
+pub(in crate::paper) const IMPACT_M_S: f64 = 0.4;
 
 /// What the paper leaves out.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -163,7 +163,7 @@ impl Violence {
 }
 
 /// A whirl from an impact at the wall to standstill.
-pub(super) fn violence(
+pub(in crate::paper) fn violence(
     params: &PlantParams,
     spin_hz: f64,
     end_s: f64,
