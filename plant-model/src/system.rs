@@ -209,6 +209,7 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
     }
 
     /// The field in contact. Smooth for given `slide` and `whirl`, also where a guard is negative.
+    #[inline(never)]
     pub(crate) fn contact(
         &self,
         t_s: f64,
@@ -239,8 +240,8 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
         self.contact_by(|depth, rate| law.at(depth, rate), t_s, y, inputs, mode)
     }
 
-    /// The field with a contact law.
-    #[inline]
+    /// The field with a contact law. Inlined, so that each law has its own copy without calls.
+    #[inline(always)]
     fn contact_by(
         &self,
         law: impl Fn(f64, f64) -> Normal,
@@ -421,7 +422,9 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
         [normal, slide, slide, whirl, whirl]
     }
 
-    /// Kinetic and elastic energy, the contact spring included while `touching` \[J\].
+    /// Kinetic and elastic energy, the contact spring included while `touching` \[J\]. Every step of a
+    /// flight asks for it; a call costs as much as the sum.
+    #[inline(always)]
     pub(crate) fn stored_j(&self, y: &StateOf<S, W, M>, touching: bool) -> f64 {
         let spin = self.spin.spin_rad_s(&y.spin);
         let inverse_j = self.spin.inverse_inertia();

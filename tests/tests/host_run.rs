@@ -357,7 +357,7 @@ fn bad_scenes_are_refused_with_file_line_key_and_expectation() {
         ),
         (
             "stiffness_n_m = 1e9",
-            "stiffness_n_m = 1e9\nstiffness_n_mn = 1e13",
+            "stiffness_n_mn = 1e13\nstiffness_n_m = 1e9",
             "contact.stiffness_n_m",
             "says the same",
         ),

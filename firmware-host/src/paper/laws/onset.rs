@@ -3,7 +3,9 @@
 use super::{linear_impact, linear_of, matched_at_impact, with_law};
 use crate::paper::rotors::OnsetRig;
 use crate::paper::{Depth, Kind, PaperError, Row, Table};
-use plant_model::analysis::impact::{Criterion, Search, critical_speed_m_s};
+use plant_model::analysis::impact::{
+    Criterion, Impact, Outcome, Search, aftermath, critical_speed_m_s,
+};
 use plant_model::contact::hunt_crossley::damping_for_restitution;
 use plant_model::params::{HuntCrossley, PlantParams};
 use rayon::prelude::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
@@ -82,15 +84,21 @@ fn fit() -> Result<Fit, PaperError> {
             })
             .ok_or_else(|| PaperError::Missing(format!("no restitution: {e}")))
     };
-    // v_r,crit falls with e.
+    // v_r,crit falls with e; whirl at the measured speed says that it lies below.
     let (mut low, mut high) = (0.02, RESTITUTION);
+    let impact = Impact {
+        speed_m_s: measured_m_s,
+        inclination_rad: inclination,
+        spin_rad_s: OnsetRig::SPIN_RAD_S,
+        spin_phase_rad: 0.0,
+    };
     while high - low > 1e-3 * high {
         let middle = 0.5 * (low + high);
-        let found = critical_m_s(&with_law(&params, law_of(middle)?), inclination)?;
-        if found > measured_m_s {
-            low = middle;
-        } else {
+        let tried = with_law(&params, law_of(middle)?);
+        if aftermath(&tried, &impact, &Criterion::default())?.outcome == Outcome::Whirl {
             high = middle;
+        } else {
+            low = middle;
         }
     }
     let restitution = 0.5 * (low + high);
