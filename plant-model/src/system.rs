@@ -422,9 +422,7 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
         [normal, slide, slide, whirl, whirl]
     }
 
-    /// Kinetic and elastic energy, the contact spring included while `touching` \[J\]. Every step of a
-    /// flight asks for it; a call costs as much as the sum.
-    #[inline(always)]
+    /// Kinetic and elastic energy, the contact spring included while `touching` \[J\].
     pub(crate) fn stored_j(&self, y: &StateOf<S, W, M>, touching: bool) -> f64 {
         let spin = self.spin.spin_rad_s(&y.spin);
         let inverse_j = self.spin.inverse_inertia();
