@@ -38,9 +38,12 @@ pub fn run_under(
         stator,
         contact: ContactParams {
             clearance_m: p.clearance,
-            law: LinearContact { stiffness_n_m: p.k_c,
-            damping_n_s_m: p.d_c, }.into(),
-},
+            law: LinearContact {
+                stiffness_n_m: p.k_c,
+                damping_n_s_m: p.d_c,
+            }
+            .into(),
+        },
         friction: FrictionParams {
             sliding: SlidingFriction::Constant { coefficient: p.mu },
             rolling_coefficient: 0.0,
