@@ -150,9 +150,7 @@ impl Judge {
             return Outcome::Decayed;
         }
         let plant = &scene.plant;
-        let rest = REST_SPEED
-            * plant.contact.clearance_m
-            * (plant.contact.stiffness_n_m / plant.contact_mass_kg()).sqrt();
+        let rest = REST_SPEED * plant.contact.clearance_m * plant.contact_rate_rad_s();
         let loaded = scene
             .loads()
             .any(|d| d.start_s < last.t_s && last.t_s <= d.end_s());

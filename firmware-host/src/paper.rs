@@ -5,6 +5,7 @@
 //! One file a chapter; a chapter computes, and says nothing about how it is shown.
 
 pub mod established;
+mod laws;
 mod levels;
 mod limits;
 pub mod maps;
@@ -201,6 +202,7 @@ pub const CHAPTERS: &[(&str, Compute)] = &[
     ("the nine phases", phases::chapter),
     ("limits", limits::chapter),
     ("levels", levels::chapter),
+    ("contact laws", laws::chapter),
     ("mounting", mounting::chapter),
     ("retainer bearing", retainer::chapter),
 ];

@@ -1,11 +1,11 @@
 //! The plant from the scene's keys: alternatives resolved, every value checked.
 
 use crate::scene_error::{Checks, SceneError, SceneText};
-use crate::scene_file::{RingFile, RotorFile, SceneFile};
-use plant_model::contact::damping_for_restitution;
+use crate::scene_file::{ContactFile, RingFile, RotorFile, SceneFile};
+use plant_model::contact::{damping_for_restitution, hunt_crossley};
 use plant_model::params::{
-    ContactParams, FrictionParams, MagnetParams, PlantParams, RaceParams, RingParams, RotorParams,
-    SlidingFriction, SpinParams, StatorParams,
+    ContactLaw, ContactParams, FrictionParams, HuntCrossley, LinearContact, MagnetParams,
+    PlantParams, RaceParams, RingParams, RotorParams, SlidingFriction, SpinParams, StatorParams,
 };
 use std::f64::consts::TAU;
 
@@ -46,8 +46,7 @@ pub(crate) fn plant_of(file: &SceneFile, text: &SceneText) -> Result<PlantParams
         },
         contact: ContactParams {
             clearance_m: file.contact.clearance_m,
-            stiffness_n_m: file.contact.stiffness_n_m,
-            damping_n_s_m: file.contact.damping_n_s_m.unwrap_or(0.0),
+            law: law_of(&file.contact, &check)?,
         },
         friction: FrictionParams {
             sliding: sliding_of(file, &check)?,
@@ -70,23 +69,106 @@ pub(crate) fn plant_of(file: &SceneFile, text: &SceneText) -> Result<PlantParams
         };
         check.refused(key, e.value, e.expected)
     })?;
-    check.either(
-        ("contact.damping_n_s_m", file.contact.damping_n_s_m),
-        ("contact.restitution", file.contact.restitution),
-    )?;
-    if let Some(e) = file.contact.restitution {
-        plant.contact.damping_n_s_m =
-            damping_for_restitution(e, plant.contact.stiffness_n_m, plant.contact_mass_kg())
-                .filter(|d| d.is_finite())
-                .ok_or_else(|| {
-                    check.refused(
-                        "contact.restitution",
-                        e,
-                        "a number greater than 0, at most 1",
-                    )
-                })?;
-    }
+    restore(&mut plant, &file.contact, &check)?;
     Ok(plant)
+}
+
+/// The contact law with the damping that is given directly.
+fn law_of(file: &ContactFile, check: &Checks<'_>) -> Result<ContactLaw, SceneError> {
+    let refused = |key: &str, message: String, help: String| {
+        Err::<ContactLaw, _>((check.text).error_at_key(key, message, Some(help)))
+    };
+    let (linear, hardening) = (file.stiffness_n_m, file.stiffness_n_mn);
+    check.either(
+        ("contact.stiffness_n_m", linear),
+        ("contact.stiffness_n_mn", hardening),
+    )?;
+    let (foreign, own) = match hardening {
+        Some(_) => (
+            &[("contact.damping_n_s_m", file.damping_n_s_m)][..],
+            "stiffness_n_m",
+        ),
+        None => (
+            &[
+                ("contact.exponent", file.exponent),
+                ("contact.damping_s_m", file.damping_s_m),
+                ("contact.restitution_speed_m_s", file.restitution_speed_m_s),
+            ][..],
+            "stiffness_n_mn",
+        ),
+    };
+    if let Some((key, _)) = foreign.iter().find(|(_, value)| value.is_some()) {
+        let message = format!("belongs to a contact with {own}");
+        return refused(key, message, format!("remove it, or give contact.{own}"));
+    }
+    match (linear, hardening) {
+        (_, Some(stiffness_n_mn)) => Ok(HuntCrossley {
+            stiffness_n_mn,
+            exponent: file.exponent.unwrap_or(1.5),
+            damping_s_m: file.damping_s_m.unwrap_or(0.0),
+        }
+        .into()),
+        (Some(stiffness_n_m), None) => Ok(LinearContact {
+            stiffness_n_m,
+            damping_n_s_m: file.damping_n_s_m.unwrap_or(0.0),
+        }
+        .into()),
+        (None, None) => {
+            let help = "give stiffness_n_m (linear) or stiffness_n_mn (Hunt and Crossley)";
+            refused("contact", "has no stiffness".to_owned(), help.to_owned())
+        }
+    }
+}
+
+/// Damping from a restitution, where the file gives that instead.
+fn restore(
+    plant: &mut PlantParams,
+    file: &ContactFile,
+    check: &Checks<'_>,
+) -> Result<(), SceneError> {
+    const RANGE: &str = "a number greater than 0, at most 1";
+    let mass_kg = plant.contact_mass_kg();
+    let speed = ("contact.restitution_speed_m_s", file.restitution_speed_m_s);
+    let given = match &plant.contact.law {
+        ContactLaw::Linear(_) => ("contact.damping_n_s_m", file.damping_n_s_m),
+        ContactLaw::HuntCrossley(_) => ("contact.damping_s_m", file.damping_s_m),
+    };
+    check.either(given, ("contact.restitution", file.restitution))?;
+    let Some(e) = file.restitution else {
+        return match speed.1 {
+            None => Ok(()),
+            Some(_) => {
+                let message = "has no effect without contact.restitution".to_owned();
+                let help = Some("give contact.restitution, or remove the speed".to_owned());
+                Err(check.text.error_at_key(speed.0, message, help))
+            }
+        };
+    };
+    let refused = || check.refused("contact.restitution", e, RANGE);
+    match &mut plant.contact.law {
+        ContactLaw::Linear(law) => {
+            law.damping_n_s_m = damping_for_restitution(e, law.stiffness_n_m, mass_kg)
+                .filter(|d| d.is_finite())
+                .ok_or_else(refused)?;
+        }
+        ContactLaw::HuntCrossley(law) => {
+            let Some(speed_m_s) = speed.1 else {
+                let message = "needs the impact speed that it belongs to".to_owned();
+                let help = Some(
+                    "give contact.restitution_speed_m_s too: with this law e falls with speed"
+                        .to_owned(),
+                );
+                return Err(check
+                    .text
+                    .error_at_key("contact.restitution", message, help));
+            };
+            check.within(speed.0, speed_m_s, 1e-9, 1e6)?;
+            law.damping_s_m = hunt_crossley::damping_for_restitution(e, speed_m_s)
+                .filter(|d| d.is_finite())
+                .ok_or_else(refused)?;
+        }
+    }
+    Ok(())
 }
 
 fn rotor_of(

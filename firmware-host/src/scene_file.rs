@@ -134,14 +134,18 @@ pub(crate) struct RingFile {
     pub(crate) damping_n_s_m: PerAxis,
 }
 
-/// The contact; damping directly or as restitution.
+/// The contact, linear or with a stiffness that grows with depth; damping directly or as restitution.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table with keys")]
 pub(crate) struct ContactFile {
     pub(crate) clearance_m: f64,
-    pub(crate) stiffness_n_m: f64,
+    pub(crate) stiffness_n_m: Option<f64>,
     pub(crate) damping_n_s_m: Option<f64>,
+    pub(crate) stiffness_n_mn: Option<f64>,
+    pub(crate) exponent: Option<f64>,
+    pub(crate) damping_s_m: Option<f64>,
     pub(crate) restitution: Option<f64>,
+    pub(crate) restitution_speed_m_s: Option<f64>,
 }
 
 /// Friction; constant unless the coefficient at speed is given.

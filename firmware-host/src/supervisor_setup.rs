@@ -70,7 +70,7 @@ pub(crate) fn config(
 
 fn suggested(plant: &PlantParams, file: &SceneFile) -> Config {
     let period_s = 1.0 / file.run.sample_rate_hz;
-    let contact_rate = (plant.contact.stiffness_n_m / plant.contact_mass_kg()).sqrt();
+    let contact_rate = plant.contact_rate_rad_s();
     let noise_share =
         file.sensor.noise_rms_m.max(file.sensor.quantum_m) / plant.contact.clearance_m;
     let mass = plant.rotor.mass_kg;
@@ -117,7 +117,7 @@ fn suggested(plant: &PlantParams, file: &SceneFile) -> Config {
         force_slew_n_s: slew_n_s as f32,
         continuous_force_n: force_max_n as f32,
         thermal_time_s: 5.0,
-        contact_stiffness_n_m: plant.contact.stiffness_n_m as f32,
+        contact_stiffness_n_m: plant.contact.stiffness_n_m() as f32,
         // Several periods of a whirl of some hundred hertz; the stop of the machine takes far longer.
         coast_down_s: 5e-3,
         severity_limit: 20.0,

@@ -1,9 +1,8 @@
 //! Runs that end without an error and are wrong all the same: one scene without control, from many
 //! start speeds.
 
-use crate::accuracy::{AccuracyError, Ending, TIGHTEST, apart, run};
+use crate::accuracy::{AccuracyError, Ending, TIGHTEST, apart, reference_methods, run};
 use crate::scene::Scene;
-use plant_model::Method;
 use rayon::prelude::{IntoParallelIterator, ParallelIterator};
 use serde::Serialize;
 
@@ -108,9 +107,10 @@ fn from_start(scene: &Scene, factor: f64) -> Start {
     let moved = at(factor);
     let agree =
         |a: &Ending, b: &Ending| a.modes == b.modes && apart(scene, a, b) <= WRONG_CLEARANCES;
-    let reference = run(&moved, Method::Series, TIGHTEST).ok()?;
-    let slower = run(&at(factor * (1.0 - NUDGE)), Method::Series, TIGHTEST).ok()?;
-    let faster = run(&at(factor * (1.0 + NUDGE)), Method::Explicit, CONFIRM_AT).ok()?;
+    let [one, other] = reference_methods(scene);
+    let reference = run(&moved, one, TIGHTEST).ok()?;
+    let slower = run(&at(factor * (1.0 - NUDGE)), one, TIGHTEST).ok()?;
+    let faster = run(&at(factor * (1.0 + NUDGE)), other, CONFIRM_AT).ok()?;
     if !(agree(&reference, &slower) && agree(&reference, &faster)) {
         return None;
     }

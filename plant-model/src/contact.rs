@@ -1,8 +1,32 @@
-//! The contact law f_n = k_c·A + d_c·B, eqs (2.8), (2.9), and its restitution.
+//! The contact law: the linear one, f_n = k_c·A + d_c·B, eqs (2.8), (2.9), with its restitution, and Hunt
+//! and Crossley's.
 
-use crate::params::ContactParams;
+pub mod hunt_crossley;
 
-impl ContactParams {
+use crate::params::{ContactLaw, ContactParams, LinearContact};
+
+/// A dent shallower than this share of the clearance is round-off of a lift-off without one.
+const NO_DENT: f64 = 1e-12;
+
+/// Everything that a law says at a penetration A and its rate B.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Normal {
+    /// f_n \[N\]; negative where contact has ended.
+    pub(crate) force_n: f64,
+    /// Its part that takes energy \[N\].
+    pub(crate) damper_n: f64,
+    /// ∂f_n/∂A and ∂f_n/∂B.
+    pub(crate) by_depth_n_m: f64,
+    pub(crate) by_rate_n_s_m: f64,
+    /// Positive while contact lasts. The force itself where its zero is a simple one, else a function
+    /// that has a simple zero where the force ends.
+    pub(crate) guard: f64,
+    /// ∂/∂A and ∂/∂B of the guard.
+    pub(crate) guard_by_depth: f64,
+    pub(crate) guard_by_rate: f64,
+}
+
+impl LinearContact {
     /// Normal force \[N\] for a penetration A \[m\] and its rate B \[m/s\]. Negative values mean that
     /// contact has ended: a wall does not pull.
     #[inline]
@@ -10,10 +34,117 @@ impl ContactParams {
         self.stiffness_n_m * penetration_m + self.damping_n_s_m * penetration_rate_m_s
     }
 
+    /// The law at a penetration and its rate.
+    #[inline]
+    pub(crate) fn at(&self, penetration_m: f64, penetration_rate_m_s: f64) -> Normal {
+        let damper_n = self.damping_n_s_m * penetration_rate_m_s;
+        let force_n = self.stiffness_n_m * penetration_m + damper_n;
+        Normal {
+            force_n,
+            damper_n,
+            by_depth_n_m: self.stiffness_n_m,
+            by_rate_n_s_m: self.damping_n_s_m,
+            guard: force_n,
+            guard_by_depth: self.stiffness_n_m,
+            guard_by_rate: self.damping_n_s_m,
+        }
+    }
+}
+
+impl ContactLaw {
+    /// The linear law, where it is that.
+    pub fn linear(&self) -> Option<LinearContact> {
+        match self {
+            Self::Linear(law) => Some(*law),
+            Self::HuntCrossley(_) => None,
+        }
+    }
+
+    /// The linear law to be changed, where it is that.
+    pub fn linear_mut(&mut self) -> Option<&mut LinearContact> {
+        match self {
+            Self::Linear(law) => Some(law),
+            Self::HuntCrossley(_) => None,
+        }
+    }
+
+    /// Normal force \[N\] for a penetration A \[m\] and its rate B \[m/s\]. Negative values mean that
+    /// contact has ended: a wall does not pull.
+    #[inline]
+    pub fn normal_force_n(&self, penetration_m: f64, penetration_rate_m_s: f64) -> f64 {
+        self.at(penetration_m, penetration_rate_m_s).force_n
+    }
+
+    /// The law at a penetration and its rate.
+    #[inline]
+    pub(crate) fn at(&self, penetration_m: f64, penetration_rate_m_s: f64) -> Normal {
+        match self {
+            Self::Linear(law) => law.at(penetration_m, penetration_rate_m_s),
+            Self::HuntCrossley(law) => law.at(penetration_m, penetration_rate_m_s),
+        }
+    }
+
     /// Energy in the contact spring \[J\].
     #[inline]
     pub fn stored_j(&self, penetration_m: f64) -> f64 {
-        0.5 * self.stiffness_n_m * penetration_m * penetration_m
+        match self {
+            Self::Linear(law) => 0.5 * law.stiffness_n_m * penetration_m * penetration_m,
+            Self::HuntCrossley(law) => law.stored_j(penetration_m),
+        }
+    }
+
+    /// ∂f_n/∂B at a depth \[N s/m\].
+    pub(crate) fn by_rate_n_s_m(&self, depth_m: f64) -> f64 {
+        match self {
+            Self::Linear(law) => law.damping_n_s_m,
+            Self::HuntCrossley(law) => law.damping_s_m * law.spring_n(depth_m),
+        }
+    }
+
+    /// What rounding may leave of the guard and of the force where they are zero, for a distance of the
+    /// centres and a speed that are known to a few `ulps`.
+    pub(crate) fn round_off(
+        &self,
+        (penetration_m, normal_speed_m_s): (f64, f64),
+        (distance_m, speed_m_s): (f64, f64),
+        ulps: f64,
+    ) -> (f64, f64) {
+        match self {
+            Self::Linear(law) => {
+                let force_n =
+                    ulps * (law.stiffness_n_m * distance_m + law.damping_n_s_m * speed_m_s);
+                (force_n, force_n)
+            }
+            Self::HuntCrossley(law) => {
+                // The slope of the force is zero at A = 0: taken where rounding may have put A.
+                let (depth_m, rate_m_s) = (ulps * distance_m, ulps * speed_m_s);
+                let now = law.at(penetration_m.abs() + depth_m, normal_speed_m_s);
+                (
+                    now.guard_by_depth.abs() * depth_m + now.guard_by_rate * rate_m_s,
+                    now.by_depth_n_m.abs() * depth_m + now.by_rate_n_s_m * rate_m_s,
+                )
+            }
+        }
+    }
+}
+
+impl ContactParams {
+    /// k_c; where the stiffness grows with the depth, ∂f_n/∂A at a depth of one clearance \[N/m\].
+    pub fn stiffness_n_m(&self) -> f64 {
+        match &self.law {
+            ContactLaw::Linear(law) => law.stiffness_n_m,
+            ContactLaw::HuntCrossley(law) => law.stiffness_n_m(self.clearance_m),
+        }
+    }
+
+    /// Whether a contact that ends at a penetration leaves a dent, which only the damper can.
+    pub(crate) fn leaves_dent(&self, penetration_m: f64) -> bool {
+        match &self.law {
+            ContactLaw::Linear(law) => law.damping_n_s_m > 0.0 && penetration_m > 0.0,
+            ContactLaw::HuntCrossley(law) => {
+                law.damping_s_m > 0.0 && penetration_m > NO_DENT * self.clearance_m
+            }
+        }
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::V2;
 
 /// A value outside its range. `field` is the dotted path a scene file uses.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[error("{field} = {value}: expected {expected}")]
 pub struct ParamError {
     /// Dotted path of the field, e.g. `rotor.mass_kg`.
@@ -70,15 +70,54 @@ pub enum StatorParams {
     },
 }
 
-/// Linear visco-elastic contact, f_n = k_c·A + d_c·B while positive.
+/// The contact: how far apart, and what force a penetration A and its rate B give.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContactParams {
     /// Radial clearance c \[m\], > 0.
     pub clearance_m: f64,
+    /// Normal force.
+    pub law: ContactLaw,
+}
+
+/// Normal force over penetration A and its rate B. A wall does not pull: contact ends where it would.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum ContactLaw {
+    /// The paper's, eq. (2.8).
+    Linear(LinearContact),
+    /// Hertz's stiffness with a damper that grows with the depth.
+    HuntCrossley(HuntCrossley),
+}
+
+/// Linear visco-elastic contact, f_n = k_c·A + d_c·B while positive.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LinearContact {
     /// Contact stiffness k_c \[N/m\], > 0.
     pub stiffness_n_m: f64,
     /// Contact damping d_c \[N s/m\], ≥ 0; see [`crate::contact::damping_for_restitution`].
     pub damping_n_s_m: f64,
+}
+
+/// Hunt and Crossley's contact, f_n = k_h·Aⁿ·(1 + λ·B) while A > 0 and 1 + λ·B > 0.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HuntCrossley {
+    /// k_h \[N/mⁿ\], > 0.
+    pub stiffness_n_mn: f64,
+    /// n, from 1 to 3; 3/2 for Hertz's contact of spheres.
+    pub exponent: f64,
+    /// λ \[s/m\], ≥ 0; see [`crate::contact::hunt_crossley::damping_for_restitution`].
+    pub damping_s_m: f64,
+}
+
+impl From<LinearContact> for ContactLaw {
+    fn from(law: LinearContact) -> Self {
+        Self::Linear(law)
+    }
+}
+
+impl From<HuntCrossley> for ContactLaw {
+    fn from(law: HuntCrossley) -> Self {
+        Self::HuntCrossley(law)
+    }
 }
 
 /// Coefficient of sliding friction μ as a function of the sliding speed.
@@ -239,6 +278,23 @@ impl RingParams {
     }
 }
 
+impl ContactLaw {
+    fn validate(&self) -> Result<(), ParamError> {
+        match self {
+            Self::Linear(law) => {
+                positive("contact.stiffness_n_m", law.stiffness_n_m)?;
+                not_negative("contact.damping_n_s_m", law.damping_n_s_m)
+            }
+            Self::HuntCrossley(law) => {
+                positive("contact.stiffness_n_mn", law.stiffness_n_mn)?;
+                let (n, range) = (law.exponent, "a number from 1 to 3");
+                check((1.0..=3.0).contains(&n), "contact.exponent", n, range)?;
+                not_negative("contact.damping_s_m", law.damping_s_m)
+            }
+        }
+    }
+}
+
 impl PlantParams {
     /// Checks every field against its range.
     ///
@@ -277,8 +333,7 @@ impl PlantParams {
             }
         }
         positive("contact.clearance_m", self.contact.clearance_m)?;
-        positive("contact.stiffness_n_m", self.contact.stiffness_n_m)?;
-        not_negative("contact.damping_n_s_m", self.contact.damping_n_s_m)?;
+        self.contact.law.validate()?;
         match self.friction.sliding {
             SlidingFriction::Constant { coefficient } => {
                 not_negative("friction.coefficient", coefficient)?;
@@ -333,6 +388,14 @@ impl PlantParams {
             StatorParams::TwoMass { inner, .. } => inner.mass_kg,
         };
         1.0 / (1.0 / self.rotor.mass_kg + 1.0 / ring)
+    }
+}
+
+impl PlantParams {
+    /// Angular frequency of the reduced mass on the undamped contact \[rad/s\]: √(k_c/m), or with a
+    /// stiffness that grows with depth its value at a depth of one clearance.
+    pub fn contact_rate_rad_s(&self) -> f64 {
+        (self.contact.stiffness_n_m() / self.contact_mass_kg()).sqrt()
     }
 }
 

@@ -14,11 +14,17 @@ use crate::stator::{OneMass, Rigid, Stator, TwoMass};
 use crate::system::{Inputs, State, StateOf, System};
 
 /// Why a plant could not be built.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum BuildError {
     /// A parameter is out of range.
     #[error(transparent)]
     Param(#[from] ParamError),
+    /// The power series is asked for with a contact law that has none.
+    #[error(
+        "run.method = series: Hunt and Crossley's contact has no power series at the touch; \
+         take auto, explicit or stiff"
+    )]
+    NoSeries,
 }
 
 /// A plant that is being run. Deterministic: the same calls give the same bits.
@@ -95,7 +101,7 @@ impl<S: Stator, W: Spin, M: Amplifier> Plant for Run<S, W, M> {
 /// right combination of types.
 ///
 /// # Errors
-/// [`BuildError::Param`] for the first value out of range.
+/// [`BuildError::Param`] for the first value out of range, [`BuildError::NoSeries`].
 pub fn build(
     params: &PlantParams,
     start: &Start,
@@ -132,6 +138,9 @@ fn checked(params: &PlantParams, start: &Start, options: Options) -> Result<(), 
             value: options.rtol,
             expected: "a number from 1e-14 to 0.01",
         }));
+    }
+    if options.method == Method::Series && params.contact.law.linear().is_none() {
+        return Err(BuildError::NoSeries);
     }
     Ok(())
 }

@@ -1,10 +1,11 @@
 //! The parts composed: eqs (2.1)–(2.9) as one smooth vector field per mode.
 
 use crate::V2;
+use crate::contact::Normal;
 use crate::energy::Flows;
 use crate::magnet::Amplifier;
 use crate::mode::{Slide, Whirl};
-use crate::params::{ContactParams, FrictionParams, RotorParams};
+use crate::params::{ContactLaw, ContactParams, FrictionParams, HuntCrossley, RotorParams};
 use crate::part::{Body, Part, Weights};
 use crate::spin::Spin;
 use crate::stator::{Rings, Stator};
@@ -108,7 +109,7 @@ impl<S: Rings, W: Part, M: Part> Part for State<S, W, M> {
 /// Guards of a contact mode: each is positive while the mode holds; unused ones are infinite.
 pub(crate) type Guards = [f64; GUARDS];
 pub(crate) const GUARDS: usize = 5;
-/// Normal force.
+/// Normal force, or what has its sign; see [`crate::contact::Normal`].
 pub(crate) const NORMAL: usize = 0;
 /// Slip: speed in its direction. Roll: room to the upper edge of the friction cone.
 pub(crate) const SLIDE: usize = 1;
@@ -143,6 +144,8 @@ pub(crate) struct Geometry {
 pub(crate) struct Touch {
     pub(crate) normal_n: f64,
     pub(crate) normal_rate_n_s: f64,
+    /// Rate of the guard of the normal force, in its unit over a second.
+    pub(crate) guard_rate: f64,
     /// Sliding part of the tangential force on the rotor, along t̂ \[N\].
     pub(crate) sliding_n: f64,
     /// Rolling part \[N\].
@@ -216,8 +219,42 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
     }
 
     /// The field in contact. Smooth for given `slide` and `whirl`, also where a guard is negative.
+    #[inline(never)]
     pub(crate) fn contact(
         &self,
+        t_s: f64,
+        y: &StateOf<S, W, M>,
+        inputs: &Inputs,
+        mode: (Slide, Whirl),
+    ) -> Evaluation<StateOf<S, W, M>> {
+        // Compiled once for each law, so that the linear one pays for a branch only.
+        match &self.contact.law {
+            ContactLaw::Linear(law) => {
+                self.contact_by(|depth, rate| law.at(depth, rate), t_s, y, inputs, mode)
+            }
+            ContactLaw::HuntCrossley(law) => self.hardening_contact(law, t_s, y, inputs, mode),
+        }
+    }
+
+    /// Apart, so that its registers are not saved for the linear law.
+    #[cold]
+    #[inline(never)]
+    fn hardening_contact(
+        &self,
+        law: &HuntCrossley,
+        t_s: f64,
+        y: &StateOf<S, W, M>,
+        inputs: &Inputs,
+        mode: (Slide, Whirl),
+    ) -> Evaluation<StateOf<S, W, M>> {
+        self.contact_by(|depth, rate| law.at(depth, rate), t_s, y, inputs, mode)
+    }
+
+    /// The field with a contact law. Inlined, so that each law has its own copy without calls.
+    #[inline(always)]
+    fn contact_by(
+        &self,
+        law: impl Fn(f64, f64) -> Normal,
         t_s: f64,
         y: &StateOf<S, W, M>,
         inputs: &Inputs,
@@ -227,9 +264,8 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
         let (n, t) = (g.normal, g.tangent);
         let radius = self.rotor.contact_radius_m;
         let velocity = y.rotor.velocity;
-        let normal_n = self
-            .contact
-            .normal_force_n(g.penetration_m, g.normal_speed_m_s);
+        let law = law(g.penetration_m, g.normal_speed_m_s);
+        let normal_n = law.force_n;
 
         let magnet_n = self.amplifier.force_n(&y.force, inputs.command_n);
         let free_n = magnet_n + inputs.external_n
@@ -331,7 +367,6 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
         } else {
             -radius * sliding_n
         };
-        let damper_n = self.contact.damping_n_s_m * g.normal_speed_m_s;
         let mut stator_w = self.stator.damping_w(&y.stator);
         let mut sliding_acceleration = whirl_acceleration + radius * spin_acceleration;
         if let Some(race) = race {
@@ -345,14 +380,14 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
             unbalance: unbalance_w,
             rotor_damping: self.rotor.damping_n_s_m * velocity.norm_squared(),
             stator_damping: stator_w,
-            contact_damping: damper_n * g.normal_speed_m_s,
+            contact_damping: law.damper_n * g.normal_speed_m_s,
             sliding_friction: -sliding_n * g.sliding_speed_m_s,
             rolling_friction: -rolling_n * g.whirl_speed_m_s,
             normal_impulse_n_s: normal_n,
         };
 
         let mut guards = [f64::INFINITY; GUARDS];
-        guards[NORMAL] = normal_n;
+        guards[NORMAL] = law.guard;
         match slide {
             Slide::Rolling => {
                 guards[SLIDE] = mu * normal_n - sliding_n;
@@ -379,9 +414,10 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
             guards,
             touch: Touch {
                 normal_n,
-                normal_rate_n_s: self
-                    .contact
-                    .normal_force_n(g.normal_speed_m_s, normal_acceleration),
+                normal_rate_n_s: law.by_depth_n_m * g.normal_speed_m_s
+                    + law.by_rate_n_s_m * normal_acceleration,
+                guard_rate: law.guard_by_depth * g.normal_speed_m_s
+                    + law.guard_by_rate * normal_acceleration,
                 sliding_n,
                 rolling_n,
                 cone_n: mu * normal_n,
@@ -406,13 +442,15 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
         if let Some(race) = self.spin.race() {
             surface += race.radius_m * W::race_rad_s(&y.spin).abs();
         }
-        let force = ULPS
-            * (self.contact.stiffness_n_m * g.distance_m
-                + self.contact.damping_n_s_m * y.rotor.velocity.norm());
+        let (normal, force) = self.contact.law.round_off(
+            (g.penetration_m, g.normal_speed_m_s),
+            (g.distance_m, y.rotor.velocity.norm()),
+            ULPS,
+        );
         let speed = ULPS * (y.rotor.velocity.norm() + surface);
         let of = |held: bool| if held { force } else { speed };
         let (slide, whirl) = (of(slide == Slide::Rolling), of(whirl == Whirl::Still));
-        [force, slide, slide, whirl, whirl]
+        [normal, slide, slide, whirl, whirl]
     }
 
     /// Kinetic and elastic energy, the contact spring included while `touching` \[J\].
@@ -428,7 +466,7 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
             turning += race.stored_j(W::race_rad_s(&y.spin));
         }
         let dent = if touching {
-            self.contact.stored_j(self.geometry(y).penetration_m)
+            self.contact.law.stored_j(self.geometry(y).penetration_m)
         } else {
             0.0
         };
@@ -439,22 +477,29 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
             + dent
     }
 
-    /// Angular frequency of the rotor on the contact spring \[rad/s\].
+    /// Angular frequency of the rotor on the contact spring \[rad/s\]; where the spring hardens, at a
+    /// depth of one clearance.
     pub(crate) fn undamped_contact_rate_rad_s(&self) -> f64 {
         let mobility = 1.0 / self.rotor.mass_kg + self.stator.inverse_mass();
-        (self.contact.stiffness_n_m * mobility).sqrt()
+        (self.contact.stiffness_n_m() * mobility).sqrt()
     }
 
-    /// The same with its damping: the fastest rate in contact \[rad/s\].
+    /// The same with its damping: the fastest rate in contact \[rad/s\]. A damper that grows with depth
+    /// has no rate of its own and is left out; see [`System::moment_s`].
     pub(crate) fn contact_rate_rad_s(&self) -> f64 {
         let mobility = 1.0 / self.rotor.mass_kg + self.stator.inverse_mass();
-        self.undamped_contact_rate_rad_s() + self.contact.damping_n_s_m * mobility
+        let damping_n_s_m = self.contact.law.by_rate_n_s_m(0.0);
+        self.undamped_contact_rate_rad_s() + damping_n_s_m * mobility
     }
 
-    /// Damping ratio ζ of the rotor on the contact spring, and d_c/m \[1/s\].
-    pub(crate) fn contact_damping(&self) -> (f64, f64) {
-        let mobility = 1.0 / self.rotor.mass_kg + self.stator.inverse_mass();
-        let rate = self.contact.damping_n_s_m * mobility;
-        (0.5 * rate / self.undamped_contact_rate_rad_s(), rate)
+    /// A time that nothing in contact notices.
+    pub(crate) fn moment_s(&self, y: &StateOf<S, W, M>) -> f64 {
+        let mut rate = self.contact_rate_rad_s();
+        if matches!(self.contact.law, ContactLaw::HuntCrossley(_)) {
+            let mobility = 1.0 / self.rotor.mass_kg + self.stator.inverse_mass();
+            let depth_m = self.geometry(y).penetration_m.max(0.0);
+            rate += self.contact.law.by_rate_n_s_m(depth_m) * mobility;
+        }
+        1e-6 / rate
     }
 }

@@ -48,7 +48,8 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
             d_falling_back = race.falling_back_m_s2(d_race);
             race_mobility = race.mobility();
         }
-        let d_normal = self.contact.normal_force_n(d_distance, d_normal_speed);
+        let law = (self.contact.law).at(g.penetration_m, g.normal_speed_m_s);
+        let d_normal = law.by_depth_n_m * d_distance + law.by_rate_n_s_m * d_normal_speed;
         let d_push = d_normal * n + normal_n * d_n;
 
         // Accelerations without friction.
@@ -185,13 +186,24 @@ mod tests {
 
     #[test]
     fn columns_are_the_fields_differences() {
-        check(FreePhased(FREE));
-        check(raced(20.0, 3.0));
-        check(raced(0.0, 0.0));
+        let linear = LinearContact {
+            stiffness_n_m: 1e8,
+            damping_n_s_m: 5e3,
+        };
+        let hardening = HuntCrossley {
+            stiffness_n_mn: 1e10,
+            exponent: 1.5,
+            damping_s_m: 0.7,
+        };
+        for law in [ContactLaw::from(linear), hardening.into()] {
+            check(FreePhased(FREE), law);
+            check(raced(20.0, 3.0), law);
+            check(raced(0.0, 0.0), law);
+        }
     }
 
     /// Every column in every mode against central differences of the field.
-    fn check<W: Spin>(spin: W) {
+    fn check<W: Spin>(spin: W, law: ContactLaw) {
         let ring = |k: f64| RingParams {
             mass_kg: 7.0,
             stiffness_n_m: V2::new(k, 1.2 * k),
@@ -207,8 +219,7 @@ mod tests {
             },
             contact: ContactParams {
                 clearance_m: 2e-4,
-                stiffness_n_m: 1e8,
-                damping_n_s_m: 5e3,
+                law,
             },
             friction: FrictionParams {
                 sliding: SlidingFriction::Falling {

@@ -30,8 +30,11 @@ pub fn footnote_4() -> PlantParams {
         },
         contact: ContactParams {
             clearance_m: 2e-4,
-            stiffness_n_m: 1e9,
-            damping_n_s_m: 1.6e4,
+            law: LinearContact {
+                stiffness_n_m: 1e9,
+                damping_n_s_m: 1.6e4,
+            }
+            .into(),
         },
         friction: FrictionParams {
             sliding: SlidingFriction::Constant { coefficient: 0.15 },
@@ -60,9 +63,12 @@ pub fn onset_rig() -> PlantParams {
         stator: StatorParams::Rigid,
         contact: ContactParams {
             clearance_m: 2e-4,
-            stiffness_n_m,
-            damping_n_s_m: damping_for_restitution(0.7, stiffness_n_m, mass_kg)
-                .expect("0.7 is a restitution"),
+            law: LinearContact {
+                stiffness_n_m,
+                damping_n_s_m: damping_for_restitution(0.7, stiffness_n_m, mass_kg)
+                    .expect("0.7 is a restitution"),
+            }
+            .into(),
         },
         friction: FrictionParams {
             sliding: SlidingFriction::Constant { coefficient: 0.125 },
@@ -89,8 +95,11 @@ pub fn bouncing(contact_stiffness_n_m: f64) -> PlantParams {
         stator: StatorParams::Rigid,
         contact: ContactParams {
             clearance_m: 3e-4,
-            stiffness_n_m: contact_stiffness_n_m,
-            damping_n_s_m: 0.1 * (contact_stiffness_n_m * mass_kg).sqrt(),
+            law: LinearContact {
+                stiffness_n_m: contact_stiffness_n_m,
+                damping_n_s_m: 0.1 * (contact_stiffness_n_m * mass_kg).sqrt(),
+            }
+            .into(),
         },
         friction: FrictionParams {
             sliding: SlidingFriction::Constant { coefficient: 0.3 },

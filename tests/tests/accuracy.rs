@@ -135,7 +135,7 @@ fn benchmark_scenes_are_the_benchmark_problems() {
     for (name, ring_kg, damping_n_s_m) in expected {
         let scene = scene(name);
         let mut plant = bouncing(1e10);
-        plant.contact.damping_n_s_m = damping_n_s_m;
+        plant.contact.law.linear_mut().unwrap().damping_n_s_m = damping_n_s_m;
         plant.stator = StatorParams::OneMass(RingParams {
             mass_kg: ring_kg,
             stiffness_n_m: V2::repeat(2e7),

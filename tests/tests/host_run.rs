@@ -407,6 +407,30 @@ fn bad_scenes_are_refused_with_file_line_key_and_expectation() {
             "method",
             "series",
         ),
+        (
+            "stiffness_n_m = 1e9\nrestitution = 0.7",
+            "stiffness_n_mn = 1e13\nrestitution = 0.7",
+            "contact.restitution",
+            "restitution_speed_m_s too",
+        ),
+        (
+            "stiffness_n_m = 1e9",
+            "stiffness_n_m = 1e9\nexponent = 1.5",
+            "contact.exponent",
+            "give contact.stiffness_n_mn",
+        ),
+        (
+            "stiffness_n_m = 1e9",
+            "stiffness_n_mn = 1e13\nstiffness_n_m = 1e9",
+            "contact.stiffness_n_m",
+            "says the same",
+        ),
+        (
+            "restitution = 0.7",
+            "damping_s_mm = 0.7",
+            "damping_s_mm",
+            "did you mean",
+        ),
         ("title = ", "title = = ", "title", ""),
         ("[contact]", "[contract]", "contract", "expected one of"),
     ];
@@ -450,6 +474,27 @@ fn bad_scenes_are_refused_with_file_line_key_and_expectation() {
         );
         assert!(result.stdout.is_empty());
     }
+}
+
+/// A scene with the nonlinear contact runs, verifies itself, and refuses the method that it has not.
+#[test]
+fn a_scene_may_have_a_nonlinear_contact() {
+    let folder = TempDir::new().unwrap();
+    let hardening = |more: &str| {
+        short_scene(folder.path(), |t| {
+            let contact = "stiffness_n_mn = 1e13\nexponent = 1.5\nrestitution_speed_m_s = 0.3";
+            (t.replacen("stiffness_n_m = 1e9", contact, 1)).replacen("seed = 1", more, 1)
+        })
+    };
+    let out = folder.path().join("out");
+    let result = run(&hardening("seed = 1"), &out, &["--verify"]);
+    let error = String::from_utf8_lossy(&result.stderr).into_owned();
+    assert!(result.status.success(), "{error}");
+    let refused = run(&hardening("method = \"series\""), &out, &[]);
+    let error = String::from_utf8_lossy(&refused.stderr).into_owned();
+    assert_eq!(refused.status.code(), Some(2), "{error}");
+    assert!(error.contains("run.method"), "{error}");
+    assert!(error.contains("auto, explicit or stiff"), "{error}");
 }
 
 #[test]

@@ -73,8 +73,11 @@ fn steady_sliding_whirl_in_an_elastic_stator() {
         stator: StatorParams::OneMass(ring),
         contact: ContactParams {
             clearance_m: clearance,
-            stiffness_n_m: contact_k,
-            damping_n_s_m: 0.0,
+            law: LinearContact {
+                stiffness_n_m: contact_k,
+                damping_n_s_m: 0.0,
+            }
+            .into(),
         },
         friction: FrictionParams {
             sliding: SlidingFriction::Constant { coefficient: mu },
@@ -111,8 +114,8 @@ fn steady_sliding_whirl_in_an_elastic_stator() {
 #[test]
 fn sliding_whirl_on_a_rigid_wall_has_its_threshold() {
     let mut params = onset_rig();
-    params.contact.stiffness_n_m = 1e10;
-    params.contact.damping_n_s_m = 0.0;
+    params.contact.law.linear_mut().unwrap().stiffness_n_m = 1e10;
+    params.contact.law.linear_mut().unwrap().damping_n_s_m = 0.0;
     let natural = params.natural_frequency_rad_s().unwrap();
     let ratio = 0.003 / 0.125;
     let threshold = natural * (ratio + f64::hypot(ratio, 1.0));
@@ -120,7 +123,7 @@ fn sliding_whirl_on_a_rigid_wall_has_its_threshold() {
     for (share, grows) in [(0.999, false), (1.001, true)] {
         let omega = share * threshold;
         let force = (m * omega * omega - k) * c;
-        let radius = c + force / params.contact.stiffness_n_m;
+        let radius = c + force / params.contact.law.linear().unwrap().stiffness_n_m;
         let from = start(V2::new(radius, 0.0), V2::new(0.0, -omega * radius), 2000.0);
         let mut plant = build(&params, &from, Options::default()).unwrap();
         run_to(plant.as_mut(), 0.5);
@@ -138,7 +141,7 @@ fn sliding_whirl_on_a_rigid_wall_has_its_threshold() {
 fn rolling_whirl_on_a_rigid_wall_keeps_its_circle() {
     let mut params = bouncing(1e8);
     params.rotor.eccentricity_m = 0.0;
-    params.contact.damping_n_s_m = 0.0;
+    params.contact.law.linear_mut().unwrap().damping_n_s_m = 0.0;
     let (k, kc, m, c) = (4e5, 1e8, 10.0, 3e-4);
     let v: f64 = 400.0 * 2.5e-3;
     let half = kc * c / (2.0 * (k + kc));
@@ -169,7 +172,7 @@ fn whole_turns_within_a_step_are_counted() {
             let mut params = bouncing(1e11);
             params.rotor.eccentricity_m = 0.0;
             params.rotor.damping_n_s_m = 0.0;
-            params.contact.damping_n_s_m = 6.0 * (1e11_f64 * 10.0).sqrt();
+            params.contact.law.linear_mut().unwrap().damping_n_s_m = 6.0 * (1e11_f64 * 10.0).sqrt();
             let (k, kc, m, c) = (4e5, 1e11, 10.0, 3e-4);
             let half = kc * c / (2.0 * (k + kc));
             let radius = half + (half * half + m * v * v / (k + kc)).sqrt();
@@ -202,8 +205,9 @@ fn impact_follows_restitution_and_friction() {
         let mut params = onset_rig();
         params.rotor.stiffness_n_m = 0.0;
         params.rotor.damping_n_s_m = 0.0;
-        params.contact.stiffness_n_m = 1e11;
-        params.contact.damping_n_s_m = damping_for_restitution(e, 1e11, 10.0).unwrap();
+        params.contact.law.linear_mut().unwrap().stiffness_n_m = 1e11;
+        params.contact.law.linear_mut().unwrap().damping_n_s_m =
+            damping_for_restitution(e, 1e11, 10.0).unwrap();
         let v = 0.01;
         let from = start(V2::new(1.9e-4, 0.0), V2::new(v, 0.0), 250.0);
         let mut plant = build(&params, &from, TIGHT).unwrap();

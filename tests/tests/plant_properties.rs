@@ -52,7 +52,11 @@ fn any_plant() -> impl Strategy<Value = PlantParams> {
                 _ => StatorParams::TwoMass { inner, outer },
             },
             contact: ContactParams {
-                stiffness_n_m: 10_f64.powf(contact.0),
+                law: LinearContact {
+                    stiffness_n_m: 10_f64.powf(contact.0),
+                    damping_n_s_m: 0.0,
+                }
+                .into(),
                 ..base.contact
             },
             friction: FrictionParams {
@@ -79,9 +83,12 @@ fn any_plant() -> impl Strategy<Value = PlantParams> {
             }),
         };
         let mass = params.contact_mass_kg();
-        params.contact.damping_n_s_m =
-            damping_for_restitution(contact.1, params.contact.stiffness_n_m, mass)
-                .expect("in range");
+        params.contact.law.linear_mut().unwrap().damping_n_s_m = damping_for_restitution(
+            contact.1,
+            params.contact.law.linear().unwrap().stiffness_n_m,
+            mass,
+        )
+        .expect("in range");
         params
     })
 }

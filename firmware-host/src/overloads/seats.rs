@@ -103,8 +103,11 @@ pub fn seated(seat: Seat, task: Task, found: &Found, scene: &Scene) -> Option<Po
 /// The reference with given weights.
 pub fn clairvoyant(law: ClairvoyantLaw, scene: &Scene) -> Clairvoyant {
     let plant = &scene.plant;
-    let critical = 2.0 * (plant.contact.stiffness_n_m * plant.contact_mass_kg()).sqrt();
-    let restitution = restitution_of(plant.contact.damping_n_s_m / critical);
+    // The catalogue's contacts are linear; a nonlinear one loses little at low speed.
+    let restitution = plant.contact.law.linear().map_or(1.0, |law| {
+        let critical = 2.0 * (law.stiffness_n_m * plant.contact_mass_kg()).sqrt();
+        restitution_of(law.damping_n_s_m / critical)
+    });
     Clairvoyant::new(law, plant, restitution, scene.sample_rate_hz)
 }
 

@@ -177,7 +177,7 @@ pub fn simulated_threshold_m_s(rig: &OnsetRig) -> Result<f64, PaperError> {
     let closed = critical_tangential_speed_m_s(&params)
         .ok_or_else(|| PaperError::Missing("no critical tangential speed".to_owned()))?;
     let (m, k) = (params.rotor.mass_kg, params.rotor.stiffness_n_m);
-    let (c, k_c) = (params.contact.clearance_m, params.contact.stiffness_n_m);
+    let (c, k_c) = (params.contact.clearance_m, params.contact.stiffness_n_m());
     let grows = |speed: f64| -> Result<bool, PaperError> {
         let normal_n = (m * speed * speed / c - k * c).max(0.0);
         let radius = c + normal_n / k_c;

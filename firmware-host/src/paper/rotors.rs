@@ -5,8 +5,8 @@ use plant_model::V2;
 use plant_model::analysis::impact::ImpactError;
 use plant_model::contact::damping_for_restitution;
 use plant_model::params::{
-    ContactParams, FrictionParams, PlantParams, RingParams, RotorParams, SlidingFriction,
-    SpinParams, StatorParams,
+    ContactParams, FrictionParams, LinearContact, PlantParams, RingParams, RotorParams,
+    SlidingFriction, SpinParams, StatorParams,
 };
 use std::f64::consts::TAU;
 
@@ -46,8 +46,11 @@ pub fn footnote_4() -> PlantParams {
         },
         contact: ContactParams {
             clearance_m: 2e-4,
-            stiffness_n_m: 1e9,
-            damping_n_s_m: 1.6e4,
+            law: LinearContact {
+                stiffness_n_m: 1e9,
+                damping_n_s_m: 1.6e4,
+            }
+            .into(),
         },
         friction: FrictionParams {
             sliding: SlidingFriction::Constant { coefficient: 0.15 },
@@ -131,8 +134,11 @@ impl OnsetRig {
             stator: StatorParams::Rigid,
             contact: ContactParams {
                 clearance_m: self.clearance_m,
-                stiffness_n_m: k_c,
-                damping_n_s_m,
+                law: LinearContact {
+                    stiffness_n_m: k_c,
+                    damping_n_s_m,
+                }
+                .into(),
             },
             friction: FrictionParams {
                 sliding: SlidingFriction::Constant {

@@ -44,8 +44,11 @@ pub(super) fn footnote_4(contact_stiffness_n_m: f64) -> PlantParams {
         },
         contact: ContactParams {
             clearance_m: 2e-4,
-            stiffness_n_m: contact_stiffness_n_m,
-            damping_n_s_m: CONTACT_DAMPING_N_S_M * (contact_stiffness_n_m / 1e9).sqrt(),
+            law: LinearContact {
+                stiffness_n_m: contact_stiffness_n_m,
+                damping_n_s_m: CONTACT_DAMPING_N_S_M * (contact_stiffness_n_m / 1e9).sqrt(),
+            }
+            .into(),
         },
         friction: FrictionParams {
             sliding: SlidingFriction::Constant { coefficient: 0.15 },

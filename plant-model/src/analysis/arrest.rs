@@ -37,7 +37,7 @@ impl Arrest {
         }
         let tilt = (1.0 + mu * mu).sqrt();
         let normal_n = force_n / (mu * tilt);
-        let radius_m = params.contact.clearance_m + normal_n / params.contact.stiffness_n_m;
+        let radius_m = params.contact.clearance_m + normal_n / params.contact.stiffness_n_m();
         let (m, d, k) = (
             params.rotor.mass_kg,
             params.rotor.damping_n_s_m,
@@ -65,9 +65,9 @@ impl Arrest {
 }
 
 /// Radius of the circle on which the rotor slides with a tangential speed \[m/s\], its penetration in
-/// balance with the centrifugal force: (k + k_c)·r² − k_c·c·r − m·v² = 0 \[m\].
+/// balance with the centrifugal force, linear contact: (k + k_c)·r² − k_c·c·r − m·v² = 0 \[m\].
 pub fn circle_radius_m(params: &PlantParams, speed_m_s: f64) -> f64 {
-    let (k, k_c) = (params.rotor.stiffness_n_m, params.contact.stiffness_n_m);
+    let (k, k_c) = (params.rotor.stiffness_n_m, params.contact.stiffness_n_m());
     let (c, m) = (params.contact.clearance_m, params.rotor.mass_kg);
     let linear = k_c * c;
     let square = linear * linear + 4.0 * (k + k_c) * m * speed_m_s * speed_m_s;
@@ -92,8 +92,11 @@ mod tests {
             stator: StatorParams::Rigid,
             contact: ContactParams {
                 clearance_m: 2e-4,
-                stiffness_n_m: contact_stiffness_n_m,
-                damping_n_s_m: 0.0,
+                law: LinearContact {
+                    stiffness_n_m: contact_stiffness_n_m,
+                    damping_n_s_m: 0.0,
+                }
+                .into(),
             },
             friction: FrictionParams {
                 sliding: SlidingFriction::Constant { coefficient: 0.15 },

@@ -116,7 +116,8 @@ impl Circle {
 }
 
 impl SteadyWhirl {
-    /// Of a plant; `None` where a ring is not the same along x and y. Sliding friction is taken at rest.
+    /// Of a plant; `None` where a ring is not the same along x and y, or the contact is not linear.
+    /// Sliding friction is taken at rest.
     pub fn of(params: &PlantParams) -> Option<Self> {
         let rings = match &params.stator {
             StatorParams::Rigid => vec![],
@@ -126,6 +127,7 @@ impl SteadyWhirl {
             }
         };
         let friction = &params.friction;
+        let contact = params.contact.law.linear()?;
         Some(Self {
             rotor: Oscillator {
                 mass_kg: params.rotor.mass_kg,
@@ -134,9 +136,9 @@ impl SteadyWhirl {
             },
             rings,
             clearance_m: params.contact.clearance_m,
-            normal_compliance_m_n: 1.0 / params.contact.stiffness_n_m,
+            normal_compliance_m_n: 1.0 / contact.stiffness_n_m,
             tangential_compliance_m_n: 0.0,
-            contact_damping_n_s_m: params.contact.damping_n_s_m,
+            contact_damping_n_s_m: contact.damping_n_s_m,
             driving_friction: friction.sliding.coefficient(0.0) - friction.rolling_coefficient,
         })
     }

@@ -49,8 +49,11 @@ mod tests {
             stator: StatorParams::Rigid,
             contact: ContactParams {
                 clearance_m: 2e-4,
-                stiffness_n_m: 1e9,
-                damping_n_s_m: 0.0,
+                law: LinearContact {
+                    stiffness_n_m: 1e9,
+                    damping_n_s_m: 0.0,
+                }
+                .into(),
             },
             friction: FrictionParams {
                 sliding: SlidingFriction::Constant { coefficient: 0.15 },

@@ -8,7 +8,7 @@ use super::contact_step::Task;
 use crate::V2;
 use crate::magnet::Amplifier;
 use crate::mode::{Slide, Whirl};
-use crate::params::SlidingFriction;
+use crate::params::{LinearContact, SlidingFriction};
 use crate::series::{INVERSE, Scalar, Series, turned};
 use crate::spin::Spin;
 use crate::stator::{Rings, Stator};
@@ -59,10 +59,12 @@ pub(crate) struct ContactSeries<S: Stator> {
     pub(super) whirl_rate: Scalar,
     pub(super) difference: Series,
     pub(super) eccentric: Scalar,
+    /// The law that it is for: no other has a power series at the touch.
+    pub(super) law: LinearContact,
 }
 
 impl<S: Stator> ContactSeries<S> {
-    pub(crate) fn new() -> Self
+    pub(crate) fn new(law: LinearContact) -> Self
     where
         S::Series: Default,
     {
@@ -97,6 +99,7 @@ impl<S: Stator> ContactSeries<S> {
             whirl_rate: Scalar::default(),
             difference: Series::default(),
             eccentric: Scalar::default(),
+            law,
         }
     }
 }
@@ -232,7 +235,7 @@ impl<S: Stator, W: Spin, M: Amplifier> Context<'_, S, W, M> {
         } else {
             out.distance.0[k]
         };
-        out.force.0[k] = contact.normal_force_n(penetration, out.normal_speed.0[k]);
+        out.force.0[k] = out.law.normal_force_n(penetration, out.normal_speed.0[k]);
         // r̂·ρ = u, f_n·r̂ and v_w = ẇ·t̂ = r̂ × ẇ: their sums run over the same coefficients of r̂.
         let (mut mixed, mut push, mut cross) = (V2::zeros(), V2::zeros(), V2::zeros());
         let below = out.normal.0[..k].iter();

@@ -76,7 +76,7 @@ pub(crate) struct ContactStep<Y> {
     pub(crate) y: Y,
     pub(crate) flows: Flows,
     pub(crate) peaks: Peaks,
-    /// Normal force at the end, and its rate.
+    /// Guard of the normal force at the end, and its rate.
     pub(crate) end_normal: (f64, f64),
     /// Contact normals at start and end turn by this angle \[rad\].
     pub(crate) turn: f64,
@@ -156,7 +156,7 @@ impl<P> ContactStepper<P> {
                 work.rejected += 1;
                 let shrink = (0.9 * error.powf(power)).clamp(0.1, 0.9);
                 step = h * if error.is_finite() { shrink } else { 0.1 };
-                if t_s + step == t_s || step < 1e-9 * system.moment_s() {
+                if t_s + step == t_s || step < 1e-9 * system.moment_s(y) {
                     return Err(PlantError::StepTooSmall { t_s });
                 }
                 continue;
@@ -187,7 +187,7 @@ impl<P> ContactStepper<P> {
                 &mut field,
             );
             // Almost a double root right at the start: the event is here.
-            let here = || (theta * h <= system.moment_s()).then_some((*y, 0.0));
+            let here = || (theta * h <= system.moment_s(y)).then_some((*y, 0.0));
             match onto.or_else(here) {
                 Some((y_end, taken)) => {
                     work.events += 1;
@@ -199,12 +199,12 @@ impl<P> ContactStepper<P> {
         };
         work.steps += 1;
         // A step of no length leaves the stages of the attempt before it.
-        let (flows, last_touch) = match self.pair.seen().last() {
+        let (flows, last_touch, normal) = match self.pair.seen().last() {
             Some(end) if h > 0.0 => {
-                let touch = end.touch;
-                (self.pair.flows(&mut field), touch)
+                let (touch, normal) = (end.touch, end.guards[NORMAL]);
+                (self.pair.flows(&mut field), touch, normal)
             }
-            _ => (Flows::default(), first.touch),
+            _ => (Flows::default(), first.touch, first.guards[NORMAL]),
         };
         // Each column of a Jacobian is a share of one evaluation.
         let jacobians = u64::from(field.factorisations > 0);
@@ -222,7 +222,7 @@ impl<P> ContactStepper<P> {
             y: y_end,
             flows,
             peaks: Peaks::between(&[first.touch, last_touch], h),
-            end_normal: (last_touch.normal_n, last_touch.normal_rate_n_s),
+            end_normal: (normal, last_touch.guard_rate),
             turn: turn_rad(
                 (a.normal, a.whirl_speed_m_s / a.distance_m),
                 (b.normal, b.whirl_speed_m_s / b.distance_m),
@@ -252,7 +252,7 @@ impl<P> ContactStepper<P> {
         };
         // A force that has just jumped may have left the cone, whichever way it moves now.
         // A normal force that rises from zero has not: the touch was found to round-off only.
-        let rising = self.pair.seen().first()?.touch.normal_rate_n_s > 0.0;
+        let rising = self.pair.seen().first()?.touch.guard_rate > 0.0;
         let jumped = |(guard, g): (usize, &f64)| {
             *g < -1e-12 * scale[guard] - round_off[guard]
                 && muted != Some(guard)
@@ -313,7 +313,7 @@ impl<P> ContactStepper<P> {
             let value = at_end.guards[guard];
             // Slope of the guard: known for the normal force, by secant for the others.
             let slope = match guard {
-                NORMAL => at_end.touch.normal_rate_n_s,
+                NORMAL => at_end.touch.guard_rate,
                 _ => (value - before.1) / (h - before.0),
             };
             let correction = value / slope;

@@ -37,7 +37,8 @@ pub(crate) struct Run<S: Stator, W: Spin, M: Amplifier> {
     work: Work,
     segment: Segment<S>,
     maps: FlightMaps,
-    series: SeriesStepper<S>,
+    /// Only where the contact law has a power series.
+    series: Option<SeriesStepper<S>>,
     explicit: ContactStepper<Explicit<StateOf<S, W, M>>>,
     stiff: ContactStepper<Stiff<StateOf<S, W, M>>>,
     inputs: Inputs,
@@ -65,14 +66,16 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
         force_max_n: f64,
         mut options: Options,
     ) -> Self {
-        let (ratio, rate) = system.contact_damping();
-        options.method = options.method.resolved(ratio, rate, options.rtol);
+        let mobility = 1.0 / system.rotor.mass_kg + system.stator.inverse_mass();
+        options.method =
+            (options.method).resolved(&system.contact.law, &y.rotor, mobility, options.rtol);
         let mut run = Self {
             scales: Scales::new(options.rtol, &system, &y),
             work: Work::default(),
             maps: FlightMaps::default(),
             segment: Segment::new(system.flight_rate_rad_s()),
-            series: SeriesStepper::new(options.rtol, system.contact_rate_rad_s()),
+            series: (system.contact.law.linear())
+                .map(|law| SeriesStepper::new(options.rtol, system.contact_rate_rad_s(), law)),
             explicit: ContactStepper::new::<StateOf<S, W, M>>(system.contact_rate_rad_s()),
             stiff: ContactStepper::new::<StateOf<S, W, M>>(system.contact_rate_rad_s()),
             system,
@@ -115,7 +118,7 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
     }
 
     fn normal_n(&self, g: &Geometry) -> f64 {
-        (self.system.contact).normal_force_n(g.penetration_m, g.normal_speed_m_s)
+        (self.system.contact.law).normal_force_n(g.penetration_m, g.normal_speed_m_s)
     }
 
     /// See [`crate::plant::Plant::advance`].
@@ -204,7 +207,7 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
         // A guard that ended this very mode at this very instant is not asked again for a moment.
         let muted = self.muted.take();
         let t_end_s = match muted {
-            Some(_) => t_end_s.min(self.t_s + 100.0 * self.system.moment_s()),
+            Some(_) => t_end_s.min(self.t_s + 100.0 * self.system.moment_s(&self.y)),
             None => t_end_s,
         };
         let task = Task {
@@ -214,12 +217,12 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
             muted,
         };
         let books = (&mut self.scales, &mut self.work);
-        let outcome = match self.options.method {
-            Method::Auto | Method::Series => {
-                self.series.step(&self.system, &self.y, &task, books)?
+        let outcome = match (self.options.method, &mut self.series) {
+            (Method::Auto | Method::Series, Some(series)) => {
+                series.step(&self.system, &self.y, &task, books)?
             }
-            Method::Explicit => self.explicit.step(&self.system, &self.y, &task, books)?,
-            Method::Stiff => self.stiff.step(&self.system, &self.y, &task, books)?,
+            (Method::Stiff, _) => self.stiff.step(&self.system, &self.y, &task, books)?,
+            _ => self.explicit.step(&self.system, &self.y, &task, books)?,
         };
         self.flows.add_scaled(1.0, &outcome.flows);
         let rotor = &self.system.rotor;
@@ -234,8 +237,8 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
         self.y = outcome.y;
         self.t_s = outcome.t_s;
         // As the normal force dies the friction cones close with it: that is one event, lift-off.
-        let (normal_n, rate_n_s) = outcome.end_normal;
-        let over = normal_n < -rate_n_s * self.system.moment_s();
+        let (normal, rate) = outcome.end_normal;
+        let over = normal < -rate * self.system.moment_s(&self.y);
         match outcome.event.map(|guard| if over { NORMAL } else { guard }) {
             None => self.system.zero_speeds(&mut self.y, AtZero::held(pair)),
             Some(NORMAL) => self.lift_off(),
@@ -256,7 +259,7 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
     /// Contact begins. Where it has only just ended, the normal force is at zero and hardly moves; it
     /// is not asked for a moment.
     fn touch_down(&mut self) {
-        if self.t_s - self.left_at_s <= self.system.moment_s() {
+        if self.t_s - self.left_at_s <= self.system.moment_s(&self.y) {
             self.muted = Some(NORMAL);
         }
         self.phase = self.settled();
@@ -273,9 +276,9 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
         self.just_left = true;
         self.left_at_s = self.t_s;
         let g = self.system.geometry(&self.y);
-        self.phase = if self.system.contact.damping_n_s_m > 0.0 && g.penetration_m > 0.0 {
+        self.phase = if self.system.contact.leaves_dent(g.penetration_m) {
             // The dent relaxes on the contact damper alone.
-            self.flows.contact_damping += self.system.contact.stored_j(g.penetration_m);
+            self.flows.contact_damping += self.system.contact.law.stored_j(g.penetration_m);
             Phase::Beyond
         } else {
             Phase::Inside

@@ -1,6 +1,7 @@
 //! Against what the error of a step is weighed.
 
 use crate::magnet::Amplifier;
+use crate::params::ContactLaw;
 use crate::part::Weights;
 use crate::spin::Spin;
 use crate::stator::Stator;
@@ -40,14 +41,21 @@ impl Scales {
     ) -> Weights {
         let now = y.rotor.velocity.norm();
         self.fastest_m_s = self.fastest_m_s.max(now);
-        let rate = self.contact_rate;
         // A rotor that comes to rest is followed to a thousandth of its fastest motion; one that
         // never moved, to a thousandth of its weightless creep over the clearance.
         let floor = 1e-3
             * self
                 .fastest_m_s
-                .max(1e-3 * system.contact.clearance_m * rate);
+                .max(1e-3 * system.contact.clearance_m * self.contact_rate);
         let speed = now.max(floor);
+        let rate = match &system.contact.law {
+            ContactLaw::Linear(_) => self.contact_rate,
+            // The spring takes the energy up in a depth that is not in proportion to the speed.
+            ContactLaw::HuntCrossley(law) => {
+                let mobility = 1.0 / system.rotor.mass_kg + system.stator.inverse_mass();
+                speed / law.depth_m(speed, 1.0 / mobility)
+            }
+        };
         let clearance = system.contact.clearance_m;
         let length = speed / self.slow_rate;
         // A race counts as much as the rotor's spin: both make the sliding speed.

@@ -158,10 +158,10 @@ impl<S: Stator> ContactSeries<S> {
             let spin = self.race.at_all(&nodes.theta, order);
             flows.stator_damping += h * nodes.integral(|j| race.drag_w(spin[j]));
         }
-        if system.contact.damping_n_s_m > 0.0 {
+        if self.law.damping_n_s_m > 0.0 {
             let speed = self.normal_speed.at_all(&nodes.theta, order);
             let square = nodes.integral(|j| speed[j] * speed[j]);
-            flows.contact_damping = system.contact.damping_n_s_m * h * square;
+            flows.contact_damping = self.law.damping_n_s_m * h * square;
         }
         let (slips, whirls) = (task.mode.0 != Slide::Rolling, task.mode.1 != Whirl::Still);
         let rolling = system.friction.rolling_coefficient > 0.0 && whirls;

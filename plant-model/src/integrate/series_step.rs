@@ -5,6 +5,7 @@ use super::contact_step::{ContactStep, Task};
 use super::scales::Scales;
 use crate::integrate::PlantError;
 use crate::magnet::Amplifier;
+use crate::params::LinearContact;
 use crate::readout::Work;
 use crate::series::{MAX_ORDER, Scalar};
 use crate::spin::Spin;
@@ -23,7 +24,7 @@ pub(crate) struct SeriesStepper<S: Stator> {
 }
 
 impl<S: Stator> SeriesStepper<S> {
-    pub(crate) fn new(rtol: f64, contact_rate_rad_s: f64) -> Self {
+    pub(crate) fn new(rtol: f64, contact_rate_rad_s: f64, law: LinearContact) -> Self {
         // Measured on bouncing into rolling: between these orders the time to a given error is flat,
         // below and above it rises.
         let order = match rtol {
@@ -32,7 +33,7 @@ impl<S: Stator> SeriesStepper<S> {
             _ => MAX_ORDER,
         };
         Self {
-            series: ContactSeries::new(),
+            series: ContactSeries::new(law),
             guard: Scalar::default(),
             order,
             highest_order: order,

@@ -126,7 +126,7 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
         } else {
             &[Whirl::of(g.whirl_speed_m_s)]
         };
-        let moment_s = self.moment_s();
+        let moment_s = self.moment_s(y);
         for &slide in slides {
             for &whirl in whirls {
                 let pair = (slide, whirl);
@@ -148,10 +148,5 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
             }
         }
         (slides[0], whirls[0])
-    }
-
-    /// A time that nothing in contact notices.
-    pub(crate) fn moment_s(&self) -> f64 {
-        1e-6 / self.contact_rate_rad_s()
     }
 }

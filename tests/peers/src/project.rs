@@ -38,8 +38,11 @@ pub fn run_under(
         stator,
         contact: ContactParams {
             clearance_m: p.clearance,
-            stiffness_n_m: p.k_c,
-            damping_n_s_m: p.d_c,
+            law: LinearContact {
+                stiffness_n_m: p.k_c,
+                damping_n_s_m: p.d_c,
+            }
+            .into(),
         },
         friction: FrictionParams {
             sliding: SlidingFriction::Constant { coefficient: p.mu },

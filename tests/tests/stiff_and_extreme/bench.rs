@@ -31,9 +31,12 @@ pub(crate) fn free_mass(
         stator: StatorParams::Rigid,
         contact: ContactParams {
             clearance_m: CLEARANCE_M,
-            stiffness_n_m: contact_stiffness_n_m,
-            damping_n_s_m: damping_for_restitution(restitution, contact_stiffness_n_m, MASS_KG)
-                .unwrap(),
+            law: LinearContact {
+                stiffness_n_m: contact_stiffness_n_m,
+                damping_n_s_m: damping_for_restitution(restitution, contact_stiffness_n_m, MASS_KG)
+                    .unwrap(),
+            }
+            .into(),
         },
         friction: FrictionParams {
             sliding: SlidingFriction::Constant {
@@ -146,7 +149,8 @@ pub(crate) fn half_angle(z: f64) -> f64 {
 }
 
 pub(crate) fn head_on(contact: &ContactParams, mass_kg: f64, speed_m_s: f64) -> HeadOn {
-    let (k, d) = (contact.stiffness_n_m, contact.damping_n_s_m);
+    let law = contact.law.linear().unwrap();
+    let (k, d) = (law.stiffness_n_m, law.damping_n_s_m);
     let omega = (k / mass_kg).sqrt();
     let z = 0.5 * d / (k * mass_kg).sqrt();
     let a = half_angle(z);

@@ -81,7 +81,8 @@ fn a_ring_of_one_gram_flies_off_with_momentum_kept() {
                 let mut params = free_mass(k, 1.0, 0.0);
                 params.stator = *stator;
                 let reduced = params.contact_mass_kg();
-                params.contact.damping_n_s_m = damping_for_restitution(e, k, reduced).unwrap();
+                params.contact.law.linear_mut().unwrap().damping_n_s_m =
+                    damping_for_restitution(e, k, reduced).unwrap();
                 let exact = head_on(&params.contact, reduced, v);
                 let from = start(V2::new(1.9e-4, 0.0), V2::new(v, 0.0), 0.0);
                 let mut plant = plant(&params, &from, method);
@@ -227,7 +228,7 @@ fn a_rotor_released_from_inside_the_wall_leaves_at_its_speed() {
         {
             let params = free_mass(k, e, 0.0);
             let omega = (k / MASS_KG).sqrt();
-            let z = 0.5 * params.contact.damping_n_s_m / (k * MASS_KG).sqrt();
+            let z = 0.5 * params.contact.law.linear().unwrap().damping_n_s_m / (k * MASS_KG).sqrt();
             let a = half_angle(z);
             let at = V2::new(0.0, -CLEARANCE_M - depth);
             let mut plant = plant(&params, &start(at, V2::zeros(), 0.0), method);
@@ -243,7 +244,10 @@ fn a_rotor_released_from_inside_the_wall_leaves_at_its_speed() {
             near("duration", plant.meters().contact_time_s, a / omega, 1e-6);
 
             if e < 1.0 {
-                let out = V2::new(0.0, 1.1 * depth * k / params.contact.damping_n_s_m);
+                let out = V2::new(
+                    0.0,
+                    1.1 * depth * k / params.contact.law.linear().unwrap().damping_n_s_m,
+                );
                 let mut plant = self::plant(&params, &start(at, out, 0.0), method);
                 let end = carry(plant.as_mut(), 0.5 * depth / out.y, V2::zeros());
                 assert_eq!((end.mode, end.velocity_m_s), (Mode::Flight, out));
@@ -355,12 +359,13 @@ fn a_step_of_a_million_newtons_obeys_energy_and_statics() {
             let depth = (force + (force * force + 2.0 * k * force * CLEARANCE_M).sqrt()) / k;
             near("peak", meters.peak_contact_force_n, k * depth, 1e-3);
 
-            params.contact.damping_n_s_m = damping_for_restitution(0.1, k, MASS_KG).unwrap();
+            params.contact.law.linear_mut().unwrap().damping_n_s_m =
+                damping_for_restitution(0.1, k, MASS_KG).unwrap();
             let mut damped = plant(&params, &from, method);
             let rest = carry(damped.as_mut(), 0.02, V2::new(force, 0.0));
             near("N", rest.normal_force_n, force, 1e-8);
             near("dent", rest.penetration_m, force / k, 1e-8);
-            let z = 0.5 * params.contact.damping_n_s_m / (k * MASS_KG).sqrt();
+            let z = 0.5 * params.contact.law.linear().unwrap().damping_n_s_m / (k * MASS_KG).sqrt();
             let omega = (k / MASS_KG).sqrt();
             let a = half_angle(z);
             let off = carry(damped.as_mut(), 0.02 + 1.001 * a / omega, V2::zeros());

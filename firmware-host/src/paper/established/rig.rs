@@ -3,8 +3,8 @@
 use crate::paper::PaperError;
 use plant_model::analysis::course::{Course, Watch, follow};
 use plant_model::params::{
-    ContactParams, FrictionParams, PlantParams, RingParams, RotorParams, SlidingFriction,
-    SpinParams, Start, StatorParams,
+    ContactParams, FrictionParams, LinearContact, PlantParams, RingParams, RotorParams,
+    SlidingFriction, SpinParams, Start, StatorParams,
 };
 use plant_model::{Meters, Options, V2, build};
 use std::f64::consts::TAU;
@@ -14,7 +14,7 @@ pub(in crate::paper) const CLEARANCE_M: f64 = 2e-4;
 /// Radius of the disc \[m\].
 const RADIUS_M: f64 = 0.1;
 /// Radial speed at the wall at the start \[m/s\].
-pub(super) const IMPACT_M_S: f64 = 0.4;
+pub(in crate::paper) const IMPACT_M_S: f64 = 0.4;
 
 /// What the paper leaves out.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -56,8 +56,11 @@ pub(super) fn with(left_out: &LeftOut) -> PlantParams {
         },
         contact: ContactParams {
             clearance_m: CLEARANCE_M,
-            stiffness_n_m: left_out.contact_stiffness_n_m,
-            damping_n_s_m: left_out.contact_damping_n_s_m,
+            law: LinearContact {
+                stiffness_n_m: left_out.contact_stiffness_n_m,
+                damping_n_s_m: left_out.contact_damping_n_s_m,
+            }
+            .into(),
         },
         friction: FrictionParams {
             sliding: SlidingFriction::Constant { coefficient: 0.15 },
@@ -161,7 +164,7 @@ impl Violence {
 }
 
 /// A whirl from an impact at the wall to standstill.
-pub(super) fn violence(
+pub(in crate::paper) fn violence(
     params: &PlantParams,
     spin_hz: f64,
     end_s: f64,

@@ -46,7 +46,8 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
         // What was learnt from the field as it was.
         let rate = system.contact_rate_rad_s();
         self.maps = FlightMaps::default();
-        self.series = SeriesStepper::new(self.options.rtol, rate);
+        self.series = (system.contact.law.linear())
+            .map(|law| SeriesStepper::new(self.options.rtol, rate, law));
         self.explicit = ContactStepper::new::<StateOf<S, W, M>>(rate);
         self.stiff = ContactStepper::new::<StateOf<S, W, M>>(rate);
         if let Phase::Contact(slide, whirl) = self.phase {

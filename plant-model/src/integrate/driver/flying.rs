@@ -53,7 +53,7 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
         let remaining = t_end_s - self.t_s;
         let g = self.system.geometry(&self.y);
         let leave_s = g.penetration_m / g.normal_speed_m_s.abs();
-        let step = remaining.min((2.0 * leave_s).max(self.system.moment_s()));
+        let step = remaining.min((2.0 * leave_s).max(self.system.moment_s(&self.y)));
         let here = (self.t_s, &self.y);
         (self.system).fly(&mut self.segment, here, &self.inputs, step);
         let last = self.segment.step_s >= remaining;
@@ -94,7 +94,7 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
         if matches!(next, Phase::Contact(..)) {
             // The dent whose energy was written off at lift-off is felt again.
             let g = self.system.geometry(&self.y);
-            self.flows.contact_damping -= self.system.contact.stored_j(g.penetration_m);
+            self.flows.contact_damping -= self.system.contact.law.stored_j(g.penetration_m);
             self.touch_down();
         } else {
             self.phase = next;
