@@ -1,5 +1,5 @@
 //! A retainer ball bearing: the race that the rotor touches has a spin of its own,
-//! J_i·Ω̇_i = −R_i·s − b·Ω_i, eq. (2.32).
+//! J_i·Ω̇_i = −R_i·s − b·Ω_i, eq. (2.37).
 
 use super::{PhaseState, Spin, SpinState};
 
