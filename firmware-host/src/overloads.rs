@@ -1,10 +1,14 @@
 //! The catalogue of overloads: every scene, policy and seed, and what it says of the supervisor's promises.
 
+pub mod catalogue;
 pub mod found;
 pub mod impact;
 pub mod loop_shape;
 pub mod plants;
+pub mod promises;
 pub mod reference;
+pub mod results;
 pub mod seats;
+pub mod sweeps;
 pub mod takeover;
 pub mod tune;

@@ -5,6 +5,9 @@ use crate::config::Config;
 use crate::math::{exp_neg, max, min, sqrt};
 use crate::vec2::Vec2;
 
+/// Smallest share of the lift-off speed from which the damping law spends the whole cap.
+const FULL_FORCE_FROM: f32 = 0.4;
+
 /// Longest delay between a sample and its force \[ticks\].
 pub(crate) const MAX_DELAY: usize = 8;
 
@@ -186,8 +189,13 @@ impl Coeffs {
             contact_share_step: per_tick(config.whirl_time_s, t),
             slow_squared: force_gain,
             hold_share: config.hold_share,
-            // A full force stops this speed within twice the reaction time.
-            damper: 1.0 / (force_gain * (2.0 * horizon + 2.0)),
+            // A full force stops the speed of a full force within twice the reaction time, but that speed is
+            // no smaller a share of the lift-off speed than this: below, noise would be all it damps.
+            damper: 1.0
+                / max(
+                    force_gain * (2.0 * horizon + 2.0),
+                    FULL_FORCE_FROM * sqrt(force_gain),
+                ),
             whirl_ticks: (config.whirl_time_s / t) as u32,
             dwell_ticks: (config.handover_dwell_s / t) as u32,
             blend_step: per_tick(config.handover_blend_s, t),

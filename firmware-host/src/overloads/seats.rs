@@ -1,7 +1,6 @@
 //! Who drives the magnet: the baselines, the supervisor, and the reference that knows everything.
 
 use super::found::Found;
-use super::plants::PlantCase;
 use crate::clairvoyant::{Clairvoyant, ClairvoyantLaw};
 use crate::levitation::{Levitation, LevitationParams};
 use crate::policies::Policy;
@@ -100,15 +99,18 @@ pub fn seated(seat: Seat, task: Task, found: &Found, scene: &Scene) -> Option<Po
     }
 }
 
+/// Restitution of a scene's contact.
+pub fn restitution(scene: &Scene) -> f64 {
+    // The catalogue's contacts are linear; a nonlinear one loses little at low speed.
+    scene.plant.contact.law.linear().map_or(1.0, |law| {
+        let critical = 2.0 * (law.stiffness_n_m * scene.plant.contact_mass_kg()).sqrt();
+        restitution_of(law.damping_n_s_m / critical)
+    })
+}
+
 /// The reference with given weights.
 pub fn clairvoyant(law: ClairvoyantLaw, scene: &Scene) -> Clairvoyant {
-    let plant = &scene.plant;
-    // The catalogue's contacts are linear; a nonlinear one loses little at low speed.
-    let restitution = plant.contact.law.linear().map_or(1.0, |law| {
-        let critical = 2.0 * (law.stiffness_n_m * plant.contact_mass_kg()).sqrt();
-        restitution_of(law.damping_n_s_m / critical)
-    });
-    Clairvoyant::new(law, plant, restitution, scene.sample_rate_hz)
+    Clairvoyant::new(law, &scene.plant, restitution(scene), scene.sample_rate_hz)
 }
 
 /// The tuned loop's derivative with the damping that spends the whole cap at lift-off speed, and no spring.
@@ -127,9 +129,4 @@ fn pure_damping(plant: &PlantParams, found: &Found) -> LevitationParams {
 pub fn levitation(params: LevitationParams, scene: &Scene) -> Policy {
     let force_n = scene.plant.magnet.map_or(0.0, |m| m.force_max_n);
     Policy::Levitation(Levitation::new(params, 1.0 / scene.sample_rate_hz, force_n))
-}
-
-/// The scene of a plant with the supervisor's configuration checked to be there.
-pub fn is_supervised(case: &PlantCase) -> bool {
-    case.scene.supervisor.is_some()
 }

@@ -52,7 +52,7 @@ fn candidates(scene: &Scene) -> Vec<LevitationParams> {
     all
 }
 
-/// The tuned loop: PD first, then the best with integrators of 0.1 s and 0.03 s, which must not be worse.
+/// The tuned loop: the best PD, or with integrators of 0.1 s or 0.03 s where one of these is better.
 ///
 /// # Errors
 /// [`RunError`] of a run that cannot be trusted.
@@ -92,7 +92,7 @@ pub fn tuned(scene: &Scene) -> Result<Option<LevitationParams>, RunError> {
         ..first.2
     });
     let pid = rated(accepted(with_integrator.to_vec()))?;
-    let chosen = best(&pid).filter(|b| b.0 >= first.0).unwrap_or(first);
+    let chosen = best(&pid).filter(|b| b.0 > first.0).unwrap_or(first);
     Ok(Some(chosen.2))
 }
 
