@@ -22,6 +22,8 @@ pub(crate) struct Motion {
 pub(crate) struct Observer {
     motion: Motion,
     started: bool,
+    /// One sample has been seen since the start.
+    fresh: bool,
     /// Delivered force at the last tick.
     delivered: Vec2,
     /// Commands of the last ticks, newest at `newest`.
@@ -58,7 +60,7 @@ impl Observer {
         if let Some(position) = sample
             && !self.started
         {
-            self.started = true;
+            (self.started, self.fresh) = (true, true);
             self.motion = Motion {
                 position,
                 ..Motion::default()
@@ -76,7 +78,10 @@ impl Observer {
         m.velocity = m.velocity + acceleration;
         if let Some(position) = sample {
             let error = position - m.position;
-            let [on_position, on_velocity, on_load] = if in_contact {
+            let [on_position, on_velocity, on_load] = if in_contact && self.fresh {
+                // Switched on into a contact: the first difference is worth more than rest.
+                [1.0, 1.0, 0.0]
+            } else if in_contact {
                 let [p, v] = coeffs.contact_gains;
                 [p, v, 0.0]
             } else {
@@ -85,6 +90,7 @@ impl Observer {
             m.position = m.position + error * on_position;
             m.velocity = m.velocity + error * on_velocity;
             m.load = m.load + error * on_load;
+            self.fresh = false;
         }
         m.position = held(m.position);
         m.velocity = held(m.velocity);

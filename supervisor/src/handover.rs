@@ -38,7 +38,7 @@ pub(crate) struct Readiness {
 }
 
 /// Shortfall that the blend can cover \[caps\].
-const COVERED: f32 = 0.15;
+const COVERED: f32 = 0.06;
 
 impl Readiness {
     pub(crate) fn ready(&self) -> bool {

@@ -73,8 +73,7 @@ fn before_impact(motion: &Motion, spin_sign: f32, coeffs: &Coeffs) -> Wanted {
     let damping = -motion.velocity * coeffs.damper;
     // What speed leaves of the capacity brings the rotor back: damping alone would let it lie. When slow,
     // a little more of it than a hold on the wall has, or the two would take turns.
-    let of_lift_off = motion.velocity.length_squared() / coeffs.slow_squared;
-    let share = max(NEARLY_ALL - of_lift_off, FLIGHT_SHARE);
+    let share = max(NEARLY_ALL - of_lift_off(motion.velocity, coeffs), FLIGHT_SHARE);
     let restoring = -motion.position * share;
     let rest = Wanted {
         braking: Vec2::ZERO,
@@ -162,8 +161,14 @@ fn braking(motion: &Motion, found: &Findings, spin_sign: f32, coeffs: &Coeffs) -
     Wanted {
         braking: aim.rotated(lead(found.tangential_speed, coeffs)),
         damping: -motion.velocity * coeffs.damper,
-        restoring: Vec2::ZERO,
+        // Slower than lift-off an inward force can end the contact.
+        restoring: n * -max(coeffs.hold_share - of_lift_off(motion.velocity, coeffs), 0.0),
     }
+}
+
+/// Square of a speed over that of the lift-off speed.
+fn of_lift_off(velocity: Vec2, coeffs: &Coeffs) -> f32 {
+    velocity.length_squared() / coeffs.slow_squared
 }
 
 /// Rotation that makes up for delay and lag on a circle at `rate` radians per tick: a delay of h turns
