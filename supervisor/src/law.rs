@@ -30,6 +30,10 @@ pub(crate) struct Wanted {
 /// Share of the cap that pushes inwards between impacts: more shortens the chords and with them the time
 /// in which braking takes speed out.
 const FLIGHT_SHARE: f32 = 0.15;
+/// Of the whirl limit: impacts that will add up to less than the first need no help but to be softened,
+/// from the second on all the force goes to what they add.
+const HARMLESS: f32 = 0.8;
+const URGENT: f32 = 1.6;
 /// Largest share of the cap that ever pushes inwards.
 const NEARLY_ALL: f32 = 0.95;
 
@@ -110,7 +114,8 @@ fn before_impact(motion: &Motion, spin_sign: f32, coeffs: &Coeffs) -> Wanted {
     let sense = backward(n, velocity, spin_sign);
     let (v_n, v_b) = (velocity.dot(n), velocity.dot(n.turned()) * sense);
     let sum = v_b + gain * v_n;
-    let strength = min(max(sum, 0.0) * coeffs.damper, 1.0);
+    let urgency = between((sum / coeffs.whirl_limit - HARMLESS) / (URGENT - HARMLESS), 0.0, 1.0);
+    let strength = min(max(sum, 0.0) * coeffs.damper, urgency);
     // Gradient of S, times v_n: v_b = r × v about the centre, v_n = √(v² − v_b²).
     let (gradient, _) =
         (acts_at.turned() * (sense * (v_n - gain * v_b)) + velocity * gain).direction();
