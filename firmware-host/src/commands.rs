@@ -2,6 +2,7 @@
 
 pub mod accuracy;
 pub mod error;
+pub mod overloads;
 pub mod paper;
 mod progress;
 pub mod run;

@@ -4,6 +4,8 @@ pub mod catalogue;
 pub mod found;
 pub mod impact;
 pub mod loop_shape;
+pub mod page;
+pub mod plan;
 pub mod plants;
 pub mod promises;
 pub mod reference;

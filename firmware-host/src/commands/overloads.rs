@@ -1,0 +1,130 @@
+//! `overloads`: the catalogue of overloads, and what it says of the supervisor's promises.
+
+use crate::commands::error::{CommandError, print};
+use crate::commands::progress::{LateProgress, pool};
+use crate::output::{self, OutputError, Staging};
+use crate::overloads::page;
+use crate::overloads::plan::{Catalogue, CatalogueError, Extent, pieces, run, search};
+use crate::overloads::plants::RATES_HZ;
+use crate::scene::Scene;
+use comfy_table::{Cell, CellAlignment, Table, presets};
+use std::path::PathBuf;
+
+/// Arguments of `overloads`.
+#[derive(Debug, Clone, clap::Args)]
+pub struct OverloadsArgs {
+    /// Folder for overloads.json, overloads.md and a page for each scene.
+    #[arg(long, default_value = "runs/overloads")]
+    pub out: PathBuf,
+    /// Print promises and results as JSON instead of the table of promises.
+    #[arg(long)]
+    pub json: bool,
+    /// One control rate, one cap for P1, three seeds.
+    #[arg(long)]
+    pub quick: bool,
+    /// A scene of your own, run under its policies with every seed and added to the results. May be repeated.
+    #[arg(long, value_name = "FILE")]
+    pub scene: Vec<PathBuf>,
+    /// Instead of the catalogue: search the baselines' gains and the reference's weights anew, and write
+    /// them to found.json in the folder.
+    #[arg(long, conflicts_with_all = ["json", "quick", "scene"])]
+    pub search: bool,
+    /// Threads to use [default: all cores]. Results do not depend on it.
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+}
+
+/// Runs the catalogue.
+///
+/// # Errors
+/// [`CommandError`]; nothing is left behind then.
+pub fn execute(args: &OverloadsArgs) -> Result<(), CommandError> {
+    let own = (args.scene.iter())
+        .map(|path| Scene::load(path))
+        .collect::<Result<Vec<_>, _>>()?;
+    output::probe(&args.out)?;
+    if args.search {
+        return search_anew(args);
+    }
+    let extent = if args.quick {
+        Extent::Quick
+    } else {
+        Extent::Full
+    };
+    let progress = LateProgress::new(pieces(extent, &own).map_err(failed)?, "the catalogue");
+    let catalogue = pool(args.threads)?
+        .install(|| run(extent, &own, &|done| progress.add(done)))
+        .map_err(failed)?;
+    progress.finish();
+    let pretty = serde_json::to_string_pretty(&catalogue)
+        .map_err(|e| CommandError::other("formatting overloads.json", e))?;
+    let staging = Staging::beside(&args.out)?;
+    let mut files = vec![
+        ("overloads.json".to_owned(), pretty.clone()),
+        ("overloads.md".to_owned(), page::summary(&catalogue, extent)),
+    ];
+    files.extend(page::scenes(&catalogue));
+    for (name, text) in &files {
+        let path = staging.path(name);
+        std::fs::write(&path, text).map_err(|reason| OutputError { path, reason })?;
+    }
+    let out = staging.publish()?;
+    if args.json {
+        return print(&format!("{pretty}\n"));
+    }
+    let page = out.join("overloads.md");
+    print(&format!(
+        "{}\npage: {}\n",
+        promises(&catalogue),
+        page.display()
+    ))
+}
+
+fn search_anew(args: &OverloadsArgs) -> Result<(), CommandError> {
+    let plants = crate::overloads::plants::plants(RATES_HZ[0])?.len();
+    let progress = LateProgress::new((plants * RATES_HZ.len()) as u64, "the search");
+    let rows = pool(args.threads)?
+        .install(|| search(&|done| progress.add(done)))
+        .map_err(failed)?;
+    progress.finish();
+    let pretty = serde_json::to_string_pretty(&rows)
+        .map_err(|e| CommandError::other("formatting found.json", e))?;
+    let staging = Staging::beside(&args.out)?;
+    let path = staging.path("found.json");
+    std::fs::write(&path, format!("{pretty}\n")).map_err(|reason| OutputError { path, reason })?;
+    let out = staging.publish()?;
+    print(&format!("found: {}\n", out.join("found.json").display()))
+}
+
+fn failed(error: CatalogueError) -> CommandError {
+    match error {
+        CatalogueError::Scene(error) => error.into(),
+        other => CommandError::other("running the catalogue", other),
+    }
+}
+
+fn promises(catalogue: &Catalogue) -> String {
+    let mut table = Table::new();
+    table.load_style(presets::UTF8_BORDERS_ONLY);
+    table.set_header(["promise", "bound", "measured", "holds"]);
+    for p in &catalogue.promises {
+        let sign = if p.at_least { "≥" } else { "≤" };
+        table.add_row([
+            Cell::new(&p.name),
+            Cell::new(format!("{sign} {}", p.bound)).set_alignment(CellAlignment::Right),
+            Cell::new(format!("{:.3}", p.measured)).set_alignment(CellAlignment::Right),
+            Cell::new(if p.holds { "yes" } else { "NO" }),
+        ]);
+    }
+    let kept = catalogue.promises.iter().filter(|p| p.holds).count();
+    let runs = catalogue.results.len();
+    let untrusted = catalogue
+        .results
+        .iter()
+        .filter(|r| r.error.is_some())
+        .count();
+    format!(
+        "{table}\n{kept} of {} promises hold; {runs} runs, {untrusted} of them not to be trusted",
+        catalogue.promises.len()
+    )
+}

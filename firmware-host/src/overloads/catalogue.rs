@@ -1,0 +1,360 @@
+//! The scenes of the catalogue, on one plant.
+//!
+//! Sizes are taken from the plant: forces from its capacity, speeds from the impact whose bounces, left to
+//! themselves, would add up to the fastest whirl that the cap can stop, v_ref = v_lim·(1 − e)/(μ·(1 + e)).
+
+use super::plants::PlantCase;
+use super::seats::{Task, restitution};
+use super::takeover::whirling;
+use crate::scene::{Axis, BaseMotion, Disturbance, Outage, Scene, Shape, TimedChange};
+use plant_model::analysis::arrest::Arrest;
+use plant_model::params::SpinParams;
+use plant_model::{Change, V2};
+use std::f64::consts::TAU;
+
+/// A scene of the catalogue.
+#[derive(Debug, Clone)]
+pub struct Case {
+    /// Kind of overload: what results are summed over.
+    pub group: &'static str,
+    /// Name, unique on a plant.
+    pub name: String,
+    /// What happens.
+    pub scene: Scene,
+    /// What the reference is asked.
+    pub task: Task,
+}
+
+const G_M_S2: f64 = 9.81;
+/// When things begin \[s\].
+const BEGIN_S: f64 = 0.01;
+/// What is left to come back in \[s\].
+const AFTER_S: f64 = 0.12;
+
+/// Sizes of a plant.
+#[derive(Debug, Clone, Copy)]
+pub struct Sizes {
+    /// Cap of the magnet \[N\].
+    pub force_n: f64,
+    /// Fastest whirl that it can stop \[m/s\].
+    pub limit_m_s: f64,
+    /// Reference speed of impacts \[m/s\].
+    pub impact_m_s: f64,
+}
+
+impl Sizes {
+    /// `None` without a magnet or without friction.
+    pub fn of(scene: &Scene) -> Option<Self> {
+        let force_n = scene.plant.magnet?.force_max_n;
+        let limit_m_s = Arrest::new(&scene.plant, force_n)?.limit_m_s;
+        let e = restitution(scene);
+        let mu = scene.plant.friction.sliding.coefficient(0.0);
+        Some(Self {
+            force_n,
+            limit_m_s,
+            impact_m_s: limit_m_s * (1.0 - e) / (mu * (1.0 + e)),
+        })
+    }
+}
+
+/// Collects the cases of one plant.
+struct Collector<'a> {
+    base: &'a Scene,
+    sizes: Sizes,
+    cases: Vec<Case>,
+}
+
+impl Collector<'_> {
+    /// A case that lasts until some time after `end_s`, as `edit` makes it.
+    fn add(
+        &mut self,
+        group: &'static str,
+        name: impl Into<String>,
+        end_s: f64,
+        edit: impl FnOnce(&mut Scene),
+    ) {
+        let mut scene = self.base.clone();
+        scene.duration_s = end_s + AFTER_S;
+        edit(&mut scene);
+        self.cases.push(Case {
+            group,
+            name: name.into(),
+            scene,
+            task: Task::Impact,
+        });
+    }
+
+    /// An impact that is aimed at the wall at an angle to its normal; positive: along the spin.
+    fn impact(&self, scene: &mut Scene, share: f64, angle_deg: f64) {
+        let c = scene.plant.contact.clearance_m;
+        scene.start.position_m = V2::new(0.0, -0.99 * c * angle_deg.to_radians().sin());
+        scene.start.velocity_m_s = V2::new(share * self.sizes.impact_m_s, 0.0);
+    }
+
+    /// A load in a direction that is no axis.
+    fn load(&self, share: f64, start_s: f64, duration_s: f64) -> Disturbance {
+        let direction = V2::new(30_f64.to_radians().cos(), 30_f64.to_radians().sin());
+        Disturbance {
+            start_s,
+            duration_s,
+            force_n: share * self.sizes.force_n * direction,
+            shape: Shape::Constant,
+        }
+    }
+
+    fn impacts(&mut self) {
+        for angle in [0.0, 30.0, -30.0, 50.0, -50.0] {
+            for share in [0.5, 1.0, 1.5] {
+                let mut scene = self.base.clone();
+                self.impact(&mut scene, share, angle);
+                let start = scene.start;
+                let name = format!("impact {angle:+.0}°, {share} v_ref");
+                self.add("impacts", name, 0.0, |s| s.start = start);
+            }
+        }
+    }
+
+    fn whirl(&mut self) {
+        for share in [0.3, 0.5, 0.7, 0.85, 0.95, 1.05, 1.1] {
+            let start = whirling(self.base, share * self.sizes.limit_m_s).start;
+            let name = format!("whirl at take-over, {share} v_lim");
+            self.add("whirl", name, 0.0, |s| s.start = start);
+            if let Some(case) = self.cases.last_mut() {
+                case.task = Task::Whirl;
+            }
+        }
+    }
+
+    fn overloads(&mut self) {
+        for duration_s in [0.05, 1.0] {
+            for share in [0.8, 0.9, 1.0, 1.1, 1.2, 1.5, 2.0, 3.0] {
+                let load = self.load(share, BEGIN_S, duration_s);
+                let name = format!("load {share} × cap for {:.0} ms", 1e3 * duration_s);
+                self.add("static overload", name, load.end_s(), |s| {
+                    s.disturbances = vec![load];
+                });
+            }
+        }
+        let bursts: Vec<Disturbance> = (0..8)
+            .map(|i| self.load(1.5, BEGIN_S + 0.025 * f64::from(i), 0.005))
+            .collect();
+        self.add("surge", "8 bursts of 1.5 × cap, 5 ms", 0.2, |s| {
+            s.disturbances = bursts;
+        });
+    }
+
+    fn base_motions(&mut self) {
+        for (g, ms) in [(5.0, 30.0), (15.0, 11.0), (30.0, 6.0)] {
+            let shock = BaseMotion {
+                start_s: BEGIN_S,
+                duration_s: 1e-3 * ms,
+                acceleration_m_s2: V2::new(0.8, 0.6) * g * G_M_S2,
+                shape: Shape::HalfSine,
+            };
+            let name = format!("base shock {g} g, {ms} ms");
+            self.add("shock", name, shock.end_s(), |s| {
+                s.base_motions = vec![shock]
+            });
+        }
+        for hz in [1.0, 2.0, 5.0, 10.0, 20.0, 35.0] {
+            let shaking = BaseMotion {
+                start_s: BEGIN_S,
+                duration_s: (1.0_f64 / hz).max(0.2),
+                acceleration_m_s2: V2::new(0.5 * G_M_S2, 0.0),
+                shape: Shape::Sine {
+                    frequency_hz: hz,
+                    phase_rad: 0.0,
+                },
+            };
+            let name = format!("base motion 0.5 g, {hz} Hz");
+            self.add("base motion", name, shaking.end_s(), |s| {
+                s.base_motions = vec![shaking];
+            });
+        }
+    }
+
+    fn blade_loss(&mut self) {
+        for hz in [166.0, 1000.0] {
+            let spin = hz * TAU;
+            // The unbalance asks for half as much as the cap has.
+            let force_n = 1.5 * self.sizes.force_n;
+            let eccentricity = force_n / (self.base.plant.rotor.mass_kg * spin * spin);
+            let changes =
+                [(BEGIN_S, eccentricity), (BEGIN_S + 0.1, 0.0)].map(|(at_s, e)| TimedChange {
+                    at_s,
+                    change: Change {
+                        eccentricity_m: Some(e),
+                        ..Change::default()
+                    },
+                });
+            let name = format!("blade lost at {hz} Hz, 1.5 × cap for 100 ms");
+            self.add("blade loss", name, BEGIN_S + 0.1, |s| {
+                s.start.spin_rad_s = spin;
+                s.plant.spin = SpinParams::Held;
+                s.changes = changes.to_vec();
+            });
+        }
+    }
+
+    fn outages(&mut self) {
+        for ms in [20.0, 200.0, 2000.0] {
+            let outage = Outage {
+                start_s: BEGIN_S,
+                duration_s: 1e-3 * ms,
+                axis: Axis::Both,
+                known: true,
+            };
+            let name = format!("no power for {ms:.0} ms");
+            self.add("power loss", name, outage.end_s(), |s| {
+                s.outages = vec![outage];
+                // The rotor does not stand in the very middle when the power goes.
+                s.start.velocity_m_s = V2::new(1e-3, 2e-3);
+            });
+        }
+        // One axis is lost while the supervisor is in each of its modes.
+        for (mode, at_s, share) in [
+            ("approach", 0.0, 1.0),
+            ("bounce", 1e-3, 1.0),
+            ("levitated", 0.08, 0.5),
+        ] {
+            let outage = Outage {
+                start_s: at_s,
+                duration_s: 0.02,
+                axis: Axis::X,
+                known: true,
+            };
+            let mut scene = self.base.clone();
+            self.impact(&mut scene, share, 30.0);
+            let start = scene.start;
+            let name = format!("x axis lost for 20 ms while {mode}");
+            self.add("axis lost", name, outage.end_s(), |s| {
+                s.start = start;
+                s.outages = vec![outage];
+            });
+        }
+        let outage = Outage {
+            start_s: 1e-3,
+            duration_s: 0.02,
+            axis: Axis::X,
+            known: true,
+        };
+        let start = whirling(self.base, 0.5 * self.sizes.limit_m_s).start;
+        self.add("axis lost", "x axis lost for 20 ms in whirl", 0.02, |s| {
+            s.start = start;
+            s.outages = vec![outage];
+        });
+    }
+
+    fn starts(&mut self) {
+        let c = self.base.plant.contact.clearance_m;
+        self.add("start", "from rest on the bearing", 0.0, |s| {
+            s.start.position_m = V2::new(0.0, -c);
+        });
+    }
+
+    fn friction(&mut self) {
+        for coefficient in [0.3, 0.5] {
+            let change = TimedChange {
+                at_s: 0.0,
+                change: Change {
+                    friction_coefficient: Some(coefficient),
+                    ..Change::default()
+                },
+            };
+            let mut scene = self.base.clone();
+            self.impact(&mut scene, 0.4, 30.0);
+            let start = scene.start;
+            let name = format!("impact with friction {coefficient}, untold");
+            self.add("friction", name, 0.0, |s| {
+                s.start = start;
+                s.changes = vec![change];
+            });
+        }
+        let change = TimedChange {
+            at_s: 3e-3,
+            change: Change {
+                friction_coefficient: Some(0.03),
+                ..Change::default()
+            },
+        };
+        let start = whirling(self.base, 0.85 * self.sizes.limit_m_s).start;
+        self.add("friction", "friction collapses in whirl", 3e-3, |s| {
+            s.start = start;
+            s.changes = vec![change];
+        });
+    }
+
+    fn spins(&mut self) {
+        for hz in [15.0, 40.0, 166.0, 333.0, 1000.0, -200.0] {
+            let mut scene = self.base.clone();
+            self.impact(&mut scene, 1.0, 30.0);
+            let start = scene.start;
+            let name = format!("impact at {hz} Hz spin");
+            self.add("speeds", name, 0.0, |s| {
+                s.start = start;
+                s.start.spin_rad_s = hz * TAU;
+            });
+        }
+        let mut scene = self.base.clone();
+        self.impact(&mut scene, 1.0, 30.0);
+        let start = scene.start;
+        self.add("speeds", "impact, spin unknown", 0.0, |s| {
+            s.start = start;
+            s.spin_sensor.valid = false;
+        });
+        let race = plant_model::params::RaceParams {
+            inertia_kg_m2: 1e-3 * self.base.plant.rotor.mass_kg / 10.0,
+            drag_n_m_s: 0.0,
+            start_spin_rad_s: 0.0,
+        };
+        self.add(
+            "speeds",
+            "impact in a ball bearing that spins up",
+            0.0,
+            |s| {
+                s.start = start;
+                s.plant.race = Some(race);
+            },
+        );
+    }
+
+    fn offsets(&mut self) {
+        let c = self.base.plant.contact.clearance_m;
+        for share in [0.1, 0.2] {
+            let mut scene = self.base.clone();
+            self.impact(&mut scene, 1.0, 30.0);
+            let start = scene.start;
+            let name = format!(
+                "impact, bearing {:.0} % of c off the centre, untold",
+                100.0 * share
+            );
+            self.add("offset", name, 0.0, |s| {
+                s.start = start;
+                s.centre_offset_m = share * c * V2::new(0.6, 0.8);
+            });
+        }
+    }
+}
+
+/// Every scene on a plant.
+pub fn cases(plant: &PlantCase) -> Vec<Case> {
+    let Some(sizes) = Sizes::of(&plant.scene) else {
+        return Vec::new();
+    };
+    let mut collector = Collector {
+        base: &plant.scene,
+        sizes,
+        cases: Vec::new(),
+    };
+    collector.impacts();
+    collector.whirl();
+    collector.overloads();
+    collector.base_motions();
+    collector.blade_loss();
+    collector.outages();
+    collector.starts();
+    collector.friction();
+    collector.spins();
+    collector.offsets();
+    collector.cases
+}

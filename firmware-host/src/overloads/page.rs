@@ -1,0 +1,215 @@
+//! The catalogue as a page in Markdown, for people and for the documentation.
+
+use super::plan::{Catalogue, Extent};
+use super::promises::Promise;
+use super::results::{Metrics, ResultRow};
+use super::seats::Seat;
+use super::sweeps::{SweepRow, median};
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Write as _;
+
+/// The summary: promises, sweeps, and every scene in one line a plant. Deterministic.
+pub fn summary(catalogue: &Catalogue, extent: Extent) -> String {
+    let mut page = String::from("# Catalogue of overloads\n\n");
+    let how = match extent {
+        Extent::Quick => "a quick run: 20 kHz, three seeds, one cap for P1",
+        Extent::Full => "10 and 20 kHz, twenty seeds, 1 µm of sensor noise",
+    };
+    line(
+        &mut page,
+        &format!(
+            "Every scene under every policy, {how}. Plants P1 to P4 are `firmware-host/scenes/plants`; who takes part and how the scenes are sized is said in [What the catalogue shows](overloads-explained.md). Repeat with\n\n```sh\ncargo run --release -- overloads{}\n```\n\n## Promises\n",
+            if extent == Extent::Quick {
+                " --quick"
+            } else {
+                ""
+            }
+        ),
+    );
+    let kept = catalogue.promises.iter().filter(|p| p.holds).count();
+    line(
+        &mut page,
+        &format!("{kept} of {} hold.\n", catalogue.promises.len()),
+    );
+    line(
+        &mut page,
+        "| promise | bound | measured | holds |\n| --- | --- | --- | --- |",
+    );
+    for promise in &catalogue.promises {
+        line(&mut page, &promise_row(promise));
+    }
+    line(&mut page, "\n## Hardest impact, fastest whirl\n");
+    line(
+        &mut page,
+        "Radial impact from the middle that is recovered from, on a grid of 5 %, all slower ones too [m/s]; whirl at take-over as a share of v_lim; time to arrest 0.85 v_lim down to a quarter [ms]. Medians over the seeds, with the lowest in brackets where it differs.\n",
+    );
+    line(
+        &mut page,
+        "| plant | rate [kHz] | policy | impact | 10 % off the centre | whirl | arrest | closed form |\n| --- | --- | --- | --- | --- | --- | --- | --- |",
+    );
+    for row in &catalogue.sweeps {
+        line(&mut page, &sweep_row(row));
+    }
+    line(&mut page, "\n## Against levitation alone\n");
+    line(
+        &mut page,
+        "Largest contact force of the supervisor over that of its own inner loop alone, seed by seed; 1 where neither touches. Recovered: seeds with and without the supervisor.\n",
+    );
+    line(
+        &mut page,
+        "| plant, rate: scene | median | 95 % | recovered | alone |\n| --- | --- | --- | --- | --- |",
+    );
+    for harm in &catalogue.against_levitation {
+        line(
+            &mut page,
+            &format!(
+                "| {} | {:.2} | {:.2} | {} of {} | {} |",
+                harm.place,
+                harm.force_ratio,
+                harm.force_ratio_95,
+                harm.recovered,
+                harm.seeds,
+                harm.recovered_alone
+            ),
+        );
+    }
+    page
+}
+
+fn line(page: &mut String, text: &str) {
+    page.push_str(text);
+    page.push('\n');
+}
+
+fn promise_row(p: &Promise) -> String {
+    let sign = if p.at_least { "≥" } else { "≤" };
+    let holds = if p.holds { "yes" } else { "**no**" };
+    format!(
+        "| {} | {sign} {} | {:.3} | {holds} |",
+        p.name, p.bound, p.measured
+    )
+}
+
+fn sweep_row(row: &SweepRow) -> String {
+    let cell = |values: &[f64], factor: f64, digits: usize| match values.first() {
+        None => "–".to_owned(),
+        Some(lowest) => {
+            let (middle, lowest) = (factor * median(values), factor * lowest);
+            let (middle, lowest) = (format!("{middle:.digits$}"), format!("{lowest:.digits$}"));
+            if middle == lowest {
+                middle
+            } else {
+                format!("{middle} ({lowest})")
+            }
+        }
+    };
+    // A time counts where every seed arrests it.
+    let arrest = if row.arrest_s.len() == row.whirl_share.len() {
+        cell(&row.arrest_s, 1e3, 2)
+    } else {
+        "–".to_owned()
+    };
+    format!(
+        "| {} | {:.0} | {} | {} | {} | {} | {arrest} | {:.2} |",
+        row.plant,
+        1e-3 * row.rate_hz,
+        row.policy,
+        cell(&row.impact_m_s, 1.0, 3),
+        cell(&row.offset_impact_m_s, 1.0, 3),
+        cell(&row.whirl_share, 1.0, 2),
+        1e3 * row.closed_form_s
+    )
+}
+
+/// A page for each scene: file name and text.
+pub fn scenes(catalogue: &Catalogue) -> Vec<(String, String)> {
+    let names: BTreeSet<&str> = catalogue.results.iter().map(|r| r.scene.as_str()).collect();
+    names
+        .into_iter()
+        .map(|name| {
+            (
+                format!("{}.md", slug(name)),
+                scene_page(name, &catalogue.results),
+            )
+        })
+        .collect()
+}
+
+fn slug(name: &str) -> String {
+    let mut slug = String::new();
+    for c in name.chars() {
+        match c {
+            c if c.is_ascii_alphanumeric() || c == '.' => slug.push(c.to_ascii_lowercase()),
+            '+' => slug.push_str("plus-"),
+            // A minus in front of a number, not a hyphen.
+            '-' if slug.ends_with('-') || slug.is_empty() => slug.push_str("minus-"),
+            _ if slug.ends_with('-') => {}
+            _ => slug.push('-'),
+        }
+    }
+    slug.trim_end_matches('-').to_owned()
+}
+
+fn scene_page(name: &str, results: &[ResultRow]) -> String {
+    let mut page = format!("# {name}\n\nMedians over the seeds.\n\n");
+    line(
+        &mut page,
+        "| plant | rate [kHz] | policy | recovered | outcomes | touches | over 20 mm/s | peak force [N] | impulse [N s] | contact [ms] | backward [m/s] | back after [ms] |\n| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |",
+    );
+    let mut groups: BTreeMap<(&str, u64, usize), Vec<&ResultRow>> = BTreeMap::new();
+    for row in results.iter().filter(|r| r.scene == name) {
+        let order = (Seat::ALL.iter()).position(|s| s.name() == row.policy);
+        let key = (
+            row.plant.as_str(),
+            row.rate_hz as u64,
+            order.unwrap_or(usize::MAX),
+        );
+        groups.entry(key).or_default().push(row);
+    }
+    for ((plant, rate, _), rows) in groups {
+        let of = |value: &dyn Fn(&Metrics) -> f64| {
+            let mut all: Vec<f64> = (rows.iter())
+                .filter_map(|r| r.metrics.as_ref().map(value))
+                .filter(|x| !x.is_nan())
+                .collect();
+            all.sort_by(f64::total_cmp);
+            median(&all)
+        };
+        let mut outcomes: BTreeMap<String, usize> = BTreeMap::new();
+        for row in &rows {
+            let outcome = match (&row.metrics, &row.error) {
+                (Some(m), _) => format!("{:?}", m.outcome).to_lowercase(),
+                (None, Some(error)) => error.clone(),
+                (None, None) => String::new(),
+            };
+            *outcomes.entry(outcome).or_default() += 1;
+        }
+        let outcomes: Vec<String> = outcomes
+            .into_iter()
+            .map(|(outcome, n)| format!("{outcome} {n}"))
+            .collect();
+        let recovered = rows.iter().filter(|r| r.recovered()).count();
+        let back = of(&|m| m.relevitation_time_s.unwrap_or(f64::NAN));
+        let back = if back.is_nan() {
+            "–".to_owned()
+        } else {
+            format!("{:.2}", 1e3 * back)
+        };
+        let policy = rows.first().map_or("", |r| r.policy);
+        // Writing to a String cannot fail.
+        let _ = writeln!(
+            page,
+            "| {plant} | {} | {policy} | {recovered} of {} | {} | {:.0} | {:.0} | {:.0} | {:.3} | {:.2} | {:.3} | {back} |",
+            rate / 1000,
+            rows.len(),
+            outcomes.join(", "),
+            of(&|m| m.impacts as f64),
+            of(&|m| m.contacts_over_20_mm_s as f64),
+            of(&|m| m.peak_contact_force_n),
+            of(&|m| m.contact_impulse_n_s),
+            1e3 * of(&|m| m.contact_time_s),
+            of(&|m| m.peak_backward_speed_m_s),
+        );
+    }
+    page
+}

@@ -1,0 +1,260 @@
+//! The whole catalogue, planned and run.
+
+use super::catalogue::{Case, cases};
+use super::found::{Found, Row, kept};
+use super::plants::{PlantCase, RATES_HZ, plants};
+use super::promises::{Harm, Promise, against_levitation, of_results, of_sweeps};
+use super::results::{ResultRow, run_case, run_own};
+use super::seats::Seat;
+use super::sweeps::{SweepPoint, SweepRow, row, sweep};
+use super::{reference, seats, tune};
+use crate::closed_loop::RunError;
+use crate::policy_kind::PolicyKind;
+use crate::scene::Scene;
+use crate::scene_error::SceneError;
+use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
+use serde::Serialize;
+
+/// How much is run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Extent {
+    /// One control rate, one cap for P1, three seeds.
+    Quick,
+    /// Everything, twenty seeds.
+    Full,
+}
+
+impl Extent {
+    /// Seeds of the sensor noise.
+    pub fn seeds(self) -> u64 {
+        match self {
+            Self::Quick => 3,
+            Self::Full => 20,
+        }
+    }
+
+    fn takes(self, plant: &PlantCase) -> bool {
+        match self {
+            Self::Full => true,
+            Self::Quick => {
+                let one_of_p1 = !plant.name.starts_with("P1") || plant.name == "P1 150 N";
+                plant.rate_hz == RATES_HZ[1] && one_of_p1
+            }
+        }
+    }
+}
+
+/// Why the catalogue has no result.
+#[derive(Debug, thiserror::Error)]
+pub enum CatalogueError {
+    /// A plant of the catalogue is not valid.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// A run of a sweep cannot be trusted.
+    #[error("{plant}, {policy}: {reason}")]
+    Run {
+        /// Plant.
+        plant: String,
+        /// Policy.
+        policy: &'static str,
+        /// Why.
+        reason: RunError,
+    },
+    /// Nothing is kept for a plant.
+    #[error("no gains are kept for {plant} at {rate_hz} Hz: search them with --search")]
+    NotFound {
+        /// Plant.
+        plant: String,
+        /// Control rate \[Hz\].
+        rate_hz: f64,
+    },
+}
+
+/// What came out.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Catalogue {
+    /// Promises.
+    pub promises: Vec<Promise>,
+    /// Sweeps.
+    pub sweeps: Vec<SweepRow>,
+    /// Every scene against levitation alone.
+    pub against_levitation: Vec<Harm>,
+    /// Every run.
+    pub results: Vec<ResultRow>,
+}
+
+/// The plants of an extent, with what is kept for them.
+fn places(extent: Extent) -> Result<Vec<(PlantCase, Found)>, CatalogueError> {
+    let mut all = Vec::new();
+    for rate_hz in RATES_HZ {
+        for plant in plants(rate_hz)?.into_iter().filter(|p| extent.takes(p)) {
+            let found = kept(&plant.name, rate_hz).ok_or_else(|| CatalogueError::NotFound {
+                plant: plant.name.clone(),
+                rate_hz,
+            })?;
+            all.push((plant, found));
+        }
+    }
+    Ok(all)
+}
+
+/// A run of the plan.
+enum Job<'a> {
+    Case(&'a (PlantCase, Found), &'a Case, Seat, u64),
+    Own(&'a Scene, PolicyKind, u64),
+}
+
+/// A sweep of the plan: place, seat, seed.
+type SweepJob<'a> = (&'a (PlantCase, Found), Seat, u64);
+
+/// Runs the catalogue, a user's own scenes with it. `on_done` is called with pieces of work done, of
+/// the number that [`pieces`] says.
+///
+/// # Errors
+/// [`CatalogueError`].
+pub fn run(
+    extent: Extent,
+    own: &[Scene],
+    on_done: &(dyn Fn(u64) + Sync),
+) -> Result<Catalogue, CatalogueError> {
+    let places = places(extent)?;
+    let per_place: Vec<Vec<Case>> = places.iter().map(|(plant, _)| cases(plant)).collect();
+    let mut jobs = Vec::new();
+    for (place, cases) in places.iter().zip(&per_place) {
+        for case in cases {
+            for seat in Seat::ALL {
+                for seed in seeds(extent, seat) {
+                    jobs.push(Job::Case(place, case, seat, seed));
+                }
+            }
+        }
+    }
+    for scene in own {
+        for kind in &scene.policies {
+            for seed in 0..extent.seeds() {
+                jobs.push(Job::Own(scene, *kind, seed));
+            }
+        }
+    }
+    let results: Vec<ResultRow> = (jobs.par_iter())
+        .map(|job| {
+            let row = match job {
+                Job::Case((plant, found), case, seat, seed) => {
+                    run_case(case, (&plant.name, plant.rate_hz), (*seat, *seed), found)
+                }
+                Job::Own(scene, kind, seed) => run_own(scene, *kind, *seed),
+            };
+            on_done(1);
+            row
+        })
+        .collect();
+    let sweeps = sweeps(extent, &places, on_done)?;
+    let mut promises = of_sweeps(&sweeps);
+    promises.extend(of_results(&results));
+    Ok(Catalogue {
+        promises,
+        sweeps,
+        against_levitation: against_levitation(&results),
+        results,
+    })
+}
+
+fn seeds(extent: Extent, seat: Seat) -> std::ops::Range<u64> {
+    0..if seat.measures() { extent.seeds() } else { 1 }
+}
+
+fn sweeps(
+    extent: Extent,
+    places: &[(PlantCase, Found)],
+    on_done: &(dyn Fn(u64) + Sync),
+) -> Result<Vec<SweepRow>, CatalogueError> {
+    let mut jobs: Vec<SweepJob<'_>> = Vec::new();
+    for place in places {
+        for seat in Seat::ALL {
+            jobs.extend(seeds(extent, seat).map(|seed| (place, seat, seed)));
+        }
+    }
+    let points = (jobs.par_iter())
+        .map(|((plant, found), seat, seed)| {
+            let point = sweep(plant, found, (*seat, *seed)).map_err(|reason| CatalogueError::Run {
+                plant: plant.name.clone(),
+                policy: seat.name(),
+                reason,
+            });
+            on_done(SWEEP_WORTH);
+            point
+        })
+        .collect::<Result<Vec<SweepPoint>, CatalogueError>>()?;
+    let mut rows = Vec::new();
+    let mut rest = points.as_slice();
+    for (plant, _) in places {
+        for seat in Seat::ALL {
+            let (own, others) = rest.split_at(seeds(extent, seat).count());
+            rest = others;
+            rows.push(row(plant, seat, own));
+        }
+    }
+    Ok(rows)
+}
+
+/// A sweep takes about as long as so many runs.
+const SWEEP_WORTH: u64 = 40;
+
+/// Pieces of work of a run.
+///
+/// # Errors
+/// [`CatalogueError`].
+pub fn pieces(extent: Extent, own: &[Scene]) -> Result<u64, CatalogueError> {
+    let places = places(extent)?;
+    let runs: u64 = Seat::ALL
+        .iter()
+        .map(|seat| seeds(extent, *seat).count() as u64)
+        .sum();
+    let scenes: usize = places.iter().map(|(plant, _)| cases(plant).len()).sum();
+    let own: u64 = own
+        .iter()
+        .map(|s| s.policies.len() as u64 * extent.seeds())
+        .sum();
+    Ok(runs * (scenes as u64 + SWEEP_WORTH * places.len() as u64) + own)
+}
+
+/// Searches the gains of the baselines and the weights of the reference anew, for every plant and rate.
+///
+/// # Errors
+/// [`CatalogueError`].
+pub fn search(on_done: &dyn Fn(u64)) -> Result<Vec<Row>, CatalogueError> {
+    let mut rows = Vec::new();
+    for rate_hz in RATES_HZ {
+        for plant in plants(rate_hz)? {
+            let scene = &plant.scene;
+            let failed = |reason| CatalogueError::Run {
+                plant: plant.name.clone(),
+                policy: "search",
+                reason,
+            };
+            let none = || CatalogueError::NotFound {
+                plant: plant.name.clone(),
+                rate_hz,
+            };
+            let tuned = tune::tuned(scene).map_err(failed)?.ok_or_else(none)?;
+            let stiff = tune::stiff(scene).ok_or_else(none)?;
+            let make = |s: &Scene| Some(seats::levitation(tuned, s));
+            let known = super::impact::recoverable_m_s(scene, "tuned", &make).map_err(failed)?;
+            let from = reference::search_from_m_s(known);
+            let impact_law = reference::impact_law(scene, from).map_err(failed)?;
+            let whirl_law = reference::whirl_law(scene).map_err(failed)?;
+            rows.push(Row {
+                plant: plant.name.clone(),
+                rate_hz,
+                found: Found {
+                    tuned,
+                    stiff,
+                    impact_law,
+                    whirl_law: whirl_law.unwrap_or(impact_law),
+                },
+            });
+            on_done(1);
+        }
+    }
+    Ok(rows)
+}

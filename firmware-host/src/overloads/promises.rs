@@ -1,0 +1,278 @@
+//! What the supervisor promises, against what was measured.
+
+use super::results::ResultRow;
+use super::seats::Seat;
+use super::sweeps::{SweepRow, TIMED_SHARE, median};
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// A promise with its measurement.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Promise {
+    /// What is promised, where.
+    pub name: String,
+    /// The bound.
+    pub bound: f64,
+    /// Whether the measurement must not be below the bound, or not above.
+    pub at_least: bool,
+    /// What was measured.
+    pub measured: f64,
+    /// Whether it holds.
+    pub holds: bool,
+}
+
+impl Promise {
+    fn at_least(name: impl Into<String>, bound: f64, measured: f64) -> Self {
+        Self {
+            name: name.into(),
+            bound,
+            at_least: true,
+            measured,
+            holds: measured >= bound,
+        }
+    }
+
+    fn at_most(name: impl Into<String>, bound: f64, measured: f64) -> Self {
+        Self {
+            name: name.into(),
+            bound,
+            at_least: false,
+            measured,
+            holds: measured <= bound,
+        }
+    }
+}
+
+/// Promises about the sweeps.
+pub fn of_sweeps(rows: &[SweepRow]) -> Vec<Promise> {
+    let mut promises = Vec::new();
+    for row in rows.iter().filter(|r| r.policy == Seat::Supervisor.name()) {
+        let here = |seat: Seat| {
+            (rows.iter()).find(|r| {
+                r.plant == row.plant && r.rate_hz == row.rate_hz && r.policy == seat.name()
+            })
+        };
+        let place = format!("{}, {:.0} kHz", row.plant, 1e-3 * row.rate_hz);
+        let own = median(&row.impact_m_s);
+        let ratio_to = |seat: Seat| here(seat).map(|r| own / median(&r.impact_m_s));
+        let levitated_only = row.plant.starts_with("P2") || row.plant.starts_with("P3");
+        if let Some(ratio) = ratio_to(Seat::Clairvoyant) {
+            let bound = if levitated_only { 0.92 } else { 0.85 };
+            let name = format!("{place}: impact recovered from, over clairvoyant");
+            promises.push(Promise::at_least(name, bound, ratio));
+        }
+        if let (true, Some(ratio)) = (levitated_only, ratio_to(Seat::Tuned)) {
+            let name = format!("{place}: impact recovered from, over tuned");
+            promises.push(Promise::at_least(name, 1.10, ratio));
+        }
+        let baselines = [
+            Seat::Passive,
+            Seat::Radial,
+            Seat::Damping,
+            Seat::Stiff,
+            Seat::Tuned,
+        ];
+        let best = (baselines.iter().filter_map(|seat| here(*seat)))
+            .map(|r| median(&r.impact_m_s))
+            .fold(0.0, f64::max);
+        let name = format!("{place}: impact recovered from, over the best baseline");
+        promises.push(Promise::at_least(name, 1.0, own / best));
+        if let Some(reference) = here(Seat::Clairvoyant) {
+            let others = best.max(own);
+            let name = format!("{place}: clairvoyant over every other policy");
+            let ratio = median(&reference.impact_m_s) / others;
+            promises.push(Promise::at_least(name, 1.0, ratio));
+        }
+        let offset = median(&row.offset_impact_m_s) / own;
+        let name = format!("{place}: impact with the bearing 10 % off the centre, over centred");
+        promises.push(Promise::at_least(name, 0.85, offset));
+
+        let share = median(&row.whirl_share);
+        let name = format!("{place}: whirl arrested at take-over, share of v_lim");
+        promises.push(Promise::at_least(name, 0.85, share));
+        for (seat, bound) in [(Seat::Clairvoyant, 0.95), (Seat::Tuned, 1.0)] {
+            if let Some(other) = here(seat) {
+                let name = format!("{place}: whirl arrested, over {}", seat.name());
+                let ratio = share / median(&other.whirl_share);
+                promises.push(Promise::at_least(name, bound, ratio));
+            }
+        }
+        let time_s = slowest(row);
+        let name =
+            format!("{place}: time to arrest {TIMED_SHARE} v_lim, over closed form + 0.5 ms");
+        let bound_s = 1.5 * row.closed_form_s + 5e-4;
+        promises.push(Promise::at_most(name, 1.0, time_s / bound_s));
+        if let Some(tuned) = here(Seat::Tuned) {
+            let name = format!("{place}: time to arrest {TIMED_SHARE} v_lim, over tuned");
+            promises.push(Promise::at_most(name, 0.85, time_s / slowest(tuned)));
+        }
+    }
+    promises
+}
+
+/// Median time to arrest; infinite where a seed never arrests it.
+fn slowest(row: &SweepRow) -> f64 {
+    if row.arrest_s.len() < row.whirl_share.len() {
+        f64::INFINITY
+    } else {
+        median(&row.arrest_s)
+    }
+}
+
+/// Results of a scene under one policy, over its seeds.
+type PerScene<'a> = BTreeMap<(String, u64, String), Vec<&'a ResultRow>>;
+
+fn per_scene<'a>(rows: &'a [ResultRow], seat: Seat) -> PerScene<'a> {
+    let mut map = PerScene::new();
+    for row in rows.iter().filter(|r| r.policy == seat.name()) {
+        let key = (row.plant.clone(), row.rate_hz as u64, row.scene.clone());
+        map.entry(key).or_default().push(row);
+    }
+    map
+}
+
+/// A scene that the supervisor makes worse than levitation alone.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Harm {
+    /// Plant, rate and scene.
+    pub place: String,
+    /// Largest contact force over levitation's, median over the seeds.
+    pub force_ratio: f64,
+    /// The same, 95th percentile.
+    pub force_ratio_95: f64,
+    /// Seeds that levitation alone recovers from …
+    pub recovered_alone: usize,
+    /// … and the supervisor.
+    pub recovered: usize,
+    /// Seeds.
+    pub seeds: usize,
+}
+
+/// Every scene against levitation alone.
+pub fn against_levitation(rows: &[ResultRow]) -> Vec<Harm> {
+    let alone = per_scene(rows, Seat::Tuned);
+    let mut all = Vec::new();
+    for ((plant, rate, scene), own) in per_scene(rows, Seat::Supervisor) {
+        let Some(other) = alone.get(&(plant.clone(), rate, scene.clone())) else {
+            continue;
+        };
+        let force = |row: &ResultRow| row.metrics.as_ref().map(|m| m.peak_contact_force_n);
+        let mut ratios: Vec<f64> = (own.iter().zip(other))
+            .filter_map(|(a, b)| match (force(a)?, force(b)?) {
+                // No contact in either is no harm.
+                (a, b) if a == b => Some(1.0),
+                (a, b) => Some(a / b),
+            })
+            .collect();
+        ratios.sort_by(f64::total_cmp);
+        let at = |share: f64| {
+            let index = (share * (ratios.len().max(1) - 1) as f64).ceil() as usize;
+            ratios.get(index).copied().unwrap_or(f64::NAN)
+        };
+        all.push(Harm {
+            place: format!("{plant}, {} kHz: {scene}", rate / 1000),
+            force_ratio: median(&ratios),
+            force_ratio_95: at(0.95),
+            recovered_alone: other.iter().filter(|r| r.recovered()).count(),
+            recovered: own.iter().filter(|r| r.recovered()).count(),
+            seeds: own.len(),
+        });
+    }
+    all
+}
+
+/// Promises about the catalogue.
+pub fn of_results(rows: &[ResultRow]) -> Vec<Promise> {
+    let harms = against_levitation(rows);
+    let worst = |value: &dyn Fn(&Harm) -> f64| harms.iter().map(value).fold(0.0, f64::max);
+    let mut promises = vec![
+        Promise::at_most(
+            "largest contact force over levitation alone: worst scene's median",
+            1.0,
+            worst(&|h| h.force_ratio),
+        ),
+        Promise::at_most(
+            "largest contact force over levitation alone: worst scene's 95th percentile",
+            1.10,
+            worst(&|h| h.force_ratio_95),
+        ),
+        Promise::at_most(
+            "scenes with fewer recoveries than chance explains",
+            0.0,
+            harms.iter().filter(|h| lost_beyond_chance(h)).count() as f64,
+        ),
+    ];
+    promises.extend(of_static_overloads(rows));
+    promises
+}
+
+/// Fewer recoveries than 95 % of binomial draws with levitation's rate would have: with p = 1 any loss.
+fn lost_beyond_chance(harm: &Harm) -> bool {
+    let (n, p) = (
+        harm.seeds,
+        harm.recovered_alone as f64 / harm.seeds.max(1) as f64,
+    );
+    // Probability of at most as many recoveries as were seen.
+    let mut probability = 0.0;
+    let mut choose = 1.0;
+    for k in 0..=harm.recovered {
+        if k > 0 {
+            choose *= (n - k + 1) as f64 / k as f64;
+        }
+        probability += choose * p.powi(k as i32) * (1.0 - p).powi((n - k) as i32);
+    }
+    harm.recovered < harm.recovered_alone && probability < 0.05
+}
+
+fn of_static_overloads(rows: &[ResultRow]) -> Vec<Promise> {
+    let overloads: Vec<ResultRow> = (rows.iter())
+        .filter(|r| r.group == "static overload")
+        .cloned()
+        .collect();
+    let alone = per_scene(&overloads, Seat::Tuned);
+    let (mut impacts, mut force, mut impulse, mut back_s) = (0.0_f64, 0.0_f64, 0.0_f64, 0.0_f64);
+    for (key, own) in per_scene(&overloads, Seat::Supervisor) {
+        let Some(other) = alone.get(&key) else {
+            continue;
+        };
+        let middle = |rows: &[&ResultRow], value: &dyn Fn(&super::results::Metrics) -> f64| {
+            let mut all: Vec<f64> = rows
+                .iter()
+                .map(|r| r.metrics.as_ref().map_or(f64::INFINITY, value))
+                .collect();
+            all.sort_by(f64::total_cmp);
+            median(&all)
+        };
+        let pair = |value: &dyn Fn(&super::results::Metrics) -> f64| {
+            (middle(&own, value), middle(other, value))
+        };
+        let (a, b) = pair(&|m| m.contacts_over_20_mm_s as f64);
+        impacts = impacts.max(a - b);
+        let (a, b) = pair(&|m| m.peak_contact_force_n);
+        let ratio = |a: f64, b: f64| if a == b { 0.0 } else { a / b };
+        force = force.max(ratio(a, b));
+        let (a, b) = pair(&|m| m.contact_impulse_n_s);
+        impulse = impulse.max(ratio(a, b));
+        back_s = back_s.max(middle(&own, &|m| {
+            m.relevitation_time_s.unwrap_or(f64::INFINITY)
+        }));
+    }
+    vec![
+        Promise::at_most(
+            "static overload: hard touches more than levitation alone",
+            1.0,
+            impacts,
+        ),
+        Promise::at_most(
+            "static overload: largest contact force over levitation alone",
+            1.05,
+            force,
+        ),
+        Promise::at_most(
+            "static overload: contact impulse over levitation alone",
+            0.95,
+            impulse,
+        ),
+        Promise::at_most("static overload: re-levitated after [s]", 0.02, back_s),
+    ]
+}

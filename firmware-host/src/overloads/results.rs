@@ -1,0 +1,139 @@
+//! Runs of the catalogue and what they measured.
+
+use super::catalogue::Case;
+use super::found::Found;
+use super::seats::{Seat, seated};
+use crate::closed_loop::{Keep, run, run_policy};
+use crate::policy_kind::PolicyKind;
+use crate::scene::Scene;
+use crate::verdict::{Outcome, Verdict};
+use serde::Serialize;
+
+/// What a run measured; everything that does not depend on the machine.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Metrics {
+    /// How it ended.
+    pub outcome: Outcome,
+    /// Recovered or decayed.
+    pub recovered: bool,
+    /// Number of touches.
+    pub impacts: u64,
+    /// Touches with a normal speed above 20 mm/s.
+    pub contacts_over_20_mm_s: u64,
+    /// Time in contact \[s\].
+    pub contact_time_s: f64,
+    /// ∫ N dt \[N s\].
+    pub contact_impulse_n_s: f64,
+    /// Largest normal force \[N\].
+    pub peak_contact_force_n: f64,
+    /// Largest friction torque \[N m\].
+    pub peak_friction_torque_n_m: f64,
+    /// Largest backward speed in contact \[m/s\].
+    pub peak_backward_speed_m_s: f64,
+    /// Spin lost \[Hz\].
+    pub spin_lost_hz: f64,
+    /// From the end of the disturbance to the stay in the middle \[s\].
+    pub relevitation_time_s: Option<f64>,
+}
+
+impl From<&Verdict> for Metrics {
+    fn from(v: &Verdict) -> Self {
+        Self {
+            outcome: v.outcome,
+            recovered: v.recovered,
+            impacts: v.impacts,
+            contacts_over_20_mm_s: v.contacts_over_20_mm_s,
+            contact_time_s: v.contact_time_s,
+            contact_impulse_n_s: v.contact_impulse_n_s,
+            peak_contact_force_n: v.peak_contact_force_n,
+            peak_friction_torque_n_m: v.peak_friction_torque_n_m,
+            peak_backward_speed_m_s: v.peak_backward_speed_m_s,
+            spin_lost_hz: v.spin_lost_hz,
+            relevitation_time_s: v.relevitation_time_s,
+        }
+    }
+}
+
+/// One run.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ResultRow {
+    /// Kind of overload.
+    pub group: &'static str,
+    /// Scene.
+    pub scene: String,
+    /// Plant.
+    pub plant: String,
+    /// Control rate \[Hz\].
+    pub rate_hz: f64,
+    /// Policy.
+    pub policy: &'static str,
+    /// Seed of the sensor noise.
+    pub seed: u64,
+    /// What was measured; `None` where the run cannot be trusted.
+    #[serde(flatten)]
+    pub metrics: Option<Metrics>,
+    /// Why not.
+    pub error: Option<String>,
+}
+
+impl ResultRow {
+    /// Whether the rotor came back.
+    pub fn recovered(&self) -> bool {
+        self.metrics.as_ref().is_some_and(|m| m.recovered)
+    }
+}
+
+/// Runs a case under a policy. A run that cannot be trusted is a row with its error.
+pub fn run_case(
+    case: &Case,
+    (plant, rate_hz): (&str, f64),
+    (seat, seed): (Seat, u64),
+    found: &Found,
+) -> ResultRow {
+    let scene = Scene {
+        seed,
+        ..case.scene.clone()
+    };
+    let outcome = match seated(seat, case.task, found, &scene) {
+        Some(policy) => run_policy(&scene, (policy, seat.name()), Keep::Verdict, &mut |_| {})
+            .map_err(|e| e.to_string()),
+        None => Err("the policy needs more than the scene gives".to_owned()),
+    };
+    let (metrics, error) = match outcome {
+        Ok((verdict, _)) => (Some(Metrics::from(&verdict)), None),
+        Err(error) => (None, Some(error)),
+    };
+    ResultRow {
+        group: case.group,
+        scene: case.name.clone(),
+        plant: plant.to_owned(),
+        rate_hz,
+        policy: seat.name(),
+        seed,
+        metrics,
+        error,
+    }
+}
+
+/// Runs a user's own scene under one of its policies.
+pub fn run_own(scene: &Scene, kind: PolicyKind, seed: u64) -> ResultRow {
+    let seeded = Scene {
+        seed,
+        ..scene.clone()
+    };
+    let outcome = run(&seeded, kind, Keep::Verdict, &mut |_| {});
+    let (metrics, error) = match outcome {
+        Ok((verdict, _)) => (Some(Metrics::from(&verdict)), None),
+        Err(error) => (None, Some(error.to_string())),
+    };
+    ResultRow {
+        group: "own scenes",
+        scene: scene.title.clone(),
+        plant: "own".to_owned(),
+        rate_hz: scene.sample_rate_hz,
+        policy: kind.name(),
+        seed,
+        metrics,
+        error,
+    }
+}
