@@ -25,6 +25,8 @@ pub(crate) struct Wanted {
     pub(crate) damping: Vec2,
     /// Inwards.
     pub(crate) restoring: Vec2,
+    /// Wanted in contact.
+    pub(crate) touching: bool,
 }
 
 /// Share of the cap that pushes inwards between impacts: more shortens the chords and with them the time
@@ -77,12 +79,16 @@ fn before_impact(motion: &Motion, spin_sign: f32, coeffs: &Coeffs) -> Wanted {
     let damping = -motion.velocity * coeffs.damper;
     // What speed leaves of the capacity brings the rotor back: damping alone would let it lie. When slow,
     // a little more of it than a hold on the wall has, or the two would take turns.
-    let share = max(NEARLY_ALL - of_lift_off(motion.velocity, coeffs), FLIGHT_SHARE);
+    let share = max(
+        NEARLY_ALL - of_lift_off(motion.velocity, coeffs),
+        FLIGHT_SHARE,
+    );
     let restoring = -motion.position * share;
     let rest = Wanted {
         braking: Vec2::ZERO,
         damping,
         restoring,
+        touching: false,
     };
     let (mut position, mut velocity) = (motion.position, motion.velocity);
     let Some(mut impact) = Impact::ahead(position, velocity) else {
@@ -114,7 +120,11 @@ fn before_impact(motion: &Motion, spin_sign: f32, coeffs: &Coeffs) -> Wanted {
     let sense = backward(n, velocity, spin_sign);
     let (v_n, v_b) = (velocity.dot(n), velocity.dot(n.turned()) * sense);
     let sum = v_b + gain * v_n;
-    let urgency = between((sum / coeffs.whirl_limit - HARMLESS) / (URGENT - HARMLESS), 0.0, 1.0);
+    let urgency = between(
+        (sum / coeffs.whirl_limit - HARMLESS) / (URGENT - HARMLESS),
+        0.0,
+        1.0,
+    );
     let strength = min(max(sum, 0.0) * coeffs.damper, urgency);
     // Gradient of S, times v_n: v_b = r × v about the centre, v_n = √(v² − v_b²).
     let (gradient, _) =
@@ -167,7 +177,11 @@ fn braking(motion: &Motion, found: &Findings, spin_sign: f32, coeffs: &Coeffs) -
         braking: aim.rotated(lead(found.tangential_speed, coeffs)),
         damping: -motion.velocity * coeffs.damper,
         // Slower than lift-off an inward force can end the contact.
-        restoring: n * -max(coeffs.hold_share - of_lift_off(motion.velocity, coeffs), 0.0),
+        restoring: n * -max(
+            coeffs.hold_share - of_lift_off(motion.velocity, coeffs),
+            0.0,
+        ),
+        touching: true,
     }
 }
 
@@ -200,5 +214,6 @@ fn hold(motion: &Motion, found: &Findings, spin_sign: f32, coeffs: &Coeffs) -> W
         braking: b * -min(speed * coeffs.damper, 1.0),
         damping: -motion.velocity * coeffs.damper,
         restoring: found.normal * -coeffs.hold_share,
+        touching: true,
     }
 }

@@ -40,19 +40,16 @@ impl Room {
         self.axes.contains(&0.0)
     }
 
-    /// A part that cannot have an axis at all, as the other can do it best.
+    /// A braking force that cannot have an axis at all, as the other can do it.
     ///
-    /// A braking force takes A = f̂·u from the power of the motion (f̂ its aim), so the sign of f̂ on what
-    /// is left is the best and the whole of it best of all; the slope of 2 keeps that from switching
-    /// where f̂ turns past the other axis.
+    /// A force takes A = f̂·u from the power of the motion (f̂ its aim). The whole of the other axis with
+    /// the sign of f̂ would take most, but it also pushes across the aim, off the wall or into it, which
+    /// nothing can make up for. With u = f̂·|f̂| it is the whole along the aim, and across it next to nothing.
     fn braking(&self, aim: Vec2) -> Vec2 {
-        if !self.lost() {
-            return aim;
-        }
         let most = aim.length();
         let on = |part: f32, cap: f32| {
             if cap > 0.0 {
-                between(2.0 * part, -most, most)
+                between(part * max(part, -part), -most, most)
             } else {
                 0.0
             }
@@ -104,8 +101,14 @@ pub(crate) fn allocate(wanted: &Wanted, room: &Room) -> (Vec2, Limits) {
         limits |= Limits::AXIS_CAP;
     }
     let mut braking_cut = false;
-    let braking = room.braking(wanted.braking);
-    for part in [braking, wanted.damping, wanted.restoring] {
+    // With one axis only what comes of it on the other cannot be made up for: off the wall damping alone is
+    // sure not to drive the rotor into it, and on the wall nothing may lift it off that could not catch it.
+    let (braking, restoring) = match (room.lost(), wanted.touching) {
+        (false, _) => (wanted.braking, wanted.restoring),
+        (true, true) => (room.braking(wanted.braking), Vec2::ZERO),
+        (true, false) => (Vec2::ZERO, wanted.restoring),
+    };
+    for part in [braking, wanted.damping, restoring] {
         if part.length_squared() <= NO_FORCE {
             continue;
         }
