@@ -1,7 +1,7 @@
 //! Command line of the host.
 
 use clap::{Parser, Subcommand};
-use firmware_host::commands::{accuracy, paper, run};
+use firmware_host::commands::{accuracy, advise, paper, run};
 use std::process::ExitCode;
 
 /// Simulates AMB rotors on their retainer bearings with the supervisor in the loop.
@@ -18,6 +18,8 @@ enum Command {
     Run(run::RunArgs),
     /// Error against run time of a scene's plant, over tolerances and methods, and silently wrong runs.
     Accuracy(accuracy::AccuracyArgs),
+    /// Limits of a bearing in closed form, a suggested configuration of the supervisor, and what is weak.
+    Advise(advise::AdviseArgs),
     /// Compute every number and figure of the paper; write a page with tables and plots.
     Paper(paper::PaperArgs),
 }
@@ -27,6 +29,7 @@ fn main() -> ExitCode {
     let result = match &cli.command {
         Command::Run(args) => run::execute(args),
         Command::Accuracy(args) => accuracy::execute(args),
+        Command::Advise(args) => advise::execute(args),
         Command::Paper(args) => paper::execute(args),
     };
     match result {
