@@ -19,7 +19,7 @@ enum Command {
     /// Error against run time of a scene's plant, over tolerances and methods, and silently wrong runs.
     Accuracy(accuracy::AccuracyArgs),
     /// Limits of a bearing in closed form, a suggested configuration of the supervisor, and what is weak.
-    Advise(advise::AdviseArgs),
+    Advise(Box<advise::AdviseArgs>),
     /// Compute every number and figure of the paper; write a page with tables and plots.
     Paper(paper::PaperArgs),
 }
