@@ -1,6 +1,7 @@
 //! The commands, one file each.
 
 pub mod accuracy;
+pub mod advise;
 pub mod error;
 pub mod overloads;
 pub mod paper;

@@ -1,14 +1,15 @@
 //! Runs plant and supervisor in closed loop as firmware would, on scenes, and shows what happened.
 //!
 //! Files, each importing only from those above it: `trace`, `verdict`, `scene_error`, `axis`, `loads`,
-//! `amplifier`, `faults`, `scene_values`, `scene_event_file`, `scene_file`, `plant_setup`, `supervisor_setup`, `instruments`,
-//! `levitation`, `clairvoyant`, `policy_kind`, `scene_events`, `scene_instruments`, `scene`, `policies`, `judge`, `closed_loop`, `verify`, `accuracy`, `wrong_runs`, `trace_file`, `plot`, `report`, `paper`, `overloads`, `table`, `output`,
+//! `amplifier`, `faults`, `scene_values`, `scene_event_file`, `scene_file`, `plant_setup`, `suggest`, `supervisor_setup`, `instruments`,
+//! `levitation`, `clairvoyant`, `policy_kind`, `scene_events`, `scene_instruments`, `scene`, `policies`, `judge`, `closed_loop`, `verify`, `accuracy`, `wrong_runs`, `trace_file`, `plot`, `report`, `paper`, `overloads`, `advice`, `table`, `output`,
 //! `commands`.
 
 #![forbid(unsafe_code)]
 #![warn(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 pub mod accuracy;
+pub mod advice;
 mod amplifier;
 mod axis;
 pub mod clairvoyant;
@@ -34,6 +35,7 @@ mod scene_events;
 mod scene_file;
 mod scene_instruments;
 mod scene_values;
+pub mod suggest;
 mod supervisor_setup;
 pub mod table;
 pub mod trace;

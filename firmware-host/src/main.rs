@@ -1,7 +1,7 @@
 //! Command line of the host.
 
 use clap::{Parser, Subcommand};
-use firmware_host::commands::{accuracy, overloads, paper, run};
+use firmware_host::commands::{accuracy, advise, overloads, paper, run};
 use std::process::ExitCode;
 
 /// Simulates AMB rotors on their retainer bearings with the supervisor in the loop.
@@ -20,6 +20,8 @@ enum Command {
     Accuracy(accuracy::AccuracyArgs),
     /// Run the catalogue of overloads under every policy, and hold the supervisor's promises against it.
     Overloads(overloads::OverloadsArgs),
+    /// Limits of a bearing in closed form, a suggested configuration of the supervisor, and what is weak.
+    Advise(Box<advise::AdviseArgs>),
     /// Compute every number and figure of the paper; write a page with tables and plots.
     Paper(paper::PaperArgs),
 }
@@ -30,6 +32,7 @@ fn main() -> ExitCode {
         Command::Run(args) => run::execute(args),
         Command::Accuracy(args) => accuracy::execute(args),
         Command::Overloads(args) => overloads::execute(args),
+        Command::Advise(args) => advise::execute(args),
         Command::Paper(args) => paper::execute(args),
     };
     match result {

@@ -11,6 +11,7 @@ use crate::scene_file::{MethodFile, SceneFile};
 use crate::scene_instruments::{
     amplifier_of, centre_offset_of, damping_of, levitation_of, sensor_of,
 };
+use crate::suggest::{Nominal, SUPERVISED_RATES_HZ};
 use crate::supervisor_setup;
 use plant_model::analysis::onset::lift_off_speed_m_s;
 use plant_model::params::{PlantParams, Start};
@@ -77,6 +78,8 @@ pub struct Scene {
     pub damping_n_s_m: f64,
     /// Configuration of the supervisor; needed by the policy of that name.
     pub supervisor: Option<supervisor::Config>,
+    /// What it is suggested from.
+    pub nominal: Nominal,
     /// Backward contact speed above which a run is whirl \[m/s\].
     pub whirl_speed_m_s: f64,
     /// What is allowed and yet unlikely to be meant, with file and line.
@@ -234,9 +237,10 @@ impl Scene {
         start.position_m -= centre_offset_m;
         let damps = policies.contains(&PolicyKind::Damping);
         let damping_n_s_m = damping_of(file, &plant, &check, damps)?;
+        let nominal = supervisor_setup::nominal_of(&plant, file);
         let supervised = policies.contains(&PolicyKind::Supervisor);
         let supervisor = supervised
-            .then(|| supervisor_setup::config(&plant, file, text))
+            .then(|| supervisor_setup::config(&nominal, file, text))
             .transpose()?;
         let gravity: V2 = file.rotor.gravity_m_s2.0.into();
         Ok(Self {
@@ -278,6 +282,7 @@ impl Scene {
             damping_n_s_m,
             warnings: warnings_of(file, text, supervised),
             supervisor,
+            nominal,
         })
     }
 }
@@ -287,9 +292,6 @@ fn keys_of(text: &SceneText) -> Result<SceneFile, SceneError> {
     toml::from_str(&text.text)
         .map_err(|error| text.error_in_toml(error.span().unwrap_or(0..0), error.message()))
 }
-
-/// Control rates that the supervisor is made for \[Hz\].
-const SUPERVISED_RATES_HZ: std::ops::RangeInclusive<f64> = 1e4..=5e4;
 
 fn warnings_of(file: &SceneFile, text: &SceneText, supervised: bool) -> Vec<String> {
     let (key, rate) = ("run.sample_rate_hz", file.run.sample_rate_hz);

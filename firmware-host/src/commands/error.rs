@@ -27,6 +27,15 @@ pub enum CommandError {
          a smaller run.rtol may settle it, or the scene is too sensitive to be decided"
     ))]
     Contradicted(Vec<Contradiction>),
+    /// Numbers on the command line, or what a scene lacks for this command.
+    #[error("{message}")]
+    #[diagnostic(help("{help}"))]
+    Numbers {
+        /// Which, and what was expected.
+        message: String,
+        /// What to do.
+        help: String,
+    },
     /// Something else stopped it.
     #[error("{what}: {reason}")]
     Other {
@@ -71,7 +80,7 @@ impl CommandError {
     /// Exit code: 2 for what the user gave, 1 for the rest.
     pub fn exit_code(&self) -> u8 {
         match self {
-            Self::Scene(_) | Self::Output(_) => 2,
+            Self::Scene(_) | Self::Output(_) | Self::Numbers { .. } => 2,
             Self::Run(_) | Self::Contradicted(_) | Self::Other { .. } => 1,
         }
     }

@@ -1,0 +1,196 @@
+//! Advice as text.
+
+use super::{ARREST_SHARE, Advice, Parameter, USEFUL_LAG_DEG};
+use std::fmt::Write;
+
+/// The configuration as a table for a scene, each value with its unit and how it was chosen.
+pub fn table(parameters: &[Parameter]) -> String {
+    let mut out = "[supervisor]\n".to_owned();
+    for p in parameters {
+        let setting = format!("{} = {}", p.name, decimal(p.value));
+        let unit = if p.unit == "1" { "–" } else { p.unit };
+        let _ = write!(out, "{setting:<38}# {unit}; {}", p.reason);
+        if let Some(own) = p.replaced_by {
+            let _ = write!(out, " (this scene sets {})", decimal(own));
+        }
+        out.push('\n');
+    }
+    out
+}
+
+/// The shortest decimals that give the same value again.
+fn decimal(value: f32) -> String {
+    match value.abs() {
+        0.0 | 1e-3..1e5 => value.to_string(),
+        _ => format!("{value:e}"),
+    }
+}
+
+/// Rows of name, value and remark under a heading.
+struct Page(String);
+
+impl Page {
+    fn heading(&mut self, text: &str) {
+        let _ = write!(self.0, "\n{text}\n");
+    }
+
+    fn row(&mut self, name: &str, value: String, remark: &str) {
+        let line = format!("  {name:<40} {value:>14}  {remark}");
+        self.0.push_str(line.trim_end());
+        self.0.push('\n');
+    }
+}
+
+fn speed(value: Option<f64>) -> String {
+    value.map_or("–".to_owned(), |v| format!("{v:.4} m/s"))
+}
+
+fn milliseconds(value: f64) -> String {
+    format!("{:.3} ms", value * 1e3)
+}
+
+/// All of it for people.
+pub fn text(advice: &Advice) -> String {
+    let mut page = Page(format!("{}\n", advice.title));
+    whirl(&mut page, advice);
+    reaction(&mut page, advice);
+    noise(&mut page, advice);
+    impact(&mut page, advice);
+    page.heading("Warnings");
+    if advice.warnings.is_empty() {
+        page.0.push_str("  none\n");
+    }
+    for w in &advice.warnings {
+        let _ = writeln!(page.0, "  {}: {}\n    do: {}", w.key, w.text, w.remedy);
+    }
+    page.heading("Suggested configuration, for a scene");
+    page.0.push_str(&advice.supervisor_table);
+    page.0
+}
+
+fn whirl(page: &mut Page, advice: &Advice) {
+    let l = &advice.limits;
+    page.heading("Whirl");
+    page.row(
+        "passive threshold v_t,crit",
+        speed(l.passive_threshold_m_s),
+        l.passive_threshold_text,
+    );
+    page.row(
+        "lift-off speed",
+        speed(Some(l.lift_off_m_s)),
+        "below it a full inward force breaks the contact",
+    );
+    page.row(
+        "whirl limit v_lim",
+        speed(l.whirl_limit_m_s),
+        l.whirl_limit_text,
+    );
+    if let Some(hz) = l.whirl_limit_hz {
+        page.row("whirl frequency there", format!("{hz:.1} Hz"), "");
+    }
+    if let Some(time) = l.arrest_time_s {
+        let name = format!("arrest from {ARREST_SHARE} v_lim");
+        page.row(&name, milliseconds(time), "with the best braking force");
+    }
+}
+
+fn reaction(page: &mut Page, advice: &Advice) {
+    let r = &advice.reaction;
+    page.heading("Reaction");
+    for (name, time, remark) in [
+        ("wait for the sample, at most", r.sample_s, ""),
+        ("delay", r.delay_s, ""),
+        ("hold", r.hold_s, "half a tick"),
+        ("amplifier lag", r.lag_s, ""),
+        (
+            "detect to force",
+            r.detect_to_force_s,
+            "delay, hold and lag; aim below 1 ms",
+        ),
+        (
+            "worst case",
+            r.worst_s,
+            "with the longest wait for the sample",
+        ),
+    ] {
+        page.row(name, milliseconds(time), remark);
+    }
+    for way in &r.ways {
+        page.row(
+            &format!("way from detection to force at {} m/s", way.speed_m_s),
+            format!("{:.1} µm", way.way_m * 1e6),
+            &format!("{:.2} clearances", way.way_clearances),
+        );
+    }
+    if let Some(lag) = &advice.lag {
+        page.row(
+            "lag angle in whirl at v_lim",
+            format!("{:.1}°", lag.angle_deg),
+            &format!(
+                "re-centring drives beyond {:.1}° (atan μ), tangential force brakes to about {USEFUL_LAG_DEG}°",
+                lag.friction_angle_deg
+            ),
+        );
+    }
+}
+
+fn noise(page: &mut Page, advice: &Advice) {
+    let n = &advice.noise;
+    page.heading("Noise of the estimated speed");
+    page.row(
+        "in flight",
+        format!("{:.3} mm/s", n.flight_m_s * 1e3),
+        &format!(
+            "{:.2} % of {:.4} m/s; aim below 10 %",
+            n.share * 100.0,
+            n.reference_m_s
+        ),
+    );
+    page.row("in contact", format!("{:.3} mm/s", n.contact_m_s * 1e3), "");
+    page.row(
+        "time constant of the observer",
+        milliseconds(n.observer_s),
+        "with detect to force aim below 1 ms",
+    );
+    let most = (n.sensor_noise_most_m).map_or("–".to_owned(), |m| format!("{:.3} µm", m * 1e6));
+    page.row("most sensor noise at this rate", most, "");
+    let least =
+        (n.sample_rate_least_hz).map_or("–".to_owned(), |hz| format!("{:.1} kHz", hz / 1e3));
+    page.row("least rate with this sensor noise", least, "");
+}
+
+fn impact(page: &mut Page, advice: &Advice) {
+    let i = &advice.impact;
+    page.heading("Impact");
+    page.row(
+        "contact unavoidable from the centre above",
+        speed(Some(i.unavoidable_m_s)),
+        "outward speed",
+    );
+    page.row(
+        "K = μ(1 + e)/(1 − e)",
+        format!("{:.3}", i.bounce_gain),
+        "backward speed of all bounces per radial speed",
+    );
+    page.row(
+        "worst radial impact, the first alone",
+        speed(i.first_m_s),
+        "its friction impulse makes v_lim; hard wall",
+    );
+    page.row(
+        "the same on a wall that yields",
+        speed(i.first_compliant_m_s),
+        "",
+    );
+    page.row(
+        "worst radial impact, with all bounces",
+        speed(i.all_bounces_m_s),
+        "v_lim/K; braking between bounces adds to it",
+    );
+    page.row(
+        "worst radial impact without help",
+        speed(i.passive_m_s),
+        "v_t,crit/K; damping between bounces adds to it",
+    );
+}

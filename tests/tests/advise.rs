@@ -1,0 +1,446 @@
+//! `advise`: closed forms, the suggested configuration, warnings, and the command line.
+
+use firmware_host::advice::Advice;
+use firmware_host::scene::Scene;
+use firmware_host::suggest::{Nominal, suggested};
+use serde_json::Value;
+use std::process::Output;
+use supervisor::PARAMETERS;
+use system_tests::{host, root, scene, scene_names, scene_path};
+
+/// The AMB rotor of the theory chapter: 10 kg, −2e5 N/m, 0.2 mm, 1000 N, a 1 kHz amplifier, 20 kHz.
+fn amb() -> Nominal {
+    Nominal {
+        sample_rate_hz: 20e3,
+        mass_kg: 10.0,
+        stiffness_n_m: -2e5,
+        damping_n_s_m: 0.0,
+        clearance_m: 2e-4,
+        contact_stiffness_n_m: 1e9,
+        contact_mass_kg: 10.0,
+        restitution: Some(0.7),
+        friction_coefficient: 0.15,
+        rolling_coefficient: 0.0,
+        force_max_n: 1000.0,
+        axis_force_max_n: None,
+        slew_n_s: None,
+        lag_s: 1.6e-4,
+        delay_samples: 1,
+        noise_rms_m: 1e-6,
+        quantum_m: 0.0,
+        load_n: 0.0,
+        centre_offset_m: 0.0,
+    }
+}
+
+const AMB: [&str; 10] = [
+    "--mass-kg=10",
+    "--clearance-m=2e-4",
+    "--friction=0.15",
+    "--stiffness-n-m=-2e5",
+    "--contact-stiffness-n-m=1e9",
+    "--restitution=0.7",
+    "--force-max-n=1000",
+    "--lag-s=1.6e-4",
+    "--sample-rate-hz=20000",
+    "--noise-rms-m=1e-6",
+];
+
+fn advice(nominal: &Nominal) -> Advice {
+    Advice::new("test", nominal, None).unwrap()
+}
+
+fn close(value: f64, by_hand: f64) {
+    assert!(
+        (value / by_hand - 1.0).abs() < 1e-6,
+        "{value}, by hand {by_hand}"
+    );
+}
+
+fn advise(args: &[&str]) -> Output {
+    let out = host().arg("advise").args(args).output();
+    out.expect("the host starts")
+}
+
+fn stderr(output: &Output) -> String {
+    // Long lines are wrapped.
+    let text = String::from_utf8_lossy(&output.stderr).replace('│', " ");
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+#[test]
+fn closed_forms_of_a_known_plant() {
+    let a = advice(&amb());
+    assert_eq!(a.limits.passive_threshold_m_s, None);
+    assert!(
+        a.limits
+            .passive_threshold_text
+            .contains("negative stiffness")
+    );
+    close(a.limits.lift_off_m_s, (2e-4 * 960.0 / 10.0_f64).sqrt());
+    // (4.12) on the orbit r = c + F/(μ·√(1 + μ²)·k_c).
+    let tilt = (1.0 + 0.15_f64.powi(2)).sqrt();
+    let r = 2e-4 + 1000.0 / (0.15 * tilt * 1e9);
+    let limit = (r / (0.15 * 10.0) * (1000.0 * tilt - 0.15 * 2e5 * r)).sqrt();
+    close(a.limits.whirl_limit_m_s.unwrap(), limit);
+    let omega = limit / r;
+    close(
+        a.limits.whirl_limit_hz.unwrap(),
+        omega / std::f64::consts::TAU,
+    );
+    // Without damping (4.13) with v_lim for v_T.
+    let time = r / (0.15 * limit) * 0.85_f64.atanh();
+    close(a.limits.arrest_time_s.unwrap(), time);
+
+    let horizon = 50e-6 + 25e-6 + 160e-6;
+    close(a.reaction.detect_to_force_s, horizon);
+    close(a.reaction.worst_s, horizon + 50e-6);
+    close(a.reaction.ways[1].way_m, 0.3 * horizon);
+    let lag = a.lag.unwrap();
+    let angle = omega * 75e-6 + (omega * 160e-6).atan();
+    close(lag.angle_deg, angle.to_degrees());
+    close(lag.friction_angle_deg, 8.530_765_609_948);
+
+    let v = a.impact.unavoidable_m_s;
+    close(
+        v * v,
+        2.0 * 100.0 * (2e-4 - v * horizon) - 2e5 * 4e-8 / 10.0,
+    );
+    let k = 0.15 * 1.7 / 0.3;
+    assert!(
+        (a.impact.bounce_gain / k - 1.0).abs() < 1e-6,
+        "the restitution is an f32"
+    );
+    assert!((a.impact.all_bounces_m_s.unwrap() * k / limit - 1.0).abs() < 1e-6);
+    assert!((a.impact.first_m_s.unwrap() * 0.15 * 1.7 / limit - 1.0).abs() < 1e-6);
+    let v = a.impact.first_compliant_m_s.unwrap();
+    let soft = 1.0 + std::f64::consts::FRAC_PI_4 * v / 2e-4 * 1e-4;
+    assert!((0.15 * 1.7 * v * soft / limit - 1.0).abs() < 1e-6);
+    assert_eq!(a.impact.passive_m_s, None);
+    assert!(a.noise.tolerable && a.noise.share < 0.04);
+}
+
+/// The paper's onset rig has a threshold: 0.0579 m/s, and 0.082 m/s of radial impact without help.
+#[test]
+fn a_shaft_gives_a_threshold() {
+    let scene = scene("impact_at_40_hz");
+    let a = advice(&scene.nominal);
+    assert!((a.limits.passive_threshold_m_s.unwrap() - 0.0579).abs() < 5e-5);
+    assert!((a.impact.passive_m_s.unwrap() - 0.082).abs() < 5e-4);
+    assert_eq!(
+        a.noise.reference_m_s,
+        a.limits.passive_threshold_m_s.unwrap()
+    );
+}
+
+/// Without friction nothing drives; with hardly any force nothing can be stopped.
+#[test]
+fn what_has_no_limit_says_why() {
+    let a = advice(&Nominal {
+        friction_coefficient: 0.0,
+        ..amb()
+    });
+    assert!(a.limits.whirl_limit_text.contains("drives nothing"));
+    assert!(a.limits.whirl_limit_m_s.is_none() && a.impact.first_m_s.is_none() && a.lag.is_none());
+    let a = advice(&Nominal {
+        force_max_n: 1.0,
+        ..amb()
+    });
+    assert!(a.limits.whirl_limit_text.contains("more than the cap"));
+    assert_eq!(a.limits.lift_off_m_s, 0.0);
+    assert_eq!(a.impact.unavoidable_m_s, 0.0);
+}
+
+/// What is called the most noise and the least rate is tolerable, and a little worse is not.
+#[test]
+fn the_noise_asked_for_is_enough_and_needed() {
+    let most = advice(&amb()).noise.sensor_noise_most_m.unwrap();
+    for (noise_rms_m, good) in [(most, true), (1.011 * most, false)] {
+        let noise = advice(&Nominal {
+            noise_rms_m,
+            ..amb()
+        })
+        .noise;
+        assert_eq!(noise.tolerable, good, "{noise_rms_m}");
+    }
+    let least = advice(&amb()).noise.sample_rate_least_hz.unwrap();
+    for (sample_rate_hz, good) in [(least, true), (least / 1.011, false)] {
+        let noise = advice(&Nominal {
+            sample_rate_hz,
+            ..amb()
+        })
+        .noise;
+        assert_eq!(noise.tolerable, good, "{sample_rate_hz}");
+    }
+}
+
+/// Each warning by one change of a plant that has none but the one of almost every bearing, on either
+/// side of its threshold.
+#[test]
+fn warnings_appear_when_they_should() {
+    // A lag below atan μ needs a fast amplifier, no delay and much friction.
+    let quiet = Nominal {
+        lag_s: 1e-5,
+        delay_samples: 0,
+        friction_coefficient: 0.3,
+        ..amb()
+    };
+    let keys =
+        |n: &Nominal| -> Vec<&'static str> { advice(n).warnings.iter().map(|w| w.key).collect() };
+    assert!(keys(&quiet).is_empty(), "{:?}", keys(&quiet));
+    type Edit = fn(&mut Nominal, f64);
+    let cases: [(&str, Edit, f64, f64); 9] = [
+        ("cap_below_load", |n, x| n.load_n = x, 999.0, 1000.0),
+        (
+            "cap_below_stiffness",
+            |n, x| n.stiffness_n_m = x,
+            -4.99e6,
+            -5e6,
+        ),
+        ("rate", |n, x| n.sample_rate_hz = x, 10e3, 9.9e3),
+        ("rate", |n, x| n.sample_rate_hz = x, 50e3, 50.1e3),
+        ("slow_reaction", |n, x| n.lag_s = x, 9.7e-4, 9.8e-4),
+        ("noise", |n, x| n.noise_rms_m = x, 5e-6, 1.45e-5),
+        ("lag_drives", |n, x| n.lag_s = x, 1.5e-4, 3.5e-4),
+        ("slew", |n, x| n.slew_n_s = Some(x), 1e8, 1e5),
+        ("centre_offset", |n, x| n.centre_offset_m = x, 3e-7, 4e-7),
+    ];
+    for (key, edit, without, with) in cases {
+        for (value, expected) in [(without, false), (with, true)] {
+            let mut n = quiet;
+            edit(&mut n, value);
+            assert_eq!(
+                keys(&n).contains(&key),
+                expected,
+                "{key} at {value}: {:?}",
+                keys(&n)
+            );
+        }
+    }
+    // The lag of many samples: useless, and more than the lead.
+    for (delay_samples, useless, short) in [(1, false, false), (7, true, false), (7, true, true)] {
+        let mut n = Nominal {
+            delay_samples,
+            lag_s: 1e-3,
+            ..amb()
+        };
+        if !useless {
+            n.lag_s = 1e-5;
+        }
+        n.sample_rate_hz = if short { 10e3 } else { 20e3 };
+        assert_eq!(
+            keys(&n).contains(&"lag_useless"),
+            useless,
+            "{delay_samples}"
+        );
+        assert_eq!(
+            keys(&n).contains(&"lead_too_short"),
+            short,
+            "{delay_samples}"
+        );
+    }
+    for w in advice(&amb()).warnings {
+        assert!(!w.text.is_empty() && !w.remedy.is_empty());
+    }
+}
+
+/// Every scene with a supervisor: with the printed table in it its configuration is the suggested one,
+/// and without one, too.
+#[test]
+fn the_pasted_table_gives_the_same_configuration() {
+    let mut pasted = 0;
+    for name in scene_names() {
+        let path = scene_path(&name);
+        let scene = Scene::load(&path).unwrap();
+        if scene.supervisor.is_none() {
+            continue;
+        }
+        let output = advise(&[path.to_str().unwrap()]);
+        assert!(output.status.success(), "{}", stderr(&output));
+        let text = String::from_utf8(output.stdout).unwrap();
+        let table = &text[text.find("[supervisor]").unwrap()..];
+        let own = std::fs::read_to_string(&path).unwrap();
+        let with_table = Scene::parse(&name, &format!("{own}\n{table}")).unwrap();
+        let config = suggested(&scene.nominal).config;
+        assert_eq!(with_table.supervisor.unwrap(), config, "{name}");
+        assert_eq!(scene.supervisor.unwrap(), config, "{name}");
+        pasted += 1;
+    }
+    assert!(pasted >= 3, "{pasted}");
+}
+
+/// A bearing with awkward numbers: f32 through decimals and back.
+#[test]
+fn the_table_holds_every_bit() {
+    let n = Nominal {
+        mass_kg: 1.0 / 3.0,
+        clearance_m: 1.234_567_89e-4,
+        stiffness_n_m: -98_765.432_1,
+        sample_rate_hz: 17_777.7,
+        noise_rms_m: 3.333e-7,
+        contact_stiffness_n_m: 1.234_567_8e8,
+        ..amb()
+    };
+    let a = advice(&n);
+    let config = suggested(&n).config;
+    let own = std::fs::read_to_string(scene_path("overload_then_release")).unwrap();
+    let scene = Scene::parse("scene", &format!("{own}\n{}", a.supervisor_table)).unwrap();
+    assert_eq!(scene.supervisor.unwrap(), config);
+    // Against a scene of its own the table says what that replaces.
+    let with_own = Advice::new("test", &scene.nominal, scene.supervisor.as_ref()).unwrap();
+    assert!(
+        with_own
+            .supervisor_table
+            .contains("(this scene sets 0.33333334)")
+    );
+    for (p, value) in PARAMETERS.iter().zip(config.values()) {
+        let row = a.parameters.iter().find(|r| r.name == p.name).unwrap();
+        assert_eq!((row.value, row.unit), (value, p.unit));
+        assert!(!row.reason.is_empty(), "{}", p.name);
+    }
+}
+
+#[test]
+fn json_has_its_keys_and_agrees_with_the_scene() {
+    let numbers: Vec<&str> = AMB.iter().copied().chain(["--json"]).collect();
+    let output = advise(&numbers);
+    assert!(output.status.success(), "{}", stderr(&output));
+    let json: Value = serde_json::from_slice(&output.stdout).unwrap();
+    for pointer in [
+        "/nominal/mass_kg",
+        "/limits/lift_off_m_s",
+        "/limits/whirl_limit_m_s",
+        "/limits/whirl_limit_hz",
+        "/limits/arrest_time_s",
+        "/reaction/detect_to_force_s",
+        "/reaction/worst_s",
+        "/reaction/ways/0/way_clearances",
+        "/lag/angle_deg",
+        "/lag/friction_angle_deg",
+        "/noise/flight_m_s",
+        "/noise/sensor_noise_most_m",
+        "/noise/sample_rate_least_hz",
+        "/impact/unavoidable_m_s",
+        "/impact/bounce_gain",
+        "/impact/first_m_s",
+        "/impact/first_compliant_m_s",
+        "/impact/all_bounces_m_s",
+        "/parameters/0/value",
+    ] {
+        let value = json.pointer(pointer);
+        assert!(value.is_some_and(Value::is_number), "{pointer}: {value:?}");
+    }
+    assert!(json["limits"]["passive_threshold_m_s"].is_null());
+    assert_eq!(
+        json["parameters"].as_array().unwrap().len(),
+        PARAMETERS.len()
+    );
+    assert_eq!(json["warnings"][0]["key"], "lag_drives");
+    assert!(json["warnings"][0]["remedy"].is_string());
+    assert!(
+        json["supervisor_table"]
+            .as_str()
+            .unwrap()
+            .starts_with("[supervisor]")
+    );
+
+    // The overload scene is the same bearing but for the converter's step.
+    let mut more = numbers.clone();
+    more.push("--quantum-m=1e-7");
+    let numbers: Value = serde_json::from_slice(&advise(&more).stdout).unwrap();
+    let path = scene_path("overload_then_release");
+    let output = advise(&[path.to_str().unwrap(), "--json"]);
+    let scene: Value = serde_json::from_slice(&output.stdout).unwrap();
+    for key in [
+        "nominal",
+        "limits",
+        "noise",
+        "impact",
+        "parameters",
+        "warnings",
+    ] {
+        assert_eq!(numbers[key], scene[key], "{key}");
+    }
+}
+
+#[test]
+fn bad_numbers_end_with_code_2_and_say_what_is_wrong() {
+    let with = |more: &[&str]| -> Vec<String> {
+        let name = |arg: &str| arg.split('=').next().unwrap_or_default().to_owned();
+        let replaced: Vec<String> = more.iter().map(|arg| name(arg)).collect();
+        let kept = AMB.iter().filter(|arg| !replaced.contains(&name(arg)));
+        kept.chain(more).map(|arg| (*arg).to_owned()).collect()
+    };
+    let benchmark = scene_path("benchmark_b1");
+    let impact = scene_path("impact_at_40_hz");
+    let (benchmark, impact) = (benchmark.to_str().unwrap(), impact.to_str().unwrap());
+    let cases: Vec<(Vec<String>, &str)> = vec![
+        (vec![], "--mass-kg is missing"),
+        (
+            AMB[..6].iter().map(|s| (*s).to_owned()).collect(),
+            "--force-max-n is missing",
+        ),
+        (
+            with(&["--mass-kg=-1"]),
+            "--mass-kg is -1, expected a finite number greater than 0",
+        ),
+        (with(&["--mass-kg=nan"]), "--mass-kg is NaN"),
+        (with(&["--clearance-m=0"]), "--clearance-m is 0"),
+        (with(&["--friction=-0.1"]), "--friction is -0.1"),
+        (with(&["--restitution=1.1"]), "--restitution is 1.1"),
+        (
+            with(&["--sample-rate-hz=0"]),
+            "--sample-rate-hz is 0, expected a number from 1 to 1e6",
+        ),
+        (
+            with(&["--delay-samples=8"]),
+            "--delay-samples is 8, expected a whole number from 0 to 7",
+        ),
+        (
+            with(&["--lag-s=0.5"]),
+            "--lag-s: the supervisor derives amplifier_lag_s = 5e-1 s",
+        ),
+        (with(&["--mass-kg=ten"]), "--mass-kg"),
+        (vec![benchmark.to_owned()], "has no magnet"),
+        (
+            vec![impact.to_owned(), "--mass-kg=3".to_owned()],
+            "cannot be used with",
+        ),
+        (
+            vec!["nowhere.toml".to_owned()],
+            "cannot read scene nowhere.toml",
+        ),
+    ];
+    for (args, message) in cases {
+        let args: Vec<&str> = args.iter().map(String::as_str).collect();
+        let output = advise(&args);
+        let said = stderr(&output);
+        assert_eq!(output.status.code(), Some(2), "{args:?}: {said}");
+        assert!(said.contains(message), "{args:?}: {said}");
+        assert!(output.stdout.is_empty());
+    }
+}
+
+/// Both tables of the book know every parameter, and the page every warning.
+#[test]
+fn the_book_says_how_to_choose_every_parameter() {
+    for page in ["linking", "advise"] {
+        let path = root().join(format!("docs/src/supervisor/{page}.md"));
+        let text = std::fs::read_to_string(path).unwrap();
+        for p in PARAMETERS {
+            let row = format!("`{}`", p.name);
+            let in_table = (text.lines()).any(|l| l.starts_with('|') && l.contains(&row));
+            assert!(in_table, "{page}.md: {}", p.name);
+        }
+    }
+    let source = std::fs::read_to_string(root().join("firmware-host/src/advice/warnings.rs"));
+    let page = std::fs::read_to_string(root().join("docs/src/supervisor/advise.md")).unwrap();
+    let source = source.unwrap();
+    let keys: Vec<&str> = (source.split("warning(").skip(1))
+        .filter_map(|rest| rest.trim_start().strip_prefix('"')?.split('"').next())
+        .collect();
+    assert_eq!(keys.len(), 10, "{keys:?}");
+    for key in keys {
+        assert!(page.contains(&format!("| `{key}` |")), "{key}");
+    }
+}
