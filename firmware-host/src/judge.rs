@@ -62,7 +62,9 @@ impl Judge {
         let spin = *self.first_spin.get_or_insert(now.spin_rad_s);
         self.follow_contact(now, spin);
         let away_m = (now.position_m + self.centre_offset_m).norm();
-        if away_m < self.middle_m && now.t_s >= self.clock_starts_s {
+        // With the retainer bearing far off the centre a rotor may lie on it in the middle.
+        let free = !now.mode.in_contact();
+        if free && away_m < self.middle_m && now.t_s >= self.clock_starts_s {
             let since = *self.in_middle_since_s.get_or_insert(now.t_s);
             // Sample times carry round-off.
             if now.t_s - since >= STAY_S * (1.0 - 1e-9) && self.back_since_s.is_none() {
@@ -86,7 +88,7 @@ impl Judge {
         if touches {
             self.first_contact_s.get_or_insert(now.t_s);
             self.last_contact_s = Some(now.t_s);
-            self.back_since_s = None;
+            (self.in_middle_since_s, self.back_since_s) = (None, None);
         }
     }
 

@@ -209,11 +209,11 @@ fn undamped(exponent: f64) -> HuntCrossley {
     }
 }
 
-/// Where `below` turns from true to false, to round-off.
+/// Where `below` turns from true to false, to round-off; NaN between ends that are no numbers.
 fn bisect((mut low, mut high): (f64, f64), below: impl Fn(f64) -> bool) -> f64 {
     loop {
         let middle = 0.5 * (low + high);
-        if middle <= low || middle >= high {
+        if !(middle > low && middle < high) {
             return middle;
         }
         if below(middle) {
@@ -305,6 +305,21 @@ mod tests {
             let strong = law.with_peak_force(1e4, v, m);
             assert!((strong.peak_force_n(v, m) / 1e4 - 1.0).abs() < 1e-12);
         }
+    }
+
+    /// What is no speed has no largest force, and the search for it ends.
+    #[test]
+    fn no_number_gives_no_number() {
+        let law = HuntCrossley {
+            damping_s_m: 2.0,
+            ..undamped(1.5)
+        };
+        assert!(law.peak_force_n(f64::NAN, 6.0).is_nan());
+        assert!(
+            law.with_peak_force(1e4, f64::NAN, 6.0)
+                .stiffness_n_mn
+                .is_nan()
+        );
     }
 
     /// Slopes against differences, on both sides of the touch; the guard has the sign of the force.

@@ -1,6 +1,7 @@
 //! Loads with a course, base motion, and the retainer bearing off the centre.
 
 use crate::{free_rotor, last, near, ridden, samples};
+use firmware_host::closed_loop::{Keep, run};
 use firmware_host::policy_kind::PolicyKind;
 use firmware_host::scene::{BaseMotion, Disturbance, Shape};
 use firmware_host::verdict::Outcome;
@@ -119,4 +120,22 @@ fn the_shaft_acts_about_the_centre_of_the_magnets() {
         .position_m;
     near("x", end.x, -2e-5, 1e-9);
     near("y", end.y, -98.1 / 1e5 - 1e-5, 1e-9);
+}
+
+/// A retainer bearing far off the centre of the magnets reaches into the middle: a rotor that lies on it
+/// there has not been recovered, and one that has left it has only after 5 ms without contact.
+#[test]
+fn a_rotor_on_the_wall_is_not_recovered_in_the_middle() {
+    let mut scene = scene("overload_then_release");
+    let clearance_m = scene.plant.contact.clearance_m;
+    scene.disturbances.clear();
+    scene.centre_offset_m = V2::new(0.8 * clearance_m, 0.0);
+    scene.weight_n = V2::new(-200.0, 0.0);
+    scene.start.position_m = V2::new(-0.99 * clearance_m, 0.0);
+    for keep in [Keep::Verdict, Keep::Decision] {
+        let (verdict, _) = run(&scene, PolicyKind::Passive, keep, &mut |_| {}).unwrap();
+        assert!(verdict.contact_time_s > 0.9 * scene.duration_s);
+        assert!(!verdict.recovered, "{verdict:?}");
+        assert_eq!(verdict.relevitation_time_s, None);
+    }
 }
