@@ -1,6 +1,7 @@
 //! The catalogue of overloads: every scene, policy and seed, and what it says of the supervisor's promises.
 
 pub mod catalogue;
+pub mod fault_matrix;
 pub mod found;
 pub mod impact;
 pub mod loop_shape;

@@ -4,7 +4,7 @@
 //! themselves, would add up to the fastest whirl that the cap can stop, v_ref = v_lim·(1 − e)/(μ·(1 + e)).
 
 use super::plants::PlantCase;
-use super::seats::{Task, restitution};
+use super::seats::{Seat, Task, restitution};
 use super::takeover::whirling;
 use crate::scene::{Axis, BaseMotion, Disturbance, Outage, Scene, Shape, TimedChange};
 use plant_model::analysis::arrest::Arrest;
@@ -23,6 +23,8 @@ pub struct Case {
     pub scene: Scene,
     /// What the reference is asked.
     pub task: Task,
+    /// Who takes part.
+    pub seats: &'static [Seat],
 }
 
 const G_M_S2: f64 = 9.81;
@@ -81,14 +83,12 @@ impl Collector<'_> {
             name: name.into(),
             scene,
             task: Task::Impact,
+            seats: &Seat::ALL,
         });
     }
 
-    /// An impact that is aimed at the wall at an angle to its normal; positive: along the spin.
     fn impact(&self, scene: &mut Scene, share: f64, angle_deg: f64) {
-        let c = scene.plant.contact.clearance_m;
-        scene.start.position_m = V2::new(0.0, -0.99 * c * angle_deg.to_radians().sin());
-        scene.start.velocity_m_s = V2::new(share * self.sizes.impact_m_s, 0.0);
+        aimed_impact(scene, share * self.sizes.impact_m_s, angle_deg);
     }
 
     /// A load in a direction that is no axis.
@@ -336,6 +336,13 @@ impl Collector<'_> {
     }
 }
 
+/// A start that is aimed at the wall at an angle to its normal; positive: along the spin.
+pub(super) fn aimed_impact(scene: &mut Scene, speed_m_s: f64, angle_deg: f64) {
+    let c = scene.plant.contact.clearance_m;
+    scene.start.position_m = V2::new(0.0, -0.99 * c * angle_deg.to_radians().sin());
+    scene.start.velocity_m_s = V2::new(speed_m_s, 0.0);
+}
+
 /// Every scene on a plant.
 pub fn cases(plant: &PlantCase) -> Vec<Case> {
     let Some(sizes) = Sizes::of(&plant.scene) else {
@@ -356,5 +363,7 @@ pub fn cases(plant: &PlantCase) -> Vec<Case> {
     collector.friction();
     collector.spins();
     collector.offsets();
-    collector.cases
+    let mut cases = collector.cases;
+    cases.extend(super::fault_matrix::cases(plant));
+    cases
 }

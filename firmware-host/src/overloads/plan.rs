@@ -122,9 +122,9 @@ pub fn run(
     let mut jobs = Vec::new();
     for (place, cases) in places.iter().zip(&per_place) {
         for case in cases {
-            for seat in Seat::ALL {
-                for seed in seeds(extent, seat) {
-                    jobs.push(Job::Case(place, case, seat, seed));
+            for seat in case.seats {
+                for seed in seeds(extent, *seat) {
+                    jobs.push(Job::Case(place, case, *seat, seed));
                 }
             }
         }
@@ -206,16 +206,18 @@ const SWEEP_WORTH: u64 = 40;
 /// [`CatalogueError`].
 pub fn pieces(extent: Extent, own: &[Scene]) -> Result<u64, CatalogueError> {
     let places = places(extent)?;
-    let runs: u64 = Seat::ALL
-        .iter()
-        .map(|seat| seeds(extent, *seat).count() as u64)
-        .sum();
-    let scenes: usize = places.iter().map(|(plant, _)| cases(plant).len()).sum();
-    let own: u64 = own
-        .iter()
-        .map(|s| s.policies.len() as u64 * extent.seeds())
-        .sum();
-    Ok(runs * (scenes as u64 + SWEEP_WORTH * places.len() as u64) + own)
+    let of = |seats: &[Seat]| -> u64 {
+        let all = seats.iter().map(|seat| seeds(extent, *seat).count() as u64);
+        all.sum()
+    };
+    let mut all = of(&Seat::ALL) * SWEEP_WORTH * places.len() as u64;
+    for (plant, _) in &places {
+        all += cases(plant).iter().map(|case| of(case.seats)).sum::<u64>();
+    }
+    for scene in own {
+        all += scene.policies.len() as u64 * extent.seeds();
+    }
+    Ok(all)
 }
 
 /// Searches the gains of the baselines and the weights of the reference anew, for every plant and rate.

@@ -1,0 +1,120 @@
+//! Every sensor fault in every mode: idle, approach, bounce, whirl, hand-over.
+
+use super::catalogue::{Case, Sizes, aimed_impact};
+use super::plants::PlantCase;
+use super::seats::{Seat, Task};
+use super::takeover::whirling;
+use crate::scene::{Axis, Fault, FaultKind, Scene};
+
+/// Faults last so long, but for dropouts \[s\].
+const LASTS_S: f64 = 0.01;
+/// What is left to come back in \[s\].
+const AFTER_S: f64 = 0.15;
+
+/// A situation: its name, the scene, and when the fault comes \[s\].
+type Situation = (&'static str, Scene, f64);
+
+fn situations(base: &Scene, sizes: Sizes) -> Vec<Situation> {
+    let impact = |share: f64| {
+        let mut scene = base.clone();
+        aimed_impact(&mut scene, share * sizes.impact_m_s, 30.0);
+        scene
+    };
+    vec![
+        ("idle", base.clone(), 0.02),
+        ("approach", impact(1.0), 0.0),
+        ("bounce", impact(1.0), 1.5e-3),
+        ("whirl", whirling(base, 0.5 * sizes.limit_m_s), 1e-3),
+        ("hand-over", impact(0.5), 8e-3),
+    ]
+}
+
+/// The faults: name, kind, axis, duration \[s\].
+fn faults(clearance_m: f64, period_s: f64) -> Vec<(String, FaultKind, Axis, f64)> {
+    let c = clearance_m;
+    let mut all: Vec<(String, FaultKind, Axis, f64)> = Vec::new();
+    let mut add = |name: &str, kind: FaultKind, axis: Axis, lasts_s: f64| {
+        all.push((name.to_owned(), kind, axis, lasts_s));
+    };
+    add("not a number", FaultKind::Nan, Axis::X, LASTS_S);
+    add("infinity", FaultKind::Infinity, Axis::Y, LASTS_S);
+    add("zero", FaultKind::Zero, Axis::Both, LASTS_S);
+    add("at the rail", FaultKind::Rail, Axis::X, LASTS_S);
+    add("stuck", FaultKind::Stuck, Axis::Both, LASTS_S);
+    for share in [0.2, -0.2, 0.5, -0.5] {
+        let name = format!("offset {:+.0} % of c", 100.0 * share);
+        add(&name, FaultKind::Offset(share * c), Axis::X, LASTS_S);
+    }
+    for gain in [0.8, 1.2] {
+        add(
+            &format!("gain {gain}"),
+            FaultKind::Gain(gain),
+            Axis::Both,
+            LASTS_S,
+        );
+    }
+    add("inverted", FaultKind::Inverted, Axis::Both, LASTS_S);
+    add("axes swapped", FaultKind::Swapped, Axis::Both, LASTS_S);
+    add("noise × 10", FaultKind::Noise(10.0), Axis::Both, LASTS_S);
+    let spikes = FaultKind::Spikes {
+        rate_hz: 1000.0,
+        size_m: c,
+    };
+    add("spikes", spikes, Axis::Both, LASTS_S);
+    for samples in [1, 5, 50, 500] {
+        let lasts_s = f64::from(samples) * period_s;
+        add(
+            &format!("dropout of {samples}"),
+            FaultKind::Dropout,
+            Axis::Both,
+            lasts_s,
+        );
+    }
+    for samples in [1, 3, 5] {
+        add(
+            &format!("late by {samples}"),
+            FaultKind::Delay(samples),
+            Axis::Both,
+            LASTS_S,
+        );
+    }
+    add("8 bits", FaultKind::Bits(8), Axis::Both, LASTS_S);
+    let oscillation = FaultKind::Oscillation {
+        frequency_hz: 300.0,
+        amplitude_m: 0.2 * c,
+    };
+    add("oscillation", oscillation, Axis::Both, LASTS_S);
+    all
+}
+
+/// The matrix on a plant; the supervisor against levitation alone.
+pub fn cases(plant: &PlantCase) -> Vec<Case> {
+    let Some(sizes) = Sizes::of(&plant.scene) else {
+        return Vec::new();
+    };
+    let period_s = 1.0 / plant.rate_hz;
+    let clearance_m = plant.scene.plant.contact.clearance_m;
+    let mut cases = Vec::new();
+    for (situation, scene, start_s) in situations(&plant.scene, sizes) {
+        for (name, kind, axis, duration_s) in faults(clearance_m, period_s) {
+            let mut scene = scene.clone();
+            scene.duration_s = start_s + duration_s + AFTER_S;
+            // The converter's range: the rotor cannot get out of it.
+            scene.sensor.range_m = Some(4.0 * clearance_m);
+            scene.faults = vec![Fault {
+                start_s,
+                duration_s,
+                kind,
+                axis,
+            }];
+            cases.push(Case {
+                group: "sensor faults",
+                name: format!("sensor {name} while in {situation}"),
+                scene,
+                task: Task::Impact,
+                seats: &[Seat::Tuned, Seat::Supervisor],
+            });
+        }
+    }
+    cases
+}
