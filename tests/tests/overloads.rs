@@ -1,0 +1,171 @@
+//! The catalogue of overloads: what is promised holds, the output is what programs expect, and the kept
+//! searches are what they say.
+
+use firmware_host::overloads::catalogue::cases;
+use firmware_host::overloads::found::kept;
+use firmware_host::overloads::impact::recoverable_m_s;
+use firmware_host::overloads::loop_shape::SampledPlant;
+use firmware_host::overloads::plants::{RATES_HZ, plants};
+use firmware_host::overloads::seats::{Seat, levitation};
+use firmware_host::overloads::tune::{IDLE_NOISE, SENSITIVITY, shape};
+use serde_json::Value;
+use std::collections::BTreeSet;
+use system_tests::host;
+
+/// Promises that a quick run does not keep; the documentation says why.
+const MISSED: [&str; 4] = [
+    "P4, 20 kHz: time to arrest 0.85 v_lim, over closed form + 0.5 ms",
+    "largest contact force over levitation alone: worst scene's median",
+    "largest contact force over levitation alone: worst scene's 95th percentile",
+    "scenes with fewer recoveries than chance explains",
+];
+
+fn quick(threads: &str) -> (Vec<u8>, tempfile::TempDir) {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("overloads");
+    let output = host()
+        .args([
+            "overloads",
+            "--quick",
+            "--json",
+            "--threads",
+            threads,
+            "--out",
+        ])
+        .arg(&out)
+        .output()
+        .unwrap();
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    (output.stdout, folder)
+}
+
+/// Every promise is kept but the ones that are known not to be, and those are still missed: a promise that
+/// starts to hold is to be taken off the list and out of the documentation.
+#[test]
+fn promises_of_a_quick_run() {
+    let (json, folder) = quick("2");
+    let root: Value = serde_json::from_slice(&json).unwrap();
+    let promises = root["promises"].as_array().unwrap();
+    assert!(promises.len() > 40);
+    let missed: BTreeSet<&str> = (promises.iter())
+        .filter(|p| !p["holds"].as_bool().unwrap())
+        .map(|p| p["name"].as_str().unwrap())
+        .collect();
+    assert_eq!(missed, MISSED.into_iter().collect());
+    for p in promises {
+        let (bound, measured) = (p["bound"].as_f64().unwrap(), p["measured"].as_f64());
+        let at_least = p["at_least"].as_bool().unwrap();
+        let holds = measured.is_some_and(|m| if at_least { m >= bound } else { m <= bound });
+        assert_eq!(holds, p["holds"].as_bool().unwrap(), "{p}");
+    }
+    let results = root["results"].as_array().unwrap();
+    for row in results {
+        for key in [
+            "scene",
+            "plant",
+            "policy",
+            "seed",
+            "outcome",
+            "peak_contact_force_n",
+        ] {
+            assert!(!row[key].is_null(), "{key}: {row}");
+        }
+        assert!(row["error"].is_null(), "{row}");
+    }
+    let files = std::fs::read_dir(folder.path().join("overloads")).unwrap();
+    let names: BTreeSet<String> = files
+        .map(|f| f.unwrap().file_name().to_string_lossy().into_owned())
+        .collect();
+    let scenes: BTreeSet<&str> = (results.iter())
+        .map(|r| r["scene"].as_str().unwrap())
+        .collect();
+    // A page for each scene, and two of the whole.
+    assert_eq!(names.len(), scenes.len() + 2);
+    assert!(names.contains("overloads.md") && names.contains("overloads.json"));
+
+    let (alone, _folder) = quick("1");
+    assert!(json == alone, "depends on the number of threads");
+}
+
+/// The kept loops are stable, calm enough and quiet enough, and `tuned` is better than any other that
+/// differs from it in one step of the search.
+#[test]
+fn kept_loops_are_what_was_asked_for() {
+    for rate in RATES_HZ {
+        for plant in plants(rate).unwrap() {
+            let found = kept(&plant.name, rate).unwrap();
+            let sampled = SampledPlant::new(&plant.scene.plant, rate, 1);
+            let (own, noise) = shape(&plant.scene, &sampled, &found.tuned).unwrap();
+            assert!(own.peak_sensitivity < SENSITIVITY && noise < IDLE_NOISE);
+            assert!(shape(&plant.scene, &sampled, &found.stiff).is_some());
+            let stiffness = plant.scene.plant.rotor.stiffness_n_m.abs();
+            assert!(found.stiff.proportional_n_m >= 9.999 * stiffness);
+            if rate != RATES_HZ[1] || !plant.name.starts_with("P2") {
+                continue;
+            }
+            let reach = |params| {
+                let make = |s: &_| Some(levitation(params, s));
+                recoverable_m_s(&plant.scene, "tuned", &make).unwrap()
+            };
+            let best = reach(found.tuned);
+            for factor in [0.7, 1.4] {
+                let mut other = found.tuned;
+                other.derivative_n_s_m *= factor;
+                let (loop_shape, noise) = shape(&plant.scene, &sampled, &other).unwrap();
+                if loop_shape.peak_sensitivity < SENSITIVITY && noise < IDLE_NOISE {
+                    assert!(reach(other) <= best, "{}", plant.name);
+                }
+            }
+        }
+    }
+}
+
+/// Sensitivity of a loop without amplifier lag and delay against the closed form: at high rate a PD on a free
+/// mass is L = (K_p + K_d·s)/(m·s²).
+#[test]
+fn sampled_loop_approaches_the_continuous_one() {
+    let mut plant = plants(20_000.0).unwrap().remove(4).scene.plant;
+    (plant.rotor.stiffness_n_m, plant.rotor.damping_n_s_m) = (0.0, 0.0);
+    if let Some(magnet) = &mut plant.magnet {
+        magnet.lag_s = 0.0;
+    }
+    let (m, omega, zeta) = (plant.rotor.mass_kg, 300.0, 0.5);
+    let params = firmware_host::levitation::LevitationParams {
+        proportional_n_m: m * omega * omega,
+        integral_n_m_s: 0.0,
+        derivative_n_s_m: 2.0 * zeta * m * omega,
+        derivative_filter_s: 0.0,
+    };
+    // |S|² at u = (ω/ω0)²: u²/((1 − u)² + 4ζ²u), largest at u = 1 + … of this quadratic.
+    let s = |u: f64| (u * u / ((1.0 - u).powi(2) + 4.0 * zeta * zeta * u)).sqrt();
+    let peak = (1..400_000)
+        .map(|i| s(f64::from(i) * 1e-4))
+        .fold(0.0, f64::max);
+    let fast = SampledPlant::new(&plant, 200_000.0, 0);
+    let found = fast.close(&params).unwrap().peak_sensitivity;
+    assert!((found / peak - 1.0).abs() < 0.01, "{found} {peak}");
+    // A loop that pushes outwards is not stable.
+    let outwards = firmware_host::levitation::LevitationParams {
+        proportional_n_m: -1.0,
+        ..params
+    };
+    assert_eq!(fast.close(&outwards), None);
+}
+
+/// Names are unique on a plant, and everybody takes part in what is not a fault.
+#[test]
+fn cases_are_told_apart() {
+    for plant in plants(RATES_HZ[0]).unwrap() {
+        let all = cases(&plant);
+        let names: BTreeSet<&str> = all.iter().map(|c| c.name.as_str()).collect();
+        assert_eq!(names.len(), all.len(), "{}", plant.name);
+        assert!(all.len() > 150);
+        for case in &all {
+            assert!(case.seats.contains(&Seat::Supervisor) && case.seats.contains(&Seat::Tuned));
+        }
+    }
+}
