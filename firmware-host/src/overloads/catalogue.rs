@@ -153,7 +153,7 @@ impl Collector<'_> {
             };
             let name = format!("base shock {g} g, {ms} ms");
             self.add("shock", name, shock.end_s(), |s| {
-                s.base_motions = vec![shock]
+                s.base_motions = vec![shock];
             });
         }
         for hz in [1.0, 2.0, 5.0, 10.0, 20.0, 35.0] {
