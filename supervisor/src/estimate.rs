@@ -15,6 +15,8 @@ pub(crate) struct Motion {
     pub(crate) velocity: Vec2,
     /// Acceleration by loads that the model does not know.
     pub(crate) load: Vec2,
+    /// From one sample only: the velocity is not known yet.
+    pub(crate) fresh: bool,
 }
 
 /// The observer.
@@ -22,8 +24,6 @@ pub(crate) struct Motion {
 pub(crate) struct Observer {
     motion: Motion,
     started: bool,
-    /// One sample has been seen since the start.
-    fresh: bool,
     /// Delivered force at the last tick.
     delivered: Vec2,
     /// Commands of the last ticks, newest at `newest`.
@@ -60,9 +60,10 @@ impl Observer {
         if let Some(position) = sample
             && !self.started
         {
-            (self.started, self.fresh) = (true, true);
+            self.started = true;
             self.motion = Motion {
                 position,
+                fresh: true,
                 ..Motion::default()
             };
             return self.motion;
@@ -78,7 +79,7 @@ impl Observer {
         m.velocity = m.velocity + acceleration;
         if let Some(position) = sample {
             let error = position - m.position;
-            let [on_position, on_velocity, on_load] = if in_contact && self.fresh {
+            let [on_position, on_velocity, on_load] = if in_contact && m.fresh {
                 // Switched on into a contact: the first difference is worth more than rest.
                 [1.0, 1.0, 0.0]
             } else if in_contact {
@@ -90,7 +91,7 @@ impl Observer {
             m.position = m.position + error * on_position;
             m.velocity = m.velocity + error * on_velocity;
             m.load = m.load + error * on_load;
-            self.fresh = false;
+            m.fresh = false;
         }
         m.position = held(m.position);
         m.velocity = held(m.velocity);

@@ -169,7 +169,13 @@ fn braking(motion: &Motion, found: &Findings, spin_sign: f32, coeffs: &Coeffs) -
         0.0
     };
     let sum = motion.velocity.dot(b) + gain * max(found.radial_speed, 0.0);
-    let strength = min(max(sum, 0.0) * coeffs.damper, 1.0);
+    // Switched on into a contact that is pressed on as only whirl does: no time is to be lost.
+    let pressed = 2.0 - coeffs.touch_radius;
+    let strength = if motion.fresh && motion.position.length_squared() > pressed * pressed {
+        1.0
+    } else {
+        min(max(sum, 0.0) * coeffs.damper, 1.0)
+    };
     // Unit vector against b̂ + μ·n̂.
     let mu = coeffs.friction;
     let aim = (b + n * mu) * (-strength / sqrt(1.0 + mu * mu));
