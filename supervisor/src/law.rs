@@ -34,8 +34,8 @@ pub(crate) struct Wanted {
 const FLIGHT_SHARE: f32 = 0.15;
 /// Of the whirl limit: impacts that will add up to less than the first need no help but to be softened,
 /// from the second on all the force goes to what they add.
-const HARMLESS: f32 = 1.2;
-const URGENT: f32 = 2.0;
+const HARMLESS: f32 = 1.0;
+const URGENT: f32 = 1.6;
 /// Largest share of the cap that ever pushes inwards.
 const NEARLY_ALL: f32 = 0.95;
 

@@ -1,7 +1,7 @@
 //! The catalogue as a page in Markdown, for people and for the documentation.
 
 use super::plan::{Catalogue, Extent};
-use super::promises::Promise;
+use super::promises::{Harm, Promise};
 use super::results::{Metrics, ResultRow};
 use super::seats::Seat;
 use super::sweeps::{SweepRow, median};
@@ -51,15 +51,21 @@ pub fn summary(catalogue: &Catalogue, extent: Extent) -> String {
         line(&mut page, &sweep_row(row));
     }
     line(&mut page, "\n## Against levitation alone\n");
+    let (told, same): (Vec<&Harm>, Vec<&Harm>) =
+        (catalogue.against_levitation.iter()).partition(|h| is_worth_telling(h));
     line(
         &mut page,
-        "Largest contact force of the supervisor over that of its own inner loop alone, seed by seed; 1 where neither touches. Recovered: seeds with and without the supervisor.\n",
+        &format!(
+            "Largest contact force of the supervisor over that of its own inner loop alone, seed by seed; 1 where neither touches. Recovered: seeds with and without the supervisor. Of {} places and scenes these are the ones where the supervisor recovers from more or fewer, or where the force is more than 2 % higher; in the other {} it recovers from as many and the force is the same or lower. All of them are in `overloads.json` and on the pages of the scenes.\n",
+            told.len() + same.len(),
+            same.len()
+        ),
     );
     line(
         &mut page,
         "| plant, rate: scene | median | 95 % | recovered | alone |\n| --- | --- | --- | --- | --- |",
     );
-    for harm in &catalogue.against_levitation {
+    for harm in told {
         line(
             &mut page,
             &format!(
@@ -74,6 +80,10 @@ pub fn summary(catalogue: &Catalogue, extent: Extent) -> String {
         );
     }
     page
+}
+
+fn is_worth_telling(harm: &Harm) -> bool {
+    harm.recovered != harm.recovered_alone || harm.force_ratio > 1.02 || harm.force_ratio_95 > 1.10
 }
 
 fn line(page: &mut String, text: &str) {
