@@ -1,49 +1,9 @@
 //! The paper's two rotors, and the benchmark problem of the integrator tests.
 
+pub use firmware_host::paper::rotors::footnote_4;
 use plant_model::V2;
 use plant_model::contact::damping_for_restitution;
 use plant_model::params::*;
-
-/// The paper's rotor of footnote 4 on its two-mass stator, with the constants that the paper leaves
-/// out: k_c = 1e9 N/m, d_c = 1.6e4 N s/m, J = 0.05 kg m², R = 0.1 m.
-pub fn footnote_4() -> PlantParams {
-    let isotropic = |mass_kg: f64, k: f64, d: f64| RingParams {
-        mass_kg,
-        stiffness_n_m: V2::repeat(k),
-        damping_n_s_m: V2::repeat(d),
-    };
-    PlantParams {
-        rotor: RotorParams {
-            mass_kg: 10.0,
-            stiffness_n_m: 9.1e5,
-            damping_n_s_m: 20.5,
-            eccentricity_m: 0.0,
-            contact_radius_m: 0.1,
-        },
-        spin: SpinParams::Free {
-            inertia_kg_m2: 0.05,
-            drive_torque_n_m: 0.0,
-        },
-        stator: StatorParams::TwoMass {
-            inner: isotropic(10.0, 8.9e8, 28_300.0),
-            outer: isotropic(10.0, 3.6e9, 18_970.0),
-        },
-        contact: ContactParams {
-            clearance_m: 2e-4,
-            law: LinearContact {
-                stiffness_n_m: 1e9,
-                damping_n_s_m: 1.6e4,
-            }
-            .into(),
-        },
-        friction: FrictionParams {
-            sliding: SlidingFriction::Constant { coefficient: 0.15 },
-            rolling_coefficient: 0.025,
-        },
-        magnet: None,
-        race: None,
-    }
-}
 
 /// The paper's onset rig: 10 kg at 45 Hz with a damping ratio of 0.003 in a rigid stator with 0.2 mm
 /// clearance; μ = 0.125, e = 0.7 at k_c = 1e8 N/m.

@@ -9,7 +9,7 @@ mod tables;
 use self::falling::Law;
 use self::pareto::Search;
 pub use self::rig::Violence;
-use super::{Chapter, Claim, Depth, Figure, Kind, PaperError, Row};
+use super::{Chapter, Claim, Depth, Figure, Kind, PaperError, Row, rotors};
 use plant_model::analysis::black::SteadyWhirl;
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 
@@ -40,7 +40,7 @@ pub fn spin_downs(depth: Depth) -> Result<SpinDowns, PaperError> {
             .map(|hz| rig::violence(params, *hz, 0.4))
             .collect::<Result<Vec<_>, _>>()
     };
-    let isotropic = rig::footnote_4();
+    let isotropic = rotors::footnote_4();
     Ok(SpinDowns {
         isotropic: of(&isotropic)?,
         anisotropic: of(&rig::anisotropic(isotropic))?,
@@ -63,7 +63,7 @@ pub fn chapter(depth: Depth) -> Result<Chapter, PaperError> {
     );
     let (runs, search, laws, constant) = (runs?, search?, laws?, constant?);
     let used = (laws.get(2)).ok_or_else(|| PaperError::Missing("no friction law".to_owned()))?;
-    let limit_hz = SteadyWhirl::of(&rig::footnote_4())
+    let limit_hz = SteadyWhirl::of(&rotors::footnote_4())
         .and_then(|whirl| whirl.upper_limit(5000.0))
         .map(|circle| circle.frequency_hz())
         .ok_or_else(|| PaperError::Missing("no upper whirl limit".to_owned()))?;

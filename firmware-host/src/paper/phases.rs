@@ -2,7 +2,8 @@
 
 mod figures;
 
-use super::established::rig::{CLEARANCE_M, footnote_4, run};
+use super::established::rig::{CLEARANCE_M, run};
+use super::rotors::footnote_4;
 use super::{Chapter, Claim, Depth, Kind, PaperError, Row, Table};
 use plant_model::V2;
 use plant_model::analysis::course::{Course, Pulse, Watch};

@@ -10,6 +10,24 @@ use plant_model::params::{
 };
 use std::f64::consts::TAU;
 
+/// What the paper leaves out of footnote 4.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LeftOut {
+    /// k_c \[N/m\].
+    pub contact_stiffness_n_m: f64,
+    /// d_c \[N s/m\].
+    pub contact_damping_n_s_m: f64,
+    /// J_r \[kg m²\].
+    pub inertia_kg_m2: f64,
+}
+
+/// The set that is used unless another is named.
+pub const USED: LeftOut = LeftOut {
+    contact_stiffness_n_m: 1e9,
+    contact_damping_n_s_m: 1.6e4,
+    inertia_kg_m2: 0.05,
+};
+
 /// The rotor of footnote 4 in its two-mass stator.
 ///
 /// | constant | value | source |
@@ -23,11 +41,20 @@ use std::f64::consts::TAU;
 /// | J_r | 0.05 kg m² | assumed: a solid disc of m_r and R_r |
 /// | t_d | 0 | coupling released before the test, test rig |
 pub fn footnote_4() -> PlantParams {
-    let isotropic = |mass_kg: f64, k: f64, d: f64| RingParams {
+    footnote_4_with(&USED)
+}
+
+/// A ring that is the same along x and y.
+pub(super) fn ring(mass_kg: f64, stiffness_n_m: f64, damping_n_s_m: f64) -> RingParams {
+    RingParams {
         mass_kg,
-        stiffness_n_m: V2::repeat(k),
-        damping_n_s_m: V2::repeat(d),
-    };
+        stiffness_n_m: V2::repeat(stiffness_n_m),
+        damping_n_s_m: V2::repeat(damping_n_s_m),
+    }
+}
+
+/// [`footnote_4`] with another choice of what the paper leaves out.
+pub fn footnote_4_with(left_out: &LeftOut) -> PlantParams {
     PlantParams {
         rotor: RotorParams {
             mass_kg: 10.0,
@@ -37,18 +64,18 @@ pub fn footnote_4() -> PlantParams {
             contact_radius_m: 0.1,
         },
         spin: SpinParams::Free {
-            inertia_kg_m2: 0.05,
+            inertia_kg_m2: left_out.inertia_kg_m2,
             drive_torque_n_m: 0.0,
         },
         stator: StatorParams::TwoMass {
-            inner: isotropic(10.0, 8.9e8, 28_300.0),
-            outer: isotropic(10.0, 3.6e9, 18_970.0),
+            inner: ring(10.0, 8.9e8, 28_300.0),
+            outer: ring(10.0, 3.6e9, 18_970.0),
         },
         contact: ContactParams {
             clearance_m: 2e-4,
             law: LinearContact {
-                stiffness_n_m: 1e9,
-                damping_n_s_m: 1.6e4,
+                stiffness_n_m: left_out.contact_stiffness_n_m,
+                damping_n_s_m: left_out.contact_damping_n_s_m,
             }
             .into(),
         },

@@ -1,6 +1,8 @@
 //! Runs of established whirl: the stator levels of footnote 4, spin-down and held spin.
 
 use super::PaperError;
+pub(super) use super::rotors::ring;
+use super::rotors::{LeftOut, USED, footnote_4_with};
 use plant_model::analysis::whirl::WhirlMeter;
 use plant_model::params::*;
 use plant_model::{Inputs, Options, Plant, V2, build};
@@ -12,51 +14,15 @@ const SAMPLE_S: f64 = 20e-6;
 const WINDOW_S: f64 = 1e-3;
 /// Radial speed at the wall that starts the whirl \[m/s\].
 const IMPACT_M_S: f64 = 0.4;
-/// d_c \[N s/m\] at k_c = 1e9 N/m; elsewhere as √k_c, for the same damping ratio.
-const CONTACT_DAMPING_N_S_M: f64 = 1.6e4;
 
-/// A ring that is the same along x and y.
-pub(super) fn ring(mass_kg: f64, stiffness_n_m: f64, damping_n_s_m: f64) -> RingParams {
-    RingParams {
-        mass_kg,
-        stiffness_n_m: V2::repeat(stiffness_n_m),
-        damping_n_s_m: V2::repeat(damping_n_s_m),
-    }
-}
-
-/// Footnote 4 with free spin; k_c, d_c, J_r and R_r are ours.
+/// Footnote 4 with another contact stiffness, of the same damping ratio.
 pub(super) fn footnote_4(contact_stiffness_n_m: f64) -> PlantParams {
-    PlantParams {
-        rotor: RotorParams {
-            mass_kg: 10.0,
-            stiffness_n_m: 9.1e5,
-            damping_n_s_m: 20.5,
-            eccentricity_m: 0.0,
-            contact_radius_m: 0.1,
-        },
-        spin: SpinParams::Free {
-            inertia_kg_m2: 0.05,
-            drive_torque_n_m: 0.0,
-        },
-        stator: StatorParams::TwoMass {
-            inner: ring(10.0, 8.9e8, 28_300.0),
-            outer: ring(10.0, 3.6e9, 18_970.0),
-        },
-        contact: ContactParams {
-            clearance_m: 2e-4,
-            law: LinearContact {
-                stiffness_n_m: contact_stiffness_n_m,
-                damping_n_s_m: CONTACT_DAMPING_N_S_M * (contact_stiffness_n_m / 1e9).sqrt(),
-            }
-            .into(),
-        },
-        friction: FrictionParams {
-            sliding: SlidingFriction::Constant { coefficient: 0.15 },
-            rolling_coefficient: 0.025,
-        },
-        magnet: None,
-        race: None,
-    }
+    footnote_4_with(&LeftOut {
+        contact_stiffness_n_m,
+        contact_damping_n_s_m: USED.contact_damping_n_s_m
+            * (contact_stiffness_n_m / USED.contact_stiffness_n_m).sqrt(),
+        ..USED
+    })
 }
 
 /// At the wall, moving outwards.

@@ -1,7 +1,8 @@
 //! The test at 166 Hz: friction that falls with sliding speed.
 
-use super::rig::{IMPACT_M_S, at_the_wall, footnote_4, run, watch};
+use super::rig::{IMPACT_M_S, at_the_wall, run, watch};
 use crate::paper::PaperError;
+use crate::paper::rotors::footnote_4;
 use plant_model::analysis::course::{Course, Watch};
 use plant_model::params::{PlantParams, SlidingFriction};
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};

@@ -1,6 +1,7 @@
 //! The constants that the paper leaves out, searched: can any set meet all figures at once?
 
-use super::rig::{LeftOut, USED, violence, with};
+use super::rig::violence;
+use crate::paper::rotors::{LeftOut, USED, footnote_4_with};
 use crate::paper::{Depth, PaperError, Table};
 use plant_model::contact::damping_for_restitution;
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
@@ -35,7 +36,7 @@ pub(super) struct Candidate {
 
 impl Candidate {
     fn of(left_out: LeftOut) -> Result<Self, PaperError> {
-        let params = with(&left_out);
+        let params = footnote_4_with(&left_out);
         // Long enough for the slowest standstill of the grid.
         let [slow, middle, fast] = [
             violence(&params, 40.0, 0.15)?,

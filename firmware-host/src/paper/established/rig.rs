@@ -2,79 +2,14 @@
 
 use crate::paper::PaperError;
 use plant_model::analysis::course::{Course, Watch, follow};
-use plant_model::params::{
-    ContactParams, FrictionParams, LinearContact, PlantParams, RingParams, RotorParams,
-    SlidingFriction, SpinParams, Start, StatorParams,
-};
+use plant_model::params::{PlantParams, Start, StatorParams};
 use plant_model::{Meters, Options, V2, build};
 use std::f64::consts::TAU;
 
 /// Clearance \[m\].
 pub(in crate::paper) const CLEARANCE_M: f64 = 2e-4;
-/// Radius of the disc \[m\].
-const RADIUS_M: f64 = 0.1;
 /// Radial speed at the wall at the start \[m/s\].
 pub(in crate::paper) const IMPACT_M_S: f64 = 0.4;
-
-/// What the paper leaves out.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct LeftOut {
-    pub(super) contact_stiffness_n_m: f64,
-    pub(super) contact_damping_n_s_m: f64,
-    pub(super) inertia_kg_m2: f64,
-}
-
-/// The set that is used unless another is named.
-pub(super) const USED: LeftOut = LeftOut {
-    contact_stiffness_n_m: 1e9,
-    contact_damping_n_s_m: 1.6e4,
-    inertia_kg_m2: 0.05,
-};
-
-/// Footnote 4, with what the paper leaves out.
-pub(super) fn with(left_out: &LeftOut) -> PlantParams {
-    let ring = |stiffness_n_m: f64, damping_n_s_m: f64| RingParams {
-        mass_kg: 10.0,
-        stiffness_n_m: V2::repeat(stiffness_n_m),
-        damping_n_s_m: V2::repeat(damping_n_s_m),
-    };
-    PlantParams {
-        rotor: RotorParams {
-            mass_kg: 10.0,
-            stiffness_n_m: 9.1e5,
-            damping_n_s_m: 20.5,
-            eccentricity_m: 0.0,
-            contact_radius_m: RADIUS_M,
-        },
-        spin: SpinParams::Free {
-            inertia_kg_m2: left_out.inertia_kg_m2,
-            drive_torque_n_m: 0.0,
-        },
-        stator: StatorParams::TwoMass {
-            inner: ring(8.9e8, 28_300.0),
-            outer: ring(3.6e9, 18_970.0),
-        },
-        contact: ContactParams {
-            clearance_m: CLEARANCE_M,
-            law: LinearContact {
-                stiffness_n_m: left_out.contact_stiffness_n_m,
-                damping_n_s_m: left_out.contact_damping_n_s_m,
-            }
-            .into(),
-        },
-        friction: FrictionParams {
-            sliding: SlidingFriction::Constant { coefficient: 0.15 },
-            rolling_coefficient: 0.025,
-        },
-        magnet: None,
-        race: None,
-    }
-}
-
-/// Footnote 4 with the set that is used.
-pub(in crate::paper) fn footnote_4() -> PlantParams {
-    with(&USED)
-}
 
 /// Stiffness and damping of both rings 10 % up along x and 10 % down along y.
 pub(super) fn anisotropic(mut params: PlantParams) -> PlantParams {
