@@ -52,6 +52,16 @@ impl Outage {
     }
 }
 
+/// A force limited as a vector.
+pub(crate) fn limited_n(wanted_n: V2, force_max_n: f64) -> V2 {
+    let size = wanted_n.norm();
+    if size > force_max_n {
+        wanted_n * (force_max_n / size)
+    } else {
+        wanted_n
+    }
+}
+
 /// Parts of a stretch in which a ramp is held, each at its mean.
 const RAMP_PARTS: u32 = 8;
 
@@ -129,11 +139,7 @@ impl Amplifier {
 
     /// Where the command in effect leads.
     fn target_n(&self, at_s: f64) -> V2 {
-        let mut target = self.register_n;
-        let size = target.norm();
-        if size > self.force_max_n {
-            target *= self.force_max_n / size;
-        }
+        let mut target = limited_n(self.register_n, self.force_max_n);
         if let Some(most) = self.params.axis_force_max_n {
             target = target.map(|x| x.clamp(-most, most));
         }

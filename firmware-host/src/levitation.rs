@@ -1,6 +1,7 @@
 //! The stand-in firmware's levitation controller: a PID per axis with a filtered derivative, limited
 //! as a vector, with an integrator that stops while the output is limited.
 
+use crate::amplifier::limited_n;
 use plant_model::V2;
 use supervisor::IntegratorHint;
 
@@ -55,16 +56,6 @@ impl VelocityFilter {
     }
 }
 
-/// A force limited as a vector.
-pub fn limited_n(wanted_n: V2, force_max_n: f64) -> V2 {
-    let size = wanted_n.norm();
-    if size > force_max_n {
-        wanted_n * (force_max_n / size)
-    } else {
-        wanted_n
-    }
-}
-
 /// The controller.
 #[derive(Debug, Clone)]
 pub struct Levitation {
@@ -94,15 +85,10 @@ impl Levitation {
         let velocity_m_s = self.velocity.velocity_m_s(measured_m);
         let wanted =
             -p.proportional_n_m * measured_m - p.derivative_n_s_m * velocity_m_s + self.integral_n;
-        let size = wanted.norm();
-        let limited = size > self.force_max_n;
-        if !limited && hint != IntegratorHint::Hold {
+        let limited = limited_n(wanted, self.force_max_n);
+        if limited == wanted && hint != IntegratorHint::Hold {
             self.integral_n -= p.integral_n_m_s * self.period_s * measured_m;
         }
-        if limited {
-            wanted * (self.force_max_n / size)
-        } else {
-            wanted
-        }
+        limited
     }
 }

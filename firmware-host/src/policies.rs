@@ -1,8 +1,9 @@
 //! What may drive the magnet: baselines, and the supervisor in front of the levitation controller.
 
+use crate::amplifier::limited_n;
 use crate::clairvoyant::Clairvoyant;
 use crate::instruments::Reading;
-use crate::levitation::{Levitation, VelocityFilter, limited_n};
+use crate::levitation::{Levitation, VelocityFilter};
 use crate::policy_kind::PolicyKind;
 use crate::scene::Scene;
 use plant_model::{Snapshot, V2};

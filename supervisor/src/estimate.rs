@@ -104,6 +104,11 @@ impl Observer {
         *m
     }
 
+    /// Estimated velocity of the last tick.
+    pub(crate) fn velocity(&self) -> Vec2 {
+        self.motion.velocity
+    }
+
     /// Starts anew at the next sample: without samples the model runs away.
     pub(crate) fn forget(&mut self) {
         self.started = false;

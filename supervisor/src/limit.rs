@@ -46,10 +46,9 @@ impl Room {
     /// the sign of f̂ would take most, but it also pushes across the aim, off the wall or into it, which
     /// nothing can make up for. With u = f̂·|f̂| it is the whole along the aim, and across it next to nothing.
     fn braking(&self, aim: Vec2) -> Vec2 {
-        let most = aim.length();
         let on = |part: f32, cap: f32| {
             if cap > 0.0 {
-                between(part * max(part, -part), -most, most)
+                part * max(part, -part)
             } else {
                 0.0
             }
@@ -101,8 +100,8 @@ pub(crate) fn allocate(wanted: &Wanted, room: &Room) -> (Vec2, Limits) {
         limits |= Limits::AXIS_CAP;
     }
     let mut braking_cut = false;
-    // With one axis only what comes of it on the other cannot be made up for: off the wall damping alone is
-    // sure not to drive the rotor into it, and on the wall nothing may lift it off that could not catch it.
+    // With one axis alone a push across the aim cannot be made up for: off the wall only damping is sure not
+    // to drive the rotor into it, and on the wall nothing may lift it off that could not catch it.
     let (braking, restoring) = match (room.lost(), wanted.touching) {
         (false, _) => (wanted.braking, wanted.restoring),
         (true, true) => (room.braking(wanted.braking), Vec2::ZERO),

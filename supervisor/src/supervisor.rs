@@ -31,8 +31,6 @@ pub struct Supervisor<const RECORD: usize = 512> {
     force: Vec2,
     /// … and as it was commanded \[N\].
     force_n: [f32; 2],
-    /// Estimated velocity of the last tick.
-    velocity: Vec2,
     refusal: Refusal,
     recorder: Recorder<RECORD>,
 }
@@ -56,7 +54,6 @@ impl<const RECORD: usize> Supervisor<RECORD> {
             severity: Severity::default(),
             force: Vec2::ZERO,
             force_n: [0.0; 2],
-            velocity: Vec2::ZERO,
             refusal: Refusal::None,
             recorder: Recorder::new(),
         })
@@ -67,7 +64,7 @@ impl<const RECORD: usize> Supervisor<RECORD> {
     pub fn tick(&mut self, sample: &Sample) -> Command {
         let coeffs = &self.coeffs;
         let blind = self.detector.near_contact();
-        let reading = self.guard.judge(sample, self.velocity, blind, coeffs);
+        let reading = (self.guard).judge(sample, self.observer.velocity(), blind, coeffs);
         let actuator = reading.actuator;
         self.refusal = reading.refusal;
         for _ in 0..reading.missed {
@@ -85,7 +82,6 @@ impl<const RECORD: usize> Supervisor<RECORD> {
         }
         let near_contact = self.detector.near_contact();
         let motion = (self.observer).advance(reading.position, near_contact, actuator, coeffs);
-        self.velocity = motion.velocity;
         let mut found = self.detector.findings(&motion, contact, coeffs);
         let calm = found.calm;
         found.calm &= self.readiness.ready();

@@ -107,7 +107,7 @@ fn kept_loops_are_what_was_asked_for() {
                 continue;
             }
             let reach = |params| {
-                let make = |s: &_| Some(levitation(params, s));
+                let make = |s: &_| levitation(params, s);
                 recoverable_m_s(&plant.scene, "tuned", &make).unwrap()
             };
             let best = reach(found.tuned);

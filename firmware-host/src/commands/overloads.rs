@@ -4,7 +4,7 @@ use crate::commands::error::{CommandError, print};
 use crate::commands::progress::{LateProgress, pool};
 use crate::output::{self, OutputError, Staging};
 use crate::overloads::page;
-use crate::overloads::plan::{Catalogue, CatalogueError, Extent, pieces, run, search};
+use crate::overloads::plan::{Catalogue, CatalogueError, Extent, Plan, search};
 use crate::overloads::plants::RATES_HZ;
 use crate::scene::Scene;
 use comfy_table::{Cell, CellAlignment, Table, presets};
@@ -51,9 +51,10 @@ pub fn execute(args: &OverloadsArgs) -> Result<(), CommandError> {
     } else {
         Extent::Full
     };
-    let progress = LateProgress::new(pieces(extent, &own).map_err(failed)?, "the catalogue");
+    let plan = Plan::new(extent, own).map_err(failed)?;
+    let progress = LateProgress::new(plan.pieces(), "the catalogue");
     let catalogue = pool(args.threads)?
-        .install(|| run(extent, &own, &|done| progress.add(done)))
+        .install(|| plan.run(&|done| progress.add(done)))
         .map_err(failed)?;
     progress.finish();
     // A hundred thousand runs: not indented.
@@ -109,10 +110,9 @@ fn promises(catalogue: &Catalogue) -> String {
     table.load_style(presets::UTF8_BORDERS_ONLY);
     table.set_header(["promise", "bound", "measured", "holds"]);
     for p in &catalogue.promises {
-        let sign = if p.at_least { "≥" } else { "≤" };
         table.add_row([
             Cell::new(&p.name),
-            Cell::new(format!("{sign} {}", p.bound)).set_alignment(CellAlignment::Right),
+            Cell::new(p.bound()).set_alignment(CellAlignment::Right),
             Cell::new(format!("{:.3}", p.measured)).set_alignment(CellAlignment::Right),
             Cell::new(if p.holds { "yes" } else { "NO" }),
         ]);

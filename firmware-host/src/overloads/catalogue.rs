@@ -5,10 +5,9 @@
 
 use super::plants::PlantCase;
 use super::seats::{Seat, Task, restitution};
-use super::takeover::whirling;
+use super::takeover::{arrest_of, whirling};
 use crate::scene::{Axis, BaseMotion, Disturbance, Outage, Scene, Shape, TimedChange};
-use plant_model::analysis::arrest::Arrest;
-use plant_model::params::SpinParams;
+use plant_model::params::{RaceParams, SpinParams, Start};
 use plant_model::{Change, V2};
 use std::f64::consts::TAU;
 
@@ -48,7 +47,7 @@ impl Sizes {
     /// `None` without a magnet or without friction.
     pub fn of(scene: &Scene) -> Option<Self> {
         let force_n = scene.plant.magnet?.force_max_n;
-        let limit_m_s = Arrest::new(&scene.plant, force_n)?.limit_m_s;
+        let limit_m_s = arrest_of(scene)?.limit_m_s;
         let e = restitution(scene);
         let mu = scene.plant.friction.sliding.coefficient(0.0);
         Some(Self {
@@ -87,8 +86,14 @@ impl Collector<'_> {
         });
     }
 
-    fn impact(&self, scene: &mut Scene, share: f64, angle_deg: f64) {
-        aimed_impact(scene, share * self.sizes.impact_m_s, angle_deg);
+    /// The start of an impact at a share of the reference speed.
+    fn impact(&self, share: f64, angle_deg: f64) -> Start {
+        aimed(self.base, share * self.sizes.impact_m_s, angle_deg)
+    }
+
+    /// The start of whirl at a share of the whirl limit.
+    fn whirl_at(&self, share: f64) -> Start {
+        whirling(self.base, share * self.sizes.limit_m_s)
     }
 
     /// A load in a direction that is no axis.
@@ -105,9 +110,7 @@ impl Collector<'_> {
     fn impacts(&mut self) {
         for angle in [0.0, 30.0, -30.0, 50.0, -50.0] {
             for share in [0.5, 1.0, 1.5] {
-                let mut scene = self.base.clone();
-                self.impact(&mut scene, share, angle);
-                let start = scene.start;
+                let start = self.impact(share, angle);
                 let name = format!("impact {angle:+.0}°, {share} v_ref");
                 self.add("impacts", name, 0.0, |s| s.start = start);
             }
@@ -116,7 +119,7 @@ impl Collector<'_> {
 
     fn whirl(&mut self) {
         for share in [0.3, 0.5, 0.7, 0.85, 0.95, 1.05, 1.1] {
-            let start = whirling(self.base, share * self.sizes.limit_m_s).start;
+            let start = self.whirl_at(share);
             let name = format!("whirl at take-over, {share} v_lim");
             self.add("whirl", name, 0.0, |s| s.start = start);
             if let Some(case) = self.cases.last_mut() {
@@ -217,28 +220,16 @@ impl Collector<'_> {
             ("bounce", 1e-3, 1.0),
             ("levitated", 0.08, 0.5),
         ] {
-            let outage = Outage {
-                start_s: at_s,
-                duration_s: 0.02,
-                axis: Axis::X,
-                known: true,
-            };
-            let mut scene = self.base.clone();
-            self.impact(&mut scene, share, 30.0);
-            let start = scene.start;
+            let outage = x_lost(at_s);
+            let start = self.impact(share, 30.0);
             let name = format!("x axis lost for 20 ms while {mode}");
             self.add("axis lost", name, outage.end_s(), |s| {
                 s.start = start;
                 s.outages = vec![outage];
             });
         }
-        let outage = Outage {
-            start_s: 1e-3,
-            duration_s: 0.02,
-            axis: Axis::X,
-            known: true,
-        };
-        let start = whirling(self.base, 0.5 * self.sizes.limit_m_s).start;
+        let outage = x_lost(1e-3);
+        let start = self.whirl_at(0.5);
         self.add("axis lost", "x axis lost for 20 ms in whirl", 0.02, |s| {
             s.start = start;
             s.outages = vec![outage];
@@ -254,30 +245,16 @@ impl Collector<'_> {
 
     fn friction(&mut self) {
         for coefficient in [0.3, 0.5] {
-            let change = TimedChange {
-                at_s: 0.0,
-                change: Change {
-                    friction_coefficient: Some(coefficient),
-                    ..Change::default()
-                },
-            };
-            let mut scene = self.base.clone();
-            self.impact(&mut scene, 0.4, 30.0);
-            let start = scene.start;
+            let change = friction_from(0.0, coefficient);
+            let start = self.impact(0.4, 30.0);
             let name = format!("impact with friction {coefficient}, untold");
             self.add("friction", name, 0.0, |s| {
                 s.start = start;
                 s.changes = vec![change];
             });
         }
-        let change = TimedChange {
-            at_s: 3e-3,
-            change: Change {
-                friction_coefficient: Some(0.03),
-                ..Change::default()
-            },
-        };
-        let start = whirling(self.base, 0.85 * self.sizes.limit_m_s).start;
+        let change = friction_from(3e-3, 0.03);
+        let start = self.whirl_at(0.85);
         self.add("friction", "friction collapses in whirl", 3e-3, |s| {
             s.start = start;
             s.changes = vec![change];
@@ -286,23 +263,19 @@ impl Collector<'_> {
 
     fn spins(&mut self) {
         for hz in [15.0, 40.0, 166.0, 333.0, 1000.0, -200.0] {
-            let mut scene = self.base.clone();
-            self.impact(&mut scene, 1.0, 30.0);
-            let start = scene.start;
+            let start = self.impact(1.0, 30.0);
             let name = format!("impact at {hz} Hz spin");
             self.add("speeds", name, 0.0, |s| {
                 s.start = start;
                 s.start.spin_rad_s = hz * TAU;
             });
         }
-        let mut scene = self.base.clone();
-        self.impact(&mut scene, 1.0, 30.0);
-        let start = scene.start;
+        let start = self.impact(1.0, 30.0);
         self.add("speeds", "impact, spin unknown", 0.0, |s| {
             s.start = start;
             s.spin_sensor.valid = false;
         });
-        let race = plant_model::params::RaceParams {
+        let race = RaceParams {
             inertia_kg_m2: 1e-3 * self.base.plant.rotor.mass_kg / 10.0,
             drag_n_m_s: 0.0,
             start_spin_rad_s: 0.0,
@@ -321,9 +294,7 @@ impl Collector<'_> {
     fn offsets(&mut self) {
         let c = self.base.plant.contact.clearance_m;
         for share in [0.1, 0.2] {
-            let mut scene = self.base.clone();
-            self.impact(&mut scene, 1.0, 30.0);
-            let start = scene.start;
+            let start = self.impact(1.0, 30.0);
             let name = format!(
                 "impact, bearing {:.0} % of c off the centre, untold",
                 100.0 * share
@@ -336,11 +307,35 @@ impl Collector<'_> {
     }
 }
 
-/// A start that is aimed at the wall at an angle to its normal; positive: along the spin.
-pub(super) fn aimed_impact(scene: &mut Scene, speed_m_s: f64, angle_deg: f64) {
+/// The start of a scene aimed at the wall at an angle to its normal; positive: along the spin.
+pub(super) fn aimed(scene: &Scene, speed_m_s: f64, angle_deg: f64) -> Start {
     let c = scene.plant.contact.clearance_m;
-    scene.start.position_m = V2::new(0.0, -0.99 * c * angle_deg.to_radians().sin());
-    scene.start.velocity_m_s = V2::new(speed_m_s, 0.0);
+    Start {
+        position_m: V2::new(0.0, -0.99 * c * angle_deg.to_radians().sin()),
+        velocity_m_s: V2::new(speed_m_s, 0.0),
+        ..scene.start
+    }
+}
+
+/// The x axis dead for a while, and known to be.
+fn x_lost(start_s: f64) -> Outage {
+    Outage {
+        start_s,
+        duration_s: 0.02,
+        axis: Axis::X,
+        known: true,
+    }
+}
+
+/// Another coefficient of friction from a time on.
+fn friction_from(at_s: f64, coefficient: f64) -> TimedChange {
+    TimedChange {
+        at_s,
+        change: Change {
+            friction_coefficient: Some(coefficient),
+            ..Change::default()
+        },
+    }
 }
 
 /// Every scene on a plant.

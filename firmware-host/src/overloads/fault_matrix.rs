@@ -1,27 +1,24 @@
 //! Every sensor fault in every mode: idle, approach, bounce, whirl, hand-over.
 
-use super::catalogue::{Case, Sizes, aimed_impact};
+use super::catalogue::{Case, Sizes, aimed};
 use super::plants::PlantCase;
 use super::seats::{Seat, Task};
 use super::takeover::whirling;
 use crate::scene::{Axis, Fault, FaultKind, Scene};
+use plant_model::params::Start;
 
 /// Faults last so long, but for dropouts \[s\].
 const LASTS_S: f64 = 0.01;
 /// What is left to come back in \[s\].
 const AFTER_S: f64 = 0.15;
 
-/// A situation: its name, the scene, and when the fault comes \[s\].
-type Situation = (&'static str, Scene, f64);
+/// A situation: its name, where the rotor starts, and when the fault comes \[s\].
+type Situation = (&'static str, Start, f64);
 
-fn situations(base: &Scene, sizes: Sizes) -> Vec<Situation> {
-    let impact = |share: f64| {
-        let mut scene = base.clone();
-        aimed_impact(&mut scene, share * sizes.impact_m_s, 30.0);
-        scene
-    };
-    vec![
-        ("idle", base.clone(), 0.02),
+fn situations(base: &Scene, sizes: Sizes) -> [Situation; 5] {
+    let impact = |share: f64| aimed(base, share * sizes.impact_m_s, 30.0);
+    [
+        ("idle", base.start, 0.02),
         ("approach", impact(1.0), 0.0),
         ("bounce", impact(1.0), 1.5e-3),
         ("whirl", whirling(base, 0.5 * sizes.limit_m_s), 1e-3),
@@ -95,9 +92,10 @@ pub fn cases(plant: &PlantCase) -> Vec<Case> {
     let period_s = 1.0 / plant.rate_hz;
     let clearance_m = plant.scene.plant.contact.clearance_m;
     let mut cases = Vec::new();
-    for (situation, scene, start_s) in situations(&plant.scene, sizes) {
+    for (situation, start, start_s) in situations(&plant.scene, sizes) {
         for (name, kind, axis, duration_s) in faults(clearance_m, period_s) {
-            let mut scene = scene.clone();
+            let mut scene = plant.scene.clone();
+            scene.start = start;
             scene.duration_s = start_s + duration_s + AFTER_S;
             // The converter's range: the rotor cannot get out of it.
             scene.sensor.range_m = Some(4.0 * clearance_m);

@@ -3,6 +3,7 @@
 use crate::clairvoyant::ClairvoyantLaw;
 use crate::levitation::LevitationParams;
 use serde::{Deserialize, Serialize};
+use std::sync::LazyLock;
 
 /// Result of the searches on one plant at one rate.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -32,11 +33,15 @@ pub struct Row {
 /// What is kept in the project, written by `overloads --search`.
 const KEPT: &str = include_str!("../../scenes/plants/found.json");
 
+/// All kept results; none if the file is not what it should be.
+fn all_kept() -> &'static [Row] {
+    static ROWS: LazyLock<Vec<Row>> =
+        LazyLock::new(|| serde_json::from_str(KEPT).unwrap_or_default());
+    &ROWS
+}
+
 /// The kept results of a plant at a rate.
 pub fn kept(plant: &str, rate_hz: f64) -> Option<Found> {
-    let rows: Vec<Row> = serde_json::from_str(KEPT).ok()?;
-    let row = rows
-        .into_iter()
-        .find(|row| row.plant == plant && row.rate_hz == rate_hz);
+    let row = (all_kept().iter()).find(|row| row.plant == plant && row.rate_hz == rate_hz);
     row.map(|row| row.found)
 }

@@ -4,8 +4,8 @@ use super::plan::{Catalogue, Extent};
 use super::promises::{Harm, Promise};
 use super::results::{Metrics, ResultRow};
 use super::seats::Seat;
-use super::sweeps::{SweepRow, median};
-use std::collections::{BTreeMap, BTreeSet};
+use super::sweeps::{SweepRow, median, median_of};
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 /// The summary: promises, sweeps, and every scene in one line a plant. Deterministic.
@@ -92,11 +92,12 @@ fn line(page: &mut String, text: &str) {
 }
 
 fn promise_row(p: &Promise) -> String {
-    let sign = if p.at_least { "≥" } else { "≤" };
     let holds = if p.holds { "yes" } else { "**no**" };
     format!(
-        "| {} | {sign} {} | {:.3} | {holds} |",
-        p.name, p.bound, p.measured
+        "| {} | {} | {:.3} | {holds} |",
+        p.name,
+        p.bound(),
+        p.measured
     )
 }
 
@@ -133,15 +134,12 @@ fn sweep_row(row: &SweepRow) -> String {
 
 /// A page for each scene: file name and text.
 pub fn scenes(catalogue: &Catalogue) -> Vec<(String, String)> {
-    let names: BTreeSet<&str> = catalogue.results.iter().map(|r| r.scene.as_str()).collect();
-    names
-        .into_iter()
-        .map(|name| {
-            (
-                format!("{}.md", slug(name)),
-                scene_page(name, &catalogue.results),
-            )
-        })
+    let mut scenes: BTreeMap<&str, Vec<&ResultRow>> = BTreeMap::new();
+    for row in &catalogue.results {
+        scenes.entry(&row.scene).or_default().push(row);
+    }
+    (scenes.into_iter())
+        .map(|(name, rows)| (format!("{}.md", slug(name)), scene_page(name, &rows)))
         .collect()
 }
 
@@ -160,14 +158,14 @@ fn slug(name: &str) -> String {
     slug.trim_end_matches('-').to_owned()
 }
 
-fn scene_page(name: &str, results: &[ResultRow]) -> String {
+fn scene_page(name: &str, results: &[&ResultRow]) -> String {
     let mut page = format!("# {name}\n\nMedians over the seeds.\n\n");
     line(
         &mut page,
         "| plant | rate [kHz] | policy | recovered | outcomes | touches | over 20 mm/s | peak force [N] | impulse [N s] | contact [ms] | backward [m/s] | back after [ms] |\n| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |",
     );
     let mut groups: BTreeMap<(&str, u64, usize), Vec<&ResultRow>> = BTreeMap::new();
-    for row in results.iter().filter(|r| r.scene == name) {
+    for row in results {
         let order = (Seat::ALL.iter()).position(|s| s.name() == row.policy);
         let key = (
             row.plant.as_str(),
@@ -178,12 +176,8 @@ fn scene_page(name: &str, results: &[ResultRow]) -> String {
     }
     for ((plant, rate, _), rows) in groups {
         let of = |value: &dyn Fn(&Metrics) -> f64| {
-            let mut all: Vec<f64> = (rows.iter())
-                .filter_map(|r| r.metrics.as_ref().map(value))
-                .filter(|x| !x.is_nan())
-                .collect();
-            all.sort_by(f64::total_cmp);
-            median(&all)
+            let values = rows.iter().filter_map(|r| r.metrics.as_ref().map(value));
+            median_of(values.filter(|x| !x.is_nan()))
         };
         let mut outcomes: BTreeMap<String, usize> = BTreeMap::new();
         for row in &rows {

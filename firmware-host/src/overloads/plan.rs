@@ -83,141 +83,154 @@ pub struct Catalogue {
     pub results: Vec<ResultRow>,
 }
 
-/// The plants of an extent, with what is kept for them.
-fn places(extent: Extent) -> Result<Vec<(PlantCase, Found)>, CatalogueError> {
-    let mut all = Vec::new();
-    for rate_hz in RATES_HZ {
-        for plant in plants(rate_hz)?.into_iter().filter(|p| extent.takes(p)) {
-            let found = kept(&plant.name, rate_hz).ok_or_else(|| CatalogueError::NotFound {
-                plant: plant.name.clone(),
-                rate_hz,
-            })?;
-            all.push((plant, found));
-        }
-    }
-    Ok(all)
+/// A plant at one control rate, with what is kept for it and what happens to it.
+struct Place {
+    plant: PlantCase,
+    found: Found,
+    cases: Vec<Case>,
 }
 
 /// A run of the plan.
 enum Job<'a> {
-    Case(&'a (PlantCase, Found), &'a Case, Seat, u64),
+    Case(&'a Place, &'a Case, Seat, u64),
     Own(&'a Scene, PolicyKind, u64),
 }
 
 /// A sweep of the plan: place, seat, seed.
-type SweepJob<'a> = (&'a (PlantCase, Found), Seat, u64);
-
-/// Runs the catalogue, a user's own scenes with it. `on_done` is called with pieces of work done, of
-/// the number that [`pieces`] says.
-///
-/// # Errors
-/// [`CatalogueError`].
-pub fn run(
-    extent: Extent,
-    own: &[Scene],
-    on_done: &(dyn Fn(u64) + Sync),
-) -> Result<Catalogue, CatalogueError> {
-    let places = places(extent)?;
-    let per_place: Vec<Vec<Case>> = places.iter().map(|(plant, _)| cases(plant)).collect();
-    let mut jobs = Vec::new();
-    for (place, cases) in places.iter().zip(&per_place) {
-        for case in cases {
-            for seat in case.seats {
-                for seed in seeds(extent, *seat) {
-                    jobs.push(Job::Case(place, case, *seat, seed));
-                }
-            }
-        }
-    }
-    for scene in own {
-        for kind in &scene.policies {
-            for seed in 0..extent.seeds() {
-                jobs.push(Job::Own(scene, *kind, seed));
-            }
-        }
-    }
-    let results: Vec<ResultRow> = (jobs.par_iter())
-        .map(|job| {
-            let row = match job {
-                Job::Case((plant, found), case, seat, seed) => {
-                    run_case(case, (&plant.name, plant.rate_hz), (*seat, *seed), found)
-                }
-                Job::Own(scene, kind, seed) => run_own(scene, *kind, *seed),
-            };
-            on_done(1);
-            row
-        })
-        .collect();
-    let sweeps = sweeps(extent, &places, on_done)?;
-    let mut promises = of_sweeps(&sweeps);
-    promises.extend(of_results(&results));
-    Ok(Catalogue {
-        promises,
-        sweeps,
-        against_levitation: against_levitation(&results),
-        results,
-    })
-}
-
-fn seeds(extent: Extent, seat: Seat) -> std::ops::Range<u64> {
-    0..if seat.measures() { extent.seeds() } else { 1 }
-}
-
-fn sweeps(
-    extent: Extent,
-    places: &[(PlantCase, Found)],
-    on_done: &(dyn Fn(u64) + Sync),
-) -> Result<Vec<SweepRow>, CatalogueError> {
-    let mut jobs: Vec<SweepJob<'_>> = Vec::new();
-    for place in places {
-        for seat in Seat::ALL {
-            jobs.extend(seeds(extent, seat).map(|seed| (place, seat, seed)));
-        }
-    }
-    let points = (jobs.par_iter())
-        .map(|((plant, found), seat, seed)| {
-            let point = sweep(plant, found, (*seat, *seed)).map_err(|reason| CatalogueError::Run {
-                plant: plant.name.clone(),
-                policy: seat.name(),
-                reason,
-            });
-            on_done(SWEEP_WORTH);
-            point
-        })
-        .collect::<Result<Vec<SweepPoint>, CatalogueError>>()?;
-    let mut rows = Vec::new();
-    let mut rest = points.as_slice();
-    for (plant, _) in places {
-        for seat in Seat::ALL {
-            let (own, others) = rest.split_at(seeds(extent, seat).count());
-            rest = others;
-            rows.push(row(plant, seat, own));
-        }
-    }
-    Ok(rows)
-}
+type SweepJob<'a> = (&'a Place, Seat, u64);
 
 /// A sweep takes about as long as so many runs.
 const SWEEP_WORTH: u64 = 40;
 
-/// Pieces of work of a run.
-///
-/// # Errors
-/// [`CatalogueError`].
-pub fn pieces(extent: Extent, own: &[Scene]) -> Result<u64, CatalogueError> {
-    let places = places(extent)?;
-    let of = |seats: &[Seat]| -> u64 {
-        let all = seats.iter().map(|seat| seeds(extent, *seat).count() as u64);
-        all.sum()
-    };
-    let mut all = of(&Seat::ALL) * SWEEP_WORTH * places.len() as u64;
-    for (plant, _) in &places {
-        all += cases(plant).iter().map(|case| of(case.seats)).sum::<u64>();
+/// What will be run: the catalogue in an extent, and a user's own scenes with it.
+pub struct Plan {
+    extent: Extent,
+    places: Vec<Place>,
+    own: Vec<Scene>,
+}
+
+impl Plan {
+    /// Sets every plant up.
+    ///
+    /// # Errors
+    /// [`CatalogueError::Scene`], [`CatalogueError::NotFound`].
+    pub fn new(extent: Extent, own: Vec<Scene>) -> Result<Self, CatalogueError> {
+        let mut places = Vec::new();
+        for rate_hz in RATES_HZ {
+            for plant in plants(rate_hz)?.into_iter().filter(|p| extent.takes(p)) {
+                let found = kept(&plant.name, rate_hz).ok_or_else(|| CatalogueError::NotFound {
+                    plant: plant.name.clone(),
+                    rate_hz,
+                })?;
+                places.push(Place {
+                    cases: cases(&plant),
+                    plant,
+                    found,
+                });
+            }
+        }
+        Ok(Self {
+            extent,
+            places,
+            own,
+        })
     }
-    for scene in own {
-        all += scene.policies.len() as u64 * extent.seeds();
+
+    fn seeds(&self, seat: Seat) -> std::ops::Range<u64> {
+        0..if seat.measures() {
+            self.extent.seeds()
+        } else {
+            1
+        }
     }
-    Ok(all)
+
+    fn jobs(&self) -> Vec<Job<'_>> {
+        let mut jobs = Vec::new();
+        for place in &self.places {
+            for case in &place.cases {
+                for seat in case.seats {
+                    let of = |seed| Job::Case(place, case, *seat, seed);
+                    jobs.extend(self.seeds(*seat).map(of));
+                }
+            }
+        }
+        for scene in &self.own {
+            for kind in &scene.policies {
+                let of = |seed| Job::Own(scene, *kind, seed);
+                jobs.extend((0..self.extent.seeds()).map(of));
+            }
+        }
+        jobs
+    }
+
+    fn sweep_jobs(&self) -> Vec<SweepJob<'_>> {
+        let mut jobs = Vec::new();
+        for place in &self.places {
+            for seat in Seat::ALL {
+                jobs.extend(self.seeds(seat).map(|seed| (place, seat, seed)));
+            }
+        }
+        jobs
+    }
+
+    /// Pieces of work of a run.
+    pub fn pieces(&self) -> u64 {
+        self.jobs().len() as u64 + SWEEP_WORTH * self.sweep_jobs().len() as u64
+    }
+
+    /// Runs it. `on_done` is called with pieces of work done.
+    ///
+    /// # Errors
+    /// [`CatalogueError::Run`].
+    pub fn run(&self, on_done: &(dyn Fn(u64) + Sync)) -> Result<Catalogue, CatalogueError> {
+        let results: Vec<ResultRow> = (self.jobs().par_iter())
+            .map(|job| {
+                let row = match job {
+                    Job::Case(Place { plant, found, .. }, case, seat, seed) => {
+                        run_case(case, (&plant.name, plant.rate_hz), (*seat, *seed), found)
+                    }
+                    Job::Own(scene, kind, seed) => run_own(scene, *kind, *seed),
+                };
+                on_done(1);
+                row
+            })
+            .collect();
+        let sweeps = self.sweeps(on_done)?;
+        let against_levitation = against_levitation(&results);
+        let mut promises = of_sweeps(&sweeps);
+        promises.extend(of_results(&results, &against_levitation));
+        Ok(Catalogue {
+            promises,
+            sweeps,
+            against_levitation,
+            results,
+        })
+    }
+
+    fn sweeps(&self, on_done: &(dyn Fn(u64) + Sync)) -> Result<Vec<SweepRow>, CatalogueError> {
+        let points = (self.sweep_jobs().par_iter())
+            .map(|(Place { plant, found, .. }, seat, seed)| {
+                let point =
+                    sweep(plant, found, (*seat, *seed)).map_err(|reason| CatalogueError::Run {
+                        plant: plant.name.clone(),
+                        policy: seat.name(),
+                        reason,
+                    });
+                on_done(SWEEP_WORTH);
+                point
+            })
+            .collect::<Result<Vec<SweepPoint>, CatalogueError>>()?;
+        let mut rows = Vec::new();
+        let mut rest = points.as_slice();
+        for place in &self.places {
+            for seat in Seat::ALL {
+                let (own, others) = rest.split_at(self.seeds(seat).count());
+                rest = others;
+                rows.push(row(&place.plant, seat, own));
+            }
+        }
+        Ok(rows)
+    }
 }
 
 /// Searches the gains of the baselines and the weights of the reference anew, for every plant and rate.
@@ -240,7 +253,7 @@ pub fn search(on_done: &dyn Fn(u64)) -> Result<Vec<Row>, CatalogueError> {
             };
             let tuned = tune::tuned(scene).map_err(failed)?.ok_or_else(none)?;
             let stiff = tune::stiff(scene).ok_or_else(none)?;
-            let make = |s: &Scene| Some(seats::levitation(tuned, s));
+            let make = |s: &Scene| seats::levitation(tuned, s);
             let known = super::impact::recoverable_m_s(scene, "tuned", &make).map_err(failed)?;
             let from = reference::search_from_m_s(known);
             let impact_law = reference::impact_law(scene, from).map_err(failed)?;

@@ -1,8 +1,8 @@
 //! What the supervisor promises, against what was measured.
 
-use super::results::ResultRow;
+use super::results::{Metrics, ResultRow};
 use super::seats::Seat;
-use super::sweeps::{SweepRow, TIMED_SHARE, median};
+use super::sweeps::{SweepRow, TIMED_SHARE, median, median_of};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -30,6 +30,12 @@ impl Promise {
             measured,
             holds: measured >= bound,
         }
+    }
+
+    /// The bound as it is read.
+    pub fn bound(&self) -> String {
+        let sign = if self.at_least { "≥" } else { "≤" };
+        format!("{sign} {}", self.bound)
     }
 
     fn at_most(name: impl Into<String>, bound: f64, measured: f64) -> Self {
@@ -122,9 +128,9 @@ fn slowest(row: &SweepRow) -> f64 {
 /// Results of a scene under one policy, over its seeds.
 type PerScene<'a> = BTreeMap<(String, u64, String), Vec<&'a ResultRow>>;
 
-fn per_scene<'a>(rows: &'a [ResultRow], seat: Seat) -> PerScene<'a> {
+fn per_scene<'a>(rows: impl Iterator<Item = &'a ResultRow>, seat: Seat) -> PerScene<'a> {
     let mut map = PerScene::new();
-    for row in rows.iter().filter(|r| r.policy == seat.name()) {
+    for row in rows.filter(|r| r.policy == seat.name()) {
         let key = (row.plant.clone(), row.rate_hz as u64, row.scene.clone());
         map.entry(key).or_default().push(row);
     }
@@ -150,9 +156,9 @@ pub struct Harm {
 
 /// Every scene against levitation alone.
 pub fn against_levitation(rows: &[ResultRow]) -> Vec<Harm> {
-    let alone = per_scene(rows, Seat::Tuned);
+    let alone = per_scene(rows.iter(), Seat::Tuned);
     let mut all = Vec::new();
-    for ((plant, rate, scene), own) in per_scene(rows, Seat::Supervisor) {
+    for ((plant, rate, scene), own) in per_scene(rows.iter(), Seat::Supervisor) {
         let Some(other) = alone.get(&(plant.clone(), rate, scene.clone())) else {
             continue;
         };
@@ -181,9 +187,8 @@ pub fn against_levitation(rows: &[ResultRow]) -> Vec<Harm> {
     all
 }
 
-/// Promises about the catalogue.
-pub fn of_results(rows: &[ResultRow]) -> Vec<Promise> {
-    let harms = against_levitation(rows);
+/// Promises about the catalogue, compared with levitation alone.
+pub fn of_results(rows: &[ResultRow], harms: &[Harm]) -> Vec<Promise> {
     let worst = |value: &dyn Fn(&Harm) -> f64| harms.iter().map(value).fold(0.0, f64::max);
     let mut promises = vec![
         Promise::at_most(
@@ -225,27 +230,18 @@ fn lost_beyond_chance(harm: &Harm) -> bool {
 }
 
 fn of_static_overloads(rows: &[ResultRow]) -> Vec<Promise> {
-    let overloads: Vec<ResultRow> = (rows.iter())
-        .filter(|r| r.group == "static overload")
-        .cloned()
-        .collect();
-    let alone = per_scene(&overloads, Seat::Tuned);
+    let overloads = || rows.iter().filter(|r| r.group == "static overload");
+    let alone = per_scene(overloads(), Seat::Tuned);
     let (mut impacts, mut force, mut impulse, mut back_s) = (0.0_f64, 0.0_f64, 0.0_f64, 0.0_f64);
-    for (key, own) in per_scene(&overloads, Seat::Supervisor) {
+    for (key, own) in per_scene(overloads(), Seat::Supervisor) {
         let Some(other) = alone.get(&key) else {
             continue;
         };
-        let middle = |rows: &[&ResultRow], value: &dyn Fn(&super::results::Metrics) -> f64| {
-            let mut all: Vec<f64> = rows
-                .iter()
-                .map(|r| r.metrics.as_ref().map_or(f64::INFINITY, value))
-                .collect();
-            all.sort_by(f64::total_cmp);
-            median(&all)
+        let middle = |rows: &[&ResultRow], value: &dyn Fn(&Metrics) -> f64| {
+            let of = |r: &&ResultRow| r.metrics.as_ref().map_or(f64::INFINITY, value);
+            median_of(rows.iter().map(of))
         };
-        let pair = |value: &dyn Fn(&super::results::Metrics) -> f64| {
-            (middle(&own, value), middle(other, value))
-        };
+        let pair = |value: &dyn Fn(&Metrics) -> f64| (middle(&own, value), middle(other, value));
         let (a, b) = pair(&|m| m.contacts_over_20_mm_s as f64);
         impacts = impacts.max(a - b);
         let (a, b) = pair(&|m| m.peak_contact_force_n);

@@ -2,13 +2,12 @@
 
 use super::impact::{FIRST_M_S, STEP};
 use super::seats::clairvoyant;
-use super::takeover::take_over;
+use super::takeover::{arrest_of, take_over};
 use crate::clairvoyant::ClairvoyantLaw;
 use crate::closed_loop::{Keep, RunError, run_policy};
 use crate::policies::Policy;
 use crate::scene::Scene;
 use plant_model::V2;
-use plant_model::analysis::arrest::Arrest;
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 use rand_distr::{Distribution, Uniform};
@@ -120,8 +119,7 @@ pub fn search_from_m_s(known_m_s: f64) -> f64 {
 /// # Errors
 /// [`RunError`] of a run that cannot be trusted.
 pub fn whirl_law(scene: &Scene) -> Result<Option<ClairvoyantLaw>, RunError> {
-    let force_n = scene.plant.magnet.map_or(0.0, |m| m.force_max_n);
-    let Some(arrest) = Arrest::new(&scene.plant, force_n) else {
+    let Some(arrest) = arrest_of(scene) else {
         return Ok(None);
     };
     let score = |law: ClairvoyantLaw| {

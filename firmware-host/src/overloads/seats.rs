@@ -2,7 +2,7 @@
 
 use super::found::Found;
 use crate::clairvoyant::{Clairvoyant, ClairvoyantLaw};
-use crate::levitation::{Levitation, LevitationParams};
+use crate::levitation::LevitationParams;
 use crate::policies::Policy;
 use crate::policy_kind::PolicyKind;
 use crate::scene::Scene;
@@ -74,21 +74,20 @@ pub enum Task {
 
 /// The policy set up for a scene on this plant; `None` where the scene lacks what it needs.
 pub fn seated(seat: Seat, task: Task, found: &Found, scene: &Scene) -> Option<Policy> {
-    let with_loop = |kind: PolicyKind, params: LevitationParams| {
-        let scene = Scene {
-            levitation: Some(params),
-            ..scene.clone()
-        };
-        Policy::new(kind, &scene)
-    };
     match seat {
         Seat::Passive => Policy::new(PolicyKind::Passive, scene),
         Seat::Radial => Policy::new(PolicyKind::Radial, scene),
-        Seat::Damping => with_loop(PolicyKind::Levitation, pure_damping(&scene.plant, found)),
-        Seat::Stiff => with_loop(PolicyKind::Levitation, found.stiff),
-        Seat::Tuned => with_loop(PolicyKind::Levitation, found.tuned),
-        Seat::Supervisor => with_loop(PolicyKind::Supervisor, found.tuned),
-        Seat::SupervisorOnStiff => with_loop(PolicyKind::Supervisor, found.stiff),
+        Seat::Damping => {
+            let scene = Scene {
+                damping_n_s_m: full_at_lift_off_n_s_m(&scene.plant),
+                ..scene.clone()
+            };
+            with_loop(PolicyKind::Damping, found.tuned, &scene)
+        }
+        Seat::Stiff => levitation(found.stiff, scene),
+        Seat::Tuned => levitation(found.tuned, scene),
+        Seat::Supervisor => with_loop(PolicyKind::Supervisor, found.tuned, scene),
+        Seat::SupervisorOnStiff => with_loop(PolicyKind::Supervisor, found.stiff, scene),
         Seat::Clairvoyant => Some(Policy::Clairvoyant(clairvoyant(
             match task {
                 Task::Impact => found.impact_law,
@@ -113,20 +112,22 @@ pub fn clairvoyant(law: ClairvoyantLaw, scene: &Scene) -> Clairvoyant {
     Clairvoyant::new(law, &scene.plant, restitution(scene), scene.sample_rate_hz)
 }
 
-/// The tuned loop's derivative with the damping that spends the whole cap at lift-off speed, and no spring.
-fn pure_damping(plant: &PlantParams, found: &Found) -> LevitationParams {
+/// The damping that spends the whole cap at the lift-off speed √(F·c/m) \[N s/m\].
+fn full_at_lift_off_n_s_m(plant: &PlantParams) -> f64 {
     let force_n = plant.magnet.map_or(0.0, |m| m.force_max_n);
-    let lift_off = (force_n * plant.contact.clearance_m / plant.rotor.mass_kg).sqrt();
-    LevitationParams {
-        proportional_n_m: 0.0,
-        integral_n_m_s: 0.0,
-        derivative_n_s_m: force_n / lift_off,
-        ..found.tuned
-    }
+    force_n / (force_n * plant.contact.clearance_m / plant.rotor.mass_kg).sqrt()
+}
+
+/// A policy with other gains of the levitation controller than the scene's.
+fn with_loop(kind: PolicyKind, params: LevitationParams, scene: &Scene) -> Option<Policy> {
+    let scene = Scene {
+        levitation: Some(params),
+        ..scene.clone()
+    };
+    Policy::new(kind, &scene)
 }
 
 /// The levitation controller alone.
-pub fn levitation(params: LevitationParams, scene: &Scene) -> Policy {
-    let force_n = scene.plant.magnet.map_or(0.0, |m| m.force_max_n);
-    Policy::Levitation(Levitation::new(params, 1.0 / scene.sample_rate_hz, force_n))
+pub fn levitation(params: LevitationParams, scene: &Scene) -> Option<Policy> {
+    with_loop(PolicyKind::Levitation, params, scene)
 }

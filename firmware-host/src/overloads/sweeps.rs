@@ -4,11 +4,10 @@ use super::found::Found;
 use super::impact::recoverable_m_s;
 use super::plants::PlantCase;
 use super::seats::{Seat, Task, seated};
-use super::takeover::take_over;
+use super::takeover::{ARRESTED, arrest_of, take_over};
 use crate::closed_loop::RunError;
 use crate::scene::Scene;
 use plant_model::V2;
-use plant_model::analysis::arrest::Arrest;
 use serde::Serialize;
 
 /// One policy on one plant over its seeds.
@@ -41,6 +40,13 @@ pub fn median(sorted: &[f64]) -> f64 {
     }
 }
 
+/// The middle one of values in any order; NaN of none.
+pub fn median_of(values: impl Iterator<Item = f64>) -> f64 {
+    let mut all: Vec<f64> = values.collect();
+    all.sort_by(f64::total_cmp);
+    median(&all)
+}
+
 /// Steps of the whirl sweep, in shares of v_lim.
 const WHIRL_STEP: f64 = 0.01;
 const FIRST_WHIRL: f64 = 0.30;
@@ -52,7 +58,7 @@ pub const TIMED_SHARE: f64 = 0.85;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SweepPoint {
     impact_m_s: f64,
-    offset_impact_m_s: f64,
+    offset_impact_m_s: Option<f64>,
     whirl_share: f64,
     arrest_s: Option<f64>,
 }
@@ -75,9 +81,9 @@ pub fn sweep(
     let offset_impact_m_s = if matches!(seat, Seat::Tuned | Seat::Supervisor) {
         let mut off = scene.clone();
         off.centre_offset_m = 0.1 * off.plant.contact.clearance_m * V2::new(0.6, 0.8);
-        recoverable_m_s(&off, seat.name(), &make(Task::Impact))?
+        Some(recoverable_m_s(&off, seat.name(), &make(Task::Impact))?)
     } else {
-        f64::NAN
+        None
     };
     let (mut whirl_share, mut arrest_s) = (0.0, None);
     if let Some(arrest) = arrest_of(&scene) {
@@ -102,28 +108,23 @@ pub fn sweep(
     })
 }
 
-fn arrest_of(scene: &Scene) -> Option<Arrest> {
-    Arrest::new(&scene.plant, scene.plant.magnet?.force_max_n)
-}
-
 /// The points of all seeds as a row.
 pub fn row(case: &PlantCase, seat: Seat, points: &[SweepPoint]) -> SweepRow {
     let sorted = |value: &dyn Fn(&SweepPoint) -> Option<f64>| {
         let mut all: Vec<f64> = points.iter().filter_map(value).collect();
-        all.retain(|x| !x.is_nan());
         all.sort_by(f64::total_cmp);
         all
     };
     let closed_form_s = arrest_of(&case.scene).map_or(f64::NAN, |arrest| {
         let from = TIMED_SHARE * arrest.limit_m_s;
-        arrest.time_s(from, super::takeover::ARRESTED * from)
+        arrest.time_s(from, ARRESTED * from)
     });
     SweepRow {
         plant: case.name.clone(),
         rate_hz: case.rate_hz,
         policy: seat.name(),
         impact_m_s: sorted(&|p| Some(p.impact_m_s)),
-        offset_impact_m_s: sorted(&|p| Some(p.offset_impact_m_s)),
+        offset_impact_m_s: sorted(&|p| p.offset_impact_m_s),
         whirl_share: sorted(&|p| Some(p.whirl_share)),
         arrest_s: sorted(&|p| p.arrest_s),
         closed_form_s,

@@ -4,7 +4,8 @@ use crate::closed_loop::{Keep, RunError, run_policy};
 use crate::policies::Policy;
 use crate::scene::Scene;
 use plant_model::V2;
-use plant_model::analysis::arrest::circle_radius_m;
+use plant_model::analysis::arrest::{Arrest, circle_radius_m};
+use plant_model::params::Start;
 
 /// Whirl counts as arrested when the backward speed about the centre has fallen to this share of the start's.
 pub const ARRESTED: f64 = 0.25;
@@ -18,14 +19,20 @@ pub struct TakeOver {
     pub arrested_s: Option<f64>,
 }
 
-/// The scene with the rotor on its steady sliding circle at a backward speed \[m/s\], penetration in balance.
-pub fn whirling(scene: &Scene, speed_m_s: f64) -> Scene {
-    let mut scene = scene.clone();
+/// The start of a scene on the rotor's steady sliding circle at a backward speed \[m/s\], penetration in
+/// balance.
+pub fn whirling(scene: &Scene, speed_m_s: f64) -> Start {
     let backward = -scene.start.spin_rad_s.signum();
-    let radius_m = circle_radius_m(&scene.plant, speed_m_s);
-    scene.start.position_m = V2::new(radius_m, 0.0);
-    scene.start.velocity_m_s = V2::new(0.0, backward * speed_m_s);
-    scene
+    Start {
+        position_m: V2::new(circle_radius_m(&scene.plant, speed_m_s), 0.0),
+        velocity_m_s: V2::new(0.0, backward * speed_m_s),
+        ..scene.start
+    }
+}
+
+/// What the whole cap of a scene's magnet can stop; `None` without a magnet or without friction.
+pub fn arrest_of(scene: &Scene) -> Option<Arrest> {
+    Arrest::new(&scene.plant, scene.plant.magnet?.force_max_n)
 }
 
 /// Runs it.
@@ -37,9 +44,12 @@ pub fn take_over(
     speed_m_s: f64,
     acting: (Policy, &'static str),
 ) -> Result<TakeOver, RunError> {
-    let mut scene = whirling(scene, speed_m_s);
-    // Faster than at the start: nobody holds it any more.
-    scene.whirl_speed_m_s = 1.5 * speed_m_s;
+    let scene = Scene {
+        start: whirling(scene, speed_m_s),
+        // Faster than at the start: nobody holds it any more.
+        whirl_speed_m_s: 1.5 * speed_m_s,
+        ..scene.clone()
+    };
     let backward = -scene.start.spin_rad_s.signum();
     let (verdict, trace) = run_policy(&scene, acting, Keep::TraceToDecision, &mut |_| {})?;
     let clearance_m = scene.plant.contact.clearance_m;

@@ -70,7 +70,7 @@ pub fn tuned(scene: &Scene) -> Result<Option<LevitationParams>, RunError> {
     let rated = |all: Vec<(LevitationParams, f64)>| {
         (all.par_iter())
             .map(|(params, sensitivity)| {
-                let make = |s: &Scene| Some(levitation(*params, s));
+                let make = |s: &Scene| levitation(*params, s);
                 let speed = recoverable_from(scene, "tuned", &make, FIRST_M_S)?;
                 Ok((speed, -*sensitivity, *params))
             })
