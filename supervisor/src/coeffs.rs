@@ -1,9 +1,13 @@
-//! The only unit conversion: [`Config`] in SI becomes coefficients per unit. Inside the supervisor
-//! lengths are in clearances, forces in force caps, and time in ticks.
+//! The only unit conversion: [`Config`] in SI becomes coefficients per unit.
+//!
+//! Lengths are in clearances c, forces in force caps F, and time is in units of t₀ = √(m·c/F), in which the
+//! full force moves a rotor at rest by half a clearance. The unit of speed, c/t₀, is then the lift-off speed
+//! of the full force, and acceleration is force. In these units all that counts is near 1, which is what
+//! fixed point needs; a tick is h = T/t₀, some hundredths.
 
-use crate::config::Config;
+use crate::config::{Config, Misfit};
 use crate::math::{exp_neg, max, min, sqrt};
-use crate::vec2::Vec2;
+use crate::scalar::{Scalar, Slow};
 
 /// Smallest share of the lift-off speed from which the damping law spends the whole cap.
 const FULL_FORCE_FROM: f32 = 0.4;
@@ -11,86 +15,147 @@ const FULL_FORCE_FROM: f32 = 0.4;
 /// Longest delay between a sample and its force \[ticks\].
 pub(crate) const MAX_DELAY: usize = 8;
 
-/// Immutable coefficients of the tick.
+/// Of the whirl limit: impacts that will add up to less than the first need no help but to be softened,
+/// from the second on all the force goes to what they add.
+const HARMLESS: f32 = 1.0;
+const URGENT: f32 = 1.6;
+
+/// The cap falls from full to continuous while the thermal state goes from 1 to this much more. The force
+/// at which it comes to rest exceeds the continuous one by less than half as much.
+const FALL: f32 = 0.1;
+
+/// What one unit is in SI.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Coeffs {
-    /// Caps per newton.
-    per_n: f32,
-    /// Newtons per cap.
-    pub(crate) force_max_n: f32,
-    /// Acceleration at the retainer bearing by one cap of force \[clearances/tick²\].
-    pub(crate) force_gain: f32,
-    /// k·T²/m \[1/tick²\].
-    pub(crate) stiffness: f32,
-    /// d·T/m \[1/tick\].
-    pub(crate) damping: f32,
-    /// Share of the way that the delivered force goes in a tick towards the command.
-    pub(crate) lag_step: f32,
-    /// Mean over a tick of what is left of that way: (τ/T)·(1 − exp(−T/τ)).
-    pub(crate) lag_mean: f32,
-    /// Amplifier lag \[ticks\].
-    pub(crate) lag: f32,
+pub struct Scaling {
+    /// A position of 1 \[m\] at the retainer bearing.
+    pub length_m: f32,
+    /// A force of 1 \[N\].
+    pub force_n: f32,
+    /// Clearances per metre at the *sensor*: what a measured position is multiplied by.
+    pub position_per_m: f32,
+    /// Caps per newton: what a force is multiplied by. A unit in the last place low, so that the whole cap
+    /// does not become more than one.
+    pub force_per_n: f32,
+    /// A speed of 1 \[m/s\].
+    pub speed_m_s: f32,
+}
+
+impl Config {
+    /// Units of the supervisor's core for this bearing: constants for firmware without floating point.
+    pub fn scaling(&self) -> Scaling {
+        let force_n = self.force_max_n;
+        Scaling {
+            length_m: self.clearance_m,
+            force_n,
+            position_per_m: self.retainer_plane_ratio / self.clearance_m,
+            force_per_n: (1.0 / force_n) * (1.0 - f32::EPSILON),
+            speed_m_s: self.clearance_m / time_unit_s(self),
+        }
+    }
+}
+
+/// t₀ for the force at the retainer bearing.
+fn time_unit_s(config: &Config) -> f32 {
+    let force_n = config.magnet_plane_ratio * config.force_max_n;
+    sqrt(config.mass_kg * config.clearance_m / force_n)
+}
+
+/// Force–time budget.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Continuous<S> {
+    /// Continuous force \[caps\].
+    pub(crate) force: S,
+    pub(crate) square: S,
+    /// Length of the fall of the cap, in squares of the force.
+    pub(crate) fall: S,
+}
+
+/// Immutable coefficients of the tick.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Coeffs<S: Scalar> {
+    pub(crate) scaling: Scaling,
+    /// h, a tick \[t₀\], and ticks per t₀.
+    pub(crate) tick: S,
+    pub(crate) per_tick: S,
+    pub(crate) half_tick: S,
+    /// κ = k·c/F.
+    pub(crate) stiffness: S,
+    /// Speed that the shaft takes in a tick per position, κ·h, and with the damping δ = d·(c/t₀)/F per speed,
+    /// (δ + κ·h/2)·h.
+    pub(crate) stiffness_step: S,
+    pub(crate) damping_step: S,
+    /// Share of the way from the delivered force to the command that is left after a tick, and its mean
+    /// over the tick: exp(−T/τ) and (τ/T)·(1 − exp(−T/τ)).
+    pub(crate) lag_left: S,
+    pub(crate) lag_mean: S,
+    /// Amplifier lag \[t₀\].
+    pub(crate) lag: S,
     /// Ticks between a sample and the start of its force.
     pub(crate) delay: usize,
-    /// Mean time from a sample to the delivered force that answers it \[ticks\].
-    pub(crate) horizon: f32,
-    /// μ.
-    pub(crate) friction: f32,
+    /// Time from a sample to the middle of the tick in which its force begins \[t₀\].
+    pub(crate) delay_time: S,
+    /// Mean time from a sample to the delivered force that answers it \[t₀\].
+    pub(crate) horizon: S,
+    /// μ, and a hair less than 1/√(1 + μ²).
+    pub(crate) friction: S,
+    pub(crate) tilt: S,
     /// e.
-    pub(crate) restitution: f32,
+    pub(crate) restitution: S,
     /// Backward speed that all impacts to come will add, per normal speed of the next one:
     /// μ(1 + e)(1 + e + e² + …) = μ(1 + e)/(1 − e).
-    pub(crate) bounce_gain: f32,
-    /// Observer gains (position, velocity, disturbance) in flight.
-    pub(crate) flight_gains: [f32; 3],
-    /// Observer gains (position, velocity) in contact.
-    pub(crate) contact_gains: [f32; 2],
+    pub(crate) bounce_gain: S,
+    /// Observer gains (position by position, velocity and load step by difference quotient) in flight.
+    pub(crate) flight_gains: [S; 3],
+    /// The same in contact, where there is no load.
+    pub(crate) contact_gains: [S; 2],
+    /// Largest change of the speed in a tick by an unknown load.
+    pub(crate) most_load: S,
     /// Touching begins above this radius …
-    pub(crate) touch_radius: f32,
+    pub(crate) touch_radius: S,
     /// … and ends below this one.
-    pub(crate) leave_radius: f32,
+    pub(crate) leave_radius: S,
+    /// Beyond this radius the contact is pressed on as only whirl does.
+    pub(crate) pressed_radius: S,
     /// Largest plausible radius.
-    pub(crate) position_limit: f32,
+    pub(crate) position_limit: S,
     /// Filter step of the contact share, 1/ticks of the whirl time.
-    pub(crate) contact_share_step: f32,
-    /// Square of the lift-off speed at rest of a full inward force, F·c/m \[(clearances/tick)²\].
-    pub(crate) slow_squared: f32,
-    pub(crate) hold_share: f32,
-    /// Force per speed of the damping law \[caps per clearance/tick\].
-    pub(crate) damper: f32,
+    pub(crate) contact_share_step: S,
+    pub(crate) hold_share: S,
+    /// Force per speed of the damping law.
+    pub(crate) damper: S,
     pub(crate) whirl_ticks: u32,
     pub(crate) dwell_ticks: u32,
     /// Weight of the levitation controller gained per tick of hand-over.
-    pub(crate) blend_step: f32,
+    pub(crate) blend_step: S,
     /// Weight of the force lost per tick of a fault.
-    pub(crate) fault_step: f32,
+    pub(crate) fault_step: S,
     pub(crate) fault_ticks: u32,
-    /// Clearances per metre at the sensor.
-    per_sensor_m: f32,
-    /// Cap of each axis \[caps\], at most 1 …
-    pub(crate) axis_cap: f32,
-    /// … and in newtons.
-    pub(crate) axis_cap_n: f32,
-    /// Longest change of the command in a tick \[N\].
-    pub(crate) slew_step_n: f32,
-    /// Continuous force \[caps\]; `None` without a budget.
-    pub(crate) continuous: Option<f32>,
+    /// Cap of each axis \[caps\], at most 1.
+    pub(crate) axis_cap: S,
+    /// Longest change of the command in a tick \[caps\].
+    pub(crate) slew_step: S,
+    pub(crate) continuous: Option<Continuous<S>>,
     /// Share of its way that the thermal state goes in a tick.
-    pub(crate) thermal_step: f32,
+    pub(crate) thermal_rate: <S::Slow as Slow<S>>::Rate,
     /// Weight of the force at the beginning of a tick in its mean, where both ends are measured.
-    pub(crate) applied_weight: f32,
-    /// Highest backward speed that the cap arrests \[clearances/tick\].
-    pub(crate) whirl_limit: f32,
+    pub(crate) applied_weight: S,
+    /// Highest backward speed that the cap arrests, and its inverse.
+    pub(crate) whirl_limit: S,
+    pub(crate) per_whirl_limit: S,
+    /// Urgency of impacts: slope by their sum, and what is taken off.
+    pub(crate) urgency_slope: S,
+    pub(crate) urgency_offset: S,
     pub(crate) coast_down_ticks: u32,
     pub(crate) severity_limit: f32,
+    /// Share of the severity limit per square of speed.
+    pub(crate) index_rate: <S::Slow as Slow<S>>::Rate,
     /// Farthest plausible way in a tick.
-    pub(crate) way_per_tick: f32,
-    /// Three steps of the sensor.
-    pub(crate) sensor_steps: f32,
+    pub(crate) way_per_tick: S,
+    /// Three steps of the sensor, as a way and as a sum of speeds over ticks.
+    pub(crate) sensor_steps: S,
+    pub(crate) sensor_speeds: S,
     /// Speed that the observer may make up in contact, being blind for the contact force.
-    pub(crate) blind_speed: f32,
-    /// Metres per second per unit of speed.
-    pub(crate) speed_m_s: f32,
+    pub(crate) blind_speed: S,
 }
 
 /// Least coefficient of friction in the whirl limit: without friction there is neither whirl nor limit.
@@ -135,21 +200,37 @@ fn per_tick(time_s: f32, period_s: f32) -> f32 {
     1.0 / max(time_s / period_s, 1.0)
 }
 
-impl Coeffs {
-    /// From a valid configuration.
-    pub(crate) fn new(config: &Config) -> Self {
+/// Takes coefficients over into `S`, and remembers the first that does not fit.
+struct Taken {
+    misfit: Option<Misfit>,
+}
+
+impl Taken {
+    fn of<S: Scalar>(&mut self, name: &'static str, x: f32) -> S {
+        if self.misfit.is_none() && !S::represents(x) {
+            self.misfit = Some(Misfit {
+                coefficient: name,
+                value: x,
+            });
+        }
+        S::of(x)
+    }
+}
+
+impl<S: Scalar> Coeffs<S> {
+    /// From a valid configuration, with the first coefficient that `S` cannot hold. `f32` holds all.
+    pub(crate) fn new(config: &Config) -> (Self, Option<Misfit>) {
         let t = config.sample_period_s;
-        let (c, f, m) = (config.clearance_m, config.force_max_n, config.mass_kg);
-        let force_gain = config.magnet_plane_ratio * f * t * t / (m * c);
+        let (c, f) = (config.clearance_m, config.force_max_n);
+        let scaling = config.scaling();
+        let unit_s = time_unit_s(config);
+        let h = t / unit_s;
         let lag = config.amplifier_lag_s / t;
-        let lag_step = if lag > 0.0 {
-            1.0 - exp_neg(1.0 / lag)
-        } else {
-            1.0
-        };
+        let lag_left = if lag > 0.0 { exp_neg(1.0 / lag) } else { 0.0 };
         // Whole ticks: the line of delayed commands knows no others.
         let delay = (config.delay_samples + 0.5) as usize;
-        let horizon = delay as f32 + 0.5 + lag;
+        let delay_ticks = delay as f32 + 0.5;
+        let horizon = (delay_ticks + lag) * h;
         let (mu, e) = (config.friction_coefficient, config.restitution);
         let (pole, free) = (
             config.observer_pole_flight,
@@ -159,79 +240,84 @@ impl Coeffs {
             config.observer_pole_contact,
             1.0 - config.observer_pole_contact,
         );
-        let stiffness = config.stiffness_n_m * t * t / m;
+        // Acceleration at the retainer bearing by one cap is 1 by the choice of units.
+        let stiffness = config.stiffness_n_m * c / (config.magnet_plane_ratio * f);
+        let damping = config.damping_n_s_m * unit_s / config.mass_kg;
         // What the model may accelerate by while the wall holds against it.
-        let blind = force_gain + 1.5 * max(stiffness, -stiffness);
-        Self {
-            per_n: 1.0 / f,
-            force_max_n: f,
-            force_gain,
-            stiffness,
-            damping: config.damping_n_s_m * t / m,
-            lag_step,
-            lag_mean: lag * lag_step,
-            lag,
+        let blind = (1.0 + 1.5 * max(stiffness, -stiffness)) * h;
+        // Divided by in every severity.
+        let whirl_limit = max(whirl_limit_m_s(config) / scaling.speed_m_s, 1e-6);
+        let sensor_steps = 3.0 * config.sensor_step_m * config.retainer_plane_ratio / c;
+        let continuous = config.continuous_force_n / f;
+        let square = continuous * continuous;
+        let mut taken = Taken { misfit: None };
+        let mut s = |name, x| taken.of::<S>(name, x);
+        let coeffs = Self {
+            scaling,
+            tick: s("tick", h),
+            per_tick: s("ticks per unit of time", 1.0 / h),
+            stiffness: s("stiffness", stiffness),
+            half_tick: s("tick", 0.5 * h),
+            stiffness_step: s("stiffness", stiffness * h),
+            damping_step: s("damping", (damping + 0.5 * stiffness * h) * h),
+            lag_left: s("lag", lag_left),
+            lag_mean: s("lag", lag * (1.0 - lag_left)),
+            lag: s("lag", lag * h),
             delay,
-            horizon,
-            friction: mu,
-            restitution: e,
-            bounce_gain: mu * (1.0 + e) / (1.0 - e),
+            delay_time: s("delay", delay_ticks * h),
+            horizon: s("horizon", horizon),
+            friction: s("friction", mu),
+            tilt: s("friction", f32::JUST_BELOW_ONE / sqrt(1.0 + mu * mu)),
+            restitution: s("restitution", e),
+            bounce_gain: s("bounce gain", mu * (1.0 + e) / (1.0 - e)),
             // Critically damped fading-memory filters of second and first order.
             flight_gains: [
-                1.0 - pole * pole * pole,
-                1.5 * free * free * (1.0 + pole),
-                free * free * free,
+                s("observer gain", 1.0 - pole * pole * pole),
+                s("observer gain", 1.5 * free * free * (1.0 + pole)),
+                s("observer gain", free * free * free),
             ],
-            contact_gains: [1.0 - touch_pole * touch_pole, touch_free * touch_free],
-            touch_radius: 1.0 - config.contact_band,
-            leave_radius: 1.0 - 1.5 * config.contact_band,
-            position_limit: config.position_limit,
-            contact_share_step: per_tick(config.whirl_time_s, t),
-            slow_squared: force_gain,
-            hold_share: config.hold_share,
+            contact_gains: [
+                s("observer gain", 1.0 - touch_pole * touch_pole),
+                s("observer gain", touch_free * touch_free),
+            ],
+            // A load larger than some caps is no load but a missed contact.
+            most_load: s("tick", 4.0 * h),
+            touch_radius: s("contact band", 1.0 - config.contact_band),
+            leave_radius: s("contact band", 1.0 - 1.5 * config.contact_band),
+            pressed_radius: s("contact band", 1.0 + config.contact_band),
+            position_limit: s("position limit", config.position_limit),
+            contact_share_step: s("whirl time", per_tick(config.whirl_time_s, t)),
+            hold_share: s("hold share", config.hold_share),
             // A full force stops the speed of a full force within twice the reaction time, but that speed is
             // no smaller a share of the lift-off speed than this: below, noise would be all it damps.
-            damper: 1.0
-                / max(
-                    force_gain * (2.0 * horizon + 2.0),
-                    FULL_FORCE_FROM * sqrt(force_gain),
-                ),
+            damper: s("damper", 1.0 / max(2.0 * (horizon + h), FULL_FORCE_FROM)),
             whirl_ticks: (config.whirl_time_s / t) as u32,
             dwell_ticks: (config.handover_dwell_s / t) as u32,
-            blend_step: per_tick(config.handover_blend_s, t),
-            fault_step: per_tick(config.fault_blend_s, t),
+            blend_step: s("hand-over blend", per_tick(config.handover_blend_s, t)),
+            fault_step: s("fault blend", per_tick(config.fault_blend_s, t)),
             fault_ticks: config.fault_ticks as u32,
-            per_sensor_m: config.retainer_plane_ratio / c,
-            axis_cap: min(config.axis_force_max_n / f, 1.0),
-            axis_cap_n: min(config.axis_force_max_n, f),
-            slew_step_n: config.force_slew_n_s * t,
-            continuous: (config.continuous_force_n < f).then_some(config.continuous_force_n / f),
-            thermal_step: min(t / config.thermal_time_s, 1.0),
-            applied_weight: applied_weight(lag),
-            // Divided by in every severity.
-            whirl_limit: max(whirl_limit_m_s(config) * t / c, 1e-6),
+            axis_cap: s("axis cap", min(config.axis_force_max_n / f, 1.0)),
+            // More than twice the cap binds nothing.
+            slew_step: s("slew limit", min(config.force_slew_n_s * t / f, 4.0)),
+            continuous: (continuous < 1.0).then_some(Continuous {
+                force: s("continuous force", continuous),
+                square: s("continuous force", square),
+                fall: s("continuous force", FALL * square),
+            }),
+            thermal_rate: S::Slow::rate(min(t / config.thermal_time_s, 1.0)),
+            applied_weight: s("lag", applied_weight(lag)),
+            whirl_limit: s("whirl limit", whirl_limit),
+            per_whirl_limit: s("whirl limit", 1.0 / whirl_limit),
+            urgency_slope: s("whirl limit", 1.0 / (whirl_limit * (URGENT - HARMLESS))),
+            urgency_offset: s("whirl limit", HARMLESS / (URGENT - HARMLESS)),
             coast_down_ticks: (config.coast_down_s / t) as u32,
             severity_limit: config.severity_limit,
-            way_per_tick: config.speed_max_m_s * t / c,
-            sensor_steps: 3.0 * config.sensor_step_m * config.retainer_plane_ratio / c,
-            blind_speed: blind * (1.0 + touch_pole) / touch_free,
-            speed_m_s: c / t,
-        }
-    }
-
-    /// Position at the retainer bearing from one at the sensor.
-    #[inline]
-    pub(crate) fn position(&self, sensor_m: [f32; 2]) -> Vec2 {
-        Vec2::from_array(sensor_m) * self.per_sensor_m
-    }
-
-    #[inline]
-    pub(crate) fn force(&self, force_n: [f32; 2]) -> Vec2 {
-        Vec2::from_array(force_n) * self.per_n
-    }
-
-    #[inline]
-    pub(crate) fn force_n(&self, force: Vec2) -> [f32; 2] {
-        (force * self.force_max_n).to_array()
+            index_rate: S::Slow::rate(1.0 / whirl_limit / whirl_limit / config.severity_limit),
+            way_per_tick: s("largest speed", config.speed_max_m_s * t / c),
+            sensor_steps: s("sensor step", sensor_steps),
+            sensor_speeds: s("sensor step", sensor_steps / h),
+            blind_speed: s("observer", blind * (1.0 + touch_pole) / touch_free),
+        };
+        (coeffs, taken.misfit)
     }
 }

@@ -43,6 +43,38 @@ impl core::fmt::Display for ConfigError {
 
 impl core::error::Error for ConfigError {}
 
+/// A coefficient that the chosen number cannot hold.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Misfit {
+    /// What it is, per unit (see [`crate::Scaling`]).
+    pub coefficient: &'static str,
+    /// Its value.
+    pub value: f32,
+}
+
+/// Why there is no core for a configuration.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum CoreError {
+    /// A parameter is outside its range.
+    Range(ConfigError),
+    /// A coefficient is outside what the number holds, or too small to be held to some digits.
+    Misfit(Misfit),
+}
+
+impl core::fmt::Display for CoreError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::Range(error) => error.fmt(f),
+            Self::Misfit(Misfit { coefficient, value }) => write!(
+                f,
+                "{coefficient} comes to {value:e} per unit, which the chosen number cannot hold; use another tick or f32"
+            ),
+        }
+    }
+}
+
+impl core::error::Error for CoreError {}
+
 macro_rules! parameters {
     ($($name:ident, $unit:literal, $low:literal ..= $high:literal, $text:literal;)*) => {
         /// Everything the supervisor must be told about its bearing, SI units.

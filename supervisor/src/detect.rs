@@ -3,26 +3,27 @@
 
 use crate::coeffs::Coeffs;
 use crate::estimate::Motion;
-use crate::math::max;
+use crate::scalar::Scalar;
 use crate::vec2::Vec2;
 
 /// What was found at this tick.
 #[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Findings {
+pub(crate) struct Findings<S> {
     /// r̂ of the estimated position.
-    pub(crate) normal: Vec2,
+    pub(crate) normal: Vec2<S>,
+    pub(crate) radius: S,
     /// Outward speed.
-    pub(crate) radial_speed: f32,
+    pub(crate) radial_speed: S,
     /// Counter-clockwise tangential speed.
-    pub(crate) tangential_speed: f32,
+    pub(crate) tangential_speed: S,
+    /// Outward acceleration by an unknown load.
+    pub(crate) load: S,
     pub(crate) touching: bool,
     /// Touching began, ended at this tick.
     pub(crate) touched: bool,
     pub(crate) left: bool,
     /// The whole force inwards, from now on, could not prevent contact.
     pub(crate) unavoidable: bool,
-    /// Half of it could, whatever the direction of the motion turns to.
-    pub(crate) calm: bool,
 }
 
 /// Ticks for which the observer stays quick from the last tick in contact on: its velocity must get
@@ -46,7 +47,12 @@ impl Detector {
     }
 
     /// Looks for contact in the sample itself, before the observer uses it.
-    pub(crate) fn sample(&mut self, position: Option<Vec2>, coeffs: &Coeffs) -> (bool, bool) {
+    #[inline]
+    pub(crate) fn sample<S: Scalar>(
+        &mut self,
+        position: Option<Vec2<S>>,
+        coeffs: &Coeffs<S>,
+    ) -> (bool, bool) {
         let before = self.touching;
         if let Some(position) = position {
             let radius = if before {
@@ -54,7 +60,7 @@ impl Detector {
             } else {
                 coeffs.touch_radius
             };
-            self.touching = position.length_squared() > radius * radius;
+            self.touching = position.exceeds(radius);
         }
         if self.touching {
             self.recovery = RECOVERY_TICKS;
@@ -64,39 +70,45 @@ impl Detector {
         (self.touching && !before, before && !self.touching)
     }
 
-    pub(crate) fn findings(
+    #[inline(never)]
+    pub(crate) fn findings<S: Scalar>(
         &self,
-        motion: &Motion,
+        motion: &Motion<S>,
         (touched, left): (bool, bool),
-        coeffs: &Coeffs,
-    ) -> Findings {
-        let (normal, radius) = motion.position.direction();
-        let radial_speed = motion.velocity.dot(normal);
-        let tangential_speed = motion.velocity.dot(normal.turned());
-        let load = max(motion.load.dot(normal), 0.0);
-        let available = |share: f32| {
-            let left = share * coeffs.force_gain - load;
-            if radius < LOAD_COUNTS_BEYOND {
-                max(left, 0.25 * share * coeffs.force_gain)
-            } else {
-                left
-            }
-        };
-        // v² against twice the work per mass that the force and the shaft do up to the wall.
-        let spring = coeffs.stiffness * (1.0 - radius * radius);
-        let stops = |speed: f32, share: f32| {
-            let path = 1.0 - radius - speed * coeffs.horizon;
-            path > 0.0 && speed * speed <= 2.0 * available(share) * path + spring
-        };
-        Findings {
+        coeffs: &Coeffs<S>,
+    ) -> Findings<S> {
+        let normal = motion.position.direction();
+        let mut found = Findings {
             normal,
-            radial_speed,
-            tangential_speed,
+            radius: motion.position.dot(normal),
+            radial_speed: motion.velocity.dot(normal),
+            tangential_speed: motion.velocity.dot(normal.turned()),
+            load: motion.load_step.dot(normal) * coeffs.per_tick,
             touching: self.touching,
             touched,
             left,
-            unavoidable: radial_speed > 0.0 && !stops(radial_speed, 1.0),
-            calm: !self.near_contact() && stops(motion.velocity.length(), 0.5),
+            unavoidable: false,
+        };
+        let outward = found.radial_speed;
+        found.unavoidable = outward > S::ZERO && !found.stops(outward, S::ONE, coeffs);
+        found
+    }
+}
+
+impl<S: Scalar> Findings<S> {
+    /// Whether a share of the force inwards, from when it can act, stops a rotor of this speed before the
+    /// wall: v² against twice the work that the force and the shaft do up to there.
+    pub(crate) fn stops(&self, speed: S, share: S, coeffs: &Coeffs<S>) -> bool {
+        let room = S::ONE - self.radius;
+        let path = room - speed * coeffs.horizon;
+        if path <= S::ZERO {
+            return false;
         }
+        let mut left = share - self.load.or_more(S::ZERO);
+        if self.radius < S::of(LOAD_COUNTS_BEYOND) {
+            left = left.or_more(S::of(0.25) * share);
+        }
+        let spring = coeffs.stiffness * room * (S::ONE + self.radius);
+        speed * speed <= (left + left) * path + spring
     }
 }

@@ -5,58 +5,43 @@
 
 use crate::coeffs::{Coeffs, MAX_DELAY};
 use crate::guard::Actuator;
-use crate::math::between;
+use crate::scalar::Scalar;
 use crate::vec2::Vec2;
 
-/// Estimated motion, per unit and tick.
+/// Estimated motion, per unit.
 #[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Motion {
-    pub(crate) position: Vec2,
-    pub(crate) velocity: Vec2,
-    /// Acceleration by loads that the model does not know.
-    pub(crate) load: Vec2,
+pub(crate) struct Motion<S> {
+    pub(crate) position: Vec2<S>,
+    pub(crate) velocity: Vec2<S>,
+    /// Speed that loads which the model does not know add in a tick.
+    pub(crate) load_step: Vec2<S>,
     /// From one sample only: the velocity is not known yet.
     pub(crate) fresh: bool,
 }
 
 /// The observer.
 #[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Observer {
-    motion: Motion,
+pub(crate) struct Observer<S> {
+    motion: Motion<S>,
     started: bool,
     /// Delivered force at the last tick.
-    delivered: Vec2,
+    delivered: Vec2<S>,
     /// Commands of the last ticks, newest at `newest`.
-    commands: [Vec2; MAX_DELAY],
+    commands: [Vec2<S>; MAX_DELAY],
     newest: usize,
 }
 
-/// Estimates beyond this are held: the guard lets no sample pass that is farther out.
-const FARTHEST: f32 = 1e4;
-
-impl Observer {
+impl<S: Scalar> Observer<S> {
     /// Carries the estimate over one tick and corrects it by the sample, if there is one.
+    #[inline(never)]
     pub(crate) fn advance(
         &mut self,
-        sample: Option<Vec2>,
+        sample: Option<Vec2<S>>,
         in_contact: bool,
-        actuator: Actuator,
-        coeffs: &Coeffs,
-    ) -> Motion {
-        let index = self.newest.wrapping_sub(coeffs.delay) & (MAX_DELAY - 1);
-        let command = self.commands.get(index).copied().unwrap_or_default();
-        let command = actuator.carried(command);
-        let before = actuator.carried(self.delivered);
-        let away = before - command;
-        let (delivered, mean) = match actuator.applied {
-            Some(now) => (now, now + (before - now) * coeffs.applied_weight),
-            None => (
-                command + away * (1.0 - coeffs.lag_step),
-                command + away * coeffs.lag_mean,
-            ),
-        };
-        self.delivered = delivered;
-
+        actuator: Actuator<S>,
+        coeffs: &Coeffs<S>,
+    ) -> Motion<S> {
+        let mean = self.deliver(actuator, coeffs);
         if let Some(position) = sample
             && !self.started
         {
@@ -69,43 +54,63 @@ impl Observer {
             return self.motion;
         }
         let m = &mut self.motion;
-        let middle = m.position + m.velocity * 0.5;
-        let mut acceleration =
-            mean * coeffs.force_gain - middle * coeffs.stiffness - m.velocity * coeffs.damping;
+        // Speed that a tick adds; shaft and damping at the middle of it.
+        let mut gained = mean * coeffs.tick
+            - m.position * coeffs.stiffness_step
+            - m.velocity * coeffs.damping_step;
         if !in_contact {
-            acceleration = acceleration + m.load;
+            gained = gained + m.load_step;
         }
-        m.position = m.position + m.velocity + acceleration * 0.5;
-        m.velocity = m.velocity + acceleration;
+        m.position = m.position + m.velocity * coeffs.tick + gained * coeffs.half_tick;
+        m.velocity = m.velocity + gained;
         if let Some(position) = sample {
             let error = position - m.position;
-            let [on_position, on_velocity, on_load] = if in_contact && m.fresh {
+            let error_speed = error * coeffs.per_tick;
+            if !in_contact {
+                let [on_position, on_velocity, on_load] = coeffs.flight_gains;
+                m.position = m.position + error * on_position;
+                m.velocity = m.velocity + error_speed * on_velocity;
+                m.load_step = m.load_step + error_speed * on_load;
+            } else if m.fresh {
                 // Switched on into a contact: the first difference is worth more than rest.
-                [1.0, 1.0, 0.0]
-            } else if in_contact {
-                let [p, v] = coeffs.contact_gains;
-                [p, v, 0.0]
+                m.position = position;
+                m.velocity = m.velocity + error_speed;
             } else {
-                coeffs.flight_gains
-            };
-            m.position = m.position + error * on_position;
-            m.velocity = m.velocity + error * on_velocity;
-            m.load = m.load + error * on_load;
+                let [on_position, on_velocity] = coeffs.contact_gains;
+                m.position = m.position + error * on_position;
+                m.velocity = m.velocity + error_speed * on_velocity;
+            }
             m.fresh = false;
         }
-        m.position = held(m.position);
-        m.velocity = held(m.velocity);
-        // A load larger than some caps is no load but a missed contact.
-        let most = 4.0 * coeffs.force_gain;
-        m.load = Vec2::new(
-            between(m.load.x, -most, most),
-            between(m.load.y, -most, most),
-        );
+        let within = m.position.length_squared() + m.velocity.length_squared() <= S::FAR_SQUARE;
+        if !within || m.load_step.exceeds(coeffs.most_load) {
+            m.hold_back(coeffs);
+        }
         *m
     }
 
+    /// Force of the tick that ends now: delivered at its end (kept), and its mean (returned).
+    fn deliver(&mut self, actuator: Actuator<S>, coeffs: &Coeffs<S>) -> Vec2<S> {
+        let index = self.newest.wrapping_sub(coeffs.delay) & (MAX_DELAY - 1);
+        let command = self.commands.get(index).copied().unwrap_or_default();
+        let command = actuator.carried(command);
+        let before = actuator.carried(self.delivered);
+        let (delivered, mean) = match actuator.applied {
+            Some(now) => (now, now + (before - now) * coeffs.applied_weight),
+            None => {
+                let away = before - command;
+                (
+                    command + away * coeffs.lag_left,
+                    command + away * coeffs.lag_mean,
+                )
+            }
+        };
+        self.delivered = delivered;
+        mean
+    }
+
     /// Estimated velocity of the last tick.
-    pub(crate) fn velocity(&self) -> Vec2 {
+    pub(crate) fn velocity(&self) -> Vec2<S> {
         self.motion.velocity
     }
 
@@ -116,17 +121,45 @@ impl Observer {
     }
 
     /// Tells the observer what was commanded at this tick.
-    pub(crate) fn commanded(&mut self, force: Vec2) {
+    pub(crate) fn commanded(&mut self, force: Vec2<S>) {
         self.newest = self.newest.wrapping_add(1) & (MAX_DELAY - 1);
         if let Some(slot) = self.commands.get_mut(self.newest) {
             *slot = force;
         }
     }
+
+    /// The last command came too late: the one before it had its tick, too.
+    pub(crate) fn late(&mut self) {
+        let before = self.newest.wrapping_sub(1) & (MAX_DELAY - 1);
+        let kept = self.commands.get(before).copied().unwrap_or_default();
+        if let Some(slot) = self.commands.get_mut(self.newest) {
+            *slot = kept;
+        }
+    }
+
+    /// After a change of the units of length, speed and force.
+    pub(crate) fn rescale(&mut self, length: S, speed: S, force: S) {
+        let m = &mut self.motion;
+        m.position = m.position * length;
+        m.velocity = m.velocity * speed;
+        m.load_step = m.load_step * speed;
+        self.delivered = self.delivered * force;
+        for command in &mut self.commands {
+            *command = *command * force;
+        }
+    }
 }
 
-fn held(v: Vec2) -> Vec2 {
-    Vec2::new(
-        between(v.x, -FARTHEST, FARTHEST),
-        between(v.y, -FARTHEST, FARTHEST),
-    )
+impl<S: Scalar> Motion<S> {
+    /// Bounds what has run away: the guard lets no sample pass that is so far out, and a load larger than
+    /// some caps is no load but a missed contact.
+    #[cold]
+    fn hold_back(&mut self, coeffs: &Coeffs<S>) {
+        // Half the root of FAR_SQUARE: with it the sum of both squares is below.
+        let far = S::FAR_SQUARE.root() * S::of(0.5);
+        let held = |v: Vec2<S>, most: S| v.map(|x| x.between(-most, most));
+        self.position = held(self.position, far);
+        self.velocity = held(self.velocity, far);
+        self.load_step = held(self.load_step, coeffs.most_load * S::of(0.7));
+    }
 }

@@ -3,24 +3,26 @@
 
 use crate::coeffs::Coeffs;
 use crate::phase::Phase;
+use crate::scalar::Scalar;
 use crate::signal::IntegratorHint;
 use crate::vec2::Vec2;
 
 /// Force of this tick \[caps\]: the phase decides whose it is. `last` is the force of the tick before.
-pub(crate) fn blend(
-    phase: Phase,
-    own: Vec2,
-    levitation: Vec2,
-    last: Vec2,
-    coeffs: &Coeffs,
-) -> Vec2 {
+#[inline]
+pub(crate) fn blend<S: Scalar>(
+    phase: Phase<S>,
+    own: Vec2<S>,
+    levitation: Vec2<S>,
+    last: Vec2<S>,
+    coeffs: &Coeffs<S>,
+) -> Vec2<S> {
     match phase {
         Phase::Levitated => levitation,
-        Phase::Handover { weight } => own * (1.0 - weight) + levitation * weight,
+        Phase::Handover { weight } => own * (S::ONE - weight) + levitation * weight,
         // The last force already carries the last weight: their ratio makes the fall linear. Less than half
         // a step is what rounding leaves of nothing.
-        Phase::SensorFault { weight } if weight > 0.5 * coeffs.fault_step => {
-            last * (weight / (weight + coeffs.fault_step))
+        Phase::SensorFault { weight } if weight + weight > coeffs.fault_step => {
+            last * weight.over(weight + coeffs.fault_step)
         }
         Phase::SensorFault { .. } => Vec2::ZERO,
         _ => own,
@@ -32,29 +34,41 @@ pub(crate) fn blend(
 /// It may be calm only because the supervisor carries a load; a controller whose integrator does not
 /// carry it yet would drop the rotor. It gets the bearing when it asks for as much.
 #[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Readiness {
+pub(crate) struct Readiness<S> {
     /// Inward force that the controller asks for less than the supervisor, filtered \[caps\].
-    shortfall: f32,
+    shortfall: S,
 }
 
 /// Shortfall that the blend can cover \[caps\].
 const COVERED: f32 = 0.06;
 
-impl Readiness {
+impl<S: Scalar> Readiness<S> {
     pub(crate) fn ready(&self) -> bool {
-        self.shortfall < COVERED
+        self.shortfall < S::of(COVERED)
     }
 
     /// Compares the forces of this tick along the outward direction.
-    pub(crate) fn compare(&mut self, own: Vec2, levitation: Vec2, outward: Vec2, coeffs: &Coeffs) {
+    #[inline]
+    pub(crate) fn compare(
+        &mut self,
+        own: Vec2<S>,
+        levitation: Vec2<S>,
+        outward: Vec2<S>,
+        coeffs: &Coeffs<S>,
+    ) {
         let short = (levitation - own).dot(outward);
-        self.shortfall += (short - self.shortfall) * coeffs.blend_step;
+        self.shortfall = self.shortfall + (short - self.shortfall) * coeffs.blend_step;
     }
 }
 
 /// While the supervisor acts, or the bearing is off, the controller does not have the bearing and must
 /// not integrate. Once contact could be avoided it may, so that it becomes ready.
-pub(crate) fn integrator_hint(phase: Phase, calm: bool, bearing_on: bool) -> IntegratorHint {
+#[inline]
+pub(crate) fn integrator_hint<S: Scalar>(
+    phase: Phase<S>,
+    calm: bool,
+    bearing_on: bool,
+) -> IntegratorHint {
     match phase {
         _ if !bearing_on => IntegratorHint::Hold,
         Phase::Levitated | Phase::Handover { .. } => IntegratorHint::Run,

@@ -10,21 +10,23 @@
 //! friction: −(b̂ + μ·n̂).
 
 use crate::coeffs::Coeffs;
+use crate::course::{Course, Impact, sense, sum_of_impacts};
 use crate::detect::Findings;
 use crate::estimate::Motion;
-use crate::math::{between, max, min, sqrt};
+use crate::guard::Spin;
+use crate::scalar::Scalar;
 use crate::signal::Mode;
 use crate::vec2::Vec2;
 
 /// Wanted forces in the order in which they may use the capacity \[caps\].
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(crate) struct Wanted {
+pub(crate) struct Wanted<S> {
     /// Against the backward tangential speed, tilted inwards by what friction is worth.
-    pub(crate) braking: Vec2,
+    pub(crate) braking: Vec2<S>,
     /// Against the velocity.
-    pub(crate) damping: Vec2,
+    pub(crate) damping: Vec2<S>,
     /// Inwards.
-    pub(crate) restoring: Vec2,
+    pub(crate) restoring: Vec2<S>,
     /// Wanted in contact.
     pub(crate) touching: bool,
 }
@@ -32,194 +34,165 @@ pub(crate) struct Wanted {
 /// Share of the cap that pushes inwards between impacts: more shortens the chords and with them the time
 /// in which braking takes speed out.
 const FLIGHT_SHARE: f32 = 0.15;
-/// Of the whirl limit: impacts that will add up to less than the first need no help but to be softened,
-/// from the second on all the force goes to what they add.
-const HARMLESS: f32 = 1.0;
-const URGENT: f32 = 1.6;
 /// Largest share of the cap that ever pushes inwards.
 const NEARLY_ALL: f32 = 0.95;
 
-/// The wanted force of a mode; zero for the modes in which the supervisor wants nothing itself.
-pub(crate) fn wanted(
-    mode: Mode,
-    motion: &Motion,
-    found: &Findings,
-    spin_sign: f32,
-    coeffs: &Coeffs,
-) -> Wanted {
-    match mode {
-        Mode::Levitated | Mode::SensorFault => Wanted::default(),
-        Mode::BackwardWhirl => braking(motion, found, spin_sign, coeffs),
-        Mode::Pinned => hold(motion, found, spin_sign, coeffs),
-        Mode::Approach | Mode::Bounce | Mode::Handover => {
-            if found.touching {
-                braking(motion, found, spin_sign, coeffs)
+/// What the law looks at.
+pub(crate) struct View<'a, S: Scalar> {
+    pub(crate) motion: &'a Motion<S>,
+    pub(crate) found: &'a Findings<S>,
+    pub(crate) course: &'a Course<S>,
+    /// The next impact in flight.
+    pub(crate) ahead: Option<&'a Impact<S>>,
+    pub(crate) spin: Spin,
+    pub(crate) coeffs: &'a Coeffs<S>,
+}
+
+impl<S: Scalar> View<'_, S> {
+    /// The wanted force of a mode; zero for the modes in which the supervisor wants nothing itself.
+    #[inline]
+    pub(crate) fn wanted(&self, mode: Mode) -> Wanted<S> {
+        match mode {
+            Mode::Levitated | Mode::SensorFault => Wanted::default(),
+            Mode::Pinned => self.hold(),
+            Mode::BackwardWhirl => self.in_contact(),
+            _ if self.found.touching => self.in_contact(),
+            _ => self.in_flight(),
+        }
+    }
+
+    /// (4.8)'s K; with unknown spin nobody knows which way an impact will push, and only the whirl counts
+    /// that is there, or its sense, and the force with it, would change from tick to tick.
+    fn bounce_gain(&self) -> S {
+        match self.spin {
+            Spin::Unknown => S::ZERO,
+            _ => self.coeffs.bounce_gain,
+        }
+    }
+
+    /// Against the speed, −D·v; no longer than twice the cap, which no room holds either.
+    fn damping(&self) -> Vec2<S> {
+        let twice = self.course.inverse + self.course.inverse;
+        self.motion.velocity * -self.coeffs.damper.or_less(twice)
+    }
+
+    /// In flight. What speed leaves of the capacity brings the rotor back: damping alone would let it lie.
+    /// When slow, a little more of it than a hold on the wall has, or the two would take turns.
+    #[inline(never)]
+    fn in_flight(&self) -> Wanted<S> {
+        let share = (S::of(NEARLY_ALL) - self.course.square).or_more(S::of(FLIGHT_SHARE));
+        Wanted {
+            braking: match self.ahead {
+                Some(impact) => self.before(impact),
+                None => Vec2::ZERO,
+            },
+            damping: self.damping(),
+            restoring: self.motion.position * -share,
+            touching: false,
+        }
+    }
+
+    /// Against what the impacts to come will add up to, by its gradient in the velocity at the place where
+    /// a force that is decided now will act. If the next impact comes before that, it is the flight after
+    /// it, with the velocity that the impact will leave.
+    #[inline]
+    fn before(&self, impact: &Impact<S>) -> Vec2<S> {
+        let coeffs = self.coeffs;
+        let gain = self.bounce_gain();
+        let sense = sense(self.spin, impact.along);
+        let (mut normal_speed, mut backward) = (impact.normal_speed, impact.along * sense);
+        let sum = sum_of_impacts(backward, normal_speed, gain);
+        let urgency =
+            (sum * coeffs.urgency_slope - coeffs.urgency_offset).or_less(S::JUST_BELOW_ONE);
+        if urgency <= S::ZERO {
+            return Vec2::ZERO;
+        }
+        let (mut position, mut velocity) = (self.motion.position, self.motion.velocity);
+        let mut act_after = coeffs.horizon;
+        if impact.time < act_after {
+            let n = impact.normal;
+            let lost = (S::ONE + coeffs.restitution) * normal_speed;
+            let friction = match self.spin {
+                Spin::Unknown => S::ZERO,
+                _ => coeffs.friction * lost,
+            };
+            velocity = velocity - n * lost + n.turned() * (friction * sense);
+            normal_speed = coeffs.restitution * normal_speed;
+            backward = backward + friction;
+            position = n;
+            // A chord from wall to wall lasts 2·v_n/v².
+            let (square, twice) = (velocity.length_squared(), normal_speed + normal_speed);
+            let left = act_after - impact.time;
+            act_after = if left * square <= twice {
+                left
             } else {
-                before_impact(motion, spin_sign, coeffs)
-            }
+                twice.over(square)
+            };
         }
+        let acts_at = position + velocity * act_after;
+        // Gradient of S, times v_n: v_b = r × v about the centre, v_n = √(v² − v_b²).
+        let arm = sense * (normal_speed - gain * backward);
+        let gradient = acts_at.turned() * arm + velocity * gain;
+        let strength = (sum * coeffs.damper).or_less(urgency);
+        gradient * -(gradient.inverse_length() * strength)
     }
-}
 
-/// Sense of backward at a contact with normal `n`, +1 counter-clockwise: against the surface speed of
-/// the spin, or, with unknown spin, along the whirl that is there.
-fn backward(n: Vec2, velocity: Vec2, spin_sign: f32) -> f32 {
-    if spin_sign != 0.0 {
-        -spin_sign
-    } else if velocity.dot(n.turned()) > 0.0 {
-        1.0
-    } else {
-        -1.0
-    }
-}
-
-/// In flight: the next impact is at the end of the chord. If it comes before a force decided now can
-/// act, the flight after it counts instead, with the velocity that the impact will leave.
-fn before_impact(motion: &Motion, spin_sign: f32, coeffs: &Coeffs) -> Wanted {
-    let damping = -motion.velocity * coeffs.damper;
-    // What speed leaves of the capacity brings the rotor back: damping alone would let it lie. When slow,
-    // a little more of it than a hold on the wall has, or the two would take turns.
-    let share = max(
-        NEARLY_ALL - of_lift_off(motion.velocity, coeffs),
-        FLIGHT_SHARE,
-    );
-    let restoring = -motion.position * share;
-    let rest = Wanted {
-        braking: Vec2::ZERO,
-        damping,
-        restoring,
-        touching: false,
-    };
-    let (mut position, mut velocity) = (motion.position, motion.velocity);
-    let Some(mut impact) = Impact::ahead(position, velocity) else {
-        return rest;
-    };
-    // With unknown spin nobody knows which way an impact will push: only the whirl counts that is
-    // there, or its sense, and the force with it, would change from tick to tick.
-    let (gain, friction) = if spin_sign != 0.0 {
-        (coeffs.bounce_gain, coeffs.friction)
-    } else {
-        (0.0, 0.0)
-    };
-    let mut act_after = coeffs.horizon;
-    if impact.ticks < act_after {
-        let b = impact.normal.turned() * backward(impact.normal, velocity, spin_sign);
-        let lost = (1.0 + coeffs.restitution) * velocity.dot(impact.normal);
-        velocity = velocity - impact.normal * lost + b * (friction * lost);
-        act_after -= impact.ticks;
-        // A hair inside, so that the chord ahead is not the point itself.
-        position = impact.normal * 0.999;
-        match Impact::ahead(position, velocity) {
-            Some(after) => impact = after,
-            None => return rest,
-        }
-        act_after = min(act_after, impact.ticks);
-    }
-    let acts_at = position + velocity * act_after;
-    let n = impact.normal;
-    let sense = backward(n, velocity, spin_sign);
-    let (v_n, v_b) = (velocity.dot(n), velocity.dot(n.turned()) * sense);
-    let sum = v_b + gain * v_n;
-    let urgency = between(
-        (sum / coeffs.whirl_limit - HARMLESS) / (URGENT - HARMLESS),
-        0.0,
-        1.0,
-    );
-    let strength = min(max(sum, 0.0) * coeffs.damper, urgency);
-    // Gradient of S, times v_n: v_b = r × v about the centre, v_n = √(v² − v_b²).
-    let (gradient, _) =
-        (acts_at.turned() * (sense * (v_n - gain * v_b)) + velocity * gain).direction();
-    Wanted {
-        braking: gradient * -strength,
-        ..rest
-    }
-}
-
-/// Where a straight flight meets the clearance circle.
-struct Impact {
-    ticks: f32,
-    normal: Vec2,
-}
-
-impl Impact {
-    /// `None` for a rotor without speed, or beyond the wall.
-    fn ahead(position: Vec2, velocity: Vec2) -> Option<Self> {
-        let square = velocity.length_squared();
-        let room = 1.0 - position.length_squared();
-        if !(square > 1e-12 && room > 0.0) {
-            return None;
-        }
-        let along = position.dot(velocity);
-        let ticks = (sqrt(along * along + square * room) - along) / square;
-        Some(Self {
-            ticks,
-            normal: position + velocity * ticks,
-        })
-    }
-}
-
-/// In contact: brake along the wall, aimed at where the rotor will be when the force has come.
-fn braking(motion: &Motion, found: &Findings, spin_sign: f32, coeffs: &Coeffs) -> Wanted {
-    let n = found.normal;
-    let b = n.turned() * backward(n, motion.velocity, spin_sign);
-    // With unknown spin only the whirl counts that is there, as in flight.
-    let gain = if spin_sign != 0.0 {
-        coeffs.bounce_gain
-    } else {
-        0.0
-    };
-    let sum = motion.velocity.dot(b) + gain * max(found.radial_speed, 0.0);
-    // Switched on into a contact that is pressed on as only whirl does: no time is to be lost.
-    let pressed = 2.0 - coeffs.touch_radius;
-    let strength = if motion.fresh && motion.position.length_squared() > pressed * pressed {
-        1.0
-    } else {
-        min(max(sum, 0.0) * coeffs.damper, 1.0)
-    };
-    // Unit vector against b̂ + μ·n̂.
-    let mu = coeffs.friction;
-    let aim = (b + n * mu) * (-strength / sqrt(1.0 + mu * mu));
-    Wanted {
-        braking: aim.rotated(lead(found.tangential_speed, coeffs)),
-        damping: -motion.velocity * coeffs.damper,
+    /// In contact: brake along the wall, aimed at where the rotor will be when the force has come.
+    #[inline(never)]
+    fn in_contact(&self) -> Wanted<S> {
+        let (coeffs, found) = (self.coeffs, self.found);
+        let n = found.normal;
+        let sense = sense(self.spin, found.tangential_speed);
+        let outward = found.radial_speed.or_more(S::ZERO);
+        let sum = sum_of_impacts(found.tangential_speed * sense, outward, self.bounce_gain());
+        // Switched on into a contact that is pressed on as only whirl does: no time is to be lost.
+        let strength = if self.motion.fresh && found.radius > coeffs.pressed_radius {
+            S::ONE
+        } else {
+            (sum * coeffs.damper).between(S::ZERO, S::ONE)
+        };
+        let braking = if strength > S::ZERO {
+            // Unit vector against b̂ + μ·n̂.
+            let against = n.turned() * sense + n * coeffs.friction;
+            (against * -(strength * coeffs.tilt)).rotated(self.lead(found.tangential_speed))
+        } else {
+            Vec2::ZERO
+        };
         // Slower than lift-off an inward force can end the contact.
-        restoring: n * -max(
-            coeffs.hold_share - of_lift_off(motion.velocity, coeffs),
-            0.0,
-        ),
-        touching: true,
+        let inward = (coeffs.hold_share - self.course.square).or_more(S::ZERO);
+        Wanted {
+            braking,
+            damping: self.damping(),
+            restoring: n * -inward,
+            touching: true,
+        }
     }
-}
 
-/// Square of a speed over that of the lift-off speed.
-fn of_lift_off(velocity: Vec2, coeffs: &Coeffs) -> f32 {
-    velocity.length_squared() / coeffs.slow_squared
-}
+    /// Rotation that makes up for delay and lag on a circle at this rate: a delay of h turns a rotating
+    /// force by ω·h, a lag of τ by atan(ω·τ).
+    #[inline]
+    fn lead(&self, rate: S) -> Vec2<S> {
+        // The series of sine and cosine are good to 1 % up to a radian, beyond which no lead would help.
+        let angle = (rate * self.coeffs.delay_time).between(-S::ONE, S::ONE);
+        let square = angle * angle;
+        let cosine = S::ONE - square * (S::of(0.5) - square * S::of(1.0 / 24.0));
+        let sine = angle * (S::ONE - square * S::of(1.0 / 6.0));
+        Vec2::new(cosine, sine)
+            .rotated(Vec2::new(S::ONE, rate * self.coeffs.lag))
+            .direction()
+    }
 
-/// Rotation that makes up for delay and lag on a circle at `rate` radians per tick: a delay of h turns
-/// a rotating force by ω·h, a lag of τ by atan(ω·τ).
-fn lead(rate: f32, coeffs: &Coeffs) -> Vec2 {
-    // The series of sine and cosine are good to 1 % up to a radian, beyond which no lead would help.
-    let angle = between(rate * (coeffs.delay as f32 + 0.5), -1.0, 1.0);
-    let square = angle * angle;
-    let delay = Vec2::new(
-        1.0 - square * (0.5 - square / 24.0),
-        angle * (1.0 - square / 6.0),
-    );
-    delay
-        .rotated(Vec2::new(1.0, rate * coeffs.lag))
-        .direction()
-        .0
-}
-
-/// On the wall under a load: push inwards with what the load leaves useful, keep still.
-fn hold(motion: &Motion, found: &Findings, spin_sign: f32, coeffs: &Coeffs) -> Wanted {
-    let b = found.normal.turned() * backward(found.normal, motion.velocity, spin_sign);
-    let speed = max(motion.velocity.dot(b), 0.0);
-    Wanted {
-        braking: b * -min(speed * coeffs.damper, 1.0),
-        damping: -motion.velocity * coeffs.damper,
-        restoring: found.normal * -coeffs.hold_share,
-        touching: true,
+    /// On the wall under a load: push inwards with what the load leaves useful, keep still.
+    fn hold(&self) -> Wanted<S> {
+        let (coeffs, found) = (self.coeffs, self.found);
+        let sense = sense(self.spin, found.tangential_speed);
+        let backward = found.tangential_speed * sense;
+        let strength = (backward * coeffs.damper).between(S::ZERO, S::ONE);
+        Wanted {
+            braking: found.normal.turned() * -(sense * strength),
+            damping: self.damping(),
+            restoring: found.normal * -coeffs.hold_share,
+            touching: true,
+        }
     }
 }

@@ -60,9 +60,9 @@
 //!                                                                                 └─► recorder
 //! ```
 //!
-//! Files, each importing only from those above it: `math`, `vec2`, `signal`, `config`, `coeffs`,
-//! `guard`, `estimate`, `detect`, `classify`, `phase`, `law`, `limit`, `handover`, `severity`,
-//! `recorder`, `supervisor`.
+//! Files, each importing only from those above it: `scalar`, `math`, `vec2`, `signal`, `config`, `coeffs`,
+//! `guard`, `estimate`, `detect`, `course`, `classify`, `phase`, `law`, `limit`, `handover`, `severity`,
+//! `recorder`, `per_unit`, `supervisor`.
 
 // Unconditional: under `cfg(test)` std's own methods would silently replace micromath's.
 #![no_std]
@@ -72,6 +72,7 @@
 mod classify;
 mod coeffs;
 mod config;
+mod course;
 mod detect;
 mod estimate;
 mod guard;
@@ -79,14 +80,22 @@ mod handover;
 mod law;
 mod limit;
 mod math;
+mod per_unit;
 mod phase;
 mod recorder;
+mod scalar;
 mod severity;
 mod signal;
 mod supervisor;
 mod vec2;
 
-pub use config::{Config, ConfigError, PARAMETERS, Parameter};
+pub use coeffs::Scaling;
+pub use config::{Config, ConfigError, CoreError, Misfit, PARAMETERS, Parameter};
+pub use per_unit::{Core, Prepared};
 pub use recorder::{Entry, PER_UNIT, QueuedEvent, RECORD_VERSION, Record, crc_of};
-pub use signal::{Command, Events, IntegratorHint, Limits, Mode, Refusal, Report, Sample, Status};
+pub use scalar::{Scalar, Slow};
+pub use signal::{
+    Command, CoreCommand, CoreSample, Events, IntegratorHint, Limits, Mode, Refusal, Report,
+    Sample, Status,
+};
 pub use supervisor::Supervisor;

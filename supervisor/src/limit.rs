@@ -3,79 +3,68 @@
 use crate::coeffs::Coeffs;
 use crate::guard::Actuator;
 use crate::law::Wanted;
-use crate::math::{Sum, between, max, min, sqrt};
+use crate::scalar::{Scalar, Slow};
 use crate::signal::Limits;
 use crate::vec2::Vec2;
 
 /// Room for the force of this tick \[caps\]: a disc, and a box of the axes that act.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Room {
+pub(crate) struct Room<S> {
     /// Cap under the force–time budget, at most 1.
-    pub(crate) cap: f32,
+    pub(crate) cap: S,
     /// Cap of x and of y, 0 for an axis that is lost.
-    axes: [f32; 2],
+    axes: [S; 2],
     /// Whether the box can bind before the disc does.
     boxed: bool,
-    /// The same in newtons.
-    cap_n: f32,
-    axes_n: [f32; 2],
+    /// An axis is lost.
+    lost: bool,
 }
 
-impl Room {
-    pub(crate) fn new(budget: &Budget, actuator: Actuator, coeffs: &Coeffs) -> Self {
-        let of = |cap: f32| actuator.acts.map(|acts| if acts { cap } else { 0.0 });
+impl<S: Scalar> Room<S> {
+    #[inline]
+    pub(crate) fn new(budget: &Budget<S>, actuator: Actuator<S>, coeffs: &Coeffs<S>) -> Self {
         let cap = budget.cap(coeffs);
-        let axes = of(coeffs.axis_cap);
-        let [x, y] = axes;
+        let lost = actuator.acts != [true; 2];
+        let axis = |acts: bool| if acts { coeffs.axis_cap } else { S::ZERO };
         Self {
             cap,
-            axes,
-            boxed: min(x, y) < cap,
-            cap_n: cap * coeffs.force_max_n,
-            axes_n: of(coeffs.axis_cap_n),
+            axes: actuator.acts.map(axis),
+            boxed: lost || coeffs.axis_cap < cap,
+            lost,
         }
     }
 
-    fn lost(&self) -> bool {
-        self.axes.contains(&0.0)
+    /// Whether a force is in the room; not if it is no number.
+    #[inline]
+    fn holds(&self, force: Vec2<S>) -> bool {
+        !force.exceeds(self.cap) && (!self.boxed || self.in_box(force))
     }
 
-    /// A braking force that cannot have an axis at all, as the other can do it.
-    ///
-    /// A force takes A = f̂·u from the power of the motion (f̂ its aim). The whole of the other axis with
-    /// the sign of f̂ would take most, but it also pushes across the aim, off the wall or into it, which
-    /// nothing can make up for. With u = f̂·|f̂| it is the whole along the aim, and across it next to nothing.
-    fn braking(&self, aim: Vec2) -> Vec2 {
-        let on = |part: f32, cap: f32| {
-            if cap > 0.0 {
-                part * max(part, -part)
-            } else {
-                0.0
-            }
-        };
+    fn in_box(&self, force: Vec2<S>) -> bool {
         let [x, y] = self.axes;
-        Vec2::new(on(aim.x, x), on(aim.y, y))
+        force.x.size() <= x && force.y.size() <= y
     }
 
-    /// Largest s in [0, 1] with sum + s·part in the room, for a sum in it and a part that is not nothing; and whether the box says so.
+    /// Largest s in [0, 1] with sum + s·part in the room, for a sum in it and a part that is too long; and
+    /// whether the box says so.
     #[inline(never)]
-    fn share(&self, sum: Vec2, part: Vec2) -> (f32, bool) {
+    fn share(&self, sum: Vec2<S>, part: Vec2<S>) -> (S, bool) {
         let disc = largest_share(self.cap, sum, part);
         if !self.boxed {
             return (disc, false);
         }
         let [x, y] = self.axes;
-        let box_share = min(axis_share(x, sum.x, part.x), axis_share(y, sum.y, part.y));
-        (min(disc, box_share), box_share < disc)
+        let box_share = axis_share(x, sum.x, part.x).or_less(axis_share(y, sum.y, part.y));
+        (disc.or_less(box_share), box_share < disc)
     }
 
     /// The rest of a part along the axis that still has room.
     #[cold]
-    fn along_edge(&self, sum: Vec2, rest: Vec2) -> Vec2 {
+    fn along_edge(&self, sum: Vec2<S>, rest: Vec2<S>) -> Vec2<S> {
         let [x, y] = self.axes;
-        let on = |cap: f32, sum: f32, rest: f32| {
-            if axis_share(cap, sum, rest) < ON_EDGE {
-                0.0
+        let on = |cap: S, sum: S, rest: S| {
+            if axis_share(cap, sum, rest) < S::of(ON_EDGE) {
+                S::ZERO
             } else {
                 rest
             }
@@ -87,46 +76,109 @@ impl Room {
 /// Share of a part for which an axis counts as used up: what rounding leaves.
 const ON_EDGE: f32 = 1e-4;
 
-/// Square of a force that is as good as none \[caps²\].
-const NO_FORCE: f32 = 1e-12;
+/// Force that is as good as none \[caps\].
+const NO_FORCE: f32 = 1e-6;
 
 /// Gives the room to braking first, then damping, then restoring. Each is scaled, for its direction is
-/// what it is good for; where braking has all it wants, the others may also use what is left of an axis
-/// alone, for each of their components does what the whole does.
-pub(crate) fn allocate(wanted: &Wanted, room: &Room) -> (Vec2, Limits) {
+/// what it is good for.
+#[inline(never)]
+pub(crate) fn allocate<S: Scalar>(wanted: &Wanted<S>, room: &Room<S>) -> (Vec2<S>, Limits) {
+    if room.lost {
+        return (on_what_is_left(wanted, room), Limits::AXIS_CAP);
+    }
+    if room.boxed {
+        return allocate_in_box(wanted, room);
+    }
+    let mut cut = false;
+    let mut sum = wanted.braking;
+    // No law wants to brake with more than the whole cap.
+    if room.cap < S::ONE && sum.exceeds(room.cap) {
+        sum = sum * (sum.inverse_length() * room.cap);
+        cut = true;
+    }
+    // Once a part is cut nothing is left: what pointed back into the room would take from what comes first.
+    let mut part = wanted.damping;
+    if !cut && !(sum + part).exceeds(room.cap) {
+        sum = sum + part;
+        part = wanted.restoring;
+    }
+    let whole = sum + part;
+    if !cut && whole.exceeds(room.cap) {
+        // A hair inside, or rounding would have to be undone.
+        sum = sum + part * largest_share(room.cap * S::JUST_BELOW_ONE, sum, part);
+        cut = true;
+    } else if !cut {
+        sum = whole;
+    }
+    let limits = match (cut, room.cap < S::ONE) {
+        (false, _) => Limits::empty(),
+        (true, false) => Limits::FORCE_CAP,
+        (true, true) => Limits::FORCE_CAP.union(Limits::DERATED),
+    };
+    (sum, limits)
+}
+
+/// The same with one axis or none: all forces are along it.
+///
+/// A push across the aim cannot be made up for with one axis. So off the wall nothing brakes, for only damping
+/// is sure not to drive the rotor into it; and on the wall nothing restores, which may lift the rotor
+/// off without being able to catch it. There a force u takes A = f̂·u from the power of the motion (f̂ its aim): the whole of
+/// the axis with the sign of f̂ would take most, but u = f̂·|f̂| is the whole along the aim, and across it next
+/// to nothing.
+fn on_what_is_left<S: Scalar>(wanted: &Wanted<S>, room: &Room<S>) -> Vec2<S> {
+    let along = |cap: S, aim: S, damping: S, restoring: S| {
+        let cap = cap.or_less(room.cap);
+        let (first, last) = if wanted.touching {
+            (aim * aim.size(), S::ZERO)
+        } else {
+            (S::ZERO, restoring)
+        };
+        let sum = (first.between(-cap, cap) + damping).between(-cap, cap);
+        (sum + last).between(-cap, cap)
+    };
+    let ([x, y], w) = (room.axes, wanted);
+    Vec2::new(
+        along(x, w.braking.x, w.damping.x, w.restoring.x),
+        along(y, w.braking.y, w.damping.y, w.restoring.y),
+    )
+}
+
+/// The same where an axis has its own cap; where braking has all it wants, the others may also use what is
+/// left of an axis alone, for each of their components does what the whole does.
+#[cold]
+fn allocate_in_box<S: Scalar>(wanted: &Wanted<S>, room: &Room<S>) -> (Vec2<S>, Limits) {
     let mut limits = Limits::empty();
     let mut sum = Vec2::ZERO;
-    if room.lost() {
-        limits |= Limits::AXIS_CAP;
-    }
     let mut braking_cut = false;
-    // With one axis alone a push across the aim cannot be made up for: off the wall only damping is sure not
-    // to drive the rotor into it, and on the wall nothing may lift it off that could not catch it.
-    let (braking, restoring) = match (room.lost(), wanted.touching) {
-        (false, _) => (wanted.braking, wanted.restoring),
-        (true, true) => (room.braking(wanted.braking), Vec2::ZERO),
-        (true, false) => (Vec2::ZERO, wanted.restoring),
-    };
-    for part in [braking, wanted.damping, restoring] {
-        if part.length_squared() <= NO_FORCE {
+    for (part, is_braking) in [
+        (wanted.braking, true),
+        (wanted.damping, false),
+        (wanted.restoring, false),
+    ] {
+        let whole = sum + part;
+        if room.holds(whole) {
+            sum = whole;
+            continue;
+        }
+        if !part.exceeds(S::of(NO_FORCE)) {
             continue;
         }
         let (share, by_box) = room.share(sum, part);
         sum = sum + part * share;
-        if share < 1.0 {
+        if share < S::ONE {
             limits |= if by_box {
                 Limits::AXIS_CAP
-            } else if room.cap < 1.0 {
+            } else if room.cap < S::ONE {
                 Limits::FORCE_CAP | Limits::DERATED
             } else {
                 Limits::FORCE_CAP
             };
         }
-        if part == braking {
-            braking_cut = share < 1.0;
+        if is_braking {
+            braking_cut = share < S::ONE;
         } else if by_box && !braking_cut {
-            let rest = room.along_edge(sum, part * (1.0 - share));
-            if rest.length_squared() > NO_FORCE {
+            let rest = room.along_edge(sum, part * (S::ONE - share));
+            if rest.exceeds(S::of(NO_FORCE)) {
                 sum = sum + rest * room.share(sum, rest).0;
             }
         }
@@ -135,169 +187,183 @@ pub(crate) fn allocate(wanted: &Wanted, room: &Room) -> (Vec2, Limits) {
 }
 
 /// Largest s in [0, 1] with |sum + s·part| ≤ cap, for |sum| ≤ cap and a part that is not nothing.
-fn largest_share(cap: f32, sum: Vec2, part: Vec2) -> f32 {
-    let square = part.length_squared();
+#[inline]
+fn largest_share<S: Scalar>(cap: S, sum: Vec2<S>, part: Vec2<S>) -> S {
     let along = sum.dot(part);
-    let room = max(cap * cap - sum.length_squared(), 0.0);
-    between(
-        (sqrt(along * along + square * room) - along) / square,
-        0.0,
-        1.0,
-    )
+    let room = (cap * cap - sum.length_squared()).or_more(S::ZERO);
+    let root = (along * along + part.length_squared() * room).root();
+    // The solution of the quadratic equation whose terms do not cancel.
+    let share = if along > S::ZERO {
+        room.over(root + along)
+    } else {
+        (root - along).over(part.length_squared())
+    };
+    share.between(S::ZERO, S::ONE)
 }
 
 /// Largest s in [0, 1] with |sum + s·part| ≤ cap on one axis.
-fn axis_share(cap: f32, sum: f32, part: f32) -> f32 {
-    let (sum, part) = if part < 0.0 {
+fn axis_share<S: Scalar>(cap: S, sum: S, part: S) -> S {
+    let (sum, part) = if part < S::ZERO {
         (-sum, -part)
     } else {
         (sum, part)
     };
-    let room = max(cap - sum, 0.0);
+    let room = (cap - sum).or_more(S::ZERO);
     // Also without a division by nothing where there is nothing to do.
-    if part <= room { 1.0 } else { room / part }
+    if part <= room {
+        S::ONE
+    } else {
+        room.over(part)
+    }
 }
 
-/// A levitation command within finite bounds \[N\], and whether it had to be changed.
-pub(crate) fn levitation(command_n: [f32; 2], room: &Room, coeffs: &Coeffs) -> ([f32; 2], Limits) {
-    let v = Vec2::from_array(command_n);
-    let (number, mut limits) = if v.length_squared() < SQUARE_FITS {
-        (v, Limits::empty())
+/// A levitation command within finite bounds, and whether it had to be changed.
+#[inline]
+pub(crate) fn levitation<S: Scalar>(command: Vec2<S>, room: &Room<S>) -> (Vec2<S>, Limits) {
+    if room.holds(command) {
+        (command, Limits::empty())
+    } else {
+        clamped(command, room)
+    }
+}
+
+#[cold]
+fn clamped<S: Scalar>(command: Vec2<S>, room: &Room<S>) -> (Vec2<S>, Limits) {
+    let number = if command.length_squared() < S::FAR_SQUARE {
+        command
     } else {
         // No number, or so large that its square is none.
-        let cap = coeffs.force_max_n;
-        let on = |x: f32| {
+        command.map(|x| {
             if x.is_finite() {
-                between(x, -cap, cap)
+                x.between(-S::ONE, S::ONE)
             } else {
-                0.0
+                S::ZERO
             }
-        };
-        (Vec2::new(on(v.x), on(v.y)), Limits::LEVITATION_CLAMPED)
+        })
     };
-    let (limited, bound) = within_caps(number, room);
-    if !bound.is_empty() {
-        // That the whole cap was too small is what clamping says already.
-        limits |= Limits::LEVITATION_CLAMPED | (bound - Limits::FORCE_CAP);
-    }
-    (limited.to_array(), limits)
-}
-
-/// Squares below this are far from overflow.
-const SQUARE_FITS: f32 = 1e30;
-/// A few units in the last place below a limit, so that rounding cannot lift a scaled force above it.
-const JUST_BELOW: f32 = 1.0 - 4.0 * f32::EPSILON;
-
-/// A finite force \[N\] scaled into the room; untouched where it fits.
-#[inline]
-fn within_caps(force: Vec2, room: &Room) -> (Vec2, Limits) {
-    let [x, y] = room.axes_n;
-    let fits = force.length_squared() <= room.cap_n * room.cap_n
-        && force.x <= x
-        && -force.x <= x
-        && force.y <= y
-        && -force.y <= y;
-    if fits {
-        (force, Limits::empty())
+    let (limited, bound) = if room.holds(number) {
+        (number, Limits::empty())
     } else {
-        scaled(force, room)
-    }
+        scaled(number, room)
+    };
+    // That the whole cap was too small is what clamping says already.
+    let bound = Limits::LEVITATION_CLAMPED | (bound - Limits::FORCE_CAP);
+    (limited, bound)
 }
 
 /// A force that does not fit, in its direction but for an axis that is lost: that one takes nothing
 /// away from the other.
 #[cold]
-fn scaled(force: Vec2, room: &Room) -> (Vec2, Limits) {
+fn scaled<S: Scalar>(force: Vec2<S>, room: &Room<S>) -> (Vec2<S>, Limits) {
     let mut limits = Limits::empty();
-    let [x, y] = room.axes_n;
-    let on = |cap: f32, v: f32| if cap > 0.0 { v } else { 0.0 };
+    let [x, y] = room.axes;
+    let on = |cap: S, v: S| if cap > S::ZERO { v } else { S::ZERO };
     let mut v = Vec2::new(on(x, force.x), on(y, force.y));
     if v != force {
         limits |= Limits::AXIS_CAP;
     }
-    let square = v.length_squared();
-    if square > room.cap_n * room.cap_n {
-        v = v * (room.cap_n * JUST_BELOW / sqrt(square));
+    if v.exceeds(room.cap) {
+        v = v * v.inverse_length() * (room.cap * S::JUST_BELOW_ONE);
         limits |= Limits::FORCE_CAP;
-        if room.cap < 1.0 {
+        if room.cap < S::ONE {
             limits |= Limits::DERATED;
         }
     }
-    let largest = max(max(v.x, -v.x), max(v.y, -v.y));
-    let cap = max(x, y);
+    let largest = v.x.size().or_more(v.y.size());
+    let cap = x.or_more(y);
     if largest > cap {
-        v = v * (cap * JUST_BELOW / largest);
+        v = v * (cap * S::JUST_BELOW_ONE).over(largest);
         limits |= Limits::AXIS_CAP;
     }
     (v, limits)
 }
 
-/// The last word on a force of the supervisor's own \[N\]: finite, within the caps, and not farther from
+/// The last word on a force of the supervisor's own: finite, within the caps, and not farther from
 /// `last` than the slew limit, whatever came before.
-pub(crate) fn final_force_n(
-    force_n: [f32; 2],
-    last: Vec2,
-    room: &Room,
-    coeffs: &Coeffs,
-) -> ([f32; 2], Limits) {
-    let wanted = Vec2::from_array(force_n);
-    let (target, limits) = if wanted.length_squared() < SQUARE_FITS {
-        within_caps(wanted, room)
+#[inline]
+pub(crate) fn last_word<S: Scalar>(
+    wanted: Vec2<S>,
+    last: Vec2<S>,
+    room: &Room<S>,
+    coeffs: &Coeffs<S>,
+) -> (Vec2<S>, Limits) {
+    let (target, limits) = if room.holds(wanted) {
+        (wanted, Limits::empty())
+    } else {
+        beyond_room(wanted, room)
+    };
+    let (force, slew) = slewed(target, last, coeffs);
+    (force, limits | slew)
+}
+
+#[cold]
+fn beyond_room<S: Scalar>(wanted: Vec2<S>, room: &Room<S>) -> (Vec2<S>, Limits) {
+    if wanted.length_squared() < S::FAR_SQUARE {
+        scaled(wanted, room)
     } else {
         (Vec2::ZERO, Limits::NOT_FINITE)
-    };
-    let (force_n, slew) = slewed(target.to_array(), last, coeffs);
-    (force_n, limits | slew)
+    }
 }
 
-/// A force within the caps \[N\], no farther from `last` than the slew limit. Where the budget has
-/// lowered the cap faster than that, the slew limit holds.
+/// A force within the caps, no farther from `last` than the slew limit. Where the budget has lowered the
+/// cap faster than that, the slew limit holds.
 #[inline]
-pub(crate) fn slewed(target_n: [f32; 2], last: Vec2, coeffs: &Coeffs) -> ([f32; 2], Limits) {
-    let change = Vec2::from_array(target_n) - last;
-    let square = change.length_squared();
-    let step = coeffs.slew_step_n;
-    if square <= step * step {
-        return (target_n, Limits::empty());
+pub(crate) fn slewed<S: Scalar>(
+    target: Vec2<S>,
+    last: Vec2<S>,
+    coeffs: &Coeffs<S>,
+) -> (Vec2<S>, Limits) {
+    let change = target - last;
+    if !change.exceeds(coeffs.slew_step) {
+        return (target, Limits::empty());
     }
-    if square.is_nan() || square >= SQUARE_FITS {
-        return ([0.0; 2], Limits::NOT_FINITE);
-    }
-    let force = last + change * (step * JUST_BELOW / sqrt(square));
-    (force.to_array(), Limits::SLEW)
+    let step = coeffs.slew_step * S::JUST_BELOW_ONE;
+    let force = last + change * change.inverse_length() * step;
+    (force, Limits::SLEW)
 }
 
-/// Force–time budget: a first-order thermal state of (force/continuous force)².
+/// Force–time budget: a first-order thermal state of the force squared.
 #[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Budget {
-    state: Sum,
+pub(crate) struct Budget<S: Scalar> {
+    state: S::Slow,
 }
 
-/// The cap falls from full to continuous while the state goes from 1 to this much more. The force at
-/// which it comes to rest exceeds the continuous one by less than half as much.
-const FALL: f32 = 0.1;
-
-impl Budget {
+impl<S: Scalar> Budget<S> {
     /// Cap now \[caps\]: a function of the state alone, so that it comes back as it fell.
-    pub(crate) fn cap(&self, coeffs: &Coeffs) -> f32 {
+    #[inline]
+    pub(crate) fn cap(&self, coeffs: &Coeffs<S>) -> S {
         let Some(continuous) = coeffs.continuous else {
-            return 1.0;
+            return S::ONE;
         };
-        let x = between((self.state.value - 1.0) / FALL, 0.0, 1.0);
+        let over = self.state.value() - continuous.square;
+        if over <= S::ZERO {
+            return S::ONE;
+        }
+        let x = over.over(continuous.fall).or_less(S::ONE);
         // So written it ends at the continuous force however small that is.
-        continuous + (1.0 - continuous) * (1.0 - x * x * (3.0 - 2.0 * x))
+        let three = S::of(3.0) - (x + x);
+        continuous.force + (S::ONE - continuous.force) * (S::ONE - x * x * three)
     }
 
     /// A tick with this force \[caps\].
-    pub(crate) fn tick(&mut self, force: Vec2, coeffs: &Coeffs) {
-        if let Some(continuous) = coeffs.continuous {
-            let load = force.length_squared() / (continuous * continuous);
-            self.state
-                .add((load - self.state.value) * coeffs.thermal_step);
+    #[inline]
+    pub(crate) fn tick(&mut self, force: Vec2<S>, coeffs: &Coeffs<S>) {
+        if coeffs.continuous.is_some() {
+            let load = force.length_squared();
+            (self.state).add(load - self.state.value(), coeffs.thermal_rate);
         }
     }
 
-    pub(crate) fn state(&self) -> f32 {
-        self.state.value
+    /// State over that of the continuous force; 0 without a budget.
+    pub(crate) fn state(&self, coeffs: &Coeffs<S>) -> f32 {
+        match coeffs.continuous {
+            Some(continuous) => self.state.value().to_f32() / continuous.square.to_f32(),
+            None => 0.0,
+        }
+    }
+
+    /// After a change of the unit of force.
+    pub(crate) fn rescale(&mut self, force: f32) {
+        self.state = self.state.scaled(force * force);
     }
 }

@@ -11,11 +11,12 @@ use crate::classify::Class;
 use crate::coeffs::Coeffs;
 use crate::detect::Findings;
 use crate::guard::Reading;
+use crate::scalar::Scalar;
 use crate::signal::{Events, Mode};
 
 /// A mode with the memory that belongs to it.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(crate) enum Phase {
+pub(crate) enum Phase<S> {
     /// The levitation controller has the bearing.
     #[default]
     Levitated,
@@ -28,12 +29,12 @@ pub(crate) enum Phase {
     /// Lying on the bearing.
     Pinned,
     /// The levitation controller's share grows from 0 to 1.
-    Handover { weight: f32 },
+    Handover { weight: S },
     /// The force goes from its last value to zero with `weight`.
-    SensorFault { weight: f32 },
+    SensorFault { weight: S },
 }
 
-impl Phase {
+impl<S: Scalar> Phase<S> {
     pub(crate) fn mode(self) -> Mode {
         match self {
             Self::Levitated => Mode::Levitated,
@@ -46,16 +47,19 @@ impl Phase {
         }
     }
 
-    /// The phase of this tick, and what changed.
+    /// The phase of this tick, and what changed. `calm`: contact can be avoided, and the levitation
+    /// controller would do so.
+    #[inline]
     pub(crate) fn next(
         self,
-        found: &Findings,
+        found: &Findings<S>,
+        calm: bool,
         class: Class,
-        reading: &Reading,
-        coeffs: &Coeffs,
+        reading: &Reading<S>,
+        coeffs: &Coeffs<S>,
     ) -> (Self, Events) {
         let next = if reading.bearing_on {
-            self.follow(found, class, reading.faulty, coeffs)
+            self.follow(found, calm, class, reading.faulty, coeffs)
         } else {
             Self::Levitated
         };
@@ -81,21 +85,28 @@ impl Phase {
         (next, events)
     }
 
-    fn follow(self, found: &Findings, class: Class, faulty: bool, coeffs: &Coeffs) -> Self {
-        const NEW_BOUNCE: Phase = Phase::Bounce { calm_ticks: 0 };
+    #[inline]
+    fn follow(
+        self,
+        found: &Findings<S>,
+        calm: bool,
+        class: Class,
+        faulty: bool,
+        coeffs: &Coeffs<S>,
+    ) -> Self {
+        let new_bounce = Self::Bounce { calm_ticks: 0 };
         if faulty {
-            return match self {
-                Self::SensorFault { weight } => Self::SensorFault {
-                    weight: weight - coeffs.fault_step,
-                },
-                _ => Self::SensorFault {
-                    weight: 1.0 - coeffs.fault_step,
-                },
+            let weight = match self {
+                Self::SensorFault { weight } => weight,
+                _ => S::ONE,
+            };
+            return Self::SensorFault {
+                weight: weight - coeffs.fault_step,
             };
         }
         if found.touching {
             return match class {
-                Class::Bounce => NEW_BOUNCE,
+                Class::Bounce => new_bounce,
                 Class::BackwardWhirl => Self::BackwardWhirl,
                 Class::Pinned => Self::Pinned,
             };
@@ -103,20 +114,20 @@ impl Phase {
         match self {
             Self::Levitated if found.unavoidable => Self::Approach { calm_ticks: 0 },
             Self::Levitated => self,
-            Self::Approach { calm_ticks } => match after_calm(calm_ticks, found, coeffs) {
+            Self::Approach { calm_ticks } => match after_calm(calm_ticks, calm, coeffs) {
                 Some(calm_ticks) => Self::Approach { calm_ticks },
-                None => Self::Handover { weight: 0.0 },
+                None => Self::Handover { weight: S::ZERO },
             },
-            Self::Bounce { calm_ticks } => match after_calm(calm_ticks, found, coeffs) {
+            Self::Bounce { calm_ticks } => match after_calm(calm_ticks, calm, coeffs) {
                 Some(calm_ticks) => Self::Bounce { calm_ticks },
-                None => Self::Handover { weight: 0.0 },
+                None => Self::Handover { weight: S::ZERO },
             },
             Self::BackwardWhirl if class == Class::BackwardWhirl => self,
-            Self::BackwardWhirl | Self::Pinned | Self::SensorFault { .. } => NEW_BOUNCE,
+            Self::BackwardWhirl | Self::Pinned | Self::SensorFault { .. } => new_bounce,
             Self::Handover { .. } if found.unavoidable => Self::Approach { calm_ticks: 0 },
             Self::Handover { weight } => {
                 let weight = weight + coeffs.blend_step;
-                if weight < 1.0 {
+                if weight < S::ONE {
                     Self::Handover { weight }
                 } else {
                     Self::Levitated
@@ -127,8 +138,8 @@ impl Phase {
 }
 
 /// Calm ticks so far, or `None` once they are enough.
-fn after_calm(calm_ticks: u32, found: &Findings, coeffs: &Coeffs) -> Option<u32> {
-    if !found.calm {
+fn after_calm<S: Scalar>(calm_ticks: u32, calm: bool, coeffs: &Coeffs<S>) -> Option<u32> {
+    if !calm {
         return Some(0);
     }
     (calm_ticks < coeffs.dwell_ticks).then_some(calm_ticks + 1)

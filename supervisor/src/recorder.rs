@@ -1,7 +1,8 @@
 //! Flight recorder: a fixed ring of the last ticks, frozen some time after the supervisor engages,
 //! with a version and a checksum; and a queue of events for the background task.
 
-use crate::signal::{Command, Events, Mode, Sample};
+use crate::scalar::Scalar;
+use crate::signal::{Events, Limits, Mode};
 use crate::vec2::Vec2;
 
 /// Version of the layout of [`Entry`] and [`Record`].
@@ -29,28 +30,15 @@ pub struct Entry {
 }
 
 impl Entry {
-    fn bytes(&self) -> [u8; 16] {
+    /// The sixteen bytes, little-endian, in two halves.
+    fn halves(&self) -> [[u8; 8]; 2] {
         let [s0, s1, s2, s3] = self.sequence.to_le_bytes();
         let [[x0, x1], [y0, y1]] = self.position.map(i16::to_le_bytes);
         let [[f0, f1], [g0, g1]] = self.force.map(i16::to_le_bytes);
         let [e0, e1] = self.events.to_le_bytes();
         [
-            s0,
-            s1,
-            s2,
-            s3,
-            x0,
-            x1,
-            y0,
-            y1,
-            f0,
-            f1,
-            g0,
-            g1,
-            self.mode,
-            self.limits,
-            e0,
-            e1,
+            [s0, s1, s2, s3, x0, x1, y0, y1],
+            [f0, f1, g0, g1, self.mode, self.limits, e0, e1],
         ]
     }
 }
@@ -97,8 +85,15 @@ enum State {
     Frozen,
 }
 
-/// Entries that the checksum takes in per tick: bounds the time of a tick.
-const CHECKED_PER_TICK: usize = 4;
+/// What a tick gives to the recorder.
+pub(crate) struct Tick<S> {
+    pub(crate) sequence: u32,
+    pub(crate) position: Vec2<S>,
+    pub(crate) force: Vec2<S>,
+    pub(crate) mode: Mode,
+    pub(crate) limits: Limits,
+    pub(crate) events: Events,
+}
 
 /// Ring of `N` entries (a power of two).
 #[derive(Debug, Clone)]
@@ -107,7 +102,7 @@ pub(crate) struct Recorder<const N: usize> {
     next: usize,
     state: State,
     crc: u32,
-    queue: heapless::Deque<QueuedEvent, 16>,
+    queued: heapless::Deque<QueuedEvent, 16>,
     lost: bool,
 }
 
@@ -126,33 +121,29 @@ impl<const N: usize> Recorder<N> {
             next: 0,
             state: State::Armed,
             crc: !0,
-            queue: heapless::Deque::new(),
+            queued: heapless::Deque::new(),
             lost: false,
         }
     }
 
     /// Takes a tick in; says what the recorder itself has to report.
-    pub(crate) fn push(
-        &mut self,
-        sample: &Sample,
-        position: Vec2,
-        force: Vec2,
-        command: &Command,
-    ) -> Events {
+    #[inline(never)]
+    pub(crate) fn push<S: Scalar>(&mut self, tick: &Tick<S>) -> Events {
         let mut own = Events::empty();
         match self.state {
-            State::Armed if command.events.contains(Events::ENGAGED) => {
-                self.write(sample, position, force, command);
-                // A quarter before the trigger, three quarters after it.
-                self.state = State::Triggered(N - N / 4);
+            State::Armed => {
+                self.write(tick);
+                if tick.events.contains(Events::ENGAGED) {
+                    // A quarter before the trigger, three quarters after it.
+                    self.state = State::Triggered(N - N / 4);
+                }
             }
-            State::Armed => self.write(sample, position, force, command),
             State::Triggered(0) => {
                 self.crc = !0;
                 self.state = State::Freezing(0);
             }
             State::Triggered(left) => {
-                self.write(sample, position, force, command);
+                self.write(tick);
                 self.state = State::Triggered(left - 1);
             }
             State::Freezing(done) => {
@@ -162,49 +153,48 @@ impl<const N: usize> Recorder<N> {
             }
             State::Frozen => {}
         }
-        let events = command.events | own;
+        let events = tick.events | own;
         if !events.is_empty() {
-            let event = QueuedEvent {
-                sequence: sample.sequence,
-                mode: command.mode,
-                events: if self.lost {
-                    events | Events::QUEUE_FULL
-                } else {
-                    events
-                },
-            };
-            self.lost = self.queue.push_back(event).is_err();
+            self.queue(tick, events);
         }
         own
     }
 
-    fn write(&mut self, sample: &Sample, position: Vec2, force: Vec2, command: &Command) {
-        // `as` saturates, and turns NaN into 0.
-        let packed = |v: Vec2| v.to_array().map(|x| (x * PER_UNIT) as i16);
+    fn queue<S>(&mut self, tick: &Tick<S>, mut events: Events) {
+        if self.lost {
+            events |= Events::QUEUE_FULL;
+        }
+        let event = QueuedEvent {
+            sequence: tick.sequence,
+            mode: tick.mode,
+            events,
+        };
+        self.lost = self.queued.push_back(event).is_err();
+    }
+
+    #[inline]
+    fn write<S: Scalar>(&mut self, tick: &Tick<S>) {
         if let Some(entry) = self.entries.get_mut(self.next & Self::MASK) {
             *entry = Entry {
-                sequence: sample.sequence,
-                position: packed(position),
-                force: packed(force),
-                mode: command.mode as u8,
-                limits: command.limits.bits() as u8,
-                events: command.events.bits() as u16,
+                sequence: tick.sequence,
+                position: [tick.position.x.packed(), tick.position.y.packed()],
+                force: [tick.force.x.packed(), tick.force.y.packed()],
+                mode: tick.mode as u8,
+                limits: tick.limits.bits() as u8,
+                events: tick.events.bits() as u16,
             };
         }
         self.next = self.next.wrapping_add(1) & Self::MASK;
     }
 
-    /// Takes some entries into the checksum; true when it is complete.
+    /// Takes half an entry into the checksum, which bounds the time of a tick; true when it is complete.
     fn check(&mut self, done: usize) -> bool {
-        for i in done..done + CHECKED_PER_TICK {
-            if let Some(entry) = self.entries.get(self.next.wrapping_add(i) & Self::MASK) {
-                for byte in entry.bytes() {
-                    self.crc = crc_step(self.crc, byte);
-                }
-            }
+        if let Some(entry) = (self.entries).get(self.next.wrapping_add(done / 2) & Self::MASK) {
+            let [early, late] = entry.halves();
+            self.crc = crc_of_bytes(self.crc, if done & 1 == 0 { early } else { late });
         }
-        let done = done + CHECKED_PER_TICK;
-        if done < N {
+        let done = done + 1;
+        if done < 2 * N {
             self.state = State::Freezing(done);
             return false;
         }
@@ -226,31 +216,33 @@ impl<const N: usize> Recorder<N> {
     }
 
     pub(crate) fn next_event(&mut self) -> Option<QueuedEvent> {
-        self.queue.pop_front()
+        self.queued.pop_front()
     }
 }
 
-/// One byte into a CRC-32 (IEEE, reflected), a nibble at a time: no table of a kilobyte.
-fn crc_step(crc: u32, byte: u8) -> u32 {
-    #[rustfmt::skip]
-    const NIBBLE: [u32; 16] = [
-        0x0000_0000, 0x1DB7_1064, 0x3B6E_20C8, 0x26D9_30AC, 0x76DC_4190, 0x6B6B_51F4, 0x4DB2_6158, 0x5005_713C,
-        0xEDB8_8320, 0xF00F_9344, 0xD6D6_A3E8, 0xCB61_B38C, 0x9B64_C2B0, 0x86D3_D2D4, 0xA00A_E278, 0xBDBD_F21C,
-    ];
-    let mut crc = crc ^ u32::from(byte);
-    for _ in 0..2 {
-        crc = (crc >> 4) ^ NIBBLE[(crc & 15) as usize];
+/// CRC-32 (IEEE, reflected) of each byte. A kilobyte of flash halves the longest tick of the recorder.
+const CRC_OF_BYTE: [u32; 256] = {
+    let mut table = [0; 256];
+    let mut byte = 0;
+    while byte < 256 {
+        let mut crc = byte as u32;
+        let mut bit = 0;
+        while bit < 8 {
+            crc = (crc >> 1) ^ (0xEDB8_8320 & (crc & 1).wrapping_neg());
+            bit += 1;
+        }
+        table[byte] = crc;
+        byte += 1;
     }
-    crc
+    table
+};
+
+fn crc_of_bytes(crc: u32, bytes: [u8; 8]) -> u32 {
+    let step = |crc: u32, byte: u8| (crc >> 8) ^ CRC_OF_BYTE[(crc as u8 ^ byte) as usize];
+    bytes.into_iter().fold(crc, step)
 }
 
 /// CRC-32 of entries, for a reader of a record to compare with.
 pub fn crc_of<'a>(entries: impl Iterator<Item = &'a Entry>) -> u32 {
-    let mut crc = !0;
-    for entry in entries {
-        for byte in entry.bytes() {
-            crc = crc_step(crc, byte);
-        }
-    }
-    !crc
+    !entries.flat_map(Entry::halves).fold(!0, crc_of_bytes)
 }

@@ -2,10 +2,11 @@
 //! the request to coast down.
 
 use crate::coeffs::Coeffs;
+use crate::course::sum_of_impacts;
 use crate::detect::Findings;
-use crate::estimate::Motion;
 use crate::guard::Reading;
-use crate::math::{Sum, max, min, sqrt};
+use crate::law::View;
+use crate::scalar::{Scalar, Slow};
 use crate::signal::{Events, Limits, Mode, Report};
 use crate::vec2::Vec2;
 
@@ -15,46 +16,47 @@ const MOST_INDEX: f32 = 1e9;
 
 /// Counters since the supervisor was made, per unit.
 #[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Severity {
+pub(crate) struct Severity<S: Scalar> {
     landings: u32,
     impacts: u32,
     contact_ticks: u32,
-    impact_speed_max: f32,
-    backward_speed_max: f32,
-    index: Sum,
+    impact_speed_max: S,
+    backward_speed_max: S,
+    /// Severity index over its limit.
+    index: S::Slow,
     /// The rotor has touched in this engagement.
     landed: bool,
     beyond_ticks: u32,
     coast_down: bool,
     /// Velocity at the last tick: what it was before an impact that the sample shows.
-    before: Vec2,
+    before: Vec2<S>,
 }
 
 /// What a tick has to report.
-pub(crate) struct Assessment {
+pub(crate) struct Assessment<S> {
     /// Predicted backward speed over the whirl limit.
-    pub(crate) severity: f32,
+    pub(crate) severity: S,
     pub(crate) limits: Limits,
     pub(crate) events: Events,
 }
 
-impl Severity {
+impl<S: Scalar> Severity<S> {
     /// `force` is the one that acts \[caps\].
+    #[inline(never)]
     pub(crate) fn assess(
         &mut self,
         mode: Mode,
-        motion: &Motion,
-        found: &Findings,
-        reading: &Reading,
-        force: Vec2,
-        coeffs: &Coeffs,
-    ) -> Assessment {
+        view: &View<'_, S>,
+        reading: &Reading<S>,
+        force: Vec2<S>,
+    ) -> Assessment<S> {
         let mut result = Assessment {
-            severity: 0.0,
+            severity: S::ZERO,
             limits: Limits::empty(),
             events: Events::empty(),
         };
-        let before = core::mem::replace(&mut self.before, motion.velocity);
+        let (found, coeffs) = (view.found, view.coeffs);
+        let before = core::mem::replace(&mut self.before, view.motion.velocity);
         if !reading.bearing_on {
             self.coast_down = false;
         }
@@ -68,16 +70,25 @@ impl Severity {
             Mode::SensorFault => return result,
             _ => {}
         }
-        let in_contact = found.touching && reading.position.is_some();
-        let backward = backward_speed(found.tangential_speed, reading.spin_sign);
-        let index_before = self.index.value;
-        if in_contact {
-            self.contact(before, backward, found, motion, force, coeffs);
-        }
-        if found.unavoidable || found.touching {
-            let coming = predicted(motion, found, reading.spin_sign, coeffs);
-            result.severity = min(coming / coeffs.whirl_limit, MOST_SEVERITY);
-        }
+        let backward = view.spin.backward(found.tangential_speed);
+        let mut passed = false;
+        let coming = if found.touching {
+            if reading.position.is_some() {
+                passed = self.contact(before, backward, found, force, coeffs);
+            }
+            let outward = found.radial_speed.or_more(S::ZERO);
+            sum_of_impacts(backward, outward, coeffs.bounce_gain)
+        } else {
+            match view.ahead {
+                Some(impact) if found.unavoidable => {
+                    let backward = view.spin.backward(impact.along);
+                    sum_of_impacts(backward, impact.normal_speed, coeffs.bounce_gain)
+                }
+                _ => S::ZERO,
+            }
+        };
+        let severity = (coming * coeffs.per_whirl_limit).or_more(S::ZERO);
+        result.severity = severity.or_less(S::of(MOST_SEVERITY));
 
         let beyond = backward > coeffs.whirl_limit;
         if beyond && found.touching {
@@ -87,8 +98,6 @@ impl Severity {
             // A rotor that leaves the wall for some ticks without losing speed has not been stopped.
             self.beyond_ticks = 0;
         }
-        let passed =
-            index_before <= coeffs.severity_limit && self.index.value > coeffs.severity_limit;
         if (passed || self.beyond_ticks > coeffs.coast_down_ticks) && !self.coast_down {
             self.coast_down = true;
             result.events |= Events::COAST_DOWN;
@@ -96,78 +105,63 @@ impl Severity {
         result
     }
 
-    /// A tick in contact: impact and friction, as energies over ½·m.
+    /// A tick in contact: impact and friction, as squares of speed. True when the index passes its limit.
+    #[inline]
     fn contact(
         &mut self,
-        before: Vec2,
-        backward: f32,
-        found: &Findings,
-        motion: &Motion,
-        force: Vec2,
-        coeffs: &Coeffs,
-    ) {
+        before: Vec2<S>,
+        backward: S,
+        found: &Findings<S>,
+        force: Vec2<S>,
+        coeffs: &Coeffs<S>,
+    ) -> bool {
         if !self.landed {
             self.landed = true;
             self.landings = self.landings.saturating_add(1);
         }
         self.contact_ticks = self.contact_ticks.saturating_add(1);
-        self.backward_speed_max = max(self.backward_speed_max, backward);
-        let mut energy = 0.0;
+        self.backward_speed_max = self.backward_speed_max.or_more(backward);
+        let mut energy = S::ZERO;
         if found.touched {
             self.impacts = self.impacts.saturating_add(1);
-            let speed = max(before.dot(found.normal), 0.0);
-            self.impact_speed_max = max(self.impact_speed_max, speed);
-            energy += speed * speed;
+            let speed = before.dot(found.normal).or_more(S::ZERO);
+            self.impact_speed_max = self.impact_speed_max.or_more(speed);
+            energy = speed * speed;
         }
-        // Normal force per mass that keeps the rotor on its circle against what pulls it off.
+        // Normal force that keeps the rotor on its circle against what pulls it off.
         let along = found.tangential_speed;
-        let outward = (force * coeffs.force_gain + motion.load).dot(found.normal);
-        let normal = max(along * along - coeffs.stiffness + outward, 0.0);
-        let speed = max(along, -along);
-        energy += 2.0 * coeffs.friction * normal * speed;
-        if self.index.value < MOST_INDEX {
-            let limit = coeffs.whirl_limit;
-            // Both factors are bounded before they meet.
-            self.index.add(min(energy / limit / limit, MOST_INDEX));
+        let outward = force.dot(found.normal) + found.load;
+        let normal = (along * along - coeffs.stiffness + outward).or_more(S::ZERO);
+        let friction = coeffs.friction * normal * along.size() * coeffs.tick;
+        energy = energy + friction + friction;
+        let index = self.index.value();
+        if index <= S::of(MOST_INDEX) {
+            self.index.add(energy, coeffs.index_rate);
         }
+        index <= S::ONE && self.index.value() > S::ONE
     }
 
-    pub(crate) fn report(&self, coeffs: &Coeffs) -> Report {
+    pub(crate) fn report(&self, coeffs: &Coeffs<S>) -> Report {
+        let speed_m_s = coeffs.scaling.speed_m_s;
+        let index = self.index.value().to_f32() * coeffs.severity_limit;
         Report {
             landings: self.landings,
             impacts: self.impacts,
             contact_ticks: self.contact_ticks,
-            impact_speed_max_m_s: self.impact_speed_max * coeffs.speed_m_s,
-            backward_speed_max_m_s: self.backward_speed_max * coeffs.speed_m_s,
-            whirl_limit_m_s: coeffs.whirl_limit * coeffs.speed_m_s,
-            severity_index: min(self.index.value, MOST_INDEX),
+            impact_speed_max_m_s: self.impact_speed_max.to_f32() * speed_m_s,
+            backward_speed_max_m_s: self.backward_speed_max.to_f32() * speed_m_s,
+            whirl_limit_m_s: coeffs.whirl_limit.to_f32() * speed_m_s,
+            severity_index: index.or_less(MOST_INDEX),
             coast_down: self.coast_down,
             ..Report::default()
         }
     }
-}
 
-/// Speed against the spin; with unknown spin every whirl counts, for friction will drive it.
-fn backward_speed(along: f32, spin_sign: f32) -> f32 {
-    if spin_sign != 0.0 {
-        -spin_sign * along
-    } else {
-        max(along, -along)
+    /// After a change of the units of speed and of what the index is measured by.
+    pub(crate) fn rescale(&mut self, speed: S, index: f32) {
+        self.impact_speed_max = self.impact_speed_max * speed;
+        self.backward_speed_max = self.backward_speed_max * speed;
+        self.before = self.before * speed;
+        self.index = self.index.scaled(index);
     }
-}
-
-/// Backward speed after all the impacts to come, v_b + K·v_n, of the next one: on a straight way its
-/// v_b is the angular momentum about the centre, and v_n what that leaves of the speed.
-fn predicted(motion: &Motion, found: &Findings, spin_sign: f32, coeffs: &Coeffs) -> f32 {
-    let (along, normal) = if found.touching {
-        (found.tangential_speed, max(found.radial_speed, 0.0))
-    } else {
-        let along = motion.position.turned().dot(motion.velocity);
-        let square = motion.velocity.length_squared() - along * along;
-        (along, sqrt(max(square, 0.0)))
-    };
-    max(
-        backward_speed(along, spin_sign) + coeffs.bounce_gain * normal,
-        0.0,
-    )
 }

@@ -36,6 +36,11 @@ bitflags::bitflags! {
         const AXIS_X_LOST = 1 << 3;
         /// The drive cannot act along y: nothing is commanded there.
         const AXIS_Y_LOST = 1 << 4;
+        /// The last command came too late for its tick: the actuator kept the one before for that long.
+        const LATE = 1 << 5;
+        /// Compute and record, but let the levitation command through: to watch the supervisor on a
+        /// machine before it may act.
+        const SHADOW = 1 << 6;
     }
 
     /// What binds the command of this tick. Eight bits, so that the flight record keeps them all.
@@ -60,7 +65,7 @@ bitflags::bitflags! {
         const BEYOND_WHIRL_LIMIT = 1 << 7;
     }
 
-    /// What changed at this tick.
+    /// What changed at this tick. The low 16 bits go into the flight record.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
     #[repr(transparent)]
     pub struct Events: u32 {
@@ -84,10 +89,10 @@ bitflags::bitflags! {
         const SENSOR_OK = 1 << 8;
         /// A sequence number was missed or repeated.
         const SEQUENCE = 1 << 9;
-        /// The flight recorder has frozen a record.
-        const RECORD_FROZEN = 1 << 10;
-        /// An event was lost because the background did not drain the queue.
-        const QUEUE_FULL = 1 << 11;
+        /// The last command came too late ([`Status::LATE`]).
+        const LATE = 1 << 10;
+        /// From this tick on another configuration holds.
+        const RECONFIGURED = 1 << 11;
         /// The drive has lost an axis.
         const AXIS_LOST = 1 << 12;
         /// An axis is back.
@@ -95,6 +100,10 @@ bitflags::bitflags! {
         /// The machine should coast down: whirl beyond the limit has lasted, or the severity index has
         /// passed its limit. Once until the bearing is switched off.
         const COAST_DOWN = 1 << 14;
+        /// The flight recorder has frozen a record.
+        const RECORD_FROZEN = 1 << 16;
+        /// An event was lost because the background did not drain the queue. Only in the queue.
+        const QUEUE_FULL = 1 << 17;
     }
 }
 
@@ -171,6 +180,9 @@ pub struct Command {
     /// Force to command \[N\]: finite, within the cap, the caps of the axes and the slew limit (to the last
     /// bits of `f32`).
     pub force_n: [f32; 2],
+    /// Force that the supervisor would command \[N\], within the same limits: `force_n` but under
+    /// [`Status::SHADOW`].
+    pub own_n: [f32; 2],
     /// What the supervisor is doing.
     pub mode: Mode,
     /// What binds now.
@@ -182,6 +194,42 @@ pub struct Command {
     /// Backward speed that is to be expected after the impacts to come, over the highest that the cap
     /// can arrest; 0 while no contact is coming, 1e6 at most.
     pub severity: f32,
+}
+
+/// A [`Sample`] per unit, for a core without floating point ([`crate::Core`]).
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct CoreSample<S> {
+    /// As in [`Sample`].
+    pub sequence: u32,
+    /// As in [`Sample`].
+    pub status: Status,
+    /// Position at the retainer bearing \[clearances\].
+    pub position: [S; 2],
+    /// Spin in any unit, counter-clockwise positive; only its sign is used.
+    pub spin: S,
+    /// Force that the levitation controller wants \[caps\].
+    pub levitation: [S; 2],
+    /// Force that the actuator delivers now \[caps\].
+    pub applied: [S; 2],
+}
+
+/// A [`Command`] per unit.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct CoreCommand<S> {
+    /// Force to command \[caps\].
+    pub force: [S; 2],
+    /// Force that the supervisor would command \[caps\].
+    pub own: [S; 2],
+    /// As in [`Command`].
+    pub mode: Mode,
+    /// As in [`Command`].
+    pub limits: Limits,
+    /// As in [`Command`].
+    pub events: Events,
+    /// As in [`Command`].
+    pub integrator: IntegratorHint,
+    /// As in [`Command`]; saturating.
+    pub severity: S,
 }
 
 /// What has happened since the supervisor was made. A flight record that is discarded takes nothing from it.
@@ -207,6 +255,12 @@ pub struct Report {
     pub thermal_state: f32,
     /// Force cap now \[N\].
     pub force_cap_n: f32,
+    /// Ticks that were missed, by the sequence number.
+    pub missed_ticks: u32,
+    /// Calls with the sequence number of the call before.
+    pub repeated_ticks: u32,
+    /// Commands that came too late.
+    pub late_ticks: u32,
     /// Why the last sample was refused, if it was.
     pub refusal: Refusal,
     /// Why the last sensor fault began.

@@ -1,35 +1,38 @@
 //! Vectors in the plane of the bearing.
 
-use crate::math::sqrt;
+use crate::scalar::Scalar;
 
 /// A plane vector (x right, y up).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(crate) struct Vec2 {
-    pub(crate) x: f32,
-    pub(crate) y: f32,
+pub(crate) struct Vec2<S> {
+    pub(crate) x: S,
+    pub(crate) y: S,
 }
 
-impl Vec2 {
-    pub(crate) const ZERO: Self = Self { x: 0.0, y: 0.0 };
+impl<S: Scalar> Vec2<S> {
+    pub(crate) const ZERO: Self = Self {
+        x: S::ZERO,
+        y: S::ZERO,
+    };
 
     #[inline]
-    pub(crate) const fn new(x: f32, y: f32) -> Self {
+    pub(crate) const fn new(x: S, y: S) -> Self {
         Self { x, y }
     }
 
     #[inline]
-    pub(crate) const fn from_array([x, y]: [f32; 2]) -> Self {
+    pub(crate) fn from_array([x, y]: [S; 2]) -> Self {
         Self { x, y }
     }
 
     #[inline]
-    pub(crate) const fn to_array(self) -> [f32; 2] {
+    pub(crate) fn to_array(self) -> [S; 2] {
         [self.x, self.y]
     }
 
     #[inline]
-    pub(crate) fn dot(self, other: Self) -> f32 {
-        self.x * other.x + self.y * other.y
+    pub(crate) fn dot(self, other: Self) -> S {
+        S::products(self.x, other.x, self.y, other.y)
     }
 
     /// A quarter turn counter-clockwise: t̂ from r̂.
@@ -41,37 +44,48 @@ impl Vec2 {
     /// Rotated by the angle of the vector (`cos`, `sin`), which need not be exactly a unit vector.
     #[inline]
     pub(crate) fn rotated(self, by: Self) -> Self {
-        Self::new(self.x * by.x - self.y * by.y, self.x * by.y + self.y * by.x)
+        Self::new(
+            S::products(self.x, by.x, -self.y, by.y),
+            S::products(self.x, by.y, self.y, by.x),
+        )
     }
 
     #[inline]
-    pub(crate) fn length_squared(self) -> f32 {
+    pub(crate) fn length_squared(self) -> S {
         self.dot(self)
     }
 
+    /// 1/length; 0 where there is no direction.
     #[inline]
-    pub(crate) fn length(self) -> f32 {
-        sqrt(self.length_squared())
+    pub(crate) fn inverse_length(self) -> S {
+        S::inverse_length(self.x, self.y)
     }
 
-    /// Unit vector and length; the zero vector and 0 where there is no direction.
+    /// Unit vector; the zero vector where there is no direction.
     #[inline]
-    pub(crate) fn direction(self) -> (Self, f32) {
-        let length = self.length();
-        if length > 0.0 {
-            (self * (1.0 / length), length)
-        } else {
-            (Self::ZERO, 0.0)
-        }
+    pub(crate) fn direction(self) -> Self {
+        self * self.inverse_length()
+    }
+
+    /// Whether it is longer than `limit`; true also where it is no number.
+    #[inline]
+    pub(crate) fn exceeds(self, limit: S) -> bool {
+        S::exceeds(self.x, self.y, limit)
     }
 
     #[inline]
     pub(crate) fn is_finite(self) -> bool {
         self.x.is_finite() && self.y.is_finite()
     }
+
+    /// Each coordinate by a function.
+    #[inline]
+    pub(crate) fn map(self, f: impl Fn(S) -> S) -> Self {
+        Self::new(f(self.x), f(self.y))
+    }
 }
 
-impl core::ops::Add for Vec2 {
+impl<S: Scalar> core::ops::Add for Vec2<S> {
     type Output = Self;
     #[inline]
     fn add(self, other: Self) -> Self {
@@ -79,7 +93,7 @@ impl core::ops::Add for Vec2 {
     }
 }
 
-impl core::ops::Sub for Vec2 {
+impl<S: Scalar> core::ops::Sub for Vec2<S> {
     type Output = Self;
     #[inline]
     fn sub(self, other: Self) -> Self {
@@ -87,15 +101,15 @@ impl core::ops::Sub for Vec2 {
     }
 }
 
-impl core::ops::Mul<f32> for Vec2 {
+impl<S: Scalar> core::ops::Mul<S> for Vec2<S> {
     type Output = Self;
     #[inline]
-    fn mul(self, factor: f32) -> Self {
+    fn mul(self, factor: S) -> Self {
         Self::new(self.x * factor, self.y * factor)
     }
 }
 
-impl core::ops::Neg for Vec2 {
+impl<S: Scalar> core::ops::Neg for Vec2<S> {
     type Output = Self;
     #[inline]
     fn neg(self) -> Self {

@@ -1,0 +1,78 @@
+//! Where the rotor is going: its speed, and the next impact at the end of a straight path.
+
+use crate::estimate::Motion;
+use crate::guard::Spin;
+use crate::scalar::Scalar;
+use crate::vec2::Vec2;
+
+/// Speed and heading.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Course<S> {
+    /// v²; over that of the lift-off speed, which is 1.
+    pub(crate) square: S,
+    pub(crate) speed: S,
+    /// 1/v; 0 for a rotor without speed.
+    pub(crate) inverse: S,
+}
+
+impl<S: Scalar> Course<S> {
+    #[inline]
+    pub(crate) fn of(velocity: Vec2<S>) -> Self {
+        let (square, inverse) = (velocity.length_squared(), velocity.inverse_length());
+        Self {
+            square,
+            speed: square * inverse,
+            inverse,
+        }
+    }
+}
+
+/// Where a straight flight meets the clearance circle.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Impact<S> {
+    /// Until then.
+    pub(crate) time: S,
+    pub(crate) normal: Vec2<S>,
+    /// Normal and counter-clockwise tangential speed there.
+    pub(crate) normal_speed: S,
+    pub(crate) along: S,
+}
+
+impl<S: Scalar> Impact<S> {
+    /// `None` for a rotor without speed, or beyond the wall.
+    #[inline(never)]
+    pub(crate) fn ahead(motion: &Motion<S>, radius: S, course: &Course<S>) -> Option<Self> {
+        let room = (S::ONE - radius) * (S::ONE + radius);
+        if course.inverse <= S::ZERO || room <= S::ZERO {
+            return None;
+        }
+        let heading = motion.velocity * course.inverse;
+        let along = motion.position.dot(heading);
+        let cosine = (along * along + room).root();
+        let chord = cosine - along;
+        Some(Self {
+            time: chord * course.inverse,
+            normal: motion.position + heading * chord,
+            normal_speed: course.speed * cosine,
+            along: motion.position.turned().dot(motion.velocity),
+        })
+    }
+}
+
+/// Backward speed after all the impacts to come, v_b + K·v_n.
+#[inline]
+pub(crate) fn sum_of_impacts<S: Scalar>(backward: S, normal_speed: S, gain: S) -> S {
+    backward + gain * normal_speed
+}
+
+/// Sense of backward where a rotor moves along the wall, +1 counter-clockwise: against the surface speed
+/// of the spin, or, with unknown spin, along the whirl that is there.
+#[inline]
+pub(crate) fn sense<S: Scalar>(spin: Spin, along: S) -> S {
+    let counterclockwise = match spin {
+        Spin::Counterclockwise => false,
+        Spin::Clockwise => true,
+        Spin::Unknown => along > S::ZERO,
+    };
+    if counterclockwise { S::ONE } else { -S::ONE }
+}

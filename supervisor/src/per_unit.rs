@@ -1,0 +1,270 @@
+//! The tick, per unit: its body reads as the list of files.
+
+use crate::classify::Classifier;
+use crate::coeffs::Coeffs;
+use crate::config::{Config, CoreError, Misfit};
+use crate::course::{Course, Impact};
+use crate::detect::Detector;
+use crate::estimate::Observer;
+use crate::guard::{Actuator, Guard, Reading};
+use crate::handover::Readiness;
+use crate::law::View;
+use crate::limit::{Budget, Room};
+use crate::phase::Phase;
+use crate::recorder::{QueuedEvent, Record, Recorder, Tick};
+use crate::scalar::Scalar;
+use crate::severity::Severity;
+use crate::signal::{
+    CoreCommand, CoreSample, Events, IntegratorHint, Mode, Refusal, Report, Status,
+};
+use crate::vec2::Vec2;
+use crate::{handover, limit};
+
+/// Supervisor of one bearing plane in clearances and force caps, for a number `S`, with a flight record of
+/// `RECORD` ticks (a power of two). [`Config::scaling`] says what the units are.
+#[derive(Debug, Clone)]
+pub struct Core<S: Scalar, const RECORD: usize = 512> {
+    coeffs: Coeffs<S>,
+    guard: Guard<S>,
+    observer: Observer<S>,
+    detector: Detector,
+    classifier: Classifier<S>,
+    readiness: Readiness<S>,
+    phase: Phase<S>,
+    budget: Budget<S>,
+    severity: Severity<S>,
+    /// Last command …
+    force: Vec2<S>,
+    /// … and what would have been it, which is the same but in shadow.
+    own: Vec2<S>,
+    refusal: Refusal,
+    reconfigured: bool,
+    recorder: Recorder<RECORD>,
+}
+
+/// Checked and converted configuration: made in the background, taken over between two ticks.
+#[derive(Debug, Clone, Copy)]
+pub struct Prepared<S: Scalar>(Coeffs<S>);
+
+impl<S: Scalar> Prepared<S> {
+    /// Checks and converts.
+    ///
+    /// # Errors
+    /// A parameter outside its range, or a coefficient that `S` cannot hold.
+    pub fn new(config: &Config) -> Result<Self, CoreError> {
+        config.validate().map_err(CoreError::Range)?;
+        match Self::of_valid(config) {
+            (prepared, None) => Ok(prepared),
+            (_, Some(misfit)) => Err(CoreError::Misfit(misfit)),
+        }
+    }
+
+    pub(crate) fn of_valid(config: &Config) -> (Self, Option<Misfit>) {
+        let (coeffs, misfit) = Coeffs::new(config);
+        (Self(coeffs), misfit)
+    }
+}
+
+impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
+    /// A supervisor that starts levitated.
+    pub fn new(prepared: &Prepared<S>) -> Self {
+        Self {
+            coeffs: prepared.0,
+            guard: Guard::default(),
+            observer: Observer::default(),
+            detector: Detector::default(),
+            classifier: Classifier::default(),
+            readiness: Readiness::default(),
+            phase: Phase::default(),
+            budget: Budget::default(),
+            severity: Severity::default(),
+            force: Vec2::ZERO,
+            own: Vec2::ZERO,
+            refusal: Refusal::None,
+            reconfigured: false,
+            recorder: Recorder::new(),
+        }
+    }
+
+    /// Takes another configuration over, to hold from the next tick on. What is known of the rotor stays,
+    /// and so do mode, counters and thermal state; entries of a flight record are in the units of
+    /// their time, and the tick of the change has [`Events::RECONFIGURED`].
+    pub fn reconfigure(&mut self, prepared: &Prepared<S>) {
+        let (old, new) = (self.coeffs.scaling, prepared.0.scaling);
+        let ratio = |old: f32, new: f32| old / new;
+        let length = S::of(ratio(old.length_m, new.length_m));
+        let speed = ratio(old.speed_m_s, new.speed_m_s);
+        let force = ratio(old.force_n, new.force_n);
+        let index = self.coeffs.severity_limit / prepared.0.severity_limit;
+        self.guard.rescale(length);
+        (self.observer).rescale(length, S::of(speed), S::of(force));
+        self.budget.rescale(force);
+        self.severity.rescale(S::of(speed), index);
+        self.force = self.force * S::of(force);
+        self.own = self.own * S::of(force);
+        self.coeffs = prepared.0;
+        self.reconfigured = true;
+    }
+
+    /// One tick: total and bounded; the one loop that depends on data makes up for at most four missed
+    /// ticks.
+    #[inline]
+    pub fn tick(&mut self, sample: &CoreSample<S>) -> CoreCommand<S> {
+        let coeffs = &self.coeffs;
+        let blind = self.detector.near_contact();
+        let reading = (self.guard).judge(sample, self.observer.velocity(), blind, coeffs);
+        self.refusal = reading.refusal;
+        let unusual = reading.missed > 0
+            || reading.anew
+            || reading.faulty
+            || sample.status.contains(Status::LATE);
+        if unusual {
+            self.catch_up(&reading, sample.status, blind);
+        }
+        let coeffs = &self.coeffs;
+        let actuator = reading.actuator;
+        let contact = self.detector.sample(reading.position, coeffs);
+        let near_contact = self.detector.near_contact();
+        let motion = (self.observer).advance(reading.position, near_contact, actuator, coeffs);
+        let found = self.detector.findings(&motion, contact, coeffs);
+        let class = (self.classifier).classify(&found, reading.spin, coeffs);
+
+        // A rotor that levitates, and will, needs none of what follows.
+        let (mut course, mut ahead, mut calm) = (Course::default(), None, false);
+        if self.phase != Phase::Levitated || found.unavoidable || found.touching {
+            course = Course::of(motion.velocity);
+            if !found.touching {
+                ahead = Impact::ahead(&motion, found.radius, &course);
+                calm = !near_contact && found.stops(course.speed, S::of(0.5), coeffs);
+            }
+        }
+        let ready = calm && self.readiness.ready();
+        let (phase, events) = (self.phase).next(&found, ready, class, &reading, coeffs);
+        self.phase = phase;
+        let mode = phase.mode();
+
+        let view = View {
+            motion: &motion,
+            found: &found,
+            course: &course,
+            ahead: ahead.as_ref(),
+            spin: reading.spin,
+            coeffs,
+        };
+        let room = Room::new(&self.budget, actuator, coeffs);
+        let shadow = sample.status.contains(Status::SHADOW);
+        // A lost axis has no force to start from.
+        let last_force = actuator.carried(self.force);
+        let last = if shadow {
+            actuator.carried(self.own)
+        } else {
+            last_force
+        };
+        let wanted_levitation = Vec2::from_array(sample.levitation);
+        let (levitation, levitation_limits) = limit::levitation(wanted_levitation, &room);
+        let (own, mut limits) = if mode == Mode::Levitated {
+            self.readiness = Readiness::default();
+            let (force, slew) = limit::slewed(levitation, last, coeffs);
+            (force, slew | levitation_limits)
+        } else {
+            let (wanted, own_limits) = limit::allocate(&view.wanted(mode), &room);
+            // The controller has to ask for what the rotor is really held with.
+            let held = actuator.applied.unwrap_or(wanted);
+            self.readiness
+                .compare(held, levitation, found.normal, coeffs);
+            let blended = handover::blend(phase, wanted, levitation, self.own, coeffs);
+            let (force, bound) = limit::last_word(blended, last, &room, coeffs);
+            (force, own_limits | bound)
+        };
+        self.own = own;
+        self.force = own;
+        let mut integrator = handover::integrator_hint(phase, calm, reading.bearing_on);
+        if shadow {
+            (self.force, _) = limit::slewed(levitation, last_force, coeffs);
+            integrator = IntegratorHint::Run;
+        }
+        limits |= reading.limits;
+        self.observer.commanded(self.force);
+        let acting = actuator.applied.unwrap_or(self.force);
+        self.budget.tick(acting, coeffs);
+        let assessment = (self.severity).assess(mode, &view, &reading, acting);
+
+        let mut events = events | reading.events | assessment.events;
+        if core::mem::take(&mut self.reconfigured) {
+            events |= Events::RECONFIGURED;
+        }
+        limits |= assessment.limits;
+        events |= self.recorder.push(&Tick {
+            sequence: sample.sequence,
+            position: reading.position.unwrap_or(motion.position),
+            force: self.own,
+            mode,
+            limits,
+            events,
+        });
+        CoreCommand {
+            force: self.force.to_array(),
+            own: self.own.to_array(),
+            mode,
+            limits,
+            events,
+            integrator,
+            severity: assessment.severity,
+        }
+    }
+
+    /// What a tick has to make up for: commands that came too late, ticks that were missed, an estimate that
+    /// cannot go on.
+    #[cold]
+    fn catch_up(&mut self, reading: &Reading<S>, status: Status, blind: bool) {
+        if status.contains(Status::LATE) {
+            self.observer.late();
+        }
+        for _ in 0..reading.missed {
+            // Nobody commanded anything else meanwhile.
+            let modelled = Actuator {
+                applied: None,
+                ..reading.actuator
+            };
+            (self.observer).advance(None, blind, modelled, &self.coeffs);
+            self.observer.commanded(self.force);
+        }
+        if reading.anew || (reading.faulty && reading.position.is_none()) {
+            self.observer.forget();
+        }
+    }
+
+    /// What the supervisor is doing.
+    pub fn mode(&self) -> Mode {
+        self.phase.mode()
+    }
+
+    /// What has happened since the supervisor was made, in SI.
+    pub fn report(&self) -> Report {
+        Report {
+            thermal_state: self.budget.state(&self.coeffs),
+            force_cap_n: self.budget.cap(&self.coeffs).to_f32() * self.coeffs.scaling.force_n,
+            missed_ticks: self.guard.missed_ticks,
+            repeated_ticks: self.guard.repeated_ticks,
+            late_ticks: self.guard.late_ticks,
+            refusal: self.refusal,
+            fault: self.guard.fault,
+            ..self.severity.report(&self.coeffs)
+        }
+    }
+
+    /// The frozen flight record, if there is one.
+    pub fn record(&self) -> Option<Record<'_, RECORD>> {
+        self.recorder.record()
+    }
+
+    /// Discards a frozen record and waits for the next engagement.
+    pub fn rearm(&mut self) {
+        self.recorder.rearm();
+    }
+
+    /// Next event for the background task, oldest first.
+    pub fn next_event(&mut self) -> Option<QueuedEvent> {
+        self.recorder.next_event()
+    }
+}

@@ -1,0 +1,247 @@
+//! The numbers that the supervisor computes with: `f32` where there is a floating-point unit, [`crate::Q`]
+//! where there is none, `f64` as the reference on the host. All operations are total and the same bits on
+//! every target.
+
+use core::fmt::Debug;
+use core::ops::{Add, Mul, Neg, Sub};
+
+pub(crate) mod sealed {
+    /// Only this crate's scalars have been checked to be total.
+    pub trait Sealed {}
+    impl Sealed for f32 {}
+    impl Sealed for f64 {}
+}
+
+/// A number of the supervisor: `f32`, `f64` or [`crate::Q`].
+pub trait Scalar:
+    sealed::Sealed
+    + Copy
+    + Default
+    + PartialEq
+    + PartialOrd
+    + Debug
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Neg<Output = Self>
+{
+    /// A sum that a small rate still moves.
+    type Slow: Slow<Self>;
+
+    /// 0.
+    const ZERO: Self;
+    /// 1.
+    const ONE: Self;
+    /// Square of the largest position, speed or force that is computed with; squares up to it are exact
+    /// enough to compare.
+    const FAR_SQUARE: Self;
+    /// A few units in the last place below 1, so that rounding cannot lift a scaled force above its limit.
+    const JUST_BELOW_ONE: Self;
+
+    /// The nearest number; saturating, 0 for NaN.
+    fn of(x: f32) -> Self;
+    /// As `f32`.
+    fn to_f32(self) -> f32;
+    /// Whether `of` keeps this coefficient well enough to compute with.
+    fn represents(x: f32) -> bool;
+    /// Neither NaN nor infinite.
+    fn is_finite(self) -> bool;
+    /// a·b + c·d.
+    fn products(a: Self, b: Self, c: Self, d: Self) -> Self;
+    /// Whether √(x² + y²) > limit ≥ 0; true if one of them is NaN.
+    fn exceeds(x: Self, y: Self, limit: Self) -> bool;
+    /// 1/√(x² + y²); 0 where that length is as good as none.
+    fn inverse_length(x: Self, y: Self) -> Self;
+    /// Square root; 0 for negative numbers and NaN.
+    fn root(self) -> Self;
+    /// The quotient; saturating, something finite for a divisor of 0 where numbers have no infinity.
+    fn over(self, divisor: Self) -> Self;
+    /// A count of ticks; saturating.
+    fn count(ticks: u32) -> Self;
+    /// In units of 1/4096, rounded, saturating at ±8; NaN saturates, too.
+    fn packed(self) -> i16;
+
+    /// Held between `low` and `high` (`low` ≤ `high`); NaN becomes `low`.
+    #[inline]
+    fn between(self, low: Self, high: Self) -> Self {
+        // `f32::clamp` can panic.
+        if self > high {
+            high
+        } else if self >= low {
+            self
+        } else {
+            low
+        }
+    }
+
+    /// The larger of two finite numbers.
+    #[inline]
+    fn or_more(self, other: Self) -> Self {
+        if self > other { self } else { other }
+    }
+
+    /// The smaller of two finite numbers.
+    #[inline]
+    fn or_less(self, other: Self) -> Self {
+        if self < other { self } else { other }
+    }
+
+    /// Without its sign.
+    #[inline]
+    fn size(self) -> Self {
+        if self < Self::ZERO { -self } else { self }
+    }
+}
+
+/// A sum of many small steps that rounding must not stop.
+pub trait Slow<S>: Copy + Default + Debug {
+    /// A factor that may be smaller than what `S` resolves.
+    type Rate: Copy + Debug + PartialEq;
+
+    /// The nearest rate.
+    fn rate(x: f32) -> Self::Rate;
+    /// Adds x·rate.
+    fn add(&mut self, x: S, rate: Self::Rate);
+    /// The sum.
+    fn value(&self) -> S;
+    /// The sum times a factor.
+    fn scaled(&self, factor: f32) -> Self;
+}
+
+/// Compensated sum: keeps what rounding would take from it.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Compensated<S> {
+    value: S,
+    rest: S,
+}
+
+macro_rules! floating_point {
+    ($type:ident) => {
+        impl Scalar for $type {
+            type Slow = Compensated<$type>;
+            const ZERO: Self = 0.0;
+            const ONE: Self = 1.0;
+            const FAR_SQUARE: Self = 1e8;
+            const JUST_BELOW_ONE: Self = 1.0 - 4.0 * $type::EPSILON;
+
+            #[inline]
+            fn of(x: f32) -> Self {
+                $type::from(x)
+            }
+            #[inline]
+            fn to_f32(self) -> f32 {
+                self as f32
+            }
+            #[inline]
+            fn represents(x: f32) -> bool {
+                x.is_finite()
+            }
+            #[inline]
+            fn is_finite(self) -> bool {
+                self.is_finite()
+            }
+            #[inline]
+            fn products(a: Self, b: Self, c: Self, d: Self) -> Self {
+                a * b + c * d
+            }
+            #[inline]
+            fn exceeds(x: Self, y: Self, limit: Self) -> bool {
+                let within = x * x + y * y <= limit * limit;
+                !within
+            }
+            #[inline]
+            fn inverse_length(x: Self, y: Self) -> Self {
+                inverse_root::$type(x * x + y * y)
+            }
+            #[inline]
+            fn root(self) -> Self {
+                self * inverse_root::$type(self)
+            }
+            #[inline]
+            fn over(self, divisor: Self) -> Self {
+                self / divisor
+            }
+            #[inline]
+            fn count(ticks: u32) -> Self {
+                ticks as $type
+            }
+            #[inline]
+            fn packed(self) -> i16 {
+                // Added to a number whose last digit is 1/4096 it ends in the low bits: a quarter of the
+                // instructions of a conversion that saturates.
+                const DIGITS: $type = 1.5 * ((1_u64 << ($type::MANTISSA_DIGITS - 1 - 12)) as $type);
+                if self < 7.999_8 {
+                    if self > -7.999_8 {
+                        return (self + DIGITS).to_bits() as i16;
+                    }
+                    return i16::MIN;
+                }
+                i16::MAX
+            }
+        }
+
+        impl Slow<$type> for Compensated<$type> {
+            type Rate = $type;
+
+            #[inline]
+            fn rate(x: f32) -> $type {
+                $type::from(x)
+            }
+            #[inline]
+            fn add(&mut self, x: $type, rate: $type) {
+                self.rest += x * rate;
+                let sum = self.value + self.rest;
+                self.rest -= sum - self.value;
+                self.value = sum;
+            }
+            #[inline]
+            fn value(&self) -> $type {
+                self.value
+            }
+            fn scaled(&self, factor: f32) -> Self {
+                Self {
+                    value: self.value * $type::from(factor),
+                    rest: 0.0,
+                }
+            }
+        }
+    };
+}
+
+floating_point!(f32);
+floating_point!(f64);
+
+/// Reciprocal square roots by Newton's method, from + − × only: every target gives the same bits. `core`
+/// has no root, and libm's costs three times as many instructions where there is an FPU. 0 below 1e-30
+/// and for NaN.
+mod inverse_root {
+    /// The seed is micromath's (6 % off); three steps bring it to a few units in the last place.
+    #[inline]
+    pub(super) fn f32(x: f32) -> f32 {
+        let usable = x > 1e-30;
+        if !usable {
+            return 0.0;
+        }
+        let half = 0.5 * x;
+        let mut y = micromath::F32(x).invsqrt().0;
+        y *= 1.5 - half * y * y;
+        y *= 1.5 - half * y * y;
+        y *= 1.5 - half * y * y;
+        y
+    }
+
+    /// Five steps from the same kind of seed.
+    #[inline]
+    pub(super) fn f64(x: f64) -> f64 {
+        let usable = x > 1e-30;
+        if !usable {
+            return 0.0;
+        }
+        let half = 0.5 * x;
+        let mut y = f64::from_bits(0x5FE6_EB50_C7B5_37A9 - (x.to_bits() >> 1));
+        for _ in 0..5 {
+            y *= 1.5 - half * y * y;
+        }
+        y
+    }
+}
