@@ -12,7 +12,7 @@
 //! Every call checks every pointer, so that a mistake is a [`Code`] with a text and not a fault. What
 //! cannot be checked is under "Safety" of each function.
 //!
-//! Files, each importing only from those above it: `version`, `code`, `parameters`, `layout`,
+//! Files, each importing only from those above it: `version`, `parameters`, `code`, `layout`,
 //! `structs`, `pointer`, `storage`, `calls`.
 
 #![cfg_attr(target_os = "none", no_std)]
