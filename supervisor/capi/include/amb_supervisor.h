@@ -301,37 +301,37 @@ typedef struct amb_parameter {
 } amb_parameter;
 
 /** @name Sizes in bytes @{ */
-#define AMB_SAMPLE_BYTES 36
-#define AMB_COMMAND_BYTES 28
-#define AMB_EVENT_BYTES 12
-#define AMB_RECORD_BYTES 12
-#define AMB_ENTRY_BYTES 16
-#define AMB_REPORT_BYTES 48
+#define AMB_SIZEOF_SAMPLE 36
+#define AMB_SIZEOF_COMMAND 28
+#define AMB_SIZEOF_EVENT 12
+#define AMB_SIZEOF_RECORD 12
+#define AMB_SIZEOF_ENTRY 16
+#define AMB_SIZEOF_REPORT 48
 /** @} */
 
 /* The library was compiled with the same numbers: see structs.rs and storage.rs. */
 AMB_ASSERT(supervisor_size, sizeof(amb_supervisor) == AMB_SUPERVISOR_BYTES);
-AMB_ASSERT(sample_size, sizeof(amb_sample) == AMB_SAMPLE_BYTES);
+AMB_ASSERT(sample_size, sizeof(amb_sample) == AMB_SIZEOF_SAMPLE);
 AMB_ASSERT(sample_status, offsetof(amb_sample, status) == 4);
 AMB_ASSERT(sample_position, offsetof(amb_sample, position_m) == 8);
 AMB_ASSERT(sample_spin, offsetof(amb_sample, spin_rad_s) == 16);
 AMB_ASSERT(sample_levitation, offsetof(amb_sample, levitation_n) == 20);
 AMB_ASSERT(sample_applied, offsetof(amb_sample, applied_n) == 28);
-AMB_ASSERT(command_size, sizeof(amb_command) == AMB_COMMAND_BYTES);
+AMB_ASSERT(command_size, sizeof(amb_command) == AMB_SIZEOF_COMMAND);
 AMB_ASSERT(command_severity, offsetof(amb_command, severity) == 8);
 AMB_ASSERT(command_mode, offsetof(amb_command, mode) == 12);
 AMB_ASSERT(command_limits, offsetof(amb_command, limits) == 16);
 AMB_ASSERT(command_events, offsetof(amb_command, events) == 20);
 AMB_ASSERT(command_integrator, offsetof(amb_command, integrator) == 24);
-AMB_ASSERT(event_size, sizeof(amb_event) == AMB_EVENT_BYTES);
-AMB_ASSERT(record_size, sizeof(amb_record) == AMB_RECORD_BYTES);
-AMB_ASSERT(entry_size, sizeof(amb_entry) == AMB_ENTRY_BYTES);
+AMB_ASSERT(event_size, sizeof(amb_event) == AMB_SIZEOF_EVENT);
+AMB_ASSERT(record_size, sizeof(amb_record) == AMB_SIZEOF_RECORD);
+AMB_ASSERT(entry_size, sizeof(amb_entry) == AMB_SIZEOF_ENTRY);
 AMB_ASSERT(entry_position, offsetof(amb_entry, position) == 4);
 AMB_ASSERT(entry_force, offsetof(amb_entry, force) == 8);
 AMB_ASSERT(entry_mode, offsetof(amb_entry, mode) == 12);
 AMB_ASSERT(entry_limits, offsetof(amb_entry, limits) == 13);
 AMB_ASSERT(entry_events, offsetof(amb_entry, events) == 14);
-AMB_ASSERT(report_size, sizeof(amb_report) == AMB_REPORT_BYTES);
+AMB_ASSERT(report_size, sizeof(amb_report) == AMB_SIZEOF_REPORT);
 AMB_ASSERT(report_fault, offsetof(amb_report, fault) == 20);
 AMB_ASSERT(report_impact_speed, offsetof(amb_report, impact_speed_max_m_s) == 24);
 AMB_ASSERT(report_force_cap, offsetof(amb_report, force_cap_n) == 44);

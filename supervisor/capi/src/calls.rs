@@ -6,7 +6,7 @@ use crate::pointer::{Argument, Place};
 use crate::storage::{self, Lease, RECORD, Storage};
 use crate::structs::{CCommand, CEvent, CParameter, CRecord, CReport, CSample};
 use crate::{parameters, version};
-use core::ffi::c_char;
+use core::ffi::{CStr, c_char};
 use supervisor::{Config, Entry, Mode, PARAMETERS, RECORD_VERSION};
 
 /// Ending of the names; [`version::ABI`] as text.
@@ -32,7 +32,7 @@ pub extern "C" fn amb_abi_version() -> u32 {
 // SAFETY: a name of its own, see `amb_abi_version`.
 #[unsafe(export_name = concat!("amb_error_text", ending!()))]
 pub extern "C" fn amb_error_text(code: Code) -> *const c_char {
-    code.text()
+    code.text().as_ptr()
 }
 
 /// Row of the table of parameters.
@@ -52,9 +52,9 @@ pub unsafe extern "C" fn amb_parameter_at(index: u32, parameter: *mut CParameter
         return Code::ERROR_INDEX;
     };
     place.put(CParameter {
-        name: texts.name,
-        unit: texts.unit,
-        text: texts.text,
+        name: texts.name.as_ptr(),
+        unit: texts.unit.as_ptr(),
+        text: texts.text.as_ptr(),
         low: row.low,
         high: row.high,
     });
@@ -214,8 +214,12 @@ pub unsafe extern "C" fn amb_mode(supervisor: *mut Storage, mode: *mut u32) -> C
 // SAFETY: a name of its own, see `amb_abi_version`.
 #[unsafe(export_name = concat!("amb_mode_name", ending!()))]
 pub extern "C" fn amb_mode_name(mode: u32) -> *const c_char {
-    // Test `capi` compares these with the supervisor's own, which do not end as C wants it.
-    let name = match mode {
+    mode_name(mode).as_ptr()
+}
+
+/// The same for Rust. Test `capi` compares these with the supervisor's own, which do not end as C wants it.
+pub fn mode_name(mode: u32) -> &'static CStr {
+    match mode {
         0 => c"levitated",
         1 => c"approach",
         2 => c"bounce",
@@ -224,8 +228,7 @@ pub extern "C" fn amb_mode_name(mode: u32) -> *const c_char {
         5 => c"handover",
         6 => c"sensor fault",
         _ => c"unknown mode",
-    };
-    name.as_ptr()
+    }
 }
 
 /// What has happened since the supervisor was made.

@@ -1,7 +1,7 @@
 //! What a call returns: a number for programs, with a text for people.
 
 use crate::parameters;
-use core::ffi::{CStr, c_char};
+use core::ffi::CStr;
 
 /// Result of a call: 0 is success, 1 that there is nothing to be had, negative numbers are errors.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -85,13 +85,13 @@ impl Code {
         }
     }
 
-    /// What happened, for people; never null.
-    pub(crate) fn text(self) -> *const c_char {
+    /// What happened, for people.
+    pub fn text(self) -> &'static CStr {
         if let Some(row) = CODES.iter().find(|row| row.code == self) {
-            return row.text.as_ptr();
+            return row.text;
         }
         let index = FIRST_PARAMETER.wrapping_sub(self.0);
         let texts = usize::try_from(index).ok().and_then(parameters::texts);
-        texts.map_or(c"unknown code".as_ptr(), |texts| texts.error)
+        texts.map_or(c"unknown code", |texts| texts.error)
     }
 }

@@ -1,28 +1,30 @@
 //! Texts of the parameters as C wants them, ended by a zero byte: one pool, laid out at compile time.
 
-use core::ffi::c_char;
+use core::ffi::CStr;
 use supervisor::{PARAMETERS, Parameter};
 
-/// Texts of one parameter; they live as long as the program.
+/// Texts of one parameter.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Texts {
-    pub(crate) name: *const c_char,
-    pub(crate) unit: *const c_char,
-    pub(crate) text: *const c_char,
+    pub(crate) name: &'static CStr,
+    pub(crate) unit: &'static CStr,
+    pub(crate) text: &'static CStr,
     /// What to say when its value is outside its range.
-    pub(crate) error: *const c_char,
+    pub(crate) error: &'static CStr,
 }
 
 /// Texts of the parameter of this index.
 pub(crate) fn texts(index: usize) -> Option<Texts> {
-    // Not `as_ptr().add()`: an offset from this table is within the pool, and this needs no proof.
-    let at = |offset: u16| POOL.as_ptr().wrapping_add(usize::from(offset)).cast();
+    let at = |offset: u16| {
+        let rest = POOL.get(usize::from(offset)..)?;
+        CStr::from_bytes_until_nul(rest).ok()
+    };
     let [name, unit, text, error] = *OFFSETS.get(index)?;
     Some(Texts {
-        name: at(name),
-        unit: at(unit),
-        text: at(text),
-        error: at(error),
+        name: at(name)?,
+        unit: at(unit)?,
+        text: at(text)?,
+        error: at(error)?,
     })
 }
 

@@ -183,12 +183,12 @@ const _: () = {
     assert!(offset_of!(CParameter, low) == 3 * pointer);
     assert!(offset_of!(CParameter, high) == 3 * pointer + 4);
 
-    assert!(defined("AMB_SAMPLE_BYTES") == size_of::<CSample>());
-    assert!(defined("AMB_COMMAND_BYTES") == size_of::<CCommand>());
-    assert!(defined("AMB_EVENT_BYTES") == size_of::<CEvent>());
-    assert!(defined("AMB_RECORD_BYTES") == size_of::<CRecord>());
-    assert!(defined("AMB_REPORT_BYTES") == size_of::<CReport>());
-    assert!(defined("AMB_ENTRY_BYTES") == size_of::<Entry>());
+    assert!(defined("AMB_SIZEOF_SAMPLE") == size_of::<CSample>());
+    assert!(defined("AMB_SIZEOF_COMMAND") == size_of::<CCommand>());
+    assert!(defined("AMB_SIZEOF_EVENT") == size_of::<CEvent>());
+    assert!(defined("AMB_SIZEOF_RECORD") == size_of::<CRecord>());
+    assert!(defined("AMB_SIZEOF_REPORT") == size_of::<CReport>());
+    assert!(defined("AMB_SIZEOF_ENTRY") == size_of::<Entry>());
 };
 
 impl From<CSample> for Sample {
