@@ -55,17 +55,29 @@ pub(crate) unsafe fn make(
     // SAFETY: not null, aligned and large enough; any bytes are a valid `Storage`, because its word is
     // an integer and the rest may be uninitialised.
     let storage = unsafe { &*storage };
-    if storage.state.load(Ordering::Acquire) == BUSY {
+    let before = storage.state.load(Ordering::Acquire);
+    if before == BUSY {
         return Err(Code::ERROR_BUSY);
     }
-    let supervisor = Supervisor::new(config).map_err(|error| code_of(error.parameter))?;
+    config
+        .validate()
+        .map_err(|error| code_of(error.parameter))?;
     // From here on a call that interrupts this one finds no supervisor.
     storage.state.store(BUSY, Ordering::Release);
     // SAFETY: the word is BUSY, so that no lease is given out: this is the only access. A supervisor that
     // was there is not dropped: it owns nothing but its own bytes.
-    unsafe { (*storage.supervisor.get()).write(supervisor) };
-    storage.state.store(READY, Ordering::Release);
-    Ok(())
+    let place = unsafe { &mut *storage.supervisor.get() };
+    // So written, after the check, it is on the stack once; mapped to a code it was there twice, which
+    // are nine kilobytes more.
+    let (after, result) = match Supervisor::new(config) {
+        Ok(supervisor) => {
+            place.write(supervisor);
+            (READY, Ok(()))
+        }
+        Err(error) => (before, Err(code_of(error.parameter))),
+    };
+    storage.state.store(after, Ordering::Release);
+    result
 }
 
 /// Number of the parameter that was refused.

@@ -57,8 +57,8 @@ fn c_on_this_machine_does_what_rust_does() {
     assert_eq!(said.lines().last(), Some(summary_of_rust().as_str()));
 }
 
-/// Links the example; `None` where a tool is missing.
-fn linked(features: &str, image: &Path) -> Option<Output> {
+/// Links firmware of a main file, the rig and the board; `None` where a tool is missing.
+fn linked(main: &Path, features: &str, image: &Path) -> Option<Output> {
     let mut gcc = Target::CortexM4F.compiler()?;
     let library = built(Target::CortexM4F, features)?;
     let examples = capi().join("examples");
@@ -66,29 +66,32 @@ fn linked(features: &str, image: &Path) -> Option<Output> {
     gcc.args(STRICT.iter().filter(|a| **a != "-Wpedantic"));
     gcc.args(["-O2", "-ffunction-sections"])
         .args(includes(&library));
-    gcc.args(["firmware.c", "rig.c", "mps2.c"].map(|name| examples.join(name)));
+    gcc.arg(main);
+    gcc.args(["rig.c", "mps2.c"].map(|name| examples.join(name)));
     gcc.arg("-T").arg(examples.join("mps2.ld"));
     gcc.args(["-nostartfiles", "--specs=rdimon.specs", "-Wl,--gc-sections"]);
     gcc.arg(library.join("libsupervisor_capi.a")).arg("-lm");
     Some(gcc.arg("-o").arg(image).output().expect("gcc starts"))
 }
 
-#[test]
-fn c_firmware_does_what_rust_does() {
+/// What firmware says in the emulator; `None` where a tool is missing.
+fn said_by(main: &Path) -> Option<String> {
     let folder = tempfile::tempdir().unwrap();
     let image = folder.path().join("firmware.elf");
-    let Some(output) = linked("", &image) else {
-        return;
-    };
-    good(&output);
-    let Some(qemu) = tool("qemu-system-arm") else {
-        return;
-    };
+    good(&linked(main, "", &image)?);
+    let qemu = tool("qemu-system-arm")?;
     // A fault ends the program, but nothing ends one that waits for ever.
     let mut run = Command::new("timeout");
     run.arg("120").arg(qemu.get_program());
     run.args("-M mps2-an386 -nographic -semihosting-config enable=on,target=native".split(' '));
-    let said = good(&run.arg("-kernel").arg(image).output().unwrap());
+    Some(good(&run.arg("-kernel").arg(image).output().unwrap()))
+}
+
+#[test]
+fn c_firmware_does_what_rust_does() {
+    let Some(said) = said_by(&capi().join("examples/firmware.c")) else {
+        return;
+    };
     assert_eq!(
         said.lines().last(),
         Some(summary_of_rust().as_str()),
@@ -99,11 +102,26 @@ fn c_firmware_does_what_rust_does() {
     assert!(!said.contains("checksum wrong"), "{said}");
 }
 
+/// As the page on C says: a small interrupt stack carries a tick, start-up needs more.
+#[test]
+fn calls_need_little_stack() {
+    let Some(said) = said_by(&beside("stack.c")) else {
+        return;
+    };
+    let bytes = |name: &str| -> usize {
+        let line = said.lines().find_map(|l| l.strip_prefix(name));
+        line.unwrap().trim().parse().unwrap()
+    };
+    assert!(bytes("init") <= 10 * 1024, "{said}");
+    assert!(bytes("tick") <= 768, "{said}");
+}
+
 /// Firmware in which a panic can be reached does not link.
 #[test]
 fn a_planted_panic_does_not_link() {
     let folder = tempfile::tempdir().unwrap();
-    let Some(output) = linked("planted-panic", &folder.path().join("firmware.elf")) else {
+    let image = folder.path().join("firmware.elf");
+    let Some(output) = linked(&capi().join("examples/firmware.c"), "planted-panic", &image) else {
         return;
     };
     let said = String::from_utf8_lossy(&output.stderr);
