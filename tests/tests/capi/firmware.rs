@@ -58,9 +58,9 @@ fn c_on_this_machine_does_what_rust_does() {
 }
 
 /// Links firmware of a main file, the rig and the board; `None` where a tool is missing.
-fn linked(main: &Path, features: &str, image: &Path) -> Option<Output> {
-    let mut gcc = Target::CortexM4F.compiler()?;
-    let library = built(Target::CortexM4F, features)?;
+fn linked(target: Target, main: &Path, features: &str, image: &Path) -> Option<Output> {
+    let mut gcc = target.compiler()?;
+    let library = built(target, features)?;
     let examples = capi().join("examples");
     // Not pedantic: start-up code must turn functions into addresses.
     gcc.args(STRICT.iter().filter(|a| **a != "-Wpedantic"));
@@ -75,37 +75,38 @@ fn linked(main: &Path, features: &str, image: &Path) -> Option<Output> {
 }
 
 /// What firmware says in the emulator; `None` where a tool is missing.
-fn said_by(main: &Path) -> Option<String> {
+fn said_by(target: Target, main: &Path) -> Option<String> {
     let folder = tempfile::tempdir().unwrap();
     let image = folder.path().join("firmware.elf");
-    good(&linked(main, "", &image)?);
+    good(&linked(target, main, "", &image)?);
     let qemu = tool("qemu-system-arm")?;
     // A fault ends the program, but nothing ends one that waits for ever.
     let mut run = Command::new("timeout");
     run.arg("120").arg(qemu.get_program());
-    run.args("-M mps2-an386 -nographic -semihosting-config enable=on,target=native".split(' '));
+    run.arg("-nographic").args(["-M", target.machine()]);
+    run.args(["-semihosting-config", "enable=on,target=native"]);
     Some(good(&run.arg("-kernel").arg(image).output().unwrap()))
 }
 
 #[test]
 fn c_firmware_does_what_rust_does() {
-    let Some(said) = said_by(&capi().join("examples/firmware.c")) else {
-        return;
-    };
-    assert_eq!(
-        said.lines().last(),
-        Some(summary_of_rust().as_str()),
-        "{said}"
-    );
-    assert!(said.contains("backward whirl, events 0x0008"), "{said}");
-    assert!(said.contains("checksum right"), "{said}");
-    assert!(!said.contains("checksum wrong"), "{said}");
+    // With an FPU, and with floats in software.
+    for target in [Target::CortexM4F, Target::CortexM0] {
+        let Some(said) = said_by(target, &capi().join("examples/firmware.c")) else {
+            return;
+        };
+        let last = said.lines().last();
+        assert_eq!(last, Some(summary_of_rust().as_str()), "{target:?}: {said}");
+        assert!(said.contains("backward whirl, events 0x0008"), "{said}");
+        assert!(said.contains("checksum right"), "{said}");
+        assert!(!said.contains("checksum wrong"), "{said}");
+    }
 }
 
 /// As the page on C says: a small interrupt stack carries a tick, start-up needs more.
 #[test]
 fn calls_need_little_stack() {
-    let Some(said) = said_by(&beside("stack.c")) else {
+    let Some(said) = said_by(Target::CortexM4F, &beside("stack.c")) else {
         return;
     };
     let bytes = |name: &str| -> usize {
@@ -121,7 +122,8 @@ fn calls_need_little_stack() {
 fn a_planted_panic_does_not_link() {
     let folder = tempfile::tempdir().unwrap();
     let image = folder.path().join("firmware.elf");
-    let Some(output) = linked(&capi().join("examples/firmware.c"), "planted-panic", &image) else {
+    let main = capi().join("examples/firmware.c");
+    let Some(output) = linked(Target::CortexM4F, &main, "planted-panic", &image) else {
         return;
     };
     let said = String::from_utf8_lossy(&output.stderr);

@@ -177,7 +177,7 @@ fn compiles(mut compiler: Command, arguments: &[&str], source: &str, extension: 
 
 #[test]
 fn structs_have_the_same_layout() {
-    for target in [Target::Host, Target::CortexM4F] {
+    for target in [Target::Host, Target::CortexM4F, Target::CortexM0] {
         if let Some(compiler) = target.compiler() {
             compiles(compiler, &STRICT, &layout_check(), "c");
         }

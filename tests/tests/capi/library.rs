@@ -8,24 +8,42 @@ use system_tests::root;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Target {
     Host,
+    /// With FPU.
     CortexM4F,
+    /// Without FPU, and without exchange of a word in memory.
+    CortexM0,
 }
 
 impl Target {
     fn triple(self) -> Option<&'static str> {
-        (self == Self::CortexM4F).then_some("thumbv7em-none-eabihf")
+        match self {
+            Self::Host => None,
+            Self::CortexM4F => Some("thumbv7em-none-eabihf"),
+            Self::CortexM0 => Some("thumbv6m-none-eabi"),
+        }
+    }
+
+    /// Machine of the emulator that runs its programs. There is none with a Cortex-M0 and this memory;
+    /// a Cortex-M3 has all its instructions.
+    pub(crate) fn machine(self) -> &'static str {
+        match self {
+            Self::Host => "none",
+            Self::CortexM4F => "mps2-an386",
+            Self::CortexM0 => "mps2-an385",
+        }
     }
 
     /// Its C compiler with what that always needs, or `None` (in CI: a failure) where there is none.
     pub(crate) fn compiler(self) -> Option<Command> {
-        let mut cc = match self {
-            Self::Host => tool("cc")?,
-            Self::CortexM4F => tool("arm-none-eabi-gcc")?,
+        let (name, arguments) = match self {
+            Self::Host => return tool("cc"),
+            Self::CortexM4F => ("cortex-m4", "-mfpu=fpv4-sp-d16 -mfloat-abi=hard"),
+            Self::CortexM0 => ("cortex-m0", "-mfloat-abi=soft"),
         };
-        if self == Self::CortexM4F {
-            cc.args("-mthumb -mcpu=cortex-m4 -mfpu=fpv4-sp-d16 -mfloat-abi=hard".split(' '));
-        }
-        Some(cc)
+        let mut gcc = tool("arm-none-eabi-gcc")?;
+        gcc.arg("-mthumb").arg(format!("-mcpu={name}"));
+        gcc.args(arguments.split(' '));
+        Some(gcc)
     }
 }
 
