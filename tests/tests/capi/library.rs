@@ -41,6 +41,13 @@ impl Target {
             Self::CortexM0 => ("cortex-m0", "-mfloat-abi=soft"),
         };
         let mut gcc = tool("arm-none-eabi-gcc")?;
+        let newlib = Command::new("arm-none-eabi-gcc")
+            .arg("-print-file-name=rdimon.specs")
+            .output();
+        // The name alone comes back where there is no such file.
+        if !newlib.is_ok_and(|output| output.stdout.contains(&b'/')) {
+            return missing("newlib for arm-none-eabi-gcc");
+        }
         gcc.arg("-mthumb").arg(format!("-mcpu={name}"));
         gcc.args(arguments.split(' '));
         Some(gcc)
@@ -52,6 +59,10 @@ pub(crate) fn tool(name: &str) -> Option<Command> {
     if Command::new(name).arg("--version").output().is_ok() {
         return Some(Command::new(name));
     }
+    missing(name)
+}
+
+fn missing(name: &str) -> Option<Command> {
     assert!(
         std::env::var_os("CI").is_none(),
         "{name} is missing; tests/run installs it"
