@@ -220,7 +220,6 @@ fn names_carry_the_version() {
         .lines()
         .filter_map(|l| l.strip_prefix("#define amb_")?.split(' ').next())
         .collect();
-    assert_eq!(header.len(), 13);
     let Some(library) = built(Target::CortexM4F, "") else {
         return;
     };
