@@ -93,6 +93,7 @@ fn check(krate: &str) {
 #[test]
 fn files_import_only_upwards() {
     check("supervisor");
+    check("supervisor/capi");
     check("plant-model");
     check("firmware-host");
 }
@@ -107,4 +108,40 @@ fn crates_keep_their_distance() {
     assert!(!manifest("supervisor").contains("plant-model"));
     let lib = std::fs::read_to_string(system_tests::root().join("supervisor/src/lib.rs")).unwrap();
     assert!(lib.contains("\n#![no_std]") && lib.contains("\n#![forbid(unsafe_code)]"));
+}
+
+/// Unsafe code is in the C interface and in the images, which talk to the linker, and nowhere else.
+#[test]
+fn unsafe_code_stays_at_the_border() {
+    let root = system_tests::root();
+    let mut folders: Vec<_> = [
+        "supervisor/src",
+        "plant-model",
+        "firmware-host/src",
+        "tests/src",
+        "tests/tests",
+    ]
+    .map(|folder| root.join(folder))
+    .to_vec();
+    let word = "unsafe";
+    let code = ["{", "fn", "extern", "impl"].map(|after| format!("{word} {after}"));
+    let mut read = 0;
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|e| e == "rs") {
+                let text = std::fs::read_to_string(&path).unwrap();
+                let found = code.iter().any(|c| text.contains(c));
+                assert!(
+                    !found && !text.contains(&format!("{word}(")),
+                    "{}",
+                    path.display()
+                );
+                read += 1;
+            }
+        }
+    }
+    assert!(read > 100, "{read} files");
 }

@@ -1,0 +1,106 @@
+/* Firmware with the supervisor: an interrupt at 20 kHz samples, ticks and commands; the background drains
+ * events and takes flight records away. It runs on Arm's MPS2 board or in QEMU (mps2.c), with a rotor of
+ * integers (rig.c) in place of converters and amplifiers.
+ *
+ * How to build and run it is on the page "Linking it into C firmware" of the book. */
+#include "amb_supervisor.h"
+#include "mps2.h"
+#include "rig.h"
+
+#include <stdbool.h>
+#include <stdio.h>
+
+/* Static, so that it is zero before amb_init(); nine kilobytes have no place on a stack. */
+static amb_supervisor plane;
+static rig machine;
+static volatile bool finished;
+/* A call that failed in the interrupt: to be shown by the background. */
+static volatile amb_code failed = AMB_OK;
+
+/* Every 50 us, above everything else that uses the supervisor. */
+void control_interrupt(void) {
+    amb_sample sample;
+    amb_command command;
+    amb_code code;
+    if (finished) return;
+    rig_sample(&machine, &sample);
+    code = amb_tick(&plane, &sample, &command);
+    /* The command is usable all the same: after an error it is zero force. */
+    if (code != AMB_OK) failed = code;
+    rig_actuate(&machine, &command);
+    finished = machine.tick == RIG_TICKS;
+}
+
+/* Calls from the background must not be interrupted by the tick. Each is short, so the interrupt is held
+ * for one call at a time and not for a whole loop. */
+static amb_code next_event(amb_event *event) {
+    amb_code code;
+    interrupts_hold();
+    code = amb_next_event(&plane, event);
+    interrupts_release();
+    return code;
+}
+
+static amb_code record_entry(uint32_t index, amb_entry *entry) {
+    amb_code code;
+    interrupts_hold();
+    code = amb_record_entry(&plane, index, entry);
+    interrupts_release();
+    return code;
+}
+
+static void show_events(void) {
+    amb_event event;
+    while (next_event(&event) == AMB_OK) {
+        printf("tick %u: %s, events 0x%04x\n", (unsigned)event.sequence, amb_mode_name(event.mode),
+               (unsigned)event.events);
+    }
+}
+
+/* Copies a frozen record away, an entry at a time, then lets the recorder wait for the next event. */
+static void take_record(void) {
+    static amb_entry entries[AMB_RECORD_ENTRIES];
+    amb_record record;
+    uint32_t i, crc = 0;
+    amb_code code;
+    interrupts_hold();
+    code = amb_record_frozen(&plane, &record);
+    interrupts_release();
+    if (code != AMB_OK) return; /* AMB_NOTHING: there is none */
+    for (i = 0; i < record.entries; i++) {
+        if (record_entry(i, &entries[i]) != AMB_OK) return;
+    }
+    amb_crc(entries, record.entries, &crc); /* does not touch the supervisor */
+    printf("record from tick %u, %s\n", (unsigned)entries[0].sequence,
+           crc == record.crc ? "checksum right" : "checksum wrong");
+    interrupts_hold();
+    amb_rearm(&plane);
+    interrupts_release();
+}
+
+int main(void) {
+    amb_report report;
+    amb_code code = amb_init(&plane, sizeof plane, rig_config, AMB_PARAMETERS);
+    if (code != AMB_OK) {
+        printf("supervisor: %s\n", amb_error_text(code)); /* names the parameter */
+        return 1;
+    }
+    rig_start(&machine);
+    control_start(20000);
+    while (!finished) {
+        show_events();
+        take_record();
+    }
+    show_events();
+    take_record();
+    if (failed != AMB_OK) {
+        printf("supervisor: %s\n", amb_error_text(failed));
+        return 1;
+    }
+    if (amb_report_now(&plane, &report) != AMB_OK) return 1;
+    printf("landings %u, impacts %u, severity index %.2f\n", (unsigned)report.landings,
+           (unsigned)report.impacts, (double)report.severity_index);
+    printf("ticks %u modes 0x%02x events 0x%04x hash 0x%08x\n", (unsigned)machine.tick,
+           (unsigned)machine.modes, (unsigned)machine.events, (unsigned)machine.hash);
+    return 0;
+}

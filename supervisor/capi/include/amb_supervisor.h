@@ -1,0 +1,424 @@
+/**
+ * @file amb_supervisor.h
+ * Real-time supervisor that keeps a rotor on active magnetic bearings out of dry friction backward whirl
+ * when it touches its retainer bearing. C99 and C++98 or later.
+ *
+ * One supervisor serves one bearing plane. Make it once with amb_init(), then call amb_tick() at a fixed
+ * rate, usually in an interrupt:
+ *
+ * @code
+ * static amb_supervisor plane;                        // zero at start
+ * static const float config[AMB_PARAMETERS] = {[AMB_P_SAMPLE_PERIOD_S] = 50e-6f, ...};
+ *
+ * amb_code code = amb_init(&plane, sizeof plane, config, AMB_PARAMETERS);
+ * if (code != AMB_OK) stop(amb_error_text(code));     // names the parameter outside its range
+ *
+ * // in the control interrupt
+ * amb_command command;
+ * amb_tick(&plane, &sample, &command);
+ * amplifiers_set(command.force_n);
+ * @endcode
+ *
+ * Units are in the names: _m, _n (newton), _s, _rad_s, _m_s, _n_m (N/m), _hz. x right, y up, angles and
+ * spin counter-clockwise positive.
+ *
+ * Every pointer may be null or misaligned: that is an error with a text, and nothing is touched. A pointer
+ * to anything else than what its type says cannot be found out. Nothing is allocated, nothing is printed,
+ * nothing blocks.
+ *
+ * Calls on the same supervisor must not interrupt each other: hold the interrupt that ticks while the
+ * background calls. A call that does interrupt another is refused with AMB_ERROR_BUSY. Calls without a
+ * supervisor in their arguments may come from anywhere.
+ */
+#ifndef AMB_SUPERVISOR_H
+#define AMB_SUPERVISOR_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+/** Version of the interface that this header describes. */
+#define AMB_ABI 1
+
+/* Written beside the library when that is built; give its folder to the compiler with -I. */
+#include "amb_supervisor_abi.h"
+#if !defined(AMB_LIBRARY_ABI) || AMB_LIBRARY_ABI != AMB_ABI
+#error "amb_supervisor.h and the library are of different versions: take both from the same source"
+#endif
+
+/* Names in the library end with the version, so that objects compiled against another one do not link. */
+#define AMB_JOINED(name, abi) name##_abi##abi
+#define AMB_JOIN(name, abi) AMB_JOINED(name, abi)
+#define amb_error_text AMB_JOIN(amb_error_text, AMB_ABI)
+#define amb_parameter_at AMB_JOIN(amb_parameter_at, AMB_ABI)
+#define amb_parameter_index AMB_JOIN(amb_parameter_index, AMB_ABI)
+#define amb_init AMB_JOIN(amb_init, AMB_ABI)
+#define amb_tick AMB_JOIN(amb_tick, AMB_ABI)
+#define amb_mode AMB_JOIN(amb_mode, AMB_ABI)
+#define amb_mode_name AMB_JOIN(amb_mode_name, AMB_ABI)
+#define amb_report_now AMB_JOIN(amb_report_now, AMB_ABI)
+#define amb_next_event AMB_JOIN(amb_next_event, AMB_ABI)
+#define amb_record_frozen AMB_JOIN(amb_record_frozen, AMB_ABI)
+#define amb_record_entry AMB_JOIN(amb_record_entry, AMB_ABI)
+#define amb_crc AMB_JOIN(amb_crc, AMB_ABI)
+#define amb_rearm AMB_JOIN(amb_rearm, AMB_ABI)
+
+/* What is true when this compiles, whatever the language. */
+#if defined(__cplusplus) && __cplusplus >= 201103L
+#define AMB_ASSERT(name, condition) static_assert(condition, #name)
+#elif !defined(__cplusplus) && defined(__STDC_VERSION__) && __STDC_VERSION__ >= 201112L
+#define AMB_ASSERT(name, condition) _Static_assert(condition, #name)
+#else
+#define AMB_ASSERT(name, condition) typedef char amb_assert_##name[(condition) ? 1 : -1]
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/**
+ * @name Codes
+ * What a call returns. AMB_OK and AMB_NOTHING are no errors, negative codes are; amb_error_text() says
+ * what they mean.
+ * @{
+ */
+typedef int32_t amb_code;
+#define AMB_OK 0 /**< done */
+#define AMB_NOTHING 1 /**< there is none */
+#define AMB_ERROR_SUPERVISOR_NULL (-1) /**< supervisor is null */
+#define AMB_ERROR_SUPERVISOR_MISALIGNED (-2) /**< supervisor is not aligned to AMB_SUPERVISOR_ALIGN bytes */
+#define AMB_ERROR_SUPERVISOR_TOO_SMALL (-3) /**< supervisor has fewer than AMB_SUPERVISOR_BYTES bytes */
+#define AMB_ERROR_NOT_INITIALISED (-4) /**< supervisor was not made by amb_init */
+#define AMB_ERROR_BUSY (-5) /**< supervisor is in use by a call that this one interrupted */
+#define AMB_ERROR_VALUES_NULL (-6) /**< values is null */
+#define AMB_ERROR_VALUES_MISALIGNED (-7) /**< values is not aligned as a float */
+#define AMB_ERROR_VALUES_COUNT (-8) /**< values has not AMB_PARAMETERS elements */
+#define AMB_ERROR_SAMPLE_NULL (-9) /**< sample is null */
+#define AMB_ERROR_SAMPLE_MISALIGNED (-10) /**< sample is not aligned to 4 bytes */
+#define AMB_ERROR_COMMAND_NULL (-11) /**< command is null */
+#define AMB_ERROR_COMMAND_MISALIGNED (-12) /**< command is not aligned to 4 bytes */
+#define AMB_ERROR_NAME_NULL (-13) /**< name is null */
+#define AMB_ERROR_NAME_UNKNOWN (-14) /**< no parameter has this name */
+#define AMB_ERROR_INDEX (-15) /**< index is beyond the end */
+#define AMB_ERROR_ENTRIES_NULL (-16) /**< entries is null */
+#define AMB_ERROR_ENTRIES_MISALIGNED (-17) /**< entries is not aligned to 4 bytes */
+#define AMB_ERROR_RESULT_NULL (-18) /**< the pointer to the result is null */
+#define AMB_ERROR_RESULT_MISALIGNED (-19) /**< the pointer to the result is not aligned as its type */
+/** The parameter of this index is outside its range. */
+#define AMB_ERROR_PARAMETER(index) (-1000 - (amb_code)(index))
+/** @} */
+
+/**
+ * @name Parameters
+ * Indexes into the values that amb_init() takes, with unit and range. A parameter that is left out is 0,
+ * which is outside the range of most.
+ * @{
+ */
+#define AMB_P_SAMPLE_PERIOD_S 0 /**< s, 1e-6 to 0.01: Period of the tick. */
+#define AMB_P_MASS_KG 1 /**< kg, 1e-4 to 1e6: Mass of the rotor that this bearing plane carries. */
+#define AMB_P_STIFFNESS_N_M 2 /**< N/m, -1e10 to 1e10: Shaft stiffness plus the magnets' negative stiffness, either sign. */
+#define AMB_P_DAMPING_N_S_M 3 /**< N s/m, 0 to 1e8: Passive damping of the rotor in flight. */
+#define AMB_P_CLEARANCE_M 4 /**< m, 1e-6 to 0.1: Radial clearance of the retainer bearing. */
+#define AMB_P_FORCE_MAX_N 5 /**< N, 0.001 to 1e7: Force cap of the magnet, as the length of the vector. */
+#define AMB_P_AMPLIFIER_LAG_S 6 /**< s, 0 to 0.1: Time constant of the amplifier with the magnet. */
+#define AMB_P_DELAY_SAMPLES 7 /**< ticks, 0 to 7: Ticks between a sample and the start of the force computed from it; rounded to whole ticks. */
+#define AMB_P_FRICTION_COEFFICIENT 8 /**< 1, 0 to 2: Coefficient of friction on the retainer bearing; choose the upper end of what is likely. */
+#define AMB_P_RESTITUTION 9 /**< 1, 0 to 0.99: Restitution of a radial impact on the retainer bearing. */
+#define AMB_P_OBSERVER_POLE_FLIGHT 10 /**< 1, 0 to 0.98: Pole of the observer in flight: nearer to 1 smooths sensor noise more and follows later. */
+#define AMB_P_OBSERVER_POLE_CONTACT 11 /**< 1, 0 to 0.98: Pole of the observer in contact, where the model knows nothing of the contact force. */
+#define AMB_P_CONTACT_BAND 12 /**< clearance, 0.001 to 0.3: The rotor counts as touching within this band below the clearance; at least three times the sensor noise and the retainer's offset. */
+#define AMB_P_POSITION_LIMIT 13 /**< clearance, 1.5 to 1000: A measured radius beyond this is refused as implausible. */
+#define AMB_P_WHIRL_TIME_S 14 /**< s, 1e-5 to 0.1: Contact that lasts this long is whirl or rest, not a bounce: some periods of the rotor on the contact stiffness. */
+#define AMB_P_HOLD_SHARE 15 /**< 1, 0.1 to 0.95: Largest share of the cap that may push inwards. */
+#define AMB_P_HANDOVER_DWELL_S 16 /**< s, 0 to 1: Contact must be avoidable for this long before hand-over begins. */
+#define AMB_P_HANDOVER_BLEND_S 17 /**< s, 0 to 1: Time of the blend to the levitation controller. */
+#define AMB_P_FAULT_BLEND_S 18 /**< s, 0 to 1: Time in which the force goes to zero when the position cannot be trusted. */
+#define AMB_P_FAULT_TICKS 19 /**< ticks, 2 to 1e4: Good samples in a row that end a sensor fault, and refused ones that make it; jumps, dropouts and a stuck sensor make it sooner. */
+#define AMB_P_AXIS_FORCE_MAX_N 20 /**< N, 0.001 to 1e7: Force cap of each axis; none where it is at least force_max_n. */
+#define AMB_P_FORCE_SLEW_N_S 21 /**< N/s, 1 to 1e12: Fastest change of the commanded force, as the length of the vector. */
+#define AMB_P_CONTINUOUS_FORCE_N 22 /**< N, 0.001 to 1e7: Force that the magnet bears for ever; at least force_max_n means no budget. */
+#define AMB_P_THERMAL_TIME_S 23 /**< s, 0.01 to 1e5: Time constant of the force-time budget. */
+#define AMB_P_CONTACT_STIFFNESS_N_M 24 /**< N/m, 1000 to 1e13: Stiffness of the contact with the retainer bearing. */
+#define AMB_P_COAST_DOWN_S 25 /**< s, 0 to 100: Whirl beyond what the cap can arrest for this long asks for coasting down. */
+#define AMB_P_SEVERITY_LIMIT 26 /**< 1, 0.001 to 1e8: Severity index that asks for coasting down. */
+#define AMB_P_RETAINER_PLANE_RATIO 27 /**< 1, 0.1 to 10: Position at the retainer bearing over position at the sensor. */
+#define AMB_P_MAGNET_PLANE_RATIO 28 /**< 1, 0.1 to 10: Position at the magnet over position at the retainer bearing: the leverage of its force. */
+#define AMB_P_SPEED_MAX_M_S 29 /**< m/s, 0.001 to 1000: No rotor is faster than this at the retainer bearing: a sample that would need it is refused. */
+#define AMB_P_SENSOR_STEP_M 30 /**< m, 1e-9 to 0.001: Step of the sensor's converter or its noise (root mean square), whichever is larger, at the sensor. */
+/** How many there are. */
+#define AMB_PARAMETERS 31
+/** @} */
+
+/** @name Status bits of a sample @{ */
+#define AMB_STATUS_SPIN_VALID 0x1u    /**< spin_rad_s is measured */
+#define AMB_STATUS_BEARING_ON 0x2u    /**< the bearing is on and may act; without it the supervisor never acts */
+#define AMB_STATUS_APPLIED_VALID 0x4u /**< applied_n is measured */
+#define AMB_STATUS_AXIS_X_LOST 0x8u   /**< the drive cannot act along x */
+#define AMB_STATUS_AXIS_Y_LOST 0x10u  /**< the drive cannot act along y */
+/** @} */
+
+/** @name Modes @{ */
+#define AMB_MODE_LEVITATED 0u      /**< the levitation command goes through bit for bit */
+#define AMB_MODE_APPROACH 1u       /**< contact can no longer be avoided */
+#define AMB_MODE_BOUNCE 2u         /**< touching and leaving again */
+#define AMB_MODE_BACKWARD_WHIRL 3u /**< continuous backward whirl: braking */
+#define AMB_MODE_PINNED 4u         /**< held on the bearing by a load */
+#define AMB_MODE_HANDOVER 5u       /**< blending over to the levitation controller */
+#define AMB_MODE_SENSOR_FAULT 6u   /**< no trustworthy position: the force goes to zero */
+/** @} */
+
+/** @name Hints for the levitation controller's integrator @{ */
+#define AMB_INTEGRATOR_RUN 0u  /**< integrate as usual */
+#define AMB_INTEGRATOR_HOLD 1u /**< keep its value; never reset it */
+/** @} */
+
+/** @name Limits: what binds the command of this tick @{ */
+#define AMB_LIMIT_FORCE_CAP 0x1u           /**< more was wanted than the cap */
+#define AMB_LIMIT_LEVITATION_CLAMPED 0x2u  /**< the levitation command was beyond a limit or no number */
+#define AMB_LIMIT_NOT_FINITE 0x4u          /**< something was no number: the force goes to zero */
+#define AMB_LIMIT_SAMPLE_REFUSED 0x8u      /**< the sample was not used */
+#define AMB_LIMIT_SLEW 0x10u               /**< the slew limit binds */
+#define AMB_LIMIT_AXIS_CAP 0x20u           /**< an axis had less than was wanted */
+#define AMB_LIMIT_DERATED 0x40u            /**< the cap that bound was lowered by the force-time budget */
+#define AMB_LIMIT_BEYOND_WHIRL_LIMIT 0x80u /**< whirl faster than the cap can arrest */
+/** @} */
+
+/** @name Events: what changed at this tick @{ */
+#define AMB_EVENT_ENGAGED 0x1u         /**< the supervisor took over */
+#define AMB_EVENT_TOUCHED 0x2u         /**< the rotor touched the retainer bearing */
+#define AMB_EVENT_LIFTED_OFF 0x4u      /**< and left it */
+#define AMB_EVENT_WHIRL 0x8u           /**< continuous backward whirl was recognised */
+#define AMB_EVENT_PINNED 0x10u         /**< the rotor is held on the bearing by a load */
+#define AMB_EVENT_HANDOVER 0x20u       /**< hand-over to the levitation controller began */
+#define AMB_EVENT_LEVITATED 0x40u      /**< the levitation controller has the bearing again */
+#define AMB_EVENT_SENSOR_FAULT 0x80u   /**< samples were implausible for too long */
+#define AMB_EVENT_SENSOR_OK 0x100u     /**< they are plausible again */
+#define AMB_EVENT_SEQUENCE 0x200u      /**< a sequence number was missed or repeated */
+#define AMB_EVENT_RECORD_FROZEN 0x400u /**< there is a record to be read */
+#define AMB_EVENT_QUEUE_FULL 0x800u    /**< an event before this one was lost */
+#define AMB_EVENT_AXIS_LOST 0x1000u    /**< the drive has lost an axis */
+#define AMB_EVENT_AXIS_BACK 0x2000u    /**< an axis is back */
+#define AMB_EVENT_COAST_DOWN 0x4000u   /**< the machine should coast down */
+/** @} */
+
+/** @name Why a sample was refused @{ */
+#define AMB_REFUSAL_NONE 0u       /**< it was not */
+#define AMB_REFUSAL_NOT_FINITE 1u /**< a coordinate is no number */
+#define AMB_REFUSAL_RANGE 2u      /**< the radius is beyond position_limit */
+#define AMB_REFUSAL_SLEW 3u       /**< no rotor moves so far in this time */
+#define AMB_REFUSAL_DROPOUT 4u    /**< the sequence number is the last one */
+#define AMB_REFUSAL_STUCK 5u      /**< a coordinate does not change although the rotor moves */
+/** @} */
+
+/** Bytes of an amb_supervisor; some more than the library needs. */
+#define AMB_SUPERVISOR_BYTES 9216
+/** Its alignment in bytes. */
+#define AMB_SUPERVISOR_ALIGN 8
+
+/**
+ * A supervisor: memory of the caller's with nothing in it to look at. Make it static (then it is zero at
+ * start), or fill it with zeros, before amb_init(). It may be moved while no call uses it, and needs no
+ * clean-up.
+ */
+typedef union amb_supervisor {
+    uint8_t bytes[AMB_SUPERVISOR_BYTES];
+    uint64_t align;
+} amb_supervisor;
+
+/** What the firmware knows at one sampling instant. Any bits are allowed: what is implausible is refused. */
+typedef struct amb_sample {
+    uint32_t sequence;     /**< counts up by one each tick, wrapping; the old one means: no new sample */
+    uint32_t status;       /**< AMB_STATUS_ bits */
+    float position_m[2];   /**< rotor at the sensor, from the centre of the retainer bearing, x and y [m] */
+    float spin_rad_s;      /**< spin [rad/s]; used with AMB_STATUS_SPIN_VALID */
+    float levitation_n[2]; /**< force that the levitation controller wants [N] */
+    float applied_n[2];    /**< force that the actuator delivers now [N]; used with AMB_STATUS_APPLIED_VALID */
+} amb_sample;
+
+/** What to do until the next tick. */
+typedef struct amb_command {
+    float force_n[2];    /**< force to command [N]: finite and within all limits */
+    float severity;      /**< backward speed to come, over what the cap can arrest; 0 to 1e6 */
+    uint32_t mode;       /**< AMB_MODE_ */
+    uint32_t limits;     /**< AMB_LIMIT_ bits */
+    uint32_t events;     /**< AMB_EVENT_ bits */
+    uint32_t integrator; /**< AMB_INTEGRATOR_ */
+} amb_command;
+
+/** An event with its tick. */
+typedef struct amb_event {
+    uint32_t sequence; /**< sequence number of the sample */
+    uint32_t mode;     /**< AMB_MODE_ after the tick */
+    uint32_t events;   /**< AMB_EVENT_ bits */
+} amb_event;
+
+/** A frozen flight record without its entries. */
+typedef struct amb_record {
+    uint32_t version; /**< AMB_RECORD_VERSION of the library */
+    uint32_t entries; /**< how many; AMB_RECORD_ENTRIES */
+    uint32_t crc;     /**< CRC-32 (IEEE) over the entries from oldest to newest; see amb_crc() */
+} amb_record;
+
+/** Version of the layout of an entry. */
+#define AMB_RECORD_VERSION 1
+/** Entries of a record: one a tick, a quarter of them from before the supervisor engaged. */
+#define AMB_RECORD_ENTRIES 512
+/** Recorded lengths are in 1/4096 of the clearance, forces in 1/4096 of force_max_n, saturated at 8. */
+#define AMB_PER_UNIT 4096
+
+/** One tick in a flight record. */
+typedef struct amb_entry {
+    uint32_t sequence;   /**< sequence number of the sample */
+    int16_t position[2]; /**< measured position [clearance / AMB_PER_UNIT] */
+    int16_t force[2];    /**< commanded force [force_max_n / AMB_PER_UNIT] */
+    uint8_t mode;        /**< AMB_MODE_ */
+    uint8_t limits;      /**< AMB_LIMIT_ bits */
+    uint16_t events;     /**< AMB_EVENT_ bits */
+} amb_entry;
+
+/** What has happened since amb_init(). */
+typedef struct amb_report {
+    uint32_t landings;            /**< engagements in which the rotor touched the retainer bearing */
+    uint32_t impacts;             /**< touches in them */
+    uint32_t contact_ticks;       /**< ticks in contact in them */
+    uint32_t coast_down;          /**< 1 if coasting down was asked for and the bearing has been on since */
+    uint32_t refusal;             /**< AMB_REFUSAL_ of the last sample */
+    uint32_t fault;               /**< AMB_REFUSAL_ that began the last sensor fault */
+    float impact_speed_max_m_s;   /**< fastest normal speed before an impact, estimated [m/s] */
+    float backward_speed_max_m_s; /**< fastest backward speed in contact, estimated [m/s] */
+    float whirl_limit_m_s;        /**< highest backward speed that the cap can arrest [m/s] */
+    float severity_index;         /**< energy that the retainer bearing has borne, over that at the limit */
+    float thermal_state;          /**< force-time budget: above 1 the cap is lowered */
+    float force_cap_n;            /**< force cap now [N] */
+} amb_report;
+
+/** A row of the table of parameters. Its texts live as long as the program. */
+typedef struct amb_parameter {
+    const char *name; /**< name, as in the configuration of the Rust crate */
+    const char *unit; /**< unit */
+    const char *text; /**< what it is */
+    float low;        /**< smallest valid value */
+    float high;       /**< largest valid value */
+} amb_parameter;
+
+/** @name Sizes in bytes @{ */
+#define AMB_SIZEOF_SAMPLE 36
+#define AMB_SIZEOF_COMMAND 28
+#define AMB_SIZEOF_EVENT 12
+#define AMB_SIZEOF_RECORD 12
+#define AMB_SIZEOF_ENTRY 16
+#define AMB_SIZEOF_REPORT 48
+/** @} */
+
+/* The library was compiled with the same numbers: see structs.rs and storage.rs. */
+AMB_ASSERT(supervisor_size, sizeof(amb_supervisor) == AMB_SUPERVISOR_BYTES);
+AMB_ASSERT(sample_size, sizeof(amb_sample) == AMB_SIZEOF_SAMPLE);
+AMB_ASSERT(sample_status, offsetof(amb_sample, status) == 4);
+AMB_ASSERT(sample_position, offsetof(amb_sample, position_m) == 8);
+AMB_ASSERT(sample_spin, offsetof(amb_sample, spin_rad_s) == 16);
+AMB_ASSERT(sample_levitation, offsetof(amb_sample, levitation_n) == 20);
+AMB_ASSERT(sample_applied, offsetof(amb_sample, applied_n) == 28);
+AMB_ASSERT(command_size, sizeof(amb_command) == AMB_SIZEOF_COMMAND);
+AMB_ASSERT(command_severity, offsetof(amb_command, severity) == 8);
+AMB_ASSERT(command_mode, offsetof(amb_command, mode) == 12);
+AMB_ASSERT(command_limits, offsetof(amb_command, limits) == 16);
+AMB_ASSERT(command_events, offsetof(amb_command, events) == 20);
+AMB_ASSERT(command_integrator, offsetof(amb_command, integrator) == 24);
+AMB_ASSERT(event_size, sizeof(amb_event) == AMB_SIZEOF_EVENT);
+AMB_ASSERT(record_size, sizeof(amb_record) == AMB_SIZEOF_RECORD);
+AMB_ASSERT(entry_size, sizeof(amb_entry) == AMB_SIZEOF_ENTRY);
+AMB_ASSERT(entry_position, offsetof(amb_entry, position) == 4);
+AMB_ASSERT(entry_force, offsetof(amb_entry, force) == 8);
+AMB_ASSERT(entry_mode, offsetof(amb_entry, mode) == 12);
+AMB_ASSERT(entry_limits, offsetof(amb_entry, limits) == 13);
+AMB_ASSERT(entry_events, offsetof(amb_entry, events) == 14);
+AMB_ASSERT(report_size, sizeof(amb_report) == AMB_SIZEOF_REPORT);
+AMB_ASSERT(report_fault, offsetof(amb_report, fault) == 20);
+AMB_ASSERT(report_impact_speed, offsetof(amb_report, impact_speed_max_m_s) == 24);
+AMB_ASSERT(report_force_cap, offsetof(amb_report, force_cap_n) == 44);
+AMB_ASSERT(parameter_low, offsetof(amb_parameter, low) == 3 * sizeof(char *));
+AMB_ASSERT(parameter_high, offsetof(amb_parameter, high) == 3 * sizeof(char *) + 4);
+
+/** Version of the interface that the library speaks. The only name without a version, for programs that
+ * load the library when they run. */
+uint32_t amb_abi_version(void);
+
+/** What a code means, for people. Never null. */
+const char *amb_error_text(amb_code code);
+
+/**
+ * Row of the table of parameters.
+ * @param index 0 to AMB_PARAMETERS - 1; anything else is AMB_ERROR_INDEX.
+ * @param[out] parameter the row; untouched after an error.
+ */
+amb_code amb_parameter_at(uint32_t index, amb_parameter *parameter);
+
+/**
+ * Index of a parameter, for configurations that come as text.
+ * @param name its name, case counts; AMB_ERROR_NAME_UNKNOWN if there is none of it.
+ * @param[out] index its index; untouched after an error.
+ */
+amb_code amb_parameter_index(const char *name, uint32_t *index);
+
+/**
+ * Makes a supervisor, levitated. Takes ten kilobytes of stack: call it at start-up, outside interrupts.
+ * @param supervisor memory for it, zero or made before. After an error it is as it was.
+ * @param bytes sizeof *supervisor.
+ * @param values the configuration: value of each parameter, in the order of their indexes.
+ * @param count AMB_PARAMETERS.
+ * @return AMB_ERROR_PARAMETER(index) for the first value outside its range; NaN is outside every range.
+ */
+amb_code amb_init(amb_supervisor *supervisor, size_t bytes, const float *values, size_t count);
+
+/**
+ * One tick: bounded in time, whatever the sample holds.
+ * @param supervisor made by amb_init().
+ * @param sample what is known now.
+ * @param[out] command what to do. After an error it is zero force and AMB_MODE_SENSOR_FAULT, unless
+ * command itself is null or misaligned.
+ */
+amb_code amb_tick(amb_supervisor *supervisor, const amb_sample *sample, amb_command *command);
+
+/** What the supervisor is doing. @param[out] mode AMB_MODE_; untouched after an error. */
+amb_code amb_mode(amb_supervisor *supervisor, uint32_t *mode);
+
+/** Name of a mode, for people. Never null. */
+const char *amb_mode_name(uint32_t mode);
+
+/** What has happened since amb_init(). @param[out] report untouched after an error. */
+amb_code amb_report_now(amb_supervisor *supervisor, amb_report *report);
+
+/**
+ * Takes the oldest event out of the queue of 16. Call it from the background until it is AMB_NOTHING.
+ * @param[out] event untouched unless AMB_OK.
+ */
+amb_code amb_next_event(amb_supervisor *supervisor, amb_event *event);
+
+/**
+ * The frozen flight record, or AMB_NOTHING. It stays as it is until amb_rearm(), so that its entries may
+ * be read one at a time, with ticks between.
+ * @param[out] record untouched unless AMB_OK.
+ */
+amb_code amb_record_frozen(amb_supervisor *supervisor, amb_record *record);
+
+/**
+ * An entry of the frozen record, or AMB_NOTHING without one.
+ * @param index 0 (oldest) to AMB_RECORD_ENTRIES - 1; anything else is AMB_ERROR_INDEX.
+ * @param[out] entry untouched unless AMB_OK.
+ */
+amb_code amb_record_entry(amb_supervisor *supervisor, uint32_t index, amb_entry *entry);
+
+/**
+ * CRC-32 of entries, for a reader of a record to compare with.
+ * @param count at most AMB_RECORD_ENTRIES; more is AMB_ERROR_INDEX.
+ * @param[out] crc untouched after an error.
+ */
+amb_code amb_crc(const amb_entry *entries, uint32_t count, uint32_t *crc);
+
+/** Discards a frozen record and waits for the next engagement. */
+amb_code amb_rearm(amb_supervisor *supervisor);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

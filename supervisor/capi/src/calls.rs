@@ -1,0 +1,336 @@
+//! The functions of the header, in its order. Their names in the library end with the version of the
+//! interface, so that a program compiled against another one does not link.
+
+use crate::code::Code;
+use crate::pointer::{Argument, Place};
+use crate::storage::{self, Lease, RECORD, Storage};
+use crate::structs::{CCommand, CEvent, CParameter, CRecord, CReport, CSample};
+use crate::{parameters, version};
+use core::ffi::{CStr, c_char};
+use supervisor::{Config, Entry, Mode, PARAMETERS, RECORD_VERSION};
+
+/// Ending of the names; [`version::ABI`] as text.
+macro_rules! ending {
+    () => {
+        "_abi1"
+    };
+}
+
+const _: () = {
+    assert!(ending!().len() == 5 && version::ABI < 10);
+    assert!(ending!().as_bytes()[4] == b'0' + version::ABI as u8);
+};
+
+/// Version of the interface. The only name without it, for programs that load the library.
+// SAFETY: all names of this library begin with amb_, and none twice.
+#[unsafe(no_mangle)]
+pub extern "C" fn amb_abi_version() -> u32 {
+    version::ABI
+}
+
+/// What a code means, for people; never null.
+// SAFETY: a name of its own, see `amb_abi_version`.
+#[unsafe(export_name = concat!("amb_error_text", ending!()))]
+pub extern "C" fn amb_error_text(code: Code) -> *const c_char {
+    code.text().as_ptr()
+}
+
+/// Row of the table of parameters.
+///
+/// # Safety
+/// `parameter` is null, misaligned, or points to memory for an [`CParameter`].
+// SAFETY: a name of its own, see `amb_abi_version`.
+#[unsafe(export_name = concat!("amb_parameter_at", ending!()))]
+pub unsafe extern "C" fn amb_parameter_at(index: u32, parameter: *mut CParameter) -> Code {
+    // SAFETY: the caller's promise.
+    let place = match unsafe { Place::new(Argument::Result, parameter) } {
+        Ok(place) => place,
+        Err(code) => return code,
+    };
+    let index = index as usize;
+    let (Some(row), Some(texts)) = (PARAMETERS.get(index), parameters::texts(index)) else {
+        return Code::ERROR_INDEX;
+    };
+    place.put(CParameter {
+        name: texts.name.as_ptr(),
+        unit: texts.unit.as_ptr(),
+        text: texts.text.as_ptr(),
+        low: row.low,
+        high: row.high,
+    });
+    Code::OK
+}
+
+/// Index of the parameter of this name.
+///
+/// # Safety
+/// `name` is null or points to a text that ends with a zero byte, `index` is null, misaligned, or points
+/// to memory for a number.
+// SAFETY: a name of its own, see `amb_abi_version`.
+#[unsafe(export_name = concat!("amb_parameter_index", ending!()))]
+pub unsafe extern "C" fn amb_parameter_index(name: *const c_char, index: *mut u32) -> Code {
+    if name.is_null() {
+        return Code::ERROR_NAME_NULL;
+    }
+    // SAFETY: the caller's promise.
+    let place = match unsafe { Place::new(Argument::Result, index) } {
+        Ok(place) => place,
+        Err(code) => return code,
+    };
+    for (index, parameter) in (0..).zip(PARAMETERS) {
+        // SAFETY: not null, and ended by a zero byte.
+        if unsafe { is(name, parameter.name) } {
+            place.put(index);
+            return Code::OK;
+        }
+    }
+    Code::ERROR_NAME_UNKNOWN
+}
+
+/// Whether a text of C's is this one. Reads no further than its end.
+///
+/// # Safety
+/// `c` points to a text that ends with a zero byte.
+unsafe fn is(c: *const c_char, text: &str) -> bool {
+    let mut at = c.cast::<u8>();
+    for byte in text.bytes() {
+        // SAFETY: all bytes before this one were equal to those of `text`, which has no zero byte: the
+        // end has not been passed.
+        if unsafe { at.read() } != byte {
+            return false;
+        }
+        at = at.wrapping_add(1);
+    }
+    // SAFETY: as above.
+    unsafe { at.read() == 0 }
+}
+
+/// Makes a supervisor in storage of the caller's. After an error the storage is as it was.
+///
+/// # Safety
+/// `supervisor` is null, misaligned, or points to `bytes` bytes that have been written to, and that only
+/// this library touches from now on; `values` is null, misaligned, or points to `count` floats.
+// SAFETY: a name of its own, see `amb_abi_version`.
+#[unsafe(export_name = concat!("amb_init", ending!()))]
+pub unsafe extern "C" fn amb_init(
+    supervisor: *mut Storage,
+    bytes: usize,
+    values: *const f32,
+    count: usize,
+) -> Code {
+    if let Err(code) = Argument::Supervisor.check(supervisor.cast_const()) {
+        return code;
+    }
+    if let Err(code) = Argument::Values.check(values) {
+        return code;
+    }
+    if count != PARAMETERS.len() {
+        return Code::ERROR_VALUES_COUNT;
+    }
+    // SAFETY: neither null nor misaligned, and as many as an array of this type has.
+    let values = unsafe { values.cast::<[f32; PARAMETERS.len()]>().read() };
+    // SAFETY: the caller's promise.
+    Code::of(unsafe { storage::make(supervisor, bytes, &Config::from_values(values)) })
+}
+
+/// One tick. An error gives a command of no force, so that no old one stays in use.
+///
+/// # Safety
+/// `supervisor` is null, misaligned, or points to storage given to [`amb_init`] or full of zeros; `sample`
+/// and `command` are null, misaligned, or point to their structs.
+// SAFETY: a name of its own, see `amb_abi_version`.
+#[unsafe(export_name = concat!("amb_tick", ending!()))]
+pub unsafe extern "C" fn amb_tick(
+    supervisor: *mut Storage,
+    sample: *const CSample,
+    command: *mut CCommand,
+) -> Code {
+    // SAFETY: the caller's promise.
+    let place = match unsafe { Place::new(Argument::Command, command) } {
+        Ok(place) => place,
+        Err(code) => return code,
+    };
+    // SAFETY: the caller's promise. Read before the command is written: both may be the same memory.
+    let sample = unsafe { Argument::Sample.read(sample) };
+    let done = sample.and_then(|sample| {
+        // SAFETY: the caller's promise.
+        let mut lease = unsafe { Lease::new(supervisor) }?;
+        Ok(lease.supervisor().tick(&sample.into()))
+    });
+    #[cfg(feature = "planted-panic")]
+    {
+        let few = [1_u8, 2, 3];
+        core::hint::black_box(few[core::hint::black_box(2_usize)]);
+    }
+    match done {
+        Ok(command) => {
+            place.put(command.into());
+            Code::OK
+        }
+        Err(code) => {
+            place.put(CCommand {
+                mode: Mode::SensorFault as u32,
+                ..CCommand::default()
+            });
+            code
+        }
+    }
+}
+
+/// Gives `result` what a supervisor is asked for; `None` is that there is nothing.
+///
+/// # Safety
+/// `supervisor` as for [`amb_tick`]; `result` is null, misaligned, or points to memory for a `T`.
+unsafe fn ask<T: Copy>(
+    supervisor: *mut Storage,
+    result: *mut T,
+    question: impl FnOnce(&mut supervisor::Supervisor<RECORD>) -> Result<T, Code>,
+) -> Code {
+    // SAFETY: the caller's promise.
+    let place = unsafe { Place::new(Argument::Result, result) };
+    // SAFETY: the caller's promise.
+    let lease = unsafe { Lease::new(supervisor) };
+    let answer = lease.and_then(|mut lease| {
+        // Asked only where the answer has a place: an event without one would be lost.
+        let place = place?;
+        place.put(question(lease.supervisor())?);
+        Ok(())
+    });
+    Code::of(answer)
+}
+
+/// What the supervisor is doing.
+///
+/// # Safety
+/// `supervisor` as for [`amb_tick`]; `mode` is null, misaligned, or points to memory for a number.
+// SAFETY: a name of its own, see `amb_abi_version`.
+#[unsafe(export_name = concat!("amb_mode", ending!()))]
+pub unsafe extern "C" fn amb_mode(supervisor: *mut Storage, mode: *mut u32) -> Code {
+    // SAFETY: the caller's promise.
+    unsafe { ask(supervisor, mode, |s| Ok(s.mode() as u32)) }
+}
+
+/// Name of a mode, for people; never null.
+// SAFETY: a name of its own, see `amb_abi_version`.
+#[unsafe(export_name = concat!("amb_mode_name", ending!()))]
+pub extern "C" fn amb_mode_name(mode: u32) -> *const c_char {
+    mode_name(mode).as_ptr()
+}
+
+/// The same for Rust. Test `capi` compares these with the supervisor's own, which do not end as C wants it.
+pub fn mode_name(mode: u32) -> &'static CStr {
+    match mode {
+        0 => c"levitated",
+        1 => c"approach",
+        2 => c"bounce",
+        3 => c"backward whirl",
+        4 => c"pinned",
+        5 => c"handover",
+        6 => c"sensor fault",
+        _ => c"unknown mode",
+    }
+}
+
+/// What has happened since the supervisor was made.
+///
+/// # Safety
+/// `supervisor` as for [`amb_tick`]; `report` is null, misaligned, or points to memory for its struct.
+// SAFETY: a name of its own, see `amb_abi_version`.
+#[unsafe(export_name = concat!("amb_report_now", ending!()))]
+pub unsafe extern "C" fn amb_report_now(supervisor: *mut Storage, report: *mut CReport) -> Code {
+    // SAFETY: the caller's promise.
+    unsafe { ask(supervisor, report, |s| Ok(s.report().into())) }
+}
+
+/// Takes the oldest event out of the queue.
+///
+/// # Safety
+/// `supervisor` as for [`amb_tick`]; `event` is null, misaligned, or points to memory for its struct.
+// SAFETY: a name of its own, see `amb_abi_version`.
+#[unsafe(export_name = concat!("amb_next_event", ending!()))]
+pub unsafe extern "C" fn amb_next_event(supervisor: *mut Storage, event: *mut CEvent) -> Code {
+    // SAFETY: the caller's promise.
+    unsafe {
+        ask(supervisor, event, |s| {
+            s.next_event().map(Into::into).ok_or(Code::NOTHING)
+        })
+    }
+}
+
+/// The frozen record without its entries.
+///
+/// # Safety
+/// `supervisor` as for [`amb_tick`]; `record` is null, misaligned, or points to memory for its struct.
+// SAFETY: a name of its own, see `amb_abi_version`.
+#[unsafe(export_name = concat!("amb_record_frozen", ending!()))]
+pub unsafe extern "C" fn amb_record_frozen(supervisor: *mut Storage, record: *mut CRecord) -> Code {
+    let found = |s: &mut supervisor::Supervisor<RECORD>| {
+        let crc = s.record().ok_or(Code::NOTHING)?.crc;
+        Ok(CRecord {
+            version: u32::from(RECORD_VERSION),
+            entries: RECORD as u32,
+            crc,
+        })
+    };
+    // SAFETY: the caller's promise.
+    unsafe { ask(supervisor, record, found) }
+}
+
+/// An entry of the frozen record, 0 the oldest.
+///
+/// # Safety
+/// `supervisor` as for [`amb_tick`]; `entry` is null, misaligned, or points to memory for its struct.
+// SAFETY: a name of its own, see `amb_abi_version`.
+#[unsafe(export_name = concat!("amb_record_entry", ending!()))]
+pub unsafe extern "C" fn amb_record_entry(
+    supervisor: *mut Storage,
+    index: u32,
+    entry: *mut Entry,
+) -> Code {
+    let found = |s: &mut supervisor::Supervisor<RECORD>| {
+        let record = s.record().ok_or(Code::NOTHING)?;
+        let entry = record.entries().nth(index as usize);
+        entry.copied().ok_or(Code::ERROR_INDEX)
+    };
+    // SAFETY: the caller's promise.
+    unsafe { ask(supervisor, entry, found) }
+}
+
+/// CRC-32 of entries, oldest first, as a record has it.
+///
+/// # Safety
+/// `entries` is null, misaligned, or points to `count` entries; `crc` is null, misaligned, or points to
+/// memory for a number.
+// SAFETY: a name of its own, see `amb_abi_version`.
+#[unsafe(export_name = concat!("amb_crc", ending!()))]
+pub unsafe extern "C" fn amb_crc(entries: *const Entry, count: u32, crc: *mut u32) -> Code {
+    if let Err(code) = Argument::Entries.check(entries) {
+        return code;
+    }
+    // SAFETY: the caller's promise.
+    let place = match unsafe { Place::new(Argument::Result, crc) } {
+        Ok(place) => place,
+        Err(code) => return code,
+    };
+    if count as usize > RECORD {
+        // No record is longer; and a slice may not be longer than the memory.
+        return Code::ERROR_INDEX;
+    }
+    // SAFETY: neither null nor misaligned, and there are so many, by the caller's promise. Any bytes
+    // make an entry.
+    let entries = unsafe { core::slice::from_raw_parts(entries, count as usize) };
+    place.put(supervisor::crc_of(entries.iter()));
+    Code::OK
+}
+
+/// Discards a frozen record and waits for the next engagement.
+///
+/// # Safety
+/// `supervisor` as for [`amb_tick`].
+// SAFETY: a name of its own, see `amb_abi_version`.
+#[unsafe(export_name = concat!("amb_rearm", ending!()))]
+pub unsafe extern "C" fn amb_rearm(supervisor: *mut Storage) -> Code {
+    // SAFETY: the caller's promise.
+    let lease = unsafe { Lease::new(supervisor) };
+    Code::of(lease.map(|mut lease| lease.supervisor().rearm()))
+}

@@ -1,0 +1,47 @@
+//! C interface of the [`supervisor`]: the header is `include/amb_supervisor.h`, the guide is the page
+//! "Linking it into C firmware" of the book.
+//!
+//! ```sh
+//! cargo rustc -p supervisor-capi --lib --crate-type staticlib --profile fw --target thumbv7em-none-eabihf
+//! ```
+//!
+//! writes `libsupervisor_capi.a` and, beside it, `amb_supervisor_abi.h`. The header is written by hand,
+//! because generated ones cannot say how large opaque storage is; what it says is compared with this
+//! crate where it is compiled ([`layout`]) and by the test `capi`.
+//!
+//! Every call checks every pointer, so that a mistake is a [`Code`] with a text and not a fault. What
+//! cannot be checked is under "Safety" of each function.
+//!
+//! Files, each importing only from those above it: `version`, `parameters`, `code`, `layout`,
+//! `structs`, `pointer`, `storage`, `calls`.
+
+#![cfg_attr(target_os = "none", no_std)]
+#![deny(clippy::undocumented_unsafe_blocks, unsafe_op_in_unsafe_fn)]
+#![warn(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+pub mod calls;
+pub mod code;
+pub mod layout;
+mod parameters;
+mod pointer;
+mod storage;
+pub mod structs;
+mod version;
+
+pub use code::Code;
+pub use storage::{RECORD, Storage};
+pub use version::ABI;
+
+#[cfg(target_os = "none")]
+mod trap {
+    unsafe extern "C" {
+        /// Deliberately without a definition: firmware in which a panic can be reached does not link.
+        fn amb_a_panic_can_be_reached() -> !;
+    }
+
+    #[panic_handler]
+    fn panic(_info: &core::panic::PanicInfo<'_>) -> ! {
+        // SAFETY: never linked; a successful link proves that this function was dropped.
+        unsafe { amb_a_panic_can_be_reached() }
+    }
+}

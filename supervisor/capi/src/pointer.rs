@@ -1,0 +1,77 @@
+//! Pointers that come from C: looked at before they are followed.
+
+use crate::code::Code;
+
+/// An argument of a call that is a pointer, for an error to name.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Argument {
+    Supervisor,
+    Values,
+    Sample,
+    Command,
+    Entries,
+    Result,
+}
+
+impl Argument {
+    const fn null(self) -> Code {
+        match self {
+            Self::Supervisor => Code::ERROR_SUPERVISOR_NULL,
+            Self::Values => Code::ERROR_VALUES_NULL,
+            Self::Sample => Code::ERROR_SAMPLE_NULL,
+            Self::Command => Code::ERROR_COMMAND_NULL,
+            Self::Entries => Code::ERROR_ENTRIES_NULL,
+            Self::Result => Code::ERROR_RESULT_NULL,
+        }
+    }
+
+    const fn misaligned(self) -> Code {
+        match self {
+            Self::Supervisor => Code::ERROR_SUPERVISOR_MISALIGNED,
+            Self::Values => Code::ERROR_VALUES_MISALIGNED,
+            Self::Sample => Code::ERROR_SAMPLE_MISALIGNED,
+            Self::Command => Code::ERROR_COMMAND_MISALIGNED,
+            Self::Entries => Code::ERROR_ENTRIES_MISALIGNED,
+            Self::Result => Code::ERROR_RESULT_MISALIGNED,
+        }
+    }
+
+    /// Neither null nor misaligned.
+    pub(crate) fn check<T>(self, pointer: *const T) -> Result<(), Code> {
+        if pointer.is_null() {
+            Err(self.null())
+        } else if !pointer.is_aligned() {
+            Err(self.misaligned())
+        } else {
+            Ok(())
+        }
+    }
+
+    /// What the pointer points to.
+    ///
+    /// # Safety
+    /// Where it is neither null nor misaligned it points to a `T`.
+    pub(crate) unsafe fn read<T: Copy>(self, pointer: *const T) -> Result<T, Code> {
+        self.check(pointer)?;
+        // SAFETY: neither null nor misaligned, so there is a T by the caller's promise.
+        Ok(unsafe { pointer.read() })
+    }
+}
+
+/// Where a result goes: writable, once it is made.
+pub(crate) struct Place<T>(*mut T);
+
+impl<T: Copy> Place<T> {
+    /// # Safety
+    /// Where the pointer is neither null nor misaligned it points to memory for a `T`, until the call
+    /// that this place is made for returns.
+    pub(crate) unsafe fn new(argument: Argument, pointer: *mut T) -> Result<Self, Code> {
+        argument.check(pointer.cast_const())?;
+        Ok(Self(pointer))
+    }
+
+    pub(crate) fn put(&self, value: T) {
+        // SAFETY: checked, and promised to be memory for a T, in `new`.
+        unsafe { self.0.write(value) }
+    }
+}

@@ -1,0 +1,247 @@
+//! The structs of the header. What comes in holds neither `bool` nor an enum of Rust: C could put a
+//! number into them that is no value of theirs.
+
+use crate::layout::{Layout, defined};
+use core::ffi::c_char;
+use core::mem::offset_of;
+use supervisor::{Command, Entry, QueuedEvent, Report, Sample, Status};
+
+/// A struct with the offset of each field, checked at compile time.
+macro_rules! c_struct {
+    (
+        $(#[$doc:meta])*
+        $name:ident = $c_name:literal, $size:literal {
+            $($(#[$field_doc:meta])* $field:ident: $type:ty = $offset:literal,)*
+        }
+    ) => {
+        $(#[$doc])*
+        #[derive(Debug, Clone, Copy, PartialEq, Default)]
+        #[repr(C)]
+        pub struct $name {
+            $($(#[$field_doc])* pub $field: $type,)*
+        }
+
+        impl $name {
+            /// Where everything is.
+            pub const LAYOUT: Layout = Layout {
+                name: $c_name,
+                size: $size,
+                fields: &[$((stringify!($field), $offset, size_of::<$type>())),*],
+            };
+        }
+
+        const _: () = {
+            assert!(size_of::<$name>() == $size && align_of::<$name>() == 4);
+            $(assert!(offset_of!($name, $field) == $offset);)*
+        };
+    };
+}
+
+c_struct! {
+    /// What the firmware knows at one sampling instant: [`Sample`].
+    CSample = "amb_sample", 36 {
+        /// Counts up by one each tick, wrapping.
+        sequence: u32 = 0,
+        /// Bits of [`Status`]; unknown ones are ignored.
+        status: u32 = 4,
+        /// Position at the sensor \[m\].
+        position_m: [f32; 2] = 8,
+        /// Spin \[rad/s\].
+        spin_rad_s: f32 = 16,
+        /// What the levitation controller wants \[N\].
+        levitation_n: [f32; 2] = 20,
+        /// What the actuator delivers \[N\].
+        applied_n: [f32; 2] = 28,
+    }
+}
+
+c_struct! {
+    /// What to do until the next tick: [`Command`].
+    CCommand = "amb_command", 28 {
+        /// Force to command \[N\].
+        force_n: [f32; 2] = 0,
+        /// Backward speed to be expected, over what the cap can arrest.
+        severity: f32 = 8,
+        /// [`supervisor::Mode`] as a number.
+        mode: u32 = 12,
+        /// Bits of [`supervisor::Limits`].
+        limits: u32 = 16,
+        /// Bits of [`supervisor::Events`].
+        events: u32 = 20,
+        /// [`supervisor::IntegratorHint`] as a number.
+        integrator: u32 = 24,
+    }
+}
+
+c_struct! {
+    /// An event with its tick: [`QueuedEvent`].
+    CEvent = "amb_event", 12 {
+        /// Sequence number of the sample.
+        sequence: u32 = 0,
+        /// Mode after the tick.
+        mode: u32 = 4,
+        /// Bits of [`supervisor::Events`].
+        events: u32 = 8,
+    }
+}
+
+c_struct! {
+    /// A frozen record without its entries.
+    CRecord = "amb_record", 12 {
+        /// Version of the layout of an entry.
+        version: u32 = 0,
+        /// Entries.
+        entries: u32 = 4,
+        /// CRC-32 over the entries from oldest to newest.
+        crc: u32 = 8,
+    }
+}
+
+c_struct! {
+    /// What has happened since the supervisor was made: [`Report`].
+    CReport = "amb_report", 48 {
+        /// Engagements in which the rotor touched.
+        landings: u32 = 0,
+        /// Touches in them.
+        impacts: u32 = 4,
+        /// Ticks in contact in them.
+        contact_ticks: u32 = 8,
+        /// Whether coasting down was asked for: 0 or 1.
+        coast_down: u32 = 12,
+        /// [`supervisor::Refusal`] of the last sample.
+        refusal: u32 = 16,
+        /// [`supervisor::Refusal`] that began the last sensor fault.
+        fault: u32 = 20,
+        /// Fastest normal speed before an impact \[m/s\].
+        impact_speed_max_m_s: f32 = 24,
+        /// Fastest backward speed in contact \[m/s\].
+        backward_speed_max_m_s: f32 = 28,
+        /// Highest backward speed that the cap can arrest \[m/s\].
+        whirl_limit_m_s: f32 = 32,
+        /// Energy borne, over that at the limit.
+        severity_index: f32 = 36,
+        /// State of the force–time budget.
+        thermal_state: f32 = 40,
+        /// Force cap now \[N\].
+        force_cap_n: f32 = 44,
+    }
+}
+
+/// A row of the table of parameters; its texts live as long as the program.
+#[derive(Debug, Clone, Copy)]
+#[repr(C)]
+pub struct CParameter {
+    /// Name.
+    pub name: *const c_char,
+    /// Unit.
+    pub unit: *const c_char,
+    /// What it is.
+    pub text: *const c_char,
+    /// Smallest valid value.
+    pub low: f32,
+    /// Largest valid value.
+    pub high: f32,
+}
+
+/// The supervisor's own [`Entry`] is `amb_entry`.
+pub const ENTRY_LAYOUT: Layout = Layout {
+    name: "amb_entry",
+    size: 16,
+    fields: &[
+        ("sequence", 0, 4),
+        ("position", 4, 4),
+        ("force", 8, 4),
+        ("mode", 12, 1),
+        ("limits", 13, 1),
+        ("events", 14, 2),
+    ],
+};
+
+/// Structs without pointers, whose layout is the same everywhere.
+pub const LAYOUTS: [Layout; 6] = [
+    CSample::LAYOUT,
+    CCommand::LAYOUT,
+    CEvent::LAYOUT,
+    CRecord::LAYOUT,
+    CReport::LAYOUT,
+    ENTRY_LAYOUT,
+];
+
+const _: () = {
+    assert!(size_of::<Entry>() == ENTRY_LAYOUT.size && align_of::<Entry>() == 4);
+    assert!(offset_of!(Entry, sequence) == 0);
+    assert!(offset_of!(Entry, position) == 4);
+    assert!(offset_of!(Entry, force) == 8);
+    assert!(offset_of!(Entry, mode) == 12);
+    assert!(offset_of!(Entry, limits) == 13);
+    assert!(offset_of!(Entry, events) == 14);
+
+    let pointer = size_of::<*const c_char>();
+    assert!(offset_of!(CParameter, name) == 0);
+    assert!(offset_of!(CParameter, unit) == pointer);
+    assert!(offset_of!(CParameter, text) == 2 * pointer);
+    assert!(offset_of!(CParameter, low) == 3 * pointer);
+    assert!(offset_of!(CParameter, high) == 3 * pointer + 4);
+
+    assert!(defined("AMB_SIZEOF_SAMPLE") == size_of::<CSample>());
+    assert!(defined("AMB_SIZEOF_COMMAND") == size_of::<CCommand>());
+    assert!(defined("AMB_SIZEOF_EVENT") == size_of::<CEvent>());
+    assert!(defined("AMB_SIZEOF_RECORD") == size_of::<CRecord>());
+    assert!(defined("AMB_SIZEOF_REPORT") == size_of::<CReport>());
+    assert!(defined("AMB_SIZEOF_ENTRY") == size_of::<Entry>());
+};
+
+impl From<CSample> for Sample {
+    fn from(c: CSample) -> Self {
+        Self {
+            sequence: c.sequence,
+            status: Status::from_bits_truncate(c.status),
+            position_m: c.position_m,
+            spin_rad_s: c.spin_rad_s,
+            levitation_n: c.levitation_n,
+            applied_n: c.applied_n,
+        }
+    }
+}
+
+impl From<Command> for CCommand {
+    fn from(command: Command) -> Self {
+        Self {
+            force_n: command.force_n,
+            severity: command.severity,
+            mode: command.mode as u32,
+            limits: command.limits.bits(),
+            events: command.events.bits(),
+            integrator: command.integrator as u32,
+        }
+    }
+}
+
+impl From<QueuedEvent> for CEvent {
+    fn from(event: QueuedEvent) -> Self {
+        Self {
+            sequence: event.sequence,
+            mode: event.mode as u32,
+            events: event.events.bits(),
+        }
+    }
+}
+
+impl From<Report> for CReport {
+    fn from(report: Report) -> Self {
+        Self {
+            landings: report.landings,
+            impacts: report.impacts,
+            contact_ticks: report.contact_ticks,
+            coast_down: u32::from(report.coast_down),
+            refusal: report.refusal as u32,
+            fault: report.fault as u32,
+            impact_speed_max_m_s: report.impact_speed_max_m_s,
+            backward_speed_max_m_s: report.backward_speed_max_m_s,
+            whirl_limit_m_s: report.whirl_limit_m_s,
+            severity_index: report.severity_index,
+            thermal_state: report.thermal_state,
+            force_cap_n: report.force_cap_n,
+        }
+    }
+}

@@ -1,0 +1,81 @@
+//! The calls as C makes them, for a checker of memory accesses, as in
+//! `RUSTFLAGS=-Zsanitizer=address cargo +nightly test -p supervisor-capi --test memory --target …`.
+//! What they return is tested from C, by the test `capi`.
+
+use core::mem::MaybeUninit;
+use std::ptr::{null, null_mut};
+use supervisor::{Entry, PARAMETERS, Status};
+use supervisor_capi::calls::{
+    amb_crc, amb_init, amb_next_event, amb_parameter_at, amb_parameter_index, amb_rearm,
+    amb_record_entry, amb_record_frozen, amb_report_now, amb_tick,
+};
+use supervisor_capi::structs::{CCommand, CEvent, CParameter, CRecord, CReport, CSample};
+use supervisor_capi::{Code, RECORD, Storage};
+
+/// Memory as C has it.
+#[repr(C, align(8))]
+struct Memory([u8; 9216]);
+
+const VALUES: [f32; PARAMETERS.len()] = [
+    50e-6, 10.0, 0.0, 0.0, 2e-4, 1000.0, 0.0, 1.0, 0.15, 0.7, 0.5, 0.2, 0.02, 4.0, 2e-3, 0.8, 1e-3,
+    2e-3, 1e-3, 10.0, 1000.0, 1e7, 400.0, 5.0, 2e8, 5e-3, 20.0, 1.0, 1.0, 2.0, 1e-8,
+];
+
+#[test]
+fn calls_touch_only_what_they_were_given() {
+    let mut memory = Box::new(Memory([0; 9216]));
+    let size = size_of::<Memory>();
+    let plane: *mut Storage = (&raw mut *memory).cast();
+    let mut command = CCommand::default();
+    let mut sample = CSample {
+        status: (Status::BEARING_ON | Status::SPIN_VALID).bits(),
+        ..CSample::default()
+    };
+    let mut event = MaybeUninit::<CEvent>::uninit();
+    let mut record = MaybeUninit::<CRecord>::uninit();
+    let mut report = MaybeUninit::<CReport>::uninit();
+    let mut row = MaybeUninit::<CParameter>::uninit();
+    let mut entries = vec![Entry::default(); RECORD];
+    let (mut index, mut crc) = (0, 0);
+    // SAFETY: every pointer is null, misaligned, or points to what its type says; the memory is zero, and
+    // used through these calls alone.
+    unsafe {
+        let not_made = amb_tick(plane, &raw const sample, &raw mut command);
+        assert_eq!(not_made, Code::ERROR_NOT_INITIALISED);
+        let count = PARAMETERS.len();
+        assert_eq!(amb_init(plane, size, VALUES.as_ptr(), count), Code::OK);
+        // Twice: the first one is replaced.
+        assert_eq!(amb_init(plane, size, VALUES.as_ptr(), count), Code::OK);
+        assert_eq!(
+            amb_init(null_mut(), size, null(), count),
+            Code::ERROR_SUPERVISOR_NULL
+        );
+        // Outwards at 1 m/s, until a record is frozen.
+        let mut ticks = 0;
+        while amb_record_frozen(plane, record.as_mut_ptr()) == Code::NOTHING {
+            sample.sequence += 1;
+            sample.position_m[0] = (ticks as f32 * 5e-5).min(2e-4);
+            ticks += 1;
+            let code = amb_tick(plane, &raw const sample, &raw mut command);
+            assert_eq!(code, Code::OK);
+            assert!(ticks < 1000);
+        }
+        for (i, entry) in (0..).zip(&mut entries) {
+            assert_eq!(amb_record_entry(plane, i, entry), Code::OK);
+        }
+        let count = RECORD as u32;
+        assert_eq!(amb_crc(entries.as_ptr(), count, &raw mut crc), Code::OK);
+        assert_eq!(record.assume_init().crc, crc);
+        assert_eq!(amb_next_event(plane, event.as_mut_ptr()), Code::OK);
+        assert_eq!(amb_report_now(plane, report.as_mut_ptr()), Code::OK);
+        assert_eq!(report.assume_init().landings, 1);
+        assert_eq!(amb_rearm(plane), Code::OK);
+        let found = amb_parameter_index(c"sensor_step_m".as_ptr(), &raw mut index);
+        assert_eq!(found, Code::OK);
+        assert_eq!(amb_parameter_at(index, row.as_mut_ptr()), Code::OK);
+        assert_eq!(row.assume_init().low, 1e-9);
+        let off = (&raw mut command).cast::<u8>().wrapping_add(1).cast();
+        let code = amb_tick(plane, &raw const sample, off);
+        assert_eq!(code, Code::ERROR_COMMAND_MISALIGNED);
+    }
+}

@@ -1,0 +1,132 @@
+//! Firmware in C, in an emulator, against the supervisor in Rust on this machine.
+
+use crate::library::{STRICT, Target, beside, built, capi, good, host_program, includes, tool};
+use crate::rig::Rig;
+use std::path::Path;
+use std::process::{Command, Output};
+use supervisor::{Config, Events, Mode, Supervisor};
+
+/// The last line of the programs in C.
+fn summary_of_rust() -> String {
+    let mut supervisor = Supervisor::<512>::new(&Config::from_values(Rig::VALUES)).unwrap();
+    let mut rig = Rig::new();
+    while rig.tick < Rig::TICKS {
+        let sample = rig.sample();
+        let command = supervisor.tick(&sample);
+        rig.actuate(&command);
+    }
+    let story = Events::ENGAGED
+        | Events::TOUCHED
+        | Events::WHIRL
+        | Events::HANDOVER
+        | Events::LEVITATED
+        | Events::SENSOR_FAULT
+        | Events::SENSOR_OK
+        | Events::SEQUENCE
+        | Events::RECORD_FROZEN
+        | Events::AXIS_LOST
+        | Events::AXIS_BACK;
+    assert!(rig.events.contains(story), "{:?}", story - rig.events);
+    assert_eq!(
+        rig.modes | 1 << Mode::Pinned as u32,
+        0x7f,
+        "all modes but this"
+    );
+    format!(
+        "ticks {} modes 0x{:02x} events 0x{:04x} hash 0x{:08x}",
+        rig.tick,
+        rig.modes,
+        rig.events.bits(),
+        rig.hash
+    )
+}
+
+#[test]
+fn c_on_this_machine_does_what_rust_does() {
+    let Some(library) = built(Target::Host, "") else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let program = folder.path().join("replay");
+    let sources = [beside("replay.c"), capi().join("examples/rig.c")];
+    let Some(output) = host_program(&sources, &library, &program) else {
+        return;
+    };
+    good(&output);
+    let said = good(&Command::new(program).output().unwrap());
+    assert_eq!(said.lines().last(), Some(summary_of_rust().as_str()));
+}
+
+/// Links firmware of a main file, the rig and the board; `None` where a tool is missing.
+fn linked(target: Target, main: &Path, features: &str, image: &Path) -> Option<Output> {
+    let mut gcc = target.compiler()?;
+    let library = built(target, features)?;
+    let examples = capi().join("examples");
+    // Not pedantic: start-up code must turn functions into addresses.
+    gcc.args(STRICT.iter().filter(|a| **a != "-Wpedantic"));
+    gcc.args(["-O2", "-ffunction-sections"])
+        .args(includes(&library));
+    gcc.arg(main);
+    gcc.args(["rig.c", "mps2.c"].map(|name| examples.join(name)));
+    gcc.arg("-T").arg(examples.join("mps2.ld"));
+    gcc.args(["-nostartfiles", "--specs=rdimon.specs", "-Wl,--gc-sections"]);
+    gcc.arg(library.join("libsupervisor_capi.a")).arg("-lm");
+    Some(gcc.arg("-o").arg(image).output().expect("gcc starts"))
+}
+
+/// What firmware says in the emulator; `None` where a tool is missing.
+fn said_by(target: Target, main: &Path) -> Option<String> {
+    let folder = tempfile::tempdir().unwrap();
+    let image = folder.path().join("firmware.elf");
+    good(&linked(target, main, "", &image)?);
+    let qemu = tool("qemu-system-arm")?;
+    // A fault ends the program, but nothing ends one that waits for ever.
+    let mut run = Command::new("timeout");
+    run.arg("120").arg(qemu.get_program());
+    run.arg("-nographic").args(["-M", target.machine()]);
+    run.args(["-semihosting-config", "enable=on,target=native"]);
+    Some(good(&run.arg("-kernel").arg(image).output().unwrap()))
+}
+
+#[test]
+fn c_firmware_does_what_rust_does() {
+    // With an FPU, and with floats in software.
+    for target in [Target::CortexM4F, Target::CortexM0] {
+        let Some(said) = said_by(target, &capi().join("examples/firmware.c")) else {
+            return;
+        };
+        let last = said.lines().last();
+        assert_eq!(last, Some(summary_of_rust().as_str()), "{target:?}: {said}");
+        assert!(said.contains("backward whirl, events 0x0008"), "{said}");
+        assert!(said.contains("checksum right"), "{said}");
+        assert!(!said.contains("checksum wrong"), "{said}");
+    }
+}
+
+/// As the page on C says: a small interrupt stack carries a tick, start-up needs more.
+#[test]
+fn calls_need_little_stack() {
+    let Some(said) = said_by(Target::CortexM4F, &beside("stack.c")) else {
+        return;
+    };
+    let bytes = |name: &str| -> usize {
+        let line = said.lines().find_map(|l| l.strip_prefix(name));
+        line.unwrap().trim().parse().unwrap()
+    };
+    assert!(bytes("init") <= 10 * 1024, "{said}");
+    assert!(bytes("tick") <= 768, "{said}");
+}
+
+/// Firmware in which a panic can be reached does not link.
+#[test]
+fn a_planted_panic_does_not_link() {
+    let folder = tempfile::tempdir().unwrap();
+    let image = folder.path().join("firmware.elf");
+    let main = capi().join("examples/firmware.c");
+    let Some(output) = linked(Target::CortexM4F, &main, "planted-panic", &image) else {
+        return;
+    };
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(!output.status.success(), "the planted panic linked");
+    assert!(said.contains("amb_a_panic_can_be_reached"), "{said}");
+}

@@ -1,0 +1,244 @@
+//! The header says what the library does: every number, every text, every place in every struct.
+
+use crate::library::{STRICT, Target, built, good, includes, tool};
+use std::collections::BTreeMap;
+use std::fmt::Write;
+use std::process::Command;
+use supervisor::{Events, IntegratorHint, Limits, Mode, PARAMETERS, Refusal, Status};
+use supervisor_capi::calls::mode_name;
+use supervisor_capi::code::{CODES, FIRST_PARAMETER};
+use supervisor_capi::layout::HEADER;
+use supervisor_capi::structs::LAYOUTS;
+use supervisor_capi::{Code, RECORD};
+
+const MODES: [(&str, Mode); 7] = [
+    ("LEVITATED", Mode::Levitated),
+    ("APPROACH", Mode::Approach),
+    ("BOUNCE", Mode::Bounce),
+    ("BACKWARD_WHIRL", Mode::BackwardWhirl),
+    ("PINNED", Mode::Pinned),
+    ("HANDOVER", Mode::Handover),
+    ("SENSOR_FAULT", Mode::SensorFault),
+];
+
+const REFUSALS: [(&str, Refusal); 6] = [
+    ("NONE", Refusal::None),
+    ("NOT_FINITE", Refusal::NotFinite),
+    ("RANGE", Refusal::Range),
+    ("SLEW", Refusal::Slew),
+    ("DROPOUT", Refusal::Dropout),
+    ("STUCK", Refusal::Stuck),
+];
+
+const HINTS: [(&str, IntegratorHint); 2] =
+    [("RUN", IntegratorHint::Run), ("HOLD", IntegratorHint::Hold)];
+
+/// Numbers that the header defines under names that begin so, without that beginning.
+fn defined(prefix: &str) -> BTreeMap<String, i64> {
+    let mut found = BTreeMap::new();
+    for line in HEADER.lines() {
+        let Some(rest) = line.strip_prefix(&format!("#define AMB_{prefix}")) else {
+            continue;
+        };
+        let (name, value) = rest.split_once(' ').expect("a value");
+        let value = value.split("/*").next().unwrap_or(value).trim();
+        let value = value
+            .trim_matches(['(', ')'])
+            .trim_end_matches('u')
+            .to_owned();
+        let number = match value.strip_prefix("0x") {
+            Some(hex) => i64::from_str_radix(hex, 16),
+            None => value.parse(),
+        };
+        // What is no number is a macro.
+        if let Ok(number) = number {
+            assert!(
+                found.insert(name.to_owned(), number).is_none(),
+                "{name} twice"
+            );
+        }
+    }
+    found
+}
+
+fn same<'a>(prefix: &str, ours: impl Iterator<Item = (&'a str, i64)>) {
+    let ours: BTreeMap<String, i64> = ours.map(|(name, n)| (name.to_owned(), n)).collect();
+    assert_eq!(defined(prefix), ours, "AMB_{prefix}");
+}
+
+#[test]
+fn numbers_are_the_same() {
+    let bits = |(name, bits): (&'static str, u32)| (name, i64::from(bits));
+    let all = Status::all();
+    same(
+        "STATUS_",
+        all.iter_names().map(|(n, b)| bits((n, b.bits()))),
+    );
+    let all = Limits::all();
+    same("LIMIT_", all.iter_names().map(|(n, b)| bits((n, b.bits()))));
+    let all = Events::all();
+    same("EVENT_", all.iter_names().map(|(n, b)| bits((n, b.bits()))));
+    same("MODE_", MODES.iter().map(|(n, m)| (*n, *m as i64)));
+    same("REFUSAL_", REFUSALS.iter().map(|(n, r)| (*n, *r as i64)));
+    same("INTEGRATOR_", HINTS.iter().map(|(n, h)| (*n, *h as i64)));
+    let errors = CODES.iter().filter_map(|row| {
+        let name = row.name.strip_prefix("ERROR_")?;
+        Some((name, i64::from(row.code.0)))
+    });
+    same("ERROR_", errors);
+    assert_eq!(defined("OK").get(""), Some(&0));
+    assert_eq!(defined("NOTHING").get(""), Some(&1));
+    let first =
+        format!("#define AMB_ERROR_PARAMETER(index) ({FIRST_PARAMETER} - (amb_code)(index))");
+    assert!(HEADER.contains(&first), "{first}");
+    assert_eq!(defined("RECORD_").get("ENTRIES"), Some(&(RECORD as i64)));
+}
+
+#[test]
+fn modes_have_the_names_of_the_supervisor() {
+    for (_, mode) in MODES {
+        assert_eq!(mode_name(mode as u32).to_str(), Ok(mode.name()));
+    }
+}
+
+/// Lines of the header that say what the tables say. On a change, what is printed is what to paste.
+#[test]
+fn tables_are_the_same() {
+    let mut wanted = Vec::new();
+    for row in CODES {
+        let number = row.code.0;
+        let number = if number < 0 {
+            format!("({number})")
+        } else {
+            number.to_string()
+        };
+        let said = row.text.to_str().unwrap();
+        assert_eq!(row.code.text(), row.text);
+        wanted.push(format!("#define AMB_{} {number} /**< {said} */", row.name));
+    }
+    for (index, parameter) in PARAMETERS.iter().enumerate() {
+        let code = Code(FIRST_PARAMETER - index as i32);
+        let said = code.text().to_str().unwrap();
+        let range = said
+            .strip_prefix(&format!("{} is outside ", parameter.name))
+            .and_then(|rest| rest.strip_suffix(&format!(" {}", parameter.unit)))
+            .unwrap_or_else(|| panic!("{said}"));
+        let (low, high) = range.split_once(" to ").unwrap();
+        assert_eq!(low.parse(), Ok(parameter.low), "{said}");
+        assert_eq!(high.parse(), Ok(parameter.high), "{said}");
+        wanted.push(format!(
+            "#define AMB_P_{} {index} /**< {}, {range}: {} */",
+            parameter.name.to_uppercase(),
+            parameter.unit,
+            parameter.text
+        ));
+    }
+    let missing: Vec<_> = (wanted.iter())
+        .filter(|line| !HEADER.lines().any(|l| l == **line))
+        .collect();
+    assert!(missing.is_empty(), "the header lacks\n{missing:#?}");
+    assert_eq!(defined("P_").len(), PARAMETERS.len());
+}
+
+/// C that does not compile if a field is elsewhere, has another size, or is missing.
+fn layout_check() -> String {
+    let mut c = String::from("#include \"amb_supervisor.h\"\n");
+    for layout in LAYOUTS {
+        let name = layout.name;
+        let _ = writeln!(c, "AMB_ASSERT({name}_, sizeof({name}) == {});", layout.size);
+        // The sum leaves no room for a field that Rust does not know.
+        let sum: usize = layout.fields.iter().map(|(_, _, size)| size).sum();
+        assert_eq!(sum, layout.size, "{name}");
+        for (field, offset, size) in layout.fields {
+            let _ = writeln!(
+                c,
+                "AMB_ASSERT({name}_{field}, offsetof({name}, {field}) == {offset} \
+                 && sizeof((({name} *)0)->{field}) == {size});"
+            );
+        }
+    }
+    c
+}
+
+/// Compiles a text as a language, without a program.
+fn compiles(mut compiler: Command, arguments: &[&str], source: &str, extension: &str) {
+    let library = built(Target::Host, "").unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("check").with_extension(extension);
+    std::fs::write(&file, source).unwrap();
+    compiler
+        .args(arguments)
+        .args(includes(&library))
+        .arg("-c")
+        .arg(&file);
+    compiler.arg("-o").arg(folder.path().join("check.o"));
+    good(&compiler.output().unwrap());
+}
+
+#[test]
+fn structs_have_the_same_layout() {
+    for target in [Target::Host, Target::CortexM4F, Target::CortexM0] {
+        if let Some(compiler) = target.compiler() {
+            compiles(compiler, &STRICT, &layout_check(), "c");
+        }
+    }
+}
+
+/// In every C that is in use, and in C++ where there is a compiler for it.
+#[test]
+fn the_header_is_clean() {
+    let source = layout_check();
+    let warnings = "-Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wundef -Werror";
+    for standard in ["c99", "c11", "c17"] {
+        let Some(compiler) = Target::Host.compiler() else {
+            return;
+        };
+        let mut arguments: Vec<&str> = warnings.split(' ').collect();
+        let standard = format!("-std={standard}");
+        arguments.push(&standard);
+        compiles(compiler, &arguments, &source, "c");
+    }
+    // C++ is not needed by anything else: without a compiler there is nothing to check.
+    if Command::new("g++").arg("--version").output().is_err() {
+        eprintln!("not checked as C++: g++ is missing");
+        return;
+    }
+    for standard in ["c++98", "c++11", "c++17"] {
+        let mut arguments: Vec<&str> = warnings.split(' ').collect();
+        let standard = format!("-std={standard}");
+        arguments.push(&standard);
+        let compiler = tool("g++").expect("it was there");
+        compiles(compiler, &arguments, &source, "cpp");
+    }
+}
+
+/// All names that the library gives to the linker begin with `amb_` and, but for the version itself,
+/// end with the version.
+#[test]
+fn names_carry_the_version() {
+    let header: Vec<&str> = HEADER
+        .lines()
+        .filter_map(|l| l.strip_prefix("#define amb_")?.split(' ').next())
+        .collect();
+    let Some(library) = built(Target::CortexM4F, "") else {
+        return;
+    };
+    let Some(mut nm) = tool("arm-none-eabi-nm") else {
+        return;
+    };
+    let archive = library.join("libsupervisor_capi.a");
+    let listed = nm.args(["-g", "--defined-only"]).arg(archive).output();
+    let listed = good(&listed.unwrap());
+    let mut found: Vec<&str> = (listed.split_whitespace())
+        .filter_map(|word| word.strip_prefix("amb_"))
+        .collect();
+    let mut wanted: Vec<String> = header
+        .iter()
+        .map(|name| format!("{name}_abi{}", supervisor_capi::ABI))
+        .collect();
+    wanted.push("abi_version".to_owned());
+    found.sort_unstable();
+    wanted.sort_unstable();
+    assert_eq!(found, wanted);
+    assert!(!listed.contains("panicking"), "{listed}");
+}

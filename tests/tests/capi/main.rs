@@ -1,0 +1,12 @@
+//! The C interface of the supervisor, from C: every misuse gives its error, the header says what the
+//! library does, another version neither compiles nor links, and firmware in C does what Rust does.
+//!
+//! Needs a C compiler; the firmware needs arm-none-eabi-gcc with newlib and QEMU. What is missing skips a
+//! test on a user's machine, and fails it in CI; tests/run installs it.
+
+mod firmware;
+mod header;
+mod library;
+mod misuse;
+mod rig;
+mod versions;

@@ -1,0 +1,329 @@
+/* Every misuse that the header names, with the code and the text that it gives. */
+#define _XOPEN_SOURCE 600
+#include "amb_supervisor.h"
+#include "rig.h"
+
+#include <signal.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/time.h>
+#include <time.h>
+
+static int failures = 0, checks = 0;
+
+static void check(int good, const char *what) {
+    checks++;
+    if (!good) {
+        failures++;
+        printf("FAILED: %s\n", what);
+    }
+}
+
+/* A call gave this code, and the code has this text. */
+static void expect(const char *what, amb_code code, amb_code wanted, const char *text) {
+    checks++;
+    if (code != wanted || strcmp(amb_error_text(code), text) != 0) {
+        failures++;
+        printf("FAILED: %s: code %d \"%s\", expected %d \"%s\"\n", what, (int)code, amb_error_text(code),
+               (int)wanted, text);
+    }
+}
+
+#define EXPECT(call, wanted, text) expect(#call, call, wanted, text)
+
+/* Any object, one byte on. */
+#define OFF(pointer) ((void *)((char *)(pointer) + 1))
+
+static amb_supervisor plane, zero, three[3];
+static const char *const NULL_TEXT = "supervisor is null";
+static const char *const ALIGN_TEXT = "supervisor is not aligned to AMB_SUPERVISOR_ALIGN bytes";
+static const char *const NOT_MADE_TEXT = "supervisor was not made by amb_init";
+static const char *const RESULT_NULL_TEXT = "the pointer to the result is null";
+static const char *const RESULT_ALIGN_TEXT = "the pointer to the result is not aligned as its type";
+
+static void making(void) {
+    float values[AMB_PARAMETERS + 1];
+    const size_t size = sizeof plane;
+    uint32_t i;
+    memcpy(values, rig_config, sizeof rig_config);
+    EXPECT(amb_init(NULL, size, values, AMB_PARAMETERS), AMB_ERROR_SUPERVISOR_NULL, NULL_TEXT);
+    EXPECT(amb_init(OFF(three), size, values, AMB_PARAMETERS), AMB_ERROR_SUPERVISOR_MISALIGNED, ALIGN_TEXT);
+    /* Enough for the fields, and not what the header promises. */
+    EXPECT(amb_init((amb_supervisor *)((char *)three + 4), size, values, AMB_PARAMETERS),
+           AMB_ERROR_SUPERVISOR_MISALIGNED, ALIGN_TEXT);
+    EXPECT(amb_init(&plane, size - 1, values, AMB_PARAMETERS), AMB_ERROR_SUPERVISOR_TOO_SMALL,
+           "supervisor has fewer than AMB_SUPERVISOR_BYTES bytes");
+    EXPECT(amb_init(&plane, sizeof(void *), values, AMB_PARAMETERS), AMB_ERROR_SUPERVISOR_TOO_SMALL,
+           "supervisor has fewer than AMB_SUPERVISOR_BYTES bytes");
+    EXPECT(amb_init(&plane, size, NULL, AMB_PARAMETERS), AMB_ERROR_VALUES_NULL, "values is null");
+    EXPECT(amb_init(&plane, size, OFF(values), AMB_PARAMETERS), AMB_ERROR_VALUES_MISALIGNED,
+           "values is not aligned as a float");
+    EXPECT(amb_init(&plane, size, values, AMB_PARAMETERS - 1), AMB_ERROR_VALUES_COUNT,
+           "values has not AMB_PARAMETERS elements");
+    EXPECT(amb_init(&plane, size, values, AMB_PARAMETERS + 1), AMB_ERROR_VALUES_COUNT,
+           "values has not AMB_PARAMETERS elements");
+    EXPECT(amb_init(&plane, size, values, 0), AMB_ERROR_VALUES_COUNT,
+           "values has not AMB_PARAMETERS elements");
+
+    values[AMB_P_MASS_KG] = -1.0f;
+    EXPECT(amb_init(&plane, size, values, AMB_PARAMETERS), AMB_ERROR_PARAMETER(AMB_P_MASS_KG),
+           "mass_kg is outside 1e-4 to 1e6 kg");
+    /* Every parameter, below and above its range, names itself. */
+    for (i = 0; i < AMB_PARAMETERS; i++) {
+        amb_parameter row;
+        char start[80];
+        int above;
+        check(amb_parameter_at(i, &row) == AMB_OK, "a row of the table");
+        sprintf(start, "%.60s is outside ", row.name);
+        for (above = 0; above < 2; above++) {
+            amb_code code;
+            memcpy(values, rig_config, sizeof rig_config);
+            values[i] = above ? row.high * 2.0f + 1.0f : row.low - 1.0f;
+            if (!above && values[i] >= row.low) values[i] = row.low * 2.0f;
+            code = amb_init(&plane, size, values, AMB_PARAMETERS);
+            check(code == AMB_ERROR_PARAMETER(i), row.name);
+            check(strncmp(amb_error_text(code), start, strlen(start)) == 0, amb_error_text(code));
+        }
+    }
+    {
+        /* All zero: what a forgotten configuration looks like. */
+        static const float nothing[AMB_PARAMETERS] = {0.0f};
+        EXPECT(amb_init(&plane, size, nothing, AMB_PARAMETERS), AMB_ERROR_PARAMETER(0),
+               "sample_period_s is outside 1e-6 to 0.01 s");
+    }
+    {
+        /* Nothing of all this has made a supervisor. */
+        uint32_t mode = 77;
+        EXPECT(amb_mode(&plane, &mode), AMB_ERROR_NOT_INITIALISED, NOT_MADE_TEXT);
+        check(mode == 77, "a result is untouched after an error");
+    }
+    EXPECT(amb_init(&plane, size, rig_config, AMB_PARAMETERS), AMB_OK, "done");
+    /* One that is there survives a refused configuration. */
+    EXPECT(amb_init(&plane, size, values, AMB_PARAMETERS), AMB_ERROR_PARAMETER(AMB_PARAMETERS - 1),
+           "sensor_step_m is outside 1e-9 to 0.001 m");
+    EXPECT(amb_mode(&plane, &i), AMB_OK, "done");
+}
+
+/* After an error a command is zero force. */
+static void no_force(const char *what, amb_command *command) {
+    check(command->force_n[0] == 0.0f && command->force_n[1] == 0.0f && command->severity == 0.0f, what);
+    check(command->mode == AMB_MODE_SENSOR_FAULT && command->events == 0 && command->limits == 0, what);
+    memset(command, 0x55, sizeof *command);
+}
+
+static void ticking(void) {
+    amb_sample sample[2];
+    amb_command command[2];
+    memset(sample, 0, sizeof sample);
+    memset(command, 0x55, sizeof command);
+    EXPECT(amb_tick(NULL, sample, command), AMB_ERROR_SUPERVISOR_NULL, NULL_TEXT);
+    no_force("supervisor null", command);
+    EXPECT(amb_tick(OFF(three), sample, command), AMB_ERROR_SUPERVISOR_MISALIGNED, ALIGN_TEXT);
+    no_force("supervisor misaligned", command);
+    EXPECT(amb_tick(&zero, sample, command), AMB_ERROR_NOT_INITIALISED, NOT_MADE_TEXT);
+    no_force("not initialised", command);
+    EXPECT(amb_tick(&plane, NULL, command), AMB_ERROR_SAMPLE_NULL, "sample is null");
+    no_force("sample null", command);
+    EXPECT(amb_tick(&plane, OFF(sample), command), AMB_ERROR_SAMPLE_MISALIGNED,
+           "sample is not aligned to 4 bytes");
+    no_force("sample misaligned", command);
+    EXPECT(amb_tick(&plane, sample, NULL), AMB_ERROR_COMMAND_NULL, "command is null");
+    EXPECT(amb_tick(&plane, sample, OFF(command)), AMB_ERROR_COMMAND_MISALIGNED,
+           "command is not aligned to 4 bytes");
+    check(((unsigned char *)command)[7] == 0x55, "a misaligned command is untouched");
+    EXPECT(amb_tick(NULL, NULL, NULL), AMB_ERROR_COMMAND_NULL, "command is null");
+
+    sample->levitation_n[0] = -12.5f;
+    sample->status = 0xFFFFFFE3u; /* with bits that mean nothing; no axis lost */
+    sample->status &= ~AMB_STATUS_APPLIED_VALID;
+    EXPECT(amb_tick(&plane, sample, command), AMB_OK, "done");
+    check(command->force_n[0] == -12.5f && command->mode == AMB_MODE_LEVITATED, "transparent");
+    {
+        /* The same memory for both. */
+        union {
+            amb_sample sample;
+            amb_command command;
+        } both;
+        both.sample = *sample;
+        both.sample.sequence++;
+        EXPECT(amb_tick(&plane, &both.sample, &both.command), AMB_OK, "done");
+        check(both.command.force_n[0] == -12.5f, "sample and command in the same memory");
+    }
+}
+
+static void asking(void) {
+    uint32_t numbers[2] = {77, 77};
+    amb_report report[2];
+    amb_event event[2];
+    amb_record record[2];
+    amb_entry entry[2];
+    memset(entry, 0, sizeof entry);
+#define REFUSALS(call_with, result)                                                                          \
+    EXPECT(call_with(NULL, result), AMB_ERROR_SUPERVISOR_NULL, NULL_TEXT);                                   \
+    EXPECT(call_with(OFF(three), result), AMB_ERROR_SUPERVISOR_MISALIGNED, ALIGN_TEXT);                      \
+    EXPECT(call_with(&zero, result), AMB_ERROR_NOT_INITIALISED, NOT_MADE_TEXT);                              \
+    EXPECT(call_with(&plane, NULL), AMB_ERROR_RESULT_NULL, RESULT_NULL_TEXT);                                \
+    EXPECT(call_with(&plane, OFF(result)), AMB_ERROR_RESULT_MISALIGNED, RESULT_ALIGN_TEXT)
+#define ENTRY_0(supervisor, result) amb_record_entry(supervisor, 0, result)
+    REFUSALS(amb_mode, numbers);
+    REFUSALS(amb_report_now, report);
+    REFUSALS(amb_next_event, event);
+    REFUSALS(amb_record_frozen, record);
+    REFUSALS(ENTRY_0, entry);
+    EXPECT(amb_rearm(NULL), AMB_ERROR_SUPERVISOR_NULL, NULL_TEXT);
+    EXPECT(amb_rearm(OFF(three)), AMB_ERROR_SUPERVISOR_MISALIGNED, ALIGN_TEXT);
+    EXPECT(amb_rearm(&zero), AMB_ERROR_NOT_INITIALISED, NOT_MADE_TEXT);
+    EXPECT(amb_rearm(&plane), AMB_OK, "done");
+    EXPECT(amb_next_event(&plane, event), AMB_NOTHING, "there is none");
+    EXPECT(amb_record_frozen(&plane, record), AMB_NOTHING, "there is none");
+    EXPECT(amb_record_entry(&plane, 0, entry), AMB_NOTHING, "there is none");
+
+    EXPECT(amb_crc(NULL, 1, numbers), AMB_ERROR_ENTRIES_NULL, "entries is null");
+    EXPECT(amb_crc(OFF(entry), 1, numbers), AMB_ERROR_ENTRIES_MISALIGNED,
+           "entries is not aligned to 4 bytes");
+    EXPECT(amb_crc(entry, 1, NULL), AMB_ERROR_RESULT_NULL, RESULT_NULL_TEXT);
+    EXPECT(amb_crc(entry, 1, OFF(numbers)), AMB_ERROR_RESULT_MISALIGNED, RESULT_ALIGN_TEXT);
+    EXPECT(amb_crc(entry, AMB_RECORD_ENTRIES + 1, numbers), AMB_ERROR_INDEX, "index is beyond the end");
+    check(numbers[0] == 77, "results are untouched after errors");
+    EXPECT(amb_crc(entry, 0, numbers), AMB_OK, "done");
+    check(numbers[0] == 0, "checksum of nothing");
+    /* CRC-32 of 16 zero bytes. */
+    EXPECT(amb_crc(entry, 1, numbers), AMB_OK, "done");
+    check(numbers[0] == 0xECBB4B55u, "checksum of zeros");
+}
+
+static void table(void) {
+    amb_parameter row[2];
+    uint32_t i, index[2];
+    for (i = 0; i < AMB_PARAMETERS; i++) {
+        check(amb_parameter_at(i, row) == AMB_OK, "row");
+        check(amb_parameter_index(row->name, index) == AMB_OK && *index == i, row->name);
+        check(row->low < row->high && strlen(row->unit) > 0 && strlen(row->text) > 10, row->name);
+    }
+    check(amb_parameter_index("mass_kg", index) == AMB_OK && *index == AMB_P_MASS_KG, "mass_kg");
+    EXPECT(amb_parameter_at(AMB_PARAMETERS, row), AMB_ERROR_INDEX, "index is beyond the end");
+    EXPECT(amb_parameter_at(UINT32_MAX, row), AMB_ERROR_INDEX, "index is beyond the end");
+    EXPECT(amb_parameter_at(0, NULL), AMB_ERROR_RESULT_NULL, RESULT_NULL_TEXT);
+    EXPECT(amb_parameter_at(0, OFF(row)), AMB_ERROR_RESULT_MISALIGNED, RESULT_ALIGN_TEXT);
+    *index = 77;
+    EXPECT(amb_parameter_index(NULL, index), AMB_ERROR_NAME_NULL, "name is null");
+    EXPECT(amb_parameter_index("mass_k", index), AMB_ERROR_NAME_UNKNOWN, "no parameter has this name");
+    EXPECT(amb_parameter_index("mass_kgs", index), AMB_ERROR_NAME_UNKNOWN, "no parameter has this name");
+    EXPECT(amb_parameter_index("Mass_kg", index), AMB_ERROR_NAME_UNKNOWN, "no parameter has this name");
+    EXPECT(amb_parameter_index("", index), AMB_ERROR_NAME_UNKNOWN, "no parameter has this name");
+    check(*index == 77, "an index is untouched after an error");
+    EXPECT(amb_parameter_index("mass_kg", NULL), AMB_ERROR_RESULT_NULL, RESULT_NULL_TEXT);
+    EXPECT(amb_parameter_index("mass_kg", OFF(index)), AMB_ERROR_RESULT_MISALIGNED, RESULT_ALIGN_TEXT);
+}
+
+static void texts(void) {
+    check(strcmp(amb_error_text(2), "unknown code") == 0, "code 2");
+    check(strcmp(amb_error_text(-999), "unknown code") == 0, "code -999");
+    check(strcmp(amb_error_text(AMB_ERROR_PARAMETER(AMB_PARAMETERS)), "unknown code") == 0, "beyond");
+    check(strcmp(amb_error_text(INT32_MIN), "unknown code") == 0, "smallest code");
+    check(strcmp(amb_error_text(INT32_MAX), "unknown code") == 0, "largest code");
+    check(strcmp(amb_mode_name(AMB_MODE_BACKWARD_WHIRL), "backward whirl") == 0, "name of a mode");
+    check(strcmp(amb_mode_name(7), "unknown mode") == 0, "mode 7");
+    check(strcmp(amb_mode_name(UINT32_MAX), "unknown mode") == 0, "largest mode");
+    check(amb_abi_version() == AMB_ABI, "version");
+}
+
+static volatile sig_atomic_t busy_seen = 0, other_seen = 0;
+
+static void interrupting(int signal_number) {
+    amb_sample sample;
+    amb_command command;
+    amb_code code;
+    (void)signal_number;
+    memset(&sample, 0, sizeof sample);
+    code = amb_tick(&plane, &sample, &command);
+    if (code == AMB_ERROR_BUSY) {
+        busy_seen = 1;
+        if (command.force_n[0] != 0.0f || command.mode != AMB_MODE_SENSOR_FAULT) other_seen = 1;
+    } else if (code != AMB_OK) {
+        other_seen = 1;
+    }
+}
+
+/* A signal takes the place of an interrupt that comes while the background is inside a call. */
+static void interrupted(void) {
+    struct sigaction action;
+    struct itimerval timer;
+    amb_sample sample;
+    amb_command command;
+    const time_t start = time(NULL);
+    memset(&sample, 0, sizeof sample);
+    memset(&action, 0, sizeof action);
+    memset(&timer, 0, sizeof timer);
+    action.sa_handler = interrupting;
+    timer.it_interval.tv_usec = 50;
+    timer.it_value.tv_usec = 50;
+    sigaction(SIGALRM, &action, NULL);
+    setitimer(ITIMER_REAL, &timer, NULL);
+    while (!busy_seen && time(NULL) - start < 30) {
+        int i;
+        for (i = 0; i < 1000; i++) {
+            if (amb_tick(&plane, &sample, &command) != AMB_OK) other_seen = 1;
+        }
+    }
+    timer.it_value.tv_usec = timer.it_interval.tv_usec = 0;
+    setitimer(ITIMER_REAL, &timer, NULL);
+    check(busy_seen, "a call that interrupts another is refused");
+    check(!other_seen, "and the interrupted one goes on undisturbed");
+    expect("interrupting amb_tick", AMB_ERROR_BUSY, AMB_ERROR_BUSY,
+           "supervisor is in use by a call that this one interrupted");
+}
+
+/* A record, an event and a report, from the first blow of the rig. */
+static void record(void) {
+    static rig r;
+    static amb_entry entries[AMB_RECORD_ENTRIES];
+    amb_record frozen;
+    amb_event event;
+    amb_report report;
+    uint32_t i, crc = 0;
+    EXPECT(amb_init(&plane, sizeof plane, rig_config, AMB_PARAMETERS), AMB_OK, "done");
+    rig_start(&r);
+    while (r.tick < 1000) {
+        amb_sample sample;
+        amb_command command;
+        rig_sample(&r, &sample);
+        if (amb_tick(&plane, &sample, &command) != AMB_OK) check(0, "tick");
+        rig_actuate(&r, &command);
+    }
+    EXPECT(amb_record_frozen(&plane, &frozen), AMB_OK, "done");
+    check(frozen.version == AMB_RECORD_VERSION && frozen.entries == AMB_RECORD_ENTRIES, "record");
+    for (i = 0; i < frozen.entries; i++) {
+        if (amb_record_entry(&plane, i, &entries[i]) != AMB_OK) check(0, "entry");
+        if (i > 0 && entries[i].sequence != entries[i - 1].sequence + 1) check(0, "order of entries");
+    }
+    EXPECT(amb_record_entry(&plane, frozen.entries, &entries[0]), AMB_ERROR_INDEX,
+           "index is beyond the end");
+    EXPECT(amb_crc(entries, frozen.entries, &crc), AMB_OK, "done");
+    check(crc == frozen.crc && crc != 0, "checksum of the record");
+    check(entries[AMB_RECORD_ENTRIES / 4 - 1].events & AMB_EVENT_ENGAGED, "a quarter before the trigger");
+    EXPECT(amb_next_event(&plane, &event), AMB_OK, "done");
+    check(event.events == AMB_EVENT_ENGAGED && event.mode == AMB_MODE_APPROACH, "oldest event");
+    check(event.sequence == entries[AMB_RECORD_ENTRIES / 4 - 1].sequence, "its tick");
+    for (i = 1; amb_next_event(&plane, &event) == AMB_OK; i++) {
+    }
+    check(i > 5 && i <= 16, "events");
+    EXPECT(amb_report_now(&plane, &report), AMB_OK, "done");
+    check(report.landings == 1 && report.impacts >= 2 && report.force_cap_n == 1000.0f, "report");
+    check(report.impact_speed_max_m_s > 0.1f && report.severity_index > 0.0f, "report of the impact");
+    check(report.fault == AMB_REFUSAL_NONE && report.coast_down == 0, "report without faults");
+    EXPECT(amb_rearm(&plane), AMB_OK, "done");
+    EXPECT(amb_record_frozen(&plane, &frozen), AMB_NOTHING, "there is none");
+}
+
+int main(void) {
+    making();
+    ticking();
+    asking();
+    table();
+    texts();
+    record();
+    interrupted();
+    printf("%d checks, %d failures\n", checks, failures);
+    return failures > 0;
+}

@@ -1,0 +1,37 @@
+//! Every documented misuse, from C.
+
+use crate::library::{Target, beside, built, capi, good, host_program};
+use std::process::Command;
+use supervisor_capi::{Code, code::CODES};
+
+#[test]
+fn every_misuse_gives_its_error_and_text() {
+    let Some(library) = built(Target::Host, "") else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let program = folder.path().join("misuse");
+    let sources = [beside("misuse.c"), capi().join("examples/rig.c")];
+    let Some(output) = host_program(&sources, &library, &program) else {
+        return;
+    };
+    good(&output);
+    let said = good(&Command::new(program).output().unwrap());
+    assert!(said.ends_with(" checks, 0 failures\n"), "{said}");
+}
+
+/// No code was forgotten.
+#[test]
+fn every_code_is_provoked() {
+    let text = std::fs::read_to_string(beside("misuse.c")).unwrap();
+    for row in CODES {
+        let name = format!("AMB_{}", row.name);
+        assert!(text.contains(&name), "{name} is in no check");
+        let said = row.text.to_str().unwrap();
+        // Success needs no text of its own.
+        assert!(
+            row.code == Code::OK || text.contains(&format!("\"{said}\"")),
+            "the text of {name} is in no check"
+        );
+    }
+}

@@ -1,0 +1,123 @@
+//! The rotor of the example (`supervisor/capi/examples/rig.c`) in Rust: the same integers, and floats
+//! only where they are exact.
+
+use supervisor::{Command, Events, Sample, Status};
+
+pub(crate) struct Rig {
+    pub(crate) tick: u32,
+    sequence: u32,
+    position: [i32; 2],
+    velocity: [i32; 2],
+    force: [i32; 2],
+    /// FNV-1a over all commands.
+    pub(crate) hash: u32,
+    pub(crate) modes: u32,
+    pub(crate) events: Events,
+}
+
+/// Step of the converter.
+const STEP: i32 = 4096;
+const STEP_M: f32 = 1.0 / 268_435_456.0;
+const CLEARANCE: i64 = 53_687;
+const ACCELERATION: i32 = 17;
+
+impl Rig {
+    pub(crate) const TICKS: u32 = 4000;
+
+    /// Its configuration, in the order of the table.
+    #[rustfmt::skip]
+    pub(crate) const VALUES: [f32; 31] = [
+        50e-6, 10.0, 0.0, 0.0, 2e-4, 1000.0, 0.0, 1.0, 0.15, 0.7, 0.5, 0.2, 0.02, 4.0, 2e-3, 0.8,
+        1e-3, 2e-3, 1e-3, 10.0, 1000.0, 1e7, 400.0, 5.0, 2e8, 5e-3, 20.0, 1.0, 1.0, 2.0, 1e-8,
+    ];
+
+    pub(crate) fn new() -> Self {
+        Self {
+            tick: 0,
+            sequence: 0,
+            position: [0; 2],
+            velocity: [0; 2],
+            force: [0; 2],
+            hash: 2_166_136_261,
+            modes: 0,
+            events: Events::empty(),
+        }
+    }
+
+    pub(crate) fn sample(&mut self) -> Sample {
+        self.sequence += match self.tick {
+            3000 => 0,
+            3010 => 4,
+            _ => 1,
+        };
+        let mut status = Status::empty();
+        status.set(Status::BEARING_ON, self.tick >= 50);
+        status.set(Status::SPIN_VALID, self.tick >= 100);
+        status.set(Status::APPLIED_VALID, self.tick >= 3020);
+        status.set(Status::AXIS_Y_LOST, (3040..3300).contains(&self.tick));
+        let levitation = |axis: usize| -self.position[axis] / 34360 - self.velocity[axis] / 549;
+        let mut position_m = self.position.map(|p| (p / STEP) as f32 * STEP_M);
+        if (2000..2030).contains(&self.tick) {
+            position_m[0] = 1.0;
+        }
+        Sample {
+            sequence: self.sequence,
+            status,
+            position_m,
+            spin_rad_s: 1000.0,
+            levitation_n: [0, 1].map(|axis| levitation(axis) as f32 / 16.0),
+            applied_n: self.force.map(|f| f as f32 / 16.0),
+        }
+    }
+
+    fn hash(&mut self, word: u32) {
+        for byte in word.to_le_bytes() {
+            self.hash = (self.hash ^ u32::from(byte)).wrapping_mul(16_777_619);
+        }
+    }
+
+    fn contact(&self) -> [i32; 2] {
+        let [x, y] = self.position.map(|p| i64::from(p / STEP));
+        let [v_x, v_y] = self.velocity.map(i64::from);
+        let radius = (x * x + y * y).isqrt();
+        if radius <= CLEARANCE {
+            return [0; 2];
+        }
+        let mut normal = (radius - CLEARANCE) * 12;
+        if x * v_x + y * v_y < 0 {
+            normal /= 2;
+        }
+        let friction = normal * 3 / 20;
+        let along_x = (-normal * x + friction * y) / radius;
+        let along_y = (-normal * y - friction * x) / radius;
+        [along_x as i32, along_y as i32]
+    }
+
+    pub(crate) fn actuate(&mut self, command: &Command) {
+        self.hash(command.force_n[0].to_bits());
+        self.hash(command.force_n[1].to_bits());
+        self.hash(command.severity.to_bits());
+        self.hash(command.mode as u32);
+        self.hash(command.limits.bits());
+        self.hash((command.events - Events::RECORD_FROZEN).bits());
+        self.hash(command.integrator as u32);
+        self.modes |= 1 << command.mode as u32;
+        self.events |= command.events;
+
+        let contact = self.contact();
+        if self.tick == 200 {
+            self.velocity[0] += 32_000_000;
+            self.velocity[1] -= 34_000_000;
+        }
+        if self.tick == 3100 {
+            self.velocity[0] -= 12_000_000;
+            self.velocity[1] += 16_000_000;
+        }
+        for (axis, contact) in contact.into_iter().enumerate() {
+            self.velocity[axis] += ACCELERATION * (self.force[axis] + contact);
+            self.position[axis] += self.velocity[axis];
+            self.force[axis] = (command.force_n[axis] * 16.0) as i32;
+        }
+        self.tick += 1;
+    }
+}
