@@ -70,6 +70,9 @@ pub(crate) struct Continuous<S> {
     pub(crate) fall: S,
 }
 
+/// Rate of a slow sum.
+pub(crate) type RateOf<S> = <<S as Scalar>::Slow as Slow<S>>::Rate;
+
 /// Immutable coefficients of the tick.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Coeffs<S: Scalar> {
@@ -136,7 +139,7 @@ pub(crate) struct Coeffs<S: Scalar> {
     pub(crate) slew_step: S,
     pub(crate) continuous: Option<Continuous<S>>,
     /// Share of its way that the thermal state goes in a tick.
-    pub(crate) thermal_rate: <S::Slow as Slow<S>>::Rate,
+    pub(crate) thermal_rate: RateOf<S>,
     /// Weight of the force at the beginning of a tick in its mean, where both ends are measured.
     pub(crate) applied_weight: S,
     /// Highest backward speed that the cap arrests, and its inverse.
@@ -148,7 +151,7 @@ pub(crate) struct Coeffs<S: Scalar> {
     pub(crate) coast_down_ticks: u32,
     pub(crate) severity_limit: f32,
     /// Share of the severity limit per square of speed.
-    pub(crate) index_rate: <S::Slow as Slow<S>>::Rate,
+    pub(crate) index_rate: RateOf<S>,
     /// Farthest plausible way in a tick.
     pub(crate) way_per_tick: S,
     /// Three steps of the sensor, as a way and as a sum of speeds over ticks.
@@ -206,6 +209,16 @@ struct Taken {
 }
 
 impl Taken {
+    fn rate<S: Scalar>(&mut self, name: &'static str, x: f32) -> RateOf<S> {
+        if self.misfit.is_none() && !S::Slow::holds(x) {
+            self.misfit = Some(Misfit {
+                coefficient: name,
+                value: x,
+            });
+        }
+        S::Slow::rate(x)
+    }
+
     fn of<S: Scalar>(&mut self, name: &'static str, x: f32) -> S {
         if self.misfit.is_none() && !S::represents(x) {
             self.misfit = Some(Misfit {
@@ -251,6 +264,12 @@ impl<S: Scalar> Coeffs<S> {
         let continuous = config.continuous_force_n / f;
         let square = continuous * continuous;
         let mut taken = Taken { misfit: None };
+        let thermal_rate = taken.rate::<S>("thermal time", min(t / config.thermal_time_s, 1.0));
+        let index_rate = 1.0 / whirl_limit / whirl_limit / config.severity_limit;
+        let index_rate = taken.rate::<S>("severity limit", index_rate);
+        // More than twice the cap binds nothing; less than what has an inverse would bind for ever.
+        let slew_step = min(config.force_slew_n_s * t / f, 4.0);
+        let _: S = taken.of("slew limit", 1.0 / slew_step);
         let mut s = |name, x| taken.of::<S>(name, x);
         let coeffs = Self {
             scaling,
@@ -297,14 +316,13 @@ impl<S: Scalar> Coeffs<S> {
             fault_step: s("fault blend", per_tick(config.fault_blend_s, t)),
             fault_ticks: config.fault_ticks as u32,
             axis_cap: s("axis cap", min(config.axis_force_max_n / f, 1.0)),
-            // More than twice the cap binds nothing.
-            slew_step: s("slew limit", min(config.force_slew_n_s * t / f, 4.0)),
+            slew_step: s("slew limit", slew_step),
             continuous: (continuous < 1.0).then_some(Continuous {
                 force: s("continuous force", continuous),
                 square: s("continuous force", square),
                 fall: s("continuous force", FALL * square),
             }),
-            thermal_rate: S::Slow::rate(min(t / config.thermal_time_s, 1.0)),
+            thermal_rate,
             applied_weight: s("lag", applied_weight(lag)),
             whirl_limit: s("whirl limit", whirl_limit),
             per_whirl_limit: s("whirl limit", 1.0 / whirl_limit),
@@ -312,7 +330,7 @@ impl<S: Scalar> Coeffs<S> {
             urgency_offset: s("whirl limit", HARMLESS / (URGENT - HARMLESS)),
             coast_down_ticks: (config.coast_down_s / t) as u32,
             severity_limit: config.severity_limit,
-            index_rate: S::Slow::rate(1.0 / whirl_limit / whirl_limit / config.severity_limit),
+            index_rate,
             way_per_tick: s("largest speed", config.speed_max_m_s * t / c),
             sensor_steps: s("sensor step", sensor_steps),
             sensor_speeds: s("sensor step", sensor_steps / h),

@@ -60,9 +60,9 @@
 //!                                                                                 └─► recorder
 //! ```
 //!
-//! Files, each importing only from those above it: `scalar`, `math`, `vec2`, `signal`, `config`, `coeffs`,
+//! Files, each importing only from those above it: `scalar`, `q`, `math`, `vec2`, `signal`, `config`, `coeffs`,
 //! `guard`, `estimate`, `detect`, `course`, `classify`, `phase`, `law`, `limit`, `handover`, `severity`,
-//! `recorder`, `per_unit`, `supervisor`.
+//! `recorder`, `per_unit`, `supervisor`, `self_test`, `watch`.
 
 // Unconditional: under `cfg(test)` std's own methods would silently replace micromath's.
 #![no_std]
@@ -82,20 +82,26 @@ mod limit;
 mod math;
 mod per_unit;
 mod phase;
+mod q;
 mod recorder;
 mod scalar;
+mod self_test;
 mod severity;
 mod signal;
 mod supervisor;
 mod vec2;
+mod watch;
 
 pub use coeffs::Scaling;
 pub use config::{Config, ConfigError, CoreError, Misfit, PARAMETERS, Parameter};
 pub use per_unit::{Core, Prepared};
+pub use q::{Q, SlowQ};
 pub use recorder::{Entry, PER_UNIT, QueuedEvent, RECORD_VERSION, Record, crc_of};
 pub use scalar::{Scalar, Slow};
+pub use self_test::{SelfTest, self_test};
 pub use signal::{
     Command, CoreCommand, CoreSample, Events, IntegratorHint, Limits, Mode, Refusal, Report,
     Sample, Status,
 };
 pub use supervisor::Supervisor;
+pub use watch::OutputWatch;

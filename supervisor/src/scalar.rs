@@ -37,6 +37,8 @@ pub trait Scalar:
     const FAR_SQUARE: Self;
     /// A few units in the last place below 1, so that rounding cannot lift a scaled force above its limit.
     const JUST_BELOW_ONE: Self;
+    /// Hash of the self-test.
+    const KNOWN_ANSWER: u32;
 
     /// The nearest number; saturating, 0 for NaN.
     fn of(x: f32) -> Self;
@@ -58,6 +60,8 @@ pub trait Scalar:
     fn over(self, divisor: Self) -> Self;
     /// A count of ticks; saturating.
     fn count(ticks: u32) -> Self;
+    /// Its bits, for a hash; the two halves together where there are more than 32.
+    fn bits(self) -> u32;
     /// In units of 1/4096, rounded, saturating at ±8; NaN saturates, too.
     fn packed(self) -> i16;
 
@@ -98,8 +102,10 @@ pub trait Slow<S>: Copy + Default + Debug {
     /// A factor that may be smaller than what `S` resolves.
     type Rate: Copy + Debug + PartialEq;
 
-    /// The nearest rate.
+    /// The nearest rate; saturating.
     fn rate(x: f32) -> Self::Rate;
+    /// Whether a rate is within what `rate` keeps.
+    fn holds(x: f32) -> bool;
     /// Adds x·rate.
     fn add(&mut self, x: S, rate: Self::Rate);
     /// The sum.
@@ -116,13 +122,14 @@ pub struct Compensated<S> {
 }
 
 macro_rules! floating_point {
-    ($type:ident) => {
+    ($type:ident, $known_answer:literal) => {
         impl Scalar for $type {
             type Slow = Compensated<$type>;
             const ZERO: Self = 0.0;
             const ONE: Self = 1.0;
             const FAR_SQUARE: Self = 1e8;
             const JUST_BELOW_ONE: Self = 1.0 - 4.0 * $type::EPSILON;
+            const KNOWN_ANSWER: u32 = $known_answer;
 
             #[inline]
             fn of(x: f32) -> Self {
@@ -166,6 +173,11 @@ macro_rules! floating_point {
                 ticks as $type
             }
             #[inline]
+            fn bits(self) -> u32 {
+                let bits = u64::from(self.to_bits());
+                (bits ^ (bits >> 32)) as u32
+            }
+            #[inline]
             fn packed(self) -> i16 {
                 // Added to a number whose last digit is 1/4096 it ends in the low bits: a quarter of the
                 // instructions of a conversion that saturates.
@@ -188,6 +200,10 @@ macro_rules! floating_point {
                 $type::from(x)
             }
             #[inline]
+            fn holds(x: f32) -> bool {
+                x.is_finite()
+            }
+            #[inline]
             fn add(&mut self, x: $type, rate: $type) {
                 self.rest += x * rate;
                 let sum = self.value + self.rest;
@@ -208,8 +224,8 @@ macro_rules! floating_point {
     };
 }
 
-floating_point!(f32);
-floating_point!(f64);
+floating_point!(f32, 0x1F11_76D7);
+floating_point!(f64, 0x08D3_2CEA);
 
 /// Reciprocal square roots by Newton's method, from + − × only: every target gives the same bits. `core`
 /// has no root, and libm's costs three times as many instructions where there is an FPU. 0 below 1e-30

@@ -1,0 +1,132 @@
+//! Self-test at boot: a rotor of the test's own goes through every mode, and all commands have to be what
+//! they were when this version was made. Compiler, processor and memory that compute otherwise fail it.
+
+use crate::config::Config;
+use crate::per_unit::{Core, Prepared};
+use crate::scalar::Scalar;
+use crate::signal::{CoreSample, Status};
+use crate::vec2::Vec2;
+
+/// What the test went through.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct SelfTest {
+    /// FNV-1a of the bits of all forces, modes and limits.
+    pub hash: u32,
+    /// One bit a mode.
+    pub modes: u32,
+}
+
+/// Whether this processor computes what it should; some milliseconds.
+pub fn self_test<S: Scalar>() -> bool {
+    SelfTest::run::<S>().hash == S::KNOWN_ANSWER
+}
+
+/// A rotor of 10 kg as in the crate's documentation, without budget.
+const CONFIG: Config = Config {
+    sample_period_s: 50e-6,
+    mass_kg: 10.0,
+    stiffness_n_m: -2e5,
+    damping_n_s_m: 10.0,
+    clearance_m: 2e-4,
+    force_max_n: 1000.0,
+    amplifier_lag_s: 1.6e-4,
+    delay_samples: 1.0,
+    friction_coefficient: 0.15,
+    restitution: 0.7,
+    observer_pole_flight: 0.5,
+    observer_pole_contact: 0.2,
+    contact_band: 0.02,
+    position_limit: 4.0,
+    whirl_time_s: 1e-3,
+    hold_share: 0.8,
+    handover_dwell_s: 5e-4,
+    handover_blend_s: 1e-3,
+    fault_blend_s: 1e-3,
+    fault_ticks: 10.0,
+    axis_force_max_n: 900.0,
+    force_slew_n_s: 1e7,
+    continuous_force_n: 400.0,
+    thermal_time_s: 0.05,
+    contact_stiffness_n_m: 1e9,
+    coast_down_s: 5e-3,
+    severity_limit: 20.0,
+    retainer_plane_ratio: 1.0,
+    magnet_plane_ratio: 1.0,
+    speed_max_m_s: 2.0,
+    sensor_step_m: 1e-6,
+};
+
+/// What the rotor of the test does, for so many ticks.
+#[derive(Clone, Copy)]
+enum Story {
+    /// Flies on.
+    Flight,
+    /// Slides round the clearance.
+    Whirl,
+    /// Lies on the bearing.
+    Rest,
+    /// Is somewhere no rotor can be.
+    Nonsense,
+    /// Is in the centre.
+    Centre,
+}
+
+const STORIES: [(u32, Story); 7] = [
+    (40, Story::Centre),
+    (60, Story::Flight),
+    (80, Story::Whirl),
+    (60, Story::Rest),
+    (30, Story::Nonsense),
+    (20, Story::Flight),
+    (160, Story::Centre),
+];
+
+impl SelfTest {
+    /// Runs the test and says what came out.
+    pub fn run<S: Scalar>() -> Self {
+        let (prepared, _) = Prepared::of_valid(&CONFIG);
+        let mut core = Core::<S, 4>::new(&prepared);
+        let mut result = Self {
+            hash: 0x811C_9DC5,
+            modes: 0,
+        };
+        let mut position = Vec2::new(S::of(0.01), S::of(-0.02));
+        let turn = Vec2::new(S::of(0.996_2), S::of(-0.087_2));
+        let step = Vec2::new(S::of(0.05), S::of(0.02));
+        let mut sequence = 0;
+        let mut noise = 1_u32;
+        for (ticks, story) in STORIES {
+            for _ in 0..ticks {
+                position = match story {
+                    Story::Flight if position.exceeds(S::of(1.01)) => position * S::of(0.97),
+                    Story::Flight => position + step,
+                    Story::Whirl => {
+                        let onto = S::of(1.01) * position.inverse_length();
+                        position.rotated(turn) * onto
+                    }
+                    Story::Rest => Vec2::new(S::ZERO, S::of(-1.005)),
+                    Story::Nonsense => Vec2::new(S::of(5.0), S::ZERO),
+                    Story::Centre => position * S::of(0.98),
+                };
+                noise = noise.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                let ripple = S::count(noise >> 24) * S::of(1e-5);
+                let seen = position + Vec2::new(ripple, -ripple);
+                let command = core.tick(&CoreSample {
+                    sequence,
+                    status: Status::SPIN_VALID | Status::BEARING_ON,
+                    position: seen.to_array(),
+                    spin: S::ONE,
+                    levitation: (position * S::of(-0.5)).to_array(),
+                    applied: [S::ZERO; 2],
+                });
+                sequence = sequence.wrapping_add(1);
+                result.modes |= 1 << (command.mode as u32);
+                let [x, y] = command.force.map(S::bits);
+                for word in [x, y, command.mode as u32, command.limits.bits()] {
+                    result.hash = (result.hash ^ word).wrapping_mul(0x0100_0193);
+                }
+            }
+        }
+        result
+    }
+}
