@@ -95,7 +95,7 @@ impl<S: Scalar> Observer<S> {
         let command = self.commands.get(index).copied().unwrap_or_default();
         let command = actuator.carried(command);
         let before = actuator.carried(self.delivered);
-        let (delivered, mean) = match actuator.applied {
+        let (delivered, mean) = match actuator.applied() {
             Some(now) => (now, now + (before - now) * coeffs.applied_weight),
             None => {
                 let away = before - command;

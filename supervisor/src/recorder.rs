@@ -85,16 +85,6 @@ enum State {
     Frozen,
 }
 
-/// What a tick gives to the recorder.
-pub(crate) struct Tick<S> {
-    pub(crate) sequence: u32,
-    pub(crate) position: Vec2<S>,
-    pub(crate) force: Vec2<S>,
-    pub(crate) mode: Mode,
-    pub(crate) limits: Limits,
-    pub(crate) events: Events,
-}
-
 /// Ring of `N` entries (a power of two).
 #[derive(Debug, Clone)]
 pub(crate) struct Recorder<const N: usize> {
@@ -128,12 +118,27 @@ impl<const N: usize> Recorder<N> {
 
     /// Takes a tick in; says what the recorder itself has to report.
     #[inline(never)]
-    pub(crate) fn push<S: Scalar>(&mut self, tick: &Tick<S>) -> Events {
+    pub(crate) fn push<S: Scalar>(
+        &mut self,
+        sequence: u32,
+        position: Vec2<S>,
+        force: Vec2<S>,
+        (mode, limits): (Mode, Limits),
+        events: Events,
+    ) -> Events {
+        let entry = || Entry {
+            sequence,
+            position: [position.x.packed(), position.y.packed()],
+            force: [force.x.packed(), force.y.packed()],
+            mode: mode as u8,
+            limits: limits.bits() as u8,
+            events: events.bits() as u16,
+        };
         let mut own = Events::empty();
         match self.state {
             State::Armed => {
-                self.write(tick);
-                if tick.events.contains(Events::ENGAGED) {
+                self.write(entry());
+                if events.contains(Events::ENGAGED) {
                     // A quarter before the trigger, three quarters after it.
                     self.state = State::Triggered(N - N / 4);
                 }
@@ -143,7 +148,7 @@ impl<const N: usize> Recorder<N> {
                 self.state = State::Freezing(0);
             }
             State::Triggered(left) => {
-                self.write(tick);
+                self.write(entry());
                 self.state = State::Triggered(left - 1);
             }
             State::Freezing(done) => {
@@ -153,36 +158,28 @@ impl<const N: usize> Recorder<N> {
             }
             State::Frozen => {}
         }
-        let events = tick.events | own;
-        if !events.is_empty() {
-            self.queue(tick, events);
+        if !(events | own).is_empty() {
+            self.queue(sequence, mode, events | own);
         }
         own
     }
 
-    fn queue<S>(&mut self, tick: &Tick<S>, mut events: Events) {
+    fn queue(&mut self, sequence: u32, mode: Mode, mut events: Events) {
         if self.lost {
             events |= Events::QUEUE_FULL;
         }
         let event = QueuedEvent {
-            sequence: tick.sequence,
-            mode: tick.mode,
+            sequence,
+            mode,
             events,
         };
         self.lost = self.queued.push_back(event).is_err();
     }
 
     #[inline]
-    fn write<S: Scalar>(&mut self, tick: &Tick<S>) {
+    fn write(&mut self, new: Entry) {
         if let Some(entry) = self.entries.get_mut(self.next & Self::MASK) {
-            *entry = Entry {
-                sequence: tick.sequence,
-                position: [tick.position.x.packed(), tick.position.y.packed()],
-                force: [tick.force.x.packed(), tick.force.y.packed()],
-                mode: tick.mode as u8,
-                limits: tick.limits.bits() as u8,
-                events: tick.events.bits() as u16,
-            };
+            *entry = new;
         }
         self.next = self.next.wrapping_add(1) & Self::MASK;
     }

@@ -4,7 +4,7 @@
 use crate::coeffs::Coeffs;
 use crate::course::sum_of_impacts;
 use crate::detect::Findings;
-use crate::guard::Reading;
+use crate::guard::{Facts, Reading};
 use crate::law::View;
 use crate::scalar::{Scalar, Slow};
 use crate::signal::{Events, Limits, Mode, Report};
@@ -57,7 +57,7 @@ impl<S: Scalar> Severity<S> {
         };
         let (found, coeffs) = (view.found, view.coeffs);
         let before = core::mem::replace(&mut self.before, view.motion.velocity);
-        if !reading.bearing_on {
+        if !reading.is(Facts::ON) {
             self.coast_down = false;
         }
         match mode {
@@ -73,7 +73,7 @@ impl<S: Scalar> Severity<S> {
         let backward = view.spin.backward(found.tangential_speed);
         let mut passed = false;
         let coming = if found.touching {
-            if reading.position.is_some() {
+            if reading.is(Facts::USED) {
                 passed = self.contact(before, backward, found, force, coeffs);
             }
             let outward = found.radial_speed.or_more(S::ZERO);
