@@ -1,6 +1,7 @@
 //! What goes wrong with the position sensor for a while.
 
 use crate::axis::Axis;
+use crate::instruments::seen_until_s;
 use plant_model::V2;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardUniform};
@@ -103,9 +104,9 @@ impl Faults {
         }
     }
 
-    /// Faults at a sample; sample times carry round-off.
+    /// Faults at a sample.
     fn at(&self, t_s: f64) -> impl Iterator<Item = &Fault> {
-        let t_s = t_s + 1e-6 * self.period_s;
+        let t_s = seen_until_s(t_s, self.period_s);
         (self.all.iter()).filter(move |f| f.start_s <= t_s && t_s < f.end_s())
     }
 

@@ -239,8 +239,9 @@ impl Scene {
         let damping_n_s_m = damping_of(file, &plant, &check, damps)?;
         let nominal = supervisor_setup::nominal_of(&plant, file);
         let supervised = policies.contains(&PolicyKind::Supervisor);
+        let overrides = supervisor_setup::overrides(file, text)?;
         let supervisor = supervised
-            .then(|| supervisor_setup::config(&nominal, file, text))
+            .then(|| supervisor_setup::config(&nominal, &overrides, text))
             .transpose()?;
         let gravity: V2 = file.rotor.gravity_m_s2.0.into();
         Ok(Self {
