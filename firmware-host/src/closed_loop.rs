@@ -2,7 +2,8 @@
 //! effect at the next sample.
 
 use crate::amplifier::Amplifier;
-use crate::instruments::{Sensor, seen_until_s};
+use crate::faults::seen_until_s;
+use crate::instruments::Sensor;
 use crate::judge::Judge;
 use crate::loads::cuts;
 use crate::policies::{Policy, Seen};

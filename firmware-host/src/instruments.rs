@@ -7,15 +7,6 @@ use rand_core::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use std::collections::VecDeque;
 
-/// What begins or ends within this share of a period after a sample counts as there at the sample. Sample
-/// times are products of a count and a period and may come out one rounding short of a scene's time.
-const ROUND_OFF_PERIODS: f64 = 1e-6;
-
-/// Up to when a sample at `t_s` sees what begins and ends \[s\].
-pub(crate) fn seen_until_s(t_s: f64, period_s: f64) -> f64 {
-    t_s + ROUND_OFF_PERIODS * period_s
-}
-
 /// A position sensor with its converter: what it is always like. Swapped axes, gain, offset, noise,
 /// range and step apply in this order.
 #[derive(Debug, Clone, Copy, PartialEq)]
