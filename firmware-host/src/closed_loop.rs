@@ -123,7 +123,11 @@ pub fn run_policy(
         method: scene.method,
         ..Options::default()
     };
-    if !scene.base_motions.is_empty() && scene.plant.stator != StatorParams::Rigid {
+    let rigid = matches!(
+        scene.plant.stator,
+        StatorParams::Rigid | StatorParams::RigidEllipse(_)
+    );
+    if !scene.base_motions.is_empty() && !rigid {
         return Err(RunError::BaseMotionOnRings);
     }
     let plant = scene.build(options)?;

@@ -353,6 +353,30 @@ fn bad_scenes_are_refused_with_file_line_key_and_expectation() {
             "expected one of",
         ),
         (
+            "[friction]",
+            "[retainer]\nellipticity = 0.3\n\n[friction]",
+            "retainer.ellipticity",
+            "a number from 0 to 0.2",
+        ),
+        (
+            "[friction]",
+            "[retainer]\nlong_axis_deg = 30.0\n\n[friction]",
+            "retainer.long_axis_deg",
+            "give retainer.ellipticity",
+        ),
+        (
+            "[friction]",
+            "[race]\ninertia_kg_m2 = 1e-3\n[retainer]\nellipticity = 0.05\n\n[friction]",
+            "retainer.ellipticity",
+            "remove [race]",
+        ),
+        (
+            "[friction]",
+            "[retainer]\nellipticity = 0.05\n[stator.inner]\nmass_kg = 5.0\nstiffness_n_m = 1e8\ndamping_n_s_m = 1e4\n\n[friction]",
+            "retainer.ellipticity",
+            "remove [stator]",
+        ),
+        (
             "sample_rate_hz = 20000",
             "sample_rate_hz = inf",
             "run.sample_rate_hz",
@@ -537,6 +561,35 @@ fn a_scene_may_have_a_nonlinear_contact() {
     assert_eq!(refused.status.code(), Some(2), "{error}");
     assert!(error.contains("run.method"), "{error}");
     assert!(error.contains("auto, explicit or stiff"), "{error}");
+}
+
+/// A bearing out of round runs under every policy, verifies itself by the other method, and its report shows
+/// the ellipse; the power series is refused where it is asked for.
+#[test]
+fn a_bearing_may_be_out_of_round() {
+    let folder = TempDir::new().unwrap();
+    let bore = "[retainer]\nellipticity = 0.05\nlong_axis_deg = 30.0\n\n[friction]";
+    let scene = short_scene(folder.path(), |t| t.replacen("[friction]", bore, 1));
+    let out = folder.path().join("out");
+    let result = run(&scene, &out, &["--verify"]);
+    let error = String::from_utf8_lossy(&result.stderr);
+    assert!(result.status.success(), "{error}");
+    let text = fs::read(out.join("verdict.json")).unwrap();
+    let verdict: Value = serde_json::from_slice(&text).unwrap();
+    let supervisor = &verdict["policies"]["supervisor"];
+    assert_eq!(supervisor["method"], "explicit");
+    assert_ne!(supervisor["outcome"], "whirl");
+    assert!(supervisor["impacts"].as_u64().unwrap() > 0);
+    let report = fs::read_to_string(out.join("report.html")).unwrap();
+    assert!(report.contains("clearance ellipse"));
+
+    let scene = short_scene(folder.path(), |t| {
+        (t.replacen("[friction]", bore, 1)).replacen("seed = 1", "seed = 1\nmethod = \"series\"", 1)
+    });
+    let result = run(&scene, &out, &[]);
+    assert_eq!(result.status.code(), Some(2));
+    let error = String::from_utf8_lossy(&result.stderr);
+    assert!(error.contains("retainer.ellipticity"), "{error}");
 }
 
 #[test]
