@@ -2,6 +2,7 @@
 
 use crate::amplifier::limited_n;
 use crate::clairvoyant::Clairvoyant;
+use crate::history::History;
 use crate::instruments::Reading;
 use crate::levitation::{Levitation, VelocityFilter};
 use crate::policy_kind::PolicyKind;
@@ -34,6 +35,8 @@ pub enum Policy {
     Levitation(Levitation),
     /// The reference that knows the true state.
     Clairvoyant(Clairvoyant),
+    /// A history laid down beforehand, then that reference.
+    History(Box<History>),
     /// The supervisor with that controller behind it.
     Supervisor {
         /// The product.
@@ -92,7 +95,7 @@ impl Policy {
     pub fn tick(&mut self, seen: &Seen) -> V2 {
         let measured_m = seen.reading.position_m;
         match self {
-            Self::Passive | Self::Clairvoyant(_) => V2::zeros(),
+            Self::Passive | Self::Clairvoyant(_) | Self::History(_) => V2::zeros(),
             Self::Radial { band_m, force_n } => {
                 let radius = measured_m.norm();
                 if radius > *band_m {
@@ -136,6 +139,7 @@ impl Policy {
     pub fn of_truth(&self, now: &Snapshot) -> Option<V2> {
         match self {
             Self::Clairvoyant(clairvoyant) => Some(clairvoyant.force_n(now)),
+            Self::History(history) => Some(history.force_n(now)),
             _ => None,
         }
     }
