@@ -10,10 +10,10 @@ use crate::overloads::plants::{RATES_HZ, plants};
 use rand_chacha::ChaCha8Rng;
 use rand_core::{Rng, SeedableRng};
 use std::f32::consts::TAU;
-use supervisor::{Config, Sample, Status};
+use supervisor::{Config, Mode, Sample, Status};
 
-/// Of the moves.
-const SEED: u64 = 30;
+/// Of the moves: of the first three hundred the one whose rarest way between modes is the most frequent.
+const SEED: u64 = 109;
 /// Ticks of a supervisor before the next one.
 const PIECE_TICKS: usize = 1000;
 
@@ -38,7 +38,9 @@ pub fn made_up(ticks: usize) -> Result<Vec<Piece>, CatalogueError> {
         let mut piece = Piece::new(config);
         for _ in 0..left.min(PIECE_TICKS) {
             let sample = hand.sample(&mut chance);
-            piece.ticks.push((sample, supervisor.tick(&sample)));
+            let command = supervisor.tick(&sample);
+            hand.sees(command.mode, &mut chance);
+            piece.ticks.push((sample, command));
         }
         left -= piece.ticks.len();
         pieces.push(piece);
@@ -68,12 +70,12 @@ impl Chance {
     }
 }
 
-/// A configuration whose times are drawn: usual ones or down to nothing. Every third lets go soon and blends
+/// A configuration whose times are drawn: usual ones or down to nothing. Every other lets go soon and blends
 /// long, and recognises whirl and rest either at once or late: then contact that comes back during hand-over
 /// is known at its first tick.
 fn varied(config: Config, chance: &mut Chance) -> Config {
     let t = config.sample_period_s;
-    let lets_go_soon = chance.one_in(3);
+    let lets_go_soon = chance.one_in(2);
     let whirl_time_s = if chance.one_in(2) { 1e-5 } else { 60.0 * t };
     let mut time = |usual: f32, least: f32| match chance.below(3) {
         0 => usual,
@@ -94,7 +96,7 @@ fn varied(config: Config, chance: &mut Chance) -> Config {
     };
     if lets_go_soon {
         config.handover_dwell_s = 0.0;
-        config.handover_blend_s = 40.0 * t;
+        config.handover_blend_s = 150.0 * t;
         config.whirl_time_s = whirl_time_s;
     }
     config
@@ -126,6 +128,9 @@ struct Hand {
     /// Noise of a position \[clearances\].
     noise: f32,
     doing: Move,
+    /// Whether the last move led off the wall, or back towards it from there.
+    off_the_wall: bool,
+    mode: Mode,
     left: usize,
     /// Position \[clearances\].
     at: [f32; 2],
@@ -146,6 +151,8 @@ impl Hand {
                 .sqrt(),
             noise: if chance.one_in(2) { 1e-5 } else { 2e-3 },
             doing: Move::Stay,
+            off_the_wall: false,
+            mode: Mode::Levitated,
             left: 4,
             at: [0.0; 2],
             sequence: 0,
@@ -155,11 +162,30 @@ impl Hand {
         }
     }
 
+    /// Looks at what the supervisor does: where it has just begun to approach or to hand over, something else
+    /// happens at once, more often than by chance.
+    fn sees(&mut self, mode: Mode, chance: &mut Chance) {
+        let before = std::mem::replace(&mut self.mode, mode);
+        let short = matches!(mode, Mode::Approach | Mode::Handover);
+        if short && mode != before && chance.one_in(2) {
+            self.left = 0;
+            self.off_the_wall = true;
+        }
+    }
+
     fn next_move(&mut self, chance: &mut Chance) {
         let [x, y] = self.at;
         let angle = y.atan2(x);
         self.left = 1 + chance.below(60);
-        self.doing = match chance.below(22) {
+        // What comes back to the wall soon after it has left it is the rarest.
+        let kind = match (self.off_the_wall, chance.below(4)) {
+            (true, 0) => 9,
+            (true, 1) => 16,
+            (true, 2) => 22,
+            _ => chance.below(22),
+        };
+        self.off_the_wall = kind >= 18;
+        self.doing = match kind {
             0 | 1 => Move::Stay,
             // Outwards until the wall, so slowly that it is no bounce.
             16 | 17 => {
@@ -185,6 +211,14 @@ impl Hand {
             18..=21 => {
                 let step = -self.lift_off * chance.between(0.1, 0.6);
                 self.left = 5 + chance.below(20);
+                Move::Straight {
+                    step: [step * angle.cos(), step * angle.sin()],
+                }
+            }
+            // Back towards it, so fast that it cannot be stopped.
+            22 => {
+                let step = self.lift_off * chance.between(0.5, 2.0);
+                self.left = 1 + chance.below(8);
                 Move::Straight {
                     step: [step * angle.cos(), step * angle.sin()],
                 }

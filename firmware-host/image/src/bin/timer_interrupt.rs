@@ -191,12 +191,16 @@ mod firmware {
         /// A turn by 0.1 rad, backward: 0.4 m/s on the wall.
         const TURN: [f32; 2] = [0.995_004_2, -0.099_833_4];
         let share = |from: u32, ticks: u32| (tick - from) as f32 / ticks as f32;
-        let radius = match tick {
-            ..OUT => 0.0,
-            ..WALL => share(OUT, WALL - OUT),
-            ..BACK => 1.02,
-            ..REST => 1.0 - share(BACK, REST - BACK),
-            _ => 0.0,
+        let radius = if tick < OUT {
+            0.0
+        } else if tick < WALL {
+            share(OUT, WALL - OUT)
+        } else if tick < BACK {
+            1.02
+        } else if tick < REST {
+            1.0 - share(BACK, REST - BACK)
+        } else {
+            0.0
         };
         let turns = tick.clamp(WALL, BACK) - WALL;
         let [mut x, mut y] = [radius * CLEARANCE_M, 0.0];
