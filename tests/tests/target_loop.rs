@@ -2,7 +2,7 @@
 
 use firmware_host::target::emulator::{EmulatorError, Time, run, version};
 use firmware_host::target::images::Project;
-use firmware_host::target::machines::MACHINES;
+use firmware_host::target::machines::{MACHINES, Machine};
 use serde_json::Value;
 use std::time::Duration;
 use system_tests::root;
@@ -35,7 +35,9 @@ fn the_example_firmware_records_a_landing() {
     if let Err(why @ EmulatorError::Missing) = version() {
         return skipped(&why.to_string());
     }
-    for machine in MACHINES {
+    // Floats in software take longer than a period: the background would never have its turn.
+    let with_fpu = |m: &Machine| m.target.ends_with("eabihf");
+    for machine in MACHINES.into_iter().filter(with_fpu) {
         let Some(output) = build_images(machine.target, &[]) else {
             return;
         };
