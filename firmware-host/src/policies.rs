@@ -8,10 +8,29 @@ use crate::levitation::{Levitation, VelocityFilter};
 use crate::policy_kind::PolicyKind;
 use crate::scene::Scene;
 use plant_model::{Snapshot, V2};
-use supervisor::{IntegratorHint, Mode, Sample, Status, Supervisor};
+use supervisor::{Command, IntegratorHint, Mode, Sample, Status, Supervisor};
+
+/// Who supervises: the product as it is linked here, or wherever else it runs.
+pub trait Supervise: core::fmt::Debug {
+    /// One tick.
+    fn tick(&mut self, sample: &Sample) -> Command;
+
+    /// Mode after the last tick.
+    fn mode(&self) -> Mode;
+}
+
+impl Supervise for Supervisor {
+    fn tick(&mut self, sample: &Sample) -> Command {
+        Supervisor::tick(self, sample)
+    }
+
+    fn mode(&self) -> Mode {
+        Supervisor::mode(self)
+    }
+}
 
 /// A policy at work.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub enum Policy {
     /// No force.
     Passive,
@@ -40,7 +59,7 @@ pub enum Policy {
     /// The supervisor with that controller behind it.
     Supervisor {
         /// The product.
-        supervisor: Box<Supervisor>,
+        supervisor: Box<dyn Supervise>,
         /// What it passes through.
         levitation: Levitation,
         /// What it told the controller's integrator.
@@ -64,10 +83,6 @@ impl Policy {
     /// [`Scene::load`] refuses).
     pub fn new(kind: PolicyKind, scene: &Scene) -> Option<Self> {
         let force_n = scene.plant.magnet.map_or(0.0, |m| m.force_max_n);
-        let levitation = || {
-            let params = scene.levitation?;
-            Some(Levitation::new(params, 1.0 / scene.sample_rate_hz, force_n))
-        };
         Some(match kind {
             PolicyKind::Passive => Self::Passive,
             PolicyKind::Radial => Self::Radial {
@@ -82,12 +97,21 @@ impl Policy {
                     force_max_n: force_n,
                 }
             }
-            PolicyKind::Levitation => Self::Levitation(levitation()?),
-            PolicyKind::Supervisor => Self::Supervisor {
-                supervisor: Box::new(Supervisor::new(&scene.supervisor?).ok()?),
-                levitation: levitation()?,
-                hint: IntegratorHint::Run,
-            },
+            PolicyKind::Levitation => Self::Levitation(levitation_of(scene)?),
+            PolicyKind::Supervisor => {
+                let supervisor = Supervisor::new(&scene.supervisor?).ok()?;
+                return Self::supervised(scene, Box::new(supervisor));
+            }
+        })
+    }
+
+    /// A supervisor of the caller's in front of the scene's levitation controller; `None` where the scene has
+    /// no controller.
+    pub fn supervised(scene: &Scene, supervisor: Box<dyn Supervise>) -> Option<Self> {
+        Some(Self::Supervisor {
+            supervisor,
+            levitation: levitation_of(scene)?,
+            hint: IntegratorHint::Run,
         })
     }
 
@@ -151,4 +175,11 @@ impl Policy {
             _ => None,
         }
     }
+}
+
+/// The scene's levitation controller, where it has one.
+fn levitation_of(scene: &Scene) -> Option<Levitation> {
+    let force_n = scene.plant.magnet.map_or(0.0, |m| m.force_max_n);
+    let period_s = 1.0 / scene.sample_rate_hz;
+    Some(Levitation::new(scene.levitation?, period_s, force_n))
 }
