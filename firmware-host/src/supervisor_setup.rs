@@ -79,7 +79,7 @@ pub(crate) fn overrides(file: &SceneFile, text: &SceneText) -> Result<Vec<Overri
         };
         let value = number as f32;
         if !(parameter.low..=parameter.high).contains(&value) {
-            let refused = ConfigError { parameter, value };
+            let refused = ConfigError { index, value };
             let help = Some(parameter.text.to_owned());
             return Err(text.error_at_key(&path, refused.to_string(), help));
         }
@@ -102,10 +102,10 @@ pub(crate) fn config(
     let config = Config::from_values(values);
     // What was given is in its range; what is left was derived.
     config.validate().map_err(|e| {
-        let name = e.parameter.name;
+        let name = e.parameter().name;
         let Some(source) = suggested.source(name).map(key_of) else {
             let path = format!("supervisor.{name}");
-            return text.error_at_key(&path, e.to_string(), Some(e.parameter.text.to_owned()));
+            return text.error_at_key(&path, e.to_string(), Some(e.parameter().text.to_owned()));
         };
         let message = format!("the supervisor derives {e} from this");
         let help = format!("correct {source}, set {name} in [supervisor], or drop the policy");

@@ -137,9 +137,9 @@ impl<S: Scalar> Reading<S> {
 /// Missed ticks over which the observer's model is carried: bounds the time of a tick.
 pub(crate) const MAX_MISSED: u32 = 4;
 /// Refused samples in a row that make a fault, of the kinds that are no mere interference.
-const JUMPS: u32 = 2;
-const DROPOUTS: u32 = 3;
-const STUCK: u32 = 3;
+const JUMPS: u8 = 2;
+const DROPOUTS: u8 = 3;
+const STUCK: u8 = 3;
 /// Longest applied force that is believed \[caps\].
 const MOST_APPLIED: f32 = 2.0;
 
@@ -147,9 +147,9 @@ const MOST_APPLIED: f32 = 2.0;
 #[derive(Debug, Clone, Copy, Default)]
 struct Refused {
     all: u32,
-    jumps: u32,
-    dropouts: u32,
-    stuck: u32,
+    jumps: u8,
+    dropouts: u8,
+    stuck: u8,
 }
 
 impl Default for Facts {
@@ -340,7 +340,8 @@ impl<S: Scalar> Guard<S> {
             return Refusal::Range;
         }
         if let Some((last, ticks)) = self.last_good {
-            let way = coeffs.way_per_tick * S::count(ticks) + coeffs.sensor_steps;
+            let steps = coeffs.sensor_speeds * coeffs.tick;
+            let way = coeffs.way_per_tick * S::count(ticks) + steps;
             if (position - last).exceeds(way) {
                 return Refusal::Slew;
             }

@@ -1,7 +1,7 @@
 //! The tick, per unit: its body reads as the list of files.
 
 use crate::classify::Classifier;
-use crate::coeffs::Coeffs;
+use crate::coeffs::{Coeffs, Scaling};
 use crate::config::{Config, CoreError, Misfit};
 use crate::course::{Course, Impact};
 use crate::detect::Detector;
@@ -217,16 +217,20 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
         if reading.is(Facts::LATE) {
             self.observer.late();
         }
-        let modelled = reading.actuator().modelled();
-        for _ in 0..reading.missed {
-            // Nobody commanded anything else meanwhile.
-            (self.observer).advance(None, blind, modelled, &self.coeffs);
-            self.observer.commanded(self.force);
+        if reading.missed > 0 {
+            let modelled = reading.actuator().modelled();
+            (self.observer).bridge(reading.missed, self.force, blind, modelled, &self.coeffs);
         }
         let lost = reading.is(Facts::FAULTY) && !reading.is(Facts::USED);
         if reading.is(Facts::ANEW) || lost {
             self.observer.forget();
         }
+    }
+
+    /// The units of samples and commands.
+    #[inline]
+    pub fn scaling(&self) -> &Scaling {
+        &self.coeffs.scaling
     }
 
     /// What the supervisor is doing.

@@ -30,15 +30,15 @@ pub struct Entry {
 }
 
 impl Entry {
-    /// The sixteen bytes, little-endian, in two halves.
-    fn halves(&self) -> [[u8; 8]; 2] {
-        let [s0, s1, s2, s3] = self.sequence.to_le_bytes();
-        let [[x0, x1], [y0, y1]] = self.position.map(i16::to_le_bytes);
-        let [[f0, f1], [g0, g1]] = self.force.map(i16::to_le_bytes);
-        let [e0, e1] = self.events.to_le_bytes();
+    /// The sixteen bytes as little-endian words.
+    fn words(&self) -> [u32; 4] {
+        let pair = |[low, high]: [i16; 2]| u32::from(low as u16) | (u32::from(high as u16) << 16);
+        let rest = u32::from(self.mode) | (u32::from(self.limits) << 8);
         [
-            [s0, s1, s2, s3, x0, x1, y0, y1],
-            [f0, f1, g0, g1, self.mode, self.limits, e0, e1],
+            self.sequence,
+            pair(self.position),
+            pair(self.force),
+            rest | (u32::from(self.events) << 16),
         ]
     }
 }
@@ -80,7 +80,7 @@ enum State {
     Armed,
     /// Recording for so many more ticks.
     Triggered(usize),
-    /// Checksum under way; so many entries done.
+    /// Checksum under way; so many words done.
     Freezing(usize),
     Frozen,
 }
@@ -184,14 +184,13 @@ impl<const N: usize> Recorder<N> {
         self.next = self.next.wrapping_add(1) & Self::MASK;
     }
 
-    /// Takes half an entry into the checksum, which bounds the time of a tick; true when it is complete.
+    /// Takes a word into the checksum, which bounds the time of a tick; true when it is complete.
     fn check(&mut self, done: usize) -> bool {
-        if let Some(entry) = (self.entries).get(self.next.wrapping_add(done / 2) & Self::MASK) {
-            let [early, late] = entry.halves();
-            self.crc = crc_of_bytes(self.crc, if done & 1 == 0 { early } else { late });
+        if let Some(entry) = (self.entries).get(self.next.wrapping_add(done / 4) & Self::MASK) {
+            self.crc = crc_of_word(self.crc, entry.words()[done & 3]);
         }
         let done = done + 1;
-        if done < 2 * N {
+        if done < 4 * N {
             self.state = State::Freezing(done);
             return false;
         }
@@ -217,29 +216,21 @@ impl<const N: usize> Recorder<N> {
     }
 }
 
-/// CRC-32 (IEEE, reflected) of each byte. A kilobyte of flash halves the longest tick of the recorder.
-const CRC_OF_BYTE: [u32; 256] = {
-    let mut table = [0; 256];
-    let mut byte = 0;
-    while byte < 256 {
-        let mut crc = byte as u32;
-        let mut bit = 0;
-        while bit < 8 {
-            crc = (crc >> 1) ^ (0xEDB8_8320 & (crc & 1).wrapping_neg());
-            bit += 1;
-        }
-        table[byte] = crc;
-        byte += 1;
+/// Four bytes into a CRC-32 (IEEE, reflected), a nibble at a time: no table of a kilobyte.
+fn crc_of_word(mut crc: u32, word: u32) -> u32 {
+    #[rustfmt::skip]
+    const NIBBLE: [u32; 16] = [
+        0x0000_0000, 0x1DB7_1064, 0x3B6E_20C8, 0x26D9_30AC, 0x76DC_4190, 0x6B6B_51F4, 0x4DB2_6158, 0x5005_713C,
+        0xEDB8_8320, 0xF00F_9344, 0xD6D6_A3E8, 0xCB61_B38C, 0x9B64_C2B0, 0x86D3_D2D4, 0xA00A_E278, 0xBDBD_F21C,
+    ];
+    crc ^= word;
+    for _ in 0..8 {
+        crc = (crc >> 4) ^ NIBBLE[(crc & 15) as usize];
     }
-    table
-};
-
-fn crc_of_bytes(crc: u32, bytes: [u8; 8]) -> u32 {
-    let step = |crc: u32, byte: u8| (crc >> 8) ^ CRC_OF_BYTE[(crc as u8 ^ byte) as usize];
-    bytes.into_iter().fold(crc, step)
+    crc
 }
 
 /// CRC-32 of entries, for a reader of a record to compare with.
 pub fn crc_of<'a>(entries: impl Iterator<Item = &'a Entry>) -> u32 {
-    !entries.flat_map(Entry::halves).fold(!0, crc_of_bytes)
+    !entries.flat_map(Entry::words).fold(!0, crc_of_word)
 }

@@ -90,7 +90,7 @@ impl<S: Scalar> Severity<S> {
         let severity = (coming * coeffs.per_whirl_limit).or_more(S::ZERO);
         result.severity = severity.or_less(S::of(MOST_SEVERITY));
 
-        let beyond = backward > coeffs.whirl_limit;
+        let beyond = backward * coeffs.per_whirl_limit > S::ONE;
         if beyond && found.touching {
             result.limits |= Limits::BEYOND_WHIRL_LIMIT;
             self.beyond_ticks = self.beyond_ticks.saturating_add(1);
@@ -150,7 +150,7 @@ impl<S: Scalar> Severity<S> {
             contact_ticks: self.contact_ticks,
             impact_speed_max_m_s: self.impact_speed_max.to_f32() * speed_m_s,
             backward_speed_max_m_s: self.backward_speed_max.to_f32() * speed_m_s,
-            whirl_limit_m_s: coeffs.whirl_limit.to_f32() * speed_m_s,
+            whirl_limit_m_s: speed_m_s / coeffs.per_whirl_limit.to_f32(),
             severity_index: index.or_less(MOST_INDEX),
             coast_down: self.coast_down,
             ..Report::default()

@@ -61,7 +61,7 @@ pub(crate) unsafe fn make(
     }
     config
         .validate()
-        .map_err(|error| code_of(error.parameter))?;
+        .map_err(|error| code_of(error.parameter()))?;
     // From here on a call that interrupts this one finds no supervisor.
     storage.state.store(BUSY, Ordering::Release);
     // SAFETY: the word is BUSY, so that no lease is given out: this is the only access. A supervisor that
@@ -74,7 +74,7 @@ pub(crate) unsafe fn make(
             place.write(supervisor);
             (READY, Ok(()))
         }
-        Err(error) => (before, Err(code_of(error.parameter))),
+        Err(error) => (before, Err(code_of(error.parameter()))),
     };
     storage.state.store(after, Ordering::Release);
     result
