@@ -81,7 +81,7 @@ pub(crate) struct Coeffs<S: Scalar> {
     pub(crate) tick: S,
     pub(crate) per_tick: S,
     pub(crate) half_tick: S,
-    /// κ = k·c/F.
+    /// κ = k·c/F, F the cap with its leverage at the retainer bearing.
     pub(crate) stiffness: S,
     /// Speed that the shaft takes in a tick per position, κ·h, and with the damping δ = d·(c/t₀)/F per speed,
     /// (δ + κ·h/2)·h.

@@ -80,7 +80,7 @@ enum State {
     Armed,
     /// Recording for so many more ticks.
     Triggered(usize),
-    /// Checksum under way; so many entries done.
+    /// Checksum under way; so many halves of entries done.
     Freezing(usize),
     Frozen,
 }
