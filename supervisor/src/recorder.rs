@@ -17,9 +17,9 @@ pub const PER_UNIT: f32 = 4096.0;
 pub struct Entry {
     /// Sequence number of the sample.
     pub sequence: u32,
-    /// Measured position.
+    /// Measured position; the estimate where the sample was refused.
     pub position: [i16; 2],
-    /// Commanded force.
+    /// Commanded force; in shadow what it would have been.
     pub force: [i16; 2],
     /// [`Mode`] as a number.
     pub mode: u8,
