@@ -75,7 +75,7 @@ pub(crate) struct Coeffs<S: Scalar> {
     /// h, a tick \[t₀\], and ticks per t₀.
     pub(crate) tick: S,
     pub(crate) per_tick: S,
-    /// κ = k·c/F.
+    /// κ = k·c/F, F the cap with its leverage at the retainer bearing.
     pub(crate) stiffness: S,
     /// Speed that the shaft takes in a tick per position, κ·h, and with the damping δ = d·(c/t₀)/F per speed,
     /// (δ + κ·h/2)·h.
@@ -249,12 +249,21 @@ impl<S: Scalar> Coeffs<S> {
         let continuous = config.continuous_force_n / f;
         let square = continuous * continuous;
         let mut taken = Taken { misfit: None };
-        let thermal_rate = taken.rate::<S>("thermal time", min(t / config.thermal_time_s, 1.0));
+        // Without a budget any will do.
+        let thermal_rate = if continuous < 1.0 {
+            min(t / config.thermal_time_s, 1.0)
+        } else {
+            1.0
+        };
+        let thermal_rate = taken.rate::<S>("thermal time", thermal_rate);
         let index_rate = 1.0 / whirl_limit / whirl_limit / config.severity_limit;
         let index_rate = taken.rate::<S>("severity limit", index_rate);
         // More than twice the cap binds nothing; less than what has an inverse would bind for ever.
         let slew_step = min(config.force_slew_n_s * t / f, 4.0);
         let _: S = taken.of("slew limit", 1.0 / slew_step);
+        // Far from where squares saturate.
+        let limit = config.position_limit;
+        let _: S = taken.of("square of the position limit", 2.0 * limit * limit);
         let mut s = |name, x| taken.of::<S>(name, x);
         let coeffs = Self {
             scaling,
@@ -314,5 +323,10 @@ impl<S: Scalar> Coeffs<S> {
             blind_speed: s("observer", blind * (1.0 + touch_pole) / touch_free),
         };
         (coeffs, taken.misfit)
+    }
+
+    /// t₀ \[s\].
+    pub(crate) fn unit_s(&self) -> f32 {
+        self.scaling.length_m / self.scaling.speed_m_s
     }
 }

@@ -68,7 +68,7 @@ pub struct Misfit {
 pub enum CoreError {
     /// A parameter is outside its range.
     Range(ConfigError),
-    /// A coefficient is outside what the number holds, or too small to be held to some digits.
+    /// A coefficient, or the inverse of one that is divided by, is outside what the number holds.
     Misfit(Misfit),
 }
 

@@ -151,12 +151,12 @@ impl<S: Scalar> Observer<S> {
         }
     }
 
-    /// After a change of the units of length, speed and force.
-    pub(crate) fn rescale(&mut self, length: S, speed: S, force: S) {
+    /// After a change of the units of length, speed and force, and of the length of a tick.
+    pub(crate) fn rescale(&mut self, length: S, speed: S, tick: S, force: S) {
         let m = &mut self.motion;
         m.position = m.position * length;
         m.velocity = m.velocity * speed;
-        m.load_step = m.load_step * speed;
+        m.load_step = m.load_step * speed * tick;
         self.delivered = self.delivered * force;
         for command in &mut self.commands {
             *command = *command * force;

@@ -173,6 +173,8 @@ pub(crate) struct Guard<S> {
     faulty: bool,
     /// Nothing is to be remembered but the last sample: see [`Guard::as_usual`].
     settled: bool,
+    /// There have been usual samples since `still` looked.
+    still_is_old: bool,
     /// Why the last fault began.
     pub(crate) fault: Refusal,
     lost: Facts,
@@ -231,6 +233,7 @@ impl<S: Scalar> Guard<S> {
         if usual {
             *sequence = sample.sequence;
             *last = position;
+            self.still_is_old = true;
         }
         usual
     }
@@ -243,9 +246,10 @@ impl<S: Scalar> Guard<S> {
         in_contact: bool,
         coeffs: &Coeffs<S>,
     ) -> Reading<S> {
-        if self.settled {
-            // What the usual way leaves out.
-            self.still.settle(self.last_good);
+        if core::mem::take(&mut self.still_is_old) {
+            // What the usual way leaves out: since then every sample has changed in both coordinates.
+            self.still.last = self.last_good.map(|(last, _)| last);
+            self.still.way = Vec2::ZERO;
         }
         let mut facts = facts_of(sample);
         let (repeated, gap, mut events) = self.sequence(sample.sequence);
@@ -472,16 +476,6 @@ struct Still<S> {
 }
 
 impl<S: Scalar> Still<S> {
-    /// After samples that have all changed in both coordinates.
-    fn settle(&mut self, last_good: Option<(Vec2<S>, u32)>) {
-        if let Some((last, _)) = last_good
-            && self.last != Some(last)
-        {
-            self.last = Some(last);
-            self.way = Vec2::ZERO;
-        }
-    }
-
     /// Whether a coordinate has stood still for more than `most`. That holds until it changes.
     fn watch(&mut self, position: Vec2<S>, velocity: Vec2<S>, most: S, faulty: bool) -> bool {
         let [x, y] = match self.last.replace(position) {

@@ -47,6 +47,11 @@ impl<S: Scalar> Readiness<S> {
         self.shortfall < S::of(COVERED)
     }
 
+    /// After a change of the unit of force.
+    pub(crate) fn rescale(&mut self, force: S) {
+        self.shortfall = self.shortfall * force;
+    }
+
     /// Compares the forces of this tick along the outward direction.
     #[inline]
     pub(crate) fn compare(

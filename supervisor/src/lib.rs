@@ -52,7 +52,7 @@
 //!
 //! Signs and frames: x right, y up, angles and spin counter-clockwise positive; r̂ outwards from the
 //! centre of the retainer bearing, t̂ = r̂ turned counter-clockwise. Backward means against the spin.
-//! SI at the border, per unit inside (lengths in clearances, forces in caps, time in ticks).
+//! SI at the border, per unit inside (lengths in clearances, forces in caps, time in √(m·c/F)).
 //!
 //! ```text
 //! Sample ─► guard ─► detect ─► estimate ─► classify ─► phase ─► law ─► limit ─► handover ─► Command

@@ -90,14 +90,16 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
     /// and so do mode, counters and thermal state; entries of a flight record are in the units of
     /// their time, and the tick of the change has [`Events::RECONFIGURED`].
     pub fn reconfigure(&mut self, prepared: &Prepared<S>) {
-        let (old, new) = (self.coeffs.scaling, prepared.0.scaling);
-        let ratio = |old: f32, new: f32| old / new;
-        let length = S::of(ratio(old.length_m, new.length_m));
-        let speed = ratio(old.speed_m_s, new.speed_m_s);
-        let force = ratio(old.force_n, new.force_n);
-        let index = self.coeffs.severity_limit / prepared.0.severity_limit;
-        self.guard.rescale(length);
-        (self.observer).rescale(length, S::of(speed), S::of(force));
+        let (old, new) = (&self.coeffs, &prepared.0);
+        // What a sensor showed is now at another place in another unit.
+        let length = new.scaling.position_per_m / old.scaling.position_per_m;
+        let speed = length * new.unit_s() / old.unit_s();
+        let tick = (new.unit_s() * new.tick.to_f32()) / (old.unit_s() * old.tick.to_f32());
+        let force = old.scaling.force_n / new.scaling.force_n;
+        let index = old.severity_limit / new.severity_limit;
+        self.guard.rescale(S::of(length));
+        (self.observer).rescale(S::of(length), S::of(speed), S::of(tick), S::of(force));
+        self.readiness.rescale(S::of(force));
         self.budget.rescale(force);
         self.severity.rescale(S::of(speed), index);
         self.force = self.force * S::of(force);

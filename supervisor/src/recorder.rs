@@ -6,7 +6,7 @@ use crate::signal::{Events, Limits, Mode};
 use crate::vec2::Vec2;
 
 /// Version of the layout of [`Entry`] and [`Record`].
-pub const RECORD_VERSION: u16 = 1;
+pub const RECORD_VERSION: u16 = 2;
 
 /// Units of recorded lengths and forces: 1/4096 of the clearance and of the cap.
 pub const PER_UNIT: f32 = 4096.0;
@@ -17,9 +17,9 @@ pub const PER_UNIT: f32 = 4096.0;
 pub struct Entry {
     /// Sequence number of the sample.
     pub sequence: u32,
-    /// Measured position.
+    /// Measured position; the estimate where the sample was refused.
     pub position: [i16; 2],
-    /// Commanded force.
+    /// Commanded force; in shadow what it would have been.
     pub force: [i16; 2],
     /// [`Mode`] as a number.
     pub mode: u8,

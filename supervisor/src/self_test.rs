@@ -21,7 +21,7 @@ pub fn self_test<S: Scalar>() -> bool {
     SelfTest::run::<S>().hash == S::KNOWN_ANSWER
 }
 
-/// A rotor of 10 kg as in the crate's documentation, without budget.
+/// A rotor of 10 kg as in the crate's documentation, with some damping, caps of the axes and a quick budget.
 const CONFIG: Config = Config {
     sample_period_s: 50e-6,
     mass_kg: 10.0,

@@ -259,7 +259,7 @@ typedef struct amb_record {
 } amb_record;
 
 /** Version of the layout of an entry. */
-#define AMB_RECORD_VERSION 1
+#define AMB_RECORD_VERSION 2
 /** Entries of a record: one a tick, a quarter of them from before the supervisor engaged. */
 #define AMB_RECORD_ENTRIES 512
 /** Recorded lengths are in 1/4096 of the clearance, forces in 1/4096 of force_max_n, saturated at 8. */

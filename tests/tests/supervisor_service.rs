@@ -1,0 +1,237 @@
+//! What firmware needs around the tick: live reconfiguration, shadow, late commands, counters, expiry.
+
+use supervisor::{
+    Config, Core, CoreSample, Events, IntegratorHint, Limits, Mode, OutputWatch, Prepared, Refusal,
+    Sample, Status, Supervisor,
+};
+use system_tests::rig::{config, length, on_circle, sample, whirl};
+
+fn with_larger_cap() -> Config {
+    Config {
+        force_max_n: 1500.0,
+        axis_force_max_n: 1500.0,
+        ..config()
+    }
+}
+
+/// What is known of the rotor survives a change of every unit: there and back again, a tick in between, and the
+/// supervisor engages at the same tick as without.
+#[test]
+fn reconfiguration_keeps_what_is_known_of_the_rotor() {
+    let other = Config {
+        mass_kg: 12.0,
+        clearance_m: 2.5e-4,
+        force_max_n: 1500.0,
+        axis_force_max_n: 1500.0,
+        ..config()
+    };
+    let engaged_after = |change: bool| {
+        let mut supervisor = Supervisor::<64>::new(&config()).unwrap();
+        let mut first = None;
+        for i in 0..400_u32 {
+            match i {
+                60 if change => supervisor.reconfigure(&other).unwrap(),
+                61 if change => supervisor.reconfigure(&config()).unwrap(),
+                _ => {}
+            }
+            // Outwards with 4 m/s²: a load that the estimate has learnt by then.
+            let t = 50e-6 * i as f32;
+            let command = supervisor.tick(&sample(i, [2.0 * t * t, 1e-6 * (i % 3) as f32]));
+            let changed = change && (i == 60 || i == 61);
+            assert_eq!(command.events.contains(Events::RECONFIGURED), changed);
+            if first.is_none() && command.mode != Mode::Levitated {
+                first = Some(i);
+            }
+        }
+        first.expect("it is on its way to the wall")
+    };
+    let (without, with) = (engaged_after(false), engaged_after(true));
+    assert!(with.abs_diff(without) <= 1, "{with} {without}");
+}
+
+/// A whirl is braked across the change without a tick of rest, and the force stays within the old and
+/// the new cap.
+#[test]
+fn reconfiguration_in_a_whirl_goes_on_braking() {
+    let mut supervisor = Supervisor::<64>::new(&config()).unwrap();
+    let before = *whirl(&mut supervisor, 0..400, Status::empty())
+        .last()
+        .unwrap();
+    assert_eq!(before.mode, Mode::BackwardWhirl);
+    supervisor.reconfigure(&with_larger_cap()).unwrap();
+    let after = whirl(&mut supervisor, 400..410, Status::empty());
+    assert!(after[0].events.contains(Events::RECONFIGURED));
+    for command in after {
+        assert_eq!(command.mode, Mode::BackwardWhirl);
+        assert!(
+            length(command.force_n) > 990.0 && length(command.force_n) <= 1500.0 * (1.0 + 2e-7),
+            "{command:?}"
+        );
+    }
+}
+
+/// A parameter out of range changes nothing.
+#[test]
+fn a_refused_configuration_leaves_everything_as_it_is() {
+    let mut supervisor = Supervisor::<64>::new(&config()).unwrap();
+    let wrong = Config {
+        mass_kg: -1.0,
+        ..config()
+    };
+    let error = supervisor.reconfigure(&wrong).unwrap_err();
+    assert_eq!(error.parameter().name, "mass_kg");
+    let command = supervisor.tick(&sample(0, [1e-6, 2e-6]));
+    assert_eq!(command.events, Events::empty());
+}
+
+/// In shadow the machine sees its levitation controller, bit for bit; what the supervisor would have done is
+/// what it does without the bit.
+#[test]
+fn shadow_computes_and_does_not_act() {
+    let (mut acting, mut shadow) = (
+        Supervisor::<64>::new(&config()).unwrap(),
+        Supervisor::<64>::new(&config()).unwrap(),
+    );
+    let mut modes = Vec::new();
+    for i in 0..400_u32 {
+        let levitation_n = [0.25 * i as f32, -3.0];
+        let at = on_circle(1.5e-4 + 1.4e-6 * i.min(40) as f32, 0.1 * i as f32);
+        let s = Sample {
+            levitation_n,
+            ..sample(i, at)
+        };
+        let live = acting.tick(&s);
+        let seen = shadow.tick(&Sample {
+            status: s.status | Status::SHADOW,
+            ..s
+        });
+        assert_eq!(
+            seen.force_n.map(f32::to_bits),
+            levitation_n.map(f32::to_bits)
+        );
+        assert_eq!(seen.integrator, IntegratorHint::Run);
+        assert_eq!(live.own_n, live.force_n);
+        modes.push(seen.mode);
+        // The estimate differs by the force that acts, which a contact does not wait for.
+        if i > 200 {
+            assert_eq!(seen.mode, live.mode);
+            let apart = [seen.own_n[0] - live.own_n[0], seen.own_n[1] - live.own_n[1]];
+            assert!(length(apart) < 150.0, "{seen:?} {live:?}");
+        }
+    }
+    assert!(modes.contains(&Mode::BackwardWhirl));
+    assert!(shadow.record().is_some() || shadow.next_event().is_some());
+}
+
+/// A command that came a tick late is taken to have left its tick to the one before: the same estimate, and
+/// with it the same force, as if that had been commanded.
+#[test]
+fn a_late_command_leaves_its_tick_to_the_one_before() {
+    let levitation = |i: u32| [10.0 * (i % 7) as f32, -20.0 * (i % 5) as f32];
+    let (mut told, mut commanded) = (
+        Supervisor::<64>::new(&config()).unwrap(),
+        Supervisor::<64>::new(&config()).unwrap(),
+    );
+    let mut untold = told.clone();
+    let mut differs = false;
+    for i in 0..400_u32 {
+        let mut s = sample(
+            i,
+            on_circle(1.5e-4 + 1.4e-6 * i.min(40) as f32, 0.1 * i as f32),
+        );
+        // In shadow the commands are the levitation controller's.
+        s.status |= Status::SHADOW;
+        s.levitation_n = levitation(i);
+        let late = i % 10 == 9;
+        let without = untold.tick(&s);
+        let as_if = Sample {
+            levitation_n: levitation(if i % 10 == 8 { i - 1 } else { i }),
+            ..s
+        };
+        let b = commanded.tick(&as_if);
+        if late {
+            s.status |= Status::LATE;
+        }
+        let a = told.tick(&s);
+        assert_eq!(a.events.contains(Events::LATE), late);
+        assert_eq!(a.own_n, b.own_n, "tick {i}");
+        assert_eq!(a.mode, b.mode);
+        differs |= a.own_n != without.own_n;
+    }
+    assert!(differs, "being told changes something");
+    assert_eq!(told.report().late_ticks, 40);
+}
+
+/// Missed and repeated ticks are counted.
+#[test]
+fn missed_and_repeated_ticks_are_counted() {
+    let mut supervisor = Supervisor::<64>::new(&config()).unwrap();
+    for sequence in [0, 1, 2, 5, 5, 6, 17, 18] {
+        supervisor.tick(&sample(
+            sequence,
+            [1e-7 * sequence as f32, -2e-7 * sequence as f32],
+        ));
+    }
+    let report = supervisor.report();
+    assert_eq!((report.missed_ticks, report.repeated_ticks), (2 + 10, 1));
+}
+
+/// A coordinate that toggles by the step of its converter is no stuck sensor, whatever its pattern: every
+/// return to the value before the last is a change, too.
+#[test]
+fn a_toggling_coordinate_is_not_stuck() {
+    for pattern in [[0, 1, 1, 2], [0, 1, 1, 1], [1, 1, 2, 0], [0, 1, 0, 1]] {
+        let mut supervisor = Supervisor::<64>::new(&config()).unwrap();
+        for i in 0..3000_u32 {
+            let step = |k: u32| 1e-6 * pattern[(k % 4) as usize] as f32;
+            let command = supervisor.tick(&sample(i, [step(i), step(i / 2 + 1)]));
+            assert!(
+                !command.limits.contains(Limits::SAMPLE_REFUSED),
+                "{pattern:?} tick {i}"
+            );
+            assert_eq!(supervisor.report().refusal, Refusal::None);
+        }
+    }
+}
+
+/// The core per unit does what the supervisor in SI does.
+#[test]
+fn the_core_is_the_supervisor_per_unit() {
+    let mut supervisor = Supervisor::<64>::new(&config()).unwrap();
+    let mut core = Core::<f32, 64>::new(&Prepared::new(&config()).unwrap());
+    let scaling = config().scaling();
+    for i in 0..600_u32 {
+        let s = sample(
+            i,
+            on_circle(1.5e-4 + 1.4e-6 * i.min(40) as f32, 0.1 * i as f32),
+        );
+        let command = supervisor.tick(&s);
+        let own = core.tick(&CoreSample {
+            sequence: s.sequence,
+            status: s.status,
+            position: s.position_m.map(|x| x * scaling.position_per_m),
+            spin: s.spin_rad_s,
+            ..CoreSample::default()
+        });
+        assert_eq!(
+            (command.mode, command.limits, command.events),
+            (own.mode, own.limits, own.events)
+        );
+        for (si, unit) in command.force_n.iter().zip(own.force) {
+            assert!((si - unit * scaling.force_n).abs() <= 1e-4);
+        }
+    }
+}
+
+/// A command holds for its time and no longer.
+#[test]
+fn commands_expire() {
+    let mut watch = OutputWatch::<f32>::new(3);
+    assert!(watch.expired() && watch.force() == [0.0; 2]);
+    watch.renew([1.0, -2.0]);
+    let forces: Vec<_> = (0..5).map(|_| watch.force()[0]).collect();
+    assert_eq!(forces, [1.0, 1.0, 1.0, 0.0, 0.0]);
+    assert!(watch.expired());
+    watch.renew([5.0, 0.0]);
+    assert!(!watch.expired());
+}
