@@ -384,8 +384,8 @@ uint32_t amb_abi_version(void);
 
 /**
  * Self-test at boot: a supervisor of the test's own goes through every mode, and all its commands have to be
- * what they were when this version was made. Takes some milliseconds and two kilobytes of stack; touches no
- * other supervisor.
+ * what they were when this version was made. Takes some milliseconds, without an FPU some tenths of a second,
+ * and two kilobytes of stack; touches no other supervisor.
  * @return AMB_ERROR_SELF_TEST: do not use the supervisor on this processor.
  */
 amb_code amb_self_test(void);
