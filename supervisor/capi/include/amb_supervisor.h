@@ -408,7 +408,7 @@ amb_code amb_parameter_at(uint32_t index, amb_parameter *parameter);
 amb_code amb_parameter_index(const char *name, uint32_t *index);
 
 /**
- * Makes a supervisor, levitated. Takes ten kilobytes of stack: call it at start-up, outside interrupts.
+ * Makes a supervisor, levitated. Takes two kilobytes of stack.
  * @param supervisor memory for it, zero or made before. After an error it is as it was.
  * @param bytes sizeof *supervisor.
  * @param values the configuration: value of each parameter, in the order of their indexes.
