@@ -87,9 +87,9 @@ pub(crate) fn apart(scene: &Scene, a: &Ending, b: &Ending) -> f64 {
 /// What a scene is held against at the tightest tolerance: two methods of little in common, the series
 /// first where the contact law has one.
 pub(crate) fn reference_methods(scene: &Scene) -> [Method; 2] {
-    match scene.plant.contact.law.linear() {
-        Some(_) => [Method::Series, Method::Explicit],
-        None => [Method::Explicit, Method::Stiff],
+    match scene.plant.has_series() {
+        true => [Method::Series, Method::Explicit],
+        false => [Method::Explicit, Method::Stiff],
     }
 }
 

@@ -167,7 +167,7 @@ impl Advice {
         let suggested = suggested(nominal);
         let config = &suggested.config;
         config.validate().map_err(|error| {
-            let source = suggested.source(error.parameter.name);
+            let source = suggested.source(error.parameter().name);
             Box::new(OutOfRange { error, source })
         })?;
         let limits = limits(nominal);

@@ -2,6 +2,7 @@
 //! effect at the next sample.
 
 use crate::amplifier::Amplifier;
+use crate::faults::seen_until_s;
 use crate::instruments::Sensor;
 use crate::judge::Judge;
 use crate::loads::cuts;
@@ -122,7 +123,11 @@ pub fn run_policy(
         method: scene.method,
         ..Options::default()
     };
-    if !scene.base_motions.is_empty() && scene.plant.stator != StatorParams::Rigid {
+    let rigid = matches!(
+        scene.plant.stator,
+        StatorParams::Rigid | StatorParams::RigidEllipse(_)
+    );
+    if !scene.base_motions.is_empty() && !rigid {
         return Err(RunError::BaseMotionOnRings);
     }
     let plant = scene.build(options)?;
@@ -204,7 +209,7 @@ impl Bench<'_> {
             } else {
                 now.spin_rad_s
             },
-            status: self.status(t),
+            status: self.status(seen_until_s(t, period)),
         });
         let with_weight = |force_n: V2| force_n + self.scene.feed_forward_n;
         match self.policy.of_truth(&now) {
@@ -239,7 +244,7 @@ impl Bench<'_> {
         Ok(())
     }
 
-    /// What the firmware knows to be valid and ready.
+    /// What the firmware knows to be valid and ready at a time.
     fn status(&self, t_s: f64) -> Status {
         let mut status = Status::empty();
         status.set(Status::SPIN_VALID, self.scene.spin_sensor.valid);

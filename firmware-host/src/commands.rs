@@ -7,3 +7,4 @@ pub mod overloads;
 pub mod paper;
 mod progress;
 pub mod run;
+pub mod target;

@@ -6,6 +6,15 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardUniform};
 use std::f64::consts::TAU;
 
+/// What begins or ends within this share of a period after a sample counts as there at the sample. Sample
+/// times are products of a count and a period and may come out one rounding short of a scene's time.
+const ROUND_OFF_PERIODS: f64 = 1e-6;
+
+/// Up to when a sample at `t_s` sees what begins and ends \[s\].
+pub(crate) fn seen_until_s(t_s: f64, period_s: f64) -> f64 {
+    t_s + ROUND_OFF_PERIODS * period_s
+}
+
 /// Kinds of sensor faults.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum FaultKind {
@@ -103,9 +112,9 @@ impl Faults {
         }
     }
 
-    /// Faults at a sample; sample times carry round-off.
+    /// Faults at a sample.
     fn at(&self, t_s: f64) -> impl Iterator<Item = &Fault> {
-        let t_s = t_s + 1e-6 * self.period_s;
+        let t_s = seen_until_s(t_s, self.period_s);
         (self.all.iter()).filter(move |f| f.start_s <= t_s && t_s < f.end_s())
     }
 

@@ -2,7 +2,7 @@
 //!
 //! Files, each importing only from those above it: `trace`, `verdict`, `scene_error`, `axis`, `loads`,
 //! `amplifier`, `faults`, `scene_values`, `scene_event_file`, `scene_file`, `plant_setup`, `suggest`, `supervisor_setup`, `instruments`,
-//! `levitation`, `clairvoyant`, `policy_kind`, `scene_events`, `scene_instruments`, `scene`, `policies`, `judge`, `closed_loop`, `verify`, `accuracy`, `wrong_runs`, `trace_file`, `plot`, `report`, `paper`, `overloads`, `advice`, `table`, `output`,
+//! `levitation`, `clairvoyant`, `history`, `policy_kind`, `scene_events`, `scene_instruments`, `scene`, `policies`, `judge`, `closed_loop`, `verify`, `accuracy`, `wrong_runs`, `trace_file`, `plot`, `report`, `paper`, `overloads`, `advice`, `target`, `table`, `output`,
 //! `commands`.
 
 #![forbid(unsafe_code)]
@@ -16,6 +16,7 @@ pub mod clairvoyant;
 pub mod closed_loop;
 pub mod commands;
 mod faults;
+pub mod history;
 pub mod instruments;
 mod judge;
 pub mod levitation;
@@ -38,6 +39,7 @@ mod scene_values;
 pub mod suggest;
 mod supervisor_setup;
 pub mod table;
+pub mod target;
 pub mod trace;
 pub mod trace_file;
 pub mod verdict;

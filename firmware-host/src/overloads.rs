@@ -1,8 +1,10 @@
 //! The catalogue of overloads: every scene, policy and seed, and what it says of the supervisor's promises.
 
 pub mod catalogue;
+pub mod cross_entropy;
 pub mod fault_matrix;
 pub mod found;
+pub mod histories;
 pub mod impact;
 pub mod loop_shape;
 pub mod page;

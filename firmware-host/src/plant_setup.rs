@@ -4,8 +4,9 @@ use crate::scene_error::{Checks, SceneError, SceneText};
 use crate::scene_file::{ContactFile, RingFile, RotorFile, SceneFile};
 use plant_model::contact::{damping_for_restitution, hunt_crossley};
 use plant_model::params::{
-    ContactLaw, ContactParams, FrictionParams, HuntCrossley, LinearContact, MagnetParams,
-    PlantParams, RaceParams, RingParams, RotorParams, SlidingFriction, SpinParams, StatorParams,
+    ContactLaw, ContactParams, EllipseParams, FrictionParams, HuntCrossley, LinearContact,
+    MagnetParams, PlantParams, RaceParams, RingParams, RotorParams, SlidingFriction, SpinParams,
+    StatorParams,
 };
 use std::f64::consts::TAU;
 
@@ -31,19 +32,7 @@ pub(crate) fn plant_of(file: &SceneFile, text: &SceneText) -> Result<PlantParams
                 return Err(text.error_at_key("spin.drive_torque_n_m", message, help));
             }
         },
-        stator: match (&file.stator.inner, &file.stator.outer) {
-            (None, None) => StatorParams::Rigid,
-            (Some(inner), None) => StatorParams::OneMass(ring_of(inner)),
-            (Some(inner), Some(outer)) => StatorParams::TwoMass {
-                inner: ring_of(inner),
-                outer: ring_of(outer),
-            },
-            (None, Some(_)) => {
-                let message = "an outer ring without an inner one".to_owned();
-                let help = Some("describe a single ring as stator.inner".to_owned());
-                return Err(text.error_at_key("stator.outer", message, help));
-            }
-        },
+        stator: stator_of(file, text)?,
         contact: ContactParams {
             clearance_m: file.contact.clearance_m,
             law: law_of(&file.contact, &check)?,
@@ -71,6 +60,46 @@ pub(crate) fn plant_of(file: &SceneFile, text: &SceneText) -> Result<PlantParams
     })?;
     restore(&mut plant, &file.contact, &check)?;
     Ok(plant)
+}
+
+/// The stator with its rings, or rigid with its bore.
+fn stator_of(file: &SceneFile, text: &SceneText) -> Result<StatorParams, SceneError> {
+    let refused = |key: &str, message: &str, help: &str| {
+        Err(text.error_at_key(key, message.to_owned(), Some(help.to_owned())))
+    };
+    let retainer = &file.retainer;
+    let rings = (&file.stator.inner, &file.stator.outer);
+    if retainer.ellipticity != 0.0 {
+        let key = "retainer.ellipticity";
+        if rings.0.is_some() || rings.1.is_some() {
+            let help = "remove [stator], or leave the bearing round";
+            return refused(key, "needs a rigid stator: rings are round", help);
+        }
+        if file.race.is_some() {
+            let help = "remove [race], or leave the bearing round";
+            return refused(key, "does not go with a race, which would turn it", help);
+        }
+        return Ok(StatorParams::RigidEllipse(EllipseParams {
+            ellipticity: retainer.ellipticity,
+            long_axis_rad: retainer.long_axis_deg.unwrap_or(0.0).to_radians(),
+        }));
+    }
+    if retainer.long_axis_deg.is_some() {
+        let help = "give retainer.ellipticity, or remove the direction";
+        return refused("retainer.long_axis_deg", "has no meaning on a circle", help);
+    }
+    Ok(match rings {
+        (None, None) => StatorParams::Rigid,
+        (Some(inner), None) => StatorParams::OneMass(ring_of(inner)),
+        (Some(inner), Some(outer)) => StatorParams::TwoMass {
+            inner: ring_of(inner),
+            outer: ring_of(outer),
+        },
+        (None, Some(_)) => {
+            let help = "describe a single ring as stator.inner";
+            return refused("stator.outer", "an outer ring without an inner one", help);
+        }
+    })
 }
 
 /// The contact law with the damping that is given directly.

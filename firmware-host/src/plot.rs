@@ -94,13 +94,22 @@ pub(crate) struct TimePlot<'a> {
     pub(crate) limit: Option<f64>,
 }
 
-/// A path in the plane \[mm\] with equal axes and a circle about the centre.
+/// An ellipse about the centre.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Wall {
+    /// Semi-axes \[mm\].
+    pub(crate) semi_axes: [f64; 2],
+    /// Direction of the first \[rad\].
+    pub(crate) tilt_rad: f64,
+}
+
+/// A path in the plane \[mm\] with equal axes and the wall about the centre.
 pub(crate) struct OrbitPlot<'a> {
     /// What a screen reader says.
     pub(crate) label: &'a str,
     /// Both axes span ± this.
     pub(crate) reach: f64,
-    pub(crate) circle: f64,
+    pub(crate) wall: Wall,
     /// In time order.
     pub(crate) path: &'a [PathPoint],
 }
@@ -141,12 +150,15 @@ pub(crate) fn orbit_plot(plot: &OrbitPlot<'_>) -> Result<String, PlotError> {
     svg(plot.label, TOP + PLOT + bottom, |root| {
         let mut chart = chart(root, axis, axis, bottom)?;
         mesh(&mut chart, (axis, "", "x / mm"), Some((axis, "y / mm")))?;
-        let circle = (0..=120).map(|i| {
+        let [a, b] = plot.wall.semi_axes;
+        let (turn_sin, turn_cos) = plot.wall.tilt_rad.sin_cos();
+        let wall = (0..=120).map(|i| {
             let (sin, cos) = (f64::from(i) * std::f64::consts::TAU / 120.0).sin_cos();
-            (plot.circle * cos, plot.circle * sin)
+            let (x, y) = (a * cos, b * sin);
+            (turn_cos * x - turn_sin * y, turn_sin * x + turn_cos * y)
         });
         chart.draw_series([PathElement::new(
-            circle.collect::<Vec<_>>(),
+            wall.collect::<Vec<_>>(),
             LIMIT.stroke_width(4),
         )])?;
         let stretches = trail(plot.path, plot.reach, f64::from(PLOT), ORBIT_BYTES);
@@ -365,7 +377,10 @@ mod tests {
         let plot = |path| OrbitPlot {
             label: "",
             reach: 0.0,
-            circle: 0.0,
+            wall: Wall {
+                semi_axes: [0.0; 2],
+                tilt_rad: 0.0,
+            },
             path,
         };
         assert!(orbit_plot(&plot(&[])).is_ok());

@@ -2,15 +2,35 @@
 
 use crate::amplifier::limited_n;
 use crate::clairvoyant::Clairvoyant;
+use crate::history::History;
 use crate::instruments::Reading;
 use crate::levitation::{Levitation, VelocityFilter};
 use crate::policy_kind::PolicyKind;
 use crate::scene::Scene;
 use plant_model::{Snapshot, V2};
-use supervisor::{IntegratorHint, Mode, Sample, Status, Supervisor};
+use supervisor::{Command, IntegratorHint, Mode, Sample, Status, Supervisor};
+
+/// Who supervises: the product as it is linked here, or wherever else it runs.
+pub trait Supervise: core::fmt::Debug {
+    /// One tick.
+    fn tick(&mut self, sample: &Sample) -> Command;
+
+    /// Mode after the last tick.
+    fn mode(&self) -> Mode;
+}
+
+impl Supervise for Supervisor {
+    fn tick(&mut self, sample: &Sample) -> Command {
+        Supervisor::tick(self, sample)
+    }
+
+    fn mode(&self) -> Mode {
+        Supervisor::mode(self)
+    }
+}
 
 /// A policy at work.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub enum Policy {
     /// No force.
     Passive,
@@ -34,10 +54,12 @@ pub enum Policy {
     Levitation(Levitation),
     /// The reference that knows the true state.
     Clairvoyant(Clairvoyant),
+    /// A history laid down beforehand, then that reference.
+    History(Box<History>),
     /// The supervisor with that controller behind it.
     Supervisor {
         /// The product.
-        supervisor: Box<Supervisor>,
+        supervisor: Box<dyn Supervise>,
         /// What it passes through.
         levitation: Levitation,
         /// What it told the controller's integrator.
@@ -61,10 +83,6 @@ impl Policy {
     /// [`Scene::load`] refuses).
     pub fn new(kind: PolicyKind, scene: &Scene) -> Option<Self> {
         let force_n = scene.plant.magnet.map_or(0.0, |m| m.force_max_n);
-        let levitation = || {
-            let params = scene.levitation?;
-            Some(Levitation::new(params, 1.0 / scene.sample_rate_hz, force_n))
-        };
         Some(match kind {
             PolicyKind::Passive => Self::Passive,
             PolicyKind::Radial => Self::Radial {
@@ -79,12 +97,21 @@ impl Policy {
                     force_max_n: force_n,
                 }
             }
-            PolicyKind::Levitation => Self::Levitation(levitation()?),
-            PolicyKind::Supervisor => Self::Supervisor {
-                supervisor: Box::new(Supervisor::new(&scene.supervisor?).ok()?),
-                levitation: levitation()?,
-                hint: IntegratorHint::Run,
-            },
+            PolicyKind::Levitation => Self::Levitation(levitation_of(scene)?),
+            PolicyKind::Supervisor => {
+                let supervisor = Supervisor::new(&scene.supervisor?).ok()?;
+                return Self::supervised(scene, Box::new(supervisor));
+            }
+        })
+    }
+
+    /// A supervisor of the caller's in front of the scene's levitation controller; `None` where the scene has
+    /// no controller.
+    pub fn supervised(scene: &Scene, supervisor: Box<dyn Supervise>) -> Option<Self> {
+        Some(Self::Supervisor {
+            supervisor,
+            levitation: levitation_of(scene)?,
+            hint: IntegratorHint::Run,
         })
     }
 
@@ -92,7 +119,7 @@ impl Policy {
     pub fn tick(&mut self, seen: &Seen) -> V2 {
         let measured_m = seen.reading.position_m;
         match self {
-            Self::Passive | Self::Clairvoyant(_) => V2::zeros(),
+            Self::Passive | Self::Clairvoyant(_) | Self::History(_) => V2::zeros(),
             Self::Radial { band_m, force_n } => {
                 let radius = measured_m.norm();
                 if radius > *band_m {
@@ -136,6 +163,7 @@ impl Policy {
     pub fn of_truth(&self, now: &Snapshot) -> Option<V2> {
         match self {
             Self::Clairvoyant(clairvoyant) => Some(clairvoyant.force_n(now)),
+            Self::History(history) => Some(history.force_n(now)),
             _ => None,
         }
     }
@@ -147,4 +175,11 @@ impl Policy {
             _ => None,
         }
     }
+}
+
+/// The scene's levitation controller, where it has one.
+fn levitation_of(scene: &Scene) -> Option<Levitation> {
+    let force_n = scene.plant.magnet.map_or(0.0, |m| m.force_max_n);
+    let period_s = 1.0 / scene.sample_rate_hz;
+    Some(Levitation::new(scene.levitation?, period_s, force_n))
 }

@@ -211,8 +211,12 @@ impl Scene {
         check.within("run.duration_s", file.run.duration_s, 1e-9, 1e5)?;
         check.within("run.sample_rate_hz", file.run.sample_rate_hz, 1.0, 1e6)?;
         check.within("run.rtol", file.run.rtol, 1e-14, 1e-2)?;
-        if matches!(file.run.method, MethodFile::Series) && plant.contact.law.linear().is_none() {
-            let message = "series does not go with contact.stiffness_n_mn".to_owned();
+        if matches!(file.run.method, MethodFile::Series) && !plant.has_series() {
+            let with = match plant.contact.law.linear() {
+                None => "contact.stiffness_n_mn",
+                Some(_) => "retainer.ellipticity",
+            };
+            let message = format!("series does not go with {with}");
             let help =
                 "take auto, explicit or stiff: this contact has no power series at the touch";
             return Err(text.error_at_key("run.method", message, Some(help.to_owned())));
@@ -239,8 +243,9 @@ impl Scene {
         let damping_n_s_m = damping_of(file, &plant, &check, damps)?;
         let nominal = supervisor_setup::nominal_of(&plant, file);
         let supervised = policies.contains(&PolicyKind::Supervisor);
+        let overrides = supervisor_setup::overrides(file, text)?;
         let supervisor = supervised
-            .then(|| supervisor_setup::config(&nominal, file, text))
+            .then(|| supervisor_setup::config(&nominal, &overrides, text))
             .transpose()?;
         let gravity: V2 = file.rotor.gravity_m_s2.0.into();
         Ok(Self {

@@ -165,6 +165,9 @@ pub(crate) struct FrictionFile {
 pub(crate) struct RetainerFile {
     #[serde(default)]
     pub(crate) centre_offset_m: Pair,
+    #[serde(default)]
+    pub(crate) ellipticity: f64,
+    pub(crate) long_axis_deg: Option<f64>,
 }
 
 /// The inner race of a retainer ball bearing; none means a bushing.

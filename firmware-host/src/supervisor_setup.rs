@@ -4,7 +4,7 @@ use crate::scene_error::{SceneError, SceneText, with_guess};
 use crate::scene_file::SceneFile;
 use crate::suggest::{Nominal, suggested};
 use plant_model::params::PlantParams;
-use supervisor::{Config, PARAMETERS};
+use supervisor::{Config, ConfigError, PARAMETERS};
 
 /// What a data sheet would say of the scene's bearing.
 pub(crate) fn nominal_of(plant: &PlantParams, file: &SceneFile) -> Nominal {
@@ -54,14 +54,13 @@ pub(crate) fn key_of(field: &str) -> &'static str {
     }
 }
 
-/// The suggested configuration; a key of the same name in `[supervisor]` replaces a value.
-pub(crate) fn config(
-    nominal: &Nominal,
-    file: &SceneFile,
-    text: &SceneText,
-) -> Result<Config, SceneError> {
-    let suggested = suggested(nominal);
-    let mut values = suggested.config.values();
+/// A value of `[supervisor]` by the index of its parameter.
+pub(crate) type Override = (usize, f32);
+
+/// The parameters that `[supervisor]` gives, each checked by itself: also where the policy is not run, in
+/// which case nothing else would look at them.
+pub(crate) fn overrides(file: &SceneFile, text: &SceneText) -> Result<Vec<Override>, SceneError> {
+    let mut given = Vec::with_capacity(file.supervisor.len());
     for (key, value) in &file.supervisor {
         let path = format!("supervisor.{key}");
         let Some(index) = PARAMETERS.iter().position(|p| p.name == key) else {
@@ -70,23 +69,43 @@ pub(crate) fn config(
             let help = with_guess(help, key, names);
             return Err(text.error_at_key(&path, "unknown parameter".to_owned(), Some(help)));
         };
+        let parameter = &PARAMETERS[index];
         let number = value
             .as_float()
             .or_else(|| value.as_integer().map(|i| i as f64));
         let Some(number) = number else {
-            let help = Some(format!("unit: {}", PARAMETERS[index].unit));
+            let help = Some(format!("unit: {}", parameter.unit));
             return Err(text.error_at_key(&path, "expected a number".to_owned(), help));
         };
-        values[index] = number as f32;
+        let value = number as f32;
+        if !(parameter.low..=parameter.high).contains(&value) {
+            let refused = ConfigError { index, value };
+            let help = Some(parameter.text.to_owned());
+            return Err(text.error_at_key(&path, refused.to_string(), help));
+        }
+        given.push((index, value));
+    }
+    Ok(given)
+}
+
+/// The suggested configuration, with single values replaced.
+pub(crate) fn config(
+    nominal: &Nominal,
+    overrides: &[Override],
+    text: &SceneText,
+) -> Result<Config, SceneError> {
+    let suggested = suggested(nominal);
+    let mut values = suggested.config.values();
+    for (index, value) in overrides {
+        values[*index] = *value;
     }
     let config = Config::from_values(values);
+    // What was given is in its range; what is left was derived.
     config.validate().map_err(|e| {
-        let name = e.parameter.name;
-        let given = file.supervisor.contains_key(name);
-        let source = suggested.source(name).filter(|_| !given).map(key_of);
-        let Some(source) = source else {
+        let name = e.parameter().name;
+        let Some(source) = suggested.source(name).map(key_of) else {
             let path = format!("supervisor.{name}");
-            return text.error_at_key(&path, e.to_string(), Some(e.parameter.text.to_owned()));
+            return text.error_at_key(&path, e.to_string(), Some(e.parameter().text.to_owned()));
         };
         let message = format!("the supervisor derives {e} from this");
         let help = format!("correct {source}, set {name} in [supervisor], or drop the policy");

@@ -125,6 +125,8 @@ pub struct SceneSummary {
     pub story: String,
     /// Clearance c \[m\].
     pub clearance_m: f64,
+    /// Ellipticity and direction of the longer axis \[rad\] of a bearing that is out of round.
+    pub out_of_round: Option<(f64, f64)>,
     /// Force cap of the magnet \[N\], if there is one.
     pub force_max_n: Option<f64>,
     /// Backward contact speed above which a run counts as whirl \[m/s\].

@@ -7,6 +7,7 @@ pub(crate) mod dop853;
 pub(crate) mod driver;
 pub(crate) mod flight;
 pub(crate) mod flight_map;
+mod frame;
 mod lu;
 mod pair;
 pub(crate) mod radau;

@@ -12,7 +12,7 @@
 //! ```
 //!
 //! Files, each importing only from those above it: `params`, `contact`, `friction`, `mode`, `energy`,
-//! `part`, `series`, `quadrature`, `stator`, `spin`, `magnet`, `system`, `tangent`, `readout`, `integrate`, `plant`,
+//! `part`, `series`, `quadrature`, `ellipse`, `stator`, `spin`, `magnet`, `system`, `tangent`, `readout`, `integrate`, `plant`,
 //! `analysis`.
 
 #![forbid(unsafe_code)]
@@ -20,6 +20,7 @@
 
 pub mod analysis;
 pub mod contact;
+mod ellipse;
 pub mod energy;
 mod friction;
 mod integrate;

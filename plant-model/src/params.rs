@@ -54,11 +54,22 @@ pub struct RingParams {
     pub damping_n_s_m: V2,
 }
 
+/// A bore out of round: the centre of the rotor may go as far as an ellipse about the origin.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct EllipseParams {
+    /// ε from 0 to 0.2: the semi-axes are c·(1 + ε) and c·(1 − ε), c the clearance.
+    pub ellipticity: f64,
+    /// Direction of the longer axis \[rad\].
+    pub long_axis_rad: f64,
+}
+
 /// How far the stator is modelled.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum StatorParams {
     /// The stator does not move; no state.
     Rigid,
+    /// The same with a bore that is out of round.
+    RigidEllipse(EllipseParams),
     /// One ring on a mounting to ground; four states.
     OneMass(RingParams),
     /// The paper's two nested rings, eqs (2.3)–(2.6); eight states.
@@ -296,6 +307,12 @@ impl ContactLaw {
 }
 
 impl PlantParams {
+    /// Whether its contact has a power series: a linear law in a round bore.
+    pub fn has_series(&self) -> bool {
+        let round = !matches!(self.stator, StatorParams::RigidEllipse(_));
+        round && self.contact.law.linear().is_some()
+    }
+
     /// Checks every field against its range.
     ///
     /// # Errors
@@ -326,6 +343,15 @@ impl PlantParams {
         ];
         match &self.stator {
             StatorParams::Rigid => {}
+            StatorParams::RigidEllipse(ellipse) => {
+                let (e, range) = (ellipse.ellipticity, "a number from 0 to 0.2");
+                check((0.0..=0.2).contains(&e), "retainer.ellipticity", e, range)?;
+                finite("retainer.long_axis_deg", ellipse.long_axis_rad)?;
+                // A race would turn the ellipse with it.
+                let race = self.race.map_or(0.0, |r| r.inertia_kg_m2);
+                let round = "no race: it would turn the ellipse with it";
+                check(self.race.is_none(), "race.inertia_kg_m2", race, round)?;
+            }
             StatorParams::OneMass(ring) => ring.validate(INNER)?,
             StatorParams::TwoMass { inner, outer } => {
                 inner.validate(INNER)?;
@@ -383,7 +409,7 @@ impl PlantParams {
     /// Reduced mass of the contact: rotor against the ring it touches \[kg\].
     pub fn contact_mass_kg(&self) -> f64 {
         let ring = match &self.stator {
-            StatorParams::Rigid => return self.rotor.mass_kg,
+            StatorParams::Rigid | StatorParams::RigidEllipse(_) => return self.rotor.mass_kg,
             StatorParams::OneMass(ring) => ring.mass_kg,
             StatorParams::TwoMass { inner, .. } => inner.mass_kg,
         };

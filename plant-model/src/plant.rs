@@ -1,5 +1,6 @@
 //! The plant as its users see it: built once from [`PlantParams`], carried from sample to sample.
 
+use crate::ellipse::Ellipse;
 use crate::energy::Audit;
 use crate::integrate::driver::Run;
 use crate::integrate::{Method, Options, PlantError};
@@ -10,7 +11,7 @@ use crate::part::{Body, Part};
 use crate::readout::{Meters, Snapshot, Work};
 use crate::spin::race::{Race, Raced};
 use crate::spin::{Free, FreePhased, Held, Spin};
-use crate::stator::{OneMass, Rigid, Stator, TwoMass};
+use crate::stator::{Elliptic, OneMass, Rigid, Stator, TwoMass};
 use crate::system::{Inputs, State, StateOf, System};
 
 /// Why a plant could not be built.
@@ -19,10 +20,10 @@ pub enum BuildError {
     /// A parameter is out of range.
     #[error(transparent)]
     Param(#[from] ParamError),
-    /// The power series is asked for with a contact law that has none.
+    /// The power series is asked for with a contact that has none.
     #[error(
-        "run.method = series: Hunt and Crossley's contact has no power series at the touch; \
-         take auto, explicit or stiff"
+        "run.method = series: Hunt and Crossley's contact has no power series at the touch, and a \
+         bearing out of round none at all; take auto, explicit or stiff"
     )]
     NoSeries,
 }
@@ -139,7 +140,7 @@ fn checked(params: &PlantParams, start: &Start, options: Options) -> Result<(), 
             expected: "a number from 1e-14 to 0.01",
         }));
     }
-    if options.method == Method::Series && params.contact.law.linear().is_none() {
+    if options.method == Method::Series && !params.has_series() {
         return Err(BuildError::NoSeries);
     }
     Ok(())
@@ -154,6 +155,10 @@ fn with_parts(
     let made = (options, phased);
     match &params.stator {
         StatorParams::Rigid => with_stator(params, start, made, Rigid),
+        StatorParams::RigidEllipse(ellipse) => {
+            let ellipse = Ellipse::new(ellipse, params.contact.clearance_m);
+            with_stator(params, start, made, Elliptic(ellipse))
+        }
         StatorParams::OneMass(ring) => with_stator(params, start, made, OneMass(*ring)),
         StatorParams::TwoMass { inner, outer } => {
             let stator = TwoMass {

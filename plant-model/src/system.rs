@@ -2,6 +2,7 @@
 
 use crate::V2;
 use crate::contact::Normal;
+use crate::ellipse::Foot;
 use crate::energy::Flows;
 use crate::magnet::Amplifier;
 use crate::mode::{Slide, Whirl};
@@ -123,7 +124,7 @@ pub(crate) const WHIRL_LOW: usize = 4;
 /// Geometry of the rotor against the ring: no forces yet.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Geometry {
-    /// Distance ρ of the centres \[m\].
+    /// Distance ρ of the centres \[m\]; out of round that of the rotor's from the centre of curvature.
     pub(crate) distance_m: f64,
     /// r̂ from ring to rotor.
     pub(crate) normal: V2,
@@ -174,6 +175,9 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
         let ring = y.stator.inner();
         let u = y.rotor.position - ring.position;
         let w = y.rotor.velocity - ring.velocity;
+        if let Some(ellipse) = self.stator.ellipse() {
+            return self.geometry_out_of_round(&ellipse.foot(u), w, y);
+        }
         let distance_m = u.norm();
         // Concentric: every direction is as good; contact needs a clearance, so none is felt.
         let normal = if distance_m > 0.0 {
@@ -192,6 +196,22 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
             normal_speed_m_s: w.dot(&normal),
             whirl_speed_m_s,
             sliding_speed_m_s: whirl_speed_m_s + surface,
+        }
+    }
+
+    /// The same against an ellipse, at the point of it that is nearest.
+    fn geometry_out_of_round(&self, foot: &Foot, w: V2, y: &StateOf<S, W, M>) -> Geometry {
+        let normal = foot.normal;
+        let tangent = V2::new(-normal.y, normal.x);
+        let whirl_speed_m_s = w.dot(&tangent);
+        Geometry {
+            distance_m: foot.radius_m + foot.depth_m,
+            normal,
+            tangent,
+            penetration_m: foot.depth_m,
+            normal_speed_m_s: w.dot(&normal),
+            whirl_speed_m_s,
+            sliding_speed_m_s: whirl_speed_m_s + self.surface_m_s(&y.spin),
         }
     }
 

@@ -84,9 +84,17 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
             acceleration - ring_acceleration,
             d_acceleration - d_ring_acceleration,
         );
+        let d_radius = match self.stator.ellipse() {
+            None => d_distance,
+            // The normal turns by t·du/ρ, and the radius of curvature with it.
+            Some(ellipse) => {
+                let foot = ellipse.foot(y.rotor.position - ring.position);
+                d_distance + foot.radius_change_m * d_n.dot(&t)
+            }
+        };
         let turning = g.normal_speed_m_s * g.whirl_speed_m_s / distance;
         let d_turning = (d_normal_speed * g.whirl_speed_m_s + g.normal_speed_m_s * d_whirl_speed
-            - turning * d_distance)
+            - turning * d_radius)
             / distance;
         let d_base = d_relative.dot(&t) + relative.dot(&d_t) - d_turning;
 
@@ -158,12 +166,13 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::ellipse::Ellipse;
     use crate::magnet::Lagged;
     use crate::params::*;
     use crate::part::Part;
     use crate::spin::race::{Race, Raced};
     use crate::spin::{Free, FreePhased};
-    use crate::stator::TwoMass;
+    use crate::stator::{Elliptic, TwoMass};
 
     const FREE: Free = Free {
         inertia_kg_m2: 0.05,
@@ -196,19 +205,35 @@ mod tests {
             damping_s_m: 0.7,
         };
         for law in [ContactLaw::from(linear), hardening.into()] {
-            check(FreePhased(FREE), law);
-            check(raced(20.0, 3.0), law);
-            check(raced(0.0, 0.0), law);
+            check(rings(), FreePhased(FREE), law);
+            check(rings(), raced(20.0, 3.0), law);
+            check(rings(), raced(0.0, 0.0), law);
+            let ellipse = EllipseParams {
+                ellipticity: 0.1,
+                long_axis_rad: 0.3,
+            };
+            check(
+                Elliptic(Ellipse::new(&ellipse, 2e-4)),
+                FreePhased(FREE),
+                law,
+            );
         }
     }
 
-    /// Every column in every mode against central differences of the field.
-    fn check<W: Spin>(spin: W, law: ContactLaw) {
+    fn rings() -> TwoMass {
         let ring = |k: f64| RingParams {
             mass_kg: 7.0,
             stiffness_n_m: V2::new(k, 1.2 * k),
             damping_n_s_m: V2::new(2e4, 1e4),
         };
+        TwoMass {
+            inner: ring(8e8),
+            outer: ring(3e9),
+        }
+    }
+
+    /// Every column in every mode against central differences of the field.
+    fn check<S: Stator, W: Spin>(stator: S, spin: W, law: ContactLaw) {
         let system = System {
             rotor: RotorParams {
                 mass_kg: 10.0,
@@ -229,15 +254,13 @@ mod tests {
                 },
                 rolling_coefficient: 0.02,
             },
-            stator: TwoMass {
-                inner: ring(8e8),
-                outer: ring(3e9),
-            },
+            stator,
             spin,
             amplifier: Lagged { lag_s: 1e-4 },
         };
-        type Y<W> = StateOf<TwoMass, W, Lagged>;
+        type Y<S, W> = StateOf<S, W, Lagged>;
         const LENGTH: usize = 17;
+        const TWO_RINGS: usize = 8;
         let mut scales = vec![
             1e-4, 1e-4, 0.5, 0.5, 1e-5, 1e-5, 0.1, 0.1, 1e-5, 1e-5, 0.1, 0.1, 50.0, 1.0, 100.0,
             100.0,
@@ -249,7 +272,11 @@ mod tests {
             scales.insert(14, 50.0);
             shares.insert(14, 0.3);
         }
-        let states = Y::<W>::STATES;
+        // A stator that does not move has no states.
+        let rings = 4..4 + TWO_RINGS - S::State::STATES;
+        scales.drain(rings.clone());
+        shares.drain(rings);
+        let states = Y::<S, W>::STATES;
         let point: Vec<f64> = shares.iter().zip(&scales).map(|(x, s)| x * s).collect();
         let inputs = Inputs {
             command_n: V2::new(30.0, -20.0),
@@ -265,7 +292,7 @@ mod tests {
                         let mut at = point.clone();
                         at[i] += h * scales[i];
                         let mut out = [0.0; LENGTH];
-                        let y = Y::<W>::read(&at);
+                        let y = Y::<S, W>::read(&at);
                         let e = system.contact(0.0, &y, &inputs, (slide, whirl));
                         e.rates.write(&mut out[..states]);
                         out
@@ -275,10 +302,10 @@ mod tests {
                     let mut exact = [0.0; LENGTH];
                     system
                         .contact_tangent(
-                            (0.0, &Y::<W>::read(&point)),
+                            (0.0, &Y::<S, W>::read(&point)),
                             &inputs,
                             (slide, whirl),
-                            &Y::<W>::read(&direction[..states]),
+                            &Y::<S, W>::read(&direction[..states]),
                         )
                         .write(&mut exact[..states]);
                     let size = exact.iter().fold(0.0_f64, |m, x| m.max(x.abs()));

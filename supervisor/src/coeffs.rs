@@ -15,11 +15,6 @@ const FULL_FORCE_FROM: f32 = 0.4;
 /// Longest delay between a sample and its force \[ticks\].
 pub(crate) const MAX_DELAY: usize = 8;
 
-/// Of the whirl limit: impacts that will add up to less than the first need no help but to be softened,
-/// from the second on all the force goes to what they add.
-const HARMLESS: f32 = 1.0;
-const URGENT: f32 = 1.6;
-
 /// The cap falls from full to continuous while the thermal state goes from 1 to this much more. The force
 /// at which it comes to rest exceeds the continuous one by less than half as much.
 const FALL: f32 = 0.1;
@@ -80,7 +75,6 @@ pub(crate) struct Coeffs<S: Scalar> {
     /// h, a tick \[t₀\], and ticks per t₀.
     pub(crate) tick: S,
     pub(crate) per_tick: S,
-    pub(crate) half_tick: S,
     /// κ = k·c/F.
     pub(crate) stiffness: S,
     /// Speed that the shaft takes in a tick per position, κ·h, and with the damping δ = d·(c/t₀)/F per speed,
@@ -111,14 +105,10 @@ pub(crate) struct Coeffs<S: Scalar> {
     pub(crate) flight_gains: [S; 3],
     /// The same in contact, where there is no load.
     pub(crate) contact_gains: [S; 2],
-    /// Largest change of the speed in a tick by an unknown load.
-    pub(crate) most_load: S,
     /// Touching begins above this radius …
     pub(crate) touch_radius: S,
     /// … and ends below this one.
     pub(crate) leave_radius: S,
-    /// Beyond this radius the contact is pressed on as only whirl does.
-    pub(crate) pressed_radius: S,
     /// Largest plausible radius.
     pub(crate) position_limit: S,
     /// Filter step of the contact share, 1/ticks of the whirl time.
@@ -142,20 +132,15 @@ pub(crate) struct Coeffs<S: Scalar> {
     pub(crate) thermal_rate: RateOf<S>,
     /// Weight of the force at the beginning of a tick in its mean, where both ends are measured.
     pub(crate) applied_weight: S,
-    /// Highest backward speed that the cap arrests, and its inverse.
-    pub(crate) whirl_limit: S,
+    /// 1 over the highest backward speed that the cap arrests.
     pub(crate) per_whirl_limit: S,
-    /// Urgency of impacts: slope by their sum, and what is taken off.
-    pub(crate) urgency_slope: S,
-    pub(crate) urgency_offset: S,
     pub(crate) coast_down_ticks: u32,
     pub(crate) severity_limit: f32,
     /// Share of the severity limit per square of speed.
     pub(crate) index_rate: RateOf<S>,
     /// Farthest plausible way in a tick.
     pub(crate) way_per_tick: S,
-    /// Three steps of the sensor, as a way and as a sum of speeds over ticks.
-    pub(crate) sensor_steps: S,
+    /// Three steps of the sensor, as a sum of speeds over ticks.
     pub(crate) sensor_speeds: S,
     /// Speed that the observer may make up in contact, being blind for the contact force.
     pub(crate) blind_speed: S,
@@ -276,7 +261,6 @@ impl<S: Scalar> Coeffs<S> {
             tick: s("tick", h),
             per_tick: s("ticks per unit of time", 1.0 / h),
             stiffness: s("stiffness", stiffness),
-            half_tick: s("tick", 0.5 * h),
             stiffness_step: s("stiffness", stiffness * h),
             damping_step: s("damping", (damping + 0.5 * stiffness * h) * h),
             lag_left: s("lag", lag_left),
@@ -299,11 +283,8 @@ impl<S: Scalar> Coeffs<S> {
                 s("observer gain", 1.0 - touch_pole * touch_pole),
                 s("observer gain", touch_free * touch_free),
             ],
-            // A load larger than some caps is no load but a missed contact.
-            most_load: s("tick", 4.0 * h),
             touch_radius: s("contact band", 1.0 - config.contact_band),
             leave_radius: s("contact band", 1.0 - 1.5 * config.contact_band),
-            pressed_radius: s("contact band", 1.0 + config.contact_band),
             position_limit: s("position limit", config.position_limit),
             contact_share_step: s("whirl time", per_tick(config.whirl_time_s, t)),
             hold_share: s("hold share", config.hold_share),
@@ -324,15 +305,11 @@ impl<S: Scalar> Coeffs<S> {
             }),
             thermal_rate,
             applied_weight: s("lag", applied_weight(lag)),
-            whirl_limit: s("whirl limit", whirl_limit),
             per_whirl_limit: s("whirl limit", 1.0 / whirl_limit),
-            urgency_slope: s("whirl limit", 1.0 / (whirl_limit * (URGENT - HARMLESS))),
-            urgency_offset: s("whirl limit", HARMLESS / (URGENT - HARMLESS)),
             coast_down_ticks: (config.coast_down_s / t) as u32,
             severity_limit: config.severity_limit,
             index_rate,
             way_per_tick: s("largest speed", config.speed_max_m_s * t / c),
-            sensor_steps: s("sensor step", sensor_steps),
             sensor_speeds: s("sensor step", sensor_steps / h),
             blind_speed: s("observer", blind * (1.0 + touch_pole) / touch_free),
         };

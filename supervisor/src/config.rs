@@ -18,10 +18,21 @@ pub struct Parameter {
 /// A parameter outside its range.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ConfigError {
-    /// Which one.
-    pub parameter: &'static Parameter,
+    /// Which one: its place in [`PARAMETERS`]. No reference to the row, so that firmware that prints no
+    /// texts does not carry them.
+    pub index: usize,
     /// The refused value.
     pub value: f32,
+}
+
+impl ConfigError {
+    /// The row of the table.
+    pub fn parameter(&self) -> &'static Parameter {
+        match PARAMETERS.get(self.index) {
+            Some(parameter) => parameter,
+            None => &PARAMETERS[0],
+        }
+    }
 }
 
 impl core::fmt::Display for ConfigError {
@@ -32,7 +43,7 @@ impl core::fmt::Display for ConfigError {
             low,
             high,
             ..
-        } = self.parameter;
+        } = self.parameter();
         write!(
             f,
             "{name} = {:e} {unit}: expected {low:e} to {high:e} {unit}",
@@ -90,6 +101,8 @@ macro_rules! parameters {
             $(Parameter { name: stringify!($name), unit: $unit, low: $low, high: $high, text: $text },)*
         ];
 
+        const RANGES: [[f32; 2]; PARAMETERS.len()] = [$([$low, $high]),*];
+
         impl Config {
             /// Values in the order of [`PARAMETERS`].
             pub const fn values(&self) -> [f32; PARAMETERS.len()] {
@@ -144,9 +157,9 @@ impl Config {
     /// # Errors
     /// The first value outside its range; NaN is outside every range.
     pub fn validate(&self) -> Result<(), ConfigError> {
-        for (parameter, value) in PARAMETERS.iter().zip(self.values()) {
-            if !(value >= parameter.low && value <= parameter.high) {
-                return Err(ConfigError { parameter, value });
+        for (index, ([low, high], value)) in RANGES.into_iter().zip(self.values()).enumerate() {
+            if !(value >= low && value <= high) {
+                return Err(ConfigError { index, value });
             }
         }
         Ok(())

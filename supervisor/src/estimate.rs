@@ -19,6 +19,9 @@ pub(crate) struct Motion<S> {
     pub(crate) fresh: bool,
 }
 
+/// A load of so many caps is no load but a missed contact.
+const MOST_LOAD: f32 = 4.0;
+
 /// The observer.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Observer<S> {
@@ -54,15 +57,7 @@ impl<S: Scalar> Observer<S> {
             return self.motion;
         }
         let m = &mut self.motion;
-        // Speed that a tick adds; shaft and damping at the middle of it.
-        let mut gained = mean * coeffs.tick
-            - m.position * coeffs.stiffness_step
-            - m.velocity * coeffs.damping_step;
-        if !in_contact {
-            gained = gained + m.load_step;
-        }
-        m.position = m.position + m.velocity * coeffs.tick + gained * coeffs.half_tick;
-        m.velocity = m.velocity + gained;
+        m.carry(mean, S::ONE, in_contact, coeffs);
         if let Some(position) = sample {
             let error = position - m.position;
             let error_speed = error * coeffs.per_tick;
@@ -83,10 +78,29 @@ impl<S: Scalar> Observer<S> {
             m.fresh = false;
         }
         let within = m.position.length_squared() + m.velocity.length_squared() <= S::FAR_SQUARE;
-        if !within || m.load_step.exceeds(coeffs.most_load) {
+        if !within || m.load_step.exceeds(coeffs.tick * S::of(MOST_LOAD)) {
             m.hold_back(coeffs);
         }
         *m
+    }
+
+    /// Carries the estimate over ticks that were missed, in one step; nobody commanded anything new meanwhile.
+    pub(crate) fn bridge(
+        &mut self,
+        missed: u32,
+        command: Vec2<S>,
+        in_contact: bool,
+        actuator: Actuator<S>,
+        coeffs: &Coeffs<S>,
+    ) {
+        let mut sum = Vec2::ZERO;
+        for _ in 0..missed {
+            sum = sum + self.deliver(actuator, coeffs);
+            self.commanded(command);
+        }
+        let ticks = S::count(missed);
+        let mean = sum * S::ONE.over(ticks);
+        (self.motion).carry(mean, ticks, in_contact, coeffs);
     }
 
     /// Force of the tick that ends now: delivered at its end (kept), and its mean (returned).
@@ -95,7 +109,7 @@ impl<S: Scalar> Observer<S> {
         let command = self.commands.get(index).copied().unwrap_or_default();
         let command = actuator.carried(command);
         let before = actuator.carried(self.delivered);
-        let (delivered, mean) = match actuator.applied {
+        let (delivered, mean) = match actuator.applied() {
             Some(now) => (now, now + (before - now) * coeffs.applied_weight),
             None => {
                 let away = before - command;
@@ -151,8 +165,21 @@ impl<S: Scalar> Observer<S> {
 }
 
 impl<S: Scalar> Motion<S> {
-    /// Bounds what has run away: the guard lets no sample pass that is so far out, and a load larger than
-    /// some caps is no load but a missed contact.
+    /// Flight for some ticks under the mean of the force; shaft and damping at the middle of each tick.
+    #[inline]
+    fn carry(&mut self, mean: Vec2<S>, ticks: S, in_contact: bool, coeffs: &Coeffs<S>) {
+        let time = coeffs.tick * ticks;
+        let mut gained = mean * time
+            - self.position * (coeffs.stiffness_step * ticks)
+            - self.velocity * (coeffs.damping_step * ticks);
+        if !in_contact {
+            gained = gained + self.load_step * ticks;
+        }
+        self.position = self.position + self.velocity * time + gained * (time * S::of(0.5));
+        self.velocity = self.velocity + gained;
+    }
+
+    /// Bounds what has run away: the guard lets no sample pass that is so far out.
     #[cold]
     fn hold_back(&mut self, coeffs: &Coeffs<S>) {
         // Half the root of FAR_SQUARE: with it the sum of both squares is below.
@@ -160,6 +187,6 @@ impl<S: Scalar> Motion<S> {
         let held = |v: Vec2<S>, most: S| v.map(|x| x.between(-most, most));
         self.position = held(self.position, far);
         self.velocity = held(self.velocity, far);
-        self.load_step = held(self.load_step, coeffs.most_load * S::of(0.7));
+        self.load_step = held(self.load_step, coeffs.tick * S::of(0.7 * MOST_LOAD));
     }
 }

@@ -6,29 +6,75 @@
 
 use crate::coeffs::Coeffs;
 use crate::scalar::Scalar;
-use crate::signal::{CoreSample, Events, Limits, Refusal, Status};
+use crate::signal::{CoreSample, Events, Refusal, Status};
 use crate::vec2::Vec2;
+
+bitflags::bitflags! {
+    /// What the guard has found, in one register.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    pub(crate) struct Facts: u32 {
+        /// The sample may be used; else the observer runs on its model.
+        const USED = 1;
+        /// The bearing may act.
+        const ON = 1 << 1;
+        /// Position has been implausible for too long.
+        const FAULTY = 1 << 2;
+        /// The observer has to start anew.
+        const ANEW = 1 << 3;
+        /// Nothing can act along x, along y.
+        const X_LOST = 1 << 4;
+        const Y_LOST = 1 << 5;
+        /// The applied force is measured and believed.
+        const MEASURED = 1 << 6;
+        /// The last command came too late.
+        const LATE = 1 << 7;
+        /// Ticks were missed.
+        const MISSED = 1 << 8;
+        /// What the observer has to be told before the tick.
+        const UNUSUAL = Self::FAULTY.bits() | Self::ANEW.bits() | Self::LATE.bits() | Self::MISSED.bits();
+    }
+}
 
 /// What is known of the actuator at this tick.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Actuator<S> {
-    /// Measured force at this instant \[caps\].
-    pub(crate) applied: Option<Vec2<S>>,
-    /// Whether x and y can act.
-    pub(crate) acts: [bool; 2],
+    facts: Facts,
+    measured: Vec2<S>,
 }
 
 impl<S: Scalar> Actuator<S> {
+    /// Measured force at this instant \[caps\].
+    #[inline]
+    pub(crate) fn applied(&self) -> Option<Vec2<S>> {
+        (self.facts.contains(Facts::MEASURED)).then_some(self.measured)
+    }
+
+    /// Without the measured force.
+    pub(crate) fn modelled(mut self) -> Self {
+        self.facts.remove(Facts::MEASURED);
+        self
+    }
+
+    /// Whether an axis is lost.
+    #[inline]
+    pub(crate) fn has_lost(&self) -> bool {
+        self.facts.intersects(Facts::X_LOST.union(Facts::Y_LOST))
+    }
+
     /// The part of a force that the axes can carry.
     #[inline]
     pub(crate) fn carried(&self, force: Vec2<S>) -> Vec2<S> {
-        match self.acts {
-            [true, true] => force,
-            [x, y] => Vec2::new(
-                if x { force.x } else { S::ZERO },
-                if y { force.y } else { S::ZERO },
-            ),
+        if !self.has_lost() {
+            return force;
         }
+        let on = |lost: Facts, force: S| {
+            if self.facts.contains(lost) {
+                S::ZERO
+            } else {
+                force
+            }
+        };
+        Vec2::new(on(Facts::X_LOST, force.x), on(Facts::Y_LOST, force.y))
     }
 }
 
@@ -56,30 +102,44 @@ impl Spin {
 /// A sample after judgement, per unit.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Reading<S> {
-    /// `None`: not to be used; the observer runs on its model.
-    pub(crate) position: Option<Vec2<S>>,
+    facts: Facts,
+    sample: Vec2<S>,
+    measured: Vec2<S>,
     /// Unknown also where it is zero.
     pub(crate) spin: Spin,
-    /// Position has been implausible for too long.
-    pub(crate) faulty: bool,
-    /// The bearing may act.
-    pub(crate) bearing_on: bool,
-    pub(crate) actuator: Actuator<S>,
     /// Ticks since the last call that the observer has to make up for.
     pub(crate) missed: u32,
-    /// The observer has to start anew.
-    pub(crate) anew: bool,
     pub(crate) refusal: Refusal,
-    pub(crate) limits: Limits,
     pub(crate) events: Events,
+}
+
+impl<S: Scalar> Reading<S> {
+    #[inline]
+    pub(crate) fn is(&self, fact: Facts) -> bool {
+        self.facts.intersects(fact)
+    }
+
+    /// `None`: not to be used; the observer runs on its model.
+    #[inline]
+    pub(crate) fn position(&self) -> Option<Vec2<S>> {
+        self.is(Facts::USED).then_some(self.sample)
+    }
+
+    #[inline]
+    pub(crate) fn actuator(&self) -> Actuator<S> {
+        Actuator {
+            facts: self.facts,
+            measured: self.measured,
+        }
+    }
 }
 
 /// Missed ticks over which the observer's model is carried: bounds the time of a tick.
 pub(crate) const MAX_MISSED: u32 = 4;
 /// Refused samples in a row that make a fault, of the kinds that are no mere interference.
-const JUMPS: u32 = 2;
-const DROPOUTS: u32 = 3;
-const STUCK: u32 = 3;
+const JUMPS: u8 = 2;
+const DROPOUTS: u8 = 3;
+const STUCK: u8 = 3;
 /// Longest applied force that is believed \[caps\].
 const MOST_APPLIED: f32 = 2.0;
 
@@ -87,9 +147,15 @@ const MOST_APPLIED: f32 = 2.0;
 #[derive(Debug, Clone, Copy, Default)]
 struct Refused {
     all: u32,
-    jumps: u32,
-    dropouts: u32,
-    stuck: u32,
+    jumps: u8,
+    dropouts: u8,
+    stuck: u8,
+}
+
+impl Default for Facts {
+    fn default() -> Self {
+        Self::empty()
+    }
 }
 
 /// Memory of the guard.
@@ -109,7 +175,7 @@ pub(crate) struct Guard<S> {
     settled: bool,
     /// Why the last fault began.
     pub(crate) fault: Refusal,
-    acts: Option<[bool; 2]>,
+    lost: Facts,
     pub(crate) missed_ticks: u32,
     pub(crate) repeated_ticks: u32,
     pub(crate) late_ticks: u32,
@@ -131,18 +197,12 @@ impl<S: Scalar> Guard<S> {
     ) -> Reading<S> {
         if self.as_usual(sample, coeffs) {
             Reading {
-                position: Some(Vec2::from_array(sample.position)),
+                facts: Facts::USED.union(Facts::ON),
+                sample: Vec2::from_array(sample.position),
+                measured: Vec2::ZERO,
                 spin: spin_of(sample),
-                faulty: false,
-                bearing_on: true,
-                actuator: Actuator {
-                    applied: None,
-                    acts: [true; 2],
-                },
                 missed: 0,
-                anew: false,
                 refusal: Refusal::None,
-                limits: Limits::empty(),
                 events: Events::empty(),
             }
         } else {
@@ -187,12 +247,16 @@ impl<S: Scalar> Guard<S> {
             // What the usual way leaves out.
             self.still.settle(self.last_good);
         }
-        let bearing_on = sample.status.contains(Status::BEARING_ON);
+        let mut facts = facts_of(sample);
         let (repeated, gap, mut events) = self.sequence(sample.sequence);
         let anew = gap > MAX_MISSED;
         let missed = if anew { 0 } else { gap };
         if anew {
             self.last_good = None;
+            facts |= Facts::ANEW;
+        }
+        if missed > 0 {
+            facts |= Facts::MISSED;
         }
         if let Some((_, ticks)) = &mut self.last_good {
             *ticks = ticks.saturating_add(1 + missed);
@@ -200,10 +264,12 @@ impl<S: Scalar> Guard<S> {
 
         let position = Vec2::from_array(sample.position);
         // A bearing that is off is not known to deliver what the model moves by.
-        let trusted = match (self.faulty || anew, bearing_on, in_contact) {
-            (true, ..) | (_, false, _) => Vec2::ZERO,
-            (_, _, true) => velocity.map(|speed| beyond(speed, coeffs.blind_speed)),
-            _ => velocity,
+        let trusted = if self.faulty || anew || !facts.contains(Facts::ON) {
+            Vec2::ZERO
+        } else if in_contact {
+            velocity.map(|speed| beyond(speed, coeffs.blind_speed))
+        } else {
+            velocity
         };
         let refusal = if repeated {
             Refusal::Dropout
@@ -211,29 +277,33 @@ impl<S: Scalar> Guard<S> {
             self.refusal(position, trusted, coeffs)
         };
         events |= self.count(refusal, position, coeffs);
-        if sample.status.contains(Status::LATE) {
+        if facts.contains(Facts::LATE) {
             self.late_ticks = self.late_ticks.saturating_add(1);
             events |= Events::LATE;
         }
-
-        let (actuator, axis_events) = self.actuator(sample);
-        let used = refusal == Refusal::None;
-        self.settled = used && !self.faulty && actuator.acts == [true; 2];
+        if refusal == Refusal::None {
+            facts |= Facts::USED;
+        }
+        if self.faulty {
+            facts |= Facts::FAULTY;
+        }
+        let lost = facts & (Facts::X_LOST | Facts::Y_LOST);
+        let before = core::mem::replace(&mut self.lost, lost);
+        if !(lost - before).is_empty() {
+            events |= Events::AXIS_LOST;
+        }
+        if !(before - lost).is_empty() {
+            events |= Events::AXIS_BACK;
+        }
+        self.settled = facts & !(Facts::MEASURED | Facts::LATE) == Facts::USED | Facts::ON;
         Reading {
-            position: used.then_some(position),
+            facts,
+            sample: position,
+            measured: Vec2::from_array(sample.applied),
             spin: spin_of(sample),
-            faulty: self.faulty,
-            bearing_on,
-            actuator,
             missed,
-            anew,
             refusal,
-            limits: if used {
-                Limits::empty()
-            } else {
-                Limits::SAMPLE_REFUSED
-            },
-            events: events | axis_events,
+            events,
         }
     }
 
@@ -270,7 +340,8 @@ impl<S: Scalar> Guard<S> {
             return Refusal::Range;
         }
         if let Some((last, ticks)) = self.last_good {
-            let way = coeffs.way_per_tick * S::count(ticks) + coeffs.sensor_steps;
+            let steps = coeffs.sensor_speeds * coeffs.tick;
+            let way = coeffs.way_per_tick * S::count(ticks) + steps;
             if (position - last).exceeds(way) {
                 return Refusal::Slew;
             }
@@ -333,28 +404,6 @@ impl<S: Scalar> Guard<S> {
         Events::SENSOR_FAULT
     }
 
-    /// The applied force where it can be believed, and which axes act.
-    fn actuator(&mut self, sample: &CoreSample<S>) -> (Actuator<S>, Events) {
-        let acts = [
-            !sample.status.contains(Status::AXIS_X_LOST),
-            !sample.status.contains(Status::AXIS_Y_LOST),
-        ];
-        let before = self.acts.replace(acts).unwrap_or([true; 2]);
-        let events = if before == acts {
-            Events::empty()
-        } else {
-            axis_events(before, acts)
-        };
-        let applied = Vec2::from_array(sample.applied);
-        let believed =
-            sample.status.contains(Status::APPLIED_VALID) && !applied.exceeds(S::of(MOST_APPLIED));
-        let actuator = Actuator {
-            applied: believed.then_some(applied),
-            acts,
-        };
-        (actuator, events)
-    }
-
     /// After a change of the unit of length.
     pub(crate) fn rescale(&mut self, length: S) {
         if let Some((position, _)) = &mut self.last_good {
@@ -376,16 +425,26 @@ fn spin_of<S: Scalar>(sample: &CoreSample<S>) -> Spin {
     }
 }
 
-#[cold]
-fn axis_events([x_before, y_before]: [bool; 2], [x, y]: [bool; 2]) -> Events {
-    let mut events = Events::empty();
-    if (x_before && !x) || (y_before && !y) {
-        events |= Events::AXIS_LOST;
+/// What the status bits say, and whether the applied force can be believed.
+fn facts_of<S: Scalar>(sample: &CoreSample<S>) -> Facts {
+    let pairs = [
+        (Status::BEARING_ON, Facts::ON),
+        (Status::AXIS_X_LOST, Facts::X_LOST),
+        (Status::AXIS_Y_LOST, Facts::Y_LOST),
+        (Status::LATE, Facts::LATE),
+    ];
+    let mut facts = Facts::empty();
+    for (status, fact) in pairs {
+        if sample.status.contains(status) {
+            facts |= fact;
+        }
     }
-    if (!x_before && x) || (!y_before && y) {
-        events |= Events::AXIS_BACK;
+    let measured = sample.status.contains(Status::APPLIED_VALID)
+        && !Vec2::from_array(sample.applied).exceeds(S::of(MOST_APPLIED));
+    if measured {
+        facts |= Facts::MEASURED;
     }
-    events
+    facts
 }
 
 /// What of a speed is beyond a doubt of this size.

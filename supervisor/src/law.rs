@@ -31,6 +31,10 @@ pub(crate) struct Wanted<S> {
     pub(crate) touching: bool,
 }
 
+/// Of the whirl limit: impacts that will add up to less than the first need no help but to be softened,
+/// from the second on all the force goes to what they add.
+const HARMLESS: f32 = 1.0;
+const URGENT: f32 = 1.6;
 /// Share of the cap that pushes inwards between impacts: more shortens the chords and with them the time
 /// in which braking takes speed out.
 const FLIGHT_SHARE: f32 = 0.15;
@@ -102,8 +106,9 @@ impl<S: Scalar> View<'_, S> {
         let sense = sense(self.spin, impact.along);
         let (mut normal_speed, mut backward) = (impact.normal_speed, impact.along * sense);
         let sum = sum_of_impacts(backward, normal_speed, gain);
+        let beyond_harmless = sum * coeffs.per_whirl_limit - S::of(HARMLESS);
         let urgency =
-            (sum * coeffs.urgency_slope - coeffs.urgency_offset).or_less(S::JUST_BELOW_ONE);
+            (beyond_harmless * S::of(1.0 / (URGENT - HARMLESS))).or_less(S::JUST_BELOW_ONE);
         if urgency <= S::ZERO {
             return Vec2::ZERO;
         }
@@ -146,7 +151,8 @@ impl<S: Scalar> View<'_, S> {
         let outward = found.radial_speed.or_more(S::ZERO);
         let sum = sum_of_impacts(found.tangential_speed * sense, outward, self.bounce_gain());
         // Switched on into a contact that is pressed on as only whirl does: no time is to be lost.
-        let strength = if self.motion.fresh && found.radius > coeffs.pressed_radius {
+        let pressed = S::of(2.0) - coeffs.touch_radius;
+        let strength = if self.motion.fresh && found.radius > pressed {
             S::ONE
         } else {
             (sum * coeffs.damper).between(S::ZERO, S::ONE)

@@ -12,26 +12,28 @@ use crate::vec2::Vec2;
 pub(crate) struct Room<S> {
     /// Cap under the force–time budget, at most 1.
     pub(crate) cap: S,
-    /// Cap of x and of y, 0 for an axis that is lost.
-    axes: [S; 2],
+    /// Cap of an axis that acts.
+    axis: S,
     /// Whether the box can bind before the disc does.
     boxed: bool,
-    /// An axis is lost.
-    lost: bool,
+    actuator: Actuator<S>,
 }
 
 impl<S: Scalar> Room<S> {
     #[inline]
     pub(crate) fn new(budget: &Budget<S>, actuator: Actuator<S>, coeffs: &Coeffs<S>) -> Self {
         let cap = budget.cap(coeffs);
-        let lost = actuator.acts != [true; 2];
-        let axis = |acts: bool| if acts { coeffs.axis_cap } else { S::ZERO };
         Self {
             cap,
-            axes: actuator.acts.map(axis),
-            boxed: lost || coeffs.axis_cap < cap,
-            lost,
+            axis: coeffs.axis_cap,
+            boxed: actuator.has_lost() || coeffs.axis_cap < cap,
+            actuator,
         }
+    }
+
+    /// Cap of x and of y, 0 for an axis that is lost.
+    fn axes(&self) -> [S; 2] {
+        (self.actuator.carried(Vec2::new(self.axis, self.axis))).to_array()
     }
 
     /// Whether a force is in the room; not if it is no number.
@@ -41,7 +43,7 @@ impl<S: Scalar> Room<S> {
     }
 
     fn in_box(&self, force: Vec2<S>) -> bool {
-        let [x, y] = self.axes;
+        let [x, y] = self.axes();
         force.x.size() <= x && force.y.size() <= y
     }
 
@@ -53,7 +55,7 @@ impl<S: Scalar> Room<S> {
         if !self.boxed {
             return (disc, false);
         }
-        let [x, y] = self.axes;
+        let [x, y] = self.axes();
         let box_share = axis_share(x, sum.x, part.x).or_less(axis_share(y, sum.y, part.y));
         (disc.or_less(box_share), box_share < disc)
     }
@@ -61,7 +63,7 @@ impl<S: Scalar> Room<S> {
     /// The rest of a part along the axis that still has room.
     #[cold]
     fn along_edge(&self, sum: Vec2<S>, rest: Vec2<S>) -> Vec2<S> {
-        let [x, y] = self.axes;
+        let [x, y] = self.axes();
         let on = |cap: S, sum: S, rest: S| {
             if axis_share(cap, sum, rest) < S::of(ON_EDGE) {
                 S::ZERO
@@ -83,7 +85,7 @@ const NO_FORCE: f32 = 1e-6;
 /// what it is good for.
 #[inline(never)]
 pub(crate) fn allocate<S: Scalar>(wanted: &Wanted<S>, room: &Room<S>) -> (Vec2<S>, Limits) {
-    if room.lost {
+    if room.actuator.has_lost() {
         return (on_what_is_left(wanted, room), Limits::AXIS_CAP);
     }
     if room.boxed {
@@ -136,7 +138,7 @@ fn on_what_is_left<S: Scalar>(wanted: &Wanted<S>, room: &Room<S>) -> Vec2<S> {
         let sum = (first.between(-cap, cap) + damping).between(-cap, cap);
         (sum + last).between(-cap, cap)
     };
-    let ([x, y], w) = (room.axes, wanted);
+    let ([x, y], w) = (room.axes(), wanted);
     Vec2::new(
         along(x, w.braking.x, w.damping.x, w.restoring.x),
         along(y, w.braking.y, w.damping.y, w.restoring.y),
@@ -256,7 +258,7 @@ fn clamped<S: Scalar>(command: Vec2<S>, room: &Room<S>) -> (Vec2<S>, Limits) {
 #[cold]
 fn scaled<S: Scalar>(force: Vec2<S>, room: &Room<S>) -> (Vec2<S>, Limits) {
     let mut limits = Limits::empty();
-    let [x, y] = room.axes;
+    let [x, y] = room.axes();
     let on = |cap: S, v: S| if cap > S::ZERO { v } else { S::ZERO };
     let mut v = Vec2::new(on(x, force.x), on(y, force.y));
     if v != force {

@@ -1,21 +1,21 @@
 //! The tick, per unit: its body reads as the list of files.
 
 use crate::classify::Classifier;
-use crate::coeffs::Coeffs;
+use crate::coeffs::{Coeffs, Scaling};
 use crate::config::{Config, CoreError, Misfit};
 use crate::course::{Course, Impact};
 use crate::detect::Detector;
 use crate::estimate::Observer;
-use crate::guard::{Actuator, Guard, Reading};
+use crate::guard::{Facts, Guard, Reading};
 use crate::handover::Readiness;
 use crate::law::View;
 use crate::limit::{Budget, Room};
 use crate::phase::Phase;
-use crate::recorder::{QueuedEvent, Record, Recorder, Tick};
+use crate::recorder::{QueuedEvent, Record, Recorder};
 use crate::scalar::Scalar;
 use crate::severity::Severity;
 use crate::signal::{
-    CoreCommand, CoreSample, Events, IntegratorHint, Mode, Refusal, Report, Status,
+    CoreCommand, CoreSample, Events, IntegratorHint, Limits, Mode, Refusal, Report, Status,
 };
 use crate::vec2::Vec2;
 use crate::{handover, limit};
@@ -114,18 +114,14 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
         let blind = self.detector.near_contact();
         let reading = (self.guard).judge(sample, self.observer.velocity(), blind, coeffs);
         self.refusal = reading.refusal;
-        let unusual = reading.missed > 0
-            || reading.anew
-            || reading.faulty
-            || sample.status.contains(Status::LATE);
-        if unusual {
-            self.catch_up(&reading, sample.status, blind);
+        if reading.is(Facts::UNUSUAL) {
+            self.catch_up(&reading, blind);
         }
         let coeffs = &self.coeffs;
-        let actuator = reading.actuator;
-        let contact = self.detector.sample(reading.position, coeffs);
+        let (position, actuator) = (reading.position(), reading.actuator());
+        let contact = self.detector.sample(position, coeffs);
         let near_contact = self.detector.near_contact();
-        let motion = (self.observer).advance(reading.position, near_contact, actuator, coeffs);
+        let motion = (self.observer).advance(position, near_contact, actuator, coeffs);
         let found = self.detector.findings(&motion, contact, coeffs);
         let class = (self.classifier).classify(&found, reading.spin, coeffs);
 
@@ -169,7 +165,7 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
         } else {
             let (wanted, own_limits) = limit::allocate(&view.wanted(mode), &room);
             // The controller has to ask for what the rotor is really held with.
-            let held = actuator.applied.unwrap_or(wanted);
+            let held = actuator.applied().unwrap_or(wanted);
             self.readiness
                 .compare(held, levitation, found.normal, coeffs);
             let blended = handover::blend(phase, wanted, levitation, self.own, coeffs);
@@ -178,14 +174,16 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
         };
         self.own = own;
         self.force = own;
-        let mut integrator = handover::integrator_hint(phase, calm, reading.bearing_on);
+        let mut integrator = handover::integrator_hint(phase, calm, reading.is(Facts::ON));
         if shadow {
             (self.force, _) = limit::slewed(levitation, last_force, coeffs);
             integrator = IntegratorHint::Run;
         }
-        limits |= reading.limits;
+        if position.is_none() {
+            limits |= Limits::SAMPLE_REFUSED;
+        }
         self.observer.commanded(self.force);
-        let acting = actuator.applied.unwrap_or(self.force);
+        let acting = actuator.applied().unwrap_or(self.force);
         self.budget.tick(acting, coeffs);
         let assessment = (self.severity).assess(mode, &view, &reading, acting);
 
@@ -194,14 +192,13 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
             events |= Events::RECONFIGURED;
         }
         limits |= assessment.limits;
-        events |= self.recorder.push(&Tick {
-            sequence: sample.sequence,
-            position: reading.position.unwrap_or(motion.position),
-            force: self.own,
-            mode,
-            limits,
+        events |= self.recorder.push(
+            sample.sequence,
+            position.unwrap_or(motion.position),
+            self.own,
+            (mode, limits),
             events,
-        });
+        );
         CoreCommand {
             force: self.force.to_array(),
             own: self.own.to_array(),
@@ -216,22 +213,24 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
     /// What a tick has to make up for: commands that came too late, ticks that were missed, an estimate that
     /// cannot go on.
     #[cold]
-    fn catch_up(&mut self, reading: &Reading<S>, status: Status, blind: bool) {
-        if status.contains(Status::LATE) {
+    fn catch_up(&mut self, reading: &Reading<S>, blind: bool) {
+        if reading.is(Facts::LATE) {
             self.observer.late();
         }
-        for _ in 0..reading.missed {
-            // Nobody commanded anything else meanwhile.
-            let modelled = Actuator {
-                applied: None,
-                ..reading.actuator
-            };
-            (self.observer).advance(None, blind, modelled, &self.coeffs);
-            self.observer.commanded(self.force);
+        if reading.missed > 0 {
+            let modelled = reading.actuator().modelled();
+            (self.observer).bridge(reading.missed, self.force, blind, modelled, &self.coeffs);
         }
-        if reading.anew || (reading.faulty && reading.position.is_none()) {
+        let lost = reading.is(Facts::FAULTY) && !reading.is(Facts::USED);
+        if reading.is(Facts::ANEW) || lost {
             self.observer.forget();
         }
+    }
+
+    /// The units of samples and commands.
+    #[inline]
+    pub fn scaling(&self) -> &Scaling {
+        &self.coeffs.scaling
     }
 
     /// What the supervisor is doing.

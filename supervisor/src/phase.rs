@@ -10,7 +10,7 @@
 use crate::classify::Class;
 use crate::coeffs::Coeffs;
 use crate::detect::Findings;
-use crate::guard::Reading;
+use crate::guard::{Facts, Reading};
 use crate::scalar::Scalar;
 use crate::signal::{Events, Mode};
 
@@ -58,8 +58,9 @@ impl<S: Scalar> Phase<S> {
         reading: &Reading<S>,
         coeffs: &Coeffs<S>,
     ) -> (Self, Events) {
-        let next = if reading.bearing_on {
-            self.follow(found, calm, class, reading.faulty, coeffs)
+        let next = if reading.is(Facts::ON) {
+            let faulty = reading.is(Facts::FAULTY);
+            self.follow(found, calm, class, faulty, coeffs)
         } else {
             Self::Levitated
         };

@@ -30,15 +30,15 @@ pub struct Entry {
 }
 
 impl Entry {
-    /// The sixteen bytes, little-endian, in two halves.
-    fn halves(&self) -> [[u8; 8]; 2] {
-        let [s0, s1, s2, s3] = self.sequence.to_le_bytes();
-        let [[x0, x1], [y0, y1]] = self.position.map(i16::to_le_bytes);
-        let [[f0, f1], [g0, g1]] = self.force.map(i16::to_le_bytes);
-        let [e0, e1] = self.events.to_le_bytes();
+    /// The sixteen bytes as little-endian words.
+    fn words(&self) -> [u32; 4] {
+        let pair = |[low, high]: [i16; 2]| u32::from(low as u16) | (u32::from(high as u16) << 16);
+        let rest = u32::from(self.mode) | (u32::from(self.limits) << 8);
         [
-            [s0, s1, s2, s3, x0, x1, y0, y1],
-            [f0, f1, g0, g1, self.mode, self.limits, e0, e1],
+            self.sequence,
+            pair(self.position),
+            pair(self.force),
+            rest | (u32::from(self.events) << 16),
         ]
     }
 }
@@ -80,19 +80,9 @@ enum State {
     Armed,
     /// Recording for so many more ticks.
     Triggered(usize),
-    /// Checksum under way; so many entries done.
+    /// Checksum under way; so many words done.
     Freezing(usize),
     Frozen,
-}
-
-/// What a tick gives to the recorder.
-pub(crate) struct Tick<S> {
-    pub(crate) sequence: u32,
-    pub(crate) position: Vec2<S>,
-    pub(crate) force: Vec2<S>,
-    pub(crate) mode: Mode,
-    pub(crate) limits: Limits,
-    pub(crate) events: Events,
 }
 
 /// Ring of `N` entries (a power of two).
@@ -132,12 +122,27 @@ impl<const N: usize> Recorder<N> {
 
     /// Takes a tick in; says what the recorder itself has to report.
     #[inline(never)]
-    pub(crate) fn push<S: Scalar>(&mut self, tick: &Tick<S>) -> Events {
+    pub(crate) fn push<S: Scalar>(
+        &mut self,
+        sequence: u32,
+        position: Vec2<S>,
+        force: Vec2<S>,
+        (mode, limits): (Mode, Limits),
+        events: Events,
+    ) -> Events {
+        let entry = || Entry {
+            sequence,
+            position: [position.x.packed(), position.y.packed()],
+            force: [force.x.packed(), force.y.packed()],
+            mode: mode as u8,
+            limits: limits.bits() as u8,
+            events: events.bits() as u16,
+        };
         let mut own = Events::empty();
         match self.state {
             State::Armed => {
-                self.write(tick);
-                if tick.events.contains(Events::ENGAGED) {
+                self.write(entry());
+                if events.contains(Events::ENGAGED) {
                     // A quarter before the trigger, three quarters after it.
                     self.state = State::Triggered(N - N / 4);
                 }
@@ -147,7 +152,7 @@ impl<const N: usize> Recorder<N> {
                 self.state = State::Freezing(0);
             }
             State::Triggered(left) => {
-                self.write(tick);
+                self.write(entry());
                 self.state = State::Triggered(left - 1);
             }
             State::Freezing(done) => {
@@ -157,48 +162,39 @@ impl<const N: usize> Recorder<N> {
             }
             State::Frozen => {}
         }
-        let events = tick.events | own;
-        if !events.is_empty() {
-            self.queue(tick, events);
+        if !(events | own).is_empty() {
+            self.queue(sequence, mode, events | own);
         }
         own
     }
 
-    fn queue<S>(&mut self, tick: &Tick<S>, mut events: Events) {
+    fn queue(&mut self, sequence: u32, mode: Mode, mut events: Events) {
         if self.lost {
             events |= Events::QUEUE_FULL;
         }
         let event = QueuedEvent {
-            sequence: tick.sequence,
-            mode: tick.mode,
+            sequence,
+            mode,
             events,
         };
         self.lost = self.queued.push_back(event).is_err();
     }
 
     #[inline]
-    fn write<S: Scalar>(&mut self, tick: &Tick<S>) {
+    fn write(&mut self, new: Entry) {
         if let Some(entry) = self.entries.get_mut(self.next & Self::MASK) {
-            *entry = Entry {
-                sequence: tick.sequence,
-                position: [tick.position.x.packed(), tick.position.y.packed()],
-                force: [tick.force.x.packed(), tick.force.y.packed()],
-                mode: tick.mode as u8,
-                limits: tick.limits.bits() as u8,
-                events: tick.events.bits() as u16,
-            };
+            *entry = new;
         }
         self.next = self.next.wrapping_add(1) & Self::MASK;
     }
 
-    /// Takes half an entry into the checksum, which bounds the time of a tick; true when it is complete.
+    /// Takes a word into the checksum, which bounds the time of a tick; true when it is complete.
     fn check(&mut self, done: usize) -> bool {
-        if let Some(entry) = (self.entries).get(self.next.wrapping_add(done / 2) & Self::MASK) {
-            let [early, late] = entry.halves();
-            self.crc = crc_of_bytes(self.crc, if done & 1 == 0 { early } else { late });
+        if let Some(entry) = (self.entries).get(self.next.wrapping_add(done / 4) & Self::MASK) {
+            self.crc = crc_of_word(self.crc, entry.words()[done & 3]);
         }
         let done = done + 1;
-        if done < 2 * N {
+        if done < 4 * N {
             self.state = State::Freezing(done);
             return false;
         }
@@ -224,29 +220,21 @@ impl<const N: usize> Recorder<N> {
     }
 }
 
-/// CRC-32 (IEEE, reflected) of each byte. A kilobyte of flash halves the longest tick of the recorder.
-const CRC_OF_BYTE: [u32; 256] = {
-    let mut table = [0; 256];
-    let mut byte = 0;
-    while byte < 256 {
-        let mut crc = byte as u32;
-        let mut bit = 0;
-        while bit < 8 {
-            crc = (crc >> 1) ^ (0xEDB8_8320 & (crc & 1).wrapping_neg());
-            bit += 1;
-        }
-        table[byte] = crc;
-        byte += 1;
+/// Four bytes into a CRC-32 (IEEE, reflected), a nibble at a time: no table of a kilobyte.
+fn crc_of_word(mut crc: u32, word: u32) -> u32 {
+    #[rustfmt::skip]
+    const NIBBLE: [u32; 16] = [
+        0x0000_0000, 0x1DB7_1064, 0x3B6E_20C8, 0x26D9_30AC, 0x76DC_4190, 0x6B6B_51F4, 0x4DB2_6158, 0x5005_713C,
+        0xEDB8_8320, 0xF00F_9344, 0xD6D6_A3E8, 0xCB61_B38C, 0x9B64_C2B0, 0x86D3_D2D4, 0xA00A_E278, 0xBDBD_F21C,
+    ];
+    crc ^= word;
+    for _ in 0..8 {
+        crc = (crc >> 4) ^ NIBBLE[(crc & 15) as usize];
     }
-    table
-};
-
-fn crc_of_bytes(crc: u32, bytes: [u8; 8]) -> u32 {
-    let step = |crc: u32, byte: u8| (crc >> 8) ^ CRC_OF_BYTE[(crc as u8 ^ byte) as usize];
-    bytes.into_iter().fold(crc, step)
+    crc
 }
 
 /// CRC-32 of entries, for a reader of a record to compare with.
 pub fn crc_of<'a>(entries: impl Iterator<Item = &'a Entry>) -> u32 {
-    !entries.flat_map(Entry::halves).fold(!0, crc_of_bytes)
+    !entries.flat_map(Entry::words).fold(!0, crc_of_word)
 }

@@ -4,7 +4,7 @@
 use crate::coeffs::Coeffs;
 use crate::course::sum_of_impacts;
 use crate::detect::Findings;
-use crate::guard::Reading;
+use crate::guard::{Facts, Reading};
 use crate::law::View;
 use crate::scalar::{Scalar, Slow};
 use crate::signal::{Events, Limits, Mode, Report};
@@ -57,7 +57,7 @@ impl<S: Scalar> Severity<S> {
         };
         let (found, coeffs) = (view.found, view.coeffs);
         let before = core::mem::replace(&mut self.before, view.motion.velocity);
-        if !reading.bearing_on {
+        if !reading.is(Facts::ON) {
             self.coast_down = false;
         }
         match mode {
@@ -73,7 +73,7 @@ impl<S: Scalar> Severity<S> {
         let backward = view.spin.backward(found.tangential_speed);
         let mut passed = false;
         let coming = if found.touching {
-            if reading.position.is_some() {
+            if reading.is(Facts::USED) {
                 passed = self.contact(before, backward, found, force, coeffs);
             }
             let outward = found.radial_speed.or_more(S::ZERO);
@@ -90,7 +90,7 @@ impl<S: Scalar> Severity<S> {
         let severity = (coming * coeffs.per_whirl_limit).or_more(S::ZERO);
         result.severity = severity.or_less(S::of(MOST_SEVERITY));
 
-        let beyond = backward > coeffs.whirl_limit;
+        let beyond = backward * coeffs.per_whirl_limit > S::ONE;
         if beyond && found.touching {
             result.limits |= Limits::BEYOND_WHIRL_LIMIT;
             self.beyond_ticks = self.beyond_ticks.saturating_add(1);
@@ -150,7 +150,7 @@ impl<S: Scalar> Severity<S> {
             contact_ticks: self.contact_ticks,
             impact_speed_max_m_s: self.impact_speed_max.to_f32() * speed_m_s,
             backward_speed_max_m_s: self.backward_speed_max.to_f32() * speed_m_s,
-            whirl_limit_m_s: coeffs.whirl_limit.to_f32() * speed_m_s,
+            whirl_limit_m_s: speed_m_s / coeffs.per_whirl_limit.to_f32(),
             severity_index: index.or_less(MOST_INDEX),
             coast_down: self.coast_down,
             ..Report::default()

@@ -1,6 +1,5 @@
 //! The supervisor in SI units and `f32`: the core behind the one conversion.
 
-use crate::coeffs::Scaling;
 use crate::config::{Config, ConfigError};
 use crate::per_unit::{Core, Prepared};
 use crate::recorder::{QueuedEvent, Record};
@@ -9,7 +8,6 @@ use crate::signal::{Command, CoreSample, Mode, Report, Sample};
 /// Supervisor of one bearing plane with a flight record of `RECORD` ticks (a power of two).
 #[derive(Debug, Clone)]
 pub struct Supervisor<const RECORD: usize = 512> {
-    scaling: Scaling,
     core: Core<f32, RECORD>,
 }
 
@@ -23,7 +21,6 @@ impl<const RECORD: usize> Supervisor<RECORD> {
         // Whatever is in range `f32` holds.
         let (prepared, _) = Prepared::of_valid(config);
         Ok(Self {
-            scaling: config.scaling(),
             core: Core::new(&prepared),
         })
     }
@@ -37,14 +34,13 @@ impl<const RECORD: usize> Supervisor<RECORD> {
     pub fn reconfigure(&mut self, config: &Config) -> Result<(), ConfigError> {
         config.validate()?;
         let (prepared, _) = Prepared::of_valid(config);
-        self.scaling = config.scaling();
         self.core.reconfigure(&prepared);
         Ok(())
     }
 
     /// One tick: total and bounded; see [`Core::tick`].
     pub fn tick(&mut self, sample: &Sample) -> Command {
-        let scaling = &self.scaling;
+        let scaling = *self.core.scaling();
         let forces = |v: [f32; 2]| v.map(|x| x * scaling.force_per_n);
         let levitation = forces(sample.levitation_n);
         let command = self.core.tick(&CoreSample {

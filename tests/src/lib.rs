@@ -4,6 +4,7 @@ pub mod cost;
 pub mod golden;
 pub mod plants;
 pub mod rig;
+pub mod target;
 
 use firmware_host::scene::Scene;
 use std::path::{Path, PathBuf};

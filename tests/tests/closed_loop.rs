@@ -6,7 +6,7 @@ use firmware_host::policy_kind::PolicyKind;
 use firmware_host::scene::{Disturbance, Scene, Shape};
 use firmware_host::verdict::{Outcome, Verdict};
 use plant_model::V2;
-use system_tests::{golden, scene};
+use system_tests::{golden, scene, scene_path};
 
 fn verdict(scene: &Scene, policy: PolicyKind) -> Verdict {
     run(scene, policy, Keep::Verdict, &mut |_| {}).unwrap().0
@@ -186,5 +186,39 @@ fn a_load_near_the_hold_does_not_chatter() {
             "{} impacts at {share}",
             supervised.impacts
         );
+    }
+}
+
+/// The drive knows of a power loss at the sample at which it begins, and of the power's return at the sample
+/// at which it ends, also where count times period comes out one rounding short of the scene's time: at 12 kHz
+/// samples 51 and 102 are at 4.25 and 8.5 ms. Without power the supervisor does not act; with a rotor that a
+/// load presses on the wall it acts at all other times.
+#[test]
+fn a_known_power_loss_is_told_at_its_first_and_last_sample() {
+    let (rate_hz, first, end) = (12_000.0_f64, 51, 102);
+    let (start_s, end_s) = (0.00425, 2.0 * 0.00425);
+    for (tick, at_s) in [(first, start_s), (end, end_s)] {
+        assert!((f64::from(tick) / rate_hz - at_s).abs() < 1e-15);
+        assert!(
+            f64::from(tick) * (1.0 / rate_hz) < at_s,
+            "rounds as it should for this test"
+        );
+    }
+    let text = std::fs::read_to_string(scene_path("overload_then_release")).unwrap();
+    let text = (text.replace("sample_rate_hz = 20000", "sample_rate_hz = 12000"))
+        .replace("duration_s = 0.2\n", "duration_s = 0.012\n")
+        .replace("start_s = 0.02\n", "start_s = 0.0\n");
+    let outage = format!("[[outage]]\nstart_s = {start_s}\nduration_s = {start_s}\nknown = true\n");
+    let mut scene = Scene::parse("power_loss.toml", &(text + &outage)).unwrap();
+    let c = scene.plant.contact.clearance_m;
+    scene.start.position_m = V2::new(0.87 * c, 0.5 * c);
+    let (_, trace) = run(&scene, PolicyKind::Supervisor, Keep::Trace, &mut |_| {}).unwrap();
+    let modes: Vec<_> = (trace.rows.iter())
+        .filter(|row| !row.mode_change)
+        .map(|row| row.supervisor_mode.unwrap())
+        .collect();
+    for (tick, mode) in modes.iter().enumerate().take(144).skip(45) {
+        let off = tick >= first as usize && tick < end as usize;
+        assert_eq!(*mode == supervisor::Mode::Levitated, off, "sample {tick}");
     }
 }

@@ -353,6 +353,30 @@ fn bad_scenes_are_refused_with_file_line_key_and_expectation() {
             "expected one of",
         ),
         (
+            "[friction]",
+            "[retainer]\nellipticity = 0.3\n\n[friction]",
+            "retainer.ellipticity",
+            "a number from 0 to 0.2",
+        ),
+        (
+            "[friction]",
+            "[retainer]\nlong_axis_deg = 30.0\n\n[friction]",
+            "retainer.long_axis_deg",
+            "give retainer.ellipticity",
+        ),
+        (
+            "[friction]",
+            "[race]\ninertia_kg_m2 = 1e-3\n[retainer]\nellipticity = 0.05\n\n[friction]",
+            "retainer.ellipticity",
+            "remove [race]",
+        ),
+        (
+            "[friction]",
+            "[retainer]\nellipticity = 0.05\n[stator.inner]\nmass_kg = 5.0\nstiffness_n_m = 1e8\ndamping_n_s_m = 1e4\n\n[friction]",
+            "retainer.ellipticity",
+            "remove [stator]",
+        ),
+        (
             "sample_rate_hz = 20000",
             "sample_rate_hz = inf",
             "run.sample_rate_hz",
@@ -476,6 +500,48 @@ fn bad_scenes_are_refused_with_file_line_key_and_expectation() {
     }
 }
 
+/// What `[supervisor]` says is checked whether or not that policy is run, with the line: a slip of the pen
+/// would otherwise show only once somebody adds the policy. A parameter that is derived from the scene is
+/// no mistake there, as nobody asks for it.
+#[test]
+fn parameters_of_a_supervisor_that_is_not_run_are_checked_too() {
+    let without = "policies = [\"passive\", \"radial\"]";
+    let all = "policies = [\"passive\", \"radial\", \"levitation\", \"supervisor\"]";
+    let folder = TempDir::new().unwrap();
+    let refused = |line: &str| {
+        let scene = short_scene(folder.path(), |t| {
+            t.replacen(all, without, 1) + "\n[supervisor]\n" + line + "\n"
+        });
+        let text = fs::read_to_string(&scene).unwrap();
+        assert!(text.contains(without));
+        let out = folder.path().join("out");
+        let result = run(&scene, &out, &[]);
+        let error = String::from_utf8(result.stderr).unwrap();
+        let at = format!("short.toml:{}:", text.lines().count());
+        (result.status.code(), error.contains(&at), error)
+    };
+    for (line, expected) in [
+        ("hold_shar = 0.5", "did you mean `hold_share`?"),
+        ("hold_share = 2.0", "9.5e-1"),
+        ("hold_share = nan", "9.5e-1"),
+        ("hold_share = 1e300", "9.5e-1"),
+        ("hold_share = \"much\"", "expected a number"),
+    ] {
+        let (code, with_line, error) = refused(line);
+        assert_eq!(code, Some(2), "{line}\n{error}");
+        assert!(with_line && error.contains(expected), "{line}\n{error}");
+    }
+    let (code, _, error) = refused("hold_share = 0.7");
+    assert_eq!(code, Some(0), "{error}");
+    // A lag that the supervisor could not take is no mistake of a scene without it.
+    let scene = short_scene(folder.path(), |t| {
+        (t.replacen(all, without, 1)).replacen("lag_s = 1.6e-4", "lag_s = 0.5", 1)
+    });
+    let result = run(&scene, &folder.path().join("slow"), &[]);
+    let error = String::from_utf8_lossy(&result.stderr);
+    assert_eq!(result.status.code(), Some(0), "{error}");
+}
+
 /// A scene with the nonlinear contact runs, verifies itself, and refuses the method that it has not.
 #[test]
 fn a_scene_may_have_a_nonlinear_contact() {
@@ -495,6 +561,35 @@ fn a_scene_may_have_a_nonlinear_contact() {
     assert_eq!(refused.status.code(), Some(2), "{error}");
     assert!(error.contains("run.method"), "{error}");
     assert!(error.contains("auto, explicit or stiff"), "{error}");
+}
+
+/// A bearing out of round runs under every policy, verifies itself by the other method, and its report shows
+/// the ellipse; the power series is refused where it is asked for.
+#[test]
+fn a_bearing_may_be_out_of_round() {
+    let folder = TempDir::new().unwrap();
+    let bore = "[retainer]\nellipticity = 0.05\nlong_axis_deg = 30.0\n\n[friction]";
+    let scene = short_scene(folder.path(), |t| t.replacen("[friction]", bore, 1));
+    let out = folder.path().join("out");
+    let result = run(&scene, &out, &["--verify"]);
+    let error = String::from_utf8_lossy(&result.stderr);
+    assert!(result.status.success(), "{error}");
+    let text = fs::read(out.join("verdict.json")).unwrap();
+    let verdict: Value = serde_json::from_slice(&text).unwrap();
+    let supervisor = &verdict["policies"]["supervisor"];
+    assert_eq!(supervisor["method"], "explicit");
+    assert_ne!(supervisor["outcome"], "whirl");
+    assert!(supervisor["impacts"].as_u64().unwrap() > 0);
+    let report = fs::read_to_string(out.join("report.html")).unwrap();
+    assert!(report.contains("clearance ellipse"));
+
+    let scene = short_scene(folder.path(), |t| {
+        (t.replacen("[friction]", bore, 1)).replacen("seed = 1", "seed = 1\nmethod = \"series\"", 1)
+    });
+    let result = run(&scene, &out, &[]);
+    assert_eq!(result.status.code(), Some(2));
+    let error = String::from_utf8_lossy(&result.stderr);
+    assert!(error.contains("retainer.ellipticity"), "{error}");
 }
 
 #[test]

@@ -154,7 +154,7 @@ fn config_errors_name_field_value_and_range() {
             let mut values = config().values();
             values[i] = wrong;
             let error = Config::from_values(values).validate().unwrap_err();
-            assert_eq!(error.parameter.name, p.name);
+            assert_eq!(error.parameter().name, p.name);
             let text = error.to_string();
             let parts = [
                 p.name.to_owned(),
@@ -315,7 +315,7 @@ fn sensor_fault_blends_to_zero_and_ends() {
 fn recorder_freezes_around_the_engagement() {
     let mut supervisor = new();
     let mut frozen_at = None;
-    for i in 0..300_u32 {
+    for i in 0..500_u32 {
         let x = if i < 100 {
             0.0
         } else {
@@ -338,9 +338,9 @@ fn recorder_freezes_around_the_engagement() {
         .iter()
         .position(|e| Events::from_bits_retain(e.events.into()).contains(Events::ENGAGED));
     assert_eq!(engaged, Some(15), "a quarter before the trigger");
-    // The rest of the ring, a tick of its own, and half an entry of the checksum a tick.
+    // The rest of the ring, a tick of its own, and a word of the checksum a tick.
     let last = entries[63].sequence;
-    assert_eq!(frozen_at, Some(last + 1 + 2 * 64));
+    assert_eq!(frozen_at, Some(last + 1 + 4 * 64));
     assert_eq!(record.crc, crc_of(entries.iter()));
     let known = Entry {
         sequence: u32::from_le_bytes(*b"1234"),

@@ -1,87 +1,61 @@
-//! The supervisor on its targets: it builds, and no panic can be reached in a linked image.
+//! The images for Cortex-M: they build, and no panic can be reached in any of them.
 
 use object::{Object, ObjectSymbol};
-use std::path::PathBuf;
-use std::process::{Command, Output};
 use system_tests::root;
+use system_tests::target::build_images;
 
-const TARGETS: [&str; 2] = ["thumbv7em-none-eabihf", "thumbv6m-none-eabi"];
-
-fn build(target: &str, features: &str) -> Output {
-    let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".to_owned());
-    Command::new(cargo)
-        .current_dir(root())
-        .args([
-            "build",
-            "-p",
-            "firmware-image",
-            "--bin",
-            "panic-free",
-            "--profile",
-            "fw",
-        ])
-        .args([
-            "--target",
-            target,
-            "--target-dir",
-            "target-fw",
-            "--features",
-            features,
-        ])
-        .output()
-        .expect("cargo starts")
-}
-
-/// On a user's machine without the target this is no failure; in CI it is.
-fn target_is_missing(output: &Output) -> bool {
-    let error = String::from_utf8_lossy(&output.stderr);
-    let missing = error.contains("target may not be installed");
-    if missing {
-        assert!(std::env::var_os("CI").is_none(), "{error}");
-        eprintln!("skipped: the target is not installed; tests/run installs it");
-    }
-    missing
-}
+const TARGETS: [&str; 3] = [
+    "thumbv7em-none-eabihf",
+    "thumbv7m-none-eabi",
+    "thumbv6m-none-eabi",
+];
+const IMAGES: [&str; 5] = [
+    "panic-free",
+    "replay",
+    "count",
+    "in-the-loop",
+    "timer-interrupt",
+];
 
 #[test]
 fn linked_images_hold_no_panic_path() {
     for target in TARGETS {
-        let output = build(target, "");
-        if target_is_missing(&output) {
+        let Some(output) = build_images(target, &[]) else {
             return;
+        };
+        let error = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{error}");
+        for image in IMAGES {
+            let path = root().join("target-fw").join(target).join("fw").join(image);
+            let bytes = std::fs::read(path).unwrap();
+            let file = object::File::parse(bytes.as_slice()).unwrap();
+            let names: Vec<&str> = file.symbols().filter_map(|s| s.name().ok()).collect();
+            let start = ["_start", "main"];
+            assert!(
+                names.iter().any(|n| start.contains(n)),
+                "symbols are there to be looked at"
+            );
+            let is_panic = |n: &&&str| n.contains("panicking") || n.contains("begin_unwind");
+            let panics: Vec<_> = names.iter().filter(is_panic).collect();
+            assert!(panics.is_empty(), "{target}, {image}: {panics:?}");
         }
-        assert!(
-            output.status.success(),
-            "{}",
-            String::from_utf8_lossy(&output.stderr)
-        );
-        let image: PathBuf = root().join("target-fw").join(target).join("fw/panic-free");
-        let bytes = std::fs::read(image).unwrap();
-        let file = object::File::parse(bytes.as_slice()).unwrap();
-        let names: Vec<&str> = file.symbols().filter_map(|s| s.name().ok()).collect();
-        assert!(
-            names.contains(&"_start"),
-            "symbols are there to be looked at"
-        );
-        let is_panic = |n: &&&str| n.contains("panicking") || n.contains("begin_unwind");
-        let panics: Vec<_> = names.iter().filter(is_panic).collect();
-        assert!(panics.is_empty(), "{target}: {panics:?}");
     }
 }
 
-/// The check finds a panic that is put in.
+/// The check finds a panic that is put in, in every image for every target.
 #[test]
 fn a_planted_panic_fails_to_link() {
     for target in TARGETS {
-        let output = build(target, "planted-panic");
-        if target_is_missing(&output) {
+        let more = ["--features", "planted-panic", "--keep-going"];
+        let Some(output) = build_images(target, &more) else {
             return;
-        }
+        };
         let error = String::from_utf8_lossy(&output.stderr);
-        assert!(
-            !output.status.success(),
-            "{target}: the planted panic linked"
-        );
-        assert!(error.contains("a_panic_can_be_reached"), "{error}");
+        for image in IMAGES {
+            let failed = format!("could not compile `firmware-image` (bin \"{image}\")");
+            assert!(error.contains(&failed), "{target}, {image}: {error}");
+        }
+        let undefined = error.matches("undefined symbol: a_panic_can_be_reached");
+        assert_eq!(undefined.count(), IMAGES.len(), "{target}: {error}");
     }
 }

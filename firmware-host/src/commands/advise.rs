@@ -188,6 +188,6 @@ fn out_of_range(e: &OutOfRange, name: impl Fn(&str) -> String) -> CommandError {
     let source = e.source.map_or(String::new(), name);
     CommandError::Numbers {
         message: format!("{source}: the supervisor derives {} from this", e.error),
-        help: e.error.parameter.text.to_owned(),
+        help: e.error.parameter().text.to_owned(),
     }
 }

@@ -3,6 +3,7 @@
 use crate::closed_loop::RunError;
 use crate::output::OutputError;
 use crate::scene_error::SceneError;
+use crate::target::measure::TargetError;
 use std::io::Write;
 
 /// Why a command failed.
@@ -27,6 +28,16 @@ pub enum CommandError {
          a smaller run.rtol may settle it, or the scene is too sensitive to be decided"
     ))]
     Contradicted(Vec<Contradiction>),
+    /// The targets could not be measured.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Target(#[from] TargetError),
+    /// What was measured on the targets is not what it should be.
+    #[error("{}", .0.join("\n"))]
+    #[diagnostic(help(
+        "results were printed; docs/src/supervisor/targets.md says when a budget may be raised"
+    ))]
+    Targets(Vec<String>),
     /// Numbers on the command line, or what a scene lacks for this command.
     #[error("{message}")]
     #[diagnostic(help("{help}"))]
@@ -81,7 +92,11 @@ impl CommandError {
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Scene(_) | Self::Output(_) | Self::Numbers { .. } => 2,
-            Self::Run(_) | Self::Contradicted(_) | Self::Other { .. } => 1,
+            Self::Run(_)
+            | Self::Contradicted(_)
+            | Self::Target(_)
+            | Self::Targets(_)
+            | Self::Other { .. } => 1,
         }
     }
 

@@ -3,6 +3,7 @@
 use crate::commands::error::{CommandError, print};
 use crate::commands::progress::{LateProgress, pool};
 use crate::output::{self, OutputError, Staging};
+use crate::overloads::histories::{CASES, Way, compare};
 use crate::overloads::page;
 use crate::overloads::plan::{Catalogue, CatalogueError, Extent, Plan, search};
 use crate::overloads::plants::RATES_HZ;
@@ -29,6 +30,10 @@ pub struct OverloadsArgs {
     /// them to found.json in the folder.
     #[arg(long, conflicts_with_all = ["json", "quick", "scene"])]
     pub search: bool,
+    /// Instead of the catalogue: search force histories that were laid down beforehand against the reference,
+    /// and write them to histories.json in the folder; takes minutes.
+    #[arg(long, conflicts_with_all = ["json", "quick", "scene", "search"])]
+    pub histories: bool,
     /// Threads to use [default: all cores]. Results do not depend on it.
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
@@ -45,6 +50,9 @@ pub fn execute(args: &OverloadsArgs) -> Result<(), CommandError> {
     output::probe(&args.out)?;
     if args.search {
         return search_anew(args);
+    }
+    if args.histories {
+        return against_histories(args);
     }
     let extent = if args.quick {
         Extent::Quick
@@ -96,6 +104,46 @@ fn search_anew(args: &OverloadsArgs) -> Result<(), CommandError> {
     std::fs::write(&path, format!("{pretty}\n")).map_err(|reason| OutputError { path, reason })?;
     let out = staging.publish()?;
     print(&format!("found: {}\n", out.join("found.json").display()))
+}
+
+fn against_histories(args: &OverloadsArgs) -> Result<(), CommandError> {
+    let progress = LateProgress::new((CASES.len() * Way::ALL.len()) as u64, "the searches");
+    let rows = pool(args.threads)?
+        .install(|| compare(&|done| progress.add(done)))
+        .map_err(failed)?;
+    progress.finish();
+    let pretty = serde_json::to_string(&rows)
+        .map_err(|e| CommandError::other("formatting histories.json", e))?;
+    let staging = Staging::beside(&args.out)?;
+    let path = staging.path("histories.json");
+    std::fs::write(&path, format!("{pretty}\n")).map_err(|reason| OutputError { path, reason })?;
+    let out = staging.publish()?;
+    let mut table = Table::new();
+    table.load_style(presets::UTF8_BORDERS_ONLY);
+    table.set_header([
+        "impact",
+        "clairvoyant",
+        "from nothing",
+        "from clairvoyant",
+        "on top",
+        "best/clairvoyant",
+        "runs",
+    ]);
+    for row in &rows {
+        let mut cells = vec![
+            format!("{}, {:+.0}°", row.plant, row.angle_deg),
+            format!("{:.3}", row.clairvoyant_m_s),
+        ];
+        cells.extend((row.searched.iter()).map(|s| format!("{:.3}", s.impact_m_s)));
+        cells.push(format!("{:.3}", row.best_over_clairvoyant()));
+        cells.push((row.searched.iter().map(|s| s.runs).sum::<u64>()).to_string());
+        table.add_row(cells);
+    }
+    let path = out.join("histories.json");
+    print(&format!(
+        "{table}\nspeeds in m/s; histories: {}\n",
+        path.display()
+    ))
 }
 
 fn failed(error: CatalogueError) -> CommandError {

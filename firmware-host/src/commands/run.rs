@@ -8,6 +8,7 @@ use crate::policy_kind::PolicyKind;
 use crate::scene::Scene;
 use crate::verdict::{Check, PolicyRun, SceneSummary};
 use crate::{report, table, trace_file, verify};
+use plant_model::params::StatorParams;
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 use std::path::{Path, PathBuf};
 
@@ -168,6 +169,10 @@ fn summary(scene: &Scene) -> SceneSummary {
         title: scene.title.clone(),
         story: scene.story.clone(),
         clearance_m: scene.plant.contact.clearance_m,
+        out_of_round: match scene.plant.stator {
+            StatorParams::RigidEllipse(e) => Some((e.ellipticity, e.long_axis_rad)),
+            _ => None,
+        },
         force_max_n: scene.plant.magnet.map(|m| m.force_max_n),
         whirl_speed_m_s: scene.whirl_speed_m_s,
         disturbances_s: scene.loads().map(|d| (d.start_s, d.end_s())).collect(),

@@ -7,7 +7,7 @@ use super::plants::PlantCase;
 use super::seats::{Seat, Task, restitution};
 use super::takeover::{arrest_of, whirling};
 use crate::scene::{Axis, BaseMotion, Disturbance, Outage, Scene, Shape, TimedChange};
-use plant_model::params::{RaceParams, SpinParams, Start};
+use plant_model::params::{EllipseParams, RaceParams, SpinParams, Start, StatorParams};
 use plant_model::{Change, V2};
 use std::f64::consts::TAU;
 
@@ -305,6 +305,22 @@ impl Collector<'_> {
             });
         }
     }
+
+    fn out_of_round(&mut self) {
+        for ellipticity in [0.05, 0.1] {
+            let start = self.impact(1.0, 30.0);
+            let percent = 100.0 * ellipticity;
+            let name = format!("impact, bearing {percent:.0} % out of round, untold");
+            self.add("out of round", name, 0.0, |s| {
+                s.start = start;
+                s.plant.stator = StatorParams::RigidEllipse(EllipseParams {
+                    ellipticity,
+                    // No axis, and not where the impact is aimed.
+                    long_axis_rad: 70_f64.to_radians(),
+                });
+            });
+        }
+    }
 }
 
 /// The start of a scene aimed at the wall at an angle to its normal; positive: along the spin.
@@ -358,6 +374,7 @@ pub fn cases(plant: &PlantCase) -> Vec<Case> {
     collector.friction();
     collector.spins();
     collector.offsets();
+    collector.out_of_round();
     let mut cases = collector.cases;
     cases.extend(super::fault_matrix::cases(plant));
     cases

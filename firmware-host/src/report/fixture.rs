@@ -14,6 +14,7 @@ pub(super) fn scene() -> SceneSummary {
         title: "Title <b>".to_owned(),
         story: "A first\nparagraph.\n\nAnd a \"second\" one.".to_owned(),
         clearance_m: 2e-4,
+        out_of_round: None,
         force_max_n: Some(500.0),
         whirl_speed_m_s: 1.0,
         disturbances_s: Vec::new(),

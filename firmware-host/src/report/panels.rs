@@ -10,7 +10,7 @@ use super::quantities::{
 use crate::plot::text::hex;
 use crate::plot::thin::{Band, Interval, PathPoint, drawable, thinned};
 use crate::plot::{
-    COLUMNS, FREE, LIMIT, Lane, Line, OrbitPlot, PlotError, TOUCHING, TimeAxis, TimePlot,
+    COLUMNS, FREE, LIMIT, Lane, Line, OrbitPlot, PlotError, TOUCHING, TimeAxis, TimePlot, Wall,
     orbit_plot, strip_plot, time_plot,
 };
 use crate::trace::TraceRow;
@@ -180,10 +180,16 @@ impl<'a> View<'a> {
         let circle = Some(1e3 * self.scene.clearance_m)
             .filter(|c| drawable(*c))
             .unwrap_or(0.0);
+        let (ellipticity, tilt_rad) = self.scene.out_of_round.unwrap_or_default();
+        let wall = Wall {
+            semi_axes: [1.0 + ellipticity, 1.0 - ellipticity].map(|share| share * circle),
+            tilt_rad,
+        };
+        let widest = wall.semi_axes[0];
         let paths: Vec<_> = self.runs.iter().map(path).collect();
         let reach = |path: &Vec<PathPoint>| {
-            let all = Interval::of(path.iter().flat_map(|p| [p.0, p.1]).chain([circle]));
-            Interval::symmetric(all.map_or(circle, Interval::magnitude))
+            let all = Interval::of(path.iter().flat_map(|p| [p.0, p.1]).chain([widest]));
+            Interval::symmetric(all.map_or(widest, Interval::magnitude))
         };
         let ranges: Vec<_> = paths.iter().map(reach).collect();
         let mut cells = Vec::new();
@@ -197,7 +203,7 @@ impl<'a> View<'a> {
             let svg = orbit_plot(&OrbitPlot {
                 label: &self.label(run, "Orbit", "x and y / mm", *range),
                 reach: axis.widened(0.05).hi,
-                circle,
+                wall,
                 path,
             })?;
             cells.push(PanelCell { svg, own_scale });
@@ -208,7 +214,13 @@ impl<'a> View<'a> {
             legend: vec![
                 Key::new("flight", FREE),
                 Key::new("contact", TOUCHING),
-                Key::new("clearance circle", LIMIT),
+                Key::new(
+                    match self.scene.out_of_round {
+                        None => "clearance circle",
+                        Some(_) => "clearance ellipse",
+                    },
+                    LIMIT,
+                ),
             ],
             cells,
         })

@@ -120,7 +120,7 @@ impl SteadyWhirl {
     /// Sliding friction is taken at rest.
     pub fn of(params: &PlantParams) -> Option<Self> {
         let rings = match &params.stator {
-            StatorParams::Rigid => vec![],
+            StatorParams::Rigid | StatorParams::RigidEllipse(_) => vec![],
             StatorParams::OneMass(ring) => vec![Oscillator::of(ring)?],
             StatorParams::TwoMass { inner, outer } => {
                 vec![Oscillator::of(inner)?, Oscillator::of(outer)?]

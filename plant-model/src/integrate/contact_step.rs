@@ -2,6 +2,7 @@
 
 use std::f64::consts::TAU;
 
+use super::frame::Frame;
 use super::pair::{Field, Origin, Pair, Rates};
 use super::scales::Scales;
 use crate::V2;
@@ -48,9 +49,15 @@ impl<S: Stator, W: Spin, M: Amplifier> Field<StateOf<S, W, M>, Evaluation<StateO
         (self.system).contact_tangent((t_s, y), self.inputs, self.mode, dy)
     }
 
-    fn turn_rad_s(&self, y: &StateOf<S, W, M>) -> f64 {
+    /// The contact normal turns at ω = v_w/ρ, and ω̇ = (v̇_w − ω·B)/ρ.
+    fn frame(&self, y: &StateOf<S, W, M>, first: &Evaluation<StateOf<S, W, M>>) -> Frame {
         let g = self.system.geometry(y);
-        g.whirl_speed_m_s / g.distance_m
+        let turn_rad_s = g.whirl_speed_m_s / g.distance_m;
+        let apart = first.touch.whirl_acceleration - turn_rad_s * g.normal_speed_m_s;
+        Frame {
+            turn_rad_s,
+            turn_rad_s2: apart / g.distance_m,
+        }
     }
 
     fn factorised(&mut self) {
@@ -154,8 +161,11 @@ impl<P> ContactStepper<P> {
             let (end, error) = self.pair.step(&origin, h, &weights, &mut field);
             if error.is_nan() || error > 1.0 {
                 work.rejected += 1;
-                let shrink = (0.9 * error.powf(power)).clamp(0.1, 0.9);
-                step = h * if error.is_finite() { shrink } else { 0.1 };
+                step = h * if error.is_finite() {
+                    (0.9 * error.powf(power)).clamp(0.1, 0.9)
+                } else {
+                    self.pair.reach().unwrap_or(0.0).clamp(0.1, 0.5)
+                };
                 if t_s + step == t_s || step < 1e-9 * system.moment_s(y) {
                     return Err(PlantError::StepTooSmall { t_s });
                 }
@@ -172,6 +182,7 @@ impl<P> ContactStepper<P> {
                 } else {
                     5.0
                 };
+                let growth = growth.min(self.pair.reach().unwrap_or(f64::INFINITY));
                 // A step cut short by the end of the sample says nothing against the longer one.
                 let grown =
                     (h * growth.clamp(0.3, 5.0)).min(P::LONGEST / system.contact_rate_rad_s());

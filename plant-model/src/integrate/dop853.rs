@@ -208,6 +208,7 @@ impl<Y: Part> Dense<Y> {
 pub(crate) mod tests {
     use super::*;
     use crate::V2;
+    use crate::integrate::frame::Frame;
     use crate::part::Body;
 
     impl Rates<Body> for Body {
@@ -232,8 +233,11 @@ pub(crate) mod tests {
         fn along(&mut self, t_s: f64, _y: &Body, dy: &Body) -> Body {
             self.at(t_s, dy)
         }
-        fn turn_rad_s(&self, _y: &Body) -> f64 {
-            self.0
+        fn frame(&self, _y: &Body, _first: &Body) -> Frame {
+            Frame {
+                turn_rad_s: self.0,
+                turn_rad_s2: 0.3 * self.0,
+            }
         }
     }
 
@@ -244,13 +248,15 @@ pub(crate) mod tests {
             position: V2::new(1.0, 0.0),
             velocity: V2::new(0.0, 1.0),
         };
+        // Tight enough that no iteration inside ends above the errors to be seen.
+        let tight = 1e9;
         let weights = Weights {
-            position: 1.0,
-            gap: 1.0,
-            velocity: 1.0,
-            spin: 1.0,
-            phase: 1.0,
-            force: 1.0,
+            position: tight,
+            gap: tight,
+            velocity: tight,
+            spin: tight,
+            phase: tight,
+            force: tight,
         };
         let mut pair = P::new();
         let first = circle.at(0.0, &y);

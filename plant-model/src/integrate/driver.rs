@@ -69,12 +69,16 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
         let mobility = 1.0 / system.rotor.mass_kg + system.stator.inverse_mass();
         options.method =
             (options.method).resolved(&system.contact.law, &y.rotor, mobility, options.rtol);
+        if S::OUT_OF_ROUND && options.method == Method::Series {
+            options.method = Method::Explicit;
+        }
         let mut run = Self {
             scales: Scales::new(options.rtol, &system, &y),
             work: Work::default(),
             maps: FlightMaps::default(),
             segment: Segment::new(system.flight_rate_rad_s()),
             series: (system.contact.law.linear())
+                .filter(|_| !S::OUT_OF_ROUND)
                 .map(|law| SeriesStepper::new(options.rtol, system.contact_rate_rad_s(), law)),
             explicit: ContactStepper::new::<StateOf<S, W, M>>(system.contact_rate_rad_s()),
             stiff: ContactStepper::new::<StateOf<S, W, M>>(system.contact_rate_rad_s()),

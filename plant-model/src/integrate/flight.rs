@@ -38,7 +38,7 @@ pub(crate) struct Segment<S: Stator> {
     direction: Series,
     force: Series,
     pub(crate) stator: S::Series,
-    /// Rotor against ring; unused where no ring moves.
+    /// Rotor against ring, and out of round squeezed so that the wall is a circle; else unused.
     gap: Series,
 }
 
@@ -69,6 +69,7 @@ impl<S: Stator> Segment<S> {
     fn gap(&self) -> &Series {
         match S::inner_series(&self.stator) {
             Some(_) => &self.gap,
+            None if S::OUT_OF_ROUND => &self.gap,
             None => &self.position,
         }
     }
@@ -150,6 +151,11 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
             // Factors first: only two operations wait for the coefficient before.
             velocity[i + 1] =
                 (scale * inverse_m) * force - (scale * k) * position[i] - (scale * d) * velocity[i];
+        }
+        if let Some(ellipse) = self.stator.ellipse() {
+            for (gap, x) in (segment.gap.0.iter_mut().zip(&segment.position.0)).take(order + 1) {
+                *gap = ellipse.squeezed(*x, self.contact.clearance_m);
+            }
         }
         if let Some(ring) = S::inner_series(&segment.stator) {
             for (i, gap) in segment.gap.0[..=order].iter_mut().enumerate() {
@@ -296,7 +302,7 @@ impl<S: Stator> Segment<S> {
     /// the moves converge as fast as Newton's. A start on the wall moving inwards counts as inside.
     pub(crate) fn wall_crossing(&self, clearance_m: f64, just_left: bool) -> Crossing {
         // Most steps end far from the wall; this bound needs no roots.
-        let reach = self.reach();
+        let reach = reach_of(self.gap(), self.order);
         if reach.x + reach.y < clearance_m {
             return Crossing::Nowhere;
         }
@@ -363,13 +369,14 @@ impl<S: Stator> Segment<S> {
         Crossing::ClearUntil(theta)
     }
 
-    /// Bound of the distance from the ring over the step, by axis.
+    /// Bound of the distance from the ring over the step, by axis; not squeezed.
     pub(crate) fn reach(&self) -> V2 {
-        let mut reach = V2::zeros();
-        for c in &self.gap().0[..=self.order] {
-            reach += c.abs();
-        }
-        reach
+        let track = if S::OUT_OF_ROUND {
+            &self.position
+        } else {
+            self.gap()
+        };
+        reach_of(track, self.order)
     }
 
     /// Velocity and delivered force at the nodes.
@@ -387,4 +394,14 @@ impl<S: Stator> Segment<S> {
         }
         sum
     }
+}
+
+/// Bound of a series over the step, by axis.
+#[inline]
+fn reach_of(series: &Series, order: usize) -> V2 {
+    let mut reach = V2::zeros();
+    for c in &series.0[..=order] {
+        reach += c.abs();
+    }
+    reach
 }

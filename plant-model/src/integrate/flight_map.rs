@@ -82,7 +82,11 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
         for (reach_of, z) in map.reach[..slots].iter().zip(&start) {
             reach += reach_of.dot(&z.abs());
         }
-        if reach.is_nan() || reach >= self.contact.clearance_m {
+        let wall_m = match self.stator.ellipse() {
+            None => self.contact.clearance_m,
+            Some(ellipse) => ellipse.nearest_m(),
+        };
+        if reach.is_nan() || reach >= wall_m {
             return None;
         }
         let mut end = [V2::zeros(); SLOTS];

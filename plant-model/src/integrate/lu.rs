@@ -15,11 +15,28 @@ pub(super) struct Lu<T> {
 }
 
 impl<T: ComplexField<RealField = f64> + Copy> Lu<T> {
-    /// Factorises the leading n × n part. None where it is singular.
-    pub(super) fn new(jacobian: &[[f64; MOST]; MOST], diagonal: T, n: usize) -> Option<Self> {
-        let mut a = jacobian.map(|row| row.map(|x| T::from_real(-x)));
-        let mut pivots = [0; MOST];
-        for (i, row) in a.iter_mut().enumerate() {
+    /// Room for factors, kept from one matrix to the next: they are too large to be moved for each.
+    pub(super) fn new() -> Self {
+        Self {
+            n: 0,
+            a: [[T::zero(); MOST]; MOST],
+            pivots: [0; MOST],
+        }
+    }
+
+    /// Factorises the leading n × n part. False where it is singular.
+    pub(super) fn factorise(
+        &mut self,
+        jacobian: &[[f64; MOST]; MOST],
+        diagonal: T,
+        n: usize,
+    ) -> bool {
+        self.n = n;
+        let (a, pivots) = (&mut self.a, &mut self.pivots);
+        for (i, (row, from)) in a.iter_mut().zip(jacobian).take(n).enumerate() {
+            for (x, from) in row.iter_mut().zip(&from[..n]) {
+                *x = T::from_real(-from);
+            }
             row[i] += diagonal;
         }
         for k in 0..n {
@@ -33,7 +50,7 @@ impl<T: ComplexField<RealField = f64> + Copy> Lu<T> {
             pivots[k] = best;
             let inverse = T::one() / a[k][k];
             if !inverse.is_finite() {
-                return None;
+                return false;
             }
             let pivot_row = a[k];
             for row in &mut a[k + 1..n] {
@@ -47,7 +64,7 @@ impl<T: ComplexField<RealField = f64> + Copy> Lu<T> {
             }
             a[k][k] = inverse;
         }
-        Some(Self { n, a, pivots })
+        true
     }
 
     /// Solves in place for the leading n entries.
@@ -94,10 +111,12 @@ mod tests {
                 b[i] -= exact[j] * jacobian[i][j];
             }
         }
-        Lu::new(&jacobian, diagonal, n).unwrap().solve(&mut b);
+        let mut lu = Lu::new();
+        assert!(lu.factorise(&jacobian, diagonal, n));
+        lu.solve(&mut b);
         for i in 0..n {
             assert!((b[i] - exact[i]).norm() < 1e-12, "{i}: {}", b[i]);
         }
-        assert!(Lu::new(&[[0.0; MOST]; MOST], 0.0, n).is_none());
+        assert!(!Lu::new().factorise(&[[0.0; MOST]; MOST], 0.0, n));
     }
 }

@@ -1,5 +1,6 @@
 //! What an embedded one-step method must give, so that step control, events and audit are written once.
 
+use super::frame::Frame;
 use crate::energy::Flows;
 use crate::part::{Part, Weights};
 
@@ -26,9 +27,9 @@ pub(crate) trait Field<Y, E> {
     fn at(&mut self, t_s: f64, y: &Y) -> E;
     /// d/dε of the rates at (t, y + ε·dy).
     fn along(&mut self, t_s: f64, y: &Y, dy: &Y) -> Y;
-    /// How fast the direction in which the field is stiff turns \[rad/s\].
-    fn turn_rad_s(&self, _y: &Y) -> f64 {
-        0.0
+    /// How the direction in which the field is stiff turns, as seen from a point with the field there.
+    fn frame(&self, _y: &Y, _first: &E) -> Frame {
+        Frame::default()
     }
     /// Takes note of matrices factorised for one step size.
     fn factorised(&mut self) {}
@@ -57,6 +58,11 @@ pub(crate) trait Pair<Y: Part, E: Rates<Y>> {
         weights: &Weights,
         field: &mut impl Field<Y, E>,
     ) -> (Y, f64);
+    /// Longest step, in lengths of the last attempt, in which the iteration inside would converge well.
+    /// None where there is no iteration, or nothing was learnt of it.
+    fn reach(&self) -> Option<f64> {
+        None
+    }
     /// Takes note of the field at the end of the last step.
     fn set_end(&mut self, end: E);
     /// The field at start, stages and end of the last step.

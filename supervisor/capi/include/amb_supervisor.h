@@ -451,8 +451,8 @@ amb_code amb_report_now(amb_supervisor *supervisor, amb_report *report);
 amb_code amb_next_event(amb_supervisor *supervisor, amb_event *event);
 
 /**
- * The frozen flight record, or AMB_NOTHING. It freezes 2 * AMB_RECORD_ENTRIES ticks after its last entry, in
- * which its checksum is made a little at a time, and stays as it is until amb_rearm(), so that its entries may
+ * The frozen flight record, or AMB_NOTHING. It freezes some ticks for each entry after the last one, in which
+ * its checksum is made a little at a time, and stays as it is until amb_rearm(), so that its entries may
  * be read one at a time, with ticks between.
  * @param[out] record untouched unless AMB_OK.
  */

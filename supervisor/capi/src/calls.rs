@@ -175,7 +175,7 @@ pub unsafe extern "C" fn amb_reconfigure(
         // SAFETY: the caller's promise.
         let config = unsafe { configuration(values, count) }?;
         let done = lease.content().reconfigure(&config);
-        done.map_err(|error| storage::code_of(error.parameter))
+        done.map_err(|error| storage::code_of(error.parameter()))
     });
     Code::of(done)
 }

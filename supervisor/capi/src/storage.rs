@@ -96,7 +96,7 @@ pub(crate) unsafe fn make_supervisor(
     }
     // SAFETY: large enough now, the rest is the caller's promise.
     let mut making = unsafe { Making::new(storage) }?;
-    put(making.place(), config).map_err(|error| code_of(error.parameter))?;
+    put(making.place(), config).map_err(|error| code_of(error.parameter()))?;
     making.done();
     Ok(())
 }

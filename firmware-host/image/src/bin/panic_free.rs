@@ -1,22 +1,12 @@
-//! The whole supervisor, linked with a panic handler that does not exist: if any panic could be
-//! reached, linking would fail. It is linked, not run.
+//! The whole supervisor and nothing else, linked with a panic handler that does not exist: if any panic
+//! could be reached, linking would fail. It is linked, not run; its sections are the supervisor's size.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]
 mod image {
     use core::hint::black_box;
-    use supervisor::{Config, PARAMETERS, Sample, Supervisor};
-
-    unsafe extern "C" {
-        /// Deliberately without a definition.
-        fn a_panic_can_be_reached() -> !;
-    }
-
-    #[panic_handler]
-    fn panic(_info: &core::panic::PanicInfo<'_>) -> ! {
-        // SAFETY: never linked; a successful link proves that this function was dropped.
-        unsafe { a_panic_can_be_reached() }
-    }
+    use firmware_image::{planted, under_test};
+    use supervisor::{Config, PARAMETERS, Sample};
 
     /// Calls everything that firmware calls, with values that the optimiser knows nothing of.
     // SAFETY: the only symbol of this name in the image.
@@ -24,7 +14,7 @@ mod image {
     extern "C" fn _start() -> ! {
         let config = Config::from_values(black_box([0.0; PARAMETERS.len()]));
         loop {
-            let Ok(mut supervisor) = Supervisor::<512>::new(black_box(&config)) else {
+            let Some(mut supervisor) = under_test::new(black_box(&config)) else {
                 continue;
             };
             for _ in 0..black_box(10) {
@@ -44,16 +34,12 @@ mod image {
                 }
                 supervisor.rearm();
             }
-            #[cfg(feature = "planted-panic")]
-            {
-                let few = [1, 2, 3];
-                black_box(few[black_box(2_usize)]);
-            }
+            planted();
         }
     }
 }
 
 #[cfg(not(target_os = "none"))]
 fn main() {
-    eprintln!("an image for Cortex-M; build it with --target thumbv7em-none-eabihf");
+    firmware_image::not_for_the_host();
 }

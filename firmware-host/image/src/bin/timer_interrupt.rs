@@ -1,0 +1,218 @@
+//! Firmware as it could be, small enough to be read in one go: a timer interrupt ticks the supervisor at
+//! 20 kHz, and the background drains its events and picks up its flight record.
+//!
+//! The board is made up: [`measured_position_m`] stands for converter and position sensor, the levitation
+//! controller is a spring, and the commanded force is kept where a driver of amplifiers would take it from. The
+//! rotor falls onto its retainer bearing, whirls there for a while and comes back. Prints what a logger
+//! would be given, and ends when the record has been read.
+#![cfg_attr(target_os = "none", no_std, no_main)]
+
+#[cfg(target_os = "none")]
+mod firmware {
+    use core::cell::RefCell;
+    use cortex_m::peripheral::syst::SystClkSource;
+    use cortex_m_rt::{entry, exception};
+    use critical_section::Mutex;
+    use firmware_image::{exit, planted, report};
+    use supervisor::{Config, Entry, IntegratorHint, QueuedEvent, Sample, Status, Supervisor};
+
+    const CORE_HZ: u32 = 25_000_000;
+    const TICK_HZ: u32 = 20_000;
+    const RECORD: usize = 512;
+    /// Entries that the background copies under one lock: each lock holds the next tick up.
+    const PIECE: usize = 8;
+
+    const CONFIG: Config = Config {
+        sample_period_s: 1.0 / TICK_HZ as f32,
+        mass_kg: 10.0,
+        stiffness_n_m: -2e5,
+        damping_n_s_m: 0.0,
+        clearance_m: CLEARANCE_M,
+        force_max_n: 1000.0,
+        amplifier_lag_s: 1.6e-4,
+        delay_samples: 1.0,
+        friction_coefficient: 0.15,
+        restitution: 0.7,
+        observer_pole_flight: 0.5,
+        observer_pole_contact: 0.2,
+        contact_band: 0.02,
+        position_limit: 4.0,
+        whirl_time_s: 2e-3,
+        hold_share: 0.8,
+        handover_dwell_s: 1e-3,
+        handover_blend_s: 2e-3,
+        fault_blend_s: 1e-3,
+        fault_ticks: 10.0,
+        axis_force_max_n: 1000.0,
+        force_slew_n_s: 1e7,
+        continuous_force_n: 400.0,
+        thermal_time_s: 5.0,
+        contact_stiffness_n_m: 1e9,
+        coast_down_s: 5e-3,
+        severity_limit: 20.0,
+        retainer_plane_ratio: 1.0,
+        magnet_plane_ratio: 1.0,
+        speed_max_m_s: 2.0,
+        sensor_step_m: 1e-6,
+    };
+    const CLEARANCE_M: f32 = 2e-4;
+
+    /// What interrupt and background share. `None` until `main` has put it there: the timer starts after that.
+    static CONTROL: Mutex<RefCell<Option<Control>>> = Mutex::new(RefCell::new(None));
+
+    struct Control {
+        supervisor: Supervisor<RECORD>,
+        sequence: u32,
+        hint: IntegratorHint,
+        /// What the amplifiers are told \[N\].
+        force_n: [f32; 2],
+    }
+
+    impl Control {
+        /// What the interrupt does. Whatever the sensor reads goes in: judging it is the supervisor's task.
+        fn tick(&mut self) {
+            self.sequence = self.sequence.wrapping_add(1);
+            let position_m = measured_position_m(self.sequence);
+            let command = self.supervisor.tick(&Sample {
+                sequence: self.sequence,
+                status: Status::SPIN_VALID | Status::BEARING_ON,
+                position_m,
+                spin_rad_s: 1000.0,
+                levitation_n: levitation_n(position_m, self.hint),
+                ..Sample::default()
+            });
+            // For the controller's next tick.
+            self.hint = command.integrator;
+            self.force_n = command.force_n;
+        }
+    }
+
+    /// Control, for as short a time as possible: the interrupt waits meanwhile.
+    fn with_control<T>(work: impl FnOnce(&mut Control) -> T) -> Option<T> {
+        critical_section::with(|cs| {
+            // It is never borrowed twice, and if it were, a tick would be left out and not the firmware end.
+            let mut control = CONTROL.borrow(cs).try_borrow_mut().ok()?;
+            control.as_mut().map(work)
+        })
+    }
+
+    #[exception]
+    fn SysTick() {
+        with_control(Control::tick);
+    }
+
+    #[entry]
+    fn main() -> ! {
+        planted();
+        let Some(mut peripherals) = cortex_m::Peripherals::take() else {
+            exit::failure()
+        };
+        // Before the bearing is switched on: a parameter out of range must not get into operation.
+        let Ok(supervisor) = Supervisor::new(&CONFIG) else {
+            report::failed("a parameter is out of range")
+        };
+        critical_section::with(|cs| {
+            // `replace` would panic where it cannot, and then the image would not link.
+            if let Ok(mut control) = CONTROL.borrow(cs).try_borrow_mut() {
+                *control = Some(Control {
+                    supervisor,
+                    sequence: 0,
+                    hint: IntegratorHint::Run,
+                    force_n: [0.0; 2],
+                });
+            }
+        });
+        let timer = &mut peripherals.SYST;
+        timer.set_clock_source(SystClkSource::Core);
+        timer.set_reload(CORE_HZ / TICK_HZ - 1);
+        timer.clear_current();
+        timer.enable_counter();
+        timer.enable_interrupt();
+        background()
+    }
+
+    /// Everything that has time.
+    fn background() -> ! {
+        loop {
+            // One event for each lock.
+            while let Some(event) = with_control(|c| c.supervisor.next_event()).flatten() {
+                log(event);
+            }
+            if let Some(crc) = with_control(|c| c.supervisor.record().map(|r| r.crc)).flatten() {
+                pick_up(crc);
+                with_control(|c| c.supervisor.rearm());
+                let landings = with_control(|c| c.supervisor.report().landings);
+                report::number("landings", landings.unwrap_or(0));
+                exit::success();
+            }
+            cortex_m::asm::wfi();
+        }
+    }
+
+    /// A frozen record does not change, so it is copied in pieces between the ticks. Firmware would write it
+    /// to flash or a bus; the checksum shows that all of it has arrived.
+    fn pick_up(crc: u32) {
+        let mut copy = [Entry::default(); RECORD];
+        for (i, piece) in copy.chunks_mut(PIECE).enumerate() {
+            with_control(|c| {
+                let Some(record) = c.supervisor.record() else {
+                    return;
+                };
+                for (to, from) in piece.iter_mut().zip(record.entries().skip(i * PIECE)) {
+                    *to = *from;
+                }
+            });
+        }
+        report::number("record_version", supervisor::RECORD_VERSION.into());
+        report::number("record_entries", copy.len() as u32);
+        let intact = supervisor::crc_of(copy.iter()) == crc;
+        report::text("record_intact", if intact { "yes" } else { "no" });
+    }
+
+    fn log(event: QueuedEvent) {
+        report::number("tick", event.sequence);
+        report::text("mode", event.mode.name());
+        report::bits("events", event.events.bits().into());
+    }
+
+    /// A controller of no use but to have one: a spring with an integrator would obey the hint here.
+    fn levitation_n([x, y]: [f32; 2], _hint: IntegratorHint) -> [f32; 2] {
+        const SPRING_N_M: f32 = 3e6;
+        [-SPRING_N_M * x, -SPRING_N_M * y]
+    }
+
+    /// Stands for the sensor. In ticks: 200 in the middle, 40 to the wall, 120 of backward whirl on it, back
+    /// in 100, and rest.
+    fn measured_position_m(tick: u32) -> [f32; 2] {
+        const OUT: u32 = 200;
+        const WALL: u32 = OUT + 40;
+        const BACK: u32 = WALL + 120;
+        const REST: u32 = BACK + 100;
+        /// A turn by 0.1 rad, backward: 0.4 m/s on the wall.
+        const TURN: [f32; 2] = [0.995_004_2, -0.099_833_4];
+        let share = |from: u32, ticks: u32| (tick - from) as f32 / ticks as f32;
+        let radius = if tick < OUT {
+            0.0
+        } else if tick < WALL {
+            share(OUT, WALL - OUT)
+        } else if tick < BACK {
+            1.02
+        } else if tick < REST {
+            1.0 - share(BACK, REST - BACK)
+        } else {
+            0.0
+        };
+        let turns = tick.clamp(WALL, BACK) - WALL;
+        let [mut x, mut y] = [radius * CLEARANCE_M, 0.0];
+        for _ in 0..turns {
+            let [cos, sin] = TURN;
+            (x, y) = (cos * x - sin * y, sin * x + cos * y);
+        }
+        [x, y]
+    }
+}
+
+#[cfg(not(target_os = "none"))]
+fn main() {
+    firmware_image::not_for_the_host();
+}

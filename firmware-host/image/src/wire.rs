@@ -1,0 +1,259 @@
+//! Samples, commands and configurations as bytes, little-endian, field by field.
+//!
+//! The one place that knows the fields: each struct is taken apart by name, so that a field that is added
+//! to the supervisor's border does not compile here until it has a place in the bytes.
+//!
+//! A recorded stream is a [`Header`], then for each segment a [`Segment`] and its ticks. A tick is
+//! a sample and the command that the host gave to it, [`TICK_BYTES`] in all.
+
+use supervisor::{
+    Command, Config, Events, IntegratorHint, Limits, Mode, PARAMETERS, Sample, Status,
+};
+
+/// Bytes of a sample.
+pub const SAMPLE_BYTES: usize = 36;
+/// Bytes of a command.
+pub const COMMAND_BYTES: usize = 30;
+/// Bytes of a tick in a stream.
+pub const TICK_BYTES: usize = SAMPLE_BYTES + COMMAND_BYTES;
+/// Bytes of a configuration.
+pub const CONFIG_BYTES: usize = 4 * PARAMETERS.len();
+/// Bytes of a [`Header`].
+pub const HEADER_BYTES: usize = 8;
+/// Bytes of a [`Segment`].
+pub const SEGMENT_BYTES: usize = CONFIG_BYTES + 4;
+/// First bytes of a stream; the last of them is the version of the layout.
+const MAGIC: [u8; 4] = *b"AWS\x01";
+
+/// First byte of a message to the image in the loop: a configuration follows, answered by [`READY`] or
+/// [`REFUSED`].
+pub const CONFIGURE: u8 = b'C';
+/// A sample follows, answered by a command.
+pub const TICK: u8 = b'T';
+/// The image ends, without an answer.
+pub const QUIT: u8 = b'Q';
+/// The configuration is valid; the supervisor is new.
+pub const READY: u8 = b'R';
+/// The configuration is not valid.
+pub const REFUSED: u8 = b'X';
+
+/// Beginning of a stream.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Header {
+    /// Segments that follow.
+    pub segments: u32,
+}
+
+/// Beginning of a segment: a new supervisor, and how many ticks it gets.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Segment {
+    /// Its configuration.
+    pub config: Config,
+    /// Ticks that follow.
+    pub ticks: u32,
+}
+
+/// Puts values one after the other. What does not fit is dropped, which the constants above rule out.
+struct Writer<'a> {
+    rest: &'a mut [u8],
+}
+
+impl Writer<'_> {
+    fn put<const N: usize>(&mut self, bytes: [u8; N]) {
+        if let Some((head, rest)) = core::mem::take(&mut self.rest).split_first_chunk_mut() {
+            *head = bytes;
+            self.rest = rest;
+        }
+    }
+    fn word(&mut self, value: u32) {
+        self.put(value.to_le_bytes());
+    }
+    fn float(&mut self, value: f32) {
+        self.word(value.to_bits());
+    }
+    fn pair(&mut self, [x, y]: [f32; 2]) {
+        self.float(x);
+        self.float(y);
+    }
+}
+
+/// Takes them back; zero beyond the end, which the constants above rule out.
+struct Reader<'a> {
+    rest: &'a [u8],
+}
+
+impl Reader<'_> {
+    fn take<const N: usize>(&mut self) -> [u8; N] {
+        let Some((head, rest)) = self.rest.split_first_chunk() else {
+            return [0; N];
+        };
+        self.rest = rest;
+        *head
+    }
+    fn word(&mut self) -> u32 {
+        u32::from_le_bytes(self.take())
+    }
+    fn float(&mut self) -> f32 {
+        f32::from_bits(self.word())
+    }
+    fn pair(&mut self) -> [f32; 2] {
+        let x = self.float();
+        [x, self.float()]
+    }
+    fn byte(&mut self) -> u8 {
+        let [byte] = self.take();
+        byte
+    }
+}
+
+/// A sample as bytes; floats keep every bit, whatever they are.
+pub fn put_sample(sample: &Sample, bytes: &mut [u8; SAMPLE_BYTES]) {
+    let Sample {
+        sequence,
+        status,
+        position_m,
+        spin_rad_s,
+        levitation_n,
+        applied_n,
+    } = *sample;
+    let mut writer = Writer { rest: bytes };
+    writer.word(sequence);
+    writer.word(status.bits());
+    writer.pair(position_m);
+    writer.float(spin_rad_s);
+    writer.pair(levitation_n);
+    writer.pair(applied_n);
+}
+
+/// The sample of these bytes.
+pub fn sample_of(bytes: &[u8; SAMPLE_BYTES]) -> Sample {
+    let mut reader = Reader { rest: bytes };
+    Sample {
+        sequence: reader.word(),
+        status: Status::from_bits_retain(reader.word()),
+        position_m: reader.pair(),
+        spin_rad_s: reader.float(),
+        levitation_n: reader.pair(),
+        applied_n: reader.pair(),
+    }
+}
+
+/// A command as bytes.
+pub fn put_command(command: &Command, bytes: &mut [u8; COMMAND_BYTES]) {
+    let Command {
+        force_n,
+        own_n,
+        mode,
+        limits,
+        events,
+        integrator,
+        severity,
+    } = *command;
+    let mut writer = Writer { rest: bytes };
+    writer.pair(force_n);
+    writer.pair(own_n);
+    writer.word(limits.bits());
+    writer.word(events.bits());
+    writer.float(severity);
+    writer.put([mode as u8]);
+    writer.put([integrator as u8]);
+}
+
+/// The command of these bytes; `None` where they are none.
+pub fn command_of(bytes: &[u8; COMMAND_BYTES]) -> Option<Command> {
+    let mut reader = Reader { rest: bytes };
+    Some(Command {
+        force_n: reader.pair(),
+        own_n: reader.pair(),
+        limits: Limits::from_bits(reader.word())?,
+        events: Events::from_bits(reader.word())?,
+        severity: reader.float(),
+        mode: mode_of(reader.byte())?,
+        integrator: match reader.byte() {
+            0 => IntegratorHint::Run,
+            1 => IntegratorHint::Hold,
+            _ => return None,
+        },
+    })
+}
+
+/// Every mode, in the order of their numbers.
+pub const MODES: [Mode; 7] = [
+    Mode::Levitated,
+    Mode::Approach,
+    Mode::Bounce,
+    Mode::BackwardWhirl,
+    Mode::Pinned,
+    Mode::Handover,
+    Mode::SensorFault,
+];
+
+/// The mode of a number.
+pub fn mode_of(number: u8) -> Option<Mode> {
+    MODES.into_iter().find(|mode| *mode as u8 == number)
+}
+
+/// A configuration as bytes.
+pub fn put_config(config: &Config, bytes: &mut [u8; CONFIG_BYTES]) {
+    let mut writer = Writer { rest: bytes };
+    for value in config.values() {
+        writer.float(value);
+    }
+}
+
+/// The configuration of these bytes, valid or not.
+pub fn config_of(bytes: &[u8; CONFIG_BYTES]) -> Config {
+    let mut reader = Reader { rest: bytes };
+    Config::from_values(core::array::from_fn(|_| reader.float()))
+}
+
+/// A header as bytes.
+pub fn put_header(header: Header, bytes: &mut [u8; HEADER_BYTES]) {
+    let mut writer = Writer { rest: bytes };
+    writer.put(MAGIC);
+    writer.word(header.segments);
+}
+
+/// The header of these bytes; `None` where they begin no stream of this layout.
+pub fn header_of(bytes: &[u8; HEADER_BYTES]) -> Option<Header> {
+    let mut reader = Reader { rest: bytes };
+    (reader.take() == MAGIC).then(|| Header {
+        segments: reader.word(),
+    })
+}
+
+/// The beginning of a segment as bytes.
+pub fn put_segment(segment: &Segment, bytes: &mut [u8; SEGMENT_BYTES]) {
+    if let Some((config, rest)) = bytes.split_first_chunk_mut() {
+        put_config(&segment.config, config);
+        Writer { rest }.word(segment.ticks);
+    }
+}
+
+/// The beginning of a segment of these bytes.
+pub fn segment_of(bytes: &[u8; SEGMENT_BYTES]) -> Option<Segment> {
+    let (config, rest) = bytes.split_first_chunk()?;
+    Some(Segment {
+        config: config_of(config),
+        ticks: Reader { rest }.word(),
+    })
+}
+
+/// Hash over commands (FNV-1a, 64 bits): one number that says whether two runs did the same.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Hash(pub u64);
+
+impl Default for Hash {
+    fn default() -> Self {
+        Self(0xcbf2_9ce4_8422_2325)
+    }
+}
+
+impl Hash {
+    /// Takes bytes in.
+    pub fn add(&mut self, bytes: &[u8]) {
+        for byte in bytes {
+            self.0 = (self.0 ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01b3);
+        }
+    }
+}

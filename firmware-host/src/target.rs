@@ -1,0 +1,18 @@
+//! The supervisor on the processors that it is for, emulated: what is run there and what is measured.
+//!
+//! A stream of samples is recorded on the host with the commands that the host gives ([`record`]); the images in
+//! `firmware-host/image` replay it ([`emulator`]) and their figures are held against budgets ([`budgets`]).
+
+pub mod budgets;
+pub mod closed_loops;
+pub mod counts;
+pub mod coverage;
+pub mod emulator;
+pub mod images;
+pub mod link;
+pub mod loops;
+pub mod machines;
+pub mod made_up;
+pub mod measure;
+pub mod record;
+pub mod results;

@@ -1,0 +1,107 @@
+//! Which modes and which ways from mode to mode a stream has.
+
+use firmware_image::wire::MODES;
+use supervisor::Mode;
+
+/// The ways that the state machine has, apart from staying. There is none from a touch or a fault straight
+/// into approach or hand-over, none from bounce into approach, and none from levitation into hand-over.
+pub const WAYS: [(Mode, &[Mode]); 7] = {
+    use Mode::{Approach, BackwardWhirl, Bounce, Handover, Levitated, Pinned, SensorFault};
+    [
+        (
+            Levitated,
+            &[Approach, Bounce, BackwardWhirl, Pinned, SensorFault],
+        ),
+        (
+            Approach,
+            &[
+                Levitated,
+                Bounce,
+                BackwardWhirl,
+                Pinned,
+                Handover,
+                SensorFault,
+            ],
+        ),
+        (
+            Bounce,
+            &[Levitated, BackwardWhirl, Pinned, Handover, SensorFault],
+        ),
+        (BackwardWhirl, &[Levitated, Bounce, Pinned, SensorFault]),
+        (Pinned, &[Levitated, Bounce, BackwardWhirl, SensorFault]),
+        (
+            Handover,
+            &[
+                Levitated,
+                Approach,
+                Bounce,
+                BackwardWhirl,
+                Pinned,
+                SensorFault,
+            ],
+        ),
+        (SensorFault, &[Levitated, Bounce, BackwardWhirl, Pinned]),
+    ]
+};
+
+/// Counts of ticks by the mode before and after them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Coverage {
+    ticks: [[u64; MODES.len()]; MODES.len()],
+}
+
+impl Coverage {
+    /// Takes a tick in.
+    pub fn add(&mut self, before: Mode, after: Mode) {
+        self.ticks[before as usize][after as usize] += 1;
+    }
+
+    /// Adds what another has counted.
+    pub fn merge(&mut self, other: &Self) {
+        for (own, row) in self.ticks.iter_mut().zip(&other.ticks) {
+            for (own, count) in own.iter_mut().zip(row) {
+                *own += count;
+            }
+        }
+    }
+
+    /// Ticks that ended in a mode.
+    pub fn of_mode(&self, mode: Mode) -> u64 {
+        self.ticks.iter().map(|row| row[mode as usize]).sum()
+    }
+
+    /// Ticks from one mode to another.
+    pub fn of_way(&self, from: Mode, to: Mode) -> u64 {
+        self.ticks[from as usize][to as usize]
+    }
+
+    /// Modes that have no tick.
+    pub fn missing_modes(&self) -> Vec<Mode> {
+        MODES
+            .into_iter()
+            .filter(|m| self.of_mode(*m) == 0)
+            .collect()
+    }
+
+    /// Ways of [`WAYS`] that have no tick.
+    pub fn missing_ways(&self) -> Vec<(Mode, Mode)> {
+        let ways = WAYS
+            .iter()
+            .flat_map(|(from, tos)| tos.iter().map(|to| (*from, *to)));
+        ways.filter(|(from, to)| self.of_way(*from, *to) == 0)
+            .collect()
+    }
+
+    /// Ways that were taken and are not among [`WAYS`].
+    pub fn unknown_ways(&self) -> Vec<(Mode, Mode)> {
+        let known = |from: Mode, to: Mode| {
+            from == to || WAYS.iter().any(|(f, tos)| *f == from && tos.contains(&to))
+        };
+        let pairs = MODES
+            .into_iter()
+            .flat_map(|from| MODES.map(|to| (from, to)));
+        pairs
+            .filter(|(from, to)| self.of_way(*from, *to) > 0 && !known(*from, *to))
+            .collect()
+    }
+}

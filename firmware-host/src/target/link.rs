@@ -1,0 +1,171 @@
+//! A supervisor in the emulator, in a closed loop with the plant here: samples go out and commands come back
+//! over a serial port of the board, in lock step.
+
+use super::emulator::{EmulatorError, Running, Time};
+use super::machines::Machine;
+use crate::policies::Supervise;
+use firmware_image::wire::{
+    COMMAND_BYTES, CONFIG_BYTES, CONFIGURE, QUIT, READY, SAMPLE_BYTES, TICK, command_of,
+    put_config, put_sample,
+};
+use std::cell::RefCell;
+use std::io::{self, Read, Write};
+use std::net::{Ipv4Addr, TcpListener, TcpStream};
+use std::path::Path;
+use std::rc::Rc;
+use std::time::{Duration, Instant};
+use supervisor::{Command, Config, Mode, Sample};
+
+/// Longest wait for the emulator, at its start and for each answer.
+const PATIENCE: Duration = Duration::from_secs(20);
+
+/// Why the loop broke.
+#[derive(Debug, thiserror::Error, miette::Diagnostic)]
+pub enum LinkError {
+    /// The emulator.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Emulator(#[from] EmulatorError),
+    /// The emulator did not connect its port.
+    #[error("the emulated board does not connect its serial port")]
+    NoConnection,
+    /// The line broke, or nothing came in time.
+    #[error("the serial line to the emulated board: {0}")]
+    Line(#[from] io::Error),
+    /// What came is no answer.
+    #[error("the emulated board answered {0:?}")]
+    Answer(Vec<u8>),
+}
+
+/// An emulated board that supervises.
+#[derive(Debug)]
+pub struct Board {
+    line: TcpStream,
+    /// Why the loop broke, if it did: a tick cannot fail.
+    broken: Option<LinkError>,
+    running: Running,
+}
+
+impl Board {
+    /// Starts the image and waits for its line.
+    ///
+    /// # Errors
+    /// [`LinkError`].
+    pub fn start(machine: &Machine, image: &Path, folder: &Path) -> Result<Self, LinkError> {
+        let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, 0))?;
+        listener.set_nonblocking(true)?;
+        let serial = format!("tcp:{},nodelay", listener.local_addr()?);
+        let mut running = Running::start(machine, image, folder, Time::Free, &serial)?;
+        let until = Instant::now() + PATIENCE;
+        let line = loop {
+            match listener.accept() {
+                Ok((line, _)) => break line,
+                Err(e) if e.kind() != io::ErrorKind::WouldBlock => return Err(e.into()),
+                Err(_) if running.ended() || Instant::now() > until => {
+                    return Err(LinkError::NoConnection);
+                }
+                Err(_) => std::thread::sleep(Duration::from_millis(2)),
+            }
+        };
+        line.set_nonblocking(false)?;
+        line.set_nodelay(true)?;
+        line.set_read_timeout(Some(PATIENCE))?;
+        Ok(Self {
+            line,
+            broken: None,
+            running,
+        })
+    }
+
+    /// Makes a new supervisor on the board.
+    ///
+    /// # Errors
+    /// [`LinkError`]; of a configuration that is refused too.
+    pub fn configure(&mut self, config: &Config) -> Result<(), LinkError> {
+        let mut message = [CONFIGURE; 1 + CONFIG_BYTES];
+        if let Some((_, bytes)) = message.split_first_chunk_mut::<1>()
+            && let Some(bytes) = bytes.first_chunk_mut()
+        {
+            put_config(config, bytes);
+        }
+        self.line.write_all(&message)?;
+        let mut answer = [0];
+        self.line.read_exact(&mut answer)?;
+        match answer {
+            [READY] => Ok(()),
+            other => Err(LinkError::Answer(other.to_vec())),
+        }
+    }
+
+    fn tick(&mut self, sample: &Sample) -> Result<Command, LinkError> {
+        let mut message = [TICK; 1 + SAMPLE_BYTES];
+        if let Some((_, bytes)) = message.split_first_chunk_mut::<1>()
+            && let Some(bytes) = bytes.first_chunk_mut()
+        {
+            put_sample(sample, bytes);
+        }
+        self.line.write_all(&message)?;
+        let mut answer = [0; COMMAND_BYTES];
+        self.line.read_exact(&mut answer)?;
+        command_of(&answer).ok_or_else(|| LinkError::Answer(answer.to_vec()))
+    }
+
+    /// Why the loop broke, if it did.
+    pub fn take_broken(&mut self) -> Option<LinkError> {
+        self.broken.take()
+    }
+
+    /// Ends the image.
+    ///
+    /// # Errors
+    /// [`LinkError`].
+    pub fn quit(mut self) -> Result<(), LinkError> {
+        self.line.write_all(&[QUIT])?;
+        match self.running.wait(PATIENCE) {
+            Some((true, _)) => Ok(()),
+            Some((false, said)) => Err(LinkError::Answer(said.into_bytes())),
+            None => Err(LinkError::NoConnection),
+        }
+    }
+}
+
+/// The supervisor on a board, as a policy has it.
+#[derive(Debug)]
+pub struct Emulated {
+    board: Rc<RefCell<Board>>,
+    mode: Mode,
+}
+
+impl Emulated {
+    /// The new supervisor of a board that has just been configured.
+    pub fn new(board: Rc<RefCell<Board>>) -> Self {
+        Self {
+            board,
+            mode: Mode::default(),
+        }
+    }
+}
+
+impl Supervise for Emulated {
+    /// Without force once the loop is broken; [`Board::take_broken`] says why.
+    fn tick(&mut self, sample: &Sample) -> Command {
+        let mut board = self.board.borrow_mut();
+        if board.broken.is_some() {
+            return Command::default();
+        }
+        match board.tick(sample) {
+            Ok(command) => {
+                self.mode = command.mode;
+                command
+            }
+            Err(why) => {
+                board.broken = Some(why);
+                Command::default()
+            }
+        }
+    }
+
+    fn mode(&self) -> Mode {
+        self.mode
+    }
+}

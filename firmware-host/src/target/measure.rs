@@ -1,0 +1,193 @@
+//! A target measured: replay, instructions, sizes.
+
+use super::budgets::{BudgetError, Budgets, Figures};
+use super::counts::{Counts, counts_of};
+use super::coverage::WAYS;
+use super::emulator::{self, EmulatorError, Time};
+use super::images::{ImageError, Project};
+use super::link::LinkError;
+use super::machines::Machine;
+use super::record::{Length, Stream};
+use super::results::{ModeTicks, StreamRow, TargetRow};
+use crate::closed_loop::RunError;
+use crate::overloads::plan::CatalogueError;
+use firmware_image::wire::MODES;
+use std::path::Path;
+use std::time::Duration;
+use tempfile::TempDir;
+
+/// Why there are no figures.
+#[derive(Debug, thiserror::Error, miette::Diagnostic)]
+pub enum TargetError {
+    /// The images.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Image(#[from] ImageError),
+    /// The emulator.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Emulator(#[from] EmulatorError),
+    /// The budgets.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Budget(#[from] BudgetError),
+    /// The line to the emulated board.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Link(#[from] LinkError),
+    /// The catalogue, which streams and loops come from.
+    #[error(transparent)]
+    Catalogue(#[from] CatalogueError),
+    /// A closed loop that cannot be trusted.
+    #[error(transparent)]
+    Run(#[from] RunError),
+    /// The catalogue has no such scene.
+    #[error("the catalogue has no scene {0:?}")]
+    NoScene(String),
+    /// Files between host and emulator.
+    #[error("a file for the emulator: {0}")]
+    File(#[from] std::io::Error),
+}
+
+/// A replay may take so long for each million ticks.
+const LIMIT_S_PER_MILLION: u64 = 600;
+/// The instructions of a tick on the emulator's clock, 2^10 ns each: what the image `count` knows too.
+const SHIFT: u8 = 10;
+
+/// The streams on disk, where the emulator reads them.
+#[derive(Debug)]
+pub struct Streams {
+    replayed: TempDir,
+    counted: TempDir,
+    limit: Duration,
+    /// What the replayed one goes through.
+    pub row: StreamRow,
+}
+
+impl Streams {
+    /// Records both.
+    ///
+    /// # Errors
+    /// [`TargetError::Catalogue`], [`TargetError::File`].
+    pub fn record(replayed: Length) -> Result<Self, TargetError> {
+        let stream = Stream::record(replayed)?;
+        let write = |stream: &Stream| -> Result<TempDir, TargetError> {
+            let folder = TempDir::with_prefix("supervisor-target-")?;
+            stream.write(std::fs::File::create(folder.path().join("stream.bin"))?)?;
+            Ok(folder)
+        };
+        Ok(Self {
+            replayed: write(&stream)?,
+            counted: write(&Stream::record(Length::QUICK)?)?,
+            limit: Duration::from_secs(
+                60 + stream.ticks() as u64 * LIMIT_S_PER_MILLION / 1_000_000,
+            ),
+            row: row_of(&stream),
+        })
+    }
+}
+
+fn row_of(stream: &Stream) -> StreamRow {
+    let coverage = stream.coverage();
+    StreamRow {
+        ticks: stream.ticks() as u64,
+        hash: format!("{:016x}", stream.hash().0),
+        modes: (MODES.into_iter())
+            .map(|mode| ModeTicks {
+                mode: mode.name(),
+                ticks: coverage.of_mode(mode),
+            })
+            .collect(),
+        ways: WAYS.iter().map(|(_, to)| to.len()).sum(),
+        missing_ways: (coverage.missing_ways().iter())
+            .map(|(from, to)| format!("{} to {}", from.name(), to.name()))
+            .collect(),
+    }
+}
+
+/// Counts the instructions of every tick of the counted stream; and the deepest stack.
+///
+/// # Errors
+/// [`TargetError`].
+pub fn count(
+    project: &Project,
+    machine: &Machine,
+    streams: &Streams,
+) -> Result<(Counts, u64), TargetError> {
+    let image = project.image(machine.target, "count");
+    // A folder of its own: machines write files of the same name.
+    let folder = TempDir::with_prefix("supervisor-counts-")?;
+    let stream = Path::new("stream.bin");
+    std::fs::copy(
+        streams.counted.path().join(stream),
+        folder.path().join(stream),
+    )?;
+    let time = Time::Counted { shift: SHIFT };
+    let said = emulator::run(machine, &image, folder.path(), time, streams.limit)?;
+    let silent = |name| EmulatorError::Silent {
+        image: "count",
+        machine: machine.name,
+        name,
+    };
+    let bytes = std::fs::read(folder.path().join("counts.bin"))?;
+    let counts = counts_of(&bytes).ok_or_else(|| silent("counts"))?;
+    let stack = said.get("stack_bytes").and_then(|v| v.parse().ok());
+    Ok((counts, stack.ok_or_else(|| silent("stack_bytes"))?))
+}
+
+/// Everything of one machine; its images have been built.
+///
+/// # Errors
+/// [`TargetError`].
+pub fn measure(
+    project: &Project,
+    machine: &Machine,
+    streams: &Streams,
+    budgets: &Budgets,
+) -> Result<TargetRow, TargetError> {
+    let (counts, stack_bytes) = count(project, machine, streams)?;
+    let image = project.image(machine.target, "replay");
+    let folder = streams.replayed.path();
+    let said = emulator::run(machine, &image, folder, Time::Free, streams.limit)?;
+    let value = |name: &'static str| {
+        said.get(name).ok_or(EmulatorError::Silent {
+            image: "replay",
+            machine: machine.name,
+            name,
+        })
+    };
+    let number = |name: &'static str| -> Result<u64, EmulatorError> {
+        value(name)?.parse().map_err(|_| EmulatorError::Silent {
+            image: "replay",
+            machine: machine.name,
+            name,
+        })
+    };
+    let text = project.text(machine.target)?;
+    let figures = Figures {
+        worst_instructions: counts.all.worst_instructions.into(),
+        median_instructions: counts.all.median_instructions.into(),
+        text_bytes: text.code_bytes + text.constant_bytes,
+        ram_bytes: number("ram_bytes")?,
+        stack_bytes,
+    };
+    Ok(TargetRow {
+        name: machine.name,
+        number: machine.number,
+        board: machine.board,
+        target: machine.target,
+        counted_ticks: counts.all.ticks,
+        min_instructions: counts.all.min_instructions,
+        median_instructions: counts.all.median_instructions,
+        worst_instructions: counts.all.worst_instructions,
+        modes: counts.modes,
+        text_bytes: figures.text_bytes,
+        code_bytes: text.code_bytes,
+        ram_bytes: figures.ram_bytes,
+        stack_bytes,
+        ticks: number("ticks")?,
+        bit_exact_ticks: number("bit_exact_ticks")?,
+        hash: value("hash")?.clone(),
+        budgets: budgets.judge(machine.name, machine.number, &figures)?,
+    })
+}

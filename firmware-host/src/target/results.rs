@@ -1,0 +1,132 @@
+//! What was measured on the targets, as JSON has it.
+
+use super::budgets::Verdict;
+use super::counts::OfMode;
+use serde::Serialize;
+
+/// A supervisor on a processor.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct TargetRow {
+    /// Processor.
+    pub name: &'static str,
+    /// Numbers that it calculates in.
+    pub number: &'static str,
+    /// Board in QEMU.
+    pub board: &'static str,
+    /// Target of the compiler.
+    pub target: &'static str,
+    /// Ticks whose instructions were counted.
+    pub counted_ticks: usize,
+    /// Least instructions of a tick.
+    pub min_instructions: u32,
+    /// Half of the ticks have more.
+    pub median_instructions: u32,
+    /// Most instructions of a tick.
+    pub worst_instructions: u32,
+    /// The same for the ticks that ended in a mode.
+    pub modes: Vec<OfMode>,
+    /// Flash that the supervisor takes with all that it calls.
+    pub text_bytes: u64,
+    /// Instructions' part of it.
+    pub code_bytes: u64,
+    /// Its state without the ring of the flight record.
+    pub ram_bytes: u64,
+    /// Deepest stack of a tick, from its caller.
+    pub stack_bytes: u64,
+    /// Ticks that were replayed.
+    pub ticks: u64,
+    /// Of these, the ones with the same bits as on the host.
+    pub bit_exact_ticks: u64,
+    /// Hash over the commands of the replay.
+    pub hash: String,
+    /// Figures against their budgets.
+    pub budgets: Vec<Verdict>,
+}
+
+/// What the replayed stream goes through.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct StreamRow {
+    /// Ticks.
+    pub ticks: u64,
+    /// Hash over the host's commands.
+    pub hash: String,
+    /// Ticks that ended in each mode.
+    pub modes: Vec<ModeTicks>,
+    /// Ways from mode to mode that the state machine has.
+    pub ways: usize,
+    /// Ways that are not in the stream.
+    pub missing_ways: Vec<String>,
+}
+
+/// Ticks of a mode.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ModeTicks {
+    /// The mode.
+    pub mode: &'static str,
+    /// Ticks that ended in it.
+    pub ticks: u64,
+}
+
+/// A scene with the supervisor on an emulated processor.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct LoopRow {
+    /// Processor.
+    pub name: &'static str,
+    /// Numbers that it calculates in.
+    pub number: &'static str,
+    /// Scene of the catalogue.
+    pub scene: String,
+    /// Ticks of the loop.
+    pub ticks: u64,
+    /// Of these, the ones whose sample and command have the same bits as on the host alone.
+    pub bit_exact_ticks: u64,
+    /// Whether plant and verdict are the same too.
+    pub same_plant: bool,
+    /// Ticks in a second of wall time.
+    pub ticks_per_s: f64,
+}
+
+/// Everything.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Report {
+    /// The emulator.
+    pub qemu: String,
+    /// The replayed stream.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stream: Option<StreamRow>,
+    /// Replays, counts and sizes.
+    pub targets: Vec<TargetRow>,
+    /// Processors in the loop.
+    pub loops: Vec<LoopRow>,
+}
+
+impl Report {
+    /// What is wrong with it, a line each.
+    pub fn failures(&self) -> Vec<String> {
+        let mut failures = Vec::new();
+        for way in self.stream.iter().flat_map(|s| &s.missing_ways) {
+            failures.push(format!("the stream does not go from {way}"));
+        }
+        for t in &self.targets {
+            let name = format!("{} {}", t.name, t.number);
+            if t.bit_exact_ticks != t.ticks {
+                let differ = t.ticks - t.bit_exact_ticks;
+                failures.push(format!(
+                    "{name}: {differ} of {} ticks differ from the host",
+                    t.ticks
+                ));
+            }
+            let broken = t.budgets.iter().filter_map(Verdict::failure);
+            failures.extend(broken.map(|f| format!("{name}: {f}")));
+        }
+        for l in &self.loops {
+            if l.bit_exact_ticks != l.ticks || !l.same_plant {
+                failures.push(format!(
+                    "{} {} in the loop, {}: {} of {} ticks as on the host alone",
+                    l.name, l.number, l.scene, l.bit_exact_ticks, l.ticks
+                ));
+            }
+        }
+        failures
+    }
+}

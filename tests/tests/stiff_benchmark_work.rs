@@ -1,0 +1,71 @@
+//! What the stiff method takes for an error on the benchmark problems B3.
+
+use plant_model::params::{RingParams, StatorParams};
+use plant_model::{Inputs, Method, Options, V2, build};
+use system_tests::plants::{bouncing, bouncing_start};
+
+/// One problem: name, mass of the ring \[kg\], contact damping \[N s/m\], and where the rotor ends \[m\].
+type Problem = (&'static str, f64, f64, V2);
+
+/// Ends from extrapolated midpoint steps in 128-bit arithmetic (`tests/peers/reference`); of B3c from the
+/// series at 1e-12, which agrees with another solver to 1e-12 clearances.
+const PROBLEMS: [Problem; 3] = [
+    (
+        "B3a",
+        1.0,
+        2e4,
+        V2::new(2.88418984290071e-4, 3.635701631807502e-4),
+    ),
+    (
+        "B3b",
+        1.0,
+        2e6,
+        V2::new(3.087230269639085e-4, 3.486426392106153e-4),
+    ),
+    (
+        "B3c",
+        0.1,
+        2e6,
+        V2::new(4.84379526839962e-4, 7.37550202391739e-5),
+    ),
+];
+
+/// Fewest evaluations that a general solver (CVODE's or diffsol's BDF) needs for an error in clearances,
+/// as `tests/peers` measures them, for each problem; and the tolerance at which the project is compared.
+const PEERS: [(f64, f64, [u64; 3]); 3] = [
+    (1e-3, 1e-4, [2063, 1331, 1686]),
+    (1e-5, 1e-5, [3838, 2610, 4771]),
+    (1e-7, 1e-6, [5501, 3476, 6867]),
+];
+
+/// The error is met with at most 1.5 times the evaluations of the best peer.
+#[test]
+fn evaluations_stay_near_those_of_the_best_peer() {
+    for (error, rtol, peers) in PEERS {
+        for ((name, ring_kg, damping_n_s_m, end), peer) in PROBLEMS.into_iter().zip(peers) {
+            let mut params = bouncing(1e10);
+            params.contact.law.linear_mut().unwrap().damping_n_s_m = damping_n_s_m;
+            params.stator = StatorParams::OneMass(RingParams {
+                mass_kg: ring_kg,
+                stiffness_n_m: V2::repeat(2e7),
+                damping_n_s_m: V2::repeat(3000.0),
+            });
+            let options = Options {
+                rtol,
+                method: Method::Stiff,
+                ..Options::default()
+            };
+            let mut plant = build(&params, &bouncing_start(), options).unwrap();
+            plant
+                .advance(0.02, &Inputs::default(), &mut |_| {})
+                .unwrap();
+            let off = (plant.snapshot().position_m - end).norm() / params.contact.clearance_m;
+            let evaluations = plant.work().evaluations;
+            assert!(off <= error, "{name} at {rtol:e}: {off:e}");
+            assert!(
+                2 * evaluations <= 3 * peer,
+                "{name} at {rtol:e}: {evaluations} evaluations, the peer {peer}"
+            );
+        }
+    }
+}

@@ -1,0 +1,85 @@
+//! The supervisor on emulated processors: the same bits as here, and figures within their budgets.
+
+use serde_json::Value;
+use system_tests::target::target;
+use system_tests::{host, root};
+
+fn parsed(stdout: &[u8]) -> Value {
+    serde_json::from_slice(stdout).unwrap()
+}
+
+/// Every tick of the short stream, which has every mode and every way between modes.
+#[test]
+fn every_processor_gives_the_bits_of_the_host_within_its_budgets() {
+    let Some(output) = target(&["--quick", "--json"]) else {
+        return;
+    };
+    let error = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{error}");
+    let report = parsed(&output.stdout);
+    let stream = &report["stream"];
+    assert_eq!(stream["ticks"], 100_000);
+    assert_eq!(stream["missing_ways"], Value::Array(Vec::new()));
+    let modes = stream["modes"].as_array().unwrap();
+    assert_eq!(modes.len(), 7);
+    for mode in modes {
+        assert!(mode["ticks"].as_u64().unwrap() >= 100, "{mode}");
+    }
+    let targets = report["targets"].as_array().unwrap();
+    let names: Vec<_> = targets
+        .iter()
+        .map(|t| t["name"].as_str().unwrap())
+        .collect();
+    assert_eq!(names, ["M3", "M4F", "M7"]);
+    for t in targets {
+        assert_eq!(t["number"], "f32");
+        assert_eq!(t["bit_exact_ticks"], 100_000, "{t}");
+        assert_eq!(t["hash"], stream["hash"], "{t}");
+        // A count that lost its meaning would show here: between nothing and a thousand flops in software.
+        let [min, median, worst] =
+            ["min", "median", "worst"].map(|x| t[format!("{x}_instructions")].as_u64().unwrap());
+        assert!(
+            100 < min && min < median && median < worst && worst < 100_000,
+            "{t}"
+        );
+        assert_eq!(
+            t["modes"].as_array().unwrap().len(),
+            7,
+            "all are counted: {t}"
+        );
+    }
+}
+
+/// The same ticks cost the same instructions, run for run.
+#[test]
+fn instructions_are_the_same_every_time() {
+    let count = || {
+        let output = target(&["--quick", "--json", "--only", "M4F"])?;
+        let report = parsed(&output.stdout);
+        Some(report["targets"].clone())
+    };
+    let Some(first) = count() else {
+        return;
+    };
+    assert_eq!(first.as_array().unwrap().len(), 1);
+    assert_eq!(Some(first), count());
+}
+
+/// Without the emulator the command says what to install.
+#[test]
+fn a_missing_emulator_is_named() {
+    let output = host()
+        .current_dir(root())
+        .env("PATH", "")
+        .args(["target", "--quick"])
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    let error = String::from_utf8_lossy(&output.stderr);
+    assert!(
+        error.contains("qemu-system-arm is not installed"),
+        "{error}"
+    );
+    assert!(error.contains("apt-get install"), "{error}");
+    assert!(output.stdout.is_empty());
+}
