@@ -86,14 +86,18 @@ enum State {
 }
 
 /// Ring of `N` entries (a power of two).
+///
+/// The order of the fields is kept, and has written numbers on both sides of the entries: then the compiler
+/// clears these where the recorder will stay, and has no copy of them on the stack on the way there.
 #[derive(Debug, Clone)]
+#[repr(C)]
 pub(crate) struct Recorder<const N: usize> {
-    entries: [Entry; N],
-    next: usize,
     state: State,
     crc: u32,
-    queued: heapless::Deque<QueuedEvent, 16>,
+    next: usize,
+    entries: [Entry; N],
     lost: bool,
+    queued: heapless::Deque<QueuedEvent, 16>,
 }
 
 impl<const N: usize> Recorder<N> {
@@ -107,12 +111,12 @@ impl<const N: usize> Recorder<N> {
 
     pub(crate) fn new() -> Self {
         Self {
-            entries: [Entry::default(); N],
-            next: 0,
             state: State::Armed,
             crc: !0,
-            queued: heapless::Deque::new(),
+            next: 0,
+            entries: [Entry::default(); N],
             lost: false,
+            queued: heapless::Deque::new(),
         }
     }
 

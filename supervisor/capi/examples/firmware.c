@@ -10,8 +10,9 @@
 #include <stdbool.h>
 #include <stdio.h>
 
-/* Static, so that it is zero before amb_init(); nine kilobytes have no place on a stack. */
+/* Static, so that they are zero before they are made; nine kilobytes have no place on a stack. */
 static amb_supervisor plane;
+static amb_watch watch;
 static rig machine;
 static volatile bool finished;
 /* A call that failed in the interrupt: to be shown by the background. */
@@ -22,10 +23,21 @@ void control_interrupt(void) {
     amb_sample sample;
     amb_command command;
     amb_code code;
+    float values[AMB_PARAMETERS];
     if (finished) return;
+    if (rig_reconfigures(&machine, values)) {
+        code = amb_reconfigure(&plane, values, AMB_PARAMETERS);
+        if (code != AMB_OK) failed = code; /* the configuration before still holds */
+    }
     rig_sample(&machine, &sample);
     code = amb_tick(&plane, &sample, &command);
     /* The command is usable all the same: after an error it is zero force. */
+    if (code != AMB_OK) failed = code;
+    code = amb_watch_renew(&watch, command.force_n);
+    if (code != AMB_OK) failed = code;
+    /* A loop of the amplifier's own would do this in each of its periods: once the control interrupt stays
+     * away, the force is zero. Here it has the period of the tick. */
+    code = amb_watch_force(&watch, command.force_n);
     if (code != AMB_OK) failed = code;
     rig_actuate(&machine, &command);
     finished = machine.tick == RIG_TICKS;
@@ -80,7 +92,9 @@ static void take_record(void) {
 
 int main(void) {
     amb_report report;
-    amb_code code = amb_init(&plane, sizeof plane, rig_config, AMB_PARAMETERS);
+    amb_code code = amb_self_test(); /* does this processor compute what it should? */
+    if (code == AMB_OK) code = amb_watch_init(&watch, 2);
+    if (code == AMB_OK) code = amb_init(&plane, sizeof plane, rig_config, AMB_PARAMETERS);
     if (code != AMB_OK) {
         printf("supervisor: %s\n", amb_error_text(code)); /* names the parameter */
         return 1;

@@ -1,6 +1,7 @@
-/* See rig.h. The story: levitated; a blow throws the rotor onto its retainer bearing, it bounces, begins to whirl and is
- * caught; the position sensor fails for a while; ticks are lost, and another blow comes while the drive
- * has lost an axis and measures what it delivers. */
+/* See rig.h. The story: levitated; a blow throws the rotor onto its retainer bearing, it bounces, begins to
+ * whirl and is caught, with a command that comes too late; the position sensor fails for a while; the cap is
+ * lowered; ticks are lost, and another blow comes while the drive has lost an axis and measures what it
+ * delivers; at a third blow the supervisor is in shadow at first. */
 #include "rig.h"
 
 #include <string.h>
@@ -52,6 +53,14 @@ void rig_start(rig *r) {
     r->hash = 2166136261u;
 }
 
+int rig_reconfigures(const rig *r, float values[AMB_PARAMETERS]) {
+    if (r->tick != 2600) return 0;
+    memcpy(values, rig_config, sizeof rig_config);
+    values[AMB_P_FORCE_MAX_N] = 900.0f;
+    values[AMB_P_HANDOVER_DWELL_S] = 5e-4f;
+    return 1;
+}
+
 static int between(uint32_t tick, uint32_t from, uint32_t to) {
     return tick >= from && tick < to;
 }
@@ -67,6 +76,8 @@ void rig_sample(rig *r, amb_sample *sample) {
     if (tick >= 100) sample->status |= AMB_STATUS_SPIN_VALID;
     if (tick >= 3020) sample->status |= AMB_STATUS_APPLIED_VALID;
     if (between(tick, 3040, 3300)) sample->status |= AMB_STATUS_AXIS_Y_LOST;
+    if (tick == 320) sample->status |= AMB_STATUS_LATE;
+    if (between(tick, 3590, 3640)) sample->status |= AMB_STATUS_SHADOW;
     sample->spin_rad_s = 1000.0f;
     for (axis = 0; axis < 2; axis++) {
         /* 2e6 N/m and 6.2e3 N s/m. */
@@ -120,6 +131,8 @@ void rig_actuate(rig *r, const amb_command *command) {
     int32_t force[2] = {r->force[0], r->force[1]};
     hash_word(r, bits(command->force_n[0]));
     hash_word(r, bits(command->force_n[1]));
+    hash_word(r, bits(command->own_n[0]));
+    hash_word(r, bits(command->own_n[1]));
     hash_word(r, bits(command->severity));
     hash_word(r, command->mode);
     hash_word(r, command->limits);
@@ -137,6 +150,10 @@ void rig_actuate(rig *r, const amb_command *command) {
     if (r->tick == 3100) {
         r->velocity[0] -= 12000000;
         r->velocity[1] += 16000000;
+    }
+    if (r->tick == 3600) {
+        r->velocity[0] += 20000000;
+        r->velocity[1] += 20000000;
     }
     for (axis = 0; axis < 2; axis++) {
         r->velocity[axis] += ACCELERATION * force[axis];

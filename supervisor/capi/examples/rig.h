@@ -12,9 +12,9 @@
 #include "amb_supervisor.h"
 
 /** Ticks of the whole story. */
-#define RIG_TICKS 4000u
+#define RIG_TICKS 4400u
 
-/** The configuration of its supervisor. */
+/** The configuration of its supervisor at start. */
 extern const float rig_config[AMB_PARAMETERS];
 
 typedef struct rig {
@@ -31,6 +31,9 @@ typedef struct rig {
 
 /** At the centre, at rest. */
 void rig_start(rig *r);
+
+/** Whether another configuration is to hold from this tick on. @param[out] values it, if so. */
+int rig_reconfigures(const rig *r, float values[AMB_PARAMETERS]);
 
 /** What the converters and the controller have at this tick. */
 void rig_sample(rig *r, amb_sample *sample);

@@ -27,8 +27,9 @@
  * nothing blocks.
  *
  * Calls on the same supervisor must not interrupt each other: hold the interrupt that ticks while the
- * background calls. A call that does interrupt another is refused with AMB_ERROR_BUSY. Calls without a
- * supervisor in their arguments may come from anywhere.
+ * background calls. A call that does interrupt another is refused with AMB_ERROR_BUSY. The same holds for
+ * calls on the same watch (AMB_ERROR_WATCH_BUSY). Calls with neither in their arguments may come from
+ * anywhere.
  */
 #ifndef AMB_SUPERVISOR_H
 #define AMB_SUPERVISOR_H
@@ -48,10 +49,12 @@
 /* Names in the library end with the version, so that objects compiled against another one do not link. */
 #define AMB_JOINED(name, abi) name##_abi##abi
 #define AMB_JOIN(name, abi) AMB_JOINED(name, abi)
+#define amb_self_test AMB_JOIN(amb_self_test, AMB_ABI)
 #define amb_error_text AMB_JOIN(amb_error_text, AMB_ABI)
 #define amb_parameter_at AMB_JOIN(amb_parameter_at, AMB_ABI)
 #define amb_parameter_index AMB_JOIN(amb_parameter_index, AMB_ABI)
 #define amb_init AMB_JOIN(amb_init, AMB_ABI)
+#define amb_reconfigure AMB_JOIN(amb_reconfigure, AMB_ABI)
 #define amb_tick AMB_JOIN(amb_tick, AMB_ABI)
 #define amb_mode AMB_JOIN(amb_mode, AMB_ABI)
 #define amb_mode_name AMB_JOIN(amb_mode_name, AMB_ABI)
@@ -61,6 +64,10 @@
 #define amb_record_entry AMB_JOIN(amb_record_entry, AMB_ABI)
 #define amb_crc AMB_JOIN(amb_crc, AMB_ABI)
 #define amb_rearm AMB_JOIN(amb_rearm, AMB_ABI)
+#define amb_watch_init AMB_JOIN(amb_watch_init, AMB_ABI)
+#define amb_watch_renew AMB_JOIN(amb_watch_renew, AMB_ABI)
+#define amb_watch_force AMB_JOIN(amb_watch_force, AMB_ABI)
+#define amb_watch_expired AMB_JOIN(amb_watch_expired, AMB_ABI)
 
 /* What is true when this compiles, whatever the language. */
 #if defined(__cplusplus) && __cplusplus >= 201103L
@@ -103,6 +110,13 @@ typedef int32_t amb_code;
 #define AMB_ERROR_ENTRIES_MISALIGNED (-17) /**< entries is not aligned to 4 bytes */
 #define AMB_ERROR_RESULT_NULL (-18) /**< the pointer to the result is null */
 #define AMB_ERROR_RESULT_MISALIGNED (-19) /**< the pointer to the result is not aligned as its type */
+#define AMB_ERROR_WATCH_NULL (-20) /**< watch is null */
+#define AMB_ERROR_WATCH_MISALIGNED (-21) /**< watch is not aligned to AMB_WATCH_ALIGN bytes */
+#define AMB_ERROR_WATCH_NOT_INITIALISED (-22) /**< watch was not made by amb_watch_init */
+#define AMB_ERROR_WATCH_BUSY (-23) /**< watch is in use by a call that this one interrupted */
+#define AMB_ERROR_FORCE_NULL (-24) /**< force is null */
+#define AMB_ERROR_FORCE_MISALIGNED (-25) /**< force is not aligned as a float */
+#define AMB_ERROR_SELF_TEST (-26) /**< this processor, compiler or memory computes something else */
 /** The parameter of this index is outside its range. */
 #define AMB_ERROR_PARAMETER(index) (-1000 - (amb_code)(index))
 /** @} */
@@ -154,6 +168,8 @@ typedef int32_t amb_code;
 #define AMB_STATUS_APPLIED_VALID 0x4u /**< applied_n is measured */
 #define AMB_STATUS_AXIS_X_LOST 0x8u   /**< the drive cannot act along x */
 #define AMB_STATUS_AXIS_Y_LOST 0x10u  /**< the drive cannot act along y */
+#define AMB_STATUS_LATE 0x20u         /**< the last command came too late for its tick: the actuator kept the one before */
+#define AMB_STATUS_SHADOW 0x40u       /**< compute and record, but let the levitation command through */
 /** @} */
 
 /** @name Modes @{ */
@@ -183,21 +199,23 @@ typedef int32_t amb_code;
 /** @} */
 
 /** @name Events: what changed at this tick @{ */
-#define AMB_EVENT_ENGAGED 0x1u         /**< the supervisor took over */
-#define AMB_EVENT_TOUCHED 0x2u         /**< the rotor touched the retainer bearing */
-#define AMB_EVENT_LIFTED_OFF 0x4u      /**< and left it */
-#define AMB_EVENT_WHIRL 0x8u           /**< continuous backward whirl was recognised */
-#define AMB_EVENT_PINNED 0x10u         /**< the rotor is held on the bearing by a load */
-#define AMB_EVENT_HANDOVER 0x20u       /**< hand-over to the levitation controller began */
-#define AMB_EVENT_LEVITATED 0x40u      /**< the levitation controller has the bearing again */
-#define AMB_EVENT_SENSOR_FAULT 0x80u   /**< samples were implausible for too long */
-#define AMB_EVENT_SENSOR_OK 0x100u     /**< they are plausible again */
-#define AMB_EVENT_SEQUENCE 0x200u      /**< a sequence number was missed or repeated */
-#define AMB_EVENT_RECORD_FROZEN 0x400u /**< there is a record to be read */
-#define AMB_EVENT_QUEUE_FULL 0x800u    /**< an event before this one was lost */
-#define AMB_EVENT_AXIS_LOST 0x1000u    /**< the drive has lost an axis */
-#define AMB_EVENT_AXIS_BACK 0x2000u    /**< an axis is back */
-#define AMB_EVENT_COAST_DOWN 0x4000u   /**< the machine should coast down */
+#define AMB_EVENT_ENGAGED 0x1u           /**< the supervisor took over */
+#define AMB_EVENT_TOUCHED 0x2u           /**< the rotor touched the retainer bearing */
+#define AMB_EVENT_LIFTED_OFF 0x4u        /**< and left it */
+#define AMB_EVENT_WHIRL 0x8u             /**< continuous backward whirl was recognised */
+#define AMB_EVENT_PINNED 0x10u           /**< the rotor is held on the bearing by a load */
+#define AMB_EVENT_HANDOVER 0x20u         /**< hand-over to the levitation controller began */
+#define AMB_EVENT_LEVITATED 0x40u        /**< the levitation controller has the bearing again */
+#define AMB_EVENT_SENSOR_FAULT 0x80u     /**< samples were implausible for too long */
+#define AMB_EVENT_SENSOR_OK 0x100u       /**< they are plausible again */
+#define AMB_EVENT_SEQUENCE 0x200u        /**< a sequence number was missed or repeated */
+#define AMB_EVENT_LATE 0x400u            /**< the last command came too late */
+#define AMB_EVENT_RECONFIGURED 0x800u    /**< from this tick on another configuration holds */
+#define AMB_EVENT_AXIS_LOST 0x1000u      /**< the drive has lost an axis */
+#define AMB_EVENT_AXIS_BACK 0x2000u      /**< an axis is back */
+#define AMB_EVENT_COAST_DOWN 0x4000u     /**< the machine should coast down */
+#define AMB_EVENT_RECORD_FROZEN 0x10000u /**< there is a record to be read */
+#define AMB_EVENT_QUEUE_FULL 0x20000u    /**< an event before this one was lost; only in the queue */
 /** @} */
 
 /** @name Why a sample was refused @{ */
@@ -224,6 +242,20 @@ typedef union amb_supervisor {
     uint64_t align;
 } amb_supervisor;
 
+/** Bytes of an amb_watch. */
+#define AMB_WATCH_BYTES 32
+/** Its alignment in bytes. */
+#define AMB_WATCH_ALIGN 4
+
+/**
+ * An output watch: holds the last command for the actuator's own loop, and lets it expire. Opaque and
+ * static, or zero, as an amb_supervisor.
+ */
+typedef union amb_watch {
+    uint8_t bytes[AMB_WATCH_BYTES];
+    uint32_t align;
+} amb_watch;
+
 /** What the firmware knows at one sampling instant. Any bits are allowed: what is implausible is refused. */
 typedef struct amb_sample {
     uint32_t sequence;     /**< counts up by one each tick, wrapping; the old one means: no new sample */
@@ -237,6 +269,7 @@ typedef struct amb_sample {
 /** What to do until the next tick. */
 typedef struct amb_command {
     float force_n[2];    /**< force to command [N]: finite and within all limits */
+    float own_n[2];      /**< force that the supervisor would command [N]: force_n but with AMB_STATUS_SHADOW */
     float severity;      /**< backward speed to come, over what the cap can arrest; 0 to 1e6 */
     uint32_t mode;       /**< AMB_MODE_ */
     uint32_t limits;     /**< AMB_LIMIT_ bits */
@@ -269,10 +302,10 @@ typedef struct amb_record {
 typedef struct amb_entry {
     uint32_t sequence;   /**< sequence number of the sample */
     int16_t position[2]; /**< measured position [clearance / AMB_PER_UNIT] */
-    int16_t force[2];    /**< commanded force [force_max_n / AMB_PER_UNIT] */
+    int16_t force[2];    /**< own_n of the command [force_max_n / AMB_PER_UNIT] */
     uint8_t mode;        /**< AMB_MODE_ */
     uint8_t limits;      /**< AMB_LIMIT_ bits */
-    uint16_t events;     /**< AMB_EVENT_ bits */
+    uint16_t events;     /**< AMB_EVENT_ bits, the low 16 */
 } amb_entry;
 
 /** What has happened since amb_init(). */
@@ -280,6 +313,9 @@ typedef struct amb_report {
     uint32_t landings;            /**< engagements in which the rotor touched the retainer bearing */
     uint32_t impacts;             /**< touches in them */
     uint32_t contact_ticks;       /**< ticks in contact in them */
+    uint32_t missed_ticks;        /**< ticks that were missed, by the sequence number */
+    uint32_t repeated_ticks;      /**< calls with the sequence number of the call before */
+    uint32_t late_ticks;          /**< commands that came too late, by AMB_STATUS_LATE */
     uint32_t coast_down;          /**< 1 if coasting down was asked for and the bearing has been on since */
     uint32_t refusal;             /**< AMB_REFUSAL_ of the last sample */
     uint32_t fault;               /**< AMB_REFUSAL_ that began the last sensor fault */
@@ -302,15 +338,16 @@ typedef struct amb_parameter {
 
 /** @name Sizes in bytes @{ */
 #define AMB_SIZEOF_SAMPLE 36
-#define AMB_SIZEOF_COMMAND 28
+#define AMB_SIZEOF_COMMAND 36
 #define AMB_SIZEOF_EVENT 12
 #define AMB_SIZEOF_RECORD 12
 #define AMB_SIZEOF_ENTRY 16
-#define AMB_SIZEOF_REPORT 48
+#define AMB_SIZEOF_REPORT 60
 /** @} */
 
 /* The library was compiled with the same numbers: see structs.rs and storage.rs. */
 AMB_ASSERT(supervisor_size, sizeof(amb_supervisor) == AMB_SUPERVISOR_BYTES);
+AMB_ASSERT(watch_size, sizeof(amb_watch) == AMB_WATCH_BYTES);
 AMB_ASSERT(sample_size, sizeof(amb_sample) == AMB_SIZEOF_SAMPLE);
 AMB_ASSERT(sample_status, offsetof(amb_sample, status) == 4);
 AMB_ASSERT(sample_position, offsetof(amb_sample, position_m) == 8);
@@ -318,11 +355,12 @@ AMB_ASSERT(sample_spin, offsetof(amb_sample, spin_rad_s) == 16);
 AMB_ASSERT(sample_levitation, offsetof(amb_sample, levitation_n) == 20);
 AMB_ASSERT(sample_applied, offsetof(amb_sample, applied_n) == 28);
 AMB_ASSERT(command_size, sizeof(amb_command) == AMB_SIZEOF_COMMAND);
-AMB_ASSERT(command_severity, offsetof(amb_command, severity) == 8);
-AMB_ASSERT(command_mode, offsetof(amb_command, mode) == 12);
-AMB_ASSERT(command_limits, offsetof(amb_command, limits) == 16);
-AMB_ASSERT(command_events, offsetof(amb_command, events) == 20);
-AMB_ASSERT(command_integrator, offsetof(amb_command, integrator) == 24);
+AMB_ASSERT(command_own, offsetof(amb_command, own_n) == 8);
+AMB_ASSERT(command_severity, offsetof(amb_command, severity) == 16);
+AMB_ASSERT(command_mode, offsetof(amb_command, mode) == 20);
+AMB_ASSERT(command_limits, offsetof(amb_command, limits) == 24);
+AMB_ASSERT(command_events, offsetof(amb_command, events) == 28);
+AMB_ASSERT(command_integrator, offsetof(amb_command, integrator) == 32);
 AMB_ASSERT(event_size, sizeof(amb_event) == AMB_SIZEOF_EVENT);
 AMB_ASSERT(record_size, sizeof(amb_record) == AMB_SIZEOF_RECORD);
 AMB_ASSERT(entry_size, sizeof(amb_entry) == AMB_SIZEOF_ENTRY);
@@ -332,15 +370,25 @@ AMB_ASSERT(entry_mode, offsetof(amb_entry, mode) == 12);
 AMB_ASSERT(entry_limits, offsetof(amb_entry, limits) == 13);
 AMB_ASSERT(entry_events, offsetof(amb_entry, events) == 14);
 AMB_ASSERT(report_size, sizeof(amb_report) == AMB_SIZEOF_REPORT);
-AMB_ASSERT(report_fault, offsetof(amb_report, fault) == 20);
-AMB_ASSERT(report_impact_speed, offsetof(amb_report, impact_speed_max_m_s) == 24);
-AMB_ASSERT(report_force_cap, offsetof(amb_report, force_cap_n) == 44);
+AMB_ASSERT(report_missed, offsetof(amb_report, missed_ticks) == 12);
+AMB_ASSERT(report_late, offsetof(amb_report, late_ticks) == 20);
+AMB_ASSERT(report_fault, offsetof(amb_report, fault) == 32);
+AMB_ASSERT(report_impact_speed, offsetof(amb_report, impact_speed_max_m_s) == 36);
+AMB_ASSERT(report_force_cap, offsetof(amb_report, force_cap_n) == 56);
 AMB_ASSERT(parameter_low, offsetof(amb_parameter, low) == 3 * sizeof(char *));
 AMB_ASSERT(parameter_high, offsetof(amb_parameter, high) == 3 * sizeof(char *) + 4);
 
 /** Version of the interface that the library speaks. The only name without a version, for programs that
  * load the library when they run. */
 uint32_t amb_abi_version(void);
+
+/**
+ * Self-test at boot: a supervisor of the test's own goes through every mode, and all its commands have to be
+ * what they were when this version was made. Takes some milliseconds, without an FPU some tenths of a second,
+ * and two kilobytes of stack; touches no other supervisor.
+ * @return AMB_ERROR_SELF_TEST: do not use the supervisor on this processor.
+ */
+amb_code amb_self_test(void);
 
 /** What a code means, for people. Never null. */
 const char *amb_error_text(amb_code code);
@@ -360,7 +408,7 @@ amb_code amb_parameter_at(uint32_t index, amb_parameter *parameter);
 amb_code amb_parameter_index(const char *name, uint32_t *index);
 
 /**
- * Makes a supervisor, levitated. Takes ten kilobytes of stack: call it at start-up, outside interrupts.
+ * Makes a supervisor, levitated. Takes two kilobytes of stack.
  * @param supervisor memory for it, zero or made before. After an error it is as it was.
  * @param bytes sizeof *supervisor.
  * @param values the configuration: value of each parameter, in the order of their indexes.
@@ -368,6 +416,15 @@ amb_code amb_parameter_index(const char *name, uint32_t *index);
  * @return AMB_ERROR_PARAMETER(index) for the first value outside its range; NaN is outside every range.
  */
 amb_code amb_init(amb_supervisor *supervisor, size_t bytes, const float *values, size_t count);
+
+/**
+ * Another configuration for a supervisor that is there, to hold from its next tick on. What is known of the
+ * rotor stays, and so do mode, counters and thermal state; entries of the flight record are in the units of
+ * their time, and the tick of the change has AMB_EVENT_RECONFIGURED. It computes some roots and exponentials:
+ * see the page on C for how long.
+ * @param values, count as for amb_init(), and so is what is returned; after an error nothing has changed.
+ */
+amb_code amb_reconfigure(amb_supervisor *supervisor, const float *values, size_t count);
 
 /**
  * One tick: bounded in time, whatever the sample holds.
@@ -394,7 +451,8 @@ amb_code amb_report_now(amb_supervisor *supervisor, amb_report *report);
 amb_code amb_next_event(amb_supervisor *supervisor, amb_event *event);
 
 /**
- * The frozen flight record, or AMB_NOTHING. It stays as it is until amb_rearm(), so that its entries may
+ * The frozen flight record, or AMB_NOTHING. It freezes some ticks for each entry after the last one, in which
+ * its checksum is made a little at a time, and stays as it is until amb_rearm(), so that its entries may
  * be read one at a time, with ticks between.
  * @param[out] record untouched unless AMB_OK.
  */
@@ -416,6 +474,31 @@ amb_code amb_crc(const amb_entry *entries, uint32_t count, uint32_t *crc);
 
 /** Discards a frozen record and waits for the next engagement. */
 amb_code amb_rearm(amb_supervisor *supervisor);
+
+/**
+ * Makes an output watch, without a command. A control loop that is no longer called must not leave its last
+ * force on the magnet: where the actuator has a loop of its own, let it take its force from a watch.
+ * @param watch memory for it, zero or made before.
+ * @param periods a command holds for this many periods of the actuator; 0 lets none through.
+ */
+amb_code amb_watch_init(amb_watch *watch, uint32_t periods);
+
+/**
+ * After each tick.
+ * @param force two floats, as in amb_command: the actuator's from now on. After an error it keeps the one
+ * that it had, until that expires.
+ */
+amb_code amb_watch_renew(amb_watch *watch, const float *force);
+
+/**
+ * Once in each period of the actuator.
+ * @param[out] force two floats: the actuator's, zero when the command has expired, and after an error, unless
+ * force itself is null or misaligned.
+ */
+amb_code amb_watch_force(amb_watch *watch, float *force);
+
+/** Whether the next period would have no command. @param[out] expired 0 or 1; untouched after an error. */
+amb_code amb_watch_expired(amb_watch *watch, uint32_t *expired);
 
 #ifdef __cplusplus
 }

@@ -1,4 +1,4 @@
-//! The functions of the header, in its order. Their names in the library end with the version of the
+//! The functions of the header, in its order; those on an output watch are in `watch`. Their names in the library end with the version of the
 //! interface, so that a program compiled against another one does not link.
 
 use crate::code::Code;
@@ -16,6 +16,8 @@ macro_rules! ending {
     };
 }
 
+pub(crate) use ending;
+
 const _: () = {
     assert!(ending!().len() == 5 && version::ABI < 10);
     assert!(ending!().as_bytes()[4] == b'0' + version::ABI as u8);
@@ -26,6 +28,17 @@ const _: () = {
 #[unsafe(no_mangle)]
 pub extern "C" fn amb_abi_version() -> u32 {
     version::ABI
+}
+
+/// Whether this processor computes what it should.
+// SAFETY: a name of its own, see `amb_abi_version`.
+#[unsafe(export_name = concat!("amb_self_test", ending!()))]
+pub extern "C" fn amb_self_test() -> Code {
+    if supervisor::self_test::<f32>() {
+        Code::OK
+    } else {
+        Code::ERROR_SELF_TEST
+    }
 }
 
 /// What a code means, for people; never null.
@@ -121,16 +134,50 @@ pub unsafe extern "C" fn amb_init(
     if let Err(code) = Argument::Supervisor.check(supervisor.cast_const()) {
         return code;
     }
-    if let Err(code) = Argument::Values.check(values) {
-        return code;
-    }
+    // SAFETY: the caller's promise.
+    let config = match unsafe { configuration(values, count) } {
+        Ok(config) => config,
+        Err(code) => return code,
+    };
+    // SAFETY: the caller's promise.
+    Code::of(unsafe { storage::make_supervisor(supervisor, bytes, &config) })
+}
+
+/// The configuration that these values make, not yet compared with their ranges.
+///
+/// # Safety
+/// `values` is null, misaligned, or points to `count` floats.
+unsafe fn configuration(values: *const f32, count: usize) -> Result<Config, Code> {
+    Argument::Values.check(values)?;
     if count != PARAMETERS.len() {
-        return Code::ERROR_VALUES_COUNT;
+        return Err(Code::ERROR_VALUES_COUNT);
     }
     // SAFETY: neither null nor misaligned, and as many as an array of this type has.
     let values = unsafe { values.cast::<[f32; PARAMETERS.len()]>().read() };
+    Ok(Config::from_values(values))
+}
+
+/// Another configuration for a supervisor that is there, from its next tick on. After an error nothing has
+/// changed.
+///
+/// # Safety
+/// `supervisor` as for [`amb_tick`]; `values` is null, misaligned, or points to `count` floats.
+// SAFETY: a name of its own, see `amb_abi_version`.
+#[unsafe(export_name = concat!("amb_reconfigure", ending!()))]
+pub unsafe extern "C" fn amb_reconfigure(
+    supervisor: *mut Storage,
+    values: *const f32,
+    count: usize,
+) -> Code {
     // SAFETY: the caller's promise.
-    Code::of(unsafe { storage::make(supervisor, bytes, &Config::from_values(values)) })
+    let lease = unsafe { Lease::new(supervisor) };
+    let done = lease.and_then(|mut lease| {
+        // SAFETY: the caller's promise.
+        let config = unsafe { configuration(values, count) }?;
+        let done = lease.content().reconfigure(&config);
+        done.map_err(|error| storage::code_of(error.parameter()))
+    });
+    Code::of(done)
 }
 
 /// One tick. An error gives a command of no force, so that no old one stays in use.
@@ -155,7 +202,7 @@ pub unsafe extern "C" fn amb_tick(
     let done = sample.and_then(|sample| {
         // SAFETY: the caller's promise.
         let mut lease = unsafe { Lease::new(supervisor) }?;
-        Ok(lease.supervisor().tick(&sample.into()))
+        Ok(lease.content().tick(&sample.into()))
     });
     #[cfg(feature = "planted-panic")]
     {
@@ -193,7 +240,7 @@ unsafe fn ask<T: Copy>(
     let answer = lease.and_then(|mut lease| {
         // Asked only where the answer has a place: an event without one would be lost.
         let place = place?;
-        place.put(question(lease.supervisor())?);
+        place.put(question(lease.content())?);
         Ok(())
     });
     Code::of(answer)
@@ -332,5 +379,5 @@ pub unsafe extern "C" fn amb_crc(entries: *const Entry, count: u32, crc: *mut u3
 pub unsafe extern "C" fn amb_rearm(supervisor: *mut Storage) -> Code {
     // SAFETY: the caller's promise.
     let lease = unsafe { Lease::new(supervisor) };
-    Code::of(lease.map(|mut lease| lease.supervisor().rearm()))
+    Code::of(lease.map(|mut lease| lease.content().rearm()))
 }

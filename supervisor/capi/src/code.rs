@@ -65,6 +65,13 @@ codes! {
     ERROR_ENTRIES_MISALIGNED = -17, "entries is not aligned to 4 bytes";
     ERROR_RESULT_NULL = -18, "the pointer to the result is null";
     ERROR_RESULT_MISALIGNED = -19, "the pointer to the result is not aligned as its type";
+    ERROR_WATCH_NULL = -20, "watch is null";
+    ERROR_WATCH_MISALIGNED = -21, "watch is not aligned to AMB_WATCH_ALIGN bytes";
+    ERROR_WATCH_NOT_INITIALISED = -22, "watch was not made by amb_watch_init";
+    ERROR_WATCH_BUSY = -23, "watch is in use by a call that this one interrupted";
+    ERROR_FORCE_NULL = -24, "force is null";
+    ERROR_FORCE_MISALIGNED = -25, "force is not aligned as a float";
+    ERROR_SELF_TEST = -26, "this processor, compiler or memory computes something else";
 }
 
 /// Code of the first parameter; the others follow downwards.

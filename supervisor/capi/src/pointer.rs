@@ -11,6 +11,8 @@ pub(crate) enum Argument {
     Command,
     Entries,
     Result,
+    Watch,
+    Force,
 }
 
 impl Argument {
@@ -22,10 +24,12 @@ impl Argument {
             Self::Command => Code::ERROR_COMMAND_NULL,
             Self::Entries => Code::ERROR_ENTRIES_NULL,
             Self::Result => Code::ERROR_RESULT_NULL,
+            Self::Watch => Code::ERROR_WATCH_NULL,
+            Self::Force => Code::ERROR_FORCE_NULL,
         }
     }
 
-    const fn misaligned(self) -> Code {
+    pub(crate) const fn misaligned(self) -> Code {
         match self {
             Self::Supervisor => Code::ERROR_SUPERVISOR_MISALIGNED,
             Self::Values => Code::ERROR_VALUES_MISALIGNED,
@@ -33,6 +37,8 @@ impl Argument {
             Self::Command => Code::ERROR_COMMAND_MISALIGNED,
             Self::Entries => Code::ERROR_ENTRIES_MISALIGNED,
             Self::Result => Code::ERROR_RESULT_MISALIGNED,
+            Self::Watch => Code::ERROR_WATCH_MISALIGNED,
+            Self::Force => Code::ERROR_FORCE_MISALIGNED,
         }
     }
 

@@ -1,8 +1,8 @@
-//! The supervisor in memory of the caller's, and who may use it: one call at a time.
+//! What lives in memory of the caller's, and who may use it: one call at a time.
 //!
 //! The first word says what is in the memory. Static memory is zero in C, so that a supervisor which was
-//! forgotten to be made is found; and a call that interrupts another on the same supervisor is refused
-//! instead of seeing it half changed.
+//! forgotten to be made is found; and a call that interrupts another on the same one is refused instead of
+//! seeing it half changed.
 
 use crate::code::Code;
 use crate::layout::defined;
@@ -10,78 +10,155 @@ use crate::pointer::Argument;
 use core::cell::UnsafeCell;
 use core::mem::MaybeUninit;
 use core::sync::atomic::{AtomicU32, Ordering};
-use supervisor::{Config, Supervisor};
+use supervisor::{Config, ConfigError, OutputWatch, Supervisor};
 
 /// Entries of the flight record.
 pub const RECORD: usize = 512;
 
-/// A supervisor is there and nobody uses it. Two numbers that memory does not hold by chance.
-const READY: u32 = 0xA3B1_5AFE;
-/// It is there, and a call is using it.
-const BUSY: u32 = 0xA3B1_B5E1;
-
-/// What is in an `amb_supervisor`.
+/// Memory of the caller's for a `T`.
 #[repr(C)]
-pub struct Storage {
+pub struct Kept<T> {
     state: AtomicU32,
-    supervisor: UnsafeCell<MaybeUninit<Supervisor<RECORD>>>,
+    content: UnsafeCell<MaybeUninit<T>>,
 }
 
-// What the header promises is enough …
-const BYTES: usize = defined("AMB_SUPERVISOR_BYTES");
-const ALIGN: usize = defined("AMB_SUPERVISOR_ALIGN");
+/// What is in an `amb_supervisor`.
+pub type Storage = Kept<Supervisor<RECORD>>;
+/// What is in an `amb_watch`.
+pub type WatchStorage = Kept<OutputWatch<f32>>;
+
+/// What can be in memory of the caller's. It owns nothing but its own bytes, so that none is ever dropped.
+pub(crate) trait Content: Sized {
+    /// Name of the argument that points to it.
+    const ARGUMENT: Argument;
+    /// What the header promises to be enough, in bytes …
+    const BYTES: usize;
+    /// … and its alignment, which may be stricter than a target needs, so that it holds on all of them.
+    const ALIGN: usize;
+    /// It is there and nobody uses it. Numbers that memory does not hold by chance …
+    const READY: u32;
+    /// … and the one that says that a call is using it.
+    const BUSY: u32;
+    /// It is not there.
+    const NOT_MADE: Code;
+    /// It is in use.
+    const IN_USE: Code;
+}
+
+impl Content for Supervisor<RECORD> {
+    const ARGUMENT: Argument = Argument::Supervisor;
+    const BYTES: usize = defined("AMB_SUPERVISOR_BYTES");
+    const ALIGN: usize = defined("AMB_SUPERVISOR_ALIGN");
+    const READY: u32 = 0xA3B1_5AFE;
+    const BUSY: u32 = 0xA3B1_B5E1;
+    const NOT_MADE: Code = Code::ERROR_NOT_INITIALISED;
+    const IN_USE: Code = Code::ERROR_BUSY;
+}
+
+impl Content for OutputWatch<f32> {
+    const ARGUMENT: Argument = Argument::Watch;
+    const BYTES: usize = defined("AMB_WATCH_BYTES");
+    const ALIGN: usize = defined("AMB_WATCH_ALIGN");
+    const READY: u32 = 0xA3B1_07C8;
+    const BUSY: u32 = 0xA3B1_07B5;
+    const NOT_MADE: Code = Code::ERROR_WATCH_NOT_INITIALISED;
+    const IN_USE: Code = Code::ERROR_WATCH_BUSY;
+}
+
+/// The header promises enough, and no more than so many bytes too many.
+const fn fits<T: Content>(spare: usize) -> bool {
+    let size = size_of::<Kept<T>>();
+    size <= T::BYTES
+        && T::BYTES <= size + spare
+        && align_of::<Kept<T>>() <= T::ALIGN
+        && T::BYTES.is_multiple_of(T::ALIGN)
+        && T::ALIGN.is_power_of_two()
+}
+
 const _: () = {
-    assert!(size_of::<Storage>() <= BYTES && align_of::<Storage>() <= ALIGN);
-    assert!(BYTES.is_multiple_of(ALIGN) && ALIGN.is_power_of_two());
-    // … and no waste: room for the pointers and the alignment of any target, and to grow a little.
-    assert!(BYTES <= size_of::<Storage>() + 2048);
+    // Room for the pointers and the alignment of any target, and to grow a little.
+    assert!(fits::<Supervisor<RECORD>>(2048) && fits::<OutputWatch<f32>>(16));
     assert!(defined("AMB_RECORD_ENTRIES") == RECORD);
 };
 
 /// Makes a supervisor; after an error the storage is as it was.
 ///
 /// # Safety
-/// Where `storage` is neither null nor misaligned it points to `bytes` bytes that have been written to
-/// (static memory has), are used through this crate alone, and live for `'a`.
-pub(crate) unsafe fn make(
+/// As for [`Making::new`], with `bytes` bytes.
+pub(crate) unsafe fn make_supervisor(
     storage: *mut Storage,
     bytes: usize,
     config: &Config,
 ) -> Result<(), Code> {
     check(storage)?;
-    if bytes < BYTES {
+    if bytes < Supervisor::<RECORD>::BYTES {
         return Err(Code::ERROR_SUPERVISOR_TOO_SMALL);
     }
-    // SAFETY: not null, aligned and large enough; any bytes are a valid `Storage`, because its word is
-    // an integer and the rest may be uninitialised.
-    let storage = unsafe { &*storage };
-    let before = storage.state.load(Ordering::Acquire);
-    if before == BUSY {
-        return Err(Code::ERROR_BUSY);
-    }
-    config
-        .validate()
-        .map_err(|error| code_of(error.parameter()))?;
-    // From here on a call that interrupts this one finds no supervisor.
-    storage.state.store(BUSY, Ordering::Release);
-    // SAFETY: the word is BUSY, so that no lease is given out: this is the only access. A supervisor that
-    // was there is not dropped: it owns nothing but its own bytes.
-    let place = unsafe { &mut *storage.supervisor.get() };
-    // So written, after the check, it is on the stack once; mapped to a code it was there twice, which
-    // are nine kilobytes more.
-    let (after, result) = match Supervisor::new(config) {
+    // SAFETY: large enough now, the rest is the caller's promise.
+    let mut making = unsafe { Making::new(storage) }?;
+    put(making.place(), config).map_err(|error| code_of(error.parameter()))?;
+    making.done();
+    Ok(())
+}
+
+/// In a function of its own, after a check of its own: then the compiler makes the supervisor in its place.
+/// Otherwise it is on the stack first, which takes nine kilobytes; the test `capi` looks.
+#[inline(never)]
+fn put(place: &mut MaybeUninit<Supervisor<RECORD>>, config: &Config) -> Result<(), ConfigError> {
+    config.validate()?;
+    match Supervisor::new(config) {
         Ok(supervisor) => {
             place.write(supervisor);
-            (READY, Ok(()))
+            Ok(())
         }
-        Err(error) => (before, Err(code_of(error.parameter()))),
-    };
-    storage.state.store(after, Ordering::Release);
-    result
+        Err(error) => Err(error),
+    }
+}
+
+/// Memory that is being written to: calls that come meanwhile are refused.
+pub(crate) struct Making<'a, T: Content> {
+    kept: &'a Kept<T>,
+    /// What its word will be.
+    after: u32,
+}
+
+impl<'a, T: Content> Making<'a, T> {
+    /// # Safety
+    /// Where `kept` is neither null nor misaligned it points to as many bytes as [`Content`] says, which
+    /// have been written to (static memory has), are used through this crate alone, and live for `'a`.
+    pub(crate) unsafe fn new(kept: *mut Kept<T>) -> Result<Self, Code> {
+        check(kept)?;
+        // SAFETY: not null, aligned and large enough; any bytes are valid, because the word is an integer
+        // and the rest may be uninitialised.
+        let kept: &'a Kept<T> = unsafe { &*kept };
+        let after = kept.state.load(Ordering::Acquire);
+        if after == T::BUSY {
+            return Err(T::IN_USE);
+        }
+        kept.state.store(T::BUSY, Ordering::Release);
+        Ok(Self { kept, after })
+    }
+
+    /// What was there is not dropped: it owns nothing but its own bytes.
+    pub(crate) fn place(&mut self) -> &mut MaybeUninit<T> {
+        // SAFETY: the word is BUSY, so that no lease is given out: this is the only access.
+        unsafe { &mut *self.kept.content.get() }
+    }
+
+    /// The place has been written to.
+    pub(crate) fn done(mut self) {
+        self.after = T::READY;
+    }
+}
+
+impl<T: Content> Drop for Making<'_, T> {
+    fn drop(&mut self) {
+        self.kept.state.store(self.after, Ordering::Release);
+    }
 }
 
 /// Number of the parameter that was refused.
-fn code_of(refused: &supervisor::Parameter) -> Code {
+pub(crate) fn code_of(refused: &supervisor::Parameter) -> Code {
     let index = supervisor::PARAMETERS
         .iter()
         .position(|p| p.name == refused.name);
@@ -89,64 +166,63 @@ fn code_of(refused: &supervisor::Parameter) -> Code {
     Code::parameter(index.unwrap_or(supervisor::PARAMETERS.len()))
 }
 
-/// `ALIGN` may be stricter than this target needs, so that the header holds on all of them.
-fn check(storage: *const Storage) -> Result<(), Code> {
-    Argument::Supervisor.check(storage)?;
-    if storage.addr() & (ALIGN - 1) != 0 {
-        return Err(Code::ERROR_SUPERVISOR_MISALIGNED);
+fn check<T: Content>(kept: *const Kept<T>) -> Result<(), Code> {
+    T::ARGUMENT.check(kept)?;
+    if kept.addr() & (T::ALIGN - 1) != 0 {
+        return Err(T::ARGUMENT.misaligned());
     }
     Ok(())
 }
 
-/// The only use of a supervisor at this time.
-pub(crate) struct Lease<'a> {
-    storage: &'a Storage,
+/// The only use of a content at this time.
+pub(crate) struct Lease<'a, T: Content> {
+    kept: &'a Kept<T>,
 }
 
-impl<'a> Lease<'a> {
+impl<'a, T: Content> Lease<'a, T> {
     /// # Safety
-    /// As for [`make`]; a supervisor is there if the first word says so.
-    pub(crate) unsafe fn new(storage: *mut Storage) -> Result<Self, Code> {
-        check(storage)?;
-        // SAFETY: not null, aligned, and large enough by the caller's promise; see `make`.
-        let storage: &'a Storage = unsafe { &*storage };
-        match begin(&storage.state) {
-            Ok(()) => Ok(Self { storage }),
-            Err(BUSY) => Err(Code::ERROR_BUSY),
-            Err(_) => Err(Code::ERROR_NOT_INITIALISED),
+    /// As for [`Making::new`]; a `T` is there if the first word says so.
+    pub(crate) unsafe fn new(kept: *mut Kept<T>) -> Result<Self, Code> {
+        check(kept)?;
+        // SAFETY: not null, aligned, and large enough by the caller's promise; see `Making::new`.
+        let kept: &'a Kept<T> = unsafe { &*kept };
+        match begin(&kept.state, T::READY, T::BUSY) {
+            Ok(()) => Ok(Self { kept }),
+            Err(found) if found == T::BUSY => Err(T::IN_USE),
+            Err(_) => Err(T::NOT_MADE),
         }
     }
 
-    pub(crate) fn supervisor(&mut self) -> &mut Supervisor<RECORD> {
-        // SAFETY: the word was READY, so `make` has written a supervisor; it is BUSY now, so this lease
-        // is the only one, and the borrow of the lease lets only one reference exist.
-        unsafe { (*self.storage.supervisor.get()).assume_init_mut() }
+    pub(crate) fn content(&mut self) -> &mut T {
+        // SAFETY: the word was READY, so `Making` has put a T there; it is BUSY now, so this lease is the only
+        // one, and the borrow of the lease lets only one reference exist.
+        unsafe { (*self.kept.content.get()).assume_init_mut() }
     }
 }
 
-impl Drop for Lease<'_> {
+impl<T: Content> Drop for Lease<'_, T> {
     fn drop(&mut self) {
-        self.storage.state.store(READY, Ordering::Release);
+        self.kept.state.store(T::READY, Ordering::Release);
     }
 }
 
 /// From READY to BUSY, or what was there instead.
 #[cfg(target_has_atomic = "32")]
-fn begin(state: &AtomicU32) -> Result<(), u32> {
+fn begin(state: &AtomicU32, ready: u32, busy: u32) -> Result<(), u32> {
     state
-        .compare_exchange(READY, BUSY, Ordering::Acquire, Ordering::Relaxed)
+        .compare_exchange(ready, busy, Ordering::Acquire, Ordering::Relaxed)
         .map(|_| ())
 }
 
 /// The same where the core has no exchange (Cortex-M0). There is one core then, and what comes between
-/// the two steps is an interrupt, which has given the supervisor back when it returns.
+/// the two steps is an interrupt, which has given back what it used when it returns.
 #[cfg(not(target_has_atomic = "32"))]
-fn begin(state: &AtomicU32) -> Result<(), u32> {
+fn begin(state: &AtomicU32, ready: u32, busy: u32) -> Result<(), u32> {
     let found = state.load(Ordering::Acquire);
-    if found != READY {
+    if found != ready {
         return Err(found);
     }
-    state.store(BUSY, Ordering::Relaxed);
+    state.store(busy, Ordering::Relaxed);
     core::sync::atomic::compiler_fence(Ordering::Acquire);
     Ok(())
 }

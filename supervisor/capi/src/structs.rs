@@ -57,19 +57,21 @@ c_struct! {
 
 c_struct! {
     /// What to do until the next tick: [`Command`].
-    CCommand = "amb_command", 28 {
+    CCommand = "amb_command", 36 {
         /// Force to command \[N\].
         force_n: [f32; 2] = 0,
+        /// Force that the supervisor would command \[N\]: another one only in shadow.
+        own_n: [f32; 2] = 8,
         /// Backward speed to be expected, over what the cap can arrest.
-        severity: f32 = 8,
+        severity: f32 = 16,
         /// [`supervisor::Mode`] as a number.
-        mode: u32 = 12,
+        mode: u32 = 20,
         /// Bits of [`supervisor::Limits`].
-        limits: u32 = 16,
+        limits: u32 = 24,
         /// Bits of [`supervisor::Events`].
-        events: u32 = 20,
+        events: u32 = 28,
         /// [`supervisor::IntegratorHint`] as a number.
-        integrator: u32 = 24,
+        integrator: u32 = 32,
     }
 }
 
@@ -99,31 +101,37 @@ c_struct! {
 
 c_struct! {
     /// What has happened since the supervisor was made: [`Report`].
-    CReport = "amb_report", 48 {
+    CReport = "amb_report", 60 {
         /// Engagements in which the rotor touched.
         landings: u32 = 0,
         /// Touches in them.
         impacts: u32 = 4,
         /// Ticks in contact in them.
         contact_ticks: u32 = 8,
+        /// Ticks that were missed.
+        missed_ticks: u32 = 12,
+        /// Calls with the sequence number of the call before.
+        repeated_ticks: u32 = 16,
+        /// Commands that came too late.
+        late_ticks: u32 = 20,
         /// Whether coasting down was asked for: 0 or 1.
-        coast_down: u32 = 12,
+        coast_down: u32 = 24,
         /// [`supervisor::Refusal`] of the last sample.
-        refusal: u32 = 16,
+        refusal: u32 = 28,
         /// [`supervisor::Refusal`] that began the last sensor fault.
-        fault: u32 = 20,
+        fault: u32 = 32,
         /// Fastest normal speed before an impact \[m/s\].
-        impact_speed_max_m_s: f32 = 24,
+        impact_speed_max_m_s: f32 = 36,
         /// Fastest backward speed in contact \[m/s\].
-        backward_speed_max_m_s: f32 = 28,
+        backward_speed_max_m_s: f32 = 40,
         /// Highest backward speed that the cap can arrest \[m/s\].
-        whirl_limit_m_s: f32 = 32,
+        whirl_limit_m_s: f32 = 44,
         /// Energy borne, over that at the limit.
-        severity_index: f32 = 36,
+        severity_index: f32 = 48,
         /// State of the force–time budget.
-        thermal_state: f32 = 40,
+        thermal_state: f32 = 52,
         /// Force cap now \[N\].
-        force_cap_n: f32 = 44,
+        force_cap_n: f32 = 56,
     }
 }
 
@@ -208,6 +216,7 @@ impl From<Command> for CCommand {
     fn from(command: Command) -> Self {
         Self {
             force_n: command.force_n,
+            own_n: command.own_n,
             severity: command.severity,
             mode: command.mode as u32,
             limits: command.limits.bits(),
@@ -233,6 +242,9 @@ impl From<Report> for CReport {
             landings: report.landings,
             impacts: report.impacts,
             contact_ticks: report.contact_ticks,
+            missed_ticks: report.missed_ticks,
+            repeated_ticks: report.repeated_ticks,
+            late_ticks: report.late_ticks,
             coast_down: u32::from(report.coast_down),
             refusal: report.refusal as u32,
             fault: report.fault as u32,

@@ -7,10 +7,11 @@ use std::ptr::{null, null_mut};
 use supervisor::{Entry, PARAMETERS, Status};
 use supervisor_capi::calls::{
     amb_crc, amb_init, amb_next_event, amb_parameter_at, amb_parameter_index, amb_rearm,
-    amb_record_entry, amb_record_frozen, amb_report_now, amb_tick,
+    amb_reconfigure, amb_record_entry, amb_record_frozen, amb_report_now, amb_self_test, amb_tick,
 };
 use supervisor_capi::structs::{CCommand, CEvent, CParameter, CRecord, CReport, CSample};
-use supervisor_capi::{Code, RECORD, Storage};
+use supervisor_capi::watch::{amb_watch_expired, amb_watch_force, amb_watch_init, amb_watch_renew};
+use supervisor_capi::{Code, RECORD, Storage, WatchStorage};
 
 /// Memory as C has it.
 #[repr(C, align(8))]
@@ -58,7 +59,7 @@ fn calls_touch_only_what_they_were_given() {
             ticks += 1;
             let code = amb_tick(plane, &raw const sample, &raw mut command);
             assert_eq!(code, Code::OK);
-            assert!(ticks < 1000);
+            assert!(ticks < 10 * RECORD);
         }
         for (i, entry) in (0..).zip(&mut entries) {
             assert_eq!(amb_record_entry(plane, i, entry), Code::OK);
@@ -74,8 +75,38 @@ fn calls_touch_only_what_they_were_given() {
         assert_eq!(found, Code::OK);
         assert_eq!(amb_parameter_at(index, row.as_mut_ptr()), Code::OK);
         assert_eq!(row.assume_init().low, 1e-9);
+        let count = PARAMETERS.len();
+        assert_eq!(amb_reconfigure(plane, VALUES.as_ptr(), count), Code::OK);
+        assert_eq!(amb_self_test(), Code::OK);
         let off = (&raw mut command).cast::<u8>().wrapping_add(1).cast();
         let code = amb_tick(plane, &raw const sample, off);
         assert_eq!(code, Code::ERROR_COMMAND_MISALIGNED);
+    }
+}
+
+#[test]
+fn a_watch_touches_only_what_it_was_given() {
+    let mut memory = Box::new([0_u32; 8]);
+    let watch: *mut WatchStorage = memory.as_mut_ptr().cast();
+    let mut expired = 0;
+    let mut force = Box::new([1.0_f32; 2]);
+    // SAFETY: every pointer is null or points to what its type says; the memory is zero, and used through
+    // these calls alone.
+    unsafe {
+        let not_made = amb_watch_force(watch, force.as_mut_ptr());
+        assert_eq!(not_made, Code::ERROR_WATCH_NOT_INITIALISED);
+        assert_eq!(*force, [0.0; 2]);
+        assert_eq!(amb_watch_init(watch, 1), Code::OK);
+        // Twice: the first one is replaced.
+        assert_eq!(amb_watch_init(watch, 1), Code::OK);
+        assert_eq!(amb_watch_init(null_mut(), 1), Code::ERROR_WATCH_NULL);
+        assert_eq!(amb_watch_renew(watch, [2.0, 3.0].as_ptr()), Code::OK);
+        assert_eq!(amb_watch_renew(watch, null()), Code::ERROR_FORCE_NULL);
+        assert_eq!(amb_watch_force(watch, force.as_mut_ptr()), Code::OK);
+        assert_eq!(*force, [2.0, 3.0]);
+        assert_eq!(amb_watch_force(watch, force.as_mut_ptr()), Code::OK);
+        assert_eq!(*force, [0.0; 2]);
+        assert_eq!(amb_watch_expired(watch, &raw mut expired), Code::OK);
+        assert_eq!(expired, 1);
     }
 }

@@ -3,6 +3,7 @@
 #include "amb_supervisor.h"
 #include "rig.h"
 
+#include <fenv.h>
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
@@ -35,6 +36,7 @@ static void expect(const char *what, amb_code code, amb_code wanted, const char 
 #define OFF(pointer) ((void *)((char *)(pointer) + 1))
 
 static amb_supervisor plane, zero, three[3];
+static amb_watch watch, zero_watch, three_watches[3];
 static const char *const NULL_TEXT = "supervisor is null";
 static const char *const ALIGN_TEXT = "supervisor is not aligned to AMB_SUPERVISOR_ALIGN bytes";
 static const char *const NOT_MADE_TEXT = "supervisor was not made by amb_init";
@@ -107,6 +109,7 @@ static void making(void) {
 /* After an error a command is zero force. */
 static void no_force(const char *what, amb_command *command) {
     check(command->force_n[0] == 0.0f && command->force_n[1] == 0.0f && command->severity == 0.0f, what);
+    check(command->own_n[0] == 0.0f && command->own_n[1] == 0.0f, what);
     check(command->mode == AMB_MODE_SENSOR_FAULT && command->events == 0 && command->limits == 0, what);
     memset(command, 0x55, sizeof *command);
 }
@@ -134,10 +137,11 @@ static void ticking(void) {
     EXPECT(amb_tick(NULL, NULL, NULL), AMB_ERROR_COMMAND_NULL, "command is null");
 
     sample->levitation_n[0] = -12.5f;
-    sample->status = 0xFFFFFFE3u; /* with bits that mean nothing; no axis lost */
+    sample->status = 0xFFFFFF83u; /* with bits that mean nothing; no axis lost, not late, no shadow */
     sample->status &= ~AMB_STATUS_APPLIED_VALID;
     EXPECT(amb_tick(&plane, sample, command), AMB_OK, "done");
     check(command->force_n[0] == -12.5f && command->mode == AMB_MODE_LEVITATED, "transparent");
+    check(command->own_n[0] == -12.5f, "its own force is the same but in shadow");
     {
         /* The same memory for both. */
         union {
@@ -228,7 +232,7 @@ static void texts(void) {
     check(amb_abi_version() == AMB_ABI, "version");
 }
 
-static volatile sig_atomic_t busy_seen = 0, other_seen = 0;
+static volatile sig_atomic_t busy_seen = 0, watch_busy_seen = 0, other_seen = 0;
 
 static void interrupting(int signal_number) {
     amb_sample sample;
@@ -243,6 +247,16 @@ static void interrupting(int signal_number) {
     } else if (code != AMB_OK) {
         other_seen = 1;
     }
+    {
+        float force[2] = {77.0f, 77.0f};
+        code = amb_watch_force(&watch, force);
+        if (code == AMB_ERROR_WATCH_BUSY) {
+            watch_busy_seen = 1;
+            if (force[0] != 0.0f || force[1] != 0.0f) other_seen = 1;
+        } else if (code != AMB_OK || force[0] != 5.0f) {
+            other_seen = 1;
+        }
+    }
 }
 
 /* A signal takes the place of an interrupt that comes while the background is inside a call. */
@@ -251,6 +265,7 @@ static void interrupted(void) {
     struct itimerval timer;
     amb_sample sample;
     amb_command command;
+    const float force[2] = {5.0f, 0.0f};
     const time_t start = time(NULL);
     memset(&sample, 0, sizeof sample);
     memset(&action, 0, sizeof action);
@@ -258,39 +273,65 @@ static void interrupted(void) {
     action.sa_handler = interrupting;
     timer.it_interval.tv_usec = 50;
     timer.it_value.tv_usec = 50;
+    if (amb_watch_init(&watch, UINT32_MAX) != AMB_OK) other_seen = 1;
+    if (amb_watch_renew(&watch, force) != AMB_OK) other_seen = 1;
     sigaction(SIGALRM, &action, NULL);
     setitimer(ITIMER_REAL, &timer, NULL);
-    while (!busy_seen && time(NULL) - start < 30) {
+    while (!(busy_seen && watch_busy_seen) && time(NULL) - start < 30) {
         int i;
-        for (i = 0; i < 1000; i++) {
+        for (i = 0; i < 1000 && !busy_seen; i++) {
             if (amb_tick(&plane, &sample, &command) != AMB_OK) other_seen = 1;
+        }
+        for (i = 0; i < 1000; i++) {
+            if (amb_watch_renew(&watch, force) != AMB_OK) other_seen = 1;
         }
     }
     timer.it_value.tv_usec = timer.it_interval.tv_usec = 0;
     setitimer(ITIMER_REAL, &timer, NULL);
     check(busy_seen, "a call that interrupts another is refused");
+    check(watch_busy_seen, "also on a watch");
     check(!other_seen, "and the interrupted one goes on undisturbed");
+    expect("interrupting amb_watch_renew", AMB_ERROR_WATCH_BUSY, AMB_ERROR_WATCH_BUSY,
+           "watch is in use by a call that this one interrupted");
     expect("interrupting amb_tick", AMB_ERROR_BUSY, AMB_ERROR_BUSY,
            "supervisor is in use by a call that this one interrupted");
 }
 
-/* A record, an event and a report, from the first blow of the rig. */
+static void rig_until(rig *r, uint32_t end) {
+    while (r->tick < end) {
+        amb_sample sample;
+        amb_command command;
+        rig_sample(r, &sample);
+        if (amb_tick(&plane, &sample, &command) != AMB_OK) check(0, "tick");
+        rig_actuate(r, &command);
+    }
+}
+
+/* An event, a report and a record, from the first blow of the rig. */
 static void record(void) {
     static rig r;
     static amb_entry entries[AMB_RECORD_ENTRIES];
     amb_record frozen;
     amb_event event;
     amb_report report;
-    uint32_t i, crc = 0;
+    uint32_t i, engaged, crc = 0;
     EXPECT(amb_init(&plane, sizeof plane, rig_config, AMB_PARAMETERS), AMB_OK, "done");
     rig_start(&r);
-    while (r.tick < 1000) {
-        amb_sample sample;
-        amb_command command;
-        rig_sample(&r, &sample);
-        if (amb_tick(&plane, &sample, &command) != AMB_OK) check(0, "tick");
-        rig_actuate(&r, &command);
+    rig_until(&r, 1900);
+    EXPECT(amb_next_event(&plane, &event), AMB_OK, "done");
+    check(event.events == AMB_EVENT_ENGAGED && event.mode == AMB_MODE_APPROACH, "oldest event");
+    engaged = event.sequence;
+    for (i = 1; amb_next_event(&plane, &event) == AMB_OK; i++) {
     }
+    check(i > 5 && i <= 16, "events");
+    EXPECT(amb_report_now(&plane, &report), AMB_OK, "done");
+    check(report.landings == 1 && report.impacts >= 2 && report.force_cap_n == 1000.0f, "report");
+    check(report.impact_speed_max_m_s > 0.1f && report.severity_index > 0.0f, "report of the impact");
+    check(report.fault == AMB_REFUSAL_NONE && report.coast_down == 0, "report without faults");
+    check(report.missed_ticks == 0 && report.repeated_ticks == 0, "report without lost ticks");
+    check(report.late_ticks == 1, "report of the late command");
+    /* It freezes some time after its last entry. */
+    while (r.tick < RIG_TICKS && amb_record_frozen(&plane, &frozen) == AMB_NOTHING) rig_until(&r, r.tick + 1);
     EXPECT(amb_record_frozen(&plane, &frozen), AMB_OK, "done");
     check(frozen.version == AMB_RECORD_VERSION && frozen.entries == AMB_RECORD_ENTRIES, "record");
     for (i = 0; i < frozen.entries; i++) {
@@ -302,18 +343,120 @@ static void record(void) {
     EXPECT(amb_crc(entries, frozen.entries, &crc), AMB_OK, "done");
     check(crc == frozen.crc && crc != 0, "checksum of the record");
     check(entries[AMB_RECORD_ENTRIES / 4 - 1].events & AMB_EVENT_ENGAGED, "a quarter before the trigger");
-    EXPECT(amb_next_event(&plane, &event), AMB_OK, "done");
-    check(event.events == AMB_EVENT_ENGAGED && event.mode == AMB_MODE_APPROACH, "oldest event");
-    check(event.sequence == entries[AMB_RECORD_ENTRIES / 4 - 1].sequence, "its tick");
-    for (i = 1; amb_next_event(&plane, &event) == AMB_OK; i++) {
-    }
-    check(i > 5 && i <= 16, "events");
-    EXPECT(amb_report_now(&plane, &report), AMB_OK, "done");
-    check(report.landings == 1 && report.impacts >= 2 && report.force_cap_n == 1000.0f, "report");
-    check(report.impact_speed_max_m_s > 0.1f && report.severity_index > 0.0f, "report of the impact");
-    check(report.fault == AMB_REFUSAL_NONE && report.coast_down == 0, "report without faults");
+    check(engaged == entries[AMB_RECORD_ENTRIES / 4 - 1].sequence, "its tick");
     EXPECT(amb_rearm(&plane), AMB_OK, "done");
     EXPECT(amb_record_frozen(&plane, &frozen), AMB_NOTHING, "there is none");
+}
+
+static void reconfiguring(void) {
+    float values[AMB_PARAMETERS + 1];
+    amb_sample sample;
+    amb_command command;
+    amb_report before, after;
+    memcpy(values, rig_config, sizeof rig_config);
+    EXPECT(amb_reconfigure(NULL, values, AMB_PARAMETERS), AMB_ERROR_SUPERVISOR_NULL, NULL_TEXT);
+    EXPECT(amb_reconfigure(OFF(three), values, AMB_PARAMETERS), AMB_ERROR_SUPERVISOR_MISALIGNED, ALIGN_TEXT);
+    EXPECT(amb_reconfigure(&zero, values, AMB_PARAMETERS), AMB_ERROR_NOT_INITIALISED, NOT_MADE_TEXT);
+    EXPECT(amb_reconfigure(&plane, NULL, AMB_PARAMETERS), AMB_ERROR_VALUES_NULL, "values is null");
+    EXPECT(amb_reconfigure(&plane, OFF(values), AMB_PARAMETERS), AMB_ERROR_VALUES_MISALIGNED,
+           "values is not aligned as a float");
+    EXPECT(amb_reconfigure(&plane, values, AMB_PARAMETERS - 1), AMB_ERROR_VALUES_COUNT,
+           "values has not AMB_PARAMETERS elements");
+    EXPECT(amb_reconfigure(&plane, values, AMB_PARAMETERS + 1), AMB_ERROR_VALUES_COUNT,
+           "values has not AMB_PARAMETERS elements");
+    memset(&sample, 0, sizeof sample);
+    EXPECT(amb_init(&plane, sizeof plane, rig_config, AMB_PARAMETERS), AMB_OK, "done");
+    EXPECT(amb_tick(&plane, &sample, &command), AMB_OK, "done");
+    EXPECT(amb_report_now(&plane, &before), AMB_OK, "done");
+    /* Refused as a whole: not even the values before the wrong one hold. */
+    values[AMB_P_FORCE_MAX_N] = 500.0f;
+    values[AMB_P_SENSOR_STEP_M] = 0.0f / values[AMB_P_STIFFNESS_N_M];
+    EXPECT(amb_reconfigure(&plane, values, AMB_PARAMETERS), AMB_ERROR_PARAMETER(AMB_P_SENSOR_STEP_M),
+           "sensor_step_m is outside 1e-9 to 0.001 m");
+    sample.sequence++;
+    EXPECT(amb_tick(&plane, &sample, &command), AMB_OK, "done");
+    EXPECT(amb_report_now(&plane, &after), AMB_OK, "done");
+    check((command.events & AMB_EVENT_RECONFIGURED) == 0, "a refused configuration is no event");
+    check(after.force_cap_n == before.force_cap_n, "and changes nothing");
+    values[AMB_P_SENSOR_STEP_M] = rig_config[AMB_P_SENSOR_STEP_M];
+    EXPECT(amb_reconfigure(&plane, values, AMB_PARAMETERS), AMB_OK, "done");
+    sample.sequence++;
+    EXPECT(amb_tick(&plane, &sample, &command), AMB_OK, "done");
+    EXPECT(amb_report_now(&plane, &after), AMB_OK, "done");
+    check((command.events & AMB_EVENT_RECONFIGURED) != 0, "the tick from which it holds says so");
+    check(after.force_cap_n == 500.0f, "it holds");
+}
+
+/* A processor that computes otherwise: here by its rounding. */
+static void self_testing(void) {
+    const int usual = fegetround();
+    amb_code code;
+    EXPECT(amb_self_test(), AMB_OK, "done");
+    check(fesetround(FE_UPWARD) == 0, "another rounding");
+    code = amb_self_test();
+    check(fesetround(usual) == 0, "the usual rounding");
+    expect("self-test with another rounding", code, AMB_ERROR_SELF_TEST,
+           "this processor, compiler or memory computes something else");
+    EXPECT(amb_self_test(), AMB_OK, "done");
+}
+
+static void watching(void) {
+    const float wanted[3] = {5.0f, -6.0f, 7.0f};
+    float force[3];
+    uint32_t expired[2] = {77, 77};
+    const char *const null_text = "watch is null";
+    const char *const align_text = "watch is not aligned to AMB_WATCH_ALIGN bytes";
+    const char *const not_made_text = "watch was not made by amb_watch_init";
+#define WATCH_REFUSALS(call_with, argument)                                                                  \
+    EXPECT(call_with(NULL, argument), AMB_ERROR_WATCH_NULL, null_text);                                      \
+    EXPECT(call_with(OFF(three_watches), argument), AMB_ERROR_WATCH_MISALIGNED, align_text);                 \
+    EXPECT(call_with(&zero_watch, argument), AMB_ERROR_WATCH_NOT_INITIALISED, not_made_text)
+    EXPECT(amb_watch_init(NULL, 2), AMB_ERROR_WATCH_NULL, null_text);
+    EXPECT(amb_watch_init(OFF(three_watches), 2), AMB_ERROR_WATCH_MISALIGNED, align_text);
+    WATCH_REFUSALS(amb_watch_renew, wanted);
+    WATCH_REFUSALS(amb_watch_expired, expired);
+    check(expired[0] == 77, "results are untouched after errors");
+    force[0] = force[1] = 77.0f;
+    WATCH_REFUSALS(amb_watch_force, force);
+    check(force[0] == 0.0f && force[1] == 0.0f, "no force after an error");
+
+    EXPECT(amb_watch_init(&watch, 2), AMB_OK, "done");
+    EXPECT(amb_watch_expired(&watch, NULL), AMB_ERROR_RESULT_NULL, RESULT_NULL_TEXT);
+    EXPECT(amb_watch_expired(&watch, OFF(expired)), AMB_ERROR_RESULT_MISALIGNED, RESULT_ALIGN_TEXT);
+    EXPECT(amb_watch_force(&watch, force), AMB_OK, "done");
+    check(force[0] == 0.0f && force[1] == 0.0f, "before the first command there is none");
+    EXPECT(amb_watch_renew(&watch, wanted), AMB_OK, "done");
+    EXPECT(amb_watch_renew(&watch, NULL), AMB_ERROR_FORCE_NULL, "force is null");
+    EXPECT(amb_watch_renew(&watch, OFF(wanted)), AMB_ERROR_FORCE_MISALIGNED,
+           "force is not aligned as a float");
+    EXPECT(amb_watch_force(&watch, NULL), AMB_ERROR_FORCE_NULL, "force is null");
+    EXPECT(amb_watch_force(&watch, OFF(force)), AMB_ERROR_FORCE_MISALIGNED,
+           "force is not aligned as a float");
+    EXPECT(amb_watch_expired(&watch, expired), AMB_OK, "done");
+    check(expired[0] == 0, "there is a command, and refused calls take no period of it");
+    EXPECT(amb_watch_force(&watch, force), AMB_OK, "done");
+    check(force[0] == 5.0f && force[1] == -6.0f, "first period");
+    EXPECT(amb_watch_force(&watch, force), AMB_OK, "done");
+    check(force[0] == 5.0f && force[1] == -6.0f, "second period");
+    EXPECT(amb_watch_expired(&watch, expired), AMB_OK, "done");
+    check(expired[0] == 1, "expired");
+    EXPECT(amb_watch_force(&watch, force), AMB_OK, "done");
+    check(force[0] == 0.0f && force[1] == 0.0f, "and no longer");
+    EXPECT(amb_watch_renew(&watch, wanted), AMB_OK, "done");
+    EXPECT(amb_watch_force(&watch, force), AMB_OK, "done");
+    check(force[0] == 5.0f, "renewed");
+    EXPECT(amb_watch_init(&watch, 0), AMB_OK, "done");
+    EXPECT(amb_watch_renew(&watch, wanted), AMB_OK, "done");
+    EXPECT(amb_watch_force(&watch, force), AMB_OK, "done");
+    check(force[0] == 0.0f && force[1] == 0.0f, "no periods let nothing through");
+    {
+        /* One does not pass for the other. */
+        static amb_supervisor no_watch;
+        memcpy(&no_watch, &watch, sizeof watch);
+        EXPECT(amb_rearm(&no_watch), AMB_ERROR_NOT_INITIALISED, NOT_MADE_TEXT);
+        EXPECT(amb_watch_renew((amb_watch *)(void *)&plane, wanted), AMB_ERROR_WATCH_NOT_INITIALISED,
+               not_made_text);
+    }
 }
 
 int main(void) {
@@ -323,6 +466,9 @@ int main(void) {
     table();
     texts();
     record();
+    reconfiguring();
+    self_testing();
+    watching();
     interrupted();
     printf("%d checks, %d failures\n", checks, failures);
     return failures > 0;

@@ -16,6 +16,14 @@ int main(int argc, char **argv) {
     while (r.tick < RIG_TICKS) {
         amb_sample sample;
         amb_command command;
+        float values[AMB_PARAMETERS];
+        if (rig_reconfigures(&r, values)) {
+            code = amb_reconfigure(&plane, values, AMB_PARAMETERS);
+            if (code != AMB_OK) {
+                printf("%s\n", amb_error_text(code));
+                return 1;
+            }
+        }
         rig_sample(&r, &sample);
         code = amb_tick(&plane, &sample, &command);
         if (code != AMB_OK) {

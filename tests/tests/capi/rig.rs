@@ -1,7 +1,7 @@
 //! The rotor of the example (`supervisor/capi/examples/rig.c`) in Rust: the same integers, and floats
 //! only where they are exact.
 
-use supervisor::{Command, Events, Sample, Status};
+use supervisor::{Command, Config, Events, Sample, Status};
 
 pub(crate) struct Rig {
     pub(crate) tick: u32,
@@ -22,9 +22,9 @@ const CLEARANCE: i64 = 53_687;
 const ACCELERATION: i32 = 17;
 
 impl Rig {
-    pub(crate) const TICKS: u32 = 4000;
+    pub(crate) const TICKS: u32 = 4400;
 
-    /// Its configuration, in the order of the table.
+    /// Its configuration at start, in the order of the table.
     #[rustfmt::skip]
     pub(crate) const VALUES: [f32; 31] = [
         50e-6, 10.0, 0.0, 0.0, 2e-4, 1000.0, 0.0, 1.0, 0.15, 0.7, 0.5, 0.2, 0.02, 4.0, 2e-3, 0.8,
@@ -44,6 +44,15 @@ impl Rig {
         }
     }
 
+    /// The configuration that is to hold from this tick on, if it is another.
+    pub(crate) fn reconfigures(&self) -> Option<Config> {
+        (self.tick == 2600).then_some(Config {
+            force_max_n: 900.0,
+            handover_dwell_s: 5e-4,
+            ..Config::from_values(Self::VALUES)
+        })
+    }
+
     pub(crate) fn sample(&mut self) -> Sample {
         self.sequence += match self.tick {
             3000 => 0,
@@ -55,6 +64,8 @@ impl Rig {
         status.set(Status::SPIN_VALID, self.tick >= 100);
         status.set(Status::APPLIED_VALID, self.tick >= 3020);
         status.set(Status::AXIS_Y_LOST, (3040..3300).contains(&self.tick));
+        status.set(Status::LATE, self.tick == 320);
+        status.set(Status::SHADOW, (3590..3640).contains(&self.tick));
         let levitation = |axis: usize| -self.position[axis] / 34360 - self.velocity[axis] / 549;
         let mut position_m = self.position.map(|p| (p / STEP) as f32 * STEP_M);
         if (2000..2030).contains(&self.tick) {
@@ -96,6 +107,8 @@ impl Rig {
     pub(crate) fn actuate(&mut self, command: &Command) {
         self.hash(command.force_n[0].to_bits());
         self.hash(command.force_n[1].to_bits());
+        self.hash(command.own_n[0].to_bits());
+        self.hash(command.own_n[1].to_bits());
         self.hash(command.severity.to_bits());
         self.hash(command.mode as u32);
         self.hash(command.limits.bits());
@@ -112,6 +125,10 @@ impl Rig {
         if self.tick == 3100 {
             self.velocity[0] -= 12_000_000;
             self.velocity[1] += 16_000_000;
+        }
+        if self.tick == 3600 {
+            self.velocity[0] += 20_000_000;
+            self.velocity[1] += 20_000_000;
         }
         for (axis, contact) in contact.into_iter().enumerate() {
             self.velocity[axis] += ACCELERATION * (self.force[axis] + contact);

@@ -35,6 +35,14 @@ int main(void) {
     code = amb_init(&plane, sizeof plane, rig_config, AMB_PARAMETERS);
     if (code != AMB_OK) return 1;
     printf("init %u\n", depth(top));
+    paint(top);
+    code = amb_reconfigure(&plane, rig_config, AMB_PARAMETERS);
+    if (code != AMB_OK) return 1;
+    printf("reconfigure %u\n", depth(top));
+    paint(top);
+    code = amb_self_test();
+    if (code != AMB_OK) return 1;
+    printf("self-test %u\n", depth(top));
     rig_start(&machine);
     while (machine.tick < RIG_TICKS) {
         amb_sample sample;

@@ -1,0 +1,85 @@
+//! The functions of the header on an output watch.
+
+use crate::calls::ending;
+use crate::code::Code;
+use crate::pointer::{Argument, Place};
+use crate::storage::{Lease, Making, WatchStorage};
+use supervisor::OutputWatch;
+
+/// Makes a watch without a command in storage of the caller's.
+///
+/// # Safety
+/// `watch` is null, misaligned, or points to an `amb_watch` that has been written to, and that only this
+/// library touches from now on.
+// SAFETY: a name of its own, see `amb_abi_version`.
+#[unsafe(export_name = concat!("amb_watch_init", ending!()))]
+pub unsafe extern "C" fn amb_watch_init(watch: *mut WatchStorage, periods: u32) -> Code {
+    // SAFETY: the caller's promise.
+    let making = unsafe { Making::new(watch) };
+    Code::of(making.map(|mut making| {
+        making.place().write(OutputWatch::new(periods));
+        making.done();
+    }))
+}
+
+/// After each tick: its force is the command from now on.
+///
+/// # Safety
+/// `watch` is null, misaligned, or points to storage given to [`amb_watch_init`] or full of zeros; `force`
+/// is null, misaligned, or points to two floats.
+// SAFETY: a name of its own, see `amb_abi_version`.
+#[unsafe(export_name = concat!("amb_watch_renew", ending!()))]
+pub unsafe extern "C" fn amb_watch_renew(watch: *mut WatchStorage, force: *const f32) -> Code {
+    // SAFETY: the caller's promise.
+    let lease = unsafe { Lease::new(watch) };
+    let done = lease.and_then(|mut lease| {
+        // SAFETY: the caller's promise. An array is aligned as its elements.
+        let force = unsafe { Argument::Force.read(force.cast::<[f32; 2]>()) }?;
+        lease.content().renew(force);
+        Ok(())
+    });
+    Code::of(done)
+}
+
+/// Once in each period of the actuator. An error gives no force, so that no old one stays in use.
+///
+/// # Safety
+/// `watch` as for [`amb_watch_renew`]; `force` is null, misaligned, or points to memory for two floats.
+// SAFETY: a name of its own, see `amb_abi_version`.
+#[unsafe(export_name = concat!("amb_watch_force", ending!()))]
+pub unsafe extern "C" fn amb_watch_force(watch: *mut WatchStorage, force: *mut f32) -> Code {
+    // SAFETY: the caller's promise. An array is aligned as its elements.
+    let place = match unsafe { Place::new(Argument::Force, force.cast::<[f32; 2]>()) } {
+        Ok(place) => place,
+        Err(code) => return code,
+    };
+    // SAFETY: the caller's promise.
+    match unsafe { Lease::new(watch) } {
+        Ok(mut lease) => {
+            place.put(lease.content().force());
+            Code::OK
+        }
+        Err(code) => {
+            place.put([0.0; 2]);
+            code
+        }
+    }
+}
+
+/// Whether the next period would have no command: 0 or 1.
+///
+/// # Safety
+/// `watch` as for [`amb_watch_renew`]; `expired` is null, misaligned, or points to memory for a number.
+// SAFETY: a name of its own, see `amb_abi_version`.
+#[unsafe(export_name = concat!("amb_watch_expired", ending!()))]
+pub unsafe extern "C" fn amb_watch_expired(watch: *mut WatchStorage, expired: *mut u32) -> Code {
+    // SAFETY: the caller's promise.
+    let place = unsafe { Place::new(Argument::Result, expired) };
+    // SAFETY: the caller's promise.
+    let lease = unsafe { Lease::new(watch) };
+    let answer = lease.and_then(|mut lease| {
+        place?.put(u32::from(lease.content().expired()));
+        Ok(())
+    });
+    Code::of(answer)
+}
