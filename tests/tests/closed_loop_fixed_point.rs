@@ -41,7 +41,8 @@ fn recoverable_m_s_finely(scene: &Scene, make: Make) -> f64 {
     }
 }
 
-/// On every plant of the catalogue (P1 with four magnets, P2, P3, P4) at both control rates.
+/// On every plant of the catalogue (P1 with four magnets, P2, P3, P4) at both control rates: the same by the catalogue's
+/// search, and within 1 % on a finer grid.
 #[test]
 fn fixed_point_recovers_from_the_same_impacts() {
     for rate_hz in [10_000.0, 20_000.0] {
@@ -57,7 +58,7 @@ fn fixed_point_recovers_from_the_same_impacts() {
             let [float, fixed] = [single, of::<Q>].map(|make| recoverable_m_s_finely(&scene, make));
             println!("{name}: {float:.4} m/s, fixed point {fixed:.4} m/s");
             assert!(
-                (fixed / float - 1.0).abs() < 0.03,
+                (fixed / float - 1.0).abs() < 0.01,
                 "{name}: {float} m/s, fixed point {fixed} m/s"
             );
         }
