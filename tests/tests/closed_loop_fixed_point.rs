@@ -25,7 +25,7 @@ fn by_the_catalogue_m_s(scene: &Scene, make: Make) -> f64 {
     recoverable_m_s(scene, "supervised", &|s| Policy::supervised(s, make(s)?)).unwrap()
 }
 
-/// The same on a grid of a quarter of a percent.
+/// The same on a grid of half a percent.
 fn recoverable_m_s_finely(scene: &Scene, make: Make) -> f64 {
     let mut scene = scene.clone();
     let (mut speed, mut last) = (FIRST_M_S, 0.0);
@@ -37,7 +37,7 @@ fn recoverable_m_s_finely(scene: &Scene, make: Make) -> f64 {
             return last;
         }
         last = speed;
-        speed *= 1.0025;
+        speed *= 1.005;
     }
 }
 
