@@ -2,8 +2,10 @@
 
 pub mod cost;
 pub mod golden;
+pub mod per_unit;
 pub mod plants;
 pub mod rig;
+pub mod storm;
 pub mod target;
 
 use firmware_host::scene::Scene;

@@ -1,0 +1,58 @@
+//! The supervisor as Miri interprets it.
+
+use miri::plausible;
+use supervisor::{Q, Sample, Status, Supervisor, crc_of, self_test};
+
+/// Every mode in every number, with the same answers as on any other processor.
+#[test]
+fn self_tests_pass() {
+    assert!(self_test::<f32>() && self_test::<f64>() && self_test::<Q>());
+}
+
+/// Any bits in any field, past a frozen record.
+#[test]
+fn any_bits_are_survived() {
+    let mut random = 0x9E37_79B9_7F4A_7C15_u64;
+    let mut bits = || {
+        random ^= random << 13;
+        random ^= random >> 7;
+        random ^= random << 17;
+        (random >> 32) as u32
+    };
+    let with = plausible();
+    let mut supervisor = Supervisor::<8>::new(&with).unwrap();
+    let mut sequence = 0_u32;
+    let mut records = 0;
+    for i in 0..600_u32 {
+        let odd = i % 8 == 7;
+        sequence = sequence.wrapping_add(if odd { bits() % 6 } else { 1 });
+        let status = Status::from_bits_retain(if odd { bits() } else { 3 });
+        let mut numbers = |usual: [f32; 2]| {
+            if odd {
+                [0; 2].map(|_| f32::from_bits(bits()))
+            } else {
+                usual
+            }
+        };
+        let angle = 0.1 * i as f32;
+        let position_m = numbers([2.05e-4 * angle.cos(), 2.05e-4 * angle.sin()]);
+        let (levitation_n, applied_n) = (numbers([3.0, 4.0]), numbers([100.0, 0.0]));
+        let command = supervisor.tick(&Sample {
+            sequence,
+            status,
+            position_m,
+            spin_rad_s: numbers([-1000.0, 0.0])[0],
+            levitation_n,
+            applied_n,
+        });
+        let [x, y] = command.force_n;
+        assert!(x.hypot(y) <= with.force_max_n * 1.000_000_2);
+        while supervisor.next_event().is_some() {}
+        if let Some(record) = supervisor.record() {
+            assert_eq!(record.crc, crc_of(record.entries()));
+            records += 1;
+            supervisor.rearm();
+        }
+    }
+    assert!(records > 3);
+}

@@ -1,0 +1,149 @@
+//! The supervisor's core with any of its numbers: behind the SI border, so that it can stand in a closed loop, and
+//! on streams that were recorded from one.
+
+use firmware_host::closed_loop::{Keep, run_policy};
+use firmware_host::overloads::catalogue::{Case, cases};
+use firmware_host::overloads::found::kept;
+use firmware_host::overloads::plants::{PlantCase, plants};
+use firmware_host::policies::{Policy, Supervise};
+use firmware_host::target::record::{Recording, Tape};
+use std::rc::Rc;
+use supervisor::{
+    Command, Config, Core, CoreCommand, CoreError, CoreSample, Mode, Prepared, Sample, Scalar,
+    Scaling, Supervisor,
+};
+
+/// A core of any number that is told SI and answers SI, as firmware without floating point would around it.
+#[derive(Debug)]
+pub struct Behind<S: Scalar> {
+    scaling: Scaling,
+    core: Core<S, 64>,
+}
+
+impl<S: Scalar> Behind<S> {
+    /// For a configuration.
+    ///
+    /// # Errors
+    /// As [`Prepared::new`].
+    pub fn new(config: &Config) -> Result<Self, CoreError> {
+        Ok(Self {
+            scaling: config.scaling(),
+            core: Core::new(&Prepared::new(config)?),
+        })
+    }
+}
+
+impl<S: Scalar> Supervise for Behind<S> {
+    fn tick(&mut self, sample: &Sample) -> Command {
+        let command = (self.core).tick(&in_numbers(&per_unit(sample, &self.scaling)));
+        let newtons = |force: [S; 2]| force.map(|f| f.to_f32() * self.scaling.force_n);
+        Command {
+            force_n: newtons(command.force),
+            own_n: newtons(command.own),
+            mode: command.mode,
+            limits: command.limits,
+            events: command.events,
+            integrator: command.integrator,
+            severity: command.severity.to_f32(),
+        }
+    }
+
+    fn mode(&self) -> Mode {
+        self.core.mode()
+    }
+}
+
+/// A sample in clearances and caps, as [`Supervisor`] converts it.
+pub fn per_unit(sample: &Sample, scaling: &Scaling) -> CoreSample<f32> {
+    let forces = |v: [f32; 2]| v.map(|x| x * scaling.force_per_n);
+    CoreSample {
+        sequence: sample.sequence,
+        status: sample.status,
+        position: sample.position_m.map(|x| x * scaling.position_per_m),
+        spin: sample.spin_rad_s,
+        levitation: forces(sample.levitation_n),
+        applied: forces(sample.applied_n),
+    }
+}
+
+/// The same sample in other numbers, each the nearest.
+pub fn in_numbers<S: Scalar>(sample: &CoreSample<f32>) -> CoreSample<S> {
+    CoreSample {
+        sequence: sample.sequence,
+        status: sample.status,
+        position: sample.position.map(S::of),
+        spin: S::of(sample.spin),
+        levitation: sample.levitation.map(S::of),
+        applied: sample.applied.map(S::of),
+    }
+}
+
+/// What a supervisor was told in a closed loop.
+#[derive(Debug, Clone)]
+pub struct Stream {
+    /// Plant, control rate and case.
+    pub name: String,
+    /// Kind of overload.
+    pub group: &'static str,
+    /// Configuration.
+    pub config: Config,
+    /// Samples per unit.
+    pub samples: Vec<CoreSample<f32>>,
+}
+
+impl Stream {
+    /// Commands of a new core of this number to the samples.
+    ///
+    /// # Errors
+    /// As [`Prepared::new`].
+    pub fn commands<S: Scalar>(&self) -> Result<Vec<CoreCommand<S>>, CoreError> {
+        let mut core = Core::<S, 64>::new(&Prepared::new(&self.config)?);
+        let commands = self.samples.iter().map(|s| core.tick(&in_numbers(s)));
+        Ok(commands.collect())
+    }
+}
+
+/// Records the cases of the catalogue that are wanted, with the `f32` supervisor in the loop, for `longest_s`
+/// at most.
+///
+/// # Panics
+/// If the catalogue is not valid.
+pub fn record(
+    rate_hz: f64,
+    longest_s: f64,
+    wanted: impl Fn(&PlantCase, &Case) -> bool,
+) -> Vec<Stream> {
+    let mut streams = Vec::new();
+    for plant in plants(rate_hz).unwrap_or_else(|e| panic!("{e}")) {
+        for mut case in cases(&plant) {
+            if !wanted(&plant, &case) {
+                continue;
+            }
+            case.scene.levitation = kept(&plant.name, rate_hz).map(|found| found.tuned);
+            case.scene.duration_s = case.scene.duration_s.min(longest_s);
+            let config = case.scene.supervisor.expect("plants have one");
+            let tape = Tape::default();
+            let recording = Recording {
+                supervisor: Box::new(Supervisor::<512>::new(&config).expect("valid")),
+                tape: Rc::clone(&tape),
+            };
+            let policy = Policy::supervised(&case.scene, Box::new(recording)).expect("complete");
+            // For the stream a run is good up to where it cannot be trusted any further.
+            let _ended = run_policy(
+                &case.scene,
+                (policy, "recording"),
+                Keep::Verdict,
+                &mut |_| {},
+            );
+            let scaling = config.scaling();
+            let tape = tape.take();
+            streams.push(Stream {
+                name: format!("{}, {:.0} kHz, {}", plant.name, 1e-3 * rate_hz, case.name),
+                group: case.group,
+                config,
+                samples: tape.iter().map(|(s, _)| per_unit(s, &scaling)).collect(),
+            });
+        }
+    }
+    streams
+}

@@ -1,0 +1,340 @@
+//! Streams of samples that go through every mode, with arbitrary bits in any field of some of them.
+
+use crate::rig;
+use supervisor::{Config, CoreCommand, CoreSample, PARAMETERS, Scalar, Status};
+
+/// A fast random stream (xorshift), the same for the same seed.
+#[derive(Debug, Clone)]
+pub struct Chance(u64);
+
+impl Chance {
+    /// From a seed.
+    pub fn new(seed: u64) -> Self {
+        let mut chance = Self(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1);
+        for _ in 0..8 {
+            chance.bits();
+        }
+        chance
+    }
+
+    /// 64 bits.
+    pub fn bits(&mut self) -> u64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        self.0.wrapping_mul(0x2545_F491_4F6C_DD1D)
+    }
+
+    /// In [0, 1).
+    pub fn share(&mut self) -> f32 {
+        (self.bits() >> 40) as f32 / (1 << 24) as f32
+    }
+
+    /// Once in so many.
+    pub fn once_in(&mut self, n: u64) -> bool {
+        (self.bits() >> 33).is_multiple_of(n)
+    }
+
+    /// Uniform between two limits.
+    pub fn between(&mut self, low: f32, high: f32) -> f32 {
+        low + (high - low) * self.share()
+    }
+}
+
+/// A valid configuration: a bearing like the one on the bench, or, once in three, any value in the range of its
+/// parameter; all of its magnitudes are as likely.
+pub fn any_config(chance: &mut Chance) -> Config {
+    if chance.once_in(3) {
+        let mut values = PARAMETERS.iter().map(|p| {
+            let low = p.low.max(p.high * 1e-9);
+            let value = low * (p.high / low).powf(chance.share());
+            // Stiffness has either sign, and what may be nothing sometimes is.
+            match chance.bits() % 4 {
+                0 if p.low < 0.0 => -value,
+                0 if p.low == 0.0 => 0.0,
+                _ => value.clamp(p.low, p.high),
+            }
+        });
+        return Config::from_values([(); PARAMETERS.len()].map(|()| values.next().unwrap_or(1.0)));
+    }
+    let mut factor = |low: f32, high: f32| low * (high / low).powf(chance.share());
+    let bench = rig::config();
+    Config {
+        mass_kg: bench.mass_kg * factor(0.3, 3.0),
+        force_max_n: 1000.0 * factor(0.1, 10.0),
+        axis_force_max_n: 1000.0 * factor(0.1, 20.0),
+        force_slew_n_s: 2e7 * factor(1e-3, 1e3),
+        continuous_force_n: 1000.0 * factor(0.02, 20.0),
+        thermal_time_s: factor(0.01, 1.0),
+        amplifier_lag_s: factor(1e-6, 1e-3),
+        delay_samples: factor(0.3, 7.0),
+        friction_coefficient: factor(0.01, 0.5),
+        observer_pole_flight: factor(0.2, 0.98),
+        handover_dwell_s: factor(5e-5, 1e-3),
+        severity_limit: factor(1e-3, 1e8),
+        ..bench
+    }
+}
+
+/// What the rotor does for some ticks.
+#[derive(Debug, Clone, Copy)]
+enum Course {
+    /// Near the centre.
+    Levitates,
+    /// Straight through the clearance, back from the wall.
+    Bounces,
+    /// Round on the wall.
+    Whirls,
+    /// On the wall.
+    Lies,
+}
+
+/// Samples without end.
+#[derive(Debug, Clone)]
+pub struct Storm {
+    chance: Chance,
+    course: Course,
+    left: u32,
+    position: [f32; 2],
+    velocity: [f32; 2],
+    angle: f32,
+    angle_step: f32,
+    sequence: u32,
+    status: u32,
+    spin: f32,
+}
+
+impl Storm {
+    /// From a seed.
+    pub fn new(seed: u64) -> Self {
+        Self {
+            chance: Chance::new(seed),
+            course: Course::Levitates,
+            left: 0,
+            position: [0.0; 2],
+            velocity: [0.0; 2],
+            angle: 0.0,
+            angle_step: 0.0,
+            sequence: 0,
+            status: 0,
+            spin: 0.0,
+        }
+    }
+
+    fn turn(&mut self) {
+        let chance = &mut self.chance;
+        self.left = 20 + (chance.bits() >> 40) as u32 % 300;
+        self.course = match chance.bits() >> 62 {
+            0 => Course::Levitates,
+            1 => Course::Bounces,
+            2 => Course::Whirls,
+            _ => Course::Lies,
+        };
+        self.velocity = [chance.between(-0.2, 0.2), chance.between(-0.2, 0.2)];
+        self.angle_step = chance.between(-0.2, 0.2);
+        self.spin = chance.between(-100.0, 100.0);
+        // Mostly spin and bearing; other bits for as long as the course lasts.
+        let bits = chance.bits() as u32;
+        self.status = 3 | if chance.once_in(4) { bits & 0x7C } else { 0 };
+    }
+
+    /// Moves on by a tick.
+    fn go(&mut self) {
+        if self.left == 0 {
+            self.turn();
+        }
+        self.left -= 1;
+        self.angle += self.angle_step;
+        if self.angle.abs() > 1e3 {
+            self.angle = 0.0;
+        }
+        let radius = 1.01 + 0.005 * self.chance.share();
+        let on_wall = |angle: f32| [radius * angle.cos(), radius * angle.sin()];
+        match self.course {
+            Course::Levitates => {
+                self.position = [
+                    self.chance.between(-0.1, 0.1),
+                    self.chance.between(-0.1, 0.1),
+                ];
+            }
+            Course::Bounces => {
+                for axis in 0..2 {
+                    self.position[axis] += self.velocity[axis];
+                }
+                let [x, y] = self.position;
+                let r = x.hypot(y);
+                if r > 1.0 {
+                    let along = (x * self.velocity[0] + y * self.velocity[1]) / r;
+                    for axis in 0..2 {
+                        let n = self.position[axis] / r;
+                        self.velocity[axis] -= 1.7 * along.max(0.0) * n;
+                        self.position[axis] = 1.01 * n;
+                    }
+                }
+            }
+            Course::Whirls => self.position = on_wall(self.angle),
+            Course::Lies => self.position = on_wall(0.1 * (self.angle * 3.0).sin() - 1.5),
+        }
+    }
+}
+
+/// A number that can be made of any bits.
+pub trait AnyBits: Scalar {
+    /// From any bits.
+    fn from_any_bits(bits: u64) -> Self;
+    /// One unit in the last place of 1.
+    const LAST_PLACE: f64;
+    /// As `f64`, exactly.
+    fn exact(self) -> f64;
+}
+
+impl AnyBits for f32 {
+    fn from_any_bits(bits: u64) -> Self {
+        Self::from_bits(bits as u32)
+    }
+    const LAST_PLACE: f64 = f32::EPSILON as f64;
+    fn exact(self) -> f64 {
+        f64::from(self)
+    }
+}
+
+impl AnyBits for f64 {
+    fn from_any_bits(bits: u64) -> Self {
+        Self::from_bits(bits)
+    }
+    const LAST_PLACE: f64 = f64::EPSILON;
+    fn exact(self) -> f64 {
+        self
+    }
+}
+
+impl AnyBits for supervisor::Q {
+    fn from_any_bits(bits: u64) -> Self {
+        Self::from_bits(bits as i32)
+    }
+    const LAST_PLACE: f64 = 1.0 / (1_u32 << 22) as f64;
+    fn exact(self) -> f64 {
+        f64::from(self.to_bits()) * Self::LAST_PLACE
+    }
+}
+
+impl Storm {
+    /// The next sample: plausible, or, once in 16, with arbitrary bits in some of its fields.
+    pub fn next_sample<S: AnyBits>(&mut self) -> CoreSample<S> {
+        self.go();
+        self.sequence = self.sequence.wrapping_add(1);
+        let chance = &mut self.chance;
+        let mut forces = || {
+            [
+                S::of(chance.between(-1.2, 1.2)),
+                S::of(chance.between(-1.2, 1.2)),
+            ]
+        };
+        let mut sample = CoreSample {
+            sequence: self.sequence,
+            status: Status::from_bits_retain(self.status),
+            position: self.position.map(S::of),
+            spin: S::of(self.spin),
+            levitation: forces(),
+            applied: forces(),
+        };
+        let odd = chance.bits();
+        if odd >> 60 == 0 {
+            let fields = odd as u16;
+            let mut replace = |bit: u32, number: &mut S| {
+                if fields & (1 << bit) != 0 {
+                    *number = S::from_any_bits(chance.bits());
+                }
+            };
+            let [px, py] = &mut sample.position;
+            replace(0, px);
+            replace(1, py);
+            replace(2, &mut sample.spin);
+            let [lx, ly] = &mut sample.levitation;
+            replace(3, lx);
+            replace(4, ly);
+            let [ax, ay] = &mut sample.applied;
+            replace(5, ax);
+            replace(6, ay);
+            if fields & 0x180 == 0x180 {
+                sample.status = Status::from_bits_retain(chance.bits() as u32);
+            }
+            if fields & 0x600 == 0x600 {
+                // Some ticks missed, or any number at all.
+                let bits = chance.bits();
+                let ahead = if bits >> 62 == 0 {
+                    bits as u32
+                } else {
+                    bits as u32 % 8
+                };
+                self.sequence = self.sequence.wrapping_add(ahead);
+                sample.sequence = self.sequence;
+            }
+        }
+        sample
+    }
+}
+
+/// What holds for every command \[caps\], by the configuration.
+#[derive(Debug, Clone, Copy)]
+pub struct Bounds<S> {
+    axis_cap: f64,
+    slew_step: f64,
+    /// Last force and last force of its own.
+    last: [[S; 2]; 2],
+}
+
+impl<S: AnyBits> Bounds<S> {
+    /// For a configuration; as the core has them, in the nearest number.
+    pub fn new(config: &Config) -> Self {
+        let cap = config.force_max_n;
+        let slew = config.force_slew_n_s * config.sample_period_s / cap;
+        Self {
+            axis_cap: S::of((config.axis_force_max_n / cap).min(1.0)).exact(),
+            slew_step: S::of(slew.min(4.0)).exact(),
+            last: [[S::ZERO; 2]; 2],
+        }
+    }
+
+    /// Finite; within the cap, the caps of the axes and the slew limit to a unit in the last place of 1; and nothing on an
+    /// axis that is lost.
+    ///
+    /// # Errors
+    /// What is broken.
+    pub fn check(&mut self, command: &CoreCommand<S>, status: Status) -> Result<(), String> {
+        let lost = [Status::AXIS_X_LOST, Status::AXIS_Y_LOST].map(|axis| status.contains(axis));
+        if !command.severity.is_finite() || command.severity < S::ZERO {
+            return Err(format!("severity: {command:?}"));
+        }
+        if !status.contains(Status::SHADOW) {
+            if command.own != command.force {
+                return Err(format!("two forces without a shadow: {command:?}"));
+            }
+            // What it would have done ends where it acts: it goes on from what was done.
+            self.last[1] = self.last[0];
+        }
+        for (force, last) in [command.force, command.own].into_iter().zip(&mut self.last) {
+            let say = |what: &str| Err(format!("{what}: {command:?} after {last:?}, {status:?}"));
+            let ([x, y], [u, v]) = (force.map(S::exact), last.map(S::exact));
+            if !(x.is_finite() && y.is_finite()) {
+                return say("not finite");
+            }
+            if x.hypot(y) > 1.0 + S::LAST_PLACE {
+                return say("beyond the cap");
+            }
+            if x.abs().max(y.abs()) > self.axis_cap + S::LAST_PLACE {
+                return say("beyond the cap of an axis");
+            }
+            if (lost[0] && x != 0.0) || (lost[1] && y != 0.0) {
+                return say("force on a lost axis");
+            }
+            let on = |axis: usize, change: f64| if lost[axis] { 0.0 } else { change };
+            let change = on(0, x - u).hypot(on(1, y - v));
+            if change > self.slew_step + S::LAST_PLACE {
+                return say("faster than the slew limit");
+            }
+            *last = force;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,66 @@
+//! The fixed-point supervisor keeps rotors as well as `f32`: hardest impact that is recovered from.
+
+use firmware_host::closed_loop::{Keep, run_policy};
+use firmware_host::overloads::found::kept;
+use firmware_host::overloads::impact::{FIRST_M_S, recoverable_m_s};
+use firmware_host::overloads::plants::plants;
+use firmware_host::policies::{Policy, Supervise};
+use firmware_host::scene::Scene;
+use plant_model::V2;
+use supervisor::{Q, Scalar, Supervisor};
+use system_tests::per_unit::Behind;
+
+type Make = fn(&Scene) -> Option<Box<dyn Supervise>>;
+
+fn single(scene: &Scene) -> Option<Box<dyn Supervise>> {
+    Some(Box::new(Supervisor::<512>::new(&scene.supervisor?).ok()?))
+}
+
+fn of<S: Scalar + 'static>(scene: &Scene) -> Option<Box<dyn Supervise>> {
+    Some(Box::new(Behind::<S>::new(&scene.supervisor?).ok()?))
+}
+
+/// By the search of the catalogue, in steps of 5 %.
+fn by_the_catalogue_m_s(scene: &Scene, make: Make) -> f64 {
+    recoverable_m_s(scene, "supervised", &|s| Policy::supervised(s, make(s)?)).unwrap()
+}
+
+/// The same on a grid of half a percent.
+fn recoverable_m_s_finely(scene: &Scene, make: Make) -> f64 {
+    let mut scene = scene.clone();
+    let (mut speed, mut last) = (FIRST_M_S, 0.0);
+    loop {
+        scene.start.velocity_m_s = V2::new(speed, 0.0);
+        let policy = Policy::supervised(&scene, make(&scene).unwrap()).unwrap();
+        let run = run_policy(&scene, (policy, "supervised"), Keep::Decision, &mut |_| {});
+        if !run.unwrap().0.recovered {
+            return last;
+        }
+        last = speed;
+        speed *= 1.005;
+    }
+}
+
+/// On every plant of the catalogue (P1 with four magnets, P2, P3, P4) at both control rates: the same by the catalogue's
+/// search, and within 1 % on a finer grid.
+#[test]
+fn fixed_point_recovers_from_the_same_impacts() {
+    for rate_hz in [10_000.0, 20_000.0] {
+        for plant in plants(rate_hz).unwrap() {
+            let mut scene = plant.scene.clone();
+            scene.levitation = kept(&plant.name, rate_hz).map(|found| found.tuned);
+            let name = format!("{} at {rate_hz} Hz", plant.name);
+            let [float, fixed] = [single, of::<Q>].map(|make| by_the_catalogue_m_s(&scene, make));
+            assert!(
+                float > 0.2 && fixed == float,
+                "{name}: {float} m/s, fixed point {fixed} m/s"
+            );
+            let [float, fixed] = [single, of::<Q>].map(|make| recoverable_m_s_finely(&scene, make));
+            println!("{name}: {float:.4} m/s, fixed point {fixed:.4} m/s");
+            assert!(
+                (fixed / float - 1.0).abs() < 0.01,
+                "{name}: {float} m/s, fixed point {fixed} m/s"
+            );
+        }
+    }
+}
