@@ -261,6 +261,10 @@ impl<S: Scalar> Coeffs<S> {
         // More than twice the cap binds nothing; less than what has an inverse would bind for ever.
         let slew_step = min(config.force_slew_n_s * t / f, 4.0);
         let _: S = taken.of("slew limit", 1.0 / slew_step);
+        // What the fall of the cap is divided by has to be more than some last places.
+        if continuous < 1.0 {
+            let _: S = taken.of("continuous force", 1.0 / (64.0 * FALL * square));
+        }
         // Far from where squares saturate.
         let limit = config.position_limit;
         let _: S = taken.of("square of the position limit", 2.0 * limit * limit);

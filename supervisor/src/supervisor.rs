@@ -3,7 +3,7 @@
 use crate::config::{Config, ConfigError};
 use crate::per_unit::{Core, Prepared};
 use crate::recorder::{QueuedEvent, Record};
-use crate::signal::{Command, CoreSample, Mode, Report, Sample};
+use crate::signal::{Command, CoreSample, Mode, Report, Sample, Status};
 
 /// Supervisor of one bearing plane with a flight record of `RECORD` ticks (a power of two).
 #[derive(Debug, Clone)]
@@ -51,17 +51,21 @@ impl<const RECORD: usize> Supervisor<RECORD> {
             levitation,
             applied: forces(sample.applied_n),
         });
-        // Transparent means bit for bit: what the core left alone does not come back from per unit.
+        // Transparent means bit for bit: what the core left alone does not come back from per unit. A lost axis
+        // gets nothing, also where a command is so small that per unit it is nothing.
         let newtons = |force: [f32; 2]| {
-            let on = |force: f32, levitation: f32, levitation_n: f32| {
-                if force == levitation {
+            let on = |force: f32, levitation: f32, levitation_n: f32, lost: Status| {
+                if force == levitation && !sample.status.contains(lost) {
                     levitation_n
                 } else {
                     force * scaling.force_n
                 }
             };
             let ([x, y], [u, v], [u_n, v_n]) = (force, levitation, sample.levitation_n);
-            [on(x, u, u_n), on(y, v, v_n)]
+            [
+                on(x, u, u_n, Status::AXIS_X_LOST),
+                on(y, v, v_n, Status::AXIS_Y_LOST),
+            ]
         };
         Command {
             force_n: newtons(command.force),

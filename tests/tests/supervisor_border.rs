@@ -381,7 +381,7 @@ fn positions_are_carried_to_the_plane_of_the_retainer_bearing() {
             ..config()
         };
         let mut supervisor = Supervisor::<64>::new(&with).unwrap();
-        let commands: Vec<Command> = (0..300_u32)
+        let commands: Vec<Command> = (0..400_u32)
             .map(|i| {
                 let at = on_circle(RADIUS_M, WHIRL_STEP * i as f32);
                 supervisor.tick(&sample(i, at.map(|x| x / ratio)))

@@ -1,7 +1,7 @@
 //! Firmware as it could be, small enough to be read in one go: a timer interrupt ticks the supervisor at
 //! 20 kHz, and the background drains its events and picks up its flight record.
 //!
-//! The board is made up: [`measured_position_m`] stands for converter and position sensor, the levitation
+//! The board is made up: `measured_position_m` stands for converter and position sensor, the levitation
 //! controller is a spring, and the commanded force is kept where a driver of amplifiers would take it from. The
 //! rotor falls onto its retainer bearing, whirls there for a while and comes back. Prints what a logger
 //! would be given, and ends when the record has been read.
