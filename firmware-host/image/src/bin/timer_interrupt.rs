@@ -1,7 +1,7 @@
 //! Firmware as it could be, small enough to be read in one go: a timer interrupt ticks the supervisor at
 //! 20 kHz, and the background drains its events and picks up its flight record.
 //!
-//! The board is made up: [`measured_position_m`] stands for converter and position sensor, the levitation
+//! The board is made up: `measured_position_m` stands for converter and position sensor, the levitation
 //! controller is a spring, and the commanded force is kept where a driver of amplifiers would take it from. The
 //! rotor falls onto its retainer bearing, whirls there for a while and comes back. Prints what a logger
 //! would be given, and ends when the record has been read.
@@ -104,6 +104,10 @@ mod firmware {
     #[entry]
     fn main() -> ! {
         planted();
+        // Before anything else: a processor that computes something else must not drive a magnet.
+        if !supervisor::self_test::<f32>() {
+            report::failed("the self-test does not pass on this processor")
+        }
         let Some(mut peripherals) = cortex_m::Peripherals::take() else {
             exit::failure()
         };
