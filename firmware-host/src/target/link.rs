@@ -177,3 +177,48 @@ impl Supervise for Emulated {
         self.mode
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use firmware_image::wire::{CommandBits, SampleBits};
+    use rand_chacha::ChaCha8Rng;
+    use rand_core::{Rng, SeedableRng};
+    use supervisor::{Limits, Status};
+
+    /// Whatever the words are, both ends know the same after each message, and a usual tick is short.
+    #[test]
+    fn nothing_is_lost_on_the_line() {
+        let mut chance = ChaCha8Rng::seed_from_u64(1);
+        // One in four is any word, the others are as before.
+        let mut next = |before: u32| match chance.next_u32() {
+            any if any.is_multiple_of(4) => chance.next_u32(),
+            _ => before,
+        };
+        let (mut host, mut board) = (Line::default(), Line::default());
+        let (mut sample, mut command) = (SampleBits::default(), CommandBits::default());
+        for _ in 0..10_000 {
+            sample = SampleBits {
+                sequence: next(sample.sequence.wrapping_add(1)),
+                status: Status::from_bits_retain(next(sample.status.bits())),
+                position: sample.position.map(&mut next),
+                spin: next(sample.spin),
+                levitation: sample.levitation.map(&mut next),
+                applied: sample.applied.map(&mut next),
+            };
+            assert_eq!(board.sample(host.pack_sample(&sample).bytes()), sample);
+            let own = sample.levitation.map(&mut next);
+            command = CommandBits {
+                own,
+                force: own.map(&mut next),
+                limits: Limits::from_bits_truncate(next(command.limits.bits())),
+                severity: next(command.severity),
+                ..command
+            };
+            let packed = board.pack_command(&command);
+            assert_eq!(host.command(packed.bytes()), Some(command));
+        }
+        sample.sequence = sample.sequence.wrapping_add(1);
+        assert_eq!(host.pack_sample(&sample).bytes().len(), MAP_BYTES);
+    }
+}
