@@ -3,7 +3,16 @@
 use std::path::Path;
 
 /// Images that start by themselves, with the map of their machine.
-const RUNNABLE: [&str; 4] = ["replay", "count", "in-the-loop", "timer-interrupt"];
+const RUNNABLE: [&str; 6] = [
+    "replay",
+    "replay-q",
+    "count",
+    "count-q",
+    "in-the-loop",
+    "timer-interrupt",
+];
+/// Images that are only linked.
+const LINKED: [&str; 2] = ["panic-free", "panic-free-q"];
 
 /// The Cortex-M0 machine (microbit) is small; the MPS2 boards of M3, M4F and M7 share one map.
 const SMALL: &str =
@@ -14,14 +23,21 @@ const MPS2: &str =
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("cargo::rerun-if-changed=build.rs");
     println!("cargo::rerun-if-changed=panic_free.x");
+    // The small machine, which has another clock.
+    println!("cargo::rustc-check-cfg=cfg(small_board)");
     if std::env::var("CARGO_CFG_TARGET_OS").as_deref() != Ok("none") {
         return Ok(());
     }
     let here = std::env::var("CARGO_MANIFEST_DIR")?;
-    println!("cargo::rustc-link-arg-bin=panic-free=-T{here}/panic_free.x");
+    for bin in LINKED {
+        println!("cargo::rustc-link-arg-bin={bin}=-T{here}/panic_free.x");
+    }
 
     let out = std::env::var("OUT_DIR")?;
     let small = std::env::var("TARGET")?.starts_with("thumbv6m");
+    if small {
+        println!("cargo::rustc-cfg=small_board");
+    }
     // cortex-m-rt's link.x includes it by this name.
     std::fs::write(
         Path::new(&out).join("memory.x"),

@@ -14,5 +14,6 @@ pub mod loops;
 pub mod machines;
 pub mod made_up;
 pub mod measure;
+pub mod numbers;
 pub mod record;
 pub mod results;

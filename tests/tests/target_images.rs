@@ -9,10 +9,14 @@ const TARGETS: [&str; 3] = [
     "thumbv7m-none-eabi",
     "thumbv6m-none-eabi",
 ];
-const IMAGES: [&str; 5] = [
+/// Those with `-q` are fixed point, the others floats.
+const IMAGES: [&str; 8] = [
     "panic-free",
+    "panic-free-q",
     "replay",
+    "replay-q",
     "count",
+    "count-q",
     "in-the-loop",
     "timer-interrupt",
 ];

@@ -1,20 +1,20 @@
 //! What the Cortex-M images share, and the bytes in which the host talks to them.
 //!
-//! The host needs [`wire`] and [`RECORD`]; everything else is built for a target without an operating
-//! system only.
+//! The host needs [`wire`], [`line`](mod@line) and [`under_test`]; everything else is built for a target without an
+//! operating system only.
 
 #![cfg_attr(target_os = "none", no_std)]
 
+pub mod line;
 #[cfg(target_os = "none")]
 mod on_target;
+pub mod under_test;
 pub mod wire;
 
 #[cfg(target_os = "none")]
-pub use on_target::{exit, file, planted, report, serial, stack, under_test};
-
-/// Ticks of the flight record of the supervisor under test. Host and image must agree: the tick at which
-/// a record freezes is part of a command.
-pub const RECORD: usize = 512;
+pub use on_target::{
+    checked, count, exit, file, panic_free, planted, replay, report, serial, stack,
+};
 
 /// `main` of an image that was built for the host by mistake.
 #[cfg(not(target_os = "none"))]

@@ -1,11 +1,15 @@
 //! What the images share on the target.
 
+pub mod count;
 pub mod exit;
 pub mod file;
+pub mod panic_free;
+pub mod replay;
 pub mod report;
 pub mod serial;
 pub mod stack;
-pub mod under_test;
+
+use crate::under_test::UnderTest;
 
 /// Puts a panic into an image that asks for it, to show that the check of the link would find it.
 pub fn planted() {
@@ -13,5 +17,12 @@ pub fn planted() {
     {
         let few = [1, 2, 3];
         core::hint::black_box(few[core::hint::black_box(2_usize)]);
+    }
+}
+
+/// What firmware does at boot: a processor that computes something else must not drive a magnet.
+pub fn checked<U: UnderTest>() {
+    if !U::self_test() {
+        report::failed("the self-test of the supervisor does not pass on this processor")
     }
 }

@@ -4,10 +4,12 @@
 //! to the supervisor's border does not compile here until it has a place in the bytes.
 //!
 //! A recorded stream is a [`Header`], then for each segment a [`Segment`] and its ticks. A tick is
-//! a sample and the command that the host gave to it, [`TICK_BYTES`] in all.
+//! a sample and the command that the host gave to it, [`TICK_BYTES`] in all. Numbers go by their bits, so that
+//! floats in SI and fixed point per unit have the same layout.
 
 use supervisor::{
-    Command, Config, Events, IntegratorHint, Limits, Mode, PARAMETERS, Sample, Status,
+    Command, Config, CoreCommand, CoreSample, Events, IntegratorHint, Limits, Mode, PARAMETERS, Q,
+    Sample, Status,
 };
 
 /// Bytes of a sample.
@@ -24,18 +26,6 @@ pub const HEADER_BYTES: usize = 8;
 pub const SEGMENT_BYTES: usize = CONFIG_BYTES + 4;
 /// First bytes of a stream; the last of them is the version of the layout.
 const MAGIC: [u8; 4] = *b"AWS\x01";
-
-/// First byte of a message to the image in the loop: a configuration follows, answered by [`READY`] or
-/// [`REFUSED`].
-pub const CONFIGURE: u8 = b'C';
-/// A sample follows, answered by a command.
-pub const TICK: u8 = b'T';
-/// The image ends, without an answer.
-pub const QUIT: u8 = b'Q';
-/// The configuration is valid; the supervisor is new.
-pub const READY: u8 = b'R';
-/// The configuration is not valid.
-pub const REFUSED: u8 = b'X';
 
 /// Beginning of a stream.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -68,12 +58,9 @@ impl Writer<'_> {
     fn word(&mut self, value: u32) {
         self.put(value.to_le_bytes());
     }
-    fn float(&mut self, value: f32) {
-        self.word(value.to_bits());
-    }
-    fn pair(&mut self, [x, y]: [f32; 2]) {
-        self.float(x);
-        self.float(y);
+    fn pair(&mut self, [x, y]: [u32; 2]) {
+        self.word(x);
+        self.word(y);
     }
 }
 
@@ -93,12 +80,9 @@ impl Reader<'_> {
     fn word(&mut self) -> u32 {
         u32::from_le_bytes(self.take())
     }
-    fn float(&mut self) -> f32 {
-        f32::from_bits(self.word())
-    }
-    fn pair(&mut self) -> [f32; 2] {
-        let x = self.float();
-        [x, self.float()]
+    fn pair(&mut self) -> [u32; 2] {
+        let x = self.word();
+        [x, self.word()]
     }
     fn byte(&mut self) -> u8 {
         let [byte] = self.take();
@@ -106,8 +90,13 @@ impl Reader<'_> {
     }
 }
 
-/// A sample as bytes; floats keep every bit, whatever they are.
-pub fn put_sample(sample: &Sample, bytes: &mut [u8; SAMPLE_BYTES]) {
+/// A sample of numbers by their bits, whatever the numbers are.
+pub type SampleBits = CoreSample<u32>;
+/// A command of numbers by their bits.
+pub type CommandBits = CoreCommand<u32>;
+
+/// The bits of a sample.
+pub fn sample_bits(sample: &Sample) -> SampleBits {
     let Sample {
         sequence,
         status,
@@ -116,30 +105,30 @@ pub fn put_sample(sample: &Sample, bytes: &mut [u8; SAMPLE_BYTES]) {
         levitation_n,
         applied_n,
     } = *sample;
-    let mut writer = Writer { rest: bytes };
-    writer.word(sequence);
-    writer.word(status.bits());
-    writer.pair(position_m);
-    writer.float(spin_rad_s);
-    writer.pair(levitation_n);
-    writer.pair(applied_n);
-}
-
-/// The sample of these bytes.
-pub fn sample_of(bytes: &[u8; SAMPLE_BYTES]) -> Sample {
-    let mut reader = Reader { rest: bytes };
-    Sample {
-        sequence: reader.word(),
-        status: Status::from_bits_retain(reader.word()),
-        position_m: reader.pair(),
-        spin_rad_s: reader.float(),
-        levitation_n: reader.pair(),
-        applied_n: reader.pair(),
+    CoreSample {
+        sequence,
+        status,
+        position: position_m.map(f32::to_bits),
+        spin: spin_rad_s.to_bits(),
+        levitation: levitation_n.map(f32::to_bits),
+        applied: applied_n.map(f32::to_bits),
     }
 }
 
-/// A command as bytes.
-pub fn put_command(command: &Command, bytes: &mut [u8; COMMAND_BYTES]) {
+/// The sample of these bits.
+pub fn sample_of_bits(bits: &SampleBits) -> Sample {
+    Sample {
+        sequence: bits.sequence,
+        status: bits.status,
+        position_m: bits.position.map(f32::from_bits),
+        spin_rad_s: f32::from_bits(bits.spin),
+        levitation_n: bits.levitation.map(f32::from_bits),
+        applied_n: bits.applied.map(f32::from_bits),
+    }
+}
+
+/// The bits of a command.
+pub fn command_bits(command: &Command) -> CommandBits {
     let Command {
         force_n,
         own_n,
@@ -149,25 +138,137 @@ pub fn put_command(command: &Command, bytes: &mut [u8; COMMAND_BYTES]) {
         integrator,
         severity,
     } = *command;
+    CoreCommand {
+        force: force_n.map(f32::to_bits),
+        own: own_n.map(f32::to_bits),
+        mode,
+        limits,
+        events,
+        integrator,
+        severity: severity.to_bits(),
+    }
+}
+
+/// The command of these bits.
+pub fn command_of_bits(bits: &CommandBits) -> Command {
+    Command {
+        force_n: bits.force.map(f32::from_bits),
+        own_n: bits.own.map(f32::from_bits),
+        mode: bits.mode,
+        limits: bits.limits,
+        events: bits.events,
+        integrator: bits.integrator,
+        severity: f32::from_bits(bits.severity),
+    }
+}
+
+const fn q_bits(q: Q) -> u32 {
+    q.to_bits() as u32
+}
+
+const fn q_of_bits(bits: u32) -> Q {
+    Q::from_bits(bits as i32)
+}
+
+/// The bits of a sample in fixed point.
+pub fn core_sample_bits(sample: &CoreSample<Q>) -> SampleBits {
+    CoreSample {
+        sequence: sample.sequence,
+        status: sample.status,
+        position: sample.position.map(q_bits),
+        spin: q_bits(sample.spin),
+        levitation: sample.levitation.map(q_bits),
+        applied: sample.applied.map(q_bits),
+    }
+}
+
+/// The sample in fixed point of these bits.
+pub fn core_sample_of_bits(bits: &SampleBits) -> CoreSample<Q> {
+    CoreSample {
+        sequence: bits.sequence,
+        status: bits.status,
+        position: bits.position.map(q_of_bits),
+        spin: q_of_bits(bits.spin),
+        levitation: bits.levitation.map(q_of_bits),
+        applied: bits.applied.map(q_of_bits),
+    }
+}
+
+/// The bits of a command in fixed point.
+pub fn core_command_bits(command: &CoreCommand<Q>) -> CommandBits {
+    CoreCommand {
+        force: command.force.map(q_bits),
+        own: command.own.map(q_bits),
+        mode: command.mode,
+        limits: command.limits,
+        events: command.events,
+        integrator: command.integrator,
+        severity: q_bits(command.severity),
+    }
+}
+
+/// A sample as bytes.
+pub fn put_sample(sample: &SampleBits, bytes: &mut [u8; SAMPLE_BYTES]) {
+    let CoreSample {
+        sequence,
+        status,
+        position,
+        spin,
+        levitation,
+        applied,
+    } = *sample;
     let mut writer = Writer { rest: bytes };
-    writer.pair(force_n);
-    writer.pair(own_n);
+    writer.word(sequence);
+    writer.word(status.bits());
+    writer.pair(position);
+    writer.word(spin);
+    writer.pair(levitation);
+    writer.pair(applied);
+}
+
+/// The sample of these bytes.
+pub fn sample_of(bytes: &[u8; SAMPLE_BYTES]) -> SampleBits {
+    let mut reader = Reader { rest: bytes };
+    CoreSample {
+        sequence: reader.word(),
+        status: Status::from_bits_retain(reader.word()),
+        position: reader.pair(),
+        spin: reader.word(),
+        levitation: reader.pair(),
+        applied: reader.pair(),
+    }
+}
+
+/// A command as bytes.
+pub fn put_command(command: &CommandBits, bytes: &mut [u8; COMMAND_BYTES]) {
+    let CoreCommand {
+        force,
+        own,
+        mode,
+        limits,
+        events,
+        integrator,
+        severity,
+    } = *command;
+    let mut writer = Writer { rest: bytes };
+    writer.pair(force);
+    writer.pair(own);
     writer.word(limits.bits());
     writer.word(events.bits());
-    writer.float(severity);
+    writer.word(severity);
     writer.put([mode as u8]);
     writer.put([integrator as u8]);
 }
 
 /// The command of these bytes; `None` where they are none.
-pub fn command_of(bytes: &[u8; COMMAND_BYTES]) -> Option<Command> {
+pub fn command_of(bytes: &[u8; COMMAND_BYTES]) -> Option<CommandBits> {
     let mut reader = Reader { rest: bytes };
-    Some(Command {
-        force_n: reader.pair(),
-        own_n: reader.pair(),
+    Some(CoreCommand {
+        force: reader.pair(),
+        own: reader.pair(),
         limits: Limits::from_bits(reader.word())?,
         events: Events::from_bits(reader.word())?,
-        severity: reader.float(),
+        severity: reader.word(),
         mode: mode_of(reader.byte())?,
         integrator: match reader.byte() {
             0 => IntegratorHint::Run,
@@ -197,14 +298,14 @@ pub fn mode_of(number: u8) -> Option<Mode> {
 pub fn put_config(config: &Config, bytes: &mut [u8; CONFIG_BYTES]) {
     let mut writer = Writer { rest: bytes };
     for value in config.values() {
-        writer.float(value);
+        writer.word(value.to_bits());
     }
 }
 
 /// The configuration of these bytes, valid or not.
 pub fn config_of(bytes: &[u8; CONFIG_BYTES]) -> Config {
     let mut reader = Reader { rest: bytes };
-    Config::from_values(core::array::from_fn(|_| reader.float()))
+    Config::from_values(core::array::from_fn(|_| f32::from_bits(reader.word())))
 }
 
 /// A header as bytes.

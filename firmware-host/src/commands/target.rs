@@ -4,14 +4,15 @@ mod show;
 
 use crate::commands::error::{CommandError, print};
 use crate::commands::progress::pool;
-use crate::target::budgets::Budgets;
+use crate::target::budgets::{BudgetError, Budgets, renew};
 use crate::target::emulator;
 use crate::target::images::Project;
 use crate::target::loops::in_the_loop;
 use crate::target::machines::{MACHINES, Machine};
 use crate::target::measure::{Streams, TargetError, measure};
+use crate::target::numbers::Number;
 use crate::target::record::Length;
-use crate::target::results::Report;
+use crate::target::results::{Report, TargetRow};
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 use std::path::PathBuf;
 
@@ -27,7 +28,10 @@ pub struct TargetArgs {
     /// Instead: put the emulated processors into closed loops with the plant, and compare with the host alone.
     #[arg(long = "loop", conflicts_with = "quick")]
     pub in_loop: bool,
-    /// Only this processor: M3, M4F or M7. May be repeated.
+    /// Write what is measured into the [budget.*] tables of budgets.toml.
+    #[arg(long, conflicts_with = "in_loop")]
+    pub renew: bool,
+    /// Only this processor: M3, M0, M4F or M7. May be repeated.
     #[arg(long, value_name = "NAME", ignore_case = true, value_parser = names())]
     pub only: Vec<String>,
     /// The project's folder, or one in it.
@@ -39,7 +43,13 @@ pub struct TargetArgs {
 }
 
 fn names() -> clap::builder::PossibleValuesParser {
-    MACHINES.map(|m| m.name).into()
+    let mut names: Vec<&'static str> = Vec::new();
+    for machine in MACHINES {
+        if !names.contains(&machine.name) {
+            names.push(machine.name);
+        }
+    }
+    names.into()
 }
 
 /// Builds the images, runs them and prints what came out.
@@ -72,7 +82,15 @@ fn run(args: &TargetArgs, machines: &[Machine]) -> Result<Report, CommandError> 
     // What is missing is told before anything takes its time.
     let qemu = emulator::version().map_err(TargetError::from)?;
     let project = Project::around(&args.project).map_err(TargetError::from)?;
-    let budgets = Budgets::load(&project.budgets()).map_err(TargetError::from)?;
+    Budgets::load(&project.budgets()).map_err(TargetError::from)?;
+    let mut machines = machines.to_vec();
+    if args.in_loop {
+        let all: Vec<String> = machines.iter().map(Machine::title).collect();
+        machines.retain(|m| m.number == Number::Float);
+        if machines.is_empty() {
+            return Err(TargetError::NoLoop(all.join(", ")).into());
+        }
+    }
     let mut targets: Vec<&'static str> = machines.iter().map(|m| m.target).collect();
     targets.sort_unstable();
     targets.dedup();
@@ -81,13 +99,13 @@ fn run(args: &TargetArgs, machines: &[Machine]) -> Result<Report, CommandError> 
     }
     let mut report = Report {
         qemu,
-        stream: None,
+        streams: Vec::new(),
         targets: Vec::new(),
         loops: Vec::new(),
     };
     if args.in_loop {
         // One at a time: the pace is part of the result.
-        for machine in machines {
+        for machine in &machines {
             report.loops.extend(in_the_loop(&project, machine)?);
         }
         return Ok(report);
@@ -98,13 +116,36 @@ fn run(args: &TargetArgs, machines: &[Machine]) -> Result<Report, CommandError> 
         Length::FULL
     };
     report.targets = pool(args.threads)?.install(|| {
-        let streams = Streams::record(length)?;
-        report.stream = Some(streams.row.clone());
-        let one = |machine| measure(&project, machine, &streams, &budgets);
-        machines
-            .par_iter()
-            .map(one)
-            .collect::<Result<_, TargetError>>()
+        let mut work = Vec::new();
+        for number in [Number::Float, Number::Fixed] {
+            if machines.iter().any(|m| m.number == number) {
+                let streams = Streams::record(number, length)?;
+                report.streams.push(streams.row.clone());
+                work.push((number, streams));
+            }
+        }
+        // Each machine with the stream of its numbers, in the order of the table.
+        let pairs: Vec<(&Machine, &Streams)> = (machines.iter())
+            .filter_map(|m| Some((m, &work.iter().find(|(n, _)| *n == m.number)?.1)))
+            .collect();
+        let rows = pairs.par_iter().map(|(m, s)| measure(&project, m, s));
+        rows.collect::<Result<Vec<_>, TargetError>>()
     })?;
+    judge(args, &project, &mut report.targets).map_err(TargetError::from)?;
     Ok(report)
+}
+
+/// Holds the figures against their budgets, which may be made of them before.
+fn judge(args: &TargetArgs, project: &Project, rows: &mut [TargetRow]) -> Result<(), BudgetError> {
+    if args.renew {
+        let figures: Vec<_> = (rows.iter())
+            .map(|row| (row.name, row.number, row.figures()))
+            .collect();
+        renew(&project.budgets(), &figures)?;
+    }
+    let budgets = Budgets::load(&project.budgets())?;
+    for row in rows {
+        row.budgets = budgets.judge(row.name, row.number, &row.figures())?;
+    }
+    Ok(())
 }

@@ -23,9 +23,17 @@ pub enum BudgetError {
         /// What is wrong, with its place.
         reason: Box<toml::de::Error>,
     },
+    /// Not writable.
+    #[error("{}: {reason}", path.display())]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        reason: std::io::Error,
+    },
     /// Nothing for a target.
     #[error("{} has no table [budget.{name}.{number}]", path.display())]
-    #[diagnostic(help("add it with the figures of `firmware-host target`"))]
+    #[diagnostic(help("`firmware-host target --renew` adds it"))]
     None {
         /// The file.
         path: PathBuf,
@@ -46,7 +54,7 @@ pub struct Figures {
     pub median_instructions: u64,
     /// Flash.
     pub text_bytes: u64,
-    /// State without the ring of the flight record.
+    /// State without the recorder.
     pub ram_bytes: u64,
     /// Deepest stack of a tick.
     pub stack_bytes: u64,
@@ -222,6 +230,51 @@ impl Budgets {
     }
 }
 
+/// The text of the file with other figures in the `[budget.*]` tables of these targets; comments, ceilings and
+/// everything else stay. A table that is missing comes to the end.
+fn renewed(text: &str, targets: &[(&str, &str, Figures)]) -> String {
+    let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
+    for (name, number, figures) in targets {
+        let header = format!("[budget.{name}.{number}]");
+        let Some(at) = lines.iter().position(|l| l.trim() == header) else {
+            lines.extend([String::new(), header]);
+            let values = figures
+                .named()
+                .map(|(key, value)| format!("{key} = {value}"));
+            lines.extend(values);
+            continue;
+        };
+        let table = (lines.iter_mut().skip(at + 1)).take_while(|l| !l.starts_with('['));
+        for line in table {
+            let (assignment, comment) = match line.split_once('#') {
+                Some((assignment, comment)) => (assignment, format!(" #{comment}")),
+                None => (line.as_str(), String::new()),
+            };
+            let key = assignment.split('=').next().unwrap_or_default().trim();
+            if let Some((key, value)) = figures.named().into_iter().find(|(k, _)| *k == key) {
+                *line = format!("{key} = {value}{comment}");
+            }
+        }
+    }
+    lines.join("\n") + "\n"
+}
+
+/// Puts measured figures into the file.
+///
+/// # Errors
+/// [`BudgetError`].
+pub fn renew(path: &Path, targets: &[(&str, &str, Figures)]) -> Result<(), BudgetError> {
+    let read = |reason| BudgetError::Read {
+        path: path.to_owned(),
+        reason,
+    };
+    let text = std::fs::read_to_string(path).map_err(read)?;
+    std::fs::write(path, renewed(&text, targets)).map_err(|reason| BudgetError::Write {
+        path: path.to_owned(),
+        reason,
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -274,6 +327,30 @@ mod tests {
             panic!()
         };
         assert!(why.contains("remove it from not_met"), "{why}");
+    }
+
+    #[test]
+    fn renewing_changes_figures_and_nothing_else() {
+        let text = "# why\n[required.M4F.f32]\nstack_bytes = 512\n\n[budget.M4F.f32]\n# big\nworst_instructions = 500 # of many\nstack_bytes = 7\n\n[budget.M7.f32]\nstack_bytes = 8\n";
+        let figures = Figures {
+            worst_instructions: 400,
+            median_instructions: 300,
+            text_bytes: 200,
+            ram_bytes: 100,
+            stack_bytes: 50,
+        };
+        let new = renewed(text, &[("M4F", "f32", figures)]);
+        let expected = text
+            .replace("500 #", "400 #")
+            .replace("stack_bytes = 7", "stack_bytes = 50");
+        assert_eq!(new, expected);
+        assert_eq!(renewed(&new, &[("M4F", "f32", figures)]), new);
+        let more = renewed(text, &[("M0", "Q", figures)]);
+        let table = more.strip_prefix(text).unwrap();
+        assert!(
+            table.starts_with("\n[budget.M0.Q]\nworst_instructions = 400\n"),
+            "{table}"
+        );
     }
 
     #[test]

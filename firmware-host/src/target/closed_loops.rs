@@ -1,6 +1,7 @@
 //! Closed loops of the catalogue, recorded.
 
-use super::record::{Piece, Recorded, Recording, Tape};
+use super::numbers::Number;
+use super::record::{Piece, Tape};
 use crate::closed_loop::{Keep, run_policy};
 use crate::overloads::catalogue::cases;
 use crate::overloads::found::kept;
@@ -12,7 +13,6 @@ use rand_chacha::ChaCha8Rng;
 use rand_core::{Rng, SeedableRng};
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 use std::collections::BTreeMap;
-use std::rc::Rc;
 
 /// What comes later repeats itself: no more than this is recorded of a scene \[s\].
 const LONGEST_S: f64 = 0.25;
@@ -60,13 +60,19 @@ fn ticks_of(scene: &Scene) -> usize {
     (scene.duration_s * scene.sample_rate_hz).round().max(1.0) as usize
 }
 
-/// As many scenes as there are in so many ticks.
+/// As many scenes as there are in so many ticks, and how many were passed over because their configuration does not
+/// fit the numbers.
 ///
 /// # Errors
 /// [`CatalogueError`] if the catalogue is not valid.
-pub fn closed_loops(ticks: usize) -> Result<Vec<Piece>, CatalogueError> {
-    let mut left = ticks;
+pub fn closed_loops(number: Number, ticks: usize) -> Result<(Vec<Piece>, usize), CatalogueError> {
+    let (mut left, mut left_out) = (ticks, 0);
     let chosen: Vec<Scene> = (scenes()?.into_iter())
+        .filter(|scene| {
+            let fits = scene.supervisor.is_none_or(|config| number.fits(&config));
+            left_out += usize::from(!fits);
+            fits
+        })
         .take_while(|scene| {
             let enough = left.checked_sub(ticks_of(scene));
             left = enough.unwrap_or(0);
@@ -74,19 +80,18 @@ pub fn closed_loops(ticks: usize) -> Result<Vec<Piece>, CatalogueError> {
         })
         .collect();
     // In the scenes' order, whatever finishes first.
-    Ok(chosen.par_iter().filter_map(recorded).collect())
+    let pieces = chosen
+        .par_iter()
+        .filter_map(|scene| recorded(number, scene));
+    Ok((pieces.collect(), left_out))
 }
 
 /// A scene, recorded. A run that could not be trusted to its end is recorded up to there: for the supervisor its
 /// samples are as good as any.
-fn recorded(scene: &Scene) -> Option<Piece> {
+fn recorded(number: Number, scene: &Scene) -> Option<Piece> {
     let config = scene.supervisor?;
     let tape = Tape::default();
-    let recording = Recording {
-        supervisor: Box::new(Recorded::new(&config).ok()?),
-        tape: Rc::clone(&tape),
-    };
-    let policy = Policy::supervised(scene, Box::new(recording))?;
+    let policy = Policy::supervised(scene, number.recorder(&config, &tape)?)?;
     let _ended = run_policy(scene, (policy, "supervisor"), Keep::Verdict, &mut |_| {});
     let ticks = tape.take();
     Some(Piece { config, ticks })

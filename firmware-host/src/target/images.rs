@@ -1,5 +1,6 @@
 //! Images: built by cargo, found again, and looked into.
 
+use super::numbers::Number;
 use object::{Object, ObjectSection, SectionKind};
 use std::io;
 use std::path::{Path, PathBuf};
@@ -108,8 +109,8 @@ impl Project {
     ///
     /// # Errors
     /// [`ImageError::Image`].
-    pub fn text(&self, target: &str) -> Result<Text, ImageError> {
-        let image = self.image(target, "panic-free");
+    pub fn text(&self, target: &str, number: Number) -> Result<Text, ImageError> {
+        let image = self.image(target, &number.image("panic-free"));
         let wrong = |reason: &dyn ToString| ImageError::Image {
             image: image.clone(),
             reason: reason.to_string(),

@@ -4,10 +4,10 @@
 use super::emulator::{EmulatorError, Running, Time};
 use super::machines::Machine;
 use crate::policies::Supervise;
-use firmware_image::wire::{
-    COMMAND_BYTES, CONFIG_BYTES, CONFIGURE, QUIT, READY, SAMPLE_BYTES, TICK, command_of,
-    put_config, put_sample,
+use firmware_image::line::{
+    CONFIGURE, CONFIGURE_BYTES, LONGEST, Line, MAP_BYTES, QUIT, READY, TICK, rest_of,
 };
+use firmware_image::wire::{command_of_bits, put_config, sample_bits};
 use std::cell::RefCell;
 use std::io::{self, Read, Write};
 use std::net::{Ipv4Addr, TcpListener, TcpStream};
@@ -41,6 +41,8 @@ pub enum LinkError {
 #[derive(Debug)]
 pub struct Board {
     line: TcpStream,
+    /// What both ends know.
+    known: Line,
     /// Why the loop broke, if it did: a tick cannot fail.
     broken: Option<LinkError>,
     running: Running,
@@ -72,6 +74,7 @@ impl Board {
         line.set_read_timeout(Some(PATIENCE))?;
         Ok(Self {
             line,
+            known: Line::default(),
             broken: None,
             running,
         })
@@ -82,7 +85,8 @@ impl Board {
     /// # Errors
     /// [`LinkError`]; of a configuration that is refused too.
     pub fn configure(&mut self, config: &Config) -> Result<(), LinkError> {
-        let mut message = [CONFIGURE; 1 + CONFIG_BYTES];
+        self.known = Line::default();
+        let mut message = [CONFIGURE; CONFIGURE_BYTES];
         if let Some((_, bytes)) = message.split_first_chunk_mut::<1>()
             && let Some(bytes) = bytes.first_chunk_mut()
         {
@@ -98,16 +102,20 @@ impl Board {
     }
 
     fn tick(&mut self, sample: &Sample) -> Result<Command, LinkError> {
-        let mut message = [TICK; 1 + SAMPLE_BYTES];
-        if let Some((_, bytes)) = message.split_first_chunk_mut::<1>()
-            && let Some(bytes) = bytes.first_chunk_mut()
-        {
-            put_sample(sample, bytes);
-        }
+        let packed = self.known.pack_sample(&sample_bits(sample));
+        let mut message = vec![TICK];
+        message.extend(packed.bytes());
         self.line.write_all(&message)?;
-        let mut answer = [0; COMMAND_BYTES];
-        self.line.read_exact(&mut answer)?;
-        command_of(&answer).ok_or_else(|| LinkError::Answer(answer.to_vec()))
+        let mut answer = [0; LONGEST];
+        let (map, rest) = answer.split_at_mut(MAP_BYTES);
+        self.line.read_exact(map)?;
+        let length = map.first_chunk().map_or(0, |map| rest_of(*map));
+        let no_answer = |bytes: &[u8]| LinkError::Answer(bytes.to_vec());
+        let rest = rest.get_mut(..length).ok_or_else(|| no_answer(map))?;
+        self.line.read_exact(rest)?;
+        let command = self.known.command(&answer);
+        let command = command.ok_or_else(|| no_answer(&answer))?;
+        Ok(command_of_bits(&command))
     }
 
     /// Why the loop broke, if it did.
@@ -167,5 +175,50 @@ impl Supervise for Emulated {
 
     fn mode(&self) -> Mode {
         self.mode
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use firmware_image::wire::{CommandBits, SampleBits};
+    use rand_chacha::ChaCha8Rng;
+    use rand_core::{Rng, SeedableRng};
+    use supervisor::{Limits, Status};
+
+    /// Whatever the words are, both ends know the same after each message, and a usual tick is short.
+    #[test]
+    fn nothing_is_lost_on_the_line() {
+        let mut chance = ChaCha8Rng::seed_from_u64(1);
+        // One in four is any word, the others are as before.
+        let mut next = |before: u32| match chance.next_u32() {
+            any if any.is_multiple_of(4) => chance.next_u32(),
+            _ => before,
+        };
+        let (mut host, mut board) = (Line::default(), Line::default());
+        let (mut sample, mut command) = (SampleBits::default(), CommandBits::default());
+        for _ in 0..10_000 {
+            sample = SampleBits {
+                sequence: next(sample.sequence.wrapping_add(1)),
+                status: Status::from_bits_retain(next(sample.status.bits())),
+                position: sample.position.map(&mut next),
+                spin: next(sample.spin),
+                levitation: sample.levitation.map(&mut next),
+                applied: sample.applied.map(&mut next),
+            };
+            assert_eq!(board.sample(host.pack_sample(&sample).bytes()), sample);
+            let own = sample.levitation.map(&mut next);
+            command = CommandBits {
+                own,
+                force: own.map(&mut next),
+                limits: Limits::from_bits_truncate(next(command.limits.bits())),
+                severity: next(command.severity),
+                ..command
+            };
+            let packed = board.pack_command(&command);
+            assert_eq!(host.command(packed.bytes()), Some(command));
+        }
+        sample.sequence = sample.sequence.wrapping_add(1);
+        assert_eq!(host.pack_sample(&sample).bytes().len(), MAP_BYTES);
     }
 }

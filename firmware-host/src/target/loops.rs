@@ -4,7 +4,7 @@ use super::images::Project;
 use super::link::{Board, Emulated};
 use super::machines::Machine;
 use super::measure::TargetError;
-use super::record::{Recorded, Recording, Tape};
+use super::record::{Recording, Tape, Tick};
 use super::results::LoopRow;
 use crate::closed_loop::{Keep, RunError, run_policy};
 use crate::overloads::catalogue::cases;
@@ -13,11 +13,11 @@ use crate::policies::{Policy, Supervise};
 use crate::scene::Scene;
 use crate::trace::Trace;
 use crate::verdict::Verdict;
-use firmware_image::wire::{COMMAND_BYTES, SAMPLE_BYTES, put_command, put_sample};
+use firmware_image::under_test::Float;
 use std::cell::RefCell;
 use std::rc::Rc;
 use std::time::Instant;
-use supervisor::{Command, Config, Sample};
+use supervisor::Config;
 use tempfile::TempDir;
 
 /// The plant of the catalogue.
@@ -57,7 +57,7 @@ fn scenes() -> Result<Vec<(String, Scene, Config)>, TargetError> {
 
 /// What came of a run.
 struct Ran {
-    tape: Vec<(Sample, Command)>,
+    tape: Vec<Tick>,
     verdict: Verdict,
     trace: Trace,
 }
@@ -84,14 +84,6 @@ fn ran(scene: &Scene, supervisor: Box<dyn Supervise>) -> Result<Ran, RunError> {
     })
 }
 
-/// The bytes of a tick: equal only with every bit of every number.
-fn bytes((sample, command): &(Sample, Command)) -> ([u8; SAMPLE_BYTES], [u8; COMMAND_BYTES]) {
-    let mut bytes = ([0; SAMPLE_BYTES], [0; COMMAND_BYTES]);
-    put_sample(sample, &mut bytes.0);
-    put_command(command, &mut bytes.1);
-    bytes
-}
-
 /// Runs the scenes with the supervisor on a machine, whose images have been built, and on the host alone.
 ///
 /// # Errors
@@ -106,7 +98,7 @@ pub fn in_the_loop(project: &Project, machine: &Machine) -> Result<Vec<LoopRow>,
         let incomplete = || RunError::Incomplete {
             policy: "supervisor",
         };
-        let alone = Recorded::new(&config).map_err(|_| incomplete())?;
+        let alone = Float::new(&config).map_err(|_| incomplete())?;
         let alone = ran(&scene, Box::new(alone))?;
         board.borrow_mut().configure(&config)?;
         let started = Instant::now();
@@ -120,10 +112,10 @@ pub fn in_the_loop(project: &Project, machine: &Machine) -> Result<Vec<LoopRow>,
         let pairs = alone.tape.iter().zip(&emulated.tape);
         rows.push(LoopRow {
             name: machine.name,
-            number: machine.number,
+            number: machine.number.name(),
             scene: name,
             ticks: alone.tape.len() as u64,
-            bit_exact_ticks: pairs.filter(|(a, b)| bytes(a) == bytes(b)).count() as u64,
+            bit_exact_ticks: pairs.filter(|(a, b)| a == b).count() as u64,
             same_plant: alone.trace == emulated.trace && alone.verdict == emulated.verdict,
             ticks_per_s: emulated.tape.len() as f64 / took_s,
         });

@@ -4,7 +4,8 @@
 //! wall, whirl, rest on the wall, jump, random bits, …), under configurations of the catalogue with times drawn
 //! down to zero, while the bearing is switched, axes fail and ticks are lost.
 
-use super::record::{Piece, Recorded};
+use super::numbers::Number;
+use super::record::{Piece, Tape};
 use crate::overloads::plan::CatalogueError;
 use crate::overloads::plants::{RATES_HZ, plants};
 use rand_chacha::ChaCha8Rng;
@@ -17,35 +18,40 @@ const SEED: u64 = 109;
 /// Ticks of a supervisor before the next one.
 const PIECE_TICKS: usize = 1000;
 
-/// So many ticks.
+/// So many ticks, and how many configurations were passed over because they do not fit the numbers.
 ///
 /// # Errors
 /// [`CatalogueError`] if the catalogue is not valid.
-pub fn made_up(ticks: usize) -> Result<Vec<Piece>, CatalogueError> {
+pub fn made_up(number: Number, ticks: usize) -> Result<(Vec<Piece>, usize), CatalogueError> {
     let mut configs: Vec<Config> = Vec::new();
     for rate_hz in RATES_HZ {
         configs.extend(plants(rate_hz)?.iter().filter_map(|p| p.scene.supervisor));
     }
+    // Of one that does not fit no variation is tried.
+    let before = configs.len();
+    configs.retain(|config| number.fits(config));
+    let mut left_out = before - configs.len();
     let mut chance = Chance(ChaCha8Rng::seed_from_u64(SEED));
     let mut pieces = Vec::new();
     let mut left = ticks;
     while left > 0 && !configs.is_empty() {
         let config = varied(configs[chance.below(configs.len())], &mut chance);
-        let Ok(mut supervisor) = Recorded::new(&config) else {
+        let tape = Tape::default();
+        let Some(mut supervisor) = number.recorder(&config, &tape) else {
+            left_out += 1;
             continue;
         };
         let mut hand = Hand::new(&config, &mut chance);
-        let mut piece = Piece::new(config);
         for _ in 0..left.min(PIECE_TICKS) {
             let sample = hand.sample(&mut chance);
             let command = supervisor.tick(&sample);
             hand.sees(command.mode, &mut chance);
-            piece.ticks.push((sample, command));
         }
-        left -= piece.ticks.len();
-        pieces.push(piece);
+        let ticks = tape.take();
+        left -= ticks.len();
+        pieces.push(Piece { config, ticks });
     }
-    Ok(pieces)
+    Ok((pieces, left_out))
 }
 
 /// Draws.

@@ -3,20 +3,41 @@
 use super::closed_loops::closed_loops;
 use super::coverage::Coverage;
 use super::made_up::made_up;
+use super::numbers::Number;
 use crate::overloads::plan::CatalogueError;
 use crate::policies::Supervise;
-use firmware_image::RECORD;
 use firmware_image::wire::{
-    COMMAND_BYTES, HEADER_BYTES, Hash, Header, SAMPLE_BYTES, SEGMENT_BYTES, Segment, put_command,
-    put_header, put_sample, put_segment,
+    COMMAND_BYTES, CommandBits, HEADER_BYTES, Hash, Header, SAMPLE_BYTES, SEGMENT_BYTES,
+    SampleBits, Segment, command_bits, put_command, put_header, put_sample, put_segment,
+    sample_bits,
 };
 use std::cell::RefCell;
 use std::io::{self, Write};
 use std::rc::Rc;
-use supervisor::{Command, Config, Mode, Sample, Supervisor};
+use supervisor::{Command, Config, Mode, Sample};
 
-/// The supervisor as the images have it.
-pub type Recorded = Supervisor<RECORD>;
+/// What a supervisor was told and what it commanded, as bytes: equal only with every bit of every number.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Tick {
+    sample: [u8; SAMPLE_BYTES],
+    command: [u8; COMMAND_BYTES],
+    /// Mode after it.
+    mode: Mode,
+}
+
+impl Tick {
+    /// From the bits of both.
+    pub fn new(sample: &SampleBits, command: &CommandBits) -> Self {
+        let mut tick = Self {
+            sample: [0; SAMPLE_BYTES],
+            command: [0; COMMAND_BYTES],
+            mode: command.mode,
+        };
+        put_sample(sample, &mut tick.sample);
+        put_command(command, &mut tick.command);
+        tick
+    }
+}
 
 /// A new supervisor and its ticks.
 #[derive(Debug, Clone, PartialEq)]
@@ -24,33 +45,25 @@ pub struct Piece {
     /// Its configuration.
     pub config: Config,
     /// What it was told and what it commanded.
-    pub ticks: Vec<(Sample, Command)>,
+    pub ticks: Vec<Tick>,
 }
 
 impl Piece {
-    /// No tick yet.
-    pub fn new(config: Config) -> Self {
-        Self {
-            config,
-            ticks: Vec::new(),
-        }
-    }
-
     fn coverage(&self) -> Coverage {
         let mut coverage = Coverage::default();
         let mut before = Mode::Levitated;
-        for (_, command) in &self.ticks {
-            coverage.add(before, command.mode);
-            before = command.mode;
+        for tick in &self.ticks {
+            coverage.add(before, tick.mode);
+            before = tick.mode;
         }
         coverage
     }
 }
 
 /// What passes the border of a supervisor, written down.
-pub type Tape = Rc<RefCell<Vec<(Sample, Command)>>>;
+pub type Tape = Rc<RefCell<Vec<Tick>>>;
 
-/// A supervisor with its tape.
+/// A supervisor of floats with its tape.
 #[derive(Debug)]
 pub struct Recording {
     /// Whoever supervises.
@@ -62,7 +75,8 @@ pub struct Recording {
 impl Supervise for Recording {
     fn tick(&mut self, sample: &Sample) -> Command {
         let command = self.supervisor.tick(sample);
-        self.tape.borrow_mut().push((*sample, command));
+        let tick = Tick::new(&sample_bits(sample), &command_bits(&command));
+        self.tape.borrow_mut().push(tick);
         command
     }
 
@@ -98,8 +112,12 @@ impl Length {
 /// A recorded stream.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stream {
+    /// What its numbers are.
+    pub number: Number,
     /// One supervisor after the other.
     pub pieces: Vec<Piece>,
+    /// Configurations that do not fit these numbers and were passed over.
+    pub left_out: usize,
 }
 
 impl Stream {
@@ -108,11 +126,16 @@ impl Stream {
     ///
     /// # Errors
     /// [`CatalogueError`] if the catalogue is not valid.
-    pub fn record(length: Length) -> Result<Self, CatalogueError> {
-        let mut pieces = closed_loops(length.closed_loop)?;
+    pub fn record(number: Number, length: Length) -> Result<Self, CatalogueError> {
+        let (mut pieces, loops_left_out) = closed_loops(number, length.closed_loop)?;
         let so_far: usize = pieces.iter().map(|p| p.ticks.len()).sum();
-        pieces.extend(made_up(length.all.saturating_sub(so_far))?);
-        Ok(Self { pieces })
+        let (more, made_up_left_out) = made_up(number, length.all.saturating_sub(so_far))?;
+        pieces.extend(more);
+        Ok(Self {
+            number,
+            pieces,
+            left_out: loops_left_out + made_up_left_out,
+        })
     }
 
     /// Ticks in all.
@@ -132,10 +155,8 @@ impl Stream {
     /// Hash over its commands.
     pub fn hash(&self) -> Hash {
         let mut hash = Hash::default();
-        let mut bytes = [0; COMMAND_BYTES];
-        for (_, command) in self.pieces.iter().flat_map(|p| &p.ticks) {
-            put_command(command, &mut bytes);
-            hash.add(&bytes);
+        for tick in self.pieces.iter().flat_map(|p| &p.ticks) {
+            hash.add(&tick.command);
         }
         hash
     }
@@ -150,8 +171,7 @@ impl Stream {
         let segments = self.pieces.len() as u32;
         put_header(Header { segments }, &mut header);
         to.write_all(&header)?;
-        let (mut segment, mut sample, mut command) =
-            ([0; SEGMENT_BYTES], [0; SAMPLE_BYTES], [0; COMMAND_BYTES]);
+        let mut segment = [0; SEGMENT_BYTES];
         for piece in &self.pieces {
             let begin = Segment {
                 config: piece.config,
@@ -159,11 +179,9 @@ impl Stream {
             };
             put_segment(&begin, &mut segment);
             to.write_all(&segment)?;
-            for (told, commanded) in &piece.ticks {
-                put_sample(told, &mut sample);
-                put_command(commanded, &mut command);
-                to.write_all(&sample)?;
-                to.write_all(&command)?;
+            for tick in &piece.ticks {
+                to.write_all(&tick.sample)?;
+                to.write_all(&tick.command)?;
             }
         }
         to.flush()

@@ -1,6 +1,6 @@
 //! What was measured on the targets, as JSON has it.
 
-use super::budgets::Verdict;
+use super::budgets::{Figures, Verdict};
 use super::counts::OfMode;
 use serde::Serialize;
 
@@ -29,7 +29,7 @@ pub struct TargetRow {
     pub text_bytes: u64,
     /// Instructions' part of it.
     pub code_bytes: u64,
-    /// Its state without the ring of the flight record.
+    /// Its state without the recorder.
     pub ram_bytes: u64,
     /// Deepest stack of a tick, from its caller.
     pub stack_bytes: u64,
@@ -43,9 +43,28 @@ pub struct TargetRow {
     pub budgets: Vec<Verdict>,
 }
 
-/// What the replayed stream goes through.
+impl TargetRow {
+    /// The figures that have budgets.
+    pub fn figures(&self) -> Figures {
+        Figures {
+            worst_instructions: self.worst_instructions.into(),
+            median_instructions: self.median_instructions.into(),
+            text_bytes: self.text_bytes,
+            ram_bytes: self.ram_bytes,
+            stack_bytes: self.stack_bytes,
+        }
+    }
+}
+
+/// What a replayed stream goes through.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct StreamRow {
+    /// What its numbers are.
+    pub number: &'static str,
+    /// Supervisors, one after the other.
+    pub pieces: usize,
+    /// Configurations that were passed over because they do not fit the numbers.
+    pub left_out: usize,
     /// Ticks.
     pub ticks: u64,
     /// Hash over the host's commands.
@@ -91,9 +110,8 @@ pub struct LoopRow {
 pub struct Report {
     /// The emulator.
     pub qemu: String,
-    /// The replayed stream.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub stream: Option<StreamRow>,
+    /// The replayed streams, one for each kind of numbers.
+    pub streams: Vec<StreamRow>,
     /// Replays, counts and sizes.
     pub targets: Vec<TargetRow>,
     /// Processors in the loop.
@@ -104,8 +122,12 @@ impl Report {
     /// What is wrong with it, a line each.
     pub fn failures(&self) -> Vec<String> {
         let mut failures = Vec::new();
-        for way in self.stream.iter().flat_map(|s| &s.missing_ways) {
-            failures.push(format!("the stream does not go from {way}"));
+        for stream in &self.streams {
+            let number = stream.number;
+            let missing = stream.missing_ways.iter();
+            failures.extend(
+                missing.map(|way| format!("the stream of {number} does not go from {way}")),
+            );
         }
         for t in &self.targets {
             let name = format!("{} {}", t.name, t.number);
@@ -115,6 +137,11 @@ impl Report {
                     "{name}: {differ} of {} ticks differ from the host",
                     t.ticks
                 ));
+            }
+            // An image that read another stream would agree with that.
+            let stream = self.streams.iter().find(|s| s.number == t.number);
+            if stream.is_some_and(|s| s.ticks != t.ticks || s.hash != t.hash) {
+                failures.push(format!("{name}: the hash over all ticks is not the host's"));
             }
             let broken = t.budgets.iter().filter_map(Verdict::failure);
             failures.extend(broken.map(|f| format!("{name}: {f}")));

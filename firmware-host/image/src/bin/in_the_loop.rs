@@ -1,5 +1,5 @@
 //! The supervisor in a loop with a plant on the host: samples in and commands out over the serial port, in
-//! lock step. The messages are those of [`firmware_image::wire`].
+//! lock step. The messages are those of [`firmware_image::line`](mod@firmware_image::line).
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]
@@ -7,15 +7,16 @@ mod image {
     use core::cell::RefCell;
     use cortex_m_rt::{entry, exception};
     use critical_section::Mutex;
+    use firmware_image::line::{self, CONFIGURE_BYTES, Line, MAP_BYTES};
     use firmware_image::serial::Serial;
-    use firmware_image::under_test::Supervisor;
-    use firmware_image::wire::{self, COMMAND_BYTES, CONFIG_BYTES, SAMPLE_BYTES};
-    use firmware_image::{exit, planted, report, under_test};
+    use firmware_image::under_test::{self, Float, UnderTest};
+    use firmware_image::{checked, exit, planted, report, wire};
     use supervisor::Command;
 
     #[entry]
     fn main() -> ! {
         planted();
+        checked::<Float>();
         Serial::start();
         loop {
             cortex_m::asm::wfi();
@@ -42,13 +43,15 @@ mod image {
         });
     }
 
-    const LONGEST: usize = 1 + CONFIG_BYTES;
+    /// A configuration is longer than any sample.
+    const LONGEST: usize = CONFIGURE_BYTES;
 
     struct Dialogue {
         /// What has come of the message so far.
         message: [u8; LONGEST],
         length: usize,
-        supervisor: Option<Supervisor>,
+        /// With what is known of its line.
+        supervisor: Option<(Float, Line)>,
     }
 
     impl Dialogue {
@@ -62,8 +65,11 @@ mod image {
                 return;
             };
             let whole = match *kind {
-                wire::CONFIGURE => 1 + CONFIG_BYTES,
-                wire::TICK => 1 + SAMPLE_BYTES,
+                line::CONFIGURE => CONFIGURE_BYTES,
+                line::TICK => match rest.first_chunk() {
+                    Some(map) if self.length > MAP_BYTES => 1 + MAP_BYTES + line::rest_of(*map),
+                    _ => 1 + MAP_BYTES,
+                },
                 _ => 1,
             };
             if self.length < whole {
@@ -71,25 +77,22 @@ mod image {
             }
             self.length = 0;
             match (*kind, &mut self.supervisor) {
-                (wire::CONFIGURE, _) => {
+                (line::CONFIGURE, _) => {
                     let config = rest.first_chunk().map(wire::config_of);
-                    self.supervisor = config.as_ref().and_then(under_test::new);
+                    let new = config.as_ref().and_then(<Float as UnderTest>::new);
+                    self.supervisor = new.map(|s| (s, Line::default()));
                     serial.send(&[match self.supervisor {
-                        Some(_) => wire::READY,
-                        None => wire::REFUSED,
+                        Some(_) => line::READY,
+                        None => line::REFUSED,
                     }]);
                 }
-                (wire::TICK, Some(supervisor)) => {
-                    let Some(sample) = rest.first_chunk() else {
-                        return;
-                    };
+                (line::TICK, Some((supervisor, line))) => {
+                    let sample = wire::sample_of_bits(&line.sample(rest));
                     let mut command = Command::default();
-                    under_test::tick(supervisor, &wire::sample_of(sample), &mut command);
-                    let mut bytes = [0; COMMAND_BYTES];
-                    wire::put_command(&command, &mut bytes);
-                    serial.send(&bytes);
+                    under_test::tick(supervisor, &sample, &mut command);
+                    serial.send(line.pack_command(&wire::command_bits(&command)).bytes());
                 }
-                (wire::QUIT, _) => exit::success(),
+                (line::QUIT, _) => exit::success(),
                 _ => report::failed("a message that has no meaning here"),
             }
         }

@@ -1,66 +1,14 @@
-//! Replays a recorded stream and compares each command, bit for bit, with the one of the host.
-//! Reads `stream.bin`; prints `number`, `ram_bytes`, `ticks`, `bit_exact_ticks` and `hash`.
+//! Replays a stream in floats: see the library's file of this name.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]
 mod image {
-    use firmware_image::wire::{self, COMMAND_BYTES, Hash, TICK_BYTES};
-    use firmware_image::{exit, file, planted, report, under_test};
-    use supervisor::Command;
-
-    /// Ticks that are read at once: small enough for a small machine.
-    const CHUNK: usize = 32;
+    use firmware_image::replay;
+    use firmware_image::under_test::Float;
 
     #[cortex_m_rt::entry]
     fn main() -> ! {
-        planted();
-        report::text("number", under_test::NUMBER);
-        report::number("ram_bytes", under_test::RAM_BYTES as u32);
-        let Some(mut stream) = file::File::read(c"stream.bin") else {
-            report::failed("stream.bin cannot be read")
-        };
-        let Some(header) = stream.take().and_then(|b| wire::header_of(&b)) else {
-            report::failed("stream.bin is no stream of this version")
-        };
-        let (mut ticks, mut exact) = (0_u32, 0_u32);
-        let mut hash = Hash::default();
-        for _ in 0..header.segments {
-            let Some(segment) = stream.take().and_then(|b| wire::segment_of(&b)) else {
-                report::failed("stream.bin ends before its last segment")
-            };
-            let Some(mut supervisor) = under_test::new(&segment.config) else {
-                report::failed("a configuration is not valid")
-            };
-            let mut left = segment.ticks as usize;
-            while left > 0 {
-                let mut chunk = [[0; TICK_BYTES]; CHUNK];
-                let now = left.min(CHUNK);
-                let whole = chunk.as_flattened_mut();
-                if !whole
-                    .get_mut(..now * TICK_BYTES)
-                    .is_some_and(|bytes| stream.fill(bytes))
-                {
-                    report::failed("stream.bin ends within a segment")
-                }
-                for tick in chunk.iter().take(now) {
-                    let Some((sample, expected)) = tick.split_first_chunk() else {
-                        break;
-                    };
-                    let mut command = Command::default();
-                    under_test::tick(&mut supervisor, &wire::sample_of(sample), &mut command);
-                    let mut bytes = [0; COMMAND_BYTES];
-                    wire::put_command(&command, &mut bytes);
-                    hash.add(&bytes);
-                    ticks += 1;
-                    exact += u32::from(bytes == expected);
-                }
-                left -= now;
-            }
-        }
-        report::number("ticks", ticks);
-        report::number("bit_exact_ticks", exact);
-        report::bits("hash", hash.0);
-        exit::success()
+        replay::run::<Float>()
     }
 }
 

@@ -7,14 +7,16 @@ use std::fmt::Display;
 /// What there is.
 pub(crate) fn text(report: &Report) -> String {
     let mut text = String::new();
-    if let Some(stream) = &report.stream {
+    if !report.targets.is_empty() {
         text += &format!(
-            "{}\n\n{}\n\n{}\n\n{}\n",
+            "{}\n\n{}\n\n{}\n\n",
             figures(&report.targets),
             by_mode(&report.targets),
             against_budgets(&report.targets),
-            stream_line(stream)
         );
+    }
+    for stream in &report.streams {
+        text += &format!("{}\n", stream_line(stream));
     }
     if !report.loops.is_empty() {
         text += &format!("{}\n", loops(&report.loops));
@@ -116,8 +118,10 @@ fn stream_line(stream: &StreamRow) -> String {
         .map(|m| format!("{} {}", m.ticks, m.mode))
         .collect();
     format!(
-        "stream of {} ticks, hash {}: {}; {} of {} ways from mode to mode",
+        "stream of {} ticks in {} ({} configurations do not fit), hash {}: {}; {} of {} ways from mode to mode",
         stream.ticks,
+        stream.number,
+        stream.left_out,
         stream.hash,
         modes.join(", "),
         stream.ways - stream.missing_ways.len(),

@@ -1,0 +1,156 @@
+//! Counts the instructions of every tick of a stream, and how much stack a tick needs.
+//!
+//! Reads `stream.bin`, writes `counts.bin`: for each tick a little-endian word, the instructions in its lower
+//! 24 bits and the mode after the tick above them. Prints `ticks` and `stack_bytes`.
+//!
+//! The emulator runs with `-icount shift=10`: an instruction takes 1024 ns of its time.
+
+use super::{checked, exit, file, planted, report, stack};
+use crate::under_test::{self, UnderTest};
+use crate::wire::{self, SampleBits, TICK_BYTES};
+use core::hint::black_box;
+use core::sync::atomic::{AtomicU32, Ordering};
+use cortex_m::peripheral::SYST;
+use cortex_m::peripheral::syst::SystClkSource;
+
+/// Ticks that are read and written at once.
+const CHUNK: usize = 16;
+/// SysTick counts 24 bits: a tick of more than 655 000 instructions could not be counted.
+const SYSTICK_MASK: u32 = 0x00FF_FFFF;
+
+/// Periods of SysTick in so many instructions of 1024 ns: at the 25 MHz of the MPS2 boards …
+#[cfg(not(small_board))]
+const PERIODS: u32 = 256;
+#[cfg(not(small_board))]
+const INSTRUCTIONS: u32 = 10;
+/// … and at the 16 MHz of the microbit.
+#[cfg(small_board)]
+const PERIODS: u32 = 2048;
+#[cfg(small_board)]
+const INSTRUCTIONS: u32 = 125;
+
+/// Turns of [`turns`].
+static TURNS: AtomicU32 = AtomicU32::new(1);
+
+type Work<U> = fn(&mut U, &<U as UnderTest>::Sample, &mut <U as UnderTest>::Command);
+
+/// As [`under_test::tick`], doing nothing: one instruction, the return.
+#[inline(never)]
+fn nothing<U: UnderTest>(_: &mut U, _: &U::Sample, _: &mut U::Command) {}
+
+/// Two instructions a turn, and a few around them.
+#[inline(never)]
+fn turns<U: UnderTest>(_: &mut U, _: &U::Sample, _: &mut U::Command) {
+    let turns = TURNS.load(Ordering::Relaxed);
+    // SAFETY: the loop touches one register, which is told, and the flags; the number is not zero.
+    unsafe {
+        core::arch::asm!(
+            "2:",
+            "subs {turns}, {turns}, #1",
+            "bne 2b",
+            turns = inout(reg) turns => _,
+            options(nomem, nostack)
+        );
+    }
+}
+
+/// Whether the clock counts instructions: a loop of 3000 turns has 4000 more than one of 1000.
+fn clock_is_right<U: UnderTest>(supervisor: &mut U) -> bool {
+    let work: Work<U> = black_box(turns);
+    let sample = U::sample(&SampleBits::default());
+    let mut count = |turns| {
+        TURNS.store(turns, Ordering::Relaxed);
+        between(work, supervisor, &sample, &mut U::Command::default())
+    };
+    let short = count(1000);
+    count(3000).wrapping_sub(short) == 4000
+}
+
+/// Instructions between two looks at SysTick with a call between them.
+#[inline(never)]
+fn between<U: UnderTest>(
+    work: Work<U>,
+    supervisor: &mut U,
+    sample: &U::Sample,
+    command: &mut U::Command,
+) -> u32 {
+    let before = SYST::get_current();
+    work(supervisor, sample, command);
+    let after = SYST::get_current();
+    // SysTick counts down.
+    let periods = before.wrapping_sub(after) & SYSTICK_MASK;
+    (periods * INSTRUCTIONS + PERIODS / 2) / PERIODS
+}
+
+/// The whole image.
+pub fn run<U: UnderTest>() -> ! {
+    planted();
+    checked::<U>();
+    let Some(mut peripherals) = cortex_m::Peripherals::take() else {
+        exit::failure()
+    };
+    peripherals.SYST.set_clock_source(SystClkSource::Core);
+    peripherals.SYST.set_reload(SYSTICK_MASK);
+    peripherals.SYST.clear_current();
+    peripherals.SYST.enable_counter();
+
+    let Some(mut stream) = file::File::read(c"stream.bin") else {
+        report::failed("stream.bin cannot be read")
+    };
+    let Some(mut counts) = file::File::create(c"counts.bin") else {
+        report::failed("counts.bin cannot be written")
+    };
+    let Some(header) = stream.take().and_then(|b| wire::header_of(&b)) else {
+        report::failed("stream.bin is no stream of this version")
+    };
+    let (mut ticks, mut stack_bytes) = (0_u32, 0_u32);
+    for _ in 0..header.segments {
+        let Some(segment) = stream.take().and_then(|b| wire::segment_of(&b)) else {
+            report::failed("stream.bin ends before its last segment")
+        };
+        let Some(mut supervisor) = U::new(&segment.config) else {
+            report::failed("a configuration is not valid")
+        };
+        if !clock_is_right(&mut supervisor) {
+            report::failed("SysTick does not count instructions; it does with -icount shift=10")
+        }
+        let mut left = segment.ticks as usize;
+        while left > 0 {
+            let mut chunk = [[0; TICK_BYTES]; CHUNK];
+            let mut words = [[0; 4]; CHUNK];
+            let now = left.min(CHUNK);
+            let whole = chunk.as_flattened_mut();
+            if !whole
+                .get_mut(..now * TICK_BYTES)
+                .is_some_and(|bytes| stream.fill(bytes))
+            {
+                report::failed("stream.bin ends within a segment")
+            }
+            for (tick, word) in chunk.iter().zip(&mut words).take(now) {
+                let Some((sample, _)) = tick.split_first_chunk() else {
+                    break;
+                };
+                let sample = U::sample(&wire::sample_of(sample));
+                let mut command = U::Command::default();
+                let work: Work<U> = black_box(nothing);
+                let empty = between(work, &mut supervisor, &sample, &mut command);
+                let work: Work<U> = black_box(under_test::tick);
+                let painted = stack::paint();
+                let full = between(work, &mut supervisor, &sample, &mut command);
+                stack_bytes = stack_bytes.max(painted.used_bytes());
+                // The empty call's return is one; a tick has its own.
+                let instructions = full.wrapping_sub(empty).wrapping_add(1);
+                *word = (instructions | ((U::mode_of(&command) as u32) << 24)).to_le_bytes();
+                ticks += 1;
+            }
+            let written = words.as_flattened().get(..4 * now);
+            if !written.is_some_and(|bytes| counts.append(bytes)) {
+                report::failed("counts.bin cannot be written")
+            }
+            left -= now;
+        }
+    }
+    report::number("ticks", ticks);
+    report::number("stack_bytes", stack_bytes);
+    exit::success()
+}
