@@ -265,9 +265,9 @@ impl<S: Scalar> Coeffs<S> {
         if continuous < 1.0 {
             let _: S = taken.of("continuous force", 1.0 / (64.0 * FALL * square));
         }
-        // Far from where squares saturate.
+        // Below where squares saturate.
         let limit = config.position_limit;
-        let _: S = taken.of("square of the position limit", 2.0 * limit * limit);
+        let _: S = taken.of("square of the position limit", 1.25 * limit * limit);
         let mut s = |name, x| taken.of::<S>(name, x);
         let coeffs = Self {
             scaling,

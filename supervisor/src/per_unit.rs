@@ -66,6 +66,9 @@ impl<S: Scalar> Prepared<S> {
 }
 
 impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
+    /// Bytes of the whole that are the flight recorder's: its ring, the queue of events, and where it is.
+    pub const RECORDER_BYTES: usize = size_of::<Recorder<RECORD>>();
+
     /// A supervisor that starts levitated.
     pub fn new(prepared: &Prepared<S>) -> Self {
         Self {

@@ -2,8 +2,8 @@
 
 use crate::wire::{self, CommandBits, SampleBits};
 use supervisor::{
-    Command, Config, Core, CoreCommand, CoreSample, Entry, Mode, Prepared, Q, QueuedEvent, Sample,
-    Supervisor, self_test,
+    Command, Config, Core, CoreCommand, CoreSample, Mode, Prepared, Q, Sample, Supervisor,
+    self_test,
 };
 
 /// Ticks of the flight record in floats. Host and image must agree: the tick at which a record freezes is part of
@@ -50,15 +50,6 @@ pub fn tick<U: UnderTest>(supervisor: &mut U, sample: &U::Sample, command: &mut 
     *command = supervisor.step(sample);
 }
 
-/// Events that the queue for the background holds.
-const QUEUE: usize = 16;
-
-/// Bytes of a recorder of so many ticks: the entries of its ring and of its queue. Its indices and flags stay with
-/// the rest, for only the supervisor knows them.
-const fn recorder_bytes(record: usize) -> usize {
-    record * size_of::<Entry>() + QUEUE * size_of::<QueuedEvent>()
-}
-
 // The methods have the same names but belong to different types.
 macro_rules! everything_else {
     () => {
@@ -83,7 +74,7 @@ macro_rules! everything_else {
 
 impl UnderTest for Float {
     const NUMBER: &'static str = "f32";
-    const RAM_BYTES: usize = size_of::<Self>() - recorder_bytes(RECORD);
+    const RAM_BYTES: usize = size_of::<Self>() - Core::<f32, RECORD>::RECORDER_BYTES;
     type Sample = Sample;
     type Command = Command;
 
@@ -111,7 +102,7 @@ impl UnderTest for Float {
 
 impl UnderTest for Fixed {
     const NUMBER: &'static str = "Q";
-    const RAM_BYTES: usize = size_of::<Self>() - recorder_bytes(SHORT_RECORD);
+    const RAM_BYTES: usize = size_of::<Self>() - Self::RECORDER_BYTES;
     type Sample = CoreSample<Q>;
     type Command = CoreCommand<Q>;
 
