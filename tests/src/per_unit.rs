@@ -6,7 +6,7 @@ use firmware_host::overloads::catalogue::{Case, cases};
 use firmware_host::overloads::found::kept;
 use firmware_host::overloads::plants::{PlantCase, plants};
 use firmware_host::policies::{Policy, Supervise};
-use firmware_host::target::record::{Recording, Tape};
+use std::cell::RefCell;
 use std::rc::Rc;
 use supervisor::{
     Command, Config, Core, CoreCommand, CoreError, CoreSample, Mode, Prepared, Sample, Scalar,
@@ -103,6 +103,27 @@ impl Stream {
     }
 }
 
+/// What a supervisor was told.
+type Tape = Rc<RefCell<Vec<Sample>>>;
+
+/// A supervisor that writes down what it is told.
+#[derive(Debug)]
+struct Recording {
+    supervisor: Supervisor<64>,
+    tape: Tape,
+}
+
+impl Supervise for Recording {
+    fn tick(&mut self, sample: &Sample) -> Command {
+        self.tape.borrow_mut().push(*sample);
+        self.supervisor.tick(sample)
+    }
+
+    fn mode(&self) -> Mode {
+        self.supervisor.mode()
+    }
+}
+
 /// Records the cases of the catalogue that are wanted, with the `f32` supervisor in the loop, for `longest_s`
 /// at most.
 ///
@@ -124,7 +145,7 @@ pub fn record(
             let config = case.scene.supervisor.expect("plants have one");
             let tape = Tape::default();
             let recording = Recording {
-                supervisor: Box::new(Supervisor::<512>::new(&config).expect("valid")),
+                supervisor: Supervisor::new(&config).expect("valid"),
                 tape: Rc::clone(&tape),
             };
             let policy = Policy::supervised(&case.scene, Box::new(recording)).expect("complete");
@@ -141,7 +162,7 @@ pub fn record(
                 name: format!("{}, {:.0} kHz, {}", plant.name, 1e-3 * rate_hz, case.name),
                 group: case.group,
                 config,
-                samples: tape.iter().map(|(s, _)| per_unit(s, &scaling)).collect(),
+                samples: tape.iter().map(|s| per_unit(s, &scaling)).collect(),
             });
         }
     }
