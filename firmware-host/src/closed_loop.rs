@@ -147,6 +147,7 @@ pub fn run_policy(
         edge_s: f64::NEG_INFINITY,
         steady_n: None,
         changes_done: 0,
+        changes: Vec::new(),
     };
     let ticks = (scene.duration_s * scene.sample_rate_hz).round().max(1.0) as u64;
     for tick in 0..ticks {
@@ -193,6 +194,8 @@ struct Bench<'a> {
     steady_n: Option<V2>,
     /// Changes that lie behind.
     changes_done: usize,
+    /// Changes of mode within an advance: a buffer.
+    changes: Vec<Snapshot>,
 }
 
 impl Bench<'_> {
@@ -277,20 +280,13 @@ impl Bench<'_> {
                 None => self.scene.external_n(from_s, to_s),
             },
         };
-        let mut changes: [Option<Snapshot>; 8] = [None; 8];
-        let mut extra = Vec::new();
-        let mut count = 0;
-        self.plant.advance(to_s, &inputs, &mut |snapshot| {
-            match changes.get_mut(count) {
-                Some(slot) => *slot = Some(*snapshot),
-                None => extra.push(*snapshot),
-            }
-            count += 1;
-        })?;
-        for snapshot in changes.iter().flatten().chain(&extra) {
-            self.judge.change(snapshot);
-            self.record(snapshot, measured_m, true);
+        let mut changes = std::mem::take(&mut self.changes);
+        (self.plant).advance(to_s, &inputs, &mut |snapshot| changes.push(*snapshot))?;
+        for snapshot in changes.drain(..) {
+            self.judge.change(&snapshot);
+            self.record(&snapshot, measured_m, true);
         }
+        self.changes = changes;
         Ok(())
     }
 

@@ -238,14 +238,15 @@ impl<S: Stator, W: Spin, M: Amplifier> Context<'_, S, W, M> {
         out.force.0[k] = out.law.normal_force_n(penetration, out.normal_speed.0[k]);
         // r̂·ρ = u, f_n·r̂ and v_w = ẇ·t̂ = r̂ × ẇ: their sums run over the same coefficients of r̂.
         let (mut mixed, mut push, mut cross) = (V2::zeros(), V2::zeros(), V2::zeros());
-        let below = out.normal.0[..k].iter();
-        let lengths = out.distance.0[1..=k].iter().rev();
-        let forces = out.force.0[1..=k].iter().rev();
-        let rates = out.gap_rate.0[1..=k].iter().rev();
-        for (((n, length), force), rate) in below.zip(lengths).zip(forces).zip(rates) {
-            mixed += *length * n;
-            push += *force * n;
-            cross += V2::new(n.x * rate.y, n.y * rate.x);
+        let below = &out.normal.0[..k];
+        let lengths = &out.distance.0[1..=k];
+        let forces = &out.force.0[1..=k];
+        let rates = &out.gap_rate.0[1..=k];
+        for (i, n) in below.iter().enumerate() {
+            let j = k - 1 - i;
+            mixed += lengths[j] * n;
+            push += forces[j] * n;
+            cross += V2::new(n.x * rates[j].y, n.y * rates[j].x);
         }
         let normal = (out.gap.0[k] - mixed) * self.inverse_distance;
         out.normal.0[k] = normal;

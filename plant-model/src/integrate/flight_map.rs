@@ -26,8 +26,6 @@ type Matrix = [[V2; SLOTS]; SLOTS];
 #[derive(Debug, Clone)]
 struct FlightMap {
     step_s: f64,
-    /// Slots that are state; the two inputs follow.
-    states: usize,
     /// End state by start.
     end: Matrix,
     /// Largest part of each slot in the rotor's way from its ring, over the whole step.
@@ -52,6 +50,10 @@ fn same(a_s: f64, b_s: f64) -> bool {
 }
 
 impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
+    /// Slots that are state; the two inputs follow.
+    const STATE_SLOTS: usize = (Body::STATES + S::State::STATES + M::State::STATES) / 2;
+    const USED_SLOTS: usize = Self::STATE_SLOTS + 2;
+
     /// Flies the whole of `dt_s` by the map, if there is one and the wall is out of reach.
     pub(crate) fn fly_by_map(
         &self,
@@ -77,9 +79,8 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
         }
         let map = maps.map.as_ref()?;
         let start = gather::<S, W, M>(y, inputs);
-        let slots = map.states + 2;
         let mut reach = 0.0;
-        for (reach_of, z) in map.reach[..slots].iter().zip(&start) {
+        for (reach_of, z) in map.reach.iter().zip(&start).take(Self::USED_SLOTS) {
             reach += reach_of.dot(&z.abs());
         }
         let wall_m = match self.stator.ellipse() {
@@ -90,8 +91,8 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
             return None;
         }
         let mut end = [V2::zeros(); SLOTS];
-        for (end, row) in end[..map.states].iter_mut().zip(&map.end) {
-            for (a, z) in row[..slots].iter().zip(&start) {
+        for (end, row) in end.iter_mut().zip(&map.end).take(Self::STATE_SLOTS) {
+            for (a, z) in row.iter().zip(&start).take(Self::USED_SLOTS) {
                 *end += a.component_mul(z);
             }
         }
@@ -99,7 +100,7 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
         // The map's length carries the rounding of the clock at which it was made, and would add it up.
         let rates = self.flight_rates(&end, inputs);
         end.add_scaled(dt_s - map.step_s, &rates);
-        let work = |form: &Matrix| quadratic(form, &start[..slots]);
+        let work = |form: &Matrix| quadratic(form, &start[..Self::USED_SLOTS]);
         let path = end.rotor.position - y.rotor.position;
         let race_loss_j = self.race_loss_j(&y.spin, &end.spin);
         let flows = Flows {
@@ -141,10 +142,8 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
     }
 
     fn flight_map(&self, dt_s: f64) -> FlightMap {
-        let states = (Body::STATES + S::State::STATES + M::State::STATES) / 2;
         let mut map = FlightMap {
             step_s: dt_s,
-            states,
             end: [[V2::zeros(); SLOTS]; SLOTS],
             reach: [V2::zeros(); SLOTS],
             control: [[V2::zeros(); SLOTS]; SLOTS],
@@ -163,11 +162,11 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
             let mut force = velocity;
             let mut dampers = [velocity; 2];
             let mut step_s = 0.0;
-            for (i, start) in starts[..states + 2].iter_mut().enumerate() {
+            for (i, start) in starts[..Self::USED_SLOTS].iter_mut().enumerate() {
                 let y = scatter::<S, W, M>(start, W::State::default());
                 let inputs = Inputs {
-                    command_n: start[states],
-                    external_n: start[states + 1],
+                    command_n: start[Self::STATE_SLOTS],
+                    external_n: start[Self::STATE_SLOTS + 1],
                 };
                 self.fly(&mut segment, (0.0, &y), &inputs, dt_s - flown_s);
                 step_s = segment.step_s;
@@ -200,8 +199,8 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
             }
             flown_s += step_s;
         }
-        for (i, start) in starts[..states + 2].iter().enumerate() {
-            for (row, end) in map.end[..states].iter_mut().zip(start) {
+        for (i, start) in starts[..Self::USED_SLOTS].iter().enumerate() {
+            for (row, end) in map.end[..Self::STATE_SLOTS].iter_mut().zip(start) {
                 row[i] = *end;
             }
         }
@@ -261,6 +260,7 @@ fn add_products<const N: usize>(
 }
 
 /// Σ form_ik·z_i·z_k over both axes.
+#[inline]
 fn quadratic(form: &Matrix, z: &[V2]) -> f64 {
     let mut sum = V2::zeros();
     for (i, (row, z_i)) in form.iter().zip(z).enumerate() {

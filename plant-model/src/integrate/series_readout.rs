@@ -189,46 +189,74 @@ impl<S: Stator> ContactSeries<S> {
         flows
     }
 
-    /// Largest values from 0 to θ.
-    pub(crate) fn peaks(&self, clearance_m: f64, theta: f64) -> Peaks {
+    /// What holds at the end of the step, θ.
+    pub(crate) fn end(&self, theta: f64) -> End {
         let order = self.order;
-        let (force_at, normal_n) = highest(&self.force, theta, order);
-        let (_, distance_m) = highest(&self.distance, theta, order);
-        let at = |theta: f64| self.sliding.at(theta, order).abs();
-        Peaks {
-            normal_n,
-            penetration_m: distance_m - clearance_m,
-            sliding_n: self.sliding.0[0].abs().max(at(theta)).max(at(force_at)),
-            whirl_m_s: [self.whirl_speed.0[0], self.whirl_speed.at(theta, order)],
+        End {
+            theta,
+            force: self.force.with_slope(theta, order),
+            distance: self.distance.with_slope(theta, order),
+            whirl_speed: self.whirl_speed.at(theta, order),
         }
     }
 
-    /// Normal force at θ, and its rate.
-    pub(crate) fn normal(&self, theta: f64) -> (f64, f64) {
-        let (force, slope) = self.force.with_slope(theta, self.order);
+    /// Largest values up to the end.
+    pub(crate) fn peaks(&self, clearance_m: f64, end: &End) -> Peaks {
+        let (theta, order) = (end.theta, self.order);
+        let (force_at, normal_n) = highest(&self.force, (theta, end.force), order);
+        let (_, distance_m) = highest(&self.distance, (theta, end.distance), order);
+        let at = |theta: f64| self.sliding.at(theta, order).abs();
+        let at_end = at(theta);
+        let at_top = if force_at == theta {
+            at_end
+        } else {
+            at(force_at)
+        };
+        Peaks {
+            normal_n,
+            penetration_m: distance_m - clearance_m,
+            sliding_n: self.sliding.0[0].abs().max(at_end).max(at_top),
+            whirl_m_s: [self.whirl_speed.0[0], end.whirl_speed],
+        }
+    }
+
+    /// Normal force at the end, and its rate.
+    pub(crate) fn normal(&self, end: &End) -> (f64, f64) {
+        let (force, slope) = end.force;
         (force, slope / self.step_s)
     }
 
-    /// Angle by which the contact normal turns from 0 to θ \[rad\].
-    pub(crate) fn turn(&self, theta: f64) -> f64 {
-        let order = self.order;
-        let end = self.whirl_speed.at(theta, order) / self.distance.at(theta, order);
+    /// Angle by which the contact normal turns up to the end \[rad\].
+    pub(crate) fn turn(&self, end: &End) -> f64 {
+        let rate = end.whirl_speed / end.distance.0;
         let start = self.whirl_speed.0[0] / self.distance.0[0];
-        let normal = self.gap.at(theta, order);
-        turn_rad((self.gap.0[0], start), (normal, end), theta * self.step_s)
+        let normal = self.gap.at(end.theta, self.order);
+        turn_rad(
+            (self.gap.0[0], start),
+            (normal, rate),
+            end.theta * self.step_s,
+        )
     }
+}
+
+/// End of a step: values, and slopes over θ, that several readouts need.
+pub(crate) struct End {
+    theta: f64,
+    force: (f64, f64),
+    distance: (f64, f64),
+    whirl_speed: f64,
 }
 
 /// Highest value over [0, θ], and where. At loose tolerances a step may be a little longer than half a
 /// vibration, its halves are not.
-fn highest(series: &Scalar, theta: f64, order: usize) -> (f64, f64) {
-    let [start, middle, end] = [0.0, 0.5 * theta, theta].map(|at| {
-        let (value, slope) = series.with_slope(at, order);
-        (at, value, slope)
-    });
+fn highest(series: &Scalar, (theta, end): (f64, (f64, f64)), order: usize) -> (f64, f64) {
+    let middle = series.with_slope(0.5 * theta, order);
+    let start = (series.0[0], series.0[1]);
+    let point = |at: f64, (value, slope): (f64, f64)| (at, value, slope);
+    let middle = point(0.5 * theta, middle);
     let (a, b) = (
-        top_between(series, start, middle, order),
-        top_between(series, middle, end, order),
+        top_between(series, point(0.0, start), middle, order),
+        top_between(series, middle, point(theta, end), order),
     );
     if a.1 > b.1 { a } else { b }
 }
@@ -251,6 +279,10 @@ fn top_between(
             let (value, slope) = series.with_slope(at, order);
             if value > top.1 {
                 top = (at, value);
+            }
+            // No place between the two can be higher by more.
+            if slope.abs() * (high.0 - low.0) <= 1e-12 * top.1.abs() {
+                break;
             }
             let rises = slope > 0.0;
             let again = rose == Some(rises);

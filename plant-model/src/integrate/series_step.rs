@@ -108,6 +108,7 @@ impl<S: Stator> SeriesStepper<S> {
         work.events += u64::from(event.is_some());
         let end = self.series.at::<W, M>(&system.spin, y, theta);
         let ends = (&y.rotor, &end.rotor);
+        let readout = self.series.end(theta);
         let t_new = if whole {
             t_end_s
         } else {
@@ -117,9 +118,9 @@ impl<S: Stator> SeriesStepper<S> {
             t_s: t_new,
             step_s: theta * reference,
             flows: self.series.flows(system, ends, task, theta),
-            peaks: self.series.peaks(system.contact.clearance_m, theta),
-            end_normal: self.series.normal(theta),
-            turn: self.series.turn(theta),
+            peaks: (self.series).peaks(system.contact.clearance_m, &readout),
+            end_normal: self.series.normal(&readout),
+            turn: self.series.turn(&readout),
             y: end,
             event,
         })

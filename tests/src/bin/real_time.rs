@@ -1,6 +1,6 @@
 //! Closed loop against real time: every policy of a scene on one core, best and median of many runs.
 //!
-//! `cargo run --release -p system-tests --bin real_time [SCENE]`
+//! `cargo run --release -p system-tests --bin real_time [SCENE [RUNS]]`
 
 use firmware_host::closed_loop::{Keep, run};
 use firmware_host::scene::Scene;
@@ -9,19 +9,18 @@ use std::path::PathBuf;
 use std::time::Instant;
 use system_tests::scene_path;
 
-const RUNS: usize = 60;
-
 fn main() -> Result<(), Box<dyn Error>> {
     let path = std::env::args()
         .nth(1)
         .map_or_else(|| scene_path("overload_then_release"), PathBuf::from);
+    let runs: usize = std::env::args().nth(2).map_or(Ok(60), |n| n.parse())?;
     let scene = Scene::load(&path)?;
-    println!("{}, {} Hz, {RUNS} runs", scene.title, scene.sample_rate_hz);
+    println!("{}, {} Hz, {runs} runs", scene.title, scene.sample_rate_hz);
     println!("| policy | trace | best ratio | median ratio |\n|---|---|--:|--:|");
     for keep in [Keep::Verdict, Keep::Trace] {
         // In turns, so that other work on the machine meets all alike.
-        let mut seconds = vec![Vec::with_capacity(RUNS); scene.policies.len()];
-        for _ in 0..RUNS {
+        let mut seconds = vec![Vec::with_capacity(runs); scene.policies.len()];
+        for _ in 0..runs {
             for (policy, seconds) in scene.policies.iter().zip(&mut seconds) {
                 let begun = Instant::now();
                 run(&scene, *policy, keep, &mut |_| {})?;
@@ -36,7 +35,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                 policy.name(),
                 if keep == Keep::Trace { "kept" } else { "no" },
                 ratio(seconds[0]),
-                ratio(seconds[RUNS / 2])
+                ratio(seconds[runs / 2])
             );
         }
     }
