@@ -8,6 +8,7 @@
 use crate::config::{Config, Misfit};
 use crate::math::{exp_neg, max, min, sqrt};
 use crate::scalar::{Scalar, Slow};
+use crate::signal::{Command, CoreCommand, CoreSample, Sample};
 
 /// Smallest share of the lift-off speed from which the damping law spends the whole cap.
 const FULL_FORCE_FROM: f32 = 0.4;
@@ -33,6 +34,37 @@ pub struct Scaling {
     pub force_per_n: f32,
     /// A speed of 1 \[m/s\].
     pub speed_m_s: f32,
+}
+
+impl Scaling {
+    /// A sample per unit.
+    #[inline]
+    pub fn sample(&self, sample: &Sample) -> CoreSample<f32> {
+        let forces = |v: [f32; 2]| v.map(|x| x * self.force_per_n);
+        CoreSample {
+            sequence: sample.sequence,
+            status: sample.status,
+            position: sample.position_m.map(|x| x * self.position_per_m),
+            spin: sample.spin_rad_s,
+            levitation: forces(sample.levitation_n),
+            applied: forces(sample.applied_n),
+        }
+    }
+
+    /// A command in SI.
+    #[inline]
+    pub fn command<S: Scalar>(&self, command: &CoreCommand<S>) -> Command {
+        let newtons = |force: [S; 2]| force.map(|x| x.to_f32() * self.force_n);
+        Command {
+            force_n: newtons(command.force),
+            own_n: newtons(command.own),
+            mode: command.mode,
+            limits: command.limits,
+            events: command.events,
+            integrator: command.integrator,
+            severity: command.severity.to_f32(),
+        }
+    }
 }
 
 impl Config {
@@ -265,9 +297,6 @@ impl<S: Scalar> Coeffs<S> {
         if continuous < 1.0 {
             let _: S = taken.of("continuous force", 1.0 / (64.0 * FALL * square));
         }
-        // Below where squares saturate.
-        let limit = config.position_limit;
-        let _: S = taken.of("square of the position limit", 1.25 * limit * limit);
         let mut s = |name, x| taken.of::<S>(name, x);
         let coeffs = Self {
             scaling,

@@ -40,7 +40,7 @@ pub(crate) struct Impact<S> {
 
 impl<S: Scalar> Impact<S> {
     /// `None` for a rotor without speed, or beyond the wall.
-    #[inline(never)]
+    #[inline]
     pub(crate) fn ahead(motion: &Motion<S>, radius: S, course: &Course<S>) -> Option<Self> {
         let room = (S::ONE - radius) * (S::ONE + radius);
         if course.inverse <= S::ZERO || room <= S::ZERO {

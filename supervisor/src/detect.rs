@@ -70,7 +70,7 @@ impl Detector {
         (self.touching && !before, before && !self.touching)
     }
 
-    #[inline(never)]
+    #[inline]
     pub(crate) fn findings<S: Scalar>(
         &self,
         motion: &Motion<S>,

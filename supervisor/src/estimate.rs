@@ -21,6 +21,9 @@ pub(crate) struct Motion<S> {
 
 /// A load of so many caps is no load but a missed contact.
 const MOST_LOAD: f32 = 4.0;
+/// Farthest and fastest motion: what fixed point can square, and at a friction above a hundredth at least twice
+/// the whirl that one cap arrests. The same for all numbers, so that all see the same motion.
+const FAR: f32 = 20.0;
 
 /// The observer.
 #[derive(Debug, Clone, Copy, Default)]
@@ -36,7 +39,7 @@ pub(crate) struct Observer<S> {
 
 impl<S: Scalar> Observer<S> {
     /// Carries the estimate over one tick and corrects it by the sample, if there is one.
-    #[inline(never)]
+    #[inline]
     pub(crate) fn advance(
         &mut self,
         sample: Option<Vec2<S>>,
@@ -77,14 +80,16 @@ impl<S: Scalar> Observer<S> {
             }
             m.fresh = false;
         }
-        let within = m.position.length_squared() + m.velocity.length_squared() <= S::FAR_SQUARE;
+        let square = m.position.length_squared() + m.velocity.length_squared();
+        let within = square <= S::of(FAR * FAR);
         if !within || m.load_step.exceeds(coeffs.tick * S::of(MOST_LOAD)) {
             m.hold_back(coeffs);
         }
         *m
     }
 
-    /// Carries the estimate over ticks that were missed, in one step; nobody commanded anything new meanwhile.
+    /// Carries the estimate over ticks that were missed, in one step; nobody commanded anything new meanwhile,
+    /// and nobody measured.
     pub(crate) fn bridge(
         &mut self,
         missed: u32,
@@ -95,32 +100,33 @@ impl<S: Scalar> Observer<S> {
     ) {
         let mut sum = Vec2::ZERO;
         for _ in 0..missed {
-            sum = sum + self.deliver(actuator, coeffs);
+            let (delivered, mean) = lagging(self.delivered, self.due(coeffs), coeffs);
+            (self.delivered, sum) = (delivered, sum + mean);
             self.commanded(command);
         }
+        self.delivered = actuator.carried(self.delivered);
         let ticks = S::count(missed);
-        let mean = sum * S::ONE.over(ticks);
+        let mean = actuator.carried(sum) * S::ONE.over(ticks);
         (self.motion).carry(mean, ticks, in_contact, coeffs);
     }
 
     /// Force of the tick that ends now: delivered at its end (kept), and its mean (returned).
+    #[inline]
     fn deliver(&mut self, actuator: Actuator<S>, coeffs: &Coeffs<S>) -> Vec2<S> {
-        let index = self.newest.wrapping_sub(coeffs.delay) & (MAX_DELAY - 1);
-        let command = self.commands.get(index).copied().unwrap_or_default();
-        let command = actuator.carried(command);
         let before = actuator.carried(self.delivered);
         let (delivered, mean) = match actuator.applied() {
             Some(now) => (now, now + (before - now) * coeffs.applied_weight),
-            None => {
-                let away = before - command;
-                (
-                    command + away * coeffs.lag_left,
-                    command + away * coeffs.lag_mean,
-                )
-            }
+            None => lagging(before, actuator.carried(self.due(coeffs)), coeffs),
         };
         self.delivered = delivered;
         mean
+    }
+
+    /// The command that the actuator works on, which is as old as its delay.
+    #[inline]
+    fn due(&self, coeffs: &Coeffs<S>) -> Vec2<S> {
+        let index = self.newest.wrapping_sub(coeffs.delay) & (MAX_DELAY - 1);
+        self.commands.get(index).copied().unwrap_or_default()
     }
 
     /// Estimated velocity of the last tick.
@@ -164,6 +170,16 @@ impl<S: Scalar> Observer<S> {
     }
 }
 
+/// Force of a first-order actuator after a tick, and its mean over it.
+#[inline]
+fn lagging<S: Scalar>(before: Vec2<S>, command: Vec2<S>, coeffs: &Coeffs<S>) -> (Vec2<S>, Vec2<S>) {
+    let away = before - command;
+    (
+        command + away * coeffs.lag_left,
+        command + away * coeffs.lag_mean,
+    )
+}
+
 impl<S: Scalar> Motion<S> {
     /// Flight for some ticks under the mean of the force; shaft and damping at the middle of each tick.
     #[inline]
@@ -179,14 +195,20 @@ impl<S: Scalar> Motion<S> {
         self.velocity = self.velocity + gained;
     }
 
-    /// Bounds what has run away: the guard lets no sample pass that is so far out.
+    /// Bounds what has run away: the guard lets no sample pass that is so far out. Directions stay, and what
+    /// is at the bound is not moved, so that it matters little which number passes it first.
     #[cold]
     fn hold_back(&mut self, coeffs: &Coeffs<S>) {
-        // Half the root of FAR_SQUARE: with it the sum of both squares is below.
-        let far = S::FAR_SQUARE.root() * S::of(0.5);
-        let held = |v: Vec2<S>, most: S| v.map(|x| x.between(-most, most));
-        self.position = held(self.position, far);
-        self.velocity = held(self.velocity, far);
-        self.load_step = held(self.load_step, coeffs.tick * S::of(0.7 * MOST_LOAD));
+        let held = |v: Vec2<S>, most: S| {
+            if v.exceeds(most) {
+                v * (v.inverse_length() * most)
+            } else {
+                v
+            }
+        };
+        self.position = held(self.position, S::of(0.7 * FAR));
+        let room = S::of(FAR * FAR) - self.position.length_squared();
+        self.velocity = held(self.velocity, room.root());
+        self.load_step = held(self.load_step, coeffs.tick * S::of(MOST_LOAD));
     }
 }

@@ -49,16 +49,16 @@ impl<S: Scalar> Actuator<S> {
         (self.facts.contains(Facts::MEASURED)).then_some(self.measured)
     }
 
-    /// Without the measured force.
-    pub(crate) fn modelled(mut self) -> Self {
-        self.facts.remove(Facts::MEASURED);
-        self
-    }
-
     /// Whether an axis is lost.
     #[inline]
     pub(crate) fn has_lost(&self) -> bool {
         self.facts.intersects(Facts::X_LOST.union(Facts::Y_LOST))
+    }
+
+    /// Whether this axis is lost.
+    #[inline]
+    pub(crate) fn lacks(&self, axis: Facts) -> bool {
+        self.facts.contains(axis)
     }
 
     /// The part of a force that the axes can carry.
@@ -171,8 +171,9 @@ pub(crate) struct Guard<S> {
     /// Good samples in a row during a fault.
     good: u32,
     faulty: bool,
-    /// Nothing is to be remembered but the last sample: see [`Guard::as_usual`].
-    settled: bool,
+    /// Status of the next sample, and what it says, for which nothing is to be remembered but the sample:
+    /// see [`Guard::as_usual`].
+    usual: Option<(Status, Facts)>,
     /// There have been usual samples since `still` looked.
     still_is_old: bool,
     /// Why the last fault began.
@@ -182,9 +183,6 @@ pub(crate) struct Guard<S> {
     pub(crate) repeated_ticks: u32,
     pub(crate) late_ticks: u32,
 }
-
-/// Status of a bearing that levitates on its own model of the actuator.
-const USUAL: Status = Status::SPIN_VALID.union(Status::BEARING_ON);
 
 impl<S: Scalar> Guard<S> {
     /// `velocity` is the estimate of the last tick, `in_contact` whether it was made without knowing
@@ -197,45 +195,45 @@ impl<S: Scalar> Guard<S> {
         in_contact: bool,
         coeffs: &Coeffs<S>,
     ) -> Reading<S> {
-        if self.as_usual(sample, coeffs) {
-            Reading {
-                facts: Facts::USED.union(Facts::ON),
-                sample: Vec2::from_array(sample.position),
-                measured: Vec2::ZERO,
-                spin: spin_of(sample),
-                missed: 0,
-                refusal: Refusal::None,
-                events: Events::empty(),
-            }
-        } else {
-            self.judge_in_full(sample, velocity, in_contact, coeffs)
+        let Some(mut facts) = self.as_usual(sample, coeffs) else {
+            return self.judge_in_full(sample, velocity, in_contact, coeffs);
+        };
+        if is_measured(sample) {
+            facts |= Facts::MEASURED;
+        }
+        Reading {
+            facts,
+            sample: Vec2::from_array(sample.position),
+            measured: Vec2::from_array(sample.applied),
+            spin: spin_of(sample),
+            missed: 0,
+            refusal: Refusal::None,
+            events: Events::empty(),
         }
     }
 
-    /// Most samples follow the last good one by a small step in both coordinates, and nothing is wrong: all
-    /// that can be said of them, at a third of the cost.
+    /// Most samples follow the last good one by a small step in both coordinates, with the same status, and
+    /// nothing is wrong: all that can be said of them, at a third of the cost.
     #[inline]
-    fn as_usual(&mut self, sample: &CoreSample<S>, coeffs: &Coeffs<S>) -> bool {
-        let (Some(sequence), Some((last, _))) = (&mut self.last_sequence, &mut self.last_good)
-        else {
-            return false;
-        };
+    fn as_usual(&mut self, sample: &CoreSample<S>, coeffs: &Coeffs<S>) -> Option<Facts> {
+        let (status, facts) = self.usual?;
+        let (sequence, (last, _)) = (self.last_sequence.as_mut()?, self.last_good.as_mut()?);
         let position = Vec2::from_array(sample.position);
         let step = position - *last;
-        let usual = self.settled
-            && sample.status == USUAL
+        let usual = sample.status == status
             && sample.sequence.wrapping_sub(*sequence) == 1
             && step.x != S::ZERO
             && step.y != S::ZERO
             // Written so that NaN is unusual.
             && !step.exceeds(coeffs.way_per_tick)
             && !position.exceeds(coeffs.position_limit);
-        if usual {
-            *sequence = sample.sequence;
-            *last = position;
-            self.still_is_old = true;
+        if !usual {
+            return None;
         }
-        usual
+        *sequence = sample.sequence;
+        *last = position;
+        self.still_is_old = true;
+        Some(facts)
     }
 
     #[inline(never)]
@@ -299,7 +297,9 @@ impl<S: Scalar> Guard<S> {
         if !(before - lost).is_empty() {
             events |= Events::AXIS_BACK;
         }
-        self.settled = facts & !(Facts::MEASURED | Facts::LATE) == Facts::USED | Facts::ON;
+        let kept = Facts::USED | Facts::ON | Facts::X_LOST | Facts::Y_LOST;
+        self.usual = (facts.contains(Facts::USED) && !self.faulty)
+            .then_some((sample.status - Status::LATE, facts & kept));
         Reading {
             facts,
             sample: position,
@@ -429,7 +429,7 @@ fn spin_of<S: Scalar>(sample: &CoreSample<S>) -> Spin {
     }
 }
 
-/// What the status bits say, and whether the applied force can be believed.
+/// What the status bits say.
 fn facts_of<S: Scalar>(sample: &CoreSample<S>) -> Facts {
     let pairs = [
         (Status::BEARING_ON, Facts::ON),
@@ -443,12 +443,17 @@ fn facts_of<S: Scalar>(sample: &CoreSample<S>) -> Facts {
             facts |= fact;
         }
     }
-    let measured = sample.status.contains(Status::APPLIED_VALID)
-        && !Vec2::from_array(sample.applied).exceeds(S::of(MOST_APPLIED));
-    if measured {
+    if is_measured(sample) {
         facts |= Facts::MEASURED;
     }
     facts
+}
+
+/// Whether the applied force is measured and can be believed.
+#[inline]
+fn is_measured<S: Scalar>(sample: &CoreSample<S>) -> bool {
+    sample.status.contains(Status::APPLIED_VALID)
+        && !Vec2::from_array(sample.applied).exceeds(S::of(MOST_APPLIED))
 }
 
 /// What of a speed is beyond a doubt of this size.

@@ -143,7 +143,7 @@ impl<S: Scalar> View<'_, S> {
     }
 
     /// In contact: brake along the wall, aimed at where the rotor will be when the force has come.
-    #[inline(never)]
+    #[inline]
     fn in_contact(&self) -> Wanted<S> {
         let (coeffs, found) = (self.coeffs, self.found);
         let n = found.normal;

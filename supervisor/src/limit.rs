@@ -1,7 +1,7 @@
 //! The only place that limits forces, and the last word on them.
 
 use crate::coeffs::Coeffs;
-use crate::guard::Actuator;
+use crate::guard::{Actuator, Facts};
 use crate::law::Wanted;
 use crate::scalar::{Scalar, Slow};
 use crate::signal::Limits;
@@ -48,76 +48,46 @@ impl<S: Scalar> Room<S> {
     }
 
     /// Largest s in [0, 1] with sum + s·part in the room, for a sum in it and a part that is too long; and
-    /// whether the box says so.
-    #[inline(never)]
+    /// whether the box says so. A hair inside, or rounding would have to be undone.
+    #[inline]
     fn share(&self, sum: Vec2<S>, part: Vec2<S>) -> (S, bool) {
-        let disc = largest_share(self.cap, sum, part);
+        let disc = largest_share(self.cap * S::JUST_BELOW_ONE, sum, part);
         if !self.boxed {
             return (disc, false);
         }
-        let [x, y] = self.axes();
-        let box_share = axis_share(x, sum.x, part.x).or_less(axis_share(y, sum.y, part.y));
+        let axis = self.axis * S::JUST_BELOW_ONE;
+        let box_share = axis_share(axis, sum.x, part.x).or_less(axis_share(axis, sum.y, part.y));
         (disc.or_less(box_share), box_share < disc)
-    }
-
-    /// The rest of a part along the axis that still has room.
-    #[cold]
-    fn along_edge(&self, sum: Vec2<S>, rest: Vec2<S>) -> Vec2<S> {
-        let [x, y] = self.axes();
-        let on = |cap: S, sum: S, rest: S| {
-            if axis_share(cap, sum, rest) < S::of(ON_EDGE) {
-                S::ZERO
-            } else {
-                rest
-            }
-        };
-        Vec2::new(on(x, sum.x, rest.x), on(y, sum.y, rest.y))
     }
 }
 
-/// Share of a part for which an axis counts as used up: what rounding leaves.
-const ON_EDGE: f32 = 1e-4;
-
-/// Force that is as good as none \[caps\].
-const NO_FORCE: f32 = 1e-6;
-
 /// Gives the room to braking first, then damping, then restoring. Each is scaled, for its direction is
-/// what it is good for.
-#[inline(never)]
+/// what it is good for. Once a part is cut nothing is left: what pointed back into the room would take from
+/// what comes first.
+#[inline]
 pub(crate) fn allocate<S: Scalar>(wanted: &Wanted<S>, room: &Room<S>) -> (Vec2<S>, Limits) {
     if room.actuator.has_lost() {
         return (on_what_is_left(wanted, room), Limits::AXIS_CAP);
     }
-    if room.boxed {
-        return allocate_in_box(wanted, room);
+    let (mut sum, mut part) = (Vec2::ZERO, wanted.braking);
+    // No law wants to brake with more than the whole cap, but for rounding.
+    let whole_disc = !room.boxed && room.cap >= S::ONE;
+    if whole_disc || room.holds(part) {
+        (sum, part) = (part, wanted.damping);
+        if room.holds(sum + part) {
+            (sum, part) = (sum + part, wanted.restoring);
+            if room.holds(sum + part) {
+                return (sum + part, Limits::empty());
+            }
+        }
     }
-    let mut cut = false;
-    let mut sum = wanted.braking;
-    // No law wants to brake with more than the whole cap.
-    if room.cap < S::ONE && sum.exceeds(room.cap) {
-        sum = sum * (sum.inverse_length() * room.cap);
-        cut = true;
-    }
-    // Once a part is cut nothing is left: what pointed back into the room would take from what comes first.
-    let mut part = wanted.damping;
-    if !cut && !(sum + part).exceeds(room.cap) {
-        sum = sum + part;
-        part = wanted.restoring;
-    }
-    let whole = sum + part;
-    if !cut && whole.exceeds(room.cap) {
-        // A hair inside, or rounding would have to be undone.
-        sum = sum + part * largest_share(room.cap * S::JUST_BELOW_ONE, sum, part);
-        cut = true;
-    } else if !cut {
-        sum = whole;
-    }
-    let limits = match (cut, room.cap < S::ONE) {
-        (false, _) => Limits::empty(),
-        (true, false) => Limits::FORCE_CAP,
-        (true, true) => Limits::FORCE_CAP.union(Limits::DERATED),
+    let (share, by_box) = room.share(sum, part);
+    let limits = match (by_box, room.cap < S::ONE) {
+        (true, _) => Limits::AXIS_CAP,
+        (false, false) => Limits::FORCE_CAP,
+        (false, true) => Limits::FORCE_CAP.union(Limits::DERATED),
     };
-    (sum, limits)
+    (sum + part * share, limits)
 }
 
 /// The same with one axis or none: all forces are along it.
@@ -127,9 +97,13 @@ pub(crate) fn allocate<S: Scalar>(wanted: &Wanted<S>, room: &Room<S>) -> (Vec2<S
 /// off without being able to catch it. There a force u takes A = f̂·u from the power of the motion (f̂ its aim): the whole of
 /// the axis with the sign of f̂ would take most, but u = f̂·|f̂| is the whole along the aim, and across it next
 /// to nothing.
+#[inline(never)]
 fn on_what_is_left<S: Scalar>(wanted: &Wanted<S>, room: &Room<S>) -> Vec2<S> {
-    let along = |cap: S, aim: S, damping: S, restoring: S| {
-        let cap = cap.or_less(room.cap);
+    let along = |lost: Facts, aim: S, damping: S, restoring: S| {
+        if room.actuator.lacks(lost) {
+            return S::ZERO;
+        }
+        let cap = room.axis.or_less(room.cap);
         let (first, last) = if wanted.touching {
             (aim * aim.size(), S::ZERO)
         } else {
@@ -138,54 +112,11 @@ fn on_what_is_left<S: Scalar>(wanted: &Wanted<S>, room: &Room<S>) -> Vec2<S> {
         let sum = (first.between(-cap, cap) + damping).between(-cap, cap);
         (sum + last).between(-cap, cap)
     };
-    let ([x, y], w) = (room.axes(), wanted);
+    let w = wanted;
     Vec2::new(
-        along(x, w.braking.x, w.damping.x, w.restoring.x),
-        along(y, w.braking.y, w.damping.y, w.restoring.y),
+        along(Facts::X_LOST, w.braking.x, w.damping.x, w.restoring.x),
+        along(Facts::Y_LOST, w.braking.y, w.damping.y, w.restoring.y),
     )
-}
-
-/// The same where an axis has its own cap; where braking has all it wants, the others may also use what is
-/// left of an axis alone, for each of their components does what the whole does.
-#[cold]
-fn allocate_in_box<S: Scalar>(wanted: &Wanted<S>, room: &Room<S>) -> (Vec2<S>, Limits) {
-    let mut limits = Limits::empty();
-    let mut sum = Vec2::ZERO;
-    let mut braking_cut = false;
-    for (part, is_braking) in [
-        (wanted.braking, true),
-        (wanted.damping, false),
-        (wanted.restoring, false),
-    ] {
-        let whole = sum + part;
-        if room.holds(whole) {
-            sum = whole;
-            continue;
-        }
-        if !part.exceeds(S::of(NO_FORCE)) {
-            continue;
-        }
-        let (share, by_box) = room.share(sum, part);
-        sum = sum + part * share;
-        if share < S::ONE {
-            limits |= if by_box {
-                Limits::AXIS_CAP
-            } else if room.cap < S::ONE {
-                Limits::FORCE_CAP | Limits::DERATED
-            } else {
-                Limits::FORCE_CAP
-            };
-        }
-        if is_braking {
-            braking_cut = share < S::ONE;
-        } else if by_box && !braking_cut {
-            let rest = room.along_edge(sum, part * (S::ONE - share));
-            if rest.exceeds(S::of(NO_FORCE)) {
-                sum = sum + rest * room.share(sum, rest).0;
-            }
-        }
-    }
-    (sum, limits)
 }
 
 /// Largest s in [0, 1] with |sum + s·part| ≤ cap, for |sum| ≤ cap and a part that is not nothing.
@@ -280,22 +211,14 @@ fn scaled<S: Scalar>(force: Vec2<S>, room: &Room<S>) -> (Vec2<S>, Limits) {
     (v, limits)
 }
 
-/// The last word on a force of the supervisor's own: finite, within the caps, and not farther from
-/// `last` than the slew limit, whatever came before.
+/// The last word on a force of the supervisor's own: finite and within the caps, whatever came before.
 #[inline]
-pub(crate) fn last_word<S: Scalar>(
-    wanted: Vec2<S>,
-    last: Vec2<S>,
-    room: &Room<S>,
-    coeffs: &Coeffs<S>,
-) -> (Vec2<S>, Limits) {
-    let (target, limits) = if room.holds(wanted) {
+pub(crate) fn last_word<S: Scalar>(wanted: Vec2<S>, room: &Room<S>) -> (Vec2<S>, Limits) {
+    if room.holds(wanted) {
         (wanted, Limits::empty())
     } else {
         beyond_room(wanted, room)
-    };
-    let (force, slew) = slewed(target, last, coeffs);
-    (force, limits | slew)
+    }
 }
 
 #[cold]

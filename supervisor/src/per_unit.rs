@@ -139,8 +139,8 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
                 calm = !near_contact && found.stops(course.speed, S::of(0.5), coeffs);
             }
         }
-        let ready = calm && self.readiness.ready();
-        let (phase, events) = (self.phase).next(&found, ready, class, &reading, coeffs);
+        let patience = (calm, self.readiness.ready());
+        let (phase, events) = (self.phase).next(&found, patience, class, &reading, coeffs);
         self.phase = phase;
         let mode = phase.mode();
 
@@ -161,22 +161,30 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
         } else {
             last_force
         };
-        let wanted_levitation = Vec2::from_array(sample.levitation);
-        let (levitation, levitation_limits) = limit::levitation(wanted_levitation, &room);
-        let (own, mut limits) = if mode == Mode::Levitated {
+        // In contact nobody asks what the levitation controller wants.
+        let has_a_say = mode == Mode::Levitated || shadow || !found.touching;
+        let (levitation, levitation_limits) = if has_a_say {
+            limit::levitation(Vec2::from_array(sample.levitation), &room)
+        } else {
+            (Vec2::ZERO, Limits::empty())
+        };
+        let (target, bound) = if mode == Mode::Levitated {
             self.readiness = Readiness::default();
-            let (force, slew) = limit::slewed(levitation, last, coeffs);
-            (force, slew | levitation_limits)
+            (levitation, levitation_limits)
         } else {
             let (wanted, own_limits) = limit::allocate(&view.wanted(mode), &room);
-            // The controller has to ask for what the rotor is really held with.
-            let held = actuator.applied().unwrap_or(wanted);
-            self.readiness
-                .compare(held, levitation, found.normal, coeffs);
+            if !found.touching {
+                // The controller has to ask for what the rotor is really held with.
+                let held = actuator.applied().unwrap_or(wanted);
+                self.readiness
+                    .compare(held, levitation, found.normal, coeffs);
+            }
             let blended = handover::blend(phase, wanted, levitation, self.own, coeffs);
-            let (force, bound) = limit::last_word(blended, last, &room, coeffs);
-            (force, own_limits | bound)
+            let (target, bound) = limit::last_word(blended, &room);
+            (target, own_limits | bound)
         };
+        let (own, slew) = limit::slewed(target, last, coeffs);
+        let mut limits = bound | slew;
         self.own = own;
         self.force = own;
         let mut integrator = handover::integrator_hint(phase, calm, reading.is(Facts::ON));
@@ -223,8 +231,8 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
             self.observer.late();
         }
         if reading.missed > 0 {
-            let modelled = reading.actuator().modelled();
-            (self.observer).bridge(reading.missed, self.force, blind, modelled, &self.coeffs);
+            let actuator = reading.actuator();
+            (self.observer).bridge(reading.missed, self.force, blind, actuator, &self.coeffs);
         }
         let lost = reading.is(Facts::FAULTY) && !reading.is(Facts::USED);
         if reading.is(Facts::ANEW) || lost {

@@ -47,20 +47,20 @@ impl<S: Scalar> Phase<S> {
         }
     }
 
-    /// The phase of this tick, and what changed. `calm`: contact can be avoided, and the levitation
+    /// The phase of this tick, and what changed. `calm`: contact can be avoided; `ready`: the levitation
     /// controller would do so.
     #[inline]
     pub(crate) fn next(
         self,
         found: &Findings<S>,
-        calm: bool,
+        (calm, ready): (bool, bool),
         class: Class,
         reading: &Reading<S>,
         coeffs: &Coeffs<S>,
     ) -> (Self, Events) {
         let next = if reading.is(Facts::ON) {
             let faulty = reading.is(Facts::FAULTY);
-            self.follow(found, calm, class, faulty, coeffs)
+            self.follow(found, (calm, ready), class, faulty, coeffs)
         } else {
             Self::Levitated
         };
@@ -90,7 +90,7 @@ impl<S: Scalar> Phase<S> {
     fn follow(
         self,
         found: &Findings<S>,
-        calm: bool,
+        (calm, ready): (bool, bool),
         class: Class,
         faulty: bool,
         coeffs: &Coeffs<S>,
@@ -115,11 +115,11 @@ impl<S: Scalar> Phase<S> {
         match self {
             Self::Levitated if found.unavoidable => Self::Approach { calm_ticks: 0 },
             Self::Levitated => self,
-            Self::Approach { calm_ticks } => match after_calm(calm_ticks, calm, coeffs) {
+            Self::Approach { calm_ticks } => match after_calm(calm_ticks, calm, ready, coeffs) {
                 Some(calm_ticks) => Self::Approach { calm_ticks },
                 None => Self::Handover { weight: S::ZERO },
             },
-            Self::Bounce { calm_ticks } => match after_calm(calm_ticks, calm, coeffs) {
+            Self::Bounce { calm_ticks } => match after_calm(calm_ticks, calm, ready, coeffs) {
                 Some(calm_ticks) => Self::Bounce { calm_ticks },
                 None => Self::Handover { weight: S::ZERO },
             },
@@ -138,10 +138,18 @@ impl<S: Scalar> Phase<S> {
     }
 }
 
-/// Calm ticks so far, or `None` once they are enough.
-fn after_calm<S: Scalar>(calm_ticks: u32, calm: bool, coeffs: &Coeffs<S>) -> Option<u32> {
+/// Calm ticks so far, or `None` once they are enough and the controller is ready.
+fn after_calm<S: Scalar>(
+    calm_ticks: u32,
+    calm: bool,
+    ready: bool,
+    coeffs: &Coeffs<S>,
+) -> Option<u32> {
     if !calm {
-        return Some(0);
+        Some(0)
+    } else if calm_ticks < coeffs.dwell_ticks {
+        Some(calm_ticks + 1)
+    } else {
+        (!ready).then_some(calm_ticks)
     }
-    (calm_ticks < coeffs.dwell_ticks).then_some(calm_ticks + 1)
 }

@@ -121,7 +121,7 @@ impl<const N: usize> Recorder<N> {
     }
 
     /// Takes a tick in; says what the recorder itself has to report.
-    #[inline(never)]
+    #[inline]
     pub(crate) fn push<S: Scalar>(
         &mut self,
         sequence: u32,
@@ -130,18 +130,20 @@ impl<const N: usize> Recorder<N> {
         (mode, limits): (Mode, Limits),
         events: Events,
     ) -> Events {
-        let entry = || Entry {
-            sequence,
-            position: [position.x.packed(), position.y.packed()],
-            force: [force.x.packed(), force.y.packed()],
-            mode: mode as u8,
-            limits: limits.bits() as u8,
-            events: events.bits() as u16,
-        };
         let mut own = Events::empty();
         match self.state {
+            State::Armed | State::Triggered(1..) => self.write(Entry {
+                sequence,
+                position: [position.x.packed(), position.y.packed()],
+                force: [force.x.packed(), force.y.packed()],
+                mode: mode as u8,
+                limits: limits.bits() as u8,
+                events: events.bits() as u16,
+            }),
+            _ => {}
+        }
+        match self.state {
             State::Armed => {
-                self.write(entry());
                 if events.contains(Events::ENGAGED) {
                     // A quarter before the trigger, three quarters after it.
                     self.state = State::Triggered(N - N / 4);
@@ -151,10 +153,7 @@ impl<const N: usize> Recorder<N> {
                 self.crc = !0;
                 self.state = State::Freezing(0);
             }
-            State::Triggered(left) => {
-                self.write(entry());
-                self.state = State::Triggered(left - 1);
-            }
+            State::Triggered(left) => self.state = State::Triggered(left - 1),
             State::Freezing(done) => {
                 if self.check(done) {
                     own |= Events::RECORD_FROZEN;

@@ -32,8 +32,7 @@ pub trait Scalar:
     const ZERO: Self;
     /// 1.
     const ONE: Self;
-    /// Square of the largest position, speed or force that is computed with; squares up to it are exact
-    /// enough to compare.
+    /// Square of the longest force that is computed with; squares up to it are exact enough to compare.
     const FAR_SQUARE: Self;
     /// A few units in the last place below 1, so that rounding cannot lift a scaled force above its limit.
     const JUST_BELOW_ONE: Self;
@@ -224,8 +223,8 @@ macro_rules! floating_point {
     };
 }
 
-floating_point!(f32, 0x1F11_76D7);
-floating_point!(f64, 0x08D3_2CEA);
+floating_point!(f32, 0xFAB2_5F5A);
+floating_point!(f64, 0x2510_CBDA);
 
 /// Reciprocal square roots by Newton's method, from + − × only: every target gives the same bits. `core`
 /// has no root, and libm's costs three times as many instructions where there is an FPU. 0 below 1e-30

@@ -3,7 +3,7 @@
 use crate::config::{Config, ConfigError};
 use crate::per_unit::{Core, Prepared};
 use crate::recorder::{QueuedEvent, Record};
-use crate::signal::{Command, CoreSample, Mode, Report, Sample, Status};
+use crate::signal::{Command, Mode, Report, Sample, Status};
 
 /// Supervisor of one bearing plane with a flight record of `RECORD` ticks (a power of two).
 #[derive(Debug, Clone)]
@@ -40,17 +40,10 @@ impl<const RECORD: usize> Supervisor<RECORD> {
 
     /// One tick: total and bounded; see [`Core::tick`].
     pub fn tick(&mut self, sample: &Sample) -> Command {
-        let scaling = *self.core.scaling();
-        let forces = |v: [f32; 2]| v.map(|x| x * scaling.force_per_n);
-        let levitation = forces(sample.levitation_n);
-        let command = self.core.tick(&CoreSample {
-            sequence: sample.sequence,
-            status: sample.status,
-            position: sample.position_m.map(|x| x * scaling.position_per_m),
-            spin: sample.spin_rad_s,
-            levitation,
-            applied: forces(sample.applied_n),
-        });
+        let per_unit = self.core.scaling().sample(sample);
+        let levitation = per_unit.levitation;
+        let command = self.core.tick(&per_unit);
+        let unit_n = self.core.scaling().force_n;
         // Transparent means bit for bit: what the core left alone does not come back from per unit. A lost axis
         // gets nothing, also where a command is so small that per unit it is nothing.
         let newtons = |force: [f32; 2]| {
@@ -58,7 +51,7 @@ impl<const RECORD: usize> Supervisor<RECORD> {
                 if force == levitation && !sample.status.contains(lost) {
                     levitation_n
                 } else {
-                    force * scaling.force_n
+                    force * unit_n
                 }
             };
             let ([x, y], [u, v], [u_n, v_n]) = (force, levitation, sample.levitation_n);

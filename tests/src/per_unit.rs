@@ -35,34 +35,12 @@ impl<S: Scalar> Behind<S> {
 
 impl<S: Scalar> Supervise for Behind<S> {
     fn tick(&mut self, sample: &Sample) -> Command {
-        let command = (self.core).tick(&in_numbers(&per_unit(sample, &self.scaling)));
-        let newtons = |force: [S; 2]| force.map(|f| f.to_f32() * self.scaling.force_n);
-        Command {
-            force_n: newtons(command.force),
-            own_n: newtons(command.own),
-            mode: command.mode,
-            limits: command.limits,
-            events: command.events,
-            integrator: command.integrator,
-            severity: command.severity.to_f32(),
-        }
+        let command = (self.core).tick(&in_numbers(&self.scaling.sample(sample)));
+        self.scaling.command(&command)
     }
 
     fn mode(&self) -> Mode {
         self.core.mode()
-    }
-}
-
-/// A sample in clearances and caps, as [`Supervisor`] converts it.
-pub fn per_unit(sample: &Sample, scaling: &Scaling) -> CoreSample<f32> {
-    let forces = |v: [f32; 2]| v.map(|x| x * scaling.force_per_n);
-    CoreSample {
-        sequence: sample.sequence,
-        status: sample.status,
-        position: sample.position_m.map(|x| x * scaling.position_per_m),
-        spin: sample.spin_rad_s,
-        levitation: forces(sample.levitation_n),
-        applied: forces(sample.applied_n),
     }
 }
 
@@ -162,7 +140,7 @@ pub fn record(
                 name: format!("{}, {:.0} kHz, {}", plant.name, 1e-3 * rate_hz, case.name),
                 group: case.group,
                 config,
-                samples: tape.iter().map(|s| per_unit(s, &scaling)).collect(),
+                samples: tape.iter().map(|s| scaling.sample(s)).collect(),
             });
         }
     }

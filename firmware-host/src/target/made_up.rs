@@ -13,8 +13,9 @@ use rand_core::{Rng, SeedableRng};
 use std::f32::consts::TAU;
 use supervisor::{Config, Mode, Sample, Status};
 
-/// Of the moves: of the first three hundred the one whose rarest way between modes is the most frequent.
-const SEED: u64 = 109;
+/// Of the moves: of the first three hundred the one whose rarest way between modes is the most frequent; the
+/// ignored test below finds it.
+const SEED: u64 = 114;
 /// Ticks of a supervisor before the next one.
 const PIECE_TICKS: usize = 1000;
 
@@ -23,6 +24,14 @@ const PIECE_TICKS: usize = 1000;
 /// # Errors
 /// [`CatalogueError`] if the catalogue is not valid.
 pub fn made_up(number: Number, ticks: usize) -> Result<(Vec<Piece>, usize), CatalogueError> {
+    made_up_by(SEED, number, ticks)
+}
+
+fn made_up_by(
+    seed: u64,
+    number: Number,
+    ticks: usize,
+) -> Result<(Vec<Piece>, usize), CatalogueError> {
     let mut configs: Vec<Config> = Vec::new();
     for rate_hz in RATES_HZ {
         configs.extend(plants(rate_hz)?.iter().filter_map(|p| p.scene.supervisor));
@@ -31,7 +40,7 @@ pub fn made_up(number: Number, ticks: usize) -> Result<(Vec<Piece>, usize), Cata
     let before = configs.len();
     configs.retain(|config| number.fits(config));
     let mut left_out = before - configs.len();
-    let mut chance = Chance(ChaCha8Rng::seed_from_u64(SEED));
+    let mut chance = Chance(ChaCha8Rng::seed_from_u64(seed));
     let mut pieces = Vec::new();
     let mut left = ticks;
     while left > 0 && !configs.is_empty() {
@@ -83,12 +92,23 @@ fn varied(config: Config, chance: &mut Chance) -> Config {
     let t = config.sample_period_s;
     let lets_go_soon = chance.one_in(2);
     let whirl_time_s = if chance.one_in(2) { 1e-5 } else { 60.0 * t };
+    // From a stream of their own, so that the moves stay as they are.
+    let mut limits = Chance(chance.0.clone());
+    limits.0.set_stream(1);
+    let mut bound = |usual: f32, tight: f32| match limits.one_in(3) {
+        true => usual.min(tight * limits.between(1.0, 2.0)),
+        false => usual,
+    };
     let mut time = |usual: f32, least: f32| match chance.below(3) {
         0 => usual,
         1 => least,
         _ => chance.between(least, 3.0 * usual.max(8.0 * t)),
     };
     let mut config = Config {
+        // Each binds in some pieces: a box in the disc, a slow magnet, one that is soon warm.
+        axis_force_max_n: bound(config.axis_force_max_n, 0.5 * config.force_max_n),
+        force_slew_n_s: bound(config.force_slew_n_s, 0.2 * config.force_max_n / t),
+        continuous_force_n: bound(config.continuous_force_n, 0.4 * config.force_max_n),
         whirl_time_s: time(config.whirl_time_s, 1e-5),
         handover_dwell_s: time(config.handover_dwell_s, 0.0),
         handover_blend_s: time(config.handover_blend_s, 0.0),
@@ -327,5 +347,35 @@ impl Hand {
             levitation_n: [chance.any_bits(), chance.any_bits()],
             applied_n: [chance.any_bits(), chance.any_bits()],
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::target::coverage::{Coverage, WAYS};
+    use crate::target::record::Length;
+
+    /// How often a seed's rarest way is taken, in the numbers that have fewer.
+    fn rarest(seed: u64) -> u64 {
+        let of = |number| {
+            let ticks = Length::QUICK.all - Length::QUICK.closed_loop;
+            let (pieces, _) = made_up_by(seed, number, ticks).unwrap();
+            let mut coverage = Coverage::default();
+            for piece in &pieces {
+                coverage.merge(&piece.coverage());
+            }
+            let ways = WAYS.iter();
+            let pairs = ways.flat_map(|(from, tos)| tos.iter().map(|to| (*from, *to)));
+            pairs.map(|(from, to)| coverage.of_way(from, to)).min()
+        };
+        of(Number::Float).min(of(Number::Fixed)).unwrap_or(0)
+    }
+
+    #[test]
+    #[ignore = "a search, for when the ways of the stream have changed"]
+    fn the_seed_is_the_best_of_three_hundred() {
+        let best = (1..=300).max_by_key(|seed| (rarest(*seed), std::cmp::Reverse(*seed)));
+        assert_eq!(Some(SEED), best);
     }
 }

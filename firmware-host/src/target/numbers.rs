@@ -92,16 +92,7 @@ impl Supervise for RecordingFixed {
         let command = self.core.tick(&sample);
         let tick = Tick::new(&core_sample_bits(&sample), &Fixed::bits(&command));
         self.tape.borrow_mut().push(tick);
-        let newtons = |force: [Q; 2]| force.map(|x| x.to_f32() * scaling.force_n);
-        Command {
-            force_n: newtons(command.force),
-            own_n: newtons(command.own),
-            mode: command.mode,
-            limits: command.limits,
-            events: command.events,
-            integrator: command.integrator,
-            severity: command.severity.to_f32(),
-        }
+        scaling.command(&command)
     }
 
     fn mode(&self) -> Mode {

@@ -49,7 +49,7 @@ pub struct Piece {
 }
 
 impl Piece {
-    fn coverage(&self) -> Coverage {
+    pub(super) fn coverage(&self) -> Coverage {
         let mut coverage = Coverage::default();
         let mut before = Mode::Levitated;
         for tick in &self.ticks {
