@@ -37,7 +37,7 @@ pub(crate) struct Judge {
     last_contact_s: Option<f64>,
     /// Spin at the first sample \[rad/s\].
     first_spin: Option<f64>,
-    last: Option<Snapshot>,
+    now_s: f64,
 }
 
 impl Judge {
@@ -53,7 +53,7 @@ impl Judge {
             first_contact_s: None,
             last_contact_s: None,
             first_spin: None,
-            last: None,
+            now_s: 0.0,
         }
     }
 
@@ -73,7 +73,7 @@ impl Judge {
         } else {
             self.in_middle_since_s = None;
         }
-        self.last = Some(*now);
+        self.now_s = now.t_s;
     }
 
     /// A change of mode between samples.
@@ -94,15 +94,14 @@ impl Judge {
 
     /// Whether the run may end: whirl, or back for so long that nothing will change.
     pub(crate) fn decided(&self, plant: &dyn Plant) -> bool {
-        let now_s = self.last.map_or(0.0, |s| s.t_s);
         plant.meters().peak_backward_speed_m_s > self.whirl_speed_m_s
-            || (self.in_middle_since_s).is_some_and(|since| now_s - since >= DECIDED_S)
+            || (self.in_middle_since_s).is_some_and(|since| self.now_s - since >= DECIDED_S)
     }
 
     pub(crate) fn verdict(&self, scene: &Scene, plant: &dyn Plant, elapsed: Duration) -> Verdict {
         let meters = plant.meters();
-        let outcome = self.outcome(scene, meters.peak_backward_speed_m_s);
-        let spin_now = self.last.map_or(0.0, |s| s.spin_rad_s);
+        let last = plant.snapshot();
+        let outcome = self.outcome(scene, &last, meters.peak_backward_speed_m_s);
         let run_time_s = elapsed.as_secs_f64();
         Verdict {
             outcome,
@@ -115,7 +114,7 @@ impl Judge {
             peak_penetration_m: meters.peak_penetration_m,
             peak_contact_force_n: meters.peak_contact_force_n,
             peak_friction_torque_n_m: meters.peak_friction_torque_n_m,
-            spin_lost_hz: (self.first_spin.unwrap_or(0.0) - spin_now) / TAU,
+            spin_lost_hz: (self.first_spin.unwrap_or(0.0) - last.spin_rad_s) / TAU,
             peak_backward_speed_m_s: meters.peak_backward_speed_m_s,
             max_backward_whirl_hz: self.whirl.fastest().map(|w| w.backward_hz),
             relevitation_time_s: match outcome {
@@ -129,14 +128,14 @@ impl Judge {
         }
     }
 
-    fn outcome(&self, scene: &Scene, peak_backward_m_s: f64) -> Outcome {
+    fn outcome(&self, scene: &Scene, last: &Snapshot, peak_backward_m_s: f64) -> Outcome {
         if peak_backward_m_s > scene.whirl_speed_m_s {
             return Outcome::Whirl;
         }
         if self.back_since_s.is_some() {
             return Outcome::Recovered;
         }
-        let (Some(last), Some(last_contact_s)) = (self.last, self.last_contact_s) else {
+        let Some(last_contact_s) = self.last_contact_s else {
             // Never touched.
             return Outcome::Decayed;
         };

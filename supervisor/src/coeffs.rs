@@ -157,7 +157,7 @@ pub(crate) struct Coeffs<S: Scalar> {
     pub(crate) fault_ticks: u32,
     /// Cap of each axis \[caps\], at most 1.
     pub(crate) axis_cap: S,
-    /// Longest change of the command in a tick \[caps\].
+    /// A hair less than the longest change of the command in a tick \[caps\], so that rounding keeps it.
     pub(crate) slew_step: S,
     pub(crate) continuous: Option<Continuous<S>>,
     /// Share of its way that the thermal state goes in a tick.
@@ -339,7 +339,7 @@ impl<S: Scalar> Coeffs<S> {
             fault_step: s("fault blend", per_tick(config.fault_blend_s, t)),
             fault_ticks: config.fault_ticks as u32,
             axis_cap: s("axis cap", min(config.axis_force_max_n / f, 1.0)),
-            slew_step: s("slew limit", slew_step),
+            slew_step: s("slew limit", slew_step) * S::JUST_BELOW_ONE,
             continuous: (continuous < 1.0).then_some(Continuous {
                 force: s("continuous force", continuous),
                 square: s("continuous force", square),

@@ -242,8 +242,7 @@ pub(crate) fn slewed<S: Scalar>(
     if !change.exceeds(coeffs.slew_step) {
         return (target, Limits::empty());
     }
-    let step = coeffs.slew_step * S::JUST_BELOW_ONE;
-    let force = last + change * change.inverse_length() * step;
+    let force = last + change * change.inverse_length() * coeffs.slew_step;
     (force, Limits::SLEW)
 }
 

@@ -119,6 +119,8 @@ struct Context<'a, S, W, M> {
     inverse_j: f64,
     torque: f64,
     unbalanced: bool,
+    /// Sliding and rolling part per normal force, where both are in proportion to it.
+    proportions: Option<(f64, f64)>,
 }
 
 impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
@@ -147,6 +149,7 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
             inverse_j: self.spin.inverse_inertia(),
             torque: self.spin.drive_torque_n_m(),
             unbalanced: self.rotor.eccentricity_m != 0.0,
+            proportions: self.proportions(task.mode),
         };
         out.step_s = step_s;
         out.order = order;
@@ -168,6 +171,19 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
                 context.velocities(out, k);
             }
         }
+    }
+}
+
+impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
+    /// Tangential forces per normal force in a mode, if they are constant.
+    fn proportions(&self, (slide, whirl): (Slide, Whirl)) -> Option<(f64, f64)> {
+        let SlidingFriction::Constant { coefficient } = self.friction.sliding else {
+            return None;
+        };
+        (slide != Slide::Rolling && whirl != Whirl::Still).then(|| {
+            let rolling = self.friction.rolling_coefficient;
+            (-slide.sign() * coefficient, -whirl.sign() * rolling)
+        })
     }
 }
 
@@ -260,16 +276,7 @@ impl<S: Stator, W: Spin, M: Amplifier> Context<'_, S, W, M> {
             out.surface.0[k] = own - race.radius_m * out.race.0[k];
         }
 
-        let mu_r = self.system.friction.rolling_coefficient;
-        let proportional = self.slide != Slide::Rolling
-            && self.whirl != Whirl::Still
-            && matches!(
-                self.system.friction.sliding,
-                SlidingFriction::Constant { .. }
-            );
-        if proportional {
-            let mu = self.system.friction.sliding.coefficient(0.0);
-            let (s, q) = (-self.slide.sign() * mu, -self.whirl.sign() * mu_r);
+        if let Some((s, q)) = self.proportions {
             out.sliding.0[k] = s * out.force.0[k];
             out.rolling.0[k] = q * out.force.0[k];
             out.tangential.0[k] = (s + q) * turned(out.push.0[k]);
