@@ -21,9 +21,12 @@ pub(crate) struct Motion<S> {
 
 /// A load of so many caps is no load but a missed contact.
 const MOST_LOAD: f32 = 4.0;
-/// Farthest and fastest motion: what fixed point can square, and at a friction above a hundredth at least twice
-/// the whirl that one cap arrests. The same for all numbers, so that all see the same motion.
+/// Farthest and fastest motion: what fixed point can square. Above a friction of 0.0025 the cap arrests no
+/// whirl that is faster, and a rotor farther out is in no bearing. The same for all numbers, so that all see the
+/// same motion.
 const FAR: f32 = 20.0;
+/// Up to here directions are kept: a number that all hold, and whose square is one.
+const KEPT: f32 = 500.0;
 
 /// The observer.
 #[derive(Debug, Clone, Copy, Default)]
@@ -195,11 +198,12 @@ impl<S: Scalar> Motion<S> {
         self.velocity = self.velocity + gained;
     }
 
-    /// Bounds what has run away: the guard lets no sample pass that is so far out. Directions stay, and what
-    /// is at the bound is not moved, so that it matters little which number passes it first.
+    /// Bounds what has run away, or is no number. Directions stay, and what is at the bound is not moved, so
+    /// that it matters little which number passes it first.
     #[cold]
     fn hold_back(&mut self, coeffs: &Coeffs<S>) {
         let held = |v: Vec2<S>, most: S| {
+            let v = v.map(|x| x.between(S::of(-KEPT), S::of(KEPT)));
             if v.exceeds(most) {
                 v * (v.inverse_length() * most)
             } else {

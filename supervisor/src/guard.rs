@@ -414,6 +414,7 @@ impl<S: Scalar> Guard<S> {
             *position = *position * length;
         }
         self.still.rescale();
+        self.still_is_old = false;
     }
 }
 

@@ -51,7 +51,13 @@ impl<S: Scalar> Room<S> {
     /// whether the box says so. A hair inside, or rounding would have to be undone.
     #[inline]
     fn share(&self, sum: Vec2<S>, part: Vec2<S>) -> (S, bool) {
-        let disc = largest_share(self.cap * S::JUST_BELOW_ONE, sum, part);
+        let cap = self.cap * S::JUST_BELOW_ONE;
+        let disc = if sum == Vec2::ZERO {
+            // Squares of a small cap would be nothing in fixed point.
+            (cap * part.inverse_length()).or_less(S::ONE)
+        } else {
+            largest_share(cap, sum, part)
+        };
         if !self.boxed {
             return (disc, false);
         }

@@ -161,8 +161,9 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
         } else {
             last_force
         };
-        // In contact nobody asks what the levitation controller wants.
-        let has_a_say = mode == Mode::Levitated || shadow || !found.touching;
+        // Under impacts and in whirl nobody asks what the levitation controller wants.
+        let holds = mode == Mode::Pinned || !found.touching;
+        let has_a_say = holds || mode == Mode::Levitated || shadow;
         let (levitation, levitation_limits) = if has_a_say {
             limit::levitation(Vec2::from_array(sample.levitation), &room)
         } else {
@@ -173,7 +174,7 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
             (levitation, levitation_limits)
         } else {
             let (wanted, own_limits) = limit::allocate(&view.wanted(mode), &room);
-            if !found.touching {
+            if holds {
                 // The controller has to ask for what the rotor is really held with.
                 let held = actuator.applied().unwrap_or(wanted);
                 self.readiness
