@@ -453,3 +453,43 @@ fn an_idle_supervisor_changes_nothing() {
 fn an_idle_supervisor_changes_nothing_for_long() {
     assert_eq!(idle(100 * IDLE_TICKS), 0);
 }
+
+/// A model that runs away within a few missed ticks, as that of a valid but absurd configuration does, is bounded
+/// and goes on: what it leaves is a number, and so is everything that is reported.
+#[test]
+fn an_estimate_beyond_all_squares_comes_back() {
+    let absurd = Config {
+        mass_kg: 1e-4,
+        stiffness_n_m: 1e10,
+        sample_period_s: 1e-2,
+        clearance_m: 1e-3,
+        force_max_n: 1.0,
+        axis_force_max_n: 1.0,
+        continuous_force_n: 1.0,
+        observer_pole_flight: 0.5,
+        whirl_time_s: 0.1,
+        speed_max_m_s: 1000.0,
+        ..config()
+    };
+    let mut supervisor = Supervisor::<16>::new(&absurd).unwrap();
+    // Two samples, four missed ticks, and on from there, to the wall and back.
+    for (i, sequence) in [0, 1].into_iter().chain(6..200).enumerate() {
+        let share = if i % 40 < 20 {
+            0.49
+        } else {
+            0.9 + 0.01 * (i % 20) as f32
+        };
+        let position_m = [1e-3 * share, 1e-3 * (0.31 - 1e-4 * i as f32)];
+        let command = supervisor.tick(&sample(sequence, position_m));
+        assert!(
+            !command.limits.contains(Limits::NOT_FINITE),
+            "{i}: {command:?}"
+        );
+        assert!(command.severity.is_finite(), "{i}: {command:?}");
+    }
+    let report = supervisor.report();
+    assert!(report.contact_ticks > 20, "{report:?}");
+    let speeds = [report.impact_speed_max_m_s, report.backward_speed_max_m_s];
+    assert!(speeds.iter().all(|v| v.is_finite()), "{report:?}");
+    assert!(report.severity_index.is_finite(), "{report:?}");
+}
