@@ -15,6 +15,9 @@ pub(crate) enum Class {
 
 /// Share of time in contact beyond which it is continuous.
 const CONTINUOUS: f32 = 0.6;
+/// What the share falls to without contact: a decay to zero passes the subnormal numbers, on which a desktop
+/// processor spends a hundred times as long.
+const NO_SHARE: f32 = 1e-9;
 /// Whirl is faster, rest is slower than these shares of the square of the lift-off speed, which is 1.
 const WHIRL_SPEED_SQUARED: f32 = 0.1;
 const REST_SPEED_SQUARED: f32 = 0.05;
@@ -37,7 +40,11 @@ impl<S: Scalar> Classifier<S> {
         spin: Spin,
         coeffs: &Coeffs<S>,
     ) -> Class {
-        let now = if found.touching { S::ONE } else { S::ZERO };
+        let now = if found.touching {
+            S::ONE
+        } else {
+            S::of(NO_SHARE)
+        };
         self.contact_share =
             self.contact_share + coeffs.contact_share_step * (now - self.contact_share);
         self.ticks_touching = if found.touching {

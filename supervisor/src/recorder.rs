@@ -131,16 +131,15 @@ impl<const N: usize> Recorder<N> {
         events: Events,
     ) -> Events {
         let mut own = Events::empty();
-        match self.state {
-            State::Armed | State::Triggered(1..) => self.write(Entry {
+        if let State::Armed | State::Triggered(1..) = self.state {
+            self.write(Entry {
                 sequence,
                 position: [position.x.packed(), position.y.packed()],
                 force: [force.x.packed(), force.y.packed()],
                 mode: mode as u8,
                 limits: limits.bits() as u8,
                 events: events.bits() as u16,
-            }),
-            _ => {}
+            });
         }
         match self.state {
             State::Armed => {

@@ -43,32 +43,24 @@ impl<const RECORD: usize> Supervisor<RECORD> {
         let per_unit = self.core.scaling().sample(sample);
         let levitation = per_unit.levitation;
         let command = self.core.tick(&per_unit);
-        let unit_n = self.core.scaling().force_n;
+        let mut newtons = self.core.scaling().command(&command);
         // Transparent means bit for bit: what the core left alone does not come back from per unit. A lost axis
         // gets nothing, also where a command is so small that per unit it is nothing.
-        let newtons = |force: [f32; 2]| {
-            let on = |force: f32, levitation: f32, levitation_n: f32, lost: Status| {
-                if force == levitation && !sample.status.contains(lost) {
-                    levitation_n
-                } else {
-                    force * unit_n
+        for (axis, lost) in [Status::AXIS_X_LOST, Status::AXIS_Y_LOST]
+            .into_iter()
+            .enumerate()
+        {
+            if !sample.status.contains(lost) {
+                let same = |force: [f32; 2]| force[axis] == levitation[axis];
+                if same(command.force) {
+                    newtons.force_n[axis] = sample.levitation_n[axis];
                 }
-            };
-            let ([x, y], [u, v], [u_n, v_n]) = (force, levitation, sample.levitation_n);
-            [
-                on(x, u, u_n, Status::AXIS_X_LOST),
-                on(y, v, v_n, Status::AXIS_Y_LOST),
-            ]
-        };
-        Command {
-            force_n: newtons(command.force),
-            own_n: newtons(command.own),
-            mode: command.mode,
-            limits: command.limits,
-            events: command.events,
-            integrator: command.integrator,
-            severity: command.severity,
+                if same(command.own) {
+                    newtons.own_n[axis] = sample.levitation_n[axis];
+                }
+            }
         }
+        newtons
     }
 
     /// What the supervisor is doing.

@@ -44,6 +44,11 @@ pub const WAYS: [(Mode, &[Mode]); 7] = {
     ]
 };
 
+/// [`WAYS`], one by one.
+pub fn ways() -> impl Iterator<Item = (Mode, Mode)> {
+    (WAYS.iter()).flat_map(|(from, tos)| tos.iter().map(|to| (*from, *to)))
+}
+
 /// Counts of ticks by the mode before and after them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Coverage {
@@ -85,18 +90,14 @@ impl Coverage {
 
     /// Ways of [`WAYS`] that have no tick.
     pub fn missing_ways(&self) -> Vec<(Mode, Mode)> {
-        let ways = WAYS
-            .iter()
-            .flat_map(|(from, tos)| tos.iter().map(|to| (*from, *to)));
-        ways.filter(|(from, to)| self.of_way(*from, *to) == 0)
+        ways()
+            .filter(|(from, to)| self.of_way(*from, *to) == 0)
             .collect()
     }
 
     /// Ways that were taken and are not among [`WAYS`].
     pub fn unknown_ways(&self) -> Vec<(Mode, Mode)> {
-        let known = |from: Mode, to: Mode| {
-            from == to || WAYS.iter().any(|(f, tos)| *f == from && tos.contains(&to))
-        };
+        let known = |from: Mode, to: Mode| from == to || ways().any(|way| way == (from, to));
         let pairs = MODES
             .into_iter()
             .flat_map(|from| MODES.map(|to| (from, to)));

@@ -353,7 +353,7 @@ impl Hand {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::target::coverage::{Coverage, WAYS};
+    use crate::target::coverage::{Coverage, ways};
     use crate::target::record::Length;
 
     /// How often a seed's rarest way is taken, in the numbers that have fewer.
@@ -365,9 +365,7 @@ mod tests {
             for piece in &pieces {
                 coverage.merge(&piece.coverage());
             }
-            let ways = WAYS.iter();
-            let pairs = ways.flat_map(|(from, tos)| tos.iter().map(|to| (*from, *to)));
-            pairs.map(|(from, to)| coverage.of_way(from, to)).min()
+            ways().map(|(from, to)| coverage.of_way(from, to)).min()
         };
         of(Number::Float).min(of(Number::Fixed)).unwrap_or(0)
     }

@@ -2,7 +2,7 @@
 
 use super::budgets::BudgetError;
 use super::counts::{Counts, counts_of};
-use super::coverage::WAYS;
+use super::coverage::ways;
 use super::emulator::{self, EmulatorError, Time};
 use super::images::{ImageError, Project};
 use super::link::LinkError;
@@ -106,7 +106,7 @@ fn row_of(stream: &Stream) -> StreamRow {
                 ticks: coverage.of_mode(mode),
             })
             .collect(),
-        ways: WAYS.iter().map(|(_, to)| to.len()).sum(),
+        ways: ways().count(),
         missing_ways: (coverage.missing_ways().iter())
             .map(|(from, to)| format!("{} to {}", from.name(), to.name()))
             .collect(),
