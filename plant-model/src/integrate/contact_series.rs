@@ -124,14 +124,16 @@ struct Context<'a, S, W, M> {
 }
 
 impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
-    /// Fills `out` with the solution from `y` in the task's mode, to `order`.
+    /// Fills `out` with the solution from `y` in the task's mode, up to the order (returned) at which there is
+    /// `enough`, or to `highest`.
     pub(crate) fn contact_series(
         &self,
         out: &mut ContactSeries<S>,
         (t_s, y): (f64, &StateOf<S, W, M>),
         task: &Task<'_>,
-        (step_s, order): (f64, usize),
-    ) {
+        (step_s, highest): (f64, usize),
+        mut enough: impl FnMut(&ContactSeries<S>, usize) -> bool,
+    ) -> usize {
         let ring = y.stator.inner();
         out.gap.0[0] = y.rotor.position - ring.position;
         out.gap_rate.0[0] = y.rotor.velocity - ring.velocity;
@@ -152,25 +154,29 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
             proportions: self.proportions(task.mode),
         };
         out.step_s = step_s;
-        out.order = order;
         out.position.0[0] = y.rotor.position;
         out.velocity.0[0] = y.rotor.velocity;
         S::start_series(&mut out.stator, &y.stator);
         let magnet = (&y.force, task.inputs.command_n);
-        (self.amplifier).series(&mut out.magnet, magnet, step_s, order);
+        (self.amplifier).series(&mut out.magnet, magnet, step_s, highest);
         out.spin.0[0] = self.spin.spin_rad_s(&y.spin);
         out.race.0[0] = W::race_rad_s(&y.spin);
         if context.unbalanced {
             let (sin, cos) = self.spin.phase_rad(&y.spin, t_s).sin_cos();
             out.direction.0[0] = V2::new(cos, sin);
         }
-        for k in 0..=order {
+        let mut k = 0;
+        loop {
             context.positions(out, k);
             context.forces(out, k);
-            if k < order {
-                context.velocities(out, k);
+            if k == highest || enough(out, k) {
+                break;
             }
+            context.velocities(out, k);
+            k += 1;
         }
+        out.order = k;
+        k
     }
 }
 

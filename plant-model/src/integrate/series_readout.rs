@@ -39,8 +39,9 @@ impl<S: Stator> ContactSeries<S> {
         }
     }
 
-    /// Weighed size of the coefficients k.
-    pub(crate) fn size<W: Spin>(&self, k: usize, weights: &Weights, model: &W) -> f64 {
+    /// Weighed square of the coefficients k.
+    #[inline]
+    pub(crate) fn square<W: Spin>(&self, k: usize, weights: &Weights, model: &W) -> f64 {
         let rotor = Body {
             position: self.position.0[k],
             velocity: self.velocity.0[k],
@@ -52,7 +53,7 @@ impl<S: Stator> ContactSeries<S> {
         if model.race().is_some() {
             square += (self.race.0[k] * weights.spin).powi(2);
         }
-        square.sqrt()
+        square
     }
 
     /// Fills `out` with a guard of the mode; false if the mode has no such guard.
@@ -97,7 +98,7 @@ impl<S: Stator> ContactSeries<S> {
     ) -> Flows {
         // The coefficients of a product fall more slowly than those of its factors, but a rule is off
         // little for the first powers that it does not hold exactly.
-        if self.order <= 8 {
+        if self.order <= 12 {
             self.flows_by(system, ends, task, (theta, &Nodes::stretched(&SIX, theta)))
         } else {
             self.flows_by(

@@ -17,8 +17,7 @@ pub(crate) struct SeriesStepper<S: Stator> {
     series: ContactSeries<S>,
     /// Guard that is being searched.
     guard: Scalar,
-    /// Order of the next step, and the largest that pays.
-    order: usize,
+    /// The largest order that pays.
     highest_order: usize,
     step_s: f64,
 }
@@ -27,7 +26,7 @@ impl<S: Stator> SeriesStepper<S> {
     pub(crate) fn new(rtol: f64, contact_rate_rad_s: f64, law: LinearContact) -> Self {
         // Measured on bouncing into rolling: between these orders the time to a given error is flat,
         // below and above it rises.
-        let order = match rtol {
+        let highest_order = match rtol {
             r if r > 1e-7 => 16,
             r if r > 1e-11 => 20,
             _ => MAX_ORDER,
@@ -35,8 +34,7 @@ impl<S: Stator> SeriesStepper<S> {
         Self {
             series: ContactSeries::new(law),
             guard: Scalar::default(),
-            order,
-            highest_order: order,
+            highest_order,
             step_s: 1.0 / contact_rate_rad_s,
         }
     }
@@ -52,23 +50,30 @@ impl<S: Stator> SeriesStepper<S> {
         let (t_s, t_end_s) = task.span;
         let weights = scales.weights(system, y);
         let remaining = t_end_s - t_s;
+        let highest = self.highest_order;
+        let square =
+            |series: &ContactSeries<S>, k: usize| series.square::<W>(k, &weights, &system.spin);
         let mut reference = self.step_s.min(remaining);
-        let order = self.order;
         work.steps += 1;
-        // The two highest coefficients say how far the rest can be left out. Where the reference was
-        // far too long they have lost their digits, or overflowed.
-        let trusted = loop {
-            system.contact_series(&mut self.series, (t_s, y), task, (reference, order));
+        let (order, trusted) = loop {
+            let mut enough = Enough::new(remaining / reference);
+            let (start, span) = ((t_s, y), (reference, highest));
+            let order = system.contact_series(&mut self.series, start, task, span, |series, k| {
+                k >= LOWEST_ORDER - 1 && enough.with(square(series, k))
+            });
             work.evaluations += order as u64 + 1;
-            let reach = |k: usize| {
-                self.series
-                    .size::<W>(k, &weights, &system.spin)
-                    .powf(-1.0 / k as f64)
-            };
+            if order < highest {
+                self.step_s = self.step_s.max(remaining);
+                break (order, f64::INFINITY);
+            }
+            // The two highest coefficients say how far the rest can be left out. Where the reference was
+            // far too long they have lost their digits, or overflowed.
+            let reach = |k: usize| square(&self.series, k).powf(-0.5 / k as f64);
             let (a, b) = (reach(order), reach(order - 1));
             let trusted = 0.9 * if a < b || a.is_nan() { a } else { b };
             if trusted > 1e-2 {
-                break trusted;
+                self.step_s = (trusted * reference).min(1e3 * reference);
+                break (order, trusted);
             }
             reference *= if trusted > 1e-6 { trusted } else { 1e-6 };
             if t_s + reference == t_s {
@@ -80,15 +85,6 @@ impl<S: Stator> SeriesStepper<S> {
         if !(theta > 0.0 && t_s + theta * reference > t_s) {
             return Err(PlantError::StepTooSmall { t_s });
         }
-        self.step_s = (trusted * reference).min(1e3 * reference);
-        // Where the samples cut the steps short a lower order reaches far enough.
-        self.order = if trusted * reference > 2.0 * remaining {
-            (order - 1).max(LOWEST_ORDER)
-        } else if last {
-            order
-        } else {
-            (order + 4).min(self.highest_order)
-        };
 
         let (mut event, mut whole) = (None, last);
         for i in 0..GUARDS {
@@ -129,6 +125,37 @@ impl<S: Stator> SeriesStepper<S> {
 
 /// Below this order the last two terms say too little about the rest.
 const LOWEST_ORDER: usize = 6;
+
+/// Whether the series reaches to the end of the span, asked from order to order: its last two terms there are
+/// small, by a margin as to the distance.
+struct Enough {
+    /// Square of the end's θ over the margin, and its power for the next order.
+    square: f64,
+    power: f64,
+    before: bool,
+}
+
+impl Enough {
+    /// Terms that go on falling so leave one tolerance beyond the lowest order, less beyond a higher one.
+    const MARGIN: f64 = 0.8;
+
+    fn new(end_theta: f64) -> Self {
+        let square = (end_theta / Self::MARGIN).powi(2);
+        Self {
+            square,
+            power: square.powi(LOWEST_ORDER as i32 - 1),
+            before: false,
+        }
+    }
+
+    /// Takes the next order's coefficients in, by their weighed square; the first are those below
+    /// [`LOWEST_ORDER`].
+    fn with(&mut self, coefficients: f64) -> bool {
+        let small = coefficients * self.power <= 1.0;
+        self.power *= self.square;
+        std::mem::replace(&mut self.before, small) && small
+    }
+}
 
 /// Where a guard falls to zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
