@@ -33,8 +33,8 @@ pub(crate) struct Wanted<S> {
 
 /// Of the whirl limit: impacts that will add up to less than the first need no help but to be softened,
 /// from the second on all the force goes to what they add.
-const HARMLESS: f32 = 1.0;
-const URGENT: f32 = 1.6;
+const HARMLESS: f32 = 0.7;
+const URGENT: f32 = 1.3;
 /// Share of the cap that pushes inwards between impacts: more shortens the chords and with them the time
 /// in which braking takes speed out.
 const FLIGHT_SHARE: f32 = 0.15;
@@ -59,8 +59,8 @@ impl<S: Scalar> View<'_, S> {
         match mode {
             Mode::Levitated | Mode::SensorFault => Wanted::default(),
             Mode::Pinned => self.hold(),
-            Mode::BackwardWhirl => self.in_contact(),
-            _ if self.found.touching => self.in_contact(),
+            Mode::BackwardWhirl => self.in_contact(true),
+            _ if self.found.touching => self.in_contact(false),
             _ => self.in_flight(),
         }
     }
@@ -142,9 +142,11 @@ impl<S: Scalar> View<'_, S> {
         gradient * -(gradient.inverse_length() * strength)
     }
 
-    /// In contact: brake along the wall, aimed at where the rotor will be when the force has come.
+    /// In contact: brake along the wall, aimed at where the rotor will be when the force has come. `driven`: friction
+    /// drives all the time, and an inward part takes away from it what it costs along the wall; in an impact, which
+    /// is over when that part has come, it would only shorten the chord to the next one.
     #[inline]
-    fn in_contact(&self) -> Wanted<S> {
+    fn in_contact(&self, driven: bool) -> Wanted<S> {
         let (coeffs, found) = (self.coeffs, self.found);
         let n = found.normal;
         let sense = sense(self.spin, found.tangential_speed);
@@ -158,9 +160,14 @@ impl<S: Scalar> View<'_, S> {
             (sum * coeffs.damper).between(S::ZERO, S::ONE)
         };
         let braking = if strength > S::ZERO {
-            // Unit vector against b̂ + μ·n̂.
-            let against = n.turned() * sense + n * coeffs.friction;
-            (against * -(strength * coeffs.tilt)).rotated(self.lead(found.tangential_speed))
+            // Unit vector against b̂, or b̂ + μ·n̂.
+            let along = n.turned() * sense;
+            let (against, length) = if driven {
+                (along + n * coeffs.friction, coeffs.tilt)
+            } else {
+                (along, S::JUST_BELOW_ONE)
+            };
+            (against * -(strength * length)).rotated(self.lead(found.tangential_speed))
         } else {
             Vec2::ZERO
         };

@@ -3,6 +3,7 @@
 use crate::closed_loop::{Keep, RunError, run_policy};
 use crate::policies::Policy;
 use crate::scene::Scene;
+use crate::trace::TraceRow;
 use plant_model::V2;
 use plant_model::analysis::arrest::{Arrest, circle_radius_m};
 use plant_model::params::Start;
@@ -53,12 +54,19 @@ pub fn take_over(
     let backward = -scene.start.spin_rad_s.signum();
     let (verdict, trace) = run_policy(&scene, acting, Keep::TraceToDecision, &mut |_| {})?;
     let clearance_m = scene.plant.contact.clearance_m;
-    let arrested_s = (trace.rows.iter())
-        .find(|row| {
-            let (x, v) = (row.plant.position_m, row.plant.velocity_m_s);
-            backward * x.perp(&v) / clearance_m < ARRESTED * speed_m_s
-        })
-        .map(|row| row.plant.t_s);
+    let backward_m_s = |row: &TraceRow| {
+        let (x, v) = (row.plant.position_m, row.plant.velocity_m_s);
+        backward * x.perp(&v) / clearance_m
+    };
+    let arrested_m_s = ARRESTED * speed_m_s;
+    // On the line between two rows: else every time would be late by up to a sample.
+    let arrested_s = (trace.rows.array_windows())
+        .find(|[_, row]| backward_m_s(row) < arrested_m_s)
+        .map(|[before, after]| {
+            let (fast, slow) = (backward_m_s(before), backward_m_s(after));
+            let part = ((fast - arrested_m_s) / (fast - slow)).clamp(0.0, 1.0);
+            before.plant.t_s + part * (after.plant.t_s - before.plant.t_s)
+        });
     Ok(TakeOver {
         recovered: verdict.recovered,
         arrested_s,
