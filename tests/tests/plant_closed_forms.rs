@@ -1,6 +1,7 @@
 //! The plant against solutions that can be written down.
 
 use nalgebra::Complex;
+use plant_model::analysis::arrest::{Arrest, circle_radius_m};
 use plant_model::contact::damping_for_restitution;
 use plant_model::params::*;
 use plant_model::{Inputs, Method, Mode, Options, Plant, V2, build};
@@ -161,6 +162,53 @@ fn rolling_whirl_on_a_rigid_wall_keeps_its_circle() {
         "{}",
         now.sliding_force_n
     );
+}
+
+/// The best force, at once and in the best direction all the time, takes the momentum out of a whirl in the time that
+/// the circles in balance give: on a hard wall, and on two so soft that the whirl begins at 1.5 and 3.5 clearances.
+/// What is left is the vibration that the inward part starts.
+#[test]
+fn whirl_is_arrested_in_the_time_of_circles_in_balance() {
+    for (contact_n_m, within) in [(1e10, 0.001), (1e8, 0.02), (2e7, 0.03)] {
+        let mut params = onset_rig();
+        params.contact.law.linear_mut().unwrap().stiffness_n_m = contact_n_m;
+        params.contact.law.linear_mut().unwrap().damping_n_s_m =
+            damping_for_restitution(0.5, contact_n_m, params.rotor.mass_kg).unwrap();
+        let (force_n, mu, share) = (1500.0, 0.125, 0.5);
+        let arrest = Arrest::new(&params, force_n).unwrap();
+        let v = 0.85 * arrest.limit_m_s;
+        let r = circle_radius_m(&params, v);
+        // Backward is clockwise under a spin that is counter-clockwise.
+        let from = start(V2::new(r, 0.0), V2::new(0.0, -v), 300.0);
+        params.magnet = Some(MagnetParams {
+            force_max_n: 2.0 * force_n,
+            lag_s: 0.0,
+        });
+        let mut plant = build(&params, &from, TIGHT).unwrap();
+        let (step, mut t) = (2e-6, 0.0);
+        let momentum = |plant: &dyn Plant| {
+            let now = plant.snapshot();
+            -now.position_m.perp(&now.velocity_m_s)
+        };
+        while momentum(plant.as_ref()) > share * r * v {
+            let n = plant.snapshot().position_m.normalize();
+            // Against b̂ + μ·n̂ with b̂ clockwise.
+            let against = V2::new(n.y, -n.x) + mu * n;
+            let inputs = Inputs {
+                command_n: -force_n * against.normalize(),
+                external_n: V2::zeros(),
+            };
+            t += step;
+            plant.advance(t, &inputs, &mut |_| {}).unwrap();
+            assert!(t < 0.1, "never at {contact_n_m:e}");
+        }
+        let expected = arrest.time_s(v, share);
+        assert!(
+            (t / expected - 1.0).abs() < within,
+            "k_c {contact_n_m:e}, r/c {:.2}: {t} {expected}",
+            r / params.contact.clearance_m
+        );
+    }
 }
 
 /// Fast rolling whirl turns several times within one step or sample: the contact angle counts them all.

@@ -279,7 +279,7 @@ pub fn compare(on_done: &dyn Fn(u64)) -> Result<Vec<HistoryRow>, CatalogueError>
         let scene = &plant.scene;
         let arrest = arrest_of(scene).ok_or_else(missing)?;
         let from_m_s = TIMED_SHARE * arrest.limit_m_s;
-        let window_s = 2.0 * arrest.time_s(from_m_s, ARRESTED * from_m_s);
+        let window_s = 2.0 * arrest.time_s(from_m_s, ARRESTED);
         let impact = Impact {
             scene,
             angle_deg,

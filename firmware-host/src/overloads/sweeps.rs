@@ -117,7 +117,7 @@ pub fn row(case: &PlantCase, seat: Seat, points: &[SweepPoint]) -> SweepRow {
     };
     let closed_form_s = arrest_of(&case.scene).map_or(f64::NAN, |arrest| {
         let from = TIMED_SHARE * arrest.limit_m_s;
-        arrest.time_s(from, ARRESTED * from)
+        arrest.time_s(from, ARRESTED)
     });
     SweepRow {
         plant: case.name.clone(),

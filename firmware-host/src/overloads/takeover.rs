@@ -8,7 +8,8 @@ use plant_model::V2;
 use plant_model::analysis::arrest::{Arrest, circle_radius_m};
 use plant_model::params::Start;
 
-/// Whirl counts as arrested when the backward speed about the centre has fallen to this share of the start's.
+/// Whirl counts as arrested when the backward angular momentum about the centre has fallen to this share of the
+/// start's.
 pub const ARRESTED: f64 = 0.25;
 
 /// What came of a take-over.
@@ -16,7 +17,7 @@ pub const ARRESTED: f64 = 0.25;
 pub struct TakeOver {
     /// Back in the middle in the end.
     pub recovered: bool,
-    /// When the backward speed fell to [`ARRESTED`] of the start's \[s\]; `None` if never.
+    /// When the backward angular momentum fell to [`ARRESTED`] of the start's \[s\]; `None` if never.
     pub arrested_s: Option<f64>,
 }
 
@@ -53,18 +54,16 @@ pub fn take_over(
     };
     let backward = -scene.start.spin_rad_s.signum();
     let (verdict, trace) = run_policy(&scene, acting, Keep::TraceToDecision, &mut |_| {})?;
-    let clearance_m = scene.plant.contact.clearance_m;
-    let backward_m_s = |row: &TraceRow| {
-        let (x, v) = (row.plant.position_m, row.plant.velocity_m_s);
-        backward * x.perp(&v) / clearance_m
-    };
-    let arrested_m_s = ARRESTED * speed_m_s;
+    // Per mass. On a soft wall the circle shrinks as the whirl slows: speed over the clearance would not do.
+    let momentum_m2_s =
+        |row: &TraceRow| backward * row.plant.position_m.perp(&row.plant.velocity_m_s);
+    let arrested_m2_s = ARRESTED * speed_m_s * scene.start.position_m.norm();
     // On the line between two rows: else every time would be late by up to a sample.
     let arrested_s = (trace.rows.array_windows())
-        .find(|[_, row]| backward_m_s(row) < arrested_m_s)
+        .find(|[_, row]| momentum_m2_s(row) < arrested_m2_s)
         .map(|[before, after]| {
-            let (fast, slow) = (backward_m_s(before), backward_m_s(after));
-            let part = ((fast - arrested_m_s) / (fast - slow)).clamp(0.0, 1.0);
+            let (fast, slow) = (momentum_m2_s(before), momentum_m2_s(after));
+            let part = ((fast - arrested_m2_s) / (fast - slow)).clamp(0.0, 1.0);
             before.plant.t_s + part * (after.plant.t_s - before.plant.t_s)
         });
     Ok(TakeOver {

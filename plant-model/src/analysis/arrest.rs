@@ -1,6 +1,7 @@
 //! What a force of limited size can still do against established backward whirl.
 
 use crate::params::PlantParams;
+use crate::quadrature::EIGHT;
 
 /// Sliding whirl on a circle under a force of constant size that brakes best.
 ///
@@ -20,10 +21,13 @@ pub struct Arrest {
     pub radius_m: f64,
     /// v_lim \[m/s\].
     pub limit_m_s: f64,
+    circle: Circle,
     /// The coefficient that drives.
     friction: f64,
-    /// The other root of v̇ = 0, not positive \[m/s\].
-    other_root_m_s: f64,
+    damping_n_s_m: f64,
+    /// F·√(1 + μ²), and its inward part as a force, F·μ/√(1 + μ²).
+    braking_n: f64,
+    inward_n: f64,
 }
 
 impl Arrest {
@@ -37,41 +41,111 @@ impl Arrest {
         }
         let tilt = (1.0 + mu * mu).sqrt();
         let normal_n = force_n / (mu * tilt);
-        let radius_m = params.contact.clearance_m + normal_n / params.contact.stiffness_n_m();
+        let circle = Circle::of(params);
+        let radius_m = circle.clearance_m + normal_n / circle.contact_n_m;
         let (m, d, k) = (
-            params.rotor.mass_kg,
+            circle.mass_kg,
             params.rotor.damping_n_s_m,
-            params.rotor.stiffness_n_m,
+            circle.stiffness_n_m,
         );
         let half = radius_m / (2.0 * mu * m);
         let square = d * d + 4.0 * mu * m * (mu * k * radius_m + force_n * tilt) / radius_m;
         (square > 0.0).then(|| Self {
             radius_m,
             limit_m_s: half * (d + square.sqrt()),
+            circle,
             friction: mu,
-            other_root_m_s: half * (d - square.sqrt()),
+            damping_n_s_m: d,
+            braking_n: force_n * tilt,
+            inward_n: force_n * mu / tilt,
         })
     }
 
-    /// Time from a speed below v_lim down to another under the best braking force \[s\].
+    /// Time under the best braking force from the circle at a speed below v_lim until the angular momentum about the
+    /// centre has fallen to a share in [0, 1) of what it was \[s\].
     ///
-    /// v̇ = (μ/r)·(v − v_lim)·(v − v₂) gives t = r/(μ·(v_lim − v₂))·ln of the ratio below; without damping
-    /// v₂ = −v_lim and it is r/(μ·v_lim)·(atanh(v/v_lim) − atanh(v'/v_lim)).
-    pub fn time_s(&self, from_m_s: f64, to_m_s: f64) -> f64 {
-        let (limit, other) = (self.limit_m_s, self.other_root_m_s);
-        let ratio = |v: f64| (v - other) / (limit - v);
-        self.radius_m / (self.friction * (limit - other)) * (ratio(from_m_s) / ratio(to_m_s)).ln()
+    /// The circle shrinks as the whirl slows, r(v) in balance without waiting, and with L = m·r·v
+    ///
+    /// ```text
+    /// L̇ = r·(μ·(m·v²/r − k·r) − d·v − F·√(1 + μ²))
+    /// ```
+    ///
+    /// On a hard wall without shaft and damping it is c/(μ·v_lim)·(atanh(v/v_lim) − atanh(share·v/v_lim)).
+    pub fn time_s(&self, from_m_s: f64, share: f64) -> f64 {
+        const PANELS: u32 = 64;
+        let m = self.circle.mass_kg;
+        let start = from_m_s * self.circle.radius_m(from_m_s, 0.0);
+        let [first, last] = [start, share * start].map(|l| self.speed_m_s(l));
+        let panel = (first - last) / f64::from(PANELS);
+        let per_speed = |v: f64| {
+            let (r, slope) = self.circle.radius_and_slope(v, self.inward_n);
+            let driving = self.friction * (m * v * v / r - self.circle.stiffness_n_m * r);
+            let net = self.braking_n + self.damping_n_s_m * v - driving;
+            m * (r + v * slope) / (r * net)
+        };
+        let sum =
+            |i: u32| EIGHT.integral(|j| per_speed(last + panel * (f64::from(i) + EIGHT.theta[j])));
+        panel * (0..PANELS).map(sum).sum::<f64>()
+    }
+
+    /// Speed on the circle under the inward part with an angular momentum per mass \[m²/s\].
+    fn speed_m_s(&self, momentum_m2_s: f64) -> f64 {
+        let (mut low, mut high) = (0.0, 2.0 * momentum_m2_s / self.circle.clearance_m);
+        for _ in 0..100 {
+            let middle = 0.5 * (low + high);
+            if middle * self.circle.radius_m(middle, self.inward_n) < momentum_m2_s {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        high
+    }
+}
+
+/// What balances on a circle of sliding contact.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Circle {
+    mass_kg: f64,
+    stiffness_n_m: f64,
+    contact_n_m: f64,
+    clearance_m: f64,
+}
+
+impl Circle {
+    fn of(params: &PlantParams) -> Self {
+        Self {
+            mass_kg: params.rotor.mass_kg,
+            stiffness_n_m: params.rotor.stiffness_n_m,
+            contact_n_m: params.contact.stiffness_n_m(),
+            clearance_m: params.contact.clearance_m,
+        }
+    }
+
+    /// (k + k_c)·r² − (k_c·c − F_n)·r − m·v² = 0, F_n inward; the clearance where the wall would have to pull. And
+    /// dr/dv.
+    fn radius_and_slope(&self, speed_m_s: f64, inward_n: f64) -> (f64, f64) {
+        let stiffness = self.stiffness_n_m + self.contact_n_m;
+        let linear = self.contact_n_m * self.clearance_m - inward_n;
+        let energy = self.mass_kg * speed_m_s * speed_m_s;
+        let root = (linear * linear + 4.0 * stiffness * energy).sqrt();
+        let radius = (linear + root) / (2.0 * stiffness);
+        if radius > self.clearance_m {
+            (radius, 2.0 * self.mass_kg * speed_m_s / root)
+        } else {
+            (self.clearance_m, 0.0)
+        }
+    }
+
+    fn radius_m(&self, speed_m_s: f64, inward_n: f64) -> f64 {
+        self.radius_and_slope(speed_m_s, inward_n).0
     }
 }
 
 /// Radius of the circle on which the rotor slides with a tangential speed \[m/s\], its penetration in
 /// balance with the centrifugal force, linear contact: (k + k_c)·r² − k_c·c·r − m·v² = 0 \[m\].
 pub fn circle_radius_m(params: &PlantParams, speed_m_s: f64) -> f64 {
-    let (k, k_c) = (params.rotor.stiffness_n_m, params.contact.stiffness_n_m());
-    let (c, m) = (params.contact.clearance_m, params.rotor.mass_kg);
-    let linear = k_c * c;
-    let square = linear * linear + 4.0 * (k + k_c) * m * speed_m_s * speed_m_s;
-    (linear + square.sqrt()) / (2.0 * (k + k_c))
+    Circle::of(params).radius_m(speed_m_s, 0.0)
 }
 
 #[cfg(test)]
@@ -117,28 +191,41 @@ mod tests {
         assert!((soft.limit_m_s - 0.4234).abs() < 1e-4, "{}", soft.limit_m_s);
         let time = hard.time_s(0.5 * by_hand, 0.0);
         assert!((time / (2e-4 / (0.15 * by_hand) * 0.5_f64.atanh()) - 1.0).abs() < 1e-9);
+        let part = hard.time_s(0.5 * by_hand, 0.4);
+        let logs = 0.5_f64.atanh() - 0.2_f64.atanh();
+        assert!((part / (2e-4 / (0.15 * by_hand) * logs) - 1.0).abs() < 1e-9);
     }
 
     /// The time solves the equation of motion it comes from, damping and shaft included.
     #[test]
     fn time_is_the_integral() {
-        let mut params = rotor(1e9);
+        let mut params = rotor(2e7);
         (params.rotor.damping_n_s_m, params.rotor.stiffness_n_m) = (300.0, -2e5);
-        let (force, mu, m) = (1000.0, 0.15, 10.0);
+        let (force, mu, m) = (1000.0, 0.15, 10.0_f64);
         let arrest = Arrest::new(&params, force).unwrap();
-        let (from, to) = (0.9 * arrest.limit_m_s, 0.1 * arrest.limit_m_s);
-        let deceleration = |v: f64| {
-            let r = arrest.radius_m;
-            let drive = mu * (m * v * v / r + 2e5 * r);
-            (force * (1.0 + mu * mu).sqrt() + 300.0 * v - drive) / m
+        let tilt = (1.0_f64 + mu * mu).sqrt();
+        // Radius and speed on the circle by fixed-point iteration on r = c + N/k_c, from L.
+        let circle = |momentum: f64, inward: f64| {
+            let mut r = 2e-4;
+            for _ in 0..200 {
+                let v = momentum / (m * r);
+                r = 0.5 * r + 0.5 * (2e-4 + (m * v * v / r + 2e5 * r - inward) / 2e7);
+            }
+            (r, momentum / (m * r))
         };
-        assert!(deceleration(arrest.limit_m_s * (1.0 + 1e-9)).abs() < 1e-3);
-        let n = 20_000;
-        let step = (from - to) / f64::from(n);
+        let from = 0.9 * arrest.limit_m_s;
+        let start = m * from * circle_radius_m(&params, from);
+        let (n, share) = (20_000, 0.3);
+        let step = (1.0 - share) * start / f64::from(n);
         let sum: f64 = (0..n)
-            .map(|i| step / deceleration(to + (f64::from(i) + 0.5) * step))
+            .map(|i| {
+                let momentum = share * start + (f64::from(i) + 0.5) * step;
+                let (r, v) = circle(momentum, force * mu / tilt);
+                let drive = mu * (m * v * v / r + 2e5 * r);
+                step / (r * (force * tilt + 300.0 * v - drive))
+            })
             .sum();
-        let time = arrest.time_s(from, to);
+        let time = arrest.time_s(from, share);
         assert!((time / sum - 1.0).abs() < 1e-6, "{time} {sum}");
     }
 
