@@ -232,11 +232,12 @@ fn approach_is_tangential_where_it_is_dangerous() {
         );
         assert!(tangential > 100.0, "{command:?}");
     }
-    let harmless = approaching(1000.0);
+    let harmless = approaching(2200.0);
     assert!(!harmless.is_empty());
     for command in &harmless {
-        assert!(command.severity < 1.0, "{command:?}");
-        assert!(command.force_n[0] < -0.99 * 1000.0, "{command:?}");
+        // A hair above the whirl limit's share from which on impacts count.
+        assert!(command.severity < 0.71, "{command:?}");
+        assert!(command.force_n[0] < -0.99 * 2200.0, "{command:?}");
     }
     assert!(dangerous[0].events.contains(Events::ENGAGED));
     assert_eq!(dangerous[0].integrator, IntegratorHint::Hold);
