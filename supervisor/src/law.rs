@@ -21,7 +21,7 @@ use crate::vec2::Vec2;
 /// Wanted forces in the order in which they may use the capacity \[caps\].
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(crate) struct Wanted<S> {
-    /// Against the backward tangential speed, tilted inwards by what friction is worth.
+    /// Against the backward tangential speed; in whirl tilted inwards by what friction is worth.
     pub(crate) braking: Vec2<S>,
     /// Against the velocity.
     pub(crate) damping: Vec2<S>,

@@ -5,7 +5,7 @@ use supervisor::Mode;
 
 /// The ways that the state machine has, apart from staying. There is none from a touch or a fault straight
 /// into approach or hand-over, none from bounce into approach, and none from levitation into hand-over.
-pub const WAYS: [(Mode, &[Mode]); 7] = {
+const WAYS: [(Mode, &[Mode]); 7] = {
     use Mode::{Approach, BackwardWhirl, Bounce, Handover, Levitated, Pinned, SensorFault};
     [
         (
@@ -44,7 +44,7 @@ pub const WAYS: [(Mode, &[Mode]); 7] = {
     ]
 };
 
-/// [`WAYS`], one by one.
+/// The ways from mode to mode that the state machine has, one by one.
 pub fn ways() -> impl Iterator<Item = (Mode, Mode)> {
     (WAYS.iter()).flat_map(|(from, tos)| tos.iter().map(|to| (*from, *to)))
 }
@@ -88,14 +88,14 @@ impl Coverage {
             .collect()
     }
 
-    /// Ways of [`WAYS`] that have no tick.
+    /// Ways of [`ways`] that have no tick.
     pub fn missing_ways(&self) -> Vec<(Mode, Mode)> {
         ways()
             .filter(|(from, to)| self.of_way(*from, *to) == 0)
             .collect()
     }
 
-    /// Ways that were taken and are not among [`WAYS`].
+    /// Ways that were taken and are not among [`ways`].
     pub fn unknown_ways(&self) -> Vec<(Mode, Mode)> {
         let known = |from: Mode, to: Mode| from == to || ways().any(|way| way == (from, to));
         let pairs = MODES

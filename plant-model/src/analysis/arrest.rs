@@ -143,7 +143,8 @@ impl Circle {
 }
 
 /// Radius of the circle on which the rotor slides with a tangential speed \[m/s\], its penetration in
-/// balance with the centrifugal force, linear contact: (k + k_c)·r² − k_c·c·r − m·v² = 0 \[m\].
+/// balance with the centrifugal force, linear contact: (k + k_c)·r² − k_c·c·r − m·v² = 0; the clearance where the
+/// shaft is so stiff that the wall would have to pull \[m\].
 pub fn circle_radius_m(params: &PlantParams, speed_m_s: f64) -> f64 {
     Circle::of(params).radius_m(speed_m_s, 0.0)
 }

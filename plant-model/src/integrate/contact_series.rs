@@ -124,8 +124,8 @@ struct Context<'a, S, W, M> {
 }
 
 impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
-    /// Fills `out` with the solution from `y` in the task's mode, up to the order (returned) at which there is
-    /// `enough`, or to `highest`.
+    /// Fills `out` with the solution from `y` in the task's mode, up to the order at which there is `enough`,
+    /// or to `highest`.
     pub(crate) fn contact_series(
         &self,
         out: &mut ContactSeries<S>,
@@ -133,7 +133,7 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
         task: &Task<'_>,
         (step_s, highest): (f64, usize),
         mut enough: impl FnMut(&ContactSeries<S>, usize) -> bool,
-    ) -> usize {
+    ) {
         let ring = y.stator.inner();
         out.gap.0[0] = y.rotor.position - ring.position;
         out.gap_rate.0[0] = y.rotor.velocity - ring.velocity;
@@ -176,11 +176,8 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
             k += 1;
         }
         out.order = k;
-        k
     }
-}
 
-impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
     /// Tangential forces per normal force in a mode, if they are constant.
     fn proportions(&self, (slide, whirl): (Slide, Whirl)) -> Option<(f64, f64)> {
         let SlidingFriction::Constant { coefficient } = self.friction.sliding else {

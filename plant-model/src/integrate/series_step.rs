@@ -58,9 +58,10 @@ impl<S: Stator> SeriesStepper<S> {
         let (order, trusted) = loop {
             let mut enough = Enough::new(remaining / reference);
             let (start, span) = ((t_s, y), (reference, highest));
-            let order = system.contact_series(&mut self.series, start, task, span, |series, k| {
+            system.contact_series(&mut self.series, start, task, span, |series, k| {
                 k >= LOWEST_ORDER - 1 && enough.with(square(series, k))
             });
+            let order = self.series.order;
             work.evaluations += order as u64 + 1;
             if order < highest {
                 self.step_s = self.step_s.max(remaining);
