@@ -192,8 +192,8 @@ pub fn suggested(n: &Nominal) -> Suggested {
         hold_share: 0.8, None, "rule of thumb: the rest damps";
         handover_dwell_s: 5e-4, None, "rule of thumb: some samples without doubt";
         handover_blend_s: 2e-3, None, "rule of thumb: shorter than a levitation loop settles";
-        fault_blend_s: 1e-3, None, "rule of thumb: about a reaction time";
-        fault_ticks: 10.0, None, "rule of thumb: longer than a burst of interference";
+        fault_blend_s: 2e-2, None, "rule of thumb: longer than most interruptions; a force that stands still holds the rotor to one side, none lets it whirl";
+        fault_ticks: 5.0, None, "rule of thumb: longer than a burst of interference, and little against the time to cross the clearance";
         axis_force_max_n: axis_force_max_n, Some(axis_source), match n.axis_force_max_n {
             Some(_) => "as given",
             None => "the cap: no limit of an axis was given",

@@ -2,8 +2,8 @@
 
 use crate::coeffs::Coeffs;
 use crate::detect::Findings;
-use crate::guard::Spin;
 use crate::scalar::Scalar;
+use crate::spin::Spin;
 
 /// Kind of motion on the retainer bearing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,7 +1,6 @@
 //! Where the rotor is going: its speed, and the next impact at the end of a straight path.
 
 use crate::estimate::Motion;
-use crate::guard::Spin;
 use crate::scalar::Scalar;
 use crate::vec2::Vec2;
 
@@ -63,16 +62,4 @@ impl<S: Scalar> Impact<S> {
 #[inline]
 pub(crate) fn sum_of_impacts<S: Scalar>(backward: S, normal_speed: S, gain: S) -> S {
     backward + gain * normal_speed
-}
-
-/// Sense of backward where a rotor moves along the wall, +1 counter-clockwise: against the surface speed
-/// of the spin, or, with unknown spin, along the whirl that is there.
-#[inline]
-pub(crate) fn sense<S: Scalar>(spin: Spin, along: S) -> S {
-    let counterclockwise = match spin {
-        Spin::Counterclockwise => false,
-        Spin::Clockwise => true,
-        Spin::Unknown => along > S::ZERO,
-    };
-    if counterclockwise { S::ONE } else { -S::ONE }
 }

@@ -6,6 +6,7 @@
 use crate::coeffs::{Coeffs, MAX_DELAY};
 use crate::guard::Actuator;
 use crate::scalar::Scalar;
+use crate::spin::Spin;
 use crate::vec2::Vec2;
 
 /// Estimated motion, per unit.
@@ -45,7 +46,7 @@ impl<S: Scalar> Observer<S> {
     #[inline]
     pub(crate) fn advance(
         &mut self,
-        sample: Option<Vec2<S>>,
+        (sample, spin): (Option<Vec2<S>>, Spin),
         in_contact: bool,
         actuator: Actuator<S>,
         coeffs: &Coeffs<S>,
@@ -55,11 +56,7 @@ impl<S: Scalar> Observer<S> {
             && !self.started
         {
             self.started = true;
-            self.motion = Motion {
-                position,
-                fresh: true,
-                ..Motion::default()
-            };
+            self.motion = Motion::found_at(position, spin, coeffs);
             return self.motion;
         }
         let m = &mut self.motion;
@@ -184,6 +181,25 @@ fn lagging<S: Scalar>(before: Vec2<S>, command: Vec2<S>, coeffs: &Coeffs<S>) -> 
 }
 
 impl<S: Scalar> Motion<S> {
+    /// Motion of a rotor of which one sample is known: at rest, or, pressed so deep into the bearing that only
+    /// whirl does it, whirling backwards at a speed between lift-off and the limit. Which one matters little, but
+    /// the force has to lead from the first tick on: while it grows, so does the whirl.
+    #[cold]
+    fn found_at(position: Vec2<S>, spin: Spin, coeffs: &Coeffs<S>) -> Self {
+        let pressed = S::of(2.0) - coeffs.touch_radius;
+        let velocity = if spin != Spin::Unknown && position.exceeds(pressed) {
+            position.turned() * spin.sense_of_backward(S::ZERO)
+        } else {
+            Vec2::ZERO
+        };
+        Self {
+            position,
+            velocity,
+            fresh: true,
+            ..Self::default()
+        }
+    }
+
     /// Flight for some ticks under the mean of the force; shaft and damping at the middle of each tick.
     #[inline]
     fn carry(&mut self, mean: Vec2<S>, ticks: S, in_contact: bool, coeffs: &Coeffs<S>) {

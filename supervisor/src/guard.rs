@@ -7,6 +7,7 @@
 use crate::coeffs::Coeffs;
 use crate::scalar::Scalar;
 use crate::signal::{CoreSample, Events, Refusal, Status};
+use crate::spin::Spin;
 use crate::vec2::Vec2;
 
 bitflags::bitflags! {
@@ -78,34 +79,12 @@ impl<S: Scalar> Actuator<S> {
     }
 }
 
-/// Sense of the spin.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Spin {
-    Unknown,
-    Counterclockwise,
-    Clockwise,
-}
-
-impl Spin {
-    /// A counter-clockwise speed counted against the spin; with unknown spin every whirl counts, for
-    /// friction will drive it.
-    #[inline]
-    pub(crate) fn backward<S: Scalar>(self, along: S) -> S {
-        match self {
-            Self::Counterclockwise => -along,
-            Self::Clockwise => along,
-            Self::Unknown => along.size(),
-        }
-    }
-}
-
 /// A sample after judgement, per unit.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Reading<S> {
     facts: Facts,
     sample: Vec2<S>,
     measured: Vec2<S>,
-    /// Unknown also where it is zero.
     pub(crate) spin: Spin,
     /// Ticks since the last call that the observer has to make up for.
     pub(crate) missed: u32,
@@ -205,7 +184,7 @@ impl<S: Scalar> Guard<S> {
             facts,
             sample: Vec2::from_array(sample.position),
             measured: Vec2::from_array(sample.applied),
-            spin: spin_of(sample),
+            spin: Spin::of(sample),
             missed: 0,
             refusal: Refusal::None,
             events: Events::empty(),
@@ -304,7 +283,7 @@ impl<S: Scalar> Guard<S> {
             facts,
             sample: position,
             measured: Vec2::from_array(sample.applied),
-            spin: spin_of(sample),
+            spin: Spin::of(sample),
             missed,
             refusal,
             events,
@@ -415,18 +394,6 @@ impl<S: Scalar> Guard<S> {
         }
         self.still.rescale();
         self.still_is_old = false;
-    }
-}
-
-#[inline]
-fn spin_of<S: Scalar>(sample: &CoreSample<S>) -> Spin {
-    let known = sample.status.contains(Status::SPIN_VALID) && sample.spin.is_finite();
-    if known && sample.spin > S::ZERO {
-        Spin::Counterclockwise
-    } else if known && sample.spin < S::ZERO {
-        Spin::Clockwise
-    } else {
-        Spin::Unknown
     }
 }
 

@@ -10,12 +10,12 @@
 //! friction: −(b̂ + μ·n̂).
 
 use crate::coeffs::Coeffs;
-use crate::course::{Course, Impact, sense, sum_of_impacts};
+use crate::course::{Course, Impact, sum_of_impacts};
 use crate::detect::Findings;
 use crate::estimate::Motion;
-use crate::guard::Spin;
 use crate::scalar::Scalar;
 use crate::signal::Mode;
+use crate::spin::Spin;
 use crate::vec2::Vec2;
 
 /// Wanted forces in the order in which they may use the capacity \[caps\].
@@ -103,7 +103,7 @@ impl<S: Scalar> View<'_, S> {
     fn before(&self, impact: &Impact<S>) -> Vec2<S> {
         let coeffs = self.coeffs;
         let gain = self.bounce_gain();
-        let sense = sense(self.spin, impact.along);
+        let sense = self.spin.sense_of_backward(impact.along);
         let (mut normal_speed, mut backward) = (impact.normal_speed, impact.along * sense);
         let sum = sum_of_impacts(backward, normal_speed, gain);
         let beyond_harmless = sum * coeffs.per_whirl_limit - S::of(HARMLESS);
@@ -149,16 +149,10 @@ impl<S: Scalar> View<'_, S> {
     fn in_contact(&self, driven: bool) -> Wanted<S> {
         let (coeffs, found) = (self.coeffs, self.found);
         let n = found.normal;
-        let sense = sense(self.spin, found.tangential_speed);
+        let sense = self.spin.sense_of_backward(found.tangential_speed);
         let outward = found.radial_speed.or_more(S::ZERO);
         let sum = sum_of_impacts(found.tangential_speed * sense, outward, self.bounce_gain());
-        // Switched on into a contact that is pressed on as only whirl does: no time is to be lost.
-        let pressed = S::of(2.0) - coeffs.touch_radius;
-        let strength = if self.motion.fresh && found.radius > pressed {
-            S::ONE
-        } else {
-            (sum * coeffs.damper).between(S::ZERO, S::ONE)
-        };
+        let strength = (sum * coeffs.damper).between(S::ZERO, S::ONE);
         let braking = if strength > S::ZERO {
             // Unit vector against b̂, or b̂ + μ·n̂.
             let along = n.turned() * sense;
@@ -198,7 +192,7 @@ impl<S: Scalar> View<'_, S> {
     /// On the wall under a load: push inwards with what the load leaves useful, keep still.
     fn hold(&self) -> Wanted<S> {
         let (coeffs, found) = (self.coeffs, self.found);
-        let sense = sense(self.spin, found.tangential_speed);
+        let sense = self.spin.sense_of_backward(found.tangential_speed);
         let backward = found.tangential_speed * sense;
         let strength = (backward * coeffs.damper).between(S::ZERO, S::ONE);
         Wanted {

@@ -23,8 +23,8 @@
 //!     hold_share: 0.8,
 //!     handover_dwell_s: 1e-3,
 //!     handover_blend_s: 2e-3,
-//!     fault_blend_s: 1e-3,
-//!     fault_ticks: 10.0,
+//!     fault_blend_s: 2e-2,
+//!     fault_ticks: 5.0,
 //!     axis_force_max_n: 1000.0,    // no cap of the axes
 //!     force_slew_n_s: 1e7,
 //!     continuous_force_n: 400.0,
@@ -61,7 +61,7 @@
 //! ```
 //!
 //! Files, each importing only from those above it: `scalar`, `q`, `math`, `vec2`, `signal`, `config`, `coeffs`,
-//! `guard`, `estimate`, `detect`, `course`, `classify`, `phase`, `law`, `limit`, `handover`, `severity`,
+//! `spin`, `guard`, `estimate`, `detect`, `course`, `classify`, `phase`, `law`, `limit`, `handover`, `severity`,
 //! `recorder`, `per_unit`, `supervisor`, `self_test`, `watch`.
 
 // Unconditional: under `cfg(test)` std's own methods would silently replace micromath's.
@@ -88,6 +88,7 @@ mod scalar;
 mod self_test;
 mod severity;
 mod signal;
+mod spin;
 mod supervisor;
 mod vec2;
 mod watch;

@@ -126,7 +126,8 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
         let (position, actuator) = (reading.position(), reading.actuator());
         let contact = self.detector.sample(position, coeffs);
         let near_contact = self.detector.near_contact();
-        let motion = (self.observer).advance(position, near_contact, actuator, coeffs);
+        let motion =
+            (self.observer).advance((position, reading.spin), near_contact, actuator, coeffs);
         let found = self.detector.findings(&motion, contact, coeffs);
         let class = (self.classifier).classify(&found, reading.spin, coeffs);
 
