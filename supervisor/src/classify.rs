@@ -10,6 +10,10 @@ use crate::spin::Spin;
 pub(crate) enum Class {
     Bounce,
     BackwardWhirl,
+    /// Sliding with the spin and at its rate, as unbalance drives it.
+    ForwardRub {
+        begins: bool,
+    },
     Pinned,
 }
 
@@ -24,20 +28,25 @@ const REST_SPEED_SQUARED: f32 = 0.05;
 /// Rest ends only beyond this share, so that noise does not end it.
 const MOVING_SPEED_SQUARED: f32 = 0.2;
 
+/// Forward rub goes round at the rate of the spin to within this share.
+const RUB_RATE_SHARE: f32 = 0.25;
+
 /// Memory of the classifier.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Classifier<S> {
     contact_share: S,
     ticks_touching: u32,
     resting: bool,
+    rubbing: bool,
 }
 
 impl<S: Scalar> Classifier<S> {
+    /// `rate` is the spin \[1/t₀\].
     #[inline]
     pub(crate) fn classify(
         &mut self,
         found: &Findings<S>,
-        spin: Spin,
+        (spin, rate): (Spin, S),
         coeffs: &Coeffs<S>,
     ) -> Class {
         let now = if found.touching {
@@ -64,15 +73,25 @@ impl<S: Scalar> Classifier<S> {
         } else {
             self.resting = false;
         }
+        let sliding = !self.resting
+            && self.contact_share > S::of(CONTINUOUS)
+            && along_square > S::of(WHIRL_SPEED_SQUARED);
+        let before = core::mem::take(&mut self.rubbing);
+        if !sliding {
+            return if self.resting {
+                Class::Pinned
+            } else {
+                Class::Bounce
+            };
+        }
         // With unknown spin every whirl counts as backward: friction will make it so.
-        let backward = spin.backward(along) >= S::ZERO;
-        if self.resting {
-            Class::Pinned
-        } else if self.contact_share > S::of(CONTINUOUS)
-            && backward
-            && along_square > S::of(WHIRL_SPEED_SQUARED)
-        {
-            Class::BackwardWhirl
+        if spin.backward(along) >= S::ZERO {
+            return Class::BackwardWhirl;
+        }
+        // On the wall the speed along it is the rate of the orbit. What began stays until it slows or turns.
+        self.rubbing = before || (along - rate).size() <= rate.size() * S::of(RUB_RATE_SHARE);
+        if self.rubbing {
+            Class::ForwardRub { begins: !before }
         } else {
             Class::Bounce
         }

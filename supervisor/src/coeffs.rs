@@ -32,11 +32,16 @@ pub struct Scaling {
     /// Caps per newton: what a force is multiplied by. A unit in the last place low, so that the whole cap
     /// does not become more than one.
     pub force_per_n: f32,
-    /// A speed of 1 \[m/s\].
-    pub speed_m_s: f32,
+    /// A time of 1, t₀ \[s\]: what a spin in rad/s is multiplied by.
+    pub time_s: f32,
 }
 
 impl Scaling {
+    /// A speed of 1 \[m/s\].
+    pub fn speed_m_s(&self) -> f32 {
+        self.length_m / self.time_s
+    }
+
     /// A sample per unit.
     #[inline]
     pub fn sample(&self, sample: &Sample) -> CoreSample<f32> {
@@ -45,7 +50,7 @@ impl Scaling {
             sequence: sample.sequence,
             status: sample.status,
             position: sample.position_m.map(|x| x * self.position_per_m),
-            spin: sample.spin_rad_s,
+            spin: sample.spin_rad_s * self.time_s,
             levitation: forces(sample.levitation_n),
             applied: forces(sample.applied_n),
         }
@@ -76,15 +81,10 @@ impl Config {
             force_n,
             position_per_m: self.retainer_plane_ratio / self.clearance_m,
             force_per_n: (1.0 / force_n) * (1.0 - f32::EPSILON),
-            speed_m_s: self.clearance_m / time_unit_s(self),
+            // With the force as it is at the retainer bearing.
+            time_s: sqrt(self.mass_kg * self.clearance_m / (self.magnet_plane_ratio * force_n)),
         }
     }
-}
-
-/// t₀ for the force at the retainer bearing.
-fn time_unit_s(config: &Config) -> f32 {
-    let force_n = config.magnet_plane_ratio * config.force_max_n;
-    sqrt(config.mass_kg * config.clearance_m / force_n)
 }
 
 /// Force–time budget.
@@ -253,7 +253,7 @@ impl<S: Scalar> Coeffs<S> {
         let t = config.sample_period_s;
         let (c, f) = (config.clearance_m, config.force_max_n);
         let scaling = config.scaling();
-        let unit_s = time_unit_s(config);
+        let unit_s = scaling.time_s;
         let h = t / unit_s;
         let lag = config.amplifier_lag_s / t;
         let lag_left = if lag > 0.0 { exp_neg(1.0 / lag) } else { 0.0 };
@@ -276,7 +276,7 @@ impl<S: Scalar> Coeffs<S> {
         // What the model may accelerate by while the wall holds against it.
         let blind = (1.0 + 1.5 * max(stiffness, -stiffness)) * h;
         // Divided by in every severity.
-        let whirl_limit = max(whirl_limit_m_s(config) / scaling.speed_m_s, 1e-6);
+        let whirl_limit = max(whirl_limit_m_s(config) / scaling.speed_m_s(), 1e-6);
         let sensor_steps = 3.0 * config.sensor_step_m * config.retainer_plane_ratio / c;
         let continuous = config.continuous_force_n / f;
         let square = continuous * continuous;
@@ -356,10 +356,5 @@ impl<S: Scalar> Coeffs<S> {
             blind_speed: s("observer", blind * (1.0 + touch_pole) / touch_free),
         };
         (coeffs, taken.misfit)
-    }
-
-    /// t₀ \[s\].
-    pub(crate) fn unit_s(&self) -> f32 {
-        self.scaling.length_m / self.scaling.speed_m_s
     }
 }

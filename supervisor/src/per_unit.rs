@@ -96,8 +96,9 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
         let (old, new) = (&self.coeffs, &prepared.0);
         // What a sensor showed is now at another place in another unit.
         let length = new.scaling.position_per_m / old.scaling.position_per_m;
-        let speed = length * new.unit_s() / old.unit_s();
-        let tick = (new.unit_s() * new.tick.to_f32()) / (old.unit_s() * old.tick.to_f32());
+        let [new_s, old_s] = [new, old].map(|coeffs| coeffs.scaling.time_s);
+        let speed = length * new_s / old_s;
+        let tick = (new_s * new.tick.to_f32()) / (old_s * old.tick.to_f32());
         let force = old.scaling.force_n / new.scaling.force_n;
         let index = old.severity_limit / new.severity_limit;
         self.guard.rescale(S::of(length));
@@ -129,7 +130,8 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
         let motion =
             (self.observer).advance((position, reading.spin), near_contact, actuator, coeffs);
         let found = self.detector.findings(&motion, contact, coeffs);
-        let class = (self.classifier).classify(&found, reading.spin, coeffs);
+        let spin = (reading.spin, sample.spin);
+        let class = (self.classifier).classify(&found, spin, coeffs);
 
         // A rotor that levitates, and will, needs none of what follows.
         let (mut course, mut ahead, mut calm) = (Course::default(), None, false);

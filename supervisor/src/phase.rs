@@ -71,6 +71,9 @@ impl<S: Scalar> Phase<S> {
         if found.left {
             events |= Events::LIFTED_OFF;
         }
+        if class == (Class::ForwardRub { begins: true }) {
+            events |= Events::FORWARD_RUB;
+        }
         if next.mode() != self.mode() {
             events |= match next {
                 Self::Levitated => Events::LEVITATED,
@@ -107,7 +110,7 @@ impl<S: Scalar> Phase<S> {
         }
         if found.touching {
             return match class {
-                Class::Bounce => new_bounce,
+                Class::Bounce | Class::ForwardRub { .. } => new_bounce,
                 Class::BackwardWhirl => Self::BackwardWhirl,
                 Class::Pinned => Self::Pinned,
             };

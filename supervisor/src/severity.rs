@@ -142,7 +142,7 @@ impl<S: Scalar> Severity<S> {
     }
 
     pub(crate) fn report(&self, coeffs: &Coeffs<S>) -> Report {
-        let speed_m_s = coeffs.scaling.speed_m_s;
+        let speed_m_s = coeffs.scaling.speed_m_s();
         let index = self.index.value().to_f32() * coeffs.severity_limit;
         Report {
             landings: self.landings,

@@ -100,6 +100,9 @@ bitflags::bitflags! {
         /// The machine should coast down: whirl beyond the limit has lasted, or the severity index has
         /// passed its limit. Once until the bearing is switched off.
         const COAST_DOWN = 1 << 14;
+        /// Forward rub was recognised: the rotor slides round the retainer bearing with its spin and at its rate,
+        /// as unbalance drives it.
+        const FORWARD_RUB = 1 << 15;
         /// The flight recorder has frozen a record.
         const RECORD_FROZEN = 1 << 16;
         /// An event was lost because the background did not drain the queue. Only in the queue.
@@ -205,7 +208,8 @@ pub struct CoreSample<S> {
     pub status: Status,
     /// Position at the retainer bearing \[clearances\].
     pub position: [S; 2],
-    /// Spin in any unit, counter-clockwise positive; only its sign is used.
+    /// Spin, counter-clockwise positive \[1/t₀\], where it does not fit the fastest that does: forces follow its
+    /// sense alone, its size tells forward rub.
     pub spin: S,
     /// Force that the levitation controller wants \[caps\].
     pub levitation: [S; 2],

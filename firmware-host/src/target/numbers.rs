@@ -58,6 +58,9 @@ impl Number {
     }
 }
 
+/// Fastest spin that `Q` is told \[1/t₀\].
+const FASTEST: f32 = 500.0;
+
 /// The core in fixed point behind a conversion, with a tape of what passes between them.
 #[derive(Debug)]
 struct RecordingFixed {
@@ -84,8 +87,7 @@ impl Supervise for RecordingFixed {
             sequence: sample.sequence,
             status: sample.status,
             position: (sample.position_m).map(|x| converted(x * scaling.position_per_m)),
-            // Only its sign counts; a spin of thousands would not fit.
-            spin: converted(sample.spin_rad_s.clamp(-1.0, 1.0)),
+            spin: converted((sample.spin_rad_s * scaling.time_s).clamp(-FASTEST, FASTEST)),
             levitation: forces(sample.levitation_n),
             applied: forces(sample.applied_n),
         };

@@ -214,6 +214,7 @@ typedef int32_t amb_code;
 #define AMB_EVENT_AXIS_LOST 0x1000u      /**< the drive has lost an axis */
 #define AMB_EVENT_AXIS_BACK 0x2000u      /**< an axis is back */
 #define AMB_EVENT_COAST_DOWN 0x4000u     /**< the machine should coast down */
+#define AMB_EVENT_FORWARD_RUB 0x8000u    /**< forward rub at the spin's rate was recognised */
 #define AMB_EVENT_RECORD_FROZEN 0x10000u /**< there is a record to be read */
 #define AMB_EVENT_QUEUE_FULL 0x20000u    /**< an event before this one was lost; only in the queue */
 /** @} */

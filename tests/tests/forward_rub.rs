@@ -1,0 +1,162 @@
+//! Forward rub: unbalance drives the rotor round the retainer bearing with the spin and at its rate. It is recognised,
+//! no other motion is taken for it, and the supervisor's force never drives it.
+
+use firmware_host::closed_loop::{Keep, run_policy};
+use firmware_host::overloads::found::kept;
+use firmware_host::overloads::plants::{PlantCase, plants};
+use firmware_host::overloads::seats::{Seat, Task, seated};
+use firmware_host::policies::{Policy, Supervise};
+use firmware_host::scene::Scene;
+use plant_model::params::SpinParams;
+use std::cell::RefCell;
+use std::f32::consts::TAU;
+use std::rc::Rc;
+use supervisor::{Command, Events, Mode, Sample, Status, Supervisor};
+use system_tests::rig::{RADIUS_M, config, sample};
+
+/// Spin of 200 Hz, counter-clockwise \[rad/s\].
+const SPIN_RAD_S: f32 = 200.0 * TAU;
+
+/// Control rate \[Hz\].
+const RATE_HZ: f64 = 20_000.0;
+
+/// Commands to a rotor that slides on the wall at a multiple of the spin, for 30 ms.
+fn commands_at(rate: f32, status: Status) -> Vec<Command> {
+    let config = config();
+    let mut supervisor = Supervisor::<64>::new(&config).unwrap();
+    (0..600)
+        .map(|i| {
+            let angle = rate * SPIN_RAD_S * config.sample_period_s * i as f32;
+            let mut s = sample(i, [RADIUS_M * angle.cos(), RADIUS_M * angle.sin()]);
+            (s.spin_rad_s, s.status) = (SPIN_RAD_S, s.status | status);
+            supervisor.tick(&s)
+        })
+        .collect()
+}
+
+fn rubs(commands: &[Command]) -> usize {
+    let begins = |c: &&Command| c.events.contains(Events::FORWARD_RUB);
+    commands.iter().filter(begins).count()
+}
+
+/// Said once, soon after contact is known to last, at the spin's rate and no other.
+#[test]
+fn said_once_and_only_of_the_spins_rate() {
+    for (rate, said) in [
+        (1.0, 1),
+        (0.82, 1),
+        (1.18, 1),
+        (0.65, 0),
+        (1.35, 0),
+        (-1.0, 0),
+    ] {
+        assert_eq!(rubs(&commands_at(rate, Status::empty())), said, "{rate} ×");
+    }
+    let commands = commands_at(1.0, Status::empty());
+    let at = commands
+        .iter()
+        .position(|c| c.events.contains(Events::FORWARD_RUB));
+    // whirl_time_s is 20 ticks: 0.6 of the way take 18.
+    assert!((15..25).contains(&at.unwrap()), "after {at:?} ticks");
+    // It is no whirl against the spin, and not rest.
+    assert!(commands.iter().skip(30).all(|c| c.mode == Mode::Bounce));
+}
+
+type Tape = Rc<RefCell<Vec<(Sample, Command)>>>;
+
+#[derive(Debug)]
+struct Recording(Supervisor<64>, Tape);
+
+impl Supervise for Recording {
+    fn tick(&mut self, sample: &Sample) -> Command {
+        let command = self.0.tick(sample);
+        self.1.borrow_mut().push((*sample, command));
+        command
+    }
+
+    fn mode(&self) -> Mode {
+        self.0.mode()
+    }
+}
+
+/// A plant whose mass centre is so far off that neither levitation nor the cap keeps it from the wall.
+fn unbalanced(plant: &str, eccentricity_m: f64) -> Scene {
+    let of_name = |p: &PlantCase| p.name == plant;
+    let mut scene = plants(RATE_HZ)
+        .unwrap()
+        .into_iter()
+        .find(of_name)
+        .unwrap()
+        .scene;
+    scene.duration_s = 0.5;
+    scene.plant.rotor.eccentricity_m = eccentricity_m;
+    scene.plant.spin = SpinParams::Held;
+    scene
+}
+
+/// Work of the commanded force on the way of the rotor in each tick \[J\], and the turns of the rotor about the
+/// centre, counter-clockwise.
+fn work_and_turns(ticks: &[(Sample, Command)]) -> (Vec<f64>, f64) {
+    let of_tick = |((before, _), (now, command)): (&(Sample, Command), &(Sample, Command))| {
+        let [[ax, ay], [bx, by]] = [before, now].map(|s| s.position_m.map(f64::from));
+        let [fx, fy] = command.force_n.map(f64::from);
+        let angle = (ax * by - ay * bx) / (ax * ax + ay * ay);
+        (fx * (bx - ax) + fy * (by - ay), angle / f64::from(TAU))
+    };
+    let (work_j, turns): (Vec<f64>, Vec<f64>) = ticks.iter().zip(&ticks[1..]).map(of_tick).unzip();
+    (work_j, turns.iter().sum())
+}
+
+/// In the closed loop, below and above the first critical speed: recognised, taken for nothing else, braked and never
+/// driven, and no harder on the bearing than under levitation alone.
+#[test]
+fn unbalance_that_no_force_holds_is_recognised_and_not_driven() {
+    for (plant, eccentricity_m) in [("P1 150 N", 3e-4), ("P2", 2e-4)] {
+        let scene = unbalanced(plant, eccentricity_m);
+        let found = kept(plant, RATE_HZ).unwrap();
+        let run = |policy, name| run_policy(&scene, (policy, name), Keep::Verdict, &mut |_| {});
+        let tape = Tape::default();
+        let supervisor = Supervisor::new(&scene.supervisor.unwrap()).unwrap();
+        let recording = Box::new(Recording(supervisor, Rc::clone(&tape)));
+        let mut with_levitation = scene.clone();
+        with_levitation.levitation = Some(found.tuned);
+        let supervised = Policy::supervised(&with_levitation, recording).unwrap();
+        let (own, _) = run(supervised, "supervisor").unwrap();
+        let alone = seated(Seat::Tuned, Task::Impact, &found, &scene).unwrap();
+        let (alone, _) = run(alone, "levitation").unwrap();
+
+        let ticks = tape.take();
+        let commands: Vec<Command> = ticks.iter().map(|(_, command)| *command).collect();
+        let all = commands
+            .iter()
+            .fold(Events::empty(), |all, c| all | c.events);
+        assert!((1..=3).contains(&rubs(&commands)), "{plant}");
+        assert!(
+            !all.intersects(Events::WHIRL | Events::PINNED),
+            "{plant}: {all:?}"
+        );
+        let begins = |c: &Command| c.events.contains(Events::FORWARD_RUB);
+        let rub = &ticks[commands.iter().position(begins).unwrap()..];
+        assert!(rub.iter().all(|(_, c)| c.mode == Mode::Bounce), "{plant}");
+
+        let (work_j, turns) = work_and_turns(rub);
+        let turns_of_spin = scene.start.spin_rad_s / f64::from(TAU) * rub.len() as f64 / RATE_HZ;
+        assert!(
+            (turns / turns_of_spin - 1.0).abs() < 0.02,
+            "{plant}: {turns} of {turns_of_spin}"
+        );
+        let sum_j: f64 = work_j.iter().sum();
+        let driving_j: f64 = work_j.iter().map(|w| w.max(0.0)).sum();
+        // In single ticks noise turns the estimate of a slow rub.
+        assert!(
+            sum_j < 0.0 && driving_j < -0.02 * sum_j,
+            "{plant}: {sum_j} J, {driving_j} J of it driving"
+        );
+        let ratio = own.peak_contact_force_n / alone.peak_contact_force_n;
+        println!(
+            "{plant}: force over levitation alone {ratio:.3}, contact {} of {} s",
+            own.contact_time_s, alone.contact_time_s
+        );
+        assert!(ratio < 1.02, "{plant}: {ratio}");
+    }
+}
