@@ -70,11 +70,13 @@ impl Detector {
         (self.touching && !before, before && !self.touching)
     }
 
+    /// `cap` is what the force–time budget leaves \[caps\].
     #[inline]
     pub(crate) fn findings<S: Scalar>(
         &self,
         motion: &Motion<S>,
         (touched, left): (bool, bool),
+        cap: S,
         coeffs: &Coeffs<S>,
     ) -> Findings<S> {
         let normal = motion.position.direction();
@@ -90,23 +92,23 @@ impl Detector {
             unavoidable: false,
         };
         let outward = found.radial_speed;
-        found.unavoidable = outward > S::ZERO && !found.stops(outward, S::ONE, coeffs);
+        found.unavoidable = outward > S::ZERO && !found.stops(outward, cap, coeffs);
         found
     }
 }
 
 impl<S: Scalar> Findings<S> {
-    /// Whether a share of the force inwards, from when it can act, stops a rotor of this speed before the
-    /// wall: v² against twice the work that the force and the shaft do up to there.
-    pub(crate) fn stops(&self, speed: S, share: S, coeffs: &Coeffs<S>) -> bool {
+    /// Whether this force inwards, from when it can act, stops a rotor of this speed before the wall: v² against
+    /// twice the work that the force and the shaft do up to there.
+    pub(crate) fn stops(&self, speed: S, force: S, coeffs: &Coeffs<S>) -> bool {
         let room = S::ONE - self.radius;
         let path = room - speed * coeffs.horizon;
         if path <= S::ZERO {
             return false;
         }
-        let mut left = share - self.load.or_more(S::ZERO);
+        let mut left = force - self.load.or_more(S::ZERO);
         if self.radius < S::of(LOAD_COUNTS_BEYOND) {
-            left = left.or_more(S::of(0.25) * share);
+            left = left.or_more(S::of(0.25) * force);
         }
         let spring = coeffs.stiffness * room * (S::ONE + self.radius);
         speed * speed <= (left + left) * path + spring

@@ -129,7 +129,8 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
         let near_contact = self.detector.near_contact();
         let motion =
             (self.observer).advance((position, reading.spin), near_contact, actuator, coeffs);
-        let found = self.detector.findings(&motion, contact, coeffs);
+        let room = Room::new(&self.budget, actuator, coeffs);
+        let found = self.detector.findings(&motion, contact, room.cap, coeffs);
         let spin = (reading.spin, sample.spin);
         let class = (self.classifier).classify(&found, spin, coeffs);
 
@@ -139,7 +140,7 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
             course = Course::of(motion.velocity);
             if !found.touching {
                 ahead = Impact::ahead(&motion, found.radius, &course);
-                calm = !near_contact && found.stops(course.speed, S::of(0.5), coeffs);
+                calm = !near_contact && found.stops(course.speed, room.cap * S::of(0.5), coeffs);
             }
         }
         let patience = (calm, self.readiness.ready());
@@ -155,7 +156,6 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
             spin: reading.spin,
             coeffs,
         };
-        let room = Room::new(&self.budget, actuator, coeffs);
         let shadow = sample.status.contains(Status::SHADOW);
         // A lost axis has no force to start from.
         let last_force = actuator.carried(self.force);

@@ -153,8 +153,8 @@ impl Storm {
         match self.course {
             Course::Levitates => {
                 self.position = [
-                    self.chance.between(-0.1, 0.1),
-                    self.chance.between(-0.1, 0.1),
+                    self.chance.between(-0.03, 0.03),
+                    self.chance.between(-0.03, 0.03),
                 ];
             }
             Course::Bounces => {

@@ -209,66 +209,6 @@ fn without_axes_the_mode_stays_meaningful() {
     );
 }
 
-/// The cap falls when the closed form says so, by the curve that is documented, to the force at which
-/// state and cap agree, and comes back by the same curve.
-#[test]
-fn the_cap_follows_the_thermal_state() {
-    for continuous in [300.0_f64, 500.0, 900.0] {
-        let time_s = 0.5;
-        let with = Config {
-            continuous_force_n: continuous as f32,
-            thermal_time_s: time_s as f32,
-            ..config()
-        };
-        let mut supervisor = Supervisor::<16>::new(&with).unwrap();
-        let curve = |state: f64| {
-            let x = ((state - 1.0) / 0.1).clamp(0.0, 1.0);
-            1000.0 - (1000.0 - continuous) * x * x * (3.0 - 2.0 * x)
-        };
-        let mut tick = |i: u32, wanted_n: f32| {
-            let command = supervisor.tick(&Sample {
-                levitation_n: [0.6 * wanted_n, -0.8 * wanted_n],
-                ..sample(i, [1e-8 * (i % 100) as f32, 0.0])
-            });
-            (command, supervisor.report())
-        };
-        let start = (1000.0 / continuous).powi(2);
-        let reaches_1_s = -time_s * (1.0 - 1.0 / start).ln();
-        let mut first = None;
-        let ticks = 100_000;
-        let mut state = 0.0_f64;
-        let mut last = Command::default();
-        for i in 0..ticks {
-            let (command, report) = tick(i, 1000.0);
-            assert!((length(command.force_n) - curve(state)).abs() < 0.3, "{i}");
-            state += ((length(command.force_n) / continuous).powi(2) - state) * 50e-6 / time_s;
-            assert!((f64::from(report.thermal_state) - state).abs() < 1e-4);
-            if command.limits.contains(Limits::DERATED) {
-                first.get_or_insert(f64::from(i) * 50e-6);
-            }
-            last = command;
-        }
-        let first = first.expect("ten time constants");
-        assert!(
-            first >= reaches_1_s - 1e-4 && first < 1.05 * reaches_1_s + 1e-3,
-            "{first} s, {reaches_1_s} s"
-        );
-        let rest = length(last.force_n);
-        assert!(rest > continuous && rest < 1.05 * continuous, "{rest} N");
-        assert!(last.limits.contains(Limits::DERATED));
-        // Back, without a jump.
-        let mut cap = f64::from(tick(ticks, 0.0).1.force_cap_n);
-        for i in ticks + 1..ticks + 4000 {
-            let (_, report) = tick(i, 0.0);
-            let now = f64::from(report.force_cap_n);
-            assert!((now - curve(f64::from(report.thermal_state))).abs() < 0.1);
-            assert!(now >= cap && now - cap < 5.0);
-            cap = now;
-        }
-        assert_eq!(cap, 1000.0);
-    }
-}
-
 /// A continuous force of at least the cap is no budget.
 #[test]
 fn without_a_budget_the_cap_never_falls() {
