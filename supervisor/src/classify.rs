@@ -1,4 +1,4 @@
-//! What kind of contact it is: bounce, continuous backward whirl, or held by a load.
+//! What kind of contact it is: bounce, continuous backward whirl, forward rub, or held by a load.
 
 use crate::coeffs::Coeffs;
 use crate::detect::Findings;
@@ -73,10 +73,14 @@ impl<S: Scalar> Classifier<S> {
         } else {
             self.resting = false;
         }
-        let sliding = !self.resting
-            && self.contact_share > S::of(CONTINUOUS)
-            && along_square > S::of(WHIRL_SPEED_SQUARED);
         let before = core::mem::take(&mut self.rubbing);
+        let slow = if before {
+            REST_SPEED_SQUARED
+        } else {
+            WHIRL_SPEED_SQUARED
+        };
+        let sliding =
+            !self.resting && self.contact_share > S::of(CONTINUOUS) && along_square > S::of(slow);
         if !sliding {
             return if self.resting {
                 Class::Pinned
@@ -89,7 +93,8 @@ impl<S: Scalar> Classifier<S> {
             return Class::BackwardWhirl;
         }
         // On the wall the speed along it is the rate of the orbit. What began stays until it slows or turns.
-        self.rubbing = before || (along - rate).size() <= rate.size() * S::of(RUB_RATE_SHARE);
+        let at_its_rate = (along - rate).size() <= rate.size() * S::of(RUB_RATE_SHARE);
+        self.rubbing = before || (found.touching && at_its_rate);
         if self.rubbing {
             Class::ForwardRub { begins: !before }
         } else {

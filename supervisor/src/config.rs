@@ -136,7 +136,7 @@ parameters! {
     hold_share, "1", 0.1 ..= 0.95, "Largest share of the cap that may push inwards.";
     handover_dwell_s, "s", 0.0 ..= 1.0, "Contact must be avoidable for this long before hand-over begins.";
     handover_blend_s, "s", 0.0 ..= 1.0, "Time of the blend to the levitation controller.";
-    fault_blend_s, "s", 0.0 ..= 1.0, "Time in which the force goes to zero when the position cannot be trusted.";
+    fault_blend_s, "s", 0.0 ..= 1.0, "Time in which the force goes to zero when the position cannot be trusted; of a levitated rotor no longer than handover_blend_s.";
     fault_ticks, "ticks", 2.0 ..= 10000.0, "Good samples in a row that end a sensor fault, and refused ones that make it; jumps, dropouts and a stuck sensor make it sooner.";
     axis_force_max_n, "N", 1e-3 ..= 1e7, "Force cap of each axis; none where it is at least force_max_n.";
     force_slew_n_s, "N/s", 1.0 ..= 1e12, "Fastest change of the commanded force, as the length of the vector.";

@@ -22,7 +22,7 @@ pub(crate) struct Findings<S> {
     /// Touching began, ended at this tick.
     pub(crate) touched: bool,
     pub(crate) left: bool,
-    /// The whole force inwards, from now on, could not prevent contact.
+    /// The force that the budget leaves, inwards and from now on, could not prevent contact.
     pub(crate) unavoidable: bool,
 }
 

@@ -34,6 +34,8 @@ const KEPT: f32 = 500.0;
 pub(crate) struct Observer<S> {
     motion: Motion<S>,
     started: bool,
+    /// It has started before: what it knew is lost, but it is not switched on into anything.
+    has_run: bool,
     /// Delivered force at the last tick.
     delivered: Vec2<S>,
     /// Commands of the last ticks, newest at `newest`.
@@ -56,6 +58,8 @@ impl<S: Scalar> Observer<S> {
             && !self.started
         {
             self.started = true;
+            let first = !core::mem::replace(&mut self.has_run, true);
+            let spin = if first { spin } else { Spin::Unknown };
             self.motion = Motion::found_at(position, spin, coeffs);
             return self.motion;
         }
@@ -181,14 +185,15 @@ fn lagging<S: Scalar>(before: Vec2<S>, command: Vec2<S>, coeffs: &Coeffs<S>) -> 
 }
 
 impl<S: Scalar> Motion<S> {
-    /// Motion of a rotor of which one sample is known: at rest, or, pressed so deep into the bearing that only
-    /// whirl does it, whirling backwards at a speed between lift-off and the limit. Which one matters little, but
-    /// the force has to lead from the first tick on: while it grows, so does the whirl.
+    /// Motion of a rotor of which one sample is known: at rest, or, with a known spin and pressed deep into the
+    /// bearing, whirling backwards at the lift-off speed. That is a guess, and costs a tick where a load presses; but a
+    /// whirl near the limit grows while the force does, so that it has to lead from the first tick on. How fast
+    /// matters little.
     #[cold]
     fn found_at(position: Vec2<S>, spin: Spin, coeffs: &Coeffs<S>) -> Self {
         let pressed = S::of(2.0) - coeffs.touch_radius;
         let velocity = if spin != Spin::Unknown && position.exceeds(pressed) {
-            position.turned() * spin.sense_of_backward(S::ZERO)
+            position.direction().turned() * spin.sense_of_backward(S::ZERO)
         } else {
             Vec2::ZERO
         };

@@ -2,7 +2,7 @@
 //! controller's integrator.
 
 use crate::coeffs::Coeffs;
-use crate::phase::Phase;
+use crate::phase::{Phase, fault_step};
 use crate::scalar::Scalar;
 use crate::signal::IntegratorHint;
 use crate::vec2::Vec2;
@@ -21,10 +21,14 @@ pub(crate) fn blend<S: Scalar>(
         Phase::Handover { weight } => own * (S::ONE - weight) + levitation * weight,
         // The last force already carries the last weight: their ratio makes the fall linear. Less than half
         // a step is what rounding leaves of nothing.
-        Phase::SensorFault { weight } if weight + weight > coeffs.fault_step => {
-            last * weight.over(weight + coeffs.fault_step)
+        Phase::SensorFault { weight, bouncing } => {
+            let step = fault_step(bouncing, coeffs);
+            if weight + weight > step {
+                last * weight.over(weight + step)
+            } else {
+                Vec2::ZERO
+            }
         }
-        Phase::SensorFault { .. } => Vec2::ZERO,
         _ => own,
     }
 }

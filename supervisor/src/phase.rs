@@ -30,8 +30,8 @@ pub(crate) enum Phase<S> {
     Pinned,
     /// The levitation controller's share grows from 0 to 1.
     Handover { weight: S },
-    /// The force goes from its last value to zero with `weight`.
-    SensorFault { weight: S },
+    /// The force goes from its last value to zero with `weight`; fast where the rotor was not `bouncing`.
+    SensorFault { weight: S, bouncing: bool },
 }
 
 impl<S: Scalar> Phase<S> {
@@ -100,12 +100,14 @@ impl<S: Scalar> Phase<S> {
     ) -> Self {
         let new_bounce = Self::Bounce { calm_ticks: 0 };
         if faulty {
-            let weight = match self {
-                Self::SensorFault { weight } => weight,
-                _ => S::ONE,
+            let (weight, bouncing) = match self {
+                Self::SensorFault { weight, bouncing } => (weight, bouncing),
+                Self::Bounce { .. } | Self::BackwardWhirl | Self::Pinned => (S::ONE, true),
+                _ => (S::ONE, false),
             };
             return Self::SensorFault {
-                weight: weight - coeffs.fault_step,
+                weight: weight - fault_step(bouncing, coeffs),
+                bouncing,
             };
         }
         if found.touching {
@@ -138,6 +140,16 @@ impl<S: Scalar> Phase<S> {
                 }
             }
         }
+    }
+}
+
+/// Weight that the force loses in a tick of a sensor fault. A levitated rotor loses it no slower than in a hand-over:
+/// held, it would push it out to the wall.
+pub(crate) fn fault_step<S: Scalar>(bouncing: bool, coeffs: &Coeffs<S>) -> S {
+    if bouncing {
+        coeffs.fault_step
+    } else {
+        coeffs.fault_step.or_more(coeffs.blend_step)
     }
 }
 

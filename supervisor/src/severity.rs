@@ -70,7 +70,12 @@ impl<S: Scalar> Severity<S> {
             Mode::SensorFault => return result,
             _ => {}
         }
-        let backward = view.spin.backward(found.tangential_speed);
+        // The speed of a first sample is a guess.
+        let backward = if view.motion.fresh {
+            S::ZERO
+        } else {
+            view.spin.backward(found.tangential_speed)
+        };
         let mut passed = false;
         let coming = if found.touching {
             if reading.is(Facts::USED) {

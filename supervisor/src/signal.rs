@@ -208,8 +208,8 @@ pub struct CoreSample<S> {
     pub status: Status,
     /// Position at the retainer bearing \[clearances\].
     pub position: [S; 2],
-    /// Spin, counter-clockwise positive \[1/t₀\], where it does not fit the fastest that does: forces follow its
-    /// sense alone, its size tells forward rub.
+    /// Spin, counter-clockwise positive \[1/t₀\]. Forces follow its sense alone, its size tells forward rub; one
+    /// too fast for the number may be cut.
     pub spin: S,
     /// Force that the levitation controller wants \[caps\].
     pub levitation: [S; 2],

@@ -11,7 +11,7 @@ use plant_model::params::SpinParams;
 use std::cell::RefCell;
 use std::f32::consts::TAU;
 use std::rc::Rc;
-use supervisor::{Command, Events, Mode, Sample, Status, Supervisor};
+use supervisor::{Command, Events, Mode, Sample, Supervisor};
 use system_tests::rig::{RADIUS_M, config, sample};
 
 /// Spin of 200 Hz, counter-clockwise \[rad/s\].
@@ -21,14 +21,14 @@ const SPIN_RAD_S: f32 = 200.0 * TAU;
 const RATE_HZ: f64 = 20_000.0;
 
 /// Commands to a rotor that slides on the wall at a multiple of the spin, for 30 ms.
-fn commands_at(rate: f32, status: Status) -> Vec<Command> {
+fn commands_at(rate: f32) -> Vec<Command> {
     let config = config();
     let mut supervisor = Supervisor::<64>::new(&config).unwrap();
     (0..600)
         .map(|i| {
             let angle = rate * SPIN_RAD_S * config.sample_period_s * i as f32;
             let mut s = sample(i, [RADIUS_M * angle.cos(), RADIUS_M * angle.sin()]);
-            (s.spin_rad_s, s.status) = (SPIN_RAD_S, s.status | status);
+            s.spin_rad_s = SPIN_RAD_S;
             supervisor.tick(&s)
         })
         .collect()
@@ -50,9 +50,9 @@ fn said_once_and_only_of_the_spins_rate() {
         (1.35, 0),
         (-1.0, 0),
     ] {
-        assert_eq!(rubs(&commands_at(rate, Status::empty())), said, "{rate} ×");
+        assert_eq!(rubs(&commands_at(rate)), said, "{rate} ×");
     }
-    let commands = commands_at(1.0, Status::empty());
+    let commands = commands_at(1.0);
     let at = commands
         .iter()
         .position(|c| c.events.contains(Events::FORWARD_RUB));
@@ -111,7 +111,7 @@ fn work_and_turns(ticks: &[(Sample, Command)]) -> (Vec<f64>, f64) {
 /// driven, and no harder on the bearing than under levitation alone.
 #[test]
 fn unbalance_that_no_force_holds_is_recognised_and_not_driven() {
-    for (plant, eccentricity_m) in [("P1 150 N", 3e-4), ("P2", 2e-4)] {
+    for (plant, eccentricity_m, force_ratio) in [("P1 150 N", 3e-4, 0.4), ("P2", 2e-4, 0.97)] {
         let scene = unbalanced(plant, eccentricity_m);
         let found = kept(plant, RATE_HZ).unwrap();
         let run = |policy, name| run_policy(&scene, (policy, name), Keep::Verdict, &mut |_| {});
@@ -157,6 +157,6 @@ fn unbalance_that_no_force_holds_is_recognised_and_not_driven() {
             "{plant}: force over levitation alone {ratio:.3}, contact {} of {} s",
             own.contact_time_s, alone.contact_time_s
         );
-        assert!(ratio < 1.02, "{plant}: {ratio}");
+        assert!(ratio < force_ratio, "{plant}: {ratio}");
     }
 }

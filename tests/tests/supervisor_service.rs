@@ -210,7 +210,7 @@ fn the_core_is_the_supervisor_per_unit() {
             sequence: s.sequence,
             status: s.status,
             position: s.position_m.map(|x| x * scaling.position_per_m),
-            spin: s.spin_rad_s,
+            spin: s.spin_rad_s * scaling.time_s,
             ..CoreSample::default()
         });
         assert_eq!(

@@ -145,7 +145,7 @@ typedef int32_t amb_code;
 #define AMB_P_HOLD_SHARE 15 /**< 1, 0.1 to 0.95: Largest share of the cap that may push inwards. */
 #define AMB_P_HANDOVER_DWELL_S 16 /**< s, 0 to 1: Contact must be avoidable for this long before hand-over begins. */
 #define AMB_P_HANDOVER_BLEND_S 17 /**< s, 0 to 1: Time of the blend to the levitation controller. */
-#define AMB_P_FAULT_BLEND_S 18 /**< s, 0 to 1: Time in which the force goes to zero when the position cannot be trusted. */
+#define AMB_P_FAULT_BLEND_S 18 /**< s, 0 to 1: Time in which the force goes to zero when the position cannot be trusted; of a levitated rotor no longer than handover_blend_s. */
 #define AMB_P_FAULT_TICKS 19 /**< ticks, 2 to 1e4: Good samples in a row that end a sensor fault, and refused ones that make it; jumps, dropouts and a stuck sensor make it sooner. */
 #define AMB_P_AXIS_FORCE_MAX_N 20 /**< N, 0.001 to 1e7: Force cap of each axis; none where it is at least force_max_n. */
 #define AMB_P_FORCE_SLEW_N_S 21 /**< N/s, 1 to 1e12: Fastest change of the commanded force, as the length of the vector. */

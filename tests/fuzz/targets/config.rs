@@ -31,7 +31,7 @@ fn in_numbers<S: Scalar>(config: &Config, holds_all: bool) {
         Err(CoreError::Range(error)) => {
             let refused = config.validate().expect_err("refused once");
             // The value may be NaN.
-            assert_eq!(refused.parameter, error.parameter);
+            assert_eq!(refused.index, error.index);
         }
         Err(CoreError::Misfit(misfit)) => {
             assert!(config.validate().is_ok());

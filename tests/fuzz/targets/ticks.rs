@@ -112,7 +112,7 @@ fuzz_target!(|data: &[u8]| {
                 sequence,
                 status: sample.status,
                 position: q(sample.position_m, scaling.position_per_m),
-                spin: Q::of(sample.spin_rad_s),
+                spin: Q::of(sample.spin_rad_s * scaling.time_s),
                 levitation: q(sample.levitation_n, scaling.force_per_n),
                 applied: q(sample.applied_n, scaling.force_per_n),
             });
