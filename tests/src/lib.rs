@@ -4,6 +4,7 @@ pub mod cost;
 pub mod golden;
 pub mod per_unit;
 pub mod plants;
+pub mod recording;
 pub mod rig;
 pub mod storm;
 pub mod target;

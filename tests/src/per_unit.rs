@@ -1,16 +1,15 @@
 //! The supervisor's core with any of its numbers: behind the SI border, so that it can stand in a closed loop, and
 //! on streams that were recorded from one.
 
+use crate::recording::recording;
 use firmware_host::closed_loop::{Keep, run_policy};
 use firmware_host::overloads::catalogue::{Case, cases};
 use firmware_host::overloads::found::kept;
 use firmware_host::overloads::plants::{PlantCase, plants};
 use firmware_host::policies::{Policy, Supervise};
-use std::cell::RefCell;
-use std::rc::Rc;
 use supervisor::{
     Command, Config, Core, CoreCommand, CoreError, CoreSample, Mode, Prepared, Sample, Scalar,
-    Scaling, Supervisor,
+    Scaling,
 };
 
 /// A core of any number that is told SI and answers SI, as firmware without floating point would around it.
@@ -81,27 +80,6 @@ impl Stream {
     }
 }
 
-/// What a supervisor was told.
-type Tape = Rc<RefCell<Vec<Sample>>>;
-
-/// A supervisor that writes down what it is told.
-#[derive(Debug)]
-struct Recording {
-    supervisor: Supervisor<64>,
-    tape: Tape,
-}
-
-impl Supervise for Recording {
-    fn tick(&mut self, sample: &Sample) -> Command {
-        self.tape.borrow_mut().push(*sample);
-        self.supervisor.tick(sample)
-    }
-
-    fn mode(&self) -> Mode {
-        self.supervisor.mode()
-    }
-}
-
 /// Records the cases of the catalogue that are wanted, with the `f32` supervisor in the loop, for `longest_s`
 /// at most.
 ///
@@ -121,12 +99,8 @@ pub fn record(
             case.scene.levitation = kept(&plant.name, rate_hz).map(|found| found.tuned);
             case.scene.duration_s = case.scene.duration_s.min(longest_s);
             let config = case.scene.supervisor.expect("plants have one");
-            let tape = Tape::default();
-            let recording = Recording {
-                supervisor: Supervisor::new(&config).expect("valid"),
-                tape: Rc::clone(&tape),
-            };
-            let policy = Policy::supervised(&case.scene, Box::new(recording)).expect("complete");
+            let (supervisor, tape) = recording(&config).expect("valid");
+            let policy = Policy::supervised(&case.scene, supervisor).expect("complete");
             // For the stream a run is good up to where it cannot be trusted any further.
             let _ended = run_policy(
                 &case.scene,
@@ -140,7 +114,7 @@ pub fn record(
                 name: format!("{}, {:.0} kHz, {}", plant.name, 1e-3 * rate_hz, case.name),
                 group: case.group,
                 config,
-                samples: tape.iter().map(|s| scaling.sample(s)).collect(),
+                samples: tape.iter().map(|(s, _)| scaling.sample(s)).collect(),
             });
         }
     }

@@ -5,17 +5,13 @@ use firmware_host::closed_loop::{Keep, run_policy};
 use firmware_host::overloads::found::kept;
 use firmware_host::overloads::plants::{PlantCase, plants};
 use firmware_host::overloads::seats::{Seat, Task, seated};
-use firmware_host::policies::{Policy, Supervise};
+use firmware_host::policies::Policy;
 use firmware_host::scene::Scene;
 use plant_model::params::SpinParams;
-use std::cell::RefCell;
-use std::f32::consts::TAU;
-use std::rc::Rc;
-use supervisor::{Command, Events, Mode, Sample, Supervisor};
-use system_tests::rig::{RADIUS_M, config, sample};
-
-/// Spin of 200 Hz, counter-clockwise \[rad/s\].
-const SPIN_RAD_S: f32 = 200.0 * TAU;
+use std::f64::consts::TAU;
+use supervisor::{Command, Events, Mode, Sample, Status, Supervisor};
+use system_tests::recording::recording;
+use system_tests::rig::{config, sample, whirl_by};
 
 /// Control rate \[Hz\].
 const RATE_HZ: f64 = 20_000.0;
@@ -23,15 +19,10 @@ const RATE_HZ: f64 = 20_000.0;
 /// Commands to a rotor that slides on the wall at a multiple of the spin, for 30 ms.
 fn commands_at(rate: f32) -> Vec<Command> {
     let config = config();
+    let angle = rate * sample(0, [0.0; 2]).spin_rad_s * config.sample_period_s;
     let mut supervisor = Supervisor::<64>::new(&config).unwrap();
-    (0..600)
-        .map(|i| {
-            let angle = rate * SPIN_RAD_S * config.sample_period_s * i as f32;
-            let mut s = sample(i, [RADIUS_M * angle.cos(), RADIUS_M * angle.sin()]);
-            s.spin_rad_s = SPIN_RAD_S;
-            supervisor.tick(&s)
-        })
-        .collect()
+    // The rig counts angles backward.
+    whirl_by(-angle, &mut supervisor, 0..600, Status::empty())
 }
 
 fn rubs(commands: &[Command]) -> usize {
@@ -62,23 +53,6 @@ fn said_once_and_only_of_the_spins_rate() {
     assert!(commands.iter().skip(30).all(|c| c.mode == Mode::Bounce));
 }
 
-type Tape = Rc<RefCell<Vec<(Sample, Command)>>>;
-
-#[derive(Debug)]
-struct Recording(Supervisor<64>, Tape);
-
-impl Supervise for Recording {
-    fn tick(&mut self, sample: &Sample) -> Command {
-        let command = self.0.tick(sample);
-        self.1.borrow_mut().push((*sample, command));
-        command
-    }
-
-    fn mode(&self) -> Mode {
-        self.0.mode()
-    }
-}
-
 /// A plant whose mass centre is so far off that neither levitation nor the cap keeps it from the wall.
 fn unbalanced(plant: &str, eccentricity_m: f64) -> Scene {
     let of_name = |p: &PlantCase| p.name == plant;
@@ -101,7 +75,7 @@ fn work_and_turns(ticks: &[(Sample, Command)]) -> (Vec<f64>, f64) {
         let [[ax, ay], [bx, by]] = [before, now].map(|s| s.position_m.map(f64::from));
         let [fx, fy] = command.force_n.map(f64::from);
         let angle = (ax * by - ay * bx) / (ax * ax + ay * ay);
-        (fx * (bx - ax) + fy * (by - ay), angle / f64::from(TAU))
+        (fx * (bx - ax) + fy * (by - ay), angle / TAU)
     };
     let (work_j, turns): (Vec<f64>, Vec<f64>) = ticks.iter().zip(&ticks[1..]).map(of_tick).unzip();
     (work_j, turns.iter().sum())
@@ -115,12 +89,10 @@ fn unbalance_that_no_force_holds_is_recognised_and_not_driven() {
         let scene = unbalanced(plant, eccentricity_m);
         let found = kept(plant, RATE_HZ).unwrap();
         let run = |policy, name| run_policy(&scene, (policy, name), Keep::Verdict, &mut |_| {});
-        let tape = Tape::default();
-        let supervisor = Supervisor::new(&scene.supervisor.unwrap()).unwrap();
-        let recording = Box::new(Recording(supervisor, Rc::clone(&tape)));
+        let (supervisor, tape) = recording(&scene.supervisor.unwrap()).unwrap();
         let mut with_levitation = scene.clone();
         with_levitation.levitation = Some(found.tuned);
-        let supervised = Policy::supervised(&with_levitation, recording).unwrap();
+        let supervised = Policy::supervised(&with_levitation, supervisor).unwrap();
         let (own, _) = run(supervised, "supervisor").unwrap();
         let alone = seated(Seat::Tuned, Task::Impact, &found, &scene).unwrap();
         let (alone, _) = run(alone, "levitation").unwrap();
@@ -140,7 +112,7 @@ fn unbalance_that_no_force_holds_is_recognised_and_not_driven() {
         assert!(rub.iter().all(|(_, c)| c.mode == Mode::Bounce), "{plant}");
 
         let (work_j, turns) = work_and_turns(rub);
-        let turns_of_spin = scene.start.spin_rad_s / f64::from(TAU) * rub.len() as f64 / RATE_HZ;
+        let turns_of_spin = scene.start.spin_rad_s / TAU * rub.len() as f64 / RATE_HZ;
         assert!(
             (turns / turns_of_spin - 1.0).abs() < 0.02,
             "{plant}: {turns} of {turns_of_spin}"
