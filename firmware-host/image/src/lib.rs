@@ -12,9 +12,7 @@ pub mod under_test;
 pub mod wire;
 
 #[cfg(target_os = "none")]
-pub use on_target::{
-    checked, count, exit, file, panic_free, planted, replay, report, serial, stack,
-};
+pub use on_target::{checked, count, exit, file, panic_free, planted, replay, report, stack};
 
 /// `main` of an image that was built for the host by mistake.
 #[cfg(not(target_os = "none"))]

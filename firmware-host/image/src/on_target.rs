@@ -6,7 +6,6 @@ pub mod file;
 pub mod panic_free;
 pub mod replay;
 pub mod report;
-pub mod serial;
 pub mod stack;
 
 use crate::under_test::UnderTest;

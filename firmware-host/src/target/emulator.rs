@@ -4,7 +4,7 @@ use super::machines::Machine;
 use std::collections::BTreeMap;
 use std::io::{self, Read};
 use std::path::Path;
-use std::process::{Child, Command, Stdio};
+use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 use std::time::{Duration, Instant};
 
 /// The emulator.
@@ -82,7 +82,7 @@ impl Drop for Running {
 }
 
 impl Running {
-    /// Starts an image in a folder, which the image's files are in, with a serial port as QEMU's `-serial` has it.
+    /// Starts an image in a folder, which the image's files are in, with an input to its console.
     ///
     /// # Errors
     /// [`EmulatorError::Missing`], [`EmulatorError::Start`].
@@ -91,13 +91,13 @@ impl Running {
         image: &Path,
         folder: &Path,
         time: Time,
-        serial: &str,
+        input: Stdio,
     ) -> Result<Self, EmulatorError> {
         let mut command = Command::new(QEMU);
         command
             .current_dir(folder)
             .args(["-M", machine.board, "-display", "none", "-monitor", "none"])
-            .args(["-serial", serial])
+            .args(["-serial", "none"])
             .args(["-semihosting-config", "enable=on,target=native"]);
         if let Time::Counted { shift } = time {
             // Without sleep: a waiting processor takes no time of the host.
@@ -106,7 +106,7 @@ impl Running {
         let child = command
             .arg("-kernel")
             .arg(image)
-            .stdin(Stdio::null())
+            .stdin(input)
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())
             .spawn()
@@ -117,9 +117,9 @@ impl Running {
         Ok(Self { child })
     }
 
-    /// Whether it has ended by itself.
-    pub fn ended(&mut self) -> bool {
-        !matches!(self.child.try_wait(), Ok(None))
+    /// The console of an emulator that was started with a piped input, once.
+    pub fn console(&mut self) -> Option<(ChildStdin, ChildStdout)> {
+        self.child.stdin.take().zip(self.child.stdout.take())
     }
 
     /// Waits for the end; whether it ended well, and what it said. `None` after the limit.
@@ -174,7 +174,7 @@ pub fn run(
         let name = image.file_name().unwrap_or(image.as_os_str());
         name.to_string_lossy().into_owned()
     };
-    let mut running = Running::start(machine, image, folder, time, "none")?;
+    let mut running = Running::start(machine, image, folder, time, Stdio::null())?;
     let Some((well, said)) = running.wait(limit) else {
         return Err(EmulatorError::Late {
             image: name(),

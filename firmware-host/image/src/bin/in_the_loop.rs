@@ -1,101 +1,54 @@
-//! The supervisor in a loop with a plant on the host: samples in and commands out over the serial port, in
+//! The supervisor in a loop with a plant on the host: samples in and commands out over the debugger's console, in
 //! lock step. The messages are those of [`firmware_image::line`](mod@firmware_image::line).
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]
 mod image {
-    use core::cell::RefCell;
-    use cortex_m_rt::{entry, exception};
-    use critical_section::Mutex;
-    use firmware_image::line::{self, CONFIGURE_BYTES, Line, MAP_BYTES};
-    use firmware_image::serial::Serial;
+    use cortex_m_rt::entry;
+    use firmware_image::file::File;
     use firmware_image::under_test::{self, Float, UnderTest};
-    use firmware_image::{checked, exit, planted, report, wire};
+    use firmware_image::wire::{self, COMMAND_BYTES};
+    use firmware_image::{checked, exit, line, planted, report};
     use supervisor::Command;
 
     #[entry]
     fn main() -> ! {
         planted();
         checked::<Float>();
-        Serial::start();
-        loop {
-            cortex_m::asm::wfi();
-        }
-    }
-
-    static DIALOGUE: Mutex<RefCell<Dialogue>> = Mutex::new(RefCell::new(Dialogue {
-        message: [0; LONGEST],
-        length: 0,
-        supervisor: None,
-    }));
-
-    /// The interrupt of the serial port, the only one that is on.
-    #[exception]
-    unsafe fn DefaultHandler(_number: i16) {
-        critical_section::with(|cs| {
-            let Ok(mut dialogue) = DIALOGUE.borrow(cs).try_borrow_mut() else {
-                return;
-            };
-            let mut serial = Serial::in_interrupt();
-            while let Some(byte) = serial.received() {
-                dialogue.take(byte, &mut serial);
-            }
-        });
-    }
-
-    /// A configuration is longer than any sample.
-    const LONGEST: usize = CONFIGURE_BYTES;
-
-    struct Dialogue {
-        /// What has come of the message so far.
-        message: [u8; LONGEST],
-        length: usize,
-        /// With what is known of its line.
-        supervisor: Option<(Float, Line)>,
-    }
-
-    impl Dialogue {
-        fn take(&mut self, byte: u8, serial: &mut Serial) {
-            let Some(place) = self.message.get_mut(self.length) else {
-                report::failed("a message that is too long")
-            };
-            *place = byte;
-            self.length += 1;
-            let Some((kind, rest)) = self.message.split_first() else {
-                return;
-            };
-            let whole = match *kind {
-                line::CONFIGURE => CONFIGURE_BYTES,
-                line::TICK => match rest.first_chunk() {
-                    Some(map) if self.length > MAP_BYTES => 1 + MAP_BYTES + line::rest_of(*map),
-                    _ => 1 + MAP_BYTES,
-                },
-                _ => 1,
-            };
-            if self.length < whole {
-                return;
-            }
-            self.length = 0;
-            match (*kind, &mut self.supervisor) {
+        // The name of the console.
+        let (Some(mut input), Some(mut output)) = (File::read(c":tt"), File::create(c":tt")) else {
+            report::failed("there is no console")
+        };
+        let mut supervisor = None;
+        while let Some([kind]) = input.take() {
+            let answered = match (kind, &mut supervisor) {
                 (line::CONFIGURE, _) => {
-                    let config = rest.first_chunk().map(wire::config_of);
-                    let new = config.as_ref().and_then(<Float as UnderTest>::new);
-                    self.supervisor = new.map(|s| (s, Line::default()));
-                    serial.send(&[match self.supervisor {
+                    let config = input.take().map(|bytes| wire::config_of(&bytes));
+                    supervisor = config.as_ref().and_then(<Float as UnderTest>::new);
+                    output.append(&[match supervisor {
                         Some(_) => line::READY,
                         None => line::REFUSED,
-                    }]);
+                    }])
                 }
-                (line::TICK, Some((supervisor, line))) => {
-                    let sample = wire::sample_of_bits(&line.sample(rest));
+                (line::TICK, Some(supervisor)) => {
+                    let Some(bytes) = input.take() else {
+                        break;
+                    };
+                    let sample = wire::sample_of_bits(&wire::sample_of(&bytes));
                     let mut command = Command::default();
                     under_test::tick(supervisor, &sample, &mut command);
-                    serial.send(line.pack_command(&wire::command_bits(&command)).bytes());
+                    let mut bytes = [0; COMMAND_BYTES];
+                    wire::put_command(&wire::command_bits(&command), &mut bytes);
+                    output.append(&bytes)
                 }
                 (line::QUIT, _) => exit::success(),
                 _ => report::failed("a message that has no meaning here"),
+            };
+            if !answered {
+                break;
             }
         }
+        report::failed("the console has broken")
     }
 }
 

@@ -1,4 +1,4 @@
-//! Files of the host, through the debugger.
+//! Files of the host and its console, through the debugger.
 
 use cortex_m_semihosting::{nr, syscall};
 
@@ -29,11 +29,20 @@ impl File {
         (handle != NONE).then_some(Self { handle })
     }
 
-    /// Fills the bytes from the file; false where it has not so many.
+    /// Fills the bytes from the file; false where it has not so many. A console is waited for.
     #[must_use]
     pub fn fill(&mut self, bytes: &mut [u8]) -> bool {
-        // SAFETY: READ writes at most `len` bytes to a slice that is borrowed alone here.
-        unsafe { syscall!(READ, self.handle, bytes.as_mut_ptr(), bytes.len()) == 0 }
+        let mut rest = bytes;
+        while !rest.is_empty() {
+            // SAFETY: READ writes at most `len` bytes to a slice that is borrowed alone here.
+            let missing = unsafe { syscall!(READ, self.handle, rest.as_mut_ptr(), rest.len()) };
+            // A console gives what has come so far, a file at its end nothing.
+            match rest.len().checked_sub(missing) {
+                None | Some(0) => return false,
+                Some(read) => rest = rest.get_mut(read..).unwrap_or(&mut []),
+            }
+        }
+        true
     }
 
     /// The next bytes of the file.
