@@ -166,11 +166,12 @@ impl Amplifier {
         let mut mean = target;
         for i in [0, 1] {
             let (old, way) = (self.ramped_n[i], target[i] - self.ramped_n[i]);
-            let share = way.abs() / (slew * step_s);
-            if share > 1.0 {
-                let new = old + way.signum() * slew * step_s;
+            let most = slew * step_s;
+            if way.abs() > most {
+                let new = old + way.signum() * most;
                 (mean[i], self.ramped_n[i]) = (0.5 * (old + new), new);
-            } else {
+            } else if way != 0.0 {
+                let share = way.abs() / most;
                 (mean[i], self.ramped_n[i]) = (target[i] - 0.5 * way * share, target[i]);
             }
         }

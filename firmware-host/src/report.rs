@@ -70,7 +70,7 @@ fn push_facts(page: &mut String, scene: &SceneSummary) {
             figures(scene.whirl_speed_m_s) + " m/s backward",
         ),
         ("Duration", figures(1e3 * scene.duration_s) + " ms"),
-        ("Disturbances", disturbance_text(scene)),
+        ("Happenings", disturbance_text(scene)),
     ];
     page.push_str("<dl class=\"facts\">\n");
     for (name, value) in facts {
@@ -88,8 +88,10 @@ fn disturbance_text(scene: &SceneSummary) -> String {
     if all.is_empty() {
         return "none".to_owned();
     }
-    let span =
-        |(from, to): &(f64, f64)| format!("{}–{} ms", figures(1e3 * from), figures(1e3 * to));
+    let span = |(from, to): &(f64, f64)| match from == to {
+        true => format!("{} ms", figures(1e3 * from)),
+        false => format!("{}–{} ms", figures(1e3 * from), figures(1e3 * to)),
+    };
     let mut text = all
         .iter()
         .take(SHOWN)

@@ -90,12 +90,25 @@ impl SceneText {
         for (code, words) in [
             ("expected f64", "expected a number"),
             ("expected u64", "expected a whole number, 0 or greater"),
+            ("expected u32", "expected a whole number, 0 or greater"),
+            (
+                "invalid type: map, expected a sequence",
+                "is one table where there may be several: write its name in double brackets, [[…]]",
+            ),
             ("expected a string", "expected a text in quotes"),
             ("expected a sequence", "expected a list in square brackets"),
             ("integer `", "the number `"),
             ("floating point `", "the number `"),
         ] {
             message = message.replace(code, words);
+        }
+        if let Some(name) = message.strip_prefix("missing field ") {
+            // The place is that of the whole table; its first line has nothing to do with it.
+            let message = format!("{} is missing", name.trim_matches('`'));
+            let tables = ["run", "rotor", "spin", "contact", "friction"];
+            let table = tables.contains(&name.trim_matches('`'));
+            let help = table.then(|| format!("add a table [{}]", name.trim_matches('`')));
+            return self.error_at(range, message, help);
         }
         let start = range.start.min(self.text.len());
         let line_start = self.text[..start].rfind('\n').map_or(0, |i| i + 1);

@@ -158,7 +158,7 @@ pub fn suggested(n: &Nominal) -> Suggested {
     let step_m = n.noise_rms_m.max(n.quantum_m);
     // What the magnet does not limit is limited by nothing that matters.
     let axis_force_max_n = n.axis_force_max_n.unwrap_or(n.force_max_n);
-    let free_slew_n_s = (1e3 * n.force_max_n / period_s).max(1.0);
+    let free_slew_n_s = (1e3 * n.force_max_n / period_s).clamp(1.0, 1e12);
     let [flight, contact] = observer_poles(n);
     let axis_source = match n.axis_force_max_n {
         Some(_) => "axis_force_max_n",

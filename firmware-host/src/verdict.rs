@@ -131,7 +131,8 @@ pub struct SceneSummary {
     pub force_max_n: Option<f64>,
     /// Backward contact speed above which a run counts as whirl \[m/s\].
     pub whirl_speed_m_s: f64,
-    /// Intervals in which an external force acts: (from \[s\], to \[s\]).
+    /// When something happens to the rotor, its magnet or its sensor: (from \[s\], to \[s\]), the same for a change that
+    /// stays.
     pub disturbances_s: Vec<(f64, f64)>,
     /// Duration of the run \[s\].
     pub duration_s: f64,

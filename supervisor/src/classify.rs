@@ -41,6 +41,11 @@ pub(crate) struct Classifier<S> {
 }
 
 impl<S: Scalar> Classifier<S> {
+    /// The motion is not known any more: a speed that is not known is no rest.
+    pub(crate) fn forget(&mut self) {
+        self.ticks_touching = 0;
+    }
+
     /// `rate` is the spin \[1/t₀\].
     #[inline]
     pub(crate) fn classify(
@@ -63,15 +68,15 @@ impl<S: Scalar> Classifier<S> {
         };
         let along = found.tangential_speed;
         let along_square = along * along;
-        if found.touching {
+        if !found.touching {
+            self.resting = false;
+        } else {
             let square = along_square + found.radial_speed * found.radial_speed;
             self.resting = if self.resting {
                 square < S::of(MOVING_SPEED_SQUARED)
             } else {
                 self.ticks_touching > coeffs.whirl_ticks && square < S::of(REST_SPEED_SQUARED)
             };
-        } else {
-            self.resting = false;
         }
         let before = core::mem::take(&mut self.rubbing);
         let slow = if before {

@@ -12,6 +12,10 @@ use crate::signal::{Command, CoreCommand, CoreSample, Sample};
 
 /// Smallest share of the lift-off speed from which the damping law spends the whole cap.
 const FULL_FORCE_FROM: f32 = 0.4;
+/// Most speed that the force of a contact may still give after it \[lift-off speeds\].
+const AFTER_LIFT_OFF: f32 = 0.45;
+/// Largest share of the cap that ever pushes inwards.
+const NEARLY_ALL: f32 = 0.95;
 
 /// Longest delay between a sample and its force \[ticks\].
 pub(crate) const MAX_DELAY: usize = 8;
@@ -148,6 +152,10 @@ pub(crate) struct Coeffs<S: Scalar> {
     pub(crate) hold_share: S,
     /// Force per speed of the damping law.
     pub(crate) damper: S,
+    /// Most force per way of the restoring law in flight \[caps per clearance\].
+    pub(crate) restoring: S,
+    /// Most force inwards in an impact or a whirl \[caps\].
+    pub(crate) pressing: S,
     pub(crate) whirl_ticks: u32,
     pub(crate) dwell_ticks: u32,
     /// Weight of the levitation controller gained per tick of hand-over.
@@ -226,6 +234,7 @@ struct Taken {
 }
 
 impl Taken {
+    #[inline(never)]
     fn rate<S: Scalar>(&mut self, name: &'static str, x: f32) -> RateOf<S> {
         if self.misfit.is_none() && !S::Slow::holds(x) {
             self.misfit = Some(Misfit {
@@ -236,6 +245,8 @@ impl Taken {
         S::Slow::rate(x)
     }
 
+    // One copy: forty coefficients come through here once.
+    #[inline(never)]
     fn of<S: Scalar>(&mut self, name: &'static str, x: f32) -> S {
         if self.misfit.is_none() && !S::represents(x) {
             self.misfit = Some(Misfit {
@@ -273,12 +284,17 @@ impl<S: Scalar> Coeffs<S> {
         // Acceleration at the retainer bearing by one cap is 1 by the choice of units.
         let stiffness = config.stiffness_n_m * c / (config.magnet_plane_ratio * f);
         let damping = config.damping_n_s_m * unit_s / config.mass_kg;
+        let pull = max(-stiffness, 0.0);
+        // A full force stops the speed of a full force within twice the reaction time, but that speed is
+        // no smaller a share of the lift-off speed than this: below, noise would be all it damps.
+        let damper = 1.0 / max(2.0 * (horizon + h), FULL_FORCE_FROM);
         // What the model may accelerate by while the wall holds against it.
         let blind = (1.0 + 1.5 * max(stiffness, -stiffness)) * h;
         // Divided by in every severity.
         let whirl_limit = max(whirl_limit_m_s(config) / scaling.speed_m_s(), 1e-6);
         let sensor_steps = 3.0 * config.sensor_step_m * config.retainer_plane_ratio / c;
-        let continuous = config.continuous_force_n / f;
+        // From the cap on there is no budget.
+        let continuous = min(config.continuous_force_n / f, 1.0);
         let square = continuous * continuous;
         let mut taken = Taken { misfit: None };
         // Without a budget any will do.
@@ -330,9 +346,15 @@ impl<S: Scalar> Coeffs<S> {
             position_limit: s("position limit", config.position_limit),
             contact_share_step: s("whirl time", per_tick(config.whirl_time_s, t)),
             hold_share: s("hold share", config.hold_share),
-            // A full force stops the speed of a full force within twice the reaction time, but that speed is
-            // no smaller a share of the lift-off speed than this: below, noise would be all it damps.
-            damper: s("damper", 1.0 / max(2.0 * (horizon + h), FULL_FORCE_FROM)),
+            damper: s("damper", damper),
+            // A restoring force K·x that is τ late drives by K·τ·v what the damper takes D·v from: from |κ|, which it
+            // has to overcome, a third of the way to where they are equal.
+            restoring: s(
+                "restoring",
+                min(pull + max(damper / horizon - pull, 0.0) / 3.0, NEARLY_ALL),
+            ),
+            // It goes on for a while after lift-off, towards the other side.
+            pressing: s("pressing", min(config.hold_share, AFTER_LIFT_OFF / horizon)),
             whirl_ticks: (config.whirl_time_s / t) as u32,
             dwell_ticks: (config.handover_dwell_s / t) as u32,
             blend_step: s("hand-over blend", per_tick(config.handover_blend_s, t)),

@@ -92,15 +92,15 @@ impl Detector {
             unavoidable: false,
         };
         let outward = found.radial_speed;
-        found.unavoidable = outward > S::ZERO && !found.stops(outward, cap, coeffs);
+        found.unavoidable = outward > S::ZERO && !found.stops(outward, cap, S::ONE, coeffs);
         found
     }
 }
 
 impl<S: Scalar> Findings<S> {
-    /// Whether this force inwards, from when it can act, stops a rotor of this speed before the wall: v² against
-    /// twice the work that the force and the shaft do up to there.
-    pub(crate) fn stops(&self, speed: S, force: S, coeffs: &Coeffs<S>) -> bool {
+    /// Whether a share of what this force inwards has over the load, from when it can act, stops a rotor of this speed
+    /// before the wall: v² against twice the work that it and the shaft do up to there.
+    pub(crate) fn stops(&self, speed: S, force: S, share: S, coeffs: &Coeffs<S>) -> bool {
         let room = S::ONE - self.radius;
         let path = room - speed * coeffs.horizon;
         if path <= S::ZERO {
@@ -111,6 +111,6 @@ impl<S: Scalar> Findings<S> {
             left = left.or_more(S::of(0.25) * force);
         }
         let spring = coeffs.stiffness * room * (S::ONE + self.radius);
-        speed * speed <= (left + left) * path + spring
+        speed * speed <= (left + left) * (share * path) + spring
     }
 }

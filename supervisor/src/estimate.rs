@@ -133,9 +133,13 @@ impl<S: Scalar> Observer<S> {
         self.commands.get(index).copied().unwrap_or_default()
     }
 
-    /// Estimated velocity of the last tick.
+    /// Estimated velocity of the last tick; none where it was a guess from one sample.
     pub(crate) fn velocity(&self) -> Vec2<S> {
-        self.motion.velocity
+        if self.motion.fresh {
+            Vec2::ZERO
+        } else {
+            self.motion.velocity
+        }
     }
 
     /// Starts anew at the next sample: without samples the model runs away.

@@ -143,6 +143,8 @@ pub(crate) struct Guard<S> {
     last_sequence: Option<u32>,
     /// Calls with the last sequence number after the first.
     repeats: u32,
+    /// The last tick came after a gap that was too long to make up for.
+    jumped: bool,
     /// The last good sample, and the ticks since then.
     last_good: Option<(Vec2<S>, u32)>,
     still: Still<S>,
@@ -290,13 +292,14 @@ impl<S: Scalar> Guard<S> {
         }
     }
 
-    /// Whether the number is the last one again, and how many ticks were missed.
+    /// Whether the number is that of no new sample, and how many ticks were missed.
     fn sequence(&mut self, sequence: u32) -> (bool, u32, Events) {
         let Some(last) = self.last_sequence.replace(sequence) else {
             return (false, 0, Events::empty());
         };
         let ahead = sequence.wrapping_sub(last);
-        if ahead == 0 {
+        // An older number is no new sample either.
+        if ahead == 0 || ahead > u32::MAX / 2 {
             self.repeats = self.repeats.saturating_add(1);
             self.repeated_ticks = self.repeated_ticks.saturating_add(1);
             return (true, 0, Events::SEQUENCE);
@@ -310,7 +313,10 @@ impl<S: Scalar> Guard<S> {
         } else {
             Events::empty()
         };
-        (false, missed, events)
+        // Numbers that jump at each tick are no gaps, and nothing could be compared with anything.
+        let long = missed > MAX_MISSED;
+        let jumps = core::mem::replace(&mut self.jumped, long) && long;
+        (jumps, missed, events)
     }
 
     /// What is wrong with a new sample.
@@ -353,8 +359,7 @@ impl<S: Scalar> Guard<S> {
         if self.faulty {
             if refusal != Refusal::None {
                 self.good = 0;
-            } else if self.fault != Refusal::Stuck || self.still.measures {
-                // After a stuck sensor only samples that change say that it measures again.
+            } else if self.still.awaited == [false; 2] {
                 self.good += 1;
             }
             if self.good < coeffs.fault_ticks {
@@ -441,11 +446,9 @@ struct Still<S> {
     last: Option<Vec2<S>>,
     /// Predicted motion since the last change of each coordinate, as a sum of speeds over ticks.
     way: Vec2<S>,
-    /// Coordinates that stood still when the last fault began, and of these the ones that still do.
-    frozen: [bool; 2],
+    /// Coordinates that have stood still since the last fault began. One that has changed may rest after it, as
+    /// the rotor may.
     awaited: [bool; 2],
-    /// Whether a frozen coordinate has changed at this sample and none is awaited any more.
-    measures: bool,
 }
 
 impl<S: Scalar> Still<S> {
@@ -466,17 +469,15 @@ impl<S: Scalar> Still<S> {
         };
         self.way = Vec2::new(on(self.way.x, velocity.x, x), on(self.way.y, velocity.y, y));
         if faulty {
-            let ([frozen_x, frozen_y], [awaited_x, awaited_y]) = (self.frozen, self.awaited);
+            let [awaited_x, awaited_y] = self.awaited;
             self.awaited = [awaited_x && x, awaited_y && y];
-            self.measures = ((frozen_x && !x) || (frozen_y && !y)) && self.awaited == [false; 2];
         }
         farther(self.way.x, most) || farther(self.way.y, most)
     }
 
     /// A fault begins: from here on the model is no evidence.
     fn freeze(&mut self, most: S) {
-        self.frozen = [farther(self.way.x, most), farther(self.way.y, most)];
-        self.awaited = self.frozen;
+        self.awaited = [farther(self.way.x, most), farther(self.way.y, most)];
         self.way = Vec2::ZERO;
     }
 

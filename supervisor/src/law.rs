@@ -38,8 +38,6 @@ const URGENT: f32 = 1.3;
 /// Share of the cap that pushes inwards between impacts: more shortens the chords and with them the time
 /// in which braking takes speed out.
 const FLIGHT_SHARE: f32 = 0.15;
-/// Largest share of the cap that ever pushes inwards.
-const NEARLY_ALL: f32 = 0.95;
 
 /// What the law looks at.
 pub(crate) struct View<'a, S: Scalar> {
@@ -81,10 +79,12 @@ impl<S: Scalar> View<'_, S> {
     }
 
     /// In flight. What speed leaves of the capacity brings the rotor back: damping alone would let it lie.
-    /// When slow, a little more of it than a hold on the wall has, or the two would take turns.
+    /// When slow, a little more of it than a hold on the wall has, or the two would take turns; but no more than is
+    /// stable with a force that comes late.
     #[inline(never)]
     fn in_flight(&self) -> Wanted<S> {
-        let share = (S::of(NEARLY_ALL) - self.course.square).or_more(S::of(FLIGHT_SHARE));
+        let most = self.coeffs.restoring;
+        let share = (most - self.course.square).or_more(most.or_less(S::of(FLIGHT_SHARE)));
         Wanted {
             braking: match self.ahead {
                 Some(impact) => self.before(impact),
@@ -166,7 +166,7 @@ impl<S: Scalar> View<'_, S> {
             Vec2::ZERO
         };
         // Slower than lift-off an inward force can end the contact.
-        let inward = (coeffs.hold_share - self.course.square).or_more(S::ZERO);
+        let inward = (coeffs.pressing - self.course.square).or_more(S::ZERO);
         Wanted {
             braking,
             damping: self.damping(),

@@ -284,6 +284,14 @@ impl<S: Scalar> Budget<S> {
         }
     }
 
+    /// Ticks that were missed, few of them, with this force.
+    pub(crate) fn missed(&mut self, ticks: u32, force: Vec2<S>, coeffs: &Coeffs<S>) {
+        if coeffs.continuous.is_some() {
+            let way = force.length_squared() - self.state.value();
+            self.state.add(way * S::count(ticks), coeffs.thermal_rate);
+        }
+    }
+
     /// State over that of the continuous force; 0 without a budget.
     pub(crate) fn state(&self, coeffs: &Coeffs<S>) -> f32 {
         match coeffs.continuous {

@@ -140,7 +140,7 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
             course = Course::of(motion.velocity);
             if !found.touching {
                 ahead = Impact::ahead(&motion, found.radius, &course);
-                calm = !near_contact && found.stops(course.speed, room.cap * S::of(0.5), coeffs);
+                calm = !near_contact && found.stops(course.speed, room.cap, S::of(0.5), coeffs);
             }
         }
         let patience = (calm, self.readiness.ready());
@@ -237,10 +237,12 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
         if reading.missed > 0 {
             let actuator = reading.actuator();
             (self.observer).bridge(reading.missed, self.force, blind, actuator, &self.coeffs);
+            (self.budget).missed(reading.missed, self.force, &self.coeffs);
         }
         let lost = reading.is(Facts::FAULTY) && !reading.is(Facts::USED);
         if reading.is(Facts::ANEW) || lost {
             self.observer.forget();
+            self.classifier.forget();
         }
     }
 

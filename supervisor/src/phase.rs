@@ -129,6 +129,9 @@ impl<S: Scalar> Phase<S> {
                 None => Self::Handover { weight: S::ZERO },
             },
             Self::BackwardWhirl if class == Class::BackwardWhirl => self,
+            Self::SensorFault {
+                bouncing: false, ..
+            } => Self::Approach { calm_ticks: 0 },
             Self::BackwardWhirl | Self::Pinned | Self::SensorFault { .. } => new_bounce,
             Self::Handover { .. } if found.unavoidable => Self::Approach { calm_ticks: 0 },
             Self::Handover { weight } => {

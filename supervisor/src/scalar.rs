@@ -223,8 +223,8 @@ macro_rules! floating_point {
     };
 }
 
-floating_point!(f32, 0xFB6B_39D4);
-floating_point!(f64, 0x4698_4E9B);
+floating_point!(f32, 0x71D1_4FD9);
+floating_point!(f64, 0x0AFA_93BE);
 
 /// Reciprocal square roots by Newton's method, from + − × only: every target gives the same bits. `core`
 /// has no root, and libm's costs three times as many instructions where there is an FPU. 0 below 1e-30

@@ -28,6 +28,8 @@ pub(crate) struct Severity<S: Scalar> {
     landed: bool,
     beyond_ticks: u32,
     coast_down: bool,
+    /// Coasting down was asked for because of the index.
+    index_told: bool,
     /// Velocity at the last tick: what it was before an impact that the sample shows.
     before: Vec2<S>,
 }
@@ -76,10 +78,9 @@ impl<S: Scalar> Severity<S> {
         } else {
             view.spin.backward(found.tangential_speed)
         };
-        let mut passed = false;
         let coming = if found.touching {
             if reading.is(Facts::USED) {
-                passed = self.contact(before, backward, found, force, coeffs);
+                self.contact(before, backward, found, force, coeffs);
             }
             let outward = found.radial_speed.or_more(S::ZERO);
             sum_of_impacts(backward, outward, coeffs.bounce_gain)
@@ -96,21 +97,27 @@ impl<S: Scalar> Severity<S> {
         result.severity = severity.or_less(S::of(MOST_SEVERITY));
 
         let beyond = backward * coeffs.per_whirl_limit > S::ONE;
-        if beyond && found.touching {
+        if beyond && found.touching && reading.is(Facts::USED) {
             result.limits |= Limits::BEYOND_WHIRL_LIMIT;
             self.beyond_ticks = self.beyond_ticks.saturating_add(1);
         } else if !beyond {
             // A rotor that leaves the wall for some ticks without losing speed has not been stopped.
             self.beyond_ticks = 0;
         }
-        if (passed || self.beyond_ticks > coeffs.coast_down_ticks) && !self.coast_down {
+        // The index never falls: what it asks for it asks for once, unless its limit is raised. A request that is
+        // out already does not keep it from being told later.
+        let passed = self.index.value() > S::ONE;
+        self.index_told = self.index_told && passed;
+        let by_index = passed && !self.index_told;
+        if (by_index || self.beyond_ticks > coeffs.coast_down_ticks) && !self.coast_down {
             self.coast_down = true;
+            self.index_told = passed;
             result.events |= Events::COAST_DOWN;
         }
         result
     }
 
-    /// A tick in contact: impact and friction, as squares of speed. True when the index passes its limit.
+    /// A tick in contact: impact and friction, as squares of speed.
     #[inline]
     fn contact(
         &mut self,
@@ -119,7 +126,7 @@ impl<S: Scalar> Severity<S> {
         found: &Findings<S>,
         force: Vec2<S>,
         coeffs: &Coeffs<S>,
-    ) -> bool {
+    ) {
         if !self.landed {
             self.landed = true;
             self.landings = self.landings.saturating_add(1);
@@ -139,11 +146,9 @@ impl<S: Scalar> Severity<S> {
         let normal = (along * along - coeffs.stiffness + outward).or_more(S::ZERO);
         let friction = coeffs.friction * normal * along.size() * coeffs.tick;
         energy = energy + friction + friction;
-        let index = self.index.value();
-        if index <= S::of(MOST_INDEX) {
+        if self.index.value() <= S::of(MOST_INDEX) {
             self.index.add(energy, coeffs.index_rate);
         }
-        index <= S::ONE && self.index.value() > S::ONE
     }
 
     pub(crate) fn report(&self, coeffs: &Coeffs<S>) -> Report {

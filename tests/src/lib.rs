@@ -8,6 +8,7 @@ pub mod recording;
 pub mod rig;
 pub mod storm;
 pub mod target;
+pub mod unseen;
 
 use firmware_host::scene::Scene;
 use std::path::{Path, PathBuf};

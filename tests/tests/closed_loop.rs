@@ -222,3 +222,30 @@ fn a_known_power_loss_is_told_at_its_first_and_last_sample() {
         assert_eq!(*mode == supervisor::Mode::Levitated, off, "sample {tick}");
     }
 }
+
+/// A load that the levitation controller can carry is handed back to it, wherever between middle and wall it lets the
+/// rotor rest meanwhile.
+#[test]
+fn a_load_within_the_cap_is_handed_back() {
+    let mut scene = scene("overload_then_release");
+    scene.duration_s = 1.0;
+    scene.levitation = Some(LevitationParams {
+        proportional_n_m: 3e6,
+        integral_n_m_s: 3e8,
+        derivative_n_s_m: 2.5e3,
+        derivative_filter_s: 0.0,
+    });
+    for share in [0.4, 0.5, 0.6, 0.7] {
+        scene.disturbances[0].duration_s = 2.0;
+        scene.disturbances[0].force_n = V2::new(share * 1000.0, 0.0);
+        let (_, trace) = run(&scene, PolicyKind::Supervisor, Keep::Trace, &mut |_| {}).unwrap();
+        let last = trace.rows.last().unwrap();
+        assert_eq!(
+            last.supervisor_mode,
+            Some(supervisor::Mode::Levitated),
+            "{share} of the cap"
+        );
+        let off_m = last.plant.position_m.norm();
+        assert!(off_m < 2e-5, "{share} of the cap: {off_m}");
+    }
+}

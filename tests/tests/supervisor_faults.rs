@@ -287,7 +287,8 @@ fn a_fault_ends_after_enough_good_samples_in_a_row() {
     }
 }
 
-/// After a sensor that was stuck only samples that change count as good.
+/// After a sensor that was stuck no sample counts as good before both coordinates have changed; then the rotor may
+/// rest, and they need not change any more.
 #[test]
 fn a_stuck_sensor_is_not_believed_before_it_changes() {
     let (mut bench, angle) = Bench::whirl(&config());
@@ -298,12 +299,12 @@ fn a_stuck_sensor_is_not_believed_before_it_changes() {
     assert_eq!(bench.supervisor.mode(), Mode::SensorFault);
     let ticks = (1..100)
         .find(|i| {
-            // The rotor moves in every second tick.
-            let x = 1e-7 * (i / 2) as f32;
-            bench.tick([last[0] - x, last[1] - x]).mode != Mode::SensorFault
+            // x changes at 5, y at 8.
+            let [x, y] = [5, 8].map(|from| if *i < from { 0.0 } else { 1e-7 });
+            bench.tick([last[0] - x, last[1] - y]).mode != Mode::SensorFault
         })
         .unwrap();
-    assert_eq!(ticks, 20, "ten samples that changed");
+    assert_eq!(ticks, 8 + 9, "ten samples from the second change on");
 }
 
 /// Over some missed ticks the model carries the estimate: the force is what it would have been.

@@ -1,7 +1,7 @@
 //! How bad it was and will be: the whirl limit, severity, landings, and the request to coast down.
 
 use supervisor::{Command, Config, Events, Limits, Mode, Sample, Status, Supervisor};
-use system_tests::rig::{RADIUS_M, config, on_circle, sample, whirl, whirl_by};
+use system_tests::rig::{RADIUS_M, WHIRL_STEP, config, on_circle, sample, whirl, whirl_by};
 
 /// Root of d/dt v = 0 by bisection on forces in double precision: μ·N = d·v + F·cos, N = m·v²/r − k·r − F·sin.
 fn whirl_limit_m_s(config: &Config, force_n: f64) -> f64 {
@@ -222,4 +222,41 @@ fn a_severity_index_beyond_its_limit_asks_once_to_coast_down() {
         "{asked:?}"
     );
     assert!(supervisor.report().coast_down);
+}
+
+/// An index that is beyond its limit is told whichever of the two has moved: once, and again only after the limit was
+/// above it.
+#[test]
+fn a_limit_that_is_lowered_below_the_index_asks() {
+    let asked = |commands: &[Command]| {
+        let asks = |c: &&Command| c.events.contains(Events::COAST_DOWN);
+        commands.iter().filter(asks).count()
+    };
+    let mut supervisor = Supervisor::<64>::new(&config()).unwrap();
+    // Slower than what the cap arrests, which asks for nothing itself.
+    let slow = 0.5 * WHIRL_STEP;
+    let before = whirl_by(slow, &mut supervisor, 0..400, Status::empty());
+    assert_eq!(asked(&before), 0);
+    let index = supervisor.report().severity_index;
+    assert!(index > 0.0);
+    let mut next = 400;
+    // Off and on again, which lets an old request go.
+    let mut with_limit = |severity_limit: f32| {
+        let with = Config {
+            severity_limit,
+            ..config()
+        };
+        supervisor.reconfigure(&with).unwrap();
+        let mut off = sample(next, on_circle(RADIUS_M, slow * next as f32));
+        off.status = Status::SPIN_VALID;
+        supervisor.tick(&off);
+        let ticks = next + 1..next + 50;
+        let commands = whirl_by(slow, &mut supervisor, ticks, Status::empty());
+        next += 50;
+        asked(&commands)
+    };
+    assert_eq!(with_limit(0.5 * index), 1);
+    assert_eq!(with_limit(0.5 * index), 0);
+    assert_eq!(with_limit(1e6), 0);
+    assert_eq!(with_limit(0.5 * index), 1);
 }

@@ -164,6 +164,20 @@ fn write_results(
     Ok(())
 }
 
+/// Loads, outages, faults and changes, in order of time.
+fn happenings_s(scene: &Scene) -> Vec<(f64, f64)> {
+    let mut all: Vec<(f64, f64)> = scene.loads().map(|d| (d.start_s, d.end_s())).collect();
+    all.extend(scene.outages.iter().map(|o| (o.start_s, o.end_s())));
+    all.extend(scene.faults.iter().map(|f| (f.start_s, f.end_s())));
+    all.extend(scene.changes.iter().map(|c| (c.at_s, c.at_s)));
+    // What goes on for ever goes on to the end.
+    for (_, end_s) in &mut all {
+        *end_s = end_s.min(scene.duration_s);
+    }
+    all.sort_by(|a, b| a.0.total_cmp(&b.0));
+    all
+}
+
 fn summary(scene: &Scene) -> SceneSummary {
     SceneSummary {
         title: scene.title.clone(),
@@ -175,7 +189,7 @@ fn summary(scene: &Scene) -> SceneSummary {
         },
         force_max_n: scene.plant.magnet.map(|m| m.force_max_n),
         whirl_speed_m_s: scene.whirl_speed_m_s,
-        disturbances_s: scene.loads().map(|d| (d.start_s, d.end_s())).collect(),
+        disturbances_s: happenings_s(scene),
         duration_s: scene.duration_s,
     }
 }

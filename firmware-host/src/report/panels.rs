@@ -62,15 +62,14 @@ const MODES: [(Mode, RGBColor); 5] = [
     (Mode::Seated, RGBColor(0x4a, 0x52, 0x5c)),
 ];
 
-const SUPERVISOR_COLOURS: [RGBColor; 8] = [
-    RGBColor(0xa8, 0xd5, 0xba),
-    RGBColor(0xf3, 0xc0, 0x6b),
-    RGBColor(0xe3, 0x8f, 0x8f),
-    RGBColor(0x9d, 0xb7, 0xe8),
-    RGBColor(0xc9, 0xa7, 0xe0),
-    RGBColor(0x8f, 0xd0, 0xd6),
-    RGBColor(0xd6, 0xc6, 0xa5),
-    RGBColor(0xc4, 0xc9, 0xd0),
+const SUPERVISOR_COLOURS: [(supervisor::Mode, RGBColor); 7] = [
+    (supervisor::Mode::Levitated, RGBColor(0xa8, 0xd5, 0xba)),
+    (supervisor::Mode::Approach, RGBColor(0xf3, 0xc0, 0x6b)),
+    (supervisor::Mode::Bounce, RGBColor(0xe3, 0x8f, 0x8f)),
+    (supervisor::Mode::BackwardWhirl, RGBColor(0xc9, 0xa7, 0xe0)),
+    (supervisor::Mode::Pinned, RGBColor(0xd6, 0xc6, 0xa5)),
+    (supervisor::Mode::Handover, RGBColor(0x9d, 0xb7, 0xe8)),
+    (supervisor::Mode::SensorFault, RGBColor(0xc4, 0xc9, 0xd0)),
 ];
 
 /// The whole run: orbit, every quantity, modes.
@@ -305,20 +304,14 @@ fn plant_bands(run: &PolicyRun) -> Vec<Band> {
     bands.filter_map(band).collect()
 }
 
-/// Names of the supervisor's modes in the order in which they first occur, each with its colour.
+/// Names of the supervisor's modes that occur, each with its colour, which is the same in every report.
 fn supervisor_classes(runs: &[PolicyRun]) -> Vec<(&'static str, RGBColor)> {
-    let mut classes: Vec<(&'static str, RGBColor)> = Vec::new();
-    for mode in runs
-        .iter()
-        .flat_map(|run| &run.trace.rows)
-        .filter_map(|row| row.supervisor_mode)
-    {
-        if classes.iter().all(|known| known.0 != mode.name()) {
-            let colour = SUPERVISOR_COLOURS[classes.len() % SUPERVISOR_COLOURS.len()];
-            classes.push((mode.name(), colour));
-        }
-    }
-    classes
+    let rows = runs.iter().flat_map(|run| &run.trace.rows);
+    let occurring: Vec<supervisor::Mode> = rows.filter_map(|row| row.supervisor_mode).collect();
+    let classes = SUPERVISOR_COLOURS.into_iter();
+    (classes.filter(|(mode, _)| occurring.contains(mode)))
+        .map(|(mode, colour)| (mode.name(), colour))
+        .collect()
 }
 
 fn supervisor_bands(run: &PolicyRun, classes: &[(&'static str, RGBColor)]) -> Vec<Band> {

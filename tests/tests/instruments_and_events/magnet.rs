@@ -172,3 +172,29 @@ fn damping_brakes_and_does_not_centre() {
     );
     assert!(apart(end.delivered_n, V2::new(-600.0, -800.0)) < 1e-6);
 }
+
+/// With a slew limit, too, an outage may begin and end anywhere against the samples, also a rounding away from one.
+#[test]
+fn outages_begin_at_any_time_under_a_slew_limit() {
+    let mut scene = pushed(V2::new(0.8, 0.6));
+    scene.duration_s = 0.02;
+    scene.amplifier.slew_n_s = Some(2e6);
+    for tenth_ms in 20..120 {
+        scene.outages = vec![Outage {
+            start_s: 1e-4 * f64::from(tenth_ms),
+            duration_s: 3e-3,
+            axis: Axis::X,
+            known: false,
+        }];
+        let rows = samples(&ridden(&scene, PolicyKind::Radial).1);
+        let out = rows
+            .iter()
+            .find(|row| row.plant.t_s > scene.outages[0].end_s() - 1e-4);
+        // The field has decayed for eighteen time constants on the one axis, and stands on the other.
+        let left_n = out.unwrap().plant.delivered_n;
+        assert!(
+            left_n.x.abs() < 1e-3 && left_n.y > 599.0,
+            "{tenth_ms}: {left_n}"
+        );
+    }
+}

@@ -1,0 +1,120 @@
+//! Machines that nothing in the project was tuned on: drawn at random, with the configuration that their data
+//! suggest and a levitation controller by a rule of thumb.
+
+use firmware_host::levitation::LevitationParams;
+use firmware_host::overloads::plants::PlantCase;
+use firmware_host::scene::Scene;
+use rand_chacha::ChaCha8Rng;
+use rand_core::{Rng, SeedableRng};
+use std::f64::consts::TAU;
+
+/// Draws numbers.
+struct Draw(ChaCha8Rng);
+
+impl Draw {
+    /// In [0, 1).
+    fn share(&mut self) -> f64 {
+        f64::from(self.0.next_u32()) / 2_f64.powi(32)
+    }
+
+    fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.share()
+    }
+
+    /// Between two positive numbers, each decade as likely.
+    fn decades(&mut self, low: f64, high: f64) -> f64 {
+        low * (high / low).powf(self.share())
+    }
+}
+
+/// A machine, and what it is.
+#[derive(Debug, Clone)]
+pub struct Unseen {
+    /// As the catalogue has its plants.
+    pub plant: PlantCase,
+    /// Its levitation controller.
+    pub levitation: LevitationParams,
+    /// From a sample to the middle of its force, in units of √(m·c/F).
+    pub lateness: f64,
+    /// In words.
+    pub text: String,
+}
+
+/// Machine of a number. Masses of 0.3 to 100 kg, clearances of 0.1 to 0.5 mm, forces of 3 to 60 times the weight,
+/// magnets that pull at the wall with 2 to 50 % of them, friction of 0.06 to 0.35, restitution of 0.3 to 0.8,
+/// amplifiers of 300 Hz to 3 kHz, spins of 20 Hz to 1 kHz either way.
+///
+/// # Panics
+/// If a scene of them is not valid.
+pub fn machine(number: u64) -> Unseen {
+    let mut draw = Draw(ChaCha8Rng::seed_from_u64(number));
+    let mass_kg = draw.decades(0.3, 100.0);
+    let clearance_m = draw.decades(1e-4, 5e-4);
+    let force_n = mass_kg * draw.decades(30.0, 600.0);
+    let pull = draw.decades(0.02, 0.5);
+    let negative_n_m = pull * force_n / clearance_m;
+    let friction = draw.between(0.06, 0.35);
+    let restitution = draw.between(0.3, 0.8);
+    let contact_n_m = mass_kg * (TAU * draw.decades(600.0, 3000.0)).powi(2);
+    let lag_s = 1.0 / (TAU * draw.decades(300.0, 3000.0));
+    let rate_hz = if draw.share() < 0.5 { 1e4 } else { 2e4 };
+    let sense = if draw.share() < 0.5 { 1.0 } else { -1.0 };
+    let spin_hz = sense * draw.decades(20.0, 1000.0);
+    let noise_m = draw.decades(2e-7, 2e-6);
+    let radius_m = draw.decades(0.02, 0.1);
+    let inertia_kg_m2 = 0.75 * mass_kg * radius_m * radius_m;
+    // Two and a half times what it has to overcome, and a little more than critical damping.
+    let proportional_n_m = 2.6 * negative_n_m;
+    let derivative_n_s_m = 2.2 * ((proportional_n_m - negative_n_m) * mass_kg).sqrt();
+    let text = format!(
+        r#"
+title = "machine {number}"
+story = "drawn at random"
+[run]
+duration_s = 0.5
+sample_rate_hz = {rate_hz}
+policies = ["levitation", "supervisor"]
+[rotor]
+mass_kg = {mass_kg}
+contact_radius_m = {radius_m}
+[spin]
+frequency_hz = {spin_hz}
+inertia_kg_m2 = {inertia_kg_m2}
+[contact]
+clearance_m = {clearance_m}
+stiffness_n_m = {contact_n_m}
+restitution = {restitution}
+[friction]
+coefficient = {friction}
+[magnet]
+force_max_n = {force_n}
+lag_s = {lag_s}
+negative_stiffness_n_m = {negative_n_m}
+[sensor]
+noise_rms_m = {noise_m}
+[levitation]
+proportional_n_m = {proportional_n_m}
+derivative_n_s_m = {derivative_n_s_m}
+derivative_filter_s = 1e-4
+"#
+    );
+    let name = format!("machine {number}");
+    let scene = Scene::parse(&name, &text).expect("all that is drawn is valid");
+    let unit_s = (mass_kg * clearance_m / force_n).sqrt();
+    let lateness = (lag_s + 1.5 / rate_hz) / unit_s;
+    let text = format!(
+        "{name}: {mass_kg:.1} kg, {:.0} µm, {:.0} N, pull {pull:.2}, lateness {lateness:.2}, spin {spin_hz:.0} Hz",
+        1e6 * clearance_m,
+        force_n,
+    );
+    Unseen {
+        levitation: scene.levitation.expect("it has one"),
+        plant: PlantCase {
+            name,
+            rate_hz,
+            scene,
+        },
+        lateness,
+        text,
+    }
+}
