@@ -104,11 +104,10 @@ impl SceneText {
         }
         if let Some(name) = message.strip_prefix("missing field ") {
             // The place is that of the whole table; its first line has nothing to do with it.
-            let message = format!("{} is missing", name.trim_matches('`'));
-            let tables = ["run", "rotor", "spin", "contact", "friction"];
-            let table = tables.contains(&name.trim_matches('`'));
-            let help = table.then(|| format!("add a table [{}]", name.trim_matches('`')));
-            return self.error_at(range, message, help);
+            let name = name.trim_matches('`');
+            let is_table = ["run", "rotor", "spin", "contact", "friction"].contains(&name);
+            let help = is_table.then(|| format!("add a table [{name}]"));
+            return self.error_at(range, format!("{name} is missing"), help);
         }
         let start = range.start.min(self.text.len());
         let line_start = self.text[..start].rfind('\n').map_or(0, |i| i + 1);

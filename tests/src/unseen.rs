@@ -1,7 +1,6 @@
 //! Machines that nothing in the project was tuned on: drawn at random, with the configuration that their data
 //! suggest and a levitation controller by a rule of thumb.
 
-use firmware_host::levitation::LevitationParams;
 use firmware_host::overloads::plants::PlantCase;
 use firmware_host::scene::Scene;
 use rand_chacha::ChaCha8Rng;
@@ -32,8 +31,6 @@ impl Draw {
 pub struct Unseen {
     /// As the catalogue has its plants.
     pub plant: PlantCase,
-    /// Its levitation controller.
-    pub levitation: LevitationParams,
     /// From a sample to the middle of its force, in units of √(m·c/F).
     pub lateness: f64,
     /// In words.
@@ -108,7 +105,6 @@ derivative_filter_s = 1e-4
         force_n,
     );
     Unseen {
-        levitation: scene.levitation.expect("it has one"),
         plant: PlantCase {
             name,
             rate_hz,

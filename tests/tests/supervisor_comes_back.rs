@@ -20,30 +20,6 @@ fn a_guess_makes_no_stuck_sensor() {
     }
 }
 
-/// A sensor that stood still in a whirl is believed again once it has changed, also where the rotor has come to rest
-/// meanwhile and nothing changes any more.
-#[test]
-fn a_rotor_at_rest_ends_a_stuck_sensors_fault() {
-    let mut supervisor = Supervisor::<64>::new(&config()).unwrap();
-    let mut last = [0.0; 2];
-    for i in 0..200 {
-        last = on_circle(RADIUS_M, 0.0977 * i as f32);
-        supervisor.tick(&sample(i, last));
-    }
-    for i in 200..400 {
-        supervisor.tick(&sample(i, last));
-    }
-    assert_eq!(supervisor.mode(), Mode::SensorFault);
-    assert_eq!(supervisor.report().fault, Refusal::Stuck);
-    let rest = [-RADIUS_M, 3e-6];
-    let back = (400..).find(|i| supervisor.tick(&sample(*i, rest)).mode != Mode::SensorFault);
-    // One sample that is too far from the frozen one, one that fits to nothing yet, and ten good ones.
-    assert!(
-        back.is_some_and(|i| i <= 400 + 1 + config().fault_ticks as u32),
-        "{back:?}"
-    );
-}
-
 /// Ticks of a whirl whose sequence numbers are a function of the tick.
 fn counted(number: impl Fn(u32) -> u32) -> Vec<Command> {
     let mut supervisor = Supervisor::<64>::new(&config()).unwrap();
@@ -64,8 +40,8 @@ fn numbers_that_do_not_count_are_a_fault() {
         let commands = counted(number);
         let fault = commands.iter().position(|c| c.mode == Mode::SensorFault);
         assert!(fault.is_some_and(|i| i <= 4), "{fault:?}");
-        let all = commands.iter().skip(4);
-        assert!(all.clone().all(|c| c.mode == Mode::SensorFault));
+        let mut later = commands.iter().skip(4);
+        assert!(later.all(|c| c.mode == Mode::SensorFault));
     }
 }
 
@@ -114,13 +90,9 @@ fn a_second_fault_of_a_levitated_rotor_is_no_slower() {
     }
     let mut ticks_to_nothing = || {
         let mut ticks = 0;
-        let mut engaged = false;
         loop {
             let command = tick(&mut supervisor, false);
-            engaged |= command.mode == Mode::SensorFault;
-            if engaged {
-                ticks += 1;
-            }
+            ticks += u32::from(command.mode == Mode::SensorFault);
             if length(command.force_n) == 0.0 {
                 break;
             }

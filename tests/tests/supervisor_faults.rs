@@ -307,6 +307,24 @@ fn a_stuck_sensor_is_not_believed_before_it_changes() {
     assert_eq!(ticks, 8 + 9, "ten samples from the second change on");
 }
 
+/// The same of a rotor that has come to rest meanwhile, so that nothing changes any more after the first new sample.
+#[test]
+fn a_rotor_at_rest_ends_a_stuck_sensors_fault() {
+    let (mut bench, angle) = Bench::whirl(&config());
+    let last = on_circle(RADIUS_M, angle);
+    for _ in 0..200 {
+        bench.tick(last);
+    }
+    assert_eq!(bench.supervisor.mode(), Mode::SensorFault);
+    assert_eq!(bench.supervisor.report().fault, Refusal::Stuck);
+    let ticks = (1..100).find(|_| bench.tick([-RADIUS_M, 3e-6]).mode != Mode::SensorFault);
+    // One sample that is too far from the frozen one, and ten good ones at most.
+    assert!(
+        ticks.is_some_and(|i| i <= 2 + config().fault_ticks as u32),
+        "{ticks:?}"
+    );
+}
+
 /// Over some missed ticks the model carries the estimate: the force is what it would have been.
 #[test]
 fn missed_ticks_are_made_up_for() {

@@ -40,7 +40,7 @@ fn on_machines(numbers: Range<u64>, lateness: Range<f64>) -> Summary {
         }
         let at = (unseen.plant.name.as_str(), unseen.plant.rate_hz);
         let mut found = kept("P2", 20_000.0).unwrap();
-        found.tuned = unseen.levitation;
+        found.tuned = unseen.plant.scene.levitation.expect("all have one");
         let mut summary = Summary {
             machines: 1,
             ..Summary::default()

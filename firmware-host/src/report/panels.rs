@@ -306,10 +306,12 @@ fn plant_bands(run: &PolicyRun) -> Vec<Band> {
 
 /// Names of the supervisor's modes that occur, each with its colour, which is the same in every report.
 fn supervisor_classes(runs: &[PolicyRun]) -> Vec<(&'static str, RGBColor)> {
-    let rows = runs.iter().flat_map(|run| &run.trace.rows);
-    let occurring: Vec<supervisor::Mode> = rows.filter_map(|row| row.supervisor_mode).collect();
-    let classes = SUPERVISOR_COLOURS.into_iter();
-    (classes.filter(|(mode, _)| occurring.contains(mode)))
+    let occurs = |mode: supervisor::Mode| {
+        let mut rows = runs.iter().flat_map(|run| &run.trace.rows);
+        rows.any(|row| row.supervisor_mode == Some(mode))
+    };
+    (SUPERVISOR_COLOURS.into_iter())
+        .filter(|(mode, _)| occurs(*mode))
         .map(|(mode, colour)| (mode.name(), colour))
         .collect()
 }
