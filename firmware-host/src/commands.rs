@@ -6,5 +6,6 @@ pub mod error;
 pub mod overloads;
 pub mod paper;
 mod progress;
+pub mod record;
 pub mod run;
 pub mod target;

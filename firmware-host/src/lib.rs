@@ -1,7 +1,7 @@
 //! Runs plant and supervisor in closed loop as firmware would, on scenes, and shows what happened.
 //!
 //! Files, each importing only from those above it: `trace`, `verdict`, `scene_error`, `axis`, `loads`,
-//! `amplifier`, `faults`, `scene_values`, `scene_event_file`, `scene_file`, `plant_setup`, `suggest`, `supervisor_setup`, `instruments`,
+//! `amplifier`, `faults`, `flight_record`, `scene_values`, `scene_event_file`, `scene_file`, `plant_setup`, `suggest`, `supervisor_setup`, `instruments`,
 //! `levitation`, `clairvoyant`, `history`, `policy_kind`, `scene_events`, `scene_instruments`, `scene`, `policies`, `judge`, `closed_loop`, `verify`, `accuracy`, `wrong_runs`, `trace_file`, `plot`, `report`, `paper`, `overloads`, `advice`, `target`, `table`, `output`,
 //! `commands`.
 
@@ -16,6 +16,7 @@ pub mod clairvoyant;
 pub mod closed_loop;
 pub mod commands;
 mod faults;
+pub mod flight_record;
 pub mod history;
 pub mod instruments;
 mod judge;

@@ -1,7 +1,7 @@
 //! Command line of the host.
 
 use clap::{Parser, Subcommand};
-use firmware_host::commands::{accuracy, advise, overloads, paper, run, target};
+use firmware_host::commands::{accuracy, advise, overloads, paper, record, run, target};
 use std::process::ExitCode;
 
 /// Simulates AMB rotors on their retainer bearings with the supervisor in the loop.
@@ -24,6 +24,8 @@ enum Command {
     Advise(Box<advise::AdviseArgs>),
     /// Compute every number and figure of the paper; write a page with tables and plots.
     Paper(paper::PaperArgs),
+    /// Show what happened in a flight record that a supervisor has frozen on its machine.
+    Record(record::RecordArgs),
     /// Run the supervisor on emulated processors: bit for bit, instructions, sizes, closed loops.
     Target(target::TargetArgs),
 }
@@ -36,6 +38,7 @@ fn main() -> ExitCode {
         Command::Overloads(args) => overloads::execute(args),
         Command::Advise(args) => advise::execute(args),
         Command::Paper(args) => paper::execute(args),
+        Command::Record(args) => record::execute(args),
         Command::Target(args) => target::execute(args),
     };
     match result {

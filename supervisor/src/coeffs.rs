@@ -22,7 +22,7 @@ pub(crate) const MAX_DELAY: usize = 8;
 
 /// The cap falls from full to continuous while the thermal state goes from 1 to this much more. The force
 /// at which it comes to rest exceeds the continuous one by less than half as much.
-const FALL: f32 = 0.1;
+pub(crate) const FALL: f32 = 0.1;
 
 /// What one unit is in SI.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -91,16 +91,6 @@ impl Config {
     }
 }
 
-/// Force–time budget.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Continuous<S> {
-    /// Continuous force \[caps\].
-    pub(crate) force: S,
-    pub(crate) square: S,
-    /// Length of the fall of the cap, in squares of the force.
-    pub(crate) fall: S,
-}
-
 /// Rate of a slow sum.
 pub(crate) type RateOf<S> = <<S as Scalar>::Slow as Slow<S>>::Rate;
 
@@ -124,7 +114,7 @@ pub(crate) struct Coeffs<S: Scalar> {
     /// Amplifier lag \[t₀\].
     pub(crate) lag: S,
     /// Ticks between a sample and the start of its force.
-    pub(crate) delay: usize,
+    pub(crate) delay: u8,
     /// Time from a sample to the middle of the tick in which its force begins \[t₀\].
     pub(crate) delay_time: S,
     /// Mean time from a sample to the delivered force that answers it \[t₀\].
@@ -139,7 +129,9 @@ pub(crate) struct Coeffs<S: Scalar> {
     pub(crate) bounce_gain: S,
     /// Observer gains (position by position, velocity and load step by difference quotient) in flight.
     pub(crate) flight_gains: [S; 3],
-    /// The same in contact, where there is no load.
+    /// Half of how far its load is behind \[ticks\]: three poles ρ with ρ/(1 − ρ) each, and the tick itself.
+    pub(crate) flight_lag: S,
+    /// Gains in contact, where there is no load.
     pub(crate) contact_gains: [S; 2],
     /// Touching begins above this radius …
     pub(crate) touch_radius: S,
@@ -167,7 +159,8 @@ pub(crate) struct Coeffs<S: Scalar> {
     pub(crate) axis_cap: S,
     /// A hair less than the longest change of the command in a tick \[caps\], so that rounding keeps it.
     pub(crate) slew_step: S,
-    pub(crate) continuous: Option<Continuous<S>>,
+    /// Continuous force \[caps\], where there is a force–time budget.
+    pub(crate) continuous: Option<S>,
     /// Share of its way that the thermal state goes in a tick.
     pub(crate) thermal_rate: RateOf<S>,
     /// Weight of the force at the beginning of a tick in its mean, where both ends are measured.
@@ -269,7 +262,7 @@ impl<S: Scalar> Coeffs<S> {
         let lag = config.amplifier_lag_s / t;
         let lag_left = if lag > 0.0 { exp_neg(1.0 / lag) } else { 0.0 };
         // Whole ticks: the line of delayed commands knows no others.
-        let delay = (config.delay_samples + 0.5) as usize;
+        let delay = (config.delay_samples + 0.5) as u8;
         let delay_ticks = delay as f32 + 0.5;
         let horizon = (delay_ticks + lag) * h;
         let (mu, e) = (config.friction_coefficient, config.restitution);
@@ -337,6 +330,7 @@ impl<S: Scalar> Coeffs<S> {
                 s("observer gain", 1.5 * free * free * (1.0 + pole)),
                 s("observer gain", free * free * free),
             ],
+            flight_lag: s("observer lag", 1.5 * pole / free + 0.5),
             contact_gains: [
                 s("observer gain", 1.0 - touch_pole * touch_pole),
                 s("observer gain", touch_free * touch_free),
@@ -362,11 +356,7 @@ impl<S: Scalar> Coeffs<S> {
             fault_ticks: config.fault_ticks as u32,
             axis_cap: s("axis cap", min(config.axis_force_max_n / f, 1.0)),
             slew_step: s("slew limit", slew_step) * S::JUST_BELOW_ONE,
-            continuous: (continuous < 1.0).then_some(Continuous {
-                force: s("continuous force", continuous),
-                square: s("continuous force", square),
-                fall: s("continuous force", FALL * square),
-            }),
+            continuous: (continuous < 1.0).then_some(s("continuous force", continuous)),
             thermal_rate,
             applied_weight: s("lag", applied_weight(lag)),
             per_whirl_limit: s("whirl limit", 1.0 / whirl_limit),

@@ -2,7 +2,7 @@
 //! avoided.
 
 use crate::coeffs::Coeffs;
-use crate::estimate::Motion;
+use crate::estimate::{Motion, Wall};
 use crate::scalar::Scalar;
 use crate::vec2::Vec2;
 
@@ -12,6 +12,8 @@ pub(crate) struct Findings<S> {
     /// r̂ of the estimated position.
     pub(crate) normal: Vec2<S>,
     pub(crate) radius: S,
+    /// How far from the centre it may be: less than the clearance by how far the axis is beside it.
+    pub(crate) reach: S,
     /// Outward speed.
     pub(crate) radial_speed: S,
     /// Counter-clockwise tangential speed.
@@ -41,9 +43,16 @@ pub(crate) struct Detector {
 }
 
 impl Detector {
-    /// Whether the observer should distrust its model.
-    pub(crate) fn near_contact(&self) -> bool {
-        self.touching || self.recovery > 0
+    /// What the wall does; `resting`: the rotor did at the last tick.
+    #[inline]
+    pub(crate) fn wall(&self, resting: bool) -> Wall {
+        if resting && self.touching {
+            Wall::Holds
+        } else if self.touching || self.recovery > 0 {
+            Wall::Pushes
+        } else {
+            Wall::Nothing
+        }
     }
 
     /// Looks for contact in the sample itself, before the observer uses it.
@@ -74,7 +83,7 @@ impl Detector {
     #[inline]
     pub(crate) fn findings<S: Scalar>(
         &self,
-        motion: &Motion<S>,
+        (motion, beside): (&Motion<S>, S),
         (touched, left): (bool, bool),
         cap: S,
         coeffs: &Coeffs<S>,
@@ -83,6 +92,7 @@ impl Detector {
         let mut found = Findings {
             normal,
             radius: motion.position.dot(normal),
+            reach: S::ONE - beside,
             radial_speed: motion.velocity.dot(normal),
             tangential_speed: motion.velocity.dot(normal.turned()),
             load: motion.load_step.dot(normal) * coeffs.per_tick,
@@ -101,7 +111,7 @@ impl<S: Scalar> Findings<S> {
     /// Whether a share of what this force inwards has over the load, from when it can act, stops a rotor of this speed
     /// before the wall: v² against twice the work that it and the shaft do up to there.
     pub(crate) fn stops(&self, speed: S, force: S, share: S, coeffs: &Coeffs<S>) -> bool {
-        let room = S::ONE - self.radius;
+        let room = self.reach - self.radius;
         let path = room - speed * coeffs.horizon;
         if path <= S::ZERO {
             return false;
@@ -110,7 +120,7 @@ impl<S: Scalar> Findings<S> {
         if self.radius < S::of(LOAD_COUNTS_BEYOND) {
             left = left.or_more(S::of(0.25) * force);
         }
-        let spring = coeffs.stiffness * room * (S::ONE + self.radius);
+        let spring = coeffs.stiffness * room * (self.reach + self.radius);
         speed * speed <= (left + left) * (share * path) + spring
     }
 }

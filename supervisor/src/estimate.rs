@@ -7,6 +7,7 @@ use crate::coeffs::{Coeffs, MAX_DELAY};
 use crate::guard::Actuator;
 use crate::scalar::Scalar;
 use crate::spin::Spin;
+use crate::unbalance::{Turn, Unbalance};
 use crate::vec2::Vec2;
 
 /// Estimated motion, per unit.
@@ -18,6 +19,16 @@ pub(crate) struct Motion<S> {
     pub(crate) load_step: Vec2<S>,
     /// From one sample only: the velocity is not known yet.
     pub(crate) fresh: bool,
+}
+
+/// What the wall does to the rotor.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Wall {
+    Nothing,
+    /// It pushes, nobody knows when and how much.
+    Pushes,
+    /// A rotor rests on it: it holds against all other forces.
+    Holds,
 }
 
 /// A load of so many caps is no load but a missed contact.
@@ -33,27 +44,32 @@ const KEPT: f32 = 500.0;
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Observer<S> {
     motion: Motion<S>,
+    unbalance: Unbalance<S>,
     started: bool,
     /// It has started before: what it knew is lost, but it is not switched on into anything.
     has_run: bool,
     /// Delivered force at the last tick.
     delivered: Vec2<S>,
-    /// Commands of the last ticks, newest at `newest`.
+    /// Commands of the last ticks, the newest at the slot of `newest`.
     commands: [Vec2<S>; MAX_DELAY],
-    newest: usize,
+    newest: u8,
 }
 
 impl<S: Scalar> Observer<S> {
-    /// Carries the estimate over one tick and corrects it by the sample, if there is one.
+    /// Carries the estimate over one tick and corrects it by the sample, if there is one. What moves, and how far the
+    /// axis is beside it: in flight that is the mass centre, where it is known.
     #[inline]
     pub(crate) fn advance(
         &mut self,
-        (sample, spin): (Option<Vec2<S>>, Spin),
-        in_contact: bool,
+        sample: Option<Vec2<S>>,
+        (spin, rate): (Spin, S),
+        wall: Wall,
         actuator: Actuator<S>,
         coeffs: &Coeffs<S>,
-    ) -> Motion<S> {
+    ) -> (Motion<S>, S) {
         let mean = self.deliver(actuator, coeffs);
+        let turn = Turn::of((spin, rate), S::ONE, coeffs);
+        let turning = self.unbalance.carry(turn.as_ref());
         if let Some(position) = sample
             && !self.started
         {
@@ -61,18 +77,26 @@ impl<S: Scalar> Observer<S> {
             let first = !core::mem::replace(&mut self.has_run, true);
             let spin = if first { spin } else { Spin::Unknown };
             self.motion = Motion::found_at(position, spin, coeffs);
-            return self.motion;
+            return (self.motion, S::ZERO);
+        }
+        if wall != Wall::Nothing
+            && let Some(turn) = &turn
+        {
+            self.unbalance.fade(turn);
         }
         let m = &mut self.motion;
-        m.carry(mean, S::ONE, in_contact, coeffs);
+        m.carry(mean, turning, S::ONE, wall, coeffs);
         if let Some(position) = sample {
             let error = position - m.position;
             let error_speed = error * coeffs.per_tick;
-            if !in_contact {
+            if wall == Wall::Nothing {
                 let [on_position, on_velocity, on_load] = coeffs.flight_gains;
                 m.position = m.position + error * on_position;
                 m.velocity = m.velocity + error_speed * on_velocity;
                 m.load_step = m.load_step + error_speed * on_load;
+                if let Some(turn) = &turn {
+                    self.unbalance.learn(turn, m.load_step);
+                }
             } else if m.fresh {
                 // Switched on into a contact: the first difference is worth more than rest.
                 m.position = position;
@@ -89,7 +113,16 @@ impl<S: Scalar> Observer<S> {
         if !within || m.load_step.exceeds(coeffs.tick * S::of(MOST_LOAD)) {
             m.hold_back(coeffs);
         }
-        *m
+        let mut free = *m;
+        if wall == Wall::Nothing
+            && let Some(turn) = &turn
+            && let Some([offset, speed]) = self.unbalance.counts(turn, turning)
+        {
+            free.position = free.position + offset;
+            free.velocity = free.velocity + speed;
+            return (free, offset.about_length());
+        }
+        (free, S::ZERO)
     }
 
     /// Carries the estimate over ticks that were missed, in one step; nobody commanded anything new meanwhile,
@@ -98,12 +131,14 @@ impl<S: Scalar> Observer<S> {
         &mut self,
         missed: u32,
         command: Vec2<S>,
-        in_contact: bool,
+        (spin, wall): ((Spin, S), Wall),
         actuator: Actuator<S>,
         coeffs: &Coeffs<S>,
     ) {
         let mut sum = Vec2::ZERO;
-        for _ in 0..missed {
+        for tick in 0..missed {
+            // Or the compiler writes it out four times.
+            core::hint::black_box(tick);
             let (delivered, mean) = lagging(self.delivered, self.due(coeffs), coeffs);
             (self.delivered, sum) = (delivered, sum + mean);
             self.commanded(command);
@@ -111,7 +146,9 @@ impl<S: Scalar> Observer<S> {
         self.delivered = actuator.carried(self.delivered);
         let ticks = S::count(missed);
         let mean = actuator.carried(sum) * S::ONE.over(ticks);
-        (self.motion).carry(mean, ticks, in_contact, coeffs);
+        let turn = Turn::of(spin, ticks, coeffs);
+        let turning = self.unbalance.carry(turn.as_ref());
+        (self.motion).carry(mean, turning, ticks, wall, coeffs);
     }
 
     /// Force of the tick that ends now: delivered at its end (kept), and its mean (returned).
@@ -129,8 +166,17 @@ impl<S: Scalar> Observer<S> {
     /// The command that the actuator works on, which is as old as its delay.
     #[inline]
     fn due(&self, coeffs: &Coeffs<S>) -> Vec2<S> {
-        let index = self.newest.wrapping_sub(coeffs.delay) & (MAX_DELAY - 1);
-        self.commands.get(index).copied().unwrap_or_default()
+        self.command(self.newest.wrapping_sub(coeffs.delay))
+    }
+
+    #[inline]
+    fn command(&self, number: u8) -> Vec2<S> {
+        (self.commands.get(slot(number)).copied()).unwrap_or_default()
+    }
+
+    /// Estimated position of the axis.
+    pub(crate) fn position(&self) -> Vec2<S> {
+        self.motion.position
     }
 
     /// Estimated velocity of the last tick; none where it was a guess from one sample.
@@ -146,22 +192,22 @@ impl<S: Scalar> Observer<S> {
     pub(crate) fn forget(&mut self) {
         self.started = false;
         self.motion = Motion::default();
+        self.unbalance.forget();
     }
 
     /// Tells the observer what was commanded at this tick.
     pub(crate) fn commanded(&mut self, force: Vec2<S>) {
-        self.newest = self.newest.wrapping_add(1) & (MAX_DELAY - 1);
-        if let Some(slot) = self.commands.get_mut(self.newest) {
-            *slot = force;
+        self.newest = self.newest.wrapping_add(1);
+        if let Some(newest) = self.commands.get_mut(slot(self.newest)) {
+            *newest = force;
         }
     }
 
     /// The last command came too late: the one before it had its tick, too.
     pub(crate) fn late(&mut self) {
-        let before = self.newest.wrapping_sub(1) & (MAX_DELAY - 1);
-        let kept = self.commands.get(before).copied().unwrap_or_default();
-        if let Some(slot) = self.commands.get_mut(self.newest) {
-            *slot = kept;
+        let kept = self.command(self.newest.wrapping_sub(1));
+        if let Some(newest) = self.commands.get_mut(slot(self.newest)) {
+            *newest = kept;
         }
     }
 
@@ -171,11 +217,29 @@ impl<S: Scalar> Observer<S> {
         m.position = m.position * length;
         m.velocity = m.velocity * speed;
         m.load_step = m.load_step * speed * tick;
+        self.unbalance.rescale(speed);
         self.delivered = self.delivered * force;
         for command in &mut self.commands {
             *command = *command * force;
         }
     }
+}
+
+/// No longer than `most`, and a number.
+#[inline(never)]
+fn held<S: Scalar>(v: Vec2<S>, most: S) -> Vec2<S> {
+    let v = v.map(|x| x.between(S::of(-KEPT), S::of(KEPT)));
+    if v.exceeds(most) {
+        v * (v.inverse_length() * most)
+    } else {
+        v
+    }
+}
+
+/// Where in the ring a command is.
+#[inline]
+fn slot(number: u8) -> usize {
+    usize::from(number) & (MAX_DELAY - 1)
 }
 
 /// Force of a first-order actuator after a tick, and its mean over it.
@@ -209,14 +273,29 @@ impl<S: Scalar> Motion<S> {
         }
     }
 
-    /// Flight for some ticks under the mean of the force; shaft and damping at the middle of each tick.
+    /// Some ticks under the means of the force and of what turns; shaft and damping at the middle of each. Loads on a
+    /// rotor at the wall are not known.
     #[inline]
-    fn carry(&mut self, mean: Vec2<S>, ticks: S, in_contact: bool, coeffs: &Coeffs<S>) {
+    fn carry(
+        &mut self,
+        mut mean: Vec2<S>,
+        turning: Vec2<S>,
+        ticks: S,
+        wall: Wall,
+        coeffs: &Coeffs<S>,
+    ) {
         let time = coeffs.tick * ticks;
+        if wall == Wall::Holds {
+            self.position = self.position + self.velocity * time;
+            return;
+        }
+        if wall == Wall::Nothing {
+            mean = mean + turning;
+        }
         let mut gained = mean * time
             - self.position * (coeffs.stiffness_step * ticks)
             - self.velocity * (coeffs.damping_step * ticks);
-        if !in_contact {
+        if wall == Wall::Nothing {
             gained = gained + self.load_step * ticks;
         }
         self.position = self.position + self.velocity * time + gained * (time * S::of(0.5));
@@ -227,14 +306,6 @@ impl<S: Scalar> Motion<S> {
     /// that it matters little which number passes it first.
     #[cold]
     fn hold_back(&mut self, coeffs: &Coeffs<S>) {
-        let held = |v: Vec2<S>, most: S| {
-            let v = v.map(|x| x.between(S::of(-KEPT), S::of(KEPT)));
-            if v.exceeds(most) {
-                v * (v.inverse_length() * most)
-            } else {
-                v
-            }
-        };
         self.position = held(self.position, S::of(0.7 * FAR));
         let room = S::of(FAR * FAR) - self.position.length_squared();
         self.velocity = held(self.velocity, room.root());

@@ -36,10 +36,30 @@ bitflags::bitflags! {
     }
 }
 
+impl Facts {
+    /// Whether an axis is lost.
+    #[inline]
+    pub(crate) fn has_lost(self) -> bool {
+        self.intersects(Self::X_LOST.union(Self::Y_LOST))
+    }
+
+    /// The part of a force that the axes can carry.
+    #[inline]
+    pub(crate) fn carried<S: Scalar>(self, force: Vec2<S>) -> Vec2<S> {
+        if !self.has_lost() {
+            return force;
+        }
+        let on = |lost: Self, force: S| {
+            if self.contains(lost) { S::ZERO } else { force }
+        };
+        Vec2::new(on(Self::X_LOST, force.x), on(Self::Y_LOST, force.y))
+    }
+}
+
 /// What is known of the actuator at this tick.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Actuator<S> {
-    facts: Facts,
+    pub(crate) axes: Facts,
     measured: Vec2<S>,
 }
 
@@ -47,35 +67,13 @@ impl<S: Scalar> Actuator<S> {
     /// Measured force at this instant \[caps\].
     #[inline]
     pub(crate) fn applied(&self) -> Option<Vec2<S>> {
-        (self.facts.contains(Facts::MEASURED)).then_some(self.measured)
-    }
-
-    /// Whether an axis is lost.
-    #[inline]
-    pub(crate) fn has_lost(&self) -> bool {
-        self.facts.intersects(Facts::X_LOST.union(Facts::Y_LOST))
-    }
-
-    /// Whether this axis is lost.
-    #[inline]
-    pub(crate) fn lacks(&self, axis: Facts) -> bool {
-        self.facts.contains(axis)
+        (self.axes.contains(Facts::MEASURED)).then_some(self.measured)
     }
 
     /// The part of a force that the axes can carry.
     #[inline]
     pub(crate) fn carried(&self, force: Vec2<S>) -> Vec2<S> {
-        if !self.has_lost() {
-            return force;
-        }
-        let on = |lost: Facts, force: S| {
-            if self.facts.contains(lost) {
-                S::ZERO
-            } else {
-                force
-            }
-        };
-        Vec2::new(on(Facts::X_LOST, force.x), on(Facts::Y_LOST, force.y))
+        self.axes.carried(force)
     }
 }
 
@@ -107,7 +105,7 @@ impl<S: Scalar> Reading<S> {
     #[inline]
     pub(crate) fn actuator(&self) -> Actuator<S> {
         Actuator {
-            facts: self.facts,
+            axes: self.facts,
             measured: self.measured,
         }
     }

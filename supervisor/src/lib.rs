@@ -61,7 +61,7 @@
 //! ```
 //!
 //! Files, each importing only from those above it: `scalar`, `q`, `math`, `vec2`, `signal`, `config`, `coeffs`,
-//! `spin`, `guard`, `estimate`, `detect`, `course`, `classify`, `phase`, `law`, `limit`, `handover`, `severity`,
+//! `spin`, `unbalance`, `guard`, `estimate`, `detect`, `course`, `classify`, `phase`, `law`, `limit`, `handover`, `severity`,
 //! `recorder`, `per_unit`, `supervisor`, `self_test`, `watch`.
 
 // Unconditional: under `cfg(test)` std's own methods would silently replace micromath's.
@@ -90,6 +90,7 @@ mod severity;
 mod signal;
 mod spin;
 mod supervisor;
+mod unbalance;
 mod vec2;
 mod watch;
 

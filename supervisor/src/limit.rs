@@ -1,7 +1,7 @@
 //! The only place that limits forces, and the last word on them.
 
-use crate::coeffs::Coeffs;
-use crate::guard::{Actuator, Facts};
+use crate::coeffs::{Coeffs, FALL};
+use crate::guard::Facts;
 use crate::law::Wanted;
 use crate::scalar::{Scalar, Slow};
 use crate::signal::Limits;
@@ -16,24 +16,24 @@ pub(crate) struct Room<S> {
     axis: S,
     /// Whether the box can bind before the disc does.
     boxed: bool,
-    actuator: Actuator<S>,
+    axes: Facts,
 }
 
 impl<S: Scalar> Room<S> {
     #[inline]
-    pub(crate) fn new(budget: &Budget<S>, actuator: Actuator<S>, coeffs: &Coeffs<S>) -> Self {
+    pub(crate) fn new(budget: &Budget<S>, axes: Facts, coeffs: &Coeffs<S>) -> Self {
         let cap = budget.cap(coeffs);
         Self {
             cap,
             axis: coeffs.axis_cap,
-            boxed: actuator.has_lost() || coeffs.axis_cap < cap,
-            actuator,
+            boxed: axes.has_lost() || coeffs.axis_cap < cap,
+            axes,
         }
     }
 
     /// Cap of x and of y, 0 for an axis that is lost.
     fn axes(&self) -> [S; 2] {
-        (self.actuator.carried(Vec2::new(self.axis, self.axis))).to_array()
+        (self.axes.carried(Vec2::new(self.axis, self.axis))).to_array()
     }
 
     /// Whether a force is in the room; not if it is no number.
@@ -72,7 +72,7 @@ impl<S: Scalar> Room<S> {
 /// what comes first.
 #[inline]
 pub(crate) fn allocate<S: Scalar>(wanted: &Wanted<S>, room: &Room<S>) -> (Vec2<S>, Limits) {
-    if room.actuator.has_lost() {
+    if room.axes.has_lost() {
         return (on_what_is_left(wanted, room), Limits::AXIS_CAP);
     }
     let (mut sum, mut part) = (Vec2::ZERO, wanted.braking);
@@ -106,7 +106,7 @@ pub(crate) fn allocate<S: Scalar>(wanted: &Wanted<S>, room: &Room<S>) -> (Vec2<S
 #[inline(never)]
 fn on_what_is_left<S: Scalar>(wanted: &Wanted<S>, room: &Room<S>) -> Vec2<S> {
     let along = |lost: Facts, aim: S, damping: S, restoring: S| {
-        if room.actuator.lacks(lost) {
+        if room.axes.contains(lost) {
             return S::ZERO;
         }
         let cap = room.axis.or_less(room.cap);
@@ -265,37 +265,30 @@ impl<S: Scalar> Budget<S> {
         let Some(continuous) = coeffs.continuous else {
             return S::ONE;
         };
-        let over = self.state.value() - continuous.square;
+        let square = continuous * continuous;
+        let over = self.state.value() - square;
         if over <= S::ZERO {
             return S::ONE;
         }
-        let x = over.over(continuous.fall).or_less(S::ONE);
+        let x = over.over(square * S::of(FALL)).or_less(S::ONE);
         // So written it ends at the continuous force however small that is.
         let three = S::of(3.0) - (x + x);
-        continuous.force + (S::ONE - continuous.force) * (S::ONE - x * x * three)
+        continuous + (S::ONE - continuous) * (S::ONE - x * x * three)
     }
 
-    /// A tick with this force \[caps\].
+    /// Some ticks, few against the thermal time, with this force \[caps\].
     #[inline]
-    pub(crate) fn tick(&mut self, force: Vec2<S>, coeffs: &Coeffs<S>) {
-        if coeffs.continuous.is_some() {
-            let load = force.length_squared();
-            (self.state).add(load - self.state.value(), coeffs.thermal_rate);
-        }
-    }
-
-    /// Ticks that were missed, few of them, with this force.
-    pub(crate) fn missed(&mut self, ticks: u32, force: Vec2<S>, coeffs: &Coeffs<S>) {
+    pub(crate) fn spend(&mut self, ticks: S, force: Vec2<S>, coeffs: &Coeffs<S>) {
         if coeffs.continuous.is_some() {
             let way = force.length_squared() - self.state.value();
-            self.state.add(way * S::count(ticks), coeffs.thermal_rate);
+            self.state.add(way * ticks, coeffs.thermal_rate);
         }
     }
 
     /// State over that of the continuous force; 0 without a budget.
     pub(crate) fn state(&self, coeffs: &Coeffs<S>) -> f32 {
         match coeffs.continuous {
-            Some(continuous) => self.state.value().to_f32() / continuous.square.to_f32(),
+            Some(continuous) => self.state.value().to_f32() / (continuous * continuous).to_f32(),
             None => 0.0,
         }
     }

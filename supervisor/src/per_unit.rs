@@ -5,7 +5,7 @@ use crate::coeffs::{Coeffs, Scaling};
 use crate::config::{Config, CoreError, Misfit};
 use crate::course::{Course, Impact};
 use crate::detect::Detector;
-use crate::estimate::Observer;
+use crate::estimate::{Observer, Wall};
 use crate::guard::{Facts, Guard, Reading};
 use crate::handover::Readiness;
 use crate::law::View;
@@ -17,6 +17,7 @@ use crate::severity::Severity;
 use crate::signal::{
     CoreCommand, CoreSample, Events, IntegratorHint, Limits, Mode, Refusal, Report, Status,
 };
+use crate::spin::Spin;
 use crate::vec2::Vec2;
 use crate::{handover, limit};
 
@@ -117,21 +118,22 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
     #[inline]
     pub fn tick(&mut self, sample: &CoreSample<S>) -> CoreCommand<S> {
         let coeffs = &self.coeffs;
-        let blind = self.detector.near_contact();
+        let pinned = self.phase == Phase::Pinned;
+        let wall = self.detector.wall(pinned);
+        let blind = wall != Wall::Nothing;
         let reading = (self.guard).judge(sample, self.observer.velocity(), blind, coeffs);
         self.refusal = reading.refusal;
+        let spin = (reading.spin, sample.spin);
         if reading.is(Facts::UNUSUAL) {
-            self.catch_up(&reading, blind);
+            self.catch_up(&reading, spin, wall);
         }
         let coeffs = &self.coeffs;
         let (position, actuator) = (reading.position(), reading.actuator());
         let contact = self.detector.sample(position, coeffs);
-        let near_contact = self.detector.near_contact();
-        let motion =
-            (self.observer).advance((position, reading.spin), near_contact, actuator, coeffs);
-        let room = Room::new(&self.budget, actuator, coeffs);
-        let found = self.detector.findings(&motion, contact, room.cap, coeffs);
-        let spin = (reading.spin, sample.spin);
+        let wall = self.detector.wall(pinned);
+        let (motion, beside) = (self.observer).advance(position, spin, wall, actuator, coeffs);
+        let room = Room::new(&self.budget, actuator.axes, coeffs);
+        let found = (self.detector).findings((&motion, beside), contact, room.cap, coeffs);
         let class = (self.classifier).classify(&found, spin, coeffs);
 
         // A rotor that levitates, and will, needs none of what follows.
@@ -140,7 +142,8 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
             course = Course::of(motion.velocity);
             if !found.touching {
                 ahead = Impact::ahead(&motion, found.radius, &course);
-                calm = !near_contact && found.stops(course.speed, room.cap, S::of(0.5), coeffs);
+                calm = wall == Wall::Nothing
+                    && found.stops(course.speed, room.cap, S::of(0.5), coeffs);
             }
         }
         let patience = (calm, self.readiness.ready());
@@ -201,8 +204,9 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
         }
         self.observer.commanded(self.force);
         let acting = actuator.applied().unwrap_or(self.force);
-        self.budget.tick(acting, coeffs);
-        let assessment = (self.severity).assess(mode, &view, &reading, acting);
+        self.budget.spend(S::ONE, acting, coeffs);
+        let assessment =
+            (self.severity).assess(mode, &view, &reading, (acting, self.observer.velocity()));
 
         let mut events = events | reading.events | assessment.events;
         if core::mem::take(&mut self.reconfigured) {
@@ -211,7 +215,7 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
         limits |= assessment.limits;
         events |= self.recorder.push(
             sample.sequence,
-            position.unwrap_or(motion.position),
+            position.unwrap_or(self.observer.position()),
             self.own,
             (mode, limits),
             events,
@@ -230,14 +234,15 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
     /// What a tick has to make up for: commands that came too late, ticks that were missed, an estimate that
     /// cannot go on.
     #[cold]
-    fn catch_up(&mut self, reading: &Reading<S>, blind: bool) {
+    fn catch_up(&mut self, reading: &Reading<S>, spin: (Spin, S), wall: Wall) {
         if reading.is(Facts::LATE) {
             self.observer.late();
         }
         if reading.missed > 0 {
             let actuator = reading.actuator();
-            (self.observer).bridge(reading.missed, self.force, blind, actuator, &self.coeffs);
-            (self.budget).missed(reading.missed, self.force, &self.coeffs);
+            let coeffs = &self.coeffs;
+            (self.observer).bridge(reading.missed, self.force, (spin, wall), actuator, coeffs);
+            (self.budget).spend(S::count(reading.missed), self.force, coeffs);
         }
         let lost = reading.is(Facts::FAULTY) && !reading.is(Facts::USED);
         if reading.is(Facts::ANEW) || lost {

@@ -145,7 +145,7 @@ impl Scalar for Q {
     const ONE: Self = Self::from_bits(1 << FRACTION);
     const FAR_SQUARE: Self = Self::from_bits(400 << FRACTION);
     const JUST_BELOW_ONE: Self = Self::from_bits((1 << FRACTION) - 8);
-    const KNOWN_ANSWER: u32 = 0x88F4_5E21;
+    const KNOWN_ANSWER: u32 = 0xAF7D_E90D;
 
     #[inline]
     fn of(x: f32) -> Self {

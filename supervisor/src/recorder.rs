@@ -30,6 +30,15 @@ pub struct Entry {
 }
 
 impl Entry {
+    /// The sixteen bytes as they are to be written down, little-endian.
+    pub fn to_bytes(&self) -> [u8; 16] {
+        let [a, b, c, d] = self.words().map(u32::to_le_bytes);
+        [
+            a[0], a[1], a[2], a[3], b[0], b[1], b[2], b[3], c[0], c[1], c[2], c[3], d[0], d[1],
+            d[2], d[3],
+        ]
+    }
+
     /// The sixteen bytes as little-endian words.
     fn words(&self) -> [u32; 4] {
         let pair = |[low, high]: [i16; 2]| u32::from(low as u16) | (u32::from(high as u16) << 16);

@@ -115,7 +115,8 @@ impl SelfTest {
                     sequence,
                     status: Status::SPIN_VALID | Status::BEARING_ON,
                     position: seen.to_array(),
-                    spin: S::ONE,
+                    // Quick enough for an unbalance.
+                    spin: S::of(2.0),
                     levitation: (position * S::of(-0.5)).to_array(),
                     applied: [S::ZERO; 2],
                 });

@@ -43,14 +43,14 @@ pub(crate) struct Assessment<S> {
 }
 
 impl<S: Scalar> Severity<S> {
-    /// `force` is the one that acts \[caps\].
+    /// `force` is the one that acts \[caps\], `velocity` that of the axis: it is the axis that touches.
     #[inline(never)]
     pub(crate) fn assess(
         &mut self,
         mode: Mode,
         view: &View<'_, S>,
         reading: &Reading<S>,
-        force: Vec2<S>,
+        (force, velocity): (Vec2<S>, Vec2<S>),
     ) -> Assessment<S> {
         let mut result = Assessment {
             severity: S::ZERO,
@@ -58,7 +58,7 @@ impl<S: Scalar> Severity<S> {
             events: Events::empty(),
         };
         let (found, coeffs) = (view.found, view.coeffs);
-        let before = core::mem::replace(&mut self.before, view.motion.velocity);
+        let before = core::mem::replace(&mut self.before, velocity);
         if !reading.is(Facts::ON) {
             self.coast_down = false;
         }

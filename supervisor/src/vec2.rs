@@ -67,6 +67,14 @@ impl<S: Scalar> Vec2<S> {
         self * self.inverse_length()
     }
 
+    /// The length to within 4 %, without a root.
+    #[inline]
+    pub(crate) fn about_length(self) -> S {
+        let (x, y) = (self.x.size(), self.y.size());
+        let (long, short) = if x > y { (x, y) } else { (y, x) };
+        S::products(long, S::of(0.96), short, S::of(0.4))
+    }
+
     /// Whether it is longer than `limit`; true also where it is no number.
     #[inline]
     pub(crate) fn exceeds(self, limit: S) -> bool {

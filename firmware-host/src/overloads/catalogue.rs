@@ -177,24 +177,36 @@ impl Collector<'_> {
     }
 
     fn blade_loss(&mut self) {
-        for hz in [166.0, 1000.0] {
+        // For a while, as if the machine were balanced again, and for good, as it is.
+        for (hz, share, lasts_s) in [
+            (166.0, 1.5, Some(0.1)),
+            (1000.0, 1.5, Some(0.1)),
+            (166.0, 1.2, None),
+            (333.0, 1.2, None),
+            (333.0, 1.5, None),
+            (333.0, 2.0, None),
+        ] {
             let spin = hz * TAU;
-            // The unbalance asks for half as much as the cap has.
-            let force_n = 1.5 * self.sizes.force_n;
+            let force_n = share * self.sizes.force_n;
             let eccentricity = force_n / (self.base.plant.rotor.mass_kg * spin * spin);
-            let changes =
-                [(BEGIN_S, eccentricity), (BEGIN_S + 0.1, 0.0)].map(|(at_s, e)| TimedChange {
-                    at_s,
-                    change: Change {
-                        eccentricity_m: Some(e),
-                        ..Change::default()
-                    },
-                });
-            let name = format!("blade lost at {hz} Hz, 1.5 × cap for 100 ms");
+            let change = |at_s, e| TimedChange {
+                at_s,
+                change: Change {
+                    eccentricity_m: Some(e),
+                    ..Change::default()
+                },
+            };
+            let mut changes = vec![change(BEGIN_S, eccentricity)];
+            changes.extend(lasts_s.map(|lasts_s| change(BEGIN_S + lasts_s, 0.0)));
+            let how_long = match lasts_s {
+                Some(lasts_s) => format!("for {:.0} ms", 1e3 * lasts_s),
+                None => "for good".into(),
+            };
+            let name = format!("blade lost at {hz} Hz, {share} × cap {how_long}");
             self.add("blade loss", name, BEGIN_S + 0.1, |s| {
                 s.start.spin_rad_s = spin;
                 s.plant.spin = SpinParams::Held;
-                s.changes = changes.to_vec();
+                s.changes = changes;
             });
         }
     }

@@ -1,0 +1,169 @@
+//! `record`: from the memory of a supervisor to what a person reads.
+
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+use std::process::Output;
+use supervisor::{Command, Entry, Events, Mode, Supervisor};
+use system_tests::host;
+use system_tests::rig::{config, sample};
+use tempfile::TempDir;
+
+/// A landing, and the commands that answered it: the record as firmware writes it down, and its checksum.
+fn landing(first: u32) -> (Vec<u8>, u32, Vec<Command>) {
+    let mut supervisor = Supervisor::<64>::new(&config()).expect("valid");
+    let commands: Vec<Command> = (0..500)
+        .map(|i: u16| {
+            let outwards = 3e-5 * (f32::from(i) - 99.0);
+            let x = outwards.clamp(0.0, 2.02e-4);
+            supervisor.tick(&sample(first.wrapping_add(i.into()), [x, 0.0]))
+        })
+        .collect();
+    let record = supervisor.record().expect("frozen");
+    let bytes = record.entries().flat_map(Entry::to_bytes).collect();
+    (bytes, record.crc, commands)
+}
+
+fn show(file: &Path, more: &[&str]) -> Output {
+    let mut command = host();
+    command.arg("record").arg(file).args(more);
+    command.output().expect("the host starts")
+}
+
+fn json(file: &Path, more: &[&str]) -> Value {
+    let output = show(file, &[more, &["--json"]].concat());
+    assert!(output.status.success());
+    serde_json::from_slice(&output.stdout).expect("JSON")
+}
+
+/// Every tick comes back as the supervisor answered it, in the units that were given; also where the sequence numbers
+/// begin anew on the way.
+#[test]
+fn what_was_recorded_is_what_is_shown() {
+    let folder = TempDir::new().unwrap();
+    let file = folder.path().join("record.bin");
+    for first in [0, 0xFFFF_FF90] {
+        let (bytes, crc, commands) = landing(first);
+        fs::write(&file, bytes).unwrap();
+        let units = ["--clearance-m", "2e-4", "--force-max-n", "1000"];
+        let rate = ["--sample-rate-hz", "20000", "--crc", &format!("{crc:#x}")];
+        let record = json(&file, &[units, rate].concat());
+        assert_eq!(record["crc"], crc);
+        assert_eq!(record["missing"], 0);
+        let ticks = record["ticks"].as_array().unwrap();
+        assert_eq!(ticks.len(), 64);
+        let engaged = commands
+            .iter()
+            .position(|c| c.events.contains(Events::ENGAGED));
+        let engaged = engaged.expect("it has to act") as i64;
+        for tick in ticks {
+            let after = tick["tick"].as_i64().unwrap();
+            let command = &commands[(engaged + after) as usize];
+            assert_eq!(tick["mode"], command.mode.name());
+            assert_eq!(tick["time_s"], after as f64 / 20_000.0);
+            for axis in 0..2 {
+                let shown = tick["force_n"][axis].as_f64().unwrap();
+                let real = f64::from(command.force_n[axis]);
+                let half_a_step = 0.51 * 1000.0 / 4096.0;
+                assert!((shown - real).abs() < half_a_step, "{shown} N, {real} N");
+            }
+            let events: Vec<_> = command.events.iter_names().map(|(name, _)| name).collect();
+            assert_eq!(tick["events"], serde_json::json!(events));
+        }
+        assert_eq!(ticks[0]["tick"], -15, "a quarter before the engagement");
+        // The stretches say the same as the ticks.
+        let stretches = record["stretches"].as_array().unwrap();
+        let sum: u64 = stretches.iter().map(|s| s["ticks"].as_u64().unwrap()).sum();
+        assert_eq!(
+            (sum, &stretches[0]["mode"]),
+            (64, &Mode::Levitated.name().into())
+        );
+    }
+}
+
+/// The tables for a person have every event and the units, and every tick is a line of CSV.
+#[test]
+fn a_person_sees_what_happened() {
+    let folder = TempDir::new().unwrap();
+    let file = folder.path().join("record.bin");
+    fs::write(&file, landing(7).0).unwrap();
+    let text = |more: &[&str]| {
+        let output = show(&file, more);
+        assert!(output.status.success());
+        String::from_utf8(output.stdout).unwrap()
+    };
+    let bare = text(&[]);
+    for word in [
+        "ENGAGED",
+        "TOUCHED",
+        "levitated",
+        "[ticks]",
+        "[c]",
+        "[caps]",
+    ] {
+        assert!(bare.contains(word), "{word} is not in\n{bare}");
+    }
+    let units = [
+        "--clearance-m",
+        "2e-4",
+        "--force-max-n",
+        "1e3",
+        "--sample-rate-hz",
+        "2e4",
+    ];
+    let in_si = text(&units);
+    for word in ["-0.750", "[ms]", "[µm]", "202.0", "[N]"] {
+        assert!(in_si.contains(word), "{word} is not in\n{in_si}");
+    }
+    let csv = text(&["--csv"]);
+    assert_eq!(csv.lines().count(), 1 + 64);
+    let columns: Vec<usize> = csv.lines().map(|line| line.split(',').count()).collect();
+    assert!(columns.iter().all(|n| *n == 14), "{columns:?}");
+}
+
+/// What is no record, or not the one that was meant, is said with exit code 2.
+#[test]
+fn what_is_no_record_is_refused() {
+    let folder = TempDir::new().unwrap();
+    let file = folder.path().join("record.bin");
+    let (bytes, crc, _) = landing(0);
+    let refused = |bytes: &[u8], more: &[&str], word: &str| {
+        fs::write(&file, bytes).unwrap();
+        let output = show(&file, more);
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{said}");
+        assert!(output.stdout.is_empty());
+        assert!(said.contains(word), "{word} is not in\n{said}");
+    };
+    refused(&bytes[..1000], &[], "1000 bytes");
+    refused(&[], &[], "0 bytes");
+    let mut damaged = bytes.clone();
+    damaged[16 * 3 + 12] = 7;
+    refused(&damaged, &[], "entry 3");
+    refused(&bytes, &["--crc", &(crc ^ 1).to_string()], "checksum");
+    refused(&bytes, &["--crc", "0xnothing"], "--crc");
+    refused(&bytes, &["--clearance-m", "0"], "--clearance-m");
+    // In another order it is another checksum.
+    let turned: Vec<u8> = bytes.chunks(16).rev().flatten().copied().collect();
+    refused(&turned, &["--crc", &crc.to_string()], "checksum");
+    let output = show(&folder.path().join("nothing.bin"), &[]);
+    assert_eq!(output.status.code(), Some(2));
+}
+
+/// A record that began soon after the last: what was never written is left out, and a gap is counted.
+#[test]
+fn empty_entries_and_gaps_are_told() {
+    let folder = TempDir::new().unwrap();
+    let file = folder.path().join("record.bin");
+    let (mut bytes, ..) = landing(100);
+    bytes[..16 * 4].fill(0);
+    // The tick after the tenth is another's.
+    bytes.drain(16 * 10..16 * 12);
+    fs::write(&file, &bytes).unwrap();
+    let record = json(&file, &[]);
+    assert_eq!(
+        (&record["empty"], &record["missing"]),
+        (&4.into(), &2.into())
+    );
+    assert_eq!(record["ticks"].as_array().unwrap().len(), 64 - 4 - 2);
+}
