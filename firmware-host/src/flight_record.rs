@@ -1,5 +1,6 @@
 //! A flight record as firmware has written it down: its entries, and what happened in them.
 
+use firmware_image::wire::mode_of;
 use serde::Serialize;
 use std::ops::RangeInclusive;
 use supervisor::{Entry, Events, Limits, Mode, PER_UNIT, crc_of};
@@ -89,16 +90,6 @@ pub struct FlightRecord {
     pub stretches: Vec<Stretch>,
 }
 
-const MODES: [Mode; 7] = [
-    Mode::Levitated,
-    Mode::Approach,
-    Mode::Bounce,
-    Mode::BackwardWhirl,
-    Mode::Pinned,
-    Mode::Handover,
-    Mode::SensorFault,
-];
-
 /// Entries from bytes, little-endian, oldest first.
 ///
 /// # Errors
@@ -114,7 +105,7 @@ pub fn entries(bytes: &[u8]) -> Result<Vec<Entry>, NotARecord> {
             [of(at), of(at + 2)]
         };
         let mode = b[12];
-        if usize::from(mode) >= MODES.len() {
+        if mode_of(mode).is_none() {
             let entry = number;
             return Err(NotARecord::Mode { entry, mode });
         }
@@ -187,7 +178,7 @@ fn tick(entry: &Entry, start: u32, units: Units) -> Tick {
         position_m: units.clearance_m.map(|c| position.map(|x| x * c)),
         force,
         force_n: units.force_max_n.map(|cap| force.map(|x| x * cap)),
-        mode: MODES[usize::from(entry.mode)].name(),
+        mode: mode_of(entry.mode).map_or("unknown", Mode::name),
         limits: limits.iter_names().map(|(name, _)| name).collect(),
         events: events.iter_names().map(|(name, _)| name).collect(),
     }

@@ -2,7 +2,8 @@
 
 use crate::scene::Scene;
 use crate::verdict::{Check, Outcome, PolicyRun, Verdict, Verification};
-use comfy_table::{Cell, CellAlignment, Table, presets};
+use comfy_table::{Cell, CellAlignment, Row, Table, presets};
+use std::fmt::Display;
 
 /// Rows of the table: name with unit, and the value as text.
 type Figure = (&'static str, fn(&Verdict) -> String);
@@ -97,17 +98,24 @@ pub fn outcome(outcome: Outcome) -> &'static str {
     }
 }
 
-/// The table: one row a figure, one column a policy.
-pub fn text(scene: &Scene, runs: &[PolicyRun]) -> String {
+/// A table with lines between header and rows only.
+pub(crate) fn lined(header: impl Into<Row>) -> Table {
     let mut table = Table::new();
     table.load_style(presets::UTF8_HORIZONTAL_ONLY);
-    let mut header = vec![Cell::new("policy")];
-    header.extend(
-        runs.iter()
-            .map(|r| Cell::new(&r.name).set_alignment(CellAlignment::Right)),
-    );
     table.set_header(header);
-    let right = |text: String| Cell::new(text).set_alignment(CellAlignment::Right);
+    table
+}
+
+/// A figure in a table.
+pub(crate) fn right(value: impl Display) -> Cell {
+    Cell::new(value).set_alignment(CellAlignment::Right)
+}
+
+/// The table: one row a figure, one column a policy.
+pub fn text(scene: &Scene, runs: &[PolicyRun]) -> String {
+    let mut header = vec![Cell::new("policy")];
+    header.extend(runs.iter().map(|r| right(&r.name)));
+    let mut table = lined(header);
     for (name, value) in FIGURES {
         let cells = runs.iter().map(|r| right(value(&r.verdict)));
         table.add_row([Cell::new(name)].into_iter().chain(cells));

@@ -8,7 +8,8 @@ use crate::overloads::page;
 use crate::overloads::plan::{Catalogue, CatalogueError, Extent, Plan, search};
 use crate::overloads::plants::RATES_HZ;
 use crate::scene::Scene;
-use comfy_table::{Cell, CellAlignment, Table, presets};
+use crate::table::right;
+use comfy_table::{Cell, Table, presets};
 use std::path::PathBuf;
 
 /// Arguments of `overloads`.
@@ -160,8 +161,8 @@ fn promises(catalogue: &Catalogue) -> String {
     for p in &catalogue.promises {
         table.add_row([
             Cell::new(&p.name),
-            Cell::new(p.bound()).set_alignment(CellAlignment::Right),
-            Cell::new(format!("{:.3}", p.measured)).set_alignment(CellAlignment::Right),
+            right(p.bound()),
+            right(format!("{:.3}", p.measured)),
             Cell::new(if p.holds { "yes" } else { "NO" }),
         ]);
     }

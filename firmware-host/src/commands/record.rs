@@ -2,7 +2,8 @@
 
 use crate::commands::error::{CommandError, print};
 use crate::flight_record::{ANY_UNIT, FlightRecord, Tick, Units, entries};
-use comfy_table::{Cell, CellAlignment, Table, presets};
+use crate::table::{lined, right};
+use comfy_table::Cell;
 use std::fmt::Write;
 use std::path::PathBuf;
 
@@ -170,8 +171,7 @@ fn text(record: &FlightRecord, units: Units, compared: bool) -> String {
         );
     }
 
-    let mut modes = table();
-    modes.set_header([
+    let mut modes = lined([
         "mode".to_owned(),
         format!("from [{time_unit}]"),
         format!("for [{time_unit}]"),
@@ -187,8 +187,7 @@ fn text(record: &FlightRecord, units: Units, compared: bool) -> String {
             right(scaled(s.largest_force, force)),
         ]);
     }
-    let mut happened = table();
-    happened.set_header([
+    let mut happened = lined([
         format!("at [{time_unit}]"),
         "mode".to_owned(),
         format!("x, y [{}]", length.0),
@@ -218,14 +217,4 @@ fn text(record: &FlightRecord, units: Units, compared: bool) -> String {
     }
     let _ = writeln!(out, "\n{modes}\n\n{happened}");
     out
-}
-
-fn table() -> Table {
-    let mut table = Table::new();
-    table.load_style(presets::UTF8_HORIZONTAL_ONLY);
-    table
-}
-
-fn right(text: String) -> Cell {
-    Cell::new(text).set_alignment(CellAlignment::Right)
 }

@@ -4,7 +4,8 @@ use super::Accuracy;
 use crate::accuracy::{Reference, Row};
 use crate::commands::error::CommandError;
 use crate::plot::{self, LogLine, LogPanel};
-use comfy_table::{Cell, CellAlignment, Table, presets};
+use crate::table::{lined, right};
+use comfy_table::{Cell, Table};
 use std::fmt::Write as _;
 
 /// What is wrong with a reference.
@@ -55,19 +56,8 @@ pub(super) fn tables(found: &Accuracy) -> String {
     text
 }
 
-fn right(text: String) -> Cell {
-    Cell::new(text).set_alignment(CellAlignment::Right)
-}
-
-fn table<const N: usize>(header: [&str; N]) -> Table {
-    let mut table = Table::new();
-    table.load_style(presets::UTF8_HORIZONTAL_ONLY);
-    table.set_header(header);
-    table
-}
-
 fn errors<'a>(rows: impl Iterator<Item = &'a Row>) -> Table {
-    let mut table = table([
+    let mut table = lined([
         "method",
         "rtol",
         "error [c]",
@@ -91,7 +81,7 @@ fn errors<'a>(rows: impl Iterator<Item = &'a Row>) -> Table {
 }
 
 fn wrong(found: &Accuracy) -> Table {
-    let mut table = table([
+    let mut table = lined([
         "problem", "method", "rtol", "wrong", "failed", "of", "left out",
     ]);
     for row in &found.wrong_runs {

@@ -1,8 +1,8 @@
 //! The results of `target` as tables.
 
+use crate::table::right;
 use crate::target::results::{LoopRow, Report, StreamRow, TargetRow};
-use comfy_table::{Cell, CellAlignment, Table, presets};
-use std::fmt::Display;
+use comfy_table::{Cell, Table, presets};
 
 /// What there is.
 pub(crate) fn text(report: &Report) -> String {
@@ -29,10 +29,6 @@ fn table(header: &[&str]) -> Table {
     table.load_style(presets::UTF8_BORDERS_ONLY);
     table.set_header(header);
     table
-}
-
-fn right(value: impl Display) -> Cell {
-    Cell::new(value).set_alignment(CellAlignment::Right)
 }
 
 fn named(name: &str, number: &str) -> Cell {
