@@ -1,6 +1,7 @@
 //! What a control engineer wants to know of a bearing before the supervisor goes in: limits in closed
 //! form, reaction time, noise, a suggested configuration, and what is weak.
 
+mod listing;
 mod noise;
 mod show;
 mod warnings;
@@ -11,8 +12,9 @@ use plant_model::analysis::onset::{critical_tangential_speed_m_s, lift_off_speed
 use serde::Serialize;
 use supervisor::{Config, ConfigError, PARAMETERS};
 
+pub use listing::{Language, listing, table};
 pub use noise::Noise;
-pub use show::{table, text};
+pub use show::text;
 pub use warnings::Warning;
 
 /// Speeds at which the way in a reaction time is told \[m/s\].

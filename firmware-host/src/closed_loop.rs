@@ -163,6 +163,9 @@ pub fn run_policy(
     let last = bench.plant.snapshot();
     bench.judge.sample(&last);
     bench.record(&last, scene.from_magnets_m(last.position_m), false);
+    if keep.rows() {
+        bench.trace.read_out = bench.policy.read_out();
+    }
     let verdict = bench
         .judge
         .verdict(scene, bench.plant.as_ref(), started.elapsed());
@@ -298,7 +301,7 @@ impl Bench<'_> {
             plant: *plant,
             measured_m,
             commanded_n: self.amplifier.in_effect_n(),
-            supervisor_mode: self.policy.supervisor_mode(),
+            supervisor: self.policy.said(),
             mode_change,
         });
     }

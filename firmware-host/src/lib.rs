@@ -1,8 +1,8 @@
 //! Runs plant and supervisor in closed loop as firmware would, on scenes, and shows what happened.
 //!
-//! Files, each importing only from those above it: `trace`, `verdict`, `scene_error`, `axis`, `loads`,
-//! `amplifier`, `faults`, `flight_record`, `scene_values`, `scene_event_file`, `scene_file`, `plant_setup`, `suggest`, `supervisor_setup`, `instruments`,
-//! `levitation`, `clairvoyant`, `history`, `policy_kind`, `scene_events`, `scene_instruments`, `scene`, `policies`, `judge`, `closed_loop`, `verify`, `accuracy`, `wrong_runs`, `trace_file`, `plot`, `report`, `paper`, `overloads`, `advice`, `target`, `table`, `output`,
+//! Files, each importing only from those above it: `trace`, `supervision`, `verdict`, `scene_error`, `axis`, `loads`,
+//! `amplifier`, `faults`, `flight_record`, `scene_values`, `scene_event_file`, `scene_file`, `plant_setup`, `suggest`, `supervisor_setup`, `scene_warnings`, `instruments`,
+//! `levitation`, `clairvoyant`, `history`, `policy_kind`, `scene_events`, `scene_instruments`, `scene`, `policies`, `judge`, `closed_loop`, `verify`, `accuracy`, `wrong_runs`, `trace_file`, `plot`, `report`, `paper`, `table`, `overloads`, `advice`, `target`, `output`,
 //! `commands`.
 
 #![forbid(unsafe_code)]
@@ -37,7 +37,9 @@ mod scene_events;
 mod scene_file;
 mod scene_instruments;
 mod scene_values;
+mod scene_warnings;
 pub mod suggest;
+pub mod supervision;
 mod supervisor_setup;
 pub mod table;
 pub mod target;

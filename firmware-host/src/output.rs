@@ -83,12 +83,26 @@ impl Staging {
     /// # Errors
     /// [`OutputError`].
     pub fn publish(self) -> Result<PathBuf, OutputError> {
+        self.publish_over(|_| false)
+    }
+
+    /// As [`Self::publish`]; but of the others those are removed that are `stale` by their name.
+    ///
+    /// # Errors
+    /// [`OutputError`].
+    pub fn publish_over(self, stale: impl Fn(&str) -> bool) -> Result<PathBuf, OutputError> {
         let publish = || {
             std::fs::create_dir_all(&self.final_place)?;
             let mut names: Vec<_> = std::fs::read_dir(self.folder.path())?
                 .map(|entry| entry.map(|e| e.file_name()))
                 .collect::<io::Result<_>>()?;
             names.sort();
+            for entry in std::fs::read_dir(&self.final_place)? {
+                let name = entry?.file_name();
+                if name.to_str().is_some_and(&stale) && !names.contains(&name) {
+                    std::fs::remove_file(self.final_place.join(name))?;
+                }
+            }
             for name in names {
                 std::fs::rename(self.folder.path().join(&name), self.final_place.join(&name))?;
             }

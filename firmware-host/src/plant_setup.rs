@@ -173,7 +173,15 @@ fn restore(
             }
         };
     };
-    let refused = || check.refused("contact.restitution", e, RANGE);
+    let refused = || {
+        const KEY: &str = "contact.restitution";
+        if !(e > 0.0 && e <= 1.0) {
+            return check.refused(KEY, e, RANGE);
+        }
+        let message = "is fine, but masses and stiffness are too large or too small to compute a damping from";
+        let help = Some("check rotor.mass_kg and the stiffness in [contact]".to_owned());
+        (check.text).error_at_key(KEY, message.to_owned(), help)
+    };
     match &mut plant.contact.law {
         ContactLaw::Linear(law) => {
             law.damping_n_s_m = damping_for_restitution(e, law.stiffness_n_m, mass_kg)

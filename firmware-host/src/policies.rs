@@ -7,16 +7,19 @@ use crate::instruments::Reading;
 use crate::levitation::{Levitation, VelocityFilter};
 use crate::policy_kind::PolicyKind;
 use crate::scene::Scene;
+use crate::trace::{ReadOut, Said};
 use plant_model::{Snapshot, V2};
-use supervisor::{Command, IntegratorHint, Mode, Sample, Status, Supervisor};
+use supervisor::{Command, Entry, Events, IntegratorHint, Sample, Status, Supervisor};
 
 /// Who supervises: the product as it is linked here, or wherever else it runs.
 pub trait Supervise: core::fmt::Debug {
     /// One tick.
     fn tick(&mut self, sample: &Sample) -> Command;
 
-    /// Mode after the last tick.
-    fn mode(&self) -> Mode;
+    /// What it leaves behind; `None` where it cannot be asked.
+    fn read_out(&self) -> Option<ReadOut> {
+        None
+    }
 }
 
 impl Supervise for Supervisor {
@@ -24,8 +27,13 @@ impl Supervise for Supervisor {
         Supervisor::tick(self, sample)
     }
 
-    fn mode(&self) -> Mode {
-        Supervisor::mode(self)
+    fn read_out(&self) -> Option<ReadOut> {
+        let record = self.record();
+        let bytes = record.map(|record| record.entries().flat_map(Entry::to_bytes).collect());
+        Some(ReadOut {
+            report: self.report(),
+            flight_record: bytes.unwrap_or_default(),
+        })
     }
 }
 
@@ -64,6 +72,8 @@ pub enum Policy {
         levitation: Levitation,
         /// What it told the controller's integrator.
         hint: IntegratorHint,
+        /// What it said to the last sample.
+        said: Option<Said>,
     },
 }
 
@@ -112,6 +122,7 @@ impl Policy {
             supervisor,
             levitation: levitation_of(scene)?,
             hint: IntegratorHint::Run,
+            said: None,
         })
     }
 
@@ -141,18 +152,21 @@ impl Policy {
                 supervisor,
                 levitation,
                 hint,
+                said,
             } => {
                 let single = |v: V2| [v.x as f32, v.y as f32];
+                let levitation_n = single(levitation.force_n(measured_m, *hint));
                 let command = supervisor.tick(&Sample {
                     sequence: seen.reading.sequence,
                     status: seen.status,
                     position_m: single(measured_m),
                     spin_rad_s: seen.spin_rad_s as f32,
-                    levitation_n: single(levitation.force_n(measured_m, *hint)),
+                    levitation_n,
                     // The stand-in firmware has no feedback of current or flux.
                     applied_n: [0.0; 2],
                 });
                 *hint = command.integrator;
+                *said = Some(Said::new(&command, levitation_n));
                 let [x, y] = command.force_n;
                 V2::new(f64::from(x), f64::from(y))
             }
@@ -168,10 +182,22 @@ impl Policy {
         }
     }
 
-    /// Mode of the supervisor, where there is one.
-    pub fn supervisor_mode(&self) -> Option<Mode> {
+    /// What the supervisor said to the last sample, where there is one; its events only to the first who asks.
+    pub fn said(&mut self) -> Option<Said> {
+        let Self::Supervisor { said, .. } = self else {
+            return None;
+        };
+        let now = *said;
+        if let Some(said) = said {
+            said.events = Events::empty();
+        }
+        now
+    }
+
+    /// What the supervisor leaves behind, where there is one that can be asked.
+    pub fn read_out(&self) -> Option<ReadOut> {
         match self {
-            Self::Supervisor { supervisor, .. } => Some(supervisor.mode()),
+            Self::Supervisor { supervisor, .. } => supervisor.read_out(),
             _ => None,
         }
     }

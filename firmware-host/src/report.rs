@@ -4,6 +4,7 @@
 mod axes;
 #[cfg(test)]
 mod fixture;
+mod happenings;
 mod panels;
 mod quantities;
 mod verification;
@@ -40,6 +41,7 @@ pub fn html(scene: &SceneSummary, runs: &[PolicyRun]) -> Result<String, PlotErro
     if !runs.is_empty() {
         push_sections(&mut page, scene, runs)?;
     }
+    happenings::push_tables(&mut page, runs);
     page.push_str("</main>\n</body>\n</html>\n");
     Ok(page)
 }
@@ -66,8 +68,8 @@ fn push_facts(page: &mut String, scene: &SceneSummary) {
         ("Clearance", figures(1e3 * scene.clearance_m) + " mm"),
         ("Force cap", cap),
         (
-            "Whirl limit",
-            figures(scene.whirl_speed_m_s) + " m/s backward",
+            "Counts as whirl",
+            format!("above {} m/s backward", figures(scene.whirl_speed_m_s)),
         ),
         ("Duration", figures(1e3 * scene.duration_s) + " ms"),
         ("Happenings", disturbance_text(scene)),

@@ -11,7 +11,8 @@ use crate::scene_file::{MethodFile, SceneFile};
 use crate::scene_instruments::{
     amplifier_of, centre_offset_of, damping_of, levitation_of, sensor_of,
 };
-use crate::suggest::{Nominal, SUPERVISED_RATES_HZ};
+use crate::scene_warnings::warnings_of;
+use crate::suggest::Nominal;
 use crate::supervisor_setup;
 use plant_model::analysis::onset::lift_off_speed_m_s;
 use plant_model::params::{PlantParams, Start};
@@ -247,6 +248,7 @@ impl Scene {
         let supervisor = supervised
             .then(|| supervisor_setup::config(&nominal, &overrides, text))
             .transpose()?;
+        let warnings = warnings_of(file, text, (&plant, supervised.then_some(&nominal)));
         let gravity: V2 = file.rotor.gravity_m_s2.0.into();
         Ok(Self {
             title: file.title.clone(),
@@ -285,7 +287,7 @@ impl Scene {
             levitation,
             radial_band: file.radial.band,
             damping_n_s_m,
-            warnings: warnings_of(file, text, supervised),
+            warnings,
             supervisor,
             nominal,
         })
@@ -296,16 +298,6 @@ impl Scene {
 fn keys_of(text: &SceneText) -> Result<SceneFile, SceneError> {
     toml::from_str(&text.text)
         .map_err(|error| text.error_in_toml(error.span().unwrap_or(0..0), error.message()))
-}
-
-fn warnings_of(file: &SceneFile, text: &SceneText, supervised: bool) -> Vec<String> {
-    let (key, rate) = ("run.sample_rate_hz", file.run.sample_rate_hz);
-    let mut warnings = Vec::new();
-    if supervised && !SUPERVISED_RATES_HZ.contains(&rate) {
-        let message = format!("is {rate}; the supervisor is made for 10 to 50 kHz");
-        warnings.push(text.error_at_key(key, message, None).to_string());
-    }
-    warnings
 }
 
 fn policies_of(file: &SceneFile, text: &SceneText) -> Result<Vec<PolicyKind>, SceneError> {
@@ -364,7 +356,9 @@ fn whirl_speed_of(
     if speed > 0.0 {
         return Ok(speed);
     }
-    let message = "is missing: without shaft stiffness and magnet it has no default".to_owned();
+    let message = "is missing: it has a default only with a shaft that centres, or a magnet that can lift the rotor \
+                   off the retainer bearing"
+        .to_owned();
     let help = Some("say which backward contact speed counts as whirl".to_owned());
     Err(check.text.error_at_key(KEY, message, help))
 }

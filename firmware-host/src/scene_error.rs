@@ -99,6 +99,7 @@ impl SceneText {
             ("expected a sequence", "expected a list in square brackets"),
             ("integer `", "the number `"),
             ("floating point `", "the number `"),
+            ("` as i128", "`, which is too large"),
         ] {
             message = message.replace(code, words);
         }
@@ -112,12 +113,15 @@ impl SceneText {
         let start = range.start.min(self.text.len());
         let line_start = self.text[..start].rfind('\n').map_or(0, |i| i + 1);
         let line = self.text[line_start..].lines().next().unwrap_or_default();
-        if let Some((key, _)) = line.split_once('=')
-            && !message.contains(key.trim())
-        {
-            message = format!("{}: {message}", key.trim());
+        let mut help = None;
+        if let Some((key, value)) = line.split_once('=') {
+            if !message.contains(key.trim()) {
+                message = format!("{}: {message}", key.trim());
+            }
+            help = written_otherwise(value);
         }
-        self.error_at(range, message.clone(), guess_from(&message))
+        let help = guess_from(&message).or(help);
+        self.error_at(range, message, help)
     }
 
     /// An error at a dotted key, or at its longest part that is there, or at the top of the file.
@@ -162,6 +166,26 @@ impl SceneText {
         }
         span
     }
+}
+
+/// How a number is to be written that TOML does not take: with a decimal comma, or with its unit behind it.
+fn written_otherwise(value: &str) -> Option<String> {
+    let value = value.split('#').next()?.trim();
+    let digits = |text: &str| {
+        !text.is_empty()
+            && text
+                .chars()
+                .all(|c| c.is_ascii_digit() || "+-.eE_".contains(c))
+    };
+    if let Some((whole, decimals)) = value.split_once(',')
+        && digits(whole)
+        && digits(decimals)
+    {
+        return Some(format!("write decimals with a point: {whole}.{decimals}"));
+    }
+    let number = value.split_whitespace().next()?;
+    let plain = number.parse::<f64>().is_ok() && number != value;
+    plain.then(|| format!("write the number alone: {number}; the key says the unit"))
 }
 
 /// What serde says of an unknown name lists the known ones, all in backticks.

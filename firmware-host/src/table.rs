@@ -1,14 +1,15 @@
 //! The verdicts as a table for people and as JSON for programs.
 
 use crate::scene::Scene;
+use crate::supervision::Supervision;
 use crate::verdict::{Check, Outcome, PolicyRun, Verdict, Verification};
 use comfy_table::{Cell, CellAlignment, Row, Table, presets};
 use std::fmt::Display;
 
-/// Rows of the table: name with unit, and the value as text.
-type Figure = (&'static str, fn(&Verdict) -> String);
+/// A row of the table: name with unit, and the value as text.
+type Figure<T> = (&'static str, fn(&T) -> String);
 
-const FIGURES: &[Figure] = &[
+const FIGURES: &[Figure<Verdict>] = &[
     ("outcome", |v| outcome(v.outcome).to_owned()),
     ("impacts", |v| v.impacts.to_string()),
     ("contact time [ms]", |v| {
@@ -48,9 +49,7 @@ const FIGURES: &[Figure] = &[
 ];
 
 /// Rows below those, where runs were checked.
-type CheckFigure = (&'static str, fn(&Verification) -> String);
-
-const CHECK_FIGURES: &[CheckFigure] = &[
+const CHECK_FIGURES: &[Figure<Verification>] = &[
     ("checked by", |v| {
         each(v, |c| format!("{} {:.0e}", c.method, c.rtol))
     }),
@@ -76,6 +75,34 @@ const CHECK_FIGURES: &[CheckFigure] = &[
         or_dash(v.differs_from_s, 1e3, 2)
     }),
 ];
+
+/// Rows below those, where a supervisor ran.
+const SUPERVISION_FIGURES: &[Figure<Supervision>] = &[
+    ("supervisor engaged", |s| times(s.engagements)),
+    ("engaged first [ms]", |s| or_dash(s.first_engaged_s, 1e3, 2)),
+    ("engaged for [ms]", |s| {
+        format!("{:.2}", s.engaged_time_s * 1e3)
+    }),
+    ("highest expected severity", |s| {
+        format!("{:.2}", s.expected_severity_max)
+    }),
+    ("severity index", |s| {
+        or_dash(s.severity_index.map(f64::from), 1.0, 3)
+    }),
+    ("asks to coast down", |s| match s.coast_down {
+        None => "–".to_owned(),
+        Some(true) => "YES".to_owned(),
+        Some(false) => "no".to_owned(),
+    }),
+];
+
+fn times(count: u64) -> String {
+    match count {
+        0 => "never".to_owned(),
+        1 => "once".to_owned(),
+        _ => format!("{count} times"),
+    }
+}
 
 /// A word for each check.
 pub(crate) fn each(v: &Verification, word: impl Fn(&Check) -> String) -> String {
@@ -116,18 +143,28 @@ pub fn text(scene: &Scene, runs: &[PolicyRun]) -> String {
     let mut header = vec![Cell::new("policy")];
     header.extend(runs.iter().map(|r| right(&r.name)));
     let mut table = lined(header);
-    for (name, value) in FIGURES {
-        let cells = runs.iter().map(|r| right(value(&r.verdict)));
+    add_rows(&mut table, FIGURES, runs, |r| Some(&r.verdict));
+    add_rows(&mut table, SUPERVISION_FIGURES, runs, |r| {
+        r.supervision.as_ref()
+    });
+    add_rows(&mut table, CHECK_FIGURES, runs, |r| r.verification.as_ref());
+    format!("{}\n{table}", scene.title)
+}
+
+/// Rows of something that not every run has; none where no run has it.
+fn add_rows<T>(
+    table: &mut Table,
+    figures: &[Figure<T>],
+    runs: &[PolicyRun],
+    of: impl Fn(&PolicyRun) -> Option<&T>,
+) {
+    if runs.iter().all(|run| of(run).is_none()) {
+        return;
+    }
+    for (name, value) in figures {
+        let cells = (runs.iter()).map(|run| right(of(run).map_or("–".to_owned(), value)));
         table.add_row([Cell::new(name)].into_iter().chain(cells));
     }
-    if runs.iter().any(|r| r.verification.is_some()) {
-        for (name, value) in CHECK_FIGURES {
-            let cells =
-                (runs.iter()).map(|r| right(r.verification.as_ref().map_or("–".to_owned(), value)));
-            table.add_row([Cell::new(name)].into_iter().chain(cells));
-        }
-    }
-    format!("{}\n{table}", scene.title)
 }
 
 /// The verdicts under stable keys: `policies.<name>.<figure>`.
@@ -137,6 +174,9 @@ pub fn json(scene: &Scene, runs: &[PolicyRun]) -> serde_json::Value {
             let mut figures = serde_json::json!(run.verdict);
             if let Some(verification) = &run.verification {
                 figures["verification"] = serde_json::json!(verification);
+            }
+            if let Some(supervision) = &run.supervision {
+                figures["supervision"] = serde_json::json!(supervision);
             }
             (run.name.clone(), figures)
         })

@@ -1,6 +1,7 @@
 //! What is recorded of a run: a row at every control sample and at every change of mode.
 
 use plant_model::{Mode, Snapshot, V2};
+use supervisor::{Command, Events, Limits, Report};
 
 /// One row, SI units.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -11,10 +12,47 @@ pub struct TraceRow {
     pub measured_m: V2,
     /// Force commanded by the policy, in effect at this instant \[N\].
     pub commanded_n: V2,
-    /// Mode of the supervisor, where one runs.
-    pub supervisor_mode: Option<supervisor::Mode>,
+    /// What the supervisor said to the last sample, where one runs.
+    pub supervisor: Option<Said>,
     /// Whether the row stands at a change of mode between two samples.
     pub mode_change: bool,
+}
+
+/// What a supervisor says beside its force.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Said {
+    /// Mode after the tick.
+    pub mode: supervisor::Mode,
+    /// What bound the command.
+    pub limits: Limits,
+    /// What happened at the tick; nothing in rows that stand between two samples.
+    pub events: Events,
+    /// Severity of what is coming, as a share of what the cap can stop.
+    pub severity: f32,
+    /// Force that the levitation controller asked for \[N\].
+    pub levitation_n: [f32; 2],
+}
+
+impl Said {
+    /// Of the command to a sample.
+    pub fn new(command: &Command, levitation_n: [f32; 2]) -> Self {
+        Self {
+            mode: command.mode,
+            limits: command.limits,
+            events: command.events,
+            severity: command.severity,
+            levitation_n,
+        }
+    }
+}
+
+/// What firmware can read out of a supervisor after a run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ReadOut {
+    /// Its own account.
+    pub report: Report,
+    /// The entries of the flight record, as in memory; empty where none was frozen.
+    pub flight_record: Vec<u8>,
 }
 
 /// A run, in time order.
@@ -22,6 +60,15 @@ pub struct TraceRow {
 pub struct Trace {
     /// The rows.
     pub rows: Vec<TraceRow>,
+    /// What the supervisor leaves behind, where one runs that can be asked.
+    pub read_out: Option<ReadOut>,
+}
+
+impl TraceRow {
+    /// Mode of the supervisor, where one runs.
+    pub fn supervisor_mode(&self) -> Option<supervisor::Mode> {
+        self.supervisor.map(|said| said.mode)
+    }
 }
 
 impl Trace {

@@ -1,6 +1,7 @@
 //! Traces as Parquet: one row group, one column a quantity, SI units in the column names.
 
-use crate::trace::{Trace, TraceRow};
+use crate::supervision::names;
+use crate::trace::{Said, Trace, TraceRow};
 use parquet::basic::Compression;
 use parquet::data_type::{BoolType, ByteArray, ByteArrayType, DoubleType};
 use parquet::errors::ParquetError;
@@ -11,7 +12,7 @@ use std::io::Write;
 use std::sync::Arc;
 
 type Number = (&'static str, fn(&TraceRow) -> f64);
-type Text = (&'static str, fn(&TraceRow) -> &'static str);
+type Text = (&'static str, fn(&TraceRow) -> String);
 
 /// Columns of numbers, in file order.
 const NUMBERS: &[Number] = &[
@@ -44,15 +45,33 @@ const NUMBERS: &[Number] = &[
     ("commanded_y_n", |r| r.commanded_n.y),
     ("delivered_x_n", |r| r.plant.delivered_n.x),
     ("delivered_y_n", |r| r.plant.delivered_n.y),
+    ("levitation_x_n", |r| said(r, |s| s.levitation_n[0])),
+    ("levitation_y_n", |r| said(r, |s| s.levitation_n[1])),
+    ("supervisor_severity", |r| said(r, |s| s.severity)),
 ];
 
 /// Columns of names, after the numbers.
 const TEXTS: &[Text] = &[
-    ("mode", |r| r.plant.mode.name()),
+    ("mode", |r| r.plant.mode.name().to_owned()),
     ("supervisor_mode", |r| {
-        r.supervisor_mode.map_or("", supervisor::Mode::name)
+        r.supervisor_mode()
+            .map_or("", supervisor::Mode::name)
+            .to_owned()
+    }),
+    ("supervisor_limits", |r| {
+        r.supervisor
+            .map_or(String::new(), |s| names(s.limits.iter_names()))
+    }),
+    ("supervisor_events", |r| {
+        r.supervisor
+            .map_or(String::new(), |s| names(s.events.iter_names()))
     }),
 ];
+
+/// Something that the supervisor said; 0 where there is none.
+fn said(row: &TraceRow, what: fn(&Said) -> f32) -> f64 {
+    row.supervisor.map_or(0.0, |said| f64::from(what(&said)))
+}
 
 /// Whether a row stands at a change of mode between two control samples; the last column.
 const MODE_CHANGE: &str = "mode_change";
@@ -85,7 +104,7 @@ pub fn write(trace: &Trace, sink: impl Write + Send) -> Result<(), ParquetError>
     }
     for (_, value) in TEXTS {
         let column: Vec<ByteArray> = (trace.rows.iter())
-            .map(|r| ByteArray::from(value(r)))
+            .map(|r| ByteArray::from(value(r).into_bytes()))
             .collect();
         column_of(&mut group, |c| {
             c.typed::<ByteArrayType>().write_batch(&column, None, None)

@@ -1,5 +1,6 @@
 //! What a run came to: one outcome and the figures behind it.
 
+use crate::supervision::Supervision;
 use serde::Serialize;
 
 /// How a run ended.
@@ -112,6 +113,8 @@ pub struct PolicyRun {
     pub verdict: Verdict,
     /// What running it again with other means says, where that was asked for.
     pub verification: Option<Verification>,
+    /// What the supervisor did, where one ran.
+    pub supervision: Option<Supervision>,
     /// What happened.
     pub trace: crate::trace::Trace,
 }

@@ -44,11 +44,12 @@ impl core::fmt::Display for ConfigError {
             high,
             ..
         } = self.parameter();
-        write!(
-            f,
-            "{name} = {:e} {unit}: expected {low:e} to {high:e} {unit}",
-            self.value
-        )
+        // As a person would write them: 0.5, and 1e-6.
+        write!(f, "{name} = {:?}: expected {low:?} to {high:?}", self.value)?;
+        match *unit {
+            "1" => Ok(()),
+            unit => write!(f, " {unit}"),
+        }
     }
 }
 

@@ -8,8 +8,7 @@ use firmware_host::overloads::found::kept;
 use firmware_host::overloads::plants::{PlantCase, plants};
 use firmware_host::policies::{Policy, Supervise};
 use supervisor::{
-    Command, Config, Core, CoreCommand, CoreError, CoreSample, Mode, Prepared, Sample, Scalar,
-    Scaling,
+    Command, Config, Core, CoreCommand, CoreError, CoreSample, Prepared, Sample, Scalar, Scaling,
 };
 
 /// A core of any number that is told SI and answers SI, as firmware without floating point would around it.
@@ -36,10 +35,6 @@ impl<S: Scalar> Supervise for Behind<S> {
     fn tick(&mut self, sample: &Sample) -> Command {
         let command = (self.core).tick(&in_numbers(&self.scaling.sample(sample)));
         self.scaling.command(&command)
-    }
-
-    fn mode(&self) -> Mode {
-        self.core.mode()
     }
 }
 

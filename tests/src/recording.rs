@@ -3,7 +3,7 @@
 use firmware_host::policies::Supervise;
 use std::cell::RefCell;
 use std::rc::Rc;
-use supervisor::{Command, Config, ConfigError, Mode, Sample, Supervisor};
+use supervisor::{Command, Config, ConfigError, Sample, Supervisor};
 
 /// What a supervisor was told, and what it commanded.
 pub type Tape = Rc<RefCell<Vec<(Sample, Command)>>>;
@@ -19,10 +19,6 @@ impl Supervise for Recording {
         let command = self.supervisor.tick(sample);
         self.tape.borrow_mut().push((*sample, command));
         command
-    }
-
-    fn mode(&self) -> Mode {
-        self.supervisor.mode()
     }
 }
 

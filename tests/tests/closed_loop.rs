@@ -34,7 +34,7 @@ fn a_mirrored_scene_has_the_mirrored_run() {
                 policy.name()
             );
             assert_eq!(mirror(a.commanded_n), b.commanded_n, "{}", policy.name());
-            assert_eq!(a.supervisor_mode, b.supervisor_mode);
+            assert_eq!(a.supervisor_mode(), b.supervisor_mode());
         }
     }
 }
@@ -57,7 +57,7 @@ fn without_contact_the_supervisor_changes_nothing() {
             "{}",
             a.plant.t_s
         );
-        assert_eq!(b.supervisor_mode, Some(supervisor::Mode::Levitated));
+        assert_eq!(b.supervisor_mode(), Some(supervisor::Mode::Levitated));
     }
 }
 
@@ -215,7 +215,7 @@ fn a_known_power_loss_is_told_at_its_first_and_last_sample() {
     let (_, trace) = run(&scene, PolicyKind::Supervisor, Keep::Trace, &mut |_| {}).unwrap();
     let modes: Vec<_> = (trace.rows.iter())
         .filter(|row| !row.mode_change)
-        .map(|row| row.supervisor_mode.unwrap())
+        .map(|row| row.supervisor_mode().unwrap())
         .collect();
     for (tick, mode) in modes.iter().enumerate().take(144).skip(45) {
         let off = tick >= first as usize && tick < end as usize;
@@ -241,7 +241,7 @@ fn a_load_within_the_cap_is_handed_back() {
         let (_, trace) = run(&scene, PolicyKind::Supervisor, Keep::Trace, &mut |_| {}).unwrap();
         let last = trace.rows.last().unwrap();
         assert_eq!(
-            last.supervisor_mode,
+            last.supervisor_mode(),
             Some(supervisor::Mode::Levitated),
             "{share} of the cap"
         );

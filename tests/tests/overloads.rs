@@ -14,7 +14,7 @@ use firmware_host::policies::Policy;
 use plant_model::{Options, V2};
 use serde_json::Value;
 use std::collections::BTreeSet;
-use system_tests::host;
+use system_tests::{host, scene_path};
 
 /// Promises that a quick run does not keep; the documentation says why.
 const MISSED: [&str; 3] = [
@@ -33,8 +33,10 @@ fn quick(threads: &str) -> (Vec<u8>, tempfile::TempDir) {
             "--json",
             "--threads",
             threads,
-            "--out",
+            "--scene",
         ])
+        .arg(scene_path("overload_then_release"))
+        .arg("--out")
         .arg(&out)
         .output()
         .unwrap();
@@ -89,6 +91,27 @@ fn promises_of_a_quick_run() {
     // A page for each scene, and two of the whole.
     assert_eq!(names.len(), scenes.len() + 2);
     assert!(names.contains("overloads.md") && names.contains("overloads.json"));
+
+    // The scene of one's own: told, and compared, and no promise is about it.
+    let harms = root["against_levitation"].as_array().unwrap();
+    let own = harms.last().unwrap();
+    assert!(
+        own["place"]
+            .as_str()
+            .unwrap()
+            .starts_with("own, 20 kHz: AMB rotor")
+    );
+    assert_eq!((&own["seeds"], &own["recovered"]), (&3.into(), &3.into()));
+    let of_own = results.iter().filter(|row| row["plant"] == "own");
+    assert_eq!(of_own.count(), 4 * 3);
+    let page = std::fs::read_to_string(folder.path().join("overloads/overloads.md")).unwrap();
+    let (_, section) = page.split_once("## Own scene: AMB rotor").unwrap();
+    for policy in ["passive", "radial", "levitation", "supervisor"] {
+        assert!(
+            section.contains(&format!("| own | 20 | {policy} | ")),
+            "{policy}"
+        );
+    }
 
     let (alone, _folder) = quick("1");
     assert!(json == alone, "depends on the number of threads");

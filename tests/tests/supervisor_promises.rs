@@ -158,8 +158,8 @@ fn config_errors_name_field_value_and_range() {
             let text = error.to_string();
             let parts = [
                 p.name.to_owned(),
-                format!("{:e}", p.low),
-                format!("{:e}", p.high),
+                format!("{:?}", p.low),
+                format!("{:?}", p.high),
             ];
             assert!(parts.iter().all(|part| text.contains(part)), "{text}");
         }

@@ -53,7 +53,7 @@ fn blade_lost(spin_hz: f64, caps: f64, rate_hz: u32) -> Scene {
 fn levitated_at_the_end(trace: &Trace) -> f64 {
     let last = &trace.rows[trace.rows.len() / 2..];
     let levitated = |mode: Option<Mode>| mode == Some(Mode::Levitated);
-    let ticks = last.iter().filter(|row| levitated(row.supervisor_mode));
+    let ticks = last.iter().filter(|row| levitated(row.supervisor_mode()));
     ticks.count() as f64 / last.len() as f64
 }
 
@@ -102,7 +102,7 @@ fn a_load_that_stands_still_is_seen_as_soon() {
             scene.spin_sensor.valid = known;
             let (_, trace) = seen(&scene, PolicyKind::Supervisor);
             let acts = |mode: Option<Mode>| mode != Some(Mode::Levitated);
-            let first = trace.rows.iter().find(|row| acts(row.supervisor_mode));
+            let first = trace.rows.iter().find(|row| acts(row.supervisor_mode()));
             first.expect("it has to act").plant.t_s
         };
         let later_s = engaged_s(true) - engaged_s(false);
@@ -133,10 +133,10 @@ fn a_push_on_a_rotor_at_rest_is_no_speed() {
         assert_ne!(own.outcome, Outcome::Pinned, "pole {pole}");
         let pinned = |mode: Option<Mode>| mode == Some(Mode::Pinned);
         let first = trace.rows.iter().filter(|row| row.plant.t_s < 0.06);
-        let before = first.filter(|row| pinned(row.supervisor_mode)).count();
+        let before = first.filter(|row| pinned(row.supervisor_mode())).count();
         assert!(before > 100, "pole {pole}: the overload pins it");
         let after = trace.rows.iter().filter(|row| row.plant.t_s > 0.08);
-        let still = after.filter(|row| pinned(row.supervisor_mode)).count();
+        let still = after.filter(|row| pinned(row.supervisor_mode())).count();
         assert_eq!(still, 0, "pole {pole}: pinned for {still} ticks");
     }
 }

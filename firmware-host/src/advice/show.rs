@@ -1,30 +1,7 @@
 //! Advice as text.
 
-use super::{ARREST_SHARE, Advice, Parameter, USEFUL_LAG_DEG};
+use super::{ARREST_SHARE, Advice, USEFUL_LAG_DEG};
 use std::fmt::Write;
-
-/// The configuration as a table for a scene, each value with its unit and how it was chosen.
-pub fn table(parameters: &[Parameter]) -> String {
-    let mut out = "[supervisor]\n".to_owned();
-    for p in parameters {
-        let setting = format!("{} = {}", p.name, decimal(p.value));
-        let unit = if p.unit == "1" { "–" } else { p.unit };
-        let _ = write!(out, "{setting:<38}# {unit}; {}", p.reason);
-        if let Some(own) = p.replaced_by {
-            let _ = write!(out, " (this scene sets {})", decimal(own));
-        }
-        out.push('\n');
-    }
-    out
-}
-
-/// The shortest decimals that give the same value again.
-fn decimal(value: f32) -> String {
-    match value.abs() {
-        0.0 | 1e-3..1e5 => value.to_string(),
-        _ => format!("{value:e}"),
-    }
-}
 
 /// Rows of name, value and remark under a heading.
 struct Page(String);

@@ -1,6 +1,6 @@
 //! `advise`: what can be known of a bearing before the supervisor goes in, and a suggested configuration.
 
-use crate::advice::{self, Advice, OutOfRange};
+use crate::advice::{self, Advice, Language, OutOfRange};
 use crate::commands::error::{CommandError, print};
 use crate::scene::Scene;
 use crate::suggest::Nominal;
@@ -15,6 +15,9 @@ pub struct AdviseArgs {
     /// Print JSON instead of text.
     #[arg(long)]
     pub json: bool,
+    /// Print the configuration alone, as it is written there. What the scene's own [supervisor] sets is in it.
+    #[arg(long, value_enum, conflicts_with = "json")]
+    pub format: Option<Language>,
     #[command(flatten)]
     numbers: NumberArgs,
 }
@@ -180,7 +183,10 @@ pub fn execute(args: &AdviseArgs) -> Result<(), CommandError> {
             .map_err(|e| CommandError::other("formatting the advice", e))?;
         return print(&format!("{pretty}\n"));
     }
-    print(&advice::text(&advice))
+    print(&match args.format {
+        Some(language) => advice::listing(&advice.parameters, language),
+        None => advice::text(&advice),
+    })
 }
 
 /// A suggested value that the supervisor would refuse is a number that does not fit.

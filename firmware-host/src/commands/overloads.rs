@@ -4,11 +4,12 @@ use crate::commands::error::{CommandError, print};
 use crate::commands::progress::{LateProgress, pool};
 use crate::output::{self, OutputError, Staging};
 use crate::overloads::histories::{CASES, Way, compare};
-use crate::overloads::page;
+use crate::overloads::page::{self, SCENE_COLUMNS, scene_rows};
 use crate::overloads::plan::{Catalogue, CatalogueError, Extent, Plan, search};
 use crate::overloads::plants::RATES_HZ;
+use crate::overloads::results::ResultRow;
 use crate::scene::Scene;
-use crate::table::right;
+use crate::table::{lined, right};
 use comfy_table::{Cell, Table, presets};
 use std::path::PathBuf;
 
@@ -85,8 +86,9 @@ pub fn execute(args: &OverloadsArgs) -> Result<(), CommandError> {
     }
     let page = out.join("overloads.md");
     print(&format!(
-        "{}\npage: {}\n",
+        "{}\n{}page: {}\n",
         promises(&catalogue),
+        own_scenes(&catalogue),
         page.display()
     ))
 }
@@ -152,6 +154,19 @@ fn failed(error: CatalogueError) -> CommandError {
         CatalogueError::Scene(error) => error.into(),
         other => CommandError::other("running the catalogue", other),
     }
+}
+
+/// The scenes that the user has added.
+fn own_scenes(catalogue: &Catalogue) -> String {
+    let one = |(name, results): (&str, Vec<&ResultRow>)| {
+        let mut table = lined(SCENE_COLUMNS);
+        for [plant, rate, policy, recovered, outcomes, figures @ ..] in scene_rows(&results) {
+            let words = [plant, rate, policy, recovered, outcomes].map(Cell::new);
+            table.add_row(words.into_iter().chain(figures.map(right)));
+        }
+        format!("\n{name}\n{table}\n")
+    };
+    page::own_scenes(catalogue).into_iter().map(one).collect()
 }
 
 fn promises(catalogue: &Catalogue) -> String {

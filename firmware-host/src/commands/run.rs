@@ -6,6 +6,7 @@ use crate::commands::progress::{LateProgress, pool};
 use crate::output::{self, OutputError, Staging};
 use crate::policy_kind::PolicyKind;
 use crate::scene::Scene;
+use crate::supervision::Supervision;
 use crate::verdict::{Check, PolicyRun, SceneSummary};
 use crate::{report, table, trace_file, verify};
 use plant_model::params::StatorParams;
@@ -52,7 +53,7 @@ pub fn execute(args: &RunArgs) -> Result<(), CommandError> {
         .map_err(|e| CommandError::other("formatting verdict.json", e))?;
     let staging = Staging::beside(&out)?;
     write_results(&staging, &scene, &runs, &pretty)?;
-    let out = staging.publish()?;
+    let out = staging.publish_over(of_a_policy)?;
     let text = if args.json {
         format!("{pretty}\n")
     } else {
@@ -70,6 +71,14 @@ pub fn execute(args: &RunArgs) -> Result<(), CommandError> {
     } else {
         Err(CommandError::Contradicted(contradictions))
     }
+}
+
+/// Whether a file is a run's of one policy: an earlier one may have had policies that this one has not, and what they
+/// left would be taken for results of this scene.
+fn of_a_policy(name: &str) -> bool {
+    [("trace_", ".parquet"), ("record_", ".bin")]
+        .iter()
+        .any(|(begin, end)| name.starts_with(begin) && name.ends_with(end))
 }
 
 /// Checks that end with another outcome than their run.
@@ -133,6 +142,7 @@ fn run_all(scene: &Scene, args: &RunArgs) -> Result<Vec<PolicyRun>, CommandError
                 .verify
                 .then(|| verify::verification(&verdict, &trace, checks)),
             verdict,
+            supervision: Supervision::of(&trace),
             trace,
         });
     }
@@ -156,6 +166,12 @@ fn write_results(
         let file = std::fs::File::create(&path).map_err(in_file(&path))?;
         trace_file::write(&run.trace, file)
             .map_err(|e| CommandError::other("writing a trace", e))?;
+        if let Some(read_out) = &run.trace.read_out
+            && !read_out.flight_record.is_empty()
+        {
+            let path = staging.path(&format!("record_{}.bin", run.name));
+            std::fs::write(&path, &read_out.flight_record).map_err(in_file(&path))?;
+        }
     }
     let html = report::html(&summary(scene), runs)
         .map_err(|e| CommandError::other("drawing the report", e))?;

@@ -5,8 +5,8 @@ use super::promises::{Harm, Promise};
 use super::results::{Metrics, ResultRow};
 use super::seats::Seat;
 use super::sweeps::{SweepRow, median, median_of};
+use crate::table::outcome;
 use std::collections::BTreeMap;
-use std::fmt::Write as _;
 
 /// The summary: promises, sweeps, and every scene in one line a plant. Deterministic.
 pub fn summary(catalogue: &Catalogue, extent: Extent) -> String {
@@ -37,6 +37,10 @@ pub fn summary(catalogue: &Catalogue, extent: Extent) -> String {
     );
     for promise in &catalogue.promises {
         line(&mut page, &promise_row(promise));
+    }
+    for (name, results) in own_scenes(catalogue) {
+        line(&mut page, &format!("\n## Own scene: {name}\n"));
+        push_scene(&mut page, &results);
     }
     line(&mut page, "\n## Hardest impact, fastest whirl\n");
     line(
@@ -132,13 +136,24 @@ fn sweep_row(row: &SweepRow) -> String {
     )
 }
 
-/// A page for each scene: file name and text.
-pub fn scenes(catalogue: &Catalogue) -> Vec<(String, String)> {
+fn by_scene<'a>(
+    rows: impl Iterator<Item = &'a ResultRow>,
+) -> BTreeMap<&'a str, Vec<&'a ResultRow>> {
     let mut scenes: BTreeMap<&str, Vec<&ResultRow>> = BTreeMap::new();
-    for row in &catalogue.results {
+    for row in rows {
         scenes.entry(&row.scene).or_default().push(row);
     }
-    (scenes.into_iter())
+    scenes
+}
+
+/// The user's own scenes: title and runs.
+pub fn own_scenes(catalogue: &Catalogue) -> BTreeMap<&str, Vec<&ResultRow>> {
+    by_scene(catalogue.results.iter().filter(|row| row.is_own()))
+}
+
+/// A page for each scene: file name and text.
+pub fn scenes(catalogue: &Catalogue) -> Vec<(String, String)> {
+    (by_scene(catalogue.results.iter()).into_iter())
         .map(|(name, rows)| (format!("{}.md", slug(name)), scene_page(name, &rows)))
         .collect()
 }
@@ -158,62 +173,89 @@ fn slug(name: &str) -> String {
     slug.trim_end_matches('-').to_owned()
 }
 
-fn scene_page(name: &str, results: &[&ResultRow]) -> String {
-    let mut page = format!("# {name}\n\nMedians over the seeds.\n\n");
-    line(
-        &mut page,
-        "| plant | rate [kHz] | policy | recovered | outcomes | touches | over 20 mm/s | peak force [N] | impulse [N s] | contact [ms] | backward [m/s] | back after [ms] |\n| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |",
-    );
+/// Columns of the table of a scene.
+pub const SCENE_COLUMNS: [&str; 12] = [
+    "plant",
+    "rate [kHz]",
+    "policy",
+    "recovered",
+    "outcomes",
+    "touches",
+    "over 20 mm/s",
+    "peak force [N]",
+    "impulse [N s]",
+    "contact [ms]",
+    "backward [m/s]",
+    "back after [ms]",
+];
+
+/// A scene in figures, medians over the seeds: a row for each plant, rate and policy.
+pub fn scene_rows(results: &[&ResultRow]) -> Vec<[String; SCENE_COLUMNS.len()]> {
     let mut groups: BTreeMap<(&str, u64, usize), Vec<&ResultRow>> = BTreeMap::new();
-    for row in results {
+    for (number, row) in results.iter().enumerate() {
+        // Policies of a scene of one's own that have no seat stay in the order in which they ran.
         let order = (Seat::ALL.iter()).position(|s| s.name() == row.policy);
-        let key = (
-            row.plant.as_str(),
-            row.rate_hz as u64,
-            order.unwrap_or(usize::MAX),
-        );
+        let same = || results.iter().position(|r| r.policy == row.policy);
+        let order = order.unwrap_or_else(|| Seat::ALL.len() + same().unwrap_or(number));
+        let key = (row.plant.as_str(), row.rate_hz as u64, order);
         groups.entry(key).or_default().push(row);
     }
-    for ((plant, rate, _), rows) in groups {
-        let of = |value: &dyn Fn(&Metrics) -> f64| {
-            let values = rows.iter().filter_map(|r| r.metrics.as_ref().map(value));
-            median_of(values.filter(|x| !x.is_nan()))
+    (groups.into_iter())
+        .map(|((plant, rate, _), rows)| scene_row(plant, rate, &rows))
+        .collect()
+}
+
+fn scene_row(plant: &str, rate_hz: u64, rows: &[&ResultRow]) -> [String; SCENE_COLUMNS.len()] {
+    let of = |value: &dyn Fn(&Metrics) -> f64| {
+        let values = rows.iter().filter_map(|r| r.metrics.as_ref().map(value));
+        median_of(values.filter(|x| !x.is_nan()))
+    };
+    let mut outcomes: BTreeMap<String, usize> = BTreeMap::new();
+    for row in rows {
+        let outcome = match (&row.metrics, &row.error) {
+            (Some(m), _) => outcome(m.outcome).to_owned(),
+            (None, Some(error)) => error.clone(),
+            (None, None) => String::new(),
         };
-        let mut outcomes: BTreeMap<String, usize> = BTreeMap::new();
-        for row in &rows {
-            let outcome = match (&row.metrics, &row.error) {
-                (Some(m), _) => format!("{:?}", m.outcome).to_lowercase(),
-                (None, Some(error)) => error.clone(),
-                (None, None) => String::new(),
-            };
-            *outcomes.entry(outcome).or_default() += 1;
-        }
-        let outcomes: Vec<String> = outcomes
-            .into_iter()
-            .map(|(outcome, n)| format!("{outcome} {n}"))
-            .collect();
-        let recovered = rows.iter().filter(|r| r.recovered()).count();
-        let back = of(&|m| m.relevitation_time_s.unwrap_or(f64::NAN));
-        let back = if back.is_nan() {
+        *outcomes.entry(outcome).or_default() += 1;
+    }
+    let outcomes: Vec<String> = outcomes
+        .into_iter()
+        .map(|(outcome, n)| format!("{outcome} {n}"))
+        .collect();
+    let recovered = rows.iter().filter(|r| r.recovered()).count();
+    let back = of(&|m| m.relevitation_time_s.unwrap_or(f64::NAN));
+    [
+        plant.to_owned(),
+        (rate_hz / 1000).to_string(),
+        rows.first().map_or("", |r| r.policy).to_owned(),
+        format!("{recovered} of {}", rows.len()),
+        outcomes.join(", "),
+        format!("{:.0}", of(&|m| m.impacts as f64)),
+        format!("{:.0}", of(&|m| m.contacts_over_20_mm_s as f64)),
+        format!("{:.0}", of(&|m| m.peak_contact_force_n)),
+        format!("{:.3}", of(&|m| m.contact_impulse_n_s)),
+        format!("{:.2}", 1e3 * of(&|m| m.contact_time_s)),
+        format!("{:.3}", of(&|m| m.peak_backward_speed_m_s)),
+        if back.is_nan() {
             "–".to_owned()
         } else {
             format!("{:.2}", 1e3 * back)
-        };
-        let policy = rows.first().map_or("", |r| r.policy);
-        // Writing to a String cannot fail.
-        let _ = writeln!(
-            page,
-            "| {plant} | {} | {policy} | {recovered} of {} | {} | {:.0} | {:.0} | {:.0} | {:.3} | {:.2} | {:.3} | {back} |",
-            rate / 1000,
-            rows.len(),
-            outcomes.join(", "),
-            of(&|m| m.impacts as f64),
-            of(&|m| m.contacts_over_20_mm_s as f64),
-            of(&|m| m.peak_contact_force_n),
-            of(&|m| m.contact_impulse_n_s),
-            1e3 * of(&|m| m.contact_time_s),
-            of(&|m| m.peak_backward_speed_m_s),
-        );
+        },
+    ]
+}
+
+fn push_scene(page: &mut String, results: &[&ResultRow]) {
+    let of = |cells: &[String]| format!("| {} |", cells.join(" | "));
+    line(page, &of(&SCENE_COLUMNS.map(str::to_owned)));
+    line(page, &of(&SCENE_COLUMNS.map(|_| "---".to_owned())));
+    for row in scene_rows(results) {
+        line(page, &of(&row));
     }
+}
+
+fn scene_page(name: &str, results: &[&ResultRow]) -> String {
+    let mut page = format!("# {name}\n\nMedians over the seeds.\n\n");
+    push_scene(&mut page, results);
     page
 }

@@ -196,13 +196,16 @@ impl Plan {
             })
             .collect();
         let sweeps = self.sweeps(on_done)?;
-        let against_levitation = against_levitation(&results);
+        // Own scenes come last, and no promise is about them.
+        let (of_catalogue, own) = results.split_at(results.partition_point(|row| !row.is_own()));
+        let mut harms = against_levitation(of_catalogue, Seat::Tuned.name());
         let mut promises = of_sweeps(&sweeps);
-        promises.extend(of_results(&results, &against_levitation));
+        promises.extend(of_results(of_catalogue, &harms));
+        harms.extend(against_levitation(own, PolicyKind::Levitation.name()));
         Ok(Catalogue {
             promises,
             sweeps,
-            against_levitation,
+            against_levitation: harms,
             results,
         })
     }

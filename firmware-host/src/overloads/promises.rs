@@ -128,9 +128,9 @@ fn slowest(row: &SweepRow) -> f64 {
 /// Results of a scene under one policy, over its seeds.
 type PerScene<'a> = BTreeMap<(String, u64, String), Vec<&'a ResultRow>>;
 
-fn per_scene<'a>(rows: impl Iterator<Item = &'a ResultRow>, seat: Seat) -> PerScene<'a> {
+fn per_scene<'a>(rows: impl Iterator<Item = &'a ResultRow>, policy: &str) -> PerScene<'a> {
     let mut map = PerScene::new();
-    for row in rows.filter(|r| r.policy == seat.name()) {
+    for row in rows.filter(|r| r.policy == policy) {
         let key = (row.plant.clone(), row.rate_hz as u64, row.scene.clone());
         map.entry(key).or_default().push(row);
     }
@@ -154,11 +154,11 @@ pub struct Harm {
     pub seeds: usize,
 }
 
-/// Every scene against levitation alone.
-pub fn against_levitation(rows: &[ResultRow]) -> Vec<Harm> {
-    let alone = per_scene(rows.iter(), Seat::Tuned);
+/// Every scene against levitation alone, which is the policy of that name.
+pub fn against_levitation(rows: &[ResultRow], alone: &str) -> Vec<Harm> {
+    let alone = per_scene(rows.iter(), alone);
     let mut all = Vec::new();
-    for ((plant, rate, scene), own) in per_scene(rows.iter(), Seat::Supervisor) {
+    for ((plant, rate, scene), own) in per_scene(rows.iter(), Seat::Supervisor.name()) {
         let Some(other) = alone.get(&(plant.clone(), rate, scene.clone())) else {
             continue;
         };
@@ -231,9 +231,9 @@ fn lost_beyond_chance(harm: &Harm) -> bool {
 
 fn of_static_overloads(rows: &[ResultRow]) -> Vec<Promise> {
     let overloads = || rows.iter().filter(|r| r.group == "static overload");
-    let alone = per_scene(overloads(), Seat::Tuned);
+    let alone = per_scene(overloads(), Seat::Tuned.name());
     let (mut impacts, mut force, mut impulse, mut back_s) = (0.0_f64, 0.0_f64, 0.0_f64, 0.0_f64);
-    for (key, own) in per_scene(overloads(), Seat::Supervisor) {
+    for (key, own) in per_scene(overloads(), Seat::Supervisor.name()) {
         let Some(other) = alone.get(&key) else {
             continue;
         };

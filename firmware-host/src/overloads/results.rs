@@ -54,6 +54,9 @@ impl From<&Verdict> for Metrics {
     }
 }
 
+/// Group of the user's own scenes.
+const OWN: &str = "own scenes";
+
 /// One run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ResultRow {
@@ -77,6 +80,11 @@ pub struct ResultRow {
 }
 
 impl ResultRow {
+    /// Whether it is a run of a scene of the user's own.
+    pub fn is_own(&self) -> bool {
+        self.group == OWN
+    }
+
     /// Whether the rotor came back.
     pub fn recovered(&self) -> bool {
         self.metrics.as_ref().is_some_and(|m| m.recovered)
@@ -127,7 +135,7 @@ pub fn run_own(scene: &Scene, kind: PolicyKind, seed: u64) -> ResultRow {
         Err(error) => (None, Some(error.to_string())),
     };
     ResultRow {
-        group: "own scenes",
+        group: OWN,
         scene: scene.title.clone(),
         plant: "own".to_owned(),
         rate_hz: scene.sample_rate_hz,

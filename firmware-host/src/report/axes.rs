@@ -62,7 +62,7 @@ fn events(run: &PolicyRun) -> Option<Interval> {
     let contacts = rows.iter().filter(|row| row.plant.mode.in_contact());
     let changes = rows
         .windows(2)
-        .filter(|w| w[0].supervisor_mode != w[1].supervisor_mode);
+        .filter(|w| w[0].supervisor_mode() != w[1].supervisor_mode());
     let all = contacts.chain(changes.map(|w| &w[1]));
     Interval::of(all.map(|row| 1e3 * row.plant.t_s))
 }

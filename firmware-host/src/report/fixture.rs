@@ -28,7 +28,9 @@ pub(super) fn run(name: &str, outcome: Outcome, samples: &[(f64, bool)]) -> Poli
         name: name.to_owned(),
         verdict: verdict(outcome),
         verification: None,
+        supervision: None,
         trace: Trace {
+            read_out: None,
             rows: samples
                 .iter()
                 .map(|(t_s, contact)| row(*t_s, *contact))
@@ -88,7 +90,7 @@ pub(super) fn row(t_s: f64, contact: bool) -> TraceRow {
         plant,
         measured_m: plant.position_m,
         commanded_n: V2::new(120.0, 0.0),
-        supervisor_mode: None,
+        supervisor: None,
         mode_change: false,
     }
 }

@@ -308,7 +308,7 @@ fn plant_bands(run: &PolicyRun) -> Vec<Band> {
 fn supervisor_classes(runs: &[PolicyRun]) -> Vec<(&'static str, RGBColor)> {
     let occurs = |mode: supervisor::Mode| {
         let mut rows = runs.iter().flat_map(|run| &run.trace.rows);
-        rows.any(|row| row.supervisor_mode == Some(mode))
+        rows.any(|row| row.supervisor_mode() == Some(mode))
     };
     (SUPERVISOR_COLOURS.into_iter())
         .filter(|(mode, _)| occurs(*mode))
@@ -321,7 +321,7 @@ fn supervisor_bands(run: &PolicyRun, classes: &[(&'static str, RGBColor)]) -> Ve
     for row in &run.trace.rows {
         let t = 1e3 * row.plant.t_s;
         let named = |mode: supervisor::Mode| classes.iter().position(|c| c.0 == mode.name());
-        let (Some(now), Some(class)) = (Interval::of([t]), row.supervisor_mode.and_then(named))
+        let (Some(now), Some(class)) = (Interval::of([t]), row.supervisor_mode().and_then(named))
         else {
             continue;
         };

@@ -114,7 +114,7 @@ pub(super) const TANGENTIAL_SPEED: Chart = Chart {
         value: tangential_speed,
     }],
     limit: Some(Limit {
-        name: "whirl limit",
+        name: "counts as whirl",
         at: backward_limit,
         reach: 4.0,
     }),

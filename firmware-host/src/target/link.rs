@@ -16,7 +16,7 @@ use std::process::{ChildStdin, ChildStdout, Stdio};
 use std::rc::Rc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::time::Duration;
-use supervisor::{Command, Config, Mode, Sample};
+use supervisor::{Command, Config, Sample};
 
 /// Longest wait for each answer, the first with the emulator's start.
 const PATIENCE: Duration = Duration::from_secs(20);
@@ -156,16 +156,12 @@ impl Board {
 #[derive(Debug)]
 pub struct Emulated {
     board: Rc<RefCell<Board>>,
-    mode: Mode,
 }
 
 impl Emulated {
     /// The new supervisor of a processor that has just been configured.
     pub fn new(board: Rc<RefCell<Board>>) -> Self {
-        Self {
-            board,
-            mode: Mode::default(),
-        }
+        Self { board }
     }
 }
 
@@ -177,18 +173,11 @@ impl Supervise for Emulated {
             return Command::default();
         }
         match board.tick(sample) {
-            Ok(command) => {
-                self.mode = command.mode;
-                command
-            }
+            Ok(command) => command,
             Err(why) => {
                 board.broken = Some(why);
                 Command::default()
             }
         }
-    }
-
-    fn mode(&self) -> Mode {
-        self.mode
     }
 }

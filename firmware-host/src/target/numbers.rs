@@ -5,7 +5,7 @@ use crate::policies::Supervise;
 use firmware_image::under_test::{Fixed, Float, UnderTest};
 use firmware_image::wire::core_sample_bits;
 use std::rc::Rc;
-use supervisor::{Command, Config, CoreSample, Mode, Prepared, Q, Sample, Scalar, Scaling};
+use supervisor::{Command, Config, CoreSample, Prepared, Q, Sample, Scalar, Scaling};
 
 /// Kinds of numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -95,9 +95,5 @@ impl Supervise for RecordingFixed {
         let tick = Tick::new(&core_sample_bits(&sample), &Fixed::bits(&command));
         self.tape.borrow_mut().push(tick);
         scaling.command(&command)
-    }
-
-    fn mode(&self) -> Mode {
-        self.core.mode()
     }
 }

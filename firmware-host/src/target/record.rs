@@ -79,10 +79,6 @@ impl Supervise for Recording {
         self.tape.borrow_mut().push(tick);
         command
     }
-
-    fn mode(&self) -> Mode {
-        self.supervisor.mode()
-    }
 }
 
 /// How a stream is made up.

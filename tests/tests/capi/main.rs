@@ -4,6 +4,7 @@
 //! Needs a C compiler; the firmware needs arm-none-eabi-gcc with newlib and QEMU. What is missing skips a
 //! test on a user's machine, and fails it in CI; tests/run installs it.
 
+mod advised;
 mod firmware;
 mod header;
 mod library;

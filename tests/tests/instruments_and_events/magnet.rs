@@ -130,7 +130,7 @@ fn a_known_outage_is_told() {
         let trace = ridden(scene, PolicyKind::Supervisor).1;
         samples(&trace)
             .iter()
-            .map(|r| (r.supervisor_mode, r.commanded_n))
+            .map(|r| (r.supervisor_mode(), r.commanded_n))
             .collect()
     };
     scene.duration_s = 0.04;

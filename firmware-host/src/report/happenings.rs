@@ -1,0 +1,53 @@
+//! What the supervisor did, as a table for the reviewer of an overload.
+
+use super::push;
+use crate::plot::text::{escape, figures};
+use crate::supervision::{Happening, happenings};
+use crate::verdict::PolicyRun;
+
+/// Rows of a table; what comes after them is in the trace.
+const MOST_ROWS: usize = 100;
+
+/// One table for each run with a supervisor.
+pub(super) fn push_tables(page: &mut String, runs: &[PolicyRun]) {
+    for run in runs.iter().filter(|run| run.supervision.is_some()) {
+        push_table(page, run);
+    }
+}
+
+fn push_table(page: &mut String, run: &PolicyRun) {
+    let (name, happenings) = (escape(&run.name), happenings(&run.trace));
+    push(
+        page,
+        format_args!(
+            "<section class=\"scroll\">\n<table class=\"words\">\n<caption>What happened: {name}</caption>\n<thead><tr>\
+             <th scope=\"col\">At <small>ms</small></th><th scope=\"col\">Mode</th>\
+             <th scope=\"col\">Expected severity <small>of what the cap can stop</small></th>\
+             <th scope=\"col\">Bound by</th><th scope=\"col\">Events</th></tr></thead>\n<tbody>\n"
+        ),
+    );
+    for happening in happenings.iter().take(MOST_ROWS) {
+        push_row(page, happening);
+    }
+    page.push_str("</tbody>\n</table>\n<p class=\"note\">Samples at which the mode changed or something happened; touches and \
+                   lift-offs that changed nothing are counted.");
+    if happenings.len() > MOST_ROWS {
+        let more = happenings.len() - MOST_ROWS;
+        push(page, format_args!(" {more} more are in the trace."));
+    }
+    page.push_str("</p>\n</section>\n");
+}
+
+fn push_row(page: &mut String, happening: &Happening) {
+    let (t_ms, said) = (1e3 * happening.t_s, happening.said);
+    push(
+        page,
+        format_args!(
+            "<tr><th scope=\"row\">{t_ms:.3}</th><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
+            said.mode.name(),
+            figures(said.severity.into()),
+            happening.limits(),
+            happening.events(),
+        ),
+    );
+}

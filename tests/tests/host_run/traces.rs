@@ -1,0 +1,252 @@
+//! What is in the traces, and what the supervisor left behind.
+
+use super::{names, run, short_scene};
+use firmware_host::flight_record::{FlightRecord, Units, entries};
+use parquet::file::reader::{FileReader, SerializedFileReader};
+use parquet::record::{Field, Row, RowAccessor};
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+use system_tests::scene_path;
+use tempfile::TempDir;
+
+#[test]
+fn traces_hold_every_sample_and_every_mode_change() {
+    let folder = TempDir::new().unwrap();
+    let scene = short_scene(folder.path(), |t| t);
+    let out = folder.path().join("out");
+    assert!(run(&scene, &out, &[]).status.success());
+    let reader =
+        SerializedFileReader::new(fs::File::open(out.join("trace_supervisor.parquet")).unwrap())
+            .unwrap();
+    let schema = reader.metadata().file_metadata().schema_descr();
+    let columns: Vec<&str> = (0..schema.num_columns())
+        .map(|i| schema.column(i).name().to_owned().leak() as &str)
+        .collect();
+    for name in [
+        "t_s",
+        "rotor_x_m",
+        "rotor_vy_m_s",
+        "inner_ring_x_m",
+        "outer_ring_vy_m_s",
+        "spin_rad_s",
+        "race_spin_rad_s",
+        "contact_force_n",
+        "commanded_x_n",
+        "delivered_y_n",
+        "mode",
+        "supervisor_mode",
+    ] {
+        assert!(columns.contains(&name), "{name}");
+    }
+    let at = |name: &str| columns.iter().position(|c| *c == name).unwrap();
+    let (time, mode, change) = (at("t_s"), at("mode"), at("mode_change"));
+    let (mut samples, mut changes, mut last) = (0, 0, (-1.0, String::new()));
+    for row in reader.get_row_iter(None).unwrap() {
+        let row = row.unwrap();
+        let (t, m) = (
+            row.get_double(time).unwrap(),
+            row.get_string(mode).unwrap().clone(),
+        );
+        assert!(t >= last.0, "time runs backwards at {t}");
+        if row.get_bool(change).unwrap() {
+            changes += 1;
+            assert_ne!(m, last.1, "no change at {t}");
+        } else {
+            samples += 1;
+        }
+        last = (t, m);
+    }
+    assert_eq!(samples, 601, "30 ms at 20 kHz, both ends");
+    let verdict: Value =
+        serde_json::from_slice(&fs::read(out.join("verdict.json")).unwrap()).unwrap();
+    let impacts = verdict["policies"]["supervisor"]["impacts"]
+        .as_u64()
+        .unwrap();
+    assert!(
+        impacts >= 1 && changes >= impacts,
+        "{changes} changes, {impacts} impacts"
+    );
+}
+
+/// Last value of a column of the trace of the supervisor.
+fn last_of(out: &Path, column: &str) -> f64 {
+    let file = fs::File::open(out.join("trace_supervisor.parquet")).unwrap();
+    let reader = SerializedFileReader::new(file).unwrap();
+    let schema = reader.metadata().file_metadata().schema_descr();
+    let at = (0..schema.num_columns())
+        .position(|i| schema.column(i).name() == column)
+        .unwrap_or_else(|| panic!("no column {column}"));
+    let last = reader.get_row_iter(None).unwrap().last().unwrap().unwrap();
+    last.get_double(at).unwrap()
+}
+
+/// Without the table the ring is a bushing; with it contact spins the race up, towards the rotor's spin
+/// of 200 Hz, or brakes it towards there.
+#[test]
+fn a_race_spins_with_the_rotor() {
+    let folder = TempDir::new().unwrap();
+    let of = |keys: &str| {
+        let scene = short_scene(folder.path(), |t| {
+            t.replace("[friction]", &format!("{keys}\n[friction]"))
+        });
+        let out = folder.path().join("out");
+        let result = run(&scene, &out, &[]);
+        assert!(
+            result.status.success(),
+            "{}",
+            String::from_utf8_lossy(&result.stderr)
+        );
+        last_of(&out, "race_spin_rad_s") / std::f64::consts::TAU
+    };
+    assert_eq!(of(""), 0.0);
+    let light = of("[race]\ninertia_kg_m2 = 1e-3\n");
+    let heavy = of("[race]\ninertia_kg_m2 = 1e-1\n");
+    let ahead = of("[race]\ninertia_kg_m2 = 1e-3\nstart_frequency_hz = 300.0\ndrag_n_m_s = 1e-6\n");
+    assert!(light > 1.0 && light < 20.0, "{light}");
+    assert!(heavy > 0.0 && heavy < 0.02 * light, "{heavy}");
+    assert!(ahead > 280.0 && ahead < 299.0, "{ahead}");
+}
+
+/// A column of a trace by its name.
+fn column<T>(rows: &[Row], name: &str, of: impl Fn(&Field) -> T) -> Vec<T> {
+    let value = |row: &Row| {
+        let mut columns = row.get_column_iter();
+        let found = columns.find(|(column, _)| *column == name);
+        found.map(|(_, field)| of(field))
+    };
+    (rows.iter().map(value).collect::<Option<_>>()).unwrap_or_else(|| panic!("no column {name}"))
+}
+
+fn word(field: &Field) -> String {
+    match field {
+        Field::Str(text) => text.clone(),
+        other => panic!("{other} is no text"),
+    }
+}
+
+fn number(field: &Field) -> f64 {
+    match field {
+        Field::Double(number) => *number,
+        other => panic!("{other} is no number"),
+    }
+}
+
+/// Mode, limits and events of every sample are the same in the trace and in the flight record, the verdict counts what is
+/// there, and the report tells it.
+#[test]
+fn what_the_supervisor_said_is_in_trace_record_verdict_and_report() {
+    let folder = TempDir::new().unwrap();
+    let out = folder.path().join("out");
+    assert!(
+        run(&scene_path("impact_at_40_hz"), &out, &[])
+            .status
+            .success()
+    );
+    let file = fs::File::open(out.join("trace_supervisor.parquet")).unwrap();
+    let reader = SerializedFileReader::new(file).unwrap();
+    let rows: Vec<Row> = (reader.get_row_iter(None).unwrap())
+        .map(Result::unwrap)
+        .collect();
+    let between = column(&rows, "mode_change", |f| *f == Field::Bool(true));
+    let of_samples = |name: &str| -> Vec<String> {
+        let all = column(&rows, name, word).into_iter().zip(&between);
+        all.filter(|(_, b)| !**b).map(|(x, _)| x).collect()
+    };
+    let [modes, limits, events] =
+        ["mode", "limits", "events"].map(|what| of_samples(&format!("supervisor_{what}")));
+    for (events, between) in column(&rows, "supervisor_events", word)
+        .iter()
+        .zip(&between)
+    {
+        assert!(!between || events.is_empty(), "{events} twice");
+    }
+    // The command of a sample takes effect at the next, and the record holds it with the sample.
+    let commanded = column(&rows, "commanded_x_n", number)
+        .into_iter()
+        .zip(&between);
+    let commanded: Vec<f64> = commanded.filter(|(_, b)| !**b).map(|(x, _)| x).collect();
+
+    let cap_n = 150.0;
+    let bytes = fs::read(out.join("record_supervisor.bin")).unwrap();
+    let record = FlightRecord::of(
+        &entries(&bytes).unwrap(),
+        Units {
+            force_max_n: Some(cap_n),
+            ..Units::default()
+        },
+    );
+    assert!(record.ticks.len() > 300 && record.missing == 0);
+    for tick in &record.ticks {
+        let at = tick.sequence as usize;
+        assert_eq!(modes[at], tick.mode, "{at}");
+        assert_eq!(limits[at], tick.limits.join(" "), "{at}");
+        // The record keeps the first 16 of the events.
+        let kept = events[at]
+            .replace(" RECORD_FROZEN", "")
+            .replace("RECORD_FROZEN", "");
+        assert_eq!(kept, tick.events.join(" "), "{at}");
+        let recorded_n = tick.force_n.unwrap()[0];
+        let apart = (commanded[at + 1] - recorded_n).abs();
+        assert!(apart <= 0.51 * cap_n / 4096.0, "{at}: {apart} N");
+    }
+
+    let text = fs::read(out.join("verdict.json")).unwrap();
+    let verdict: Value = serde_json::from_slice(&text).unwrap();
+    let supervision = &verdict["policies"]["supervisor"]["supervision"];
+    assert!(verdict["policies"]["passive"]["supervision"].is_null());
+    let with = |name: &str| {
+        events
+            .iter()
+            .filter(|e| e.split(' ').any(|e| e == name))
+            .count()
+    };
+    assert_eq!(supervision["engagements"], with("ENGAGED"));
+    // The last row stands at the end of the run: no tick begins there.
+    let engaged = modes[..modes.len() - 1]
+        .iter()
+        .filter(|m| *m != "levitated")
+        .count();
+    let engaged_s = supervision["engaged_time_s"].as_f64().unwrap();
+    assert!(
+        (engaged_s - engaged as f64 / 20e3).abs() < 1e-9,
+        "{engaged_s}, {engaged}"
+    );
+    // One landing with the impacts of the verdict, at 0.42 m/s as the scene has it: the observer sees them some percent off.
+    assert_eq!(supervision["landings"], 1);
+    let fastest = supervision["impact_speed_max_m_s"].as_f64().unwrap();
+    assert!(fastest > 0.0 && fastest < 0.42, "{fastest}");
+    assert_eq!(supervision["coast_down"], false);
+    let report = fs::read_to_string(out.join("report.html")).unwrap();
+    assert!(report.contains("What happened: supervisor"));
+    for event in ["ENGAGED", "HANDOVER", "LEVITATED", "RECORD_FROZEN"] {
+        let (told, said) = (report.matches(event).count(), with(event));
+        assert!(said > 0 && told == said, "{event}: {told} of {said}");
+    }
+}
+
+/// Traces of policies that a scene has no longer would be taken for its results.
+#[test]
+fn traces_of_an_earlier_run_go() {
+    let folder = TempDir::new().unwrap();
+    let all = "policies = [\"passive\", \"radial\", \"levitation\", \"supervisor\"]";
+    let out = folder.path().join("out");
+    assert!(
+        run(&short_scene(folder.path(), |t| t), &out, &[])
+            .status
+            .success()
+    );
+    fs::write(out.join("trace_notes.txt"), "mine").unwrap();
+    assert!(names(&out).contains(&"trace_supervisor.parquet".to_owned()));
+    let fewer = short_scene(folder.path(), |t| t.replace(all, "policies = [\"radial\"]"));
+    assert!(run(&fewer, &out, &[]).status.success());
+    assert_eq!(
+        names(&out),
+        [
+            "report.html",
+            "trace_notes.txt",
+            "trace_radial.parquet",
+            "verdict.json"
+        ]
+    );
+}
