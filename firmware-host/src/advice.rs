@@ -7,6 +7,7 @@ mod show;
 mod warnings;
 
 use crate::suggest::{Nominal, Suggested, suggested};
+use crate::supervisor_setup::{Override, replaced};
 use plant_model::analysis::arrest::Arrest;
 use plant_model::analysis::onset::{critical_tangential_speed_m_s, lift_off_speed_m_s};
 use serde::Serialize;
@@ -157,14 +158,14 @@ pub struct OutOfRange {
 }
 
 impl Advice {
-    /// For nominal data. `in_use` is the configuration of a scene that replaces single values.
+    /// For nominal data. `overrides` is what a scene puts in the place of single values.
     ///
     /// # Errors
     /// The first suggested value that the supervisor would refuse.
     pub fn new(
         title: &str,
         nominal: &Nominal,
-        in_use: Option<&Config>,
+        overrides: &[Override],
     ) -> Result<Self, Box<OutOfRange>> {
         let suggested = suggested(nominal);
         let config = &suggested.config;
@@ -183,12 +184,12 @@ impl Advice {
             impact: impact(nominal, config, &limits, &reaction),
             limits,
             reaction,
-            parameters: parameters(&suggested, in_use),
+            parameters: parameters(&suggested, overrides),
             supervisor_table: String::new(),
             warnings: Vec::new(),
         };
         advice.supervisor_table = table(&advice.parameters);
-        advice.warnings = warnings::of(&advice, config);
+        advice.warnings = warnings::of(&advice, &replaced(config, overrides));
         Ok(advice)
     }
 }
@@ -295,14 +296,14 @@ fn unavoidable_m_s(n: &Nominal, force_n: f64, horizon_s: f64) -> f64 {
     (work / (at + (at * at + work).sqrt())).min(c / horizon_s)
 }
 
-fn parameters(suggested: &Suggested, in_use: Option<&Config>) -> Vec<Parameter> {
-    let used = in_use.map(Config::values);
+fn parameters(suggested: &Suggested, overrides: &[Override]) -> Vec<Parameter> {
+    let used = replaced(&suggested.config, overrides).values();
     let row = |(i, (p, value)): (usize, (&supervisor::Parameter, f32))| Parameter {
         name: p.name,
         value,
         unit: p.unit,
         reason: (suggested.reasons.get(i)).map_or(String::new(), |r| r.text.clone()),
-        replaced_by: used.map(|u| u[i]).filter(|u| *u != value),
+        replaced_by: Some(used[i]).filter(|used| *used != value),
     };
     let values = suggested.config.values();
     (PARAMETERS.iter().zip(values).enumerate())

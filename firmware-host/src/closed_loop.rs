@@ -9,12 +9,12 @@ use crate::loads::cuts;
 use crate::policies::{Policy, Seen};
 use crate::policy_kind::PolicyKind;
 use crate::scene::Scene;
-use crate::trace::{Trace, TraceRow};
+use crate::trace::{Said, Trace, TraceRow};
 use crate::verdict::Verdict;
 use plant_model::params::StatorParams;
 use plant_model::{BuildError, Inputs, Options, Plant, PlantError, Snapshot, V2};
 use std::time::Instant;
-use supervisor::Status;
+use supervisor::{Events, Status};
 
 /// Why a run has no result.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -148,6 +148,7 @@ pub fn run_policy(
         steady_n: None,
         changes_done: 0,
         changes: Vec::new(),
+        said: None,
     };
     let ticks = (scene.duration_s * scene.sample_rate_hz).round().max(1.0) as u64;
     for tick in 0..ticks {
@@ -199,6 +200,8 @@ struct Bench<'a> {
     changes_done: usize,
     /// Changes of mode within an advance: a buffer.
     changes: Vec<Snapshot>,
+    /// What the supervisor said to the last sample.
+    said: Option<Said>,
 }
 
 impl Bench<'_> {
@@ -223,7 +226,12 @@ impl Bench<'_> {
             None => self.amplifier.command(tick, with_weight(command_n)),
         }
         self.judge.sample(&now);
+        self.said = self.policy.said();
         self.record(&now, reading.position_m, false);
+        // What happened at this sample is not to be read a second time.
+        if let Some(said) = &mut self.said {
+            said.events = Events::empty();
+        }
 
         let mut from = t;
         while from < t_next {
@@ -301,7 +309,7 @@ impl Bench<'_> {
             plant: *plant,
             measured_m,
             commanded_n: self.amplifier.in_effect_n(),
-            supervisor: self.policy.said(),
+            supervisor: self.said,
             mode_change,
         });
     }

@@ -9,3 +9,16 @@ mod progress;
 pub mod record;
 pub mod run;
 pub mod target;
+
+use crate::scene::Scene;
+use crate::scene_error::SceneError;
+use std::path::Path;
+
+/// A scene, with its warnings said.
+pub(crate) fn load(path: &Path) -> Result<Scene, SceneError> {
+    let scene = Scene::load(path)?;
+    for warning in &scene.warnings {
+        eprintln!("warning: {warning}");
+    }
+    Ok(scene)
+}

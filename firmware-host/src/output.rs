@@ -86,7 +86,7 @@ impl Staging {
         self.publish_over(|_| false)
     }
 
-    /// As [`Self::publish`]; but of the others those are removed that are `stale` by their name.
+    /// As [`Self::publish`]; but of the others those files are removed that are `stale` by their name.
     ///
     /// # Errors
     /// [`OutputError`].
@@ -97,14 +97,16 @@ impl Staging {
                 .map(|entry| entry.map(|e| e.file_name()))
                 .collect::<io::Result<_>>()?;
             names.sort();
-            for entry in std::fs::read_dir(&self.final_place)? {
-                let name = entry?.file_name();
-                if name.to_str().is_some_and(&stale) && !names.contains(&name) {
-                    std::fs::remove_file(self.final_place.join(name))?;
-                }
+            for name in &names {
+                std::fs::rename(self.folder.path().join(name), self.final_place.join(name))?;
             }
-            for name in names {
-                std::fs::rename(self.folder.path().join(&name), self.final_place.join(&name))?;
+            for entry in std::fs::read_dir(&self.final_place)? {
+                let entry = entry?;
+                let name = entry.file_name();
+                let is_stale = name.to_str().is_some_and(&stale) && !names.contains(&name);
+                if is_stale && entry.file_type()?.is_file() {
+                    std::fs::remove_file(entry.path())?;
+                }
             }
             Ok(())
         };

@@ -173,20 +173,20 @@ fn restore(
             }
         };
     };
-    let refused = || {
-        const KEY: &str = "contact.restitution";
-        if !(e > 0.0 && e <= 1.0) {
-            return check.refused(KEY, e, RANGE);
-        }
-        let message = "is fine, but masses and stiffness are too large or too small to compute a damping from";
-        let help = Some("check rotor.mass_kg and the stiffness in [contact]".to_owned());
-        (check.text).error_at_key(KEY, message.to_owned(), help)
+    const KEY: &str = "contact.restitution";
+    if !(e > 0.0 && e <= 1.0) {
+        return Err(check.refused(KEY, e, RANGE));
+    }
+    let no_damping = |with: &str| {
+        let message = format!("gives no finite damping with {with}");
+        let help = Some(format!("check {with}"));
+        (check.text).error_at_key(KEY, message, help)
     };
     match &mut plant.contact.law {
         ContactLaw::Linear(law) => {
             law.damping_n_s_m = damping_for_restitution(e, law.stiffness_n_m, mass_kg)
                 .filter(|d| d.is_finite())
-                .ok_or_else(refused)?;
+                .ok_or_else(|| no_damping("contact.stiffness_n_m and the masses"))?;
         }
         ContactLaw::HuntCrossley(law) => {
             let Some(speed_m_s) = speed.1 else {
@@ -202,7 +202,7 @@ fn restore(
             check.within(speed.0, speed_m_s, 1e-9, 1e6)?;
             law.damping_s_m = hunt_crossley::damping_for_restitution(e, speed_m_s)
                 .filter(|d| d.is_finite())
-                .ok_or_else(refused)?;
+                .ok_or_else(|| no_damping("contact.restitution_speed_m_s"))?;
         }
     }
     Ok(())

@@ -7,9 +7,9 @@ use crate::instruments::Reading;
 use crate::levitation::{Levitation, VelocityFilter};
 use crate::policy_kind::PolicyKind;
 use crate::scene::Scene;
-use crate::trace::{ReadOut, Said};
+use crate::trace::{FlightRecordBytes, ReadOut, Said};
 use plant_model::{Snapshot, V2};
-use supervisor::{Command, Entry, Events, IntegratorHint, Sample, Status, Supervisor};
+use supervisor::{Command, Entry, IntegratorHint, Sample, Status, Supervisor};
 
 /// Who supervises: the product as it is linked here, or wherever else it runs.
 pub trait Supervise: core::fmt::Debug {
@@ -28,11 +28,12 @@ impl Supervise for Supervisor {
     }
 
     fn read_out(&self) -> Option<ReadOut> {
-        let record = self.record();
-        let bytes = record.map(|record| record.entries().flat_map(Entry::to_bytes).collect());
         Some(ReadOut {
             report: self.report(),
-            flight_record: bytes.unwrap_or_default(),
+            flight_record: self.record().map(|record| FlightRecordBytes {
+                entries: record.entries().flat_map(Entry::to_bytes).collect(),
+                crc: record.crc,
+            }),
         })
     }
 }
@@ -182,16 +183,12 @@ impl Policy {
         }
     }
 
-    /// What the supervisor said to the last sample, where there is one; its events only to the first who asks.
-    pub fn said(&mut self) -> Option<Said> {
-        let Self::Supervisor { said, .. } = self else {
-            return None;
-        };
-        let now = *said;
-        if let Some(said) = said {
-            said.events = Events::empty();
+    /// What the supervisor said to the last sample, where there is one.
+    pub fn said(&self) -> Option<Said> {
+        match self {
+            Self::Supervisor { said, .. } => *said,
+            _ => None,
         }
-        now
     }
 
     /// What the supervisor leaves behind, where there is one that can be asked.

@@ -3,7 +3,7 @@
 
 mod axes;
 #[cfg(test)]
-mod fixture;
+pub(crate) mod fixture;
 mod happenings;
 mod panels;
 mod quantities;
@@ -15,7 +15,7 @@ use self::axes::focus_window;
 use self::panels::{Key, PanelRow};
 pub use crate::plot::PlotError;
 use crate::plot::text::{escape, figures};
-use crate::verdict::{Outcome, PolicyRun, SceneSummary, Verdict};
+use crate::verdict::{Disturbed, Outcome, PolicyRun, SceneSummary, Verdict};
 
 const STYLE: &str = include_str!("report/style.css");
 
@@ -64,7 +64,7 @@ fn push_facts(page: &mut String, scene: &SceneSummary) {
     let cap = scene
         .force_max_n
         .map_or("no magnet".to_owned(), |cap| figures(cap) + " N");
-    let facts = [
+    let mut facts = vec![
         ("Clearance", figures(1e3 * scene.clearance_m) + " mm"),
         ("Force cap", cap),
         (
@@ -72,44 +72,52 @@ fn push_facts(page: &mut String, scene: &SceneSummary) {
             format!("above {} m/s backward", figures(scene.whirl_speed_m_s)),
         ),
         ("Duration", figures(1e3 * scene.duration_s) + " ms"),
-        ("Happenings", disturbance_text(scene)),
     ];
+    facts.extend(scene.facts.iter().cloned());
     page.push_str("<dl class=\"facts\">\n");
     for (name, value) in facts {
+        let value = escape(&value);
         push(
             page,
             format_args!("<div><dt>{name}</dt><dd>{value}</dd></div>\n"),
         );
     }
     page.push_str("</dl>\n");
+    push_disturbances(page, &scene.disturbances);
 }
 
-fn disturbance_text(scene: &SceneSummary) -> String {
-    const SHOWN: usize = 6;
-    let all = &scene.disturbances_s;
+fn push_disturbances(page: &mut String, all: &[Disturbed]) {
+    const SHOWN: usize = 20;
     if all.is_empty() {
-        return "none".to_owned();
+        page.push_str("<p class=\"story\">Nothing happens from outside.</p>\n");
+        return;
     }
-    let span = |(from, to): &(f64, f64)| match from == to {
-        true => format!("{} ms", figures(1e3 * from)),
-        false => format!("{}–{} ms", figures(1e3 * from), figures(1e3 * to)),
-    };
-    let mut text = all
-        .iter()
-        .take(SHOWN)
-        .map(span)
-        .collect::<Vec<_>>()
-        .join(", ");
+    page.push_str("<ul class=\"story\">\n");
+    for d in all.iter().take(SHOWN) {
+        let (from, to) = (figures(1e3 * d.from_s), figures(1e3 * d.to_s));
+        let span = match d.from_s == d.to_s {
+            true => from,
+            false => format!("{from}–{to}"),
+        };
+        push(
+            page,
+            format_args!("<li>{span} ms: {}</li>\n", escape(&d.what)),
+        );
+    }
     if all.len() > SHOWN {
-        push(&mut text, format_args!(" and {} more", all.len() - SHOWN));
+        push(
+            page,
+            format_args!("<li>and {} more</li>\n", all.len() - SHOWN),
+        );
     }
-    text
+    page.push_str("</ul>\n");
 }
 
 /// A column of the table: heading, unit, content.
 type Column = (&'static str, &'static str, fn(&Verdict) -> String);
 
-const COLUMNS: [Column; 13] = [
+const COLUMNS: [Column; 14] = [
+    ("First contact", "ms", |v| optional(v.first_contact_s, 1e3)),
     ("Impacts", "", |v| v.impacts.to_string()),
     ("Contact time", "ms", |v| figures(1e3 * v.contact_time_s)),
     ("Peak penetration", "µm", |v| {
@@ -179,8 +187,8 @@ fn push_sections(
     runs: &[PolicyRun],
 ) -> Result<(), PlotError> {
     let text = "Panels of one row share their axes. A whirling run that would stretch them more than \
-                three times has axes of its own, marked <em class=\"own\">own scale</em>. External \
-                forces act where the background is shaded.";
+                three times has axes of its own, marked <em class=\"own\">own scale</em>. The \
+                background is shaded while one of the things listed above goes on.";
     let rows = panels::whole_run(scene, runs)?;
     push_section(page, runs, "Whole run", text, &rows);
     if let Some(window) = focus_window(scene, runs) {
@@ -306,7 +314,13 @@ mod tests {
         broken.whirl_speed_m_s = f64::INFINITY;
         broken.duration_s = f64::NAN;
         broken.force_max_n = None;
-        broken.disturbances_s = vec![(f64::NAN, 1.0), (0.1, 0.1)];
+        broken.disturbances = [(f64::NAN, 1.0), (0.1, 0.1)]
+            .map(|(from_s, to_s)| Disturbed {
+                what: "<load>".to_owned(),
+                from_s,
+                to_s,
+            })
+            .to_vec();
         let mut lost = run(
             "lost",
             Outcome::Whirl,

@@ -24,6 +24,7 @@ pub use crate::amplifier::{AmplifierParams, Outage};
 pub use crate::axis::Axis;
 pub use crate::faults::{Fault, FaultKind};
 pub use crate::loads::{BaseMotion, Disturbance, Shape, TimedChange};
+pub use crate::supervisor_setup::Override;
 
 /// A scene that can be run: every value checked.
 #[derive(Debug, Clone, PartialEq)]
@@ -81,6 +82,8 @@ pub struct Scene {
     pub supervisor: Option<supervisor::Config>,
     /// What it is suggested from.
     pub nominal: Nominal,
+    /// What `[supervisor]` puts in the place of suggested values, also without that policy.
+    pub overrides: Vec<Override>,
     /// Backward contact speed above which a run is whirl \[m/s\].
     pub whirl_speed_m_s: f64,
     /// What is allowed and yet unlikely to be meant, with file and line.
@@ -248,7 +251,12 @@ impl Scene {
         let supervisor = supervised
             .then(|| supervisor_setup::config(&nominal, &overrides, text))
             .transpose()?;
-        let warnings = warnings_of(file, text, (&plant, supervised.then_some(&nominal)));
+        let warnings = warnings_of(
+            file,
+            text,
+            (&plant, &nominal),
+            (&overrides, supervisor.as_ref()),
+        );
         let gravity: V2 = file.rotor.gravity_m_s2.0.into();
         Ok(Self {
             title: file.title.clone(),
@@ -290,6 +298,7 @@ impl Scene {
             warnings,
             supervisor,
             nominal,
+            overrides,
         })
     }
 }
@@ -356,9 +365,18 @@ fn whirl_speed_of(
     if speed > 0.0 {
         return Ok(speed);
     }
-    let message = "is missing: it has a default only with a shaft that centres, or a magnet that can lift the rotor \
-                   off the retainer bearing"
-        .to_owned();
-    let help = Some("say which backward contact speed counts as whirl".to_owned());
-    Err(check.text.error_at_key(KEY, message, help))
+    let say = "say which backward contact speed counts as whirl";
+    if plant.magnet.is_some() {
+        let pull = -plant.rotor.stiffness_n_m * plant.contact.clearance_m;
+        let message = format!(
+            "is {force}: it cannot lift the rotor off the retainer bearing, where the negative stiffness pulls with {pull:.4} \
+             N, and {KEY} has no default"
+        );
+        let help = format!(
+            "check the cap, the negative stiffness and contact.clearance_m; or, if they are meant, {say}"
+        );
+        return Err((check.text).error_at_key("magnet.force_max_n", message, Some(help)));
+    }
+    let message = "is missing: without shaft stiffness and magnet it has no default".to_owned();
+    Err(check.text.error_at_key(KEY, message, Some(say.to_owned())))
 }

@@ -99,7 +99,7 @@ impl SceneText {
             ("expected a sequence", "expected a list in square brackets"),
             ("integer `", "the number `"),
             ("floating point `", "the number `"),
-            ("` as i128", "`, which is too large"),
+            ("` as i128", "`, which is too far from 0"),
         ] {
             message = message.replace(code, words);
         }
@@ -177,13 +177,13 @@ fn written_otherwise(value: &str) -> Option<String> {
                 .chars()
                 .all(|c| c.is_ascii_digit() || "+-.eE_".contains(c))
     };
-    if let Some((whole, decimals)) = value.split_once(',')
-        && digits(whole)
-        && digits(decimals)
-    {
-        return Some(format!("write decimals with a point: {whole}.{decimals}"));
+    if let Some((whole, decimals)) = value.split_once(',') {
+        return (digits(whole) && digits(decimals)).then(|| {
+            "write decimals with a point, thousands without a mark, and two numbers as [x, y]"
+                .to_owned()
+        });
     }
-    let number = value.split_whitespace().next()?;
+    let number = value.trim_end_matches(|c: char| c.is_alphabetic() || "/²³%·° ".contains(c));
     let plain = number.parse::<f64>().is_ok() && number != value;
     plain.then(|| format!("write the number alone: {number}; the key says the unit"))
 }

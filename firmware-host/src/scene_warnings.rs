@@ -3,18 +3,20 @@
 use crate::scene_error::SceneText;
 use crate::scene_file::SceneFile;
 use crate::suggest::{Nominal, SUPERVISED_RATES_HZ, suggested};
+use crate::supervisor_setup::Override;
 use plant_model::params::PlantParams;
-use supervisor::PARAMETERS;
+use supervisor::{Config, PARAMETERS};
 
-/// A start that lies deeper in the wall than this, or would press the rotor deeper \[clearances\].
+/// A start farther from the centre than this, or one that would press the rotor deeper into the wall \[clearances\].
 const DEEP: f64 = 10.0;
+/// Share by which a parameter may differ from the scene's own data.
+const OTHER: f32 = 0.05;
 
-/// Parameters of the supervisor that a data sheet has, and the scene as well.
-const GIVEN: [&str; 10] = [
+/// Parameters of the supervisor that a data sheet has, and the scene as well. Not the damping: none is on the safe side.
+const GIVEN: [&str; 9] = [
     "sample_period_s",
     "mass_kg",
     "stiffness_n_m",
-    "damping_n_s_m",
     "clearance_m",
     "force_max_n",
     "amplifier_lag_s",
@@ -23,11 +25,13 @@ const GIVEN: [&str; 10] = [
     "contact_stiffness_n_m",
 ];
 
-/// Warnings with file and line. `nominal` is what a supervisor that runs is told of the plant.
+/// Warnings with file and line. `nominal` is what a supervisor would be told of the plant, `overrides` what the scene
+/// puts in its place, and `config` what comes of both where one runs.
 pub(crate) fn warnings_of(
     file: &SceneFile,
     text: &SceneText,
-    (plant, nominal): (&PlantParams, Option<&Nominal>),
+    (plant, nominal): (&PlantParams, &Nominal),
+    (overrides, config): (&[Override], Option<&Config>),
 ) -> Vec<String> {
     let warning = |key: &str, message: String| text.error_at_key(key, message, None).to_string();
     let clearance_m = plant.contact.clearance_m;
@@ -48,10 +52,32 @@ pub(crate) fn warnings_of(
         warnings.push(warning("start.velocity_m_s", message));
     }
     if file.rotor.eccentricity_m > clearance_m {
-        let message = "is larger than the clearance; it is in metres".to_owned();
+        let message = "is larger than the clearance; lengths are in metres".to_owned();
         warnings.push(warning("rotor.eccentricity_m", message));
     }
-    let Some(nominal) = nominal else {
+    if clearance_m > file.rotor.contact_radius_m {
+        let message = "is larger than the rotor's radius there; lengths are in metres".to_owned();
+        warnings.push(warning("contact.clearance_m", message));
+    }
+    if let Some(range_m) = file.sensor.range_m
+        && range_m < clearance_m
+    {
+        let message = "is smaller than the clearance: no policy can see a contact".to_owned();
+        warnings.push(warning("sensor.range_m", message));
+    }
+    let suggested = suggested(nominal).config.values();
+    for &(index, given) in overrides {
+        let (name, value) = (PARAMETERS[index].name, suggested[index]);
+        // The table of `advise` holds every bit; what is rounded by hand is meant.
+        let other = (given - value).abs() > OTHER * given.abs().max(value.abs());
+        if GIVEN.contains(&name) && other {
+            let message = format!(
+                "is {given}, and the scene's own data say {value}; a table from another scene?"
+            );
+            warnings.push(warning(&format!("supervisor.{name}"), message));
+        }
+    }
+    let Some(config) = config else {
         return warnings;
     };
     let rate = file.run.sample_rate_hz;
@@ -59,20 +85,14 @@ pub(crate) fn warnings_of(
         let message = format!("is {rate}; the supervisor is made for 10 to 50 kHz");
         warnings.push(warning("run.sample_rate_hz", message));
     }
-    let values = suggested(nominal).config.values();
-    for (parameter, value) in PARAMETERS.iter().zip(values) {
-        let name = parameter.name;
-        let given = file.supervisor.get(name).filter(|_| GIVEN.contains(&name));
-        let given = given.and_then(|v| v.as_float().or_else(|| v.as_integer().map(|i| i as f64)));
-        // The table of `advise` holds every bit; what is rounded by hand is meant.
-        if let Some(given) = given
-            && (given - f64::from(value)).abs() > 0.05 * given.abs().max(f64::from(value).abs())
-        {
-            let message = format!(
-                "is {given}, and the scene's own data say {value}; a table from another scene?"
-            );
-            warnings.push(warning(&format!("supervisor.{name}"), message));
-        }
+    if let Some(needed) = nominal.contact_band_needed()
+        && needed > f64::from(config.contact_band)
+    {
+        let message = format!(
+            "is so far that the supervisor may not see a touch: its contact_band is {}, and should be {needed:.2}",
+            config.contact_band
+        );
+        warnings.push(warning("retainer.centre_offset_m", message));
     }
     warnings
 }

@@ -56,6 +56,13 @@ pub struct Nominal {
 }
 
 impl Nominal {
+    /// Contact band that an offset of the retainer bearing needs \[clearances\], to see a touch on the side that is nearest
+    /// to the sensors' centre; `None` where it has none.
+    pub fn contact_band_needed(&self) -> Option<f64> {
+        let needed = (3.0 * self.sensor_noise_m() + self.centre_offset_m) / self.clearance_m;
+        (self.centre_offset_m != 0.0).then_some(needed)
+    }
+
     /// Period of the tick \[s\].
     pub fn period_s(&self) -> f64 {
         1.0 / self.sample_rate_hz

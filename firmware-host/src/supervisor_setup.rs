@@ -54,8 +54,17 @@ pub(crate) fn key_of(field: &str) -> &'static str {
     }
 }
 
-/// A value of `[supervisor]` by the index of its parameter.
-pub(crate) type Override = (usize, f32);
+/// A value of `[supervisor]`, by the place of its parameter in [`PARAMETERS`].
+pub type Override = (usize, f32);
+
+/// A configuration with single values replaced.
+pub(crate) fn replaced(config: &Config, overrides: &[Override]) -> Config {
+    let mut values = config.values();
+    for (index, value) in overrides {
+        values[*index] = *value;
+    }
+    Config::from_values(values)
+}
 
 /// The parameters that `[supervisor]` gives, each checked by itself: also where the policy is not run, in
 /// which case nothing else would look at them.
@@ -95,11 +104,7 @@ pub(crate) fn config(
     text: &SceneText,
 ) -> Result<Config, SceneError> {
     let suggested = suggested(nominal);
-    let mut values = suggested.config.values();
-    for (index, value) in overrides {
-        values[*index] = *value;
-    }
-    let config = Config::from_values(values);
+    let config = replaced(&suggested.config, overrides);
     // What was given is in its range; what is left was derived.
     config.validate().map_err(|e| {
         let name = e.parameter().name;

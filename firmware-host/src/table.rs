@@ -1,7 +1,7 @@
 //! The verdicts as a table for people and as JSON for programs.
 
 use crate::scene::Scene;
-use crate::supervision::Supervision;
+use crate::supervision::{Account, Supervision};
 use crate::verdict::{Check, Outcome, PolicyRun, Verdict, Verification};
 use comfy_table::{Cell, CellAlignment, Row, Table, presets};
 use std::fmt::Display;
@@ -86,15 +86,24 @@ const SUPERVISION_FIGURES: &[Figure<Supervision>] = &[
     ("highest expected severity", |s| {
         format!("{:.2}", s.expected_severity_max)
     }),
-    ("severity index", |s| {
-        or_dash(s.severity_index.map(f64::from), 1.0, 3)
+    ("sensor faults", |s| s.sensor_faults.to_string()),
+    ("landings seen", |s| {
+        told(s, |account| account.landings.to_string())
     }),
-    ("asks to coast down", |s| match s.coast_down {
-        None => "–".to_owned(),
-        Some(true) => "YES".to_owned(),
-        Some(false) => "no".to_owned(),
+    ("severity index of them", |s| {
+        told(s, |account| format!("{:.3}", account.severity_index))
+    }),
+    ("asks to coast down", |s| {
+        told(s, |account| {
+            let word = if account.coast_down { "YES" } else { "no" };
+            word.to_owned()
+        })
     }),
 ];
+
+fn told(s: &Supervision, word: fn(&Account) -> String) -> String {
+    s.account.as_ref().map_or("–".to_owned(), word)
+}
 
 fn times(count: u64) -> String {
     match count {

@@ -51,8 +51,17 @@ impl Said {
 pub struct ReadOut {
     /// Its own account.
     pub report: Report,
-    /// The entries of the flight record, as in memory; empty where none was frozen.
-    pub flight_record: Vec<u8>,
+    /// The flight record, where one was frozen.
+    pub flight_record: Option<FlightRecordBytes>,
+}
+
+/// A frozen flight record.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct FlightRecordBytes {
+    /// Its entries as in memory, oldest first.
+    pub entries: Vec<u8>,
+    /// Its checksum.
+    pub crc: u32,
 }
 
 /// A run, in time order.

@@ -119,6 +119,17 @@ pub struct PolicyRun {
     pub trace: crate::trace::Trace,
 }
 
+/// Something that happens to the rotor, its magnet or its sensor.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Disturbed {
+    /// What, in words.
+    pub what: String,
+    /// Beginning \[s\].
+    pub from_s: f64,
+    /// End \[s\]; the beginning for a change that stays.
+    pub to_s: f64,
+}
+
 /// What a report needs to know of the scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SceneSummary {
@@ -134,9 +145,10 @@ pub struct SceneSummary {
     pub force_max_n: Option<f64>,
     /// Backward contact speed above which a run counts as whirl \[m/s\].
     pub whirl_speed_m_s: f64,
-    /// When something happens to the rotor, its magnet or its sensor: (from \[s\], to \[s\]), the same for a change that
-    /// stays.
-    pub disturbances_s: Vec<(f64, f64)>,
+    /// What was simulated, in words: name and value.
+    pub facts: Vec<(&'static str, String)>,
+    /// What happens to the rotor, its magnet or its sensor.
+    pub disturbances: Vec<Disturbed>,
     /// Duration of the run \[s\].
     pub duration_s: f64,
 }

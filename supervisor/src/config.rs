@@ -131,7 +131,7 @@ parameters! {
     restitution, "1", 0.0 ..= 0.99, "Restitution of a radial impact on the retainer bearing.";
     observer_pole_flight, "1", 0.0 ..= 0.98, "Pole of the observer in flight: nearer to 1 smooths sensor noise more and follows later.";
     observer_pole_contact, "1", 0.0 ..= 0.98, "Pole of the observer in contact, where the model knows nothing of the contact force.";
-    contact_band, "clearance", 0.001 ..= 0.3, "The rotor counts as touching within this band below the clearance; at least three times the sensor noise and the retainer's offset.";
+    contact_band, "clearance", 0.001 ..= 0.3, "The rotor counts as touching within this band below the clearance; at least the retainer's offset and three times the sensor noise.";
     position_limit, "clearance", 1.5 ..= 20.0, "A measured radius beyond this is refused as implausible.";
     whirl_time_s, "s", 1e-5 ..= 0.1, "Contact that lasts this long is whirl or rest, not a bounce: some periods of the rotor on the contact stiffness.";
     hold_share, "1", 0.1 ..= 0.95, "Largest share of the cap that may push inwards.";

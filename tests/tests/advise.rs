@@ -47,7 +47,7 @@ const AMB: [&str; 10] = [
 ];
 
 fn advice(nominal: &Nominal) -> Advice {
-    Advice::new("test", nominal, None).unwrap()
+    Advice::new("test", nominal, &[]).unwrap()
 }
 
 fn close(value: f64, by_hand: f64) {
@@ -190,7 +190,7 @@ fn warnings_appear_when_they_should() {
         |n: &Nominal| -> Vec<&'static str> { advice(n).warnings.iter().map(|w| w.key).collect() };
     assert!(keys(&quiet).is_empty(), "{:?}", keys(&quiet));
     type Edit = fn(&mut Nominal, f64);
-    let cases: [(&str, Edit, f64, f64); 9] = [
+    let cases: [(&str, Edit, f64, f64); 10] = [
         ("cap_below_load", |n, x| n.load_n = x, 999.0, 1000.0),
         (
             "cap_below_stiffness",
@@ -204,7 +204,8 @@ fn warnings_appear_when_they_should() {
         ("noise", |n, x| n.noise_rms_m = x, 5e-6, 1.45e-5),
         ("lag_drives", |n, x| n.lag_s = x, 1.5e-4, 3.5e-4),
         ("slew", |n, x| n.slew_n_s = Some(x), 1e8, 1e5),
-        ("centre_offset", |n, x| n.centre_offset_m = x, 3e-7, 4e-7),
+        ("load", |n, x| n.load_n = x, 99.0, 100.0),
+        ("centre_offset", |n, x| n.centre_offset_m = x, 9e-7, 1.1e-6),
     ];
     for (key, edit, without, with) in cases {
         for (value, expected) in [(without, false), (with, true)] {
@@ -261,10 +262,15 @@ fn the_pasted_table_gives_the_same_configuration() {
         let text = String::from_utf8(output.stdout).unwrap();
         let table = &text[text.find("[supervisor]").unwrap()..];
         let own = std::fs::read_to_string(&path).unwrap();
-        let with_table = Scene::parse(&name, &format!("{own}\n{table}")).unwrap();
+        // What a scene sets itself makes way for the table.
+        let (before, rest) = own.split_once("[supervisor]").unwrap_or((&own, ""));
+        let after = rest.find("\n[").map_or("", |at| &rest[at..]);
+        let with_table = Scene::parse(&name, &format!("{before}\n{after}\n{table}")).unwrap();
         let config = suggested(&scene.nominal).config;
         assert_eq!(with_table.supervisor.unwrap(), config, "{name}");
-        assert_eq!(scene.supervisor.unwrap(), config, "{name}");
+        if scene.overrides.is_empty() {
+            assert_eq!(scene.supervisor.unwrap(), config, "{name}");
+        }
         pasted += 1;
     }
     assert!(pasted >= 3, "{pasted}");
@@ -288,7 +294,7 @@ fn the_table_holds_every_bit() {
     let scene = Scene::parse("scene", &format!("{own}\n{}", a.supervisor_table)).unwrap();
     assert_eq!(scene.supervisor.unwrap(), config);
     // Against a scene of its own the table says what that replaces.
-    let with_own = Advice::new("test", &scene.nominal, scene.supervisor.as_ref()).unwrap();
+    let with_own = Advice::new("test", &scene.nominal, &scene.overrides).unwrap();
     assert!(
         with_own
             .supervisor_table
@@ -440,7 +446,7 @@ fn the_book_says_how_to_choose_every_parameter() {
     let keys: Vec<&str> = (source.split("warning(").skip(1))
         .filter_map(|rest| rest.trim_start().strip_prefix('"')?.split('"').next())
         .collect();
-    assert_eq!(keys.len(), 10, "{keys:?}");
+    assert_eq!(keys.len(), 11, "{keys:?}");
     for key in keys {
         assert!(page.contains(&format!("| `{key}` |")), "{key}");
     }
@@ -490,23 +496,31 @@ fn a_listing_for_rust_is_the_suggested_configuration() {
     }
 }
 
-/// What a scene sets itself is in the listing.
+/// What a scene sets itself is in the listing, also where it does not run the supervisor, and warnings go beside it.
 #[test]
 fn a_listing_has_what_the_scene_sets() {
     let folder = tempfile::TempDir::new().unwrap();
     let own = std::fs::read_to_string(scene_path("overload_then_release")).unwrap();
     let path = folder.path().join("own.toml");
-    std::fs::write(&path, own + "\n[supervisor]\nhold_share = 0.625\n").unwrap();
+    let all = "policies = [\"passive\", \"radial\", \"levitation\", \"supervisor\"]";
+    assert!(own.contains(all));
+    let own = own.replace(all, "policies = [\"passive\"]") + "\n[supervisor]\nhold_share = 0.625\n";
+    std::fs::write(&path, own).unwrap();
     for (language, line) in [
         ("toml", "hold_share = 0.625 "),
         ("rust", "hold_share: 0.625, "),
         ("c", "[AMB_P_HOLD_SHARE] = 0.625f, "),
     ] {
         let output = advise(&[path.to_str().unwrap(), "--format", language]);
+        let said = stderr(&output);
         let text = String::from_utf8(output.stdout).unwrap();
         assert!(
             text.contains(line) && text.contains("suggested 0.8"),
             "{text}"
+        );
+        assert!(
+            !text.contains("lag_drives") && said.contains("warning: lag_drives"),
+            "{said}"
         );
     }
 }

@@ -117,6 +117,27 @@ fn promises_of_a_quick_run() {
     assert!(json == alone, "depends on the number of threads");
 }
 
+/// Two scenes of one title would be taken for one.
+#[test]
+fn a_title_is_for_one_scene() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = scene_path("overload_then_release");
+    let mut host = host();
+    host.args(["overloads", "--quick", "--out"])
+        .arg(folder.path().join("out"));
+    let output = host
+        .arg("--scene")
+        .arg(&scene)
+        .arg("--scene")
+        .arg(&scene)
+        .output()
+        .unwrap();
+    let error = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{error}");
+    assert!(error.contains("the title \"AMB rotor: overload"), "{error}");
+    assert!(!folder.path().join("out").exists());
+}
+
 /// The kept loops are stable, calm enough and quiet enough, and `tuned` is better than any other that
 /// differs from it in one step of the search.
 #[test]

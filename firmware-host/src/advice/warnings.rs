@@ -22,6 +22,7 @@ pub(super) fn of(advice: &Advice, config: &Config) -> Vec<Warning> {
     let checks = [
         cap_below_load(advice),
         cap_below_stiffness(advice),
+        load(advice),
         rate(advice),
         slow_reaction(advice),
         noise(advice),
@@ -65,6 +66,24 @@ fn cap_below_stiffness(advice: &Advice) -> Option<Warning> {
     );
     let remedy = "a higher cap, a smaller clearance, or less bias";
     warning("cap_below_stiffness", text, remedy)
+}
+
+/// Whatever is said of the cap holds for what a load leaves of it.
+fn load(advice: &Advice) -> Option<Warning> {
+    let (force, load) = (advice.limits.force_n, advice.nominal.load_n);
+    let share = load / force;
+    if !(0.1..1.0).contains(&share) {
+        return None;
+    }
+    let text = format!(
+        "the load takes {:.0} % of the cap, and limits and force_max_n are those of the whole cap",
+        100.0 * share
+    );
+    let remedy = format!(
+        "where the load is carried beside the supervisor's command (bias, fed forward), give the {:.4} N that are left",
+        force - load
+    );
+    warning("load", text, remedy)
 }
 
 fn rate(advice: &Advice) -> Option<Warning> {
@@ -187,10 +206,8 @@ fn slew(advice: &Advice) -> Option<Warning> {
 
 fn centre_offset(advice: &Advice, config: &Config) -> Option<Warning> {
     let n = &advice.nominal;
-    let needed = 3.0 * (n.sensor_noise_m() + n.centre_offset_m) / n.clearance_m;
-    if n.centre_offset_m == 0.0 || needed <= f64::from(config.contact_band) {
-        return None;
-    }
+    let needed =
+        (n.contact_band_needed()).filter(|needed| *needed > f64::from(config.contact_band))?;
     let text = format!(
         "the retainer bearing sits {:.1} µm off the sensors' centre, the contact band is {:.1} µm",
         n.centre_offset_m * 1e6,

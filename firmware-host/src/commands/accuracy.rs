@@ -4,6 +4,7 @@ mod show;
 
 use crate::accuracy::{Reference, Row, sweep};
 use crate::commands::error::{CommandError, print};
+use crate::commands::load;
 use crate::commands::progress::{LateProgress, pool};
 use crate::output::{self, OutputError, Staging};
 use crate::scene::Scene;
@@ -98,7 +99,7 @@ pub fn execute(args: &AccuracyArgs) -> Result<(), CommandError> {
             .map(|(name, text)| Scene::parse(name, text))
             .collect::<Result<Vec<_>, _>>()?,
         paths => (paths.iter())
-            .map(|path| Scene::load(path))
+            .map(|path| load(path))
             .collect::<Result<Vec<_>, _>>()?,
     };
     if let Some(out) = &args.out {

@@ -2,7 +2,7 @@
 
 use crate::advice::{self, Advice, Language, OutOfRange};
 use crate::commands::error::{CommandError, print};
-use crate::scene::Scene;
+use crate::commands::load;
 use crate::suggest::Nominal;
 use crate::supervisor_setup::key_of;
 use std::path::PathBuf;
@@ -162,20 +162,17 @@ impl Numbers {
 pub fn execute(args: &AdviseArgs) -> Result<(), CommandError> {
     let advice = match &args.scene {
         Some(path) => {
-            let scene = Scene::load(path)?;
-            for warning in &scene.warnings {
-                eprintln!("warning: {warning}");
-            }
+            let scene = load(path)?;
             if scene.plant.magnet.is_none() {
                 return Err(CommandError::Numbers {
                     message: format!("{} has no magnet", path.display()),
                     help: "add [magnet]: without one there is nothing to configure".to_owned(),
                 });
             }
-            Advice::new(&scene.title, &scene.nominal, scene.supervisor.as_ref())
+            Advice::new(&scene.title, &scene.nominal, &scene.overrides)
                 .map_err(|e| out_of_range(&e, |field| key_of(field).to_owned()))?
         }
-        None => Advice::new("Plain numbers", &args.numbers.nominal()?.nominal()?, None)
+        None => Advice::new("Plain numbers", &args.numbers.nominal()?.nominal()?, &[])
             .map_err(|e| out_of_range(&e, option))?,
     };
     if args.json {
@@ -184,7 +181,13 @@ pub fn execute(args: &AdviseArgs) -> Result<(), CommandError> {
         return print(&format!("{pretty}\n"));
     }
     print(&match args.format {
-        Some(language) => advice::listing(&advice.parameters, language),
+        Some(language) => {
+            // The listing goes into a file; these are for whoever puts it there.
+            for w in &advice.warnings {
+                eprintln!("warning: {}: {}\n  do: {}", w.key, w.text, w.remedy);
+            }
+            advice::listing(&advice.parameters, language)
+        }
         None => advice::text(&advice),
     })
 }

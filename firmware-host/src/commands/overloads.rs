@@ -1,6 +1,7 @@
 //! `overloads`: the catalogue of overloads, and what it says of the supervisor's promises.
 
 use crate::commands::error::{CommandError, print};
+use crate::commands::load;
 use crate::commands::progress::{LateProgress, pool};
 use crate::output::{self, OutputError, Staging};
 use crate::overloads::histories::{CASES, Way, compare};
@@ -8,7 +9,6 @@ use crate::overloads::page::{self, SCENE_COLUMNS, scene_rows};
 use crate::overloads::plan::{Catalogue, CatalogueError, Extent, Plan, search};
 use crate::overloads::plants::RATES_HZ;
 use crate::overloads::results::ResultRow;
-use crate::scene::Scene;
 use crate::table::{lined, right};
 use comfy_table::{Cell, Table, presets};
 use std::path::PathBuf;
@@ -47,7 +47,7 @@ pub struct OverloadsArgs {
 /// [`CommandError`]; nothing is left behind then.
 pub fn execute(args: &OverloadsArgs) -> Result<(), CommandError> {
     let own = (args.scene.iter())
-        .map(|path| Scene::load(path))
+        .map(|path| load(path))
         .collect::<Result<Vec<_>, _>>()?;
     output::probe(&args.out)?;
     if args.search {
@@ -152,6 +152,10 @@ fn against_histories(args: &OverloadsArgs) -> Result<(), CommandError> {
 fn failed(error: CatalogueError) -> CommandError {
     match error {
         CatalogueError::Scene(error) => error.into(),
+        twice @ CatalogueError::Title { .. } => CommandError::Numbers {
+            message: twice.to_string(),
+            help: "give each scene a title of its own".to_owned(),
+        },
         other => CommandError::other("running the catalogue", other),
     }
 }

@@ -2,14 +2,15 @@
 
 use crate::closed_loop::{Keep, RunError, run};
 use crate::commands::error::{CommandError, Contradiction, print};
+use crate::commands::load;
 use crate::commands::progress::{LateProgress, pool};
 use crate::output::{self, OutputError, Staging};
 use crate::policy_kind::PolicyKind;
 use crate::scene::Scene;
+use crate::scene_words::summary;
 use crate::supervision::Supervision;
-use crate::verdict::{Check, PolicyRun, SceneSummary};
+use crate::verdict::{Check, PolicyRun};
 use crate::{report, table, trace_file, verify};
-use plant_model::params::StatorParams;
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 use std::path::{Path, PathBuf};
 
@@ -37,10 +38,7 @@ pub struct RunArgs {
 /// # Errors
 /// [`CommandError`]; nothing is left behind then, except by [`CommandError::Contradicted`].
 pub fn execute(args: &RunArgs) -> Result<(), CommandError> {
-    let scene = Scene::load(&args.scene)?;
-    for warning in &scene.warnings {
-        eprintln!("warning: {warning}");
-    }
+    let scene = load(&args.scene)?;
     let out = args
         .out
         .clone()
@@ -75,10 +73,20 @@ pub fn execute(args: &RunArgs) -> Result<(), CommandError> {
 
 /// Whether a file is a run's of one policy: an earlier one may have had policies that this one has not, and what they
 /// left would be taken for results of this scene.
-fn of_a_policy(name: &str) -> bool {
-    [("trace_", ".parquet"), ("record_", ".bin")]
-        .iter()
-        .any(|(begin, end)| name.starts_with(begin) && name.ends_with(end))
+fn of_a_policy(file: &str) -> bool {
+    (PolicyKind::ALL.iter()).any(|kind| {
+        [trace_name(kind.name()), record_name(kind.name())]
+            .iter()
+            .any(|n| n == file)
+    })
+}
+
+fn trace_name(policy: &str) -> String {
+    format!("trace_{policy}.parquet")
+}
+
+fn record_name(policy: &str) -> String {
+    format!("record_{policy}.bin")
 }
 
 /// Checks that end with another outcome than their run.
@@ -162,15 +170,14 @@ fn write_results(
     let path = staging.path("verdict.json");
     std::fs::write(&path, format!("{verdicts}\n")).map_err(in_file(&path))?;
     for run in runs {
-        let path = staging.path(&format!("trace_{}.parquet", run.name));
+        let path = staging.path(&trace_name(&run.name));
         let file = std::fs::File::create(&path).map_err(in_file(&path))?;
         trace_file::write(&run.trace, file)
             .map_err(|e| CommandError::other("writing a trace", e))?;
-        if let Some(read_out) = &run.trace.read_out
-            && !read_out.flight_record.is_empty()
-        {
-            let path = staging.path(&format!("record_{}.bin", run.name));
-            std::fs::write(&path, &read_out.flight_record).map_err(in_file(&path))?;
+        let read_out = run.trace.read_out.as_ref();
+        if let Some(record) = read_out.and_then(|read_out| read_out.flight_record.as_ref()) {
+            let path = staging.path(&record_name(&run.name));
+            std::fs::write(&path, &record.entries).map_err(in_file(&path))?;
         }
     }
     let html = report::html(&summary(scene), runs)
@@ -178,34 +185,4 @@ fn write_results(
     let path = staging.path("report.html");
     std::fs::write(&path, html).map_err(in_file(&path))?;
     Ok(())
-}
-
-/// Loads, outages, faults and changes, in order of time.
-fn happenings_s(scene: &Scene) -> Vec<(f64, f64)> {
-    let mut all: Vec<(f64, f64)> = scene.loads().map(|d| (d.start_s, d.end_s())).collect();
-    all.extend(scene.outages.iter().map(|o| (o.start_s, o.end_s())));
-    all.extend(scene.faults.iter().map(|f| (f.start_s, f.end_s())));
-    all.extend(scene.changes.iter().map(|c| (c.at_s, c.at_s)));
-    // What goes on for ever goes on to the end.
-    for (_, end_s) in &mut all {
-        *end_s = end_s.min(scene.duration_s);
-    }
-    all.sort_by(|a, b| a.0.total_cmp(&b.0));
-    all
-}
-
-fn summary(scene: &Scene) -> SceneSummary {
-    SceneSummary {
-        title: scene.title.clone(),
-        story: scene.story.clone(),
-        clearance_m: scene.plant.contact.clearance_m,
-        out_of_round: match scene.plant.stator {
-            StatorParams::RigidEllipse(e) => Some((e.ellipticity, e.long_axis_rad)),
-            _ => None,
-        },
-        force_max_n: scene.plant.magnet.map(|m| m.force_max_n),
-        whirl_speed_m_s: scene.whirl_speed_m_s,
-        disturbances_s: happenings_s(scene),
-        duration_s: scene.duration_s,
-    }
 }

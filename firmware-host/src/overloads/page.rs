@@ -158,7 +158,8 @@ pub fn scenes(catalogue: &Catalogue) -> Vec<(String, String)> {
         .collect()
 }
 
-fn slug(name: &str) -> String {
+/// Name of the file of a scene, without its ending.
+pub(super) fn slug(name: &str) -> String {
     let mut slug = String::new();
     for c in name.chars() {
         match c {
@@ -192,11 +193,10 @@ pub const SCENE_COLUMNS: [&str; 12] = [
 /// A scene in figures, medians over the seeds: a row for each plant, rate and policy.
 pub fn scene_rows(results: &[&ResultRow]) -> Vec<[String; SCENE_COLUMNS.len()]> {
     let mut groups: BTreeMap<(&str, u64, usize), Vec<&ResultRow>> = BTreeMap::new();
-    for (number, row) in results.iter().enumerate() {
-        // Policies of a scene of one's own that have no seat stay in the order in which they ran.
+    for row in results {
+        // Policies of a scene of one's own that have no seat come last: there is one, `levitation`.
         let order = (Seat::ALL.iter()).position(|s| s.name() == row.policy);
-        let same = || results.iter().position(|r| r.policy == row.policy);
-        let order = order.unwrap_or_else(|| Seat::ALL.len() + same().unwrap_or(number));
+        let order = order.unwrap_or(Seat::ALL.len());
         let key = (row.plant.as_str(), row.rate_hz as u64, order);
         groups.entry(key).or_default().push(row);
     }
@@ -225,23 +225,24 @@ fn scene_row(plant: &str, rate_hz: u64, rows: &[&ResultRow]) -> [String; SCENE_C
         .collect();
     let recovered = rows.iter().filter(|r| r.recovered()).count();
     let back = of(&|m| m.relevitation_time_s.unwrap_or(f64::NAN));
+    let figure = |value: f64, digits: usize| match value.is_nan() {
+        // No run of these can be trusted.
+        true => "–".to_owned(),
+        false => format!("{value:.digits$}"),
+    };
     [
         plant.to_owned(),
-        (rate_hz / 1000).to_string(),
+        (1e-3 * rate_hz as f64).to_string(),
         rows.first().map_or("", |r| r.policy).to_owned(),
         format!("{recovered} of {}", rows.len()),
         outcomes.join(", "),
-        format!("{:.0}", of(&|m| m.impacts as f64)),
-        format!("{:.0}", of(&|m| m.contacts_over_20_mm_s as f64)),
-        format!("{:.0}", of(&|m| m.peak_contact_force_n)),
-        format!("{:.3}", of(&|m| m.contact_impulse_n_s)),
-        format!("{:.2}", 1e3 * of(&|m| m.contact_time_s)),
-        format!("{:.3}", of(&|m| m.peak_backward_speed_m_s)),
-        if back.is_nan() {
-            "–".to_owned()
-        } else {
-            format!("{:.2}", 1e3 * back)
-        },
+        figure(of(&|m| m.impacts as f64), 0),
+        figure(of(&|m| m.contacts_over_20_mm_s as f64), 0),
+        figure(of(&|m| m.peak_contact_force_n), 0),
+        figure(of(&|m| m.contact_impulse_n_s), 3),
+        figure(1e3 * of(&|m| m.contact_time_s), 2),
+        figure(of(&|m| m.peak_backward_speed_m_s), 3),
+        figure(1e3 * back, 2),
     ]
 }
 

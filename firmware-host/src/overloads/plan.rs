@@ -2,6 +2,7 @@
 
 use super::catalogue::{Case, cases};
 use super::found::{Found, Row, kept};
+use super::page::slug;
 use super::plants::{PlantCase, RATES_HZ, plants};
 use super::promises::{Harm, Promise, against_levitation, of_results, of_sweeps};
 use super::results::{ResultRow, run_case, run_own};
@@ -14,6 +15,7 @@ use crate::scene::Scene;
 use crate::scene_error::SceneError;
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 use serde::Serialize;
+use std::collections::BTreeSet;
 
 /// How much is run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -50,6 +52,12 @@ pub enum CatalogueError {
     /// A plant of the catalogue is not valid.
     #[error(transparent)]
     Scene(#[from] SceneError),
+    /// Two scenes would share a page.
+    #[error("the title \"{title}\" is that of another scene, or as good as")]
+    Title {
+        /// Title.
+        title: String,
+    },
     /// A run of a sweep cannot be trusted.
     #[error("{plant}, {policy}: {reason}")]
     Run {
@@ -113,7 +121,7 @@ impl Plan {
     /// Sets every plant up.
     ///
     /// # Errors
-    /// [`CatalogueError::Scene`], [`CatalogueError::NotFound`].
+    /// [`CatalogueError::Scene`], [`CatalogueError::NotFound`], [`CatalogueError::Title`].
     pub fn new(extent: Extent, own: Vec<Scene>) -> Result<Self, CatalogueError> {
         let mut places = Vec::new();
         for rate_hz in RATES_HZ {
@@ -128,6 +136,12 @@ impl Plan {
                     found,
                 });
             }
+        }
+        let of_catalogue = places.iter().flat_map(|place| &place.cases);
+        let mut taken: BTreeSet<String> = of_catalogue.map(|case| slug(&case.name)).collect();
+        if let Some(twice) = own.iter().find(|scene| !taken.insert(slug(&scene.title))) {
+            let title = twice.title.clone();
+            return Err(CatalogueError::Title { title });
         }
         Ok(Self {
             extent,

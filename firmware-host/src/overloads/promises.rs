@@ -176,7 +176,7 @@ pub fn against_levitation(rows: &[ResultRow], alone: &str) -> Vec<Harm> {
             ratios.get(index).copied().unwrap_or(f64::NAN)
         };
         all.push(Harm {
-            place: format!("{plant}, {} kHz: {scene}", rate / 1000),
+            place: format!("{plant}, {} kHz: {scene}", 1e-3 * rate as f64),
             force_ratio: median(&ratios),
             force_ratio_95: at(0.95),
             recovered_alone: other.iter().filter(|r| r.recovered()).count(),

@@ -69,9 +69,9 @@ fn events(run: &PolicyRun) -> Option<Interval> {
 
 /// Disturbance intervals \[ms\].
 pub(super) fn disturbances(scene: &SceneSummary) -> Vec<Interval> {
-    let spans = scene.disturbances_s.iter();
+    let spans = scene.disturbances.iter();
     spans
-        .filter_map(|(from, to)| Interval::of([1e3 * from, 1e3 * to]))
+        .filter_map(|d| Interval::of([1e3 * d.from_s, 1e3 * d.to_s]))
         .collect()
 }
 

@@ -17,7 +17,8 @@ pub(super) fn scene() -> SceneSummary {
         out_of_round: None,
         force_max_n: Some(500.0),
         whirl_speed_m_s: 1.0,
-        disturbances_s: Vec::new(),
+        facts: vec![("Mass", "10 kg".to_owned())],
+        disturbances: Vec::new(),
         duration_s: 0.4,
     }
 }
@@ -63,7 +64,7 @@ fn verdict(outcome: Outcome) -> Verdict {
 }
 
 /// On the x axis, moving up, with spin.
-pub(super) fn row(t_s: f64, contact: bool) -> TraceRow {
+pub(crate) fn row(t_s: f64, contact: bool) -> TraceRow {
     let plant = Snapshot {
         t_s,
         position_m: V2::new(if contact { 2.1e-4 } else { 1e-4 }, 0.0),

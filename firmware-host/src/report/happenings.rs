@@ -2,7 +2,7 @@
 
 use super::push;
 use crate::plot::text::{escape, figures};
-use crate::supervision::{Happening, happenings};
+use crate::supervision::{Happening, Happenings, names};
 use crate::verdict::PolicyRun;
 
 /// Rows of a table; what comes after them is in the trace.
@@ -16,24 +16,34 @@ pub(super) fn push_tables(page: &mut String, runs: &[PolicyRun]) {
 }
 
 fn push_table(page: &mut String, run: &PolicyRun) {
-    let (name, happenings) = (escape(&run.name), happenings(&run.trace));
+    let (name, happenings) = (escape(&run.name), Happenings::of(&run.trace));
     push(
         page,
         format_args!(
             "<section class=\"scroll\">\n<table class=\"words\">\n<caption>What happened: {name}</caption>\n<thead><tr>\
              <th scope=\"col\">At <small>ms</small></th><th scope=\"col\">Mode</th>\
-             <th scope=\"col\">Expected severity <small>of what the cap can stop</small></th>\
+             <th scope=\"col\">Expected severity</th>\
              <th scope=\"col\">Bound by</th><th scope=\"col\">Events</th></tr></thead>\n<tbody>\n"
         ),
     );
-    for happening in happenings.iter().take(MOST_ROWS) {
+    for happening in happenings.all.iter().take(MOST_ROWS) {
         push_row(page, happening);
     }
-    page.push_str("</tbody>\n</table>\n<p class=\"note\">Samples at which the mode changed or something happened; touches and \
-                   lift-offs that changed nothing are counted.");
-    if happenings.len() > MOST_ROWS {
-        let more = happenings.len() - MOST_ROWS;
-        push(page, format_args!(" {more} more are in the trace."));
+    page.push_str(
+        "</tbody>\n</table>\n<p class=\"note\">Samples at which the mode changed or something happened, as the supervisor saw it; \
+         touches that changed nothing are counted. Expected severity: backward speed after the impacts to come, if \
+         nobody brakes, over the highest that the cap can arrest.",
+    );
+    match happenings.all.len().checked_sub(MOST_ROWS) {
+        Some(more) if more > 0 => push(page, format_args!(" {more} more are in the trace.")),
+        _ if happenings.touches_after > 0 => {
+            let touches = happenings.touches_after;
+            push(
+                page,
+                format_args!(" After the last of them: {touches} touches."),
+            );
+        }
+        _ => {}
     }
     page.push_str("</p>\n</section>\n");
 }
@@ -46,8 +56,14 @@ fn push_row(page: &mut String, happening: &Happening) {
             "<tr><th scope=\"row\">{t_ms:.3}</th><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
             said.mode.name(),
             figures(said.severity.into()),
-            happening.limits(),
-            happening.events(),
+            names(said.limits.iter_names()),
+            match happening.touches_before {
+                0 => names(said.events.iter_names()),
+                touches => format!(
+                    "{}, {touches} touches before",
+                    names(said.events.iter_names())
+                ),
+            },
         ),
     );
 }

@@ -139,7 +139,7 @@ typedef int32_t amb_code;
 #define AMB_P_RESTITUTION 9 /**< 1, 0 to 0.99: Restitution of a radial impact on the retainer bearing. */
 #define AMB_P_OBSERVER_POLE_FLIGHT 10 /**< 1, 0 to 0.98: Pole of the observer in flight: nearer to 1 smooths sensor noise more and follows later. */
 #define AMB_P_OBSERVER_POLE_CONTACT 11 /**< 1, 0 to 0.98: Pole of the observer in contact, where the model knows nothing of the contact force. */
-#define AMB_P_CONTACT_BAND 12 /**< clearance, 0.001 to 0.3: The rotor counts as touching within this band below the clearance; at least three times the sensor noise and the retainer's offset. */
+#define AMB_P_CONTACT_BAND 12 /**< clearance, 0.001 to 0.3: The rotor counts as touching within this band below the clearance; at least the retainer's offset and three times the sensor noise. */
 #define AMB_P_POSITION_LIMIT 13 /**< clearance, 1.5 to 20: A measured radius beyond this is refused as implausible. */
 #define AMB_P_WHIRL_TIME_S 14 /**< s, 1e-5 to 0.1: Contact that lasts this long is whirl or rest, not a bounce: some periods of the rotor on the contact stiffness. */
 #define AMB_P_HOLD_SHARE 15 /**< 1, 0.1 to 0.95: Largest share of the cap that may push inwards. */

@@ -1,0 +1,181 @@
+//! A scene in words, for the head of its report.
+
+use crate::plot::text::figures;
+use crate::scene::{Axis, Fault, FaultKind, Outage, Scene, Shape, TimedChange};
+use crate::verdict::{Disturbed, SceneSummary};
+use plant_model::V2;
+use plant_model::params::{SlidingFriction, SpinParams, StatorParams};
+use std::f64::consts::TAU;
+
+/// What a report needs to know of a scene.
+pub(crate) fn summary(scene: &Scene) -> SceneSummary {
+    SceneSummary {
+        title: scene.title.clone(),
+        story: scene.story.clone(),
+        clearance_m: scene.plant.contact.clearance_m,
+        out_of_round: match scene.plant.stator {
+            StatorParams::RigidEllipse(e) => Some((e.ellipticity, e.long_axis_rad)),
+            _ => None,
+        },
+        force_max_n: scene.plant.magnet.map(|m| m.force_max_n),
+        whirl_speed_m_s: scene.whirl_speed_m_s,
+        facts: facts(scene),
+        disturbances: disturbances(scene),
+        duration_s: scene.duration_s,
+    }
+}
+
+/// What was simulated, beside what the summary has in numbers.
+fn facts(scene: &Scene) -> Vec<(&'static str, String)> {
+    let (rotor, spin_hz) = (&scene.plant.rotor, scene.start.spin_rad_s / TAU);
+    let held = match scene.plant.spin {
+        SpinParams::Held => ", held",
+        SpinParams::Free { .. } => "",
+    };
+    let friction = match scene.plant.friction.sliding {
+        SlidingFriction::Constant { coefficient } => figures(coefficient),
+        SlidingFriction::Falling {
+            at_rest, at_speed, ..
+        } => format!("{} falling to {}", figures(at_rest), figures(at_speed)),
+    };
+    let weight_n = scene.weight_n.norm();
+    let mut facts = vec![
+        ("Mass", figures(rotor.mass_kg) + " kg"),
+        ("Stiffness", figures(rotor.stiffness_n_m) + " N/m"),
+        ("Spin", format!("{} Hz{held}", figures(spin_hz))),
+        ("Friction", friction),
+        (
+            "Contact stiffness",
+            figures(scene.plant.contact.stiffness_n_m()) + " N/m",
+        ),
+        (
+            "Control rate",
+            figures(1e-3 * scene.sample_rate_hz) + " kHz",
+        ),
+        (
+            "Sensor noise",
+            format!(
+                "{} µm, seed {}",
+                figures(1e6 * scene.sensor.noise_rms_m),
+                scene.seed
+            ),
+        ),
+    ];
+    if weight_n > 0.0 {
+        let fed = if scene.feed_forward_n == V2::zeros() {
+            ""
+        } else {
+            ", fed forward"
+        };
+        facts.push(("Weight", format!("{} N{fed}", figures(weight_n))));
+    }
+    if rotor.eccentricity_m > 0.0 {
+        facts.push(("Eccentricity", figures(1e6 * rotor.eccentricity_m) + " µm"));
+    }
+    facts.push((
+        "Program",
+        format!("firmware-host {}", env!("CARGO_PKG_VERSION")),
+    ));
+    facts
+}
+
+/// Loads, outages, faults and changes, in order of time.
+fn disturbances(scene: &Scene) -> Vec<Disturbed> {
+    let vector = |v: V2| format!("[{}, {}]", figures(v.x), figures(v.y));
+    let disturbed = |what: String, from_s: f64, to_s: f64| Disturbed {
+        what,
+        from_s,
+        // What goes on for ever goes on to the end.
+        to_s: to_s.min(scene.duration_s),
+    };
+    let mut all = Vec::new();
+    for d in &scene.disturbances {
+        let what = format!("force {} N{}", vector(d.force_n), course(&d.shape));
+        all.push(disturbed(what, d.start_s, d.end_s()));
+    }
+    for b in &scene.base_motions {
+        let what = format!(
+            "base motion {} m/s²{}",
+            vector(b.acceleration_m_s2),
+            course(&b.shape)
+        );
+        all.push(disturbed(what, b.start_s, b.start_s + b.duration_s));
+    }
+    for o in &scene.outages {
+        all.push(disturbed(outage(o), o.start_s, o.end_s()));
+    }
+    for f in &scene.faults {
+        all.push(disturbed(fault(f), f.start_s, f.end_s()));
+    }
+    for c in &scene.changes {
+        all.push(disturbed(change(c), c.at_s, c.at_s));
+    }
+    all.sort_by(|a, b| a.from_s.total_cmp(&b.from_s));
+    all
+}
+
+fn course(shape: &Shape) -> String {
+    match shape {
+        Shape::Constant => String::new(),
+        Shape::HalfSine => ", half a sine".to_owned(),
+        Shape::Sine { frequency_hz, .. } => format!(", sine of {} Hz", figures(*frequency_hz)),
+    }
+}
+
+fn along(axis: Axis) -> &'static str {
+    match axis {
+        Axis::X => " along x",
+        Axis::Y => " along y",
+        Axis::Both => "",
+    }
+}
+
+fn outage(o: &Outage) -> String {
+    let known = if o.known { "known" } else { "unknown" };
+    format!("amplifier out{}, {known} to the firmware", along(o.axis))
+}
+
+fn fault(f: &Fault) -> String {
+    let micrometres = |m: f64| figures(1e6 * m) + " µm";
+    let what = match f.kind {
+        FaultKind::Nan => "not a number".to_owned(),
+        FaultKind::Infinity => "infinity".to_owned(),
+        FaultKind::Zero => "zero".to_owned(),
+        FaultKind::Rail => "end of the range".to_owned(),
+        FaultKind::Stuck => "stuck".to_owned(),
+        FaultKind::Offset(m) => format!("{} too much", micrometres(m)),
+        FaultKind::Gain(gain) => format!("{} times", figures(gain)),
+        FaultKind::Inverted => "inverted".to_owned(),
+        FaultKind::Swapped => "axes swapped".to_owned(),
+        FaultKind::Noise(times) => format!("{} times the noise", figures(times)),
+        FaultKind::Spikes { rate_hz, size_m } => {
+            format!(
+                "spikes of {}, {} a second",
+                micrometres(size_m),
+                figures(rate_hz)
+            )
+        }
+        FaultKind::Dropout => "no samples".to_owned(),
+        FaultKind::Delay(samples) => format!("{samples} samples late"),
+        FaultKind::Bits(bits) => format!("{bits} bits"),
+        FaultKind::Oscillation {
+            frequency_hz,
+            amplitude_m,
+        } => format!(
+            "oscillation of {} at {} Hz",
+            micrometres(amplitude_m),
+            figures(frequency_hz)
+        ),
+    };
+    format!("sensor fault{}: {what}", along(f.axis))
+}
+
+fn change(c: &TimedChange) -> String {
+    let values = [
+        (c.change.eccentricity_m).map(|m| format!("eccentricity {} µm", figures(1e6 * m))),
+        (c.change.friction_coefficient).map(|mu| format!("friction {}", figures(mu))),
+        (c.change.drive_torque_n_m).map(|t| format!("drive torque {} N m", figures(t))),
+    ];
+    let values: Vec<String> = values.into_iter().flatten().collect();
+    format!("from now on {}", values.join(", "))
+}
