@@ -72,6 +72,14 @@ fn facts(scene: &Scene) -> Vec<(&'static str, String)> {
     if rotor.eccentricity_m > 0.0 {
         facts.push(("Eccentricity", figures(1e6 * rotor.eccentricity_m) + " µm"));
     }
+    let offset_m = scene.centre_offset_m.norm();
+    if offset_m > 0.0 {
+        let offset = figures(1e6 * offset_m);
+        facts.push((
+            "Retainer bearing",
+            format!("{offset} µm off the sensors' centre"),
+        ));
+    }
     facts.push((
         "Program",
         format!("firmware-host {}", env!("CARGO_PKG_VERSION")),
@@ -178,4 +186,45 @@ fn change(c: &TimedChange) -> String {
     ];
     let values: Vec<String> = values.into_iter().flatten().collect();
     format!("from now on {}", values.join(", "))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn said(scene: &str) -> (String, Vec<String>) {
+        let summary = summary(&Scene::parse("test", scene).unwrap());
+        let facts: Vec<String> = (summary.facts.iter())
+            .map(|(name, value)| format!("{name} {value}"))
+            .collect();
+        let spans = (summary.disturbances.iter())
+            .map(|d| format!("{} to {}: {}", d.from_s, d.to_s, d.what))
+            .collect();
+        (facts.join("; "), spans)
+    }
+
+    #[test]
+    fn a_scene_is_told_whole() {
+        let scene = include_str!("../scenes/shock_15_g_on_amb.toml");
+        let (facts, _) = said(scene);
+        for fact in ["Mass 10 kg", "Spin 200 Hz", "20 µm off", "seed 1"] {
+            assert!(facts.contains(fact), "{facts}");
+        }
+        let more = "
+            [[disturbance]]\nstart_s = 0.01\nduration_s = 1.0\nforce_n = [3.0, -4.0]\nshape = \"sine\"\nfrequency_hz = 60.0
+            [[outage]]\nstart_s = 0.03\nduration_s = 0.01\naxis = \"y\"\nknown = true
+            [[fault]]\nstart_s = 0.04\nduration_s = 0.01\nkind = \"offset\"\nvalue_m = 2e-5\naxis = \"x\"
+            [[change]]\nat_s = 0.05\nfriction_coefficient = 0.3\neccentricity_m = 2e-6\n";
+        let (_, spans) = said(&format!("{scene}{more}"));
+        assert_eq!(
+            spans,
+            [
+                "0.01 to 0.1: force [3, \u{2212}4] N, sine of 60 Hz",
+                "0.02 to 0.031: base motion [147, 0] m/s², half a sine",
+                "0.03 to 0.04: amplifier out along y, known to the firmware",
+                "0.04 to 0.05: sensor fault along x: 20 µm too much",
+                "0.05 to 0.05: from now on eccentricity 2 µm, friction 0.3",
+            ]
+        );
+    }
 }
