@@ -4,7 +4,7 @@
 //! observer may be slow and smooth. In contact it is blind for the contact force and must be quick.
 
 use crate::coeffs::{Coeffs, MAX_DELAY};
-use crate::guard::Actuator;
+use crate::reading::Actuator;
 use crate::scalar::Scalar;
 use crate::spin::Spin;
 use crate::unbalance::{Turn, Unbalance};

@@ -5,111 +5,12 @@
 //! in a row since the last good one make a fault, and how many depends on how sure the refusal is.
 
 use crate::coeffs::Coeffs;
+use crate::reading::{Facts, Reading};
 use crate::scalar::Scalar;
 use crate::signal::{CoreSample, Events, Refusal, Status};
 use crate::spin::Spin;
+use crate::still::Still;
 use crate::vec2::Vec2;
-
-bitflags::bitflags! {
-    /// What the guard has found, in one register.
-    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-    pub(crate) struct Facts: u32 {
-        /// The sample may be used; else the observer runs on its model.
-        const USED = 1;
-        /// The bearing may act.
-        const ON = 1 << 1;
-        /// Position has been implausible for too long.
-        const FAULTY = 1 << 2;
-        /// The observer has to start anew.
-        const ANEW = 1 << 3;
-        /// Nothing can act along x, along y.
-        const X_LOST = 1 << 4;
-        const Y_LOST = 1 << 5;
-        /// The applied force is measured and believed.
-        const MEASURED = 1 << 6;
-        /// The last command came too late.
-        const LATE = 1 << 7;
-        /// Ticks were missed.
-        const MISSED = 1 << 8;
-        /// What the observer has to be told before the tick.
-        const UNUSUAL = Self::FAULTY.bits() | Self::ANEW.bits() | Self::LATE.bits() | Self::MISSED.bits();
-    }
-}
-
-impl Facts {
-    /// Whether an axis is lost.
-    #[inline]
-    pub(crate) fn has_lost(self) -> bool {
-        self.intersects(Self::X_LOST.union(Self::Y_LOST))
-    }
-
-    /// The part of a force that the axes can carry.
-    #[inline]
-    pub(crate) fn carried<S: Scalar>(self, force: Vec2<S>) -> Vec2<S> {
-        if !self.has_lost() {
-            return force;
-        }
-        let on = |lost: Self, force: S| {
-            if self.contains(lost) { S::ZERO } else { force }
-        };
-        Vec2::new(on(Self::X_LOST, force.x), on(Self::Y_LOST, force.y))
-    }
-}
-
-/// What is known of the actuator at this tick.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Actuator<S> {
-    pub(crate) axes: Facts,
-    measured: Vec2<S>,
-}
-
-impl<S: Scalar> Actuator<S> {
-    /// Measured force at this instant \[caps\].
-    #[inline]
-    pub(crate) fn applied(&self) -> Option<Vec2<S>> {
-        (self.axes.contains(Facts::MEASURED)).then_some(self.measured)
-    }
-
-    /// The part of a force that the axes can carry.
-    #[inline]
-    pub(crate) fn carried(&self, force: Vec2<S>) -> Vec2<S> {
-        self.axes.carried(force)
-    }
-}
-
-/// A sample after judgement, per unit.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Reading<S> {
-    facts: Facts,
-    sample: Vec2<S>,
-    measured: Vec2<S>,
-    pub(crate) spin: Spin,
-    /// Ticks since the last call that the observer has to make up for.
-    pub(crate) missed: u32,
-    pub(crate) refusal: Refusal,
-    pub(crate) events: Events,
-}
-
-impl<S: Scalar> Reading<S> {
-    #[inline]
-    pub(crate) fn is(&self, fact: Facts) -> bool {
-        self.facts.intersects(fact)
-    }
-
-    /// `None`: not to be used; the observer runs on its model.
-    #[inline]
-    pub(crate) fn position(&self) -> Option<Vec2<S>> {
-        self.is(Facts::USED).then_some(self.sample)
-    }
-
-    #[inline]
-    pub(crate) fn actuator(&self) -> Actuator<S> {
-        Actuator {
-            axes: self.facts,
-            measured: self.measured,
-        }
-    }
-}
 
 /// Missed ticks over which the observer's model is carried: bounds the time of a tick.
 pub(crate) const MAX_MISSED: u32 = 4;
@@ -127,12 +28,6 @@ struct Refused {
     jumps: u8,
     dropouts: u8,
     stuck: u8,
-}
-
-impl Default for Facts {
-    fn default() -> Self {
-        Self::empty()
-    }
 }
 
 /// Memory of the guard.
@@ -436,55 +331,4 @@ fn beyond<S: Scalar>(speed: S, doubt: S) -> S {
     } else {
         S::ZERO
     }
-}
-
-/// Looks for coordinates that do not change although the rotor moves.
-#[derive(Debug, Clone, Copy, Default)]
-struct Still<S> {
-    last: Option<Vec2<S>>,
-    /// Predicted motion since the last change of each coordinate, as a sum of speeds over ticks.
-    way: Vec2<S>,
-    /// Coordinates that have stood still since the last fault began. One that has changed may rest after it, as
-    /// the rotor may.
-    awaited: [bool; 2],
-}
-
-impl<S: Scalar> Still<S> {
-    /// Whether a coordinate has stood still for more than `most`. That holds until it changes.
-    fn watch(&mut self, position: Vec2<S>, velocity: Vec2<S>, most: S, faulty: bool) -> bool {
-        let [x, y] = match self.last.replace(position) {
-            Some(last) => [position.x == last.x, position.y == last.y],
-            None => [false; 2],
-        };
-        if !(x || y || faulty) {
-            self.way = Vec2::ZERO;
-            return false;
-        }
-        let on = |way: S, step: S, same: bool| match same {
-            false => S::ZERO,
-            true if farther(way, most) => way,
-            true => way + step,
-        };
-        self.way = Vec2::new(on(self.way.x, velocity.x, x), on(self.way.y, velocity.y, y));
-        if faulty {
-            let [awaited_x, awaited_y] = self.awaited;
-            self.awaited = [awaited_x && x, awaited_y && y];
-        }
-        farther(self.way.x, most) || farther(self.way.y, most)
-    }
-
-    /// A fault begins: from here on the model is no evidence.
-    fn freeze(&mut self, most: S) {
-        self.awaited = [farther(self.way.x, most), farther(self.way.y, most)];
-        self.way = Vec2::ZERO;
-    }
-
-    /// After a change of the unit of length no coordinate can be compared with the one before.
-    fn rescale(&mut self) {
-        self.last = None;
-    }
-}
-
-fn farther<S: Scalar>(way: S, most: S) -> bool {
-    way > most || way < -most
 }

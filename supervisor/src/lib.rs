@@ -61,7 +61,7 @@
 //! ```
 //!
 //! Files, each importing only from those above it: `scalar`, `q`, `math`, `vec2`, `signal`, `config`, `coeffs`,
-//! `spin`, `unbalance`, `guard`, `estimate`, `detect`, `course`, `classify`, `phase`, `law`, `limit`, `handover`, `severity`,
+//! `spin`, `unbalance`, `reading`, `still`, `guard`, `estimate`, `detect`, `course`, `classify`, `phase`, `law`, `limit`, `handover`, `severity`,
 //! `recorder`, `per_unit`, `supervisor`, `self_test`, `watch`.
 
 // Unconditional: under `cfg(test)` std's own methods would silently replace micromath's.
@@ -83,12 +83,14 @@ mod math;
 mod per_unit;
 mod phase;
 mod q;
+mod reading;
 mod recorder;
 mod scalar;
 mod self_test;
 mod severity;
 mod signal;
 mod spin;
+mod still;
 mod supervisor;
 mod unbalance;
 mod vec2;

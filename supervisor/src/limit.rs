@@ -1,8 +1,8 @@
 //! The only place that limits forces, and the last word on them.
 
 use crate::coeffs::{Coeffs, FALL};
-use crate::guard::Facts;
 use crate::law::Wanted;
+use crate::reading::Facts;
 use crate::scalar::{Scalar, Slow};
 use crate::signal::Limits;
 use crate::vec2::Vec2;

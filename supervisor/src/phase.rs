@@ -10,7 +10,7 @@
 use crate::classify::Class;
 use crate::coeffs::Coeffs;
 use crate::detect::Findings;
-use crate::guard::{Facts, Reading};
+use crate::reading::{Facts, Reading};
 use crate::scalar::Scalar;
 use crate::signal::{Events, Mode};
 

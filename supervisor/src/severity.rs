@@ -4,8 +4,8 @@
 use crate::coeffs::Coeffs;
 use crate::course::sum_of_impacts;
 use crate::detect::Findings;
-use crate::guard::{Facts, Reading};
 use crate::law::View;
+use crate::reading::{Facts, Reading};
 use crate::scalar::{Scalar, Slow};
 use crate::signal::{Events, Limits, Mode, Report};
 use crate::vec2::Vec2;

@@ -1,5 +1,7 @@
 //! `advise`: closed forms, the suggested configuration, warnings, and the command line.
 
+mod listing;
+
 use firmware_host::advice::Advice;
 use firmware_host::scene::Scene;
 use firmware_host::suggest::{Nominal, suggested};
@@ -449,78 +451,5 @@ fn the_book_says_how_to_choose_every_parameter() {
     assert_eq!(keys.len(), 11, "{keys:?}");
     for key in keys {
         assert!(page.contains(&format!("| `{key}` |")), "{key}");
-    }
-}
-
-/// The fields of a `Config` as Rust writes it.
-fn fields(source: &str) -> Vec<(String, f32)> {
-    let field = |line: &str| {
-        let (name, rest) = line.split_once(':')?;
-        let value = rest.split(',').next()?.trim().parse().ok()?;
-        Some((name.trim_start_matches("//!").trim().to_owned(), value))
-    };
-    source.lines().filter_map(field).collect()
-}
-
-/// What Rust takes is what the table for a scene says, and what the book and the crate show is what is advised: but
-/// for the drive's own limits, and how it is cooled.
-#[test]
-fn a_listing_for_rust_is_the_suggested_configuration() {
-    let advised = |more: &[&str]| {
-        let output = advise(&[&AMB[..], more].concat());
-        assert!(output.status.success(), "{}", stderr(&output));
-        String::from_utf8(output.stdout).unwrap()
-    };
-    let listing = advised(&["--format", "rust"]);
-    let config = suggested(&amb()).config;
-    let values: Vec<(String, f32)> = (PARAMETERS.iter().zip(config.values()))
-        .map(|(p, value)| (p.name.to_owned(), value))
-        .collect();
-    assert_eq!(fields(&listing), values);
-    let table = advised(&["--format", "toml"]);
-    assert!(advised(&[]).ends_with(&table), "{table}");
-
-    let own = ["force_slew_n_s", "continuous_force_n", "thermal_time_s"];
-    for file in ["docs/src/supervisor/linking.md", "supervisor/src/lib.rs"] {
-        let text = std::fs::read_to_string(root().join(file)).unwrap();
-        let (_, rest) = text.split_once("Config {").unwrap();
-        let shown = fields(rest.split_once("};").unwrap().0);
-        assert_eq!(shown.len(), PARAMETERS.len(), "{file}");
-        for ((name, shown), (wanted, value)) in shown.iter().zip(&values) {
-            assert_eq!(name, wanted, "{file}");
-            assert!(
-                shown == value || own.contains(&name.as_str()),
-                "{file}: {name} = {value}"
-            );
-        }
-    }
-}
-
-/// What a scene sets itself is in the listing, also where it does not run the supervisor, and warnings go beside it.
-#[test]
-fn a_listing_has_what_the_scene_sets() {
-    let folder = tempfile::TempDir::new().unwrap();
-    let own = std::fs::read_to_string(scene_path("overload_then_release")).unwrap();
-    let path = folder.path().join("own.toml");
-    let all = "policies = [\"passive\", \"radial\", \"levitation\", \"supervisor\"]";
-    assert!(own.contains(all));
-    let own = own.replace(all, "policies = [\"passive\"]") + "\n[supervisor]\nhold_share = 0.625\n";
-    std::fs::write(&path, own).unwrap();
-    for (language, line) in [
-        ("toml", "hold_share = 0.625 "),
-        ("rust", "hold_share: 0.625, "),
-        ("c", "[AMB_P_HOLD_SHARE] = 0.625f, "),
-    ] {
-        let output = advise(&[path.to_str().unwrap(), "--format", language]);
-        let said = stderr(&output);
-        let text = String::from_utf8(output.stdout).unwrap();
-        assert!(
-            text.contains(line) && text.contains("suggested 0.8"),
-            "{text}"
-        );
-        assert!(
-            !text.contains("lag_drives") && said.contains("warning: lag_drives"),
-            "{said}"
-        );
     }
 }

@@ -1,0 +1,113 @@
+//! What is known of a sample once the guard has judged it.
+
+use crate::scalar::Scalar;
+use crate::signal::{Events, Refusal};
+use crate::spin::Spin;
+use crate::vec2::Vec2;
+
+bitflags::bitflags! {
+    /// What the guard has found, in one register.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    pub(crate) struct Facts: u32 {
+        /// The sample may be used; else the observer runs on its model.
+        const USED = 1;
+        /// The bearing may act.
+        const ON = 1 << 1;
+        /// Position has been implausible for too long.
+        const FAULTY = 1 << 2;
+        /// The observer has to start anew.
+        const ANEW = 1 << 3;
+        /// Nothing can act along x, along y.
+        const X_LOST = 1 << 4;
+        const Y_LOST = 1 << 5;
+        /// The applied force is measured and believed.
+        const MEASURED = 1 << 6;
+        /// The last command came too late.
+        const LATE = 1 << 7;
+        /// Ticks were missed.
+        const MISSED = 1 << 8;
+        /// What the observer has to be told before the tick.
+        const UNUSUAL = Self::FAULTY.bits() | Self::ANEW.bits() | Self::LATE.bits() | Self::MISSED.bits();
+    }
+}
+
+impl Facts {
+    /// Whether an axis is lost.
+    #[inline]
+    pub(crate) fn has_lost(self) -> bool {
+        self.intersects(Self::X_LOST.union(Self::Y_LOST))
+    }
+
+    /// The part of a force that the axes can carry.
+    #[inline]
+    pub(crate) fn carried<S: Scalar>(self, force: Vec2<S>) -> Vec2<S> {
+        if !self.has_lost() {
+            return force;
+        }
+        let on = |lost: Self, force: S| {
+            if self.contains(lost) { S::ZERO } else { force }
+        };
+        Vec2::new(on(Self::X_LOST, force.x), on(Self::Y_LOST, force.y))
+    }
+}
+
+/// What is known of the actuator at this tick.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Actuator<S> {
+    pub(crate) axes: Facts,
+    measured: Vec2<S>,
+}
+
+impl<S: Scalar> Actuator<S> {
+    /// Measured force at this instant \[caps\].
+    #[inline]
+    pub(crate) fn applied(&self) -> Option<Vec2<S>> {
+        (self.axes.contains(Facts::MEASURED)).then_some(self.measured)
+    }
+
+    /// The part of a force that the axes can carry.
+    #[inline]
+    pub(crate) fn carried(&self, force: Vec2<S>) -> Vec2<S> {
+        self.axes.carried(force)
+    }
+}
+
+/// A sample after judgement, per unit.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Reading<S> {
+    pub(crate) facts: Facts,
+    pub(crate) sample: Vec2<S>,
+    pub(crate) measured: Vec2<S>,
+    pub(crate) spin: Spin,
+    /// Ticks since the last call that the observer has to make up for.
+    pub(crate) missed: u32,
+    pub(crate) refusal: Refusal,
+    pub(crate) events: Events,
+}
+
+impl<S: Scalar> Reading<S> {
+    #[inline]
+    pub(crate) fn is(&self, fact: Facts) -> bool {
+        self.facts.intersects(fact)
+    }
+
+    /// `None`: not to be used; the observer runs on its model.
+    #[inline]
+    pub(crate) fn position(&self) -> Option<Vec2<S>> {
+        self.is(Facts::USED).then_some(self.sample)
+    }
+
+    #[inline]
+    pub(crate) fn actuator(&self) -> Actuator<S> {
+        Actuator {
+            axes: self.facts,
+            measured: self.measured,
+        }
+    }
+}
+
+impl Default for Facts {
+    fn default() -> Self {
+        Self::empty()
+    }
+}
