@@ -35,7 +35,7 @@ const FIGURES: &[Figure<Verdict>] = &[
     ("max backward whirl [Hz]", |v| {
         or_dash(v.max_backward_whirl_hz, 1.0, 1)
     }),
-    ("re-levitated after [ms]", |v| {
+    ("re-levitated after last event [ms]", |v| {
         or_dash(v.relevitation_time_s, 1e3, 2)
     }),
     ("energy-audit residual", |v| {

@@ -215,6 +215,9 @@ fn text(record: &FlightRecord, units: Units, compared: bool) -> String {
             Cell::new(events.join(" ")),
         ]);
     }
-    let _ = writeln!(out, "\n{modes}\n\n{happened}");
+    let _ = writeln!(
+        out,
+        "\n{modes}\nthe record ends in the last of them\n\n{happened}"
+    );
     out
 }
