@@ -40,7 +40,7 @@ fn push_table(page: &mut String, run: &PolicyRun) {
             let touches = happenings.touches_after;
             push(
                 page,
-                format_args!(" After the last of them: {touches} touches."),
+                format_args!(" Touches after the last of them: {touches}."),
             );
         }
         _ => {}
@@ -60,7 +60,7 @@ fn push_row(page: &mut String, happening: &Happening) {
             match happening.touches_before {
                 0 => names(said.events.iter_names()),
                 touches => format!(
-                    "{}, {touches} touches before",
+                    "{} (touches before: {touches})",
                     names(said.events.iter_names())
                 ),
             },
