@@ -173,6 +173,7 @@ impl Advice {
             let source = suggested.source(error.parameter().name);
             Box::new(OutOfRange { error, source })
         })?;
+        let in_use = replaced(config, overrides);
         let limits = limits(nominal);
         let reaction = reaction(nominal);
         let noise = Noise::of(nominal, config, &limits);
@@ -184,12 +185,12 @@ impl Advice {
             impact: impact(nominal, config, &limits, &reaction),
             limits,
             reaction,
-            parameters: parameters(&suggested, overrides),
+            parameters: parameters(&suggested, &in_use),
             supervisor_table: String::new(),
             warnings: Vec::new(),
         };
         advice.supervisor_table = table(&advice.parameters);
-        advice.warnings = warnings::of(&advice, &replaced(config, overrides));
+        advice.warnings = warnings::of(&advice, &in_use);
         Ok(advice)
     }
 }
@@ -296,8 +297,8 @@ fn unavoidable_m_s(n: &Nominal, force_n: f64, horizon_s: f64) -> f64 {
     (work / (at + (at * at + work).sqrt())).min(c / horizon_s)
 }
 
-fn parameters(suggested: &Suggested, overrides: &[Override]) -> Vec<Parameter> {
-    let used = replaced(&suggested.config, overrides).values();
+fn parameters(suggested: &Suggested, in_use: &Config) -> Vec<Parameter> {
+    let used = in_use.values();
     let row = |(i, (p, value)): (usize, (&supervisor::Parameter, f32))| Parameter {
         name: p.name,
         value,

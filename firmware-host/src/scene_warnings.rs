@@ -65,17 +65,8 @@ pub(crate) fn warnings_of(
         let message = "is smaller than the clearance: no policy can see a contact".to_owned();
         warnings.push(warning("sensor.range_m", message));
     }
-    let suggested = suggested(nominal).config.values();
-    for &(index, given) in overrides {
-        let (name, value) = (PARAMETERS[index].name, suggested[index]);
-        // The table of `advise` holds every bit; what is rounded by hand is meant.
-        let other = (given - value).abs() > OTHER * given.abs().max(value.abs());
-        if GIVEN.contains(&name) && other {
-            let message = format!(
-                "is {given}, and the scene's own data say {value}; a table from another scene?"
-            );
-            warnings.push(warning(&format!("supervisor.{name}"), message));
-        }
+    if !overrides.is_empty() {
+        warnings.extend(of_another_machine(text, nominal, overrides));
     }
     let Some(config) = config else {
         return warnings;
@@ -95,4 +86,22 @@ pub(crate) fn warnings_of(
         warnings.push(warning("retainer.centre_offset_m", message));
     }
     warnings
+}
+
+/// What the scene tells the supervisor otherwise than it is.
+fn of_another_machine(text: &SceneText, nominal: &Nominal, overrides: &[Override]) -> Vec<String> {
+    let suggested = suggested(nominal).config.values();
+    let warning = |&(index, given): &Override| {
+        let (name, value) = (PARAMETERS[index].name, suggested[index]);
+        // The table of `advise` holds every bit; what is rounded by hand is meant.
+        let other = (given - value).abs() > OTHER * given.abs().max(value.abs());
+        (GIVEN.contains(&name) && other).then(|| {
+            let message = format!(
+                "is {given}, and the scene's own data say {value}; a table from another scene?"
+            );
+            let key = format!("supervisor.{name}");
+            text.error_at_key(&key, message, None).to_string()
+        })
+    };
+    overrides.iter().filter_map(warning).collect()
 }

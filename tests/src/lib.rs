@@ -12,7 +12,7 @@ pub mod unseen;
 
 use firmware_host::scene::Scene;
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Command, Output};
 
 /// Root of the workspace.
 pub fn root() -> PathBuf {
@@ -65,4 +65,14 @@ pub fn host() -> Command {
         binary.display()
     );
     Command::new(binary)
+}
+
+/// What the host's `run` does with a scene: results go to `out`, `more` are further arguments.
+///
+/// # Panics
+/// As [`host`], or if it does not start.
+pub fn run_scene(scene: &Path, out: &Path, more: &[&str]) -> Output {
+    let mut run = host();
+    run.arg("run").arg(scene).arg("--out").arg(out).args(more);
+    run.output().expect("the host starts")
 }

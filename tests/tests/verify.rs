@@ -10,8 +10,7 @@ use plant_model::Method;
 use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::Output;
-use system_tests::{host, scene, scene_names, scene_path};
+use system_tests::{run_scene, scene, scene_names, scene_path};
 use tempfile::TempDir;
 
 fn ridden(scene: &Scene, kind: PolicyKind) -> (Verdict, Trace) {
@@ -101,17 +100,6 @@ fn every_scene_is_confirmed() {
     }
 }
 
-fn command(scene: &Path, out: &Path, more: &[&str]) -> Output {
-    host()
-        .arg("run")
-        .arg(scene)
-        .arg("--out")
-        .arg(out)
-        .args(more)
-        .output()
-        .expect("the host starts")
-}
-
 fn verdict(out: &Path) -> Value {
     serde_json::from_slice(&fs::read(out.join("verdict.json")).unwrap()).unwrap()
 }
@@ -138,10 +126,10 @@ fn checks_change_nothing_else() {
         &[("duration_s = 0.2", "duration_s = 0.04")],
     );
     let (plain, checked) = (folder.path().join("plain"), folder.path().join("checked"));
-    let result = command(&scene, &plain, &[]);
+    let result = run_scene(&scene, &plain, &[]);
     let table = String::from_utf8(result.stdout).unwrap();
     assert!(result.status.success() && !table.contains("estimated error"));
-    let result = command(&scene, &checked, &["--verify", "--threads", "3"]);
+    let result = run_scene(&scene, &checked, &["--verify", "--threads", "3"]);
     let table = String::from_utf8(result.stdout).unwrap();
     assert!(result.status.success(), "{:?}", result.stderr);
     for words in [
@@ -203,8 +191,8 @@ fn a_contradicted_outcome_is_said_and_ends_with_exit_code_1() {
     ];
     let scene = edited(folder.path(), name, &edits);
     let out = folder.path().join("out");
-    assert!(command(&scene, &out, &[]).status.success());
-    let result = command(&scene, &out, &["--verify"]);
+    assert!(run_scene(&scene, &out, &[]).status.success());
+    let result = run_scene(&scene, &out, &["--verify"]);
     let error = String::from_utf8(result.stderr).unwrap();
     let table = String::from_utf8(result.stdout).unwrap();
     assert_eq!(result.status.code(), Some(1), "{error}");
@@ -231,7 +219,7 @@ fn the_method_that_ran_is_named() {
         &[("[rotor]", "rtol = 1e-5\n\n[rotor]")],
     );
     let out = folder.path().join("out");
-    let result = command(&scene, &out, &[]);
+    let result = run_scene(&scene, &out, &[]);
     assert!(result.status.success());
     assert!(String::from_utf8_lossy(&result.stdout).contains("stiff"));
     assert_eq!(verdict(&out)["policies"]["passive"]["method"], "stiff");
@@ -257,7 +245,7 @@ fn a_misspelt_name_is_answered_with_the_right_one() {
         ("mass_kg = 10.0", "mass_kg = 10.0\ncolour = 3", None),
     ] {
         let scene = edited(folder.path(), "overload_then_release", &[(from, to)]);
-        let result = command(&scene, &folder.path().join("out"), &[]);
+        let result = run_scene(&scene, &folder.path().join("out"), &[]);
         let error = String::from_utf8(result.stderr).unwrap();
         assert_eq!(result.status.code(), Some(2), "{error}");
         let guess = meant.map(|name| format!("did you mean {name}?"));
@@ -287,7 +275,7 @@ fn control_rates_beyond_the_supervisors_are_warned_of() {
                 ("duration_s = 0.2", "duration_s = 0.03"),
             ],
         );
-        let result = command(&scene, &folder.path().join("out"), &[]);
+        let result = run_scene(&scene, &folder.path().join("out"), &[]);
         let error = String::from_utf8(result.stderr).unwrap();
         assert!(result.status.success(), "{error}");
         assert_eq!(

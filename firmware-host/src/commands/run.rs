@@ -74,11 +74,8 @@ pub fn execute(args: &RunArgs) -> Result<(), CommandError> {
 /// Whether a file is a run's of one policy: an earlier one may have had policies that this one has not, and what they
 /// left would be taken for results of this scene.
 fn of_a_policy(file: &str) -> bool {
-    (PolicyKind::ALL.iter()).any(|kind| {
-        [trace_name(kind.name()), record_name(kind.name())]
-            .iter()
-            .any(|n| n == file)
-    })
+    let of = |policy| file == trace_name(policy) || file == record_name(policy);
+    PolicyKind::ALL.iter().any(|kind| of(kind.name()))
 }
 
 fn trace_name(policy: &str) -> String {

@@ -50,6 +50,7 @@ fn push_table(page: &mut String, run: &PolicyRun) {
 
 fn push_row(page: &mut String, happening: &Happening) {
     let (t_ms, said) = (1e3 * happening.t_s, happening.said);
+    let events = names(said.events.iter_names());
     push(
         page,
         format_args!(
@@ -58,11 +59,8 @@ fn push_row(page: &mut String, happening: &Happening) {
             figures(said.severity.into()),
             names(said.limits.iter_names()),
             match happening.touches_before {
-                0 => names(said.events.iter_names()),
-                touches => format!(
-                    "{} (touches before: {touches})",
-                    names(said.events.iter_names())
-                ),
+                0 => events,
+                touches => format!("{events} (touches before: {touches})"),
             },
         ),
     );

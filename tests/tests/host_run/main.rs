@@ -6,20 +6,8 @@ mod traces;
 use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::Output;
-use system_tests::{host, scene_path};
+use system_tests::{host, run_scene, scene_path};
 use tempfile::TempDir;
-
-fn run(scene: &Path, out: &Path, more: &[&str]) -> Output {
-    host()
-        .arg("run")
-        .arg(scene)
-        .arg("--out")
-        .arg(out)
-        .args(more)
-        .output()
-        .expect("the host starts")
-}
 
 /// A short scene with noise and all policies, in a folder of its own.
 fn short_scene(folder: &Path, edit: impl Fn(String) -> String) -> PathBuf {
@@ -49,7 +37,7 @@ fn names(folder: &Path) -> Vec<String> {
 fn the_impact_scene_shows_the_table_and_writes_everything() {
     let folder = TempDir::new().unwrap();
     let out = folder.path().join("new").join("results");
-    let result = run(&scene_path("impact_at_40_hz"), &out, &[]);
+    let result = run_scene(&scene_path("impact_at_40_hz"), &out, &[]);
     let table = String::from_utf8(result.stdout).unwrap();
     assert!(
         result.status.success(),
@@ -155,7 +143,11 @@ fn the_same_scene_and_seed_give_the_same_bits_on_any_number_of_threads() {
         .enumerate()
         .map(|(i, threads)| {
             let out = folder.path().join(format!("out{i}"));
-            assert!(run(&scene, &out, &["--threads", threads]).status.success());
+            assert!(
+                run_scene(&scene, &out, &["--threads", threads])
+                    .status
+                    .success()
+            );
             out
         })
         .collect();
@@ -165,7 +157,7 @@ fn the_same_scene_and_seed_give_the_same_bits_on_any_number_of_threads() {
     }
     let other = short_scene(folder.path(), |t| t.replace("seed = 1", "seed = 2"));
     let out = folder.path().join("other_seed");
-    assert!(run(&other, &out, &[]).status.success());
+    assert!(run_scene(&other, &out, &[]).status.success());
     assert_ne!(stripped(&outs[0]), stripped(&out), "the seed must matter");
 }
 
@@ -173,7 +165,7 @@ fn the_same_scene_and_seed_give_the_same_bits_on_any_number_of_threads() {
 fn json_goes_to_standard_output() {
     let folder = TempDir::new().unwrap();
     let scene = short_scene(folder.path(), |t| t);
-    let result = run(&scene, &folder.path().join("out"), &["--json"]);
+    let result = run_scene(&scene, &folder.path().join("out"), &["--json"]);
     assert!(result.status.success());
     let printed: Value = serde_json::from_slice(&result.stdout).unwrap();
     assert_eq!(printed["policies"].as_object().unwrap().len(), 4);
@@ -190,10 +182,10 @@ fn a_scene_may_have_a_nonlinear_contact() {
         })
     };
     let out = folder.path().join("out");
-    let result = run(&hardening("seed = 1"), &out, &["--verify"]);
+    let result = run_scene(&hardening("seed = 1"), &out, &["--verify"]);
     let error = String::from_utf8_lossy(&result.stderr).into_owned();
     assert!(result.status.success(), "{error}");
-    let refused = run(&hardening("method = \"series\""), &out, &[]);
+    let refused = run_scene(&hardening("method = \"series\""), &out, &[]);
     let error = String::from_utf8_lossy(&refused.stderr).into_owned();
     assert_eq!(refused.status.code(), Some(2), "{error}");
     assert!(error.contains("run.method"), "{error}");
@@ -208,7 +200,7 @@ fn a_bearing_may_be_out_of_round() {
     let bore = "[retainer]\nellipticity = 0.05\nlong_axis_deg = 30.0\n\n[friction]";
     let scene = short_scene(folder.path(), |t| t.replacen("[friction]", bore, 1));
     let out = folder.path().join("out");
-    let result = run(&scene, &out, &["--verify"]);
+    let result = run_scene(&scene, &out, &["--verify"]);
     let error = String::from_utf8_lossy(&result.stderr);
     assert!(result.status.success(), "{error}");
     let text = fs::read(out.join("verdict.json")).unwrap();
@@ -223,7 +215,7 @@ fn a_bearing_may_be_out_of_round() {
     let scene = short_scene(folder.path(), |t| {
         (t.replacen("[friction]", bore, 1)).replacen("seed = 1", "seed = 1\nmethod = \"series\"", 1)
     });
-    let result = run(&scene, &out, &[]);
+    let result = run_scene(&scene, &out, &[]);
     assert_eq!(result.status.code(), Some(2));
     let error = String::from_utf8_lossy(&result.stderr);
     assert!(error.contains("retainer.ellipticity"), "{error}");
@@ -238,7 +230,7 @@ fn a_folder_can_be_used_again() {
     fs::create_dir(&out).unwrap();
     fs::write(out.join("notes.txt"), "mine").unwrap();
     fs::write(out.join("verdict.json"), "old").unwrap();
-    assert!(run(&scene, &out, &[]).status.success());
+    assert!(run_scene(&scene, &out, &[]).status.success());
     assert_eq!(fs::read_to_string(out.join("notes.txt")).unwrap(), "mine");
     assert_ne!(fs::read_to_string(out.join("verdict.json")).unwrap(), "old");
     assert_eq!(names(folder.path()), ["out", "short.toml"]);

@@ -1,9 +1,9 @@
 //! What is refused, and what it says then.
 
-use super::{names, run, short_scene};
+use super::{names, short_scene};
 use std::fs;
 use std::path::{Path, PathBuf};
-use system_tests::host;
+use system_tests::{host, run_scene};
 use tempfile::TempDir;
 
 /// Bad scenes: what is changed in a good one, the line and key that the error must name, and what it
@@ -229,7 +229,7 @@ fn bad_scenes_are_refused_with_file_line_key_and_expectation() {
             }
         }
         let out = folder.path().join("out");
-        let result = run(&scene, &out, &[]);
+        let result = run_scene(&scene, &out, &[]);
         let error = String::from_utf8(result.stderr).unwrap();
         let flat: String = error
             .replace("│", " ")
@@ -270,7 +270,7 @@ fn parameters_of_a_supervisor_that_is_not_run_are_checked_too() {
         let text = fs::read_to_string(&scene).unwrap();
         assert!(text.contains(without));
         let out = folder.path().join("out");
-        let result = run(&scene, &out, &[]);
+        let result = run_scene(&scene, &out, &[]);
         let error = String::from_utf8(result.stderr).unwrap();
         let at = format!("short.toml:{}:", text.lines().count());
         (result.status.code(), error.contains(&at), error)
@@ -292,7 +292,7 @@ fn parameters_of_a_supervisor_that_is_not_run_are_checked_too() {
     let scene = short_scene(folder.path(), |t| {
         (t.replacen(all, without, 1)).replacen("lag_s = 1.6e-4", "lag_s = 0.5", 1)
     });
-    let result = run(&scene, &folder.path().join("slow"), &[]);
+    let result = run_scene(&scene, &folder.path().join("slow"), &[]);
     let error = String::from_utf8_lossy(&result.stderr);
     assert_eq!(result.status.code(), Some(0), "{error}");
 }
@@ -300,7 +300,7 @@ fn parameters_of_a_supervisor_that_is_not_run_are_checked_too() {
 #[test]
 fn missing_scenes_and_unwritable_folders_are_refused() {
     let folder = TempDir::new().unwrap();
-    let result = run(
+    let result = run_scene(
         Path::new("no_such_scene.toml"),
         &folder.path().join("out"),
         &[],
@@ -315,7 +315,7 @@ fn missing_scenes_and_unwritable_folders_are_refused() {
         scene.join("below_a_file"),
         PathBuf::from("/proc/no_folder_here/out"),
     ] {
-        let result = run(&scene, &out, &[]);
+        let result = run_scene(&scene, &out, &[]);
         let error = String::from_utf8_lossy(&result.stderr).into_owned();
         assert_eq!(result.status.code(), Some(2), "{error}");
         assert!(error.contains("cannot write results"), "{error}");
@@ -337,7 +337,7 @@ fn a_run_that_cannot_be_trusted_ends_with_an_error() {
             .replace("duration_s = 0.03", "duration_s = 1.0")
     });
     let out = folder.path().join("out");
-    let result = run(&scene, &out, &[]);
+    let result = run_scene(&scene, &out, &[]);
     let error = String::from_utf8(result.stderr).unwrap();
     assert_eq!(result.status.code(), Some(1), "{error}");
     assert!(error.contains("from the centre"), "{error}");
@@ -354,7 +354,7 @@ fn slips_are_warned_of() {
             assert_ne!(text, t, "{from}");
             text
         });
-        let result = run(&scene, &folder.path().join("out"), &[]);
+        let result = run_scene(&scene, &folder.path().join("out"), &[]);
         String::from_utf8(result.stderr).unwrap()
     };
     let slips = [
@@ -430,7 +430,7 @@ fn a_magnet_that_cannot_lift_is_named() {
     let scene = short_scene(folder.path(), |t| {
         t.replace("force_max_n = 1000.0", "force_max_n = 39.0")
     });
-    let result = run(&scene, &folder.path().join("out"), &[]);
+    let result = run_scene(&scene, &folder.path().join("out"), &[]);
     let error = String::from_utf8(result.stderr).unwrap();
     assert_eq!(result.status.code(), Some(2), "{error}");
     assert!(error.contains("magnet.force_max_n: is 39"), "{error}");

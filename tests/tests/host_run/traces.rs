@@ -1,13 +1,13 @@
 //! What is in the traces, and what the supervisor left behind.
 
-use super::{names, run, short_scene};
+use super::{names, short_scene};
 use firmware_host::flight_record::{FlightRecord, Units, entries};
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::record::{Field, Row, RowAccessor};
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
-use system_tests::scene_path;
+use system_tests::{run_scene, scene_path};
 use tempfile::TempDir;
 
 #[test]
@@ -15,7 +15,7 @@ fn traces_hold_every_sample_and_every_mode_change() {
     let folder = TempDir::new().unwrap();
     let scene = short_scene(folder.path(), |t| t);
     let out = folder.path().join("out");
-    assert!(run(&scene, &out, &[]).status.success());
+    assert!(run_scene(&scene, &out, &[]).status.success());
     let reader =
         SerializedFileReader::new(fs::File::open(out.join("trace_supervisor.parquet")).unwrap())
             .unwrap();
@@ -69,16 +69,12 @@ fn traces_hold_every_sample_and_every_mode_change() {
     );
 }
 
-/// Last value of a column of the trace of the supervisor.
-fn last_of(out: &Path, column: &str) -> f64 {
-    let file = fs::File::open(out.join("trace_supervisor.parquet")).unwrap();
+/// The trace of a policy.
+fn rows_of(out: &Path, policy: &str) -> Vec<Row> {
+    let file = fs::File::open(out.join(format!("trace_{policy}.parquet"))).unwrap();
     let reader = SerializedFileReader::new(file).unwrap();
-    let schema = reader.metadata().file_metadata().schema_descr();
-    let at = (0..schema.num_columns())
-        .position(|i| schema.column(i).name() == column)
-        .unwrap_or_else(|| panic!("no column {column}"));
-    let last = reader.get_row_iter(None).unwrap().last().unwrap().unwrap();
-    last.get_double(at).unwrap()
+    let rows = reader.get_row_iter(None).unwrap();
+    rows.map(Result::unwrap).collect()
 }
 
 /// Without the table the ring is a bushing; with it contact spins the race up, towards the rotor's spin
@@ -91,13 +87,14 @@ fn a_race_spins_with_the_rotor() {
             t.replace("[friction]", &format!("{keys}\n[friction]"))
         });
         let out = folder.path().join("out");
-        let result = run(&scene, &out, &[]);
+        let result = run_scene(&scene, &out, &[]);
         assert!(
             result.status.success(),
             "{}",
             String::from_utf8_lossy(&result.stderr)
         );
-        last_of(&out, "race_spin_rad_s") / std::f64::consts::TAU
+        let spins = column(&rows_of(&out, "supervisor"), "race_spin_rad_s", number);
+        spins.last().unwrap() / std::f64::consts::TAU
     };
     assert_eq!(of(""), 0.0);
     let light = of("[race]\ninertia_kg_m2 = 1e-3\n");
@@ -139,15 +136,11 @@ fn what_the_supervisor_said_is_in_trace_record_verdict_and_report() {
     let folder = TempDir::new().unwrap();
     let out = folder.path().join("out");
     assert!(
-        run(&scene_path("impact_at_40_hz"), &out, &[])
+        run_scene(&scene_path("impact_at_40_hz"), &out, &[])
             .status
             .success()
     );
-    let file = fs::File::open(out.join("trace_supervisor.parquet")).unwrap();
-    let reader = SerializedFileReader::new(file).unwrap();
-    let rows: Vec<Row> = (reader.get_row_iter(None).unwrap())
-        .map(Result::unwrap)
-        .collect();
+    let rows = rows_of(&out, "supervisor");
     let between = column(&rows, "mode_change", |f| *f == Field::Bool(true));
     let of_samples = |name: &str| -> Vec<String> {
         let all = column(&rows, name, word).into_iter().zip(&between);
@@ -247,20 +240,17 @@ fn levitation_is_in_the_trace() {
     let folder = TempDir::new().unwrap();
     let out = folder.path().join("out");
     assert!(
-        run(&scene_path("overload_then_release"), &out, &[])
+        run_scene(&scene_path("overload_then_release"), &out, &[])
             .status
             .success()
     );
     let rows = |policy: &str| -> Vec<Row> {
-        let file = fs::File::open(out.join(format!("trace_{policy}.parquet"))).unwrap();
-        let reader = SerializedFileReader::new(file).unwrap();
-        let rows = reader.get_row_iter(None).unwrap().map(Result::unwrap);
-        rows.filter(|row| {
-            column(std::slice::from_ref(row), "mode_change", |f| {
-                *f == Field::Bool(false)
-            })[0]
-        })
-        .collect()
+        let rows = rows_of(&out, policy);
+        let between = column(&rows, "mode_change", |f| *f == Field::Bool(true));
+        let both = rows.into_iter().zip(between);
+        both.filter(|(_, between)| !between)
+            .map(|(row, _)| row)
+            .collect()
     };
     let (supervised, alone) = (rows("supervisor"), rows("levitation"));
     let asked = column(&supervised, "levitation_x_n", number);
@@ -297,7 +287,7 @@ fn traces_of_an_earlier_run_go() {
     let all = "policies = [\"passive\", \"radial\", \"levitation\", \"supervisor\"]";
     let out = folder.path().join("out");
     assert!(
-        run(&short_scene(folder.path(), |t| t), &out, &[])
+        run_scene(&short_scene(folder.path(), |t| t), &out, &[])
             .status
             .success()
     );
@@ -311,7 +301,7 @@ fn traces_of_an_earlier_run_go() {
     }
     fs::create_dir(out.join("trace_damping.parquet")).unwrap();
     let fewer = short_scene(folder.path(), |t| t.replace(all, "policies = [\"radial\"]"));
-    assert!(run(&fewer, &out, &[]).status.success());
+    assert!(run_scene(&fewer, &out, &[]).status.success());
     assert_eq!(
         names(&out),
         [
