@@ -213,11 +213,7 @@ impl Bench<'_> {
         let reading = (self.sensor).read(t, self.scene.from_magnets_m(now.position_m));
         let command_n = self.policy.tick(&Seen {
             reading,
-            spin_rad_s: if self.scene.spin_sensor.reversed {
-                -now.spin_rad_s
-            } else {
-                now.spin_rad_s
-            },
+            spin_rad_s: self.scene.spin_sensor.gain * now.spin_rad_s,
             status: self.status(seen_until_s(t, period)),
         });
         let with_weight = |force_n: V2| force_n + self.scene.feed_forward_n;

@@ -8,6 +8,7 @@ pub mod paper;
 mod progress;
 pub mod record;
 pub mod run;
+pub mod sensitivity;
 pub mod target;
 
 use crate::scene::Scene;

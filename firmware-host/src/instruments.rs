@@ -42,19 +42,19 @@ impl Default for SensorParams {
 }
 
 /// What is known of the spin.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SpinSensorParams {
     /// Whether the spin is marked valid.
     pub valid: bool,
-    /// Whether it is reported with the wrong sign.
-    pub reversed: bool,
+    /// What is reported over what it is; negative with the wrong sign.
+    pub gain: f64,
 }
 
 impl Default for SpinSensorParams {
     fn default() -> Self {
         Self {
             valid: true,
-            reversed: false,
+            gain: 1.0,
         }
     }
 }

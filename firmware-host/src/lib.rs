@@ -2,7 +2,7 @@
 //!
 //! Files, each importing only from those above it: `trace`, `supervision`, `verdict`, `scene_error`, `axis`, `loads`,
 //! `amplifier`, `faults`, `flight_record`, `scene_values`, `scene_event_file`, `scene_file`, `plant_setup`, `suggest`, `supervisor_setup`, `scene_warnings`, `instruments`,
-//! `levitation`, `clairvoyant`, `history`, `policy_kind`, `scene_events`, `scene_instruments`, `scene`, `policies`, `judge`, `closed_loop`, `verify`, `accuracy`, `wrong_runs`, `trace_file`, `plot`, `scene_words`, `report`, `paper`, `table`, `overloads`, `advice`, `target`, `output`,
+//! `levitation`, `clairvoyant`, `history`, `policy_kind`, `scene_events`, `scene_instruments`, `scene`, `policies`, `judge`, `closed_loop`, `verify`, `accuracy`, `wrong_runs`, `trace_file`, `plot`, `scene_words`, `report`, `paper`, `table`, `overloads`, `sensitivity`, `advice`, `target`, `output`,
 //! `commands`.
 
 #![forbid(unsafe_code)]
@@ -39,6 +39,7 @@ mod scene_instruments;
 mod scene_values;
 mod scene_warnings;
 mod scene_words;
+pub mod sensitivity;
 pub mod suggest;
 pub mod supervision;
 mod supervisor_setup;

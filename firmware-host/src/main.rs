@@ -1,7 +1,9 @@
 //! Command line of the host.
 
 use clap::{Parser, Subcommand};
-use firmware_host::commands::{accuracy, advise, overloads, paper, record, run, target};
+use firmware_host::commands::{
+    accuracy, advise, overloads, paper, record, run, sensitivity, target,
+};
 use std::process::ExitCode;
 
 /// Simulates AMB rotors on their retainer bearings with the supervisor in the loop.
@@ -22,6 +24,8 @@ enum Command {
     Overloads(overloads::OverloadsArgs),
     /// Limits of a bearing in closed form, a suggested configuration of the supervisor, and what is weak.
     Advise(Box<advise::AdviseArgs>),
+    /// Run a scene again and again with the supervisor told something wrong of its machine.
+    Sensitivity(sensitivity::SensitivityArgs),
     /// Compute every number and figure of the paper; write a page with tables and plots.
     Paper(paper::PaperArgs),
     /// Show what happened in a flight record that a supervisor has frozen on its machine.
@@ -37,6 +41,7 @@ fn main() -> ExitCode {
         Command::Accuracy(args) => accuracy::execute(args),
         Command::Overloads(args) => overloads::execute(args),
         Command::Advise(args) => advise::execute(args),
+        Command::Sensitivity(args) => sensitivity::execute(args),
         Command::Paper(args) => paper::execute(args),
         Command::Record(args) => record::execute(args),
         Command::Target(args) => target::execute(args),

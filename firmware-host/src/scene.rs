@@ -9,7 +9,7 @@ use crate::scene_error::{Checks, SceneError, SceneText, with_guess};
 use crate::scene_events::events_of;
 use crate::scene_file::{MethodFile, SceneFile};
 use crate::scene_instruments::{
-    amplifier_of, centre_offset_of, damping_of, levitation_of, sensor_of,
+    amplifier_of, centre_offset_of, damping_of, levitation_of, sensor_of, spin_sensor_of,
 };
 use crate::scene_warnings::warnings_of;
 use crate::suggest::Nominal;
@@ -288,10 +288,7 @@ impl Scene {
             outages: events.outages,
             sensor,
             faults: events.faults,
-            spin_sensor: SpinSensorParams {
-                valid: file.spin_sensor.valid,
-                reversed: file.spin_sensor.reversed,
-            },
+            spin_sensor: spin_sensor_of(file, &check)?,
             levitation,
             radial_band: file.radial.band,
             damping_n_s_m,

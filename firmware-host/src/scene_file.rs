@@ -226,6 +226,12 @@ pub(crate) struct SpinSensorFile {
     pub(crate) valid: bool,
     #[serde(default)]
     pub(crate) reversed: bool,
+    #[serde(default = "default_gain")]
+    pub(crate) gain: f64,
+}
+
+fn default_gain() -> f64 {
+    1.0
 }
 
 fn default_valid() -> bool {
@@ -237,6 +243,7 @@ impl Default for SpinSensorFile {
         Self {
             valid: default_valid(),
             reversed: false,
+            gain: default_gain(),
         }
     }
 }

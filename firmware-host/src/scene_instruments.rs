@@ -1,7 +1,7 @@
 //! Instruments, amplifier and controllers of a scene, from its keys.
 
 use crate::amplifier::{AmplifierParams, MOST_DELAY};
-use crate::instruments::SensorParams;
+use crate::instruments::{SensorParams, SpinSensorParams};
 use crate::levitation::LevitationParams;
 use crate::scene_error::{Checks, SceneError};
 use crate::scene_file::{LevitationFile, SceneFile};
@@ -32,6 +32,18 @@ pub(crate) fn sensor_of(file: &SceneFile, check: &Checks<'_>) -> Result<SensorPa
         delay_samples: s.delay_samples as usize,
         swapped: s.swapped,
         range_m: s.range_m,
+    })
+}
+
+pub(crate) fn spin_sensor_of(
+    file: &SceneFile,
+    check: &Checks<'_>,
+) -> Result<SpinSensorParams, SceneError> {
+    let s = &file.spin_sensor;
+    check.within("spin_sensor.gain", s.gain, 0.0, 100.0)?;
+    Ok(SpinSensorParams {
+        valid: s.valid,
+        gain: if s.reversed { -s.gain } else { s.gain },
     })
 }
 

@@ -3,7 +3,7 @@
 use crate::scene::Scene;
 use crate::supervision::{Account, Supervision};
 use crate::verdict::{Check, Outcome, PolicyRun, Verdict, Verification};
-use comfy_table::{Cell, CellAlignment, Row, Table, presets};
+use comfy_table::{Cell, CellAlignment, LineStyle, Row, Table, TableStyle};
 use std::fmt::Display;
 
 /// A row of the table: name with unit, and the value as text.
@@ -118,7 +118,7 @@ pub(crate) fn each(v: &Verification, word: impl Fn(&Check) -> String) -> String 
     v.checks.iter().map(word).collect::<Vec<_>>().join(", ")
 }
 
-fn or_dash(value: Option<f64>, factor: f64, digits: usize) -> String {
+pub(crate) fn or_dash(value: Option<f64>, factor: f64, digits: usize) -> String {
     value.map_or("–".to_owned(), |x| format!("{:.digits$}", x * factor))
 }
 
@@ -134,10 +134,11 @@ pub fn outcome(outcome: Outcome) -> &'static str {
     }
 }
 
-/// A table with lines between header and rows only.
+/// A table with one line, between header and rows.
 pub(crate) fn lined(header: impl Into<Row>) -> Table {
     let mut table = Table::new();
-    table.load_style(presets::UTF8_HORIZONTAL_ONLY);
+    let line = LineStyle::none().fill('─').junction('─');
+    table.load_style(TableStyle::new().header_separator(line));
     table.set_header(header);
     table
 }

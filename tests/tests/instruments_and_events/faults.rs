@@ -196,11 +196,11 @@ fn the_spin_that_is_seen_matters() {
         trace.rows.iter().map(|r| r.commanded_n).collect()
     };
     let known = commands(&scene);
-    scene.spin_sensor.reversed = true;
+    scene.spin_sensor.gain = -1.0;
     let reversed = commands(&scene);
     scene.spin_sensor.valid = false;
     let unknown = commands(&scene);
     assert!(known != reversed && known != unknown);
-    scene.spin_sensor.reversed = false;
+    scene.spin_sensor.gain = 1.0;
     assert_eq!(commands(&scene), unknown, "an unknown spin has no sign");
 }

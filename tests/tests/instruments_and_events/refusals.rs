@@ -280,6 +280,7 @@ friction_coefficient = 0.3
 [spin_sensor]
 valid = false
 reversed = true
+gain = 1.02
 [damping]
 coefficient_n_s_m = 1234.0
 ";
@@ -308,7 +309,7 @@ coefficient_n_s_m = 1234.0
         "in order of time"
     );
     assert_eq!(scene.changes[1].at_s, 0.04);
-    assert!(!scene.spin_sensor.valid && scene.spin_sensor.reversed);
+    assert!(!scene.spin_sensor.valid && scene.spin_sensor.gain == -1.02);
     assert_eq!(scene.damping_n_s_m, 1234.0);
     let supervisor = scene.supervisor.unwrap();
     assert_eq!(supervisor.delay_samples, 2.0, "magnet and sensor");

@@ -1,0 +1,308 @@
+//! How well the supervisor has to know its machine: with its data told wrong as data commonly are.
+
+use firmware_host::overloads::catalogue::{Case, cases};
+use firmware_host::overloads::found::{Found, kept};
+use firmware_host::overloads::plants::{PlantCase, plants};
+use firmware_host::overloads::results::{ResultRow, run_case};
+use firmware_host::overloads::seats::Seat;
+use firmware_host::scene::Scene;
+use firmware_host::sensitivity::{misjudged, told_right};
+use rayon::prelude::*;
+use serde_json::Value;
+use system_tests::unseen::machine;
+use system_tests::{host, scene_path};
+
+const RATE_HZ: f64 = 20_000.0;
+
+/// A machine with its levitation controller, and a scene on it.
+struct Trial {
+    plant: PlantCase,
+    found: Found,
+    case: Case,
+}
+
+/// The catalogue's scenes without sensor faults on a machine.
+fn trials(plant: &PlantCase, found: &Found) -> Vec<Trial> {
+    (cases(plant).into_iter())
+        .filter(|case| case.group != "sensor faults" && case.seats.contains(&Seat::Supervisor))
+        .map(|case| Trial {
+            plant: plant.clone(),
+            found: *found,
+            case,
+        })
+        .collect()
+}
+
+fn of_the_catalogue(name: Option<&str>) -> Vec<Trial> {
+    let plants = plants(RATE_HZ).unwrap();
+    let wanted = |plant: &&PlantCase| name.is_none_or(|name| plant.name == name);
+    (plants.iter().filter(wanted))
+        .flat_map(|plant| trials(plant, &kept(&plant.name, RATE_HZ).unwrap()))
+        .collect()
+}
+
+fn of_unseen_machines(count: u64) -> Vec<Trial> {
+    (0..count)
+        .map(machine)
+        .filter(|unseen| unseen.lateness < 0.8)
+        .flat_map(|unseen| {
+            let mut found = kept("P2", RATE_HZ).unwrap();
+            found.tuned = unseen.plant.scene.levitation.expect("all have one");
+            trials(&unseen.plant, &found)
+        })
+        .collect()
+}
+
+fn run(trial: &Trial, seat: Seat, scene: Scene) -> ResultRow {
+    let case = Case {
+        scene,
+        ..trial.case.clone()
+    };
+    let at = (trial.plant.name.as_str(), trial.plant.rate_hz);
+    run_case(&case, at, (seat, 1), &trial.found)
+}
+
+/// What came of the trials with something told wrong.
+struct Told {
+    text: String,
+    recovered: usize,
+    /// Told so, the supervisor would not have started.
+    refused: usize,
+    /// Of those that levitation alone recovers from.
+    lost_to_levitation: Vec<String>,
+    /// Of those that the supervisor recovers from when it is told right.
+    lost_to_right: usize,
+    /// Largest contact force over that of the supervisor told right, the 95th percentile.
+    force_95: f64,
+}
+
+impl Told {
+    /// From the runs told wrong (none where refused), with levitation alone, and told right.
+    fn of(
+        text: &str,
+        wrong: &[Option<ResultRow>],
+        alone: &[ResultRow],
+        right: &[ResultRow],
+    ) -> Self {
+        let mut told = Self {
+            text: text.to_owned(),
+            recovered: 0,
+            refused: 0,
+            lost_to_levitation: Vec::new(),
+            lost_to_right: 0,
+            force_95: f64::NAN,
+        };
+        let mut forces = Vec::new();
+        for ((wrong, alone), right) in wrong.iter().zip(alone).zip(right) {
+            let Some(wrong) = wrong else {
+                told.refused += 1;
+                continue;
+            };
+            told.recovered += usize::from(wrong.recovered());
+            told.lost_to_right += usize::from(right.recovered() && !wrong.recovered());
+            if alone.recovered() && !wrong.recovered() {
+                let name = format!("{}: {}", wrong.plant, wrong.scene);
+                told.lost_to_levitation.push(name);
+            }
+            forces.push(force_n(wrong) / force_n(right));
+        }
+        forces.retain(|ratio| ratio.is_finite());
+        forces.sort_by(f64::total_cmp);
+        if let Some(force) = forces.get(forces.len() * 95 / 100) {
+            told.force_95 = *force;
+        }
+        told
+    }
+}
+
+/// Largest contact force \[N\].
+fn force_n(row: &ResultRow) -> f64 {
+    (row.metrics.as_ref()).map_or(f64::NAN, |m| m.peak_contact_force_n)
+}
+
+/// Trials recovered from with levitation alone and told right, and what came of telling wrong.
+fn study(trials: &[Trial], width: f64, draws: u32) -> (usize, usize, Vec<Told>) {
+    let scene = |trial: &Trial| trial.case.scene.clone();
+    let alone: Vec<ResultRow> = (trials.par_iter())
+        .map(|trial| run(trial, Seat::Tuned, scene(trial)))
+        .collect();
+    let right: Vec<ResultRow> = (trials.par_iter())
+        .map(|trial| run(trial, Seat::Supervisor, told_right(&scene(trial)).unwrap()))
+        .collect();
+    let told = (misjudged(width, draws, 1).iter())
+        .map(|misjudged| {
+            let one = |(trial, right): (&Trial, &ResultRow)| match misjudged.told(&scene(trial)) {
+                Ok(Some(wrong)) => Some(run(trial, Seat::Supervisor, wrong)),
+                Ok(None) => Some(right.clone()),
+                Err(_) => None,
+            };
+            let wrong: Vec<_> = trials.par_iter().zip(&right).map(one).collect();
+            Told::of(&misjudged.text, &wrong, &alone, &right)
+        })
+        .collect();
+    let recovered = |rows: &[ResultRow]| rows.iter().filter(|row| row.recovered()).count();
+    (recovered(&alone), recovered(&right), told)
+}
+
+/// The tables of the documentation.
+#[test]
+#[ignore = "minutes; the figures are in docs/src/supervisor/sensitivity.md"]
+fn what_it_costs_to_be_told_wrong() {
+    let mut trials = of_the_catalogue(None);
+    trials.extend(of_unseen_machines(16));
+    for width in [1.0, 2.0] {
+        let (alone, right, told) = study(&trials, width, 8);
+        println!(
+            "width {width}: {} runs, levitation alone {alone}, told right {right}",
+            trials.len()
+        );
+        for t in &told {
+            println!(
+                "| {} | {} ({} refused) | {} | {} | {:.2} |",
+                t.text,
+                t.recovered,
+                t.refused,
+                t.lost_to_levitation.len(),
+                t.lost_to_right,
+                t.force_95
+            );
+            for name in &t.lost_to_levitation {
+                println!("    {name}");
+            }
+        }
+    }
+}
+
+/// A bearing of the catalogue, all its scenes: whatever is told wrong by as much as is usual, the supervisor recovers
+/// from what levitation alone recovers from, and from nearly all that it recovers from when told right. The one
+/// exception is no error of judgement: told less force than there is, it uses less.
+#[test]
+fn told_wrong_it_loses_next_to_nothing() {
+    let trials = of_the_catalogue(Some("P2"));
+    let (alone, right, told) = study(&trials, 1.0, 0);
+    assert!(right > alone, "{right} {alone}");
+    for t in told {
+        let less_force = t.text == "force cap × 0.8";
+        let few = if less_force { 5 } else { 1 };
+        assert!(t.lost_to_right <= few, "{}: {}", t.text, t.lost_to_right);
+        assert!(
+            less_force || t.lost_to_levitation.is_empty(),
+            "{}: {:?}",
+            t.text,
+            t.lost_to_levitation
+        );
+    }
+}
+
+/// The rows of the command on a scene.
+fn rows(more: &[&str]) -> Vec<Value> {
+    let scene = scene_path("overload_then_release");
+    let output = host()
+        .arg("sensitivity")
+        .arg(scene)
+        .arg("--json")
+        .args(more)
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{output:?}");
+    let json: Value = serde_json::from_slice(&output.stdout).unwrap();
+    json["rows"].as_array().unwrap().clone()
+}
+
+fn row<'a>(rows: &'a [Value], told: &str) -> &'a Value {
+    (rows.iter().find(|row| row["told"] == told)).unwrap_or_else(|| panic!("{told}: {rows:#?}"))
+}
+
+/// The first rows are what `run` gives, each datum is there twice, draws are as many as asked for, and no number of
+/// threads makes a difference.
+#[test]
+fn the_command_tells_every_datum_wrong() {
+    let dir = tempfile::tempdir().unwrap();
+    let run = system_tests::run_scene(
+        &scene_path("overload_then_release"),
+        dir.path(),
+        &["--json"],
+    );
+    let verdicts: Value = serde_json::from_slice(&run.stdout).unwrap();
+    let rows = rows(&["--draws", "3"]);
+    for (told, policy) in [("levitation alone", "levitation"), ("right", "supervisor")] {
+        for figure in [
+            "outcome",
+            "impacts",
+            "peak_contact_force_n",
+            "relevitation_time_s",
+        ] {
+            let (of_row, of_run) = (
+                &row(&rows, told)[figure],
+                &verdicts["policies"][policy][figure],
+            );
+            assert_eq!(of_row, of_run, "{told} {figure}");
+            assert!(!of_row.is_null(), "{told} {figure}");
+        }
+    }
+    // Eleven data, too small and too large.
+    assert_eq!(rows.len(), 2 + 22 + 3);
+    let impulse = |told: &str| row(&rows, told)["contact_impulse_n_s"].as_f64().unwrap();
+    assert!(impulse("force cap × 0.8") > impulse("right"));
+    assert!(impulse("force cap × 1.25") < impulse("right"));
+    assert_eq!(rows, self::rows(&["--draws", "3", "--threads", "1"]));
+    let wide = self::rows(&["--draws", "0", "--width", "2"]);
+    row(&wide, "mass × 1.56");
+    row(&wide, "delay +2 ticks");
+}
+
+/// What the scene itself sets in `[supervisor]` is told wrong, too; what makes no difference has no row; what would be
+/// refused says so.
+#[test]
+fn what_the_scene_sets_itself_is_told_wrong_too() {
+    let text = std::fs::read_to_string(scene_path("overload_then_release")).unwrap();
+    let told = |more: &str| {
+        let scene = Scene::parse(
+            "test",
+            &format!("{text}\n[spin_sensor]\nvalid = false\n{more}"),
+        )
+        .unwrap();
+        let all = misjudged(1.0, 0, 1);
+        move |name: &str| {
+            let misjudged = all.iter().find(|m| m.text == name).unwrap();
+            misjudged
+                .told(&scene)
+                .map(|told| told.map(|scene| scene.supervisor.unwrap()))
+        }
+    };
+    let plain = told("");
+    let mass = plain("mass × 1.25").unwrap().unwrap().mass_kg;
+    let own = told("[supervisor]\nmass_kg = 4.0\n");
+    assert_eq!(own("mass × 1.25").unwrap().unwrap().mass_kg, 5.0);
+    assert!((mass - 5.0).abs() > 0.1, "{mass}");
+    // Nobody looks at a spin that is not valid.
+    assert_eq!(plain("spin × 1.03"), Ok(None));
+    let band = told("[supervisor]\nfriction_coefficient = 1.5\n");
+    assert!(band("friction × 0.5").unwrap().is_some());
+    assert_eq!(
+        band("friction × 2").unwrap_err().parameter().name,
+        "friction_coefficient"
+    );
+}
+
+/// Without magnet or levitation controller there is nothing to supervise; a width has its bounds.
+#[test]
+fn what_cannot_be_told_wrong_is_refused() {
+    for (args, expected) in [
+        (vec!["established_whirl_two_mass_stator"], "no [magnet]"),
+        (
+            vec!["overload_then_release", "--width", "5"],
+            "from 0.1 to 4",
+        ),
+    ] {
+        let output = (host()
+            .arg("sensitivity")
+            .arg(scene_path(args[0]))
+            .args(&args[1..]))
+        .output()
+        .unwrap();
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{said}");
+        assert!(said.contains(expected), "{said}");
+    }
+}
