@@ -49,6 +49,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         // Sections of one page each would waste flash.
         println!("cargo::rustc-link-arg-bin={bin}=--nmagic");
     }
+    // What is logged stays in the image's file, for the decoder, and takes no memory of the target.
+    println!("cargo::rustc-link-arg-bin=timer-interrupt=-Tdefmt.x");
     println!("cargo::rustc-link-arg-bins=--gc-sections");
     Ok(())
 }

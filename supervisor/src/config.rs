@@ -57,6 +57,7 @@ impl core::error::Error for ConfigError {}
 
 /// A coefficient that the chosen number cannot hold.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Misfit {
     /// What it is, per unit (see [`crate::Scaling`]).
     pub coefficient: &'static str,
@@ -66,6 +67,7 @@ pub struct Misfit {
 
 /// Why there is no core for a configuration.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum CoreError {
     /// A parameter is outside its range.
     Range(ConfigError),

@@ -62,7 +62,7 @@
 //!
 //! Files, each importing only from those above it: `scalar`, `q`, `math`, `vec2`, `signal`, `config`, `coeffs`,
 //! `spin`, `unbalance`, `reading`, `still`, `guard`, `estimate`, `detect`, `course`, `classify`, `phase`, `law`, `limit`, `handover`, `severity`,
-//! `recorder`, `per_unit`, `supervisor`, `self_test`, `watch`.
+//! `recorder`, `per_unit`, `supervisor`, `self_test`, `watch`, `log_format`.
 
 // Unconditional: under `cfg(test)` std's own methods would silently replace micromath's.
 #![no_std]
@@ -79,6 +79,8 @@ mod guard;
 mod handover;
 mod law;
 mod limit;
+#[cfg(feature = "defmt")]
+mod log_format;
 mod math;
 mod per_unit;
 mod phase;

@@ -13,6 +13,7 @@ pub const PER_UNIT: f32 = 4096.0;
 
 /// One tick, 16 bytes. Lengths in 1/4096 clearance, forces in 1/4096 cap, saturated at ±8.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(C)]
 pub struct Entry {
     /// Sequence number of the sample.
@@ -54,6 +55,7 @@ impl Entry {
 
 /// An event with its tick, for the background task.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct QueuedEvent {
     /// Sequence number of the sample.
     pub sequence: u32,

@@ -2,6 +2,7 @@
 
 /// What the firmware knows at one sampling instant. Any bit pattern is allowed.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(C)]
 pub struct Sample {
     /// Counts up by one each tick, wrapping. A repeated number means that no new sample came; a gap
@@ -112,6 +113,7 @@ bitflags::bitflags! {
 
 /// Why a sample is refused.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(u8)]
 pub enum Refusal {
     /// It is not.
@@ -131,6 +133,7 @@ pub enum Refusal {
 
 /// What the supervisor is doing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(u8)]
 pub enum Mode {
     /// Transparent: the levitation command goes through bit for bit.
@@ -167,6 +170,7 @@ impl Mode {
 
 /// What the levitation controller should do with its integrator.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(u8)]
 pub enum IntegratorHint {
     /// Integrate as usual.
@@ -179,6 +183,7 @@ pub enum IntegratorHint {
 
 /// What to do until the next tick.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Command {
     /// Force to command \[N\]: finite, within the cap, the caps of the axes and the slew limit (to the last
     /// bits of `f32`).
@@ -238,6 +243,7 @@ pub struct CoreCommand<S> {
 
 /// What has happened since the supervisor was made. A flight record that is discarded takes nothing from it.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Report {
     /// Engagements in which the rotor touched the retainer bearing.
     pub landings: u32,

@@ -1,9 +1,11 @@
 //! The supervisor on an emulated processor in a closed loop with the plant here; and the example firmware.
 
-use firmware_host::target::emulator::{EmulatorError, Time, run, version};
+use defmt_decoder::{DecodeError, Table};
+use firmware_host::target::emulator::{EmulatorError, Time, output_of, version};
 use firmware_host::target::images::Project;
 use firmware_host::target::machines::{MACHINES, Machine};
 use serde_json::Value;
+use std::path::Path;
 use std::time::Duration;
 use system_tests::root;
 use system_tests::target::{build_images, skipped, target};
@@ -37,8 +39,27 @@ fn a_processor_without_an_image_for_the_loop_is_named() {
     assert!(error.contains("M0 Q has no image for the loop"), "{error}");
 }
 
-/// The example firmware keeps its 20 kHz at 125 million instructions a second, sees the landing, and picks up a
-/// record that is intact.
+/// What an image has logged, level and text, by what its file says of its log.
+fn logged(image: &Path, output: &[u8]) -> Vec<(String, String)> {
+    let file = std::fs::read(image).unwrap();
+    let table = Table::parse(&file).unwrap().expect("it logs");
+    let mut decoder = table.new_stream_decoder();
+    decoder.received(output);
+    let mut lines = Vec::new();
+    loop {
+        match decoder.decode() {
+            Ok(frame) => {
+                let level = frame.level().map_or("", |level| level.as_str());
+                lines.push((level.to_owned(), frame.display_message().to_string()));
+            }
+            Err(DecodeError::UnexpectedEof) => return lines,
+            Err(DecodeError::Malformed) => panic!("no frame after {lines:?}"),
+        }
+    }
+}
+
+/// The example firmware keeps its 20 kHz at 125 million instructions a second, sees the landing, logs all that happens
+/// in its order, and picks up a record that is intact.
 #[test]
 fn the_example_firmware_records_a_landing() {
     if let Err(why @ EmulatorError::Missing) = version() {
@@ -57,9 +78,35 @@ fn the_example_firmware_records_a_landing() {
         // 8 ns an instruction.
         let time = Time::Counted { shift: 3 };
         let limit = Duration::from_secs(60);
-        let said = run(&machine, &image, folder.path(), time, limit).unwrap();
-        assert_eq!(said["landings"], "1", "{said:?}");
-        assert_eq!(said["record_entries"], "512", "{said:?}");
-        assert_eq!(said["record_intact"], "yes", "{said:?}");
+        let output = output_of(&machine, &image, folder.path(), time, limit).unwrap();
+        let log = logged(&image, &output);
+        let happened: Vec<&str> = (log.iter())
+            .filter_map(|(_, text)| text.strip_prefix("tick ")?.split_once(": "))
+            .map(|(_, text)| text)
+            .collect();
+        assert_eq!(
+            happened,
+            [
+                "ENGAGED, Approach",
+                "TOUCHED, Bounce",
+                "WHIRL, BackwardWhirl",
+                "COAST_DOWN, BackwardWhirl",
+                "LIFTED_OFF, Bounce",
+                "HANDOVER, Handover",
+                "LEVITATED, Levitated",
+                "RECORD_FROZEN, Levitated",
+            ],
+            "{log:?}"
+        );
+        let of_level = |level: &str| log.iter().filter(|(l, _)| l == level).count();
+        assert_eq!((of_level("warn"), of_level("error")), (2, 0), "{log:?}");
+        let [.., (_, record), (_, report)] = log.as_slice() else {
+            panic!("{log:?}")
+        };
+        assert_eq!(record, "record of version 2, 512 ticks, intact");
+        assert!(
+            report.starts_with("Report { landings: 1, impacts: 1, "),
+            "{report}"
+        );
     }
 }

@@ -3,6 +3,7 @@
 pub mod count;
 pub mod exit;
 pub mod file;
+mod logger;
 pub mod panic_free;
 pub mod replay;
 pub mod report;

@@ -122,8 +122,8 @@ impl Running {
         self.child.stdin.take().zip(self.child.stdout.take())
     }
 
-    /// Waits for the end; whether it ended well, and what it said. `None` after the limit.
-    pub fn wait(&mut self, limit: Duration) -> Option<(bool, String)> {
+    /// Waits for the end. `None` after the limit.
+    pub fn wait(&mut self, limit: Duration) -> Option<Ended> {
         let until = Instant::now() + limit;
         let status = loop {
             match self.child.try_wait() {
@@ -135,14 +135,36 @@ impl Running {
             }
         };
         // What images say fits into the pipes' buffers.
-        let mut said = String::new();
+        let mut ended = Ended {
+            well: status.success(),
+            output: Vec::new(),
+            errors: String::new(),
+        };
         if let Some(output) = &mut self.child.stdout {
-            let _read = output.read_to_string(&mut said);
+            let _read = output.read_to_end(&mut ended.output);
         }
         if let Some(errors) = &mut self.child.stderr {
-            let _read = errors.read_to_string(&mut said);
+            let _read = errors.read_to_string(&mut ended.errors);
         }
-        Some((status.success(), said))
+        Some(ended)
+    }
+}
+
+/// How an image ended.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Ended {
+    /// Whether it says that all went well.
+    pub well: bool,
+    /// What it has written, of what its console was not taken for.
+    pub output: Vec<u8>,
+    /// What the emulator said.
+    pub errors: String,
+}
+
+impl Ended {
+    /// All that was said.
+    pub fn said(&self) -> String {
+        format!("{}{}", String::from_utf8_lossy(&self.output), self.errors)
     }
 }
 
@@ -159,6 +181,37 @@ pub fn version() -> Result<String, EmulatorError> {
     Ok(text.lines().next().unwrap_or_default().to_owned())
 }
 
+/// Runs an image to its end; what it has written.
+///
+/// # Errors
+/// [`EmulatorError`].
+pub fn output_of(
+    machine: &Machine,
+    image: &Path,
+    folder: &Path,
+    time: Time,
+    limit: Duration,
+) -> Result<Vec<u8>, EmulatorError> {
+    let name = || {
+        let name = image.file_name().unwrap_or(image.as_os_str());
+        name.to_string_lossy().into_owned()
+    };
+    let mut running = Running::start(machine, image, folder, time, Stdio::null())?;
+    match running.wait(limit) {
+        None => Err(EmulatorError::Late {
+            image: name(),
+            machine: machine.name,
+            limit,
+        }),
+        Some(ended) if !ended.well => Err(EmulatorError::Failed {
+            image: name(),
+            machine: machine.name,
+            said: ended.said().trim().to_owned(),
+        }),
+        Some(ended) => Ok(ended.output),
+    }
+}
+
 /// Runs an image to its end; names and values that it has printed.
 ///
 /// # Errors
@@ -170,25 +223,8 @@ pub fn run(
     time: Time,
     limit: Duration,
 ) -> Result<BTreeMap<String, String>, EmulatorError> {
-    let name = || {
-        let name = image.file_name().unwrap_or(image.as_os_str());
-        name.to_string_lossy().into_owned()
-    };
-    let mut running = Running::start(machine, image, folder, time, Stdio::null())?;
-    let Some((well, said)) = running.wait(limit) else {
-        return Err(EmulatorError::Late {
-            image: name(),
-            machine: machine.name,
-            limit,
-        });
-    };
-    if !well {
-        return Err(EmulatorError::Failed {
-            image: name(),
-            machine: machine.name,
-            said: said.trim().to_owned(),
-        });
-    }
+    let output = output_of(machine, image, folder, time, limit)?;
+    let said = String::from_utf8_lossy(&output);
     let pairs = said.lines().filter_map(|line| line.split_once(' '));
     Ok(pairs.map(|(n, v)| (n.to_owned(), v.to_owned())).collect())
 }

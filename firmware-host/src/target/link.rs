@@ -145,8 +145,8 @@ impl Board {
     pub fn quit(mut self) -> Result<(), LinkError> {
         self.line.input.write_all(&[QUIT])?;
         match self.running.wait(PATIENCE) {
-            Some((true, _)) => Ok(()),
-            Some((false, said)) => Err(LinkError::Answer(said.into_bytes())),
+            Some(ended) if ended.well => Ok(()),
+            Some(ended) => Err(LinkError::Answer(ended.said().into_bytes())),
             None => Err(LinkError::NoEnd),
         }
     }

@@ -3,8 +3,8 @@
 //!
 //! The board is made up: `measured_position_m` stands for converter and position sensor, the levitation
 //! controller is a spring, and the commanded force is kept where a driver of amplifiers would take it from. The
-//! rotor falls onto its retainer bearing, whirls there for a while and comes back. Prints what a logger
-//! would be given, and ends when the record has been read.
+//! rotor falls onto its retainer bearing, whirls there for a while and comes back. Logs with defmt, and ends when
+//! the record has been read.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]
@@ -13,8 +13,11 @@ mod firmware {
     use cortex_m::peripheral::syst::SystClkSource;
     use cortex_m_rt::{entry, exception};
     use critical_section::Mutex;
-    use firmware_image::{exit, planted, report};
-    use supervisor::{Config, Entry, IntegratorHint, QueuedEvent, Sample, Status, Supervisor};
+    use defmt::{error, info, warn};
+    use firmware_image::{exit, planted};
+    use supervisor::{
+        Config, Entry, Events, IntegratorHint, QueuedEvent, Sample, Status, Supervisor,
+    };
 
     const CORE_HZ: u32 = 25_000_000;
     const TICK_HZ: u32 = 20_000;
@@ -57,8 +60,9 @@ mod firmware {
     };
     const CLEARANCE_M: f32 = 2e-4;
 
-    /// What interrupt and background share. `None` until `main` has put it there: the timer starts after that.
-    static CONTROL: Mutex<RefCell<Option<Control>>> = Mutex::new(RefCell::new(None));
+    /// What interrupt and background share. `None` until `main` has put it there: the timer starts after that. By
+    /// reference: `None` of the whole would be an image of all its bytes in flash, the record's 8 KiB among them.
+    static CONTROL: Mutex<RefCell<Option<&'static mut Control>>> = Mutex::new(RefCell::new(None));
 
     struct Control {
         supervisor: Supervisor<RECORD>,
@@ -92,7 +96,7 @@ mod firmware {
         critical_section::with(|cs| {
             // It is never borrowed twice, and if it were, a tick would be left out and not the firmware end.
             let mut control = CONTROL.borrow(cs).try_borrow_mut().ok()?;
-            control.as_mut().map(work)
+            control.as_deref_mut().map(work)
         })
     }
 
@@ -106,24 +110,30 @@ mod firmware {
         planted();
         // Before anything else: a processor that computes something else must not drive a magnet.
         if !supervisor::self_test::<f32>() {
-            report::failed("the self-test does not pass on this processor")
+            error!("the self-test does not pass on this processor");
+            exit::failure();
         }
         let Some(mut peripherals) = cortex_m::Peripherals::take() else {
             exit::failure()
         };
         // Before the bearing is switched on: a parameter out of range must not get into operation.
-        let Ok(supervisor) = Supervisor::new(&CONFIG) else {
-            report::failed("a parameter is out of range")
+        let supervisor = match Supervisor::new(&CONFIG) {
+            Ok(supervisor) => supervisor,
+            Err(parameter) => {
+                error!("{}", parameter);
+                exit::failure()
+            }
         };
+        let control = cortex_m::singleton!(: Control = Control {
+            supervisor,
+            sequence: 0,
+            hint: IntegratorHint::Run,
+            force_n: [0.0; 2],
+        });
         critical_section::with(|cs| {
             // `replace` would panic where it cannot, and then the image would not link.
-            if let Ok(mut control) = CONTROL.borrow(cs).try_borrow_mut() {
-                *control = Some(Control {
-                    supervisor,
-                    sequence: 0,
-                    hint: IntegratorHint::Run,
-                    force_n: [0.0; 2],
-                });
+            if let Ok(mut shared) = CONTROL.borrow(cs).try_borrow_mut() {
+                *shared = control;
             }
         });
         let timer = &mut peripherals.SYST;
@@ -145,8 +155,9 @@ mod firmware {
             if let Some(crc) = with_control(|c| c.supervisor.record().map(|r| r.crc)).flatten() {
                 pick_up(crc);
                 with_control(|c| c.supervisor.rearm());
-                let landings = with_control(|c| c.supervisor.report().landings);
-                report::number("landings", landings.unwrap_or(0));
+                if let Some(report) = with_control(|c| c.supervisor.report()) {
+                    info!("{}", report);
+                }
                 exit::success();
             }
             cortex_m::asm::wfi();
@@ -167,16 +178,33 @@ mod firmware {
                 }
             });
         }
-        report::number("record_version", supervisor::RECORD_VERSION.into());
-        report::number("record_entries", copy.len() as u32);
-        let intact = supervisor::crc_of(copy.iter()) == crc;
-        report::text("record_intact", if intact { "yes" } else { "no" });
+        if supervisor::crc_of(copy.iter()) == crc {
+            info!(
+                "record of version {}, {} ticks, intact",
+                supervisor::RECORD_VERSION,
+                copy.len()
+            );
+        } else {
+            error!("the record does not have its checksum {=u32:#x}", crc);
+        }
     }
 
-    fn log(event: QueuedEvent) {
-        report::number("tick", event.sequence);
-        report::text("mode", event.mode.name());
-        report::bits("events", event.events.bits().into());
+    fn log(
+        QueuedEvent {
+            sequence,
+            mode,
+            events,
+        }: QueuedEvent,
+    ) {
+        const SERIOUS: Events = Events::ENGAGED
+            .union(Events::SENSOR_FAULT)
+            .union(Events::COAST_DOWN)
+            .union(Events::QUEUE_FULL);
+        if events.intersects(SERIOUS) {
+            warn!("tick {}: {}, {}", sequence, events, mode);
+        } else {
+            info!("tick {}: {}, {}", sequence, events, mode);
+        }
     }
 
     /// A controller of no use but to have one: a spring with an integrator would obey the hint here.
