@@ -208,6 +208,13 @@ fn limits(n: &Nominal) -> Limits {
     let passive_threshold_text = match threshold {
         Some(_) => "friction drives whirl above it; below it damping and shaft win",
         None if !drives => "none: friction drives nothing",
+        // μ·(m·v²/c + |k|·c) = d·v has two solutions where the damping is strong.
+        None if n.stiffness_n_m < 0.0
+            && n.damping_n_s_m.powi(2)
+                > -4.0 * driving_friction(n).powi(2) * n.mass_kg * n.stiffness_n_m =>
+        {
+            "none: the negative stiffness presses the rotor onto the wall and friction drives it from rest; only between two speeds damping wins"
+        }
         None if n.stiffness_n_m < 0.0 => {
             "none: the negative stiffness presses the rotor onto the wall, friction drives it from any speed"
         }

@@ -2,7 +2,7 @@
 //!
 //! Files, each importing only from those above it: `trace`, `supervision`, `verdict`, `scene_error`, `axis`, `loads`,
 //! `amplifier`, `faults`, `flight_record`, `scene_values`, `scene_event_file`, `scene_file`, `plant_setup`, `suggest`, `supervisor_setup`, `scene_warnings`, `instruments`,
-//! `levitation`, `clairvoyant`, `history`, `policy_kind`, `scene_events`, `scene_instruments`, `scene`, `policies`, `judge`, `closed_loop`, `verify`, `accuracy`, `wrong_runs`, `trace_file`, `plot`, `scene_words`, `report`, `paper`, `table`, `overloads`, `sensitivity`, `advice`, `target`, `output`,
+//! `levitation`, `clairvoyant`, `history`, `policy_kind`, `scene_events`, `scene_instruments`, `scene`, `policies`, `judge`, `closed_loop`, `verify`, `accuracy`, `wrong_runs`, `trace_file`, `plot`, `scene_words`, `table`, `report`, `paper`, `overloads`, `sensitivity`, `advice`, `target`, `output`,
 //! `commands`.
 
 #![forbid(unsafe_code)]

@@ -1,5 +1,6 @@
 //! Results appear whole or not at all.
 
+use std::ffi::OsString;
 use std::io;
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
@@ -91,12 +92,31 @@ impl Staging {
     /// # Errors
     /// [`OutputError`].
     pub fn publish_over(self, stale: impl Fn(&str) -> bool) -> Result<PathBuf, OutputError> {
+        let in_the_way = |path: &Path| OutputError {
+            path: path.to_owned(),
+            reason: io::Error::from(io::ErrorKind::IsADirectory),
+        };
+        let refused = |reason| OutputError {
+            path: self.final_place.clone(),
+            reason,
+        };
+        let names = || -> io::Result<Vec<OsString>> {
+            let entries = std::fs::read_dir(self.folder.path())?;
+            let mut names: Vec<_> =
+                (entries.map(|entry| entry.map(|e| e.file_name()))).collect::<io::Result<_>>()?;
+            names.sort();
+            Ok(names)
+        };
+        let names = names().map_err(refused)?;
+        // All or nothing: a folder in the place of a file would stop half-way.
+        for name in &names {
+            let path = self.final_place.join(name);
+            if path.is_dir() {
+                return Err(in_the_way(&path));
+            }
+        }
         let publish = || {
             std::fs::create_dir_all(&self.final_place)?;
-            let mut names: Vec<_> = std::fs::read_dir(self.folder.path())?
-                .map(|entry| entry.map(|e| e.file_name()))
-                .collect::<io::Result<_>>()?;
-            names.sort();
             for name in &names {
                 std::fs::rename(self.folder.path().join(name), self.final_place.join(name))?;
             }
@@ -110,10 +130,7 @@ impl Staging {
             }
             Ok(())
         };
-        publish().map_err(|reason| OutputError {
-            path: self.final_place.clone(),
-            reason,
-        })?;
+        publish().map_err(refused)?;
         Ok(self.final_place)
     }
 }

@@ -139,7 +139,8 @@ pub enum Mode {
     /// Transparent: the levitation command goes through bit for bit.
     #[default]
     Levitated = 0,
-    /// Contact can no longer be avoided: tangential force against the coming backward whirl.
+    /// Contact can no longer be avoided: tangential force against the backward whirl that the impacts to come would
+    /// drive, as far as it would be dangerous; the rest damps.
     Approach = 1,
     /// Touching and leaving again: damping, tangential first.
     Bounce = 2,

@@ -36,11 +36,15 @@ fn errors_follow_the_tolerance_and_no_run_is_wrong() {
     assert_eq!(references.len(), 2);
     for reference in references {
         assert_eq!(reference["confirmed"], true);
+        assert_eq!(
+            reference["methods"],
+            serde_json::json!(["series", "explicit"])
+        );
         assert_eq!(reference["same_modes"], true);
         assert!(reference["uncertainty"].as_f64().unwrap() < 1e-9);
     }
     let rows = printed["rows"].as_array().unwrap();
-    assert_eq!(rows.len(), 48);
+    assert_eq!(rows.len(), 2 * 3 * 9, "problems, methods, tolerances");
     for row in rows {
         for key in ["problem", "method"] {
             assert!(row[key].is_string(), "{key}");

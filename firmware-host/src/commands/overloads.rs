@@ -10,7 +10,7 @@ use crate::overloads::plan::{Catalogue, CatalogueError, Extent, Plan, search};
 use crate::overloads::plants::RATES_HZ;
 use crate::overloads::results::ResultRow;
 use crate::table::{lined, right};
-use comfy_table::{Cell, Table, presets};
+use comfy_table::Cell;
 use std::path::PathBuf;
 
 /// Arguments of `overloads`.
@@ -121,9 +121,7 @@ fn against_histories(args: &OverloadsArgs) -> Result<(), CommandError> {
     let path = staging.path("histories.json");
     std::fs::write(&path, format!("{pretty}\n")).map_err(|reason| OutputError { path, reason })?;
     let out = staging.publish()?;
-    let mut table = Table::new();
-    table.load_style(presets::UTF8_BORDERS_ONLY);
-    table.set_header([
+    let mut table = lined([
         "impact",
         "clairvoyant",
         "from nothing",
@@ -174,9 +172,7 @@ fn own_scenes(catalogue: &Catalogue) -> String {
 }
 
 fn promises(catalogue: &Catalogue) -> String {
-    let mut table = Table::new();
-    table.load_style(presets::UTF8_BORDERS_ONLY);
-    table.set_header(["promise", "bound", "measured", "holds"]);
+    let mut table = lined(["promise", "bound", "measured", "holds"]);
     for p in &catalogue.promises {
         table.add_row([
             Cell::new(&p.name),

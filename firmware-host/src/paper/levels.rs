@@ -99,6 +99,11 @@ pub(super) fn chapter(depth: Depth) -> Result<Chapter, PaperError> {
             rolling_limit_hz(&two, 40.0) / MEASURED_40_HZ,
             "independent of J_r",
         ),
+        factor(
+            "Rolling limit at held spin over measured, 166 Hz",
+            rolling_limit_hz(&two, 166.0) / MEASURED_166_HZ,
+            "nothing brakes the spin, and no factor of 50 reaches so far",
+        ),
         Row::new(
             ("Rigid stator, k_c = 1e13 N/m, from 40 Hz", "Hz"),
             "Established whirl, rigid stator",

@@ -3,7 +3,8 @@
 use super::summary::Summary;
 use super::{Chapter, Claim, Kind, Row};
 use crate::plot::text::figures;
-use comfy_table::{Cell, CellAlignment, Table, presets};
+use crate::table::{lined, right};
+use comfy_table::Cell;
 use serde::Serialize;
 
 /// A row as programs get it.
@@ -102,15 +103,12 @@ pub(super) fn kind(kind: Kind) -> &'static str {
 pub fn text(chapters: &[Chapter]) -> String {
     let mut out = String::new();
     for chapter in chapters {
-        let mut table = Table::new();
-        table.load_style(presets::UTF8_BORDERS_ONLY);
-        let right = |text: String| Cell::new(text).set_alignment(CellAlignment::Right);
-        table.set_header([
+        let mut table = lined([
             Cell::new("item"),
-            right("paper".to_owned()),
-            right("computed".to_owned()),
+            right("paper"),
+            right("computed"),
             Cell::new("unit"),
-            right("deviation".to_owned()),
+            right("deviation"),
             Cell::new("kind"),
         ]);
         for row in &chapter.rows {

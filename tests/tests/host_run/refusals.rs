@@ -321,6 +321,14 @@ fn missing_scenes_and_unwritable_folders_are_refused() {
         assert!(error.contains("cannot write results"), "{error}");
         assert_eq!(names(folder.path()), ["short.toml"]);
     }
+    // So does a folder where a file should be: nothing is written beside it.
+    let out = folder.path().join("out");
+    fs::create_dir_all(out.join("report.html")).unwrap();
+    let result = run_scene(&scene, &out, &[]);
+    let error = String::from_utf8_lossy(&result.stderr).into_owned();
+    assert_eq!(result.status.code(), Some(2), "{error}");
+    assert!(error.contains("report.html: is a directory"), "{error}");
+    assert_eq!(names(&out), ["report.html"]);
     let no_arguments = host().arg("run").output().unwrap();
     assert_eq!(no_arguments.status.code(), Some(2));
 }

@@ -12,14 +12,15 @@ use std::fmt::Write as _;
 pub(super) fn unconfirmed(reference: &Reference) -> String {
     let Reference {
         problem,
+        methods: [one, other],
         uncertainty,
         same_modes,
         ..
     } = reference;
     let modes = if *same_modes { "the same" } else { "other" };
     format!(
-        "{problem}: no errors, for the reference is not confirmed: at rtol 1e-13 the explicit pair ends \
-         {uncertainty:.1e} c away from the series, through {modes} modes"
+        "{problem}: no errors, for the reference is not confirmed: at rtol 1e-13 {other} ends \
+         {uncertainty:.1e} c away from {one}, through {modes} modes"
     )
 }
 
@@ -28,8 +29,9 @@ pub(super) fn tables(found: &Accuracy) -> String {
     for reference in &found.references {
         let problem = &reference.problem;
         let note = if reference.confirmed {
+            let [one, other] = reference.methods;
             format!(
-                "reference: the series at rtol 1e-13; the explicit pair ends {:.1e} c away, through the same modes",
+                "reference: {one} at rtol 1e-13; {other} ends {:.1e} c away, through the same modes",
                 reference.uncertainty
             )
         } else {

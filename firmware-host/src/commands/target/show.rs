@@ -1,8 +1,8 @@
 //! The results of `target` as tables.
 
-use crate::table::right;
+use crate::table::{lined, right};
 use crate::target::results::{LoopRow, Report, StreamRow, TargetRow};
-use comfy_table::{Cell, Table, presets};
+use comfy_table::{Cell, Table};
 
 /// What there is.
 pub(crate) fn text(report: &Report) -> String {
@@ -24,19 +24,12 @@ pub(crate) fn text(report: &Report) -> String {
     text + &format!("instructions are those of {}\n", report.qemu)
 }
 
-fn table(header: &[&str]) -> Table {
-    let mut table = Table::new();
-    table.load_style(presets::UTF8_BORDERS_ONLY);
-    table.set_header(header);
-    table
-}
-
 fn named(name: &str, number: &str) -> Cell {
     Cell::new(format!("{name} {number}"))
 }
 
 fn figures(targets: &[TargetRow]) -> Table {
-    let mut table = table(&[
+    let mut table = lined([
         "target",
         "board",
         "instructions a tick: least",
@@ -64,7 +57,7 @@ fn figures(targets: &[TargetRow]) -> Table {
 }
 
 fn by_mode(targets: &[TargetRow]) -> Table {
-    let mut table = table(&["target", "mode", "ticks", "least", "median", "worst"]);
+    let mut table = lined(["target", "mode", "ticks", "least", "median", "worst"]);
     for t in targets {
         for m in &t.modes {
             table.add_row([
@@ -81,7 +74,7 @@ fn by_mode(targets: &[TargetRow]) -> Table {
 }
 
 fn against_budgets(targets: &[TargetRow]) -> Table {
-    let mut table = table(&[
+    let mut table = lined([
         "target", "figure", "measured", "budget", "in it", "required", "met",
     ]);
     for t in targets {
@@ -126,7 +119,7 @@ fn stream_line(stream: &StreamRow) -> String {
 }
 
 fn loops(rows: &[LoopRow]) -> Table {
-    let mut table = table(&[
+    let mut table = lined([
         "target",
         "scene",
         "bit-exact ticks",
