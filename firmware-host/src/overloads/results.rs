@@ -9,7 +9,7 @@ use crate::scene::Scene;
 use crate::verdict::{Outcome, Verdict};
 use serde::Serialize;
 
-/// What a run measured; everything that does not depend on the machine.
+/// What a run measured: all of its [`Verdict`] but times of the machine that it ran on.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Metrics {
     /// How it ended.
@@ -20,18 +20,28 @@ pub struct Metrics {
     pub impacts: u64,
     /// Touches with a normal speed above 20 mm/s.
     pub contacts_over_20_mm_s: u64,
+    /// When it touched first \[s\]; `None` if never.
+    pub first_contact_s: Option<f64>,
     /// Time in contact \[s\].
     pub contact_time_s: f64,
     /// ∫ N dt \[N s\].
     pub contact_impulse_n_s: f64,
+    /// Largest penetration of the clearance circle by the contact \[m\].
+    pub peak_penetration_m: f64,
     /// Largest normal force \[N\].
     pub peak_contact_force_n: f64,
     /// Largest friction torque \[N m\].
     pub peak_friction_torque_n_m: f64,
     /// Largest backward speed in contact \[m/s\].
     pub peak_backward_speed_m_s: f64,
+    /// Largest backward whirl frequency over 1 ms of continuous contact \[Hz\]; `None` without such a contact.
+    pub max_backward_whirl_hz: Option<f64>,
     /// Spin lost \[Hz\].
     pub spin_lost_hz: f64,
+    /// Energy from nowhere over energy turned over.
+    pub energy_residual: f64,
+    /// Method that integrated contact.
+    pub method: &'static str,
     /// From the end of the disturbance to the stay in the middle \[s\].
     pub relevitation_time_s: Option<f64>,
 }
@@ -43,12 +53,17 @@ impl From<&Verdict> for Metrics {
             recovered: v.recovered,
             impacts: v.impacts,
             contacts_over_20_mm_s: v.contacts_over_20_mm_s,
+            first_contact_s: v.first_contact_s,
             contact_time_s: v.contact_time_s,
             contact_impulse_n_s: v.contact_impulse_n_s,
+            peak_penetration_m: v.peak_penetration_m,
             peak_contact_force_n: v.peak_contact_force_n,
             peak_friction_torque_n_m: v.peak_friction_torque_n_m,
             peak_backward_speed_m_s: v.peak_backward_speed_m_s,
+            max_backward_whirl_hz: v.max_backward_whirl_hz,
             spin_lost_hz: v.spin_lost_hz,
+            energy_residual: v.energy_residual,
+            method: v.method,
             relevitation_time_s: v.relevitation_time_s,
         }
     }

@@ -269,7 +269,8 @@ typedef struct amb_sample {
 
 /** What to do until the next tick. */
 typedef struct amb_command {
-    float force_n[2];    /**< force to command [N]: finite and within all limits */
+    float force_n[2];    /**< force to command [N]: finite and within all limits, but for a cap that
+                              amb_reconfigure has lowered: to that it comes down at the slew limit */
     float own_n[2];      /**< force that the supervisor would command [N]: force_n but with AMB_STATUS_SHADOW */
     float severity;      /**< backward speed to come, over what the cap can arrest; 0 to 1e6 */
     uint32_t mode;       /**< AMB_MODE_ */

@@ -121,10 +121,16 @@ fn calls_need_little_stack() {
         let line = said.lines().find_map(|l| l.strip_prefix(name));
         line.unwrap().trim().parse().unwrap()
     };
-    assert!(bytes("init") <= 2048, "{said}");
-    assert!(bytes("tick") <= 768, "{said}");
-    assert!(bytes("reconfigure") <= 1536, "{said}");
-    assert!(bytes("self-test") <= 2048, "{said}");
+    // What the page says, and no more than a tenth less of it.
+    for (call, most) in [
+        ("init", 1792),
+        ("tick", 592),
+        ("reconfigure", 1184),
+        ("self-test", 1472),
+    ] {
+        let needed = bytes(call);
+        assert!(needed <= most && 10 * needed >= 9 * most, "{call}: {said}");
+    }
 }
 
 /// Firmware in which a panic can be reached does not link.
