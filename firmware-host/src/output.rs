@@ -23,15 +23,22 @@ pub struct OutputError {
     pub reason: io::Error,
 }
 
+impl OutputError {
+    /// Of this place.
+    pub(crate) fn at(path: &Path) -> impl Fn(io::Error) -> Self {
+        move |reason| Self {
+            path: path.to_owned(),
+            reason,
+        }
+    }
+}
+
 /// Finds out whether results could be written to a folder, and leaves nothing behind.
 ///
 /// # Errors
 /// [`OutputError`].
 pub fn probe(final_place: &Path) -> Result<(), OutputError> {
-    let refused = |reason| OutputError {
-        path: final_place.to_owned(),
-        reason,
-    };
+    let refused = OutputError::at(final_place);
     // The nearest folder that exists: the others would be made in it.
     let mut place = final_place;
     loop {
@@ -64,10 +71,7 @@ impl Staging {
             std::fs::create_dir_all(parent)?;
             TempDir::with_prefix_in(".results", parent)
         };
-        let folder = prepare().map_err(|reason| OutputError {
-            path: final_place.to_owned(),
-            reason,
-        })?;
+        let folder = prepare().map_err(OutputError::at(final_place))?;
         Ok(Self {
             final_place: final_place.to_owned(),
             folder,
@@ -77,6 +81,15 @@ impl Staging {
     /// Where to put a file for now.
     pub fn path(&self, name: &str) -> PathBuf {
         self.folder.path().join(name)
+    }
+
+    /// Writes a file there.
+    ///
+    /// # Errors
+    /// [`OutputError`].
+    pub fn write(&self, name: &str, content: impl AsRef<[u8]>) -> Result<(), OutputError> {
+        let path = self.path(name);
+        std::fs::write(&path, content).map_err(OutputError::at(&path))
     }
 
     /// Moves everything to its place. Files of the same name are replaced one by one; others stay.
@@ -92,27 +105,12 @@ impl Staging {
     /// # Errors
     /// [`OutputError`].
     pub fn publish_over(self, stale: impl Fn(&str) -> bool) -> Result<PathBuf, OutputError> {
-        let in_the_way = |path: &Path| OutputError {
-            path: path.to_owned(),
-            reason: io::Error::from(io::ErrorKind::IsADirectory),
-        };
-        let refused = |reason| OutputError {
-            path: self.final_place.clone(),
-            reason,
-        };
-        let names = || -> io::Result<Vec<OsString>> {
-            let entries = std::fs::read_dir(self.folder.path())?;
-            let mut names: Vec<_> =
-                (entries.map(|entry| entry.map(|e| e.file_name()))).collect::<io::Result<_>>()?;
-            names.sort();
-            Ok(names)
-        };
-        let names = names().map_err(refused)?;
+        let refused = OutputError::at(&self.final_place);
+        let names = names_in(self.folder.path()).map_err(&refused)?;
         // All or nothing: a folder in the place of a file would stop half-way.
-        for name in &names {
-            let path = self.final_place.join(name);
+        for path in names.iter().map(|name| self.final_place.join(name)) {
             if path.is_dir() {
-                return Err(in_the_way(&path));
+                return Err(OutputError::at(&path)(io::ErrorKind::IsADirectory.into()));
             }
         }
         let publish = || {
@@ -133,4 +131,13 @@ impl Staging {
         publish().map_err(refused)?;
         Ok(self.final_place)
     }
+}
+
+/// What is in a folder, in the order of the names.
+fn names_in(folder: &Path) -> io::Result<Vec<OsString>> {
+    let entries = std::fs::read_dir(folder)?;
+    let mut names: Vec<_> =
+        (entries.map(|entry| entry.map(|e| e.file_name()))).collect::<io::Result<_>>()?;
+    names.sort();
+    Ok(names)
 }

@@ -2,16 +2,17 @@
 //! machine told wrong.
 
 use crate::closed_loop::{Keep, run};
+use crate::instruments::SpinSensorParams;
 use crate::overloads::results::Metrics;
 use crate::policy_kind::PolicyKind;
-use crate::scene::Scene;
+use crate::scene::{Override, Scene};
 use crate::suggest::{Nominal, suggested};
 use crate::supervision::Supervision;
 use crate::supervisor_setup::replaced;
 use rand_chacha::ChaCha8Rng;
 use rand_core::{Rng, SeedableRng};
 use serde::Serialize;
-use supervisor::{ConfigError, PARAMETERS};
+use supervisor::{Config, ConfigError, PARAMETERS};
 
 /// How far a datum usually is off, either way.
 #[derive(Debug, Clone, Copy)]
@@ -164,7 +165,7 @@ impl Misjudged {
     /// # Errors
     /// The parameter that the supervisor would refuse.
     pub fn told(&self, scene: &Scene) -> Result<Option<Scene>, ConfigError> {
-        let right = told_right(scene)?;
+        let right = configured(&scene.nominal, &scene.overrides)?;
         let mut told = Told {
             nominal: scene.nominal,
             spin_gain: scene.spin_sensor.gain,
@@ -182,15 +183,26 @@ impl Misjudged {
                 }
             }
         }
-        let config = replaced(&suggested(&told.nominal).config, &overrides);
-        config.validate()?;
-        let mut wrong = right.clone();
-        wrong.supervisor = Some(config);
-        wrong.spin_sensor.gain = told.spin_gain;
-        let known = scene.spin_sensor.valid;
-        let same_spin = !known || wrong.spin_sensor == right.spin_sensor;
-        Ok((wrong.supervisor != right.supervisor || !same_spin).then_some(wrong))
+        let config = configured(&told.nominal, &overrides)?;
+        let spin = scene.spin_sensor;
+        let other_spin = spin.valid && told.spin_gain != spin.gain;
+        let other = config != right || other_spin;
+        Ok(other.then(|| Scene {
+            supervisor: Some(config),
+            spin_sensor: SpinSensorParams {
+                gain: told.spin_gain,
+                ..spin
+            },
+            ..scene.clone()
+        }))
     }
+}
+
+/// What the supervisor is configured with when it is told this.
+fn configured(nominal: &Nominal, overrides: &[Override]) -> Result<Config, ConfigError> {
+    let config = replaced(&suggested(nominal).config, overrides);
+    config.validate()?;
+    Ok(config)
 }
 
 /// The scene with the supervisor told what is, whether or not the scene runs it.
@@ -198,10 +210,8 @@ impl Misjudged {
 /// # Errors
 /// The parameter that the supervisor would refuse.
 pub fn told_right(scene: &Scene) -> Result<Scene, ConfigError> {
-    let config = replaced(&suggested(&scene.nominal).config, &scene.overrides);
-    config.validate()?;
     Ok(Scene {
-        supervisor: Some(config),
+        supervisor: Some(configured(&scene.nominal, &scene.overrides)?),
         ..scene.clone()
     })
 }

@@ -1,7 +1,10 @@
 //! Machines that nothing in the project was tuned on: drawn at random, with the configuration that their data
 //! suggest and a levitation controller by a rule of thumb.
 
+use firmware_host::overloads::catalogue::{Case, cases};
+use firmware_host::overloads::found::{Found, kept};
 use firmware_host::overloads::plants::PlantCase;
+use firmware_host::overloads::seats::Seat;
 use firmware_host::scene::Scene;
 use rand_chacha::ChaCha8Rng;
 use rand_core::{Rng, SeedableRng};
@@ -35,6 +38,27 @@ pub struct Unseen {
     pub lateness: f64,
     /// In words.
     pub text: String,
+}
+
+impl Unseen {
+    /// Its levitation controller in the place of a tuned one; the rest of what was found is of another plant and needed
+    /// by no policy that runs on it.
+    ///
+    /// # Panics
+    /// If the catalogue has no P2.
+    pub fn found(&self) -> Found {
+        let mut found = kept("P2", 20_000.0).expect("the catalogue has it");
+        found.tuned = self.plant.scene.levitation.expect("all have one");
+        found
+    }
+}
+
+/// The catalogue's scenes on a plant in which the supervisor takes part and the sensors are sound.
+pub fn sound_cases(plant: &PlantCase) -> Vec<Case> {
+    let sound = |case: &Case| case.group != "sensor faults";
+    (cases(plant).into_iter())
+        .filter(|case| sound(case) && case.seats.contains(&Seat::Supervisor))
+        .collect()
 }
 
 /// Machine of a number. Masses of 0.3 to 100 kg, clearances of 0.1 to 0.5 mm, forces of 3 to 60 times the weight,

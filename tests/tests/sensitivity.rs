@@ -1,6 +1,6 @@
 //! How well the supervisor has to know its machine: with its data told wrong as data commonly are.
 
-use firmware_host::overloads::catalogue::{Case, cases};
+use firmware_host::overloads::catalogue::Case;
 use firmware_host::overloads::found::{Found, kept};
 use firmware_host::overloads::plants::{PlantCase, plants};
 use firmware_host::overloads::results::{ResultRow, run_case};
@@ -9,7 +9,7 @@ use firmware_host::scene::Scene;
 use firmware_host::sensitivity::{misjudged, told_right};
 use rayon::prelude::*;
 use serde_json::Value;
-use system_tests::unseen::machine;
+use system_tests::unseen::{machine, sound_cases};
 use system_tests::{host, scene_path};
 
 const RATE_HZ: f64 = 20_000.0;
@@ -23,8 +23,7 @@ struct Trial {
 
 /// The catalogue's scenes without sensor faults on a machine.
 fn trials(plant: &PlantCase, found: &Found) -> Vec<Trial> {
-    (cases(plant).into_iter())
-        .filter(|case| case.group != "sensor faults" && case.seats.contains(&Seat::Supervisor))
+    (sound_cases(plant).into_iter())
         .map(|case| Trial {
             plant: plant.clone(),
             found: *found,
@@ -45,11 +44,7 @@ fn of_unseen_machines(count: u64) -> Vec<Trial> {
     (0..count)
         .map(machine)
         .filter(|unseen| unseen.lateness < 0.8)
-        .flat_map(|unseen| {
-            let mut found = kept("P2", RATE_HZ).unwrap();
-            found.tuned = unseen.plant.scene.levitation.expect("all have one");
-            trials(&unseen.plant, &found)
-        })
+        .flat_map(|unseen| trials(&unseen.plant, &unseen.found()))
         .collect()
 }
 

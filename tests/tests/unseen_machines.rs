@@ -1,12 +1,10 @@
 //! The catalogue's scenes on machines that nothing was tuned on.
 
-use firmware_host::overloads::catalogue::cases;
-use firmware_host::overloads::found::kept;
 use firmware_host::overloads::results::run_case;
 use firmware_host::overloads::seats::Seat;
 use rayon::prelude::*;
 use std::ops::Range;
-use system_tests::unseen::machine;
+use system_tests::unseen::{machine, sound_cases};
 
 /// What came of some machines.
 #[derive(Debug, Default)]
@@ -39,16 +37,12 @@ fn on_machines(numbers: Range<u64>, lateness: Range<f64>) -> Summary {
             return Summary::default();
         }
         let at = (unseen.plant.name.as_str(), unseen.plant.rate_hz);
-        let mut found = kept("P2", 20_000.0).unwrap();
-        found.tuned = unseen.plant.scene.levitation.expect("all have one");
+        let found = unseen.found();
         let mut summary = Summary {
             machines: 1,
             ..Summary::default()
         };
-        for case in cases(&unseen.plant) {
-            if case.group == "sensor faults" || !case.seats.contains(&Seat::Supervisor) {
-                continue;
-            }
+        for case in sound_cases(&unseen.plant) {
             let [alone, own] = [Seat::Tuned, Seat::Supervisor]
                 .map(|seat| run_case(&case, at, (seat, 1), &found).recovered());
             summary.runs += 1;

@@ -3,10 +3,10 @@
 mod show;
 
 use crate::accuracy::{Reference, Row, sweep};
-use crate::commands::error::{CommandError, print};
+use crate::commands::error::{CommandError, pretty, print};
 use crate::commands::load;
 use crate::commands::progress::{LateProgress, pool};
-use crate::output::{self, OutputError, Staging};
+use crate::output::{self, Staging};
 use crate::scene::Scene;
 use crate::wrong_runs::{self, STARTS, WrongRow};
 use serde::Serialize;
@@ -109,19 +109,16 @@ pub fn execute(args: &AccuracyArgs) -> Result<(), CommandError> {
     for reference in found.references.iter().filter(|r| !r.confirmed) {
         eprintln!("warning: {}", show::unconfirmed(reference));
     }
-    let pretty = serde_json::to_string_pretty(&found)
-        .map_err(|e| CommandError::other("formatting accuracy.json", e))?;
+    let json = pretty(&found, "formatting accuracy.json")?;
     if let Some(out) = &args.out {
         let staging = Staging::beside(out)?;
         let svg = show::figure(&found)?;
-        for (name, text) in [("accuracy.json", &pretty), ("accuracy.svg", &svg)] {
-            let path = staging.path(name);
-            std::fs::write(&path, text).map_err(|reason| OutputError { path, reason })?;
-        }
+        staging.write("accuracy.json", &json)?;
+        staging.write("accuracy.svg", svg)?;
         staging.publish()?;
     }
     if args.json {
-        print(&format!("{pretty}\n"))
+        print(&(json + "\n"))
     } else {
         print(&show::tables(&found))
     }

@@ -1,7 +1,7 @@
 //! `advise`: what can be known of a bearing before the supervisor goes in, and a suggested configuration.
 
 use crate::advice::{self, Advice, Language, OutOfRange};
-use crate::commands::error::{CommandError, print};
+use crate::commands::error::{CommandError, pretty, print};
 use crate::commands::load;
 use crate::suggest::Nominal;
 use crate::supervisor_setup::key_of;
@@ -176,9 +176,7 @@ pub fn execute(args: &AdviseArgs) -> Result<(), CommandError> {
             .map_err(|e| out_of_range(&e, option))?,
     };
     if args.json {
-        let pretty = serde_json::to_string_pretty(&advice)
-            .map_err(|e| CommandError::other("formatting the advice", e))?;
-        return print(&format!("{pretty}\n"));
+        return print(&(pretty(&advice, "formatting the advice")? + "\n"));
     }
     print(&match args.format {
         Some(language) => {

@@ -4,6 +4,7 @@ use crate::closed_loop::RunError;
 use crate::output::OutputError;
 use crate::scene_error::SceneError;
 use crate::target::measure::TargetError;
+use serde::Serialize;
 use std::io::Write;
 
 /// Why a command failed.
@@ -106,6 +107,14 @@ impl CommandError {
             reason: reason.to_string(),
         }
     }
+}
+
+/// JSON for people, indented; `what` is for the error.
+///
+/// # Errors
+/// What serde said.
+pub(crate) fn pretty(value: &impl Serialize, what: &'static str) -> Result<String, CommandError> {
+    serde_json::to_string_pretty(value).map_err(|e| CommandError::other(what, e))
 }
 
 /// Prints a command's result.

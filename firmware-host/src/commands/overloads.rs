@@ -1,9 +1,9 @@
 //! `overloads`: the catalogue of overloads, and what it says of the supervisor's promises.
 
-use crate::commands::error::{CommandError, print};
+use crate::commands::error::{CommandError, pretty, print};
 use crate::commands::load;
 use crate::commands::progress::{LateProgress, pool};
-use crate::output::{self, OutputError, Staging};
+use crate::output::{self, Staging};
 use crate::overloads::histories::{CASES, Way, compare};
 use crate::overloads::page::{self, SCENE_COLUMNS, scene_rows};
 use crate::overloads::plan::{Catalogue, CatalogueError, Extent, Plan, search};
@@ -77,8 +77,7 @@ pub fn execute(args: &OverloadsArgs) -> Result<(), CommandError> {
     ];
     files.extend(page::scenes(&catalogue));
     for (name, text) in &files {
-        let path = staging.path(name);
-        std::fs::write(&path, text).map_err(|reason| OutputError { path, reason })?;
+        staging.write(name, text)?;
     }
     let out = staging.publish()?;
     if args.json {
@@ -100,11 +99,9 @@ fn search_anew(args: &OverloadsArgs) -> Result<(), CommandError> {
         .install(|| search(&|done| progress.add(done)))
         .map_err(failed)?;
     progress.finish();
-    let pretty = serde_json::to_string_pretty(&rows)
-        .map_err(|e| CommandError::other("formatting found.json", e))?;
+    let json = pretty(&rows, "formatting found.json")?;
     let staging = Staging::beside(&args.out)?;
-    let path = staging.path("found.json");
-    std::fs::write(&path, format!("{pretty}\n")).map_err(|reason| OutputError { path, reason })?;
+    staging.write("found.json", format!("{json}\n"))?;
     let out = staging.publish()?;
     print(&format!("found: {}\n", out.join("found.json").display()))
 }
@@ -115,11 +112,10 @@ fn against_histories(args: &OverloadsArgs) -> Result<(), CommandError> {
         .install(|| compare(&|done| progress.add(done)))
         .map_err(failed)?;
     progress.finish();
-    let pretty = serde_json::to_string(&rows)
+    let json = serde_json::to_string(&rows)
         .map_err(|e| CommandError::other("formatting histories.json", e))?;
     let staging = Staging::beside(&args.out)?;
-    let path = staging.path("histories.json");
-    std::fs::write(&path, format!("{pretty}\n")).map_err(|reason| OutputError { path, reason })?;
+    staging.write("histories.json", format!("{json}\n"))?;
     let out = staging.publish()?;
     let mut table = lined([
         "impact",

@@ -1,8 +1,8 @@
 //! `paper`: every number and figure of the paper, computed.
 
-use crate::commands::error::{CommandError, print};
+use crate::commands::error::{CommandError, pretty, print};
 use crate::commands::progress::{LateProgress, pool};
-use crate::output::{self, OutputError, Staging};
+use crate::output::{self, Staging};
 use crate::paper::{CHAPTERS, Chapter, Depth, html, json, text};
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 use std::path::PathBuf;
@@ -46,14 +46,11 @@ pub fn execute(args: &PaperArgs) -> Result<(), CommandError> {
             .collect::<Result<Vec<Chapter>, CommandError>>()
     })?;
     progress.finish();
-    let rows = serde_json::to_string_pretty(&json(&chapters))
-        .map_err(|e| CommandError::other("formatting paper.json", e))?;
-    let rows = format!("{rows}\n");
+    let rows = pretty(&json(&chapters), "formatting paper.json")? + "\n";
     let page = html(&chapters).map_err(|e| CommandError::other("drawing paper.html", e))?;
     let staging = Staging::beside(&args.out)?;
     for (name, content) in [("paper.json", &rows), ("paper.html", &page)] {
-        let path = staging.path(name);
-        std::fs::write(&path, content).map_err(|reason| OutputError { path, reason })?;
+        staging.write(name, content)?;
     }
     let out = staging.publish()?;
     if args.json {

@@ -1,6 +1,6 @@
 //! `record`: a flight record from a machine, for a person who asks what happened.
 
-use crate::commands::error::{CommandError, print};
+use crate::commands::error::{CommandError, pretty, print};
 use crate::flight_record::{ANY_UNIT, FlightRecord, Tick, Units, entries};
 use crate::table::{lined, right};
 use comfy_table::Cell;
@@ -66,9 +66,7 @@ pub fn execute(args: &RecordArgs) -> Result<(), CommandError> {
         });
     }
     print(&if args.json {
-        let json = serde_json::to_string_pretty(&record)
-            .map_err(|e| CommandError::other("writing JSON", e))?;
-        json + "\n"
+        pretty(&record, "writing JSON")? + "\n"
     } else if args.csv {
         csv(&record)
     } else {

@@ -1,7 +1,7 @@
 //! `run SCENE.toml`: every policy of the scene, one table, traces and a report.
 
 use crate::closed_loop::{Keep, RunError, run};
-use crate::commands::error::{CommandError, Contradiction, print};
+use crate::commands::error::{CommandError, Contradiction, pretty, print};
 use crate::commands::load;
 use crate::commands::progress::{LateProgress, pool};
 use crate::output::{self, OutputError, Staging};
@@ -47,13 +47,12 @@ pub fn execute(args: &RunArgs) -> Result<(), CommandError> {
     output::probe(&out)?;
     let runs = run_all(&scene, args)?;
     let verdicts = table::json(&scene, &runs);
-    let pretty = serde_json::to_string_pretty(&verdicts)
-        .map_err(|e| CommandError::other("formatting verdict.json", e))?;
+    let verdicts = pretty(&verdicts, "formatting verdict.json")? + "\n";
     let staging = Staging::beside(&out)?;
-    write_results(&staging, &scene, &runs, &pretty)?;
+    write_results(&staging, &scene, &runs, &verdicts)?;
     let out = staging.publish_over(of_a_policy)?;
     let text = if args.json {
-        format!("{pretty}\n")
+        verdicts
     } else {
         let report = out.join("report.html");
         format!(
@@ -160,26 +159,19 @@ fn write_results(
     runs: &[PolicyRun],
     verdicts: &str,
 ) -> Result<(), CommandError> {
-    let in_file = |path: &Path| {
-        let path = path.to_owned();
-        move |reason| OutputError { path, reason }
-    };
-    let path = staging.path("verdict.json");
-    std::fs::write(&path, format!("{verdicts}\n")).map_err(in_file(&path))?;
+    staging.write("verdict.json", verdicts)?;
     for run in runs {
         let path = staging.path(&trace_name(&run.name));
-        let file = std::fs::File::create(&path).map_err(in_file(&path))?;
+        let file = std::fs::File::create(&path).map_err(OutputError::at(&path))?;
         trace_file::write(&run.trace, file)
             .map_err(|e| CommandError::other("writing a trace", e))?;
         let read_out = run.trace.read_out.as_ref();
         if let Some(record) = read_out.and_then(|read_out| read_out.flight_record.as_ref()) {
-            let path = staging.path(&record_name(&run.name));
-            std::fs::write(&path, &record.entries).map_err(in_file(&path))?;
+            staging.write(&record_name(&run.name), &record.entries)?;
         }
     }
     let html = report::html(&summary(scene), runs)
         .map_err(|e| CommandError::other("drawing the report", e))?;
-    let path = staging.path("report.html");
-    std::fs::write(&path, html).map_err(in_file(&path))?;
+    staging.write("report.html", html)?;
     Ok(())
 }

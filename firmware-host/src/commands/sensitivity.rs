@@ -1,6 +1,6 @@
 //! `sensitivity SCENE.toml`: how well the supervisor has to know its machine.
 
-use crate::commands::error::{CommandError, print};
+use crate::commands::error::{CommandError, pretty, print};
 use crate::commands::load;
 use crate::commands::progress::{LateProgress, pool};
 use crate::policy_kind::PolicyKind;
@@ -62,9 +62,7 @@ pub fn execute(args: &SensitivityArgs) -> Result<(), CommandError> {
             "width": args.width,
             "rows": rows,
         });
-        let pretty = serde_json::to_string_pretty(&value)
-            .map_err(|e| CommandError::other("formatting the rows", e))?;
-        format!("{pretty}\n")
+        pretty(&value, "formatting the rows")? + "\n"
     } else {
         text(&scene, &rows)
     })

@@ -2,7 +2,7 @@
 
 mod show;
 
-use crate::commands::error::{CommandError, print};
+use crate::commands::error::{CommandError, pretty, print};
 use crate::commands::progress::pool;
 use crate::target::budgets::{BudgetError, Budgets, renew};
 use crate::target::emulator;
@@ -65,9 +65,7 @@ pub fn execute(args: &TargetArgs) -> Result<(), CommandError> {
         .collect();
     let report = run(args, &machines)?;
     let text = if args.json {
-        let pretty = serde_json::to_string_pretty(&report);
-        let pretty = pretty.map_err(|e| CommandError::other("formatting the results", e))?;
-        format!("{pretty}\n")
+        pretty(&report, "formatting the results")? + "\n"
     } else {
         show::text(&report)
     };
