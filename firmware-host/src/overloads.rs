@@ -14,6 +14,7 @@ pub mod promises;
 pub mod reference;
 pub mod results;
 pub mod seats;
+pub mod situations;
 pub mod sweeps;
 pub mod takeover;
 pub mod tune;

@@ -196,7 +196,7 @@ pub fn suggested(n: &Nominal) -> Suggested {
         position_limit: 20.0, None, "rule of thumb: no machine measures so far out, and whirl presses the wall beyond 1";
         // Two half periods on the contact spring, but no less than a millisecond.
         whirl_time_s: (std::f64::consts::TAU / contact_rate).max(1e-3), Some("contact_stiffness_n_m"), "a period on the contact, 2π·√(m/k_c), at least 1 ms";
-        hold_share: 0.8, None, "rule of thumb: the rest damps";
+        hold_share: 0.8, None, "rule of thumb: gentle at first";
         handover_dwell_s: 5e-4, None, "rule of thumb: some samples without doubt";
         handover_blend_s: 2e-3, None, "rule of thumb: shorter than a levitation loop settles";
         fault_blend_s: 2e-2, None, "rule of thumb: longer than most interruptions; a force that stands still holds the rotor to one side, none lets it whirl";

@@ -14,7 +14,7 @@ use crate::signal::{Command, CoreCommand, CoreSample, Sample};
 const FULL_FORCE_FROM: f32 = 0.4;
 /// Most speed that the force of a contact may still give after it \[lift-off speeds\].
 const AFTER_LIFT_OFF: f32 = 0.45;
-/// Largest share of the cap that ever pushes inwards.
+/// Largest share of the cap that the restoring law has at the wall.
 const NEARLY_ALL: f32 = 0.95;
 
 /// Longest delay between a sample and its force \[ticks\].
@@ -141,6 +141,7 @@ pub(crate) struct Coeffs<S: Scalar> {
     pub(crate) position_limit: S,
     /// Filter step of the contact share, 1/ticks of the whirl time.
     pub(crate) contact_share_step: S,
+    /// Share of the cap that holds a rotor which has just come to rest on the wall.
     pub(crate) hold_share: S,
     /// Force per speed of the damping law.
     pub(crate) damper: S,

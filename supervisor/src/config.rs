@@ -136,7 +136,7 @@ parameters! {
     contact_band, "clearance", 0.001 ..= 0.3, "The rotor counts as touching within this band below the clearance; at least the retainer's offset and three times the sensor noise.";
     position_limit, "clearance", 1.5 ..= 20.0, "A measured radius beyond this is refused as implausible.";
     whirl_time_s, "s", 1e-5 ..= 0.1, "Contact that lasts this long is whirl or rest, not a bounce: some periods of the rotor on the contact stiffness.";
-    hold_share, "1", 0.1 ..= 0.95, "Largest share of the cap that may push inwards.";
+    hold_share, "1", 0.1 ..= 0.95, "Share of the cap that pushes inwards on the bearing: at most in an impact, and at first at rest, where it grows.";
     handover_dwell_s, "s", 0.0 ..= 1.0, "Contact must be avoidable for this long before hand-over begins.";
     handover_blend_s, "s", 0.0 ..= 1.0, "Time of the blend to the levitation controller.";
     fault_blend_s, "s", 0.0 ..= 1.0, "Time in which the force goes to zero when the position cannot be trusted; of a levitated rotor no longer than handover_blend_s.";

@@ -12,6 +12,8 @@ pub(crate) struct Findings<S> {
     /// r̂ of the estimated position.
     pub(crate) normal: Vec2<S>,
     pub(crate) radius: S,
+    /// 1/r; 0 where there is no direction.
+    pub(crate) per_radius: S,
     /// How far from the centre it may be: less than the clearance by how far the axis is beside it.
     pub(crate) reach: S,
     /// Outward speed.
@@ -88,10 +90,12 @@ impl Detector {
         cap: S,
         coeffs: &Coeffs<S>,
     ) -> Findings<S> {
-        let normal = motion.position.direction();
+        let per_radius = motion.position.inverse_length();
+        let normal = motion.position * per_radius;
         let mut found = Findings {
             normal,
             radius: motion.position.dot(normal),
+            per_radius,
             reach: S::ONE - beside,
             radial_speed: motion.velocity.dot(normal),
             tangential_speed: motion.velocity.dot(normal.turned()),

@@ -13,8 +13,8 @@ use crate::coeffs::Coeffs;
 use crate::course::{Course, Impact, sum_of_impacts};
 use crate::detect::Findings;
 use crate::estimate::Motion;
+use crate::phase::Phase;
 use crate::scalar::Scalar;
-use crate::signal::Mode;
 use crate::spin::Spin;
 use crate::vec2::Vec2;
 
@@ -39,6 +39,10 @@ const URGENT: f32 = 1.3;
 /// in which braking takes speed out.
 const FLIGHT_SHARE: f32 = 0.15;
 
+/// How much stronger a load of the cap or more, outwards, makes the restoring force: without it a load a little below the
+/// cap keeps the rotor beside the wall.
+const LOAD_SHARE: f32 = 0.5;
+
 /// What the law looks at.
 pub(crate) struct View<'a, S: Scalar> {
     pub(crate) motion: &'a Motion<S>,
@@ -51,13 +55,13 @@ pub(crate) struct View<'a, S: Scalar> {
 }
 
 impl<S: Scalar> View<'_, S> {
-    /// The wanted force of a mode; zero for the modes in which the supervisor wants nothing itself.
+    /// The wanted force of a phase; zero for those in which the supervisor wants nothing itself.
     #[inline]
-    pub(crate) fn wanted(&self, mode: Mode) -> Wanted<S> {
-        match mode {
-            Mode::Levitated | Mode::SensorFault => Wanted::default(),
-            Mode::Pinned => self.hold(),
-            Mode::BackwardWhirl => self.in_contact(true),
+    pub(crate) fn wanted(&self, phase: Phase<S>) -> Wanted<S> {
+        match phase {
+            Phase::Levitated | Phase::SensorFault { .. } => Wanted::default(),
+            Phase::Pinned { hold } => self.hold(hold),
+            Phase::BackwardWhirl => self.in_contact(true),
             _ if self.found.touching => self.in_contact(false),
             _ => self.in_flight(),
         }
@@ -85,13 +89,15 @@ impl<S: Scalar> View<'_, S> {
     fn in_flight(&self) -> Wanted<S> {
         let most = self.coeffs.restoring;
         let share = (most - self.course.square).or_more(most.or_less(S::of(FLIGHT_SHARE)));
+        let slow = (S::ONE - self.course.square).or_more(S::ZERO);
+        let load = self.found.load.between(S::ZERO, S::ONE) * (slow * most * S::of(LOAD_SHARE));
         Wanted {
             braking: match self.ahead {
                 Some(impact) => self.before(impact),
                 None => Vec2::ZERO,
             },
             damping: self.damping(),
-            restoring: self.motion.position * -share,
+            restoring: self.motion.position * -(share + load),
             touching: false,
         }
     }
@@ -154,6 +160,7 @@ impl<S: Scalar> View<'_, S> {
         let sum = sum_of_impacts(found.tangential_speed * sense, outward, self.bounce_gain());
         let strength = (sum * coeffs.damper).between(S::ZERO, S::ONE);
         let braking = if strength > S::ZERO {
+            let rate = found.tangential_speed * found.per_radius;
             // Unit vector against b̂, or b̂ + μ·n̂.
             let along = n.turned() * sense;
             let (against, length) = if driven {
@@ -161,7 +168,7 @@ impl<S: Scalar> View<'_, S> {
             } else {
                 (along, S::JUST_BELOW_ONE)
             };
-            (against * -(strength * length)).rotated(self.lead(found.tangential_speed))
+            (against * -(strength * length)).rotated(self.lead(rate))
         } else {
             Vec2::ZERO
         };
@@ -189,8 +196,8 @@ impl<S: Scalar> View<'_, S> {
             .direction()
     }
 
-    /// On the wall under a load: push inwards with what the load leaves useful, keep still.
-    fn hold(&self) -> Wanted<S> {
+    /// On the wall under a load: push inwards, keep still.
+    fn hold(&self, share: S) -> Wanted<S> {
         let (coeffs, found) = (self.coeffs, self.found);
         let sense = self.spin.sense_of_backward(found.tangential_speed);
         let backward = found.tangential_speed * sense;
@@ -198,7 +205,7 @@ impl<S: Scalar> View<'_, S> {
         Wanted {
             braking: found.normal.turned() * -(sense * strength),
             damping: self.damping(),
-            restoring: found.normal * -coeffs.hold_share,
+            restoring: found.normal * -share,
             touching: true,
         }
     }

@@ -119,7 +119,7 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
     #[inline]
     pub fn tick(&mut self, sample: &CoreSample<S>) -> CoreCommand<S> {
         let coeffs = &self.coeffs;
-        let pinned = self.phase == Phase::Pinned;
+        let pinned = matches!(self.phase, Phase::Pinned { .. });
         let wall = self.detector.wall(pinned);
         let blind = wall != Wall::Nothing;
         let reading = (self.guard).judge(sample, self.observer.velocity(), blind, coeffs);
@@ -180,7 +180,7 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
             self.readiness = Readiness::default();
             (levitation, levitation_limits)
         } else {
-            let (wanted, own_limits) = limit::allocate(&view.wanted(mode), &room);
+            let (wanted, own_limits) = limit::allocate(&view.wanted(phase), &room);
             if holds {
                 // The controller has to ask for what the rotor is really held with.
                 let held = actuator.applied().unwrap_or(wanted);

@@ -26,8 +26,8 @@ pub(crate) enum Phase<S> {
     Bounce { calm_ticks: u32 },
     /// Sliding around the clearance without leaving it.
     BackwardWhirl,
-    /// Lying on the bearing.
-    Pinned,
+    /// Lying on the bearing. `hold`: inward force \[caps\], the more the longer it lies there.
+    Pinned { hold: S },
     /// The levitation controller's share grows from 0 to 1.
     Handover { weight: S },
     /// The force goes from its last value to zero with `weight`; fast where the rotor was not `bouncing`.
@@ -41,7 +41,7 @@ impl<S: Scalar> Phase<S> {
             Self::Approach { .. } => Mode::Approach,
             Self::Bounce { .. } => Mode::Bounce,
             Self::BackwardWhirl => Mode::BackwardWhirl,
-            Self::Pinned => Mode::Pinned,
+            Self::Pinned { .. } => Mode::Pinned,
             Self::Handover { .. } => Mode::Handover,
             Self::SensorFault { .. } => Mode::SensorFault,
         }
@@ -78,7 +78,7 @@ impl<S: Scalar> Phase<S> {
             events |= match next {
                 Self::Levitated => Events::LEVITATED,
                 Self::BackwardWhirl => Events::WHIRL,
-                Self::Pinned => Events::PINNED,
+                Self::Pinned { .. } => Events::PINNED,
                 Self::Handover { .. } => Events::HANDOVER,
                 _ => Events::empty(),
             };
@@ -87,6 +87,15 @@ impl<S: Scalar> Phase<S> {
             }
         }
         (next, events)
+    }
+
+    /// Inward force on a rotor at rest on the wall at this tick: where the first does not lift it off, more and more,
+    /// up to the whole cap.
+    fn hold(self, coeffs: &Coeffs<S>) -> S {
+        match self {
+            Self::Pinned { hold } => hold + (S::JUST_BELOW_ONE - hold) * coeffs.blend_step,
+            _ => coeffs.hold_share,
+        }
     }
 
     #[inline]
@@ -102,7 +111,7 @@ impl<S: Scalar> Phase<S> {
         if faulty {
             let (weight, bouncing) = match self {
                 Self::SensorFault { weight, bouncing } => (weight, bouncing),
-                Self::Bounce { .. } | Self::BackwardWhirl | Self::Pinned => (S::ONE, true),
+                Self::Bounce { .. } | Self::BackwardWhirl | Self::Pinned { .. } => (S::ONE, true),
                 _ => (S::ONE, false),
             };
             return Self::SensorFault {
@@ -114,7 +123,9 @@ impl<S: Scalar> Phase<S> {
             return match class {
                 Class::Bounce | Class::ForwardRub { .. } => new_bounce,
                 Class::BackwardWhirl => Self::BackwardWhirl,
-                Class::Pinned => Self::Pinned,
+                Class::Pinned => Self::Pinned {
+                    hold: self.hold(coeffs),
+                },
             };
         }
         match self {
@@ -132,7 +143,7 @@ impl<S: Scalar> Phase<S> {
             Self::SensorFault {
                 bouncing: false, ..
             } => Self::Approach { calm_ticks: 0 },
-            Self::BackwardWhirl | Self::Pinned | Self::SensorFault { .. } => new_bounce,
+            Self::BackwardWhirl | Self::Pinned { .. } | Self::SensorFault { .. } => new_bounce,
             Self::Handover { .. } if found.unavoidable => Self::Approach { calm_ticks: 0 },
             Self::Handover { weight } => {
                 let weight = weight + coeffs.blend_step;

@@ -145,7 +145,7 @@ impl Scalar for Q {
     const ONE: Self = Self::from_bits(1 << FRACTION);
     const FAR_SQUARE: Self = Self::from_bits(400 << FRACTION);
     const JUST_BELOW_ONE: Self = Self::from_bits((1 << FRACTION) - 8);
-    const KNOWN_ANSWER: u32 = 0xAF7D_E90D;
+    const KNOWN_ANSWER: u32 = 0xEA2F_4A4F;
 
     #[inline]
     fn of(x: f32) -> Self {

@@ -223,8 +223,8 @@ macro_rules! floating_point {
     };
 }
 
-floating_point!(f32, 0x3F84_7C81);
-floating_point!(f64, 0x7EBF_64A0);
+floating_point!(f32, 0x9F73_D87A);
+floating_point!(f64, 0x26D8_D00C);
 
 /// Reciprocal square roots by Newton's method, from + − × only: every target gives the same bits. `core`
 /// has no root, and libm's costs three times as many instructions where there is an FPU. 0 below 1e-30

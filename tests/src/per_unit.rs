@@ -87,11 +87,12 @@ pub fn record(
 ) -> Vec<Stream> {
     let mut streams = Vec::new();
     for plant in plants(rate_hz).unwrap_or_else(|e| panic!("{e}")) {
-        for mut case in cases(&plant) {
+        let tuned = kept(&plant.name, rate_hz).expect("kept for all").tuned;
+        for mut case in cases(&plant, tuned) {
             if !wanted(&plant, &case) {
                 continue;
             }
-            case.scene.levitation = kept(&plant.name, rate_hz).map(|found| found.tuned);
+            case.scene.levitation = Some(tuned);
             case.scene.duration_s = case.scene.duration_s.min(longest_s);
             let config = case.scene.supervisor.expect("plants have one");
             let (supervisor, tape) = recording(&config).expect("valid");

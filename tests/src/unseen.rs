@@ -1,6 +1,7 @@
 //! Machines that nothing in the project was tuned on: drawn at random, with the configuration that their data
 //! suggest and a levitation controller by a rule of thumb.
 
+use firmware_host::levitation::LevitationParams;
 use firmware_host::overloads::catalogue::{Case, cases};
 use firmware_host::overloads::found::{Found, kept};
 use firmware_host::overloads::plants::PlantCase;
@@ -53,10 +54,10 @@ impl Unseen {
     }
 }
 
-/// The catalogue's scenes on a plant in which the supervisor takes part and the sensors are sound.
-pub fn sound_cases(plant: &PlantCase) -> Vec<Case> {
+/// The catalogue's scenes on a plant with this loop in which the supervisor takes part and the sensors are sound.
+pub fn sound_cases(plant: &PlantCase, levitation: LevitationParams) -> Vec<Case> {
     let sound = |case: &Case| case.group != "sensor faults";
-    (cases(plant).into_iter())
+    (cases(plant, levitation).into_iter())
         .filter(|case| sound(case) && case.seats.contains(&Seat::Supervisor))
         .collect()
 }

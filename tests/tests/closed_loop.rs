@@ -171,21 +171,26 @@ fn a_carried_weight_is_not_dropped_at_hand_over() {
     }
 }
 
-/// A load near the share of the cap that holds a rotor on the wall does not make it chatter.
+/// A load near what holds a rotor on the wall at first, or near the cap, does not make it chatter: what can be lifted off
+/// touches once, and what cannot is thrown onto the wall and stays, but for hops too slow to count as hard.
 #[test]
-fn a_load_near_the_hold_does_not_chatter() {
+fn a_load_near_the_cap_does_not_chatter() {
     let mut scene = scene("overload_then_release");
     scene.duration_s = 0.6;
-    for share in [0.75, 0.8, 1.0, 1.1] {
+    for (share, touches, hard) in [
+        (0.75, 1, 1),
+        (0.8, 1, 1),
+        (0.9, 1, 1),
+        (1.0, 30, 1),
+        (1.1, 12, 3),
+    ] {
         scene.disturbances[0].duration_s = 0.5;
         scene.disturbances[0].force_n = V2::new(share * 1000.0, 0.0);
-        let supervised = verdict(&scene, PolicyKind::Supervisor);
-        assert_eq!(supervised.outcome, Outcome::Recovered, "{share} of the cap");
-        assert!(
-            supervised.impacts <= 12,
-            "{} impacts at {share}",
-            supervised.impacts
-        );
+        let v = verdict(&scene, PolicyKind::Supervisor);
+        assert_eq!(v.outcome, Outcome::Recovered, "{share} of the cap");
+        assert!(v.impacts <= touches, "{} touches at {share}", v.impacts);
+        let most = v.contacts_over_20_mm_s;
+        assert!(most <= hard, "{most} hard touches at {share}");
     }
 }
 

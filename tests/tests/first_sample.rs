@@ -11,16 +11,17 @@ fn first(radius: f32, status: Status) -> Command {
 }
 
 /// Pressed deeper than the contact band, with a known spin: the whole cap against backward whirl, and ahead of the
-/// rotor by delay and lag at the lift-off speed, (5.12).
+/// rotor by delay and lag at the lift-off speed on a circle of this radius, (5.12).
 #[test]
 fn a_whirl_is_braked_from_the_first_sample_on() {
     let c = config();
     let unit_s = f64::from(c.mass_kg * c.clearance_m / c.force_max_n).sqrt();
     let delay_s = 1.5 * f64::from(c.sample_period_s);
-    let lead = delay_s / unit_s + (f64::from(c.amplifier_lag_s) / unit_s).atan();
     let on = Status::BEARING_ON | Status::SPIN_VALID;
-    for radius in [1.025, 1.5] {
+    for radius in [1.025_f32, 1.5] {
         let command = first(radius, on);
+        let rate = 1.0 / (unit_s * f64::from(radius));
+        let lead = delay_s * rate + (f64::from(c.amplifier_lag_s) * rate).atan();
         // The spin is counter-clockwise: backward is clockwise, and ahead of a rotor at +x is towards −y.
         let [x, y] = command.force_n.map(f64::from);
         assert!(length(command.force_n) > 0.999 * f64::from(c.force_max_n));

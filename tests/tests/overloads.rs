@@ -260,7 +260,8 @@ fn a_history_stays_within_the_cap() {
 #[test]
 fn cases_are_told_apart() {
     for plant in plants(RATES_HZ[0]).unwrap() {
-        let all = cases(&plant);
+        let tuned = kept(&plant.name, RATES_HZ[0]).unwrap().tuned;
+        let all = cases(&plant, tuned);
         let names: BTreeSet<&str> = all.iter().map(|c| c.name.as_str()).collect();
         assert_eq!(names.len(), all.len(), "{}", plant.name);
         assert!(all.len() > 150);

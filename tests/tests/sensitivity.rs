@@ -23,7 +23,7 @@ struct Trial {
 
 /// The catalogue's scenes without sensor faults on a machine.
 fn trials(plant: &PlantCase, found: &Found) -> Vec<Trial> {
-    (sound_cases(plant).into_iter())
+    (sound_cases(plant, found.tuned).into_iter())
         .map(|case| Trial {
             plant: plant.clone(),
             found: *found,

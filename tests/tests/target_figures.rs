@@ -46,6 +46,7 @@ fn every_processor_gives_the_bits_of_the_host_within_its_budgets() {
         let stream = of_its_number.next().unwrap();
         assert_eq!(t["bit_exact_ticks"], 100_000, "{t}");
         assert_eq!(t["hash"], stream["hash"], "{t}");
+        assert_eq!(t["read_outs"], stream["read_outs"], "{t}");
         // A count that lost its meaning would show here: between nothing and a thousand flops in software.
         let [min, median, worst] =
             ["min", "median", "worst"].map(|x| t[format!("{x}_instructions")].as_u64().unwrap());

@@ -42,7 +42,7 @@ fn on_machines(numbers: Range<u64>, lateness: Range<f64>) -> Summary {
             machines: 1,
             ..Summary::default()
         };
-        for case in sound_cases(&unseen.plant) {
+        for case in sound_cases(&unseen.plant, found.tuned) {
             let [alone, own] = [Seat::Tuned, Seat::Supervisor]
                 .map(|seat| run_case(&case, at, (seat, 1), &found).recovered());
             summary.runs += 1;

@@ -1,6 +1,6 @@
 //! The supervisors that the images run, one for each kind of number.
 
-use crate::wire::{self, CommandBits, SampleBits};
+use crate::wire::{self, CommandBits, Hash, SampleBits};
 use supervisor::{
     Command, Config, Core, CoreCommand, CoreSample, Mode, Prepared, Q, Sample, Supervisor,
     self_test,
@@ -40,6 +40,8 @@ pub trait UnderTest: Sized {
     fn bits(command: &Self::Command) -> CommandBits;
     /// Mode after a tick.
     fn mode_of(command: &Self::Command) -> Mode;
+    /// Takes what it leaves behind into a hash: its report, the events in its queue, its frozen record.
+    fn read_out(&mut self, hash: &mut Hash);
     /// Everything else that firmware calls, so that it is linked.
     fn everything_else(&mut self);
 }
@@ -51,8 +53,20 @@ pub fn tick<U: UnderTest>(supervisor: &mut U, sample: &U::Sample, command: &mut 
 }
 
 // The methods have the same names but belong to different types.
-macro_rules! everything_else {
+macro_rules! read_out {
     () => {
+        fn read_out(&mut self, hash: &mut Hash) {
+            wire::add_report(hash, &Self::report(self));
+            while let Some(event) = Self::next_event(self) {
+                wire::add_event(hash, &event);
+            }
+            if let Some(record) = Self::record(self) {
+                hash.add(&record.crc.to_le_bytes());
+                for entry in record.entries() {
+                    hash.add(&entry.to_bytes());
+                }
+            }
+        }
         fn everything_else(&mut self) {
             use core::hint::black_box;
             black_box(Self::mode(self));
@@ -97,7 +111,7 @@ impl UnderTest for Float {
     fn mode_of(command: &Command) -> Mode {
         command.mode
     }
-    everything_else!();
+    read_out!();
 }
 
 impl UnderTest for Fixed {
@@ -126,5 +140,5 @@ impl UnderTest for Fixed {
     fn mode_of(command: &CoreCommand<Q>) -> Mode {
         command.mode
     }
-    everything_else!();
+    read_out!();
 }

@@ -9,7 +9,7 @@
 
 use supervisor::{
     Command, Config, CoreCommand, CoreSample, Events, IntegratorHint, Limits, Mode, PARAMETERS, Q,
-    Sample, Status,
+    QueuedEvent, Report, Sample, Status,
 };
 
 /// Bytes of a sample.
@@ -338,6 +338,60 @@ pub fn segment_of(bytes: &[u8; SEGMENT_BYTES]) -> Option<Segment> {
         config: config_of(config),
         ticks: Reader { rest }.word(),
     })
+}
+
+/// Takes every field of a report into a hash.
+pub fn add_report(hash: &mut Hash, report: &Report) {
+    let Report {
+        landings,
+        impacts,
+        contact_ticks,
+        impact_speed_max_m_s,
+        backward_speed_max_m_s,
+        whirl_limit_m_s,
+        severity_index,
+        coast_down,
+        thermal_state,
+        force_cap_n,
+        missed_ticks,
+        repeated_ticks,
+        late_ticks,
+        refusal,
+        fault,
+    } = *report;
+    for counter in [
+        landings,
+        impacts,
+        contact_ticks,
+        missed_ticks,
+        repeated_ticks,
+        late_ticks,
+    ] {
+        hash.add(&counter.to_le_bytes());
+    }
+    for number in [
+        impact_speed_max_m_s,
+        backward_speed_max_m_s,
+        whirl_limit_m_s,
+        severity_index,
+        thermal_state,
+        force_cap_n,
+    ] {
+        hash.add(&number.to_bits().to_le_bytes());
+    }
+    hash.add(&[u8::from(coast_down), refusal as u8, fault as u8]);
+}
+
+/// Takes an event of the queue into a hash.
+pub fn add_event(hash: &mut Hash, event: &QueuedEvent) {
+    let QueuedEvent {
+        sequence,
+        mode,
+        events,
+    } = *event;
+    hash.add(&sequence.to_le_bytes());
+    hash.add(&events.bits().to_le_bytes());
+    hash.add(&[mode as u8]);
 }
 
 /// Hash over commands (FNV-1a, 64 bits): one number that says whether two runs did the same.

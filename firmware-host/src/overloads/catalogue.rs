@@ -5,7 +5,9 @@
 
 use super::plants::PlantCase;
 use super::seats::{Seat, Task, restitution};
+use super::situations::{Situation, situations};
 use super::takeover::{arrest_of, whirling};
+use crate::levitation::LevitationParams;
 use crate::scene::{Axis, BaseMotion, Disturbance, Outage, Scene, Shape, TimedChange};
 use plant_model::params::{EllipseParams, RaceParams, SpinParams, Start, StatorParams};
 use plant_model::{Change, V2};
@@ -96,15 +98,13 @@ impl Collector<'_> {
         whirling(self.base, share * self.sizes.limit_m_s)
     }
 
-    /// A load in a direction that is no axis.
     fn load(&self, share: f64, start_s: f64, duration_s: f64) -> Disturbance {
-        let direction = V2::new(30_f64.to_radians().cos(), 30_f64.to_radians().sin());
-        Disturbance {
-            start_s,
-            duration_s,
-            force_n: share * self.sizes.force_n * direction,
-            shape: Shape::Constant,
-        }
+        load(self.sizes, share, start_s, duration_s)
+    }
+
+    fn bursts(&self) -> Vec<Disturbance> {
+        let from_s = |i| BEGIN_S + 0.025 * f64::from(i);
+        (0..8).map(|i| self.load(1.5, from_s(i), 0.005)).collect()
     }
 
     fn impacts(&mut self) {
@@ -138,9 +138,7 @@ impl Collector<'_> {
                 });
             }
         }
-        let bursts: Vec<Disturbance> = (0..8)
-            .map(|i| self.load(1.5, BEGIN_S + 0.025 * f64::from(i), 0.005))
-            .collect();
+        let bursts = self.bursts();
         self.add("surge", "8 bursts of 1.5 × cap, 5 ms", 0.2, |s| {
             s.disturbances = bursts;
         });
@@ -182,6 +180,7 @@ impl Collector<'_> {
             (166.0, 1.5, Some(0.1)),
             (1000.0, 1.5, Some(0.1)),
             (166.0, 1.2, None),
+            (1000.0, 1.5, None),
             (333.0, 1.2, None),
             (333.0, 1.5, None),
             (333.0, 2.0, None),
@@ -226,26 +225,26 @@ impl Collector<'_> {
                 s.start.velocity_m_s = V2::new(1e-3, 2e-3);
             });
         }
-        // One axis is lost while the supervisor is in each of its modes.
-        for (mode, at_s, share) in [
-            ("approach", 0.0, 1.0),
-            ("bounce", 1e-3, 1.0),
-            ("levitated", 0.08, 0.5),
-        ] {
-            let outage = x_lost(at_s);
-            let start = self.impact(share, 30.0);
-            let name = format!("x axis lost for 20 ms while {mode}");
-            self.add("axis lost", name, outage.end_s(), |s| {
-                s.start = start;
-                s.outages = vec![outage];
-            });
+    }
+
+    /// One axis is lost, and known to be, while the supervisor is in each of its modes.
+    fn lost_axes(&mut self, situations: &[Situation]) {
+        for situation in situations {
+            for (axis, letter) in [(Axis::X, 'x'), (Axis::Y, 'y')] {
+                let outage = Outage {
+                    start_s: situation.at_s,
+                    duration_s: 0.02,
+                    axis,
+                    known: true,
+                };
+                let name = format!("{letter} axis lost for 20 ms while in {}", situation.name);
+                self.add("axis lost", name, outage.end_s(), |s| {
+                    s.start = situation.scene.start;
+                    s.disturbances = situation.scene.disturbances.clone();
+                    s.outages = vec![outage];
+                });
+            }
         }
-        let outage = x_lost(1e-3);
-        let start = self.whirl_at(0.5);
-        self.add("axis lost", "x axis lost for 20 ms in whirl", 0.02, |s| {
-            s.start = start;
-            s.outages = vec![outage];
-        });
     }
 
     fn starts(&mut self) {
@@ -286,6 +285,18 @@ impl Collector<'_> {
         self.add("speeds", "impact, spin unknown", 0.0, |s| {
             s.start = start;
             s.spin_sensor.valid = false;
+        });
+        // A drive that turns the machine round, through a standstill, under one burst after the other.
+        let (hz, lasts_s) = (40.0, 0.2);
+        let inertia_kg_m2 = 1e-3 * self.base.plant.rotor.mass_kg;
+        let bursts = self.bursts();
+        self.add("speeds", "bursts while the spin reverses", lasts_s, |s| {
+            s.start.spin_rad_s = hz * TAU;
+            s.plant.spin = SpinParams::Free {
+                inertia_kg_m2,
+                drive_torque_n_m: -2.0 * hz * TAU / lasts_s * inertia_kg_m2,
+            };
+            s.disturbances = bursts;
         });
         let race = RaceParams {
             inertia_kg_m2: 1e-3 * self.base.plant.rotor.mass_kg / 10.0,
@@ -345,13 +356,14 @@ pub(super) fn aimed(scene: &Scene, speed_m_s: f64, angle_deg: f64) -> Start {
     }
 }
 
-/// The x axis dead for a while, and known to be.
-fn x_lost(start_s: f64) -> Outage {
-    Outage {
+/// A load of so many caps in a direction that is no axis.
+pub(super) fn load(sizes: Sizes, share: f64, start_s: f64, duration_s: f64) -> Disturbance {
+    let direction = V2::new(30_f64.to_radians().cos(), 30_f64.to_radians().sin());
+    Disturbance {
         start_s,
-        duration_s: 0.02,
-        axis: Axis::X,
-        known: true,
+        duration_s,
+        force_n: share * sizes.force_n * direction,
+        shape: Shape::Constant,
     }
 }
 
@@ -366,8 +378,8 @@ fn friction_from(at_s: f64, coefficient: f64) -> TimedChange {
     }
 }
 
-/// Every scene on a plant.
-pub fn cases(plant: &PlantCase) -> Vec<Case> {
+/// Every scene on a plant. `tuned` is the loop that is behind the supervisor where a mode has to be found.
+pub fn cases(plant: &PlantCase, tuned: LevitationParams) -> Vec<Case> {
     let Some(sizes) = Sizes::of(&plant.scene) else {
         return Vec::new();
     };
@@ -381,13 +393,15 @@ pub fn cases(plant: &PlantCase) -> Vec<Case> {
     collector.overloads();
     collector.base_motions();
     collector.blade_loss();
+    let situations = situations(&plant.scene, sizes, tuned);
     collector.outages();
+    collector.lost_axes(&situations);
     collector.starts();
     collector.friction();
     collector.spins();
     collector.offsets();
     collector.out_of_round();
     let mut cases = collector.cases;
-    cases.extend(super::fault_matrix::cases(plant));
+    cases.extend(super::fault_matrix::cases(plant, &situations));
     cases
 }

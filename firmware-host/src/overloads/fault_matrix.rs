@@ -1,30 +1,16 @@
 //! Every sensor fault in every mode: idle, approach, bounce, whirl, hand-over.
 
-use super::catalogue::{Case, Sizes, aimed};
+use super::catalogue::Case;
 use super::plants::PlantCase;
 use super::seats::{Seat, Task};
-use super::takeover::whirling;
-use crate::scene::{Axis, Fault, FaultKind, Scene};
-use plant_model::params::Start;
+use super::situations::Situation;
+use crate::scene::{Axis, Fault, FaultKind};
+use supervisor::Mode;
 
 /// Faults last so long, but for dropouts \[s\].
 const LASTS_S: f64 = 0.01;
 /// What is left to come back in \[s\].
 const AFTER_S: f64 = 0.15;
-
-/// A situation: its name, where the rotor starts, and when the fault comes \[s\].
-type Situation = (&'static str, Start, f64);
-
-fn situations(base: &Scene, sizes: Sizes) -> [Situation; 5] {
-    let impact = |share: f64| aimed(base, share * sizes.impact_m_s, 30.0);
-    [
-        ("idle", base.start, 0.02),
-        ("approach", impact(1.0), 0.0),
-        ("bounce", impact(1.0), 1.5e-3),
-        ("whirl", whirling(base, 0.5 * sizes.limit_m_s), 1e-3),
-        ("hand-over", impact(0.5), 8e-3),
-    ]
-}
 
 /// The faults: name, kind, axis, duration \[s\].
 fn faults(clearance_m: f64, period_s: f64) -> Vec<(String, FaultKind, Axis, f64)> {
@@ -67,7 +53,7 @@ fn faults(clearance_m: f64, period_s: f64) -> Vec<(String, FaultKind, Axis, f64)
             lasts_s,
         );
     }
-    for samples in [1, 3, 5] {
+    for samples in 1..=5 {
         add(
             &format!("late by {samples}"),
             FaultKind::Delay(samples),
@@ -85,17 +71,14 @@ fn faults(clearance_m: f64, period_s: f64) -> Vec<(String, FaultKind, Axis, f64)
 }
 
 /// The matrix on a plant; the supervisor against levitation alone.
-pub fn cases(plant: &PlantCase) -> Vec<Case> {
-    let Some(sizes) = Sizes::of(&plant.scene) else {
-        return Vec::new();
-    };
+pub fn cases(plant: &PlantCase, situations: &[Situation]) -> Vec<Case> {
     let period_s = 1.0 / plant.rate_hz;
     let clearance_m = plant.scene.plant.contact.clearance_m;
     let mut cases = Vec::new();
-    for (situation, start, start_s) in situations(&plant.scene, sizes) {
+    for situation in situations.iter().filter(|s| s.mode != Mode::Pinned) {
         for (name, kind, axis, duration_s) in faults(clearance_m, period_s) {
-            let mut scene = plant.scene.clone();
-            scene.start = start;
+            let start_s = situation.at_s;
+            let mut scene = situation.scene.clone();
             scene.duration_s = start_s + duration_s + AFTER_S;
             // The converter's range: the rotor cannot get out of it.
             scene.sensor.range_m = Some(4.0 * clearance_m);
@@ -107,7 +90,7 @@ pub fn cases(plant: &PlantCase) -> Vec<Case> {
             }];
             cases.push(Case {
                 group: "sensor faults",
-                name: format!("sensor {name} while in {situation}"),
+                name: format!("sensor {name} while in {}", situation.name),
                 scene,
                 task: Task::Impact,
                 seats: &[Seat::Tuned, Seat::Supervisor],

@@ -131,7 +131,7 @@ impl Plan {
                     rate_hz,
                 })?;
                 places.push(Place {
-                    cases: cases(&plant),
+                    cases: cases(&plant, found.tuned),
                     plant,
                     found,
                 });

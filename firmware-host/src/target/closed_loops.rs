@@ -32,7 +32,7 @@ fn scenes() -> Result<Vec<Scene>, CatalogueError> {
                 plant: plant.name.clone(),
                 rate_hz,
             })?;
-            for case in cases(&plant) {
+            for case in cases(&plant, found.tuned) {
                 let mut scene = case.scene;
                 scene.duration_s = scene.duration_s.min(LONGEST_S);
                 scene.levitation = Some(found.tuned);

@@ -8,6 +8,7 @@ use super::record::{Recording, Tape, Tick};
 use super::results::LoopRow;
 use crate::closed_loop::{Keep, RunError, run_policy};
 use crate::overloads::catalogue::cases;
+use crate::overloads::found::kept;
 use crate::overloads::plants::{RATES_HZ, plants};
 use crate::policies::{Policy, Supervise};
 use crate::scene::Scene;
@@ -43,7 +44,8 @@ fn scenes() -> Result<Vec<(String, Scene, Config)>, TargetError> {
         .iter()
         .find(|p| p.name == PLANT)
         .ok_or_else(|| none("any"))?;
-    let cases = cases(plant);
+    let found = kept(PLANT, rate_hz).ok_or_else(|| none("what was found for it"))?;
+    let cases = cases(plant, found.tuned);
     (SCENES.iter())
         .map(|name| {
             let case = cases.iter().find(|c| c.name == *name);

@@ -9,7 +9,7 @@ use super::link::LinkError;
 use super::machines::Machine;
 use super::numbers::Number;
 use super::record::{Length, Stream};
-use super::results::{ModeTicks, StreamRow, TargetRow};
+use super::results::{LongStream, ModeTicks, StreamRow, TargetRow};
 use crate::closed_loop::RunError;
 use crate::overloads::plan::CatalogueError;
 use firmware_image::wire::MODES;
@@ -100,6 +100,7 @@ fn row_of(stream: &Stream) -> StreamRow {
         left_out: stream.left_out,
         ticks: stream.ticks() as u64,
         hash: format!("{:016x}", stream.hash().0),
+        read_outs: format!("{:016x}", stream.read_outs().0),
         modes: (MODES.into_iter())
             .map(|mode| ModeTicks {
                 mode: mode.name(),
@@ -113,25 +114,23 @@ fn row_of(stream: &Stream) -> StreamRow {
     }
 }
 
-/// Counts the instructions of every tick of the counted stream; and the deepest stack.
+/// Counts the instructions of every tick of the stream in a folder; and the deepest stack.
 ///
 /// # Errors
 /// [`TargetError`].
-pub fn count(
+fn count(
     project: &Project,
     machine: &Machine,
-    streams: &Streams,
+    stream_folder: &Path,
+    limit: Duration,
 ) -> Result<(Counts, u64), TargetError> {
     let image = project.image(machine.target, &machine.number.image("count"));
     // A folder of its own: machines write files of the same name.
     let folder = TempDir::with_prefix("supervisor-counts-")?;
     let stream = Path::new("stream.bin");
-    std::fs::copy(
-        streams.counted.path().join(stream),
-        folder.path().join(stream),
-    )?;
+    std::fs::copy(stream_folder.join(stream), folder.path().join(stream))?;
     let time = Time::Counted { shift: SHIFT };
-    let said = emulator::run(machine, &image, folder.path(), time, streams.limit)?;
+    let said = emulator::run(machine, &image, folder.path(), time, limit)?;
     let silent = |name| EmulatorError::Silent {
         image: "count",
         machine: machine.name,
@@ -152,7 +151,18 @@ pub fn measure(
     machine: &Machine,
     streams: &Streams,
 ) -> Result<TargetRow, TargetError> {
-    let (counts, stack_bytes) = count(project, machine, streams)?;
+    let count_in = |folder: &TempDir| count(project, machine, folder.path(), streams.limit);
+    let (counts, stack_bytes) = count_in(&streams.counted)?;
+    let long_stream = if streams.row.ticks > counts.all.ticks as u64 {
+        let (counts, stack_bytes) = count_in(&streams.replayed)?;
+        Some(LongStream {
+            ticks: counts.all.ticks,
+            worst_instructions: counts.all.worst_instructions,
+            stack_bytes,
+        })
+    } else {
+        None
+    };
     let image = project.image(machine.target, &machine.number.image("replay"));
     let folder = streams.replayed.path();
     let said = emulator::run(machine, &image, folder, Time::Free, streams.limit)?;
@@ -181,6 +191,7 @@ pub fn measure(
         median_instructions: counts.all.median_instructions,
         worst_instructions: counts.all.worst_instructions,
         modes: counts.modes,
+        long_stream,
         text_bytes: text.code_bytes + text.constant_bytes,
         code_bytes: text.code_bytes,
         ram_bytes: number("ram_bytes")?,
@@ -188,6 +199,7 @@ pub fn measure(
         ticks: number("ticks")?,
         bit_exact_ticks: number("bit_exact_ticks")?,
         hash: value("hash")?.clone(),
+        read_outs: value("read_outs")?.clone(),
         budgets: Vec::new(),
     })
 }

@@ -6,10 +6,11 @@ use super::made_up::made_up;
 use super::numbers::Number;
 use crate::overloads::plan::CatalogueError;
 use crate::policies::Supervise;
+use firmware_image::under_test::{Fixed, Float, UnderTest};
 use firmware_image::wire::{
     COMMAND_BYTES, CommandBits, HEADER_BYTES, Hash, Header, SAMPLE_BYTES, SEGMENT_BYTES,
     SampleBits, Segment, command_bits, put_command, put_header, put_sample, put_segment,
-    sample_bits,
+    sample_bits, sample_of,
 };
 use std::cell::RefCell;
 use std::io::{self, Write};
@@ -157,6 +158,14 @@ impl Stream {
         hash
     }
 
+    /// Hash over what each supervisor leaves behind: report, events, frozen record.
+    pub fn read_outs(&self) -> Hash {
+        match self.number {
+            Number::Float => read_outs_of::<Float>(&self.pieces),
+            Number::Fixed => read_outs_of::<Fixed>(&self.pieces),
+        }
+    }
+
     /// Writes it as the images read it.
     ///
     /// # Errors
@@ -182,4 +191,20 @@ impl Stream {
         }
         to.flush()
     }
+}
+
+/// The pieces once more, each by a supervisor that is asked afterwards.
+fn read_outs_of<U: UnderTest>(pieces: &[Piece]) -> Hash {
+    let mut hash = Hash::default();
+    for piece in pieces {
+        // All that were recorded fit.
+        let Some(mut supervisor) = U::new(&piece.config) else {
+            continue;
+        };
+        for tick in &piece.ticks {
+            let _command = supervisor.step(&U::sample(&sample_of(&tick.sample)));
+        }
+        supervisor.read_out(&mut hash);
+    }
+    hash
 }

@@ -25,6 +25,8 @@ pub struct TargetRow {
     pub worst_instructions: u32,
     /// The same for the ticks that ended in a mode.
     pub modes: Vec<OfMode>,
+    /// The same for all ticks that were replayed, where they are more than the counted; without budgets.
+    pub long_stream: Option<LongStream>,
     /// Flash that the supervisor takes with all that it calls.
     pub text_bytes: u64,
     /// Instructions' part of it.
@@ -39,8 +41,21 @@ pub struct TargetRow {
     pub bit_exact_ticks: u64,
     /// Hash over the commands of the replay.
     pub hash: String,
+    /// Hash over what the supervisors leave behind: reports, events, frozen records.
+    pub read_outs: String,
     /// Figures against their budgets.
     pub budgets: Vec<Verdict>,
+}
+
+/// Figures of the long stream.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct LongStream {
+    /// Ticks.
+    pub ticks: usize,
+    /// Most instructions of a tick.
+    pub worst_instructions: u32,
+    /// Deepest stack of a tick, from its caller.
+    pub stack_bytes: u64,
 }
 
 impl TargetRow {
@@ -69,6 +84,8 @@ pub struct StreamRow {
     pub ticks: u64,
     /// Hash over the host's commands.
     pub hash: String,
+    /// Hash over what the host's supervisors leave behind.
+    pub read_outs: String,
     /// Ticks that ended in each mode.
     pub modes: Vec<ModeTicks>,
     /// Ways from mode to mode that the state machine has.
@@ -131,6 +148,12 @@ impl Report {
         }
         for t in &self.targets {
             let name = format!("{} {}", t.name, t.number);
+            let mut of_its_number = self.streams.iter().filter(|s| s.number == t.number);
+            if of_its_number.any(|s| s.read_outs != t.read_outs) {
+                failures.push(format!(
+                    "{name}: reports, events or records differ from the host's"
+                ));
+            }
             if t.bit_exact_ticks != t.ticks {
                 let differ = t.ticks - t.bit_exact_ticks;
                 failures.push(format!(

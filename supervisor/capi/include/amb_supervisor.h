@@ -142,7 +142,7 @@ typedef int32_t amb_code;
 #define AMB_P_CONTACT_BAND 12 /**< clearance, 0.001 to 0.3: The rotor counts as touching within this band below the clearance; at least the retainer's offset and three times the sensor noise. */
 #define AMB_P_POSITION_LIMIT 13 /**< clearance, 1.5 to 20: A measured radius beyond this is refused as implausible. */
 #define AMB_P_WHIRL_TIME_S 14 /**< s, 1e-5 to 0.1: Contact that lasts this long is whirl or rest, not a bounce: some periods of the rotor on the contact stiffness. */
-#define AMB_P_HOLD_SHARE 15 /**< 1, 0.1 to 0.95: Largest share of the cap that may push inwards. */
+#define AMB_P_HOLD_SHARE 15 /**< 1, 0.1 to 0.95: Share of the cap that pushes inwards on the bearing: at most in an impact, and at first at rest, where it grows. */
 #define AMB_P_HANDOVER_DWELL_S 16 /**< s, 0 to 1: Contact must be avoidable for this long before hand-over begins. */
 #define AMB_P_HANDOVER_BLEND_S 17 /**< s, 0 to 1: Time of the blend to the levitation controller. */
 #define AMB_P_FAULT_BLEND_S 18 /**< s, 0 to 1: Time in which the force goes to zero when the position cannot be trusted; of a levitated rotor no longer than handover_blend_s. */

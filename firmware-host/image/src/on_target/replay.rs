@@ -1,5 +1,6 @@
 //! Replays a recorded stream and compares each command, bit for bit, with the one of the host.
-//! Reads `stream.bin`; prints `number`, `ram_bytes`, `ticks`, `bit_exact_ticks` and `hash`.
+//! Reads `stream.bin`; prints `number`, `ram_bytes`, `ticks`, `bit_exact_ticks`, `hash`, and `read_outs`: the hash over what
+//! each supervisor leaves behind.
 
 use super::{checked, exit, file, planted, report};
 use crate::under_test::{self, UnderTest};
@@ -21,7 +22,7 @@ pub fn run<U: UnderTest>() -> ! {
         report::failed("stream.bin is no stream of this version")
     };
     let (mut ticks, mut exact) = (0_u32, 0_u32);
-    let mut hash = Hash::default();
+    let (mut hash, mut read_outs) = (Hash::default(), Hash::default());
     for _ in 0..header.segments {
         let Some(segment) = stream.take().and_then(|b| wire::segment_of(&b)) else {
             report::failed("stream.bin ends before its last segment")
@@ -55,9 +56,11 @@ pub fn run<U: UnderTest>() -> ! {
             }
             left -= now;
         }
+        supervisor.read_out(&mut read_outs);
     }
     report::number("ticks", ticks);
     report::number("bit_exact_ticks", exact);
     report::bits("hash", hash.0);
+    report::bits("read_outs", read_outs.0);
     exit::success()
 }

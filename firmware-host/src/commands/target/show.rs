@@ -15,6 +15,14 @@ pub(crate) fn text(report: &Report) -> String {
             against_budgets(&report.targets),
         );
     }
+    for t in &report.targets {
+        if let Some(long) = t.long_stream {
+            text += &format!(
+                "{} {}: worst of {} ticks {} instructions, stack {} B\n",
+                t.name, t.number, long.ticks, long.worst_instructions, long.stack_bytes
+            );
+        }
+    }
     for stream in &report.streams {
         text += &format!("{}\n", stream_line(stream));
     }

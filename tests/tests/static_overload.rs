@@ -1,0 +1,69 @@
+//! A load that presses the rotor onto the bearing for long: lifted off where the cap can, held with all of it where not.
+
+use firmware_host::closed_loop::{Keep, run_policy};
+use firmware_host::overloads::catalogue::{Case, cases};
+use firmware_host::overloads::found::{Found, kept};
+use firmware_host::overloads::plants::{PlantCase, plants};
+use firmware_host::overloads::seats::{Seat, seated};
+use firmware_host::trace::Trace;
+use firmware_host::verdict::Verdict;
+
+const RATE_HZ: f64 = 20_000.0;
+
+/// A plant of the catalogue, what was found for it, and its scene with a load of so many caps for a second.
+fn loaded(plant: &str, caps: f64) -> (PlantCase, Found, Case) {
+    let plant = (plants(RATE_HZ).unwrap().into_iter())
+        .find(|p| p.name == plant)
+        .unwrap();
+    let found = kept(&plant.name, RATE_HZ).unwrap();
+    let name = format!("load {caps} × cap for 1000 ms");
+    let mut all = cases(&plant, found.tuned).into_iter();
+    let case = all.find(|case| case.name == name).unwrap();
+    (plant, found, case)
+}
+
+fn under(seat: Seat, (_, found, case): &(PlantCase, Found, Case)) -> (Verdict, Trace) {
+    let acting = seated(seat, case.task, found, &case.scene).unwrap();
+    run_policy(&case.scene, (acting, seat.name()), Keep::Trace, &mut |_| {}).unwrap()
+}
+
+/// A load a little below the cap throws the rotor onto the bearing once; then it is lifted off and kept away, also where
+/// the levitation controller would leave it there.
+#[test]
+fn a_load_just_below_the_cap_is_lifted_off_and_kept_away() {
+    for plant in ["P2", "P3", "P4"] {
+        let loaded = loaded(plant, 0.9);
+        let (alone, _) = under(Seat::Tuned, &loaded);
+        let (own, trace) = under(Seat::Supervisor, &loaded);
+        assert!(own.recovered && own.impacts == 1, "{plant}: {own:?}");
+        let share = own.contact_impulse_n_s / alone.contact_impulse_n_s;
+        assert!(share < 0.01, "{plant}: {share}");
+        // Where the restoring force and its half more, (5.10d), are in balance with the load: away from the wall.
+        let clearance_m = loaded.0.scene.plant.contact.clearance_m;
+        for row in trace
+            .rows
+            .iter()
+            .filter(|row| row.plant.t_s > 0.5 && row.plant.t_s < 1.0)
+        {
+            let share = row.plant.position_m.norm() / clearance_m;
+            assert!((0.5..0.8).contains(&share), "{plant}: {share}");
+        }
+    }
+}
+
+/// What cannot be lifted off is relieved by the whole cap, but for what damping takes from it for the noise.
+#[test]
+fn what_the_cap_cannot_lift_is_held_with_all_of_it() {
+    for plant in ["P2", "P4"] {
+        let loaded = loaded(plant, 1.5);
+        let (_, trace) = under(Seat::Supervisor, &loaded);
+        let rows = || (trace.rows.iter()).filter(|row| row.plant.t_s > 0.5 && row.plant.t_s < 1.0);
+        let pressing_n =
+            rows().map(|row| row.plant.normal_force_n).sum::<f64>() / rows().count() as f64;
+        let scene = &loaded.0.scene;
+        let cap_n = scene.plant.magnet.unwrap().force_max_n;
+        let pull_n = -scene.plant.rotor.stiffness_n_m * scene.plant.contact.clearance_m;
+        let held = (1.5 * cap_n + pull_n - pressing_n) / cap_n;
+        assert!((0.93..1.0).contains(&held), "{plant}: {held}");
+    }
+}
