@@ -53,7 +53,7 @@ pub fn tick<U: UnderTest>(supervisor: &mut U, sample: &U::Sample, command: &mut 
 }
 
 // The methods have the same names but belong to different types.
-macro_rules! read_out {
+macro_rules! asked {
     () => {
         fn read_out(&mut self, hash: &mut Hash) {
             wire::add_report(hash, &Self::report(self));
@@ -111,7 +111,7 @@ impl UnderTest for Float {
     fn mode_of(command: &Command) -> Mode {
         command.mode
     }
-    read_out!();
+    asked!();
 }
 
 impl UnderTest for Fixed {
@@ -140,5 +140,5 @@ impl UnderTest for Fixed {
     fn mode_of(command: &CoreCommand<Q>) -> Mode {
         command.mode
     }
-    read_out!();
+    asked!();
 }
