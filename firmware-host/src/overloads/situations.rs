@@ -41,7 +41,6 @@ pub fn situations(base: &Scene, sizes: Sizes, tuned: LevitationParams) -> Vec<Si
     let impact = |share: f64, scene: &mut Scene| {
         scene.start = aimed(base, share * sizes.impact_m_s, 30.0);
     };
-    let whole_impact = |_share: f64, scene: &mut Scene| impact(1.0, scene);
     let whirl = |share: f64, scene: &mut Scene| {
         scene.start = whirling(base, share * sizes.limit_m_s);
     };
@@ -51,17 +50,17 @@ pub fn situations(base: &Scene, sizes: Sizes, tuned: LevitationParams) -> Vec<Si
     let overload = |share: f64, scene: &mut Scene| {
         scene.disturbances = vec![load(sizes, 3.0 * share + carried, 0.0, WATCHED_S)];
     };
-    let ways: [(&'static str, Mode, Way<'_>); 6] = [
-        ("idle", Mode::Levitated, &at_rest),
-        ("approach", Mode::Approach, &impact),
-        ("bounce", Mode::Bounce, &whole_impact),
-        ("whirl", Mode::BackwardWhirl, &whirl),
-        ("pinned", Mode::Pinned, &overload),
-        ("hand-over", Mode::Handover, &impact),
+    let ways: [(&'static str, Mode, &[f64], Way<'_>); 6] = [
+        ("idle", Mode::Levitated, &[0.0], &at_rest),
+        ("approach", Mode::Approach, &SHARES, &impact),
+        ("bounce", Mode::Bounce, &[1.0], &impact),
+        ("whirl", Mode::BackwardWhirl, &SHARES, &whirl),
+        ("pinned", Mode::Pinned, &SHARES, &overload),
+        ("hand-over", Mode::Handover, &SHARES, &impact),
     ];
     let mut all = Vec::new();
-    for (name, mode, lead) in ways {
-        all.extend(SHARES.iter().find_map(|&share| {
+    for (name, mode, shares, lead) in ways {
+        all.extend(shares.iter().find_map(|&share| {
             let mut scene = base.clone();
             lead(share, &mut scene);
             let at_s = middle_of_longest(mode, &scene, tuned)?;
