@@ -3,11 +3,12 @@
 use std::path::Path;
 
 /// Images that start by themselves, with the map of their machine.
-const RUNNABLE: [&str; 6] = [
+const RUNNABLE: [&str; 7] = [
     "replay",
     "replay-q",
     "count",
     "count-q",
+    "count-pair",
     "in-the-loop",
     "timer-interrupt",
 ];

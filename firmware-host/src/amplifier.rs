@@ -13,6 +13,8 @@ pub struct AmplifierParams {
     pub slew_n_s: Option<f64>,
     /// Samples from a position to the effect of the command computed from it, 1 to 7.
     pub delay_samples: usize,
+    /// Whether the firmware measures the force that the magnet delivers.
+    pub force_measured: bool,
 }
 
 /// Longest delay \[samples\].
@@ -24,20 +26,34 @@ impl Default for AmplifierParams {
             axis_force_max_n: None,
             slew_n_s: None,
             delay_samples: 1,
+            force_measured: false,
         }
     }
 }
 
-/// An amplifier that delivers nothing for a while: the field decays with the lag.
+/// What a faulty amplifier delivers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Delivers {
+    /// No force: the field decays with the lag.
+    Nothing,
+    /// The force with the other sign.
+    Inverted,
+    /// Along x what is meant for y, and the other way round.
+    Swapped,
+}
+
+/// An amplifier that does not deliver what it should for a while.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Outage {
     /// Beginning \[s\].
     pub start_s: f64,
     /// Duration \[s\].
     pub duration_s: f64,
-    /// What fails.
+    /// What it does instead.
+    pub delivers: Delivers,
+    /// What fails; both where axes are swapped.
     pub axis: Axis,
-    /// Whether the firmware knows.
+    /// Whether the firmware knows; only of an amplifier that delivers nothing.
     pub known: bool,
 }
 
@@ -144,7 +160,11 @@ impl Amplifier {
             target = target.map(|x| x.clamp(-most, most));
         }
         for outage in self.outages.iter().filter(|o| o.acts(at_s)) {
-            target = outage.axis.map(target, |_| 0.0);
+            target = match outage.delivers {
+                Delivers::Nothing => outage.axis.map(target, |_| 0.0),
+                Delivers::Inverted => outage.axis.map(target, |x| -x),
+                Delivers::Swapped => V2::new(target.y, target.x),
+            };
         }
         target
     }
@@ -159,7 +179,8 @@ impl Amplifier {
             return target;
         };
         // No current flows where the amplifier is out.
-        for outage in self.outages.iter().filter(|o| o.acts(from_s)) {
+        let out = |o: &&Outage| o.delivers == Delivers::Nothing && o.acts(from_s);
+        for outage in self.outages.iter().filter(out) {
             self.ramped_n = outage.axis.map(self.ramped_n, |_| 0.0);
         }
         let step_s = to_s - from_s;

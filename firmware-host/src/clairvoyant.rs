@@ -87,13 +87,14 @@ impl Clairvoyant {
     }
 
     fn in_contact(&self, x: V2, v: V2, sense: f64) -> [V2; 3] {
-        let n = x.normalize();
+        let radius = x.norm();
+        let n = x / radius;
         let b = quarter(n) * sense;
         let sum = v.dot(&b) + self.law.contact_gain * v.dot(&n).max(0.0);
         let strength = (sum.max(0.0) * self.law.damper).min(1.0);
         let aim = (b + n * self.law.tilt).normalize() * -strength;
         // The force turns with the contact: lag and half a period of hold are made up for.
-        let rate = v.dot(&quarter(n)) * self.lift_off_m_s / self.clearance_m;
+        let rate = v.dot(&quarter(n)) / radius * self.lift_off_m_s / self.clearance_m;
         let lead = (rate * self.lag_s).atan() + rate * self.half_period_s;
         [rotated(aim, lead), -v * self.law.damper, V2::zeros()]
     }

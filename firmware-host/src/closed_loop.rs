@@ -214,6 +214,12 @@ impl Bench<'_> {
         let command_n = self.policy.tick(&Seen {
             reading,
             spin_rad_s: self.scene.spin_sensor.gain * now.spin_rad_s,
+            applied_n: if self.scene.amplifier.force_measured {
+                // What is fed forward the supervisor does not know of: with the weight it is nothing.
+                now.delivered_n - self.scene.feed_forward_n
+            } else {
+                V2::zeros()
+            },
             status: self.status(seen_until_s(t, period)),
         });
         let with_weight = |force_n: V2| force_n + self.scene.feed_forward_n;
@@ -258,6 +264,8 @@ impl Bench<'_> {
     fn status(&self, t_s: f64) -> Status {
         let mut status = Status::empty();
         status.set(Status::SPIN_VALID, self.scene.spin_sensor.valid);
+        let measured = self.scene.amplifier.force_measured;
+        status.set(Status::APPLIED_VALID, measured);
         let [x_off, y_off] = self.amplifier.known_off(t_s);
         status.set(Status::BEARING_ON, !(x_off && y_off));
         status.set(Status::AXIS_X_LOST, x_off);

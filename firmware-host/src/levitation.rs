@@ -56,6 +56,24 @@ impl VelocityFilter {
     }
 }
 
+/// The controller's law on the true state, for references: no filter, and no integrator, which holds loads only.
+#[derive(Debug, Clone)]
+pub struct TrueLevitation {
+    /// Gains.
+    pub params: LevitationParams,
+    /// Cap \[N\].
+    pub force_max_n: f64,
+}
+
+impl TrueLevitation {
+    /// Force for the true position, from the centre of the magnets, and velocity \[N\].
+    pub fn force_n(&self, position_m: V2, velocity_m_s: V2) -> V2 {
+        let p = &self.params;
+        let wanted = -p.proportional_n_m * position_m - p.derivative_n_s_m * velocity_m_s;
+        limited_n(wanted, self.force_max_n)
+    }
+}
+
 /// The controller.
 #[derive(Debug, Clone)]
 pub struct Levitation {

@@ -4,7 +4,7 @@ use crate::amplifier::limited_n;
 use crate::clairvoyant::Clairvoyant;
 use crate::history::History;
 use crate::instruments::Reading;
-use crate::levitation::{Levitation, VelocityFilter};
+use crate::levitation::{Levitation, TrueLevitation, VelocityFilter};
 use crate::policy_kind::PolicyKind;
 use crate::scene::Scene;
 use crate::trace::{FlightRecordBytes, ReadOut, Said};
@@ -63,6 +63,8 @@ pub enum Policy {
     Levitation(Levitation),
     /// The reference that knows the true state.
     Clairvoyant(Clairvoyant),
+    /// A levitation controller that knows it; the centre of its magnets \[m\] is seen from the retainer bearing's.
+    TrueLevitation(TrueLevitation, V2),
     /// A history laid down beforehand, then that reference.
     History(Box<History>),
     /// The supervisor with that controller behind it.
@@ -85,6 +87,8 @@ pub struct Seen {
     pub reading: Reading,
     /// Spin as reported \[rad/s\].
     pub spin_rad_s: f64,
+    /// Force that the magnet delivers \[N\]; counts with [`Status::APPLIED_VALID`].
+    pub applied_n: V2,
     /// What is valid and ready.
     pub status: Status,
 }
@@ -131,7 +135,9 @@ impl Policy {
     pub fn tick(&mut self, seen: &Seen) -> V2 {
         let measured_m = seen.reading.position_m;
         match self {
-            Self::Passive | Self::Clairvoyant(_) | Self::History(_) => V2::zeros(),
+            Self::Passive | Self::Clairvoyant(_) | Self::TrueLevitation(..) | Self::History(_) => {
+                V2::zeros()
+            }
             Self::Radial { band_m, force_n } => {
                 let radius = measured_m.norm();
                 if radius > *band_m {
@@ -163,8 +169,7 @@ impl Policy {
                     position_m: single(measured_m),
                     spin_rad_s: seen.spin_rad_s as f32,
                     levitation_n,
-                    // The stand-in firmware has no feedback of current or flux.
-                    applied_n: [0.0; 2],
+                    applied_n: single(seen.applied_n),
                 });
                 *hint = command.integrator;
                 *said = Some(Said::new(&command, levitation_n));
@@ -178,6 +183,9 @@ impl Policy {
     pub fn of_truth(&self, now: &Snapshot) -> Option<V2> {
         match self {
             Self::Clairvoyant(clairvoyant) => Some(clairvoyant.force_n(now)),
+            Self::TrueLevitation(levitation, centre_m) => {
+                Some(levitation.force_n(now.position_m - *centre_m, now.velocity_m_s))
+            }
             Self::History(history) => Some(history.force_n(now)),
             _ => None,
         }

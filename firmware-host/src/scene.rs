@@ -20,7 +20,7 @@ use plant_model::{BuildError, Method, Options, Plant, V2, build, build_for_chang
 use std::f64::consts::TAU;
 use std::path::Path;
 
-pub use crate::amplifier::{AmplifierParams, Outage};
+pub use crate::amplifier::{AmplifierParams, Delivers, Outage};
 pub use crate::axis::Axis;
 pub use crate::faults::{Fault, FaultKind};
 pub use crate::loads::{BaseMotion, Disturbance, Shape, TimedChange};

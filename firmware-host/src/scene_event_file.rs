@@ -52,12 +52,24 @@ pub(crate) enum AxisFile {
     Both,
 }
 
-/// An amplifier without output for a while.
+/// What a faulty amplifier delivers.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum DeliversFile {
+    #[default]
+    Nothing,
+    Inverted,
+    Swapped,
+}
+
+/// A faulty amplifier for a while.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table with keys")]
 pub(crate) struct OutageFile {
     pub(crate) start_s: f64,
     pub(crate) duration_s: f64,
+    #[serde(default)]
+    pub(crate) delivers: DeliversFile,
     #[serde(default)]
     pub(crate) axis: AxisFile,
     #[serde(default)]

@@ -1,11 +1,13 @@
 //! What happens during a scene, from its keys: loads, outages, faults, changes.
 
-use crate::amplifier::Outage;
+use crate::amplifier::{Delivers, Outage};
 use crate::axis::Axis;
 use crate::faults::{Fault, FaultKind};
 use crate::loads::{BaseMotion, Disturbance, Shape, TimedChange};
 use crate::scene_error::{Checks, SceneError};
-use crate::scene_event_file::{AxisFile, ChangeFile, FaultFile, FaultName, ShapeFile, ShapeName};
+use crate::scene_event_file::{
+    AxisFile, ChangeFile, DeliversFile, FaultFile, FaultName, OutageFile, ShapeFile, ShapeName,
+};
 use crate::scene_file::SceneFile;
 use plant_model::Change;
 
@@ -66,13 +68,7 @@ pub(crate) fn events_of(file: &SceneFile, check: &Checks<'_>) -> Result<Events, 
             let message = "there is no magnet that could fail".to_owned();
             return Err(check.text.error_at_key(&path, message, help));
         }
-        reader.span(&path, o.start_s, o.duration_s)?;
-        events.outages.push(Outage {
-            start_s: o.start_s,
-            duration_s: o.duration_s,
-            axis: axis_of(o.axis),
-            known: o.known,
-        });
+        events.outages.push(reader.outage(&path, o)?);
     }
     for (i, f) in file.fault.iter().enumerate() {
         events.faults.push(reader.fault(&format!("fault[{i}]"), f)?);
@@ -100,6 +96,32 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
+    fn outage(&self, path: &str, o: &OutageFile) -> Result<Outage, SceneError> {
+        self.span(path, o.start_s, o.duration_s)?;
+        let axis = axis_of(o.axis);
+        let delivers = match o.delivers {
+            DeliversFile::Nothing => Delivers::Nothing,
+            DeliversFile::Inverted => Delivers::Inverted,
+            DeliversFile::Swapped => Delivers::Swapped,
+        };
+        if delivers == Delivers::Swapped && axis != Axis::Both {
+            let message = "is of one axis: swapped are the two".to_owned();
+            return Err(self.error(&format!("{path}.axis"), message, "remove it"));
+        }
+        if delivers != Delivers::Nothing && o.known {
+            let message = "has nobody to be told to: the supervisor is told of lost axes alone";
+            let help = "remove it, or let the outage deliver nothing";
+            return Err(self.error(&format!("{path}.known"), message.to_owned(), help));
+        }
+        Ok(Outage {
+            start_s: o.start_s,
+            duration_s: o.duration_s,
+            delivers,
+            axis,
+            known: o.known,
+        })
+    }
+
     fn error(&self, key: &str, message: String, help: &str) -> SceneError {
         (self.check.text).error_at_key(key, message, Some(help.to_owned()))
     }

@@ -194,6 +194,8 @@ pub(crate) struct MagnetFile {
     pub(crate) slew_n_s: Option<f64>,
     #[serde(default = "default_delay")]
     pub(crate) delay_samples: u32,
+    #[serde(default)]
+    pub(crate) force_measured: bool,
 }
 
 fn default_delay() -> u32 {

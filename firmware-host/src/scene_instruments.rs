@@ -70,6 +70,7 @@ pub(crate) fn amplifier_of(
         axis_force_max_n: m.axis_force_max_n,
         slew_n_s: m.slew_n_s,
         delay_samples: m.delay_samples as usize,
+        force_measured: m.force_measured,
     })
 }
 

@@ -1,7 +1,7 @@
 //! A scene in words, for the head of its report.
 
 use crate::plot::text::figures;
-use crate::scene::{Axis, Fault, FaultKind, Outage, Scene, Shape, TimedChange};
+use crate::scene::{Axis, Delivers, Fault, FaultKind, Outage, Scene, Shape, TimedChange};
 use crate::verdict::{Disturbed, SceneSummary};
 use plant_model::V2;
 use plant_model::params::{SlidingFriction, SpinParams, StatorParams};
@@ -139,8 +139,15 @@ fn along(axis: Axis) -> &'static str {
 }
 
 fn outage(o: &Outage) -> String {
-    let known = if o.known { "known" } else { "unknown" };
-    format!("amplifier out{}, {known} to the firmware", along(o.axis))
+    let along = along(o.axis);
+    match o.delivers {
+        Delivers::Nothing => {
+            let known = if o.known { "known" } else { "unknown" };
+            format!("amplifier out{along}, {known} to the firmware")
+        }
+        Delivers::Inverted => format!("amplifier inverted{along}"),
+        Delivers::Swapped => "axes of the amplifier swapped".to_owned(),
+    }
 }
 
 fn fault(f: &Fault) -> String {

@@ -97,8 +97,9 @@ impl<S: Scalar> Classifier<S> {
         if spin.backward(along) >= S::ZERO {
             return Class::BackwardWhirl;
         }
-        // On the wall the speed along it is the rate of the orbit. What began stays until it slows or turns.
-        let at_its_rate = (along - rate).size() <= rate.size() * S::of(RUB_RATE_SHARE);
+        // By the radius that there is: a soft wall gives way. What began stays until it slows or turns.
+        let orbit = along * found.per_radius;
+        let at_its_rate = (orbit - rate).size() <= rate.size() * S::of(RUB_RATE_SHARE);
         self.rubbing = before || (found.touching && at_its_rate);
         if self.rubbing {
             Class::ForwardRub { begins: !before }

@@ -22,7 +22,12 @@ pub(crate) struct Room<S> {
 impl<S: Scalar> Room<S> {
     #[inline]
     pub(crate) fn new(budget: &Budget<S>, axes: Facts, coeffs: &Coeffs<S>) -> Self {
-        let cap = budget.cap(coeffs);
+        Self::below(budget.cap(coeffs), axes, coeffs)
+    }
+
+    /// The room under a cap of at most 1.
+    #[inline]
+    pub(crate) fn below(cap: S, axes: Facts, coeffs: &Coeffs<S>) -> Self {
         Self {
             cap,
             axis: coeffs.axis_cap,

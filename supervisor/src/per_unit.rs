@@ -93,7 +93,8 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
 
     /// Takes another configuration over, to hold from the next tick on. What is known of the rotor stays,
     /// and so do mode, counters and thermal state; entries of a flight record are in the units of
-    /// their time, and the tick of the change has [`Events::RECONFIGURED`].
+    /// their time, and the tick of the change has [`Events::RECONFIGURED`]. A smaller cap holds at once: from
+    /// there on the slew limit holds.
     pub fn reconfigure(&mut self, prepared: &Prepared<S>) {
         let (old, new) = (&self.coeffs, &prepared.0);
         // What a sensor showed is now at another place in another unit.
@@ -108,10 +109,12 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
         self.readiness.rescale(S::of(force));
         self.budget.rescale(force);
         self.severity.rescale(S::of(speed), index);
-        self.force = self.force * S::of(force);
-        self.own = self.own * S::of(force);
         self.coeffs = prepared.0;
         self.reconfigured = true;
+        // A cap that is smaller now holds at once; what the budget leaves of it is come down to by the slew limit, as ever.
+        let room = Room::below(S::ONE, Facts::empty(), &self.coeffs);
+        let held = |last: Vec2<S>| limit::levitation(last * S::of(force), &room).0;
+        (self.force, self.own) = (held(self.force), held(self.own));
     }
 
     /// One tick: total and bounded; the one loop that depends on data makes up for at most four missed

@@ -1,4 +1,5 @@
-//! Streams of samples that go through every mode, with arbitrary bits in any field of some of them.
+//! Streams of samples: most go through every mode, with arbitrary bits in any field of some samples; in the others
+//! every field of every sample has arbitrary bits.
 
 use crate::rig;
 use supervisor::{Config, CoreCommand, CoreSample, PARAMETERS, Scalar, Status};
@@ -102,13 +103,17 @@ pub struct Storm {
     sequence: u32,
     status: u32,
     spin: f32,
+    /// Nothing but arbitrary bits.
+    wild: bool,
 }
 
 impl Storm {
-    /// From a seed.
+    /// From a seed; one in eight is wild.
     pub fn new(seed: u64) -> Self {
+        let mut chance = Chance::new(seed);
         Self {
-            chance: Chance::new(seed),
+            wild: chance.once_in(8),
+            chance,
             course: Course::Levitates,
             left: 0,
             position: [0.0; 2],
@@ -219,8 +224,25 @@ impl AnyBits for supervisor::Q {
 }
 
 impl Storm {
-    /// The next sample: plausible, or, once in 16, with arbitrary bits in some of its fields.
+    fn any_sample<S: AnyBits>(&mut self) -> CoreSample<S> {
+        let chance = &mut self.chance;
+        let any = |chance: &mut Chance| S::from_any_bits(chance.bits());
+        CoreSample {
+            sequence: chance.bits() as u32,
+            status: Status::from_bits_retain(chance.bits() as u32),
+            position: [any(chance), any(chance)],
+            spin: any(chance),
+            levitation: [any(chance), any(chance)],
+            applied: [any(chance), any(chance)],
+        }
+    }
+
+    /// The next sample: plausible, or, once in 16, with arbitrary bits in some of its fields; of a wild stream
+    /// arbitrary bits in all of them.
     pub fn next_sample<S: AnyBits>(&mut self) -> CoreSample<S> {
+        if self.wild {
+            return self.any_sample();
+        }
         self.go();
         self.sequence = self.sequence.wrapping_add(1);
         let chance = &mut self.chance;
@@ -277,32 +299,75 @@ impl Storm {
 
 /// What holds for every command \[caps\], by the configuration.
 #[derive(Debug, Clone, Copy)]
-pub struct Bounds<S> {
+pub struct Bounds {
+    force_max_n: f32,
     axis_cap: f64,
     slew_step: f64,
+    /// By how much rounding may exceed them.
+    rounding: f64,
+    /// Less is nothing: what a conversion from other units cannot tell from it.
+    nothing: f64,
+    /// By how much a cut to other caps may have rounded; for one tick.
+    cut: f64,
     /// Last force and last force of its own.
-    last: [[S; 2]; 2],
+    last: [[f64; 2]; 2],
 }
 
-impl<S: AnyBits> Bounds<S> {
-    /// For a configuration; as the core has them, in the nearest number.
-    pub fn new(config: &Config) -> Self {
+impl Bounds {
+    /// For a core of this configuration; as it has them, in the nearest number, to a unit in the last place of 1.
+    pub fn new<S: AnyBits>(config: &Config) -> Self {
         let cap = config.force_max_n;
         let slew = config.force_slew_n_s * config.sample_period_s / cap;
         Self {
+            force_max_n: cap,
             axis_cap: S::of((config.axis_force_max_n / cap).min(1.0)).exact(),
             slew_step: S::of(slew.min(4.0)).exact(),
-            last: [[S::ZERO; 2]; 2],
+            rounding: S::LAST_PLACE,
+            nothing: f64::MIN_POSITIVE,
+            cut: 0.0,
+            last: [[0.0; 2]; 2],
         }
     }
 
-    /// Finite; within the cap, the caps of the axes and the slew limit to a unit in the last place of 1; and nothing on an
-    /// axis that is lost.
+    /// For a supervisor of this configuration, in newtons: the conversion there and back rounds, too.
+    pub fn in_newtons(config: &Config) -> Self {
+        Self {
+            rounding: 4.0 * f32::LAST_PLACE,
+            nothing: f64::from(f32::MIN_POSITIVE) / f64::from(config.force_max_n),
+            ..Self::new::<f32>(config)
+        }
+    }
+
+    /// What holds from a change of the configuration on: a force that is beyond a cap then is cut to it at once.
+    pub fn reconfigured(self, new: Self) -> Self {
+        let unit = f64::from(self.force_max_n / new.force_max_n);
+        let far = unit > 500.0 || self.last.iter().any(|[x, y]| x.hypot(*y) * unit > 10.0);
+        let cut = |last: [f64; 2]| {
+            let [x, y] = last.map(|x| x * unit);
+            let within_disc = 1.0 / x.hypot(y).max(1.0);
+            let largest = x.abs().max(y.abs()) * within_disc;
+            let within_box = within_disc * (new.axis_cap / largest).min(1.0);
+            [x * within_box, y * within_box]
+        };
+        Self {
+            last: self.last.map(cut),
+            // What is very far beyond a cap need not keep its direction, and fixed point holds no larger ratio.
+            cut: if far { 2.0 } else { 32.0 * new.rounding },
+            ..new
+        }
+    }
+
+    /// Finite; within the cap, the caps of the axes and the slew limit; and nothing on an axis that is lost.
     ///
     /// # Errors
     /// What is broken.
-    pub fn check(&mut self, command: &CoreCommand<S>, status: Status) -> Result<(), String> {
+    pub fn check<S: AnyBits>(
+        &mut self,
+        command: &CoreCommand<S>,
+        status: Status,
+    ) -> Result<(), String> {
         let lost = [Status::AXIS_X_LOST, Status::AXIS_Y_LOST].map(|axis| status.contains(axis));
+        let cut = std::mem::take(&mut self.cut);
         if !command.severity.is_finite() || command.severity < S::ZERO {
             return Err(format!("severity: {command:?}"));
         }
@@ -315,25 +380,25 @@ impl<S: AnyBits> Bounds<S> {
         }
         for (force, last) in [command.force, command.own].into_iter().zip(&mut self.last) {
             let say = |what: &str| Err(format!("{what}: {command:?} after {last:?}, {status:?}"));
-            let ([x, y], [u, v]) = (force.map(S::exact), last.map(S::exact));
+            let ([x, y], [u, v]) = (force.map(S::exact), *last);
             if !(x.is_finite() && y.is_finite()) {
                 return say("not finite");
             }
-            if x.hypot(y) > 1.0 + S::LAST_PLACE {
+            if x.hypot(y) > 1.0 + self.rounding {
                 return say("beyond the cap");
             }
-            if x.abs().max(y.abs()) > self.axis_cap + S::LAST_PLACE {
+            if x.abs().max(y.abs()) > self.axis_cap + self.rounding {
                 return say("beyond the cap of an axis");
             }
-            if (lost[0] && x != 0.0) || (lost[1] && y != 0.0) {
+            if (lost[0] && x.abs() >= self.nothing) || (lost[1] && y.abs() >= self.nothing) {
                 return say("force on a lost axis");
             }
             let on = |axis: usize, change: f64| if lost[axis] { 0.0 } else { change };
             let change = on(0, x - u).hypot(on(1, y - v));
-            if change > self.slew_step + S::LAST_PLACE {
+            if change > self.slew_step + self.rounding + cut {
                 return say("faster than the slew limit");
             }
-            *last = force;
+            *last = [x, y];
         }
         Ok(())
     }

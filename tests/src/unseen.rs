@@ -3,6 +3,7 @@
 
 use firmware_host::levitation::LevitationParams;
 use firmware_host::overloads::catalogue::{Case, cases};
+use firmware_host::overloads::fault_matrix::{DRIVE_FAULTS, SENSOR_FAULTS};
 use firmware_host::overloads::found::{Found, kept};
 use firmware_host::overloads::plants::PlantCase;
 use firmware_host::overloads::seats::Seat;
@@ -54,9 +55,10 @@ impl Unseen {
     }
 }
 
-/// The catalogue's scenes on a plant with this loop in which the supervisor takes part and the sensors are sound.
+/// The catalogue's scenes on a plant with this loop in which the supervisor takes part, and sensors and
+/// drives are sound.
 pub fn sound_cases(plant: &PlantCase, levitation: LevitationParams) -> Vec<Case> {
-    let sound = |case: &Case| case.group != "sensor faults";
+    let sound = |case: &Case| ![SENSOR_FAULTS, DRIVE_FAULTS].contains(&case.group);
     (cases(plant, levitation).into_iter())
         .filter(|case| sound(case) && case.seats.contains(&Seat::Supervisor))
         .collect()

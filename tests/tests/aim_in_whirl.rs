@@ -4,7 +4,7 @@ use firmware_host::closed_loop::{Keep, run_policy};
 use firmware_host::overloads::catalogue::cases;
 use firmware_host::overloads::found::kept;
 use firmware_host::overloads::plants::{RATES_HZ, plants};
-use firmware_host::overloads::seats::{Seat, seated};
+use firmware_host::overloads::seats::{Seat, Task, seated};
 use plant_model::V2;
 use supervisor::Mode;
 
@@ -21,7 +21,7 @@ fn the_delivered_force_is_aimed_against_the_whirl_and_never_outwards() {
                 if case.group != "whirl" {
                     continue;
                 }
-                let acting = seated(Seat::Supervisor, case.task, &found, &case.scene).unwrap();
+                let acting = seated(Seat::Supervisor, Task::Impact, &found, &case.scene).unwrap();
                 let ran = run_policy(
                     &case.scene,
                     (acting, "supervisor"),

@@ -10,13 +10,14 @@ const TARGETS: [&str; 3] = [
     "thumbv6m-none-eabi",
 ];
 /// Those with `-q` are fixed point, the others floats.
-const IMAGES: [&str; 8] = [
+const IMAGES: [&str; 9] = [
     "panic-free",
     "panic-free-q",
     "replay",
     "replay-q",
     "count",
     "count-q",
+    "count-pair",
     "in-the-loop",
     "timer-interrupt",
 ];

@@ -9,7 +9,7 @@ pub mod replay;
 pub mod report;
 pub mod stack;
 
-use crate::under_test::UnderTest;
+use crate::under_test::Ticked;
 
 /// Puts a panic into an image that asks for it, to show that the check of the link would find it.
 pub fn planted() {
@@ -21,7 +21,7 @@ pub fn planted() {
 }
 
 /// What firmware does at boot: a processor that computes something else must not drive a magnet.
-pub fn checked<U: UnderTest>() {
+pub fn checked<U: Ticked>() {
     if !U::self_test() {
         report::failed("the self-test of the supervisor does not pass on this processor")
     }

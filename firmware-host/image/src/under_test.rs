@@ -1,5 +1,6 @@
 //! The supervisors that the images run, one for each kind of number.
 
+use crate::two_planes::{PairCommand, TwoPlanes};
 use crate::wire::{self, CommandBits, Hash, SampleBits};
 use supervisor::{
     Command, Config, Core, CoreCommand, CoreSample, Mode, Prepared, Q, Sample, Supervisor,
@@ -17,10 +18,11 @@ pub type Float = Supervisor<RECORD>;
 /// Fixed point per unit: the core alone, behind whatever converts there.
 pub type Fixed = Core<Q, SHORT_RECORD>;
 
-/// A supervisor under test.
-pub trait UnderTest: Sized {
-    /// Name of its numbers.
-    const NUMBER: &'static str;
+/// Floats in SI, one for each of two bearing planes.
+pub type Pair = TwoPlanes<RECORD>;
+
+/// What can be ticked, and its ticks counted.
+pub trait Ticked: Sized {
     /// Bytes of its state without the recorder.
     const RAM_BYTES: usize;
     /// What it is told.
@@ -36,10 +38,20 @@ pub trait UnderTest: Sized {
     fn step(&mut self, sample: &Self::Sample) -> Self::Command;
     /// The sample of these bits.
     fn sample(bits: &SampleBits) -> Self::Sample;
-    /// The bits of a command.
-    fn bits(command: &Self::Command) -> CommandBits;
     /// Mode after a tick.
     fn mode_of(command: &Self::Command) -> Mode;
+    /// What the background of a firmware does between ticks: it drains the events, and a frozen record makes way for
+    /// the next one.
+    fn background(&mut self);
+}
+
+/// A supervisor under test.
+pub trait UnderTest: Ticked {
+    /// Name of its numbers.
+    const NUMBER: &'static str;
+
+    /// The bits of a command.
+    fn bits(command: &Self::Command) -> CommandBits;
     /// Takes what it leaves behind into a hash: its report, the events in its queue, its frozen record.
     fn read_out(&mut self, hash: &mut Hash);
     /// Everything else that firmware calls, so that it is linked.
@@ -48,11 +60,22 @@ pub trait UnderTest: Sized {
 
 /// One tick. A function of its own, so that there is one place to count in.
 #[inline(never)]
-pub fn tick<U: UnderTest>(supervisor: &mut U, sample: &U::Sample, command: &mut U::Command) {
+pub fn tick<U: Ticked>(supervisor: &mut U, sample: &U::Sample, command: &mut U::Command) {
     *command = supervisor.step(sample);
 }
 
 // The methods have the same names but belong to different types.
+macro_rules! served {
+    () => {
+        fn background(&mut self) {
+            while Self::next_event(self).is_some() {}
+            if Self::record(self).is_some() {
+                Self::rearm(self);
+            }
+        }
+    };
+}
+
 macro_rules! asked {
     () => {
         fn read_out(&mut self, hash: &mut Hash) {
@@ -86,8 +109,7 @@ macro_rules! asked {
     };
 }
 
-impl UnderTest for Float {
-    const NUMBER: &'static str = "f32";
+impl Ticked for Float {
     const RAM_BYTES: usize = size_of::<Self>() - Core::<f32, RECORD>::RECORDER_BYTES;
     type Sample = Sample;
     type Command = Command;
@@ -105,17 +127,66 @@ impl UnderTest for Float {
     fn sample(bits: &SampleBits) -> Sample {
         wire::sample_of_bits(bits)
     }
-    fn bits(command: &Command) -> CommandBits {
-        wire::command_bits(command)
-    }
     fn mode_of(command: &Command) -> Mode {
         command.mode
+    }
+    served!();
+}
+
+impl UnderTest for Float {
+    const NUMBER: &'static str = "f32";
+
+    fn bits(command: &Command) -> CommandBits {
+        wire::command_bits(command)
     }
     asked!();
 }
 
-impl UnderTest for Fixed {
-    const NUMBER: &'static str = "Q";
+/// Both planes at once in what is dearest for one of them: the second one's samples are those of the first, turned by
+/// half a turn about the centre.
+impl Ticked for Pair {
+    const RAM_BYTES: usize = size_of::<Self>() - 2 * Core::<f32, RECORD>::RECORDER_BYTES;
+    type Sample = [Sample; 2];
+    type Command = PairCommand;
+
+    fn self_test() -> bool {
+        self_test::<f32>()
+    }
+    fn new(config: &Config) -> Option<Self> {
+        Self::new(&[*config; 2]).ok()
+    }
+    #[inline(always)]
+    fn step(&mut self, samples: &[Sample; 2]) -> PairCommand {
+        self.tick(samples)
+    }
+    fn sample(bits: &SampleBits) -> [Sample; 2] {
+        let sample = wire::sample_of_bits(bits);
+        [sample, half_a_turn(&sample)]
+    }
+    fn mode_of(command: &PairCommand) -> Mode {
+        let [first, _] = command.planes;
+        first.mode
+    }
+    fn background(&mut self) {
+        for end in [0, 1] {
+            while self.plane(end).next_event().is_some() {}
+        }
+        self.collect(|_, _| ());
+    }
+}
+
+/// The same seen from the other side.
+pub fn half_a_turn(sample: &Sample) -> Sample {
+    let turned = |v: [f32; 2]| v.map(|x| -x);
+    Sample {
+        position_m: turned(sample.position_m),
+        levitation_n: turned(sample.levitation_n),
+        applied_n: turned(sample.applied_n),
+        ..*sample
+    }
+}
+
+impl Ticked for Fixed {
     const RAM_BYTES: usize = size_of::<Self>() - Self::RECORDER_BYTES;
     type Sample = CoreSample<Q>;
     type Command = CoreCommand<Q>;
@@ -134,11 +205,17 @@ impl UnderTest for Fixed {
     fn sample(bits: &SampleBits) -> CoreSample<Q> {
         wire::core_sample_of_bits(bits)
     }
-    fn bits(command: &CoreCommand<Q>) -> CommandBits {
-        wire::core_command_bits(command)
-    }
     fn mode_of(command: &CoreCommand<Q>) -> Mode {
         command.mode
+    }
+    served!();
+}
+
+impl UnderTest for Fixed {
+    const NUMBER: &'static str = "Q";
+
+    fn bits(command: &CoreCommand<Q>) -> CommandBits {
+        wire::core_command_bits(command)
     }
     asked!();
 }

@@ -4,11 +4,11 @@
 //! themselves, would add up to the fastest whirl that the cap can stop, v_ref = v_lim·(1 − e)/(μ·(1 + e)).
 
 use super::plants::PlantCase;
-use super::seats::{Seat, Task, restitution};
+use super::seats::{Seat, restitution};
 use super::situations::{Situation, situations};
-use super::takeover::{arrest_of, whirling};
+use super::takeover::{arrest_of, let_whirl};
 use crate::levitation::LevitationParams;
-use crate::scene::{Axis, BaseMotion, Disturbance, Outage, Scene, Shape, TimedChange};
+use crate::scene::{Axis, BaseMotion, Delivers, Disturbance, Outage, Scene, Shape, TimedChange};
 use plant_model::params::{EllipseParams, RaceParams, SpinParams, Start, StatorParams};
 use plant_model::{Change, V2};
 use std::f64::consts::TAU;
@@ -22,8 +22,6 @@ pub struct Case {
     pub name: String,
     /// What happens.
     pub scene: Scene,
-    /// What the reference is asked.
-    pub task: Task,
     /// Who takes part.
     pub seats: &'static [Seat],
 }
@@ -83,7 +81,6 @@ impl Collector<'_> {
             group,
             name: name.into(),
             scene,
-            task: Task::Impact,
             seats: &Seat::ALL,
         });
     }
@@ -91,11 +88,6 @@ impl Collector<'_> {
     /// The start of an impact at a share of the reference speed.
     fn impact(&self, share: f64, angle_deg: f64) -> Start {
         aimed(self.base, share * self.sizes.impact_m_s, angle_deg)
-    }
-
-    /// The start of whirl at a share of the whirl limit.
-    fn whirl_at(&self, share: f64) -> Start {
-        whirling(self.base, share * self.sizes.limit_m_s)
     }
 
     fn load(&self, share: f64, start_s: f64, duration_s: f64) -> Disturbance {
@@ -119,12 +111,9 @@ impl Collector<'_> {
 
     fn whirl(&mut self) {
         for share in [0.3, 0.5, 0.7, 0.85, 0.95, 1.05, 1.1] {
-            let start = self.whirl_at(share);
+            let speed_m_s = share * self.sizes.limit_m_s;
             let name = format!("whirl at take-over, {share} v_lim");
-            self.add("whirl", name, 0.0, |s| s.start = start);
-            if let Some(case) = self.cases.last_mut() {
-                case.task = Task::Whirl;
-            }
+            self.add("whirl", name, 0.0, |s| let_whirl(s, speed_m_s));
         }
     }
 
@@ -215,6 +204,7 @@ impl Collector<'_> {
             let outage = Outage {
                 start_s: BEGIN_S,
                 duration_s: 1e-3 * ms,
+                delivers: Delivers::Nothing,
                 axis: Axis::Both,
                 known: true,
             };
@@ -234,12 +224,14 @@ impl Collector<'_> {
                 let outage = Outage {
                     start_s: situation.at_s,
                     duration_s: 0.02,
+                    delivers: Delivers::Nothing,
                     axis,
                     known: true,
                 };
                 let name = format!("{letter} axis lost for 20 ms while in {}", situation.name);
                 self.add("axis lost", name, outage.end_s(), |s| {
                     s.start = situation.scene.start;
+                    s.whirl_speed_m_s = situation.scene.whirl_speed_m_s;
                     s.disturbances = situation.scene.disturbances.clone();
                     s.outages = vec![outage];
                 });
@@ -265,9 +257,9 @@ impl Collector<'_> {
             });
         }
         let change = friction_from(3e-3, 0.03);
-        let start = self.whirl_at(0.85);
+        let speed_m_s = 0.85 * self.sizes.limit_m_s;
         self.add("friction", "friction collapses in whirl", 3e-3, |s| {
-            s.start = start;
+            let_whirl(s, speed_m_s);
             s.changes = vec![change];
         });
     }

@@ -2,7 +2,7 @@
 
 use super::catalogue::Case;
 use super::found::Found;
-use super::seats::{Seat, seated};
+use super::seats::{Seat, tries};
 use crate::closed_loop::{Keep, run, run_policy};
 use crate::policy_kind::PolicyKind;
 use crate::scene::Scene;
@@ -106,6 +106,18 @@ impl ResultRow {
     }
 }
 
+/// Whether a run is better than another: it recovers where the other does not, or its hardest touch is softer.
+fn better(one: &Option<Metrics>, other: &Option<Metrics>) -> bool {
+    match (one, other) {
+        (Some(a), Some(b)) if a.recovered == b.recovered => {
+            a.peak_contact_force_n < b.peak_contact_force_n
+        }
+        (Some(a), Some(_)) => a.recovered,
+        (Some(_), None) => true,
+        (None, _) => false,
+    }
+}
+
 /// Runs a case under a policy. A run that cannot be trusted is a row with its error.
 pub fn run_case(
     case: &Case,
@@ -117,15 +129,17 @@ pub fn run_case(
         seed,
         ..case.scene.clone()
     };
-    let outcome = match seated(seat, case.task, found, &scene) {
-        Some(policy) => run_policy(&scene, (policy, seat.name()), Keep::Verdict, &mut |_| {})
-            .map_err(|e| e.to_string()),
-        None => Err("the policy needs more than the scene gives".to_owned()),
-    };
-    let (metrics, error) = match outcome {
+    let run = |policy| match run_policy(&scene, (policy, seat.name()), Keep::Verdict, &mut |_| {}) {
         Ok((verdict, _)) => (Some(Metrics::from(&verdict)), None),
-        Err(error) => (None, Some(error)),
+        Err(error) => (None, Some(error.to_string())),
     };
+    let none = (
+        None,
+        Some("the policy needs more than the scene gives".to_owned()),
+    );
+    let (metrics, error) = (tries(seat, found, &scene).into_iter().map(run))
+        .reduce(|best, next| if better(&next.0, &best.0) { next } else { best })
+        .unwrap_or(none);
     ResultRow {
         group: case.group,
         scene: case.name.clone(),

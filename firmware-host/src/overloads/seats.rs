@@ -2,7 +2,7 @@
 
 use super::found::Found;
 use crate::clairvoyant::{Clairvoyant, ClairvoyantLaw};
-use crate::levitation::LevitationParams;
+use crate::levitation::{LevitationParams, TrueLevitation};
 use crate::policies::Policy;
 use crate::policy_kind::PolicyKind;
 use crate::scene::Scene;
@@ -26,7 +26,7 @@ pub enum Seat {
     Supervisor,
     /// The supervisor in front of the ordinary loop.
     SupervisorOnStiff,
-    /// True state, no delay, the best weights found.
+    /// True state, no delay, the best law found.
     Clairvoyant,
 }
 
@@ -96,6 +96,28 @@ pub fn seated(seat: Seat, task: Task, found: &Found, scene: &Scene) -> Option<Po
             scene,
         ))),
     }
+}
+
+/// What is tried on a scene of the catalogue for a seat, where the best counts. Only the reference has more than
+/// one: both of its laws, and the loops of the baselines with the true state, since a law made for impacts need
+/// not levitate best.
+pub fn tries(seat: Seat, found: &Found, scene: &Scene) -> Vec<Policy> {
+    if seat != Seat::Clairvoyant {
+        return seated(seat, Task::Impact, found, scene)
+            .into_iter()
+            .collect();
+    }
+    let laws = [found.impact_law, found.whirl_law];
+    let loops = [found.tuned, found.stiff];
+    let force_max_n = scene.plant.magnet.map_or(0.0, |m| m.force_max_n);
+    let seeing = |params| TrueLevitation {
+        params,
+        force_max_n,
+    };
+    (laws.into_iter())
+        .map(|law| Policy::Clairvoyant(clairvoyant(law, scene)))
+        .chain(loops.map(|params| Policy::TrueLevitation(seeing(params), -scene.centre_offset_m)))
+        .collect()
 }
 
 /// Restitution of a scene's contact.

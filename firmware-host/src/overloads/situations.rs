@@ -2,7 +2,7 @@
 //! more than a mode lasts, so it is not written down but found, by watching a supervisor to which nothing else happens.
 
 use super::catalogue::{Sizes, aimed, load};
-use super::takeover::whirling;
+use super::takeover::let_whirl;
 use crate::closed_loop::{Keep, run};
 use crate::levitation::LevitationParams;
 use crate::policy_kind::PolicyKind;
@@ -42,7 +42,7 @@ pub fn situations(base: &Scene, sizes: Sizes, tuned: LevitationParams) -> Vec<Si
         scene.start = aimed(base, share * sizes.impact_m_s, 30.0);
     };
     let whirl = |share: f64, scene: &mut Scene| {
-        scene.start = whirling(base, share * sizes.limit_m_s);
+        let_whirl(scene, share * sizes.limit_m_s);
     };
     // Of a load at the wall, by the shaft [caps].
     let plant = &base.plant;

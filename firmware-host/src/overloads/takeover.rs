@@ -32,6 +32,17 @@ pub fn whirling(scene: &Scene, speed_m_s: f64) -> Start {
     }
 }
 
+/// Speed in contact above which whirl that began at a speed \[m/s\] counts as held by nobody: half as fast again.
+fn lost_beyond_m_s(speed_m_s: f64) -> f64 {
+    1.5 * speed_m_s
+}
+
+/// Lets a scene begin [`whirling`]. Its limit of whirl gives way where the start is beyond it.
+pub fn let_whirl(scene: &mut Scene, speed_m_s: f64) {
+    scene.start = whirling(scene, speed_m_s);
+    scene.whirl_speed_m_s = scene.whirl_speed_m_s.max(lost_beyond_m_s(speed_m_s));
+}
+
 /// What the whole cap of a scene's magnet can stop; `None` without a magnet or without friction.
 pub fn arrest_of(scene: &Scene) -> Option<Arrest> {
     Arrest::new(&scene.plant, scene.plant.magnet?.force_max_n)
@@ -48,8 +59,7 @@ pub fn take_over(
 ) -> Result<TakeOver, RunError> {
     let scene = Scene {
         start: whirling(scene, speed_m_s),
-        // Faster than at the start: nobody holds it any more.
-        whirl_speed_m_s: 1.5 * speed_m_s,
+        whirl_speed_m_s: lost_beyond_m_s(speed_m_s),
         ..scene.clone()
     };
     let backward = -scene.start.spin_rad_s.signum();

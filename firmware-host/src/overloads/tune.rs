@@ -32,11 +32,12 @@ pub fn shape(
     Some((shape, shape.noise_gain_n_m * noise_m / cap))
 }
 
-/// Loops that are tried: K_p = m·ω² from 15 Hz up, K_d = 2ζ·m·ω, a derivative filter of some samples.
+/// Loops that are tried: K_p = m·ω² from 2 Hz, as good as no spring, to 430 Hz, K_d = 2ζ·m·ω, a derivative filter of
+/// some samples.
 fn candidates(scene: &Scene) -> Vec<LevitationParams> {
     let (mass, period_s) = (scene.plant.rotor.mass_kg, 1.0 / scene.sample_rate_hz);
     let mut all = Vec::new();
-    for i in 0..16 {
+    for i in -9..16 {
         let omega = TAU * 15.0 * 1.25_f64.powi(i);
         for damping_ratio in [0.3, 0.5, 0.7, 1.0, 1.4, 2.0, 2.8, 4.0, 5.6, 8.0] {
             for filter in [0.0, 0.5, 1.0, 2.0, 4.0, 8.0] {

@@ -9,7 +9,7 @@ use super::link::LinkError;
 use super::machines::Machine;
 use super::numbers::Number;
 use super::record::{Length, Stream};
-use super::results::{LongStream, ModeTicks, StreamRow, TargetRow};
+use super::results::{LongStream, ModeTicks, PairOfPlanes, StreamRow, TargetRow};
 use crate::closed_loop::RunError;
 use crate::overloads::plan::CatalogueError;
 use firmware_image::wire::MODES;
@@ -114,17 +114,24 @@ fn row_of(stream: &Stream) -> StreamRow {
     }
 }
 
+/// What an image that counts says.
+struct Counted {
+    counts: Counts,
+    stack_bytes: u64,
+    ram_bytes: u64,
+}
+
 /// Counts the instructions of every tick of the stream in a folder; and the deepest stack.
 ///
 /// # Errors
 /// [`TargetError`].
 fn count(
     project: &Project,
-    machine: &Machine,
+    (machine, image_name): (&Machine, &str),
     stream_folder: &Path,
     limit: Duration,
-) -> Result<(Counts, u64), TargetError> {
-    let image = project.image(machine.target, &machine.number.image("count"));
+) -> Result<Counted, TargetError> {
+    let image = project.image(machine.target, image_name);
     // A folder of its own: machines write files of the same name.
     let folder = TempDir::with_prefix("supervisor-counts-")?;
     let stream = Path::new("stream.bin");
@@ -138,8 +145,15 @@ fn count(
     };
     let bytes = std::fs::read(folder.path().join("counts.bin"))?;
     let counts = counts_of(&bytes).ok_or_else(|| silent("counts"))?;
-    let stack = said.get("stack_bytes").and_then(|v| v.parse().ok());
-    Ok((counts, stack.ok_or_else(|| silent("stack_bytes"))?))
+    let number = |name: &'static str| {
+        let value = said.get(name).and_then(|v| v.parse().ok());
+        value.ok_or_else(|| silent(name))
+    };
+    Ok(Counted {
+        counts,
+        stack_bytes: number("stack_bytes")?,
+        ram_bytes: number("ram_bytes")?,
+    })
 }
 
 /// Everything of one machine but the verdicts on its figures; its images have been built.
@@ -151,17 +165,28 @@ pub fn measure(
     machine: &Machine,
     streams: &Streams,
 ) -> Result<TargetRow, TargetError> {
-    let count_in = |folder: &TempDir| count(project, machine, folder.path(), streams.limit);
-    let (counts, stack_bytes) = count_in(&streams.counted)?;
+    let count_in = |folder: &TempDir, image: &str| {
+        count(project, (machine, image), folder.path(), streams.limit)
+    };
+    let image = machine.number.image("count");
+    let Counted {
+        counts,
+        stack_bytes,
+        ..
+    } = count_in(&streams.counted, &image)?;
     let long_stream = if streams.row.ticks > counts.all.ticks as u64 {
-        let (counts, stack_bytes) = count_in(&streams.replayed)?;
+        let counted = count_in(&streams.replayed, &image)?;
         Some(LongStream {
-            ticks: counts.all.ticks,
-            worst_instructions: counts.all.worst_instructions,
-            stack_bytes,
+            ticks: counted.counts.all.ticks,
+            worst_instructions: counted.counts.all.worst_instructions,
+            stack_bytes: counted.stack_bytes,
         })
     } else {
         None
+    };
+    let pair = match machine.number {
+        Number::Float => Some(count_in(&streams.counted, "count-pair")?),
+        Number::Fixed => None,
     };
     let image = project.image(machine.target, &machine.number.image("replay"));
     let folder = streams.replayed.path();
@@ -192,6 +217,12 @@ pub fn measure(
         worst_instructions: counts.all.worst_instructions,
         modes: counts.modes,
         long_stream,
+        pair: pair.map(|pair| PairOfPlanes {
+            median_instructions: pair.counts.all.median_instructions,
+            worst_instructions: pair.counts.all.worst_instructions,
+            ram_bytes: pair.ram_bytes,
+            stack_bytes: pair.stack_bytes,
+        }),
         text_bytes: text.code_bytes + text.constant_bytes,
         code_bytes: text.code_bytes,
         ram_bytes: number("ram_bytes")?,

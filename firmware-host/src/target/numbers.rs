@@ -2,7 +2,7 @@
 
 use super::record::{Recording, Tape, Tick};
 use crate::policies::Supervise;
-use firmware_image::under_test::{Fixed, Float, UnderTest};
+use firmware_image::under_test::{Fixed, Float, Ticked, UnderTest};
 use firmware_image::wire::core_sample_bits;
 use std::rc::Rc;
 use supervisor::{Command, Config, CoreSample, Prepared, Q, Sample, Scalar, Scaling};
@@ -51,7 +51,7 @@ impl Number {
             }),
             Self::Fixed => Box::new(RecordingFixed {
                 scaling: config.scaling(),
-                core: <Fixed as UnderTest>::new(config)?,
+                core: <Fixed as Ticked>::new(config)?,
                 tape,
             }),
         })

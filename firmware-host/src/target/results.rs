@@ -27,6 +27,8 @@ pub struct TargetRow {
     pub modes: Vec<OfMode>,
     /// The same for all ticks that were replayed, where they are more than the counted; without budgets.
     pub long_stream: Option<LongStream>,
+    /// Both planes of a rotor in one tick, over the counted ticks; in floats. Held against twice a supervisor.
+    pub pair: Option<PairOfPlanes>,
     /// Flash that the supervisor takes with all that it calls.
     pub text_bytes: u64,
     /// Instructions' part of it.
@@ -56,6 +58,38 @@ pub struct LongStream {
     pub worst_instructions: u32,
     /// Deepest stack of a tick, from its caller.
     pub stack_bytes: u64,
+}
+
+/// Figures of two supervisors, one for each bearing plane, ticked one after the other.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct PairOfPlanes {
+    /// Half of the ticks have more.
+    pub median_instructions: u32,
+    /// Most instructions of a tick of both.
+    pub worst_instructions: u32,
+    /// Their state without recorders.
+    pub ram_bytes: u64,
+    /// Deepest stack of a tick of both, from its caller.
+    pub stack_bytes: u64,
+}
+
+/// What joining two supervisors may cost in a tick: copies of samples and commands, and what is shared.
+const JOINING_INSTRUCTIONS: u32 = 150;
+
+impl PairOfPlanes {
+    /// What is wrong, beside one supervisor in a row.
+    fn failure(&self, row: &TargetRow) -> Option<String> {
+        let twice = 2 * row.worst_instructions;
+        let expected = twice..=twice + JOINING_INSTRUCTIONS;
+        (!expected.contains(&self.worst_instructions)).then(|| {
+            format!(
+                "a tick of two planes takes {} instructions, not {} to {}",
+                self.worst_instructions,
+                expected.start(),
+                expected.end()
+            )
+        })
+    }
 }
 
 impl TargetRow {
@@ -166,6 +200,8 @@ impl Report {
             if stream.is_some_and(|s| s.ticks != t.ticks || s.hash != t.hash) {
                 failures.push(format!("{name}: the hash over all ticks is not the host's"));
             }
+            let pair = t.pair.and_then(|pair| pair.failure(t));
+            failures.extend(pair.map(|f| format!("{name}: {f}")));
             let broken = t.budgets.iter().filter_map(Verdict::failure);
             failures.extend(broken.map(|f| format!("{name}: {f}")));
         }

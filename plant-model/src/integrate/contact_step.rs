@@ -16,8 +16,10 @@ use crate::spin::Spin;
 use crate::stator::Stator;
 use crate::system::{Evaluation, Guards, Inputs, NORMAL, StateOf, System};
 
-/// Points at which a step that may hold an event is searched.
-const SCANS: usize = 8;
+/// Points at which a step that may hold an event is searched; those close to the ends show a dip there.
+const SCANS: [f64; 10] = [
+    0.015_625, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 0.984_375, 1.0,
+];
 
 impl<Y: Copy + Default> Rates<Y> for Evaluation<Y> {
     fn rates(&self) -> &Y {
@@ -26,6 +28,16 @@ impl<Y: Copy + Default> Rates<Y> for Evaluation<Y> {
     fn powers(&self) -> Flows {
         self.powers
     }
+}
+
+/// A guard that becomes negative inside a step.
+#[derive(Debug, Clone, Copy)]
+struct Crossing {
+    guard: usize,
+    /// Where, as a share of the step, to the accuracy of the dense output.
+    theta: f64,
+    /// It becomes positive again before the next point of the scan.
+    dip: bool,
 }
 
 /// The contact field of one mode under held inputs, counting its calls.
@@ -154,6 +166,9 @@ impl<P> ContactStepper<P> {
         if !follows {
             step = step.min(P::FIRST / system.contact_rate_rad_s());
         }
+        // A dip of the dense output that the pair itself does not see is none: where damping makes the force of errors
+        // in speed there would be many.
+        let mut dips = true;
         let (y_end, h, last, event) = loop {
             // A last sliver shorter than a tenth of the step is taken along.
             let last = step * 1.1 >= remaining;
@@ -173,10 +188,10 @@ impl<P> ContactStepper<P> {
             }
             self.pair.set_end(field.at(t_s + h, &end));
             let event = match suspicious(self.pair.seen()) {
-                true => self.locate((t_s, h), (task.muted, &round_off), &mut field),
+                true => self.locate((t_s, h), (task.muted, &round_off), dips, &mut field),
                 false => None,
             };
-            let Some((guard, theta)) = event else {
+            let Some(Crossing { guard, theta, dip }) = event else {
                 let growth = if error > 0.0 {
                     0.9 * error.powf(power)
                 } else {
@@ -205,6 +220,7 @@ impl<P> ContactStepper<P> {
                     break (y_end, taken, false, Some(guard));
                 }
                 // The dense output has promised an event that the shorter step does not see.
+                None if dip => (dips, step) = (false, h),
                 None => step = 0.5 * theta * h,
             }
         };
@@ -243,13 +259,14 @@ impl<P> ContactStepper<P> {
         })
     }
 
-    /// First event inside the last step: the guard, and θ to the accuracy of the dense output.
+    /// First event inside the last step. `dips`: also those that are over before the next point of the scan.
     fn locate<Y: Part>(
         &mut self,
         (t_s, step_s): (f64, f64),
         (muted, round_off): (Option<usize>, &Guards),
+        dips: bool,
         field: &mut impl Field<Y, Evaluation<Y>>,
-    ) -> Option<(usize, f64)>
+    ) -> Option<Crossing>
     where
         P: Pair<Y, Evaluation<Y>>,
     {
@@ -270,26 +287,50 @@ impl<P> ContactStepper<P> {
                 && !(guard == NORMAL && rising)
         };
         if let Some(guard) = start.iter().enumerate().position(jumped) {
-            return Some((guard, 0.0));
+            return Some(Crossing {
+                guard,
+                theta: 0.0,
+                dip: false,
+            });
         }
-        let mut found: Option<(usize, f64)> = None;
+        let negative = |guard: usize, value: f64| {
+            // No number is no positive one: the step is to be shortened.
+            let positive = value >= -1e-13 * scale[guard] - round_off[guard];
+            !positive && muted != Some(guard)
+        };
+        let mut found: Option<Crossing> = None;
+        let (mut before, mut at_before) = (0.0, start);
         let (mut low, mut at_low) = (0.0, start);
-        for i in 1..=SCANS {
-            let high = i as f64 / SCANS as f64;
+        for high in SCANS {
             let at_high = guards_at(high);
             for (guard, value) in at_high.iter().enumerate() {
-                if *value >= -1e-13 * scale[guard] - round_off[guard] || muted == Some(guard) {
+                let three = [
+                    (before, at_before[guard]),
+                    (low, at_low[guard]),
+                    (high, *value),
+                ];
+                let end = if negative(guard, *value) {
+                    (high, *value)
+                } else if dips
+                    && let Some(lowest) = lowest_between(guard, three, &mut guards_at)
+                    && negative(guard, lowest.1)
+                {
+                    lowest
+                } else {
                     continue;
-                }
-                let theta = first_root(guard, (low, at_low[guard]), (high, *value), &mut guards_at);
-                if found.is_none_or(|(_, earlier)| theta < earlier) {
-                    found = Some((guard, theta));
+                };
+                let [first, middle, _] = three;
+                let begin = if end.0 > middle.0 { middle } else { first };
+                let theta = first_root(guard, begin, end, &mut guards_at);
+                if found.is_none_or(|earlier| theta < earlier.theta) {
+                    let dip = end.0 < high;
+                    found = Some(Crossing { guard, theta, dip });
                 }
             }
             if found.is_some() {
                 break;
             }
-            (low, at_low) = (high, at_high);
+            ((before, at_before), (low, at_low)) = ((low, at_low), (high, at_high));
         }
         found
     }
@@ -372,6 +413,38 @@ fn guard_scales<Y>(seen: &[Evaluation<Y>]) -> Guards {
         }
     }
     scale
+}
+
+/// Where a guard is lowest between the outer ones of three points, if it is lower in the middle and may come near zero
+/// there: an event that is over before the next point.
+fn lowest_between(
+    guard: usize,
+    [mut a, mut b, mut c]: [(f64, f64); 3],
+    guards_at: &mut impl FnMut(f64) -> Guards,
+) -> Option<(f64, f64)> {
+    for _ in 0..8 {
+        if !(a.0 < b.0 && b.1 > 0.0 && b.1 <= a.1 && b.1 < c.1) {
+            break;
+        }
+        // Vertex of the parabola through the three, from its middle.
+        let (left, right) = ((b.1 - a.1) / (b.0 - a.0), (c.1 - b.1) / (c.0 - b.0));
+        let bend = (right - left) / (c.0 - a.0);
+        let slope = left + bend * (b.0 - a.0);
+        let at = b.0 - 0.5 * slope / bend;
+        let lowest = b.1 - 0.25 * slope * slope / bend;
+        let settled = (at - b.0).abs() < 1e-6 * (c.0 - a.0);
+        if lowest > 0.5 * b.1 || settled || !(at > a.0 && at < c.0) {
+            break;
+        }
+        let new = (at, guards_at(at)[guard]);
+        (a, b, c) = match (new.1 < b.1, new.0 < b.0) {
+            (true, true) => (a, new, b),
+            (true, false) => (b, new, c),
+            (false, true) => (new, b, c),
+            (false, false) => (a, b, new),
+        };
+    }
+    (b.1 < 0.0).then_some(b)
 }
 
 /// First sign change of one guard in a bracket whose high end is negative. A low end at zero (the

@@ -1,8 +1,10 @@
 //! A flight record as its reader gets it: the checksum over any entries is the CRC-32 of their bytes, one wrong bit
-//! does not go unnoticed, and what the recorder freezes it has summed up itself.
+//! does not go unnoticed, what the recorder freezes it has summed up itself, and the host's decoder takes any bytes:
+//! refused with a reason, or read so that every byte of them counts.
 
 #![no_main]
 
+use fuzz::flight_record::{FlightRecord, NotARecord, Units, entries};
 use fuzz::{Bytes, plausible};
 use libfuzzer_sys::fuzz_target;
 use supervisor::{Entry, Sample, Status, Supervisor, crc_of};
@@ -94,7 +96,34 @@ fn what_is_recorded(data: &[u8]) {
     }
 }
 
+fn decoded(data: &[u8]) {
+    let modes = data.as_chunks::<16>().0.iter().map(|b| b[12]);
+    match entries(data) {
+        Ok(entries) => {
+            assert!(modes.into_iter().all(|mode| mode <= 6));
+            assert_eq!(entries.iter().flat_map(bytes_of).collect::<Vec<_>>(), data);
+            let record = FlightRecord::of(&entries, Units::default());
+            assert_eq!(record.crc, crc_by_bits(data.iter().copied()));
+            assert_eq!(record.empty + record.ticks.len(), entries.len());
+            let in_stretches: usize = record.stretches.iter().map(|s| s.ticks).sum();
+            assert_eq!(in_stretches, record.ticks.len());
+            assert!(record.turning_points().count() >= record.stretches.len());
+        }
+        Err(NotARecord::Length(length)) => assert!(length == 0 || length % 16 != 0),
+        Err(NotARecord::Mode { entry, mode }) => {
+            assert!(mode > 6 && data[16 * entry + 12] == mode);
+        }
+    }
+}
+
 fuzz_target!(|data: &[u8]| {
     any_entries(data);
+    decoded(data);
+    // Mostly modes that there are, or hardly an input would be read to its end.
+    let mut data_with_modes = data[..data.len() / 16 * 16].to_vec();
+    for entry in data_with_modes.as_chunks_mut::<16>().0 {
+        entry[12] %= 7;
+    }
+    decoded(&data_with_modes);
     what_is_recorded(data);
 });

@@ -1,9 +1,14 @@
 //! Cap per axis, slew limit, outages, delay, and the policy `damping`.
 
 use crate::{apart, free_rotor, last, near, ridden, samples};
+use firmware_host::closed_loop::{Keep, run_policy};
+use firmware_host::policies::{Policy, Supervise};
 use firmware_host::policy_kind::PolicyKind;
-use firmware_host::scene::{Axis, Outage, Scene};
+use firmware_host::scene::{Axis, Delivers, Outage, Scene};
 use plant_model::V2;
+use std::cell::RefCell;
+use std::rc::Rc;
+use supervisor::{Command, Sample, Status, Supervisor};
 use system_tests::scene;
 
 /// `radial` outside its band pushes with the whole cap all the time: a constant command.
@@ -72,6 +77,7 @@ fn an_outage_lets_the_force_decay() {
         scene.outages = vec![Outage {
             start_s,
             duration_s: end_s - start_s,
+            delivers: Delivers::Nothing,
             axis,
             known: false,
         }];
@@ -99,6 +105,51 @@ fn an_outage_lets_the_force_decay() {
     }
 }
 
+/// An inverted amplifier delivers the force with the other sign, a swapped one along the other axis, each from the
+/// exact beginning of the fault on; the slew limit goes through all of it, and is not reset.
+#[test]
+fn a_faulty_amplifier_turns_the_force() {
+    for (delivers, axis, turned) in [
+        (Delivers::Inverted, Axis::X, [-800.0, 600.0]),
+        (Delivers::Inverted, Axis::Y, [800.0, -600.0]),
+        (Delivers::Inverted, Axis::Both, [-800.0, -600.0]),
+        (Delivers::Swapped, Axis::Both, [600.0, 800.0]),
+    ] {
+        let mut scene = pushed(V2::new(0.8, 0.6));
+        without_lag(&mut scene);
+        let start_s = 0.002_013;
+        scene.outages = vec![Outage {
+            start_s,
+            duration_s: 1.0,
+            delivers,
+            axis,
+            known: false,
+        }];
+        for row in samples(&ridden(&scene, PolicyKind::Radial).1)
+            .iter()
+            .skip(2)
+        {
+            let expected = if row.plant.t_s < start_s {
+                [800.0, 600.0]
+            } else {
+                turned
+            };
+            for (found, expected) in row.plant.delivered_n.iter().zip(expected) {
+                // The direction turns a little as the rotor moves.
+                assert!((found - expected).abs() < 1.0, "{delivers:?}: {found}");
+            }
+        }
+        scene.amplifier.slew_n_s = Some(1e6);
+        let rows = ridden(&scene, PolicyKind::Radial).1;
+        let steps = rows.rows.array_windows();
+        let fastest = steps.map(|[a, b]| {
+            let way = (b.plant.delivered_n - a.plant.delivered_n).amax();
+            way / (b.plant.t_s - a.plant.t_s)
+        });
+        assert!(fastest.fold(0.0, f64::max) < 1.001e6);
+    }
+}
+
 /// The command of the first sample is in effect so many samples later, and not before.
 #[test]
 fn commands_take_effect_after_their_delay() {
@@ -123,6 +174,7 @@ fn a_known_outage_is_told() {
     let outage = |axis, known| Outage {
         start_s: 0.0,
         duration_s: 1.0,
+        delivers: Delivers::Nothing,
         axis,
         known,
     };
@@ -183,6 +235,7 @@ fn outages_begin_at_any_time_under_a_slew_limit() {
         scene.outages = vec![Outage {
             start_s: 1e-4 * f64::from(tenth_ms),
             duration_s: 3e-3,
+            delivers: Delivers::Nothing,
             axis: Axis::X,
             known: false,
         }];
@@ -196,5 +249,52 @@ fn outages_begin_at_any_time_under_a_slew_limit() {
             left_n.x.abs() < 1e-3 && left_n.y > 599.0,
             "{tenth_ms}: {left_n}"
         );
+    }
+}
+
+/// Whether the force is measured, and what it is [N], tick by tick.
+type Told = Rc<RefCell<Vec<(bool, [f32; 2])>>>;
+
+/// Keeps what the supervisor behind it is told of the force.
+#[derive(Debug)]
+struct Listening {
+    supervisor: Supervisor,
+    told: Told,
+}
+
+impl Supervise for Listening {
+    fn tick(&mut self, sample: &Sample) -> Command {
+        let valid = sample.status.contains(Status::APPLIED_VALID);
+        self.told.borrow_mut().push((valid, sample.applied_n));
+        self.supervisor.tick(sample)
+    }
+}
+
+/// A measured force is the one that the magnet delivers at the sample, without what is fed forward; a scene in which
+/// nobody measures it says so.
+#[test]
+fn a_measured_force_is_told() {
+    for measured in [false, true] {
+        let mut scene = scene("shock_15_g_on_amb");
+        scene.amplifier.force_measured = measured;
+        scene.feed_forward_n = V2::new(0.0, 98.1);
+        let told = Told::default();
+        let supervisor = Listening {
+            supervisor: Supervisor::new(&scene.supervisor.unwrap()).unwrap(),
+            told: Rc::clone(&told),
+        };
+        let policy = Policy::supervised(&scene, Box::new(supervisor)).unwrap();
+        let acting = (policy, "supervisor");
+        let (_, trace) = run_policy(&scene, acting, Keep::Trace, &mut |_| {}).unwrap();
+        let told = told.borrow();
+        let mut most = 0.0_f64;
+        for (row, (valid, applied_n)) in samples(&trace).iter().zip(told.iter()) {
+            let expected = row.plant.delivered_n - scene.feed_forward_n;
+            assert_eq!(*valid, measured);
+            let expected = if measured { expected } else { V2::zeros() };
+            assert_eq!(*applied_n, [expected.x as f32, expected.y as f32]);
+            most = most.max(expected.norm());
+        }
+        assert!(!measured || most > 500.0, "{most}");
     }
 }

@@ -157,6 +157,28 @@ fn bad_keys_are_named() {
             "axis",
             "both",
         ),
+        (
+            motion,
+            table("[[outage]]\nstart_s = 0.0\nduration_s = 0.01\ndelivers = \"half\""),
+            "delivers",
+            "swapped",
+        ),
+        (
+            motion,
+            table(
+                "[[outage]]\nstart_s = 0.0\nduration_s = 0.01\ndelivers = \"swapped\"\naxis = \"x\"",
+            ),
+            "outage[0].axis",
+            "of one axis",
+        ),
+        (
+            motion,
+            table(
+                "[[outage]]\nstart_s = 0.0\nduration_s = 0.01\ndelivers = \"inverted\"\nknown = true",
+            ),
+            "outage[0].known",
+            "nobody to be told",
+        ),
         (motion, fault("kind = \"broken\""), "kind", "oscillation"),
         (
             motion,

@@ -6,7 +6,7 @@
 mod image {
     use cortex_m_rt::entry;
     use firmware_image::file::File;
-    use firmware_image::under_test::{self, Float, UnderTest};
+    use firmware_image::under_test::{self, Float, Ticked, UnderTest};
     use firmware_image::wire::{self, COMMAND_BYTES};
     use firmware_image::{checked, exit, line, planted, report};
     use supervisor::Command;
@@ -24,7 +24,7 @@ mod image {
             let answered = match (kind, &mut supervisor) {
                 (line::CONFIGURE, _) => {
                     let config = input.take().map(|bytes| wire::config_of(&bytes));
-                    supervisor = config.as_ref().and_then(<Float as UnderTest>::new);
+                    supervisor = config.as_ref().and_then(<Float as Ticked>::new);
                     output.append(&[match supervisor {
                         Some(_) => line::READY,
                         None => line::REFUSED,

@@ -1,12 +1,13 @@
 //! Counts the instructions of every tick of a stream, and how much stack a tick needs.
 //!
 //! Reads `stream.bin`, writes `counts.bin`: for each tick a little-endian word, the instructions in its lower
-//! 24 bits and the mode after the tick above them. Prints `ticks` and `stack_bytes`.
+//! 24 bits and the mode after the tick above them. Prints `ticks`, `stack_bytes` and `ram_bytes`. Between ticks the
+//! background has its turn, so that a record is written again after one that froze.
 //!
 //! The emulator runs with `-icount shift=10`: an instruction takes 1024 ns of its time.
 
 use super::{checked, exit, file, planted, report, stack};
-use crate::under_test::{self, UnderTest};
+use crate::under_test::{self, Ticked};
 use crate::wire::{self, SampleBits, TICK_BYTES};
 use core::hint::black_box;
 use core::sync::atomic::{AtomicU32, Ordering};
@@ -32,15 +33,15 @@ const INSTRUCTIONS: u32 = 125;
 /// Turns of [`turns`].
 static TURNS: AtomicU32 = AtomicU32::new(1);
 
-type Work<U> = fn(&mut U, &<U as UnderTest>::Sample, &mut <U as UnderTest>::Command);
+type Work<U> = fn(&mut U, &<U as Ticked>::Sample, &mut <U as Ticked>::Command);
 
 /// As [`under_test::tick`], doing nothing: one instruction, the return.
 #[inline(never)]
-fn nothing<U: UnderTest>(_: &mut U, _: &U::Sample, _: &mut U::Command) {}
+fn nothing<U: Ticked>(_: &mut U, _: &U::Sample, _: &mut U::Command) {}
 
 /// Two instructions a turn, and a few around them.
 #[inline(never)]
-fn turns<U: UnderTest>(_: &mut U, _: &U::Sample, _: &mut U::Command) {
+fn turns<U: Ticked>(_: &mut U, _: &U::Sample, _: &mut U::Command) {
     let turns = TURNS.load(Ordering::Relaxed);
     // SAFETY: the loop touches one register, which is told, and the flags; the number is not zero.
     unsafe {
@@ -55,7 +56,7 @@ fn turns<U: UnderTest>(_: &mut U, _: &U::Sample, _: &mut U::Command) {
 }
 
 /// Whether the clock counts instructions: a loop of 3000 turns has 4000 more than one of 1000.
-fn clock_is_right<U: UnderTest>(supervisor: &mut U) -> bool {
+fn clock_is_right<U: Ticked>(supervisor: &mut U) -> bool {
     let work: Work<U> = black_box(turns);
     let sample = U::sample(&SampleBits::default());
     let mut count = |turns| {
@@ -68,7 +69,7 @@ fn clock_is_right<U: UnderTest>(supervisor: &mut U) -> bool {
 
 /// Instructions between two looks at SysTick with a call between them.
 #[inline(never)]
-fn between<U: UnderTest>(
+fn between<U: Ticked>(
     work: Work<U>,
     supervisor: &mut U,
     sample: &U::Sample,
@@ -83,7 +84,7 @@ fn between<U: UnderTest>(
 }
 
 /// The whole image.
-pub fn run<U: UnderTest>() -> ! {
+pub fn run<U: Ticked>() -> ! {
     planted();
     checked::<U>();
     let Some(mut peripherals) = cortex_m::Peripherals::take() else {
@@ -141,6 +142,7 @@ pub fn run<U: UnderTest>() -> ! {
                 // The empty call's return is one; a tick has its own.
                 let instructions = full.wrapping_sub(empty).wrapping_add(1);
                 *word = (instructions | ((U::mode_of(&command) as u32) << 24)).to_le_bytes();
+                supervisor.background();
                 ticks += 1;
             }
             let written = words.as_flattened().get(..4 * now);
@@ -152,5 +154,6 @@ pub fn run<U: UnderTest>() -> ! {
     }
     report::number("ticks", ticks);
     report::number("stack_bytes", stack_bytes);
+    report::number("ram_bytes", U::RAM_BYTES as u32);
     exit::success()
 }

@@ -23,6 +23,19 @@ pub(crate) fn text(report: &Report) -> String {
             );
         }
     }
+    for t in &report.targets {
+        if let Some(pair) = t.pair {
+            text += &format!(
+                "{} {}: two planes in one tick: median {}, worst {} instructions, RAM {} B, stack {} B\n",
+                t.name,
+                t.number,
+                pair.median_instructions,
+                pair.worst_instructions,
+                pair.ram_bytes,
+                pair.stack_bytes
+            );
+        }
+    }
     for stream in &report.streams {
         text += &format!("{}\n", stream_line(stream));
     }
