@@ -45,6 +45,9 @@ pub(crate) struct Readiness<S> {
 
 /// Shortfall that the blend can cover \[caps\].
 const COVERED: f32 = 0.06;
+/// From this radius on all of a shortfall counts. In the middle nothing has to be held, and what is outward there is
+/// noise, which the supervisor's force follows: a soft controller behind it would never seem ready.
+const COUNTS_FROM: f32 = 0.1;
 
 impl<S: Scalar> Readiness<S> {
     pub(crate) fn ready(&self) -> bool {
@@ -56,16 +59,17 @@ impl<S: Scalar> Readiness<S> {
         self.shortfall = self.shortfall * force;
     }
 
-    /// Compares the forces of this tick along the outward direction.
+    /// Compares the forces of this tick along the outward direction at a radius.
     #[inline]
     pub(crate) fn compare(
         &mut self,
         own: Vec2<S>,
         levitation: Vec2<S>,
-        outward: Vec2<S>,
+        (outward, radius): (Vec2<S>, S),
         coeffs: &Coeffs<S>,
     ) {
-        let short = (levitation - own).dot(outward);
+        let share = (radius * S::of(1.0 / COUNTS_FROM)).or_less(S::ONE);
+        let short = (levitation - own).dot(outward) * share;
         self.shortfall = self.shortfall + (short - self.shortfall) * coeffs.blend_step;
     }
 }

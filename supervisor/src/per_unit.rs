@@ -188,7 +188,7 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
                 // The controller has to ask for what the rotor is really held with.
                 let held = actuator.applied().unwrap_or(wanted);
                 self.readiness
-                    .compare(held, levitation, found.normal, coeffs);
+                    .compare(held, levitation, (found.normal, found.radius), coeffs);
             }
             let blended = handover::blend(phase, wanted, levitation, self.own, coeffs);
             let (target, bound) = limit::last_word(blended, &room);
