@@ -214,7 +214,7 @@ fn a_history_can_do_what_the_reference_does() {
     let law = clairvoyant(kept("P2", 20_000.0).unwrap().impact_law, &plant.scene);
     let mut scene = plant.scene;
     scene.start.velocity_m_s = V2::new(0.8, 0.0);
-    scene.duration_s = 0.05;
+    scene.duration_s = 0.15;
     let cap_n = scene.plant.magnet.unwrap().force_max_n;
     let run = |policy| {
         let (verdict, trace) =
