@@ -305,7 +305,7 @@ pub struct Bounds {
     slew_step: f64,
     /// By how much rounding may exceed them.
     rounding: f64,
-    /// Less is nothing: what a conversion from other units cannot tell from it.
+    /// Up to here it is nothing: what a conversion from other units cannot tell from it.
     nothing: f64,
     /// By how much a cut to other caps may have rounded; for one tick.
     cut: f64,
@@ -323,7 +323,7 @@ impl Bounds {
             axis_cap: S::of((config.axis_force_max_n / cap).min(1.0)).exact(),
             slew_step: S::of(slew.min(4.0)).exact(),
             rounding: S::LAST_PLACE,
-            nothing: f64::MIN_POSITIVE,
+            nothing: 0.0,
             cut: 0.0,
             last: [[0.0; 2]; 2],
         }
@@ -390,7 +390,7 @@ impl Bounds {
             if x.abs().max(y.abs()) > self.axis_cap + self.rounding {
                 return say("beyond the cap of an axis");
             }
-            if (lost[0] && x.abs() >= self.nothing) || (lost[1] && y.abs() >= self.nothing) {
+            if (lost[0] && x.abs() > self.nothing) || (lost[1] && y.abs() > self.nothing) {
                 return say("force on a lost axis");
             }
             let on = |axis: usize, change: f64| if lost[axis] { 0.0 } else { change };

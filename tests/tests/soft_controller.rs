@@ -6,6 +6,7 @@ use firmware_host::overloads::plants::plants;
 use firmware_host::policies::Policy;
 use firmware_host::policy_kind::PolicyKind;
 use firmware_host::scene::{Axis, Fault, FaultKind, Scene};
+use firmware_host::trace::TraceRow;
 use supervisor::Mode;
 
 /// On a shaft that centres the rotor a damper alone levitates. A jump of the sensor engages the supervisor; when it is
@@ -39,7 +40,7 @@ fn noise_in_the_middle_does_not_hold_the_hand_over_up() {
             let policy = Policy::new(PolicyKind::Supervisor, &scene).unwrap();
             let acting = (policy, "supervisor");
             let (_, trace) = run_policy(&scene, acting, Keep::Trace, &mut |_| {}).unwrap();
-            let modes = trace.rows.iter().filter_map(|row| row.supervisor_mode());
+            let modes = trace.rows.iter().filter_map(TraceRow::supervisor_mode);
             let modes: Vec<Mode> = modes.collect();
             let engaged = modes.iter().filter(|m| **m != Mode::Levitated).count();
             // 10 ms of fault, and at most as long to come back; at 20 kHz.

@@ -13,6 +13,7 @@ use super::results::{LongStream, ModeTicks, PairOfPlanes, StreamRow, TargetRow};
 use crate::closed_loop::RunError;
 use crate::overloads::plan::CatalogueError;
 use firmware_image::wire::MODES;
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::Duration;
 use tempfile::TempDir;
@@ -114,6 +115,33 @@ fn row_of(stream: &Stream) -> StreamRow {
     }
 }
 
+/// What an image printed under a name.
+fn said<'a>(
+    lines: &'a BTreeMap<String, String>,
+    (image, machine): (&'static str, &Machine),
+    name: &'static str,
+) -> Result<&'a String, EmulatorError> {
+    lines.get(name).ok_or(EmulatorError::Silent {
+        image,
+        machine: machine.name,
+        name,
+    })
+}
+
+/// The same as a number.
+fn number(
+    lines: &BTreeMap<String, String>,
+    of: (&'static str, &Machine),
+    name: &'static str,
+) -> Result<u64, EmulatorError> {
+    let (image, machine) = of;
+    (said(lines, of, name)?.parse()).map_err(|_| EmulatorError::Silent {
+        image,
+        machine: machine.name,
+        name,
+    })
+}
+
 /// What an image that counts says.
 struct Counted {
     counts: Counts,
@@ -137,22 +165,17 @@ fn count(
     let stream = Path::new("stream.bin");
     std::fs::copy(stream_folder.join(stream), folder.path().join(stream))?;
     let time = Time::Counted { shift: SHIFT };
-    let said = emulator::run(machine, &image, folder.path(), time, limit)?;
-    let silent = |name| EmulatorError::Silent {
+    let lines = emulator::run(machine, &image, folder.path(), time, limit)?;
+    let bytes = std::fs::read(folder.path().join("counts.bin"))?;
+    let counts = counts_of(&bytes).ok_or(EmulatorError::Silent {
         image: "count",
         machine: machine.name,
-        name,
-    };
-    let bytes = std::fs::read(folder.path().join("counts.bin"))?;
-    let counts = counts_of(&bytes).ok_or_else(|| silent("counts"))?;
-    let number = |name: &'static str| {
-        let value = said.get(name).and_then(|v| v.parse().ok());
-        value.ok_or_else(|| silent(name))
-    };
+        name: "counts",
+    })?;
     Ok(Counted {
         counts,
-        stack_bytes: number("stack_bytes")?,
-        ram_bytes: number("ram_bytes")?,
+        stack_bytes: number(&lines, ("count", machine), "stack_bytes")?,
+        ram_bytes: number(&lines, ("count", machine), "ram_bytes")?,
     })
 }
 
@@ -172,7 +195,7 @@ pub fn measure(
     let Counted {
         counts,
         stack_bytes,
-        ..
+        ram_bytes,
     } = count_in(&streams.counted, &image)?;
     let long_stream = if streams.row.ticks > counts.all.ticks as u64 {
         let counted = count_in(&streams.replayed, &image)?;
@@ -190,21 +213,8 @@ pub fn measure(
     };
     let image = project.image(machine.target, &machine.number.image("replay"));
     let folder = streams.replayed.path();
-    let said = emulator::run(machine, &image, folder, Time::Free, streams.limit)?;
-    let value = |name: &'static str| {
-        said.get(name).ok_or(EmulatorError::Silent {
-            image: "replay",
-            machine: machine.name,
-            name,
-        })
-    };
-    let number = |name: &'static str| -> Result<u64, EmulatorError> {
-        value(name)?.parse().map_err(|_| EmulatorError::Silent {
-            image: "replay",
-            machine: machine.name,
-            name,
-        })
-    };
+    let lines = emulator::run(machine, &image, folder, Time::Free, streams.limit)?;
+    let replay = ("replay", machine);
     let text = project.text(machine.target, machine.number)?;
     Ok(TargetRow {
         name: machine.name,
@@ -225,12 +235,12 @@ pub fn measure(
         }),
         text_bytes: text.code_bytes + text.constant_bytes,
         code_bytes: text.code_bytes,
-        ram_bytes: number("ram_bytes")?,
+        ram_bytes,
         stack_bytes,
-        ticks: number("ticks")?,
-        bit_exact_ticks: number("bit_exact_ticks")?,
-        hash: value("hash")?.clone(),
-        read_outs: value("read_outs")?.clone(),
+        ticks: number(&lines, replay, "ticks")?,
+        bit_exact_ticks: number(&lines, replay, "bit_exact_ticks")?,
+        hash: said(&lines, replay, "hash")?.clone(),
+        read_outs: said(&lines, replay, "read_outs")?.clone(),
         budgets: Vec::new(),
     })
 }

@@ -6,7 +6,7 @@
 mod image {
     use cortex_m_rt::entry;
     use firmware_image::file::File;
-    use firmware_image::under_test::{self, Float, Ticked, UnderTest};
+    use firmware_image::under_test::{self, Float, Ticked};
     use firmware_image::wire::{self, COMMAND_BYTES};
     use firmware_image::{checked, exit, line, planted, report};
     use supervisor::Command;

@@ -1,5 +1,5 @@
 //! Replays a recorded stream and compares each command, bit for bit, with the one of the host.
-//! Reads `stream.bin`; prints `number`, `ram_bytes`, `ticks`, `bit_exact_ticks`, `hash`, and `read_outs`: the hash over what
+//! Reads `stream.bin`; prints `number`, `ticks`, `bit_exact_ticks`, `hash`, and `read_outs`: the hash over what
 //! each supervisor leaves behind.
 
 use super::{checked, exit, file, planted, report};
@@ -14,7 +14,6 @@ pub fn run<U: UnderTest>() -> ! {
     planted();
     checked::<U>();
     report::text("number", U::NUMBER);
-    report::number("ram_bytes", U::RAM_BYTES as u32);
     let Some(mut stream) = file::File::read(c"stream.bin") else {
         report::failed("stream.bin cannot be read")
     };
