@@ -60,7 +60,7 @@
 //!                                                                                 └─► recorder
 //! ```
 //!
-//! Files, each importing only from those above it: `scalar`, `q`, `math`, `vec2`, `signal`, `config`, `coeffs`,
+//! Files, each importing only from those above it: `scalar`, `product`, `q`, `math`, `vec2`, `signal`, `config`, `coeffs`,
 //! `spin`, `unbalance`, `reading`, `still`, `guard`, `estimate`, `detect`, `course`, `classify`, `phase`, `law`, `limit`, `handover`, `severity`,
 //! `recorder`, `per_unit`, `supervisor`, `self_test`, `watch`, `log_format`.
 
@@ -84,6 +84,7 @@ mod log_format;
 mod math;
 mod per_unit;
 mod phase;
+mod product;
 mod q;
 mod reading;
 mod recorder;

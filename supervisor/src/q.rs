@@ -1,6 +1,7 @@
 //! Fixed point: 32 bits with 22 of them fraction, saturating. Range ±512, resolution 2.4e-7; in the units of
 //! the core (clearances, caps, √(m·c/F)) all that counts is between a thousandth and some tens.
 
+use crate::product;
 use crate::scalar::{Scalar, Slow, sealed::Sealed};
 use fixed::types::I10F22;
 
@@ -27,34 +28,16 @@ impl Q {
         self.0.to_bits()
     }
 
-    /// From a product, in units of 2⁻⁴⁴.
-    #[inline]
-    fn narrowed(wide: i64) -> Self {
-        Self::saturated(wide >> FRACTION)
-    }
-
     #[inline]
     fn saturated(bits: i64) -> Self {
-        let low = bits as i32;
-        Self::from_bits(if i64::from(low) == bits {
-            low
-        } else if bits < 0 {
-            i32::MIN
-        } else {
-            i32::MAX
-        })
-    }
-
-    #[inline]
-    fn wide(self, other: Self) -> i64 {
-        i64::from(self.to_bits()) * i64::from(other.to_bits())
+        Self::from_bits(product::saturated(bits))
     }
 
     /// Square, in units of 2⁻⁴⁴.
     #[inline]
     fn square(self) -> u64 {
-        let size = u64::from(self.to_bits().unsigned_abs());
-        size * size
+        let size = self.to_bits().unsigned_abs();
+        product::unsigned(size, size)
     }
 }
 
@@ -78,7 +61,10 @@ impl core::ops::Mul for Q {
     type Output = Self;
     #[inline]
     fn mul(self, other: Self) -> Self {
-        Self::narrowed(self.wide(other))
+        Self::from_bits(product::narrowed::<FRACTION>(
+            self.to_bits(),
+            other.to_bits(),
+        ))
     }
 }
 
@@ -122,16 +108,24 @@ impl Root {
     /// For s > 0. Two of Newton's steps bring the seed's 1.5 % to 2⁻²².
     #[inline(never)]
     fn of(s: u64) -> Self {
-        let half = s.leading_zeros() / 2;
-        let m = ((s << (2 * half)) >> 32) as u32;
+        // By words: Cortex-M0 calls for a shift of 64 bits, and counts zeros in a loop.
+        let (upper, lower) = ((s >> 32) as u32, s as u32);
+        let (half, m) = if upper != 0 {
+            let half = upper.leading_zeros() / 2;
+            let below = (lower >> 1) >> (31 - 2 * half);
+            (half, (upper << (2 * half)) | below)
+        } else {
+            let half = lower.leading_zeros() / 2;
+            (16 + half, lower << ((2 * half) & 31))
+        };
         let seed = SEEDS.get((m >> 26).wrapping_sub(16) as usize);
         let mut y = u32::from(seed.copied().unwrap_or(1 << 15)) << 15;
-        let high = |a: u32, b: u32| ((u64::from(a) * u64::from(b)) >> 32) as u32;
+        let high = |a: u32, b: u32| (product::unsigned(a, b) >> 32) as u32;
         for _ in 0..2 {
             // y²·x in units of 2⁻²⁸, and y·(3 − y²·x)/2.
             let square = high(high(y, y), m);
             let left = (3_u32 << 28).wrapping_sub(square);
-            y = ((u64::from(y) * u64::from(left)) >> 29) as u32;
+            y = (product::unsigned(y, left) >> 29) as u32;
         }
         Self { m, half, y }
     }
@@ -170,12 +164,14 @@ impl Scalar for Q {
 
     #[inline]
     fn products(a: Self, b: Self, c: Self, d: Self) -> Self {
-        Self::narrowed(a.wide(b).saturating_add(c.wide(d)))
+        let [a, b, c, d] = [a, b, c, d].map(Self::to_bits);
+        Self::from_bits(product::narrowed_sum::<FRACTION>([a, b], [c, d]))
     }
 
     #[inline]
     fn exceeds(x: Self, y: Self, limit: Self) -> bool {
-        x.square() + y.square() > limit.square()
+        let [x, y, limit] = [x, y, limit].map(|v| v.to_bits().unsigned_abs());
+        product::longer(x, y, limit)
     }
 
     #[inline]
@@ -197,8 +193,8 @@ impl Scalar for Q {
             return Self::ZERO;
         }
         let root = Root::of((bits as u64) << FRACTION);
-        let product = u64::from(root.m) * u64::from(root.y);
-        Self::from_bits((product >> ((30 + root.half) & 63)) as i32)
+        let wide = product::unsigned(root.m, root.y);
+        Self::from_bits((wide >> ((30 + root.half) & 63)) as i32)
     }
 
     #[inline]
@@ -212,9 +208,9 @@ impl Scalar for Q {
         }
         // The square of the inverse root.
         let root = Root::of((bits as u64) << FRACTION);
-        let inverse = (u64::from(root.y) * u64::from(root.y)) >> 31;
-        let product = i64::from(self.to_bits()) * inverse as i64;
-        Self::saturated(product >> (49_u32.saturating_sub(2 * root.half) & 63))
+        let inverse = product::unsigned(root.y, root.y) >> 31;
+        let wide = product::mixed(self.to_bits(), inverse as u32);
+        Self::saturated(wide >> (49_u32.saturating_sub(2 * root.half) & 63))
     }
 
     #[inline]
@@ -263,8 +259,7 @@ impl Slow<Q> for SlowQ {
 
     #[inline]
     fn add(&mut self, x: Q, rate: i32) {
-        let step = i64::from(x.to_bits()) * i64::from(rate);
-        self.0 = self.0.saturating_add(step);
+        self.0 = self.0.saturating_add(product::signed(x.to_bits(), rate));
     }
 
     #[inline]

@@ -269,8 +269,8 @@ typedef struct amb_sample {
 
 /** What to do until the next tick. */
 typedef struct amb_command {
-    float force_n[2];    /**< force to command [N]: finite and within all limits, but for a cap that
-                              amb_reconfigure has lowered: to that it comes down at the slew limit */
+    float force_n[2];    /**< force to command [N]: finite and within all limits; where amb_reconfigure() has
+                              lowered a cap, it is cut to that at once, and the slew limit holds from there */
     float own_n[2];      /**< force that the supervisor would command [N]: force_n but with AMB_STATUS_SHADOW */
     float severity;      /**< backward speed to come, over what the cap can arrest; 0 to 1e6 */
     uint32_t mode;       /**< AMB_MODE_ */
@@ -351,12 +351,14 @@ typedef struct amb_parameter {
 AMB_ASSERT(supervisor_size, sizeof(amb_supervisor) == AMB_SUPERVISOR_BYTES);
 AMB_ASSERT(watch_size, sizeof(amb_watch) == AMB_WATCH_BYTES);
 AMB_ASSERT(sample_size, sizeof(amb_sample) == AMB_SIZEOF_SAMPLE);
+AMB_ASSERT(sample_sequence, offsetof(amb_sample, sequence) == 0);
 AMB_ASSERT(sample_status, offsetof(amb_sample, status) == 4);
 AMB_ASSERT(sample_position, offsetof(amb_sample, position_m) == 8);
 AMB_ASSERT(sample_spin, offsetof(amb_sample, spin_rad_s) == 16);
 AMB_ASSERT(sample_levitation, offsetof(amb_sample, levitation_n) == 20);
 AMB_ASSERT(sample_applied, offsetof(amb_sample, applied_n) == 28);
 AMB_ASSERT(command_size, sizeof(amb_command) == AMB_SIZEOF_COMMAND);
+AMB_ASSERT(command_force, offsetof(amb_command, force_n) == 0);
 AMB_ASSERT(command_own, offsetof(amb_command, own_n) == 8);
 AMB_ASSERT(command_severity, offsetof(amb_command, severity) == 16);
 AMB_ASSERT(command_mode, offsetof(amb_command, mode) == 20);
@@ -364,41 +366,69 @@ AMB_ASSERT(command_limits, offsetof(amb_command, limits) == 24);
 AMB_ASSERT(command_events, offsetof(amb_command, events) == 28);
 AMB_ASSERT(command_integrator, offsetof(amb_command, integrator) == 32);
 AMB_ASSERT(event_size, sizeof(amb_event) == AMB_SIZEOF_EVENT);
+AMB_ASSERT(event_sequence, offsetof(amb_event, sequence) == 0);
+AMB_ASSERT(event_mode, offsetof(amb_event, mode) == 4);
+AMB_ASSERT(event_events, offsetof(amb_event, events) == 8);
 AMB_ASSERT(record_size, sizeof(amb_record) == AMB_SIZEOF_RECORD);
+AMB_ASSERT(record_version, offsetof(amb_record, version) == 0);
+AMB_ASSERT(record_entries, offsetof(amb_record, entries) == 4);
+AMB_ASSERT(record_crc, offsetof(amb_record, crc) == 8);
 AMB_ASSERT(entry_size, sizeof(amb_entry) == AMB_SIZEOF_ENTRY);
+AMB_ASSERT(entry_sequence, offsetof(amb_entry, sequence) == 0);
 AMB_ASSERT(entry_position, offsetof(amb_entry, position) == 4);
 AMB_ASSERT(entry_force, offsetof(amb_entry, force) == 8);
 AMB_ASSERT(entry_mode, offsetof(amb_entry, mode) == 12);
 AMB_ASSERT(entry_limits, offsetof(amb_entry, limits) == 13);
 AMB_ASSERT(entry_events, offsetof(amb_entry, events) == 14);
 AMB_ASSERT(report_size, sizeof(amb_report) == AMB_SIZEOF_REPORT);
-AMB_ASSERT(report_missed, offsetof(amb_report, missed_ticks) == 12);
-AMB_ASSERT(report_late, offsetof(amb_report, late_ticks) == 20);
+AMB_ASSERT(report_landings, offsetof(amb_report, landings) == 0);
+AMB_ASSERT(report_impacts, offsetof(amb_report, impacts) == 4);
+AMB_ASSERT(report_contact_ticks, offsetof(amb_report, contact_ticks) == 8);
+AMB_ASSERT(report_missed_ticks, offsetof(amb_report, missed_ticks) == 12);
+AMB_ASSERT(report_repeated_ticks, offsetof(amb_report, repeated_ticks) == 16);
+AMB_ASSERT(report_late_ticks, offsetof(amb_report, late_ticks) == 20);
+AMB_ASSERT(report_coast_down, offsetof(amb_report, coast_down) == 24);
+AMB_ASSERT(report_refusal, offsetof(amb_report, refusal) == 28);
 AMB_ASSERT(report_fault, offsetof(amb_report, fault) == 32);
-AMB_ASSERT(report_impact_speed, offsetof(amb_report, impact_speed_max_m_s) == 36);
-AMB_ASSERT(report_force_cap, offsetof(amb_report, force_cap_n) == 56);
+AMB_ASSERT(report_impact_speed_max_m_s, offsetof(amb_report, impact_speed_max_m_s) == 36);
+AMB_ASSERT(report_backward_speed_max_m_s, offsetof(amb_report, backward_speed_max_m_s) == 40);
+AMB_ASSERT(report_whirl_limit_m_s, offsetof(amb_report, whirl_limit_m_s) == 44);
+AMB_ASSERT(report_severity_index, offsetof(amb_report, severity_index) == 48);
+AMB_ASSERT(report_thermal_state, offsetof(amb_report, thermal_state) == 52);
+AMB_ASSERT(report_force_cap_n, offsetof(amb_report, force_cap_n) == 56);
+AMB_ASSERT(parameter_name, offsetof(amb_parameter, name) == 0);
+AMB_ASSERT(parameter_unit, offsetof(amb_parameter, unit) == sizeof(char *));
+AMB_ASSERT(parameter_text, offsetof(amb_parameter, text) == 2 * sizeof(char *));
 AMB_ASSERT(parameter_low, offsetof(amb_parameter, low) == 3 * sizeof(char *));
 AMB_ASSERT(parameter_high, offsetof(amb_parameter, high) == 3 * sizeof(char *) + 4);
 
-/** Version of the interface that the library speaks. The only name without a version, for programs that
- * load the library when they run. */
+/**
+ * Version of the interface that the library speaks. The only name without a version, for programs that
+ * load the library when they run.
+ * @return AMB_ABI of the header that belongs to it.
+ */
 uint32_t amb_abi_version(void);
 
 /**
  * Self-test at boot: a supervisor of the test's own goes through every mode, and all its commands have to be
  * what they were when this version was made. Takes some milliseconds, without an FPU some tenths of a second,
  * and two kilobytes of stack; touches no other supervisor.
- * @return AMB_ERROR_SELF_TEST: do not use the supervisor on this processor.
+ * @return AMB_OK, or AMB_ERROR_SELF_TEST: do not use the supervisor on this processor.
  */
 amb_code amb_self_test(void);
 
-/** What a code means, for people. Never null. */
+/**
+ * What a code means, for people.
+ * @param code what a call returned; any other number has a text, too.
+ * @return a text that ends with zero and lives as long as the program. Never null.
+ */
 const char *amb_error_text(amb_code code);
 
 /**
  * Row of the table of parameters.
  * @param index 0 to AMB_PARAMETERS - 1; anything else is AMB_ERROR_INDEX.
  * @param[out] parameter the row; untouched after an error.
+ * @return AMB_OK, AMB_ERROR_INDEX, AMB_ERROR_RESULT_NULL or _MISALIGNED.
  */
 amb_code amb_parameter_at(uint32_t index, amb_parameter *parameter);
 
@@ -406,6 +436,7 @@ amb_code amb_parameter_at(uint32_t index, amb_parameter *parameter);
  * Index of a parameter, for configurations that come as text.
  * @param name its name, case counts; AMB_ERROR_NAME_UNKNOWN if there is none of it.
  * @param[out] index its index; untouched after an error.
+ * @return AMB_OK, AMB_ERROR_NAME_NULL or _UNKNOWN, AMB_ERROR_RESULT_NULL or _MISALIGNED.
  */
 amb_code amb_parameter_index(const char *name, uint32_t *index);
 
@@ -415,7 +446,8 @@ amb_code amb_parameter_index(const char *name, uint32_t *index);
  * @param bytes sizeof *supervisor.
  * @param values the configuration: value of each parameter, in the order of their indexes.
  * @param count AMB_PARAMETERS.
- * @return AMB_ERROR_PARAMETER(index) for the first value outside its range; NaN is outside every range.
+ * @return AMB_OK, an error of supervisor or values, or AMB_ERROR_PARAMETER(index) for the first value outside its
+ * range; NaN is outside every range.
  */
 amb_code amb_init(amb_supervisor *supervisor, size_t bytes, const float *values, size_t count);
 
@@ -424,7 +456,10 @@ amb_code amb_init(amb_supervisor *supervisor, size_t bytes, const float *values,
  * rotor stays, and so do mode, counters and thermal state; entries of the flight record are in the units of
  * their time, and the tick of the change has AMB_EVENT_RECONFIGURED. It computes some roots and exponentials:
  * see the page on C for how long.
- * @param values, count as for amb_init(), and so is what is returned; after an error nothing has changed.
+ * @param supervisor made by amb_init(). After an error nothing has changed.
+ * @param values as for amb_init().
+ * @param count AMB_PARAMETERS.
+ * @return as of amb_init().
  */
 amb_code amb_reconfigure(amb_supervisor *supervisor, const float *values, size_t count);
 
@@ -434,21 +469,38 @@ amb_code amb_reconfigure(amb_supervisor *supervisor, const float *values, size_t
  * @param sample what is known now.
  * @param[out] command what to do. After an error it is zero force and AMB_MODE_SENSOR_FAULT, unless
  * command itself is null or misaligned.
+ * @return AMB_OK, or an error of supervisor, sample or command.
  */
 amb_code amb_tick(amb_supervisor *supervisor, const amb_sample *sample, amb_command *command);
 
-/** What the supervisor is doing. @param[out] mode AMB_MODE_; untouched after an error. */
+/**
+ * What the supervisor is doing.
+ * @param supervisor made by amb_init().
+ * @param[out] mode AMB_MODE_; untouched after an error.
+ * @return AMB_OK, or an error of supervisor or result.
+ */
 amb_code amb_mode(amb_supervisor *supervisor, uint32_t *mode);
 
-/** Name of a mode, for people. Never null. */
+/**
+ * Name of a mode, for people.
+ * @param mode AMB_MODE_; any other number has a text, too.
+ * @return a text that ends with zero and lives as long as the program. Never null.
+ */
 const char *amb_mode_name(uint32_t mode);
 
-/** What has happened since amb_init(). @param[out] report untouched after an error. */
+/**
+ * What has happened since amb_init().
+ * @param supervisor made by amb_init().
+ * @param[out] report untouched after an error.
+ * @return AMB_OK, or an error of supervisor or result.
+ */
 amb_code amb_report_now(amb_supervisor *supervisor, amb_report *report);
 
 /**
  * Takes the oldest event out of the queue of 16. Call it from the background until it is AMB_NOTHING.
+ * @param supervisor made by amb_init().
  * @param[out] event untouched unless AMB_OK.
+ * @return AMB_OK, AMB_NOTHING, or an error of supervisor or result.
  */
 amb_code amb_next_event(amb_supervisor *supervisor, amb_event *event);
 
@@ -456,25 +508,35 @@ amb_code amb_next_event(amb_supervisor *supervisor, amb_event *event);
  * The frozen flight record, or AMB_NOTHING. It freezes some ticks for each entry after the last one, in which
  * its checksum is made a little at a time, and stays as it is until amb_rearm(), so that its entries may
  * be read one at a time, with ticks between.
+ * @param supervisor made by amb_init().
  * @param[out] record untouched unless AMB_OK.
+ * @return AMB_OK, AMB_NOTHING, or an error of supervisor or result.
  */
 amb_code amb_record_frozen(amb_supervisor *supervisor, amb_record *record);
 
 /**
  * An entry of the frozen record, or AMB_NOTHING without one.
+ * @param supervisor made by amb_init().
  * @param index 0 (oldest) to AMB_RECORD_ENTRIES - 1; anything else is AMB_ERROR_INDEX.
  * @param[out] entry untouched unless AMB_OK.
+ * @return AMB_OK, AMB_NOTHING, AMB_ERROR_INDEX, or an error of supervisor or result.
  */
 amb_code amb_record_entry(amb_supervisor *supervisor, uint32_t index, amb_entry *entry);
 
 /**
  * CRC-32 of entries, for a reader of a record to compare with.
+ * @param entries from oldest to newest.
  * @param count at most AMB_RECORD_ENTRIES; more is AMB_ERROR_INDEX.
  * @param[out] crc untouched after an error.
+ * @return AMB_OK, AMB_ERROR_INDEX, or an error of entries or result.
  */
 amb_code amb_crc(const amb_entry *entries, uint32_t count, uint32_t *crc);
 
-/** Discards a frozen record and waits for the next engagement. */
+/**
+ * Discards a frozen record and waits for the next engagement.
+ * @param supervisor made by amb_init().
+ * @return AMB_OK, or an error of supervisor.
+ */
 amb_code amb_rearm(amb_supervisor *supervisor);
 
 /**
@@ -482,24 +544,34 @@ amb_code amb_rearm(amb_supervisor *supervisor);
  * force on the magnet: where the actuator has a loop of its own, let it take its force from a watch.
  * @param watch memory for it, zero or made before.
  * @param periods a command holds for this many periods of the actuator; 0 lets none through.
+ * @return AMB_OK, or an error of watch.
  */
 amb_code amb_watch_init(amb_watch *watch, uint32_t periods);
 
 /**
  * After each tick.
+ * @param watch made by amb_watch_init().
  * @param force two floats, as in amb_command: the actuator's from now on. After an error it keeps the one
  * that it had, until that expires.
+ * @return AMB_OK, or an error of watch or force.
  */
 amb_code amb_watch_renew(amb_watch *watch, const float *force);
 
 /**
  * Once in each period of the actuator.
+ * @param watch made by amb_watch_init().
  * @param[out] force two floats: the actuator's, zero when the command has expired, and after an error, unless
  * force itself is null or misaligned.
+ * @return AMB_OK, or an error of watch or force.
  */
 amb_code amb_watch_force(amb_watch *watch, float *force);
 
-/** Whether the next period would have no command. @param[out] expired 0 or 1; untouched after an error. */
+/**
+ * Whether the next period would have no command.
+ * @param watch made by amb_watch_init().
+ * @param[out] expired 0 or 1; untouched after an error.
+ * @return AMB_OK, or an error of watch or result.
+ */
 amb_code amb_watch_expired(amb_watch *watch, uint32_t *expired);
 
 #ifdef __cplusplus
