@@ -5,7 +5,8 @@ use std::io;
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 
-/// A folder that is filled beside its final place and moved there at the end.
+/// A folder that is filled in its final place, or beside it where that is not there yet, and whose files are moved there
+/// at the end: both are the same file system.
 #[derive(Debug)]
 pub struct Staging {
     final_place: PathBuf,
@@ -58,12 +59,16 @@ pub fn probe(final_place: &Path) -> Result<(), OutputError> {
 }
 
 impl Staging {
-    /// Prepares a folder beside `final_place`.
+    /// Prepares a folder for what is to be in `final_place`.
     ///
     /// # Errors
     /// [`OutputError`].
-    pub fn beside(final_place: &Path) -> Result<Self, OutputError> {
+    pub fn for_folder(final_place: &Path) -> Result<Self, OutputError> {
         let prepare = || {
+            // A folder that is there may be a mount point, a link, or the only one that may be written to.
+            if final_place.is_dir() {
+                return TempDir::with_prefix_in(".results", final_place);
+            }
             let parent = match final_place.parent() {
                 Some(p) if !p.as_os_str().is_empty() => p,
                 _ => Path::new("."),

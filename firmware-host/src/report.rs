@@ -35,6 +35,7 @@ pub fn html(scene: &SceneSummary, runs: &[PolicyRun]) -> Result<String, PlotErro
     );
     push_story(&mut page, &scene.story);
     push_facts(&mut page, scene);
+    push_warnings(&mut page, &scene.warnings);
     page.push_str("</header>\n<main>\n");
     push_table(&mut page, runs);
     verification::push_table(&mut page, runs);
@@ -84,6 +85,16 @@ fn push_facts(page: &mut String, scene: &SceneSummary) {
     }
     page.push_str("</dl>\n");
     push_disturbances(page, &scene.disturbances);
+}
+
+fn push_warnings(page: &mut String, warnings: &[String]) {
+    for warning in warnings {
+        let warning = escape(warning);
+        push(
+            page,
+            format_args!("<p class=\"warning\">Warning: {warning}</p>\n"),
+        );
+    }
 }
 
 fn push_disturbances(page: &mut String, all: &[Disturbed]) {

@@ -26,6 +26,9 @@ pub use crate::faults::{Fault, FaultKind};
 pub use crate::loads::{BaseMotion, Disturbance, Shape, TimedChange};
 pub use crate::supervisor_setup::Override;
 
+/// Rows of traces that a run may keep, of all its policies: some 0.3 KB each.
+const MOST_ROWS: f64 = 1e7;
+
 /// A scene that can be run: every value checked.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scene {
@@ -226,10 +229,20 @@ impl Scene {
             return Err(text.error_at_key("run.method", message, Some(help.to_owned())));
         }
         let ticks = file.run.duration_s * file.run.sample_rate_hz;
-        if ticks > 2e7 {
-            let help = "shorten run.duration_s or lower run.sample_rate_hz".to_owned();
-            let message = format!("{ticks:.0} control samples: expected at most 20 million");
+        let rows = ticks * file.run.policies.len() as f64;
+        if rows > MOST_ROWS {
+            let help = "shorten run.duration_s, lower run.sample_rate_hz or run fewer policies";
+            let help = help.to_owned();
+            let message = format!(
+                "{ticks:e} control samples for each of {} policies: expected at most 10 million in all",
+                file.run.policies.len()
+            );
             return Err(text.error_at_key("run.duration_s", message, Some(help)));
+        }
+        if file.title.trim().is_empty() || file.title.contains('\n') {
+            let help = Some("what the scene is for goes into story".to_owned());
+            let message = "expected a name in one line".to_owned();
+            return Err(text.error_at_key("title", message, help));
         }
         let sensor = sensor_of(file, &check)?;
         let amplifier = amplifier_of(file, &check)?;

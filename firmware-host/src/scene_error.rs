@@ -18,6 +18,17 @@ pub enum SceneError {
         /// What the system said.
         reason: std::io::Error,
     },
+    /// The file is no text that TOML may be.
+    #[error("{}:{line}: is no UTF-8 text", path.display())]
+    #[diagnostic(help(
+        "save it as UTF-8, which any editor can, without umlauts or signs of another encoding"
+    ))]
+    Encoding {
+        /// The file.
+        path: PathBuf,
+        /// Line of the first byte that is not, counted from 1.
+        line: usize,
+    },
     /// Something in the file is wrong.
     #[error("{}:{line}: {message}", path.display())]
     Content {
@@ -48,9 +59,16 @@ pub(crate) struct SceneText {
 
 impl SceneText {
     pub(crate) fn read(path: &Path) -> Result<Self, SceneError> {
-        let text = std::fs::read_to_string(path).map_err(|reason| SceneError::Read {
+        let bytes = std::fs::read(path).map_err(|reason| SceneError::Read {
             path: path.to_owned(),
             reason,
+        })?;
+        let text = String::from_utf8(bytes).map_err(|error| {
+            let good = &error.as_bytes()[..error.utf8_error().valid_up_to()];
+            SceneError::Encoding {
+                path: path.to_owned(),
+                line: 1 + good.iter().filter(|b| **b == b'\n').count(),
+            }
         })?;
         Ok(Self {
             path: path.to_owned(),
@@ -96,7 +114,10 @@ impl SceneText {
                 "is one table where there may be several: write its name in double brackets, [[…]]",
             ),
             ("expected a string", "expected a text in quotes"),
-            ("expected a sequence", "expected a list in square brackets"),
+            (
+                "expected a sequence",
+                "expected a list in square brackets, [x, y]",
+            ),
             ("integer `", "the number `"),
             ("floating point `", "the number `"),
             ("` as i128", "`, which is too far from 0"),
@@ -222,6 +243,15 @@ pub(crate) fn with_guess<'a>(
     guess(word, known).map_or(help.clone(), |guess| format!("{guess} {help}"))
 }
 
+/// A number as people write it: with an exponent where it would be long.
+pub(crate) fn short(x: f64) -> String {
+    if x == 0.0 || (1e-4..1e7).contains(&x.abs()) {
+        x.to_string()
+    } else {
+        format!("{x:e}")
+    }
+}
+
 /// Range checks that point at the key.
 pub(crate) struct Checks<'a> {
     pub(crate) text: &'a SceneText,
@@ -230,8 +260,11 @@ pub(crate) struct Checks<'a> {
 impl Checks<'_> {
     pub(crate) fn refused(&self, key: &str, value: f64, expected: &str) -> SceneError {
         let help = Some(format!("give {expected}"));
-        self.text
-            .error_at_key(key, format!("is {value}, expected {expected}"), help)
+        self.text.error_at_key(
+            key,
+            format!("is {}, expected {expected}", short(value)),
+            help,
+        )
     }
 
     pub(crate) fn within(
@@ -244,7 +277,8 @@ impl Checks<'_> {
         if value >= low && value <= high {
             Ok(())
         } else {
-            Err(self.refused(key, value, &format!("a number from {low} to {high}")))
+            let expected = format!("a number from {} to {}", short(low), short(high));
+            Err(self.refused(key, value, &expected))
         }
     }
 

@@ -9,6 +9,9 @@ use supervisor::{Config, PARAMETERS};
 
 /// A start farther from the centre than this, or one that would press the rotor deeper into the wall \[clearances\].
 const DEEP: f64 = 10.0;
+/// No rotor on retainer bearings turns faster \[Hz\], or is wider \[m\].
+const FASTEST_HZ: f64 = 5000.0;
+const WIDEST_M: f64 = 5.0;
 /// Share by which a parameter may differ from the scene's own data.
 const OTHER: f32 = 0.05;
 
@@ -58,6 +61,24 @@ pub(crate) fn warnings_of(
     if clearance_m > file.rotor.contact_radius_m {
         let message = "is larger than the rotor's radius there; lengths are in metres".to_owned();
         warnings.push(warning("contact.clearance_m", message));
+    }
+    for (key, size) in [
+        ("sensor.noise_rms_m", file.sensor.noise_rms_m),
+        ("sensor.quantum_m", file.sensor.quantum_m),
+    ] {
+        if size > clearance_m {
+            let message = "is larger than the clearance; lengths are in metres".to_owned();
+            warnings.push(warning(key, message));
+        }
+    }
+    let hz = file.spin.frequency_hz.abs();
+    if hz > FASTEST_HZ {
+        let message = format!("is {hz:e} turns a second; a speed in turns a minute?");
+        warnings.push(warning("spin.frequency_hz", message));
+    }
+    if file.rotor.contact_radius_m > WIDEST_M {
+        let message = format!("is wider than {WIDEST_M} m; lengths are in metres");
+        warnings.push(warning("rotor.contact_radius_m", message));
     }
     if let Some(range_m) = file.sensor.range_m
         && range_m < clearance_m

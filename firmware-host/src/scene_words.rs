@@ -6,6 +6,7 @@ use crate::verdict::{Disturbed, SceneSummary};
 use plant_model::V2;
 use plant_model::params::{SlidingFriction, SpinParams, StatorParams};
 use std::f64::consts::TAU;
+use supervisor::PARAMETERS;
 
 /// What a report needs to know of a scene.
 pub(crate) fn summary(scene: &Scene) -> SceneSummary {
@@ -20,6 +21,7 @@ pub(crate) fn summary(scene: &Scene) -> SceneSummary {
         force_max_n: scene.plant.magnet.map(|m| m.force_max_n),
         whirl_speed_m_s: scene.whirl_speed_m_s,
         facts: facts(scene),
+        warnings: scene.warnings.clone(),
         disturbances: disturbances(scene),
         duration_s: scene.duration_s,
     }
@@ -79,6 +81,11 @@ fn facts(scene: &Scene) -> Vec<(&'static str, String)> {
             "Retainer bearing",
             format!("{offset} µm off the sensors' centre"),
         ));
+    }
+    if !scene.overrides.is_empty() {
+        let told = |(index, value): &(usize, f32)| format!("{} {value}", PARAMETERS[*index].name);
+        let told: Vec<String> = scene.overrides.iter().map(told).collect();
+        facts.push(("Set in [supervisor]", told.join(", ")));
     }
     facts.push((
         "Program",

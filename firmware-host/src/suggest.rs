@@ -175,6 +175,11 @@ pub fn suggested(n: &Nominal) -> Suggested {
         Some(_) => "slew_n_s",
         None => "force_max_n",
     };
+    let step_source = if n.quantum_m > n.noise_rms_m {
+        "quantum_m"
+    } else {
+        "noise_rms_m"
+    };
     const QUICKEST: &str = "speed noise is at most 4 % of √(F·c/m)";
     suggested! {
         sample_period_s: period_s, Some("sample_rate_hz"), "inverse of the control rate";
@@ -190,9 +195,9 @@ pub fn suggested(n: &Nominal) -> Suggested {
             Some(_) => "as given, at most 0.95: nearer to 1 the bounces never end",
             None => "not given: 0.7, steel on steel",
         };
-        observer_pole_flight: flight, Some("noise_rms_m"), format!("quickest from 0.5 to 0.97 whose {QUICKEST}");
-        observer_pole_contact: contact, Some("noise_rms_m"), format!("quickest from 0.2 to 0.97 whose {QUICKEST}");
-        contact_band: (4.0 * (step_m / n.clearance_m)).max(0.01), Some("noise_rms_m"), "4 times noise or step over clearance, at least 0.01";
+        observer_pole_flight: flight, Some(step_source), format!("quickest from 0.5 to 0.97 whose {QUICKEST}");
+        observer_pole_contact: contact, Some(step_source), format!("quickest from 0.2 to 0.97 whose {QUICKEST}");
+        contact_band: (4.0 * (step_m / n.clearance_m)).max(0.01), Some(step_source), "4 times noise or step over clearance, at least 0.01";
         position_limit: 20.0, None, "rule of thumb: no machine measures so far out, and whirl presses the wall beyond 1";
         // Two half periods on the contact spring, but no less than a millisecond.
         whirl_time_s: (std::f64::consts::TAU / contact_rate).max(1e-3), Some("contact_stiffness_n_m"), "a period on the contact, 2π·√(m/k_c), at least 1 ms";
@@ -220,7 +225,7 @@ pub fn suggested(n: &Nominal) -> Suggested {
         // Whirl is no faster than the rotor on the contact spring; half more for its deflection.
         speed_max_m_s: (1.5 * n.clearance_m * contact_rate).max(2.0), Some("contact_stiffness_n_m"), "1.5·c·√(k_c/m), at least 2 m/s";
         // A sensor without noise and steps is not a thing that gets stuck.
-        sensor_step_m: step_m.max(5e-4 * n.clearance_m), Some("noise_rms_m"), "noise or step, at least 1/2000 of the clearance";
+        sensor_step_m: step_m.max(5e-4 * n.clearance_m), Some(step_source), "noise or step, at least 1/2000 of the clearance";
     }
 }
 

@@ -48,7 +48,8 @@ pub(crate) fn key_of(field: &str) -> &'static str {
         "slew_n_s" => "magnet.slew_n_s",
         "lag_s" => "magnet.lag_s",
         "delay_samples" => "magnet.delay_samples",
-        "noise_rms_m" => "sensor",
+        "noise_rms_m" => "sensor.noise_rms_m",
+        "quantum_m" => "sensor.quantum_m",
         // Stiffness and damping may be given in several ways.
         _ => "rotor",
     }
@@ -112,6 +113,15 @@ pub(crate) fn config(
             let path = format!("supervisor.{name}");
             return text.error_at_key(&path, e.to_string(), Some(e.parameter().text.to_owned()));
         };
+        if name == "delay_samples" {
+            // A sum, and the magnet's part of it may not be in the file.
+            let message = format!(
+                "makes {} samples with magnet.delay_samples; the supervisor makes up for 7 at most",
+                nominal.delay_samples
+            );
+            let help = "shorten one of them, set delay_samples in [supervisor], or drop the policy";
+            return text.error_at_key("sensor.delay_samples", message, Some(help.to_owned()));
+        }
         let message = format!("the supervisor derives {e} from this");
         let help = format!("correct {source}, set {name} in [supervisor], or drop the policy");
         text.error_at_key(source, message, Some(help))

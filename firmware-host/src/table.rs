@@ -5,6 +5,7 @@ use crate::supervision::{Account, Supervision};
 use crate::verdict::{Check, Outcome, PolicyRun, Verdict, Verification};
 use comfy_table::{Cell, CellAlignment, LineStyle, Row, Table, TableStyle};
 use std::fmt::Display;
+use supervisor::PARAMETERS;
 
 /// A row of the table: name with unit, and the value as text.
 type Figure<T> = (&'static str, fn(&T) -> String);
@@ -191,6 +192,9 @@ pub fn json(scene: &Scene, runs: &[PolicyRun]) -> serde_json::Value {
             (run.name.clone(), figures)
         })
         .collect();
+    let told: serde_json::Map<String, serde_json::Value> = (scene.overrides.iter())
+        .map(|(index, value)| (PARAMETERS[*index].name.to_owned(), (*value).into()))
+        .collect();
     serde_json::json!({
         "scene": scene.title,
         "duration_s": scene.duration_s,
@@ -198,6 +202,8 @@ pub fn json(scene: &Scene, runs: &[PolicyRun]) -> serde_json::Value {
         "seed": scene.seed,
         "rtol": scene.rtol,
         "whirl_speed_m_s": scene.whirl_speed_m_s,
+        "warnings": scene.warnings,
+        "supervisor_told": told,
         "policies": policies,
     })
 }

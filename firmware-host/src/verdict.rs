@@ -147,6 +147,8 @@ pub struct SceneSummary {
     pub whirl_speed_m_s: f64,
     /// What was simulated, in words: name and value.
     pub facts: Vec<(&'static str, String)>,
+    /// What the scene says and hardly means.
+    pub warnings: Vec<String>,
     /// What happens to the rotor, its magnet or its sensor.
     pub disturbances: Vec<Disturbed>,
     /// Duration of the run \[s\].

@@ -18,7 +18,6 @@ pub(crate) mod series_step;
 pub(crate) mod transitions;
 
 use crate::params::ContactLaw;
-use crate::part::Body;
 
 /// λ·v from which the stiff method is taken with Hunt and Crossley's law. Measured on impacts sampled at
 /// 20 kHz the explicit pair is two to five times faster up to here; at 3e6 it runs out of steps.
@@ -51,8 +50,16 @@ impl Method {
     /// ζ = 100 and k_c = 1e10 N/m. Where contact springs back it has no such advantage.
     ///
     /// Hunt and Crossley's law goes by λ·v with v the speed at the start: the rotor creeps out at 1/λ, over
-    /// about (n + 1)·λ·v of the damper's time constants.
-    pub(crate) fn resolved(self, law: &ContactLaw, start: &Body, mobility: f64, rtol: f64) -> Self {
+    /// about (n + 1)·λ·v of the damper's time constants. A rotor that touches at the start slides, rolls or rests there
+    /// for long, where the explicit pair has to follow a contact that does not move: in whirl it takes some
+    /// three hundred times as many steps.
+    pub(crate) fn resolved(
+        self,
+        law: &ContactLaw,
+        (speed_m_s, touching): (f64, bool),
+        mobility: f64,
+        rtol: f64,
+    ) -> Self {
         if self != Self::Auto {
             return self;
         }
@@ -63,7 +70,7 @@ impl Method {
                 ratio > 2.0 && rate_s > if rtol < 1e-10 { 1e6 } else { 2.5e5 }
             }
             ContactLaw::HuntCrossley(law) => {
-                law.damping_s_m * start.velocity.norm() > OVERDAMPED_IMPACT
+                touching || law.damping_s_m * speed_m_s > OVERDAMPED_IMPACT
             }
         };
         match (worth, law) {

@@ -267,3 +267,49 @@ fn no_run_is_silently_wrong() {
     assert!(wrong[2..].iter().all(|w| *w == 0), "{wrong:?}");
     assert!(left_out <= 2, "{left_out} left out");
 }
+
+/// A rotor that starts in whirl slides on for long: `auto` takes the method for that, and ends where the explicit
+/// pair ends with some hundred times the steps.
+#[test]
+fn a_whirl_on_the_wall_gets_the_stiff_method() {
+    let law = HuntCrossley {
+        stiffness_n_mn: 1e13,
+        exponent: 1.5,
+        damping_s_m: damping_for_restitution(0.7, 0.3).unwrap(),
+    };
+    let mut params = plant(law);
+    params.friction.rolling_coefficient = 0.0;
+    let clearance_m = params.contact.clearance_m;
+    let start = Start {
+        position_m: V2::new(clearance_m * 1.001, 0.0),
+        velocity_m_s: V2::new(0.0, -1.0),
+        ..bouncing_start()
+    };
+    let run = |method: Method, rtol: f64| {
+        let options = Options {
+            rtol,
+            method,
+            ..Options::default()
+        };
+        let mut plant = build(&params, &start, options).unwrap();
+        let end = plant.advance(0.2, &Inputs::default(), &mut |_| {});
+        end.unwrap();
+        assert!(plant.snapshot().mode.in_contact(), "{:?}", plant.snapshot());
+        (plant.snapshot().position_m, plant.work())
+    };
+    let (auto, few) = run(Method::Auto, 1e-9);
+    let (stiff, same) = run(Method::Stiff, 1e-9);
+    let (explicit, many) = run(Method::Explicit, 1e-9);
+    println!(
+        "{few:?}\n{many:?}, {:e}",
+        (auto - explicit).norm() / clearance_m
+    );
+    assert_eq!((auto, few), (stiff, same));
+    assert!((auto - explicit).norm() < 1e-4 * clearance_m);
+    assert!(
+        many.steps > 20 * few.steps,
+        "{} and {}",
+        many.steps,
+        few.steps
+    );
+}

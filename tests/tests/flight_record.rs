@@ -137,6 +137,7 @@ fn what_is_no_record_is_refused() {
     };
     refused(&bytes[..1000], &[], "1000 bytes");
     refused(&[], &[], "0 bytes");
+    refused(&[0; 16 * 64], &[], "none of its 64 entries");
     let mut damaged = bytes.clone();
     damaged[16 * 3 + 12] = 7;
     refused(&damaged, &[], "entry 3");

@@ -111,7 +111,7 @@ pub fn execute(args: &AccuracyArgs) -> Result<(), CommandError> {
     }
     let json = pretty(&found, "formatting accuracy.json")?;
     if let Some(out) = &args.out {
-        let staging = Staging::beside(out)?;
+        let staging = Staging::for_folder(out)?;
         let svg = show::figure(&found)?;
         staging.write("accuracy.json", &json)?;
         staging.write("accuracy.svg", svg)?;

@@ -30,7 +30,7 @@ macro_rules! numbers {
         #[command(next_help_heading = "Numbers instead of a scene")]
         struct NumberArgs {
             $($(#[doc = $doc])*
-            #[arg(long, conflicts_with = "scene", allow_negative_numbers = true, value_name = "NUMBER")]
+            #[arg(long, conflicts_with = "scene", allow_hyphen_values = true, value_name = "NUMBER")]
             $name: Option<$ty>,)*
         }
 
@@ -131,16 +131,30 @@ impl Numbers {
             })
         };
         let mass_kg = needed("mass_kg", self.mass_kg)?;
+        let clearance_m = needed("clearance_m", self.clearance_m)?;
+        let contact_mass_kg = self.contact_mass_kg.unwrap_or(mass_kg);
+        if contact_mass_kg > mass_kg {
+            let is = format!("is {contact_mass_kg}");
+            let expected = "at most the rotor's mass: a reduced mass is smaller than both";
+            return Err(refused("contact_mass_kg", &is, expected));
+        }
+        if let Some(offset_m) = self.centre_offset_m
+            && offset_m >= clearance_m
+        {
+            let is = format!("is {offset_m}");
+            let expected = "a length below --clearance-m, so that the rotor can be levitated";
+            return Err(refused("centre_offset_m", &is, expected));
+        }
         Ok(Nominal {
             mass_kg,
-            clearance_m: needed("clearance_m", self.clearance_m)?,
+            clearance_m,
             friction_coefficient: needed("friction", self.friction)?,
             stiffness_n_m: needed("stiffness_n_m", self.stiffness_n_m)?,
             contact_stiffness_n_m: needed("contact_stiffness_n_m", self.contact_stiffness_n_m)?,
             force_max_n: needed("force_max_n", self.force_max_n)?,
             sample_rate_hz: needed("sample_rate_hz", self.sample_rate_hz)?,
             restitution: self.restitution,
-            contact_mass_kg: self.contact_mass_kg.unwrap_or(mass_kg),
+            contact_mass_kg,
             axis_force_max_n: self.axis_force_max_n,
             slew_n_s: self.slew_n_s,
             damping_n_s_m: self.damping_n_s_m.unwrap_or_default(),

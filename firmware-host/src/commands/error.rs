@@ -3,6 +3,7 @@
 use crate::closed_loop::RunError;
 use crate::output::OutputError;
 use crate::scene_error::SceneError;
+use crate::target::images::ImageError;
 use crate::target::measure::TargetError;
 use serde::Serialize;
 use std::io::Write;
@@ -92,7 +93,10 @@ impl CommandError {
     /// Exit code: 2 for what the user gave, 1 for the rest.
     pub fn exit_code(&self) -> u8 {
         match self {
-            Self::Scene(_) | Self::Output(_) | Self::Numbers { .. } => 2,
+            Self::Scene(_)
+            | Self::Output(_)
+            | Self::Numbers { .. }
+            | Self::Target(TargetError::Image(ImageError::NoProject(_))) => 2,
             Self::Run(_)
             | Self::Contradicted(_)
             | Self::Target(_)

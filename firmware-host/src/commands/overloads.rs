@@ -70,7 +70,7 @@ pub fn execute(args: &OverloadsArgs) -> Result<(), CommandError> {
     // A hundred thousand runs: not indented.
     let json = serde_json::to_string(&catalogue)
         .map_err(|e| CommandError::other("formatting overloads.json", e))?;
-    let staging = Staging::beside(&args.out)?;
+    let staging = Staging::for_folder(&args.out)?;
     let mut files = vec![
         ("overloads.json".to_owned(), json.clone()),
         ("overloads.md".to_owned(), page::summary(&catalogue, extent)),
@@ -100,7 +100,7 @@ fn search_anew(args: &OverloadsArgs) -> Result<(), CommandError> {
         .map_err(failed)?;
     progress.finish();
     let json = pretty(&rows, "formatting found.json")?;
-    let staging = Staging::beside(&args.out)?;
+    let staging = Staging::for_folder(&args.out)?;
     staging.write("found.json", format!("{json}\n"))?;
     let out = staging.publish()?;
     print(&format!("found: {}\n", out.join("found.json").display()))
@@ -114,7 +114,7 @@ fn against_histories(args: &OverloadsArgs) -> Result<(), CommandError> {
     progress.finish();
     let json = serde_json::to_string(&rows)
         .map_err(|e| CommandError::other("formatting histories.json", e))?;
-    let staging = Staging::beside(&args.out)?;
+    let staging = Staging::for_folder(&args.out)?;
     staging.write("histories.json", format!("{json}\n"))?;
     let out = staging.publish()?;
     let mut table = lined([

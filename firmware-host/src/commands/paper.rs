@@ -48,7 +48,7 @@ pub fn execute(args: &PaperArgs) -> Result<(), CommandError> {
     progress.finish();
     let rows = pretty(&json(&chapters), "formatting paper.json")? + "\n";
     let page = html(&chapters).map_err(|e| CommandError::other("drawing paper.html", e))?;
-    let staging = Staging::beside(&args.out)?;
+    let staging = Staging::for_folder(&args.out)?;
     for (name, content) in [("paper.json", &rows), ("paper.html", &page)] {
         staging.write(name, content)?;
     }

@@ -51,6 +51,14 @@ pub fn execute(args: &RecordArgs) -> Result<(), CommandError> {
             .to_owned(),
     })?;
     let record = FlightRecord::of(&entries, units);
+    if record.ticks.is_empty() {
+        return Err(CommandError::Numbers {
+            message: format!("{name}: none of its {} entries was ever written", entries.len()),
+            help: "read the entries of a record that has frozen: memory of another place, or a supervisor that has \
+                   not engaged, is all zeros"
+                .to_owned(),
+        });
+    }
     if let Some(expected) = expected
         && expected != record.crc
     {

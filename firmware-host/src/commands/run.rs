@@ -48,7 +48,7 @@ pub fn execute(args: &RunArgs) -> Result<(), CommandError> {
     let runs = run_all(&scene, args)?;
     let verdicts = table::json(&scene, &runs);
     let verdicts = pretty(&verdicts, "formatting verdict.json")? + "\n";
-    let staging = Staging::beside(&out)?;
+    let staging = Staging::for_folder(&out)?;
     write_results(&staging, &scene, &runs, &verdicts)?;
     let out = staging.publish_over(of_a_policy)?;
     let text = if args.json {

@@ -1,7 +1,7 @@
 //! The catalogue as a page in Markdown, for people and for the documentation.
 
 use super::plan::{Catalogue, Extent};
-use super::promises::{Harm, Promise};
+use super::promises::{Harm, Promise, force_ratios, lost_beyond_chance, percentile};
 use super::results::{Metrics, ResultRow};
 use super::seats::Seat;
 use super::sweeps::{SweepRow, median, median_of};
@@ -55,12 +55,13 @@ pub fn summary(catalogue: &Catalogue, extent: Extent) -> String {
         line(&mut page, &sweep_row(row));
     }
     line(&mut page, "\n## Against levitation alone\n");
+    push_groups(&mut page, &catalogue.against_levitation);
     let (told, same): (Vec<&Harm>, Vec<&Harm>) =
         (catalogue.against_levitation.iter()).partition(|h| is_worth_telling(h));
     line(
         &mut page,
         &format!(
-            "Largest contact force of the supervisor over that of its own inner loop alone, seed by seed; 1 where neither touches. Recovered: seeds with and without the supervisor. Of {} places and scenes these are the ones where the supervisor recovers from more or fewer, or where the force is more than 2 % higher; in the other {} it recovers from as many and the force is the same or lower. All of them are in `overloads.json` and on the pages of the scenes.\n",
+            "\nRecovered: seeds with and without the supervisor. Of {} places and scenes these are the ones where the supervisor recovers from more or fewer, or where the force is more than 2 % higher; in the other {} it recovers from as many and the force is the same or lower. All of them are in `overloads.json` and on the pages of the scenes.\n",
             told.len() + same.len(),
             same.len()
         ),
@@ -84,6 +85,40 @@ pub fn summary(catalogue: &Catalogue, extent: Extent) -> String {
         );
     }
     page
+}
+
+/// All of them in one line for each group of scenes.
+fn push_groups(page: &mut String, harms: &[Harm]) {
+    line(
+        page,
+        "Largest contact force of the supervisor over that of its own inner loop alone, seed by seed; 1 where neither touches. Each place and scene has the median over its seeds; here are the median and the 95th percentile of these in each group, and in how many the supervisor recovers from fewer seeds, beyond chance, and from more.\n",
+    );
+    line(
+        page,
+        "| group | scenes and places | median | 95 % | above 1.1 | fewer recovered | beyond chance | more |\n| --- | --- | --- | --- | --- | --- | --- | --- |",
+    );
+    let mut groups: BTreeMap<&str, Vec<&Harm>> = BTreeMap::new();
+    for harm in harms {
+        groups.entry(harm.group).or_default().push(harm);
+    }
+    let all = ("all", harms.iter().collect());
+    for (group, harms) in groups.into_iter().chain([all]) {
+        let ratios = force_ratios(harms.iter().copied());
+        let count = |is: fn(&Harm) -> bool| harms.iter().filter(|h| is(h)).count();
+        line(
+            page,
+            &format!(
+                "| {group} | {} | {:.3} | {:.3} | {} | {} | {} | {} |",
+                harms.len(),
+                percentile(&ratios, 0.5),
+                percentile(&ratios, 0.95),
+                ratios.iter().filter(|r| **r > 1.1).count(),
+                count(|h| h.recovered < h.recovered_alone),
+                count(lost_beyond_chance),
+                count(|h| h.recovered > h.recovered_alone),
+            ),
+        );
+    }
 }
 
 fn is_worth_telling(harm: &Harm) -> bool {

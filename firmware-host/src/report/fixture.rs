@@ -18,6 +18,7 @@ pub(super) fn scene() -> SceneSummary {
         force_max_n: Some(500.0),
         whirl_speed_m_s: 1.0,
         facts: vec![("Mass", "10 kg".to_owned())],
+        warnings: vec!["a <slip>".to_owned()],
         disturbances: Vec::new(),
         duration_s: 0.4,
     }

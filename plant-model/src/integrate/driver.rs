@@ -67,8 +67,10 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
         mut options: Options,
     ) -> Self {
         let mobility = 1.0 / system.rotor.mass_kg + system.stator.inverse_mass();
+        let touching = system.geometry(&y).penetration_m > 0.0;
+        let start = (y.rotor.velocity.norm(), touching);
         options.method =
-            (options.method).resolved(&system.contact.law, &y.rotor, mobility, options.rtol);
+            (options.method).resolved(&system.contact.law, start, mobility, options.rtol);
         if S::OUT_OF_ROUND && options.method == Method::Series {
             options.method = Method::Explicit;
         }

@@ -394,6 +394,14 @@ fn bad_numbers_end_with_code_2_and_say_what_is_wrong() {
             "--mass-kg is -1, expected a finite number greater than 0",
         ),
         (with(&["--mass-kg=nan"]), "--mass-kg is NaN"),
+        (
+            with(&["--centre-offset-m=1"]),
+            "--centre-offset-m is 1, expected a length below --clearance-m",
+        ),
+        (
+            with(&["--contact-mass-kg=1e3"]),
+            "--contact-mass-kg is 1000, expected at most the rotor's mass",
+        ),
         (with(&["--clearance-m=0"]), "--clearance-m is 0"),
         (with(&["--friction=-0.1"]), "--friction is -0.1"),
         (with(&["--restitution=1.1"]), "--restitution is 1.1"),

@@ -154,7 +154,7 @@ fn bad_scenes_are_refused_with_file_line_key_and_expectation() {
             "duration_s = 0.03",
             "duration_s = 1e5",
             "run.duration_s",
-            "20 million",
+            "10 million",
         ),
         (
             "force_n = [1300.0, 750.0]",
@@ -211,6 +211,7 @@ fn bad_scenes_are_refused_with_file_line_key_and_expectation() {
             "did you mean",
         ),
         ("title = ", "title = = ", "title", ""),
+        ("title = \"", "title = \"\\n", "title", "a name in one line"),
         ("[contact]", "[contract]", "contract", "expected one of"),
     ];
     let folder = TempDir::new().unwrap();
@@ -308,6 +309,15 @@ fn missing_scenes_and_unwritable_folders_are_refused() {
     assert_eq!(result.status.code(), Some(2));
     assert!(String::from_utf8_lossy(&result.stderr).contains("no_such_scene.toml"));
 
+    // One byte of another encoding.
+    let scene = folder.path().join("latin.toml");
+    fs::write(&scene, b"# a\ntitle = \"St\xf6rung\"\n").unwrap();
+    let result = run_scene(&scene, &folder.path().join("out"), &[]);
+    let error = String::from_utf8_lossy(&result.stderr).into_owned();
+    assert_eq!(result.status.code(), Some(2), "{error}");
+    assert!(error.contains("latin.toml:2: is no UTF-8 text"), "{error}");
+    fs::remove_file(&scene).unwrap();
+
     // A file where a folder should be stops everyone, also the superuser.
     let scene = short_scene(folder.path(), |t| t);
     for out in [
@@ -388,6 +398,16 @@ fn slips_are_warned_of() {
         ),
         ("[sensor]", "[sensor]\nrange_m = 1.9e-4", "sensor.range_m"),
         (
+            "frequency_hz = 200.0",
+            "frequency_hz = 5001.0",
+            "spin.frequency_hz",
+        ),
+        (
+            "contact_radius_m = 0.05",
+            "contact_radius_m = 5.1",
+            "rotor.contact_radius_m",
+        ),
+        (
             "[run]",
             "[supervisor]\nmass_kg = 10.6\n[run]",
             "supervisor.mass_kg",
@@ -411,6 +431,24 @@ fn slips_are_warned_of() {
             warning.contains(key) && warning.contains("short.toml:"),
             "{warning}"
         );
+    }
+    // A supervisor would refuse such a sensor. The folder keeps what was said on the screen.
+    let scene = short_scene(folder.path(), |t| {
+        t.replace(", \"supervisor\"]", "]")
+            .replace("noise_rms_m = 1e-6", "noise_rms_m = 2.1e-4")
+            .replace("quantum_m = 1e-7", "quantum_m = 2.1e-4")
+    });
+    let out = folder.path().join("blind");
+    let said = String::from_utf8(run_scene(&scene, &out, &[]).stderr).unwrap();
+    let verdict = fs::read_to_string(out.join("verdict.json")).unwrap();
+    let report = fs::read_to_string(out.join("report.html")).unwrap();
+    for key in [
+        "sensor.noise_rms_m: is larger",
+        "sensor.quantum_m: is larger",
+    ] {
+        for text in [&said, &verdict, &report] {
+            assert!(text.contains(key), "{key}: {said}");
+        }
     }
     for (from, to) in [
         ("[run]", "[start]\nposition_m = [2.1e-4, 0.0]\n[run]"),

@@ -130,8 +130,8 @@ fn bad_keys_are_named() {
         (
             "range_m = 5e-4",
             "delay_samples = 7".into(),
-            "magnet.delay_samples",
-            "the supervisor derives",
+            "sensor.delay_samples",
+            "makes 9 samples with magnet.delay_samples",
         ),
         (
             "[levitation]",
