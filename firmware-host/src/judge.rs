@@ -116,7 +116,8 @@ impl Judge {
             peak_friction_torque_n_m: meters.peak_friction_torque_n_m,
             spin_lost_hz: (self.first_spin.unwrap_or(0.0) - last.spin_rad_s) / TAU,
             peak_backward_speed_m_s: meters.peak_backward_speed_m_s,
-            max_backward_whirl_hz: self.whirl.fastest().map(|w| w.backward_hz),
+            // A rotor at rest on the wall goes round at 0, not at −0.
+            max_backward_whirl_hz: self.whirl.fastest().map(|w| w.backward_hz + 0.0),
             relevitation_time_s: match outcome {
                 Outcome::Recovered => self.back_since_s.map(|t| t - self.clock_starts_s),
                 _ => None,

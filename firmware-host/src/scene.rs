@@ -11,7 +11,7 @@ use crate::scene_file::{MethodFile, SceneFile};
 use crate::scene_instruments::{
     amplifier_of, centre_offset_of, damping_of, levitation_of, sensor_of, spin_sensor_of,
 };
-use crate::scene_warnings::warnings_of;
+use crate::scene_warnings::{slips_of, warnings_of};
 use crate::suggest::Nominal;
 use crate::supervisor_setup;
 use plant_model::analysis::onset::lift_off_speed_m_s;
@@ -195,7 +195,8 @@ impl Scene {
     }
 
     fn from_text(text: &SceneText) -> Result<Self, SceneError> {
-        Self::from_file(&keys_of(text)?, text)
+        let file = keys_of(text)?;
+        Self::from_file(&file, text).map_err(|error| error.beside(&slips_of(&file, text)))
     }
 
     fn from_file(file: &SceneFile, text: &SceneText) -> Result<Self, SceneError> {

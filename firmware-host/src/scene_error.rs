@@ -50,6 +50,20 @@ pub enum SceneError {
     },
 }
 
+impl SceneError {
+    /// With doubts about other keys, one of which may be the reason.
+    pub(crate) fn beside(mut self, slips: &[String]) -> Self {
+        if let (Self::Content { help, .. }, false) = (&mut self, slips.is_empty()) {
+            let doubts = format!("or look here first: {}", slips.join("; "));
+            *help = Some(match help.take() {
+                Some(help) => format!("{help}\n{doubts}"),
+                None => doubts,
+            });
+        }
+        self
+    }
+}
+
 /// A scene file's text, able to point into itself.
 #[derive(Debug, Clone)]
 pub(crate) struct SceneText {

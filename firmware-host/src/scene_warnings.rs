@@ -54,6 +54,35 @@ pub(crate) fn warnings_of(
         );
         warnings.push(warning("start.velocity_m_s", message));
     }
+    warnings.extend(slips_of(file, text));
+    if !overrides.is_empty() {
+        warnings.extend(of_another_machine(text, nominal, overrides));
+    }
+    let Some(config) = config else {
+        return warnings;
+    };
+    let rate = file.run.sample_rate_hz;
+    if !SUPERVISED_RATES_HZ.contains(&rate) {
+        let message = format!("is {rate}; the supervisor is made for 10 to 50 kHz");
+        warnings.push(warning("run.sample_rate_hz", message));
+    }
+    if let Some(needed) = nominal.contact_band_needed()
+        && needed > f64::from(config.contact_band)
+    {
+        let message = format!(
+            "is so far that the supervisor may not see a touch: its contact_band is {}, and should be {needed:.2}",
+            config.contact_band
+        );
+        warnings.push(warning("retainer.centre_offset_m", message));
+    }
+    warnings
+}
+
+/// Values that one look at them makes doubtful: also of a scene that is refused, for that may be why.
+pub(crate) fn slips_of(file: &SceneFile, text: &SceneText) -> Vec<String> {
+    let warning = |key: &str, message: String| text.error_at_key(key, message, None).to_string();
+    let clearance_m = file.contact.clearance_m;
+    let mut warnings = Vec::new();
     if file.rotor.eccentricity_m > clearance_m {
         let message = "is larger than the clearance; lengths are in metres".to_owned();
         warnings.push(warning("rotor.eccentricity_m", message));
@@ -85,26 +114,6 @@ pub(crate) fn warnings_of(
     {
         let message = "is smaller than the clearance: no policy can see a contact".to_owned();
         warnings.push(warning("sensor.range_m", message));
-    }
-    if !overrides.is_empty() {
-        warnings.extend(of_another_machine(text, nominal, overrides));
-    }
-    let Some(config) = config else {
-        return warnings;
-    };
-    let rate = file.run.sample_rate_hz;
-    if !SUPERVISED_RATES_HZ.contains(&rate) {
-        let message = format!("is {rate}; the supervisor is made for 10 to 50 kHz");
-        warnings.push(warning("run.sample_rate_hz", message));
-    }
-    if let Some(needed) = nominal.contact_band_needed()
-        && needed > f64::from(config.contact_band)
-    {
-        let message = format!(
-            "is so far that the supervisor may not see a touch: its contact_band is {}, and should be {needed:.2}",
-            config.contact_band
-        );
-        warnings.push(warning("retainer.centre_offset_m", message));
     }
     warnings
 }

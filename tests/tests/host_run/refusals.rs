@@ -432,6 +432,12 @@ fn slips_are_warned_of() {
             "{warning}"
         );
     }
+    // Refused at another key: the slip is told beside it.
+    let said = warned("clearance_m = 2e-4", "clearance_m = 0.2");
+    assert!(
+        said.contains("look here first") && said.contains("contact.clearance_m: is larger"),
+        "{said}"
+    );
     // A supervisor would refuse such a sensor. The folder keeps what was said on the screen.
     let scene = short_scene(folder.path(), |t| {
         t.replace(", \"supervisor\"]", "]")
