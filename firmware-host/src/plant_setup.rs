@@ -17,6 +17,10 @@ pub(crate) fn plant_of(file: &SceneFile, text: &SceneText) -> Result<PlantParams
         .magnet
         .as_ref()
         .map_or(0.0, |m| m.negative_stiffness_n_m);
+    if negative < 0.0 {
+        let expected = "its size, 0 or greater: that it is negative is in the name";
+        return Err(check.refused("magnet.negative_stiffness_n_m", negative, expected));
+    }
     check.within("magnet.negative_stiffness_n_m", negative, 0.0, 1e12)?;
     let mut plant = PlantParams {
         rotor: rotor_of(&file.rotor, negative, &check)?,

@@ -128,10 +128,7 @@ impl SceneText {
                 "is one table where there may be several: write its name in double brackets, [[…]]",
             ),
             ("expected a string", "expected a text in quotes"),
-            (
-                "expected a sequence",
-                "expected a list in square brackets, [x, y]",
-            ),
+            ("expected a sequence", "expected a list in square brackets"),
             ("integer `", "the number `"),
             ("floating point `", "the number `"),
             ("` as i128", "`, which is too far from 0"),
@@ -154,6 +151,10 @@ impl SceneText {
                 message = format!("{}: {message}", key.trim());
             }
             help = written_otherwise(value);
+            // All lists of numbers are pairs.
+            if message.ends_with("a list in square brackets") && key.trim() != "policies" {
+                help = Some("give x and y, [x, y]".to_owned());
+            }
         }
         let help = guess_from(&message).or(help);
         self.error_at(range, message, help)

@@ -158,6 +158,18 @@ fn bad_scenes_are_refused_with_file_line_key_and_expectation() {
         ),
         (
             "force_n = [1300.0, 750.0]",
+            "force_n = 1500.0",
+            "force_n",
+            "give x and y",
+        ),
+        (
+            "negative_stiffness_n_m = 2e5",
+            "negative_stiffness_n_m = -2e5",
+            "magnet.negative_stiffness_n_m",
+            "that it is negative is in the name",
+        ),
+        (
+            "force_n = [1300.0, 750.0]",
             "force_n = [1300.0, inf]",
             "disturbance[0].force_n",
             "a number from",
