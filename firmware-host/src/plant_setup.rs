@@ -17,11 +17,10 @@ pub(crate) fn plant_of(file: &SceneFile, text: &SceneText) -> Result<PlantParams
         .magnet
         .as_ref()
         .map_or(0.0, |m| m.negative_stiffness_n_m);
-    if negative < 0.0 {
-        let expected = "its size, 0 or greater: that it is negative is in the name";
+    if !(0.0..=1e12).contains(&negative) {
+        let expected = "a number from 0 to 1e12: that it is negative is in the name";
         return Err(check.refused("magnet.negative_stiffness_n_m", negative, expected));
     }
-    check.within("magnet.negative_stiffness_n_m", negative, 0.0, 1e12)?;
     let mut plant = PlantParams {
         rotor: rotor_of(&file.rotor, negative, &check)?,
         spin: match (file.spin.inertia_kg_m2, file.spin.drive_torque_n_m) {

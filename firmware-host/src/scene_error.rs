@@ -174,6 +174,11 @@ impl SceneText {
         )
     }
 
+    /// What such an error would say on its one line.
+    pub(crate) fn warning(&self, key: &str, message: String) -> String {
+        self.error_at_key(key, message, None).to_string()
+    }
+
     fn find(&self, key: &str) -> Option<std::ops::Range<usize>> {
         use toml::de::{DeTable, DeValue};
         let document = DeTable::parse(&self.text).ok()?;

@@ -36,7 +36,7 @@ pub(crate) fn warnings_of(
     (plant, nominal): (&PlantParams, &Nominal),
     (overrides, config): (&[Override], Option<&Config>),
 ) -> Vec<String> {
-    let warning = |key: &str, message: String| text.error_at_key(key, message, None).to_string();
+    let warning = |key: &str, message| text.warning(key, message);
     let clearance_m = plant.contact.clearance_m;
     let mut warnings = Vec::new();
     let [x, y] = file.start.position_m.0;
@@ -80,7 +80,7 @@ pub(crate) fn warnings_of(
 
 /// Values that one look at them makes doubtful: also of a scene that is refused, for that may be why.
 pub(crate) fn slips_of(file: &SceneFile, text: &SceneText) -> Vec<String> {
-    let warning = |key: &str, message: String| text.error_at_key(key, message, None).to_string();
+    let warning = |key: &str, message| text.warning(key, message);
     let clearance_m = file.contact.clearance_m;
     let mut warnings = Vec::new();
     if file.rotor.eccentricity_m > clearance_m {
@@ -130,7 +130,7 @@ fn of_another_machine(text: &SceneText, nominal: &Nominal, overrides: &[Override
                 "is {given}, and the scene's own data say {value}; a table from another scene?"
             );
             let key = format!("supervisor.{name}");
-            text.error_at_key(&key, message, None).to_string()
+            text.warning(&key, message)
         })
     };
     overrides.iter().filter_map(warning).collect()

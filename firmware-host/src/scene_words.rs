@@ -2,11 +2,11 @@
 
 use crate::plot::text::figures;
 use crate::scene::{Axis, Delivers, Fault, FaultKind, Outage, Scene, Shape, TimedChange};
+use crate::supervisor_setup::named;
 use crate::verdict::{Disturbed, SceneSummary};
 use plant_model::V2;
 use plant_model::params::{SlidingFriction, SpinParams, StatorParams};
 use std::f64::consts::TAU;
-use supervisor::PARAMETERS;
 
 /// What a report needs to know of a scene.
 pub(crate) fn summary(scene: &Scene) -> SceneSummary {
@@ -83,8 +83,9 @@ fn facts(scene: &Scene) -> Vec<(&'static str, String)> {
         ));
     }
     if !scene.overrides.is_empty() {
-        let told = |(index, value): &(usize, f32)| format!("{} {value}", PARAMETERS[*index].name);
-        let told: Vec<String> = scene.overrides.iter().map(told).collect();
+        let told: Vec<String> = named(&scene.overrides)
+            .map(|(name, value)| format!("{name} {value}"))
+            .collect();
         facts.push(("Set in [supervisor]", told.join(", ")));
     }
     facts.push((

@@ -58,6 +58,11 @@ pub(crate) fn key_of(field: &str) -> &'static str {
 /// A value of `[supervisor]`, by the place of its parameter in [`PARAMETERS`].
 pub type Override = (usize, f32);
 
+/// The names and values of overrides.
+pub(crate) fn named(overrides: &[Override]) -> impl Iterator<Item = (&'static str, f32)> {
+    (overrides.iter()).map(|(index, value)| (PARAMETERS[*index].name, *value))
+}
+
 /// A configuration with single values replaced.
 pub(crate) fn replaced(config: &Config, overrides: &[Override]) -> Config {
     let mut values = config.values();
@@ -116,8 +121,9 @@ pub(crate) fn config(
         if name == "delay_samples" {
             // A sum, and the magnet's part of it may not be in the file.
             let message = format!(
-                "makes {} samples with magnet.delay_samples; the supervisor makes up for 7 at most",
-                nominal.delay_samples
+                "makes {} samples with magnet.delay_samples; the supervisor makes up for {} at most",
+                nominal.delay_samples,
+                e.parameter().high
             );
             let help = "shorten one of them, set delay_samples in [supervisor], or drop the policy";
             return text.error_at_key("sensor.delay_samples", message, Some(help.to_owned()));

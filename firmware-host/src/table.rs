@@ -2,10 +2,10 @@
 
 use crate::scene::Scene;
 use crate::supervision::{Account, Supervision};
+use crate::supervisor_setup::named;
 use crate::verdict::{Check, Outcome, PolicyRun, Verdict, Verification};
 use comfy_table::{Cell, CellAlignment, LineStyle, Row, Table, TableStyle};
 use std::fmt::Display;
-use supervisor::PARAMETERS;
 
 /// A row of the table: name with unit, and the value as text.
 type Figure<T> = (&'static str, fn(&T) -> String);
@@ -192,8 +192,8 @@ pub fn json(scene: &Scene, runs: &[PolicyRun]) -> serde_json::Value {
             (run.name.clone(), figures)
         })
         .collect();
-    let told: serde_json::Map<String, serde_json::Value> = (scene.overrides.iter())
-        .map(|(index, value)| (PARAMETERS[*index].name.to_owned(), (*value).into()))
+    let told: serde_json::Map<String, serde_json::Value> = named(&scene.overrides)
+        .map(|(name, value)| (name.to_owned(), value.into()))
         .collect();
     serde_json::json!({
         "scene": scene.title,
