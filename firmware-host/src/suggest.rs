@@ -49,6 +49,8 @@ pub struct Nominal {
     pub noise_rms_m: f64,
     /// Step of the converter \[m\].
     pub quantum_m: f64,
+    /// Largest reading to either side, where it is known \[m\].
+    pub range_m: Option<f64>,
     /// Static load that the bearing carries, its weight as a rule \[N\].
     pub load_n: f64,
     /// How far the centre of the retainer bearing lies off that of the sensors \[m\].
@@ -180,6 +182,11 @@ pub fn suggested(n: &Nominal) -> Suggested {
     } else {
         "noise_rms_m"
     };
+    // Clear of the rail by more than its noise.
+    let position_limit = (n.range_m).map_or(20.0, |range_m| {
+        (0.95 * range_m / n.clearance_m).clamp(1.1, 20.0)
+    });
+    let limit_source = n.range_m.map(|_| "range_m");
     const QUICKEST: &str = "speed noise is at most 4 % of √(F·c/m)";
     suggested! {
         sample_period_s: period_s, Some("sample_rate_hz"), "inverse of the control rate";
@@ -198,7 +205,10 @@ pub fn suggested(n: &Nominal) -> Suggested {
         observer_pole_flight: flight, Some(step_source), format!("quickest from 0.5 to 0.97 whose {QUICKEST}");
         observer_pole_contact: contact, Some(step_source), format!("quickest from 0.2 to 0.97 whose {QUICKEST}");
         contact_band: (4.0 * (step_m / n.clearance_m)).max(0.01), Some(step_source), "4 times noise or step over clearance, at least 0.01";
-        position_limit: 20.0, None, "rule of thumb: no machine measures so far out, and whirl presses the wall beyond 1";
+        position_limit: position_limit, limit_source, match n.range_m {
+            Some(_) => "0.95 of the sensor's range over clearance, from 1.1 to 20: at the rail it measures nothing",
+            None => "the sensor's range is not known: no machine measures so far out",
+        };
         // Two half periods on the contact spring, but no less than a millisecond.
         whirl_time_s: (std::f64::consts::TAU / contact_rate).max(1e-3), Some("contact_stiffness_n_m"), "a period on the contact, 2π·√(m/k_c), at least 1 ms";
         hold_share: 0.8, None, "rule of thumb: gentle at first";

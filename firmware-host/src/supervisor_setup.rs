@@ -29,6 +29,7 @@ pub(crate) fn nominal_of(plant: &PlantParams, file: &SceneFile) -> Nominal {
         delay_samples: magnet.map_or(1, |m| m.delay_samples) + file.sensor.delay_samples,
         noise_rms_m: file.sensor.noise_rms_m,
         quantum_m: file.sensor.quantum_m,
+        range_m: file.sensor.range_m,
         load_n: plant.rotor.mass_kg * g_x.hypot(g_y),
         centre_offset_m: offset_x.hypot(offset_y),
     }
@@ -50,6 +51,7 @@ pub(crate) fn key_of(field: &str) -> &'static str {
         "delay_samples" => "magnet.delay_samples",
         "noise_rms_m" => "sensor.noise_rms_m",
         "quantum_m" => "sensor.quantum_m",
+        "range_m" => "sensor.range_m",
         // Stiffness and damping may be given in several ways.
         _ => "rotor",
     }

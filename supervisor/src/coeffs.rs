@@ -155,7 +155,7 @@ pub(crate) struct Coeffs<S: Scalar> {
     pub(crate) blend_step: S,
     /// Weight of the force lost per tick of a fault.
     pub(crate) fault_step: S,
-    pub(crate) fault_ticks: u32,
+    pub(crate) fault_ticks: u16,
     /// Cap of each axis \[caps\], at most 1.
     pub(crate) axis_cap: S,
     /// A hair less than the longest change of the command in a tick \[caps\], so that rounding keeps it.
@@ -354,7 +354,7 @@ impl<S: Scalar> Coeffs<S> {
             dwell_ticks: (config.handover_dwell_s / t) as u32,
             blend_step: s("hand-over blend", per_tick(config.handover_blend_s, t)),
             fault_step: s("fault blend", per_tick(config.fault_blend_s, t)),
-            fault_ticks: config.fault_ticks as u32,
+            fault_ticks: config.fault_ticks as u16,
             axis_cap: s("axis cap", min(config.axis_force_max_n / f, 1.0)),
             slew_step: s("slew limit", slew_step) * S::JUST_BELOW_ONE,
             continuous: (continuous < 1.0).then_some(s("continuous force", continuous)),

@@ -134,12 +134,12 @@ parameters! {
     observer_pole_flight, "1", 0.0 ..= 0.98, "Pole of the observer in flight: nearer to 1 smooths sensor noise more and follows later.";
     observer_pole_contact, "1", 0.0 ..= 0.98, "Pole of the observer in contact, where the model knows nothing of the contact force.";
     contact_band, "clearance", 0.001 ..= 0.3, "The rotor counts as touching within this band below the clearance; at least the retainer's offset and three times the sensor noise.";
-    position_limit, "clearance", 1.5 ..= 20.0, "A measured radius beyond this is refused as implausible.";
+    position_limit, "clearance", 1.1 ..= 20.0, "A measured radius beyond this is refused as implausible.";
     whirl_time_s, "s", 1e-5 ..= 0.1, "Contact that lasts this long is whirl or rest, not a bounce: some periods of the rotor on the contact stiffness.";
     hold_share, "1", 0.1 ..= 0.95, "Share of the cap that pushes inwards on the bearing: at most in an impact, and at first at rest, where it grows.";
     handover_dwell_s, "s", 0.0 ..= 1.0, "Contact must be avoidable for this long before hand-over begins.";
     handover_blend_s, "s", 0.0 ..= 1.0, "Time of the blend to the levitation controller.";
-    fault_blend_s, "s", 0.0 ..= 1.0, "Time in which the force goes to zero when the position cannot be trusted; of a levitated rotor no longer than handover_blend_s.";
+    fault_blend_s, "s", 0.0 ..= 1.0, "Time in which the force goes to zero when the position cannot be trusted; of a levitated rotor, or along one coordinate alone, no longer than handover_blend_s.";
     fault_ticks, "ticks", 2.0 ..= 10000.0, "Good samples in a row that end a sensor fault, and refused ones that make it; jumps, dropouts and a stuck sensor make it sooner.";
     axis_force_max_n, "N", 1e-3 ..= 1e7, "Force cap of each axis; none where it is at least force_max_n.";
     force_slew_n_s, "N/s", 1.0 ..= 1e12, "Fastest change of the commanded force, as the length of the vector.";

@@ -4,7 +4,8 @@
 //! observer may be slow and smooth. In contact it is blind for the contact force and must be quick.
 
 use crate::coeffs::{Coeffs, MAX_DELAY};
-use crate::reading::Actuator;
+use crate::drive::Drive;
+use crate::reading::{Actuator, Facts};
 use crate::scalar::Scalar;
 use crate::spin::Spin;
 use crate::unbalance::{Turn, Unbalance};
@@ -50,6 +51,7 @@ pub(crate) struct Observer<S> {
     has_run: bool,
     /// Delivered force at the last tick.
     delivered: Vec2<S>,
+    pub(crate) drive: Drive<S>,
     /// Commands of the last ticks, the newest at the slot of `newest`.
     commands: [Vec2<S>; MAX_DELAY],
     newest: u8,
@@ -139,11 +141,12 @@ impl<S: Scalar> Observer<S> {
         for tick in 0..missed {
             // Or the compiler writes it out four times.
             core::hint::black_box(tick);
-            let (delivered, mean) = lagging(self.delivered, self.due(coeffs), coeffs);
-            (self.delivered, sum) = (delivered, sum + mean);
+            let (modelled, mean) = lagging(self.drive.modelled, self.due(coeffs), coeffs);
+            (self.drive.modelled, sum) = (modelled, sum + mean);
             self.commanded(command);
         }
-        self.delivered = actuator.carried(self.delivered);
+        self.drive.modelled = actuator.carried(self.drive.modelled);
+        self.delivered = self.drive.modelled;
         let ticks = S::count(missed);
         let mean = actuator.carried(sum) * S::ONE.over(ticks);
         let turn = Turn::of(spin, ticks, coeffs);
@@ -154,13 +157,23 @@ impl<S: Scalar> Observer<S> {
     /// Force of the tick that ends now: delivered at its end (kept), and its mean (returned).
     #[inline]
     fn deliver(&mut self, actuator: Actuator<S>, coeffs: &Coeffs<S>) -> Vec2<S> {
-        let before = actuator.carried(self.delivered);
-        let (delivered, mean) = match actuator.applied() {
-            Some(now) => (now, now + (before - now) * coeffs.applied_weight),
-            None => lagging(before, actuator.carried(self.due(coeffs)), coeffs),
+        let due = actuator.carried(self.due(coeffs));
+        let modelled = actuator.carried(self.drive.modelled);
+        let (modelled, mean) = lagging(modelled, due, coeffs);
+        self.drive.modelled = modelled;
+        let before = core::mem::replace(&mut self.delivered, modelled);
+        let Some(now) = actuator.applied() else {
+            self.drive.unseen();
+            return mean;
         };
-        self.delivered = delivered;
-        mean
+        self.delivered = now;
+        if actuator.axes.contains(Facts::ON) {
+            self.drive.watch(now, (before, due), coeffs);
+        } else {
+            self.drive.modelled = now;
+            self.drive.unseen();
+        }
+        now + (actuator.carried(before) - now) * coeffs.applied_weight
     }
 
     /// The command that the actuator works on, which is as old as its delay.
@@ -219,6 +232,7 @@ impl<S: Scalar> Observer<S> {
         m.load_step = m.load_step * speed * tick;
         self.unbalance.rescale(speed);
         self.delivered = self.delivered * force;
+        self.drive.modelled = self.drive.modelled * force;
         for command in &mut self.commands {
             *command = *command * force;
         }

@@ -24,7 +24,9 @@ const MOST_APPLIED: f32 = 2.0;
 /// Refused samples since the last good one.
 #[derive(Debug, Clone, Copy, Default)]
 struct Refused {
-    all: u32,
+    all: u16,
+    /// Coordinates that were wrong.
+    bad: Facts,
     jumps: u8,
     dropouts: u8,
     stuck: u8,
@@ -43,11 +45,12 @@ pub(crate) struct Guard<S> {
     still: Still<S>,
     refused: Refused,
     /// Good samples in a row during a fault.
-    good: u32,
+    good: u16,
     faulty: bool,
-    /// Status of the next sample, and what it says, for which nothing is to be remembered but the sample:
-    /// see [`Guard::as_usual`].
-    usual: Option<(Status, Facts)>,
+    /// Status of the next sample, and what it says, for which nothing is to be remembered but the sample, see
+    /// [`Guard::as_usual`]; nothing where there is none. (Not in one `Option`, which has a word of its own.)
+    usual: Status,
+    usual_facts: Facts,
     /// There have been usual samples since `still` looked.
     still_is_old: bool,
     /// Why the last fault began.
@@ -64,13 +67,13 @@ impl<S: Scalar> Guard<S> {
     #[inline]
     pub(crate) fn judge(
         &mut self,
-        sample: &CoreSample<S>,
+        (sample, status): (&CoreSample<S>, Status),
         velocity: Vec2<S>,
         in_contact: bool,
         coeffs: &Coeffs<S>,
     ) -> Reading<S> {
-        let Some(mut facts) = self.as_usual(sample, coeffs) else {
-            return self.judge_in_full(sample, velocity, in_contact, coeffs);
+        let Some(mut facts) = self.as_usual(sample, status, coeffs) else {
+            return self.judge_in_full((sample, status), velocity, in_contact, coeffs);
         };
         if is_measured(sample) {
             facts |= Facts::MEASURED;
@@ -89,12 +92,19 @@ impl<S: Scalar> Guard<S> {
     /// Most samples follow the last good one by a small step in both coordinates, with the same status, and
     /// nothing is wrong: all that can be said of them, at a third of the cost.
     #[inline]
-    fn as_usual(&mut self, sample: &CoreSample<S>, coeffs: &Coeffs<S>) -> Option<Facts> {
-        let (status, facts) = self.usual?;
+    fn as_usual(
+        &mut self,
+        sample: &CoreSample<S>,
+        status: Status,
+        coeffs: &Coeffs<S>,
+    ) -> Option<Facts> {
+        if self.usual_facts.is_empty() {
+            return None;
+        }
         let (sequence, (last, _)) = (self.last_sequence.as_mut()?, self.last_good.as_mut()?);
         let position = Vec2::from_array(sample.position);
         let step = position - *last;
-        let usual = sample.status == status
+        let usual = status == self.usual
             && sample.sequence.wrapping_sub(*sequence) == 1
             && step.x != S::ZERO
             && step.y != S::ZERO
@@ -107,13 +117,13 @@ impl<S: Scalar> Guard<S> {
         *sequence = sample.sequence;
         *last = position;
         self.still_is_old = true;
-        Some(facts)
+        Some(self.usual_facts)
     }
 
     #[inline(never)]
     fn judge_in_full(
         &mut self,
-        sample: &CoreSample<S>,
+        (sample, status): (&CoreSample<S>, Status),
         velocity: Vec2<S>,
         in_contact: bool,
         coeffs: &Coeffs<S>,
@@ -123,7 +133,7 @@ impl<S: Scalar> Guard<S> {
             self.still.last = self.last_good.map(|(last, _)| last);
             self.still.way = Vec2::ZERO;
         }
-        let mut facts = facts_of(sample);
+        let mut facts = facts_of(sample, status);
         let (repeated, gap, mut events) = self.sequence(sample.sequence);
         let anew = gap > MAX_MISSED;
         let missed = if anew { 0 } else { gap };
@@ -159,9 +169,11 @@ impl<S: Scalar> Guard<S> {
         }
         if refusal == Refusal::None {
             facts |= Facts::USED;
+        } else {
+            self.refused.bad |= bad_coordinates(position, coeffs.position_limit);
         }
         if self.faulty {
-            facts |= Facts::FAULTY;
+            facts |= Facts::FAULTY | self.refused.bad;
         }
         let lost = facts & (Facts::X_LOST | Facts::Y_LOST);
         let before = core::mem::replace(&mut self.lost, lost);
@@ -172,8 +184,12 @@ impl<S: Scalar> Guard<S> {
             events |= Events::AXIS_BACK;
         }
         let kept = Facts::USED | Facts::ON | Facts::X_LOST | Facts::Y_LOST;
-        self.usual = (facts.contains(Facts::USED) && !self.faulty)
-            .then_some((sample.status - Status::LATE, facts & kept));
+        self.usual = status - Status::LATE;
+        self.usual_facts = if facts.contains(Facts::USED) && !self.faulty {
+            facts & kept
+        } else {
+            Facts::empty()
+        };
         Reading {
             facts,
             sample: position,
@@ -295,8 +311,19 @@ impl<S: Scalar> Guard<S> {
     }
 }
 
+/// Where one coordinate of a refused sample is no number or out of range, it is that one; of whatever else is wrong nobody
+/// knows where.
+#[inline]
+fn bad_coordinates<S: Scalar>(position: Vec2<S>, most: S) -> Facts {
+    match (position.x.size() <= most, position.y.size() <= most) {
+        (false, true) => Facts::X_BAD,
+        (true, false) => Facts::Y_BAD,
+        _ => Facts::BOTH_BAD,
+    }
+}
+
 /// What the status bits say.
-fn facts_of<S: Scalar>(sample: &CoreSample<S>) -> Facts {
+fn facts_of<S: Scalar>(sample: &CoreSample<S>, status: Status) -> Facts {
     let pairs = [
         (Status::BEARING_ON, Facts::ON),
         (Status::AXIS_X_LOST, Facts::X_LOST),
@@ -304,8 +331,8 @@ fn facts_of<S: Scalar>(sample: &CoreSample<S>) -> Facts {
         (Status::LATE, Facts::LATE),
     ];
     let mut facts = Facts::empty();
-    for (status, fact) in pairs {
-        if sample.status.contains(status) {
+    for (bit, fact) in pairs {
+        if status.contains(bit) {
             facts |= fact;
         }
     }

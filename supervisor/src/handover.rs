@@ -3,6 +3,7 @@
 
 use crate::coeffs::Coeffs;
 use crate::phase::{Phase, fault_step};
+use crate::reading::Facts;
 use crate::scalar::Scalar;
 use crate::signal::IntegratorHint;
 use crate::vec2::Vec2;
@@ -13,24 +14,38 @@ pub(crate) fn blend<S: Scalar>(
     phase: Phase<S>,
     own: Vec2<S>,
     levitation: Vec2<S>,
-    last: Vec2<S>,
+    (last, facts): (Vec2<S>, Facts),
     coeffs: &Coeffs<S>,
 ) -> Vec2<S> {
     match phase {
         Phase::Levitated => levitation,
         Phase::Handover { weight } => own * (S::ONE - weight) + levitation * weight,
-        // The last force already carries the last weight: their ratio makes the fall linear. Less than half
-        // a step is what rounding leaves of nothing.
         Phase::SensorFault { weight, bouncing } => {
-            let step = fault_step(bouncing, coeffs);
-            if weight + weight > step {
-                last * weight.over(weight + step)
-            } else {
-                Vec2::ZERO
-            }
+            faded((weight, bouncing), levitation, (last, facts), coeffs)
         }
         _ => own,
     }
+}
+
+/// In a fault of the sensor: the last force goes to zero along a coordinate that is bad; along the other, if there is one,
+/// the levitation controller acts.
+#[cold]
+#[inline(never)]
+fn faded<S: Scalar>(
+    (weight, bouncing): (S, bool),
+    levitation: Vec2<S>,
+    (last, facts): (Vec2<S>, Facts),
+    coeffs: &Coeffs<S>,
+) -> Vec2<S> {
+    // The last force already carries the last weight: their ratio makes the fall linear. Less than half
+    // a step is what rounding leaves of nothing.
+    let step = fault_step(bouncing, facts, coeffs);
+    let left = if weight + weight > step {
+        weight.over(weight + step)
+    } else {
+        S::ZERO
+    };
+    facts.sensed(levitation, last * left)
 }
 
 /// Whether the levitation controller would hold the rotor as well as the supervisor does.

@@ -61,7 +61,7 @@
 //! ```
 //!
 //! Files, each importing only from those above it: `scalar`, `product`, `q`, `math`, `vec2`, `signal`, `config`, `coeffs`,
-//! `spin`, `unbalance`, `reading`, `still`, `guard`, `estimate`, `detect`, `course`, `classify`, `phase`, `law`, `limit`, `handover`, `severity`,
+//! `spin`, `unbalance`, `reading`, `still`, `guard`, `drive`, `estimate`, `detect`, `course`, `classify`, `phase`, `law`, `limit`, `handover`, `severity`,
 //! `recorder`, `per_unit`, `supervisor`, `self_test`, `watch`, `log_format`.
 
 // Unconditional: under `cfg(test)` std's own methods would silently replace micromath's.
@@ -74,6 +74,7 @@ mod coeffs;
 mod config;
 mod course;
 mod detect;
+mod drive;
 mod estimate;
 mod guard;
 mod handover;

@@ -232,6 +232,13 @@ pub(crate) fn last_word<S: Scalar>(wanted: Vec2<S>, room: &Room<S>) -> (Vec2<S>,
     }
 }
 
+/// The command of the tick before, within what the caps are now.
+#[cold]
+#[inline(never)]
+pub(crate) fn kept<S: Scalar>(last: Vec2<S>, room: &Room<S>) -> (Vec2<S>, Limits) {
+    last_word(last, room)
+}
+
 #[cold]
 fn beyond_room<S: Scalar>(wanted: Vec2<S>, room: &Room<S>) -> (Vec2<S>, Limits) {
     if wanted.length_squared() < S::FAR_SQUARE {

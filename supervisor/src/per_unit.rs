@@ -125,7 +125,10 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
         let pinned = matches!(self.phase, Phase::Pinned { .. });
         let wall = self.detector.wall(pinned);
         let blind = wall != Wall::Nothing;
-        let reading = (self.guard).judge(sample, self.observer.velocity(), blind, coeffs);
+        // An axis that does not obey is as good as lost.
+        let status = sample.status | self.observer.drive.lost();
+        let velocity = self.observer.velocity();
+        let reading = (self.guard).judge((sample, status), velocity, blind, coeffs);
         self.refusal = reading.refusal;
         let spin = (reading.spin, sample.spin);
         if reading.is(Facts::UNUSUAL) {
@@ -164,16 +167,15 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
             coeffs,
         };
         let shadow = sample.status.contains(Status::SHADOW);
-        // A lost axis has no force to start from.
-        let last_force = actuator.carried(self.force);
-        let last = if shadow {
-            actuator.carried(self.own)
-        } else {
-            last_force
-        };
+        if actuator.axes.has_lost() {
+            // Such an axis has no force to start from; one that does not obey may have.
+            let known = actuator.axes.known(sample.status);
+            (self.force, self.own) = (known.carried(self.force), known.carried(self.own));
+        }
+        let last = if shadow { self.own } else { self.force };
         // Under impacts and in whirl nobody asks what the levitation controller wants.
         let holds = mode == Mode::Pinned || !found.touching;
-        let has_a_say = holds || mode == Mode::Levitated || shadow;
+        let has_a_say = holds || matches!(mode, Mode::Levitated | Mode::SensorFault) || shadow;
         let (levitation, levitation_limits) = if has_a_say {
             limit::levitation(Vec2::from_array(sample.levitation), &room)
         } else {
@@ -181,7 +183,13 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
         };
         let (target, bound) = if mode == Mode::Levitated {
             self.readiness = Readiness::default();
-            (levitation, levitation_limits)
+            if position.is_none() && reading.is(Facts::ON) && !shadow && reading.refusal.is_wrong()
+            {
+                // What the controller makes of such a sample does not go through.
+                limit::kept(last, &room)
+            } else {
+                (levitation, levitation_limits)
+            }
         } else {
             let (wanted, own_limits) = limit::allocate(&view.wanted(phase), &room);
             if holds {
@@ -190,18 +198,20 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
                 self.readiness
                     .compare(held, levitation, (found.normal, found.radius), coeffs);
             }
-            let blended = handover::blend(phase, wanted, levitation, self.own, coeffs);
+            let blended =
+                handover::blend(phase, wanted, levitation, (self.own, reading.facts), coeffs);
             let (target, bound) = limit::last_word(blended, &room);
             (target, own_limits | bound)
         };
         let (own, slew) = limit::slewed(target, last, coeffs);
         let mut limits = bound | slew;
         self.own = own;
-        self.force = own;
         let mut integrator = handover::integrator_hint(phase, calm, reading.is(Facts::ON));
         if shadow {
-            (self.force, _) = limit::slewed(levitation, last_force, coeffs);
+            (self.force, _) = limit::slewed(levitation, self.force, coeffs);
             integrator = IntegratorHint::Run;
+        } else {
+            self.force = own;
         }
         if position.is_none() {
             limits |= Limits::SAMPLE_REFUSED;

@@ -59,8 +59,7 @@ impl<S: Scalar> Phase<S> {
         coeffs: &Coeffs<S>,
     ) -> (Self, Events) {
         let next = if reading.is(Facts::ON) {
-            let faulty = reading.is(Facts::FAULTY);
-            self.follow(found, (calm, ready), class, faulty, coeffs)
+            self.follow(found, (calm, ready), class, reading.facts, coeffs)
         } else {
             Self::Levitated
         };
@@ -104,18 +103,18 @@ impl<S: Scalar> Phase<S> {
         found: &Findings<S>,
         (calm, ready): (bool, bool),
         class: Class,
-        faulty: bool,
+        facts: Facts,
         coeffs: &Coeffs<S>,
     ) -> Self {
         let new_bounce = Self::Bounce { calm_ticks: 0 };
-        if faulty {
+        if facts.contains(Facts::FAULTY) {
             let (weight, bouncing) = match self {
                 Self::SensorFault { weight, bouncing } => (weight, bouncing),
                 Self::Bounce { .. } | Self::BackwardWhirl | Self::Pinned { .. } => (S::ONE, true),
                 _ => (S::ONE, false),
             };
             return Self::SensorFault {
-                weight: weight - fault_step(bouncing, coeffs),
+                weight: weight - fault_step(bouncing, facts, coeffs),
                 bouncing,
             };
         }
@@ -158,9 +157,9 @@ impl<S: Scalar> Phase<S> {
 }
 
 /// Weight that the force loses in a tick of a sensor fault. A levitated rotor loses it no slower than in a hand-over:
-/// held, it would push it out to the wall.
-pub(crate) fn fault_step<S: Scalar>(bouncing: bool, coeffs: &Coeffs<S>) -> S {
-    if bouncing {
+/// held, it would push it out to the wall. So does one of which a coordinate is known: along it something acts.
+pub(crate) fn fault_step<S: Scalar>(bouncing: bool, facts: Facts, coeffs: &Coeffs<S>) -> S {
+    if bouncing && facts.contains(Facts::BOTH_BAD) {
         coeffs.fault_step
     } else {
         coeffs.fault_step.or_more(coeffs.blend_step)

@@ -1,14 +1,14 @@
 //! What is known of a sample once the guard has judged it.
 
 use crate::scalar::Scalar;
-use crate::signal::{Events, Refusal};
+use crate::signal::{Events, Refusal, Status};
 use crate::spin::Spin;
 use crate::vec2::Vec2;
 
 bitflags::bitflags! {
     /// What the guard has found, in one register.
     #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-    pub(crate) struct Facts: u32 {
+    pub(crate) struct Facts: u16 {
         /// The sample may be used; else the observer runs on its model.
         const USED = 1;
         /// The bearing may act.
@@ -26,6 +26,10 @@ bitflags::bitflags! {
         const LATE = 1 << 7;
         /// Ticks were missed.
         const MISSED = 1 << 8;
+        /// During a fault: the coordinate x, y cannot be trusted.
+        const X_BAD = 1 << 9;
+        const Y_BAD = 1 << 10;
+        const BOTH_BAD = Self::X_BAD.bits() | Self::Y_BAD.bits();
         /// What the observer has to be told before the tick.
         const UNUSUAL = Self::FAULTY.bits() | Self::ANEW.bits() | Self::LATE.bits() | Self::MISSED.bits();
     }
@@ -48,6 +52,31 @@ impl Facts {
             if self.contains(lost) { S::ZERO } else { force }
         };
         Vec2::new(on(Self::X_LOST, force.x), on(Self::Y_LOST, force.y))
+    }
+
+    /// The axes that are lost by the status, and not because they do not obey.
+    #[inline]
+    pub(crate) fn known(self, status: Status) -> Self {
+        let mut known = self;
+        for (bit, fact) in Status::LOST_AXES
+            .into_iter()
+            .zip([Self::X_LOST, Self::Y_LOST])
+        {
+            if !status.contains(bit) {
+                known -= fact;
+            }
+        }
+        known
+    }
+
+    /// A force along the coordinates that a fault of the sensor leaves, another one along those that are bad.
+    #[inline]
+    pub(crate) fn sensed<S: Scalar>(self, good: Vec2<S>, bad: Vec2<S>) -> Vec2<S> {
+        let on = |fact: Self, good: S, bad: S| if self.contains(fact) { bad } else { good };
+        Vec2::new(
+            on(Self::X_BAD, good.x, bad.x),
+            on(Self::Y_BAD, good.y, bad.y),
+        )
     }
 }
 

@@ -31,7 +31,8 @@ bitflags::bitflags! {
         /// The bearing is switched on and may act. Without it the supervisor watches and records,
         /// and lets the levitation command through.
         const BEARING_ON = 1 << 1;
-        /// `applied_n` is measured. Without it the supervisor models amplifier and delay.
+        /// `applied_n` is measured. Without it the supervisor models amplifier and delay, and does not see a drive
+        /// that disobeys.
         const APPLIED_VALID = 1 << 2;
         /// The drive cannot act along x: nothing is commanded there.
         const AXIS_X_LOST = 1 << 3;
@@ -84,7 +85,7 @@ bitflags::bitflags! {
         const HANDOVER = 1 << 5;
         /// The levitation controller has the bearing again.
         const LEVITATED = 1 << 6;
-        /// Samples were implausible for too long; the force goes to zero.
+        /// Samples were implausible for too long; the force goes to zero along what cannot be trusted.
         const SENSOR_FAULT = 1 << 7;
         /// Samples are plausible again.
         const SENSOR_OK = 1 << 8;
@@ -94,7 +95,7 @@ bitflags::bitflags! {
         const LATE = 1 << 10;
         /// From this tick on another configuration holds.
         const RECONFIGURED = 1 << 11;
-        /// The drive has lost an axis.
+        /// The drive has lost an axis, or does not obey on it ([`Status::APPLIED_VALID`]).
         const AXIS_LOST = 1 << 12;
         /// An axis is back.
         const AXIS_BACK = 1 << 13;
@@ -109,6 +110,11 @@ bitflags::bitflags! {
         /// An event was lost because the background did not drain the queue. Only in the queue.
         const QUEUE_FULL = 1 << 17;
     }
+}
+
+impl Status {
+    /// What says that x, y is lost.
+    pub(crate) const LOST_AXES: [Self; 2] = [Self::AXIS_X_LOST, Self::AXIS_Y_LOST];
 }
 
 /// Why a sample is refused.
@@ -131,12 +137,20 @@ pub enum Refusal {
     Stuck = 5,
 }
 
+impl Refusal {
+    /// Whether the sample shows what cannot be, and is not merely old.
+    pub(crate) fn is_wrong(self) -> bool {
+        matches!(self, Self::NotFinite | Self::Range | Self::Slew)
+    }
+}
+
 /// What the supervisor is doing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(u8)]
 pub enum Mode {
-    /// Transparent: the levitation command goes through bit for bit.
+    /// Transparent: the levitation command goes through bit for bit, but for that of a sample which cannot be, in whose
+    /// place the one before stays.
     #[default]
     Levitated = 0,
     /// Contact can no longer be avoided: tangential force against the backward whirl that the impacts to come would
@@ -150,7 +164,7 @@ pub enum Mode {
     Pinned = 4,
     /// Blending over to the levitation controller.
     Handover = 5,
-    /// No trustworthy position: force blended to zero.
+    /// No trustworthy position: force blended to zero; if one coordinate is good, levitation command along it.
     SensorFault = 6,
 }
 

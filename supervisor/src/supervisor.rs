@@ -47,10 +47,7 @@ impl<const RECORD: usize> Supervisor<RECORD> {
         // Transparent means bit for bit: what the core left alone does not come back from per unit. A lost axis
         // gets nothing, also where a command is so small that per unit it is nothing. (Scaled as a whole before:
         // chosen number by number, x86-64 got vectors with integers in spare lanes, subnormal as floats and slow.)
-        for (axis, lost) in [Status::AXIS_X_LOST, Status::AXIS_Y_LOST]
-            .into_iter()
-            .enumerate()
-        {
+        for (axis, lost) in Status::LOST_AXES.into_iter().enumerate() {
             if !sample.status.contains(lost) {
                 let same = |force: [f32; 2]| force[axis] == levitation[axis];
                 if same(command.force) {

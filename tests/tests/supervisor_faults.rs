@@ -1,6 +1,6 @@
 //! Samples that cannot be: how soon the supervisor knows, what it does, and how it comes back.
 
-use supervisor::{Command, Config, Events, Limits, Mode, Refusal, Sample, Supervisor};
+use supervisor::{Command, Config, Events, Limits, Mode, Refusal, Sample, Status, Supervisor};
 use system_tests::rig::{config, length, on_circle, sample};
 
 /// A supervisor with its counter of samples.
@@ -242,6 +242,122 @@ fn the_force_is_blended_to_zero_in_the_configured_time() {
             );
         }
         assert!(forces[ticks - 1..].iter().all(|f| *f == 0.0));
+    }
+}
+
+/// Where one coordinate is no number or out of range, the force along it goes to zero in the time of a hand-over, and along
+/// the other the levitation controller acts from the first tick on, bit for bit. Once the other is wrong too, so is that.
+#[test]
+fn a_coordinate_that_is_good_is_left_to_the_levitation_controller() {
+    let with = Config {
+        fault_blend_s: 1e-2,
+        position_limit: 4.0,
+        ..config()
+    };
+    let blend_ticks = 40;
+    for bad in [f32::NAN, f32::NEG_INFINITY, 8.1e-4] {
+        for axis in 0..2 {
+            let (mut bench, angle) = Bench::whirl(&with);
+            let levitation = |i: u32| [250.0 - i as f32, 7.0 * (i % 13) as f32 + 0.1];
+            let mut tick = |i: u32, both: bool| {
+                let mut position_m = on_circle(RADIUS_M, angle + WHIRL_STEP * i as f32);
+                position_m[axis] = bad;
+                if both {
+                    position_m = [bad; 2];
+                }
+                bench.sequence += 1;
+                bench.supervisor.tick(&Sample {
+                    levitation_n: levitation(i),
+                    ..sample(bench.sequence, position_m)
+                })
+            };
+            let last = (1..10).map(|i| tick(i, false)).last().unwrap();
+            assert_ne!(last.mode, Mode::SensorFault);
+            let from = last.force_n[axis];
+            assert!(from.abs() > 100.0, "{from} to be blended out");
+            for i in 1..=60 {
+                let command = tick(9 + i, false);
+                assert_eq!(command.mode, Mode::SensorFault);
+                assert_eq!(command.force_n[1 - axis], levitation(9 + i)[1 - axis]);
+                let left = (1.0 - i as f32 / blend_ticks as f32).max(0.0);
+                let off = command.force_n[axis] - from * left;
+                assert!(off.abs() < 5.0, "{bad} on {axis}, {i}: {command:?}");
+                assert!(i < blend_ticks || command.force_n[axis] == 0.0);
+            }
+            let both = (70..400).map(|i| tick(i, true)).last().unwrap();
+            assert_eq!(both.force_n, [0.0; 2]);
+            // Not known again before the fault is over.
+            assert_eq!(tick(400, false).force_n, [0.0; 2]);
+        }
+    }
+}
+
+/// Of a jump, a dropout or a sensor that is stuck nobody knows which coordinate is wrong: nothing of the levitation controller
+/// goes through.
+#[test]
+fn what_may_concern_both_coordinates_leaves_neither() {
+    for kind in 0..3 {
+        let (mut bench, angle) = Bench::whirl(&config());
+        let mut last = Command::default();
+        for i in 0..60 {
+            let [x, y] = on_circle(RADIUS_M, angle + WHIRL_STEP * i as f32);
+            bench.sequence += u32::from(kind != 1);
+            let position_m = match kind {
+                0 => [x + 6e-4 * (i / 2 % 2) as f32, y],
+                1 => [x, y],
+                _ => [RADIUS_M, y],
+            };
+            last = bench.supervisor.tick(&Sample {
+                levitation_n: [300.0, 300.0],
+                ..sample(bench.sequence, position_m)
+            });
+        }
+        assert_eq!(last.mode, Mode::SensorFault);
+        assert_eq!(last.force_n, [0.0; 2], "kind {kind}");
+    }
+}
+
+/// In mode Levitated the controller's answer to a sample that cannot be does not go through, since it saw the same reading: the
+/// command before it stays, to a rounding. In shadow, with the bearing off, and where a sample is merely missing, it does.
+#[test]
+fn the_command_of_a_sample_that_cannot_be_does_not_go_through() {
+    for (status, through) in [
+        (Status::empty(), false),
+        (Status::SHADOW, true),
+        (Status::BEARING_ON, true),
+    ] {
+        for bad in [[f32::NAN, 0.0], [7e-4, 0.0], [1.0, 1.0]] {
+            let (mut bench, mut last) = (Bench::new(&config()), [0.0; 2]);
+            for i in 0..300 {
+                bench.sequence += 1;
+                let refused = i % 10 == 9;
+                let good = [1e-6 * (i % 7) as f32, 1e-6 * (i % 3) as f32];
+                let mut now = sample(bench.sequence, if refused { bad } else { good });
+                now.status ^= status;
+                now.levitation_n = if refused {
+                    [900.0, -100.0]
+                } else {
+                    [0.3 * i as f32, -20.0]
+                };
+                let command = bench.supervisor.tick(&now);
+                assert_eq!(command.mode, Mode::Levitated);
+                assert_eq!(command.limits.contains(Limits::SAMPLE_REFUSED), refused);
+                if refused && !through {
+                    let off = [0, 1].map(|k| command.force_n[k] - last[k]);
+                    assert!(length(off) < 1e-4, "{command:?} after {last:?}");
+                } else {
+                    assert_eq!(command.force_n, now.levitation_n);
+                    last = now.levitation_n;
+                }
+                if i % 10 == 4 {
+                    now.levitation_n[0] += 1.0;
+                    let again = bench.supervisor.tick(&now);
+                    assert!(again.limits.contains(Limits::SAMPLE_REFUSED));
+                    assert_eq!(again.force_n, now.levitation_n);
+                    last = now.levitation_n;
+                }
+            }
+        }
     }
 }
 

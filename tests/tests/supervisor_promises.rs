@@ -287,7 +287,7 @@ fn sensor_fault_blends_to_zero_and_ends() {
     for _ in 0..20 {
         assert_eq!(tick([1e-5, 0.0]).mode, Mode::Levitated);
     }
-    let refused: Vec<Command> = (0..40).map(|_| tick([f32::NAN, 0.0])).collect();
+    let refused: Vec<Command> = (0..40).map(|_| tick([f32::NAN; 2])).collect();
     assert!(
         refused
             .iter()

@@ -93,6 +93,8 @@ numbers! {
     noise_rms_m: f64, Some(0.0), not_negative, "a finite number, 0 or greater";
     /// Step of the converter of the position [default: 0].
     quantum_m: f64, Some(0.0), not_negative, "a finite number, 0 or greater";
+    /// Largest reading of the position to either side [default: not known].
+    range_m: f64, None, positive, "a finite number greater than 0";
     /// Force cap of each axis [default: none].
     axis_force_max_n: f64, None, positive, "a finite number greater than 0";
     /// Fastest change of the force [default: not limited].
@@ -163,6 +165,7 @@ impl Numbers {
             delay_samples: self.delay_samples.unwrap_or_default(),
             noise_rms_m: self.noise_rms_m.unwrap_or_default(),
             quantum_m: self.quantum_m.unwrap_or_default(),
+            range_m: self.range_m,
             load_n: self.load_n.unwrap_or_default(),
             centre_offset_m: self.centre_offset_m.unwrap_or_default(),
         })

@@ -113,8 +113,6 @@ pub fn cases(plant: &PlantCase, situations: &[Situation]) -> Vec<Case> {
                 &format!("sensor {name}"),
                 duration_s,
                 &|scene| {
-                    // The converter's range: the rotor cannot get out of it.
-                    scene.sensor.range_m = Some(4.0 * clearance_m);
                     scene.faults = vec![Fault {
                         start_s,
                         duration_s,

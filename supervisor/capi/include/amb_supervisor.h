@@ -140,12 +140,12 @@ typedef int32_t amb_code;
 #define AMB_P_OBSERVER_POLE_FLIGHT 10 /**< 1, 0 to 0.98: Pole of the observer in flight: nearer to 1 smooths sensor noise more and follows later. */
 #define AMB_P_OBSERVER_POLE_CONTACT 11 /**< 1, 0 to 0.98: Pole of the observer in contact, where the model knows nothing of the contact force. */
 #define AMB_P_CONTACT_BAND 12 /**< clearance, 0.001 to 0.3: The rotor counts as touching within this band below the clearance; at least the retainer's offset and three times the sensor noise. */
-#define AMB_P_POSITION_LIMIT 13 /**< clearance, 1.5 to 20: A measured radius beyond this is refused as implausible. */
+#define AMB_P_POSITION_LIMIT 13 /**< clearance, 1.1 to 20: A measured radius beyond this is refused as implausible. */
 #define AMB_P_WHIRL_TIME_S 14 /**< s, 1e-5 to 0.1: Contact that lasts this long is whirl or rest, not a bounce: some periods of the rotor on the contact stiffness. */
 #define AMB_P_HOLD_SHARE 15 /**< 1, 0.1 to 0.95: Share of the cap that pushes inwards on the bearing: at most in an impact, and at first at rest, where it grows. */
 #define AMB_P_HANDOVER_DWELL_S 16 /**< s, 0 to 1: Contact must be avoidable for this long before hand-over begins. */
 #define AMB_P_HANDOVER_BLEND_S 17 /**< s, 0 to 1: Time of the blend to the levitation controller. */
-#define AMB_P_FAULT_BLEND_S 18 /**< s, 0 to 1: Time in which the force goes to zero when the position cannot be trusted; of a levitated rotor no longer than handover_blend_s. */
+#define AMB_P_FAULT_BLEND_S 18 /**< s, 0 to 1: Time in which the force goes to zero when the position cannot be trusted; of a levitated rotor, or along one coordinate alone, no longer than handover_blend_s. */
 #define AMB_P_FAULT_TICKS 19 /**< ticks, 2 to 1e4: Good samples in a row that end a sensor fault, and refused ones that make it; jumps, dropouts and a stuck sensor make it sooner. */
 #define AMB_P_AXIS_FORCE_MAX_N 20 /**< N, 0.001 to 1e7: Force cap of each axis; none where it is at least force_max_n. */
 #define AMB_P_FORCE_SLEW_N_S 21 /**< N/s, 1 to 1e12: Fastest change of the commanded force, as the length of the vector. */
@@ -173,13 +173,13 @@ typedef int32_t amb_code;
 /** @} */
 
 /** @name Modes @{ */
-#define AMB_MODE_LEVITATED 0u      /**< the levitation command goes through bit for bit */
+#define AMB_MODE_LEVITATED 0u      /**< the levitation command goes through bit for bit, but for that of a sample that cannot be */
 #define AMB_MODE_APPROACH 1u       /**< contact can no longer be avoided */
 #define AMB_MODE_BOUNCE 2u         /**< touching and leaving again */
 #define AMB_MODE_BACKWARD_WHIRL 3u /**< continuous backward whirl: braking */
 #define AMB_MODE_PINNED 4u         /**< held on the bearing by a load */
 #define AMB_MODE_HANDOVER 5u       /**< blending over to the levitation controller */
-#define AMB_MODE_SENSOR_FAULT 6u   /**< no trustworthy position: the force goes to zero */
+#define AMB_MODE_SENSOR_FAULT 6u   /**< no trustworthy position: the force goes to zero, or along one coordinate only */
 /** @} */
 
 /** @name Hints for the levitation controller's integrator @{ */
@@ -211,7 +211,7 @@ typedef int32_t amb_code;
 #define AMB_EVENT_SEQUENCE 0x200u        /**< a sequence number was missed or repeated */
 #define AMB_EVENT_LATE 0x400u            /**< the last command came too late */
 #define AMB_EVENT_RECONFIGURED 0x800u    /**< from this tick on another configuration holds */
-#define AMB_EVENT_AXIS_LOST 0x1000u      /**< the drive has lost an axis */
+#define AMB_EVENT_AXIS_LOST 0x1000u      /**< the drive has lost an axis, or does not obey on it */
 #define AMB_EVENT_AXIS_BACK 0x2000u      /**< an axis is back */
 #define AMB_EVENT_COAST_DOWN 0x4000u     /**< the machine should coast down */
 #define AMB_EVENT_FORWARD_RUB 0x8000u    /**< forward rub at the spin's rate was recognised */

@@ -30,6 +30,7 @@ fn amb() -> Nominal {
         delay_samples: 1,
         noise_rms_m: 1e-6,
         quantum_m: 0.0,
+        range_m: None,
         load_n: 0.0,
         centre_offset_m: 0.0,
     }
@@ -245,6 +246,22 @@ fn warnings_appear_when_they_should() {
     }
     for w in advice(&amb()).warnings {
         assert!(!w.text.is_empty() && !w.remedy.is_empty());
+    }
+}
+
+/// A sensor at its rail measures nothing: the suggested limit is 5 % below it, but in its range, and 20 without a range.
+#[test]
+fn the_position_limit_is_below_the_rail() {
+    for (range_m, limit) in [
+        (None, 20.0),
+        (Some(8e-4), 3.8),
+        (Some(2.5e-4), 1.1875),
+        (Some(2e-4), 1.1),
+        (Some(1.0), 20.0),
+    ] {
+        let nominal = Nominal { range_m, ..amb() };
+        let given = suggested(&nominal).config.position_limit;
+        assert!((given - limit).abs() < 1e-6, "{range_m:?}: {given}");
     }
 }
 
