@@ -153,7 +153,7 @@ pub(crate) struct Coeffs<S: Scalar> {
     pub(crate) dwell_ticks: u32,
     /// Weight of the levitation controller gained per tick of hand-over.
     pub(crate) blend_step: S,
-    /// Weight of the force lost per tick of a fault.
+    /// Force lost per tick of a fault of the sensor \[caps\].
     pub(crate) fault_step: S,
     pub(crate) fault_ticks: u16,
     /// Cap of each axis \[caps\], at most 1.

@@ -1,6 +1,7 @@
 //! Whether the drive does what it is told, where its force is measured.
 
 use crate::coeffs::Coeffs;
+use crate::reading::Actuator;
 use crate::scalar::Scalar;
 use crate::signal::Status;
 use crate::vec2::Vec2;
@@ -10,8 +11,8 @@ use crate::vec2::Vec2;
 const DOUBT: f32 = 0.5;
 /// … and the largest as a share of the modelled force: a weak drive obeys.
 const WEAK: f32 = 0.75;
-/// What a slow one comes nearer to its command in a tick, at least \[caps\].
-const PROGRESS: f32 = 0.02;
+/// How fast a slow one comes nearer to its command, at least \[caps/t₀\].
+const PROGRESS: f32 = 0.5;
 /// Ticks for which an axis that does not obey gets nothing, over those that made it one.
 const REST: i8 = 8;
 /// Most ticks that make one: what `i8` leaves room for.
@@ -20,32 +21,58 @@ const MOST_TICKS: u16 = 15;
 /// Memory of the monitor.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Drive<S> {
-    /// Force that the model of amplifier and delay delivers at this tick.
-    pub(crate) modelled: Vec2<S>,
+    /// What the model of amplifier and delay makes of the first force whose command is known of those that were measured
+    /// without a break.
+    modelled: Vec2<S>,
+    /// How many were, as far as that matters.
+    seen: u8,
     /// Of each axis: ticks in a row in which it did not obey; or, negative, how long it will get nothing.
     off: [i8; 2],
 }
 
 impl<S: Scalar> Drive<S> {
-    /// Axes that get nothing because they do not obey.
+    /// Axes that get nothing because they do not obey. Where the supervisor does not act it takes nothing away.
     #[inline]
-    pub(crate) fn lost(&self) -> Status {
+    pub(crate) fn lost(&self, status: Status) -> Status {
         if self.off == [0; 2] {
             return Status::empty();
         }
+        self.resting(status)
+    }
+
+    #[cold]
+    fn resting(&self, status: Status) -> Status {
         let mut lost = Status::empty();
-        for (ticks, axis) in self.off.into_iter().zip(Status::LOST_AXES) {
-            if ticks < 0 {
-                lost |= axis;
+        if status & (Status::BEARING_ON | Status::SHADOW) == Status::BEARING_ON {
+            for (ticks, axis) in self.off.into_iter().zip(Status::LOST_AXES) {
+                if ticks < 0 {
+                    lost |= axis;
+                }
             }
         }
         lost
     }
 
-    /// A tick in which nobody can tell: not measured, or switched off.
+    /// The force is not measured, or not at every tick: nobody can tell.
     #[inline]
     pub(crate) fn unseen(&mut self) {
-        self.off = [0; 2];
+        self.seen = 0;
+        if self.off != [0; 2] {
+            self.rest();
+        }
+    }
+
+    /// What rests goes on to, what was counted is forgotten.
+    #[cold]
+    #[inline(never)]
+    fn rest(&mut self) {
+        self.off = self.off.map(|ticks| (ticks + 1).min(0));
+    }
+
+    /// The drive is switched off, or not the supervisor's.
+    #[inline]
+    pub(crate) fn switched_off(&mut self) {
+        *self = Self::default();
     }
 
     /// Compares the force measured now with the model; `before` is the one of the last tick, and `due` the command.
@@ -54,25 +81,37 @@ impl<S: Scalar> Drive<S> {
         &mut self,
         now: Vec2<S>,
         (before, due): (Vec2<S>, Vec2<S>),
+        actuator: &Actuator<S>,
         coeffs: &Coeffs<S>,
     ) {
-        let deviation = now - self.modelled;
+        let mut deviation = Vec2::ZERO;
+        if self.seen > coeffs.delay {
+            let (modelled, _) = lagging(self.modelled, due, coeffs);
+            // Of an axis that is lost nothing is expected.
+            deviation = actuator.carried(now - modelled);
+        } else {
+            // What the bearing carries at first, and as long as the delay, was not commanded here.
+            self.seen += 1;
+        }
+        self.modelled = now - deviation;
+        let modelled = self.modelled;
         let doubt = S::of(DOUBT);
         let usual = deviation.x.size() <= doubt && deviation.y.size() <= doubt;
         if usual && self.off == [0; 2] {
             return;
         }
+        let progress = S::of(PROGRESS) * coeffs.tick;
         let most = coeffs.fault_ticks.min(MOST_TICKS) as i8;
         let [x, y] = &mut self.off;
-        for (ticks, now, before, due, modelled) in [
-            (x, now.x, before.x, due.x, self.modelled.x),
-            (y, now.y, before.y, due.y, self.modelled.y),
+        for (ticks, deviation, modelled, now, before, due) in [
+            (x, deviation.x, modelled.x, now.x, before.x, due.x),
+            (y, deviation.y, modelled.y, now.y, before.y, due.y),
         ] {
             let nearer = (due - before).size() - (due - now).size();
             let doubt = doubt.or_more(modelled.size() * S::of(WEAK));
             *ticks = if *ticks < 0 {
                 *ticks + 1
-            } else if (now - modelled).size() <= doubt || nearer > S::of(PROGRESS) {
+            } else if deviation.size() <= doubt || nearer > progress {
                 0
             } else if *ticks + 1 < most {
                 *ticks + 1
@@ -81,4 +120,23 @@ impl<S: Scalar> Drive<S> {
             };
         }
     }
+
+    /// After a change of the unit of force.
+    pub(crate) fn rescale(&mut self, force: S) {
+        self.modelled = self.modelled * force;
+    }
+}
+
+/// Force of a first-order actuator after a tick, and its mean over it.
+#[inline]
+pub(crate) fn lagging<S: Scalar>(
+    before: Vec2<S>,
+    command: Vec2<S>,
+    coeffs: &Coeffs<S>,
+) -> (Vec2<S>, Vec2<S>) {
+    let away = before - command;
+    (
+        command + away * coeffs.lag_left,
+        command + away * coeffs.lag_mean,
+    )
 }

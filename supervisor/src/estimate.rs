@@ -4,7 +4,7 @@
 //! observer may be slow and smooth. In contact it is blind for the contact force and must be quick.
 
 use crate::coeffs::{Coeffs, MAX_DELAY};
-use crate::drive::Drive;
+use crate::drive::{Drive, lagging};
 use crate::reading::{Actuator, Facts};
 use crate::scalar::Scalar;
 use crate::spin::Spin;
@@ -141,12 +141,11 @@ impl<S: Scalar> Observer<S> {
         for tick in 0..missed {
             // Or the compiler writes it out four times.
             core::hint::black_box(tick);
-            let (modelled, mean) = lagging(self.drive.modelled, self.due(coeffs), coeffs);
-            (self.drive.modelled, sum) = (modelled, sum + mean);
+            let (modelled, mean) = lagging(self.delivered, self.due(coeffs), coeffs);
+            (self.delivered, sum) = (modelled, sum + mean);
             self.commanded(command);
         }
-        self.drive.modelled = actuator.carried(self.drive.modelled);
-        self.delivered = self.drive.modelled;
+        self.delivered = actuator.carried(self.delivered);
         let ticks = S::count(missed);
         let mean = actuator.carried(sum) * S::ONE.over(ticks);
         let turn = Turn::of(spin, ticks, coeffs);
@@ -158,22 +157,22 @@ impl<S: Scalar> Observer<S> {
     #[inline]
     fn deliver(&mut self, actuator: Actuator<S>, coeffs: &Coeffs<S>) -> Vec2<S> {
         let due = actuator.carried(self.due(coeffs));
-        let modelled = actuator.carried(self.drive.modelled);
-        let (modelled, mean) = lagging(modelled, due, coeffs);
-        self.drive.modelled = modelled;
-        let before = core::mem::replace(&mut self.delivered, modelled);
+        let before = actuator.carried(self.delivered);
+        let on = actuator.axes.contains(Facts::ON);
+        if !on {
+            self.drive.switched_off();
+        }
         let Some(now) = actuator.applied() else {
             self.drive.unseen();
+            let (modelled, mean) = lagging(before, due, coeffs);
+            self.delivered = modelled;
             return mean;
         };
         self.delivered = now;
-        if actuator.axes.contains(Facts::ON) {
-            self.drive.watch(now, (before, due), coeffs);
-        } else {
-            self.drive.modelled = now;
-            self.drive.unseen();
+        if on {
+            self.drive.watch(now, (before, due), &actuator, coeffs);
         }
-        now + (actuator.carried(before) - now) * coeffs.applied_weight
+        now + (before - now) * coeffs.applied_weight
     }
 
     /// The command that the actuator works on, which is as old as its delay.
@@ -232,7 +231,7 @@ impl<S: Scalar> Observer<S> {
         m.load_step = m.load_step * speed * tick;
         self.unbalance.rescale(speed);
         self.delivered = self.delivered * force;
-        self.drive.modelled = self.drive.modelled * force;
+        self.drive.rescale(force);
         for command in &mut self.commands {
             *command = *command * force;
         }
@@ -254,16 +253,6 @@ fn held<S: Scalar>(v: Vec2<S>, most: S) -> Vec2<S> {
 #[inline]
 fn slot(number: u8) -> usize {
     usize::from(number) & (MAX_DELAY - 1)
-}
-
-/// Force of a first-order actuator after a tick, and its mean over it.
-#[inline]
-fn lagging<S: Scalar>(before: Vec2<S>, command: Vec2<S>, coeffs: &Coeffs<S>) -> (Vec2<S>, Vec2<S>) {
-    let away = before - command;
-    (
-        command + away * coeffs.lag_left,
-        command + away * coeffs.lag_mean,
-    )
 }
 
 impl<S: Scalar> Motion<S> {

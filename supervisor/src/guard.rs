@@ -170,7 +170,12 @@ impl<S: Scalar> Guard<S> {
         if refusal == Refusal::None {
             facts |= Facts::USED;
         } else {
-            self.refused.bad |= bad_coordinates(position, coeffs.position_limit);
+            self.refused.bad |= match refusal {
+                Refusal::NotFinite | Refusal::Range => {
+                    bad_coordinates(position, coeffs.position_limit)
+                }
+                _ => Facts::BOTH_BAD,
+            };
         }
         if self.faulty {
             facts |= Facts::FAULTY | self.refused.bad;
@@ -311,8 +316,7 @@ impl<S: Scalar> Guard<S> {
     }
 }
 
-/// Where one coordinate of a refused sample is no number or out of range, it is that one; of whatever else is wrong nobody
-/// knows where.
+/// Which coordinates are no numbers or out of range; both where that is so of the radius alone.
 #[inline]
 fn bad_coordinates<S: Scalar>(position: Vec2<S>, most: S) -> Facts {
     match (position.x.size() <= most, position.y.size() <= most) {

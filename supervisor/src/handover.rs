@@ -2,50 +2,34 @@
 //! controller's integrator.
 
 use crate::coeffs::Coeffs;
-use crate::phase::{Phase, fault_step};
+use crate::limit::Room;
+use crate::phase::Phase;
 use crate::reading::Facts;
 use crate::scalar::Scalar;
 use crate::signal::IntegratorHint;
 use crate::vec2::Vec2;
 
-/// Force of this tick \[caps\]: the phase decides whose it is. `last` is the force of the tick before.
-#[inline]
-pub(crate) fn blend<S: Scalar>(
-    phase: Phase<S>,
-    own: Vec2<S>,
-    levitation: Vec2<S>,
-    (last, facts): (Vec2<S>, Facts),
-    coeffs: &Coeffs<S>,
-) -> Vec2<S> {
-    match phase {
-        Phase::Levitated => levitation,
-        Phase::Handover { weight } => own * (S::ONE - weight) + levitation * weight,
-        Phase::SensorFault { weight, bouncing } => {
-            faded((weight, bouncing), levitation, (last, facts), coeffs)
-        }
-        _ => own,
-    }
-}
-
-/// In a fault of the sensor: the last force goes to zero along a coordinate that is bad; along the other, if there is one,
-/// the levitation controller acts.
+/// In a fault of the sensor: along a coordinate that is bad the last force fades, so fast that a whole cap would be gone in
+/// the time of the fading; along one that is good the levitation controller acts, and goes first. A levitated rotor loses the
+/// force no slower than in a hand-over: held, it would push it out to the wall. So does one of which a coordinate is known.
 #[cold]
 #[inline(never)]
-fn faded<S: Scalar>(
-    (weight, bouncing): (S, bool),
-    levitation: Vec2<S>,
-    (last, facts): (Vec2<S>, Facts),
+pub(crate) fn faded<S: Scalar>(
+    bouncing: bool,
+    (last, levitation): (Vec2<S>, Vec2<S>),
+    facts: Facts,
+    room: &Room<S>,
     coeffs: &Coeffs<S>,
 ) -> Vec2<S> {
-    // The last force already carries the last weight: their ratio makes the fall linear. Less than half
-    // a step is what rounding leaves of nothing.
-    let step = fault_step(bouncing, facts, coeffs);
-    let left = if weight + weight > step {
-        weight.over(weight + step)
+    let step = if bouncing && facts.contains(Facts::BOTH_BAD) {
+        coeffs.fault_step
     } else {
-        S::ZERO
+        coeffs.fault_step.or_more(coeffs.blend_step)
     };
-    facts.sensed(levitation, last * left)
+    // What the other coordinate is sure to leave of the cap.
+    let most = (room.cap - levitation.x.size() - levitation.y.size()).or_more(S::ZERO);
+    let left = last.map(|force| (force - force.between(-step, step)).between(-most, most));
+    facts.sensed(levitation, left)
 }
 
 /// Whether the levitation controller would hold the rotor as well as the supervisor does.

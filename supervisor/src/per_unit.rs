@@ -126,7 +126,7 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
         let wall = self.detector.wall(pinned);
         let blind = wall != Wall::Nothing;
         // An axis that does not obey is as good as lost.
-        let status = sample.status | self.observer.drive.lost();
+        let status = sample.status | self.observer.drive.lost(sample.status);
         let velocity = self.observer.velocity();
         let reading = (self.guard).judge((sample, status), velocity, blind, coeffs);
         self.refusal = reading.refusal;
@@ -175,31 +175,44 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
         let last = if shadow { self.own } else { self.force };
         // Under impacts and in whirl nobody asks what the levitation controller wants.
         let holds = mode == Mode::Pinned || !found.touching;
-        let has_a_say = holds || matches!(mode, Mode::Levitated | Mode::SensorFault) || shadow;
+        let has_a_say = holds || matches!(mode, Mode::Levitated | Mode::SensorFault);
+        let command = Vec2::from_array(sample.levitation);
         let (levitation, levitation_limits) = if has_a_say {
-            limit::levitation(Vec2::from_array(sample.levitation), &room)
+            // What it makes of a coordinate that is none takes no room from the other.
+            let bad = mode == Mode::SensorFault;
+            let command = if bad {
+                reading.facts.sensed(command, Vec2::ZERO)
+            } else {
+                command
+            };
+            limit::levitation(command, &room)
         } else {
             (Vec2::ZERO, Limits::empty())
         };
         let (target, bound) = if mode == Mode::Levitated {
             self.readiness = Readiness::default();
-            if position.is_none() && reading.is(Facts::ON) && !shadow && reading.refusal.is_wrong()
-            {
+            if position.is_none() && reading.is(Facts::ON) && reading.refusal.is_wrong() {
                 // What the controller makes of such a sample does not go through.
                 limit::kept(last, &room)
             } else {
                 (levitation, levitation_limits)
             }
         } else {
-            let (wanted, own_limits) = limit::allocate(&view.wanted(phase), &room);
+            let (wanted, mut own_limits) = limit::allocate(&view.wanted(phase), &room);
             if holds {
                 // The controller has to ask for what the rotor is really held with.
                 let held = actuator.applied().unwrap_or(wanted);
                 self.readiness
                     .compare(held, levitation, (found.normal, found.radius), coeffs);
             }
-            let blended =
-                handover::blend(phase, wanted, levitation, (self.own, reading.facts), coeffs);
+            let blended = match phase {
+                Phase::SensorFault { bouncing } => {
+                    own_limits = levitation_limits;
+                    handover::faded(bouncing, (last, levitation), reading.facts, &room, coeffs)
+                }
+                Phase::Handover { weight } => wanted * (S::ONE - weight) + levitation * weight,
+                _ => wanted,
+            };
             let (target, bound) = limit::last_word(blended, &room);
             (target, own_limits | bound)
         };
@@ -208,8 +221,10 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
         self.own = own;
         let mut integrator = handover::integrator_hint(phase, calm, reading.is(Facts::ON));
         if shadow {
+            let (levitation, _) = limit::levitation(command, &room);
             (self.force, _) = limit::slewed(levitation, self.force, coeffs);
             integrator = IntegratorHint::Run;
+            self.observer.drive.switched_off();
         } else {
             self.force = own;
         }
@@ -259,6 +274,9 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
             (self.budget).spend(S::count(reading.missed), self.force, coeffs);
         }
         let lost = reading.is(Facts::FAULTY) && !reading.is(Facts::USED);
+        if reading.is(Facts::ANEW | Facts::MISSED) {
+            self.observer.drive.unseen();
+        }
         if reading.is(Facts::ANEW) || lost {
             self.observer.forget();
             self.classifier.forget();

@@ -30,8 +30,8 @@ pub(crate) enum Phase<S> {
     Pinned { hold: S },
     /// The levitation controller's share grows from 0 to 1.
     Handover { weight: S },
-    /// The force goes from its last value to zero with `weight`; fast where the rotor was not `bouncing`.
-    SensorFault { weight: S, bouncing: bool },
+    /// Without a position: `bouncing` or in lasting contact when it was lost.
+    SensorFault { bouncing: bool },
 }
 
 impl<S: Scalar> Phase<S> {
@@ -108,15 +108,12 @@ impl<S: Scalar> Phase<S> {
     ) -> Self {
         let new_bounce = Self::Bounce { calm_ticks: 0 };
         if facts.contains(Facts::FAULTY) {
-            let (weight, bouncing) = match self {
-                Self::SensorFault { weight, bouncing } => (weight, bouncing),
-                Self::Bounce { .. } | Self::BackwardWhirl | Self::Pinned { .. } => (S::ONE, true),
-                _ => (S::ONE, false),
+            let bouncing = match self {
+                Self::SensorFault { bouncing } => bouncing,
+                Self::Bounce { .. } | Self::BackwardWhirl | Self::Pinned { .. } => true,
+                _ => false,
             };
-            return Self::SensorFault {
-                weight: weight - fault_step(bouncing, facts, coeffs),
-                bouncing,
-            };
+            return Self::SensorFault { bouncing };
         }
         if found.touching {
             return match class {
@@ -139,9 +136,7 @@ impl<S: Scalar> Phase<S> {
                 None => Self::Handover { weight: S::ZERO },
             },
             Self::BackwardWhirl if class == Class::BackwardWhirl => self,
-            Self::SensorFault {
-                bouncing: false, ..
-            } => Self::Approach { calm_ticks: 0 },
+            Self::SensorFault { bouncing: false } => Self::Approach { calm_ticks: 0 },
             Self::BackwardWhirl | Self::Pinned { .. } | Self::SensorFault { .. } => new_bounce,
             Self::Handover { .. } if found.unavoidable => Self::Approach { calm_ticks: 0 },
             Self::Handover { weight } => {
@@ -153,16 +148,6 @@ impl<S: Scalar> Phase<S> {
                 }
             }
         }
-    }
-}
-
-/// Weight that the force loses in a tick of a sensor fault. A levitated rotor loses it no slower than in a hand-over:
-/// held, it would push it out to the wall. So does one of which a coordinate is known: along it something acts.
-pub(crate) fn fault_step<S: Scalar>(bouncing: bool, facts: Facts, coeffs: &Coeffs<S>) -> S {
-    if bouncing && facts.contains(Facts::BOTH_BAD) {
-        coeffs.fault_step
-    } else {
-        coeffs.fault_step.or_more(coeffs.blend_step)
     }
 }
 

@@ -223,8 +223,8 @@ macro_rules! floating_point {
     };
 }
 
-floating_point!(f32, 0x23A6_76B5);
-floating_point!(f64, 0xB83A_7C6B);
+floating_point!(f32, 0x1611_2437);
+floating_point!(f64, 0xCBF7_A295);
 
 /// Reciprocal square roots by Newton's method, from + − × only: every target gives the same bits. `core`
 /// has no root, and libm's costs three times as many instructions where there is an FPU. 0 below 1e-30

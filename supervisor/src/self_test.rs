@@ -4,16 +4,18 @@
 use crate::config::Config;
 use crate::per_unit::{Core, Prepared};
 use crate::scalar::Scalar;
-use crate::signal::{CoreSample, Status};
+use crate::signal::{CoreSample, Events, Status};
 use crate::vec2::Vec2;
 
 /// What the test went through.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct SelfTest {
-    /// FNV-1a of the bits of all forces, modes and limits.
+    /// FNV-1a of the bits of all commands.
     pub hash: u32,
     /// One bit a mode.
     pub modes: u32,
+    /// All that happened.
+    pub events: Events,
 }
 
 /// Whether this processor computes what it should; some milliseconds.
@@ -61,8 +63,12 @@ const CONFIG: Config = Config {
 enum Story {
     /// Flies on.
     Flight,
+    /// Does so in shadow.
+    Shadow,
     /// Slides round the clearance.
     Whirl,
+    /// Does so before a drive of which the force is measured and that inverts x.
+    Disobeyed,
     /// Lies on the bearing.
     Rest,
     /// Is somewhere no rotor can be.
@@ -71,13 +77,14 @@ enum Story {
     Centre,
 }
 
-const STORIES: [(u32, Story); 7] = [
+const STORIES: [(u32, Story); 8] = [
     (40, Story::Centre),
     (60, Story::Flight),
     (80, Story::Whirl),
+    (60, Story::Disobeyed),
     (60, Story::Rest),
     (30, Story::Nonsense),
-    (20, Story::Flight),
+    (20, Story::Shadow),
     (160, Story::Centre),
 ];
 
@@ -89,18 +96,21 @@ impl SelfTest {
         let mut result = Self {
             hash: 0x811C_9DC5,
             modes: 0,
+            events: Events::empty(),
         };
         let mut position = Vec2::new(S::of(0.01), S::of(-0.02));
         let turn = Vec2::new(S::of(0.996_2), S::of(-0.087_2));
         let step = Vec2::new(S::of(0.05), S::of(0.02));
-        let mut sequence = 0;
+        let (mut sequence, mut applied) = (0, [S::ZERO; 2]);
         let mut noise = 1_u32;
         for (ticks, story) in STORIES {
             for _ in 0..ticks {
                 position = match story {
-                    Story::Flight if position.exceeds(S::of(1.01)) => position * S::of(0.97),
-                    Story::Flight => position + step,
-                    Story::Whirl => {
+                    Story::Flight | Story::Shadow if position.exceeds(S::of(1.01)) => {
+                        position * S::of(0.97)
+                    }
+                    Story::Flight | Story::Shadow => position + step,
+                    Story::Whirl | Story::Disobeyed => {
                         let onto = S::of(1.01) * position.inverse_length();
                         position.rotated(turn) * onto
                     }
@@ -111,19 +121,30 @@ impl SelfTest {
                 noise = noise.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
                 let ripple = S::count(noise >> 24) * S::of(1e-5);
                 let seen = position + Vec2::new(ripple, -ripple);
+                let status = match story {
+                    Story::Disobeyed => Status::APPLIED_VALID,
+                    Story::Shadow => Status::SHADOW,
+                    _ => Status::empty(),
+                };
                 let command = core.tick(&CoreSample {
                     sequence,
-                    status: Status::SPIN_VALID | Status::BEARING_ON,
+                    status: status | Status::SPIN_VALID | Status::BEARING_ON,
                     position: seen.to_array(),
                     // Quick enough for an unbalance.
                     spin: S::of(2.0),
                     levitation: (position * S::of(-0.5)).to_array(),
-                    applied: [S::ZERO; 2],
+                    applied,
                 });
                 sequence = sequence.wrapping_add(1);
                 result.modes |= 1 << (command.mode as u32);
-                let [x, y] = command.force.map(S::bits);
-                for word in [x, y, command.mode as u32, command.limits.bits()] {
+                result.events |= command.events;
+                let [x, y] = command.force;
+                applied = [-x, y];
+                let own = command.own.map(S::bits);
+                let numbers = [x.bits(), y.bits(), command.severity.bits()];
+                let (mode, hint) = (command.mode as u32, command.integrator as u32);
+                let said = [mode, hint, command.limits.bits(), command.events.bits()];
+                for word in own.into_iter().chain(numbers).chain(said) {
                     result.hash = (result.hash ^ word).wrapping_mul(0x0100_0193);
                 }
             }

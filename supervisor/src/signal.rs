@@ -16,8 +16,9 @@ pub struct Sample {
     pub spin_rad_s: f32,
     /// Force that the levitation controller wants \[N\].
     pub levitation_n: [f32; 2],
-    /// Force that the actuator delivers at this sampling instant \[N\], from current or flux feedback;
-    /// used only with [`Status::APPLIED_VALID`], while it is finite and at most two caps long.
+    /// What the actuator delivers of the commanded force at this sampling instant \[N\], from current or flux feedback,
+    /// without what the firmware adds to the command; used only with [`Status::APPLIED_VALID`], while it is finite and
+    /// at most two caps long.
     pub applied_n: [f32; 2],
 }
 
@@ -40,8 +41,8 @@ bitflags::bitflags! {
         const AXIS_Y_LOST = 1 << 4;
         /// The last command came too late for its tick: the actuator kept the one before for that long.
         const LATE = 1 << 5;
-        /// Compute and record, but let the levitation command through: to watch the supervisor on a
-        /// machine before it may act.
+        /// Compute and record, but let the levitation command through, within the limits: to watch the supervisor on a
+        /// machine before it may act. A drive that disobeys is left to the controller, too.
         const SHADOW = 1 << 6;
     }
 
@@ -149,8 +150,8 @@ impl Refusal {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(u8)]
 pub enum Mode {
-    /// Transparent: the levitation command goes through bit for bit, but for that of a sample which cannot be, in whose
-    /// place the one before stays.
+    /// Transparent: the levitation command goes through bit for bit, within the limits and along axes that act; but for
+    /// that of a sample which cannot be, in whose place the one before stays.
     #[default]
     Levitated = 0,
     /// Contact can no longer be avoided: tangential force against the backward whirl that the impacts to come would
@@ -233,7 +234,7 @@ pub struct CoreSample<S> {
     pub spin: S,
     /// Force that the levitation controller wants \[caps\].
     pub levitation: [S; 2],
-    /// Force that the actuator delivers now \[caps\].
+    /// As in [`Sample`] \[caps\].
     pub applied: [S; 2],
 }
 

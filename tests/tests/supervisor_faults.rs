@@ -218,7 +218,7 @@ fn a_single_bad_sample_neither_drops_the_force_nor_kicks() {
     }
 }
 
-/// In a fault the force falls from tick to tick and is zero after `fault_blend_s`, as long as the
+/// In a fault each component falls by the same in every tick, the cap in `fault_blend_s`, and stays zero as long as the
 /// sensor is bad.
 #[test]
 fn the_force_is_blended_to_zero_in_the_configured_time() {
@@ -228,25 +228,27 @@ fn the_force_is_blended_to_zero_in_the_configured_time() {
             ..config()
         };
         let (mut bench, _) = Bench::whirl(&with);
-        let forces: Vec<f64> = (0..200)
-            .map(|_| length(bench.tick([f32::NAN; 2]).force_n))
-            .skip(9)
+        let forces: Vec<[f32; 2]> = (0..200)
+            .map(|_| bench.tick([f32::NAN; 2]).force_n)
+            .skip(8)
             .collect();
-        let ticks = (blend_s / 50e-6).round().max(1.0) as usize;
-        for (i, force) in forces.iter().enumerate() {
-            // Linear in time, from the last force before the fault.
-            let left = (1.0 - (i + 1) as f64 / ticks as f64).max(0.0);
-            assert!(
-                (force - 1000.0 * left).abs() < 5.0,
-                "{i} of {ticks}: {force}"
-            );
+        let (last, fading) = forces.split_first().unwrap();
+        assert!(length(*last) > 990.0);
+        let ticks = (blend_s / 50e-6).round().max(1.0);
+        for (i, force) in fading.iter().enumerate() {
+            for axis in 0..2 {
+                let left = (last[axis].abs() - 1000.0 * (i + 1) as f32 / ticks).max(0.0);
+                let off = force[axis] - left.copysign(last[axis]);
+                assert!(off.abs() < 0.1, "{i} of {ticks}: {force:?} after {last:?}");
+            }
         }
-        assert!(forces[ticks - 1..].iter().all(|f| *f == 0.0));
+        assert!(fading[ticks as usize - 1..].iter().all(|f| *f == [0.0; 2]));
     }
 }
 
 /// Where one coordinate is no number or out of range, the force along it goes to zero in the time of a hand-over, and along
-/// the other the levitation controller acts from the first tick on, bit for bit. Once the other is wrong too, so is that.
+/// the other the levitation controller acts from the first tick on, bit for bit, whatever it makes of the bad one. Once the
+/// other is wrong too, the force along that fades as well.
 #[test]
 fn a_coordinate_that_is_good_is_left_to_the_levitation_controller() {
     let with = Config {
@@ -254,11 +256,17 @@ fn a_coordinate_that_is_good_is_left_to_the_levitation_controller() {
         position_limit: 4.0,
         ..config()
     };
-    let blend_ticks = 40;
+    // The cap, in 40 ticks.
+    let step_n = 25.0;
     for bad in [f32::NAN, f32::NEG_INFINITY, 8.1e-4] {
         for axis in 0..2 {
             let (mut bench, angle) = Bench::whirl(&with);
-            let levitation = |i: u32| [250.0 - i as f32, 7.0 * (i % 13) as f32 + 0.1];
+            let levitation = |i: u32| {
+                let mut levitation_n = [600.0 - i as f32; 2];
+                // Its derivative of a rail, or of what is no number.
+                levitation_n[axis] = [1e6, f32::NAN, -3e38][i as usize % 3];
+                levitation_n
+            };
             let mut tick = |i: u32, both: bool| {
                 let mut position_m = on_circle(RADIUS_M, angle + WHIRL_STEP * i as f32);
                 position_m[axis] = bad;
@@ -275,19 +283,28 @@ fn a_coordinate_that_is_good_is_left_to_the_levitation_controller() {
             assert_ne!(last.mode, Mode::SensorFault);
             let from = last.force_n[axis];
             assert!(from.abs() > 100.0, "{from} to be blended out");
+            let mut left = from.abs();
             for i in 1..=60 {
                 let command = tick(9 + i, false);
                 assert_eq!(command.mode, Mode::SensorFault);
                 assert_eq!(command.force_n[1 - axis], levitation(9 + i)[1 - axis]);
-                let left = (1.0 - i as f32 / blend_ticks as f32).max(0.0);
-                let off = command.force_n[axis] - from * left;
-                assert!(off.abs() < 5.0, "{bad} on {axis}, {i}: {command:?}");
-                assert!(i < blend_ticks || command.force_n[axis] == 0.0);
+                // No more than the other is sure to leave of the cap.
+                let room = 1000.0 - levitation(9 + i)[1 - axis];
+                left = (left - step_n).clamp(0.0, room);
+                let off = command.force_n[axis] - left.copysign(from);
+                assert!(off.abs() < 0.1, "{bad} on {axis}, {i}: {command:?}");
             }
-            let both = (70..400).map(|i| tick(i, true)).last().unwrap();
-            assert_eq!(both.force_n, [0.0; 2]);
+            // Both are bad of a rotor that was whirling: slowly, from where the command was.
+            let from = levitation(69)[1 - axis];
+            for i in 1..=300 {
+                let command = tick(69 + i, true);
+                let left = (from - 5.0 * i as f32).max(0.0);
+                assert_eq!(command.force_n[axis], 0.0);
+                let off = command.force_n[1 - axis] - left;
+                assert!(off.abs() < 0.1, "{bad} on {axis}, {i}: {command:?}");
+            }
             // Not known again before the fault is over.
-            assert_eq!(tick(400, false).force_n, [0.0; 2]);
+            assert_eq!(tick(370, false).force_n, [0.0; 2]);
         }
     }
 }
@@ -489,5 +506,25 @@ fn a_dropout_may_or_may_not_use_up_a_number() {
         assert!(supervisor.tick(&repeated).events.contains(Events::SEQUENCE));
         let command = supervisor.tick(&sample(next, [7e-6, 0.0]));
         assert!(!command.events.contains(Events::SEQUENCE));
+    }
+}
+
+/// In shadow a fault of the sensor takes nothing from the levitation command, and what the supervisor would command still leaves
+/// out what the controller makes of the bad coordinate.
+#[test]
+fn in_shadow_a_fault_takes_nothing_from_the_levitation_controller() {
+    let (mut bench, angle) = Bench::whirl(&config());
+    for i in 0..100 {
+        let [_, y] = on_circle(RADIUS_M, angle + WHIRL_STEP * i as f32);
+        bench.sequence += 1;
+        let mut now = sample(bench.sequence, [f32::NAN, y]);
+        now.status |= Status::SHADOW;
+        now.levitation_n = [-800.0, 500.0];
+        let command = bench.supervisor.tick(&now);
+        assert_eq!(command.force_n, now.levitation_n);
+        if i > 70 {
+            assert_eq!(command.mode, Mode::SensorFault);
+            assert_eq!(command.own_n, [0.0, 500.0]);
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! The supervisor's numbers: fixed point against f64, and the self-test's known answers.
 
 use proptest::prelude::*;
-use supervisor::{Q, Scalar, SelfTest, self_test};
+use supervisor::{Events, Q, Scalar, SelfTest, self_test};
 
 /// A unit of Q.
 const LAST: f64 = 1.0 / 4_194_304.0;
@@ -84,7 +84,7 @@ proptest! {
     }
 }
 
-/// The self-test goes through every mode, and its answers are the known ones.
+/// The self-test goes through every mode, and has a drive that does not obey; and its answers are the known ones.
 #[test]
 fn self_test_knows_its_answers() {
     for (name, run, passes) in [
@@ -93,6 +93,8 @@ fn self_test_knows_its_answers() {
         ("Q", SelfTest::run::<Q>(), self_test::<Q>()),
     ] {
         assert_eq!(run.modes, 0b111_1111, "{name}: {run:x?}");
+        let drive = Events::AXIS_LOST | Events::AXIS_BACK;
+        assert!(run.events.contains(drive), "{name}: {run:x?}");
         assert!(passes, "{name}: {run:x?}");
     }
 }

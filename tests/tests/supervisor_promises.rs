@@ -283,7 +283,14 @@ fn whirl_is_braked_along_the_wall() {
 fn sensor_fault_blends_to_zero_and_ends() {
     let mut supervisor = new();
     let mut sequence = 0..;
-    let mut tick = |position_m| supervisor.tick(&sample(sequence.next().unwrap(), position_m));
+    let mut tick = |position_m| {
+        let levitation_n = [900.0, 0.0];
+        let now = sample(sequence.next().unwrap(), position_m);
+        supervisor.tick(&Sample {
+            levitation_n,
+            ..now
+        })
+    };
     for _ in 0..20 {
         assert_eq!(tick([1e-5, 0.0]).mode, Mode::Levitated);
     }
@@ -299,12 +306,12 @@ fn sensor_fault_blends_to_zero_and_ends() {
         .unwrap();
     assert_eq!(fault, 9, "ten ticks");
     assert!(refused[fault].events.contains(Events::SENSOR_FAULT));
-    let forces: Vec<f64> = refused[fault..].iter().map(|c| length(c.force_n)).collect();
-    assert!(forces.windows(2).all(|w| w[1] <= w[0]));
-    assert!(
-        forces[10] > 0.3 * forces[0] && forces[20] == 0.0,
-        "{forces:?}"
-    );
+    // From 900 N, the cap of 1000 N in 20 ticks.
+    for (i, command) in refused[fault..].iter().enumerate() {
+        let left = (900.0 - 50.0 * (i + 1) as f32).max(0.0);
+        assert!((command.force_n[0] - left).abs() < 0.01, "{command:?}");
+        assert_eq!(command.force_n[1], 0.0);
+    }
     let good: Vec<Command> = (0..10).map(|_| tick([1e-5, 0.0])).collect();
     assert!(good[9].events.contains(Events::SENSOR_OK));
     assert_ne!(good[9].mode, Mode::SensorFault);

@@ -169,11 +169,12 @@ typedef int32_t amb_code;
 #define AMB_STATUS_AXIS_X_LOST 0x8u   /**< the drive cannot act along x */
 #define AMB_STATUS_AXIS_Y_LOST 0x10u  /**< the drive cannot act along y */
 #define AMB_STATUS_LATE 0x20u         /**< the last command came too late for its tick: the actuator kept the one before */
-#define AMB_STATUS_SHADOW 0x40u       /**< compute and record, but let the levitation command through */
+#define AMB_STATUS_SHADOW 0x40u       /**< compute and record, but let the levitation command through, within the limits */
 /** @} */
 
 /** @name Modes @{ */
-#define AMB_MODE_LEVITATED 0u      /**< the levitation command goes through bit for bit, but for that of a sample that cannot be */
+#define AMB_MODE_LEVITATED 0u      /**< the levitation command goes through bit for bit, within the limits and along axes that act; but
+                                        for that of a sample that cannot be */
 #define AMB_MODE_APPROACH 1u       /**< contact can no longer be avoided */
 #define AMB_MODE_BOUNCE 2u         /**< touching and leaving again */
 #define AMB_MODE_BACKWARD_WHIRL 3u /**< continuous backward whirl: braking */
@@ -264,7 +265,8 @@ typedef struct amb_sample {
     float position_m[2];   /**< rotor at the sensor, from the centre of the retainer bearing, x and y [m] */
     float spin_rad_s;      /**< spin [rad/s]; used with AMB_STATUS_SPIN_VALID */
     float levitation_n[2]; /**< force that the levitation controller wants [N] */
-    float applied_n[2];    /**< force that the actuator delivers now [N]; used with AMB_STATUS_APPLIED_VALID */
+    float applied_n[2];    /**< what the actuator delivers now of the commanded force [N], without what the firmware adds to
+                              it; used with AMB_STATUS_APPLIED_VALID */
 } amb_sample;
 
 /** What to do until the next tick. */
