@@ -76,7 +76,7 @@ impl<S: Scalar> Drive<S> {
     }
 
     /// Compares the force measured now with the model; `before` is the one of the last tick, and `due` the command.
-    #[inline(never)]
+    #[inline]
     pub(crate) fn watch(
         &mut self,
         now: Vec2<S>,

@@ -158,21 +158,19 @@ impl<S: Scalar> Observer<S> {
     fn deliver(&mut self, actuator: Actuator<S>, coeffs: &Coeffs<S>) -> Vec2<S> {
         let due = actuator.carried(self.due(coeffs));
         let before = actuator.carried(self.delivered);
-        let on = actuator.axes.contains(Facts::ON);
-        if !on {
-            self.drive.switched_off();
+        let measured = actuator.applied();
+        match measured {
+            _ if !actuator.axes.contains(Facts::ON) => self.drive.switched_off(),
+            None => self.drive.unseen(),
+            Some(now) => self.drive.watch(now, (before, due), &actuator, coeffs),
         }
-        let Some(now) = actuator.applied() else {
-            self.drive.unseen();
-            let (modelled, mean) = lagging(before, due, coeffs);
-            self.delivered = modelled;
-            return mean;
-        };
-        self.delivered = now;
-        if on {
-            self.drive.watch(now, (before, due), &actuator, coeffs);
+        if let Some(now) = measured {
+            self.delivered = now;
+            return now + (before - now) * coeffs.applied_weight;
         }
-        now + (before - now) * coeffs.applied_weight
+        let (modelled, mean) = lagging(before, due, coeffs);
+        self.delivered = modelled;
+        mean
     }
 
     /// The command that the actuator works on, which is as old as its delay.

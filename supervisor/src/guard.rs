@@ -5,7 +5,7 @@
 //! in a row since the last good one make a fault, and how many depends on how sure the refusal is.
 
 use crate::coeffs::Coeffs;
-use crate::reading::{Facts, Reading};
+use crate::reading::{Facts, Reading, Verdict};
 use crate::scalar::Scalar;
 use crate::signal::{CoreSample, Events, Refusal, Status};
 use crate::spin::Spin;
@@ -62,30 +62,34 @@ pub(crate) struct Guard<S> {
 }
 
 impl<S: Scalar> Guard<S> {
-    /// `velocity` is the estimate of the last tick, `in_contact` whether it was made without knowing
-    /// the contact force.
+    /// `estimated`: velocity of the last tick, and whether it was made without knowing the contact force.
     #[inline]
     pub(crate) fn judge(
         &mut self,
         (sample, status): (&CoreSample<S>, Status),
-        velocity: Vec2<S>,
-        in_contact: bool,
+        estimated: impl FnOnce() -> (Vec2<S>, bool),
         coeffs: &Coeffs<S>,
     ) -> Reading<S> {
-        let Some(mut facts) = self.as_usual(sample, status, coeffs) else {
-            return self.judge_in_full((sample, status), velocity, in_contact, coeffs);
+        let mut verdict = match self.as_usual(sample, status, coeffs) {
+            Some(facts) => Verdict {
+                facts,
+                ..Verdict::default()
+            },
+            None => {
+                // A copy, so that the usual sample stays in registers.
+                let sample = *sample;
+                self.judge_in_full((&sample, status), estimated(), coeffs)
+            }
         };
-        if is_measured(sample) {
-            facts |= Facts::MEASURED;
+        let measured = Vec2::from_array(sample.applied);
+        if status.contains(Status::APPLIED_VALID) && !measured.exceeds(S::of(MOST_APPLIED)) {
+            verdict.facts |= Facts::MEASURED;
         }
         Reading {
-            facts,
+            verdict,
             sample: Vec2::from_array(sample.position),
-            measured: Vec2::from_array(sample.applied),
+            measured,
             spin: Spin::of(sample),
-            missed: 0,
-            refusal: Refusal::None,
-            events: Events::empty(),
         }
     }
 
@@ -124,16 +128,15 @@ impl<S: Scalar> Guard<S> {
     fn judge_in_full(
         &mut self,
         (sample, status): (&CoreSample<S>, Status),
-        velocity: Vec2<S>,
-        in_contact: bool,
+        (velocity, in_contact): (Vec2<S>, bool),
         coeffs: &Coeffs<S>,
-    ) -> Reading<S> {
+    ) -> Verdict {
         if core::mem::take(&mut self.still_is_old) {
             // What the usual way leaves out: since then every sample has changed in both coordinates.
             self.still.last = self.last_good.map(|(last, _)| last);
             self.still.way = Vec2::ZERO;
         }
-        let mut facts = facts_of(sample, status);
+        let mut facts = facts_of(status);
         let (repeated, gap, mut events) = self.sequence(sample.sequence);
         let anew = gap > MAX_MISSED;
         let missed = if anew { 0 } else { gap };
@@ -195,14 +198,11 @@ impl<S: Scalar> Guard<S> {
         } else {
             Facts::empty()
         };
-        Reading {
-            facts,
-            sample: position,
-            measured: Vec2::from_array(sample.applied),
-            spin: Spin::of(sample),
-            missed,
-            refusal,
+        Verdict {
             events,
+            facts,
+            refusal,
+            missed: missed as u8,
         }
     }
 
@@ -327,7 +327,7 @@ fn bad_coordinates<S: Scalar>(position: Vec2<S>, most: S) -> Facts {
 }
 
 /// What the status bits say.
-fn facts_of<S: Scalar>(sample: &CoreSample<S>, status: Status) -> Facts {
+fn facts_of(status: Status) -> Facts {
     let pairs = [
         (Status::BEARING_ON, Facts::ON),
         (Status::AXIS_X_LOST, Facts::X_LOST),
@@ -340,17 +340,7 @@ fn facts_of<S: Scalar>(sample: &CoreSample<S>, status: Status) -> Facts {
             facts |= fact;
         }
     }
-    if is_measured(sample) {
-        facts |= Facts::MEASURED;
-    }
     facts
-}
-
-/// Whether the applied force is measured and can be believed.
-#[inline]
-fn is_measured<S: Scalar>(sample: &CoreSample<S>) -> bool {
-    sample.status.contains(Status::APPLIED_VALID)
-        && !Vec2::from_array(sample.applied).exceeds(S::of(MOST_APPLIED))
 }
 
 /// What of a speed is beyond a doubt of this size.

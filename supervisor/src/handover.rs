@@ -18,7 +18,7 @@ pub(crate) fn faded<S: Scalar>(
     bouncing: bool,
     (last, levitation): (Vec2<S>, Vec2<S>),
     facts: Facts,
-    room: &Room<S>,
+    room: Room<S>,
     coeffs: &Coeffs<S>,
 ) -> Vec2<S> {
     let step = if bouncing && facts.contains(Facts::BOTH_BAD) {

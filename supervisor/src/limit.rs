@@ -37,17 +37,17 @@ impl<S: Scalar> Room<S> {
     }
 
     /// Cap of x and of y, 0 for an axis that is lost.
-    fn axes(&self) -> [S; 2] {
+    fn axes(self) -> [S; 2] {
         (self.axes.carried(Vec2::new(self.axis, self.axis))).to_array()
     }
 
     /// Whether a force is in the room; not if it is no number.
     #[inline]
-    fn holds(&self, force: Vec2<S>) -> bool {
+    fn holds(self, force: Vec2<S>) -> bool {
         !force.exceeds(self.cap) && (!self.boxed || self.in_box(force))
     }
 
-    fn in_box(&self, force: Vec2<S>) -> bool {
+    fn in_box(self, force: Vec2<S>) -> bool {
         let [x, y] = self.axes();
         force.x.size() <= x && force.y.size() <= y
     }
@@ -55,7 +55,7 @@ impl<S: Scalar> Room<S> {
     /// Largest s in [0, 1] with sum + s·part in the room, for a sum in it and a part that is too long; and
     /// whether the box says so. A hair inside, or rounding would have to be undone.
     #[inline]
-    fn share(&self, sum: Vec2<S>, part: Vec2<S>) -> (S, bool) {
+    fn share(self, sum: Vec2<S>, part: Vec2<S>) -> (S, bool) {
         let cap = self.cap * S::JUST_BELOW_ONE;
         let disc = if sum == Vec2::ZERO {
             // Squares of a small cap would be nothing in fixed point.
@@ -76,7 +76,7 @@ impl<S: Scalar> Room<S> {
 /// what it is good for. Once a part is cut nothing is left: what pointed back into the room would take from
 /// what comes first.
 #[inline]
-pub(crate) fn allocate<S: Scalar>(wanted: &Wanted<S>, room: &Room<S>) -> (Vec2<S>, Limits) {
+pub(crate) fn allocate<S: Scalar>(wanted: &Wanted<S>, room: Room<S>) -> (Vec2<S>, Limits) {
     if room.axes.has_lost() {
         return (on_what_is_left(wanted, room), Limits::AXIS_CAP);
     }
@@ -109,7 +109,7 @@ pub(crate) fn allocate<S: Scalar>(wanted: &Wanted<S>, room: &Room<S>) -> (Vec2<S
 /// the axis with the sign of f̂ would take most, but u = f̂·|f̂| is the whole along the aim, and across it next
 /// to nothing.
 #[inline(never)]
-fn on_what_is_left<S: Scalar>(wanted: &Wanted<S>, room: &Room<S>) -> Vec2<S> {
+fn on_what_is_left<S: Scalar>(wanted: &Wanted<S>, room: Room<S>) -> Vec2<S> {
     let along = |lost: Facts, aim: S, damping: S, restoring: S| {
         if room.axes.contains(lost) {
             return S::ZERO;
@@ -163,7 +163,7 @@ fn axis_share<S: Scalar>(cap: S, sum: S, part: S) -> S {
 
 /// A levitation command within finite bounds, and whether it had to be changed.
 #[inline]
-pub(crate) fn levitation<S: Scalar>(command: Vec2<S>, room: &Room<S>) -> (Vec2<S>, Limits) {
+pub(crate) fn levitation<S: Scalar>(command: Vec2<S>, room: Room<S>) -> (Vec2<S>, Limits) {
     if room.holds(command) {
         (command, Limits::empty())
     } else {
@@ -172,7 +172,7 @@ pub(crate) fn levitation<S: Scalar>(command: Vec2<S>, room: &Room<S>) -> (Vec2<S
 }
 
 #[cold]
-fn clamped<S: Scalar>(command: Vec2<S>, room: &Room<S>) -> (Vec2<S>, Limits) {
+fn clamped<S: Scalar>(command: Vec2<S>, room: Room<S>) -> (Vec2<S>, Limits) {
     let number = if command.length_squared() < S::FAR_SQUARE {
         command
     } else {
@@ -198,7 +198,7 @@ fn clamped<S: Scalar>(command: Vec2<S>, room: &Room<S>) -> (Vec2<S>, Limits) {
 /// A force that does not fit, in its direction but for an axis that is lost: that one takes nothing
 /// away from the other.
 #[cold]
-fn scaled<S: Scalar>(force: Vec2<S>, room: &Room<S>) -> (Vec2<S>, Limits) {
+fn scaled<S: Scalar>(force: Vec2<S>, room: Room<S>) -> (Vec2<S>, Limits) {
     let mut limits = Limits::empty();
     let [x, y] = room.axes();
     let on = |cap: S, v: S| if cap > S::ZERO { v } else { S::ZERO };
@@ -224,7 +224,7 @@ fn scaled<S: Scalar>(force: Vec2<S>, room: &Room<S>) -> (Vec2<S>, Limits) {
 
 /// The last word on a force of the supervisor's own: finite and within the caps, whatever came before.
 #[inline]
-pub(crate) fn last_word<S: Scalar>(wanted: Vec2<S>, room: &Room<S>) -> (Vec2<S>, Limits) {
+pub(crate) fn last_word<S: Scalar>(wanted: Vec2<S>, room: Room<S>) -> (Vec2<S>, Limits) {
     if room.holds(wanted) {
         (wanted, Limits::empty())
     } else {
@@ -235,12 +235,12 @@ pub(crate) fn last_word<S: Scalar>(wanted: Vec2<S>, room: &Room<S>) -> (Vec2<S>,
 /// The command of the tick before, within what the caps are now.
 #[cold]
 #[inline(never)]
-pub(crate) fn kept<S: Scalar>(last: Vec2<S>, room: &Room<S>) -> (Vec2<S>, Limits) {
+pub(crate) fn kept<S: Scalar>(last: Vec2<S>, room: Room<S>) -> (Vec2<S>, Limits) {
     last_word(last, room)
 }
 
 #[cold]
-fn beyond_room<S: Scalar>(wanted: Vec2<S>, room: &Room<S>) -> (Vec2<S>, Limits) {
+fn beyond_room<S: Scalar>(wanted: Vec2<S>, room: Room<S>) -> (Vec2<S>, Limits) {
     if wanted.length_squared() < S::FAR_SQUARE {
         scaled(wanted, room)
     } else {

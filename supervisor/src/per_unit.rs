@@ -11,7 +11,7 @@ use crate::handover::Readiness;
 use crate::law::View;
 use crate::limit::{Budget, Room};
 use crate::phase::Phase;
-use crate::reading::{Facts, Reading};
+use crate::reading::{Actuator, Facts, Verdict};
 use crate::recorder::{QueuedEvent, Record, Recorder};
 use crate::scalar::Scalar;
 use crate::severity::Severity;
@@ -24,12 +24,15 @@ use crate::{handover, limit};
 
 /// Supervisor of one bearing plane in clearances and force caps, for a number `S`, with a flight record of
 /// `RECORD` ticks (a power of two). [`Config::scaling`] says what the units are.
+///
+/// The order of the fields is kept: what a tick works with is within reach of one base register, and the long ring
+/// of the recorder comes last.
 #[derive(Debug, Clone)]
+#[repr(C)]
 pub struct Core<S: Scalar, const RECORD: usize = 512> {
     coeffs: Coeffs<S>,
     guard: Guard<S>,
     observer: Observer<S>,
-    detector: Detector,
     classifier: Classifier<S>,
     readiness: Readiness<S>,
     phase: Phase<S>,
@@ -39,6 +42,7 @@ pub struct Core<S: Scalar, const RECORD: usize = 512> {
     force: Vec2<S>,
     /// … and what would have been it, which is the same but in shadow.
     own: Vec2<S>,
+    detector: Detector,
     refusal: Refusal,
     reconfigured: bool,
     recorder: Recorder<RECORD>,
@@ -113,7 +117,7 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
         self.reconfigured = true;
         // A cap that is smaller now holds at once; what the budget leaves of it is come down to by the slew limit, as ever.
         let room = Room::below(S::ONE, Facts::empty(), &self.coeffs);
-        let held = |last: Vec2<S>| limit::levitation(last * S::of(force), &room).0;
+        let held = |last: Vec2<S>| limit::levitation(last * S::of(force), room).0;
         (self.force, self.own) = (held(self.force), held(self.own));
     }
 
@@ -123,16 +127,19 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
     pub fn tick(&mut self, sample: &CoreSample<S>) -> CoreCommand<S> {
         let coeffs = &self.coeffs;
         let pinned = matches!(self.phase, Phase::Pinned { .. });
-        let wall = self.detector.wall(pinned);
-        let blind = wall != Wall::Nothing;
         // An axis that does not obey is as good as lost.
         let status = sample.status | self.observer.drive.lost(sample.status);
-        let velocity = self.observer.velocity();
-        let reading = (self.guard).judge((sample, status), velocity, blind, coeffs);
-        self.refusal = reading.refusal;
+        let estimated = || {
+            let blind = self.detector.wall(pinned) != Wall::Nothing;
+            (self.observer.velocity(), blind)
+        };
+        let reading = (self.guard).judge((sample, status), estimated, coeffs);
+        let verdict = reading.verdict;
+        let facts = verdict.facts;
+        self.refusal = verdict.refusal;
         let spin = (reading.spin, sample.spin);
-        if reading.is(Facts::UNUSUAL) {
-            self.catch_up(&reading, spin, wall);
+        if facts.intersects(Facts::UNUSUAL) {
+            self.catch_up(verdict, reading.actuator(), spin, pinned);
         }
         let coeffs = &self.coeffs;
         let (position, actuator) = (reading.position(), reading.actuator());
@@ -154,7 +161,7 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
             }
         }
         let patience = (calm, self.readiness.ready());
-        let (phase, events) = (self.phase).next(&found, patience, class, &reading, coeffs);
+        let (phase, events) = (self.phase).next(&found, patience, class, facts, coeffs);
         self.phase = phase;
         let mode = phase.mode();
 
@@ -181,24 +188,24 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
             // What it makes of a coordinate that is none takes no room from the other.
             let bad = mode == Mode::SensorFault;
             let command = if bad {
-                reading.facts.sensed(command, Vec2::ZERO)
+                facts.sensed(command, Vec2::ZERO)
             } else {
                 command
             };
-            limit::levitation(command, &room)
+            limit::levitation(command, room)
         } else {
             (Vec2::ZERO, Limits::empty())
         };
         let (target, bound) = if mode == Mode::Levitated {
             self.readiness = Readiness::default();
-            if position.is_none() && reading.is(Facts::ON) && reading.refusal.is_wrong() {
+            if position.is_none() && facts.contains(Facts::ON) && verdict.refusal.is_wrong() {
                 // What the controller makes of such a sample does not go through.
-                limit::kept(last, &room)
+                limit::kept(last, room)
             } else {
                 (levitation, levitation_limits)
             }
         } else {
-            let (wanted, mut own_limits) = limit::allocate(&view.wanted(phase), &room);
+            let (wanted, mut own_limits) = limit::allocate(&view.wanted(phase), room);
             if holds {
                 // The controller has to ask for what the rotor is really held with.
                 let held = actuator.applied().unwrap_or(wanted);
@@ -208,20 +215,20 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
             let blended = match phase {
                 Phase::SensorFault { bouncing } => {
                     own_limits = levitation_limits;
-                    handover::faded(bouncing, (last, levitation), reading.facts, &room, coeffs)
+                    handover::faded(bouncing, (last, levitation), facts, room, coeffs)
                 }
                 Phase::Handover { weight } => wanted * (S::ONE - weight) + levitation * weight,
                 _ => wanted,
             };
-            let (target, bound) = limit::last_word(blended, &room);
+            let (target, bound) = limit::last_word(blended, room);
             (target, own_limits | bound)
         };
         let (own, slew) = limit::slewed(target, last, coeffs);
         let mut limits = bound | slew;
         self.own = own;
-        let mut integrator = handover::integrator_hint(phase, calm, reading.is(Facts::ON));
+        let mut integrator = handover::integrator_hint(phase, calm, facts.contains(Facts::ON));
         if shadow {
-            let (levitation, _) = limit::levitation(command, &room);
+            let (levitation, _) = limit::levitation(command, room);
             (self.force, _) = limit::slewed(levitation, self.force, coeffs);
             integrator = IntegratorHint::Run;
             self.observer.drive.switched_off();
@@ -235,9 +242,9 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
         let acting = actuator.applied().unwrap_or(self.force);
         self.budget.spend(S::ONE, acting, coeffs);
         let assessment =
-            (self.severity).assess(mode, &view, &reading, (acting, self.observer.velocity()));
+            (self.severity).assess(mode, &view, facts, (acting, self.observer.velocity()));
 
-        let mut events = events | reading.events | assessment.events;
+        let mut events = events | verdict.events | assessment.events;
         if core::mem::take(&mut self.reconfigured) {
             events |= Events::RECONFIGURED;
         }
@@ -263,21 +270,23 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
     /// What a tick has to make up for: commands that came too late, ticks that were missed, an estimate that
     /// cannot go on.
     #[cold]
-    fn catch_up(&mut self, reading: &Reading<S>, spin: (Spin, S), wall: Wall) {
-        if reading.is(Facts::LATE) {
+    fn catch_up(&mut self, verdict: Verdict, actuator: Actuator<S>, spin: (Spin, S), pinned: bool) {
+        let facts = verdict.facts;
+        if facts.contains(Facts::LATE) {
             self.observer.late();
         }
-        if reading.missed > 0 {
-            let actuator = reading.actuator();
+        if verdict.missed > 0 {
+            let missed = u32::from(verdict.missed);
             let coeffs = &self.coeffs;
-            (self.observer).bridge(reading.missed, self.force, (spin, wall), actuator, coeffs);
-            (self.budget).spend(S::count(reading.missed), self.force, coeffs);
+            let wall = self.detector.wall(pinned);
+            (self.observer).bridge(missed, self.force, (spin, wall), actuator, coeffs);
+            (self.budget).spend(S::count(missed), self.force, coeffs);
         }
-        let lost = reading.is(Facts::FAULTY) && !reading.is(Facts::USED);
-        if reading.is(Facts::ANEW | Facts::MISSED) {
+        let lost = facts.contains(Facts::FAULTY) && !facts.contains(Facts::USED);
+        if facts.intersects(Facts::ANEW | Facts::MISSED) {
             self.observer.drive.unseen();
         }
-        if reading.is(Facts::ANEW) || lost {
+        if facts.contains(Facts::ANEW) || lost {
             self.observer.forget();
             self.classifier.forget();
         }

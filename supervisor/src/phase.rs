@@ -10,7 +10,7 @@
 use crate::classify::Class;
 use crate::coeffs::Coeffs;
 use crate::detect::Findings;
-use crate::reading::{Facts, Reading};
+use crate::reading::Facts;
 use crate::scalar::Scalar;
 use crate::signal::{Events, Mode};
 
@@ -55,11 +55,11 @@ impl<S: Scalar> Phase<S> {
         found: &Findings<S>,
         (calm, ready): (bool, bool),
         class: Class,
-        reading: &Reading<S>,
+        facts: Facts,
         coeffs: &Coeffs<S>,
     ) -> (Self, Events) {
-        let next = if reading.is(Facts::ON) {
-            self.follow(found, (calm, ready), class, reading.facts, coeffs)
+        let next = if facts.contains(Facts::ON) {
+            self.follow(found, (calm, ready), class, facts, coeffs)
         } else {
             Self::Levitated
         };

@@ -101,23 +101,29 @@ impl<S: Scalar> Actuator<S> {
     }
 }
 
+/// What the guard says of a sample.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Verdict {
+    pub(crate) events: Events,
+    pub(crate) facts: Facts,
+    pub(crate) refusal: Refusal,
+    /// Ticks since the last call that the observer has to make up for.
+    pub(crate) missed: u8,
+}
+
 /// A sample after judgement, per unit.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Reading<S> {
-    pub(crate) facts: Facts,
+    pub(crate) verdict: Verdict,
     pub(crate) sample: Vec2<S>,
     pub(crate) measured: Vec2<S>,
     pub(crate) spin: Spin,
-    /// Ticks since the last call that the observer has to make up for.
-    pub(crate) missed: u32,
-    pub(crate) refusal: Refusal,
-    pub(crate) events: Events,
 }
 
 impl<S: Scalar> Reading<S> {
     #[inline]
     pub(crate) fn is(&self, fact: Facts) -> bool {
-        self.facts.intersects(fact)
+        self.verdict.facts.intersects(fact)
     }
 
     /// `None`: not to be used; the observer runs on its model.
@@ -129,7 +135,7 @@ impl<S: Scalar> Reading<S> {
     #[inline]
     pub(crate) fn actuator(&self) -> Actuator<S> {
         Actuator {
-            axes: self.facts,
+            axes: self.verdict.facts,
             measured: self.measured,
         }
     }

@@ -61,7 +61,7 @@ pub trait Scalar:
     fn count(ticks: u32) -> Self;
     /// Its bits, for a hash; the two halves together where there are more than 32.
     fn bits(self) -> u32;
-    /// In units of 1/4096, rounded, saturating at ±8; NaN saturates, too.
+    /// In units of 1/4096, rounded, saturating at ±8. NaN, which nothing that is recorded is, saturates at either end.
     fn packed(self) -> i16;
 
     /// Held between `low` and `high` (`low` ≤ `high`); NaN becomes `low`.
@@ -121,7 +121,7 @@ pub struct Compensated<S> {
 }
 
 macro_rules! floating_point {
-    ($type:ident, $known_answer:literal) => {
+    ($type:ident, $bits:ident, $known_answer:literal) => {
         impl Scalar for $type {
             type Slow = Compensated<$type>;
             const ZERO: Self = 0.0;
@@ -168,6 +168,10 @@ macro_rules! floating_point {
                 self / divisor
             }
             #[inline]
+            fn size(self) -> Self {
+                self.abs()
+            }
+            #[inline]
             fn count(ticks: u32) -> Self {
                 ticks as $type
             }
@@ -178,16 +182,13 @@ macro_rules! floating_point {
             }
             #[inline]
             fn packed(self) -> i16 {
-                // Added to a number whose last digit is 1/4096 it ends in the low bits: a quarter of the
-                // instructions of a conversion that saturates.
+                // Added to a number whose last digit is 1/4096 it ends in the low bits; what is too far for that is
+                // farther still in the bits of the sum. A third of the instructions of a conversion that saturates.
                 const DIGITS: $type = 1.5 * ((1_u64 << ($type::MANTISSA_DIGITS - 1 - 12)) as $type);
-                if self < 7.999_8 {
-                    if self > -7.999_8 {
-                        return (self + DIGITS).to_bits() as i16;
-                    }
-                    return i16::MIN;
-                }
-                i16::MAX
+                let sum = (self + DIGITS).to_bits() as $bits;
+                let [low, high] = [i16::MIN, i16::MAX].map($bits::from);
+                sum.saturating_sub(DIGITS.to_bits() as $bits)
+                    .clamp(low, high) as i16
             }
         }
 
@@ -223,8 +224,8 @@ macro_rules! floating_point {
     };
 }
 
-floating_point!(f32, 0x1611_2437);
-floating_point!(f64, 0xCBF7_A295);
+floating_point!(f32, i32, 0x1611_2437);
+floating_point!(f64, i64, 0xCBF7_A295);
 
 /// Reciprocal square roots by Newton's method, from + − × only: every target gives the same bits. `core`
 /// has no root, and libm's costs three times as many instructions where there is an FPU. 0 below 1e-30

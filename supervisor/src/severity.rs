@@ -5,7 +5,7 @@ use crate::coeffs::Coeffs;
 use crate::course::sum_of_impacts;
 use crate::detect::Findings;
 use crate::law::View;
-use crate::reading::{Facts, Reading};
+use crate::reading::Facts;
 use crate::scalar::{Scalar, Slow};
 use crate::signal::{Events, Limits, Mode, Report};
 use crate::vec2::Vec2;
@@ -35,6 +35,7 @@ pub(crate) struct Severity<S: Scalar> {
 }
 
 /// What a tick has to report.
+#[derive(Default)]
 pub(crate) struct Assessment<S> {
     /// Predicted backward speed over the whirl limit.
     pub(crate) severity: S,
@@ -44,34 +45,41 @@ pub(crate) struct Assessment<S> {
 
 impl<S: Scalar> Severity<S> {
     /// `force` is the one that acts \[caps\], `velocity` that of the axis: it is the axis that touches.
-    #[inline(never)]
+    #[inline]
     pub(crate) fn assess(
         &mut self,
         mode: Mode,
         view: &View<'_, S>,
-        reading: &Reading<S>,
+        facts: Facts,
         (force, velocity): (Vec2<S>, Vec2<S>),
     ) -> Assessment<S> {
-        let mut result = Assessment {
-            severity: S::ZERO,
-            limits: Limits::empty(),
-            events: Events::empty(),
-        };
-        let (found, coeffs) = (view.found, view.coeffs);
         let before = core::mem::replace(&mut self.before, velocity);
-        if !reading.is(Facts::ON) {
+        if !facts.contains(Facts::ON) {
             self.coast_down = false;
         }
         match mode {
             Mode::Levitated => {
                 self.landed = false;
                 self.beyond_ticks = 0;
-                return result;
+                Assessment::default()
             }
             // What is not measured is not counted.
-            Mode::SensorFault => return result,
-            _ => {}
+            Mode::SensorFault => Assessment::default(),
+            _ => self.engaged(view, facts, (force, before)),
         }
+    }
+
+    /// `before` is the velocity of the axis at the last tick. On its own: within the tick it saves next to nothing, and
+    /// costs stack.
+    #[inline(never)]
+    fn engaged(
+        &mut self,
+        view: &View<'_, S>,
+        facts: Facts,
+        (force, before): (Vec2<S>, Vec2<S>),
+    ) -> Assessment<S> {
+        let mut result = Assessment::default();
+        let (found, coeffs) = (view.found, view.coeffs);
         // The speed of a first sample is a guess.
         let backward = if view.motion.fresh {
             S::ZERO
@@ -79,7 +87,7 @@ impl<S: Scalar> Severity<S> {
             view.spin.backward(found.tangential_speed)
         };
         let coming = if found.touching {
-            if reading.is(Facts::USED) {
+            if facts.contains(Facts::USED) {
                 self.contact(before, backward, found, force, coeffs);
             }
             let outward = found.radial_speed.or_more(S::ZERO);
@@ -97,7 +105,7 @@ impl<S: Scalar> Severity<S> {
         result.severity = severity.or_less(S::of(MOST_SEVERITY));
 
         let beyond = backward * coeffs.per_whirl_limit > S::ONE;
-        if beyond && found.touching && reading.is(Facts::USED) {
+        if beyond && found.touching && facts.contains(Facts::USED) {
             result.limits |= Limits::BEYOND_WHIRL_LIMIT;
             self.beyond_ticks = self.beyond_ticks.saturating_add(1);
         } else if !beyond {

@@ -47,16 +47,18 @@ impl<const RECORD: usize> Supervisor<RECORD> {
         // Transparent means bit for bit: what the core left alone does not come back from per unit. A lost axis
         // gets nothing, also where a command is so small that per unit it is nothing. (Scaled as a whole before:
         // chosen number by number, x86-64 got vectors with integers in spare lanes, subnormal as floats and slow.)
-        for (axis, lost) in Status::LOST_AXES.into_iter().enumerate() {
-            if !sample.status.contains(lost) {
-                let same = |force: [f32; 2]| force[axis] == levitation[axis];
-                if same(command.force) {
-                    newtons.force_n[axis] = sample.levitation_n[axis];
-                }
-                if same(command.own) {
-                    newtons.own_n[axis] = sample.levitation_n[axis];
+        let as_asked = |newtons: &mut [f32; 2], force: [f32; 2]| {
+            for (axis, lost) in Status::LOST_AXES.into_iter().enumerate() {
+                if force[axis] == levitation[axis] && !sample.status.contains(lost) {
+                    newtons[axis] = sample.levitation_n[axis];
                 }
             }
+        };
+        as_asked(&mut newtons.force_n, command.force);
+        if sample.status.contains(Status::SHADOW) {
+            as_asked(&mut newtons.own_n, command.own);
+        } else {
+            newtons.own_n = newtons.force_n;
         }
         newtons
     }

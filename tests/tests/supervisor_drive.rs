@@ -55,6 +55,14 @@ impl Bench {
 
 const OBEYS: Makes = |force| force;
 
+/// A sample of a rotor in the middle, with a measured force.
+fn in_the_middle(sequence: u32) -> Sample {
+    let position_m = [5, 7].map(|turns| 1e-6 * (sequence % turns) as f32);
+    let mut now = sample(sequence, position_m);
+    now.status |= Status::APPLIED_VALID;
+    now
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..ProptestConfig::default() })]
 
@@ -72,10 +80,8 @@ proptest! {
         for (levitation_n, ticks) in commands {
             for _ in 0..ticks {
                 bench.sequence += 1;
-                // A rotor in the middle: the levitation controller commands what it likes.
-                let position_m = [1e-6 * (bench.sequence % 5) as f32, 1e-6 * (bench.sequence % 7) as f32];
-                let mut now = sample(bench.sequence, position_m);
-                now.status |= Status::APPLIED_VALID;
+                // The levitation controller commands what it likes.
+                let now = in_the_middle(bench.sequence);
                 let applied_n = bench.delivered_n;
                 let command = bench.supervisor.tick(&Sample { levitation_n, applied_n, ..now });
                 prop_assert!(!command.events.contains(Events::AXIS_LOST), "{:?}", command);
@@ -104,12 +110,10 @@ fn left_alone(with: &Config) {
     let mut delivered_n = [0.0_f32; 2];
     for i in 0..4000_u32 {
         let full = if i / 400 % 2 == 0 { 900.0 } else { -900.0 };
-        let mut now = sample(i, [1e-6 * (i % 5) as f32, 1e-6 * (i % 7) as f32]);
-        now.status |= Status::APPLIED_VALID;
         let command = supervisor.tick(&Sample {
             levitation_n: [full, 100.0],
             applied_n: delivered_n,
-            ..now
+            ..in_the_middle(i)
         });
         assert!(!command.events.contains(Events::AXIS_LOST), "{i}");
         for (delivered_n, to) in delivered_n.iter_mut().zip(command.force_n) {
@@ -181,16 +185,12 @@ fn an_axis_that_does_not_obey_gets_nothing_for_a_while() {
 /// Nothing is said of a drive whose force is not measured, or which is off.
 #[test]
 fn what_is_not_measured_is_not_judged() {
-    for (status, off) in [
-        (Status::empty(), Status::empty()),
-        (Status::APPLIED_VALID, Status::BEARING_ON),
-    ] {
+    for without in [Status::APPLIED_VALID, Status::BEARING_ON] {
         let mut bench = Bench::new(&config(), 1.6e-4, 1);
         for _ in 0..400 {
             bench.sequence += 1;
-            let mut now = sample(bench.sequence, [1e-6 * (bench.sequence % 5) as f32, 1e-6]);
-            now.status |= status;
-            now.status -= off;
+            let mut now = in_the_middle(bench.sequence);
+            now.status -= without;
             let command = bench.supervisor.tick(&Sample {
                 levitation_n: [900.0, -300.0],
                 applied_n: [-900.0, 300.0],
@@ -224,9 +224,7 @@ fn what_the_bearing_carries_at_first_is_believed() {
             let mut sequence = 0;
             let mut tick = |levitation_n, applied_n, without| {
                 sequence += 1;
-                let position_m = [1e-6 * (sequence % 5) as f32, 1e-6 * (sequence % 7) as f32];
-                let mut now = sample(sequence, position_m);
-                now.status |= Status::APPLIED_VALID;
+                let mut now = in_the_middle(sequence);
                 now.status -= without;
                 let command = supervisor.tick(&Sample {
                     levitation_n,
@@ -259,8 +257,7 @@ fn an_axis_that_is_reported_lost_is_not_judged() {
     let mut supervisor = Supervisor::<64>::new(&with).unwrap();
     let mut applied_n = [900.0, 0.0];
     for i in 0..200 {
-        let mut now = sample(i, [1e-6 * (i % 5) as f32, 1e-6 * (i % 7) as f32]);
-        now.status |= Status::APPLIED_VALID;
+        let mut now = in_the_middle(i);
         let lost = (100..120).contains(&i);
         now.status.set(Status::AXIS_X_LOST, lost);
         let command = supervisor.tick(&Sample {
@@ -268,9 +265,9 @@ fn an_axis_that_is_reported_lost_is_not_judged() {
             applied_n,
             ..now
         });
-        // Slowly down while it is lost, and up again.
-        let to = if lost { 0.0 } else { 900.0 };
-        applied_n[0] += (to - applied_n[0]) * 0.1;
+        // Down while it is lost, so slowly that it would count as disobedience, and up again.
+        let (to, share) = if lost { (0.0, 0.03) } else { (900.0, 0.1) };
+        applied_n[0] += (to - applied_n[0]) * share;
         assert_eq!(command.force_n[0], to, "{i}");
         assert_eq!(command.events.contains(Events::AXIS_LOST), i == 100);
     }

@@ -123,10 +123,10 @@ fn calls_need_little_stack() {
     };
     // What the page says, and no more than a tenth less of it.
     for (call, most) in [
-        ("init", 1772),
-        ("tick", 608),
+        ("init", 1524),
+        ("tick", 560),
         ("reconfigure", 1176),
-        ("self-test", 1632),
+        ("self-test", 1592),
     ] {
         let needed = bytes(call);
         assert!(needed <= most && 10 * needed >= 9 * most, "{call}: {said}");
