@@ -39,8 +39,11 @@ fn a_processor_without_an_image_for_the_loop_is_named() {
     assert!(error.contains("M0 Q has no image for the loop"), "{error}");
 }
 
-/// What an image has logged, level and text, by what its file says of its log.
-fn logged(image: &Path, output: &[u8]) -> Vec<(String, String)> {
+/// Level and text of each line.
+type Log = Vec<(String, String)>;
+
+/// What an image has logged, by what its file says of its log.
+fn logged(image: &Path, output: &[u8]) -> Log {
     let file = std::fs::read(image).unwrap();
     let table = Table::parse(&file).unwrap().expect("it logs");
     let mut decoder = table.new_stream_decoder();
@@ -58,34 +61,43 @@ fn logged(image: &Path, output: &[u8]) -> Vec<(String, String)> {
     }
 }
 
+/// Log of the example firmware on all processors with an FPU, at 2^shift nanoseconds an instruction.
+/// Floats in software take longer than a period: the background would never have its turn. `None`: skipped.
+fn logs_of_the_example(shift: u8) -> Option<Vec<Log>> {
+    if let Err(why @ EmulatorError::Missing) = version() {
+        skipped(&why.to_string());
+        return None;
+    }
+    let with_fpu = |m: &Machine| m.target.ends_with("eabihf");
+    let mut logs = Vec::new();
+    for machine in MACHINES.into_iter().filter(with_fpu) {
+        assert!(build_images(machine.target, &[])?.status.success());
+        let project = Project::around(&root()).unwrap();
+        let image = project.image(machine.target, "timer-interrupt");
+        let folder = tempfile::tempdir().unwrap();
+        let time = Time::Counted { shift };
+        let limit = Duration::from_secs(60);
+        let output = output_of(&machine, &image, folder.path(), time, limit).unwrap();
+        logs.push(logged(&image, &output));
+    }
+    Some(logs)
+}
+
+/// What happened by a log, after the numbers of the ticks.
+fn happened(log: &Log) -> Vec<&str> {
+    (log.iter())
+        .filter_map(|(_, text)| text.strip_prefix("tick ")?.split_once(": "))
+        .map(|(_, text)| text)
+        .collect()
+}
+
 /// The example firmware keeps its 20 kHz at 125 million instructions a second, sees the landing, logs all that happens
 /// in its order, and picks up a record that is intact.
 #[test]
 fn the_example_firmware_records_a_landing() {
-    if let Err(why @ EmulatorError::Missing) = version() {
-        return skipped(&why.to_string());
-    }
-    // Floats in software take longer than a period: the background would never have its turn.
-    let with_fpu = |m: &Machine| m.target.ends_with("eabihf");
-    for machine in MACHINES.into_iter().filter(with_fpu) {
-        let Some(output) = build_images(machine.target, &[]) else {
-            return;
-        };
-        assert!(output.status.success());
-        let project = Project::around(&root()).unwrap();
-        let image = project.image(machine.target, "timer-interrupt");
-        let folder = tempfile::tempdir().unwrap();
-        // 8 ns an instruction.
-        let time = Time::Counted { shift: 3 };
-        let limit = Duration::from_secs(60);
-        let output = output_of(&machine, &image, folder.path(), time, limit).unwrap();
-        let log = logged(&image, &output);
-        let happened: Vec<&str> = (log.iter())
-            .filter_map(|(_, text)| text.strip_prefix("tick ")?.split_once(": "))
-            .map(|(_, text)| text)
-            .collect();
+    for log in logs_of_the_example(3).unwrap_or_default() {
         assert_eq!(
-            happened,
+            happened(&log),
             [
                 "ENGAGED, Approach",
                 "TOUCHED, Bounce",
@@ -108,5 +120,24 @@ fn the_example_firmware_records_a_landing() {
             report.starts_with("Report { landings: 1, impacts: 1, "),
             "{report}"
         );
+        assert!(report.contains("late_ticks: 0, "), "{report}");
+    }
+}
+
+/// At a quarter of that pace the ticks of the landing last longer than a period: they are told to be late and counted, their
+/// events fill the queue, and the landing is recorded all the same. Back at rest the firmware keeps its pace.
+#[test]
+fn the_example_firmware_tells_that_it_is_late() {
+    for log in logs_of_the_example(5).unwrap_or_default() {
+        let [.., frozen, (_, record), (_, report)] = log.as_slice() else {
+            panic!("{log:?}")
+        };
+        assert!(frozen.1.contains("RECORD_FROZEN | QUEUE_FULL"), "{log:?}");
+        assert_eq!(record, "record of version 2, 512 ticks, intact");
+        assert!(report.starts_with("Report { landings: 1, "), "{report}");
+        let (_, late) = report.split_once("late_ticks: ").unwrap();
+        let late: u32 = late.split(',').next().unwrap().parse().unwrap();
+        // From the way to the wall to the way back: 40, 120 and 100 ticks.
+        assert!((120..=260).contains(&late), "{report}");
     }
 }

@@ -10,6 +10,7 @@
 #[cfg(target_os = "none")]
 mod firmware {
     use core::cell::RefCell;
+    use cortex_m::peripheral::SYST;
     use cortex_m::peripheral::syst::SystClkSource;
     use cortex_m_rt::{entry, exception};
     use critical_section::Mutex;
@@ -60,13 +61,16 @@ mod firmware {
     };
     const CLEARANCE_M: f32 = 2e-4;
 
-    /// What interrupt and background share. `None` until `main` has put it there: the timer starts after that. By
+    /// What interrupt and background share. `None` until `main` has put it there. By
     /// reference: `None` of the whole would be an image of all its bytes in flash, the record's 8 KiB among them.
     static CONTROL: Mutex<RefCell<Option<&'static mut Control>>> = Mutex::new(RefCell::new(None));
 
     struct Control {
         supervisor: Supervisor<RECORD>,
+        timer: SYST,
         sequence: u32,
+        /// The last command came when the next period had begun.
+        late: bool,
         hint: IntegratorHint,
         /// What the amplifiers are told \[N\].
         force_n: [f32; 2],
@@ -75,11 +79,15 @@ mod firmware {
     impl Control {
         /// What the interrupt does. Whatever the sensor reads goes in: judging it is the supervisor's task.
         fn tick(&mut self) {
+            // Forgets the period that has just ended.
+            self.timer.has_wrapped();
             self.sequence = self.sequence.wrapping_add(1);
             let position_m = measured_position_m(self.sequence);
+            let mut status = Status::SPIN_VALID | Status::BEARING_ON;
+            status.set(Status::LATE, self.late);
             let command = self.supervisor.tick(&Sample {
                 sequence: self.sequence,
-                status: Status::SPIN_VALID | Status::BEARING_ON,
+                status,
                 position_m,
                 spin_rad_s: 1000.0,
                 levitation_n: levitation_n(position_m, self.hint),
@@ -88,6 +96,7 @@ mod firmware {
             // For the controller's next tick.
             self.hint = command.integrator;
             self.force_n = command.force_n;
+            self.late = self.timer.has_wrapped();
         }
     }
 
@@ -113,7 +122,7 @@ mod firmware {
             error!("the self-test does not pass on this processor");
             exit::failure();
         }
-        let Some(mut peripherals) = cortex_m::Peripherals::take() else {
+        let Some(peripherals) = cortex_m::Peripherals::take() else {
             exit::failure()
         };
         // Before the bearing is switched on: a parameter out of range must not get into operation.
@@ -124,9 +133,18 @@ mod firmware {
                 exit::failure()
             }
         };
+        let mut timer = peripherals.SYST;
+        timer.set_clock_source(SystClkSource::Core);
+        timer.set_reload(CORE_HZ / TICK_HZ - 1);
+        timer.clear_current();
+        timer.enable_counter();
+        timer.enable_interrupt();
+        // Until it is shared, the interrupt finds nothing to do.
         let control = cortex_m::singleton!(: Control = Control {
             supervisor,
+            timer,
             sequence: 0,
+            late: false,
             hint: IntegratorHint::Run,
             force_n: [0.0; 2],
         });
@@ -136,12 +154,6 @@ mod firmware {
                 *shared = control;
             }
         });
-        let timer = &mut peripherals.SYST;
-        timer.set_clock_source(SystClkSource::Core);
-        timer.set_reload(CORE_HZ / TICK_HZ - 1);
-        timer.clear_current();
-        timer.enable_counter();
-        timer.enable_interrupt();
         background()
     }
 
@@ -200,6 +212,11 @@ mod firmware {
             .union(Events::SENSOR_FAULT)
             .union(Events::COAST_DOWN)
             .union(Events::QUEUE_FULL);
+        // The report counts late ticks. To log each of them would make more: nothing interrupts the logger.
+        let events = events - Events::LATE;
+        if events.is_empty() {
+            return;
+        }
         if events.intersects(SERIOUS) {
             warn!("tick {}: {}, {}", sequence, events, mode);
         } else {
@@ -234,13 +251,19 @@ mod firmware {
         } else {
             0.0
         };
-        let turns = tick.clamp(WALL, BACK) - WALL;
+        let turns = if tick < REST {
+            tick.clamp(WALL, BACK) - WALL
+        } else {
+            0
+        };
         let [mut x, mut y] = [radius * CLEARANCE_M, 0.0];
         for _ in 0..turns {
             let [cos, sin] = TURN;
             (x, y) = (cos * x - sin * y, sin * x + cos * y);
         }
-        [x, y]
+        // A converter's last digit.
+        let digit_m = 1e-7 * (tick & 1) as f32;
+        [x + digit_m, y - digit_m]
     }
 }
 
