@@ -30,6 +30,8 @@ struct Refused {
     jumps: u8,
     dropouts: u8,
     stuck: u8,
+    /// Where one coordinate is bad: ticks since the other one fitted, none if it did last.
+    apart: u8,
 }
 
 /// Memory of the guard.
@@ -170,8 +172,10 @@ impl<S: Scalar> Guard<S> {
             self.late_ticks = self.late_ticks.saturating_add(1);
             events |= Events::LATE;
         }
+        let mut jumped = false;
         if refusal == Refusal::None {
             facts |= Facts::USED;
+            self.refused.apart = 0;
         } else {
             self.refused.bad |= match refusal {
                 Refusal::NotFinite | Refusal::Range => {
@@ -179,9 +183,15 @@ impl<S: Scalar> Guard<S> {
                 }
                 _ => Facts::BOTH_BAD,
             };
+            if self.refused.bad != Facts::BOTH_BAD {
+                jumped = !self.other_fits(position, 1 + missed, anew, coeffs);
+            }
         }
         if self.faulty {
             facts |= Facts::FAULTY | self.refused.bad;
+            if jumped {
+                facts |= Facts::BOTH_BAD;
+            }
         }
         let lost = facts & (Facts::X_LOST | Facts::Y_LOST);
         let before = core::mem::replace(&mut self.lost, lost);
@@ -238,21 +248,53 @@ impl<S: Scalar> Guard<S> {
         if !position.is_finite() {
             return Refusal::NotFinite;
         }
-        let stuck = (self.still).watch(position, velocity, coeffs.sensor_speeds, self.faulty);
         if position.exceeds(coeffs.position_limit) {
             return Refusal::Range;
         }
-        if let Some((last, ticks)) = self.last_good {
-            let steps = coeffs.sensor_speeds * coeffs.tick;
-            let way = coeffs.way_per_tick * S::count(ticks) + steps;
-            if (position - last).exceeds(way) {
-                return Refusal::Slew;
-            }
+        let stuck = (self.still).watch(position, velocity, coeffs.sensor_speeds, self.faulty);
+        if let Some((last, ticks)) = self.last_good
+            && (position - last).exceeds(way_in(ticks, coeffs))
+        {
+            return Refusal::Slew;
         }
         if stuck {
             return Refusal::Stuck;
         }
         Refusal::None
+    }
+
+    /// Whether the coordinate beside one that is bad is where the rotor can be so many ticks after the last sample. One that
+    /// is not is not used; after the second in a row both coordinates are bad.
+    fn other_fits(
+        &mut self,
+        position: Vec2<S>,
+        ticks: u32,
+        anew: bool,
+        coeffs: &Coeffs<S>,
+    ) -> bool {
+        let still = &mut self.still;
+        let last = still.last.get_or_insert(position);
+        let (now, last, way) = if self.refused.bad == Facts::X_BAD {
+            (position.y, &mut last.y, &mut still.way.y)
+        } else {
+            (position.x, &mut last.x, &mut still.way.x)
+        };
+        let apart = &mut self.refused.apart;
+        let ticks = ticks + u32::from(*apart);
+        if anew || (now - *last).size() <= way_in(ticks, coeffs) {
+            if now != *last {
+                *way = S::ZERO;
+            }
+            *last = now;
+            *apart = 0;
+            return true;
+        }
+        if *apart > 0 {
+            self.refused.bad = Facts::BOTH_BAD;
+        }
+        // At most twice what a gap can be.
+        *apart = ticks as u8;
+        false
     }
 
     /// Fault and recovery.
@@ -314,6 +356,11 @@ impl<S: Scalar> Guard<S> {
         self.still.rescale();
         self.still_is_old = false;
     }
+}
+
+/// The longest way that is plausible in so many ticks.
+fn way_in<S: Scalar>(ticks: u32, coeffs: &Coeffs<S>) -> S {
+    coeffs.way_per_tick * S::count(ticks) + coeffs.sensor_speeds * coeffs.tick
 }
 
 /// Which coordinates are no numbers or out of range; both where that is so of the radius alone.

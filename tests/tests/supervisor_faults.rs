@@ -95,6 +95,166 @@ fn a_coordinate_that_is_good_is_left_to_the_levitation_controller() {
     }
 }
 
+/// A supervisor that was in whirl when one coordinate went bad, and where the other one is.
+struct OneLeft {
+    bench: Bench,
+    bad: usize,
+    reads_m: f32,
+    at_m: f32,
+}
+
+impl OneLeft {
+    const LEVITATION_N: f32 = 300.0;
+    /// Of the cap in a tick: 10 ms of fading.
+    const FADED_N: f32 = 5.0;
+    /// Ticks that make a fault.
+    const FAULT: usize = 10;
+
+    /// Before the first bad sample.
+    fn new(bad: usize, reads_m: f32) -> Self {
+        let with = Config {
+            fault_blend_s: 1e-2,
+            fault_ticks: Self::FAULT as f32,
+            ..config()
+        };
+        let (bench, angle) = Bench::whirl(&with);
+        Self {
+            bench,
+            bad,
+            reads_m,
+            at_m: on_circle(RADIUS_M, angle)[1 - bad],
+        }
+    }
+
+    /// In the fault.
+    fn in_fault(bad: usize, reads_m: f32) -> Self {
+        let mut left = Self::new(bad, reads_m);
+        for _ in 0..Self::FAULT {
+            left.tick(1e-6);
+        }
+        assert_eq!(left.tick(1e-6), Self::LEVITATION_N);
+        left
+    }
+
+    /// A tick after a step of the good coordinate; the command along it.
+    fn tick(&mut self, step_m: f32) -> f32 {
+        self.at_m += step_m;
+        self.bench.sequence += 1;
+        let mut position_m = [self.at_m; 2];
+        position_m[self.bad] = self.reads_m;
+        let command = self.bench.supervisor.tick(&Sample {
+            levitation_n: [Self::LEVITATION_N; 2],
+            ..sample(self.bench.sequence, position_m)
+        });
+        command.force_n[1 - self.bad]
+    }
+
+    /// Whether the levitation controller acts along the good coordinate in the first tick of the fault, after these steps of it.
+    fn is_left_after(&mut self, steps_m: [f32; Self::FAULT]) -> bool {
+        let force_n = steps_m.map(|step_m| self.tick(step_m));
+        assert_eq!(self.bench.supervisor.mode(), Mode::SensorFault);
+        force_n[Self::FAULT - 1] == Self::LEVITATION_N
+    }
+}
+
+/// 2 m/s in 50 µs, and 3 µm.
+const LONGEST_STEP_M: f32 = 1.03e-4;
+/// A coordinate and what makes it bad.
+const BAD: [(usize, f32); 5] = [
+    (0, f32::NAN),
+    (1, f32::NAN),
+    (0, 5e-3),
+    (1, -5e-3),
+    (1, f32::INFINITY),
+];
+
+/// A step of the good coordinate that the rotor cannot make is no position: what the levitation controller makes of it does
+/// not go through in that tick, and after two in a row no more. One that it can make is none, nor one of as many ticks as were
+/// missed.
+#[test]
+fn a_jump_of_the_coordinate_that_is_left_is_not_believed() {
+    for (bad, reads_m) in BAD {
+        let fresh = || OneLeft::in_fault(bad, reads_m);
+        for jump_m in [1.01 * LONGEST_STEP_M, -1.01 * LONGEST_STEP_M, 5e-4] {
+            let mut left = fresh();
+            for share in [0.99, -0.99] {
+                let force_n = left.tick(share * LONGEST_STEP_M);
+                assert_eq!(force_n, OneLeft::LEVITATION_N);
+            }
+            // Out and back.
+            for _ in 0..3 {
+                let off_n = OneLeft::LEVITATION_N - left.tick(jump_m);
+                assert!((off_n - OneLeft::FADED_N).abs() < 0.1, "{off_n} N");
+                assert_eq!(left.tick(-jump_m), OneLeft::LEVITATION_N);
+            }
+            // Out, and from there on.
+            for i in 1..=20 {
+                let force_n = left.tick(if i == 1 { 2.0 * jump_m } else { 1e-6 });
+                let faded_n = OneLeft::LEVITATION_N - OneLeft::FADED_N * i as f32;
+                assert!((force_n - faded_n).abs() < 0.1, "{i}: {force_n} N");
+            }
+        }
+        // Too far for one tick, but not for the two since the last one that fitted.
+        let mut left = fresh();
+        assert!(left.tick(1.9 * LONGEST_STEP_M) < OneLeft::LEVITATION_N);
+        assert_eq!(left.tick(1e-6), OneLeft::LEVITATION_N);
+        // As far as in three ticks; and the three before count for the next one.
+        left.bench.sequence += 2;
+        assert_eq!(left.tick(2.9 * LONGEST_STEP_M), OneLeft::LEVITATION_N);
+        left.bench.sequence += 2;
+        assert!(left.tick(3.1 * LONGEST_STEP_M) < OneLeft::LEVITATION_N);
+        assert_eq!(left.tick(0.8 * LONGEST_STEP_M), OneLeft::LEVITATION_N);
+        // After a gap nothing can be compared.
+        left.bench.sequence += 20;
+        assert_eq!(left.tick(5e-4), OneLeft::LEVITATION_N);
+    }
+}
+
+/// The same before the samples have made a fault: a jump that stays takes the coordinate from its first tick on, one sample
+/// alone takes nothing but its tick.
+#[test]
+fn a_jump_before_the_fault_counts() {
+    const JUMP_M: f32 = 6e-4;
+    let at = |ticks: &[(usize, f32)]| {
+        let mut steps_m = [1e-6; OneLeft::FAULT];
+        for (tick, step_m) in ticks {
+            steps_m[tick - 1] = *step_m;
+        }
+        steps_m
+    };
+    for (bad, reads_m) in BAD {
+        let left_after =
+            |ticks: &[(usize, f32)]| OneLeft::new(bad, reads_m).is_left_after(at(ticks));
+        assert!(left_after(&[]));
+        for first in 1..OneLeft::FAULT {
+            assert!(!left_after(&[(first, JUMP_M)]), "at {first}");
+            assert!(
+                left_after(&[(first, JUMP_M), (first + 1, -JUMP_M)]),
+                "at {first}"
+            );
+        }
+        // In the tick that makes the fault: for that tick.
+        let mut left = OneLeft::new(bad, reads_m);
+        assert!(!left.is_left_after(at(&[(OneLeft::FAULT, JUMP_M)])));
+        assert_eq!(left.tick(-JUMP_M), OneLeft::LEVITATION_N);
+    }
+}
+
+/// Two jumps with a good sample of both coordinates between them are two single ones.
+#[test]
+fn a_good_sample_between_two_jumps_parts_them() {
+    for (bad, reads_m) in BAD {
+        let mut left = OneLeft::in_fault(bad, reads_m);
+        for _ in 0..5 {
+            assert!(left.tick(5e-4) < OneLeft::LEVITATION_N);
+            left.reads_m = 1e-5;
+            left.tick(-5e-4);
+            left.reads_m = reads_m;
+        }
+        assert_eq!(left.tick(1e-6), OneLeft::LEVITATION_N);
+    }
+}
+
 /// Of a jump, a dropout or a sensor that is stuck nobody knows which coordinate is wrong: nothing of the levitation controller
 /// goes through.
 #[test]

@@ -74,13 +74,15 @@ proptest! {
         prop_assert!((x.root() / x.sqrt() - 1.0).abs() < 1e-15 * 8.0);
     }
 
-    /// What a flight record keeps.
+    /// What a flight record keeps, of all sizes: the nearest, even between two.
     #[test]
-    fn records_round_to_the_nearest(x in -9.0..9.0_f32) {
-        let exact = (f64::from(x) * 4096.0).clamp(-32768.0, 32767.0);
-        prop_assert!((f64::from(x.packed()) - exact).abs() <= 1.0);
-        prop_assert!((f64::from(f64::from(x).packed()) - exact).abs() <= 1.0);
-        prop_assert!((f64::from(Q::of(x).packed()) - exact).abs() <= 1.0);
+    fn records_round_to_the_nearest(near in -9.0..9.0_f32, any in -f32::MAX..f32::MAX) {
+        for x in [near, 1e3 * near, any, f32::INFINITY, f32::NEG_INFINITY] {
+            let exact = (f64::from(x) * 4096.0).round_ties_even().clamp(-32768.0, 32767.0);
+            prop_assert_eq!(f64::from(x.packed()), exact);
+            prop_assert_eq!(f64::from(f64::from(x).packed()), exact);
+            prop_assert!((f64::from(Q::of(x).packed()) - exact).abs() <= 1.0);
+        }
     }
 }
 

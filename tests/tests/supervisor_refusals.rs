@@ -138,6 +138,40 @@ fn a_rotor_at_rest_is_no_stuck_sensor() {
     }
 }
 
+/// A coordinate that has changed beside one that was no number has changed: it is not stuck in the sample after it.
+#[test]
+fn a_change_beside_a_bad_coordinate_is_a_change() {
+    for still in 0..2 {
+        let mut bench = Bench::new(&config());
+        let mut position_m = [0.0; 2];
+        let on = |by: [f32; 2], position_m: &mut [f32; 2]| {
+            *position_m = [position_m[0] + by[0], position_m[1] + by[1]];
+            *position_m
+        };
+        for _ in 0..50 {
+            bench.tick(on([2e-6; 2], &mut position_m));
+        }
+        // Until it would be stuck in the next sample.
+        let mut step_m = [2e-6; 2];
+        step_m[still] = 0.0;
+        loop {
+            let mut before = bench.supervisor.clone();
+            let command = bench.tick(on(step_m, &mut position_m));
+            if command.limits.contains(Limits::SAMPLE_REFUSED) {
+                std::mem::swap(&mut bench.supervisor, &mut before);
+                bench.sequence -= 1;
+                break;
+            }
+        }
+        position_m[still] += 1e-6;
+        let mut bad_m = position_m;
+        bad_m[1 - still] = f32::NAN;
+        assert!(bench.tick(bad_m).limits.contains(Limits::SAMPLE_REFUSED));
+        let command = bench.tick(on(step_m, &mut position_m));
+        assert!(!command.limits.contains(Limits::SAMPLE_REFUSED));
+    }
+}
+
 /// A single bad sample of any kind costs no force, makes no fault and gives the estimate no kick: the
 /// commands stay near those of a run without it.
 #[test]

@@ -10,7 +10,7 @@
 #[cfg(target_os = "none")]
 mod firmware {
     use core::cell::RefCell;
-    use cortex_m::peripheral::SYST;
+    use cortex_m::peripheral::SCB;
     use cortex_m::peripheral::syst::SystClkSource;
     use cortex_m_rt::{entry, exception};
     use critical_section::Mutex;
@@ -61,13 +61,12 @@ mod firmware {
     };
     const CLEARANCE_M: f32 = 2e-4;
 
-    /// What interrupt and background share. `None` until `main` has put it there. By
+    /// What interrupt and background share. `None` until `main` has put it there: the timer starts after that. By
     /// reference: `None` of the whole would be an image of all its bytes in flash, the record's 8 KiB among them.
     static CONTROL: Mutex<RefCell<Option<&'static mut Control>>> = Mutex::new(RefCell::new(None));
 
     struct Control {
         supervisor: Supervisor<RECORD>,
-        timer: SYST,
         sequence: u32,
         /// The last command came when the next period had begun.
         late: bool,
@@ -79,8 +78,6 @@ mod firmware {
     impl Control {
         /// What the interrupt does. Whatever the sensor reads goes in: judging it is the supervisor's task.
         fn tick(&mut self) {
-            // Forgets the period that has just ended.
-            self.timer.has_wrapped();
             self.sequence = self.sequence.wrapping_add(1);
             let position_m = measured_position_m(self.sequence);
             let mut status = Status::SPIN_VALID | Status::BEARING_ON;
@@ -96,7 +93,8 @@ mod firmware {
             // For the controller's next tick.
             self.hint = command.integrator;
             self.force_n = command.force_n;
-            self.late = self.timer.has_wrapped();
+            // The interrupt pends anew: since this one began, another period has.
+            self.late = SCB::is_pendst_pending();
         }
     }
 
@@ -122,7 +120,7 @@ mod firmware {
             error!("the self-test does not pass on this processor");
             exit::failure();
         }
-        let Some(peripherals) = cortex_m::Peripherals::take() else {
+        let Some(mut peripherals) = cortex_m::Peripherals::take() else {
             exit::failure()
         };
         // Before the bearing is switched on: a parameter out of range must not get into operation.
@@ -133,16 +131,8 @@ mod firmware {
                 exit::failure()
             }
         };
-        let mut timer = peripherals.SYST;
-        timer.set_clock_source(SystClkSource::Core);
-        timer.set_reload(CORE_HZ / TICK_HZ - 1);
-        timer.clear_current();
-        timer.enable_counter();
-        timer.enable_interrupt();
-        // Until it is shared, the interrupt finds nothing to do.
         let control = cortex_m::singleton!(: Control = Control {
             supervisor,
-            timer,
             sequence: 0,
             late: false,
             hint: IntegratorHint::Run,
@@ -154,6 +144,12 @@ mod firmware {
                 *shared = control;
             }
         });
+        let timer = &mut peripherals.SYST;
+        timer.set_clock_source(SystClkSource::Core);
+        timer.set_reload(CORE_HZ / TICK_HZ - 1);
+        timer.clear_current();
+        timer.enable_counter();
+        timer.enable_interrupt();
         background()
     }
 
