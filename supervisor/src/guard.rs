@@ -24,6 +24,7 @@ const MOST_APPLIED: f32 = 2.0;
 /// Refused samples since the last good one.
 #[derive(Debug, Clone, Copy, Default)]
 struct Refused {
+    /// All of them; in a fault of both coordinates samples in a row in which one alone was bad, and the other one fitted.
     all: u16,
     /// Coordinates that were wrong.
     bad: Facts,
@@ -177,14 +178,17 @@ impl<S: Scalar> Guard<S> {
             facts |= Facts::USED;
             self.refused.apart = 0;
         } else {
-            self.refused.bad |= match refusal {
+            let bad = match refusal {
                 Refusal::NotFinite | Refusal::Range => {
                     bad_coordinates(position, coeffs.position_limit)
                 }
                 _ => Facts::BOTH_BAD,
             };
-            if self.refused.bad != Facts::BOTH_BAD {
-                jumped = !self.other_fits(position, 1 + missed, anew, coeffs);
+            self.refused.bad |= bad;
+            if bad != Facts::BOTH_BAD {
+                jumped = self.judge_other(position, bad, (1 + missed, anew), coeffs);
+            } else if self.faulty {
+                (self.refused.all, self.refused.apart) = (0, 0);
             }
         }
         if self.faulty {
@@ -263,38 +267,52 @@ impl<S: Scalar> Guard<S> {
         Refusal::None
     }
 
-    /// Whether the coordinate beside one that is bad is where the rotor can be so many ticks after the last sample. One that
-    /// is not is not used; after the second in a row both coordinates are bad.
-    fn other_fits(
+    /// Judges the coordinate beside one that is bad, so many ticks after the last sample. Whether it is farther from that
+    /// than the rotor can be: then it is not used, and after the second in a row both are bad. In a fault of both it is good
+    /// again after as many samples that fit as end a fault.
+    fn judge_other(
         &mut self,
         position: Vec2<S>,
-        ticks: u32,
-        anew: bool,
+        bad: Facts,
+        (ticks, anew): (u32, bool),
         coeffs: &Coeffs<S>,
     ) -> bool {
-        let still = &mut self.still;
+        let (still, refused) = (&mut self.still, &mut self.refused);
         let last = still.last.get_or_insert(position);
-        let (now, last, way) = if self.refused.bad == Facts::X_BAD {
-            (position.y, &mut last.y, &mut still.way.y)
+        let [awaited_x, awaited_y] = &mut still.awaited;
+        let (now, last, way, awaited) = if bad == Facts::X_BAD {
+            (position.y, &mut last.y, &mut still.way.y, awaited_y)
         } else {
-            (position.x, &mut last.x, &mut still.way.x)
+            (position.x, &mut last.x, &mut still.way.x, awaited_x)
         };
-        let apart = &mut self.refused.apart;
-        let ticks = ticks + u32::from(*apart);
-        if anew || (now - *last).size() <= way_in(ticks, coeffs) {
-            if now != *last {
-                *way = S::ZERO;
-            }
+        let ticks = ticks + u32::from(refused.apart);
+        let fits = anew || (now - *last).size() <= way_in(ticks, coeffs);
+        if now != *last {
+            *way = S::ZERO;
+            *awaited = false;
+        }
+        if self.faulty && refused.bad == Facts::BOTH_BAD {
             *last = now;
-            *apart = 0;
-            return true;
+            refused.all = if fits && !*awaited {
+                refused.all + 1
+            } else {
+                0
+            };
+            if refused.all >= coeffs.fault_ticks {
+                (refused.bad, refused.all) = (bad, 0);
+            }
+        } else if fits {
+            *last = now;
+            refused.apart = 0;
+        } else if refused.apart == 0 {
+            // At most one more than a gap that is made up for.
+            refused.apart = ticks as u8;
+        } else {
+            *last = now;
+            refused.apart = 0;
+            refused.bad = Facts::BOTH_BAD;
         }
-        if *apart > 0 {
-            self.refused.bad = Facts::BOTH_BAD;
-        }
-        // At most twice what a gap can be.
-        *apart = ticks as u8;
-        false
+        !fits
     }
 
     /// Fault and recovery.
@@ -340,6 +358,7 @@ impl<S: Scalar> Guard<S> {
         if !fault {
             return Events::empty();
         }
+        refused.all = 0;
         self.faulty = true;
         self.fault = refusal;
         self.good = 0;

@@ -187,12 +187,15 @@ fn a_jump_of_the_coordinate_that_is_left_is_not_believed() {
                 assert!((off_n - OneLeft::FADED_N).abs() < 0.1, "{off_n} N");
                 assert_eq!(left.tick(-jump_m), OneLeft::LEVITATION_N);
             }
-            // Out, and from there on.
-            for i in 1..=20 {
+            // Out, and from there on: until as many samples as end a fault fit to each other.
+            for i in 1..2 + OneLeft::FAULT {
                 let force_n = left.tick(if i == 1 { 2.0 * jump_m } else { 1e-6 });
                 let faded_n = OneLeft::LEVITATION_N - OneLeft::FADED_N * i as f32;
                 assert!((force_n - faded_n).abs() < 0.1, "{i}: {force_n} N");
             }
+            assert_eq!(left.tick(1e-6), OneLeft::LEVITATION_N);
+            assert!(left.tick(jump_m) < OneLeft::LEVITATION_N);
+            assert_eq!(left.tick(-jump_m), OneLeft::LEVITATION_N);
         }
         // Too far for one tick, but not for the two since the last one that fitted.
         let mut left = fresh();
@@ -237,6 +240,56 @@ fn a_jump_before_the_fault_counts() {
         let mut left = OneLeft::new(bad, reads_m);
         assert!(!left.is_left_after(at(&[(OneLeft::FAULT, JUMP_M)])));
         assert_eq!(left.tick(-JUMP_M), OneLeft::LEVITATION_N);
+    }
+}
+
+/// Once both coordinates are bad, by a repeated number here, the one that is left is used again after as many samples in a row
+/// as end a fault: while the other one is bad, each near the one before, and none repeated.
+#[test]
+fn a_coordinate_that_fits_for_long_is_good_again() {
+    for (bad, reads_m) in BAD {
+        for interrupted in 0..3 {
+            let mut left = OneLeft::in_fault(bad, reads_m);
+            left.bench.sequence -= 1;
+            assert!(left.tick(1e-6) < OneLeft::LEVITATION_N, "a repeated number");
+            for _ in 1..OneLeft::FAULT {
+                assert!(left.tick(1e-6) < OneLeft::LEVITATION_N);
+            }
+            // The last one but for which it would be good.
+            if interrupted > 0 {
+                left.bench.sequence -= u32::from(interrupted == 1);
+                let step_m = if interrupted == 2 { 5e-4 } else { 1e-6 };
+                assert!(left.tick(step_m) < OneLeft::LEVITATION_N);
+                for _ in 1..OneLeft::FAULT {
+                    assert!(left.tick(1e-6) < OneLeft::LEVITATION_N);
+                }
+            }
+            assert_eq!(left.tick(1e-6), OneLeft::LEVITATION_N, "{interrupted}");
+        }
+    }
+}
+
+/// A coordinate that stood still when the fault began is not good again before it has changed.
+#[test]
+fn a_coordinate_that_is_stuck_is_not_good_again() {
+    for bad in 0..2 {
+        let angle = Bench::whirl(&config()).1;
+        let mut left = OneLeft::new(bad, on_circle(RADIUS_M, angle)[bad]);
+        let last = left.at_m;
+        // Stuck, while the other one still reads something that changes.
+        while left.bench.supervisor.mode() != Mode::SensorFault {
+            left.reads_m += 1e-6;
+            left.tick(0.0);
+        }
+        assert_eq!(left.bench.supervisor.report().fault, Refusal::Stuck);
+        left.reads_m = f32::NAN;
+        // Until the force of before has faded.
+        let last_n = (0..200).map(|_| left.tick(0.0)).last();
+        assert_eq!((left.at_m, last_n), (last, Some(0.0)));
+        for _ in 1..OneLeft::FAULT {
+            assert_eq!(left.tick(1e-6), 0.0);
+        }
+        assert_eq!(left.tick(1e-6), OneLeft::LEVITATION_N);
     }
 }
 
