@@ -186,8 +186,7 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
         let command = Vec2::from_array(sample.levitation);
         let (levitation, levitation_limits) = if has_a_say {
             // What it makes of a coordinate that is none takes no room from the other.
-            let bad = mode == Mode::SensorFault;
-            let command = if bad {
+            let command = if mode == Mode::SensorFault {
                 facts.sensed(command, Vec2::ZERO)
             } else {
                 command

@@ -121,15 +121,10 @@ pub(crate) struct Reading<S> {
 }
 
 impl<S: Scalar> Reading<S> {
-    #[inline]
-    pub(crate) fn is(&self, fact: Facts) -> bool {
-        self.verdict.facts.intersects(fact)
-    }
-
     /// `None`: not to be used; the observer runs on its model.
     #[inline]
     pub(crate) fn position(&self) -> Option<Vec2<S>> {
-        self.is(Facts::USED).then_some(self.sample)
+        (self.verdict.facts.contains(Facts::USED)).then_some(self.sample)
     }
 
     #[inline]

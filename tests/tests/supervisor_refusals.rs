@@ -155,10 +155,10 @@ fn a_change_beside_a_bad_coordinate_is_a_change() {
         let mut step_m = [2e-6; 2];
         step_m[still] = 0.0;
         loop {
-            let mut before = bench.supervisor.clone();
+            let before = bench.supervisor.clone();
             let command = bench.tick(on(step_m, &mut position_m));
             if command.limits.contains(Limits::SAMPLE_REFUSED) {
-                std::mem::swap(&mut bench.supervisor, &mut before);
+                bench.supervisor = before;
                 bench.sequence -= 1;
                 break;
             }

@@ -83,21 +83,17 @@ fn logs_of_the_example(shift: u8) -> Option<Vec<Log>> {
     Some(logs)
 }
 
-/// What happened by a log, after the numbers of the ticks.
-fn happened(log: &Log) -> Vec<&str> {
-    (log.iter())
-        .filter_map(|(_, text)| text.strip_prefix("tick ")?.split_once(": "))
-        .map(|(_, text)| text)
-        .collect()
-}
-
 /// The example firmware keeps its 20 kHz at 125 million instructions a second, sees the landing, logs all that happens
 /// in its order, and picks up a record that is intact.
 #[test]
 fn the_example_firmware_records_a_landing() {
     for log in logs_of_the_example(3).unwrap_or_default() {
+        let happened: Vec<&str> = (log.iter())
+            .filter_map(|(_, text)| text.strip_prefix("tick ")?.split_once(": "))
+            .map(|(_, text)| text)
+            .collect();
         assert_eq!(
-            happened(&log),
+            happened,
             [
                 "ENGAGED, Approach",
                 "TOUCHED, Bounce",
