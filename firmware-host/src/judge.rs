@@ -35,6 +35,8 @@ pub(crate) struct Judge {
     back_since_s: Option<f64>,
     first_contact_s: Option<f64>,
     last_contact_s: Option<f64>,
+    /// In contact at the last snapshot.
+    touched: bool,
     /// Spin at the first sample \[rad/s\].
     first_spin: Option<f64>,
     now_s: f64,
@@ -52,6 +54,7 @@ impl Judge {
             back_since_s: None,
             first_contact_s: None,
             last_contact_s: None,
+            touched: false,
             first_spin: None,
             now_s: 0.0,
         }
@@ -85,9 +88,13 @@ impl Judge {
         let touches = now.mode.in_contact();
         self.whirl
             .push(now.t_s, now.whirl_angle_rad, touches, spin_rad_s);
+        if touches || self.touched {
+            // The first snapshot after it stands at the lift-off.
+            self.last_contact_s = Some(now.t_s);
+        }
+        self.touched = touches;
         if touches {
             self.first_contact_s.get_or_insert(now.t_s);
-            self.last_contact_s = Some(now.t_s);
             (self.in_middle_since_s, self.back_since_s) = (None, None);
         }
     }

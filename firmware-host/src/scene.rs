@@ -357,7 +357,8 @@ fn policies_of(file: &SceneFile, text: &SceneText) -> Result<Vec<PolicyKind>, Sc
 }
 
 /// The scene's own limit; else 3·ω0·c with a shaft, and three times the speed at which the magnet can
-/// still lift the rotor off without one.
+/// still lift the rotor off without one. A shaft against which magnets pull may have little stiffness left, and then it
+/// is the larger of both.
 fn whirl_speed_of(
     file: &SceneFile,
     plant: &PlantParams,
@@ -368,11 +369,14 @@ fn whirl_speed_of(
         check.within(KEY, speed, 1e-9, 1e6)?;
         return Ok(speed);
     }
-    if let Some(natural) = plant.natural_frequency_rad_s() {
-        return Ok(3.0 * natural * plant.contact.clearance_m);
-    }
     let force = plant.magnet.map_or(0.0, |m| m.force_max_n);
-    let speed = 3.0 * lift_off_speed_m_s(plant, force);
+    let by_magnet = 3.0 * lift_off_speed_m_s(plant, force);
+    let pulls = (file.magnet.as_ref()).is_some_and(|magnet| magnet.negative_stiffness_n_m > 0.0);
+    let speed = match plant.natural_frequency_rad_s() {
+        Some(natural) if pulls => by_magnet.max(3.0 * natural * plant.contact.clearance_m),
+        Some(natural) => 3.0 * natural * plant.contact.clearance_m,
+        None => by_magnet,
+    };
     if speed > 0.0 {
         return Ok(speed);
     }

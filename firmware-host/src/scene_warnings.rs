@@ -55,6 +55,23 @@ pub(crate) fn warnings_of(
         warnings.push(warning("start.velocity_m_s", message));
     }
     warnings.extend(slips_of(file, text));
+    let sliding = plant.friction.sliding.coefficient(0.0);
+    let rolling = plant.friction.rolling_coefficient;
+    if sliding > 0.0 && rolling >= sliding {
+        let message = format!(
+            "is {rolling}, no less than that of sliding: a rotor that rolls is held as by a brake, and nothing whirls"
+        );
+        warnings.push(warning("friction.rolling_coefficient", message));
+    }
+    if let (Some(levitation), Some(magnet)) = (&file.levitation, &file.magnet)
+        && levitation.proportional_n_m + plant.rotor.stiffness_n_m <= 0.0
+    {
+        let message = format!(
+            "is {:e}, below the stiffness of {:e} N/m with which the magnets pull: nothing holds the rotor in the middle",
+            levitation.proportional_n_m, magnet.negative_stiffness_n_m
+        );
+        warnings.push(warning("levitation.proportional_n_m", message));
+    }
     if !overrides.is_empty() {
         warnings.extend(of_another_machine(text, nominal, overrides));
     }

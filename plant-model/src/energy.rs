@@ -83,7 +83,8 @@ pub struct Audit {
     pub stored_at_start_j: f64,
     /// Stored energy now \[J\].
     pub stored_j: f64,
-    /// Largest stored energy seen, by absolute value \[J\].
+    /// Largest stored energy seen, by absolute value, without all but 1e-4 of what spin and race had at the start: it may
+    /// never take part \[J\].
     pub stored_peak_j: f64,
 }
 

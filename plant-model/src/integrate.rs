@@ -3,6 +3,7 @@
 
 pub(crate) mod contact_series;
 pub(crate) mod contact_step;
+mod crossings;
 pub(crate) mod dop853;
 pub(crate) mod driver;
 pub(crate) mod flight;

@@ -1,15 +1,20 @@
 //! The parts composed: eqs (2.1)–(2.9) as one smooth vector field per mode.
 
+mod geometry;
+mod state;
+
 use crate::V2;
 use crate::contact::Normal;
-use crate::ellipse::Foot;
 use crate::energy::Flows;
 use crate::magnet::Amplifier;
 use crate::mode::{Slide, Whirl};
 use crate::params::{ContactLaw, ContactParams, FrictionParams, HuntCrossley, RotorParams};
-use crate::part::{Body, Part, Weights};
+use crate::part::Body;
 use crate::spin::Spin;
 use crate::stator::{Rings, Stator};
+
+pub(crate) use geometry::Geometry;
+pub(crate) use state::{State, StateOf};
 
 /// What acts on the plant from outside, held until the next call.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -31,82 +36,6 @@ pub(crate) struct System<S, W, M> {
     pub(crate) amplifier: M,
 }
 
-/// State of one combination of parts.
-#[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct State<S, W, M> {
-    pub(crate) rotor: Body,
-    pub(crate) stator: S,
-    pub(crate) spin: W,
-    pub(crate) force: M,
-}
-
-pub(crate) type StateOf<S, W, M> =
-    State<<S as Stator>::State, <W as Spin>::State, <M as Amplifier>::State>;
-
-impl<S: Rings, W: Part, M: Part> Part for State<S, W, M> {
-    const STATES: usize = Body::STATES + S::STATES + W::STATES + M::STATES;
-    fn write(&self, out: &mut [f64]) {
-        let (rotor, rest) = out.split_at_mut(Body::STATES);
-        let (stator, rest) = rest.split_at_mut(S::STATES);
-        let (spin, force) = rest.split_at_mut(W::STATES);
-        self.rotor.write(rotor);
-        self.stator.write(stator);
-        self.spin.write(spin);
-        self.force.write(force);
-    }
-    fn read(from: &[f64]) -> Self {
-        let (rotor, rest) = from.split_at(Body::STATES);
-        let (stator, rest) = rest.split_at(S::STATES);
-        let (spin, force) = rest.split_at(W::STATES);
-        Self {
-            rotor: Body::read(rotor),
-            stator: S::read(stator),
-            spin: W::read(spin),
-            force: M::read(force),
-        }
-    }
-    #[inline]
-    fn add_scaled(&mut self, factor: f64, other: &Self) {
-        self.rotor.add_scaled(factor, &other.rotor);
-        self.stator.add_scaled(factor, &other.stator);
-        self.spin.add_scaled(factor, &other.spin);
-        self.force.add_scaled(factor, &other.force);
-    }
-    #[inline]
-    fn weighed_square(&self, weights: &Weights) -> f64 {
-        let gap = self.rotor.position - self.stator.inner().position;
-        gap.norm_squared() * weights.gap * weights.gap
-            + self.rotor.weighed_square(weights)
-            + self.stator.weighed_square(weights)
-            + self.spin.weighed_square(weights)
-            + self.force.weighed_square(weights)
-    }
-    #[inline]
-    fn is_finite(&self) -> bool {
-        self.rotor.is_finite()
-            && self.stator.is_finite()
-            && self.spin.is_finite()
-            && self.force.is_finite()
-    }
-    #[inline]
-    fn turned(&self, turn: V2) -> Self {
-        Self {
-            rotor: self.rotor.turned(turn),
-            stator: self.stator.turned(turn),
-            spin: self.spin.turned(turn),
-            force: self.force.turned(turn),
-        }
-    }
-    fn turning(&self) -> Self {
-        Self {
-            rotor: self.rotor.turning(),
-            stator: self.stator.turning(),
-            spin: self.spin.turning(),
-            force: self.force.turning(),
-        }
-    }
-}
-
 /// Guards of a contact mode: each is positive while the mode holds; unused ones are infinite.
 pub(crate) type Guards = [f64; GUARDS];
 pub(crate) const GUARDS: usize = 5;
@@ -121,23 +50,27 @@ pub(crate) const WHIRL: usize = 3;
 /// Still: room to the lower edge.
 pub(crate) const WHIRL_LOW: usize = 4;
 
-/// Geometry of the rotor against the ring: no forces yet.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Geometry {
-    /// Distance ρ of the centres \[m\]; out of round that of the rotor's from the centre of curvature.
-    pub(crate) distance_m: f64,
-    /// r̂ from ring to rotor.
-    pub(crate) normal: V2,
-    /// t̂, counter-clockwise.
-    pub(crate) tangent: V2,
-    /// A of eq. (2.8) \[m\]; negative inside the clearance.
-    pub(crate) penetration_m: f64,
-    /// B of eq. (2.9) \[m/s\].
-    pub(crate) normal_speed_m_s: f64,
-    /// v_w, tangential speed of the rotor against the ring \[m/s\].
-    pub(crate) whirl_speed_m_s: f64,
-    /// v_rel = v_w + Ω·R_r − Ω_i·R_i \[m/s\].
-    pub(crate) sliding_speed_m_s: f64,
+/// Guards that are not asked for a moment, having ended a mode at this very instant: one bit each.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(crate) struct Muted(u8);
+
+impl Muted {
+    pub(crate) const NONE: Self = Self(0);
+    /// All that decide between modes of contact.
+    pub(crate) const MODES: Self = Self(!(1 << NORMAL));
+    pub(crate) const NORMAL: Self = Self(1 << NORMAL);
+
+    pub(crate) fn has(self, guard: usize) -> bool {
+        self.0 & (1 << guard) != 0
+    }
+
+    pub(crate) fn and(self, guard: usize) -> Self {
+        Self(self.0 | (1 << guard))
+    }
+
+    pub(crate) fn among(self, others: Self) -> Self {
+        Self(self.0 & others.0)
+    }
 }
 
 /// Forces in the contact.
@@ -170,61 +103,6 @@ pub(crate) struct Evaluation<Y> {
 }
 
 impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
-    #[inline]
-    pub(crate) fn geometry(&self, y: &StateOf<S, W, M>) -> Geometry {
-        let ring = y.stator.inner();
-        let u = y.rotor.position - ring.position;
-        let w = y.rotor.velocity - ring.velocity;
-        if let Some(ellipse) = self.stator.ellipse() {
-            return self.geometry_out_of_round(&ellipse.foot(u), w, y);
-        }
-        let distance_m = u.norm();
-        // Concentric: every direction is as good; contact needs a clearance, so none is felt.
-        let normal = if distance_m > 0.0 {
-            u / distance_m
-        } else {
-            V2::x()
-        };
-        let tangent = V2::new(-normal.y, normal.x);
-        let whirl_speed_m_s = w.dot(&tangent);
-        let surface = self.surface_m_s(&y.spin);
-        Geometry {
-            distance_m,
-            normal,
-            tangent,
-            penetration_m: distance_m - self.contact.clearance_m,
-            normal_speed_m_s: w.dot(&normal),
-            whirl_speed_m_s,
-            sliding_speed_m_s: whirl_speed_m_s + surface,
-        }
-    }
-
-    /// The same against an ellipse, at the point of it that is nearest.
-    fn geometry_out_of_round(&self, foot: &Foot, w: V2, y: &StateOf<S, W, M>) -> Geometry {
-        let normal = foot.normal;
-        let tangent = V2::new(-normal.y, normal.x);
-        let whirl_speed_m_s = w.dot(&tangent);
-        Geometry {
-            distance_m: foot.radius_m + foot.depth_m,
-            normal,
-            tangent,
-            penetration_m: foot.depth_m,
-            normal_speed_m_s: w.dot(&normal),
-            whirl_speed_m_s,
-            sliding_speed_m_s: whirl_speed_m_s + self.surface_m_s(&y.spin),
-        }
-    }
-
-    /// Speed of the rotor's surface by its spin, against that of a race \[m/s\].
-    #[inline]
-    pub(crate) fn surface_m_s(&self, spin: &W::State) -> f64 {
-        let own = self.spin.spin_rad_s(spin) * self.rotor.contact_radius_m;
-        match self.spin.race() {
-            Some(race) => own - race.radius_m * W::race_rad_s(spin),
-            None => own,
-        }
-    }
-
     /// Unbalance: acceleration by the square of the speed, and acceleration per unit of spin
     /// acceleration. `None` without eccentricity.
     #[inline]
@@ -475,16 +353,6 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
 
     /// Kinetic and elastic energy, the contact spring included while `touching` \[J\].
     pub(crate) fn stored_j(&self, y: &StateOf<S, W, M>, touching: bool) -> f64 {
-        let spin = self.spin.spin_rad_s(&y.spin);
-        let inverse_j = self.spin.inverse_inertia();
-        let mut turning = if inverse_j > 0.0 {
-            0.5 * spin * spin / inverse_j
-        } else {
-            0.0
-        };
-        if let Some(race) = self.spin.race() {
-            turning += race.stored_j(W::race_rad_s(&y.spin));
-        }
         let dent = if touching {
             self.contact.law.stored_j(self.geometry(y).penetration_m)
         } else {
@@ -493,8 +361,23 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
         0.5 * self.rotor.mass_kg * y.rotor.velocity.norm_squared()
             + 0.5 * self.rotor.stiffness_n_m * y.rotor.position.norm_squared()
             + self.stator.stored_j(&y.stator)
-            + turning
+            + self.turning_j(&y.spin)
             + dent
+    }
+
+    /// Part of it that is in the spin of rotor and race \[J\].
+    pub(crate) fn turning_j(&self, spin: &W::State) -> f64 {
+        let rate = self.spin.spin_rad_s(spin);
+        let inverse_j = self.spin.inverse_inertia();
+        let mut turning = if inverse_j > 0.0 {
+            0.5 * rate * rate / inverse_j
+        } else {
+            0.0
+        };
+        if let Some(race) = self.spin.race() {
+            turning += race.stored_j(W::race_rad_s(spin));
+        }
+        turning
     }
 
     /// Angular frequency of the rotor on the contact spring \[rad/s\]; where the spring hardens, at a

@@ -25,6 +25,8 @@ const NO_SHARE: f32 = 1e-9;
 /// Whirl is faster, rest is slower than these shares of the square of the lift-off speed, which is 1.
 const WHIRL_SPEED_SQUARED: f32 = 0.1;
 const REST_SPEED_SQUARED: f32 = 0.05;
+/// Of the speed that the observer makes up across the wall so much counts.
+const REST_SPEED: f32 = 0.2;
 /// Rest ends only beyond this share, so that noise does not end it.
 const MOVING_SPEED_SQUARED: f32 = 0.2;
 
@@ -46,11 +48,12 @@ impl<S: Scalar> Classifier<S> {
         self.ticks_touching = 0;
     }
 
-    /// `rate` is the spin \[1/t₀\].
+    /// `seen`: by a sample of this tick; `rate` is the spin \[1/t₀\].
     #[inline]
     pub(crate) fn classify(
         &mut self,
         found: &Findings<S>,
+        seen: bool,
         (spin, rate): (Spin, S),
         coeffs: &Coeffs<S>,
     ) -> Class {
@@ -59,8 +62,10 @@ impl<S: Scalar> Classifier<S> {
         } else {
             S::of(NO_SHARE)
         };
-        self.contact_share =
-            self.contact_share + coeffs.contact_share_step * (now - self.contact_share);
+        if seen {
+            self.contact_share =
+                self.contact_share + coeffs.contact_share_step * (now - self.contact_share);
+        }
         self.ticks_touching = if found.touching {
             self.ticks_touching.saturating_add(1)
         } else {
@@ -71,7 +76,10 @@ impl<S: Scalar> Classifier<S> {
         if !found.touching {
             self.resting = false;
         } else {
-            let square = along_square + found.radial_speed * found.radial_speed;
+            // What presses a rotor to the wall the observer takes for a speed inwards.
+            let made_up = (coeffs.blind_speed - S::of(REST_SPEED)).or_more(S::ZERO);
+            let across = found.radial_speed.beyond(made_up);
+            let square = along_square + across * across;
             self.resting = if self.resting {
                 square < S::of(MOVING_SPEED_SQUARED)
             } else {

@@ -15,7 +15,7 @@ const FULL_FORCE_FROM: f32 = 0.4;
 /// Most speed that the force of a contact may still give after it \[lift-off speeds\].
 const AFTER_LIFT_OFF: f32 = 0.45;
 /// Largest share of the cap that the restoring law has at the wall.
-const NEARLY_ALL: f32 = 0.95;
+pub(crate) const NEARLY_ALL: f32 = 0.95;
 
 /// Longest delay between a sample and its force \[ticks\].
 pub(crate) const MAX_DELAY: usize = 8;
@@ -103,6 +103,8 @@ pub(crate) struct Coeffs<S: Scalar> {
     pub(crate) per_tick: S,
     /// κ = k·c/F, F the cap with its leverage at the retainer bearing.
     pub(crate) stiffness: S,
+    /// 1/|κ| where the magnets pull: the radius up to which the cap holds against them, at most 100.
+    pub(crate) per_pull: S,
     /// Speed that the shaft takes in a tick per position, κ·h, and with the damping δ = d·(c/t₀)/F per speed,
     /// (δ + κ·h/2)·h.
     pub(crate) stiffness_step: S,
@@ -282,6 +284,10 @@ impl<S: Scalar> Coeffs<S> {
         // A full force stops the speed of a full force within twice the reaction time, but that speed is
         // no smaller a share of the lift-off speed than this: below, noise would be all it damps.
         let damper = 1.0 / max(2.0 * (horizon + h), FULL_FORCE_FROM);
+        let restoring = min(
+            pull + max(damper / horizon - pull, 0.0) / 3.0,
+            max(NEARLY_ALL, 1.5 * pull),
+        );
         // What the model may accelerate by while the wall holds against it.
         let blind = (1.0 + 1.5 * max(stiffness, -stiffness)) * h;
         // Divided by in every severity.
@@ -313,6 +319,7 @@ impl<S: Scalar> Coeffs<S> {
             tick: s("tick", h),
             per_tick: s("ticks per unit of time", 1.0 / h),
             stiffness: s("stiffness", stiffness),
+            per_pull: s("stiffness", 1.0 / max(pull, 0.01)),
             stiffness_step: s("stiffness", stiffness * h),
             damping_step: s("damping", (damping + 0.5 * stiffness * h) * h),
             lag_left: s("lag", lag_left),
@@ -344,10 +351,7 @@ impl<S: Scalar> Coeffs<S> {
             damper: s("damper", damper),
             // A restoring force K·x that is τ late drives by K·τ·v what the damper takes D·v from: from |κ|, which it
             // has to overcome, a third of the way to where they are equal.
-            restoring: s(
-                "restoring",
-                min(pull + max(damper / horizon - pull, 0.0) / 3.0, NEARLY_ALL),
-            ),
+            restoring: s("restoring", restoring),
             // It goes on for a while after lift-off, towards the other side.
             pressing: s("pressing", min(config.hold_share, AFTER_LIFT_OFF / horizon)),
             whirl_ticks: (config.whirl_time_s / t) as u32,

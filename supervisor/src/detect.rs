@@ -37,11 +37,16 @@ const RECOVERY_TICKS: u8 = 3;
 /// Below this radius a load estimate alone does not make contact unavoidable; it may be noise.
 const LOAD_COUNTS_BEYOND: f32 = 0.5;
 
+/// Times that the observer takes to settle within which the wall is near.
+const NEAR: f32 = 16.0;
+
 /// Memory of the detector.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Detector {
     touching: bool,
     recovery: u8,
+    /// Ticks in a row in which contact seemed unavoidable.
+    alarmed: u8,
 }
 
 impl Detector {
@@ -84,7 +89,7 @@ impl Detector {
     /// `cap` is what the force–time budget leaves \[caps\].
     #[inline]
     pub(crate) fn findings<S: Scalar>(
-        &self,
+        &mut self,
         (motion, beside): (&Motion<S>, S),
         (touched, left): (bool, bool),
         cap: S,
@@ -106,25 +111,45 @@ impl Detector {
             unavoidable: false,
         };
         let outward = found.radial_speed;
-        found.unavoidable = outward > S::ZERO && !found.stops(outward, cap, S::ONE, coeffs);
+        let alarm = outward > S::ZERO && !found.stops(outward, cap, S::ONE, coeffs);
+        self.alarmed = if alarm {
+            self.alarmed.saturating_add(1)
+        } else {
+            0
+        };
+        // Twice the lag of the load is what the observer takes to settle.
+        let settling = coeffs.flight_lag + coeffs.flight_lag;
+        let near = outward * (settling * (coeffs.tick * S::of(NEAR)));
+        let urgent = near > found.reach - found.radius;
+        found.unavoidable = alarm && (urgent || S::count(u32::from(self.alarmed)) > settling);
         found
     }
 }
 
 impl<S: Scalar> Findings<S> {
-    /// Whether a share of what this force inwards has over the load, from when it can act, stops a rotor of this speed
-    /// before the wall: v² against twice the work that it and the shaft do up to there.
+    /// Whether a share of what this force inwards has over load and magnets' pull, from when it can act, stops a rotor of
+    /// this speed before the wall, or before where the pull is stronger: v² against twice the work up to there. What the
+    /// shaft does counts in full.
     pub(crate) fn stops(&self, speed: S, force: S, share: S, coeffs: &Coeffs<S>) -> bool {
-        let room = self.reach - self.radius;
-        let path = room - speed * coeffs.horizon;
-        if path <= S::ZERO {
-            return false;
-        }
         let mut left = force - self.load.or_more(S::ZERO);
         if self.radius < S::of(LOAD_COUNTS_BEYOND) {
             left = left.or_more(S::of(0.25) * force);
         }
-        let spring = coeffs.stiffness * room * (self.reach + self.radius);
+        let pulls = coeffs.stiffness < S::ZERO;
+        let reach = if pulls {
+            self.reach.or_less(left * coeffs.per_pull)
+        } else {
+            self.reach
+        };
+        let room = reach - self.radius;
+        let path = room - speed * coeffs.horizon;
+        if path <= S::ZERO {
+            return false;
+        }
+        let mut spring = coeffs.stiffness * room * (reach + self.radius);
+        if pulls {
+            spring = spring * share;
+        }
         speed * speed <= (left + left) * (share * path) + spring
     }
 }

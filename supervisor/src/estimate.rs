@@ -47,7 +47,7 @@ pub(crate) struct Observer<S> {
     motion: Motion<S>,
     unbalance: Unbalance<S>,
     started: bool,
-    /// It has started before: what it knew is lost, but it is not switched on into anything.
+    /// It has known a velocity before: what it knew is lost, but it is not switched on into anything.
     has_run: bool,
     /// Delivered force at the last tick.
     delivered: Vec2<S>,
@@ -55,6 +55,10 @@ pub(crate) struct Observer<S> {
     /// Commands of the last ticks, the newest at the slot of `newest`.
     commands: [Vec2<S>; MAX_DELAY],
     newest: u8,
+    /// Which of them came too late, the newest at the lowest bit, and the last that did, as it was given: it has the tick
+    /// of the one after it if that is late, too.
+    were_late: u8,
+    late: Vec2<S>,
 }
 
 impl<S: Scalar> Observer<S> {
@@ -76,8 +80,7 @@ impl<S: Scalar> Observer<S> {
             && !self.started
         {
             self.started = true;
-            let first = !core::mem::replace(&mut self.has_run, true);
-            let spin = if first { spin } else { Spin::Unknown };
+            let spin = if self.has_run { Spin::Unknown } else { spin };
             self.motion = Motion::found_at(position, spin, coeffs);
             return (self.motion, S::ZERO);
         }
@@ -109,6 +112,10 @@ impl<S: Scalar> Observer<S> {
                 m.velocity = m.velocity + error_speed * on_velocity;
             }
             m.fresh = false;
+            self.has_run = true;
+        } else {
+            // The next difference would be one over more than a tick.
+            self.started &= !m.fresh;
         }
         let square = m.position.length_squared() + m.velocity.length_squared();
         let within = square <= S::of(FAR * FAR);
@@ -146,6 +153,7 @@ impl<S: Scalar> Observer<S> {
             self.commanded(command);
         }
         self.delivered = actuator.carried(self.delivered);
+        self.started &= !self.motion.fresh;
         let ticks = S::count(missed);
         let mean = actuator.carried(sum) * S::ONE.over(ticks);
         let turn = Turn::of(spin, ticks, coeffs);
@@ -157,7 +165,7 @@ impl<S: Scalar> Observer<S> {
     #[inline]
     fn deliver(&mut self, actuator: Actuator<S>, coeffs: &Coeffs<S>) -> Vec2<S> {
         let due = actuator.carried(self.due(coeffs));
-        let before = actuator.carried(self.delivered);
+        let before = self.delivered;
         let measured = actuator.applied();
         match measured {
             _ if !actuator.axes.contains(Facts::ON) => self.drive.switched_off(),
@@ -168,7 +176,7 @@ impl<S: Scalar> Observer<S> {
             self.delivered = now;
             return now + (before - now) * coeffs.applied_weight;
         }
-        let (modelled, mean) = lagging(before, due, coeffs);
+        let (modelled, mean) = lagging(actuator.carried(before), due, coeffs);
         self.delivered = modelled;
         mean
     }
@@ -207,18 +215,29 @@ impl<S: Scalar> Observer<S> {
 
     /// Tells the observer what was commanded at this tick.
     pub(crate) fn commanded(&mut self, force: Vec2<S>) {
+        self.were_late <<= 1;
         self.newest = self.newest.wrapping_add(1);
+        self.put(force);
+    }
+
+    #[inline]
+    fn put(&mut self, force: Vec2<S>) {
         if let Some(newest) = self.commands.get_mut(slot(self.newest)) {
             *newest = force;
         }
     }
 
-    /// The last command came too late: the one before it had its tick, too.
+    /// The last command came too late: the one before it had its tick, too. Of several in a row each has the tick of
+    /// the next.
     pub(crate) fn late(&mut self) {
-        let kept = self.command(self.newest.wrapping_sub(1));
-        if let Some(newest) = self.commands.get_mut(slot(self.newest)) {
-            *newest = kept;
-        }
+        let before = if self.were_late & 2 != 0 {
+            self.late
+        } else {
+            self.command(self.newest.wrapping_sub(1))
+        };
+        self.late = self.command(self.newest);
+        self.were_late |= 1;
+        self.put(before);
     }
 
     /// After a change of the units of length, speed and force, and of the length of a tick.
@@ -229,6 +248,7 @@ impl<S: Scalar> Observer<S> {
         m.load_step = m.load_step * speed * tick;
         self.unbalance.rescale(speed);
         self.delivered = self.delivered * force;
+        self.late = self.late * force;
         self.drive.rescale(force);
         for command in &mut self.commands {
             *command = *command * force;

@@ -18,50 +18,95 @@ pub(crate) const MAX_MISSED: u32 = 4;
 const JUMPS: u8 = 2;
 const DROPOUTS: u8 = 3;
 const STUCK: u8 = 3;
+/// The same where only one coordinate stands still: a converter whose step is the noise repeats a reading of a moving rotor by
+/// chance, sometimes twice or thrice.
+const ONE_STUCK: u8 = 7;
 /// Longest applied force that is believed \[caps\].
 const MOST_APPLIED: f32 = 2.0;
+
+/// [`Guard::age`] where there is no good sample to compare with.
+const NEVER: u16 = u16::MAX;
 
 /// Refused samples since the last good one.
 #[derive(Debug, Clone, Copy, Default)]
 struct Refused {
-    /// All of them; in a fault of both coordinates samples in a row in which one alone was bad, and the other one fitted.
     all: u16,
     /// Coordinates that were wrong.
     bad: Facts,
     jumps: u8,
     dropouts: u8,
-    stuck: u8,
     /// Where one coordinate is bad: ticks since the other one fitted, none if it did last.
     apart: u8,
 }
 
-/// Memory of the guard.
+/// In a fault: samples in a row that fit, with the same coordinates bad.
 #[derive(Debug, Clone, Copy, Default)]
+struct Fitting {
+    bad: Facts,
+    samples: u16,
+}
+
+/// Memory of the guard.
+#[derive(Debug, Clone, Copy)]
 pub(crate) struct Guard<S> {
-    last_sequence: Option<u32>,
+    last_sequence: u32,
+    /// The last good sample, and the ticks since then.
+    last_good: Vec2<S>,
+    age: u16,
     /// Calls with the last sequence number after the first.
-    repeats: u32,
+    repeats: u16,
+    /// There was a sample.
+    begun: bool,
     /// The last tick came after a gap that was too long to make up for.
     jumped: bool,
-    /// The last good sample, and the ticks since then.
-    last_good: Option<(Vec2<S>, u32)>,
-    still: Still<S>,
-    refused: Refused,
-    /// Good samples in a row during a fault.
-    good: u16,
     faulty: bool,
-    /// Status of the next sample, and what it says, for which nothing is to be remembered but the sample, see
-    /// [`Guard::as_usual`]; nothing where there is none. (Not in one `Option`, which has a word of its own.)
-    usual: Status,
-    usual_facts: Facts,
     /// There have been usual samples since `still` looked.
     still_is_old: bool,
+    still: Still<S>,
+    /// A coordinate has been stuck for so long that it is a fault.
+    stuck: bool,
+    refused: Refused,
+    fitting: Fitting,
+    /// Status of the next sample, and what it says, for which nothing is to be remembered but the sample, see
+    /// [`Guard::as_usual`]; nothing where there is none. (Not in one `Option`, which has a word of its own.) All bits of a
+    /// status that mean something are in its lowest byte.
+    usual: u8,
+    usual_facts: Facts,
+    lost: Facts,
+    /// Of the last sample.
+    pub(crate) refusal: Refusal,
     /// Why the last fault began.
     pub(crate) fault: Refusal,
-    lost: Facts,
     pub(crate) missed_ticks: u32,
     pub(crate) repeated_ticks: u32,
     pub(crate) late_ticks: u32,
+}
+
+impl<S: Scalar> Default for Guard<S> {
+    fn default() -> Self {
+        Self {
+            last_sequence: 0,
+            last_good: Vec2::ZERO,
+            age: NEVER,
+            repeats: 0,
+            begun: false,
+            jumped: false,
+            faulty: false,
+            still_is_old: false,
+            still: Still::default(),
+            stuck: false,
+            refused: Refused::default(),
+            fitting: Fitting::default(),
+            usual: 0,
+            usual_facts: Facts::empty(),
+            lost: Facts::empty(),
+            refusal: Refusal::None,
+            fault: Refusal::None,
+            missed_ticks: 0,
+            repeated_ticks: 0,
+            late_ticks: 0,
+        }
+    }
 }
 
 impl<S: Scalar> Guard<S> {
@@ -84,6 +129,7 @@ impl<S: Scalar> Guard<S> {
                 self.judge_in_full((&sample, status), estimated(), coeffs)
             }
         };
+        self.refusal = verdict.refusal;
         let measured = Vec2::from_array(sample.applied);
         if status.contains(Status::APPLIED_VALID) && !measured.exceeds(S::of(MOST_APPLIED)) {
             verdict.facts |= Facts::MEASURED;
@@ -105,14 +151,11 @@ impl<S: Scalar> Guard<S> {
         status: Status,
         coeffs: &Coeffs<S>,
     ) -> Option<Facts> {
-        if self.usual_facts.is_empty() {
-            return None;
-        }
-        let (sequence, (last, _)) = (self.last_sequence.as_mut()?, self.last_good.as_mut()?);
         let position = Vec2::from_array(sample.position);
-        let step = position - *last;
-        let usual = status == self.usual
-            && sample.sequence.wrapping_sub(*sequence) == 1
+        let step = position - self.last_good;
+        let usual = !self.usual_facts.is_empty()
+            && status.bits() as u8 == self.usual
+            && sample.sequence.wrapping_sub(self.last_sequence) == 1
             && step.x != S::ZERO
             && step.y != S::ZERO
             // Written so that NaN is unusual.
@@ -121,8 +164,8 @@ impl<S: Scalar> Guard<S> {
         if !usual {
             return None;
         }
-        *sequence = sample.sequence;
-        *last = position;
+        self.last_sequence = sample.sequence;
+        self.last_good = position;
         self.still_is_old = true;
         Some(self.usual_facts)
     }
@@ -135,23 +178,24 @@ impl<S: Scalar> Guard<S> {
         coeffs: &Coeffs<S>,
     ) -> Verdict {
         if core::mem::take(&mut self.still_is_old) {
-            // What the usual way leaves out: since then every sample has changed in both coordinates.
-            self.still.last = self.last_good.map(|(last, _)| last);
-            self.still.way = Vec2::ZERO;
+            self.still.moved_to(self.last_good);
         }
-        let mut facts = facts_of(status);
-        let (repeated, gap, mut events) = self.sequence(sample.sequence);
+        let mut facts = Facts::of(status);
+        let (repeated, gap) = self.sequence(sample.sequence);
+        let mut events = Events::empty();
+        if repeated || gap > 0 {
+            events |= Events::SEQUENCE;
+        }
         let anew = gap > MAX_MISSED;
         let missed = if anew { 0 } else { gap };
         if anew {
-            self.last_good = None;
+            self.age = NEVER;
             facts |= Facts::ANEW;
+        } else {
+            self.age = self.age.saturating_add(1 + missed as u16);
         }
         if missed > 0 {
             facts |= Facts::MISSED;
-        }
-        if let Some((_, ticks)) = &mut self.last_good {
-            *ticks = ticks.saturating_add(1 + missed);
         }
 
         let position = Vec2::from_array(sample.position);
@@ -159,7 +203,7 @@ impl<S: Scalar> Guard<S> {
         let trusted = if self.faulty || anew || !facts.contains(Facts::ON) {
             Vec2::ZERO
         } else if in_contact {
-            velocity.map(|speed| beyond(speed, coeffs.blind_speed))
+            velocity.map(|speed| speed.beyond(coeffs.blind_speed))
         } else {
             velocity
         };
@@ -168,36 +212,44 @@ impl<S: Scalar> Guard<S> {
         } else {
             self.refusal(position, trusted, coeffs)
         };
-        events |= self.count(refusal, position, coeffs);
+        let bad = match refusal {
+            Refusal::None => Facts::empty(),
+            Refusal::NotFinite | Refusal::Range => bad_coordinates(position, coeffs.position_limit),
+            _ => Facts::BOTH_BAD,
+        };
+        if !self.faulty {
+            events |= self.count(refusal, position, coeffs);
+        }
         if facts.contains(Facts::LATE) {
             self.late_ticks = self.late_ticks.saturating_add(1);
             events |= Events::LATE;
         }
-        let mut jumped = false;
+        let mut fits = true;
         if refusal == Refusal::None {
             facts |= Facts::USED;
             self.refused.apart = 0;
         } else {
-            let bad = match refusal {
-                Refusal::NotFinite | Refusal::Range => {
-                    bad_coordinates(position, coeffs.position_limit)
-                }
-                _ => Facts::BOTH_BAD,
-            };
             self.refused.bad |= bad;
             if bad != Facts::BOTH_BAD {
-                jumped = self.judge_other(position, bad, (1 + missed, anew), coeffs);
+                fits = self.judge_other(position, bad, (1 + missed, anew), coeffs);
             } else if self.faulty {
-                (self.refused.all, self.refused.apart) = (0, 0);
+                self.refused.apart = 0;
             }
         }
         if self.faulty {
+            // Nobody knows where the rotor is: a sample has to fit to the one before it.
+            if is_measured(refusal) {
+                (self.last_good, self.age) = (position, 0);
+            }
+            events |= self.recover(bad, fits, coeffs);
+        }
+        if self.faulty {
             facts |= Facts::FAULTY | self.refused.bad;
-            if jumped {
+            if !fits {
                 facts |= Facts::BOTH_BAD;
             }
         }
-        let lost = facts & (Facts::X_LOST | Facts::Y_LOST);
+        let lost = facts & Facts::LOST;
         let before = core::mem::replace(&mut self.lost, lost);
         if !(lost - before).is_empty() {
             events |= Events::AXIS_LOST;
@@ -205,9 +257,9 @@ impl<S: Scalar> Guard<S> {
         if !(before - lost).is_empty() {
             events |= Events::AXIS_BACK;
         }
-        let kept = Facts::USED | Facts::ON | Facts::X_LOST | Facts::Y_LOST;
-        self.usual = status - Status::LATE;
-        self.usual_facts = if facts.contains(Facts::USED) && !self.faulty {
+        let kept = Facts::USED | Facts::ON | Facts::LOST;
+        self.usual = (status - Status::LATE).bits() as u8;
+        self.usual_facts = if facts.contains(Facts::USED) && !self.faulty && !self.jumped {
             facts & kept
         } else {
             Facts::empty()
@@ -221,30 +273,26 @@ impl<S: Scalar> Guard<S> {
     }
 
     /// Whether the number is that of no new sample, and how many ticks were missed.
-    fn sequence(&mut self, sequence: u32) -> (bool, u32, Events) {
-        let Some(last) = self.last_sequence.replace(sequence) else {
-            return (false, 0, Events::empty());
-        };
+    fn sequence(&mut self, sequence: u32) -> (bool, u32) {
+        let last = core::mem::replace(&mut self.last_sequence, sequence);
+        if !core::mem::replace(&mut self.begun, true) {
+            return (false, 0);
+        }
         let ahead = sequence.wrapping_sub(last);
         // An older number is no new sample either.
         if ahead == 0 || ahead > u32::MAX / 2 {
             self.repeats = self.repeats.saturating_add(1);
             self.repeated_ticks = self.repeated_ticks.saturating_add(1);
-            return (true, 0, Events::SEQUENCE);
+            return (true, 0);
         }
         // Where the number counts the samples that should have come, each repeated call was one.
-        let missed = (ahead - 1).saturating_sub(self.repeats);
+        let missed = (ahead - 1).saturating_sub(u32::from(self.repeats));
         self.repeats = 0;
-        let events = if missed > 0 {
-            self.missed_ticks = self.missed_ticks.saturating_add(missed);
-            Events::SEQUENCE
-        } else {
-            Events::empty()
-        };
+        self.missed_ticks = self.missed_ticks.saturating_add(missed);
         // Numbers that jump at each tick are no gaps, and nothing could be compared with anything.
         let long = missed > MAX_MISSED;
         let jumps = core::mem::replace(&mut self.jumped, long) && long;
-        (jumps, missed, events)
+        (jumps, missed)
     }
 
     /// What is wrong with a new sample.
@@ -255,21 +303,20 @@ impl<S: Scalar> Guard<S> {
         if position.exceeds(coeffs.position_limit) {
             return Refusal::Range;
         }
-        let stuck = (self.still).watch(position, velocity, coeffs.sensor_speeds, self.faulty);
-        if let Some((last, ticks)) = self.last_good
-            && (position - last).exceeds(way_in(ticks, coeffs))
-        {
+        let (stuck, both) = (self.still).watch(position, velocity, coeffs.sensor_speeds);
+        self.stuck = stuck >= if both { STUCK } else { ONE_STUCK };
+        let known = self.age != NEVER;
+        if known && (position - self.last_good).exceeds(way_in(u32::from(self.age), coeffs)) {
             return Refusal::Slew;
         }
-        if stuck {
+        if stuck > 0 {
             return Refusal::Stuck;
         }
         Refusal::None
     }
 
-    /// Judges the coordinate beside one that is bad, so many ticks after the last sample. Whether it is farther from that
-    /// than the rotor can be: then it is not used, and after the second in a row both are bad. In a fault of both it is good
-    /// again after as many samples that fit as end a fault.
+    /// Judges the coordinate beside one that is bad, so many ticks after the last sample: whether it fits, or is farther
+    /// from that than the rotor can be. Then it is not used, and after the second in a row both are bad.
     fn judge_other(
         &mut self,
         position: Vec2<S>,
@@ -277,101 +324,85 @@ impl<S: Scalar> Guard<S> {
         (ticks, anew): (u32, bool),
         coeffs: &Coeffs<S>,
     ) -> bool {
-        let (still, refused) = (&mut self.still, &mut self.refused);
-        let last = still.last.get_or_insert(position);
-        let [awaited_x, awaited_y] = &mut still.awaited;
-        let (now, last, way, awaited) = if bad == Facts::X_BAD {
-            (position.y, &mut last.y, &mut still.way.y, awaited_y)
-        } else {
-            (position.x, &mut last.x, &mut still.way.x, awaited_x)
-        };
+        let refused = &mut self.refused;
+        let (other, now) = self.still.beside(bad, position);
         let ticks = ticks + u32::from(refused.apart);
-        let fits = anew || (now - *last).size() <= way_in(ticks, coeffs);
-        if now != *last {
-            *way = S::ZERO;
-            *awaited = false;
-        }
-        if self.faulty && refused.bad == Facts::BOTH_BAD {
-            *last = now;
-            refused.all = if fits && !*awaited {
-                refused.all + 1
-            } else {
-                0
-            };
-            if refused.all >= coeffs.fault_ticks {
-                (refused.bad, refused.all) = (bad, 0);
-            }
-        } else if fits {
-            *last = now;
+        let fits = anew || other.step(now) <= way_in(ticks, coeffs);
+        let all_bad = self.faulty && refused.bad == Facts::BOTH_BAD;
+        let second = refused.apart > 0;
+        if fits || second || all_bad {
+            other.accept(now);
             refused.apart = 0;
-        } else if refused.apart == 0 {
+        } else {
             // At most one more than a gap that is made up for.
             refused.apart = ticks as u8;
-        } else {
-            *last = now;
-            refused.apart = 0;
+        }
+        if !fits && second {
             refused.bad = Facts::BOTH_BAD;
         }
-        !fits
+        fits && !(all_bad && other.is_awaited())
     }
 
-    /// Fault and recovery.
+    /// Before a fault: refused samples since the last good one, and whether they make one. Where nothing is known of the
+    /// rotor, the first does.
     fn count(&mut self, refusal: Refusal, position: Vec2<S>, coeffs: &Coeffs<S>) -> Events {
-        if refusal == Refusal::None && !self.faulty {
-            self.last_good = Some((position, 0));
-            self.refused = Refused::default();
-            return Events::empty();
-        }
-        let measured = !matches!(
-            refusal,
-            Refusal::NotFinite | Refusal::Range | Refusal::Dropout
-        );
-        // In a fault nobody knows where the rotor is: a sample has to fit to the one before it.
-        if self.faulty && measured {
-            self.last_good = Some((position, 0));
-        }
-        if self.faulty {
-            if refusal != Refusal::None {
-                self.good = 0;
-            } else if self.still.awaited == [false; 2] {
-                self.good += 1;
-            }
-            if self.good < coeffs.fault_ticks {
+        let refused = &mut self.refused;
+        let often = |count: &mut u8, most: u8| {
+            *count += 1;
+            *count >= most
+        };
+        let sure = match refusal {
+            Refusal::None => {
+                (self.last_good, self.age) = (position, 0);
+                *refused = Refused::default();
                 return Events::empty();
             }
-            self.faulty = false;
-            self.refused = Refused::default();
-            return Events::SENSOR_OK;
-        }
-        let refused = &mut self.refused;
-        refused.all += 1;
-        match refusal {
-            Refusal::Slew => refused.jumps += 1,
-            Refusal::Dropout => refused.dropouts += 1,
-            Refusal::Stuck => refused.stuck += 1,
-            Refusal::None | Refusal::NotFinite | Refusal::Range => {}
-        }
-        let fault = refused.all >= coeffs.fault_ticks
-            || refused.jumps >= JUMPS
-            || refused.dropouts >= DROPOUTS
-            || refused.stuck >= STUCK;
-        if !fault {
+            Refusal::NotFinite | Refusal::Range => false,
+            Refusal::Slew => often(&mut refused.jumps, JUMPS),
+            Refusal::Dropout => often(&mut refused.dropouts, DROPOUTS),
+            Refusal::Stuck => self.stuck,
+        };
+        // Readings that are the last ones by chance may be many in a row, of x here and of y there.
+        refused.all += u16::from(refusal != Refusal::Stuck);
+        if !sure && refused.all < coeffs.fault_ticks && self.age != NEVER {
             return Events::empty();
         }
-        refused.all = 0;
+        self.age = NEVER;
         self.faulty = true;
         self.fault = refusal;
-        self.good = 0;
-        self.still.freeze(coeffs.sensor_speeds);
-        self.last_good = measured.then_some((position, 0));
+        self.fitting = Fitting::default();
+        self.still.freeze();
         Events::SENSOR_FAULT
+    }
+
+    /// In a fault: after as many samples in a row that fit, with the same coordinates bad, no others are; with none bad
+    /// it is over.
+    fn recover(&mut self, bad: Facts, fits: bool, coeffs: &Coeffs<S>) -> Events {
+        let fitting = &mut self.fitting;
+        if bad != fitting.bad {
+            *fitting = Fitting { bad, samples: 0 };
+        }
+        let waits = bad.is_empty() && self.still.is_awaited();
+        if !fits || waits || bad == Facts::BOTH_BAD {
+            fitting.samples = 0;
+            return Events::empty();
+        }
+        fitting.samples = fitting.samples.saturating_add(1);
+        if fitting.samples < coeffs.fault_ticks {
+            return Events::empty();
+        }
+        self.refused.bad = bad;
+        if !bad.is_empty() {
+            return Events::empty();
+        }
+        self.faulty = false;
+        self.refused = Refused::default();
+        Events::SENSOR_OK
     }
 
     /// After a change of the unit of length.
     pub(crate) fn rescale(&mut self, length: S) {
-        if let Some((position, _)) = &mut self.last_good {
-            *position = *position * length;
-        }
+        self.last_good = self.last_good * length;
         self.still.rescale();
         self.still_is_old = false;
     }
@@ -392,30 +423,10 @@ fn bad_coordinates<S: Scalar>(position: Vec2<S>, most: S) -> Facts {
     }
 }
 
-/// What the status bits say.
-fn facts_of(status: Status) -> Facts {
-    let pairs = [
-        (Status::BEARING_ON, Facts::ON),
-        (Status::AXIS_X_LOST, Facts::X_LOST),
-        (Status::AXIS_Y_LOST, Facts::Y_LOST),
-        (Status::LATE, Facts::LATE),
-    ];
-    let mut facts = Facts::empty();
-    for (bit, fact) in pairs {
-        if status.contains(bit) {
-            facts |= fact;
-        }
-    }
-    facts
-}
-
-/// What of a speed is beyond a doubt of this size.
-fn beyond<S: Scalar>(speed: S, doubt: S) -> S {
-    if speed > doubt {
-        speed - doubt
-    } else if speed < -doubt {
-        speed + doubt
-    } else {
-        S::ZERO
-    }
+/// Whether a sample, good or refused, says where the rotor may be.
+fn is_measured(refusal: Refusal) -> bool {
+    !matches!(
+        refusal,
+        Refusal::NotFinite | Refusal::Range | Refusal::Dropout
+    )
 }

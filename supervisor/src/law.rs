@@ -9,7 +9,7 @@
 //! continuous contact only −b̂ brakes, and an inward part of μ takes away some of the driving
 //! friction: −(b̂ + μ·n̂).
 
-use crate::coeffs::Coeffs;
+use crate::coeffs::{Coeffs, NEARLY_ALL};
 use crate::course::{Course, Impact, sum_of_impacts};
 use crate::detect::Findings;
 use crate::estimate::Motion;
@@ -87,17 +87,20 @@ impl<S: Scalar> View<'_, S> {
     /// stable with a force that comes late.
     #[inline(never)]
     fn in_flight(&self) -> Wanted<S> {
-        let most = self.coeffs.restoring;
+        let coeffs = self.coeffs;
+        let most = coeffs.restoring;
         let share = (most - self.course.square).or_more(most.or_less(S::of(FLIGHT_SHARE)));
         let slow = (S::ONE - self.course.square).or_more(S::ZERO);
         let load = self.found.load.between(S::ZERO, S::ONE) * (slow * most * S::of(LOAD_SHARE));
+        let carrying = (S::ONE - most * S::of(1.0 / NEARLY_ALL)).or_more(S::ZERO);
+        let carried = self.motion.load_step * (coeffs.per_tick * slow * carrying);
         Wanted {
             braking: match self.ahead {
                 Some(impact) => self.before(impact),
                 None => Vec2::ZERO,
             },
             damping: self.damping(),
-            restoring: self.motion.position * -(share + load),
+            restoring: self.motion.position * -(share + load) - carried,
             touching: false,
         }
     }

@@ -16,7 +16,7 @@ use crate::recorder::{QueuedEvent, Record, Recorder};
 use crate::scalar::Scalar;
 use crate::severity::Severity;
 use crate::signal::{
-    CoreCommand, CoreSample, Events, IntegratorHint, Limits, Mode, Refusal, Report, Status,
+    CoreCommand, CoreSample, Events, IntegratorHint, Limits, Mode, Report, Status,
 };
 use crate::spin::Spin;
 use crate::vec2::Vec2;
@@ -43,7 +43,6 @@ pub struct Core<S: Scalar, const RECORD: usize = 512> {
     /// … and what would have been it, which is the same but in shadow.
     own: Vec2<S>,
     detector: Detector,
-    refusal: Refusal,
     reconfigured: bool,
     recorder: Recorder<RECORD>,
 }
@@ -89,7 +88,6 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
             severity: Severity::default(),
             force: Vec2::ZERO,
             own: Vec2::ZERO,
-            refusal: Refusal::None,
             reconfigured: false,
             recorder: Recorder::new(),
         }
@@ -136,7 +134,6 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
         let reading = (self.guard).judge((sample, status), estimated, coeffs);
         let verdict = reading.verdict;
         let facts = verdict.facts;
-        self.refusal = verdict.refusal;
         let spin = (reading.spin, sample.spin);
         if facts.intersects(Facts::UNUSUAL) {
             self.catch_up(verdict, reading.actuator(), spin, pinned);
@@ -148,7 +145,7 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
         let (motion, beside) = (self.observer).advance(position, spin, wall, actuator, coeffs);
         let room = Room::new(&self.budget, actuator.axes, coeffs);
         let found = (self.detector).findings((&motion, beside), contact, room.cap, coeffs);
-        let class = (self.classifier).classify(&found, spin, coeffs);
+        let class = (self.classifier).classify(&found, position.is_some(), spin, coeffs);
 
         // A rotor that levitates, and will, needs none of what follows.
         let (mut course, mut ahead, mut calm) = (Course::default(), None, false);
@@ -195,17 +192,18 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
         } else {
             (Vec2::ZERO, Limits::empty())
         };
-        let (target, bound) = if mode == Mode::Levitated {
+        // What the controller makes of such a sample does not go through.
+        let wrong = verdict.refusal.is_wrong() && facts.contains(Facts::ON);
+        if mode == Mode::Levitated {
             self.readiness = Readiness::default();
-            if position.is_none() && facts.contains(Facts::ON) && verdict.refusal.is_wrong() {
-                // What the controller makes of such a sample does not go through.
-                limit::kept(last, room)
-            } else {
-                (levitation, levitation_limits)
-            }
+        }
+        let (target, bound) = if wrong && matches!(mode, Mode::Levitated | Mode::Handover) {
+            limit::kept(last, room)
+        } else if mode == Mode::Levitated {
+            (levitation, levitation_limits)
         } else {
             let (wanted, mut own_limits) = limit::allocate(&view.wanted(phase), room);
-            if holds {
+            if holds && !wrong {
                 // The controller has to ask for what the rotor is really held with.
                 let held = actuator.applied().unwrap_or(wanted);
                 self.readiness
@@ -238,7 +236,11 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
             limits |= Limits::SAMPLE_REFUSED;
         }
         self.observer.commanded(self.force);
-        let acting = actuator.applied().unwrap_or(self.force);
+        let acting = match actuator.applied() {
+            Some(measured) => measured,
+            None if facts.contains(Facts::ON) => self.force,
+            None => Vec2::ZERO,
+        };
         self.budget.spend(S::ONE, acting, coeffs);
         let assessment =
             (self.severity).assess(mode, &view, facts, (acting, self.observer.velocity()));
@@ -310,7 +312,7 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
             missed_ticks: self.guard.missed_ticks,
             repeated_ticks: self.guard.repeated_ticks,
             late_ticks: self.guard.late_ticks,
-            refusal: self.refusal,
+            refusal: self.guard.refusal,
             fault: self.guard.fault,
             ..self.severity.report(&self.coeffs)
         }

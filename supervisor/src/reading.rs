@@ -6,40 +6,49 @@ use crate::spin::Spin;
 use crate::vec2::Vec2;
 
 bitflags::bitflags! {
-    /// What the guard has found, in one register.
+    /// What the guard has found, in one register. Bits that a [`Status`] says have their place in it.
     #[derive(Debug, Clone, Copy, PartialEq, Eq)]
     pub(crate) struct Facts: u16 {
         /// The sample may be used; else the observer runs on its model.
         const USED = 1;
         /// The bearing may act.
-        const ON = 1 << 1;
+        const ON = Status::BEARING_ON.bits() as u16;
         /// Position has been implausible for too long.
         const FAULTY = 1 << 2;
-        /// The observer has to start anew.
-        const ANEW = 1 << 3;
         /// Nothing can act along x, along y.
-        const X_LOST = 1 << 4;
-        const Y_LOST = 1 << 5;
+        const X_LOST = Status::AXIS_X_LOST.bits() as u16;
+        const Y_LOST = Status::AXIS_Y_LOST.bits() as u16;
+        /// The last command came too late.
+        const LATE = Status::LATE.bits() as u16;
         /// The applied force is measured and believed.
         const MEASURED = 1 << 6;
-        /// The last command came too late.
-        const LATE = 1 << 7;
+        /// The observer has to start anew.
+        const ANEW = 1 << 7;
         /// Ticks were missed.
         const MISSED = 1 << 8;
         /// During a fault: the coordinate x, y cannot be trusted.
         const X_BAD = 1 << 9;
         const Y_BAD = 1 << 10;
         const BOTH_BAD = Self::X_BAD.bits() | Self::Y_BAD.bits();
+        const LOST = Self::X_LOST.bits() | Self::Y_LOST.bits();
+        /// What a status says.
+        const SAID = Self::ON.bits() | Self::LOST.bits() | Self::LATE.bits();
         /// What the observer has to be told before the tick.
         const UNUSUAL = Self::FAULTY.bits() | Self::ANEW.bits() | Self::LATE.bits() | Self::MISSED.bits();
     }
 }
 
 impl Facts {
+    /// What the status says.
+    #[inline]
+    pub(crate) fn of(status: Status) -> Self {
+        Self::from_bits_truncate(status.bits() as u16) & Self::SAID
+    }
+
     /// Whether an axis is lost.
     #[inline]
     pub(crate) fn has_lost(self) -> bool {
-        self.intersects(Self::X_LOST.union(Self::Y_LOST))
+        self.intersects(Self::LOST)
     }
 
     /// The part of a force that the axes can carry.
@@ -57,16 +66,7 @@ impl Facts {
     /// The axes that are lost by the status, and not because they do not obey.
     #[inline]
     pub(crate) fn known(self, status: Status) -> Self {
-        let mut known = self;
-        for (bit, fact) in Status::LOST_AXES
-            .into_iter()
-            .zip([Self::X_LOST, Self::Y_LOST])
-        {
-            if !status.contains(bit) {
-                known -= fact;
-            }
-        }
-        known
+        self - (Self::LOST - Self::of(status))
     }
 
     /// A force along the coordinates that a fault of the sensor leaves, another one along those that are bad.

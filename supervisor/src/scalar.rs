@@ -77,6 +77,18 @@ pub trait Scalar:
         }
     }
 
+    /// What of it is beyond a doubt of this size.
+    #[inline]
+    fn beyond(self, doubt: Self) -> Self {
+        if self > doubt {
+            self - doubt
+        } else if self < -doubt {
+            self + doubt
+        } else {
+            Self::ZERO
+        }
+    }
+
     /// The larger of two finite numbers.
     #[inline]
     fn or_more(self, other: Self) -> Self {
@@ -224,8 +236,8 @@ macro_rules! floating_point {
     };
 }
 
-floating_point!(f32, i32, 0x1611_2437);
-floating_point!(f64, i64, 0xCBF7_A295);
+floating_point!(f32, i32, 0xEBC7_04EB);
+floating_point!(f64, i64, 0x98DE_0CDC);
 
 /// Reciprocal square roots by Newton's method, from + − × only: every target gives the same bits. `core`
 /// has no root, and libm's costs three times as many instructions where there is an FPU. 0 below 1e-30

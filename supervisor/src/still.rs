@@ -1,61 +1,119 @@
 //! A sensor that is stuck: coordinates that do not change although the rotor moves.
 
+use crate::reading::Facts;
 use crate::scalar::Scalar;
 use crate::vec2::Vec2;
 
-/// What is remembered of each coordinate.
+/// What is remembered of a coordinate. `seen`: there is a last value.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Coordinate<S> {
+    last: S,
+    seen: bool,
+    /// Predicted motion since its last change, as a sum of speeds over ticks.
+    way: S,
+    /// Samples in a row in which that was too much.
+    stuck: u8,
+    /// Samples since its last change.
+    unchanged: u8,
+    /// It has stood still since the last fault began. One that has changed may rest after it, as the rotor may.
+    awaited: bool,
+}
+
+/// Both coordinates.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Still<S> {
-    pub(crate) last: Option<Vec2<S>>,
-    /// Predicted motion since the last change of each coordinate, as a sum of speeds over ticks.
-    pub(crate) way: Vec2<S>,
-    /// Coordinates that have stood still since the last fault began. One that has changed may rest after it, as
-    /// the rotor may.
-    pub(crate) awaited: [bool; 2],
+    at: [Coordinate<S>; 2],
 }
 
 impl<S: Scalar> Still<S> {
-    /// Whether a coordinate has stood still for more than `most`. That holds until it changes.
-    pub(crate) fn watch(
-        &mut self,
-        position: Vec2<S>,
-        velocity: Vec2<S>,
-        most: S,
-        faulty: bool,
-    ) -> bool {
-        let [x, y] = match self.last.replace(position) {
-            Some(last) => [position.x == last.x, position.y == last.y],
-            None => [false; 2],
+    /// For how many samples in a row a coordinate has stood still for more than `most`, which holds until it changes; and
+    /// whether neither has changed for as many.
+    pub(crate) fn watch(&mut self, position: Vec2<S>, velocity: Vec2<S>, most: S) -> (u8, bool) {
+        let [x, y] = &mut self.at;
+        let samples =
+            (x.watch(position.x, velocity.x, most)).max(y.watch(position.y, velocity.y, most));
+        (samples, x.unchanged.min(y.unchanged) >= samples)
+    }
+
+    /// After samples that nobody showed it, each of which changed in both coordinates.
+    pub(crate) fn moved_to(&mut self, last: Vec2<S>) {
+        let [x, y] = &mut self.at;
+        x.moved_to(last.x);
+        y.moved_to(last.y);
+    }
+
+    /// The coordinate beside one that is bad, and its value. The first one is its own last.
+    pub(crate) fn beside(&mut self, bad: Facts, position: Vec2<S>) -> (&mut Coordinate<S>, S) {
+        let [x, y] = &mut self.at;
+        let (coordinate, now) = if bad == Facts::X_BAD {
+            (y, position.y)
+        } else {
+            (x, position.x)
         };
-        if !(x || y || faulty) {
-            self.way = Vec2::ZERO;
-            return false;
+        if !coordinate.seen {
+            coordinate.moved_to(now);
+        } else if now != coordinate.last {
+            coordinate.moved_to(coordinate.last);
         }
-        let on = |way: S, step: S, same: bool| match same {
-            false => S::ZERO,
-            true if farther(way, most) => way,
-            true => way + step,
-        };
-        self.way = Vec2::new(on(self.way.x, velocity.x, x), on(self.way.y, velocity.y, y));
-        if faulty {
-            let [awaited_x, awaited_y] = self.awaited;
-            self.awaited = [awaited_x && x, awaited_y && y];
-        }
-        farther(self.way.x, most) || farther(self.way.y, most)
+        (coordinate, now)
+    }
+
+    /// Whether a coordinate has not changed since the last fault began.
+    pub(crate) fn is_awaited(&self) -> bool {
+        self.at[0].awaited || self.at[1].awaited
     }
 
     /// A fault begins: from here on the model is no evidence.
-    pub(crate) fn freeze(&mut self, most: S) {
-        self.awaited = [farther(self.way.x, most), farther(self.way.y, most)];
-        self.way = Vec2::ZERO;
+    pub(crate) fn freeze(&mut self) {
+        for coordinate in &mut self.at {
+            coordinate.awaited = coordinate.stuck > 0;
+            (coordinate.way, coordinate.stuck) = (S::ZERO, 0);
+        }
     }
 
     /// After a change of the unit of length no coordinate can be compared with the one before.
     pub(crate) fn rescale(&mut self) {
-        self.last = None;
+        for coordinate in &mut self.at {
+            coordinate.seen = false;
+        }
     }
 }
 
-fn farther<S: Scalar>(way: S, most: S) -> bool {
-    way > most || way < -most
+impl<S: Scalar> Coordinate<S> {
+    fn watch(&mut self, now: S, step: S, most: S) -> u8 {
+        if !self.seen || now != self.last {
+            self.moved_to(now);
+            return 0;
+        }
+        self.unchanged = self.unchanged.saturating_add(1);
+        if self.stuck == 0 {
+            self.way = self.way + step;
+        }
+        if self.way > most || self.way < -most {
+            self.stuck = self.stuck.saturating_add(1);
+        }
+        self.stuck
+    }
+
+    fn moved_to(&mut self, last: S) {
+        *self = Self {
+            last,
+            seen: true,
+            ..Self::default()
+        };
+    }
+
+    /// The way to a value since the one that was accepted last.
+    pub(crate) fn step(&self, now: S) -> S {
+        (now - self.last).size()
+    }
+
+    pub(crate) fn accept(&mut self, now: S) {
+        self.last = now;
+    }
+
+    /// Whether it has not changed since the last fault began.
+    pub(crate) fn is_awaited(&self) -> bool {
+        self.awaited
+    }
 }

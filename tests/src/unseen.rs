@@ -53,6 +53,34 @@ impl Unseen {
         found.tuned = self.plant.scene.levitation.expect("all have one");
         found
     }
+
+    /// The same with a levitation controller that carries loads: at least 0.78 of the cap at the wall, and an integrator.
+    ///
+    /// # Panics
+    /// If the catalogue has no P2.
+    pub fn found_with_integrator(&self) -> Found {
+        let plant = &self.plant.scene.plant;
+        let force_max_n = plant.magnet.expect("all have one").force_max_n;
+        let pull_n_m = -plant.rotor.stiffness_n_m;
+        let carried_n_m = 0.3 * force_max_n / plant.contact.clearance_m;
+        let mut found = self.found();
+        found.tuned = LevitationParams {
+            integral_n_m_s: 26.0 * pull_n_m.max(carried_n_m),
+            ..levitation(plant.rotor.mass_kg, pull_n_m, pull_n_m.max(carried_n_m))
+        };
+        found
+    }
+}
+
+/// Two and a half times the stiffness that it has to overcome, and a little more than critical damping.
+fn levitation(mass_kg: f64, pull_n_m: f64, overcome_n_m: f64) -> LevitationParams {
+    let proportional_n_m = 2.6 * overcome_n_m;
+    LevitationParams {
+        proportional_n_m,
+        integral_n_m_s: 0.0,
+        derivative_n_s_m: 2.2 * ((proportional_n_m - pull_n_m) * mass_kg).sqrt(),
+        derivative_filter_s: 1e-4,
+    }
 }
 
 /// The catalogue's scenes on a plant with this loop in which the supervisor takes part, and sensors and
@@ -87,9 +115,12 @@ pub fn machine(number: u64) -> Unseen {
     let noise_m = draw.decades(2e-7, 2e-6);
     let radius_m = draw.decades(0.02, 0.1);
     let inertia_kg_m2 = 0.75 * mass_kg * radius_m * radius_m;
-    // Two and a half times what it has to overcome, and a little more than critical damping.
-    let proportional_n_m = 2.6 * negative_n_m;
-    let derivative_n_s_m = 2.2 * ((proportional_n_m - negative_n_m) * mass_kg).sqrt();
+    let LevitationParams {
+        proportional_n_m,
+        derivative_n_s_m,
+        derivative_filter_s,
+        ..
+    } = levitation(mass_kg, negative_n_m, negative_n_m);
     let text = format!(
         r#"
 title = "machine {number}"
@@ -119,7 +150,7 @@ noise_rms_m = {noise_m}
 [levitation]
 proportional_n_m = {proportional_n_m}
 derivative_n_s_m = {derivative_n_s_m}
-derivative_filter_s = 1e-4
+derivative_filter_s = {derivative_filter_s}
 "#
     );
     let name = format!("machine {number}");

@@ -126,9 +126,9 @@ fn run_all(scene: &Scene, args: &RunArgs) -> Result<Vec<PolicyRun>, CommandError
         }
     };
     let results = pool(args.threads)?.install(|| {
-        jobs.par_iter()
-            .map(one)
-            .collect::<Result<Vec<_>, RunError>>()
+        let all: Vec<_> = jobs.par_iter().map(one).collect();
+        // The first error in the order of the jobs, whoever came first.
+        all.into_iter().collect::<Result<Vec<_>, RunError>>()
     });
     progress.finish();
     let mut results = results?.into_iter();

@@ -2,6 +2,7 @@
 
 use std::f64::consts::TAU;
 
+use super::crossings::{first_root, guard_scales, lowest_between, suspicious};
 use super::frame::Frame;
 use super::pair::{Field, Origin, Pair, Rates};
 use super::scales::Scales;
@@ -14,7 +15,7 @@ use crate::part::{Part, Weights};
 use crate::readout::{Peaks, Work};
 use crate::spin::Spin;
 use crate::stator::Stator;
-use crate::system::{Evaluation, Guards, Inputs, NORMAL, StateOf, System};
+use crate::system::{Evaluation, Guards, Inputs, Muted, NORMAL, StateOf, System};
 
 /// Points at which a step that may hold an event is searched; those close to the ends show a dip there.
 const SCANS: [f64; 10] = [
@@ -85,7 +86,7 @@ pub(crate) struct Task<'a> {
     pub(crate) inputs: &'a Inputs,
     pub(crate) mode: (Slide, Whirl),
     /// Guard that is not to be asked.
-    pub(crate) muted: Option<usize>,
+    pub(crate) muted: Muted,
 }
 
 /// Result of one accepted step.
@@ -263,7 +264,7 @@ impl<P> ContactStepper<P> {
     fn locate<Y: Part>(
         &mut self,
         (t_s, step_s): (f64, f64),
-        (muted, round_off): (Option<usize>, &Guards),
+        (muted, round_off): (Muted, &Guards),
         dips: bool,
         field: &mut impl Field<Y, Evaluation<Y>>,
     ) -> Option<Crossing>
@@ -283,7 +284,7 @@ impl<P> ContactStepper<P> {
         let rising = self.pair.seen().first()?.touch.guard_rate > 0.0;
         let jumped = |(guard, g): (usize, &f64)| {
             *g < -1e-12 * scale[guard] - round_off[guard]
-                && muted != Some(guard)
+                && !muted.has(guard)
                 && !(guard == NORMAL && rising)
         };
         if let Some(guard) = start.iter().enumerate().position(jumped) {
@@ -296,7 +297,7 @@ impl<P> ContactStepper<P> {
         let negative = |guard: usize, value: f64| {
             // No number is no positive one: the step is to be shortened.
             let positive = value >= -1e-13 * scale[guard] - round_off[guard];
-            !positive && muted != Some(guard)
+            !positive && !muted.has(guard)
         };
         let mut found: Option<Crossing> = None;
         let (mut before, mut at_before) = (0.0, start);
@@ -388,114 +389,4 @@ pub(crate) fn turn_rad((a, rate_a): (V2, f64), (b, rate_b): (V2, f64), step_s: f
     let part = a.perp(&b).atan2(a.dot(&b));
     let turns = (0.5 * (rate_a + rate_b) * step_s - part) / TAU;
     part + TAU * turns.round()
-}
-
-/// Whether a guard is negative at the end, or comes near zero at any stage. The stages are rough
-/// looks at the inside of the step, and cost nothing.
-fn suspicious<Y>(seen: &[Evaluation<Y>]) -> bool {
-    let (Some(first), Some(last)) = (seen.first(), seen.last()) else {
-        return false;
-    };
-    (0..first.guards.len()).any(|i| {
-        let near = 0.1 * first.guards[i].abs().max(last.guards[i].abs());
-        first.guards[i] < 0.0 || seen.iter().skip(1).any(|e| e.guards[i] < near)
-    })
-}
-
-/// Size of each guard over the last step, against which zero is judged.
-fn guard_scales<Y>(seen: &[Evaluation<Y>]) -> Guards {
-    let mut scale = [0.0; 5];
-    for e in seen {
-        for (s, g) in scale.iter_mut().zip(&e.guards) {
-            if g.is_finite() {
-                *s = g.abs().max(*s);
-            }
-        }
-    }
-    scale
-}
-
-/// Where a guard is lowest between the outer ones of three points, if it is lower in the middle and may come near zero
-/// there: an event that is over before the next point.
-fn lowest_between(
-    guard: usize,
-    [mut a, mut b, mut c]: [(f64, f64); 3],
-    guards_at: &mut impl FnMut(f64) -> Guards,
-) -> Option<(f64, f64)> {
-    for _ in 0..8 {
-        if !(a.0 < b.0 && b.1 > 0.0 && b.1 <= a.1 && b.1 < c.1) {
-            break;
-        }
-        // Vertex of the parabola through the three, from its middle.
-        let (left, right) = ((b.1 - a.1) / (b.0 - a.0), (c.1 - b.1) / (c.0 - b.0));
-        let bend = (right - left) / (c.0 - a.0);
-        let slope = left + bend * (b.0 - a.0);
-        let at = b.0 - 0.5 * slope / bend;
-        let lowest = b.1 - 0.25 * slope * slope / bend;
-        let settled = (at - b.0).abs() < 1e-6 * (c.0 - a.0);
-        if lowest > 0.5 * b.1 || settled || !(at > a.0 && at < c.0) {
-            break;
-        }
-        let new = (at, guards_at(at)[guard]);
-        (a, b, c) = match (new.1 < b.1, new.0 < b.0) {
-            (true, true) => (a, new, b),
-            (true, false) => (b, new, c),
-            (false, true) => (new, b, c),
-            (false, false) => (a, b, new),
-        };
-    }
-    (b.1 < 0.0).then_some(b)
-}
-
-/// First sign change of one guard in a bracket whose high end is negative. A low end at zero (the
-/// guard has just been armed there) is first moved to a point at which the guard is positive; if
-/// there is none the event is at the low end itself.
-fn first_root(
-    guard: usize,
-    (mut low, mut at_low): (f64, f64),
-    (mut high, mut at_high): (f64, f64),
-    guards_at: &mut impl FnMut(f64) -> Guards,
-) -> f64 {
-    if at_low <= 0.0 {
-        let start = low;
-        let mut width = high - low;
-        loop {
-            width *= 0.25;
-            if width < 1e-12 {
-                return start;
-            }
-            let value = guards_at(start + width)[guard];
-            if value > 0.0 {
-                (low, at_low) = (start + width, value);
-                break;
-            }
-            (high, at_high) = (start + width, value);
-        }
-    }
-    // Regula falsi with the Illinois rule: brackets, and converges faster than bisection.
-    let mut side = 0;
-    for _ in 0..60 {
-        let theta = (low * at_high - high * at_low) / (at_high - at_low);
-        if !(theta > low && theta < high) || high - low < 1e-15 {
-            break;
-        }
-        let value = guards_at(theta)[guard];
-        if value > 0.0 {
-            (low, at_low) = (theta, value);
-            if side == 1 {
-                at_high *= 0.5;
-            }
-            side = 1;
-        } else {
-            (high, at_high) = (theta, value);
-            if side == -1 {
-                at_low *= 0.5;
-            }
-            side = -1;
-        }
-        if value == 0.0 {
-            break;
-        }
-    }
-    high
 }

@@ -19,7 +19,7 @@ use crate::part::Part;
 use crate::readout::{Meters, Snapshot, Work};
 use crate::spin::Spin;
 use crate::stator::{Rings, Stator};
-use crate::system::{Evaluation, Geometry, Inputs, NORMAL, StateOf, System};
+use crate::system::{Evaluation, Geometry, Inputs, Muted, NORMAL, StateOf, System};
 
 type Explicit<Y> = Dop853<Y, Evaluation<Y>>;
 type Stiff<Y> = Radau<Y, Evaluation<Y>>;
@@ -46,11 +46,13 @@ pub(crate) struct Run<S: Stator, W: Spin, M: Amplifier> {
     backward: f64,
     stored_at_start_j: f64,
     stored_peak_j: f64,
+    /// Energy of the spin that may never take part.
+    spare_j: f64,
     options: Options,
     events_without_progress: u32,
     steps: u64,
     /// Guard that is not asked in the next step.
-    muted: Option<usize>,
+    muted: Muted,
     /// The rotor has left the wall at this instant.
     just_left: bool,
     /// When it left last \[s\].
@@ -58,6 +60,14 @@ pub(crate) struct Run<S: Stator, W: Spin, M: Amplifier> {
     /// Beyond this radius the model means nothing \[m\].
     farthest_m: f64,
 }
+
+/// Share of the spin's energy at the start that is not counted as turned over. The rest of it is for rounding: of a rotor
+/// that levitates nothing else moves.
+const SPARE: f64 = 1.0 - 1e-4;
+
+/// Events without time in between from which on modes are taken to follow each other in a circle, and those that are too many.
+const CIRCLE: u32 = 4;
+const MOST_AT_ONCE: u32 = 50;
 
 impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
     pub(crate) fn new(
@@ -95,19 +105,27 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
             backward: 1.0,
             stored_at_start_j: 0.0,
             stored_peak_j: 0.0,
+            spare_j: 0.0,
             options,
             events_without_progress: 0,
             steps: 0,
-            muted: None,
+            muted: Muted::NONE,
             just_left: false,
             left_at_s: f64::NEG_INFINITY,
             farthest_m: 0.0,
         };
         let params = &run.system;
         run.farthest_m = (1e3 * params.contact.clearance_m).max(params.rotor.contact_radius_m);
-        if run.system.spin.spin_rad_s(&run.y.spin) >= 0.0 {
+        // Without spin friction drives against the way in which the surfaces slide on each other.
+        let spin = run.system.spin.spin_rad_s(&run.y.spin);
+        let sense = match spin == 0.0 {
+            true => run.system.surface_m_s(&run.y.spin),
+            false => spin,
+        };
+        if sense >= 0.0 {
             run.backward = -1.0;
         }
+        run.spare_j = SPARE * run.system.turning_j(&run.y.spin);
         let g = run.system.geometry(&run.y);
         if g.penetration_m > 0.0 {
             run.phase = match run.normal_n(&g) > 0.0 {
@@ -191,8 +209,8 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
         if radius_m > self.farthest_m {
             return Err(PlantError::Diverged { t_s, radius_m });
         }
-        let stored = self.system.stored_j(&self.y, self.in_contact()).abs();
-        self.stored_peak_j = self.stored_peak_j.max(stored);
+        let stored = self.system.stored_j(&self.y, self.in_contact()) - self.spare_j;
+        self.stored_peak_j = self.stored_peak_j.max(stored.abs());
         Ok(())
     }
 
@@ -203,18 +221,18 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
         } else {
             self.events_without_progress + 1
         };
-        if self.events_without_progress > 50 {
+        if self.events_without_progress > MOST_AT_ONCE {
             return Err(PlantError::ModeUndecided { t_s: self.t_s });
         }
         Ok(())
     }
 
     fn touch(&mut self, t_end_s: f64, pair: (Slide, Whirl)) -> Result<(), PlantError> {
-        // A guard that ended this very mode at this very instant is not asked again for a moment.
-        let muted = self.muted.take();
+        // Guards that ended this very mode at this very instant are not asked again for a moment.
+        let muted = core::mem::take(&mut self.muted);
         let t_end_s = match muted {
-            Some(_) => t_end_s.min(self.t_s + 100.0 * self.system.moment_s(&self.y)),
-            None => t_end_s,
+            Muted::NONE => t_end_s,
+            _ => t_end_s.min(self.t_s + 100.0 * self.system.moment_s(&self.y)),
         };
         let task = Task {
             span: (self.t_s, t_end_s),
@@ -254,7 +272,11 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
                 let here = (self.t_s, &self.y);
                 let next = self.system.next_in_contact(here, &self.inputs, pair, guard);
                 if next == pair && stood_still {
-                    self.muted = Some(guard);
+                    self.muted = muted.and(guard);
+                }
+                // Round-off alone leads round in a circle.
+                if self.events_without_progress >= CIRCLE {
+                    self.muted = Muted::MODES;
                 }
                 self.phase = Phase::Contact(next.0, next.1);
             }
@@ -266,7 +288,7 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
     /// is not asked for a moment.
     fn touch_down(&mut self) {
         if self.t_s - self.left_at_s <= self.system.moment_s(&self.y) {
-            self.muted = Some(NORMAL);
+            self.muted = Muted::NORMAL;
         }
         self.phase = self.settled();
     }
@@ -337,7 +359,7 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
             flows: self.flows,
             stored_at_start_j: self.stored_at_start_j,
             stored_j: self.system.stored_j(&self.y, self.in_contact()),
-            stored_peak_j: self.stored_peak_j.max(self.stored_at_start_j.abs()),
+            stored_peak_j: (self.stored_peak_j).max((self.stored_at_start_j - self.spare_j).abs()),
         }
     }
 

@@ -1,6 +1,7 @@
 //! The command line as a person uses it: results, errors, exit codes, and what is left behind.
 
 mod refusals;
+mod slips;
 mod traces;
 
 use serde_json::Value;

@@ -116,8 +116,14 @@ pub(crate) fn carry_with(
         plant.audit().turnover_j(),
     ];
     assert!(said.iter().all(|x| x.is_finite()), "{now:?}");
-    let residual = plant.audit().residual();
-    assert!(residual <= 10.0 * RTOL, "residual {residual:e} at {now:?}");
+    let (audit, residual) = (plant.audit(), plant.audit().residual());
+    let (gap_j, turned_over_j) = (residual * audit.turnover_j(), audit.turnover_j());
+    // Energy is known to round-off in the spin, of some ten thousand steps that may all round the same way.
+    let round_off_j = 1e-11 * audit.stored_at_start_j.abs();
+    assert!(
+        gap_j <= 10.0 * RTOL * turned_over_j + round_off_j,
+        "residual {residual:e} at {now:?}"
+    );
     now
 }
 

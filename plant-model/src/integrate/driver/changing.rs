@@ -10,7 +10,7 @@ use crate::mode::Phase;
 use crate::params::{Change, ParamError, SlidingFriction};
 use crate::spin::Spin;
 use crate::stator::Stator;
-use crate::system::{NORMAL, StateOf};
+use crate::system::{Muted, StateOf};
 
 impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
     /// See [`crate::plant::Plant::change`].
@@ -47,6 +47,7 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
         let rate = system.contact_rate_rad_s();
         self.maps = FlightMaps::default();
         self.series = (system.contact.law.linear())
+            .filter(|_| !S::OUT_OF_ROUND)
             .map(|law| SeriesStepper::new(self.options.rtol, rate, law));
         self.explicit = ContactStepper::new::<StateOf<S, W, M>>(rate);
         self.stiff = ContactStepper::new::<StateOf<S, W, M>>(rate);
@@ -56,7 +57,7 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
             let here = (self.t_s, &self.y);
             let (slide, whirl) = self.system.settle(here, &self.inputs, held);
             self.phase = Phase::Contact(slide, whirl);
-            self.muted = self.muted.filter(|guard| *guard == NORMAL);
+            self.muted = self.muted.among(Muted::NORMAL);
         }
         Ok(())
     }

@@ -1,0 +1,117 @@
+//! Overloads after which a load stays that the levitation controller carries: the supervisor gives the bearing back.
+
+use firmware_host::closed_loop::{Keep, run_policy};
+use firmware_host::overloads::catalogue::Sizes;
+use firmware_host::overloads::found::kept;
+use firmware_host::overloads::plants::plants;
+use firmware_host::overloads::seats::{Seat, Task, seated};
+use firmware_host::scene::{Disturbance, Scene, Shape};
+use firmware_host::supervision::Supervision;
+use plant_model::V2;
+use supervisor::Mode;
+use system_tests::unseen::machine;
+
+/// On machines that nothing was tuned on: a load of a third to two thirds of the cap comes and stays, alone or with a
+/// landing. Where levitation alone carries it in the end without contact, the supervisor has it levitated in the end, too,
+/// also where forces come late (the law's own spring would leave such a rotor at the wall) and where magnets pull hard.
+#[test]
+fn what_levitation_carries_it_is_given() {
+    let (mut carried, mut touched) = (0, 0);
+    for number in 0..12 {
+        let unseen = machine(number);
+        if unseen.lateness > 0.8 {
+            continue;
+        }
+        let found = unseen.found_with_integrator();
+        let base = &unseen.plant.scene;
+        let sizes = Sizes::of(base).unwrap();
+        for (share, landing) in [
+            (0.35, 0.0),
+            (0.5, 0.0),
+            (0.65, 0.0),
+            (0.35, 1.0),
+            (0.5, 0.5),
+        ] {
+            let mut scene = Scene {
+                duration_s: 0.6,
+                disturbances: vec![Disturbance {
+                    start_s: 0.0,
+                    duration_s: 1.0,
+                    force_n: share * sizes.force_n * V2::new(0.8, 0.6),
+                    shape: Shape::Constant,
+                }],
+                ..base.clone()
+            };
+            scene.start.velocity_m_s = V2::new(0.0, landing * sizes.impact_m_s);
+            let run = |seat: Seat| {
+                let acting = seated(seat, Task::Impact, &found, &scene).unwrap();
+                run_policy(&scene, (acting, seat.name()), Keep::Trace, &mut |_| {}).unwrap()
+            };
+            let (alone, _) = run(Seat::Tuned);
+            if !alone.recovered {
+                continue;
+            }
+            let (own, trace) = run(Seat::Supervisor);
+            let said = format!("{}: {share} caps, landing {landing}", unseen.text);
+            assert!(own.recovered, "{said}: {own:?}");
+            let last = trace.rows.iter().filter(|row| row.plant.t_s > 0.45);
+            let modes: Vec<Mode> = last
+                .filter_map(firmware_host::trace::TraceRow::supervisor_mode)
+                .collect();
+            let levitated = modes.iter().filter(|m| **m == Mode::Levitated).count();
+            assert!(10 * levitated > 9 * modes.len(), "{said}");
+            carried += 1;
+            touched += usize::from(own.impacts > 0);
+        }
+    }
+    assert!(carried > 20 && touched > 5, "{carried}, {touched}");
+}
+
+/// Magnets that pull at the wall with nearly the whole cap and more: a disturbance that the levitation controller holds in
+/// the middle does not end on the bearing.
+#[test]
+fn magnets_that_pull_with_the_whole_cap_are_overcome() {
+    let plant = plants(20_000.0).unwrap().remove(4);
+    assert_eq!(plant.name, "P2");
+    for pull in [0.9, 0.97, 1.1] {
+        let mut scene = plant.scene.clone();
+        let cap_n_m = 1000.0 / scene.plant.contact.clearance_m;
+        scene.plant.rotor.stiffness_n_m = -pull * cap_n_m;
+        scene.nominal.stiffness_n_m = -pull * cap_n_m;
+        scene.duration_s = 0.5;
+        scene.start.velocity_m_s = V2::new(0.02, 0.0);
+        scene.supervisor = Some(firmware_host::suggest::suggested(&scene.nominal).config);
+        let mut found = kept("P2", 20_000.0).unwrap();
+        found.tuned.proportional_n_m = 2.0 * pull * cap_n_m;
+        found.tuned.derivative_n_s_m = 2.0 * (10.0 * pull * cap_n_m).sqrt();
+        let run = |seat: Seat| {
+            let acting = seated(seat, Task::Impact, &found, &scene).unwrap();
+            run_policy(&scene, (acting, seat.name()), Keep::Trace, &mut |_| {}).unwrap()
+        };
+        let ((alone, _), (own, trace)) = (run(Seat::Tuned), run(Seat::Supervisor));
+        assert!(alone.recovered && alone.impacts == 0, "{pull}: {alone:?}");
+        assert!(own.recovered && own.impacts == 0, "{pull}: {own:?}");
+        let engaged = Supervision::of(&trace).unwrap().engaged_time_s;
+        assert!(engaged < 0.05, "{pull}: {engaged} s");
+    }
+}
+
+/// A converter whose step is the noise: readings that are the last one by chance, of x here and of y there, are no stuck
+/// sensor. A second of it on each plant, with an unbalance that moves the rotor by some steps a tick.
+#[test]
+fn a_coarse_converter_is_no_stuck_sensor() {
+    for rate_hz in [10_000.0, 20_000.0] {
+        for plant in plants(rate_hz).unwrap() {
+            let found = kept(&plant.name, rate_hz).unwrap();
+            let mut scene = plant.scene.clone();
+            scene.duration_s = 1.0;
+            scene.sensor.quantum_m = 1e-6;
+            scene.plant.rotor.eccentricity_m = 1e-5;
+            let acting = seated(Seat::Supervisor, Task::Impact, &found, &scene).unwrap();
+            let run = (acting, Seat::Supervisor.name());
+            let (_, trace) = run_policy(&scene, run, Keep::Trace, &mut |_| {}).unwrap();
+            let told = Supervision::of(&trace).unwrap();
+            assert_eq!(told.sensor_faults, 0, "{} at {rate_hz} Hz", plant.name);
+        }
+    }
+}

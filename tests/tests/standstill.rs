@@ -1,0 +1,69 @@
+//! Rotors that hardly spin: sliding and rolling friction turn round at the same speed, and round-off decides between modes.
+
+use plant_model::contact::damping_for_restitution;
+use plant_model::params::*;
+use plant_model::{Inputs, Options, V2, build};
+use system_tests::plants::onset_rig;
+
+/// The rig without its shaft, under its weight, at a spin that is held or nearly none; falls onto the wall, rolls and rests.
+fn falls(
+    law: ContactLaw,
+    spin: (SpinParams, f64),
+    rolling: f64,
+    velocity: V2,
+) -> Result<f64, String> {
+    let base = onset_rig();
+    let mut params = PlantParams {
+        rotor: RotorParams {
+            stiffness_n_m: 0.0,
+            damping_n_s_m: 0.0,
+            ..base.rotor
+        },
+        spin: spin.0,
+        ..base
+    };
+    params.contact.law = law;
+    params.friction.rolling_coefficient = rolling;
+    let start = Start {
+        position_m: V2::zeros(),
+        velocity_m_s: velocity,
+        spin_rad_s: spin.1,
+        spin_phase_rad: 0.0,
+    };
+    let mut plant = build(&params, &start, Options::default()).map_err(|e| e.to_string())?;
+    let inputs = Inputs {
+        external_n: V2::new(0.0, -9.81 * params.rotor.mass_kg),
+        ..Inputs::default()
+    };
+    for i in 1..=8000 {
+        plant
+            .advance(50e-6 * f64::from(i), &inputs, &mut |_| {})
+            .map_err(|e| format!("{velocity:?}, {rolling}: {e}"))?;
+    }
+    Ok(plant.audit().residual())
+}
+
+/// Whatever the start, such a run comes to its end, and its energy adds up.
+#[test]
+fn a_rotor_that_hardly_spins_comes_to_rest() {
+    let mass_kg = onset_rig().rotor.mass_kg;
+    let linear: ContactLaw = LinearContact {
+        stiffness_n_m: 1e8,
+        damping_n_s_m: damping_for_restitution(0.7, 1e8, mass_kg).unwrap(),
+    }
+    .into();
+    let free = SpinParams::Free {
+        inertia_kg_m2: 0.05,
+        drive_torque_n_m: 0.0,
+    };
+    for i in 0..30 {
+        let angle = 0.7 * f64::from(i);
+        let velocity = (0.02 + 0.003 * f64::from(i)) * V2::new(angle.cos(), angle.sin());
+        for rolling in [0.0, 0.001, 0.025] {
+            for spin in [(SpinParams::Held, 0.0), (free, 0.0), (free, 3.0)] {
+                let residual = falls(linear, spin, rolling, velocity).unwrap();
+                assert!(residual < 1e-9, "{residual}");
+            }
+        }
+    }
+}
