@@ -80,6 +80,9 @@ pub struct Stretch {
 pub struct FlightRecord {
     /// Checksum of all entries, to compare with the one that the firmware gave.
     pub crc: u32,
+    /// Whether it has the length of a record, a power of two, and the engagement that froze it stands where it does in a whole
+    /// one from oldest to newest: at the end of the first quarter.
+    pub whole: bool,
     /// Entries that were never written, before the first that was.
     pub empty: usize,
     /// Sequence numbers that are missing between two neighbours.
@@ -130,6 +133,8 @@ impl FlightRecord {
             .count();
         let written = &entries[empty..];
         let engaged = |entry: &&Entry| entry.events & Events::ENGAGED.bits() as u16 != 0;
+        let trigger = (entries.len() / 4).checked_sub(1);
+        let a_length = entries.len().is_power_of_two();
         let start = written.iter().rev().find(engaged).or(written.first());
         let start = start.map_or(0, |entry| entry.sequence);
         let ticks: Vec<Tick> = written.iter().map(|e| tick(e, start, units)).collect();
@@ -143,6 +148,7 @@ impl FlightRecord {
         };
         Self {
             crc: crc_of(entries.iter()),
+            whole: a_length && trigger.is_some_and(|at| engaged(&&entries[at])),
             empty,
             missing: written.windows(2).map(gap).sum(),
             stretches: stretches(&ticks),

@@ -15,7 +15,7 @@ use self::axes::focus_window;
 use self::panels::{Key, PanelRow};
 pub use crate::plot::PlotError;
 use crate::plot::text::{escape, figures};
-use crate::verdict::{Disturbed, Outcome, PolicyRun, SceneSummary, Verdict};
+use crate::verdict::{Disturbed, Outcome, PolicyRun, SceneSummary, Verdict, far_into_the_wall};
 
 const STYLE: &str = include_str!("report/style.css");
 
@@ -37,7 +37,7 @@ pub fn html(scene: &SceneSummary, runs: &[PolicyRun]) -> Result<String, PlotErro
     push_facts(&mut page, scene);
     push_warnings(&mut page, &scene.warnings);
     page.push_str("</header>\n<main>\n");
-    push_table(&mut page, runs);
+    push_table(&mut page, runs, scene.clearance_m);
     verification::push_table(&mut page, runs);
     if !runs.is_empty() {
         push_sections(&mut page, scene, runs)?;
@@ -156,7 +156,7 @@ const COLUMNS: [Column; 14] = [
     ("Real-time ratio", "", |v| figures(v.real_time_ratio)),
 ];
 
-fn push_table(page: &mut String, runs: &[PolicyRun]) {
+fn push_table(page: &mut String, runs: &[PolicyRun], clearance_m: f64) {
     page.push_str("<section class=\"scroll\">\n<table>\n<caption>Verdicts</caption>\n<thead><tr>");
     page.push_str("<th scope=\"col\">Policy</th><th scope=\"col\">Outcome</th>");
     for (heading, unit, _) in COLUMNS {
@@ -178,6 +178,9 @@ fn push_table(page: &mut String, runs: &[PolicyRun]) {
         page.push_str("</tr>\n");
     }
     page.push_str("</tbody>\n</table>\n</section>\n");
+    if let Some(note) = far_into_the_wall(runs, clearance_m) {
+        push(page, format_args!("<p>{}</p>\n", escape(&note)));
+    }
 }
 
 fn badge(outcome: Outcome) -> String {

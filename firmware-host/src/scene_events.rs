@@ -138,7 +138,7 @@ impl Reader<'_> {
 
     fn span(&self, path: &str, start_s: f64, duration_s: f64) -> Result<(), SceneError> {
         (self.check).within(&format!("{path}.start_s"), start_s, 0.0, 1e5)?;
-        (self.check).within(&format!("{path}.duration_s"), duration_s, 0.0, 1e5)?;
+        (self.check).within(&format!("{path}.duration_s"), duration_s, 1e-9, 1e5)?;
         self.starts(&format!("{path}.start_s"), start_s)
     }
 

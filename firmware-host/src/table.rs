@@ -3,7 +3,7 @@
 use crate::scene::Scene;
 use crate::supervision::{Account, Supervision};
 use crate::supervisor_setup::named;
-use crate::verdict::{Check, Outcome, PolicyRun, Verdict, Verification};
+use crate::verdict::{Check, Outcome, PolicyRun, Verdict, Verification, far_into_the_wall};
 use comfy_table::{Cell, CellAlignment, LineStyle, Row, Table, TableStyle};
 use std::fmt::Display;
 
@@ -159,7 +159,9 @@ pub fn text(scene: &Scene, runs: &[PolicyRun]) -> String {
         r.supervision.as_ref()
     });
     add_rows(&mut table, CHECK_FIGURES, runs, |r| r.verification.as_ref());
-    format!("{}\n{table}", scene.title)
+    let note = far_into_the_wall(runs, scene.plant.contact.clearance_m);
+    let note = note.map_or(String::new(), |note| format!("\n{note}"));
+    format!("{}\n{table}{note}", scene.title)
 }
 
 /// Rows of something that not every run has; none where no run has it.

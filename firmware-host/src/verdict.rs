@@ -154,3 +154,15 @@ pub struct SceneSummary {
     /// Duration of the run \[s\].
     pub duration_s: f64,
 }
+
+/// Which runs went so far into the wall that their figures from there on say nothing of a machine.
+pub fn far_into_the_wall(runs: &[PolicyRun], clearance_m: f64) -> Option<String> {
+    let is_far = |run: &&PolicyRun| run.verdict.peak_penetration_m > clearance_m;
+    let names: Vec<&str> = (runs.iter().filter(is_far))
+        .map(|run| run.name.as_str())
+        .collect();
+    let who = names.join(", ");
+    let note =
+        "the wall gave way by more than the clearance: figures from there on are of no machine";
+    (!names.is_empty()).then(|| format!("{who}: {note}"))
+}

@@ -25,8 +25,8 @@ const NO_SHARE: f32 = 1e-9;
 /// Whirl is faster, rest is slower than these shares of the square of the lift-off speed, which is 1.
 const WHIRL_SPEED_SQUARED: f32 = 0.1;
 const REST_SPEED_SQUARED: f32 = 0.05;
-/// Of the speed that the observer makes up across the wall so much counts.
-const REST_SPEED: f32 = 0.2;
+/// Share of the speed made up by the observer that may be wrong, as masses and forces are told.
+const DOUBT: f32 = 0.25;
 /// Rest ends only beyond this share, so that noise does not end it.
 const MOVING_SPEED_SQUARED: f32 = 0.2;
 
@@ -37,7 +37,8 @@ const RUB_RATE_SHARE: f32 = 0.25;
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Classifier<S> {
     contact_share: S,
-    ticks_touching: u32,
+    /// Touching, and too slow for anything but rest. A rotor that turns round near the wall is that for a moment.
+    ticks_slow: u32,
     resting: bool,
     rubbing: bool,
 }
@@ -45,15 +46,16 @@ pub(crate) struct Classifier<S> {
 impl<S: Scalar> Classifier<S> {
     /// The motion is not known any more: a speed that is not known is no rest.
     pub(crate) fn forget(&mut self) {
-        self.ticks_touching = 0;
+        self.ticks_slow = 0;
     }
 
-    /// `seen`: by a sample of this tick; `rate` is the spin \[1/t₀\].
+    /// `seen`: by a sample of this tick; `made_up`: speed outwards that the observer has from being blind for the wall's
+    /// force; `rate` is the spin \[1/t₀\].
     #[inline]
     pub(crate) fn classify(
         &mut self,
         found: &Findings<S>,
-        seen: bool,
+        (seen, made_up): (bool, impl FnOnce() -> S),
         (spin, rate): (Spin, S),
         coeffs: &Coeffs<S>,
     ) -> Class {
@@ -66,25 +68,24 @@ impl<S: Scalar> Classifier<S> {
             self.contact_share =
                 self.contact_share + coeffs.contact_share_step * (now - self.contact_share);
         }
-        self.ticks_touching = if found.touching {
-            self.ticks_touching.saturating_add(1)
-        } else {
-            0
-        };
         let along = found.tangential_speed;
         let along_square = along * along;
-        if !found.touching {
-            self.resting = false;
-        } else {
-            // What presses a rotor to the wall the observer takes for a speed inwards.
-            let made_up = (coeffs.blind_speed - S::of(REST_SPEED)).or_more(S::ZERO);
-            let across = found.radial_speed.beyond(made_up);
+        if found.touching {
+            let made_up = made_up();
+            let across = (found.radial_speed - made_up).beyond(made_up.size() * S::of(DOUBT));
             let square = along_square + across * across;
+            self.ticks_slow = if square < S::of(REST_SPEED_SQUARED) {
+                self.ticks_slow.saturating_add(1)
+            } else {
+                0
+            };
             self.resting = if self.resting {
                 square < S::of(MOVING_SPEED_SQUARED)
             } else {
-                self.ticks_touching > coeffs.whirl_ticks && square < S::of(REST_SPEED_SQUARED)
+                self.ticks_slow > coeffs.whirl_ticks
             };
+        } else {
+            (self.ticks_slow, self.resting) = (0, false);
         }
         let before = core::mem::take(&mut self.rubbing);
         let slow = if before {

@@ -178,8 +178,8 @@ pub(crate) struct Coeffs<S: Scalar> {
     pub(crate) way_per_tick: S,
     /// Three steps of the sensor, as a sum of speeds over ticks.
     pub(crate) sensor_speeds: S,
-    /// Speed that the observer may make up in contact, being blind for the contact force.
-    pub(crate) blind_speed: S,
+    /// Being blind for the contact force, the observer makes up a speed of so much times the acceleration of all others.
+    pub(crate) blind_time: S,
 }
 
 /// Least coefficient of friction in the whirl limit: without friction there is neither whirl nor limit.
@@ -288,8 +288,6 @@ impl<S: Scalar> Coeffs<S> {
             pull + max(damper / horizon - pull, 0.0) / 3.0,
             max(NEARLY_ALL, 1.5 * pull),
         );
-        // What the model may accelerate by while the wall holds against it.
-        let blind = (1.0 + 1.5 * max(stiffness, -stiffness)) * h;
         // Divided by in every severity.
         let whirl_limit = max(whirl_limit_m_s(config) / scaling.speed_m_s(), 1e-6);
         let sensor_steps = 3.0 * config.sensor_step_m * config.retainer_plane_ratio / c;
@@ -370,7 +368,7 @@ impl<S: Scalar> Coeffs<S> {
             index_rate,
             way_per_tick: s("largest speed", config.speed_max_m_s * t / c),
             sensor_speeds: s("sensor step", sensor_steps / h),
-            blind_speed: s("observer", blind * (1.0 + touch_pole) / touch_free),
+            blind_time: s("observer", h * (1.0 + touch_pole) / touch_free),
         };
         (coeffs, taken.misfit)
     }

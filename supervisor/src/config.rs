@@ -44,12 +44,23 @@ impl core::fmt::Display for ConfigError {
             high,
             ..
         } = self.parameter();
-        // As a person would write them: 0.5, and 1e-6.
-        write!(f, "{name} = {:?}: expected {low:?} to {high:?}", self.value)?;
+        write!(f, "{name} = {}: expected ", Written(self.value))?;
+        write!(f, "{} to {}", Written(*low), Written(*high))?;
         match *unit {
             "1" => Ok(()),
             unit => write!(f, " {unit}"),
         }
+    }
+}
+
+/// A number as a person would write it: 0.5, and 1e-6.
+struct Written(f32);
+
+impl core::fmt::Display for Written {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        let Self(x) = *self;
+        let plain = x == 0.0 || !x.is_finite() || (1e-3..1e6).contains(&x.abs());
+        if plain { x.fmt(f) } else { write!(f, "{x:e}") }
     }
 }
 

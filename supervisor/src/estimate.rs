@@ -206,6 +206,13 @@ impl<S: Scalar> Observer<S> {
         }
     }
 
+    /// Speed along the normal of a wall that holds against what the model accelerates by.
+    #[inline]
+    pub(crate) fn made_up(&self, normal: Vec2<S>, coeffs: &Coeffs<S>) -> S {
+        let gained = self.delivered - self.motion.position * coeffs.stiffness;
+        gained.dot(normal) * coeffs.blind_time
+    }
+
     /// Starts anew at the next sample: without samples the model runs away.
     pub(crate) fn forget(&mut self) {
         self.started = false;

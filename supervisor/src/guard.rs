@@ -203,7 +203,9 @@ impl<S: Scalar> Guard<S> {
         let trusted = if self.faulty || anew || !facts.contains(Facts::ON) {
             Vec2::ZERO
         } else if in_contact {
-            velocity.map(|speed| speed.beyond(coeffs.blind_speed))
+            // The most that the model accelerates by while the wall holds against it.
+            let most = S::ONE + coeffs.stiffness.size() * S::of(1.5);
+            velocity.map(|speed| speed.beyond(coeffs.blind_time * most))
         } else {
             velocity
         };

@@ -260,8 +260,21 @@ pub(crate) fn slewed<S: Scalar>(
     if !change.exceeds(coeffs.slew_step) {
         return (target, Limits::empty());
     }
+    (one_step(last, change, coeffs), Limits::SLEW)
+}
+
+/// A step of the slew limit's length.
+#[inline(never)]
+fn one_step<S: Scalar>(last: Vec2<S>, change: Vec2<S>, coeffs: &Coeffs<S>) -> Vec2<S> {
     let force = last + change * change.inverse_length() * coeffs.slew_step;
-    (force, Limits::SLEW)
+    // Both ends are within the caps; rounding may have left them between. The way inwards makes no step longer.
+    let axis = coeffs.axis_cap;
+    let force = force.map(|x| x.between(-axis, axis));
+    if force.exceeds(S::ONE) {
+        force * S::JUST_BELOW_ONE
+    } else {
+        force
+    }
 }
 
 /// Force–time budget: a first-order thermal state of the force squared.

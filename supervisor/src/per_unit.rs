@@ -145,7 +145,12 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
         let (motion, beside) = (self.observer).advance(position, spin, wall, actuator, coeffs);
         let room = Room::new(&self.budget, actuator.axes, coeffs);
         let found = (self.detector).findings((&motion, beside), contact, room.cap, coeffs);
-        let class = (self.classifier).classify(&found, position.is_some(), spin, coeffs);
+        let made_up = || match wall {
+            Wall::Pushes => self.observer.made_up(found.normal, coeffs),
+            _ => S::ZERO,
+        };
+        let seen = position.is_some();
+        let class = (self.classifier).classify(&found, (seen, made_up), spin, coeffs);
 
         // A rotor that levitates, and will, needs none of what follows.
         let (mut course, mut ahead, mut calm) = (Course::default(), None, false);

@@ -139,7 +139,7 @@ impl Scalar for Q {
     const ONE: Self = Self::from_bits(1 << FRACTION);
     const FAR_SQUARE: Self = Self::from_bits(400 << FRACTION);
     const JUST_BELOW_ONE: Self = Self::from_bits((1 << FRACTION) - 8);
-    const KNOWN_ANSWER: u32 = 0xB067_81A2;
+    const KNOWN_ANSWER: u32 = 0x6395_DB32;
 
     #[inline]
     fn of(x: f32) -> Self {

@@ -189,6 +189,8 @@ pub trait AnyBits: Scalar {
     fn from_any_bits(bits: u64) -> Self;
     /// One unit in the last place of 1.
     const LAST_PLACE: f64;
+    /// By how much a length that is found to be 1 may be longer.
+    const TOO_LONG: f64;
     /// As `f64`, exactly.
     fn exact(self) -> f64;
 }
@@ -198,6 +200,7 @@ impl AnyBits for f32 {
         Self::from_bits(bits as u32)
     }
     const LAST_PLACE: f64 = f32::EPSILON as f64;
+    const TOO_LONG: f64 = Self::LAST_PLACE;
     fn exact(self) -> f64 {
         f64::from(self)
     }
@@ -208,6 +211,7 @@ impl AnyBits for f64 {
         Self::from_bits(bits)
     }
     const LAST_PLACE: f64 = f64::EPSILON;
+    const TOO_LONG: f64 = Self::LAST_PLACE;
     fn exact(self) -> f64 {
         self
     }
@@ -218,6 +222,7 @@ impl AnyBits for supervisor::Q {
         Self::from_bits(bits as i32)
     }
     const LAST_PLACE: f64 = 1.0 / (1_u32 << 22) as f64;
+    const TOO_LONG: f64 = 0.0;
     fn exact(self) -> f64 {
         f64::from(self.to_bits()) * Self::LAST_PLACE
     }
@@ -303,7 +308,8 @@ pub struct Bounds {
     force_max_n: f32,
     axis_cap: f64,
     slew_step: f64,
-    /// By how much rounding may exceed them.
+    /// By how much rounding may exceed the caps, and by how much the slew limit.
+    beyond: f64,
     rounding: f64,
     /// Up to here it is nothing: what a conversion from other units cannot tell from it.
     nothing: f64,
@@ -322,6 +328,7 @@ impl Bounds {
             force_max_n: cap,
             axis_cap: S::of((config.axis_force_max_n / cap).min(1.0)).exact(),
             slew_step: S::of(slew.min(4.0)).exact(),
+            beyond: S::TOO_LONG,
             rounding: S::LAST_PLACE,
             nothing: 0.0,
             cut: 0.0,
@@ -332,6 +339,7 @@ impl Bounds {
     /// For a supervisor of this configuration, in newtons: the conversion there and back rounds, too.
     pub fn in_newtons(config: &Config) -> Self {
         Self {
+            beyond: 4.0 * f32::LAST_PLACE,
             rounding: 4.0 * f32::LAST_PLACE,
             nothing: f64::from(f32::MIN_POSITIVE) / f64::from(config.force_max_n),
             ..Self::new::<f32>(config)
@@ -384,10 +392,10 @@ impl Bounds {
             if !(x.is_finite() && y.is_finite()) {
                 return say("not finite");
             }
-            if x.hypot(y) > 1.0 + self.rounding {
+            if x.hypot(y) > 1.0 + self.beyond {
                 return say("beyond the cap");
             }
-            if x.abs().max(y.abs()) > self.axis_cap + self.rounding {
+            if x.abs().max(y.abs()) > self.axis_cap + self.beyond {
                 return say("beyond the cap of an axis");
             }
             if (lost[0] && x.abs() > self.nothing) || (lost[1] && y.abs() > self.nothing) {

@@ -49,7 +49,10 @@ fn what_was_recorded_is_what_is_shown() {
         let rate = ["--sample-rate-hz", "20000", "--crc", &format!("{crc:#x}")];
         let record = json(&file, &[units, rate].concat());
         assert_eq!(record["crc"], crc);
-        assert_eq!(record["missing"], 0);
+        assert_eq!(
+            (&record["missing"], &record["whole"]),
+            (&0.into(), &true.into())
+        );
         let ticks = record["ticks"].as_array().unwrap();
         assert_eq!(ticks.len(), 64);
         let engaged = commands
@@ -149,6 +152,32 @@ fn what_is_no_record_is_refused() {
     refused(&turned, &["--crc", &crc.to_string()], "checksum");
     let output = show(&folder.path().join("nothing.bin"), &[]);
     assert_eq!(output.status.code(), Some(2));
+}
+
+/// A ring that was written down as it lies in memory, from the other end, twice or in part is told without a checksum, too.
+#[test]
+fn what_is_not_the_record_from_oldest_to_newest_is_told() {
+    let folder = TempDir::new().unwrap();
+    let file = folder.path().join("record.bin");
+    let (bytes, ..) = landing(100);
+    let entries: Vec<&[u8]> = bytes.chunks(16).collect();
+    let mut others = vec![
+        entries.iter().rev().copied().collect::<Vec<_>>().concat(),
+        bytes.repeat(2),
+    ];
+    others.extend((1..64).map(|at| [&bytes[16 * at..], &bytes[..16 * at]].concat()));
+    others.extend((1..64).map(|entries| bytes[..16 * entries].to_vec()));
+    others.extend((1..64).map(|lost| bytes[16 * lost..].to_vec()));
+    for other in others {
+        fs::write(&file, &other).unwrap();
+        let shown = show(&file, &[]);
+        let said = String::from_utf8(shown.stdout).unwrap();
+        assert!(shown.status.success());
+        assert!(said.contains("from oldest to newest"), "{said}");
+    }
+    fs::write(&file, &bytes).unwrap();
+    let said = String::from_utf8(show(&file, &[]).stdout).unwrap();
+    assert!(!said.contains("from oldest to newest"), "{said}");
 }
 
 /// A record that began soon after the last: what was never written is left out, and a gap is counted.

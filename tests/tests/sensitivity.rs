@@ -208,6 +208,38 @@ fn row<'a>(rows: &'a [Value], told: &str) -> &'a Value {
     (rows.iter().find(|row| row["told"] == told)).unwrap_or_else(|| panic!("{told}: {rows:#?}"))
 }
 
+/// A sensor told seven times as noisy as it is makes the observer slow and the contact band a fifth of the clearance. A rotor
+/// that turns round in that band, in flight, is no rotor at rest, which would be pushed with the whole cap.
+#[test]
+fn a_rotor_that_turns_round_near_the_wall_does_not_rest() {
+    let draws = misjudged(2.0, 8, 1);
+    let noisy = draws
+        .iter()
+        .find(|m| m.text == "all at once, draw 7")
+        .unwrap();
+    for number in [0, 13] {
+        let unseen = machine(number);
+        let trials = trials(&unseen.plant, &unseen.found());
+        let rows: Vec<(ResultRow, ResultRow)> = (trials.par_iter())
+            .map(|trial| {
+                let scene = &trial.case.scene;
+                let told = noisy.told(scene).unwrap().unwrap();
+                let alone = run(trial, Seat::Tuned, scene.clone());
+                (alone, run(trial, Seat::Supervisor, told))
+            })
+            .collect();
+        let lost =
+            |(alone, own): &&(_, _)| ResultRow::recovered(alone) && !ResultRow::recovered(own);
+        let alone = rows.iter().filter(|(alone, _)| alone.recovered()).count();
+        let lost = rows.iter().filter(lost).count();
+        assert!(
+            alone >= 50 && lost <= 3,
+            "{}: {lost} of {alone} lost",
+            unseen.text
+        );
+    }
+}
+
 /// The first rows are what `run` gives, each datum is there twice, draws are as many as asked for, and no number of
 /// threads makes a difference.
 #[test]

@@ -128,7 +128,8 @@ fn count<S: Scalar>(wanted: impl Fn(&str) -> bool) -> Count {
     sum
 }
 
-/// The yardstick: what 24 bits make of it. A tenth of what is allowed, and a hand-over or two among all the faults.
+/// The yardstick: what 24 bits make of it. A fifth of what is allowed, at the most after a hand-over that was apart in a fault,
+/// and a hand-over or two among all the faults.
 #[test]
 fn f32_commands_what_f64_does() {
     let sound = count::<f32>(|group| group != SENSOR_FAULTS);
@@ -144,7 +145,7 @@ fn f32_commands_what_f64_does() {
         "{faulty:?}"
     );
     let largest = sound.largest.max(faulty.largest);
-    assert!(largest > 1e-4 && largest < 1e-3, "{largest}");
+    assert!(largest > 1e-4 && largest < 2e-3, "{largest}");
 }
 
 /// With sound sensors: the same modes, and forces within 1 % of the cap, but in less than one stream of a hundred and

@@ -5,7 +5,7 @@ use crate::commands::load;
 use crate::commands::progress::{LateProgress, pool};
 use crate::output::{self, Staging};
 use crate::overloads::histories::{CASES, Way, compare};
-use crate::overloads::page::{self, SCENE_COLUMNS, scene_rows};
+use crate::overloads::page::{self, GROUP_COLUMNS, SCENE_COLUMNS, scene_rows};
 use crate::overloads::plan::{Catalogue, CatalogueError, Extent, Plan, search};
 use crate::overloads::plants::RATES_HZ;
 use crate::overloads::results::ResultRow;
@@ -73,7 +73,10 @@ pub fn execute(args: &OverloadsArgs) -> Result<(), CommandError> {
     let staging = Staging::for_folder(&args.out)?;
     let mut files = vec![
         ("overloads.json".to_owned(), json.clone()),
-        ("overloads.md".to_owned(), page::summary(&catalogue, extent)),
+        (
+            "overloads.md".to_owned(),
+            page::summary(&catalogue, extent, &args.scene),
+        ),
     ];
     files.extend(page::scenes(&catalogue));
     for (name, text) in &files {
@@ -85,8 +88,9 @@ pub fn execute(args: &OverloadsArgs) -> Result<(), CommandError> {
     }
     let page = out.join("overloads.md");
     print(&format!(
-        "{}\n{}page: {}\n",
+        "{}\n{}{}page: {}\n",
         promises(&catalogue),
+        harm(&catalogue),
         own_scenes(&catalogue),
         page.display()
     ))
@@ -165,6 +169,24 @@ fn own_scenes(catalogue: &Catalogue) -> String {
         format!("\n{name}\n{table}\n")
     };
     page::own_scenes(catalogue).into_iter().map(one).collect()
+}
+
+/// Where it does harm.
+fn harm(catalogue: &Catalogue) -> String {
+    let groups = page::groups(&catalogue.against_levitation);
+    let harmed: Vec<_> = groups.iter().filter(|group| group.is_harmed()).collect();
+    if harmed.is_empty() {
+        return String::new();
+    }
+    let mut table = lined(GROUP_COLUMNS);
+    for group in harmed {
+        let [name, figures @ ..] = group.cells();
+        table.add_row([Cell::new(name)].into_iter().chain(figures.map(right)));
+    }
+    format!(
+        "\nLargest contact force over levitation alone, by groups with a median above 1.1 or recoveries lost beyond chance\n\
+         {table}\nwhy: docs/src/host/overloads-explained.md\n"
+    )
 }
 
 fn promises(catalogue: &Catalogue) -> String {

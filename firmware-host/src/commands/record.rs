@@ -161,6 +161,10 @@ fn text(record: &FlightRecord, units: Units, compared: bool) -> String {
         record.crc,
         if compared { ", as given" } else { "" }
     );
+    if !record.whole {
+        out += "no engagement at the end of its first quarter: entries are missing or there twice, or they are not in the \
+                order from oldest to newest\n";
+    }
     if record.empty > 0 {
         let _ = writeln!(
             out,

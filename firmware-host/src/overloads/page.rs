@@ -7,9 +7,11 @@ use super::seats::Seat;
 use super::sweeps::{SweepRow, median, median_of};
 use crate::table::outcome;
 use std::collections::BTreeMap;
+use std::path::PathBuf;
 
-/// The summary: promises, sweeps, and every scene in one line a plant. Deterministic.
-pub fn summary(catalogue: &Catalogue, extent: Extent) -> String {
+/// The summary: promises, sweeps, and every scene in one line a plant, with the user's own scenes by their files.
+/// Deterministic.
+pub fn summary(catalogue: &Catalogue, extent: Extent, own: &[PathBuf]) -> String {
     let mut page = String::from("# Catalogue of overloads\n\n");
     let how = match extent {
         Extent::Quick => "a quick run: 20 kHz, three seeds, one cap for P1",
@@ -18,12 +20,15 @@ pub fn summary(catalogue: &Catalogue, extent: Extent) -> String {
     line(
         &mut page,
         &format!(
-            "Every scene under every policy, {how}. Plants P1 to P4 are `firmware-host/scenes/plants`; who takes part and how the scenes are sized is said in [What the catalogue shows](overloads-explained.md). Repeat with\n\n```sh\ncargo run --release -- overloads{}\n```\n\n## Promises\n",
+            "Every scene under every policy, {how}. Plants P1 to P4 are `firmware-host/scenes/plants`; who takes part and how the scenes are sized is said in `docs/src/host/overloads-explained.md`, and why some promises do not hold. Repeat with\n\n```sh\ncargo run --release -- overloads{}{}\n```\n\n## Promises\n",
             if extent == Extent::Quick {
                 " --quick"
             } else {
                 ""
-            }
+            },
+            own.iter()
+                .map(|file| format!(" --scene {}", file.display()))
+                .collect::<String>()
         ),
     );
     let kept = catalogue.promises.iter().filter(|p| p.holds).count();
@@ -93,32 +98,78 @@ fn push_groups(page: &mut String, harms: &[Harm]) {
         page,
         "Largest contact force of the supervisor over that of its own inner loop alone, seed by seed; 1 where neither touches. Each place and scene has the median over its seeds; here are the median and the 95th percentile of these in each group, and in how many the supervisor recovers from fewer seeds, beyond chance, and from more.\n",
     );
-    line(
-        page,
-        "| group | scenes and places | median | 95 % | above 1.1 | fewer recovered | beyond chance | more |\n| --- | --- | --- | --- | --- | --- | --- | --- |",
-    );
+    line(page, &format!("| {} |", GROUP_COLUMNS.join(" | ")));
+    line(page, &format!("{}|", "| --- ".repeat(GROUP_COLUMNS.len())));
+    for group in groups(harms) {
+        line(page, &format!("| {} |", group.cells().join(" | ")));
+    }
+}
+
+/// Of [`Group::cells`].
+pub const GROUP_COLUMNS: [&str; 8] = [
+    "group",
+    "scenes and places",
+    "median",
+    "95 %",
+    "above 1.1",
+    "fewer recovered",
+    "beyond chance",
+    "more",
+];
+
+/// A group of scenes and places against levitation alone.
+#[derive(Debug, Clone)]
+pub struct Group<'a> {
+    name: &'a str,
+    ratios: Vec<f64>,
+    fewer: usize,
+    lost: usize,
+    more: usize,
+}
+
+impl Group<'_> {
+    fn above(&self) -> usize {
+        self.ratios.iter().filter(|r| **r > 1.1).count()
+    }
+
+    /// Whether the supervisor does harm somewhere in it.
+    pub fn is_harmed(&self) -> bool {
+        self.above() + self.lost > 0
+    }
+
+    /// As text.
+    pub fn cells(&self) -> [String; GROUP_COLUMNS.len()] {
+        [
+            self.name.to_owned(),
+            self.ratios.len().to_string(),
+            format!("{:.3}", percentile(&self.ratios, 0.5)),
+            format!("{:.3}", percentile(&self.ratios, 0.95)),
+            self.above().to_string(),
+            self.fewer.to_string(),
+            self.lost.to_string(),
+            self.more.to_string(),
+        ]
+    }
+}
+
+/// The groups by their names, and all of them.
+pub fn groups(harms: &[Harm]) -> Vec<Group<'_>> {
     let mut groups: BTreeMap<&str, Vec<&Harm>> = BTreeMap::new();
     for harm in harms {
         groups.entry(harm.group).or_default().push(harm);
     }
     let all = ("all", harms.iter().collect());
-    for (group, harms) in groups.into_iter().chain([all]) {
-        let ratios = force_ratios(harms.iter().copied());
+    let group = |(name, harms): (_, Vec<&Harm>)| {
         let count = |is: fn(&Harm) -> bool| harms.iter().filter(|h| is(h)).count();
-        line(
-            page,
-            &format!(
-                "| {group} | {} | {:.3} | {:.3} | {} | {} | {} | {} |",
-                harms.len(),
-                percentile(&ratios, 0.5),
-                percentile(&ratios, 0.95),
-                ratios.iter().filter(|r| **r > 1.1).count(),
-                count(|h| h.recovered < h.recovered_alone),
-                count(lost_beyond_chance),
-                count(|h| h.recovered > h.recovered_alone),
-            ),
-        );
-    }
+        Group {
+            name,
+            ratios: force_ratios(harms.iter().copied()),
+            fewer: count(|h| h.recovered < h.recovered_alone),
+            lost: count(lost_beyond_chance),
+            more: count(|h| h.recovered > h.recovered_alone),
+        }
+    };
+    groups.into_iter().chain([all]).map(group).collect()
 }
 
 fn is_worth_telling(harm: &Harm) -> bool {
