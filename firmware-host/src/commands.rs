@@ -11,6 +11,7 @@ pub mod run;
 pub mod sensitivity;
 pub mod target;
 
+use crate::commands::error::say;
 use crate::scene::Scene;
 use crate::scene_error::SceneError;
 use std::path::Path;
@@ -19,7 +20,7 @@ use std::path::Path;
 pub(crate) fn load(path: &Path) -> Result<Scene, SceneError> {
     let scene = Scene::load(path)?;
     for warning in &scene.warnings {
-        eprintln!("warning: {warning}");
+        say(format_args!("warning: {warning}"));
     }
     Ok(scene)
 }

@@ -2,7 +2,7 @@
 
 use clap::{Parser, Subcommand};
 use firmware_host::commands::{
-    accuracy, advise, overloads, paper, record, run, sensitivity, target,
+    accuracy, advise, error, overloads, paper, record, run, sensitivity, target,
 };
 use std::process::ExitCode;
 
@@ -50,7 +50,7 @@ fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             let code = error.exit_code();
-            eprintln!("{:?}", miette::Report::new(error));
+            error::say(format_args!("{:?}", miette::Report::new(error)));
             ExitCode::from(code)
         }
     }

@@ -3,7 +3,7 @@
 mod show;
 
 use crate::accuracy::{Reference, Row, sweep};
-use crate::commands::error::{CommandError, pretty, print};
+use crate::commands::error::{CommandError, pretty, print, say};
 use crate::commands::load;
 use crate::commands::progress::{LateProgress, pool};
 use crate::output::{self, Staging};
@@ -107,7 +107,7 @@ pub fn execute(args: &AccuracyArgs) -> Result<(), CommandError> {
     }
     let found = measure(&scenes, args)?;
     for reference in found.references.iter().filter(|r| !r.confirmed) {
-        eprintln!("warning: {}", show::unconfirmed(reference));
+        say(format_args!("warning: {}", show::unconfirmed(reference)));
     }
     let json = pretty(&found, "formatting accuracy.json")?;
     if let Some(out) = &args.out {

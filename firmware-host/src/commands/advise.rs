@@ -1,7 +1,7 @@
 //! `advise`: what can be known of a bearing before the supervisor goes in, and a suggested configuration.
 
 use crate::advice::{self, Advice, Language, OutOfRange};
-use crate::commands::error::{CommandError, pretty, print};
+use crate::commands::error::{CommandError, pretty, print, say};
 use crate::commands::load;
 use crate::suggest::Nominal;
 use crate::supervisor_setup::key_of;
@@ -199,7 +199,10 @@ pub fn execute(args: &AdviseArgs) -> Result<(), CommandError> {
         Some(language) => {
             // The listing goes into a file; these are for whoever puts it there.
             for w in &advice.warnings {
-                eprintln!("warning: {}: {}\n  do: {}", w.key, w.text, w.remedy);
+                say(format_args!(
+                    "warning: {}: {}\n  do: {}",
+                    w.key, w.text, w.remedy
+                ));
             }
             advice::listing(&advice.parameters, language)
         }

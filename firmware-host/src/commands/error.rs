@@ -121,6 +121,11 @@ pub(crate) fn pretty(value: &impl Serialize, what: &'static str) -> Result<Strin
     serde_json::to_string_pretty(value).map_err(|e| CommandError::other(what, e))
 }
 
+/// Says something beside a command's result. Where nobody can hear it, that is no error of its own.
+pub fn say(text: impl std::fmt::Display) {
+    let _heard = writeln!(std::io::stderr(), "{text}");
+}
+
 /// Prints a command's result.
 ///
 /// # Errors

@@ -386,3 +386,15 @@ fn a_magnet_that_cannot_lift_is_named() {
     assert_eq!(result.status.code(), Some(2), "{error}");
     assert!(error.contains("magnet.force_max_n: is 39"), "{error}");
 }
+
+/// An error that nobody can hear is still one, with the same exit code.
+#[test]
+#[cfg(target_os = "linux")]
+fn an_error_that_cannot_be_printed_has_its_exit_code() {
+    let full = fs::OpenOptions::new()
+        .write(true)
+        .open("/dev/full")
+        .unwrap();
+    let status = (host().args(["run", "no_such_scene.toml"]).stderr(full)).status();
+    assert_eq!(status.unwrap().code(), Some(2));
+}
