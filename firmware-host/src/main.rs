@@ -50,7 +50,7 @@ fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             let code = error.exit_code();
-            error::say(format_args!("{:?}", miette::Report::new(error)));
+            error::explain(error);
             ExitCode::from(code)
         }
     }

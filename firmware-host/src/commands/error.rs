@@ -5,8 +5,9 @@ use crate::output::OutputError;
 use crate::scene_error::SceneError;
 use crate::target::images::ImageError;
 use crate::target::measure::TargetError;
+use miette::MietteHandlerOpts;
 use serde::Serialize;
-use std::io::Write;
+use std::io::{IsTerminal, Write};
 
 /// Why a command failed.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
@@ -124,6 +125,17 @@ pub(crate) fn pretty(value: &impl Serialize, what: &'static str) -> Result<Strin
 /// Says something beside a command's result. Where nobody can hear it, that is no error of its own.
 pub fn say(text: impl std::fmt::Display) {
     let _heard = writeln!(std::io::stderr(), "{text}");
+}
+
+/// Says why a command failed. Lines are broken for a terminal alone: what a script reads or searches must not depend on how
+/// long a path is.
+pub fn explain(error: CommandError) {
+    let wraps = std::io::stderr().is_terminal();
+    // Set once; were it set before, that one would do.
+    let _ = miette::set_hook(Box::new(move |_| {
+        Box::new(MietteHandlerOpts::new().wrap_lines(wraps).build())
+    }));
+    say(format_args!("{:?}", miette::Report::new(error)));
 }
 
 /// Prints a command's result.
