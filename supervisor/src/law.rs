@@ -33,8 +33,8 @@ pub(crate) struct Wanted<S> {
 
 /// Of the whirl limit: impacts that will add up to less than the first need no help but to be softened,
 /// from the second on all the force goes to what they add.
-const HARMLESS: f32 = 0.7;
-const URGENT: f32 = 1.3;
+const HARMLESS: f32 = 0.6;
+const URGENT: f32 = 1.1;
 /// Share of the cap that pushes inwards between impacts: more shortens the chords and with them the time
 /// in which braking takes speed out.
 const FLIGHT_SHARE: f32 = 0.15;
@@ -147,8 +147,7 @@ impl<S: Scalar> View<'_, S> {
         // Gradient of S, times v_n: v_b = r × v about the centre, v_n = √(v² − v_b²).
         let arm = sense * (normal_speed - gain * backward);
         let gradient = acts_at.turned() * arm + velocity * gain;
-        let strength = (sum * coeffs.damper).or_less(urgency);
-        gradient * -(gradient.inverse_length() * strength)
+        gradient * -(gradient.inverse_length() * urgency)
     }
 
     /// In contact: brake along the wall, aimed at where the rotor will be when the force has come. `driven`: friction

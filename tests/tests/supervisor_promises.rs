@@ -235,12 +235,12 @@ fn approach_is_tangential_where_it_is_dangerous() {
         );
         assert!(tangential > 100.0, "{command:?}");
     }
-    let harmless = approaching(2200.0);
+    let harmless = approaching(3100.0);
     assert!(!harmless.is_empty());
     for command in &harmless {
         // A hair above the whirl limit's share from which on impacts count.
-        assert!(command.severity < 0.71, "{command:?}");
-        assert!(command.force_n[0] < -0.99 * 2200.0, "{command:?}");
+        assert!(command.severity < 0.61, "{command:?}");
+        assert!(command.force_n[0] < -0.99 * 3100.0, "{command:?}");
     }
     assert!(dangerous[0].events.contains(Events::ENGAGED));
     assert_eq!(dangerous[0].integrator, IntegratorHint::Hold);
