@@ -188,12 +188,9 @@ impl<S: Scalar> View<'_, S> {
     /// force by ω·h, a lag of τ by atan(ω·τ).
     #[inline]
     fn lead(&self, rate: S) -> Vec2<S> {
-        // The series of sine and cosine are good to 1 % up to a radian, beyond which no lead would help.
+        // Up to a radian, beyond which no lead would help.
         let angle = (rate * self.coeffs.delay_time).between(-S::ONE, S::ONE);
-        let square = angle * angle;
-        let cosine = S::ONE - square * (S::of(0.5) - square * S::of(1.0 / 24.0));
-        let sine = angle * (S::ONE - square * S::of(1.0 / 6.0));
-        Vec2::new(cosine, sine)
+        Vec2::at_angle(angle)
             .rotated(Vec2::new(S::ONE, rate * self.coeffs.lag))
             .direction()
     }

@@ -36,7 +36,7 @@ pub(crate) struct Turn<S> {
 
 impl<S: Scalar> Turn<S> {
     /// In so many ticks. `None` where the spin is unknown, slow, or so quick that the observer sees too little of what
-    /// turns; or where it is more than a radian, up to which the series are good to 1 %.
+    /// turns; or where it is more than a radian, up to which the series are good.
     #[inline]
     pub(crate) fn of((spin, rate): (Spin, S), ticks: S, coeffs: &Coeffs<S>) -> Option<Self> {
         let of_one = rate * coeffs.tick;
@@ -46,12 +46,9 @@ impl<S: Scalar> Turn<S> {
         if !(seen && rate >= S::of(SLOWEST)) || spin == Spin::Unknown {
             return None;
         }
-        let square = angle * angle;
-        let cosine = S::ONE - square * (S::of(0.5) - square * S::of(1.0 / 24.0));
-        let sine = angle * (S::ONE - square * S::of(1.0 / 6.0));
         Some(Self {
             rate,
-            by: Vec2::new(cosine, sine),
+            by: Vec2::at_angle(angle),
             half_behind,
         })
     }

@@ -20,6 +20,16 @@ impl<S: Scalar> Vec2<S> {
         Self { x, y }
     }
 
+    /// Cosine and sine of an angle, by their series: to 1 % up to a radian.
+    #[inline]
+    pub(crate) fn at_angle(angle: S) -> Self {
+        let square = angle * angle;
+        Self::new(
+            S::ONE - square * (S::of(0.5) - square * S::of(1.0 / 24.0)),
+            angle * (S::ONE - square * S::of(1.0 / 6.0)),
+        )
+    }
+
     #[inline]
     pub(crate) fn from_array([x, y]: [S; 2]) -> Self {
         Self { x, y }
