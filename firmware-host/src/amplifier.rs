@@ -161,12 +161,18 @@ impl Amplifier {
         }
         for outage in self.outages.iter().filter(|o| o.acts(at_s)) {
             target = match outage.delivers {
-                Delivers::Nothing => outage.axis.map(target, |_| 0.0),
+                Delivers::Nothing => target,
                 Delivers::Inverted => outage.axis.map(target, |x| -x),
                 Delivers::Swapped => V2::new(target.y, target.x),
             };
         }
-        target
+        self.without_dead_axes(target, at_s)
+    }
+
+    /// Nothing along axes that deliver nothing, whatever else is wrong with them.
+    fn without_dead_axes(&self, force_n: V2, at_s: f64) -> V2 {
+        let dead = |o: &&Outage| o.delivers == Delivers::Nothing && o.acts(at_s);
+        (self.outages.iter().filter(dead)).fold(force_n, |force, o| o.axis.map(force, |_| 0.0))
     }
 
     /// Mean of the limited command over a part in which no outage begins or ends \[N\].
@@ -179,10 +185,7 @@ impl Amplifier {
             return target;
         };
         // No current flows where the amplifier is out.
-        let out = |o: &&Outage| o.delivers == Delivers::Nothing && o.acts(from_s);
-        for outage in self.outages.iter().filter(out) {
-            self.ramped_n = outage.axis.map(self.ramped_n, |_| 0.0);
-        }
+        self.ramped_n = self.without_dead_axes(self.ramped_n, from_s);
         let step_s = to_s - from_s;
         let mut mean = target;
         for i in [0, 1] {

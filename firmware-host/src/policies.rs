@@ -140,7 +140,8 @@ impl Policy {
             }
             Self::Radial { band_m, force_n } => {
                 let radius = measured_m.norm();
-                if radius > *band_m {
+                // An infinite reading has no direction.
+                if radius.is_finite() && radius > *band_m {
                     measured_m * (-*force_n / radius)
                 } else {
                     V2::zeros()

@@ -197,6 +197,8 @@ pub fn json(scene: &Scene, runs: &[PolicyRun]) -> serde_json::Value {
     let told: serde_json::Map<String, serde_json::Value> = named(&scene.overrides)
         .map(|(name, value)| (name.to_owned(), value.into()))
         .collect();
+    let far = far_into_the_wall(runs, scene.plant.contact.clearance_m);
+    let warnings: Vec<_> = scene.warnings.iter().cloned().chain(far).collect();
     serde_json::json!({
         "scene": scene.title,
         "duration_s": scene.duration_s,
@@ -204,7 +206,7 @@ pub fn json(scene: &Scene, runs: &[PolicyRun]) -> serde_json::Value {
         "seed": scene.seed,
         "rtol": scene.rtol,
         "whirl_speed_m_s": scene.whirl_speed_m_s,
-        "warnings": scene.warnings,
+        "warnings": warnings,
         "supervisor_told": told,
         "policies": policies,
     })

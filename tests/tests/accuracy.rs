@@ -150,3 +150,18 @@ fn benchmark_scenes_are_the_benchmark_problems() {
         assert_eq!(scene.duration_s, 0.02);
     }
 }
+
+/// Tables, plots and JSON tell problems by their titles, so no two may have the same.
+#[test]
+fn two_problems_of_one_title_are_refused() {
+    let path = scene_path("benchmark_b1");
+    let result = host()
+        .arg("accuracy")
+        .args([&path, &path])
+        .output()
+        .expect("the host starts");
+    assert_eq!(result.status.code(), Some(2));
+    assert!(result.stdout.is_empty());
+    let error = String::from_utf8_lossy(&result.stderr);
+    assert!(error.contains("two scenes have the title"), "{error}");
+}

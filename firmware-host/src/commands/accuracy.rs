@@ -102,6 +102,15 @@ pub fn execute(args: &AccuracyArgs) -> Result<(), CommandError> {
             .map(|path| load(path))
             .collect::<Result<Vec<_>, _>>()?,
     };
+    // Tables, plots and JSON tell problems by their titles.
+    for (i, scene) in scenes.iter().enumerate() {
+        if scenes[..i].iter().any(|other| other.title == scene.title) {
+            return Err(CommandError::Numbers {
+                message: format!("two scenes have the title \"{}\"", scene.title),
+                help: "give each scene a title of its own".to_owned(),
+            });
+        }
+    }
     if let Some(out) = &args.out {
         output::probe(out)?;
     }

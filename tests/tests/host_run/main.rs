@@ -74,6 +74,11 @@ fn the_impact_scene_shows_the_table_and_writes_everything() {
 
     let verdict: Value =
         serde_json::from_slice(&fs::read(out.join("verdict.json")).unwrap()).unwrap();
+    // Dry friction backward whirl without end presses through the wall. So the screen and the file say.
+    let far = "passive, radial, levitation: the wall gave way by more than the clearance";
+    let warning = verdict["warnings"][0].as_str().unwrap_or_default();
+    assert!(warning.starts_with(far), "{warning}");
+    assert!(table.contains("the wall gave way"), "{table}");
     for (policy, outcome) in [
         ("passive", "whirl"),
         ("levitation", "whirl"),

@@ -4,7 +4,7 @@ use crate::{apart, free_rotor, last, near, ridden, samples};
 use firmware_host::closed_loop::{Keep, run_policy};
 use firmware_host::policies::{Policy, Supervise};
 use firmware_host::policy_kind::PolicyKind;
-use firmware_host::scene::{Axis, Delivers, Outage, Scene};
+use firmware_host::scene::{Axis, Delivers, Fault, FaultKind, Outage, Scene};
 use plant_model::V2;
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -148,6 +148,52 @@ fn a_faulty_amplifier_turns_the_force() {
         });
         assert!(fastest.fold(0.0, f64::max) < 1.001e6);
     }
+}
+
+/// An axis that delivers nothing does so whatever else is wrong, in any order, with a slew limit and without.
+#[test]
+fn a_dead_axis_is_dead_under_every_other_fault() {
+    let outage = |delivers, axis| Outage {
+        start_s: 0.0,
+        duration_s: 1.0,
+        delivers,
+        axis,
+        known: false,
+    };
+    let dead = outage(Delivers::Nothing, Axis::X);
+    let swapped = outage(Delivers::Swapped, Axis::Both);
+    for (outages, slew_n_s) in [
+        (vec![dead, swapped], None),
+        (vec![swapped, dead], None),
+        (vec![dead, swapped], Some(2e6)),
+        (vec![swapped, dead], Some(2e6)),
+    ] {
+        let mut scene = pushed(V2::new(0.8, 0.6));
+        without_lag(&mut scene);
+        scene.outages = outages;
+        scene.amplifier.slew_n_s = slew_n_s;
+        let trace = ridden(&scene, PolicyKind::Radial).1;
+        assert!(samples(&trace).iter().all(|r| r.plant.delivered_n.x == 0.0));
+        // What is meant for x.
+        let along_y = last(&trace).plant.delivered_n.y;
+        assert!((along_y - 800.0).abs() < 2.0, "{along_y}");
+    }
+}
+
+/// What reads as infinite has no direction: the policy `radial` gives nothing, and what is fed forward stays.
+#[test]
+fn an_infinite_reading_does_not_take_what_is_fed_forward() {
+    let mut scene = pushed(V2::new(1.0, 0.0));
+    without_lag(&mut scene);
+    scene.feed_forward_n = V2::new(0.0, 98.1);
+    scene.faults = vec![Fault {
+        start_s: 0.0,
+        duration_s: 1.0,
+        kind: FaultKind::Infinity,
+        axis: Axis::Both,
+    }];
+    let end = last(&ridden(&scene, PolicyKind::Radial).1).plant;
+    assert_eq!(end.delivered_n, V2::new(0.0, 98.1));
 }
 
 /// The command of the first sample is in effect so many samples later, and not before.
