@@ -64,8 +64,10 @@ pub enum AccuracyError {
     #[error(transparent)]
     Build(#[from] BuildError),
     /// A run cannot be trusted any further.
-    #[error("rtol {rtol:e}: {reason}")]
+    #[error("{method}, rtol {rtol:e}: {reason}")]
     Plant {
+        /// The method that integrated contact.
+        method: &'static str,
         /// Its tolerance.
         rtol: f64,
         /// Why.
@@ -175,9 +177,12 @@ pub(crate) fn run(scene: &Scene, method: Method, rtol: f64) -> Result<Ending, Ac
                 command_n: V2::zeros(),
                 external_n: scene.external_n(from, cut),
             };
-            plant
-                .advance(cut, &inputs, &mut |s| modes.push(s.mode))
-                .map_err(|reason| AccuracyError::Plant { rtol, reason })?;
+            let advanced = plant.advance(cut, &inputs, &mut |s| modes.push(s.mode));
+            advanced.map_err(|reason| AccuracyError::Plant {
+                method: plant.method().name(),
+                rtol,
+                reason,
+            })?;
             from = cut;
         }
     }

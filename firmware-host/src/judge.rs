@@ -121,7 +121,7 @@ impl Judge {
             peak_penetration_m: meters.peak_penetration_m,
             peak_contact_force_n: meters.peak_contact_force_n,
             peak_friction_torque_n_m: meters.peak_friction_torque_n_m,
-            spin_lost_hz: (self.first_spin.unwrap_or(0.0) - last.spin_rad_s) / TAU,
+            spin_lost_hz: self.spin_lost_rad_s(last.spin_rad_s) / TAU,
             peak_backward_speed_m_s: meters.peak_backward_speed_m_s,
             // A rotor at rest on the wall goes round at 0, not at −0.
             max_backward_whirl_hz: self.whirl.fastest().map(|w| w.backward_hz + 0.0),
@@ -134,6 +134,16 @@ impl Judge {
             run_time_s,
             real_time_ratio: scene.duration_s / run_time_s,
         }
+    }
+
+    /// Spin that is gone, of either sense; a rotor that did not spin cannot lose any, and what it gains is negative.
+    fn spin_lost_rad_s(&self, last: f64) -> f64 {
+        let first = self.first_spin.unwrap_or(0.0);
+        if first == 0.0 {
+            return 0.0 - last.abs();
+        }
+        // What is kept is 0, not −0.
+        first.signum() * (first - last) + 0.0
     }
 
     fn outcome(&self, scene: &Scene, last: &Snapshot, peak_backward_m_s: f64) -> Outcome {

@@ -18,3 +18,4 @@ pub mod situations;
 pub mod sweeps;
 pub mod takeover;
 pub mod tune;
+mod words;

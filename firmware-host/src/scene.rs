@@ -24,7 +24,7 @@ pub use crate::amplifier::{AmplifierParams, Delivers, Outage};
 pub use crate::axis::Axis;
 pub use crate::faults::{Fault, FaultKind};
 pub use crate::loads::{BaseMotion, Disturbance, Shape, TimedChange};
-pub use crate::supervisor_setup::Override;
+pub use crate::supervisor_setup::{NominalKeys, Override};
 
 /// Rows of traces that a run may keep, of all its policies: some 0.3 KB each.
 const MOST_ROWS: f64 = 1e7;
@@ -85,6 +85,8 @@ pub struct Scene {
     pub supervisor: Option<supervisor::Config>,
     /// What it is suggested from.
     pub nominal: Nominal,
+    /// The keys that it comes from.
+    pub nominal_keys: NominalKeys,
     /// What `[supervisor]` puts in the place of suggested values, also without that policy.
     pub overrides: Vec<Override>,
     /// Backward contact speed above which a run is whirl \[m/s\].
@@ -260,10 +262,11 @@ impl Scene {
         let damps = policies.contains(&PolicyKind::Damping);
         let damping_n_s_m = damping_of(file, &plant, &check, damps)?;
         let nominal = supervisor_setup::nominal_of(&plant, file);
+        let nominal_keys = NominalKeys::new(&nominal, file);
         let supervised = policies.contains(&PolicyKind::Supervisor);
         let overrides = supervisor_setup::overrides(file, text)?;
         let supervisor = supervised
-            .then(|| supervisor_setup::config(&nominal, &overrides, text))
+            .then(|| supervisor_setup::config((&nominal, &nominal_keys), &overrides, text))
             .transpose()?;
         let warnings = warnings_of(
             file,
@@ -309,6 +312,7 @@ impl Scene {
             warnings,
             supervisor,
             nominal,
+            nominal_keys,
             overrides,
         })
     }

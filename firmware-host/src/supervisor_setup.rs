@@ -35,25 +35,56 @@ pub(crate) fn nominal_of(plant: &PlantParams, file: &SceneFile) -> Nominal {
     }
 }
 
-/// Key of the scene that a field of [`Nominal`] comes from.
-pub(crate) fn key_of(field: &str) -> &'static str {
-    match field {
-        "sample_rate_hz" => "run.sample_rate_hz",
-        "mass_kg" => "rotor.mass_kg",
-        "clearance_m" => "contact.clearance_m",
-        "contact_stiffness_n_m" => "contact.stiffness_n_m",
-        "restitution" => "contact.restitution",
-        "friction_coefficient" => "friction.coefficient",
-        "force_max_n" => "magnet.force_max_n",
-        "axis_force_max_n" => "magnet.axis_force_max_n",
-        "slew_n_s" => "magnet.slew_n_s",
-        "lag_s" => "magnet.lag_s",
-        "delay_samples" => "magnet.delay_samples",
-        "noise_rms_m" => "sensor.noise_rms_m",
-        "quantum_m" => "sensor.quantum_m",
-        "range_m" => "sensor.range_m",
-        // Stiffness and damping may be given in several ways.
-        _ => "rotor",
+/// The keys that the scene gives stiffness and damping by, of those that it may.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct NominalKeys {
+    stiffness: &'static str,
+    damping: &'static str,
+    contact_stiffness: &'static str,
+}
+
+impl NominalKeys {
+    pub(crate) fn new(nominal: &Nominal, file: &SceneFile) -> Self {
+        let (rotor, contact) = (&file.rotor, &file.contact);
+        Self {
+            stiffness: match (&file.magnet, rotor.natural_frequency_hz) {
+                // The magnets' part outweighs the shaft's.
+                (Some(_), _) if nominal.stiffness_n_m < 0.0 => "magnet.negative_stiffness_n_m",
+                (_, Some(_)) => "rotor.natural_frequency_hz",
+                (_, None) => "rotor.stiffness_n_m",
+            },
+            damping: match rotor.damping_ratio {
+                Some(_) => "rotor.damping_ratio",
+                None => "rotor.damping_n_s_m",
+            },
+            contact_stiffness: match contact.stiffness_n_mn {
+                Some(_) => "contact.stiffness_n_mn",
+                None => "contact.stiffness_n_m",
+            },
+        }
+    }
+
+    /// Key of the scene that a field of [`Nominal`] comes from.
+    pub(crate) fn of(&self, field: &str) -> &'static str {
+        match field {
+            "sample_rate_hz" => "run.sample_rate_hz",
+            "mass_kg" => "rotor.mass_kg",
+            "stiffness_n_m" => self.stiffness,
+            "damping_n_s_m" => self.damping,
+            "clearance_m" => "contact.clearance_m",
+            "contact_stiffness_n_m" => self.contact_stiffness,
+            "restitution" => "contact.restitution",
+            "friction_coefficient" => "friction.coefficient",
+            "force_max_n" => "magnet.force_max_n",
+            "axis_force_max_n" => "magnet.axis_force_max_n",
+            "slew_n_s" => "magnet.slew_n_s",
+            "lag_s" => "magnet.lag_s",
+            "delay_samples" => "magnet.delay_samples",
+            "noise_rms_m" => "sensor.noise_rms_m",
+            "quantum_m" => "sensor.quantum_m",
+            "range_m" => "sensor.range_m",
+            _ => "rotor",
+        }
     }
 }
 
@@ -107,7 +138,7 @@ pub(crate) fn overrides(file: &SceneFile, text: &SceneText) -> Result<Vec<Overri
 
 /// The suggested configuration, with single values replaced.
 pub(crate) fn config(
-    nominal: &Nominal,
+    (nominal, keys): (&Nominal, &NominalKeys),
     overrides: &[Override],
     text: &SceneText,
 ) -> Result<Config, SceneError> {
@@ -116,7 +147,7 @@ pub(crate) fn config(
     // What was given is in its range; what is left was derived.
     config.validate().map_err(|e| {
         let name = e.parameter().name;
-        let Some(source) = suggested.source(name).map(key_of) else {
+        let Some(source) = suggested.source(name).map(|field| keys.of(field)) else {
             let path = format!("supervisor.{name}");
             return text.error_at_key(&path, e.to_string(), Some(e.parameter().text.to_owned()));
         };

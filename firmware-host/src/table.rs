@@ -1,5 +1,6 @@
 //! The verdicts as a table for people and as JSON for programs.
 
+use crate::plot::text::figures;
 use crate::scene::Scene;
 use crate::supervision::{Account, Supervision};
 use crate::supervisor_setup::named;
@@ -13,24 +14,20 @@ type Figure<T> = (&'static str, fn(&T) -> String);
 const FIGURES: &[Figure<Verdict>] = &[
     ("outcome", |v| outcome(v.outcome).to_owned()),
     ("impacts", |v| v.impacts.to_string()),
-    ("contact time [ms]", |v| {
-        format!("{:.3}", v.contact_time_s * 1e3)
-    }),
-    ("contact impulse [N s]", |v| {
-        format!("{:.3}", v.contact_impulse_n_s)
-    }),
+    ("contact time [ms]", |v| figures(v.contact_time_s * 1e3)),
+    ("contact impulse [N s]", |v| figures(v.contact_impulse_n_s)),
     ("contacts over 20 mm/s", |v| {
         v.contacts_over_20_mm_s.to_string()
     }),
     ("first contact [ms]", |v| or_dash(v.first_contact_s, 1e3, 2)),
     ("peak penetration [µm]", |v| {
-        format!("{:.2}", v.peak_penetration_m * 1e6)
+        figures(v.peak_penetration_m * 1e6)
     }),
     ("peak contact force [N]", |v| {
-        format!("{:.0}", v.peak_contact_force_n)
+        figures(v.peak_contact_force_n)
     }),
     ("peak friction torque [N m]", |v| {
-        format!("{:.1}", v.peak_friction_torque_n_m)
+        figures(v.peak_friction_torque_n_m)
     }),
     ("spin lost [Hz]", |v| format!("{:.2}", v.spin_lost_hz)),
     ("max backward whirl [Hz]", |v| {

@@ -165,3 +165,27 @@ fn two_problems_of_one_title_are_refused() {
     let error = String::from_utf8_lossy(&result.stderr);
     assert!(error.contains("two scenes have the title"), "{error}");
 }
+
+/// A run that cannot be trusted is told from the others by scene, method and tolerance.
+#[test]
+fn a_failed_run_says_which_it_was() {
+    let folder = TempDir::new().unwrap();
+    let thrown = folder.path().join("thrown.toml");
+    let text = fs::read_to_string(scene_path("benchmark_b1")).unwrap();
+    let force = "[[disturbance]]\nstart_s = 0.0\nduration_s = 0.1\nforce_n = [1e9, 0.0]\n";
+    fs::write(&thrown, format!("{text}\n{force}")).unwrap();
+    let result = host()
+        .arg("accuracy")
+        .arg(&thrown)
+        .output()
+        .expect("the host starts");
+    assert_eq!(result.status.code(), Some(1));
+    let error = String::from_utf8_lossy(&result.stderr);
+    for part in [
+        "\"Benchmark B1: bouncing into rolling\"",
+        "series, rtol 1e-13",
+        "far beyond its stator",
+    ] {
+        assert!(error.contains(part), "{part}: {error}");
+    }
+}

@@ -25,6 +25,8 @@ fn a_mirrored_scene_has_the_mirrored_run() {
         let (a, left) = run(&scene, policy, Keep::Trace, &mut |_| {}).unwrap();
         let (b, right) = run(&mirrored, policy, Keep::Trace, &mut |_| {}).unwrap();
         assert_eq!((a.outcome, a.impacts), (b.outcome, b.impacts));
+        assert!(a.spin_lost_hz > 0.0, "{}", policy.name());
+        assert_eq!(a.spin_lost_hz, b.spin_lost_hz, "{}", policy.name());
         assert_eq!(left.rows.len(), right.rows.len());
         for (a, b) in left.rows.iter().zip(&right.rows) {
             assert_eq!(

@@ -117,25 +117,31 @@ fn promises_of_a_quick_run() {
     assert!(json == alone, "depends on the number of threads");
 }
 
-/// Two scenes of one title would be taken for one.
+/// Two scenes of one title would be taken for one, and one called like the catalogue would take its page.
 #[test]
 fn a_title_is_for_one_scene() {
     let folder = tempfile::tempdir().unwrap();
     let scene = scene_path("overload_then_release");
-    let mut host = host();
-    host.args(["overloads", "--quick", "--out"])
-        .arg(folder.path().join("out"));
-    let output = host
-        .arg("--scene")
-        .arg(&scene)
-        .arg("--scene")
-        .arg(&scene)
-        .output()
-        .unwrap();
-    let error = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(2), "{error}");
-    assert!(error.contains("the title \"AMB rotor: overload"), "{error}");
-    assert!(!folder.path().join("out").exists());
+    let text = std::fs::read_to_string(&scene).unwrap();
+    let (_, rest) = text.split_once('\n').unwrap();
+    let like_the_page = folder.path().join("named.toml");
+    std::fs::write(&like_the_page, format!("title = \"Overloads!\"\n{rest}")).unwrap();
+    for (scenes, named) in [
+        (vec![&scene, &scene], "AMB rotor: overload"),
+        (vec![&like_the_page], "Overloads!"),
+    ] {
+        let mut host = host();
+        host.args(["overloads", "--quick", "--out"])
+            .arg(folder.path().join("out"));
+        for scene in scenes {
+            host.arg("--scene").arg(scene);
+        }
+        let output = host.output().unwrap();
+        let error = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{error}");
+        assert!(error.contains(&format!("the title \"{named}")), "{error}");
+        assert!(!folder.path().join("out").exists());
+    }
 }
 
 /// The kept loops are stable, calm enough and quiet enough, and `tuned` is better than any other that

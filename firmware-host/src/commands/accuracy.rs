@@ -2,7 +2,7 @@
 
 mod show;
 
-use crate::accuracy::{Reference, Row, sweep};
+use crate::accuracy::{AccuracyError, Reference, Row, sweep};
 use crate::commands::error::{CommandError, pretty, print, say};
 use crate::commands::load;
 use crate::commands::progress::{LateProgress, pool};
@@ -134,7 +134,9 @@ pub fn execute(args: &AccuracyArgs) -> Result<(), CommandError> {
 }
 
 fn measure(scenes: &[Scene], args: &AccuracyArgs) -> Result<Accuracy, CommandError> {
-    let failed = |e| CommandError::other("accuracy", e);
+    let failed = |scene: &Scene, e: AccuracyError| {
+        CommandError::other("accuracy", format!("\"{}\": {e}", scene.title))
+    };
     let mut found = Accuracy {
         rows: Vec::new(),
         references: Vec::new(),
@@ -144,7 +146,7 @@ fn measure(scenes: &[Scene], args: &AccuracyArgs) -> Result<Accuracy, CommandErr
     // Times first, while nothing else runs.
     let progress = LateProgress::new(scenes.len() as u64, "problems timed");
     for scene in scenes {
-        let (rows, reference) = sweep(scene).map_err(failed)?;
+        let (rows, reference) = sweep(scene).map_err(|e| failed(scene, e))?;
         found.rows.extend(rows);
         found.references.push(reference);
         progress.add(1);
@@ -172,7 +174,7 @@ fn measure(scenes: &[Scene], args: &AccuracyArgs) -> Result<Accuracy, CommandErr
     let pool = pool(args.threads)?;
     for scene in swept {
         let rows = pool.install(|| wrong_runs::sweep(scene, &|| progress.add(1)));
-        found.wrong_runs.extend(rows.map_err(failed)?);
+        found.wrong_runs.extend(rows.map_err(|e| failed(scene, e))?);
     }
     progress.finish();
     Ok(found)

@@ -4,7 +4,6 @@ use crate::advice::{self, Advice, Language, OutOfRange};
 use crate::commands::error::{CommandError, pretty, print, say};
 use crate::commands::load;
 use crate::suggest::Nominal;
-use crate::supervisor_setup::key_of;
 use std::path::PathBuf;
 
 /// Arguments of `advise`.
@@ -187,7 +186,7 @@ pub fn execute(args: &AdviseArgs) -> Result<(), CommandError> {
                 });
             }
             Advice::new(&scene.title, &scene.nominal, &scene.overrides)
-                .map_err(|e| out_of_range(&e, |field| key_of(field).to_owned()))?
+                .map_err(|e| out_of_range(&e, |field| scene.nominal_keys.of(field).to_owned()))?
         }
         None => Advice::new("Plain numbers", &args.numbers.nominal()?.nominal()?, &[])
             .map_err(|e| out_of_range(&e, option))?,

@@ -3,6 +3,7 @@
 use crate::commands::error::{CommandError, pretty, print};
 use crate::commands::load;
 use crate::commands::progress::{LateProgress, pool};
+use crate::plot::text::figures;
 use crate::policy_kind::PolicyKind;
 use crate::scene::Scene;
 use crate::sensitivity::{Row, misjudged, told_right};
@@ -113,8 +114,8 @@ fn text(scene: &Scene, rows: &[Row]) -> String {
                 outcome(m.outcome).to_owned(),
                 row.engagements.to_string(),
                 m.impacts.to_string(),
-                format!("{:.3}", m.contact_impulse_n_s),
-                format!("{:.0}", m.peak_contact_force_n),
+                figures(m.contact_impulse_n_s),
+                figures(m.peak_contact_force_n),
                 or_dash(m.relevitation_time_s, 1e3, 2),
             ]
             .to_vec(),

@@ -5,6 +5,8 @@ use super::promises::{Harm, Promise, force_ratios, lost_beyond_chance, percentil
 use super::results::{Metrics, ResultRow};
 use super::seats::Seat;
 use super::sweeps::{SweepRow, median, median_of};
+use super::words::{argument, plain, slug};
+use crate::plot::text::figures;
 use crate::table::outcome;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -27,7 +29,7 @@ pub fn summary(catalogue: &Catalogue, extent: Extent, own: &[PathBuf]) -> String
                 ""
             },
             own.iter()
-                .map(|file| format!(" --scene {}", file.display()))
+                .map(|file| format!(" --scene {}", argument(file)))
                 .collect::<String>()
         ),
     );
@@ -44,7 +46,7 @@ pub fn summary(catalogue: &Catalogue, extent: Extent, own: &[PathBuf]) -> String
         line(&mut page, &promise_row(promise));
     }
     for (name, results) in own_scenes(catalogue) {
-        line(&mut page, &format!("\n## Own scene: {name}\n"));
+        line(&mut page, &format!("\n## Own scene: {}\n", plain(name)));
         push_scene(&mut page, &results);
     }
     line(&mut page, "\n## Hardest impact, fastest whirl\n");
@@ -80,7 +82,7 @@ pub fn summary(catalogue: &Catalogue, extent: Extent, own: &[PathBuf]) -> String
             &mut page,
             &format!(
                 "| {} | {:.2} | {:.2} | {} of {} | {} |",
-                harm.place,
+                plain(&harm.place),
                 harm.force_ratio,
                 harm.force_ratio_95,
                 harm.recovered,
@@ -244,22 +246,6 @@ pub fn scenes(catalogue: &Catalogue) -> Vec<(String, String)> {
         .collect()
 }
 
-/// Name of the file of a scene, without its ending.
-pub(super) fn slug(name: &str) -> String {
-    let mut slug = String::new();
-    for c in name.chars() {
-        match c {
-            c if c.is_ascii_alphanumeric() || c == '.' => slug.push(c.to_ascii_lowercase()),
-            '+' => slug.push_str("plus-"),
-            // A minus in front of a number, not a hyphen.
-            '-' if slug.ends_with('-') || slug.is_empty() => slug.push_str("minus-"),
-            _ if slug.ends_with('-') => {}
-            _ => slug.push('-'),
-        }
-    }
-    slug.trim_end_matches('-').to_owned()
-}
-
 /// Columns of the table of a scene.
 pub const SCENE_COLUMNS: [&str; 12] = [
     "plant",
@@ -311,24 +297,20 @@ fn scene_row(plant: &str, rate_hz: u64, rows: &[&ResultRow]) -> [String; SCENE_C
         .collect();
     let recovered = rows.iter().filter(|r| r.recovered()).count();
     let back = of(&|m| m.relevitation_time_s.unwrap_or(f64::NAN));
-    let figure = |value: f64, digits: usize| match value.is_nan() {
-        // No run of these can be trusted.
-        true => "–".to_owned(),
-        false => format!("{value:.digits$}"),
-    };
     [
         plant.to_owned(),
         (1e-3 * rate_hz as f64).to_string(),
         rows.first().map_or("", |r| r.policy).to_owned(),
         format!("{recovered} of {}", rows.len()),
         outcomes.join(", "),
-        figure(of(&|m| m.impacts as f64), 0),
-        figure(of(&|m| m.contacts_over_20_mm_s as f64), 0),
-        figure(of(&|m| m.peak_contact_force_n), 0),
-        figure(of(&|m| m.contact_impulse_n_s), 3),
-        figure(1e3 * of(&|m| m.contact_time_s), 2),
-        figure(of(&|m| m.peak_backward_speed_m_s), 3),
-        figure(1e3 * back, 2),
+        // Dashes where no run of these can be trusted.
+        figures(of(&|m| m.impacts as f64)),
+        figures(of(&|m| m.contacts_over_20_mm_s as f64)),
+        figures(of(&|m| m.peak_contact_force_n)),
+        figures(of(&|m| m.contact_impulse_n_s)),
+        figures(1e3 * of(&|m| m.contact_time_s)),
+        figures(of(&|m| m.peak_backward_speed_m_s)),
+        figures(1e3 * back),
     ]
 }
 
@@ -337,12 +319,12 @@ fn push_scene(page: &mut String, results: &[&ResultRow]) {
     line(page, &of(&SCENE_COLUMNS.map(str::to_owned)));
     line(page, &of(&SCENE_COLUMNS.map(|_| "---".to_owned())));
     for row in scene_rows(results) {
-        line(page, &of(&row));
+        line(page, &of(&row.map(|cell| plain(&cell))));
     }
 }
 
 fn scene_page(name: &str, results: &[&ResultRow]) -> String {
-    let mut page = format!("# {name}\n\nMedians over the seeds.\n\n");
+    let mut page = format!("# {}\n\nMedians over the seeds.\n\n", plain(name));
     push_scene(&mut page, results);
     page
 }

@@ -2,12 +2,12 @@
 
 use super::catalogue::{Case, cases};
 use super::found::{Found, Row, kept};
-use super::page::slug;
 use super::plants::{PlantCase, RATES_HZ, plants};
 use super::promises::{Harm, Promise, against_levitation, of_results, of_sweeps};
 use super::results::{ResultRow, run_case, run_own};
 use super::seats::Seat;
 use super::sweeps::{SweepPoint, SweepRow, row, sweep};
+use super::words::slug;
 use super::{reference, seats, tune};
 use crate::closed_loop::RunError;
 use crate::policy_kind::PolicyKind;
@@ -139,6 +139,8 @@ impl Plan {
         }
         let of_catalogue = places.iter().flat_map(|place| &place.cases);
         let mut taken: BTreeSet<String> = of_catalogue.map(|case| slug(&case.name)).collect();
+        // The page of the whole.
+        taken.insert("overloads".to_owned());
         if let Some(twice) = own.iter().find(|scene| !taken.insert(slug(&scene.title))) {
             let title = twice.title.clone();
             return Err(CatalogueError::Title { title });

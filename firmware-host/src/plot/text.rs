@@ -35,7 +35,10 @@ pub(crate) fn figures(v: f64) -> String {
     let text = if size == 0.0 {
         "0".to_owned()
     } else if !(1e-3..1e6).contains(&size) {
-        format!("{v:.1e}")
+        // As `trimmed` does without a power of ten.
+        let text = format!("{v:.2e}");
+        let (mantissa, power) = text.split_once('e').unwrap_or((&text, "0"));
+        format!("{}e{power}", trimmed(mantissa))
     } else {
         let decimals = (2.0 - size.log10().floor()).clamp(0.0, 6.0) as usize;
         trimmed(&format!("{v:.decimals$}")).to_owned()
@@ -102,6 +105,7 @@ mod tests {
             (8.4, "8.4"),
             (-0.0123, "\u{2212}0.0123"),
             (4.3e-15, "4.3e\u{2212}15"),
+            (2.136e6, "2.14e6"),
             (f64::NAN, "–"),
         ];
         for (value, text) in cases {

@@ -66,6 +66,18 @@ fn bad_scenes_are_refused_with_file_line_key_and_expectation() {
             "greater than 0",
         ),
         (
+            "stiffness_n_m = 1e9\nrestitution = 0.7",
+            "stiffness_n_mn = 1e26\ndamping_s_m = 0.1",
+            "contact.stiffness_n_mn",
+            "the supervisor derives contact_stiffness_n_m",
+        ),
+        (
+            "force_max_n = 1000.0\nlag_s = 1.6e-4                  # 1 kHz amplifier\nnegative_stiffness_n_m = 2e5",
+            "force_max_n = 9e6\nnegative_stiffness_n_m = 2e10",
+            "magnet.negative_stiffness_n_m",
+            "the supervisor derives stiffness_n_m",
+        ),
+        (
             "mass_kg = 10.0",
             "mass_kg = nan",
             "rotor.mass_kg",
