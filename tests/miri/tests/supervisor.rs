@@ -1,6 +1,6 @@
 //! The supervisor as Miri interprets it.
 
-use miri::plausible;
+use miri::config as plausible;
 use supervisor::{Q, Sample, Status, Supervisor, crc_of, self_test};
 
 /// Every mode in every number, with the same answers as on any other processor.
