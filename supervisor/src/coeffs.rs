@@ -295,9 +295,9 @@ impl<S: Scalar> Coeffs<S> {
         let continuous = min(config.continuous_force_n / f, 1.0);
         let square = continuous * continuous;
         let mut taken = Taken { misfit: None };
-        // Without a budget any will do.
+        // Not so fast that the ticks of a gap together overshoot. Without a budget any will do.
         let thermal_rate = if continuous < 1.0 {
-            min(t / config.thermal_time_s, 1.0)
+            min(t / config.thermal_time_s, 0.25)
         } else {
             1.0
         };

@@ -128,8 +128,8 @@ impl Detector {
 
 impl<S: Scalar> Findings<S> {
     /// Whether a share of what this force inwards has over load and magnets' pull, from when it can act, stops a rotor of
-    /// this speed before the wall, or before where the pull is stronger: v² against twice the work up to there. What the
-    /// shaft does counts in full.
+    /// this speed before the wall, or before where the pull is stronger: v² against twice the work up to there, the shaft's
+    /// with it.
     pub(crate) fn stops(&self, speed: S, force: S, share: S, coeffs: &Coeffs<S>) -> bool {
         let mut left = force - self.load.or_more(S::ZERO);
         if self.radius < S::of(LOAD_COUNTS_BEYOND) {
@@ -146,10 +146,7 @@ impl<S: Scalar> Findings<S> {
         if path <= S::ZERO {
             return false;
         }
-        let mut spring = coeffs.stiffness * room * (reach + self.radius);
-        if pulls {
-            spring = spring * share;
-        }
-        speed * speed <= (left + left) * (share * path) + spring
+        let spring = coeffs.stiffness * room * (reach + self.radius);
+        speed * speed <= ((left + left) * path + spring) * share
     }
 }

@@ -34,12 +34,10 @@ pub(crate) enum Wall {
 
 /// A load of so many caps is no load but a missed contact.
 const MOST_LOAD: f32 = 4.0;
-/// Farthest and fastest motion: what fixed point can square. Above a friction of 0.0025 the cap arrests no
-/// whirl that is faster, and a rotor farther out is in no bearing. The same for all numbers, so that all see the
-/// same motion.
-const FAR: f32 = 20.0;
-/// Up to here directions are kept: a number that all hold, and whose square is one.
-const KEPT: f32 = 500.0;
+/// Farthest and fastest motion, along each axis: what fixed point can square. Above a friction of 0.005 the cap arrests
+/// no whirl that is faster, and a rotor farther out is in no bearing. The same for all numbers, so that all see the same
+/// motion.
+const FAR: f32 = 14.0;
 
 /// The observer.
 #[derive(Debug, Clone, Copy, Default)]
@@ -90,7 +88,7 @@ impl<S: Scalar> Observer<S> {
             self.unbalance.fade(turn);
         }
         let m = &mut self.motion;
-        m.carry(mean, turning, S::ONE, wall, coeffs);
+        m.carry(mean, turning, wall, coeffs);
         if let Some(position) = sample {
             let error = position - m.position;
             let error_speed = error * coeffs.per_tick;
@@ -134,31 +132,32 @@ impl<S: Scalar> Observer<S> {
         (free, S::ZERO)
     }
 
-    /// Carries the estimate over ticks that were missed, in one step; nobody commanded anything new meanwhile,
-    /// and nobody measured.
+    /// Coasts over ticks that were missed: nobody commanded anything new meanwhile, and nobody measured. What the sample
+    /// after them says of the velocity it says of all of them: with the gain for one tick, gaps that come again and again
+    /// would make the estimate swing.
     pub(crate) fn bridge(
         &mut self,
         missed: u32,
         command: Vec2<S>,
-        (spin, wall): ((Spin, S), Wall),
-        actuator: Actuator<S>,
+        (sample, spin): (Option<Vec2<S>>, (Spin, S)),
         coeffs: &Coeffs<S>,
     ) {
-        let mut sum = Vec2::ZERO;
-        for tick in 0..missed {
-            // Or the compiler writes it out four times.
-            core::hint::black_box(tick);
-            let (modelled, mean) = lagging(self.delivered, self.due(coeffs), coeffs);
-            (self.delivered, sum) = (modelled, sum + mean);
+        for _ in 0..missed {
             self.commanded(command);
         }
-        self.delivered = actuator.carried(self.delivered);
         self.started &= !self.motion.fresh;
         let ticks = S::count(missed);
-        let mean = actuator.carried(sum) * S::ONE.over(ticks);
-        let turn = Turn::of(spin, ticks, coeffs);
-        let turning = self.unbalance.carry(turn.as_ref());
-        (self.motion).carry(mean, turning, ticks, wall, coeffs);
+        self.unbalance.carry(Turn::of(spin, ticks, coeffs).as_ref());
+        let m = &mut self.motion;
+        m.position = m.position + m.velocity * (coeffs.tick * ticks);
+        if let Some(position) = sample {
+            let [_, on_velocity, _] = coeffs.flight_gains;
+            let error = position - m.position - m.velocity * coeffs.tick;
+            let gain = (on_velocity * coeffs.per_tick).over(ticks + S::ONE);
+            m.velocity = m.velocity + error * gain;
+            // So that the tick's own correction finds nothing left.
+            m.position = position - m.velocity * coeffs.tick;
+        }
     }
 
     /// Force of the tick that ends now: delivered at its end (kept), and its mean (returned).
@@ -263,17 +262,6 @@ impl<S: Scalar> Observer<S> {
     }
 }
 
-/// No longer than `most`, and a number.
-#[inline(never)]
-fn held<S: Scalar>(v: Vec2<S>, most: S) -> Vec2<S> {
-    let v = v.map(|x| x.between(S::of(-KEPT), S::of(KEPT)));
-    if v.exceeds(most) {
-        v * (v.inverse_length() * most)
-    } else {
-        v
-    }
-}
-
 /// Where in the ring a command is.
 #[inline]
 fn slot(number: u8) -> usize {
@@ -301,42 +289,32 @@ impl<S: Scalar> Motion<S> {
         }
     }
 
-    /// Some ticks under the means of the force and of what turns; shaft and damping at the middle of each. Loads on a
-    /// rotor at the wall are not known.
+    /// A tick under the means of the force and of what turns; shaft and damping at its middle. Loads on a rotor at the
+    /// wall are not known.
     #[inline]
-    fn carry(
-        &mut self,
-        mut mean: Vec2<S>,
-        turning: Vec2<S>,
-        ticks: S,
-        wall: Wall,
-        coeffs: &Coeffs<S>,
-    ) {
-        let time = coeffs.tick * ticks;
+    fn carry(&mut self, mean: Vec2<S>, turning: Vec2<S>, wall: Wall, coeffs: &Coeffs<S>) {
+        let time = coeffs.tick;
         if wall == Wall::Holds {
             self.position = self.position + self.velocity * time;
             return;
         }
-        if wall == Wall::Nothing {
-            mean = mean + turning;
-        }
         let mut gained = mean * time
-            - self.position * (coeffs.stiffness_step * ticks)
-            - self.velocity * (coeffs.damping_step * ticks);
+            - self.position * coeffs.stiffness_step
+            - self.velocity * coeffs.damping_step;
         if wall == Wall::Nothing {
-            gained = gained + self.load_step * ticks;
+            gained = gained + turning * time + self.load_step;
         }
         self.position = self.position + self.velocity * time + gained * (time * S::of(0.5));
         self.velocity = self.velocity + gained;
     }
 
-    /// Bounds what has run away, or is no number. Directions stay, and what is at the bound is not moved, so
-    /// that it matters little which number passes it first.
+    /// Bounds what has run away, or is no number.
     #[cold]
+    #[inline(never)]
     fn hold_back(&mut self, coeffs: &Coeffs<S>) {
-        self.position = held(self.position, S::of(0.7 * FAR));
-        let room = S::of(FAR * FAR) - self.position.length_squared();
-        self.velocity = held(self.velocity, room.root());
+        let held = |v: Vec2<S>, most: S| v.map(|x| x.between(-most, most));
+        self.position = held(self.position, S::of(FAR));
+        self.velocity = held(self.velocity, S::of(FAR));
         self.load_step = held(self.load_step, coeffs.tick * S::of(MOST_LOAD));
     }
 }

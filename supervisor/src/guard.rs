@@ -306,7 +306,7 @@ impl<S: Scalar> Guard<S> {
             return Refusal::Range;
         }
         let (stuck, both) = (self.still).watch(position, velocity, coeffs.sensor_speeds);
-        self.stuck = stuck >= if both { STUCK } else { ONE_STUCK };
+        self.stuck = stuck >= if both >= STUCK { STUCK } else { ONE_STUCK };
         let known = self.age != NEVER;
         if known && (position - self.last_good).exceeds(way_in(u32::from(self.age), coeffs)) {
             return Refusal::Slew;

@@ -161,7 +161,17 @@ fn axis_share<S: Scalar>(cap: S, sum: S, part: S) -> S {
     }
 }
 
-/// A levitation command within finite bounds, and whether it had to be changed.
+/// A force within the room, and what had to be done to it: the last word on every force.
+#[inline]
+pub(crate) fn within<S: Scalar>(force: Vec2<S>, room: Room<S>) -> (Vec2<S>, Limits) {
+    if room.holds(force) {
+        (force, Limits::empty())
+    } else {
+        fitted(force, room)
+    }
+}
+
+/// The same for a command of the levitation controller.
 #[inline]
 pub(crate) fn levitation<S: Scalar>(command: Vec2<S>, room: Room<S>) -> (Vec2<S>, Limits) {
     if room.holds(command) {
@@ -172,80 +182,47 @@ pub(crate) fn levitation<S: Scalar>(command: Vec2<S>, room: Room<S>) -> (Vec2<S>
 }
 
 #[cold]
+#[inline(never)]
 fn clamped<S: Scalar>(command: Vec2<S>, room: Room<S>) -> (Vec2<S>, Limits) {
-    let number = if command.length_squared() < S::FAR_SQUARE {
-        command
-    } else {
-        // No number, or so large that its square is none.
-        command.map(|x| {
-            if x.is_finite() {
-                x.between(-S::ONE, S::ONE)
-            } else {
-                S::ZERO
-            }
-        })
-    };
-    let (limited, bound) = if room.holds(number) {
-        (number, Limits::empty())
-    } else {
-        scaled(number, room)
-    };
-    // That the whole cap was too small is what clamping says already.
-    let bound = Limits::LEVITATION_CLAMPED | (bound - Limits::FORCE_CAP);
-    (limited, bound)
+    let (force, bound) = fitted(command, room);
+    // That it was no number, or more than the whole cap, is what clamping says already.
+    let said = Limits::FORCE_CAP | Limits::NOT_FINITE;
+    (force, Limits::LEVITATION_CLAMPED | (bound - said))
 }
 
-/// A force that does not fit, in its direction but for an axis that is lost: that one takes nothing
+/// A force that does not fit, in its direction but for an axis that is lost, or has no number: that one takes nothing
 /// away from the other.
 #[cold]
-fn scaled<S: Scalar>(force: Vec2<S>, room: Room<S>) -> (Vec2<S>, Limits) {
+#[inline(never)]
+fn fitted<S: Scalar>(force: Vec2<S>, room: Room<S>) -> (Vec2<S>, Limits) {
     let mut limits = Limits::empty();
-    let [x, y] = room.axes();
-    let on = |cap: S, v: S| if cap > S::ZERO { v } else { S::ZERO };
-    let mut v = Vec2::new(on(x, force.x), on(y, force.y));
-    if v != force {
+    let number = force.map(|x| if x.is_finite() { x } else { S::ZERO });
+    if number != force {
+        limits |= Limits::NOT_FINITE;
+    }
+    let mut v = room.axes.carried(number);
+    if v != number {
         limits |= Limits::AXIS_CAP;
     }
+    let largest = |v: Vec2<S>| v.x.size().or_more(v.y.size());
     if v.exceeds(room.cap) {
+        let most = largest(v);
+        if most > S::ONE {
+            // However long it is: its square has to be a number, too.
+            v = v * S::ONE.over(most);
+        }
         v = v * v.inverse_length() * (room.cap * S::JUST_BELOW_ONE);
         limits |= Limits::FORCE_CAP;
         if room.cap < S::ONE {
             limits |= Limits::DERATED;
         }
     }
-    let largest = v.x.size().or_more(v.y.size());
-    let cap = x.or_more(y);
-    if largest > cap {
-        v = v * (cap * S::JUST_BELOW_ONE).over(largest);
+    let most = largest(v);
+    if most > room.axis {
+        v = v * (room.axis * S::JUST_BELOW_ONE).over(most);
         limits |= Limits::AXIS_CAP;
     }
     (v, limits)
-}
-
-/// The last word on a force of the supervisor's own: finite and within the caps, whatever came before.
-#[inline]
-pub(crate) fn last_word<S: Scalar>(wanted: Vec2<S>, room: Room<S>) -> (Vec2<S>, Limits) {
-    if room.holds(wanted) {
-        (wanted, Limits::empty())
-    } else {
-        beyond_room(wanted, room)
-    }
-}
-
-/// The command of the tick before, within what the caps are now.
-#[cold]
-#[inline(never)]
-pub(crate) fn kept<S: Scalar>(last: Vec2<S>, room: Room<S>) -> (Vec2<S>, Limits) {
-    last_word(last, room)
-}
-
-#[cold]
-fn beyond_room<S: Scalar>(wanted: Vec2<S>, room: Room<S>) -> (Vec2<S>, Limits) {
-    if wanted.length_squared() < S::FAR_SQUARE {
-        scaled(wanted, room)
-    } else {
-        (Vec2::ZERO, Limits::NOT_FINITE)
-    }
 }
 
 /// A force within the caps, no farther from `last` than the slew limit. Where the budget has lowered the

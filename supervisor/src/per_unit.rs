@@ -11,7 +11,7 @@ use crate::handover::Readiness;
 use crate::law::View;
 use crate::limit::{Budget, Room};
 use crate::phase::Phase;
-use crate::reading::{Actuator, Facts, Verdict};
+use crate::reading::{Facts, Reading};
 use crate::recorder::{QueuedEvent, Record, Recorder};
 use crate::scalar::Scalar;
 use crate::severity::Severity;
@@ -21,6 +21,10 @@ use crate::signal::{
 use crate::spin::Spin;
 use crate::vec2::Vec2;
 use crate::{handover, limit};
+
+/// Contact can be avoided for good where this share of the work that force and shaft can do is enough: with a half some
+/// rotors come into the middle one swing of their shaft later.
+const CALM_SHARE: f32 = 0.3;
 
 /// Supervisor of one bearing plane in clearances and force caps, for a number `S`, with a flight record of
 /// `RECORD` ticks (a power of two). [`Config::scaling`] says what the units are.
@@ -136,7 +140,9 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
         let facts = verdict.facts;
         let spin = (reading.spin, sample.spin);
         if facts.intersects(Facts::UNUSUAL) {
-            self.catch_up(verdict, reading.actuator(), spin, pinned);
+            // A copy, so that the usual one stays in registers.
+            let unusual = reading;
+            self.catch_up(&unusual, spin);
         }
         let coeffs = &self.coeffs;
         let (position, actuator) = (reading.position(), reading.actuator());
@@ -159,7 +165,7 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
             if !found.touching {
                 ahead = Impact::ahead(&motion, found.radius, &course);
                 calm = wall == Wall::Nothing
-                    && found.stops(course.speed, room.cap, S::of(0.5), coeffs);
+                    && found.stops(course.speed, room.cap, S::of(CALM_SHARE), coeffs);
             }
         }
         let patience = (calm, self.readiness.ready());
@@ -203,7 +209,7 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
             self.readiness = Readiness::default();
         }
         let (target, bound) = if wrong && matches!(mode, Mode::Levitated | Mode::Handover) {
-            limit::kept(last, room)
+            limit::within(last, room)
         } else if mode == Mode::Levitated {
             (levitation, levitation_limits)
         } else {
@@ -222,17 +228,20 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
                 Phase::Handover { weight } => wanted * (S::ONE - weight) + levitation * weight,
                 _ => wanted,
             };
-            let (target, bound) = limit::last_word(blended, room);
+            let (target, bound) = limit::within(blended, room);
             (target, own_limits | bound)
         };
         let (own, slew) = limit::slewed(target, last, coeffs);
         let mut limits = bound | slew;
         self.own = own;
-        let mut integrator = handover::integrator_hint(phase, calm, facts.contains(Facts::ON));
+        let on = facts.contains(Facts::ON);
+        let mut integrator = handover::integrator_hint(phase, calm, on);
         if shadow {
             let (levitation, _) = limit::levitation(command, room);
             (self.force, _) = limit::slewed(levitation, self.force, coeffs);
-            integrator = IntegratorHint::Run;
+            if on {
+                integrator = IntegratorHint::Run;
+            }
             self.observer.drive.switched_off();
         } else {
             self.force = own;
@@ -241,11 +250,7 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
             limits |= Limits::SAMPLE_REFUSED;
         }
         self.observer.commanded(self.force);
-        let acting = match actuator.applied() {
-            Some(measured) => measured,
-            None if facts.contains(Facts::ON) => self.force,
-            None => Vec2::ZERO,
-        };
+        let acting = actuator.acting(self.force);
         self.budget.spend(S::ONE, acting, coeffs);
         let assessment =
             (self.severity).assess(mode, &view, facts, (acting, self.observer.velocity()));
@@ -276,17 +281,18 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
     /// What a tick has to make up for: commands that came too late, ticks that were missed, an estimate that
     /// cannot go on.
     #[cold]
-    fn catch_up(&mut self, verdict: Verdict, actuator: Actuator<S>, spin: (Spin, S), pinned: bool) {
+    fn catch_up(&mut self, reading: &Reading<S>, spin: (Spin, S)) {
+        let verdict = reading.verdict;
         let facts = verdict.facts;
         if facts.contains(Facts::LATE) {
             self.observer.late();
         }
         if verdict.missed > 0 {
             let missed = u32::from(verdict.missed);
-            let coeffs = &self.coeffs;
-            let wall = self.detector.wall(pinned);
-            (self.observer).bridge(missed, self.force, (spin, wall), actuator, coeffs);
-            (self.budget).spend(S::count(missed), self.force, coeffs);
+            self.observer
+                .bridge(missed, self.force, (reading.position(), spin), &self.coeffs);
+            let acting = reading.actuator().acting(self.force);
+            (self.budget).spend(S::count(missed), acting, &self.coeffs);
         }
         let lost = facts.contains(Facts::FAULTY) && !facts.contains(Facts::USED);
         if facts.intersects(Facts::ANEW | Facts::MISSED) {

@@ -137,9 +137,8 @@ impl Scalar for Q {
     type Slow = SlowQ;
     const ZERO: Self = Self::from_bits(0);
     const ONE: Self = Self::from_bits(1 << FRACTION);
-    const FAR_SQUARE: Self = Self::from_bits(400 << FRACTION);
     const JUST_BELOW_ONE: Self = Self::from_bits((1 << FRACTION) - 8);
-    const KNOWN_ANSWER: u32 = 0x6395_DB32;
+    const KNOWN_ANSWER: u32 = 0xA2C9_4AB8;
 
     #[inline]
     fn of(x: f32) -> Self {

@@ -94,6 +94,16 @@ impl<S: Scalar> Actuator<S> {
         (self.axes.contains(Facts::MEASURED)).then_some(self.measured)
     }
 
+    /// What acts of a commanded force: what is measured, or all that is commanded, or nothing while the bearing is off.
+    #[inline]
+    pub(crate) fn acting(&self, commanded: Vec2<S>) -> Vec2<S> {
+        match self.applied() {
+            Some(measured) => measured,
+            None if self.axes.contains(Facts::ON) => commanded,
+            None => Vec2::ZERO,
+        }
+    }
+
     /// The part of a force that the axes can carry.
     #[inline]
     pub(crate) fn carried(&self, force: Vec2<S>) -> Vec2<S> {

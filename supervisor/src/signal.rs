@@ -54,7 +54,7 @@ bitflags::bitflags! {
         const FORCE_CAP = 1;
         /// The levitation command was not finite or beyond a limit.
         const LEVITATION_CLAMPED = 1 << 1;
-        /// Something that should have been a number was not; the force goes to zero.
+        /// Something that should have been a number was not; the force along it goes to zero.
         const NOT_FINITE = 1 << 2;
         /// The sample was not used: the estimate is running on its model.
         const SAMPLE_REFUSED = 1 << 3;

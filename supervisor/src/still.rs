@@ -27,12 +27,12 @@ pub(crate) struct Still<S> {
 
 impl<S: Scalar> Still<S> {
     /// For how many samples in a row a coordinate has stood still for more than `most`, which holds until it changes; and
-    /// whether neither has changed for as many.
-    pub(crate) fn watch(&mut self, position: Vec2<S>, velocity: Vec2<S>, most: S) -> (u8, bool) {
+    /// for how many neither has changed.
+    pub(crate) fn watch(&mut self, position: Vec2<S>, velocity: Vec2<S>, most: S) -> (u8, u8) {
         let [x, y] = &mut self.at;
         let samples =
             (x.watch(position.x, velocity.x, most)).max(y.watch(position.y, velocity.y, most));
-        (samples, x.unchanged.min(y.unchanged) >= samples)
+        (samples, x.unchanged.min(y.unchanged))
     }
 
     /// After samples that nobody showed it, each of which changed in both coordinates.

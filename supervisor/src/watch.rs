@@ -30,10 +30,10 @@ impl<S: Scalar> OutputWatch<S> {
         }
     }
 
-    /// After each tick.
+    /// After each tick. What is no number is no force.
     #[inline]
     pub fn renew(&mut self, force: [S; 2]) {
-        self.force = force;
+        self.force = force.map(|x| if x.is_finite() { x } else { S::ZERO });
         self.left = self.most;
     }
 

@@ -1,6 +1,6 @@
 //! The force–time budget: the cap that it leaves, and what the supervisor makes of less.
 
-use supervisor::{Command, Config, Events, Limits, Sample, Supervisor};
+use supervisor::{Command, Config, Events, Limits, Sample, Status, Supervisor};
 use system_tests::rig::{config, length, sample};
 
 /// The cap falls when the closed form says so, by the curve that is documented, to the force at which
@@ -61,6 +61,64 @@ fn the_cap_follows_the_thermal_state() {
         }
         assert_eq!(cap, 1000.0);
     }
+}
+
+/// Ticks that were missed are charged with the force that acts: what is measured, or nothing while the bearing is off, or
+/// else the last command.
+#[test]
+fn missed_ticks_are_charged_with_what_acts() {
+    let charged = |status: Status| {
+        let mut supervisor = Supervisor::<16>::new(&Config {
+            continuous_force_n: 125.0,
+            thermal_time_s: 0.5,
+            ..config()
+        })
+        .unwrap();
+        for i in 0..2000_u32 {
+            // Four missed after every second.
+            let sequence = i + i / 2 * 4;
+            let command = supervisor.tick(&Sample {
+                status,
+                levitation_n: [100.0, 0.0],
+                ..sample(sequence, [1e-8 * (i % 100) as f32, 0.0])
+            });
+            assert_eq!(command.force_n, [100.0, 0.0]);
+        }
+        supervisor.report().thermal_state
+    };
+    let on = charged(Status::BEARING_ON);
+    let ticks = 3.0 * 2000.0;
+    let expected = 0.64 * (1.0 - (-ticks * 50e-6 / 0.5_f32).exp());
+    assert!((on - expected).abs() < 2e-3, "{on} {expected}");
+    assert_eq!(charged(Status::empty()), 0.0);
+    assert_eq!(charged(Status::BEARING_ON | Status::APPLIED_VALID), 0.0);
+}
+
+/// A gap of the longest tick under the shortest thermal time heats up to the force and no further.
+#[test]
+fn a_gap_does_not_overshoot() {
+    let mut supervisor = Supervisor::<16>::new(&Config {
+        sample_period_s: 1e-2,
+        continuous_force_n: 500.0,
+        thermal_time_s: 1e-2,
+        ..config()
+    })
+    .unwrap();
+    let mut heat = |i: u32, wanted_n: f32| {
+        supervisor.tick(&Sample {
+            levitation_n: [wanted_n, 0.0],
+            ..sample(5 * i, [1e-8 * i as f32, 0.0])
+        });
+        supervisor.report().thermal_state
+    };
+    let hot: Vec<f32> = (0..10).map(|i| heat(i, 400.0)).collect();
+    assert!(
+        hot.iter().all(|state| (0.0..0.6401).contains(state)),
+        "{hot:?}"
+    );
+    assert!(hot[9] > 0.63);
+    let cold: Vec<f32> = (10..20).map(|i| heat(i, 0.0)).collect();
+    assert!(cold.iter().all(|state| *state >= 0.0), "{cold:?}");
 }
 
 /// Speed \[m/s\] and first place \[clearances\] of a rotor on its way through the middle to the wall. By the middle

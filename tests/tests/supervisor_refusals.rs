@@ -122,6 +122,21 @@ fn a_stuck_sensor_is_a_fault_within_ten_ticks() {
     }
 }
 
+/// Electronics that die one channel after the other are a fault as soon as neither has changed for three samples.
+#[test]
+fn coordinates_may_stick_one_after_the_other() {
+    for later in 0..4_u32 {
+        let (mut bench, mut angle) = Bench::whirl(&config());
+        while !(0.6..0.9).contains(&angle.rem_euclid(std::f32::consts::PI)) {
+            angle += WHIRL_STEP;
+            bench.tick(on_circle(RADIUS_M, angle));
+        }
+        let at = |ticks: u32| on_circle(RADIUS_M, angle + WHIRL_STEP * ticks as f32);
+        let ticks = ticks_to_fault(|ticks| bench.tick([at(0)[0], at(ticks.min(later))[1]]));
+        assert_eq!(ticks, 3 + later);
+    }
+}
+
 /// A sensor that rightly stands still is left alone: a rotor at rest in the middle, on the wall under a
 /// force, or with a coarse converter.
 #[test]
@@ -255,7 +270,7 @@ fn the_command_of_a_sample_that_cannot_be_does_not_go_through() {
     }
 }
 
-/// Over some missed ticks the model carries the estimate: the force is what it would have been.
+/// Over some missed ticks the estimate coasts: the force is within a tenth of the cap of what it would have been.
 #[test]
 fn missed_ticks_are_made_up_for() {
     for missed in 1..=4_u32 {
@@ -286,6 +301,22 @@ fn missed_ticks_are_made_up_for() {
     assert!(command.events.contains(Events::SEQUENCE));
     assert_eq!(command.limits, Limits::empty());
     assert_eq!(command.mode, Mode::Levitated, "at rest there");
+}
+
+/// Gaps that come again and again make nothing of the noise of a rotor that stands still under a force and a load.
+#[test]
+fn repeated_gaps_do_not_engage() {
+    for (missed, good) in (1..=4).flat_map(|missed| (1..=5).map(move |good| (missed, good))) {
+        let mut supervisor = Supervisor::<16>::new(&config()).unwrap();
+        for i in 0..3000_u32 {
+            let noise = |k: u32| 1e-6 * ((f64::from(i + k) * 0.618_034).fract() as f32 - 0.5);
+            let command = supervisor.tick(&Sample {
+                levitation_n: [100.0, 0.0],
+                ..sample(i + i / good * missed, [noise(0), noise(1000)])
+            });
+            assert_eq!(command.mode, Mode::Levitated, "{missed} after {good}");
+        }
+    }
 }
 
 /// A number that counts the samples that should have come is not taken for missed ticks after a dropout.

@@ -123,6 +123,24 @@ fn shadow_computes_and_does_not_act() {
     assert!(shadow.record().is_some() || shadow.next_event().is_some());
 }
 
+/// Before the first lift the controller must not wind up, in shadow neither.
+#[test]
+fn in_shadow_of_a_bearing_that_is_off_the_integrator_holds() {
+    for (status, hint) in [
+        (Status::SHADOW, IntegratorHint::Hold),
+        (Status::SHADOW | Status::BEARING_ON, IntegratorHint::Run),
+    ] {
+        let mut supervisor = Supervisor::<64>::new(&config()).unwrap();
+        for i in 0..20 {
+            let command = supervisor.tick(&Sample {
+                status,
+                ..sample(i, [0.0, -2e-4])
+            });
+            assert_eq!(command.integrator, hint, "{status:?}");
+        }
+    }
+}
+
 /// A command that came a tick late is taken to have left its tick to the one before: the same estimate, and
 /// with it the same force, as if that had been commanded.
 #[test]
@@ -234,4 +252,9 @@ fn commands_expire() {
     assert!(watch.expired());
     watch.renew([5.0, 0.0]);
     assert!(!watch.expired());
+    // What is no number is no force.
+    watch.renew([f32::NAN, 7.0]);
+    assert_eq!(watch.force(), [0.0, 7.0]);
+    watch.renew([-2.0, f32::INFINITY]);
+    assert_eq!(watch.force(), [-2.0, 0.0]);
 }

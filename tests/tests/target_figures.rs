@@ -22,6 +22,7 @@ fn every_processor_gives_the_bits_of_the_host_within_its_budgets() {
         assert_eq!(stream["number"], number);
         assert_eq!(stream["ticks"], 100_000);
         assert_eq!(stream["missing_ways"], Value::Array(Vec::new()));
+        assert_eq!(stream["unknown_ways"], Value::Array(Vec::new()));
         let modes = stream["modes"].as_array().unwrap();
         assert_eq!(modes.len(), 7);
         for mode in modes {

@@ -3,8 +3,8 @@
 use firmware_image::wire::MODES;
 use supervisor::Mode;
 
-/// The ways that the state machine has, apart from staying. There is none from a touch or a fault straight
-/// into approach or hand-over, none from bounce into approach, and none from levitation into hand-over.
+/// The ways that the state machine has, apart from staying. There is none from a touch straight into approach or
+/// hand-over, none from a fault into hand-over, none from bounce into approach, and none from levitation into hand-over.
 const WAYS: [(Mode, &[Mode]); 7] = {
     use Mode::{Approach, BackwardWhirl, Bounce, Handover, Levitated, Pinned, SensorFault};
     [
@@ -40,7 +40,10 @@ const WAYS: [(Mode, &[Mode]); 7] = {
                 SensorFault,
             ],
         ),
-        (SensorFault, &[Levitated, Bounce, BackwardWhirl, Pinned]),
+        (
+            SensorFault,
+            &[Levitated, Approach, Bounce, BackwardWhirl, Pinned],
+        ),
     ]
 };
 

@@ -16,6 +16,7 @@ use firmware_image::wire::MODES;
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::Duration;
+use supervisor::Mode;
 use tempfile::TempDir;
 
 /// Why there are no figures.
@@ -95,6 +96,11 @@ impl Streams {
 
 fn row_of(stream: &Stream) -> StreamRow {
     let coverage = stream.coverage();
+    let named = |ways: Vec<(Mode, Mode)>| {
+        (ways.iter())
+            .map(|(from, to)| format!("{} to {}", from.name(), to.name()))
+            .collect()
+    };
     StreamRow {
         number: stream.number.name(),
         pieces: stream.pieces.len(),
@@ -109,9 +115,8 @@ fn row_of(stream: &Stream) -> StreamRow {
             })
             .collect(),
         ways: ways().count(),
-        missing_ways: (coverage.missing_ways().iter())
-            .map(|(from, to)| format!("{} to {}", from.name(), to.name()))
-            .collect(),
+        missing_ways: named(coverage.missing_ways()),
+        unknown_ways: named(coverage.unknown_ways()),
     }
 }
 

@@ -126,6 +126,8 @@ pub struct StreamRow {
     pub ways: usize,
     /// Ways that are not in the stream.
     pub missing_ways: Vec<String>,
+    /// Ways of the stream that the state machine does not have.
+    pub unknown_ways: Vec<String>,
 }
 
 /// Ticks of a mode.
@@ -179,6 +181,8 @@ impl Report {
             failures.extend(
                 missing.map(|way| format!("the stream of {number} does not go from {way}")),
             );
+            let unknown = stream.unknown_ways.iter();
+            failures.extend(unknown.map(|way| format!("the stream of {number} goes from {way}")));
         }
         for t in &self.targets {
             let name = format!("{} {}", t.name, t.number);

@@ -519,7 +519,7 @@ amb_code amb_record_frozen(amb_supervisor *supervisor, amb_record *record);
 /**
  * An entry of the frozen record, or AMB_NOTHING without one.
  * @param supervisor made by amb_init().
- * @param index 0 (oldest) to AMB_RECORD_ENTRIES - 1; anything else is AMB_ERROR_INDEX.
+ * @param index 0 (oldest) to AMB_RECORD_ENTRIES - 1; anything else is AMB_ERROR_INDEX where there is a record.
  * @param[out] entry untouched unless AMB_OK.
  * @return AMB_OK, AMB_NOTHING, AMB_ERROR_INDEX, or an error of supervisor or result.
  */

@@ -67,8 +67,11 @@ impl<const N: usize> Pool<N> {
             pool.put_number(low);
             pool.put(" to ");
             pool.put_number(high);
-            pool.put(" ");
-            pool.put(unit);
+            // "1" stands for no unit.
+            if !matches!(unit.as_bytes(), b"1") {
+                pool.put(" ");
+                pool.put(unit);
+            }
             i += 1;
         }
         pool.put_byte(0);

@@ -119,9 +119,14 @@ fn tables_are_the_same() {
     for (index, parameter) in PARAMETERS.iter().enumerate() {
         let code = Code(FIRST_PARAMETER - index as i32);
         let said = code.text().to_str().unwrap();
+        // "1" stands for no unit.
+        let unit = match parameter.unit {
+            "1" => String::new(),
+            unit => format!(" {unit}"),
+        };
         let range = said
             .strip_prefix(&format!("{} is outside ", parameter.name))
-            .and_then(|rest| rest.strip_suffix(&format!(" {}", parameter.unit)))
+            .and_then(|rest| rest.strip_suffix(&unit))
             .unwrap_or_else(|| panic!("{said}"));
         let (low, high) = range.split_once(" to ").unwrap();
         assert_eq!(low.parse(), Ok(parameter.low), "{said}");
