@@ -176,7 +176,7 @@ impl Advice {
         let in_use = replaced(config, overrides);
         let limits = limits(nominal);
         let reaction = reaction(nominal);
-        let noise = Noise::of(nominal, config, &limits);
+        let noise = Noise::of(nominal, overrides, &limits);
         let mut advice = Self {
             title: title.to_owned(),
             nominal: *nominal,
@@ -202,7 +202,7 @@ fn driving_friction(n: &Nominal) -> f64 {
 
 fn limits(n: &Nominal) -> Limits {
     let plant = n.plant();
-    let force_n = (n.axis_force_max_n).map_or(n.force_max_n, |axis| axis.min(n.force_max_n));
+    let force_n = n.force_everywhere_n();
     let drives = driving_friction(n) > 0.0;
     let threshold = critical_tangential_speed_m_s(&plant).filter(|v| *v > 0.0);
     let passive_threshold_text = match threshold {

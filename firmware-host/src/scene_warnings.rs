@@ -73,7 +73,8 @@ pub(crate) fn warnings_of(
         warnings.push(warning("levitation.proportional_n_m", message));
     }
     if !overrides.is_empty() {
-        warnings.extend(of_another_machine(text, nominal, overrides));
+        let left_n = left_by_the_weight(file, nominal);
+        warnings.extend(of_another_machine(text, (nominal, left_n), overrides));
     }
     let Some(config) = config else {
         return warnings;
@@ -135,13 +136,26 @@ pub(crate) fn slips_of(file: &SceneFile, text: &SceneText) -> Vec<String> {
     warnings
 }
 
+/// Force that a weight that is fed forward leaves in every direction \[N\], which is what `advise` says to give the
+/// supervisor then.
+fn left_by_the_weight(file: &SceneFile, nominal: &Nominal) -> Option<f64> {
+    let fed = file.levitation.as_ref()?.feed_forward_weight;
+    fed.then_some(nominal.force_everywhere_n() - nominal.load_n)
+}
+
 /// What the scene tells the supervisor otherwise than it is.
-fn of_another_machine(text: &SceneText, nominal: &Nominal, overrides: &[Override]) -> Vec<String> {
+fn of_another_machine(
+    text: &SceneText,
+    (nominal, left_n): (&Nominal, Option<f64>),
+    overrides: &[Override],
+) -> Vec<String> {
     let suggested = suggested(nominal).config.values();
     let warning = |&(index, given): &Override| {
         let (name, value) = (PARAMETERS[index].name, suggested[index]);
         // The table of `advise` holds every bit; what is rounded by hand is meant.
-        let other = (given - value).abs() > OTHER * given.abs().max(value.abs());
+        let differs = |value: f32| (given - value).abs() > OTHER * given.abs().max(value.abs());
+        let left = left_n.filter(|_| name == "force_max_n");
+        let other = differs(value) && left.is_none_or(|left_n| differs(left_n as f32));
         (GIVEN.contains(&name) && other).then(|| {
             let message = format!(
                 "is {given}, and the scene's own data say {value}; a table from another scene?"

@@ -11,6 +11,18 @@ use supervisor::Config;
 /// Control rates that the supervisor is made for \[Hz\].
 pub const SUPERVISED_RATES_HZ: std::ops::RangeInclusive<f64> = 1e4..=5e4;
 
+/// Suggested poles of the observer have a noise of the speed of at most this share of √(F·c/m), …
+pub(crate) const POLE_AIM: f64 = 0.04;
+/// … and are the quickest that have it, from these upwards, in flight and in contact, …
+pub(crate) const QUICKEST_POLES: [f64; 2] = [0.5, 0.2];
+/// … to this one.
+pub(crate) const SLOWEST_POLE: f64 = 0.97;
+
+/// The suggested limit of positions lies at this share of the sensor's range, clear of the rail by more than its noise, …
+pub(crate) const RAIL_SHARE: f64 = 0.95;
+/// … but never below this \[clearances\]: the rotor presses the wall.
+pub(crate) const LEAST_LIMIT: f64 = 1.1;
+
 /// Nominal data of one bearing plane, SI units.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Nominal {
@@ -26,6 +38,8 @@ pub struct Nominal {
     pub clearance_m: f64,
     /// Stiffness of the contact \[N/m\].
     pub contact_stiffness_n_m: f64,
+    /// Whether that is the tangent at a depth of one clearance of a contact that hardens.
+    pub contact_hardens: bool,
     /// Mass that moves against the contact \[kg\]: rotor and ring, reduced.
     pub contact_mass_kg: f64,
     /// Restitution of a radial impact, where it is known.
@@ -68,6 +82,11 @@ impl Nominal {
     /// Period of the tick \[s\].
     pub fn period_s(&self) -> f64 {
         1.0 / self.sample_rate_hz
+    }
+
+    /// Force that the actuator has in every direction \[N\].
+    pub fn force_everywhere_n(&self) -> f64 {
+        (self.axis_force_max_n).map_or(self.force_max_n, |axis| axis.min(self.force_max_n))
     }
 
     /// √(F·c/m) \[m/s\]: the lift-off speed without stiffness, the supervisor's unit of slow.
@@ -182,10 +201,10 @@ pub fn suggested(n: &Nominal) -> Suggested {
     } else {
         "noise_rms_m"
     };
-    // Clear of the rail by more than its noise.
-    let position_limit = (n.range_m).map_or(20.0, |range_m| {
-        (0.95 * range_m / n.clearance_m).clamp(1.1, 20.0)
-    });
+    let below_rail = n
+        .range_m
+        .map(|range_m| RAIL_SHARE * range_m / n.clearance_m);
+    let position_limit = below_rail.map_or(20.0, |limit| limit.clamp(LEAST_LIMIT, 20.0));
     let limit_source = n.range_m.map(|_| "range_m");
     const QUICKEST: &str = "speed noise is at most 4 % of √(F·c/m)";
     suggested! {
@@ -205,7 +224,8 @@ pub fn suggested(n: &Nominal) -> Suggested {
         observer_pole_flight: flight, Some(step_source), format!("quickest from 0.5 to 0.97 whose {QUICKEST}");
         observer_pole_contact: contact, Some(step_source), format!("quickest from 0.2 to 0.97 whose {QUICKEST}");
         contact_band: (4.0 * (step_m / n.clearance_m)).max(0.01), Some(step_source), "4 times noise or step over clearance, at least 0.01";
-        position_limit: position_limit, limit_source, match n.range_m {
+        position_limit: position_limit, limit_source, match below_rail {
+            Some(limit) if limit < LEAST_LIMIT => "the least there is: 0.95 of the sensor's range is less, its rail is not told from a position",
             Some(_) => "0.95 of the sensor's range over clearance, from 1.1 to 20: at the rail it measures nothing",
             None => "the sensor's range is not known: no machine measures so far out",
         };
@@ -226,7 +246,10 @@ pub fn suggested(n: &Nominal) -> Suggested {
         };
         continuous_force_n: n.force_max_n, Some("force_max_n"), "the cap: no thermal budget";
         thermal_time_s: 5.0, None, "without effect while there is no thermal budget";
-        contact_stiffness_n_m: n.contact_stiffness_n_m, Some("contact_stiffness_n_m"), "as given";
+        contact_stiffness_n_m: n.contact_stiffness_n_m, Some("contact_stiffness_n_m"), match n.contact_hardens {
+            true => "tangent at a depth of one clearance of the Hunt-Crossley law that is given",
+            false => "as given",
+        };
         // Several periods of a whirl of some hundred hertz; the stop of the machine takes far longer.
         coast_down_s: 5e-3, None, "rule of thumb: several periods of the whirl";
         severity_limit: 20.0, None, "rule of thumb, until a landing has been measured";
@@ -244,8 +267,8 @@ fn observer_poles(n: &Nominal) -> [f64; 2] {
     // Noise of the estimated speed in units of the speed that the force can still lift off.
     let noise = n.sensor_noise_m() / n.period_s() / n.force_speed_m_s();
     [
-        pole_for(noise, 0.5, second_order_noise),
-        pole_for(noise, 0.2, first_order_noise),
+        pole_for(noise, QUICKEST_POLES[0], second_order_noise),
+        pole_for(noise, QUICKEST_POLES[1], first_order_noise),
     ]
 }
 
@@ -273,9 +296,8 @@ fn first_order_noise(p: f64) -> f64 {
 /// The quickest pole, not below `quickest`, whose speed noise is at most a share of the lift-off
 /// speed that the laws do not feel.
 fn pole_for(noise: f64, quickest: f64, gain: fn(f64) -> f64) -> f64 {
-    const TOLERABLE: f64 = 0.04;
     let mut pole = quickest;
-    while pole < 0.97 && noise * gain(pole) > TOLERABLE {
+    while pole < SLOWEST_POLE && noise * gain(pole) > POLE_AIM {
         pole += 0.01;
     }
     pole

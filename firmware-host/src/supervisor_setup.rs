@@ -18,6 +18,7 @@ pub(crate) fn nominal_of(plant: &PlantParams, file: &SceneFile) -> Nominal {
         damping_n_s_m: plant.rotor.damping_n_s_m,
         clearance_m: plant.contact.clearance_m,
         contact_stiffness_n_m: plant.contact.stiffness_n_m(),
+        contact_hardens: file.contact.stiffness_n_mn.is_some(),
         contact_mass_kg: plant.contact_mass_kg(),
         restitution: file.contact.restitution,
         friction_coefficient: plant.friction.sliding.coefficient(0.0),

@@ -115,23 +115,27 @@ fn reaction(page: &mut Page, advice: &Advice) {
 fn noise(page: &mut Page, advice: &Advice) {
     let n = &advice.noise;
     page.heading("Noise of the estimated speed");
-    page.row(
-        "in flight",
-        format!("{:.3} mm/s", n.flight_m_s * 1e3),
-        &format!(
-            "{:.2} % of {:.4} m/s; aim below 10 %",
-            n.share * 100.0,
-            n.reference_m_s
-        ),
-    );
-    page.row("in contact", format!("{:.3} mm/s", n.contact_m_s * 1e3), "");
+    for (name, noise_m_s) in [("in flight", n.flight_m_s), ("in contact", n.contact_m_s)] {
+        page.row(
+            name,
+            format!("{:.3} mm/s", noise_m_s * 1e3),
+            &format!(
+                "{:.2} % of {:.4} m/s; aim below 10 %",
+                noise_m_s / n.reference_m_s * 100.0,
+                n.reference_m_s
+            ),
+        );
+    }
     page.row(
         "time constant of the observer",
         milliseconds(n.observer_s),
         "with detect to force aim below 1 ms",
     );
-    let most = (n.sensor_noise_most_m).map_or("–".to_owned(), |m| format!("{:.3} µm", m * 1e6));
-    page.row("most sensor noise at this rate", most, "");
+    let (most, remark) = match n.sensor_noise_most_m {
+        Some(most_m) => (format!("{:.3} µm", most_m * 1e6), "and all below it"),
+        None => ("–".to_owned(), ""),
+    };
+    page.row("most sensor noise at this rate", most, remark);
     let least =
         (n.sample_rate_least_hz).map_or("–".to_owned(), |hz| format!("{:.1} kHz", hz / 1e3));
     page.row("least rate with this sensor noise", least, "");

@@ -2,7 +2,7 @@
 
 use super::noise::TIME_TO_ACT_S;
 use super::{Advice, USEFUL_LAG_DEG};
-use crate::suggest::SUPERVISED_RATES_HZ;
+use crate::suggest::{LEAST_LIMIT, RAIL_SHARE, SUPERVISED_RATES_HZ};
 use serde::Serialize;
 use supervisor::Config;
 
@@ -22,10 +22,11 @@ pub(super) fn of(advice: &Advice, config: &Config) -> Vec<Warning> {
     let checks = [
         cap_below_load(advice),
         cap_below_stiffness(advice),
-        load(advice),
+        load(advice, config),
         rate(advice),
         slow_reaction(advice),
-        noise(advice),
+        range(advice, config),
+        noise(advice, config),
         lag_drives(advice),
         lag_useless(advice),
         lead_too_short(advice),
@@ -69,10 +70,12 @@ fn cap_below_stiffness(advice: &Advice) -> Option<Warning> {
 }
 
 /// Whatever is said of the cap holds for what a load leaves of it.
-fn load(advice: &Advice) -> Option<Warning> {
+fn load(advice: &Advice, config: &Config) -> Option<Warning> {
     let (force, load) = (advice.limits.force_n, advice.nominal.load_n);
     let share = load / force;
-    if !(0.1..1.0).contains(&share) {
+    // Who has given the supervisor what is left need not be told to; digits may be rounded.
+    let done = f64::from(config.force_max_n) <= 1.01 * (force - load);
+    if !(0.1..1.0).contains(&share) || done {
         return None;
     }
     let text = format!(
@@ -120,31 +123,52 @@ fn slow_reaction(advice: &Advice) -> Option<Warning> {
     warning("slow_reaction", text, largest)
 }
 
-fn noise(advice: &Advice) -> Option<Warning> {
+fn noise(advice: &Advice, config: &Config) -> Option<Warning> {
     let (noise, n) = (&advice.noise, &advice.nominal);
-    // What is slow without any noise is no matter of the sensor.
-    if noise.tolerable || (n.sensor_noise_m() == 0.0 && noise.sensor_noise_most_m.is_none()) {
+    // What is slow without any noise, with any pole, is no matter of the sensor.
+    let helpless = noise.sensor_noise_most_m.is_none() && noise.quiet_poles.is_none();
+    if noise.tolerable || (n.sensor_noise_m() == 0.0 && helpless) {
         return None;
     }
     let text = format!(
         "the estimated speed has {:.3} mm/s of noise, {:.1} % of {:.4} m/s, by an observer of {:.2} ms",
-        noise.flight_m_s * 1e3,
+        noise.flight_m_s.max(noise.contact_m_s) * 1e3,
         noise.share * 100.0,
         noise.reference_m_s,
         noise.observer_s * 1e3
     );
-    let quieter = noise
-        .sensor_noise_most_m
-        .map(|m| format!("at most {:.3} µm of sensor noise", m * 1e6));
+    let poles = noise.quiet_poles.map(|poles| other_poles(poles, config));
+    let quieter = (noise.sensor_noise_most_m)
+        .map(|m| format!("at most {} µm of sensor noise", rounded_down(m * 1e6)));
+    // Not beyond what the supervisor is made for.
     let faster = (noise.sample_rate_least_hz)
-        .filter(|hz| *hz > n.sample_rate_hz)
+        .filter(|hz| hz <= SUPERVISED_RATES_HZ.end())
         .map(|hz| format!("at least {:.1} kHz", hz / 1e3));
-    let remedy: Vec<String> = [quieter, faster].into_iter().flatten().collect();
+    let remedy: Vec<String> = [poles, quieter, faster].into_iter().flatten().collect();
     let remedy = match remedy.is_empty() {
         true => "shorten the reaction time: no sensor is good enough for it".to_owned(),
         false => remedy.join(", or "),
     };
     warning("noise", text, remedy)
+}
+
+/// Those of the poles that are others than the ones in use.
+fn other_poles([flight, contact]: [f64; 2], config: &Config) -> String {
+    let names = ["observer_pole_flight", "observer_pole_contact"];
+    let used = [config.observer_pole_flight, config.observer_pole_contact];
+    let offered = [flight, contact];
+    let other = (0..2).filter(|i| offered[*i] as f32 != used[*i]);
+    let settings: Vec<String> = other
+        .map(|i| format!("{} = {:.2}", names[i], offered[i]))
+        .collect();
+    format!("set {}", settings.join(" and "))
+}
+
+/// Three figures, none of them too much.
+fn rounded_down(x: f64) -> String {
+    let unit = 10f64.powf(x.log10().floor() - 2.0);
+    let decimals = (-unit.log10().round()).max(0.0) as usize;
+    format!("{:.decimals$}", (x / unit).floor() * unit)
 }
 
 fn lag_drives(advice: &Advice) -> Option<Warning> {
@@ -202,6 +226,40 @@ fn slew(advice: &Advice) -> Option<Warning> {
     );
     let remedy = "more voltage, or count on less than the cap in fast whirl";
     warning("slew", text, remedy)
+}
+
+/// Beyond its range a sensor says nothing of how deep the rotor is in the wall.
+fn range(advice: &Advice, config: &Config) -> Option<Warning> {
+    let n = &advice.nominal;
+    let (range_m, wall_m) = (n.range_m?, n.clearance_m + n.centre_offset_m);
+    let limit_m = f64::from(config.position_limit) * n.clearance_m;
+    let text = if range_m <= wall_m {
+        format!(
+            "the sensor reads up to {:.4} mm, the wall is at {:.4} mm: a touch is not seen",
+            range_m * 1e3,
+            wall_m * 1e3
+        )
+    } else if limit_m > RAIL_SHARE * range_m * (1.0 + 1e-6) {
+        format!(
+            "the sensor reads up to {:.4} mm, and its rail counts as a position up to position_limit, {:.4} mm",
+            range_m * 1e3,
+            limit_m * 1e3
+        )
+    } else {
+        return None;
+    };
+    let needed_m = (LEAST_LIMIT / RAIL_SHARE * n.clearance_m).max(wall_m);
+    // A limit that fits the range there is in the parameter's own.
+    let remedy = match RAIL_SHARE * range_m / n.clearance_m {
+        fits if fits >= LEAST_LIMIT && range_m > wall_m => {
+            format!("set position_limit = {}, or less", rounded_down(fits))
+        }
+        _ => format!(
+            "a sensor that reads beyond {:.4} mm to either side",
+            needed_m * 1e3
+        ),
+    };
+    warning("range", text, remedy)
 }
 
 fn centre_offset(advice: &Advice, config: &Config) -> Option<Warning> {

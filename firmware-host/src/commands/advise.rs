@@ -155,6 +155,7 @@ impl Numbers {
             force_max_n: needed("force_max_n", self.force_max_n)?,
             sample_rate_hz: needed("sample_rate_hz", self.sample_rate_hz)?,
             restitution: self.restitution,
+            contact_hardens: false,
             contact_mass_kg,
             axis_force_max_n: self.axis_force_max_n,
             slew_n_s: self.slew_n_s,

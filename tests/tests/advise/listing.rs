@@ -77,3 +77,25 @@ fn a_listing_has_what_the_scene_sets() {
         );
     }
 }
+
+/// The stiffness of a contact that hardens is derived from its law, and nobody reads that it was given.
+#[test]
+fn the_tangent_of_a_hardening_contact_is_said_to_be_one() {
+    let folder = tempfile::TempDir::new().unwrap();
+    let own = std::fs::read_to_string(scene_path("overload_then_release")).unwrap();
+    let law = "stiffness_n_mn = 1e13\nrestitution_speed_m_s = 0.3";
+    let path = folder.path().join("hardening.toml");
+    std::fs::write(&path, own.replacen("stiffness_n_m = 1e9", law, 1)).unwrap();
+    for more in [&[][..], &["--format", "rust"], &["--format", "c"]] {
+        let output = advise(&[&[path.to_str().unwrap()], more].concat());
+        let text = String::from_utf8(output.stdout).unwrap().to_lowercase();
+        let mut lines = text
+            .lines()
+            .filter(|l| l.trim().contains("contact_stiffness_n_m"));
+        let line = lines.next().unwrap_or_else(|| panic!("{text}"));
+        assert!(
+            line.contains("tangent at a depth of one clearance"),
+            "{line}"
+        );
+    }
+}

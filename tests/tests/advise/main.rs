@@ -1,7 +1,9 @@
 //! `advise`: closed forms, the suggested configuration, warnings, and the command line.
 
 mod command;
+mod keys;
 mod listing;
+mod noise;
 
 use firmware_host::advice::Advice;
 use firmware_host::scene::Scene;
@@ -19,6 +21,7 @@ fn amb() -> Nominal {
         damping_n_s_m: 0.0,
         clearance_m: 2e-4,
         contact_stiffness_n_m: 1e9,
+        contact_hardens: false,
         contact_mass_kg: 10.0,
         restitution: Some(0.7),
         friction_coefficient: 0.15,
@@ -193,7 +196,7 @@ fn warnings_appear_when_they_should() {
         |n: &Nominal| -> Vec<&'static str> { advice(n).warnings.iter().map(|w| w.key).collect() };
     assert!(keys(&quiet).is_empty(), "{:?}", keys(&quiet));
     type Edit = fn(&mut Nominal, f64);
-    let cases: [(&str, Edit, f64, f64); 10] = [
+    let cases: [(&str, Edit, f64, f64); 13] = [
         ("cap_below_load", |n, x| n.load_n = x, 999.0, 1000.0),
         (
             "cap_below_stiffness",
@@ -208,6 +211,9 @@ fn warnings_appear_when_they_should() {
         ("lag_drives", |n, x| n.lag_s = x, 1.5e-4, 3.5e-4),
         ("slew", |n, x| n.slew_n_s = Some(x), 1e8, 1e5),
         ("load", |n, x| n.load_n = x, 99.0, 100.0),
+        ("range", |n, x| n.range_m = Some(x), 2.32e-4, 2.31e-4),
+        ("range", |n, x| n.range_m = Some(x), 2.5e-4, 2e-4),
+        ("range", |n, x| n.range_m = Some(x), 8e-4, 1e-5),
         ("centre_offset", |n, x| n.centre_offset_m = x, 9e-7, 1.1e-6),
     ];
     for (key, edit, without, with) in cases {
@@ -262,6 +268,83 @@ fn the_position_limit_is_below_the_rail() {
         let nominal = Nominal { range_m, ..amb() };
         let given = suggested(&nominal).config.position_limit;
         assert!((given - limit).abs() < 1e-6, "{range_m:?}: {given}");
+    }
+}
+
+/// A sensor that does not reach the wall, one that reaches hardly farther, and a limit beyond a rail that is far enough.
+#[test]
+fn a_sensor_that_does_not_see_the_wall_is_told() {
+    let told = |range_m: f64, limit: Option<f32>| {
+        let nominal = Nominal {
+            range_m: Some(range_m),
+            ..amb()
+        };
+        let index = PARAMETERS.iter().position(|p| p.name == "position_limit");
+        let set: Vec<_> = limit
+            .map(|limit| (index.unwrap(), limit))
+            .into_iter()
+            .collect();
+        let advice = Advice::new("test", &nominal, &set).unwrap();
+        let warning = advice.warnings.iter().find(|w| w.key == "range");
+        (
+            warning.map(|w| format!("{}; {}", w.text, w.remedy)),
+            advice.supervisor_table,
+        )
+    };
+    let (said, table) = told(1e-5, None);
+    assert!(
+        said.unwrap()
+            .contains("a touch is not seen; a sensor that reads beyond 0.2316 mm")
+    );
+    assert!(
+        table.contains("1.1                  # clearance; the least there is"),
+        "{table}"
+    );
+    assert!(
+        told(2.1e-4, None)
+            .0
+            .unwrap()
+            .contains("rail counts as a position")
+    );
+    assert_eq!(told(8e-4, None).0, None);
+    let (said, _) = told(8e-4, Some(20.0));
+    assert!(said.unwrap().contains("set position_limit = 3.80"));
+}
+
+/// With the weight fed forward the supervisor may be given the whole cap or what the weight leaves of it; who has done the
+/// second is not told to, and neither is taken for a table of another machine.
+#[test]
+fn what_a_weight_that_is_fed_forward_leaves_is_a_cap() {
+    let own = std::fs::read_to_string(scene_path("overload_then_release")).unwrap();
+    let with = |force_max_n: f64, fed: bool| {
+        let text = own
+            .replacen(
+                "mass_kg = 10.0",
+                "mass_kg = 10.0\ngravity_m_s2 = [0.0, -14.0]",
+                1,
+            )
+            .replacen(
+                "[levitation]",
+                &format!("[levitation]\nfeed_forward_weight = {fed}"),
+                1,
+            );
+        let text = format!("{text}\n[supervisor]\nforce_max_n = {force_max_n:?}\n");
+        let scene = Scene::parse("scene", &text).unwrap();
+        let advice = Advice::new("test", &scene.nominal, &scene.overrides).unwrap();
+        let load = advice.warnings.into_iter().find(|w| w.key == "load");
+        (load.map(|w| w.remedy), scene.warnings)
+    };
+    let (remedy, warnings) = with(1000.0, true);
+    assert!(remedy.unwrap().contains("give the 860.0000 N"));
+    assert_eq!(warnings, [""; 0]);
+    assert_eq!(with(860.0, true), (None, vec![]));
+    for (force_max_n, fed) in [(860.0, false), (700.0, true)] {
+        let (_, warnings) = with(force_max_n, fed);
+        assert_eq!(warnings.len(), 1, "{warnings:?}");
+        assert!(
+            warnings[0].contains("supervisor.force_max_n"),
+            "{warnings:?}"
+        );
     }
 }
 
@@ -344,7 +427,7 @@ fn the_book_says_how_to_choose_every_parameter() {
     let keys: Vec<&str> = (source.split("warning(").skip(1))
         .filter_map(|rest| rest.trim_start().strip_prefix('"')?.split('"').next())
         .collect();
-    assert_eq!(keys.len(), 11, "{keys:?}");
+    assert_eq!(keys.len(), 12, "{keys:?}");
     for key in keys {
         assert!(page.contains(&format!("| `{key}` |")), "{key}");
     }
