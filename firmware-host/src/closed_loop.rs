@@ -153,7 +153,7 @@ pub fn run_policy(
         changes: Vec::new(),
         said: None,
     };
-    let ticks = (scene.duration_s * scene.sample_rate_hz).round().max(1.0) as u64;
+    let ticks = scene.samples().count();
     for tick in 0..ticks {
         bench.tick(tick)?;
         if (tick + 1) % REPORT_EVERY == 0 {

@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 
 /// What begins or ends within this share of a period after a sample counts as there at the sample. Sample
 /// times are products of a count and a period and may come out one rounding short of a scene's time.
-const ROUND_OFF_PERIODS: f64 = 1e-6;
+pub(crate) const ROUND_OFF_PERIODS: f64 = 1e-6;
 
 /// Up to when a sample at `t_s` sees what begins and ends \[s\].
 pub(crate) fn seen_until_s(t_s: f64, period_s: f64) -> f64 {
@@ -84,6 +84,46 @@ impl Fault {
     /// End \[s\].
     pub fn end_s(&self) -> f64 {
         self.start_s + self.duration_s
+    }
+
+    /// Whether it is there at one of the samples of a run.
+    pub(crate) fn is_seen(&self, samples: Samples) -> bool {
+        samples.any_within(self.start_s, self.end_s())
+    }
+}
+
+/// The samples of a run, which begins with the first.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Samples {
+    period_s: f64,
+    count: f64,
+}
+
+impl Samples {
+    /// Whole ones, to the nearest, one at least.
+    pub(crate) fn new(duration_s: f64, sample_rate_hz: f64) -> Self {
+        Self {
+            period_s: 1.0 / sample_rate_hz,
+            count: (duration_s * sample_rate_hz).round().max(1.0),
+        }
+    }
+
+    /// How many.
+    pub(crate) fn count(self) -> u64 {
+        self.count as u64
+    }
+
+    /// End of the last one's period \[s\].
+    pub(crate) fn end_s(self) -> f64 {
+        self.count * self.period_s
+    }
+
+    /// Whether one of them sees what begins and ends then.
+    pub(crate) fn any_within(self, start_s: f64, end_s: f64) -> bool {
+        let first = (start_s / self.period_s - ROUND_OFF_PERIODS)
+            .ceil()
+            .max(0.0);
+        first < self.count && seen_until_s(first * self.period_s, self.period_s) < end_s
     }
 }
 

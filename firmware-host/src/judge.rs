@@ -1,5 +1,6 @@
 //! Watches a run and says what it came to.
 
+use crate::faults::{ROUND_OFF_PERIODS, seen_until_s};
 use crate::scene::Scene;
 use crate::verdict::{Outcome, Verdict};
 use plant_model::analysis::whirl::WhirlMeter;
@@ -28,6 +29,7 @@ pub(crate) struct Judge {
     /// Where the retainer bearing is as seen from the middle.
     centre_offset_m: V2,
     clock_starts_s: f64,
+    period_s: f64,
     whirl: WhirlMeter,
     /// Since when the rotor has been in the middle.
     in_middle_since_s: Option<f64>,
@@ -35,6 +37,8 @@ pub(crate) struct Judge {
     back_since_s: Option<f64>,
     first_contact_s: Option<f64>,
     last_contact_s: Option<f64>,
+    /// Beginning of the last contact.
+    touches_since_s: f64,
     /// In contact at the last snapshot.
     touched: bool,
     /// Spin at the first sample \[rad/s\].
@@ -49,11 +53,13 @@ impl Judge {
             centre_offset_m: scene.centre_offset_m,
             middle_m: MIDDLE * scene.plant.contact.clearance_m,
             clock_starts_s: scene.clock_starts_s(),
+            period_s: 1.0 / scene.sample_rate_hz,
             whirl: WhirlMeter::new(WHIRL_WINDOW_S),
             in_middle_since_s: None,
             back_since_s: None,
             first_contact_s: None,
             last_contact_s: None,
+            touches_since_s: 0.0,
             touched: false,
             first_spin: None,
             now_s: 0.0,
@@ -67,7 +73,8 @@ impl Judge {
         let away_m = (now.position_m + self.centre_offset_m).norm();
         // With the retainer bearing far off the centre a rotor may lie on it in the middle.
         let free = !now.mode.in_contact();
-        if free && away_m < self.middle_m && now.t_s >= self.clock_starts_s {
+        let started = seen_until_s(now.t_s, self.period_s) >= self.clock_starts_s;
+        if free && away_m < self.middle_m && started {
             let since = *self.in_middle_since_s.get_or_insert(now.t_s);
             // Sample times carry round-off.
             if now.t_s - since >= STAY_S * (1.0 - 1e-9) && self.back_since_s.is_none() {
@@ -91,6 +98,9 @@ impl Judge {
         if touches || self.touched {
             // The first snapshot after it stands at the lift-off.
             self.last_contact_s = Some(now.t_s);
+        }
+        if touches && !self.touched {
+            self.touches_since_s = now.t_s;
         }
         self.touched = touches;
         if touches {
@@ -126,13 +136,22 @@ impl Judge {
             // A rotor at rest on the wall goes round at 0, not at −0.
             max_backward_whirl_hz: self.whirl.fastest().map(|w| w.backward_hz + 0.0),
             relevitation_time_s: match outcome {
-                Outcome::Recovered => self.back_since_s.map(|t| t - self.clock_starts_s),
+                Outcome::Recovered => self.back_since_s.map(|t| self.on_the_clock_s(t)),
                 _ => None,
             },
             energy_residual: plant.audit().residual(),
             method: plant.method().name(),
             run_time_s,
             real_time_ratio: scene.duration_s / run_time_s,
+        }
+    }
+
+    /// Time of a sample since the clock started, without the round-off of sample times.
+    fn on_the_clock_s(&self, t_s: f64) -> f64 {
+        let since_s = t_s - self.clock_starts_s;
+        match since_s > ROUND_OFF_PERIODS * self.period_s {
+            true => since_s,
+            false => 0.0,
         }
     }
 
@@ -165,7 +184,8 @@ impl Judge {
             None if speed * STAY_S < STANDS_STILL * self.middle_m => 0.0,
             None => 4.0 * scene.plant.contact.clearance_m / speed,
         };
-        if last.t_s - last_contact_s >= settled_s.max(STAY_S) {
+        let settled_s = settled_s.max(STAY_S);
+        if last.t_s - last_contact_s >= settled_s {
             return Outcome::Decayed;
         }
         let plant = &scene.plant;
@@ -176,6 +196,7 @@ impl Judge {
         match (last.mode.in_contact(), loaded) {
             (true, true) => Outcome::Pinned,
             (true, false) if last.velocity_m_s.norm() < rest => Outcome::Resting,
+            (true, false) if last.t_s - self.touches_since_s >= settled_s => Outcome::Rubbing,
             _ => Outcome::Bouncing,
         }
     }

@@ -1,8 +1,8 @@
 //! Runs plant and supervisor in closed loop as firmware would, on scenes, and shows what happened.
 //!
-//! Files, each importing only from those above it: `trace`, `supervision`, `verdict`, `scene_error`, `axis`, `loads`,
+//! Files, each importing only from those above it: `trace`, `supervision`, `verdict`, `policy_kind`, `scene_missing`, `scene_error`, `axis`, `loads`,
 //! `amplifier`, `faults`, `flight_record`, `scene_values`, `scene_event_file`, `scene_file`, `plant_setup`, `suggest`, `supervisor_setup`, `scene_warnings`, `instruments`,
-//! `levitation`, `clairvoyant`, `history`, `policy_kind`, `scene_events`, `scene_instruments`, `scene`, `policies`, `judge`, `closed_loop`, `verify`, `accuracy`, `wrong_runs`, `trace_file`, `plot`, `scene_words`, `table`, `report`, `paper`, `overloads`, `sensitivity`, `advice`, `target`, `output`,
+//! `levitation`, `clairvoyant`, `history`, `scene_events`, `scene_instruments`, `scene_limits`, `scene`, `policies`, `judge`, `closed_loop`, `verify`, `accuracy`, `wrong_runs`, `trace_file`, `plot`, `scene_words`, `table`, `report`, `paper`, `overloads`, `sensitivity`, `advice`, `target`, `output`,
 //! `commands`.
 
 #![forbid(unsafe_code)]
@@ -36,6 +36,8 @@ mod scene_event_file;
 mod scene_events;
 mod scene_file;
 mod scene_instruments;
+mod scene_limits;
+mod scene_missing;
 mod scene_values;
 mod scene_warnings;
 mod scene_words;

@@ -189,6 +189,7 @@ fn badge(outcome: Outcome) -> String {
         Outcome::Decayed => ("decayed", "good"),
         Outcome::Resting => ("resting", "fair"),
         Outcome::Pinned => ("pinned", "fair"),
+        Outcome::Rubbing => ("rubbing", "fair"),
         Outcome::Bouncing => ("bouncing", "fair"),
         Outcome::Whirl => ("whirl", "bad"),
     };

@@ -1,5 +1,6 @@
 //! A scene: the plant, its instruments and controllers, what happens to it, and what is asked.
 
+use crate::faults::Samples;
 use crate::instruments::{SensorParams, SpinSensorParams};
 use crate::levitation::LevitationParams;
 use crate::loads;
@@ -9,12 +10,12 @@ use crate::scene_error::{Checks, SceneError, SceneText, with_guess};
 use crate::scene_events::events_of;
 use crate::scene_file::{MethodFile, SceneFile};
 use crate::scene_instruments::{
-    amplifier_of, centre_offset_of, damping_of, levitation_of, sensor_of, spin_sensor_of,
+    amplifier_of, centre_offset_of, levitation_of, sensor_of, spin_sensor_of,
 };
-use crate::scene_warnings::{slips_of, warnings_of};
+use crate::scene_limits::{damping_of, whirl_speed_of};
+use crate::scene_warnings::{slips_of, unseen_of, warnings_of};
 use crate::suggest::Nominal;
 use crate::supervisor_setup;
-use plant_model::analysis::onset::lift_off_speed_m_s;
 use plant_model::params::{PlantParams, Start};
 use plant_model::{BuildError, Method, Options, Plant, V2, build, build_for_changes};
 use std::f64::consts::TAU;
@@ -161,17 +162,26 @@ impl Scene {
     }
 
     /// When the last thing that happens to the rotor is over \[s\]: the end of the last load, and of
-    /// outages and faults that end within the run (others count from their start), or the last change.
+    /// outages and faults that end within the run (others count from their start), or the last change. What no sample
+    /// sees of the sensor, and a change after the last sample's period, has not happened.
     pub fn clock_starts_s(&self) -> f64 {
         let within = |start_s: f64, end_s: f64| match end_s < self.duration_s {
             true => end_s,
             false => start_s,
         };
+        let samples = self.samples();
+        let faults = self.faults.iter().filter(|f| f.is_seen(samples));
+        let changes = (self.changes.iter()).filter(|c| c.at_s < samples.end_s());
         (self.loads().map(|d| d.end_s()))
             .chain(self.outages.iter().map(|o| within(o.start_s, o.end_s())))
-            .chain(self.faults.iter().map(|f| within(f.start_s, f.end_s())))
-            .chain(self.changes.iter().map(|c| c.at_s))
+            .chain(faults.map(|f| within(f.start_s, f.end_s())))
+            .chain(changes.map(|c| c.at_s))
             .fold(0.0, f64::max)
+    }
+
+    /// Control samples of a run.
+    pub(crate) fn samples(&self) -> Samples {
+        Samples::new(self.duration_s, self.sample_rate_hz)
     }
 
     /// Disturbances, and base motions as the forces that the rotor feels.
@@ -242,9 +252,10 @@ impl Scene {
             );
             return Err(text.error_at_key("run.duration_s", message, Some(help)));
         }
-        if file.title.trim().is_empty() || file.title.contains('\n') {
+        // A terminal takes other control characters for orders.
+        if file.title.trim().is_empty() || file.title.chars().any(char::is_control) {
             let help = Some("what the scene is for goes into story".to_owned());
-            let message = "expected a name in one line".to_owned();
+            let message = "expected a name in one line, without control characters".to_owned();
             return Err(text.error_at_key("title", message, help));
         }
         let sensor = sensor_of(file, &check)?;
@@ -259,6 +270,7 @@ impl Scene {
         let events = events_of(file, &check)?;
         let centre_offset_m = centre_offset_of(file, &check)?;
         start.position_m -= centre_offset_m;
+        let whirl_speed_m_s = whirl_speed_of(file, &plant, &check)?;
         let damps = policies.contains(&PolicyKind::Damping);
         let damping_n_s_m = damping_of(file, &plant, &check, damps)?;
         let nominal = supervisor_setup::nominal_of(&plant, file);
@@ -268,17 +280,18 @@ impl Scene {
         let supervisor = supervised
             .then(|| supervisor_setup::config((&nominal, &nominal_keys), &overrides, text))
             .transpose()?;
-        let warnings = warnings_of(
+        let mut warnings = warnings_of(
             file,
             text,
             (&plant, &nominal),
             (&overrides, supervisor.as_ref()),
         );
+        warnings.extend(unseen_of(file, text));
         let gravity: V2 = file.rotor.gravity_m_s2.0.into();
         Ok(Self {
             title: file.title.clone(),
             story: file.story.trim().to_owned(),
-            whirl_speed_m_s: whirl_speed_of(file, &plant, &check)?,
+            whirl_speed_m_s,
             feed_forward_n: match &file.levitation {
                 Some(l) if l.feed_forward_weight => -plant.rotor.mass_kg * gravity,
                 _ => V2::zeros(),
@@ -358,44 +371,4 @@ fn policies_of(file: &SceneFile, text: &SceneText) -> Result<Vec<PolicyKind>, Sc
         return Err(text.error_at_key(key, "is empty".to_owned(), help));
     }
     Ok(policies)
-}
-
-/// The scene's own limit; else 3·ω0·c with a shaft, and three times the speed at which the magnet can
-/// still lift the rotor off without one. A shaft against which magnets pull may have little stiffness left, and then it
-/// is the larger of both.
-fn whirl_speed_of(
-    file: &SceneFile,
-    plant: &PlantParams,
-    check: &Checks<'_>,
-) -> Result<f64, SceneError> {
-    const KEY: &str = "verdict.whirl_speed_m_s";
-    if let Some(speed) = file.verdict.whirl_speed_m_s {
-        check.within(KEY, speed, 1e-9, 1e6)?;
-        return Ok(speed);
-    }
-    let force = plant.magnet.map_or(0.0, |m| m.force_max_n);
-    let by_magnet = 3.0 * lift_off_speed_m_s(plant, force);
-    let pulls = (file.magnet.as_ref()).is_some_and(|magnet| magnet.negative_stiffness_n_m > 0.0);
-    let speed = match plant.natural_frequency_rad_s() {
-        Some(natural) if pulls => by_magnet.max(3.0 * natural * plant.contact.clearance_m),
-        Some(natural) => 3.0 * natural * plant.contact.clearance_m,
-        None => by_magnet,
-    };
-    if speed > 0.0 {
-        return Ok(speed);
-    }
-    let say = "say which backward contact speed counts as whirl";
-    if plant.magnet.is_some() {
-        let pull = -plant.rotor.stiffness_n_m * plant.contact.clearance_m;
-        let message = format!(
-            "is {force}: it cannot lift the rotor off the retainer bearing, where the negative stiffness pulls with {pull:.4} \
-             N, and {KEY} has no default"
-        );
-        let help = format!(
-            "check the cap, the negative stiffness and contact.clearance_m; or, if they are meant, {say}"
-        );
-        return Err((check.text).error_at_key("magnet.force_max_n", message, Some(help)));
-    }
-    let message = "is missing: without shaft stiffness and magnet it has no default".to_owned();
-    Err(check.text.error_at_key(KEY, message, Some(say.to_owned())))
 }

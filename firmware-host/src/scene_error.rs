@@ -1,5 +1,6 @@
 //! Errors for people: which file, which line, which key, what was expected.
 
+use crate::scene_missing::{Missing, missing};
 use miette::{Diagnostic, NamedSource, SourceSpan};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -138,9 +139,18 @@ impl SceneText {
         if let Some(name) = message.strip_prefix("missing field ") {
             // The place is that of the whole table; its first line has nothing to do with it.
             let name = name.trim_matches('`');
-            let is_table = ["run", "rotor", "spin", "contact", "friction"].contains(&name);
-            let help = is_table.then(|| format!("add a table [{name}]"));
-            return self.error_at(range, format!("{name} is missing"), help);
+            if let Some(Missing { table, help }) =
+                missing(name, |table, key| self.first_without(table, key))
+            {
+                let message = format!("{table}.{name}: is missing");
+                let range = self.find(&table).unwrap_or(range);
+                return self.error_at(range, message, Some(help));
+            }
+            let help = match name {
+                "title" => "give a name in one line: title = \"…\", above all tables".to_owned(),
+                _ => format!("add a table [{name}]"),
+            };
+            return self.error_at(range, format!("{name} is missing"), Some(help));
         }
         let start = range.start.min(self.text.len());
         let line_start = self.text[..start].rfind('\n').map_or(0, |i| i + 1);
@@ -177,6 +187,26 @@ impl SceneText {
     /// What such an error would say on its one line.
     pub(crate) fn warning(&self, key: &str, message: String) -> String {
         self.error_at_key(key, message, None).to_string()
+    }
+
+    /// The first of these tables that has not this key, as `disturbance[1]`; none where all have it, or there are none.
+    pub(crate) fn first_without(&self, table: &str, key: &str) -> Option<String> {
+        use toml::de::{DeTable, DeValue};
+        let document = DeTable::parse(&self.text).ok()?;
+        let mut parts = table.split('.');
+        let mut value = document.get_ref().get(parts.next()?)?;
+        for part in parts {
+            value = value.get_ref().get(part)?;
+        }
+        let lacks =
+            |value: &DeValue<'_>| matches!(value, DeValue::Table(t) if !t.contains_key(key));
+        match value.get_ref() {
+            DeValue::Array(all) => {
+                let index = all.iter().position(|element| lacks(element.get_ref()))?;
+                Some(format!("{table}[{index}]"))
+            }
+            value => lacks(value).then(|| table.to_owned()),
+        }
     }
 
     fn find(&self, key: &str) -> Option<std::ops::Range<usize>> {

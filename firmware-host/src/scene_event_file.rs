@@ -124,3 +124,25 @@ pub(crate) struct ChangeFile {
     pub(crate) friction_coefficient: Option<f64>,
     pub(crate) drive_torque_n_m: Option<f64>,
 }
+
+impl ChangeFile {
+    /// Keys that another change has, too.
+    pub(crate) fn keys_of_both(&self, other: &Self) -> impl Iterator<Item = &'static str> {
+        let both = |a: Option<f64>, b: Option<f64>| a.is_some() && b.is_some();
+        let keys = [
+            (
+                "eccentricity_m",
+                both(self.eccentricity_m, other.eccentricity_m),
+            ),
+            (
+                "friction_coefficient",
+                both(self.friction_coefficient, other.friction_coefficient),
+            ),
+            (
+                "drive_torque_n_m",
+                both(self.drive_torque_n_m, other.drive_torque_n_m),
+            ),
+        ];
+        (keys.into_iter()).filter_map(|(key, both)| both.then_some(key))
+    }
+}

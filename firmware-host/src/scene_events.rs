@@ -78,6 +78,7 @@ pub(crate) fn events_of(file: &SceneFile, check: &Checks<'_>) -> Result<Events, 
             .changes
             .push(reader.change(&format!("change[{i}]"), c)?);
     }
+    reader.no_change_twice()?;
     (events.changes).sort_by(|a, b| a.at_s.total_cmp(&b.at_s));
     Ok(events)
 }
@@ -280,6 +281,21 @@ impl Reader<'_> {
             kind,
             axis: f.axis.map_or(Axis::Both, axis_of),
         })
+    }
+
+    /// Which of two values at one time would hold hangs on their order in the file.
+    fn no_change_twice(&self) -> Result<(), SceneError> {
+        for (i, c) in self.file.change.iter().enumerate() {
+            for (j, other) in self.file.change.iter().enumerate().take(i) {
+                let twice = c.at_s == other.at_s;
+                if let Some(key) = c.keys_of_both(other).next().filter(|_| twice) {
+                    let message = format!("given for {} s by change[{j}] as well", c.at_s);
+                    let help = "remove one of them, or let it come at another time";
+                    return Err(self.error(&format!("change[{i}].{key}"), message, help));
+                }
+            }
+        }
+        Ok(())
     }
 
     fn change(&self, path: &str, c: &ChangeFile) -> Result<TimedChange, SceneError> {

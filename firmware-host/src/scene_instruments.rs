@@ -7,8 +7,6 @@ use crate::scene_error::{Checks, SceneError};
 use crate::scene_file::{LevitationFile, SceneFile};
 use crate::scene_values::PerAxis;
 use plant_model::V2;
-use plant_model::analysis::onset::lift_off_speed_m_s;
-use plant_model::params::PlantParams;
 
 pub(crate) fn sensor_of(file: &SceneFile, check: &Checks<'_>) -> Result<SensorParams, SceneError> {
     let s = &file.sensor;
@@ -82,31 +80,6 @@ pub(crate) fn centre_offset_of(file: &SceneFile, check: &Checks<'_>) -> Result<V
     }
     let expected = "a length below contact.clearance_m, so that the rotor can be levitated";
     Err(check.refused("retainer.centre_offset_m", size, expected))
-}
-
-/// Gain of the policy `damping` \[N s/m\]: the scene's, or the whole cap at lift-off speed.
-pub(crate) fn damping_of(
-    file: &SceneFile,
-    plant: &PlantParams,
-    check: &Checks<'_>,
-    wanted: bool,
-) -> Result<f64, SceneError> {
-    const KEY: &str = "damping.coefficient_n_s_m";
-    if let Some(d) = file.damping.coefficient_n_s_m {
-        check.within(KEY, d, 0.0, 1e9)?;
-        return Ok(d);
-    }
-    let force_n = plant.magnet.map_or(0.0, |m| m.force_max_n);
-    let speed = lift_off_speed_m_s(plant, force_n);
-    if speed > 0.0 {
-        Ok(force_n / speed)
-    } else if wanted {
-        let message = "is missing: where the magnet cannot lift the rotor off it has no default";
-        let help = Some("say how much force the policy \"damping\" sets against speed".to_owned());
-        Err((check.text).error_at_key(KEY, message.to_owned(), help))
-    } else {
-        Ok(0.0)
-    }
 }
 
 pub(crate) fn levitation_of(

@@ -1,5 +1,6 @@
 //! What a scene may say and hardly means: a slip of a unit, a table pasted from another machine.
 
+use crate::faults::Samples;
 use crate::scene_error::SceneText;
 use crate::scene_file::SceneFile;
 use crate::suggest::{Nominal, SUPERVISED_RATES_HZ, suggested};
@@ -12,6 +13,8 @@ const DEEP: f64 = 10.0;
 /// No rotor on retainer bearings turns faster \[Hz\], or is wider \[m\].
 const FASTEST_HZ: f64 = 5000.0;
 const WIDEST_M: f64 = 5.0;
+/// No machine is accelerated so much for good \[m/s²\].
+const HEAVIEST_M_S2: f64 = 200.0;
 /// Share by which a parameter may differ from the scene's own data.
 const OTHER: f32 = 0.05;
 
@@ -62,6 +65,21 @@ pub(crate) fn warnings_of(
             "is {rolling}, no less than that of sliding: a rotor that rolls is held as by a brake, and nothing whirls"
         );
         warnings.push(warning("friction.rolling_coefficient", message));
+    }
+    let cap_n = nominal.force_everywhere_n();
+    if let Some(magnet) = &file.magnet
+        && nominal.load_n >= cap_n
+    {
+        let axis = magnet.axis_force_max_n.is_some_and(|axis| axis == cap_n);
+        let key = match axis {
+            true => "magnet.axis_force_max_n",
+            false => "magnet.force_max_n",
+        };
+        let message = format!(
+            "is {cap_n}, and the rotor weighs {:.4} N: the magnet cannot hold it in the middle",
+            nominal.load_n
+        );
+        warnings.push(warning(key, message));
     }
     if let (Some(levitation), Some(magnet)) = (&file.levitation, &file.magnet)
         && levitation.proportional_n_m + plant.rotor.stiffness_n_m <= 0.0
@@ -127,11 +145,65 @@ pub(crate) fn slips_of(file: &SceneFile, text: &SceneText) -> Vec<String> {
         let message = format!("is wider than {WIDEST_M} m; lengths are in metres");
         warnings.push(warning("rotor.contact_radius_m", message));
     }
+    let [x, y] = file.rotor.gravity_m_s2.0;
+    if x.hypot(y) > HEAVIEST_M_S2 {
+        let g = x.hypot(y) / 9.81;
+        let message = format!("is {g:.0} times that of the earth; accelerations are in m/s²");
+        warnings.push(warning("rotor.gravity_m_s2", message));
+    }
+    let gain = file
+        .sensor
+        .gain
+        .map_or([1.0; 2], |gain| gain.vector().into());
+    if gain.iter().any(|gain| *gain <= 0.0) {
+        let what = match gain.contains(&0.0) {
+            true => "is 0: the sensor reads nothing of the position",
+            false => "is negative: every controller pushes the rotor away",
+        };
+        warnings.push(warning("sensor.gain", what.to_owned()));
+    }
     if let Some(range_m) = file.sensor.range_m
         && range_m < clearance_m
     {
         let message = "is smaller than the clearance: no policy can see a contact".to_owned();
         warnings.push(warning("sensor.range_m", message));
+    }
+    warnings
+}
+
+/// What falls between samples, or behind the last: nobody sees it, or it does not happen at all.
+pub(crate) fn unseen_of(file: &SceneFile, text: &SceneText) -> Vec<String> {
+    let samples = Samples::new(file.run.duration_s, file.run.sample_rate_hz);
+    let unseen = |start_s: f64, duration_s: f64| !samples.any_within(start_s, start_s + duration_s);
+    let mut warnings = Vec::new();
+    for (i, f) in file.fault.iter().enumerate() {
+        if unseen(f.start_s, f.duration_s) {
+            let message = "falls between samples: none of them reads it".to_owned();
+            warnings.push(text.warning(&format!("fault[{i}].start_s"), message));
+        }
+    }
+    for (i, o) in file.outage.iter().enumerate() {
+        if unseen(o.start_s, o.duration_s) {
+            let message = "falls between samples: the firmware sees nothing of it".to_owned();
+            warnings.push(text.warning(&format!("outage[{i}].start_s"), message));
+        }
+    }
+    for (i, c) in file.change.iter().enumerate() {
+        let key = format!("change[{i}].at_s");
+        if c.at_s >= samples.end_s() {
+            let message = "comes after the last sample's period, and does not happen".to_owned();
+            warnings.push(text.warning(&key, message));
+            continue;
+        }
+        // Until the same is changed again.
+        let until_s = (file.change.iter())
+            .filter(|other| other.at_s > c.at_s && c.keys_of_both(other).next().is_some())
+            .map(|other| other.at_s)
+            .fold(f64::INFINITY, f64::min);
+        if until_s.is_finite() && unseen(c.at_s, until_s - c.at_s) {
+            let message = "falls between samples: the same is changed again before the next";
+            warnings.push(text.warning(&key, message.to_owned()));
+        }
     }
     warnings
 }

@@ -127,6 +127,7 @@ pub fn outcome(outcome: Outcome) -> &'static str {
         Outcome::Decayed => "decayed",
         Outcome::Resting => "resting",
         Outcome::Pinned => "pinned",
+        Outcome::Rubbing => "rubbing",
         Outcome::Bouncing => "bouncing",
         Outcome::Whirl => "whirl",
     }

@@ -15,6 +15,8 @@ pub enum Outcome {
     Resting,
     /// Held on the stator by a load that is still on.
     Pinned,
+    /// In unbroken contact for longer than a rotor takes to settle, moving, without whirl.
+    Rubbing,
     /// Still hitting the stator when the run ended, without whirl.
     Bouncing,
     /// Backward whirl: the contact speed passed the scene's limit.

@@ -68,7 +68,8 @@ fn a_rotor_is_left_to_circle_round_its_mass_centre() {
             let (alone, _) = seen(&scene, PolicyKind::Levitation);
             let (own, trace) = seen(&scene, PolicyKind::Supervisor);
             assert!(own.impacts <= alone.impacts + 1, "{what}: {}", own.impacts);
-            assert_ne!(own.outcome, Outcome::Bouncing, "{what}");
+            let touches = [Outcome::Bouncing, Outcome::Rubbing].contains(&own.outcome);
+            assert!(!touches, "{what}: {:?}", own.outcome);
             let share = levitated_at_the_end(&trace);
             assert!(share > 0.99, "{what}: levitated for {share}");
         }

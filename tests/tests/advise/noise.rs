@@ -21,7 +21,7 @@ fn machine(chance: &mut ChaCha8Rng) -> Nominal {
     let clearance_m = between(chance, 1e-4, 5e-4);
     let force_max_n = mass_kg * between(chance, 20.0, 600.0);
     let pull_n_m = force_max_n / clearance_m * between(chance, 0.02, 0.5);
-    let on_shaft = chance.next_u32() % 2 == 0;
+    let on_shaft = chance.next_u32().is_multiple_of(2);
     Nominal {
         mass_kg,
         contact_mass_kg: mass_kg,

@@ -1,5 +1,6 @@
 //! The command line as a person uses it: results, errors, exit codes, and what is left behind.
 
+mod causes;
 mod refusals;
 mod slips;
 mod traces;

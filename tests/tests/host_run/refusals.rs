@@ -236,6 +236,12 @@ fn bad_scenes_are_refused_with_file_line_key_and_expectation() {
         ),
         ("title = ", "title = = ", "title", ""),
         ("title = \"", "title = \"\\n", "title", "a name in one line"),
+        (
+            "title = \"",
+            "title = \"\\u001b[31m",
+            "title",
+            "control characters",
+        ),
         ("[contact]", "[contract]", "contract", "expected one of"),
     ];
     let folder = TempDir::new().unwrap();

@@ -2,7 +2,7 @@
 
 use super::short_scene;
 use std::fs;
-use system_tests::run_scene;
+use system_tests::{root, run_scene};
 use tempfile::TempDir;
 
 /// What is allowed and hardly meant is run, and said with its line.
@@ -75,8 +75,43 @@ fn slips_are_warned_of() {
             "sample_rate_hz = 9900",
             "run.sample_rate_hz",
         ),
+        (
+            "mass_kg = 10.0",
+            "mass_kg = 10.0\ngravity_m_s2 = [0.0, -9810.0]",
+            "rotor.gravity_m_s2",
+        ),
+        (
+            "mass_kg = 10.0",
+            "mass_kg = 10.0\ngravity_m_s2 = [0.0, -100.0]",
+            "magnet.force_max_n",
+        ),
+        ("[sensor]", "[sensor]\ngain = 0.0", "sensor.gain"),
+        ("[sensor]", "[sensor]\ngain = [1.0, -1.0]", "sensor.gain"),
+        (
+            "[sensor]",
+            "[[fault]]\nstart_s = 0.010_012\nduration_s = 1e-5\nkind = \"nan\"\n[sensor]",
+            "fault[0].start_s",
+        ),
+        (
+            "[sensor]",
+            "[[outage]]\nstart_s = 0.010_012\nduration_s = 1e-5\n[sensor]",
+            "outage[0].start_s",
+        ),
+        (
+            "[sensor]",
+            "[[change]]\nat_s = 0.010_01\neccentricity_m = 1e-6\n[[change]]\nat_s = 0.010_02\neccentricity_m = 0.0\n[sensor]",
+            "change[0].at_s",
+        ),
     ];
+    let page = fs::read_to_string(root().join("docs/src/host/scenes.md")).unwrap();
+    let (_, listed) = page.split_once("\n## Warnings\n").unwrap();
+    let listed = listed.split("\n## ").next().unwrap();
     for (from, to, key) in slips {
+        let in_page = match key.split_once('.') {
+            Some(("supervisor", _)) => "supervisor.<parameter>".to_owned(),
+            _ => key.replace("[0]", "[]"),
+        };
+        assert!(listed.contains(&format!("`{in_page}`")), "{key}");
         let said = warned(from, to);
         let warning = said.lines().find(|l| l.starts_with("warning: "));
         let warning = warning.unwrap_or_else(|| panic!("{to}: {said}"));
@@ -84,6 +119,37 @@ fn slips_are_warned_of() {
             warning.contains(key) && warning.contains("short.toml:"),
             "{warning}"
         );
+    }
+    // Two changes of a scene: the cap of an axis below the weight, and a change in the rest of a sample.
+    for (edits, key) in [
+        (
+            [
+                (
+                    "mass_kg = 10.0",
+                    "mass_kg = 10.0\ngravity_m_s2 = [0.0, -9.81]",
+                ),
+                ("[magnet]", "[magnet]\naxis_force_max_n = 98.0"),
+            ],
+            "magnet.axis_force_max_n",
+        ),
+        (
+            [
+                ("duration_s = 0.03", "duration_s = 0.030_02"),
+                (
+                    "[sensor]",
+                    "[[change]]\nat_s = 0.030_01\neccentricity_m = 1e-6\n[sensor]",
+                ),
+            ],
+            "change[0].at_s",
+        ),
+    ] {
+        let scene = short_scene(folder.path(), |t| {
+            (edits.iter()).fold(t, |t, (from, to)| t.replacen(from, to, 1))
+        });
+        let result = run_scene(&scene, &folder.path().join("out"), &[]);
+        let said = String::from_utf8(result.stderr).unwrap();
+        let warning = said.lines().find(|l| l.starts_with("warning: "));
+        assert!(warning.is_some_and(|w| w.contains(key)), "{key}: {said}");
     }
     // Refused at another key: the slip is told beside it.
     let said = warned("clearance_m = 2e-4", "clearance_m = 0.2");
@@ -128,6 +194,18 @@ fn slips_are_warned_of() {
         ),
         ("proportional_n_m = 5e5", "proportional_n_m = 2.1e5"),
         ("sample_rate_hz = 20000", "sample_rate_hz = 10000"),
+        (
+            "mass_kg = 10.0",
+            "mass_kg = 10.0\ngravity_m_s2 = [0.0, -99.0]",
+        ),
+        (
+            "[sensor]",
+            "[[fault]]\nstart_s = 0.010_012\nduration_s = 4e-5\nkind = \"nan\"\n[sensor]",
+        ),
+        (
+            "[sensor]",
+            "[[change]]\nat_s = 0.010_01\neccentricity_m = 1e-6\n[[change]]\nat_s = 0.010_02\nfriction_coefficient = 0.1\n[sensor]",
+        ),
     ] {
         assert_eq!(warned(from, to), "", "{to}");
     }

@@ -236,6 +236,16 @@ fn bad_keys_are_named() {
         ),
         (
             motion,
+            table(
+                "[[change]]\nat_s = 0.01\neccentricity_m = 0.0\nfriction_coefficient = 0.1\n\
+                 [[change]]\nat_s = 0.02\nfriction_coefficient = 0.2\n\
+                 [[change]]\nat_s = 0.01\nfriction_coefficient = 0.2",
+            ),
+            "change[2].friction_coefficient",
+            "given for 0.01 s by change[0] as well",
+        ),
+        (
+            motion,
             table("[[change]]\nat_s = 0.0\nfriction_coefficient = -0.1"),
             "change[0].friction_coefficient",
             "a number from",
