@@ -1,7 +1,7 @@
 //! Results appear whole or not at all.
 
 use std::ffi::OsString;
-use std::io;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 
@@ -14,14 +14,33 @@ pub struct Staging {
 }
 
 /// Why results could not be written.
-#[derive(Debug, thiserror::Error, miette::Diagnostic)]
-#[error("cannot write results to {}: {}", path.display(), reason.kind())]
-#[diagnostic(help("give a folder that can be written to with --out"))]
+#[derive(Debug, thiserror::Error)]
+#[error("cannot write results to {}: {}", path.display(), said(reason))]
 pub struct OutputError {
     /// The folder asked for.
     pub path: PathBuf,
     /// What the system said.
     pub reason: io::Error,
+}
+
+/// The system's word without its number; what has no word of its own, whole.
+fn said(reason: &io::Error) -> String {
+    match reason.kind() {
+        io::ErrorKind::Other => reason.to_string(),
+        kind => kind.to_string(),
+    }
+}
+
+impl miette::Diagnostic for OutputError {
+    fn help<'a>(&'a self) -> Option<Box<dyn std::fmt::Display + 'a>> {
+        use io::ErrorKind::{FileTooLarge, QuotaExceeded, StorageFull};
+        Some(Box::new(match self.reason.kind() {
+            StorageFull | QuotaExceeded | FileTooLarge => {
+                "free some space there, or give a folder on another disk with --out; nothing was written"
+            }
+            _ => "give a folder that can be written to with --out",
+        }))
+    }
 }
 
 impl OutputError {
@@ -83,6 +102,19 @@ impl Staging {
         })
     }
 
+    /// Creates a file there and has it written; an error of either names the place where it was to go.
+    ///
+    /// # Errors
+    /// [`OutputError`].
+    pub fn write_by(
+        &self,
+        name: &str,
+        write: impl FnOnce(std::fs::File) -> io::Result<()>,
+    ) -> Result<(), OutputError> {
+        (std::fs::File::create(self.path(name)).and_then(write))
+            .map_err(OutputError::at(&self.final_place.join(name)))
+    }
+
     /// Where to put a file for now.
     pub fn path(&self, name: &str) -> PathBuf {
         self.folder.path().join(name)
@@ -93,8 +125,7 @@ impl Staging {
     /// # Errors
     /// [`OutputError`].
     pub fn write(&self, name: &str, content: impl AsRef<[u8]>) -> Result<(), OutputError> {
-        let path = self.path(name);
-        std::fs::write(&path, content).map_err(OutputError::at(&path))
+        self.write_by(name, |mut file| file.write_all(content.as_ref()))
     }
 
     /// Moves everything to its place. Files of the same name are replaced one by one; others stay.

@@ -8,7 +8,7 @@ use parquet::errors::ParquetError;
 use parquet::file::properties::WriterProperties;
 use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
 use parquet::schema::parser::parse_message_type;
-use std::io::Write;
+use std::io::{self, Write};
 use std::sync::Arc;
 
 type Number = (&'static str, fn(&TraceRow) -> f64);
@@ -117,6 +117,17 @@ pub fn write(trace: &Trace, sink: impl Write + Send) -> Result<(), ParquetError>
     group.close()?;
     file.close()?;
     Ok(())
+}
+
+/// Why a trace could not be written, in the words of the system where it is the reason.
+pub(crate) fn reason(error: ParquetError) -> io::Error {
+    match error {
+        ParquetError::External(source) => match source.downcast::<io::Error>() {
+            Ok(reason) => *reason,
+            Err(other) => io::Error::other(other),
+        },
+        other => io::Error::other(other),
+    }
 }
 
 type ColumnWriter<'a> = parquet::file::writer::SerializedColumnWriter<'a>;

@@ -55,7 +55,7 @@ pub struct AccuracyArgs {
     #[arg(long)]
     pub out: Option<PathBuf>,
     /// Threads of the search for wrong runs [default: all cores]. Results do not depend on it.
-    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(long, allow_negative_numbers = true, value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
 }
 

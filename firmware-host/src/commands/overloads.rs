@@ -37,7 +37,7 @@ pub struct OverloadsArgs {
     #[arg(long, conflicts_with_all = ["json", "quick", "scene", "search"])]
     pub histories: bool,
     /// Threads to use [default: all cores]. Results do not depend on it.
-    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(long, allow_negative_numbers = true, value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
 }
 

@@ -20,7 +20,7 @@ pub struct PaperArgs {
     #[arg(long)]
     pub quick: bool,
     /// Threads to use [default: all cores]. Results do not depend on it.
-    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(long, allow_negative_numbers = true, value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
 }
 

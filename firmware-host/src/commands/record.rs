@@ -13,16 +13,16 @@ pub struct RecordArgs {
     /// The entries as they are in memory, 16 bytes each, oldest first.
     pub file: PathBuf,
     /// Checksum that the firmware gave with the record, e.g. 0x1d9a40c2.
-    #[arg(long, value_name = "NUMBER")]
+    #[arg(long, allow_negative_numbers = true, value_name = "NUMBER")]
     pub crc: Option<String>,
     /// Clearance of the retainer bearing: positions in µm.
-    #[arg(long, value_name = "NUMBER")]
+    #[arg(long, allow_negative_numbers = true, value_name = "NUMBER")]
     pub clearance_m: Option<f64>,
     /// Force cap: forces in N.
-    #[arg(long, value_name = "NUMBER")]
+    #[arg(long, allow_negative_numbers = true, value_name = "NUMBER")]
     pub force_max_n: Option<f64>,
     /// Control rate: times in ms.
-    #[arg(long, value_name = "NUMBER")]
+    #[arg(long, allow_negative_numbers = true, value_name = "NUMBER")]
     pub sample_rate_hz: Option<f64>,
     /// Print every tick as CSV instead of tables.
     #[arg(long, conflicts_with = "json")]

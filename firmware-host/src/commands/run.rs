@@ -4,7 +4,7 @@ use crate::closed_loop::{Keep, RunError, run};
 use crate::commands::error::{CommandError, Contradiction, pretty, print};
 use crate::commands::load;
 use crate::commands::progress::{LateProgress, pool};
-use crate::output::{self, OutputError, Staging};
+use crate::output::{self, Staging};
 use crate::policy_kind::PolicyKind;
 use crate::scene::Scene;
 use crate::scene_words::summary;
@@ -29,7 +29,7 @@ pub struct RunArgs {
     #[arg(long)]
     pub json: bool,
     /// Threads to use [default: all cores]. Results do not depend on it.
-    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(long, allow_negative_numbers = true, value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
 }
 
@@ -161,10 +161,9 @@ fn write_results(
 ) -> Result<(), CommandError> {
     staging.write("verdict.json", verdicts)?;
     for run in runs {
-        let path = staging.path(&trace_name(&run.name));
-        let file = std::fs::File::create(&path).map_err(OutputError::at(&path))?;
-        trace_file::write(&run.trace, file)
-            .map_err(|e| CommandError::other("writing a trace", e))?;
+        staging.write_by(&trace_name(&run.name), |file| {
+            trace_file::write(&run.trace, file).map_err(trace_file::reason)
+        })?;
         let read_out = run.trace.read_out.as_ref();
         if let Some(record) = read_out.and_then(|read_out| read_out.flight_record.as_ref()) {
             staging.write(&record_name(&run.name), &record.entries)?;

@@ -18,16 +18,16 @@ pub struct SensitivityArgs {
     /// Scene file with a magnet and a levitation controller.
     pub scene: PathBuf,
     /// Errors so many times as wide as usual: the exponent of factors, a factor of ticks.
-    #[arg(long, default_value_t = 1.0, value_name = "NUMBER", value_parser = width)]
+    #[arg(long, default_value_t = 1.0, allow_negative_numbers = true, value_name = "NUMBER", value_parser = width)]
     pub width: f64,
     /// How often all data are told wrong at once, each somewhere between its two errors.
-    #[arg(long, default_value_t = 8, value_name = "NUMBER", value_parser = clap::value_parser!(u32).range(0..=1000))]
+    #[arg(long, default_value_t = 8, allow_negative_numbers = true, value_name = "NUMBER", value_parser = clap::value_parser!(u32).range(0..=1000))]
     pub draws: u32,
     /// Print JSON instead of the table.
     #[arg(long)]
     pub json: bool,
     /// Threads to use [default: all cores]. Results do not depend on it.
-    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(long, allow_negative_numbers = true, value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
 }
 

@@ -38,7 +38,7 @@ pub struct TargetArgs {
     #[arg(long, value_name = "FOLDER", default_value = ".")]
     pub project: PathBuf,
     /// Threads to use [default: all cores]. Results do not depend on it.
-    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(long, allow_negative_numbers = true, value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
 }
 

@@ -1,6 +1,7 @@
 //! The command line as a person uses it: results, errors, exit codes, and what is left behind.
 
 mod causes;
+mod command_line;
 mod refusals;
 mod slips;
 mod traces;
