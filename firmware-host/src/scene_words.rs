@@ -5,7 +5,7 @@ use crate::scene::{Axis, Delivers, Fault, FaultKind, Outage, Scene, Shape, Timed
 use crate::supervisor_setup::named;
 use crate::verdict::{Disturbed, SceneSummary};
 use plant_model::V2;
-use plant_model::params::{SlidingFriction, SpinParams, StatorParams};
+use plant_model::params::{ContactLaw, SlidingFriction, SpinParams, StatorParams};
 use std::f64::consts::TAU;
 
 /// What a report needs to know of a scene.
@@ -28,7 +28,7 @@ pub(crate) fn summary(scene: &Scene) -> SceneSummary {
 }
 
 /// What was simulated, beside what the summary has in numbers.
-fn facts(scene: &Scene) -> Vec<(&'static str, String)> {
+fn facts(scene: &Scene) -> Vec<Fact> {
     let (rotor, spin_hz) = (&scene.plant.rotor, scene.start.spin_rad_s / TAU);
     let held = match scene.plant.spin {
         SpinParams::Held => ", held",
@@ -46,10 +46,10 @@ fn facts(scene: &Scene) -> Vec<(&'static str, String)> {
         ("Stiffness", figures(rotor.stiffness_n_m) + " N/m"),
         ("Spin", format!("{} Hz{held}", figures(spin_hz))),
         ("Friction", friction),
-        (
-            "Contact stiffness",
-            figures(scene.plant.contact.stiffness_n_m()) + " N/m",
-        ),
+    ];
+    facts.extend(contact(scene));
+    facts.extend(amplifier(scene));
+    facts.extend([
         (
             "Control rate",
             figures(1e-3 * scene.sample_rate_hz) + " kHz",
@@ -62,7 +62,8 @@ fn facts(scene: &Scene) -> Vec<(&'static str, String)> {
                 scene.seed
             ),
         ),
-    ];
+    ]);
+    facts.extend(sensor(scene));
     if weight_n > 0.0 {
         let fed = if scene.feed_forward_n == V2::zeros() {
             ""
@@ -92,6 +93,97 @@ fn facts(scene: &Scene) -> Vec<(&'static str, String)> {
         "Program",
         format!("firmware-host {}", env!("CARGO_PKG_VERSION")),
     ));
+    facts
+}
+
+type Fact = (&'static str, String);
+
+/// Wall, friction that a rolling rotor has, race and bore; what is not there has no row.
+fn contact(scene: &Scene) -> Vec<Fact> {
+    let plant = &scene.plant;
+    let mut facts = Vec::new();
+    let damping = match &plant.contact.law {
+        ContactLaw::Linear(law) => {
+            let stiffness = figures(law.stiffness_n_m) + " N/m";
+            facts.push(("Contact stiffness", stiffness));
+            (law.damping_n_s_m, "N s/m")
+        }
+        ContactLaw::HuntCrossley(law) => {
+            let (stiffness, n) = (figures(law.stiffness_n_mn), figures(law.exponent));
+            let law_text = format!("Hunt and Crossley, {stiffness} N/m^{n}");
+            facts.push(("Contact", law_text));
+            (law.damping_s_m, "s/m")
+        }
+    };
+    // Of a linear contact restitution says it all; of the other it goes with a speed.
+    match (scene.nominal.restitution, plant.contact.law.linear()) {
+        (Some(e), Some(_)) => facts.push(("Restitution", figures(e))),
+        _ if damping.0 > 0.0 => {
+            let damping = format!("{} {}", figures(damping.0), damping.1);
+            facts.push(("Contact damping", damping));
+        }
+        _ => {}
+    }
+    let rolling = plant.friction.rolling_coefficient;
+    if rolling > 0.0 {
+        facts.push(("Rolling friction", figures(rolling)));
+    }
+    if let Some(race) = &plant.race {
+        let words = format!(
+            "{} kg m², drag {} N m s, {} Hz at the start",
+            figures(race.inertia_kg_m2),
+            figures(race.drag_n_m_s),
+            figures(race.start_spin_rad_s / TAU)
+        );
+        facts.push(("Race", words));
+    }
+    if let StatorParams::RigidEllipse(e) = &plant.stator {
+        let words = format!(
+            "by {} of the clearance, longer at {}°",
+            figures(e.ellipticity),
+            figures(e.long_axis_rad.to_degrees())
+        );
+        facts.push(("Out of round", words));
+    }
+    facts
+}
+
+/// What the amplifier has beside the cap, and how late it is.
+fn amplifier(scene: &Scene) -> Vec<Fact> {
+    let Some(magnet) = &scene.plant.magnet else {
+        return Vec::new();
+    };
+    let (amplifier, mut facts) = (&scene.amplifier, Vec::new());
+    if let Some(cap_n) = amplifier.axis_force_max_n {
+        facts.push(("Cap of each axis", figures(cap_n) + " N"));
+    }
+    if let Some(slew_n_s) = amplifier.slew_n_s {
+        facts.push(("Slew limit", figures(slew_n_s) + " N/s"));
+    }
+    if magnet.lag_s > 0.0 {
+        facts.push(("Amplifier lag", figures(1e3 * magnet.lag_s) + " ms"));
+    }
+    let samples = |count: usize| match count {
+        1 => "1 sample".to_owned(),
+        _ => format!("{count} samples"),
+    };
+    facts.push(("Delay of the magnet", samples(amplifier.delay_samples)));
+    if scene.sensor.delay_samples > 0 {
+        let delay = samples(scene.sensor.delay_samples);
+        facts.push(("Delay of the sensor", delay));
+    }
+    facts
+}
+
+fn sensor(scene: &Scene) -> Vec<Fact> {
+    let mut facts = Vec::new();
+    if scene.sensor.quantum_m > 0.0 {
+        let step = figures(1e6 * scene.sensor.quantum_m) + " µm";
+        facts.push(("Step of the converter", step));
+    }
+    if let Some(range_m) = scene.sensor.range_m {
+        facts.push(("Sensor range", format!("±{} mm", figures(1e3 * range_m))));
+    }
     facts
 }
 
@@ -216,6 +308,63 @@ mod tests {
             .map(|d| format!("{} to {}: {}", d.from_s, d.to_s, d.what))
             .collect();
         (facts.join("; "), spans)
+    }
+
+    /// What decides a result has a row, and what is not there has none.
+    #[test]
+    fn what_decides_a_result_is_among_the_facts() {
+        let scene = include_str!("../scenes/shock_15_g_on_amb.toml");
+        let (facts, _) = said(scene);
+        for fact in [
+            "Contact stiffness 1e9 N/m",
+            "Restitution 0.7",
+            "Cap of each axis 1000 N",
+            "Slew limit 2e6 N/s",
+            "Amplifier lag 0.16 ms",
+            "Delay of the magnet 2 samples",
+            "Sensor range ±0.5 mm",
+        ] {
+            assert!(facts.contains(fact), "{fact}: {facts}");
+        }
+        for word in [
+            "Race",
+            "Out of round",
+            "Rolling",
+            "Contact damping",
+            "Delay of the sensor",
+        ] {
+            assert!(!facts.contains(word), "{word}: {facts}");
+        }
+        let other = scene
+            .replacen(
+                "stiffness_n_m = 1e9",
+                "stiffness_n_mn = 1e13\ndamping_s_m = 0.5",
+                1,
+            )
+            .replacen("restitution = 0.7", "", 1)
+            .replacen(
+                "coefficient = 0.15",
+                "coefficient = 0.15\nrolling_coefficient = 0.02",
+                1,
+            )
+            .replacen("[sensor]", "[sensor]\ndelay_samples = 1", 1)
+            + "\n[race]\ninertia_kg_m2 = 1e-3\ndrag_n_m_s = 1e-4\nstart_frequency_hz = 2.0\n";
+        let (facts, _) = said(&other);
+        for fact in [
+            "Contact Hunt and Crossley, 1e13 N/m^1.5",
+            "Contact damping 0.5 s/m",
+            "Rolling friction 0.02",
+            "Race 0.001 kg m², drag 1e\u{2212}4 N m s, 2 Hz at the start",
+            "Delay of the sensor 1 sample",
+            "Step of the converter 0.1 µm",
+        ] {
+            assert!(facts.contains(fact), "{fact}: {facts}");
+        }
+        assert!(!facts.contains("Restitution") && !facts.contains("Contact stiffness"));
+        let bore = "[retainer]\nellipticity = 0.05\nlong_axis_deg = 30.0\n";
+        let (facts, _) = said(&scene.replacen("[retainer]", bore, 1));
+        let fact = "Out of round by 0.05 of the clearance, longer at 30°";
+        assert!(facts.contains(fact), "{facts}");
     }
 
     #[test]

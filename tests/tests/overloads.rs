@@ -67,6 +67,20 @@ fn promises_of_a_quick_run() {
         let holds = measured.is_some_and(|m| if at_least { m >= bound } else { m <= bound });
         assert_eq!(holds, p["holds"].as_bool().unwrap(), "{p}");
     }
+    // Every key is in the page that explains them; results have those of a verdict.
+    let pages = ["overloads-explained", "results"].map(|page| {
+        let path = system_tests::root().join(format!("docs/src/host/{page}.md"));
+        std::fs::read_to_string(path).unwrap()
+    });
+    for (of, list) in root.as_object().unwrap() {
+        let rows = list.as_array().unwrap();
+        for key in rows.iter().flat_map(|row| row.as_object().unwrap().keys()) {
+            let name = format!("`{key}`");
+            let known = pages[0].contains(&name) || (of == "results" && pages[1].contains(&name));
+            assert!(known, "{of}[].{key}");
+        }
+        assert!(pages[0].contains(&format!("`{of}[]`")), "{of}");
+    }
     let results = root["results"].as_array().unwrap();
     for row in results {
         for key in [

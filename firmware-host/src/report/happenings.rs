@@ -26,6 +26,9 @@ fn push_table(page: &mut String, run: &PolicyRun) {
              <th scope=\"col\">Bound by</th><th scope=\"col\">Events</th></tr></thead>\n<tbody>\n"
         ),
     );
+    if happenings.all.is_empty() {
+        page.push_str("<tr><td colspan=\"5\">nothing</td></tr>\n");
+    }
     for happening in happenings.all.iter().take(MOST_ROWS) {
         push_row(page, happening);
     }

@@ -227,6 +227,7 @@ fn what_the_supervisor_said_is_in_trace_record_verdict_and_report() {
     assert_eq!(supervision["coast_down"], false);
     let report = fs::read_to_string(out.join("report.html")).unwrap();
     assert!(report.contains("What happened: supervisor"));
+    assert!(!report.contains(">nothing<"));
     for event in ["ENGAGED", "HANDOVER", "LEVITATED", "RECORD_FROZEN"] {
         let (told, said) = (report.matches(event).count(), with(event));
         assert!(said > 0 && told == said, "{event}: {told} of {said}");
@@ -313,4 +314,20 @@ fn traces_of_an_earlier_run_go() {
             "verdict.json"
         ]
     );
+}
+
+/// A supervisor that had nothing to do has a table that says so.
+#[test]
+fn a_table_of_nothing_says_nothing() {
+    let folder = TempDir::new().unwrap();
+    let scene = short_scene(folder.path(), |t| {
+        let calm = t.split("[[disturbance]]").next().unwrap();
+        calm.to_owned()
+    });
+    let out = folder.path().join("out");
+    let result = run_scene(&scene, &out, &[]);
+    assert!(result.status.success());
+    let report = fs::read_to_string(out.join("report.html")).unwrap();
+    let (_, table) = report.split_once("What happened: supervisor").unwrap();
+    assert!(table.contains("<td colspan=\"5\">nothing</td>"));
 }
