@@ -78,13 +78,13 @@ pub(crate) struct Peaks {
     pub(crate) penetration_m: f64,
     /// Without its sign.
     pub(crate) sliding_n: f64,
-    /// At both ends.
-    pub(crate) whirl_m_s: [f64; 2],
+    /// v_w against the spin.
+    pub(crate) backward_m_s: f64,
 }
 
 impl Peaks {
     /// From what is known at both ends of a step.
-    pub(crate) fn between([start, end]: &[Touch; 2], step_s: f64) -> Self {
+    pub(crate) fn between([start, end]: &[Touch; 2], step_s: f64, backward: f64) -> Self {
         let normal_n = maximum_over_step(
             (start.normal_n, start.normal_rate_n_s),
             (end.normal_n, end.normal_rate_n_s),
@@ -108,20 +108,28 @@ impl Peaks {
                 step_s,
             ),
             sliding_n: share(start).max(share(end)) * normal_n,
-            whirl_m_s: [start.whirl_speed_m_s, end.whirl_speed_m_s],
+            backward_m_s: maximum_over_step(
+                (
+                    backward * start.whirl_speed_m_s,
+                    backward * start.whirl_acceleration,
+                ),
+                (
+                    backward * end.whirl_speed_m_s,
+                    backward * end.whirl_acceleration,
+                ),
+                step_s,
+            ),
         }
     }
 }
 
 impl Meters {
-    /// Takes a step of contact in: its largest values, its length, how far the contact point turned,
-    /// the sense of backward whirl.
+    /// Takes a step of contact in: its largest values, its length, how far the contact point turned.
     pub(crate) fn contact_step(
         &mut self,
         peaks: &Peaks,
         step_s: f64,
         turn_rad: f64,
-        backward: f64,
         rotor: &RotorParams,
     ) {
         self.contact_time_s += step_s;
@@ -130,9 +138,7 @@ impl Meters {
         self.peak_penetration_m = self.peak_penetration_m.max(peaks.penetration_m);
         let torque = peaks.sliding_n * rotor.contact_radius_m;
         self.peak_friction_torque_n_m = self.peak_friction_torque_n_m.max(torque);
-        for speed in peaks.whirl_m_s {
-            self.peak_backward_speed_m_s = self.peak_backward_speed_m_s.max(backward * speed);
-        }
+        self.peak_backward_speed_m_s = self.peak_backward_speed_m_s.max(peaks.backward_m_s);
     }
 }
 

@@ -87,6 +87,8 @@ pub(crate) struct Task<'a> {
     pub(crate) mode: (Slide, Whirl),
     /// Guard that is not to be asked.
     pub(crate) muted: Muted,
+    /// Sign of v_w in backward whirl.
+    pub(crate) backward: f64,
 }
 
 /// Result of one accepted step.
@@ -249,7 +251,7 @@ impl<P> ContactStepper<P> {
             step_s: h,
             y: y_end,
             flows,
-            peaks: Peaks::between(&[first.touch, last_touch], h),
+            peaks: Peaks::between(&[first.touch, last_touch], h, task.backward),
             end_normal: (normal, last_touch.guard_rate),
             turn: turn_rad(
                 (a.normal, a.whirl_speed_m_s / a.distance_m),

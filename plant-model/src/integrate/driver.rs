@@ -239,6 +239,7 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
             inputs: &self.inputs,
             mode: pair,
             muted,
+            backward: self.backward,
         };
         let books = (&mut self.scales, &mut self.work);
         let outcome = match (self.options.method, &mut self.series) {
@@ -250,13 +251,7 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
         };
         self.flows.add_scaled(1.0, &outcome.flows);
         let rotor = &self.system.rotor;
-        self.meters.contact_step(
-            &outcome.peaks,
-            outcome.step_s,
-            outcome.turn,
-            self.backward,
-            rotor,
-        );
+        (self.meters).contact_step(&outcome.peaks, outcome.step_s, outcome.turn, rotor);
         let stood_still = outcome.t_s == self.t_s;
         self.y = outcome.y;
         self.t_s = outcome.t_s;

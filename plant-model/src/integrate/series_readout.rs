@@ -197,15 +197,18 @@ impl<S: Stator> ContactSeries<S> {
             theta,
             force: self.force.with_slope(theta, order),
             distance: self.distance.with_slope(theta, order),
-            whirl_speed: self.whirl_speed.at(theta, order),
+            whirl_speed: self.whirl_speed.with_slope(theta, order),
         }
     }
 
-    /// Largest values up to the end.
-    pub(crate) fn peaks(&self, clearance_m: f64, end: &End) -> Peaks {
+    /// Largest values up to the end, v_w counted in the sense of backward whirl.
+    pub(crate) fn peaks(&self, clearance_m: f64, backward: f64, end: &End) -> Peaks {
         let (theta, order) = (end.theta, self.order);
-        let (force_at, normal_n) = highest(&self.force, (theta, end.force), order);
-        let (_, distance_m) = highest(&self.distance, (theta, end.distance), order);
+        let up_to = |series, at_end| highest((series, 1.0), (theta, at_end), order);
+        let (force_at, normal_n) = up_to(&self.force, end.force);
+        let (_, distance_m) = up_to(&self.distance, end.distance);
+        let whirl = (&self.whirl_speed, backward);
+        let (_, backward_m_s) = highest(whirl, (theta, end.whirl_speed), order);
         let at = |theta: f64| self.sliding.at(theta, order).abs();
         let at_end = at(theta);
         let at_top = if force_at == theta {
@@ -217,7 +220,7 @@ impl<S: Stator> ContactSeries<S> {
             normal_n,
             penetration_m: distance_m - clearance_m,
             sliding_n: self.sliding.0[0].abs().max(at_end).max(at_top),
-            whirl_m_s: [self.whirl_speed.0[0], end.whirl_speed],
+            backward_m_s,
         }
     }
 
@@ -229,7 +232,7 @@ impl<S: Stator> ContactSeries<S> {
 
     /// Angle by which the contact normal turns up to the end \[rad\].
     pub(crate) fn turn(&self, end: &End) -> f64 {
-        let rate = end.whirl_speed / end.distance.0;
+        let rate = end.whirl_speed.0 / end.distance.0;
         let start = self.whirl_speed.0[0] / self.distance.0[0];
         let normal = self.gap.at(end.theta, self.order);
         turn_rad(
@@ -245,19 +248,22 @@ pub(crate) struct End {
     theta: f64,
     force: (f64, f64),
     distance: (f64, f64),
-    whirl_speed: f64,
+    whirl_speed: (f64, f64),
 }
 
-/// Highest value over [0, θ], and where. At loose tolerances a step may be a little longer than half a
-/// vibration, its halves are not.
-fn highest(series: &Scalar, (theta, end): (f64, (f64, f64)), order: usize) -> (f64, f64) {
-    let middle = series.with_slope(0.5 * theta, order);
-    let start = (series.0[0], series.0[1]);
-    let point = |at: f64, (value, slope): (f64, f64)| (at, value, slope);
-    let middle = point(0.5 * theta, middle);
+/// Highest value of a series times a sign over [0, θ], and where. At loose tolerances a step may be a little
+/// longer than half a vibration, its halves are not.
+fn highest(
+    (series, sign): (&Scalar, f64),
+    (theta, end): (f64, (f64, f64)),
+    order: usize,
+) -> (f64, f64) {
+    let point = |at: f64, (value, slope): (f64, f64)| (at, sign * value, sign * slope);
+    let middle = point(0.5 * theta, series.with_slope(0.5 * theta, order));
+    let start = point(0.0, (series.0[0], series.0[1]));
     let (a, b) = (
-        top_between(series, point(0.0, start), middle, order),
-        top_between(series, middle, point(theta, end), order),
+        top_between((series, sign), start, middle, order),
+        top_between((series, sign), middle, point(theta, end), order),
     );
     if a.1 > b.1 { a } else { b }
 }
@@ -265,7 +271,7 @@ fn highest(series: &Scalar, (theta, end): (f64, (f64, f64)), order: usize) -> (f
 /// Highest value between two points (θ, value, slope), and where: what rises at the first and falls at
 /// the second has one top in between.
 fn top_between(
-    series: &Scalar,
+    (series, sign): (&Scalar, f64),
     (from, start, start_slope): (f64, f64, f64),
     (to, end, end_slope): (f64, f64, f64),
     order: usize,
@@ -278,6 +284,7 @@ fn top_between(
         for _ in 0..6 {
             let at = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
             let (value, slope) = series.with_slope(at, order);
+            let (value, slope) = (sign * value, sign * slope);
             if value > top.1 {
                 top = (at, value);
             }

@@ -1,0 +1,119 @@
+//! Largest values of a run, which takes few steps, against those of the same run cut into samples of half a microsecond.
+
+use plant_model::contact::damping_for_restitution;
+use plant_model::params::*;
+use plant_model::{Inputs, Meters, Method, Options, V2, build};
+use system_tests::plants::onset_rig;
+
+const STIFFNESS_N_M: f64 = 1e8;
+const CLEARANCE_M: f64 = 2e-4;
+const LOAD_N: V2 = V2::new(0.0, -1000.0);
+const END_S: f64 = 8e-3;
+
+fn linear(restitution: f64) -> ContactLaw {
+    LinearContact {
+        stiffness_n_m: STIFFNESS_N_M,
+        damping_n_s_m: damping_for_restitution(restitution, STIFFNESS_N_M, 10.0).unwrap(),
+    }
+    .into()
+}
+
+fn laws() -> [(&'static str, ContactLaw); 3] {
+    let hertz = HuntCrossley {
+        stiffness_n_mn: 1e10,
+        exponent: 1.5,
+        damping_s_m: 1.0,
+    };
+    [
+        ("linear", linear(0.7)),
+        ("overdamped", linear(1e-3)),
+        ("Hertz", hertz.into()),
+    ]
+}
+
+/// A free mass that a load presses on the wall, let go 53 degrees beside the bottom: it swings like a pendulum, and bounces on
+/// the contact as it does.
+fn swinging(law: ContactLaw, friction: f64, inertia_kg_m2: Option<f64>) -> (PlantParams, Start) {
+    let mut params = onset_rig();
+    params.rotor.stiffness_n_m = 0.0;
+    params.contact.law = law;
+    params.friction.sliding = SlidingFriction::Constant {
+        coefficient: friction,
+    };
+    if let Some(inertia_kg_m2) = inertia_kg_m2 {
+        params.spin = SpinParams::Free {
+            inertia_kg_m2,
+            drive_torque_n_m: 0.0,
+        };
+    }
+    let start = Start {
+        position_m: V2::new(-0.8, -0.6) * 1.03 * CLEARANCE_M,
+        velocity_m_s: V2::zeros(),
+        spin_rad_s: 0.0,
+        spin_phase_rad: 0.0,
+    };
+    (params, start)
+}
+
+fn meters(
+    (params, start): &(PlantParams, Start),
+    (method, rtol): (Method, f64),
+    samples: u32,
+) -> Meters {
+    let options = Options {
+        method,
+        rtol,
+        ..Options::default()
+    };
+    let mut plant = build(params, start, options).unwrap();
+    let inputs = Inputs {
+        external_n: LOAD_N,
+        ..Inputs::default()
+    };
+    for i in 1..=samples {
+        let t = END_S * f64::from(i) / f64::from(samples);
+        plant.advance(t, &inputs, &mut |_| {}).unwrap();
+    }
+    plant.meters()
+}
+
+/// Error of a reading at a tolerance as a share of it, by the series where there is one, the explicit pair and the stiff
+/// method.
+fn errors(
+    case: &(PlantParams, Start),
+    rtol: f64,
+    reading: fn(&Meters) -> f64,
+) -> (Option<f64>, [f64; 2]) {
+    let series = case.0.has_series();
+    let best = match series {
+        true => Method::Series,
+        false => Method::Explicit,
+    };
+    let exact = reading(&meters(case, (best, 1e-13), 16_000));
+    let error = |method| reading(&meters(case, (method, rtol), 1)) / exact - 1.0;
+    (
+        series.then(|| error(Method::Series)),
+        [Method::Explicit, Method::Stiff].map(error),
+    )
+}
+
+/// Fastest at the bottom, where no step ends: the series to its tolerance, the pairs by the cubic through a step's ends.
+#[test]
+fn the_fastest_whirl_is_found_within_the_step() {
+    for (name, law) in laws() {
+        for case in [swinging(law, 0.0, None), swinging(law, 0.3, Some(0.02))] {
+            for (rtol, most) in [(1e-4, 1e-3), (1e-6, 1e-4), (1e-9, 2e-6), (1e-12, 2e-8)] {
+                let (series, pairs) = errors(&case, rtol, |m| m.peak_backward_speed_m_s);
+                if let Some(error) = series {
+                    assert!(
+                        error.abs() < 2.0 * rtol + 1e-12,
+                        "{name}, {rtol:e}: {error:e}"
+                    );
+                }
+                for error in pairs {
+                    assert!(error.abs() < most, "{name}, {rtol:e}: {error:e}");
+                }
+            }
+        }
+    }
+}
