@@ -234,7 +234,10 @@ fn limits(n: &Nominal) -> Limits {
         whirl_limit_text: match arrest {
             Some(_) => "the cap arrests whirl below it; above it friction wins",
             None if !drives => "none: friction drives nothing",
-            None => "none: friction under the negative stiffness is more than the cap at any speed",
+            None if n.stiffness_n_m < 0.0 => {
+                "none: the negative stiffness presses the rotor onto the wall, and from rest friction is more than the cap"
+            }
+            None => "none: damping is more than friction at any speed",
         },
         whirl_limit_hz: arrest.map(|a| a.limit_m_s / a.radius_m / std::f64::consts::TAU),
         arrest_time_s: time_s,

@@ -93,6 +93,14 @@ impl ContactLaw {
         }
     }
 
+    /// Depth A at which the spring bears a force \[N\] ≥ 0 \[m\].
+    pub(crate) fn depth_m(&self, force_n: f64) -> f64 {
+        match self {
+            Self::Linear(law) => force_n / law.stiffness_n_m,
+            Self::HuntCrossley(law) => (force_n / law.stiffness_n_mn).powf(1.0 / law.exponent),
+        }
+    }
+
     /// ∂f_n/∂B at a depth \[N s/m\].
     pub(crate) fn by_rate_n_s_m(&self, depth_m: f64) -> f64 {
         match self {

@@ -1,6 +1,6 @@
 //! What a force of limited size can still do against established backward whirl.
 
-use crate::params::PlantParams;
+use crate::params::{ContactLaw, PlantParams};
 use crate::quadrature::EIGHT;
 
 /// Sliding whirl on a circle under a force of constant size that brakes best.
@@ -13,11 +13,11 @@ use crate::quadrature::EIGHT;
 /// m·v̇ = μ·(m·v²/r − k·r) − d·v − F·√(1 + μ²)
 /// ```
 ///
-/// which is zero at v_lim. Below it the whirl is arrested, above it friction wins.
+/// which is zero at v_lim. Below it the whirl is arrested, above it friction wins. Along the wall the balance there is
+/// μN = d·v + F/√(1 + μ²), and the wall yields under N: v_lim, N and r come together.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Arrest {
-    /// Radius r of the circle at v_lim \[m\]: the clearance and the penetration N/k_c there, with
-    /// N = F/(μ·√(1 + μ²)) by the balance along the wall.
+    /// Radius r of the circle at v_lim \[m\]: the clearance and the penetration under N there.
     pub radius_m: f64,
     /// v_lim \[m/s\].
     pub limit_m_s: f64,
@@ -31,8 +31,9 @@ pub struct Arrest {
 }
 
 impl Arrest {
-    /// For a force F \[N\]; `None` where friction drives nothing, or where the shaft is so stiff against
-    /// the wall that no speed is out of reach.
+    /// For a force F \[N\]. `None` without a speed that parts what is arrested from what is not: friction drives
+    /// nothing; or a negative stiffness presses the rotor onto the wall so hard that friction wins from rest; or the
+    /// damping is so strong against the wall's stiffness, d² ≥ μ²·m·k_c or so, that it wins at any speed.
     pub fn new(params: &PlantParams, force_n: f64) -> Option<Self> {
         let friction = &params.friction;
         let mu = friction.sliding.coefficient(0.0) - friction.rolling_coefficient;
@@ -40,24 +41,27 @@ impl Arrest {
             return None;
         }
         let tilt = (1.0 + mu * mu).sqrt();
-        let normal_n = force_n / (mu * tilt);
+        let inward_n = force_n * mu / tilt;
         let circle = Circle::of(params);
-        let radius_m = circle.clearance_m + normal_n / circle.contact_n_m;
-        let (m, d, k) = (
-            circle.mass_kg,
-            params.rotor.damping_n_s_m,
-            circle.stiffness_n_m,
-        );
-        let half = radius_m / (2.0 * mu * m);
-        let square = d * d + 4.0 * mu * m * (mu * k * radius_m + force_n * tilt) / radius_m;
-        (square > 0.0).then(|| Self {
-            radius_m,
-            limit_m_s: half * (d + square.sqrt()),
+        let d = params.rotor.damping_n_s_m;
+        let radius_at = |v: f64| {
+            let normal_n = (d * v + force_n / tilt) / mu;
+            (circle.clearance_m + circle.law.depth_m(normal_n), normal_n)
+        };
+        // What holds the rotor on the circle against what it takes: friction wins where the second is more.
+        let friction_wins = |v: f64| {
+            let (r, normal_n) = radius_at(v);
+            circle.mass_kg * v * v > r * (circle.stiffness_n_m * r + inward_n + normal_n)
+        };
+        let limit_m_s = border(friction_wins)?;
+        Some(Self {
+            radius_m: radius_at(limit_m_s).0,
+            limit_m_s,
             circle,
             friction: mu,
             damping_n_s_m: d,
             braking_n: force_n * tilt,
-            inward_n: force_n * mu / tilt,
+            inward_n,
         })
     }
 
@@ -70,12 +74,17 @@ impl Arrest {
     /// L̇ = r·(μ·(m·v²/r − k·r) − d·v − F·√(1 + μ²))
     /// ```
     ///
-    /// On a hard wall without shaft and damping it is c/(μ·v_lim)·(atanh(v/v_lim) − atanh(share·v/v_lim)).
+    /// On a hard wall without shaft and damping it is c/(μ·v_lim)·(atanh(v/v_lim) − atanh(share·v/v_lim)). The
+    /// inward part draws the circle together at the same momentum, so the speed is at once a little higher; infinite
+    /// where that is v_lim or more.
     pub fn time_s(&self, from_m_s: f64, share: f64) -> f64 {
         const PANELS: u32 = 64;
         let m = self.circle.mass_kg;
         let start = from_m_s * self.circle.radius_m(from_m_s, 0.0);
         let [first, last] = [start, share * start].map(|l| self.speed_m_s(l));
+        if first >= self.limit_m_s {
+            return f64::INFINITY;
+        }
         let panel = (first - last) / f64::from(PANELS);
         let per_speed = |v: f64| {
             let (r, slope) = self.circle.radius_and_slope(v, self.inward_n);
@@ -103,12 +112,38 @@ impl Arrest {
     }
 }
 
+/// Speed up to which `wins` is false; `None` where it is true at rest or nowhere \[m/s\].
+fn border(wins: impl Fn(f64) -> bool) -> Option<f64> {
+    if wins(f64::MIN_POSITIVE.sqrt()) {
+        return None;
+    }
+    let mut high = 1.0;
+    while !wins(high) {
+        high *= 2.0;
+        if high > 1e9 {
+            return None;
+        }
+    }
+    let mut low = 0.0;
+    loop {
+        let middle = 0.5 * (low + high);
+        if !(middle > low && middle < high) {
+            return Some(high);
+        }
+        if wins(middle) {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+}
+
 /// What balances on a circle of sliding contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Circle {
     mass_kg: f64,
     stiffness_n_m: f64,
-    contact_n_m: f64,
+    law: ContactLaw,
     clearance_m: f64,
 }
 
@@ -117,24 +152,59 @@ impl Circle {
         Self {
             mass_kg: params.rotor.mass_kg,
             stiffness_n_m: params.rotor.stiffness_n_m,
-            contact_n_m: params.contact.stiffness_n_m(),
+            law: params.contact.law,
             clearance_m: params.contact.clearance_m,
         }
     }
 
-    /// (k + k_c)·r² − (k_c·c − F_n)·r − m·v² = 0, F_n inward; the clearance where the wall would have to pull. And
-    /// dr/dv.
+    /// f(A) + k·r + F_n = m·v²/r, r = c + A, F_n inward; the clearance where the wall would have to pull. And
+    /// dr/dv. With the linear law (k + k_c)·r² − (k_c·c − F_n)·r − m·v² = 0.
     fn radius_and_slope(&self, speed_m_s: f64, inward_n: f64) -> (f64, f64) {
-        let stiffness = self.stiffness_n_m + self.contact_n_m;
-        let linear = self.contact_n_m * self.clearance_m - inward_n;
         let energy = self.mass_kg * speed_m_s * speed_m_s;
-        let root = (linear * linear + 4.0 * stiffness * energy).sqrt();
-        let radius = (linear + root) / (2.0 * stiffness);
-        if radius > self.clearance_m {
-            (radius, 2.0 * self.mass_kg * speed_m_s / root)
-        } else {
-            (self.clearance_m, 0.0)
+        let law = match &self.law {
+            ContactLaw::Linear(law) => {
+                let stiffness = self.stiffness_n_m + law.stiffness_n_m;
+                let linear = law.stiffness_n_m * self.clearance_m - inward_n;
+                let root = (linear * linear + 4.0 * stiffness * energy).sqrt();
+                let radius = (linear + root) / (2.0 * stiffness);
+                return if radius > self.clearance_m {
+                    (radius, 2.0 * self.mass_kg * speed_m_s / root)
+                } else {
+                    (self.clearance_m, 0.0)
+                };
+            }
+            ContactLaw::HuntCrossley(law) => law,
+        };
+        // What presses outwards less what the wall bears.
+        let excess = |depth_m: f64| {
+            let r = self.clearance_m + depth_m;
+            energy / r - self.stiffness_n_m * r - inward_n - law.spring_n(depth_m)
+        };
+        if excess(0.0) <= 0.0 {
+            return (self.clearance_m, 0.0);
         }
+        let mut high = self.clearance_m;
+        while excess(high) > 0.0 && high < 1e6 * self.clearance_m {
+            high *= 2.0;
+        }
+        let mut low = 0.0;
+        loop {
+            let middle = 0.5 * (low + high);
+            if !(middle > low && middle < high) {
+                break;
+            }
+            if excess(middle) > 0.0 {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        let radius = self.clearance_m + high;
+        let stiffness = law.stiffness_n_m(high) + self.stiffness_n_m + energy / (radius * radius);
+        (
+            radius,
+            2.0 * self.mass_kg * speed_m_s / (radius * stiffness),
+        )
     }
 
     fn radius_m(&self, speed_m_s: f64, inward_n: f64) -> f64 {
@@ -143,99 +213,11 @@ impl Circle {
 }
 
 /// Radius of the circle on which the rotor slides with a tangential speed \[m/s\], its penetration in
-/// balance with the centrifugal force, linear contact: (k + k_c)·r² − k_c·c·r − m·v² = 0; the clearance where the
-/// shaft is so stiff that the wall would have to pull \[m\].
+/// balance with the centrifugal force, f(A) + k·r = m·v²/r; the clearance where the shaft is so stiff that the wall would
+/// have to pull \[m\].
 pub fn circle_radius_m(params: &PlantParams, speed_m_s: f64) -> f64 {
     Circle::of(params).radius_m(speed_m_s, 0.0)
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::params::*;
-
-    fn rotor(contact_stiffness_n_m: f64) -> PlantParams {
-        PlantParams {
-            rotor: RotorParams {
-                mass_kg: 10.0,
-                stiffness_n_m: 0.0,
-                damping_n_s_m: 0.0,
-                eccentricity_m: 0.0,
-                contact_radius_m: 0.05,
-            },
-            spin: SpinParams::Held,
-            stator: StatorParams::Rigid,
-            contact: ContactParams {
-                clearance_m: 2e-4,
-                law: LinearContact {
-                    stiffness_n_m: contact_stiffness_n_m,
-                    damping_n_s_m: 0.0,
-                }
-                .into(),
-            },
-            friction: FrictionParams {
-                sliding: SlidingFriction::Constant { coefficient: 0.15 },
-                rolling_coefficient: 0.0,
-            },
-            magnet: None,
-            race: None,
-        }
-    }
-
-    /// √(F·√(1 + μ²)·c/(μm)) on a hard wall, and more on a soft one.
-    #[test]
-    fn limits_by_hand() {
-        let hard = Arrest::new(&rotor(1e18), 1000.0).unwrap();
-        let by_hand = (1000.0 * 1.0225_f64.sqrt() * 2e-4 / 1.5).sqrt();
-        assert!((hard.limit_m_s / by_hand - 1.0).abs() < 1e-9);
-        let soft = Arrest::new(&rotor(1e8), 1000.0).unwrap();
-        assert!((soft.limit_m_s - 0.4234).abs() < 1e-4, "{}", soft.limit_m_s);
-        let time = hard.time_s(0.5 * by_hand, 0.0);
-        assert!((time / (2e-4 / (0.15 * by_hand) * 0.5_f64.atanh()) - 1.0).abs() < 1e-9);
-        let part = hard.time_s(0.5 * by_hand, 0.4);
-        let logs = 0.5_f64.atanh() - 0.2_f64.atanh();
-        assert!((part / (2e-4 / (0.15 * by_hand) * logs) - 1.0).abs() < 1e-9);
-    }
-
-    /// The time solves the equation of motion it comes from, damping and shaft included.
-    #[test]
-    fn time_is_the_integral() {
-        let mut params = rotor(2e7);
-        (params.rotor.damping_n_s_m, params.rotor.stiffness_n_m) = (300.0, -2e5);
-        let (force, mu, m) = (1000.0, 0.15, 10.0_f64);
-        let arrest = Arrest::new(&params, force).unwrap();
-        let tilt = (1.0_f64 + mu * mu).sqrt();
-        // Radius and speed on the circle by fixed-point iteration on r = c + N/k_c, from L.
-        let circle = |momentum: f64, inward: f64| {
-            let mut r = 2e-4;
-            for _ in 0..200 {
-                let v = momentum / (m * r);
-                r = 0.5 * r + 0.5 * (2e-4 + (m * v * v / r + 2e5 * r - inward) / 2e7);
-            }
-            (r, momentum / (m * r))
-        };
-        let from = 0.9 * arrest.limit_m_s;
-        let start = m * from * circle_radius_m(&params, from);
-        let (n, share) = (20_000, 0.3);
-        let step = (1.0 - share) * start / f64::from(n);
-        let sum: f64 = (0..n)
-            .map(|i| {
-                let momentum = share * start + (f64::from(i) + 0.5) * step;
-                let (r, v) = circle(momentum, force * mu / tilt);
-                let drive = mu * (m * v * v / r + 2e5 * r);
-                step / (r * (force * tilt + 300.0 * v - drive))
-            })
-            .sum();
-        let time = arrest.time_s(from, share);
-        assert!((time / sum - 1.0).abs() < 1e-6, "{time} {sum}");
-    }
-
-    #[test]
-    fn circles_balance() {
-        let mut params = rotor(1e8);
-        params.rotor.stiffness_n_m = -2e5;
-        let r = circle_radius_m(&params, 0.3);
-        let normal = 1e8 * (r - 2e-4);
-        assert!((normal / (10.0 * 0.09 / r + 2e5 * r) - 1.0).abs() < 1e-9);
-    }
-}
+mod tests;
