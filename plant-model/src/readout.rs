@@ -83,42 +83,41 @@ pub(crate) struct Peaks {
 }
 
 impl Peaks {
-    /// From what is known at both ends of a step.
-    pub(crate) fn between([start, end]: &[Touch; 2], step_s: f64, backward: f64) -> Self {
-        let normal_n = maximum_over_step(
+    /// From what is known at both ends of a step, and the sliding force inside it for a place θ and the normal force
+    /// there.
+    pub(crate) fn between(
+        [start, end]: &[Touch; 2],
+        step_s: f64,
+        backward: f64,
+        sliding_n: impl FnOnce(f64, f64) -> f64,
+    ) -> Self {
+        let (top, normal_n) = maximum_over_step(
             (start.normal_n, start.normal_rate_n_s),
             (end.normal_n, end.normal_rate_n_s),
             step_s,
         );
         // Where slip ends inside the step the friction at its end belongs to no mode: no more than
-        // the cone holds. Between the ends it follows the normal force.
-        let share = |touch: &Touch| {
-            let share = touch.sliding_n.abs().min(touch.cone_n) / touch.normal_n;
-            if touch.normal_n > 0.0 && share.is_finite() {
-                share
-            } else {
-                0.0
-            }
+        // the cone holds.
+        let at = |touch: &Touch| touch.sliding_n.abs().min(touch.cone_n.max(0.0));
+        let mut sliding = at(start).max(at(end));
+        if top > 0.0 && top < 1.0 {
+            sliding = sliding.max(sliding_n(top, normal_n).abs());
+        }
+        let (_, penetration_m) = maximum_over_step(
+            (start.penetration_m, start.normal_speed_m_s),
+            (end.penetration_m, end.normal_speed_m_s),
+            step_s,
+        );
+        let whirl = |touch: &Touch| {
+            let (speed, rate) = (touch.whirl_speed_m_s, touch.whirl_acceleration);
+            (backward * speed, backward * rate)
         };
+        let (_, backward_m_s) = maximum_over_step(whirl(start), whirl(end), step_s);
         Self {
             normal_n,
-            penetration_m: maximum_over_step(
-                (start.penetration_m, start.normal_speed_m_s),
-                (end.penetration_m, end.normal_speed_m_s),
-                step_s,
-            ),
-            sliding_n: share(start).max(share(end)) * normal_n,
-            backward_m_s: maximum_over_step(
-                (
-                    backward * start.whirl_speed_m_s,
-                    backward * start.whirl_acceleration,
-                ),
-                (
-                    backward * end.whirl_speed_m_s,
-                    backward * end.whirl_acceleration,
-                ),
-                step_s,
-            ),
+            penetration_m,
+            sliding_n: sliding,
+            backward_m_s,
         }
     }
 }
@@ -142,18 +141,14 @@ impl Meters {
     }
 }
 
-/// Maximum of a smooth quantity over a step from its value and rate at both ends: where it rises and
-/// then falls, the top of the cubic through them.
-fn maximum_over_step((f0, rate0): (f64, f64), (f1, rate1): (f64, f64), step_s: f64) -> f64 {
-    if rate0 > 0.0 && rate1 < 0.0 {
-        cubic_maximum(f0, f1, rate0 * step_s, rate1 * step_s)
-    } else {
-        f0.max(f1)
+/// Maximum of a smooth quantity over a step from its value and rate at both ends, and where, as a share of the step:
+/// where it rises and then falls, the top of the cubic through them.
+fn maximum_over_step((f0, rate0): (f64, f64), (f1, rate1): (f64, f64), step_s: f64) -> (f64, f64) {
+    let ends = if f0 > f1 { (0.0, f0) } else { (1.0, f1) };
+    if !(rate0 > 0.0 && rate1 < 0.0) {
+        return ends;
     }
-}
-
-/// Maximum over [0, 1] of the cubic with the given end values and slopes (rising, then falling).
-fn cubic_maximum(f0: f64, f1: f64, d0: f64, d1: f64) -> f64 {
+    let (d0, d1) = (rate0 * step_s, rate1 * step_s);
     let a = 2.0 * (f0 - f1) + d0 + d1;
     let b = 3.0 * (f1 - f0) - 2.0 * d0 - d1;
     // 3a·x² + 2b·x + d0 = 0; the root with falling slope, in the form that does not cancel.
@@ -164,9 +159,9 @@ fn cubic_maximum(f0: f64, f1: f64, d0: f64, d1: f64) -> f64 {
         -(b + root) / (3.0 * a)
     };
     if x > 0.0 && x < 1.0 {
-        f0 + x * (d0 + x * (b + x * a))
+        (x, f0 + x * (d0 + x * (b + x * a)))
     } else {
-        f0.max(f1)
+        ends
     }
 }
 

@@ -117,3 +117,33 @@ fn the_fastest_whirl_is_found_within_the_step() {
         }
     }
 }
+
+/// Rolling needs most friction at the turning points, where the wall presses least: J/(J + m·R²) of the load across. Not
+/// that share of the normal force at the bottom, where none is needed.
+#[test]
+fn the_largest_friction_torque_is_one_that_occurs() {
+    for (name, law) in laws() {
+        for (friction, inertia_kg_m2) in [(0.3, 0.02), (0.3, 0.01), (0.15, 0.04)] {
+            let case = swinging(law, friction, Some(inertia_kg_m2));
+            for (rtol, most) in [(1e-4, 2e-2), (1e-6, 5e-4), (1e-9, 2e-5), (1e-12, 5e-8)] {
+                let (series, pairs) = errors(&case, rtol, |m| m.peak_friction_torque_n_m);
+                if let Some(error) = series {
+                    assert!(
+                        error.abs() < 2.0 * rtol + 1e-12,
+                        "{name}, {rtol:e}: {error:e}"
+                    );
+                }
+                for error in pairs {
+                    assert!(error.abs() < most, "{name}, {rtol:e}: {error:e}");
+                }
+            }
+            // Friction that does not hold is none: no more than the cone at the largest force.
+            let all = meters(&case, (Method::Auto, 1e-9), 1);
+            let cone_n_m = friction * all.peak_contact_force_n * case.0.rotor.contact_radius_m;
+            assert!(
+                all.peak_friction_torque_n_m <= cone_n_m * (1.0 + 1e-9),
+                "{name}"
+            );
+        }
+    }
+}

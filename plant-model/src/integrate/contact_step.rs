@@ -11,6 +11,7 @@ use crate::energy::Flows;
 use crate::integrate::PlantError;
 use crate::magnet::Amplifier;
 use crate::mode::{Slide, Whirl};
+use crate::params::SlidingFriction;
 use crate::part::{Part, Weights};
 use crate::readout::{Peaks, Work};
 use crate::spin::Spin;
@@ -236,6 +237,10 @@ impl<P> ContactStepper<P> {
             }
             _ => (Flows::default(), first.touch, first.guards[NORMAL]),
         };
+        let peaks = {
+            let inside = |theta, normal_n| self.sliding_n((t_s, h), (theta, normal_n), &mut field);
+            Peaks::between(&[first.touch, last_touch], h, task.backward, inside)
+        };
         // Each column of a Jacobian is a share of one evaluation.
         let jacobians = u64::from(field.factorisations > 0);
         work.evaluations += field.evaluations + jacobians;
@@ -251,7 +256,7 @@ impl<P> ContactStepper<P> {
             step_s: h,
             y: y_end,
             flows,
-            peaks: Peaks::between(&[first.touch, last_touch], h, task.backward),
+            peaks,
             end_normal: (normal, last_touch.guard_rate),
             turn: turn_rad(
                 (a.normal, a.whirl_speed_m_s / a.distance_m),
@@ -260,6 +265,38 @@ impl<P> ContactStepper<P> {
             ),
             event,
         })
+    }
+
+    /// Sliding force at a place inside the last step at which the normal force is `normal_n` \[N\]. A slip follows the
+    /// normal force; what rolling needs the field says there, within the cone.
+    fn sliding_n<S: Stator, W: Spin, M: Amplifier>(
+        &mut self,
+        (t_s, step_s): (f64, f64),
+        (theta, normal_n): (f64, f64),
+        field: &mut ContactField<'_, S, W, M>,
+    ) -> f64
+    where
+        P: Pair<StateOf<S, W, M>, Evaluation<StateOf<S, W, M>>>,
+    {
+        let sliding = &field.system.friction.sliding;
+        let (slide, _) = field.mode;
+        if let (SlidingFriction::Constant { coefficient }, true) =
+            (sliding, slide != Slide::Rolling)
+        {
+            return coefficient * normal_n;
+        }
+        let dense = self.pair.dense(field);
+        let y = P::dense_at(&dense, theta);
+        match slide {
+            Slide::Rolling => {
+                let needed = field.at(t_s + theta * step_s, &y).touch.sliding_n.abs();
+                needed.min(sliding.coefficient(0.0) * normal_n)
+            }
+            _ => {
+                let along = slide.sign() * field.system.geometry(&y).sliding_speed_m_s;
+                sliding.coefficient(along.max(0.0)) * normal_n
+            }
+        }
     }
 
     /// First event inside the last step. `dips`: also those that are over before the next point of the scan.

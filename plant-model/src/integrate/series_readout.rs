@@ -202,24 +202,32 @@ impl<S: Stator> ContactSeries<S> {
     }
 
     /// Largest values up to the end, v_w counted in the sense of backward whirl.
-    pub(crate) fn peaks(&self, clearance_m: f64, backward: f64, end: &End) -> Peaks {
+    pub(crate) fn peaks<W: Spin, M: Amplifier>(
+        &self,
+        system: &System<S, W, M>,
+        backward: f64,
+        end: &End,
+    ) -> Peaks {
         let (theta, order) = (end.theta, self.order);
         let up_to = |series, at_end| highest((series, 1.0), (theta, at_end), order);
         let (force_at, normal_n) = up_to(&self.force, end.force);
         let (_, distance_m) = up_to(&self.distance, end.distance);
         let whirl = (&self.whirl_speed, backward);
         let (_, backward_m_s) = highest(whirl, (theta, end.whirl_speed), order);
-        let at = |theta: f64| self.sliding.at(theta, order).abs();
-        let at_end = at(theta);
+        // A command or load that jumps may ask for more than friction holds: that is no force of the mode.
+        let mu = system.friction.sliding.coefficient(0.0);
+        let within = |sliding: f64, force: f64| sliding.abs().min(mu * force.max(0.0));
+        let at_start = within(self.sliding.0[0], self.force.0[0]);
+        let at_end = within(self.sliding.at(theta, order), end.force.0);
         let at_top = if force_at == theta {
             at_end
         } else {
-            at(force_at)
+            within(self.sliding.at(force_at, order), normal_n)
         };
         Peaks {
             normal_n,
-            penetration_m: distance_m - clearance_m,
-            sliding_n: self.sliding.0[0].abs().max(at_end).max(at_top),
+            penetration_m: distance_m - system.contact.clearance_m,
+            sliding_n: at_start.max(at_end).max(at_top),
             backward_m_s,
         }
     }

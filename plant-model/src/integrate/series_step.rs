@@ -115,7 +115,7 @@ impl<S: Stator> SeriesStepper<S> {
             t_s: t_new,
             step_s: theta * reference,
             flows: self.series.flows(system, ends, task, theta),
-            peaks: (self.series).peaks(system.contact.clearance_m, task.backward, &readout),
+            peaks: self.series.peaks(system, task.backward, &readout),
             end_normal: self.series.normal(&readout),
             turn: self.series.turn(&readout),
             y: end,
