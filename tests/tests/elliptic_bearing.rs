@@ -1,5 +1,6 @@
 //! A retainer bearing out of round, against what can be written down of ellipses.
 
+use plant_model::analysis::black::SteadyWhirl;
 use plant_model::params::*;
 use plant_model::{BuildError, Inputs, Method, Mode, Options, Plant, Snapshot, V2, build};
 use std::f64::consts::TAU;
@@ -210,4 +211,28 @@ fn refuses_what_it_has_not() {
         start_spin_rad_s: 0.0,
     });
     assert_eq!(field(&raced), "race.inertia_kg_m2");
+}
+
+/// Circles of steady whirl are for a bore that is the same all round: none is named for an ellipse, as for rings whose axes
+/// differ, and none for a race, which turns along.
+#[test]
+fn steady_whirl_is_named_for_round_bores_only() {
+    let round = SteadyWhirl::of(&onset_rig()).unwrap();
+    assert_eq!(
+        SteadyWhirl::of(&elliptic(onset_rig(), 0.0, 0.4)),
+        Some(round)
+    );
+    for ellipticity in [1e-6, 0.05, 0.2] {
+        assert_eq!(
+            SteadyWhirl::of(&elliptic(onset_rig(), ellipticity, 0.4)),
+            None
+        );
+    }
+    let mut params = onset_rig();
+    params.race = Some(RaceParams {
+        inertia_kg_m2: 1e-3,
+        drag_n_m_s: 0.0,
+        start_spin_rad_s: 0.0,
+    });
+    assert_eq!(SteadyWhirl::of(&params), None);
 }

@@ -116,11 +116,17 @@ impl Circle {
 }
 
 impl SteadyWhirl {
-    /// Of a plant; `None` where a ring is not the same along x and y, or the contact is not linear.
-    /// Sliding friction is taken at rest.
+    /// Of a plant; `None` where ring or bore is not the same along x and y, where the contact is not linear, and with a
+    /// race: a whirl that rolls on it has no speed of its own, since the race turns along. Sliding friction is taken at
+    /// rest.
     pub fn of(params: &PlantParams) -> Option<Self> {
+        if params.race.is_some() {
+            return None;
+        }
         let rings = match &params.stator {
-            StatorParams::Rigid | StatorParams::RigidEllipse(_) => vec![],
+            StatorParams::Rigid => vec![],
+            StatorParams::RigidEllipse(bore) if bore.ellipticity == 0.0 => vec![],
+            StatorParams::RigidEllipse(_) => return None,
             StatorParams::OneMass(ring) => vec![Oscillator::of(ring)?],
             StatorParams::TwoMass { inner, outer } => {
                 vec![Oscillator::of(inner)?, Oscillator::of(outer)?]
