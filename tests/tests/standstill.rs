@@ -2,7 +2,7 @@
 
 use plant_model::contact::damping_for_restitution;
 use plant_model::params::*;
-use plant_model::{Inputs, Options, V2, build};
+use plant_model::{Inputs, Method, Mode, Options, V2, build};
 use system_tests::plants::onset_rig;
 
 /// The rig without its shaft, under its weight, at a spin that is held or nearly none; falls onto the wall, rolls and rests.
@@ -63,6 +63,64 @@ fn a_rotor_that_hardly_spins_comes_to_rest() {
             for spin in [(SpinParams::Held, 0.0), (free, 0.0), (free, 3.0)] {
                 let residual = falls(linear, spin, rolling, velocity).unwrap();
                 assert!(residual < 1e-9, "{residual}");
+            }
+        }
+    }
+}
+
+/// Without spin and race the sliding speed is the whirl's: what rests slips as soon as it whirls, in one change of mode and
+/// by every method. A load turns away from under the rotor until it slips, swings and rests again.
+#[test]
+fn without_spin_a_rotor_at_rest_begins_to_slip_and_to_whirl_at_once() {
+    for turn in [1.0, -1.0] {
+        for (friction, rolling) in [(0.1, 0.02), (0.02, 0.1), (0.125, 0.125)] {
+            let mut params = onset_rig();
+            params.rotor.stiffness_n_m = 0.0;
+            params.friction = FrictionParams {
+                sliding: SlidingFriction::Constant {
+                    coefficient: friction,
+                },
+                rolling_coefficient: rolling,
+            };
+            let start = Start {
+                position_m: V2::new(0.0, -2e-4 - 1e-6),
+                velocity_m_s: V2::zeros(),
+                spin_rad_s: 0.0,
+                spin_phase_rad: 0.0,
+            };
+            let changes = |method| {
+                let options = Options {
+                    method,
+                    ..Options::default()
+                };
+                let mut plant = build(&params, &start, options).unwrap();
+                let mut modes = vec![plant.mode()];
+                // To 30 degrees, where friction holds 7 to 14, and on there.
+                for i in 0..1000_i32 {
+                    let degrees = (0.3 * f64::from(i)).min(30.0);
+                    let (sin, cos) = (turn * degrees.to_radians()).sin_cos();
+                    let inputs = Inputs {
+                        external_n: 100.0 * V2::new(sin, -cos),
+                        ..Inputs::default()
+                    };
+                    plant
+                        .advance(5e-5 * f64::from(i + 1), &inputs, &mut |now| {
+                            modes.push(now.mode);
+                        })
+                        .unwrap();
+                }
+                modes
+            };
+            let slip = match turn > 0.0 {
+                true => Mode::SlipPositive,
+                false => Mode::SlipNegative,
+            };
+            let modes = changes(Method::Series);
+            assert_eq!(modes[..2], [Mode::Seated, slip], "{friction}, {rolling}");
+            assert_eq!(modes.last(), Some(&Mode::Seated), "{friction}, {rolling}");
+            assert!(!modes.contains(&Mode::Roll), "{friction}, {rolling}");
+            for method in [Method::Explicit, Method::Stiff] {
+                assert_eq!(changes(method), modes, "{method:?}, {friction}, {rolling}");
             }
         }
     }

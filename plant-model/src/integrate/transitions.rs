@@ -90,7 +90,11 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
         guard: usize,
     ) -> (Slide, Whirl) {
         let (slide, whirl) = pair;
+        // Both cones open at once, and which guard says so first is up to rounding.
+        let together = pair == (Slide::Rolling, Whirl::Still) && self.slip_is_whirl(y);
         match guard {
+            SLIDE | WHIRL if together => (Slide::Negative, Whirl::Negative),
+            SLIDE_LOW | WHIRL_LOW if together => (Slide::Positive, Whirl::Positive),
             // The force that rolling or standing still needs is at an edge of its cone.
             SLIDE if slide == Slide::Rolling => (Slide::Negative, whirl),
             SLIDE_LOW => (Slide::Positive, whirl),
@@ -98,6 +102,14 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
             WHIRL_LOW => (slide, Whirl::Positive),
             _ => self.settle((t_s, y), inputs, AtZero::after(pair, guard)),
         }
+    }
+
+    /// Whether v_rel is v_w: on a ring without a race under a rotor whose spin is held at zero. Only there do sliding and
+    /// rolling friction share what holds the rotor, as μ : μ_r, see eq. (2.21).
+    fn slip_is_whirl(&self, y: &StateOf<S, W, M>) -> bool {
+        self.spin.inverse_inertia() == 0.0
+            && self.spin.race().is_none()
+            && self.spin.spin_rad_s(&y.spin) == 0.0
     }
 
     /// The contact mode that is consistent just after this instant, given which speeds are known to
@@ -114,6 +126,15 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
         let frictionless = self.friction.sliding.coefficient(0.0) == 0.0;
         let slide_at_zero = !frictionless && (at_zero.slide || g.sliding_speed_m_s.abs() <= zero);
         let whirl_at_zero = at_zero.whirl || g.whirl_speed_m_s.abs() <= zero;
+        // Where they are one speed, one direction says it all.
+        let same = !frictionless && self.slip_is_whirl(y);
+        let (slide_at_zero, whirl_at_zero) = match same && (slide_at_zero || whirl_at_zero) {
+            true => (true, true),
+            false => (slide_at_zero, whirl_at_zero),
+        };
+        let fits = |slide: Slide, whirl: Whirl| {
+            !same || whirl == Whirl::Ignored || slide.sign() == whirl.sign()
+        };
         let slides: &[Slide] = if slide_at_zero {
             &[Slide::Rolling, Slide::Positive, Slide::Negative]
         } else {
@@ -128,7 +149,7 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
         };
         let moment_s = self.moment_s(y);
         for &slide in slides {
-            for &whirl in whirls {
+            for &whirl in whirls.iter().filter(|whirl| fits(slide, **whirl)) {
                 let pair = (slide, whirl);
                 let now = self.contact(t_s, y, inputs, pair);
                 let mut later = *y;
