@@ -65,6 +65,10 @@ pub(crate) struct Run<S: Stator, W: Spin, M: Amplifier> {
 /// that levitates nothing else moves.
 const SPARE: f64 = 1.0 - 1e-4;
 
+/// A start is on the wall within this share of the clearance, and moves along it within this share of its speed: sine,
+/// cosine, a product and the length leave up to 2.5ε. The [search](super::flight) for the wall knows it as well.
+const ON_WALL: f64 = 4.0 * f64::EPSILON;
+
 /// Events without time in between from which on modes are taken to follow each other in a circle, and those that are too many.
 const CIRCLE: u32 = 4;
 const MOST_AT_ONCE: u32 = 50;
@@ -77,7 +81,8 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
         mut options: Options,
     ) -> Self {
         let mobility = 1.0 / system.rotor.mass_kg + system.stator.inverse_mass();
-        let touching = system.geometry(&y).penetration_m > 0.0;
+        // What comes against the wall only now is not yet there.
+        let touching = beyond_wall(&system, &y) || rests_on_wall(&system, &y);
         let start = (y.rotor.velocity.norm(), touching);
         options.method =
             (options.method).resolved(&system.contact.law, start, mobility, options.rtol);
@@ -126,8 +131,8 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
             run.backward = -1.0;
         }
         run.spare_j = SPARE * run.system.turning_j(&run.y.spin);
-        let g = run.system.geometry(&run.y);
-        if g.penetration_m > 0.0 {
+        if beyond_wall(&run.system, &run.y) {
+            let g = run.system.geometry(&run.y);
             run.phase = match run.normal_n(&g) > 0.0 {
                 true => run.settled(),
                 false => Phase::Beyond,
@@ -361,6 +366,24 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
     pub(crate) fn work(&self) -> Work {
         self.work
     }
+}
+
+/// Farther out than rounding may put a start that is meant to be on the wall.
+fn beyond_wall<S: Stator, W: Spin, M: Amplifier>(
+    system: &System<S, W, M>,
+    y: &StateOf<S, W, M>,
+) -> bool {
+    system.geometry(y).penetration_m > ON_WALL * system.contact.clearance_m
+}
+
+/// On the wall, at rest or moving along it.
+fn rests_on_wall<S: Stator, W: Spin, M: Amplifier>(
+    system: &System<S, W, M>,
+    y: &StateOf<S, W, M>,
+) -> bool {
+    let g = system.geometry(y);
+    g.penetration_m.abs() <= ON_WALL * system.contact.clearance_m
+        && g.normal_speed_m_s.abs() <= ON_WALL * y.rotor.velocity.norm()
 }
 
 /// Vector limited to a length.

@@ -1,6 +1,6 @@
 //! The rotor off the wall.
 
-use super::Run;
+use super::{ON_WALL, Run, rests_on_wall};
 use crate::integrate::flight::Crossing;
 use crate::magnet::Amplifier;
 use crate::mode::{Phase, Slide, Whirl};
@@ -23,10 +23,16 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
             Crossing::ClearUntil(theta) => (theta.min(1.0), false),
         };
         self.just_left = false;
+        let rested = hit && self.t_s == 0.0 && rests_on_wall(&self.system, &self.y);
         self.fly(theta, last.then_some(t_end_s));
         if hit {
-            self.meters.impacts += 1;
             let g = self.system.geometry(&self.y);
+            // From rest on the wall and under a push a of ½·a·t² = ½·v·t: no farther away than rounding, so never off.
+            let off_m = self.t_s * g.normal_speed_m_s;
+            if rested && off_m <= 2.0 * ON_WALL * self.system.contact.clearance_m {
+                return self.touch_down();
+            }
+            self.meters.impacts += 1;
             self.meters.hard_impacts += u64::from(g.normal_speed_m_s > HARD_IMPACT_M_S);
             self.meters.peak_impact_speed_m_s =
                 self.meters.peak_impact_speed_m_s.max(g.normal_speed_m_s);
