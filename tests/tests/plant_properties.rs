@@ -1,6 +1,6 @@
 //! Properties that every run of the plant has.
 
-use plant_model::contact::damping_for_restitution;
+use plant_model::contact::{damping_for_restitution, hunt_crossley};
 use plant_model::params::*;
 use plant_model::{Inputs, Method, Options, Snapshot, V2, build};
 use proptest::prelude::*;
@@ -89,6 +89,38 @@ fn any_plant() -> impl Strategy<Value = PlantParams> {
             mass,
         )
         .expect("in range");
+        params
+    })
+}
+
+/// Those without a power series as well: Hunt and Crossley's contact as deep as the linear one at 0.3 m/s, and a rigid bore
+/// out of round.
+fn any_plant_of_any_contact() -> impl Strategy<Value = PlantParams> {
+    let hertz = proptest::option::of((1.0..3.0_f64, 0.05..1.0_f64));
+    let bore = proptest::option::of((0.0..0.2_f64, -3.0..3.0_f64));
+    (any_plant(), hertz, bore).prop_map(|(mut params, hertz, bore)| {
+        let speed_m_s = 0.3;
+        if let Some((exponent, restitution)) = hertz {
+            let linear_n_m = params.contact.stiffness_n_m();
+            let mass_kg = params.contact_mass_kg();
+            params.contact.law = ContactLaw::HuntCrossley(HuntCrossley {
+                stiffness_n_mn: hunt_crossley::stiffness_for_depth_of(
+                    linear_n_m,
+                    exponent,
+                    (speed_m_s, mass_kg),
+                ),
+                exponent,
+                damping_s_m: hunt_crossley::damping_for_restitution(restitution, speed_m_s)
+                    .expect("in range"),
+            });
+        }
+        if let Some((ellipticity, long_axis_rad)) = bore {
+            params.race = None;
+            params.stator = StatorParams::RigidEllipse(EllipseParams {
+                ellipticity,
+                long_axis_rad,
+            });
+        }
         params
     })
 }
@@ -210,12 +242,23 @@ proptest! {
         close(&a, &b, quarter_turn, 1e-9)?;
     }
 
-    /// No energy from nowhere, whatever the parts: the residual follows the tolerance. (Of 30 000 draws the largest were 0.03, 3
-    /// and 0.008 times `rtol`; of 100 000 more the explicit pair had 13 and 15 in two long slides on stiff walls, where its
-    /// steps are bounded by stability and what they leave adds up.)
+    /// No energy from nowhere, whatever the parts: the residual follows the tolerance. With the linear law the largest of
+    /// 30 000 draws in round bores were 0.03, 3 and 0.008 times `rtol`, of 3400 out of round 0.9 and 0.007; of 100 000 more the
+    /// explicit pair had 13 and 15 in two long slides on stiff walls, where its steps are bounded by stability and what they
+    /// leave adds up. Hunt and Crossley's force starts as Aⁿ, which takes order from every touch: of 7000 draws with it the
+    /// largest were 50 and 0.6.
     #[test]
-    fn energy_closes(params in any_plant(), start in any_start()) {
-        for (method, most) in [(Method::Series, 0.3), (Method::Explicit, 50.0), (Method::Stiff, 0.1)] {
+    fn energy_closes(params in any_plant_of_any_contact(), start in any_start()) {
+        let smooth = params.contact.law.linear().is_some();
+        let [explicit, stiff] = if smooth { [50.0, 0.1] } else { [300.0, 3.0] };
+        for (method, most) in [
+            (Method::Series, 0.3),
+            (Method::Explicit, explicit),
+            (Method::Stiff, stiff),
+        ] {
+            if method == Method::Series && !params.has_series() {
+                continue;
+            }
             // A pair of order five would take its time at the last.
             let tolerances = if method == Method::Stiff { 2 } else { 3 };
             for &rtol in &[1e-4, 1e-6, 1e-9][..tolerances] {
