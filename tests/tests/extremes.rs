@@ -97,23 +97,32 @@ fn errors(
     )
 }
 
+/// By tolerance: the series errs by no more than twice that, the others by no more than what stands beside it.
+fn hold(
+    name: &str,
+    case: &(PlantParams, Start),
+    bounds: [(f64, f64); 4],
+    reading: fn(&Meters) -> f64,
+) {
+    for (rtol, most) in bounds {
+        let (series, pairs) = errors(case, rtol, reading);
+        if let Some(error) = series {
+            let held = error.abs() < 2.0 * rtol + 1e-12;
+            assert!(held, "{name}, {rtol:e}: {error:e}");
+        }
+        for error in pairs {
+            assert!(error.abs() < most, "{name}, {rtol:e}: {error:e}");
+        }
+    }
+}
+
 /// Fastest at the bottom, where no step ends: the series to its tolerance, the pairs by the cubic through a step's ends.
 #[test]
 fn the_fastest_whirl_is_found_within_the_step() {
     for (name, law) in laws() {
         for case in [swinging(law, 0.0, None), swinging(law, 0.3, Some(0.02))] {
-            for (rtol, most) in [(1e-4, 1e-3), (1e-6, 1e-4), (1e-9, 2e-6), (1e-12, 2e-8)] {
-                let (series, pairs) = errors(&case, rtol, |m| m.peak_backward_speed_m_s);
-                if let Some(error) = series {
-                    assert!(
-                        error.abs() < 2.0 * rtol + 1e-12,
-                        "{name}, {rtol:e}: {error:e}"
-                    );
-                }
-                for error in pairs {
-                    assert!(error.abs() < most, "{name}, {rtol:e}: {error:e}");
-                }
-            }
+            let bounds = [(1e-4, 1e-3), (1e-6, 1e-4), (1e-9, 2e-6), (1e-12, 2e-8)];
+            hold(name, &case, bounds, |m| m.peak_backward_speed_m_s);
         }
     }
 }
@@ -125,18 +134,8 @@ fn the_largest_friction_torque_is_one_that_occurs() {
     for (name, law) in laws() {
         for (friction, inertia_kg_m2) in [(0.3, 0.02), (0.3, 0.01), (0.15, 0.04)] {
             let case = swinging(law, friction, Some(inertia_kg_m2));
-            for (rtol, most) in [(1e-4, 2e-2), (1e-6, 5e-4), (1e-9, 2e-5), (1e-12, 5e-8)] {
-                let (series, pairs) = errors(&case, rtol, |m| m.peak_friction_torque_n_m);
-                if let Some(error) = series {
-                    assert!(
-                        error.abs() < 2.0 * rtol + 1e-12,
-                        "{name}, {rtol:e}: {error:e}"
-                    );
-                }
-                for error in pairs {
-                    assert!(error.abs() < most, "{name}, {rtol:e}: {error:e}");
-                }
-            }
+            let bounds = [(1e-4, 2e-2), (1e-6, 5e-4), (1e-9, 2e-5), (1e-12, 5e-8)];
+            hold(name, &case, bounds, |m| m.peak_friction_torque_n_m);
             // Friction that does not hold is none: no more than the cone at the largest force.
             let all = meters(&case, (Method::Auto, 1e-9), 1);
             let cone_n_m = friction * all.peak_contact_force_n * case.0.rotor.contact_radius_m;
