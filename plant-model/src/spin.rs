@@ -92,44 +92,16 @@ impl Spin for Held {
     fn coast(&self, _state: &(), _dt_s: f64) {}
 }
 
+/// A number of the spin as a state: with `ANGLE` it counts in an error as an angle, without as a speed.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Single<const ANGLE: bool>(f64);
+
 /// Ω as a state.
-#[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct SpinState(f64);
-
-impl Part for SpinState {
-    const STATES: usize = 1;
-    fn write(&self, out: &mut [f64]) {
-        out[0] = self.0;
-    }
-    fn read(from: &[f64]) -> Self {
-        Self(from[0])
-    }
-    #[inline]
-    fn add_scaled(&mut self, factor: f64, other: &Self) {
-        self.0 += factor * other.0;
-    }
-    #[inline]
-    fn weighed_square(&self, weights: &Weights) -> f64 {
-        (self.0 * weights.spin).powi(2)
-    }
-    #[inline]
-    fn is_finite(&self) -> bool {
-        self.0.is_finite()
-    }
-    #[inline]
-    fn turned(&self, _turn: V2) -> Self {
-        *self
-    }
-    fn turning(&self) -> Self {
-        Self::default()
-    }
-}
-
+pub(crate) type SpinState = Single<false>;
 /// σ as a state.
-#[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct PhaseState(f64);
+pub(crate) type PhaseState = Single<true>;
 
-impl Part for PhaseState {
+impl<const ANGLE: bool> Part for Single<ANGLE> {
     const STATES: usize = 1;
     fn write(&self, out: &mut [f64]) {
         out[0] = self.0;
@@ -143,7 +115,8 @@ impl Part for PhaseState {
     }
     #[inline]
     fn weighed_square(&self, weights: &Weights) -> f64 {
-        (self.0 * weights.phase).powi(2)
+        let weight = if ANGLE { weights.phase } else { weights.spin };
+        (self.0 * weight).powi(2)
     }
     #[inline]
     fn is_finite(&self) -> bool {
@@ -178,7 +151,7 @@ impl Spin for Free {
         (change.0, 0.0)
     }
     fn start(&self, spin_rad_s: f64, _phase_rad: f64) -> SpinState {
-        SpinState(spin_rad_s)
+        Single(spin_rad_s)
     }
     #[inline]
     fn spin_rad_s(&self, state: &SpinState) -> f64 {
@@ -201,11 +174,11 @@ impl Spin for Free {
     }
     #[inline]
     fn rates(&self, _state: &SpinState, acceleration: f64, _sliding_n: f64) -> SpinState {
-        SpinState(acceleration)
+        Single(acceleration)
     }
     #[inline]
     fn coast(&self, state: &SpinState, dt_s: f64) -> SpinState {
-        SpinState(state.0 + self.drive_torque_n_m * self.inverse_inertia() * dt_s)
+        Single(state.0 + self.drive_torque_n_m * self.inverse_inertia() * dt_s)
     }
 }
 
@@ -225,7 +198,7 @@ impl Spin for FreePhased {
         state.1.0 += angle_rad;
     }
     fn start(&self, spin_rad_s: f64, phase_rad: f64) -> Self::State {
-        (SpinState(spin_rad_s), PhaseState(phase_rad))
+        (Single(spin_rad_s), Single(phase_rad))
     }
     #[inline]
     fn spin_rad_s(&self, state: &Self::State) -> f64 {
@@ -249,12 +222,12 @@ impl Spin for FreePhased {
     }
     #[inline]
     fn rates(&self, state: &Self::State, acceleration: f64, _sliding_n: f64) -> Self::State {
-        (SpinState(acceleration), PhaseState(state.0.0))
+        (Single(acceleration), Single(state.0.0))
     }
     #[inline]
     fn coast(&self, state: &Self::State, dt_s: f64) -> Self::State {
         let acceleration = self.0.drive_torque_n_m * self.0.inverse_inertia();
         let phase = state.1.0 + (state.0.0 + 0.5 * acceleration * dt_s) * dt_s;
-        (self.0.coast(&state.0, dt_s), PhaseState(phase))
+        (self.0.coast(&state.0, dt_s), Single(phase))
     }
 }

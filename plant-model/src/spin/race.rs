@@ -1,7 +1,7 @@
 //! A retainer ball bearing: the race that the rotor touches has a spin of its own,
 //! J_i·Ω̇_i = −R_i·s − b·Ω_i, eq. (2.37).
 
-use super::{PhaseState, Spin, SpinState};
+use super::{PhaseState, Single, Spin, SpinState};
 
 /// The race, without its spin.
 #[derive(Debug, Clone, Copy)]
@@ -84,8 +84,8 @@ impl Spin for Raced {
     }
     fn start(&self, spin_rad_s: f64, phase_rad: f64) -> Self::State {
         (
-            (SpinState(spin_rad_s), PhaseState(phase_rad)),
-            SpinState(self.race.start_spin_rad_s),
+            (Single(spin_rad_s), Single(phase_rad)),
+            Single(self.race.start_spin_rad_s),
         )
     }
     #[inline]
@@ -114,10 +114,7 @@ impl Spin for Raced {
     #[inline]
     fn rates(&self, state: &Self::State, acceleration: f64, sliding_n: f64) -> Self::State {
         let race = self.race.acceleration(state.1.0, sliding_n);
-        (
-            (SpinState(acceleration), PhaseState(state.0.0.0)),
-            SpinState(race),
-        )
+        ((Single(acceleration), Single(state.0.0.0)), Single(race))
     }
     #[inline]
     fn race(&self) -> Option<&Race> {
@@ -138,10 +135,10 @@ impl Spin for Raced {
         let decay = (-self.race.drag_n_m_s / self.race.inertia_kg_m2 * dt_s).exp();
         (
             (
-                SpinState(spin.0 + gain),
-                PhaseState(phase.0 + (spin.0 + 0.5 * gain) * dt_s),
+                Single(spin.0 + gain),
+                Single(phase.0 + (spin.0 + 0.5 * gain) * dt_s),
             ),
-            SpinState(race.0 * decay),
+            Single(race.0 * decay),
         )
     }
 }
