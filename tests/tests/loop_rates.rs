@@ -3,6 +3,7 @@
 use firmware_host::overloads::found::{Found, kept};
 use firmware_host::overloads::impact::recoverable_m_s;
 use firmware_host::overloads::plants::{PlantCase, RATES_HZ, plants};
+use firmware_host::overloads::results::run_case;
 use firmware_host::overloads::seats::Seat;
 use firmware_host::overloads::sweeps::{SweepPoint, SweepRow, median, row, sweep};
 use firmware_host::overloads::tune;
@@ -10,6 +11,7 @@ use firmware_host::policies::{Policy, Supervise};
 use firmware_host::scene::Scene;
 use rayon::prelude::*;
 use supervisor::{Command, Config, Mode, Sample, Supervisor};
+use system_tests::unseen::sound_cases;
 
 /// Gains tuned at this rate, as the catalogue tunes them; laws of the reference have no part in this.
 fn found(case: &PlantCase) -> Found {
@@ -167,4 +169,39 @@ fn impact_and_whirl_by_rate() {
             "{name}: below levitation at 20 kHz"
         );
     }
+}
+
+/// The catalogue's scenes with sound sensors at a rate, with one seed: recovered with levitation alone, with the supervisor,
+/// and those that only the first of them recovers from.
+fn scenes(rate_hz: f64) -> (usize, usize, Vec<String>) {
+    let of_plant = |case: PlantCase| {
+        let (found, at) = (found(&case), (case.name.as_str(), rate_hz));
+        let mut all = (0, 0, Vec::new());
+        for scene in sound_cases(&case, found.tuned) {
+            let [alone, own] = [Seat::Tuned, Seat::Supervisor]
+                .map(|seat| run_case(&scene, at, (seat, 1), &found).recovered());
+            all.0 += usize::from(alone);
+            all.1 += usize::from(own);
+            if alone && !own {
+                all.2.push(format!("{}: {}", case.name, scene.name));
+            }
+        }
+        all
+    };
+    let all = plants(rate_hz).expect("the catalogue's plants are valid");
+    (all.into_par_iter().map(of_plant)).reduce(Default::default, |mut a, b| {
+        a.2.extend(b.2);
+        (a.0 + b.0, a.1 + b.1, a.2)
+    })
+}
+
+/// Half of the rate costs next to no scene, and a quarter of it a few; more with levitation alone.
+#[test]
+#[ignore = "half a minute; the figures are in docs/src/supervisor/targets.md"]
+fn scenes_by_rate() {
+    let [slow, half, usual] = [5e3, 1e4, 2e4].map(scenes);
+    println!("{:?}", [&slow, &half, &usual]);
+    assert!(usual.2.is_empty() && half.2.is_empty() && slow.2.len() <= 1);
+    assert!(100 * half.1 > 99 * usual.1 && half.1 <= usual.1);
+    assert!(100 * slow.1 > 95 * usual.1 && slow.1 > slow.0 + 20);
 }
