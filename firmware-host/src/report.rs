@@ -15,6 +15,7 @@ use self::axes::focus_window;
 use self::panels::{Key, PanelRow};
 pub use crate::plot::PlotError;
 use crate::plot::text::{escape, figures};
+use crate::table;
 use crate::verdict::{Disturbed, Outcome, PolicyRun, SceneSummary, Verdict, far_into_the_wall};
 
 const STYLE: &str = include_str!("report/style.css");
@@ -184,15 +185,12 @@ fn push_table(page: &mut String, runs: &[PolicyRun], clearance_m: f64) {
 }
 
 fn badge(outcome: Outcome) -> String {
-    let (word, class) = match outcome {
-        Outcome::Recovered => ("recovered", "good"),
-        Outcome::Decayed => ("decayed", "good"),
-        Outcome::Resting => ("resting", "fair"),
-        Outcome::Pinned => ("pinned", "fair"),
-        Outcome::Rubbing => ("rubbing", "fair"),
-        Outcome::Bouncing => ("bouncing", "fair"),
-        Outcome::Whirl => ("whirl", "bad"),
+    let class = match outcome {
+        Outcome::Recovered | Outcome::Decayed => "good",
+        Outcome::Resting | Outcome::Pinned | Outcome::Rubbing | Outcome::Bouncing => "fair",
+        Outcome::Whirl => "bad",
     };
+    let word = table::outcome(outcome);
     format!("<span class=\"outcome {class}\">{word}</span>")
 }
 

@@ -11,7 +11,7 @@
 //!                               pair for checks, Radau IIA for overdamped contact
 //! ```
 //!
-//! Files, each importing only from those above it: `params`, `contact`, `friction`, `mode`, `energy`,
+//! Files, each importing only from those above it: `bisection`, `params`, `contact`, `friction`, `mode`, `energy`,
 //! `part`, `series`, `quadrature`, `ellipse`, `stator`, `spin`, `magnet`, `system`, `tangent`, `readout`, `integrate`, `plant`,
 //! `analysis`.
 
@@ -19,6 +19,7 @@
 #![warn(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 pub mod analysis;
+mod bisection;
 pub mod contact;
 mod ellipse;
 pub mod energy;

@@ -6,6 +6,7 @@ use firmware_host::overloads::catalogue::{Case, cases};
 use firmware_host::overloads::fault_matrix::{DRIVE_FAULTS, SENSOR_FAULTS};
 use firmware_host::overloads::found::{Found, kept};
 use firmware_host::overloads::plants::PlantCase;
+use firmware_host::overloads::results::run_case;
 use firmware_host::overloads::seats::Seat;
 use firmware_host::scene::Scene;
 use rand_chacha::ChaCha8Rng;
@@ -90,6 +91,54 @@ pub fn sound_cases(plant: &PlantCase, levitation: LevitationParams) -> Vec<Case>
     (cases(plant, levitation).into_iter())
         .filter(|case| sound(case) && case.seats.contains(&Seat::Supervisor))
         .collect()
+}
+
+/// What came of scenes with levitation alone, and with the supervisor.
+#[derive(Debug, Default)]
+pub struct Compared {
+    /// Plants that they were run on.
+    pub plants: usize,
+    /// Scenes.
+    pub runs: usize,
+    /// Recovered with levitation alone.
+    pub alone: usize,
+    /// Recovered with the supervisor.
+    pub own: usize,
+    /// Scenes that only levitation alone recovered from, by the plant's and their own name.
+    pub lost: Vec<String>,
+}
+
+impl Compared {
+    /// The [`sound_cases`] on a plant, with one seed. `text` says which plant.
+    pub fn on(plant: &PlantCase, found: &Found, text: &str) -> Self {
+        let at = (plant.name.as_str(), plant.rate_hz);
+        let mut compared = Self {
+            plants: 1,
+            ..Self::default()
+        };
+        for case in sound_cases(plant, found.tuned) {
+            let [alone, own] = [Seat::Tuned, Seat::Supervisor]
+                .map(|seat| run_case(&case, at, (seat, 1), found).recovered());
+            compared.runs += 1;
+            compared.alone += usize::from(alone);
+            compared.own += usize::from(own);
+            if alone && !own {
+                compared.lost.push(format!("{text}: {}", case.name));
+            }
+        }
+        compared
+    }
+
+    /// With what came of others.
+    #[must_use]
+    pub fn with(mut self, other: Self) -> Self {
+        self.plants += other.plants;
+        self.runs += other.runs;
+        self.alone += other.alone;
+        self.own += other.own;
+        self.lost.extend(other.lost);
+        self
+    }
 }
 
 /// Machine of a number. Masses of 0.3 to 100 kg, clearances of 0.1 to 0.5 mm, forces of 3 to 60 times the weight,

@@ -3,7 +3,6 @@
 use firmware_host::overloads::found::{Found, kept};
 use firmware_host::overloads::impact::recoverable_m_s;
 use firmware_host::overloads::plants::{PlantCase, RATES_HZ, plants};
-use firmware_host::overloads::results::run_case;
 use firmware_host::overloads::seats::Seat;
 use firmware_host::overloads::sweeps::{SweepPoint, SweepRow, median, row, sweep};
 use firmware_host::overloads::tune;
@@ -11,7 +10,7 @@ use firmware_host::policies::{Policy, Supervise};
 use firmware_host::scene::Scene;
 use rayon::prelude::*;
 use supervisor::{Command, Config, Mode, Sample, Supervisor};
-use system_tests::unseen::sound_cases;
+use system_tests::unseen::Compared;
 
 /// Gains tuned at this rate, as the catalogue tunes them; laws of the reference have no part in this.
 fn found(case: &PlantCase) -> Found {
@@ -19,6 +18,12 @@ fn found(case: &PlantCase) -> Found {
     let tuned = tune::tuned(&case.scene).expect("a run that can be trusted");
     found.tuned = tuned.expect("a loop that meets the limits");
     found
+}
+
+fn plant(name: &str, rate_hz: f64) -> PlantCase {
+    let cases = plants(rate_hz).expect("the catalogue's plants are valid");
+    let case = cases.into_iter().find(|case| case.name == name);
+    case.expect("one of the catalogue's")
 }
 
 fn swept(case: &PlantCase, seat: Seat, seeds: u64) -> SweepRow {
@@ -36,11 +41,10 @@ struct Recovered {
     own: [f64; 2],
 }
 
-fn recovered(plant: &str, rate_hz: f64, seeds: u64) -> Recovered {
-    let cases = plants(rate_hz).expect("the catalogue's plants are valid");
-    let case = (cases.iter().find(|case| case.name == plant)).expect("one of the catalogue's");
+fn recovered(name: &str, rate_hz: f64, seeds: u64) -> Recovered {
+    let case = plant(name, rate_hz);
     let [tuned, own] = [Seat::Tuned, Seat::Supervisor].map(|seat| {
-        let row = swept(case, seat, seeds);
+        let row = swept(&case, seat, seeds);
         [median(&row.impact_m_s), median(&row.whirl_share)]
     });
     Recovered { tuned, own }
@@ -97,16 +101,12 @@ impl Supervise for InSlowerTask {
 }
 
 /// Hardest impact with the supervisor in a task that is so many times slower than its loop of 20 kHz [m/s].
-fn in_slower_task(plant: &str, times: u32) -> f64 {
-    let [slow, quick] = [2e4 / f64::from(times), 2e4].map(|rate_hz| {
-        let cases = plants(rate_hz).expect("the catalogue's plants are valid");
-        let case = cases.into_iter().find(|case| case.name == plant);
-        case.expect("one of the catalogue's").scene
-    });
+fn in_slower_task(name: &str, times: u32) -> f64 {
+    let [slow, quick] = [2e4 / f64::from(times), 2e4].map(|rate_hz| plant(name, rate_hz).scene);
     let config = slow.supervisor.expect("the catalogue's have one");
     let make = |scene: &Scene| {
         let mut scene = scene.clone();
-        scene.levitation = kept(plant, 2e4).map(|found| found.tuned);
+        scene.levitation = kept(name, 2e4).map(|found| found.tuned);
         Policy::supervised(&scene, Box::new(InSlowerTask::new(&config, times)))
     };
     recoverable_m_s(&quick, "slower task", &make).expect("a run that can be trusted")
@@ -171,28 +171,12 @@ fn impact_and_whirl_by_rate() {
     }
 }
 
-/// The catalogue's scenes with sound sensors at a rate, with one seed: recovered with levitation alone, with the supervisor,
-/// and those that only the first of them recovers from.
-fn scenes(rate_hz: f64) -> (usize, usize, Vec<String>) {
-    let of_plant = |case: PlantCase| {
-        let (found, at) = (found(&case), (case.name.as_str(), rate_hz));
-        let mut all = (0, 0, Vec::new());
-        for scene in sound_cases(&case, found.tuned) {
-            let [alone, own] = [Seat::Tuned, Seat::Supervisor]
-                .map(|seat| run_case(&scene, at, (seat, 1), &found).recovered());
-            all.0 += usize::from(alone);
-            all.1 += usize::from(own);
-            if alone && !own {
-                all.2.push(format!("{}: {}", case.name, scene.name));
-            }
-        }
-        all
-    };
+/// The catalogue's scenes with sound sensors at a rate.
+fn scenes(rate_hz: f64) -> Compared {
     let all = plants(rate_hz).expect("the catalogue's plants are valid");
-    (all.into_par_iter().map(of_plant)).reduce(Default::default, |mut a, b| {
-        a.2.extend(b.2);
-        (a.0 + b.0, a.1 + b.1, a.2)
-    })
+    (all.par_iter()
+        .map(|case| Compared::on(case, &found(case), &case.name)))
+    .reduce(Compared::default, Compared::with)
 }
 
 /// Half of the rate costs next to no scene, and a quarter of it a few; more with levitation alone.
@@ -201,7 +185,7 @@ fn scenes(rate_hz: f64) -> (usize, usize, Vec<String>) {
 fn scenes_by_rate() {
     let [slow, half, usual] = [5e3, 1e4, 2e4].map(scenes);
     println!("{:?}", [&slow, &half, &usual]);
-    assert!(usual.2.is_empty() && half.2.is_empty() && slow.2.len() <= 1);
-    assert!(100 * half.1 > 99 * usual.1 && half.1 <= usual.1);
-    assert!(100 * slow.1 > 95 * usual.1 && slow.1 > slow.0 + 20);
+    assert!(usual.lost.is_empty() && half.lost.is_empty() && slow.lost.len() <= 1);
+    assert!(100 * half.own > 99 * usual.own && half.own <= usual.own);
+    assert!(100 * slow.own > 95 * usual.own && slow.own > slow.alone + 20);
 }

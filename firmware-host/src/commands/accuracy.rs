@@ -5,7 +5,7 @@ mod show;
 use crate::accuracy::{AccuracyError, Reference, Row, sweep};
 use crate::commands::error::{CommandError, pretty, print, say};
 use crate::commands::load;
-use crate::commands::progress::{LateProgress, pool};
+use crate::commands::progress::{LateProgress, Threads};
 use crate::output::{self, Staging};
 use crate::scene::Scene;
 use crate::wrong_runs::{self, STARTS, WrongRow};
@@ -41,6 +41,9 @@ const SHORT: u64 = 750_000;
 
 /// Arguments of `accuracy`.
 #[derive(Debug, Clone, clap::Args)]
+#[command(mut_arg("threads", |threads| {
+    threads.help("Threads of the search for wrong runs [default: all cores]. Results do not depend on it")
+}))]
 pub struct AccuracyArgs {
     /// Scene files, each run without control, from its start, with its disturbances [default: the
     /// benchmark problems B1, B2, B3a, B3b and B3c].
@@ -54,9 +57,9 @@ pub struct AccuracyArgs {
     /// Folder for accuracy.json and the plot accuracy.svg; without it nothing is written.
     #[arg(long)]
     pub out: Option<PathBuf>,
-    /// Threads of the search for wrong runs [default: all cores]. Results do not depend on it.
-    #[arg(long, allow_negative_numbers = true, value_parser = clap::value_parser!(u16).range(1..=1024))]
-    pub threads: Option<u16>,
+    /// How many threads the search for wrong runs may use.
+    #[command(flatten)]
+    pub threads: Threads,
 }
 
 /// When to sweep.
@@ -171,7 +174,7 @@ fn measure(scenes: &[Scene], args: &AccuracyArgs) -> Result<Accuracy, CommandErr
         }
     }
     let progress = LateProgress::new(swept.len() as u64 * u64::from(STARTS), "starts");
-    let pool = pool(args.threads)?;
+    let pool = args.threads.pool()?;
     for scene in swept {
         let rows = pool.install(|| wrong_runs::sweep(scene, &|| progress.add(1)));
         found.wrong_runs.extend(rows.map_err(|e| failed(scene, e))?);

@@ -2,7 +2,7 @@
 
 use crate::commands::error::{CommandError, pretty, print};
 use crate::commands::load;
-use crate::commands::progress::{LateProgress, pool};
+use crate::commands::progress::{LateProgress, Threads};
 use crate::output::{self, Staging};
 use crate::overloads::histories::{CASES, Way, compare};
 use crate::overloads::page::{self, GROUP_COLUMNS, SCENE_COLUMNS, scene_rows};
@@ -36,9 +36,9 @@ pub struct OverloadsArgs {
     /// and write them to histories.json in the folder; takes minutes.
     #[arg(long, conflicts_with_all = ["json", "quick", "scene", "search"])]
     pub histories: bool,
-    /// Threads to use [default: all cores]. Results do not depend on it.
-    #[arg(long, allow_negative_numbers = true, value_parser = clap::value_parser!(u16).range(1..=1024))]
-    pub threads: Option<u16>,
+    /// How many threads it may use.
+    #[command(flatten)]
+    pub threads: Threads,
 }
 
 /// Runs the catalogue.
@@ -63,7 +63,9 @@ pub fn execute(args: &OverloadsArgs) -> Result<(), CommandError> {
     };
     let plan = Plan::new(extent, own).map_err(failed)?;
     let progress = LateProgress::new(plan.pieces(), "the catalogue");
-    let catalogue = pool(args.threads)?
+    let catalogue = args
+        .threads
+        .pool()?
         .install(|| plan.run(&|done| progress.add(done)))
         .map_err(failed)?;
     progress.finish();
@@ -99,7 +101,9 @@ pub fn execute(args: &OverloadsArgs) -> Result<(), CommandError> {
 fn search_anew(args: &OverloadsArgs) -> Result<(), CommandError> {
     let plants = crate::overloads::plants::plants(RATES_HZ[0])?.len();
     let progress = LateProgress::new((plants * RATES_HZ.len()) as u64, "the search");
-    let rows = pool(args.threads)?
+    let rows = args
+        .threads
+        .pool()?
         .install(|| search(&|done| progress.add(done)))
         .map_err(failed)?;
     progress.finish();
@@ -112,7 +116,9 @@ fn search_anew(args: &OverloadsArgs) -> Result<(), CommandError> {
 
 fn against_histories(args: &OverloadsArgs) -> Result<(), CommandError> {
     let progress = LateProgress::new((CASES.len() * Way::ALL.len()) as u64, "the searches");
-    let rows = pool(args.threads)?
+    let rows = args
+        .threads
+        .pool()?
         .install(|| compare(&|done| progress.add(done)))
         .map_err(failed)?;
     progress.finish();

@@ -1,7 +1,7 @@
 //! `paper`: every number and figure of the paper, computed.
 
 use crate::commands::error::{CommandError, pretty, print};
-use crate::commands::progress::{LateProgress, pool};
+use crate::commands::progress::{LateProgress, Threads};
 use crate::output::{self, Staging};
 use crate::paper::{CHAPTERS, Chapter, Depth, html, json, text};
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
@@ -19,9 +19,9 @@ pub struct PaperArgs {
     /// Coarser curves and maps.
     #[arg(long)]
     pub quick: bool,
-    /// Threads to use [default: all cores]. Results do not depend on it.
-    #[arg(long, allow_negative_numbers = true, value_parser = clap::value_parser!(u16).range(1..=1024))]
-    pub threads: Option<u16>,
+    /// How many threads it may use.
+    #[command(flatten)]
+    pub threads: Threads,
 }
 
 /// Computes every chapter and writes the page.
@@ -36,7 +36,7 @@ pub fn execute(args: &PaperArgs) -> Result<(), CommandError> {
         Depth::Full
     };
     let progress = LateProgress::new(CHAPTERS.len() as u64, "chapters");
-    let chapters = pool(args.threads)?.install(|| {
+    let chapters = args.threads.pool()?.install(|| {
         (CHAPTERS.par_iter())
             .map(|(name, compute)| {
                 let chapter = compute(depth).map_err(|e| CommandError::other(name, e));

@@ -36,10 +36,20 @@ impl LateProgress {
     }
 }
 
-/// A pool of so many threads, or of one for each core.
-pub(crate) fn pool(threads: Option<u16>) -> Result<rayon::ThreadPool, CommandError> {
-    rayon::ThreadPoolBuilder::new()
-        .num_threads(threads.map_or(0, usize::from))
-        .build()
-        .map_err(|e| CommandError::other("starting threads", e))
+/// How many threads a command may use.
+#[derive(Debug, Clone, Copy, clap::Args)]
+pub struct Threads {
+    /// Threads to use [default: all cores]. Results do not depend on it.
+    #[arg(long, allow_negative_numbers = true, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+}
+
+impl Threads {
+    /// A pool of so many, or of one for each core.
+    pub(crate) fn pool(self) -> Result<rayon::ThreadPool, CommandError> {
+        rayon::ThreadPoolBuilder::new()
+            .num_threads(self.threads.map_or(0, usize::from))
+            .build()
+            .map_err(|e| CommandError::other("starting threads", e))
+    }
 }

@@ -3,7 +3,7 @@
 use crate::closed_loop::{Keep, RunError, run};
 use crate::commands::error::{CommandError, Contradiction, pretty, print};
 use crate::commands::load;
-use crate::commands::progress::{LateProgress, pool};
+use crate::commands::progress::{LateProgress, Threads};
 use crate::output::{self, Staging};
 use crate::policy_kind::PolicyKind;
 use crate::scene::Scene;
@@ -28,9 +28,9 @@ pub struct RunArgs {
     /// Print the verdicts as JSON instead of the table.
     #[arg(long)]
     pub json: bool,
-    /// Threads to use [default: all cores]. Results do not depend on it.
-    #[arg(long, allow_negative_numbers = true, value_parser = clap::value_parser!(u16).range(1..=1024))]
-    pub threads: Option<u16>,
+    /// How many threads it may use.
+    #[command(flatten)]
+    pub threads: Threads,
 }
 
 /// Runs the scene and writes its results.
@@ -125,7 +125,7 @@ fn run_all(scene: &Scene, args: &RunArgs) -> Result<Vec<PolicyRun>, CommandError
             _ => verify::run_check(&scenes[*of], *kind, on_tick),
         }
     };
-    let results = pool(args.threads)?.install(|| {
+    let results = args.threads.pool()?.install(|| {
         let all: Vec<_> = jobs.par_iter().map(one).collect();
         // The first error in the order of the jobs, whoever came first.
         all.into_iter().collect::<Result<Vec<_>, RunError>>()

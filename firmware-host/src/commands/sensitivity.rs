@@ -2,7 +2,7 @@
 
 use crate::commands::error::{CommandError, pretty, print};
 use crate::commands::load;
-use crate::commands::progress::{LateProgress, pool};
+use crate::commands::progress::{LateProgress, Threads};
 use crate::plot::text::figures;
 use crate::policy_kind::PolicyKind;
 use crate::scene::Scene;
@@ -26,9 +26,9 @@ pub struct SensitivityArgs {
     /// Print JSON instead of the table.
     #[arg(long)]
     pub json: bool,
-    /// Threads to use [default: all cores]. Results do not depend on it.
-    #[arg(long, allow_negative_numbers = true, value_parser = clap::value_parser!(u16).range(1..=1024))]
-    pub threads: Option<u16>,
+    /// How many threads it may use.
+    #[command(flatten)]
+    pub threads: Threads,
 }
 
 /// Wider than this no datum is called known.
@@ -81,7 +81,7 @@ fn rows(scene: &Scene, args: &SensitivityArgs) -> Result<Vec<Row>, CommandError>
         progress.add(1);
         row
     };
-    let rows = pool(args.threads)?.install(|| {
+    let rows = args.threads.pool()?.install(|| {
         let mut rows = vec![
             Row::of("levitation alone", scene, PolicyKind::Levitation),
             Row::of("right", &told, PolicyKind::Supervisor),

@@ -3,7 +3,7 @@
 mod show;
 
 use crate::commands::error::{CommandError, pretty, print};
-use crate::commands::progress::pool;
+use crate::commands::progress::Threads;
 use crate::target::budgets::{BudgetError, Budgets, renew};
 use crate::target::emulator;
 use crate::target::images::Project;
@@ -37,9 +37,9 @@ pub struct TargetArgs {
     /// The project's folder, or one in it.
     #[arg(long, value_name = "FOLDER", default_value = ".")]
     pub project: PathBuf,
-    /// Threads to use [default: all cores]. Results do not depend on it.
-    #[arg(long, allow_negative_numbers = true, value_parser = clap::value_parser!(u16).range(1..=1024))]
-    pub threads: Option<u16>,
+    /// How many threads it may use.
+    #[command(flatten)]
+    pub threads: Threads,
 }
 
 fn names() -> clap::builder::PossibleValuesParser {
@@ -113,7 +113,7 @@ fn run(args: &TargetArgs, machines: &[Machine]) -> Result<Report, CommandError> 
     } else {
         Length::FULL
     };
-    report.targets = pool(args.threads)?.install(|| {
+    report.targets = args.threads.pool()?.install(|| {
         let mut work = Vec::new();
         for number in [Number::Float, Number::Fixed] {
             if machines.iter().any(|m| m.number == number) {

@@ -1,5 +1,6 @@
 //! What a force of limited size can still do against established backward whirl.
 
+use crate::bisection::bracket;
 use crate::params::{ContactLaw, PlantParams};
 use crate::quadrature::EIGHT;
 
@@ -99,16 +100,11 @@ impl Arrest {
 
     /// Speed on the circle under the inward part with an angular momentum per mass \[m²/s\].
     fn speed_m_s(&self, momentum_m2_s: f64) -> f64 {
-        let (mut low, mut high) = (0.0, 2.0 * momentum_m2_s / self.circle.clearance_m);
-        for _ in 0..100 {
-            let middle = 0.5 * (low + high);
-            if middle * self.circle.radius_m(middle, self.inward_n) < momentum_m2_s {
-                low = middle;
-            } else {
-                high = middle;
-            }
-        }
-        high
+        let ends = (0.0, 2.0 * momentum_m2_s / self.circle.clearance_m);
+        let (_, speed) = bracket(ends, |v| {
+            v * self.circle.radius_m(v, self.inward_n) < momentum_m2_s
+        });
+        speed
     }
 }
 
@@ -124,18 +120,7 @@ fn border(wins: impl Fn(f64) -> bool) -> Option<f64> {
             return None;
         }
     }
-    let mut low = 0.0;
-    loop {
-        let middle = 0.5 * (low + high);
-        if !(middle > low && middle < high) {
-            return Some(high);
-        }
-        if wins(middle) {
-            high = middle;
-        } else {
-            low = middle;
-        }
-    }
+    Some(bracket((0.0, high), |v| !wins(v)).1)
 }
 
 /// What balances on a circle of sliding contact.
@@ -187,20 +172,10 @@ impl Circle {
         while excess(high) > 0.0 && high < 1e6 * self.clearance_m {
             high *= 2.0;
         }
-        let mut low = 0.0;
-        loop {
-            let middle = 0.5 * (low + high);
-            if !(middle > low && middle < high) {
-                break;
-            }
-            if excess(middle) > 0.0 {
-                low = middle;
-            } else {
-                high = middle;
-            }
-        }
-        let radius = self.clearance_m + high;
-        let stiffness = law.stiffness_n_m(high) + self.stiffness_n_m + energy / (radius * radius);
+        let (_, depth_m) = bracket((0.0, high), |depth_m| excess(depth_m) > 0.0);
+        let radius = self.clearance_m + depth_m;
+        let stiffness =
+            law.stiffness_n_m(depth_m) + self.stiffness_n_m + energy / (radius * radius);
         (
             radius,
             2.0 * self.mass_kg * speed_m_s / (radius * stiffness),

@@ -12,6 +12,7 @@
 //! forces leaves no dent.
 
 use super::Normal;
+use crate::bisection::bracket;
 use crate::params::HuntCrossley;
 
 impl HuntCrossley {
@@ -210,18 +211,9 @@ fn undamped(exponent: f64) -> HuntCrossley {
 }
 
 /// Where `below` turns from true to false, to round-off; NaN between ends that are no numbers.
-fn bisect((mut low, mut high): (f64, f64), below: impl Fn(f64) -> bool) -> f64 {
-    loop {
-        let middle = 0.5 * (low + high);
-        if !(middle > low && middle < high) {
-            return middle;
-        }
-        if below(middle) {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
+fn bisect(ends: (f64, f64), below: impl Fn(f64) -> bool) -> f64 {
+    let (low, high) = bracket(ends, below);
+    0.5 * (low + high)
 }
 
 /// ln Γ(x), x > 0, by Stirling's series from 12 upwards and Γ(x + 1) = x·Γ(x) below.
