@@ -1,6 +1,7 @@
 //! What a control engineer wants to know of a bearing before the supervisor goes in: limits in closed
 //! form, reaction time, noise, a suggested configuration, and what is weak.
 
+mod crossover;
 mod listing;
 mod noise;
 mod show;
@@ -13,6 +14,7 @@ use plant_model::analysis::onset::{critical_tangential_speed_m_s, lift_off_speed
 use serde::Serialize;
 use supervisor::{Config, ConfigError, PARAMETERS};
 
+pub use crossover::{Crossover, SmallSignals};
 pub use listing::{Language, listing, table};
 pub use noise::Noise;
 pub use show::text;
@@ -26,6 +28,9 @@ pub const ARREST_SHARE: f64 = 0.85;
 
 /// Lag beyond which even a tangential force is worth less than half of itself.
 pub const USEFUL_LAG_DEG: f64 = 75.0;
+
+/// A runout that is as fast as this share of √(F·c/m) does not look like an approach.
+pub const RUNOUT_SPEED_SHARE: f64 = 0.5;
 
 /// All of it; keys are stable.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -44,6 +49,9 @@ pub struct Advice {
     pub noise: Noise,
     /// What an impact may be.
     pub impact: Impact,
+    /// What becomes of a vibration of the reading.
+    #[serde(flatten)]
+    pub vibration: Vibration,
     /// The suggested configuration, a row a parameter.
     pub parameters: Vec<Parameter>,
     /// The same as a table for a scene.
@@ -133,6 +141,21 @@ pub struct Impact {
     pub passive_m_s: Option<f64>,
 }
 
+/// A vibration of the reading that the force does not change: runout, bending, noise.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Vibration {
+    /// A small one is damped below it and driven above it, in flight \[Hz\]; none where it is damped up to half the rate of
+    /// the loop.
+    pub crossover_hz: Option<f64>,
+    /// The most that the force drives with above it, as a coefficient \[N s/m\] …
+    pub driving_n_s_m: Option<f64>,
+    /// … and where \[Hz\].
+    pub driving_hz: Option<f64>,
+    /// Largest amplitude of a runout at the spin, on one axis, that does not look like an approach \[m\]; none where no spin
+    /// is known.
+    pub runout_limit_m: Option<f64>,
+}
+
 /// A parameter of the suggested configuration.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Parameter {
@@ -183,6 +206,7 @@ impl Advice {
             lag: lag(nominal, &limits, &reaction),
             noise,
             impact: impact(nominal, config, &limits, &reaction),
+            vibration: vibration(nominal, &in_use),
             limits,
             reaction,
             parameters: parameters(&suggested, &in_use),
@@ -305,6 +329,20 @@ fn unavoidable_m_s(n: &Nominal, force_n: f64, horizon_s: f64) -> f64 {
         return 0.0;
     }
     (work / (at + (at * at + work).sqrt())).min(c / horizon_s)
+}
+
+fn vibration(n: &Nominal, in_use: &Config) -> Vibration {
+    let crossover = SmallSignals::new(in_use).crossover();
+    let runout_limit_m = n.spin_hz.map(|hz| {
+        let rate_rad_s = std::f64::consts::TAU * hz.abs();
+        (RUNOUT_SPEED_SHARE * n.force_speed_m_s() / rate_rad_s).min(n.clearance_m)
+    });
+    Vibration {
+        crossover_hz: crossover.map(|c| c.frequency_hz),
+        driving_n_s_m: crossover.map(|c| c.driving_n_s_m),
+        driving_hz: crossover.map(|c| c.driving_hz),
+        runout_limit_m,
+    }
 }
 
 fn parameters(suggested: &Suggested, in_use: &Config) -> Vec<Parameter> {

@@ -69,6 +69,10 @@ pub struct Nominal {
     pub load_n: f64,
     /// How far the centre of the retainer bearing lies off that of the sensors \[m\].
     pub centre_offset_m: f64,
+    /// Spin, where it is known \[Hz\].
+    pub spin_hz: Option<f64>,
+    /// Amplitude of the runout that turns with the spin, of the reading on one axis, where it is known \[m\].
+    pub runout_m: Option<f64>,
 }
 
 impl Nominal {

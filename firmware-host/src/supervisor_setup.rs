@@ -33,6 +33,9 @@ pub(crate) fn nominal_of(plant: &PlantParams, file: &SceneFile) -> Nominal {
         range_m: file.sensor.range_m,
         load_n: plant.rotor.mass_kg * g_x.hypot(g_y),
         centre_offset_m: offset_x.hypot(offset_y),
+        spin_hz: Some(file.spin.frequency_hz),
+        // No scene has one.
+        runout_m: None,
     }
 }
 

@@ -33,6 +33,7 @@ pub fn text(advice: &Advice) -> String {
     reaction(&mut page, advice);
     noise(&mut page, advice);
     impact(&mut page, advice);
+    vibration(&mut page, advice);
     page.heading("Warnings");
     if advice.warnings.is_empty() {
         page.0.push_str("  none\n");
@@ -174,4 +175,29 @@ fn impact(page: &mut Page, advice: &Advice) {
         speed(i.passive_m_s),
         "v_t,crit/K; damping between bounces adds to it",
     );
+}
+
+fn vibration(page: &mut Page, advice: &Advice) {
+    let v = &advice.vibration;
+    page.heading("Vibration of the reading that no force changes (runout, bending, noise)");
+    let (crossover, remark) = match (v.crossover_hz, v.driving_n_s_m, v.driving_hz) {
+        (Some(hz), Some(driving), Some(at_hz)) => (
+            format!("{hz:.1} Hz"),
+            format!(
+                "in flight its force drives faster ones, at most with {driving:.0} N s/m, at {at_hz:.0} Hz"
+            ),
+        ),
+        _ => (
+            "–".to_owned(),
+            "in flight all are damped that the rate shows".to_owned(),
+        ),
+    };
+    page.row("the supervisor damps up to", crossover, &remark);
+    if let (Some(limit_m), Some(hz)) = (v.runout_limit_m, advice.nominal.spin_hz) {
+        page.row(
+            &format!("most runout at {:.1} Hz", hz.abs()),
+            format!("{:.1} µm", limit_m * 1e6),
+            "amplitude on one axis; more looks like an approach",
+        );
+    }
 }

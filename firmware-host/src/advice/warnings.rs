@@ -32,6 +32,7 @@ pub(super) fn of(advice: &Advice, config: &Config) -> Vec<Warning> {
         lead_too_short(advice),
         slew(advice),
         centre_offset(advice, config),
+        runout(advice),
     ];
     checks.into_iter().flatten().collect()
 }
@@ -278,4 +279,27 @@ fn centre_offset(advice: &Advice, config: &Config) -> Option<Warning> {
         ),
     };
     warning("centre_offset", text, remedy)
+}
+
+/// What turns with the shaft in the reading alone is a speed to the supervisor.
+fn runout(advice: &Advice) -> Option<Warning> {
+    let n = &advice.nominal;
+    let (runout_m, hz) = (n.runout_m?, n.spin_hz?.abs());
+    let limit_m = advice.vibration.runout_limit_m?;
+    if runout_m <= limit_m {
+        return None;
+    }
+    let text = format!(
+        "a runout of {:.1} µm at {hz:.1} Hz reads as {:.4} m/s, and more than {:.1} µm looks like an approach: the \
+         supervisor takes over from a rotor that levitates",
+        runout_m * 1e6,
+        runout_m * hz * std::f64::consts::TAU,
+        limit_m * 1e6
+    );
+    let remedy = format!(
+        "subtract from the samples what slow roll shows against the angle of the shaft, or work the track of the \
+         sensor down to {} µm",
+        rounded_down(limit_m * 1e6)
+    );
+    warning("runout", text, remedy)
 }

@@ -17,6 +17,9 @@ pub struct AdviseArgs {
     /// Print the configuration alone, as it is written there. What the scene's own [supervisor] sets is in it.
     #[arg(long, value_enum, conflicts_with = "json")]
     pub format: Option<Language>,
+    /// Amplitude of the runout of the reading on one axis, as measured at slow roll; also beside a scene.
+    #[arg(long, allow_hyphen_values = true, value_name = "NUMBER")]
+    pub runout_m: Option<f64>,
     #[command(flatten)]
     numbers: NumberArgs,
 }
@@ -102,6 +105,8 @@ numbers! {
     load_n: f64, Some(0.0), not_negative, "a finite number, 0 or greater";
     /// How far the retainer bearing's centre lies off that of the sensors [default: 0].
     centre_offset_m: f64, Some(0.0), not_negative, "a finite number, 0 or greater";
+    /// Spin of the rotor [default: not known].
+    spin_hz: f64, None, f64::is_finite, "a finite number";
 }
 
 /// Option of a field of [`Nominal`] or [`NumberArgs`].
@@ -168,6 +173,8 @@ impl Numbers {
             range_m: self.range_m,
             load_n: self.load_n.unwrap_or_default(),
             centre_offset_m: self.centre_offset_m.unwrap_or_default(),
+            spin_hz: self.spin_hz,
+            runout_m: None,
         })
     }
 }
@@ -177,6 +184,16 @@ impl Numbers {
 /// # Errors
 /// [`CommandError`] for a scene or numbers that there is no advice for.
 pub fn execute(args: &AdviseArgs) -> Result<(), CommandError> {
+    if let Some(runout_m) = args.runout_m
+        && !not_negative(runout_m)
+    {
+        let is = format!("is {runout_m}");
+        return Err(refused("runout_m", &is, "a finite number, 0 or greater"));
+    }
+    let told = |nominal: Nominal| Nominal {
+        runout_m: args.runout_m,
+        ..nominal
+    };
     let advice = match &args.scene {
         Some(path) => {
             let scene = load(path)?;
@@ -186,11 +203,20 @@ pub fn execute(args: &AdviseArgs) -> Result<(), CommandError> {
                     help: "add [magnet]: without one there is nothing to configure".to_owned(),
                 });
             }
-            Advice::new(&scene.title, &scene.nominal, &scene.overrides)
+            Advice::new(&scene.title, &told(scene.nominal), &scene.overrides)
                 .map_err(|e| out_of_range(&e, |field| scene.nominal_keys.of(field).to_owned()))?
         }
-        None => Advice::new("Plain numbers", &args.numbers.nominal()?.nominal()?, &[])
-            .map_err(|e| out_of_range(&e, option))?,
+        None => {
+            let nominal = told(args.numbers.nominal()?.nominal()?);
+            if nominal.runout_m.is_some() && nominal.spin_hz.is_none() {
+                return Err(CommandError::Numbers {
+                    message: "--runout-m is given without --spin-hz".to_owned(),
+                    help: "give --spin-hz: how fast a runout reads is a matter of the spin"
+                        .to_owned(),
+                });
+            }
+            Advice::new("Plain numbers", &nominal, &[]).map_err(|e| out_of_range(&e, option))?
+        }
     };
     if args.json {
         return print(&(pretty(&advice, "formatting the advice")? + "\n"));

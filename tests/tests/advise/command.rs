@@ -30,6 +30,9 @@ fn json_has_its_keys_and_agrees_with_the_scene() {
         "/impact/first_m_s",
         "/impact/first_compliant_m_s",
         "/impact/all_bounces_m_s",
+        "/crossover_hz",
+        "/driving_n_s_m",
+        "/driving_hz",
         "/parameters/0/value",
     ] {
         let value = json.pointer(pointer);
@@ -49,9 +52,9 @@ fn json_has_its_keys_and_agrees_with_the_scene() {
             .starts_with("[supervisor]")
     );
 
-    // The overload scene is the same bearing but for the converter's step.
+    // The overload scene is the same bearing but for the converter's step and the spin.
     let mut more = numbers.clone();
-    more.push("--quantum-m=1e-7");
+    more.extend(["--quantum-m=1e-7", "--spin-hz=200"]);
     let numbers: Value = serde_json::from_slice(&advise(&more).stdout).unwrap();
     let path = scene_path("overload_then_release");
     let output = advise(&[path.to_str().unwrap(), "--json"]);
@@ -61,6 +64,8 @@ fn json_has_its_keys_and_agrees_with_the_scene() {
         "limits",
         "noise",
         "impact",
+        "crossover_hz",
+        "runout_limit_m",
         "parameters",
         "warnings",
     ] {

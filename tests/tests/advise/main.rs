@@ -1,9 +1,12 @@
 //! `advise`: closed forms, the suggested configuration, warnings, and the command line.
 
 mod command;
+mod crossover;
 mod keys;
 mod listing;
 mod noise;
+mod shaken;
+mod vibration;
 
 use firmware_host::advice::Advice;
 use firmware_host::scene::Scene;
@@ -36,6 +39,8 @@ fn amb() -> Nominal {
         range_m: None,
         load_n: 0.0,
         centre_offset_m: 0.0,
+        spin_hz: None,
+        runout_m: None,
     }
 }
 
@@ -427,7 +432,7 @@ fn the_book_says_how_to_choose_every_parameter() {
     let keys: Vec<&str> = (source.split("warning(").skip(1))
         .filter_map(|rest| rest.trim_start().strip_prefix('"')?.split('"').next())
         .collect();
-    assert_eq!(keys.len(), 12, "{keys:?}");
+    assert_eq!(keys.len(), 13, "{keys:?}");
     for key in keys {
         assert!(page.contains(&format!("| `{key}` |")), "{key}");
     }

@@ -16,7 +16,7 @@ fn between(chance: &mut ChaCha8Rng, low: f64, high: f64) -> f64 {
 }
 
 /// A machine on a shaft or pulled by its magnets, with a sensor from good to useless.
-fn machine(chance: &mut ChaCha8Rng) -> Nominal {
+pub(super) fn machine(chance: &mut ChaCha8Rng) -> Nominal {
     let mass_kg = between(chance, 0.3, 100.0);
     let clearance_m = between(chance, 1e-4, 5e-4);
     let force_max_n = mass_kg * between(chance, 20.0, 600.0);

@@ -1,0 +1,228 @@
+//! A vibration of the reading: the most that a force does to it, and how fast a runout may be.
+
+use super::shaken::{
+    Path, Shake, after_a_touch, after_an_approach, engaged_for_long, on_the_wall, round_the_wall,
+    shaken,
+};
+use super::{AMB, advice, advise, amb, stderr};
+use firmware_host::advice::RUNOUT_SPEED_SHARE;
+use firmware_host::suggest::Nominal;
+use serde_json::Value;
+use std::f64::consts::TAU;
+use supervisor::Mode;
+use system_tests::scene_path;
+
+/// Whatever the mode, the size and the frequency: a force within the cap does at most 4·F·A of work in a cycle on a
+/// vibration of amplitude A, F for each metre of its path. In flight it damps well below the crossover at any size, and drives
+/// nowhere more than the small signals say.
+#[test]
+fn no_vibration_gets_more_work_than_the_cap_along_its_path() {
+    let ways: [(Path, bool); 4] = [
+        (after_a_touch, true),
+        (after_an_approach, true),
+        (on_the_wall, false),
+        (round_the_wall, false),
+    ];
+    let (mut seen, mut most) = (vec![], 0.0_f64);
+    for sample_rate_hz in [10e3, 20e3] {
+        let n = Nominal {
+            sample_rate_hz,
+            ..amb()
+        };
+        let config = engaged_for_long(&n);
+        let vibration = advice(&n).vibration;
+        let (crossover_hz, driving) = (
+            vibration.crossover_hz.unwrap(),
+            vibration.driving_n_s_m.unwrap(),
+        );
+        for (path, flying) in ways {
+            for along in [[1.0, 0.0], [0.6, -0.8]] {
+                for amplitude in [1e-3, 1e-2, 0.03, 0.1, 0.3] {
+                    for share in [0.3, 0.7, 1.1, 1.3, 1.7, 2.5, 3.5, 5.0] {
+                        let hz = share * crossover_hz;
+                        let shake = Shake {
+                            hz,
+                            amplitude,
+                            along,
+                            spin_hz: None,
+                        };
+                        let done = shaken(&config, path, shake);
+                        let what = format!("{hz} Hz, {shake:?}, {done:?}");
+                        let work = done.work / (4.0 * amplitude);
+                        assert!(work.abs() <= 1.0, "{what}");
+                        most = most.max(work);
+                        if flying {
+                            assert!(share > 1.0 || work < 0.0, "{what}");
+                            assert!(done.damping_n_s_m > -1.05 * driving, "{what}");
+                        }
+                        seen.extend(done.modes);
+                    }
+                }
+            }
+        }
+    }
+    for mode in [
+        Mode::Approach,
+        Mode::Bounce,
+        Mode::BackwardWhirl,
+        Mode::Pinned,
+    ] {
+        assert!(seen.contains(&mode), "{mode:?}");
+    }
+    assert!(!seen.contains(&Mode::Levitated) && !seen.contains(&Mode::SensorFault));
+    // Not far from what is possible.
+    assert!(most > 0.4, "{most}");
+}
+
+fn at_spin(spin_hz: f64) -> Nominal {
+    Nominal {
+        spin_hz: Some(spin_hz),
+        ..amb()
+    }
+}
+
+/// The core lets a rotor levitate whose reading has a runout a little below the limit, whether or not it is told the spin, and
+/// takes over from one at twice the limit. (Far beyond the observer's bandwidth it sees less of it.)
+#[test]
+fn a_runout_below_the_limit_is_no_approach() {
+    for sample_rate_hz in [10e3, 20e3, 50e3] {
+        for noise_rms_m in [1e-6, 3e-6] {
+            for spin_hz in [80.0, 120.0, 200.0, 360.0, 500.0, 800.0, 1200.0, 2000.0] {
+                let n = Nominal {
+                    sample_rate_hz,
+                    noise_rms_m,
+                    ..at_spin(spin_hz)
+                };
+                let limit = advice(&n).vibration.runout_limit_m.unwrap() / n.clearance_m;
+                let modes = |share: f64, told: bool| {
+                    let shake = Shake {
+                        hz: spin_hz,
+                        amplitude: share * limit,
+                        along: [1.0, 0.0],
+                        spin_hz: told.then_some(spin_hz),
+                    };
+                    shaken(&engaged_for_long(&n), |_, _| [0.0; 2], shake).modes
+                };
+                for told in [false, true] {
+                    assert_eq!(modes(0.93, told), [Mode::Levitated], "{told}, {n:?}");
+                }
+                if (100.0..=500.0).contains(&spin_hz) {
+                    assert_ne!(modes(2.0, false), [Mode::Levitated], "{n:?}");
+                }
+            }
+        }
+    }
+}
+
+/// Half of √(F·c/m) at the spin, whichever way it turns, at most the clearance, and nothing where no spin is known.
+#[test]
+fn the_runout_limit_is_that_of_the_speed() {
+    let limit = |n: &Nominal| advice(n).vibration.runout_limit_m;
+    assert_eq!(limit(&amb()), None);
+    assert_eq!(RUNOUT_SPEED_SHARE, 0.5);
+    for spin_hz in [200.0, -200.0] {
+        let by_hand = 0.5 * (1000.0 * 2e-4 / 10.0_f64).sqrt() / (TAU * 200.0);
+        let limit_m = limit(&at_spin(spin_hz)).unwrap();
+        assert!((limit_m / by_hand - 1.0).abs() < 1e-9, "{limit_m}");
+    }
+    for spin_hz in [0.0, 40.0] {
+        assert_eq!(limit(&at_spin(spin_hz)), Some(2e-4));
+    }
+}
+
+/// On the right side of the limit, with what to do.
+#[test]
+fn a_runout_beyond_the_limit_is_told() {
+    let told = |n: Nominal, runout_m: Option<f64>| {
+        let warnings = advice(&Nominal { runout_m, ..n }).warnings;
+        warnings.into_iter().find(|w| w.key == "runout")
+    };
+    let limit_m = advice(&at_spin(200.0)).vibration.runout_limit_m.unwrap();
+    for (n, runout_m, expected) in [
+        (at_spin(200.0), None, false),
+        (at_spin(200.0), Some(0.999 * limit_m), false),
+        (at_spin(200.0), Some(1.001 * limit_m), true),
+        (at_spin(-200.0), Some(1.001 * limit_m), true),
+        (at_spin(10.0), Some(1.9e-4), false),
+        (at_spin(10.0), Some(2.1e-4), true),
+        (amb(), Some(1e-3), false),
+    ] {
+        assert_eq!(told(n, runout_m).is_some(), expected, "{runout_m:?}, {n:?}");
+    }
+    let warning = told(at_spin(200.0), Some(8e-5)).unwrap();
+    assert!(
+        warning.text.contains("80.0 µm at 200.0 Hz"),
+        "{}",
+        warning.text
+    );
+    assert!(warning.remedy.contains("subtract"), "{}", warning.remedy);
+}
+
+#[test]
+fn text_and_json_say_where_damping_ends() {
+    let with = |more: &[&str]| advise(&[&AMB[..], more].concat());
+    let json = |more: &[&str]| -> Value {
+        let output = with(&[more, &["--json"]].concat());
+        assert!(output.status.success(), "{}", stderr(&output));
+        serde_json::from_slice(&output.stdout).unwrap()
+    };
+    let plain = json(&[]);
+    let hz = plain["crossover_hz"].as_f64().unwrap();
+    assert!((hz - 817.0).abs() < 1.0, "{hz}");
+    assert!(plain["driving_hz"].as_f64().unwrap() > hz);
+    assert!(plain["driving_n_s_m"].as_f64().unwrap() > 9e3);
+    assert!(plain["runout_limit_m"].is_null() && plain["nominal"]["spin_hz"].is_null());
+    let turning = json(&["--spin-hz=-200", "--runout-m=9e-5"]);
+    let limit_m = turning["runout_limit_m"].as_f64().unwrap();
+    assert!((limit_m - 5.627e-5).abs() < 1e-8, "{limit_m}");
+    assert_eq!(turning["nominal"]["runout_m"], 9e-5);
+    let keys: Vec<&Value> = (turning["warnings"].as_array().unwrap().iter())
+        .map(|w| &w["key"])
+        .collect();
+    assert!(keys.contains(&&Value::from("runout")), "{keys:?}");
+
+    let text = String::from_utf8(with(&["--spin-hz=200"]).stdout).unwrap();
+    for part in [
+        "817.0 Hz",
+        "at most with 9490 N s/m",
+        "most runout at 200.0 Hz",
+        "56.3 µm",
+    ] {
+        assert!(text.contains(part), "{part}: {text}");
+    }
+    assert!(
+        !String::from_utf8(with(&[]).stdout)
+            .unwrap()
+            .contains("most runout")
+    );
+}
+
+/// A scene has its spin; the runout is told beside it.
+#[test]
+fn a_runout_may_be_told_beside_a_scene() {
+    let path = scene_path("overload_then_release");
+    let output = advise(&[path.to_str().unwrap(), "--json", "--runout-m=6e-5"]);
+    let json: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(json["nominal"]["spin_hz"], 200.0);
+    let warnings = json["warnings"].to_string();
+    assert!(warnings.contains("\"runout\""), "{warnings}");
+    for (args, message) in [
+        (
+            [&AMB[..], &["--runout-m=-1"]].concat(),
+            "--runout-m is -1, expected a finite number, 0 or greater",
+        ),
+        (
+            [&AMB[..], &["--runout-m=1e-5"]].concat(),
+            "--runout-m is given without --spin-hz",
+        ),
+        (
+            [&AMB[..], &["--spin-hz=inf"]].concat(),
+            "--spin-hz is inf, expected a finite number",
+        ),
+    ] {
+        let output = advise(&args);
+        assert_eq!(output.status.code(), Some(2));
+        let said = stderr(&output);
+        assert!(said.contains(message), "{said}");
+    }
+}
