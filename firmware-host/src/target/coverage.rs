@@ -5,10 +5,8 @@ use supervisor::Mode;
 
 /// The ways that the state machine has, apart from staying. There is none from a touch straight into approach or
 /// hand-over, none from a fault into hand-over, none from bounce into approach, and none from levitation into hand-over.
-const WAYS: [(Mode, &[Mode]); 8] = {
-    use Mode::{
-        Approach, BackwardWhirl, Bounce, HandedBack, Handover, Levitated, Pinned, SensorFault,
-    };
+const WAYS: [(Mode, &[Mode]); 7] = {
+    use Mode::{Approach, BackwardWhirl, Bounce, Handover, Levitated, Pinned, SensorFault};
     [
         (
             Levitated,
@@ -23,28 +21,14 @@ const WAYS: [(Mode, &[Mode]); 8] = {
                 Pinned,
                 Handover,
                 SensorFault,
-                HandedBack,
             ],
         ),
         (
             Bounce,
-            &[
-                Levitated,
-                BackwardWhirl,
-                Pinned,
-                Handover,
-                SensorFault,
-                HandedBack,
-            ],
+            &[Levitated, BackwardWhirl, Pinned, Handover, SensorFault],
         ),
-        (
-            BackwardWhirl,
-            &[Levitated, Bounce, Pinned, SensorFault, HandedBack],
-        ),
-        (
-            Pinned,
-            &[Levitated, Bounce, BackwardWhirl, SensorFault, HandedBack],
-        ),
+        (BackwardWhirl, &[Levitated, Bounce, Pinned, SensorFault]),
+        (Pinned, &[Levitated, Bounce, BackwardWhirl, SensorFault]),
         (
             Handover,
             &[
@@ -54,21 +38,12 @@ const WAYS: [(Mode, &[Mode]); 8] = {
                 BackwardWhirl,
                 Pinned,
                 SensorFault,
-                HandedBack,
             ],
         ),
         (
             SensorFault,
-            &[
-                Levitated,
-                Approach,
-                Bounce,
-                BackwardWhirl,
-                Pinned,
-                HandedBack,
-            ],
+            &[Levitated, Approach, Bounce, BackwardWhirl, Pinned],
         ),
-        (HandedBack, &[Levitated]),
     ]
 };
 
