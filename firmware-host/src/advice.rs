@@ -1,6 +1,7 @@
 //! What a control engineer wants to know of a bearing before the supervisor goes in: limits in closed
 //! form, reaction time, noise, a suggested configuration, and what is weak.
 
+mod bisection;
 mod crossover;
 mod listing;
 mod noise;

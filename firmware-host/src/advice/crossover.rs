@@ -19,6 +19,7 @@
 //! c_eq = −Re(f(jω)/(jω·y))                                       its mean power is −c_eq·(speed of the vibration)²/2
 //! ```
 
+use super::bisection::by_logarithm;
 use nalgebra::{Complex, Matrix3, RowVector3, Vector3};
 use std::f64::consts::TAU;
 use supervisor::Config;
@@ -150,7 +151,7 @@ impl SmallSignals {
         let from = damped.unwrap_or(0);
         let first = (from..=FREQUENCIES).find(|i| !damps(step(*i)))?;
         let frequency_hz = match damped {
-            Some(_) => bracket(step(first - 1), step(first), |hz| !damps(hz)),
+            Some(_) => by_logarithm((step(first - 1), step(first)), 1e-9, damps).1,
             None => 0.0,
         };
         let most = (first..=FREQUENCIES)
@@ -162,17 +163,4 @@ impl SmallSignals {
             driving_hz: most.1,
         })
     }
-}
-
-/// Where a condition begins to hold, between a number for which it does not and one for which it does.
-fn bracket(mut low: f64, mut high: f64, holds: impl Fn(f64) -> bool) -> f64 {
-    while high > low * (1.0 + 1e-9) {
-        let middle = (low * high).sqrt();
-        if holds(middle) {
-            high = middle;
-        } else {
-            low = middle;
-        }
-    }
-    high
 }

@@ -1,5 +1,6 @@
 //! Noise of the estimated speed against the speeds that the supervisor has to tell apart.
 
+use super::bisection::by_logarithm;
 use super::{Limits, reaction};
 use crate::suggest::{Nominal, POLE_AIM, QUICKEST_POLES, SLOWEST_POLE, speed_noise_m_s, suggested};
 use crate::supervisor_setup::{Override, replaced};
@@ -134,22 +135,14 @@ impl Judge {
             })
         };
         // By its logarithm: sensors differ by powers of ten.
-        let (mut low, mut high) = (1e-9 * n.clearance_m, n.clearance_m);
+        let (low, high) = (1e-9 * n.clearance_m, n.clearance_m);
         if !tolerated(low) {
             return None;
         }
         if tolerated(high) {
             return Some(high);
         }
-        while high > low * (1.0 + 1e-6) {
-            let middle = (low * high).sqrt();
-            if tolerated(middle) {
-                low = middle;
-            } else {
-                high = middle;
-            }
-        }
-        Some(low)
+        Some(by_logarithm((low, high), 1e-6, tolerated).0)
     }
 
     fn sample_rate_least_hz(&self, n: &Nominal, tolerable: bool) -> Option<f64> {

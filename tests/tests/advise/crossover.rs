@@ -111,16 +111,21 @@ const SHOWN: [[f64; 4]; 6] = [
     [50e3, 5e-5, 1e-6, 1500.0],
 ];
 
+/// The machine of a row.
+fn of_row([sample_rate_hz, lag_s, noise_rms_m, _]: [f64; 4]) -> Nominal {
+    Nominal {
+        sample_rate_hz,
+        lag_s,
+        noise_rms_m,
+        ..amb()
+    }
+}
+
 /// And on either side of it the core does what is said.
 #[test]
 fn the_crossover_is_where_closed_loops_showed_it() {
-    for [sample_rate_hz, lag_s, noise_rms_m, shown_hz] in SHOWN {
-        let n = Nominal {
-            sample_rate_hz,
-            lag_s,
-            noise_rms_m,
-            ..amb()
-        };
+    for row in SHOWN {
+        let (n, shown_hz) = (of_row(row), row[3]);
         let vibration = advice(&n).vibration;
         let hz = vibration.crossover_hz.unwrap();
         assert!((hz / shown_hz - 1.0).abs() < 0.05, "{hz}, shown {shown_hz}");
@@ -138,14 +143,8 @@ fn the_crossover_is_where_closed_loops_showed_it() {
 /// there is more damping than is said.
 #[test]
 fn a_known_spin_moves_the_crossover_by_little() {
-    for [sample_rate_hz, lag_s, noise_rms_m, _] in SHOWN {
-        let n = Nominal {
-            sample_rate_hz,
-            lag_s,
-            noise_rms_m,
-            ..amb()
-        };
-        let config = engaged_for_long(&n);
+    for row in SHOWN {
+        let config = engaged_for_long(&of_row(row));
         let analysis = SmallSignals::new(&config);
         let hz = analysis.crossover().unwrap().frequency_hz;
         for spin_hz in [200.0, -200.0, 500.0] {
