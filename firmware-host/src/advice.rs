@@ -30,8 +30,8 @@ pub const ARREST_SHARE: f64 = 0.85;
 /// Lag beyond which even a tangential force is worth less than half of itself.
 pub const USEFUL_LAG_DEG: f64 = 75.0;
 
-/// A runout that is as fast as this share of √(F·c/m) does not look like an approach.
-pub const RUNOUT_SPEED_SHARE: f64 = 0.5;
+/// A runout that is faster than this share of √(F·c/m) is what the reading usually does, and hides an approach.
+pub const RUNOUT_SPEED_SHARE: f64 = 0.4;
 
 /// All of it; keys are stable.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -152,7 +152,7 @@ pub struct Vibration {
     pub driving_n_s_m: Option<f64>,
     /// … and where \[Hz\].
     pub driving_hz: Option<f64>,
-    /// Largest amplitude of a runout at the spin, on one axis, that does not look like an approach \[m\]; none where no spin
+    /// Largest amplitude of a runout at the spin, on one axis, with which the supervisor helps \[m\]; none where no spin
     /// is known.
     pub runout_limit_m: Option<f64>,
 }

@@ -3,6 +3,7 @@
 pub mod accuracy;
 pub mod advise;
 pub mod error;
+pub mod harm;
 pub mod overloads;
 pub mod paper;
 mod progress;

@@ -7,6 +7,10 @@ use supervisor::{Entry, Events, Limits, Mode, PER_UNIT, crc_of};
 
 /// Bytes of an entry.
 pub const ENTRY_BYTES: usize = 16;
+/// What a record may begin with.
+const TRIGGERS: Events = Events::ENGAGED
+    .union(Events::TOUCHED)
+    .union(Events::SENSOR_FAULT);
 
 /// What the units of a record are in SI, as far as they are known.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -132,6 +136,7 @@ impl FlightRecord {
             .take_while(|entry| **entry == Entry::default())
             .count();
         let written = &entries[empty..];
+        let triggers = |entry: &Entry| entry.events & TRIGGERS.bits() as u16 != 0;
         let engaged = |entry: &&Entry| entry.events & Events::ENGAGED.bits() as u16 != 0;
         let trigger = (entries.len() / 4).checked_sub(1);
         let a_length = entries.len().is_power_of_two();
@@ -148,7 +153,7 @@ impl FlightRecord {
         };
         Self {
             crc: crc_of(entries.iter()),
-            whole: a_length && trigger.is_some_and(|at| engaged(&&entries[at])),
+            whole: a_length && trigger.is_some_and(|at| triggers(&entries[at])),
             empty,
             missing: written.windows(2).map(gap).sum(),
             stretches: stretches(&ticks),

@@ -2,7 +2,7 @@
 //!
 //! Files, each importing only from those above it: `trace`, `supervision`, `verdict`, `policy_kind`, `scene_missing`, `scene_error`, `axis`, `loads`,
 //! `amplifier`, `faults`, `flight_record`, `scene_values`, `scene_event_file`, `scene_file`, `plant_setup`, `suggest`, `supervisor_setup`, `scene_warnings`, `instruments`,
-//! `levitation`, `clairvoyant`, `history`, `scene_events`, `scene_instruments`, `scene_limits`, `scene`, `policies`, `judge`, `closed_loop`, `verify`, `accuracy`, `wrong_runs`, `trace_file`, `plot`, `scene_words`, `table`, `report`, `paper`, `overloads`, `sensitivity`, `advice`, `target`, `output`,
+//! `levitation`, `clairvoyant`, `history`, `scene_events`, `scene_instruments`, `scene_limits`, `scene`, `policies`, `judge`, `closed_loop`, `verify`, `accuracy`, `wrong_runs`, `trace_file`, `plot`, `scene_words`, `table`, `report`, `paper`, `overloads`, `harm`, `sensitivity`, `advice`, `target`, `output`,
 //! `commands`.
 
 #![forbid(unsafe_code)]
@@ -17,6 +17,7 @@ pub mod closed_loop;
 pub mod commands;
 mod faults;
 pub mod flight_record;
+pub mod harm;
 pub mod history;
 pub mod instruments;
 mod judge;

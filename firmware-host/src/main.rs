@@ -2,7 +2,7 @@
 
 use clap::{Parser, Subcommand};
 use firmware_host::commands::{
-    accuracy, advise, error, overloads, paper, record, run, sensitivity, target,
+    accuracy, advise, error, harm, overloads, paper, record, run, sensitivity, target,
 };
 use std::process::ExitCode;
 
@@ -22,6 +22,8 @@ enum Command {
     Accuracy(accuracy::AccuracyArgs),
     /// Run the catalogue of overloads under every policy, and hold the supervisor's promises against it.
     Overloads(overloads::OverloadsArgs),
+    /// Compare the supervisor with levitation alone on machines drawn at random.
+    Harm(harm::HarmArgs),
     /// Limits of a bearing in closed form, a suggested configuration of the supervisor, and what is weak.
     Advise(Box<advise::AdviseArgs>),
     /// Run a scene again and again with the supervisor told something wrong of its machine.
@@ -40,6 +42,7 @@ fn main() -> ExitCode {
         Command::Run(args) => run::execute(args),
         Command::Accuracy(args) => accuracy::execute(args),
         Command::Overloads(args) => overloads::execute(args),
+        Command::Harm(args) => harm::execute(args),
         Command::Advise(args) => advise::execute(args),
         Command::Sensitivity(args) => sensitivity::execute(args),
         Command::Paper(args) => paper::execute(args),

@@ -12,7 +12,11 @@ pub struct Supervision {
     /// When it did so first \[s\].
     pub first_engaged_s: Option<f64>,
     /// Time in which it had the bearing, alone or in part \[s\].
-    pub engaged_time_s: f64,
+    pub engaged_s: f64,
+    /// The longest without a break \[s\].
+    pub longest_engagement_s: f64,
+    /// Times that it gave the bearing back to the levitation controller, as it came no farther.
+    pub handed_back: u64,
     /// Sensor faults.
     pub sensor_faults: u64,
     /// Highest severity that it expected, a share of what the cap can stop.
@@ -27,6 +31,8 @@ pub struct Supervision {
 pub struct Account {
     /// Engagements in which the rotor touched.
     pub landings: u32,
+    /// Engagements in which it did not.
+    pub nuisance_engagements: u32,
     /// Fastest normal speed before an impact \[m/s\].
     pub impact_speed_max_m_s: f64,
     /// Fastest backward speed in contact \[m/s\].
@@ -55,13 +61,24 @@ impl Supervision {
         };
         let engaged = |(_, s): &&(f64, Said)| s.events.contains(Events::ENGAGED);
         // The last row is none: nothing follows it.
-        let spans = said.windows(2).filter(|w| w[0].1.mode != Mode::Levitated);
+        let spans = said.windows(2).filter(|w| acts(w[0].1.mode));
+        let mut longest_s = 0.0_f64;
+        let mut since_s = None;
+        for (t_s, said) in &said {
+            let began_s = *since_s.get_or_insert(*t_s);
+            longest_s = longest_s.max(t_s - began_s);
+            if !acts(said.mode) {
+                since_s = None;
+            }
+        }
         let severities = said.iter().map(|(_, s)| widened(s.severity));
         Some(Self {
             engagements: count(Events::ENGAGED),
             first_engaged_s: said.iter().find(engaged).map(|(t_s, _)| *t_s),
             // A sum of nothing is −0.
-            engaged_time_s: spans.map(|w| w[1].0 - w[0].0).fold(0.0, |a, b| a + b),
+            engaged_s: spans.map(|w| w[1].0 - w[0].0).fold(0.0, |a, b| a + b),
+            longest_engagement_s: longest_s,
+            handed_back: count(Events::HANDED_BACK),
             sensor_faults: count(Events::SENSOR_FAULT),
             expected_severity_max: severities.fold(0.0, f64::max),
             account: trace.read_out.as_ref().map(Account::of),
@@ -69,11 +86,17 @@ impl Supervision {
     }
 }
 
+/// Whether the supervisor has the bearing in a mode, alone or in part.
+fn acts(mode: Mode) -> bool {
+    !matches!(mode, Mode::Levitated | Mode::HandedBack)
+}
+
 impl Account {
     fn of(read_out: &ReadOut) -> Self {
         let report = &read_out.report;
         Self {
             landings: report.landings,
+            nuisance_engagements: report.nuisance_engagements,
             impact_speed_max_m_s: widened(report.impact_speed_max_m_s),
             backward_speed_max_m_s: widened(report.backward_speed_max_m_s),
             whirl_limit_m_s: widened(report.whirl_limit_m_s),
@@ -212,7 +235,7 @@ mod tests {
         trace.rows.insert(2, between);
         let s = Supervision::of(&trace).unwrap();
         // Nothing follows the last row, and a row between samples is none.
-        assert_eq!((s.engagements, s.engaged_time_s), (2, 2.0));
+        assert_eq!((s.engagements, s.engaged_s), (2, 2.0));
         assert_eq!(
             (s.first_engaged_s, s.expected_severity_max),
             (Some(1.0), 1.0)
@@ -220,6 +243,6 @@ mod tests {
         assert!(s.account.is_none());
         assert!(Supervision::of(&Trace::default()).is_none());
         let never = Supervision::of(&self::trace(&[(Mode::Levitated, Events::empty())])).unwrap();
-        assert!(never.engaged_time_s.is_sign_positive());
+        assert!(never.engaged_s.is_sign_positive());
     }
 }

@@ -78,9 +78,14 @@ const CHECK_FIGURES: &[Figure<Verification>] = &[
 const SUPERVISION_FIGURES: &[Figure<Supervision>] = &[
     ("supervisor engaged", |s| times(s.engagements)),
     ("engaged first [ms]", |s| or_dash(s.first_engaged_s, 1e3, 2)),
-    ("engaged for [ms]", |s| {
-        format!("{:.2}", s.engaged_time_s * 1e3)
+    ("engaged for [ms]", |s| format!("{:.2}", s.engaged_s * 1e3)),
+    ("longest engagement [ms]", |s| {
+        format!("{:.2}", s.longest_engagement_s * 1e3)
     }),
+    ("engaged without a touch", |s| {
+        told(s, |account| account.nuisance_engagements.to_string())
+    }),
+    ("handed back", |s| s.handed_back.to_string()),
     ("highest expected severity", |s| {
         format!("{:.2}", s.expected_severity_max)
     }),

@@ -20,5 +20,10 @@ fn main() -> std::io::Result<()> {
         .ancestors()
         .nth(3)
         .unwrap_or_else(|| Path::new(&out));
-    std::fs::write(beside_library.join("amb_supervisor_abi.h"), text)
+    let file = beside_library.join("amb_supervisor_abi.h");
+    // Builds that share the folder write the same; another's compiler must not read it half written.
+    if std::fs::read_to_string(&file).is_ok_and(|there| there == text) {
+        return Ok(());
+    }
+    std::fs::write(file, text)
 }

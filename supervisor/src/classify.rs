@@ -44,6 +44,11 @@ pub(crate) struct Classifier<S> {
 }
 
 impl<S: Scalar> Classifier<S> {
+    /// Whether the last tick was one of forward rub.
+    pub(crate) fn rubs(&self) -> bool {
+        self.rubbing
+    }
+
     /// The motion is not known any more: a speed that is not known is no rest.
     pub(crate) fn forget(&mut self) {
         self.ticks_slow = 0;

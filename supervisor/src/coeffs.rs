@@ -17,6 +17,15 @@ const AFTER_LIFT_OFF: f32 = 0.45;
 /// Largest share of the cap that the restoring law has at the wall.
 pub(crate) const NEARLY_ALL: f32 = 0.95;
 
+/// Window of the judge of the model \[t₀\], and its least \[ticks\].
+const WINDOW: f32 = 6.0;
+const LEAST_WINDOW: f32 = 32.0;
+/// Loads of so many caps there are in a shock: what they do in a tick is no cause for doubt, nor is so little \[clearances\].
+const SHOCK: f32 = 8.0;
+const LEAST_DOUBTED: f32 = 0.02;
+/// Noise of the estimated speed (root mean square, of a coordinate) by which an approach can still be told \[lift-off speeds\].
+const QUIET_SPEED: f32 = 0.1;
+
 /// Longest delay between a sample and its force \[ticks\].
 pub(crate) const MAX_DELAY: usize = 8;
 
@@ -178,6 +187,14 @@ pub(crate) struct Coeffs<S: Scalar> {
     pub(crate) way_per_tick: S,
     /// Three steps of the sensor, as a sum of speeds over ticks.
     pub(crate) sensor_speeds: S,
+    /// Mean distance of a sample from where it was expected, of the noise that was told; and up to which of it the speed is
+    /// known well enough to tell an approach by.
+    pub(crate) told_noise: S,
+    pub(crate) quiet_noise: S,
+    /// How far off a sample may be that is not doubted, whatever the noise.
+    pub(crate) never_doubted: S,
+    /// Ticks of a window of [`crate::trust`], less one.
+    pub(crate) window_ticks: u16,
     /// Being blind for the contact force, the observer makes up a speed of so much times the acceleration of all others.
     pub(crate) blind_time: S,
 }
@@ -291,6 +308,16 @@ impl<S: Scalar> Coeffs<S> {
         // Divided by in every severity.
         let whirl_limit = max(whirl_limit_m_s(config) / scaling.speed_m_s(), 1e-6);
         let sensor_steps = 3.0 * config.sensor_step_m * config.retainer_plane_ratio / c;
+        // Mean length of the difference of two samples, each against where this observer expected it, per noise of a coordinate:
+        // by the filter (1 − z⁻¹)⁴/(1 − ρ·z⁻¹)³ to within 8 %.
+        let twice = 2.0 / (1.0 + pole);
+        let per_noise = 1.77 * twice * twice * twice;
+        let told_noise = per_noise * sensor_steps / 3.0;
+        let speed_noise = sqrt(
+            free * free * free * (13.0 + 50.0 * pole + 49.0 * pole * pole) / 2.0 / (1.0 + pole),
+        ) / (1.0 + pole)
+            / (1.0 + pole);
+        let quiet_noise = max(per_noise * QUIET_SPEED * h / speed_noise, 2.5 * told_noise);
         // From the cap on there is no budget.
         let continuous = min(config.continuous_force_n / f, 1.0);
         let square = continuous * continuous;
@@ -368,6 +395,10 @@ impl<S: Scalar> Coeffs<S> {
             index_rate,
             way_per_tick: s("largest speed", config.speed_max_m_s * t / c),
             sensor_speeds: s("sensor step", sensor_steps / h),
+            told_noise: s("sensor step", min(told_noise, 0.5)),
+            quiet_noise: s("sensor step", quiet_noise),
+            never_doubted: s("tick", max(0.5 * SHOCK * h * h, LEAST_DOUBTED)),
+            window_ticks: min(max(WINDOW / h, LEAST_WINDOW), 60000.0) as u16,
             blind_time: s("observer", h * (1.0 + touch_pole) / touch_free),
         };
         (coeffs, taken.misfit)

@@ -86,13 +86,13 @@ impl Detector {
         (self.touching && !before, before && !self.touching)
     }
 
-    /// `cap` is what the force–time budget leaves \[caps\].
+    /// `cap` is what the force–time budget leaves \[caps\], `margin` an outward speed that does not count.
     #[inline]
     pub(crate) fn findings<S: Scalar>(
         &mut self,
         (motion, beside): (&Motion<S>, S),
         (touched, left): (bool, bool),
-        cap: S,
+        (cap, margin): (S, S),
         coeffs: &Coeffs<S>,
     ) -> Findings<S> {
         let per_radius = motion.position.inverse_length();
@@ -110,7 +110,7 @@ impl Detector {
             left,
             unavoidable: false,
         };
-        let outward = found.radial_speed;
+        let outward = found.radial_speed - margin;
         let alarm = outward > S::ZERO && !found.stops(outward, cap, S::ONE, coeffs);
         self.alarmed = if alarm {
             self.alarmed.saturating_add(1)

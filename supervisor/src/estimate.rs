@@ -5,6 +5,7 @@
 
 use crate::coeffs::{Coeffs, MAX_DELAY};
 use crate::drive::{Drive, lagging};
+use crate::innovation::Expected;
 use crate::reading::{Actuator, Facts};
 use crate::scalar::Scalar;
 use crate::spin::Spin;
@@ -32,6 +33,8 @@ pub(crate) enum Wall {
     Holds,
 }
 
+/// From this radius on the wall may be met in the next tick, also one that is out of round or off the centre.
+const WALL_IN_REACH: f32 = 0.8;
 /// A load of so many caps is no load but a missed contact.
 const MOST_LOAD: f32 = 4.0;
 /// Farthest and fastest motion, along each axis: what fixed point can square. Above a friction of 0.005 the cap arrests
@@ -189,6 +192,17 @@ impl<S: Scalar> Observer<S> {
     #[inline]
     fn command(&self, number: u8) -> Vec2<S> {
         (self.commands.get(slot(number)).copied()).unwrap_or_default()
+    }
+
+    /// Where the next sample is expected.
+    #[inline]
+    pub(crate) fn expected(&self, wall: Wall, coeffs: &Coeffs<S>) -> Expected<S> {
+        let position = self.motion.position + self.motion.velocity * coeffs.tick;
+        let free = wall == Wall::Nothing && self.started && !self.motion.fresh;
+        Expected {
+            position,
+            sure: free && !position.exceeds(S::of(WALL_IN_REACH)),
+        }
     }
 
     /// Estimated position of the axis.

@@ -5,6 +5,7 @@
 //! in a row since the last good one make a fault, and how many depends on how sure the refusal is.
 
 use crate::coeffs::Coeffs;
+use crate::innovation::{Expected, Innovation};
 use crate::reading::{Facts, Reading, Verdict};
 use crate::scalar::Scalar;
 use crate::signal::{CoreSample, Events, Refusal, Status};
@@ -63,6 +64,7 @@ pub(crate) struct Guard<S> {
     /// There have been usual samples since `still` looked.
     still_is_old: bool,
     still: Still<S>,
+    pub(crate) innovation: Innovation<S>,
     /// A coordinate has been stuck for so long that it is a fault.
     stuck: bool,
     refused: Refused,
@@ -94,6 +96,7 @@ impl<S: Scalar> Default for Guard<S> {
             faulty: false,
             still_is_old: false,
             still: Still::default(),
+            innovation: Innovation::default(),
             stuck: false,
             refused: Refused::default(),
             fitting: Fitting::default(),
@@ -115,10 +118,11 @@ impl<S: Scalar> Guard<S> {
     pub(crate) fn judge(
         &mut self,
         (sample, status): (&CoreSample<S>, Status),
+        expected: Expected<S>,
         estimated: impl FnOnce() -> (Vec2<S>, bool),
         coeffs: &Coeffs<S>,
     ) -> Reading<S> {
-        let mut verdict = match self.as_usual(sample, status, coeffs) {
+        let mut verdict = match self.as_usual(sample, status, expected, coeffs) {
             Some(facts) => Verdict {
                 facts,
                 ..Verdict::default()
@@ -126,7 +130,7 @@ impl<S: Scalar> Guard<S> {
             None => {
                 // A copy, so that the usual sample stays in registers.
                 let sample = *sample;
-                self.judge_in_full((&sample, status), estimated(), coeffs)
+                self.judge_in_full((&sample, status), expected, estimated(), coeffs)
             }
         };
         self.refusal = verdict.refusal;
@@ -149,6 +153,7 @@ impl<S: Scalar> Guard<S> {
         &mut self,
         sample: &CoreSample<S>,
         status: Status,
+        expected: Expected<S>,
         coeffs: &Coeffs<S>,
     ) -> Option<Facts> {
         let position = Vec2::from_array(sample.position);
@@ -164,6 +169,12 @@ impl<S: Scalar> Guard<S> {
         if !usual {
             return None;
         }
+        if let Some(off) = expected.off(position) {
+            if !self.innovation.fits(off, coeffs) {
+                return None;
+            }
+            self.innovation.learn(off, coeffs);
+        }
         self.last_sequence = sample.sequence;
         self.last_good = position;
         self.still_is_old = true;
@@ -174,6 +185,7 @@ impl<S: Scalar> Guard<S> {
     fn judge_in_full(
         &mut self,
         (sample, status): (&CoreSample<S>, Status),
+        expected: Expected<S>,
         (velocity, in_contact): (Vec2<S>, bool),
         coeffs: &Coeffs<S>,
     ) -> Verdict {
@@ -212,7 +224,15 @@ impl<S: Scalar> Guard<S> {
         let refusal = if repeated {
             Refusal::Dropout
         } else {
-            self.refusal(position, trusted, coeffs)
+            match self.refusal(position, trusted, coeffs) {
+                refusal @ (Refusal::NotFinite | Refusal::Range) => refusal,
+                refusal => match expected.off(position) {
+                    Some(off) if gap == 0 && self.innovation.doubts(off, coeffs) => {
+                        Refusal::Doubted
+                    }
+                    _ => refusal,
+                },
+            }
         };
         let bad = match refusal {
             Refusal::None => Facts::empty(),
@@ -241,6 +261,8 @@ impl<S: Scalar> Guard<S> {
         if self.faulty {
             // Nobody knows where the rotor is: a sample has to fit to the one before it.
             if is_measured(refusal) {
+                // Where noise is what jumps, it has to be learnt to come out of this.
+                self.innovation.learn(position - self.last_good, coeffs);
                 (self.last_good, self.age) = (position, 0);
             }
             events |= self.recover(bad, fits, coeffs);
@@ -305,10 +327,11 @@ impl<S: Scalar> Guard<S> {
         if position.exceeds(coeffs.position_limit) {
             return Refusal::Range;
         }
-        let (stuck, both) = (self.still).watch(position, velocity, coeffs.sensor_speeds);
+        let (stuck, both) = (self.still).watch(position, velocity, coeffs);
         self.stuck = stuck >= if both >= STUCK { STUCK } else { ONE_STUCK };
         let known = self.age != NEVER;
-        if known && (position - self.last_good).exceeds(way_in(u32::from(self.age), coeffs)) {
+        let way = way_in(u32::from(self.age), coeffs) + self.innovation.untold(coeffs);
+        if known && (position - self.last_good).exceeds(way) {
             return Refusal::Slew;
         }
         if stuck > 0 {
@@ -359,6 +382,8 @@ impl<S: Scalar> Guard<S> {
                 *refused = Refused::default();
                 return Events::empty();
             }
+            // The next ones say whether it was right; too few are doubted for a fault.
+            Refusal::Doubted => return Events::empty(),
             Refusal::NotFinite | Refusal::Range => false,
             Refusal::Slew => often(&mut refused.jumps, JUMPS),
             Refusal::Dropout => often(&mut refused.dropouts, DROPOUTS),
@@ -405,6 +430,7 @@ impl<S: Scalar> Guard<S> {
     /// After a change of the unit of length.
     pub(crate) fn rescale(&mut self, length: S) {
         self.last_good = self.last_good * length;
+        self.innovation.rescale(length);
         self.still.rescale();
         self.still_is_old = false;
     }

@@ -84,7 +84,7 @@ pub(crate) fn integrator_hint<S: Scalar>(
 ) -> IntegratorHint {
     match phase {
         _ if !bearing_on => IntegratorHint::Hold,
-        Phase::Levitated | Phase::Handover { .. } => IntegratorHint::Run,
+        Phase::Levitated | Phase::HandedBack { .. } | Phase::Handover { .. } => IntegratorHint::Run,
         Phase::Approach { .. } | Phase::Bounce { .. } if calm => IntegratorHint::Run,
         _ => IntegratorHint::Hold,
     }

@@ -59,7 +59,9 @@ impl<S: Scalar> View<'_, S> {
     #[inline]
     pub(crate) fn wanted(&self, phase: Phase<S>) -> Wanted<S> {
         match phase {
-            Phase::Levitated | Phase::SensorFault { .. } => Wanted::default(),
+            Phase::Levitated | Phase::HandedBack { .. } | Phase::SensorFault { .. } => {
+                Wanted::default()
+            }
             Phase::Pinned { hold } => self.hold(hold),
             Phase::BackwardWhirl => self.in_contact(true),
             _ if self.found.touching => self.in_contact(false),

@@ -61,7 +61,7 @@
 //! ```
 //!
 //! Files, each importing only from those above it: `scalar`, `product`, `q`, `math`, `vec2`, `signal`, `config`, `coeffs`,
-//! `spin`, `unbalance`, `reading`, `still`, `guard`, `drive`, `estimate`, `detect`, `course`, `classify`, `phase`, `law`, `limit`, `handover`, `severity`,
+//! `spin`, `unbalance`, `innovation`, `reading`, `still`, `guard`, `drive`, `estimate`, `detect`, `course`, `classify`, `phase`, `trust`, `law`, `limit`, `handover`, `severity`,
 //! `recorder`, `per_unit`, `supervisor`, `self_test`, `watch`, `log_format`.
 
 // Unconditional: under `cfg(test)` std's own methods would silently replace micromath's.
@@ -78,6 +78,7 @@ mod drive;
 mod estimate;
 mod guard;
 mod handover;
+mod innovation;
 mod law;
 mod limit;
 #[cfg(feature = "defmt")]
@@ -96,6 +97,7 @@ mod signal;
 mod spin;
 mod still;
 mod supervisor;
+mod trust;
 mod unbalance;
 mod vec2;
 mod watch;

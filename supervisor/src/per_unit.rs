@@ -10,15 +10,16 @@ use crate::guard::Guard;
 use crate::handover::Readiness;
 use crate::law::View;
 use crate::limit::{Budget, Room};
-use crate::phase::Phase;
+use crate::phase::{Judged, Phase};
 use crate::reading::{Facts, Reading};
 use crate::recorder::{QueuedEvent, Record, Recorder};
 use crate::scalar::Scalar;
 use crate::severity::Severity;
 use crate::signal::{
-    CoreCommand, CoreSample, Events, IntegratorHint, Limits, Mode, Report, Status,
+    CoreCommand, CoreSample, Events, IntegratorHint, Limits, Mode, Refusal, Report, Status,
 };
 use crate::spin::Spin;
+use crate::trust::Trust;
 use crate::vec2::Vec2;
 use crate::{handover, limit};
 
@@ -40,6 +41,7 @@ pub struct Core<S: Scalar, const RECORD: usize = 512> {
     classifier: Classifier<S>,
     readiness: Readiness<S>,
     phase: Phase<S>,
+    trust: Trust<S>,
     budget: Budget<S>,
     severity: Severity<S>,
     /// Last command …
@@ -88,6 +90,7 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
             classifier: Classifier::default(),
             readiness: Readiness::default(),
             phase: Phase::default(),
+            trust: Trust::default(),
             budget: Budget::default(),
             severity: Severity::default(),
             force: Vec2::ZERO,
@@ -111,6 +114,7 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
         let force = old.scaling.force_n / new.scaling.force_n;
         let index = old.severity_limit / new.severity_limit;
         self.guard.rescale(S::of(length));
+        self.trust.rescale(S::of(speed));
         (self.observer).rescale(S::of(length), S::of(speed), S::of(tick), S::of(force));
         self.readiness.rescale(S::of(force));
         self.budget.rescale(force);
@@ -135,7 +139,8 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
             let blind = self.detector.wall(pinned) != Wall::Nothing;
             (self.observer.velocity(), blind)
         };
-        let reading = (self.guard).judge((sample, status), estimated, coeffs);
+        let expected = (self.observer).expected(self.detector.wall(pinned), coeffs);
+        let reading = (self.guard).judge((sample, status), expected, estimated, coeffs);
         let verdict = reading.verdict;
         let facts = verdict.facts;
         let spin = (reading.spin, sample.spin);
@@ -150,25 +155,35 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
         let wall = self.detector.wall(pinned);
         let (motion, beside) = (self.observer).advance(position, spin, wall, actuator, coeffs);
         let room = Room::new(&self.budget, actuator.axes, coeffs);
-        let found = (self.detector).findings((&motion, beside), contact, room.cap, coeffs);
+        let margin = self.trust.margin;
+        let found =
+            (self.detector).findings((&motion, beside), contact, (room.cap, margin), coeffs);
         let made_up = || match wall {
             Wall::Pushes => self.observer.made_up(found.normal, coeffs),
             _ => S::ZERO,
         };
         let seen = position.is_some();
+        let rubs = self.classifier.rubs();
         let class = (self.classifier).classify(&found, (seen, made_up), spin, coeffs);
 
         // A rotor that levitates, and will, needs none of what follows.
         let (mut course, mut ahead, mut calm) = (Course::default(), None, false);
+        // Of the axis: an orbit is no approach, and no sign of the model either.
+        let square = self.observer.velocity().length_squared();
+        let flies = wall == Wall::Nothing;
+        let judged = Judged {
+            hands_back: (self.trust).tick((square, flies), (self.phase, rubs), coeffs),
+            trusted: self.trust.is_granted() && self.guard.innovation.is_quiet(coeffs),
+        };
         if self.phase != Phase::Levitated || found.unavoidable || found.touching {
             course = Course::of(motion.velocity);
             if !found.touching {
                 ahead = Impact::ahead(&motion, found.radius, &course);
-                calm = wall == Wall::Nothing
-                    && found.stops(course.speed, room.cap, S::of(CALM_SHARE), coeffs);
+                let speed = (course.speed - margin).or_more(S::ZERO);
+                calm = flies && found.stops(speed, room.cap, S::of(CALM_SHARE), coeffs);
             }
         }
-        let patience = (calm, self.readiness.ready());
+        let patience = (calm, self.readiness.ready(), judged);
         let (phase, events) = (self.phase).next(&found, patience, class, facts, coeffs);
         self.phase = phase;
         let mode = phase.mode();
@@ -190,7 +205,8 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
         let last = if shadow { self.own } else { self.force };
         // Under impacts and in whirl nobody asks what the levitation controller wants.
         let holds = mode == Mode::Pinned || !found.touching;
-        let has_a_say = holds || matches!(mode, Mode::Levitated | Mode::SensorFault);
+        let has_a_say =
+            holds || matches!(mode, Mode::Levitated | Mode::HandedBack | Mode::SensorFault);
         let command = Vec2::from_array(sample.levitation);
         let (levitation, levitation_limits) = if has_a_say {
             // What it makes of a coordinate that is none takes no room from the other.
@@ -204,13 +220,18 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
             (Vec2::ZERO, Limits::empty())
         };
         // What the controller makes of such a sample does not go through.
-        let wrong = verdict.refusal.is_wrong() && facts.contains(Facts::ON);
-        if mode == Mode::Levitated {
+        // A doubt counts as much as the model that it is by.
+        let wrong = facts.contains(Facts::ON)
+            && match verdict.refusal {
+                Refusal::Doubted => judged.trusted,
+                refusal => refusal.is_wrong(),
+            };
+        if !phase.is_engaged() {
             self.readiness = Readiness::default();
         }
         let (target, bound) = if wrong && matches!(mode, Mode::Levitated | Mode::Handover) {
             limit::within(last, room)
-        } else if mode == Mode::Levitated {
+        } else if !phase.is_engaged() {
             (levitation, levitation_limits)
         } else {
             let (wanted, mut own_limits) = limit::allocate(&view.wanted(phase), room);
@@ -325,6 +346,7 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
             late_ticks: self.guard.late_ticks,
             refusal: self.guard.refusal,
             fault: self.guard.fault,
+            handed_back: u32::from(self.trust.handed_back),
             ..self.severity.report(&self.coeffs)
         }
     }

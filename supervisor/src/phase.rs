@@ -14,6 +14,15 @@ use crate::reading::Facts;
 use crate::scalar::Scalar;
 use crate::signal::{Events, Mode};
 
+/// What [`crate::trust`] says.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Judged {
+    /// The reading may be acted on.
+    pub(crate) trusted: bool,
+    /// The bearing has to be handed back, for so many ticks.
+    pub(crate) hands_back: Option<u32>,
+}
+
 /// A mode with the memory that belongs to it.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) enum Phase<S> {
@@ -32,6 +41,8 @@ pub(crate) enum Phase<S> {
     Handover { weight: S },
     /// Without a position: `bouncing` or in lasting contact when it was lost.
     SensorFault { bouncing: bool },
+    /// The levitation controller has the bearing for so many more ticks, whatever the rotor does.
+    HandedBack { left: u32 },
 }
 
 impl<S: Scalar> Phase<S> {
@@ -44,7 +55,14 @@ impl<S: Scalar> Phase<S> {
             Self::Pinned { .. } => Mode::Pinned,
             Self::Handover { .. } => Mode::Handover,
             Self::SensorFault { .. } => Mode::SensorFault,
+            Self::HandedBack { .. } => Mode::HandedBack,
         }
+    }
+
+    /// Whether the supervisor has the bearing, alone or in part.
+    #[inline]
+    pub(crate) fn is_engaged(self) -> bool {
+        !matches!(self, Self::Levitated | Self::HandedBack { .. })
     }
 
     /// The phase of this tick, and what changed. `calm`: contact can be avoided; `ready`: the levitation
@@ -53,15 +71,15 @@ impl<S: Scalar> Phase<S> {
     pub(crate) fn next(
         self,
         found: &Findings<S>,
-        (calm, ready): (bool, bool),
+        (calm, ready, judged): (bool, bool, Judged),
         class: Class,
         facts: Facts,
         coeffs: &Coeffs<S>,
     ) -> (Self, Events) {
-        let next = if facts.contains(Facts::ON) {
-            self.follow(found, (calm, ready), class, facts, coeffs)
-        } else {
-            Self::Levitated
+        let next = match judged.hands_back {
+            _ if !facts.contains(Facts::ON) => Self::Levitated,
+            Some(left) => Self::HandedBack { left },
+            None => self.follow(found, (calm, ready, judged.trusted), class, facts, coeffs),
         };
         let mut events = Events::empty();
         if found.touched {
@@ -79,9 +97,10 @@ impl<S: Scalar> Phase<S> {
                 Self::BackwardWhirl => Events::WHIRL,
                 Self::Pinned { .. } => Events::PINNED,
                 Self::Handover { .. } => Events::HANDOVER,
+                Self::HandedBack { .. } => Events::HANDED_BACK,
                 _ => Events::empty(),
             };
-            if matches!(self, Self::Levitated) {
+            if self == Self::Levitated {
                 events |= Events::ENGAGED;
             }
         }
@@ -101,11 +120,17 @@ impl<S: Scalar> Phase<S> {
     fn follow(
         self,
         found: &Findings<S>,
-        (calm, ready): (bool, bool),
+        (calm, ready, trusted): (bool, bool, bool),
         class: Class,
         facts: Facts,
         coeffs: &Coeffs<S>,
     ) -> Self {
+        if let Self::HandedBack { left } = self {
+            return match left.checked_sub(1) {
+                Some(left) => Self::HandedBack { left },
+                None => Self::Levitated,
+            };
+        }
         let new_bounce = Self::Bounce { calm_ticks: 0 };
         if facts.contains(Facts::FAULTY) {
             let bouncing = match self {
@@ -114,6 +139,9 @@ impl<S: Scalar> Phase<S> {
                 _ => false,
             };
             return Self::SensorFault { bouncing };
+        }
+        if self == Self::Levitated && !trusted {
+            return self;
         }
         if found.touching {
             return match class {
@@ -127,6 +155,8 @@ impl<S: Scalar> Phase<S> {
         match self {
             Self::Levitated if found.unavoidable => Self::Approach { calm_ticks: 0 },
             Self::Levitated => self,
+            // Nothing has happened but in a reading that is not believed any more.
+            Self::Approach { .. } if !trusted => Self::Levitated,
             Self::Approach { calm_ticks } => match after_calm(calm_ticks, calm, ready, coeffs) {
                 Some(calm_ticks) => Self::Approach { calm_ticks },
                 None => Self::Handover { weight: S::ZERO },
@@ -138,6 +168,7 @@ impl<S: Scalar> Phase<S> {
             Self::BackwardWhirl if class == Class::BackwardWhirl => self,
             Self::SensorFault { bouncing: false } => Self::Approach { calm_ticks: 0 },
             Self::BackwardWhirl | Self::Pinned { .. } | Self::SensorFault { .. } => new_bounce,
+            Self::HandedBack { .. } => self,
             Self::Handover { .. } if found.unavoidable => Self::Approach { calm_ticks: 0 },
             Self::Handover { weight } => {
                 let weight = weight + coeffs.blend_step;

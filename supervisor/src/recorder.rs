@@ -1,4 +1,4 @@
-//! Flight recorder: a fixed ring of the last ticks, frozen some time after the supervisor engages,
+//! Flight recorder: a fixed ring of the last ticks, frozen some time after the supervisor engages if it then comes to a touch,
 //! with a version and a checksum; and a queue of events for the background task.
 
 use crate::scalar::Scalar;
@@ -85,6 +85,9 @@ impl<'a, const N: usize> Record<'a, N> {
     }
 }
 
+/// What makes an engagement worth a record: one without must not spend the record of one with it.
+const WORTH_IT: Events = Events::TOUCHED.union(Events::SENSOR_FAULT);
+
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum State {
     /// Recording; nothing has happened yet.
@@ -108,6 +111,8 @@ pub(crate) struct Recorder<const N: usize> {
     next: usize,
     entries: [Entry; N],
     lost: bool,
+    /// The engagement that triggered has had a touch, or a fault.
+    worth_it: bool,
     queued: heapless::Deque<QueuedEvent, 16>,
 }
 
@@ -127,6 +132,7 @@ impl<const N: usize> Recorder<N> {
             next: 0,
             entries: [Entry::default(); N],
             lost: false,
+            worth_it: false,
             queued: heapless::Deque::new(),
         }
     }
@@ -154,16 +160,24 @@ impl<const N: usize> Recorder<N> {
         }
         match self.state {
             State::Armed => {
-                if events.contains(Events::ENGAGED) {
+                let engaged = !matches!(mode, Mode::Levitated | Mode::HandedBack);
+                if events.contains(Events::ENGAGED) || engaged && events.intersects(WORTH_IT) {
+                    // One that begins on the wall has no touch to come.
+                    self.worth_it = !matches!(mode, Mode::Approach);
                     // A quarter before the trigger, three quarters after it.
                     self.state = State::Triggered(N - N / 4);
                 }
             }
-            State::Triggered(0) => {
+            State::Triggered(left) => {
+                self.worth_it |= events.intersects(WORTH_IT);
+                let over = left == 0 || mode == Mode::Levitated;
+                self.state = match left.checked_sub(1) {
+                    _ if over && !self.worth_it => State::Armed,
+                    Some(left) => State::Triggered(left),
+                    None => State::Freezing(0),
+                };
                 self.crc = !0;
-                self.state = State::Freezing(0);
             }
-            State::Triggered(left) => self.state = State::Triggered(left - 1),
             State::Freezing(done) => {
                 if self.check(done) {
                     own |= Events::RECORD_FROZEN;

@@ -1,4 +1,4 @@
-//! Self-test at boot: a rotor of the test's own goes through every mode, and all commands have to be what
+//! Self-test at boot: a rotor of the test's own goes through every mode but `HandedBack`, and all commands have to be what
 //! they were when this version was made. Compiler, processor and memory that compute otherwise fail it.
 
 use crate::config::Config;

@@ -18,13 +18,15 @@ const MOST_INDEX: f32 = 1e9;
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Severity<S: Scalar> {
     landings: u32,
+    nuisances: u32,
     impacts: u32,
     contact_ticks: u32,
     impact_speed_max: S,
     backward_speed_max: S,
     /// Severity index over its limit.
     index: S::Slow,
-    /// The rotor has touched in this engagement.
+    /// An engagement is under way; the rotor has touched in it.
+    engaged: bool,
     landed: bool,
     beyond_ticks: u32,
     coast_down: bool,
@@ -59,13 +61,21 @@ impl<S: Scalar> Severity<S> {
         }
         match mode {
             Mode::Levitated => {
+                let nuisance = core::mem::take(&mut self.engaged) && !self.landed;
+                self.nuisances = self.nuisances.saturating_add(u32::from(nuisance));
                 self.landed = false;
                 self.beyond_ticks = 0;
                 Assessment::default()
             }
             // What is not measured is not counted.
-            Mode::SensorFault => Assessment::default(),
-            _ => self.engaged(view, facts, (force, before)),
+            Mode::SensorFault => {
+                self.engaged = true;
+                Assessment::default()
+            }
+            _ => {
+                self.engaged = true;
+                self.engaged(view, facts, (force, before))
+            }
         }
     }
 
@@ -164,6 +174,7 @@ impl<S: Scalar> Severity<S> {
         let index = self.index.value().to_f32() * coeffs.severity_limit;
         Report {
             landings: self.landings,
+            nuisance_engagements: self.nuisances,
             impacts: self.impacts,
             contact_ticks: self.contact_ticks,
             impact_speed_max_m_s: self.impact_speed_max.to_f32() * speed_m_s,

@@ -110,6 +110,8 @@ bitflags::bitflags! {
         const RECORD_FROZEN = 1 << 16;
         /// An event was lost because the background did not drain the queue. Only in the queue.
         const QUEUE_FULL = 1 << 17;
+        /// The supervisor came no farther and gave the bearing back to the levitation controller.
+        const HANDED_BACK = 1 << 18;
     }
 }
 
@@ -136,6 +138,8 @@ pub enum Refusal {
     Dropout = 4,
     /// A coordinate does not change although the rotor moves.
     Stuck = 5,
+    /// Farther from where the rotor was bound to than noise and any force could take it.
+    Doubted = 6,
 }
 
 impl Refusal {
@@ -167,6 +171,9 @@ pub enum Mode {
     Handover = 5,
     /// No trustworthy position: force blended to zero; if one coordinate is good, levitation command along it.
     SensorFault = 6,
+    /// The supervisor has given up for a while, as it came no farther: the levitation command goes through as in `Levitated`,
+    /// whatever the rotor does.
+    HandedBack = 7,
 }
 
 impl Mode {
@@ -180,6 +187,7 @@ impl Mode {
             Self::Pinned => "pinned",
             Self::Handover => "handover",
             Self::SensorFault => "sensor fault",
+            Self::HandedBack => "handed back",
         }
     }
 }
@@ -263,6 +271,10 @@ pub struct CoreCommand<S> {
 pub struct Report {
     /// Engagements in which the rotor touched the retainer bearing.
     pub landings: u32,
+    /// Engagements without a touch.
+    pub nuisance_engagements: u32,
+    /// Times that the bearing was handed back because an engagement came no farther.
+    pub handed_back: u32,
     /// Touches in them.
     pub impacts: u32,
     /// Ticks in contact in them.

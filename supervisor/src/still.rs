@@ -1,5 +1,6 @@
 //! A sensor that is stuck: coordinates that do not change although the rotor moves.
 
+use crate::coeffs::Coeffs;
 use crate::reading::Facts;
 use crate::scalar::Scalar;
 use crate::vec2::Vec2;
@@ -23,13 +24,30 @@ pub(crate) struct Coordinate<S> {
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Still<S> {
     at: [Coordinate<S>; 2],
+    /// The last change of a coordinate: at least a step of the converter, which may be coarser than was told.
+    step: S,
 }
 
+/// A change that is longer is one of the rotor \[clearances\].
+const COARSEST: f32 = 0.03;
+
 impl<S: Scalar> Still<S> {
-    /// For how many samples in a row a coordinate has stood still for more than `most`, which holds until it changes; and
-    /// for how many neither has changed.
-    pub(crate) fn watch(&mut self, position: Vec2<S>, velocity: Vec2<S>, most: S) -> (u8, u8) {
+    /// For how many samples in a row a coordinate has stood still for more than the estimate can be wrong, which holds until
+    /// it changes; and for how many neither has changed.
+    pub(crate) fn watch(
+        &mut self,
+        position: Vec2<S>,
+        velocity: Vec2<S>,
+        coeffs: &Coeffs<S>,
+    ) -> (u8, u8) {
         let [x, y] = &mut self.at;
+        for change in [x.change(position.x), y.change(position.y)] {
+            if change > S::ZERO {
+                self.step = change.or_less(S::of(COARSEST));
+            }
+        }
+        let twice = (self.step + self.step) * coeffs.per_tick;
+        let most = coeffs.sensor_speeds.or_more(twice);
         let samples =
             (x.watch(position.x, velocity.x, most)).max(y.watch(position.y, velocity.y, most));
         (samples, x.unchanged.min(y.unchanged))
@@ -80,6 +98,11 @@ impl<S: Scalar> Still<S> {
 }
 
 impl<S: Scalar> Coordinate<S> {
+    /// How far it has changed.
+    fn change(&self, now: S) -> S {
+        if self.seen { self.step(now) } else { S::ZERO }
+    }
+
     fn watch(&mut self, now: S, step: S, most: S) -> u8 {
         if !self.seen || now != self.last {
             self.moved_to(now);

@@ -47,11 +47,14 @@ impl<const RECORD: usize> Supervisor<RECORD> {
         // Transparent means bit for bit: what the core left alone does not come back from per unit. A lost axis
         // gets nothing, also where a command is so small that per unit it is nothing. (Scaled as a whole before:
         // chosen number by number, x86-64 got vectors with integers in spare lanes, subnormal as floats and slow.)
+        // Without a loop: where the compiler saves size it keeps the loop, and a check of its index that can panic.
+        let [lost_x, lost_y] = Status::LOST_AXES.map(|lost| sample.status.contains(lost));
         let as_asked = |newtons: &mut [f32; 2], force: [f32; 2]| {
-            for (axis, lost) in Status::LOST_AXES.into_iter().enumerate() {
-                if force[axis] == levitation[axis] && !sample.status.contains(lost) {
-                    newtons[axis] = sample.levitation_n[axis];
-                }
+            if force[0] == levitation[0] && !lost_x {
+                newtons[0] = sample.levitation_n[0];
+            }
+            if force[1] == levitation[1] && !lost_y {
+                newtons[1] = sample.levitation_n[1];
             }
         };
         as_asked(&mut newtons.force_n, command.force);

@@ -35,23 +35,68 @@ pub fn skipped(why: &str) {
     eprintln!("skipped: {}; tests/run installs what is needed", why.trim());
 }
 
+/// Levels of optimisation beside the 3 of the profile `fw`.
+pub const OTHER_LEVELS: [&str; 3] = ["2", "s", "z"];
+
+/// Makes a build in the profile `fw` one that optimises these two crates at another level, in a folder of its own under
+/// `target-fw`. What they use stays at 3, so that it is compiled once for all levels: nearly all of it is generic or
+/// inline, and so compiled with the crate that uses it.
+pub fn at_level(cargo: &mut Command, level: &str, crates: [&str; 2]) {
+    // Numbers stand alone in TOML, letters in quotes.
+    let value = match level.parse::<u8>() {
+        Ok(number) => number.to_string(),
+        Err(_) => format!("\"{level}\""),
+    };
+    // What is shared, with the builds at level 3, too; only what is finished goes to the other folder.
+    cargo.env("CARGO_BUILD_BUILD_DIR", "target-fw");
+    cargo.args(["--target-dir", &format!("target-fw/{level}")]);
+    for name in crates {
+        let setting = format!("profile.fw.package.{name}.opt-level={value}");
+        cargo.args(["--config", &setting]);
+    }
+}
+
 /// Builds images for a target with these further arguments. `None` as for [`target`].
 ///
 /// # Panics
 /// As [`target`].
 pub fn build_images(target: &str, more: &[&str]) -> Option<Output> {
+    let mut cargo = build(&[target]);
+    cargo.args(["--bins", "--target-dir", "target-fw"]);
+    cargo.args(more);
+    output(cargo, &[target])
+}
+
+/// The images that are only linked.
+pub const PANIC_FREE: [&str; 2] = ["panic-free", "panic-free-q"];
+
+/// Builds [`PANIC_FREE`] for targets at one of [`OTHER_LEVELS`]; the rest as for [`build_images`].
+///
+/// # Panics
+/// As [`target`].
+pub fn build_panic_free(targets: &[&str], level: &str, more: &[&str]) -> Option<Output> {
+    let mut cargo = build(targets);
+    at_level(&mut cargo, level, ["supervisor", "firmware-image"]);
+    cargo.args(PANIC_FREE.map(|image| format!("--bin={image}")));
+    cargo.args(more);
+    output(cargo, targets)
+}
+
+fn build(targets: &[&str]) -> Command {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-    let output = Command::new(cargo)
-        .current_dir(root())
-        .args(["build", "-p", "firmware-image", "--bins"])
-        .args(["--profile", "fw", "--target", target])
-        .args(["--target-dir", "target-fw"])
-        .args(more)
-        .output()
-        .unwrap_or_else(|e| panic!("{e}"));
+    let mut command = Command::new(cargo);
+    command.current_dir(root());
+    command.args(["build", "-p", "firmware-image", "--profile", "fw"]);
+    command.args(targets.iter().flat_map(|target| ["--target", target]));
+    command
+}
+
+fn output(mut cargo: Command, targets: &[&str]) -> Option<Output> {
+    let output = cargo.output().unwrap_or_else(|e| panic!("{e}"));
     let error = String::from_utf8_lossy(&output.stderr);
     if error.contains("target may not be installed") {
-        skipped(&format!("the Rust target {target} is not installed"));
+        let targets = targets.join(" or ");
+        skipped(&format!("the Rust target {targets} is not installed"));
         return None;
     }
     Some(output)

@@ -142,7 +142,7 @@ fn what_is_no_record_is_refused() {
     refused(&[], &[], "0 bytes");
     refused(&[0; 16 * 64], &[], "none of its 64 entries");
     let mut damaged = bytes.clone();
-    damaged[16 * 3 + 12] = 7;
+    damaged[16 * 3 + 12] = 8;
     refused(&damaged, &[], "entry 3");
     refused(&bytes, &["--crc", &(crc ^ 1).to_string()], "checksum");
     refused(&bytes, &["--crc", "0xnothing"], "--crc");

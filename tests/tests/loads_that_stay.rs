@@ -91,7 +91,7 @@ fn magnets_that_pull_with_the_whole_cap_are_overcome() {
         let ((alone, _), (own, trace)) = (run(Seat::Tuned), run(Seat::Supervisor));
         assert!(alone.recovered && alone.impacts == 0, "{pull}: {alone:?}");
         assert!(own.recovered && own.impacts == 0, "{pull}: {own:?}");
-        let engaged = Supervision::of(&trace).unwrap().engaged_time_s;
+        let engaged = Supervision::of(&trace).unwrap().engaged_s;
         assert!(engaged < 0.05, "{pull}: {engaged} s");
     }
 }

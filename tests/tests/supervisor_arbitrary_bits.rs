@@ -108,8 +108,8 @@ impl Driven for InNewtons {
 }
 
 /// Drives supervisors of any valid configurations; counts ticks in each mode.
-fn drive<D: Driven>(ticks: u64) -> [u64; 7] {
-    let mut modes = [0; 7];
+fn drive<D: Driven>(ticks: u64) -> [u64; 8] {
+    let mut modes = [0; 8];
     let mut chance = Chance::new(1);
     let (mut done, mut changes) = (0, 0);
     while done < ticks {

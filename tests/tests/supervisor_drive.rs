@@ -148,7 +148,7 @@ fn an_axis_that_does_not_obey_gets_nothing_for_a_while() {
             let command = bench.tick(OBEYS, Status::APPLIED_VALID);
             assert!(!command.events.contains(Events::AXIS_LOST), "{name}");
         }
-        let commands: Vec<_> = (0..600)
+        let commands: Vec<_> = (0..500)
             .map(|i| match i {
                 // A tick without a measured force ends no rest.
                 _ if i % 100 == 99 => bench.tick(makes, Status::empty()),

@@ -1,8 +1,10 @@
 //! The images for Cortex-M: they build, and no panic can be reached in any of them.
 
 use object::{Object, ObjectSymbol};
+use std::path::Path;
+use std::process::Output;
 use system_tests::root;
-use system_tests::target::build_images;
+use system_tests::target::{OTHER_LEVELS, PANIC_FREE, build_images, build_panic_free};
 
 const TARGETS: [&str; 3] = [
     "thumbv7em-none-eabihf",
@@ -30,37 +32,74 @@ fn linked_images_hold_no_panic_path() {
         };
         let error = String::from_utf8_lossy(&output.stderr);
         assert!(output.status.success(), "{error}");
+        let folder = root().join("target-fw").join(target).join("fw");
         for image in IMAGES {
-            let path = root().join("target-fw").join(target).join("fw").join(image);
-            let bytes = std::fs::read(path).unwrap();
-            let file = object::File::parse(bytes.as_slice()).unwrap();
-            let names: Vec<&str> = file.symbols().filter_map(|s| s.name().ok()).collect();
-            let start = ["_start", "main"];
-            assert!(
-                names.iter().any(|n| start.contains(n)),
-                "symbols are there to be looked at"
-            );
-            let is_panic = |n: &&&str| n.contains("panicking") || n.contains("begin_unwind");
-            let panics: Vec<_> = names.iter().filter(is_panic).collect();
-            assert!(panics.is_empty(), "{target}, {image}: {panics:?}");
+            assert_no_panic_in(&folder.join(image));
         }
     }
 }
+
+/// Where the compiler saves size it leaves checks in that it removes for speed.
+#[test]
+fn no_level_of_optimisation_leaves_a_panic_path() {
+    for level in OTHER_LEVELS {
+        let Some(output) = build_panic_free(&TARGETS, level, &[]) else {
+            return;
+        };
+        let error = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{level}: {error}");
+        for target in TARGETS {
+            let folder = root().join("target-fw").join(level).join(target).join("fw");
+            for image in PANIC_FREE {
+                assert_no_panic_in(&folder.join(image));
+            }
+        }
+    }
+}
+
+fn assert_no_panic_in(image: &Path) {
+    let bytes = std::fs::read(image).unwrap();
+    let file = object::File::parse(bytes.as_slice()).unwrap();
+    let names: Vec<&str> = file.symbols().filter_map(|s| s.name().ok()).collect();
+    let start = ["_start", "main"];
+    assert!(
+        names.iter().any(|n| start.contains(n)),
+        "symbols are there to be looked at"
+    );
+    let is_panic = |n: &&&str| n.contains("panicking") || n.contains("begin_unwind");
+    let panics: Vec<_> = names.iter().filter(is_panic).collect();
+    assert!(panics.is_empty(), "{}: {panics:?}", image.display());
+}
+
+const PLANTED: [&str; 3] = ["--features", "planted-panic", "--keep-going"];
 
 /// The check finds a panic that is put in, in every image for every target.
 #[test]
 fn a_planted_panic_fails_to_link() {
     for target in TARGETS {
-        let more = ["--features", "planted-panic", "--keep-going"];
-        let Some(output) = build_images(target, &more) else {
+        let Some(output) = build_images(target, &PLANTED) else {
             return;
         };
-        let error = String::from_utf8_lossy(&output.stderr);
-        for image in IMAGES {
-            let failed = format!("could not compile `firmware-image` (bin \"{image}\")");
-            assert!(error.contains(&failed), "{target}, {image}: {error}");
-        }
-        let undefined = error.matches("undefined symbol: a_panic_can_be_reached");
-        assert_eq!(undefined.count(), IMAGES.len(), "{target}: {error}");
+        assert_none_links(&output, &IMAGES, target);
     }
+}
+
+/// So it does where the compiler saves size.
+#[test]
+fn a_planted_panic_fails_to_link_at_s() {
+    let target = TARGETS[0];
+    let Some(output) = build_panic_free(&[target], "s", &PLANTED) else {
+        return;
+    };
+    assert_none_links(&output, &PANIC_FREE, target);
+}
+
+fn assert_none_links(output: &Output, images: &[&str], target: &str) {
+    let error = String::from_utf8_lossy(&output.stderr);
+    for image in images {
+        let failed = format!("could not compile `firmware-image` (bin \"{image}\")");
+        assert!(error.contains(&failed), "{target}, {image}: {error}");
+    }
+    let undefined = error.matches("undefined symbol: a_panic_can_be_reached");
+    assert_eq!(undefined.count(), images.len(), "{target}: {error}");
 }

@@ -279,7 +279,7 @@ pub fn command_of(bytes: &[u8; COMMAND_BYTES]) -> Option<CommandBits> {
 }
 
 /// Every mode, in the order of their numbers.
-pub const MODES: [Mode; 7] = [
+pub const MODES: [Mode; 8] = [
     Mode::Levitated,
     Mode::Approach,
     Mode::Bounce,
@@ -287,6 +287,7 @@ pub const MODES: [Mode; 7] = [
     Mode::Pinned,
     Mode::Handover,
     Mode::SensorFault,
+    Mode::HandedBack,
 ];
 
 /// The mode of a number.
@@ -344,6 +345,8 @@ pub fn segment_of(bytes: &[u8; SEGMENT_BYTES]) -> Option<Segment> {
 pub fn add_report(hash: &mut Hash, report: &Report) {
     let Report {
         landings,
+        nuisance_engagements,
+        handed_back,
         impacts,
         contact_ticks,
         impact_speed_max_m_s,
@@ -361,6 +364,8 @@ pub fn add_report(hash: &mut Hash, report: &Report) {
     } = *report;
     for counter in [
         landings,
+        nuisance_engagements,
+        handed_back,
         impacts,
         contact_ticks,
         missed_ticks,

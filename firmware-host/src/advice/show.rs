@@ -197,7 +197,7 @@ fn vibration(page: &mut Page, advice: &Advice) {
         page.row(
             &format!("most runout at {:.1} Hz", hz.abs()),
             format!("{:.1} µm", limit_m * 1e6),
-            "amplitude on one axis; more looks like an approach",
+            "amplitude on one axis; with more the supervisor leaves the rotor to levitation",
         );
     }
 }

@@ -290,8 +290,8 @@ fn runout(advice: &Advice) -> Option<Warning> {
         return None;
     }
     let text = format!(
-        "a runout of {:.1} µm at {hz:.1} Hz reads as {:.4} m/s, and more than {:.1} µm looks like an approach: the \
-         supervisor takes over from a rotor that levitates",
+        "a runout of {:.1} µm at {hz:.1} Hz reads as {:.4} m/s, and more than {:.1} µm hides an approach: the \
+         supervisor leaves such a rotor to the levitation controller",
         runout_m * 1e6,
         runout_m * hz * std::f64::consts::TAU,
         limit_m * 1e6

@@ -62,13 +62,14 @@ const MODES: [(Mode, RGBColor); 5] = [
     (Mode::Seated, RGBColor(0x4a, 0x52, 0x5c)),
 ];
 
-const SUPERVISOR_COLOURS: [(supervisor::Mode, RGBColor); 7] = [
+const SUPERVISOR_COLOURS: [(supervisor::Mode, RGBColor); 8] = [
     (supervisor::Mode::Levitated, RGBColor(0xa8, 0xd5, 0xba)),
     (supervisor::Mode::Approach, RGBColor(0xf3, 0xc0, 0x6b)),
     (supervisor::Mode::Bounce, RGBColor(0xe3, 0x8f, 0x8f)),
     (supervisor::Mode::BackwardWhirl, RGBColor(0xc9, 0xa7, 0xe0)),
     (supervisor::Mode::Pinned, RGBColor(0xd6, 0xc6, 0xa5)),
     (supervisor::Mode::Handover, RGBColor(0x9d, 0xb7, 0xe8)),
+    (supervisor::Mode::HandedBack, RGBColor(0xa8, 0xd5, 0xa2)),
     (supervisor::Mode::SensorFault, RGBColor(0xc4, 0xc9, 0xd0)),
 ];
 

@@ -5,8 +5,10 @@ use supervisor::Mode;
 
 /// The ways that the state machine has, apart from staying. There is none from a touch straight into approach or
 /// hand-over, none from a fault into hand-over, none from bounce into approach, and none from levitation into hand-over.
-const WAYS: [(Mode, &[Mode]); 7] = {
-    use Mode::{Approach, BackwardWhirl, Bounce, Handover, Levitated, Pinned, SensorFault};
+const WAYS: [(Mode, &[Mode]); 8] = {
+    use Mode::{
+        Approach, BackwardWhirl, Bounce, HandedBack, Handover, Levitated, Pinned, SensorFault,
+    };
     [
         (
             Levitated,
@@ -21,14 +23,28 @@ const WAYS: [(Mode, &[Mode]); 7] = {
                 Pinned,
                 Handover,
                 SensorFault,
+                HandedBack,
             ],
         ),
         (
             Bounce,
-            &[Levitated, BackwardWhirl, Pinned, Handover, SensorFault],
+            &[
+                Levitated,
+                BackwardWhirl,
+                Pinned,
+                Handover,
+                SensorFault,
+                HandedBack,
+            ],
         ),
-        (BackwardWhirl, &[Levitated, Bounce, Pinned, SensorFault]),
-        (Pinned, &[Levitated, Bounce, BackwardWhirl, SensorFault]),
+        (
+            BackwardWhirl,
+            &[Levitated, Bounce, Pinned, SensorFault, HandedBack],
+        ),
+        (
+            Pinned,
+            &[Levitated, Bounce, BackwardWhirl, SensorFault, HandedBack],
+        ),
         (
             Handover,
             &[
@@ -38,12 +54,21 @@ const WAYS: [(Mode, &[Mode]); 7] = {
                 BackwardWhirl,
                 Pinned,
                 SensorFault,
+                HandedBack,
             ],
         ),
         (
             SensorFault,
-            &[Levitated, Approach, Bounce, BackwardWhirl, Pinned],
+            &[
+                Levitated,
+                Approach,
+                Bounce,
+                BackwardWhirl,
+                Pinned,
+                HandedBack,
+            ],
         ),
+        (HandedBack, &[Levitated]),
     ]
 };
 

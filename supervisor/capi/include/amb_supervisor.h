@@ -181,6 +181,7 @@ typedef int32_t amb_code;
 #define AMB_MODE_PINNED 4u         /**< held on the bearing by a load */
 #define AMB_MODE_HANDOVER 5u       /**< blending over to the levitation controller */
 #define AMB_MODE_SENSOR_FAULT 6u   /**< no trustworthy position: the force goes to zero, or along one coordinate only */
+#define AMB_MODE_HANDED_BACK 7u    /**< given up for a while: the levitation controller has the bearing, whatever the rotor does */
 /** @} */
 
 /** @name Hints for the levitation controller's integrator @{ */
@@ -218,6 +219,7 @@ typedef int32_t amb_code;
 #define AMB_EVENT_FORWARD_RUB 0x8000u    /**< forward rub at the spin's rate was recognised */
 #define AMB_EVENT_RECORD_FROZEN 0x10000u /**< there is a record to be read */
 #define AMB_EVENT_QUEUE_FULL 0x20000u    /**< an event before this one was lost; only in the queue */
+#define AMB_EVENT_HANDED_BACK 0x40000u   /**< an engagement came no farther: the levitation controller has the bearing */
 /** @} */
 
 /** @name Why a sample was refused @{ */
@@ -227,6 +229,7 @@ typedef int32_t amb_code;
 #define AMB_REFUSAL_SLEW 3u       /**< no rotor moves so far in this time */
 #define AMB_REFUSAL_DROPOUT 4u    /**< the sequence number is the last one */
 #define AMB_REFUSAL_STUCK 5u      /**< a coordinate does not change although the rotor moves */
+#define AMB_REFUSAL_DOUBTED 6u    /**< far from where the rotor was bound to, and from the sample before */
 /** @} */
 
 /** Bytes of an amb_supervisor; some more than the library needs. */
@@ -329,6 +332,8 @@ typedef struct amb_report {
     float severity_index;         /**< energy that the retainer bearing has borne, over that at the limit */
     float thermal_state;          /**< force-time budget: above 1 the cap is lowered */
     float force_cap_n;            /**< force cap now [N] */
+    uint32_t nuisance_engagements; /**< engagements without a touch */
+    uint32_t handed_back;         /**< times that the bearing was handed back, as an engagement came no farther */
 } amb_report;
 
 /** A row of the table of parameters. Its texts live as long as the program. */
@@ -346,7 +351,7 @@ typedef struct amb_parameter {
 #define AMB_SIZEOF_EVENT 12
 #define AMB_SIZEOF_RECORD 12
 #define AMB_SIZEOF_ENTRY 16
-#define AMB_SIZEOF_REPORT 60
+#define AMB_SIZEOF_REPORT 68
 /** @} */
 
 /* The library was compiled with the same numbers: see structs.rs and storage.rs. */
@@ -398,6 +403,8 @@ AMB_ASSERT(report_whirl_limit_m_s, offsetof(amb_report, whirl_limit_m_s) == 44);
 AMB_ASSERT(report_severity_index, offsetof(amb_report, severity_index) == 48);
 AMB_ASSERT(report_thermal_state, offsetof(amb_report, thermal_state) == 52);
 AMB_ASSERT(report_force_cap_n, offsetof(amb_report, force_cap_n) == 56);
+AMB_ASSERT(report_nuisance_engagements, offsetof(amb_report, nuisance_engagements) == 60);
+AMB_ASSERT(report_handed_back, offsetof(amb_report, handed_back) == 64);
 AMB_ASSERT(parameter_name, offsetof(amb_parameter, name) == 0);
 AMB_ASSERT(parameter_unit, offsetof(amb_parameter, unit) == sizeof(char *));
 AMB_ASSERT(parameter_text, offsetof(amb_parameter, text) == 2 * sizeof(char *));

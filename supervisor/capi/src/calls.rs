@@ -274,6 +274,7 @@ pub fn mode_name(mode: u32) -> &'static CStr {
         4 => c"pinned",
         5 => c"handover",
         6 => c"sensor fault",
+        7 => c"handed back",
         _ => c"unknown mode",
     }
 }

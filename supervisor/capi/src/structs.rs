@@ -101,7 +101,7 @@ c_struct! {
 
 c_struct! {
     /// What has happened since the supervisor was made: [`Report`].
-    CReport = "amb_report", 60 {
+    CReport = "amb_report", 68 {
         /// Engagements in which the rotor touched.
         landings: u32 = 0,
         /// Touches in them.
@@ -132,6 +132,10 @@ c_struct! {
         thermal_state: f32 = 52,
         /// Force cap now \[N\].
         force_cap_n: f32 = 56,
+        /// Engagements without a touch.
+        nuisance_engagements: u32 = 60,
+        /// Times that the bearing was handed back.
+        handed_back: u32 = 64,
     }
 }
 
@@ -254,6 +258,8 @@ impl From<Report> for CReport {
             severity_index: report.severity_index,
             thermal_state: report.thermal_state,
             force_cap_n: report.force_cap_n,
+            nuisance_engagements: report.nuisance_engagements,
+            handed_back: report.handed_back,
         }
     }
 }

@@ -30,11 +30,13 @@ pub(super) struct Done {
     pub(super) modes: Vec<Mode>,
 }
 
-/// Time for whatever begins \[s\], and time in which is measured.
+/// Time for whatever begins \[s\], and time in which is measured: of a small vibration, and of one that is as fast as no
+/// engagement is let last with.
 const STARTS_S: f64 = 0.005;
-const GROWS_S: f64 = 0.02;
-const SETTLED_S: f64 = 0.15;
-const MEASURED_S: f64 = 0.05;
+const SMALL: [f64; 3] = [0.02, 0.15, 0.06];
+const LARGE: [f64; 3] = [0.005, 0.02, 0.02];
+/// What is small \[lift-off speeds\].
+const SMALL_SPEED: f64 = 0.3;
 
 /// The suggested configuration, but for a hand-over that comes no sooner than in a second.
 pub(super) fn engaged_for_long(nominal: &Nominal) -> Config {
@@ -46,7 +48,8 @@ pub(super) fn engaged_for_long(nominal: &Nominal) -> Config {
 
 /// The nearest frequency with whole cycles in what is measured.
 pub(super) fn whole(hz: f64) -> f64 {
-    (hz * MEASURED_S).round() / MEASURED_S
+    // Of both times of measuring.
+    (hz * 0.02).round() / 0.02
 }
 
 /// Runs it. `hz` is taken as a [`whole`] one.
@@ -63,11 +66,13 @@ pub(super) fn shaken(config: &Config, path: Path, shake: Shake) -> Done {
         work: 0.0,
         modes: vec![],
     };
-    let settled = (SETTLED_S / period_s).round() as u32;
-    let measured = (MEASURED_S / period_s).round() as u32;
+    let small = shake.amplitude * rate * unit_s < SMALL_SPEED;
+    let [grows_s, settled_s, measured_s] = if small { SMALL } else { LARGE };
+    let settled = (settled_s / period_s).round() as u32;
+    let measured = (measured_s / period_s).round() as u32;
     for tick in 0..settled + measured {
         let at_s = f64::from(tick) * period_s;
-        let begun = ((at_s - STARTS_S) / GROWS_S).clamp(0.0, 1.0);
+        let begun = ((at_s - STARTS_S) / grows_s).clamp(0.0, 1.0);
         let way = begun * shake.amplitude * (rate * at_s).sin();
         let [x, y] = path(at_s, unit_s);
         let [e_x, e_y] = shake.along;

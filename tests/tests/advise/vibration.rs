@@ -6,10 +6,10 @@ use super::shaken::{
 };
 use super::{AMB, advice, advise, amb, stderr};
 use firmware_host::advice::RUNOUT_SPEED_SHARE;
-use firmware_host::suggest::Nominal;
+use firmware_host::suggest::{Nominal, suggested};
 use serde_json::Value;
 use std::f64::consts::TAU;
-use supervisor::Mode;
+use supervisor::{Core, CoreSample, Mode, Prepared, Status};
 use system_tests::scene_path;
 
 /// Whatever the mode, the size and the frequency: a force within the cap does at most 4·F·A of work in a cycle on a
@@ -47,6 +47,10 @@ fn no_vibration_gets_more_work_than_the_cap_along_its_path() {
                             spin_hz: None,
                         };
                         let done = shaken(&config, path, shake);
+                        if done.modes.contains(&Mode::Levitated) {
+                            // An approach in a reading that is not believed any more.
+                            continue;
+                        }
                         let what = format!("{hz} Hz, {shake:?}, {done:?}");
                         let work = done.work / (4.0 * amplitude);
                         assert!(work.abs() <= 1.0, "{what}");
@@ -69,7 +73,7 @@ fn no_vibration_gets_more_work_than_the_cap_along_its_path() {
     ] {
         assert!(seen.contains(&mode), "{mode:?}");
     }
-    assert!(!seen.contains(&Mode::Levitated) && !seen.contains(&Mode::SensorFault));
+    assert!(!seen.contains(&Mode::HandedBack) && !seen.contains(&Mode::SensorFault));
     // Not far from what is possible.
     assert!(most > 0.4, "{most}");
 }
@@ -81,47 +85,74 @@ fn at_spin(spin_hz: f64) -> Nominal {
     }
 }
 
-/// The core lets a rotor levitate whose reading has a runout a little below the limit, whether or not it is told the spin, and
-/// takes over from one at twice the limit. (Far beyond the observer's bandwidth it sees less of it.)
+/// Whether the core, after 0.2 s of a runout of this amplitude \[clearances\], takes over from a rotor that is led onto the
+/// wall; and that it has not done so before.
+fn helps_with(n: &Nominal, amplitude: f64, told: bool) -> bool {
+    let config = suggested(n).config;
+    let unit_s = f64::from(config.scaling().time_s);
+    let spin = TAU * n.spin_hz.unwrap();
+    let mut core: Core<f64, 64> = Core::new(&Prepared::new(&config).unwrap());
+    let mut tick = |i: u32, out: f64| {
+        let at_s = f64::from(i) * n.period_s();
+        let grown = (at_s / 0.1).min(1.0);
+        let way = grown * amplitude * (spin * at_s).sin();
+        // A coordinate that stands still is a stuck sensor.
+        let dither = if i % 2 == 0 { 1e-9 } else { -1e-9 };
+        let known = if told {
+            Status::SPIN_VALID
+        } else {
+            Status::empty()
+        };
+        let command = core.tick(&CoreSample {
+            sequence: i,
+            status: Status::BEARING_ON | known,
+            position: [way + dither, out + dither],
+            spin: spin * unit_s,
+            ..CoreSample::default()
+        });
+        command.mode
+    };
+    let rest = (0.2 * n.sample_rate_hz) as u32;
+    for i in 0..rest {
+        assert_eq!(tick(i, 0.0), Mode::Levitated, "{amplitude}, {told}, {n:?}");
+    }
+    let out = (2.0 * unit_s * n.sample_rate_hz) as u32;
+    let led = (1..=2 * out).map(|i| tick(rest + i, (f64::from(i) / f64::from(out)).min(1.03)));
+    led.filter(|mode| *mode != Mode::Levitated).count() > 0
+}
+
+/// With a runout below the limit the supervisor helps, with one above it leaves the rotor to levitation;
+/// and takes none for an approach.
 #[test]
-fn a_runout_below_the_limit_is_no_approach() {
+fn a_runout_below_the_limit_leaves_the_help() {
     for sample_rate_hz in [10e3, 20e3, 50e3] {
         for noise_rms_m in [1e-6, 3e-6] {
-            for spin_hz in [80.0, 120.0, 200.0, 360.0, 500.0, 800.0, 1200.0, 2000.0] {
+            for spin_hz in [80.0, 120.0, 200.0, 360.0, 500.0] {
                 let n = Nominal {
                     sample_rate_hz,
                     noise_rms_m,
                     ..at_spin(spin_hz)
                 };
                 let limit = advice(&n).vibration.runout_limit_m.unwrap() / n.clearance_m;
-                let modes = |share: f64, told: bool| {
-                    let shake = Shake {
-                        hz: spin_hz,
-                        amplitude: share * limit,
-                        along: [1.0, 0.0],
-                        spin_hz: told.then_some(spin_hz),
-                    };
-                    shaken(&engaged_for_long(&n), |_, _| [0.0; 2], shake).modes
-                };
                 for told in [false, true] {
-                    assert_eq!(modes(0.93, told), [Mode::Levitated], "{told}, {n:?}");
+                    assert!(helps_with(&n, 0.7 * limit, told), "{told}, {n:?}");
                 }
-                if (100.0..=500.0).contains(&spin_hz) {
-                    assert_ne!(modes(2.0, false), [Mode::Levitated], "{n:?}");
+                if spin_hz < 400.0 {
+                    assert!(!helps_with(&n, 1.3 * limit, false), "{n:?}");
                 }
             }
         }
     }
 }
 
-/// Half of √(F·c/m) at the spin, whichever way it turns, at most the clearance, and nothing where no spin is known.
+/// Two fifths of √(F·c/m) at the spin, whichever way it turns, at most the clearance, and nothing where no spin is known.
 #[test]
 fn the_runout_limit_is_that_of_the_speed() {
     let limit = |n: &Nominal| advice(n).vibration.runout_limit_m;
     assert_eq!(limit(&amb()), None);
-    assert_eq!(RUNOUT_SPEED_SHARE, 0.5);
+    assert_eq!(RUNOUT_SPEED_SHARE, 0.4);
     for spin_hz in [200.0, -200.0] {
-        let by_hand = 0.5 * (1000.0 * 2e-4 / 10.0_f64).sqrt() / (TAU * 200.0);
+        let by_hand = 0.4 * (1000.0 * 2e-4 / 10.0_f64).sqrt() / (TAU * 200.0);
         let limit_m = limit(&at_spin(spin_hz)).unwrap();
         assert!((limit_m / by_hand - 1.0).abs() < 1e-9, "{limit_m}");
     }
@@ -174,7 +205,7 @@ fn text_and_json_say_where_damping_ends() {
     assert!(plain["runout_limit_m"].is_null() && plain["nominal"]["spin_hz"].is_null());
     let turning = json(&["--spin-hz=-200", "--runout-m=9e-5"]);
     let limit_m = turning["runout_limit_m"].as_f64().unwrap();
-    assert!((limit_m - 5.627e-5).abs() < 1e-8, "{limit_m}");
+    assert!((limit_m - 4.502e-5).abs() < 1e-8, "{limit_m}");
     assert_eq!(turning["nominal"]["runout_m"], 9e-5);
     let keys: Vec<&Value> = (turning["warnings"].as_array().unwrap().iter())
         .map(|w| &w["key"])

@@ -1,10 +1,13 @@
 //! Firmware in C, in an emulator, against the supervisor in Rust on this machine.
 
-use crate::library::{STRICT, Target, beside, built, capi, good, host_program, includes, tool};
+use crate::library::{
+    STRICT, Target, beside, built, built_at, capi, good, host_program, includes, tool,
+};
 use crate::rig::Rig;
 use std::path::Path;
 use std::process::{Command, Output};
 use supervisor::{Config, Events, Mode, Supervisor};
+use system_tests::target::OTHER_LEVELS;
 
 /// The last line of the programs in C.
 fn summary_of_rust() -> String {
@@ -65,15 +68,14 @@ fn c_on_this_machine_does_what_rust_does() {
     assert_eq!(said.lines().last(), Some(summary_of_rust().as_str()));
 }
 
-/// Links firmware of a main file, the rig and the board; `None` where a tool is missing.
-fn linked(target: Target, main: &Path, features: &str, image: &Path) -> Option<Output> {
+/// Links firmware of a main file, the rig, the board and a library; `None` where a tool is missing.
+fn linked(target: Target, main: &Path, library: &Path, image: &Path) -> Option<Output> {
     let mut gcc = target.compiler()?;
-    let library = built(target, features)?;
     let examples = capi().join("examples");
     // Not pedantic: start-up code must turn functions into addresses.
     gcc.args(STRICT.iter().filter(|a| **a != "-Wpedantic"));
     gcc.args(["-O2", "-ffunction-sections"])
-        .args(includes(&library));
+        .args(includes(library));
     gcc.arg(main);
     gcc.args(["rig.c", "mps2.c"].map(|name| examples.join(name)));
     gcc.arg("-T").arg(examples.join("mps2.ld"));
@@ -86,7 +88,7 @@ fn linked(target: Target, main: &Path, features: &str, image: &Path) -> Option<O
 fn said_by(target: Target, main: &Path) -> Option<String> {
     let folder = tempfile::tempdir().unwrap();
     let image = folder.path().join("firmware.elf");
-    good(&linked(target, main, "", &image)?);
+    good(&linked(target, main, &built(target, "")?, &image)?);
     let qemu = tool("qemu-system-arm")?;
     // A fault ends the program, but nothing ends one that waits for ever.
     let mut run = Command::new("timeout");
@@ -133,13 +135,31 @@ fn calls_need_little_stack() {
     }
 }
 
+/// At whatever level the library is optimised, firmware links: no panic can be reached.
+#[test]
+fn no_level_of_optimisation_leaves_a_panic_path() {
+    let folder = tempfile::tempdir().unwrap();
+    let image = folder.path().join("firmware.elf");
+    let main = capi().join("examples/firmware.c");
+    let target = Target::CortexM4F;
+    for level in OTHER_LEVELS {
+        let library = built_at(target, level);
+        let Some(output) = library.and_then(|l| linked(target, &main, &l, &image)) else {
+            return;
+        };
+        good(&output);
+    }
+}
+
 /// Firmware in which a panic can be reached does not link.
 #[test]
 fn a_planted_panic_does_not_link() {
     let folder = tempfile::tempdir().unwrap();
     let image = folder.path().join("firmware.elf");
     let main = capi().join("examples/firmware.c");
-    let Some(output) = linked(Target::CortexM4F, &main, "planted-panic", &image) else {
+    let target = Target::CortexM4F;
+    let library = built(target, "planted-panic");
+    let Some(output) = library.and_then(|l| linked(target, &main, &l, &image)) else {
         return;
     };
     let said = String::from_utf8_lossy(&output.stderr);

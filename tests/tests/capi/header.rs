@@ -11,7 +11,7 @@ use supervisor_capi::layout::HEADER;
 use supervisor_capi::structs::LAYOUTS;
 use supervisor_capi::{Code, RECORD};
 
-const MODES: [(&str, Mode); 7] = [
+const MODES: [(&str, Mode); 8] = [
     ("LEVITATED", Mode::Levitated),
     ("APPROACH", Mode::Approach),
     ("BOUNCE", Mode::Bounce),
@@ -19,15 +19,17 @@ const MODES: [(&str, Mode); 7] = [
     ("PINNED", Mode::Pinned),
     ("HANDOVER", Mode::Handover),
     ("SENSOR_FAULT", Mode::SensorFault),
+    ("HANDED_BACK", Mode::HandedBack),
 ];
 
-const REFUSALS: [(&str, Refusal); 6] = [
+const REFUSALS: [(&str, Refusal); 7] = [
     ("NONE", Refusal::None),
     ("NOT_FINITE", Refusal::NotFinite),
     ("RANGE", Refusal::Range),
     ("SLEW", Refusal::Slew),
     ("DROPOUT", Refusal::Dropout),
     ("STUCK", Refusal::Stuck),
+    ("DOUBTED", Refusal::Doubted),
 ];
 
 const HINTS: [(&str, IntegratorHint); 2] =

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use system_tests::root;
+use system_tests::target::at_level;
 
 /// Where a static library can be used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -85,24 +86,40 @@ pub(crate) fn built(target: Target, features: &str) -> Option<PathBuf> {
     } else {
         format!("target-fw/{features}")
     };
+    let mut cargo = build(target);
+    cargo.args(["--target-dir", &target_dir, "--features", features]);
+    finished(cargo)?;
+    Some(folder(&target_dir, target))
+}
+
+/// The same at a level of optimisation other than 3.
+pub(crate) fn built_at(target: Target, level: &str) -> Option<PathBuf> {
+    let mut cargo = build(target);
+    at_level(&mut cargo, level, ["supervisor", "supervisor-capi"]);
+    finished(cargo)?;
+    let built = folder(&format!("target-fw/{level}"), target);
+    // The build writes it where the levels share what is compiled.
+    let version = "amb_supervisor_abi.h";
+    std::fs::copy(
+        folder("target-fw", target).join(version),
+        built.join(version),
+    )
+    .unwrap();
+    Some(built)
+}
+
+fn build(target: Target) -> Command {
     let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".to_owned());
     let mut command = Command::new(cargo);
-    command.current_dir(root()).args([
-        "rustc",
-        "-p",
-        "supervisor-capi",
-        "--lib",
-        "--crate-type",
-        "staticlib",
-        "--profile",
-        "fw",
-        "--target-dir",
-        &target_dir,
-        "--features",
-        features,
-    ]);
+    command.current_dir(root());
+    command.args(["rustc", "-p", "supervisor-capi", "--lib"]);
+    command.args(["--crate-type", "staticlib", "--profile", "fw"]);
     command.args(target.triple().map(|triple| format!("--target={triple}")));
-    let output = command.output().expect("cargo starts");
+    command
+}
+
+fn finished(mut cargo: Command) -> Option<()> {
+    let output = cargo.output().expect("cargo starts");
     let error = String::from_utf8_lossy(&output.stderr);
     if error.contains("target may not be installed") {
         assert!(std::env::var_os("CI").is_none(), "{error}");
@@ -110,8 +127,12 @@ pub(crate) fn built(target: Target, features: &str) -> Option<PathBuf> {
         return None;
     }
     assert!(output.status.success(), "{error}");
+    Some(())
+}
+
+fn folder(target_dir: &str, target: Target) -> PathBuf {
     let folder = root().join(target_dir);
-    Some(folder.join(target.triple().unwrap_or("")).join("fw"))
+    folder.join(target.triple().unwrap_or("")).join("fw")
 }
 
 /// Arguments with which firmware finds the header, its version and the example's parts.

@@ -200,7 +200,7 @@ fn what_the_supervisor_said_is_in_trace_record_verdict_and_report() {
         .iter()
         .filter(|m| *m != "levitated")
         .count();
-    let engaged_s = supervision["engaged_time_s"].as_f64().unwrap();
+    let engaged_s = supervision["engaged_s"].as_f64().unwrap();
     assert!(
         (engaged_s - engaged as f64 / 20e3).abs() < 1e-9,
         "{engaged_s}, {engaged}"

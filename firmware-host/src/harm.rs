@@ -1,0 +1,10 @@
+//! First do no harm: the supervisor against levitation alone, on machines drawn at random, with sensors as told and with
+//! sensors as they are.
+
+pub mod compared;
+pub mod conditions;
+pub mod draw;
+pub mod events;
+pub mod machine;
+pub mod page;
+pub mod study;

@@ -1,0 +1,153 @@
+//! The judge of the model: what the rotor seems to do all the time is no approach, and an engagement that comes no farther
+//! is given up.
+//!
+//! Time is looked at in windows of [`Coeffs::window_ticks`]. A window that ends levitated says how fast the reading usually
+//! moves, whatever moves it: runout, bending, nutation, noise, an orbit. One that ends engaged says whether the engagement
+//! comes farther.
+
+use crate::coeffs::Coeffs;
+use crate::phase::Phase;
+use crate::scalar::Scalar;
+
+/// Speeds up to here are no sign of anything: what told noise and slow motion come to \[lift-off speeds\].
+const ORDINARY: f32 = 0.2;
+/// So much above the usual an outward speed has to be to count.
+const MARGIN: f32 = 1.25;
+/// With a usual speed above this the law would follow what is no motion of the rotor.
+const UNTRUSTED_FROM: f32 = 0.4;
+/// A square of the speed below which an engagement is no bouncing: it holds the rotor.
+const QUIET_SQUARE: f32 = 0.1;
+/// A square of the speed that has fallen to this share of the lowest before is progress.
+const PROGRESS: f32 = 0.7;
+/// What a window adds to the debt of an engagement: one of bouncing on, one without a position, any other.
+const RESTLESS: u8 = 32;
+const BLIND: u8 = 8;
+const OTHER: u8 = 1;
+/// What a levitated window takes from it.
+const FORGIVEN: u8 = 4;
+/// The debt at which the bearing is handed back …
+const MOST_DEBT: u8 = 128;
+/// … and what is left of it for the next try.
+const LEFT_DEBT: u8 = 64;
+/// Windows for which it stays handed back at first, and how often that doubles.
+const HANDED_BACK_WINDOWS: u32 = 8;
+const MOST_DOUBLED: u8 = 7;
+
+/// What the judge remembers.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Trust<S> {
+    /// Largest square of the speed in this window.
+    peak: S,
+    /// Fastest in the last window.
+    before: S,
+    /// Speed that an approach has to exceed, by what the reading usually does.
+    pub(crate) margin: S,
+    /// Lowest peak of this engagement.
+    lowest: S,
+    ticks_left: u16,
+    touched: bool,
+    debt: u8,
+    doubled: u8,
+    pub(crate) handed_back: u16,
+}
+
+impl<S: Scalar> Default for Trust<S> {
+    fn default() -> Self {
+        Self {
+            peak: S::ZERO,
+            before: S::ZERO,
+            margin: S::ZERO,
+            lowest: S::of(MOST_SQUARE),
+            ticks_left: 0,
+            touched: false,
+            debt: 0,
+            doubled: 0,
+            handed_back: 0,
+        }
+    }
+}
+
+/// More than any square of a speed is.
+const MOST_SQUARE: f32 = 500.0;
+
+impl<S: Scalar> Trust<S> {
+    /// Whether the reading moves so little by itself that what it shows can be acted on.
+    #[inline]
+    pub(crate) fn is_granted(&self) -> bool {
+        self.margin <= S::of(UNTRUSTED_FROM * MARGIN - ORDINARY)
+    }
+
+    /// A tick in a phase, with the square of the speed and whether the wall is away; `rubs`: forward, as unbalance drives it. Whether the bearing has to be handed back, and for how
+    /// many ticks.
+    #[inline]
+    pub(crate) fn tick(
+        &mut self,
+        (square, flies): (S, bool),
+        (phase, rubs): (Phase<S>, bool),
+        coeffs: &Coeffs<S>,
+    ) -> Option<u32> {
+        self.peak = self.peak.or_more(square);
+        self.touched |= !flies;
+        match self.ticks_left.checked_sub(1) {
+            Some(left) => {
+                self.ticks_left = left;
+                None
+            }
+            None => self.window((phase, rubs), coeffs),
+        }
+    }
+
+    /// The end of a window.
+    #[inline(never)]
+    fn window(&mut self, (phase, rubs): (Phase<S>, bool), coeffs: &Coeffs<S>) -> Option<u32> {
+        self.ticks_left = coeffs.window_ticks;
+        let peak = core::mem::replace(&mut self.peak, S::ZERO);
+        let touched = core::mem::replace(&mut self.touched, false);
+        if !phase.is_engaged() {
+            // What the wall does is not usual.
+            if !touched {
+                self.learn(peak.root());
+            }
+            self.lowest = S::of(MOST_SQUARE);
+            if phase == Phase::Levitated {
+                self.debt = self.debt.saturating_sub(FORGIVEN);
+                if self.debt == 0 {
+                    self.doubled = 0;
+                }
+            }
+            return None;
+        }
+        let progress = peak <= self.lowest * S::of(PROGRESS);
+        if progress {
+            self.lowest = peak;
+        }
+        self.debt += match phase {
+            Phase::SensorFault { .. } => BLIND,
+            _ if progress || rubs || peak <= S::of(QUIET_SQUARE) => OTHER,
+            _ => RESTLESS,
+        };
+        if self.debt < MOST_DEBT {
+            return None;
+        }
+        self.debt = LEFT_DEBT;
+        self.handed_back = self.handed_back.saturating_add(1);
+        let windows = HANDED_BACK_WINDOWS << self.doubled;
+        self.doubled = (self.doubled + 1).min(MOST_DOUBLED);
+        Some(windows * u32::from(coeffs.window_ticks))
+    }
+
+    /// What two windows in a row have seen is usual: what passes is not.
+    fn learn(&mut self, speed: S) {
+        let before = core::mem::replace(&mut self.before, speed);
+        let usual = speed.or_less(before);
+        self.margin = (usual * S::of(MARGIN) - S::of(ORDINARY)).or_more(S::ZERO);
+    }
+
+    /// After a change of the unit of speed.
+    pub(crate) fn rescale(&mut self, speed: S) {
+        self.before = self.before * speed;
+        self.margin = self.margin * speed;
+        self.peak = S::ZERO;
+        self.lowest = S::of(MOST_SQUARE);
+    }
+}

@@ -1,0 +1,252 @@
+//! The judge of the model: doubt about single samples, what the reading usually does, and the way out of an engagement
+//! that comes no farther.
+
+use supervisor::{Core, Events, Limits, Mode, Prepared, Q, Refusal, Supervisor};
+use system_tests::bench::Bench;
+use system_tests::rig::{config, sample};
+use system_tests::storm::{AnyBits, Chance, Storm};
+
+/// Clearance of the rig \[m\], and √(m·c/F) \[ticks\].
+const C_M: f32 = 2e-4;
+const UNIT_TICKS: f32 = 1.414e-3 / 50e-6;
+/// A window: 6·t₀, and the tick at its end.
+const WINDOW_TICKS: u32 = (6.0 * UNIT_TICKS) as u32 + 1;
+/// No engagement is longer.
+const MOST_TICKS: u32 = 129 * WINDOW_TICKS;
+
+fn acts(mode: Mode) -> bool {
+    !matches!(mode, Mode::Levitated | Mode::HandedBack)
+}
+
+/// Noise of a coordinate, triangular, of this standard deviation.
+fn noise(chance: &mut Chance, rms: f32) -> f32 {
+    (chance.share() + chance.share() - 1.0) * rms * 6_f32.sqrt()
+}
+
+/// The longest engagement of a stream of any bits.
+fn longest_in_a_storm<S: AnyBits>(seed: u64, ticks: u32) -> u32 {
+    let mut core = Core::<S, 64>::new(&Prepared::new(&config()).unwrap());
+    let mut storm = Storm::new(seed);
+    let (mut longest, mut running) = (0, 0);
+    for _ in 0..ticks {
+        let mode = core.tick(&storm.next_sample::<S>()).mode;
+        running = if acts(mode) { running + 1 } else { 0 };
+        longest = longest.max(running);
+    }
+    longest
+}
+
+#[test]
+fn no_engagement_of_any_bits_lasts_beyond_its_bound() {
+    for seed in 0..4 {
+        for longest in [
+            longest_in_a_storm::<f32>(seed, 1_000_000),
+            longest_in_a_storm::<f64>(seed, 1_000_000),
+            longest_in_a_storm::<Q>(seed, 1_000_000),
+        ] {
+            assert!(longest <= MOST_TICKS, "{longest}");
+        }
+    }
+}
+
+/// A stream that is made to keep the supervisor busy, by what it says: what is engaged is kept engaged.
+fn longest_kept(position: impl Fn(u32, Mode) -> [f32; 2], ticks: u32) -> (u32, u32) {
+    let mut bench = Bench::new(&config());
+    let mut mode = Mode::Levitated;
+    let (mut longest, mut running, mut handed_back) = (0, 0, 0);
+    for i in 0..ticks {
+        let command = bench.tick(position(i, mode));
+        mode = command.mode;
+        running = if acts(mode) { running + 1 } else { 0 };
+        longest = longest.max(running);
+        handed_back += u32::from(command.events.contains(Events::HANDED_BACK));
+    }
+    assert_eq!(bench.supervisor.report().handed_back, handed_back);
+    (longest, handed_back)
+}
+
+/// A rotor that lies on the bearing for good is held for long, and not for ever: the bound is reached, to a window or two.
+#[test]
+fn what_rests_is_held_to_the_bound() {
+    let lying = |i: u32, _| [1.01 * C_M, 1e-8 * (i % 2) as f32];
+    let (longest, handed_back) = longest_kept(lying, 3 * MOST_TICKS);
+    assert!(
+        longest <= MOST_TICKS && longest > MOST_TICKS - 3 * WINDOW_TICKS,
+        "{longest} of {MOST_TICKS}"
+    );
+    assert!(handed_back >= 2);
+}
+
+/// Position of a rotor that bounces from wall to wall at this speed [lift-off speeds], whatever is done.
+fn bouncing(i: u32, speed: f32) -> [f32; 2] {
+    let way = i as f32 * speed / UNIT_TICKS;
+    let from_wall = (way % 4.0 - 2.0).abs() - 1.0;
+    [1.03 * C_M * from_wall, 1e-7 * (i % 7) as f32]
+}
+
+/// One that bounces on without losing speed is given up after four windows and a part of one, and the pauses double.
+#[test]
+fn bouncing_on_is_given_up_and_pauses_double() {
+    let mut bench = Bench::new(&config());
+    let mut pauses = Vec::new();
+    let (mut running, mut longest, mut pause) = (0, 0, 0);
+    for i in 0..200 * WINDOW_TICKS {
+        let mode = bench.tick(bouncing(i, 0.8)).mode;
+        if acts(mode) {
+            running += 1;
+            longest = longest.max(running);
+            if pause > 0 {
+                pauses.push(std::mem::take(&mut pause));
+            }
+        } else {
+            running = 0;
+            pause += u32::from(mode == Mode::HandedBack);
+        }
+    }
+    assert!(longest <= 5 * WINDOW_TICKS, "{longest}");
+    let windows: Vec<f32> = pauses
+        .iter()
+        .map(|p| *p as f32 / WINDOW_TICKS as f32)
+        .collect();
+    assert!(windows.len() >= 4, "{windows:?}");
+    for (n, pause) in windows.iter().enumerate() {
+        let expected = 8.0 * 2_f32.powi(n as i32);
+        assert!((pause / expected - 1.0).abs() < 0.05, "{windows:?}");
+    }
+}
+
+/// A single sample that is off moves nothing, in either direction and of any size; what the second shows as well is so.
+#[test]
+fn one_sample_that_is_off_is_refused_and_two_are_not() {
+    for size in [0.1, 0.3, 0.9] {
+        let mut bench = Bench::new(&config());
+        let mut chance = Chance::new(5);
+        let mut tick = |bench: &mut Bench, off: f32| {
+            let at = [
+                off * C_M + noise(&mut chance, 5e-7),
+                noise(&mut chance, 5e-7),
+            ];
+            bench.tick(at)
+        };
+        for _ in 0..200 {
+            assert!(
+                !tick(&mut bench, 0.0)
+                    .limits
+                    .contains(Limits::SAMPLE_REFUSED)
+            );
+        }
+        for _ in 0..50 {
+            let command = tick(&mut bench, size);
+            assert!(command.limits.contains(Limits::SAMPLE_REFUSED), "{size}");
+            assert_eq!(bench.supervisor.report().refusal, Refusal::Doubted);
+            assert_eq!(command.mode, Mode::Levitated, "{size}");
+            for _ in 0..20 {
+                assert_eq!(tick(&mut bench, 0.0).mode, Mode::Levitated, "{size}");
+            }
+        }
+        if size < 0.5 {
+            tick(&mut bench, size);
+            let second = tick(&mut bench, size);
+            assert!(!second.limits.contains(Limits::SAMPLE_REFUSED), "{size}");
+        }
+        assert_eq!(bench.supervisor.report().landings, 0);
+    }
+}
+
+/// The command that a levitation controller makes of a doubted sample does not go through.
+#[test]
+fn the_controllers_answer_to_a_doubted_sample_does_not_go_through() {
+    let mut supervisor = Supervisor::<64>::new(&config()).unwrap();
+    let mut chance = Chance::new(9);
+    let mut of = |i: u32, off: f32, levitation_n: [f32; 2]| {
+        let at = [
+            off * C_M + noise(&mut chance, 5e-7),
+            noise(&mut chance, 5e-7),
+        ];
+        let mut sample = sample(i, at);
+        sample.levitation_n = levitation_n;
+        supervisor.tick(&sample).force_n
+    };
+    for i in 0..100 {
+        assert_eq!(of(i, 0.0, [7.0, -3.0]), [7.0, -3.0]);
+    }
+    let held = of(100, 0.2, [-900.0, 0.0]);
+    assert!(
+        (held[0] - 7.0).abs() < 1e-3 && (held[1] + 3.0).abs() < 1e-3,
+        "{held:?}"
+    );
+    assert_eq!(of(101, 0.0, [8.0, -3.0]), [8.0, -3.0]);
+}
+
+/// Runout that is there for two windows is the usual: the supervisor is not noticed, not even where the reading goes round
+/// with three times the lift-off speed.
+#[test]
+fn what_is_usual_is_no_approach() {
+    for (speed, amplitude) in [(0.6, 0.1), (1.0, 0.1), (3.0, 0.1), (2.0, 0.05)] {
+        let mut bench = Bench::new(&config());
+        let mut chance = Chance::new(11);
+        let (mut phase, mut engaged) = (0.0_f32, 0);
+        let step = speed / (amplitude * UNIT_TICKS);
+        let growth = 40 * WINDOW_TICKS;
+        for i in 0..3 * growth {
+            phase = (phase + step) % std::f32::consts::TAU;
+            let share = (i as f32 / growth as f32).min(1.0);
+            let x = share * amplitude * C_M * phase.sin() + noise(&mut chance, 5e-7);
+            let command = bench.tick([x, noise(&mut chance, 5e-7)]);
+            engaged += u32::from(acts(command.mode));
+        }
+        assert_eq!(engaged, 0, "{speed} at {amplitude}");
+    }
+}
+
+/// An engagement without a touch leaves the record to one with it, and is counted apart.
+#[test]
+fn an_engagement_without_contact_does_not_spend_the_record() {
+    let mut bench = Bench::new(&config());
+    let mut chance = Chance::new(13);
+    let mut at = |r: f32| [r * C_M + noise(&mut chance, 2e-7), noise(&mut chance, 2e-7)];
+    for _ in 0..400 {
+        bench.tick(at(0.0));
+    }
+    // Towards the wall, and back before it.
+    let mut engaged = 0;
+    for i in 0..30 {
+        engaged += u32::from(
+            bench
+                .tick(at(0.03 * i as f32))
+                .events
+                .contains(Events::ENGAGED),
+        );
+    }
+    for i in (0..30).rev() {
+        bench.tick(at(0.03 * i as f32));
+    }
+    assert_eq!(engaged, 1);
+    let mut ticks = 0;
+    while bench.supervisor.mode() != Mode::Levitated {
+        bench.tick(at(0.0));
+        ticks += 1;
+        assert!(ticks < 2000);
+    }
+    for _ in 0..2000 {
+        bench.tick(at(0.0));
+    }
+    let report = bench.supervisor.report();
+    assert_eq!((report.nuisance_engagements, report.landings), (1, 0));
+    assert!(bench.supervisor.record().is_none());
+    for i in 0..60 {
+        bench.tick(at((0.05 * i as f32).min(1.03)));
+    }
+    for _ in 0..2000 {
+        bench.tick(at(0.0));
+    }
+    let report = bench.supervisor.report();
+    assert_eq!((report.nuisance_engagements, report.landings), (1, 1));
+    let record = bench.supervisor.record().expect("this one is worth it");
+    let engaged = (record.entries()).position(|e| e.events & Events::ENGAGED.bits() as u16 != 0);
+    assert_eq!(
+        engaged,
+        Some(15),
+        "a quarter of the record lies before the touch"
+    );
+}
