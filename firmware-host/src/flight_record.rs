@@ -84,8 +84,8 @@ pub struct Stretch {
 pub struct FlightRecord {
     /// Checksum of all entries, to compare with the one that the firmware gave.
     pub crc: u32,
-    /// Whether it has the length of a record, a power of two, and the engagement that froze it stands where it does in a whole
-    /// one from oldest to newest: at the end of the first quarter.
+    /// Whether it has the length of a record, a power of two, what froze it stands where it does in a whole one from oldest to
+    /// newest, at the end of the first quarter, and the last entry is later than the first.
     pub whole: bool,
     /// Entries that were never written, before the first that was.
     pub empty: usize,
@@ -143,6 +143,11 @@ impl FlightRecord {
         let start = written.iter().rev().find(engaged).or(written.first());
         let start = start.map_or(0, |entry| entry.sequence);
         let ticks: Vec<Tick> = written.iter().map(|e| tick(e, start, units)).collect();
+        // A ring that was written down from elsewhere ends before it begins.
+        let in_order = match written {
+            [first, .., last] => last.sequence.wrapping_sub(first.sequence).cast_signed() >= 0,
+            _ => true,
+        };
         let gap = |pair: &[Entry]| {
             let step = pair[1].sequence.wrapping_sub(pair[0].sequence);
             // A number that is older than the one before is no gap.
@@ -153,7 +158,7 @@ impl FlightRecord {
         };
         Self {
             crc: crc_of(entries.iter()),
-            whole: a_length && trigger.is_some_and(|at| triggers(&entries[at])),
+            whole: a_length && trigger.is_some_and(|at| triggers(&entries[at])) && in_order,
             empty,
             missing: written.windows(2).map(gap).sum(),
             stretches: stretches(&ticks),

@@ -185,7 +185,7 @@ pub(crate) struct Coeffs<S: Scalar> {
     pub(crate) index_rate: RateOf<S>,
     /// Farthest plausible way in a tick.
     pub(crate) way_per_tick: S,
-    /// Three steps of the sensor, as a sum of speeds over ticks.
+    /// Three steps of the sensor, or the shortest way there is, as a sum of speeds over ticks.
     pub(crate) sensor_speeds: S,
     /// Mean distance of a sample from where it was expected, of the noise that was told; and up to which of it the speed is
     /// known well enough to tell an approach by.
@@ -198,6 +198,10 @@ pub(crate) struct Coeffs<S: Scalar> {
     /// Being blind for the contact force, the observer makes up a speed of so much times the acceleration of all others.
     pub(crate) blind_time: S,
 }
+
+/// Shortest way \[clearances\] that the estimate is sure of: a rotor at rest before a sensor without noise may seem to go round
+/// so far by an unbalance that was learned elsewhere.
+const LEAST_WAY: f32 = 2e-3;
 
 /// Least coefficient of friction in the whirl limit: without friction there is neither whirl nor limit.
 const LEAST_FRICTION: f32 = 1e-3;
@@ -394,7 +398,7 @@ impl<S: Scalar> Coeffs<S> {
             severity_limit: config.severity_limit,
             index_rate,
             way_per_tick: s("largest speed", config.speed_max_m_s * t / c),
-            sensor_speeds: s("sensor step", sensor_steps / h),
+            sensor_speeds: s("sensor step", max(sensor_steps, LEAST_WAY) / h),
             told_noise: s("sensor step", min(told_noise, 0.5)),
             quiet_noise: s("sensor step", quiet_noise),
             never_doubted: s("tick", max(0.5 * SHOCK * h * h, LEAST_DOUBTED)),

@@ -219,6 +219,12 @@ impl<S: Scalar> Observer<S> {
         }
     }
 
+    /// Force that acts.
+    #[inline]
+    pub(crate) fn delivered(&self) -> Vec2<S> {
+        self.delivered
+    }
+
     /// Speed along the normal of a wall that holds against what the model accelerates by.
     #[inline]
     pub(crate) fn made_up(&self, normal: Vec2<S>, coeffs: &Coeffs<S>) -> S {

@@ -169,11 +169,10 @@ impl<S: Scalar> Guard<S> {
         if !usual {
             return None;
         }
-        if let Some(off) = expected.off(position) {
-            if !self.innovation.fits(off, coeffs) {
-                return None;
-            }
-            self.innovation.learn(off, coeffs);
+        match expected.off(position) {
+            Some(off) if self.innovation.fits(off, coeffs) => self.innovation.learn(off, coeffs),
+            Some(_) => return None,
+            None => self.innovation.skip(),
         }
         self.last_sequence = sample.sequence;
         self.last_good = position;

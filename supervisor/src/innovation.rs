@@ -28,7 +28,7 @@ const DOUBTED_AT_MOST: u8 = 2;
 /// Most noise that is one \[clearances\]: what jumps about more is no position.
 const MOST_LEVEL: f32 = 0.5;
 /// Share of what is new in the noise that has been seen.
-const LEARNT: f32 = 1.0 / 16.0;
+const LEARNT: f32 = 1.0 / 32.0;
 
 /// Memory of what was off.
 #[derive(Debug, Clone, Copy, Default)]
@@ -37,25 +37,38 @@ pub(crate) struct Innovation<S> {
     /// told. A push makes samples be off to the same side, noise does not.
     level: S,
     last: Vec2<S>,
+    /// The sample before could be expected, too.
+    known: bool,
     /// Samples in a row that were doubted.
     doubted: u8,
 }
 
 impl<S: Scalar> Innovation<S> {
-    /// Whether a sample this far off agrees with what was expected, or with the one before it.
+    /// Whether a sample this far off agrees with what was expected, or with the one before it. The first after what cannot
+    /// be expected has nothing to be compared with.
     #[inline]
     pub(crate) fn fits(&self, off: Vec2<S>, coeffs: &Coeffs<S>) -> bool {
         let most = (self.level * S::of(DOUBTED_FROM)).or_more(coeffs.never_doubted);
-        off.about_length() <= most || (off - self.last).about_length() <= most
+        off.about_length() <= most || !self.known || (off - self.last).about_length() <= most
+    }
+
+    /// A sample that nobody could expect.
+    #[inline]
+    pub(crate) fn skip(&mut self) {
+        self.known = false;
     }
 
     /// Learns from it, the little that one counts.
     #[inline]
     pub(crate) fn learn(&mut self, off: Vec2<S>, coeffs: &Coeffs<S>) {
         let before = core::mem::replace(&mut self.last, off);
-        let counts = (off - before)
-            .about_length()
-            .or_less(self.level + self.level);
+        let counts = if core::mem::replace(&mut self.known, true) {
+            (off - before)
+                .about_length()
+                .or_less(self.level + self.level)
+        } else {
+            self.level
+        };
         self.level = (self.level + (counts - self.level) * S::of(LEARNT))
             .between(coeffs.told_noise, S::of(MOST_LEVEL));
     }

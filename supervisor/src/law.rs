@@ -33,8 +33,8 @@ pub(crate) struct Wanted<S> {
 
 /// Of the whirl limit: impacts that will add up to less than the first need no help but to be softened,
 /// from the second on all the force goes to what they add.
-const HARMLESS: f32 = 0.6;
-const URGENT: f32 = 1.1;
+const HARMLESS: f32 = 0.65;
+const URGENT: f32 = 1.0;
 /// Share of the cap that pushes inwards between impacts: more shortens the chords and with them the time
 /// in which braking takes speed out.
 const FLIGHT_SHARE: f32 = 0.15;
@@ -42,6 +42,9 @@ const FLIGHT_SHARE: f32 = 0.15;
 /// How much stronger a load of the cap or more, outwards, makes the restoring force: without it a load a little below the
 /// cap keeps the rotor beside the wall.
 const LOAD_SHARE: f32 = 0.5;
+
+/// At rest on the wall a slower speed is noise, and costs no force \[lift-off speeds\].
+const STILL: f32 = 0.1;
 
 /// What the law looks at.
 pub(crate) struct View<'a, S: Scalar> {
@@ -51,6 +54,8 @@ pub(crate) struct View<'a, S: Scalar> {
     /// The next impact in flight.
     pub(crate) ahead: Option<&'a Impact<S>>,
     pub(crate) spin: Spin,
+    /// Force that acts.
+    pub(crate) delivered: Vec2<S>,
     pub(crate) coeffs: &'a Coeffs<S>,
 }
 
@@ -76,6 +81,11 @@ impl<S: Scalar> View<'_, S> {
             Spin::Unknown => S::ZERO,
             _ => self.coeffs.bounce_gain,
         }
+    }
+
+    /// What the cap has over an outward load \[caps\].
+    fn braked(&self) -> S {
+        (S::ONE - self.found.load).between(S::ZERO, S::ONE)
     }
 
     /// Against the speed, −D·v; no longer than twice the cap, which no room holds either.
@@ -116,16 +126,23 @@ impl<S: Scalar> View<'_, S> {
         let gain = self.bounce_gain();
         let sense = self.spin.sense_of_backward(impact.along);
         let (mut normal_speed, mut backward) = (impact.normal_speed, impact.along * sense);
-        let sum = sum_of_impacts(backward, normal_speed, gain);
-        let beyond_harmless = sum * coeffs.per_whirl_limit - S::of(HARMLESS);
-        let urgency =
-            (beyond_harmless * S::of(1.0 / (URGENT - HARMLESS))).or_less(S::JUST_BELOW_ONE);
+        // What a force that acts already, and after that the cap, against the speed leaves of it until the impact.
+        let speed = self.course.speed;
+        let way = impact.time * speed;
+        let early = way.or_less(coeffs.horizon * speed);
+        let slowing = -self.delivered.dot(self.motion.velocity) * self.course.inverse;
+        let work = early * slowing + (way - early) * self.braked();
+        let left = (self.course.square - (work + work)).root();
+        let time = (way + way).over(speed + left);
+        let sum = sum_of_impacts(backward, normal_speed, gain)
+            * (left * self.course.inverse).or_less(S::ONE);
+        let urgency = urgency(sum, coeffs);
         if urgency <= S::ZERO {
             return Vec2::ZERO;
         }
         let (mut position, mut velocity) = (self.motion.position, self.motion.velocity);
         let mut act_after = coeffs.horizon;
-        if impact.time < act_after {
+        if time < act_after {
             let n = impact.normal;
             let lost = (S::ONE + coeffs.restitution) * normal_speed;
             let friction = match self.spin {
@@ -138,7 +155,7 @@ impl<S: Scalar> View<'_, S> {
             position = n;
             // A chord from wall to wall lasts 2·v_n/v².
             let (square, twice) = (velocity.length_squared(), normal_speed + normal_speed);
-            let left = act_after - impact.time;
+            let left = act_after - time;
             act_after = if left * square <= twice {
                 left
             } else {
@@ -161,8 +178,15 @@ impl<S: Scalar> View<'_, S> {
         let n = found.normal;
         let sense = self.spin.sense_of_backward(found.tangential_speed);
         let outward = found.radial_speed.or_more(S::ZERO);
-        let sum = sum_of_impacts(found.tangential_speed * sense, outward, self.bounce_gain());
-        let strength = (sum * coeffs.damper).between(S::ZERO, S::ONE);
+        let backward = found.tangential_speed * sense;
+        let sum = sum_of_impacts(backward, outward, self.bounce_gain());
+        let mut strength = sum * coeffs.damper;
+        if !driven {
+            // What the impacts will add counts as far as it is dangerous, what is there counts in full.
+            let there = backward * coeffs.damper;
+            strength = strength.or_less(urgency(sum, coeffs)).or_more(there);
+        }
+        let strength = strength.between(S::ZERO, S::ONE);
         let braking = if strength > S::ZERO {
             let rate = found.tangential_speed * found.per_radius;
             // Unit vector against b̂, or b̂ + μ·n̂.
@@ -177,7 +201,8 @@ impl<S: Scalar> View<'_, S> {
             Vec2::ZERO
         };
         // Slower than lift-off an inward force can end the contact.
-        let inward = (coeffs.pressing - self.course.square).or_more(S::ZERO);
+        let pressing = (found.load.or_less(S::JUST_BELOW_ONE)).or_more(coeffs.pressing);
+        let inward = (pressing - self.course.square).or_more(S::ZERO);
         Wanted {
             braking,
             damping: self.damping(),
@@ -201,13 +226,22 @@ impl<S: Scalar> View<'_, S> {
     fn hold(&self, share: S) -> Wanted<S> {
         let (coeffs, found) = (self.coeffs, self.found);
         let sense = self.spin.sense_of_backward(found.tangential_speed);
-        let backward = found.tangential_speed * sense;
+        let still = S::of(STILL);
+        let backward = found.tangential_speed * sense - still;
         let strength = (backward * coeffs.damper).between(S::ZERO, S::ONE);
+        let moving = (S::ONE - still * self.course.inverse).or_more(S::ZERO);
         Wanted {
             braking: found.normal.turned() * -(sense * strength),
-            damping: self.damping(),
+            damping: self.damping() * moving,
             restoring: found.normal * -share,
             touching: true,
         }
     }
+}
+
+/// How much of the capacity impacts need that will add up to this backward speed; none at zero or less.
+#[inline]
+fn urgency<S: Scalar>(sum: S, coeffs: &Coeffs<S>) -> S {
+    let beyond_harmless = sum * coeffs.per_whirl_limit - S::of(HARMLESS);
+    (beyond_harmless * S::of(1.0 / (URGENT - HARMLESS))).or_less(S::JUST_BELOW_ONE)
 }

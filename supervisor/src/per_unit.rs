@@ -171,9 +171,11 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
         // Of the axis: an orbit is no approach, and no sign of the model either.
         let square = self.observer.velocity().length_squared();
         let flies = wall == Wall::Nothing;
+        let quiet = self.guard.innovation.is_quiet(coeffs);
         let judged = Judged {
+            quiet,
             hands_back: (self.trust).tick((square, flies), (self.phase, rubs), coeffs),
-            trusted: self.trust.is_granted() && self.guard.innovation.is_quiet(coeffs),
+            trusted: quiet && self.trust.is_granted(),
         };
         if self.phase != Phase::Levitated || found.unavoidable || found.touching {
             course = Course::of(motion.velocity);
@@ -194,6 +196,7 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
             course: &course,
             ahead: ahead.as_ref(),
             spin: reading.spin,
+            delivered: self.observer.delivered(),
             coeffs,
         };
         let shadow = sample.status.contains(Status::SHADOW);

@@ -17,6 +17,8 @@ use crate::signal::{Events, Mode};
 /// What [`crate::trust`] says.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Judged {
+    /// The noise leaves a speed to be seen.
+    pub(crate) quiet: bool,
     /// The reading may be acted on.
     pub(crate) trusted: bool,
     /// The bearing has to be handed back, for so many ticks.
@@ -79,7 +81,7 @@ impl<S: Scalar> Phase<S> {
         let next = match judged.hands_back {
             _ if !facts.contains(Facts::ON) => Self::Levitated,
             Some(left) => Self::HandedBack { left },
-            None => self.follow(found, (calm, ready, judged.trusted), class, facts, coeffs),
+            None => self.follow(found, (calm, ready, judged), class, facts, coeffs),
         };
         let mut events = Events::empty();
         if found.touched {
@@ -107,12 +109,12 @@ impl<S: Scalar> Phase<S> {
         (next, events)
     }
 
-    /// Inward force on a rotor at rest on the wall at this tick: where the first does not lift it off, more and more,
-    /// up to the whole cap.
-    fn hold(self, coeffs: &Coeffs<S>) -> S {
+    /// Inward force on a rotor at rest on the wall at this tick: what pressed it there, and where that does not lift it off
+    /// more and more, up to the whole cap.
+    fn hold(self, load: S, coeffs: &Coeffs<S>) -> S {
         match self {
             Self::Pinned { hold } => hold + (S::JUST_BELOW_ONE - hold) * coeffs.blend_step,
-            _ => coeffs.hold_share,
+            _ => load.between(coeffs.hold_share, S::JUST_BELOW_ONE),
         }
     }
 
@@ -120,7 +122,7 @@ impl<S: Scalar> Phase<S> {
     fn follow(
         self,
         found: &Findings<S>,
-        (calm, ready, trusted): (bool, bool, bool),
+        (calm, ready, judged): (bool, bool, Judged),
         class: Class,
         facts: Facts,
         coeffs: &Coeffs<S>,
@@ -140,7 +142,9 @@ impl<S: Scalar> Phase<S> {
             };
             return Self::SensorFault { bouncing };
         }
-        if self == Self::Levitated && !trusted {
+        // Where what the reading usually does is too fast, a contact that goes on all the time still says what it is.
+        let whirls = judged.quiet && found.touching && class == Class::BackwardWhirl;
+        if self == Self::Levitated && !judged.trusted && !whirls {
             return self;
         }
         if found.touching {
@@ -148,7 +152,7 @@ impl<S: Scalar> Phase<S> {
                 Class::Bounce | Class::ForwardRub { .. } => new_bounce,
                 Class::BackwardWhirl => Self::BackwardWhirl,
                 Class::Pinned => Self::Pinned {
-                    hold: self.hold(coeffs),
+                    hold: self.hold(found.load, coeffs),
                 },
             };
         }
@@ -156,7 +160,7 @@ impl<S: Scalar> Phase<S> {
             Self::Levitated if found.unavoidable => Self::Approach { calm_ticks: 0 },
             Self::Levitated => self,
             // Nothing has happened but in a reading that is not believed any more.
-            Self::Approach { .. } if !trusted => Self::Levitated,
+            Self::Approach { .. } if !judged.trusted => Self::Levitated,
             Self::Approach { calm_ticks } => match after_calm(calm_ticks, calm, ready, coeffs) {
                 Some(calm_ticks) => Self::Approach { calm_ticks },
                 None => Self::Handover { weight: S::ZERO },

@@ -138,7 +138,7 @@ impl Scalar for Q {
     const ZERO: Self = Self::from_bits(0);
     const ONE: Self = Self::from_bits(1 << FRACTION);
     const JUST_BELOW_ONE: Self = Self::from_bits((1 << FRACTION) - 8);
-    const KNOWN_ANSWER: u32 = 0xAFEB_4AB8;
+    const KNOWN_ANSWER: u32 = 0x6E20_482D;
 
     #[inline]
     fn of(x: f32) -> Self {

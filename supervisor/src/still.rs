@@ -24,7 +24,7 @@ pub(crate) struct Coordinate<S> {
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Still<S> {
     at: [Coordinate<S>; 2],
-    /// The last change of a coordinate: at least a step of the converter, which may be coarser than was told.
+    /// Step of the converter, which may be coarser than was told.
     step: S,
 }
 
@@ -41,10 +41,8 @@ impl<S: Scalar> Still<S> {
         coeffs: &Coeffs<S>,
     ) -> (u8, u8) {
         let [x, y] = &mut self.at;
-        for change in [x.change(position.x), y.change(position.y)] {
-            if change > S::ZERO {
-                self.step = change.or_less(S::of(COARSEST));
-            }
+        for (coordinate, now) in [(&*x, position.x), (&*y, position.y)] {
+            self.step = coordinate.coarseness(now, self.step);
         }
         let twice = (self.step + self.step) * coeffs.per_tick;
         let most = coeffs.sensor_speeds.or_more(twice);
@@ -98,9 +96,16 @@ impl<S: Scalar> Still<S> {
 }
 
 impl<S: Scalar> Coordinate<S> {
-    /// How far it has changed.
-    fn change(&self, now: S) -> S {
-        if self.seen { self.step(now) } else { S::ZERO }
+    /// Step of a converter: what ends a standstill is one at least, and no smaller change is none.
+    fn coarseness(&self, now: S, step: S) -> S {
+        let change = self.step(now);
+        if !self.seen || change == S::ZERO {
+            step
+        } else if self.unchanged > 0 {
+            change.or_less(S::of(COARSEST))
+        } else {
+            step.or_less(change)
+        }
     }
 
     fn watch(&mut self, now: S, step: S, most: S) -> u8 {

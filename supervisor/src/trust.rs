@@ -19,16 +19,18 @@ const UNTRUSTED_FROM: f32 = 0.4;
 const QUIET_SQUARE: f32 = 0.1;
 /// A square of the speed that has fallen to this share of the lowest before is progress.
 const PROGRESS: f32 = 0.7;
-/// What a window adds to the debt of an engagement: one of bouncing on, one without a position, any other.
-const RESTLESS: u8 = 32;
-const BLIND: u8 = 8;
-const OTHER: u8 = 1;
+/// What a window adds to the debt of an engagement: one of bouncing on, one without a position, one that comes farther or
+/// rubs, one in which the rotor is held.
+const RESTLESS: u16 = 1024;
+const BLIND: u16 = 256;
+const MOVING: u16 = 32;
+const HELD: u16 = 2;
 /// What a levitated window takes from it.
-const FORGIVEN: u8 = 4;
+const FORGIVEN: u16 = 128;
 /// The debt at which the bearing is handed back …
-const MOST_DEBT: u8 = 128;
+const MOST_DEBT: u16 = 4096;
 /// … and what is left of it for the next try.
-const LEFT_DEBT: u8 = 64;
+const LEFT_DEBT: u16 = 2048;
 /// Windows for which it stays handed back at first, and how often that doubles.
 const HANDED_BACK_WINDOWS: u32 = 8;
 const MOST_DOUBLED: u8 = 7;
@@ -45,8 +47,9 @@ pub(crate) struct Trust<S> {
     /// Lowest peak of this engagement.
     lowest: S,
     ticks_left: u16,
-    touched: bool,
-    debt: u8,
+    /// In this window the wall or the supervisor has moved the rotor.
+    disturbed: bool,
+    debt: u16,
     doubled: u8,
     pub(crate) handed_back: u16,
 }
@@ -59,7 +62,7 @@ impl<S: Scalar> Default for Trust<S> {
             margin: S::ZERO,
             lowest: S::of(MOST_SQUARE),
             ticks_left: 0,
-            touched: false,
+            disturbed: false,
             debt: 0,
             doubled: 0,
             handed_back: 0,
@@ -77,8 +80,8 @@ impl<S: Scalar> Trust<S> {
         self.margin <= S::of(UNTRUSTED_FROM * MARGIN - ORDINARY)
     }
 
-    /// A tick in a phase, with the square of the speed and whether the wall is away; `rubs`: forward, as unbalance drives it. Whether the bearing has to be handed back, and for how
-    /// many ticks.
+    /// A tick in a phase, with the square of the speed and whether the wall is away; `rubs`: forward, as unbalance drives it.
+    /// Whether the bearing has to be handed back, and for how many ticks.
     #[inline]
     pub(crate) fn tick(
         &mut self,
@@ -87,7 +90,7 @@ impl<S: Scalar> Trust<S> {
         coeffs: &Coeffs<S>,
     ) -> Option<u32> {
         self.peak = self.peak.or_more(square);
-        self.touched |= !flies;
+        self.disturbed |= !flies || phase.is_engaged();
         match self.ticks_left.checked_sub(1) {
             Some(left) => {
                 self.ticks_left = left;
@@ -102,10 +105,10 @@ impl<S: Scalar> Trust<S> {
     fn window(&mut self, (phase, rubs): (Phase<S>, bool), coeffs: &Coeffs<S>) -> Option<u32> {
         self.ticks_left = coeffs.window_ticks;
         let peak = core::mem::replace(&mut self.peak, S::ZERO);
-        let touched = core::mem::replace(&mut self.touched, false);
+        let disturbed = core::mem::replace(&mut self.disturbed, false);
         if !phase.is_engaged() {
-            // What the wall does is not usual.
-            if !touched {
+            // What the wall or the supervisor did is not usual.
+            if !disturbed {
                 self.learn(peak.root());
             }
             self.lowest = S::of(MOST_SQUARE);
@@ -123,7 +126,8 @@ impl<S: Scalar> Trust<S> {
         }
         self.debt += match phase {
             Phase::SensorFault { .. } => BLIND,
-            _ if progress || rubs || peak <= S::of(QUIET_SQUARE) => OTHER,
+            _ if peak <= S::of(QUIET_SQUARE) => HELD,
+            _ if progress || rubs => MOVING,
             _ => RESTLESS,
         };
         if self.debt < MOST_DEBT {

@@ -12,7 +12,7 @@ const UNIT_TICKS: f32 = 1.414e-3 / 50e-6;
 /// A window: 6·t₀, and the tick at its end.
 const WINDOW_TICKS: u32 = (6.0 * UNIT_TICKS) as u32 + 1;
 /// No engagement is longer.
-const MOST_TICKS: u32 = 129 * WINDOW_TICKS;
+const MOST_TICKS: u32 = 2049 * WINDOW_TICKS;
 
 fn acts(mode: Mode) -> bool {
     !matches!(mode, Mode::Levitated | Mode::HandedBack)

@@ -24,7 +24,7 @@ fn every_processor_gives_the_bits_of_the_host_within_its_budgets() {
         assert_eq!(stream["missing_ways"], Value::Array(Vec::new()));
         assert_eq!(stream["unknown_ways"], Value::Array(Vec::new()));
         let modes = stream["modes"].as_array().unwrap();
-        assert_eq!(modes.len(), 7);
+        assert_eq!(modes.len(), 8);
         for mode in modes {
             assert!(mode["ticks"].as_u64().unwrap() >= 100, "{mode}");
         }
@@ -57,7 +57,7 @@ fn every_processor_gives_the_bits_of_the_host_within_its_budgets() {
         );
         assert_eq!(
             t["modes"].as_array().unwrap().len(),
-            7,
+            8,
             "all are counted: {t}"
         );
     }

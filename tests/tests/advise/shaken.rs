@@ -30,8 +30,8 @@ pub(super) struct Done {
     pub(super) modes: Vec<Mode>,
 }
 
-/// Time for whatever begins \[s\], and time in which is measured: of a small vibration, and of one that is as fast as no
-/// engagement is let last with.
+/// Time for whatever begins \[s\], and time in which is measured: of a small vibration in flight, and of motion so fast that no
+/// engagement is let last with it.
 const STARTS_S: f64 = 0.005;
 const SMALL: [f64; 3] = [0.02, 0.15, 0.06];
 const LARGE: [f64; 3] = [0.005, 0.02, 0.02];
@@ -49,7 +49,7 @@ pub(super) fn engaged_for_long(nominal: &Nominal) -> Config {
 /// The nearest frequency with whole cycles in what is measured.
 pub(super) fn whole(hz: f64) -> f64 {
     // Of both times of measuring.
-    (hz * 0.02).round() / 0.02
+    (hz * 0.02).round().max(1.0) / 0.02
 }
 
 /// Runs it. `hz` is taken as a [`whole`] one.
@@ -66,7 +66,9 @@ pub(super) fn shaken(config: &Config, path: Path, shake: Shake) -> Done {
         work: 0.0,
         modes: vec![],
     };
-    let small = shake.amplitude * rate * unit_s < SMALL_SPEED;
+    let [x, y] = path(SMALL[1], unit_s);
+    let flies = x.hypot(y) < 0.9;
+    let small = flies && shake.amplitude * rate * unit_s < SMALL_SPEED;
     let [grows_s, settled_s, measured_s] = if small { SMALL } else { LARGE };
     let settled = (settled_s / period_s).round() as u32;
     let measured = (measured_s / period_s).round() as u32;
