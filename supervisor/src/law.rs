@@ -31,10 +31,12 @@ pub(crate) struct Wanted<S> {
     pub(crate) touching: bool,
 }
 
-/// Of the whirl limit: impacts that will add up to less than the first need no help but to be softened,
-/// from the second on all the force goes to what they add.
+/// Of the whirl limit: impacts that will add up to less need no help but to be softened …
 const HARMLESS: f32 = 0.65;
-const URGENT: f32 = 1.0;
+/// … and so much beyond it all the force goes to what they add.
+const URGENT_AFTER: f32 = 0.35;
+/// What is harmless in an impact that has begun, which goes on losing its speed.
+const IN_CONTACT: f32 = 0.4;
 /// Share of the cap that pushes inwards between impacts: more shortens the chords and with them the time
 /// in which braking takes speed out.
 const FLIGHT_SHARE: f32 = 0.15;
@@ -136,7 +138,7 @@ impl<S: Scalar> View<'_, S> {
         let time = (way + way).over(speed + left);
         let sum = sum_of_impacts(backward, normal_speed, gain)
             * (left * self.course.inverse).or_less(S::ONE);
-        let urgency = urgency(sum, coeffs);
+        let urgency = urgency(sum, HARMLESS, coeffs);
         if urgency <= S::ZERO {
             return Vec2::ZERO;
         }
@@ -184,7 +186,8 @@ impl<S: Scalar> View<'_, S> {
         if !driven {
             // What the impacts will add counts as far as it is dangerous, what is there counts in full.
             let there = backward * coeffs.damper;
-            strength = strength.or_less(urgency(sum, coeffs)).or_more(there);
+            let urgency = urgency(sum, IN_CONTACT, coeffs);
+            strength = strength.or_less(urgency).or_more(there);
         }
         let strength = strength.between(S::ZERO, S::ONE);
         let braking = if strength > S::ZERO {
@@ -239,9 +242,10 @@ impl<S: Scalar> View<'_, S> {
     }
 }
 
-/// How much of the capacity impacts need that will add up to this backward speed; none at zero or less.
+/// How much of the capacity impacts need that will add up to this backward speed, beyond a harmless share of the whirl limit;
+/// none at zero or less.
 #[inline]
-fn urgency<S: Scalar>(sum: S, coeffs: &Coeffs<S>) -> S {
-    let beyond_harmless = sum * coeffs.per_whirl_limit - S::of(HARMLESS);
-    (beyond_harmless * S::of(1.0 / (URGENT - HARMLESS))).or_less(S::JUST_BELOW_ONE)
+fn urgency<S: Scalar>(sum: S, harmless: f32, coeffs: &Coeffs<S>) -> S {
+    let beyond_harmless = sum * coeffs.per_whirl_limit - S::of(harmless);
+    (beyond_harmless * S::of(1.0 / URGENT_AFTER)).or_less(S::JUST_BELOW_ONE)
 }

@@ -138,7 +138,7 @@ impl Scalar for Q {
     const ZERO: Self = Self::from_bits(0);
     const ONE: Self = Self::from_bits(1 << FRACTION);
     const JUST_BELOW_ONE: Self = Self::from_bits((1 << FRACTION) - 8);
-    const KNOWN_ANSWER: u32 = 0x6E20_482D;
+    const KNOWN_ANSWER: u32 = 0x2CEA_D5BB;
 
     #[inline]
     fn of(x: f32) -> Self {

@@ -235,8 +235,8 @@ macro_rules! floating_point {
     };
 }
 
-floating_point!(f32, i32, 0x9D8F_7732);
-floating_point!(f64, i64, 0x4794_E4E6);
+floating_point!(f32, i32, 0x9DD6_BC80);
+floating_point!(f64, i64, 0x9988_0906);
 
 /// Reciprocal square roots by Newton's method, from + − × only: every target gives the same bits. `core`
 /// has no root, and libm's costs three times as many instructions where there is an FPU. 0 below 1e-30

@@ -1,6 +1,7 @@
 //! How the machine's sensors are, beside what the supervisor is told of them.
 
 use super::draw::Draw;
+use super::events::BEGIN_S;
 use super::machine::Machine;
 use crate::scene::{Axis, Fault, FaultKind, Scene};
 use std::f64::consts::TAU;
@@ -26,11 +27,13 @@ pub enum Condition {
     Coarse,
     /// The supervisor is told a wrong mass, friction, stiffness, lag.
     WrongParameters,
+    /// Two faults for 1 to 20 ms each, within 40 ms around what happens.
+    FaultPair,
 }
 
 impl Condition {
     /// All of them.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 14] = [
         Self::Told,
         Self::Noise(3.0),
         Self::Noise(5.0),
@@ -44,6 +47,7 @@ impl Condition {
         Self::Spikes,
         Self::Coarse,
         Self::WrongParameters,
+        Self::FaultPair,
     ];
 
     /// Name in tables.
@@ -58,6 +62,7 @@ impl Condition {
             Self::Spikes => "spikes".to_owned(),
             Self::Coarse => "coarse converter".to_owned(),
             Self::WrongParameters => "told wrong".to_owned(),
+            Self::FaultPair => "pair of faults".to_owned(),
         }
     }
 
@@ -129,6 +134,31 @@ impl Condition {
                     wrong(&mut config.clearance_m, 1.05);
                     config.restitution =
                         (config.restitution * draw.between(0.8, 1.2) as f32).min(0.95);
+                }
+            }
+            Self::FaultPair => {
+                for _ in 0..2 {
+                    let kind = draw.one_of(&[
+                        FaultKind::Nan,
+                        FaultKind::Zero,
+                        FaultKind::Rail,
+                        FaultKind::Stuck,
+                        FaultKind::Offset(0.2 * c),
+                        FaultKind::Gain(1.5),
+                        FaultKind::Noise(20.0),
+                        FaultKind::Dropout,
+                        FaultKind::Delay(3),
+                    ]);
+                    let axis = match draw.one_of(&[Axis::X, Axis::Y, Axis::Both]) {
+                        _ if kind.concerns_both() => Axis::Both,
+                        axis => axis,
+                    };
+                    scene.faults.push(Fault {
+                        start_s: BEGIN_S + draw.between(-0.02, 0.02),
+                        duration_s: draw.decades(1e-3, 0.02),
+                        kind,
+                        axis,
+                    });
                 }
             }
         }

@@ -28,6 +28,8 @@ pub struct Row {
     pub new_touches: Vec<u64>,
     /// Peak contact force over levitation's, where both recover and levitation touches.
     pub force: Shares,
+    /// Machines on which that is more than 2.
+    pub twice_as_hard: Vec<u64>,
     /// Impulse of the contacts, the same.
     pub impulse: Shares,
     /// Share of the time in which the supervisor had the bearing, in the mean and at most.
@@ -79,9 +81,8 @@ impl Row {
         };
         let count = |test| numbers(test).len();
         let ratios = |of: fn(&Figures) -> f64| {
-            let comparable =
-                |p: &&(u64, Pair)| p.1.alone.recovered && p.1.own.recovered && p.1.alone.touched();
-            let ratios = (pairs.iter().filter(comparable)).map(|(_, p)| of(&p.own) / of(&p.alone));
+            let pairs = pairs.iter().filter(|(_, pair)| comparable(pair));
+            let ratios = pairs.map(|(_, p)| of(&p.own) / of(&p.alone));
             Shares::of(ratios.filter(|ratio| ratio.is_finite()).collect())
         };
         let shares = || pairs.iter().map(|(_, pair)| pair.engaged.share());
@@ -97,6 +98,7 @@ impl Row {
             gained: count(|p| !p.alone.recovered && p.own.recovered),
             new_touches: numbers(|p| !p.alone.touched() && p.own.touched()),
             force: ratios(|f| f.force_n),
+            twice_as_hard: numbers(|p| comparable(p) && p.own.force_n > 2.0 * p.alone.force_n),
             impulse: ratios(|f| f.impulse_n_s),
             engaged_mean: shares().sum::<f64>() / pairs.len().max(1) as f64,
             engaged_max: shares().fold(0.0, f64::max),
@@ -105,6 +107,11 @@ impl Row {
             handed_back: sum(|p| p.engaged.handed_back),
         }
     }
+}
+
+/// Whether both recover and levitation alone touches.
+fn comparable(pair: &Pair) -> bool {
+    pair.alone.recovered && pair.own.recovered && pair.alone.touched()
 }
 
 /// A row for each class, in the order of the runs.
@@ -186,6 +193,7 @@ pub fn lists(rows: &[Row]) -> String {
     for row in rows {
         list(row, "lost on machines", &row.lost);
         list(row, "touches only with the supervisor on", &row.new_touches);
+        list(row, "more than twice as hard on", &row.twice_as_hard);
     }
     text
 }
