@@ -87,7 +87,7 @@ impl Supervision {
 }
 
 /// Whether the supervisor has the bearing in a mode, alone or in part.
-fn acts(mode: Mode) -> bool {
+pub(crate) fn acts(mode: Mode) -> bool {
     !matches!(mode, Mode::Levitated | Mode::HandedBack)
 }
 

@@ -1,6 +1,7 @@
 //! Machines that nothing in the project was tuned on: drawn at random, with the configuration that their data
 //! suggest and a levitation controller by a rule of thumb.
 
+use firmware_host::harm::draw::Draw;
 use firmware_host::levitation::LevitationParams;
 use firmware_host::overloads::catalogue::{Case, cases};
 use firmware_host::overloads::fault_matrix::{DRIVE_FAULTS, SENSOR_FAULTS};
@@ -9,28 +10,7 @@ use firmware_host::overloads::plants::PlantCase;
 use firmware_host::overloads::results::run_case;
 use firmware_host::overloads::seats::Seat;
 use firmware_host::scene::Scene;
-use rand_chacha::ChaCha8Rng;
-use rand_core::{Rng, SeedableRng};
 use std::f64::consts::TAU;
-
-/// Draws numbers.
-struct Draw(ChaCha8Rng);
-
-impl Draw {
-    /// In [0, 1).
-    fn share(&mut self) -> f64 {
-        f64::from(self.0.next_u32()) / 2_f64.powi(32)
-    }
-
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.share()
-    }
-
-    /// Between two positive numbers, each decade as likely.
-    fn decades(&mut self, low: f64, high: f64) -> f64 {
-        low * (high / low).powf(self.share())
-    }
-}
 
 /// A machine, and what it is.
 #[derive(Debug, Clone)]
@@ -148,7 +128,7 @@ impl Compared {
 /// # Panics
 /// If a scene of them is not valid.
 pub fn machine(number: u64) -> Unseen {
-    let mut draw = Draw(ChaCha8Rng::seed_from_u64(number));
+    let mut draw = Draw::new(number, 0);
     let mass_kg = draw.decades(0.3, 100.0);
     let clearance_m = draw.decades(1e-4, 5e-4);
     let force_n = mass_kg * draw.decades(30.0, 600.0);
@@ -158,8 +138,8 @@ pub fn machine(number: u64) -> Unseen {
     let restitution = draw.between(0.3, 0.8);
     let contact_n_m = mass_kg * (TAU * draw.decades(600.0, 3000.0)).powi(2);
     let lag_s = 1.0 / (TAU * draw.decades(300.0, 3000.0));
-    let rate_hz = if draw.share() < 0.5 { 1e4 } else { 2e4 };
-    let sense = if draw.share() < 0.5 { 1.0 } else { -1.0 };
+    let rate_hz = draw.one_of(&[1e4, 2e4]);
+    let sense = draw.one_of(&[1.0, -1.0]);
     let spin_hz = sense * draw.decades(20.0, 1000.0);
     let noise_m = draw.decades(2e-7, 2e-6);
     let radius_m = draw.decades(0.02, 0.1);

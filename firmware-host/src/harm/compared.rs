@@ -4,11 +4,12 @@ use crate::closed_loop::{Keep, run, run_policy};
 use crate::policies::{Policy, Supervise};
 use crate::policy_kind::PolicyKind;
 use crate::scene::Scene;
+use crate::supervision::acts;
 use crate::trace::ReadOut;
 use serde::Serialize;
 use std::cell::RefCell;
 use std::rc::Rc;
-use supervisor::{Command, Events, Mode, Sample, Supervisor};
+use supervisor::{Command, Events, Sample, Supervisor};
 
 /// What counts of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
@@ -92,11 +93,6 @@ impl Supervise for Counting {
     fn read_out(&self) -> Option<ReadOut> {
         None
     }
-}
-
-/// Whether the supervisor has the bearing, alone or in part.
-fn acts(mode: Mode) -> bool {
-    !matches!(mode, Mode::Levitated | Mode::HandedBack)
 }
 
 /// Runs a scene both ways; `None` where a run cannot be trusted.
