@@ -1,7 +1,7 @@
 //! Command line of the host.
 
 use clap::{Parser, Subcommand};
-use firmware_host::commands::{
+use firmware_host::cli::{
     accuracy, advise, error, harm, overloads, paper, record, run, sensitivity, target,
 };
 use std::process::ExitCode;

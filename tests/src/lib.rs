@@ -11,7 +11,7 @@ pub mod storm;
 pub mod target;
 pub mod unseen;
 
-use firmware_host::scene::Scene;
+use firmware_bench::scene::Scene;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 

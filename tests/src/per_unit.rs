@@ -2,11 +2,11 @@
 //! on streams that were recorded from one.
 
 use crate::recording::recording;
-use firmware_host::closed_loop::{Keep, run_policy};
-use firmware_host::overloads::catalogue::{Case, cases};
-use firmware_host::overloads::found::kept;
-use firmware_host::overloads::plants::{PlantCase, plants};
-use firmware_host::policies::{Policy, Supervise};
+use firmware_bench::run::closed_loop::{Keep, run_policy};
+use firmware_bench::run::controller::{Policy, Supervise};
+use firmware_studies::overloads::catalogue::{Case, cases};
+use firmware_studies::overloads::found::kept;
+use firmware_studies::overloads::plants::{PlantCase, plants};
 use supervisor::{
     Command, Config, Core, CoreCommand, CoreError, CoreSample, Prepared, Sample, Scalar, Scaling,
 };

@@ -1,6 +1,6 @@
 //! The paper's two rotors, and the benchmark problem of the integrator tests.
 
-pub use firmware_host::paper::rotors::footnote_4;
+pub use firmware_studies::paper::rotors::footnote_4;
 use plant_model::V2;
 use plant_model::contact::damping_for_restitution;
 use plant_model::params::*;

@@ -1,6 +1,6 @@
 //! A supervisor that writes down what passes through it.
 
-use firmware_host::policies::Supervise;
+use firmware_bench::run::controller::Supervise;
 use std::cell::RefCell;
 use std::rc::Rc;
 use supervisor::{Command, Config, ConfigError, Sample, Supervisor};

@@ -1,15 +1,15 @@
 //! Machines that nothing in the project was tuned on: drawn at random, with the configuration that their data
 //! suggest and a levitation controller by a rule of thumb.
 
-use firmware_host::harm::draw::Draw;
-use firmware_host::levitation::LevitationParams;
-use firmware_host::overloads::catalogue::{Case, cases};
-use firmware_host::overloads::fault_matrix::{DRIVE_FAULTS, SENSOR_FAULTS};
-use firmware_host::overloads::found::{Found, kept};
-use firmware_host::overloads::plants::PlantCase;
-use firmware_host::overloads::results::run_case;
-use firmware_host::overloads::seats::Seat;
-use firmware_host::scene::Scene;
+use firmware_bench::device::levitation::LevitationParams;
+use firmware_bench::scene::Scene;
+use firmware_studies::harm::draw::Draw;
+use firmware_studies::overloads::catalogue::{Case, cases};
+use firmware_studies::overloads::fault_matrix::{DRIVE_FAULTS, SENSOR_FAULTS};
+use firmware_studies::overloads::found::{Found, kept};
+use firmware_studies::overloads::plants::PlantCase;
+use firmware_studies::overloads::results::run_case;
+use firmware_studies::overloads::seats::Seat;
 use std::f64::consts::TAU;
 
 /// A machine, and what it is.

@@ -1,10 +1,10 @@
 //! Where the force that is *delivered* points while the rotor whirls in contact.
 
-use firmware_host::closed_loop::{Keep, run_policy};
-use firmware_host::overloads::catalogue::cases;
-use firmware_host::overloads::found::kept;
-use firmware_host::overloads::plants::{RATES_HZ, plants};
-use firmware_host::overloads::seats::{Seat, Task, seated};
+use firmware_bench::run::closed_loop::{Keep, run_policy};
+use firmware_studies::overloads::catalogue::cases;
+use firmware_studies::overloads::found::kept;
+use firmware_studies::overloads::plants::{RATES_HZ, plants};
+use firmware_studies::overloads::seats::{Seat, Task, seated};
 use plant_model::V2;
 use supervisor::Mode;
 

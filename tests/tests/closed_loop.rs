@@ -1,10 +1,10 @@
 //! Plant, instruments, controllers and supervisor together.
 
-use firmware_host::closed_loop::{Keep, RunError, run};
-use firmware_host::levitation::LevitationParams;
-use firmware_host::policy_kind::PolicyKind;
-use firmware_host::scene::{Disturbance, Scene, Shape};
-use firmware_host::verdict::{Outcome, Verdict};
+use firmware_bench::device::levitation::LevitationParams;
+use firmware_bench::run::closed_loop::{Keep, RunError, run};
+use firmware_bench::run::verdict::{Outcome, Verdict};
+use firmware_bench::scene::policy_kind::PolicyKind;
+use firmware_bench::scene::{Disturbance, Scene, Shape};
 use plant_model::V2;
 use system_tests::{golden, scene, scene_path};
 

@@ -1,11 +1,11 @@
 //! The fixed-point supervisor keeps rotors as well as `f32`: hardest impact that is recovered from.
 
-use firmware_host::closed_loop::{Keep, run_policy};
-use firmware_host::overloads::found::kept;
-use firmware_host::overloads::impact::{FIRST_M_S, recoverable_m_s};
-use firmware_host::overloads::plants::plants;
-use firmware_host::policies::{Policy, Supervise};
-use firmware_host::scene::Scene;
+use firmware_bench::run::closed_loop::{Keep, run_policy};
+use firmware_bench::run::controller::{Policy, Supervise};
+use firmware_bench::scene::Scene;
+use firmware_studies::overloads::found::kept;
+use firmware_studies::overloads::impact::{FIRST_M_S, recoverable_m_s};
+use firmware_studies::overloads::plants::plants;
 use plant_model::V2;
 use supervisor::{Q, Scalar, Supervisor};
 use system_tests::per_unit::Behind;

@@ -1,7 +1,7 @@
 //! Scenes that the documentation shows.
 
-use firmware_host::closed_loop::{Keep, run};
-use firmware_host::scene::Scene;
+use firmware_bench::run::closed_loop::{Keep, run};
+use firmware_bench::scene::Scene;
 use system_tests::root;
 
 /// The example with every table runs under each of its policies.

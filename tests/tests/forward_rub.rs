@@ -1,12 +1,12 @@
 //! Forward rub: unbalance drives the rotor round the retainer bearing with the spin and at its rate. It is recognised,
 //! no other motion is taken for it, and the supervisor's force never drives it.
 
-use firmware_host::closed_loop::{Keep, run_policy};
-use firmware_host::overloads::found::kept;
-use firmware_host::overloads::plants::{PlantCase, plants};
-use firmware_host::overloads::seats::{Seat, Task, seated};
-use firmware_host::policies::Policy;
-use firmware_host::scene::Scene;
+use firmware_bench::run::closed_loop::{Keep, run_policy};
+use firmware_bench::run::controller::Policy;
+use firmware_bench::scene::Scene;
+use firmware_studies::overloads::found::kept;
+use firmware_studies::overloads::plants::{PlantCase, plants};
+use firmware_studies::overloads::seats::{Seat, Task, seated};
 use plant_model::params::SpinParams;
 use std::f64::consts::TAU;
 use supervisor::{Command, Events, Mode, Sample, Status, Supervisor};

@@ -1,11 +1,11 @@
 //! First do no harm: on machines drawn at random, the supervisor beside levitation alone. A sample of what
 //! `firmware-host harm` runs in full.
 
-use firmware_host::harm::compared::Pair;
-use firmware_host::harm::conditions::Condition;
-use firmware_host::harm::events::Event;
-use firmware_host::harm::page::{Row, rows};
-use firmware_host::harm::study::{Plan, Run};
+use firmware_studies::harm::compared::Pair;
+use firmware_studies::harm::conditions::Condition;
+use firmware_studies::harm::events::Event;
+use firmware_studies::harm::page::{Row, rows};
+use firmware_studies::harm::study::{Plan, Run};
 
 /// Nothing was tuned on it.
 const SEED: u64 = 20_261_124;

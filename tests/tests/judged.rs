@@ -1,9 +1,9 @@
 //! What a run is said to have come to, at the edges of its definitions.
 
-use firmware_host::closed_loop::{Keep, run};
-use firmware_host::policy_kind::PolicyKind;
-use firmware_host::scene::{Axis, Disturbance, Fault, FaultKind, Scene, Shape, TimedChange};
-use firmware_host::verdict::{Outcome, Verdict};
+use firmware_bench::run::closed_loop::{Keep, run};
+use firmware_bench::run::verdict::{Outcome, Verdict};
+use firmware_bench::scene::policy_kind::PolicyKind;
+use firmware_bench::scene::{Axis, Disturbance, Fault, FaultKind, Scene, Shape, TimedChange};
 use plant_model::params::SlidingFriction;
 use plant_model::{Change, V2};
 use system_tests::scene;

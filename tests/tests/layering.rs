@@ -102,7 +102,8 @@ fn files_import_only_upwards() {
     check("supervisor");
     check("supervisor/capi");
     check("plant-model");
-    check("firmware-host");
+    check("firmware-host/bench");
+    check("firmware-host/studies");
 }
 
 /// The plant knows no control, the supervisor no plant.
@@ -111,6 +112,10 @@ fn crates_keep_their_distance() {
     let manifest = |krate: &str| {
         std::fs::read_to_string(system_tests::root().join(krate).join("Cargo.toml")).unwrap()
     };
+    for above in ["firmware-studies", "firmware-host"] {
+        assert!(!manifest("firmware-host/bench").contains(&format!("{above} =")));
+    }
+    assert!(!manifest("firmware-host/studies").contains("firmware-host ="));
     assert!(!manifest("plant-model").contains("supervisor ="));
     assert!(!manifest("supervisor").contains("plant-model"));
     let lib = std::fs::read_to_string(system_tests::root().join("supervisor/src/lib.rs")).unwrap();
@@ -125,6 +130,8 @@ fn unsafe_code_stays_at_the_border() {
         "supervisor/src",
         "plant-model",
         "firmware-host/src",
+        "firmware-host/bench/src",
+        "firmware-host/studies/src",
         "tests/src",
         "tests/tests",
     ]

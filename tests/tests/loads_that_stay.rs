@@ -1,12 +1,12 @@
 //! Overloads after which a load stays that the levitation controller carries: the supervisor gives the bearing back.
 
-use firmware_host::closed_loop::{Keep, run_policy};
-use firmware_host::overloads::catalogue::Sizes;
-use firmware_host::overloads::found::kept;
-use firmware_host::overloads::plants::plants;
-use firmware_host::overloads::seats::{Seat, Task, seated};
-use firmware_host::scene::{Disturbance, Scene, Shape};
-use firmware_host::supervision::Supervision;
+use firmware_bench::run::closed_loop::{Keep, run_policy};
+use firmware_bench::run::supervision::Supervision;
+use firmware_bench::scene::{Disturbance, Scene, Shape};
+use firmware_studies::overloads::catalogue::Sizes;
+use firmware_studies::overloads::found::kept;
+use firmware_studies::overloads::plants::plants;
+use firmware_studies::overloads::seats::{Seat, Task, seated};
 use plant_model::V2;
 use supervisor::Mode;
 use system_tests::unseen::machine;
@@ -56,7 +56,7 @@ fn what_levitation_carries_it_is_given() {
             assert!(own.recovered, "{said}: {own:?}");
             let last = trace.rows.iter().filter(|row| row.plant.t_s > 0.45);
             let modes: Vec<Mode> = last
-                .filter_map(firmware_host::trace::TraceRow::supervisor_mode)
+                .filter_map(firmware_bench::run::trace::TraceRow::supervisor_mode)
                 .collect();
             let levitated = modes.iter().filter(|m| **m == Mode::Levitated).count();
             assert!(10 * levitated > 9 * modes.len(), "{said}");
@@ -80,7 +80,7 @@ fn magnets_that_pull_with_the_whole_cap_are_overcome() {
         scene.nominal.stiffness_n_m = -pull * cap_n_m;
         scene.duration_s = 0.5;
         scene.start.velocity_m_s = V2::new(0.02, 0.0);
-        scene.supervisor = Some(firmware_host::suggest::suggested(&scene.nominal).config);
+        scene.supervisor = Some(firmware_bench::scene::suggest::suggested(&scene.nominal).config);
         let mut found = kept("P2", 20_000.0).unwrap();
         found.tuned.proportional_n_m = 2.0 * pull * cap_n_m;
         found.tuned.derivative_n_s_m = 2.0 * (10.0 * pull * cap_n_m).sqrt();

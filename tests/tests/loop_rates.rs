@@ -1,13 +1,13 @@
 //! What a slower call of the supervisor costs: the impacts and whirls it recovers from, by the rate of the loop.
 
-use firmware_host::overloads::found::{Found, kept};
-use firmware_host::overloads::impact::recoverable_m_s;
-use firmware_host::overloads::plants::{PlantCase, RATES_HZ, plants};
-use firmware_host::overloads::seats::Seat;
-use firmware_host::overloads::sweeps::{SweepPoint, SweepRow, median, row, sweep};
-use firmware_host::overloads::tune;
-use firmware_host::policies::{Policy, Supervise};
-use firmware_host::scene::Scene;
+use firmware_bench::run::controller::{Policy, Supervise};
+use firmware_bench::scene::Scene;
+use firmware_studies::overloads::found::{Found, kept};
+use firmware_studies::overloads::impact::recoverable_m_s;
+use firmware_studies::overloads::plants::{PlantCase, RATES_HZ, plants};
+use firmware_studies::overloads::seats::Seat;
+use firmware_studies::overloads::sweeps::{SweepPoint, SweepRow, median, row, sweep};
+use firmware_studies::overloads::tune;
 use rayon::prelude::*;
 use supervisor::{Command, Config, Mode, Sample, Supervisor};
 use system_tests::unseen::Compared;

@@ -1,16 +1,16 @@
 //! The catalogue of overloads: what is promised holds, the output is what programs expect, and the kept
 //! searches are what they say.
 
-use firmware_host::closed_loop::{Keep, run_policy};
-use firmware_host::history::History;
-use firmware_host::overloads::catalogue::cases;
-use firmware_host::overloads::found::kept;
-use firmware_host::overloads::impact::recoverable_m_s;
-use firmware_host::overloads::loop_shape::SampledPlant;
-use firmware_host::overloads::plants::{RATES_HZ, plants};
-use firmware_host::overloads::seats::{Seat, clairvoyant, levitation};
-use firmware_host::overloads::tune::{IDLE_NOISE, SENSITIVITY, shape};
-use firmware_host::policies::Policy;
+use firmware_bench::run::closed_loop::{Keep, run_policy};
+use firmware_bench::run::controller::Policy;
+use firmware_bench::run::history::History;
+use firmware_studies::overloads::catalogue::cases;
+use firmware_studies::overloads::found::kept;
+use firmware_studies::overloads::impact::recoverable_m_s;
+use firmware_studies::overloads::loop_shape::SampledPlant;
+use firmware_studies::overloads::plants::{RATES_HZ, plants};
+use firmware_studies::overloads::seats::{Seat, clairvoyant, levitation};
+use firmware_studies::overloads::tune::{IDLE_NOISE, SENSITIVITY, shape};
 use plant_model::{Options, V2};
 use serde_json::Value;
 use std::collections::BTreeSet;
@@ -201,7 +201,7 @@ fn sampled_loop_approaches_the_continuous_one() {
         magnet.lag_s = 0.0;
     }
     let (m, omega, zeta) = (plant.rotor.mass_kg, 300.0, 0.5);
-    let params = firmware_host::levitation::LevitationParams {
+    let params = firmware_bench::device::levitation::LevitationParams {
         proportional_n_m: m * omega * omega,
         integral_n_m_s: 0.0,
         derivative_n_s_m: 2.0 * zeta * m * omega,
@@ -216,7 +216,7 @@ fn sampled_loop_approaches_the_continuous_one() {
     let found = fast.close(&params).unwrap().peak_sensitivity;
     assert!((found / peak - 1.0).abs() < 0.01, "{found} {peak}");
     // A loop that pushes outwards is not stable.
-    let outwards = firmware_host::levitation::LevitationParams {
+    let outwards = firmware_bench::device::levitation::LevitationParams {
         proportional_n_m: -1.0,
         ..params
     };

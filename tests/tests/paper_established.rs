@@ -1,7 +1,7 @@
 //! Chapter "Established whirl": the figures it promises.
 
-use firmware_host::paper::established::{chapter, spin_downs};
-use firmware_host::paper::{Chapter, Depth};
+use firmware_studies::paper::established::{chapter, spin_downs};
+use firmware_studies::paper::{Chapter, Depth};
 
 fn value(chapter: &Chapter, quantity: &str) -> f64 {
     let row = chapter.rows.iter().find(|r| r.quantity == quantity);
@@ -59,7 +59,7 @@ fn rows_of_the_chapter() {
     );
     assert!((1.5..5.0).contains(&excitation), "{excitation}");
     // The set that is used is shown in the Pareto table.
-    let shown = |t: &firmware_host::paper::Table| t.rows.iter().flatten().any(|c| c == "used");
+    let shown = |t: &firmware_studies::paper::Table| t.rows.iter().flatten().any(|c| c == "used");
     assert!(chapter.tables.iter().any(shown));
     // Rows that miss stay in.
     let paper = |q: f64| chapter.rows.iter().any(|r| r.paper == Some(q));

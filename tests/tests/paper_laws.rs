@@ -1,6 +1,6 @@
 //! `paper`: the chapter on contact laws.
 
-use firmware_host::paper::{CHAPTERS, Chapter, Depth};
+use firmware_studies::paper::{CHAPTERS, Chapter, Depth};
 
 fn chapter() -> Chapter {
     let (_, compute) = CHAPTERS.iter().find(|(n, _)| *n == "contact laws").unwrap();

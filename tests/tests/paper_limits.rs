@@ -1,6 +1,6 @@
 //! `paper`: limits of sliding whirl, levels of stator model, the compliant mounting.
 
-use firmware_host::paper::{CHAPTERS, Chapter, Depth};
+use firmware_studies::paper::{CHAPTERS, Chapter, Depth};
 
 fn chapter(name: &str) -> Chapter {
     let (_, compute) = CHAPTERS.iter().find(|(n, _)| *n == name).unwrap();

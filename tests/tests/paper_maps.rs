@@ -1,8 +1,8 @@
 //! The stability maps: what makes a rotor robust, and where the outcome is not monotone.
 
-use firmware_host::paper::maps::chapter;
-use firmware_host::paper::rotors::OnsetRig;
-use firmware_host::paper::{Chapter, Depth, Drawing};
+use firmware_studies::paper::maps::chapter;
+use firmware_studies::paper::rotors::OnsetRig;
+use firmware_studies::paper::{Chapter, Depth, Drawing};
 use plant_model::Options;
 use plant_model::analysis::impact::{Criterion, Impact, Outcome, aftermath};
 

@@ -1,10 +1,10 @@
 //! The paper's onset: critical tangential speed, and critical impact speeds of its five configurations.
 
-use firmware_host::paper::onset::{
+use firmware_studies::paper::onset::{
     chapter, configurations, critical_m_s, fit, rms_log_error, simulated_threshold_m_s,
 };
-use firmware_host::paper::rotors::OnsetRig;
-use firmware_host::paper::{Depth, Kind};
+use firmware_studies::paper::rotors::OnsetRig;
+use firmware_studies::paper::{Depth, Kind};
 use plant_model::analysis::onset::critical_tangential_speed_m_s;
 
 #[test]

@@ -1,7 +1,7 @@
 //! Chapter "The nine phases": all of them, in order, with the events that bound them.
 
-use firmware_host::paper::Depth;
-use firmware_host::paper::phases::{chapter, whirl_from_40_hz};
+use firmware_studies::paper::Depth;
+use firmware_studies::paper::phases::{chapter, whirl_from_40_hz};
 
 #[test]
 fn nine_phases_in_order() {

@@ -1,6 +1,6 @@
 //! `paper`: retainer bearing.
 
-use firmware_host::paper::{CHAPTERS, Chapter, Depth};
+use firmware_studies::paper::{CHAPTERS, Chapter, Depth};
 
 fn chapter() -> Chapter {
     let (_, compute) = (CHAPTERS

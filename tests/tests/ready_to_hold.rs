@@ -1,11 +1,11 @@
 //! The bearing goes back only to a controller that asks for what the rotor is held with.
 
-use firmware_host::closed_loop::{Keep, run_policy};
-use firmware_host::overloads::catalogue::Sizes;
-use firmware_host::overloads::found::kept;
-use firmware_host::overloads::plants::plants;
-use firmware_host::policies::{Policy, Supervise};
-use firmware_host::scene::{Disturbance, Scene, Shape};
+use firmware_bench::run::closed_loop::{Keep, run_policy};
+use firmware_bench::run::controller::{Policy, Supervise};
+use firmware_bench::scene::{Disturbance, Scene, Shape};
+use firmware_studies::overloads::catalogue::Sizes;
+use firmware_studies::overloads::found::kept;
+use firmware_studies::overloads::plants::plants;
 use plant_model::V2;
 use supervisor::{Command, Events, Sample, Supervisor};
 

@@ -1,10 +1,10 @@
 //! How hard the rotor of the paper's onset rig may hit the wall under each policy.
 
-use firmware_host::closed_loop::{Keep, run};
-use firmware_host::levitation::LevitationParams;
-use firmware_host::policy_kind::PolicyKind;
-use firmware_host::scene::Scene;
-use firmware_host::verdict::Outcome;
+use firmware_bench::device::levitation::LevitationParams;
+use firmware_bench::run::closed_loop::{Keep, run};
+use firmware_bench::run::verdict::Outcome;
+use firmware_bench::scene::Scene;
+use firmware_bench::scene::policy_kind::PolicyKind;
 use plant_model::V2;
 use plant_model::params::SpinParams;
 use system_tests::{golden, scene};

@@ -1,12 +1,12 @@
 //! How well the supervisor has to know its machine: with its data told wrong as data commonly are.
 
-use firmware_host::overloads::catalogue::Case;
-use firmware_host::overloads::found::{Found, kept};
-use firmware_host::overloads::plants::{PlantCase, plants};
-use firmware_host::overloads::results::{ResultRow, run_case};
-use firmware_host::overloads::seats::Seat;
-use firmware_host::scene::Scene;
-use firmware_host::sensitivity::{misjudged, told_right};
+use firmware_bench::scene::Scene;
+use firmware_studies::overloads::catalogue::Case;
+use firmware_studies::overloads::found::{Found, kept};
+use firmware_studies::overloads::plants::{PlantCase, plants};
+use firmware_studies::overloads::results::{ResultRow, run_case};
+use firmware_studies::overloads::seats::Seat;
+use firmware_studies::sensitivity::{misjudged, told_right};
 use rayon::prelude::*;
 use serde_json::Value;
 use system_tests::unseen::{machine, sound_cases};

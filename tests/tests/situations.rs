@@ -1,13 +1,13 @@
 //! Where the catalogue's faults strike: the supervisor really is in the mode that the scene's name says.
 
-use firmware_host::closed_loop::{Keep, run};
-use firmware_host::levitation::LevitationParams;
-use firmware_host::overloads::catalogue::Sizes;
-use firmware_host::overloads::found::kept;
-use firmware_host::overloads::plants::{RATES_HZ, plants};
-use firmware_host::overloads::situations::{Situation, situations};
-use firmware_host::policy_kind::PolicyKind;
-use firmware_host::scene::Scene;
+use firmware_bench::device::levitation::LevitationParams;
+use firmware_bench::run::closed_loop::{Keep, run};
+use firmware_bench::scene::Scene;
+use firmware_bench::scene::policy_kind::PolicyKind;
+use firmware_studies::overloads::catalogue::Sizes;
+use firmware_studies::overloads::found::kept;
+use firmware_studies::overloads::plants::{RATES_HZ, plants};
+use firmware_studies::overloads::situations::{Situation, situations};
 use std::ops::Range;
 use supervisor::Mode;
 

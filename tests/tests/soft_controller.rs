@@ -1,12 +1,12 @@
 //! A levitation controller that hardly asks for anything in the middle gets the bearing all the same.
 
-use firmware_host::closed_loop::{Keep, run_policy};
-use firmware_host::levitation::LevitationParams;
-use firmware_host::overloads::plants::plants;
-use firmware_host::policies::Policy;
-use firmware_host::policy_kind::PolicyKind;
-use firmware_host::scene::{Axis, Fault, FaultKind, Scene};
-use firmware_host::trace::TraceRow;
+use firmware_bench::device::levitation::LevitationParams;
+use firmware_bench::run::closed_loop::{Keep, run_policy};
+use firmware_bench::run::controller::Policy;
+use firmware_bench::run::trace::TraceRow;
+use firmware_bench::scene::policy_kind::PolicyKind;
+use firmware_bench::scene::{Axis, Fault, FaultKind, Scene};
+use firmware_studies::overloads::plants::plants;
 use supervisor::Mode;
 
 /// On a shaft that centres the rotor a damper alone levitates. A jump of the sensor engages the supervisor; when it is

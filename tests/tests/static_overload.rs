@@ -1,12 +1,12 @@
 //! A load that presses the rotor onto the bearing for long: lifted off where the cap can, held with all of it where not.
 
-use firmware_host::closed_loop::{Keep, run_policy};
-use firmware_host::overloads::catalogue::{Case, cases};
-use firmware_host::overloads::found::{Found, kept};
-use firmware_host::overloads::plants::{PlantCase, plants};
-use firmware_host::overloads::seats::{Seat, Task, seated};
-use firmware_host::trace::Trace;
-use firmware_host::verdict::Verdict;
+use firmware_bench::run::closed_loop::{Keep, run_policy};
+use firmware_bench::run::trace::Trace;
+use firmware_bench::run::verdict::Verdict;
+use firmware_studies::overloads::catalogue::{Case, cases};
+use firmware_studies::overloads::found::{Found, kept};
+use firmware_studies::overloads::plants::{PlantCase, plants};
+use firmware_studies::overloads::seats::{Seat, Task, seated};
 
 const RATE_HZ: f64 = 20_000.0;
 

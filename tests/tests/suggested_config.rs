@@ -1,6 +1,6 @@
 //! What scenes give the supervisor: every value, as it has been.
 
-use firmware_host::scene::Scene;
+use firmware_bench::scene::Scene;
 use std::fmt::Write;
 use std::path::PathBuf;
 use supervisor::PARAMETERS;

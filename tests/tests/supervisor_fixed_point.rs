@@ -5,7 +5,7 @@
 //! controller is ready for the hand-over is a comparison of two noisy forces, and where both are as good as
 //! equal for a tick one number begins a hand-over that another does not, and blends behind until it is done.
 
-use firmware_host::overloads::fault_matrix::SENSOR_FAULTS;
+use firmware_studies::overloads::fault_matrix::SENSOR_FAULTS;
 use std::sync::LazyLock;
 use supervisor::{CoreCommand, Mode, Q, Scalar};
 use system_tests::per_unit::{Stream, record};

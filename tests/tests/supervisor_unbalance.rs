@@ -1,11 +1,11 @@
 //! A load that turns with the rotor, and a rotor that lies still: what the observer must not take for something
 //! else.
 
-use firmware_host::closed_loop::{Keep, run};
-use firmware_host::policy_kind::PolicyKind;
-use firmware_host::scene::{Disturbance, Scene, Shape, TimedChange};
-use firmware_host::trace::Trace;
-use firmware_host::verdict::{Outcome, Verdict};
+use firmware_bench::run::closed_loop::{Keep, run};
+use firmware_bench::run::trace::Trace;
+use firmware_bench::run::verdict::{Outcome, Verdict};
+use firmware_bench::scene::policy_kind::PolicyKind;
+use firmware_bench::scene::{Disturbance, Scene, Shape, TimedChange};
 use plant_model::{Change, V2};
 use std::f64::consts::TAU;
 use std::fs;

@@ -1,9 +1,9 @@
 //! The supervisor on an emulated processor in a closed loop with the plant here; and the example firmware.
 
 use defmt_decoder::{DecodeError, Table};
-use firmware_host::target::emulator::{EmulatorError, Time, output_of, version};
-use firmware_host::target::images::Project;
-use firmware_host::target::machines::{MACHINES, Machine};
+use firmware_studies::on_target::emulator::{EmulatorError, Time, output_of, version};
+use firmware_studies::on_target::images::Project;
+use firmware_studies::on_target::machines::{MACHINES, Machine};
 use serde_json::Value;
 use std::path::Path;
 use std::time::Duration;

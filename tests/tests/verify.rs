@@ -1,11 +1,11 @@
 //! `run --verify`: a run's own estimate of its global error, and hints for people on the way.
 
-use firmware_host::closed_loop::{Keep, run};
-use firmware_host::policy_kind::PolicyKind;
-use firmware_host::scene::Scene;
-use firmware_host::trace::Trace;
-use firmware_host::verdict::{Verdict, Verification};
-use firmware_host::verify::{check_scenes, compare, run_check, verification};
+use firmware_bench::run::closed_loop::{Keep, run};
+use firmware_bench::run::trace::Trace;
+use firmware_bench::run::verdict::{Verdict, Verification};
+use firmware_bench::run::verify::{check_scenes, compare, run_check, verification};
+use firmware_bench::scene::Scene;
+use firmware_bench::scene::policy_kind::PolicyKind;
 use plant_model::Method;
 use serde_json::Value;
 use std::fs;

@@ -5,7 +5,7 @@
 pub mod rig;
 
 // The host's decoder of flight records.
-#[path = "../../../firmware-host/src/flight_record.rs"]
+#[path = "../../../firmware-host/bench/src/run/flight_record.rs"]
 pub mod flight_record;
 
 /// An AMB rotor: 10 kg, 0.2 mm, 1000 N, 20 kHz.

@@ -2,8 +2,8 @@
 //!
 //! `cargo run --release -p system-tests --bin real_time [SCENE [RUNS]]`
 
-use firmware_host::closed_loop::{Keep, run};
-use firmware_host::scene::Scene;
+use firmware_bench::run::closed_loop::{Keep, run};
+use firmware_bench::scene::Scene;
 use std::error::Error;
 use std::path::PathBuf;
 use std::time::Instant;

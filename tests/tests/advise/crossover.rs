@@ -5,8 +5,8 @@ use super::shaken::{
     Path, Shake, after_a_touch, after_an_approach, engaged_for_long, shaken, whole,
 };
 use super::{advice, amb};
-use firmware_host::advice::SmallSignals;
-use firmware_host::suggest::Nominal;
+use firmware_bench::advise::SmallSignals;
+use firmware_bench::scene::suggest::Nominal;
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 use std::f64::consts::TAU;

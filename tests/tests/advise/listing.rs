@@ -1,7 +1,7 @@
 //! The suggested configuration as it is written in firmware.
 
 use super::{AMB, advise, amb, stderr};
-use firmware_host::suggest::suggested;
+use firmware_bench::scene::suggest::suggested;
 use supervisor::PARAMETERS;
 use system_tests::{root, scene_path};
 

@@ -8,9 +8,9 @@ mod noise;
 mod shaken;
 mod vibration;
 
-use firmware_host::advice::Advice;
-use firmware_host::scene::Scene;
-use firmware_host::suggest::{Nominal, suggested};
+use firmware_bench::advise::Advice;
+use firmware_bench::scene::Scene;
+use firmware_bench::scene::suggest::{Nominal, suggested};
 use std::process::Output;
 use supervisor::PARAMETERS;
 use system_tests::{host, root, scene, scene_names, scene_path};
@@ -426,7 +426,7 @@ fn the_book_says_how_to_choose_every_parameter() {
             assert!(in_table, "{page}.md: {}", p.name);
         }
     }
-    let source = std::fs::read_to_string(root().join("firmware-host/src/advice/warnings.rs"));
+    let source = std::fs::read_to_string(root().join("firmware-host/bench/src/advise/warnings.rs"));
     let page = std::fs::read_to_string(root().join("docs/src/supervisor/advise.md")).unwrap();
     let source = source.unwrap();
     let keys: Vec<&str> = (source.split("warning(").skip(1))

@@ -1,9 +1,9 @@
 //! What noise is said to need, on machines drawn at random: it must be enough, and no contradiction.
 
 use super::{advice, amb};
-use firmware_host::advice::{Advice, Noise, Warning};
-use firmware_host::scene::{Override, Scene};
-use firmware_host::suggest::Nominal;
+use firmware_bench::advise::{Advice, Noise, Warning};
+use firmware_bench::scene::suggest::Nominal;
+use firmware_bench::scene::{Override, Scene};
 use rand_chacha::ChaCha8Rng;
 use rand_core::{Rng, SeedableRng};
 use supervisor::PARAMETERS;

@@ -1,6 +1,6 @@
 //! The core on a reading that vibrates whatever the force does, behind the amplifier that it is told of.
 
-use firmware_host::suggest::{Nominal, suggested};
+use firmware_bench::scene::suggest::{Nominal, suggested};
 use nalgebra::Complex;
 use std::collections::VecDeque;
 use std::f64::consts::TAU;

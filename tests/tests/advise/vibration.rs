@@ -5,8 +5,8 @@ use super::shaken::{
     shaken,
 };
 use super::{AMB, advice, advise, amb, stderr};
-use firmware_host::advice::RUNOUT_SPEED_SHARE;
-use firmware_host::suggest::{Nominal, suggested};
+use firmware_bench::advise::RUNOUT_SPEED_SHARE;
+use firmware_bench::scene::suggest::{Nominal, suggested};
 use serde_json::Value;
 use std::f64::consts::TAU;
 use supervisor::{Core, CoreSample, Mode, Prepared, Status};

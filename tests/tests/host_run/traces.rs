@@ -1,7 +1,7 @@
 //! What is in the traces, and what the supervisor left behind.
 
 use super::{names, short_scene};
-use firmware_host::flight_record::{FlightRecord, Units, entries};
+use firmware_bench::run::flight_record::{FlightRecord, Units, entries};
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::record::{Field, Row, RowAccessor};
 use serde_json::Value;

@@ -1,8 +1,8 @@
 //! Parameters that change during a run, and what a verdict says of contact.
 
 use crate::{free_rotor, last, near, ridden, samples};
-use firmware_host::policy_kind::PolicyKind;
-use firmware_host::scene::{Scene, TimedChange};
+use firmware_bench::scene::policy_kind::PolicyKind;
+use firmware_bench::scene::{Scene, TimedChange};
 use plant_model::params::{SpinParams, StatorParams};
 use plant_model::{Change, Method, V2};
 use std::f64::consts::TAU;

@@ -1,10 +1,10 @@
 //! Cap per axis, slew limit, outages, delay, and the policy `damping`.
 
 use crate::{apart, free_rotor, last, near, ridden, samples};
-use firmware_host::closed_loop::{Keep, run_policy};
-use firmware_host::policies::{Policy, Supervise};
-use firmware_host::policy_kind::PolicyKind;
-use firmware_host::scene::{Axis, Delivers, Fault, FaultKind, Outage, Scene};
+use firmware_bench::run::closed_loop::{Keep, run_policy};
+use firmware_bench::run::controller::{Policy, Supervise};
+use firmware_bench::scene::policy_kind::PolicyKind;
+use firmware_bench::scene::{Axis, Delivers, Fault, FaultKind, Outage, Scene};
 use plant_model::V2;
 use std::cell::RefCell;
 use std::rc::Rc;

@@ -7,11 +7,11 @@ mod loads;
 mod magnet;
 mod refusals;
 
-use firmware_host::closed_loop::{Keep, run};
-use firmware_host::policy_kind::PolicyKind;
-use firmware_host::scene::Scene;
-use firmware_host::trace::{Trace, TraceRow};
-use firmware_host::verdict::Verdict;
+use firmware_bench::run::closed_loop::{Keep, run};
+use firmware_bench::run::trace::{Trace, TraceRow};
+use firmware_bench::run::verdict::Verdict;
+use firmware_bench::scene::Scene;
+use firmware_bench::scene::policy_kind::PolicyKind;
 use plant_model::V2;
 use system_tests::scene;
 

@@ -1,6 +1,6 @@
 //! Keys that are out of range, missing, or without meaning are refused by name and line; good ones arrive.
 
-use firmware_host::scene::{Axis, FaultKind, Scene, Shape};
+use firmware_bench::scene::{Axis, FaultKind, Scene, Shape};
 use plant_model::V2;
 use std::fs;
 use system_tests::scene_path;

@@ -1,0 +1,8 @@
+//! What stands between rotor and firmware: loads from outside, sensors and drives with their faults, the levitation controller.
+
+pub mod actuator;
+pub mod axis;
+pub mod levitation;
+pub mod loads;
+pub mod sensor;
+pub mod sensor_fault;

@@ -1,0 +1,363 @@
+//! The report: one HTML document that shows what every policy did with a scene. It needs no script,
+//! no network and no fonts of its own.
+
+mod axes;
+#[cfg(test)]
+pub(crate) mod fixture;
+mod happenings;
+mod panels;
+pub mod plot;
+mod quantities;
+pub mod summary;
+pub mod table;
+mod verification;
+
+use std::fmt::Write as _;
+
+use self::axes::focus_window;
+use self::panels::{Key, PanelRow};
+pub use crate::report::plot::PlotError;
+use crate::report::plot::text::{escape, figures};
+use crate::run::verdict::{
+    Disturbed, Outcome, PolicyRun, SceneSummary, Verdict, far_into_the_wall,
+};
+
+const STYLE: &str = include_str!("report/style.css");
+
+/// Complete HTML document on `runs` of one scene, policies side by side in the order given.
+/// Deterministic: the same input gives the same bytes.
+///
+/// # Errors
+/// [`PlotError`] if the drawing backend refuses.
+pub fn html(scene: &SceneSummary, runs: &[PolicyRun]) -> Result<String, PlotError> {
+    let title = escape(&scene.title);
+    let mut page = format!(
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+         <meta http-equiv=\"Content-Security-Policy\" \
+         content=\"default-src 'none'; style-src 'unsafe-inline'\">\n\
+         <title>{title}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n<header>\n<h1>{title}</h1>\n"
+    );
+    push_story(&mut page, &scene.story);
+    push_facts(&mut page, scene);
+    push_warnings(&mut page, &scene.warnings);
+    page.push_str("</header>\n<main>\n");
+    push_table(&mut page, runs, scene.clearance_m);
+    verification::push_table(&mut page, runs);
+    if !runs.is_empty() {
+        push_sections(&mut page, scene, runs)?;
+    }
+    happenings::push_tables(&mut page, runs);
+    page.push_str("</main>\n</body>\n</html>\n");
+    Ok(page)
+}
+
+/// Lines that a scene file wraps belong to one paragraph; an empty line begins another.
+fn push_story(page: &mut String, story: &str) {
+    let lines: Vec<_> = story.lines().map(str::trim).collect();
+    for paragraph in lines
+        .split(|line| line.is_empty())
+        .filter(|p| !p.is_empty())
+    {
+        push(
+            page,
+            format_args!("<p class=\"story\">{}</p>\n", escape(&paragraph.join("\n"))),
+        );
+    }
+}
+
+fn push_facts(page: &mut String, scene: &SceneSummary) {
+    let cap = scene
+        .force_max_n
+        .map_or("no magnet".to_owned(), |cap| figures(cap) + " N");
+    let mut facts = vec![
+        ("Clearance", figures(1e3 * scene.clearance_m) + " mm"),
+        ("Force cap", cap),
+        (
+            "Counts as whirl",
+            format!("above {} m/s backward", figures(scene.whirl_speed_m_s)),
+        ),
+        ("Duration", figures(1e3 * scene.duration_s) + " ms"),
+    ];
+    facts.extend(scene.facts.iter().cloned());
+    page.push_str("<dl class=\"facts\">\n");
+    for (name, value) in facts {
+        let value = escape(&value);
+        push(
+            page,
+            format_args!("<div><dt>{name}</dt><dd>{value}</dd></div>\n"),
+        );
+    }
+    page.push_str("</dl>\n");
+    push_disturbances(page, &scene.disturbances);
+}
+
+fn push_warnings(page: &mut String, warnings: &[String]) {
+    for warning in warnings {
+        let warning = escape(warning);
+        push(
+            page,
+            format_args!("<p class=\"warning\">Warning: {warning}</p>\n"),
+        );
+    }
+}
+
+fn push_disturbances(page: &mut String, all: &[Disturbed]) {
+    const SHOWN: usize = 20;
+    if all.is_empty() {
+        page.push_str("<p class=\"story\">Nothing happens from outside.</p>\n");
+        return;
+    }
+    page.push_str("<ul class=\"story\">\n");
+    for d in all.iter().take(SHOWN) {
+        let (from, to) = (figures(1e3 * d.from_s), figures(1e3 * d.to_s));
+        let span = match d.from_s == d.to_s {
+            true => from,
+            false => format!("{from}–{to}"),
+        };
+        push(
+            page,
+            format_args!("<li>{span} ms: {}</li>\n", escape(&d.what)),
+        );
+    }
+    if all.len() > SHOWN {
+        push(
+            page,
+            format_args!("<li>and {} more</li>\n", all.len() - SHOWN),
+        );
+    }
+    page.push_str("</ul>\n");
+}
+
+/// A column of the table: heading, unit, content.
+type Column = (&'static str, &'static str, fn(&Verdict) -> String);
+
+const COLUMNS: [Column; 14] = [
+    ("First contact", "ms", |v| optional(v.first_contact_s, 1e3)),
+    ("Impacts", "", |v| v.impacts.to_string()),
+    ("Contact time", "ms", |v| figures(1e3 * v.contact_time_s)),
+    ("Peak penetration", "µm", |v| {
+        figures(1e6 * v.peak_penetration_m)
+    }),
+    ("Peak contact force", "N", |v| {
+        figures(v.peak_contact_force_n)
+    }),
+    ("Peak friction torque", "N m", |v| {
+        figures(v.peak_friction_torque_n_m)
+    }),
+    ("Spin lost", "Hz", |v| figures(v.spin_lost_hz)),
+    ("Peak backward speed", "m/s", |v| {
+        figures(v.peak_backward_speed_m_s)
+    }),
+    ("Max backward whirl", "Hz", |v| {
+        optional(v.max_backward_whirl_hz, 1.0)
+    }),
+    ("Re-levitation time", "ms", |v| {
+        optional(v.relevitation_time_s, 1e3)
+    }),
+    ("Energy residual", "", |v| figures(v.energy_residual)),
+    ("Method", "", |v| v.method.to_owned()),
+    ("Run time", "s", |v| figures(v.run_time_s)),
+    ("Real-time ratio", "", |v| figures(v.real_time_ratio)),
+];
+
+fn push_table(page: &mut String, runs: &[PolicyRun], clearance_m: f64) {
+    page.push_str("<section class=\"scroll\">\n<table>\n<caption>Verdicts</caption>\n<thead><tr>");
+    page.push_str("<th scope=\"col\">Policy</th><th scope=\"col\">Outcome</th>");
+    for (heading, unit, _) in COLUMNS {
+        push(
+            page,
+            format_args!("<th scope=\"col\">{heading} <small>{unit}</small></th>"),
+        );
+    }
+    page.push_str("</tr></thead>\n<tbody>\n");
+    for run in runs {
+        let (name, outcome) = (escape(&run.name), badge(run.verdict.outcome));
+        push(
+            page,
+            format_args!("<tr><th scope=\"row\">{name}</th><td>{outcome}</td>"),
+        );
+        for (_, _, content) in COLUMNS {
+            push(page, format_args!("<td>{}</td>", content(&run.verdict)));
+        }
+        page.push_str("</tr>\n");
+    }
+    page.push_str("</tbody>\n</table>\n</section>\n");
+    if let Some(note) = far_into_the_wall(runs, clearance_m) {
+        push(page, format_args!("<p>{}</p>\n", escape(&note)));
+    }
+}
+
+fn badge(outcome: Outcome) -> String {
+    let class = match outcome {
+        Outcome::Recovered | Outcome::Decayed => "good",
+        Outcome::Resting | Outcome::Pinned | Outcome::Rubbing | Outcome::Bouncing => "fair",
+        Outcome::Whirl => "bad",
+    };
+    let word = table::outcome(outcome);
+    format!("<span class=\"outcome {class}\">{word}</span>")
+}
+
+fn push_sections(
+    page: &mut String,
+    scene: &SceneSummary,
+    runs: &[PolicyRun],
+) -> Result<(), PlotError> {
+    let text = "Panels of one row share their axes. A whirling run that would stretch them more than \
+                three times has axes of its own, marked <em class=\"own\">own scale</em>. The \
+                background is shaded while one of the things listed above goes on.";
+    let rows = panels::whole_run(scene, runs)?;
+    push_section(page, runs, "Whole run", text, &rows);
+    if let Some(window) = focus_window(scene, runs) {
+        let heading = format!(
+            "Close-up: {} to {} ms",
+            figures(window.lo),
+            figures(window.hi)
+        );
+        let text = "From the start, or a little before the first event, to a little after the last \
+                    contact or change of mode of the runs that settle. The axes are shared within \
+                    this stretch.";
+        let rows = panels::close_up(scene, runs, window)?;
+        push_section(page, runs, &heading, text, &rows);
+    }
+    Ok(())
+}
+
+fn push_section(
+    page: &mut String,
+    runs: &[PolicyRun],
+    heading: &str,
+    text: &str,
+    rows: &[PanelRow],
+) {
+    push(
+        page,
+        format_args!("<section>\n<h2>{heading}</h2>\n<p class=\"note\">{text}</p>\n"),
+    );
+    push(
+        page,
+        format_args!(
+            "<div class=\"scroll\"><div class=\"grid\" style=\"--policies:{}\">\n",
+            runs.len()
+        ),
+    );
+    for row in rows {
+        push_row(page, runs, row);
+    }
+    page.push_str("</div></div>\n</section>\n");
+}
+
+fn push_row(page: &mut String, runs: &[PolicyRun], row: &PanelRow) {
+    push(
+        page,
+        format_args!("<div class=\"head\"><h3>{}</h3> ", row.heading),
+    );
+    for Key {
+        name,
+        colour,
+        dashed,
+    } in &row.legend
+    {
+        let class = if *dashed { "key dashed" } else { "key" };
+        push(
+            page,
+            format_args!("<span class=\"{class}\" style=\"--colour:{colour}\">{name}</span> "),
+        );
+    }
+    push(
+        page,
+        format_args!("<span class=\"note\">{}</span></div>\n", row.note),
+    );
+    for (run, cell) in runs.iter().zip(&row.cells) {
+        let (name, outcome) = (escape(&run.name), badge(run.verdict.outcome));
+        let own = if cell.own_scale {
+            " <em class=\"own\">own scale</em>"
+        } else {
+            ""
+        };
+        push(
+            page,
+            format_args!("<figure><figcaption><b>{name}</b> {outcome}{own}</figcaption>\n"),
+        );
+        page.push_str(&cell.svg);
+        page.push_str("</figure>\n");
+    }
+}
+
+fn push(page: &mut String, text: std::fmt::Arguments<'_>) {
+    // Writing to a string cannot fail.
+    let _ = page.write_fmt(text);
+}
+
+fn optional(value: Option<f64>, factor: f64) -> String {
+    value.map_or("–".to_owned(), |v| figures(factor * v))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::fixture::{run, scene};
+    use super::*;
+
+    fn page(scene: &SceneSummary, runs: &[PolicyRun]) -> String {
+        let page = html(scene, runs).unwrap();
+        for word in ["NaN", "\"inf", " inf", "<script"] {
+            assert!(!page.contains(word), "{word}");
+        }
+        page
+    }
+
+    #[test]
+    fn policies_stand_side_by_side_and_text_is_escaped() {
+        let samples: Vec<_> = (0..=400).map(|i| (f64::from(i) * 1e-3, i == 20)).collect();
+        let runs = [
+            run("passive", Outcome::Whirl, &samples),
+            run("<script>", Outcome::Recovered, &samples),
+        ];
+        let page = page(&scene(), &runs);
+        assert!(page.contains("<h1>Title &lt;b&gt;</h1>"));
+        assert!(page.contains("And a &quot;second&quot; one.</p>"));
+        assert!(page.contains("<th scope=\"row\">&lt;script&gt;</th>"));
+        assert!(page.contains("<span class=\"outcome bad\">whirl</span>"));
+        assert!(page.contains("Close-up: 0 to"));
+        // Seven panels of the whole run and five close-ups for each.
+        assert_eq!(page.matches("<svg").count(), 24);
+        assert_eq!(page, html(&scene(), &runs).unwrap());
+    }
+
+    #[test]
+    fn what_is_empty_or_no_number_is_drawn_nevertheless() {
+        let mut broken = scene();
+        broken.clearance_m = f64::NAN;
+        broken.whirl_speed_m_s = f64::INFINITY;
+        broken.duration_s = f64::NAN;
+        broken.force_max_n = None;
+        broken.disturbances = [(f64::NAN, 1.0), (0.1, 0.1)]
+            .map(|(from_s, to_s)| Disturbed {
+                what: "<load>".to_owned(),
+                from_s,
+                to_s,
+            })
+            .to_vec();
+        let mut lost = run(
+            "lost",
+            Outcome::Whirl,
+            &[(0.0, true), (1e-3, true), (f64::NAN, true)],
+        );
+        lost.trace.rows[1].plant.position_m.x = f64::NAN;
+        lost.trace.rows[1].plant.normal_force_n = f64::INFINITY;
+        lost.trace.rows[1].plant.spin_rad_s = 1e300;
+        lost.verdict.energy_residual = f64::NAN;
+        let runs = [
+            run("empty", Outcome::Decayed, &[]),
+            run("single", Outcome::Resting, &[(0.0, true)]),
+            lost,
+        ];
+        for scene in [scene(), broken] {
+            page(&scene, &[]);
+            page(&scene, &runs);
+            for run in &runs {
+                page(&scene, std::slice::from_ref(run));
+            }
+        }
+    }
+}

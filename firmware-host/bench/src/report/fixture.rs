@@ -1,0 +1,98 @@
+//! Small scenes and runs for tests.
+
+use plant_model::{Body, Mode, Snapshot, V2};
+
+use crate::run::trace::{Trace, TraceRow};
+use crate::run::verdict::{Outcome, PolicyRun, SceneSummary, Verdict};
+
+/// (time \[s\], in contact), in time order.
+pub(super) type Samples = &'static [(f64, bool)];
+
+/// A scene of 400 ms without disturbances.
+pub(super) fn scene() -> SceneSummary {
+    SceneSummary {
+        title: "Title <b>".to_owned(),
+        story: "A first\nparagraph.\n\nAnd a \"second\" one.".to_owned(),
+        clearance_m: 2e-4,
+        out_of_round: None,
+        force_max_n: Some(500.0),
+        whirl_speed_m_s: 1.0,
+        facts: vec![("Mass", "10 kg".to_owned())],
+        warnings: vec!["a <slip>".to_owned()],
+        disturbances: Vec::new(),
+        duration_s: 0.4,
+    }
+}
+
+/// A run with a row at each sample.
+pub(super) fn run(name: &str, outcome: Outcome, samples: &[(f64, bool)]) -> PolicyRun {
+    PolicyRun {
+        name: name.to_owned(),
+        verdict: verdict(outcome),
+        verification: None,
+        supervision: None,
+        trace: Trace {
+            read_out: None,
+            rows: samples
+                .iter()
+                .map(|(t_s, contact)| row(*t_s, *contact))
+                .collect(),
+        },
+    }
+}
+
+fn verdict(outcome: Outcome) -> Verdict {
+    Verdict {
+        outcome,
+        recovered: matches!(outcome, Outcome::Recovered | Outcome::Decayed),
+        impacts: 1,
+        contact_time_s: 1e-2,
+        contact_impulse_n_s: 0.5,
+        contacts_over_20_mm_s: 1,
+        first_contact_s: Some(0.05),
+        peak_penetration_m: 1e-5,
+        peak_contact_force_n: 1e3,
+        peak_friction_torque_n_m: 10.0,
+        spin_lost_hz: 0.5,
+        peak_backward_speed_m_s: 0.1,
+        max_backward_whirl_hz: None,
+        relevitation_time_s: Some(0.05),
+        energy_residual: 1e-12,
+        method: "series",
+        run_time_s: 0.1,
+        real_time_ratio: 4.0,
+    }
+}
+
+/// On the x axis, moving up, with spin.
+pub(crate) fn row(t_s: f64, contact: bool) -> TraceRow {
+    let plant = Snapshot {
+        t_s,
+        position_m: V2::new(if contact { 2.1e-4 } else { 1e-4 }, 0.0),
+        velocity_m_s: V2::new(0.0, 0.2),
+        inner_ring: Body::default(),
+        outer_ring: Body::default(),
+        spin_rad_s: 600.0,
+        race_spin_rad_s: 0.0,
+        mode: if contact {
+            Mode::SlipPositive
+        } else {
+            Mode::Flight
+        },
+        penetration_m: if contact { 1e-5 } else { -1e-4 },
+        normal_force_n: if contact { 1e3 } else { 0.0 },
+        sliding_force_n: 0.0,
+        rolling_force_n: 0.0,
+        contact_tangential_speed_m_s: 0.2,
+        sliding_speed_m_s: 60.2,
+        delivered_n: V2::new(100.0, 0.0),
+        whirl_angle_rad: 0.0,
+    };
+    TraceRow {
+        plant,
+        measured_m: plant.position_m,
+        commanded_n: V2::new(120.0, 0.0),
+        supervisor: None,
+        mode_change: false,
+    }
+}

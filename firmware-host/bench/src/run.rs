@@ -1,0 +1,13 @@
+//! A scene in closed loop under a controller: what is decided of it while it runs, what is kept of it, how far it can be trusted.
+
+pub mod clairvoyant;
+pub mod closed_loop;
+pub mod controller;
+pub mod flight_record;
+pub mod history;
+mod judge;
+pub mod supervision;
+pub mod trace;
+pub mod trace_file;
+pub mod verdict;
+pub mod verify;

@@ -1,0 +1,325 @@
+//! One policy on one scene, as firmware would run it: sample, compute, and a command that takes
+//! effect at the next sample.
+
+use crate::device::actuator::Amplifier;
+use crate::device::loads::cuts;
+use crate::device::sensor::Sensor;
+use crate::device::sensor_fault::seen_until_s;
+use crate::run::controller::{Policy, Seen};
+use crate::run::judge::Judge;
+use crate::run::trace::{Said, Trace, TraceRow};
+use crate::run::verdict::Verdict;
+use crate::scene::Scene;
+use crate::scene::policy_kind::PolicyKind;
+use plant_model::params::StatorParams;
+use plant_model::{BuildError, Inputs, Options, Plant, PlantError, Snapshot, V2};
+use std::time::Instant;
+use supervisor::{Events, Status};
+
+/// Why a run has no result.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum RunError {
+    /// The plant's parameters are out of range.
+    #[error(transparent)]
+    Build(#[from] BuildError),
+    /// The simulation cannot be trusted any further.
+    #[error("policy {policy}: {reason}")]
+    Plant {
+        /// The policy that was running.
+        policy: &'static str,
+        /// Why.
+        reason: PlantError,
+    },
+    /// The energy audit does not close: the run made or lost energy.
+    #[error(
+        "policy {policy}: the energy audit misses {residual:.1e} of the energy turned over, more than \
+         {limit:.1e}; a smaller run.rtol may help, or the scene asks for more than the model can say"
+    )]
+    Energy {
+        /// The policy that was running.
+        policy: &'static str,
+        /// Energy from nowhere over energy turned over.
+        residual: f64,
+        /// Largest residual that is trusted.
+        limit: f64,
+    },
+    /// The run is fine, and what should confirm it is not.
+    #[error("checked by {method} at rtol {rtol:e}: {reason}")]
+    Check {
+        /// Method of the check.
+        method: &'static str,
+        /// Its tolerance.
+        rtol: f64,
+        /// Why the check has no result.
+        reason: Box<RunError>,
+    },
+    /// Rings would feel a base motion too, and the model has no such force.
+    #[error("base motion needs a rigid stator")]
+    BaseMotionOnRings,
+    /// The scene lacks something that the policy needs.
+    #[error("policy {policy} needs more than the scene gives")]
+    Incomplete {
+        /// The policy.
+        policy: &'static str,
+    },
+}
+
+/// A run whose energy residual exceeds this many tolerances is not trusted; random plants keep within 0.3 by the series, 50 by
+/// the explicit pair, 300 where a hardening contact takes that. Below a millionth all are: what bounces for long without loss
+/// turns over little and makes an error in each impact, and were the limit as fine as every tolerance, no finer one would
+/// help. Beyond a thousandth none is.
+const TRUSTED_TOLERANCES: f64 = 1e3;
+const TRUSTED: (f64, f64) = (1e-6, 1e-3);
+
+/// Whether a run keeps its rows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Keep {
+    /// Every row.
+    Trace,
+    /// Only the verdict.
+    Verdict,
+    /// Only the verdict, and the run ends as soon as nothing can change whether the rotor has recovered.
+    Decision,
+    /// As [`Keep::Decision`], with every row until then.
+    TraceToDecision,
+}
+
+impl Keep {
+    fn rows(self) -> bool {
+        matches!(self, Self::Trace | Self::TraceToDecision)
+    }
+    fn to_decision(self) -> bool {
+        matches!(self, Self::Decision | Self::TraceToDecision)
+    }
+}
+
+/// Runs one policy to the end of the scene. `on_tick` is called now and then with the number of ticks
+/// done since its last call.
+///
+/// # Errors
+/// [`RunError`]; there is no half-trusted result.
+pub fn run(
+    scene: &Scene,
+    kind: PolicyKind,
+    keep: Keep,
+    on_tick: &mut dyn FnMut(u64),
+) -> Result<(Verdict, Trace), RunError> {
+    let policy = Policy::new(kind, scene).ok_or(RunError::Incomplete {
+        policy: kind.name(),
+    })?;
+    run_policy(scene, (policy, kind.name()), keep, on_tick)
+}
+
+/// Runs a policy that has been set up, under a name.
+///
+/// # Errors
+/// As [`run`].
+pub fn run_policy(
+    scene: &Scene,
+    (acting, policy): (Policy, &'static str),
+    keep: Keep,
+    on_tick: &mut dyn FnMut(u64),
+) -> Result<(Verdict, Trace), RunError> {
+    const REPORT_EVERY: u64 = 1024;
+    let started = Instant::now();
+    let options = Options {
+        rtol: scene.rtol,
+        method: scene.method,
+        ..Options::default()
+    };
+    let rigid = matches!(
+        scene.plant.stator,
+        StatorParams::Rigid | StatorParams::RigidEllipse(_)
+    );
+    if !scene.base_motions.is_empty() && !rigid {
+        return Err(RunError::BaseMotionOnRings);
+    }
+    let plant = scene.build(options)?;
+    let period_s = 1.0 / scene.sample_rate_hz;
+    let force_max_n = scene.plant.magnet.map_or(0.0, |m| m.force_max_n);
+    let mut bench = Bench {
+        scene,
+        policy_name: policy,
+        plant,
+        sensor: Sensor::new(scene.sensor, &scene.faults, period_s, scene.seed),
+        policy: acting,
+        amplifier: Amplifier::new(scene.amplifier, force_max_n, &scene.outages),
+        judge: Judge::new(scene),
+        keep,
+        trace: Trace::default(),
+        edges_s: scene.edges(),
+        edge_s: f64::NEG_INFINITY,
+        steady_n: None,
+        changes_done: 0,
+        changes: Vec::new(),
+        said: None,
+    };
+    let ticks = scene.samples().count();
+    for tick in 0..ticks {
+        bench.tick(tick)?;
+        if (tick + 1) % REPORT_EVERY == 0 {
+            on_tick(REPORT_EVERY);
+        }
+        if keep.to_decision() && bench.judge.decided(bench.plant.as_ref()) {
+            break;
+        }
+    }
+    on_tick(ticks % REPORT_EVERY);
+    let last = bench.plant.snapshot();
+    bench.judge.sample(&last);
+    bench.record(&last, scene.from_magnets_m(last.position_m), false);
+    if keep.rows() {
+        bench.trace.read_out = bench.policy.read_out();
+    }
+    let verdict = bench
+        .judge
+        .verdict(scene, bench.plant.as_ref(), started.elapsed());
+    let residual = verdict.energy_residual;
+    let limit = (TRUSTED_TOLERANCES * scene.rtol).clamp(TRUSTED.0, TRUSTED.1);
+    if residual.is_nan() || residual > limit {
+        return Err(RunError::Energy {
+            policy,
+            residual,
+            limit,
+        });
+    }
+    Ok((verdict, bench.trace))
+}
+
+struct Bench<'a> {
+    scene: &'a Scene,
+    policy_name: &'static str,
+    plant: Box<dyn Plant>,
+    sensor: Sensor,
+    policy: Policy,
+    amplifier: Amplifier,
+    judge: Judge,
+    keep: Keep,
+    trace: Trace,
+    edges_s: Vec<f64>,
+    /// The next of them.
+    edge_s: f64,
+    /// External force up to there, where it does not vary \[N\].
+    steady_n: Option<V2>,
+    /// Changes that lie behind.
+    changes_done: usize,
+    /// Changes of mode within an advance: a buffer.
+    changes: Vec<Snapshot>,
+    /// What the supervisor said to the last sample.
+    said: Option<Said>,
+}
+
+impl Bench<'_> {
+    fn tick(&mut self, tick: u64) -> Result<(), RunError> {
+        let period = 1.0 / self.scene.sample_rate_hz;
+        let (t, t_next) = (tick as f64 * period, (tick + 1) as f64 * period);
+        self.amplifier.begin(tick);
+        let now = self.plant.snapshot();
+        let reading = (self.sensor).read(t, self.scene.from_magnets_m(now.position_m));
+        let command_n = self.policy.tick(&Seen {
+            reading,
+            spin_rad_s: self.scene.spin_sensor.gain * now.spin_rad_s,
+            applied_n: if self.scene.amplifier.force_measured {
+                // What is fed forward the supervisor does not know of: with the weight it is nothing.
+                now.delivered_n - self.scene.feed_forward_n
+            } else {
+                V2::zeros()
+            },
+            status: self.status(seen_until_s(t, period)),
+        });
+        let with_weight = |force_n: V2| force_n + self.scene.feed_forward_n;
+        match self.policy.of_truth(&now) {
+            Some(truth_n) => self.amplifier.command_at_once(with_weight(truth_n)),
+            None => self.amplifier.command(tick, with_weight(command_n)),
+        }
+        self.judge.sample(&now);
+        self.said = self.policy.said();
+        self.record(&now, reading.position_m, false);
+        // What happened at this sample is not to be read a second time.
+        if let Some(said) = &mut self.said {
+            said.events = Events::empty();
+        }
+
+        let mut from = t;
+        while from < t_next {
+            if from >= self.edge_s {
+                self.pass_edges(from)?;
+            }
+            let to = self.edge_s.min(t_next);
+            let parts = match self.steady_n {
+                Some(_) => 1,
+                None => self.scene.parts(from, to),
+            };
+            let parts = parts.max(self.amplifier.parts(from));
+            let mut begin = from;
+            for end in cuts((from, to), parts) {
+                self.advance(begin, end, reading.position_m)
+                    .map_err(|reason| RunError::Plant {
+                        policy: self.policy_name,
+                        reason,
+                    })?;
+                begin = end;
+            }
+            from = to;
+        }
+        Ok(())
+    }
+
+    /// What the firmware knows to be valid and ready at a time.
+    fn status(&self, t_s: f64) -> Status {
+        let mut status = Status::empty();
+        status.set(Status::SPIN_VALID, self.scene.spin_sensor.valid);
+        let measured = self.scene.amplifier.force_measured;
+        status.set(Status::APPLIED_VALID, measured);
+        let [x_off, y_off] = self.amplifier.known_off(t_s);
+        status.set(Status::BEARING_ON, !(x_off && y_off));
+        status.set(Status::AXIS_X_LOST, x_off);
+        status.set(Status::AXIS_Y_LOST, y_off);
+        status
+    }
+
+    /// Makes the changes that are due, and looks at what acts up to the next edge.
+    fn pass_edges(&mut self, t_s: f64) -> Result<(), RunError> {
+        let next = self.edges_s.iter().find(|edge| **edge > t_s);
+        self.edge_s = next.copied().unwrap_or(f64::INFINITY);
+        self.steady_n = (!self.scene.varies(t_s)).then(|| self.scene.external_n(t_s, t_s));
+        while let Some(due) = self.scene.changes.get(self.changes_done)
+            && due.at_s <= t_s
+        {
+            self.plant.change(&due.change).map_err(BuildError::Param)?;
+            self.changes_done += 1;
+        }
+        Ok(())
+    }
+
+    fn advance(&mut self, from_s: f64, to_s: f64, measured_m: V2) -> Result<(), PlantError> {
+        let inputs = Inputs {
+            command_n: self.amplifier.deliver(from_s, to_s),
+            external_n: match self.steady_n {
+                Some(steady_n) => steady_n,
+                None => self.scene.external_n(from_s, to_s),
+            },
+        };
+        let mut changes = std::mem::take(&mut self.changes);
+        (self.plant).advance(to_s, &inputs, &mut |snapshot| changes.push(*snapshot))?;
+        for snapshot in changes.drain(..) {
+            self.judge.change(&snapshot);
+            self.record(&snapshot, measured_m, true);
+        }
+        self.changes = changes;
+        Ok(())
+    }
+
+    fn record(&mut self, plant: &Snapshot, measured_m: V2, mode_change: bool) {
+        if !self.keep.rows() {
+            return;
+        }
+        self.trace.rows.push(TraceRow {
+            plant: *plant,
+            measured_m,
+            commanded_n: self.amplifier.in_effect_n(),
+            supervisor: self.said,
+            mode_change,
+        });
+    }
+}

@@ -1,0 +1,147 @@
+//! Traces as Parquet: one row group, one column a quantity, SI units in the column names.
+
+use crate::run::supervision::names;
+use crate::run::trace::{Said, Trace, TraceRow};
+use parquet::basic::Compression;
+use parquet::data_type::{BoolType, ByteArray, ByteArrayType, DoubleType};
+use parquet::errors::ParquetError;
+use parquet::file::properties::WriterProperties;
+use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
+use parquet::schema::parser::parse_message_type;
+use std::io::{self, Write};
+use std::sync::Arc;
+
+type Number = (&'static str, fn(&TraceRow) -> f64);
+type Text = (&'static str, fn(&TraceRow) -> String);
+
+/// Columns of numbers, in file order.
+const NUMBERS: &[Number] = &[
+    ("t_s", |r| r.plant.t_s),
+    ("rotor_x_m", |r| r.plant.position_m.x),
+    ("rotor_y_m", |r| r.plant.position_m.y),
+    ("rotor_vx_m_s", |r| r.plant.velocity_m_s.x),
+    ("rotor_vy_m_s", |r| r.plant.velocity_m_s.y),
+    ("inner_ring_x_m", |r| r.plant.inner_ring.position.x),
+    ("inner_ring_y_m", |r| r.plant.inner_ring.position.y),
+    ("inner_ring_vx_m_s", |r| r.plant.inner_ring.velocity.x),
+    ("inner_ring_vy_m_s", |r| r.plant.inner_ring.velocity.y),
+    ("outer_ring_x_m", |r| r.plant.outer_ring.position.x),
+    ("outer_ring_y_m", |r| r.plant.outer_ring.position.y),
+    ("outer_ring_vx_m_s", |r| r.plant.outer_ring.velocity.x),
+    ("outer_ring_vy_m_s", |r| r.plant.outer_ring.velocity.y),
+    ("spin_rad_s", |r| r.plant.spin_rad_s),
+    ("race_spin_rad_s", |r| r.plant.race_spin_rad_s),
+    ("penetration_m", |r| r.plant.penetration_m),
+    ("contact_force_n", |r| r.plant.normal_force_n),
+    ("sliding_force_n", |r| r.plant.sliding_force_n),
+    ("rolling_force_n", |r| r.plant.rolling_force_n),
+    ("contact_tangential_speed_m_s", |r| {
+        r.plant.contact_tangential_speed_m_s
+    }),
+    ("whirl_angle_rad", |r| r.plant.whirl_angle_rad),
+    ("measured_x_m", |r| r.measured_m.x),
+    ("measured_y_m", |r| r.measured_m.y),
+    ("commanded_x_n", |r| r.commanded_n.x),
+    ("commanded_y_n", |r| r.commanded_n.y),
+    ("delivered_x_n", |r| r.plant.delivered_n.x),
+    ("delivered_y_n", |r| r.plant.delivered_n.y),
+    ("levitation_x_n", |r| said(r, |s| s.levitation_n[0])),
+    ("levitation_y_n", |r| said(r, |s| s.levitation_n[1])),
+    ("supervisor_severity", |r| said(r, |s| s.severity)),
+];
+
+/// Columns of names, after the numbers.
+const TEXTS: &[Text] = &[
+    ("mode", |r| r.plant.mode.name().to_owned()),
+    ("supervisor_mode", |r| {
+        r.supervisor_mode()
+            .map_or("", supervisor::Mode::name)
+            .to_owned()
+    }),
+    ("supervisor_limits", |r| {
+        r.supervisor
+            .map_or(String::new(), |s| names(s.limits.iter_names()))
+    }),
+    ("supervisor_events", |r| {
+        r.supervisor
+            .map_or(String::new(), |s| names(s.events.iter_names()))
+    }),
+];
+
+/// Something that the supervisor said; 0 where there is none.
+fn said(row: &TraceRow, what: fn(&Said) -> f32) -> f64 {
+    row.supervisor.map_or(0.0, |said| f64::from(what(&said)))
+}
+
+/// Whether a row stands at a change of mode between two control samples; the last column.
+const MODE_CHANGE: &str = "mode_change";
+
+/// Writes a trace.
+///
+/// # Errors
+/// What the file system or the format refuses.
+pub fn write(trace: &Trace, sink: impl Write + Send) -> Result<(), ParquetError> {
+    let mut message = String::from("message trace {\n");
+    for (name, _) in NUMBERS {
+        message += &format!("  required double {name};\n");
+    }
+    for (name, _) in TEXTS {
+        message += &format!("  required binary {name} (utf8);\n");
+    }
+    message += &format!("  required boolean {MODE_CHANGE};\n}}");
+    let schema = Arc::new(parse_message_type(&message)?);
+    let properties = WriterProperties::builder()
+        .set_compression(Compression::SNAPPY)
+        .set_created_by("firmware-host".to_owned())
+        .build();
+    let mut file = SerializedFileWriter::new(sink, schema, Arc::new(properties))?;
+    let mut group = file.next_row_group()?;
+    for (_, value) in NUMBERS {
+        let column: Vec<f64> = trace.rows.iter().map(value).collect();
+        column_of(&mut group, |c| {
+            c.typed::<DoubleType>().write_batch(&column, None, None)
+        })?;
+    }
+    for (_, value) in TEXTS {
+        let column: Vec<ByteArray> = (trace.rows.iter())
+            .map(|r| ByteArray::from(value(r).into_bytes()))
+            .collect();
+        column_of(&mut group, |c| {
+            c.typed::<ByteArrayType>().write_batch(&column, None, None)
+        })?;
+    }
+    let column: Vec<bool> = trace.rows.iter().map(|r| r.mode_change).collect();
+    column_of(&mut group, |c| {
+        c.typed::<BoolType>().write_batch(&column, None, None)
+    })?;
+    group.close()?;
+    file.close()?;
+    Ok(())
+}
+
+/// Why a trace could not be written, in the words of the system where it is the reason.
+pub fn reason(error: ParquetError) -> io::Error {
+    match error {
+        ParquetError::External(source) => match source.downcast::<io::Error>() {
+            Ok(reason) => *reason,
+            Err(other) => io::Error::other(other),
+        },
+        other => io::Error::other(other),
+    }
+}
+
+type ColumnWriter<'a> = parquet::file::writer::SerializedColumnWriter<'a>;
+
+/// Writes the next column of a group.
+fn column_of<W: Write + Send>(
+    group: &mut SerializedRowGroupWriter<'_, W>,
+    fill: impl FnOnce(&mut ColumnWriter<'_>) -> Result<usize, ParquetError>,
+) -> Result<(), ParquetError> {
+    let Some(mut column) = group.next_column()? else {
+        return Err(ParquetError::General(
+            "more columns than the schema has".to_owned(),
+        ));
+    };
+    fill(&mut column)?;
+    column.close()
+}

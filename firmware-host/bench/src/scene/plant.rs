@@ -1,0 +1,297 @@
+//! The plant from the scene's keys: alternatives resolved, every value checked.
+
+use crate::scene::diagnostic::{Checks, SceneError, SceneText};
+use crate::scene::file::{ContactFile, RingFile, RotorFile, SceneFile};
+use plant_model::contact::{damping_for_restitution, hunt_crossley};
+use plant_model::params::{
+    ContactLaw, ContactParams, EllipseParams, FrictionParams, HuntCrossley, LinearContact,
+    MagnetParams, PlantParams, RaceParams, RingParams, RotorParams, SlidingFriction, SpinParams,
+    StatorParams,
+};
+use std::f64::consts::TAU;
+
+/// The plant that a scene file describes, checked.
+pub(crate) fn plant_of(file: &SceneFile, text: &SceneText) -> Result<PlantParams, SceneError> {
+    let check = Checks { text };
+    let negative = file
+        .magnet
+        .as_ref()
+        .map_or(0.0, |m| m.negative_stiffness_n_m);
+    if !(0.0..=1e12).contains(&negative) {
+        let expected = "a number from 0 to 1e12: that it is negative is in the name";
+        return Err(check.refused("magnet.negative_stiffness_n_m", negative, expected));
+    }
+    let mut plant = PlantParams {
+        rotor: rotor_of(&file.rotor, negative, &check)?,
+        spin: match (file.spin.inertia_kg_m2, file.spin.drive_torque_n_m) {
+            (Some(inertia_kg_m2), torque) => SpinParams::Free {
+                inertia_kg_m2,
+                drive_torque_n_m: torque.unwrap_or(0.0),
+            },
+            (None, None) => SpinParams::Held,
+            (None, Some(_)) => {
+                let message = "has no effect while the speed is held".to_owned();
+                let help = Some("give spin.inertia_kg_m2, or remove the torque".to_owned());
+                return Err(text.error_at_key("spin.drive_torque_n_m", message, help));
+            }
+        },
+        stator: stator_of(file, text)?,
+        contact: ContactParams {
+            clearance_m: file.contact.clearance_m,
+            law: law_of(&file.contact, &check)?,
+        },
+        friction: FrictionParams {
+            sliding: sliding_of(file, &check)?,
+            rolling_coefficient: file.friction.rolling_coefficient,
+        },
+        magnet: file.magnet.as_ref().map(|m| MagnetParams {
+            force_max_n: m.force_max_n,
+            lag_s: m.lag_s,
+        }),
+        race: file.race.as_ref().map(|race| RaceParams {
+            inertia_kg_m2: race.inertia_kg_m2,
+            drag_n_m_s: race.drag_n_m_s,
+            start_spin_rad_s: race.start_frequency_hz * TAU,
+        }),
+    };
+    plant.validate().map_err(|e| {
+        let key = match e.field {
+            "race.start_spin_rad_s" => "race.start_frequency_hz",
+            field => field,
+        };
+        check.refused(key, e.value, e.expected)
+    })?;
+    restore(&mut plant, &file.contact, &check)?;
+    Ok(plant)
+}
+
+/// The stator with its rings, or rigid with its bore.
+fn stator_of(file: &SceneFile, text: &SceneText) -> Result<StatorParams, SceneError> {
+    let refused = |key: &str, message: &str, help: &str| {
+        Err(text.error_at_key(key, message.to_owned(), Some(help.to_owned())))
+    };
+    let retainer = &file.retainer;
+    let rings = (&file.stator.inner, &file.stator.outer);
+    if retainer.ellipticity != 0.0 {
+        let key = "retainer.ellipticity";
+        if rings.0.is_some() || rings.1.is_some() {
+            let help = "remove [stator], or leave the bearing round";
+            return refused(key, "needs a rigid stator: rings are round", help);
+        }
+        if file.race.is_some() {
+            let help = "remove [race], or leave the bearing round";
+            return refused(key, "does not go with a race, which would turn it", help);
+        }
+        return Ok(StatorParams::RigidEllipse(EllipseParams {
+            ellipticity: retainer.ellipticity,
+            long_axis_rad: retainer.long_axis_deg.unwrap_or(0.0).to_radians(),
+        }));
+    }
+    if retainer.long_axis_deg.is_some() {
+        let help = "give retainer.ellipticity, or remove the direction";
+        return refused("retainer.long_axis_deg", "has no meaning on a circle", help);
+    }
+    Ok(match rings {
+        (None, None) => StatorParams::Rigid,
+        (Some(inner), None) => StatorParams::OneMass(ring_of(inner)),
+        (Some(inner), Some(outer)) => StatorParams::TwoMass {
+            inner: ring_of(inner),
+            outer: ring_of(outer),
+        },
+        (None, Some(_)) => {
+            let help = "describe a single ring as stator.inner";
+            return refused("stator.outer", "an outer ring without an inner one", help);
+        }
+    })
+}
+
+/// The contact law with the damping that is given directly.
+fn law_of(file: &ContactFile, check: &Checks<'_>) -> Result<ContactLaw, SceneError> {
+    let refused = |key: &str, message: String, help: String| {
+        Err::<ContactLaw, _>((check.text).error_at_key(key, message, Some(help)))
+    };
+    let (linear, hardening) = (file.stiffness_n_m, file.stiffness_n_mn);
+    check.either(
+        ("contact.stiffness_n_m", linear),
+        ("contact.stiffness_n_mn", hardening),
+    )?;
+    let (foreign, own) = match hardening {
+        Some(_) => (
+            &[("contact.damping_n_s_m", file.damping_n_s_m)][..],
+            "stiffness_n_m",
+        ),
+        None => (
+            &[
+                ("contact.exponent", file.exponent),
+                ("contact.damping_s_m", file.damping_s_m),
+                ("contact.restitution_speed_m_s", file.restitution_speed_m_s),
+            ][..],
+            "stiffness_n_mn",
+        ),
+    };
+    if let Some((key, _)) = foreign.iter().find(|(_, value)| value.is_some()) {
+        let message = format!("belongs to a contact with {own}");
+        return refused(key, message, format!("remove it, or give contact.{own}"));
+    }
+    match (linear, hardening) {
+        (_, Some(stiffness_n_mn)) => Ok(HuntCrossley {
+            stiffness_n_mn,
+            exponent: file.exponent.unwrap_or(1.5),
+            damping_s_m: file.damping_s_m.unwrap_or(0.0),
+        }
+        .into()),
+        (Some(stiffness_n_m), None) => Ok(LinearContact {
+            stiffness_n_m,
+            damping_n_s_m: file.damping_n_s_m.unwrap_or(0.0),
+        }
+        .into()),
+        (None, None) => {
+            let help = "give stiffness_n_m (linear) or stiffness_n_mn (Hunt and Crossley)";
+            refused("contact", "has no stiffness".to_owned(), help.to_owned())
+        }
+    }
+}
+
+/// Damping from a restitution, where the file gives that instead.
+fn restore(
+    plant: &mut PlantParams,
+    file: &ContactFile,
+    check: &Checks<'_>,
+) -> Result<(), SceneError> {
+    const RANGE: &str = "a number greater than 0, at most 1";
+    let mass_kg = plant.contact_mass_kg();
+    let speed = ("contact.restitution_speed_m_s", file.restitution_speed_m_s);
+    let given = match &plant.contact.law {
+        ContactLaw::Linear(_) => ("contact.damping_n_s_m", file.damping_n_s_m),
+        ContactLaw::HuntCrossley(_) => ("contact.damping_s_m", file.damping_s_m),
+    };
+    check.either(given, ("contact.restitution", file.restitution))?;
+    let Some(e) = file.restitution else {
+        return match speed.1 {
+            None => Ok(()),
+            Some(_) => {
+                let message = "has no effect without contact.restitution".to_owned();
+                let help = Some("give contact.restitution, or remove the speed".to_owned());
+                Err(check.text.error_at_key(speed.0, message, help))
+            }
+        };
+    };
+    const KEY: &str = "contact.restitution";
+    if !(e > 0.0 && e <= 1.0) {
+        return Err(check.refused(KEY, e, RANGE));
+    }
+    let no_damping = |with: &str| {
+        let message = format!("gives no finite damping with {with}");
+        let help = Some(format!("check {with}"));
+        (check.text).error_at_key(KEY, message, help)
+    };
+    match &mut plant.contact.law {
+        ContactLaw::Linear(law) => {
+            law.damping_n_s_m = damping_for_restitution(e, law.stiffness_n_m, mass_kg)
+                .filter(|d| d.is_finite())
+                .ok_or_else(|| no_damping("contact.stiffness_n_m and the masses"))?;
+        }
+        ContactLaw::HuntCrossley(law) => {
+            let Some(speed_m_s) = speed.1 else {
+                let message = "needs the impact speed that it belongs to".to_owned();
+                let help = Some(
+                    "give contact.restitution_speed_m_s too: with this law e falls with speed"
+                        .to_owned(),
+                );
+                return Err(check
+                    .text
+                    .error_at_key("contact.restitution", message, help));
+            };
+            check.within(speed.0, speed_m_s, 1e-9, 1e6)?;
+            law.damping_s_m = hunt_crossley::damping_for_restitution(e, speed_m_s)
+                .filter(|d| d.is_finite())
+                .ok_or_else(|| no_damping("contact.restitution_speed_m_s"))?;
+        }
+    }
+    Ok(())
+}
+
+fn rotor_of(
+    file: &RotorFile,
+    negative_n_m: f64,
+    check: &Checks<'_>,
+) -> Result<RotorParams, SceneError> {
+    if !(file.mass_kg > 0.0 && file.mass_kg.is_finite()) {
+        return Err(check.refused(
+            "rotor.mass_kg",
+            file.mass_kg,
+            "a finite number greater than 0",
+        ));
+    }
+    if let Some(f) = file.natural_frequency_hz {
+        check.within("rotor.natural_frequency_hz", f, 0.0, 1e6)?;
+    }
+    if let Some(ratio) = file.damping_ratio {
+        check.within("rotor.damping_ratio", ratio, 0.0, 100.0)?;
+    }
+    let shaft_n_m = check
+        .either(
+            ("rotor.stiffness_n_m", file.stiffness_n_m),
+            (
+                "rotor.natural_frequency_hz",
+                file.natural_frequency_hz
+                    .map(|f| file.mass_kg * (f * TAU).powi(2)),
+            ),
+        )?
+        .unwrap_or(0.0);
+    if file.damping_ratio.is_some() && shaft_n_m <= 0.0 {
+        let message = "has no meaning without shaft stiffness".to_owned();
+        let help = Some("give rotor.damping_n_s_m instead".to_owned());
+        return Err(check
+            .text
+            .error_at_key("rotor.damping_ratio", message, help));
+    }
+    let by_ratio = file
+        .damping_ratio
+        .map(|ratio| 2.0 * ratio * (file.mass_kg * shaft_n_m).sqrt());
+    let damping_n_s_m = check
+        .either(
+            ("rotor.damping_n_s_m", file.damping_n_s_m),
+            ("rotor.damping_ratio", by_ratio),
+        )?
+        .unwrap_or(0.0);
+    Ok(RotorParams {
+        mass_kg: file.mass_kg,
+        stiffness_n_m: shaft_n_m - negative_n_m,
+        damping_n_s_m,
+        eccentricity_m: file.eccentricity_m,
+        contact_radius_m: file.contact_radius_m,
+    })
+}
+
+fn ring_of(file: &RingFile) -> RingParams {
+    RingParams {
+        mass_kg: file.mass_kg,
+        stiffness_n_m: file.stiffness_n_m.vector(),
+        damping_n_s_m: file.damping_n_s_m.vector(),
+    }
+}
+
+fn sliding_of(file: &SceneFile, check: &Checks<'_>) -> Result<SlidingFriction, SceneError> {
+    let f = &file.friction;
+    match (f.coefficient_at_speed, f.speed_scale_m_s) {
+        (None, None) => Ok(SlidingFriction::Constant {
+            coefficient: f.coefficient,
+        }),
+        (Some(at_speed), Some(speed_scale_m_s)) => Ok(SlidingFriction::Falling {
+            at_rest: f.coefficient,
+            at_speed,
+            speed_scale_m_s,
+        }),
+        (at_speed, _) => {
+            let (have, want) = match at_speed {
+                Some(_) => ("friction.coefficient_at_speed", "friction.speed_scale_m_s"),
+                None => ("friction.speed_scale_m_s", "friction.coefficient_at_speed"),
+            };
+            let help = Some("friction that falls with speed needs both keys".to_owned());
+            Err(check
+                .text
+                .error_at_key(have, format!("given without {want}"), help))
+        }
+    }
+}

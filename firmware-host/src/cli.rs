@@ -1,0 +1,28 @@
+//! The commands, one file each.
+
+pub mod accuracy;
+pub mod advise;
+pub mod error;
+pub mod harm;
+pub mod output;
+pub mod overloads;
+pub mod paper;
+mod progress;
+pub mod record;
+pub mod run;
+pub mod sensitivity;
+pub mod target;
+
+use crate::cli::error::say;
+use firmware_bench::scene::Scene;
+use firmware_bench::scene::diagnostic::SceneError;
+use std::path::Path;
+
+/// A scene, with its warnings said.
+pub(crate) fn load(path: &Path) -> Result<Scene, SceneError> {
+    let scene = Scene::load(path)?;
+    for warning in &scene.warnings {
+        say(format_args!("warning: {warning}"));
+    }
+    Ok(scene)
+}

@@ -1,0 +1,61 @@
+//! `paper`: every number and figure of the paper, computed.
+
+use crate::cli::error::{CommandError, pretty, print};
+use crate::cli::output::{self, Staging};
+use crate::cli::progress::{LateProgress, Threads};
+use firmware_studies::paper::{CHAPTERS, Chapter, Depth, html, json, text};
+use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
+use std::path::PathBuf;
+
+/// Arguments of `paper`.
+#[derive(Debug, Clone, clap::Args)]
+pub struct PaperArgs {
+    /// Folder for paper.html and paper.json.
+    #[arg(long, default_value = "runs/paper")]
+    pub out: PathBuf,
+    /// Print the rows as JSON instead of tables.
+    #[arg(long)]
+    pub json: bool,
+    /// Coarser curves and maps.
+    #[arg(long)]
+    pub quick: bool,
+    /// How many threads it may use.
+    #[command(flatten)]
+    pub threads: Threads,
+}
+
+/// Computes every chapter and writes the page.
+///
+/// # Errors
+/// [`CommandError`]; nothing is left behind then.
+pub fn execute(args: &PaperArgs) -> Result<(), CommandError> {
+    output::probe(&args.out)?;
+    let depth = if args.quick {
+        Depth::Quick
+    } else {
+        Depth::Full
+    };
+    let progress = LateProgress::new(CHAPTERS.len() as u64, "chapters");
+    let chapters = args.threads.pool()?.install(|| {
+        (CHAPTERS.par_iter())
+            .map(|(name, compute)| {
+                let chapter = compute(depth).map_err(|e| CommandError::other(name, e));
+                progress.add(1);
+                chapter
+            })
+            .collect::<Result<Vec<Chapter>, CommandError>>()
+    })?;
+    progress.finish();
+    let rows = pretty(&json(&chapters), "formatting paper.json")? + "\n";
+    let page = html(&chapters).map_err(|e| CommandError::other("drawing paper.html", e))?;
+    let staging = Staging::for_folder(&args.out)?;
+    for (name, content) in [("paper.json", &rows), ("paper.html", &page)] {
+        staging.write(name, content)?;
+    }
+    let out = staging.publish()?;
+    if args.json {
+        return print(&rows);
+    }
+    let page = out.join("paper.html");
+    print(&format!("{}\npage: {}\n", text(&chapters), page.display()))
+}

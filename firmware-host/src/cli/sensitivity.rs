@@ -1,0 +1,134 @@
+//! `sensitivity SCENE.toml`: how well the supervisor has to know its machine.
+
+use crate::cli::error::{CommandError, pretty, print};
+use crate::cli::load;
+use crate::cli::progress::{LateProgress, Threads};
+use comfy_table::Cell;
+use firmware_bench::report::plot::text::figures;
+use firmware_bench::report::table::{lined, or_dash, outcome, right};
+use firmware_bench::scene::Scene;
+use firmware_bench::scene::policy_kind::PolicyKind;
+use firmware_studies::sensitivity::{Row, misjudged, told_right};
+use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
+use std::path::PathBuf;
+
+/// Arguments of `sensitivity`.
+#[derive(Debug, Clone, clap::Args)]
+pub struct SensitivityArgs {
+    /// Scene file with a magnet and a levitation controller.
+    pub scene: PathBuf,
+    /// Errors so many times as wide as usual: the exponent of factors, a factor of ticks.
+    #[arg(long, default_value_t = 1.0, allow_negative_numbers = true, value_name = "NUMBER", value_parser = width)]
+    pub width: f64,
+    /// How often all data are told wrong at once, each somewhere between its two errors.
+    #[arg(long, default_value_t = 8, allow_negative_numbers = true, value_name = "NUMBER", value_parser = clap::value_parser!(u32).range(0..=1000))]
+    pub draws: u32,
+    /// Print JSON instead of the table.
+    #[arg(long)]
+    pub json: bool,
+    /// How many threads it may use.
+    #[command(flatten)]
+    pub threads: Threads,
+}
+
+/// Wider than this no datum is called known.
+fn width(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(width) if (0.1..=4.0).contains(&width) => Ok(width),
+        _ => Err("expected a number from 0.1 to 4".to_owned()),
+    }
+}
+
+/// Runs the scene with levitation alone, with the supervisor, and with the supervisor told wrong.
+///
+/// # Errors
+/// [`CommandError`] for a scene that has nothing to supervise.
+pub fn execute(args: &SensitivityArgs) -> Result<(), CommandError> {
+    let scene = load(&args.scene)?;
+    for (there, table) in [
+        (scene.plant.magnet.is_some(), "[magnet]"),
+        (scene.levitation.is_some(), "[levitation]"),
+    ] {
+        if !there {
+            return Err(CommandError::Numbers {
+                message: format!("{} has no {table}", args.scene.display()),
+                help: format!("add {table}: without it there is nothing to supervise"),
+            });
+        }
+    }
+    let rows = rows(&scene, args)?;
+    print(&if args.json {
+        let value = serde_json::json!({
+            "scene": scene.title,
+            "width": args.width,
+            "rows": rows,
+        });
+        pretty(&value, "formatting the rows")? + "\n"
+    } else {
+        text(&scene, &rows)
+    })
+}
+
+fn rows(scene: &Scene, args: &SensitivityArgs) -> Result<Vec<Row>, CommandError> {
+    let told = told_right(scene).map_err(|e| CommandError::Numbers {
+        message: format!("{}: the supervisor derives {e}", args.scene.display()),
+        help: e.parameter().text.to_owned(),
+    })?;
+    let wrong = misjudged(args.width, args.draws, scene.seed);
+    let progress = LateProgress::new(wrong.len() as u64, "runs");
+    let one = |misjudged| {
+        let row = Row::of_misjudged(misjudged, scene);
+        progress.add(1);
+        row
+    };
+    let rows = args.threads.pool()?.install(|| {
+        let mut rows = vec![
+            Row::of("levitation alone", scene, PolicyKind::Levitation),
+            Row::of("right", &told, PolicyKind::Supervisor),
+        ];
+        let wrong: Vec<Option<Row>> = wrong.par_iter().map(one).collect();
+        rows.extend(wrong.into_iter().flatten());
+        rows
+    });
+    progress.finish();
+    Ok(rows)
+}
+
+fn text(scene: &Scene, rows: &[Row]) -> String {
+    let mut header = vec![Cell::new("the supervisor is told")];
+    header.extend(
+        [
+            "outcome",
+            "engaged",
+            "impacts",
+            "contact impulse [N s]",
+            "peak contact force [N]",
+            "re-levitated [ms]",
+        ]
+        .map(right),
+    );
+    let mut table = lined(header);
+    for row in rows {
+        let figures = match (&row.metrics, &row.error) {
+            (Some(m), _) => [
+                outcome(m.outcome).to_owned(),
+                row.engagements.to_string(),
+                m.impacts.to_string(),
+                figures(m.contact_impulse_n_s),
+                figures(m.peak_contact_force_n),
+                or_dash(m.relevitation_time_s, 1e3, 2),
+            ]
+            .to_vec(),
+            (None, error) => vec![error.clone().unwrap_or_default()],
+        };
+        let cells = figures.into_iter().map(right);
+        table.add_row([Cell::new(&row.told)].into_iter().chain(cells));
+    }
+    let wrong = rows.get(2..).unwrap_or_default();
+    let recovered = wrong.iter().filter(|row| row.recovered()).count();
+    format!(
+        "{}\n{table}\nTold wrong it recovers in {recovered} of {} runs. Wider errors: --width 2.\n",
+        scene.title,
+        wrong.len()
+    )
+}

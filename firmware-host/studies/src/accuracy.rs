@@ -1,0 +1,197 @@
+//! Error against run time: one scene without control, over tolerances and methods.
+
+pub mod wrong_runs;
+
+use firmware_bench::device::loads;
+use firmware_bench::scene::Scene;
+use plant_model::{BuildError, Inputs, Method, Mode, Options, PlantError, V2, Work};
+use serde::Serialize;
+use std::time::{Duration, Instant};
+
+/// Tolerances that are tried.
+const TOLERANCES: [f64; 9] = [1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12];
+/// Tolerance of the references.
+pub(crate) const TIGHTEST: f64 = 1e-13;
+/// A run is repeated for so long, and its best time counts; other work on the machine only adds.
+const REPEAT_FOR: Duration = Duration::from_millis(60);
+const REPEAT_AT_MOST: u32 = 50;
+
+/// One run.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Row {
+    /// Title of the scene.
+    pub problem: String,
+    /// `series`, `explicit` or `stiff`.
+    pub method: &'static str,
+    /// Tolerance of a contact step.
+    pub rtol: f64,
+    /// Distance of the end position from the reference, in clearances; `None` where the reference is
+    /// not confirmed.
+    pub error: Option<f64>,
+    /// Best wall-clock time \[s\].
+    pub seconds: f64,
+    /// Evaluations of the right-hand side, or series computed, in contact.
+    pub evaluations: u64,
+    /// Accepted contact steps.
+    pub steps: u64,
+    /// Changes of mode.
+    pub mode_changes: u64,
+}
+
+/// What errors of one problem are measured against.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Reference {
+    /// Title of the scene.
+    pub problem: String,
+    /// The method that errors are measured against, and the one that confirms it.
+    pub methods: [&'static str; 2],
+    /// Distance of the end positions by the two reference methods at 1e-13, in clearances:
+    /// errors below it mean nothing.
+    pub uncertainty: f64,
+    /// Whether both went through the same modes in the same order.
+    pub same_modes: bool,
+    /// Whether they do, and end closer to each other than [`CONFIRMED_CLEARANCES`].
+    pub confirmed: bool,
+    /// Evaluations of both in contact: what runs of this problem cost.
+    pub evaluations: u64,
+}
+
+/// References farther apart than this confirm nothing.
+pub const CONFIRMED_CLEARANCES: f64 = 1e-3;
+
+/// Why there is no answer.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum AccuracyError {
+    /// The plant's parameters are out of range.
+    #[error(transparent)]
+    Build(#[from] BuildError),
+    /// A run cannot be trusted any further.
+    #[error("{method}, rtol {rtol:e}: {reason}")]
+    Plant {
+        /// The method that integrated contact.
+        method: &'static str,
+        /// Its tolerance.
+        rtol: f64,
+        /// Why.
+        reason: PlantError,
+    },
+}
+
+/// Where a run ends and how it came there.
+pub(crate) struct Ending {
+    pub(crate) position_m: V2,
+    pub(crate) modes: Vec<Mode>,
+    pub(crate) method: Method,
+    work: Work,
+}
+
+/// Distance of two ends in clearances.
+pub(crate) fn apart(scene: &Scene, a: &Ending, b: &Ending) -> f64 {
+    (a.position_m - b.position_m).norm() / scene.plant.contact.clearance_m
+}
+
+/// What a scene is held against at the tightest tolerance: two methods of little in common, the series
+/// first where the contact law has one.
+pub(crate) fn reference_methods(scene: &Scene) -> [Method; 2] {
+    match scene.plant.has_series() {
+        true => [Method::Series, Method::Explicit],
+        false => [Method::Explicit, Method::Stiff],
+    }
+}
+
+/// Runs the scene's plant without control under every method and tolerance.
+///
+/// # Errors
+/// [`AccuracyError`].
+pub fn sweep(scene: &Scene) -> Result<(Vec<Row>, Reference), AccuracyError> {
+    let [one, other] = reference_methods(scene);
+    let first = run(scene, one, TIGHTEST)?;
+    let second = run(scene, other, TIGHTEST)?;
+    let (uncertainty, same_modes) = (apart(scene, &first, &second), first.modes == second.modes);
+    let reference = Reference {
+        problem: scene.title.clone(),
+        methods: [one, other].map(Method::name),
+        uncertainty,
+        same_modes,
+        confirmed: same_modes && uncertainty < CONFIRMED_CLEARANCES,
+        evaluations: first.work.evaluations + second.work.evaluations,
+    };
+    let mut rows = Vec::new();
+    for method in [Method::Series, Method::Explicit, Method::Stiff] {
+        if method == Method::Series && one != Method::Series {
+            continue;
+        }
+        for rtol in TOLERANCES {
+            let (seconds, ending) = timed(|| run(scene, method, rtol))?;
+            rows.push(Row {
+                problem: scene.title.clone(),
+                method: method.name(),
+                rtol,
+                error: reference.confirmed.then(|| apart(scene, &ending, &first)),
+                seconds,
+                evaluations: ending.work.evaluations,
+                steps: ending.work.steps,
+                mode_changes: ending.modes.len() as u64,
+            });
+        }
+    }
+    Ok((rows, reference))
+}
+
+/// Best time \[s\] of a few runs, and the last of them.
+fn timed(
+    mut run: impl FnMut() -> Result<Ending, AccuracyError>,
+) -> Result<(f64, Ending), AccuracyError> {
+    let (mut best, mut repeats) = (f64::INFINITY, 0);
+    let begun = Instant::now();
+    loop {
+        let started = Instant::now();
+        let ending = run()?;
+        best = best.min(started.elapsed().as_secs_f64());
+        repeats += 1;
+        if repeats >= REPEAT_AT_MOST || begun.elapsed() > REPEAT_FOR {
+            return Ok((best, ending));
+        }
+    }
+}
+
+/// One run from edge to edge of the disturbances: no samples cut the integrator's steps.
+pub(crate) fn run(scene: &Scene, method: Method, rtol: f64) -> Result<Ending, AccuracyError> {
+    let options = Options {
+        rtol,
+        method,
+        // There is one sample only.
+        steps_per_sample: Options::default().steps,
+        ..Options::default()
+    };
+    let mut plant = scene.build(options)?;
+    let mut edges = scene.edges();
+    edges.retain(|t| *t > 0.0 && *t < scene.duration_s);
+    edges.push(scene.duration_s);
+    let mut changes = scene.changes.iter().peekable();
+    let (mut from, mut modes) = (0.0, Vec::new());
+    for to in edges {
+        while let Some(due) = changes.next_if(|c| c.at_s <= from) {
+            plant.change(&due.change).map_err(BuildError::Param)?;
+        }
+        for cut in loads::cuts((from, to), scene.parts(from, to)) {
+            let inputs = Inputs {
+                command_n: V2::zeros(),
+                external_n: scene.external_n(from, cut),
+            };
+            let advanced = plant.advance(cut, &inputs, &mut |s| modes.push(s.mode));
+            advanced.map_err(|reason| AccuracyError::Plant {
+                method: plant.method().name(),
+                rtol,
+                reason,
+            })?;
+            from = cut;
+        }
+    }
+    Ok(Ending {
+        position_m: plant.snapshot().position_m,
+        modes,
+        method: plant.method(),
+        work: plant.work(),
+    })
+}

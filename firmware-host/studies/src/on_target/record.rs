@@ -1,0 +1,210 @@
+//! Recorded streams: what a supervisor was told on the host, and what it commanded.
+
+use super::closed_loops::closed_loops;
+use super::coverage::Coverage;
+use super::made_up::made_up;
+use super::numbers::Number;
+use crate::overloads::plan::CatalogueError;
+use firmware_bench::run::controller::Supervise;
+use firmware_image::under_test::{Fixed, Float, UnderTest};
+use firmware_image::wire::{
+    COMMAND_BYTES, CommandBits, HEADER_BYTES, Hash, Header, SAMPLE_BYTES, SEGMENT_BYTES,
+    SampleBits, Segment, command_bits, put_command, put_header, put_sample, put_segment,
+    sample_bits, sample_of,
+};
+use std::cell::RefCell;
+use std::io::{self, Write};
+use std::rc::Rc;
+use supervisor::{Command, Config, Mode, Sample};
+
+/// What a supervisor was told and what it commanded, as bytes: equal only with every bit of every number.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Tick {
+    sample: [u8; SAMPLE_BYTES],
+    command: [u8; COMMAND_BYTES],
+    /// Mode after it.
+    mode: Mode,
+}
+
+impl Tick {
+    /// From the bits of both.
+    pub fn new(sample: &SampleBits, command: &CommandBits) -> Self {
+        let mut tick = Self {
+            sample: [0; SAMPLE_BYTES],
+            command: [0; COMMAND_BYTES],
+            mode: command.mode,
+        };
+        put_sample(sample, &mut tick.sample);
+        put_command(command, &mut tick.command);
+        tick
+    }
+}
+
+/// A new supervisor and its ticks.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Piece {
+    /// Its configuration.
+    pub config: Config,
+    /// What it was told and what it commanded.
+    pub ticks: Vec<Tick>,
+}
+
+impl Piece {
+    pub(super) fn coverage(&self) -> Coverage {
+        let mut coverage = Coverage::default();
+        let mut before = Mode::Levitated;
+        for tick in &self.ticks {
+            coverage.add(before, tick.mode);
+            before = tick.mode;
+        }
+        coverage
+    }
+}
+
+/// What passes the border of a supervisor, written down.
+pub type Tape = Rc<RefCell<Vec<Tick>>>;
+
+/// A supervisor of floats with its tape.
+#[derive(Debug)]
+pub struct Recording {
+    /// Whoever supervises.
+    pub supervisor: Box<dyn Supervise>,
+    /// What it was told and what it commanded.
+    pub tape: Tape,
+}
+
+impl Supervise for Recording {
+    fn tick(&mut self, sample: &Sample) -> Command {
+        let command = self.supervisor.tick(sample);
+        let tick = Tick::new(&sample_bits(sample), &command_bits(&command));
+        self.tape.borrow_mut().push(tick);
+        command
+    }
+}
+
+/// How a stream is made up.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Length {
+    /// Ticks of closed loops, at most.
+    pub closed_loop: usize,
+    /// Ticks in all.
+    pub all: usize,
+}
+
+impl Length {
+    /// The long one.
+    pub const FULL: Self = Self::of(1_000_000);
+    /// The short one; its instructions are counted.
+    pub const QUICK: Self = Self::of(100_000);
+
+    /// Half closed loops.
+    const fn of(all: usize) -> Self {
+        Self {
+            closed_loop: all / 2,
+            all,
+        }
+    }
+}
+
+/// A recorded stream.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Stream {
+    /// What its numbers are.
+    pub number: Number,
+    /// One supervisor after the other.
+    pub pieces: Vec<Piece>,
+    /// Configurations that do not fit these numbers and were passed over.
+    pub left_out: usize,
+}
+
+impl Stream {
+    /// Records closed loops of the catalogue, and then samples that are made up. The same for the same
+    /// length.
+    ///
+    /// # Errors
+    /// [`CatalogueError`] if the catalogue is not valid.
+    pub fn record(number: Number, length: Length) -> Result<Self, CatalogueError> {
+        let (mut pieces, loops_left_out) = closed_loops(number, length.closed_loop)?;
+        let so_far: usize = pieces.iter().map(|p| p.ticks.len()).sum();
+        let (more, made_up_left_out) = made_up(number, length.all.saturating_sub(so_far))?;
+        pieces.extend(more);
+        Ok(Self {
+            number,
+            pieces,
+            left_out: loops_left_out + made_up_left_out,
+        })
+    }
+
+    /// Ticks in all.
+    pub fn ticks(&self) -> usize {
+        self.pieces.iter().map(|p| p.ticks.len()).sum()
+    }
+
+    /// Modes and ways in it.
+    pub fn coverage(&self) -> Coverage {
+        let mut coverage = Coverage::default();
+        for piece in &self.pieces {
+            coverage.merge(&piece.coverage());
+        }
+        coverage
+    }
+
+    /// Hash over its commands.
+    pub fn hash(&self) -> Hash {
+        let mut hash = Hash::default();
+        for tick in self.pieces.iter().flat_map(|p| &p.ticks) {
+            hash.add(&tick.command);
+        }
+        hash
+    }
+
+    /// Hash over what each supervisor leaves behind: report, events, frozen record.
+    pub fn read_outs(&self) -> Hash {
+        match self.number {
+            Number::Float => read_outs_of::<Float>(&self.pieces),
+            Number::Fixed => read_outs_of::<Fixed>(&self.pieces),
+        }
+    }
+
+    /// Writes it as the images read it.
+    ///
+    /// # Errors
+    /// Of writing.
+    pub fn write(&self, to: impl Write) -> io::Result<()> {
+        let mut to = io::BufWriter::new(to);
+        let mut header = [0; HEADER_BYTES];
+        let segments = self.pieces.len() as u32;
+        put_header(Header { segments }, &mut header);
+        to.write_all(&header)?;
+        let mut segment = [0; SEGMENT_BYTES];
+        for piece in &self.pieces {
+            let begin = Segment {
+                config: piece.config,
+                ticks: piece.ticks.len() as u32,
+            };
+            put_segment(&begin, &mut segment);
+            to.write_all(&segment)?;
+            for tick in &piece.ticks {
+                to.write_all(&tick.sample)?;
+                to.write_all(&tick.command)?;
+            }
+        }
+        to.flush()
+    }
+}
+
+/// The pieces once more, each by a supervisor that is asked afterwards.
+fn read_outs_of<U: UnderTest>(pieces: &[Piece]) -> Hash {
+    let mut hash = Hash::default();
+    for piece in pieces {
+        // All that were recorded fit.
+        let Some(mut supervisor) = U::new(&piece.config) else {
+            continue;
+        };
+        for tick in &piece.ticks {
+            let _command = supervisor.step(&U::sample(&sample_of(&tick.sample)));
+        }
+        supervisor.read_out(&mut hash);
+    }
+    hash
+}

@@ -1,0 +1,294 @@
+//! The whole catalogue, planned and run.
+
+use super::catalogue::{Case, cases};
+use super::found::{Found, Row, kept};
+use super::plants::{PlantCase, RATES_HZ, plants};
+use super::promises::{Harm, Promise, against_levitation, of_results, of_sweeps};
+use super::results::{ResultRow, run_case, run_own};
+use super::seats::Seat;
+use super::sweeps::{SweepPoint, SweepRow, row, sweep};
+use super::words::slug;
+use super::{reference, seats, tune};
+use firmware_bench::run::closed_loop::RunError;
+use firmware_bench::scene::Scene;
+use firmware_bench::scene::diagnostic::SceneError;
+use firmware_bench::scene::policy_kind::PolicyKind;
+use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
+use serde::Serialize;
+use std::collections::BTreeSet;
+
+/// How much is run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Extent {
+    /// One control rate, one cap for P1, three seeds.
+    Quick,
+    /// Everything, twenty seeds.
+    Full,
+}
+
+impl Extent {
+    /// Seeds of the sensor noise.
+    pub fn seeds(self) -> u64 {
+        match self {
+            Self::Quick => 3,
+            Self::Full => 20,
+        }
+    }
+
+    fn takes(self, plant: &PlantCase) -> bool {
+        match self {
+            Self::Full => true,
+            Self::Quick => {
+                let one_of_p1 = !plant.name.starts_with("P1") || plant.name == "P1 150 N";
+                plant.rate_hz == RATES_HZ[1] && one_of_p1
+            }
+        }
+    }
+}
+
+/// Why the catalogue has no result.
+#[derive(Debug, thiserror::Error)]
+pub enum CatalogueError {
+    /// A plant of the catalogue is not valid.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// Two scenes would share a page.
+    #[error("the title \"{title}\" is that of another scene, or as good as")]
+    Title {
+        /// Title.
+        title: String,
+    },
+    /// A run of a sweep cannot be trusted.
+    #[error("{plant}, {policy}: {reason}")]
+    Run {
+        /// Plant.
+        plant: String,
+        /// Policy.
+        policy: &'static str,
+        /// Why.
+        reason: RunError,
+    },
+    /// Nothing is kept for a plant.
+    #[error("no gains are kept for {plant} at {rate_hz} Hz: search them with --search")]
+    NotFound {
+        /// Plant.
+        plant: String,
+        /// Control rate \[Hz\].
+        rate_hz: f64,
+    },
+}
+
+/// What came out.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Catalogue {
+    /// Promises.
+    pub promises: Vec<Promise>,
+    /// Sweeps.
+    pub sweeps: Vec<SweepRow>,
+    /// Every scene against levitation alone.
+    pub against_levitation: Vec<Harm>,
+    /// Every run.
+    pub results: Vec<ResultRow>,
+}
+
+/// A plant at one control rate, with what is kept for it and what happens to it.
+struct Place {
+    plant: PlantCase,
+    found: Found,
+    cases: Vec<Case>,
+}
+
+/// A run of the plan.
+enum Job<'a> {
+    Case(&'a Place, &'a Case, Seat, u64),
+    Own(&'a Scene, PolicyKind, u64),
+}
+
+/// A sweep of the plan: place, seat, seed.
+type SweepJob<'a> = (&'a Place, Seat, u64);
+
+/// A sweep takes about as long as so many runs.
+const SWEEP_WORTH: u64 = 40;
+
+/// What will be run: the catalogue in an extent, and a user's own scenes with it.
+pub struct Plan {
+    extent: Extent,
+    places: Vec<Place>,
+    own: Vec<Scene>,
+}
+
+impl Plan {
+    /// Sets every plant up.
+    ///
+    /// # Errors
+    /// [`CatalogueError::Scene`], [`CatalogueError::NotFound`], [`CatalogueError::Title`].
+    pub fn new(extent: Extent, own: Vec<Scene>) -> Result<Self, CatalogueError> {
+        let mut places = Vec::new();
+        for rate_hz in RATES_HZ {
+            for plant in plants(rate_hz)?.into_iter().filter(|p| extent.takes(p)) {
+                let found = kept(&plant.name, rate_hz).ok_or_else(|| CatalogueError::NotFound {
+                    plant: plant.name.clone(),
+                    rate_hz,
+                })?;
+                places.push(Place {
+                    cases: cases(&plant, found.tuned),
+                    plant,
+                    found,
+                });
+            }
+        }
+        let of_catalogue = places.iter().flat_map(|place| &place.cases);
+        let mut taken: BTreeSet<String> = of_catalogue.map(|case| slug(&case.name)).collect();
+        // The page of the whole.
+        taken.insert("overloads".to_owned());
+        if let Some(twice) = own.iter().find(|scene| !taken.insert(slug(&scene.title))) {
+            let title = twice.title.clone();
+            return Err(CatalogueError::Title { title });
+        }
+        Ok(Self {
+            extent,
+            places,
+            own,
+        })
+    }
+
+    fn seeds(&self, seat: Seat) -> std::ops::Range<u64> {
+        0..if seat.measures() {
+            self.extent.seeds()
+        } else {
+            1
+        }
+    }
+
+    fn jobs(&self) -> Vec<Job<'_>> {
+        let mut jobs = Vec::new();
+        for place in &self.places {
+            for case in &place.cases {
+                for seat in case.seats {
+                    let of = |seed| Job::Case(place, case, *seat, seed);
+                    jobs.extend(self.seeds(*seat).map(of));
+                }
+            }
+        }
+        for scene in &self.own {
+            for kind in &scene.policies {
+                let of = |seed| Job::Own(scene, *kind, seed);
+                jobs.extend((0..self.extent.seeds()).map(of));
+            }
+        }
+        jobs
+    }
+
+    fn sweep_jobs(&self) -> Vec<SweepJob<'_>> {
+        let mut jobs = Vec::new();
+        for place in &self.places {
+            for seat in Seat::ALL {
+                jobs.extend(self.seeds(seat).map(|seed| (place, seat, seed)));
+            }
+        }
+        jobs
+    }
+
+    /// Pieces of work of a run.
+    pub fn pieces(&self) -> u64 {
+        self.jobs().len() as u64 + SWEEP_WORTH * self.sweep_jobs().len() as u64
+    }
+
+    /// Runs it. `on_done` is called with pieces of work done.
+    ///
+    /// # Errors
+    /// [`CatalogueError::Run`].
+    pub fn run(&self, on_done: &(dyn Fn(u64) + Sync)) -> Result<Catalogue, CatalogueError> {
+        let results: Vec<ResultRow> = (self.jobs().par_iter())
+            .map(|job| {
+                let row = match job {
+                    Job::Case(Place { plant, found, .. }, case, seat, seed) => {
+                        run_case(case, (&plant.name, plant.rate_hz), (*seat, *seed), found)
+                    }
+                    Job::Own(scene, kind, seed) => run_own(scene, *kind, *seed),
+                };
+                on_done(1);
+                row
+            })
+            .collect();
+        let sweeps = self.sweeps(on_done)?;
+        // Own scenes come last, and no promise is about them.
+        let (of_catalogue, own) = results.split_at(results.partition_point(|row| !row.is_own()));
+        let mut harms = against_levitation(of_catalogue, Seat::Tuned.name());
+        let mut promises = of_sweeps(&sweeps);
+        promises.extend(of_results(of_catalogue, &harms));
+        harms.extend(against_levitation(own, PolicyKind::Levitation.name()));
+        Ok(Catalogue {
+            promises,
+            sweeps,
+            against_levitation: harms,
+            results,
+        })
+    }
+
+    fn sweeps(&self, on_done: &(dyn Fn(u64) + Sync)) -> Result<Vec<SweepRow>, CatalogueError> {
+        let points = (self.sweep_jobs().par_iter())
+            .map(|(Place { plant, found, .. }, seat, seed)| {
+                let point =
+                    sweep(plant, found, (*seat, *seed)).map_err(|reason| CatalogueError::Run {
+                        plant: plant.name.clone(),
+                        policy: seat.name(),
+                        reason,
+                    });
+                on_done(SWEEP_WORTH);
+                point
+            })
+            .collect::<Result<Vec<SweepPoint>, CatalogueError>>()?;
+        let mut rows = Vec::new();
+        let mut rest = points.as_slice();
+        for place in &self.places {
+            for seat in Seat::ALL {
+                let (own, others) = rest.split_at(self.seeds(seat).count());
+                rest = others;
+                rows.push(row(&place.plant, seat, own));
+            }
+        }
+        Ok(rows)
+    }
+}
+
+/// Searches the gains of the baselines and the weights of the reference anew, for every plant and rate.
+///
+/// # Errors
+/// [`CatalogueError`].
+pub fn search(on_done: &dyn Fn(u64)) -> Result<Vec<Row>, CatalogueError> {
+    let mut rows = Vec::new();
+    for rate_hz in RATES_HZ {
+        for plant in plants(rate_hz)? {
+            let scene = &plant.scene;
+            let failed = |reason| CatalogueError::Run {
+                plant: plant.name.clone(),
+                policy: "search",
+                reason,
+            };
+            let none = || CatalogueError::NotFound {
+                plant: plant.name.clone(),
+                rate_hz,
+            };
+            let tuned = tune::tuned(scene).map_err(failed)?.ok_or_else(none)?;
+            let stiff = tune::stiff(scene).ok_or_else(none)?;
+            let make = |s: &Scene| seats::levitation(tuned, s);
+            let known = super::impact::recoverable_m_s(scene, "tuned", &make).map_err(failed)?;
+            let from = reference::search_from_m_s(known);
+            let impact_law = reference::impact_law(scene, from).map_err(failed)?;
+            let whirl_law = reference::whirl_law(scene).map_err(failed)?;
+            rows.push(Row {
+                plant: plant.name.clone(),
+                rate_hz,
+                found: Found {
+                    tuned,
+                    stiff,
+                    impact_law,
+                    whirl_law: whirl_law.unwrap_or(impact_law),
+                },
+            });
+            on_done(1);
+        }
+    }
+    Ok(rows)
+}

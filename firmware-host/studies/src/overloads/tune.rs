@@ -1,0 +1,124 @@
+//! The levitation loop as a baseline: `tuned`, the best that a search finds for impacts, and `stiff`.
+//!
+//! A loop that a commissioning engineer would accept has a peak sensitivity below 3 and spends less than
+//! 5 % of the cap on sensor noise while idle. Among those the search takes the one that recovers from the
+//! hardest radial impact; of equals the one with the lower peak sensitivity.
+
+use super::impact::{FIRST_M_S, recoverable_from};
+use super::loop_shape::{LoopShape, SampledPlant};
+use super::seats::levitation;
+use firmware_bench::device::levitation::LevitationParams;
+use firmware_bench::run::closed_loop::RunError;
+use firmware_bench::scene::Scene;
+use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
+use std::f64::consts::TAU;
+
+/// Largest peak sensitivity.
+pub const SENSITIVITY: f64 = 3.0;
+/// Largest root mean square force by sensor noise, as a share of the cap.
+pub const IDLE_NOISE: f64 = 0.05;
+
+/// Shape of a loop on a scene's plant, `None` where it is unstable; the second value is the idle noise
+/// force as a share of the cap.
+pub fn shape(
+    scene: &Scene,
+    sampled: &SampledPlant,
+    params: &LevitationParams,
+) -> Option<(LoopShape, f64)> {
+    let shape = sampled.close(params)?;
+    let quantum = scene.sensor.quantum_m;
+    let noise_m = (scene.sensor.noise_rms_m.powi(2) + quantum * quantum / 12.0).sqrt();
+    let cap = scene.plant.magnet.map_or(f64::INFINITY, |m| m.force_max_n);
+    Some((shape, shape.noise_gain_n_m * noise_m / cap))
+}
+
+/// Loops that are tried: K_p = m·ω² from 2 Hz, as good as no spring, to 430 Hz, K_d = 2ζ·m·ω, a derivative filter of
+/// some samples.
+fn candidates(scene: &Scene) -> Vec<LevitationParams> {
+    let (mass, period_s) = (scene.plant.rotor.mass_kg, 1.0 / scene.sample_rate_hz);
+    let mut all = Vec::new();
+    for i in -9..16 {
+        let omega = TAU * 15.0 * 1.25_f64.powi(i);
+        for damping_ratio in [0.3, 0.5, 0.7, 1.0, 1.4, 2.0, 2.8, 4.0, 5.6, 8.0] {
+            for filter in [0.0, 0.5, 1.0, 2.0, 4.0, 8.0] {
+                all.push(LevitationParams {
+                    proportional_n_m: mass * omega * omega,
+                    integral_n_m_s: 0.0,
+                    derivative_n_s_m: 2.0 * damping_ratio * mass * omega,
+                    derivative_filter_s: filter * period_s,
+                });
+            }
+        }
+    }
+    all
+}
+
+/// The tuned loop: the best PD, or with integrators of 0.1 s or 0.03 s where one of these is better.
+///
+/// # Errors
+/// [`RunError`] of a run that cannot be trusted.
+pub fn tuned(scene: &Scene) -> Result<Option<LevitationParams>, RunError> {
+    let sampled = SampledPlant::new(&scene.plant, scene.sample_rate_hz, 1);
+    let accepted = |all: Vec<LevitationParams>| -> Vec<(LevitationParams, f64)> {
+        (all.into_iter())
+            .filter_map(|params| {
+                let (loop_shape, noise) = shape(scene, &sampled, &params)?;
+                let fits = loop_shape.peak_sensitivity < SENSITIVITY && noise < IDLE_NOISE;
+                fits.then_some((params, loop_shape.peak_sensitivity))
+            })
+            .collect()
+    };
+    let rated = |all: Vec<(LevitationParams, f64)>| {
+        (all.par_iter())
+            .map(|(params, sensitivity)| {
+                let make = |s: &Scene| levitation(*params, s);
+                let speed = recoverable_from(scene, "tuned", &make, FIRST_M_S)?;
+                Ok((speed, -*sensitivity, *params))
+            })
+            .collect::<Result<Vec<_>, RunError>>()
+    };
+    let best = |all: &[(f64, f64, LevitationParams)]| {
+        (all.iter().copied()).max_by(|a, b| {
+            (a.0, a.1)
+                .partial_cmp(&(b.0, b.1))
+                .unwrap_or(std::cmp::Ordering::Equal)
+        })
+    };
+    let pd = rated(accepted(candidates(scene)))?;
+    let Some(first) = best(&pd) else {
+        return Ok(None);
+    };
+    let with_integrator = [0.1, 0.03].map(|time_s| LevitationParams {
+        integral_n_m_s: first.2.proportional_n_m / time_s,
+        ..first.2
+    });
+    let pid = rated(accepted(with_integrator.to_vec()))?;
+    let chosen = best(&pid).filter(|b| b.0 > first.0).unwrap_or(first);
+    Ok(Some(chosen.2))
+}
+
+/// The ordinary loop: K_p ten times the stiffness of shaft and magnets, whichever sign, and among the
+/// dampings and filters the one with the lowest peak sensitivity.
+pub fn stiff(scene: &Scene) -> Option<LevitationParams> {
+    let sampled = SampledPlant::new(&scene.plant, scene.sample_rate_hz, 1);
+    let (mass, period_s) = (scene.plant.rotor.mass_kg, 1.0 / scene.sample_rate_hz);
+    let proportional_n_m = 10.0 * scene.plant.rotor.stiffness_n_m.abs();
+    let omega = (proportional_n_m / mass).sqrt();
+    let mut best: Option<(f64, LevitationParams)> = None;
+    for damping_ratio in [0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.85, 1.0, 1.2, 1.4] {
+        for filter in [0.0, 0.5, 1.0, 2.0] {
+            let params = LevitationParams {
+                proportional_n_m,
+                integral_n_m_s: 0.0,
+                derivative_n_s_m: 2.0 * damping_ratio * mass * omega,
+                derivative_filter_s: filter * period_s,
+            };
+            if let Some((loop_shape, _)) = shape(scene, &sampled, &params)
+                && best.is_none_or(|(peak, _)| loop_shape.peak_sensitivity < peak)
+            {
+                best = Some((loop_shape.peak_sensitivity, params));
+            }
+        }
+    }
+    best.map(|(_, params)| params)
+}

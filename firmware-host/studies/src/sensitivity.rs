@@ -1,0 +1,270 @@
+//! How well the supervisor has to know its machine: a scene run again and again, each time with something of the
+//! machine told wrong.
+
+use crate::overloads::results::Metrics;
+use firmware_bench::device::sensor::SpinSensorParams;
+use firmware_bench::run::closed_loop::{Keep, run};
+use firmware_bench::run::supervision::Supervision;
+use firmware_bench::scene::nominal::replaced;
+use firmware_bench::scene::policy_kind::PolicyKind;
+use firmware_bench::scene::suggest::{Nominal, suggested};
+use firmware_bench::scene::{Override, Scene};
+use rand_chacha::ChaCha8Rng;
+use rand_core::{Rng, SeedableRng};
+use serde::Serialize;
+use supervisor::{Config, ConfigError, PARAMETERS};
+
+/// How far a datum usually is off, either way.
+#[derive(Debug, Clone, Copy)]
+enum Usual {
+    /// It is told this many times too large, or too small.
+    Factor(f64),
+    /// It is told so many ticks too long, or too short.
+    Ticks(f64),
+}
+
+use Usual::{Factor, Ticks};
+
+/// What firmware is told of the machine.
+struct Told {
+    nominal: Nominal,
+    spin_gain: f64,
+}
+
+/// A datum of the machine.
+struct Datum {
+    name: &'static str,
+    /// The parameter that is this datum: where a scene has set it itself, that is what is off.
+    parameter: Option<&'static str>,
+    usual: Usual,
+    /// Puts it off by a factor, or by ticks.
+    put_off: fn(&mut Told, f64),
+}
+
+const fn datum(
+    name: &'static str,
+    parameter: &'static str,
+    usual: Usual,
+    put_off: fn(&mut Told, f64),
+) -> Datum {
+    Datum {
+        name,
+        parameter: Some(parameter),
+        usual,
+        put_off,
+    }
+}
+
+/// The data that somebody has to measure or look up, and how well they commonly are known.
+const DATA: &[Datum] = &[
+    datum("mass", "mass_kg", Factor(1.25), |told, by| {
+        told.nominal.mass_kg *= by;
+    }),
+    datum("stiffness", "stiffness_n_m", Factor(1.4), |told, by| {
+        told.nominal.stiffness_n_m *= by;
+    }),
+    datum("clearance", "clearance_m", Factor(1.1), |told, by| {
+        told.nominal.clearance_m *= by;
+    }),
+    datum("force cap", "force_max_n", Factor(1.25), |told, by| {
+        told.nominal.force_max_n *= by;
+    }),
+    datum(
+        "amplifier lag",
+        "amplifier_lag_s",
+        Factor(2.0),
+        |told, by| {
+            told.nominal.lag_s *= by;
+        },
+    ),
+    datum("delay", "delay_samples", Ticks(1.0), |told, by| {
+        let ticks = f64::from(told.nominal.delay_samples) + by;
+        told.nominal.delay_samples = ticks as u32;
+    }),
+    datum(
+        "friction",
+        "friction_coefficient",
+        Factor(2.0),
+        |told, by| {
+            told.nominal.friction_coefficient *= by;
+        },
+    ),
+    datum("restitution", "restitution", Factor(1.25), |told, by| {
+        let restitution = suggested(&told.nominal).config.restitution;
+        told.nominal.restitution = Some(f64::from(restitution) * by);
+    }),
+    datum(
+        "contact stiffness",
+        "contact_stiffness_n_m",
+        Factor(10.0),
+        |told, by| told.nominal.contact_stiffness_n_m *= by,
+    ),
+    datum("sensor noise", "sensor_step_m", Factor(3.0), |told, by| {
+        told.nominal.noise_rms_m *= by;
+        told.nominal.quantum_m *= by;
+    }),
+    Datum {
+        name: "spin",
+        // It comes with every sample.
+        parameter: None,
+        usual: Factor(1.03),
+        put_off: |told, by| told.spin_gain *= by,
+    },
+];
+
+/// Data told wrong together, and in words.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Misjudged {
+    /// What is told wrong.
+    pub text: String,
+    /// Places in [`DATA`], and by what each is off.
+    off: Vec<(usize, f64)>,
+}
+
+/// What there is to be told wrong: each datum alone, too large and too small, and `draws` times all of them at once,
+/// drawn between the two. `width` is the exponent of the factors and a factor of the ticks.
+pub fn misjudged(width: f64, draws: u32, seed: u64) -> Vec<Misjudged> {
+    let at = |datum: &Datum, share: f64| match datum.usual {
+        Factor(by) => by.powf(share * width),
+        Ticks(by) => (share * width * by).round(),
+    };
+    let alone = |(place, datum): (usize, &Datum)| {
+        [-1.0, 1.0].map(|share| {
+            let by = at(datum, share);
+            let text = match datum.usual {
+                Factor(_) => format!("{} × {}", datum.name, digits(by)),
+                Ticks(_) => format!("{} {by:+} ticks", datum.name),
+            };
+            let off = vec![(place, by)];
+            Misjudged { text, off }
+        })
+    };
+    let mut all: Vec<Misjudged> = DATA.iter().enumerate().flat_map(alone).collect();
+    let mut draw = ChaCha8Rng::seed_from_u64(seed);
+    for number in 1..=draws {
+        let mut share = || 2.0 * f64::from(draw.next_u32()) / f64::from(u32::MAX) - 1.0;
+        let off = (DATA.iter().enumerate()).map(|(place, datum)| (place, at(datum, share())));
+        all.push(Misjudged {
+            text: format!("all at once, draw {number}"),
+            off: off.collect(),
+        });
+    }
+    all
+}
+
+/// Three digits at most.
+fn digits(x: f64) -> String {
+    let places = if x < 1.0 { 3 } else { 2 };
+    let text = format!("{x:.places$}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+impl Misjudged {
+    /// The scene with the supervisor told so; `None` where that makes no difference.
+    ///
+    /// # Errors
+    /// The parameter that the supervisor would refuse.
+    pub fn told(&self, scene: &Scene) -> Result<Option<Scene>, ConfigError> {
+        let right = configured(&scene.nominal, &scene.overrides)?;
+        let mut told = Told {
+            nominal: scene.nominal,
+            spin_gain: scene.spin_sensor.gain,
+        };
+        let mut overrides = scene.overrides.clone();
+        for (place, by) in &self.off {
+            let datum = &DATA[*place];
+            (datum.put_off)(&mut told, *by);
+            for (index, value) in &mut overrides {
+                if datum.parameter == Some(PARAMETERS[*index].name) {
+                    *value = match datum.usual {
+                        Factor(_) => *value * *by as f32,
+                        Ticks(_) => (*value + *by as f32).max(0.0),
+                    };
+                }
+            }
+        }
+        let config = configured(&told.nominal, &overrides)?;
+        let spin = scene.spin_sensor;
+        let other_spin = spin.valid && told.spin_gain != spin.gain;
+        let other = config != right || other_spin;
+        Ok(other.then(|| Scene {
+            supervisor: Some(config),
+            spin_sensor: SpinSensorParams {
+                gain: told.spin_gain,
+                ..spin
+            },
+            ..scene.clone()
+        }))
+    }
+}
+
+/// What the supervisor is configured with when it is told this.
+fn configured(nominal: &Nominal, overrides: &[Override]) -> Result<Config, ConfigError> {
+    let config = replaced(&suggested(nominal).config, overrides);
+    config.validate()?;
+    Ok(config)
+}
+
+/// The scene with the supervisor told what is, whether or not the scene runs it.
+///
+/// # Errors
+/// The parameter that the supervisor would refuse.
+pub fn told_right(scene: &Scene) -> Result<Scene, ConfigError> {
+    Ok(Scene {
+        supervisor: Some(configured(&scene.nominal, &scene.overrides)?),
+        ..scene.clone()
+    })
+}
+
+/// What came of a run.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Row {
+    /// What the supervisor was told, or that there was none.
+    pub told: String,
+    /// Times that it took over.
+    pub engagements: u64,
+    /// What was measured; `None` where there is no run that can be trusted.
+    #[serde(flatten)]
+    pub metrics: Option<Metrics>,
+    /// Why not.
+    pub error: Option<String>,
+}
+
+impl Row {
+    /// Runs a scene.
+    pub fn of(told: &str, scene: &Scene, kind: PolicyKind) -> Self {
+        let (engagements, metrics, error) = match run(scene, kind, Keep::Trace, &mut |_| {}) {
+            Ok((verdict, trace)) => {
+                let engagements = Supervision::of(&trace).map_or(0, |s| s.engagements);
+                (engagements, Some(Metrics::from(&verdict)), None)
+            }
+            Err(error) => (0, None, Some(error.to_string())),
+        };
+        Self {
+            told: told.to_owned(),
+            engagements,
+            metrics,
+            error,
+        }
+    }
+
+    /// Runs a scene with something told wrong; `None` where that makes no difference. What the supervisor would refuse
+    /// is a row that says so.
+    pub fn of_misjudged(misjudged: &Misjudged, scene: &Scene) -> Option<Self> {
+        match misjudged.told(scene) {
+            Ok(Some(wrong)) => Some(Self::of(&misjudged.text, &wrong, PolicyKind::Supervisor)),
+            Ok(None) => None,
+            Err(refused) => Some(Self {
+                told: misjudged.text.clone(),
+                engagements: 0,
+                metrics: None,
+                error: Some(format!("refused: {refused}")),
+            }),
+        }
+    }
+
+    /// Whether the rotor came back.
+    pub fn recovered(&self) -> bool {
+        self.metrics.as_ref().is_some_and(|m| m.recovered)
+    }
+}
