@@ -4,7 +4,8 @@
 use crate::recording::recording;
 use firmware_bench::run::closed_loop::{Keep, run_policy};
 use firmware_bench::run::controller::{Policy, Supervise};
-use firmware_studies::overloads::catalogue::{Case, cases};
+use firmware_studies::overloads::case::Case;
+use firmware_studies::overloads::catalogue::cases;
 use firmware_studies::overloads::found::kept;
 use firmware_studies::overloads::plants::{PlantCase, plants};
 use supervisor::{

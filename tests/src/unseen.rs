@@ -4,7 +4,8 @@
 use firmware_bench::device::levitation::LevitationParams;
 use firmware_bench::scene::Scene;
 use firmware_studies::harm::draw::Draw;
-use firmware_studies::overloads::catalogue::{Case, cases};
+use firmware_studies::overloads::case::Case;
+use firmware_studies::overloads::catalogue::cases;
 use firmware_studies::overloads::fault_matrix::{DRIVE_FAULTS, SENSOR_FAULTS};
 use firmware_studies::overloads::found::{Found, kept};
 use firmware_studies::overloads::plants::PlantCase;

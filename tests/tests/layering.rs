@@ -106,6 +106,126 @@ fn files_import_only_upwards() {
     check("firmware-host/studies");
 }
 
+/// Paths below `crate` that a file's code refers to, as lists of names.
+fn paths(text: &str, here: &[String]) -> Vec<Vec<String>> {
+    let code = text.split("#[cfg(test)]\nmod tests").next().unwrap_or(text);
+    let code: String = (code.lines())
+        .filter(|l| !l.trim_start().starts_with("//"))
+        .map(|l| format!("{l}\n"))
+        .collect();
+    let name = |part: &str| -> String {
+        part.chars()
+            .take_while(|c| c.is_alphanumeric() || *c == '_')
+            .collect()
+    };
+    let mut found = Vec::new();
+    for (word, up) in [("crate::", None), ("super::", Some(1))] {
+        for (at, _) in code.match_indices(word) {
+            // A part of a longer path, as `super::super::`, is found with its beginning.
+            if code[..at].ends_with([':', '_']) {
+                continue;
+            }
+            let mut path: Vec<String> = match up {
+                None => Vec::new(),
+                Some(up) => here[..here.len().saturating_sub(up)].to_vec(),
+            };
+            let mut rest = &code[at + word.len()..];
+            loop {
+                if let Some(deeper) = rest.strip_prefix("super::") {
+                    path.pop();
+                    rest = deeper;
+                    continue;
+                }
+                if let Some(group) = rest.strip_prefix('{') {
+                    let group = group.split('}').next().unwrap_or(group);
+                    for item in group.split(',') {
+                        let mut each = path.clone();
+                        each.push(name(item.trim_start()));
+                        found.push(each);
+                    }
+                    break;
+                }
+                let part = name(rest);
+                rest = &rest[part.len()..];
+                path.push(part);
+                match rest.strip_prefix("::") {
+                    Some(deeper) => rest = deeper,
+                    None => {
+                        found.push(path);
+                        break;
+                    }
+                }
+            }
+        }
+    }
+    found
+}
+
+/// Neighbours in a folder that import each other, directly or through others: one circle, if there is any. A folder
+/// counts as one with all that is in it, and with the file that has its name.
+fn circle(krate: &str) -> Option<Vec<String>> {
+    let src = system_tests::root().join(krate).join("src");
+    let mut modules: Vec<(Vec<String>, String)> = Vec::new();
+    for path in files_below(&src) {
+        let here = path.strip_prefix(&src).unwrap().with_extension("");
+        let here: Vec<String> = (here.iter())
+            .map(|part| part.to_str().unwrap().to_owned())
+            .collect();
+        if here != ["lib"] && here != ["main"] {
+            modules.push((here, std::fs::read_to_string(&path).unwrap()));
+        }
+    }
+    let known: BTreeSet<Vec<String>> = modules.iter().map(|(m, _)| m.clone()).collect();
+    // From neighbour to neighbour: what two paths have in common, and one name more of each.
+    let mut edges: BTreeSet<(Vec<String>, Vec<String>)> = BTreeSet::new();
+    for (here, text) in &modules {
+        for path in paths(text, here) {
+            let common = here.iter().zip(&path).take_while(|(a, b)| a == b).count();
+            if common == here.len() || common == path.len() {
+                continue;
+            }
+            let (from, to) = (here[..=common].to_vec(), path[..=common].to_vec());
+            if known.contains(&to) {
+                edges.insert((from, to));
+            }
+        }
+    }
+    assert!(edges.len() > 5, "{krate}: {} imports", edges.len());
+    // What nobody imports, or what imports nothing, is in no circle.
+    loop {
+        let before = edges.len();
+        let (from, to): (BTreeSet<_>, BTreeSet<_>) = edges.iter().cloned().unzip();
+        edges.retain(|(a, b)| to.contains(a) && from.contains(b));
+        if edges.len() == before {
+            break;
+        }
+    }
+    let (from, _) = edges.first()?;
+    let mut way = vec![from.clone()];
+    loop {
+        let last = way.last().unwrap().clone();
+        let (_, next) = edges.iter().find(|(a, _)| *a == last)?;
+        if let Some(begin) = way.iter().position(|m| m == next) {
+            let names = way[begin..].iter().map(|m| m.join("::"));
+            return Some(names.collect());
+        }
+        way.push(next.clone());
+    }
+}
+
+#[test]
+fn no_modules_import_each_other_in_circles() {
+    for krate in [
+        "supervisor",
+        "plant-model",
+        "firmware-host/bench",
+        "firmware-host/studies",
+        "firmware-host",
+    ] {
+        assert_eq!(circle(krate), None, "{krate}");
+    }
+}
+
 /// The plant knows no control, the supervisor no plant.
 #[test]
 fn crates_keep_their_distance() {

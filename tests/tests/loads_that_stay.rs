@@ -3,7 +3,7 @@
 use firmware_bench::run::closed_loop::{Keep, run_policy};
 use firmware_bench::run::supervision::Supervision;
 use firmware_bench::scene::{Disturbance, Scene, Shape};
-use firmware_studies::overloads::catalogue::Sizes;
+use firmware_studies::overloads::case::Sizes;
 use firmware_studies::overloads::found::kept;
 use firmware_studies::overloads::plants::plants;
 use firmware_studies::overloads::seats::{Seat, Task, seated};

@@ -1,7 +1,7 @@
 //! How well the supervisor has to know its machine: with its data told wrong as data commonly are.
 
 use firmware_bench::scene::Scene;
-use firmware_studies::overloads::catalogue::Case;
+use firmware_studies::overloads::case::Case;
 use firmware_studies::overloads::found::{Found, kept};
 use firmware_studies::overloads::plants::{PlantCase, plants};
 use firmware_studies::overloads::results::{ResultRow, run_case};

@@ -4,7 +4,7 @@ use firmware_bench::device::levitation::LevitationParams;
 use firmware_bench::run::closed_loop::{Keep, run};
 use firmware_bench::scene::Scene;
 use firmware_bench::scene::policy_kind::PolicyKind;
-use firmware_studies::overloads::catalogue::Sizes;
+use firmware_studies::overloads::case::Sizes;
 use firmware_studies::overloads::found::kept;
 use firmware_studies::overloads::plants::{RATES_HZ, plants};
 use firmware_studies::overloads::situations::{Situation, situations};

@@ -3,7 +3,8 @@
 use firmware_bench::run::closed_loop::{Keep, run_policy};
 use firmware_bench::run::trace::Trace;
 use firmware_bench::run::verdict::Verdict;
-use firmware_studies::overloads::catalogue::{Case, cases};
+use firmware_studies::overloads::case::Case;
+use firmware_studies::overloads::catalogue::cases;
 use firmware_studies::overloads::found::{Found, kept};
 use firmware_studies::overloads::plants::{PlantCase, plants};
 use firmware_studies::overloads::seats::{Seat, Task, seated};

@@ -17,3 +17,4 @@ pub mod measure;
 pub mod numbers;
 pub mod record;
 pub mod results;
+pub mod tape;

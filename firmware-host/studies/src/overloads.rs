@@ -1,5 +1,6 @@
 //! The catalogue of overloads: every scene, policy and seed, and what it says of the supervisor's promises.
 
+pub mod case;
 pub mod catalogue;
 pub mod cross_entropy;
 pub mod fault_matrix;

@@ -4,7 +4,7 @@
 //! scales it back. All figures have one width and the same margins, so that time axes line up.
 
 pub mod chart;
-mod log_log;
+pub mod log_log;
 pub mod text;
 pub(crate) mod thin;
 
@@ -22,8 +22,6 @@ use plotters::style::{Color, IntoFont, RGBColor, TextStyle};
 
 use crate::report::plot::text::{escape, number};
 use crate::report::plot::thin::{Band, Interval, PathPoint, one_band_a_column, trail};
-
-pub use crate::report::plot::log_log::{LogLine, LogPanel, log_log};
 
 /// Why a figure could not be drawn.
 #[derive(Debug, thiserror::Error)]

@@ -3,7 +3,8 @@
 use super::Accuracy;
 use crate::cli::error::CommandError;
 use comfy_table::{Cell, Table};
-use firmware_bench::report::plot::{self, LogLine, LogPanel};
+use firmware_bench::report::plot;
+use firmware_bench::report::plot::log_log::{LogLine, LogPanel, log_log};
 use firmware_bench::report::table::{lined, right};
 use firmware_studies::accuracy::{Reference, Row};
 use std::fmt::Write as _;
@@ -104,7 +105,7 @@ fn wrong(found: &Accuracy) -> Table {
 pub(super) fn figure(found: &Accuracy) -> Result<String, CommandError> {
     let confirmed = found.references.iter().filter(|r| r.confirmed);
     let panels: Vec<_> = confirmed.map(|r| panel(found, r)).collect();
-    plot::log_log(("error / clearance", "time / s"), &panels)
+    log_log(("error / clearance", "time / s"), &panels)
         .map_err(|e| CommandError::other("drawing accuracy.svg", e))
 }
 

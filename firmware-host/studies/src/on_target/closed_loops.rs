@@ -1,7 +1,7 @@
 //! Closed loops of the catalogue, recorded.
 
 use super::numbers::Number;
-use super::record::{Piece, Tape};
+use super::tape::{Piece, Tape};
 use crate::overloads::catalogue::cases;
 use crate::overloads::found::kept;
 use crate::overloads::plan::CatalogueError;

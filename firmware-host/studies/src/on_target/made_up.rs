@@ -5,7 +5,7 @@
 //! down to zero, while the bearing is switched, axes fail and ticks are lost.
 
 use super::numbers::Number;
-use super::record::{Piece, Tape};
+use super::tape::{Piece, Tape};
 use crate::overloads::plan::CatalogueError;
 use crate::overloads::plants::{RATES_HZ, plants};
 use rand_chacha::ChaCha8Rng;

@@ -1,6 +1,6 @@
 //! The numbers that a supervisor under test calculates in, and recorders of its ticks.
 
-use super::record::{Recording, Tape, Tick};
+use super::tape::{Recording, Tape, Tick};
 use firmware_bench::run::controller::Supervise;
 use firmware_image::under_test::{Fixed, Float, Ticked, UnderTest};
 use firmware_image::wire::core_sample_bits;

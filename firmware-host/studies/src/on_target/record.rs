@@ -4,83 +4,13 @@ use super::closed_loops::closed_loops;
 use super::coverage::Coverage;
 use super::made_up::made_up;
 use super::numbers::Number;
+use super::tape::Piece;
 use crate::overloads::plan::CatalogueError;
-use firmware_bench::run::controller::Supervise;
 use firmware_image::under_test::{Fixed, Float, UnderTest};
 use firmware_image::wire::{
-    COMMAND_BYTES, CommandBits, HEADER_BYTES, Hash, Header, SAMPLE_BYTES, SEGMENT_BYTES,
-    SampleBits, Segment, command_bits, put_command, put_header, put_sample, put_segment,
-    sample_bits, sample_of,
+    HEADER_BYTES, Hash, Header, SEGMENT_BYTES, Segment, put_header, put_segment, sample_of,
 };
-use std::cell::RefCell;
 use std::io::{self, Write};
-use std::rc::Rc;
-use supervisor::{Command, Config, Mode, Sample};
-
-/// What a supervisor was told and what it commanded, as bytes: equal only with every bit of every number.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Tick {
-    sample: [u8; SAMPLE_BYTES],
-    command: [u8; COMMAND_BYTES],
-    /// Mode after it.
-    mode: Mode,
-}
-
-impl Tick {
-    /// From the bits of both.
-    pub fn new(sample: &SampleBits, command: &CommandBits) -> Self {
-        let mut tick = Self {
-            sample: [0; SAMPLE_BYTES],
-            command: [0; COMMAND_BYTES],
-            mode: command.mode,
-        };
-        put_sample(sample, &mut tick.sample);
-        put_command(command, &mut tick.command);
-        tick
-    }
-}
-
-/// A new supervisor and its ticks.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Piece {
-    /// Its configuration.
-    pub config: Config,
-    /// What it was told and what it commanded.
-    pub ticks: Vec<Tick>,
-}
-
-impl Piece {
-    pub(super) fn coverage(&self) -> Coverage {
-        let mut coverage = Coverage::default();
-        let mut before = Mode::Levitated;
-        for tick in &self.ticks {
-            coverage.add(before, tick.mode);
-            before = tick.mode;
-        }
-        coverage
-    }
-}
-
-/// What passes the border of a supervisor, written down.
-pub type Tape = Rc<RefCell<Vec<Tick>>>;
-
-/// A supervisor of floats with its tape.
-#[derive(Debug)]
-pub struct Recording {
-    /// Whoever supervises.
-    pub supervisor: Box<dyn Supervise>,
-    /// What it was told and what it commanded.
-    pub tape: Tape,
-}
-
-impl Supervise for Recording {
-    fn tick(&mut self, sample: &Sample) -> Command {
-        let command = self.supervisor.tick(sample);
-        let tick = Tick::new(&sample_bits(sample), &command_bits(&command));
-        self.tape.borrow_mut().push(tick);
-        command
-    }
-}
 
 /// How a stream is made up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

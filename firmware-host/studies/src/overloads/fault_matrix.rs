@@ -1,6 +1,6 @@
 //! Every fault of sensor and drive in every mode: idle, approach, bounce, whirl, hand-over.
 
-use super::catalogue::Case;
+use super::case::Case;
 use super::plants::PlantCase;
 use super::seats::Seat;
 use super::situations::Situation;

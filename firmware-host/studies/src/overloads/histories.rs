@@ -5,7 +5,7 @@
 //! as the arrest of a whirl takes twice; amplifier and plant are the same as for everybody. After it the
 //! reference's law takes over: by then the impact is decided, and an AMB without feedback falls on its bearing.
 
-use super::catalogue::aimed;
+use super::case::aimed;
 use super::cross_entropy::{Effort, maximise};
 use super::found::kept;
 use super::impact::FIRST_M_S;

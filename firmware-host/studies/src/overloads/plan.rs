@@ -1,6 +1,7 @@
 //! The whole catalogue, planned and run.
 
-use super::catalogue::{Case, cases};
+use super::case::Case;
+use super::catalogue::cases;
 use super::found::{Found, Row, kept};
 use super::plants::{PlantCase, RATES_HZ, plants};
 use super::promises::{Harm, Promise, against_levitation, of_results, of_sweeps};

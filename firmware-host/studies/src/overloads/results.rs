@@ -1,6 +1,6 @@
 //! Runs of the catalogue and what they measured.
 
-use super::catalogue::Case;
+use super::case::Case;
 use super::found::Found;
 use super::seats::{Seat, tries};
 use firmware_bench::run::closed_loop::{Keep, run, run_policy};

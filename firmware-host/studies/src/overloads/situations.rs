@@ -1,7 +1,7 @@
 //! Scenes in which the supervisor is in a known mode at a known instant. When that is differs from plant to plant by
 //! more than a mode lasts, so it is not written down but found, by watching a supervisor to which nothing else happens.
 
-use super::catalogue::{Sizes, aimed, load};
+use super::case::{Sizes, aimed, load};
 use super::takeover::let_whirl;
 use firmware_bench::device::levitation::LevitationParams;
 use firmware_bench::run::closed_loop::{Keep, run};

@@ -1,6 +1,6 @@
 //! The rows of all chapters: as JSON for programs, as tables for the terminal, and how a row is worded.
 
-use super::summary::Summary;
+use super::summary::{Summary, all};
 use super::{Chapter, Claim, Kind, Row};
 use comfy_table::Cell;
 use firmware_bench::report::plot::text::figures;
@@ -48,11 +48,6 @@ pub fn json(chapters: &[Chapter]) -> Rows<'_> {
         })
         .collect();
     Rows { rows }
-}
-
-/// Every row with its chapter.
-pub(super) fn all(chapters: &[Chapter]) -> impl Iterator<Item = (&Chapter, &Row)> {
-    (chapters.iter()).flat_map(|chapter| chapter.rows.iter().map(move |row| (chapter, row)))
 }
 
 /// What the paper has.

@@ -1,8 +1,12 @@
 //! What comes of all rows together: how good the predictions are, what was fitted, what misses.
 
-use super::rows::all;
 use super::{Chapter, Claim, Kind, MISS, Row};
 use firmware_bench::report::plot::text::figures;
+
+/// Every row with its chapter.
+pub(super) fn all(chapters: &[Chapter]) -> impl Iterator<Item = (&Chapter, &Row)> {
+    (chapters.iter()).flat_map(|chapter| chapter.rows.iter().map(move |row| (chapter, row)))
+}
 
 /// The rows, sorted.
 pub(super) struct Summary<'a> {
