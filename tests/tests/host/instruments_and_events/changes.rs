@@ -1,6 +1,6 @@
 //! Parameters that change during a run, and what a verdict says of contact.
 
-use crate::{free_rotor, last, near, ridden, samples};
+use crate::instruments_and_events::{free_rotor, last, near, ridden, samples};
 use firmware_bench::scene::policy_kind::PolicyKind;
 use firmware_bench::scene::{Scene, TimedChange};
 use plant_model::params::{SpinParams, StatorParams};

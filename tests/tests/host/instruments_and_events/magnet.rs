@@ -1,6 +1,6 @@
 //! Cap per axis, slew limit, outages, delay, and the policy `damping`.
 
-use crate::{apart, free_rotor, last, near, ridden, samples};
+use crate::instruments_and_events::{apart, free_rotor, last, near, ridden, samples};
 use firmware_bench::run::closed_loop::{Keep, run_policy};
 use firmware_bench::run::controller::{Policy, Supervise};
 use firmware_bench::scene::policy_kind::PolicyKind;

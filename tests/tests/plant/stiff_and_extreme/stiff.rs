@@ -6,7 +6,7 @@ use plant_model::contact::damping_for_restitution;
 use plant_model::params::*;
 use plant_model::{Mode, V2};
 
-use crate::bench::{
+use crate::stiff_and_extreme::bench::{
     CLEARANCE_M, MASS_KG, METHODS, RADIUS_M, carry, carry_with, free_mass, free_spin, half_angle,
     head_on, near, plant, ring, start,
 };

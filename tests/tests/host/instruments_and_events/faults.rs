@@ -176,11 +176,13 @@ fn every_policy_survives_every_fault() {
         scene.sensor.range_m = Some(5e-4);
         for policy in PolicyKind::ALL {
             let (a, b) = (
-                crate::ridden(&scene, policy).1,
-                crate::ridden(&scene, policy).1,
+                crate::instruments_and_events::ridden(&scene, policy).1,
+                crate::instruments_and_events::ridden(&scene, policy).1,
             );
             assert!(a.rows.iter().zip(&b.rows).all(|(a, b)| a.plant == b.plant));
-            let finite = |r: &crate::TraceRow| r.commanded_n.iter().all(|x| x.is_finite());
+            let finite = |r: &crate::instruments_and_events::TraceRow| {
+                r.commanded_n.iter().all(|x| x.is_finite())
+            };
             assert!(a.rows.iter().all(finite), "{kind:?}, {}", policy.name());
         }
     }
@@ -192,7 +194,7 @@ fn the_spin_that_is_seen_matters() {
     let mut scene = scene("overload_then_release");
     scene.duration_s = 0.04;
     let commands = |scene: &_| -> Vec<V2> {
-        let trace = crate::ridden(scene, PolicyKind::Supervisor).1;
+        let trace = crate::instruments_and_events::ridden(scene, PolicyKind::Supervisor).1;
         trace.rows.iter().map(|r| r.commanded_n).collect()
     };
     let known = commands(&scene);

@@ -6,7 +6,7 @@ use plant_model::params::*;
 use plant_model::{Method, Mode, PlantError, V2};
 use system_tests::plants::{bouncing, bouncing_start, footnote_4};
 
-use crate::bench::{
+use crate::stiff_and_extreme::bench::{
     CLEARANCE_M, MASS_KG, METHODS, RADIUS_M, carry, carry_with, free_mass, free_spin, load, near,
     plant, start,
 };

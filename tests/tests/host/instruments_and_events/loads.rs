@@ -1,6 +1,6 @@
 //! Loads with a course, base motion, and the retainer bearing off the centre.
 
-use crate::{free_rotor, last, near, ridden, samples};
+use crate::instruments_and_events::{free_rotor, last, near, ridden, samples};
 use firmware_bench::run::closed_loop::{Keep, run};
 use firmware_bench::run::verdict::Outcome;
 use firmware_bench::scene::policy_kind::PolicyKind;

@@ -1,0 +1,11 @@
+//! The bench and the command line: scenes, runs, verdicts, advice, errors for people, and the walls of the house.
+
+mod advise;
+mod closed_loop;
+mod docs_examples;
+mod flight_record;
+mod instruments_and_events;
+mod judged;
+mod layering;
+mod run;
+mod verify;

@@ -1,0 +1,19 @@
+//! The studies: what they compute and what they claim.
+
+mod accuracy;
+mod harm;
+mod loop_rates;
+mod overloads;
+mod paper_command;
+mod paper_established;
+mod paper_established_whirl;
+mod paper_laws;
+mod paper_limits;
+mod paper_maps;
+mod paper_onset;
+mod paper_phases;
+mod paper_retainer;
+mod sensitivity;
+mod silently_wrong_runs;
+mod situations;
+mod unseen_machines;

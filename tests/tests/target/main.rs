@@ -1,0 +1,5 @@
+//! The Cortex-M images: sizes, bits, closed loops on emulated processors.
+
+mod figures;
+mod images;
+mod loops;
