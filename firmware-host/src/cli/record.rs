@@ -6,13 +6,14 @@ use firmware_bench::report::table::{lined, right};
 use firmware_bench::run::flight_record::{ANY_UNIT, FlightRecord, Tick, Units, entries};
 use std::fmt::Write;
 use std::path::PathBuf;
+use supervisor::PER_UNIT;
 
 /// Arguments of `record`.
 #[derive(Debug, Clone, clap::Args)]
 pub struct RecordArgs {
     /// The entries as they are in memory, 16 bytes each, oldest first.
     pub file: PathBuf,
-    /// Checksum that the firmware gave with the record, e.g. 0x1d9a40c2.
+    /// Checksum that the firmware gave with the record, e.g. 0x1d9a40c2; eight hexadecimal digits may stand without 0x.
     #[arg(long, allow_negative_numbers = true, value_name = "NUMBER")]
     pub crc: Option<String>,
     /// Clearance of the retainer bearing: positions in µm.
@@ -38,7 +39,7 @@ pub struct RecordArgs {
 /// [`CommandError`].
 pub fn execute(args: &RecordArgs) -> Result<(), CommandError> {
     let units = units(args)?;
-    let expected = args.crc.as_deref().map(checksum).transpose()?;
+    let expected = args.crc.as_deref().map(checksums).transpose()?;
     let name = args.file.display();
     let bytes = std::fs::read(&args.file).map_err(|e| CommandError::Numbers {
         message: format!("{name}: {e}"),
@@ -59,13 +60,18 @@ pub fn execute(args: &RecordArgs) -> Result<(), CommandError> {
                 .to_owned(),
         });
     }
-    if let Some(expected) = expected
-        && expected != record.crc
+    if let Some(expected) = &expected
+        && !expected.contains(&record.crc)
     {
         return Err(CommandError::Numbers {
             message: format!(
-                "{name}: the checksum is {:#010x}, and not {expected:#010x}",
-                record.crc
+                "{name}: the checksum is {:#010x}, and not {}",
+                record.crc,
+                expected
+                    .iter()
+                    .map(|crc| format!("{crc:#010x}"))
+                    .collect::<Vec<_>>()
+                    .join(" or ")
             ),
             help:
                 "the file is damaged, or its entries are not in the order from oldest to newest; \
@@ -97,15 +103,26 @@ fn units(args: &RecordArgs) -> Result<Units, CommandError> {
     })
 }
 
-fn checksum(text: &str) -> Result<u32, CommandError> {
-    let number = match text.strip_prefix("0x").or(text.strip_prefix("0X")) {
-        Some(digits) => u32::from_str_radix(digits, 16),
-        None => text.parse(),
+/// What a text may mean: eight digits are those of a debugger's hexadecimal as well as a decimal number.
+fn checksums(text: &str) -> Result<Vec<u32>, CommandError> {
+    let hexadecimal = |digits: &str| u32::from_str_radix(digits, 16).ok();
+    let numbers: Vec<u32> = match text.strip_prefix("0x").or(text.strip_prefix("0X")) {
+        Some(digits) => hexadecimal(digits).into_iter().collect(),
+        None => {
+            let bare = Some(text)
+                .filter(|text| text.len() == 8)
+                .and_then(hexadecimal);
+            text.parse().ok().into_iter().chain(bare).collect()
+        }
     };
-    number.map_err(|_| CommandError::Numbers {
-        message: format!("--crc is {text}, expected a number of 32 bits"),
-        help: "give it as 0x and eight digits, or in decimal".to_owned(),
-    })
+    if numbers.is_empty() {
+        return Err(CommandError::Numbers {
+            message: format!("--crc is {text}, expected a number of 32 bits"),
+            help: "give it as eight hexadecimal digits, with or without 0x, or in decimal"
+                .to_owned(),
+        });
+    }
+    Ok(numbers)
 }
 
 fn csv(record: &FlightRecord) -> String {
@@ -144,17 +161,18 @@ fn time(ticks: i64, units: Units) -> String {
     }
 }
 
+/// Digits behind the point of what is recorded in steps of this unit's 1/[`PER_UNIT`]: none that is finer than a step.
+fn digits(unit: f64) -> usize {
+    (f64::from(PER_UNIT) / unit).log10().floor().max(0.0) as usize
+}
+
 fn text(record: &FlightRecord, units: Units, compared: bool) -> String {
     let (time_unit, length, force) = (
         units.sample_rate_hz.map_or("ticks", |_| "ms"),
-        units
-            .clearance_m
-            .map_or(("c", 1.0, 3), |c| ("µm", 1e6 * c, 1)),
-        units
-            .force_max_n
-            .map_or(("caps", 1.0, 3), |cap| ("N", cap, 1)),
+        units.clearance_m.map_or(("c", 1.0), |c| ("µm", 1e6 * c)),
+        units.force_max_n.map_or(("caps", 1.0), |cap| ("N", cap)),
     );
-    let scaled = |x: f64, (_, unit, digits): (&str, f64, usize)| format!("{:.*}", digits, x * unit);
+    let scaled = |x: f64, (_, unit): (&str, f64)| format!("{:.*}", digits(unit), x * unit);
     let mut out = format!(
         "{} ticks; checksum {:#010x}{}\n",
         record.ticks.len(),

@@ -18,3 +18,33 @@ fn the_scene_with_everything_runs() {
         }
     }
 }
+
+/// What the pages to start with tell a reader to type works, in the order of each page.
+#[test]
+fn the_commands_to_start_with_run() {
+    let mut run = 0;
+    for entry in std::fs::read_dir(root().join("docs/src/start")).unwrap() {
+        let page = std::fs::read_to_string(entry.unwrap().path()).unwrap();
+        // As in the project's folder, but that results go elsewhere.
+        let folder = tempfile::TempDir::new().unwrap();
+        std::os::unix::fs::symlink(
+            root().join("firmware-host"),
+            folder.path().join("firmware-host"),
+        )
+        .unwrap();
+        for line in page.lines() {
+            let Some(args) = line.trim().strip_prefix("cargo run --release -- ") else {
+                continue;
+            };
+            let output = (system_tests::host().args(args.split(' ')))
+                .current_dir(folder.path())
+                .output()
+                .unwrap();
+            let said = String::from_utf8_lossy(&output.stderr);
+            assert!(output.status.success(), "{args}: {said}");
+            assert!(!output.stdout.is_empty(), "{args}");
+            run += 1;
+        }
+    }
+    assert!(run >= 7, "{run} commands");
+}

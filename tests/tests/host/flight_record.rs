@@ -154,6 +154,53 @@ fn what_is_no_record_is_refused() {
     assert_eq!(output.status.code(), Some(2));
 }
 
+/// A checksum as a debugger shows it is understood, and eight decimal digits are not taken for another one.
+#[test]
+fn a_checksum_may_come_without_0x() {
+    let folder = TempDir::new().unwrap();
+    let file = folder.path().join("record.bin");
+    // Until one has a letter, which no decimal number has.
+    let (bytes, crc, _) = (0..)
+        .map(landing)
+        .find(|(_, crc, _)| format!("{crc:08x}").contains(|c: char| c.is_ascii_alphabetic()))
+        .unwrap();
+    fs::write(&file, bytes).unwrap();
+    for text in [
+        format!("{crc:08x}"),
+        format!("{crc:08X}"),
+        format!("{crc:#x}"),
+        crc.to_string(),
+    ] {
+        assert!(show(&file, &["--crc", &text]).status.success(), "{text}");
+    }
+    for text in [
+        format!("{:08x}", crc ^ 1),
+        format!("{crc:x}0"),
+        "12345678".to_owned(),
+    ] {
+        let output = show(&file, &["--crc", &text]);
+        assert_eq!(output.status.code(), Some(2), "{text}");
+    }
+}
+
+/// Entries have steps of 1/4096: no digit is shown that is finer, so a force at the cap is not shown above it.
+#[test]
+fn no_digit_is_finer_than_what_is_recorded() {
+    let folder = TempDir::new().unwrap();
+    let file = folder.path().join("record.bin");
+    let at_cap = Entry {
+        sequence: 1,
+        force: [2896, 2897],
+        ..Entry::default()
+    };
+    fs::write(&file, at_cap.to_bytes()).unwrap();
+    for (cap, shown) in [("1000", " 1000 "), ("40", " 40.00 "), ("0.5", " 0.500 ")] {
+        let output = show(&file, &["--force-max-n", cap]);
+        let said = String::from_utf8_lossy(&output.stdout).into_owned();
+        assert!(said.contains(shown), "{said}");
+    }
+}
+
 /// A ring that was written down as it lies in memory, from the other end, twice or in part is told without a checksum, too.
 #[test]
 fn what_is_not_the_record_from_oldest_to_newest_is_told() {
