@@ -2,7 +2,7 @@
 
 mod devices;
 pub mod diagnostic;
-pub mod event_file;
+mod event_file;
 mod events;
 pub mod file;
 mod limits;
@@ -12,7 +12,7 @@ mod plant;
 pub mod policy_kind;
 mod required_keys;
 pub mod suggest;
-pub mod values;
+mod values;
 
 use crate::device::levitation::LevitationParams;
 use crate::device::loads;

@@ -21,26 +21,56 @@ fn listed(lib: &str) -> Vec<String> {
         .collect()
 }
 
-/// Top-level modules that a file's code refers to by `crate::`. (By `super` no file leaves the module that it is checked as.)
-fn imports(text: &str) -> BTreeSet<String> {
-    let code = text.split("#[cfg(test)]").next().unwrap_or(text);
-    let mut found = BTreeSet::new();
-    for line in code.lines().filter(|l| !l.trim_start().starts_with("//")) {
-        for part in line.split("crate::").skip(1) {
-            if let Some(group) = part.strip_prefix('{') {
-                let group = group.split('}').next().unwrap_or(group);
-                for name in group.split(',') {
-                    found.insert(name.split("::").next().unwrap_or("").trim().to_owned());
+/// Paths below `crate` that a file's code refers to, as lists of names.
+fn paths(text: &str, here: &[String]) -> Vec<Vec<String>> {
+    let code = text.split("#[cfg(test)]\nmod tests").next().unwrap_or(text);
+    let code: String = (code.lines())
+        .filter(|l| !l.trim_start().starts_with("//"))
+        .map(|l| format!("{l}\n"))
+        .collect();
+    let name = |part: &str| -> String {
+        part.chars()
+            .take_while(|c| c.is_alphanumeric() || *c == '_')
+            .collect()
+    };
+    let mut found = Vec::new();
+    let parent = &here[..here.len() - 1];
+    for (word, from) in [("crate::", &[][..]), ("super::", parent)] {
+        for (at, _) in code.match_indices(word) {
+            // A part of a longer path, as `super::super::`, is found with its beginning.
+            if code[..at].ends_with([':', '_']) {
+                continue;
+            }
+            let mut path = from.to_vec();
+            let mut rest = &code[at + word.len()..];
+            loop {
+                if let Some(deeper) = rest.strip_prefix("super::") {
+                    path.pop();
+                    rest = deeper;
+                    continue;
                 }
-            } else {
-                let name = part
-                    .split(|c: char| !(c.is_alphanumeric() || c == '_'))
-                    .next();
-                found.insert(name.unwrap_or("").to_owned());
+                if let Some(group) = rest.strip_prefix('{') {
+                    let group = group.split('}').next().unwrap_or(group);
+                    for item in group.split(',') {
+                        let mut each = path.clone();
+                        each.push(name(item.trim_start()));
+                        found.push(each);
+                    }
+                    break;
+                }
+                let part = name(rest);
+                rest = &rest[part.len()..];
+                path.push(part);
+                match rest.strip_prefix("::") {
+                    Some(deeper) => rest = deeper,
+                    None => {
+                        found.push(path);
+                        break;
+                    }
+                }
             }
         }
     }
-    found.remove("");
     found
 }
 
@@ -58,6 +88,13 @@ fn files_below(folder: &Path) -> Vec<PathBuf> {
     files
 }
 
+/// A file's module, as a list of names.
+fn module_path(path: &Path, src: &Path) -> Vec<String> {
+    let below = path.strip_prefix(src).unwrap().with_extension("");
+    let names = below.iter().map(|part| part.to_str().unwrap().to_owned());
+    names.collect()
+}
+
 fn check(krate: &str) {
     let src = system_tests::root().join(krate).join("src");
     let lib = std::fs::read_to_string(src.join("lib.rs")).unwrap();
@@ -65,12 +102,15 @@ fn check(krate: &str) {
     let rank = |name: &str| order.iter().position(|n| n == name);
     let mut checked = 0;
     let mut visit = |path: &Path| {
-        let module = path.strip_prefix(&src).unwrap().iter().next().unwrap();
-        let module = Path::new(module).file_stem().unwrap().to_str().unwrap();
+        let module = module_path(path, &src);
         let text = std::fs::read_to_string(path).unwrap();
-        let here = rank(module)
+        let here = rank(&module[0])
             .unwrap_or_else(|| panic!("{} is not listed in {krate}/src/lib.rs", path.display()));
-        for name in imports(&text) {
+        let imports: BTreeSet<String> = (paths(&text, &module).into_iter())
+            .filter_map(|path| path.into_iter().next())
+            .filter(|name| !name.is_empty())
+            .collect();
+        for name in imports {
             // Items re-exported at the root of the crate (types, aliases) start with a capital.
             if name.starts_with(char::is_uppercase) {
                 continue;
@@ -106,71 +146,13 @@ fn files_import_only_upwards() {
     check("firmware-host/studies");
 }
 
-/// Paths below `crate` that a file's code refers to, as lists of names.
-fn paths(text: &str, here: &[String]) -> Vec<Vec<String>> {
-    let code = text.split("#[cfg(test)]\nmod tests").next().unwrap_or(text);
-    let code: String = (code.lines())
-        .filter(|l| !l.trim_start().starts_with("//"))
-        .map(|l| format!("{l}\n"))
-        .collect();
-    let name = |part: &str| -> String {
-        part.chars()
-            .take_while(|c| c.is_alphanumeric() || *c == '_')
-            .collect()
-    };
-    let mut found = Vec::new();
-    for (word, up) in [("crate::", None), ("super::", Some(1))] {
-        for (at, _) in code.match_indices(word) {
-            // A part of a longer path, as `super::super::`, is found with its beginning.
-            if code[..at].ends_with([':', '_']) {
-                continue;
-            }
-            let mut path: Vec<String> = match up {
-                None => Vec::new(),
-                Some(up) => here[..here.len().saturating_sub(up)].to_vec(),
-            };
-            let mut rest = &code[at + word.len()..];
-            loop {
-                if let Some(deeper) = rest.strip_prefix("super::") {
-                    path.pop();
-                    rest = deeper;
-                    continue;
-                }
-                if let Some(group) = rest.strip_prefix('{') {
-                    let group = group.split('}').next().unwrap_or(group);
-                    for item in group.split(',') {
-                        let mut each = path.clone();
-                        each.push(name(item.trim_start()));
-                        found.push(each);
-                    }
-                    break;
-                }
-                let part = name(rest);
-                rest = &rest[part.len()..];
-                path.push(part);
-                match rest.strip_prefix("::") {
-                    Some(deeper) => rest = deeper,
-                    None => {
-                        found.push(path);
-                        break;
-                    }
-                }
-            }
-        }
-    }
-    found
-}
-
 /// Neighbours in a folder that import each other, directly or through others: one circle, if there is any. A folder
 /// counts as one with all that is in it, and with the file that has its name.
 fn circle(krate: &str) -> Option<Vec<String>> {
     let src = system_tests::root().join(krate).join("src");
     let mut modules: Vec<(Vec<String>, String)> = Vec::new();
     for path in files_below(&src) {
-        let here = path.strip_prefix(&src).unwrap().with_extension("");
-        let here: Vec<String> = (here.iter())
-            .map(|part| part.to_str().unwrap().to_owned())
-            .collect();
+        let here = module_path(&path, &src);
         if here != ["lib"] && here != ["main"] {
             modules.push((here, std::fs::read_to_string(&path).unwrap()));
         }
@@ -246,7 +228,10 @@ fn crates_keep_their_distance() {
 #[test]
 fn unsafe_code_stays_at_the_border() {
     let root = system_tests::root();
-    let mut folders: Vec<_> = [
+    let word = "unsafe";
+    let code = ["{", "fn", "extern", "impl"].map(|after| format!("{word} {after}"));
+    let mut read = 0;
+    for folder in [
         "supervisor/src",
         "plant-model",
         "firmware-host/src",
@@ -254,27 +239,16 @@ fn unsafe_code_stays_at_the_border() {
         "firmware-host/studies/src",
         "tests/src",
         "tests/tests",
-    ]
-    .map(|folder| root.join(folder))
-    .to_vec();
-    let word = "unsafe";
-    let code = ["{", "fn", "extern", "impl"].map(|after| format!("{word} {after}"));
-    let mut read = 0;
-    while let Some(folder) = folders.pop() {
-        for entry in std::fs::read_dir(folder).unwrap() {
-            let path = entry.unwrap().path();
-            if path.is_dir() {
-                folders.push(path);
-            } else if path.extension().is_some_and(|e| e == "rs") {
-                let text = std::fs::read_to_string(&path).unwrap();
-                let found = code.iter().any(|c| text.contains(c));
-                assert!(
-                    !found && !text.contains(&format!("{word}(")),
-                    "{}",
-                    path.display()
-                );
-                read += 1;
-            }
+    ] {
+        for path in files_below(&root.join(folder)) {
+            let text = std::fs::read_to_string(&path).unwrap();
+            let found = code.iter().any(|c| text.contains(c));
+            assert!(
+                !found && !text.contains(&format!("{word}(")),
+                "{}",
+                path.display()
+            );
+            read += 1;
         }
     }
     assert!(read > 100, "{read} files");

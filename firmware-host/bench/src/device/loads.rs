@@ -118,7 +118,7 @@ pub struct TimedChange {
 }
 
 /// Mean of all forces from one time to another, between which none begins or ends \[N\].
-pub fn mean_n(
+pub(crate) fn mean_n(
     loads: impl Iterator<Item = Disturbance>,
     constant_n: V2,
     (from_s, to_s): (f64, f64),

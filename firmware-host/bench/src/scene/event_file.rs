@@ -11,7 +11,7 @@ use serde::Deserialize;
 /// Course of a load over its interval.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum ShapeName {
+pub(crate) enum ShapeName {
     #[default]
     Constant,
     HalfSine,
@@ -19,38 +19,38 @@ pub enum ShapeName {
 }
 
 /// Shape, frequency and phase.
-pub type ShapeFile = (ShapeName, Option<f64>, Option<f64>);
+pub(crate) type ShapeFile = (ShapeName, Option<f64>, Option<f64>);
 
 /// A force on the rotor for a while.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table with keys")]
-pub struct DisturbanceFile {
-    pub start_s: f64,
-    pub duration_s: f64,
-    pub force_n: Pair,
+pub(crate) struct DisturbanceFile {
+    pub(crate) start_s: f64,
+    pub(crate) duration_s: f64,
+    pub(crate) force_n: Pair,
     #[serde(default)]
-    pub shape: ShapeName,
-    pub frequency_hz: Option<f64>,
-    pub phase_rad: Option<f64>,
+    pub(crate) shape: ShapeName,
+    pub(crate) frequency_hz: Option<f64>,
+    pub(crate) phase_rad: Option<f64>,
 }
 
 /// Acceleration of the housing for a while.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table with keys")]
-pub struct BaseMotionFile {
-    pub start_s: f64,
-    pub duration_s: f64,
-    pub acceleration_m_s2: Pair,
+pub(crate) struct BaseMotionFile {
+    pub(crate) start_s: f64,
+    pub(crate) duration_s: f64,
+    pub(crate) acceleration_m_s2: Pair,
     #[serde(default)]
-    pub shape: ShapeName,
-    pub frequency_hz: Option<f64>,
-    pub phase_rad: Option<f64>,
+    pub(crate) shape: ShapeName,
+    pub(crate) frequency_hz: Option<f64>,
+    pub(crate) phase_rad: Option<f64>,
 }
 
 /// One axis, or both.
 #[derive(Debug, Clone, Copy, Default, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum AxisFile {
+pub(crate) enum AxisFile {
     X,
     Y,
     #[default]
@@ -60,7 +60,7 @@ pub enum AxisFile {
 /// What a faulty amplifier delivers.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum DeliversFile {
+pub(crate) enum DeliversFile {
     #[default]
     Nothing,
     Inverted,
@@ -70,21 +70,21 @@ pub enum DeliversFile {
 /// A faulty amplifier for a while.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table with keys")]
-pub struct OutageFile {
-    pub start_s: f64,
-    pub duration_s: f64,
+pub(crate) struct OutageFile {
+    pub(crate) start_s: f64,
+    pub(crate) duration_s: f64,
     #[serde(default)]
-    pub delivers: DeliversFile,
+    pub(crate) delivers: DeliversFile,
     #[serde(default)]
-    pub axis: AxisFile,
+    pub(crate) axis: AxisFile,
     #[serde(default)]
-    pub known: bool,
+    pub(crate) known: bool,
 }
 
 /// Kinds of sensor faults.
 #[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum FaultName {
+pub(crate) enum FaultName {
     Nan,
     Infinity,
     Zero,
@@ -105,34 +105,34 @@ pub enum FaultName {
 /// A sensor fault for a while; which of the other keys belong to it depends on the kind.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table with keys")]
-pub struct FaultFile {
-    pub start_s: f64,
-    pub duration_s: f64,
-    pub kind: FaultName,
-    pub axis: Option<AxisFile>,
-    pub value_m: Option<f64>,
-    pub factor: Option<f64>,
-    pub rate_hz: Option<f64>,
-    pub size_m: Option<f64>,
-    pub samples: Option<u32>,
-    pub bits: Option<u32>,
-    pub frequency_hz: Option<f64>,
-    pub amplitude_m: Option<f64>,
+pub(crate) struct FaultFile {
+    pub(crate) start_s: f64,
+    pub(crate) duration_s: f64,
+    pub(crate) kind: FaultName,
+    pub(crate) axis: Option<AxisFile>,
+    pub(crate) value_m: Option<f64>,
+    pub(crate) factor: Option<f64>,
+    pub(crate) rate_hz: Option<f64>,
+    pub(crate) size_m: Option<f64>,
+    pub(crate) samples: Option<u32>,
+    pub(crate) bits: Option<u32>,
+    pub(crate) frequency_hz: Option<f64>,
+    pub(crate) amplitude_m: Option<f64>,
 }
 
 /// Parameters of the plant that take other values from a time on.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table with keys")]
-pub struct ChangeFile {
-    pub at_s: f64,
-    pub eccentricity_m: Option<f64>,
-    pub friction_coefficient: Option<f64>,
-    pub drive_torque_n_m: Option<f64>,
+pub(crate) struct ChangeFile {
+    pub(crate) at_s: f64,
+    pub(crate) eccentricity_m: Option<f64>,
+    pub(crate) friction_coefficient: Option<f64>,
+    pub(crate) drive_torque_n_m: Option<f64>,
 }
 
 impl ChangeFile {
     /// Keys that another change has, too.
-    pub fn keys_of_both(&self, other: &Self) -> impl Iterator<Item = &'static str> {
+    pub(crate) fn keys_of_both(&self, other: &Self) -> impl Iterator<Item = &'static str> {
         let both = |a: Option<f64>, b: Option<f64>| a.is_some() && b.is_some();
         let keys = [
             (

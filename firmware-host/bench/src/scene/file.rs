@@ -16,66 +16,69 @@ use serde::Deserialize;
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table with keys")]
 pub struct SceneFile {
-    pub title: String,
+    pub(crate) title: String,
     #[serde(default)]
-    pub story: String,
+    pub(crate) story: String,
+    /// The table `[run]`.
     pub run: RunFile,
-    pub rotor: RotorFile,
-    pub spin: SpinFile,
+    pub(crate) rotor: RotorFile,
+    pub(crate) spin: SpinFile,
     #[serde(default)]
-    pub start: StartFile,
+    pub(crate) start: StartFile,
     #[serde(default)]
-    pub stator: StatorFile,
-    pub contact: ContactFile,
-    pub friction: FrictionFile,
+    pub(crate) stator: StatorFile,
+    pub(crate) contact: ContactFile,
+    pub(crate) friction: FrictionFile,
     #[serde(default)]
-    pub retainer: RetainerFile,
-    pub race: Option<RaceFile>,
+    pub(crate) retainer: RetainerFile,
+    pub(crate) race: Option<RaceFile>,
+    /// The table `[magnet]`.
     pub magnet: Option<MagnetFile>,
     #[serde(default)]
-    pub sensor: SensorFile,
+    pub(crate) sensor: SensorFile,
     #[serde(default)]
-    pub spin_sensor: SpinSensorFile,
-    pub levitation: Option<LevitationFile>,
+    pub(crate) spin_sensor: SpinSensorFile,
+    pub(crate) levitation: Option<LevitationFile>,
     #[serde(default)]
-    pub radial: RadialFile,
+    pub(crate) radial: RadialFile,
     #[serde(default)]
-    pub damping: DampingFile,
+    pub(crate) damping: DampingFile,
     #[serde(default)]
-    pub supervisor: toml::Table,
+    pub(crate) supervisor: toml::Table,
     #[serde(default)]
-    pub disturbance: Vec<DisturbanceFile>,
+    pub(crate) disturbance: Vec<DisturbanceFile>,
     #[serde(default)]
-    pub base_motion: Vec<BaseMotionFile>,
+    pub(crate) base_motion: Vec<BaseMotionFile>,
     #[serde(default)]
-    pub outage: Vec<OutageFile>,
+    pub(crate) outage: Vec<OutageFile>,
     #[serde(default)]
-    pub fault: Vec<FaultFile>,
+    pub(crate) fault: Vec<FaultFile>,
     #[serde(default)]
-    pub change: Vec<ChangeFile>,
+    pub(crate) change: Vec<ChangeFile>,
     #[serde(default)]
-    pub verdict: VerdictFile,
+    pub(crate) verdict: VerdictFile,
 }
 
 /// Time, accuracy, policies.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table with keys")]
 pub struct RunFile {
-    pub duration_s: f64,
+    pub(crate) duration_s: f64,
+    /// Control rate.
     pub sample_rate_hz: f64,
-    pub policies: Vec<String>,
+    pub(crate) policies: Vec<String>,
     #[serde(default = "default_rtol")]
-    pub rtol: f64,
+    pub(crate) rtol: f64,
     #[serde(default)]
-    pub method: MethodFile,
+    pub(crate) method: MethodFile,
     #[serde(default)]
-    pub seed: u64,
+    pub(crate) seed: u64,
 }
 
 /// How contact is integrated.
 #[derive(Debug, Clone, Copy, Default, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum MethodFile {
+pub(crate) enum MethodFile {
     #[default]
     Auto,
     Series,
@@ -90,119 +93,120 @@ fn default_rtol() -> f64 {
 /// The rotor; stiffness and damping directly or as frequency and damping ratio.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table with keys")]
-pub struct RotorFile {
-    pub mass_kg: f64,
-    pub stiffness_n_m: Option<f64>,
-    pub natural_frequency_hz: Option<f64>,
-    pub damping_n_s_m: Option<f64>,
-    pub damping_ratio: Option<f64>,
+pub(crate) struct RotorFile {
+    pub(crate) mass_kg: f64,
+    pub(crate) stiffness_n_m: Option<f64>,
+    pub(crate) natural_frequency_hz: Option<f64>,
+    pub(crate) damping_n_s_m: Option<f64>,
+    pub(crate) damping_ratio: Option<f64>,
     #[serde(default)]
-    pub eccentricity_m: f64,
-    pub contact_radius_m: f64,
+    pub(crate) eccentricity_m: f64,
+    pub(crate) contact_radius_m: f64,
     #[serde(default)]
-    pub gravity_m_s2: Pair,
+    pub(crate) gravity_m_s2: Pair,
 }
 
 /// Spin: held unless an inertia is given.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table with keys")]
-pub struct SpinFile {
-    pub frequency_hz: f64,
-    pub inertia_kg_m2: Option<f64>,
-    pub drive_torque_n_m: Option<f64>,
+pub(crate) struct SpinFile {
+    pub(crate) frequency_hz: f64,
+    pub(crate) inertia_kg_m2: Option<f64>,
+    pub(crate) drive_torque_n_m: Option<f64>,
 }
 
 /// Where the rotor starts.
 #[derive(Debug, Clone, Default, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table with keys")]
-pub struct StartFile {
+pub(crate) struct StartFile {
     #[serde(default)]
-    pub position_m: Pair,
+    pub(crate) position_m: Pair,
     #[serde(default)]
-    pub velocity_m_s: Pair,
+    pub(crate) velocity_m_s: Pair,
     #[serde(default)]
-    pub spin_phase_rad: f64,
+    pub(crate) spin_phase_rad: f64,
 }
 
 /// Rings of the stator; none means rigid.
 #[derive(Debug, Clone, Default, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table with keys")]
-pub struct StatorFile {
-    pub inner: Option<RingFile>,
-    pub outer: Option<RingFile>,
+pub(crate) struct StatorFile {
+    pub(crate) inner: Option<RingFile>,
+    pub(crate) outer: Option<RingFile>,
 }
 
 /// One ring with its mounting.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table with keys")]
-pub struct RingFile {
-    pub mass_kg: f64,
-    pub stiffness_n_m: PerAxis,
-    pub damping_n_s_m: PerAxis,
+pub(crate) struct RingFile {
+    pub(crate) mass_kg: f64,
+    pub(crate) stiffness_n_m: PerAxis,
+    pub(crate) damping_n_s_m: PerAxis,
 }
 
 /// The contact, linear or with a stiffness that grows with depth; damping directly or as restitution.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table with keys")]
-pub struct ContactFile {
-    pub clearance_m: f64,
-    pub stiffness_n_m: Option<f64>,
-    pub damping_n_s_m: Option<f64>,
-    pub stiffness_n_mn: Option<f64>,
-    pub exponent: Option<f64>,
-    pub damping_s_m: Option<f64>,
-    pub restitution: Option<f64>,
-    pub restitution_speed_m_s: Option<f64>,
+pub(crate) struct ContactFile {
+    pub(crate) clearance_m: f64,
+    pub(crate) stiffness_n_m: Option<f64>,
+    pub(crate) damping_n_s_m: Option<f64>,
+    pub(crate) stiffness_n_mn: Option<f64>,
+    pub(crate) exponent: Option<f64>,
+    pub(crate) damping_s_m: Option<f64>,
+    pub(crate) restitution: Option<f64>,
+    pub(crate) restitution_speed_m_s: Option<f64>,
 }
 
 /// Friction; constant unless the coefficient at speed is given.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table with keys")]
-pub struct FrictionFile {
-    pub coefficient: f64,
-    pub coefficient_at_speed: Option<f64>,
-    pub speed_scale_m_s: Option<f64>,
+pub(crate) struct FrictionFile {
+    pub(crate) coefficient: f64,
+    pub(crate) coefficient_at_speed: Option<f64>,
+    pub(crate) speed_scale_m_s: Option<f64>,
     #[serde(default)]
-    pub rolling_coefficient: f64,
+    pub(crate) rolling_coefficient: f64,
 }
 
 /// The retainer bearing.
 #[derive(Debug, Clone, Default, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table with keys")]
-pub struct RetainerFile {
+pub(crate) struct RetainerFile {
     #[serde(default)]
-    pub centre_offset_m: Pair,
+    pub(crate) centre_offset_m: Pair,
     #[serde(default)]
-    pub ellipticity: f64,
-    pub long_axis_deg: Option<f64>,
+    pub(crate) ellipticity: f64,
+    pub(crate) long_axis_deg: Option<f64>,
 }
 
 /// The inner race of a retainer ball bearing; none means a bushing.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table with keys")]
-pub struct RaceFile {
-    pub inertia_kg_m2: f64,
+pub(crate) struct RaceFile {
+    pub(crate) inertia_kg_m2: f64,
     #[serde(default)]
-    pub drag_n_m_s: f64,
+    pub(crate) drag_n_m_s: f64,
     #[serde(default)]
-    pub start_frequency_hz: f64,
+    pub(crate) start_frequency_hz: f64,
 }
 
 /// The magnet.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table with keys")]
 pub struct MagnetFile {
+    /// Cap of the force.
     pub force_max_n: f64,
     #[serde(default)]
-    pub lag_s: f64,
+    pub(crate) lag_s: f64,
     #[serde(default)]
-    pub negative_stiffness_n_m: f64,
-    pub axis_force_max_n: Option<f64>,
-    pub slew_n_s: Option<f64>,
+    pub(crate) negative_stiffness_n_m: f64,
+    pub(crate) axis_force_max_n: Option<f64>,
+    pub(crate) slew_n_s: Option<f64>,
     #[serde(default = "default_delay")]
-    pub delay_samples: u32,
+    pub(crate) delay_samples: u32,
     #[serde(default)]
-    pub force_measured: bool,
+    pub(crate) force_measured: bool,
 }
 
 fn default_delay() -> u32 {
@@ -212,31 +216,31 @@ fn default_delay() -> u32 {
 /// The position sensor.
 #[derive(Debug, Clone, Default, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table with keys")]
-pub struct SensorFile {
+pub(crate) struct SensorFile {
     #[serde(default)]
-    pub quantum_m: f64,
+    pub(crate) quantum_m: f64,
     #[serde(default)]
-    pub noise_rms_m: f64,
+    pub(crate) noise_rms_m: f64,
     #[serde(default)]
-    pub offset_m: Pair,
-    pub gain: Option<PerAxis>,
+    pub(crate) offset_m: Pair,
+    pub(crate) gain: Option<PerAxis>,
     #[serde(default)]
-    pub delay_samples: u32,
+    pub(crate) delay_samples: u32,
     #[serde(default)]
-    pub swapped: bool,
-    pub range_m: Option<f64>,
+    pub(crate) swapped: bool,
+    pub(crate) range_m: Option<f64>,
 }
 
 /// What is known of the spin.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table with keys")]
-pub struct SpinSensorFile {
+pub(crate) struct SpinSensorFile {
     #[serde(default = "default_valid")]
-    pub valid: bool,
+    pub(crate) valid: bool,
     #[serde(default)]
-    pub reversed: bool,
+    pub(crate) reversed: bool,
     #[serde(default = "default_gain")]
-    pub gain: f64,
+    pub(crate) gain: f64,
 }
 
 fn default_gain() -> f64 {
@@ -260,23 +264,23 @@ impl Default for SpinSensorFile {
 /// The stand-in firmware's levitation controller.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table with keys")]
-pub struct LevitationFile {
-    pub proportional_n_m: f64,
+pub(crate) struct LevitationFile {
+    pub(crate) proportional_n_m: f64,
     #[serde(default)]
-    pub integral_n_m_s: f64,
-    pub derivative_n_s_m: f64,
+    pub(crate) integral_n_m_s: f64,
+    pub(crate) derivative_n_s_m: f64,
     #[serde(default)]
-    pub derivative_filter_s: f64,
+    pub(crate) derivative_filter_s: f64,
     #[serde(default)]
-    pub feed_forward_weight: bool,
+    pub(crate) feed_forward_weight: bool,
 }
 
 /// The whole-capacity-inwards baseline.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table with keys")]
-pub struct RadialFile {
+pub(crate) struct RadialFile {
     #[serde(default = "default_band")]
-    pub band: f64,
+    pub(crate) band: f64,
 }
 
 fn default_band() -> f64 {
@@ -294,13 +298,13 @@ impl Default for RadialFile {
 /// The pure-damping baseline.
 #[derive(Debug, Clone, Default, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table with keys")]
-pub struct DampingFile {
-    pub coefficient_n_s_m: Option<f64>,
+pub(crate) struct DampingFile {
+    pub(crate) coefficient_n_s_m: Option<f64>,
 }
 
 /// How the end is judged.
 #[derive(Debug, Clone, Default, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table with keys")]
-pub struct VerdictFile {
-    pub whirl_speed_m_s: Option<f64>,
+pub(crate) struct VerdictFile {
+    pub(crate) whirl_speed_m_s: Option<f64>,
 }

@@ -7,7 +7,7 @@ use plant_model::params::PlantParams;
 use supervisor::{Config, ConfigError, PARAMETERS};
 
 /// What a data sheet would say of the scene's bearing.
-pub fn nominal_of(plant: &PlantParams, file: &SceneFile) -> Nominal {
+pub(crate) fn nominal_of(plant: &PlantParams, file: &SceneFile) -> Nominal {
     let magnet = file.magnet.as_ref();
     let [g_x, g_y] = file.rotor.gravity_m_s2.0;
     let [offset_x, offset_y] = file.retainer.centre_offset_m.0;
@@ -49,7 +49,7 @@ pub struct NominalKeys {
 
 impl NominalKeys {
     /// The keys that a file's nominal data come from.
-    pub fn new(nominal: &Nominal, file: &SceneFile) -> Self {
+    pub(crate) fn new(nominal: &Nominal, file: &SceneFile) -> Self {
         let (rotor, contact) = (&file.rotor, &file.contact);
         Self {
             stiffness: match (&file.magnet, rotor.natural_frequency_hz) {
@@ -97,7 +97,7 @@ impl NominalKeys {
 pub type Override = (usize, f32);
 
 /// The names and values of overrides.
-pub fn named(overrides: &[Override]) -> impl Iterator<Item = (&'static str, f32)> {
+pub(crate) fn named(overrides: &[Override]) -> impl Iterator<Item = (&'static str, f32)> {
     (overrides.iter()).map(|(index, value)| (PARAMETERS[*index].name, *value))
 }
 

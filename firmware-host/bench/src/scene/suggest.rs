@@ -12,16 +12,16 @@ use supervisor::Config;
 pub const SUPERVISED_RATES_HZ: std::ops::RangeInclusive<f64> = 1e4..=5e4;
 
 /// Suggested poles of the observer have a noise of the speed of at most this share of √(F·c/m), …
-pub const POLE_AIM: f64 = 0.04;
+pub(crate) const POLE_AIM: f64 = 0.04;
 /// … and are the quickest that have it, from these upwards, in flight and in contact, …
-pub const QUICKEST_POLES: [f64; 2] = [0.5, 0.2];
+pub(crate) const QUICKEST_POLES: [f64; 2] = [0.5, 0.2];
 /// … to this one.
-pub const SLOWEST_POLE: f64 = 0.97;
+pub(crate) const SLOWEST_POLE: f64 = 0.97;
 
 /// The suggested limit of positions lies at this share of the sensor's range, clear of the rail by more than its noise, …
-pub const RAIL_SHARE: f64 = 0.95;
+pub(crate) const RAIL_SHARE: f64 = 0.95;
 /// … but never below this \[clearances\]: the rotor presses the wall.
-pub const LEAST_LIMIT: f64 = 1.1;
+pub(crate) const LEAST_LIMIT: f64 = 1.1;
 
 /// Nominal data of one bearing plane, SI units.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]

@@ -6,7 +6,7 @@ use serde::Deserialize;
 /// Two numbers [x, y]; fewer or more are refused.
 #[derive(Debug, Clone, Copy, Default, Deserialize)]
 #[serde(try_from = "Vec<f64>")]
-pub struct Pair(pub(crate) [f64; 2]);
+pub(crate) struct Pair(pub(crate) [f64; 2]);
 
 impl TryFrom<Vec<f64>> for Pair {
     type Error = String;
@@ -22,7 +22,7 @@ impl TryFrom<Vec<f64>> for Pair {
 /// One number for both axes, or one for each.
 #[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(untagged, expecting = "a number, or two numbers [x, y]")]
-pub enum PerAxis {
+pub(crate) enum PerAxis {
     /// One number for both axes.
     Both(f64),
     /// One for x, one for y.
@@ -31,7 +31,7 @@ pub enum PerAxis {
 
 impl PerAxis {
     /// As a vector of both axes.
-    pub fn vector(self) -> V2 {
+    pub(crate) fn vector(self) -> V2 {
         match self {
             Self::Both(x) => V2::repeat(x),
             Self::Each(xy) => xy.0.into(),
