@@ -2,6 +2,7 @@
 
 pub mod accuracy;
 pub mod advise;
+mod chapters;
 pub mod error;
 pub mod harm;
 pub mod output;
@@ -11,6 +12,7 @@ mod progress;
 pub mod record;
 pub mod run;
 pub mod sensitivity;
+pub mod study;
 pub mod target;
 
 use crate::cli::error::say;

@@ -2,7 +2,7 @@
 
 use clap::{Parser, Subcommand};
 use firmware_host::cli::{
-    accuracy, advise, error, harm, overloads, paper, record, run, sensitivity, target,
+    accuracy, advise, error, harm, overloads, paper, record, run, sensitivity, study, target,
 };
 use std::process::ExitCode;
 
@@ -32,6 +32,8 @@ enum Command {
     Paper(paper::PaperArgs),
     /// Show what happened in a flight record that a supervisor has frozen on its machine.
     Record(record::RecordArgs),
+    /// Run one of the studies and hold its claims against what was measured; `study list` names them.
+    Study(study::StudyArgs),
     /// Run the supervisor on emulated processors: bit for bit, instructions, sizes, closed loops.
     Target(target::TargetArgs),
 }
@@ -47,6 +49,7 @@ fn main() -> ExitCode {
         Command::Sensitivity(args) => sensitivity::execute(args),
         Command::Paper(args) => paper::execute(args),
         Command::Record(args) => record::execute(args),
+        Command::Study(args) => study::execute(args),
         Command::Target(args) => target::execute(args),
     };
     match result {

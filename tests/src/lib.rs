@@ -9,7 +9,6 @@ pub mod recording;
 pub mod rig;
 pub mod storm;
 pub mod target;
-pub mod unseen;
 
 use firmware_bench::scene::Scene;
 use std::path::{Path, PathBuf};

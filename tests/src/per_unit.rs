@@ -4,10 +4,10 @@
 use crate::recording::recording;
 use firmware_bench::run::closed_loop::{Keep, run_policy};
 use firmware_bench::run::controller::{Policy, Supervise};
+use firmware_studies::machines::plants::{PlantCase, plants};
+use firmware_studies::machines::tuned_gains::stored;
 use firmware_studies::overloads::case::Case;
 use firmware_studies::overloads::catalogue::cases;
-use firmware_studies::overloads::found::kept;
-use firmware_studies::overloads::plants::{PlantCase, plants};
 use supervisor::{
     Command, Config, Core, CoreCommand, CoreError, CoreSample, Prepared, Sample, Scalar, Scaling,
 };
@@ -88,7 +88,7 @@ pub fn record(
 ) -> Vec<Stream> {
     let mut streams = Vec::new();
     for plant in plants(rate_hz).unwrap_or_else(|e| panic!("{e}")) {
-        let tuned = kept(&plant.name, rate_hz).expect("kept for all").tuned;
+        let tuned = stored(&plant.name, rate_hz).expect("kept for all").tuned;
         for mut case in cases(&plant, tuned) {
             if !wanted(&plant, &case) {
                 continue;

@@ -41,6 +41,10 @@ pub enum CommandError {
         "results were printed; docs/src/supervisor/targets.md says when a budget may be raised"
     ))]
     Targets(Vec<String>),
+    /// Claims of a study that do not hold.
+    #[error("{}", .0.join("\n"))]
+    #[diagnostic(help("results were printed; without --strict this is no error"))]
+    Claims(Vec<String>),
     /// Numbers on the command line, or what a scene lacks for this command.
     #[error("{message}")]
     #[diagnostic(help("{help}"))]
@@ -102,6 +106,7 @@ impl CommandError {
             | Self::Contradicted(_)
             | Self::Target(_)
             | Self::Targets(_)
+            | Self::Claims(_)
             | Self::Other { .. } => 1,
         }
     }

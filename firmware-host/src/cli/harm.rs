@@ -2,10 +2,11 @@
 
 use crate::cli::error::{CommandError, pretty, print};
 use crate::cli::progress::{LateProgress, Threads};
+use firmware_studies::campaign::{Block, markdown_block};
 use firmware_studies::harm::conditions::Condition;
 use firmware_studies::harm::events::Event;
 use firmware_studies::harm::page::{lists, rows, table};
-use firmware_studies::harm::study::Plan;
+use firmware_studies::harm::plan::Plan;
 
 /// Arguments of `harm`.
 #[derive(Debug, Clone, clap::Args)]
@@ -54,8 +55,8 @@ pub fn execute(args: &HarmArgs) -> Result<(), CommandError> {
         return Err(none("sensors", &args.sensors, names.to_vec()));
     }
     let plan = Plan::new(args.seed, args.machines, &events, &conditions);
-    let progress = LateProgress::new(plan.len() as u64, "pairs of runs");
-    let runs = (args.threads.pool()?).install(|| plan.run(&|| progress.add(1)));
+    let progress = LateProgress::default();
+    let runs = (args.threads.pool()?).install(|| plan.run(&progress));
     progress.finish();
     let rows = rows(&runs);
     print(&if args.json {
@@ -66,6 +67,8 @@ pub fn execute(args: &HarmArgs) -> Result<(), CommandError> {
         });
         pretty(&value, "formatting the rows")? + "\n"
     } else {
-        format!("{}\n{}", table(&rows), lists(&rows))
+        let parts = [table(&rows), Block::List(lists(&rows))];
+        let parts: Vec<String> = parts.iter().filter_map(markdown_block).collect();
+        parts.join("\n\n") + "\n"
     })
 }

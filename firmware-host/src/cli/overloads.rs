@@ -1,22 +1,22 @@
 //! `overloads`: the catalogue of overloads, and what it says of the supervisor's promises.
 
+use crate::cli::chapters;
 use crate::cli::error::{CommandError, pretty, print};
 use crate::cli::load;
 use crate::cli::output::{self, Staging};
 use crate::cli::progress::{LateProgress, Threads};
-use comfy_table::Cell;
-use firmware_bench::report::table::{lined, right};
+use firmware_bench::report::table::lined;
+use firmware_studies::campaign::{Extent, Progress, html};
 use firmware_studies::overloads::histories::{CASES, Way, compare};
-use firmware_studies::overloads::page::{self, GROUP_COLUMNS, SCENE_COLUMNS, scene_rows};
-use firmware_studies::overloads::plan::{Catalogue, CatalogueError, Extent, Plan, search};
-use firmware_studies::overloads::plants::RATES_HZ;
-use firmware_studies::overloads::results::ResultRow;
+use firmware_studies::overloads::page;
+use firmware_studies::overloads::plan::{Catalogue, CatalogueError, Plan, search};
+use std::borrow::Cow;
 use std::path::PathBuf;
 
 /// Arguments of `overloads`.
 #[derive(Debug, Clone, clap::Args)]
 pub struct OverloadsArgs {
-    /// Folder for overloads.json, overloads.md and a page for each scene.
+    /// Folder for overloads.json and overloads.html.
     #[arg(long, default_value = "runs/overloads")]
     pub out: PathBuf,
     /// Print promises and results as JSON instead of the table of promises.
@@ -56,55 +56,54 @@ pub fn execute(args: &OverloadsArgs) -> Result<(), CommandError> {
     if args.histories {
         return against_histories(args);
     }
-    let extent = if args.quick {
-        Extent::Quick
-    } else {
-        Extent::Full
-    };
+    let extent = Extent::new(args.quick);
     let plan = Plan::new(extent, own).map_err(failed)?;
-    let progress = LateProgress::new(plan.pieces(), "the catalogue");
-    let catalogue = args
-        .threads
-        .pool()?
-        .install(|| plan.run(&|done| progress.add(done)))
+    let progress = LateProgress::default();
+    let catalogue = (args.threads.pool()?)
+        .install(|| plan.run(&progress))
         .map_err(failed)?;
     progress.finish();
     // A hundred thousand runs: not indented.
     let json = serde_json::to_string(&catalogue)
         .map_err(|e| CommandError::other("formatting overloads.json", e))?;
+    let page = html(&page::report(&catalogue, extent).page(&command(args)))
+        .map_err(|e| CommandError::other("drawing overloads.html", e))?;
     let staging = Staging::for_folder(&args.out)?;
-    let mut files = vec![
-        ("overloads.json".to_owned(), json.clone()),
-        (
-            "overloads.md".to_owned(),
-            page::summary(&catalogue, extent, &args.scene),
-        ),
-    ];
-    files.extend(page::scenes(&catalogue));
-    for (name, text) in &files {
-        staging.write(name, text)?;
+    for (name, content) in [("overloads.json", &json), ("overloads.html", &page)] {
+        staging.write(name, content)?;
     }
     let out = staging.publish()?;
     if args.json {
         return print(&format!("{json}\n"));
     }
-    let page = out.join("overloads.md");
+    let page = out.join("overloads.html");
     print(&format!(
-        "{}\n{}{}page: {}\n",
+        "{}\n\n{}page: {}\n",
         promises(&catalogue),
-        harm(&catalogue),
-        own_scenes(&catalogue),
+        chapters::text(&page::in_brief(&catalogue)),
         page.display()
     ))
 }
 
+/// What repeats it, each file one argument of a shell.
+fn command(args: &OverloadsArgs) -> String {
+    let mut command = "overloads".to_owned();
+    if args.quick {
+        command += " --quick";
+    }
+    for file in &args.scene {
+        let file = file.display().to_string();
+        // Only a zero byte cannot be quoted, and no path has one.
+        let quoted = shlex::try_quote(&file).map_or(file.clone(), Cow::into_owned);
+        command += &format!(" --scene {quoted}");
+    }
+    command
+}
+
 fn search_anew(args: &OverloadsArgs) -> Result<(), CommandError> {
-    let plants = firmware_studies::overloads::plants::plants(RATES_HZ[0])?.len();
-    let progress = LateProgress::new((plants * RATES_HZ.len()) as u64, "the search");
-    let rows = args
-        .threads
-        .pool()?
-        .install(|| search(&|done| progress.add(done)))
+    let progress = LateProgress::default();
+    let rows = (args.threads.pool()?)
+        .install(|| search(&progress))
         .map_err(failed)?;
     progress.finish();
     let json = pretty(&rows, "formatting found.json")?;
@@ -164,56 +163,13 @@ fn failed(error: CatalogueError) -> CommandError {
     }
 }
 
-/// The scenes that the user has added.
-fn own_scenes(catalogue: &Catalogue) -> String {
-    let one = |(name, results): (&str, Vec<&ResultRow>)| {
-        let mut table = lined(SCENE_COLUMNS);
-        for [plant, rate, policy, recovered, outcomes, figures @ ..] in scene_rows(&results) {
-            let words = [plant, rate, policy, recovered, outcomes].map(Cell::new);
-            table.add_row(words.into_iter().chain(figures.map(right)));
-        }
-        format!("\n{name}\n{table}\n")
-    };
-    page::own_scenes(catalogue).into_iter().map(one).collect()
-}
-
-/// Where it does harm.
-fn harm(catalogue: &Catalogue) -> String {
-    let groups = page::groups(&catalogue.against_levitation);
-    let harmed: Vec<_> = groups.iter().filter(|group| group.is_harmed()).collect();
-    if harmed.is_empty() {
-        return String::new();
-    }
-    let mut table = lined(GROUP_COLUMNS);
-    for group in harmed {
-        let [name, figures @ ..] = group.cells();
-        table.add_row([Cell::new(name)].into_iter().chain(figures.map(right)));
-    }
-    format!(
-        "\nLargest contact force over levitation alone, by groups with a median above 1.1 or recoveries lost beyond chance\n\
-         {table}\nwhy: docs/src/host/overloads-explained.md\n"
-    )
-}
-
 fn promises(catalogue: &Catalogue) -> String {
-    let mut table = lined(["promise", "bound", "measured", "holds"]);
-    for p in &catalogue.promises {
-        table.add_row([
-            Cell::new(&p.name),
-            right(p.bound()),
-            right(format!("{:.3}", p.measured)),
-            Cell::new(if p.holds { "yes" } else { "NO" }),
-        ]);
-    }
-    let kept = catalogue.promises.iter().filter(|p| p.holds).count();
     let runs = catalogue.results.len();
-    let untrusted = catalogue
-        .results
-        .iter()
+    let untrusted = (catalogue.results.iter())
         .filter(|r| r.error.is_some())
         .count();
     format!(
-        "{table}\n{kept} of {} promises hold; {runs} runs, {untrusted} of them not to be trusted",
-        catalogue.promises.len()
+        "{}; {runs} runs, {untrusted} of them not to be trusted",
+        chapters::of_claims(&catalogue.promises)
     )
 }

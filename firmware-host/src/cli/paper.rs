@@ -3,8 +3,8 @@
 use crate::cli::error::{CommandError, pretty, print};
 use crate::cli::output::{self, Staging};
 use crate::cli::progress::{LateProgress, Threads};
-use firmware_studies::paper::{CHAPTERS, Chapter, Depth, html, json, text};
-use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
+use firmware_studies::campaign::{Extent, html};
+use firmware_studies::paper::{chapters, json, page, text};
 use std::path::PathBuf;
 
 /// Arguments of `paper`.
@@ -30,24 +30,15 @@ pub struct PaperArgs {
 /// [`CommandError`]; nothing is left behind then.
 pub fn execute(args: &PaperArgs) -> Result<(), CommandError> {
     output::probe(&args.out)?;
-    let depth = if args.quick {
-        Depth::Quick
-    } else {
-        Depth::Full
-    };
-    let progress = LateProgress::new(CHAPTERS.len() as u64, "chapters");
-    let chapters = args.threads.pool()?.install(|| {
-        (CHAPTERS.par_iter())
-            .map(|(name, compute)| {
-                let chapter = compute(depth).map_err(|e| CommandError::other(name, e));
-                progress.add(1);
-                chapter
-            })
-            .collect::<Result<Vec<Chapter>, CommandError>>()
-    })?;
-    progress.finish();
+    let bar = LateProgress::default();
+    let chapters = (args
+        .threads
+        .pool()?
+        .install(|| chapters(Extent::new(args.quick), &bar)))
+    .map_err(|e| CommandError::other(e.name, e.reason))?;
+    bar.finish();
     let rows = pretty(&json(&chapters), "formatting paper.json")? + "\n";
-    let page = html(&chapters).map_err(|e| CommandError::other("drawing paper.html", e))?;
+    let page = html(&page(&chapters)).map_err(|e| CommandError::other("drawing paper.html", e))?;
     let staging = Staging::for_folder(&args.out)?;
     for (name, content) in [("paper.json", &rows), ("paper.html", &page)] {
         staging.write(name, content)?;

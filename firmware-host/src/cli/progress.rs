@@ -1,38 +1,50 @@
 //! A progress bar for commands that take their time, and their threads.
 
 use crate::cli::error::CommandError;
+use firmware_studies::campaign::Progress;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// A progress bar that shows itself only when the work takes longer than a second.
-pub(crate) struct LateProgress {
-    bar: ProgressBar,
-    started: Instant,
+pub(crate) struct LateProgress(ProgressBar);
+
+impl Default for LateProgress {
+    fn default() -> Self {
+        Self(ProgressBar::with_draw_target(
+            None,
+            ProgressDrawTarget::hidden(),
+        ))
+    }
+}
+
+impl Progress for LateProgress {
+    fn begin(&self, pieces: u64, what: &str) {
+        self.0.reset();
+        self.0.set_length(pieces);
+        let template = format!("{{bar:40}} {{percent:>3}} % of {what}, {{eta}} left");
+        if let Ok(style) = ProgressStyle::with_template(&template) {
+            self.0.set_style(style);
+        }
+    }
+
+    fn add(&self, pieces: u64) {
+        self.0.inc(pieces);
+        if self.0.is_hidden() && self.0.elapsed() > Duration::from_secs(1) {
+            self.0.set_draw_target(ProgressDrawTarget::stderr());
+        }
+    }
 }
 
 impl LateProgress {
     /// A bar of `total` pieces of work, called `what`.
     pub(crate) fn new(total: u64, what: &str) -> Self {
-        let bar = ProgressBar::with_draw_target(Some(total), ProgressDrawTarget::hidden());
-        let template = format!("{{bar:40}} {{percent:>3}} % of {what}, {{eta}} left");
-        if let Ok(style) = ProgressStyle::with_template(&template) {
-            bar.set_style(style);
-        }
-        Self {
-            bar,
-            started: Instant::now(),
-        }
-    }
-
-    pub(crate) fn add(&self, done: u64) {
-        self.bar.inc(done);
-        if self.bar.is_hidden() && self.started.elapsed() > Duration::from_secs(1) {
-            self.bar.set_draw_target(ProgressDrawTarget::stderr());
-        }
+        let bar = Self::default();
+        bar.begin(total, what);
+        bar
     }
 
     pub(crate) fn finish(&self) {
-        self.bar.finish_and_clear();
+        self.0.finish_and_clear();
     }
 }
 

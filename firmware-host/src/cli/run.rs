@@ -12,6 +12,7 @@ use firmware_bench::run::verdict::{Check, PolicyRun};
 use firmware_bench::run::{trace_file, verify};
 use firmware_bench::scene::Scene;
 use firmware_bench::scene::policy_kind::PolicyKind;
+use firmware_studies::campaign::Progress;
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 use std::path::{Path, PathBuf};
 

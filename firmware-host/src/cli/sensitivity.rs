@@ -8,6 +8,7 @@ use firmware_bench::report::plot::text::figures;
 use firmware_bench::report::table::{lined, or_dash, outcome, right};
 use firmware_bench::scene::Scene;
 use firmware_bench::scene::policy_kind::PolicyKind;
+use firmware_studies::campaign::Progress;
 use firmware_studies::sensitivity::{Row, misjudged, told_right};
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 use std::path::PathBuf;

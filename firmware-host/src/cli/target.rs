@@ -4,16 +4,10 @@ mod show;
 
 use crate::cli::error::{CommandError, pretty, print};
 use crate::cli::progress::Threads;
-use firmware_studies::on_target::budgets::{BudgetError, Budgets, renew};
-use firmware_studies::on_target::emulator;
-use firmware_studies::on_target::images::Project;
-use firmware_studies::on_target::loops::in_the_loop;
+use firmware_studies::campaign::Extent;
 use firmware_studies::on_target::machines::{MACHINES, Machine};
-use firmware_studies::on_target::measure::{Streams, TargetError, measure};
-use firmware_studies::on_target::numbers::Number;
-use firmware_studies::on_target::record::Length;
-use firmware_studies::on_target::results::{Report, TargetRow};
-use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
+use firmware_studies::on_target::results::Report;
+use firmware_studies::on_target::study::{Wanted, run_on};
 use std::path::PathBuf;
 
 /// Arguments of `target`.
@@ -77,73 +71,13 @@ pub fn execute(args: &TargetArgs) -> Result<(), CommandError> {
 }
 
 fn run(args: &TargetArgs, machines: &[Machine]) -> Result<Report, CommandError> {
-    // What is missing is told before anything takes its time.
-    let qemu = emulator::version().map_err(TargetError::from)?;
-    let project = Project::around(&args.project).map_err(TargetError::from)?;
-    Budgets::load(&project.budgets()).map_err(TargetError::from)?;
-    let mut machines = machines.to_vec();
-    if args.in_loop {
-        let all: Vec<String> = machines.iter().map(Machine::title).collect();
-        machines.retain(|m| m.number == Number::Float);
-        if machines.is_empty() {
-            return Err(TargetError::NoLoop(all.join(", ")).into());
-        }
-    }
-    let mut targets: Vec<&'static str> = machines.iter().map(|m| m.target).collect();
-    targets.sort_unstable();
-    targets.dedup();
-    for target in targets {
-        project.build(target).map_err(TargetError::from)?;
-    }
-    let mut report = Report {
-        qemu,
-        streams: Vec::new(),
-        targets: Vec::new(),
-        loops: Vec::new(),
+    let wanted = match (args.in_loop, args.quick) {
+        (true, _) => Wanted::Loops,
+        (false, quick) => Wanted::Replay {
+            extent: Extent::new(quick),
+            renew: args.renew,
+        },
     };
-    if args.in_loop {
-        // One at a time: the pace is part of the result.
-        for machine in &machines {
-            report.loops.extend(in_the_loop(&project, machine)?);
-        }
-        return Ok(report);
-    }
-    let length = if args.quick {
-        Length::QUICK
-    } else {
-        Length::FULL
-    };
-    report.targets = args.threads.pool()?.install(|| {
-        let mut work = Vec::new();
-        for number in [Number::Float, Number::Fixed] {
-            if machines.iter().any(|m| m.number == number) {
-                let streams = Streams::record(number, length)?;
-                report.streams.push(streams.row.clone());
-                work.push((number, streams));
-            }
-        }
-        // Each machine with the stream of its numbers, in the order of the table.
-        let pairs: Vec<(&Machine, &Streams)> = (machines.iter())
-            .filter_map(|m| Some((m, &work.iter().find(|(n, _)| *n == m.number)?.1)))
-            .collect();
-        let rows = pairs.par_iter().map(|(m, s)| measure(&project, m, s));
-        rows.collect::<Result<Vec<_>, TargetError>>()
-    })?;
-    judge(args, &project, &mut report.targets).map_err(TargetError::from)?;
+    let report = (args.threads.pool()?).install(|| run_on(&args.project, machines, wanted))?;
     Ok(report)
-}
-
-/// Holds the figures against their budgets, which may be made of them before.
-fn judge(args: &TargetArgs, project: &Project, rows: &mut [TargetRow]) -> Result<(), BudgetError> {
-    if args.renew {
-        let figures: Vec<_> = (rows.iter())
-            .map(|row| (row.name, row.number, row.figures()))
-            .collect();
-        renew(&project.budgets(), &figures)?;
-    }
-    let budgets = Budgets::load(&project.budgets())?;
-    for row in rows {
-        row.budgets = budgets.judge(row.name, row.number, &row.figures())?;
-    }
-    Ok(())
 }

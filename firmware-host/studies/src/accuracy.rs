@@ -1,5 +1,6 @@
 //! Error against run time: one scene without control, over tolerances and methods.
 
+pub mod study;
 pub mod wrong_runs;
 
 use firmware_bench::device::loads;
@@ -54,6 +55,24 @@ pub struct Reference {
     pub confirmed: bool,
     /// Evaluations of both in contact: what runs of this problem cost.
     pub evaluations: u64,
+}
+
+impl Reference {
+    /// How far it can be trusted.
+    pub fn in_words(&self) -> String {
+        let [one, other] = self.methods;
+        let uncertainty = self.uncertainty;
+        if self.confirmed {
+            return format!(
+                "reference: {one} at rtol 1e-13; {other} ends {uncertainty:.1e} c away, through the same modes"
+            );
+        }
+        let modes = if self.same_modes { "the same" } else { "other" };
+        format!(
+            "{}: no errors, for the reference is not confirmed: at rtol 1e-13 {other} ends {uncertainty:.1e} c away from {one}, through {modes} modes",
+            self.problem
+        )
+    }
 }
 
 /// References farther apart than this confirm nothing.

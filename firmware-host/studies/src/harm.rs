@@ -3,8 +3,7 @@
 
 pub mod compared;
 pub mod conditions;
-pub mod draw;
 pub mod events;
-pub mod machine;
 pub mod page;
+pub mod plan;
 pub mod study;

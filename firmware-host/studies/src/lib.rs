@@ -1,13 +1,65 @@
 //! Studies: many runs of many scenes, and what is claimed of them.
 //!
-//! Rooms, each importing only from those above it: `accuracy`, `paper`, `overloads`, `harm`, `sensitivity`, `on_target`.
+//! Rooms, each importing only from those above it: `campaign`, `machines`, `accuracy`, `paper`, `overloads`, `harm`,
+//! `trials`, `unseen_machines`, `loop_rates`, `sensitivity`, `on_target`.
 
 #![forbid(unsafe_code)]
 #![warn(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 pub mod accuracy;
+pub mod campaign;
 pub mod harm;
+pub mod loop_rates;
+pub mod machines;
 pub mod on_target;
 pub mod overloads;
 pub mod paper;
 pub mod sensitivity;
+pub mod trials;
+pub mod unseen_machines;
+
+use campaign::Study;
+
+/// Every study, by name. The page of the documentation that shows its last full run is `docs/src/measured/NAME.md`.
+pub const STUDIES: [Study; 8] = [
+    Study {
+        name: "accuracy",
+        about: "error against run time of the integrator on its benchmark problems",
+        run: accuracy::study::study,
+    },
+    Study {
+        name: "harm",
+        about: "the supervisor against levitation alone on machines drawn at random, with sensors as they are",
+        run: harm::study::study,
+    },
+    Study {
+        name: "loop-rates",
+        about: "what a slower call of the supervisor costs",
+        run: loop_rates::study,
+    },
+    Study {
+        name: "overloads",
+        about: "every overload of the catalogue under every policy, against what the supervisor promises",
+        run: overloads::page::study,
+    },
+    Study {
+        name: "paper",
+        about: "every number and figure of the paper, computed",
+        run: paper::study,
+    },
+    Study {
+        name: "sensitivity",
+        about: "what it costs when the supervisor is told wrong data of its machine",
+        run: sensitivity::study::study,
+    },
+    Study {
+        name: "target",
+        about: "the supervisor on emulated processors: bits, instructions, sizes",
+        run: on_target::study::study,
+    },
+    Study {
+        name: "unseen-machines",
+        about: "the catalogue on machines that nothing was tuned on, by how late their forces come",
+        run: unseen_machines::study,
+    },
+];

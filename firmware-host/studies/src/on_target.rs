@@ -17,4 +17,5 @@ pub mod measure;
 pub mod numbers;
 pub mod record;
 pub mod results;
+pub mod study;
 pub mod tape;

@@ -19,8 +19,10 @@ mod rows;
 mod summary;
 mod whirl_runs;
 
-pub use self::page::html;
+pub use self::page::{chapters, page, study};
 pub use self::rows::{json, text};
+use crate::campaign::Extent;
+pub use crate::campaign::{Drawing, Figure, Table};
 pub use firmware_bench::report::plot::chart::{Axis, Chart, Curve, HeatMap, Mark};
 use plant_model::{BuildError, PlantError};
 use serde::Serialize;
@@ -37,9 +39,9 @@ pub enum Kind {
     Assumed,
 }
 
-/// What the paper says of a number, where it gives no plain value.
+/// In which sense the paper gives a number.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Claim {
+pub enum Stated {
     /// A value.
     Value,
     /// "No more than", "under".
@@ -70,7 +72,7 @@ pub struct Row {
     /// What must be said beside it: an interval, a condition, the reason of a miss.
     pub note: String,
     /// In which sense the paper gives it.
-    pub claim: Claim,
+    pub stated: Stated,
 }
 
 /// A row farther than this from a value of the paper misses it: the paper's own numbers are "about".
@@ -99,57 +101,26 @@ impl Row {
             deviation,
             kind,
             note: note.into(),
-            claim: Claim::Value,
+            stated: Stated::Value,
         }
     }
 
     /// The same row, where the paper gives a bound or a range.
     #[must_use]
-    pub fn claiming(self, claim: Claim) -> Self {
-        Self { claim, ..self }
+    pub fn stated(self, stated: Stated) -> Self {
+        Self { stated, ..self }
     }
 
     /// Whether the paper is met: its bound or range, or its value to [`MISS`]. `None` where there is
     /// nothing to compare.
     pub fn holds(&self) -> Option<bool> {
-        match self.claim {
-            Claim::Value => self.deviation.map(|d| d.abs() <= MISS),
-            Claim::AtMost(high) => self.computed.map(|v| v <= high),
-            Claim::AtLeast(low) => self.computed.map(|v| v >= low),
-            Claim::Between(low, high) => self.computed.map(|v| (low..=high).contains(&v)),
+        match self.stated {
+            Stated::Value => self.deviation.map(|d| d.abs() <= MISS),
+            Stated::AtMost(high) => self.computed.map(|v| v <= high),
+            Stated::AtLeast(low) => self.computed.map(|v| v >= low),
+            Stated::Between(low, high) => self.computed.map(|v| (low..=high).contains(&v)),
         }
     }
-}
-
-/// A table of computed numbers that the paper has no counterpart for.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Table {
-    /// What it shows.
-    pub caption: String,
-    /// Heading of each column, unit included.
-    pub columns: Vec<String>,
-    /// Cells as they are to be read.
-    pub rows: Vec<Vec<String>>,
-}
-
-/// A drawing.
-#[derive(Debug, Clone)]
-pub enum Drawing {
-    /// Curves over an axis.
-    Chart(Chart),
-    /// A value over a plane.
-    Map(HeatMap),
-}
-
-/// A drawing with what is to be seen in it.
-#[derive(Debug, Clone)]
-pub struct Figure {
-    /// Short name, by which the page links to it; no two are alike.
-    pub file: &'static str,
-    /// What is to be seen.
-    pub caption: String,
-    /// The drawing.
-    pub drawing: Drawing,
 }
 
 /// One chapter, computed.
@@ -167,16 +138,6 @@ pub struct Chapter {
     pub figures: Vec<Figure>,
 }
 
-/// How much is computed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Depth {
-    /// Coarser grids: curves and maps with fewer points, the same rows to their printed digits but for
-    /// counts over a grid.
-    Quick,
-    /// Everything.
-    Full,
-}
-
 /// Why a chapter has no result.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum PaperError {
@@ -191,8 +152,18 @@ pub enum PaperError {
     Missing(String),
 }
 
+/// A chapter that has no result.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error("{name}: {reason}")]
+pub struct ChapterError {
+    /// Which.
+    pub name: &'static str,
+    /// Why.
+    pub reason: PaperError,
+}
+
 /// Computes a chapter.
-pub type Compute = fn(Depth) -> Result<Chapter, PaperError>;
+pub type Compute = fn(Extent) -> Result<Chapter, PaperError>;
 
 /// The chapters in order: a short name for progress and errors, and how each is computed.
 pub const CHAPTERS: &[(&str, Compute)] = &[

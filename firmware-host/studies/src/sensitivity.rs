@@ -1,6 +1,8 @@
 //! How well the supervisor has to know its machine: a scene run again and again, each time with something of the
 //! machine told wrong.
 
+pub mod study;
+
 use crate::overloads::results::Metrics;
 use firmware_bench::device::sensor::SpinSensorParams;
 use firmware_bench::run::closed_loop::{Keep, run};

@@ -4,8 +4,8 @@
 use firmware_bench::run::closed_loop::{Keep, run_policy};
 use firmware_bench::run::controller::Policy;
 use firmware_bench::scene::Scene;
-use firmware_studies::overloads::found::kept;
-use firmware_studies::overloads::plants::{PlantCase, plants};
+use firmware_studies::machines::plants::{PlantCase, plants};
+use firmware_studies::machines::tuned_gains::stored;
 use firmware_studies::overloads::seats::{Seat, Task, seated};
 use plant_model::params::SpinParams;
 use std::f64::consts::TAU;
@@ -87,7 +87,7 @@ fn work_and_turns(ticks: &[(Sample, Command)]) -> (Vec<f64>, f64) {
 fn unbalance_that_no_force_holds_is_recognised_and_not_driven() {
     for (plant, eccentricity_m, force_ratio) in [("P1 150 N", 3e-4, 0.4), ("P2", 2e-4, 0.97)] {
         let scene = unbalanced(plant, eccentricity_m);
-        let found = kept(plant, RATE_HZ).unwrap();
+        let found = stored(plant, RATE_HZ).unwrap();
         let run = |policy, name| run_policy(&scene, (policy, name), Keep::Verdict, &mut |_| {});
         let (supervisor, tape) = recording(&scene.supervisor.unwrap()).unwrap();
         let mut with_levitation = scene.clone();

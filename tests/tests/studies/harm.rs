@@ -5,13 +5,13 @@ use firmware_studies::harm::compared::Pair;
 use firmware_studies::harm::conditions::Condition;
 use firmware_studies::harm::events::Event;
 use firmware_studies::harm::page::{Row, rows};
-use firmware_studies::harm::study::{Plan, Run};
+use firmware_studies::harm::plan::{Plan, Run};
 
 /// Nothing was tuned on it.
 const SEED: u64 = 20_261_124;
 
 fn ran(machines: u64, events: &[Event], conditions: &[Condition]) -> Vec<Run> {
-    Plan::new(SEED, machines, events, conditions).run(&|| ())
+    Plan::new(SEED, machines, events, conditions).run(&())
 }
 
 fn sum(rows: &[Row], of: impl Fn(&Row) -> usize) -> usize {

@@ -16,4 +16,5 @@ mod paper_retainer;
 mod sensitivity;
 mod silently_wrong_runs;
 mod situations;
+mod study_command;
 mod unseen_machines;

@@ -4,11 +4,11 @@
 use firmware_bench::run::closed_loop::{Keep, run_policy};
 use firmware_bench::run::controller::Policy;
 use firmware_bench::run::history::History;
+use firmware_studies::machines::plants::{RATES_HZ, plants};
+use firmware_studies::machines::tuned_gains::stored;
 use firmware_studies::overloads::catalogue::cases;
-use firmware_studies::overloads::found::kept;
 use firmware_studies::overloads::impact::recoverable_m_s;
 use firmware_studies::overloads::loop_shape::SampledPlant;
-use firmware_studies::overloads::plants::{RATES_HZ, plants};
 use firmware_studies::overloads::seats::{Seat, clairvoyant, levitation};
 use firmware_studies::overloads::tune::{IDLE_NOISE, SENSITIVITY, shape};
 use plant_model::{Options, V2};
@@ -99,12 +99,17 @@ fn promises_of_a_quick_run() {
     let names: BTreeSet<String> = files
         .map(|f| f.unwrap().file_name().to_string_lossy().into_owned())
         .collect();
+    assert_eq!(
+        names,
+        ["overloads.html", "overloads.json"]
+            .map(str::to_owned)
+            .into()
+    );
+    let page = std::fs::read_to_string(folder.path().join("overloads/overloads.html")).unwrap();
     let scenes: BTreeSet<&str> = (results.iter())
         .map(|r| r["scene"].as_str().unwrap())
         .collect();
-    // A page for each scene, and two of the whole.
-    assert_eq!(names.len(), scenes.len() + 2);
-    assert!(names.contains("overloads.md") && names.contains("overloads.json"));
+    assert_eq!(page.matches("<details>").count(), scenes.len());
 
     // The scene of one's own: told, and compared, and no promise is about it.
     let harms = root["against_levitation"].as_array().unwrap();
@@ -118,44 +123,33 @@ fn promises_of_a_quick_run() {
     assert_eq!((&own["seeds"], &own["recovered"]), (&3.into(), &3.into()));
     let of_own = results.iter().filter(|row| row["plant"] == "own");
     assert_eq!(of_own.count(), 4 * 3);
-    let page = std::fs::read_to_string(folder.path().join("overloads/overloads.md")).unwrap();
-    let (_, section) = page.split_once("## Own scene: AMB rotor").unwrap();
+    let (_, section) = page.split_once(" Own scene: AMB rotor").unwrap();
+    let (section, _) = section.split_once("</section>").unwrap();
     for policy in ["passive", "radial", "levitation", "supervisor"] {
-        assert!(
-            section.contains(&format!("| own | 20 | {policy} | ")),
-            "{policy}"
-        );
+        assert!(section.contains(&format!("<td>{policy}</td>")), "{policy}");
     }
 
     let (alone, _folder) = quick("1");
     assert!(json == alone, "depends on the number of threads");
 }
 
-/// Two scenes of one title would be taken for one, and one called like the catalogue would take its page.
+/// Two scenes of one title would be taken for one.
 #[test]
 fn a_title_is_for_one_scene() {
     let folder = tempfile::tempdir().unwrap();
     let scene = scene_path("overload_then_release");
-    let text = std::fs::read_to_string(&scene).unwrap();
-    let (_, rest) = text.split_once('\n').unwrap();
-    let like_the_page = folder.path().join("named.toml");
-    std::fs::write(&like_the_page, format!("title = \"Overloads!\"\n{rest}")).unwrap();
-    for (scenes, named) in [
-        (vec![&scene, &scene], "AMB rotor: overload"),
-        (vec![&like_the_page], "Overloads!"),
-    ] {
-        let mut host = host();
-        host.args(["overloads", "--quick", "--out"])
-            .arg(folder.path().join("out"));
-        for scene in scenes {
-            host.arg("--scene").arg(scene);
-        }
-        let output = host.output().unwrap();
-        let error = String::from_utf8_lossy(&output.stderr);
-        assert_eq!(output.status.code(), Some(2), "{error}");
-        assert!(error.contains(&format!("the title \"{named}")), "{error}");
-        assert!(!folder.path().join("out").exists());
-    }
+    let output = (host().args(["overloads", "--quick", "--out"]))
+        .arg(folder.path().join("out"))
+        .arg("--scene")
+        .arg(&scene)
+        .arg("--scene")
+        .arg(&scene)
+        .output()
+        .unwrap();
+    let error = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{error}");
+    assert!(error.contains("the title \"AMB rotor: overload"), "{error}");
+    assert!(!folder.path().join("out").exists());
 }
 
 /// The kept loops are stable, calm enough and quiet enough, and `tuned` is better than any other that
@@ -164,7 +158,7 @@ fn a_title_is_for_one_scene() {
 fn kept_loops_are_what_was_asked_for() {
     for rate in RATES_HZ {
         for plant in plants(rate).unwrap() {
-            let found = kept(&plant.name, rate).unwrap();
+            let found = stored(&plant.name, rate).unwrap();
             let sampled = SampledPlant::new(&plant.scene.plant, rate, 1);
             let (own, noise) = shape(&plant.scene, &sampled, &found.tuned).unwrap();
             assert!(own.peak_sensitivity < SENSITIVITY && noise < IDLE_NOISE);
@@ -231,7 +225,7 @@ fn a_history_can_do_what_the_reference_does() {
     let plant = (plants(20_000.0).unwrap().into_iter())
         .find(|p| p.name == "P2")
         .unwrap();
-    let law = clairvoyant(kept("P2", 20_000.0).unwrap().impact_law, &plant.scene);
+    let law = clairvoyant(stored("P2", 20_000.0).unwrap().impact_law, &plant.scene);
     let mut scene = plant.scene;
     scene.start.velocity_m_s = V2::new(0.8, 0.0);
     scene.duration_s = 0.15;
@@ -266,7 +260,7 @@ fn a_history_can_do_what_the_reference_does() {
 #[test]
 fn a_history_stays_within_the_cap() {
     let scene = plants(20_000.0).unwrap().remove(4).scene;
-    let law = clairvoyant(kept("P2", 20_000.0).unwrap().impact_law, &scene);
+    let law = clairvoyant(stored("P2", 20_000.0).unwrap().impact_law, &scene);
     let wanted_n = vec![V2::new(3e3, -4e3), V2::new(30.0, 40.0)];
     let history = History::new(wanted_n, 1e-3, law, 1000.0);
     let mut now = scene.build(Options::default()).unwrap().snapshot();
@@ -280,7 +274,7 @@ fn a_history_stays_within_the_cap() {
 #[test]
 fn cases_are_told_apart() {
     for plant in plants(RATES_HZ[0]).unwrap() {
-        let tuned = kept(&plant.name, RATES_HZ[0]).unwrap().tuned;
+        let tuned = stored(&plant.name, RATES_HZ[0]).unwrap().tuned;
         let all = cases(&plant, tuned);
         let names: BTreeSet<&str> = all.iter().map(|c| c.name.as_str()).collect();
         assert_eq!(names.len(), all.len(), "{}", plant.name);

@@ -1,7 +1,8 @@
 //! Chapter "Established whirl": the figures it promises.
 
+use firmware_studies::campaign::Extent;
+use firmware_studies::paper::Chapter;
 use firmware_studies::paper::established::{chapter, spin_downs};
-use firmware_studies::paper::{Chapter, Depth};
 
 fn value(chapter: &Chapter, quantity: &str) -> f64 {
     let row = chapter.rows.iter().find(|r| r.quantity == quantity);
@@ -12,7 +13,7 @@ fn value(chapter: &Chapter, quantity: &str) -> f64 {
 
 #[test]
 fn maximum_rises_to_a_plateau() {
-    let runs = spin_downs(Depth::Quick).unwrap();
+    let runs = spin_downs(Extent::Quick).unwrap();
     for of in [&runs.isotropic, &runs.anisotropic] {
         assert!(of.windows(2).all(|w| w[0].whirl_hz < w[1].whirl_hz));
         let at = |hz: f64| of.iter().find(|v| v.spin_hz == hz).unwrap();
@@ -40,7 +41,7 @@ fn maximum_rises_to_a_plateau() {
 
 #[test]
 fn rows_of_the_chapter() {
-    let chapter = chapter(Depth::Quick).unwrap();
+    let chapter = chapter(Extent::Quick).unwrap();
     let near = |quantity: &str, expected: f64, share: f64| {
         let v = value(&chapter, quantity);
         assert!((v / expected - 1.0).abs() < share, "{quantity}: {v}");

@@ -1,10 +1,11 @@
 //! `paper`: the chapter on contact laws.
 
-use firmware_studies::paper::{CHAPTERS, Chapter, Depth};
+use firmware_studies::campaign::Extent;
+use firmware_studies::paper::{CHAPTERS, Chapter};
 
 fn chapter() -> Chapter {
     let (_, compute) = CHAPTERS.iter().find(|(n, _)| *n == "contact laws").unwrap();
-    compute(Depth::Quick).unwrap()
+    compute(Extent::Quick).unwrap()
 }
 
 #[test]

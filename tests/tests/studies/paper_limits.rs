@@ -1,10 +1,11 @@
 //! `paper`: limits of sliding whirl, levels of stator model, the compliant mounting.
 
-use firmware_studies::paper::{CHAPTERS, Chapter, Depth};
+use firmware_studies::campaign::Extent;
+use firmware_studies::paper::{CHAPTERS, Chapter};
 
 fn chapter(name: &str) -> Chapter {
     let (_, compute) = CHAPTERS.iter().find(|(n, _)| *n == name).unwrap();
-    compute(Depth::Quick).unwrap()
+    compute(Extent::Quick).unwrap()
 }
 
 fn value(chapter: &Chapter, quantity: &str) -> f64 {

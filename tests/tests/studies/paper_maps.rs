@@ -1,8 +1,9 @@
 //! The stability maps: what makes a rotor robust, and where the outcome is not monotone.
 
+use firmware_studies::campaign::Extent;
 use firmware_studies::paper::maps::chapter;
 use firmware_studies::paper::rotors::OnsetRig;
-use firmware_studies::paper::{Chapter, Depth, Drawing};
+use firmware_studies::paper::{Chapter, Drawing};
 use plant_model::Options;
 use plant_model::analysis::impact::{Criterion, Impact, Outcome, aftermath};
 
@@ -21,7 +22,7 @@ fn computed(chapter: &Chapter, quantity: &str) -> f64 {
 
 #[test]
 fn robustness_goes_the_way_the_paper_says() {
-    let chapter = chapter(Depth::Quick).unwrap();
+    let chapter = chapter(Extent::Quick).unwrap();
     for (file, rises) in [
         ("maps_friction", false),
         ("maps_damping", true),

@@ -1,10 +1,11 @@
 //! The paper's onset: critical tangential speed, and critical impact speeds of its five configurations.
 
+use firmware_studies::campaign::Extent;
+use firmware_studies::paper::Kind;
 use firmware_studies::paper::onset::{
     chapter, configurations, critical_m_s, fit, rms_log_error, simulated_threshold_m_s,
 };
 use firmware_studies::paper::rotors::OnsetRig;
-use firmware_studies::paper::{Depth, Kind};
 use plant_model::analysis::onset::critical_tangential_speed_m_s;
 
 #[test]
@@ -54,7 +55,7 @@ fn closed_form_of_the_threshold_is_met() {
 /// printed digits.
 #[test]
 fn choices_do_not_matter() {
-    let chapter = chapter(Depth::Quick).unwrap();
+    let chapter = chapter(Extent::Quick).unwrap();
     let variants = &chapter.tables[1];
     let same = variants.rows.iter().filter(|row| !row[0].contains("k_c"));
     assert!(same.clone().count() >= 6);

@@ -1,6 +1,6 @@
 //! Chapter "The nine phases": all of them, in order, with the events that bound them.
 
-use firmware_studies::paper::Depth;
+use firmware_studies::campaign::Extent;
 use firmware_studies::paper::phases::{chapter, whirl_from_40_hz};
 
 #[test]
@@ -33,7 +33,7 @@ fn nine_phases_in_order() {
 
 #[test]
 fn rows_of_the_chapter() {
-    let chapter = chapter(Depth::Quick).unwrap();
+    let chapter = chapter(Extent::Quick).unwrap();
     let value = |quantity: &str| {
         let row = chapter.rows.iter().find(|r| r.quantity == quantity);
         row.unwrap_or_else(|| panic!("no row {quantity}"))

@@ -1,13 +1,14 @@
 //! `paper`: retainer bearing.
 
-use firmware_studies::paper::{CHAPTERS, Chapter, Depth};
+use firmware_studies::campaign::Extent;
+use firmware_studies::paper::{CHAPTERS, Chapter};
 
 fn chapter() -> Chapter {
     let (_, compute) = (CHAPTERS
         .iter()
         .find(|(name, _)| *name == "retainer bearing"))
     .unwrap();
-    compute(Depth::Quick).unwrap()
+    compute(Extent::Quick).unwrap()
 }
 
 fn value(chapter: &Chapter, quantity: &str) -> f64 {

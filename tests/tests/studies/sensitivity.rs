@@ -1,180 +1,25 @@
 //! How well the supervisor has to know its machine: with its data told wrong as data commonly are.
 
 use firmware_bench::scene::Scene;
-use firmware_studies::overloads::case::Case;
-use firmware_studies::overloads::found::{Found, kept};
-use firmware_studies::overloads::plants::{PlantCase, plants};
-use firmware_studies::overloads::results::{ResultRow, run_case};
+use firmware_studies::machines::drawn::Machine;
+use firmware_studies::overloads::results::ResultRow;
 use firmware_studies::overloads::seats::Seat;
-use firmware_studies::sensitivity::{misjudged, told_right};
+use firmware_studies::sensitivity::misjudged;
+use firmware_studies::sensitivity::study::{Outcome, of_the_catalogue, told_wrong};
+use firmware_studies::trials::Trial;
 use rayon::prelude::*;
 use serde_json::Value;
-use system_tests::unseen::{machine, sound_cases};
 use system_tests::{host, scene_path};
-
-const RATE_HZ: f64 = 20_000.0;
-
-/// A machine with its levitation controller, and a scene on it.
-struct Trial {
-    plant: PlantCase,
-    found: Found,
-    case: Case,
-}
-
-/// The catalogue's scenes without sensor faults on a machine.
-fn trials(plant: &PlantCase, found: &Found) -> Vec<Trial> {
-    (sound_cases(plant, found.tuned).into_iter())
-        .map(|case| Trial {
-            plant: plant.clone(),
-            found: *found,
-            case,
-        })
-        .collect()
-}
-
-fn of_the_catalogue(name: Option<&str>) -> Vec<Trial> {
-    let plants = plants(RATE_HZ).unwrap();
-    let wanted = |plant: &&PlantCase| name.is_none_or(|name| plant.name == name);
-    (plants.iter().filter(wanted))
-        .flat_map(|plant| trials(plant, &kept(&plant.name, RATE_HZ).unwrap()))
-        .collect()
-}
-
-fn of_unseen_machines(count: u64) -> Vec<Trial> {
-    (0..count)
-        .map(machine)
-        .filter(|unseen| unseen.lateness < 0.8)
-        .flat_map(|unseen| trials(&unseen.plant, &unseen.found()))
-        .collect()
-}
-
-fn run(trial: &Trial, seat: Seat, scene: Scene) -> ResultRow {
-    let case = Case {
-        scene,
-        ..trial.case.clone()
-    };
-    let at = (trial.plant.name.as_str(), trial.plant.rate_hz);
-    run_case(&case, at, (seat, 1), &trial.found)
-}
-
-/// What came of the trials with something told wrong.
-struct Told {
-    text: String,
-    recovered: usize,
-    /// Told so, the supervisor would not have started.
-    refused: usize,
-    /// Of those that levitation alone recovers from.
-    lost_to_levitation: Vec<String>,
-    /// Of those that the supervisor recovers from when it is told right.
-    lost_to_right: usize,
-    /// Largest contact force over that of the supervisor told right, the 95th percentile.
-    force_95: f64,
-}
-
-impl Told {
-    /// From the runs told wrong (none where refused), with levitation alone, and told right.
-    fn of(
-        text: &str,
-        wrong: &[Option<ResultRow>],
-        alone: &[ResultRow],
-        right: &[ResultRow],
-    ) -> Self {
-        let mut told = Self {
-            text: text.to_owned(),
-            recovered: 0,
-            refused: 0,
-            lost_to_levitation: Vec::new(),
-            lost_to_right: 0,
-            force_95: f64::NAN,
-        };
-        let mut forces = Vec::new();
-        for ((wrong, alone), right) in wrong.iter().zip(alone).zip(right) {
-            let Some(wrong) = wrong else {
-                told.refused += 1;
-                continue;
-            };
-            told.recovered += usize::from(wrong.recovered());
-            told.lost_to_right += usize::from(right.recovered() && !wrong.recovered());
-            if alone.recovered() && !wrong.recovered() {
-                let name = format!("{}: {}", wrong.plant, wrong.scene);
-                told.lost_to_levitation.push(name);
-            }
-            forces.push(force_n(wrong) / force_n(right));
-        }
-        forces.retain(|ratio| ratio.is_finite());
-        forces.sort_by(f64::total_cmp);
-        if let Some(force) = forces.get(forces.len() * 95 / 100) {
-            told.force_95 = *force;
-        }
-        told
-    }
-}
-
-/// Largest contact force \[N\].
-fn force_n(row: &ResultRow) -> f64 {
-    (row.metrics.as_ref()).map_or(f64::NAN, |m| m.peak_contact_force_n)
-}
-
-/// Trials recovered from with levitation alone and told right, and what came of telling wrong.
-fn study(trials: &[Trial], width: f64, draws: u32) -> (usize, usize, Vec<Told>) {
-    let scene = |trial: &Trial| trial.case.scene.clone();
-    let alone: Vec<ResultRow> = (trials.par_iter())
-        .map(|trial| run(trial, Seat::Tuned, scene(trial)))
-        .collect();
-    let right: Vec<ResultRow> = (trials.par_iter())
-        .map(|trial| run(trial, Seat::Supervisor, told_right(&scene(trial)).unwrap()))
-        .collect();
-    let told = (misjudged(width, draws, 1).iter())
-        .map(|misjudged| {
-            let one = |(trial, right): (&Trial, &ResultRow)| match misjudged.told(&scene(trial)) {
-                Ok(Some(wrong)) => Some(run(trial, Seat::Supervisor, wrong)),
-                Ok(None) => Some(right.clone()),
-                Err(_) => None,
-            };
-            let wrong: Vec<_> = trials.par_iter().zip(&right).map(one).collect();
-            Told::of(&misjudged.text, &wrong, &alone, &right)
-        })
-        .collect();
-    let recovered = |rows: &[ResultRow]| rows.iter().filter(|row| row.recovered()).count();
-    (recovered(&alone), recovered(&right), told)
-}
-
-/// The tables of the documentation.
-#[test]
-#[ignore = "minutes; the figures are in docs/src/supervisor/sensitivity.md"]
-fn what_it_costs_to_be_told_wrong() {
-    let mut trials = of_the_catalogue(None);
-    trials.extend(of_unseen_machines(16));
-    for width in [1.0, 2.0] {
-        let (alone, right, told) = study(&trials, width, 8);
-        println!(
-            "width {width}: {} runs, levitation alone {alone}, told right {right}",
-            trials.len()
-        );
-        for t in &told {
-            println!(
-                "| {} | {} ({} refused) | {} | {} | {:.2} |",
-                t.text,
-                t.recovered,
-                t.refused,
-                t.lost_to_levitation.len(),
-                t.lost_to_right,
-                t.force_95
-            );
-            for name in &t.lost_to_levitation {
-                println!("    {name}");
-            }
-        }
-    }
-}
 
 /// A bearing of the catalogue, all its scenes: whatever is told wrong by as much as is usual, the supervisor recovers
 /// from what levitation alone recovers from, and from nearly all that it recovers from when told right. The one
 /// exception is no error of judgement: told less force than there is, it uses less.
 #[test]
 fn told_wrong_it_loses_next_to_nothing() {
-    let trials = of_the_catalogue(Some("P2"));
-    let (alone, right, told) = study(&trials, 1.0, 0);
+    let trials = of_the_catalogue("P2").unwrap();
+    let Outcome {
+        alone, right, told, ..
+    } = told_wrong(&trials, (1.0, 0), &()).unwrap();
     assert!(right > alone, "{right} {alone}");
     for t in told {
         let less_force = t.text == "force cap × 0.8";
@@ -218,14 +63,16 @@ fn a_rotor_that_turns_round_near_the_wall_does_not_rest() {
         .find(|m| m.text == "all at once, draw 7")
         .unwrap();
     for number in [0, 13] {
-        let unseen = machine(number);
-        let trials = trials(&unseen.plant, &unseen.found());
+        let unseen = Machine::unseen(number).unwrap();
+        let trials = Trial::on(&unseen.plant(), &unseen.gains().unwrap());
         let rows: Vec<(ResultRow, ResultRow)> = (trials.par_iter())
             .map(|trial| {
                 let scene = &trial.case.scene;
                 let told = noisy.told(scene).unwrap().unwrap();
-                let alone = run(trial, Seat::Tuned, scene.clone());
-                (alone, run(trial, Seat::Supervisor, told))
+                (
+                    trial.run(Seat::Tuned),
+                    trial.with(told).run(Seat::Supervisor),
+                )
             })
             .collect();
         let lost =

@@ -4,9 +4,9 @@ use firmware_bench::device::levitation::LevitationParams;
 use firmware_bench::run::closed_loop::{Keep, run};
 use firmware_bench::scene::Scene;
 use firmware_bench::scene::policy_kind::PolicyKind;
+use firmware_studies::machines::plants::{RATES_HZ, plants};
+use firmware_studies::machines::tuned_gains::stored;
 use firmware_studies::overloads::case::Sizes;
-use firmware_studies::overloads::found::kept;
-use firmware_studies::overloads::plants::{RATES_HZ, plants};
 use firmware_studies::overloads::situations::{Situation, situations};
 use std::ops::Range;
 use supervisor::Mode;
@@ -19,7 +19,7 @@ const SEEDS: Range<u64> = 100..120;
 fn situations_are_in_their_modes() {
     for rate_hz in RATES_HZ {
         for plant in plants(rate_hz).unwrap() {
-            let tuned = kept(&plant.name, rate_hz).unwrap().tuned;
+            let tuned = stored(&plant.name, rate_hz).unwrap().tuned;
             let all = situations(&plant.scene, Sizes::of(&plant.scene).unwrap(), tuned);
             let names: Vec<&str> = all.iter().map(|s| s.name).collect();
             let place = format!("{} at {rate_hz} Hz", plant.name);

@@ -1,9 +1,9 @@
 //! Where the force that is *delivered* points while the rotor whirls in contact.
 
 use firmware_bench::run::closed_loop::{Keep, run_policy};
+use firmware_studies::machines::plants::{RATES_HZ, plants};
+use firmware_studies::machines::tuned_gains::stored;
 use firmware_studies::overloads::catalogue::cases;
-use firmware_studies::overloads::found::kept;
-use firmware_studies::overloads::plants::{RATES_HZ, plants};
 use firmware_studies::overloads::seats::{Seat, Task, seated};
 use plant_model::V2;
 use supervisor::Mode;
@@ -14,7 +14,7 @@ use supervisor::Mode;
 fn the_delivered_force_is_aimed_against_the_whirl_and_never_outwards() {
     for rate_hz in RATES_HZ {
         for plant in plants(rate_hz).unwrap() {
-            let found = kept(&plant.name, rate_hz).unwrap();
+            let found = stored(&plant.name, rate_hz).unwrap();
             let cap_n = plant.scene.plant.magnet.unwrap().force_max_n;
             let mut inwards_rad = Vec::new();
             for case in cases(&plant, found.tuned) {

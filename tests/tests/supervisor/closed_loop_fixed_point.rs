@@ -3,9 +3,9 @@
 use firmware_bench::run::closed_loop::{Keep, run_policy};
 use firmware_bench::run::controller::{Policy, Supervise};
 use firmware_bench::scene::Scene;
-use firmware_studies::overloads::found::kept;
+use firmware_studies::machines::plants::plants;
+use firmware_studies::machines::tuned_gains::stored;
 use firmware_studies::overloads::impact::{FIRST_M_S, recoverable_m_s};
-use firmware_studies::overloads::plants::plants;
 use plant_model::V2;
 use supervisor::{Q, Scalar, Supervisor};
 use system_tests::per_unit::Behind;
@@ -48,7 +48,7 @@ fn fixed_point_recovers_from_the_same_impacts() {
     for rate_hz in [10_000.0, 20_000.0] {
         for plant in plants(rate_hz).unwrap() {
             let mut scene = plant.scene.clone();
-            scene.levitation = kept(&plant.name, rate_hz).map(|found| found.tuned);
+            scene.levitation = stored(&plant.name, rate_hz).map(|found| found.tuned);
             let name = format!("{} at {rate_hz} Hz", plant.name);
             let [float, fixed] = [single, of::<Q>].map(|make| by_the_catalogue_m_s(&scene, make));
             assert!(

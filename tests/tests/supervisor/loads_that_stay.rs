@@ -3,13 +3,13 @@
 use firmware_bench::run::closed_loop::{Keep, run_policy};
 use firmware_bench::run::supervision::Supervision;
 use firmware_bench::scene::{Disturbance, Scene, Shape};
+use firmware_studies::machines::drawn::Machine;
+use firmware_studies::machines::plants::plants;
+use firmware_studies::machines::tuned_gains::stored;
 use firmware_studies::overloads::case::Sizes;
-use firmware_studies::overloads::found::kept;
-use firmware_studies::overloads::plants::plants;
 use firmware_studies::overloads::seats::{Seat, Task, seated};
 use plant_model::V2;
 use supervisor::Mode;
-use system_tests::unseen::machine;
 
 /// On machines that nothing was tuned on: a load of a third to two thirds of the cap comes and stays, alone or with a
 /// landing. Where levitation alone carries it in the end without contact, the supervisor has it levitated in the end, too,
@@ -18,12 +18,12 @@ use system_tests::unseen::machine;
 fn what_levitation_carries_it_is_given() {
     let (mut carried, mut touched) = (0, 0);
     for number in 0..12 {
-        let unseen = machine(number);
-        if unseen.lateness > 0.8 {
+        let unseen = Machine::unseen(number).unwrap();
+        if unseen.lateness() > 0.8 {
             continue;
         }
-        let found = unseen.found_with_integrator();
-        let base = &unseen.plant.scene;
+        let found = unseen.gains_with_integrator().unwrap();
+        let base = &unseen.scene;
         let sizes = Sizes::of(base).unwrap();
         for (share, landing) in [
             (0.35, 0.0),
@@ -81,7 +81,7 @@ fn magnets_that_pull_with_the_whole_cap_are_overcome() {
         scene.duration_s = 0.5;
         scene.start.velocity_m_s = V2::new(0.02, 0.0);
         scene.supervisor = Some(firmware_bench::scene::suggest::suggested(&scene.nominal).config);
-        let mut found = kept("P2", 20_000.0).unwrap();
+        let mut found = stored("P2", 20_000.0).unwrap();
         found.tuned.proportional_n_m = 2.0 * pull * cap_n_m;
         found.tuned.derivative_n_s_m = 2.0 * (10.0 * pull * cap_n_m).sqrt();
         let run = |seat: Seat| {
@@ -102,7 +102,7 @@ fn magnets_that_pull_with_the_whole_cap_are_overcome() {
 fn a_coarse_converter_is_no_stuck_sensor() {
     for rate_hz in [10_000.0, 20_000.0] {
         for plant in plants(rate_hz).unwrap() {
-            let found = kept(&plant.name, rate_hz).unwrap();
+            let found = stored(&plant.name, rate_hz).unwrap();
             let mut scene = plant.scene.clone();
             scene.duration_s = 1.0;
             scene.sensor.quantum_m = 1e-6;

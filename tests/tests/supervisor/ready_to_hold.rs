@@ -3,9 +3,9 @@
 use firmware_bench::run::closed_loop::{Keep, run_policy};
 use firmware_bench::run::controller::{Policy, Supervise};
 use firmware_bench::scene::{Disturbance, Scene, Shape};
+use firmware_studies::machines::plants::plants;
+use firmware_studies::machines::tuned_gains::stored;
 use firmware_studies::overloads::case::Sizes;
-use firmware_studies::overloads::found::kept;
-use firmware_studies::overloads::plants::plants;
 use plant_model::V2;
 use supervisor::{Command, Events, Sample, Supervisor};
 
@@ -34,7 +34,7 @@ fn a_rising_load_is_not_handed_over_again_and_again() {
         for share in [0.2, 0.3, 0.5, 0.7, 0.9] {
             let scene = Scene {
                 duration_s: 0.2,
-                levitation: kept(&plant.name, 20_000.0).map(|found| found.tuned),
+                levitation: stored(&plant.name, 20_000.0).map(|found| found.tuned),
                 disturbances: vec![Disturbance {
                     start_s: 0.0,
                     duration_s: 0.4,

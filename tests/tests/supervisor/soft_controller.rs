@@ -6,7 +6,7 @@ use firmware_bench::run::controller::Policy;
 use firmware_bench::run::trace::TraceRow;
 use firmware_bench::scene::policy_kind::PolicyKind;
 use firmware_bench::scene::{Axis, Fault, FaultKind, Scene};
-use firmware_studies::overloads::plants::plants;
+use firmware_studies::machines::plants::plants;
 use supervisor::Mode;
 
 /// On a shaft that centres the rotor a damper alone levitates. A jump of the sensor engages the supervisor; when it is

@@ -3,27 +3,27 @@
 use firmware_bench::run::closed_loop::{Keep, run_policy};
 use firmware_bench::run::trace::Trace;
 use firmware_bench::run::verdict::Verdict;
+use firmware_studies::machines::plants::{PlantCase, plants};
+use firmware_studies::machines::tuned_gains::{TunedGains, stored};
 use firmware_studies::overloads::case::Case;
 use firmware_studies::overloads::catalogue::cases;
-use firmware_studies::overloads::found::{Found, kept};
-use firmware_studies::overloads::plants::{PlantCase, plants};
 use firmware_studies::overloads::seats::{Seat, Task, seated};
 
 const RATE_HZ: f64 = 20_000.0;
 
 /// A plant of the catalogue, what was found for it, and its scene with a load of so many caps for a second.
-fn loaded(plant: &str, caps: f64) -> (PlantCase, Found, Case) {
+fn loaded(plant: &str, caps: f64) -> (PlantCase, TunedGains, Case) {
     let plant = (plants(RATE_HZ).unwrap().into_iter())
         .find(|p| p.name == plant)
         .unwrap();
-    let found = kept(&plant.name, RATE_HZ).unwrap();
+    let found = stored(&plant.name, RATE_HZ).unwrap();
     let name = format!("load {caps} × cap for 1000 ms");
     let mut all = cases(&plant, found.tuned).into_iter();
     let case = all.find(|case| case.name == name).unwrap();
     (plant, found, case)
 }
 
-fn under(seat: Seat, (_, found, case): &(PlantCase, Found, Case)) -> (Verdict, Trace) {
+fn under(seat: Seat, (_, found, case): &(PlantCase, TunedGains, Case)) -> (Verdict, Trace) {
     let acting = seated(seat, Task::Impact, found, &case.scene).unwrap();
     run_policy(&case.scene, (acting, seat.name()), Keep::Trace, &mut |_| {}).unwrap()
 }

@@ -1,17 +1,18 @@
 //! The results of `target` as tables.
 
+use crate::cli::chapters;
 use comfy_table::{Cell, Table};
 use firmware_bench::report::table::{lined, right};
 use firmware_studies::on_target::results::{LoopRow, Report, StreamRow, TargetRow};
+use firmware_studies::on_target::study::chapters as chapters_of;
 
 /// What there is.
 pub(crate) fn text(report: &Report) -> String {
     let mut text = String::new();
     if !report.targets.is_empty() {
         text += &format!(
-            "{}\n\n{}\n\n{}\n\n",
-            figures(&report.targets),
-            by_mode(&report.targets),
+            "{}{}\n\n",
+            chapters::text(&chapters_of(report)),
             against_budgets(&report.targets),
         );
     }
@@ -20,19 +21,6 @@ pub(crate) fn text(report: &Report) -> String {
             text += &format!(
                 "{} {}: worst of {} ticks {} instructions, stack {} B\n",
                 t.name, t.number, long.ticks, long.worst_instructions, long.stack_bytes
-            );
-        }
-    }
-    for t in &report.targets {
-        if let Some(pair) = t.pair {
-            text += &format!(
-                "{} {}: two planes in one tick: median {}, worst {} instructions, RAM {} B, stack {} B\n",
-                t.name,
-                t.number,
-                pair.median_instructions,
-                pair.worst_instructions,
-                pair.ram_bytes,
-                pair.stack_bytes
             );
         }
     }
@@ -47,51 +35,6 @@ pub(crate) fn text(report: &Report) -> String {
 
 fn named(name: &str, number: &str) -> Cell {
     Cell::new(format!("{name} {number}"))
-}
-
-fn figures(targets: &[TargetRow]) -> Table {
-    let mut table = lined([
-        "target",
-        "board",
-        "instructions a tick: least",
-        "median",
-        "worst",
-        "text B",
-        "RAM B",
-        "stack B",
-        "bit-exact ticks",
-    ]);
-    for t in targets {
-        table.add_row([
-            named(t.name, t.number),
-            Cell::new(t.board),
-            right(t.min_instructions),
-            right(t.median_instructions),
-            right(t.worst_instructions),
-            right(t.text_bytes),
-            right(t.ram_bytes),
-            right(t.stack_bytes),
-            right(format!("{} of {}", t.bit_exact_ticks, t.ticks)),
-        ]);
-    }
-    table
-}
-
-fn by_mode(targets: &[TargetRow]) -> Table {
-    let mut table = lined(["target", "mode", "ticks", "least", "median", "worst"]);
-    for t in targets {
-        for m in &t.modes {
-            table.add_row([
-                named(t.name, t.number),
-                Cell::new(m.mode),
-                right(m.spread.ticks),
-                right(m.spread.min_instructions),
-                right(m.spread.median_instructions),
-                right(m.spread.worst_instructions),
-            ]);
-        }
-    }
-    table
 }
 
 fn against_budgets(targets: &[TargetRow]) -> Table {

@@ -1,8 +1,8 @@
 //! How the machine's sensors are, beside what the supervisor is told of them.
 
-use super::draw::Draw;
 use super::events::BEGIN_S;
-use super::machine::Machine;
+use crate::machines::draw::Draw;
+use crate::machines::drawn::Machine;
 use firmware_bench::scene::{Axis, Fault, FaultKind, Scene};
 use std::f64::consts::TAU;
 

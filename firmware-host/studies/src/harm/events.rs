@@ -1,7 +1,7 @@
 //! What happens to a machine.
 
-use super::draw::Draw;
-use super::machine::Machine;
+use crate::machines::draw::Draw;
+use crate::machines::drawn::Machine;
 use crate::overloads::takeover::{arrest_of, let_whirl};
 use firmware_bench::scene::{BaseMotion, Disturbance, Scene, Shape};
 use plant_model::V2;

@@ -3,9 +3,9 @@
 use super::compared::{Figures, Pair};
 use super::conditions::Condition;
 use super::events::Event;
-use super::study::Run;
+use super::plan::Run;
+use crate::campaign::Block;
 use serde::Serialize;
-use std::fmt::Write;
 
 /// A class of runs: an event with sensors of a kind.
 #[derive(Debug, Clone, Serialize)]
@@ -126,35 +126,33 @@ pub fn rows(runs: &[Run]) -> Vec<Row> {
     runs.chunk_by(of_one_class).filter_map(row).collect()
 }
 
-/// The table in Markdown.
-pub fn table(rows: &[Row]) -> String {
-    const HEADER: [&str; 19] = [
-        "event",
-        "sensors",
-        "runs",
-        "alone",
-        "own",
-        "lost",
-        "gained",
-        "new touches",
-        "force: median",
-        "p95",
-        "p99",
-        "max",
-        "impulse: median",
-        "p95",
-        "max",
-        "engaged: mean",
-        "max",
-        "times",
-        "handed back",
-    ];
+const COLUMNS: [&str; 19] = [
+    "event",
+    "sensors",
+    "runs",
+    "alone",
+    "own",
+    "lost",
+    "gained",
+    "new touches",
+    "force: median",
+    "p95",
+    "p99",
+    "max",
+    "impulse: median",
+    "p95",
+    "max",
+    "engaged: mean",
+    "max",
+    "times",
+    "handed back",
+];
+
+/// The rows as a table.
+pub fn table(rows: &[Row]) -> Block {
     let ratio = |x: Option<f64>| x.map_or("–".to_owned(), |x| format!("{x:.2}"));
-    let line = |cells: &[String]| format!("| {} |\n", cells.join(" | "));
-    let mut text = line(&HEADER.map(str::to_owned));
-    text += &line(&[vec!["---".to_owned(); 2], vec!["--:".to_owned(); 17]].concat());
-    for r in rows {
-        text += &line(&[
+    let cells = rows.iter().map(|r| {
+        [
             r.event.to_owned(),
             r.sensors.clone(),
             r.runs.to_string(),
@@ -174,26 +172,25 @@ pub fn table(rows: &[Row]) -> String {
             format!("{:.1} %", 100.0 * r.engaged_max),
             r.engagements.to_string(),
             r.handed_back.to_string(),
-        ]);
-    }
-    text
+        ]
+    });
+    Block::table(COLUMNS, cells)
 }
 
 /// The machines on which something was lost, a line a class.
-pub fn lists(rows: &[Row]) -> String {
-    let mut text = String::new();
-    let mut list = |row: &Row, what: &str, numbers: &[u64]| {
-        if !numbers.is_empty() {
-            let numbers: Vec<String> = numbers.iter().map(u64::to_string).collect();
-            let (event, sensors) = (row.event, &row.sensors);
-            // Into a string nothing fails.
-            let _ = writeln!(text, "- {event}, {sensors}: {what} {}", numbers.join(", "));
-        }
+pub fn lists(rows: &[Row]) -> Vec<String> {
+    let line = |row: &Row, (what, numbers): (&str, &[u64])| {
+        let numbers: Vec<String> = numbers.iter().map(u64::to_string).collect();
+        let (event, sensors) = (row.event, &row.sensors);
+        (!numbers.is_empty()).then(|| format!("{event}, {sensors}: {what} {}", numbers.join(", ")))
     };
-    for row in rows {
-        list(row, "lost on machines", &row.lost);
-        list(row, "touches only with the supervisor on", &row.new_touches);
-        list(row, "more than twice as hard on", &row.twice_as_hard);
-    }
-    text
+    let of_row = |row: &Row| {
+        [
+            ("lost on machines", row.lost.as_slice()),
+            ("touches only with the supervisor on", &row.new_touches),
+            ("more than twice as hard on", &row.twice_as_hard),
+        ]
+        .map(|list| line(row, list))
+    };
+    rows.iter().flat_map(of_row).flatten().collect()
 }

@@ -1,86 +1,96 @@
-//! The plan: every event with every kind of sensors, each on the same machines.
+//! First do no harm, as a study.
 
-use super::compared::{Pair, compare};
 use super::conditions::Condition;
-use super::draw::Draw;
 use super::events::Event;
-use super::machine::Machine;
-use firmware_bench::scene::Scene;
-use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
+use super::page::{Row, lists, rows, table};
+use super::plan::Plan;
+use crate::campaign::{Block, Chapter, Claim, Extent, Progress, Report, StudyError};
 
-/// A run of the study, both ways.
-#[derive(Debug, Clone)]
-pub struct Run {
-    /// What happened.
-    pub event: Event,
-    /// What the sensors were.
-    pub condition: Condition,
-    /// Number of the machine.
-    pub number: u64,
-    /// What came of it; `None` where it cannot be trusted.
-    pub pair: Option<Pair>,
+/// Nothing was tuned on the machines of this seed.
+const SEED: u64 = 20_261_125;
+
+/// Every event with every kind of sensors on two hundred machines, or on four.
+///
+/// # Errors
+/// None.
+pub fn study(extent: Extent, progress: &dyn Progress) -> Result<Report, StudyError> {
+    let machines = extent.pick(4, 200);
+    let runs = Plan::new(SEED, machines, &Event::ALL, &Condition::ALL).run(progress);
+    let rows = rows(&runs);
+    let story = format!(
+        "{machines} machines of seed {SEED} in every class, an event with sensors of a kind; ratios are those of the supervisor over levitation alone, where both recover and levitation touches."
+    );
+    let mut blocks = vec![Block::text(story), table(&rows)];
+    blocks.push(Block::List(lists(&rows)));
+    Ok(Report {
+        title: "First do no harm".to_owned(),
+        claims: claims(&rows),
+        cases: runs.len() as u64,
+        chapters: vec![Chapter::new("By event and sensors", blocks)],
+    })
 }
 
-/// Sets the draw of what happens apart from that of the machine.
-const OF_EVENTS: u64 = 0x5eed;
-
-/// The scene of a run, and its machine.
-pub fn scene(seed: u64, (event, condition): (Event, Condition), number: u64) -> (Machine, Scene) {
-    let machine = Machine::drawn(seed, number)
-        .unwrap_or_else(|error| unreachable!("machine {number} of {seed}: {error}"));
-    let mut scene = machine.scene.clone();
-    let mut draw = Draw::new(seed ^ OF_EVENTS, number);
-    scene.seed = draw.number();
-    event.happen(&machine, &mut draw, &mut scene);
-    condition.apply(&machine, &mut draw, &mut scene);
-    let of = &machine.scene.title;
-    scene.title = format!("{}, {}, {of}", event.name(), condition.name());
-    (machine, scene)
+fn claims(rows: &[Row]) -> Vec<Claim> {
+    let as_told = Condition::Told.name();
+    let pairs = Condition::FaultPair.name();
+    let told = || rows.iter().filter(|row| row.sensors == as_told);
+    let worse = || {
+        rows.iter()
+            .filter(|row| row.sensors != as_told && row.sensors != pairs)
+    };
+    let of_pairs = || rows.iter().filter(|row| row.sensors == pairs);
+    let worst = |of: fn(&Row) -> Option<f64>| told().filter_map(of).fold(0.0, f64::max);
+    vec![
+        Claim::at_most(
+            "sensors as told: recoveries lost",
+            0.0,
+            told().map(lost).sum(),
+        ),
+        Claim::at_least(
+            "sensors as told: recoveries, over levitation's",
+            1.0,
+            over(told()),
+        ),
+        Claim::at_most(
+            "sensors as told: machines that touch with the supervisor alone",
+            0.0,
+            told().map(|r| r.new_touches.len() as f64).sum(),
+        ),
+        Claim::at_most(
+            "sensors as told: largest force over levitation's, worst event's median",
+            1.02,
+            worst(|r| r.force.median),
+        ),
+        Claim::at_most(
+            "sensors as told: largest force over levitation's, worst event's 95th percentile",
+            1.1,
+            worst(|r| r.force.p95),
+        ),
+        Claim::at_most(
+            "sensors worse than told: recoveries lost, share of runs",
+            0.001,
+            worse().map(lost).sum::<f64>() / worse().map(|r| r.runs as f64).sum::<f64>(),
+        ),
+        Claim::at_least(
+            "sensors worse than told: recoveries, over levitation's",
+            1.0,
+            over(worse()),
+        ),
+        Claim::at_least(
+            "pairs of faults: recoveries, over levitation's",
+            1.0,
+            over(of_pairs()),
+        ),
+    ]
 }
 
-/// What will be run.
-#[derive(Debug, Clone)]
-pub struct Plan {
-    seed: u64,
-    jobs: Vec<(Event, Condition, u64)>,
+fn lost(row: &Row) -> f64 {
+    row.lost.len() as f64
 }
 
-impl Plan {
-    /// Events with sensors on so many machines.
-    pub fn new(seed: u64, machines: u64, events: &[Event], conditions: &[Condition]) -> Self {
-        let mut jobs = Vec::new();
-        for event in events {
-            for condition in conditions {
-                jobs.extend((0..machines).map(|number| (*event, *condition, number)));
-            }
-        }
-        Self { seed, jobs }
-    }
-
-    /// How many pairs of runs.
-    pub fn len(&self) -> usize {
-        self.jobs.len()
-    }
-
-    /// Whether there are none.
-    pub fn is_empty(&self) -> bool {
-        self.jobs.is_empty()
-    }
-
-    /// Runs them on the threads of the pool that it is called in; what comes out does not depend on how many.
-    pub fn run(&self, done: &(impl Fn() + Sync)) -> Vec<Run> {
-        (self.jobs.par_iter())
-            .map(|(event, condition, number)| {
-                let (_, scene) = scene(self.seed, (*event, *condition), *number);
-                let pair = compare(&scene);
-                done();
-                Run {
-                    event: *event,
-                    condition: *condition,
-                    number: *number,
-                    pair,
-                }
-            })
-            .collect()
-    }
+fn over<'a>(rows: impl Iterator<Item = &'a Row>) -> f64 {
+    let (own, alone) = rows.fold((0, 0), |(own, alone), row| {
+        (own + row.own, alone + row.alone)
+    });
+    own as f64 / alone as f64
 }

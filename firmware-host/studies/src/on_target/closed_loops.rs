@@ -2,10 +2,10 @@
 
 use super::numbers::Number;
 use super::tape::{Piece, Tape};
+use crate::machines::plants::{RATES_HZ, plants};
+use crate::machines::tuned_gains::stored;
 use crate::overloads::catalogue::cases;
-use crate::overloads::found::kept;
 use crate::overloads::plan::CatalogueError;
-use crate::overloads::plants::{RATES_HZ, plants};
 use firmware_bench::run::closed_loop::{Keep, run_policy};
 use firmware_bench::run::controller::Policy;
 use firmware_bench::scene::Scene;
@@ -28,7 +28,7 @@ fn scenes() -> Result<Vec<Scene>, CatalogueError> {
     let mut groups: BTreeMap<&str, Vec<Scene>> = BTreeMap::new();
     for rate_hz in RATES_HZ {
         for plant in plants(rate_hz)? {
-            let found = kept(&plant.name, rate_hz).ok_or_else(|| CatalogueError::NotFound {
+            let found = stored(&plant.name, rate_hz).ok_or_else(|| CatalogueError::NotFound {
                 plant: plant.name.clone(),
                 rate_hz,
             })?;

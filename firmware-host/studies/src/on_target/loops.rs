@@ -6,9 +6,9 @@ use super::machines::Machine;
 use super::measure::TargetError;
 use super::results::LoopRow;
 use super::tape::{Recording, Tape, Tick};
+use crate::machines::plants::{RATES_HZ, plants};
+use crate::machines::tuned_gains::stored;
 use crate::overloads::catalogue::cases;
-use crate::overloads::found::kept;
-use crate::overloads::plants::{RATES_HZ, plants};
 use firmware_bench::run::closed_loop::{Keep, RunError, run_policy};
 use firmware_bench::run::controller::{Policy, Supervise};
 use firmware_bench::run::trace::Trace;
@@ -44,7 +44,7 @@ fn scenes() -> Result<Vec<(String, Scene, Config)>, TargetError> {
         .iter()
         .find(|p| p.name == PLANT)
         .ok_or_else(|| none("any"))?;
-    let found = kept(PLANT, rate_hz).ok_or_else(|| none("what was found for it"))?;
+    let found = stored(PLANT, rate_hz).ok_or_else(|| none("what was found for it"))?;
     let cases = cases(plant, found.tuned);
     (SCENES.iter())
         .map(|name| {

@@ -6,8 +6,8 @@
 
 use super::numbers::Number;
 use super::tape::{Piece, Tape};
+use crate::machines::plants::{RATES_HZ, plants};
 use crate::overloads::plan::CatalogueError;
-use crate::overloads::plants::{RATES_HZ, plants};
 use rand_chacha::ChaCha8Rng;
 use rand_core::{Rng, SeedableRng};
 use std::f32::consts::TAU;

@@ -1,10 +1,10 @@
 //! The scenes of the catalogue, on one plant.
 
 use super::case::{Case, Sizes, aimed, load};
-use super::plants::PlantCase;
 use super::seats::Seat;
 use super::situations::{Situation, situations};
 use super::takeover::let_whirl;
+use crate::machines::plants::PlantCase;
 use firmware_bench::device::levitation::LevitationParams;
 use firmware_bench::scene::{
     Axis, BaseMotion, Delivers, Disturbance, Outage, Scene, Shape, TimedChange,

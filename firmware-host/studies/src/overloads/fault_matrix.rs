@@ -1,9 +1,9 @@
 //! Every fault of sensor and drive in every mode: idle, approach, bounce, whirl, hand-over.
 
 use super::case::Case;
-use super::plants::PlantCase;
 use super::seats::Seat;
 use super::situations::Situation;
+use crate::machines::plants::PlantCase;
 use firmware_bench::scene::{Axis, Delivers, Fault, FaultKind, Outage, Scene};
 use supervisor::Mode;
 

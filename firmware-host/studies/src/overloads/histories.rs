@@ -7,13 +7,13 @@
 
 use super::case::aimed;
 use super::cross_entropy::{Effort, maximise};
-use super::found::kept;
 use super::impact::FIRST_M_S;
 use super::plan::CatalogueError;
-use super::plants::plants;
 use super::seats::clairvoyant;
 use super::sweeps::TIMED_SHARE;
 use super::takeover::{ARRESTED, arrest_of};
+use crate::machines::plants::plants;
+use crate::machines::tuned_gains::stored;
 use firmware_bench::run::clairvoyant::Clairvoyant;
 use firmware_bench::run::closed_loop::{Keep, RunError, run_policy};
 use firmware_bench::run::controller::Policy;
@@ -275,7 +275,7 @@ pub fn compare(on_done: &dyn Fn(u64)) -> Result<Vec<HistoryRow>, CatalogueError>
             rate_hz: RATE_HZ,
         };
         let plant = all.iter().find(|p| p.name == name).ok_or_else(missing)?;
-        let found = kept(name, RATE_HZ).ok_or_else(missing)?;
+        let found = stored(name, RATE_HZ).ok_or_else(missing)?;
         let scene = &plant.scene;
         let arrest = arrest_of(scene).ok_or_else(missing)?;
         let from_m_s = TIMED_SHARE * arrest.limit_m_s;

@@ -1,114 +1,93 @@
-//! The catalogue as a page in Markdown, for people and for the documentation.
+//! The catalogue as chapters of a page, and as a study.
 
-use super::plan::{Catalogue, Extent};
-use super::promises::{Harm, Promise, force_ratios, lost_beyond_chance, percentile};
+use super::plan::{Catalogue, CatalogueError, Plan};
+use super::promises::{Harm, force_ratios, lost_beyond_chance, percentile};
 use super::results::{Metrics, ResultRow};
 use super::seats::Seat;
 use super::sweeps::{SweepRow, median, median_of};
-use super::words::{argument, plain, slug};
+use crate::campaign::{Block, Chapter, Extent, Progress, Report, StudyError};
 use firmware_bench::report::plot::text::figures;
 use firmware_bench::report::table::outcome;
 use std::collections::BTreeMap;
-use std::path::PathBuf;
 
-/// The summary: promises, sweeps, and every scene in one line a plant, with the user's own scenes by their files.
-/// Deterministic.
-pub fn summary(catalogue: &Catalogue, extent: Extent, own: &[PathBuf]) -> String {
-    let mut page = String::from("# Catalogue of overloads\n\n");
-    let how = match extent {
-        Extent::Quick => "a quick run: 20 kHz, three seeds, one cap for P1",
-        Extent::Full => "10 and 20 kHz, twenty seeds, 1 µm of sensor noise",
-    };
-    line(
-        &mut page,
-        &format!(
-            "Every scene under every policy, {how}. Plants P1 to P4 are `firmware-host/scenes/plants`; who takes part and how the scenes are sized is said in `docs/src/host/overloads-explained.md`, and why some promises do not hold. Repeat with\n\n```sh\ncargo run --release -- overloads{}{}\n```\n\n## Promises\n",
-            if extent == Extent::Quick {
-                " --quick"
-            } else {
-                ""
-            },
-            own.iter()
-                .map(|file| format!(" --scene {}", argument(file)))
-                .collect::<String>()
-        ),
-    );
-    let kept = catalogue.promises.iter().filter(|p| p.holds).count();
-    line(
-        &mut page,
-        &format!("{kept} of {} hold.\n", catalogue.promises.len()),
-    );
-    line(
-        &mut page,
-        "| promise | bound | measured | holds |\n| --- | --- | --- | --- |",
-    );
-    for promise in &catalogue.promises {
-        line(&mut page, &promise_row(promise));
-    }
-    for (name, results) in own_scenes(catalogue) {
-        line(&mut page, &format!("\n## Own scene: {}\n", plain(name)));
-        push_scene(&mut page, &results);
-    }
-    line(&mut page, "\n## Hardest impact, fastest whirl\n");
-    line(
-        &mut page,
-        "Radial impact from the middle that is recovered from, on a grid of 5 %, all slower ones too [m/s]; whirl at take-over as a share of v_lim; time to arrest 0.85 v_lim down to a quarter [ms]. Medians over the seeds, with the lowest in brackets where it differs.\n",
-    );
-    line(
-        &mut page,
-        "| plant | rate [kHz] | policy | impact | 10 % off the centre | whirl | arrest | closed form |\n| --- | --- | --- | --- | --- | --- | --- | --- |",
-    );
-    for row in &catalogue.sweeps {
-        line(&mut page, &sweep_row(row));
-    }
-    line(&mut page, "\n## Against levitation alone\n");
-    push_groups(&mut page, &catalogue.against_levitation);
-    let (told, same): (Vec<&Harm>, Vec<&Harm>) =
-        (catalogue.against_levitation.iter()).partition(|h| is_worth_telling(h));
-    line(
-        &mut page,
-        &format!(
-            "\nRecovered: seeds with and without the supervisor. Of {} places and scenes these are the ones where the supervisor recovers from more or fewer, or where the force is more than 2 % higher; in the other {} it recovers from as many and the force is the same or lower. All of them are in `overloads.json` and on the pages of the scenes.\n",
-            told.len() + same.len(),
-            same.len()
-        ),
-    );
-    line(
-        &mut page,
-        "| plant, rate: scene | median | 95 % | recovered | alone |\n| --- | --- | --- | --- | --- |",
-    );
-    for harm in told {
-        line(
-            &mut page,
-            &format!(
-                "| {} | {:.2} | {:.2} | {} of {} | {} |",
-                plain(&harm.place),
-                harm.force_ratio,
-                harm.force_ratio_95,
-                harm.recovered,
-                harm.seeds,
-                harm.recovered_alone
-            ),
-        );
-    }
-    page
+/// The catalogue as a study.
+///
+/// # Errors
+/// [`CatalogueError`].
+pub fn study(extent: Extent, progress: &dyn Progress) -> Result<Report, StudyError> {
+    let run = || Ok::<_, CatalogueError>(Plan::new(extent, Vec::new())?.run(progress)?);
+    Ok(report(&run()?, extent))
 }
 
-/// All of them in one line for each group of scenes.
-fn push_groups(page: &mut String, harms: &[Harm]) {
-    line(
-        page,
-        "Largest contact force of the supervisor over that of its own inner loop alone, seed by seed; 1 where neither touches. Each place and scene has the median over its seeds; here are the median and the 95th percentile of these in each group, and in how many the supervisor recovers from fewer seeds, beyond chance, and from more.\n",
+/// Promises, the user's own scenes, sweeps, what differs from levitation alone, and a folded chapter for every scene.
+/// Deterministic.
+pub fn report(catalogue: &Catalogue, extent: Extent) -> Report {
+    let how = extent.pick(
+        "A quick run: 20 kHz, three seeds, one cap for P1",
+        "10 and 20 kHz, twenty seeds",
     );
-    line(page, &format!("| {} |", GROUP_COLUMNS.join(" | ")));
-    line(page, &format!("{}|", "| --- ".repeat(GROUP_COLUMNS.len())));
-    for group in groups(harms) {
-        line(page, &format!("| {} |", group.cells().join(" | ")));
+    let story = format!(
+        "Every scene under every policy. {how}, 1 µm of sensor noise. Plants P1 to P4 are `firmware-host/scenes/plants`; who takes part and how the scenes are sized is said in `docs/src/host/overloads-explained.md`, and why some claims do not hold."
+    );
+    let mut chapters = vec![Chapter::new("What was run", vec![Block::text(story)])];
+    chapters.extend(own_scenes(catalogue));
+    let sweeps = "Radial impact from the middle that is recovered from, on a grid of 5 %, all slower ones too [m/s]; whirl at take-over as a share of v_lim; time to arrest 0.85 v_lim down to a quarter [ms]. Medians over the seeds, with the lowest in brackets where it differs.";
+    chapters.push(Chapter::new(
+        "Hardest impact, fastest whirl",
+        vec![
+            Block::text(sweeps.to_owned()),
+            Block::table(SWEEP_COLUMNS, catalogue.sweeps.iter().map(sweep_row)),
+        ],
+    ));
+    chapters.push(Chapter::new(
+        "Against levitation alone",
+        against_alone(&catalogue.against_levitation),
+    ));
+    chapters.extend(
+        (by_scene(catalogue.results.iter()).into_iter()).map(|(name, rows)| Chapter {
+            folded: true,
+            ..Chapter::new(name, vec![scene(&rows)])
+        }),
+    );
+    Report {
+        title: "Catalogue of overloads".to_owned(),
+        claims: catalogue.promises.clone(),
+        cases: catalogue.results.len() as u64,
+        chapters,
     }
+}
+
+/// All of them in one line for each group of scenes, and those that differ one by one.
+fn against_alone(harms: &[Harm]) -> Vec<Block> {
+    let (told, same): (Vec<&Harm>, Vec<&Harm>) = harms.iter().partition(|h| is_worth_telling(h));
+    let groups_are = "Largest contact force of the supervisor over that of its own inner loop alone, seed by seed; 1 where neither touches. Each place and scene has the median over its seeds; here are the median and the 95th percentile of these in each group, and in how many the supervisor recovers from fewer seeds, beyond chance, and from more.";
+    let told_are = format!(
+        "Recovered: seeds with and without the supervisor. Of {} places and scenes these are the ones where the supervisor recovers from more or fewer, or where the force is more than 2 % higher; in the other {} it recovers from as many and the force is the same or lower. All of them are in `overloads.json`.",
+        harms.len(),
+        same.len()
+    );
+    let line = |harm: &Harm| {
+        [
+            harm.place.clone(),
+            format!("{:.2}", harm.force_ratio),
+            format!("{:.2}", harm.force_ratio_95),
+            format!("{} of {}", harm.recovered, harm.seeds),
+            harm.recovered_alone.to_string(),
+        ]
+    };
+    vec![
+        Block::text(groups_are.to_owned()),
+        Block::table(GROUP_COLUMNS, groups(harms).iter().map(Group::cells)),
+        Block::text(told_are),
+        Block::table(
+            ["plant, rate: scene", "median", "95 %", "recovered", "alone"],
+            told.into_iter().map(line),
+        ),
+    ]
 }
 
 /// Of [`Group::cells`].
-pub const GROUP_COLUMNS: [&str; 8] = [
+const GROUP_COLUMNS: [&str; 8] = [
     "group",
     "scenes and places",
     "median",
@@ -121,7 +100,7 @@ pub const GROUP_COLUMNS: [&str; 8] = [
 
 /// A group of scenes and places against levitation alone.
 #[derive(Debug, Clone)]
-pub struct Group<'a> {
+struct Group<'a> {
     name: &'a str,
     ratios: Vec<f64>,
     fewer: usize,
@@ -135,12 +114,12 @@ impl Group<'_> {
     }
 
     /// Whether the supervisor does harm somewhere in it.
-    pub fn is_harmed(&self) -> bool {
+    fn is_harmed(&self) -> bool {
         self.above() + self.lost > 0
     }
 
     /// As text.
-    pub fn cells(&self) -> [String; GROUP_COLUMNS.len()] {
+    fn cells(&self) -> [String; GROUP_COLUMNS.len()] {
         [
             self.name.to_owned(),
             self.ratios.len().to_string(),
@@ -155,7 +134,7 @@ impl Group<'_> {
 }
 
 /// The groups by their names, and all of them.
-pub fn groups(harms: &[Harm]) -> Vec<Group<'_>> {
+fn groups(harms: &[Harm]) -> Vec<Group<'_>> {
     let mut groups: BTreeMap<&str, Vec<&Harm>> = BTreeMap::new();
     for harm in harms {
         groups.entry(harm.group).or_default().push(harm);
@@ -178,22 +157,18 @@ fn is_worth_telling(harm: &Harm) -> bool {
     harm.recovered != harm.recovered_alone || harm.force_ratio > 1.02 || harm.force_ratio_95 > 1.10
 }
 
-fn line(page: &mut String, text: &str) {
-    page.push_str(text);
-    page.push('\n');
-}
+const SWEEP_COLUMNS: [&str; 8] = [
+    "plant",
+    "rate [kHz]",
+    "policy",
+    "impact",
+    "10 % off the centre",
+    "whirl",
+    "arrest",
+    "closed form",
+];
 
-fn promise_row(p: &Promise) -> String {
-    let holds = if p.holds { "yes" } else { "**no**" };
-    format!(
-        "| {} | {} | {:.3} | {holds} |",
-        p.name,
-        p.bound(),
-        p.measured
-    )
-}
-
-fn sweep_row(row: &SweepRow) -> String {
+fn sweep_row(row: &SweepRow) -> [String; SWEEP_COLUMNS.len()] {
     let cell = |values: &[f64], factor: f64, digits: usize| match values.first() {
         None => "–".to_owned(),
         Some(lowest) => {
@@ -212,16 +187,16 @@ fn sweep_row(row: &SweepRow) -> String {
     } else {
         "–".to_owned()
     };
-    format!(
-        "| {} | {:.0} | {} | {} | {} | {} | {arrest} | {:.2} |",
-        row.plant,
-        1e-3 * row.rate_hz,
-        row.policy,
+    [
+        row.plant.clone(),
+        format!("{:.0}", 1e-3 * row.rate_hz),
+        row.policy.to_owned(),
         cell(&row.impact_m_s, 1.0, 3),
         cell(&row.offset_impact_m_s, 1.0, 3),
         cell(&row.whirl_share, 1.0, 2),
-        1e3 * row.closed_form_s
-    )
+        arrest,
+        format!("{:.2}", 1e3 * row.closed_form_s),
+    ]
 }
 
 fn by_scene<'a>(
@@ -234,20 +209,39 @@ fn by_scene<'a>(
     scenes
 }
 
-/// The user's own scenes: title and runs.
-pub fn own_scenes(catalogue: &Catalogue) -> BTreeMap<&str, Vec<&ResultRow>> {
-    by_scene(catalogue.results.iter().filter(|row| row.is_own()))
-}
-
-/// A page for each scene: file name and text.
-pub fn scenes(catalogue: &Catalogue) -> Vec<(String, String)> {
-    (by_scene(catalogue.results.iter()).into_iter())
-        .map(|(name, rows)| (format!("{}.md", slug(name)), scene_page(name, &rows)))
+/// A chapter for each scene of the user's own.
+fn own_scenes(catalogue: &Catalogue) -> Vec<Chapter> {
+    let own = by_scene(catalogue.results.iter().filter(|row| row.is_own()));
+    (own.into_iter())
+        .map(|(name, rows)| Chapter::new(format!("Own scene: {name}"), vec![scene(&rows)]))
         .collect()
 }
 
+/// Where the supervisor does harm, and the user's own scenes.
+pub fn in_brief(catalogue: &Catalogue) -> Vec<Chapter> {
+    let groups = groups(&catalogue.against_levitation);
+    let harmed: Vec<&Group<'_>> = groups.iter().filter(|group| group.is_harmed()).collect();
+    let mut chapters = Vec::new();
+    if !harmed.is_empty() {
+        chapters.push(Chapter::new(
+            "Largest contact force over levitation alone, by groups with a median above 1.1 or recoveries lost beyond chance",
+            vec![
+                Block::table(GROUP_COLUMNS, harmed.into_iter().map(Group::cells)),
+                Block::text("why: docs/src/host/overloads-explained.md"),
+            ],
+        ));
+    }
+    chapters.extend(own_scenes(catalogue));
+    chapters
+}
+
+/// A scene in figures, medians over the seeds.
+fn scene(results: &[&ResultRow]) -> Block {
+    Block::table(SCENE_COLUMNS, scene_rows(results).into_iter())
+}
+
 /// Columns of the table of a scene.
-pub const SCENE_COLUMNS: [&str; 12] = [
+const SCENE_COLUMNS: [&str; 12] = [
     "plant",
     "rate [kHz]",
     "policy",
@@ -263,7 +257,7 @@ pub const SCENE_COLUMNS: [&str; 12] = [
 ];
 
 /// A scene in figures, medians over the seeds: a row for each plant, rate and policy.
-pub fn scene_rows(results: &[&ResultRow]) -> Vec<[String; SCENE_COLUMNS.len()]> {
+fn scene_rows(results: &[&ResultRow]) -> Vec<[String; SCENE_COLUMNS.len()]> {
     let mut groups: BTreeMap<(&str, u64, usize), Vec<&ResultRow>> = BTreeMap::new();
     for row in results {
         // Policies of a scene of one's own that have no seat come last: there is one, `levitation`.
@@ -312,19 +306,4 @@ fn scene_row(plant: &str, rate_hz: u64, rows: &[&ResultRow]) -> [String; SCENE_C
         figures(of(&|m| m.peak_backward_speed_m_s)),
         figures(1e3 * back),
     ]
-}
-
-fn push_scene(page: &mut String, results: &[&ResultRow]) {
-    let of = |cells: &[String]| format!("| {} |", cells.join(" | "));
-    line(page, &of(&SCENE_COLUMNS.map(str::to_owned)));
-    line(page, &of(&SCENE_COLUMNS.map(|_| "---".to_owned())));
-    for row in scene_rows(results) {
-        line(page, &of(&row.map(|cell| plain(&cell))));
-    }
-}
-
-fn scene_page(name: &str, results: &[&ResultRow]) -> String {
-    let mut page = format!("# {}\n\nMedians over the seeds.\n\n", plain(name));
-    push_scene(&mut page, results);
-    page
 }

@@ -2,49 +2,31 @@
 
 use super::case::Case;
 use super::catalogue::cases;
-use super::found::{Found, Row, kept};
-use super::plants::{PlantCase, RATES_HZ, plants};
-use super::promises::{Harm, Promise, against_levitation, of_results, of_sweeps};
+use super::promises::{Harm, against_levitation, of_results, of_sweeps};
 use super::results::{ResultRow, run_case, run_own};
 use super::seats::Seat;
 use super::sweeps::{SweepPoint, SweepRow, row, sweep};
-use super::words::slug;
 use super::{reference, seats, tune};
+use crate::campaign::{Claim, Extent, Progress, Side};
+use crate::machines::plants::{PlantCase, RATES_HZ, plants};
+use crate::machines::tuned_gains::{Row, TunedGains, stored};
 use firmware_bench::run::closed_loop::RunError;
 use firmware_bench::scene::Scene;
 use firmware_bench::scene::diagnostic::SceneError;
 use firmware_bench::scene::policy_kind::PolicyKind;
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 use std::collections::BTreeSet;
 
-/// How much is run.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Extent {
-    /// One control rate, one cap for P1, three seeds.
-    Quick,
-    /// Everything, twenty seeds.
-    Full,
+/// Seeds of the sensor noise.
+fn seeds(extent: Extent) -> u64 {
+    extent.pick(3, 20)
 }
 
-impl Extent {
-    /// Seeds of the sensor noise.
-    pub fn seeds(self) -> u64 {
-        match self {
-            Self::Quick => 3,
-            Self::Full => 20,
-        }
-    }
-
-    fn takes(self, plant: &PlantCase) -> bool {
-        match self {
-            Self::Full => true,
-            Self::Quick => {
-                let one_of_p1 = !plant.name.starts_with("P1") || plant.name == "P1 150 N";
-                plant.rate_hz == RATES_HZ[1] && one_of_p1
-            }
-        }
-    }
+/// Quick is one control rate and one cap for P1.
+fn takes(extent: Extent, plant: &PlantCase) -> bool {
+    let one_of_p1 = !plant.name.starts_with("P1") || plant.name == "P1 150 N";
+    extent == Extent::Full || plant.rate_hz == RATES_HZ[1] && one_of_p1
 }
 
 /// Why the catalogue has no result.
@@ -53,8 +35,8 @@ pub enum CatalogueError {
     /// A plant of the catalogue is not valid.
     #[error(transparent)]
     Scene(#[from] SceneError),
-    /// Two scenes would share a page.
-    #[error("the title \"{title}\" is that of another scene, or as good as")]
+    /// Two scenes could not be told apart.
+    #[error("the title \"{title}\" is that of another scene")]
     Title {
         /// Title.
         title: String,
@@ -82,8 +64,9 @@ pub enum CatalogueError {
 /// What came out.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Catalogue {
-    /// Promises.
-    pub promises: Vec<Promise>,
+    /// What the supervisor promises.
+    #[serde(serialize_with = "with_at_least")]
+    pub promises: Vec<Claim>,
     /// Sweeps.
     pub sweeps: Vec<SweepRow>,
     /// Every scene against levitation alone.
@@ -92,10 +75,29 @@ pub struct Catalogue {
     pub results: Vec<ResultRow>,
 }
 
+/// Programs know the side of a bound of the catalogue by this key.
+fn with_at_least<S: Serializer>(claims: &[Claim], to: S) -> Result<S::Ok, S::Error> {
+    #[derive(Serialize)]
+    struct Promise<'a> {
+        name: &'a str,
+        bound: f64,
+        at_least: bool,
+        measured: f64,
+        holds: bool,
+    }
+    to.collect_seq(claims.iter().map(|claim| Promise {
+        name: &claim.name,
+        bound: claim.bound,
+        at_least: claim.side == Side::AtLeast,
+        measured: claim.measured,
+        holds: claim.holds,
+    }))
+}
+
 /// A plant at one control rate, with what is kept for it and what happens to it.
 struct Place {
     plant: PlantCase,
-    found: Found,
+    found: TunedGains,
     cases: Vec<Case>,
 }
 
@@ -126,11 +128,12 @@ impl Plan {
     pub fn new(extent: Extent, own: Vec<Scene>) -> Result<Self, CatalogueError> {
         let mut places = Vec::new();
         for rate_hz in RATES_HZ {
-            for plant in plants(rate_hz)?.into_iter().filter(|p| extent.takes(p)) {
-                let found = kept(&plant.name, rate_hz).ok_or_else(|| CatalogueError::NotFound {
-                    plant: plant.name.clone(),
-                    rate_hz,
-                })?;
+            for plant in plants(rate_hz)?.into_iter().filter(|p| takes(extent, p)) {
+                let found =
+                    stored(&plant.name, rate_hz).ok_or_else(|| CatalogueError::NotFound {
+                        plant: plant.name.clone(),
+                        rate_hz,
+                    })?;
                 places.push(Place {
                     cases: cases(&plant, found.tuned),
                     plant,
@@ -139,10 +142,8 @@ impl Plan {
             }
         }
         let of_catalogue = places.iter().flat_map(|place| &place.cases);
-        let mut taken: BTreeSet<String> = of_catalogue.map(|case| slug(&case.name)).collect();
-        // The page of the whole.
-        taken.insert("overloads".to_owned());
-        if let Some(twice) = own.iter().find(|scene| !taken.insert(slug(&scene.title))) {
+        let mut taken: BTreeSet<&str> = of_catalogue.map(|case| case.name.as_str()).collect();
+        if let Some(twice) = own.iter().find(|scene| !taken.insert(&scene.title)) {
             let title = twice.title.clone();
             return Err(CatalogueError::Title { title });
         }
@@ -155,7 +156,7 @@ impl Plan {
 
     fn seeds(&self, seat: Seat) -> std::ops::Range<u64> {
         0..if seat.measures() {
-            self.extent.seeds()
+            seeds(self.extent)
         } else {
             1
         }
@@ -174,7 +175,7 @@ impl Plan {
         for scene in &self.own {
             for kind in &scene.policies {
                 let of = |seed| Job::Own(scene, *kind, seed);
-                jobs.extend((0..self.extent.seeds()).map(of));
+                jobs.extend((0..seeds(self.extent)).map(of));
             }
         }
         jobs
@@ -190,16 +191,13 @@ impl Plan {
         jobs
     }
 
-    /// Pieces of work of a run.
-    pub fn pieces(&self) -> u64 {
-        self.jobs().len() as u64 + SWEEP_WORTH * self.sweep_jobs().len() as u64
-    }
-
-    /// Runs it. `on_done` is called with pieces of work done.
+    /// Runs it on the threads of the pool that it is called in.
     ///
     /// # Errors
     /// [`CatalogueError::Run`].
-    pub fn run(&self, on_done: &(dyn Fn(u64) + Sync)) -> Result<Catalogue, CatalogueError> {
+    pub fn run(&self, progress: &dyn Progress) -> Result<Catalogue, CatalogueError> {
+        let pieces = self.jobs().len() as u64 + SWEEP_WORTH * self.sweep_jobs().len() as u64;
+        progress.begin(pieces, "the catalogue");
         let results: Vec<ResultRow> = (self.jobs().par_iter())
             .map(|job| {
                 let row = match job {
@@ -208,11 +206,11 @@ impl Plan {
                     }
                     Job::Own(scene, kind, seed) => run_own(scene, *kind, *seed),
                 };
-                on_done(1);
+                progress.add(1);
                 row
             })
             .collect();
-        let sweeps = self.sweeps(on_done)?;
+        let sweeps = self.sweeps(progress)?;
         // Own scenes come last, and no promise is about them.
         let (of_catalogue, own) = results.split_at(results.partition_point(|row| !row.is_own()));
         let mut harms = against_levitation(of_catalogue, Seat::Tuned.name());
@@ -227,7 +225,7 @@ impl Plan {
         })
     }
 
-    fn sweeps(&self, on_done: &(dyn Fn(u64) + Sync)) -> Result<Vec<SweepRow>, CatalogueError> {
+    fn sweeps(&self, progress: &dyn Progress) -> Result<Vec<SweepRow>, CatalogueError> {
         let points = (self.sweep_jobs().par_iter())
             .map(|(Place { plant, found, .. }, seat, seed)| {
                 let point =
@@ -236,7 +234,7 @@ impl Plan {
                         policy: seat.name(),
                         reason,
                     });
-                on_done(SWEEP_WORTH);
+                progress.add(SWEEP_WORTH);
                 point
             })
             .collect::<Result<Vec<SweepPoint>, CatalogueError>>()?;
@@ -257,7 +255,11 @@ impl Plan {
 ///
 /// # Errors
 /// [`CatalogueError`].
-pub fn search(on_done: &dyn Fn(u64)) -> Result<Vec<Row>, CatalogueError> {
+pub fn search(progress: &dyn Progress) -> Result<Vec<Row>, CatalogueError> {
+    progress.begin(
+        (plants(RATES_HZ[0])?.len() * RATES_HZ.len()) as u64,
+        "the search",
+    );
     let mut rows = Vec::new();
     for rate_hz in RATES_HZ {
         for plant in plants(rate_hz)? {
@@ -281,14 +283,14 @@ pub fn search(on_done: &dyn Fn(u64)) -> Result<Vec<Row>, CatalogueError> {
             rows.push(Row {
                 plant: plant.name.clone(),
                 rate_hz,
-                found: Found {
+                found: TunedGains {
                     tuned,
                     stiff,
                     impact_law,
                     whirl_law: whirl_law.unwrap_or(impact_law),
                 },
             });
-            on_done(1);
+            progress.add(1);
         }
     }
     Ok(rows)

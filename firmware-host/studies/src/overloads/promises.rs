@@ -3,54 +3,12 @@
 use super::results::{Metrics, ResultRow};
 use super::seats::Seat;
 use super::sweeps::{SweepRow, TIMED_SHARE, median, median_of};
+use crate::campaign::Claim;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// A promise with its measurement.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Promise {
-    /// What is promised, where.
-    pub name: String,
-    /// The bound.
-    pub bound: f64,
-    /// Whether the measurement must not be below the bound, or not above.
-    pub at_least: bool,
-    /// What was measured.
-    pub measured: f64,
-    /// Whether it holds.
-    pub holds: bool,
-}
-
-impl Promise {
-    fn at_least(name: impl Into<String>, bound: f64, measured: f64) -> Self {
-        Self {
-            name: name.into(),
-            bound,
-            at_least: true,
-            measured,
-            holds: measured >= bound,
-        }
-    }
-
-    /// The bound as it is read.
-    pub fn bound(&self) -> String {
-        let sign = if self.at_least { "≥" } else { "≤" };
-        format!("{sign} {}", self.bound)
-    }
-
-    fn at_most(name: impl Into<String>, bound: f64, measured: f64) -> Self {
-        Self {
-            name: name.into(),
-            bound,
-            at_least: false,
-            measured,
-            holds: measured <= bound,
-        }
-    }
-}
-
 /// Promises about the sweeps.
-pub fn of_sweeps(rows: &[SweepRow]) -> Vec<Promise> {
+pub fn of_sweeps(rows: &[SweepRow]) -> Vec<Claim> {
     let mut promises = Vec::new();
     for row in rows.iter().filter(|r| r.policy == Seat::Supervisor.name()) {
         let here = |seat: Seat| {
@@ -65,11 +23,11 @@ pub fn of_sweeps(rows: &[SweepRow]) -> Vec<Promise> {
         if let Some(ratio) = ratio_to(Seat::Clairvoyant) {
             let bound = if levitated_only { 0.92 } else { 0.85 };
             let name = format!("{place}: impact recovered from, over clairvoyant");
-            promises.push(Promise::at_least(name, bound, ratio));
+            promises.push(Claim::at_least(name, bound, ratio));
         }
         if let (true, Some(ratio)) = (levitated_only, ratio_to(Seat::Tuned)) {
             let name = format!("{place}: impact recovered from, over tuned");
-            promises.push(Promise::at_least(name, 1.10, ratio));
+            promises.push(Claim::at_least(name, 1.10, ratio));
         }
         let baselines = [
             Seat::Passive,
@@ -80,41 +38,41 @@ pub fn of_sweeps(rows: &[SweepRow]) -> Vec<Promise> {
         ];
         if let Some(ratio) = ratio_to(Seat::Stiff) {
             let name = format!("{place}: impact recovered from, over stiff");
-            promises.push(Promise::at_least(name, 1.0, ratio));
+            promises.push(Claim::at_least(name, 1.0, ratio));
         }
         let best = (baselines.iter().filter_map(|seat| here(*seat)))
             .map(|r| median(&r.impact_m_s))
             .fold(0.0, f64::max);
         let name = format!("{place}: impact recovered from, over the best baseline");
-        promises.push(Promise::at_least(name, 1.0, own / best));
+        promises.push(Claim::at_least(name, 1.0, own / best));
         if let Some(reference) = here(Seat::Clairvoyant) {
             let others = best.max(own);
             let name = format!("{place}: clairvoyant over every other policy");
             let ratio = median(&reference.impact_m_s) / others;
-            promises.push(Promise::at_least(name, 1.0, ratio));
+            promises.push(Claim::at_least(name, 1.0, ratio));
         }
         let offset = median(&row.offset_impact_m_s) / own;
         let name = format!("{place}: impact with the bearing 10 % off the centre, over centred");
-        promises.push(Promise::at_least(name, 0.85, offset));
+        promises.push(Claim::at_least(name, 0.85, offset));
 
         let share = median(&row.whirl_share);
         let name = format!("{place}: whirl arrested at take-over, share of v_lim");
-        promises.push(Promise::at_least(name, 0.85, share));
+        promises.push(Claim::at_least(name, 0.85, share));
         for (seat, bound) in [(Seat::Clairvoyant, 0.95), (Seat::Tuned, 1.0)] {
             if let Some(other) = here(seat) {
                 let name = format!("{place}: whirl arrested, over {}", seat.name());
                 let ratio = share / median(&other.whirl_share);
-                promises.push(Promise::at_least(name, bound, ratio));
+                promises.push(Claim::at_least(name, bound, ratio));
             }
         }
         let time_s = slowest(row);
         let name =
             format!("{place}: time to arrest {TIMED_SHARE} v_lim, over closed form + 0.5 ms");
         let bound_s = 1.5 * row.closed_form_s + 5e-4;
-        promises.push(Promise::at_most(name, 1.0, time_s / bound_s));
+        promises.push(Claim::at_most(name, 1.0, time_s / bound_s));
         if let Some(tuned) = here(Seat::Tuned) {
             let name = format!("{place}: time to arrest {TIMED_SHARE} v_lim, over tuned");
-            promises.push(Promise::at_most(name, 0.85, time_s / slowest(tuned)));
+            promises.push(Claim::at_most(name, 0.85, time_s / slowest(tuned)));
         }
     }
     promises
@@ -191,31 +149,31 @@ pub fn against_levitation(rows: &[ResultRow], alone: &str) -> Vec<Harm> {
 }
 
 /// Promises about the catalogue, compared with levitation alone.
-pub fn of_results(rows: &[ResultRow], harms: &[Harm]) -> Vec<Promise> {
+pub fn of_results(rows: &[ResultRow], harms: &[Harm]) -> Vec<Claim> {
     let worst = |value: &dyn Fn(&Harm) -> f64| harms.iter().map(value).fold(0.0, f64::max);
     let medians = force_ratios(harms);
     let mut promises = vec![
-        Promise::at_most(
+        Claim::at_most(
             "largest contact force over levitation alone: worst scene's median",
             1.0,
             worst(&|h| h.force_ratio),
         ),
-        Promise::at_most(
+        Claim::at_most(
             "largest contact force over levitation alone: worst scene's 95th percentile",
             1.10,
             worst(&|h| h.force_ratio_95),
         ),
-        Promise::at_most(
+        Claim::at_most(
             "largest contact force over levitation alone: median of the scenes' medians",
             1.0,
             percentile(&medians, 0.5),
         ),
-        Promise::at_most(
+        Claim::at_most(
             "largest contact force over levitation alone: 95th percentile of the scenes' medians",
             1.10,
             percentile(&medians, 0.95),
         ),
-        Promise::at_most(
+        Claim::at_most(
             "scenes with fewer recoveries than chance explains",
             0.0,
             harms.iter().filter(|h| lost_beyond_chance(h)).count() as f64,
@@ -257,7 +215,7 @@ pub(super) fn lost_beyond_chance(harm: &Harm) -> bool {
     harm.recovered < harm.recovered_alone && probability < 0.05
 }
 
-fn of_static_overloads(rows: &[ResultRow]) -> Vec<Promise> {
+fn of_static_overloads(rows: &[ResultRow]) -> Vec<Claim> {
     let overloads = || rows.iter().filter(|r| r.group == "static overload");
     let alone = per_scene(overloads(), Seat::Tuned.name());
     let (mut impacts, mut force, mut impulse, mut back_s) = (0.0_f64, 0.0_f64, 0.0_f64, 0.0_f64);
@@ -282,21 +240,21 @@ fn of_static_overloads(rows: &[ResultRow]) -> Vec<Promise> {
         }));
     }
     vec![
-        Promise::at_most(
+        Claim::at_most(
             "static overload: hard touches more than levitation alone",
             1.0,
             impacts,
         ),
-        Promise::at_most(
+        Claim::at_most(
             "static overload: largest contact force over levitation alone",
             1.05,
             force,
         ),
-        Promise::at_most(
+        Claim::at_most(
             "static overload: contact impulse over levitation alone",
             0.95,
             impulse,
         ),
-        Promise::at_most("static overload: re-levitated after [s]", 0.02, back_s),
+        Claim::at_most("static overload: re-levitated after [s]", 0.02, back_s),
     ]
 }

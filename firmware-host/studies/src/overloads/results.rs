@@ -1,8 +1,8 @@
 //! Runs of the catalogue and what they measured.
 
 use super::case::Case;
-use super::found::Found;
 use super::seats::{Seat, tries};
+use crate::machines::tuned_gains::TunedGains;
 use firmware_bench::run::closed_loop::{Keep, run, run_policy};
 use firmware_bench::run::verdict::{Outcome, Verdict};
 use firmware_bench::scene::Scene;
@@ -123,7 +123,7 @@ pub fn run_case(
     case: &Case,
     (plant, rate_hz): (&str, f64),
     (seat, seed): (Seat, u64),
-    found: &Found,
+    found: &TunedGains,
 ) -> ResultRow {
     let scene = Scene {
         seed,

@@ -1,6 +1,6 @@
 //! Who drives the magnet: the baselines, the supervisor, and the reference that knows everything.
 
-use super::found::Found;
+use crate::machines::tuned_gains::TunedGains;
 use firmware_bench::device::levitation::{LevitationParams, TrueLevitation};
 use firmware_bench::run::clairvoyant::{Clairvoyant, ClairvoyantLaw};
 use firmware_bench::run::controller::Policy;
@@ -73,7 +73,7 @@ pub enum Task {
 }
 
 /// The policy set up for a scene on this plant; `None` where the scene lacks what it needs.
-pub fn seated(seat: Seat, task: Task, found: &Found, scene: &Scene) -> Option<Policy> {
+pub fn seated(seat: Seat, task: Task, found: &TunedGains, scene: &Scene) -> Option<Policy> {
     match seat {
         Seat::Passive => Policy::new(PolicyKind::Passive, scene),
         Seat::Radial => Policy::new(PolicyKind::Radial, scene),
@@ -101,7 +101,7 @@ pub fn seated(seat: Seat, task: Task, found: &Found, scene: &Scene) -> Option<Po
 /// What is tried on a scene of the catalogue for a seat, where the best counts. Only the reference has more than
 /// one: both of its laws, and the loops of the baselines with the true state, since a law made for impacts need
 /// not levitate best.
-pub fn tries(seat: Seat, found: &Found, scene: &Scene) -> Vec<Policy> {
+pub fn tries(seat: Seat, found: &TunedGains, scene: &Scene) -> Vec<Policy> {
     if seat != Seat::Clairvoyant {
         return seated(seat, Task::Impact, found, scene)
             .into_iter()

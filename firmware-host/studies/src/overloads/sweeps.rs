@@ -1,10 +1,10 @@
 //! The two sweeps: the hardest impact recovered from, and the fastest whirl arrested at take-over.
 
-use super::found::Found;
 use super::impact::recoverable_m_s;
-use super::plants::PlantCase;
 use super::seats::{Seat, Task, seated};
 use super::takeover::{ARRESTED, arrest_of, take_over};
+use crate::machines::plants::PlantCase;
+use crate::machines::tuned_gains::TunedGains;
 use firmware_bench::run::closed_loop::RunError;
 use firmware_bench::scene::Scene;
 use plant_model::V2;
@@ -69,7 +69,7 @@ pub struct SweepPoint {
 /// [`RunError`] of a run that cannot be trusted.
 pub fn sweep(
     case: &PlantCase,
-    found: &Found,
+    found: &TunedGains,
     (seat, seed): (Seat, u64),
 ) -> Result<SweepPoint, RunError> {
     let scene = Scene {

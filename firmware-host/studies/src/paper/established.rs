@@ -9,11 +9,11 @@ mod tables;
 use self::falling::Law;
 use self::pareto::Search;
 pub use self::rig::Violence;
-use super::{Chapter, Claim, Depth, Figure, Kind, PaperError, Row, rotors};
+use super::{Chapter, Extent, Figure, Kind, PaperError, Row, Stated, rotors};
 use plant_model::analysis::black::SteadyWhirl;
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 
-/// Speeds of the tests \[Hz\]; the first four and the last are in every depth.
+/// Speeds of the tests \[Hz\]; the first four and the last are in every extent.
 const SPEEDS_HZ: [f64; 13] = [
     15.0, 40.0, 80.0, 120.0, 166.0, 20.0, 30.0, 50.0, 60.0, 70.0, 100.0, 140.0, 150.0,
 ];
@@ -31,8 +31,8 @@ pub struct SpinDowns {
 ///
 /// # Errors
 /// [`PaperError`]: a run fails or does not whirl.
-pub fn spin_downs(depth: Depth) -> Result<SpinDowns, PaperError> {
-    let number = if depth == Depth::Quick { 5 } else { 13 };
+pub fn spin_downs(extent: Extent) -> Result<SpinDowns, PaperError> {
+    let number = if extent == Extent::Quick { 5 } else { 13 };
     let mut speeds = SPEEDS_HZ[..number].to_vec();
     speeds.sort_by(f64::total_cmp);
     let of = |params: &plant_model::params::PlantParams| {
@@ -51,12 +51,12 @@ pub fn spin_downs(depth: Depth) -> Result<SpinDowns, PaperError> {
 ///
 /// # Errors
 /// [`PaperError`]: a run fails or something looked for is not there.
-pub fn chapter(depth: Depth) -> Result<Chapter, PaperError> {
+pub fn chapter(extent: Extent) -> Result<Chapter, PaperError> {
     let (runs, (search, (laws, constant))) = rayon::join(
-        || spin_downs(depth),
+        || spin_downs(extent),
         || {
             rayon::join(
-                || pareto::search(depth),
+                || pareto::search(extent),
                 || rayon::join(falling::laws, falling::critical_with_constant_friction_m_s),
             )
         },
@@ -224,7 +224,7 @@ fn spin_down_rows(runs: &SpinDowns, search: &Search) -> Result<Vec<Row>, PaperEr
             1e3 * slow.displacement_m[2],
             "paper: order of magnitude; a bound in its fit".to_owned(),
         )
-        .claiming(Claim::AtMost(0.05)),
+        .stated(Stated::AtMost(0.05)),
         assumed(
             "Outer ring, from 166 Hz",
             "mm",
@@ -233,7 +233,7 @@ fn spin_down_rows(runs: &SpinDowns, search: &Search) -> Result<Vec<Row>, PaperEr
             1e3 * fast.displacement_m[2],
             "the paper's fit kept it within the measured value".to_owned(),
         )
-        .claiming(Claim::AtMost(0.05)),
+        .stated(Stated::AtMost(0.05)),
         assumed(
             "Rotor, from 40 Hz: displacement over clearance",
             "",
@@ -242,7 +242,7 @@ fn spin_down_rows(runs: &SpinDowns, search: &Search) -> Result<Vec<Row>, PaperEr
             slow.displacement_m[0] / rig::CLEARANCE_M,
             "paper: considerably larger than 1".to_owned(),
         )
-        .claiming(Claim::AtLeast(1.0)),
+        .stated(Stated::AtLeast(1.0)),
         unnamed("Peak normal force, from 40 Hz", "kN", 1e-3 * slow.force_n),
         unnamed("Peak normal force, from 166 Hz", "kN", 1e-3 * fast.force_n),
         unnamed("Peak friction torque, from 40 Hz", "N m", slow.torque_n_m),
@@ -292,7 +292,7 @@ fn nearest_rows(search: &Search) -> Vec<Row> {
             Kind::Fitted,
             CHOSEN,
         )
-        .claiming(Claim::AtMost(0.05)),
+        .stated(Stated::AtMost(0.05)),
         row(
             "standstill from 40 Hz",
             "s",
@@ -348,7 +348,7 @@ fn fast_rows(law: &Law, constant: [f64; 2]) -> Vec<Row> {
                 law.critical_m_s[1], law.critical_m_s[0]
             ),
         )
-        .claiming(Claim::AtLeast(1.0)),
+        .stated(Stated::AtLeast(1.0)),
         row(
             "The same, constant μ", "", None, constant[1] / constant[0], Kind::Assumed,
             format!("{:.3} against {:.3} m/s: spin alone does not matter", constant[1], constant[0]),

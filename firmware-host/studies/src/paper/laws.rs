@@ -4,7 +4,7 @@ mod impact;
 mod onset;
 mod whirl;
 
-use super::{Chapter, Depth, PaperError};
+use super::{Chapter, Extent, PaperError};
 use plant_model::contact::hunt_crossley::damping_for_restitution;
 use plant_model::contact::restitution_of;
 use plant_model::params::{ContactLaw, HuntCrossley, LinearContact, PlantParams};
@@ -62,12 +62,12 @@ fn matched_at_force(params: &PlantParams, normal_force_n: f64) -> Result<HuntCro
     })
 }
 
-/// Computes the chapter. Quick depth leaves onset with two configurations and whirl with fewer runs.
-pub(super) fn chapter(depth: Depth) -> Result<Chapter, PaperError> {
-    let (onset, whirl) = rayon::join(|| onset::compare(depth), || whirl::compare(depth));
+/// Computes the chapter. A quick run leaves onset with two configurations and whirl with fewer runs.
+pub(super) fn chapter(extent: Extent) -> Result<Chapter, PaperError> {
+    let (onset, whirl) = rayon::join(|| onset::compare(extent), || whirl::compare(extent));
     let (mut rows, onset_table) = onset?;
     let (whirl_rows, whirl_tables) = whirl?;
-    let (impact_rows, figures) = impact::compare(depth)?;
+    let (impact_rows, figures) = impact::compare(extent)?;
     rows.extend(impact_rows);
     rows.extend(whirl_rows);
     let mut tables = vec![onset_table];

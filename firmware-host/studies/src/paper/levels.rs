@@ -2,7 +2,7 @@
 
 use super::whirl_runs::{fastest_hz, footnote_4, ring};
 use super::{
-    Axis, Chapter, Chart, Claim, Curve, Depth, Drawing, Figure, Kind, Mark, PaperError, Row,
+    Axis, Chapter, Chart, Curve, Drawing, Extent, Figure, Kind, Mark, PaperError, Row, Stated,
 };
 use plant_model::analysis::black::SteadyWhirl;
 use plant_model::params::{PlantParams, SpinParams, StatorParams};
@@ -38,8 +38,8 @@ fn level(stator: StatorParams, contact_stiffness_n_m: f64) -> PlantParams {
     }
 }
 
-/// Computes the chapter. Both depths give the same rows; quick depth draws fewer start speeds.
-pub(super) fn chapter(depth: Depth) -> Result<Chapter, PaperError> {
+/// Computes the chapter. Both extents give the same rows; a quick run draws fewer start speeds.
+pub(super) fn chapter(extent: Extent) -> Result<Chapter, PaperError> {
     let two = footnote_4(STIFFNESS_N_M);
     let one = level(
         StatorParams::OneMass(ring(10.0, 8.9e8, 28_300.0)),
@@ -47,9 +47,9 @@ pub(super) fn chapter(depth: Depth) -> Result<Chapter, PaperError> {
     );
     let rigid = level(StatorParams::Rigid, STIFFNESS_N_M);
     let hard = level(StatorParams::Rigid, HARD_N_M);
-    let spins_hz: &[f64] = match depth {
-        Depth::Quick => &[40.0, 166.0],
-        Depth::Full => &[10.0, 20.0, 30.0, 40.0, 60.0, 80.0, 100.0, 130.0, 166.0],
+    let spins_hz: &[f64] = match extent {
+        Extent::Quick => &[40.0, 166.0],
+        Extent::Full => &[10.0, 20.0, 30.0, 40.0, 60.0, 80.0, 100.0, 130.0, 166.0],
     };
     let levels = [&rigid, &one, &two];
     let all = (spins_hz.par_iter())
@@ -81,7 +81,7 @@ pub(super) fn chapter(depth: Depth) -> Result<Chapter, PaperError> {
             Kind::Assumed,
             note,
         )
-        .claiming(Claim::Between(10.0, 50.0))
+        .stated(Stated::Between(10.0, 50.0))
     };
     let rows = vec![
         factor(
@@ -121,7 +121,7 @@ pub(super) fn chapter(depth: Depth) -> Result<Chapter, PaperError> {
             Kind::Assumed,
             format!("paper: rigid in no way adequate. Capped by √((k + k_c)/m) = {cap_hz:.0} Hz"),
         )
-        .claiming(Claim::AtLeast(MEASURED_40_HZ)),
+        .stated(Stated::AtLeast(MEASURED_40_HZ)),
         Row::new(
             ("Rigid stator, k_c = 1e9 N/m, from 166 Hz", "Hz"),
             source,
@@ -129,7 +129,7 @@ pub(super) fn chapter(depth: Depth) -> Result<Chapter, PaperError> {
             Kind::Assumed,
             "still under the cap",
         )
-        .claiming(Claim::AtLeast(MEASURED_166_HZ)),
+        .stated(Stated::AtLeast(MEASURED_166_HZ)),
         Row::new(
             ("Stator of one mass, from 40 Hz", "Hz"),
             source,
@@ -140,7 +140,7 @@ pub(super) fn chapter(depth: Depth) -> Result<Chapter, PaperError> {
                 100.0 * (one_40 / two_40 - 1.0)
             ),
         )
-        .claiming(Claim::AtLeast(MEASURED_40_HZ)),
+        .stated(Stated::AtLeast(MEASURED_40_HZ)),
         Row::new(
             ("Stator of two masses, from 40 Hz", "Hz"),
             source,

@@ -4,7 +4,8 @@ mod tables;
 
 use super::whirl_runs::{fastest_hz, footnote_4, settled};
 use super::{
-    Axis, Chapter, Chart, Claim, Curve, Depth, Drawing, Figure, Kind, Mark, PaperError, Row, Table,
+    Axis, Chapter, Chart, Curve, Drawing, Extent, Figure, Kind, Mark, PaperError, Row, Stated,
+    Table,
 };
 use plant_model::analysis::black::SteadyWhirl;
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
@@ -53,8 +54,8 @@ fn runs(stiffness_n_m: f64) -> Result<Runs, PaperError> {
     })
 }
 
-/// Computes the chapter. Both depths give the same numbers; the chart has fewer points in quick depth.
-pub(super) fn chapter(depth: Depth) -> Result<Chapter, PaperError> {
+/// Computes the chapter. Both extents give the same numbers; the chart has fewer points in a quick run.
+pub(super) fn chapter(extent: Extent) -> Result<Chapter, PaperError> {
     let missing = |what: &str| PaperError::Missing(what.to_owned());
     let hard = whirl(f64::INFINITY)?;
     let onset = hard.onset(HIGHEST_HZ).ok_or_else(|| missing("no onset"))?;
@@ -118,7 +119,7 @@ pub(super) fn chapter(depth: Depth) -> Result<Chapter, PaperError> {
             Kind::Predicted,
             "the lowest root is a lower bound: friction drives above it",
         )
-        .claiming(Claim::AtMost(55.0)),
+        .stated(Stated::AtMost(55.0)),
         Row::new(
             ("Least μ − μ_r that keeps any sliding whirl", ""),
             "Footnote 4",
@@ -149,12 +150,12 @@ pub(super) fn chapter(depth: Depth) -> Result<Chapter, PaperError> {
             tables::rolling(&hard),
             tables::existence()?,
         ],
-        figures: vec![needed_friction(depth, &hard)?],
+        figures: vec![needed_friction(extent, &hard)?],
     })
 }
 
-fn needed_friction(depth: Depth, hard: &SteadyWhirl) -> Result<Figure, PaperError> {
-    let points = if depth == Depth::Quick { 400 } else { 2000 };
+fn needed_friction(extent: Extent, hard: &SteadyWhirl) -> Result<Figure, PaperError> {
+    let points = if extent == Extent::Quick { 400 } else { 2000 };
     let (low, high) = (40.0_f64, HIGHEST_HZ);
     let curve = |whirl: &SteadyWhirl| -> Vec<(f64, f64)> {
         (0..=points)

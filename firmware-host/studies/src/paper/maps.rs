@@ -7,7 +7,7 @@ mod outcomes;
 use super::onset::fit;
 use super::rotors::OnsetRig;
 use super::{
-    Axis, Chapter, Chart, Curve, Depth, Drawing, Figure, HeatMap, Kind, Mark, PaperError, Row,
+    Axis, Chapter, Chart, Curve, Drawing, Extent, Figure, HeatMap, Kind, Mark, PaperError, Row,
 };
 use firmware_bench::report::plot::text::figures;
 use plant_model::analysis::impact::{Criterion, Search, critical_speed_m_s};
@@ -104,10 +104,10 @@ fn linear((from, to): (f64, f64), share: f64) -> f64 {
 ///
 /// # Errors
 /// [`PaperError`].
-pub fn chapter(depth: Depth) -> Result<Chapter, PaperError> {
+pub fn chapter(extent: Extent) -> Result<Chapter, PaperError> {
     let rig = OnsetRig::solid_disc(fit()?.restitution);
-    let points = if depth == Depth::Full { 81 } else { 21 };
-    let cells = if depth == Depth::Full {
+    let points = if extent == Extent::Full { 81 } else { 21 };
+    let cells = if extent == Extent::Full {
         (60, 40)
     } else {
         (16, 10)
@@ -132,10 +132,10 @@ pub fn chapter(depth: Depth) -> Result<Chapter, PaperError> {
         drawn.push(map(&rig, file, (x, y), cells)?);
     }
     let mut rows = sensitivities(&rig)?;
-    let (outcome_figures, row) = outcomes::balanced(&rig, depth)?;
+    let (outcome_figures, row) = outcomes::balanced(&rig, extent)?;
     drawn.extend(outcome_figures);
     rows.push(row);
-    let fringe = fringe::unbalanced(&rig, depth)?;
+    let fringe = fringe::unbalanced(&rig, extent)?;
     drawn.extend(fringe.figures);
     rows.push(fringe.row);
     Ok(Chapter {

@@ -5,7 +5,8 @@ mod spectrum;
 use self::spectrum::Spectrum;
 use super::whirl_runs::{at_the_wall, fastest_hz, footnote_4, ring};
 use super::{
-    Axis, Chapter, Chart, Claim, Curve, Depth, Drawing, Figure, Kind, Mark, PaperError, Row, Table,
+    Axis, Chapter, Chart, Curve, Drawing, Extent, Figure, Kind, Mark, PaperError, Row, Stated,
+    Table,
 };
 use plant_model::analysis::black::SteadyWhirl;
 use plant_model::params::{PlantParams, StatorParams};
@@ -115,8 +116,8 @@ fn record(params: &PlantParams) -> Result<Record, PaperError> {
     ))
 }
 
-/// Computes the chapter; both depths are the same.
-pub(super) fn chapter(_: Depth) -> Result<Chapter, PaperError> {
+/// Computes the chapter; both extents are the same.
+pub(super) fn chapter(_: Extent) -> Result<Chapter, PaperError> {
     let params = mounted();
     let run = record(&params)?;
     let [rotor, ring, force] =
@@ -185,7 +186,7 @@ pub(super) fn chapter(_: Depth) -> Result<Chapter, PaperError> {
             Kind::Assumed,
             "paper: more than 1 mm; hangs on the impact, here 0.8 m/s",
         )
-        .claiming(Claim::AtLeast(1.0)),
+        .stated(Stated::AtLeast(1.0)),
         Row::new(
             ("Largest displacement of the ring", "mm"),
             SOURCE,
@@ -193,7 +194,7 @@ pub(super) fn chapter(_: Depth) -> Result<Chapter, PaperError> {
             Kind::Assumed,
             "paper: more than 1 mm; no bending of rods in the model",
         )
-        .claiming(Claim::AtLeast(1.0)),
+        .stated(Stated::AtLeast(1.0)),
         Row::new(
             ("Share of the contact force's power above 150 Hz", ""),
             SOURCE,
@@ -208,7 +209,7 @@ pub(super) fn chapter(_: Depth) -> Result<Chapter, PaperError> {
             Kind::Assumed,
             "paper: fast dominates",
         )
-        .claiming(Claim::AtLeast(1.0)),
+        .stated(Stated::AtLeast(1.0)),
         Row::new(
             ("Fastest whirl with the ring as one rigid mass", "Hz"),
             "Results, on Black's theory",

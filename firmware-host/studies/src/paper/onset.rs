@@ -6,7 +6,7 @@ mod impacts;
 mod variants;
 
 use super::rotors::OnsetRig;
-use super::{Chapter, Claim, Depth, Kind, PaperError, Row};
+use super::{Chapter, Extent, Kind, PaperError, Row, Stated};
 use plant_model::analysis::impact::{Criterion, Search, critical_speed_m_s};
 use plant_model::analysis::onset::critical_tangential_speed_m_s;
 use plant_model::params::Start;
@@ -249,7 +249,7 @@ pub fn rms_log_error(configurations: &[Configuration; 5], computed: &[f64]) -> f
 ///
 /// # Errors
 /// [`PaperError`].
-pub fn chapter(depth: Depth) -> Result<Chapter, PaperError> {
+pub fn chapter(extent: Extent) -> Result<Chapter, PaperError> {
     let fit = fit()?;
     let five = configurations(&fit);
     let values: Vec<[f64; 3]> = (five.par_iter())
@@ -307,7 +307,7 @@ pub fn chapter(depth: Depth) -> Result<Chapter, PaperError> {
         title: "Onset",
         story: story(),
         rows,
-        tables: vec![impact_table, variants::table(&fit, depth)?],
+        tables: vec![impact_table, variants::table(&fit, extent)?],
         figures: vec![figure::figure(&five, &values)],
     })
 }
@@ -362,7 +362,7 @@ fn threshold_rows(five: &[Configuration; 5]) -> Result<Vec<Row>, PaperError> {
         ),
         Kind::Predicted,
         "the lowest at which whirl can begin, so a lower bound; the paper reads 55 Hz off a whirl that has begun",
-    ).claiming(Claim::AtMost(55.0)));
+    ).stated(Stated::AtMost(55.0)));
     Ok(rows)
 }
 

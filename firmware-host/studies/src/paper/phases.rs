@@ -4,7 +4,7 @@ mod figures;
 
 use super::established::rig::{CLEARANCE_M, run};
 use super::rotors::footnote_4;
-use super::{Chapter, Claim, Depth, Kind, PaperError, Row, Table};
+use super::{Chapter, Extent, Kind, PaperError, Row, Stated, Table};
 use plant_model::V2;
 use plant_model::analysis::course::{Course, Pulse, Watch};
 use plant_model::analysis::phases::{self, Bounds, NAMES};
@@ -109,11 +109,11 @@ fn to_maximum_s(course: &Course) -> Option<f64> {
     Some(course.fastest()?.t_s - course.pulse_s?.0)
 }
 
-/// The chapter; every depth computes the same.
+/// The chapter; every extent computes the same.
 ///
 /// # Errors
 /// [`PaperError`]: a run fails or has not all nine phases.
-pub fn chapter(_: Depth) -> Result<Chapter, PaperError> {
+pub fn chapter(_: Extent) -> Result<Chapter, PaperError> {
     let whirl = whirl_from_40_hz()?;
     let critical_n = whirl.force_n / ABOVE_CRITICAL;
     let nearest = excited(critical_n)?;
@@ -212,7 +212,7 @@ fn rows(whirl: &Whirl, [shortest_s, longest_s]: [f64; 2]) -> Option<Vec<Row>> {
                 "paper: three to four revolutions; of the whirl, since the rotor makes only {rotor:.2} meanwhile. Hangs on the 5 %"
             ),
         )
-        .claiming(Claim::Between(3.0, 4.0)),
+        .stated(Stated::Between(3.0, 4.0)),
         row(
             "Impacts before continuous contact",
             "",

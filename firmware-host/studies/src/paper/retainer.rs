@@ -8,7 +8,7 @@ mod tables;
 use self::runs::{Run, lightest_that_whirls, most_whirl_m_s, race, run};
 use super::rotors::OnsetRig;
 use super::whirl_runs::footnote_4;
-use super::{Chapter, Depth, Kind, PaperError, Row};
+use super::{Chapter, Extent, Kind, PaperError, Row};
 use plant_model::analysis::onset::critical_tangential_speed_m_s;
 use plant_model::params::{PlantParams, SpinParams};
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
@@ -26,7 +26,7 @@ const ONSET_IMPACT_M_S: f64 = 0.2;
 const RESTITUTION: f64 = 0.7;
 /// Contact stiffness that stands for a rigid wall \[N/m\].
 const HARD_N_M: f64 = 1e11;
-/// Races from heavy to light \[kg m²\]; the first of quick depth are those of the rows.
+/// Races from heavy to light \[kg m²\]; the first of a quick run are those of the rows.
 const INERTIAS_KG_M2: [f64; 9] = [1e-1, 1e-2, 3e-3, 1e-3, 3e-4, 3e-2, 6e-3, 2e-3, 1e-4];
 /// Race of the rows and of the table of drags \[kg m²\].
 const LIGHT_KG_M2: f64 = 1e-3;
@@ -47,8 +47,8 @@ struct Tried {
     run: Run,
 }
 
-fn tried(depth: Depth) -> Result<Vec<Tried>, PaperError> {
-    let number = if depth == Depth::Quick { 5 } else { 9 };
+fn tried(extent: Extent) -> Result<Vec<Tried>, PaperError> {
+    let number = if extent == Extent::Quick { 5 } else { 9 };
     let mut inertias = INERTIAS_KG_M2[..number].to_vec();
     inertias.sort_by(|a, b| b.total_cmp(a));
     let mut all = vec![None];
@@ -70,14 +70,14 @@ fn onset_rig() -> Result<PlantParams, PaperError> {
     OnsetRig::solid_disc(RESTITUTION).params()
 }
 
-/// Computes the chapter. Both depths give the same rows; quick depth has fewer races.
-pub(super) fn chapter(depth: Depth) -> Result<Chapter, PaperError> {
+/// Computes the chapter. Both extents give the same rows; a quick run has fewer races.
+pub(super) fn chapter(extent: Extent) -> Result<Chapter, PaperError> {
     let (all, (drags, (onset, free))) = rayon::join(
-        || tried(depth),
+        || tried(extent),
         || {
             rayon::join(
-                || tables::drags(depth),
-                || rayon::join(|| onset(depth), without_shaft),
+                || tables::drags(extent),
+                || rayon::join(|| onset(extent), without_shaft),
             )
         },
     );
@@ -216,7 +216,7 @@ struct Part {
 }
 
 /// Whether a race keeps whirl from starting: the onset rig at held spin.
-fn onset(depth: Depth) -> Result<Part, PaperError> {
+fn onset(extent: Extent) -> Result<Part, PaperError> {
     let rig = onset_rig()?;
     let threshold = critical_tangential_speed_m_s(&rig)
         .ok_or_else(|| PaperError::Missing("no threshold".to_owned()))?;
@@ -224,7 +224,7 @@ fn onset(depth: Depth) -> Result<Part, PaperError> {
     hard.contact_stiffness_n_m = HARD_N_M;
     let hard = hard.params()?;
     let (criticals, (lightest, lightest_hard)) = rayon::join(
-        || tables::critical_impacts(depth, &rig),
+        || tables::critical_impacts(extent, &rig),
         || {
             rayon::join(
                 || lightest_that_whirls(&rig, (ONSET_IMPACT_M_S, SPIN_HZ)),

@@ -1,7 +1,7 @@
 //! The rows of all chapters: as JSON for programs, as tables for the terminal, and how a row is worded.
 
 use super::summary::{Summary, all};
-use super::{Chapter, Claim, Kind, Row};
+use super::{Chapter, Kind, Row, Stated};
 use comfy_table::Cell;
 use firmware_bench::report::plot::text::figures;
 use firmware_bench::report::table::{lined, right};
@@ -41,7 +41,7 @@ pub fn json(chapters: &[Chapter]) -> Rows<'_> {
             unit: row.unit,
             kind: row.kind,
             deviation: row.deviation,
-            claim: (row.claim != Claim::Value).then(|| paper(row)),
+            claim: (row.stated != Stated::Value).then(|| paper(row)),
             holds: row.holds(),
             chapter: chapter.title,
             note: &row.note,
@@ -52,11 +52,11 @@ pub fn json(chapters: &[Chapter]) -> Rows<'_> {
 
 /// What the paper has.
 pub(super) fn paper(row: &Row) -> String {
-    match row.claim {
-        Claim::Value => row.paper.map_or("–".to_owned(), figures),
-        Claim::AtMost(high) => format!("≤ {}", figures(high)),
-        Claim::AtLeast(low) => format!("≥ {}", figures(low)),
-        Claim::Between(low, high) => format!("{} to {}", figures(low), figures(high)),
+    match row.stated {
+        Stated::Value => row.paper.map_or("–".to_owned(), figures),
+        Stated::AtMost(high) => format!("≤ {}", figures(high)),
+        Stated::AtLeast(low) => format!("≥ {}", figures(low)),
+        Stated::Between(low, high) => format!("{} to {}", figures(low), figures(high)),
     }
 }
 
@@ -67,8 +67,8 @@ pub(super) fn computed(row: &Row) -> String {
 
 /// The deviation; bounds and ranges hold or do not.
 pub(super) fn deviation(row: &Row) -> String {
-    match (row.claim, row.holds()) {
-        (Claim::Value, _) => row.deviation.map_or("–".to_owned(), percent),
+    match (row.stated, row.holds()) {
+        (Stated::Value, _) => row.deviation.map_or("–".to_owned(), percent),
         (_, Some(true)) => "holds".to_owned(),
         (_, Some(false)) => "fails".to_owned(),
         (_, None) => "–".to_owned(),

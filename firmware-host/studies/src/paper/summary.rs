@@ -1,6 +1,6 @@
 //! What comes of all rows together: how good the predictions are, what was fitted, what misses.
 
-use super::{Chapter, Claim, Kind, MISS, Row};
+use super::{Chapter, Kind, MISS, Row, Stated};
 use firmware_bench::report::plot::text::figures;
 
 /// Every row with its chapter.
@@ -82,7 +82,7 @@ impl<'a> Summary<'a> {
 
 fn sentence(meaning: &str, rows: &[&Row]) -> String {
     let (values, claims): (Vec<&Row>, Vec<&Row>) =
-        (rows.iter().copied()).partition(|row| row.claim == Claim::Value);
+        (rows.iter().copied()).partition(|row| row.stated == Stated::Value);
     let met = |rows: &[&Row]| rows.iter().filter(|r| r.holds() == Some(true)).count();
     let mut parts = Vec::new();
     if !values.is_empty() {

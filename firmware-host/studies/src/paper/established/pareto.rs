@@ -2,7 +2,7 @@
 
 use super::rig::violence;
 use crate::paper::rotors::{LeftOut, USED, footnote_4_with};
-use crate::paper::{Depth, PaperError, Table};
+use crate::paper::{Extent, PaperError, Table};
 use plant_model::contact::damping_for_restitution;
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 
@@ -92,17 +92,17 @@ pub(super) struct Search {
     /// Number of sets that meet all but the flatness.
     pub(super) met_three: usize,
     /// Nearest to plateau, ring and standstill together, of those with the restitution that every
-    /// depth tries.
+    /// extent tries.
     pub(super) nearest: Candidate,
     /// Sets that no other is better than, with the used set.
     pub(super) table: Table,
 }
 
 /// Runs the whole grid.
-pub(super) fn search(depth: Depth) -> Result<Search, PaperError> {
-    let restitutions = match depth {
-        Depth::Quick => &RESTITUTIONS[..1],
-        Depth::Full => &RESTITUTIONS,
+pub(super) fn search(extent: Extent) -> Result<Search, PaperError> {
+    let restitutions = match extent {
+        Extent::Quick => &RESTITUTIONS[..1],
+        Extent::Full => &RESTITUTIONS,
     };
     let mut sets = vec![USED];
     for restitution in restitutions {

@@ -2,7 +2,7 @@
 
 use super::onset::{linear_restitution, rig};
 use super::{linear_of, matched_at_impact, with_law};
-use crate::paper::{Axis, Chart, Curve, Depth, Drawing, Figure, Kind, Mark, PaperError, Row};
+use crate::paper::{Axis, Chart, Curve, Drawing, Extent, Figure, Kind, Mark, PaperError, Row};
 use plant_model::params::{PlantParams, SlidingFriction, Start};
 use plant_model::{Inputs, Options, V2, build};
 
@@ -48,12 +48,12 @@ fn impact(params: &PlantParams, longest_s: f64, samples: u32) -> Result<Loop, Pa
 }
 
 /// Rows and figures of the impact.
-pub(super) fn compare(depth: Depth) -> Result<(Vec<Row>, Vec<Figure>), PaperError> {
+pub(super) fn compare(extent: Extent) -> Result<(Vec<Row>, Vec<Figure>), PaperError> {
     let params = rig(0.003)?;
     let linear = linear_of(&params)?;
     let law = matched_at_impact(&params, SPEED_M_S)?;
     let mass_kg = params.contact_mass_kg();
-    let samples = if depth == Depth::Quick { 300 } else { 1500 };
+    let samples = if extent == Extent::Quick { 300 } else { 1500 };
     let longest_s = 2.0 * law.undamped_contact_s(SPEED_M_S, mass_kg);
     let a = impact(&params, longest_s, samples)?;
     let b = impact(&with_law(&params, law), longest_s, samples)?;

@@ -2,7 +2,7 @@
 
 use super::{linear_impact, linear_of, matched_at_impact, with_law};
 use crate::paper::rotors::OnsetRig;
-use crate::paper::{Depth, Kind, PaperError, Row, Table};
+use crate::paper::{Extent, Kind, PaperError, Row, Table};
 use plant_model::analysis::impact::{
     Criterion, Impact, Outcome, Search, aftermath, critical_speed_m_s,
 };
@@ -134,8 +134,8 @@ fn fitted_rows(used: &[Configuration]) -> Result<Vec<Row>, PaperError> {
 }
 
 /// Rows and table of the critical speeds.
-pub(super) fn compare(depth: Depth) -> Result<(Vec<Row>, Table), PaperError> {
-    let number = if depth == Depth::Quick { 2 } else { 4 };
+pub(super) fn compare(extent: Extent) -> Result<(Vec<Row>, Table), PaperError> {
+    let number = if extent == Extent::Quick { 2 } else { 4 };
     let used = &CONFIGURATIONS[..number];
     let all = (used.par_iter())
         .map(critical)

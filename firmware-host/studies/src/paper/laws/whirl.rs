@@ -3,7 +3,7 @@
 use super::{matched_at_force, matched_at_impact, with_law};
 use crate::paper::established::rig::{IMPACT_M_S, Violence, violence};
 use crate::paper::whirl_runs::{Settled, footnote_4, settled};
-use crate::paper::{Depth, Kind, PaperError, Row, Table};
+use crate::paper::{Extent, Kind, PaperError, Row, Table};
 use plant_model::analysis::black::{Circle, SteadyWhirl};
 use plant_model::params::{HuntCrossley, PlantParams};
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
@@ -44,7 +44,7 @@ fn held(params: &PlantParams) -> Result<Settled, PaperError> {
 }
 
 /// Rows and tables.
-pub(super) fn compare(depth: Depth) -> Result<(Vec<Row>, Vec<Table>), PaperError> {
+pub(super) fn compare(extent: Extent) -> Result<(Vec<Row>, Vec<Table>), PaperError> {
     let missing = |what: &str| PaperError::Missing(what.to_owned());
     let linear = footnote_4(STIFFNESS_N_M);
     let mut black = SteadyWhirl::of(&linear).ok_or_else(|| missing("no isotropic stator"))?;
@@ -70,9 +70,9 @@ pub(super) fn compare(depth: Depth) -> Result<(Vec<Row>, Vec<Table>), PaperError
             Some(at_force),
         ),
     ];
-    let spins_hz: &[f64] = match depth {
-        Depth::Quick => &[40.0, 166.0],
-        Depth::Full => &[40.0, 80.0, 166.0],
+    let spins_hz: &[f64] = match extent {
+        Extent::Quick => &[40.0, 166.0],
+        Extent::Full => &[40.0, 80.0, 166.0],
     };
     let tasks: Vec<_> = (laws.iter())
         .flat_map(|(name, params, _)| spins_hz.iter().map(move |hz| (*name, params, *hz)))

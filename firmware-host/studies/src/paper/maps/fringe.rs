@@ -3,7 +3,7 @@
 use super::linear;
 use super::outcomes::{changes, figure, shade};
 use crate::paper::rotors::OnsetRig;
-use crate::paper::{Axis, Depth, Figure, Kind, PaperError, Row, Table};
+use crate::paper::{Axis, Extent, Figure, Kind, PaperError, Row, Table};
 use plant_model::analysis::impact::{Criterion, Impact, Outcome, aftermath};
 use rayon::prelude::{IntoParallelIterator, ParallelIterator};
 use std::f64::consts::TAU;
@@ -60,8 +60,8 @@ fn outcomes(
     Ok((cells, undecided))
 }
 
-pub(super) fn unbalanced(rig: &OnsetRig, depth: Depth) -> Result<Fringe, PaperError> {
-    let grid = if depth == Depth::Full {
+pub(super) fn unbalanced(rig: &OnsetRig, extent: Extent) -> Result<Fringe, PaperError> {
+    let grid = if extent == Extent::Full {
         (150, 72)
     } else {
         (50, 12)

@@ -2,7 +2,7 @@
 
 use super::{FRICTION, INCLINATION, Varied, axis, linear};
 use crate::paper::rotors::OnsetRig;
-use crate::paper::{Axis, Depth, Drawing, Figure, HeatMap, Kind, PaperError, Row};
+use crate::paper::{Axis, Drawing, Extent, Figure, HeatMap, Kind, PaperError, Row};
 use plant_model::analysis::impact::{Aftermath, Criterion, Impact, Outcome, aftermath};
 use rayon::prelude::{IntoParallelIterator, ParallelIterator};
 
@@ -53,8 +53,8 @@ pub(super) fn figure(
 }
 
 /// The maps, and the row that says how often the outcome changes over the speed.
-pub(super) fn balanced(rig: &OnsetRig, depth: Depth) -> Result<([Figure; 2], Row), PaperError> {
-    let (columns, rows) = if depth == Depth::Full {
+pub(super) fn balanced(rig: &OnsetRig, extent: Extent) -> Result<([Figure; 2], Row), PaperError> {
+    let (columns, rows) = if extent == Extent::Full {
         (150, 90)
     } else {
         (50, 24)

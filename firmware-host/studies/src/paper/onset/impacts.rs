@@ -2,7 +2,7 @@
 
 use super::Configuration;
 use crate::paper::rotors::OnsetRig;
-use crate::paper::{Claim, Kind, PaperError, Row, Table};
+use crate::paper::{Kind, PaperError, Row, Stated, Table};
 use plant_model::analysis::impact::{Criterion, Impact, aftermath};
 use rayon::prelude::{IntoParallelIterator, ParallelIterator};
 
@@ -46,7 +46,7 @@ pub(super) fn until_whirl(
             Kind::Predicted,
             format!("of the five configurations; fewest {low}; {note}"),
         )
-        .claiming(Claim::Between(1.0, 5.0))
+        .stated(Stated::Between(1.0, 5.0))
     };
     let rows = vec![
         row(

@@ -3,7 +3,7 @@
 
 use super::{Configuration, Fit, configurations, fit_restitution, rms_log_error};
 use crate::paper::rotors::OnsetRig;
-use crate::paper::{Depth, PaperError, Table};
+use crate::paper::{Extent, PaperError, Table};
 use plant_model::Options;
 use plant_model::analysis::impact::{Criterion, Search, critical_speed_m_s};
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
@@ -19,7 +19,7 @@ struct Variant {
     contact_stiffness_n_m: Option<f64>,
 }
 
-fn variants(depth: Depth) -> Vec<Variant> {
+fn variants(extent: Extent) -> Vec<Variant> {
     let base = |name: String| Variant {
         name,
         criterion: Criterion::default(),
@@ -45,7 +45,7 @@ fn variants(depth: Depth) -> Vec<Variant> {
         ..Options::default()
     };
     all.push(variant);
-    if depth == Depth::Full {
+    if extent == Extent::Full {
         let mut variant = base("upwards in steps of 0.05 %".to_owned());
         variant.search.step = 5e-4;
         all.push(variant);
@@ -60,9 +60,9 @@ fn variants(depth: Depth) -> Vec<Variant> {
 }
 
 /// The table of variants.
-pub(super) fn table(fit: &Fit, depth: Depth) -> Result<Table, PaperError> {
+pub(super) fn table(fit: &Fit, extent: Extent) -> Result<Table, PaperError> {
     let five = configurations(fit);
-    let rows = (variants(depth).par_iter())
+    let rows = (variants(extent).par_iter())
         .map(|variant| {
             let restitution = match variant.contact_stiffness_n_m {
                 Some(k_c) => fit_restitution(k_c)?,

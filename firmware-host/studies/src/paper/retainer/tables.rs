@@ -1,6 +1,6 @@
 //! Tables over inertia and drag of the race.
 
-use super::super::{Depth, PaperError, Row, Table};
+use super::super::{Extent, PaperError, Row, Table};
 use super::runs::{Run, most_whirl_m_s, race, run, sustained_hz, sustaining_drag_n_m_s};
 use super::{IMPACT_M_S, LIGHT_KG_M2, Part, SPIN_HZ, Tried, driven, row};
 use plant_model::analysis::impact::{Criterion, Search, critical_speed_m_s};
@@ -62,11 +62,11 @@ pub(super) fn inertias(all: &[Tried]) -> Table {
 }
 
 /// Drag at held spin: which drag keeps the whirl alive.
-pub(super) fn drags(depth: Depth) -> Result<Part, PaperError> {
+pub(super) fn drags(extent: Extent) -> Result<Part, PaperError> {
     let least = sustaining_drag_n_m_s(&driven(LIGHT_KG_M2, 0.0), SPIN_HZ)
         .ok_or_else(|| PaperError::Missing("no threshold".to_owned()))?;
     let mut all = vec![0.0, 0.8 * least, 1.25 * least, 1e-2];
-    if depth == Depth::Full {
+    if extent == Extent::Full {
         all.extend([2e-3, 5e-3, 2e-2, 5e-2]);
         all.sort_by(f64::total_cmp);
     }
@@ -130,9 +130,9 @@ pub(super) fn drags(depth: Depth) -> Result<Part, PaperError> {
 /// Critical impacts of the onset rig by race.
 pub(super) struct Criticals(Vec<(Option<f64>, Option<f64>)>);
 
-pub(super) fn critical_impacts(depth: Depth, rig: &PlantParams) -> Result<Criticals, PaperError> {
+pub(super) fn critical_impacts(extent: Extent, rig: &PlantParams) -> Result<Criticals, PaperError> {
     let mut inertias = vec![None, Some(LIGHT_KG_M2), Some(4.2e-4)];
-    if depth == Depth::Full {
+    if extent == Extent::Full {
         inertias.splice(1..1, [Some(1e-2), Some(3e-3)]);
         inertias.insert(4, Some(6e-4));
     }

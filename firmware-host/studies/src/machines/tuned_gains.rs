@@ -8,8 +8,8 @@ use std::sync::LazyLock;
 /// Result of the searches on one plant at one rate.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Found {
-    /// The loop with the best impact result under the limits of [`super::tune`].
+pub struct TunedGains {
+    /// The loop with the best impact result under the limits of [`tune`](crate::overloads::tune).
     pub tuned: LevitationParams,
     /// An ordinary loop.
     pub stiff: LevitationParams,
@@ -27,7 +27,7 @@ pub struct Row {
     /// Control rate \[Hz\].
     pub rate_hz: f64,
     /// What was found.
-    pub found: Found,
+    pub found: TunedGains,
 }
 
 /// What is kept in the project, written by `overloads --search`.
@@ -41,7 +41,7 @@ fn all_kept() -> &'static [Row] {
 }
 
 /// The kept results of a plant at a rate.
-pub fn kept(plant: &str, rate_hz: f64) -> Option<Found> {
+pub fn stored(plant: &str, rate_hz: f64) -> Option<TunedGains> {
     let row = (all_kept().iter()).find(|row| row.plant == plant && row.rate_hz == rate_hz);
     row.map(|row| row.found)
 }

@@ -1,0 +1,47 @@
+//! Chapters and claims for the terminal.
+
+use comfy_table::{Cell, Table as Lines};
+use firmware_bench::report::table::{lined, right};
+use firmware_studies::campaign::{Block, CLAIM_COLUMNS, Chapter, Claim, Table};
+
+/// Chapters that are not folded, without figures.
+pub(super) fn text(chapters: &[Chapter]) -> String {
+    let shown = chapters.iter().filter(|chapter| !chapter.folded);
+    let of = |chapter: &Chapter| {
+        let blocks: String = chapter.blocks.iter().filter_map(block).collect();
+        format!("{}\n{blocks}\n", chapter.title)
+    };
+    shown.map(of).collect()
+}
+
+fn block(block: &Block) -> Option<String> {
+    match block {
+        Block::Paragraph(text) => Some(format!("{text}\n")),
+        Block::List(points) => Some(points.iter().map(|point| format!("- {point}\n")).collect()),
+        Block::Table(table, _) => Some(format!("{}\n", lines(table))),
+        Block::Figures(_) => None,
+    }
+}
+
+fn lines(table: &Table) -> Lines {
+    let mut lines = lined(&table.columns);
+    for row in &table.rows {
+        let cells = row.iter().enumerate();
+        lines.add_row(cells.map(|(i, cell)| match table.is_numeric(i) {
+            true => right(cell),
+            false => Cell::new(cell),
+        }));
+    }
+    lines
+}
+
+/// A row for each claim, and how many hold.
+pub(super) fn of_claims(claims: &[Claim]) -> String {
+    let table = Table {
+        caption: String::new(),
+        columns: CLAIM_COLUMNS.map(str::to_owned).to_vec(),
+        rows: claims.iter().map(|claim| claim.cells().to_vec()).collect(),
+    };
+    let kept = claims.iter().filter(|claim| claim.holds).count();
+    format!("{}\n{kept} of {} claims hold", lines(&table), claims.len())
+}

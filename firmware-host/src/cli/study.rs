@@ -1,0 +1,136 @@
+//! `study`: any of the studies, with its claims.
+
+use crate::cli::chapters;
+use crate::cli::error::{CommandError, pretty, print};
+use crate::cli::output::{self, Staging};
+use crate::cli::progress::{LateProgress, Threads};
+use firmware_studies::STUDIES;
+use firmware_studies::campaign::{Claim, Extent, Report, Study, StudyError, html, markdown};
+use firmware_studies::on_target::measure::TargetError;
+use serde::Serialize;
+use std::path::PathBuf;
+use std::time::Instant;
+
+/// Arguments of `study`.
+#[derive(Debug, Clone, clap::Args)]
+pub struct StudyArgs {
+    /// Which one; `list` says what there is.
+    #[arg(value_parser = names())]
+    pub name: String,
+    /// Fewer cases: seconds to a minute.
+    #[arg(long)]
+    pub quick: bool,
+    /// Print claims, number of cases and seconds as JSON instead of the table.
+    #[arg(long)]
+    pub json: bool,
+    /// Print the page of the documentation, in Markdown, instead of the table.
+    #[arg(long, conflicts_with = "json")]
+    pub page: bool,
+    /// Folder for the page as NAME.html; without it nothing is written.
+    #[arg(long, value_name = "FOLDER")]
+    pub out: Option<PathBuf>,
+    /// End with exit code 1 where a claim does not hold.
+    #[arg(long)]
+    pub strict: bool,
+    /// How many threads it may use.
+    #[command(flatten)]
+    pub threads: Threads,
+}
+
+const LIST: &str = "list";
+
+fn names() -> clap::builder::PossibleValuesParser {
+    let names = STUDIES.iter().map(|study| study.name);
+    names.chain([LIST]).collect::<Vec<_>>().into()
+}
+
+/// What programs get of a study.
+#[derive(Debug, Serialize)]
+struct Measured<'a> {
+    study: &'static str,
+    quick: bool,
+    claims: &'a [Claim],
+    cases: u64,
+    seconds: f64,
+}
+
+/// Runs a study, or lists them.
+///
+/// # Errors
+/// [`CommandError`]; [`CommandError::Claims`] after the results were printed.
+pub fn execute(args: &StudyArgs) -> Result<(), CommandError> {
+    match STUDIES.iter().find(|study| study.name == args.name) {
+        Some(study) => run(study, args),
+        None => list(args.json),
+    }
+}
+
+fn list(json: bool) -> Result<(), CommandError> {
+    if json {
+        let names: Vec<&str> = STUDIES.iter().map(|study| study.name).collect();
+        return print(
+            &(pretty(
+                &serde_json::json!({ "names": names }),
+                "formatting the list",
+            )? + "\n"),
+        );
+    }
+    let line = |study: &Study| format!("{:16} {}\n", study.name, study.about);
+    print(&STUDIES.iter().map(line).collect::<String>())
+}
+
+fn run(study: &Study, args: &StudyArgs) -> Result<(), CommandError> {
+    // What cannot be written is told before anything takes its time.
+    if let Some(out) = &args.out {
+        output::probe(out)?;
+    }
+    let (bar, begun) = (LateProgress::default(), Instant::now());
+    let report = (args.threads.pool()?)
+        .install(|| (study.run)(Extent::new(args.quick), &bar))
+        .map_err(|error| failed(study.name, error))?;
+    bar.finish();
+    let seconds = begun.elapsed().as_secs_f64();
+    let quick = if args.quick { " --quick" } else { "" };
+    let page = report.page(&format!("study {}{quick} --page", study.name));
+    if let Some(out) = &args.out {
+        let html = html(&page).map_err(|e| CommandError::other("drawing the page", e))?;
+        let staging = Staging::for_folder(out)?;
+        staging.write(&format!("{}.html", study.name), html)?;
+        staging.publish()?;
+    }
+    if args.page {
+        print(&markdown(&page))?;
+    } else if args.json {
+        let measured = Measured {
+            study: study.name,
+            quick: args.quick,
+            claims: &report.claims,
+            cases: report.cases,
+            seconds,
+        };
+        print(&(pretty(&measured, "formatting the claims")? + "\n"))?;
+    } else {
+        let text = chapters::of_claims(&report.claims);
+        print(&format!("{text}; {} cases, {seconds:.1} s\n", report.cases))?;
+    }
+    strictly(args.strict, &report)
+}
+
+fn strictly(strict: bool, report: &Report) -> Result<(), CommandError> {
+    let broken: Vec<String> = (report.claims.iter())
+        .filter(|claim| strict && !claim.holds)
+        .map(|c| format!("{}: {}, not {}", c.name, c.measured, c.bound()))
+        .collect();
+    if broken.is_empty() {
+        Ok(())
+    } else {
+        Err(CommandError::Claims(broken))
+    }
+}
+
+fn failed(name: &'static str, error: StudyError) -> CommandError {
+    match error.downcast::<TargetError>() {
+        Ok(target) => CommandError::Target(*target),
+        Err(other) => CommandError::other(name, other),
+    }
+}

@@ -1,0 +1,83 @@
+//! What is claimed of a measurement.
+
+use super::chapter::{Block, Table};
+use serde::Serialize;
+
+/// On which side of its bound a measurement has to be.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Side {
+    /// Not below it.
+    AtLeast,
+    /// Not above it.
+    AtMost,
+}
+
+/// A claim with its measurement.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Claim {
+    /// What is claimed, of what.
+    pub name: String,
+    /// The bound.
+    pub bound: f64,
+    /// On which side of it the measurement has to be.
+    pub side: Side,
+    /// What was measured.
+    pub measured: f64,
+    /// Whether it holds; what is no number does not.
+    pub holds: bool,
+}
+
+impl Claim {
+    /// That a measurement is not below a bound.
+    pub fn at_least(name: impl Into<String>, bound: f64, measured: f64) -> Self {
+        Self {
+            name: name.into(),
+            bound,
+            side: Side::AtLeast,
+            measured,
+            holds: measured >= bound,
+        }
+    }
+
+    /// That a measurement is not above a bound.
+    pub fn at_most(name: impl Into<String>, bound: f64, measured: f64) -> Self {
+        Self {
+            name: name.into(),
+            bound,
+            side: Side::AtMost,
+            measured,
+            holds: measured <= bound,
+        }
+    }
+
+    /// The bound as it is read.
+    pub fn bound(&self) -> String {
+        let sign = match self.side {
+            Side::AtLeast => "≥",
+            Side::AtMost => "≤",
+        };
+        format!("{sign} {}", self.bound)
+    }
+
+    /// Name, bound, measurement and whether it holds, as they are read.
+    pub fn cells(&self) -> [String; 4] {
+        let holds = if self.holds { "yes" } else { "NO" };
+        let measured = format!("{:.3}", self.measured);
+        [self.name.clone(), self.bound(), measured, holds.to_owned()]
+    }
+}
+
+/// Headings of [`Claim::cells`].
+pub const CLAIM_COLUMNS: [&str; 4] = ["claim", "bound", "measured", "holds"];
+
+/// Claims as a table, those that do not hold marked.
+pub(super) fn table(claims: &[Claim]) -> Block {
+    let table = Table {
+        caption: String::new(),
+        columns: CLAIM_COLUMNS.map(str::to_owned).to_vec(),
+        rows: claims.iter().map(|claim| claim.cells().to_vec()).collect(),
+    };
+    let marked = claims.iter().map(|claim| !claim.holds).collect();
+    Block::Table(table, marked)
+}

@@ -1,0 +1,108 @@
+//! `study`: every study by its name, its claims for programs, its part of a page.
+
+use firmware_studies::STUDIES;
+use serde_json::Value;
+use std::collections::BTreeSet;
+use std::fs;
+use std::process::Output;
+use system_tests::{host, root};
+
+fn study(args: &[&str]) -> Output {
+    host().arg("study").args(args).output().unwrap()
+}
+
+fn said(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+#[test]
+fn the_list_names_every_study() {
+    let list = study(&["list", "--json"]);
+    let json: Value = serde_json::from_slice(&list.stdout).unwrap();
+    let names: Vec<&str> = (json["names"].as_array().unwrap().iter())
+        .map(|name| name.as_str().unwrap())
+        .collect();
+    assert_eq!(names, STUDIES.map(|study| study.name));
+    let text = said(&study(&["list"]).stdout);
+    for known in STUDIES {
+        assert!(text.contains(known.about), "{}", known.name);
+    }
+    let unknown = study(&["weather"]);
+    assert_eq!(unknown.status.code(), Some(2));
+    assert!(said(&unknown.stderr).contains("unseen-machines"));
+}
+
+/// Claims have the keys that programs know, and hold or not by their own numbers; a claim that does not hold is an error
+/// only where asked for.
+#[test]
+fn claims_for_programs() {
+    let quick = study(&["unseen-machines", "--quick", "--json"]);
+    assert!(quick.status.success());
+    let json: Value = serde_json::from_slice(&quick.stdout).unwrap();
+    let claims = json["claims"].as_array().unwrap();
+    assert!(json["cases"].as_u64().unwrap() > 1000 && json["seconds"].as_f64().unwrap() > 0.0);
+    for claim in claims {
+        let keys: BTreeSet<&str> = claim
+            .as_object()
+            .unwrap()
+            .keys()
+            .map(String::as_str)
+            .collect();
+        assert_eq!(keys, ["bound", "holds", "measured", "name", "side"].into());
+        let (bound, measured) = (
+            &claim["bound"].as_f64().unwrap(),
+            &claim["measured"].as_f64().unwrap(),
+        );
+        let holds = match claim["side"].as_str().unwrap() {
+            "at_least" => measured >= bound,
+            "at_most" => measured <= bound,
+            other => panic!("{other}"),
+        };
+        assert_eq!(claim["holds"].as_bool().unwrap(), holds, "{claim}");
+    }
+    // Forces that come late are beyond what is promised.
+    let broken = claims
+        .iter()
+        .find(|claim| !claim["holds"].as_bool().unwrap())
+        .unwrap();
+    let strict = study(&["unseen-machines", "--quick", "--strict"]);
+    assert_eq!(strict.status.code(), Some(1));
+    assert!(said(&strict.stderr).contains(broken["name"].as_str().unwrap()));
+    assert!(
+        said(&strict.stdout).contains("claims hold"),
+        "results are printed all the same"
+    );
+}
+
+/// The page has the claims and what repeats it.
+#[test]
+fn the_page_of_a_study() {
+    let page = said(&study(&["accuracy", "--quick", "--page"]).stdout);
+    assert!(page.starts_with("# Error against run time\n"), "{page}");
+    assert!(page.contains("Written by `cargo run --release -- study accuracy --quick --page`"));
+    assert!(
+        page.contains("\n## Claims\n") && page.contains("| claim | bound | measured | holds |")
+    );
+    let both = study(&["accuracy", "--quick", "--page", "--json"]);
+    assert_eq!(both.status.code(), Some(2));
+}
+
+/// Every study has a page in the documentation, written by a full run of it, and the table of contents has that.
+#[test]
+fn every_study_has_a_page() {
+    let docs = root().join("docs/src");
+    let contents = fs::read_to_string(docs.join("SUMMARY.md")).unwrap();
+    for study in STUDIES {
+        let name = format!("measured/{}.md", study.name);
+        let page = fs::read_to_string(docs.join(&name)).unwrap_or_default();
+        let by = format!(
+            "Written by `cargo run --release -- study {} --page`.",
+            study.name
+        );
+        assert!(
+            page.contains(&by) && page.contains("\n## Claims\n"),
+            "{name}"
+        );
+        assert!(contents.contains(&format!("({name})")), "{name}");
+    }
+}
