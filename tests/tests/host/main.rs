@@ -2,6 +2,7 @@
 
 mod advise;
 mod closed_loop;
+mod docs_book;
 mod docs_examples;
 mod flight_record;
 mod instruments_and_events;
