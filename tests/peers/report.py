@@ -180,7 +180,7 @@ def losses(results):
             ratio = f"{own['seconds'] / peer['seconds']:.1f}" if own else "–"
             rows.append([problem, clearances(level), *cells, ratio])
     if not rows:
-        return "Nowhere in this measurement."
+        return "None of the peers that took part."
     header = ["problem", "error", "fastest peer", "project (`auto`)", "project's best method"]
     return table([*header, "peer faster by"], rows)
 
