@@ -18,9 +18,11 @@ use self::axes::focus_window;
 use self::panels::{Key, PanelRow};
 pub use crate::report::plot::PlotError;
 use crate::report::plot::text::{escape, figures};
-use crate::run::verdict::{
-    Disturbed, Outcome, PolicyRun, SceneSummary, Verdict, far_into_the_wall,
-};
+use crate::report::summary::{Disturbed, SceneSummary};
+use crate::report::table::shown;
+use crate::run::figures::{Figure, Figures, Timing, Value};
+use crate::run::outcome::Outcome;
+use crate::run::verdict::{PolicyRun, far_into_the_wall};
 
 const STYLE: &str = include_str!("report/style.css");
 
@@ -129,62 +131,41 @@ fn push_disturbances(page: &mut String, all: &[Disturbed]) {
     page.push_str("</ul>\n");
 }
 
-/// A column of the table: heading, unit, content.
-type Column = (&'static str, &'static str, fn(&Verdict) -> String);
-
-const COLUMNS: [Column; 14] = [
-    ("First contact", "ms", |v| optional(v.first_contact_s, 1e3)),
-    ("Impacts", "", |v| v.impacts.to_string()),
-    ("Contact time", "ms", |v| figures(1e3 * v.contact_time_s)),
-    ("Peak penetration", "µm", |v| {
-        figures(1e6 * v.peak_penetration_m)
-    }),
-    ("Peak contact force", "N", |v| {
-        figures(v.peak_contact_force_n)
-    }),
-    ("Peak friction torque", "N m", |v| {
-        figures(v.peak_friction_torque_n_m)
-    }),
-    ("Spin lost", "Hz", |v| figures(v.spin_lost_hz)),
-    ("Peak backward speed", "m/s", |v| {
-        figures(v.peak_backward_speed_m_s)
-    }),
-    ("Max backward whirl", "Hz", |v| {
-        optional(v.max_backward_whirl_hz, 1.0)
-    }),
-    ("Re-levitation time", "ms", |v| {
-        optional(v.relevitation_time_s, 1e3)
-    }),
-    ("Energy residual", "", |v| figures(v.energy_residual)),
-    ("Method", "", |v| v.method.to_owned()),
-    ("Run time", "s", |v| figures(v.run_time_s)),
-    ("Real-time ratio", "", |v| figures(v.real_time_ratio)),
-];
-
 fn push_table(page: &mut String, runs: &[PolicyRun], clearance_m: f64) {
     page.push_str("<section class=\"scroll\">\n<table>\n<caption>Verdicts</caption>\n<thead><tr>");
-    page.push_str("<th scope=\"col\">Policy</th><th scope=\"col\">Outcome</th>");
-    for (heading, unit, _) in COLUMNS {
-        push(
-            page,
-            format_args!("<th scope=\"col\">{heading} <small>{unit}</small></th>"),
-        );
-    }
+    page.push_str("<th scope=\"col\">policy</th>");
+    push_headings(page, Figures::ALL);
+    push_headings(page, Timing::ALL);
     page.push_str("</tr></thead>\n<tbody>\n");
     for run in runs {
-        let (name, outcome) = (escape(&run.name), badge(run.verdict.outcome));
-        push(
-            page,
-            format_args!("<tr><th scope=\"row\">{name}</th><td>{outcome}</td>"),
-        );
-        for (_, _, content) in COLUMNS {
-            push(page, format_args!("<td>{}</td>", content(&run.verdict)));
-        }
+        let name = escape(&run.name);
+        push(page, format_args!("<tr><th scope=\"row\">{name}</th>"));
+        push_cells(page, Figures::ALL, &run.verdict.figures);
+        push_cells(page, Timing::ALL, &run.verdict.timing);
         page.push_str("</tr>\n");
     }
     page.push_str("</tbody>\n</table>\n</section>\n");
     if let Some(note) = far_into_the_wall(runs, clearance_m) {
         push(page, format_args!("<p>{}</p>\n", escape(&note)));
+    }
+}
+
+fn push_headings<T>(page: &mut String, figures: &[Figure<T>]) {
+    for Figure { heading, unit, .. } in figures {
+        push(
+            page,
+            format_args!("<th scope=\"col\">{heading} <small>{unit}</small></th>"),
+        );
+    }
+}
+
+fn push_cells<T>(page: &mut String, figures: &[Figure<T>], of: &T) {
+    for figure in figures {
+        let text = match (figure.value)(of) {
+            Value::Outcome(outcome) => badge(outcome),
+            _ => shown(figure, of),
+        };
+        push(page, format_args!("<td>{text}</td>"));
     }
 }
 
@@ -194,7 +175,7 @@ fn badge(outcome: Outcome) -> String {
         Outcome::Resting | Outcome::Pinned | Outcome::Rubbing | Outcome::Bouncing => "fair",
         Outcome::Whirl => "bad",
     };
-    let word = table::outcome(outcome);
+    let word = outcome.name();
     format!("<span class=\"outcome {class}\">{word}</span>")
 }
 
@@ -269,7 +250,7 @@ fn push_row(page: &mut String, runs: &[PolicyRun], row: &PanelRow) {
         format_args!("<span class=\"note\">{}</span></div>\n", row.note),
     );
     for (run, cell) in runs.iter().zip(&row.cells) {
-        let (name, outcome) = (escape(&run.name), badge(run.verdict.outcome));
+        let (name, outcome) = (escape(&run.name), badge(run.verdict.figures.outcome));
         let own = if cell.own_scale {
             " <em class=\"own\">own scale</em>"
         } else {
@@ -287,10 +268,6 @@ fn push_row(page: &mut String, runs: &[PolicyRun], row: &PanelRow) {
 fn push(page: &mut String, text: std::fmt::Arguments<'_>) {
     // Writing to a string cannot fail.
     let _ = page.write_fmt(text);
-}
-
-fn optional(value: Option<f64>, factor: f64) -> String {
-    value.map_or("–".to_owned(), |v| figures(factor * v))
 }
 
 #[cfg(test)]
@@ -346,7 +323,7 @@ mod tests {
         lost.trace.rows[1].plant.position_m.x = f64::NAN;
         lost.trace.rows[1].plant.normal_force_n = f64::INFINITY;
         lost.trace.rows[1].plant.spin_rad_s = 1e300;
-        lost.verdict.energy_residual = f64::NAN;
+        lost.verdict.figures.energy_residual = f64::NAN;
         let runs = [
             run("empty", Outcome::Decayed, &[]),
             run("single", Outcome::Resting, &[(0.0, true)]),

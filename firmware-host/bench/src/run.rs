@@ -3,9 +3,11 @@
 pub mod clairvoyant;
 pub mod closed_loop;
 pub mod controller;
+pub mod figures;
 pub mod flight_record;
 pub mod history;
 mod judge;
+pub mod outcome;
 pub mod supervision;
 pub mod trace;
 pub mod trace_file;

@@ -8,13 +8,15 @@ use firmware_bench::report::summary::summary;
 use firmware_bench::report::{self, table};
 use firmware_bench::run::closed_loop::{Keep, RunError, run};
 use firmware_bench::run::supervision::Supervision;
-use firmware_bench::run::verdict::{Check, PolicyRun};
+use firmware_bench::run::verdict::{PolicyRun, Verdict};
+use firmware_bench::run::verify::Check;
 use firmware_bench::run::{trace_file, verify};
 use firmware_bench::scene::Scene;
 use firmware_bench::scene::policy_kind::PolicyKind;
 use firmware_studies::campaign::Progress;
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
 /// Arguments of `run`.
 #[derive(Debug, Clone, clap::Args)]
@@ -91,13 +93,13 @@ fn record_name(policy: &str) -> String {
 fn contradictions(runs: &[PolicyRun]) -> Vec<Contradiction> {
     let of_run = |run: &PolicyRun| {
         let checks = run.verification.iter().flat_map(|v| &v.checks);
-        let other = checks.filter(|c| c.outcome != run.verdict.outcome);
+        let other = checks.filter(|c| c.outcome != run.verdict.figures.outcome);
         let contradiction = |c: &Check| Contradiction {
             policy: run.name.clone(),
-            outcome: table::outcome(run.verdict.outcome),
+            outcome: run.verdict.figures.outcome.name(),
             method: c.method,
             rtol: c.rtol,
-            other: table::outcome(c.outcome),
+            other: c.outcome.name(),
         };
         other.map(contradiction).collect::<Vec<_>>()
     };
@@ -122,10 +124,12 @@ fn run_all(scene: &Scene, args: &RunArgs) -> Result<Vec<PolicyRun>, CommandError
     let progress = LateProgress::new(ticks * jobs.len() as u64, "ticks");
     let one = |(kind, of): &(PolicyKind, usize)| {
         let on_tick = &mut |ticks| progress.add(ticks);
-        match of {
+        let started = Instant::now();
+        let (figures, trace) = match of {
             0 => run(scene, *kind, Keep::Trace, on_tick),
             _ => verify::run_check(&scenes[*of], *kind, on_tick),
-        }
+        }?;
+        Ok((figures, trace, started.elapsed()))
     };
     let results = args.threads.pool()?.install(|| {
         let all: Vec<_> = jobs.par_iter().map(one).collect();
@@ -136,18 +140,18 @@ fn run_all(scene: &Scene, args: &RunArgs) -> Result<Vec<PolicyRun>, CommandError
     let mut results = results?.into_iter();
     let mut runs = Vec::with_capacity(scene.policies.len());
     for kind in &scene.policies {
-        let Some((verdict, trace)) = results.next() else {
+        let Some((figures, trace, elapsed)) = results.next() else {
             break;
         };
         let checks: Vec<Check> = (scenes[1..].iter().zip(results.by_ref()))
-            .map(|(check, (v, t))| verify::compare(check, &trace, (&v, &t)))
+            .map(|(check, (figures, other, _))| verify::compare(check, &trace, (&figures, &other)))
             .collect();
         runs.push(PolicyRun {
             name: kind.name().to_owned(),
             verification: args
                 .verify
-                .then(|| verify::verification(&verdict, &trace, checks)),
-            verdict,
+                .then(|| verify::verification(&figures, &trace, checks)),
+            verdict: Verdict::new(figures, scene, elapsed),
             supervision: Supervision::of(&trace),
             trace,
         });

@@ -4,8 +4,8 @@ use crate::cli::error::{CommandError, pretty, print};
 use crate::cli::load;
 use crate::cli::progress::{LateProgress, Threads};
 use comfy_table::Cell;
-use firmware_bench::report::plot::text::figures;
-use firmware_bench::report::table::{lined, or_dash, outcome, right};
+use firmware_bench::report::table::{lined, right, shown};
+use firmware_bench::run::figures::{Figure, Figures, Place};
 use firmware_bench::scene::Scene;
 use firmware_bench::scene::policy_kind::PolicyKind;
 use firmware_studies::campaign::Progress;
@@ -96,34 +96,20 @@ fn rows(scene: &Scene, args: &SensitivityArgs) -> Result<Vec<Row>, CommandError>
 }
 
 fn text(scene: &Scene, rows: &[Row]) -> String {
-    let mut header = vec![Cell::new("the supervisor is told")];
-    header.extend(
-        [
-            "outcome",
-            "engaged",
-            "impacts",
-            "contact impulse [N s]",
-            "peak contact force [N]",
-            "re-levitated [ms]",
-        ]
-        .map(right),
-    );
+    let columns = || (Figures::ALL.iter()).filter(|figure| figure.place == Place::Everywhere);
+    let mut header = vec![Cell::new("the supervisor is told"), right("engaged")];
+    header.extend(columns().map(Figure::title).map(right));
     let mut table = lined(header);
     for row in rows {
-        let figures = match (&row.metrics, &row.error) {
-            (Some(m), _) => [
-                outcome(m.outcome).to_owned(),
-                row.engagements.to_string(),
-                m.impacts.to_string(),
-                figures(m.contact_impulse_n_s),
-                figures(m.peak_contact_force_n),
-                or_dash(m.relevitation_time_s, 1e3, 2),
-            ]
-            .to_vec(),
-            (None, error) => vec![error.clone().unwrap_or_default()],
-        };
-        let cells = figures.into_iter().map(right);
-        table.add_row([Cell::new(&row.told)].into_iter().chain(cells));
+        let mut cells = vec![Cell::new(&row.told)];
+        match (&row.metrics, &row.error) {
+            (Some(figures), _) => {
+                cells.push(right(row.engagements));
+                cells.extend(columns().map(|figure| right(shown(figure, figures))));
+            }
+            (None, error) => cells.push(right(error.as_deref().unwrap_or_default())),
+        }
+        table.add_row(cells);
     }
     let wrong = rows.get(2..).unwrap_or_default();
     let recovered = wrong.iter().filter(|row| row.recovered()).count();

@@ -3,9 +3,9 @@
 
 pub mod study;
 
-use crate::overloads::results::Metrics;
 use firmware_bench::device::sensor::SpinSensorParams;
 use firmware_bench::run::closed_loop::{Keep, run};
+use firmware_bench::run::figures::Figures;
 use firmware_bench::run::supervision::Supervision;
 use firmware_bench::scene::nominal::replaced;
 use firmware_bench::scene::policy_kind::PolicyKind;
@@ -227,7 +227,7 @@ pub struct Row {
     pub engagements: u64,
     /// What was measured; `None` where there is no run that can be trusted.
     #[serde(flatten)]
-    pub metrics: Option<Metrics>,
+    pub metrics: Option<Figures>,
     /// Why not.
     pub error: Option<String>,
 }
@@ -236,9 +236,9 @@ impl Row {
     /// Runs a scene.
     pub fn of(told: &str, scene: &Scene, kind: PolicyKind) -> Self {
         let (engagements, metrics, error) = match run(scene, kind, Keep::Trace, &mut |_| {}) {
-            Ok((verdict, trace)) => {
+            Ok((figures, trace)) => {
                 let engagements = Supervision::of(&trace).map_or(0, |s| s.engagements);
-                (engagements, Some(Metrics::from(&verdict)), None)
+                (engagements, Some(figures), None)
             }
             Err(error) => (0, None, Some(error.to_string())),
         };

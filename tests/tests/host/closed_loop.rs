@@ -2,13 +2,14 @@
 
 use firmware_bench::device::levitation::LevitationParams;
 use firmware_bench::run::closed_loop::{Keep, RunError, run};
-use firmware_bench::run::verdict::{Outcome, Verdict};
+use firmware_bench::run::figures::Figures;
+use firmware_bench::run::outcome::Outcome;
 use firmware_bench::scene::policy_kind::PolicyKind;
 use firmware_bench::scene::{Disturbance, Scene, Shape};
 use plant_model::V2;
 use system_tests::{golden, scene, scene_path};
 
-fn verdict(scene: &Scene, policy: PolicyKind) -> Verdict {
+fn verdict(scene: &Scene, policy: PolicyKind) -> Figures {
     run(scene, policy, Keep::Verdict, &mut |_| {}).unwrap().0
 }
 

@@ -8,8 +8,8 @@ mod magnet;
 mod refusals;
 
 use firmware_bench::run::closed_loop::{Keep, run};
+use firmware_bench::run::figures::Figures;
 use firmware_bench::run::trace::{Trace, TraceRow};
-use firmware_bench::run::verdict::Verdict;
 use firmware_bench::scene::Scene;
 use firmware_bench::scene::policy_kind::PolicyKind;
 use plant_model::V2;
@@ -26,7 +26,7 @@ fn free_rotor() -> Scene {
     scene
 }
 
-fn ridden(scene: &Scene, kind: PolicyKind) -> (Verdict, Trace) {
+fn ridden(scene: &Scene, kind: PolicyKind) -> (Figures, Trace) {
     let (verdict, trace) = run(scene, kind, Keep::Trace, &mut |_| {}).unwrap();
     assert!(
         verdict.energy_residual < 1e-8,

@@ -1,14 +1,15 @@
 //! What a run is said to have come to, at the edges of its definitions.
 
 use firmware_bench::run::closed_loop::{Keep, run};
-use firmware_bench::run::verdict::{Outcome, Verdict};
+use firmware_bench::run::figures::Figures;
+use firmware_bench::run::outcome::Outcome;
 use firmware_bench::scene::policy_kind::PolicyKind;
 use firmware_bench::scene::{Axis, Disturbance, Fault, FaultKind, Scene, Shape, TimedChange};
 use plant_model::params::SlidingFriction;
 use plant_model::{Change, V2};
 use system_tests::scene;
 
-fn verdict(scene: &Scene, policy: PolicyKind) -> Verdict {
+fn verdict(scene: &Scene, policy: PolicyKind) -> Figures {
     run(scene, policy, Keep::Verdict, &mut |_| {}).unwrap().0
 }
 

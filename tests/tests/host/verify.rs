@@ -1,8 +1,9 @@
 //! `run --verify`: a run's own estimate of its global error, and hints for people on the way.
 
 use firmware_bench::run::closed_loop::{Keep, run};
+use firmware_bench::run::figures::Figures;
 use firmware_bench::run::trace::Trace;
-use firmware_bench::run::verdict::{Verdict, Verification};
+use firmware_bench::run::verify::Verification;
 use firmware_bench::run::verify::{check_scenes, compare, run_check, verification};
 use firmware_bench::scene::Scene;
 use firmware_bench::scene::policy_kind::PolicyKind;
@@ -13,11 +14,11 @@ use std::path::{Path, PathBuf};
 use system_tests::{run_scene, scene, scene_names, scene_path};
 use tempfile::TempDir;
 
-fn ridden(scene: &Scene, kind: PolicyKind) -> (Verdict, Trace) {
+fn ridden(scene: &Scene, kind: PolicyKind) -> (Figures, Trace) {
     run(scene, kind, Keep::Trace, &mut |_| {}).unwrap()
 }
 
-fn verified(scene: &Scene, kind: PolicyKind) -> (Verdict, Trace, Verification) {
+fn verified(scene: &Scene, kind: PolicyKind) -> (Figures, Trace, Verification) {
     let (verdict, trace) = ridden(scene, kind);
     let checks = check_scenes(scene).unwrap().map(|check| {
         let (v, t) = run_check(&check, kind, &mut |_| {}).unwrap();

@@ -2,7 +2,7 @@
 
 use firmware_bench::device::levitation::LevitationParams;
 use firmware_bench::run::closed_loop::{Keep, run};
-use firmware_bench::run::verdict::Outcome;
+use firmware_bench::run::outcome::Outcome;
 use firmware_bench::scene::Scene;
 use firmware_bench::scene::policy_kind::PolicyKind;
 use plant_model::V2;

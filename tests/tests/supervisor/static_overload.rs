@@ -1,8 +1,8 @@
 //! A load that presses the rotor onto the bearing for long: lifted off where the cap can, held with all of it where not.
 
 use firmware_bench::run::closed_loop::{Keep, run_policy};
+use firmware_bench::run::figures::Figures;
 use firmware_bench::run::trace::Trace;
-use firmware_bench::run::verdict::Verdict;
 use firmware_studies::machines::plants::{PlantCase, plants};
 use firmware_studies::machines::tuned_gains::{TunedGains, stored};
 use firmware_studies::overloads::case::Case;
@@ -23,7 +23,7 @@ fn loaded(plant: &str, caps: f64) -> (PlantCase, TunedGains, Case) {
     (plant, found, case)
 }
 
-fn under(seat: Seat, (_, found, case): &(PlantCase, TunedGains, Case)) -> (Verdict, Trace) {
+fn under(seat: Seat, (_, found, case): &(PlantCase, TunedGains, Case)) -> (Figures, Trace) {
     let acting = seated(seat, Task::Impact, found, &case.scene).unwrap();
     run_policy(&case.scene, (acting, seat.name()), Keep::Trace, &mut |_| {}).unwrap()
 }

@@ -2,8 +2,9 @@
 //! else.
 
 use firmware_bench::run::closed_loop::{Keep, run};
+use firmware_bench::run::figures::Figures;
+use firmware_bench::run::outcome::Outcome;
 use firmware_bench::run::trace::Trace;
-use firmware_bench::run::verdict::{Outcome, Verdict};
 use firmware_bench::scene::policy_kind::PolicyKind;
 use firmware_bench::scene::{Disturbance, Scene, Shape, TimedChange};
 use plant_model::{Change, V2};
@@ -15,7 +16,7 @@ use system_tests::scene_path;
 const CAP_N: f64 = 1000.0;
 const LOST_AT_S: f64 = 0.01;
 
-fn seen(scene: &Scene, policy: PolicyKind) -> (Verdict, Trace) {
+fn seen(scene: &Scene, policy: PolicyKind) -> (Figures, Trace) {
     run(scene, policy, Keep::Trace, &mut |_| {}).unwrap()
 }
 

@@ -1,7 +1,9 @@
 //! Which stretch of time a section shows, and which axes the policies share.
 
 use crate::report::plot::thin::Interval;
-use crate::run::verdict::{Outcome, PolicyRun, SceneSummary};
+use crate::report::summary::SceneSummary;
+use crate::run::outcome::Outcome;
+use crate::run::verdict::PolicyRun;
 
 /// A run that would stretch the shared axis more than this gets one of its own.
 const OWN_SCALE_FROM: f64 = 3.0;
@@ -24,8 +26,12 @@ pub(super) fn run_window(scene: &SceneSummary, runs: &[PolicyRun]) -> Interval {
 pub(super) fn focus_window(scene: &SceneSummary, runs: &[PolicyRun]) -> Option<Interval> {
     let whole = run_window(scene, runs);
     let events: Vec<_> = runs.iter().map(events).collect();
-    let settles =
-        |run: &PolicyRun| matches!(run.verdict.outcome, Outcome::Recovered | Outcome::Decayed);
+    let settles = |run: &PolicyRun| {
+        matches!(
+            run.verdict.figures.outcome,
+            Outcome::Recovered | Outcome::Decayed
+        )
+    };
     let settled = runs.iter().zip(&events).filter(|(run, _)| settles(run));
     let settled = settled.filter_map(|(_, span)| *span).reduce(Interval::with);
     let first = events
@@ -81,7 +87,7 @@ pub(super) fn axes(ranges: &[Interval], runs: &[PolicyRun]) -> Vec<(Interval, bo
     let calm = ranges
         .iter()
         .zip(runs)
-        .filter(|(_, run)| run.verdict.outcome != Outcome::Whirl);
+        .filter(|(_, run)| run.verdict.figures.outcome != Outcome::Whirl);
     let calm = calm.map(|(range, _)| *range).reduce(Interval::with);
     let Some(calm) = calm.or_else(|| all_of(ranges)) else {
         return Vec::new();

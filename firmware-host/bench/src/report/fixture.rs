@@ -2,8 +2,11 @@
 
 use plant_model::{Body, Mode, Snapshot, V2};
 
+use crate::report::summary::SceneSummary;
+use crate::run::figures::{Figures, Timing};
+use crate::run::outcome::Outcome;
 use crate::run::trace::{Trace, TraceRow};
-use crate::run::verdict::{Outcome, PolicyRun, SceneSummary, Verdict};
+use crate::run::verdict::{PolicyRun, Verdict};
 
 /// (time \[s\], in contact), in time order.
 pub(super) type Samples = &'static [(f64, bool)];
@@ -42,26 +45,20 @@ pub(super) fn run(name: &str, outcome: Outcome, samples: &[(f64, bool)]) -> Poli
 }
 
 fn verdict(outcome: Outcome) -> Verdict {
-    Verdict {
+    let figures = Figures {
         outcome,
-        recovered: matches!(outcome, Outcome::Recovered | Outcome::Decayed),
+        recovered: outcome.recovered(),
         impacts: 1,
-        contact_time_s: 1e-2,
-        contact_impulse_n_s: 0.5,
-        contacts_over_20_mm_s: 1,
         first_contact_s: Some(0.05),
-        peak_penetration_m: 1e-5,
         peak_contact_force_n: 1e3,
-        peak_friction_torque_n_m: 10.0,
-        spin_lost_hz: 0.5,
-        peak_backward_speed_m_s: 0.1,
-        max_backward_whirl_hz: None,
-        relevitation_time_s: Some(0.05),
-        energy_residual: 1e-12,
         method: "series",
+        ..Figures::default()
+    };
+    let timing = Timing {
         run_time_s: 0.1,
         real_time_ratio: 4.0,
-    }
+    };
+    Verdict { figures, timing }
 }
 
 /// On the x axis, moving up, with spin.

@@ -13,8 +13,9 @@ use crate::report::plot::{
     COLUMNS, FREE, LIMIT, Lane, Line, OrbitPlot, PlotError, TOUCHING, TimeAxis, TimePlot, Wall,
     orbit_plot, strip_plot, time_plot,
 };
+use crate::report::summary::SceneSummary;
 use crate::run::trace::TraceRow;
-use crate::run::verdict::{PolicyRun, SceneSummary};
+use crate::run::verdict::PolicyRun;
 
 /// One panel of every policy.
 pub(super) struct PanelRow {

@@ -7,8 +7,9 @@ use plotters::style::RGBColor;
 
 use crate::report::plot::TOUCHING;
 use crate::report::plot::thin::{Interval, drawable};
+use crate::report::summary::SceneSummary;
 use crate::run::trace::TraceRow;
-use crate::run::verdict::{PolicyRun, SceneSummary};
+use crate::run::verdict::PolicyRun;
 
 /// A quantity over time, to be drawn with shared axes.
 pub(super) struct Chart {

@@ -1,12 +1,47 @@
 //! A scene in words, for the head of its report.
 
 use crate::report::plot::text::figures;
-use crate::run::verdict::{Disturbed, SceneSummary};
 use crate::scene::nominal::named;
 use crate::scene::{Axis, Delivers, Fault, FaultKind, Outage, Scene, Shape, TimedChange};
 use plant_model::V2;
 use plant_model::params::{ContactLaw, SlidingFriction, SpinParams, StatorParams};
 use std::f64::consts::TAU;
+
+/// Something that happens to the rotor, its magnet or its sensor.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Disturbed {
+    /// What, in words.
+    pub what: String,
+    /// Beginning \[s\].
+    pub from_s: f64,
+    /// End \[s\]; the beginning for a change that stays.
+    pub to_s: f64,
+}
+
+/// What a report needs to know of the scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SceneSummary {
+    /// Title of the scene, one line.
+    pub title: String,
+    /// Its story, a few sentences of plain text.
+    pub story: String,
+    /// Clearance c \[m\].
+    pub clearance_m: f64,
+    /// Ellipticity and direction of the longer axis \[rad\] of a bearing that is out of round.
+    pub out_of_round: Option<(f64, f64)>,
+    /// Force cap of the magnet \[N\], if there is one.
+    pub force_max_n: Option<f64>,
+    /// Backward contact speed above which a run counts as whirl \[m/s\].
+    pub whirl_speed_m_s: f64,
+    /// What was simulated, in words: name and value.
+    pub facts: Vec<(&'static str, String)>,
+    /// What the scene says and hardly means.
+    pub warnings: Vec<String>,
+    /// What happens to the rotor, its magnet or its sensor.
+    pub disturbances: Vec<Disturbed>,
+    /// Duration of the run \[s\].
+    pub duration_s: f64,
+}
 
 /// What a report needs to know of a scene.
 pub fn summary(scene: &Scene) -> SceneSummary {

@@ -1,59 +1,26 @@
 //! The verdicts as a table for people and as JSON for programs.
 
 use crate::report::plot::text::figures;
+use crate::run::figures::{Digits, Figure, Figures, Timing, Value};
 use crate::run::supervision::{Account, Supervision};
-use crate::run::verdict::{Check, Outcome, PolicyRun, Verdict, Verification, far_into_the_wall};
+use crate::run::verdict::{PolicyRun, far_into_the_wall};
+use crate::run::verify::{Check, Verification};
 use crate::scene::Scene;
 use crate::scene::nominal::named;
-use comfy_table::{Cell, CellAlignment, LineStyle, Row, Table, TableStyle};
+use comfy_table::{Cell, CellAlignment, LineStyle, Table, TableStyle};
 use std::fmt::Display;
 
 /// A row of the table: name with unit, and the value as text.
-type Figure<T> = (&'static str, fn(&T) -> String);
-
-const FIGURES: &[Figure<Verdict>] = &[
-    ("outcome", |v| outcome(v.outcome).to_owned()),
-    ("impacts", |v| v.impacts.to_string()),
-    ("contact time [ms]", |v| figures(v.contact_time_s * 1e3)),
-    ("contact impulse [N s]", |v| figures(v.contact_impulse_n_s)),
-    ("contacts over 20 mm/s", |v| {
-        v.contacts_over_20_mm_s.to_string()
-    }),
-    ("first contact [ms]", |v| or_dash(v.first_contact_s, 1e3, 2)),
-    ("peak penetration [µm]", |v| {
-        figures(v.peak_penetration_m * 1e6)
-    }),
-    ("peak contact force [N]", |v| {
-        figures(v.peak_contact_force_n)
-    }),
-    ("peak friction torque [N m]", |v| {
-        figures(v.peak_friction_torque_n_m)
-    }),
-    ("spin lost [Hz]", |v| format!("{:.2}", v.spin_lost_hz)),
-    ("max backward whirl [Hz]", |v| {
-        or_dash(v.max_backward_whirl_hz, 1.0, 1)
-    }),
-    ("re-levitated after last event [ms]", |v| {
-        or_dash(v.relevitation_time_s, 1e3, 2)
-    }),
-    ("energy-audit residual", |v| {
-        format!("{:.1e}", v.energy_residual)
-    }),
-    ("method", |v| v.method.to_owned()),
-    ("run time [ms]", |v| format!("{:.1}", v.run_time_s * 1e3)),
-    ("ratio to real time", |v| {
-        format!("{:.0}", v.real_time_ratio)
-    }),
-];
+type Row<T> = (&'static str, fn(&T) -> String);
 
 /// Rows below those, where runs were checked.
-const CHECK_FIGURES: &[Figure<Verification>] = &[
+const CHECK_FIGURES: &[Row<Verification>] = &[
     ("checked by", |v| {
         each(v, |c| format!("{} {:.0e}", c.method, c.rtol))
     }),
     ("outcome when checked", |v| match v.same_outcome {
         true => "the same".to_owned(),
-        false => format!("OTHER: {}", each(v, |c| outcome(c.outcome).to_owned())),
+        false => format!("OTHER: {}", each(v, |c| c.outcome.name().to_owned())),
     }),
     ("modes when checked", |v| match v.same_modes {
         true => format!("the same {}", v.mode_changes),
@@ -75,7 +42,7 @@ const CHECK_FIGURES: &[Figure<Verification>] = &[
 ];
 
 /// Rows below those, where a supervisor ran.
-const SUPERVISION_FIGURES: &[Figure<Supervision>] = &[
+const SUPERVISION_FIGURES: &[Row<Supervision>] = &[
     ("supervisor engaged", |s| times(s.engagements)),
     ("engaged first [ms]", |s| or_dash(s.first_engaged_s, 1e3, 2)),
     ("engaged for [ms]", |s| format!("{:.2}", s.engaged_s * 1e3)),
@@ -126,21 +93,25 @@ pub fn or_dash(value: Option<f64>, factor: f64, digits: usize) -> String {
     value.map_or("–".to_owned(), |x| format!("{:.digits$}", x * factor))
 }
 
-/// Word for an outcome, as in `verdict.json`.
-pub fn outcome(outcome: Outcome) -> &'static str {
-    match outcome {
-        Outcome::Recovered => "recovered",
-        Outcome::Decayed => "decayed",
-        Outcome::Resting => "resting",
-        Outcome::Pinned => "pinned",
-        Outcome::Rubbing => "rubbing",
-        Outcome::Bouncing => "bouncing",
-        Outcome::Whirl => "whirl",
+/// A figure as text; a dash for none, and for what is no number.
+pub fn shown<T>(figure: &Figure<T>, of: &T) -> String {
+    let number = match (figure.value)(of) {
+        Value::Word(word) => return word.to_owned(),
+        Value::Outcome(outcome) => return outcome.name().to_owned(),
+        Value::Number(number) => number.filter(|x| x.is_finite()),
+    };
+    let Some(x) = number.map(|x| x * figure.per_si) else {
+        return "–".to_owned();
+    };
+    match figure.digits {
+        Digits::Significant => figures(x),
+        Digits::Fixed(digits) => format!("{x:.digits$}"),
+        Digits::Power => format!("{x:.1e}"),
     }
 }
 
 /// A table with one line, between header and rows.
-pub fn lined(header: impl Into<Row>) -> Table {
+pub fn lined(header: impl Into<comfy_table::Row>) -> Table {
     let mut table = Table::new();
     let line = LineStyle::none().fill('─').junction('─');
     table.load_style(TableStyle::new().header_separator(line));
@@ -158,7 +129,8 @@ pub fn text(scene: &Scene, runs: &[PolicyRun]) -> String {
     let mut header = vec![Cell::new("policy")];
     header.extend(runs.iter().map(|r| right(&r.name)));
     let mut table = lined(header);
-    add_rows(&mut table, FIGURES, runs, |r| Some(&r.verdict));
+    add_figures(&mut table, Figures::ALL, runs, |r| &r.verdict.figures);
+    add_figures(&mut table, Timing::ALL, runs, |r| &r.verdict.timing);
     add_rows(&mut table, SUPERVISION_FIGURES, runs, |r| {
         r.supervision.as_ref()
     });
@@ -168,17 +140,29 @@ pub fn text(scene: &Scene, runs: &[PolicyRun]) -> String {
     format!("{}\n{table}{note}", scene.title)
 }
 
+fn add_figures<T>(
+    table: &mut Table,
+    figures: &[Figure<T>],
+    runs: &[PolicyRun],
+    of: impl Fn(&PolicyRun) -> &T,
+) {
+    for figure in figures {
+        let cells = runs.iter().map(|run| right(shown(figure, of(run))));
+        table.add_row([Cell::new(figure.title())].into_iter().chain(cells));
+    }
+}
+
 /// Rows of something that not every run has; none where no run has it.
 fn add_rows<T>(
     table: &mut Table,
-    figures: &[Figure<T>],
+    rows: &[Row<T>],
     runs: &[PolicyRun],
     of: impl Fn(&PolicyRun) -> Option<&T>,
 ) {
     if runs.iter().all(|run| of(run).is_none()) {
         return;
     }
-    for (name, value) in figures {
+    for (name, value) in rows {
         let cells = (runs.iter()).map(|run| right(of(run).map_or("–".to_owned(), value)));
         table.add_row([Cell::new(name)].into_iter().chain(cells));
     }

@@ -2,7 +2,8 @@
 
 use super::{badge, push};
 use crate::report::plot::text::{escape, figures};
-use crate::run::verdict::{Check, PolicyRun, Verification};
+use crate::run::verdict::PolicyRun;
+use crate::run::verify::{Check, Verification};
 
 /// One row for each check, headed by its policy; nothing where no run was checked.
 pub(super) fn push_table(page: &mut String, runs: &[PolicyRun]) {
@@ -39,7 +40,7 @@ pub(super) fn push_table(page: &mut String, runs: &[PolicyRun]) {
 
 fn push_check(page: &mut String, run: &PolicyRun, verification: &Verification, check: &Check) {
     let name = escape(&run.name);
-    let agreement = if check.outcome == run.verdict.outcome {
+    let agreement = if check.outcome == run.verdict.figures.outcome {
         badge(check.outcome)
     } else {
         format!("{}, OTHER than the run", badge(check.outcome))

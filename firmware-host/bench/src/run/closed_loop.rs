@@ -6,14 +6,13 @@ use crate::device::loads::cuts;
 use crate::device::sensor::Sensor;
 use crate::device::sensor_fault::seen_until_s;
 use crate::run::controller::{Policy, Seen};
+use crate::run::figures::{Ended, Figures};
 use crate::run::judge::Judge;
 use crate::run::trace::{Said, Trace, TraceRow};
-use crate::run::verdict::Verdict;
 use crate::scene::Scene;
 use crate::scene::policy_kind::PolicyKind;
 use plant_model::params::StatorParams;
 use plant_model::{BuildError, Inputs, Options, Plant, PlantError, Snapshot, V2};
-use std::time::Instant;
 use supervisor::{Events, Status};
 
 /// Why a run has no result.
@@ -76,9 +75,9 @@ const TRUSTED: (f64, f64) = (1e-6, 1e-3);
 pub enum Keep {
     /// Every row.
     Trace,
-    /// Only the verdict.
+    /// Only the figures.
     Verdict,
-    /// Only the verdict, and the run ends as soon as nothing can change whether the rotor has recovered.
+    /// Only the figures, and the run ends as soon as nothing can change whether the rotor has recovered.
     Decision,
     /// As [`Keep::Decision`], with every row until then.
     TraceToDecision,
@@ -103,7 +102,7 @@ pub fn run(
     kind: PolicyKind,
     keep: Keep,
     on_tick: &mut dyn FnMut(u64),
-) -> Result<(Verdict, Trace), RunError> {
+) -> Result<(Figures, Trace), RunError> {
     let policy = Policy::new(kind, scene).ok_or(RunError::Incomplete {
         policy: kind.name(),
     })?;
@@ -119,9 +118,8 @@ pub fn run_policy(
     (acting, policy): (Policy, &'static str),
     keep: Keep,
     on_tick: &mut dyn FnMut(u64),
-) -> Result<(Verdict, Trace), RunError> {
+) -> Result<(Figures, Trace), RunError> {
     const REPORT_EVERY: u64 = 1024;
-    let started = Instant::now();
     let options = Options {
         rtol: scene.rtol,
         method: scene.method,
@@ -171,10 +169,8 @@ pub fn run_policy(
     if keep.rows() {
         bench.trace.read_out = bench.policy.read_out();
     }
-    let verdict = bench
-        .judge
-        .verdict(scene, bench.plant.as_ref(), started.elapsed());
-    let residual = verdict.energy_residual;
+    let figures = Figures::new(&Ended::new(scene, &bench.judge, bench.plant.as_ref()));
+    let residual = figures.energy_residual;
     let limit = (TRUSTED_TOLERANCES * scene.rtol).clamp(TRUSTED.0, TRUSTED.1);
     if residual.is_nan() || residual > limit {
         return Err(RunError::Energy {
@@ -183,7 +179,7 @@ pub fn run_policy(
             limit,
         });
     }
-    Ok((verdict, bench.trace))
+    Ok((figures, bench.trace))
 }
 
 struct Bench<'a> {

@@ -1,12 +1,11 @@
 //! Watches a run and says what it came to.
 
 use crate::device::sensor_fault::{ROUND_OFF_PERIODS, seen_until_s};
-use crate::run::verdict::{Outcome, Verdict};
+use crate::run::outcome::Outcome;
 use crate::scene::Scene;
 use plant_model::analysis::whirl::WhirlMeter;
 use plant_model::{Plant, Snapshot, V2};
 use std::f64::consts::TAU;
-use std::time::Duration;
 
 /// Inside this share of the clearance the rotor is back in the middle …
 const MIDDLE: f64 = 0.3;
@@ -115,34 +114,22 @@ impl Judge {
             || (self.in_middle_since_s).is_some_and(|since| self.now_s - since >= DECIDED_S)
     }
 
-    pub(crate) fn verdict(&self, scene: &Scene, plant: &dyn Plant, elapsed: Duration) -> Verdict {
-        let meters = plant.meters();
-        let last = plant.snapshot();
-        let outcome = self.outcome(scene, &last, meters.peak_backward_speed_m_s);
-        let run_time_s = elapsed.as_secs_f64();
-        Verdict {
-            outcome,
-            recovered: matches!(outcome, Outcome::Recovered | Outcome::Decayed),
-            impacts: meters.impacts,
-            contact_time_s: meters.contact_time_s,
-            contact_impulse_n_s: plant.audit().flows.normal_impulse_n_s,
-            contacts_over_20_mm_s: meters.hard_impacts,
-            first_contact_s: self.first_contact_s,
-            peak_penetration_m: meters.peak_penetration_m,
-            peak_contact_force_n: meters.peak_contact_force_n,
-            peak_friction_torque_n_m: meters.peak_friction_torque_n_m,
-            spin_lost_hz: self.spin_lost_rad_s(last.spin_rad_s) / TAU,
-            peak_backward_speed_m_s: meters.peak_backward_speed_m_s,
-            // A rotor at rest on the wall goes round at 0, not at −0.
-            max_backward_whirl_hz: self.whirl.fastest().map(|w| w.backward_hz + 0.0),
-            relevitation_time_s: match outcome {
-                Outcome::Recovered => self.back_since_s.map(|t| self.on_the_clock_s(t)),
-                _ => None,
-            },
-            energy_residual: plant.audit().residual(),
-            method: plant.method().name(),
-            run_time_s,
-            real_time_ratio: scene.duration_s / run_time_s,
+    /// When it touched first \[s\]; `None` if never.
+    pub(crate) fn first_contact_s(&self) -> Option<f64> {
+        self.first_contact_s
+    }
+
+    /// Largest backward whirl frequency over 1 ms of continuous contact \[Hz\]; `None` without such a contact.
+    pub(crate) fn backward_whirl_hz(&self) -> Option<f64> {
+        // A rotor at rest on the wall goes round at 0, not at −0.
+        self.whirl.fastest().map(|w| w.backward_hz + 0.0)
+    }
+
+    /// From the end of the disturbance to the beginning of the stay in the middle \[s\]; `None` if never.
+    pub(crate) fn relevitation_time_s(&self, outcome: Outcome) -> Option<f64> {
+        match outcome {
+            Outcome::Recovered => self.back_since_s.map(|t| self.on_the_clock_s(t)),
+            _ => None,
         }
     }
 
@@ -156,7 +143,7 @@ impl Judge {
     }
 
     /// Spin that is gone, of either sense; a rotor that did not spin cannot lose any, and what it gains is negative.
-    fn spin_lost_rad_s(&self, last: f64) -> f64 {
+    pub(crate) fn spin_lost_rad_s(&self, last: f64) -> f64 {
         let first = self.first_spin.unwrap_or(0.0);
         if first == 0.0 {
             return 0.0 - last.abs();
@@ -165,7 +152,13 @@ impl Judge {
         first.signum() * (first - last) + 0.0
     }
 
-    fn outcome(&self, scene: &Scene, last: &Snapshot, peak_backward_m_s: f64) -> Outcome {
+    /// How the run ended, from its last snapshot and the largest backward speed in contact.
+    pub(crate) fn outcome(
+        &self,
+        scene: &Scene,
+        last: &Snapshot,
+        peak_backward_m_s: f64,
+    ) -> Outcome {
         if peak_backward_m_s > scene.whirl_speed_m_s {
             return Outcome::Whirl;
         }

@@ -107,7 +107,7 @@ pub fn compare(scene: &Scene) -> Option<Pair> {
     };
     let policy = Policy::supervised(scene, Box::new(supervisor))?;
     let (own, _) = run_policy(scene, (policy, "supervisor"), Keep::Verdict, &mut |_| {}).ok()?;
-    let figures = |v: &firmware_bench::run::verdict::Verdict| Figures {
+    let figures = |v: &firmware_bench::run::figures::Figures| Figures {
         recovered: v.recovered,
         touches: v.impacts,
         force_n: v.peak_contact_force_n,

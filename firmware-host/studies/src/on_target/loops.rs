@@ -11,8 +11,8 @@ use crate::machines::tuned_gains::stored;
 use crate::overloads::catalogue::cases;
 use firmware_bench::run::closed_loop::{Keep, RunError, run_policy};
 use firmware_bench::run::controller::{Policy, Supervise};
+use firmware_bench::run::figures::Figures;
 use firmware_bench::run::trace::Trace;
-use firmware_bench::run::verdict::Verdict;
 use firmware_bench::scene::Scene;
 use firmware_image::under_test::Float;
 use std::cell::RefCell;
@@ -60,7 +60,7 @@ fn scenes() -> Result<Vec<(String, Scene, Config)>, TargetError> {
 /// What came of a run.
 struct Ran {
     tape: Vec<Tick>,
-    verdict: Verdict,
+    figures: Figures,
     trace: Trace,
 }
 
@@ -73,15 +73,10 @@ fn ran(scene: &Scene, supervisor: Box<dyn Supervise>) -> Result<Ran, RunError> {
     let policy = "supervisor";
     let acting = Policy::supervised(scene, Box::new(recording));
     let acting = acting.ok_or(RunError::Incomplete { policy })?;
-    let (verdict, trace) = run_policy(scene, (acting, policy), Keep::Trace, &mut |_| {})?;
+    let (figures, trace) = run_policy(scene, (acting, policy), Keep::Trace, &mut |_| {})?;
     Ok(Ran {
         tape: tape.take(),
-        // How long the host took is no part of it.
-        verdict: Verdict {
-            run_time_s: 0.0,
-            real_time_ratio: 0.0,
-            ..verdict
-        },
+        figures,
         trace,
     })
 }
@@ -118,7 +113,7 @@ pub fn in_the_loop(project: &Project, machine: &Machine) -> Result<Vec<LoopRow>,
             scene: name,
             ticks: alone.tape.len() as u64,
             bit_exact_ticks: pairs.filter(|(a, b)| a == b).count() as u64,
-            same_plant: alone.trace == emulated.trace && alone.verdict == emulated.verdict,
+            same_plant: alone.trace == emulated.trace && alone.figures == emulated.figures,
             ticks_per_s: emulated.tape.len() as f64 / took_s,
         });
     }

@@ -17,9 +17,10 @@ use crate::machines::tuned_gains::stored;
 use firmware_bench::run::clairvoyant::Clairvoyant;
 use firmware_bench::run::closed_loop::{Keep, RunError, run_policy};
 use firmware_bench::run::controller::Policy;
+use firmware_bench::run::figures::Figures;
 use firmware_bench::run::history::History;
+use firmware_bench::run::outcome::Outcome;
 use firmware_bench::run::trace::Trace;
-use firmware_bench::run::verdict::{Outcome, Verdict};
 use firmware_bench::scene::Scene;
 use plant_model::V2;
 use serde::Serialize;
@@ -131,7 +132,7 @@ impl Impact<'_> {
         self.held_s() * PIECES as f64
     }
 
-    fn run(&self, speed_m_s: f64, policy: Policy) -> Result<(Verdict, Trace), RunError> {
+    fn run(&self, speed_m_s: f64, policy: Policy) -> Result<(Figures, Trace), RunError> {
         let scene = Scene {
             start: aimed(self.scene, speed_m_s, self.angle_deg),
             duration_s: self.end_s() + AFTER_S,
@@ -162,7 +163,7 @@ impl Impact<'_> {
     /// What orders histories: one that recovers comes before one that does not, and has the smaller largest
     /// backward speed; then those without whirl, the slower the better where the history ends; then those
     /// that come to whirl, the later the better.
-    fn score(&self, (verdict, trace): &(Verdict, Trace)) -> f64 {
+    fn score(&self, (verdict, trace): &(Figures, Trace)) -> f64 {
         let samples = trace.rows.iter().filter(|row| !row.mode_change);
         let (mut end_s, mut speed_m_s) = (0.0, 0.0);
         for row in samples {

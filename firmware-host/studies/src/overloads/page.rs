@@ -2,12 +2,12 @@
 
 use super::plan::{Catalogue, CatalogueError, Plan};
 use super::promises::{Harm, force_ratios, lost_beyond_chance, percentile};
-use super::results::{Metrics, ResultRow};
+use super::results::ResultRow;
 use super::seats::Seat;
 use super::sweeps::{SweepRow, median, median_of};
 use crate::campaign::{Block, Chapter, Extent, Progress, Report, StudyError};
 use firmware_bench::report::plot::text::figures;
-use firmware_bench::report::table::outcome;
+use firmware_bench::run::figures::Figures;
 use std::collections::BTreeMap;
 
 /// The catalogue as a study.
@@ -272,14 +272,14 @@ fn scene_rows(results: &[&ResultRow]) -> Vec<[String; SCENE_COLUMNS.len()]> {
 }
 
 fn scene_row(plant: &str, rate_hz: u64, rows: &[&ResultRow]) -> [String; SCENE_COLUMNS.len()] {
-    let of = |value: &dyn Fn(&Metrics) -> f64| {
+    let of = |value: &dyn Fn(&Figures) -> f64| {
         let values = rows.iter().filter_map(|r| r.metrics.as_ref().map(value));
         median_of(values.filter(|x| !x.is_nan()))
     };
     let mut outcomes: BTreeMap<String, usize> = BTreeMap::new();
     for row in rows {
         let outcome = match (&row.metrics, &row.error) {
-            (Some(m), _) => outcome(m.outcome).to_owned(),
+            (Some(m), _) => m.outcome.name().to_owned(),
             (None, Some(error)) => error.clone(),
             (None, None) => String::new(),
         };

@@ -1,6 +1,6 @@
 //! What the supervisor promises, against what was measured.
 
-use super::results::{Metrics, ResultRow};
+use super::results::ResultRow;
 use super::seats::Seat;
 use super::sweeps::{SweepRow, TIMED_SHARE, median, median_of};
 use crate::campaign::Claim;
@@ -223,11 +223,11 @@ fn of_static_overloads(rows: &[ResultRow]) -> Vec<Claim> {
         let Some(other) = alone.get(&key) else {
             continue;
         };
-        let middle = |rows: &[&ResultRow], value: &dyn Fn(&Metrics) -> f64| {
+        let middle = |rows: &[&ResultRow], value: &dyn Fn(&Figures) -> f64| {
             let of = |r: &&ResultRow| r.metrics.as_ref().map_or(f64::INFINITY, value);
             median_of(rows.iter().map(of))
         };
-        let pair = |value: &dyn Fn(&Metrics) -> f64| (middle(&own, value), middle(other, value));
+        let pair = |value: &dyn Fn(&Figures) -> f64| (middle(&own, value), middle(other, value));
         let (a, b) = pair(&|m| m.contacts_over_20_mm_s as f64);
         impacts = impacts.max(a - b);
         let (a, b) = pair(&|m| m.peak_contact_force_n);

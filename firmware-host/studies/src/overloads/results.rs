@@ -4,70 +4,10 @@ use super::case::Case;
 use super::seats::{Seat, tries};
 use crate::machines::tuned_gains::TunedGains;
 use firmware_bench::run::closed_loop::{Keep, run, run_policy};
-use firmware_bench::run::verdict::{Outcome, Verdict};
+use firmware_bench::run::figures::Figures;
 use firmware_bench::scene::Scene;
 use firmware_bench::scene::policy_kind::PolicyKind;
 use serde::Serialize;
-
-/// What a run measured: all of its [`Verdict`] but times of the machine that it ran on.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Metrics {
-    /// How it ended.
-    pub outcome: Outcome,
-    /// Recovered or decayed.
-    pub recovered: bool,
-    /// Number of touches.
-    pub impacts: u64,
-    /// Touches with a normal speed above 20 mm/s.
-    pub contacts_over_20_mm_s: u64,
-    /// When it touched first \[s\]; `None` if never.
-    pub first_contact_s: Option<f64>,
-    /// Time in contact \[s\].
-    pub contact_time_s: f64,
-    /// ∫ N dt \[N s\].
-    pub contact_impulse_n_s: f64,
-    /// Largest penetration of the clearance circle by the contact \[m\].
-    pub peak_penetration_m: f64,
-    /// Largest normal force \[N\].
-    pub peak_contact_force_n: f64,
-    /// Largest friction torque \[N m\].
-    pub peak_friction_torque_n_m: f64,
-    /// Largest backward speed in contact \[m/s\].
-    pub peak_backward_speed_m_s: f64,
-    /// Largest backward whirl frequency over 1 ms of continuous contact \[Hz\]; `None` without such a contact.
-    pub max_backward_whirl_hz: Option<f64>,
-    /// Spin lost \[Hz\].
-    pub spin_lost_hz: f64,
-    /// Energy from nowhere over energy turned over.
-    pub energy_residual: f64,
-    /// Method that integrated contact.
-    pub method: &'static str,
-    /// From the end of the disturbance to the stay in the middle \[s\].
-    pub relevitation_time_s: Option<f64>,
-}
-
-impl From<&Verdict> for Metrics {
-    fn from(v: &Verdict) -> Self {
-        Self {
-            outcome: v.outcome,
-            recovered: v.recovered,
-            impacts: v.impacts,
-            contacts_over_20_mm_s: v.contacts_over_20_mm_s,
-            first_contact_s: v.first_contact_s,
-            contact_time_s: v.contact_time_s,
-            contact_impulse_n_s: v.contact_impulse_n_s,
-            peak_penetration_m: v.peak_penetration_m,
-            peak_contact_force_n: v.peak_contact_force_n,
-            peak_friction_torque_n_m: v.peak_friction_torque_n_m,
-            peak_backward_speed_m_s: v.peak_backward_speed_m_s,
-            max_backward_whirl_hz: v.max_backward_whirl_hz,
-            spin_lost_hz: v.spin_lost_hz,
-            energy_residual: v.energy_residual,
-            method: v.method,
-            relevitation_time_s: v.relevitation_time_s,
-        }
-    }
-}
 
 /// Group of the user's own scenes.
 const OWN: &str = "own scenes";
@@ -89,7 +29,7 @@ pub struct ResultRow {
     pub seed: u64,
     /// What was measured; `None` where the run cannot be trusted.
     #[serde(flatten)]
-    pub metrics: Option<Metrics>,
+    pub metrics: Option<Figures>,
     /// Why not.
     pub error: Option<String>,
 }
@@ -107,7 +47,7 @@ impl ResultRow {
 }
 
 /// Whether a run is better than another: it recovers where the other does not, or its hardest touch is softer.
-fn better(one: &Option<Metrics>, other: &Option<Metrics>) -> bool {
+fn better(one: &Option<Figures>, other: &Option<Figures>) -> bool {
     match (one, other) {
         (Some(a), Some(b)) if a.recovered == b.recovered => {
             a.peak_contact_force_n < b.peak_contact_force_n
@@ -130,7 +70,7 @@ pub fn run_case(
         ..case.scene.clone()
     };
     let run = |policy| match run_policy(&scene, (policy, seat.name()), Keep::Verdict, &mut |_| {}) {
-        Ok((verdict, _)) => (Some(Metrics::from(&verdict)), None),
+        Ok((figures, _)) => (Some(figures), None),
         Err(error) => (None, Some(error.to_string())),
     };
     let none = (
@@ -160,7 +100,7 @@ pub fn run_own(scene: &Scene, kind: PolicyKind, seed: u64) -> ResultRow {
     };
     let outcome = run(&seeded, kind, Keep::Verdict, &mut |_| {});
     let (metrics, error) = match outcome {
-        Ok((verdict, _)) => (Some(Metrics::from(&verdict)), None),
+        Ok((figures, _)) => (Some(figures), None),
         Err(error) => (None, Some(error.to_string())),
     };
     ResultRow {

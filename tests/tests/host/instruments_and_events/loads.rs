@@ -2,7 +2,7 @@
 
 use crate::instruments_and_events::{free_rotor, last, near, ridden, samples};
 use firmware_bench::run::closed_loop::{Keep, run};
-use firmware_bench::run::verdict::Outcome;
+use firmware_bench::run::outcome::Outcome;
 use firmware_bench::scene::policy_kind::PolicyKind;
 use firmware_bench::scene::{BaseMotion, Disturbance, Shape};
 use plant_model::V2;

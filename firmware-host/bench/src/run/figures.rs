@@ -1,0 +1,228 @@
+//! The figures of a run, a row each: its key in JSON and in code, where it comes from, how tables head it and show it.
+//! A new figure is a new row here; verdict, JSON, terminal, report and studies take it from there.
+
+use crate::run::judge::Judge;
+use crate::run::outcome::Outcome;
+use crate::scene::Scene;
+use plant_model::energy::Audit;
+use plant_model::{Meters, Plant};
+use serde::Serialize;
+use std::f64::consts::TAU;
+use std::time::Duration;
+
+/// With how many digits a number is shown.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Digits {
+    /// Three that count.
+    Significant,
+    /// So many after the point.
+    Fixed(usize),
+    /// Two, and a power of ten.
+    Power,
+}
+
+/// In which tables a figure stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Place {
+    /// Also in those that have room for few.
+    Everywhere,
+    /// In those of all figures.
+    Full,
+}
+
+/// A figure's value.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Value {
+    /// In SI units; `None` where there is none.
+    Number(Option<f64>),
+    /// A name.
+    Word(&'static str),
+    /// How a run ended.
+    Outcome(Outcome),
+}
+
+/// A figure as tables show it.
+#[derive(Debug, Clone, Copy)]
+pub struct Figure<T> {
+    /// Key in JSON.
+    pub key: &'static str,
+    /// What it is called.
+    pub heading: &'static str,
+    /// Unit in which it is shown.
+    pub unit: &'static str,
+    /// How many of that unit one of the SI unit is.
+    pub per_si: f64,
+    /// With how many digits.
+    pub digits: Digits,
+    /// In which tables.
+    pub place: Place,
+    /// Reads it.
+    pub value: fn(&T) -> Value,
+}
+
+/// A struct of figures, a row a field: `key: type = where it comes from => heading, unit, per SI unit, digits, place`. What has
+/// nothing behind the arrow is in JSON and in code alone.
+macro_rules! figures {
+    ($(#[$about:meta])* pub struct $name:ident from $source:ty;
+     $($(#[$doc:meta])* $key:ident: $ty:ty = $from:expr
+       $(=> $heading:literal, $unit:literal, $per_si:expr, $digits:expr, $place:expr)?;)*) => {
+        $(#[$about])*
+        #[derive(Debug, Clone, PartialEq, Serialize)]
+        #[cfg_attr(test, derive(Default))]
+        pub struct $name { $($(#[$doc])* pub $key: $ty,)* }
+
+        impl $name {
+            /// What tables show, in their order.
+            pub const ALL: &[Figure<Self>] = &[$($(Figure {
+                key: stringify!($key),
+                heading: $heading,
+                unit: $unit,
+                per_si: $per_si,
+                digits: $digits,
+                place: $place,
+                value: |figures| figures.$key.into(),
+            },)?)*];
+
+            pub(crate) fn new(source: &$source) -> Self {
+                Self { $($key: { let from: fn(&$source) -> $ty = $from; from(source) },)* }
+            }
+        }
+    };
+}
+
+use Digits::{Fixed, Power, Significant};
+use Place::{Everywhere, Full};
+
+figures! {
+    /// What a run came to, in SI units. The same scene gives the same, on every machine.
+    pub struct Figures from Ended<'_>;
+
+    /// How it ended.
+    outcome: Outcome = |run| run.outcome
+        => "outcome", "", 1.0, Fixed(0), Everywhere;
+    /// True for recovered or decayed.
+    recovered: bool = |run| run.outcome.recovered();
+    /// Number of touches.
+    impacts: u64 = |run| run.meters.impacts
+        => "impacts", "", 1.0, Fixed(0), Everywhere;
+    /// Time in contact \[s\].
+    contact_time_s: f64 = |run| run.meters.contact_time_s
+        => "contact time", "ms", 1e3, Significant, Full;
+    /// Impulse of the normal force, ∫ f_n dt \[N s\].
+    contact_impulse_n_s: f64 = |run| run.audit.flows.normal_impulse_n_s
+        => "contact impulse", "N s", 1.0, Significant, Everywhere;
+    /// Number of touches with a normal speed above 20 mm/s.
+    contacts_over_20_mm_s: u64 = |run| run.meters.hard_impacts
+        => "contacts over 20 mm/s", "", 1.0, Fixed(0), Full;
+    /// When it touched first \[s\]; `None` if never.
+    first_contact_s: Option<f64> = |run| run.judge.first_contact_s()
+        => "first contact", "ms", 1e3, Fixed(2), Full;
+    /// Largest penetration of the clearance circle by the contact \[m\].
+    peak_penetration_m: f64 = |run| run.meters.peak_penetration_m
+        => "peak penetration", "µm", 1e6, Significant, Full;
+    /// Largest normal force \[N\].
+    peak_contact_force_n: f64 = |run| run.meters.peak_contact_force_n
+        => "peak contact force", "N", 1.0, Significant, Everywhere;
+    /// Largest friction torque on the spin \[N m\].
+    peak_friction_torque_n_m: f64 = |run| run.meters.peak_friction_torque_n_m
+        => "peak friction torque", "N m", 1.0, Significant, Full;
+    /// Spin lost from start to end \[Hz\].
+    spin_lost_hz: f64 = |run| run.judge.spin_lost_rad_s(run.plant.snapshot().spin_rad_s) / TAU
+        => "spin lost", "Hz", 1.0, Fixed(2), Full;
+    /// Largest backward tangential speed in contact \[m/s\].
+    peak_backward_speed_m_s: f64 = |run| run.meters.peak_backward_speed_m_s
+        => "peak backward speed", "m/s", 1.0, Significant, Full;
+    /// Largest backward whirl frequency over 1 ms of continuous contact \[Hz\]; `None` without such a contact.
+    max_backward_whirl_hz: Option<f64> = |run| run.judge.backward_whirl_hz()
+        => "max backward whirl", "Hz", 1.0, Fixed(1), Full;
+    /// From the end of the disturbance to the beginning of the stay in the middle \[s\]; `None` if never.
+    relevitation_time_s: Option<f64> = |run| run.judge.relevitation_time_s(run.outcome)
+        => "re-levitated after last event", "ms", 1e3, Fixed(2), Everywhere;
+    /// Energy-audit residual: energy from nowhere over energy turned over.
+    energy_residual: f64 = |run| run.audit.residual()
+        => "energy-audit residual", "", 1.0, Power, Full;
+    /// Method that integrated contact: `series`, `explicit` or `stiff`.
+    method: &'static str = |run| run.plant.method().name()
+        => "method", "", 1.0, Fixed(0), Full;
+}
+
+figures! {
+    /// How long a run took on this machine.
+    pub struct Timing from Took;
+
+    /// Wall-clock time of the run \[s\].
+    run_time_s: f64 = |took| took.elapsed.as_secs_f64()
+        => "run time", "ms", 1e3, Fixed(1), Full;
+    /// Simulated time over wall-clock time.
+    real_time_ratio: f64 = |took| took.simulated_s / took.elapsed.as_secs_f64()
+        => "ratio to real time", "", 1.0, Fixed(0), Full;
+}
+
+/// A run at its end.
+pub(crate) struct Ended<'a> {
+    outcome: Outcome,
+    meters: Meters,
+    audit: Audit,
+    judge: &'a Judge,
+    plant: &'a dyn Plant,
+}
+
+impl<'a> Ended<'a> {
+    pub(crate) fn new(scene: &Scene, judge: &'a Judge, plant: &'a dyn Plant) -> Self {
+        let meters = plant.meters();
+        let backward_m_s = meters.peak_backward_speed_m_s;
+        Self {
+            outcome: judge.outcome(scene, &plant.snapshot(), backward_m_s),
+            meters,
+            audit: plant.audit(),
+            judge,
+            plant,
+        }
+    }
+}
+
+/// What a run took.
+pub(crate) struct Took {
+    pub(crate) simulated_s: f64,
+    pub(crate) elapsed: Duration,
+}
+
+impl<T> Figure<T> {
+    /// Heading and unit in one.
+    pub fn title(&self) -> String {
+        match self.unit {
+            "" => self.heading.to_owned(),
+            unit => format!("{} [{unit}]", self.heading),
+        }
+    }
+}
+
+impl From<f64> for Value {
+    fn from(x: f64) -> Self {
+        Self::Number(Some(x))
+    }
+}
+
+impl From<u64> for Value {
+    fn from(count: u64) -> Self {
+        Self::Number(Some(count as f64))
+    }
+}
+
+impl From<Option<f64>> for Value {
+    fn from(x: Option<f64>) -> Self {
+        Self::Number(x)
+    }
+}
+
+impl From<&'static str> for Value {
+    fn from(word: &'static str) -> Self {
+        Self::Word(word)
+    }
+}
+
+impl From<Outcome> for Value {
+    fn from(outcome: Outcome) -> Self {
+        Self::Outcome(outcome)
+    }
+}

@@ -1,0 +1,45 @@
+//! How a run may end.
+
+use serde::Serialize;
+
+/// How a run ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(test, derive(Default))]
+#[serde(rename_all = "lowercase")]
+pub enum Outcome {
+    /// Back in the middle (r < 0.3 c, held) and not touching again.
+    Recovered,
+    /// Free vibration without contact.
+    #[cfg_attr(test, default)]
+    Decayed,
+    /// Touching still, without whirl and without speed.
+    Resting,
+    /// Held on the stator by a load that is still on.
+    Pinned,
+    /// In unbroken contact for longer than a rotor takes to settle, moving, without whirl.
+    Rubbing,
+    /// Still hitting the stator when the run ended, without whirl.
+    Bouncing,
+    /// Backward whirl: the contact speed passed the scene's limit.
+    Whirl,
+}
+
+impl Outcome {
+    /// The word for it, as in `verdict.json`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Recovered => "recovered",
+            Self::Decayed => "decayed",
+            Self::Resting => "resting",
+            Self::Pinned => "pinned",
+            Self::Rubbing => "rubbing",
+            Self::Bouncing => "bouncing",
+            Self::Whirl => "whirl",
+        }
+    }
+
+    /// Whether the rotor is free again, and stays so as far as the run shows.
+    pub fn recovered(self) -> bool {
+        matches!(self, Self::Recovered | Self::Decayed)
+    }
+}
