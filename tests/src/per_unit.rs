@@ -3,7 +3,7 @@
 
 use crate::recording::recording;
 use firmware_bench::run::closed_loop::{Keep, run_policy};
-use firmware_bench::run::controller::{Policy, Supervise};
+use firmware_bench::run::controller::{Supervise, supervised};
 use firmware_studies::machines::plants::{PlantCase, plants};
 use firmware_studies::machines::tuned_gains::stored;
 use firmware_studies::overloads::case::Case;
@@ -97,7 +97,7 @@ pub fn record(
             case.scene.duration_s = case.scene.duration_s.min(longest_s);
             let config = case.scene.supervisor.expect("plants have one");
             let (supervisor, tape) = recording(&config).expect("valid");
-            let policy = Policy::supervised(&case.scene, supervisor).expect("complete");
+            let policy = supervised(&case.scene, supervisor).expect("complete");
             // For the stream a run is good up to where it cannot be trusted any further.
             let _ended = run_policy(
                 &case.scene,

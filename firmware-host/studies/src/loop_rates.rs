@@ -3,8 +3,8 @@
 use crate::campaign::{Block, Chapter, Claim, Extent, Progress, Report, StudyError, run_all};
 use crate::machines::plants::{PlantCase, RATES_HZ, plants};
 use crate::machines::tuned_gains::{TunedGains, stored};
+use crate::overloads::contenders::Contender;
 use crate::overloads::plan::CatalogueError;
-use crate::overloads::seats::Seat;
 use crate::overloads::sweeps::{median, row, sweep};
 use crate::overloads::tune;
 use crate::trials::Compared;
@@ -54,16 +54,18 @@ pub struct Recovered {
 /// [`CatalogueError`] where a run cannot be trusted.
 pub fn recovered(case: &PlantCase, seeds: u64) -> Result<Recovered, CatalogueError> {
     let gains = gains(case)?;
-    let of = |seat: Seat| {
+    let of = |contender: Contender| {
         let points = (1..=seeds)
-            .map(|seed| sweep(case, &gains, (seat, seed)).map_err(failed(case, seat.name())))
+            .map(|seed| {
+                sweep(case, &gains, (contender, seed)).map_err(failed(case, contender.name()))
+            })
             .collect::<Result<Vec<_>, _>>()?;
-        let row = row(case, seat, &points);
+        let row = row(case, contender, &points);
         Ok::<_, CatalogueError>([median(&row.impact_m_s), median(&row.whirl_share)])
     };
     Ok(Recovered {
-        tuned: of(Seat::Tuned)?,
-        own: of(Seat::Supervisor)?,
+        tuned: of(Contender::Tuned)?,
+        own: of(Contender::Supervisor)?,
     })
 }
 

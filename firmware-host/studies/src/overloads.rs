@@ -2,6 +2,7 @@
 
 pub mod case;
 pub mod catalogue;
+pub mod contenders;
 pub mod cross_entropy;
 pub mod fault_matrix;
 pub mod histories;
@@ -12,7 +13,6 @@ pub mod plan;
 pub mod promises;
 pub mod reference;
 pub mod results;
-pub mod seats;
 pub mod situations;
 pub mod sweeps;
 pub mod takeover;

@@ -4,9 +4,9 @@ use crate::machines::plants::PlantCase;
 use crate::machines::tuned_gains::TunedGains;
 use crate::overloads::case::Case;
 use crate::overloads::catalogue::cases;
+use crate::overloads::contenders::Contender;
 use crate::overloads::fault_matrix::{DRIVE_FAULTS, SENSOR_FAULTS};
 use crate::overloads::results::{ResultRow, run_case};
-use crate::overloads::seats::Seat;
 use firmware_bench::scene::Scene;
 
 /// A scene on a machine with its levitation controller.
@@ -25,7 +25,7 @@ impl Trial {
     pub fn on(plant: &PlantCase, gains: &TunedGains) -> Vec<Self> {
         let sound = |case: &Case| ![SENSOR_FAULTS, DRIVE_FAULTS].contains(&case.group);
         (cases(plant, gains.tuned).into_iter())
-            .filter(|case| sound(case) && case.seats.contains(&Seat::Supervisor))
+            .filter(|case| sound(case) && case.contenders.contains(&Contender::Supervisor))
             .map(|case| Self {
                 plant: plant.clone(),
                 gains: *gains,
@@ -35,9 +35,9 @@ impl Trial {
     }
 
     /// Runs it with one seed.
-    pub fn run(&self, seat: Seat) -> ResultRow {
+    pub fn run(&self, contender: Contender) -> ResultRow {
         let at = (self.plant.name.as_str(), self.plant.rate_hz);
-        run_case(&self.case, at, (seat, 1), &self.gains)
+        run_case(&self.case, at, (contender, 1), &self.gains)
     }
 
     /// The same machine and name, another scene.
@@ -72,8 +72,8 @@ impl Compared {
             ..Self::default()
         };
         for trial in Trial::on(plant, gains) {
-            let [alone, own] =
-                [Seat::Tuned, Seat::Supervisor].map(|seat| trial.run(seat).recovered());
+            let [alone, own] = [Contender::Tuned, Contender::Supervisor]
+                .map(|contender| trial.run(contender).recovered());
             compared.runs += 1;
             compared.alone += usize::from(alone);
             compared.own += usize::from(own);

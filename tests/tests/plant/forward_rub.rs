@@ -2,11 +2,11 @@
 //! no other motion is taken for it, and the supervisor's force never drives it.
 
 use firmware_bench::run::closed_loop::{Keep, run_policy};
-use firmware_bench::run::controller::Policy;
+use firmware_bench::run::controller::supervised;
 use firmware_bench::scene::Scene;
 use firmware_studies::machines::plants::{PlantCase, plants};
 use firmware_studies::machines::tuned_gains::stored;
-use firmware_studies::overloads::seats::{Seat, Task, seated};
+use firmware_studies::overloads::contenders::{Contender, Task};
 use plant_model::params::SpinParams;
 use std::f64::consts::TAU;
 use supervisor::{Command, Events, Mode, Sample, Status, Supervisor};
@@ -92,9 +92,11 @@ fn unbalance_that_no_force_holds_is_recognised_and_not_driven() {
         let (supervisor, tape) = recording(&scene.supervisor.unwrap()).unwrap();
         let mut with_levitation = scene.clone();
         with_levitation.levitation = Some(found.tuned);
-        let supervised = Policy::supervised(&with_levitation, supervisor).unwrap();
+        let supervised = supervised(&with_levitation, supervisor).unwrap();
         let (own, _) = run(supervised, "supervisor").unwrap();
-        let alone = seated(Seat::Tuned, Task::Impact, &found, &scene).unwrap();
+        let alone = Contender::Tuned
+            .controller(Task::Impact, &found, &scene)
+            .unwrap();
         let (alone, _) = run(alone, "levitation").unwrap();
 
         let ticks = tape.take();

@@ -1,6 +1,6 @@
 //! What a slower call of the supervisor costs: the impacts and whirls it recovers from, by the rate of the loop.
 
-use firmware_bench::run::controller::{Policy, Supervise};
+use firmware_bench::run::controller::{Supervise, supervised};
 use firmware_bench::scene::Scene;
 use firmware_studies::loop_rates::{self, Recovered};
 use firmware_studies::machines::plants::{PlantCase, plants};
@@ -75,7 +75,7 @@ fn in_slower_task(name: &str, times: u32) -> f64 {
     let make = |scene: &Scene| {
         let mut scene = scene.clone();
         scene.levitation = stored(name, 2e4).map(|found| found.tuned);
-        Policy::supervised(&scene, Box::new(InSlowerTask::new(&config, times)))
+        supervised(&scene, Box::new(InSlowerTask::new(&config, times)))
     };
     recoverable_m_s(&quick, "slower task", &make).expect("a run that can be trusted")
 }

@@ -2,14 +2,13 @@
 //! searches are what they say.
 
 use firmware_bench::run::closed_loop::{Keep, run_policy};
-use firmware_bench::run::controller::Policy;
 use firmware_bench::run::history::History;
 use firmware_studies::machines::plants::{RATES_HZ, plants};
 use firmware_studies::machines::tuned_gains::stored;
 use firmware_studies::overloads::catalogue::cases;
+use firmware_studies::overloads::contenders::{Contender, clairvoyant, levitation};
 use firmware_studies::overloads::impact::recoverable_m_s;
 use firmware_studies::overloads::loop_shape::SampledPlant;
-use firmware_studies::overloads::seats::{Seat, clairvoyant, levitation};
 use firmware_studies::overloads::tune::{IDLE_NOISE, SENSITIVITY, shape};
 use plant_model::{Options, V2};
 use serde_json::Value;
@@ -239,10 +238,10 @@ fn a_history_can_do_what_the_reference_does() {
             .collect();
         (verdict.recovered, rows)
     };
-    let (recovered, of_law) = run(Policy::Clairvoyant(law.clone()));
+    let (recovered, of_law) = run(Box::new(law.clone()));
     assert!(recovered);
     let follows = |history, what: &str| {
-        let (recovered, rows) = run(Policy::History(Box::new(history)));
+        let (recovered, rows) = run(Box::new(history));
         let apart_m = (rows.iter().zip(&of_law)).map(|((a, _), (b, _))| (a - b).norm());
         // A force at the cap is cut once more, at its last bit.
         assert!(recovered && apart_m.fold(0.0, f64::max) < 1e-12, "{what}");
@@ -280,7 +279,10 @@ fn cases_are_told_apart() {
         assert_eq!(names.len(), all.len(), "{}", plant.name);
         assert!(all.len() > 150);
         for case in &all {
-            assert!(case.seats.contains(&Seat::Supervisor) && case.seats.contains(&Seat::Tuned));
+            assert!(
+                case.contenders.contains(&Contender::Supervisor)
+                    && case.contenders.contains(&Contender::Tuned)
+            );
         }
     }
 }

@@ -2,8 +2,8 @@
 
 use firmware_bench::scene::Scene;
 use firmware_studies::machines::drawn::Machine;
+use firmware_studies::overloads::contenders::Contender;
 use firmware_studies::overloads::results::ResultRow;
-use firmware_studies::overloads::seats::Seat;
 use firmware_studies::sensitivity::misjudged;
 use firmware_studies::sensitivity::study::{Outcome, of_the_catalogue, told_wrong};
 use firmware_studies::trials::Trial;
@@ -70,8 +70,8 @@ fn a_rotor_that_turns_round_near_the_wall_does_not_rest() {
                 let scene = &trial.case.scene;
                 let told = noisy.told(scene).unwrap().unwrap();
                 (
-                    trial.run(Seat::Tuned),
-                    trial.with(told).run(Seat::Supervisor),
+                    trial.run(Contender::Tuned),
+                    trial.with(told).run(Contender::Supervisor),
                 )
             })
             .collect();

@@ -4,7 +4,7 @@ use firmware_bench::run::closed_loop::{Keep, run_policy};
 use firmware_studies::machines::plants::{RATES_HZ, plants};
 use firmware_studies::machines::tuned_gains::stored;
 use firmware_studies::overloads::catalogue::cases;
-use firmware_studies::overloads::seats::{Seat, Task, seated};
+use firmware_studies::overloads::contenders::{Contender, Task};
 use plant_model::V2;
 use supervisor::Mode;
 
@@ -21,7 +21,9 @@ fn the_delivered_force_is_aimed_against_the_whirl_and_never_outwards() {
                 if case.group != "whirl" {
                     continue;
                 }
-                let acting = seated(Seat::Supervisor, Task::Impact, &found, &case.scene).unwrap();
+                let acting = Contender::Supervisor
+                    .controller(Task::Impact, &found, &case.scene)
+                    .unwrap();
                 let ran = run_policy(
                     &case.scene,
                     (acting, "supervisor"),

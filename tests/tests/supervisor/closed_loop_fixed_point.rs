@@ -1,7 +1,7 @@
 //! The fixed-point supervisor keeps rotors as well as `f32`: hardest impact that is recovered from.
 
 use firmware_bench::run::closed_loop::{Keep, run_policy};
-use firmware_bench::run::controller::{Policy, Supervise};
+use firmware_bench::run::controller::{Supervise, supervised};
 use firmware_bench::scene::Scene;
 use firmware_studies::machines::plants::plants;
 use firmware_studies::machines::tuned_gains::stored;
@@ -22,7 +22,7 @@ fn of<S: Scalar + 'static>(scene: &Scene) -> Option<Box<dyn Supervise>> {
 
 /// By the search of the catalogue, in steps of 5 %.
 fn by_the_catalogue_m_s(scene: &Scene, make: Make) -> f64 {
-    recoverable_m_s(scene, "supervised", &|s| Policy::supervised(s, make(s)?)).unwrap()
+    recoverable_m_s(scene, "supervised", &|s| supervised(s, make(s)?)).unwrap()
 }
 
 /// The same on a grid of half a percent.
@@ -31,7 +31,7 @@ fn recoverable_m_s_finely(scene: &Scene, make: Make) -> f64 {
     let (mut speed, mut last) = (FIRST_M_S, 0.0);
     loop {
         scene.start.velocity_m_s = V2::new(speed, 0.0);
-        let policy = Policy::supervised(&scene, make(&scene).unwrap()).unwrap();
+        let policy = supervised(&scene, make(&scene).unwrap()).unwrap();
         let run = run_policy(&scene, (policy, "supervised"), Keep::Decision, &mut |_| {});
         if !run.unwrap().0.recovered {
             return last;

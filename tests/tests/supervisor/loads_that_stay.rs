@@ -7,7 +7,7 @@ use firmware_studies::machines::drawn::Machine;
 use firmware_studies::machines::plants::plants;
 use firmware_studies::machines::tuned_gains::stored;
 use firmware_studies::overloads::case::Sizes;
-use firmware_studies::overloads::seats::{Seat, Task, seated};
+use firmware_studies::overloads::contenders::{Contender, Task};
 use plant_model::V2;
 use supervisor::Mode;
 
@@ -43,15 +43,15 @@ fn what_levitation_carries_it_is_given() {
                 ..base.clone()
             };
             scene.start.velocity_m_s = V2::new(0.0, landing * sizes.impact_m_s);
-            let run = |seat: Seat| {
-                let acting = seated(seat, Task::Impact, &found, &scene).unwrap();
-                run_policy(&scene, (acting, seat.name()), Keep::Trace, &mut |_| {}).unwrap()
+            let run = |contender: Contender| {
+                let acting = contender.controller(Task::Impact, &found, &scene).unwrap();
+                run_policy(&scene, (acting, contender.name()), Keep::Trace, &mut |_| {}).unwrap()
             };
-            let (alone, _) = run(Seat::Tuned);
+            let (alone, _) = run(Contender::Tuned);
             if !alone.recovered {
                 continue;
             }
-            let (own, trace) = run(Seat::Supervisor);
+            let (own, trace) = run(Contender::Supervisor);
             let said = format!("{}: {share} caps, landing {landing}", unseen.text);
             assert!(own.recovered, "{said}: {own:?}");
             let last = trace.rows.iter().filter(|row| row.plant.t_s > 0.45);
@@ -84,11 +84,11 @@ fn magnets_that_pull_with_the_whole_cap_are_overcome() {
         let mut found = stored("P2", 20_000.0).unwrap();
         found.tuned.proportional_n_m = 2.0 * pull * cap_n_m;
         found.tuned.derivative_n_s_m = 2.0 * (10.0 * pull * cap_n_m).sqrt();
-        let run = |seat: Seat| {
-            let acting = seated(seat, Task::Impact, &found, &scene).unwrap();
-            run_policy(&scene, (acting, seat.name()), Keep::Trace, &mut |_| {}).unwrap()
+        let run = |contender: Contender| {
+            let acting = contender.controller(Task::Impact, &found, &scene).unwrap();
+            run_policy(&scene, (acting, contender.name()), Keep::Trace, &mut |_| {}).unwrap()
         };
-        let ((alone, _), (own, trace)) = (run(Seat::Tuned), run(Seat::Supervisor));
+        let ((alone, _), (own, trace)) = (run(Contender::Tuned), run(Contender::Supervisor));
         assert!(alone.recovered && alone.impacts == 0, "{pull}: {alone:?}");
         assert!(own.recovered && own.impacts == 0, "{pull}: {own:?}");
         let engaged = Supervision::of(&trace).unwrap().engaged_s;
@@ -107,8 +107,10 @@ fn a_coarse_converter_is_no_stuck_sensor() {
             scene.duration_s = 1.0;
             scene.sensor.quantum_m = 1e-6;
             scene.plant.rotor.eccentricity_m = 1e-5;
-            let acting = seated(Seat::Supervisor, Task::Impact, &found, &scene).unwrap();
-            let run = (acting, Seat::Supervisor.name());
+            let acting = Contender::Supervisor
+                .controller(Task::Impact, &found, &scene)
+                .unwrap();
+            let run = (acting, Contender::Supervisor.name());
             let (_, trace) = run_policy(&scene, run, Keep::Trace, &mut |_| {}).unwrap();
             let told = Supervision::of(&trace).unwrap();
             assert_eq!(told.sensor_faults, 0, "{} at {rate_hz} Hz", plant.name);

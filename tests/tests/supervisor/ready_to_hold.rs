@@ -1,7 +1,7 @@
 //! The bearing goes back only to a controller that asks for what the rotor is held with.
 
 use firmware_bench::run::closed_loop::{Keep, run_policy};
-use firmware_bench::run::controller::{Policy, Supervise};
+use firmware_bench::run::controller::{Supervise, supervised};
 use firmware_bench::scene::{Disturbance, Scene, Shape};
 use firmware_studies::machines::plants::plants;
 use firmware_studies::machines::tuned_gains::stored;
@@ -44,7 +44,7 @@ fn a_rising_load_is_not_handed_over_again_and_again() {
                 ..plant.scene.clone()
             };
             let supervisor = Supervisor::new(&scene.supervisor.unwrap()).unwrap();
-            let policy = Policy::supervised(&scene, Box::new(BeforeNothing(supervisor))).unwrap();
+            let policy = supervised(&scene, Box::new(BeforeNothing(supervisor))).unwrap();
             let run = (policy, "supervisor");
             let (_, trace) = run_policy(&scene, run, Keep::Trace, &mut |_| {}).unwrap();
             let samples = trace.rows.iter().filter(|row| !row.mode_change);

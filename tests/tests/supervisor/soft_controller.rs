@@ -2,7 +2,7 @@
 
 use firmware_bench::device::levitation::LevitationParams;
 use firmware_bench::run::closed_loop::{Keep, run_policy};
-use firmware_bench::run::controller::Policy;
+use firmware_bench::run::controller::controller;
 use firmware_bench::run::trace::TraceRow;
 use firmware_bench::scene::policy_kind::PolicyKind;
 use firmware_bench::scene::{Axis, Fault, FaultKind, Scene};
@@ -37,7 +37,7 @@ fn noise_in_the_middle_does_not_hold_the_hand_over_up() {
                 }],
                 ..plant.scene.clone()
             };
-            let policy = Policy::new(PolicyKind::Supervisor, &scene).unwrap();
+            let policy = controller(PolicyKind::Supervisor, &scene).unwrap();
             let acting = (policy, "supervisor");
             let (_, trace) = run_policy(&scene, acting, Keep::Trace, &mut |_| {}).unwrap();
             let modes = trace.rows.iter().filter_map(TraceRow::supervisor_mode);

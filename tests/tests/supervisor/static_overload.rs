@@ -7,7 +7,7 @@ use firmware_studies::machines::plants::{PlantCase, plants};
 use firmware_studies::machines::tuned_gains::{TunedGains, stored};
 use firmware_studies::overloads::case::Case;
 use firmware_studies::overloads::catalogue::cases;
-use firmware_studies::overloads::seats::{Seat, Task, seated};
+use firmware_studies::overloads::contenders::{Contender, Task};
 
 const RATE_HZ: f64 = 20_000.0;
 
@@ -23,9 +23,20 @@ fn loaded(plant: &str, caps: f64) -> (PlantCase, TunedGains, Case) {
     (plant, found, case)
 }
 
-fn under(seat: Seat, (_, found, case): &(PlantCase, TunedGains, Case)) -> (Figures, Trace) {
-    let acting = seated(seat, Task::Impact, found, &case.scene).unwrap();
-    run_policy(&case.scene, (acting, seat.name()), Keep::Trace, &mut |_| {}).unwrap()
+fn under(
+    contender: Contender,
+    (_, found, case): &(PlantCase, TunedGains, Case),
+) -> (Figures, Trace) {
+    let acting = contender
+        .controller(Task::Impact, found, &case.scene)
+        .unwrap();
+    run_policy(
+        &case.scene,
+        (acting, contender.name()),
+        Keep::Trace,
+        &mut |_| {},
+    )
+    .unwrap()
 }
 
 /// A load a little below the cap throws the rotor onto the bearing once; then it is lifted off and kept away, also where
@@ -34,8 +45,8 @@ fn under(seat: Seat, (_, found, case): &(PlantCase, TunedGains, Case)) -> (Figur
 fn a_load_just_below_the_cap_is_lifted_off_and_kept_away() {
     for plant in ["P2", "P3", "P4"] {
         let loaded = loaded(plant, 0.9);
-        let (alone, _) = under(Seat::Tuned, &loaded);
-        let (own, trace) = under(Seat::Supervisor, &loaded);
+        let (alone, _) = under(Contender::Tuned, &loaded);
+        let (own, trace) = under(Contender::Supervisor, &loaded);
         assert!(own.recovered && own.impacts == 1, "{plant}: {own:?}");
         let share = own.contact_impulse_n_s / alone.contact_impulse_n_s;
         assert!(share < 0.01, "{plant}: {share}");
@@ -57,7 +68,7 @@ fn a_load_just_below_the_cap_is_lifted_off_and_kept_away() {
 fn what_the_cap_cannot_lift_is_held_with_all_of_it() {
     for plant in ["P2", "P4"] {
         let loaded = loaded(plant, 1.5);
-        let (_, trace) = under(Seat::Supervisor, &loaded);
+        let (_, trace) = under(Contender::Supervisor, &loaded);
         let rows = || (trace.rows.iter()).filter(|row| row.plant.t_s > 0.5 && row.plant.t_s < 1.0);
         let pressing_n =
             rows().map(|row| row.plant.normal_force_n).sum::<f64>() / rows().count() as f64;

@@ -63,13 +63,16 @@ pub struct TrueLevitation {
     pub params: LevitationParams,
     /// Cap \[N\].
     pub force_max_n: f64,
+    /// Centre of the magnets, as positions are counted \[m\].
+    pub centre_m: V2,
 }
 
 impl TrueLevitation {
-    /// Force for the true position, from the centre of the magnets, and velocity \[N\].
+    /// Force for the true position and velocity \[N\].
     pub fn force_n(&self, position_m: V2, velocity_m_s: V2) -> V2 {
         let p = &self.params;
-        let wanted = -p.proportional_n_m * position_m - p.derivative_n_s_m * velocity_m_s;
+        let wanted =
+            -p.proportional_n_m * (position_m - self.centre_m) - p.derivative_n_s_m * velocity_m_s;
         limited_n(wanted, self.force_max_n)
     }
 }

@@ -1,6 +1,7 @@
 //! The reference policy: true state, no noise, no delay, the same cap and amplifier. Its law has the shape
 //! of the supervisor's, in double precision, with every weight free to be searched.
 
+use crate::run::controller::{Controller, Force, Seen};
 use plant_model::params::PlantParams;
 use plant_model::{Snapshot, V2};
 
@@ -135,6 +136,12 @@ impl Clairvoyant {
             V2::zeros()
         };
         [braking, damping, restoring]
+    }
+}
+
+impl Controller for Clairvoyant {
+    fn command(&mut self, _seen: &Seen, truth: &Snapshot) -> Force {
+        Force::AtOnce(self.force_n(truth))
     }
 }
 

@@ -5,7 +5,7 @@ use crate::device::actuator::Amplifier;
 use crate::device::loads::cuts;
 use crate::device::sensor::Sensor;
 use crate::device::sensor_fault::seen_until_s;
-use crate::run::controller::{Policy, Seen};
+use crate::run::controller::{Controller, Force, Seen, controller};
 use crate::run::figures::{Ended, Figures};
 use crate::run::judge::Judge;
 use crate::run::trace::{Said, Trace, TraceRow};
@@ -103,19 +103,18 @@ pub fn run(
     keep: Keep,
     on_tick: &mut dyn FnMut(u64),
 ) -> Result<(Figures, Trace), RunError> {
-    let policy = Policy::new(kind, scene).ok_or(RunError::Incomplete {
-        policy: kind.name(),
-    })?;
-    run_policy(scene, (policy, kind.name()), keep, on_tick)
+    let policy = kind.name();
+    let acting = controller(kind, scene).ok_or(RunError::Incomplete { policy })?;
+    run_policy(scene, (acting, policy), keep, on_tick)
 }
 
-/// Runs a policy that has been set up, under a name.
+/// Runs a controller that has been set up, under the name of a policy.
 ///
 /// # Errors
 /// As [`run`].
 pub fn run_policy(
     scene: &Scene,
-    (acting, policy): (Policy, &'static str),
+    (controller, policy): (Box<dyn Controller>, &'static str),
     keep: Keep,
     on_tick: &mut dyn FnMut(u64),
 ) -> Result<(Figures, Trace), RunError> {
@@ -140,7 +139,7 @@ pub fn run_policy(
         policy_name: policy,
         plant,
         sensor: Sensor::new(scene.sensor, &scene.faults, period_s, scene.seed),
-        policy: acting,
+        controller,
         amplifier: Amplifier::new(scene.amplifier, force_max_n, &scene.outages),
         judge: Judge::new(scene),
         keep,
@@ -167,7 +166,7 @@ pub fn run_policy(
     bench.judge.sample(&last);
     bench.record(&last, scene.from_magnets_m(last.position_m), false);
     if keep.rows() {
-        bench.trace.read_out = bench.policy.read_out();
+        bench.trace.read_out = bench.controller.read_out();
     }
     let figures = Figures::new(&Ended::new(scene, &bench.judge, bench.plant.as_ref()));
     let residual = figures.energy_residual;
@@ -187,7 +186,7 @@ struct Bench<'a> {
     policy_name: &'static str,
     plant: Box<dyn Plant>,
     sensor: Sensor,
-    policy: Policy,
+    controller: Box<dyn Controller>,
     amplifier: Amplifier,
     judge: Judge,
     keep: Keep,
@@ -212,7 +211,7 @@ impl Bench<'_> {
         self.amplifier.begin(tick);
         let now = self.plant.snapshot();
         let reading = (self.sensor).read(t, self.scene.from_magnets_m(now.position_m));
-        let command_n = self.policy.tick(&Seen {
+        let seen = Seen {
             reading,
             spin_rad_s: self.scene.spin_sensor.gain * now.spin_rad_s,
             applied_n: if self.scene.amplifier.force_measured {
@@ -222,14 +221,14 @@ impl Bench<'_> {
                 V2::zeros()
             },
             status: self.status(seen_until_s(t, period)),
-        });
+        };
         let with_weight = |force_n: V2| force_n + self.scene.feed_forward_n;
-        match self.policy.of_truth(&now) {
-            Some(truth_n) => self.amplifier.command_at_once(with_weight(truth_n)),
-            None => self.amplifier.command(tick, with_weight(command_n)),
+        match self.controller.command(&seen, &now) {
+            Force::Computed(force_n) => self.amplifier.command(tick, with_weight(force_n)),
+            Force::AtOnce(force_n) => self.amplifier.command_at_once(with_weight(force_n)),
         }
         self.judge.sample(&now);
-        self.said = self.policy.said();
+        self.said = self.controller.said();
         self.record(&now, reading.position_m, false);
         // What happened at this sample is not to be read a second time.
         if let Some(said) = &mut self.said {

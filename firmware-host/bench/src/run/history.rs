@@ -3,6 +3,7 @@
 
 use crate::device::actuator::limited_n;
 use crate::run::clairvoyant::Clairvoyant;
+use crate::run::controller::{Controller, Force, Seen};
 use plant_model::{Snapshot, V2};
 
 /// Force vectors, each held for a while.
@@ -48,5 +49,11 @@ impl History {
             }
             Some(own_n) => limited_n(*own_n, self.force_max_n),
         }
+    }
+}
+
+impl Controller for History {
+    fn command(&mut self, _seen: &Seen, truth: &Snapshot) -> Force {
+        Force::AtOnce(self.force_n(truth))
     }
 }

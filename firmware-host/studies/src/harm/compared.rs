@@ -1,7 +1,7 @@
 //! A run with levitation alone beside one with the supervisor in front of it.
 
 use firmware_bench::run::closed_loop::{Keep, run, run_policy};
-use firmware_bench::run::controller::{Policy, Supervise};
+use firmware_bench::run::controller::{Supervise, supervised};
 use firmware_bench::run::supervision::acts;
 use firmware_bench::run::trace::ReadOut;
 use firmware_bench::scene::Scene;
@@ -105,7 +105,7 @@ pub fn compare(scene: &Scene) -> Option<Pair> {
         period_s: 1.0 / scene.sample_rate_hz,
         running_s: 0.0,
     };
-    let policy = Policy::supervised(scene, Box::new(supervisor))?;
+    let policy = supervised(scene, Box::new(supervisor))?;
     let (own, _) = run_policy(scene, (policy, "supervisor"), Keep::Verdict, &mut |_| {}).ok()?;
     let figures = |v: &firmware_bench::run::figures::Figures| Figures {
         recovered: v.recovered,

@@ -7,7 +7,7 @@ use crate::machines::tuned_gains::stored;
 use crate::overloads::catalogue::cases;
 use crate::overloads::plan::CatalogueError;
 use firmware_bench::run::closed_loop::{Keep, run_policy};
-use firmware_bench::run::controller::Policy;
+use firmware_bench::run::controller::supervised;
 use firmware_bench::scene::Scene;
 use rand_chacha::ChaCha8Rng;
 use rand_core::{Rng, SeedableRng};
@@ -91,7 +91,7 @@ pub fn closed_loops(number: Number, ticks: usize) -> Result<(Vec<Piece>, usize),
 fn recorded(number: Number, scene: &Scene) -> Option<Piece> {
     let config = scene.supervisor?;
     let tape = Tape::default();
-    let policy = Policy::supervised(scene, number.recorder(&config, &tape)?)?;
+    let policy = supervised(scene, number.recorder(&config, &tape)?)?;
     let _ended = run_policy(scene, (policy, "supervisor"), Keep::Verdict, &mut |_| {});
     let ticks = tape.take();
     Some(Piece { config, ticks })

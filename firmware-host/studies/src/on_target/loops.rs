@@ -10,7 +10,7 @@ use crate::machines::plants::{RATES_HZ, plants};
 use crate::machines::tuned_gains::stored;
 use crate::overloads::catalogue::cases;
 use firmware_bench::run::closed_loop::{Keep, RunError, run_policy};
-use firmware_bench::run::controller::{Policy, Supervise};
+use firmware_bench::run::controller::{Supervise, supervised};
 use firmware_bench::run::figures::Figures;
 use firmware_bench::run::trace::Trace;
 use firmware_bench::scene::Scene;
@@ -71,7 +71,7 @@ fn ran(scene: &Scene, supervisor: Box<dyn Supervise>) -> Result<Ran, RunError> {
         tape: Rc::clone(&tape),
     };
     let policy = "supervisor";
-    let acting = Policy::supervised(scene, Box::new(recording));
+    let acting = supervised(scene, Box::new(recording));
     let acting = acting.ok_or(RunError::Incomplete { policy })?;
     let (figures, trace) = run_policy(scene, (acting, policy), Keep::Trace, &mut |_| {})?;
     Ok(Ran {

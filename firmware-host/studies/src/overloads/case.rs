@@ -3,7 +3,7 @@
 //! Sizes are taken from the plant: forces from its capacity, speeds from the impact whose bounces, left to
 //! themselves, would add up to the fastest whirl that the cap can stop, v_ref = v_lim·(1 − e)/(μ·(1 + e)).
 
-use super::seats::{Seat, restitution};
+use super::contenders::{Contender, restitution};
 use super::takeover::arrest_of;
 use firmware_bench::scene::{Disturbance, Scene, Shape};
 use plant_model::V2;
@@ -19,7 +19,7 @@ pub struct Case {
     /// What happens.
     pub scene: Scene,
     /// Who takes part.
-    pub seats: &'static [Seat],
+    pub contenders: &'static [Contender],
 }
 
 /// Sizes of a plant.

@@ -1,7 +1,7 @@
 //! The scenes of the catalogue, on one plant.
 
 use super::case::{Case, Sizes, aimed, load};
-use super::seats::Seat;
+use super::contenders::Contender;
 use super::situations::{Situation, situations};
 use super::takeover::let_whirl;
 use crate::machines::plants::PlantCase;
@@ -42,7 +42,7 @@ impl Collector<'_> {
             group,
             name: name.into(),
             scene,
-            seats: &Seat::ALL,
+            contenders: &Contender::ALL,
         });
     }
 

@@ -1,7 +1,7 @@
 //! Every fault of sensor and drive in every mode: idle, approach, bounce, whirl, hand-over.
 
 use super::case::Case;
-use super::seats::Seat;
+use super::contenders::Contender;
 use super::situations::Situation;
 use crate::machines::plants::PlantCase;
 use firmware_bench::scene::{Axis, Delivers, Fault, FaultKind, Outage, Scene};
@@ -104,7 +104,7 @@ pub fn cases(plant: &PlantCase, situations: &[Situation]) -> Vec<Case> {
                 group,
                 name: format!("{fault} while in {}", situation.name),
                 scene,
-                seats: &[Seat::Tuned, Seat::Supervisor],
+                contenders: &[Contender::Tuned, Contender::Supervisor],
             });
         };
         for (name, kind, axis, duration_s) in faults(clearance_m, period_s) {

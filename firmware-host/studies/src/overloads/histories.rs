@@ -6,17 +6,17 @@
 //! reference's law takes over: by then the impact is decided, and an AMB without feedback falls on its bearing.
 
 use super::case::aimed;
+use super::contenders::clairvoyant;
 use super::cross_entropy::{Effort, maximise};
 use super::impact::FIRST_M_S;
 use super::plan::CatalogueError;
-use super::seats::clairvoyant;
 use super::sweeps::TIMED_SHARE;
 use super::takeover::{ARRESTED, arrest_of};
 use crate::machines::plants::plants;
 use crate::machines::tuned_gains::stored;
 use firmware_bench::run::clairvoyant::Clairvoyant;
 use firmware_bench::run::closed_loop::{Keep, RunError, run_policy};
-use firmware_bench::run::controller::Policy;
+use firmware_bench::run::controller::Controller;
 use firmware_bench::run::figures::Figures;
 use firmware_bench::run::history::History;
 use firmware_bench::run::outcome::Outcome;
@@ -132,25 +132,29 @@ impl Impact<'_> {
         self.held_s() * PIECES as f64
     }
 
-    fn run(&self, speed_m_s: f64, policy: Policy) -> Result<(Figures, Trace), RunError> {
+    fn run(
+        &self,
+        speed_m_s: f64,
+        controller: Box<dyn Controller>,
+    ) -> Result<(Figures, Trace), RunError> {
         let scene = Scene {
             start: aimed(self.scene, speed_m_s, self.angle_deg),
             duration_s: self.end_s() + AFTER_S,
             ..self.scene.clone()
         };
-        let acting = (policy, "history");
+        let acting = (controller, "history");
         run_policy(&scene, acting, Keep::TraceToDecision, &mut |_| {})
     }
 
     /// A history from shares of the cap, x and y in turn.
-    fn history(&self, way: Way, shares: &[f64]) -> Policy {
+    fn history(&self, way: Way, shares: &[f64]) -> Box<dyn Controller> {
         let forces_n = (shares.chunks_exact(2)).map(|f| self.cap_n * V2::new(f[0], f[1]));
         let (held_s, law) = (self.held_s(), self.law.clone());
         let history = History::new(forces_n.collect(), held_s, law, self.cap_n);
-        Policy::History(Box::new(match way {
+        Box::new(match way {
             Way::OnTopOfReference => history.on_top(),
             _ => history,
-        }))
+        })
     }
 
     /// Forces that were asked for at the samples of the history \[N\].
@@ -184,7 +188,7 @@ impl Impact<'_> {
         let mut last = (0.0, Trace::default());
         let mut speed = FIRST_M_S;
         loop {
-            let policy = Policy::Clairvoyant(self.law.clone());
+            let policy = Box::new(self.law.clone());
             let (verdict, trace) = self.run(speed, policy)?;
             if !verdict.recovered {
                 return Ok(last);
@@ -241,7 +245,7 @@ impl Impact<'_> {
             // What counts is the history alone, without the law on top of which it may have been found.
             let period_s = 1.0 / self.scene.sample_rate_hz;
             let alone = History::new(samples_n.clone(), period_s, self.law.clone(), self.cap_n);
-            let (replayed, _) = self.run(speed_m_s, Policy::History(Box::new(alone)))?;
+            let (replayed, _) = self.run(speed_m_s, Box::new(alone))?;
             if replayed.recovered {
                 return Ok((Some((shares, samples_n)), runs.into_inner()));
             }

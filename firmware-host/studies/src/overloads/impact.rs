@@ -1,7 +1,7 @@
 //! The hardest radial impact that a policy recovers from.
 
 use firmware_bench::run::closed_loop::{Keep, RunError, run_policy};
-use firmware_bench::run::controller::Policy;
+use firmware_bench::run::controller::Controller;
 use firmware_bench::scene::Scene;
 use plant_model::V2;
 
@@ -20,7 +20,7 @@ const LAST_M_S: f64 = 5.0;
 pub fn recoverable_m_s(
     scene: &Scene,
     name: &'static str,
-    make: &dyn Fn(&Scene) -> Option<Policy>,
+    make: &dyn Fn(&Scene) -> Option<Box<dyn Controller>>,
 ) -> Result<f64, RunError> {
     recoverable_from(scene, name, make, FIRST_M_S)
 }
@@ -33,7 +33,7 @@ pub fn recoverable_m_s(
 pub fn recoverable_from(
     scene: &Scene,
     name: &'static str,
-    make: &dyn Fn(&Scene) -> Option<Policy>,
+    make: &dyn Fn(&Scene) -> Option<Box<dyn Controller>>,
     from_m_s: f64,
 ) -> Result<f64, RunError> {
     let mut scene = scene.clone();

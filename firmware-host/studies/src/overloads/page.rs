@@ -1,9 +1,9 @@
 //! The catalogue as chapters of a page, and as a study.
 
+use super::contenders::Contender;
 use super::plan::{Catalogue, CatalogueError, Plan};
 use super::promises::{Harm, force_ratios, lost_beyond_chance, percentile};
 use super::results::ResultRow;
-use super::seats::Seat;
 use super::sweeps::{SweepRow, median, median_of};
 use crate::campaign::{Block, Chapter, Extent, Progress, Report, StudyError};
 use firmware_bench::report::plot::text::figures;
@@ -260,9 +260,9 @@ const SCENE_COLUMNS: [&str; 12] = [
 fn scene_rows(results: &[&ResultRow]) -> Vec<[String; SCENE_COLUMNS.len()]> {
     let mut groups: BTreeMap<(&str, u64, usize), Vec<&ResultRow>> = BTreeMap::new();
     for row in results {
-        // Policies of a scene of one's own that have no seat come last: there is one, `levitation`.
-        let order = (Seat::ALL.iter()).position(|s| s.name() == row.policy);
-        let order = order.unwrap_or(Seat::ALL.len());
+        // Policies of a scene of one's own that have no contender come last: there is one, `levitation`.
+        let order = (Contender::ALL.iter()).position(|s| s.name() == row.policy);
+        let order = order.unwrap_or(Contender::ALL.len());
         let key = (row.plant.as_str(), row.rate_hz as u64, order);
         groups.entry(key).or_default().push(row);
     }

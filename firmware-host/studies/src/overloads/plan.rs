@@ -2,11 +2,11 @@
 
 use super::case::Case;
 use super::catalogue::cases;
+use super::contenders::Contender;
 use super::promises::{Harm, against_levitation, of_results, of_sweeps};
 use super::results::{ResultRow, run_case, run_own};
-use super::seats::Seat;
 use super::sweeps::{SweepPoint, SweepRow, row, sweep};
-use super::{reference, seats, tune};
+use super::{contenders, reference, tune};
 use crate::campaign::{Claim, Extent, Progress, Side};
 use crate::machines::plants::{PlantCase, RATES_HZ, plants};
 use crate::machines::tuned_gains::{Row, TunedGains, stored};
@@ -103,12 +103,12 @@ struct Place {
 
 /// A run of the plan.
 enum Job<'a> {
-    Case(&'a Place, &'a Case, Seat, u64),
+    Case(&'a Place, &'a Case, Contender, u64),
     Own(&'a Scene, PolicyKind, u64),
 }
 
-/// A sweep of the plan: place, seat, seed.
-type SweepJob<'a> = (&'a Place, Seat, u64);
+/// A sweep of the plan: place, contender, seed.
+type SweepJob<'a> = (&'a Place, Contender, u64);
 
 /// A sweep takes about as long as so many runs.
 const SWEEP_WORTH: u64 = 40;
@@ -154,8 +154,8 @@ impl Plan {
         })
     }
 
-    fn seeds(&self, seat: Seat) -> std::ops::Range<u64> {
-        0..if seat.measures() {
+    fn seeds(&self, contender: Contender) -> std::ops::Range<u64> {
+        0..if contender.measures() {
             seeds(self.extent)
         } else {
             1
@@ -166,9 +166,9 @@ impl Plan {
         let mut jobs = Vec::new();
         for place in &self.places {
             for case in &place.cases {
-                for seat in case.seats {
-                    let of = |seed| Job::Case(place, case, *seat, seed);
-                    jobs.extend(self.seeds(*seat).map(of));
+                for contender in case.contenders {
+                    let of = |seed| Job::Case(place, case, *contender, seed);
+                    jobs.extend(self.seeds(*contender).map(of));
                 }
             }
         }
@@ -184,8 +184,8 @@ impl Plan {
     fn sweep_jobs(&self) -> Vec<SweepJob<'_>> {
         let mut jobs = Vec::new();
         for place in &self.places {
-            for seat in Seat::ALL {
-                jobs.extend(self.seeds(seat).map(|seed| (place, seat, seed)));
+            for contender in Contender::ALL {
+                jobs.extend(self.seeds(contender).map(|seed| (place, contender, seed)));
             }
         }
         jobs
@@ -201,9 +201,12 @@ impl Plan {
         let results: Vec<ResultRow> = (self.jobs().par_iter())
             .map(|job| {
                 let row = match job {
-                    Job::Case(Place { plant, found, .. }, case, seat, seed) => {
-                        run_case(case, (&plant.name, plant.rate_hz), (*seat, *seed), found)
-                    }
+                    Job::Case(Place { plant, found, .. }, case, contender, seed) => run_case(
+                        case,
+                        (&plant.name, plant.rate_hz),
+                        (*contender, *seed),
+                        found,
+                    ),
                     Job::Own(scene, kind, seed) => run_own(scene, *kind, *seed),
                 };
                 progress.add(1);
@@ -213,7 +216,7 @@ impl Plan {
         let sweeps = self.sweeps(progress)?;
         // Own scenes come last, and no promise is about them.
         let (of_catalogue, own) = results.split_at(results.partition_point(|row| !row.is_own()));
-        let mut harms = against_levitation(of_catalogue, Seat::Tuned.name());
+        let mut harms = against_levitation(of_catalogue, Contender::Tuned.name());
         let mut promises = of_sweeps(&sweeps);
         promises.extend(of_results(of_catalogue, &harms));
         harms.extend(against_levitation(own, PolicyKind::Levitation.name()));
@@ -227,13 +230,14 @@ impl Plan {
 
     fn sweeps(&self, progress: &dyn Progress) -> Result<Vec<SweepRow>, CatalogueError> {
         let points = (self.sweep_jobs().par_iter())
-            .map(|(Place { plant, found, .. }, seat, seed)| {
-                let point =
-                    sweep(plant, found, (*seat, *seed)).map_err(|reason| CatalogueError::Run {
+            .map(|(Place { plant, found, .. }, contender, seed)| {
+                let point = sweep(plant, found, (*contender, *seed)).map_err(|reason| {
+                    CatalogueError::Run {
                         plant: plant.name.clone(),
-                        policy: seat.name(),
+                        policy: contender.name(),
                         reason,
-                    });
+                    }
+                });
                 progress.add(SWEEP_WORTH);
                 point
             })
@@ -241,10 +245,10 @@ impl Plan {
         let mut rows = Vec::new();
         let mut rest = points.as_slice();
         for place in &self.places {
-            for seat in Seat::ALL {
-                let (own, others) = rest.split_at(self.seeds(seat).count());
+            for contender in Contender::ALL {
+                let (own, others) = rest.split_at(self.seeds(contender).count());
                 rest = others;
-                rows.push(row(&place.plant, seat, own));
+                rows.push(row(&place.plant, contender, own));
             }
         }
         Ok(rows)
@@ -275,7 +279,7 @@ pub fn search(progress: &dyn Progress) -> Result<Vec<Row>, CatalogueError> {
             };
             let tuned = tune::tuned(scene).map_err(failed)?.ok_or_else(none)?;
             let stiff = tune::stiff(scene).ok_or_else(none)?;
-            let make = |s: &Scene| seats::levitation(tuned, s);
+            let make = |s: &Scene| contenders::levitation(tuned, s);
             let known = super::impact::recoverable_m_s(scene, "tuned", &make).map_err(failed)?;
             let from = reference::search_from_m_s(known);
             let impact_law = reference::impact_law(scene, from).map_err(failed)?;

@@ -1,51 +1,55 @@
 //! What the supervisor promises, against what was measured.
 
+use super::contenders::Contender;
 use super::results::ResultRow;
-use super::seats::Seat;
 use super::sweeps::{SweepRow, TIMED_SHARE, median, median_of};
 use crate::campaign::Claim;
+use firmware_bench::run::figures::Figures;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
 /// Promises about the sweeps.
 pub fn of_sweeps(rows: &[SweepRow]) -> Vec<Claim> {
     let mut promises = Vec::new();
-    for row in rows.iter().filter(|r| r.policy == Seat::Supervisor.name()) {
-        let here = |seat: Seat| {
+    for row in rows
+        .iter()
+        .filter(|r| r.policy == Contender::Supervisor.name())
+    {
+        let here = |contender: Contender| {
             (rows.iter()).find(|r| {
-                r.plant == row.plant && r.rate_hz == row.rate_hz && r.policy == seat.name()
+                r.plant == row.plant && r.rate_hz == row.rate_hz && r.policy == contender.name()
             })
         };
         let place = format!("{}, {:.0} kHz", row.plant, 1e-3 * row.rate_hz);
         let own = median(&row.impact_m_s);
-        let ratio_to = |seat: Seat| here(seat).map(|r| own / median(&r.impact_m_s));
+        let ratio_to = |contender: Contender| here(contender).map(|r| own / median(&r.impact_m_s));
         let levitated_only = row.plant.starts_with("P2") || row.plant.starts_with("P3");
-        if let Some(ratio) = ratio_to(Seat::Clairvoyant) {
+        if let Some(ratio) = ratio_to(Contender::Clairvoyant) {
             let bound = if levitated_only { 0.92 } else { 0.85 };
             let name = format!("{place}: impact recovered from, over clairvoyant");
             promises.push(Claim::at_least(name, bound, ratio));
         }
-        if let (true, Some(ratio)) = (levitated_only, ratio_to(Seat::Tuned)) {
+        if let (true, Some(ratio)) = (levitated_only, ratio_to(Contender::Tuned)) {
             let name = format!("{place}: impact recovered from, over tuned");
             promises.push(Claim::at_least(name, 1.10, ratio));
         }
         let baselines = [
-            Seat::Passive,
-            Seat::Radial,
-            Seat::Damping,
-            Seat::Stiff,
-            Seat::Tuned,
+            Contender::Passive,
+            Contender::Radial,
+            Contender::Damping,
+            Contender::Stiff,
+            Contender::Tuned,
         ];
-        if let Some(ratio) = ratio_to(Seat::Stiff) {
+        if let Some(ratio) = ratio_to(Contender::Stiff) {
             let name = format!("{place}: impact recovered from, over stiff");
             promises.push(Claim::at_least(name, 1.0, ratio));
         }
-        let best = (baselines.iter().filter_map(|seat| here(*seat)))
+        let best = (baselines.iter().filter_map(|contender| here(*contender)))
             .map(|r| median(&r.impact_m_s))
             .fold(0.0, f64::max);
         let name = format!("{place}: impact recovered from, over the best baseline");
         promises.push(Claim::at_least(name, 1.0, own / best));
-        if let Some(reference) = here(Seat::Clairvoyant) {
+        if let Some(reference) = here(Contender::Clairvoyant) {
             let others = best.max(own);
             let name = format!("{place}: clairvoyant over every other policy");
             let ratio = median(&reference.impact_m_s) / others;
@@ -58,7 +62,7 @@ pub fn of_sweeps(rows: &[SweepRow]) -> Vec<Claim> {
         let share = median(&row.whirl_share);
         let name = format!("{place}: whirl arrested at take-over, share of v_lim");
         promises.push(Claim::at_least(name, 0.85, share));
-        for (seat, bound) in [(Seat::Clairvoyant, 0.95), (Seat::Tuned, 1.0)] {
+        for (seat, bound) in [(Contender::Clairvoyant, 0.95), (Contender::Tuned, 1.0)] {
             if let Some(other) = here(seat) {
                 let name = format!("{place}: whirl arrested, over {}", seat.name());
                 let ratio = share / median(&other.whirl_share);
@@ -70,7 +74,7 @@ pub fn of_sweeps(rows: &[SweepRow]) -> Vec<Claim> {
             format!("{place}: time to arrest {TIMED_SHARE} v_lim, over closed form + 0.5 ms");
         let bound_s = 1.5 * row.closed_form_s + 5e-4;
         promises.push(Claim::at_most(name, 1.0, time_s / bound_s));
-        if let Some(tuned) = here(Seat::Tuned) {
+        if let Some(tuned) = here(Contender::Tuned) {
             let name = format!("{place}: time to arrest {TIMED_SHARE} v_lim, over tuned");
             promises.push(Claim::at_most(name, 0.85, time_s / slowest(tuned)));
         }
@@ -122,7 +126,7 @@ pub struct Harm {
 pub fn against_levitation(rows: &[ResultRow], alone: &str) -> Vec<Harm> {
     let alone = per_scene(rows.iter(), alone);
     let mut all = Vec::new();
-    for ((plant, rate, scene), own) in per_scene(rows.iter(), Seat::Supervisor.name()) {
+    for ((plant, rate, scene), own) in per_scene(rows.iter(), Contender::Supervisor.name()) {
         let Some(other) = alone.get(&(plant.clone(), rate, scene.clone())) else {
             continue;
         };
@@ -217,9 +221,9 @@ pub(super) fn lost_beyond_chance(harm: &Harm) -> bool {
 
 fn of_static_overloads(rows: &[ResultRow]) -> Vec<Claim> {
     let overloads = || rows.iter().filter(|r| r.group == "static overload");
-    let alone = per_scene(overloads(), Seat::Tuned.name());
+    let alone = per_scene(overloads(), Contender::Tuned.name());
     let (mut impacts, mut force, mut impulse, mut back_s) = (0.0_f64, 0.0_f64, 0.0_f64, 0.0_f64);
-    for (key, own) in per_scene(overloads(), Seat::Supervisor.name()) {
+    for (key, own) in per_scene(overloads(), Contender::Supervisor.name()) {
         let Some(other) = alone.get(&key) else {
             continue;
         };

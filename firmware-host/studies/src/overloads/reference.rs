@@ -1,11 +1,10 @@
 //! The search for the reference's weights.
 
+use super::contenders::clairvoyant;
 use super::impact::{FIRST_M_S, STEP};
-use super::seats::clairvoyant;
 use super::takeover::{arrest_of, take_over};
 use firmware_bench::run::clairvoyant::ClairvoyantLaw;
 use firmware_bench::run::closed_loop::{Keep, RunError, run_policy};
-use firmware_bench::run::controller::Policy;
 use firmware_bench::scene::Scene;
 use plant_model::V2;
 use rand_chacha::ChaCha8Rng;
@@ -97,7 +96,7 @@ pub fn impact_law(scene: &Scene, from_m_s: f64) -> Result<ClairvoyantLaw, RunErr
         let (mut speed, mut last) = (from_m_s, 0.0);
         loop {
             scene.start.velocity_m_s = V2::new(speed, 0.0);
-            let policy = Policy::Clairvoyant(clairvoyant(law, &scene));
+            let policy = Box::new(clairvoyant(law, &scene));
             let (verdict, _) =
                 run_policy(&scene, (policy, "clairvoyant"), Keep::Decision, &mut |_| {})?;
             if !verdict.recovered {
@@ -124,7 +123,7 @@ pub fn whirl_law(scene: &Scene) -> Result<Option<ClairvoyantLaw>, RunError> {
     };
     let score = |law: ClairvoyantLaw| {
         let run = |share: f64| {
-            let policy = Policy::Clairvoyant(clairvoyant(law, scene));
+            let policy = Box::new(clairvoyant(law, scene));
             take_over(scene, share * arrest.limit_m_s, (policy, "clairvoyant"))
         };
         let (mut share, mut last) = (0.7, 0.0);

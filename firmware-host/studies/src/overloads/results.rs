@@ -1,7 +1,7 @@
 //! Runs of the catalogue and what they measured.
 
 use super::case::Case;
-use super::seats::{Seat, tries};
+use super::contenders::Contender;
 use crate::machines::tuned_gains::TunedGains;
 use firmware_bench::run::closed_loop::{Keep, run, run_policy};
 use firmware_bench::run::figures::Figures;
@@ -62,14 +62,19 @@ fn better(one: &Option<Figures>, other: &Option<Figures>) -> bool {
 pub fn run_case(
     case: &Case,
     (plant, rate_hz): (&str, f64),
-    (seat, seed): (Seat, u64),
+    (contender, seed): (Contender, u64),
     found: &TunedGains,
 ) -> ResultRow {
     let scene = Scene {
         seed,
         ..case.scene.clone()
     };
-    let run = |policy| match run_policy(&scene, (policy, seat.name()), Keep::Verdict, &mut |_| {}) {
+    let run = |policy| match run_policy(
+        &scene,
+        (policy, contender.name()),
+        Keep::Verdict,
+        &mut |_| {},
+    ) {
         Ok((figures, _)) => (Some(figures), None),
         Err(error) => (None, Some(error.to_string())),
     };
@@ -77,7 +82,7 @@ pub fn run_case(
         None,
         Some("the policy needs more than the scene gives".to_owned()),
     );
-    let (metrics, error) = (tries(seat, found, &scene).into_iter().map(run))
+    let (metrics, error) = (contender.candidates(found, &scene).into_iter().map(run))
         .reduce(|best, next| if better(&next.0, &best.0) { next } else { best })
         .unwrap_or(none);
     ResultRow {
@@ -85,7 +90,7 @@ pub fn run_case(
         scene: case.name.clone(),
         plant: plant.to_owned(),
         rate_hz,
-        policy: seat.name(),
+        policy: contender.name(),
         seed,
         metrics,
         error,

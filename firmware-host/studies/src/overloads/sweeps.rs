@@ -1,7 +1,7 @@
 //! The two sweeps: the hardest impact recovered from, and the fastest whirl arrested at take-over.
 
+use super::contenders::{Contender, Task};
 use super::impact::recoverable_m_s;
-use super::seats::{Seat, Task, seated};
 use super::takeover::{ARRESTED, arrest_of, take_over};
 use crate::machines::plants::PlantCase;
 use crate::machines::tuned_gains::TunedGains;
@@ -70,23 +70,27 @@ pub struct SweepPoint {
 pub fn sweep(
     case: &PlantCase,
     found: &TunedGains,
-    (seat, seed): (Seat, u64),
+    (contender, seed): (Contender, u64),
 ) -> Result<SweepPoint, RunError> {
     let scene = Scene {
         seed,
         ..case.scene.clone()
     };
-    let make = |task: Task| move |s: &Scene| seated(seat, task, found, s);
-    let mut impact_m_s = recoverable_m_s(&scene, seat.name(), &make(Task::Impact))?;
-    if seat == Seat::Clairvoyant {
+    let make = |task: Task| move |s: &Scene| contender.controller(task, found, s);
+    let mut impact_m_s = recoverable_m_s(&scene, contender.name(), &make(Task::Impact))?;
+    if contender == Contender::Clairvoyant {
         // A law that is best on the fine grid of its search need not be on this one, which asks for all lower speeds.
-        let other = recoverable_m_s(&scene, seat.name(), &make(Task::Whirl))?;
+        let other = recoverable_m_s(&scene, contender.name(), &make(Task::Whirl))?;
         impact_m_s = impact_m_s.max(other);
     }
-    let offset_impact_m_s = if matches!(seat, Seat::Tuned | Seat::Supervisor) {
+    let offset_impact_m_s = if matches!(contender, Contender::Tuned | Contender::Supervisor) {
         let mut off = scene.clone();
         off.centre_offset_m = 0.1 * off.plant.contact.clearance_m * V2::new(0.6, 0.8);
-        Some(recoverable_m_s(&off, seat.name(), &make(Task::Impact))?)
+        Some(recoverable_m_s(
+            &off,
+            contender.name(),
+            &make(Task::Impact),
+        )?)
     } else {
         None
     };
@@ -94,9 +98,9 @@ pub fn sweep(
     if let Some(arrest) = arrest_of(&scene) {
         let run = |share: f64| {
             let policy = make(Task::Whirl)(&scene).ok_or(RunError::Incomplete {
-                policy: seat.name(),
+                policy: contender.name(),
             })?;
-            take_over(&scene, share * arrest.limit_m_s, (policy, seat.name()))
+            take_over(&scene, share * arrest.limit_m_s, (policy, contender.name()))
         };
         let mut share = FIRST_WHIRL;
         while share < LAST_WHIRL + 0.5 * WHIRL_STEP && run(share)?.recovered {
@@ -114,7 +118,7 @@ pub fn sweep(
 }
 
 /// The points of all seeds as a row.
-pub fn row(case: &PlantCase, seat: Seat, points: &[SweepPoint]) -> SweepRow {
+pub fn row(case: &PlantCase, contender: Contender, points: &[SweepPoint]) -> SweepRow {
     let sorted = |value: &dyn Fn(&SweepPoint) -> Option<f64>| {
         let mut all: Vec<f64> = points.iter().filter_map(value).collect();
         all.sort_by(f64::total_cmp);
@@ -127,7 +131,7 @@ pub fn row(case: &PlantCase, seat: Seat, points: &[SweepPoint]) -> SweepRow {
     SweepRow {
         plant: case.name.clone(),
         rate_hz: case.rate_hz,
-        policy: seat.name(),
+        policy: contender.name(),
         impact_m_s: sorted(&|p| Some(p.impact_m_s)),
         offset_impact_m_s: sorted(&|p| p.offset_impact_m_s),
         whirl_share: sorted(&|p| Some(p.whirl_share)),

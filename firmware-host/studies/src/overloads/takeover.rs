@@ -1,7 +1,7 @@
 //! Established backward whirl that the bearing is switched on into.
 
 use firmware_bench::run::closed_loop::{Keep, RunError, run_policy};
-use firmware_bench::run::controller::Policy;
+use firmware_bench::run::controller::Controller;
 use firmware_bench::run::trace::TraceRow;
 use firmware_bench::scene::Scene;
 use plant_model::V2;
@@ -55,7 +55,7 @@ pub fn arrest_of(scene: &Scene) -> Option<Arrest> {
 pub fn take_over(
     scene: &Scene,
     speed_m_s: f64,
-    acting: (Policy, &'static str),
+    acting: (Box<dyn Controller>, &'static str),
 ) -> Result<TakeOver, RunError> {
     let scene = Scene {
         start: whirling(scene, speed_m_s),

@@ -4,9 +4,9 @@
 //! 5 % of the cap on sensor noise while idle. Among those the search takes the one that recovers from the
 //! hardest radial impact; of equals the one with the lower peak sensitivity.
 
+use super::contenders::levitation;
 use super::impact::{FIRST_M_S, recoverable_from};
 use super::loop_shape::{LoopShape, SampledPlant};
-use super::seats::levitation;
 use firmware_bench::device::levitation::LevitationParams;
 use firmware_bench::run::closed_loop::RunError;
 use firmware_bench::scene::Scene;

@@ -5,8 +5,8 @@ use crate::campaign::{Block, Chapter, Claim, Extent, Progress, Report, StudyErro
 use crate::machines::drawn::Machine;
 use crate::machines::plants::plants;
 use crate::machines::tuned_gains::stored;
+use crate::overloads::contenders::Contender;
 use crate::overloads::results::ResultRow;
-use crate::overloads::seats::Seat;
 use crate::trials::Trial;
 
 const RATE_HZ: f64 = 20_000.0;
@@ -102,15 +102,15 @@ pub fn told_wrong(
     let right = (trials.iter())
         .map(|trial| Ok(trial.with(told_right(&trial.case.scene).map_err(|e| e.to_string())?)))
         .collect::<Result<Vec<Trial>, String>>()?;
-    let alone = run_all(trials, progress, |trial| trial.run(Seat::Tuned));
-    let right = run_all(&right, progress, |trial| trial.run(Seat::Supervisor));
+    let alone = run_all(trials, progress, |trial| trial.run(Contender::Tuned));
+    let right = run_all(&right, progress, |trial| trial.run(Contender::Supervisor));
     let mut runs = 2 * trials.len();
     let told = (misjudged(width, draws, SEED).iter())
         .map(|misjudged| {
             let pairs: Vec<(&Trial, &ResultRow)> = trials.iter().zip(&right).collect();
             let wrong = run_all(&pairs, progress, |(trial, right)| {
                 match misjudged.told(&trial.case.scene) {
-                    Ok(Some(wrong)) => Some(trial.with(wrong).run(Seat::Supervisor)),
+                    Ok(Some(wrong)) => Some(trial.with(wrong).run(Contender::Supervisor)),
                     Ok(None) => Some((*right).clone()),
                     Err(_) => None,
                 }

@@ -2,7 +2,7 @@
 
 use crate::instruments_and_events::{apart, free_rotor, last, near, ridden, samples};
 use firmware_bench::run::closed_loop::{Keep, run_policy};
-use firmware_bench::run::controller::{Policy, Supervise};
+use firmware_bench::run::controller::{Supervise, supervised};
 use firmware_bench::scene::policy_kind::PolicyKind;
 use firmware_bench::scene::{Axis, Delivers, Fault, FaultKind, Outage, Scene};
 use plant_model::V2;
@@ -329,7 +329,7 @@ fn a_measured_force_is_told() {
             supervisor: Supervisor::new(&scene.supervisor.unwrap()).unwrap(),
             told: Rc::clone(&told),
         };
-        let policy = Policy::supervised(&scene, Box::new(supervisor)).unwrap();
+        let policy = supervised(&scene, Box::new(supervisor)).unwrap();
         let acting = (policy, "supervisor");
         let (_, trace) = run_policy(&scene, acting, Keep::Trace, &mut |_| {}).unwrap();
         let told = told.borrow();

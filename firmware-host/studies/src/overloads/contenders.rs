@@ -1,9 +1,9 @@
-//! Who drives the magnet: the baselines, the supervisor, and the reference that knows everything.
+//! Who competes for the magnet: the baselines, the supervisor, and the reference that knows everything.
 
 use crate::machines::tuned_gains::TunedGains;
 use firmware_bench::device::levitation::{LevitationParams, TrueLevitation};
 use firmware_bench::run::clairvoyant::{Clairvoyant, ClairvoyantLaw};
-use firmware_bench::run::controller::Policy;
+use firmware_bench::run::controller::{Controller, controller};
 use firmware_bench::scene::Scene;
 use firmware_bench::scene::policy_kind::PolicyKind;
 use plant_model::contact::restitution_of;
@@ -11,7 +11,7 @@ use plant_model::params::PlantParams;
 
 /// A policy of the catalogue.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Seat {
+pub enum Contender {
     /// No force.
     Passive,
     /// The whole capacity inwards outside a band.
@@ -30,7 +30,7 @@ pub enum Seat {
     Clairvoyant,
 }
 
-impl Seat {
+impl Contender {
     /// All of them, from nothing to everything.
     pub const ALL: [Self; 8] = [
         Self::Passive,
@@ -72,52 +72,55 @@ pub enum Task {
     Whirl,
 }
 
-/// The policy set up for a scene on this plant; `None` where the scene lacks what it needs.
-pub fn seated(seat: Seat, task: Task, found: &TunedGains, scene: &Scene) -> Option<Policy> {
-    match seat {
-        Seat::Passive => Policy::new(PolicyKind::Passive, scene),
-        Seat::Radial => Policy::new(PolicyKind::Radial, scene),
-        Seat::Damping => {
-            let scene = Scene {
-                damping_n_s_m: full_at_lift_off_n_s_m(&scene.plant),
-                ..scene.clone()
-            };
-            with_loop(PolicyKind::Damping, found.tuned, &scene)
+impl Contender {
+    /// Set up for a scene on this plant; `None` where the scene lacks what it needs.
+    pub fn controller(
+        self,
+        task: Task,
+        found: &TunedGains,
+        scene: &Scene,
+    ) -> Option<Box<dyn Controller>> {
+        match self {
+            Self::Passive => controller(PolicyKind::Passive, scene),
+            Self::Radial => controller(PolicyKind::Radial, scene),
+            Self::Damping => {
+                let scene = Scene {
+                    damping_n_s_m: full_at_lift_off_n_s_m(&scene.plant),
+                    ..scene.clone()
+                };
+                with_loop(PolicyKind::Damping, found.tuned, &scene)
+            }
+            Self::Stiff => levitation(found.stiff, scene),
+            Self::Tuned => levitation(found.tuned, scene),
+            Self::Supervisor => with_loop(PolicyKind::Supervisor, found.tuned, scene),
+            Self::SupervisorOnStiff => with_loop(PolicyKind::Supervisor, found.stiff, scene),
+            Self::Clairvoyant => Some(Box::new(clairvoyant(
+                match task {
+                    Task::Impact => found.impact_law,
+                    Task::Whirl => found.whirl_law,
+                },
+                scene,
+            ))),
         }
-        Seat::Stiff => levitation(found.stiff, scene),
-        Seat::Tuned => levitation(found.tuned, scene),
-        Seat::Supervisor => with_loop(PolicyKind::Supervisor, found.tuned, scene),
-        Seat::SupervisorOnStiff => with_loop(PolicyKind::Supervisor, found.stiff, scene),
-        Seat::Clairvoyant => Some(Policy::Clairvoyant(clairvoyant(
-            match task {
-                Task::Impact => found.impact_law,
-                Task::Whirl => found.whirl_law,
-            },
-            scene,
-        ))),
     }
-}
 
-/// What is tried on a scene of the catalogue for a seat, where the best counts. Only the reference has more than
-/// one: both of its laws, and the loops of the baselines with the true state, since a law made for impacts need
-/// not levitate best.
-pub fn tries(seat: Seat, found: &TunedGains, scene: &Scene) -> Vec<Policy> {
-    if seat != Seat::Clairvoyant {
-        return seated(seat, Task::Impact, found, scene)
-            .into_iter()
-            .collect();
+    /// What competes for it on a scene of the catalogue, where the best counts. Only the reference has more than one: both
+    /// of its laws, and the loops of the baselines with the true state, since a law made for impacts need not levitate best.
+    pub fn candidates(self, found: &TunedGains, scene: &Scene) -> Vec<Box<dyn Controller>> {
+        if self != Self::Clairvoyant {
+            return (self.controller(Task::Impact, found, scene).into_iter()).collect();
+        }
+        let boxed = |law| Box::new(clairvoyant(law, scene)) as Box<dyn Controller>;
+        let laws = [found.impact_law, found.whirl_law].map(boxed);
+        let loops = [found.tuned, found.stiff].map(|params| {
+            Box::new(TrueLevitation {
+                params,
+                force_max_n: scene.plant.magnet.map_or(0.0, |m| m.force_max_n),
+                centre_m: -scene.centre_offset_m,
+            }) as Box<dyn Controller>
+        });
+        laws.into_iter().chain(loops).collect()
     }
-    let laws = [found.impact_law, found.whirl_law];
-    let loops = [found.tuned, found.stiff];
-    let force_max_n = scene.plant.magnet.map_or(0.0, |m| m.force_max_n);
-    let seeing = |params| TrueLevitation {
-        params,
-        force_max_n,
-    };
-    (laws.into_iter())
-        .map(|law| Policy::Clairvoyant(clairvoyant(law, scene)))
-        .chain(loops.map(|params| Policy::TrueLevitation(seeing(params), -scene.centre_offset_m)))
-        .collect()
 }
 
 /// Restitution of a scene's contact.
@@ -141,15 +144,19 @@ fn full_at_lift_off_n_s_m(plant: &PlantParams) -> f64 {
 }
 
 /// A policy with other gains of the levitation controller than the scene's.
-fn with_loop(kind: PolicyKind, params: LevitationParams, scene: &Scene) -> Option<Policy> {
+fn with_loop(
+    kind: PolicyKind,
+    params: LevitationParams,
+    scene: &Scene,
+) -> Option<Box<dyn Controller>> {
     let scene = Scene {
         levitation: Some(params),
         ..scene.clone()
     };
-    Policy::new(kind, &scene)
+    controller(kind, &scene)
 }
 
 /// The levitation controller alone.
-pub fn levitation(params: LevitationParams, scene: &Scene) -> Option<Policy> {
+pub fn levitation(params: LevitationParams, scene: &Scene) -> Option<Box<dyn Controller>> {
     with_loop(PolicyKind::Levitation, params, scene)
 }
