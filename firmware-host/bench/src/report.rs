@@ -172,7 +172,11 @@ fn push_cells<T>(page: &mut String, figures: &[Figure<T>], of: &T) {
 fn badge(outcome: Outcome) -> String {
     let class = match outcome {
         Outcome::Recovered | Outcome::Decayed => "good",
-        Outcome::Resting | Outcome::Pinned | Outcome::Rubbing | Outcome::Bouncing => "fair",
+        Outcome::Diverging
+        | Outcome::Resting
+        | Outcome::Pinned
+        | Outcome::Rubbing
+        | Outcome::Bouncing => "fair",
         Outcome::Whirl => "bad",
     };
     let word = outcome.name();

@@ -9,6 +9,7 @@ pub mod history;
 mod judge;
 pub mod outcome;
 pub mod supervision;
+mod swings;
 pub mod trace;
 pub mod trace_file;
 pub mod verdict;

@@ -34,6 +34,32 @@ fn a_rotor_in_unbroken_contact_rubs() {
     assert_eq!(after(0.004).outcome, Outcome::Bouncing);
 }
 
+/// A rotor that the magnets pull away from the middle is not back while it happens to be near it still.
+#[test]
+fn a_rotor_on_its_way_out_has_not_recovered() {
+    let mut scene = scene("overload_then_release");
+    scene.disturbances.clear();
+    scene.weight_n = V2::zeros();
+    scene.feed_forward_n = V2::zeros();
+    scene.plant.rotor.stiffness_n_m = -2e5;
+    scene.start.position_m = V2::new(1e-5, 0.0);
+    scene.duration_s = 0.024;
+    for kind in [PolicyKind::Passive, PolicyKind::Levitation] {
+        let figures = verdict(&scene, kind);
+        assert_eq!(figures.impacts, 0);
+        let held = kind == PolicyKind::Levitation;
+        assert_eq!(figures.recovered, held, "{figures:?}");
+        assert_eq!(figures.outcome == Outcome::Diverging, !held);
+        assert_eq!(figures.relevitation_time_s.is_some(), held);
+    }
+    // Too soon to tell; and when it has touched there is no doubt.
+    scene.duration_s = 0.01;
+    assert!(verdict(&scene, PolicyKind::Passive).recovered);
+    scene.duration_s = 0.08;
+    let touched = verdict(&scene, PolicyKind::Passive);
+    assert!(touched.impacts > 0 && !touched.recovered, "{touched:?}");
+}
+
 /// The clock waits for what was there at a sample, and a change in the run.
 #[test]
 fn what_no_sample_sees_does_not_move_the_clock() {

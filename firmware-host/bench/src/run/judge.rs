@@ -2,6 +2,7 @@
 
 use crate::device::sensor_fault::{ROUND_OFF_PERIODS, seen_until_s};
 use crate::run::outcome::Outcome;
+use crate::run::swings::Swings;
 use crate::scene::Scene;
 use plant_model::analysis::whirl::WhirlMeter;
 use plant_model::{Plant, Snapshot, V2};
@@ -32,6 +33,7 @@ pub(crate) struct Judge {
     whirl: WhirlMeter,
     /// Since when the rotor has been in the middle.
     in_middle_since_s: Option<f64>,
+    swings: Swings,
     /// When it came back for good, as far as is known.
     back_since_s: Option<f64>,
     first_contact_s: Option<f64>,
@@ -55,6 +57,7 @@ impl Judge {
             period_s: 1.0 / scene.sample_rate_hz,
             whirl: WhirlMeter::new(WHIRL_WINDOW_S),
             in_middle_since_s: None,
+            swings: Swings::new(1.0 / scene.sample_rate_hz),
             back_since_s: None,
             first_contact_s: None,
             last_contact_s: None,
@@ -73,6 +76,10 @@ impl Judge {
         // With the retainer bearing far off the centre a rotor may lie on it in the middle.
         let free = !now.mode.in_contact();
         let started = seen_until_s(now.t_s, self.period_s) >= self.clock_starts_s;
+        match free && started {
+            true => self.swings.push(now.t_s, away_m),
+            false => self.swings.restart(),
+        }
         if free && away_m < self.middle_m && started {
             let since = *self.in_middle_since_s.get_or_insert(now.t_s);
             // Sample times carry round-off.
@@ -105,6 +112,7 @@ impl Judge {
         if touches {
             self.first_contact_s.get_or_insert(now.t_s);
             (self.in_middle_since_s, self.back_since_s) = (None, None);
+            self.swings.restart();
         }
     }
 
@@ -162,24 +170,34 @@ impl Judge {
         if peak_backward_m_s > scene.whirl_speed_m_s {
             return Outcome::Whirl;
         }
+        let natural = scene.plant.natural_frequency_rad_s();
+        // A rotor whose distance grows as if it were to touch soon is free, and not back.
+        let free = |outcome: Outcome| {
+            let half_period_s = natural.map_or(0.0, |natural| 0.5 * TAU / natural);
+            let clearance_m = scene.plant.contact.clearance_m;
+            match self.swings.grow(STAY_S.max(half_period_s), clearance_m) {
+                true => Outcome::Diverging,
+                false => outcome,
+            }
+        };
         if self.back_since_s.is_some() {
-            return Outcome::Recovered;
+            return free(Outcome::Recovered);
         }
         let Some(last_contact_s) = self.last_contact_s else {
             // Never touched.
-            return Outcome::Decayed;
+            return free(Outcome::Decayed);
         };
         // Free for long enough to have touched again if it were going to: a period of the shaft, or,
         // without one, time to cross the clearance, unless it stands still.
         let speed = last.velocity_m_s.norm();
-        let settled_s = match scene.plant.natural_frequency_rad_s() {
+        let settled_s = match natural {
             Some(natural) => TAU / natural,
             None if speed * STAY_S < STANDS_STILL * self.middle_m => 0.0,
             None => 4.0 * scene.plant.contact.clearance_m / speed,
         };
         let settled_s = settled_s.max(STAY_S);
         if last.t_s - last_contact_s >= settled_s {
-            return Outcome::Decayed;
+            return free(Outcome::Decayed);
         }
         let plant = &scene.plant;
         let rest = REST_SPEED * plant.contact.clearance_m * plant.contact_rate_rad_s();

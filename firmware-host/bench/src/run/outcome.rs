@@ -12,6 +12,8 @@ pub enum Outcome {
     /// Free vibration without contact.
     #[cfg_attr(test, default)]
     Decayed,
+    /// Free, and farther from the middle with every swing: it would touch soon.
+    Diverging,
     /// Touching still, without whirl and without speed.
     Resting,
     /// Held on the stator by a load that is still on.
@@ -30,6 +32,7 @@ impl Outcome {
         match self {
             Self::Recovered => "recovered",
             Self::Decayed => "decayed",
+            Self::Diverging => "diverging",
             Self::Resting => "resting",
             Self::Pinned => "pinned",
             Self::Rubbing => "rubbing",
