@@ -1,6 +1,7 @@
 //! What is claimed of a measurement.
 
 use super::chapter::{Block, Table};
+use firmware_bench::report::plot::text::figures;
 use serde::Serialize;
 
 /// On which side of its bound a measurement has to be.
@@ -63,7 +64,12 @@ impl Claim {
     /// Name, bound, measurement and whether it holds, as they are read.
     pub fn cells(&self) -> [String; 4] {
         let holds = if self.holds { "yes" } else { "NO" };
-        let measured = format!("{:.3}", self.measured);
+        let size = self.measured.abs();
+        let measured = match size == 0.0 || (1e-3..1e6).contains(&size) {
+            // Finer than three figures: a measurement near its bound is to be seen on its side of it.
+            true => format!("{:.3}", self.measured),
+            false => figures(self.measured),
+        };
         [self.name.clone(), self.bound(), measured, holds.to_owned()]
     }
 }

@@ -148,11 +148,12 @@ fn name(row: &TargetRow) -> String {
 }
 
 fn ticks(report: &Report) -> Block {
-    const COLUMNS: [&str; 8] = [
+    const COLUMNS: [&str; 9] = [
         "target",
         "least",
         "median",
         "worst",
+        "worst of all replayed",
         "text [B]",
         "RAM [B]",
         "stack [B]",
@@ -164,6 +165,9 @@ fn ticks(report: &Report) -> Block {
             t.min_instructions.to_string(),
             t.median_instructions.to_string(),
             t.worst_instructions.to_string(),
+            (t.long_stream)
+                .map_or(t.worst_instructions, |long| long.worst_instructions)
+                .to_string(),
             t.text_bytes.to_string(),
             t.ram_bytes.to_string(),
             t.stack_bytes.to_string(),
@@ -222,7 +226,7 @@ fn claims(row: &TargetRow) -> Vec<Claim> {
     let budget = |v: &Verdict| {
         let bound = v.required.unwrap_or(v.budget).min(v.budget);
         Claim::at_most(
-            format!("{name}: {}", v.figure),
+            format!("{name}: {}", v.figure.replace('_', " ")),
             bound as f64,
             v.measured as f64,
         )

@@ -62,9 +62,9 @@ pub fn of_sweeps(rows: &[SweepRow]) -> Vec<Claim> {
         let share = median(&row.whirl_share);
         let name = format!("{place}: whirl arrested at take-over, share of v_lim");
         promises.push(Claim::at_least(name, 0.85, share));
-        for (seat, bound) in [(Contender::Clairvoyant, 0.95), (Contender::Tuned, 1.0)] {
-            if let Some(other) = here(seat) {
-                let name = format!("{place}: whirl arrested, over {}", seat.name());
+        for (contender, bound) in [(Contender::Clairvoyant, 0.95), (Contender::Tuned, 1.0)] {
+            if let Some(other) = here(contender) {
+                let name = format!("{place}: whirl arrested, over {}", contender.name());
                 let ratio = share / median(&other.whirl_share);
                 promises.push(Claim::at_least(name, bound, ratio));
             }
