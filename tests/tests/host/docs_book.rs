@@ -102,7 +102,9 @@ fn every_page_is_in_the_table_of_contents_once() {
 #[test]
 fn paragraphs_are_short() {
     let mut long = Vec::new();
-    for page in pages() {
+    // What a study writes is the study's.
+    let by_hand = |page: &PathBuf| !page.parent().is_some_and(|p| p.ends_with("measured"));
+    for page in pages().into_iter().filter(by_hand) {
         let mut paragraph = Vec::new();
         let mut lines = prose(&page);
         lines.push(String::new());
