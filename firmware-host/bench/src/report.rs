@@ -22,16 +22,17 @@ use crate::report::summary::{Disturbed, SceneSummary};
 use crate::report::table::shown;
 use crate::run::figures::{Figure, Figures, Timing, Value};
 use crate::run::outcome::Outcome;
-use crate::run::verdict::{PolicyRun, far_into_the_wall};
+use crate::run::verdict::{PolicyRun, Results, far_into_the_wall};
 
 const STYLE: &str = include_str!("report/style.css");
 
-/// Complete HTML document on `runs` of one scene, policies side by side in the order given.
+/// Complete HTML document on the results of one scene, policies side by side in the order given.
 /// Deterministic: the same input gives the same bytes.
 ///
 /// # Errors
 /// [`PlotError`] if the drawing backend refuses.
-pub fn html(scene: &SceneSummary, runs: &[PolicyRun]) -> Result<String, PlotError> {
+pub fn html(scene: &SceneSummary, results: &Results) -> Result<String, PlotError> {
+    let runs = &results.runs;
     let title = escape(&scene.title);
     let mut page = format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
@@ -43,6 +44,7 @@ pub fn html(scene: &SceneSummary, runs: &[PolicyRun]) -> Result<String, PlotErro
     push_story(&mut page, &scene.story);
     push_facts(&mut page, scene);
     push_warnings(&mut page, &scene.warnings);
+    push_warnings(&mut page, &results.untrusted());
     page.push_str("</header>\n<main>\n");
     push_table(&mut page, runs, scene.clearance_m);
     verification::push_table(&mut page, runs);
@@ -94,9 +96,9 @@ fn push_facts(page: &mut String, scene: &SceneSummary) {
     push_disturbances(page, &scene.disturbances);
 }
 
-fn push_warnings(page: &mut String, warnings: &[String]) {
+fn push_warnings<T: AsRef<str>>(page: &mut String, warnings: &[T]) {
     for warning in warnings {
-        let warning = escape(warning);
+        let warning = escape(warning.as_ref());
         push(
             page,
             format_args!("<p class=\"warning\">Warning: {warning}</p>\n"),
@@ -278,9 +280,18 @@ fn push(page: &mut String, text: std::fmt::Arguments<'_>) {
 mod tests {
     use super::fixture::{run, scene};
     use super::*;
+    use crate::run::verdict::FailedRun;
+    use crate::scene::Scene;
+
+    fn results(runs: &[PolicyRun]) -> Results {
+        Results {
+            runs: runs.to_vec(),
+            failed: Vec::new(),
+        }
+    }
 
     fn page(scene: &SceneSummary, runs: &[PolicyRun]) -> String {
-        let page = html(scene, runs).unwrap();
+        let page = html(scene, &results(runs)).unwrap();
         for word in ["NaN", "\"inf", " inf", "<script"] {
             assert!(!page.contains(word), "{word}");
         }
@@ -302,7 +313,36 @@ mod tests {
         assert!(page.contains("Close-up: 0 to"));
         // Seven panels of the whole run and five close-ups for each.
         assert_eq!(page.matches("<svg").count(), 24);
-        assert_eq!(page, html(&scene(), &runs).unwrap());
+        assert_eq!(page, html(&scene(), &results(&runs)).unwrap());
+    }
+
+    #[test]
+    fn what_cannot_be_trusted_is_said() {
+        let mut unchecked = run("radial", Outcome::Decayed, &[(0.0, false), (0.1, false)]);
+        unchecked.verification = Some(Err("no <check>".to_owned()));
+        let results = Results {
+            runs: vec![unchecked],
+            failed: vec![FailedRun {
+                name: "passive".to_owned(),
+                error: "lost".to_owned(),
+            }],
+        };
+        let page = html(&scene(), &results).unwrap();
+        for error in ["Warning: lost", "Warning: no &lt;check&gt;"] {
+            assert!(page.contains(error), "{error}");
+        }
+        let text = include_str!("../../scenes/overload_then_release.toml");
+        let scene = Scene::parse("test", text).unwrap();
+        let json = table::json(&scene, &results);
+        let policies = &json["policies"];
+        assert_eq!(policies["passive"], serde_json::json!({ "error": "lost" }));
+        assert_eq!(policies["radial"]["verification"]["error"], "no <check>");
+        assert_eq!(policies["radial"]["outcome"], "decayed");
+        let text = table::text(&scene, &results);
+        assert!(
+            text.contains("\nlost") && text.contains("\nno <check>"),
+            "{text}"
+        );
     }
 
     #[test]

@@ -8,6 +8,8 @@ pub mod flight_record;
 pub mod history;
 mod judge;
 pub mod outcome;
+pub mod overview;
+pub mod recording;
 pub mod supervision;
 mod swings;
 pub mod trace;

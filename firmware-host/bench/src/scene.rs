@@ -197,6 +197,11 @@ impl Scene {
         Samples::new(self.duration_s, self.sample_rate_hz)
     }
 
+    /// Time that a run to the end takes in the model: whole samples \[s\].
+    pub fn simulated_s(&self) -> f64 {
+        self.samples().count() as f64 / self.sample_rate_hz
+    }
+
     /// Disturbances, and base motions as the forces that the rotor feels.
     pub fn loads(&self) -> impl Iterator<Item = Disturbance> {
         let mass_kg = self.plant.rotor.mass_kg;

@@ -24,6 +24,10 @@ pub enum CommandError {
     #[error(transparent)]
     #[diagnostic(help("nothing was written"))]
     Run(#[from] RunError),
+    /// Some policies' runs, or their checks, ended without a result that can be trusted.
+    #[error("{}", .0.join("\n"))]
+    #[diagnostic(help("results were written, and what cannot be trusted is marked in them"))]
+    Untrusted(Vec<String>),
     /// A policy ends with another outcome when its run is checked.
     #[error("{}", list(.0))]
     #[diagnostic(help(
@@ -79,18 +83,27 @@ pub struct Contradiction {
     pub other: &'static str,
 }
 
-fn list(contradictions: &[Contradiction]) -> String {
-    let line = |c: &Contradiction| {
-        let Contradiction {
+impl std::fmt::Display for Contradiction {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self {
             policy,
             outcome,
             method,
             rtol,
             other,
-        } = c;
-        format!("policy {policy}: {outcome}, but {other} by {method} at rtol {rtol:.0e}")
-    };
-    let lines: Vec<String> = contradictions.iter().map(line).collect();
+        } = self;
+        write!(
+            f,
+            "policy {policy}: {outcome}, but {other} by {method} at rtol {rtol:.0e}"
+        )
+    }
+}
+
+fn list(contradictions: &[Contradiction]) -> String {
+    let lines: Vec<String> = contradictions
+        .iter()
+        .map(Contradiction::to_string)
+        .collect();
     lines.join("\n")
 }
 
@@ -103,6 +116,7 @@ impl CommandError {
             | Self::Numbers { .. }
             | Self::Target(TargetError::Image(ImageError::NoProject(_))) => 2,
             Self::Run(_)
+            | Self::Untrusted(_)
             | Self::Contradicted(_)
             | Self::Target(_)
             | Self::Targets(_)

@@ -1,5 +1,6 @@
 //! Results appear whole or not at all.
 
+use firmware_bench::run::trace_file::{self, TraceFile};
 use std::ffi::OsString;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -113,6 +114,33 @@ impl Staging {
     ) -> Result<(), OutputError> {
         (std::fs::File::create(self.path(name)).and_then(write))
             .map_err(OutputError::at(&self.final_place.join(name)))
+    }
+
+    /// Begins a trace there.
+    ///
+    /// # Errors
+    /// [`OutputError`].
+    pub fn trace(&self, name: &str) -> Result<TraceFile<std::fs::File>, OutputError> {
+        (std::fs::File::create(self.path(name)))
+            .and_then(|file| TraceFile::new(file).map_err(trace_file::reason))
+            .map_err(OutputError::at(&self.final_place.join(name)))
+    }
+
+    /// Ends it.
+    ///
+    /// # Errors
+    /// [`OutputError`], also of what was written before.
+    pub fn end_trace(&self, name: &str, file: TraceFile<std::fs::File>) -> Result<(), OutputError> {
+        (file.end().map_err(trace_file::reason))
+            .map_err(OutputError::at(&self.final_place.join(name)))
+    }
+
+    /// Takes a file away again.
+    ///
+    /// # Errors
+    /// [`OutputError`].
+    pub fn discard(&self, name: &str) -> Result<(), OutputError> {
+        std::fs::remove_file(self.path(name)).map_err(OutputError::at(&self.final_place.join(name)))
     }
 
     /// Where to put a file for now.

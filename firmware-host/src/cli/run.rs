@@ -2,21 +2,18 @@
 
 use crate::cli::error::{CommandError, Contradiction, pretty, print};
 use crate::cli::load;
-use crate::cli::output::{self, Staging};
+use crate::cli::output::{self, OutputError, Staging};
 use crate::cli::progress::{LateProgress, Threads};
 use firmware_bench::report::summary::summary;
 use firmware_bench::report::{self, table};
-use firmware_bench::run::closed_loop::{Keep, RunError, run};
-use firmware_bench::run::supervision::Supervision;
-use firmware_bench::run::verdict::{PolicyRun, Verdict};
-use firmware_bench::run::verify::Check;
-use firmware_bench::run::{trace_file, verify};
+use firmware_bench::run::recording::recorded;
+use firmware_bench::run::verdict::{FailedRun, PolicyRun, Results};
+use firmware_bench::run::verify::{self, Check};
 use firmware_bench::scene::Scene;
 use firmware_bench::scene::policy_kind::PolicyKind;
 use firmware_studies::campaign::Progress;
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
 /// Arguments of `run`.
 #[derive(Debug, Clone, clap::Args)]
@@ -29,6 +26,9 @@ pub struct RunArgs {
     /// Run each policy twice more, tighter and by another method, and say how far the runs lie apart.
     #[arg(long)]
     pub verify: bool,
+    /// Write no traces; what else is written stays as it is.
+    #[arg(long)]
+    pub no_trace: bool,
     /// Print the verdicts as JSON instead of the table.
     #[arg(long)]
     pub json: bool,
@@ -40,7 +40,7 @@ pub struct RunArgs {
 /// Runs the scene and writes its results.
 ///
 /// # Errors
-/// [`CommandError`]; nothing is left behind then, except by [`CommandError::Contradicted`].
+/// [`CommandError`]; nothing is left behind then, except by [`CommandError::Contradicted`] and [`CommandError::Untrusted`].
 pub fn execute(args: &RunArgs) -> Result<(), CommandError> {
     let scene = load(&args.scene)?;
     let out = args
@@ -49,11 +49,11 @@ pub fn execute(args: &RunArgs) -> Result<(), CommandError> {
         .unwrap_or_else(|| default_folder(&args.scene));
     // Before any work: a folder that cannot be written to is the user's to know at once.
     output::probe(&out)?;
-    let runs = run_all(&scene, args)?;
-    let verdicts = table::json(&scene, &runs);
-    let verdicts = pretty(&verdicts, "formatting verdict.json")? + "\n";
     let staging = Staging::for_folder(&out)?;
-    write_results(&staging, &scene, &runs, &verdicts)?;
+    let results = run_all(&scene, args, &staging)?;
+    let verdicts = table::json(&scene, &results);
+    let verdicts = pretty(&verdicts, "formatting verdict.json")? + "\n";
+    write_results(&staging, &scene, &results, &verdicts)?;
     let out = staging.publish_over(of_a_policy)?;
     let text = if args.json {
         verdicts
@@ -61,16 +61,20 @@ pub fn execute(args: &RunArgs) -> Result<(), CommandError> {
         let report = out.join("report.html");
         format!(
             "{}\nreport: {}\n",
-            table::text(&scene, &runs),
+            table::text(&scene, &results),
             report.display()
         )
     };
     print(&text)?;
-    let contradictions = contradictions(&runs);
-    if contradictions.is_empty() {
-        Ok(())
-    } else {
-        Err(CommandError::Contradicted(contradictions))
+    let (untrusted, contradictions) = (results.untrusted(), contradictions(&results.runs));
+    if !untrusted.is_empty() {
+        let contradicted = contradictions.iter().map(Contradiction::to_string);
+        let lines = untrusted.into_iter().map(str::to_owned).chain(contradicted);
+        return Err(CommandError::Untrusted(lines.collect()));
+    }
+    match contradictions.is_empty() {
+        true => Ok(()),
+        false => Err(CommandError::Contradicted(contradictions)),
     }
 }
 
@@ -92,7 +96,7 @@ fn record_name(policy: &str) -> String {
 /// Checks that end with another outcome than their run.
 fn contradictions(runs: &[PolicyRun]) -> Vec<Contradiction> {
     let of_run = |run: &PolicyRun| {
-        let checks = run.verification.iter().flat_map(|v| &v.checks);
+        let checks = run.checked().into_iter().flat_map(|v| &v.checks);
         let other = checks.filter(|c| c.outcome != run.verdict.figures.outcome);
         let contradiction = |c: &Check| Contradiction {
             policy: run.name.clone(),
@@ -110,72 +114,68 @@ fn default_folder(scene: &Path) -> PathBuf {
     Path::new("runs").join(scene.file_stem().unwrap_or(scene.as_os_str()))
 }
 
-/// Every policy of the scene, in the scene's order whatever finishes first.
-fn run_all(scene: &Scene, args: &RunArgs) -> Result<Vec<PolicyRun>, CommandError> {
-    let mut scenes = vec![scene.clone()];
-    if args.verify {
-        scenes.extend(verify::check_scenes(scene)?);
-    }
-    // A policy's run and its checks, one policy after the other.
-    let jobs: Vec<(PolicyKind, usize)> = (scene.policies.iter())
-        .flat_map(|kind| (0..scenes.len()).map(move |of| (*kind, of)))
-        .collect();
-    let ticks = (scene.duration_s * scene.sample_rate_hz).round() as u64;
-    let progress = LateProgress::new(ticks * jobs.len() as u64, "ticks");
-    let one = |(kind, of): &(PolicyKind, usize)| {
-        let on_tick = &mut |ticks| progress.add(ticks);
-        let started = Instant::now();
-        let (figures, trace) = match of {
-            0 => run(scene, *kind, Keep::Trace, on_tick),
-            _ => verify::run_check(&scenes[*of], *kind, on_tick),
-        }?;
-        Ok((figures, trace, started.elapsed()))
+/// Every policy of the scene, in the scene's order whatever finishes first; traces are written meanwhile.
+fn run_all(scene: &Scene, args: &RunArgs, staging: &Staging) -> Result<Results, CommandError> {
+    let checks = match args.verify {
+        true => verify::check_scenes(scene)?.to_vec(),
+        false => Vec::new(),
     };
-    let results = args.threads.pool()?.install(|| {
-        let all: Vec<_> = jobs.par_iter().map(one).collect();
-        // The first error in the order of the jobs, whoever came first.
-        all.into_iter().collect::<Result<Vec<_>, RunError>>()
+    let ticks = (scene.duration_s * scene.sample_rate_hz).round() as u64;
+    let all = ticks * ((1 + checks.len()) * scene.policies.len()) as u64;
+    let progress = LateProgress::new(all, "ticks");
+    let one = |kind: &PolicyKind| {
+        let name = trace_name(kind.name());
+        let mut file = match args.no_trace {
+            true => None,
+            false => Some(staging.trace(&name)?),
+        };
+        let on_tick = &mut |ticks| progress.add(ticks);
+        let ran = recorded(scene, *kind, &checks, file.as_mut(), on_tick);
+        match (&ran, file) {
+            (Ok(_), Some(file)) => staging.end_trace(&name, file)?,
+            (Err(_), Some(_)) => staging.discard(&name)?,
+            _ => {}
+        }
+        Ok(ran)
+    };
+    let all = args.threads.pool()?.install(|| {
+        let all: Vec<_> = scene.policies.par_iter().map(one).collect();
+        all.into_iter().collect::<Result<Vec<_>, OutputError>>()
     });
     progress.finish();
-    let mut results = results?.into_iter();
-    let mut runs = Vec::with_capacity(scene.policies.len());
-    for kind in &scene.policies {
-        let Some((figures, trace, elapsed)) = results.next() else {
-            break;
-        };
-        let checks: Vec<Check> = (scenes[1..].iter().zip(results.by_ref()))
-            .map(|(check, (figures, other, _))| verify::compare(check, &trace, (&figures, &other)))
-            .collect();
-        runs.push(PolicyRun {
-            name: kind.name().to_owned(),
-            verification: args
-                .verify
-                .then(|| verify::verification(&figures, &trace, checks)),
-            verdict: Verdict::new(figures, scene, elapsed),
-            supervision: Supervision::of(&trace),
-            trace,
-        });
+    let all = all?;
+    if all.iter().all(Result::is_err) {
+        // There is nothing to keep: the first error says it.
+        all.into_iter().collect::<Result<Vec<_>, _>>()?;
+        return Ok(Results::default());
     }
-    Ok(runs)
+    let mut results = Results::default();
+    for (kind, ran) in scene.policies.iter().zip(all) {
+        match ran {
+            Ok(run) => results.runs.push(run),
+            Err(error) => results.failed.push(FailedRun {
+                name: kind.name().to_owned(),
+                error: error.to_string(),
+            }),
+        }
+    }
+    Ok(results)
 }
 
 fn write_results(
     staging: &Staging,
     scene: &Scene,
-    runs: &[PolicyRun],
+    results: &Results,
     verdicts: &str,
 ) -> Result<(), CommandError> {
     staging.write("verdict.json", verdicts)?;
-    for run in runs {
-        staging.write_by(&trace_name(&run.name), |file| {
-            trace_file::write(&run.trace, file).map_err(trace_file::reason)
-        })?;
+    for run in &results.runs {
         let read_out = run.trace.read_out.as_ref();
         if let Some(record) = read_out.and_then(|read_out| read_out.flight_record.as_ref()) {
             staging.write(&record_name(&run.name), &record.entries)?;
         }
     }
-    let html = report::html(&summary(scene), runs)
+    let html = report::html(&summary(scene), results)
         .map_err(|e| CommandError::other("drawing the report", e))?;
     staging.write("report.html", html)?;
     Ok(())

@@ -2,9 +2,10 @@
 
 use firmware_bench::run::closed_loop::{Keep, run};
 use firmware_bench::run::figures::Figures;
-use firmware_bench::run::trace::Trace;
-use firmware_bench::run::verify::Verification;
-use firmware_bench::run::verify::{check_scenes, compare, run_check, verification};
+use firmware_bench::run::recording::recorded;
+use firmware_bench::run::trace::{Recorder, Trace};
+use firmware_bench::run::trace_file::TraceFile;
+use firmware_bench::run::verify::{Track, Verification, check, check_scenes, verification};
 use firmware_bench::scene::Scene;
 use firmware_bench::scene::policy_kind::PolicyKind;
 use plant_model::Method;
@@ -19,13 +20,13 @@ fn ridden(scene: &Scene, kind: PolicyKind) -> (Figures, Trace) {
 }
 
 fn verified(scene: &Scene, kind: PolicyKind) -> (Figures, Trace, Verification) {
-    let (verdict, trace) = ridden(scene, kind);
-    let checks = check_scenes(scene).unwrap().map(|check| {
-        let (v, t) = run_check(&check, kind, &mut |_| {}).unwrap();
-        compare(&check, &trace, (&v, &t))
-    });
-    let verification = verification(&verdict, &trace, checks.into());
-    (verdict, trace, verification)
+    let (figures, trace) = ridden(scene, kind);
+    let mut track = Track::default();
+    trace.rows.iter().for_each(|row| track.row(row));
+    let scenes = check_scenes(scene).unwrap();
+    let checks = scenes.map(|scene| check(&scene, kind, &track, &mut |_| {}).unwrap());
+    let verification = verification(&figures, &track, checks.into());
+    (figures, trace, verification)
 }
 
 fn with(scene: &Scene, method: Method, rtol: f64) -> Scene {
@@ -99,6 +100,25 @@ fn every_scene_is_confirmed() {
             assert!(v.estimated_error_clearances < 0.02, "{about}");
         }
     }
+}
+
+/// A check that cannot be trusted leaves the run as it is, and says why.
+#[test]
+fn a_failed_check_leaves_the_run() {
+    let scene = scene("impact_at_40_hz");
+    let broken = Scene {
+        supervisor: None,
+        ..scene.clone()
+    };
+    let kind = PolicyKind::Supervisor;
+    let no_file = None::<&mut TraceFile<fs::File>>;
+    let run = recorded(&scene, kind, &[broken], no_file, &mut |_| {}).unwrap();
+    let error = run.verification.unwrap().unwrap_err();
+    assert!(
+        error.contains("checked by") && error.contains("policy supervisor"),
+        "{error}"
+    );
+    assert_eq!(run.verdict.figures, ridden(&scene, kind).0);
 }
 
 fn verdict(out: &Path) -> Value {

@@ -5,6 +5,7 @@ use plant_model::{Body, Mode, Snapshot, V2};
 use crate::report::summary::SceneSummary;
 use crate::run::figures::{Figures, Timing};
 use crate::run::outcome::Outcome;
+use crate::run::supervision::Happenings;
 use crate::run::trace::{Trace, TraceRow};
 use crate::run::verdict::{PolicyRun, Verdict};
 
@@ -34,6 +35,7 @@ pub(super) fn run(name: &str, outcome: Outcome, samples: &[(f64, bool)]) -> Poli
         verdict: verdict(outcome),
         verification: None,
         supervision: None,
+        happenings: Happenings::default(),
         trace: Trace {
             read_out: None,
             rows: samples

@@ -2,11 +2,8 @@
 
 use super::push;
 use crate::report::plot::text::{escape, figures};
-use crate::run::supervision::{Happening, Happenings, names};
+use crate::run::supervision::{Happening, names};
 use crate::run::verdict::PolicyRun;
-
-/// Rows of a table; what comes after them is in the trace.
-const MOST_ROWS: usize = 100;
 
 /// One table for each run with a supervisor.
 pub(super) fn push_tables(page: &mut String, runs: &[PolicyRun]) {
@@ -16,7 +13,7 @@ pub(super) fn push_tables(page: &mut String, runs: &[PolicyRun]) {
 }
 
 fn push_table(page: &mut String, run: &PolicyRun) {
-    let (name, happenings) = (escape(&run.name), Happenings::of(&run.trace));
+    let (name, happenings) = (escape(&run.name), &run.happenings);
     push(
         page,
         format_args!(
@@ -29,7 +26,7 @@ fn push_table(page: &mut String, run: &PolicyRun) {
     if happenings.all.is_empty() {
         page.push_str("<tr><td colspan=\"5\">nothing</td></tr>\n");
     }
-    for happening in happenings.all.iter().take(MOST_ROWS) {
+    for happening in &happenings.all {
         push_row(page, happening);
     }
     page.push_str(
@@ -37,16 +34,13 @@ fn push_table(page: &mut String, run: &PolicyRun) {
          touches that changed nothing are counted. Expected severity: backward speed after the impacts to come, if \
          nobody brakes, over the highest that the cap can arrest.",
     );
-    match happenings.all.len().checked_sub(MOST_ROWS) {
-        Some(more) if more > 0 => push(page, format_args!(" {more} more are in the trace.")),
-        _ if happenings.touches_after > 0 => {
-            let touches = happenings.touches_after;
-            push(
-                page,
-                format_args!(" Touches after the last of them: {touches}."),
-            );
-        }
-        _ => {}
+    match (happenings.more, happenings.touches_after) {
+        (0, 0) => {}
+        (0, touches) => push(
+            page,
+            format_args!(" Touches after the last of them: {touches}."),
+        ),
+        (more, _) => push(page, format_args!(" {more} more are in the trace.")),
     }
     page.push_str("</p>\n</section>\n");
 }

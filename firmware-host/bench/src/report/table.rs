@@ -3,11 +3,12 @@
 use crate::report::plot::text::figures;
 use crate::run::figures::{Digits, Figure, Figures, Timing, Value};
 use crate::run::supervision::{Account, Supervision};
-use crate::run::verdict::{PolicyRun, far_into_the_wall};
+use crate::run::verdict::{PolicyRun, Results, far_into_the_wall};
 use crate::run::verify::{Check, Verification};
 use crate::scene::Scene;
 use crate::scene::nominal::named;
 use comfy_table::{Cell, CellAlignment, LineStyle, Table, TableStyle};
+use serde_json::json;
 use std::fmt::Display;
 
 /// A row of the table: name with unit, and the value as text.
@@ -125,7 +126,8 @@ pub fn right(value: impl Display) -> Cell {
 }
 
 /// The table: one row a figure, one column a policy.
-pub fn text(scene: &Scene, runs: &[PolicyRun]) -> String {
+pub fn text(scene: &Scene, results: &Results) -> String {
+    let runs = &results.runs;
     let mut header = vec![Cell::new("policy")];
     header.extend(runs.iter().map(|r| right(&r.name)));
     let mut table = lined(header);
@@ -134,10 +136,12 @@ pub fn text(scene: &Scene, runs: &[PolicyRun]) -> String {
     add_rows(&mut table, SUPERVISION_FIGURES, runs, |r| {
         r.supervision.as_ref()
     });
-    add_rows(&mut table, CHECK_FIGURES, runs, |r| r.verification.as_ref());
+    add_rows(&mut table, CHECK_FIGURES, runs, PolicyRun::checked);
     let note = far_into_the_wall(runs, scene.plant.contact.clearance_m);
-    let note = note.map_or(String::new(), |note| format!("\n{note}"));
-    format!("{}\n{table}{note}", scene.title)
+    let notes: String = (note.as_deref().into_iter().chain(results.untrusted()))
+        .map(|note| format!("\n{note}"))
+        .collect();
+    format!("{}\n{table}{notes}", scene.title)
 }
 
 fn add_figures<T>(
@@ -169,27 +173,33 @@ fn add_rows<T>(
 }
 
 /// The verdicts under stable keys: `policies.<name>.<figure>`.
-pub fn json(scene: &Scene, runs: &[PolicyRun]) -> serde_json::Value {
+pub fn json(scene: &Scene, results: &Results) -> serde_json::Value {
+    let runs = &results.runs;
+    let failed = (results.failed.iter())
+        .map(|failed| (failed.name.clone(), json!({ "error": failed.error })));
     let policies: serde_json::Map<String, serde_json::Value> = (runs.iter())
         .map(|run| {
-            let mut figures = serde_json::json!(run.verdict);
-            if let Some(verification) = &run.verification {
-                figures["verification"] = serde_json::json!(verification);
+            let mut figures = json!(run.verdict);
+            match &run.verification {
+                Some(Ok(verification)) => figures["verification"] = json!(verification),
+                Some(Err(error)) => figures["verification"] = json!({ "error": error }),
+                None => {}
             }
             if let Some(supervision) = &run.supervision {
-                figures["supervision"] = serde_json::json!(supervision);
+                figures["supervision"] = json!(supervision);
             }
             (run.name.clone(), figures)
         })
+        .chain(failed)
         .collect();
     let told: serde_json::Map<String, serde_json::Value> = named(&scene.overrides)
         .map(|(name, value)| (name.to_owned(), value.into()))
         .collect();
     let far = far_into_the_wall(runs, scene.plant.contact.clearance_m);
     let warnings: Vec<_> = scene.warnings.iter().cloned().chain(far).collect();
-    serde_json::json!({
+    json!({
         "scene": scene.title,
-        "duration_s": scene.duration_s,
+        "duration_s": scene.simulated_s(),
         "sample_rate_hz": scene.sample_rate_hz,
         "seed": scene.seed,
         "rtol": scene.rtol,

@@ -8,7 +8,7 @@ use crate::run::verify::{Check, Verification};
 /// One row for each check, headed by its policy; nothing where no run was checked.
 pub(super) fn push_table(page: &mut String, runs: &[PolicyRun]) {
     let mut checked = (runs.iter())
-        .filter_map(|r| Some((r, r.verification.as_ref()?)))
+        .filter_map(|r| Some((r, r.checked()?)))
         .peekable();
     let Some((_, first)) = checked.peek() else {
         return;

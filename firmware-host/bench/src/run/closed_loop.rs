@@ -8,7 +8,7 @@ use crate::device::sensor_fault::seen_until_s;
 use crate::run::controller::{Controller, Force, Seen, controller};
 use crate::run::figures::{Ended, Figures};
 use crate::run::judge::Judge;
-use crate::run::trace::{Said, Trace, TraceRow};
+use crate::run::trace::{ReadOut, Recorder, Said, Trace, TraceRow};
 use crate::scene::Scene;
 use crate::scene::policy_kind::PolicyKind;
 use plant_model::params::StatorParams;
@@ -114,10 +114,42 @@ pub fn run(
 /// As [`run`].
 pub fn run_policy(
     scene: &Scene,
-    (controller, policy): (Box<dyn Controller>, &'static str),
+    acting: (Box<dyn Controller>, &'static str),
     keep: Keep,
     on_tick: &mut dyn FnMut(u64),
 ) -> Result<(Figures, Trace), RunError> {
+    let mut trace = Trace::default();
+    let recorder: Option<&mut dyn Recorder> = match keep.rows() {
+        true => Some(&mut trace),
+        false => None,
+    };
+    let (figures, read_out) = ride(scene, acting, recorder, keep.to_decision(), on_tick)?;
+    trace.read_out = read_out;
+    Ok((figures, trace))
+}
+
+/// Runs one policy to the end of the scene, its rows given to a recorder as they come.
+///
+/// # Errors
+/// As [`run`].
+pub fn record(
+    scene: &Scene,
+    kind: PolicyKind,
+    recorder: &mut dyn Recorder,
+    on_tick: &mut dyn FnMut(u64),
+) -> Result<(Figures, Option<ReadOut>), RunError> {
+    let policy = kind.name();
+    let acting = controller(kind, scene).ok_or(RunError::Incomplete { policy })?;
+    ride(scene, (acting, policy), Some(recorder), false, on_tick)
+}
+
+fn ride<'a>(
+    scene: &'a Scene,
+    (controller, policy): (Box<dyn Controller>, &'static str),
+    recorder: Option<&'a mut dyn Recorder>,
+    to_decision: bool,
+    on_tick: &mut dyn FnMut(u64),
+) -> Result<(Figures, Option<ReadOut>), RunError> {
     const REPORT_EVERY: u64 = 1024;
     let options = Options {
         rtol: scene.rtol,
@@ -142,8 +174,7 @@ pub fn run_policy(
         controller,
         amplifier: Amplifier::new(scene.amplifier, force_max_n, &scene.outages),
         judge: Judge::new(scene),
-        keep,
-        trace: Trace::default(),
+        recorder,
         edges_s: scene.edges(),
         edge_s: f64::NEG_INFINITY,
         steady_n: None,
@@ -157,7 +188,7 @@ pub fn run_policy(
         if (tick + 1) % REPORT_EVERY == 0 {
             on_tick(REPORT_EVERY);
         }
-        if keep.to_decision() && bench.judge.decided(bench.plant.as_ref()) {
+        if to_decision && bench.judge.decided(bench.plant.as_ref()) {
             break;
         }
     }
@@ -165,9 +196,6 @@ pub fn run_policy(
     let last = bench.plant.snapshot();
     bench.judge.sample(&last);
     bench.record(&last, scene.from_magnets_m(last.position_m), false);
-    if keep.rows() {
-        bench.trace.read_out = bench.controller.read_out();
-    }
     let figures = Figures::new(&Ended::new(scene, &bench.judge, bench.plant.as_ref()));
     let residual = figures.energy_residual;
     let limit = (TRUSTED_TOLERANCES * scene.rtol).clamp(TRUSTED.0, TRUSTED.1);
@@ -178,7 +206,8 @@ pub fn run_policy(
             limit,
         });
     }
-    Ok((figures, bench.trace))
+    let read_out = bench.recorder.and_then(|_| bench.controller.read_out());
+    Ok((figures, read_out))
 }
 
 struct Bench<'a> {
@@ -189,8 +218,7 @@ struct Bench<'a> {
     controller: Box<dyn Controller>,
     amplifier: Amplifier,
     judge: Judge,
-    keep: Keep,
-    trace: Trace,
+    recorder: Option<&'a mut dyn Recorder>,
     edges_s: Vec<f64>,
     /// The next of them.
     edge_s: f64,
@@ -306,10 +334,10 @@ impl Bench<'_> {
     }
 
     fn record(&mut self, plant: &Snapshot, measured_m: V2, mode_change: bool) {
-        if !self.keep.rows() {
+        let Some(recorder) = &mut self.recorder else {
             return;
-        }
-        self.trace.rows.push(TraceRow {
+        };
+        recorder.row(&TraceRow {
             plant: *plant,
             measured_m,
             commanded_n: self.amplifier.in_effect_n(),

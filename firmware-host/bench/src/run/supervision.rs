@@ -1,6 +1,6 @@
 //! What the supervisor did in a run, in figures.
 
-use crate::run::trace::{ReadOut, Said, Trace, TraceRow};
+use crate::run::trace::{ReadOut, Recorder, Said, Trace, TraceRow};
 use serde::Serialize;
 use supervisor::{Events, Mode};
 
@@ -47,42 +47,71 @@ pub struct Account {
     pub flight_record_crc: Option<u32>,
 }
 
-impl Supervision {
-    /// Of a run; `None` without a supervisor.
-    pub fn of(trace: &Trace) -> Option<Self> {
-        let samples = trace.rows.iter().filter(|row| !row.mode_change);
-        let said: Vec<(f64, Said)> = samples.filter_map(told).collect();
-        if said.is_empty() {
-            return None;
-        }
-        let count = |event: Events| {
-            let having = said.iter().filter(|(_, s)| s.events.contains(event));
-            having.count() as u64
+/// Counts what the supervisor does while a run goes on.
+#[derive(Debug, Clone, Default)]
+pub struct SupervisionCount {
+    /// The last sample and the mode after it.
+    last: Option<(f64, Mode)>,
+    /// Since when it has had the bearing, or the last sample without it.
+    since_s: Option<f64>,
+    engagements: u64,
+    first_engaged_s: Option<f64>,
+    engaged_s: f64,
+    longest_engagement_s: f64,
+    handed_back: u64,
+    sensor_faults: u64,
+    expected_severity_max: f64,
+}
+
+impl Recorder for SupervisionCount {
+    fn row(&mut self, row: &TraceRow) {
+        let Some((t_s, said)) = told(row).filter(|_| !row.mode_change) else {
+            return;
         };
-        let engaged = |(_, s): &&(f64, Said)| s.events.contains(Events::ENGAGED);
-        // The last row is none: nothing follows it.
-        let spans = said.windows(2).filter(|w| acts(w[0].1.mode));
-        let mut longest_s = 0.0_f64;
-        let mut since_s = None;
-        for (t_s, said) in &said {
-            let began_s = *since_s.get_or_insert(*t_s);
-            longest_s = longest_s.max(t_s - began_s);
-            if !acts(said.mode) {
-                since_s = None;
-            }
+        if let Some((before_s, mode)) = self.last.replace((t_s, said.mode))
+            && acts(mode)
+        {
+            self.engaged_s += t_s - before_s;
         }
-        let severities = said.iter().map(|(_, s)| widened(s.severity));
-        Some(Self {
-            engagements: count(Events::ENGAGED),
-            first_engaged_s: said.iter().find(engaged).map(|(t_s, _)| *t_s),
-            // A sum of nothing is −0.
-            engaged_s: spans.map(|w| w[1].0 - w[0].0).fold(0.0, |a, b| a + b),
-            longest_engagement_s: longest_s,
-            handed_back: count(Events::HANDED_BACK),
-            sensor_faults: count(Events::SENSOR_FAULT),
-            expected_severity_max: severities.fold(0.0, f64::max),
-            account: trace.read_out.as_ref().map(Account::of),
+        let began_s = *self.since_s.get_or_insert(t_s);
+        self.longest_engagement_s = self.longest_engagement_s.max(t_s - began_s);
+        if !acts(said.mode) {
+            self.since_s = None;
+        }
+        let count = |event: Events| u64::from(said.events.contains(event));
+        self.engagements += count(Events::ENGAGED);
+        self.handed_back += count(Events::HANDED_BACK);
+        self.sensor_faults += count(Events::SENSOR_FAULT);
+        if said.events.contains(Events::ENGAGED) {
+            self.first_engaged_s.get_or_insert(t_s);
+        }
+        self.expected_severity_max = self.expected_severity_max.max(widened(said.severity));
+    }
+}
+
+impl SupervisionCount {
+    /// At the end of the run; `None` without a supervisor.
+    pub fn ended(&self, read_out: Option<&ReadOut>) -> Option<Supervision> {
+        self.last?;
+        Some(Supervision {
+            engagements: self.engagements,
+            first_engaged_s: self.first_engaged_s,
+            engaged_s: self.engaged_s,
+            longest_engagement_s: self.longest_engagement_s,
+            handed_back: self.handed_back,
+            sensor_faults: self.sensor_faults,
+            expected_severity_max: self.expected_severity_max,
+            account: read_out.map(Account::of),
         })
+    }
+}
+
+impl Supervision {
+    /// Of a run that is kept; `None` without a supervisor.
+    pub fn of(trace: &Trace) -> Option<Self> {
+        let mut count = SupervisionCount::default();
+        trace.rows.iter().for_each(|row| count.row(row));
+        count.ended(trace.read_out.as_ref())
     }
 }
 
@@ -123,39 +152,59 @@ pub struct Happening {
     pub touches_before: u64,
 }
 
-/// What happened in a run.
-#[derive(Debug, Clone, PartialEq, Default)]
+/// What happened in a run: changes of mode, and every event but touches and lift-offs that change nothing; of those the touches
+/// are counted.
+#[derive(Debug, Clone, PartialEq)]
 pub struct Happenings {
-    /// In time order.
+    /// In time order, the first [`Happenings::MOST`].
     pub all: Vec<Happening>,
-    /// Touches after the last of them that changed nothing.
+    /// How many came after these.
+    pub more: u64,
+    /// Touches after the last of all that changed nothing.
     pub touches_after: u64,
+    mode: Mode,
+}
+
+impl Default for Happenings {
+    fn default() -> Self {
+        Self {
+            all: Vec::new(),
+            more: 0,
+            touches_after: 0,
+            mode: Mode::Levitated,
+        }
+    }
 }
 
 /// Touching and leaving: too many to be told one by one.
 const EVERYDAY: Events = Events::TOUCHED.union(Events::LIFTED_OFF);
 
 impl Happenings {
-    /// Changes of mode, and every event but touches and lift-offs that change nothing; of those the touches are counted.
-    pub fn of(trace: &Trace) -> Self {
-        let mut before = Mode::Levitated;
-        let mut happenings = Self::default();
-        for (t_s, said) in trace.rows.iter().filter_map(told) {
-            let touches = &mut happenings.touches_after;
-            let other = !(said.events - EVERYDAY).is_empty();
-            let changed = std::mem::replace(&mut before, said.mode) != said.mode;
-            if other || changed {
-                let touches_before = std::mem::take(touches);
-                happenings.all.push(Happening {
-                    t_s,
-                    said,
-                    touches_before,
-                });
-            } else if said.events.contains(Events::TOUCHED) {
-                *touches += 1;
+    /// So many are told; what comes after them is in the trace.
+    pub const MOST: usize = 100;
+}
+
+impl Recorder for Happenings {
+    fn row(&mut self, row: &TraceRow) {
+        let Some((t_s, said)) = told(row) else {
+            return;
+        };
+        let other = !(said.events - EVERYDAY).is_empty();
+        let changed = std::mem::replace(&mut self.mode, said.mode) != said.mode;
+        if other || changed {
+            let touches_before = std::mem::take(&mut self.touches_after);
+            let happening = Happening {
+                t_s,
+                said,
+                touches_before,
+            };
+            match self.all.len() < Self::MOST {
+                true => self.all.push(happening),
+                false => self.more += 1,
             }
+        } else if said.events.contains(Events::TOUCHED) {
+            self.touches_after += 1;
         }
-        happenings
     }
 }
 
@@ -211,7 +260,8 @@ mod tests {
             (Mode::Bounce, E::LIFTED_OFF),
             (Mode::Bounce, E::TOUCHED),
         ]);
-        let happenings = Happenings::of(&trace);
+        let mut happenings = Happenings::default();
+        trace.rows.iter().for_each(|row| happenings.row(row));
         let told: Vec<(f64, u64)> = (happenings.all.iter())
             .map(|h| (h.t_s, h.touches_before))
             .collect();

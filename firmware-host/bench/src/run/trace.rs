@@ -73,6 +73,18 @@ pub struct Trace {
     pub read_out: Option<ReadOut>,
 }
 
+/// Who is given the rows of a run, one by one.
+pub trait Recorder {
+    /// The next row.
+    fn row(&mut self, row: &TraceRow);
+}
+
+impl Recorder for Trace {
+    fn row(&mut self, row: &TraceRow) {
+        self.rows.push(*row);
+    }
+}
+
 impl TraceRow {
     /// Mode of the supervisor, where one runs.
     pub fn supervisor_mode(&self) -> Option<supervisor::Mode> {

@@ -1,15 +1,17 @@
-//! Traces as Parquet: one row group, one column a quantity, SI units in the column names.
+//! Traces as Parquet: one column a quantity, SI units in the column names; written while the run goes on, a group of rows at
+//! a time.
 
 use crate::run::supervision::names;
-use crate::run::trace::{Said, Trace, TraceRow};
+use crate::run::trace::{Recorder, Said, TraceRow};
 use parquet::basic::Compression;
 use parquet::data_type::{BoolType, ByteArray, ByteArrayType, DoubleType};
 use parquet::errors::ParquetError;
-use parquet::file::properties::WriterProperties;
+use parquet::file::properties::{EnabledStatistics, WriterProperties};
 use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
 use parquet::schema::parser::parse_message_type;
 use std::io::{self, Write};
 use std::sync::Arc;
+use std::time::{Duration, Instant};
 
 type Number = (&'static str, fn(&TraceRow) -> f64);
 type Text = (&'static str, fn(&TraceRow) -> String);
@@ -76,47 +78,108 @@ fn said(row: &TraceRow, what: fn(&Said) -> f32) -> f64 {
 /// Whether a row stands at a change of mode between two control samples; the last column.
 const MODE_CHANGE: &str = "mode_change";
 
-/// Writes a trace.
-///
-/// # Errors
-/// What the file system or the format refuses.
-pub fn write(trace: &Trace, sink: impl Write + Send) -> Result<(), ParquetError> {
-    let mut message = String::from("message trace {\n");
-    for (name, _) in NUMBERS {
-        message += &format!("  required double {name};\n");
+/// Rows of a group; so many are in memory before they are written.
+const GROUP_ROWS: usize = 1 << 16;
+
+/// A trace file that is being written.
+pub struct TraceFile<W: Write + Send> {
+    file: SerializedFileWriter<W>,
+    rows: Vec<TraceRow>,
+    /// The first thing that went wrong; nothing is written after it.
+    broken: Option<ParquetError>,
+    took: Duration,
+}
+
+impl<W: Write + Send> TraceFile<W> {
+    /// Begins a file.
+    ///
+    /// # Errors
+    /// What the file system or the format refuses.
+    pub fn new(sink: W) -> Result<Self, ParquetError> {
+        let mut message = String::from("message trace {\n");
+        for (name, _) in NUMBERS {
+            message += &format!("  required double {name};\n");
+        }
+        for (name, _) in TEXTS {
+            message += &format!("  required binary {name} (utf8);\n");
+        }
+        message += &format!("  required boolean {MODE_CHANGE};\n}}");
+        let schema = Arc::new(parse_message_type(&message)?);
+        // Numbers hardly repeat: a dictionary of them is work for nothing, and larger than they are. Of names there are few.
+        let mut properties = WriterProperties::builder()
+            .set_compression(Compression::SNAPPY)
+            .set_dictionary_enabled(false)
+            .set_statistics_enabled(EnabledStatistics::None)
+            .set_created_by("firmware-host".to_owned());
+        for (name, _) in TEXTS {
+            properties = properties.set_column_dictionary_enabled((*name).into(), true);
+        }
+        let properties = properties.build();
+        Ok(Self {
+            file: SerializedFileWriter::new(sink, schema, Arc::new(properties))?,
+            rows: Vec::new(),
+            broken: None,
+            took: Duration::ZERO,
+        })
     }
-    for (name, _) in TEXTS {
-        message += &format!("  required binary {name} (utf8);\n");
+
+    /// Time spent on writing so far.
+    pub fn took(&self) -> Duration {
+        self.took
     }
-    message += &format!("  required boolean {MODE_CHANGE};\n}}");
-    let schema = Arc::new(parse_message_type(&message)?);
-    let properties = WriterProperties::builder()
-        .set_compression(Compression::SNAPPY)
-        .set_created_by("firmware-host".to_owned())
-        .build();
-    let mut file = SerializedFileWriter::new(sink, schema, Arc::new(properties))?;
-    let mut group = file.next_row_group()?;
-    for (_, value) in NUMBERS {
-        let column: Vec<f64> = trace.rows.iter().map(value).collect();
+
+    /// Writes what is left and ends the file.
+    ///
+    /// # Errors
+    /// What the file system or the format has refused.
+    pub fn end(mut self) -> Result<(), ParquetError> {
+        if self.broken.is_none() && !self.rows.is_empty() {
+            self.write_group()?;
+        }
+        match self.broken {
+            Some(error) => Err(error),
+            None => self.file.close().map(drop),
+        }
+    }
+
+    fn write_group(&mut self) -> Result<(), ParquetError> {
+        let mut group = self.file.next_row_group()?;
+        for (_, value) in NUMBERS {
+            let column: Vec<f64> = self.rows.iter().map(value).collect();
+            column_of(&mut group, |c| {
+                c.typed::<DoubleType>().write_batch(&column, None, None)
+            })?;
+        }
+        for (_, value) in TEXTS {
+            let column: Vec<ByteArray> = (self.rows.iter())
+                .map(|r| ByteArray::from(value(r).into_bytes()))
+                .collect();
+            column_of(&mut group, |c| {
+                c.typed::<ByteArrayType>().write_batch(&column, None, None)
+            })?;
+        }
+        let column: Vec<bool> = self.rows.iter().map(|r| r.mode_change).collect();
         column_of(&mut group, |c| {
-            c.typed::<DoubleType>().write_batch(&column, None, None)
+            c.typed::<BoolType>().write_batch(&column, None, None)
         })?;
+        group.close()?;
+        self.rows.clear();
+        Ok(())
     }
-    for (_, value) in TEXTS {
-        let column: Vec<ByteArray> = (trace.rows.iter())
-            .map(|r| ByteArray::from(value(r).into_bytes()))
-            .collect();
-        column_of(&mut group, |c| {
-            c.typed::<ByteArrayType>().write_batch(&column, None, None)
-        })?;
+}
+
+impl<W: Write + Send> Recorder for TraceFile<W> {
+    fn row(&mut self, row: &TraceRow) {
+        if self.broken.is_some() {
+            return;
+        }
+        self.rows.push(*row);
+        if self.rows.len() == GROUP_ROWS {
+            let started = Instant::now();
+            self.broken = self.write_group().err();
+            self.took += started.elapsed();
+        }
     }
-    let column: Vec<bool> = trace.rows.iter().map(|r| r.mode_change).collect();
-    column_of(&mut group, |c| {
-        c.typed::<BoolType>().write_batch(&column, None, None)
-    })?;
-    group.close()?;
-    file.close()?;
-    Ok(())
 }
 
 /// Why a trace could not be written, in the words of the system where it is the reason.
@@ -144,4 +207,30 @@ fn column_of<W: Write + Send>(
     };
     fill(&mut column)?;
     column.close()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::fixture;
+
+    #[test]
+    fn the_first_refusal_is_the_one_that_is_told() {
+        /// A disk with room for the first bytes.
+        struct Full;
+        impl Write for Full {
+            fn write(&mut self, _bytes: &[u8]) -> io::Result<usize> {
+                Err(io::ErrorKind::StorageFull.into())
+            }
+            fn flush(&mut self) -> io::Result<()> {
+                Ok(())
+            }
+        }
+        let begun = TraceFile::new(Full);
+        let told = begun.and_then(|mut file| {
+            (0..GROUP_ROWS).for_each(|i| file.row(&fixture::row(i as f64, false)));
+            file.end()
+        });
+        assert_eq!(reason(told.unwrap_err()).kind(), io::ErrorKind::StorageFull);
+    }
 }

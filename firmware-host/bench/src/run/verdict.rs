@@ -1,7 +1,7 @@
 //! What a run came to: figures, how long it took, and what stands beside them.
 
 use crate::run::figures::{Figures, Timing, Took};
-use crate::run::supervision::Supervision;
+use crate::run::supervision::{Happenings, Supervision};
 use crate::run::trace::Trace;
 use crate::run::verify::Verification;
 use crate::scene::Scene;
@@ -22,7 +22,7 @@ pub struct Verdict {
 impl Verdict {
     /// Of a run of a scene to its end.
     pub fn new(figures: Figures, scene: &Scene, elapsed: Duration) -> Self {
-        let simulated_s = scene.duration_s;
+        let simulated_s = scene.simulated_s();
         let took = Took {
             simulated_s,
             elapsed,
@@ -42,11 +42,49 @@ pub struct PolicyRun {
     /// What it came to.
     pub verdict: Verdict,
     /// What running it again with other means says, where that was asked for.
-    pub verification: Option<Verification>,
+    pub verification: Option<Result<Verification, String>>,
     /// What the supervisor did, where one ran.
     pub supervision: Option<Supervision>,
-    /// What happened.
+    /// At which samples something happened to it.
+    pub happenings: Happenings,
+    /// Its rows, of a long run those that stand out.
     pub trace: Trace,
+}
+
+impl PolicyRun {
+    /// What its checks say, where they were asked for and can be trusted.
+    pub fn checked(&self) -> Option<&Verification> {
+        self.verification.as_ref()?.as_ref().ok()
+    }
+}
+
+/// A policy whose run cannot be trusted.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct FailedRun {
+    /// Name of the policy.
+    pub name: String,
+    /// The named error that ended it.
+    pub error: String,
+}
+
+/// What came of a scene, policy by policy.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Results {
+    /// Runs, in the scene's order.
+    pub runs: Vec<PolicyRun>,
+    /// The others, in the scene's order.
+    pub failed: Vec<FailedRun>,
+}
+
+impl Results {
+    /// Why what cannot be trusted cannot: runs, and runs whose checks cannot. Each names its policy.
+    pub fn untrusted(&self) -> Vec<&str> {
+        let checks = self.runs.iter().filter_map(|run| run.verification.as_ref());
+        (self.failed.iter().map(|failed| &failed.error))
+            .chain(checks.filter_map(|checked| checked.as_ref().err()))
+            .map(String::as_str)
+            .collect()
+    }
 }
 
 /// Which runs went so far into the wall that their figures from there on say nothing of a machine.

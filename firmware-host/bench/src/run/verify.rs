@@ -1,13 +1,13 @@
 //! A run's own estimate of its global error: the closed loop once more at a tighter tolerance, and
 //! once more by another method.
 
-use crate::run::closed_loop::{Keep, RunError, run};
+use crate::run::closed_loop::{RunError, record};
 use crate::run::figures::Figures;
 use crate::run::outcome::Outcome;
-use crate::run::trace::{Trace, TraceRow};
+use crate::run::trace::{Recorder, TraceRow};
 use crate::scene::Scene;
 use crate::scene::policy_kind::PolicyKind;
-use plant_model::{Method, Mode, Options};
+use plant_model::{Method, Mode, Options, V2};
 use serde::Serialize;
 
 /// Number of checks of a run.
@@ -88,69 +88,101 @@ pub fn check_scenes(scene: &Scene) -> Result<[Scene; CHECKS], RunError> {
     Ok([check(own, scene.rtol * TIGHTER), check(other, TIGHTEST)])
 }
 
-/// Runs a policy of one of [`check_scenes`].
-///
-/// # Errors
-/// [`RunError::Check`].
-pub fn run_check(
-    check: &Scene,
-    kind: PolicyKind,
-    on_tick: &mut dyn FnMut(u64),
-) -> Result<(Figures, Trace), RunError> {
-    run(check, kind, Keep::Trace, on_tick).map_err(|reason| RunError::Check {
-        method: check.method.name(),
-        rtol: check.rtol,
-        reason: Box::new(reason),
-    })
+/// Where a rotor was in a run, and in which modes: what checks are held against.
+#[derive(Debug, Clone, Default)]
+pub struct Track {
+    /// Positions at control samples, which stand at the same times in every run of a scene \[m\].
+    positions_m: Vec<V2>,
+    /// Modes in the order in which they were entered.
+    modes: Vec<Mode>,
 }
 
-/// Holds a check's run against the run itself.
-pub fn compare(check: &Scene, trace: &Trace, (figures, check_trace): (&Figures, &Trace)) -> Check {
-    let clearance_m = check.plant.contact.clearance_m;
-    let pairs = || samples(trace).zip(samples(check_trace));
-    let apart = |(a, b): (&TraceRow, &TraceRow)| {
-        let distance = (a.plant.position_m - b.plant.position_m).norm() / clearance_m;
-        (a.plant.t_s, distance)
-    };
-    Check {
-        method: figures.method,
-        rtol: check.rtol,
-        outcome: figures.outcome,
-        mode_changes: modes(check_trace).count() as u64,
-        same_modes: modes(trace).eq(modes(check_trace)),
-        end_difference_clearances: pairs().map(apart).last().map_or(0.0, |(_, d)| d),
-        largest_difference_clearances: pairs().map(apart).fold(0.0, |m, (_, d)| m.max(d)),
-        differs_from_s: (pairs().map(apart))
-            .find(|(_, d)| *d > THRESHOLD_CLEARANCES)
-            .map(|(t, _)| t),
+impl Recorder for Track {
+    fn row(&mut self, row: &TraceRow) {
+        match row.mode_change {
+            true => self.modes.push(row.plant.mode),
+            false => self.positions_m.push(row.plant.position_m),
+        }
     }
 }
 
+/// A check while it runs beside a run that is known.
+struct Comparison<'a> {
+    run: &'a Track,
+    clearance_m: f64,
+    samples: usize,
+    mode_changes: usize,
+    same_modes: bool,
+    last: f64,
+    largest: f64,
+    differs_from_s: Option<f64>,
+}
+
+impl Recorder for Comparison<'_> {
+    fn row(&mut self, row: &TraceRow) {
+        if row.mode_change {
+            self.same_modes &= self.run.modes.get(self.mode_changes) == Some(&row.plant.mode);
+            self.mode_changes += 1;
+        } else if let Some(position_m) = self.run.positions_m.get(self.samples) {
+            self.samples += 1;
+            self.last = (position_m - row.plant.position_m).norm() / self.clearance_m;
+            self.largest = self.largest.max(self.last);
+            if self.last > THRESHOLD_CLEARANCES {
+                self.differs_from_s.get_or_insert(row.plant.t_s);
+            }
+        }
+    }
+}
+
+/// Runs a policy of one of [`check_scenes`] and holds it against the run itself.
+///
+/// # Errors
+/// [`RunError::Check`].
+pub fn check(
+    scene: &Scene,
+    kind: PolicyKind,
+    run: &Track,
+    on_tick: &mut dyn FnMut(u64),
+) -> Result<Check, RunError> {
+    let mut comparison = Comparison {
+        run,
+        clearance_m: scene.plant.contact.clearance_m,
+        samples: 0,
+        mode_changes: 0,
+        same_modes: true,
+        last: 0.0,
+        largest: 0.0,
+        differs_from_s: None,
+    };
+    let (figures, _) =
+        record(scene, kind, &mut comparison, on_tick).map_err(|reason| RunError::Check {
+            method: scene.method.name(),
+            rtol: scene.rtol,
+            reason: Box::new(reason),
+        })?;
+    Ok(Check {
+        method: figures.method,
+        rtol: scene.rtol,
+        outcome: figures.outcome,
+        mode_changes: comparison.mode_changes as u64,
+        same_modes: comparison.same_modes && comparison.mode_changes == run.modes.len(),
+        end_difference_clearances: comparison.last,
+        largest_difference_clearances: comparison.largest,
+        differs_from_s: comparison.differs_from_s,
+    })
+}
+
 /// What the checks of a run say together.
-pub fn verification(figures: &Figures, trace: &Trace, checks: Vec<Check>) -> Verification {
+pub fn verification(figures: &Figures, run: &Track, checks: Vec<Check>) -> Verification {
     let largest = |of: fn(&Check) -> f64| checks.iter().map(of).fold(0.0, f64::max);
     Verification {
         same_outcome: checks.iter().all(|c| c.outcome == figures.outcome),
         same_modes: checks.iter().all(|c| c.same_modes),
-        mode_changes: modes(trace).count() as u64,
+        mode_changes: run.modes.len() as u64,
         estimated_error_clearances: largest(|c| c.end_difference_clearances),
         largest_difference_clearances: largest(|c| c.largest_difference_clearances),
         threshold_clearances: THRESHOLD_CLEARANCES,
         differs_from_s: (checks.iter().filter_map(|c| c.differs_from_s)).reduce(f64::min),
         checks,
     }
-}
-
-/// Rows at control samples; they stand at the same times in every run of a scene.
-fn samples(trace: &Trace) -> impl Iterator<Item = &TraceRow> {
-    trace.rows.iter().filter(|r| !r.mode_change)
-}
-
-/// Modes in the order in which they were entered.
-fn modes(trace: &Trace) -> impl Iterator<Item = Mode> {
-    trace
-        .rows
-        .iter()
-        .filter(|r| r.mode_change)
-        .map(|r| r.plant.mode)
 }

@@ -1,7 +1,11 @@
 //! What is in the traces, and what the supervisor left behind.
 
 use super::{names, short_scene};
+use firmware_bench::run::closed_loop::{Keep, run};
 use firmware_bench::run::flight_record::{FlightRecord, Units, entries};
+use firmware_bench::run::trace::Recorder;
+use firmware_bench::run::trace_file::TraceFile;
+use firmware_bench::scene::policy_kind::PolicyKind;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::record::{Field, Row, RowAccessor};
 use serde_json::Value;
@@ -9,6 +13,26 @@ use std::fs;
 use std::path::Path;
 use system_tests::{run_scene, scene_path};
 use tempfile::TempDir;
+
+/// A long run is written group by group, and every row is there, in its order.
+#[test]
+fn a_long_trace_has_several_groups() {
+    let scene = system_tests::scene("impact_at_40_hz");
+    let (_, trace) = run(&scene, PolicyKind::Passive, Keep::Trace, &mut |_| {}).unwrap();
+    let rows = || trace.rows.iter().cycle().take(70_000);
+    let folder = TempDir::new().unwrap();
+    let path = folder.path().join("trace.parquet");
+    let mut file = TraceFile::new(fs::File::create(&path).unwrap()).unwrap();
+    rows().for_each(|row| file.row(row));
+    file.end().unwrap();
+    let reader = SerializedFileReader::new(fs::File::open(path).unwrap()).unwrap();
+    assert_eq!(reader.num_row_groups(), 2);
+    let read = reader.get_row_iter(None).unwrap();
+    let times: Vec<f64> = read
+        .map(|row| row.unwrap().get_double(0).unwrap())
+        .collect();
+    assert!(times.into_iter().eq(rows().map(|row| row.plant.t_s)));
+}
 
 #[test]
 fn traces_hold_every_sample_and_every_mode_change() {
