@@ -1,7 +1,7 @@
 //! The catalogue as chapters of a page, and as a study.
 
 use super::contenders::Contender;
-use super::plan::{Catalogue, CatalogueError, Plan};
+use super::plan::{Catalogue, Plan};
 use super::promises::{Harm, force_ratios, lost_beyond_chance, percentile};
 use super::results::ResultRow;
 use super::sweeps::{SweepRow, median, median_of};
@@ -13,9 +13,9 @@ use std::collections::BTreeMap;
 /// The catalogue as a study.
 ///
 /// # Errors
-/// [`CatalogueError`].
+/// [`CatalogueError`](super::plan::CatalogueError).
 pub fn study(extent: Extent, progress: &dyn Progress) -> Result<Report, StudyError> {
-    let run = || Ok::<_, CatalogueError>(Plan::new(extent, Vec::new())?.run(progress)?);
+    let run = || Plan::new(extent, Vec::new())?.run(progress);
     Ok(report(&run()?, extent))
 }
 
@@ -237,7 +237,7 @@ pub fn in_brief(catalogue: &Catalogue) -> Vec<Chapter> {
 
 /// A scene in figures, medians over the seeds.
 fn scene(results: &[&ResultRow]) -> Block {
-    Block::table(SCENE_COLUMNS, scene_rows(results).into_iter())
+    Block::table(SCENE_COLUMNS, scene_rows(results))
 }
 
 /// Columns of the table of a scene.
