@@ -417,13 +417,13 @@ fn an_error_of_one_policy_leaves_the_others() {
     let verdict = read();
     let passive = verdict["policies"]["passive"].as_object().unwrap();
     assert!(passive.len() == 1 && passive["error"].is_string());
-    let levitation = &verdict["policies"]["levitation"];
-    assert_eq!(levitation["outcome"], "recovered");
-    assert_eq!(levitation["verification"]["same_outcome"], true);
+    let supervised = &verdict["policies"]["supervisor"];
+    assert_eq!(supervised["outcome"], "recovered");
+    assert_eq!(supervised["verification"]["same_outcome"], true);
     assert_eq!(verdict["duration_s"], 0.1);
     let files = names(&out);
     assert!(!files.contains(&"trace_passive.parquet".to_owned()));
-    assert!(files.contains(&"trace_levitation.parquet".to_owned()));
+    assert!(files.contains(&"trace_supervisor.parquet".to_owned()));
     let report = fs::read_to_string(out.join("report.html")).unwrap();
     assert!(report.contains("Warning: policy passive: at t = "));
 
