@@ -11,6 +11,7 @@ pub mod paper;
 mod progress;
 pub mod record;
 pub mod run;
+pub mod schema;
 pub mod sensitivity;
 pub mod study;
 pub mod target;

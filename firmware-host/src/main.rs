@@ -2,7 +2,8 @@
 
 use clap::{Parser, Subcommand};
 use firmware_host::cli::{
-    accuracy, advise, error, harm, overloads, paper, record, run, sensitivity, study, target,
+    accuracy, advise, error, harm, overloads, paper, record, run, schema, sensitivity, study,
+    target,
 };
 use std::process::ExitCode;
 
@@ -32,6 +33,8 @@ enum Command {
     Paper(paper::PaperArgs),
     /// Show what happened in a flight record that a supervisor has frozen on its machine.
     Record(record::RecordArgs),
+    /// Print every key of scene files, as a JSON Schema for editors or as a table.
+    Schema(schema::SchemaArgs),
     /// Run one of the studies and hold its claims against what was measured; `study list` names them.
     Study(study::StudyArgs),
     /// Run the supervisor on emulated processors: bit for bit, instructions, sizes, closed loops.
@@ -49,6 +52,7 @@ fn main() -> ExitCode {
         Command::Sensitivity(args) => sensitivity::execute(args),
         Command::Paper(args) => paper::execute(args),
         Command::Record(args) => record::execute(args),
+        Command::Schema(args) => schema::execute(args),
         Command::Study(args) => study::execute(args),
         Command::Target(args) => target::execute(args),
     };

@@ -1,6 +1,6 @@
 //! The test bench: a scene of a machine, the closed loop that runs it as firmware would, and what a person gets to see of it.
 //!
-//! Rooms, each importing only from those above it: `device`, `scene`, `run`, `report`, `advise`.
+//! Rooms, each importing only from those above it: `words`, `device`, `scene`, `run`, `report`, `advise`.
 
 #![forbid(unsafe_code)]
 #![warn(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
@@ -10,3 +10,4 @@ pub mod device;
 pub mod report;
 pub mod run;
 pub mod scene;
+mod words;

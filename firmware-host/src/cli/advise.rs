@@ -225,7 +225,7 @@ pub fn execute(args: &AdviseArgs) -> Result<(), CommandError> {
                 });
             }
             Advice::new(&scene.title, &told(scene.nominal), &scene.overrides)
-                .map_err(|e| out_of_range(&e, |field| scene.nominal_keys.of(field).to_owned()))?
+                .map_err(|e| out_of_range(&e, |field| scene.nominal_keys.key(field).to_owned()))?
         }
         None => {
             let nominal = told(args.numbers.nominal()?.nominal()?);

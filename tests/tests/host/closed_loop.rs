@@ -1,11 +1,12 @@
 //! Plant, instruments, controllers and supervisor together.
 
 use firmware_bench::device::levitation::LevitationParams;
+use firmware_bench::device::loads::{Disturbance, Shape};
 use firmware_bench::run::closed_loop::{Keep, RunError, run};
 use firmware_bench::run::figures::Figures;
 use firmware_bench::run::outcome::Outcome;
+use firmware_bench::scene::Scene;
 use firmware_bench::scene::policy_kind::PolicyKind;
-use firmware_bench::scene::{Disturbance, Scene, Shape};
 use plant_model::V2;
 use system_tests::{golden, scene, scene_path};
 

@@ -1,10 +1,13 @@
 //! What a run is said to have come to, at the edges of its definitions.
 
+use firmware_bench::device::axis::Axis;
+use firmware_bench::device::loads::{Disturbance, Shape, TimedChange};
+use firmware_bench::device::sensor_fault::{Fault, FaultKind};
 use firmware_bench::run::closed_loop::{Keep, run};
 use firmware_bench::run::figures::Figures;
 use firmware_bench::run::outcome::Outcome;
+use firmware_bench::scene::Scene;
 use firmware_bench::scene::policy_kind::PolicyKind;
-use firmware_bench::scene::{Axis, Disturbance, Fault, FaultKind, Scene, Shape, TimedChange};
 use plant_model::params::SlidingFriction;
 use plant_model::{Change, V2};
 use system_tests::scene;

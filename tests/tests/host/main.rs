@@ -9,4 +9,5 @@ mod instruments_and_events;
 mod judged;
 mod layering;
 mod run;
+mod scene_keys;
 mod verify;

@@ -1,8 +1,9 @@
 //! Overloads after which a load stays that the levitation controller carries: the supervisor gives the bearing back.
 
+use firmware_bench::device::loads::{Disturbance, Shape};
 use firmware_bench::run::closed_loop::{Keep, run_policy};
 use firmware_bench::run::supervision::Supervision;
-use firmware_bench::scene::{Disturbance, Scene, Shape};
+use firmware_bench::scene::Scene;
 use firmware_studies::machines::drawn::Machine;
 use firmware_studies::machines::plants::plants;
 use firmware_studies::machines::tuned_gains::stored;

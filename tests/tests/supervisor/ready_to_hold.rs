@@ -1,8 +1,9 @@
 //! The bearing goes back only to a controller that asks for what the rotor is held with.
 
+use firmware_bench::device::loads::{Disturbance, Shape};
 use firmware_bench::run::closed_loop::{Keep, run_policy};
 use firmware_bench::run::controller::{Supervise, supervised};
-use firmware_bench::scene::{Disturbance, Scene, Shape};
+use firmware_bench::scene::Scene;
 use firmware_studies::machines::plants::plants;
 use firmware_studies::machines::tuned_gains::stored;
 use firmware_studies::overloads::case::Sizes;

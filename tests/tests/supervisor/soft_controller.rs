@@ -1,11 +1,13 @@
 //! A levitation controller that hardly asks for anything in the middle gets the bearing all the same.
 
+use firmware_bench::device::axis::Axis;
 use firmware_bench::device::levitation::LevitationParams;
+use firmware_bench::device::sensor_fault::{Fault, FaultKind};
 use firmware_bench::run::closed_loop::{Keep, run_policy};
 use firmware_bench::run::controller::controller;
 use firmware_bench::run::trace::TraceRow;
+use firmware_bench::scene::Scene;
 use firmware_bench::scene::policy_kind::PolicyKind;
-use firmware_bench::scene::{Axis, Fault, FaultKind, Scene};
 use firmware_studies::machines::plants::plants;
 use supervisor::Mode;
 

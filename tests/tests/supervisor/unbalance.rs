@@ -1,12 +1,13 @@
 //! A load that turns with the rotor, and a rotor that lies still: what the observer must not take for something
 //! else.
 
+use firmware_bench::device::loads::{Disturbance, Shape, TimedChange};
 use firmware_bench::run::closed_loop::{Keep, run};
 use firmware_bench::run::figures::Figures;
 use firmware_bench::run::outcome::Outcome;
 use firmware_bench::run::trace::Trace;
+use firmware_bench::scene::Scene;
 use firmware_bench::scene::policy_kind::PolicyKind;
-use firmware_bench::scene::{Disturbance, Scene, Shape, TimedChange};
 use plant_model::{Change, V2};
 use std::f64::consts::TAU;
 use std::fs;

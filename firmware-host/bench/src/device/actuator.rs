@@ -2,6 +2,7 @@
 //! that follows belongs to the plant.
 
 use crate::device::axis::Axis;
+use crate::words::words;
 use plant_model::V2;
 
 /// What a magnet's amplifier does beside the plant's cap and lag.
@@ -31,15 +32,16 @@ impl Default for AmplifierParams {
     }
 }
 
-/// What a faulty amplifier delivers.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Delivers {
-    /// No force: the field decays with the lag.
-    Nothing,
-    /// The force with the other sign.
-    Inverted,
-    /// Along x what is meant for y, and the other way round.
-    Swapped,
+words! {
+    /// What a faulty amplifier delivers.
+    pub enum Delivers {
+        /// No force: the field decays with the lag.
+        Nothing = "nothing",
+        /// The force with the other sign.
+        Inverted = "inverted",
+        /// Along x what is meant for y, and the other way round.
+        Swapped = "swapped",
+    }
 }
 
 /// An amplifier that does not deliver what it should for a while.

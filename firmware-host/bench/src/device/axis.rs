@@ -1,17 +1,20 @@
 //! Axes of the bearing.
 
+use crate::words::words;
 use plant_model::V2;
 
-/// One axis, or both.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Axis {
-    /// x.
-    X,
-    /// y.
-    Y,
-    /// Both.
-    #[default]
-    Both,
+words! {
+    /// One axis, or both.
+    #[derive(Default)]
+    pub enum Axis {
+        /// x.
+        X = "x",
+        /// y.
+        Y = "y",
+        /// Both.
+        #[default]
+        Both = "both",
+    }
 }
 
 impl Axis {

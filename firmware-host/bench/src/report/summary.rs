@@ -1,8 +1,12 @@
 //! A scene in words, for the head of its report.
 
+use crate::device::actuator::{Delivers, Outage};
+use crate::device::axis::Axis;
+use crate::device::loads::{Shape, TimedChange};
+use crate::device::sensor_fault::{Fault, FaultKind};
 use crate::report::plot::text::figures;
+use crate::scene::Scene;
 use crate::scene::nominal::named;
-use crate::scene::{Axis, Delivers, Fault, FaultKind, Outage, Scene, Shape, TimedChange};
 use plant_model::V2;
 use plant_model::params::{ContactLaw, SlidingFriction, SpinParams, StatorParams};
 use std::f64::consts::TAU;

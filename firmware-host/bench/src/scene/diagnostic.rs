@@ -1,6 +1,8 @@
 //! Errors for people: which file, which line, which key, what was expected.
 
-use crate::scene::required_keys::{Missing, missing};
+use crate::scene::guess;
+use crate::scene::keys::{Absent, joined, short, walk};
+use crate::scene::tables::KEYS;
 use miette::{Diagnostic, NamedSource, SourceSpan};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -119,39 +121,13 @@ impl SceneText {
 
     /// An error of the TOML reader: its message in the words of the file, with the key of the line.
     pub(crate) fn error_in_toml(&self, range: std::ops::Range<usize>, message: &str) -> SceneError {
-        let mut message = message.to_owned();
-        for (code, words) in [
-            ("expected f64", "expected a number"),
-            ("expected u64", "expected a whole number, 0 or greater"),
-            ("expected u32", "expected a whole number, 0 or greater"),
-            (
-                "invalid type: map, expected a sequence",
-                "is one table where there may be several: write its name in double brackets, [[…]]",
-            ),
-            ("expected a string", "expected a text in quotes"),
-            ("expected a sequence", "expected a list in square brackets"),
-            ("integer `", "the number `"),
-            ("floating point `", "the number `"),
-            ("` as i128", "`, which is too far from 0"),
-        ] {
-            message = message.replace(code, words);
+        if message.starts_with("missing field ")
+            && let Ok(values) = toml::from_str(&self.text)
+            && let Some(error) = self.missing(&values)
+        {
+            return error;
         }
-        if let Some(name) = message.strip_prefix("missing field ") {
-            // The place is that of the whole table; its first line has nothing to do with it.
-            let name = name.trim_matches('`');
-            if let Some(Missing { table, help }) =
-                missing(name, |table, key| self.first_without(table, key))
-            {
-                let message = format!("{table}.{name}: is missing");
-                let range = self.find(&table).unwrap_or(range);
-                return self.error_at(range, message, Some(help));
-            }
-            let help = match name {
-                "title" => "give a name in one line: title = \"…\", above all tables".to_owned(),
-                _ => format!("add a table [{name}]"),
-            };
-            return self.error_at(range, format!("{name} is missing"), Some(help));
-        }
+        let mut message = in_words(message);
         let start = range.start.min(self.text.len());
         let line_start = self.text[..start].rfind('\n').map_or(0, |i| i + 1);
         let line = self.text[line_start..].lines().next().unwrap_or_default();
@@ -166,7 +142,7 @@ impl SceneText {
                 help = Some("give x and y, [x, y]".to_owned());
             }
         }
-        let help = guess_from(&message).or(help);
+        let help = guess::from_message(&message).or(help);
         self.error_at(range, message, help)
     }
 
@@ -189,24 +165,31 @@ impl SceneText {
         self.error_at_key(key, message, None).to_string()
     }
 
-    /// The first of these tables that has not this key, as `disturbance[1]`; none where all have it, or there are none.
-    pub(crate) fn first_without(&self, table: &str, key: &str) -> Option<String> {
-        use toml::de::{DeTable, DeValue};
-        let document = DeTable::parse(&self.text).ok()?;
-        let mut parts = table.split('.');
-        let mut value = document.get_ref().get(parts.next()?)?;
-        for part in parts {
-            value = value.get_ref().get(part)?;
-        }
-        let lacks =
-            |value: &DeValue<'_>| matches!(value, DeValue::Table(t) if !t.contains_key(key));
-        match value.get_ref() {
-            DeValue::Array(all) => {
-                let index = all.iter().position(|element| lacks(element.get_ref()))?;
-                Some(format!("{table}[{index}]"))
-            }
-            value => lacks(value).then(|| table.to_owned()),
-        }
+    /// An error of a value that was put at a path of these values.
+    pub(crate) fn error_of_value(
+        &self,
+        path: &str,
+        message: &str,
+        values: &toml::Table,
+    ) -> SceneError {
+        (self
+            .missing(values)
+            .filter(|_| message.starts_with("missing field ")))
+        .unwrap_or_else(|| self.error_at_key(path, in_words(message), None))
+    }
+
+    /// The first key that a table cannot do without and has not, with what to give. The place is that of the table.
+    fn missing(&self, values: &toml::Table) -> Option<SceneError> {
+        let mut all = walk(KEYS, "", values).into_iter();
+        all.find_map(|(path, keys, table)| {
+            let lacks = keys.iter().find(|key| {
+                matches!(key.absent, Absent::Required(_)) && !table.contains_key(key.name)
+            })?;
+            let is = if path.is_empty() { " is" } else { ": is" };
+            let message = format!("{}{is} missing", joined(&path, lacks.name));
+            let range = self.find(&path).unwrap_or(0..0);
+            Some(self.error_at(range, message, Some(lacks.what_to_give())))
+        })
     }
 
     fn find(&self, key: &str) -> Option<std::ops::Range<usize>> {
@@ -259,90 +242,54 @@ fn written_otherwise(value: &str) -> Option<String> {
     plain.then(|| format!("write the number alone: {number}; the key says the unit"))
 }
 
-/// What serde says of an unknown name lists the known ones, all in backticks.
-fn guess_from(message: &str) -> Option<String> {
-    if !message.contains("unknown field") && !message.contains("unknown variant") {
-        return None;
-    }
-    let (_, names) = message.split_once("unknown")?;
-    let mut names = names.split('`').skip(1).step_by(2);
-    let word = names.next()?;
-    guess(word, names)
+/// What serde says of a value, in the words of scene files.
+fn in_words(message: &str) -> String {
+    const WORDS: &[(&str, &str)] = &[
+        ("expected f64", "expected a number"),
+        ("expected u64", "expected a whole number, 0 or greater"),
+        ("expected u32", "expected a whole number, 0 or greater"),
+        (
+            "invalid type: map, expected a sequence",
+            "is one table where there may be several: write its name in double brackets, [[…]]",
+        ),
+        ("expected a string", "expected a text in quotes"),
+        ("expected a sequence", "expected a list in square brackets"),
+        ("integer `", "the number `"),
+        ("floating point `", "the number `"),
+        ("` as i128", "`, which is too far from 0"),
+    ];
+    (WORDS.iter()).fold(message.to_owned(), |message, (code, words)| {
+        message.replace(code, words)
+    })
 }
 
-/// The known name that a misspelt one comes close to, as a question.
-fn guess<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Option<String> {
-    let limit = word.chars().count().div_ceil(3);
-    // A key without its unit is the commonest mistake.
-    let distance = |name: &str| match name.strip_prefix(word) {
-        Some(unit) if unit.starts_with('_') => 1,
-        _ => strsim::damerau_levenshtein(word, name),
-    };
-    let (distance, name) = (known.into_iter())
-        .map(|name| (distance(name), name))
-        .min_by_key(|(distance, _)| *distance)?;
-    (distance <= limit).then(|| format!("did you mean `{name}`?"))
+/// A key that may be given, with its value as another key means it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Given {
+    pub(crate) key: &'static str,
+    pub(crate) value: Option<f64>,
 }
 
-/// Advice with a guess before it, where there is one.
-pub(crate) fn with_guess<'a>(
-    help: String,
-    word: &str,
-    known: impl IntoIterator<Item = &'a str>,
-) -> String {
-    guess(word, known).map_or(help.clone(), |guess| format!("{guess} {help}"))
-}
-
-/// A number as people write it: with an exponent where it would be long.
-pub(crate) fn short(x: f64) -> String {
-    if x == 0.0 || (1e-4..1e7).contains(&x.abs()) {
-        x.to_string()
-    } else {
-        format!("{x:e}")
+impl Given {
+    pub(crate) fn new(key: &'static str, value: Option<f64>) -> Self {
+        Self { key, value }
     }
 }
 
-/// Range checks that point at the key.
-pub(crate) struct Checks<'a> {
-    pub(crate) text: &'a SceneText,
-}
-
-impl Checks<'_> {
+impl SceneText {
+    /// An error of a number that is another one than expected.
     pub(crate) fn refused(&self, key: &str, value: f64, expected: &str) -> SceneError {
-        let help = Some(format!("give {expected}"));
-        self.text.error_at_key(
-            key,
-            format!("is {}, expected {expected}", short(value)),
-            help,
-        )
-    }
-
-    pub(crate) fn within(
-        &self,
-        key: &str,
-        value: f64,
-        low: f64,
-        high: f64,
-    ) -> Result<(), SceneError> {
-        if value >= low && value <= high {
-            Ok(())
-        } else {
-            let expected = format!("a number from {} to {}", short(low), short(high));
-            Err(self.refused(key, value, &expected))
-        }
+        let message = format!("is {}, expected {expected}", short(value));
+        self.error_at_key(key, message, Some(format!("give {expected}")))
     }
 
     /// One of two keys that say the same.
-    pub(crate) fn either(
-        &self,
-        (first, a): (&str, Option<f64>),
-        (second, b): (&str, Option<f64>),
-    ) -> Result<Option<f64>, SceneError> {
-        if a.is_some() && b.is_some() {
-            let message = format!("given together with {second}, which says the same");
-            let help = Some(format!("remove {first} or {second}"));
-            return Err(self.text.error_at_key(first, message, help));
+    pub(crate) fn either(&self, a: Given, b: Given) -> Result<Option<f64>, SceneError> {
+        if a.value.is_some() && b.value.is_some() {
+            let message = format!("given together with {}, which says the same", b.key);
+            let help = format!("remove {} or {}", a.key, b.key);
+            return Err(self.error_at_key(a.key, message, Some(help)));
         }
-        Ok(a.or(b))
+        Ok(a.value.or(b.value))
     }
 }

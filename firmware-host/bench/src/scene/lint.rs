@@ -2,9 +2,11 @@
 
 use crate::device::sensor_fault::Samples;
 use crate::scene::diagnostic::SceneText;
-use crate::scene::file::SceneFile;
 use crate::scene::nominal::Override;
+use crate::scene::spec::Spec;
 use crate::scene::suggest::{Nominal, SUPERVISED_RATES_HZ, suggested};
+use crate::scene::tables::SceneTables;
+use plant_model::V2;
 use plant_model::params::PlantParams;
 use supervisor::{Config, PARAMETERS};
 
@@ -31,33 +33,37 @@ const GIVEN: [&str; 9] = [
     "contact_stiffness_n_m",
 ];
 
-/// Warnings with file and line. `nominal` is what a supervisor would be told of the plant, `overrides` what the scene
-/// puts in its place, and `config` what comes of both where one runs.
-pub(crate) fn warnings_of(
-    file: &SceneFile,
-    text: &SceneText,
-    (plant, nominal): (&PlantParams, &Nominal),
-    (overrides, config): (&[Override], Option<&Config>),
-) -> Vec<String> {
+/// What a supervisor is told of the plant.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Told<'a> {
+    /// The plant's own data.
+    pub(crate) nominal: &'a Nominal,
+    /// What the scene puts in their place.
+    pub(crate) overrides: &'a [Override],
+    /// What comes of both where a supervisor runs.
+    pub(crate) config: Option<&'a Config>,
+}
+
+/// Warnings with file and line.
+pub(crate) fn warnings(spec: &Spec, plant: &PlantParams, told: Told<'_>) -> Vec<String> {
+    let (file, text, nominal) = (&spec.tables, &spec.text, told.nominal);
     let warning = |key: &str, message| text.warning(key, message);
     let clearance_m = plant.contact.clearance_m;
     let mut warnings = Vec::new();
-    let [x, y] = file.start.position_m.0;
-    let away = x.hypot(y) / clearance_m;
+    let away = file.start.position_m.length() / clearance_m;
     if away > DEEP {
         let message = format!("is {away:.0} clearances from the centre; positions are in metres");
         warnings.push(warning("start.position_m", message));
     }
-    let [x, y] = file.start.velocity_m_s.0;
     // A rotor of this speed presses a linear wall so far.
-    let deep = x.hypot(y) / (plant.contact_rate_rad_s() * clearance_m);
+    let deep = file.start.velocity_m_s.length() / (plant.contact_rate_rad_s() * clearance_m);
     if deep > DEEP {
         let message = format!(
             "would press the rotor some {deep:.0} clearances deep into the wall; speeds are in m/s"
         );
         warnings.push(warning("start.velocity_m_s", message));
     }
-    warnings.extend(slips_of(file, text));
+    warnings.extend(slips(spec));
     let sliding = plant.friction.sliding.coefficient(0.0);
     let rolling = plant.friction.rolling_coefficient;
     if sliding > 0.0 && rolling >= sliding {
@@ -90,11 +96,14 @@ pub(crate) fn warnings_of(
         );
         warnings.push(warning("levitation.proportional_n_m", message));
     }
-    if !overrides.is_empty() {
-        let left_n = left_by_the_weight(file, nominal);
-        warnings.extend(of_another_machine(text, (nominal, left_n), overrides));
+    if !told.overrides.is_empty() {
+        warnings.extend(of_another_machine(
+            text,
+            told,
+            left_by_the_weight(file, nominal),
+        ));
     }
-    let Some(config) = config else {
+    let Some(config) = told.config else {
         return warnings;
     };
     let rate = file.run.sample_rate_hz;
@@ -115,8 +124,9 @@ pub(crate) fn warnings_of(
 }
 
 /// Values that one look at them makes doubtful: also of a scene that is refused, for that may be why.
-pub(crate) fn slips_of(file: &SceneFile, text: &SceneText) -> Vec<String> {
-    let warning = |key: &str, message| text.warning(key, message);
+pub(crate) fn slips(spec: &Spec) -> Vec<String> {
+    let file = &spec.tables;
+    let warning = |key: &str, message| spec.text.warning(key, message);
     let clearance_m = file.contact.clearance_m;
     let mut warnings = Vec::new();
     if file.rotor.eccentricity_m > clearance_m {
@@ -145,18 +155,15 @@ pub(crate) fn slips_of(file: &SceneFile, text: &SceneText) -> Vec<String> {
         let message = format!("is wider than {WIDEST_M} m; lengths are in metres");
         warnings.push(warning("rotor.contact_radius_m", message));
     }
-    let [x, y] = file.rotor.gravity_m_s2.0;
-    if x.hypot(y) > HEAVIEST_M_S2 {
-        let g = x.hypot(y) / 9.81;
+    let gravity_m_s2 = file.rotor.gravity_m_s2.length();
+    if gravity_m_s2 > HEAVIEST_M_S2 {
+        let g = gravity_m_s2 / 9.81;
         let message = format!("is {g:.0} times that of the earth; accelerations are in m/s²");
         warnings.push(warning("rotor.gravity_m_s2", message));
     }
-    let gain = file
-        .sensor
-        .gain
-        .map_or([1.0; 2], |gain| gain.vector().into());
+    let gain = V2::from(file.sensor.gain);
     if gain.iter().any(|gain| *gain <= 0.0) {
-        let what = match gain.contains(&0.0) {
+        let what = match gain.iter().any(|gain| *gain == 0.0) {
             true => "is 0: the sensor reads nothing of the position",
             false => "is negative: every controller pushes the rotor away",
         };
@@ -172,7 +179,8 @@ pub(crate) fn slips_of(file: &SceneFile, text: &SceneText) -> Vec<String> {
 }
 
 /// What falls between samples, or behind the last: nobody sees it, or it does not happen at all.
-pub(crate) fn unseen_of(file: &SceneFile, text: &SceneText) -> Vec<String> {
+pub(crate) fn unseen(spec: &Spec) -> Vec<String> {
+    let (file, text) = (&spec.tables, &spec.text);
     let samples = Samples::new(file.run.duration_s, file.run.sample_rate_hz);
     let unseen = |start_s: f64, duration_s: f64| !samples.any_within(start_s, start_s + duration_s);
     let mut warnings = Vec::new();
@@ -210,18 +218,14 @@ pub(crate) fn unseen_of(file: &SceneFile, text: &SceneText) -> Vec<String> {
 
 /// Force that a weight that is fed forward leaves in every direction \[N\], which is what `advise` says to give the
 /// supervisor then.
-fn left_by_the_weight(file: &SceneFile, nominal: &Nominal) -> Option<f64> {
+fn left_by_the_weight(file: &SceneTables, nominal: &Nominal) -> Option<f64> {
     let fed = file.levitation.as_ref()?.feed_forward_weight;
     fed.then_some(nominal.force_everywhere_n() - nominal.load_n)
 }
 
 /// What the scene tells the supervisor otherwise than it is.
-fn of_another_machine(
-    text: &SceneText,
-    (nominal, left_n): (&Nominal, Option<f64>),
-    overrides: &[Override],
-) -> Vec<String> {
-    let suggested = suggested(nominal).config.values();
+fn of_another_machine(text: &SceneText, told: Told<'_>, left_n: Option<f64>) -> Vec<String> {
+    let suggested = suggested(told.nominal).config.values();
     let warning = |&(index, given): &Override| {
         let (name, value) = (PARAMETERS[index].name, suggested[index]);
         // The table of `advise` holds every bit; what is rounded by hand is meant.
@@ -236,5 +240,5 @@ fn of_another_machine(
             text.warning(&key, message)
         })
     };
-    overrides.iter().filter_map(warning).collect()
+    (told.overrides.iter()).filter_map(warning).collect()
 }

@@ -1,16 +1,17 @@
 //! Configuration of the supervisor from the scene's nominal plant data, with the scene's overrides.
 
-use crate::scene::diagnostic::{SceneError, SceneText, with_guess};
-use crate::scene::file::SceneFile;
+use crate::scene::diagnostic::{SceneError, SceneText};
+use crate::scene::guess;
+use crate::scene::keys::{number, parameter};
+use crate::scene::spec::Spec;
 use crate::scene::suggest::{Nominal, suggested};
+use crate::scene::tables::SceneTables;
 use plant_model::params::PlantParams;
 use supervisor::{Config, ConfigError, PARAMETERS};
 
 /// What a data sheet would say of the scene's bearing.
-pub(crate) fn nominal_of(plant: &PlantParams, file: &SceneFile) -> Nominal {
+pub(crate) fn nominal(plant: &PlantParams, file: &SceneTables) -> Nominal {
     let magnet = file.magnet.as_ref();
-    let [g_x, g_y] = file.rotor.gravity_m_s2.0;
-    let [offset_x, offset_y] = file.retainer.centre_offset_m.0;
     Nominal {
         sample_rate_hz: file.run.sample_rate_hz,
         mass_kg: plant.rotor.mass_kg,
@@ -31,8 +32,8 @@ pub(crate) fn nominal_of(plant: &PlantParams, file: &SceneFile) -> Nominal {
         noise_rms_m: file.sensor.noise_rms_m,
         quantum_m: file.sensor.quantum_m,
         range_m: file.sensor.range_m,
-        load_n: plant.rotor.mass_kg * g_x.hypot(g_y),
-        centre_offset_m: offset_x.hypot(offset_y),
+        load_n: plant.rotor.mass_kg * file.rotor.gravity_m_s2.length(),
+        centre_offset_m: file.retainer.centre_offset_m.length(),
         spin_hz: Some(file.spin.frequency_hz),
         // No scene has one.
         runout_m: None,
@@ -49,7 +50,7 @@ pub struct NominalKeys {
 
 impl NominalKeys {
     /// The keys that a file's nominal data come from.
-    pub(crate) fn new(nominal: &Nominal, file: &SceneFile) -> Self {
+    pub(crate) fn new(nominal: &Nominal, file: &SceneTables) -> Self {
         let (rotor, contact) = (&file.rotor, &file.contact);
         Self {
             stiffness: match (&file.magnet, rotor.natural_frequency_hz) {
@@ -70,7 +71,7 @@ impl NominalKeys {
     }
 
     /// Key of the scene that a field of [`Nominal`] comes from.
-    pub fn of(&self, field: &str) -> &'static str {
+    pub fn key(&self, field: &str) -> &'static str {
         match field {
             "sample_rate_hz" => "run.sample_rate_hz",
             "mass_kg" => "rotor.mass_kg",
@@ -112,21 +113,19 @@ pub fn replaced(config: &Config, overrides: &[Override]) -> Config {
 
 /// The parameters that `[supervisor]` gives, each checked by itself: also where the policy is not run, in
 /// which case nothing else would look at them.
-pub(crate) fn overrides(file: &SceneFile, text: &SceneText) -> Result<Vec<Override>, SceneError> {
-    let mut given = Vec::with_capacity(file.supervisor.len());
-    for (key, value) in &file.supervisor {
+pub(crate) fn overrides(spec: &Spec) -> Result<Vec<Override>, SceneError> {
+    let (text, supervisor) = (&spec.text, &spec.tables.supervisor);
+    let mut given = Vec::with_capacity(supervisor.len());
+    for (key, value) in supervisor {
         let path = format!("supervisor.{key}");
-        let Some(index) = PARAMETERS.iter().position(|p| p.name == key) else {
+        let Some(index) = parameter(key) else {
             let names: Vec<&str> = PARAMETERS.iter().map(|p| p.name).collect();
             let help = format!("parameters are {}", names.join(", "));
-            let help = with_guess(help, key, names);
+            let help = guess::before(help, key, names);
             return Err(text.error_at_key(&path, "unknown parameter".to_owned(), Some(help)));
         };
         let parameter = &PARAMETERS[index];
-        let number = value
-            .as_float()
-            .or_else(|| value.as_integer().map(|i| i as f64));
-        let Some(number) = number else {
+        let Some(number) = number(value) else {
             let help = Some(format!("unit: {}", parameter.unit));
             return Err(text.error_at_key(&path, "expected a number".to_owned(), help));
         };
@@ -143,7 +142,8 @@ pub(crate) fn overrides(file: &SceneFile, text: &SceneText) -> Result<Vec<Overri
 
 /// The suggested configuration, with single values replaced.
 pub(crate) fn config(
-    (nominal, keys): (&Nominal, &NominalKeys),
+    nominal: &Nominal,
+    keys: &NominalKeys,
     overrides: &[Override],
     text: &SceneText,
 ) -> Result<Config, SceneError> {
@@ -152,7 +152,7 @@ pub(crate) fn config(
     // What was given is in its range; what is left was derived.
     config.validate().map_err(|e| {
         let name = e.parameter().name;
-        let Some(source) = suggested.source(name).map(|field| keys.of(field)) else {
+        let Some(source) = suggested.source(name).map(|field| keys.key(field)) else {
             let path = format!("supervisor.{name}");
             return text.error_at_key(&path, e.to_string(), Some(e.parameter().text.to_owned()));
         };

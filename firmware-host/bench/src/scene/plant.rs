@@ -1,28 +1,23 @@
 //! The plant from the scene's keys: alternatives resolved, every value checked.
 
-use crate::scene::diagnostic::{Checks, SceneError, SceneText};
-use crate::scene::file::{ContactFile, RingFile, RotorFile, SceneFile};
+use crate::scene::diagnostic::{Given, SceneError, SceneText};
+use crate::scene::spec::Spec;
+use crate::scene::tables::{ContactTable, FrictionTable, RingTable, RotorTable, SceneTables};
 use plant_model::contact::{damping_for_restitution, hunt_crossley};
 use plant_model::params::{
     ContactLaw, ContactParams, EllipseParams, FrictionParams, HuntCrossley, LinearContact,
-    MagnetParams, PlantParams, RaceParams, RingParams, RotorParams, SlidingFriction, SpinParams,
-    StatorParams,
+    MagnetParams, ParamError, PlantParams, RaceParams, RingParams, RotorParams, SlidingFriction,
+    SpinParams, StatorParams,
 };
 use std::f64::consts::TAU;
 
 /// The plant that a scene file describes, checked.
-pub(crate) fn plant_of(file: &SceneFile, text: &SceneText) -> Result<PlantParams, SceneError> {
-    let check = Checks { text };
-    let negative = file
-        .magnet
-        .as_ref()
-        .map_or(0.0, |m| m.negative_stiffness_n_m);
-    if !(0.0..=1e12).contains(&negative) {
-        let expected = "a number from 0 to 1e12: that it is negative is in the name";
-        return Err(check.refused("magnet.negative_stiffness_n_m", negative, expected));
-    }
+pub(crate) fn plant(spec: &Spec) -> Result<PlantParams, SceneError> {
+    let (file, text) = (&spec.tables, &spec.text);
+    let magnet = file.magnet.as_ref();
+    let negative_n_m = magnet.map_or(0.0, |m| m.negative_stiffness_n_m);
     let mut plant = PlantParams {
-        rotor: rotor_of(&file.rotor, negative, &check)?,
+        rotor: rotor(&file.rotor, negative_n_m, text)?,
         spin: match (file.spin.inertia_kg_m2, file.spin.drive_torque_n_m) {
             (Some(inertia_kg_m2), torque) => SpinParams::Free {
                 inertia_kg_m2,
@@ -35,16 +30,16 @@ pub(crate) fn plant_of(file: &SceneFile, text: &SceneText) -> Result<PlantParams
                 return Err(text.error_at_key("spin.drive_torque_n_m", message, help));
             }
         },
-        stator: stator_of(file, text)?,
+        stator: stator(file, text)?,
         contact: ContactParams {
             clearance_m: file.contact.clearance_m,
-            law: law_of(&file.contact, &check)?,
+            law: law(&file.contact, text)?,
         },
         friction: FrictionParams {
-            sliding: sliding_of(file, &check)?,
+            sliding: sliding(&file.friction, text)?,
             rolling_coefficient: file.friction.rolling_coefficient,
         },
-        magnet: file.magnet.as_ref().map(|m| MagnetParams {
+        magnet: magnet.map(|m| MagnetParams {
             force_max_n: m.force_max_n,
             lag_s: m.lag_s,
         }),
@@ -54,19 +49,23 @@ pub(crate) fn plant_of(file: &SceneFile, text: &SceneText) -> Result<PlantParams
             start_spin_rad_s: race.start_frequency_hz * TAU,
         }),
     };
-    plant.validate().map_err(|e| {
-        let key = match e.field {
-            "race.start_spin_rad_s" => "race.start_frequency_hz",
-            field => field,
-        };
-        check.refused(key, e.value, e.expected)
-    })?;
-    restore(&mut plant, &file.contact, &check)?;
+    plant.validate().map_err(|error| refused(&error, text))?;
+    restore(&mut plant, &file.contact, text)?;
     Ok(plant)
 }
 
+/// What the plant refuses, at the key that it comes from.
+pub(crate) fn refused(error: &ParamError, text: &SceneText) -> SceneError {
+    let key = match error.field {
+        "start.spin_rad_s" => "spin.frequency_hz",
+        "race.start_spin_rad_s" => "race.start_frequency_hz",
+        field => field,
+    };
+    text.refused(key, error.value, error.expected)
+}
+
 /// The stator with its rings, or rigid with its bore.
-fn stator_of(file: &SceneFile, text: &SceneText) -> Result<StatorParams, SceneError> {
+fn stator(file: &SceneTables, text: &SceneText) -> Result<StatorParams, SceneError> {
     let refused = |key: &str, message: &str, help: &str| {
         Err(text.error_at_key(key, message.to_owned(), Some(help.to_owned())))
     };
@@ -93,10 +92,10 @@ fn stator_of(file: &SceneFile, text: &SceneText) -> Result<StatorParams, SceneEr
     }
     Ok(match rings {
         (None, None) => StatorParams::Rigid,
-        (Some(inner), None) => StatorParams::OneMass(ring_of(inner)),
+        (Some(inner), None) => StatorParams::OneMass(ring(inner)),
         (Some(inner), Some(outer)) => StatorParams::TwoMass {
-            inner: ring_of(inner),
-            outer: ring_of(outer),
+            inner: ring(inner),
+            outer: ring(outer),
         },
         (None, Some(_)) => {
             let help = "describe a single ring as stator.inner";
@@ -106,14 +105,14 @@ fn stator_of(file: &SceneFile, text: &SceneText) -> Result<StatorParams, SceneEr
 }
 
 /// The contact law with the damping that is given directly.
-fn law_of(file: &ContactFile, check: &Checks<'_>) -> Result<ContactLaw, SceneError> {
+fn law(file: &ContactTable, text: &SceneText) -> Result<ContactLaw, SceneError> {
     let refused = |key: &str, message: String, help: String| {
-        Err::<ContactLaw, _>((check.text).error_at_key(key, message, Some(help)))
+        Err::<ContactLaw, _>(text.error_at_key(key, message, Some(help)))
     };
     let (linear, hardening) = (file.stiffness_n_m, file.stiffness_n_mn);
-    check.either(
-        ("contact.stiffness_n_m", linear),
-        ("contact.stiffness_n_mn", hardening),
+    text.either(
+        Given::new("contact.stiffness_n_m", linear),
+        Given::new("contact.stiffness_n_mn", hardening),
     )?;
     let (foreign, own) = match hardening {
         Some(_) => (
@@ -155,35 +154,31 @@ fn law_of(file: &ContactFile, check: &Checks<'_>) -> Result<ContactLaw, SceneErr
 /// Damping from a restitution, where the file gives that instead.
 fn restore(
     plant: &mut PlantParams,
-    file: &ContactFile,
-    check: &Checks<'_>,
+    file: &ContactTable,
+    text: &SceneText,
 ) -> Result<(), SceneError> {
-    const RANGE: &str = "a number greater than 0, at most 1";
     let mass_kg = plant.contact_mass_kg();
-    let speed = ("contact.restitution_speed_m_s", file.restitution_speed_m_s);
-    let given = match &plant.contact.law {
-        ContactLaw::Linear(_) => ("contact.damping_n_s_m", file.damping_n_s_m),
-        ContactLaw::HuntCrossley(_) => ("contact.damping_s_m", file.damping_s_m),
+    const KEY: &str = "contact.restitution";
+    const SPEED: &str = "contact.restitution_speed_m_s";
+    let damping = match &plant.contact.law {
+        ContactLaw::Linear(_) => Given::new("contact.damping_n_s_m", file.damping_n_s_m),
+        ContactLaw::HuntCrossley(_) => Given::new("contact.damping_s_m", file.damping_s_m),
     };
-    check.either(given, ("contact.restitution", file.restitution))?;
+    text.either(damping, Given::new(KEY, file.restitution))?;
     let Some(e) = file.restitution else {
-        return match speed.1 {
+        return match file.restitution_speed_m_s {
             None => Ok(()),
             Some(_) => {
                 let message = "has no effect without contact.restitution".to_owned();
                 let help = Some("give contact.restitution, or remove the speed".to_owned());
-                Err(check.text.error_at_key(speed.0, message, help))
+                Err(text.error_at_key(SPEED, message, help))
             }
         };
     };
-    const KEY: &str = "contact.restitution";
-    if !(e > 0.0 && e <= 1.0) {
-        return Err(check.refused(KEY, e, RANGE));
-    }
     let no_damping = |with: &str| {
         let message = format!("gives no finite damping with {with}");
         let help = Some(format!("check {with}"));
-        (check.text).error_at_key(KEY, message, help)
+        text.error_at_key(KEY, message, help)
     };
     match &mut plant.contact.law {
         ContactLaw::Linear(law) => {
@@ -192,47 +187,31 @@ fn restore(
                 .ok_or_else(|| no_damping("contact.stiffness_n_m and the masses"))?;
         }
         ContactLaw::HuntCrossley(law) => {
-            let Some(speed_m_s) = speed.1 else {
+            let Some(speed_m_s) = file.restitution_speed_m_s else {
                 let message = "needs the impact speed that it belongs to".to_owned();
                 let help = Some(
                     "give contact.restitution_speed_m_s too: with this law e falls with speed"
                         .to_owned(),
                 );
-                return Err(check
-                    .text
-                    .error_at_key("contact.restitution", message, help));
+                return Err(text.error_at_key(KEY, message, help));
             };
-            check.within(speed.0, speed_m_s, 1e-9, 1e6)?;
             law.damping_s_m = hunt_crossley::damping_for_restitution(e, speed_m_s)
                 .filter(|d| d.is_finite())
-                .ok_or_else(|| no_damping("contact.restitution_speed_m_s"))?;
+                .ok_or_else(|| no_damping(SPEED))?;
         }
     }
     Ok(())
 }
 
-fn rotor_of(
-    file: &RotorFile,
+fn rotor(
+    file: &RotorTable,
     negative_n_m: f64,
-    check: &Checks<'_>,
+    text: &SceneText,
 ) -> Result<RotorParams, SceneError> {
-    if !(file.mass_kg > 0.0 && file.mass_kg.is_finite()) {
-        return Err(check.refused(
-            "rotor.mass_kg",
-            file.mass_kg,
-            "a finite number greater than 0",
-        ));
-    }
-    if let Some(f) = file.natural_frequency_hz {
-        check.within("rotor.natural_frequency_hz", f, 0.0, 1e6)?;
-    }
-    if let Some(ratio) = file.damping_ratio {
-        check.within("rotor.damping_ratio", ratio, 0.0, 100.0)?;
-    }
-    let shaft_n_m = check
+    let shaft_n_m = text
         .either(
-            ("rotor.stiffness_n_m", file.stiffness_n_m),
-            (
+            Given::new("rotor.stiffness_n_m", file.stiffness_n_m),
+            Given::new(
                 "rotor.natural_frequency_hz",
                 file.natural_frequency_hz
                     .map(|f| file.mass_kg * (f * TAU).powi(2)),
@@ -242,17 +221,15 @@ fn rotor_of(
     if file.damping_ratio.is_some() && shaft_n_m <= 0.0 {
         let message = "has no meaning without shaft stiffness".to_owned();
         let help = Some("give rotor.damping_n_s_m instead".to_owned());
-        return Err(check
-            .text
-            .error_at_key("rotor.damping_ratio", message, help));
+        return Err(text.error_at_key("rotor.damping_ratio", message, help));
     }
     let by_ratio = file
         .damping_ratio
         .map(|ratio| 2.0 * ratio * (file.mass_kg * shaft_n_m).sqrt());
-    let damping_n_s_m = check
+    let damping_n_s_m = text
         .either(
-            ("rotor.damping_n_s_m", file.damping_n_s_m),
-            ("rotor.damping_ratio", by_ratio),
+            Given::new("rotor.damping_n_s_m", file.damping_n_s_m),
+            Given::new("rotor.damping_ratio", by_ratio),
         )?
         .unwrap_or(0.0);
     Ok(RotorParams {
@@ -264,16 +241,15 @@ fn rotor_of(
     })
 }
 
-fn ring_of(file: &RingFile) -> RingParams {
+fn ring(file: &RingTable) -> RingParams {
     RingParams {
         mass_kg: file.mass_kg,
-        stiffness_n_m: file.stiffness_n_m.vector(),
-        damping_n_s_m: file.damping_n_s_m.vector(),
+        stiffness_n_m: file.stiffness_n_m.into(),
+        damping_n_s_m: file.damping_n_s_m.into(),
     }
 }
 
-fn sliding_of(file: &SceneFile, check: &Checks<'_>) -> Result<SlidingFriction, SceneError> {
-    let f = &file.friction;
+fn sliding(f: &FrictionTable, text: &SceneText) -> Result<SlidingFriction, SceneError> {
     match (f.coefficient_at_speed, f.speed_scale_m_s) {
         (None, None) => Ok(SlidingFriction::Constant {
             coefficient: f.coefficient,
@@ -289,9 +265,7 @@ fn sliding_of(file: &SceneFile, check: &Checks<'_>) -> Result<SlidingFriction, S
                 None => ("friction.speed_scale_m_s", "friction.coefficient_at_speed"),
             };
             let help = Some("friction that falls with speed needs both keys".to_owned());
-            Err(check
-                .text
-                .error_at_key(have, format!("given without {want}"), help))
+            Err(text.error_at_key(have, format!("given without {want}"), help))
         }
     }
 }

@@ -1,10 +1,14 @@
 //! Values of scene files with their own way to be written.
 
-use plant_model::V2;
-use serde::Deserialize;
+use crate::device::actuator::Delivers;
+use crate::device::axis::Axis;
+use crate::scene::keys::{KeyType, Kind, key_types};
+use crate::words::words;
+use plant_model::{Method, V2};
+use serde::{Deserialize, Serialize};
 
 /// Two numbers [x, y]; fewer or more are refused.
-#[derive(Debug, Clone, Copy, Default, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
 #[serde(try_from = "Vec<f64>")]
 pub(crate) struct Pair(pub(crate) [f64; 2]);
 
@@ -19,8 +23,21 @@ impl TryFrom<Vec<f64>> for Pair {
     }
 }
 
+impl Pair {
+    /// Length of the vector.
+    pub(crate) fn length(self) -> f64 {
+        self.0[0].hypot(self.0[1])
+    }
+}
+
+impl From<Pair> for V2 {
+    fn from(pair: Pair) -> Self {
+        pair.0.into()
+    }
+}
+
 /// One number for both axes, or one for each.
-#[derive(Debug, Clone, Copy, Deserialize)]
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 #[serde(untagged, expecting = "a number, or two numbers [x, y]")]
 pub(crate) enum PerAxis {
     /// One number for both axes.
@@ -29,12 +46,100 @@ pub(crate) enum PerAxis {
     Each(Pair),
 }
 
-impl PerAxis {
-    /// As a vector of both axes.
-    pub(crate) fn vector(self) -> V2 {
-        match self {
-            Self::Both(x) => V2::repeat(x),
-            Self::Each(xy) => xy.0.into(),
+impl From<PerAxis> for V2 {
+    fn from(per_axis: PerAxis) -> Self {
+        match per_axis {
+            PerAxis::Both(x) => Self::repeat(x),
+            PerAxis::Each(xy) => xy.into(),
         }
     }
+}
+
+/// Names of policies, not yet known to be such.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(transparent)]
+pub(crate) struct PolicyNames(pub(crate) Vec<String>);
+
+words! {
+    /// How contact is integrated.
+    pub(crate) enum MethodName {
+        /// As the tolerance asks for.
+        Auto = "auto",
+        /// Power series.
+        Series = "series",
+        /// Runge–Kutta pair.
+        Explicit = "explicit",
+        /// Radau.
+        Stiff = "stiff",
+    }
+}
+
+impl From<MethodName> for Method {
+    fn from(name: MethodName) -> Self {
+        match name {
+            MethodName::Auto => Self::Auto,
+            MethodName::Series => Self::Series,
+            MethodName::Explicit => Self::Explicit,
+            MethodName::Stiff => Self::Stiff,
+        }
+    }
+}
+
+words! {
+    /// Course of a load over its interval.
+    pub(crate) enum ShapeName {
+        /// The amplitude all the time.
+        Constant = "constant",
+        /// Half a sine over the interval.
+        HalfSine = "half_sine",
+        /// A sine with frequency and phase.
+        Sine = "sine",
+    }
+}
+
+words! {
+    /// Kinds of sensor faults: [`crate::device::sensor_fault::FaultKind`] without what belongs to them.
+    pub(crate) enum FaultName {
+        /// Not a number.
+        Nan = "nan",
+        /// Infinity.
+        Infinity = "infinity",
+        /// Zero.
+        Zero = "zero",
+        /// Upper end of the range.
+        Rail = "rail",
+        /// The last value again.
+        Stuck = "stuck",
+        /// A length too much.
+        Offset = "offset",
+        /// A multiple.
+        Gain = "gain",
+        /// The other sign.
+        Inverted = "inverted",
+        /// y for x.
+        Swapped = "swapped",
+        /// A multiple of the noise.
+        Noise = "noise",
+        /// Jumps.
+        Spikes = "spikes",
+        /// No new samples.
+        Dropout = "dropout",
+        /// Old samples.
+        Delay = "delay",
+        /// A coarser converter.
+        Bits = "bits",
+        /// A sine on top.
+        Oscillation = "oscillation",
+    }
+}
+
+key_types! {
+    Pair => Kind::Pair;
+    PerAxis => Kind::PerAxis;
+    PolicyNames => Kind::Policies;
+    MethodName => Kind::Word(Self::WORDS);
+    ShapeName => Kind::Word(Self::WORDS);
+    FaultName => Kind::Word(Self::WORDS);
+    Axis => Kind::Word(Self::WORDS);
+    Delivers => Kind::Word(Self::WORDS);
 }

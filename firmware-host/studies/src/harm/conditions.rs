@@ -3,7 +3,9 @@
 use super::events::BEGIN_S;
 use crate::machines::draw::Draw;
 use crate::machines::drawn::Machine;
-use firmware_bench::scene::{Axis, Fault, FaultKind, Scene};
+use firmware_bench::device::axis::Axis;
+use firmware_bench::device::sensor_fault::{Fault, FaultKind};
+use firmware_bench::scene::Scene;
 use std::f64::consts::TAU;
 
 /// Kinds of sensors.

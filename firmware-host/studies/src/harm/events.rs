@@ -3,7 +3,8 @@
 use crate::machines::draw::Draw;
 use crate::machines::drawn::Machine;
 use crate::overloads::takeover::{arrest_of, let_whirl};
-use firmware_bench::scene::{BaseMotion, Disturbance, Scene, Shape};
+use firmware_bench::device::loads::{BaseMotion, Disturbance, Shape};
+use firmware_bench::scene::Scene;
 use plant_model::V2;
 use plant_model::params::SpinParams;
 

@@ -2,6 +2,7 @@
 
 use firmware_bench::scene::Scene;
 use firmware_bench::scene::diagnostic::SceneError;
+use firmware_bench::scene::spec::Spec;
 
 /// A plant of the catalogue at one control rate.
 #[derive(Debug, Clone)]
@@ -64,12 +65,12 @@ pub fn plants(rate_hz: f64) -> Result<Vec<PlantCase>, SceneError> {
             caps => caps.iter().map(|cap| Some(*cap)).collect(),
         };
         for cap in caps {
-            let scene = Scene::parse_with(file.file, file.text, &|scene| {
-                scene.run.sample_rate_hz = rate_hz;
-                if let (Some(magnet), Some(cap)) = (&mut scene.magnet, cap) {
-                    magnet.force_max_n = cap;
-                }
-            })?;
+            let mut spec = Spec::parse(file.file, file.text)?;
+            spec.set("run.sample_rate_hz", rate_hz)?;
+            if let Some(cap) = cap {
+                spec.set("magnet.force_max_n", cap)?;
+            }
+            let scene = spec.resolve()?;
             let name = match cap {
                 Some(cap) => format!("{} {cap:.0} N", file.name),
                 None => file.name.to_owned(),

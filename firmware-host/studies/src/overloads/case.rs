@@ -5,7 +5,8 @@
 
 use super::contenders::{Contender, restitution};
 use super::takeover::arrest_of;
-use firmware_bench::scene::{Disturbance, Scene, Shape};
+use firmware_bench::device::loads::{Disturbance, Shape};
+use firmware_bench::scene::Scene;
 use plant_model::V2;
 use plant_model::params::Start;
 

@@ -5,10 +5,11 @@ use super::contenders::Contender;
 use super::situations::{Situation, situations};
 use super::takeover::let_whirl;
 use crate::machines::plants::PlantCase;
+use firmware_bench::device::actuator::{Delivers, Outage};
+use firmware_bench::device::axis::Axis;
 use firmware_bench::device::levitation::LevitationParams;
-use firmware_bench::scene::{
-    Axis, BaseMotion, Delivers, Disturbance, Outage, Scene, Shape, TimedChange,
-};
+use firmware_bench::device::loads::{BaseMotion, Disturbance, Shape, TimedChange};
+use firmware_bench::scene::Scene;
 use plant_model::params::{EllipseParams, RaceParams, SpinParams, Start, StatorParams};
 use plant_model::{Change, V2};
 use std::f64::consts::TAU;

@@ -4,7 +4,10 @@ use super::case::Case;
 use super::contenders::Contender;
 use super::situations::Situation;
 use crate::machines::plants::PlantCase;
-use firmware_bench::scene::{Axis, Delivers, Fault, FaultKind, Outage, Scene};
+use firmware_bench::device::actuator::{Delivers, Outage};
+use firmware_bench::device::axis::Axis;
+use firmware_bench::device::sensor_fault::{Fault, FaultKind};
+use firmware_bench::scene::Scene;
 use supervisor::Mode;
 
 /// Group of the sensor's faults …

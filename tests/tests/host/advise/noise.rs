@@ -2,8 +2,9 @@
 
 use super::{advice, amb};
 use firmware_bench::advise::{Advice, Noise, Warning};
+use firmware_bench::scene::Scene;
+use firmware_bench::scene::nominal::Override;
 use firmware_bench::scene::suggest::Nominal;
-use firmware_bench::scene::{Override, Scene};
 use rand_chacha::ChaCha8Rng;
 use rand_core::{Rng, SeedableRng};
 use supervisor::PARAMETERS;

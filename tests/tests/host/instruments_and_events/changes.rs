@@ -1,8 +1,9 @@
 //! Parameters that change during a run, and what a verdict says of contact.
 
 use crate::instruments_and_events::{free_rotor, last, near, ridden, samples};
+use firmware_bench::device::loads::TimedChange;
+use firmware_bench::scene::Scene;
 use firmware_bench::scene::policy_kind::PolicyKind;
-use firmware_bench::scene::{Scene, TimedChange};
 use plant_model::params::{SpinParams, StatorParams};
 use plant_model::{Change, Method, V2};
 use std::f64::consts::TAU;

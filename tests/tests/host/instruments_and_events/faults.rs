@@ -1,8 +1,9 @@
 //! The sensor: what it is always like, and what goes wrong for a while.
 
+use firmware_bench::device::axis::Axis;
 use firmware_bench::device::sensor::{Reading, Sensor, SensorParams};
+use firmware_bench::device::sensor_fault::{Fault, FaultKind};
 use firmware_bench::scene::policy_kind::PolicyKind;
-use firmware_bench::scene::{Axis, Fault, FaultKind};
 use plant_model::V2;
 use std::f64::consts::TAU;
 use system_tests::scene;

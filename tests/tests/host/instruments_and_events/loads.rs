@@ -1,10 +1,10 @@
 //! Loads with a course, base motion, and the retainer bearing off the centre.
 
 use crate::instruments_and_events::{free_rotor, last, near, ridden, samples};
+use firmware_bench::device::loads::{BaseMotion, Disturbance, Shape};
 use firmware_bench::run::closed_loop::{Keep, run};
 use firmware_bench::run::outcome::Outcome;
 use firmware_bench::scene::policy_kind::PolicyKind;
-use firmware_bench::scene::{BaseMotion, Disturbance, Shape};
 use plant_model::V2;
 use std::f64::consts::{PI, TAU};
 use system_tests::scene;

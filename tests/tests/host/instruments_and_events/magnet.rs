@@ -1,10 +1,13 @@
 //! Cap per axis, slew limit, outages, delay, and the policy `damping`.
 
 use crate::instruments_and_events::{apart, free_rotor, last, near, ridden, samples};
+use firmware_bench::device::actuator::{Delivers, Outage};
+use firmware_bench::device::axis::Axis;
+use firmware_bench::device::sensor_fault::{Fault, FaultKind};
 use firmware_bench::run::closed_loop::{Keep, run_policy};
 use firmware_bench::run::controller::{Supervise, supervised};
+use firmware_bench::scene::Scene;
 use firmware_bench::scene::policy_kind::PolicyKind;
-use firmware_bench::scene::{Axis, Delivers, Fault, FaultKind, Outage, Scene};
 use plant_model::V2;
 use std::cell::RefCell;
 use std::rc::Rc;

@@ -1,6 +1,9 @@
 //! Keys that are out of range, missing, or without meaning are refused by name and line; good ones arrive.
 
-use firmware_bench::scene::{Axis, FaultKind, Scene, Shape};
+use firmware_bench::device::axis::Axis;
+use firmware_bench::device::loads::Shape;
+use firmware_bench::device::sensor_fault::FaultKind;
+use firmware_bench::scene::Scene;
 use plant_model::V2;
 use std::fs;
 use system_tests::scene_path;

@@ -1,0 +1,179 @@
+//! From what the user wrote to a scene that can be run.
+
+use crate::device::sensor::SpinSensorParams;
+use crate::scene::Scene;
+use crate::scene::devices::centre_offset_m;
+use crate::scene::diagnostic::{SceneError, SceneText};
+use crate::scene::events::events;
+use crate::scene::guess;
+use crate::scene::limits::{damping_n_s_m, whirl_speed_m_s};
+use crate::scene::lint::{Told, slips, unseen, warnings};
+use crate::scene::nominal::{NominalKeys, config, nominal, overrides};
+use crate::scene::plant::{plant, refused};
+use crate::scene::policy_kind::PolicyKind;
+use crate::scene::spec::Spec;
+use crate::scene::tables::SceneTables;
+use crate::scene::values::MethodName;
+use plant_model::V2;
+use plant_model::params::{PlantParams, Start};
+use std::f64::consts::TAU;
+
+/// Rows of traces that a run may keep, of all its policies: some 0.3 KB each.
+const MOST_ROWS: f64 = 1e7;
+
+impl Spec {
+    /// The scene, every value checked: in its range, and against the others.
+    ///
+    /// # Errors
+    /// [`SceneError`] with file, line and key, and with slips beside it that may be the reason.
+    pub fn resolve(&self) -> Result<Scene, SceneError> {
+        self.resolved().map_err(|error| error.beside(&slips(self)))
+    }
+
+    fn resolved(&self) -> Result<Scene, SceneError> {
+        let (written, text) = (&self.tables, &self.text);
+        self.check_ranges()?;
+        let plant = plant(self)?;
+        let mut start = Start {
+            position_m: written.start.position_m.into(),
+            velocity_m_s: written.start.velocity_m_s.into(),
+            spin_rad_s: written.spin.frequency_hz * TAU,
+            spin_phase_rad: written.start.spin_phase_rad,
+        };
+        start.validate().map_err(|error| refused(&error, text))?;
+        check_method(self, &plant)?;
+        check_title_and_length(written, text)?;
+        let policies = policies(self)?;
+        let events = events(self)?;
+        let centre_offset_m = centre_offset_m(self)?;
+        start.position_m -= centre_offset_m;
+        let whirl_speed_m_s = whirl_speed_m_s(self, &plant)?;
+        let damps = policies.contains(&PolicyKind::Damping);
+        let damping_n_s_m = damping_n_s_m(self, &plant, damps)?;
+        let nominal = nominal(&plant, written);
+        let nominal_keys = NominalKeys::new(&nominal, written);
+        let overrides = overrides(self)?;
+        let supervised = policies.contains(&PolicyKind::Supervisor);
+        let supervisor = supervised
+            .then(|| config(&nominal, &nominal_keys, &overrides, text))
+            .transpose()?;
+        let told = Told {
+            nominal: &nominal,
+            overrides: &overrides,
+            config: supervisor.as_ref(),
+        };
+        let mut warnings = warnings(self, &plant, told);
+        warnings.extend(unseen(self));
+        let weight_n = plant.rotor.mass_kg * V2::from(written.rotor.gravity_m_s2);
+        let (run, spin_sensor) = (&written.run, &written.spin_sensor);
+        let levitation = written.levitation.as_ref();
+        Ok(Scene {
+            title: written.title.clone(),
+            story: written.story.trim().to_owned(),
+            plant,
+            start,
+            weight_n,
+            feed_forward_n: match levitation {
+                Some(l) if l.feed_forward_weight => -weight_n,
+                _ => V2::zeros(),
+            },
+            disturbances: events.disturbances,
+            base_motions: events.base_motions,
+            changes: events.changes,
+            centre_offset_m,
+            duration_s: run.duration_s,
+            sample_rate_hz: run.sample_rate_hz,
+            rtol: run.rtol,
+            method: run.method.into(),
+            seed: run.seed,
+            policies,
+            amplifier: written.magnet.as_ref().map(Into::into).unwrap_or_default(),
+            outages: events.outages,
+            sensor: (&written.sensor).into(),
+            faults: events.faults,
+            spin_sensor: SpinSensorParams {
+                valid: spin_sensor.valid,
+                gain: match spin_sensor.reversed {
+                    true => -spin_sensor.gain,
+                    false => spin_sensor.gain,
+                },
+            },
+            levitation: levitation.map(Into::into),
+            radial_band: written.radial.band,
+            damping_n_s_m,
+            supervisor,
+            nominal,
+            nominal_keys,
+            overrides,
+            whirl_speed_m_s,
+            warnings,
+        })
+    }
+}
+
+fn check_method(spec: &Spec, plant: &PlantParams) -> Result<(), SceneError> {
+    if spec.tables.run.method != MethodName::Series || plant.has_series() {
+        return Ok(());
+    }
+    let with = match plant.contact.law.linear() {
+        None => "contact.stiffness_n_mn",
+        Some(_) => "retainer.ellipticity",
+    };
+    let message = format!("series does not go with {with}");
+    let help = "take auto, explicit or stiff: this contact has no power series at the touch";
+    Err((spec.text).error_at_key("run.method", message, Some(help.to_owned())))
+}
+
+fn check_title_and_length(written: &SceneTables, text: &SceneText) -> Result<(), SceneError> {
+    let (run, title) = (&written.run, &written.title);
+    let ticks = run.duration_s * run.sample_rate_hz;
+    let policies = run.policies.0.len();
+    if ticks * policies as f64 > MOST_ROWS {
+        let help = "shorten run.duration_s, lower run.sample_rate_hz or run fewer policies";
+        let message = format!(
+            "{ticks:e} control samples for each of {policies} policies: expected at most 10 million in all"
+        );
+        return Err(text.error_at_key("run.duration_s", message, Some(help.to_owned())));
+    }
+    // A terminal takes other control characters for orders.
+    if title.trim().is_empty() || title.chars().any(char::is_control) {
+        let help = Some("what the scene is for goes into story".to_owned());
+        let message = "expected a name in one line, without control characters".to_owned();
+        return Err(text.error_at_key("title", message, help));
+    }
+    Ok(())
+}
+
+fn policies(spec: &Spec) -> Result<Vec<PolicyKind>, SceneError> {
+    let known = PolicyKind::ALL.map(PolicyKind::name);
+    let names = known.join(", ");
+    let refused = |message: String, help: String| {
+        (spec.text).error_at_key("run.policies", message, Some(help))
+    };
+    let mut policies = Vec::new();
+    for name in &spec.tables.run.policies.0 {
+        let kind = PolicyKind::from_name(name).ok_or_else(|| {
+            let help = guess::before(format!("policies are {names}"), name, known);
+            refused(format!("there is no policy \"{name}\""), help)
+        })?;
+        let (message, help) = if policies.contains(&kind) {
+            ("is named twice", "name each policy once")
+        } else if kind != PolicyKind::Passive && spec.tables.magnet.is_none() {
+            ("needs a magnet", "add a [magnet], or run only \"passive\"")
+        } else if kind.levitates() && spec.tables.levitation.is_none() {
+            (
+                "needs a levitation controller",
+                "add [levitation] with its gains",
+            )
+        } else {
+            policies.push(kind);
+            continue;
+        };
+        return Err(refused(format!("\"{name}\" {message}"), help.to_owned()));
+    }
+    if policies.is_empty() {
+        let help = format!("name at least one of {names}");
+        return Err(refused("is empty".to_owned(), help));
+    }
+    Ok(policies)
+}

@@ -1,0 +1,172 @@
+//! What the user wrote: a scene file's keys and values, which may be read and edited by their paths.
+
+use crate::scene::diagnostic::{SceneError, SceneText};
+use crate::scene::guess;
+use crate::scene::keys::{Key, Kind, joined, number, parameter, walk};
+use crate::scene::tables::{KEYS, SceneTables};
+use serde::Deserialize;
+use std::path::Path;
+use toml::{Table, Value};
+
+/// A scene file as written, every key known and of its type. Whether the values make a scene
+/// [`resolve`](Self::resolve) says.
+#[derive(Debug, Clone)]
+pub struct Spec {
+    pub(crate) text: SceneText,
+    /// The same twice: by path, with defaults …
+    values: Table,
+    /// … and by type.
+    pub(crate) tables: SceneTables,
+}
+
+impl Spec {
+    /// Reads a scene file.
+    ///
+    /// # Errors
+    /// [`SceneError`] with file, line and key.
+    pub fn load(path: &Path) -> Result<Self, SceneError> {
+        Self::new(SceneText::read(path)?)
+    }
+
+    /// From the text of a file; errors name it `name`.
+    ///
+    /// # Errors
+    /// [`SceneError`] with line and key.
+    pub fn parse(name: &str, text: &str) -> Result<Self, SceneError> {
+        Self::new(SceneText {
+            path: name.into(),
+            text: text.to_owned(),
+        })
+    }
+
+    fn new(text: SceneText) -> Result<Self, SceneError> {
+        let tables: SceneTables = toml::from_str(&text.text)
+            .map_err(|error| text.error_in_toml(error.span().unwrap_or(0..0), error.message()))?;
+        Ok(Self {
+            values: values_of(&tables, &text)?,
+            text,
+            tables,
+        })
+    }
+
+    /// The value at a path, as `rotor.mass_kg`, `disturbance[0].force_n` or `start.velocity_m_s[0]`, or its default;
+    /// `None` where there is neither.
+    ///
+    /// # Errors
+    /// [`SceneError`] for a path that no scene has.
+    pub fn get(&self, path: &str) -> Result<Option<&Value>, SceneError> {
+        self.kind(path)?;
+        let mut steps = steps(path);
+        let first = steps.next().and_then(|step| self.values.get(step));
+        Ok(first.and_then(|value| steps.try_fold(value, below)))
+    }
+
+    /// Puts a value at a path, in the place of one or where there was none. A whole number may be given as a float.
+    ///
+    /// # Errors
+    /// [`SceneError`] for a path that no scene has, a value of another type, or a table that lacks other keys.
+    pub fn set(&mut self, path: &str, value: impl Into<Value>) -> Result<(), SceneError> {
+        let kind = self.kind(path)?;
+        let value = match (kind, value.into()) {
+            (Some(Kind::Whole), Value::Float(x)) if x.fract() == 0.0 && x.abs() < 2f64.powi(53) => {
+                Value::Integer(x as i64)
+            }
+            (_, value) => value,
+        };
+        let mut values = self.values.clone();
+        match place(&mut values, path) {
+            Some(place) => *place = value,
+            None => {
+                let message = "there is none of this number".to_owned();
+                let help = "add it to the file first".to_owned();
+                return Err(self.text.error_at_key(path, message, Some(help)));
+            }
+        }
+        let tables = (SceneTables::deserialize(values.clone()))
+            .map_err(|error| self.text.error_of_value(path, error.message(), &values))?;
+        // With the defaults of what is new.
+        self.values = values_of(&tables, &self.text)?;
+        self.tables = tables;
+        Ok(())
+    }
+
+    /// How the value at a path is written; `None` for a part of one.
+    fn kind(&self, path: &str) -> Result<Option<Kind>, SceneError> {
+        let (mut keys, mut kind, mut table) = (KEYS, None, String::new());
+        for step in steps(path) {
+            if step.parse::<usize>().is_ok() {
+                kind = None;
+                table = format!("{table}[{step}]");
+                continue;
+            }
+            let key: Option<&Key> = keys.iter().find(|key| key.name == step);
+            kind = match (key, kind) {
+                (Some(key), _) => Some(key.kind),
+                (None, Some(Kind::Parameters)) if parameter(step).is_some() => Some(Kind::Number),
+                (None, _) => {
+                    let path = joined(&table, step);
+                    let message = "is no key of scenes".to_owned();
+                    return Err((self.text).error_at_key(&path, message, guess::key(step, keys)));
+                }
+            };
+            keys = key.map_or(&[], Key::below);
+            table = joined(&table, step);
+        }
+        Ok(kind)
+    }
+
+    /// Whether every number is in the range of its key.
+    pub(crate) fn check_ranges(&self) -> Result<(), SceneError> {
+        for (path, keys, table) in walk(KEYS, "", &self.values) {
+            for key in keys {
+                let Some(value) = table.get(key.name) else {
+                    continue;
+                };
+                let both = value.as_array().map_or(std::slice::from_ref(value), |v| v);
+                let refused = |x: &f64| !key.range.contains(*x);
+                if let Some(x) = both.iter().filter_map(number).find(refused) {
+                    let path = joined(&path, key.name);
+                    return Err(self.text.refused(&path, x, &key.range.expected()));
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The values with all defaults.
+fn values_of(tables: &SceneTables, text: &SceneText) -> Result<Table, SceneError> {
+    // One thing can be read and not be written: TOML's whole numbers have a sign.
+    Table::try_from(tables).map_err(|_| {
+        let help = format!("give a whole number from 0 to {}", i64::MAX);
+        text.error_at_key("run.seed", "is too far from 0".to_owned(), Some(help))
+    })
+}
+
+/// Names and numbers of a path: `change[1].at_s` is `change`, `1`, `at_s`.
+fn steps(path: &str) -> impl Iterator<Item = &str> {
+    path.split(['.', '['])
+        .map(|step| step.trim_end_matches(']'))
+}
+
+fn below<'v>(value: &'v Value, step: &str) -> Option<&'v Value> {
+    match step.parse::<usize>() {
+        Ok(index) => value.get(index),
+        Err(_) => value.get(step),
+    }
+}
+
+/// Where the value of a path is, or is to be; `None` where that is in an array that is too short.
+fn place<'v>(values: &'v mut Table, path: &str) -> Option<&'v mut Value> {
+    let mut steps = steps(path);
+    let empty = || Value::Table(Table::new());
+    let mut place = values.entry(steps.next()?).or_insert_with(empty);
+    for step in steps {
+        place = match (place, step.parse::<usize>()) {
+            (Value::Array(array), Ok(index)) => array.get_mut(index)?,
+            (Value::Table(table), Err(_)) => table.entry(step).or_insert_with(empty),
+            _ => return None,
+        };
+    }
+    Some(place)
+}

@@ -1,0 +1,217 @@
+//! The keys of scene files: every row is a key. What values mean is decided in [`crate::scene`].
+
+use crate::device::actuator::Delivers;
+use crate::device::axis::Axis;
+use crate::scene::keys::Range::{
+    Because, Elsewhere, Finite, NotNegative, Positive, PositiveUpTo, Within,
+};
+use crate::scene::keys::{Absent, Key, KeyType, Kind, Range, absent, empty, key_tables};
+use crate::scene::values::{FaultName, MethodName, Pair, PerAxis, PolicyNames, ShapeName};
+
+/// No number, or any.
+const ANY: Range = Elsewhere("");
+/// Times at which something begins \[s\].
+const START_S: Range = Within(0.0, 1e5);
+/// How long it lasts \[s\].
+const DURATION_S: Range = Within(1e-9, 1e5);
+
+/// All keys, below the tables that they are in.
+pub const KEYS: &[Key] = SceneTables::KEYS;
+
+key_tables! {
+    /// A whole file.
+    SceneTables {
+        title: String [required "give a name in one line: title = \"…\", above all tables"], "", Elsewhere("one line, without control characters"), "heads table and report", "name";
+        story: String [= String::new()], "", ANY, "what is shown and why; an empty line begins a new paragraph of the report", "description";
+        run: RunTable [required], "", ANY, "time, accuracy, policies", "simulation", "sim";
+        rotor: RotorTable [required], "", ANY, "the rotor; stiffness and damping directly or as frequency and damping ratio", "shaft";
+        spin: SpinTable [required], "", ANY, "how it turns";
+        start: StartTable [= StartTable::default()], "", ANY, "where the rotor starts", "initial";
+        stator: StatorTable [= StatorTable::default()], "", ANY, "rings of the stator; none: rigid", "housing";
+        contact: ContactTable [required], "", ANY, "the contact, linear or with a stiffness that grows with depth", "wall";
+        friction: FrictionTable [required], "", ANY, "friction, constant unless it falls with sliding speed";
+        retainer: RetainerTable [= RetainerTable::default()], "", ANY, "the retainer bearing", "touchdown", "backup_bearing", "auxiliary_bearing", "catcher";
+        race: Option<RaceTable> [or "a bushing"], "", ANY, "the race that the rotor touches, of a [ball bearing](../theory/model.md#retainer-bearing). Its bore is `rotor.contact_radius_m` + `contact.clearance_m`", "ball_bearing";
+        magnet: Option<MagnetTable> [or "no magnet"], "", ANY, "the magnet with its amplifier", "actuator", "amplifier", "amb", "bearing";
+        sensor: SensorTable [= SensorTable::default()], "", ANY, "the position sensor", "probe";
+        spin_sensor: SpinSensorTable [= SpinSensorTable::default()], "", ANY, "what is known of the spin", "tacho", "encoder";
+        levitation: Option<LevitationTable> [or "no controller"], "", ANY, "the levitation controller of the firmware", "pid", "pd", "controller";
+        radial: RadialTable [= RadialTable::default()], "", ANY, "the policy `radial`";
+        damping: DampingTable [= DampingTable::default()], "", ANY, "the policy `damping`";
+        supervisor: toml::Table [= toml::Table::new()], "", ANY, "replaces single suggested parameters, of [this table](../supervisor/linking.md#parameters)", "config";
+        disturbance: Vec<DisturbanceTable> [= Vec::new()], "", ANY, "a force on the rotor for a while; they add", "load", "force", "impulse";
+        base_motion: Vec<BaseMotionTable> [= Vec::new()], "", ANY, "acceleration of the housing for a while; only of a rigid stator", "shock", "base", "earthquake";
+        outage: Vec<OutageTable> [= Vec::new()], "", ANY, "the amplifier does not deliver what it should for a while", "power_loss", "failure";
+        fault: Vec<FaultTable> [= Vec::new()], "", ANY, "of the position sensor, at samples from the start to before the end; see [faults](#faults)", "sensor_fault";
+        change: Vec<ChangeTable> [= Vec::new()], "", ANY, "parameters of the plant that take other values from a time on; see [changes](#changes)";
+        verdict: VerdictTable [= VerdictTable::default()], "", ANY, "how the end is judged", "outcome";
+    }
+
+    RunTable {
+        duration_s: f64 [required "give a number of seconds, as 0.2"], "s", Within(1e-9, 1e5), "in whole samples, to the nearest, one at least; at most 10 million samples of all policies together, which keep some 0.3 KB of memory each", "time", "t_end", "length";
+        sample_rate_hz: f64 [required "give the control rate in Hz, as 20000"], "Hz", Within(1.0, 1e6), "control rate; a warning outside 10 to 50 kHz with the policy `supervisor`", "control_rate", "rate", "fs", "sampling", "period", "dt";
+        policies: PolicyNames [required], "", Elsewhere("at least one, each once"), "see [policies](#policies)", "controllers", "policy";
+        rtol: f64 [= 1e-9], "1", Within(1e-14, 1e-2), "tolerance of a contact step", "tolerance", "tol", "accuracy";
+        method: MethodName [= MethodName::Auto], "", ANY, "how contact is integrated; see [methods](../theory/integration.md#choosing-a-method)", "solver", "integrator";
+        seed: u64 [= 0], "", NotNegative, "seed of the sensor noise, the same for every policy";
+    }
+
+    RotorTable {
+        mass_kg: f64 [required], "kg", Positive, "m_r", "m", "weight";
+        stiffness_n_m: Option<f64> [or "0"], "N/m", Finite, "shaft stiffness; excludes `natural_frequency_hz`", "k", "shaft_stiffness";
+        natural_frequency_hz: Option<f64> [or "–"], "Hz", Within(0.0, 1e6), "gives m_r·(2πf)² as shaft stiffness", "f0", "omega0", "eigenfrequency";
+        damping_n_s_m: Option<f64> [or "0"], "N s/m", NotNegative, "d_r; excludes `damping_ratio`", "d", "c";
+        damping_ratio: Option<f64> [or "–"], "1", Within(0.0, 100.0), "gives 2·ratio·√(m_r·k), k the *shaft* stiffness; refused without a positive one", "zeta", "xi";
+        eccentricity_m: f64 [= 0.0], "m", NotNegative, "ε_r, the unbalance", "unbalance", "imbalance", "e";
+        contact_radius_m: f64 [required "give the rotor's radius in the retainer bearing in m"], "m", Positive, "R_r", "radius", "r", "diameter";
+        gravity_m_s2: Pair [= Pair::default()], "m/s²", Within(-1e4, 1e4), "weight = m_r times this", "g";
+    }
+
+    SpinTable {
+        frequency_hz: f64 [required "give turns a second in Hz, as 200.0"], "Hz", Finite, "Ω/2π at the start; negative: clockwise", "rpm", "speed", "omega", "rotation", "spin";
+        inertia_kg_m2: Option<f64> [or "held spin"], "kg m²", Positive, "J_r; absent: the drive holds the speed", "j", "polar_inertia", "moment_of_inertia";
+        drive_torque_n_m: Option<f64> [or "0"], "N m", Finite, "t_d; needs `inertia_kg_m2`", "torque", "t_d";
+    }
+
+    StartTable [Default] {
+        position_m: Pair [= Pair::default()], "m", Finite, "as seen from the magnets; may lie in the wall", "x", "displacement";
+        velocity_m_s: Pair [= Pair::default()], "m/s", Finite, "velocity of the rotor's centre", "v", "speed";
+        spin_phase_rad: f64 [= 0.0], "rad", Finite, "σ at t = 0, the angle of the unbalance", "angle", "phase";
+    }
+
+    StatorTable [Default] {
+        inner: Option<RingTable> [or "rigid"], "", ANY, "the ring that the rotor touches", "ring", "mass";
+        outer: Option<RingTable> [or "ground"], "", ANY, "the ring that the inner one stands on, which it needs";
+    }
+
+    /// One ring with its mounting.
+    RingTable {
+        mass_kg: f64 [required], "kg", Positive, "of the ring", "m";
+        stiffness_n_m: PerAxis [required], "N/m", NotNegative, "mounting of the ring", "k";
+        damping_n_s_m: PerAxis [required], "N s/m", NotNegative, "mounting of the ring", "d", "c";
+    }
+
+    ContactTable {
+        clearance_m: f64 [required "give the radial clearance in m, as 2e-4"], "m", Positive, "radial clearance c", "gap", "air_gap", "radial_clearance", "delta";
+        stiffness_n_m: Option<f64> [or "–"], "N/m", Positive, "k_c of the linear contact; this or `stiffness_n_mn`", "k", "k_c";
+        damping_n_s_m: Option<f64> [or "0"], "N s/m", NotNegative, "d_c; excludes `restitution`", "d", "d_c";
+        stiffness_n_mn: Option<f64> [or "–"], "N/mⁿ", Positive, "k_h of [Hunt and Crossley's contact](../theory/model.md#hunt-and-crossleys-law), which `exponent`, `damping_s_m` and `restitution_speed_m_s` need", "k_h", "hertz";
+        exponent: Option<f64> [or "1.5"], "1", Within(1.0, 3.0), "n", "n";
+        damping_s_m: Option<f64> [or "0"], "s/m", NotNegative, "λ; excludes `restitution`", "lambda";
+        restitution: Option<f64> [or "–"], "1", PositiveUpTo(1.0), "e; gives d_c by [(2.12)](../theory/model.md#restitution-and-contact-damping) with the reduced mass", "e", "cor";
+        restitution_speed_m_s: Option<f64> [or "–"], "m/s", Within(1e-9, 1e6), "impact speed that `restitution` belongs to, by (2.34); required with it for Hunt and Crossley's contact";
+    }
+
+    FrictionTable {
+        coefficient: f64 [required "give the coefficient of sliding friction, as 0.15"], "1", NotNegative, "μ, or μ_0, at rest", "mu", "friction", "sliding";
+        coefficient_at_speed: Option<f64> [or "–"], "1", Elsewhere("0 to `coefficient`"), "μ_∞; needs `speed_scale_m_s`", "mu_inf";
+        speed_scale_m_s: Option<f64> [or "–"], "m/s", Positive, "v_0; needs `coefficient_at_speed`", "v0";
+        rolling_coefficient: f64 [= 0.0], "1", NotNegative, "μ_r", "mu_r", "rolling";
+    }
+
+    RetainerTable [Default] {
+        centre_offset_m: Pair [= Pair::default()], "m", Elsewhere("shorter than the clearance"), "centre of the retainer bearing as seen from the centre of magnets and sensors; see [centres](#centres)", "misalignment";
+        ellipticity: f64 [= 0.0], "1", Within(0.0, 0.2), "ε of a bearing [out of round](../theory/model.md#out-of-round): semi-axes c·(1 ± ε); only for a rigid stator without a race", "ovality";
+        long_axis_deg: Option<f64> [or "0"], "°", Finite, "direction of the longer axis, counter-clockwise from x; needs `ellipticity`";
+    }
+
+    RaceTable {
+        inertia_kg_m2: f64 [required], "kg m²", Positive, "J_i", "j";
+        drag_n_m_s: f64 [= 0.0], "N m s", NotNegative, "b, viscous drag of the bearing", "b";
+        start_frequency_hz: f64 [= 0.0], "Hz", Finite, "Ω_i/2π at the start", "frequency", "speed", "rpm";
+    }
+
+    MagnetTable {
+        force_max_n: f64 [required "give the force cap in N"], "N", Positive, "cap on the length of the force vector", "force", "max_force", "cap", "f_max";
+        lag_s: f64 [= 0.0], "s", NotNegative, "amplifier lag τ", "tau", "time_constant", "bandwidth";
+        negative_stiffness_n_m: f64 [= 0.0], "N/m", Because(0.0, 1e12, "that it is negative is in the name"), "subtracted from the shaft stiffness, also under `passive`", "k_s", "stiffness", "ks";
+        axis_force_max_n: Option<f64> [or "none"], "N", Positive, "cap on each component, after the cap on the vector; the supervisor is told";
+        slew_n_s: Option<f64> [or "none"], "N/s", Positive, "fastest change of each component, before the lag: the voltage limit", "slew_rate", "rate";
+        delay_samples: u32 [= 1], "samples", Within(1.0, 7.0), "from a position to the effect of the command computed from it", "delay", "latency";
+        force_measured: bool [= false], "", ANY, "whether the supervisor is given the force that the magnet delivers at the sample, less what is fed forward (`APPLIED_VALID`)";
+    }
+
+    SensorTable [Default] {
+        quantum_m: f64 [= 0.0], "m", Within(0.0, 1.0), "step of the converter, rounded to the nearest; 0: none", "resolution", "lsb", "step";
+        noise_rms_m: f64 [= 0.0], "m", Within(0.0, 1.0), "normal noise per axis, added before the converter", "noise", "sigma";
+        offset_m: Pair [= Pair::default()], "m", Within(-1.0, 1.0), "reading in the centre", "bias";
+        gain: PerAxis [= PerAxis::Both(1.0)], "1", Within(-100.0, 100.0), "reading per position", "sensitivity", "scale";
+        range_m: Option<f64> [or "none"], "m", Within(1e-9, 1.0), "largest reading to either side; clipped there", "limit";
+        delay_samples: u32 [= 0], "samples", Within(0.0, 7.0), "age of the position that is read; with the policy `supervisor` at most 7 together with `magnet.delay_samples`", "delay", "latency";
+        swapped: bool [= false], "", ANY, "x reads y and y reads x";
+    }
+
+    SpinSensorTable [Default] {
+        valid: bool [= true], "", ANY, "whether the spin is marked valid";
+        reversed: bool [= false], "", ANY, "spin reported with the wrong sign";
+        gain: f64 [= 1.0], "1", Within(0.0, 100.0), "spin reported over spin";
+    }
+
+    LevitationTable {
+        proportional_n_m: f64 [required], "N/m", Within(0.0, 1e12), "K_p", "kp", "k_p", "p", "stiffness", "gain";
+        integral_n_m_s: f64 [= 0.0], "N/(m s)", Within(0.0, 1e15), "K_i", "ki", "k_i", "i";
+        derivative_n_s_m: f64 [required], "N s/m", Within(0.0, 1e9), "K_d", "kd", "k_d", "d", "damping";
+        derivative_filter_s: f64 [= 0.0], "s", Within(0.0, 1.0), "filter of the derivative; 0: plain difference", "filter", "tau_d";
+        feed_forward_weight: bool [= false], "", ANY, "the firmware adds minus the weight to what any policy commands, `passive` included; the amplifier's limits hold for the sum", "feed_forward", "gravity_compensation";
+    }
+
+    RadialTable [Default] {
+        band: f64 [= 0.7], "1", Within(0.0, 1.0), "share of the clearance beyond which it pushes";
+    }
+
+    DampingTable [Default] {
+        coefficient_n_s_m: Option<f64> [or "the whole cap at [lift-off speed](../theory/whirl.md#lift-off)"], "N s/m", Within(0.0, 1e9), "d of the policy", "d", "kd";
+    }
+
+    DisturbanceTable {
+        start_s: f64 [required], "s", START_S, "must lie before the end of the run", "t", "time", "at_s";
+        duration_s: f64 [required], "s", DURATION_S, "how long it acts", "length";
+        force_n: Pair [required], "N", Within(-1e9, 1e9), "force on the rotor; the amplitude where it varies", "f", "amplitude";
+        shape: ShapeName [= ShapeName::Constant], "", ANY, "[course](#loads) over the interval", "form", "kind";
+        frequency_hz: Option<f64> [or "–"], "Hz", Elsewhere("0 to the control rate"), "with `sine` only", "f";
+        phase_rad: Option<f64> [or "0"], "rad", Within(-1e6, 1e6), "at the start; with `sine` only";
+    }
+
+    BaseMotionTable {
+        start_s: f64 [required], "s", START_S, "must lie before the end of the run", "t", "time", "at_s";
+        duration_s: f64 [required], "s", DURATION_S, "how long it acts", "length";
+        acceleration_m_s2: Pair [required], "m/s²", Within(-1e7, 1e7), "of the housing; the amplitude where it varies", "a", "amplitude";
+        shape: ShapeName [= ShapeName::Constant], "", ANY, "[course](#loads) over the interval", "form", "kind";
+        frequency_hz: Option<f64> [or "–"], "Hz", Elsewhere("0 to the control rate"), "with `sine` only", "f";
+        phase_rad: Option<f64> [or "0"], "rad", Within(-1e6, 1e6), "at the start; with `sine` only";
+    }
+
+    OutageTable {
+        start_s: f64 [required], "s", START_S, "must lie before the end of the run", "t", "time", "at_s";
+        duration_s: f64 [required], "s", DURATION_S, "how long it lasts", "length";
+        delivers: Delivers [= Delivers::Nothing], "", ANY, "no force, the force with the other sign, or along x what is meant for y and the other way round (both axes only)", "kind";
+        axis: Axis [= Axis::Both], "", ANY, "which axis fails";
+        known: bool [= false], "", ANY, "whether the firmware knows: while known outages cover both axes the supervisor is told that the bearing is off, and of each axis that it is lost. Only of an amplifier that delivers nothing";
+    }
+
+    FaultTable {
+        start_s: f64 [required], "s", START_S, "must lie before the end of the run", "t", "time", "at_s";
+        duration_s: f64 [required], "s", DURATION_S, "how long it lasts", "length";
+        kind: FaultName [required], "", ANY, "what goes wrong with the position sensor; it says which of the keys below belong to it", "type";
+        axis: Option<Axis> [or "`both`"], "", ANY, "not for kinds that concern the pair";
+        value_m: Option<f64> [or "–"], "m", Within(-1.0, 1.0), "of an `offset`", "offset";
+        factor: Option<f64> [or "–"], "1", Elsewhere("`gain`: ±100, `noise`: 0 to 1e6"), "of a `gain` or of `noise`", "gain";
+        rate_hz: Option<f64> [or "–"], "Hz", Elsewhere("0 to the control rate"), "of `spikes`";
+        size_m: Option<f64> [or "–"], "m", Within(0.0, 1.0), "of `spikes`", "amplitude";
+        samples: Option<u32> [or "–"], "samples", Within(1.0, 1000.0), "of a `delay`", "delay";
+        bits: Option<u32> [or "–"], "bits", Within(1.0, 32.0), "of a converter of fewer `bits`", "resolution";
+        frequency_hz: Option<f64> [or "–"], "Hz", Within(0.0, 1e6), "of an `oscillation`";
+        amplitude_m: Option<f64> [or "–"], "m", Within(0.0, 1.0), "of an `oscillation`";
+    }
+
+    ChangeTable {
+        at_s: f64 [required], "s", Within(0.0, 1e5), "must lie before the end of the run", "t", "time", "start";
+        eccentricity_m: Option<f64> [or "as it was"], "m", Within(0.0, 1.0), "new ε_r", "unbalance", "imbalance";
+        friction_coefficient: Option<f64> [or "as it was"], "1", Within(0.0, 10.0), "new μ, the same at every speed", "mu", "friction";
+        drive_torque_n_m: Option<f64> [or "as it was"], "N m", Within(-1e9, 1e9), "new t_d; needs `spin.inertia_kg_m2`", "torque";
+    }
+
+    VerdictTable [Default] {
+        whirl_speed_m_s: Option<f64> [or "see [outcomes](#outcomes)"], "m/s", Within(1e-9, 1e6), "limit of whirl: the backward contact speed above which a run counts as whirl", "limit";
+    }
+}
