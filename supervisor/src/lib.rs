@@ -2,7 +2,7 @@
 //! whirl when it touches its retainer bearing. `no_std`, no allocation, no panic, no unsafe.
 //!
 //! ```
-//! use supervisor::{Config, Sample, Status, Supervisor};
+//! use supervisor::{Config, Mode, Sample, Status, Supervisor};
 //!
 //! let config = Config {
 //!     sample_period_s: 50e-6,
@@ -47,6 +47,22 @@
 //!     ..Sample::default()
 //! });
 //! assert_eq!(command.force_n, [-12.5, 25.0]); // transparent while levitated
+//!
+//! // Towards the wall with 0.4 m/s, more than the cap can stop: it takes the bearing before the touch.
+//! let mut position_m = [1e-5, -2e-5];
+//! for sequence in 1..10 {
+//!     position_m[0] += 0.4 * config.sample_period_s;
+//!     let sample = Sample {
+//!         sequence,
+//!         status: Status::SPIN_VALID | Status::BEARING_ON,
+//!         position_m,
+//!         spin_rad_s: 1000.0,
+//!         ..Sample::default()
+//!     };
+//!     supervisor.tick(&sample); // its force goes to the actuator
+//! }
+//! assert_eq!(supervisor.mode(), Mode::Approach);
+//! assert_eq!(supervisor.report().landings, 0);
 //! # Ok::<(), supervisor::ConfigError>(())
 //! ```
 //!

@@ -129,22 +129,16 @@ impl Scene {
         position_m + self.centre_offset_m
     }
 
-    /// Mean external force on the rotor from one time to another, between which there is no
-    /// [edge](Self::edges) \[N\]: weight, loads, and what shaft and magnets do about their own centre more
-    /// than about that of the plant.
-    pub fn external_n(&self, from_s: f64, to_s: f64) -> V2 {
+    /// External force on the rotor to be held over the two halves of a part in which there is no [edge](Self::edges) \[N\]:
+    /// weight, loads, and what shaft and magnets do about their own centre more than about that of the plant. Both are the
+    /// same where nothing varies.
+    pub fn external_n(&self, from_s: f64, to_s: f64) -> [V2; 2] {
         let constant_n = self.weight_n - self.plant.rotor.stiffness_n_m * self.centre_offset_m;
-        loads::mean_n(self.loads(), constant_n, (from_s, to_s))
+        loads::halves_n(self.loads(), constant_n, (from_s, to_s))
     }
 
-    /// Whether a load that acts from a time on varies.
-    pub fn varies(&self, from_s: f64) -> bool {
-        let acting = |d: &Disturbance| d.start_s <= from_s && from_s < d.end_s();
-        (self.loads()).any(|d| acting(&d) && d.shape != Shape::Constant)
-    }
-
-    /// Parts in which [`Self::external_n`] is to be held from one time to another.
-    pub fn parts(&self, from_s: f64, to_s: f64) -> u32 {
+    /// Parts over whose halves [`Self::external_n`] is to be held from one time to another; `None` where nothing varies.
+    pub fn parts(&self, from_s: f64, to_s: f64) -> Option<u32> {
         loads::parts(self.loads(), (from_s, to_s))
     }
 

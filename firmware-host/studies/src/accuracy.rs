@@ -193,19 +193,27 @@ pub(crate) fn run(scene: &Scene, method: Method, rtol: f64) -> Result<Ending, Ac
         while let Some(due) = changes.next_if(|c| c.at_s <= from) {
             plant.change(&due.change).map_err(BuildError::Param)?;
         }
-        for cut in loads::cuts((from, to), scene.parts(from, to)) {
-            let inputs = Inputs {
-                command_n: V2::zeros(),
-                external_n: scene.external_n(from, cut),
+        let parts = scene.parts(from, to);
+        for [begin, middle, end] in loads::cuts((from, to), parts.unwrap_or(1)) {
+            let [first_n, second_n] = scene.external_n(begin, end);
+            let holds = match parts {
+                Some(_) => &[(middle, first_n), (end, second_n)][..],
+                None => &[(end, first_n)],
             };
-            let advanced = plant.advance(cut, &inputs, &mut |s| modes.push(s.mode));
-            advanced.map_err(|reason| AccuracyError::Plant {
-                method: plant.method().name(),
-                rtol,
-                reason,
-            })?;
-            from = cut;
+            for (until_s, external_n) in holds {
+                let inputs = Inputs {
+                    command_n: V2::zeros(),
+                    external_n: *external_n,
+                };
+                let advanced = plant.advance(*until_s, &inputs, &mut |s| modes.push(s.mode));
+                advanced.map_err(|reason| AccuracyError::Plant {
+                    method: plant.method().name(),
+                    rtol,
+                    reason,
+                })?;
+            }
         }
+        from = to;
     }
     Ok(Ending {
         position_m: plant.snapshot().position_m,

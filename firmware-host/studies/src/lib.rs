@@ -1,5 +1,38 @@
 //! Studies: many runs of many scenes, and what is claimed of them.
 //!
+//! ```
+//! use firmware_bench::scene::Scene;
+//! use firmware_studies::accuracy::sweep;
+//!
+//! let text = r#"
+//! title = "An impact"
+//! [run]
+//! duration_s = 0.01
+//! sample_rate_hz = 20000
+//! policies = ["passive"]
+//! [rotor]
+//! mass_kg = 10.0
+//! stiffness_n_m = 8e5
+//! damping_n_s_m = 170.0
+//! contact_radius_m = 0.1
+//! [spin]
+//! frequency_hz = 40.0
+//! [start]
+//! velocity_m_s = [0.05, 0.0]
+//! [contact]
+//! clearance_m = 1e-4
+//! stiffness_n_m = 1e8
+//! restitution = 0.7
+//! [friction]
+//! coefficient = 0.125
+//! "#;
+//! let (rows, reference) = sweep(&Scene::parse("impact.toml", text)?)?;
+//! assert!(reference.confirmed); // two methods of little in common end at the same place
+//! let series = rows.iter().find(|row| row.method == "series" && row.rtol == 1e-9);
+//! assert!(series.and_then(|row| row.error).is_some_and(|clearances| clearances < 1e-7));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
 //! Rooms, each importing only from those above it: `campaign`, `machines`, `accuracy`, `paper`, `overloads`, `harm`,
 //! `trials`, `unseen_machines`, `loop_rates`, `sensitivity`, `on_target`.
 
@@ -21,7 +54,7 @@ pub mod unseen_machines;
 use campaign::Study;
 
 /// Every study, by name. The page of the documentation that shows its last full run is `docs/src/measured/NAME.md`.
-pub const STUDIES: [Study; 8] = [
+pub const STUDIES: &[Study] = &[
     Study {
         name: "accuracy",
         about: "error against run time of the integrator on its benchmark problems",

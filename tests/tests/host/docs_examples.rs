@@ -2,7 +2,9 @@
 
 use firmware_bench::run::closed_loop::{Keep, run};
 use firmware_bench::scene::Scene;
-use system_tests::root;
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+use system_tests::{root, scene_path};
 
 /// The example with every table runs under each of its policies.
 #[test]
@@ -19,32 +21,121 @@ fn the_scene_with_everything_runs() {
     }
 }
 
-/// What the pages to start with tell a reader to type works, in the order of each page.
-#[test]
-fn the_commands_to_start_with_run() {
-    let mut run = 0;
-    for entry in std::fs::read_dir(root().join("docs/src/start")).unwrap() {
-        let page = std::fs::read_to_string(entry.unwrap().path()).unwrap();
-        // As in the project's folder, but that results go elsewhere.
-        let folder = tempfile::TempDir::new().unwrap();
-        std::os::unix::fs::symlink(
-            root().join("firmware-host"),
-            folder.path().join("firmware-host"),
-        )
-        .unwrap();
-        for line in page.lines() {
-            let Some(args) = line.trim().strip_prefix("cargo run --release -- ") else {
-                continue;
-            };
-            let output = (system_tests::host().args(args.split(' ')))
-                .current_dir(folder.path())
-                .output()
-                .unwrap();
-            let said = String::from_utf8_lossy(&output.stderr);
-            assert!(output.status.success(), "{args}: {said}");
-            assert!(!output.stdout.is_empty(), "{args}");
-            run += 1;
+/// What takes long, or asks for what is not here: only whether words and options are known is tried.
+const ONLY_PARSED: [(&str, &str); 12] = [
+    (
+        "accuracy",
+        "seconds of reference runs; the studies' tests run it",
+    ),
+    ("harm", "minutes of machines"),
+    ("overloads", "half a minute and more"),
+    ("paper", "half a minute and more"),
+    ("target", "needs an emulator"),
+    ("study harm", "minutes"),
+    ("study sensitivity", "minutes"),
+    ("study target", "needs an emulator"),
+    ("study overloads", "minutes"),
+    ("study unseen-machines", "minutes"),
+    ("study loop-rates", "minutes"),
+    (
+        "record landing.bin --crc",
+        "the checksum is that of a record of the reader",
+    ),
+];
+
+/// What is not this program: what it needs, or what builds and runs firmware.
+const OTHERS: [(&str, &str); 12] = [
+    ("git clone", "fetches the project"),
+    ("curl", "installs Rust"),
+    ("apt-get", "installs packages"),
+    ("rustup", "installs a target, as tests/run does"),
+    ("tests/run", "runs this test"),
+    ("tests/peers/run", "installs other people's integrators"),
+    ("cargo rustc", "the tests of the C library do it"),
+    ("cargo build", "the tests of the images do it"),
+    ("cargo run --release -p system-tests", "a bench of its own"),
+    ("arm-none-eabi-gcc", "the tests of the C library do it"),
+    ("qemu-system-arm", "the tests of the images do it"),
+    ("cd ", "leads to the next line"),
+];
+
+/// Lines of the blocks for a shell, in one where they are continued, without what is behind a `#` or goes to a file.
+fn commands(page: &str) -> Vec<String> {
+    let page = page.replace("\\\n", " ");
+    let blocks = page.split("```sh\n").skip(1);
+    let lines = blocks.flat_map(|rest| rest.split("```").next().unwrap_or_default().lines());
+    let bare = lines.map(|line| line.split(['#', '>']).next().unwrap_or_default());
+    let words = bare.map(|line| line.split_whitespace().collect::<Vec<_>>().join(" "));
+    words.filter(|line| !line.is_empty()).collect()
+}
+
+fn pages(folder: &Path, found: &mut Vec<PathBuf>) {
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        match path.is_dir() {
+            true => pages(&path, found),
+            false if path.extension().is_some_and(|e| e == "md") => found.push(path),
+            false => {}
         }
     }
-    assert!(run >= 7, "{run} commands");
+}
+
+/// Every command that README and documentation tell a reader to type works, in the order of each page.
+#[test]
+fn every_command_works_or_is_known() {
+    let mut files = vec![root().join("README.md")];
+    pages(&root().join("docs/src"), &mut files);
+    files.sort();
+    // As in the project's folder, but that results go elsewhere.
+    let folder = tempfile::TempDir::new().unwrap();
+    let here = |name: &str| folder.path().join(name);
+    std::os::unix::fs::symlink(root().join("firmware-host"), here("firmware-host")).unwrap();
+    let scene = std::fs::read_to_string(scene_path("overload_then_release")).unwrap();
+    let brief = scene.replace("duration_s = 0.2", "duration_s = 0.03");
+    std::fs::write(here("my_scene.toml"), brief).unwrap();
+    let run = |args: &str, more: &[&str]| {
+        let words = args.split(' ').chain(more.iter().copied());
+        let output = (system_tests::host().args(words))
+            .current_dir(folder.path())
+            .output()
+            .unwrap();
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(
+            output.status.success() && !output.stdout.is_empty(),
+            "{args}: {said}"
+        );
+    };
+    run("run firmware-host/scenes/overload_then_release.toml", &[]);
+    std::fs::copy(
+        here("runs/overload_then_release/record_supervisor.bin"),
+        here("landing.bin"),
+    )
+    .unwrap();
+
+    let mut seen = BTreeSet::new();
+    for file in files {
+        let page = std::fs::read_to_string(&file).unwrap();
+        for command in commands(&page) {
+            if !seen.insert(command.clone()) {
+                continue;
+            }
+            let Some(args) = command.strip_prefix("cargo run --release -- ") else {
+                let known = OTHERS.iter().any(|(start, _)| command.starts_with(start));
+                assert!(
+                    known || command.starts_with("LIBRARY="),
+                    "{}: {command}",
+                    file.display()
+                );
+                continue;
+            };
+            match ONLY_PARSED.iter().any(|(start, _)| args.starts_with(start)) {
+                true => run(args, &["--help"]),
+                false => run(args, &[]),
+            }
+        }
+    }
+    assert!(seen.len() > 30, "{seen:?}");
+    for (start, why) in OTHERS {
+        assert!(seen.iter().any(|c| c.starts_with(start)), "{start}: {why}");
+    }
 }

@@ -1,6 +1,6 @@
 //! `run --verify`: a run's own estimate of its global error, and hints for people on the way.
 
-use firmware_bench::run::closed_loop::{Keep, run};
+use firmware_bench::run::closed_loop::{Keep, Rigour, record, run};
 use firmware_bench::run::figures::Figures;
 use firmware_bench::run::recording::recorded;
 use firmware_bench::run::trace::{Recorder, Trace};
@@ -100,6 +100,68 @@ fn every_scene_is_confirmed() {
             assert!(v.estimated_error_clearances < 0.02, "{about}");
         }
     }
+}
+
+/// A load that varies is held over parts, which a tighter tolerance does not mend: checks hold it over shorter ones, and see
+/// that error too; so it is of the parts in which ramps of the amplifier end.
+#[test]
+fn the_estimate_sees_what_is_held_over_parts() {
+    let exact = ("noise_rms_m = 1e-6\nquantum_m = 1e-7", "");
+    let slow = ("sample_rate_hz = 20000", "sample_rate_hz = 1000");
+    let sine = (
+        "force_n = [1300.0, 750.0]",
+        "force_n = [6.0, 0.0]\nshape = \"sine\"\nfrequency_hz = 45.0",
+    );
+    let ramp = ("lag_s = 1.6e-4", "lag_s = 1.6e-4\nslew_n_s = 2e6");
+    let folder = TempDir::new().unwrap();
+    let error_and_estimate = |edits: &[(&str, &str)], kind| {
+        let scene = Scene::load(&edited(folder.path(), "overload_then_release", edits)).unwrap();
+        let (_, trace, v) = verified(&scene, kind);
+        let rigour = Rigour {
+            parts: 64,
+            ..Rigour::default()
+        };
+        let mut fine = Trace::default();
+        record(&scene, kind, &mut fine, rigour, &mut |_| {}).unwrap();
+        let apart_m = (trace.rows.iter().zip(&fine.rows))
+            .map(|(a, b)| (a.plant.position_m - b.plant.position_m).norm())
+            .fold(0.0, f64::max);
+        let error = apart_m / scene.plant.contact.clearance_m;
+        let estimate = v.largest_difference_clearances;
+        println!("error {error:.1e}, estimate {estimate:.1e}");
+        (error, estimate)
+    };
+    for (edits, kind) in [
+        (&[exact, slow, sine][..], PolicyKind::Passive),
+        (&[exact, ramp], PolicyKind::Levitation),
+    ] {
+        let (error, estimate) = error_and_estimate(edits, kind);
+        assert!(error > 1e-7 && error < 1e-5, "{error:e}");
+        assert!(
+            estimate > 0.3 * error && estimate < 3.0 * error,
+            "{estimate:e} for {error:e}"
+        );
+    }
+}
+
+/// A check that would go on and on ends, and the run stays.
+#[test]
+fn a_check_has_an_end() {
+    let folder = TempDir::new().unwrap();
+    let path = edited(
+        folder.path(),
+        "impact_at_40_hz",
+        &[("stiffness_n_m = 1e8", "stiffness_n_m = 1e13")],
+    );
+    let result = run_scene(
+        &path,
+        &folder.path().join("out"),
+        &["--verify", "--no-trace"],
+    );
+    let table = String::from_utf8(result.stdout).unwrap();
+    let error = String::from_utf8(result.stderr).unwrap();
+    println!("{table}\n{error}");
+    assert!(error.contains("steps are not enough"), "{error}");
 }
 
 /// A check that cannot be trusted leaves the run as it is, and says why.

@@ -22,7 +22,10 @@ fn the_list_names_every_study() {
     let names: Vec<&str> = (json["names"].as_array().unwrap().iter())
         .map(|name| name.as_str().unwrap())
         .collect();
-    assert_eq!(names, STUDIES.map(|study| study.name));
+    assert_eq!(
+        names,
+        STUDIES.iter().map(|study| study.name).collect::<Vec<_>>()
+    );
     let text = said(&study(&["list"]).stdout);
     for known in STUDIES {
         assert!(text.contains(known.about), "{}", known.name);

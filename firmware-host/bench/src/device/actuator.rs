@@ -80,8 +80,8 @@ pub(crate) fn limited_n(wanted_n: V2, force_max_n: f64) -> V2 {
     }
 }
 
-/// Parts of a stretch in which a ramp is held, each at its mean.
-const RAMP_PARTS: u32 = 8;
+/// Parts of a ramp, held over their halves.
+const RAMP_PARTS: u32 = 4;
 
 /// The amplifier at work.
 #[derive(Debug, Clone)]
@@ -146,13 +146,10 @@ impl Amplifier {
         })
     }
 
-    /// Parts in which what is delivered from a time on is to be held.
-    pub(crate) fn parts(&self, from_s: f64) -> u32 {
-        if self.params.slew_n_s.is_some() && self.target_n(from_s) != self.ramped_n {
-            RAMP_PARTS
-        } else {
-            1
-        }
+    /// Parts over whose halves a ramp that goes on at a time is to be held; `None` without one.
+    pub(crate) fn parts(&self, from_s: f64) -> Option<u32> {
+        let ramp = self.params.slew_n_s.is_some() && self.target_n(from_s) != self.ramped_n;
+        ramp.then_some(RAMP_PARTS)
     }
 
     /// Where the command in effect leads.
@@ -177,30 +174,44 @@ impl Amplifier {
         (self.outages.iter().filter(dead)).fold(force_n, |force, o| o.axis.map(force, |_| 0.0))
     }
 
-    /// Mean of the limited command over a part in which no outage begins or ends \[N\].
-    pub(crate) fn deliver(&mut self, from_s: f64, to_s: f64) -> V2 {
+    /// The limited command, to be held over the two halves of a part in which no outage begins or ends \[N\]. As of loads that
+    /// vary, momentum and first moment are those of a ramp; where one ends within the part, only the momentum of each half is.
+    pub(crate) fn deliver(&mut self, from_s: f64, to_s: f64) -> [V2; 2] {
         if self.plain {
-            return self.register_n;
+            return [self.register_n; 2];
         }
-        let target = self.target_n(from_s);
+        let target_n = self.target_n(from_s);
         let Some(slew) = self.params.slew_n_s else {
-            return target;
+            return [target_n; 2];
         };
         // No current flows where the amplifier is out.
         self.ramped_n = self.without_dead_axes(self.ramped_n, from_s);
-        let step_s = to_s - from_s;
-        let mut mean = target;
+        let most_n = slew * (to_s - from_s);
+        let mut halves_n = [target_n; 2];
         for i in [0, 1] {
-            let (old, way) = (self.ramped_n[i], target[i] - self.ramped_n[i]);
-            let most = slew * step_s;
-            if way.abs() > most {
-                let new = old + way.signum() * most;
-                (mean[i], self.ramped_n[i]) = (0.5 * (old + new), new);
-            } else if way != 0.0 {
-                let share = way.abs() / most;
-                (mean[i], self.ramped_n[i]) = (target[i] - 0.5 * way * share, target[i]);
+            let way_n = target_n[i] - self.ramped_n[i];
+            let left_n = way_n.abs();
+            let behind_n = match left_n < most_n {
+                true => [left_n, left_n - 0.5 * most_n].map(|left_n| mean_n(left_n, 0.5 * most_n)),
+                false => [1.0, 5.0].map(|sixths| left_n - most_n * (sixths / 6.0)),
+            };
+            for (half_n, behind_n) in halves_n.iter_mut().zip(behind_n) {
+                half_n[i] -= way_n.signum() * behind_n;
             }
+            self.ramped_n[i] = match left_n > most_n {
+                true => self.ramped_n[i] + way_n.signum() * most_n,
+                false => target_n[i],
+            };
         }
-        mean
+        halves_n
+    }
+}
+
+/// How far a ramp is behind its end, on average over a time in which it could go `most_n`, where `left_n` are left to go.
+fn mean_n(left_n: f64, most_n: f64) -> f64 {
+    let left_n = left_n.max(0.0);
+    match left_n < most_n {
+        true => 0.5 * left_n * left_n / most_n,
+        false => left_n - 0.5 * most_n,
     }
 }

@@ -92,6 +92,24 @@ impl Keep {
     }
 }
 
+/// How much a run may cost, and how finely what is held is held.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Rigour {
+    /// Into so many times as many parts is cut what varies within a control period and is held part by part: loads, ramps.
+    pub parts: u32,
+    /// Steps of the plant in the whole run, beyond which it ends with [`PlantError::WorkLimit`].
+    pub steps: u64,
+}
+
+impl Default for Rigour {
+    fn default() -> Self {
+        Self {
+            parts: 1,
+            steps: Options::default().steps,
+        }
+    }
+}
+
 /// Runs one policy to the end of the scene. `on_tick` is called now and then with the number of ticks
 /// done since its last call.
 ///
@@ -123,7 +141,13 @@ pub fn run_policy(
         true => Some(&mut trace),
         false => None,
     };
-    let (figures, read_out) = ride(scene, acting, recorder, keep.to_decision(), on_tick)?;
+    let (figures, read_out) = ride(
+        scene,
+        acting,
+        (recorder, keep.to_decision()),
+        Rigour::default(),
+        on_tick,
+    )?;
     trace.read_out = read_out;
     Ok((figures, trace))
 }
@@ -136,24 +160,32 @@ pub fn record(
     scene: &Scene,
     kind: PolicyKind,
     recorder: &mut dyn Recorder,
+    rigour: Rigour,
     on_tick: &mut dyn FnMut(u64),
 ) -> Result<(Figures, Option<ReadOut>), RunError> {
     let policy = kind.name();
     let acting = controller(kind, scene).ok_or(RunError::Incomplete { policy })?;
-    ride(scene, (acting, policy), Some(recorder), false, on_tick)
+    ride(
+        scene,
+        (acting, policy),
+        (Some(recorder), false),
+        rigour,
+        on_tick,
+    )
 }
 
 fn ride<'a>(
     scene: &'a Scene,
     (controller, policy): (Box<dyn Controller>, &'static str),
-    recorder: Option<&'a mut dyn Recorder>,
-    to_decision: bool,
+    (recorder, to_decision): (Option<&'a mut dyn Recorder>, bool),
+    rigour: Rigour,
     on_tick: &mut dyn FnMut(u64),
 ) -> Result<(Figures, Option<ReadOut>), RunError> {
     const REPORT_EVERY: u64 = 1024;
     let options = Options {
         rtol: scene.rtol,
         method: scene.method,
+        steps: rigour.steps,
         ..Options::default()
     };
     let rigid = matches!(
@@ -169,6 +201,7 @@ fn ride<'a>(
     let mut bench = Bench {
         scene,
         policy_name: policy,
+        finer: rigour.parts,
         plant,
         sensor: Sensor::new(scene.sensor, &scene.faults, period_s, scene.seed),
         controller,
@@ -213,6 +246,8 @@ fn ride<'a>(
 struct Bench<'a> {
     scene: &'a Scene,
     policy_name: &'static str,
+    /// As [`Rigour::parts`].
+    finer: u32,
     plant: Box<dyn Plant>,
     sensor: Sensor,
     controller: Box<dyn Controller>,
@@ -269,20 +304,19 @@ impl Bench<'_> {
                 self.pass_edges(from)?;
             }
             let to = self.edge_s.min(t_next);
-            let parts = match self.steady_n {
-                Some(_) => 1,
+            let loads = match self.steady_n {
+                Some(_) => None,
                 None => self.scene.parts(from, to),
             };
-            let parts = parts.max(self.amplifier.parts(from));
-            let mut begin = from;
-            for end in cuts((from, to), parts) {
-                self.advance(begin, end, reading.position_m)
-                    .map_err(|reason| RunError::Plant {
-                        policy: self.policy_name,
-                        reason,
-                    })?;
-                begin = end;
-            }
+            let measured_m = reading.position_m;
+            let advanced = match loads.max(self.amplifier.parts(from)) {
+                None => self.advance_steadily((from, to), measured_m),
+                Some(parts) => self.advance_by_parts((from, to), parts * self.finer, measured_m),
+            };
+            advanced.map_err(|reason| RunError::Plant {
+                policy: self.policy_name,
+                reason,
+            })?;
             from = to;
         }
         Ok(())
@@ -305,7 +339,8 @@ impl Bench<'_> {
     fn pass_edges(&mut self, t_s: f64) -> Result<(), RunError> {
         let next = self.edges_s.iter().find(|edge| **edge > t_s);
         self.edge_s = next.copied().unwrap_or(f64::INFINITY);
-        self.steady_n = (!self.scene.varies(t_s)).then(|| self.scene.external_n(t_s, t_s));
+        let [now_n, _] = self.scene.external_n(t_s, t_s);
+        self.steady_n = (self.scene.parts(t_s, t_s).is_none()).then_some(now_n);
         while let Some(due) = self.scene.changes.get(self.changes_done)
             && due.at_s <= t_s
         {
@@ -315,13 +350,43 @@ impl Bench<'_> {
         Ok(())
     }
 
-    fn advance(&mut self, from_s: f64, to_s: f64, measured_m: V2) -> Result<(), PlantError> {
+    fn advance_steadily(
+        &mut self,
+        (from_s, to_s): (f64, f64),
+        measured_m: V2,
+    ) -> Result<(), PlantError> {
+        let [command_n, _] = self.amplifier.deliver(from_s, to_s);
+        let external_n = self.steady_n.unwrap_or_default();
+        self.advance(to_s, (command_n, external_n), measured_m)
+    }
+
+    fn advance_by_parts(
+        &mut self,
+        stretch_s: (f64, f64),
+        parts: u32,
+        measured_m: V2,
+    ) -> Result<(), PlantError> {
+        for [begin, middle, end] in cuts(stretch_s, parts) {
+            let commands_n = self.amplifier.deliver(begin, end);
+            let external_n = match self.steady_n {
+                Some(steady_n) => [steady_n; 2],
+                None => self.scene.external_n(begin, end),
+            };
+            self.advance(middle, (commands_n[0], external_n[0]), measured_m)?;
+            self.advance(end, (commands_n[1], external_n[1]), measured_m)?;
+        }
+        Ok(())
+    }
+
+    fn advance(
+        &mut self,
+        to_s: f64,
+        (command_n, external_n): (V2, V2),
+        measured_m: V2,
+    ) -> Result<(), PlantError> {
         let inputs = Inputs {
-            command_n: self.amplifier.deliver(from_s, to_s),
-            external_n: match self.steady_n {
-                Some(steady_n) => steady_n,
-                None => self.scene.external_n(from_s, to_s),
-            },
+            command_n,
+            external_n,
         };
         let mut changes = std::mem::take(&mut self.changes);
         (self.plant).advance(to_s, &inputs, &mut |snapshot| changes.push(*snapshot))?;

@@ -1,6 +1,6 @@
 //! A policy's run as `run` wants it: its rows written while it goes on, and kept as far as a report needs them.
 
-use crate::run::closed_loop::{RunError, record};
+use crate::run::closed_loop::{Rigour, RunError, record};
 use crate::run::overview::Overview;
 use crate::run::supervision::{Happenings, SupervisionCount};
 use crate::run::trace::{Recorder, TraceRow};
@@ -60,7 +60,7 @@ pub fn recorded<W: Write + Send>(
         happenings: Happenings::default(),
     };
     let started = Instant::now();
-    let (figures, read_out) = record(scene, kind, &mut recording, on_tick)?;
+    let (figures, read_out) = record(scene, kind, &mut recording, Rigour::default(), on_tick)?;
     let writing = recording.file.map_or(Duration::ZERO, |file| file.took());
     let elapsed = started.elapsed().saturating_sub(writing);
     let verification = recording.track.map(|track| {
@@ -89,5 +89,6 @@ fn warm_up(scene: &Scene, kind: PolicyKind) {
         duration_s,
         ..scene.clone()
     };
-    let _again = record(&brief, kind, &mut Overview::default(), &mut |_| {});
+    let (mut unheard, rigour) = (Overview::default(), Rigour::default());
+    let _again = record(&brief, kind, &mut unheard, rigour, &mut |_| {});
 }
