@@ -4,5 +4,6 @@ pub mod actuator;
 pub mod axis;
 pub mod levitation;
 pub mod loads;
+pub mod loop_shape;
 pub mod sensor;
 pub mod sensor_fault;

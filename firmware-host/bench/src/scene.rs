@@ -19,7 +19,7 @@ mod values;
 
 use crate::device::actuator::{AmplifierParams, Outage};
 use crate::device::levitation::LevitationParams;
-use crate::device::loads::{self, BaseMotion, Disturbance, Shape, TimedChange};
+use crate::device::loads::{self, BaseMotion, Disturbance, TimedChange};
 use crate::device::sensor::{SensorParams, SpinSensorParams};
 use crate::device::sensor_fault::{Fault, Samples};
 use crate::scene::diagnostic::SceneError;

@@ -7,7 +7,6 @@ pub mod cross_entropy;
 pub mod fault_matrix;
 pub mod histories;
 pub mod impact;
-pub mod loop_shape;
 pub mod page;
 pub mod plan;
 pub mod promises;

@@ -369,3 +369,46 @@ fn control_rates_beyond_the_supervisors_are_warned_of() {
         assert_eq!(error.contains("warning"), warned, "{error}");
     }
 }
+
+/// A levitation loop that is unstable or badly damped is no baseline, and the reader is told; one that swings out, or damps
+/// well, shows who is right.
+#[test]
+fn a_levitation_loop_that_hardly_holds_is_warned_of() {
+    let folder = TempDir::new().unwrap();
+    for (damping, words) in [
+        ("0.0", Some("not stable")),
+        ("250.0", Some("badly damped")),
+        ("1500.0", None),
+    ] {
+        let scene = edited(
+            folder.path(),
+            "overload_then_release",
+            &[(
+                "derivative_n_s_m = 1500.0",
+                &format!("derivative_n_s_m = {damping}"),
+            )],
+        );
+        let warnings = Scene::load(&scene).unwrap().warnings;
+        println!("{damping}: {warnings:?}");
+        let [warning] = &warnings[..] else {
+            assert!(words.is_none() && warnings.is_empty(), "{warnings:?}");
+            continue;
+        };
+        assert!(
+            words.is_some_and(|words| warning.contains(words)),
+            "{warning}"
+        );
+        assert!(warning.contains("edited.toml:") && warning.contains("levitation"));
+        for word in ["run", "advise"] {
+            let out = folder.path().join("out").display().to_string();
+            let path = scene.display().to_string();
+            let args = match word {
+                "run" => vec![word, &path, "--out", &out],
+                _ => vec![word, &path],
+            };
+            let result = system_tests::host().args(args).output().unwrap();
+            let said = String::from_utf8_lossy(&result.stderr);
+            assert!(said.contains(words.unwrap()), "{word}: {said}");
+        }
+    }
+}

@@ -1,6 +1,7 @@
 //! The catalogue of overloads: what is promised holds, the output is what programs expect, and the kept
 //! searches are what they say.
 
+use firmware_bench::device::loop_shape::SampledPlant;
 use firmware_bench::run::closed_loop::{Keep, run_policy};
 use firmware_bench::run::history::History;
 use firmware_studies::machines::plants::{RATES_HZ, plants};
@@ -8,7 +9,6 @@ use firmware_studies::machines::tuned_gains::stored;
 use firmware_studies::overloads::catalogue::cases;
 use firmware_studies::overloads::contenders::{Contender, clairvoyant, levitation};
 use firmware_studies::overloads::impact::recoverable_m_s;
-use firmware_studies::overloads::loop_shape::SampledPlant;
 use firmware_studies::overloads::tune::{IDLE_NOISE, SENSITIVITY, shape};
 use plant_model::{Options, V2};
 use serde_json::Value;

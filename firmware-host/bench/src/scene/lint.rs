@@ -1,5 +1,7 @@
 //! What a scene may say and hardly means: a slip of a unit, a table pasted from another machine.
 
+use crate::device::levitation::LevitationParams;
+use crate::device::loop_shape::{BADLY_DAMPED, SampledPlant};
 use crate::device::sensor_fault::Samples;
 use crate::scene::diagnostic::SceneText;
 use crate::scene::nominal::Override;
@@ -87,15 +89,7 @@ pub(crate) fn warnings(spec: &Spec, plant: &PlantParams, told: Told<'_>) -> Vec<
         );
         warnings.push(warning(key, message));
     }
-    if let (Some(levitation), Some(magnet)) = (&file.levitation, &file.magnet)
-        && levitation.proportional_n_m + plant.rotor.stiffness_n_m <= 0.0
-    {
-        let message = format!(
-            "is {:e}, below the stiffness of {:e} N/m with which the magnets pull: nothing holds the rotor in the middle",
-            levitation.proportional_n_m, magnet.negative_stiffness_n_m
-        );
-        warnings.push(warning("levitation.proportional_n_m", message));
-    }
+    warnings.extend(of_the_loop(spec, plant));
     if !told.overrides.is_empty() {
         warnings.extend(of_another_machine(
             text,
@@ -121,6 +115,33 @@ pub(crate) fn warnings(spec: &Spec, plant: &PlantParams, told: Told<'_>) -> Vec<
         warnings.push(warning("retainer.centre_offset_m", message));
     }
     warnings
+}
+
+/// A levitation loop that holds nothing, is not stable or is badly damped: as sampled, delayed and lagged, without the cap.
+fn of_the_loop(spec: &Spec, plant: &PlantParams) -> Option<String> {
+    let (file, text) = (&spec.tables, &spec.text);
+    let levitation: LevitationParams = file.levitation.as_ref()?.into();
+    let delay = file.magnet.as_ref()?.delay_samples + file.sensor.delay_samples;
+    let stiffness = plant.rotor.stiffness_n_m;
+    let gain = levitation.proportional_n_m;
+    if gain + stiffness <= 0.0 {
+        let message = format!(
+            "is {gain:e}, below the stiffness of {:e} N/m with which shaft and magnets pull: nothing holds the rotor in the middle",
+            -stiffness
+        );
+        return Some(text.warning("levitation.proportional_n_m", message));
+    }
+    let sampled = SampledPlant::new(plant, file.run.sample_rate_hz, delay as usize);
+    let message = match sampled.close(&levitation) {
+        None => "makes a loop that is not stable with this rotor, lag, delay and rate: levitation alone does not hold it"
+            .to_owned(),
+        Some(shape) if shape.peak_sensitivity > BADLY_DAMPED => format!(
+            "makes a badly damped loop: its peak sensitivity is {:.1}; ISO 14839-3 has new machines below 3",
+            shape.peak_sensitivity
+        ),
+        Some(_) => return None,
+    };
+    Some(text.warning("levitation", message))
 }
 
 /// Values that one look at them makes doubtful: also of a scene that is refused, for that may be why.

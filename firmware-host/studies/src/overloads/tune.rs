@@ -6,8 +6,8 @@
 
 use super::contenders::levitation;
 use super::impact::{FIRST_M_S, recoverable_from};
-use super::loop_shape::{LoopShape, SampledPlant};
 use firmware_bench::device::levitation::LevitationParams;
+use firmware_bench::device::loop_shape::{LoopShape, SampledPlant};
 use firmware_bench::run::closed_loop::RunError;
 use firmware_bench::scene::Scene;
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
