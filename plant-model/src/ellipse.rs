@@ -7,6 +7,7 @@
 
 use crate::V2;
 use crate::params::EllipseParams;
+use crate::vector::perp;
 use std::f64::consts::FRAC_PI_2;
 
 /// The ellipse.
@@ -101,7 +102,7 @@ impl Ellipse {
         let (sx, sy) = (sign(own.x), sign(own.y));
         let normal = V2::new(sx * at.cos, sy * at.sin);
         Foot {
-            normal: normal.x * self.axis + normal.y * V2::new(-self.axis.y, self.axis.x),
+            normal: normal.x * self.axis + normal.y * perp(self.axis),
             depth_m: first.x * at.cos + first.y * at.sin - at.support_m,
             radius_m: at.radius_m,
             // R = a²b²/p³; mirrored, the normal turns the other way.
@@ -203,7 +204,7 @@ mod tests {
             let angle = 0.05 + f64::from(i) * std::f64::consts::TAU / 64.0;
             let u = 2.05e-4 * V2::new(angle.cos(), angle.sin());
             let foot = e.foot(u);
-            let tangent = V2::new(-foot.normal.y, foot.normal.x);
+            let tangent = perp(foot.normal);
             let rho = foot.radius_m + foot.depth_m;
             let (there, back) = (e.foot(u + h * tangent), e.foot(u - h * tangent));
             assert!((there.depth_m - back.depth_m).abs() / (2.0 * h) < 1e-6);
@@ -228,8 +229,7 @@ mod tests {
         let e = ellipse(0.1, FRAC_PI_4);
         for i in 0..16 {
             let t = f64::from(i);
-            let on =
-                e.long_m * t.cos() * e.axis + e.short_m * t.sin() * V2::new(-e.axis.y, e.axis.x);
+            let on = e.long_m * t.cos() * e.axis + e.short_m * t.sin() * perp(e.axis);
             assert!((e.squeezed(on, 3.0).norm() - 3.0).abs() < 1e-14);
             assert!(e.foot(on).depth_m.abs() < 1e-18);
         }

@@ -63,7 +63,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Files, each importing only from those above it: `bisection`, `params`, `contact`, `friction`, `mode`, `energy`,
+//! Files, each importing only from those above it: `vector`, `bisection`, `params`, `contact`, `friction`, `mode`, `energy`,
 //! `part`, `series`, `quadrature`, `ellipse`, `stator`, `spin`, `magnet`, `system`, `tangent`, `readout`, `integrate`, `plant`,
 //! `analysis`.
 
@@ -89,9 +89,7 @@ mod spin;
 mod stator;
 mod system;
 mod tangent;
-
-/// A vector in the plane.
-pub type V2 = nalgebra::Vector2<f64>;
+mod vector;
 
 pub use integrate::{Method, Options, PlantError};
 pub use mode::Mode;
@@ -100,3 +98,4 @@ pub use part::Body;
 pub use plant::{BuildError, Plant, build, build_for_changes};
 pub use readout::{HARD_IMPACT_M_S, Meters, Snapshot, Work};
 pub use system::Inputs;
+pub use vector::V2;

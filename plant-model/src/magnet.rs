@@ -1,8 +1,9 @@
 //! The magnet's amplifier: a delivered force that follows the command at once or with a lag.
 
 use crate::V2;
-use crate::part::{Part, Weights, turned};
+use crate::part::{Part, Weights};
 use crate::series::{INVERSE, Series};
+use crate::vector::{perp, rotate};
 
 /// A model of the amplifier. Commands arrive already limited to the force cap.
 pub(crate) trait Amplifier: Copy + Send + 'static {
@@ -73,11 +74,11 @@ impl Part for ForceState {
         self.0.iter().all(|x| x.is_finite())
     }
     #[inline]
-    fn turned(&self, turn: V2) -> Self {
-        Self(turned(self.0, turn))
+    fn rotated(&self, turn: V2) -> Self {
+        Self(rotate(self.0, turn))
     }
-    fn turning(&self) -> Self {
-        Self(crate::series::turned(self.0))
+    fn perp(&self) -> Self {
+        Self(perp(self.0))
     }
 }
 

@@ -1,6 +1,7 @@
 //! States built of parts: what a scene lacks is the unit type and costs nothing.
 
 use crate::V2;
+use crate::vector::{perp, rotate};
 
 /// Reciprocal scales against which the error of one step is weighed.
 #[derive(Debug, Clone, Copy)]
@@ -34,19 +35,11 @@ pub(crate) trait Part: Copy + Default + Send + 'static {
     /// Reads them back.
     fn read(from: &[f64]) -> Self;
     /// Every plane vector turned counter-clockwise; `turn` holds cosine and sine of the angle.
-    fn turned(&self, turn: V2) -> Self;
+    fn rotated(&self, turn: V2) -> Self;
     /// Every plane vector turned by a quarter, everything else zero: what turning at 1 rad/s adds to
     /// the rates.
-    fn turning(&self) -> Self;
+    fn perp(&self) -> Self;
 }
-
-/// A vector turned counter-clockwise; `turn` holds cosine and sine of the angle.
-#[inline]
-pub(crate) fn turned(v: V2, turn: V2) -> V2 {
-    V2::new(turn.x * v.x - turn.y * v.y, turn.y * v.x + turn.x * v.y)
-}
-
-const QUARTER: V2 = V2::new(0.0, 1.0);
 
 impl Part for () {
     fn write(&self, _out: &mut [f64]) {}
@@ -62,8 +55,8 @@ impl Part for () {
     fn is_finite(&self) -> bool {
         true
     }
-    fn turned(&self, _turn: V2) -> Self {}
-    fn turning(&self) -> Self {}
+    fn rotated(&self, _turn: V2) -> Self {}
+    fn perp(&self) -> Self {}
 }
 
 /// A mass that moves in the plane.
@@ -109,14 +102,17 @@ impl Part for Body {
             .all(|x| x.is_finite())
     }
     #[inline]
-    fn turned(&self, turn: V2) -> Self {
+    fn rotated(&self, turn: V2) -> Self {
         Self {
-            position: turned(self.position, turn),
-            velocity: turned(self.velocity, turn),
+            position: rotate(self.position, turn),
+            velocity: rotate(self.velocity, turn),
         }
     }
-    fn turning(&self) -> Self {
-        self.turned(QUARTER)
+    fn perp(&self) -> Self {
+        Self {
+            position: perp(self.position),
+            velocity: perp(self.velocity),
+        }
     }
 }
 
@@ -146,10 +142,10 @@ impl<A: Part, B: Part> Part for (A, B) {
         self.0.is_finite() && self.1.is_finite()
     }
     #[inline]
-    fn turned(&self, turn: V2) -> Self {
-        (self.0.turned(turn), self.1.turned(turn))
+    fn rotated(&self, turn: V2) -> Self {
+        (self.0.rotated(turn), self.1.rotated(turn))
     }
-    fn turning(&self) -> Self {
-        (self.0.turning(), self.1.turning())
+    fn perp(&self) -> Self {
+        (self.0.perp(), self.1.perp())
     }
 }

@@ -57,12 +57,6 @@ impl Default for Series {
     }
 }
 
-/// A quarter turn counter-clockwise.
-#[inline]
-pub(crate) fn turned(v: V2) -> V2 {
-    V2::new(-v.y, v.x)
-}
-
 impl Series {
     /// Value at θ.
     #[inline]

@@ -123,10 +123,10 @@ impl<const ANGLE: bool> Part for Single<ANGLE> {
         self.0.is_finite()
     }
     #[inline]
-    fn turned(&self, _turn: V2) -> Self {
+    fn rotated(&self, _turn: V2) -> Self {
         *self
     }
-    fn turning(&self) -> Self {
+    fn perp(&self) -> Self {
         Self::default()
     }
 }

@@ -12,6 +12,7 @@ use crate::params::{ContactLaw, ContactParams, FrictionParams, HuntCrossley, Rot
 use crate::part::Body;
 use crate::spin::Spin;
 use crate::stator::{Rings, Stator};
+use crate::vector::perp;
 
 pub(crate) use geometry::Geometry;
 pub(crate) use state::{State, StateOf};
@@ -113,7 +114,8 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
         }
         let (sin, cos) = self.spin.phase_rad(&y.spin, t_s).sin_cos();
         let spin = self.spin.spin_rad_s(&y.spin);
-        Some((e * spin * spin * V2::new(cos, sin), e * V2::new(sin, -cos)))
+        let direction = V2::new(cos, sin);
+        Some((e * spin * spin * direction, -e * perp(direction)))
     }
 
     /// The field in contact. Smooth for given `slide` and `whirl`, also where a guard is negative.

@@ -7,6 +7,7 @@ use crate::part::Body;
 use crate::spin::Spin;
 use crate::stator::{Rings, Stator};
 use crate::system::{Inputs, State, StateOf, System};
+use crate::vector::perp;
 
 impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
     /// d/dε of the field at y + ε·change.
@@ -26,7 +27,6 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
         let inverse_m = 1.0 / self.rotor.mass_kg;
         let (normal_n, sliding_n) = (now.touch.normal_n, now.touch.sliding_n);
         let tangential_n = sliding_n + now.touch.rolling_n;
-        let turned = |v: V2| V2::new(-v.y, v.x);
 
         let d_ring = change.stator.inner();
         let d_gap = change.rotor.position - d_ring.position;
@@ -35,7 +35,7 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
         let gap_rate = y.rotor.velocity - ring.velocity;
         let d_distance = n.dot(&d_gap);
         let d_n = (d_gap - n * d_distance) / distance;
-        let d_t = turned(d_n);
+        let d_t = perp(d_n);
         let d_normal_speed = d_gap_rate.dot(&n) + gap_rate.dot(&d_n);
         let d_whirl_speed = d_gap_rate.dot(&t) + gap_rate.dot(&d_t);
         let (d_spin, d_phase) = W::change(&change.spin);
@@ -71,12 +71,12 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
         if let Some((by_speed, by_acceleration)) = self.unbalance(t_s, y) {
             let spin = self.spin.spin_rad_s(&y.spin);
             acceleration += by_speed;
-            d_acceleration += d_phase * turned(by_speed);
+            d_acceleration += d_phase * perp(by_speed);
             if spin != 0.0 {
                 d_acceleration += 2.0 * d_spin / spin * by_speed;
             }
             by_spin_up = by_acceleration;
-            d_by_spin_up = d_phase * turned(by_acceleration);
+            d_by_spin_up = d_phase * perp(by_acceleration);
         }
         let ring_acceleration = self.stator.rates(&y.stator, normal_n * n).inner().velocity;
         let d_ring_acceleration = self.stator.rates(&change.stator, d_push).inner().velocity;

@@ -22,6 +22,7 @@ use crate::contact::restitution_of;
 use crate::params::{ContactLaw, PlantParams, RingParams, SpinParams, Start, StatorParams};
 use crate::part::Body;
 use crate::plant::build;
+use crate::vector::perp;
 use crate::{BuildError, Inputs, Options, PlantError, Snapshot, V2};
 use std::ops::ControlFlow;
 
@@ -184,7 +185,8 @@ fn stays_free(params: &PlantParams, now: &Snapshot, spin_phase_rad: f64) -> bool
         let (re, im) = (natural_square - spin * spin, 2.0 * decay * spin);
         let size = rotor.eccentricity_m * spin * spin / re.hypot(im);
         let (sin, cos) = (spin_phase_rad + spin * now.t_s - im.atan2(re)).sin_cos();
-        (size * V2::new(cos, sin), size * spin * V2::new(-sin, cos))
+        let direction = V2::new(cos, sin);
+        (size * direction, size * spin * perp(direction))
     } else {
         (V2::zeros(), V2::zeros())
     };

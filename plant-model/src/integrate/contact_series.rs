@@ -9,10 +9,11 @@ use crate::V2;
 use crate::magnet::Amplifier;
 use crate::mode::{Slide, Whirl};
 use crate::params::{LinearContact, SlidingFriction};
-use crate::series::{INVERSE, Scalar, Series, turned};
+use crate::series::{INVERSE, Scalar, Series};
 use crate::spin::Spin;
 use crate::stator::{Rings, Stator};
 use crate::system::{StateOf, System};
+use crate::vector::perp;
 
 /// Series of everything in contact over one step. Reused from step to step.
 #[derive(Debug, Clone)]
@@ -282,11 +283,11 @@ impl<S: Stator, W: Spin, M: Amplifier> Context<'_, S, W, M> {
         if let Some((s, q)) = self.proportions {
             out.sliding.0[k] = s * out.force.0[k];
             out.rolling.0[k] = q * out.force.0[k];
-            out.tangential.0[k] = (s + q) * turned(out.push.0[k]);
+            out.tangential.0[k] = (s + q) * perp(out.push.0[k]);
         } else {
             self.friction(out, k);
             out.grip.0[k] = out.sliding.0[k] + out.rolling.0[k];
-            out.tangential.0[k] = turned(out.normal.times_coefficient(&out.grip, k));
+            out.tangential.0[k] = perp(out.normal.times_coefficient(&out.grip, k));
         }
         self.spin_up(out, k);
     }
@@ -419,13 +420,13 @@ impl<S: Stator, W: Spin, M: Amplifier> Context<'_, S, W, M> {
         let next = self.step_s * INVERSE[k + 1];
         if self.inverse_j == 0.0 {
             let spin = out.spin.0[0];
-            out.direction.0[k + 1] = next * spin * turned(out.direction.0[k]);
+            out.direction.0[k + 1] = next * spin * perp(out.direction.0[k]);
             out.unbalance.0[k] = e * spin * spin * out.direction.0[k];
             return;
         }
         // Ω·d, and Ω²·d = Ω·(Ω·d).
         out.turning.0[k] = out.direction.times_coefficient(&out.spin, k);
-        out.direction.0[k + 1] = next * turned(out.turning.0[k]);
+        out.direction.0[k + 1] = next * perp(out.turning.0[k]);
         out.unbalance.0[k] = e * out.turning.times_coefficient(&out.spin, k);
     }
 
@@ -445,7 +446,7 @@ impl<S: Stator, W: Spin, M: Amplifier> Context<'_, S, W, M> {
         out.spin.0[k + 1] = next * acceleration;
         if self.unbalanced {
             out.spin_rate.0[k] = acceleration;
-            let by_rate = turned(out.direction.times_coefficient(&out.spin_rate, k));
+            let by_rate = perp(out.direction.times_coefficient(&out.spin_rate, k));
             out.unbalance.0[k] -= self.system.rotor.eccentricity_m * by_rate;
         }
     }

@@ -6,10 +6,11 @@ use crate::energy::Flows;
 use crate::magnet::Amplifier;
 use crate::part::Body;
 use crate::quadrature::{EIGHT, Nodes, SIX};
-use crate::series::{INVERSE, MAX_PHASE, Series, order_for, turned};
+use crate::series::{INVERSE, MAX_PHASE, Series, order_for};
 use crate::spin::Spin;
 use crate::stator::Stator;
 use crate::system::{Inputs, State, StateOf, System};
+use crate::vector::perp;
 
 /// Where a segment of flight meets the wall.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -179,12 +180,12 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
             if i > 0 {
                 rate += gain * direction[i - 1];
             }
-            direction[i + 1] = step_s * INVERSE[i + 1] * turned(rate);
+            direction[i + 1] = step_s * INVERSE[i + 1] * perp(rate);
         }
         let square = [spin * spin, 2.0 * spin * gain, gain * gain];
         let terms = if gain == 0.0 { 1 } else { 3 };
         for i in 0..=order {
-            let mut a = -acceleration * turned(direction[i]);
+            let mut a = -acceleration * perp(direction[i]);
             for (j, s) in square[..terms].iter().enumerate().take(i + 1) {
                 a += *s * direction[i - j];
             }

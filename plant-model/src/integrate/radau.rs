@@ -62,7 +62,9 @@ impl<Y: Part, E: Rates<Y>> Radau<Y, E> {
         for (i, z) in self.z.iter_mut().enumerate() {
             *z = Y::default();
             if follows && ratio < 6.0 {
-                *z = old.at(ahead + ratio * NODES[i]).turned(back(self.turns[i]));
+                *z = old
+                    .at(ahead + ratio * NODES[i])
+                    .rotated(back(self.turns[i]));
                 z.add_scaled(-1.0, &self.start);
             }
         }
@@ -74,9 +76,9 @@ impl<Y: Part, E: Rates<Y>> Radau<Y, E> {
         y.add_scaled(1.0, &self.z[i]);
         let elapsed_s = NODES[i] * self.step_s;
         let out = self.turns[i];
-        self.evaluations[i + 1] = field.at(self.t_s + elapsed_s, &y.turned(out));
-        let mut rates = self.evaluations[i + 1].rates().turned(back(out));
-        rates.add_scaled(-self.frame.rate_rad_s(elapsed_s), &y.turning());
+        self.evaluations[i + 1] = field.at(self.t_s + elapsed_s, &y.rotated(out));
+        let mut rates = self.evaluations[i + 1].rates().rotated(back(out));
+        rates.add_scaled(-self.frame.rate_rad_s(elapsed_s), &y.perp());
         rates
     }
 
@@ -188,7 +190,7 @@ impl<Y: Part, E: Rates<Y>> Pair<Y, E> for Radau<Y, E> {
             direction[i] = 1.0;
             let direction = Y::read(&direction);
             let mut column = field.along(origin.t_s, origin.y, &direction);
-            column.add_scaled(-self.frame.turn_rad_s, &direction.turning());
+            column.add_scaled(-self.frame.turn_rad_s, &direction.perp());
             let mut out = [0.0; MOST];
             column.write(&mut out);
             for (row, value) in self.jacobian.iter_mut().zip(out) {
@@ -226,7 +228,7 @@ impl<Y: Part, E: Rates<Y>> Pair<Y, E> for Radau<Y, E> {
         };
         let mut end = self.start;
         end.add_scaled(1.0, &self.z[STAGES - 1]);
-        let end = end.turned(self.turns[STAGES - 1]);
+        let end = end.rotated(self.turns[STAGES - 1]);
         // The quadrature that takes the start for one more node, less the method.
         let mut gap = Y::default();
         for (e, z) in ERROR.iter().zip(&self.z) {
@@ -235,7 +237,7 @@ impl<Y: Part, E: Rates<Y>> Pair<Y, E> for Radau<Y, E> {
         let estimate = |y: &Y, first: &E| {
             let mut error = gap;
             error.add_scaled(1.0, first.rates());
-            error.add_scaled(-self.frame.turn_rad_s, &y.turning());
+            error.add_scaled(-self.frame.turn_rad_s, &y.perp());
             solve_part(&self.factors.real, &mut error);
             (
                 error,
@@ -304,7 +306,7 @@ impl<Y: Part> Collocation<Y> {
             factor *= theta;
             y.add_scaled(factor, power);
         }
-        y.turned(self.frame.out(theta * self.step_s))
+        y.rotated(self.frame.out(theta * self.step_s))
     }
 }
 

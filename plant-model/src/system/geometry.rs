@@ -6,6 +6,7 @@ use crate::ellipse::Foot;
 use crate::magnet::Amplifier;
 use crate::spin::Spin;
 use crate::stator::{Rings, Stator};
+use crate::vector::perp;
 
 /// Geometry of the rotor against the ring: no forces yet.
 #[derive(Debug, Clone, Copy)]
@@ -42,7 +43,7 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
         } else {
             V2::x()
         };
-        let tangent = V2::new(-normal.y, normal.x);
+        let tangent = perp(normal);
         let whirl_speed_m_s = w.dot(&tangent);
         let surface = self.surface_m_s(&y.spin);
         Geometry {
@@ -59,7 +60,7 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
     /// The same against an ellipse, at the point of it that is nearest.
     fn geometry_out_of_round(&self, foot: &Foot, w: V2, y: &StateOf<S, W, M>) -> Geometry {
         let normal = foot.normal;
-        let tangent = V2::new(-normal.y, normal.x);
+        let tangent = perp(normal);
         let whirl_speed_m_s = w.dot(&tangent);
         Geometry {
             distance_m: foot.radius_m + foot.depth_m,

@@ -64,20 +64,20 @@ impl<S: Rings, W: Part, M: Part> Part for State<S, W, M> {
             && self.force.is_finite()
     }
     #[inline]
-    fn turned(&self, turn: V2) -> Self {
+    fn rotated(&self, turn: V2) -> Self {
         Self {
-            rotor: self.rotor.turned(turn),
-            stator: self.stator.turned(turn),
-            spin: self.spin.turned(turn),
-            force: self.force.turned(turn),
+            rotor: self.rotor.rotated(turn),
+            stator: self.stator.rotated(turn),
+            spin: self.spin.rotated(turn),
+            force: self.force.rotated(turn),
         }
     }
-    fn turning(&self) -> Self {
+    fn perp(&self) -> Self {
         Self {
-            rotor: self.rotor.turning(),
-            stator: self.stator.turning(),
-            spin: self.spin.turning(),
-            force: self.force.turning(),
+            rotor: self.rotor.perp(),
+            stator: self.stator.perp(),
+            spin: self.spin.perp(),
+            force: self.force.perp(),
         }
     }
 }
