@@ -3,6 +3,7 @@
 
 pub mod hunt_crossley;
 
+use crate::bisection::bracket_until;
 use crate::params::{ContactLaw, ContactParams, LinearContact};
 
 /// A dent shallower than this share of the clearance is round-off of a lift-off without one.
@@ -190,18 +191,11 @@ pub fn damping_for_restitution(
         return Some(0.0);
     }
     // e falls monotonically with ζ, and e < (2ζ)^-2 beyond critical damping.
-    let (mut low, mut high) = (0.0, 1.0 + 1.0 / restitution);
-    while high - low > 1e-15 * high {
-        let middle = 0.5 * (low + high);
-        if middle <= low || middle >= high {
-            break;
-        }
-        if restitution_of(middle) > restitution {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
+    let (low, high) = bracket_until(
+        (0.0, 1.0 + 1.0 / restitution),
+        |low, high| high - low <= 1e-15 * high,
+        |ratio| restitution_of(ratio) > restitution,
+    );
     Some((low + high) * (stiffness_n_m * contact_mass_kg).sqrt())
 }
 

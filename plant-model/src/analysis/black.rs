@@ -23,6 +23,7 @@
 //! Source: H. F. Black's theory of synchronous contact as the paper cites it (footnote 1); the derivation is the
 //! one above.
 
+use crate::bisection::bisect;
 use crate::params::{PlantParams, RingParams, StatorParams};
 use nalgebra::{Complex, DMatrix};
 
@@ -196,7 +197,7 @@ impl SteadyWhirl {
         let at = |i: u32| std::f64::consts::TAU * (low_hz + STEP_HZ * f64::from(i));
         (0..steps)
             .filter(|i| self.balance(at(*i)) * self.balance(at(i + 1)) < 0.0)
-            .map(|i| self.sliding_at(bisect(at(i), at(i + 1), |w| self.balance(w))))
+            .map(|i| self.sliding_at(zero_between(at(i), at(i + 1), |w| self.balance(w))))
             .collect()
     }
 
@@ -266,7 +267,7 @@ impl SteadyWhirl {
         };
         (0..steps)
             .filter(|i| excess(at(*i)) * excess(at(i + 1)) < 0.0)
-            .map(|i| bisect(at(i), at(i + 1), excess))
+            .map(|i| zero_between(at(i), at(i + 1), excess))
             .map(|w| self.rolling_at(w, contact_radius_m).0)
             .filter(Circle::exists)
             .collect()
@@ -326,17 +327,9 @@ impl SteadyWhirl {
 }
 
 /// Zero of `f` between `low` and `high`, where it has different signs.
-fn bisect(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f64 {
+fn zero_between(low: f64, high: f64, f: impl Fn(f64) -> f64) -> f64 {
     let sign = f(low).signum();
-    for _ in 0..80 {
-        let middle = 0.5 * (low + high);
-        if f(middle).signum() == sign {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    0.5 * (low + high)
+    bisect((low, high), |x| f(x).signum() == sign)
 }
 
 #[cfg(test)]

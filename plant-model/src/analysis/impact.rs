@@ -18,6 +18,7 @@
 //! the tangential speed count, not where on the wall. With unbalance its phase comes in as well.
 
 use super::onset::critical_tangential_speed_m_s;
+use crate::bisection::try_bracket;
 use crate::contact::restitution_of;
 use crate::params::{ContactLaw, PlantParams, RingParams, SpinParams, Start, StatorParams};
 use crate::part::Body;
@@ -292,18 +293,12 @@ pub fn critical_speed_m_s(
         }
         low = high;
     };
-    let ControlFlow::Break(mut high) = climb else {
+    let ControlFlow::Break(high) = climb else {
         return Ok(None);
     };
-    while high - low > search.tolerance * high {
-        let middle = 0.5 * (low + high);
-        if whirls(middle)? {
-            high = middle;
-        } else {
-            low = middle;
-        }
-    }
-    Ok(Some(high))
+    let narrow = |low: f64, high: f64| high - low <= search.tolerance * high;
+    let (_, critical) = try_bracket((low, high), narrow, |speed| whirls(speed).map(|w| !w))?;
+    Ok(Some(critical))
 }
 
 /// From half the speed that suffices if nothing is lost between bounces to twice that which suffices

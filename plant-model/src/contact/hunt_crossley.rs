@@ -12,7 +12,7 @@
 //! forces leaves no dent.
 
 use super::Normal;
-use crate::bisection::bracket;
+use crate::bisection::bisect;
 use crate::params::HuntCrossley;
 
 impl HuntCrossley {
@@ -208,12 +208,6 @@ fn undamped(exponent: f64) -> HuntCrossley {
         exponent,
         damping_s_m: 0.0,
     }
-}
-
-/// Where `below` turns from true to false, to round-off; NaN between ends that are no numbers.
-fn bisect(ends: (f64, f64), below: impl Fn(f64) -> bool) -> f64 {
-    let (low, high) = bracket(ends, below);
-    0.5 * (low + high)
 }
 
 /// ln Γ(x), x > 0, by Stirling's series from 12 upwards and Γ(x + 1) = x·Γ(x) below.

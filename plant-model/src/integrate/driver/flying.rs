@@ -1,6 +1,7 @@
 //! The rotor off the wall.
 
 use super::{ON_WALL, Run, rests_on_wall};
+use crate::bisection::bracket_until;
 use crate::integrate::flight::Crossing;
 use crate::magnet::Amplifier;
 use crate::mode::{Phase, Slide, Whirl};
@@ -56,6 +57,8 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
     /// The wall is still dented but the force is gone. Short: the rotor leaves at impact speed.
     pub(super) fn fly_beyond(&mut self, t_end_s: f64) {
         const SCANS: u32 = 16;
+        // Near θ = 0 neighbouring numbers are closer than anything that counts: sixty halvings of a scan.
+        const FINEST: f64 = f64::EPSILON / 4096.0;
         let remaining = t_end_s - self.t_s;
         let g = self.system.geometry(&self.y);
         let leave_s = g.penetration_m / g.normal_speed_m_s.abs();
@@ -86,7 +89,7 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
                         room(th).1 >= 0.0
                     }
                 };
-                theta = bisect(valid, at, hold);
+                (_, theta) = bracket_until((valid, at), |low, high| high - low <= FINEST, hold);
                 next = if leaves {
                     Phase::Inside
                 } else {
@@ -106,17 +109,4 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
             self.phase = next;
         }
     }
-}
-
-/// Last θ in [low, high] for which `holds` is true, to round-off; `holds(low)` is taken for granted.
-fn bisect(mut low: f64, mut high: f64, holds: impl Fn(f64) -> bool) -> f64 {
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        if holds(middle) {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    high
 }
