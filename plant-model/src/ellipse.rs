@@ -22,7 +22,7 @@ pub(crate) struct Ellipse {
 
 /// The point of the ellipse that is nearest to a centre.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Foot {
+pub(crate) struct ClosestPoint {
     /// Outward normal there.
     pub(crate) normal: V2,
     /// How far the centre lies outside \[m\]; negative inside.
@@ -55,7 +55,7 @@ impl Ellipse {
 
     /// Squeezed so that the ellipse is a circle of a radius: what decides whether the wall is reached. Linear,
     /// so that a polynomial of time stays one.
-    pub(crate) fn squeezed(&self, v: V2, radius_m: f64) -> V2 {
+    pub(crate) fn to_circle(self, v: V2, radius_m: f64) -> V2 {
         let own = self.along(v);
         V2::new(
             own.x * radius_m / self.long_m,
@@ -69,7 +69,7 @@ impl Ellipse {
     /// middle. u·n(ψ) − p(ψ) is largest at the nearest point, where it is the depth; its slope is u·t − p′, and
     /// the slope falls with R + depth, R = p + p″ = a²b²/p³. In the quadrant of u there is one such point: Newton's
     /// steps, kept between bounds. From the gradient of the squeezed circle they need two or three near the wall.
-    pub(crate) fn foot(&self, u: V2) -> Foot {
+    pub(crate) fn closest_point(&self, u: V2) -> ClosestPoint {
         const MOST: usize = 64;
         let (a, b) = (self.long_m, self.short_m);
         let own = self.along(u);
@@ -101,7 +101,7 @@ impl Ellipse {
         let sign = |x: f64| if x < 0.0 { -1.0 } else { 1.0 };
         let (sx, sy) = (sign(own.x), sign(own.y));
         let normal = V2::new(sx * at.cos, sy * at.sin);
-        Foot {
+        ClosestPoint {
             normal: normal.x * self.axis + normal.y * perp(self.axis),
             depth_m: first.x * at.cos + first.y * at.sin - at.support_m,
             radius_m: at.radius_m,
@@ -167,28 +167,28 @@ mod tests {
             }
             width *= 0.5;
         }
-        let outside = e.squeezed(u, 1.0).norm() > 1.0;
+        let outside = e.to_circle(u, 1.0).norm() > 1.0;
         if outside { away(t) } else { -away(t) }
     }
 
     /// From the very middle to far outside, on the axes and beside them: the depth is the distance from the
     /// nearest point that a search without derivatives finds.
     #[test]
-    fn foot_is_the_nearest_point() {
+    fn closest_point_is_the_nearest() {
         for (ellipticity, axis) in [(0.01, 0.0), (0.05, 0.7), (0.2, -2.0)] {
             let e = ellipse(ellipticity, axis);
             for r in [0.0, 1e-7, 0.05, 0.3, 0.7, 0.99, 1.0, 1.001, 1.2, 2.0] {
                 for i in 0..48 {
                     let angle = axis + f64::from(i) * std::f64::consts::TAU / 48.0;
                     let u = 2e-4 * r * V2::new(angle.cos(), angle.sin());
-                    let foot = e.foot(u);
+                    let closest = e.closest_point(u);
                     let depth = by_search(&e, u);
                     assert!(
-                        (foot.depth_m - depth).abs() < 1e-12 * 2e-4 + 1e-7 * depth.abs(),
+                        (closest.depth_m - depth).abs() < 1e-12 * 2e-4 + 1e-7 * depth.abs(),
                         "{ellipticity} {r} {i}: {} {depth}",
-                        foot.depth_m
+                        closest.depth_m
                     );
-                    assert!((foot.normal.norm() - 1.0).abs() < 1e-14);
+                    assert!((closest.normal.norm() - 1.0).abs() < 1e-14);
                 }
             }
         }
@@ -203,16 +203,20 @@ mod tests {
         for i in 0..64 {
             let angle = 0.05 + f64::from(i) * std::f64::consts::TAU / 64.0;
             let u = 2.05e-4 * V2::new(angle.cos(), angle.sin());
-            let foot = e.foot(u);
-            let tangent = perp(foot.normal);
-            let rho = foot.radius_m + foot.depth_m;
-            let (there, back) = (e.foot(u + h * tangent), e.foot(u - h * tangent));
+            let closest = e.closest_point(u);
+            let tangent = perp(closest.normal);
+            let rho = closest.radius_m + closest.depth_m;
+            let (there, back) = (
+                e.closest_point(u + h * tangent),
+                e.closest_point(u - h * tangent),
+            );
             assert!((there.depth_m - back.depth_m).abs() / (2.0 * h) < 1e-6);
             let turn = (there.normal - back.normal).dot(&tangent) / (2.0 * h);
             assert!((turn * rho - 1.0).abs() < 1e-6, "{turn} {rho}");
             let radius = (there.radius_m - back.radius_m) / (2.0 * h) * rho;
-            assert!((radius - foot.radius_change_m).abs() < 1e-5 * 2e-4);
-            let out = e.foot(u + h * foot.normal).depth_m - e.foot(u - h * foot.normal).depth_m;
+            assert!((radius - closest.radius_change_m).abs() < 1e-5 * 2e-4);
+            let out = e.closest_point(u + h * closest.normal).depth_m
+                - e.closest_point(u - h * closest.normal).depth_m;
             assert!((out / (2.0 * h) - 1.0).abs() < 1e-6);
         }
     }
@@ -222,16 +226,16 @@ mod tests {
     fn round_is_round() {
         let round = ellipse(0.0, 0.3);
         let u = V2::new(1.5e-4, -1.6e-4);
-        let foot = round.foot(u);
-        assert!((foot.depth_m - (u.norm() - 2e-4)).abs() < 1e-19);
-        assert!((foot.normal - u.normalize()).norm() < 1e-15);
-        assert!((foot.radius_m - 2e-4).abs() < 1e-18 && foot.radius_change_m.abs() < 1e-18);
+        let closest = round.closest_point(u);
+        assert!((closest.depth_m - (u.norm() - 2e-4)).abs() < 1e-19);
+        assert!((closest.normal - u.normalize()).norm() < 1e-15);
+        assert!((closest.radius_m - 2e-4).abs() < 1e-18 && closest.radius_change_m.abs() < 1e-18);
         let e = ellipse(0.1, FRAC_PI_4);
         for i in 0..16 {
             let t = f64::from(i);
             let on = e.long_m * t.cos() * e.axis + e.short_m * t.sin() * perp(e.axis);
-            assert!((e.squeezed(on, 3.0).norm() - 3.0).abs() < 1e-14);
-            assert!(e.foot(on).depth_m.abs() < 1e-18);
+            assert!((e.to_circle(on, 3.0).norm() - 3.0).abs() < 1e-14);
+            assert!(e.closest_point(on).depth_m.abs() < 1e-18);
         }
     }
 }

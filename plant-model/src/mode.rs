@@ -52,7 +52,7 @@ pub(crate) enum Whirl {
 }
 
 impl Slide {
-    pub(crate) fn of(speed: f64) -> Self {
+    pub(crate) fn from_speed(speed: f64) -> Self {
         if speed < 0.0 {
             Self::Negative
         } else {
@@ -70,7 +70,7 @@ impl Slide {
 }
 
 impl Whirl {
-    pub(crate) fn of(speed: f64) -> Self {
+    pub(crate) fn from_speed(speed: f64) -> Self {
         if speed < 0.0 {
             Self::Negative
         } else {

@@ -53,9 +53,9 @@ pub(crate) const WHIRL_LOW: usize = 4;
 
 /// Guards that are not asked for a moment, having ended a mode at this very instant: one bit each.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub(crate) struct Muted(u8);
+pub(crate) struct SuppressedGuards(u8);
 
-impl Muted {
+impl SuppressedGuards {
     pub(crate) const NONE: Self = Self(0);
     /// All that decide between modes of contact.
     pub(crate) const MODES: Self = Self(!(1 << NORMAL));

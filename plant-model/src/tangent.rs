@@ -88,8 +88,8 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
             None => d_distance,
             // The normal turns by t·du/ρ, and the radius of curvature with it.
             Some(ellipse) => {
-                let foot = ellipse.foot(y.rotor.position - ring.position);
-                d_distance + foot.radius_change_m * d_n.dot(&t)
+                let closest = ellipse.closest_point(y.rotor.position - ring.position);
+                d_distance + closest.radius_change_m * d_n.dot(&t)
             }
         };
         let turning = g.normal_speed_m_s * g.whirl_speed_m_s / distance;

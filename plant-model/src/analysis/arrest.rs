@@ -43,7 +43,7 @@ impl Arrest {
         }
         let tilt = (1.0 + mu * mu).sqrt();
         let inward_n = force_n * mu / tilt;
-        let circle = Circle::of(params);
+        let circle = Circle::new(params);
         let d = params.rotor.damping_n_s_m;
         let radius_at = |v: f64| {
             let normal_n = (d * v + force_n / tilt) / mu;
@@ -133,7 +133,7 @@ struct Circle {
 }
 
 impl Circle {
-    fn of(params: &PlantParams) -> Self {
+    fn new(params: &PlantParams) -> Self {
         Self {
             mass_kg: params.rotor.mass_kg,
             stiffness_n_m: params.rotor.stiffness_n_m,
@@ -191,7 +191,7 @@ impl Circle {
 /// balance with the centrifugal force, f(A) + k·r = m·v²/r; the clearance where the shaft is so stiff that the wall would
 /// have to pull \[m\].
 pub fn circle_radius_m(params: &PlantParams, speed_m_s: f64) -> f64 {
-    Circle::of(params).radius_m(speed_m_s, 0.0)
+    Circle::new(params).radius_m(speed_m_s, 0.0)
 }
 
 #[cfg(test)]

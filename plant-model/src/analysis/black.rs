@@ -41,7 +41,7 @@ struct Oscillator {
 
 impl Oscillator {
     /// Of a ring, where it is the same along x and y.
-    fn of(ring: &RingParams) -> Option<Self> {
+    fn from_ring(ring: &RingParams) -> Option<Self> {
         let [k, d] = [ring.stiffness_n_m, ring.damping_n_s_m];
         (k.x == k.y && d.x == d.y).then_some(Self {
             mass_kg: ring.mass_kg,
@@ -120,7 +120,7 @@ impl SteadyWhirl {
     /// Of a plant; `None` where ring or bore is not the same along x and y, where the contact is not linear, and with a
     /// race: a whirl that rolls on it has no speed of its own, since the race turns along. Sliding friction is taken at
     /// rest.
-    pub fn of(params: &PlantParams) -> Option<Self> {
+    pub fn from_params(params: &PlantParams) -> Option<Self> {
         if params.race.is_some() {
             return None;
         }
@@ -128,9 +128,9 @@ impl SteadyWhirl {
             StatorParams::Rigid => vec![],
             StatorParams::RigidEllipse(bore) if bore.ellipticity == 0.0 => vec![],
             StatorParams::RigidEllipse(_) => return None,
-            StatorParams::OneMass(ring) => vec![Oscillator::of(ring)?],
+            StatorParams::OneMass(ring) => vec![Oscillator::from_ring(ring)?],
             StatorParams::TwoMass { inner, outer } => {
-                vec![Oscillator::of(inner)?, Oscillator::of(outer)?]
+                vec![Oscillator::from_ring(inner)?, Oscillator::from_ring(outer)?]
             }
         };
         let friction = &params.friction;

@@ -82,7 +82,7 @@ pub enum Outcome {
 
 /// An impact and what followed.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Aftermath {
+pub struct ImpactOutcome {
     /// What it ended in.
     pub outcome: Outcome,
     /// Touches in all, the first included.
@@ -114,11 +114,11 @@ const LOOK_S: f64 = 2e-3;
 ///
 /// # Errors
 /// [`ImpactError`].
-pub fn aftermath(
+pub fn run_impact(
     params: &PlantParams,
     impact: &Impact,
     criterion: &Criterion,
-) -> Result<Aftermath, ImpactError> {
+) -> Result<ImpactOutcome, ImpactError> {
     let threshold = critical_tangential_speed_m_s(params).ok_or(ImpactError::NoThreshold)?;
     let backward = impact.backward();
     let start = start_of(params, impact);
@@ -150,7 +150,7 @@ pub fn aftermath(
             break Outcome::Free;
         }
     };
-    Ok(Aftermath {
+    Ok(ImpactOutcome {
         outcome,
         impacts,
         impacts_to_threshold: to_threshold,
@@ -279,7 +279,7 @@ pub fn critical_speed_m_s(
             spin_rad_s,
             spin_phase_rad: 0.0,
         };
-        aftermath(params, &impact, criterion).map(|a| a.outcome == Outcome::Whirl)
+        run_impact(params, &impact, criterion).map(|a| a.outcome == Outcome::Whirl)
     };
     let (from, to) = search_range(params, inclination_rad)?;
     let mut low = from;

@@ -16,7 +16,7 @@ use crate::part::{Part, Weights};
 use crate::readout::{Peaks, Work};
 use crate::spin::Spin;
 use crate::stator::Stator;
-use crate::system::{Evaluation, Guards, Inputs, Muted, NORMAL, StateOf, System};
+use crate::system::{Evaluation, Guards, Inputs, NORMAL, StateOf, SuppressedGuards, System};
 
 /// Points at which a step that may hold an event is searched; those close to the ends show a dip there.
 const SCANS: [f64; 10] = [
@@ -87,7 +87,7 @@ pub(crate) struct Task<'a> {
     pub(crate) inputs: &'a Inputs,
     pub(crate) mode: (Slide, Whirl),
     /// Guard that is not to be asked.
-    pub(crate) muted: Muted,
+    pub(crate) suppressed: SuppressedGuards,
     /// Sign of v_w in backward whirl.
     pub(crate) backward: f64,
 }
@@ -192,7 +192,7 @@ impl<P> ContactStepper<P> {
             }
             self.pair.set_end(field.at(t_s + h, &end));
             let event = match suspicious(self.pair.seen()) {
-                true => self.locate((t_s, h), (task.muted, &round_off), dips, &mut field),
+                true => self.locate((t_s, h), (task.suppressed, &round_off), dips, &mut field),
                 false => None,
             };
             let Some(Crossing { guard, theta, dip }) = event else {
@@ -303,7 +303,7 @@ impl<P> ContactStepper<P> {
     fn locate<Y: Part>(
         &mut self,
         (t_s, step_s): (f64, f64),
-        (muted, round_off): (Muted, &Guards),
+        (suppressed, round_off): (SuppressedGuards, &Guards),
         dips: bool,
         field: &mut impl Field<Y, Evaluation<Y>>,
     ) -> Option<Crossing>
@@ -323,7 +323,7 @@ impl<P> ContactStepper<P> {
         let rising = self.pair.seen().first()?.touch.guard_rate > 0.0;
         let jumped = |(guard, g): (usize, &f64)| {
             *g < -1e-12 * scale[guard] - round_off[guard]
-                && !muted.has(guard)
+                && !suppressed.has(guard)
                 && !(guard == NORMAL && rising)
         };
         if let Some(guard) = start.iter().enumerate().position(jumped) {
@@ -336,7 +336,7 @@ impl<P> ContactStepper<P> {
         let negative = |guard: usize, value: f64| {
             // No number is no positive one: the step is to be shortened.
             let positive = value >= -1e-13 * scale[guard] - round_off[guard];
-            !positive && !muted.has(guard)
+            !positive && !suppressed.has(guard)
         };
         let mut found: Option<Crossing> = None;
         let (mut before, mut at_before) = (0.0, start);

@@ -19,7 +19,7 @@ use crate::part::Part;
 use crate::readout::{Meters, Snapshot, Work};
 use crate::spin::Spin;
 use crate::stator::{Rings, Stator};
-use crate::system::{Evaluation, Geometry, Inputs, Muted, NORMAL, StateOf, System};
+use crate::system::{Evaluation, Geometry, Inputs, NORMAL, StateOf, SuppressedGuards, System};
 
 type Explicit<Y> = Dop853<Y, Evaluation<Y>>;
 type Stiff<Y> = Radau<Y, Evaluation<Y>>;
@@ -52,7 +52,7 @@ pub(crate) struct Run<S: Stator, W: Spin, M: Amplifier> {
     events_without_progress: u32,
     steps: u64,
     /// Guard that is not asked in the next step.
-    muted: Muted,
+    suppressed: SuppressedGuards,
     /// The rotor has left the wall at this instant.
     just_left: bool,
     /// When it left last \[s\].
@@ -114,7 +114,7 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
             options,
             events_without_progress: 0,
             steps: 0,
-            muted: Muted::NONE,
+            suppressed: SuppressedGuards::NONE,
             just_left: false,
             left_at_s: f64::NEG_INFINITY,
             farthest_m: 0.0,
@@ -234,16 +234,16 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
 
     fn touch(&mut self, t_end_s: f64, pair: (Slide, Whirl)) -> Result<(), PlantError> {
         // Guards that ended this very mode at this very instant are not asked again for a moment.
-        let muted = core::mem::take(&mut self.muted);
-        let t_end_s = match muted {
-            Muted::NONE => t_end_s,
+        let suppressed = core::mem::take(&mut self.suppressed);
+        let t_end_s = match suppressed {
+            SuppressedGuards::NONE => t_end_s,
             _ => t_end_s.min(self.t_s + 100.0 * self.system.moment_s(&self.y)),
         };
         let task = Task {
             span: (self.t_s, t_end_s),
             inputs: &self.inputs,
             mode: pair,
-            muted,
+            suppressed,
             backward: self.backward,
         };
         let books = (&mut self.scales, &mut self.work);
@@ -272,11 +272,11 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
                 let here = (self.t_s, &self.y);
                 let next = self.system.next_in_contact(here, &self.inputs, pair, guard);
                 if next == pair && stood_still {
-                    self.muted = muted.and(guard);
+                    self.suppressed = suppressed.and(guard);
                 }
                 // Round-off alone leads round in a circle.
                 if self.events_without_progress >= CIRCLE {
-                    self.muted = Muted::MODES;
+                    self.suppressed = SuppressedGuards::MODES;
                 }
                 self.phase = Phase::Contact(next.0, next.1);
             }
@@ -288,7 +288,7 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
     /// is not asked for a moment.
     fn touch_down(&mut self) {
         if self.t_s - self.left_at_s <= self.system.moment_s(&self.y) {
-            self.muted = Muted::NORMAL;
+            self.suppressed = SuppressedGuards::NORMAL;
         }
         self.phase = self.settled();
     }

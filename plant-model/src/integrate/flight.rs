@@ -155,7 +155,7 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
         }
         if let Some(ellipse) = self.stator.ellipse() {
             for (gap, x) in (segment.gap.0.iter_mut().zip(&segment.position.0)).take(order + 1) {
-                *gap = ellipse.squeezed(*x, self.contact.clearance_m);
+                *gap = ellipse.to_circle(*x, self.contact.clearance_m);
             }
         }
         if let Some(ring) = S::inner_series(&segment.stator) {

@@ -90,7 +90,7 @@ impl<S: Stator> SeriesStepper<S> {
         let (mut event, mut whole) = (None, last);
         for i in 0..GUARDS {
             let guard = &mut self.guard;
-            if task.muted.has(i) || !self.series.guard(guard, system, task.mode, i) {
+            if task.suppressed.has(i) || !self.series.guard(guard, system, task.mode, i) {
                 continue;
             }
             let (stop, by) = match first_fall(guard, theta, order, i == NORMAL) {

@@ -138,14 +138,14 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
         let slides: &[Slide] = if slide_at_zero {
             &[Slide::Rolling, Slide::Positive, Slide::Negative]
         } else {
-            &[Slide::of(g.sliding_speed_m_s)]
+            &[Slide::from_speed(g.sliding_speed_m_s)]
         };
         let whirls: &[Whirl] = if self.friction.rolling_coefficient == 0.0 {
             &[Whirl::Ignored]
         } else if whirl_at_zero {
             &[Whirl::Still, Whirl::Positive, Whirl::Negative]
         } else {
-            &[Whirl::of(g.whirl_speed_m_s)]
+            &[Whirl::from_speed(g.whirl_speed_m_s)]
         };
         let moment_s = self.moment_s(y);
         for &slide in slides {

@@ -2,7 +2,7 @@
 
 use super::{StateOf, System};
 use crate::V2;
-use crate::ellipse::Foot;
+use crate::ellipse::ClosestPoint;
 use crate::magnet::Amplifier;
 use crate::spin::Spin;
 use crate::stator::{Rings, Stator};
@@ -34,7 +34,7 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
         let u = y.rotor.position - ring.position;
         let w = y.rotor.velocity - ring.velocity;
         if let Some(ellipse) = self.stator.ellipse() {
-            return self.geometry_out_of_round(&ellipse.foot(u), w, y);
+            return self.geometry_out_of_round(&ellipse.closest_point(u), w, y);
         }
         let distance_m = u.norm();
         // Concentric: every direction is as good; contact needs a clearance, so none is felt.
@@ -58,15 +58,20 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
     }
 
     /// The same against an ellipse, at the point of it that is nearest.
-    fn geometry_out_of_round(&self, foot: &Foot, w: V2, y: &StateOf<S, W, M>) -> Geometry {
-        let normal = foot.normal;
+    fn geometry_out_of_round(
+        &self,
+        closest: &ClosestPoint,
+        w: V2,
+        y: &StateOf<S, W, M>,
+    ) -> Geometry {
+        let normal = closest.normal;
         let tangent = perp(normal);
         let whirl_speed_m_s = w.dot(&tangent);
         Geometry {
-            distance_m: foot.radius_m + foot.depth_m,
+            distance_m: closest.radius_m + closest.depth_m,
             normal,
             tangent,
-            penetration_m: foot.depth_m,
+            penetration_m: closest.depth_m,
             normal_speed_m_s: w.dot(&normal),
             whirl_speed_m_s,
             sliding_speed_m_s: whirl_speed_m_s + self.surface_m_s(&y.spin),

@@ -217,14 +217,14 @@ fn refuses_what_it_has_not() {
 /// differ, and none for a race, which turns along.
 #[test]
 fn steady_whirl_is_named_for_round_bores_only() {
-    let round = SteadyWhirl::of(&onset_rig()).unwrap();
+    let round = SteadyWhirl::from_params(&onset_rig()).unwrap();
     assert_eq!(
-        SteadyWhirl::of(&elliptic(onset_rig(), 0.0, 0.4)),
+        SteadyWhirl::from_params(&elliptic(onset_rig(), 0.0, 0.4)),
         Some(round)
     );
     for ellipticity in [1e-6, 0.05, 0.2] {
         assert_eq!(
-            SteadyWhirl::of(&elliptic(onset_rig(), ellipticity, 0.4)),
+            SteadyWhirl::from_params(&elliptic(onset_rig(), ellipticity, 0.4)),
             None
         );
     }
@@ -234,5 +234,5 @@ fn steady_whirl_is_named_for_round_bores_only() {
         drag_n_m_s: 0.0,
         start_spin_rad_s: 0.0,
     });
-    assert_eq!(SteadyWhirl::of(&params), None);
+    assert_eq!(SteadyWhirl::from_params(&params), None);
 }

@@ -5,7 +5,7 @@ use firmware_studies::paper::maps::chapter;
 use firmware_studies::paper::rotors::OnsetRig;
 use firmware_studies::paper::{Chapter, Drawing};
 use plant_model::Options;
-use plant_model::analysis::impact::{Criterion, Impact, Outcome, aftermath};
+use plant_model::analysis::impact::{Criterion, Impact, Outcome, run_impact};
 
 fn line(chapter: &Chapter, file: &str, curve: usize) -> Vec<f64> {
     let figure = chapter.figures.iter().find(|f| f.file == file).unwrap();
@@ -75,7 +75,7 @@ fn fringe_does_not_come_from_the_tolerance() {
                     spin_rad_s: 100.0 * std::f64::consts::TAU,
                     spin_phase_rad: 2.0,
                 };
-                aftermath(&params, &impact, &criterion).unwrap().outcome == Outcome::Whirl
+                run_impact(&params, &impact, &criterion).unwrap().outcome == Outcome::Whirl
             })
             .collect()
     };

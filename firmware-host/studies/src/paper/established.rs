@@ -63,7 +63,7 @@ pub fn chapter(extent: Extent) -> Result<Chapter, PaperError> {
     );
     let (runs, search, laws, constant) = (runs?, search?, laws?, constant?);
     let used = (laws.get(2)).ok_or_else(|| PaperError::Missing("no friction law".to_owned()))?;
-    let limit_hz = SteadyWhirl::of(&rotors::footnote_4())
+    let limit_hz = SteadyWhirl::from_params(&rotors::footnote_4())
         .and_then(|whirl| whirl.upper_limit(5000.0))
         .map(|circle| circle.frequency_hz())
         .ok_or_else(|| PaperError::Missing("no upper whirl limit".to_owned()))?;

@@ -69,7 +69,7 @@ pub(super) fn chapter(extent: Extent) -> Result<Chapter, PaperError> {
     let (m, k) = (rigid.rotor.mass_kg, rigid.rotor.stiffness_n_m);
     let cap_hz = ((k + STIFFNESS_N_M) / m).sqrt() / TAU;
     let hard_40 = fastest_hz(&hard, 40.0, 0.02)?;
-    let one_limit = SteadyWhirl::of(&one).and_then(|whirl| whirl.upper_limit(5000.0));
+    let one_limit = SteadyWhirl::from_params(&one).and_then(|whirl| whirl.upper_limit(5000.0));
     const MEASURED_40_HZ: f64 = 530.0;
     const MEASURED_166_HZ: f64 = 400.0;
     let source = "Results, simulation";

@@ -20,7 +20,7 @@ const STIFFNESSES_N_M: [f64; 5] = [3e8, 5e8, 1e9, 1e10, 1e11];
 
 fn whirl(contact_stiffness_n_m: f64) -> Result<SteadyWhirl, PaperError> {
     let params = footnote_4(contact_stiffness_n_m.min(1e12));
-    let mut whirl = SteadyWhirl::of(&params)
+    let mut whirl = SteadyWhirl::from_params(&params)
         .ok_or_else(|| PaperError::Missing("the stator is not isotropic".to_owned()))?;
     whirl.normal_compliance_m_n = 1.0 / contact_stiffness_n_m;
     Ok(whirl)

@@ -132,7 +132,7 @@ pub(super) fn chapter(_: Extent) -> Result<Chapter, PaperError> {
     let one_mass = rigid_ring();
     let one_mass_hz = fastest_hz(&one_mass, SPIN_HZ, 0.1)?;
     let system = |params| {
-        SteadyWhirl::of(params)
+        SteadyWhirl::from_params(params)
             .ok_or_else(|| PaperError::Missing("the mounting is not isotropic".to_owned()))
     };
     let (two_mass, one_mass) = (system(&params)?, system(&one_mass)?);

@@ -85,7 +85,7 @@ fn circles_balance() {
         if let Some(exponent) = exponent {
             params.contact.law = hertz(1e8 * 1e-5_f64.powf(1.0 - exponent), exponent);
         }
-        let circle = Circle::of(&params);
+        let circle = Circle::new(&params);
         for inward in [0.0, 200.0] {
             let (r, slope) = circle.radius_and_slope(0.3, inward);
             let normal = params.contact.law.normal_force_n(r - 2e-4, 0.0);

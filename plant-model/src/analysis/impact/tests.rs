@@ -115,7 +115,7 @@ fn what_is_free_never_touches_again() {
                 spin_rad_s: 200.0,
                 spin_phase_rad: 0.0,
             };
-            let after = aftermath(&params, &impact, &Criterion::default()).unwrap();
+            let after = run_impact(&params, &impact, &Criterion::default()).unwrap();
             if after.outcome != Outcome::Free {
                 continue;
             }

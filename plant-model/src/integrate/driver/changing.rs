@@ -10,7 +10,7 @@ use crate::mode::Phase;
 use crate::params::{Change, ParamError, SlidingFriction};
 use crate::spin::Spin;
 use crate::stator::Stator;
-use crate::system::{Muted, StateOf};
+use crate::system::{StateOf, SuppressedGuards};
 
 impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
     /// See [`crate::plant::Plant::change`].
@@ -57,7 +57,7 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
             let here = (self.t_s, &self.y);
             let (slide, whirl) = self.system.settle(here, &self.inputs, held);
             self.phase = Phase::Contact(slide, whirl);
-            self.muted = self.muted.among(Muted::NORMAL);
+            self.suppressed = self.suppressed.among(SuppressedGuards::NORMAL);
         }
         Ok(())
     }

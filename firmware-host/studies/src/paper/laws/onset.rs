@@ -4,7 +4,7 @@ use super::{linear_impact, linear_of, matched_at_impact, with_law};
 use crate::paper::rotors::OnsetRig;
 use crate::paper::{Extent, Kind, PaperError, Row, Table};
 use plant_model::analysis::impact::{
-    Criterion, Impact, Outcome, Search, aftermath, critical_speed_m_s,
+    Criterion, Impact, Outcome, Search, critical_speed_m_s, run_impact,
 };
 use plant_model::contact::hunt_crossley::damping_for_restitution;
 use plant_model::params::{HuntCrossley, PlantParams};
@@ -95,7 +95,7 @@ fn fit() -> Result<Fit, PaperError> {
     while high - low > 1e-3 * high {
         let middle = 0.5 * (low + high);
         let tried = with_law(&params, law_of(middle)?);
-        if aftermath(&tried, &impact, &Criterion::default())?.outcome == Outcome::Whirl {
+        if run_impact(&tried, &impact, &Criterion::default())?.outcome == Outcome::Whirl {
             high = middle;
         } else {
             low = middle;

@@ -47,7 +47,8 @@ fn held(params: &PlantParams) -> Result<Settled, PaperError> {
 pub(super) fn compare(extent: Extent) -> Result<(Vec<Row>, Vec<Table>), PaperError> {
     let missing = |what: &str| PaperError::Missing(what.to_owned());
     let linear = footnote_4(STIFFNESS_N_M);
-    let mut black = SteadyWhirl::of(&linear).ok_or_else(|| missing("no isotropic stator"))?;
+    let mut black =
+        SteadyWhirl::from_params(&linear).ok_or_else(|| missing("no isotropic stator"))?;
     black.normal_compliance_m_n = 0.0;
     let limit = (black.upper_limit(HIGHEST_HZ)).ok_or_else(|| missing("no upper limit"))?;
     let steady = held(&linear)?;

@@ -4,7 +4,7 @@ use super::linear;
 use super::outcomes::{changes, figure, shade};
 use crate::paper::rotors::OnsetRig;
 use crate::paper::{Axis, Extent, Figure, Kind, PaperError, Row, Table};
-use plant_model::analysis::impact::{Criterion, Impact, Outcome, aftermath};
+use plant_model::analysis::impact::{Criterion, Impact, Outcome, run_impact};
 use rayon::prelude::{IntoParallelIterator, ParallelIterator};
 use std::f64::consts::TAU;
 
@@ -46,7 +46,7 @@ fn outcomes(
                         spin_rad_s: TAU * spin_hz,
                         spin_phase_rad: TAU * (f64::from(j) + 0.5) / f64::from(rows),
                     };
-                    let run = aftermath(&params, &impact, &Criterion::default())?;
+                    let run = run_impact(&params, &impact, &Criterion::default())?;
                     Ok((shade(&run), run.outcome == Outcome::Undecided))
                 })
                 .collect()

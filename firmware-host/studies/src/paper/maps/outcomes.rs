@@ -3,14 +3,14 @@
 use super::{FRICTION, INCLINATION, Varied, axis, linear};
 use crate::paper::rotors::OnsetRig;
 use crate::paper::{Axis, Drawing, Extent, Figure, HeatMap, Kind, PaperError, Row};
-use plant_model::analysis::impact::{Aftermath, Criterion, Impact, Outcome, aftermath};
+use plant_model::analysis::impact::{Criterion, Impact, ImpactOutcome, Outcome, run_impact};
 use rayon::prelude::{IntoParallelIterator, ParallelIterator};
 
 /// Impacts shown with the darkest colour.
 const MOST_IMPACTS: f64 = 10.0;
 
 /// Number of impacts until v_t,crit for whirl; not a number otherwise.
-pub(super) fn shade(run: &Aftermath) -> f64 {
+pub(super) fn shade(run: &ImpactOutcome) -> f64 {
     match run.outcome {
         Outcome::Whirl => run.impacts_to_threshold.map_or(f64::NAN, f64::from),
         Outcome::Free | Outcome::Undecided => f64::NAN,
@@ -76,7 +76,7 @@ pub(super) fn balanced(rig: &OnsetRig, extent: Extent) -> Result<([Figure; 2], R
                             spin_rad_s: OnsetRig::SPIN_RAD_S,
                             spin_phase_rad: 0.0,
                         };
-                        Ok(shade(&aftermath(&params, &impact, &Criterion::default())?))
+                        Ok(shade(&run_impact(&params, &impact, &Criterion::default())?))
                     })
                     .collect()
             })

@@ -3,7 +3,7 @@
 use super::Configuration;
 use crate::paper::rotors::OnsetRig;
 use crate::paper::{Kind, PaperError, Row, Stated, Table};
-use plant_model::analysis::impact::{Criterion, Impact, aftermath};
+use plant_model::analysis::impact::{Criterion, Impact, run_impact};
 use rayon::prelude::{IntoParallelIterator, ParallelIterator};
 
 /// Number of impacts until v_t,crit is passed, at and above v_r,crit.
@@ -24,7 +24,7 @@ pub(super) fn until_whirl(
                     spin_rad_s: OnsetRig::SPIN_RAD_S,
                     spin_phase_rad: 0.0,
                 };
-                *count = aftermath(&params, &impact, &Criterion::default())?.impacts_to_threshold;
+                *count = run_impact(&params, &impact, &Criterion::default())?.impacts_to_threshold;
             }
             Ok(counts)
         })

@@ -2,7 +2,7 @@
 
 use super::super::PaperError;
 use plant_model::analysis::course::{Course, Watch, follow};
-use plant_model::analysis::impact::{Criterion, Impact, Outcome, aftermath};
+use plant_model::analysis::impact::{Criterion, Impact, Outcome, run_impact};
 use plant_model::analysis::onset::critical_tangential_speed_m_s;
 use plant_model::params::{PlantParams, RaceParams, SpinParams};
 use plant_model::{Mode, Options, build};
@@ -150,7 +150,7 @@ pub(super) fn lightest_that_whirls(
             spin_rad_s: spin_hz * TAU,
             spin_phase_rad: 0.0,
         };
-        let after = aftermath(&params, &impact, &Criterion::default())?;
+        let after = run_impact(&params, &impact, &Criterion::default())?;
         Ok(after.outcome == Outcome::Whirl)
     };
     let (mut low, mut high) = (1e-5_f64, 1e-1_f64);
