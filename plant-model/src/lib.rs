@@ -64,7 +64,7 @@
 //! ```
 //!
 //! Files, each importing only from those above it: `vector`, `bisection`, `params`, `contact`, `friction`, `mode`, `energy`,
-//! `part`, `series`, `quadrature`, `ellipse`, `stator`, `spin`, `magnet`, `system`, `tangent`, `readout`, `integrate`, `plant`,
+//! `part`, `series`, `quadrature`, `ellipse`, `stator`, `spin`, `plane`, `magnet`, `system`, `tangent`, `readout`, `integrate`, `plant`,
 //! `analysis`.
 
 #![forbid(unsafe_code)]
@@ -81,6 +81,7 @@ mod magnet;
 mod mode;
 pub mod params;
 mod part;
+mod plane;
 pub mod plant;
 mod quadrature;
 pub mod readout;

@@ -8,10 +8,11 @@ use crate::magnet::{Amplifier, Direct, Lagged};
 use crate::mode::Mode;
 use crate::params::{Change, ParamError, PlantParams, SpinParams, Start, StatorParams};
 use crate::part::{Body, Part};
+use crate::plane::race::Race;
+use crate::plane::{Bore, Plane, Raceway};
 use crate::readout::{Meters, Snapshot, Work};
-use crate::spin::race::{Race, Raced};
-use crate::spin::{Free, FreePhased, Held, Spin};
-use crate::stator::{Elliptic, OneMass, Rigid, Stator, TwoMass};
+use crate::spin::{Free, Held, Phased, Spin};
+use crate::stator::{OneMass, Rigid, Stator, TwoMass};
 use crate::system::{Inputs, State, StateOf, System};
 
 /// Why a plant could not be built.
@@ -63,7 +64,7 @@ pub trait Plant: Send {
     fn states(&self) -> usize;
 }
 
-impl<S: Stator, W: Spin, M: Amplifier> Plant for Run<S, W, M> {
+impl<S: Stator, W: Spin, M: Amplifier, B: Bore, R: Raceway> Plant for Run<S, W, M, B, R> {
     fn advance(
         &mut self,
         t_end_s: f64,
@@ -94,7 +95,7 @@ impl<S: Stator, W: Spin, M: Amplifier> Plant for Run<S, W, M> {
         Run::method(self)
     }
     fn states(&self) -> usize {
-        <StateOf<S, W, M> as Part>::STATES
+        <StateOf<S, W, M, R> as Part>::STATES
     }
 }
 
@@ -109,12 +110,14 @@ pub fn build(
     options: Options,
 ) -> Result<Box<dyn Plant>, BuildError> {
     checked(params, start, options)?;
-    Ok(with_parts(
+    let phased = params.rotor.eccentricity_m > 0.0;
+    Ok(Parts {
         params,
         start,
         options,
-        params.rotor.eccentricity_m > 0.0,
-    ))
+        phased,
+    }
+    .with_stator())
 }
 
 /// [`build`] with a rotor whose angle is followed from the start, so that an unbalance may come later.
@@ -127,7 +130,14 @@ pub fn build_for_changes(
     options: Options,
 ) -> Result<Box<dyn Plant>, BuildError> {
     checked(params, start, options)?;
-    Ok(with_parts(params, start, options, true))
+    let phased = true;
+    Ok(Parts {
+        params,
+        start,
+        options,
+        phased,
+    }
+    .with_stator())
 }
 
 fn checked(params: &PlantParams, start: &Start, options: Options) -> Result<(), BuildError> {
@@ -146,124 +156,131 @@ fn checked(params: &PlantParams, start: &Start, options: Options) -> Result<(), 
     Ok(())
 }
 
-fn with_parts(
-    params: &PlantParams,
-    start: &Start,
+/// What a plant is composed of, as data; each step turns one part into its type.
+#[derive(Clone, Copy)]
+struct Parts<'a> {
+    params: &'a PlantParams,
+    start: &'a Start,
     options: Options,
+    /// Whether the angle of the rotor is followed also without an unbalance.
     phased: bool,
-) -> Box<dyn Plant> {
-    let made = (options, phased);
-    match &params.stator {
-        StatorParams::Rigid => with_stator(params, start, made, Rigid),
-        StatorParams::RigidEllipse(ellipse) => {
-            let ellipse = Ellipse::new(ellipse, params.contact.clearance_m);
-            with_stator(params, start, made, Elliptic(ellipse))
-        }
-        StatorParams::OneMass(ring) => with_stator(params, start, made, OneMass(*ring)),
-        StatorParams::TwoMass { inner, outer } => {
-            let stator = TwoMass {
-                inner: *inner,
-                outer: *outer,
-            };
-            with_stator(params, start, made, stator)
-        }
-    }
 }
 
-fn with_stator<S: Stator>(
-    params: &PlantParams,
-    start: &Start,
-    (o, phased): (Options, bool),
-    stator: S,
-) -> Box<dyn Plant> {
-    if let Some(race) = &params.race {
-        let (inverse_inertia, drive_torque_n_m) = match params.spin {
-            SpinParams::Held => (0.0, 0.0),
-            SpinParams::Free {
-                inertia_kg_m2,
-                drive_torque_n_m,
-            } => (1.0 / inertia_kg_m2, drive_torque_n_m),
-        };
-        let raced = Raced {
-            inverse_inertia,
-            drive_torque_n_m,
-            race: Race {
-                radius_m: params.bore_radius_m(),
-                inertia_kg_m2: race.inertia_kg_m2,
-                drag_n_m_s: race.drag_n_m_s,
-                start_spin_rad_s: race.start_spin_rad_s,
-            },
-        };
-        return with_spin(params, start, o, stator, raced);
-    }
-    match params.spin {
-        SpinParams::Held => {
-            let held = Held {
-                spin_rad_s: start.spin_rad_s,
-                phase_rad: start.spin_phase_rad,
-            };
-            with_spin(params, start, o, stator, held)
-        }
-        SpinParams::Free {
-            inertia_kg_m2,
-            drive_torque_n_m,
-        } => {
-            let free = Free {
-                inertia_kg_m2,
-                drive_torque_n_m,
-            };
-            if phased {
-                with_spin(params, start, o, stator, FreePhased(free))
-            } else {
-                with_spin(params, start, o, stator, free)
+impl Parts<'_> {
+    fn with_stator(self) -> Box<dyn Plant> {
+        match &self.params.stator {
+            StatorParams::Rigid => self.with_spin(Rigid, ()),
+            StatorParams::RigidEllipse(ellipse) => {
+                let clearance_m = self.params.contact.clearance_m;
+                self.with_spin(Rigid, Ellipse::new(ellipse, clearance_m))
+            }
+            StatorParams::OneMass(ring) => self.with_spin(OneMass(*ring), ()),
+            StatorParams::TwoMass { inner, outer } => {
+                let (inner, outer) = (*inner, *outer);
+                self.with_spin(TwoMass { inner, outer }, ())
             }
         }
     }
-}
 
-fn with_spin<S: Stator, W: Spin>(
-    params: &PlantParams,
-    start: &Start,
-    options: Options,
-    stator: S,
-    spin: W,
-) -> Box<dyn Plant> {
-    match params.magnet {
-        Some(magnet) if magnet.lag_s > 0.0 => {
-            let lagged = Lagged {
-                lag_s: magnet.lag_s,
+    fn with_spin<S: Stator, B: Bore>(self, stator: S, bore: B) -> Box<dyn Plant> {
+        let phased = match self.params.spin {
+            SpinParams::Held => Phased {
+                inverse_inertia: 0.0,
+                drive_torque_n_m: 0.0,
+            },
+            SpinParams::Free {
+                inertia_kg_m2,
+                drive_torque_n_m,
+            } => Phased {
+                inverse_inertia: 1.0 / inertia_kg_m2,
+                drive_torque_n_m,
+            },
+        };
+        if let Some(race) = &self.params.race {
+            let race = Race {
+                radius_m: self.params.bore_radius_m(),
+                inertia_kg_m2: race.inertia_kg_m2,
+                drag_n_m_s: race.drag_n_m_s,
+                start_spin_rad_s: race.start_spin_rad_s,
             };
-            compose(params, start, options, stator, spin, lagged)
+            return self.with_amplifier(stator, phased, self.plane(bore, race));
         }
-        _ => compose(params, start, options, stator, spin, Direct),
+        let plane = self.plane(bore, ());
+        match self.params.spin {
+            SpinParams::Held => {
+                let held = Held {
+                    spin_rad_s: self.start.spin_rad_s,
+                    phase_rad: self.start.spin_phase_rad,
+                };
+                self.with_amplifier(stator, held, plane)
+            }
+            SpinParams::Free { .. } if self.phased => self.with_amplifier(stator, phased, plane),
+            SpinParams::Free {
+                inertia_kg_m2,
+                drive_torque_n_m,
+            } => {
+                let free = Free {
+                    inertia_kg_m2,
+                    drive_torque_n_m,
+                };
+                self.with_amplifier(stator, free, plane)
+            }
+        }
     }
-}
 
-fn compose<S: Stator, W: Spin, M: Amplifier>(
-    params: &PlantParams,
-    start: &Start,
-    options: Options,
-    stator: S,
-    spin: W,
-    amplifier: M,
-) -> Box<dyn Plant> {
-    let system = System {
-        rotor: params.rotor,
-        contact: params.contact,
-        friction: params.friction,
-        stator,
-        spin,
-        amplifier,
-    };
-    let state = State {
-        rotor: Body {
-            position: start.position_m,
-            velocity: start.velocity_m_s,
-        },
-        stator: S::State::default(),
-        spin: spin.start(start.spin_rad_s, start.spin_phase_rad),
-        force: M::State::default(),
-    };
-    let force_max_n = params.magnet.map_or(0.0, |m| m.force_max_n);
-    Box::new(Run::new(system, state, force_max_n, options))
+    fn plane<B, R>(&self, bore: B, race: R) -> Plane<B, R> {
+        Plane {
+            radius_m: self.params.rotor.contact_radius_m,
+            contact: self.params.contact,
+            friction: self.params.friction,
+            bore,
+            race,
+        }
+    }
+
+    fn with_amplifier<S: Stator, W: Spin, B: Bore, R: Raceway>(
+        self,
+        stator: S,
+        spin: W,
+        plane: Plane<B, R>,
+    ) -> Box<dyn Plant> {
+        match self.params.magnet {
+            Some(magnet) if magnet.lag_s > 0.0 => {
+                let lagged = Lagged {
+                    lag_s: magnet.lag_s,
+                };
+                self.compose(stator, spin, plane, lagged)
+            }
+            _ => self.compose(stator, spin, plane, Direct),
+        }
+    }
+
+    fn compose<S: Stator, W: Spin, M: Amplifier, B: Bore, R: Raceway>(
+        self,
+        stator: S,
+        spin: W,
+        plane: Plane<B, R>,
+        amplifier: M,
+    ) -> Box<dyn Plant> {
+        let Self { params, start, .. } = self;
+        let system = System {
+            rotor: params.rotor,
+            plane,
+            stator,
+            spin,
+            amplifier,
+        };
+        let state = State {
+            rotor: Body {
+                position: start.position_m,
+                velocity: start.velocity_m_s,
+            },
+            stator: S::State::default(),
+            spin: spin.start(start.spin_rad_s, start.spin_phase_rad),
+            race: plane.race.start(),
+            force: M::State::default(),
+        };
+        let force_max_n = params.magnet.map_or(0.0, |m| m.force_max_n);
+        Box::new(Run::new(system, state, force_max_n, self.options))
+    }
 }

@@ -2,7 +2,6 @@
 
 use crate::V2;
 use crate::mode::Mode;
-use crate::params::RotorParams;
 use crate::part::Body;
 use crate::system::Touch;
 
@@ -129,13 +128,13 @@ impl Meters {
         peaks: &Peaks,
         step_s: f64,
         turn_rad: f64,
-        rotor: &RotorParams,
+        radius_m: f64,
     ) {
         self.contact_time_s += step_s;
         self.whirl_angle_rad += turn_rad;
         self.peak_contact_force_n = self.peak_contact_force_n.max(peaks.normal_n);
         self.peak_penetration_m = self.peak_penetration_m.max(peaks.penetration_m);
-        let torque = peaks.sliding_n * rotor.contact_radius_m;
+        let torque = peaks.sliding_n * radius_m;
         self.peak_friction_torque_n_m = self.peak_friction_torque_n_m.max(torque);
         self.peak_backward_speed_m_s = self.peak_backward_speed_m_s.max(peaks.backward_m_s);
     }

@@ -1,10 +1,7 @@
-//! Spin of the rotor, eq. (2.7): held, free, free with the angle of an unbalance, or beside a race.
-
-pub(crate) mod race;
+//! Spin of the rotor, eq. (2.7): held, free, or with its angle.
 
 use crate::V2;
 use crate::part::{Part, Weights};
-use race::Race;
 
 /// A model of the spin.
 pub(crate) trait Spin: Copy + Send + 'static {
@@ -28,28 +25,14 @@ pub(crate) trait Spin: Copy + Send + 'static {
     fn set_drive_torque_n_m(&mut self, _torque_n_m: f64) -> bool {
         false
     }
-    /// Time derivative for a spin acceleration \[rad/s²\] and the sliding friction on the rotor \[N\].
-    /// Linear in all three.
-    fn rates(&self, state: &Self::State, acceleration: f64, sliding_n: f64) -> Self::State;
+    /// Time derivative for a spin acceleration \[rad/s²\]. Linear in both.
+    fn rates(&self, state: &Self::State, acceleration: f64) -> Self::State;
     /// What a change of the state changes in spin and angle.
     fn change(_change: &Self::State) -> (f64, f64) {
         (0.0, 0.0)
     }
     /// Angle of the rotor moved on \[rad\], where it is a state.
     fn turn(&self, _state: &mut Self::State, _angle_rad: f64) {}
-    /// The race that the rotor touches, if there is one.
-    #[inline]
-    fn race(&self) -> Option<&Race> {
-        None
-    }
-    /// Its spin Ω_i \[rad/s\], in a state or a change of one; 0 without a race.
-    #[inline]
-    fn race_rad_s(_state: &Self::State) -> f64 {
-        0.0
-    }
-    /// Ω_i replaced, where there is a race.
-    #[inline]
-    fn set_race_rad_s(_state: &mut Self::State, _spin_rad_s: f64) {}
     /// State after `dt_s` without contact.
     fn coast(&self, state: &Self::State, dt_s: f64) -> Self::State;
 }
@@ -87,14 +70,14 @@ impl Spin for Held {
         0.0
     }
     #[inline]
-    fn rates(&self, _state: &(), _acceleration: f64, _sliding_n: f64) {}
+    fn rates(&self, _state: &(), _acceleration: f64) {}
     #[inline]
     fn coast(&self, _state: &(), _dt_s: f64) {}
 }
 
 /// A number of the spin as a state: with `ANGLE` it counts in an error as an angle, without as a speed.
 #[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Single<const ANGLE: bool>(f64);
+pub(crate) struct Single<const ANGLE: bool>(pub(crate) f64);
 
 /// Ω as a state.
 pub(crate) type SpinState = Single<false>;
@@ -173,7 +156,7 @@ impl Spin for Free {
         self.drive_torque_n_m
     }
     #[inline]
-    fn rates(&self, _state: &SpinState, acceleration: f64, _sliding_n: f64) -> SpinState {
+    fn rates(&self, _state: &SpinState, acceleration: f64) -> SpinState {
         Single(acceleration)
     }
     #[inline]
@@ -182,14 +165,30 @@ impl Spin for Free {
     }
 }
 
-/// [`Free`] with the angle of the unbalance.
+/// Speed and angle as states: for an unbalance at a free spin, and beside a race for a held one too, so that the number of
+/// combinations of parts stays small.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct FreePhased(pub Free);
+pub(crate) struct Phased {
+    /// 1/J \[1/(kg m²)\]; 0 where the spin is held.
+    pub inverse_inertia: f64,
+    /// t_d \[N m\]; 0 where the spin is held.
+    pub drive_torque_n_m: f64,
+}
 
-impl Spin for FreePhased {
+impl Phased {
+    fn is_free(&self) -> bool {
+        self.inverse_inertia > 0.0
+    }
+}
+
+impl Spin for Phased {
+    /// Ω, σ.
     type State = (SpinState, PhaseState);
     fn set_drive_torque_n_m(&mut self, torque_n_m: f64) -> bool {
-        self.0.set_drive_torque_n_m(torque_n_m)
+        if self.is_free() {
+            self.drive_torque_n_m = torque_n_m;
+        }
+        self.is_free()
     }
     fn change(change: &Self::State) -> (f64, f64) {
         (change.0.0, change.1.0)
@@ -205,8 +204,10 @@ impl Spin for FreePhased {
         state.0.0
     }
     fn set_spin_rad_s(&self, state: &mut Self::State, spin_rad_s: f64) -> bool {
-        state.0.0 = spin_rad_s;
-        true
+        if self.is_free() {
+            state.0.0 = spin_rad_s;
+        }
+        self.is_free()
     }
     #[inline]
     fn phase_rad(&self, state: &Self::State, _t_s: f64) -> f64 {
@@ -214,20 +215,22 @@ impl Spin for FreePhased {
     }
     #[inline]
     fn inverse_inertia(&self) -> f64 {
-        self.0.inverse_inertia()
+        self.inverse_inertia
     }
     #[inline]
     fn drive_torque_n_m(&self) -> f64 {
-        self.0.drive_torque_n_m
+        self.drive_torque_n_m
     }
     #[inline]
-    fn rates(&self, state: &Self::State, acceleration: f64, _sliding_n: f64) -> Self::State {
+    fn rates(&self, state: &Self::State, acceleration: f64) -> Self::State {
         (Single(acceleration), Single(state.0.0))
     }
     #[inline]
-    fn coast(&self, state: &Self::State, dt_s: f64) -> Self::State {
-        let acceleration = self.0.drive_torque_n_m * self.0.inverse_inertia();
-        let phase = state.1.0 + (state.0.0 + 0.5 * acceleration * dt_s) * dt_s;
-        (self.0.coast(&state.0, dt_s), Single(phase))
+    fn coast(&self, (spin, phase): &Self::State, dt_s: f64) -> Self::State {
+        let gain = self.drive_torque_n_m * self.inverse_inertia * dt_s;
+        (
+            Single(spin.0 + gain),
+            Single(phase.0 + (spin.0 + 0.5 * gain) * dt_s),
+        )
     }
 }

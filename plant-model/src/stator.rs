@@ -3,16 +3,11 @@
 //! Balance of forces on the outer ring needs the stiffness k_z + k_s, as its damping term already
 //! has; the paper's eqs (2.5), (2.6) print k_z alone. The balanced form is used here.
 
-mod elliptic;
-
 use crate::V2;
-use crate::ellipse::Ellipse;
 use crate::params::RingParams;
 use crate::part::{Body, Part};
 use crate::quadrature::Nodes;
 use crate::series::{INVERSE, Series};
-
-pub(crate) use elliptic::Elliptic;
 
 /// What moves of a stator.
 pub(crate) trait Rings: Part {
@@ -52,13 +47,6 @@ impl Rings for (Body, Body) {
 pub(crate) trait Stator: Copy + Send + 'static {
     /// What changes in time.
     type State: Rings;
-    /// Whether the bore is an [`Ellipse`]: then contact has no power series.
-    const OUT_OF_ROUND: bool = false;
-    /// The bore, where it is that.
-    #[inline]
-    fn ellipse(&self) -> Option<&Ellipse> {
-        None
-    }
     /// The same over one step of flight.
     type Series: Copy + Default + Send + std::fmt::Debug;
     /// Changes the velocity of the ring that the rotor touches \[m/s\].

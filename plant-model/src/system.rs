@@ -8,8 +8,9 @@ use crate::contact::Normal;
 use crate::energy::Flows;
 use crate::magnet::Amplifier;
 use crate::mode::{Slide, Whirl};
-use crate::params::{ContactLaw, ContactParams, FrictionParams, HuntCrossley, RotorParams};
+use crate::params::{ContactLaw, HuntCrossley, RotorParams};
 use crate::part::Body;
+use crate::plane::{Bore, Plane, Raceway};
 use crate::spin::Spin;
 use crate::stator::{Rings, Stator};
 use crate::vector::perp;
@@ -26,12 +27,20 @@ pub struct Inputs {
     pub external_n: V2,
 }
 
+impl RotorParams {
+    /// A force on the rotor with that of its shaft and damper, f − k·x − d·v \[N\]. Linear in both, so also for changes and
+    /// for the coefficients of a series.
+    #[inline]
+    pub(crate) fn with_shaft_n(&self, force_n: V2, rotor: &Body) -> V2 {
+        force_n - self.stiffness_n_m * rotor.position - self.damping_n_s_m * rotor.velocity
+    }
+}
+
 /// The plant for one combination of parts.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct System<S, W, M> {
+pub(crate) struct System<S, W, M, B, R> {
     pub(crate) rotor: RotorParams,
-    pub(crate) contact: ContactParams,
-    pub(crate) friction: FrictionParams,
+    pub(crate) plane: Plane<B, R>,
     pub(crate) stator: S,
     pub(crate) spin: W,
     pub(crate) amplifier: M,
@@ -103,11 +112,11 @@ pub(crate) struct Evaluation<Y> {
     pub(crate) touch: Touch,
 }
 
-impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
+impl<S: Stator, W: Spin, M: Amplifier, B: Bore, R: Raceway> System<S, W, M, B, R> {
     /// Unbalance: acceleration by the square of the speed, and acceleration per unit of spin
     /// acceleration. `None` without eccentricity.
     #[inline]
-    pub(crate) fn unbalance(&self, t_s: f64, y: &StateOf<S, W, M>) -> Option<(V2, V2)> {
+    pub(crate) fn unbalance(&self, t_s: f64, y: &StateOf<S, W, M, R>) -> Option<(V2, V2)> {
         let e = self.rotor.eccentricity_m;
         if e == 0.0 {
             return None;
@@ -123,12 +132,12 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
     pub(crate) fn contact(
         &self,
         t_s: f64,
-        y: &StateOf<S, W, M>,
+        y: &StateOf<S, W, M, R>,
         inputs: &Inputs,
         mode: (Slide, Whirl),
-    ) -> Evaluation<StateOf<S, W, M>> {
+    ) -> Evaluation<StateOf<S, W, M, R>> {
         // Compiled once for each law, so that the linear one pays for a branch only.
-        match &self.contact.law {
+        match &self.plane.contact.law {
             ContactLaw::Linear(law) => {
                 self.contact_by(|depth, rate| law.at(depth, rate), t_s, y, inputs, mode)
             }
@@ -143,10 +152,10 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
         &self,
         law: &HuntCrossley,
         t_s: f64,
-        y: &StateOf<S, W, M>,
+        y: &StateOf<S, W, M, R>,
         inputs: &Inputs,
         mode: (Slide, Whirl),
-    ) -> Evaluation<StateOf<S, W, M>> {
+    ) -> Evaluation<StateOf<S, W, M, R>> {
         self.contact_by(|depth, rate| law.at(depth, rate), t_s, y, inputs, mode)
     }
 
@@ -156,21 +165,19 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
         &self,
         law: impl Fn(f64, f64) -> Normal,
         t_s: f64,
-        y: &StateOf<S, W, M>,
+        y: &StateOf<S, W, M, R>,
         inputs: &Inputs,
         (slide, whirl): (Slide, Whirl),
-    ) -> Evaluation<StateOf<S, W, M>> {
+    ) -> Evaluation<StateOf<S, W, M, R>> {
         let g = self.geometry(y);
         let (n, t) = (g.normal, g.tangent);
-        let radius = self.rotor.contact_radius_m;
+        let radius = self.plane.radius_m;
         let velocity = y.rotor.velocity;
         let law = law(g.penetration_m, g.normal_speed_m_s);
         let normal_n = law.force_n;
 
         let magnet_n = self.amplifier.force_n(&y.force, inputs.command_n);
-        let free_n = magnet_n + inputs.external_n
-            - self.rotor.stiffness_n_m * y.rotor.position
-            - self.rotor.damping_n_s_m * velocity;
+        let free_n = (self.rotor).with_shaft_n(magnet_n + inputs.external_n, &y.rotor);
         let inverse_m = 1.0 / self.rotor.mass_kg;
         let mut rotor_acceleration = (free_n - normal_n * n) * inverse_m;
         let unbalance = self.unbalance(t_s, y);
@@ -190,12 +197,12 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
         let torque = self.spin.drive_torque_n_m();
         let whirl_by_torque = per_spin_acceleration * inverse_j;
         let slide_by_torque = whirl_by_torque + radius * inverse_j;
-        let race = self.spin.race();
-        let race_rad_s = W::race_rad_s(&y.spin);
+        let race = self.plane.race.race();
+        let race_rad_s = R::spin_rad_s(&y.race);
 
         let at = slide.sign() * g.sliding_speed_m_s;
-        let mu = self.friction.sliding.coefficient(at);
-        let mu_r = self.friction.rolling_coefficient;
+        let mu = self.plane.friction.sliding.coefficient(at);
+        let mu_r = self.plane.friction.rolling_coefficient;
         let (sliding_n, rolling_n) = match (slide, whirl) {
             (Slide::Rolling, Whirl::Still) => {
                 if let Some(race) = race {
@@ -257,7 +264,8 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
             stator: self
                 .stator
                 .rates(&y.stator, normal_n * n - tangential_n * t),
-            spin: self.spin.rates(&y.spin, spin_acceleration, sliding_n),
+            spin: self.spin.rates(&y.spin, spin_acceleration),
+            race: self.plane.race.rates(&y.race, sliding_n),
             force: self.amplifier.rates(&y.force, inputs.command_n),
         };
 
@@ -333,16 +341,16 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
     /// What rounding may leave of a guard that is zero: guards are differences of larger terms.
     pub(crate) fn guard_round_off(
         &self,
-        y: &StateOf<S, W, M>,
+        y: &StateOf<S, W, M, R>,
         (slide, whirl): (Slide, Whirl),
     ) -> Guards {
         const ULPS: f64 = 4.0 * f64::EPSILON;
         let g = self.geometry(y);
-        let mut surface = (self.spin.spin_rad_s(&y.spin) * self.rotor.contact_radius_m).abs();
-        if let Some(race) = self.spin.race() {
-            surface += race.radius_m * W::race_rad_s(&y.spin).abs();
+        let mut surface = (self.spin.spin_rad_s(&y.spin) * self.plane.radius_m).abs();
+        if let Some(race) = self.plane.race.race() {
+            surface += race.radius_m * R::spin_rad_s(&y.race).abs();
         }
-        let (normal, force) = self.contact.law.round_off(
+        let (normal, force) = self.plane.contact.law.round_off(
             (g.penetration_m, g.normal_speed_m_s),
             (g.distance_m, y.rotor.velocity.norm()),
             ULPS,
@@ -354,30 +362,33 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
     }
 
     /// Kinetic and elastic energy, the contact spring included while `touching` \[J\].
-    pub(crate) fn stored_j(&self, y: &StateOf<S, W, M>, touching: bool) -> f64 {
+    pub(crate) fn stored_j(&self, y: &StateOf<S, W, M, R>, touching: bool) -> f64 {
         let dent = if touching {
-            self.contact.law.stored_j(self.geometry(y).penetration_m)
+            self.plane
+                .contact
+                .law
+                .stored_j(self.geometry(y).penetration_m)
         } else {
             0.0
         };
         0.5 * self.rotor.mass_kg * y.rotor.velocity.norm_squared()
             + 0.5 * self.rotor.stiffness_n_m * y.rotor.position.norm_squared()
             + self.stator.stored_j(&y.stator)
-            + self.turning_j(&y.spin)
+            + self.turning_j(y)
             + dent
     }
 
     /// Part of it that is in the spin of rotor and race \[J\].
-    pub(crate) fn turning_j(&self, spin: &W::State) -> f64 {
-        let rate = self.spin.spin_rad_s(spin);
+    pub(crate) fn turning_j(&self, y: &StateOf<S, W, M, R>) -> f64 {
+        let rate = self.spin.spin_rad_s(&y.spin);
         let inverse_j = self.spin.inverse_inertia();
         let mut turning = if inverse_j > 0.0 {
             0.5 * rate * rate / inverse_j
         } else {
             0.0
         };
-        if let Some(race) = self.spin.race() {
-            turning += race.stored_j(W::race_rad_s(spin));
+        if let Some(race) = self.plane.race.race() {
+            turning += race.stored_j(R::spin_rad_s(&y.race));
         }
         turning
     }
@@ -386,24 +397,24 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
     /// depth of one clearance.
     pub(crate) fn undamped_contact_rate_rad_s(&self) -> f64 {
         let mobility = 1.0 / self.rotor.mass_kg + self.stator.inverse_mass();
-        (self.contact.stiffness_n_m() * mobility).sqrt()
+        (self.plane.contact.stiffness_n_m() * mobility).sqrt()
     }
 
     /// The same with its damping: the fastest rate in contact \[rad/s\]. A damper that grows with depth
     /// has no rate of its own and is left out; see [`System::moment_s`].
     pub(crate) fn contact_rate_rad_s(&self) -> f64 {
         let mobility = 1.0 / self.rotor.mass_kg + self.stator.inverse_mass();
-        let damping_n_s_m = self.contact.law.by_rate_n_s_m(0.0);
+        let damping_n_s_m = self.plane.contact.law.by_rate_n_s_m(0.0);
         self.undamped_contact_rate_rad_s() + damping_n_s_m * mobility
     }
 
     /// A time that nothing in contact notices.
-    pub(crate) fn moment_s(&self, y: &StateOf<S, W, M>) -> f64 {
+    pub(crate) fn moment_s(&self, y: &StateOf<S, W, M, R>) -> f64 {
         let mut rate = self.contact_rate_rad_s();
-        if matches!(self.contact.law, ContactLaw::HuntCrossley(_)) {
+        if matches!(self.plane.contact.law, ContactLaw::HuntCrossley(_)) {
             let mobility = 1.0 / self.rotor.mass_kg + self.stator.inverse_mass();
             let depth_m = self.geometry(y).penetration_m.max(0.0);
-            rate += self.contact.law.by_rate_n_s_m(depth_m) * mobility;
+            rate += self.plane.contact.law.by_rate_n_s_m(depth_m) * mobility;
         }
         1e-6 / rate
     }

@@ -4,26 +4,27 @@ use crate::V2;
 use crate::magnet::Amplifier;
 use crate::mode::{Slide, Whirl};
 use crate::part::Body;
+use crate::plane::{Bore, Raceway};
 use crate::spin::Spin;
 use crate::stator::{Rings, Stator};
 use crate::system::{Inputs, State, StateOf, System};
 use crate::vector::perp;
 
-impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
+impl<S: Stator, W: Spin, M: Amplifier, B: Bore, R: Raceway> System<S, W, M, B, R> {
     /// d/dε of the field at y + ε·change.
     ///
     /// Names follow [`System::contact`]; a leading d is the derivative.
     pub(crate) fn contact_tangent(
         &self,
-        (t_s, y): (f64, &StateOf<S, W, M>),
+        (t_s, y): (f64, &StateOf<S, W, M, R>),
         inputs: &Inputs,
         (slide, whirl): (Slide, Whirl),
-        change: &StateOf<S, W, M>,
-    ) -> StateOf<S, W, M> {
+        change: &StateOf<S, W, M, R>,
+    ) -> StateOf<S, W, M, R> {
         let g = self.geometry(y);
         let (n, t, distance) = (g.normal, g.tangent, g.distance_m);
         let now = self.contact(t_s, y, inputs, (slide, whirl));
-        let radius = self.rotor.contact_radius_m;
+        let radius = self.plane.radius_m;
         let inverse_m = 1.0 / self.rotor.mass_kg;
         let (normal_n, sliding_n) = (now.touch.normal_n, now.touch.sliding_n);
         let tangential_n = sliding_n + now.touch.rolling_n;
@@ -42,13 +43,13 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
         let mut d_sliding_speed = d_whirl_speed + radius * d_spin;
         // By how much the surfaces part through a race's drag, and how easily it gives way.
         let (mut d_falling_back, mut race_mobility) = (0.0, 0.0);
-        if let Some(race) = self.spin.race() {
-            let d_race = W::race_rad_s(&change.spin);
+        if let Some(race) = self.plane.race.race() {
+            let d_race = R::spin_rad_s(&change.race);
             d_sliding_speed -= race.radius_m * d_race;
             d_falling_back = race.falling_back_m_s2(d_race);
             race_mobility = race.mobility();
         }
-        let law = (self.contact.law).at(g.penetration_m, g.normal_speed_m_s);
+        let law = (self.plane.contact.law).at(g.penetration_m, g.normal_speed_m_s);
         let d_normal = law.by_depth_n_m * d_distance + law.by_rate_n_s_m * d_normal_speed;
         let d_push = d_normal * n + normal_n * d_n;
 
@@ -59,12 +60,8 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
         } else {
             V2::zeros()
         };
-        let free_n = magnet_n + inputs.external_n
-            - self.rotor.stiffness_n_m * y.rotor.position
-            - self.rotor.damping_n_s_m * y.rotor.velocity;
-        let d_free = d_magnet
-            - self.rotor.stiffness_n_m * change.rotor.position
-            - self.rotor.damping_n_s_m * change.rotor.velocity;
+        let free_n = (self.rotor).with_shaft_n(magnet_n + inputs.external_n, &y.rotor);
+        let d_free = self.rotor.with_shaft_n(d_magnet, &change.rotor);
         let mut acceleration = (free_n - normal_n * n) * inverse_m;
         let mut d_acceleration = (d_free - d_push) * inverse_m;
         let (mut by_spin_up, mut d_by_spin_up) = (V2::zeros(), V2::zeros());
@@ -84,7 +81,7 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
             acceleration - ring_acceleration,
             d_acceleration - d_ring_acceleration,
         );
-        let d_radius = match self.stator.ellipse() {
+        let d_radius = match self.plane.bore.ellipse() {
             None => d_distance,
             // The normal turns by t·du/ρ, and the radius of curvature with it.
             Some(ellipse) => {
@@ -106,10 +103,10 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
         let d_eccentric = (d_by_spin_up.dot(&t) + by_spin_up.dot(&d_t)) * inverse_j;
         let sign = slide.sign();
         let along = sign * g.sliding_speed_m_s;
-        let mu = self.friction.sliding.coefficient(along);
-        let d_mu = self.friction.sliding.slope(along) * sign * d_sliding_speed;
+        let mu = self.plane.friction.sliding.coefficient(along);
+        let d_mu = self.plane.friction.sliding.slope(along) * sign * d_sliding_speed;
         let d_slip = -sign * (mu * d_normal + d_mu * normal_n);
-        let mu_r = self.friction.rolling_coefficient;
+        let mu_r = self.plane.friction.rolling_coefficient;
         let d_rolling = -whirl.sign() * mu_r * d_normal;
         let (d_sliding, d_rolling) = match (slide, whirl) {
             (Slide::Rolling, Whirl::Still) if race_mobility > 0.0 => {
@@ -157,7 +154,8 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
                     + spin_up * d_by_spin_up,
             },
             stator: self.stator.rates(&change.stator, d_push - d_friction),
-            spin: self.spin.rates(&change.spin, d_spin_up, d_sliding),
+            spin: self.spin.rates(&change.spin, d_spin_up),
+            race: self.plane.race.rates(&change.race, d_sliding),
             force: self.amplifier.rates(&change.force, V2::zeros()),
         }
     }
@@ -170,28 +168,25 @@ mod tests {
     use crate::magnet::Lagged;
     use crate::params::*;
     use crate::part::Part;
-    use crate::spin::race::{Race, Raced};
-    use crate::spin::{Free, FreePhased};
-    use crate::stator::{Elliptic, TwoMass};
+    use crate::plane::Plane;
+    use crate::plane::race::Race;
+    use crate::spin::Phased;
+    use crate::stator::{Rigid, TwoMass};
 
-    const FREE: Free = Free {
-        inertia_kg_m2: 0.05,
+    const FREE: Phased = Phased {
+        inverse_inertia: 20.0,
         drive_torque_n_m: 3.0,
     };
-
-    fn raced(inverse_inertia: f64, drive_torque_n_m: f64) -> Raced {
-        let race = Race {
-            radius_m: 0.0502,
-            inertia_kg_m2: 2e-3,
-            drag_n_m_s: 0.04,
-            start_spin_rad_s: 0.0,
-        };
-        Raced {
-            inverse_inertia,
-            drive_torque_n_m,
-            race,
-        }
-    }
+    const HELD: Phased = Phased {
+        inverse_inertia: 0.0,
+        drive_torque_n_m: 0.0,
+    };
+    const RACE: Race = Race {
+        radius_m: 0.0502,
+        inertia_kg_m2: 2e-3,
+        drag_n_m_s: 0.04,
+        start_spin_rad_s: 0.0,
+    };
 
     #[test]
     fn columns_are_the_fields_differences() {
@@ -205,18 +200,15 @@ mod tests {
             damping_s_m: 0.7,
         };
         for law in [ContactLaw::from(linear), hardening.into()] {
-            check(rings(), FreePhased(FREE), law);
-            check(rings(), raced(20.0, 3.0), law);
-            check(rings(), raced(0.0, 0.0), law);
+            check(rings(), FREE, ((), ()), law);
+            check(rings(), FREE, ((), RACE), law);
+            check(rings(), HELD, ((), RACE), law);
             let ellipse = EllipseParams {
                 ellipticity: 0.1,
                 long_axis_rad: 0.3,
             };
-            check(
-                Elliptic(Ellipse::new(&ellipse, 2e-4)),
-                FreePhased(FREE),
-                law,
-            );
+            let ellipse = Ellipse::new(&ellipse, 2e-4);
+            check(Rigid, FREE, (ellipse, ()), law);
         }
     }
 
@@ -233,7 +225,12 @@ mod tests {
     }
 
     /// Every column in every mode against central differences of the field.
-    fn check<S: Stator, W: Spin>(stator: S, spin: W, law: ContactLaw) {
+    fn check<S: Stator, B: Bore, R: Raceway>(
+        stator: S,
+        spin: Phased,
+        (bore, race): (B, R),
+        law: ContactLaw,
+    ) {
         let system = System {
             rotor: RotorParams {
                 mass_kg: 10.0,
@@ -242,23 +239,28 @@ mod tests {
                 eccentricity_m: 2e-5,
                 contact_radius_m: 0.05,
             },
-            contact: ContactParams {
-                clearance_m: 2e-4,
-                law,
-            },
-            friction: FrictionParams {
-                sliding: SlidingFriction::Falling {
-                    at_rest: 0.3,
-                    at_speed: 0.1,
-                    speed_scale_m_s: 2.0,
+            plane: Plane {
+                radius_m: 0.05,
+                contact: ContactParams {
+                    clearance_m: 2e-4,
+                    law,
                 },
-                rolling_coefficient: 0.02,
+                friction: FrictionParams {
+                    sliding: SlidingFriction::Falling {
+                        at_rest: 0.3,
+                        at_speed: 0.1,
+                        speed_scale_m_s: 2.0,
+                    },
+                    rolling_coefficient: 0.02,
+                },
+                bore,
+                race,
             },
             stator,
             spin,
             amplifier: Lagged { lag_s: 1e-4 },
         };
-        type Y<S, W> = StateOf<S, W, Lagged>;
+        type Y<S, R> = StateOf<S, Phased, Lagged, R>;
         const LENGTH: usize = 17;
         const TWO_RINGS: usize = 8;
         let mut scales = vec![
@@ -268,7 +270,7 @@ mod tests {
         let mut shares = vec![
             1.9, 1.1, -0.4, 0.3, 0.2, -0.5, 0.7, -0.1, 0.3, 0.4, -0.2, 0.6, 0.9, 0.4, 0.5, -0.8,
         ];
-        if system.spin.race().is_some() {
+        if system.plane.race.race().is_some() {
             scales.insert(14, 50.0);
             shares.insert(14, 0.3);
         }
@@ -276,7 +278,7 @@ mod tests {
         let rings = 4..4 + TWO_RINGS - S::State::STATES;
         scales.drain(rings.clone());
         shares.drain(rings);
-        let states = Y::<S, W>::STATES;
+        let states = Y::<S, R>::STATES;
         let point: Vec<f64> = shares.iter().zip(&scales).map(|(x, s)| x * s).collect();
         let inputs = Inputs {
             command_n: V2::new(30.0, -20.0),
@@ -292,7 +294,7 @@ mod tests {
                         let mut at = point.clone();
                         at[i] += h * scales[i];
                         let mut out = [0.0; LENGTH];
-                        let y = Y::<S, W>::read(&at);
+                        let y = Y::<S, R>::read(&at);
                         let e = system.contact(0.0, &y, &inputs, (slide, whirl));
                         e.rates.write(&mut out[..states]);
                         out
@@ -302,10 +304,10 @@ mod tests {
                     let mut exact = [0.0; LENGTH];
                     system
                         .contact_tangent(
-                            (0.0, &Y::<S, W>::read(&point)),
+                            (0.0, &Y::<S, R>::read(&point)),
                             &inputs,
                             (slide, whirl),
-                            &Y::<S, W>::read(&direction[..states]),
+                            &Y::<S, R>::read(&direction[..states]),
                         )
                         .write(&mut exact[..states]);
                     let size = exact.iter().fold(0.0_f64, |m, x| m.max(x.abs()));

@@ -9,6 +9,8 @@ use crate::V2;
 use crate::magnet::Amplifier;
 use crate::mode::{Slide, Whirl};
 use crate::params::{LinearContact, SlidingFriction};
+use crate::part::Body;
+use crate::plane::{Bore, Raceway};
 use crate::series::{INVERSE, Scalar, Series};
 use crate::spin::Spin;
 use crate::stator::{Rings, Stator};
@@ -106,8 +108,8 @@ impl<S: Stator> ContactSeries<S> {
 }
 
 /// One step's context: what does not change from order to order.
-struct Context<'a, S, W, M> {
-    system: &'a System<S, W, M>,
+struct Context<'a, S, W, M, B, R> {
+    system: &'a System<S, W, M, B, R>,
     external_n: V2,
     slide: Slide,
     whirl: Whirl,
@@ -124,13 +126,13 @@ struct Context<'a, S, W, M> {
     proportions: Option<(f64, f64)>,
 }
 
-impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
+impl<S: Stator, W: Spin, M: Amplifier, B: Bore, R: Raceway> System<S, W, M, B, R> {
     /// Fills `out` with the solution from `y` in the task's mode, up to the order at which there is `enough`,
     /// or to `highest`.
     pub(crate) fn contact_series(
         &self,
         out: &mut ContactSeries<S>,
-        (t_s, y): (f64, &StateOf<S, W, M>),
+        (t_s, y): (f64, &StateOf<S, W, M, R>),
         task: &Task<'_>,
         (step_s, highest): (f64, usize),
         mut enough: impl FnMut(&ContactSeries<S>, usize) -> bool,
@@ -161,7 +163,7 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
         let magnet = (&y.force, task.inputs.command_n);
         (self.amplifier).series(&mut out.magnet, magnet, step_s, highest);
         out.spin.0[0] = self.spin.spin_rad_s(&y.spin);
-        out.race.0[0] = W::race_rad_s(&y.spin);
+        out.race.0[0] = R::spin_rad_s(&y.race);
         if context.unbalanced {
             let (sin, cos) = self.spin.phase_rad(&y.spin, t_s).sin_cos();
             out.direction.0[0] = V2::new(cos, sin);
@@ -181,17 +183,17 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
 
     /// Tangential forces per normal force in a mode, if they are constant.
     fn proportions(&self, (slide, whirl): (Slide, Whirl)) -> Option<(f64, f64)> {
-        let SlidingFriction::Constant { coefficient } = self.friction.sliding else {
+        let SlidingFriction::Constant { coefficient } = self.plane.friction.sliding else {
             return None;
         };
         (slide != Slide::Rolling && whirl != Whirl::Still).then(|| {
-            let rolling = self.friction.rolling_coefficient;
+            let rolling = self.plane.friction.rolling_coefficient;
             (-slide.sign() * coefficient, -whirl.sign() * rolling)
         })
     }
 }
 
-impl<S: Stator, W: Spin, M: Amplifier> Context<'_, S, W, M> {
+impl<S: Stator, W: Spin, M: Amplifier, B: Bore, R: Raceway> Context<'_, S, W, M, B, R> {
     /// Coefficients k + 1 of the positions, which run one order ahead so that ρ̇ is the derivative of ρ.
     fn positions(&self, out: &mut ContactSeries<S>, k: usize) {
         let next = self.step_s * INVERSE[k + 1];
@@ -235,11 +237,11 @@ impl<S: Stator, W: Spin, M: Amplifier> Context<'_, S, W, M> {
 
     /// Everything that acts on the rotor but friction and unbalance.
     fn free_force(&self, out: &ContactSeries<S>, k: usize) -> V2 {
-        let rotor = &self.system.rotor;
-        let force = out.magnet.0[k]
-            - rotor.stiffness_n_m * out.position.0[k]
-            - rotor.damping_n_s_m * out.velocity.0[k]
-            - out.push.0[k];
+        let rotor = Body {
+            position: out.position.0[k],
+            velocity: out.velocity.0[k],
+        };
+        let force = (self.system.rotor).with_shaft_n(out.magnet.0[k], &rotor) - out.push.0[k];
         if k == 0 {
             force + self.external_n
         } else {
@@ -249,7 +251,7 @@ impl<S: Stator, W: Spin, M: Amplifier> Context<'_, S, W, M> {
 
     /// Coefficients k of normal force and friction, and k + 1 of the spins.
     fn forces(&self, out: &mut ContactSeries<S>, k: usize) {
-        let contact = &self.system.contact;
+        let contact = &self.system.plane.contact;
         let penetration = if k == 0 {
             out.distance.0[0] - contact.clearance_m
         } else {
@@ -275,8 +277,8 @@ impl<S: Stator, W: Spin, M: Amplifier> Context<'_, S, W, M> {
         if self.unbalanced {
             self.turn_unbalance(out, k);
         }
-        if let Some(race) = self.system.spin.race() {
-            let own = self.system.rotor.contact_radius_m * out.spin.0[k];
+        if let Some(race) = self.system.plane.race.race() {
+            let own = self.system.plane.radius_m * out.spin.0[k];
             out.surface.0[k] = own - race.radius_m * out.race.0[k];
         }
 
@@ -294,8 +296,8 @@ impl<S: Stator, W: Spin, M: Amplifier> Context<'_, S, W, M> {
 
     /// Sliding and rolling part where they are not in proportion to the normal force.
     fn friction(&self, out: &mut ContactSeries<S>, k: usize) {
-        let friction = &self.system.friction;
-        let radius = self.system.rotor.contact_radius_m;
+        let friction = &self.system.plane.friction;
+        let radius = self.system.plane.radius_m;
         let first = |x: f64| if k == 0 { x } else { 0.0 };
         let constrained = self.slide == Slide::Rolling || self.whirl == Whirl::Still;
         // What turns the contact point without friction, and what the torque does to it.
@@ -323,7 +325,7 @@ impl<S: Stator, W: Spin, M: Amplifier> Context<'_, S, W, M> {
         let m = self.mobility;
         match (self.slide, self.whirl) {
             (Slide::Rolling, Whirl::Still) => {
-                if let Some(race) = self.system.spin.race() {
+                if let Some(race) = self.system.plane.race.race() {
                     let parting = first(radius * self.inverse_j * self.torque)
                         + race.falling_back_m_s2(out.race.0[k]);
                     let s = -parting / (radius * radius * self.inverse_j + race.mobility());
@@ -351,7 +353,7 @@ impl<S: Stator, W: Spin, M: Amplifier> Context<'_, S, W, M> {
                     right -= radius * out.eccentric.product_coefficient_below(&out.sliding, k);
                 }
                 let mut pivot = m + radius * (out.eccentric.0[0] + radius * self.inverse_j);
-                if let Some(race) = self.system.spin.race() {
+                if let Some(race) = self.system.plane.race.race() {
                     right -= race.falling_back_m_s2(out.race.0[k]);
                     pivot += race.mobility();
                 }
@@ -372,7 +374,7 @@ impl<S: Stator, W: Spin, M: Amplifier> Context<'_, S, W, M> {
     /// −σ·μ(v_rel)·f_n.
     fn slip(&self, out: &mut ContactSeries<S>, k: usize) {
         let sign = self.slide.sign();
-        let (at_speed, fall, speed_scale) = match self.system.friction.sliding {
+        let (at_speed, fall, speed_scale) = match self.system.plane.friction.sliding {
             SlidingFriction::Constant { coefficient } => {
                 out.sliding.0[k] = -sign * coefficient * out.force.0[k];
                 return;
@@ -384,9 +386,9 @@ impl<S: Stator, W: Spin, M: Amplifier> Context<'_, S, W, M> {
             } => (at_speed, at_rest - at_speed, speed_scale_m_s),
         };
         // e = exp(a) with a = −σ·v_rel/v_0: e_k = Σ i·a_i·e_{k−i}/k.
-        let surface = match self.system.spin.race() {
+        let surface = match self.system.plane.race.race() {
             Some(_) => out.surface.0[k],
-            None => self.system.rotor.contact_radius_m * out.spin.0[k],
+            None => self.system.plane.radius_m * out.spin.0[k],
         };
         let v_rel = out.whirl_speed.0[k] + surface;
         out.exponent.0[k] = -sign * v_rel / speed_scale;
@@ -432,7 +434,7 @@ impl<S: Stator, W: Spin, M: Amplifier> Context<'_, S, W, M> {
 
     /// Spins at k + 1, and the unbalance's share by spin acceleration at k.
     fn spin_up(&self, out: &mut ContactSeries<S>, k: usize) {
-        if let Some(race) = self.system.spin.race() {
+        if let Some(race) = self.system.plane.race.race() {
             let acceleration = race.acceleration(out.race.0[k], out.sliding.0[k]);
             out.race.0[k + 1] = self.step_s * INVERSE[k + 1] * acceleration;
         }
@@ -441,7 +443,7 @@ impl<S: Stator, W: Spin, M: Amplifier> Context<'_, S, W, M> {
         }
         let torque = if k == 0 { self.torque } else { 0.0 };
         let next = self.step_s * INVERSE[k + 1];
-        let radius = self.system.rotor.contact_radius_m;
+        let radius = self.system.plane.radius_m;
         let acceleration = self.inverse_j * (torque + radius * out.sliding.0[k]);
         out.spin.0[k + 1] = next * acceleration;
         if self.unbalanced {

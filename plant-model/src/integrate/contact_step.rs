@@ -13,6 +13,7 @@ use crate::magnet::Amplifier;
 use crate::mode::{Slide, Whirl};
 use crate::params::SlidingFriction;
 use crate::part::{Part, Weights};
+use crate::plane::{Bore, Raceway};
 use crate::readout::{Peaks, Work};
 use crate::spin::Spin;
 use crate::stator::Stator;
@@ -43,28 +44,34 @@ struct Crossing {
 }
 
 /// The contact field of one mode under held inputs, counting its calls.
-struct ContactField<'a, S, W, M> {
-    system: &'a System<S, W, M>,
+struct ContactField<'a, S, W, M, B, R> {
+    system: &'a System<S, W, M, B, R>,
     inputs: &'a Inputs,
     mode: (Slide, Whirl),
     evaluations: u64,
     factorisations: u64,
 }
 
-impl<S: Stator, W: Spin, M: Amplifier> Field<StateOf<S, W, M>, Evaluation<StateOf<S, W, M>>>
-    for ContactField<'_, S, W, M>
+impl<S: Stator, W: Spin, M: Amplifier, B: Bore, R: Raceway>
+    Field<StateOf<S, W, M, R>, Evaluation<StateOf<S, W, M, R>>>
+    for ContactField<'_, S, W, M, B, R>
 {
-    fn at(&mut self, t_s: f64, y: &StateOf<S, W, M>) -> Evaluation<StateOf<S, W, M>> {
+    fn at(&mut self, t_s: f64, y: &StateOf<S, W, M, R>) -> Evaluation<StateOf<S, W, M, R>> {
         self.evaluations += 1;
         self.system.contact(t_s, y, self.inputs, self.mode)
     }
 
-    fn along(&mut self, t_s: f64, y: &StateOf<S, W, M>, dy: &StateOf<S, W, M>) -> StateOf<S, W, M> {
+    fn along(
+        &mut self,
+        t_s: f64,
+        y: &StateOf<S, W, M, R>,
+        dy: &StateOf<S, W, M, R>,
+    ) -> StateOf<S, W, M, R> {
         (self.system).contact_tangent((t_s, y), self.inputs, self.mode, dy)
     }
 
     /// The contact normal turns at ω = v_w/ρ, and ω̇ = (v̇_w − ω·B)/ρ.
-    fn frame(&self, y: &StateOf<S, W, M>, first: &Evaluation<StateOf<S, W, M>>) -> Frame {
+    fn frame(&self, y: &StateOf<S, W, M, R>, first: &Evaluation<StateOf<S, W, M, R>>) -> Frame {
         let g = self.system.geometry(y);
         let turn_rad_s = g.whirl_speed_m_s / g.distance_m;
         let apart = first.touch.whirl_acceleration - turn_rad_s * g.normal_speed_m_s;
@@ -132,15 +139,15 @@ impl<P> ContactStepper<P> {
     }
 
     /// Steps towards the end of the span until the tolerance, the end or an event stops it.
-    pub(crate) fn step<S: Stator, W: Spin, M: Amplifier>(
+    pub(crate) fn step<S: Stator, W: Spin, M: Amplifier, B: Bore, R: Raceway>(
         &mut self,
-        system: &System<S, W, M>,
-        y: &StateOf<S, W, M>,
+        system: &System<S, W, M, B, R>,
+        y: &StateOf<S, W, M, R>,
         task: &Task<'_>,
         (scales, work): (&mut Scales, &mut Work),
-    ) -> Result<ContactStep<StateOf<S, W, M>>, PlantError>
+    ) -> Result<ContactStep<StateOf<S, W, M, R>>, PlantError>
     where
-        P: Pair<StateOf<S, W, M>, Evaluation<StateOf<S, W, M>>>,
+        P: Pair<StateOf<S, W, M, R>, Evaluation<StateOf<S, W, M, R>>>,
     {
         let (t_s, t_end_s) = task.span;
         let weights = scales.weights(system, y);
@@ -269,16 +276,16 @@ impl<P> ContactStepper<P> {
 
     /// Sliding force at a place inside the last step at which the normal force is `normal_n` \[N\]. A slip follows the
     /// normal force; what rolling needs the field says there, within the cone.
-    fn sliding_n<S: Stator, W: Spin, M: Amplifier>(
+    fn sliding_n<S: Stator, W: Spin, M: Amplifier, B: Bore, R: Raceway>(
         &mut self,
         (t_s, step_s): (f64, f64),
         (theta, normal_n): (f64, f64),
-        field: &mut ContactField<'_, S, W, M>,
+        field: &mut ContactField<'_, S, W, M, B, R>,
     ) -> f64
     where
-        P: Pair<StateOf<S, W, M>, Evaluation<StateOf<S, W, M>>>,
+        P: Pair<StateOf<S, W, M, R>, Evaluation<StateOf<S, W, M, R>>>,
     {
-        let sliding = &field.system.friction.sliding;
+        let sliding = &field.system.plane.friction.sliding;
         let (slide, _) = field.mode;
         if let (SlidingFriction::Constant { coefficient }, true) =
             (sliding, slide != Slide::Rolling)

@@ -16,6 +16,7 @@ use crate::integrate::{Method, Options, PlantError};
 use crate::magnet::Amplifier;
 use crate::mode::{Mode, Phase, Slide, Whirl};
 use crate::part::Part;
+use crate::plane::{Bore, Raceway};
 use crate::readout::{Meters, Snapshot, Work};
 use crate::spin::Spin;
 use crate::stator::{Rings, Stator};
@@ -25,11 +26,11 @@ type Explicit<Y> = Dop853<Y, Evaluation<Y>>;
 type Stiff<Y> = Radau<Y, Evaluation<Y>>;
 
 /// A run of one combination of parts.
-pub(crate) struct Run<S: Stator, W: Spin, M: Amplifier> {
-    pub(crate) system: System<S, W, M>,
+pub(crate) struct Run<S: Stator, W: Spin, M: Amplifier, B: Bore, R: Raceway> {
+    pub(crate) system: System<S, W, M, B, R>,
     pub(crate) force_max_n: f64,
     pub(crate) t_s: f64,
-    pub(crate) y: StateOf<S, W, M>,
+    pub(crate) y: StateOf<S, W, M, R>,
     pub(crate) phase: Phase,
     pub(crate) flows: Flows,
     pub(crate) meters: Meters,
@@ -39,8 +40,8 @@ pub(crate) struct Run<S: Stator, W: Spin, M: Amplifier> {
     maps: FlightMaps,
     /// Only where the contact law has a power series.
     series: Option<SeriesStepper<S>>,
-    explicit: ContactStepper<Explicit<StateOf<S, W, M>>>,
-    stiff: ContactStepper<Stiff<StateOf<S, W, M>>>,
+    explicit: ContactStepper<Explicit<StateOf<S, W, M, R>>>,
+    stiff: ContactStepper<Stiff<StateOf<S, W, M, R>>>,
     inputs: Inputs,
     /// Sense of backward whirl: against the spin at the start, which friction may reverse later.
     backward: f64,
@@ -73,10 +74,10 @@ const ON_WALL: f64 = 4.0 * f64::EPSILON;
 const CIRCLE: u32 = 4;
 const MOST_AT_ONCE: u32 = 50;
 
-impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
+impl<S: Stator, W: Spin, M: Amplifier, B: Bore, R: Raceway> Run<S, W, M, B, R> {
     pub(crate) fn new(
-        system: System<S, W, M>,
-        y: StateOf<S, W, M>,
+        system: System<S, W, M, B, R>,
+        y: StateOf<S, W, M, R>,
         force_max_n: f64,
         mut options: Options,
     ) -> Self {
@@ -85,8 +86,8 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
         let touching = beyond_wall(&system, &y) || rests_on_wall(&system, &y);
         let start = (y.rotor.velocity.norm(), touching);
         options.method =
-            (options.method).resolved(&system.contact.law, start, mobility, options.rtol);
-        if S::OUT_OF_ROUND && options.method == Method::Series {
+            (options.method).resolved(&system.plane.contact.law, start, mobility, options.rtol);
+        if B::OUT_OF_ROUND && options.method == Method::Series {
             options.method = Method::Explicit;
         }
         let mut run = Self {
@@ -94,11 +95,11 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
             work: Work::default(),
             maps: FlightMaps::default(),
             segment: Segment::new(system.flight_rate_rad_s()),
-            series: (system.contact.law.linear())
-                .filter(|_| !S::OUT_OF_ROUND)
+            series: (system.plane.contact.law.linear())
+                .filter(|_| !B::OUT_OF_ROUND)
                 .map(|law| SeriesStepper::new(options.rtol, system.contact_rate_rad_s(), law)),
-            explicit: ContactStepper::new::<StateOf<S, W, M>>(system.contact_rate_rad_s()),
-            stiff: ContactStepper::new::<StateOf<S, W, M>>(system.contact_rate_rad_s()),
+            explicit: ContactStepper::new::<StateOf<S, W, M, R>>(system.contact_rate_rad_s()),
+            stiff: ContactStepper::new::<StateOf<S, W, M, R>>(system.contact_rate_rad_s()),
             system,
             force_max_n,
             t_s: 0.0,
@@ -120,17 +121,17 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
             farthest_m: 0.0,
         };
         let params = &run.system;
-        run.farthest_m = (1e3 * params.contact.clearance_m).max(params.rotor.contact_radius_m);
+        run.farthest_m = (1e3 * params.plane.contact.clearance_m).max(params.plane.radius_m);
         // Without spin friction drives against the way in which the surfaces slide on each other.
         let spin = run.system.spin.spin_rad_s(&run.y.spin);
         let sense = match spin == 0.0 {
-            true => run.system.surface_m_s(&run.y.spin),
+            true => run.system.surface_m_s(&run.y),
             false => spin,
         };
         if sense >= 0.0 {
             run.backward = -1.0;
         }
-        run.spare_j = SPARE * run.system.turning_j(&run.y.spin);
+        run.spare_j = SPARE * run.system.turning_j(&run.y);
         if beyond_wall(&run.system, &run.y) {
             let g = run.system.geometry(&run.y);
             run.phase = match run.normal_n(&g) > 0.0 {
@@ -147,7 +148,7 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
     }
 
     fn normal_n(&self, g: &Geometry) -> f64 {
-        (self.system.contact.law).normal_force_n(g.penetration_m, g.normal_speed_m_s)
+        (self.system.plane.contact.law).normal_force_n(g.penetration_m, g.normal_speed_m_s)
     }
 
     /// See [`crate::plant::Plant::advance`].
@@ -255,8 +256,8 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
             _ => self.explicit.step(&self.system, &self.y, &task, books)?,
         };
         self.flows.add_scaled(1.0, &outcome.flows);
-        let rotor = &self.system.rotor;
-        (self.meters).contact_step(&outcome.peaks, outcome.step_s, outcome.turn, rotor);
+        let radius_m = self.system.plane.radius_m;
+        (self.meters).contact_step(&outcome.peaks, outcome.step_s, outcome.turn, radius_m);
         let stood_still = outcome.t_s == self.t_s;
         self.y = outcome.y;
         self.t_s = outcome.t_s;
@@ -304,9 +305,9 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
         self.just_left = true;
         self.left_at_s = self.t_s;
         let g = self.system.geometry(&self.y);
-        self.phase = if self.system.contact.leaves_dent(g.penetration_m) {
+        self.phase = if self.system.plane.contact.leaves_dent(g.penetration_m) {
             // The dent relaxes on the contact damper alone.
-            self.flows.contact_damping += self.system.contact.law.stored_j(g.penetration_m);
+            self.flows.contact_damping += self.system.plane.contact.law.stored_j(g.penetration_m);
             Phase::Beyond
         } else {
             Phase::Inside
@@ -324,7 +325,7 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
             inner_ring: ring,
             outer_ring: outer.unwrap_or_default(),
             spin_rad_s: self.system.spin.spin_rad_s(&self.y.spin),
-            race_spin_rad_s: W::race_rad_s(&self.y.spin),
+            race_spin_rad_s: R::spin_rad_s(&self.y.race),
             mode: self.phase.mode(),
             penetration_m: g.penetration_m,
             normal_force_n: 0.0,
@@ -369,20 +370,20 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
 }
 
 /// Farther out than rounding may put a start that is meant to be on the wall.
-fn beyond_wall<S: Stator, W: Spin, M: Amplifier>(
-    system: &System<S, W, M>,
-    y: &StateOf<S, W, M>,
+fn beyond_wall<S: Stator, W: Spin, M: Amplifier, B: Bore, R: Raceway>(
+    system: &System<S, W, M, B, R>,
+    y: &StateOf<S, W, M, R>,
 ) -> bool {
-    system.geometry(y).penetration_m > ON_WALL * system.contact.clearance_m
+    system.geometry(y).penetration_m > ON_WALL * system.plane.contact.clearance_m
 }
 
 /// On the wall, at rest or moving along it.
-fn rests_on_wall<S: Stator, W: Spin, M: Amplifier>(
-    system: &System<S, W, M>,
-    y: &StateOf<S, W, M>,
+fn rests_on_wall<S: Stator, W: Spin, M: Amplifier, B: Bore, R: Raceway>(
+    system: &System<S, W, M, B, R>,
+    y: &StateOf<S, W, M, R>,
 ) -> bool {
     let g = system.geometry(y);
-    g.penetration_m.abs() <= ON_WALL * system.contact.clearance_m
+    g.penetration_m.abs() <= ON_WALL * system.plane.contact.clearance_m
         && g.normal_speed_m_s.abs() <= ON_WALL * y.rotor.velocity.norm()
 }
 

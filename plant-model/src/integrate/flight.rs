@@ -5,6 +5,7 @@ use crate::V2;
 use crate::energy::Flows;
 use crate::magnet::Amplifier;
 use crate::part::Body;
+use crate::plane::{Bore, Raceway};
 use crate::quadrature::{EIGHT, Nodes, SIX};
 use crate::series::{INVERSE, MAX_PHASE, Series, order_for};
 use crate::spin::Spin;
@@ -67,16 +68,16 @@ impl<S: Stator> Segment<S> {
     }
 
     /// Rotor against ring.
-    fn gap(&self) -> &Series {
+    fn gap<B: Bore>(&self) -> &Series {
         match S::inner_series(&self.stator) {
             Some(_) => &self.gap,
-            None if S::OUT_OF_ROUND => &self.gap,
+            None if B::OUT_OF_ROUND => &self.gap,
             None => &self.position,
         }
     }
 }
 
-impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
+impl<S: Stator, W: Spin, M: Amplifier, B: Bore, R: Raceway> System<S, W, M, B, R> {
     /// Fastest rate of rotor, rings and amplifier in flight \[1/s\].
     pub(crate) fn flight_rate_rad_s(&self) -> f64 {
         let rotor = (self.rotor.stiffness_n_m.abs() / self.rotor.mass_kg).sqrt()
@@ -87,7 +88,7 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
     }
 
     /// The same with the unbalance, for a step of up to `dt_s`.
-    fn fastest_flight_rate(&self, rate_rad_s: f64, y: &StateOf<S, W, M>, dt_s: f64) -> f64 {
+    fn fastest_flight_rate(&self, rate_rad_s: f64, y: &StateOf<S, W, M, R>, dt_s: f64) -> f64 {
         let mut fastest = rate_rad_s;
         if self.rotor.eccentricity_m != 0.0 {
             // Phase Ω·t + α·t²/2: the second part alone is a series in √α·t.
@@ -104,7 +105,7 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
     pub(crate) fn fly(
         &self,
         segment: &mut Segment<S>,
-        (t_s, y): (f64, &StateOf<S, W, M>),
+        (t_s, y): (f64, &StateOf<S, W, M, R>),
         inputs: &Inputs,
         dt_s: f64,
     ) {
@@ -153,9 +154,9 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
             velocity[i + 1] =
                 (scale * inverse_m) * force - (scale * k) * position[i] - (scale * d) * velocity[i];
         }
-        if let Some(ellipse) = self.stator.ellipse() {
+        if let Some(ellipse) = self.plane.bore.ellipse() {
             for (gap, x) in (segment.gap.0.iter_mut().zip(&segment.position.0)).take(order + 1) {
-                *gap = ellipse.to_circle(*x, self.contact.clearance_m);
+                *gap = ellipse.to_circle(*x, self.plane.contact.clearance_m);
             }
         }
         if let Some(ring) = S::inner_series(&segment.stator) {
@@ -166,7 +167,7 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
     }
 
     /// m·ε·(Ω̇·(sin σ, −cos σ) + Ω²·(cos σ, sin σ)) with Ω linear in time.
-    fn unbalance_series(&self, segment: &mut Segment<S>, (t_s, y): (f64, &StateOf<S, W, M>)) {
+    fn unbalance_series(&self, segment: &mut Segment<S>, (t_s, y): (f64, &StateOf<S, W, M, R>)) {
         let (step_s, order) = (segment.step_s, segment.order);
         let spin = self.spin.spin_rad_s(&y.spin);
         let acceleration = self.spin.drive_torque_n_m() * self.spin.inverse_inertia();
@@ -197,9 +198,9 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
     pub(crate) fn flown(
         &self,
         segment: &Segment<S>,
-        y: &StateOf<S, W, M>,
+        y: &StateOf<S, W, M, R>,
         theta: f64,
-    ) -> StateOf<S, W, M> {
+    ) -> StateOf<S, W, M, R> {
         State {
             rotor: Body {
                 position: segment.position.at(theta, segment.order),
@@ -207,6 +208,7 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
             },
             stator: S::at(&segment.stator, theta, segment.order),
             spin: self.spin.coast(&y.spin, theta * segment.step_s),
+            race: self.plane.race.coast(&y.race, theta * segment.step_s),
             force: M::at(&segment.force, theta, segment.order),
         }
     }
@@ -215,8 +217,8 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
     pub(crate) fn flight_flows(
         &self,
         segment: &Segment<S>,
-        y: &StateOf<S, W, M>,
-        end: &StateOf<S, W, M>,
+        y: &StateOf<S, W, M, R>,
+        end: &StateOf<S, W, M, R>,
         inputs: &Inputs,
         theta: f64,
     ) -> Flows {
@@ -235,7 +237,7 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
         } else {
             self.add_flows_along(&mut flows, segment, &Nodes::stretched(&EIGHT, theta));
         }
-        if let Some(loss_j) = self.race_loss_j(&y.spin, &end.spin) {
+        if let Some(loss_j) = self.race_loss_j(&y.race, &end.race) {
             flows.stator_damping += loss_j;
         }
         flows
@@ -254,9 +256,9 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
 
     /// Energy that the drag of a race takes from spin to spin \[J\]: in flight nothing else brakes it.
     #[inline]
-    pub(crate) fn race_loss_j(&self, start: &W::State, end: &W::State) -> Option<f64> {
-        let race = self.spin.race()?;
-        Some(race.coasting_loss_j(W::race_rad_s(start), W::race_rad_s(end)))
+    pub(crate) fn race_loss_j(&self, start: &R::State, end: &R::State) -> Option<f64> {
+        let race = self.plane.race.race()?;
+        Some(race.coasting_loss_j(R::spin_rad_s(start), R::spin_rad_s(end)))
     }
 
     /// What has to be integrated along the path. Products of two series with phase p are integrated by
@@ -301,15 +303,15 @@ impl<S: Stator> Segment<S> {
     /// Conservative advancement on G = |u|² − c²: with M an upper bound of |G̈| over the step, no root
     /// lies before the root of G + Ġ·τ + M·τ²/2. Each move is therefore safe, and near a simple root
     /// the moves converge as fast as Newton's. A start on the wall moving inwards counts as inside.
-    pub(crate) fn wall_crossing(&self, clearance_m: f64, just_left: bool) -> Crossing {
+    pub(crate) fn wall_crossing<B: Bore>(&self, clearance_m: f64, just_left: bool) -> Crossing {
         // Most steps end far from the wall; this bound needs no roots.
-        let reach = reach_of(self.gap(), self.order);
+        let reach = reach_of(self.gap::<B>(), self.order);
         if reach.x + reach.y < clearance_m {
             return Crossing::Nowhere;
         }
         let bound = |derivative: usize| {
             let mut sum = 0.0;
-            for (k, c) in self.gap().0[..=self.order]
+            for (k, c) in self.gap::<B>().0[..=self.order]
                 .iter()
                 .enumerate()
                 .skip(derivative)
@@ -336,8 +338,8 @@ impl<S: Stator> Segment<S> {
         let square = clearance_m * clearance_m;
         let tiny = 4.0 * f64::EPSILON * square;
         let value = |theta: f64| {
-            let u = self.gap().at(theta, self.order);
-            let rate = self.gap_rate(theta);
+            let u = self.gap::<B>().at(theta, self.order);
+            let rate = self.gap_rate::<B>(theta);
             (u.norm_squared() - square, 2.0 * u.dot(&rate))
         };
         // A rotor at rest on the wall moves at least this far before it is judged.
@@ -371,11 +373,11 @@ impl<S: Stator> Segment<S> {
     }
 
     /// Bound of the distance from the ring over the step, by axis; not squeezed.
-    pub(crate) fn reach(&self) -> V2 {
-        let track = if S::OUT_OF_ROUND {
+    pub(crate) fn reach<B: Bore>(&self) -> V2 {
+        let track = if B::OUT_OF_ROUND {
             &self.position
         } else {
-            self.gap()
+            self.gap::<B>()
         };
         reach_of(track, self.order)
     }
@@ -388,10 +390,10 @@ impl<S: Stator> Segment<S> {
         }
     }
 
-    fn gap_rate(&self, theta: f64) -> V2 {
+    fn gap_rate<B: Bore>(&self, theta: f64) -> V2 {
         let mut sum = V2::zeros();
         for k in (1..=self.order).rev() {
-            sum = sum * theta + k as f64 * self.gap().0[k];
+            sum = sum * theta + k as f64 * self.gap::<B>().0[k];
         }
         sum
     }

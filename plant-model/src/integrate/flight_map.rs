@@ -8,6 +8,7 @@ use crate::V2;
 use crate::energy::Flows;
 use crate::magnet::Amplifier;
 use crate::part::{Body, Part};
+use crate::plane::{Bore, Raceway};
 use crate::quadrature::{EIGHT, Nodes};
 use crate::spin::Spin;
 use crate::stator::Stator;
@@ -49,7 +50,7 @@ fn same(a_s: f64, b_s: f64) -> bool {
     (a_s - b_s).abs() <= 1e-9 * a_s
 }
 
-impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
+impl<S: Stator, W: Spin, M: Amplifier, B: Bore, R: Raceway> System<S, W, M, B, R> {
     /// Slots that are state; the two inputs follow.
     const STATE_SLOTS: usize = (Body::STATES + S::State::STATES + M::State::STATES) / 2;
     const USED_SLOTS: usize = Self::STATE_SLOTS + 2;
@@ -58,10 +59,10 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
     pub(crate) fn fly_by_map(
         &self,
         maps: &mut FlightMaps,
-        y: &StateOf<S, W, M>,
+        y: &StateOf<S, W, M, R>,
         inputs: &Inputs,
         dt_s: f64,
-    ) -> Option<(StateOf<S, W, M>, Flows)> {
+    ) -> Option<(StateOf<S, W, M, R>, Flows)> {
         if self.rotor.eccentricity_m != 0.0 {
             return None;
         }
@@ -78,13 +79,13 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
             maps.map = Some(self.flight_map(dt_s));
         }
         let map = maps.map.as_ref()?;
-        let start = gather::<S, W, M>(y, inputs);
+        let start = gather::<S, W, M, R>(y, inputs);
         let mut reach = 0.0;
         for (reach_of, z) in map.reach.iter().zip(&start).take(Self::USED_SLOTS) {
             reach += reach_of.dot(&z.abs());
         }
-        let wall_m = match self.stator.ellipse() {
-            None => self.contact.clearance_m,
+        let wall_m = match self.plane.bore.ellipse() {
+            None => self.plane.contact.clearance_m,
             Some(ellipse) => ellipse.nearest_m(),
         };
         if reach.is_nan() || reach >= wall_m {
@@ -96,13 +97,17 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
                 *end += a.component_mul(z);
             }
         }
-        let mut end = scatter::<S, W, M>(&end, self.spin.coast(&y.spin, dt_s));
+        let mut end = scatter::<S, W, M, R>(
+            &end,
+            self.spin.coast(&y.spin, dt_s),
+            self.plane.race.coast(&y.race, dt_s),
+        );
         // The map's length carries the rounding of the clock at which it was made, and would add it up.
         let rates = self.flight_rates(&end, inputs);
         end.add_scaled(dt_s - map.step_s, &rates);
         let work = |form: &Matrix| quadratic(form, &start[..Self::USED_SLOTS]);
         let path = end.rotor.position - y.rotor.position;
-        let race_loss_j = self.race_loss_j(&y.spin, &end.spin);
+        let race_loss_j = self.race_loss_j(&y.race, &end.race);
         let flows = Flows {
             control: match M::LAGS {
                 true => work(&map.control),
@@ -125,11 +130,9 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
     }
 
     /// Rates of everything but the spin, without unbalance.
-    fn flight_rates(&self, y: &StateOf<S, W, M>, inputs: &Inputs) -> StateOf<S, W, M> {
+    fn flight_rates(&self, y: &StateOf<S, W, M, R>, inputs: &Inputs) -> StateOf<S, W, M, R> {
         let magnet_n = self.amplifier.force_n(&y.force, inputs.command_n);
-        let force = magnet_n + inputs.external_n
-            - self.rotor.stiffness_n_m * y.rotor.position
-            - self.rotor.damping_n_s_m * y.rotor.velocity;
+        let force = (self.rotor).with_shaft_n(magnet_n + inputs.external_n, &y.rotor);
         State {
             rotor: Body {
                 position: y.rotor.velocity,
@@ -137,6 +140,7 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
             },
             stator: self.stator.rates(&y.stator, V2::zeros()),
             spin: W::State::default(),
+            race: R::State::default(),
             force: self.amplifier.rates(&y.force, inputs.command_n),
         }
     }
@@ -163,7 +167,7 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
             let mut dampers = [velocity; 2];
             let mut step_s = 0.0;
             for (i, start) in starts[..Self::USED_SLOTS].iter_mut().enumerate() {
-                let y = scatter::<S, W, M>(start, W::State::default());
+                let y = scatter::<S, W, M, R>(start, W::State::default(), R::State::default());
                 let inputs = Inputs {
                     command_n: start[Self::STATE_SLOTS],
                     external_n: start[Self::STATE_SLOTS + 1],
@@ -174,9 +178,9 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
                 (velocity[i], force[i]) = (values.velocity, values.force);
                 let [a, b] = S::damper_speeds(&segment.stator, &EIGHT, segment.order);
                 (dampers[0][i], dampers[1][i]) = (a, b);
-                map.reach[i] = map.reach[i].sup(&segment.reach());
+                map.reach[i] = map.reach[i].sup(&segment.reach::<B>());
                 let end = self.flown(&segment, &y, 1.0);
-                *start = gather::<S, W, M>(&end, &inputs);
+                *start = gather::<S, W, M, R>(&end, &inputs);
             }
             let [inner, outer] = self.stator.damper_constants();
             let damping = V2::repeat(self.rotor.damping_n_s_m);
@@ -209,7 +213,10 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
 }
 
 /// State and inputs as plane vectors.
-fn gather<S: Stator, W: Spin, M: Amplifier>(y: &StateOf<S, W, M>, inputs: &Inputs) -> [V2; SLOTS] {
+fn gather<S: Stator, W: Spin, M: Amplifier, R: Raceway>(
+    y: &StateOf<S, W, M, R>,
+    inputs: &Inputs,
+) -> [V2; SLOTS] {
     let mut raw = [0.0; 2 * SLOTS];
     let (rotor, rest) = raw.split_at_mut(Body::STATES);
     y.rotor.write(rotor);
@@ -223,10 +230,11 @@ fn gather<S: Stator, W: Spin, M: Amplifier>(y: &StateOf<S, W, M>, inputs: &Input
 }
 
 /// The state back from them.
-fn scatter<S: Stator, W: Spin, M: Amplifier>(
+fn scatter<S: Stator, W: Spin, M: Amplifier, R: Raceway>(
     slots: &[V2; SLOTS],
     spin: W::State,
-) -> StateOf<S, W, M> {
+    race: R::State,
+) -> StateOf<S, W, M, R> {
     let mut raw = [0.0; 2 * SLOTS];
     for (pair, slot) in raw.chunks_exact_mut(2).zip(slots) {
         pair.copy_from_slice(slot.as_slice());
@@ -237,6 +245,7 @@ fn scatter<S: Stator, W: Spin, M: Amplifier>(
         rotor: Body::read(rotor),
         stator: S::State::read(stator),
         spin,
+        race,
         force: M::State::read(rest),
     }
 }

@@ -3,6 +3,7 @@
 use crate::magnet::Amplifier;
 use crate::params::ContactLaw;
 use crate::part::Weights;
+use crate::plane::{Bore, Raceway};
 use crate::spin::Spin;
 use crate::stator::Stator;
 use crate::system::{StateOf, System};
@@ -18,10 +19,10 @@ pub(crate) struct Scales {
 }
 
 impl Scales {
-    pub(crate) fn new<S: Stator, W: Spin, M: Amplifier>(
+    pub(crate) fn new<S: Stator, W: Spin, M: Amplifier, B: Bore, R: Raceway>(
         rtol: f64,
-        system: &System<S, W, M>,
-        y: &StateOf<S, W, M>,
+        system: &System<S, W, M, B, R>,
+        y: &StateOf<S, W, M, R>,
     ) -> Self {
         let shaft = (system.rotor.stiffness_n_m.abs() / system.rotor.mass_kg).sqrt();
         Self {
@@ -34,10 +35,10 @@ impl Scales {
 
     /// Scales of the motion, by energy: speed of the rotor, the penetration in which the contact spring
     /// takes its energy up, and the displacement in which shaft and mountings do.
-    pub(crate) fn weights<S: Stator, W: Spin, M: Amplifier>(
+    pub(crate) fn weights<S: Stator, W: Spin, M: Amplifier, B: Bore, R: Raceway>(
         &mut self,
-        system: &System<S, W, M>,
-        y: &StateOf<S, W, M>,
+        system: &System<S, W, M, B, R>,
+        y: &StateOf<S, W, M, R>,
     ) -> Weights {
         let now = y.rotor.velocity.norm();
         self.fastest_m_s = self.fastest_m_s.max(now);
@@ -46,9 +47,9 @@ impl Scales {
         let floor = 1e-3
             * self
                 .fastest_m_s
-                .max(1e-3 * system.contact.clearance_m * self.contact_rate);
+                .max(1e-3 * system.plane.contact.clearance_m * self.contact_rate);
         let speed = now.max(floor);
-        let rate = match &system.contact.law {
+        let rate = match &system.plane.contact.law {
             ContactLaw::Linear(_) => self.contact_rate,
             // The spring takes the energy up in a depth that is not in proportion to the speed.
             ContactLaw::HuntCrossley(law) => {
@@ -56,13 +57,13 @@ impl Scales {
                 speed / law.depth_m(speed, 1.0 / mobility)
             }
         };
-        let clearance = system.contact.clearance_m;
+        let clearance = system.plane.contact.clearance_m;
         let length = speed / self.slow_rate;
         // A race counts as much as the rotor's spin: both make the sliding speed.
-        let mut spin = (speed / system.rotor.contact_radius_m)
-            .max(system.spin.spin_rad_s(&y.spin).abs() * 1e-2);
-        if system.spin.race().is_some() {
-            spin = spin.max(W::race_rad_s(&y.spin).abs() * 1e-2);
+        let mut spin =
+            (speed / system.plane.radius_m).max(system.spin.spin_rad_s(&y.spin).abs() * 1e-2);
+        if system.plane.race.race().is_some() {
+            spin = spin.max(R::spin_rad_s(&y.race).abs() * 1e-2);
         }
         Weights {
             position: 1.0 / (self.rtol * length.min(clearance)),

@@ -6,6 +6,7 @@ use crate::energy::Flows;
 use crate::magnet::Amplifier;
 use crate::mode::{Slide, Whirl};
 use crate::part::{Body, Part, Weights};
+use crate::plane::{Bore, Raceway};
 use crate::quadrature::{EIGHT, Nodes, SIX};
 use crate::readout::Peaks;
 use crate::series::{Scalar, Series};
@@ -15,18 +16,19 @@ use crate::system::{NORMAL, SLIDE, SLIDE_LOW, State, StateOf, System, WHIRL, WHI
 
 impl<S: Stator> ContactSeries<S> {
     /// State at θ of a step that started at `y`.
-    pub(crate) fn at<W: Spin, M: Amplifier>(
+    pub(crate) fn at<W: Spin, M: Amplifier, R: Raceway>(
         &self,
         spin: &W,
-        y: &StateOf<S, W, M>,
+        y: &StateOf<S, W, M, R>,
         theta: f64,
-    ) -> StateOf<S, W, M> {
+    ) -> StateOf<S, W, M, R> {
         let order = self.order;
         let mut spun = y.spin;
         spin.set_spin_rad_s(&mut spun, self.spin.at(theta, order));
         spin.turn(&mut spun, self.step_s * self.spin.integral(theta, order));
-        if spin.race().is_some() {
-            W::set_race_rad_s(&mut spun, self.race.at(theta, order));
+        let mut race = y.race;
+        if R::TURNS {
+            R::set_spin_rad_s(&mut race, self.race.at(theta, order));
         }
         State {
             rotor: Body {
@@ -35,13 +37,14 @@ impl<S: Stator> ContactSeries<S> {
             },
             stator: S::at(&self.stator, theta, order),
             spin: spun,
+            race,
             force: M::at(&self.magnet, theta, order),
         }
     }
 
     /// Weighed square of the coefficients k.
     #[inline]
-    pub(crate) fn square<W: Spin>(&self, k: usize, weights: &Weights, model: &W) -> f64 {
+    pub(crate) fn square<R: Raceway>(&self, k: usize, weights: &Weights) -> f64 {
         let rotor = Body {
             position: self.position.0[k],
             velocity: self.velocity.0[k],
@@ -50,30 +53,30 @@ impl<S: Stator> ContactSeries<S> {
         let stator = S::coefficient(&self.stator, k).weighed_square(weights);
         let gap = self.gap.0[k].norm_squared() * weights.gap * weights.gap;
         let mut square = gap + rotor.weighed_square(weights) + stator + spin * spin;
-        if model.race().is_some() {
+        if R::TURNS {
             square += (self.race.0[k] * weights.spin).powi(2);
         }
         square
     }
 
     /// Fills `out` with a guard of the mode; false if the mode has no such guard.
-    pub(crate) fn guard<W: Spin, M: Amplifier>(
+    pub(crate) fn guard<W: Spin, M: Amplifier, B: Bore, R: Raceway>(
         &self,
         out: &mut Scalar,
-        system: &System<S, W, M>,
+        system: &System<S, W, M, B, R>,
         (slide, whirl): (Slide, Whirl),
         guard: usize,
     ) -> bool {
         let (slide_sign, whirl_sign) = (slide.sign(), whirl.sign());
-        let mu = system.friction.sliding.coefficient(0.0);
-        let mu_r = system.friction.rolling_coefficient;
-        let by_spin = slide_sign * system.rotor.contact_radius_m;
+        let mu = system.plane.friction.sliding.coefficient(0.0);
+        let mu_r = system.plane.friction.rolling_coefficient;
+        let by_spin = slide_sign * system.plane.radius_m;
         let (rolling, still) = (slide == Slide::Rolling, whirl == Whirl::Still);
         let (a, b) = match guard {
             NORMAL => ((1.0, &self.force), (0.0, &self.force)),
             SLIDE if rolling => ((mu, &self.force), (-1.0, &self.sliding)),
             SLIDE_LOW if rolling => ((mu, &self.force), (1.0, &self.sliding)),
-            SLIDE if mu != 0.0 && system.spin.race().is_some() => {
+            SLIDE if mu != 0.0 && system.plane.race.race().is_some() => {
                 ((slide_sign, &self.whirl_speed), (slide_sign, &self.surface))
             }
             SLIDE if mu != 0.0 => ((slide_sign, &self.whirl_speed), (by_spin, &self.spin)),
@@ -89,9 +92,9 @@ impl<S: Stator> ContactSeries<S> {
     }
 
     /// Energy through each door from 0 to θ.
-    pub(crate) fn flows<W: Spin, M: Amplifier>(
+    pub(crate) fn flows<W: Spin, M: Amplifier, B: Bore, R: Raceway>(
         &self,
-        system: &System<S, W, M>,
+        system: &System<S, W, M, B, R>,
         ends: (&Body, &Body),
         task: &Task<'_>,
         theta: f64,
@@ -110,16 +113,16 @@ impl<S: Stator> ContactSeries<S> {
         }
     }
 
-    fn flows_by<W: Spin, M: Amplifier, const N: usize>(
+    fn flows_by<W: Spin, M: Amplifier, B: Bore, R: Raceway, const N: usize>(
         &self,
-        system: &System<S, W, M>,
+        system: &System<S, W, M, B, R>,
         (start, end): (&Body, &Body),
         task: &Task<'_>,
         (theta, nodes): (f64, &Nodes<N>),
     ) -> Flows {
         let (h, order) = (self.step_s, self.order);
         let path = end.position - start.position;
-        let radius = system.rotor.contact_radius_m;
+        let radius = system.plane.radius_m;
         let free = system.spin.inverse_inertia() > 0.0;
         let torque = system.spin.drive_torque_n_m();
         let mut flows = Flows {
@@ -155,7 +158,7 @@ impl<S: Stator> ContactSeries<S> {
             let w = (system.stator).damping_integral_w(&self.stator, nodes, order);
             flows.stator_damping = h * w;
         }
-        if let Some(race) = system.spin.race() {
+        if let Some(race) = system.plane.race.race() {
             let spin = self.race.at_all(&nodes.theta, order);
             flows.stator_damping += h * nodes.integral(|j| race.drag_w(spin[j]));
         }
@@ -165,12 +168,12 @@ impl<S: Stator> ContactSeries<S> {
             flows.contact_damping = self.law.damping_n_s_m * h * square;
         }
         let (slips, whirls) = (task.mode.0 != Slide::Rolling, task.mode.1 != Whirl::Still);
-        let rolling = system.friction.rolling_coefficient > 0.0 && whirls;
+        let rolling = system.plane.friction.rolling_coefficient > 0.0 && whirls;
         if slips || rolling {
             let whirl = self.whirl_speed.at_all(&nodes.theta, order);
             if slips {
                 let friction = self.sliding.at_all(&nodes.theta, order);
-                let work = if system.spin.race().is_some() {
+                let work = if system.plane.race.race().is_some() {
                     let surface = self.surface.at_all(&nodes.theta, order);
                     nodes.integral(|j| friction[j] * (whirl[j] + surface[j]))
                 } else if free {
@@ -202,9 +205,9 @@ impl<S: Stator> ContactSeries<S> {
     }
 
     /// Largest values up to the end, v_w counted in the sense of backward whirl.
-    pub(crate) fn peaks<W: Spin, M: Amplifier>(
+    pub(crate) fn peaks<W: Spin, M: Amplifier, B: Bore, R: Raceway>(
         &self,
-        system: &System<S, W, M>,
+        system: &System<S, W, M, B, R>,
         backward: f64,
         end: &End,
     ) -> Peaks {
@@ -215,7 +218,7 @@ impl<S: Stator> ContactSeries<S> {
         let whirl = (&self.whirl_speed, backward);
         let (_, backward_m_s) = highest(whirl, (theta, end.whirl_speed), order);
         // A command or load that jumps may ask for more than friction holds: that is no force of the mode.
-        let mu = system.friction.sliding.coefficient(0.0);
+        let mu = system.plane.friction.sliding.coefficient(0.0);
         let within = |sliding: f64, force: f64| sliding.abs().min(mu * force.max(0.0));
         let at_start = within(self.sliding.0[0], self.force.0[0]);
         let at_end = within(self.sliding.at(theta, order), end.force.0);
@@ -226,7 +229,7 @@ impl<S: Stator> ContactSeries<S> {
         };
         Peaks {
             normal_n,
-            penetration_m: distance_m - system.contact.clearance_m,
+            penetration_m: distance_m - system.plane.contact.clearance_m,
             sliding_n: at_start.max(at_end).max(at_top),
             backward_m_s,
         }

@@ -6,6 +6,7 @@ use super::scales::Scales;
 use crate::integrate::PlantError;
 use crate::magnet::Amplifier;
 use crate::params::LinearContact;
+use crate::plane::{Bore, Raceway};
 use crate::readout::Work;
 use crate::series::{MAX_ORDER, Scalar};
 use crate::spin::Spin;
@@ -40,19 +41,18 @@ impl<S: Stator> SeriesStepper<S> {
     }
 
     /// Steps towards the end of the span until the series, the end or an event stops it.
-    pub(crate) fn step<W: Spin, M: Amplifier>(
+    pub(crate) fn step<W: Spin, M: Amplifier, B: Bore, R: Raceway>(
         &mut self,
-        system: &System<S, W, M>,
-        y: &StateOf<S, W, M>,
+        system: &System<S, W, M, B, R>,
+        y: &StateOf<S, W, M, R>,
         task: &Task<'_>,
         (scales, work): (&mut Scales, &mut Work),
-    ) -> Result<ContactStep<StateOf<S, W, M>>, PlantError> {
+    ) -> Result<ContactStep<StateOf<S, W, M, R>>, PlantError> {
         let (t_s, t_end_s) = task.span;
         let weights = scales.weights(system, y);
         let remaining = t_end_s - t_s;
         let highest = self.highest_order;
-        let square =
-            |series: &ContactSeries<S>, k: usize| series.square::<W>(k, &weights, &system.spin);
+        let square = |series: &ContactSeries<S>, k: usize| series.square::<R>(k, &weights);
         let mut reference = self.step_s.min(remaining);
         work.steps += 1;
         let (order, trusted) = loop {
@@ -103,7 +103,7 @@ impl<S: Stator> SeriesStepper<S> {
             }
         }
         work.events += u64::from(event.is_some());
-        let end = self.series.at::<W, M>(&system.spin, y, theta);
+        let end = self.series.at::<W, M, R>(&system.spin, y, theta);
         let ends = (&y.rotor, &end.rotor);
         let readout = self.series.end(theta);
         let t_new = if whole {

@@ -3,6 +3,7 @@
 use crate::magnet::Amplifier;
 use crate::mode::{Slide, Whirl};
 use crate::part::Part;
+use crate::plane::{Bore, Raceway};
 use crate::spin::Spin;
 use crate::stator::Stator;
 use crate::system::{Inputs, SLIDE, SLIDE_LOW, StateOf, System, WHIRL, WHIRL_LOW};
@@ -34,16 +35,16 @@ impl AtZero {
     }
 }
 
-impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
+impl<S: Stator, W: Spin, M: Amplifier, B: Bore, R: Raceway> System<S, W, M, B, R> {
     /// Puts speeds that are zero up to the tolerance to zero, by the impulse that friction would give:
     /// on rotor, ring and spin alike, so that the energy changes by the square of the drift only.
-    pub(crate) fn zero_speeds(&self, y: &mut StateOf<S, W, M>, at_zero: AtZero) {
+    pub(crate) fn zero_speeds(&self, y: &mut StateOf<S, W, M, R>, at_zero: AtZero) {
         let g = self.geometry(y);
         let inverse_m = 1.0 / self.rotor.mass_kg;
         let inverse_ring = self.stator.inverse_mass();
-        let radius = self.rotor.contact_radius_m;
+        let radius = self.plane.radius_m;
         let inverse_j = self.spin.inverse_inertia();
-        let push = |y: &mut StateOf<S, W, M>, impulse: f64| {
+        let push = |y: &mut StateOf<S, W, M, R>, impulse: f64| {
             y.rotor.velocity += impulse * inverse_m * g.tangent;
             S::kick(&mut y.stator, -impulse * inverse_ring * g.tangent);
         };
@@ -55,36 +56,36 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
         if !at_zero.slide {
             return;
         }
-        if at_zero.whirl && self.spin.race().is_none() {
+        if at_zero.whirl && self.plane.race.race().is_none() {
             // Both held: what is left can only be spin.
             self.spin.set_spin_rad_s(&mut y.spin, 0.0);
             return;
         }
         let spin = self.spin.spin_rad_s(&y.spin);
         let mut give = radius * radius * inverse_j;
-        if let Some(race) = self.spin.race() {
+        if let Some(race) = self.plane.race.race() {
             give += race.mobility();
         }
         // With both held the surfaces alone give way to each other.
         if !at_zero.whirl {
             give += inverse_m + inverse_ring;
         }
-        let impulse = -(whirl_speed + self.surface_m_s(&y.spin)) / give;
+        let impulse = -(whirl_speed + self.surface_m_s(y)) / give;
         if !at_zero.whirl {
             push(y, impulse);
         }
         self.spin
             .set_spin_rad_s(&mut y.spin, spin + radius * inverse_j * impulse);
-        if let Some(race) = self.spin.race() {
-            let kicked = W::race_rad_s(&y.spin) - race.radius_m / race.inertia_kg_m2 * impulse;
-            W::set_race_rad_s(&mut y.spin, kicked);
+        if let Some(race) = self.plane.race.race() {
+            let kicked = R::spin_rad_s(&y.race) - race.radius_m / race.inertia_kg_m2 * impulse;
+            R::set_spin_rad_s(&mut y.race, kicked);
         }
     }
 
     /// The contact mode after a guard other than the normal force's has ended `pair`.
     pub(crate) fn next_in_contact(
         &self,
-        (t_s, y): (f64, &StateOf<S, W, M>),
+        (t_s, y): (f64, &StateOf<S, W, M, R>),
         inputs: &Inputs,
         pair: (Slide, Whirl),
         guard: usize,
@@ -106,9 +107,9 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
 
     /// Whether v_rel is v_w: on a ring without a race under a rotor whose spin is held at zero. Only there do sliding and
     /// rolling friction share what holds the rotor, as μ : μ_r, see eq. (2.21).
-    fn slip_is_whirl(&self, y: &StateOf<S, W, M>) -> bool {
+    fn slip_is_whirl(&self, y: &StateOf<S, W, M, R>) -> bool {
         self.spin.inverse_inertia() == 0.0
-            && self.spin.race().is_none()
+            && self.plane.race.race().is_none()
             && self.spin.spin_rad_s(&y.spin) == 0.0
     }
 
@@ -116,14 +117,14 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
     /// be zero. Forces are judged a moment later, because at a touch they all start from zero.
     pub(crate) fn settle(
         &self,
-        (t_s, y): (f64, &StateOf<S, W, M>),
+        (t_s, y): (f64, &StateOf<S, W, M, R>),
         inputs: &Inputs,
         at_zero: AtZero,
     ) -> (Slide, Whirl) {
         let g = self.geometry(y);
         let zero = 1e-13 * y.rotor.velocity.norm();
         // Without friction the direction of slip changes nothing, and there is nothing to hold it.
-        let frictionless = self.friction.sliding.coefficient(0.0) == 0.0;
+        let frictionless = self.plane.friction.sliding.coefficient(0.0) == 0.0;
         let slide_at_zero = !frictionless && (at_zero.slide || g.sliding_speed_m_s.abs() <= zero);
         let whirl_at_zero = at_zero.whirl || g.whirl_speed_m_s.abs() <= zero;
         // Where they are one speed, one direction says it all.
@@ -140,7 +141,7 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
         } else {
             &[Slide::from_speed(g.sliding_speed_m_s)]
         };
-        let whirls: &[Whirl] = if self.friction.rolling_coefficient == 0.0 {
+        let whirls: &[Whirl] = if self.plane.friction.rolling_coefficient == 0.0 {
             &[Whirl::Ignored]
         } else if whirl_at_zero {
             &[Whirl::Still, Whirl::Positive, Whirl::Negative]

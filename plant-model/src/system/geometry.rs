@@ -4,6 +4,7 @@ use super::{StateOf, System};
 use crate::V2;
 use crate::ellipse::ClosestPoint;
 use crate::magnet::Amplifier;
+use crate::plane::{Bore, Raceway};
 use crate::spin::Spin;
 use crate::stator::{Rings, Stator};
 use crate::vector::perp;
@@ -27,13 +28,13 @@ pub(crate) struct Geometry {
     pub(crate) sliding_speed_m_s: f64,
 }
 
-impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
+impl<S: Stator, W: Spin, M: Amplifier, B: Bore, R: Raceway> System<S, W, M, B, R> {
     #[inline]
-    pub(crate) fn geometry(&self, y: &StateOf<S, W, M>) -> Geometry {
+    pub(crate) fn geometry(&self, y: &StateOf<S, W, M, R>) -> Geometry {
         let ring = y.stator.inner();
         let u = y.rotor.position - ring.position;
         let w = y.rotor.velocity - ring.velocity;
-        if let Some(ellipse) = self.stator.ellipse() {
+        if let Some(ellipse) = self.plane.bore.ellipse() {
             return self.geometry_out_of_round(&ellipse.closest_point(u), w, y);
         }
         let distance_m = u.norm();
@@ -45,12 +46,12 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
         };
         let tangent = perp(normal);
         let whirl_speed_m_s = w.dot(&tangent);
-        let surface = self.surface_m_s(&y.spin);
+        let surface = self.surface_m_s(y);
         Geometry {
             distance_m,
             normal,
             tangent,
-            penetration_m: distance_m - self.contact.clearance_m,
+            penetration_m: distance_m - self.plane.contact.clearance_m,
             normal_speed_m_s: w.dot(&normal),
             whirl_speed_m_s,
             sliding_speed_m_s: whirl_speed_m_s + surface,
@@ -62,7 +63,7 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
         &self,
         closest: &ClosestPoint,
         w: V2,
-        y: &StateOf<S, W, M>,
+        y: &StateOf<S, W, M, R>,
     ) -> Geometry {
         let normal = closest.normal;
         let tangent = perp(normal);
@@ -74,16 +75,16 @@ impl<S: Stator, W: Spin, M: Amplifier> System<S, W, M> {
             penetration_m: closest.depth_m,
             normal_speed_m_s: w.dot(&normal),
             whirl_speed_m_s,
-            sliding_speed_m_s: whirl_speed_m_s + self.surface_m_s(&y.spin),
+            sliding_speed_m_s: whirl_speed_m_s + self.surface_m_s(y),
         }
     }
 
     /// Speed of the rotor's surface by its spin, against that of a race \[m/s\].
     #[inline]
-    pub(crate) fn surface_m_s(&self, spin: &W::State) -> f64 {
-        let own = self.spin.spin_rad_s(spin) * self.rotor.contact_radius_m;
-        match self.spin.race() {
-            Some(race) => own - race.radius_m * W::race_rad_s(spin),
+    pub(crate) fn surface_m_s(&self, y: &StateOf<S, W, M, R>) -> f64 {
+        let own = self.spin.spin_rad_s(&y.spin) * self.plane.radius_m;
+        match self.plane.race.race() {
+            Some(race) => own - race.radius_m * R::spin_rad_s(&y.race),
             None => own,
         }
     }

@@ -8,11 +8,12 @@ use crate::integrate::transitions::AtZero;
 use crate::magnet::Amplifier;
 use crate::mode::Phase;
 use crate::params::{Change, ParamError, SlidingFriction};
+use crate::plane::{Bore, Raceway};
 use crate::spin::Spin;
 use crate::stator::Stator;
 use crate::system::{StateOf, SuppressedGuards};
 
-impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
+impl<S: Stator, W: Spin, M: Amplifier, B: Bore, R: Raceway> Run<S, W, M, B, R> {
     /// See [`crate::plant::Plant::change`].
     pub(crate) fn change(&mut self, change: &Change) -> Result<(), ParamError> {
         change.validate()?;
@@ -41,16 +42,16 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
             system.rotor.eccentricity_m = e;
         }
         if let Some(coefficient) = change.friction_coefficient {
-            system.friction.sliding = SlidingFriction::Constant { coefficient };
+            system.plane.friction.sliding = SlidingFriction::Constant { coefficient };
         }
         // What was learnt from the field as it was.
         let rate = system.contact_rate_rad_s();
         self.maps = FlightMaps::default();
-        self.series = (system.contact.law.linear())
-            .filter(|_| !S::OUT_OF_ROUND)
+        self.series = (system.plane.contact.law.linear())
+            .filter(|_| !B::OUT_OF_ROUND)
             .map(|law| SeriesStepper::new(self.options.rtol, rate, law));
-        self.explicit = ContactStepper::new::<StateOf<S, W, M>>(rate);
-        self.stiff = ContactStepper::new::<StateOf<S, W, M>>(rate);
+        self.explicit = ContactStepper::new::<StateOf<S, W, M, R>>(rate);
+        self.stiff = ContactStepper::new::<StateOf<S, W, M, R>>(rate);
         if let Phase::Contact(slide, whirl) = self.phase {
             // A weaker cone may not hold what the stronger one held.
             let held = AtZero::held((slide, whirl));

@@ -5,11 +5,12 @@ use crate::bisection::bracket_until;
 use crate::integrate::flight::Crossing;
 use crate::magnet::Amplifier;
 use crate::mode::{Phase, Slide, Whirl};
+use crate::plane::{Bore, Raceway};
 use crate::readout::HARD_IMPACT_M_S;
 use crate::spin::Spin;
 use crate::stator::Stator;
 
-impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
+impl<S: Stator, W: Spin, M: Amplifier, B: Bore, R: Raceway> Run<S, W, M, B, R> {
     pub(super) fn fly_inside(&mut self, t_end_s: f64) {
         let remaining = t_end_s - self.t_s;
         let here = (self.t_s, &self.y);
@@ -17,7 +18,7 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
         let last = self.segment.step_s >= remaining;
         let (theta, hit) = match self
             .segment
-            .wall_crossing(self.system.contact.clearance_m, self.just_left)
+            .wall_crossing::<B>(self.system.plane.contact.clearance_m, self.just_left)
         {
             Crossing::Nowhere => (1.0, false),
             Crossing::At(theta) => (theta, true),
@@ -30,7 +31,7 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
             let g = self.system.geometry(&self.y);
             // From rest on the wall and under a push a of ½·a·t² = ½·v·t: no farther away than rounding, so never off.
             let off_m = self.t_s * g.normal_speed_m_s;
-            if rested && off_m <= 2.0 * ON_WALL * self.system.contact.clearance_m {
+            if rested && off_m <= 2.0 * ON_WALL * self.system.plane.contact.clearance_m {
                 return self.touch_down();
             }
             self.meters.impacts += 1;
@@ -103,7 +104,7 @@ impl<S: Stator, W: Spin, M: Amplifier> Run<S, W, M> {
         if matches!(next, Phase::Contact(..)) {
             // The dent whose energy was written off at lift-off is felt again.
             let g = self.system.geometry(&self.y);
-            self.flows.contact_damping -= self.system.contact.law.stored_j(g.penetration_m);
+            self.flows.contact_damping -= self.system.plane.contact.law.stored_j(g.penetration_m);
             self.touch_down();
         } else {
             self.phase = next;
