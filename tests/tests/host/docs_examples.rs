@@ -44,7 +44,7 @@ const ONLY_PARSED: [(&str, &str); 12] = [
 ];
 
 /// What is not this program: what it needs, or what builds and runs firmware.
-const OTHERS: [(&str, &str); 12] = [
+const OTHERS: [(&str, &str); 11] = [
     ("git clone", "fetches the project"),
     ("curl", "installs Rust"),
     ("apt-get", "installs packages"),
@@ -53,7 +53,6 @@ const OTHERS: [(&str, &str); 12] = [
     ("tests/peers/run", "installs other people's integrators"),
     ("cargo rustc", "the tests of the C library do it"),
     ("cargo build", "the tests of the images do it"),
-    ("cargo run --release -p system-tests", "a bench of its own"),
     ("arm-none-eabi-gcc", "the tests of the C library do it"),
     ("qemu-system-arm", "the tests of the images do it"),
     ("cd ", "leads to the next line"),

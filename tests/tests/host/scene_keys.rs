@@ -121,7 +121,7 @@ fn the_schema_takes_every_scene_and_no_mistake() {
         ("mass_kg = ", "mass_kg = -", ".rotor.mass_kg: minimum"),
         (
             "sample_rate_hz = ",
-            "sample_rate_hz = 9",
+            "sample_rate_hz = 99",
             ".run.sample_rate_hz: maximum",
         ),
         ("\"passive\"", "\"pasive\"", ".run.policies.[]: enum"),
@@ -177,7 +177,7 @@ fn values_are_read_and_set_by_their_paths() {
         );
         set += all.len();
     }
-    assert!(set > 1000, "{set}");
+    assert!(set > 400, "{set}");
 }
 
 #[test]

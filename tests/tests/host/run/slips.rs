@@ -192,7 +192,7 @@ fn slips_are_warned_of() {
             "coefficient = 0.15",
             "coefficient = 0.15\nrolling_coefficient = 0.14",
         ),
-        ("proportional_n_m = 5e5", "proportional_n_m = 2.1e5"),
+        ("proportional_n_m = 5e5", "proportional_n_m = 3e5"),
         ("sample_rate_hz = 20000", "sample_rate_hz = 10000"),
         (
             "mass_kg = 10.0",
