@@ -2,7 +2,8 @@
 //!
 //! ```
 //! use firmware_bench::run::closed_loop::{Keep, run};
-//! use firmware_bench::scene::{PolicyKind, Scene};
+//! use firmware_bench::scene::Scene;
+//! use firmware_bench::scene::policy_kind::PolicyKind;
 //!
 //! let text = r#"
 //! title = "An impact"

@@ -9,7 +9,7 @@ use std::ops::Range;
 /// From a sample to the middle of its force, in units of √(m·c/F).
 const LATENESS: [Range<f64>; 3] = [0.0..0.4, 0.4..0.8, 0.8..10.0];
 
-/// The scenes on the machines of these numbers, by [`LATENESS`].
+/// The scenes on the machines of these numbers, by how late their forces come.
 ///
 /// # Errors
 /// A machine that is no valid scene: a mistake of the draw.
