@@ -122,7 +122,7 @@ pub use coeffs::Scaling;
 pub use config::{Config, ConfigError, CoreError, Misfit, PARAMETERS, Parameter};
 pub use per_unit::{Core, Prepared};
 pub use q::{Q, SlowQ};
-pub use recorder::{Entry, PER_UNIT, QueuedEvent, RECORD_VERSION, Record, crc_of};
+pub use recorder::{Entry, PER_UNIT, QueuedEvent, RECORD_TRIGGERS, RECORD_VERSION, Record, crc_of};
 pub use scalar::{Scalar, Slow};
 pub use self_test::{SelfTest, self_test};
 pub use signal::{

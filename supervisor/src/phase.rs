@@ -61,7 +61,6 @@ impl<S: Scalar> Phase<S> {
         }
     }
 
-    /// Whether the supervisor has the bearing, alone or in part.
     #[inline]
     pub(crate) fn is_engaged(self) -> bool {
         !matches!(self, Self::Levitated | Self::HandedBack { .. })

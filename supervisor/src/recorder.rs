@@ -88,6 +88,10 @@ impl<'a, const N: usize> Record<'a, N> {
 /// What makes an engagement worth a record: one without must not spend the record of one with it.
 const WORTH_IT: Events = Events::TOUCHED.union(Events::SENSOR_FAULT);
 
+/// What starts a record: an engagement, or, where the last record was discarded during one, what makes it worth it. The
+/// entry at the end of the first quarter of a record has one of these.
+pub const RECORD_TRIGGERS: Events = Events::ENGAGED.union(WORTH_IT);
+
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum State {
     /// Recording; nothing has happened yet.
@@ -160,7 +164,7 @@ impl<const N: usize> Recorder<N> {
         }
         match self.state {
             State::Armed => {
-                let engaged = !matches!(mode, Mode::Levitated | Mode::HandedBack);
+                let engaged = mode.is_engaged();
                 if events.contains(Events::ENGAGED) || engaged && events.intersects(WORTH_IT) {
                     // One that begins on the wall has no touch to come.
                     self.worth_it = !matches!(mode, Mode::Approach);

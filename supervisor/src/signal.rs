@@ -177,6 +177,12 @@ pub enum Mode {
 }
 
 impl Mode {
+    /// Whether the supervisor has the bearing, alone or in part.
+    #[inline]
+    pub const fn is_engaged(self) -> bool {
+        !matches!(self, Self::Levitated | Self::HandedBack)
+    }
+
     /// Short name for tables and traces.
     pub const fn name(self) -> &'static str {
         match self {

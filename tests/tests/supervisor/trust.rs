@@ -14,10 +14,6 @@ const WINDOW_TICKS: u32 = (6.0 * UNIT_TICKS) as u32 + 1;
 /// No engagement is longer.
 const MOST_TICKS: u32 = 2049 * WINDOW_TICKS;
 
-fn acts(mode: Mode) -> bool {
-    !matches!(mode, Mode::Levitated | Mode::HandedBack)
-}
-
 /// Noise of a coordinate, triangular, of this standard deviation.
 fn noise(chance: &mut Chance, rms: f32) -> f32 {
     (chance.share() + chance.share() - 1.0) * rms * 6_f32.sqrt()
@@ -30,7 +26,7 @@ fn longest_in_a_storm<S: AnyBits>(seed: u64, ticks: u32) -> u32 {
     let (mut longest, mut running) = (0, 0);
     for _ in 0..ticks {
         let mode = core.tick(&storm.next_sample::<S>()).mode;
-        running = if acts(mode) { running + 1 } else { 0 };
+        running = if mode.is_engaged() { running + 1 } else { 0 };
         longest = longest.max(running);
     }
     longest
@@ -57,7 +53,7 @@ fn longest_kept(position: impl Fn(u32, Mode) -> [f32; 2], ticks: u32) -> (u32, u
     for i in 0..ticks {
         let command = bench.tick(position(i, mode));
         mode = command.mode;
-        running = if acts(mode) { running + 1 } else { 0 };
+        running = if mode.is_engaged() { running + 1 } else { 0 };
         longest = longest.max(running);
         handed_back += u32::from(command.events.contains(Events::HANDED_BACK));
     }
@@ -92,7 +88,7 @@ fn bouncing_on_is_given_up_and_pauses_double() {
     let (mut running, mut longest, mut pause) = (0, 0, 0);
     for i in 0..200 * WINDOW_TICKS {
         let mode = bench.tick(bouncing(i, 0.8)).mode;
-        if acts(mode) {
+        if mode.is_engaged() {
             running += 1;
             longest = longest.max(running);
             if pause > 0 {
@@ -193,7 +189,7 @@ fn what_is_usual_is_no_approach() {
             let share = (i as f32 / growth as f32).min(1.0);
             let x = share * amplitude * C_M * phase.sin() + noise(&mut chance, 5e-7);
             let command = bench.tick([x, noise(&mut chance, 5e-7)]);
-            engaged += u32::from(acts(command.mode));
+            engaged += u32::from(command.mode.is_engaged());
         }
         assert_eq!(engaged, 0, "{speed} at {amplitude}");
     }

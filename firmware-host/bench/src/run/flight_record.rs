@@ -3,14 +3,10 @@
 use firmware_image::wire::mode_of;
 use serde::Serialize;
 use std::ops::RangeInclusive;
-use supervisor::{Entry, Events, Limits, Mode, PER_UNIT, crc_of};
+use supervisor::{Entry, Events, Limits, Mode, PER_UNIT, RECORD_TRIGGERS, crc_of};
 
 /// Bytes of an entry.
 pub const ENTRY_BYTES: usize = 16;
-/// What a record may begin with.
-const TRIGGERS: Events = Events::ENGAGED
-    .union(Events::TOUCHED)
-    .union(Events::SENSOR_FAULT);
 
 /// What the units of a record are in SI, as far as they are known.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -136,7 +132,7 @@ impl FlightRecord {
             .take_while(|entry| **entry == Entry::default())
             .count();
         let written = &entries[empty..];
-        let triggers = |entry: &Entry| entry.events & TRIGGERS.bits() as u16 != 0;
+        let triggers = |entry: &Entry| entry.events & RECORD_TRIGGERS.bits() as u16 != 0;
         let engaged = |entry: &&Entry| entry.events & Events::ENGAGED.bits() as u16 != 0;
         let trigger = (entries.len() / 4).checked_sub(1);
         let a_length = entries.len().is_power_of_two();

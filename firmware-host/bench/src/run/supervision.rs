@@ -69,13 +69,13 @@ impl Recorder for SupervisionCount {
             return;
         };
         if let Some((before_s, mode)) = self.last.replace((t_s, said.mode))
-            && acts(mode)
+            && mode.is_engaged()
         {
             self.engaged_s += t_s - before_s;
         }
         let began_s = *self.since_s.get_or_insert(t_s);
         self.longest_engagement_s = self.longest_engagement_s.max(t_s - began_s);
-        if !acts(said.mode) {
+        if !said.mode.is_engaged() {
             self.since_s = None;
         }
         let count = |event: Events| u64::from(said.events.contains(event));
@@ -113,11 +113,6 @@ impl Supervision {
         trace.rows.iter().for_each(|row| count.row(row));
         count.ended(trace.read_out.as_ref())
     }
-}
-
-/// Whether the supervisor has the bearing in a mode, alone or in part.
-pub fn acts(mode: Mode) -> bool {
-    !matches!(mode, Mode::Levitated | Mode::HandedBack)
 }
 
 impl Account {

@@ -2,7 +2,6 @@
 
 use firmware_bench::run::closed_loop::{Keep, run, run_policy};
 use firmware_bench::run::controller::{Supervise, supervised};
-use firmware_bench::run::supervision::acts;
 use firmware_bench::run::trace::ReadOut;
 use firmware_bench::scene::Scene;
 use firmware_bench::scene::policy_kind::PolicyKind;
@@ -80,7 +79,7 @@ impl Supervise for Counting {
         counted.run_s += self.period_s;
         counted.engagements += u64::from(command.events.contains(Events::ENGAGED));
         counted.handed_back += u64::from(command.events.contains(Events::HANDED_BACK));
-        if acts(command.mode) {
+        if command.mode.is_engaged() {
             counted.engaged_s += self.period_s;
             self.running_s += self.period_s;
             counted.longest_s = counted.longest_s.max(self.running_s);
