@@ -166,6 +166,46 @@ parameters! {
 }
 
 impl Config {
+    /// An example, and no default for any machine: a rotor of 10 kg in a clearance of 0.2 mm, with a cap of 1 kN and a tick of
+    /// 50 µs, as `advise` of the command line suggests it for 1 µm of sensor noise; slew limit and thermal budget are the
+    /// drive's own. Tests and documentation start from it, and name what they have otherwise; so does the self-test, whose
+    /// known answers change with it.
+    pub const fn example() -> Self {
+        Config {
+            sample_period_s: 50e-6,
+            mass_kg: 10.0,
+            stiffness_n_m: -2e5,
+            damping_n_s_m: 0.0,
+            clearance_m: 2e-4,
+            force_max_n: 1000.0,
+            amplifier_lag_s: 1.6e-4,
+            delay_samples: 1.0,
+            friction_coefficient: 0.15,
+            restitution: 0.7,
+            observer_pole_flight: 0.69,
+            observer_pole_contact: 0.5,
+            contact_band: 0.02,
+            position_limit: 20.0,
+            whirl_time_s: 1e-3,
+            hold_share: 0.8,
+            handover_dwell_s: 5e-4,
+            handover_blend_s: 2e-3,
+            fault_blend_s: 2e-2,
+            fault_ticks: 5.0,
+            axis_force_max_n: 1000.0, // no cap of the axes
+            force_slew_n_s: 1e7,
+            continuous_force_n: 400.0,
+            thermal_time_s: 5.0,
+            contact_stiffness_n_m: 1e9,
+            coast_down_s: 5e-3,
+            severity_limit: 20.0,
+            retainer_plane_ratio: 1.0,
+            magnet_plane_ratio: 1.0,
+            speed_max_m_s: 3.0,
+            sensor_step_m: 1e-6,
+        }
+    }
+
     /// Checks every value against the table.
     ///
     /// # Errors

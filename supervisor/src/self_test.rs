@@ -23,39 +23,19 @@ pub fn self_test<S: Scalar>() -> bool {
     SelfTest::run::<S>().hash == S::KNOWN_ANSWER
 }
 
-/// A rotor of 10 kg as in the crate's documentation, with some damping, caps of the axes and a quick budget.
+/// The example with some damping, caps of the axes and a quick budget.
 const CONFIG: Config = Config {
-    sample_period_s: 50e-6,
-    mass_kg: 10.0,
-    stiffness_n_m: -2e5,
     damping_n_s_m: 10.0,
-    clearance_m: 2e-4,
-    force_max_n: 1000.0,
-    amplifier_lag_s: 1.6e-4,
-    delay_samples: 1.0,
-    friction_coefficient: 0.15,
-    restitution: 0.7,
     observer_pole_flight: 0.5,
     observer_pole_contact: 0.2,
-    contact_band: 0.02,
     position_limit: 4.0,
-    whirl_time_s: 1e-3,
-    hold_share: 0.8,
-    handover_dwell_s: 5e-4,
     handover_blend_s: 1e-3,
     fault_blend_s: 1e-3,
     fault_ticks: 10.0,
     axis_force_max_n: 900.0,
-    force_slew_n_s: 1e7,
-    continuous_force_n: 400.0,
     thermal_time_s: 0.05,
-    contact_stiffness_n_m: 1e9,
-    coast_down_s: 5e-3,
-    severity_limit: 20.0,
-    retainer_plane_ratio: 1.0,
-    magnet_plane_ratio: 1.0,
     speed_max_m_s: 2.0,
-    sensor_step_m: 1e-6,
+    ..Config::example()
 };
 
 /// What the rotor of the test does.
