@@ -1,7 +1,7 @@
 //! What kind of contact it is: bounce, continuous backward whirl, forward rub, or held by a load.
 
 use crate::coeffs::Coeffs;
-use crate::detect::Findings;
+use crate::detect::ContactEstimate;
 use crate::scalar::Scalar;
 use crate::spin::Spin;
 
@@ -59,33 +59,34 @@ impl<S: Scalar> Classifier<S> {
     #[inline]
     pub(crate) fn classify(
         &mut self,
-        found: &Findings<S>,
+        contact: &ContactEstimate<S>,
         (seen, made_up): (bool, impl FnOnce() -> S),
         (spin, rate): (Spin, S),
         coeffs: &Coeffs<S>,
     ) -> Class {
-        let now = if found.touching {
+        let now = if contact.touching {
             S::ONE
         } else {
-            S::of(NO_SHARE)
+            S::from_f32(NO_SHARE)
         };
         if seen {
             self.contact_share =
                 self.contact_share + coeffs.contact_share_step * (now - self.contact_share);
         }
-        let along = found.tangential_speed;
+        let along = contact.tangential_speed;
         let along_square = along * along;
-        if found.touching {
+        if contact.touching {
             let made_up = made_up();
-            let across = (found.radial_speed - made_up).beyond(made_up.size() * S::of(DOUBT));
+            let across =
+                (contact.radial_speed - made_up).beyond(made_up.abs() * S::from_f32(DOUBT));
             let square = along_square + across * across;
-            self.ticks_slow = if square < S::of(REST_SPEED_SQUARED) {
+            self.ticks_slow = if square < S::from_f32(REST_SPEED_SQUARED) {
                 self.ticks_slow.saturating_add(1)
             } else {
                 0
             };
             self.resting = if self.resting {
-                square < S::of(MOVING_SPEED_SQUARED)
+                square < S::from_f32(MOVING_SPEED_SQUARED)
             } else {
                 self.ticks_slow > coeffs.whirl_ticks
             };
@@ -98,8 +99,9 @@ impl<S: Scalar> Classifier<S> {
         } else {
             WHIRL_SPEED_SQUARED
         };
-        let sliding =
-            !self.resting && self.contact_share > S::of(CONTINUOUS) && along_square > S::of(slow);
+        let sliding = !self.resting
+            && self.contact_share > S::from_f32(CONTINUOUS)
+            && along_square > S::from_f32(slow);
         if !sliding {
             return if self.resting {
                 Class::Pinned
@@ -112,9 +114,9 @@ impl<S: Scalar> Classifier<S> {
             return Class::BackwardWhirl;
         }
         // By the radius that there is: a soft wall gives way. What began stays until it slows or turns.
-        let orbit = along * found.per_radius;
-        let at_its_rate = (orbit - rate).size() <= rate.size() * S::of(RUB_RATE_SHARE);
-        self.rubbing = before || (found.touching && at_its_rate);
+        let orbit = along * contact.per_radius;
+        let at_its_rate = (orbit - rate).abs() <= rate.abs() * S::from_f32(RUB_RATE_SHARE);
+        self.rubbing = before || (contact.touching && at_its_rate);
         if self.rubbing {
             Class::ForwardRub { begins: !before }
         } else {

@@ -5,9 +5,9 @@
 //! of the full force, and acceleration is force. In these units all that counts is near 1, which is what
 //! fixed point needs; a tick is h = T/t₀, some hundredths.
 
-use crate::config::{Config, Misfit};
+use crate::config::{Config, NotRepresentable};
 use crate::math::{exp_neg, max, min, sqrt};
-use crate::scalar::{Scalar, Slow};
+use crate::scalar::{Accumulator, Scalar};
 use crate::signal::{Command, CoreCommand, CoreSample, Sample};
 
 /// Smallest share of the lift-off speed from which the damping law spends the whole cap.
@@ -101,7 +101,7 @@ impl Config {
 }
 
 /// Rate of a slow sum.
-pub(crate) type RateOf<S> = <<S as Scalar>::Slow as Slow<S>>::Rate;
+pub(crate) type RateOf<S> = <<S as Scalar>::Accumulator as Accumulator<S>>::Rate;
 
 /// Immutable coefficients of the tick.
 #[derive(Debug, Clone, Copy)]
@@ -247,37 +247,37 @@ fn per_tick(time_s: f32, period_s: f32) -> f32 {
 
 /// Takes coefficients over into `S`, and remembers the first that does not fit.
 struct Taken {
-    misfit: Option<Misfit>,
+    lost: Option<NotRepresentable>,
 }
 
 impl Taken {
     #[inline(never)]
     fn rate<S: Scalar>(&mut self, name: &'static str, x: f32) -> RateOf<S> {
-        if self.misfit.is_none() && !S::Slow::holds(x) {
-            self.misfit = Some(Misfit {
+        if self.lost.is_none() && !S::Accumulator::holds(x) {
+            self.lost = Some(NotRepresentable {
                 coefficient: name,
                 value: x,
             });
         }
-        S::Slow::rate(x)
+        S::Accumulator::rate(x)
     }
 
     // One copy: forty coefficients come through here once.
     #[inline(never)]
     fn of<S: Scalar>(&mut self, name: &'static str, x: f32) -> S {
-        if self.misfit.is_none() && !S::represents(x) {
-            self.misfit = Some(Misfit {
+        if self.lost.is_none() && !S::represents(x) {
+            self.lost = Some(NotRepresentable {
                 coefficient: name,
                 value: x,
             });
         }
-        S::of(x)
+        S::from_f32(x)
     }
 }
 
 impl<S: Scalar> Coeffs<S> {
     /// From a valid configuration, with the first coefficient that `S` cannot hold. `f32` holds all.
-    pub(crate) fn new(config: &Config) -> (Self, Option<Misfit>) {
+    pub(crate) fn new(config: &Config) -> (Self, Option<NotRepresentable>) {
         let t = config.sample_period_s;
         let (c, f) = (config.clearance_m, config.force_max_n);
         let scaling = config.scaling();
@@ -325,7 +325,7 @@ impl<S: Scalar> Coeffs<S> {
         // From the cap on there is no budget.
         let continuous = min(config.continuous_force_n / f, 1.0);
         let square = continuous * continuous;
-        let mut taken = Taken { misfit: None };
+        let mut taken = Taken { lost: None };
         // Not so fast that the ticks of a gap together overshoot. Without a budget any will do.
         let thermal_rate = if continuous < 1.0 {
             min(t / config.thermal_time_s, 0.25)
@@ -405,6 +405,6 @@ impl<S: Scalar> Coeffs<S> {
             window_ticks: min(max(WINDOW / h, LEAST_WINDOW), 60000.0) as u16,
             blind_time: s("observer", h * (1.0 + touch_pole) / touch_free),
         };
-        (coeffs, taken.misfit)
+        (coeffs, taken.lost)
     }
 }

@@ -69,7 +69,7 @@ impl core::error::Error for ConfigError {}
 /// A coefficient that the chosen number cannot hold.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Misfit {
+pub struct NotRepresentable {
     /// What it is, per unit (see [`crate::Scaling`]).
     pub coefficient: &'static str,
     /// Its value.
@@ -83,14 +83,14 @@ pub enum CoreError {
     /// A parameter is outside its range.
     Range(ConfigError),
     /// A coefficient, or the inverse of one that is divided by, is outside what the number holds.
-    Misfit(Misfit),
+    NotRepresentable(NotRepresentable),
 }
 
 impl core::fmt::Display for CoreError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
             Self::Range(error) => error.fmt(f),
-            Self::Misfit(Misfit { coefficient, value }) => write!(
+            Self::NotRepresentable(NotRepresentable { coefficient, value }) => write!(
                 f,
                 "{coefficient} comes to {value:e} per unit, which the chosen number cannot hold; use another tick or f32"
             ),

@@ -2,13 +2,13 @@
 //! avoided.
 
 use crate::coeffs::Coeffs;
-use crate::estimate::{Motion, Wall};
+use crate::estimate::{Contact, Motion};
 use crate::scalar::Scalar;
 use crate::vec2::Vec2;
 
 /// What was found at this tick.
 #[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Findings<S> {
+pub(crate) struct ContactEstimate<S> {
     /// r̂ of the estimated position.
     pub(crate) normal: Vec2<S>,
     pub(crate) radius: S,
@@ -52,13 +52,13 @@ pub(crate) struct Detector {
 impl Detector {
     /// What the wall does; `resting`: the rotor did at the last tick.
     #[inline]
-    pub(crate) fn wall(&self, resting: bool) -> Wall {
+    pub(crate) fn wall(&self, resting: bool) -> Contact {
         if resting && self.touching {
-            Wall::Holds
+            Contact::Resting
         } else if self.touching || self.recovery > 0 {
-            Wall::Pushes
+            Contact::Impact
         } else {
-            Wall::Nothing
+            Contact::None
         }
     }
 
@@ -88,30 +88,30 @@ impl Detector {
 
     /// `cap` is what the force–time budget leaves \[caps\], `margin` an outward speed that does not count.
     #[inline]
-    pub(crate) fn findings<S: Scalar>(
+    pub(crate) fn contact_estimate<S: Scalar>(
         &mut self,
         (motion, beside): (&Motion<S>, S),
         (touched, left): (bool, bool),
         (cap, margin): (S, S),
         coeffs: &Coeffs<S>,
-    ) -> Findings<S> {
+    ) -> ContactEstimate<S> {
         let per_radius = motion.position.inverse_length();
         let normal = motion.position * per_radius;
-        let mut found = Findings {
+        let mut contact = ContactEstimate {
             normal,
             radius: motion.position.dot(normal),
             per_radius,
             reach: S::ONE - beside,
             radial_speed: motion.velocity.dot(normal),
-            tangential_speed: motion.velocity.dot(normal.turned()),
+            tangential_speed: motion.velocity.dot(normal.perp()),
             load: motion.load_step.dot(normal) * coeffs.per_tick,
             touching: self.touching,
             touched,
             left,
             unavoidable: false,
         };
-        let outward = found.radial_speed - margin;
-        let alarm = outward > S::ZERO && !found.stops(outward, cap, S::ONE, coeffs);
+        let outward = contact.radial_speed - margin;
+        let alarm = outward > S::ZERO && !contact.stops(outward, cap, S::ONE, coeffs);
         self.alarmed = if alarm {
             self.alarmed.saturating_add(1)
         } else {
@@ -119,25 +119,25 @@ impl Detector {
         };
         // Twice the lag of the load is what the observer takes to settle.
         let settling = coeffs.flight_lag + coeffs.flight_lag;
-        let near = outward * (settling * (coeffs.tick * S::of(NEAR)));
-        let urgent = near > found.reach - found.radius;
-        found.unavoidable = alarm && (urgent || S::count(u32::from(self.alarmed)) > settling);
-        found
+        let near = outward * (settling * (coeffs.tick * S::from_f32(NEAR)));
+        let urgent = near > contact.reach - contact.radius;
+        contact.unavoidable = alarm && (urgent || S::count(u32::from(self.alarmed)) > settling);
+        contact
     }
 }
 
-impl<S: Scalar> Findings<S> {
+impl<S: Scalar> ContactEstimate<S> {
     /// Whether a share of what this force inwards has over load and magnets' pull, from when it can act, stops a rotor of
     /// this speed before the wall, or before where the pull is stronger: v² against twice the work up to there, the shaft's
     /// with it.
     pub(crate) fn stops(&self, speed: S, force: S, share: S, coeffs: &Coeffs<S>) -> bool {
-        let mut left = force - self.load.or_more(S::ZERO);
-        if self.radius < S::of(LOAD_COUNTS_BEYOND) {
-            left = left.or_more(S::of(0.25) * force);
+        let mut left = force - self.load.max(S::ZERO);
+        if self.radius < S::from_f32(LOAD_COUNTS_BEYOND) {
+            left = left.max(S::from_f32(0.25) * force);
         }
         let pulls = coeffs.stiffness < S::ZERO;
         let reach = if pulls {
-            self.reach.or_less(left * coeffs.per_pull)
+            self.reach.min(left * coeffs.per_pull)
         } else {
             self.reach
         };

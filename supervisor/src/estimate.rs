@@ -3,10 +3,10 @@
 //! In flight the model is good (known force, stiffness, damping, and a slowly varying load), so the
 //! observer may be slow and smooth. In contact it is blind for the contact force and must be quick.
 
+use crate::actuator_monitor::{ActuatorMonitor, lagging};
 use crate::coeffs::{Coeffs, MAX_DELAY};
-use crate::drive::{Drive, lagging};
 use crate::innovation::Expected;
-use crate::reading::{Actuator, Facts};
+use crate::reading::{Actuator, SampleFlags};
 use crate::scalar::Scalar;
 use crate::spin::Spin;
 use crate::unbalance::{Turn, Unbalance};
@@ -25,12 +25,12 @@ pub(crate) struct Motion<S> {
 
 /// What the wall does to the rotor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Wall {
-    Nothing,
+pub(crate) enum Contact {
+    None,
     /// It pushes, nobody knows when and how much.
-    Pushes,
+    Impact,
     /// A rotor rests on it: it holds against all other forces.
-    Holds,
+    Resting,
 }
 
 /// From this radius on the wall may be met in the next tick, also one that is out of round or off the centre.
@@ -52,7 +52,7 @@ pub(crate) struct Observer<S> {
     has_run: bool,
     /// Delivered force at the last tick.
     delivered: Vec2<S>,
-    pub(crate) drive: Drive<S>,
+    pub(crate) monitor: ActuatorMonitor<S>,
     /// Commands of the last ticks, the newest at the slot of `newest`.
     commands: [Vec2<S>; MAX_DELAY],
     newest: u8,
@@ -70,12 +70,12 @@ impl<S: Scalar> Observer<S> {
         &mut self,
         sample: Option<Vec2<S>>,
         (spin, rate): (Spin, S),
-        wall: Wall,
+        wall: Contact,
         actuator: Actuator<S>,
         coeffs: &Coeffs<S>,
     ) -> (Motion<S>, S) {
         let mean = self.deliver(actuator, coeffs);
-        let turn = Turn::of((spin, rate), S::ONE, coeffs);
+        let turn = Turn::new((spin, rate), S::ONE, coeffs);
         let turning = self.unbalance.carry(turn.as_ref());
         if let Some(position) = sample
             && !self.started
@@ -85,7 +85,7 @@ impl<S: Scalar> Observer<S> {
             self.motion = Motion::found_at(position, spin, coeffs);
             return (self.motion, S::ZERO);
         }
-        if wall != Wall::Nothing
+        if wall != Contact::None
             && let Some(turn) = &turn
         {
             self.unbalance.fade(turn);
@@ -95,7 +95,7 @@ impl<S: Scalar> Observer<S> {
         if let Some(position) = sample {
             let error = position - m.position;
             let error_speed = error * coeffs.per_tick;
-            if wall == Wall::Nothing {
+            if wall == Contact::None {
                 let [on_position, on_velocity, on_load] = coeffs.flight_gains;
                 m.position = m.position + error * on_position;
                 m.velocity = m.velocity + error_speed * on_velocity;
@@ -119,12 +119,12 @@ impl<S: Scalar> Observer<S> {
             self.started &= !m.fresh;
         }
         let square = m.position.length_squared() + m.velocity.length_squared();
-        let within = square <= S::of(FAR * FAR);
-        if !within || m.load_step.exceeds(coeffs.tick * S::of(MOST_LOAD)) {
+        let within = square <= S::from_f32(FAR * FAR);
+        if !within || m.load_step.exceeds(coeffs.tick * S::from_f32(MOST_LOAD)) {
             m.hold_back(coeffs);
         }
         let mut free = *m;
-        if wall == Wall::Nothing
+        if wall == Contact::None
             && let Some(turn) = &turn
             && let Some([offset, speed]) = self.unbalance.counts(turn, turning)
         {
@@ -150,13 +150,14 @@ impl<S: Scalar> Observer<S> {
         }
         self.started &= !self.motion.fresh;
         let ticks = S::count(missed);
-        self.unbalance.carry(Turn::of(spin, ticks, coeffs).as_ref());
+        self.unbalance
+            .carry(Turn::new(spin, ticks, coeffs).as_ref());
         let m = &mut self.motion;
         m.position = m.position + m.velocity * (coeffs.tick * ticks);
         if let Some(position) = sample {
             let [_, on_velocity, _] = coeffs.flight_gains;
             let error = position - m.position - m.velocity * coeffs.tick;
-            let gain = (on_velocity * coeffs.per_tick).over(ticks + S::ONE);
+            let gain = (on_velocity * coeffs.per_tick).div(ticks + S::ONE);
             m.velocity = m.velocity + error * gain;
             // So that the tick's own correction finds nothing left.
             m.position = position - m.velocity * coeffs.tick;
@@ -170,9 +171,9 @@ impl<S: Scalar> Observer<S> {
         let before = self.delivered;
         let measured = actuator.applied();
         match measured {
-            _ if !actuator.axes.contains(Facts::ON) => self.drive.switched_off(),
-            None => self.drive.unseen(),
-            Some(now) => self.drive.watch(now, (before, due), &actuator, coeffs),
+            _ if !actuator.axes.contains(SampleFlags::ON) => self.monitor.switched_off(),
+            None => self.monitor.unseen(),
+            Some(now) => self.monitor.watch(now, (before, due), &actuator, coeffs),
         }
         if let Some(now) = measured {
             self.delivered = now;
@@ -196,12 +197,12 @@ impl<S: Scalar> Observer<S> {
 
     /// Where the next sample is expected.
     #[inline]
-    pub(crate) fn expected(&self, wall: Wall, coeffs: &Coeffs<S>) -> Expected<S> {
+    pub(crate) fn expected(&self, wall: Contact, coeffs: &Coeffs<S>) -> Expected<S> {
         let position = self.motion.position + self.motion.velocity * coeffs.tick;
-        let free = wall == Wall::Nothing && self.started && !self.motion.fresh;
+        let free = wall == Contact::None && self.started && !self.motion.fresh;
         Expected {
             position,
-            sure: free && !position.exceeds(S::of(WALL_IN_REACH)),
+            sure: free && !position.exceeds(S::from_f32(WALL_IN_REACH)),
         }
     }
 
@@ -275,7 +276,7 @@ impl<S: Scalar> Observer<S> {
         self.unbalance.rescale(speed);
         self.delivered = self.delivered * force;
         self.late = self.late * force;
-        self.drive.rescale(force);
+        self.monitor.rescale(force);
         for command in &mut self.commands {
             *command = *command * force;
         }
@@ -295,9 +296,9 @@ impl<S: Scalar> Motion<S> {
     /// matters little.
     #[cold]
     fn found_at(position: Vec2<S>, spin: Spin, coeffs: &Coeffs<S>) -> Self {
-        let pressed = S::of(2.0) - coeffs.touch_radius;
+        let pressed = S::from_f32(2.0) - coeffs.touch_radius;
         let velocity = if spin != Spin::Unknown && position.exceeds(pressed) {
-            position.direction().turned() * spin.sense_of_backward(S::ZERO)
+            position.direction().perp() * spin.sense_of_backward(S::ZERO)
         } else {
             Vec2::ZERO
         };
@@ -312,19 +313,19 @@ impl<S: Scalar> Motion<S> {
     /// A tick under the means of the force and of what turns; shaft and damping at its middle. Loads on a rotor at the
     /// wall are not known.
     #[inline]
-    fn carry(&mut self, mean: Vec2<S>, turning: Vec2<S>, wall: Wall, coeffs: &Coeffs<S>) {
+    fn carry(&mut self, mean: Vec2<S>, turning: Vec2<S>, wall: Contact, coeffs: &Coeffs<S>) {
         let time = coeffs.tick;
-        if wall == Wall::Holds {
+        if wall == Contact::Resting {
             self.position = self.position + self.velocity * time;
             return;
         }
         let mut gained = mean * time
             - self.position * coeffs.stiffness_step
             - self.velocity * coeffs.damping_step;
-        if wall == Wall::Nothing {
+        if wall == Contact::None {
             gained = gained + turning * time + self.load_step;
         }
-        self.position = self.position + self.velocity * time + gained * (time * S::of(0.5));
+        self.position = self.position + self.velocity * time + gained * (time * S::from_f32(0.5));
         self.velocity = self.velocity + gained;
     }
 
@@ -332,9 +333,9 @@ impl<S: Scalar> Motion<S> {
     #[cold]
     #[inline(never)]
     fn hold_back(&mut self, coeffs: &Coeffs<S>) {
-        let held = |v: Vec2<S>, most: S| v.map(|x| x.between(-most, most));
-        self.position = held(self.position, S::of(FAR));
-        self.velocity = held(self.velocity, S::of(FAR));
-        self.load_step = held(self.load_step, coeffs.tick * S::of(MOST_LOAD));
+        let held = |v: Vec2<S>, most: S| v.map(|x| x.clamp(-most, most));
+        self.position = held(self.position, S::from_f32(FAR));
+        self.velocity = held(self.velocity, S::from_f32(FAR));
+        self.load_step = held(self.load_step, coeffs.tick * S::from_f32(MOST_LOAD));
     }
 }

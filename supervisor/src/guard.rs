@@ -6,11 +6,11 @@
 
 use crate::coeffs::Coeffs;
 use crate::innovation::{Expected, Innovation};
-use crate::reading::{Facts, Reading, Verdict};
+use crate::reading::{Reading, SampleAssessment, SampleFlags};
 use crate::scalar::Scalar;
-use crate::signal::{CoreSample, Events, Refusal, Status};
+use crate::signal::{CoreSample, Events, RejectReason, Status};
 use crate::spin::Spin;
-use crate::still::Still;
+use crate::stuck::StuckDetector;
 use crate::vec2::Vec2;
 
 /// Missed ticks over which the observer's model is carried: bounds the time of a tick.
@@ -33,7 +33,7 @@ const NEVER: u16 = u16::MAX;
 struct Refused {
     all: u16,
     /// Coordinates that were wrong.
-    bad: Facts,
+    bad: SampleFlags,
     jumps: u8,
     dropouts: u8,
     /// Where one coordinate is bad: ticks since the other one fitted, none if it did last.
@@ -42,8 +42,8 @@ struct Refused {
 
 /// In a fault: samples in a row that fit, with the same coordinates bad.
 #[derive(Debug, Clone, Copy, Default)]
-struct Fitting {
-    bad: Facts,
+struct RecoveryCount {
+    bad: SampleFlags,
     samples: u16,
 }
 
@@ -61,24 +61,24 @@ pub(crate) struct Guard<S> {
     /// The last tick came after a gap that was too long to make up for.
     jumped: bool,
     faulty: bool,
-    /// There have been usual samples since `still` looked.
-    still_is_old: bool,
-    still: Still<S>,
+    /// There have been usual samples since the stuck detector looked.
+    stuck_is_old: bool,
+    stuck_detector: StuckDetector<S>,
     pub(crate) innovation: Innovation<S>,
     /// A coordinate has been stuck for so long that it is a fault.
     stuck: bool,
     refused: Refused,
-    fitting: Fitting,
+    recovery: RecoveryCount,
     /// Status of the next sample, and what it says, for which nothing is to be remembered but the sample, see
     /// [`Guard::as_usual`]; nothing where there is none. (Not in one `Option`, which has a word of its own.) All bits of a
     /// status that mean something are in its lowest byte.
     usual: u8,
-    usual_facts: Facts,
-    lost: Facts,
+    usual_flags: SampleFlags,
+    lost: SampleFlags,
     /// Of the last sample.
-    pub(crate) refusal: Refusal,
+    pub(crate) refusal: RejectReason,
     /// Why the last fault began.
-    pub(crate) fault: Refusal,
+    pub(crate) fault: RejectReason,
     pub(crate) missed_ticks: u32,
     pub(crate) repeated_ticks: u32,
     pub(crate) late_ticks: u32,
@@ -94,17 +94,17 @@ impl<S: Scalar> Default for Guard<S> {
             begun: false,
             jumped: false,
             faulty: false,
-            still_is_old: false,
-            still: Still::default(),
+            stuck_is_old: false,
+            stuck_detector: StuckDetector::default(),
             innovation: Innovation::default(),
             stuck: false,
             refused: Refused::default(),
-            fitting: Fitting::default(),
+            recovery: RecoveryCount::default(),
             usual: 0,
-            usual_facts: Facts::empty(),
-            lost: Facts::empty(),
-            refusal: Refusal::None,
-            fault: Refusal::None,
+            usual_flags: SampleFlags::empty(),
+            lost: SampleFlags::empty(),
+            refusal: RejectReason::None,
+            fault: RejectReason::None,
             missed_ticks: 0,
             repeated_ticks: 0,
             late_ticks: 0,
@@ -122,10 +122,10 @@ impl<S: Scalar> Guard<S> {
         estimated: impl FnOnce() -> (Vec2<S>, bool),
         coeffs: &Coeffs<S>,
     ) -> Reading<S> {
-        let mut verdict = match self.as_usual(sample, status, expected, coeffs) {
-            Some(facts) => Verdict {
-                facts,
-                ..Verdict::default()
+        let mut assessment = match self.as_usual(sample, status, expected, coeffs) {
+            Some(flags) => SampleAssessment {
+                flags,
+                ..SampleAssessment::default()
             },
             None => {
                 // A copy, so that the usual sample stays in registers.
@@ -133,16 +133,16 @@ impl<S: Scalar> Guard<S> {
                 self.judge_in_full((&sample, status), expected, estimated(), coeffs)
             }
         };
-        self.refusal = verdict.refusal;
+        self.refusal = assessment.refusal;
         let measured = Vec2::from_array(sample.applied);
-        if status.contains(Status::APPLIED_VALID) && !measured.exceeds(S::of(MOST_APPLIED)) {
-            verdict.facts |= Facts::MEASURED;
+        if status.contains(Status::APPLIED_VALID) && !measured.exceeds(S::from_f32(MOST_APPLIED)) {
+            assessment.flags |= SampleFlags::MEASURED;
         }
         Reading {
-            verdict,
+            assessment,
             sample: Vec2::from_array(sample.position),
             measured,
-            spin: Spin::of(sample),
+            spin: Spin::from_sample(sample),
         }
     }
 
@@ -155,10 +155,10 @@ impl<S: Scalar> Guard<S> {
         status: Status,
         expected: Expected<S>,
         coeffs: &Coeffs<S>,
-    ) -> Option<Facts> {
+    ) -> Option<SampleFlags> {
         let position = Vec2::from_array(sample.position);
         let step = position - self.last_good;
-        let usual = !self.usual_facts.is_empty()
+        let usual = !self.usual_flags.is_empty()
             && status.bits() as u8 == self.usual
             && sample.sequence.wrapping_sub(self.last_sequence) == 1
             && step.x != S::ZERO
@@ -176,8 +176,8 @@ impl<S: Scalar> Guard<S> {
         }
         self.last_sequence = sample.sequence;
         self.last_good = position;
-        self.still_is_old = true;
-        Some(self.usual_facts)
+        self.stuck_is_old = true;
+        Some(self.usual_flags)
     }
 
     #[inline(never)]
@@ -187,11 +187,11 @@ impl<S: Scalar> Guard<S> {
         expected: Expected<S>,
         (velocity, in_contact): (Vec2<S>, bool),
         coeffs: &Coeffs<S>,
-    ) -> Verdict {
-        if core::mem::take(&mut self.still_is_old) {
-            self.still.moved_to(self.last_good);
+    ) -> SampleAssessment {
+        if core::mem::take(&mut self.stuck_is_old) {
+            self.stuck_detector.moved_to(self.last_good);
         }
-        let mut facts = Facts::of(status);
+        let mut flags = SampleFlags::from_status(status);
         let (repeated, gap) = self.sequence(sample.sequence);
         let mut events = Events::empty();
         if repeated || gap > 0 {
@@ -201,57 +201,59 @@ impl<S: Scalar> Guard<S> {
         let missed = if anew { 0 } else { gap };
         if anew {
             self.age = NEVER;
-            facts |= Facts::ANEW;
+            flags |= SampleFlags::ANEW;
         } else {
             self.age = self.age.saturating_add(1 + missed as u16);
         }
         if missed > 0 {
-            facts |= Facts::MISSED;
+            flags |= SampleFlags::MISSED;
         }
 
         let position = Vec2::from_array(sample.position);
         // A bearing that is off is not known to deliver what the model moves by.
-        let trusted = if self.faulty || anew || !facts.contains(Facts::ON) {
+        let trusted = if self.faulty || anew || !flags.contains(SampleFlags::ON) {
             Vec2::ZERO
         } else if in_contact {
             // The most that the model accelerates by while the wall holds against it.
-            let most = S::ONE + coeffs.stiffness.size() * S::of(1.5);
+            let most = S::ONE + coeffs.stiffness.abs() * S::from_f32(1.5);
             velocity.map(|speed| speed.beyond(coeffs.blind_time * most))
         } else {
             velocity
         };
         let refusal = if repeated {
-            Refusal::Dropout
+            RejectReason::Dropout
         } else {
             match self.refusal(position, trusted, coeffs) {
-                refusal @ (Refusal::NotFinite | Refusal::Range) => refusal,
+                refusal @ (RejectReason::NotFinite | RejectReason::Range) => refusal,
                 refusal => match expected.off(position) {
                     Some(off) if gap == 0 && self.innovation.doubts(off, coeffs) => {
-                        Refusal::Doubted
+                        RejectReason::Doubted
                     }
                     _ => refusal,
                 },
             }
         };
         let bad = match refusal {
-            Refusal::None => Facts::empty(),
-            Refusal::NotFinite | Refusal::Range => bad_coordinates(position, coeffs.position_limit),
-            _ => Facts::BOTH_BAD,
+            RejectReason::None => SampleFlags::empty(),
+            RejectReason::NotFinite | RejectReason::Range => {
+                bad_coordinates(position, coeffs.position_limit)
+            }
+            _ => SampleFlags::BOTH_BAD,
         };
         if !self.faulty {
             events |= self.count(refusal, position, coeffs);
         }
-        if facts.contains(Facts::LATE) {
+        if flags.contains(SampleFlags::LATE) {
             self.late_ticks = self.late_ticks.saturating_add(1);
             events |= Events::LATE;
         }
         let mut fits = true;
-        if refusal == Refusal::None {
-            facts |= Facts::USED;
+        if refusal == RejectReason::None {
+            flags |= SampleFlags::USED;
             self.refused.apart = 0;
         } else {
             self.refused.bad |= bad;
-            if bad != Facts::BOTH_BAD {
+            if bad != SampleFlags::BOTH_BAD {
                 fits = self.judge_other(position, bad, (1 + missed, anew), coeffs);
             } else if self.faulty {
                 self.refused.apart = 0;
@@ -267,12 +269,12 @@ impl<S: Scalar> Guard<S> {
             events |= self.recover(bad, fits, coeffs);
         }
         if self.faulty {
-            facts |= Facts::FAULTY | self.refused.bad;
+            flags |= SampleFlags::FAULTY | self.refused.bad;
             if !fits {
-                facts |= Facts::BOTH_BAD;
+                flags |= SampleFlags::BOTH_BAD;
             }
         }
-        let lost = facts & Facts::LOST;
+        let lost = flags & SampleFlags::LOST;
         let before = core::mem::replace(&mut self.lost, lost);
         if !(lost - before).is_empty() {
             events |= Events::AXIS_LOST;
@@ -280,16 +282,16 @@ impl<S: Scalar> Guard<S> {
         if !(before - lost).is_empty() {
             events |= Events::AXIS_BACK;
         }
-        let kept = Facts::USED | Facts::ON | Facts::LOST;
+        let kept = SampleFlags::USED | SampleFlags::ON | SampleFlags::LOST;
         self.usual = (status - Status::LATE).bits() as u8;
-        self.usual_facts = if facts.contains(Facts::USED) && !self.faulty && !self.jumped {
-            facts & kept
+        self.usual_flags = if flags.contains(SampleFlags::USED) && !self.faulty && !self.jumped {
+            flags & kept
         } else {
-            Facts::empty()
+            SampleFlags::empty()
         };
-        Verdict {
+        SampleAssessment {
             events,
-            facts,
+            flags,
             refusal,
             missed: missed as u8,
         }
@@ -319,24 +321,29 @@ impl<S: Scalar> Guard<S> {
     }
 
     /// What is wrong with a new sample.
-    fn refusal(&mut self, position: Vec2<S>, velocity: Vec2<S>, coeffs: &Coeffs<S>) -> Refusal {
+    fn refusal(
+        &mut self,
+        position: Vec2<S>,
+        velocity: Vec2<S>,
+        coeffs: &Coeffs<S>,
+    ) -> RejectReason {
         if !position.is_finite() {
-            return Refusal::NotFinite;
+            return RejectReason::NotFinite;
         }
         if position.exceeds(coeffs.position_limit) {
-            return Refusal::Range;
+            return RejectReason::Range;
         }
-        let (stuck, both) = (self.still).watch(position, velocity, coeffs);
+        let (stuck, both) = (self.stuck_detector).watch(position, velocity, coeffs);
         self.stuck = stuck >= if both >= STUCK { STUCK } else { ONE_STUCK };
         let known = self.age != NEVER;
         let way = way_in(u32::from(self.age), coeffs) + self.innovation.untold(coeffs);
         if known && (position - self.last_good).exceeds(way) {
-            return Refusal::Slew;
+            return RejectReason::Slew;
         }
         if stuck > 0 {
-            return Refusal::Stuck;
+            return RejectReason::Stuck;
         }
-        Refusal::None
+        RejectReason::None
     }
 
     /// Judges the coordinate beside one that is bad, so many ticks after the last sample: whether it fits, or is farther
@@ -344,15 +351,15 @@ impl<S: Scalar> Guard<S> {
     fn judge_other(
         &mut self,
         position: Vec2<S>,
-        bad: Facts,
+        bad: SampleFlags,
         (ticks, anew): (u32, bool),
         coeffs: &Coeffs<S>,
     ) -> bool {
         let refused = &mut self.refused;
-        let (other, now) = self.still.beside(bad, position);
+        let (other, now) = self.stuck_detector.beside(bad, position);
         let ticks = ticks + u32::from(refused.apart);
         let fits = anew || other.step(now) <= way_in(ticks, coeffs);
-        let all_bad = self.faulty && refused.bad == Facts::BOTH_BAD;
+        let all_bad = self.faulty && refused.bad == SampleFlags::BOTH_BAD;
         let second = refused.apart > 0;
         if fits || second || all_bad {
             other.accept(now);
@@ -362,59 +369,59 @@ impl<S: Scalar> Guard<S> {
             refused.apart = ticks as u8;
         }
         if !fits && second {
-            refused.bad = Facts::BOTH_BAD;
+            refused.bad = SampleFlags::BOTH_BAD;
         }
         fits && !(all_bad && other.is_awaited())
     }
 
     /// Before a fault: refused samples since the last good one, and whether they make one. Where nothing is known of the
     /// rotor, the first does.
-    fn count(&mut self, refusal: Refusal, position: Vec2<S>, coeffs: &Coeffs<S>) -> Events {
+    fn count(&mut self, refusal: RejectReason, position: Vec2<S>, coeffs: &Coeffs<S>) -> Events {
         let refused = &mut self.refused;
         let often = |count: &mut u8, most: u8| {
             *count += 1;
             *count >= most
         };
         let sure = match refusal {
-            Refusal::None => {
+            RejectReason::None => {
                 (self.last_good, self.age) = (position, 0);
                 *refused = Refused::default();
                 return Events::empty();
             }
             // The next ones say whether it was right; too few are doubted for a fault.
-            Refusal::Doubted => return Events::empty(),
-            Refusal::NotFinite | Refusal::Range => false,
-            Refusal::Slew => often(&mut refused.jumps, JUMPS),
-            Refusal::Dropout => often(&mut refused.dropouts, DROPOUTS),
-            Refusal::Stuck => self.stuck,
+            RejectReason::Doubted => return Events::empty(),
+            RejectReason::NotFinite | RejectReason::Range => false,
+            RejectReason::Slew => often(&mut refused.jumps, JUMPS),
+            RejectReason::Dropout => often(&mut refused.dropouts, DROPOUTS),
+            RejectReason::Stuck => self.stuck,
         };
         // Readings that are the last ones by chance may be many in a row, of x here and of y there.
-        refused.all += u16::from(refusal != Refusal::Stuck);
+        refused.all += u16::from(refusal != RejectReason::Stuck);
         if !sure && refused.all < coeffs.fault_ticks && self.age != NEVER {
             return Events::empty();
         }
         self.age = NEVER;
         self.faulty = true;
         self.fault = refusal;
-        self.fitting = Fitting::default();
-        self.still.freeze();
+        self.recovery = RecoveryCount::default();
+        self.stuck_detector.freeze();
         Events::SENSOR_FAULT
     }
 
     /// In a fault: after as many samples in a row that fit, with the same coordinates bad, no others are; with none bad
     /// it is over.
-    fn recover(&mut self, bad: Facts, fits: bool, coeffs: &Coeffs<S>) -> Events {
-        let fitting = &mut self.fitting;
-        if bad != fitting.bad {
-            *fitting = Fitting { bad, samples: 0 };
+    fn recover(&mut self, bad: SampleFlags, fits: bool, coeffs: &Coeffs<S>) -> Events {
+        let recovery = &mut self.recovery;
+        if bad != recovery.bad {
+            *recovery = RecoveryCount { bad, samples: 0 };
         }
-        let waits = bad.is_empty() && self.still.is_awaited();
-        if !fits || waits || bad == Facts::BOTH_BAD {
-            fitting.samples = 0;
+        let waits = bad.is_empty() && self.stuck_detector.is_awaited();
+        if !fits || waits || bad == SampleFlags::BOTH_BAD {
+            recovery.samples = 0;
             return Events::empty();
         }
-        fitting.samples = fitting.samples.saturating_add(1);
-        if fitting.samples < coeffs.fault_ticks {
+        recovery.samples = recovery.samples.saturating_add(1);
+        if recovery.samples < coeffs.fault_ticks {
             return Events::empty();
         }
         self.refused.bad = bad;
@@ -430,8 +437,8 @@ impl<S: Scalar> Guard<S> {
     pub(crate) fn rescale(&mut self, length: S) {
         self.last_good = self.last_good * length;
         self.innovation.rescale(length);
-        self.still.rescale();
-        self.still_is_old = false;
+        self.stuck_detector.rescale();
+        self.stuck_is_old = false;
     }
 }
 
@@ -442,18 +449,18 @@ fn way_in<S: Scalar>(ticks: u32, coeffs: &Coeffs<S>) -> S {
 
 /// Which coordinates are no numbers or out of range; both where that is so of the radius alone.
 #[inline]
-fn bad_coordinates<S: Scalar>(position: Vec2<S>, most: S) -> Facts {
-    match (position.x.size() <= most, position.y.size() <= most) {
-        (false, true) => Facts::X_BAD,
-        (true, false) => Facts::Y_BAD,
-        _ => Facts::BOTH_BAD,
+fn bad_coordinates<S: Scalar>(position: Vec2<S>, most: S) -> SampleFlags {
+    match (position.x.abs() <= most, position.y.abs() <= most) {
+        (false, true) => SampleFlags::X_BAD,
+        (true, false) => SampleFlags::Y_BAD,
+        _ => SampleFlags::BOTH_BAD,
     }
 }
 
 /// Whether a sample, good or refused, says where the rotor may be.
-fn is_measured(refusal: Refusal) -> bool {
+fn is_measured(refusal: RejectReason) -> bool {
     !matches!(
         refusal,
-        Refusal::NotFinite | Refusal::Range | Refusal::Dropout
+        RejectReason::NotFinite | RejectReason::Range | RejectReason::Dropout
     )
 }

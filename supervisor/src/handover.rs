@@ -2,9 +2,9 @@
 //! controller's integrator.
 
 use crate::coeffs::Coeffs;
-use crate::limit::Room;
+use crate::limit::ForceEnvelope;
 use crate::phase::Phase;
-use crate::reading::Facts;
+use crate::reading::SampleFlags;
 use crate::scalar::Scalar;
 use crate::signal::IntegratorHint;
 use crate::vec2::Vec2;
@@ -17,19 +17,19 @@ use crate::vec2::Vec2;
 pub(crate) fn faded<S: Scalar>(
     bouncing: bool,
     (last, levitation): (Vec2<S>, Vec2<S>),
-    facts: Facts,
-    room: Room<S>,
+    flags: SampleFlags,
+    envelope: ForceEnvelope<S>,
     coeffs: &Coeffs<S>,
 ) -> Vec2<S> {
-    let step = if bouncing && facts.contains(Facts::BOTH_BAD) {
+    let step = if bouncing && flags.contains(SampleFlags::BOTH_BAD) {
         coeffs.fault_step
     } else {
-        coeffs.fault_step.or_more(coeffs.blend_step)
+        coeffs.fault_step.max(coeffs.blend_step)
     };
     // What the other coordinate is sure to leave of the cap.
-    let most = (room.cap - levitation.x.size() - levitation.y.size()).or_more(S::ZERO);
-    let left = last.map(|force| (force - force.between(-step, step)).between(-most, most));
-    facts.sensed(levitation, left)
+    let most = (envelope.cap - levitation.x.abs() - levitation.y.abs()).max(S::ZERO);
+    let left = last.map(|force| (force - force.clamp(-step, step)).clamp(-most, most));
+    flags.sensed(levitation, left)
 }
 
 /// Whether the levitation controller would hold the rotor as well as the supervisor does.
@@ -50,7 +50,7 @@ const COUNTS_FROM: f32 = 0.1;
 
 impl<S: Scalar> Readiness<S> {
     pub(crate) fn ready(&self) -> bool {
-        self.shortfall < S::of(COVERED)
+        self.shortfall < S::from_f32(COVERED)
     }
 
     /// After a change of the unit of force.
@@ -68,7 +68,7 @@ impl<S: Scalar> Readiness<S> {
         (outward, radius): (Vec2<S>, S),
         coeffs: &Coeffs<S>,
     ) {
-        let share = (radius * S::of(1.0 / COUNTS_FROM)).or_less(S::ONE);
+        let share = (radius * S::from_f32(1.0 / COUNTS_FROM)).min(S::ONE);
         let short = (levitation - own).dot(outward) * share;
         self.shortfall = self.shortfall + (short - self.shortfall) * coeffs.blend_step;
     }

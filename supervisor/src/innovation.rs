@@ -48,7 +48,7 @@ impl<S: Scalar> Innovation<S> {
     /// be expected has nothing to be compared with.
     #[inline]
     pub(crate) fn fits(&self, off: Vec2<S>, coeffs: &Coeffs<S>) -> bool {
-        let most = (self.level * S::of(DOUBTED_FROM)).or_more(coeffs.never_doubted);
+        let most = (self.level * S::from_f32(DOUBTED_FROM)).max(coeffs.never_doubted);
         off.about_length() <= most || !self.known || (off - self.last).about_length() <= most
     }
 
@@ -63,14 +63,12 @@ impl<S: Scalar> Innovation<S> {
     pub(crate) fn learn(&mut self, off: Vec2<S>, coeffs: &Coeffs<S>) {
         let before = core::mem::replace(&mut self.last, off);
         let counts = if core::mem::replace(&mut self.known, true) {
-            (off - before)
-                .about_length()
-                .or_less(self.level + self.level)
+            (off - before).about_length().min(self.level + self.level)
         } else {
             self.level
         };
-        self.level = (self.level + (counts - self.level) * S::of(LEARNT))
-            .between(coeffs.told_noise, S::of(MOST_LEVEL));
+        self.level = (self.level + (counts - self.level) * S::from_f32(LEARNT))
+            .clamp(coeffs.told_noise, S::from_f32(MOST_LEVEL));
     }
 
     /// Whether one that does not agree is refused.
@@ -87,7 +85,7 @@ impl<S: Scalar> Innovation<S> {
 
     /// How much farther than was told noise may take a sample.
     pub(crate) fn untold(&self, coeffs: &Coeffs<S>) -> S {
-        (self.level - coeffs.told_noise).or_more(S::ZERO) * S::of(DOUBTED_FROM)
+        (self.level - coeffs.told_noise).max(S::ZERO) * S::from_f32(DOUBTED_FROM)
     }
 
     /// Whether the noise leaves a speed by which an approach can be told.

@@ -10,9 +10,9 @@
 //! friction: −(b̂ + μ·n̂).
 
 use crate::coeffs::{Coeffs, NEARLY_ALL};
-use crate::course::{Course, Impact, sum_of_impacts};
-use crate::detect::Findings;
+use crate::detect::ContactEstimate;
 use crate::estimate::Motion;
+use crate::impact::{Impact, Speed, sum_of_impacts};
 use crate::phase::Phase;
 use crate::scalar::Scalar;
 use crate::spin::Spin;
@@ -20,7 +20,7 @@ use crate::vec2::Vec2;
 
 /// Wanted forces in the order in which they may use the capacity \[caps\].
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(crate) struct Wanted<S> {
+pub(crate) struct ForceDemand<S> {
     /// Against the backward tangential speed; in whirl tilted inwards by what friction is worth.
     pub(crate) braking: Vec2<S>,
     /// Against the velocity.
@@ -51,8 +51,8 @@ const STILL: f32 = 0.1;
 /// What the law looks at.
 pub(crate) struct View<'a, S: Scalar> {
     pub(crate) motion: &'a Motion<S>,
-    pub(crate) found: &'a Findings<S>,
-    pub(crate) course: &'a Course<S>,
+    pub(crate) contact: &'a ContactEstimate<S>,
+    pub(crate) speed: &'a Speed<S>,
     /// The next impact in flight.
     pub(crate) ahead: Option<&'a Impact<S>>,
     pub(crate) spin: Spin,
@@ -64,14 +64,14 @@ pub(crate) struct View<'a, S: Scalar> {
 impl<S: Scalar> View<'_, S> {
     /// The wanted force of a phase; zero for those in which the supervisor wants nothing itself.
     #[inline]
-    pub(crate) fn wanted(&self, phase: Phase<S>) -> Wanted<S> {
+    pub(crate) fn demand(&self, phase: Phase<S>) -> ForceDemand<S> {
         match phase {
             Phase::Levitated | Phase::HandedBack { .. } | Phase::SensorFault { .. } => {
-                Wanted::default()
+                ForceDemand::default()
             }
             Phase::Pinned { hold } => self.hold(hold),
             Phase::BackwardWhirl => self.in_contact(true),
-            _ if self.found.touching => self.in_contact(false),
+            _ if self.contact.touching => self.in_contact(false),
             _ => self.in_flight(),
         }
     }
@@ -87,28 +87,29 @@ impl<S: Scalar> View<'_, S> {
 
     /// What the cap has over an outward load \[caps\].
     fn braked(&self) -> S {
-        (S::ONE - self.found.load).between(S::ZERO, S::ONE)
+        (S::ONE - self.contact.load).clamp(S::ZERO, S::ONE)
     }
 
-    /// Against the speed, −D·v; no longer than twice the cap, which no room holds either.
+    /// Against the speed, −D·v; no longer than twice the cap, which no envelope holds either.
     fn damping(&self) -> Vec2<S> {
-        let twice = self.course.inverse + self.course.inverse;
-        self.motion.velocity * -self.coeffs.damper.or_less(twice)
+        let twice = self.speed.inverse + self.speed.inverse;
+        self.motion.velocity * -self.coeffs.damper.min(twice)
     }
 
     /// In flight. What speed leaves of the capacity brings the rotor back: damping alone would let it lie.
     /// When slow, a little more of it than a hold on the wall has, or the two would take turns; but no more than is
     /// stable with a force that comes late.
     #[inline(never)]
-    fn in_flight(&self) -> Wanted<S> {
+    fn in_flight(&self) -> ForceDemand<S> {
         let coeffs = self.coeffs;
         let most = coeffs.restoring;
-        let share = (most - self.course.square).or_more(most.or_less(S::of(FLIGHT_SHARE)));
-        let slow = (S::ONE - self.course.square).or_more(S::ZERO);
-        let load = self.found.load.between(S::ZERO, S::ONE) * (slow * most * S::of(LOAD_SHARE));
-        let carrying = (S::ONE - most * S::of(1.0 / NEARLY_ALL)).or_more(S::ZERO);
+        let share = (most - self.speed.square).max(most.min(S::from_f32(FLIGHT_SHARE)));
+        let slow = (S::ONE - self.speed.square).max(S::ZERO);
+        let load =
+            self.contact.load.clamp(S::ZERO, S::ONE) * (slow * most * S::from_f32(LOAD_SHARE));
+        let carrying = (S::ONE - most * S::from_f32(1.0 / NEARLY_ALL)).max(S::ZERO);
         let carried = self.motion.load_step * (coeffs.per_tick * slow * carrying);
-        Wanted {
+        ForceDemand {
             braking: match self.ahead {
                 Some(impact) => self.before(impact),
                 None => Vec2::ZERO,
@@ -129,15 +130,15 @@ impl<S: Scalar> View<'_, S> {
         let sense = self.spin.sense_of_backward(impact.along);
         let (mut normal_speed, mut backward) = (impact.normal_speed, impact.along * sense);
         // What a force that acts already, and after that the cap, against the speed leaves of it until the impact.
-        let speed = self.course.speed;
+        let speed = self.speed.value;
         let way = impact.time * speed;
-        let early = way.or_less(coeffs.horizon * speed);
-        let slowing = -self.delivered.dot(self.motion.velocity) * self.course.inverse;
+        let early = way.min(coeffs.horizon * speed);
+        let slowing = -self.delivered.dot(self.motion.velocity) * self.speed.inverse;
         let work = early * slowing + (way - early) * self.braked();
-        let left = (self.course.square - (work + work)).root();
-        let time = (way + way).over(speed + left);
-        let sum = sum_of_impacts(backward, normal_speed, gain)
-            * (left * self.course.inverse).or_less(S::ONE);
+        let left = (self.speed.square - (work + work)).sqrt();
+        let time = (way + way).div(speed + left);
+        let sum =
+            sum_of_impacts(backward, normal_speed, gain) * (left * self.speed.inverse).min(S::ONE);
         let urgency = urgency(sum, HARMLESS, coeffs);
         if urgency <= S::ZERO {
             return Vec2::ZERO;
@@ -151,7 +152,7 @@ impl<S: Scalar> View<'_, S> {
                 Spin::Unknown => S::ZERO,
                 _ => coeffs.friction * lost,
             };
-            velocity = velocity - n * lost + n.turned() * (friction * sense);
+            velocity = velocity - n * lost + n.perp() * (friction * sense);
             normal_speed = coeffs.restitution * normal_speed;
             backward = backward + friction;
             position = n;
@@ -161,13 +162,13 @@ impl<S: Scalar> View<'_, S> {
             act_after = if left * square <= twice {
                 left
             } else {
-                twice.over(square)
+                twice.div(square)
             };
         }
         let acts_at = position + velocity * act_after;
         // Gradient of S, times v_n: v_b = r × v about the centre, v_n = √(v² − v_b²).
         let arm = sense * (normal_speed - gain * backward);
-        let gradient = acts_at.turned() * arm + velocity * gain;
+        let gradient = acts_at.perp() * arm + velocity * gain;
         gradient * -(gradient.inverse_length() * urgency)
     }
 
@@ -175,25 +176,25 @@ impl<S: Scalar> View<'_, S> {
     /// drives all the time, and an inward part takes away from it what it costs along the wall; in an impact, which
     /// is over when that part has come, it would only shorten the chord to the next one.
     #[inline]
-    fn in_contact(&self, driven: bool) -> Wanted<S> {
-        let (coeffs, found) = (self.coeffs, self.found);
-        let n = found.normal;
-        let sense = self.spin.sense_of_backward(found.tangential_speed);
-        let outward = found.radial_speed.or_more(S::ZERO);
-        let backward = found.tangential_speed * sense;
+    fn in_contact(&self, driven: bool) -> ForceDemand<S> {
+        let (coeffs, contact) = (self.coeffs, self.contact);
+        let n = contact.normal;
+        let sense = self.spin.sense_of_backward(contact.tangential_speed);
+        let outward = contact.radial_speed.max(S::ZERO);
+        let backward = contact.tangential_speed * sense;
         let sum = sum_of_impacts(backward, outward, self.bounce_gain());
         let mut strength = sum * coeffs.damper;
         if !driven {
             // What the impacts will add counts as far as it is dangerous, what is there counts in full.
             let there = backward * coeffs.damper;
             let urgency = urgency(sum, IN_CONTACT, coeffs);
-            strength = strength.or_less(urgency).or_more(there);
+            strength = strength.min(urgency).max(there);
         }
-        let strength = strength.between(S::ZERO, S::ONE);
+        let strength = strength.clamp(S::ZERO, S::ONE);
         let braking = if strength > S::ZERO {
-            let rate = found.tangential_speed * found.per_radius;
+            let rate = contact.tangential_speed * contact.per_radius;
             // Unit vector against b̂, or b̂ + μ·n̂.
-            let along = n.turned() * sense;
+            let along = n.perp() * sense;
             let (against, length) = if driven {
                 (along + n * coeffs.friction, coeffs.tilt)
             } else {
@@ -204,9 +205,9 @@ impl<S: Scalar> View<'_, S> {
             Vec2::ZERO
         };
         // Slower than lift-off an inward force can end the contact.
-        let pressing = (found.load.or_less(S::JUST_BELOW_ONE)).or_more(coeffs.pressing);
-        let inward = (pressing - self.course.square).or_more(S::ZERO);
-        Wanted {
+        let pressing = (contact.load.min(S::JUST_BELOW_ONE)).max(coeffs.pressing);
+        let inward = (pressing - self.speed.square).max(S::ZERO);
+        ForceDemand {
             braking,
             damping: self.damping(),
             restoring: n * -inward,
@@ -219,24 +220,24 @@ impl<S: Scalar> View<'_, S> {
     #[inline]
     fn lead(&self, rate: S) -> Vec2<S> {
         // Up to a radian, beyond which no lead would help.
-        let angle = (rate * self.coeffs.delay_time).between(-S::ONE, S::ONE);
+        let angle = (rate * self.coeffs.delay_time).clamp(-S::ONE, S::ONE);
         Vec2::at_angle(angle)
             .rotated(Vec2::new(S::ONE, rate * self.coeffs.lag))
             .direction()
     }
 
     /// On the wall under a load: push inwards, keep still.
-    fn hold(&self, share: S) -> Wanted<S> {
-        let (coeffs, found) = (self.coeffs, self.found);
-        let sense = self.spin.sense_of_backward(found.tangential_speed);
-        let still = S::of(STILL);
-        let backward = found.tangential_speed * sense - still;
-        let strength = (backward * coeffs.damper).between(S::ZERO, S::ONE);
-        let moving = (S::ONE - still * self.course.inverse).or_more(S::ZERO);
-        Wanted {
-            braking: found.normal.turned() * -(sense * strength),
+    fn hold(&self, share: S) -> ForceDemand<S> {
+        let (coeffs, contact) = (self.coeffs, self.contact);
+        let sense = self.spin.sense_of_backward(contact.tangential_speed);
+        let still = S::from_f32(STILL);
+        let backward = contact.tangential_speed * sense - still;
+        let strength = (backward * coeffs.damper).clamp(S::ZERO, S::ONE);
+        let moving = (S::ONE - still * self.speed.inverse).max(S::ZERO);
+        ForceDemand {
+            braking: contact.normal.perp() * -(sense * strength),
             damping: self.damping() * moving,
-            restoring: found.normal * -share,
+            restoring: contact.normal * -share,
             touching: true,
         }
     }
@@ -246,6 +247,6 @@ impl<S: Scalar> View<'_, S> {
 /// none at zero or less.
 #[inline]
 fn urgency<S: Scalar>(sum: S, harmless: f32, coeffs: &Coeffs<S>) -> S {
-    let beyond_harmless = sum * coeffs.per_whirl_limit - S::of(harmless);
-    (beyond_harmless * S::of(1.0 / URGENT_AFTER)).or_less(S::JUST_BELOW_ONE)
+    let beyond_harmless = sum * coeffs.per_whirl_limit - S::from_f32(harmless);
+    (beyond_harmless * S::from_f32(1.0 / URGENT_AFTER)).min(S::JUST_BELOW_ONE)
 }

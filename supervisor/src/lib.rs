@@ -48,7 +48,7 @@
 //! ```
 //!
 //! Files, each importing only from those above it: `scalar`, `product`, `q`, `math`, `vec2`, `signal`, `config`, `coeffs`,
-//! `spin`, `unbalance`, `innovation`, `reading`, `still`, `guard`, `drive`, `estimate`, `detect`, `course`, `classify`, `phase`, `trust`, `law`, `limit`, `handover`, `severity`,
+//! `spin`, `unbalance`, `innovation`, `reading`, `stuck`, `guard`, `actuator_monitor`, `estimate`, `detect`, `impact`, `classify`, `phase`, `trust`, `law`, `limit`, `handover`, `severity`,
 //! `recorder`, `per_unit`, `supervisor`, `self_test`, `watch`, `log_format`.
 
 // Unconditional: under `cfg(test)` std's own methods would silently replace micromath's.
@@ -56,15 +56,15 @@
 #![forbid(unsafe_code)]
 #![warn(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod actuator_monitor;
 mod classify;
 mod coeffs;
 mod config;
-mod course;
 mod detect;
-mod drive;
 mod estimate;
 mod guard;
 mod handover;
+mod impact;
 mod innovation;
 mod law;
 mod limit;
@@ -82,7 +82,7 @@ mod self_test;
 mod severity;
 mod signal;
 mod spin;
-mod still;
+mod stuck;
 mod supervisor;
 mod trust;
 mod unbalance;
@@ -90,15 +90,15 @@ mod vec2;
 mod watch;
 
 pub use coeffs::Scaling;
-pub use config::{Config, ConfigError, CoreError, Misfit, PARAMETERS, Parameter};
+pub use config::{Config, ConfigError, CoreError, NotRepresentable, PARAMETERS, Parameter};
 pub use per_unit::{Core, Prepared};
-pub use q::{Q, SlowQ};
+pub use q::{AccumulatorQ, Q};
 pub use recorder::{Entry, PER_UNIT, QueuedEvent, RECORD_TRIGGERS, RECORD_VERSION, Record, crc_of};
-pub use scalar::{Scalar, Slow};
+pub use scalar::{Accumulator, Scalar};
 pub use self_test::{SelfTest, self_test};
 pub use signal::{
-    Command, CoreCommand, CoreSample, Events, IntegratorHint, Limits, Mode, Refusal, Report,
+    Command, CoreCommand, CoreSample, Events, IntegratorHint, Limits, Mode, RejectReason, Report,
     Sample, Status,
 };
 pub use supervisor::Supervisor;
-pub use watch::OutputWatch;
+pub use watch::CommandWatchdog;

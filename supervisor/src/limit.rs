@@ -1,33 +1,33 @@
 //! The only place that limits forces, and the last word on them.
 
 use crate::coeffs::{Coeffs, FALL};
-use crate::law::Wanted;
-use crate::reading::Facts;
-use crate::scalar::{Scalar, Slow};
+use crate::law::ForceDemand;
+use crate::reading::SampleFlags;
+use crate::scalar::{Accumulator, Scalar};
 use crate::signal::Limits;
 use crate::vec2::Vec2;
 
-/// Room for the force of this tick \[caps\]: a disc, and a box of the axes that act.
+/// What a force may be at this tick \[caps\]: a disc, and a box of the axes that act.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Room<S> {
+pub(crate) struct ForceEnvelope<S> {
     /// Cap under the force–time budget, at most 1.
     pub(crate) cap: S,
     /// Cap of an axis that acts.
     axis: S,
     /// Whether the box can bind before the disc does.
     boxed: bool,
-    axes: Facts,
+    axes: SampleFlags,
 }
 
-impl<S: Scalar> Room<S> {
+impl<S: Scalar> ForceEnvelope<S> {
     #[inline]
-    pub(crate) fn new(budget: &Budget<S>, axes: Facts, coeffs: &Coeffs<S>) -> Self {
+    pub(crate) fn new(budget: &Budget<S>, axes: SampleFlags, coeffs: &Coeffs<S>) -> Self {
         Self::below(budget.cap(coeffs), axes, coeffs)
     }
 
-    /// The room under a cap of at most 1.
+    /// The envelope under a cap of at most 1.
     #[inline]
-    pub(crate) fn below(cap: S, axes: Facts, coeffs: &Coeffs<S>) -> Self {
+    pub(crate) fn below(cap: S, axes: SampleFlags, coeffs: &Coeffs<S>) -> Self {
         Self {
             cap,
             axis: coeffs.axis_cap,
@@ -41,7 +41,7 @@ impl<S: Scalar> Room<S> {
         (self.axes.carried(Vec2::new(self.axis, self.axis))).to_array()
     }
 
-    /// Whether a force is in the room; not if it is no number.
+    /// Whether a force is in the envelope; not if it is no number.
     #[inline]
     fn holds(self, force: Vec2<S>) -> bool {
         !force.exceeds(self.cap) && (!self.boxed || self.in_box(force))
@@ -49,17 +49,17 @@ impl<S: Scalar> Room<S> {
 
     fn in_box(self, force: Vec2<S>) -> bool {
         let [x, y] = self.axes();
-        force.x.size() <= x && force.y.size() <= y
+        force.x.abs() <= x && force.y.abs() <= y
     }
 
-    /// Largest s in [0, 1] with sum + s·part in the room, for a sum in it and a part that is too long; and
+    /// Largest s in [0, 1] with sum + s·part in the envelope, for a sum in it and a part that is too long; and
     /// whether the box says so. A hair inside, or rounding would have to be undone.
     #[inline]
     fn share(self, sum: Vec2<S>, part: Vec2<S>) -> (S, bool) {
         let cap = self.cap * S::JUST_BELOW_ONE;
         let disc = if sum == Vec2::ZERO {
             // Squares of a small cap would be nothing in fixed point.
-            (cap * part.inverse_length()).or_less(S::ONE)
+            (cap * part.inverse_length()).min(S::ONE)
         } else {
             largest_share(cap, sum, part)
         };
@@ -67,33 +67,36 @@ impl<S: Scalar> Room<S> {
             return (disc, false);
         }
         let axis = self.axis * S::JUST_BELOW_ONE;
-        let box_share = axis_share(axis, sum.x, part.x).or_less(axis_share(axis, sum.y, part.y));
-        (disc.or_less(box_share), box_share < disc)
+        let box_share = axis_share(axis, sum.x, part.x).min(axis_share(axis, sum.y, part.y));
+        (disc.min(box_share), box_share < disc)
     }
 }
 
-/// Gives the room to braking first, then damping, then restoring. Each is scaled, for its direction is
-/// what it is good for. Once a part is cut nothing is left: what pointed back into the room would take from
+/// Gives the envelope to braking first, then damping, then restoring. Each is scaled, for its direction is
+/// what it is good for. Once a part is cut nothing is left: what pointed back into the envelope would take from
 /// what comes first.
 #[inline]
-pub(crate) fn allocate<S: Scalar>(wanted: &Wanted<S>, room: Room<S>) -> (Vec2<S>, Limits) {
-    if room.axes.has_lost() {
-        return (on_what_is_left(wanted, room), Limits::AXIS_CAP);
+pub(crate) fn allocate<S: Scalar>(
+    demand: &ForceDemand<S>,
+    envelope: ForceEnvelope<S>,
+) -> (Vec2<S>, Limits) {
+    if envelope.axes.has_lost() {
+        return (on_what_is_left(demand, envelope), Limits::AXIS_CAP);
     }
-    let (mut sum, mut part) = (Vec2::ZERO, wanted.braking);
+    let (mut sum, mut part) = (Vec2::ZERO, demand.braking);
     // No law wants to brake with more than the whole cap, but for rounding.
-    let whole_disc = !room.boxed && room.cap >= S::ONE;
-    if whole_disc || room.holds(part) {
-        (sum, part) = (part, wanted.damping);
-        if room.holds(sum + part) {
-            (sum, part) = (sum + part, wanted.restoring);
-            if room.holds(sum + part) {
+    let whole_disc = !envelope.boxed && envelope.cap >= S::ONE;
+    if whole_disc || envelope.holds(part) {
+        (sum, part) = (part, demand.damping);
+        if envelope.holds(sum + part) {
+            (sum, part) = (sum + part, demand.restoring);
+            if envelope.holds(sum + part) {
                 return (sum + part, Limits::empty());
             }
         }
     }
-    let (share, by_box) = room.share(sum, part);
-    let limits = match (by_box, room.cap < S::ONE) {
+    let (share, by_box) = envelope.share(sum, part);
+    let limits = match (by_box, envelope.cap < S::ONE) {
         (true, _) => Limits::AXIS_CAP,
         (false, false) => Limits::FORCE_CAP,
         (false, true) => Limits::FORCE_CAP.union(Limits::DERATED),
@@ -109,24 +112,24 @@ pub(crate) fn allocate<S: Scalar>(wanted: &Wanted<S>, room: Room<S>) -> (Vec2<S>
 /// the axis with the sign of f̂ would take most, but u = f̂·|f̂| is the whole along the aim, and across it next
 /// to nothing.
 #[inline(never)]
-fn on_what_is_left<S: Scalar>(wanted: &Wanted<S>, room: Room<S>) -> Vec2<S> {
-    let along = |lost: Facts, aim: S, damping: S, restoring: S| {
-        if room.axes.contains(lost) {
+fn on_what_is_left<S: Scalar>(demand: &ForceDemand<S>, envelope: ForceEnvelope<S>) -> Vec2<S> {
+    let along = |lost: SampleFlags, aim: S, damping: S, restoring: S| {
+        if envelope.axes.contains(lost) {
             return S::ZERO;
         }
-        let cap = room.axis.or_less(room.cap);
-        let (first, last) = if wanted.touching {
-            (aim * aim.size(), S::ZERO)
+        let cap = envelope.axis.min(envelope.cap);
+        let (first, last) = if demand.touching {
+            (aim * aim.abs(), S::ZERO)
         } else {
             (S::ZERO, restoring)
         };
-        let sum = (first.between(-cap, cap) + damping).between(-cap, cap);
-        (sum + last).between(-cap, cap)
+        let sum = (first.clamp(-cap, cap) + damping).clamp(-cap, cap);
+        (sum + last).clamp(-cap, cap)
     };
-    let w = wanted;
+    let d = demand;
     Vec2::new(
-        along(Facts::X_LOST, w.braking.x, w.damping.x, w.restoring.x),
-        along(Facts::Y_LOST, w.braking.y, w.damping.y, w.restoring.y),
+        along(SampleFlags::X_LOST, d.braking.x, d.damping.x, d.restoring.x),
+        along(SampleFlags::Y_LOST, d.braking.y, d.damping.y, d.restoring.y),
     )
 }
 
@@ -134,15 +137,15 @@ fn on_what_is_left<S: Scalar>(wanted: &Wanted<S>, room: Room<S>) -> Vec2<S> {
 #[inline]
 fn largest_share<S: Scalar>(cap: S, sum: Vec2<S>, part: Vec2<S>) -> S {
     let along = sum.dot(part);
-    let room = (cap * cap - sum.length_squared()).or_more(S::ZERO);
-    let root = (along * along + part.length_squared() * room).root();
+    let room = (cap * cap - sum.length_squared()).max(S::ZERO);
+    let root = (along * along + part.length_squared() * room).sqrt();
     // The solution of the quadratic equation whose terms do not cancel.
     let share = if along > S::ZERO {
-        room.over(root + along)
+        room.div(root + along)
     } else {
-        (root - along).over(part.length_squared())
+        (root - along).div(part.length_squared())
     };
-    share.between(S::ZERO, S::ONE)
+    share.clamp(S::ZERO, S::ONE)
 }
 
 /// Largest s in [0, 1] with |sum + s·part| ≤ cap on one axis.
@@ -152,39 +155,38 @@ fn axis_share<S: Scalar>(cap: S, sum: S, part: S) -> S {
     } else {
         (sum, part)
     };
-    let room = (cap - sum).or_more(S::ZERO);
+    let room = (cap - sum).max(S::ZERO);
     // Also without a division by nothing where there is nothing to do.
-    if part <= room {
-        S::ONE
-    } else {
-        room.over(part)
-    }
+    if part <= room { S::ONE } else { room.div(part) }
 }
 
-/// A force within the room, and what had to be done to it: the last word on every force.
+/// A force within the envelope, and what had to be done to it: the last word on every force.
 #[inline]
-pub(crate) fn within<S: Scalar>(force: Vec2<S>, room: Room<S>) -> (Vec2<S>, Limits) {
-    if room.holds(force) {
+pub(crate) fn within<S: Scalar>(force: Vec2<S>, envelope: ForceEnvelope<S>) -> (Vec2<S>, Limits) {
+    if envelope.holds(force) {
         (force, Limits::empty())
     } else {
-        fitted(force, room)
+        scaled_into(force, envelope)
     }
 }
 
 /// The same for a command of the levitation controller.
 #[inline]
-pub(crate) fn levitation<S: Scalar>(command: Vec2<S>, room: Room<S>) -> (Vec2<S>, Limits) {
-    if room.holds(command) {
+pub(crate) fn levitation<S: Scalar>(
+    command: Vec2<S>,
+    envelope: ForceEnvelope<S>,
+) -> (Vec2<S>, Limits) {
+    if envelope.holds(command) {
         (command, Limits::empty())
     } else {
-        clamped(command, room)
+        clamped(command, envelope)
     }
 }
 
 #[cold]
 #[inline(never)]
-fn clamped<S: Scalar>(command: Vec2<S>, room: Room<S>) -> (Vec2<S>, Limits) {
-    let (force, bound) = fitted(command, room);
+fn clamped<S: Scalar>(command: Vec2<S>, envelope: ForceEnvelope<S>) -> (Vec2<S>, Limits) {
+    let (force, bound) = scaled_into(command, envelope);
     // That it was no number, or more than the whole cap, is what clamping says already.
     let said = Limits::FORCE_CAP | Limits::NOT_FINITE;
     (force, Limits::LEVITATION_CLAMPED | (bound - said))
@@ -194,32 +196,32 @@ fn clamped<S: Scalar>(command: Vec2<S>, room: Room<S>) -> (Vec2<S>, Limits) {
 /// away from the other.
 #[cold]
 #[inline(never)]
-fn fitted<S: Scalar>(force: Vec2<S>, room: Room<S>) -> (Vec2<S>, Limits) {
+fn scaled_into<S: Scalar>(force: Vec2<S>, envelope: ForceEnvelope<S>) -> (Vec2<S>, Limits) {
     let mut limits = Limits::empty();
     let number = force.map(|x| if x.is_finite() { x } else { S::ZERO });
     if number != force {
         limits |= Limits::NOT_FINITE;
     }
-    let mut v = room.axes.carried(number);
+    let mut v = envelope.axes.carried(number);
     if v != number {
         limits |= Limits::AXIS_CAP;
     }
-    let largest = |v: Vec2<S>| v.x.size().or_more(v.y.size());
-    if v.exceeds(room.cap) {
+    let largest = |v: Vec2<S>| v.x.abs().max(v.y.abs());
+    if v.exceeds(envelope.cap) {
         let most = largest(v);
         if most > S::ONE {
             // However long it is: its square has to be a number, too.
-            v = v * S::ONE.over(most);
+            v = v * S::ONE.div(most);
         }
-        v = v * v.inverse_length() * (room.cap * S::JUST_BELOW_ONE);
+        v = v * v.inverse_length() * (envelope.cap * S::JUST_BELOW_ONE);
         limits |= Limits::FORCE_CAP;
-        if room.cap < S::ONE {
+        if envelope.cap < S::ONE {
             limits |= Limits::DERATED;
         }
     }
     let most = largest(v);
-    if most > room.axis {
-        v = v * (room.axis * S::JUST_BELOW_ONE).over(most);
+    if most > envelope.axis {
+        v = v * (envelope.axis * S::JUST_BELOW_ONE).div(most);
         limits |= Limits::AXIS_CAP;
     }
     (v, limits)
@@ -246,7 +248,7 @@ fn one_step<S: Scalar>(last: Vec2<S>, change: Vec2<S>, coeffs: &Coeffs<S>) -> Ve
     let force = last + change * change.inverse_length() * coeffs.slew_step;
     // Both ends are within the caps; rounding may have left them between. The way inwards makes no step longer.
     let axis = coeffs.axis_cap;
-    let force = force.map(|x| x.between(-axis, axis));
+    let force = force.map(|x| x.clamp(-axis, axis));
     if force.exceeds(S::ONE) {
         force * S::JUST_BELOW_ONE
     } else {
@@ -257,7 +259,7 @@ fn one_step<S: Scalar>(last: Vec2<S>, change: Vec2<S>, coeffs: &Coeffs<S>) -> Ve
 /// Force–time budget: a first-order thermal state of the force squared.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Budget<S: Scalar> {
-    state: S::Slow,
+    state: S::Accumulator,
 }
 
 impl<S: Scalar> Budget<S> {
@@ -272,9 +274,9 @@ impl<S: Scalar> Budget<S> {
         if over <= S::ZERO {
             return S::ONE;
         }
-        let x = over.over(square * S::of(FALL)).or_less(S::ONE);
+        let x = over.div(square * S::from_f32(FALL)).min(S::ONE);
         // So written it ends at the continuous force however small that is.
-        let three = S::of(3.0) - (x + x);
+        let three = S::from_f32(3.0) - (x + x);
         continuous + (S::ONE - continuous) * (S::ONE - x * x * three)
     }
 

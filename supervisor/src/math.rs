@@ -4,22 +4,22 @@ use crate::scalar::Scalar;
 
 /// Square root; 0 for negative values and NaN.
 pub(crate) fn sqrt(x: f32) -> f32 {
-    x.root()
+    Scalar::sqrt(x)
 }
 
 /// The larger of two finite numbers.
 pub(crate) fn max(a: f32, b: f32) -> f32 {
-    a.or_more(b)
+    Scalar::max(a, b)
 }
 
 /// The smaller of two finite numbers.
 pub(crate) fn min(a: f32, b: f32) -> f32 {
-    a.or_less(b)
+    Scalar::min(a, b)
 }
 
 /// exp(−x) for x ≥ 0, to 1e-6: a Padé approximant near zero, squared back up.
 pub(crate) fn exp_neg(x: f32) -> f32 {
-    let x = x.between(0.0, 80.0);
+    let x = Scalar::clamp(x, 0.0, 80.0);
     let mut small = x;
     let mut halvings = 0_u32;
     while small > 0.125 {

@@ -2,21 +2,21 @@
 
 use crate::classify::Classifier;
 use crate::coeffs::{Coeffs, Scaling};
-use crate::config::{Config, CoreError, Misfit};
-use crate::course::{Course, Impact};
+use crate::config::{Config, CoreError, NotRepresentable};
 use crate::detect::Detector;
-use crate::estimate::{Observer, Wall};
+use crate::estimate::{Contact, Observer};
 use crate::guard::Guard;
 use crate::handover::Readiness;
+use crate::impact::{Impact, Speed};
 use crate::law::View;
-use crate::limit::{Budget, Room};
+use crate::limit::{Budget, ForceEnvelope};
 use crate::phase::{Judged, Phase};
-use crate::reading::{Facts, Reading};
+use crate::reading::{Reading, SampleFlags};
 use crate::recorder::{QueuedEvent, Record, Recorder};
 use crate::scalar::Scalar;
 use crate::severity::Severity;
 use crate::signal::{
-    CoreCommand, CoreSample, Events, IntegratorHint, Limits, Mode, Refusal, Report, Status,
+    CoreCommand, CoreSample, Events, IntegratorHint, Limits, Mode, RejectReason, Report, Status,
 };
 use crate::spin::Spin;
 use crate::trust::Trust;
@@ -64,15 +64,15 @@ impl<S: Scalar> Prepared<S> {
     /// A parameter outside its range, or a coefficient that `S` cannot hold.
     pub fn new(config: &Config) -> Result<Self, CoreError> {
         config.validate().map_err(CoreError::Range)?;
-        match Self::of_valid(config) {
+        match Self::from_valid(config) {
             (prepared, None) => Ok(prepared),
-            (_, Some(misfit)) => Err(CoreError::Misfit(misfit)),
+            (_, Some(lost)) => Err(CoreError::NotRepresentable(lost)),
         }
     }
 
-    pub(crate) fn of_valid(config: &Config) -> (Self, Option<Misfit>) {
-        let (coeffs, misfit) = Coeffs::new(config);
-        (Self(coeffs), misfit)
+    pub(crate) fn from_valid(config: &Config) -> (Self, Option<NotRepresentable>) {
+        let (coeffs, lost) = Coeffs::new(config);
+        (Self(coeffs), lost)
     }
 }
 
@@ -113,17 +113,22 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
         let tick = (new_s * new.tick.to_f32()) / (old_s * old.tick.to_f32());
         let force = old.scaling.force_n / new.scaling.force_n;
         let index = old.severity_limit / new.severity_limit;
-        self.guard.rescale(S::of(length));
-        self.trust.rescale(S::of(speed));
-        (self.observer).rescale(S::of(length), S::of(speed), S::of(tick), S::of(force));
-        self.readiness.rescale(S::of(force));
+        self.guard.rescale(S::from_f32(length));
+        self.trust.rescale(S::from_f32(speed));
+        (self.observer).rescale(
+            S::from_f32(length),
+            S::from_f32(speed),
+            S::from_f32(tick),
+            S::from_f32(force),
+        );
+        self.readiness.rescale(S::from_f32(force));
         self.budget.rescale(force);
-        self.severity.rescale(S::of(speed), index);
+        self.severity.rescale(S::from_f32(speed), index);
         self.coeffs = prepared.0;
         self.reconfigured = true;
         // A cap that is smaller now holds at once; what the budget leaves of it is come down to by the slew limit, as ever.
-        let room = Room::below(S::ONE, Facts::empty(), &self.coeffs);
-        let held = |last: Vec2<S>| limit::levitation(last * S::of(force), room).0;
+        let envelope = ForceEnvelope::below(S::ONE, SampleFlags::empty(), &self.coeffs);
+        let held = |last: Vec2<S>| limit::levitation(last * S::from_f32(force), envelope).0;
         (self.force, self.own) = (held(self.force), held(self.own));
     }
 
@@ -133,67 +138,72 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
     pub fn tick(&mut self, sample: &CoreSample<S>) -> CoreCommand<S> {
         let coeffs = &self.coeffs;
         let pinned = matches!(self.phase, Phase::Pinned { .. });
-        // An axis that does not obey is as good as lost.
-        let status = sample.status | self.observer.drive.lost(sample.status);
+        // An axis that does not track its command is as good as lost.
+        let status = sample.status | self.observer.monitor.lost(sample.status);
         let estimated = || {
-            let blind = self.detector.wall(pinned) != Wall::Nothing;
+            let blind = self.detector.wall(pinned) != Contact::None;
             (self.observer.velocity(), blind)
         };
         let expected = (self.observer).expected(self.detector.wall(pinned), coeffs);
         let reading = (self.guard).judge((sample, status), expected, estimated, coeffs);
-        let verdict = reading.verdict;
-        let facts = verdict.facts;
+        let assessment = reading.assessment;
+        let flags = assessment.flags;
         let spin = (reading.spin, sample.spin);
-        if facts.intersects(Facts::UNUSUAL) {
+        if flags.intersects(SampleFlags::UNUSUAL) {
             // A copy, so that the usual one stays in registers.
             let unusual = reading;
             self.catch_up(&unusual, spin);
         }
         let coeffs = &self.coeffs;
         let (position, actuator) = (reading.position(), reading.actuator());
-        let contact = self.detector.sample(position, coeffs);
+        let touch = self.detector.sample(position, coeffs);
         let wall = self.detector.wall(pinned);
         let (motion, beside) = (self.observer).advance(position, spin, wall, actuator, coeffs);
-        let room = Room::new(&self.budget, actuator.axes, coeffs);
+        let envelope = ForceEnvelope::new(&self.budget, actuator.axes, coeffs);
         let margin = self.trust.margin;
-        let found =
-            (self.detector).findings((&motion, beside), contact, (room.cap, margin), coeffs);
+        let contact = (self.detector).contact_estimate(
+            (&motion, beside),
+            touch,
+            (envelope.cap, margin),
+            coeffs,
+        );
         let made_up = || match wall {
-            Wall::Pushes => self.observer.made_up(found.normal, coeffs),
+            Contact::Impact => self.observer.made_up(contact.normal, coeffs),
             _ => S::ZERO,
         };
         let seen = position.is_some();
         let rubs = self.classifier.rubs();
-        let class = (self.classifier).classify(&found, (seen, made_up), spin, coeffs);
+        let class = (self.classifier).classify(&contact, (seen, made_up), spin, coeffs);
 
         // A rotor that levitates, and will, needs none of what follows.
-        let (mut course, mut ahead, mut calm) = (Course::default(), None, false);
+        let (mut speed, mut ahead, mut calm) = (Speed::default(), None, false);
         // Of the axis: an orbit is no approach, and no sign of the model either.
         let square = self.observer.velocity().length_squared();
-        let flies = wall == Wall::Nothing;
+        let flies = wall == Contact::None;
         let quiet = self.guard.innovation.is_quiet(coeffs);
         let judged = Judged {
             quiet,
             hands_back: (self.trust).tick((square, flies), (self.phase, rubs), coeffs),
             trusted: quiet && self.trust.is_granted(),
         };
-        if self.phase != Phase::Levitated || found.unavoidable || found.touching {
-            course = Course::of(motion.velocity);
-            if !found.touching {
-                ahead = Impact::ahead(&motion, found.radius, &course);
-                let speed = (course.speed - margin).or_more(S::ZERO);
-                calm = flies && found.stops(speed, room.cap, S::of(CALM_SHARE), coeffs);
+        if self.phase != Phase::Levitated || contact.unavoidable || contact.touching {
+            speed = Speed::new(motion.velocity);
+            if !contact.touching {
+                ahead = Impact::ahead(&motion, contact.radius, &speed);
+                let beyond = (speed.value - margin).max(S::ZERO);
+                calm =
+                    flies && contact.stops(beyond, envelope.cap, S::from_f32(CALM_SHARE), coeffs);
             }
         }
         let patience = (calm, self.readiness.ready(), judged);
-        let (phase, events) = (self.phase).next(&found, patience, class, facts, coeffs);
+        let (phase, events) = (self.phase).next(&contact, patience, class, flags, coeffs);
         self.phase = phase;
         let mode = phase.mode();
 
         let view = View {
             motion: &motion,
-            found: &found,
-            course: &course,
+            contact: &contact,
+            speed: &speed,
             ahead: ahead.as_ref(),
             spin: reading.spin,
             delivered: self.observer.delivered(),
@@ -201,72 +211,72 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
         };
         let shadow = sample.status.contains(Status::SHADOW);
         if actuator.axes.has_lost() {
-            // Such an axis has no force to start from; one that does not obey may have.
+            // Such an axis has no force to start from; one that does not track may have.
             let known = actuator.axes.known(sample.status);
             (self.force, self.own) = (known.carried(self.force), known.carried(self.own));
         }
         let last = if shadow { self.own } else { self.force };
         // Under impacts and in whirl nobody asks what the levitation controller wants.
-        let holds = mode == Mode::Pinned || !found.touching;
+        let holds = mode == Mode::Pinned || !contact.touching;
         let has_a_say =
             holds || matches!(mode, Mode::Levitated | Mode::HandedBack | Mode::SensorFault);
         let command = Vec2::from_array(sample.levitation);
         let (levitation, levitation_limits) = if has_a_say {
             // What it makes of a coordinate that is none takes no room from the other.
             let command = if mode == Mode::SensorFault {
-                facts.sensed(command, Vec2::ZERO)
+                flags.sensed(command, Vec2::ZERO)
             } else {
                 command
             };
-            limit::levitation(command, room)
+            limit::levitation(command, envelope)
         } else {
             (Vec2::ZERO, Limits::empty())
         };
         // What the controller makes of such a sample does not go through.
         // A doubt counts as much as the model that it is by.
-        let wrong = facts.contains(Facts::ON)
-            && match verdict.refusal {
-                Refusal::Doubted => judged.trusted,
+        let wrong = flags.contains(SampleFlags::ON)
+            && match assessment.refusal {
+                RejectReason::Doubted => judged.trusted,
                 refusal => refusal.is_wrong(),
             };
         if !phase.is_engaged() {
             self.readiness = Readiness::default();
         }
         let (target, bound) = if wrong && matches!(mode, Mode::Levitated | Mode::Handover) {
-            limit::within(last, room)
+            limit::within(last, envelope)
         } else if !phase.is_engaged() {
             (levitation, levitation_limits)
         } else {
-            let (wanted, mut own_limits) = limit::allocate(&view.wanted(phase), room);
+            let (allocated, mut own_limits) = limit::allocate(&view.demand(phase), envelope);
             if holds && !wrong {
                 // The controller has to ask for what the rotor is really held with.
-                let held = actuator.applied().unwrap_or(wanted);
+                let held = actuator.applied().unwrap_or(allocated);
                 self.readiness
-                    .compare(held, levitation, (found.normal, found.radius), coeffs);
+                    .compare(held, levitation, (contact.normal, contact.radius), coeffs);
             }
             let blended = match phase {
                 Phase::SensorFault { bouncing } => {
                     own_limits = levitation_limits;
-                    handover::faded(bouncing, (last, levitation), facts, room, coeffs)
+                    handover::faded(bouncing, (last, levitation), flags, envelope, coeffs)
                 }
-                Phase::Handover { weight } => wanted * (S::ONE - weight) + levitation * weight,
-                _ => wanted,
+                Phase::Handover { weight } => allocated * (S::ONE - weight) + levitation * weight,
+                _ => allocated,
             };
-            let (target, bound) = limit::within(blended, room);
+            let (target, bound) = limit::within(blended, envelope);
             (target, own_limits | bound)
         };
         let (own, slew) = limit::slewed(target, last, coeffs);
         let mut limits = bound | slew;
         self.own = own;
-        let on = facts.contains(Facts::ON);
+        let on = flags.contains(SampleFlags::ON);
         let mut integrator = handover::integrator_hint(phase, calm, on);
         if shadow {
-            let (levitation, _) = limit::levitation(command, room);
+            let (levitation, _) = limit::levitation(command, envelope);
             (self.force, _) = limit::slewed(levitation, self.force, coeffs);
             if on {
                 integrator = IntegratorHint::Run;
             }
-            self.observer.drive.switched_off();
+            self.observer.monitor.switched_off();
         } else {
             self.force = own;
         }
@@ -276,14 +286,14 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
         self.observer.commanded(self.force);
         let acting = actuator.acting(self.force);
         self.budget.spend(S::ONE, acting, coeffs);
-        let assessment =
-            (self.severity).assess(mode, &view, facts, (acting, self.observer.velocity()));
+        let severity =
+            (self.severity).assess(mode, &view, flags, (acting, self.observer.velocity()));
 
-        let mut events = events | verdict.events | assessment.events;
+        let mut events = events | assessment.events | severity.events;
         if core::mem::take(&mut self.reconfigured) {
             events |= Events::RECONFIGURED;
         }
-        limits |= assessment.limits;
+        limits |= severity.limits;
         events |= self.recorder.push(
             sample.sequence,
             position.unwrap_or(self.observer.position()),
@@ -298,7 +308,7 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
             limits,
             events,
             integrator,
-            severity: assessment.severity,
+            severity: severity.severity,
         }
     }
 
@@ -306,23 +316,23 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
     /// cannot go on.
     #[cold]
     fn catch_up(&mut self, reading: &Reading<S>, spin: (Spin, S)) {
-        let verdict = reading.verdict;
-        let facts = verdict.facts;
-        if facts.contains(Facts::LATE) {
+        let assessment = reading.assessment;
+        let flags = assessment.flags;
+        if flags.contains(SampleFlags::LATE) {
             self.observer.late();
         }
-        if verdict.missed > 0 {
-            let missed = u32::from(verdict.missed);
+        if assessment.missed > 0 {
+            let missed = u32::from(assessment.missed);
             self.observer
                 .bridge(missed, self.force, (reading.position(), spin), &self.coeffs);
             let acting = reading.actuator().acting(self.force);
             (self.budget).spend(S::count(missed), acting, &self.coeffs);
         }
-        let lost = facts.contains(Facts::FAULTY) && !facts.contains(Facts::USED);
-        if facts.intersects(Facts::ANEW | Facts::MISSED) {
-            self.observer.drive.unseen();
+        let lost = flags.contains(SampleFlags::FAULTY) && !flags.contains(SampleFlags::USED);
+        if flags.intersects(SampleFlags::ANEW | SampleFlags::MISSED) {
+            self.observer.monitor.unseen();
         }
-        if facts.contains(Facts::ANEW) || lost {
+        if flags.contains(SampleFlags::ANEW) || lost {
             self.observer.forget();
             self.classifier.forget();
         }

@@ -9,8 +9,8 @@
 
 use crate::classify::Class;
 use crate::coeffs::Coeffs;
-use crate::detect::Findings;
-use crate::reading::Facts;
+use crate::detect::ContactEstimate;
+use crate::reading::SampleFlags;
 use crate::scalar::Scalar;
 use crate::signal::{Events, Mode};
 
@@ -71,22 +71,22 @@ impl<S: Scalar> Phase<S> {
     #[inline]
     pub(crate) fn next(
         self,
-        found: &Findings<S>,
+        contact: &ContactEstimate<S>,
         (calm, ready, judged): (bool, bool, Judged),
         class: Class,
-        facts: Facts,
+        flags: SampleFlags,
         coeffs: &Coeffs<S>,
     ) -> (Self, Events) {
         let next = match judged.hands_back {
-            _ if !facts.contains(Facts::ON) => Self::Levitated,
+            _ if !flags.contains(SampleFlags::ON) => Self::Levitated,
             Some(left) => Self::HandedBack { left },
-            None => self.follow(found, (calm, ready, judged), class, facts, coeffs),
+            None => self.follow(contact, (calm, ready, judged), class, flags, coeffs),
         };
         let mut events = Events::empty();
-        if found.touched {
+        if contact.touched {
             events |= Events::TOUCHED;
         }
-        if found.left {
+        if contact.left {
             events |= Events::LIFTED_OFF;
         }
         if class == (Class::ForwardRub { begins: true }) {
@@ -113,17 +113,17 @@ impl<S: Scalar> Phase<S> {
     fn hold(self, load: S, coeffs: &Coeffs<S>) -> S {
         match self {
             Self::Pinned { hold } => hold + (S::JUST_BELOW_ONE - hold) * coeffs.blend_step,
-            _ => load.between(coeffs.hold_share, S::JUST_BELOW_ONE),
+            _ => load.clamp(coeffs.hold_share, S::JUST_BELOW_ONE),
         }
     }
 
     #[inline]
     fn follow(
         self,
-        found: &Findings<S>,
+        contact: &ContactEstimate<S>,
         (calm, ready, judged): (bool, bool, Judged),
         class: Class,
-        facts: Facts,
+        flags: SampleFlags,
         coeffs: &Coeffs<S>,
     ) -> Self {
         if let Self::HandedBack { left } = self {
@@ -133,7 +133,7 @@ impl<S: Scalar> Phase<S> {
             };
         }
         let new_bounce = Self::Bounce { calm_ticks: 0 };
-        if facts.contains(Facts::FAULTY) {
+        if flags.contains(SampleFlags::FAULTY) {
             let bouncing = match self {
                 Self::SensorFault { bouncing } => bouncing,
                 Self::Bounce { .. } | Self::BackwardWhirl | Self::Pinned { .. } => true,
@@ -142,21 +142,21 @@ impl<S: Scalar> Phase<S> {
             return Self::SensorFault { bouncing };
         }
         // Where what the reading usually does is too fast, a contact that goes on all the time still says what it is.
-        let whirls = judged.quiet && found.touching && class == Class::BackwardWhirl;
+        let whirls = judged.quiet && contact.touching && class == Class::BackwardWhirl;
         if self == Self::Levitated && !judged.trusted && !whirls {
             return self;
         }
-        if found.touching {
+        if contact.touching {
             return match class {
                 Class::Bounce | Class::ForwardRub { .. } => new_bounce,
                 Class::BackwardWhirl => Self::BackwardWhirl,
                 Class::Pinned => Self::Pinned {
-                    hold: self.hold(found.load, coeffs),
+                    hold: self.hold(contact.load, coeffs),
                 },
             };
         }
         match self {
-            Self::Levitated if found.unavoidable => Self::Approach { calm_ticks: 0 },
+            Self::Levitated if contact.unavoidable => Self::Approach { calm_ticks: 0 },
             Self::Levitated => self,
             // Nothing has happened but in a reading that is not believed any more.
             Self::Approach { .. } if !judged.trusted => Self::Levitated,
@@ -172,7 +172,7 @@ impl<S: Scalar> Phase<S> {
             Self::SensorFault { bouncing: false } => Self::Approach { calm_ticks: 0 },
             Self::BackwardWhirl | Self::Pinned { .. } | Self::SensorFault { .. } => new_bounce,
             Self::HandedBack { .. } => self,
-            Self::Handover { .. } if found.unavoidable => Self::Approach { calm_ticks: 0 },
+            Self::Handover { .. } if contact.unavoidable => Self::Approach { calm_ticks: 0 },
             Self::Handover { weight } => {
                 let weight = weight + coeffs.blend_step;
                 if weight < S::ONE {

@@ -2,7 +2,7 @@
 //! the core (clearances, caps, √(m·c/F)) all that counts is between a thousandth and some tens.
 
 use crate::product;
-use crate::scalar::{Scalar, Slow, sealed::Sealed};
+use crate::scalar::{Accumulator, Scalar, sealed::Sealed};
 use fixed::types::I10F22;
 
 /// A fixed-point number of the supervisor, for processors without floating point.
@@ -107,7 +107,7 @@ const SEEDS: [u16; 48] = {
 impl Root {
     /// For s > 0. Two of Newton's steps bring the seed's 1.5 % to 2⁻²².
     #[inline(never)]
-    fn of(s: u64) -> Self {
+    fn new(s: u64) -> Self {
         // By words: Cortex-M0 calls for a shift of 64 bits, and counts zeros in a loop.
         let (upper, lower) = ((s >> 32) as u32, s as u32);
         let (half, m) = if upper != 0 {
@@ -134,14 +134,14 @@ impl Root {
 impl Sealed for Q {}
 
 impl Scalar for Q {
-    type Slow = SlowQ;
+    type Accumulator = AccumulatorQ;
     const ZERO: Self = Self::from_bits(0);
     const ONE: Self = Self::from_bits(1 << FRACTION);
     const JUST_BELOW_ONE: Self = Self::from_bits((1 << FRACTION) - 8);
     const KNOWN_ANSWER: u32 = 0x2CEA_D5BB;
 
     #[inline]
-    fn of(x: f32) -> Self {
+    fn from_f32(x: f32) -> Self {
         // `as` saturates, and turns NaN into 0.
         let scaled = x * (1_u32 << FRACTION) as f32;
         let half = if scaled < 0.0 { -0.5 } else { 0.5 };
@@ -180,33 +180,33 @@ impl Scalar for Q {
         if square < 1 << 26 {
             return Self::ZERO;
         }
-        let root = Root::of(square);
+        let root = Root::new(square);
         // y·2^(half − 40), in units of 2⁻²².
         Self::from_bits((root.y >> 18_u32.saturating_sub(root.half).min(31)) as i32)
     }
 
     #[inline]
-    fn root(self) -> Self {
+    fn sqrt(self) -> Self {
         let bits = self.to_bits();
         if bits <= 0 {
             return Self::ZERO;
         }
-        let root = Root::of((bits as u64) << FRACTION);
+        let root = Root::new((bits as u64) << FRACTION);
         let wide = product::unsigned(root.m, root.y);
         Self::from_bits((wide >> ((30 + root.half) & 63)) as i32)
     }
 
     #[inline]
-    fn over(self, divisor: Self) -> Self {
+    fn div(self, divisor: Self) -> Self {
         let bits = divisor.to_bits();
         if bits <= 0 {
             if bits == 0 {
                 return Self::ZERO;
             }
-            return (-self).over(-divisor);
+            return (-self).div(-divisor);
         }
         // The square of the inverse root.
-        let root = Root::of((bits as u64) << FRACTION);
+        let root = Root::new((bits as u64) << FRACTION);
         let inverse = product::unsigned(root.y, root.y) >> 31;
         let wide = product::mixed(self.to_bits(), inverse as u32);
         Self::saturated(wide >> (49_u32.saturating_sub(2 * root.half) & 63))
@@ -241,9 +241,9 @@ impl Scalar for Q {
 
 /// Sum of 64 bits, 52 of them fraction.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct SlowQ(i64);
+pub struct AccumulatorQ(i64);
 
-impl Slow<Q> for SlowQ {
+impl Accumulator<Q> for AccumulatorQ {
     /// In units of 2⁻³⁰, within ±2.
     type Rate = i32;
 

@@ -1,14 +1,14 @@
 //! What is known of a sample once the guard has judged it.
 
 use crate::scalar::Scalar;
-use crate::signal::{Events, Refusal, Status};
+use crate::signal::{Events, RejectReason, Status};
 use crate::spin::Spin;
 use crate::vec2::Vec2;
 
 bitflags::bitflags! {
     /// What the guard has found, in one register. Bits that a [`Status`] says have their place in it.
     #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-    pub(crate) struct Facts: u16 {
+    pub(crate) struct SampleFlags: u16 {
         /// The sample may be used; else the observer runs on its model.
         const USED = 1;
         /// The bearing may act.
@@ -38,10 +38,10 @@ bitflags::bitflags! {
     }
 }
 
-impl Facts {
+impl SampleFlags {
     /// What the status says.
     #[inline]
-    pub(crate) fn of(status: Status) -> Self {
+    pub(crate) fn from_status(status: Status) -> Self {
         Self::from_bits_truncate(status.bits() as u16) & Self::SAID
     }
 
@@ -63,16 +63,16 @@ impl Facts {
         Vec2::new(on(Self::X_LOST, force.x), on(Self::Y_LOST, force.y))
     }
 
-    /// The axes that are lost by the status, and not because they do not obey.
+    /// The axes that are lost by the status, and not because they do not track.
     #[inline]
     pub(crate) fn known(self, status: Status) -> Self {
-        self - (Self::LOST - Self::of(status))
+        self - (Self::LOST - Self::from_status(status))
     }
 
     /// A force along the coordinates that a fault of the sensor leaves, another one along those that are bad.
     #[inline]
     pub(crate) fn sensed<S: Scalar>(self, good: Vec2<S>, bad: Vec2<S>) -> Vec2<S> {
-        let on = |fact: Self, good: S, bad: S| if self.contains(fact) { bad } else { good };
+        let on = |flag: Self, good: S, bad: S| if self.contains(flag) { bad } else { good };
         Vec2::new(
             on(Self::X_BAD, good.x, bad.x),
             on(Self::Y_BAD, good.y, bad.y),
@@ -83,7 +83,7 @@ impl Facts {
 /// What is known of the actuator at this tick.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Actuator<S> {
-    pub(crate) axes: Facts,
+    pub(crate) axes: SampleFlags,
     measured: Vec2<S>,
 }
 
@@ -91,7 +91,7 @@ impl<S: Scalar> Actuator<S> {
     /// Measured force at this instant \[caps\].
     #[inline]
     pub(crate) fn applied(&self) -> Option<Vec2<S>> {
-        (self.axes.contains(Facts::MEASURED)).then_some(self.measured)
+        (self.axes.contains(SampleFlags::MEASURED)).then_some(self.measured)
     }
 
     /// What acts of a commanded force: what is measured, or all that is commanded, or nothing while the bearing is off.
@@ -99,7 +99,7 @@ impl<S: Scalar> Actuator<S> {
     pub(crate) fn acting(&self, commanded: Vec2<S>) -> Vec2<S> {
         match self.applied() {
             Some(measured) => measured,
-            None if self.axes.contains(Facts::ON) => commanded,
+            None if self.axes.contains(SampleFlags::ON) => commanded,
             None => Vec2::ZERO,
         }
     }
@@ -113,10 +113,10 @@ impl<S: Scalar> Actuator<S> {
 
 /// What the guard says of a sample.
 #[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Verdict {
+pub(crate) struct SampleAssessment {
     pub(crate) events: Events,
-    pub(crate) facts: Facts,
-    pub(crate) refusal: Refusal,
+    pub(crate) flags: SampleFlags,
+    pub(crate) refusal: RejectReason,
     /// Ticks since the last call that the observer has to make up for.
     pub(crate) missed: u8,
 }
@@ -124,7 +124,7 @@ pub(crate) struct Verdict {
 /// A sample after judgement, per unit.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Reading<S> {
-    pub(crate) verdict: Verdict,
+    pub(crate) assessment: SampleAssessment,
     pub(crate) sample: Vec2<S>,
     pub(crate) measured: Vec2<S>,
     pub(crate) spin: Spin,
@@ -134,19 +134,19 @@ impl<S: Scalar> Reading<S> {
     /// `None`: not to be used; the observer runs on its model.
     #[inline]
     pub(crate) fn position(&self) -> Option<Vec2<S>> {
-        (self.verdict.facts.contains(Facts::USED)).then_some(self.sample)
+        (self.assessment.flags.contains(SampleFlags::USED)).then_some(self.sample)
     }
 
     #[inline]
     pub(crate) fn actuator(&self) -> Actuator<S> {
         Actuator {
-            axes: self.verdict.facts,
+            axes: self.assessment.flags,
             measured: self.measured,
         }
     }
 }
 
-impl Default for Facts {
+impl Default for SampleFlags {
     fn default() -> Self {
         Self::empty()
     }

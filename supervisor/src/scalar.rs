@@ -26,7 +26,7 @@ pub trait Scalar:
     + Neg<Output = Self>
 {
     /// A sum that a small rate still moves.
-    type Slow: Slow<Self>;
+    type Accumulator: Accumulator<Self>;
 
     /// 0.
     const ZERO: Self;
@@ -38,10 +38,10 @@ pub trait Scalar:
     const KNOWN_ANSWER: u32;
 
     /// The nearest number; saturating, 0 for NaN.
-    fn of(x: f32) -> Self;
+    fn from_f32(x: f32) -> Self;
     /// As `f32`.
     fn to_f32(self) -> f32;
-    /// Whether `of` keeps this coefficient well enough to compute with.
+    /// Whether `from_f32` keeps this coefficient well enough to compute with.
     fn represents(x: f32) -> bool;
     /// Neither NaN nor infinite.
     fn is_finite(self) -> bool;
@@ -52,9 +52,9 @@ pub trait Scalar:
     /// 1/√(x² + y²); 0 where that length is as good as none.
     fn inverse_length(x: Self, y: Self) -> Self;
     /// Square root; 0 for negative numbers and NaN.
-    fn root(self) -> Self;
+    fn sqrt(self) -> Self;
     /// The quotient; saturating, something finite for a divisor of 0 where numbers have no infinity.
-    fn over(self, divisor: Self) -> Self;
+    fn div(self, divisor: Self) -> Self;
     /// A count of ticks; saturating.
     fn count(ticks: u32) -> Self;
     /// Its bits, for a hash; the two halves together where there are more than 32.
@@ -64,8 +64,8 @@ pub trait Scalar:
 
     /// Held between `low` and `high` (`low` ≤ `high`); NaN becomes `low`.
     #[inline]
-    fn between(self, low: Self, high: Self) -> Self {
-        // `f32::clamp` can panic.
+    fn clamp(self, low: Self, high: Self) -> Self {
+        // Not that of `f32`, which can panic.
         if self > high {
             high
         } else if self >= low {
@@ -89,25 +89,25 @@ pub trait Scalar:
 
     /// The larger of two finite numbers.
     #[inline]
-    fn or_more(self, other: Self) -> Self {
+    fn max(self, other: Self) -> Self {
         if self > other { self } else { other }
     }
 
     /// The smaller of two finite numbers.
     #[inline]
-    fn or_less(self, other: Self) -> Self {
+    fn min(self, other: Self) -> Self {
         if self < other { self } else { other }
     }
 
     /// Without its sign.
     #[inline]
-    fn size(self) -> Self {
+    fn abs(self) -> Self {
         if self < Self::ZERO { -self } else { self }
     }
 }
 
 /// A sum of many small steps that rounding must not stop.
-pub trait Slow<S>: Copy + Default + Debug {
+pub trait Accumulator<S>: Copy + Default + Debug {
     /// A factor that may be smaller than what `S` resolves.
     type Rate: Copy + Debug + PartialEq;
 
@@ -125,7 +125,7 @@ pub trait Slow<S>: Copy + Default + Debug {
 
 /// Compensated sum: keeps what rounding would take from it.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Compensated<S> {
+pub struct KahanSum<S> {
     value: S,
     rest: S,
 }
@@ -133,14 +133,14 @@ pub struct Compensated<S> {
 macro_rules! floating_point {
     ($type:ident, $bits:ident, $known_answer:literal) => {
         impl Scalar for $type {
-            type Slow = Compensated<$type>;
+            type Accumulator = KahanSum<$type>;
             const ZERO: Self = 0.0;
             const ONE: Self = 1.0;
             const JUST_BELOW_ONE: Self = 1.0 - 4.0 * $type::EPSILON;
             const KNOWN_ANSWER: u32 = $known_answer;
 
             #[inline]
-            fn of(x: f32) -> Self {
+            fn from_f32(x: f32) -> Self {
                 $type::from(x)
             }
             #[inline]
@@ -169,15 +169,15 @@ macro_rules! floating_point {
                 inverse_root::$type(x * x + y * y)
             }
             #[inline]
-            fn root(self) -> Self {
+            fn sqrt(self) -> Self {
                 self * inverse_root::$type(self)
             }
             #[inline]
-            fn over(self, divisor: Self) -> Self {
+            fn div(self, divisor: Self) -> Self {
                 self / divisor
             }
             #[inline]
-            fn size(self) -> Self {
+            fn abs(self) -> Self {
                 self.abs()
             }
             #[inline]
@@ -203,7 +203,7 @@ macro_rules! floating_point {
             }
         }
 
-        impl Slow<$type> for Compensated<$type> {
+        impl Accumulator<$type> for KahanSum<$type> {
             type Rate = $type;
 
             #[inline]

@@ -70,41 +70,43 @@ const STORIES: [(u32, Story, Status); 8] = [
 impl SelfTest {
     /// Runs the test and says what came out.
     pub fn run<S: Scalar>() -> Self {
-        let (prepared, _) = Prepared::of_valid(&CONFIG);
+        let (prepared, _) = Prepared::from_valid(&CONFIG);
         let mut core = Core::<S, 4>::new(&prepared);
         let mut result = Self {
             hash: 0x811C_9DC5,
             modes: 0,
             events: Events::empty(),
         };
-        let mut position = Vec2::new(S::of(0.01), S::of(-0.02));
-        let turn = Vec2::new(S::of(0.996_2), S::of(-0.087_2));
-        let step = Vec2::new(S::of(0.05), S::of(0.02));
+        let mut position = Vec2::new(S::from_f32(0.01), S::from_f32(-0.02));
+        let turn = Vec2::new(S::from_f32(0.996_2), S::from_f32(-0.087_2));
+        let step = Vec2::new(S::from_f32(0.05), S::from_f32(0.02));
         let (mut sequence, mut applied) = (0, [S::ZERO; 2]);
         let mut noise = 1_u32;
         for (ticks, story, status) in STORIES {
             for _ in 0..ticks {
                 position = match story {
-                    Story::Flight if position.exceeds(S::of(1.01)) => position * S::of(0.97),
+                    Story::Flight if position.exceeds(S::from_f32(1.01)) => {
+                        position * S::from_f32(0.97)
+                    }
                     Story::Flight => position + step,
                     Story::Whirl => {
-                        let onto = S::of(1.01) * position.inverse_length();
+                        let onto = S::from_f32(1.01) * position.inverse_length();
                         position.rotated(turn) * onto
                     }
-                    Story::Rest => Vec2::new(S::ZERO, S::of(-1.005)),
-                    Story::Nonsense => Vec2::new(S::of(5.0), S::ZERO),
-                    Story::Centre => position * S::of(0.98),
+                    Story::Rest => Vec2::new(S::ZERO, S::from_f32(-1.005)),
+                    Story::Nonsense => Vec2::new(S::from_f32(5.0), S::ZERO),
+                    Story::Centre => position * S::from_f32(0.98),
                 };
                 noise = noise.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-                let ripple = S::count(noise >> 24) * S::of(1e-5);
+                let ripple = S::count(noise >> 24) * S::from_f32(1e-5);
                 let seen = position + Vec2::new(ripple, -ripple);
                 let command = core.tick(&CoreSample {
                     sequence,
                     status,
                     position: seen.to_array(),
                     // Quick enough for an unbalance.
-                    spin: S::of(2.0),
-                    levitation: (position * S::of(-0.5)).to_array(),
+                    spin: S::from_f32(2.0),
+                    levitation: (position * S::from_f32(-0.5)).to_array(),
                     applied,
                 });
                 sequence = sequence.wrapping_add(1);

@@ -2,11 +2,11 @@
 //! the request to coast down.
 
 use crate::coeffs::Coeffs;
-use crate::course::sum_of_impacts;
-use crate::detect::Findings;
+use crate::detect::ContactEstimate;
+use crate::impact::sum_of_impacts;
 use crate::law::View;
-use crate::reading::Facts;
-use crate::scalar::{Scalar, Slow};
+use crate::reading::SampleFlags;
+use crate::scalar::{Accumulator, Scalar};
 use crate::signal::{Events, Limits, Mode, Report};
 use crate::vec2::Vec2;
 
@@ -24,7 +24,7 @@ pub(crate) struct Severity<S: Scalar> {
     impact_speed_max: S,
     backward_speed_max: S,
     /// Severity index over its limit.
-    index: S::Slow,
+    index: S::Accumulator,
     /// An engagement is under way; the rotor has touched in it.
     engaged: bool,
     landed: bool,
@@ -38,7 +38,7 @@ pub(crate) struct Severity<S: Scalar> {
 
 /// What a tick has to report.
 #[derive(Default)]
-pub(crate) struct Assessment<S> {
+pub(crate) struct SeverityAssessment<S> {
     /// Predicted backward speed over the whirl limit.
     pub(crate) severity: S,
     pub(crate) limits: Limits,
@@ -52,11 +52,11 @@ impl<S: Scalar> Severity<S> {
         &mut self,
         mode: Mode,
         view: &View<'_, S>,
-        facts: Facts,
+        flags: SampleFlags,
         (force, velocity): (Vec2<S>, Vec2<S>),
-    ) -> Assessment<S> {
+    ) -> SeverityAssessment<S> {
         let before = core::mem::replace(&mut self.before, velocity);
-        if !facts.contains(Facts::ON) {
+        if !flags.contains(SampleFlags::ON) {
             self.coast_down = false;
         }
         match mode {
@@ -65,16 +65,16 @@ impl<S: Scalar> Severity<S> {
                 self.nuisances = self.nuisances.saturating_add(u32::from(nuisance));
                 self.landed = false;
                 self.beyond_ticks = 0;
-                Assessment::default()
+                SeverityAssessment::default()
             }
             // What is not measured is not counted.
             Mode::SensorFault => {
                 self.engaged = true;
-                Assessment::default()
+                SeverityAssessment::default()
             }
             _ => {
                 self.engaged = true;
-                self.engaged(view, facts, (force, before))
+                self.engaged(view, flags, (force, before))
             }
         }
     }
@@ -85,37 +85,37 @@ impl<S: Scalar> Severity<S> {
     fn engaged(
         &mut self,
         view: &View<'_, S>,
-        facts: Facts,
+        flags: SampleFlags,
         (force, before): (Vec2<S>, Vec2<S>),
-    ) -> Assessment<S> {
-        let mut result = Assessment::default();
-        let (found, coeffs) = (view.found, view.coeffs);
+    ) -> SeverityAssessment<S> {
+        let mut result = SeverityAssessment::default();
+        let (contact, coeffs) = (view.contact, view.coeffs);
         // The speed of a first sample is a guess.
         let backward = if view.motion.fresh {
             S::ZERO
         } else {
-            view.spin.backward(found.tangential_speed)
+            view.spin.backward(contact.tangential_speed)
         };
-        let coming = if found.touching {
-            if facts.contains(Facts::USED) {
-                self.contact(before, backward, found, force, coeffs);
+        let coming = if contact.touching {
+            if flags.contains(SampleFlags::USED) {
+                self.contact(before, backward, contact, force, coeffs);
             }
-            let outward = found.radial_speed.or_more(S::ZERO);
+            let outward = contact.radial_speed.max(S::ZERO);
             sum_of_impacts(backward, outward, coeffs.bounce_gain)
         } else {
             match view.ahead {
-                Some(impact) if found.unavoidable => {
+                Some(impact) if contact.unavoidable => {
                     let backward = view.spin.backward(impact.along);
                     sum_of_impacts(backward, impact.normal_speed, coeffs.bounce_gain)
                 }
                 _ => S::ZERO,
             }
         };
-        let severity = (coming * coeffs.per_whirl_limit).or_more(S::ZERO);
-        result.severity = severity.or_less(S::of(MOST_SEVERITY));
+        let severity = (coming * coeffs.per_whirl_limit).max(S::ZERO);
+        result.severity = severity.min(S::from_f32(MOST_SEVERITY));
 
         let beyond = backward * coeffs.per_whirl_limit > S::ONE;
-        if beyond && found.touching && facts.contains(Facts::USED) {
+        if beyond && contact.touching && flags.contains(SampleFlags::USED) {
             result.limits |= Limits::BEYOND_WHIRL_LIMIT;
             self.beyond_ticks = self.beyond_ticks.saturating_add(1);
         } else if !beyond {
@@ -141,7 +141,7 @@ impl<S: Scalar> Severity<S> {
         &mut self,
         before: Vec2<S>,
         backward: S,
-        found: &Findings<S>,
+        contact: &ContactEstimate<S>,
         force: Vec2<S>,
         coeffs: &Coeffs<S>,
     ) {
@@ -150,21 +150,21 @@ impl<S: Scalar> Severity<S> {
             self.landings = self.landings.saturating_add(1);
         }
         self.contact_ticks = self.contact_ticks.saturating_add(1);
-        self.backward_speed_max = self.backward_speed_max.or_more(backward);
+        self.backward_speed_max = self.backward_speed_max.max(backward);
         let mut energy = S::ZERO;
-        if found.touched {
+        if contact.touched {
             self.impacts = self.impacts.saturating_add(1);
-            let speed = before.dot(found.normal).or_more(S::ZERO);
-            self.impact_speed_max = self.impact_speed_max.or_more(speed);
+            let speed = before.dot(contact.normal).max(S::ZERO);
+            self.impact_speed_max = self.impact_speed_max.max(speed);
             energy = speed * speed;
         }
         // Normal force that keeps the rotor on its circle against what pulls it off.
-        let along = found.tangential_speed;
-        let outward = force.dot(found.normal) + found.load;
-        let normal = (along * along - coeffs.stiffness + outward).or_more(S::ZERO);
-        let friction = coeffs.friction * normal * along.size() * coeffs.tick;
+        let along = contact.tangential_speed;
+        let outward = force.dot(contact.normal) + contact.load;
+        let normal = (along * along - coeffs.stiffness + outward).max(S::ZERO);
+        let friction = coeffs.friction * normal * along.abs() * coeffs.tick;
         energy = energy + friction + friction;
-        if self.index.value() <= S::of(MOST_INDEX) {
+        if self.index.value() <= S::from_f32(MOST_INDEX) {
             self.index.add(energy, coeffs.index_rate);
         }
     }
@@ -180,7 +180,7 @@ impl<S: Scalar> Severity<S> {
             impact_speed_max_m_s: self.impact_speed_max.to_f32() * speed_m_s,
             backward_speed_max_m_s: self.backward_speed_max.to_f32() * speed_m_s,
             whirl_limit_m_s: speed_m_s / coeffs.per_whirl_limit.to_f32(),
-            severity_index: index.or_less(MOST_INDEX),
+            severity_index: Scalar::min(index, MOST_INDEX),
             coast_down: self.coast_down,
             ..Report::default()
         }

@@ -124,7 +124,7 @@ impl Status {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(u8)]
-pub enum Refusal {
+pub enum RejectReason {
     /// It is not.
     #[default]
     None = 0,
@@ -142,7 +142,7 @@ pub enum Refusal {
     Doubted = 6,
 }
 
-impl Refusal {
+impl RejectReason {
     /// Whether the sample shows what cannot be, and is not merely old.
     pub(crate) fn is_wrong(self) -> bool {
         matches!(self, Self::NotFinite | Self::Range | Self::Slew)
@@ -306,7 +306,7 @@ pub struct Report {
     /// Commands that came too late.
     pub late_ticks: u32,
     /// Why the last sample was refused, if it was.
-    pub refusal: Refusal,
+    pub refusal: RejectReason,
     /// Why the last sensor fault began.
-    pub fault: Refusal,
+    pub fault: RejectReason,
 }

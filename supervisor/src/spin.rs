@@ -15,7 +15,7 @@ pub(crate) enum Spin {
 impl Spin {
     /// What a sample says of it.
     #[inline]
-    pub(crate) fn of<S: Scalar>(sample: &CoreSample<S>) -> Self {
+    pub(crate) fn from_sample<S: Scalar>(sample: &CoreSample<S>) -> Self {
         let known = sample.status.contains(Status::SPIN_VALID) && sample.spin.is_finite();
         if known && sample.spin > S::ZERO {
             Self::Counterclockwise
@@ -33,7 +33,7 @@ impl Spin {
         match self {
             Self::Counterclockwise => -along,
             Self::Clockwise => along,
-            Self::Unknown => along.size(),
+            Self::Unknown => along.abs(),
         }
     }
 

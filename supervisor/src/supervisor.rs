@@ -19,7 +19,7 @@ impl<const RECORD: usize> Supervisor<RECORD> {
     pub fn new(config: &Config) -> Result<Self, ConfigError> {
         config.validate()?;
         // Whatever is in range `f32` holds.
-        let (prepared, _) = Prepared::of_valid(config);
+        let (prepared, _) = Prepared::from_valid(config);
         Ok(Self {
             core: Core::new(&prepared),
         })
@@ -33,7 +33,7 @@ impl<const RECORD: usize> Supervisor<RECORD> {
     /// The first parameter of `config` that is outside its range; then nothing has changed.
     pub fn reconfigure(&mut self, config: &Config) -> Result<(), ConfigError> {
         config.validate()?;
-        let (prepared, _) = Prepared::of_valid(config);
+        let (prepared, _) = Prepared::from_valid(config);
         self.core.reconfigure(&prepared);
         Ok(())
     }

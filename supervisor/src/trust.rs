@@ -60,7 +60,7 @@ impl<S: Scalar> Default for Trust<S> {
             peak: S::ZERO,
             before: S::ZERO,
             margin: S::ZERO,
-            lowest: S::of(MOST_SQUARE),
+            lowest: S::from_f32(MOST_SQUARE),
             ticks_left: 0,
             disturbed: false,
             debt: 0,
@@ -77,7 +77,7 @@ impl<S: Scalar> Trust<S> {
     /// Whether the reading moves so little by itself that what it shows can be acted on.
     #[inline]
     pub(crate) fn is_granted(&self) -> bool {
-        self.margin <= S::of(UNTRUSTED_FROM * MARGIN - ORDINARY)
+        self.margin <= S::from_f32(UNTRUSTED_FROM * MARGIN - ORDINARY)
     }
 
     /// A tick in a phase, with the square of the speed and whether the wall is away; `rubs`: forward, as unbalance drives it.
@@ -89,7 +89,7 @@ impl<S: Scalar> Trust<S> {
         (phase, rubs): (Phase<S>, bool),
         coeffs: &Coeffs<S>,
     ) -> Option<u32> {
-        self.peak = self.peak.or_more(square);
+        self.peak = self.peak.max(square);
         self.disturbed |= !flies || phase.is_engaged();
         match self.ticks_left.checked_sub(1) {
             Some(left) => {
@@ -109,9 +109,9 @@ impl<S: Scalar> Trust<S> {
         if !phase.is_engaged() {
             // What the wall or the supervisor did is not usual.
             if !disturbed {
-                self.learn(peak.root());
+                self.learn(peak.sqrt());
             }
-            self.lowest = S::of(MOST_SQUARE);
+            self.lowest = S::from_f32(MOST_SQUARE);
             if phase == Phase::Levitated {
                 self.debt = self.debt.saturating_sub(FORGIVEN);
                 if self.debt == 0 {
@@ -120,13 +120,13 @@ impl<S: Scalar> Trust<S> {
             }
             return None;
         }
-        let progress = peak <= self.lowest * S::of(PROGRESS);
+        let progress = peak <= self.lowest * S::from_f32(PROGRESS);
         if progress {
             self.lowest = peak;
         }
         self.debt += match phase {
             Phase::SensorFault { .. } => BLIND,
-            _ if peak <= S::of(QUIET_SQUARE) => HELD,
+            _ if peak <= S::from_f32(QUIET_SQUARE) => HELD,
             _ if progress || rubs => MOVING,
             _ => RESTLESS,
         };
@@ -143,8 +143,8 @@ impl<S: Scalar> Trust<S> {
     /// What two windows in a row have seen is usual: what passes is not.
     fn learn(&mut self, speed: S) {
         let before = core::mem::replace(&mut self.before, speed);
-        let usual = speed.or_less(before);
-        self.margin = (usual * S::of(MARGIN) - S::of(ORDINARY)).or_more(S::ZERO);
+        let usual = speed.min(before);
+        self.margin = (usual * S::from_f32(MARGIN) - S::from_f32(ORDINARY)).max(S::ZERO);
     }
 
     /// After a change of the unit of speed.
@@ -152,6 +152,6 @@ impl<S: Scalar> Trust<S> {
         self.before = self.before * speed;
         self.margin = self.margin * speed;
         self.peak = S::ZERO;
-        self.lowest = S::of(MOST_SQUARE);
+        self.lowest = S::from_f32(MOST_SQUARE);
     }
 }

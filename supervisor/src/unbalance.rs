@@ -38,12 +38,12 @@ impl<S: Scalar> Turn<S> {
     /// In so many ticks. `None` where the spin is unknown, slow, or so quick that the observer sees too little of what
     /// turns; or where it is more than a radian, up to which the series are good.
     #[inline]
-    pub(crate) fn of((spin, rate): (Spin, S), ticks: S, coeffs: &Coeffs<S>) -> Option<Self> {
+    pub(crate) fn new((spin, rate): (Spin, S), ticks: S, coeffs: &Coeffs<S>) -> Option<Self> {
         let of_one = rate * coeffs.tick;
         let (angle, half_behind) = (of_one * ticks, of_one * coeffs.flight_lag);
-        let seen = half_behind.size() <= S::of(MOST_LAG) && angle.size() <= S::ONE;
-        let rate = rate.size();
-        if !(seen && rate >= S::of(SLOWEST)) || spin == Spin::Unknown {
+        let seen = half_behind.abs() <= S::from_f32(MOST_LAG) && angle.abs() <= S::ONE;
+        let rate = rate.abs();
+        if !(seen && rate >= S::from_f32(SLOWEST)) || spin == Spin::Unknown {
             return None;
         }
         Some(Self {
@@ -75,7 +75,7 @@ impl<S: Scalar> Unbalance<S> {
         }
         let before = self.arm;
         self.arm = before.rotated(turn.by);
-        (before + self.arm) * (S::of(0.5) * turn.rate)
+        (before + self.arm) * (S::from_f32(0.5) * turn.rate)
     }
 
     /// Learns from the load that the observer has left, which has to be led by what it is behind.
@@ -83,28 +83,28 @@ impl<S: Scalar> Unbalance<S> {
     pub(crate) fn learn(&mut self, turn: &Turn<S>, load_step: Vec2<S>) {
         let half = turn.half_behind;
         let lead = Vec2::new(S::ONE - half * half, half + half);
-        self.arm = self.arm + load_step.rotated(lead) * S::of(LEARNT);
+        self.arm = self.arm + load_step.rotated(lead) * S::from_f32(LEARNT);
     }
 
     /// Forgets, where nothing can be learnt, as fast as it learns: a spin that is measured a little wrong would turn it
     /// anywhere in a long contact.
     #[inline]
     pub(crate) fn fade(&mut self, turn: &Turn<S>) {
-        self.arm = self.arm * (S::ONE - turn.by.y.size() * S::of(LEARNT));
+        self.arm = self.arm * (S::ONE - turn.by.y.abs() * S::from_f32(LEARNT));
     }
 
     /// From the axis to the mass centre, and the speed of the one about the other, as far as an acceleration like this
     /// counts.
     #[inline]
     pub(crate) fn counts(&self, turn: &Turn<S>, acceleration: Vec2<S>) -> Option<[Vec2<S>; 2]> {
-        let beyond = acceleration.length_squared() - S::of(BEGINS_TO_COUNT);
+        let beyond = acceleration.length_squared() - S::from_f32(BEGINS_TO_COUNT);
         if beyond <= S::ZERO {
             return None;
         }
-        let share = (beyond * S::of(1.0 / (COUNTS - BEGINS_TO_COUNT))).or_less(S::ONE);
+        let share = (beyond * S::from_f32(1.0 / (COUNTS - BEGINS_TO_COUNT))).min(S::ONE);
         let clockwise = turn.by.y < S::ZERO;
         let sense = if clockwise { -share } else { share };
-        Some([self.arm * share.over(turn.rate), self.arm.turned() * sense])
+        Some([self.arm * share.div(turn.rate), self.arm.perp() * sense])
     }
 
     pub(crate) fn forget(&mut self) {

@@ -25,8 +25,8 @@ impl<S: Scalar> Vec2<S> {
     pub(crate) fn at_angle(angle: S) -> Self {
         let square = angle * angle;
         Self::new(
-            S::ONE - square * (S::of(0.5) - square * S::of(1.0 / 24.0)),
-            angle * (S::ONE - square * S::of(1.0 / 6.0)),
+            S::ONE - square * (S::from_f32(0.5) - square * S::from_f32(1.0 / 24.0)),
+            angle * (S::ONE - square * S::from_f32(1.0 / 6.0)),
         )
     }
 
@@ -47,7 +47,7 @@ impl<S: Scalar> Vec2<S> {
 
     /// A quarter turn counter-clockwise: t̂ from r̂.
     #[inline]
-    pub(crate) fn turned(self) -> Self {
+    pub(crate) fn perp(self) -> Self {
         Self::new(-self.y, self.x)
     }
 
@@ -80,9 +80,9 @@ impl<S: Scalar> Vec2<S> {
     /// The length to within 4 %, without a root.
     #[inline]
     pub(crate) fn about_length(self) -> S {
-        let (x, y) = (self.x.size(), self.y.size());
+        let (x, y) = (self.x.abs(), self.y.abs());
         let (long, short) = if x > y { (x, y) } else { (y, x) };
-        S::products(long, S::of(0.96), short, S::of(0.4))
+        S::products(long, S::from_f32(0.96), short, S::from_f32(0.4))
     }
 
     /// Whether it is longer than `limit`; true also where it is no number.

@@ -6,7 +6,7 @@ use crate::scalar::Scalar;
 /// called must not leave its last force on the magnet.
 ///
 /// ```
-/// let mut watch = supervisor::OutputWatch::<f32>::new(2);
+/// let mut watch = supervisor::CommandWatchdog::<f32>::new(2);
 /// watch.renew([5.0, 0.0]);                    // after a tick
 /// assert_eq!(watch.force(), [5.0, 0.0]);      // the actuator's period of this tick …
 /// assert_eq!(watch.force(), [5.0, 0.0]);      // … one more without a tick …
@@ -14,13 +14,13 @@ use crate::scalar::Scalar;
 /// assert!(watch.expired());
 /// ```
 #[derive(Debug, Clone, Copy)]
-pub struct OutputWatch<S> {
+pub struct CommandWatchdog<S> {
     force: [S; 2],
     left: u32,
     most: u32,
 }
 
-impl<S: Scalar> OutputWatch<S> {
+impl<S: Scalar> CommandWatchdog<S> {
     /// A command holds for this many periods of the actuator; before the first there is none.
     pub fn new(periods: u32) -> Self {
         Self {

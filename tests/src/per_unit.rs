@@ -44,10 +44,10 @@ pub fn in_numbers<S: Scalar>(sample: &CoreSample<f32>) -> CoreSample<S> {
     CoreSample {
         sequence: sample.sequence,
         status: sample.status,
-        position: sample.position.map(S::of),
-        spin: S::of(sample.spin),
-        levitation: sample.levitation.map(S::of),
-        applied: sample.applied.map(S::of),
+        position: sample.position.map(S::from_f32),
+        spin: S::from_f32(sample.spin),
+        levitation: sample.levitation.map(S::from_f32),
+        applied: sample.applied.map(S::from_f32),
     }
 }
 

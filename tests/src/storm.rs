@@ -253,15 +253,15 @@ impl Storm {
         let chance = &mut self.chance;
         let mut forces = || {
             [
-                S::of(chance.between(-1.2, 1.2)),
-                S::of(chance.between(-1.2, 1.2)),
+                S::from_f32(chance.between(-1.2, 1.2)),
+                S::from_f32(chance.between(-1.2, 1.2)),
             ]
         };
         let mut sample = CoreSample {
             sequence: self.sequence,
             status: Status::from_bits_retain(self.status),
-            position: self.position.map(S::of),
-            spin: S::of(self.spin),
+            position: self.position.map(S::from_f32),
+            spin: S::from_f32(self.spin),
             levitation: forces(),
             applied: forces(),
         };
@@ -326,8 +326,8 @@ impl Bounds {
         let slew = config.force_slew_n_s * config.sample_period_s / cap;
         Self {
             force_max_n: cap,
-            axis_cap: S::of((config.axis_force_max_n / cap).min(1.0)).exact(),
-            slew_step: S::of(slew.min(4.0)).exact(),
+            axis_cap: S::from_f32((config.axis_force_max_n / cap).min(1.0)).exact(),
+            slew_step: S::from_f32(slew.min(4.0)).exact(),
             beyond: S::TOO_LONG,
             rounding: S::LAST_PLACE,
             nothing: 0.0,

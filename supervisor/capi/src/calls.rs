@@ -140,7 +140,7 @@ pub unsafe extern "C" fn amb_init(
         Err(code) => return code,
     };
     // SAFETY: the caller's promise.
-    Code::of(unsafe { storage::make_supervisor(supervisor, bytes, &config) })
+    Code::from_result(unsafe { storage::make_supervisor(supervisor, bytes, &config) })
 }
 
 /// The configuration that these values make, not yet compared with their ranges.
@@ -177,7 +177,7 @@ pub unsafe extern "C" fn amb_reconfigure(
         let done = lease.content().reconfigure(&config);
         done.map_err(|error| storage::code_of(error.parameter()))
     });
-    Code::of(done)
+    Code::from_result(done)
 }
 
 /// One tick. An error gives a command of no force, so that no old one stays in use.
@@ -243,7 +243,7 @@ unsafe fn ask<T: Copy>(
         place.put(question(lease.content())?);
         Ok(())
     });
-    Code::of(answer)
+    Code::from_result(answer)
 }
 
 /// What the supervisor is doing.
@@ -380,5 +380,5 @@ pub unsafe extern "C" fn amb_crc(entries: *const Entry, count: u32, crc: *mut u3
 pub unsafe extern "C" fn amb_rearm(supervisor: *mut Storage) -> Code {
     // SAFETY: the caller's promise.
     let lease = unsafe { Lease::new(supervisor) };
-    Code::of(lease.map(|mut lease| lease.content().rearm()))
+    Code::from_result(lease.map(|mut lease| lease.content().rearm()))
 }

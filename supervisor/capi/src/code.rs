@@ -85,7 +85,7 @@ impl Code {
     }
 
     /// Success, or the error.
-    pub(crate) const fn of(result: Result<(), Self>) -> Self {
+    pub(crate) const fn from_result(result: Result<(), Self>) -> Self {
         match result {
             Ok(()) => Self::OK,
             Err(code) => code,

@@ -10,7 +10,7 @@ use crate::pointer::Argument;
 use core::cell::UnsafeCell;
 use core::mem::MaybeUninit;
 use core::sync::atomic::{AtomicU32, Ordering};
-use supervisor::{Config, ConfigError, OutputWatch, Supervisor};
+use supervisor::{CommandWatchdog, Config, ConfigError, Supervisor};
 
 /// Entries of the flight record.
 pub const RECORD: usize = 512;
@@ -25,7 +25,7 @@ pub struct Kept<T> {
 /// What is in an `amb_supervisor`.
 pub type Storage = Kept<Supervisor<RECORD>>;
 /// What is in an `amb_watch`.
-pub type WatchStorage = Kept<OutputWatch<f32>>;
+pub type WatchStorage = Kept<CommandWatchdog<f32>>;
 
 /// What can be in memory of the caller's. It owns nothing but its own bytes, so that none is ever dropped.
 pub(crate) trait Content: Sized {
@@ -55,7 +55,7 @@ impl Content for Supervisor<RECORD> {
     const IN_USE: Code = Code::ERROR_BUSY;
 }
 
-impl Content for OutputWatch<f32> {
+impl Content for CommandWatchdog<f32> {
     const ARGUMENT: Argument = Argument::Watch;
     const BYTES: usize = defined("AMB_WATCH_BYTES");
     const ALIGN: usize = defined("AMB_WATCH_ALIGN");
@@ -77,7 +77,7 @@ const fn fits<T: Content>(spare: usize) -> bool {
 
 const _: () = {
     // Room for the pointers and the alignment of any target, and to grow a little.
-    assert!(fits::<Supervisor<RECORD>>(2048) && fits::<OutputWatch<f32>>(16));
+    assert!(fits::<Supervisor<RECORD>>(2048) && fits::<CommandWatchdog<f32>>(16));
     assert!(defined("AMB_RECORD_ENTRIES") == RECORD);
 };
 

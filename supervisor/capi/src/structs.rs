@@ -116,9 +116,9 @@ c_struct! {
         late_ticks: u32 = 20,
         /// Whether coasting down was asked for: 0 or 1.
         coast_down: u32 = 24,
-        /// [`supervisor::Refusal`] of the last sample.
+        /// [`supervisor::RejectReason`] of the last sample.
         refusal: u32 = 28,
-        /// [`supervisor::Refusal`] that began the last sensor fault.
+        /// [`supervisor::RejectReason`] that began the last sensor fault.
         fault: u32 = 32,
         /// Fastest normal speed before an impact \[m/s\].
         impact_speed_max_m_s: f32 = 36,

@@ -4,7 +4,7 @@ use crate::calls::ending;
 use crate::code::Code;
 use crate::pointer::{Argument, Place};
 use crate::storage::{Lease, Making, WatchStorage};
-use supervisor::OutputWatch;
+use supervisor::CommandWatchdog;
 
 /// Makes a watch without a command in storage of the caller's.
 ///
@@ -16,8 +16,8 @@ use supervisor::OutputWatch;
 pub unsafe extern "C" fn amb_watch_init(watch: *mut WatchStorage, periods: u32) -> Code {
     // SAFETY: the caller's promise.
     let making = unsafe { Making::new(watch) };
-    Code::of(making.map(|mut making| {
-        making.place().write(OutputWatch::new(periods));
+    Code::from_result(making.map(|mut making| {
+        making.place().write(CommandWatchdog::new(periods));
         making.done();
     }))
 }
@@ -38,7 +38,7 @@ pub unsafe extern "C" fn amb_watch_renew(watch: *mut WatchStorage, force: *const
         lease.content().renew(force);
         Ok(())
     });
-    Code::of(done)
+    Code::from_result(done)
 }
 
 /// Once in each period of the actuator. An error gives no force, so that no old one stays in use.
@@ -81,5 +81,5 @@ pub unsafe extern "C" fn amb_watch_expired(watch: *mut WatchStorage, expired: *m
         place?.put(u32::from(lease.content().expired()));
         Ok(())
     });
-    Code::of(answer)
+    Code::from_result(answer)
 }

@@ -18,7 +18,7 @@ fn in_numbers<S: Scalar>(config: &Config, holds_all: bool) {
                 let command = core.tick(&CoreSample {
                     sequence: i,
                     status: Status::SPIN_VALID | Status::BEARING_ON,
-                    position: [S::of(0.2 * i as f32), S::of(0.1)],
+                    position: [S::from_f32(0.2 * i as f32), S::from_f32(0.1)],
                     spin: S::ONE,
                     levitation: [S::ONE, S::ONE],
                     ..CoreSample::default()
@@ -33,9 +33,9 @@ fn in_numbers<S: Scalar>(config: &Config, holds_all: bool) {
             // The value may be NaN.
             assert_eq!(refused.index, error.index);
         }
-        Err(CoreError::Misfit(misfit)) => {
+        Err(CoreError::NotRepresentable(not_representable)) => {
             assert!(config.validate().is_ok());
-            assert!(!holds_all, "{misfit:?}");
+            assert!(!holds_all, "{not_representable:?}");
         }
     }
 }

@@ -107,12 +107,12 @@ fuzz_target!(|data: &[u8]| {
 
         if let Some(core) = &mut core {
             let scaling = config.scaling();
-            let q = |v: [f32; 2], per: f32| v.map(|x| Q::of(x * per));
+            let q = |v: [f32; 2], per: f32| v.map(|x| Q::from_f32(x * per));
             let command = core.tick(&CoreSample {
                 sequence,
                 status: sample.status,
                 position: q(sample.position_m, scaling.position_per_m),
-                spin: Q::of(sample.spin_rad_s * scaling.time_s),
+                spin: Q::from_f32(sample.spin_rad_s * scaling.time_s),
                 levitation: q(sample.levitation_n, scaling.force_per_n),
                 applied: q(sample.applied_n, scaling.force_per_n),
             });

@@ -4,7 +4,7 @@ use crate::library::{STRICT, Target, built, good, includes, tool};
 use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::process::Command;
-use supervisor::{Events, IntegratorHint, Limits, Mode, PARAMETERS, Refusal, Status};
+use supervisor::{Events, IntegratorHint, Limits, Mode, PARAMETERS, RejectReason, Status};
 use supervisor_capi::calls::mode_name;
 use supervisor_capi::code::{CODES, FIRST_PARAMETER};
 use supervisor_capi::layout::HEADER;
@@ -22,14 +22,14 @@ const MODES: [(&str, Mode); 8] = [
     ("HANDED_BACK", Mode::HandedBack),
 ];
 
-const REFUSALS: [(&str, Refusal); 7] = [
-    ("NONE", Refusal::None),
-    ("NOT_FINITE", Refusal::NotFinite),
-    ("RANGE", Refusal::Range),
-    ("SLEW", Refusal::Slew),
-    ("DROPOUT", Refusal::Dropout),
-    ("STUCK", Refusal::Stuck),
-    ("DOUBTED", Refusal::Doubted),
+const REFUSALS: [(&str, RejectReason); 7] = [
+    ("NONE", RejectReason::None),
+    ("NOT_FINITE", RejectReason::NotFinite),
+    ("RANGE", RejectReason::Range),
+    ("SLEW", RejectReason::Slew),
+    ("DROPOUT", RejectReason::Dropout),
+    ("STUCK", RejectReason::Stuck),
+    ("DOUBTED", RejectReason::Doubted),
 ];
 
 const HINTS: [(&str, IntegratorHint); 2] =

@@ -1,7 +1,7 @@
 //! No state that the supervisor gets into may keep it: what a sensor, a counter or a load does for a while ends
 //! with it, and what is wrong for good is a fault.
 
-use supervisor::{Command, Config, Events, Mode, Refusal, Supervisor};
+use supervisor::{Command, Config, Events, Mode, RejectReason, Supervisor};
 use system_tests::rig::{RADIUS_M, WHIRL_STEP, config, length, on_circle, sample};
 
 /// A rotor at rest deep in the wall, on a sensor with steps: its first sample is taken for a whirl, but a guess is no
@@ -60,7 +60,7 @@ fn an_older_number_is_no_new_sample() {
             number,
             on_circle(RADIUS_M, WHIRL_STEP * number as f32),
         ));
-        refused += u32::from(supervisor.report().refusal == Refusal::Dropout);
+        refused += u32::from(supervisor.report().refusal == RejectReason::Dropout);
     }
     assert_eq!(refused, 1);
     assert_eq!(supervisor.mode(), Mode::BackwardWhirl);

@@ -1,6 +1,6 @@
 //! A fault of the sensor: what the supervisor does in it, and how it comes back.
 
-use supervisor::{Command, Config, Events, Mode, Refusal, Sample, Status};
+use supervisor::{Command, Config, Events, Mode, RejectReason, Sample, Status};
 use system_tests::bench::{Bench, WHIRL_STEP};
 use system_tests::rig::{RADIUS_M, config, length, on_circle, sample};
 
@@ -281,7 +281,7 @@ fn a_coordinate_that_is_stuck_is_not_good_again() {
             left.reads_m += 1e-6;
             left.tick(0.0);
         }
-        assert_eq!(left.bench.supervisor.report().fault, Refusal::Stuck);
+        assert_eq!(left.bench.supervisor.report().fault, RejectReason::Stuck);
         left.reads_m = f32::NAN;
         // Until the force of before has faded.
         let last_n = (0..200).map(|_| left.tick(0.0)).last();
@@ -404,7 +404,7 @@ fn a_rotor_at_rest_ends_a_stuck_sensors_fault() {
         bench.tick(last);
     }
     assert_eq!(bench.supervisor.mode(), Mode::SensorFault);
-    assert_eq!(bench.supervisor.report().fault, Refusal::Stuck);
+    assert_eq!(bench.supervisor.report().fault, RejectReason::Stuck);
     let ticks = (1..100).find(|_| bench.tick([-RADIUS_M, 3e-6]).mode != Mode::SensorFault);
     // One sample that is too far from the frozen one, and ten good ones at most.
     assert!(

@@ -1,6 +1,6 @@
 //! Where the supervisor knows little: after long gaps, from one sample, of late commands in a row, without a bearing.
 
-use supervisor::{Command, Config, Events, Limits, Mode, Refusal, Sample, Status, Supervisor};
+use supervisor::{Command, Config, Events, Limits, Mode, RejectReason, Sample, Status, Supervisor};
 use system_tests::bench::{Bench, WHIRL_STEP};
 use system_tests::rig::{RADIUS_M, config, length, on_circle, sample};
 
@@ -43,7 +43,7 @@ fn gaps_far_apart_are_not_in_a_row() {
             assert_eq!(command.limits.contains(Limits::SAMPLE_REFUSED), refused);
         }
     }
-    assert_eq!(bench.supervisor.report().refusal, Refusal::Dropout);
+    assert_eq!(bench.supervisor.report().refusal, RejectReason::Dropout);
 }
 
 /// In a hand-over, too, what the controller makes of a sample that cannot be does not go through.

@@ -1,6 +1,6 @@
 //! Samples that cannot be: how soon the supervisor refuses them, what it does meanwhile, and when they make a fault.
 
-use supervisor::{Command, Config, Events, Limits, Mode, Refusal, Sample, Status, Supervisor};
+use supervisor::{Command, Config, Events, Limits, Mode, RejectReason, Sample, Status, Supervisor};
 use system_tests::bench::{Bench, WHIRL_STEP};
 use system_tests::rig::{RADIUS_M, config, length, on_circle, sample};
 
@@ -23,10 +23,10 @@ fn ticks_to_fault(mut tick: impl FnMut(u32) -> Command) -> u32 {
 #[test]
 fn what_is_no_number_or_out_of_range_is_refused_at_once() {
     let cases = [
-        ([f32::NAN, 0.0], Refusal::NotFinite),
-        ([0.0, f32::INFINITY], Refusal::NotFinite),
-        ([f32::MAX, 0.0], Refusal::NotFinite),
-        ([0.0, 20.1 * 2e-4], Refusal::Range),
+        ([f32::NAN, 0.0], RejectReason::NotFinite),
+        ([0.0, f32::INFINITY], RejectReason::NotFinite),
+        ([f32::MAX, 0.0], RejectReason::NotFinite),
+        ([0.0, 20.1 * 2e-4], RejectReason::Range),
     ];
     for (position_m, why) in cases {
         for fault_ticks in [2.0, 10.0] {
@@ -57,7 +57,7 @@ fn a_jump_that_stays_is_a_fault_within_two_ticks() {
         bench.tick([x + 6e-4, y])
     });
     assert_eq!(ticks, 2);
-    assert_eq!(bench.supervisor.report().fault, Refusal::Slew);
+    assert_eq!(bench.supervisor.report().fault, RejectReason::Slew);
 }
 
 /// The way that is allowed is speed_max·T and three steps of the sensor, for each tick since the last
@@ -84,7 +84,7 @@ fn a_dropout_is_a_fault_within_three_ticks() {
         command
     });
     assert_eq!(ticks, 3);
-    assert_eq!(bench.supervisor.report().fault, Refusal::Dropout);
+    assert_eq!(bench.supervisor.report().fault, RejectReason::Dropout);
 }
 
 /// A sensor that stands still while the rotor moves is a fault within ten ticks: both coordinates, or
@@ -106,7 +106,7 @@ fn a_stuck_sensor_is_a_fault_within_ten_ticks() {
             bench.tick([0, 1].map(|i| if stuck[i] { last[i] } else { now[i] }));
             assert!(ticks <= 10, "{stuck:?}");
         }
-        assert_eq!(bench.supervisor.report().fault, Refusal::Stuck);
+        assert_eq!(bench.supervisor.report().fault, RejectReason::Stuck);
     }
     // In flight, from 2 µm a tick.
     for step in [2e-6_f32, 1e-5, 5e-5] {
@@ -148,7 +148,7 @@ fn a_rotor_at_rest_is_no_stuck_sensor() {
             let step = if i / 300 % 2 == 0 { 0.0 } else { 1e-6 };
             bench.tick([position_m[0] + step, position_m[1]]);
             let report = bench.supervisor.report();
-            assert_eq!(report.refusal, Refusal::None, "{position_m:?} at {i}");
+            assert_eq!(report.refusal, RejectReason::None, "{position_m:?} at {i}");
         }
     }
 }

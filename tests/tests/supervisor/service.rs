@@ -1,8 +1,8 @@
 //! What firmware needs around the tick: live reconfiguration, shadow, late commands, counters, expiry.
 
 use supervisor::{
-    Config, Core, CoreSample, Events, IntegratorHint, Limits, Mode, OutputWatch, Prepared, Refusal,
-    Sample, Status, Supervisor,
+    CommandWatchdog, Config, Core, CoreSample, Events, IntegratorHint, Limits, Mode, Prepared,
+    RejectReason, Sample, Status, Supervisor,
 };
 use system_tests::rig::{config, length, on_circle, sample, whirl};
 
@@ -207,7 +207,7 @@ fn a_toggling_coordinate_is_not_stuck() {
                 !command.limits.contains(Limits::SAMPLE_REFUSED),
                 "{pattern:?} tick {i}"
             );
-            assert_eq!(supervisor.report().refusal, Refusal::None);
+            assert_eq!(supervisor.report().refusal, RejectReason::None);
         }
     }
 }
@@ -244,7 +244,7 @@ fn the_core_is_the_supervisor_per_unit() {
 /// A command holds for its time and no longer.
 #[test]
 fn commands_expire() {
-    let mut watch = OutputWatch::<f32>::new(3);
+    let mut watch = CommandWatchdog::<f32>::new(3);
     assert!(watch.expired() && watch.force() == [0.0; 2]);
     watch.renew([1.0, -2.0]);
     let forces: Vec<_> = (0..5).map(|_| watch.force()[0]).collect();

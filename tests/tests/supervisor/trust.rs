@@ -1,7 +1,7 @@
 //! The judge of the model: doubt about single samples, what the reading usually does, and the way out of an engagement
 //! that comes no farther.
 
-use supervisor::{Core, Events, Limits, Mode, Prepared, Q, Refusal, Supervisor};
+use supervisor::{Core, Events, Limits, Mode, Prepared, Q, RejectReason, Supervisor};
 use system_tests::bench::Bench;
 use system_tests::rig::{config, sample};
 use system_tests::storm::{AnyBits, Chance, Storm};
@@ -134,7 +134,7 @@ fn one_sample_that_is_off_is_refused_and_two_are_not() {
         for _ in 0..50 {
             let command = tick(&mut bench, size);
             assert!(command.limits.contains(Limits::SAMPLE_REFUSED), "{size}");
-            assert_eq!(bench.supervisor.report().refusal, Refusal::Doubted);
+            assert_eq!(bench.supervisor.report().refusal, RejectReason::Doubted);
             assert_eq!(command.mode, Mode::Levitated, "{size}");
             for _ in 0..20 {
                 assert_eq!(tick(&mut bench, 0.0).mode, Mode::Levitated, "{size}");

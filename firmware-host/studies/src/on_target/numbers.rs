@@ -73,7 +73,7 @@ struct RecordingFixed {
 /// what is out of its range must not look like the centre.
 fn converted(x: f32) -> Q {
     if Q::represents(x) {
-        Q::of(x)
+        Q::from_f32(x)
     } else {
         Q::from_bits(x.to_bits() as i32)
     }

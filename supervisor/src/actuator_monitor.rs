@@ -6,32 +6,32 @@ use crate::scalar::Scalar;
 use crate::signal::Status;
 use crate::vec2::Vec2;
 
-/// Largest deviation of the measured force from the model of amplifier and delay that is obedience \[caps\]: a lag
+/// Largest deviation of the measured force from the model of amplifier and delay that is tracking \[caps\]: a lag
 /// twice or half as long as configured makes it no larger, whatever is commanded …
 const DOUBT: f32 = 0.5;
-/// … and the largest as a share of the modelled force: a weak drive obeys.
+/// … and the largest as a share of the modelled force: a weak drive tracks.
 const WEAK: f32 = 0.75;
 /// How fast a slow one comes nearer to its command, at least \[caps/t₀\].
 const PROGRESS: f32 = 0.5;
-/// Ticks for which an axis that does not obey gets nothing, over those that made it one.
+/// Ticks for which an axis that does not track its command gets nothing, over those that made it one.
 const REST: i8 = 8;
 /// Most ticks that make one: what `i8` leaves room for.
 const MOST_TICKS: u16 = 15;
 
 /// Memory of the monitor.
 #[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Drive<S> {
+pub(crate) struct ActuatorMonitor<S> {
     /// What the model of amplifier and delay makes of the first force whose command is known of those that were measured
     /// without a break.
     modelled: Vec2<S>,
     /// How many were, as far as that matters.
     seen: u8,
-    /// Of each axis: ticks in a row in which it did not obey; or, negative, how long it will get nothing.
+    /// Of each axis: ticks in a row in which it did not track; or, negative, how long it will get nothing.
     off: [i8; 2],
 }
 
-impl<S: Scalar> Drive<S> {
-    /// Axes that get nothing because they do not obey. Where the supervisor does not act it takes nothing away.
+impl<S: Scalar> ActuatorMonitor<S> {
+    /// Axes that get nothing because they do not track. Where the supervisor does not act it takes nothing away.
     #[inline]
     pub(crate) fn lost(&self, status: Status) -> Status {
         if self.off == [0; 2] {
@@ -95,23 +95,23 @@ impl<S: Scalar> Drive<S> {
         }
         self.modelled = now - deviation;
         let modelled = self.modelled;
-        let doubt = S::of(DOUBT);
-        let usual = deviation.x.size() <= doubt && deviation.y.size() <= doubt;
+        let doubt = S::from_f32(DOUBT);
+        let usual = deviation.x.abs() <= doubt && deviation.y.abs() <= doubt;
         if usual && self.off == [0; 2] {
             return;
         }
-        let progress = S::of(PROGRESS) * coeffs.tick;
+        let progress = S::from_f32(PROGRESS) * coeffs.tick;
         let most = coeffs.fault_ticks.min(MOST_TICKS) as i8;
         let [x, y] = &mut self.off;
         for (ticks, deviation, modelled, now, before, due) in [
             (x, deviation.x, modelled.x, now.x, before.x, due.x),
             (y, deviation.y, modelled.y, now.y, before.y, due.y),
         ] {
-            let nearer = (due - before).size() - (due - now).size();
-            let doubt = doubt.or_more(modelled.size() * S::of(WEAK));
+            let nearer = (due - before).abs() - (due - now).abs();
+            let doubt = doubt.max(modelled.abs() * S::from_f32(WEAK));
             *ticks = if *ticks < 0 {
                 *ticks + 1
-            } else if deviation.size() <= doubt || nearer > progress {
+            } else if deviation.abs() <= doubt || nearer > progress {
                 0
             } else if *ticks + 1 < most {
                 *ticks + 1

@@ -1,7 +1,7 @@
 //! A sensor that is stuck: coordinates that do not change although the rotor moves.
 
 use crate::coeffs::Coeffs;
-use crate::reading::Facts;
+use crate::reading::SampleFlags;
 use crate::scalar::Scalar;
 use crate::vec2::Vec2;
 
@@ -22,7 +22,7 @@ pub(crate) struct Coordinate<S> {
 
 /// Both coordinates.
 #[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Still<S> {
+pub(crate) struct StuckDetector<S> {
     at: [Coordinate<S>; 2],
     /// Step of the converter, which may be coarser than was told.
     step: S,
@@ -31,7 +31,7 @@ pub(crate) struct Still<S> {
 /// A change that is longer is one of the rotor \[clearances\].
 const COARSEST: f32 = 0.03;
 
-impl<S: Scalar> Still<S> {
+impl<S: Scalar> StuckDetector<S> {
     /// For how many samples in a row a coordinate has stood still for more than the estimate can be wrong, which holds until
     /// it changes; and for how many neither has changed.
     pub(crate) fn watch(
@@ -45,7 +45,7 @@ impl<S: Scalar> Still<S> {
             self.step = coordinate.coarseness(now, self.step);
         }
         let twice = (self.step + self.step) * coeffs.per_tick;
-        let most = coeffs.sensor_speeds.or_more(twice);
+        let most = coeffs.sensor_speeds.max(twice);
         let samples =
             (x.watch(position.x, velocity.x, most)).max(y.watch(position.y, velocity.y, most));
         (samples, x.unchanged.min(y.unchanged))
@@ -59,9 +59,13 @@ impl<S: Scalar> Still<S> {
     }
 
     /// The coordinate beside one that is bad, and its value. The first one is its own last.
-    pub(crate) fn beside(&mut self, bad: Facts, position: Vec2<S>) -> (&mut Coordinate<S>, S) {
+    pub(crate) fn beside(
+        &mut self,
+        bad: SampleFlags,
+        position: Vec2<S>,
+    ) -> (&mut Coordinate<S>, S) {
         let [x, y] = &mut self.at;
-        let (coordinate, now) = if bad == Facts::X_BAD {
+        let (coordinate, now) = if bad == SampleFlags::X_BAD {
             (y, position.y)
         } else {
             (x, position.x)
@@ -102,9 +106,9 @@ impl<S: Scalar> Coordinate<S> {
         if !self.seen || change == S::ZERO {
             step
         } else if self.unchanged > 0 {
-            change.or_less(S::of(COARSEST))
+            change.min(S::from_f32(COARSEST))
         } else {
-            step.or_less(change)
+            step.min(change)
         }
     }
 
@@ -133,7 +137,7 @@ impl<S: Scalar> Coordinate<S> {
 
     /// The way to a value since the one that was accepted last.
     pub(crate) fn step(&self, now: S) -> S {
-        (now - self.last).size()
+        (now - self.last).abs()
     }
 
     pub(crate) fn accept(&mut self, now: S) {

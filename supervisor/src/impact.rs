@@ -4,23 +4,23 @@ use crate::estimate::Motion;
 use crate::scalar::Scalar;
 use crate::vec2::Vec2;
 
-/// Speed and heading.
+/// Speed, with its square and its inverse.
 #[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Course<S> {
+pub(crate) struct Speed<S> {
     /// v²; over that of the lift-off speed, which is 1.
     pub(crate) square: S,
-    pub(crate) speed: S,
+    pub(crate) value: S,
     /// 1/v; 0 for a rotor without speed.
     pub(crate) inverse: S,
 }
 
-impl<S: Scalar> Course<S> {
+impl<S: Scalar> Speed<S> {
     #[inline]
-    pub(crate) fn of(velocity: Vec2<S>) -> Self {
+    pub(crate) fn new(velocity: Vec2<S>) -> Self {
         let (square, inverse) = (velocity.length_squared(), velocity.inverse_length());
         Self {
             square,
-            speed: square * inverse,
+            value: square * inverse,
             inverse,
         }
     }
@@ -40,20 +40,20 @@ pub(crate) struct Impact<S> {
 impl<S: Scalar> Impact<S> {
     /// `None` for a rotor without speed, or beyond the wall.
     #[inline]
-    pub(crate) fn ahead(motion: &Motion<S>, radius: S, course: &Course<S>) -> Option<Self> {
+    pub(crate) fn ahead(motion: &Motion<S>, radius: S, speed: &Speed<S>) -> Option<Self> {
         let room = (S::ONE - radius) * (S::ONE + radius);
-        if course.inverse <= S::ZERO || room <= S::ZERO {
+        if speed.inverse <= S::ZERO || room <= S::ZERO {
             return None;
         }
-        let heading = motion.velocity * course.inverse;
+        let heading = motion.velocity * speed.inverse;
         let along = motion.position.dot(heading);
-        let cosine = (along * along + room).root();
+        let cosine = (along * along + room).sqrt();
         let chord = cosine - along;
         Some(Self {
-            time: chord * course.inverse,
+            time: chord * speed.inverse,
             normal: motion.position + heading * chord,
-            normal_speed: course.speed * cosine,
-            along: motion.position.turned().dot(motion.velocity),
+            normal_speed: speed.value * cosine,
+            along: motion.position.perp().dot(motion.velocity),
         })
     }
 }
