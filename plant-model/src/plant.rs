@@ -169,21 +169,35 @@ struct Parts<'a> {
 impl Parts<'_> {
     fn with_stator(self) -> Box<dyn Plant> {
         match &self.params.stator {
-            StatorParams::Rigid => self.with_spin(Rigid, ()),
+            StatorParams::Rigid => self.round(Rigid),
+            // A ball bearing out of round is refused: no race to ask for.
             StatorParams::RigidEllipse(ellipse) => {
                 let clearance_m = self.params.contact.clearance_m;
                 self.with_spin(Rigid, Ellipse::new(ellipse, clearance_m))
             }
-            StatorParams::OneMass(ring) => self.with_spin(OneMass(*ring), ()),
+            StatorParams::OneMass(ring) => self.round(OneMass(*ring)),
             StatorParams::TwoMass { inner, outer } => {
                 let (inner, outer) = (*inner, *outer);
-                self.with_spin(TwoMass { inner, outer }, ())
+                self.round(TwoMass { inner, outer })
             }
         }
     }
 
-    fn with_spin<S: Stator, B: Bore>(self, stator: S, bore: B) -> Box<dyn Plant> {
-        let phased = match self.params.spin {
+    fn round<S: Stator>(self, stator: S) -> Box<dyn Plant> {
+        let Some(race) = &self.params.race else {
+            return self.with_spin(stator, ());
+        };
+        let race = Race {
+            radius_m: self.params.bore_radius_m(),
+            inertia_kg_m2: race.inertia_kg_m2,
+            drag_n_m_s: race.drag_n_m_s,
+            start_spin_rad_s: race.start_spin_rad_s,
+        };
+        self.with_amplifier(stator, self.phased_spin(), self.plane((), race))
+    }
+
+    fn phased_spin(self) -> Phased {
+        match self.params.spin {
             SpinParams::Held => Phased {
                 inverse_inertia: 0.0,
                 drive_torque_n_m: 0.0,
@@ -195,16 +209,10 @@ impl Parts<'_> {
                 inverse_inertia: 1.0 / inertia_kg_m2,
                 drive_torque_n_m,
             },
-        };
-        if let Some(race) = &self.params.race {
-            let race = Race {
-                radius_m: self.params.bore_radius_m(),
-                inertia_kg_m2: race.inertia_kg_m2,
-                drag_n_m_s: race.drag_n_m_s,
-                start_spin_rad_s: race.start_spin_rad_s,
-            };
-            return self.with_amplifier(stator, phased, self.plane(bore, race));
         }
+    }
+
+    fn with_spin<S: Stator, B: Bore>(self, stator: S, bore: B) -> Box<dyn Plant> {
         let plane = self.plane(bore, ());
         match self.params.spin {
             SpinParams::Held => {
@@ -214,7 +222,9 @@ impl Parts<'_> {
                 };
                 self.with_amplifier(stator, held, plane)
             }
-            SpinParams::Free { .. } if self.phased => self.with_amplifier(stator, phased, plane),
+            SpinParams::Free { .. } if self.phased => {
+                self.with_amplifier(stator, self.phased_spin(), plane)
+            }
             SpinParams::Free {
                 inertia_kg_m2,
                 drive_torque_n_m,
