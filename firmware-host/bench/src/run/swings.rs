@@ -38,7 +38,7 @@ impl Swings {
         self.largest_m[stretch] = self.largest_m[stretch].max(away_m);
     }
 
-    /// Whether they grow from window to window, and by more each time, so that by going on like that the rotor comes as far
+    /// Whether they grow from window to window, and by more each time, so that by the smaller ratio of the two the rotor comes as far
     /// as `wall_m` in one more. These are the last three thirds of the whole time, of half of it, and so on, none shorter than
     /// `least_s`: in that time what oscillates has shown its amplitude.
     pub(crate) fn grow(&self, least_s: f64, wall_m: f64) -> bool {
@@ -52,7 +52,8 @@ impl Swings {
                     .fold(0.0, |a: f64, b| a.max(*b))
             };
             let [first, second, third] = [window(0), window(1), window(2)];
-            let growth = third / second;
+            // What kicks a quiet rotor makes one window large, and the next no larger.
+            let growth = (third / second).min(second / first);
             first < second
                 && growth > GROWTH
                 && third - second > second - first
@@ -103,6 +104,17 @@ mod tests {
                     );
                 }
             }
+        }
+        // A kick is no growth.
+        for at_s in [0.051, 0.085, 0.095] {
+            let kicked = |t: f64| {
+                if t < at_s {
+                    0.01
+                } else {
+                    0.3 * (TAU * 90.0 * (t - at_s)).sin()
+                }
+            };
+            assert!(!grow(0.1, kicked), "kicked at {at_s} s");
         }
         // A drift at constant speed.
         assert!(!grow(0.05, |t| 10.0 * t));
