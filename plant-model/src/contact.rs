@@ -7,7 +7,7 @@ use crate::bisection::bracket_until;
 use crate::params::{ContactLaw, ContactParams, LinearContact};
 
 /// A dent shallower than this share of the clearance is round-off of a lift-off without one.
-const NO_DENT: f64 = 1e-12;
+pub(crate) const NO_DENT: f64 = 1e-12;
 
 /// Everything that a law says at a penetration A and its rate B.
 #[derive(Debug, Clone, Copy)]

@@ -6,6 +6,8 @@ pub(crate) mod contact_step;
 mod crossings;
 pub(crate) mod dop853;
 pub(crate) mod driver;
+pub(crate) mod enough;
+pub(crate) mod first_fall;
 pub(crate) mod flight;
 pub(crate) mod flight_map;
 mod frame;
@@ -14,7 +16,7 @@ mod pair;
 pub(crate) mod radau;
 mod radau_tableau;
 mod scales;
-mod series_readout;
+pub(crate) mod series_readout;
 pub(crate) mod series_step;
 pub(crate) mod transitions;
 
@@ -100,7 +102,7 @@ pub struct Options {
     /// How contact is integrated.
     pub method: Method,
     /// Steps allowed between two control samples before the run gives up with
-    /// [`PlantError::WorkLimit`].
+    /// [`PlantError::WorkLimit`]. Free flight does not count.
     pub steps_per_sample: u64,
     /// Steps allowed in the whole run.
     pub steps: u64,
@@ -152,6 +154,14 @@ pub enum PlantError {
         t_s: f64,
         /// How far \[m\].
         radius_m: f64,
+    },
+    /// A machine was given another number of commands or loads than it has magnets or places for loads.
+    #[error(
+        "at t = {t_s:e} s: expected a command for each magnet and a force for each place of a load"
+    )]
+    InputCount {
+        /// When \[s\].
+        t_s: f64,
     },
     /// Modes follow each other without time passing.
     #[error("at t = {t_s:e} s: the contact mode cannot be decided")]

@@ -63,9 +63,11 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! [`machine`] is the same for a rotor that tilts, bends and touches in several planes.
+//!
 //! Files, each importing only from those above it: `vector`, `bisection`, `params`, `contact`, `friction`, `mode`, `energy`,
 //! `part`, `series`, `quadrature`, `ellipse`, `stator`, `spin`, `plane`, `magnet`, `system`, `tangent`, `readout`, `integrate`, `plant`,
-//! `analysis`.
+//! `machine`, `analysis`.
 
 #![forbid(unsafe_code)]
 #![warn(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
@@ -77,6 +79,7 @@ mod ellipse;
 pub mod energy;
 mod friction;
 mod integrate;
+pub mod machine;
 mod magnet;
 mod mode;
 pub mod params;

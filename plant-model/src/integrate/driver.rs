@@ -64,15 +64,15 @@ pub(crate) struct Run<S: Stator, W: Spin, M: Amplifier, B: Bore, R: Raceway> {
 
 /// Share of the spin's energy at the start that is not counted as turned over. The rest of it is for rounding: of a rotor
 /// that levitates nothing else moves.
-const SPARE: f64 = 1.0 - 1e-4;
+pub(crate) const SPARE: f64 = 1.0 - 1e-4;
 
 /// A start is on the wall within this share of the clearance, and moves along it within this share of its speed: sine,
 /// cosine, a product and the length leave up to 2.5ε. The [search](super::flight) for the wall knows it as well.
-const ON_WALL: f64 = 4.0 * f64::EPSILON;
+pub(crate) const ON_WALL: f64 = 4.0 * f64::EPSILON;
 
 /// Events without time in between from which on modes are taken to follow each other in a circle, and those that are too many.
-const CIRCLE: u32 = 4;
-const MOST_AT_ONCE: u32 = 50;
+pub(crate) const CIRCLE: u32 = 4;
+pub(crate) const MOST_AT_ONCE: u32 = 50;
 
 impl<S: Stator, W: Spin, M: Amplifier, B: Bore, R: Raceway> Run<S, W, M, B, R> {
     pub(crate) fn new(
@@ -193,7 +193,8 @@ impl<S: Stator, W: Spin, M: Amplifier, B: Bore, R: Raceway> Run<S, W, M, B, R> {
             }
             let (t_before, phase_before) = (self.t_s, self.phase);
             match self.phase {
-                Phase::Inside => self.fly_inside(t_end_s),
+                // How many of these there are is up to the span and the fastest rate: nothing moves too fast.
+                Phase::Inside => steps -= u64::from(self.fly_inside(t_end_s)),
                 Phase::Beyond => self.fly_beyond(t_end_s),
                 Phase::Contact(slide, whirl) => self.touch(t_end_s, (slide, whirl))?,
             }

@@ -264,7 +264,7 @@ pub(crate) struct End {
 
 /// Highest value of a series times a sign over [0, θ], and where. At loose tolerances a step may be a little
 /// longer than half a vibration, its halves are not.
-fn highest(
+pub(crate) fn highest(
     (series, sign): (&Scalar, f64),
     (theta, end): (f64, (f64, f64)),
     order: usize,

@@ -2,6 +2,8 @@
 
 use super::contact_series::ContactSeries;
 use super::contact_step::{ContactStep, Task};
+use super::enough::{Enough, LOWEST_ORDER};
+use super::first_fall::{Fall, first_fall};
 use super::scales::Scales;
 use crate::integrate::PlantError;
 use crate::magnet::Amplifier;
@@ -122,116 +124,4 @@ impl<S: Stator> SeriesStepper<S> {
             event,
         })
     }
-}
-
-/// Below this order the last two terms say too little about the rest.
-const LOWEST_ORDER: usize = 6;
-
-/// Whether the series reaches to the end of the span, asked from order to order: its last two terms there are
-/// small, by a margin as to the distance.
-struct Enough {
-    /// Square of the end's θ over the margin, and its power for the next order.
-    square: f64,
-    power: f64,
-    before: bool,
-}
-
-impl Enough {
-    /// Terms that go on falling so leave one tolerance beyond the lowest order, less beyond a higher one.
-    const MARGIN: f64 = 0.8;
-
-    fn new(end_theta: f64) -> Self {
-        let square = (end_theta / Self::MARGIN).powi(2);
-        Self {
-            square,
-            power: square.powi(LOWEST_ORDER as i32 - 1),
-            before: false,
-        }
-    }
-
-    /// Takes the next order's coefficients in, by their weighed square; the first are those below
-    /// [`LOWEST_ORDER`].
-    fn with(&mut self, coefficients: f64) -> bool {
-        let small = coefficients * self.power <= 1.0;
-        self.power *= self.square;
-        std::mem::replace(&mut self.before, small) && small
-    }
-}
-
-/// Where a guard falls to zero.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Fall {
-    /// Nowhere in the step.
-    Never,
-    /// At this θ.
-    At(f64),
-    /// Not before this θ; what comes after is too close to decide in one go.
-    ClearUntil(f64),
-}
-
-/// First θ in [0, `end`] at which a guard that starts positive, or at zero and rising, falls to zero.
-///
-/// Conservative advancement: with M an upper bound of |g̈| over a window, no root lies before that of
-/// g + ġ·τ − M·τ²/2. Windows shrink and grow with the moves, so that the bound stays close.
-fn first_fall(guard: &Scalar, end: f64, order: usize, normal: bool) -> Fall {
-    let c = &guard.0[..=order];
-    let swing = c[1..]
-        .iter()
-        .rev()
-        .fold(0.0, |sum, c| (sum + c.abs()) * end);
-    if c[0] > swing {
-        return Fall::Never;
-    }
-    let bound = |window: f64| {
-        let terms = c.iter().enumerate().skip(2).rev();
-        terms.fold(0.0, |sum, (k, c)| {
-            sum * window + (k * (k - 1)) as f64 * c.abs()
-        })
-    };
-    // The state that the mode starts from carries the round-off of a whole step before.
-    let start_tiny = 1e-12 * (c[0].abs() + swing);
-    let tiny = 1e-15 * (c[0].abs() + swing);
-    let (mut theta, mut window, mut curvature) = (0.0, end, bound(end));
-    for _ in 0..200 {
-        let (mut g, mut rate) = (0.0, 0.0);
-        for c in c.iter().rev() {
-            rate = rate * theta + g;
-            g = g * theta + c;
-        }
-        if theta == 0.0 {
-            // A force that has just jumped may have left the cone, whichever way it moves now. A
-            // normal force that rises has not: the touch was found to round-off only.
-            if g < -start_tiny && !(normal && rate > 0.0) {
-                return Fall::At(0.0);
-            }
-            if g <= start_tiny {
-                g = 0.0;
-            }
-        }
-        if g <= tiny && rate < 0.0 {
-            return Fall::At(theta);
-        }
-        let g = g.max(0.0);
-        let root = (rate * rate + 2.0 * curvature * g).sqrt();
-        let advance = if rate >= 0.0 {
-            (rate + root) / curvature
-        } else {
-            2.0 * g / (root - rate)
-        };
-        if advance < 0.05 * (window - theta) {
-            window = theta + 8.0 * advance.max(1e-9 * end);
-            curvature = bound(window.min(end));
-        }
-        // At zero without slope: let it move before it is judged.
-        let least = if g == 0.0 { 1e-9 * end } else { 0.0 };
-        theta += advance.max(least).min(window - theta).max(least);
-        if theta >= end {
-            return Fall::Never;
-        }
-        if theta >= window {
-            window = (theta * 4.0).min(end);
-            curvature = bound(window);
-        }
-    }
-    Fall::ClearUntil(theta)
 }

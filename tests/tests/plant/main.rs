@@ -8,6 +8,7 @@ mod elliptic_bearing;
 mod extremes;
 mod flight_between_samples;
 mod forward_rub;
+mod machine;
 mod properties;
 mod retainer_race;
 mod standstill;

@@ -125,3 +125,34 @@ fn without_spin_a_rotor_at_rest_begins_to_slip_and_to_whirl_at_once() {
         }
     }
 }
+
+/// A rotor that rests off the wall may be carried on for as long as one likes: nothing moves too fast.
+#[test]
+fn a_long_rest_is_no_work_limit() {
+    let start = Start {
+        position_m: V2::zeros(),
+        velocity_m_s: V2::zeros(),
+        spin_rad_s: 200.0,
+        spin_phase_rad: 0.0,
+    };
+    let mut params = onset_rig();
+    params.rotor.eccentricity_m = 0.0;
+    let mut plant = build(&params, &start, Options::default()).unwrap();
+    let rate = params.natural_frequency_rad_s().unwrap();
+    let many = Options::default().steps_per_sample as f64;
+    plant
+        .advance(2.0 * many / rate, &Inputs::default(), &mut |_| {})
+        .unwrap();
+    assert_eq!(plant.snapshot().mode, Mode::Flight);
+    // All of them count in the whole run.
+    let few = Options {
+        steps: 1000,
+        ..Options::default()
+    };
+    let mut plant = build(&params, &start, few).unwrap();
+    let error = plant.advance(2.0 * many / rate, &Inputs::default(), &mut |_| {});
+    assert!(matches!(
+        error,
+        Err(plant_model::PlantError::WorkLimit { steps: 1000, .. })
+    ));
+}

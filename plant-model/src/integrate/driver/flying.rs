@@ -11,7 +11,8 @@ use crate::spin::Spin;
 use crate::stator::Stator;
 
 impl<S: Stator, W: Spin, M: Amplifier, B: Bore, R: Raceway> Run<S, W, M, B, R> {
-    pub(super) fn fly_inside(&mut self, t_end_s: f64) {
+    /// Says whether nothing came in the way of the flight's own step.
+    pub(super) fn fly_inside(&mut self, t_end_s: f64) -> bool {
         let remaining = t_end_s - self.t_s;
         let here = (self.t_s, &self.y);
         (self.system).fly(&mut self.segment, here, &self.inputs, remaining);
@@ -32,7 +33,8 @@ impl<S: Stator, W: Spin, M: Amplifier, B: Bore, R: Raceway> Run<S, W, M, B, R> {
             // From rest on the wall and under a push a of ½·a·t² = ½·v·t: no farther away than rounding, so never off.
             let off_m = self.t_s * g.normal_speed_m_s;
             if rested && off_m <= 2.0 * ON_WALL * self.system.plane.contact.clearance_m {
-                return self.touch_down();
+                self.touch_down();
+                return false;
             }
             self.meters.impacts += 1;
             self.meters.hard_impacts += u64::from(g.normal_speed_m_s > HARD_IMPACT_M_S);
@@ -40,6 +42,7 @@ impl<S: Stator, W: Spin, M: Amplifier, B: Bore, R: Raceway> Run<S, W, M, B, R> {
                 self.meters.peak_impact_speed_m_s.max(g.normal_speed_m_s);
             self.touch_down();
         }
+        !hit && theta == 1.0
     }
 
     /// Takes the flight up to θ; a whole last segment ends exactly at `end_s`.

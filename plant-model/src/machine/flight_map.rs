@@ -1,0 +1,380 @@
+//! Flight of the linear body over a sample as one matrix. At a spin that stays and a step length that repeats, nothing of
+//! it changes from sample to sample: state and inputs give the end, a bound of the way, and the energies.
+//!
+//! z = (ω·q, q̇, delivered forces of magnets that lag, direction of the spin, commands, loads, 1) obeys ż = A·z, with ω the
+//! fastest rate, so that all entries of A are of one size.
+
+use super::readout::StepFlows;
+use super::system::{MachineInputs, MachineState, MachineSystem};
+use crate::V2;
+use crate::energy::Flows;
+use crate::quadrature::{EIGHT, Nodes};
+use nalgebra::DMatrix;
+
+/// Samples of the same length at the same spin from which on a map pays: it costs as much as hundreds of them.
+const REPEATS: u32 = 256;
+/// Step lengths count as the same up to this share of themselves: it is the clock that rounds.
+const SAME: f64 = 1e-9;
+
+/// Where the parts of z begin.
+#[derive(Debug, Clone, Copy, Default)]
+struct Layout {
+    n: usize,
+    magnets: usize,
+    direction: usize,
+    commands: usize,
+    loads: usize,
+    one: usize,
+}
+
+/// The map, and whether it is worth making.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct FlightMap {
+    dt_s: f64,
+    spin_rad_s: f64,
+    repeats: u32,
+    made: bool,
+    layout: Layout,
+    rate: f64,
+    /// End of the coordinates, rates and delivered forces; rows of z.
+    end: Vec<f64>,
+    /// Bound of each plane's way, x and y.
+    reach: Vec<f64>,
+    /// Quadratic forms of the work: rotor damping, magnets that lag, unbalance; empty where there is none.
+    works: [Vec<f64>; 3],
+    z: Vec<f64>,
+    size: Vec<f64>,
+    out: Vec<f64>,
+}
+
+impl FlightMap {
+    /// Carries a machine off all walls over a whole sample, if there is a map for it and the rotor stays clear; says so.
+    pub(crate) fn fly(
+        &mut self,
+        system: &MachineSystem,
+        y: &mut MachineState,
+        inputs: &MachineInputs,
+        dt_s: f64,
+        path: &mut [f64],
+    ) -> Option<StepFlows> {
+        let turns = system.inverse_inertia > 0.0 && system.drive_torque_n_m != 0.0;
+        if turns {
+            return None;
+        }
+        let same = (dt_s - self.dt_s).abs() <= SAME * dt_s && y.spin_rad_s == self.spin_rad_s;
+        if !same {
+            (self.dt_s, self.spin_rad_s) = (dt_s, y.spin_rad_s);
+            (self.repeats, self.made) = (0, false);
+            return None;
+        }
+        if !self.made {
+            self.repeats += 1;
+            if self.repeats < REPEATS {
+                return None;
+            }
+            self.make(system);
+        }
+        self.read(system, y, inputs);
+        let (d, planes) = (self.z.len(), system.planes.len());
+        for p in 0..planes {
+            let along = |row: usize| dot(&self.reach[row * d..(row + 1) * d], &self.size);
+            let centre = system.planes[p].centre_m.abs();
+            let (x, y) = (along(2 * p) + centre.x, along(2 * p + 1) + centre.y);
+            let clearance = system.planes[p].clearance_m;
+            if x * x + y * y >= clearance * clearance {
+                return None;
+            }
+        }
+        let n = self.layout.n;
+        for (row, out) in self.out.iter_mut().enumerate() {
+            *out = dot(&self.end[row * d..(row + 1) * d], &self.z);
+        }
+        let mut machine = Flows::default();
+        let [damping, control, unbalance] = [0, 1, 2].map(|w| self.work(w));
+        (machine.rotor_damping, machine.control, machine.unbalance) = (damping, control, unbalance);
+        let per = 1.0 / self.rate;
+        for (i, path) in path.iter_mut().enumerate().take(n) {
+            let q = per * self.out[i];
+            *path = q - y.position[i];
+            y.position[i] = q;
+            y.velocity[i] = self.out[n + i];
+        }
+        let mut lagging = self.layout.magnets;
+        for (m, rate) in system.magnet_rates.iter().enumerate() {
+            match rate {
+                Some(_) => {
+                    y.magnets_n[m] = V2::new(self.out[lagging], self.out[lagging + 1]);
+                    lagging += 2;
+                }
+                None => {
+                    machine.control += inputs.commands_n[m].dot(&system.body.magnets[m].of(path))
+                }
+            }
+        }
+        for (port, load_n) in system.body.loads.iter().zip(&inputs.loads_n) {
+            machine.external += load_n.dot(&port.of(path));
+        }
+        machine.external += dot(&system.body.gravity, path);
+        y.phase_rad += y.spin_rad_s * dt_s;
+        let mut flows = StepFlows::of_machine(machine);
+        for (p, plane) in system.planes.iter().enumerate() {
+            if let Some(race) = &plane.race {
+                let before = y.races_rad_s[p];
+                y.races_rad_s[p] *= (-race.drag_n_m_s / race.inertia_kg_m2 * dt_s).exp();
+                flows.planes[p].race_drag = race.coasting_loss_j(before, y.races_rad_s[p]);
+                flows.machine.stator_damping += flows.planes[p].race_drag;
+            }
+        }
+        Some(flows)
+    }
+
+    fn work(&self, which: usize) -> f64 {
+        let (form, d) = (&self.works[which], self.z.len());
+        let rows = form.chunks_exact(d).zip(&self.z);
+        rows.map(|(row, z)| z * dot(row, &self.z)).sum()
+    }
+
+    fn read(&mut self, system: &MachineSystem, y: &MachineState, inputs: &MachineInputs) {
+        let Layout {
+            n,
+            magnets,
+            direction,
+            commands,
+            loads,
+            one,
+        } = self.layout;
+        for i in 0..n {
+            self.z[i] = self.rate * y.position[i];
+            self.z[n + i] = y.velocity[i];
+        }
+        let put = |z: &mut [f64], at: usize, v: V2| (z[at], z[at + 1]) = (v.x, v.y);
+        let mut lagging = magnets;
+        for (m, rate) in system.magnet_rates.iter().enumerate() {
+            if rate.is_some() {
+                put(&mut self.z, lagging, y.magnets_n[m]);
+                lagging += 2;
+            }
+            put(&mut self.z, commands + 2 * m, inputs.commands_n[m]);
+        }
+        if system.body.unbalance.is_some() {
+            let (sin, cos) = y.phase_rad.sin_cos();
+            put(&mut self.z, direction, V2::new(cos, sin));
+        }
+        for (l, load_n) in inputs.loads_n.iter().enumerate() {
+            put(&mut self.z, loads + 2 * l, *load_n);
+        }
+        self.z[one] = 1.0;
+        for (size, z) in self.size.iter_mut().zip(&self.z) {
+            *size = z.abs();
+        }
+    }
+
+    /// A of ż = A·z.
+    fn generator(&self, system: &MachineSystem) -> DMatrix<f64> {
+        let Layout {
+            n,
+            magnets,
+            direction,
+            commands,
+            loads,
+            one,
+        } = self.layout;
+        let (body, rate, spin) = (&system.body, self.rate, self.spin_rad_s);
+        let mut a = DMatrix::zeros(one + 1, one + 1);
+        let mut column = vec![0.0; n];
+        for i in 0..n {
+            a[(i, n + i)] = rate;
+            let unit = |column: &mut [f64], at: usize| {
+                column.fill(0.0);
+                column[at] = 1.0;
+            };
+            let mut x = vec![0.0; n];
+            unit(&mut x, i);
+            column.fill(0.0);
+            body.stiffness.add_product(&mut column, -1.0 / rate, &x);
+            for row in 0..n {
+                a[(n + row, i)] = column[row];
+            }
+            column.fill(0.0);
+            body.damping.add_product(&mut column, -1.0, &x);
+            body.gyroscopic.add_product(&mut column, -spin, &x);
+            for row in 0..n {
+                a[(n + row, n + i)] = column[row];
+            }
+            a[(n + i, one)] = body.gravity[i];
+        }
+        let mut pushes =
+            |a: &mut DMatrix<f64>, at: usize, port: &super::body::Port, factor: f64| {
+                for (axis, unit) in [V2::x(), V2::y()].into_iter().enumerate() {
+                    column.fill(0.0);
+                    port.push(&mut column, factor * unit);
+                    for row in 0..n {
+                        a[(n + row, at + axis)] = column[row];
+                    }
+                }
+            };
+        let mut lagging = magnets;
+        for (m, lag) in system.magnet_rates.iter().enumerate() {
+            match lag {
+                Some(lag) => {
+                    pushes(&mut a, lagging, &body.magnets[m], 1.0);
+                    for axis in [0, 1] {
+                        a[(lagging + axis, lagging + axis)] = -lag;
+                        a[(lagging + axis, commands + 2 * m + axis)] = *lag;
+                    }
+                    lagging += 2;
+                }
+                None => pushes(&mut a, commands + 2 * m, &body.magnets[m], 1.0),
+            }
+        }
+        for (l, port) in body.loads.iter().enumerate() {
+            pushes(&mut a, loads + 2 * l, port, 1.0);
+        }
+        if let Some(unbalance) = &body.unbalance {
+            pushes(&mut a, direction, unbalance, spin * spin);
+            a[(direction, direction + 1)] = -spin;
+            a[(direction + 1, direction)] = spin;
+        }
+        a
+    }
+
+    fn make(&mut self, system: &MachineSystem) {
+        let body = &system.body;
+        let n = body.n;
+        let lagging = system.magnet_rates.iter().flatten().count();
+        let magnets = 2 * n;
+        let direction = magnets + 2 * lagging;
+        let commands = direction + if body.unbalance.is_some() { 2 } else { 0 };
+        let loads = commands + 2 * body.magnets.len();
+        let one = loads + 2 * body.loads.len();
+        self.layout = Layout {
+            n,
+            magnets,
+            direction,
+            commands,
+            loads,
+            one,
+        };
+        self.rate = body.undamped_rate_rad_s().max(1.0 / self.dt_s);
+        let d = one + 1;
+        (self.z, self.size, self.out) = (vec![0.0; d], vec![0.0; d], vec![0.0; direction]);
+        let a = self.generator(system) * self.dt_s;
+        let end = a.clone().exp();
+        self.end = (0..direction)
+            .flat_map(|row| (0..d).map(move |c| (row, c)))
+            .map(|at| end[at])
+            .collect();
+
+        // Σ_k |S·A^k/k!|: on θ from 0 to 1 no power of it is larger.
+        let mut ports = DMatrix::zeros(2 * body.contacts.len(), d);
+        for (p, port) in body.contacts.iter().enumerate() {
+            for i in 0..n {
+                let mut unit = vec![0.0; n];
+                unit[i] = 1.0 / self.rate;
+                let at = port.of(&unit);
+                (ports[(2 * p, i)], ports[(2 * p + 1, i)]) = (at.x, at.y);
+            }
+        }
+        let mut reach = ports.map(f64::abs);
+        let mut term = ports;
+        for k in 1..200 {
+            term = term * &a / f64::from(k);
+            let size = term.map(f64::abs);
+            reach += &size;
+            if size.max() <= 1e-18 * reach.max() {
+                break;
+            }
+        }
+        self.reach = (0..reach.nrows())
+            .flat_map(|row| (0..d).map(move |c| (row, c)))
+            .map(|at| reach[at])
+            .collect();
+        self.works = self.make_works(system, &a);
+        self.made = true;
+    }
+
+    /// ∫ z(θ)ᵀ·M·z(θ) dt as a form of z(0), for the power zᵀ·M·z through each door.
+    fn make_works(&self, system: &MachineSystem, a: &DMatrix<f64>) -> [Vec<f64>; 3] {
+        let (body, d) = (&system.body, a.nrows());
+        let Layout {
+            n,
+            magnets,
+            direction,
+            ..
+        } = self.layout;
+        let mut powers = [
+            DMatrix::zeros(d, d),
+            DMatrix::zeros(d, d),
+            DMatrix::zeros(d, d),
+        ];
+        for i in 0..n {
+            let (mut x, mut column) = (vec![0.0; n], vec![0.0; n]);
+            x[i] = 1.0;
+            body.damping.add_product(&mut column, 1.0, &x);
+            for row in 0..n {
+                powers[0][(n + row, n + i)] = column[row];
+            }
+            let mut lagging = magnets;
+            for (port, rate) in body.magnets.iter().zip(&system.magnet_rates) {
+                if rate.is_some() {
+                    let at = port.of(&x);
+                    (powers[1][(lagging, n + i)], powers[1][(lagging + 1, n + i)]) = (at.x, at.y);
+                    lagging += 2;
+                }
+            }
+            if let Some(unbalance) = &body.unbalance {
+                let at = unbalance.of(&x) * self.spin_rad_s * self.spin_rad_s;
+                (
+                    powers[2][(direction, n + i)],
+                    powers[2][(direction + 1, n + i)],
+                ) = (at.x, at.y);
+            }
+        }
+        // A rule of eight nodes on parts over which nothing turns by more than half a radian.
+        let parts = (2.0 * a.amax()).ceil().max(1.0);
+        let part = (a / parts).exp();
+        let nodes = Nodes::stretched(&EIGHT, 1.0 / parts);
+        let within = nodes.theta.map(|theta| (a * theta).exp());
+        let mut from = DMatrix::identity(d, d);
+        let mut works = [
+            DMatrix::zeros(d, d),
+            DMatrix::zeros(d, d),
+            DMatrix::zeros(d, d),
+        ];
+        for _ in 0..parts as usize {
+            for (j, inner) in within.iter().enumerate() {
+                let at = inner * &from;
+                let weight = self.dt_s * nodes.integral(|i| if i == j { 1.0 } else { 0.0 });
+                for (work, power) in works.iter_mut().zip(&powers) {
+                    if power.amax() > 0.0 {
+                        *work += weight * at.tr_mul(&(power * &at));
+                    }
+                }
+            }
+            from = &part * from;
+        }
+        works.map(|work| match work.amax() > 0.0 {
+            true => work.iter().copied().collect(),
+            false => vec![],
+        })
+    }
+}
+
+#[inline]
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    // Four sums side by side: one alone would wait for each addition to finish before it began the next.
+    let mut sums = [0.0; 4];
+    let (front, other) = (a.chunks_exact(4), b.chunks_exact(4));
+    let rest: f64 = front
+        .remainder()
+        .iter()
+        .zip(other.remainder())
+        .map(|(a, b)| a * b)
+        .sum();
+    for (a, b) in front.zip(other) {
+        for (sum, (a, b)) in sums.iter_mut().zip(a.iter().zip(b)) {
+            *sum += a * b;
+        }
+    }
+    (sums[0] + sums[1]) + (sums[2] + sums[3]) + rest
+}

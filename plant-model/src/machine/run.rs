@@ -1,0 +1,447 @@
+//! Carries a machine from sample to sample, event by event.
+
+mod reading;
+mod settle;
+
+use super::flight_map::FlightMap;
+use super::guards::Guard;
+use super::holding::Holding;
+use super::params::{MAX_PLANES, MachineError, MachineParams, MachineStart};
+use super::readout::{Held, MachineSnapshot, PlaneFlows};
+use super::step::{Stepper, Task};
+use super::system::{MachineInputs, MachineState, MachineSystem};
+use crate::V2;
+use crate::energy::Flows;
+use crate::integrate::contact_step::turn_rad;
+use crate::integrate::driver::{CIRCLE, MOST_AT_ONCE, ON_WALL, SPARE};
+use crate::integrate::{Options, PlantError};
+use crate::mode::{Mode, Phase, Slide, Whirl};
+use crate::readout::{HARD_IMPACT_M_S, Meters, Work};
+use settle::AtZero;
+
+/// A rotor that may touch in several planes, being run. Deterministic: the same calls give the same bits.
+#[derive(Debug, Clone)]
+pub struct Machine {
+    system: MachineSystem,
+    y: MachineState,
+    phases: Vec<Phase>,
+    stepper: Stepper,
+    map: FlightMap,
+    holding: Holding,
+    inputs: MachineInputs,
+    /// Forces that are held over a call, on the coordinates.
+    forces: Vec<f64>,
+    /// Room for modes that are tried.
+    trial: Vec<Phase>,
+    phases_before: Vec<Phase>,
+    t_s: f64,
+    flows: Flows,
+    stored_at_start_j: f64,
+    stored_peak_j: f64,
+    /// Energy of the spins that may never take part.
+    spare_j: f64,
+    plane_flows: Vec<PlaneFlows>,
+    meters: Vec<Meters>,
+    work: Work,
+    options: Options,
+    backward: f64,
+    path: Vec<f64>,
+    scratch: Vec<f64>,
+    suppressed: Vec<u8>,
+    just_left: Vec<bool>,
+    left_at_s: Vec<f64>,
+    events_without_progress: u32,
+    steps: u64,
+}
+
+impl Machine {
+    /// Puts a machine together.
+    ///
+    /// # Errors
+    /// The first value that is out of range.
+    pub fn new(
+        params: &MachineParams,
+        start: &MachineStart,
+        options: Options,
+    ) -> Result<Self, MachineError> {
+        let system = MachineSystem::new(params)?;
+        if !(options.rtol >= 1e-14 && options.rtol <= 1e-2) {
+            let (field, value) = ("run.rtol".into(), options.rtol);
+            return Err(MachineError {
+                field,
+                value,
+                expected: "a number from 1e-14 to 0.01",
+            });
+        }
+        let y = system.start(params, start)?;
+        let (n, planes) = (system.body.n, system.planes.len());
+        let mut machine = Self {
+            stepper: Stepper::new(&system, options.rtol),
+            map: FlightMap::default(),
+            holding: Holding::new(n),
+            inputs: MachineInputs {
+                commands_n: vec![V2::zeros(); system.caps_n.len()],
+                loads_n: vec![V2::zeros(); system.body.loads.len()],
+            },
+            forces: system.body.gravity.clone(),
+            phases: vec![Phase::Inside; planes],
+            trial: vec![Phase::Inside; planes],
+            phases_before: vec![Phase::Inside; planes],
+            t_s: 0.0,
+            flows: Flows::default(),
+            stored_at_start_j: 0.0,
+            stored_peak_j: 0.0,
+            spare_j: SPARE * system.turning_j(&y),
+            plane_flows: vec![PlaneFlows::default(); planes],
+            meters: vec![Meters::default(); planes],
+            work: Work::default(),
+            options,
+            backward: if y.spin_rad_s < 0.0 { 1.0 } else { -1.0 },
+            path: vec![0.0; n],
+            scratch: vec![0.0; n],
+            suppressed: vec![0; planes],
+            just_left: vec![false; planes],
+            left_at_s: vec![f64::NEG_INFINITY; planes],
+            events_without_progress: 0,
+            steps: 0,
+            system,
+            y,
+        };
+        for p in 0..planes {
+            let motion = machine.contact_motion(p);
+            let data = &machine.system.planes[p];
+            let depth = motion.distance_m - data.clearance_m;
+            if depth > ON_WALL * data.clearance_m {
+                if data.law.normal_force_n(depth, motion.normal_m_s) > 0.0 {
+                    machine.phases[p] =
+                        Phase::Contact(Slide::from_speed(motion.sliding_m_s), Whirl::Ignored);
+                    machine.settle(p, AtZero::default());
+                } else {
+                    machine.phases[p] = Phase::Beyond;
+                }
+            }
+        }
+        machine.stored_at_start_j = machine.system.stored_j(&machine.y, &machine.phases);
+        Ok(machine)
+    }
+
+    /// Carries the machine to `t_end_s` with `inputs` held. `on_change` is called right after each change of a plane's mode,
+    /// with the plane and what can be read off there.
+    ///
+    /// # Errors
+    /// [`PlantError`]: the run cannot be trusted any further and must end.
+    pub fn advance(
+        &mut self,
+        t_end_s: f64,
+        inputs: &MachineInputs,
+        on_change: &mut dyn FnMut(usize, &MachineSnapshot),
+    ) -> Result<(), PlantError> {
+        let t_s = self.t_s;
+        if inputs.commands_n.len() != self.inputs.commands_n.len()
+            || inputs.loads_n.len() != self.inputs.loads_n.len()
+        {
+            return Err(PlantError::InputCount { t_s });
+        }
+        let mut forces = inputs.commands_n.iter().chain(&inputs.loads_n);
+        if !(t_end_s.is_finite() && forces.all(|f| f.x.is_finite() && f.y.is_finite())) {
+            return Err(PlantError::NotFinite { t_s });
+        }
+        self.take(inputs);
+        if self.t_s < t_end_s && self.phases.iter().all(|phase| *phase == Phase::Inside) {
+            let dt_s = t_end_s - self.t_s;
+            let (map, y) = (&mut self.map, &mut self.y);
+            let flown = map.fly(&self.system, y, &self.inputs, dt_s, &mut self.path);
+            if let Some(flows) = flown {
+                self.flows.add_scaled(1.0, &flows.machine);
+                for (sum, plane) in self.plane_flows.iter_mut().zip(&flows.planes) {
+                    sum.add(plane);
+                }
+                self.t_s = t_end_s;
+                self.just_left.fill(false);
+                self.steps += 1;
+                return self.check_state();
+            }
+        }
+        let mut steps = 0;
+        while self.t_s < t_end_s {
+            steps += 1;
+            self.steps += 1;
+            for (done, limit) in [
+                (steps, self.options.steps_per_sample),
+                (self.steps, self.options.steps),
+            ] {
+                if done > limit {
+                    return Err(PlantError::WorkLimit {
+                        t_s: self.t_s,
+                        steps: limit,
+                    });
+                }
+            }
+            let free = self.phases.iter().all(|phase| *phase == Phase::Inside);
+            let before: [Mode; MAX_PLANES] = self.modes();
+            let t_before = self.t_s;
+            self.step(t_end_s)?;
+            self.check_state()?;
+            self.count_progress(self.t_s > t_before)?;
+            let after = self.modes();
+            // How many free flights there are is up to the span and the fastest rate: nothing moves too fast.
+            steps -= u64::from(free && after == before && self.t_s > t_before);
+            if after != before {
+                let snapshot = self.snapshot();
+                for p in (0..self.phases.len()).filter(|p| after[*p] != before[*p]) {
+                    on_change(p, &snapshot);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn modes(&self) -> [Mode; MAX_PLANES] {
+        let mut modes = [Mode::Flight; MAX_PLANES];
+        for (mode, phase) in modes.iter_mut().zip(&self.phases) {
+            *mode = phase.mode();
+        }
+        modes
+    }
+
+    /// Takes inputs over, and what they push on the coordinates.
+    fn take(&mut self, inputs: &MachineInputs) {
+        self.forces.copy_from_slice(&self.system.body.gravity);
+        for (m, command_n) in inputs.commands_n.iter().enumerate() {
+            let (cap, size) = (self.system.caps_n[m], command_n.norm());
+            let held = if size > cap {
+                command_n * (cap / size)
+            } else {
+                *command_n
+            };
+            self.inputs.commands_n[m] = held;
+            if self.system.magnet_rates[m].is_none() {
+                self.system.body.magnets[m].push(&mut self.forces, held);
+            }
+        }
+        for (l, load_n) in inputs.loads_n.iter().enumerate() {
+            self.inputs.loads_n[l] = *load_n;
+            self.system.body.loads[l].push(&mut self.forces, *load_n);
+        }
+    }
+
+    fn step(&mut self, t_end_s: f64) -> Result<(), PlantError> {
+        let moment_s = self.system.moment_s();
+        let t_end_s = match self.suppressed.iter().all(|s| *s == 0) {
+            true => t_end_s,
+            false => t_end_s.min(self.t_s + 100.0 * moment_s),
+        };
+        let task = Task {
+            span: (self.t_s, t_end_s),
+            phases: &self.phases,
+            forces: &self.forces,
+            commands_n: &self.inputs.commands_n,
+            suppressed: &self.suppressed,
+            just_left: &self.just_left,
+        };
+        let reach = self
+            .stepper
+            .step(&self.system, &self.y, &task, &mut self.work)?;
+        self.book(reach.theta);
+        let stood_still = reach.t_s == self.t_s;
+        self.t_s = reach.t_s;
+        let suppressed = |machine: &mut Self, p: usize| std::mem::take(&mut machine.suppressed[p]);
+        let mut before = [0; MAX_PLANES];
+        for (p, kept) in before.iter_mut().enumerate().take(self.phases.len()) {
+            *kept = suppressed(self, p);
+        }
+        if reach.theta > 0.0 {
+            self.just_left.fill(false);
+        }
+        let Some((p, guard)) = reach.event else {
+            self.zero_speeds(None);
+            return Ok(());
+        };
+        let phase = self.phases[p];
+        // As the normal force dies the friction cones close with it: that is one event, lift-off.
+        let guard = match (phase, guard) {
+            (Phase::Contact(..), guard) if guard != Guard::Normal => {
+                let force = self.stepper.series.planes[p]
+                    .force
+                    .with_slope(reach.theta, self.stepper.series.order);
+                let rate = force.1 / self.stepper.series.step_s;
+                if force.0 < -rate * moment_s {
+                    Guard::Normal
+                } else {
+                    guard
+                }
+            }
+            (_, guard) => guard,
+        };
+        match guard {
+            Guard::Gap => self.impact(p),
+            Guard::Beyond => {
+                self.zero_speeds(None);
+                self.phases[p] = Phase::Inside;
+                self.just_left[p] = true;
+            }
+            Guard::NoForce => {
+                let dent_j = self.dent_j(p);
+                self.book_dent(p, -dent_j);
+                self.touch_down(p);
+            }
+            Guard::Normal => self.lift_off(p),
+            _ => {
+                let at_zero = AtZero::after(phase, guard);
+                self.zero_speeds(Some((p, at_zero)));
+                self.settle(p, at_zero);
+                if self.phases[p] == phase && stood_still {
+                    self.suppressed[p] = before[p] | guard.bit();
+                }
+                // Round-off alone leads round in a circle.
+                if self.events_without_progress >= CIRCLE {
+                    for (kept, phase) in self.suppressed.iter_mut().zip(&self.phases) {
+                        if matches!(phase, Phase::Contact(..)) {
+                            *kept = !Guard::Normal.bit();
+                        }
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Takes the step over up to θ: energies, largest values, state.
+    fn book(&mut self, theta: f64) {
+        let series = &self.stepper.series;
+        self.path.copy_from_slice(&self.y.position);
+        let starts = self.turns();
+        series.at(&self.system, theta, &mut self.y);
+        for (path, q) in self.path.iter_mut().zip(&self.y.position) {
+            *path = q - *path;
+        }
+        let held = Held {
+            inputs: &self.inputs,
+            path: &self.path,
+        };
+        let flows = series.flows(&self.system, &self.phases, theta, held, &mut self.scratch);
+        self.flows.add_scaled(1.0, &flows.machine);
+        let ends = self.turns();
+        let step_s = theta * series.step_s;
+        for (p, phase) in self.phases.iter().enumerate() {
+            self.plane_flows[p].add(&flows.planes[p]);
+            if matches!(phase, Phase::Contact(..)) && theta > 0.0 {
+                let peaks = series.peaks(&self.system, p, (theta, self.backward));
+                let turn = turn_rad(starts[p], ends[p], step_s);
+                self.meters[p].contact_step(&peaks, step_s, turn, self.system.planes[p].radius_m);
+            }
+        }
+    }
+
+    /// Contact normals and how fast they turn.
+    fn turns(&self) -> [(V2, f64); MAX_PLANES] {
+        let mut turns = [(V2::x(), 0.0); MAX_PLANES];
+        for (p, turn) in turns.iter_mut().enumerate().take(self.phases.len()) {
+            if matches!(self.phases[p], Phase::Contact(..)) {
+                let motion = self.contact_motion(p);
+                *turn = (motion.normal, motion.whirl_m_s / motion.distance_m);
+            }
+        }
+        turns
+    }
+
+    fn impact(&mut self, p: usize) {
+        let motion = self.contact_motion(p);
+        let meters = &mut self.meters[p];
+        meters.impacts += 1;
+        meters.hard_impacts += u64::from(motion.normal_m_s > HARD_IMPACT_M_S);
+        meters.peak_impact_speed_m_s = meters.peak_impact_speed_m_s.max(motion.normal_m_s);
+        self.touch_down(p);
+    }
+
+    /// Contact begins. Where it has only just ended, the normal force is at zero and hardly moves; it is not asked for a
+    /// moment.
+    fn touch_down(&mut self, p: usize) {
+        self.zero_speeds(None);
+        if self.t_s - self.left_at_s[p] <= self.system.moment_s() {
+            self.suppressed[p] = Guard::Normal.bit();
+        }
+        self.settle(p, AtZero::default());
+    }
+
+    fn lift_off(&mut self, p: usize) {
+        self.zero_speeds(None);
+        self.just_left[p] = true;
+        self.left_at_s[p] = self.t_s;
+        let depth_m = self.contact_motion(p).distance_m - self.system.planes[p].clearance_m;
+        self.phases[p] = if self.system.planes[p].leaves_dent(depth_m) {
+            // The dent relaxes on the contact damper alone.
+            let dent_j = self.dent_j(p);
+            self.book_dent(p, dent_j);
+            Phase::Beyond
+        } else {
+            Phase::Inside
+        };
+    }
+
+    fn dent_j(&self, p: usize) -> f64 {
+        let data = &self.system.planes[p];
+        let depth_m = self.contact_motion(p).distance_m - data.clearance_m;
+        0.5 * data.law.stiffness_n_m * depth_m * depth_m
+    }
+
+    fn book_dent(&mut self, p: usize, dent_j: f64) {
+        self.flows.contact_damping += dent_j;
+        self.plane_flows[p].contact_damping += dent_j;
+    }
+
+    fn check_state(&mut self) -> Result<(), PlantError> {
+        let t_s = self.t_s;
+        if !self.y.is_finite() {
+            return Err(PlantError::NotFinite { t_s });
+        }
+        for p in 0..self.phases.len() {
+            let data = &self.system.planes[p];
+            let radius_m = self.system.body.at_planes[p].of(&self.y.position).norm();
+            if radius_m > (1e3 * data.clearance_m).max(data.radius_m) {
+                return Err(PlantError::Diverged { t_s, radius_m });
+            }
+        }
+        let stored = self.system.stored_j(&self.y, &self.phases) - self.spare_j;
+        self.stored_peak_j = self.stored_peak_j.max(stored.abs());
+        Ok(())
+    }
+
+    /// Modes may follow each other at one instant, but not for ever.
+    fn count_progress(&mut self, moved: bool) -> Result<(), PlantError> {
+        self.events_without_progress = if moved {
+            0
+        } else {
+            self.events_without_progress + 1
+        };
+        if self.events_without_progress > MOST_AT_ONCE {
+            return Err(PlantError::ModeUndecided { t_s: self.t_s });
+        }
+        Ok(())
+    }
+
+    /// Mode of each plane.
+    pub fn mode(&self, plane: usize) -> Option<Mode> {
+        Some(self.phases.get(plane)?.mode())
+    }
+
+    /// Extremes and sums of each plane so far.
+    pub fn meters(&self) -> &[Meters] {
+        &self.meters
+    }
+
+    /// Energy that each plane took so far.
+    pub fn plane_flows(&self) -> &[PlaneFlows] {
+        &self.plane_flows
+    }
+
+    /// Work done so far.
+    pub fn work(&self) -> Work {
+        self.work
+    }
+
+    /// Time now \[s\].
+    pub fn t_s(&self) -> f64 {
+        self.t_s
+    }
+}

@@ -1,0 +1,242 @@
+//! One step of a machine: as far as the series can be trusted, or to the first guard of any plane that falls to zero.
+
+use super::guards::Guard;
+use super::series::{MachineSeries, Step};
+use super::system::{MachineState, MachineSystem};
+use crate::V2;
+use crate::integrate::PlantError;
+use crate::integrate::enough::{Enough, LOWEST_ORDER};
+use crate::integrate::first_fall::{Fall, first_fall};
+use crate::mode::Phase;
+use crate::readout::Work;
+use crate::series::{MAX_ORDER, Scalar};
+
+/// What a step is asked for.
+#[derive(Clone, Copy)]
+pub(crate) struct Task<'a> {
+    /// From, and to at most \[s\].
+    pub(crate) span: (f64, f64),
+    pub(crate) phases: &'a [Phase],
+    /// Forces that are held, on the coordinates.
+    pub(crate) forces: &'a [f64],
+    /// Commands of magnets that lag.
+    pub(crate) commands_n: &'a [V2],
+    /// Guards that are not asked, by plane.
+    pub(crate) suppressed: &'a [u8],
+    /// Planes that the rotor has left at this instant.
+    pub(crate) just_left: &'a [bool],
+}
+
+/// How far a step goes.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Reach {
+    pub(crate) t_s: f64,
+    /// End of the step on the series.
+    pub(crate) theta: f64,
+    /// Plane and guard that ended it.
+    pub(crate) event: Option<(usize, Guard)>,
+}
+
+/// Scales of the motion, against which coefficients are weighed.
+#[derive(Debug, Clone, Copy)]
+struct Weights {
+    position: f64,
+    velocity: f64,
+    gap: f64,
+    spin: f64,
+    force: f64,
+}
+
+/// Share of the tolerance that one step may use. In bouncing with bending modes an error grows faster than that of a point
+/// mass: with the whole of it one of 400 runs of 60 ms at 1e-6 ends in another sequence of modes.
+const MARGIN: f64 = 0.1;
+
+/// Steps a machine; remembers the last steps as the next ones' references.
+#[derive(Debug, Clone)]
+pub(crate) struct Stepper {
+    pub(crate) series: MachineSeries,
+    guard: Scalar,
+    rtol: f64,
+    highest_order: usize,
+    /// References in flight and in contact \[s\].
+    references_s: [f64; 2],
+    fastest_m_s: f64,
+    /// Largest mobility of any plane \[1/kg\], of which speeds are made.
+    mobility: f64,
+    clearance_m: f64,
+    radius_m: f64,
+    contact_rate: f64,
+    slow_rate: f64,
+}
+
+impl Stepper {
+    pub(crate) fn new(system: &MachineSystem, rtol: f64) -> Self {
+        let planes = 0..system.planes.len();
+        let least =
+            |of: &dyn Fn(usize) -> f64| planes.clone().map(of).fold(f64::INFINITY, f64::min);
+        let most = |of: &dyn Fn(usize) -> f64| planes.clone().map(of).fold(0.0, f64::max);
+        let rate = system.contact_rate_rad_s();
+        Self {
+            series: MachineSeries::new(&system.body),
+            guard: Scalar::default(),
+            rtol: MARGIN * rtol,
+            // As with one plane: measured there.
+            highest_order: match rtol {
+                r if r > 1e-7 => 16,
+                r if r > 1e-11 => 20,
+                _ => MAX_ORDER,
+            },
+            references_s: [1.0 / rate; 2],
+            fastest_m_s: 0.0,
+            mobility: most(&|p| system.contact(p).mobility()),
+            clearance_m: least(&|p| system.planes[p].clearance_m),
+            radius_m: least(&|p| system.planes[p].radius_m),
+            contact_rate: most(&|p| system.undamped_contact_rate_rad_s(p)),
+            slow_rate: system.body.undamped_rate_rad_s(),
+        }
+    }
+
+    /// As those of one plane, `integrate/scales.rs`, with the energy norm of the coordinates for speeds.
+    fn weights(&mut self, y: &MachineState) -> Weights {
+        let size = y.velocity.iter().map(|v| v * v).sum::<f64>().sqrt();
+        let now = size * self.mobility.sqrt();
+        self.fastest_m_s = self.fastest_m_s.max(now);
+        let floor = 1e-3
+            * self
+                .fastest_m_s
+                .max(1e-3 * self.clearance_m * self.contact_rate);
+        let speed = now.max(floor);
+        let per = |x: f64| 1.0 / (self.rtol * x);
+        Weights {
+            position: per((speed / self.slow_rate).min(self.clearance_m)) * self.mobility.sqrt(),
+            velocity: per(speed) * self.mobility.sqrt(),
+            gap: per((speed / self.contact_rate).min(self.clearance_m)),
+            spin: per((speed / self.radius_m).max(1e-2 * y.spin_rad_s.abs())),
+            force: per(speed * self.contact_rate / self.mobility),
+        }
+    }
+
+    /// Carries the series from `y` towards the end of the span until it, the series or an event stops it.
+    pub(crate) fn step(
+        &mut self,
+        system: &MachineSystem,
+        y: &MachineState,
+        task: &Task<'_>,
+        work: &mut Work,
+    ) -> Result<Reach, PlantError> {
+        let (t_s, t_end_s) = task.span;
+        let weights = self.weights(y);
+        let remaining = t_end_s - t_s;
+        let highest = self.highest_order;
+        let touching = task.phases.iter().any(|phase| *phase != Phase::Inside);
+        let square =
+            |series: &MachineSeries, k: usize| square(series, system, task.phases, (k, &weights));
+        let mut reference = self.references_s[usize::from(touching)].min(remaining);
+        work.steps += 1;
+        let given = |step_s: f64| Step {
+            system,
+            phases: task.phases,
+            forces: task.forces,
+            commands_n: task.commands_n,
+            step_s,
+        };
+        let trusted = loop {
+            let mut enough = Enough::new(remaining / reference);
+            self.series
+                .fill(&given(reference), y, highest, |series, k| {
+                    k >= LOWEST_ORDER - 1 && enough.with(square(series, k))
+                });
+            let order = self.series.order;
+            work.evaluations += order as u64 + 1;
+            let kept = &mut self.references_s[usize::from(touching)];
+            if order < highest {
+                *kept = kept.max(remaining);
+                break f64::INFINITY;
+            }
+            let reach = |k: usize| square(&self.series, k).powf(-0.5 / k as f64);
+            let (a, b) = (reach(order), reach(order - 1));
+            let trusted = 0.9 * if a < b || a.is_nan() { a } else { b };
+            if trusted > 1e-2 {
+                *kept = (trusted * reference).min(1e3 * reference);
+                break trusted;
+            }
+            reference *= if trusted > 1e-6 { trusted } else { 1e-6 };
+            if t_s + reference == t_s {
+                return Err(PlantError::StepTooSmall { t_s });
+            }
+        };
+        let mut whole = trusted * reference >= remaining;
+        let mut theta = if whole {
+            remaining / reference
+        } else {
+            trusted
+        };
+        if !(theta > 0.0 && t_s + theta * reference > t_s) {
+            return Err(PlantError::StepTooSmall { t_s });
+        }
+        let order = self.series.order;
+        let mut event = None;
+        for (p, phase) in task.phases.iter().enumerate() {
+            for guard in Guard::of(*phase) {
+                let about = (&self.series.planes[p], &system.planes[p], *phase);
+                if task.suppressed[p] & guard.bit() != 0
+                    || !guard.fill(&mut self.guard, about, (theta, order))
+                {
+                    continue;
+                }
+                if *guard == Guard::Gap && task.just_left[p] {
+                    // Whatever rounding says: the contact force has just fallen to zero.
+                    for c in &mut self.guard.0[..2] {
+                        *c = c.max(0.0);
+                    }
+                }
+                let rising = matches!(guard, Guard::Normal | Guard::NoForce | Guard::Beyond);
+                let (stop, by) = match first_fall(&self.guard, theta, order, rising) {
+                    Fall::Never => continue,
+                    Fall::At(stop) => (stop, Some((p, *guard))),
+                    Fall::ClearUntil(stop) => (stop, None),
+                };
+                if stop < theta || (stop == theta && by.is_some()) {
+                    (theta, event, whole) = (stop, by, false);
+                }
+            }
+        }
+        work.events += u64::from(event.is_some());
+        let t_s = if whole {
+            t_end_s
+        } else {
+            t_s + theta * reference
+        };
+        Ok(Reach { t_s, theta, event })
+    }
+}
+
+/// Σ (coefficient k / scale)².
+fn square(
+    series: &MachineSeries,
+    system: &MachineSystem,
+    phases: &[Phase],
+    (k, weights): (usize, &Weights),
+) -> f64 {
+    let mut sum = series.position.square(k) * weights.position * weights.position
+        + series.velocity.square(k) * weights.velocity * weights.velocity;
+    for (plane, phase) in series.planes.iter().zip(phases) {
+        // Beyond the wall nothing but the guards knows the distance, whose series ends where the rotor would pass the
+        // middle however straight it flies.
+        let gap = match phase {
+            Phase::Inside => 0.0,
+            Phase::Beyond => plane.distance.0[k] * plane.distance.0[k],
+            Phase::Contact(..) => plane.gap.0[k].norm_squared(),
+        };
+        sum += gap * weights.gap * weights.gap;
+    }
+    if system.inverse_inertia > 0.0 {
+        sum += (series.spin.0[k] * weights.spin).powi(2);
+    }
+    for (series, rate) in series.magnets.iter().zip(&system.magnet_rates) {
+        if rate.is_some() {
+            sum += series.0[k].norm_squared() * weights.force * weights.force;
+        }
+    }
+    sum
+}

@@ -1,0 +1,313 @@
+//! A machine's equations, apart from how they are integrated: what holds what, and how much it takes.
+
+use super::body::{LinearBody, Port};
+use super::params::{MAX_PLANES, MachineError, MachineParams, MachineStart};
+use crate::V2;
+use crate::contact::NO_DENT;
+use crate::mode::{Phase, Slide, Whirl};
+use crate::params::{ContactLaw, LinearContact, SlidingFriction, SpinParams};
+use crate::plane::race::Race;
+use nalgebra::SMatrix;
+
+/// Most speeds that friction may hold at once: sliding and rolling in each plane.
+pub(crate) const MAX_HELD: usize = 2 * MAX_PLANES;
+
+/// A way in which friction acts in a plane.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Channel {
+    /// On the sliding speed, and on the spin.
+    Sliding,
+    /// On the whirl.
+    Rolling,
+}
+
+/// Channels that hold their speeds at zero in these phases.
+pub(crate) fn holding_channels(phases: &[Phase]) -> impl Iterator<Item = (usize, Channel)> + '_ {
+    phases.iter().enumerate().flat_map(|(p, phase)| {
+        let (slides, whirls) = match phase {
+            Phase::Contact(slide, whirl) => (*slide == Slide::Rolling, *whirl == Whirl::Still),
+            _ => (false, false),
+        };
+        let sliding = slides.then_some((p, Channel::Sliding));
+        sliding
+            .into_iter()
+            .chain(whirls.then_some((p, Channel::Rolling)))
+    })
+}
+
+/// A plane without what moves in it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct PlaneData {
+    pub(crate) centre_m: V2,
+    pub(crate) radius_m: f64,
+    pub(crate) clearance_m: f64,
+    pub(crate) law: LinearContact,
+    /// μ and μ_r.
+    pub(crate) sliding: f64,
+    pub(crate) rolling: f64,
+    pub(crate) race: Option<Race>,
+}
+
+impl PlaneData {
+    /// Radius at which the race turns; 0 for a bushing.
+    #[inline]
+    pub(crate) fn race_radius_m(&self) -> f64 {
+        self.race.map_or(0.0, |race| race.radius_m)
+    }
+
+    /// Whether contact that ends leaves a dent that relaxes alone.
+    pub(crate) fn leaves_dent(&self, penetration_m: f64) -> bool {
+        self.law.damping_n_s_m > 0.0 && penetration_m > NO_DENT * self.clearance_m
+    }
+}
+
+/// What acts on a machine from outside, held until the next call.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct MachineInputs {
+    /// Commanded force of each magnet \[N\]; limited to its cap. As many as there are magnets.
+    pub commands_n: Vec<V2>,
+    /// Force at each place of `loads_m` \[N\]. As many as there are places.
+    pub loads_n: Vec<V2>,
+}
+
+/// What changes in time.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(crate) struct MachineState {
+    pub(crate) position: Vec<f64>,
+    pub(crate) velocity: Vec<f64>,
+    pub(crate) spin_rad_s: f64,
+    pub(crate) phase_rad: f64,
+    pub(crate) races_rad_s: Vec<f64>,
+    /// Delivered forces.
+    pub(crate) magnets_n: Vec<V2>,
+}
+
+impl MachineState {
+    pub(crate) fn is_finite(&self) -> bool {
+        let numbers = self
+            .position
+            .iter()
+            .chain(&self.velocity)
+            .chain(&self.races_rad_s);
+        self.spin_rad_s.is_finite()
+            && self.phase_rad.is_finite()
+            && numbers.copied().all(f64::is_finite)
+    }
+}
+
+/// Share of the largest mobility below which two motions are one.
+const SINGULAR: f64 = 1e-12;
+
+/// Inverse of the first rows and columns, zero elsewhere; `None` where it is as good as singular.
+fn inverse(
+    a: &SMatrix<f64, MAX_HELD, MAX_HELD>,
+    count: usize,
+) -> Option<SMatrix<f64, MAX_HELD, MAX_HELD>> {
+    let mut left = *a;
+    let mut right = SMatrix::<f64, MAX_HELD, MAX_HELD>::zeros();
+    let largest = a.amax();
+    for i in 0..count {
+        right[(i, i)] = 1.0;
+    }
+    for column in 0..count {
+        let size = |row: &usize| left[(*row, column)].abs();
+        let pivot = (column..count).max_by(|a, b| size(a).total_cmp(&size(b)))?;
+        if size(&pivot) <= SINGULAR * largest {
+            return None;
+        }
+        left.swap_rows(column, pivot);
+        right.swap_rows(column, pivot);
+        let per = 1.0 / left[(column, column)];
+        for j in 0..count {
+            left[(column, j)] *= per;
+            right[(column, j)] *= per;
+        }
+        for row in (0..count).filter(|row| *row != column) {
+            let factor = left[(row, column)];
+            for j in 0..count {
+                left[(row, j)] -= factor * left[(column, j)];
+                right[(row, j)] -= factor * right[(column, j)];
+            }
+        }
+    }
+    Some(right)
+}
+
+/// The machine.
+#[derive(Debug, Clone)]
+pub(crate) struct MachineSystem {
+    pub(crate) body: LinearBody,
+    pub(crate) planes: Vec<PlaneData>,
+    /// 1/J; 0 where the speed is held.
+    pub(crate) inverse_inertia: f64,
+    pub(crate) drive_torque_n_m: f64,
+    /// 1/τ of each magnet that lags.
+    pub(crate) magnet_rates: Vec<Option<f64>>,
+    pub(crate) caps_n: Vec<f64>,
+}
+
+impl MachineSystem {
+    pub(crate) fn new(params: &MachineParams) -> Result<Self, MachineError> {
+        let body = LinearBody::new(params)?;
+        let planes = params.planes.iter().map(|plane| PlaneData {
+            centre_m: plane.centre_m,
+            radius_m: plane.radius_m,
+            clearance_m: plane.contact.clearance_m,
+            law: match plane.contact.law {
+                ContactLaw::Linear(law) => law,
+                // Refused by the check.
+                ContactLaw::HuntCrossley(_) => LinearContact {
+                    stiffness_n_m: f64::NAN,
+                    damping_n_s_m: 0.0,
+                },
+            },
+            sliding: match plane.friction.sliding {
+                SlidingFriction::Constant { coefficient } => coefficient,
+                SlidingFriction::Falling { at_rest, .. } => at_rest,
+            },
+            rolling: plane.friction.rolling_coefficient,
+            race: plane.race.map(|race| Race {
+                radius_m: plane.radius_m + plane.contact.clearance_m,
+                inertia_kg_m2: race.inertia_kg_m2,
+                drag_n_m_s: race.drag_n_m_s,
+                start_spin_rad_s: race.start_spin_rad_s,
+            }),
+        });
+        let (inverse_inertia, drive_torque_n_m) = match params.spin {
+            SpinParams::Held => (0.0, 0.0),
+            SpinParams::Free {
+                inertia_kg_m2,
+                drive_torque_n_m,
+            } => (1.0 / inertia_kg_m2, drive_torque_n_m),
+        };
+        Ok(Self {
+            body,
+            planes: planes.collect(),
+            inverse_inertia,
+            drive_torque_n_m,
+            magnet_rates: params
+                .magnets
+                .iter()
+                .map(|m| (m.lag_s > 0.0).then(|| 1.0 / m.lag_s))
+                .collect(),
+            caps_n: params.magnets.iter().map(|m| m.force_max_n).collect(),
+        })
+    }
+
+    pub(crate) fn start(
+        &self,
+        params: &MachineParams,
+        start: &MachineStart,
+    ) -> Result<MachineState, MachineError> {
+        start.validate()?;
+        let rigid = params.rotor.rigid();
+        let (m, i) = (rigid.mass_kg.sqrt(), rigid.transverse_inertia_kg_m2.sqrt());
+        let coordinates = |centre: V2, tilt: V2| {
+            let mut q = vec![0.0; self.body.n];
+            for (q, x) in q
+                .iter_mut()
+                .zip([m * centre.x, m * centre.y, i * tilt.x, i * tilt.y])
+            {
+                *q = x;
+            }
+            q
+        };
+        Ok(MachineState {
+            position: coordinates(start.centre_m, start.tilt_rad),
+            velocity: coordinates(start.centre_velocity_m_s, start.tilt_rate_rad_s),
+            spin_rad_s: start.spin_rad_s,
+            phase_rad: start.spin_phase_rad,
+            races_rad_s: self
+                .planes
+                .iter()
+                .map(|p| p.race.map_or(0.0, |r| r.start_spin_rad_s))
+                .collect(),
+            magnets_n: vec![V2::zeros(); self.caps_n.len()],
+        })
+    }
+
+    /// Acceleration of the spin and of the race by one newton of a channel.
+    pub(crate) fn turned_by(&self, plane: usize, channel: Channel) -> (f64, f64) {
+        let data = &self.planes[plane];
+        match channel {
+            Channel::Sliding => {
+                let race = data
+                    .race
+                    .map_or(0.0, |race| -race.radius_m / race.inertia_kg_m2);
+                (data.radius_m * self.inverse_inertia, race)
+            }
+            Channel::Rolling => (0.0, 0.0),
+        }
+    }
+
+    /// What the spins add to the speed that a channel holds.
+    #[inline]
+    pub(crate) fn surface_of(&self, plane: usize, channel: Channel, spin: f64, race: f64) -> f64 {
+        let data = &self.planes[plane];
+        match channel {
+            Channel::Sliding => data.radius_m * spin - data.race_radius_m() * race,
+            Channel::Rolling => 0.0,
+        }
+    }
+
+    /// Forces that channels have to give per unit of their speeds' rates, from their mobility. Where channels hold the same
+    /// motion, as planes at one place do, many forces would: they share as their coefficients of friction are.
+    pub(crate) fn inverse_mobility(
+        &self,
+        channels: impl Iterator<Item = (usize, Channel)>,
+        mobility: impl Fn(usize, usize) -> f64,
+    ) -> SMatrix<f64, MAX_HELD, MAX_HELD> {
+        let mut share = [1.0_f64; MAX_HELD];
+        let mut count = 0;
+        for (p, channel) in channels {
+            let mu = match channel {
+                Channel::Sliding => self.planes[p].sliding,
+                Channel::Rolling => self.planes[p].rolling,
+            };
+            share[count] = mu.max(f64::MIN_POSITIVE).sqrt();
+            count += 1;
+        }
+        let mut scaled = SMatrix::<f64, MAX_HELD, MAX_HELD>::zeros();
+        for row in 0..count {
+            for column in 0..count {
+                scaled[(row, column)] = share[row] * mobility(row, column) * share[column];
+            }
+        }
+        let mut give = inverse(&scaled, count).unwrap_or_else(|| {
+            let largest = scaled.amax();
+            scaled
+                .pseudo_inverse(SINGULAR * largest)
+                .unwrap_or_default()
+        });
+        for row in 0..count {
+            for column in 0..count {
+                give[(row, column)] *= share[row] * share[column];
+            }
+        }
+        give
+    }
+
+    /// Port of a plane's contact.
+    pub(crate) fn contact(&self, plane: usize) -> &Port {
+        &self.body.contacts[plane]
+    }
+
+    /// Rate of a plane's contact spring on the mobility there \[rad/s\].
+    pub(crate) fn undamped_contact_rate_rad_s(&self, plane: usize) -> f64 {
+        (self.planes[plane].law.stiffness_n_m * self.contact(plane).mobility()).sqrt()
+    }
+
+    /// The largest of them with their dampers \[rad/s\].
+    pub(crate) fn contact_rate_rad_s(&self) -> f64 {
+        let rates = (0..self.planes.len()).map(|p| {
+            let damping = self.planes[p].law.damping_n_s_m * self.contact(p).mobility();
+            self.undamped_contact_rate_rad_s(p) + damping
+        });
+        rates.fold(0.0, f64::max)
+    }
+
+    /// A time that nothing in contact notices.
+    pub(crate) fn moment_s(&self) -> f64 {
+        1e-6 / self.contact_rate_rad_s()
+    }
+}

@@ -1,0 +1,156 @@
+//! A whole rotor at its limits: an answer whose energy closes.
+
+use super::rotor::*;
+use plant_model::machine::params::*;
+use plant_model::machine::{Machine, MachineInputs};
+use plant_model::params::*;
+use plant_model::{Mode, Options, V2};
+
+fn base() -> MachineParams {
+    let mut params = machine();
+    params.supports = vec![support(-0.15), support(0.12)];
+    params.planes = vec![plane(-0.2, 0.5), plane(0.18, 0.5)];
+    params.gravity_m_s2 = V2::new(0.0, -9.81);
+    params.spin = SpinParams::Free {
+        inertia_kg_m2: 0.4,
+        drive_torque_n_m: 0.0,
+    };
+    params
+}
+
+/// The same in the air.
+fn dropped() -> MachineParams {
+    let mut params = base();
+    params.supports.clear();
+    params
+}
+
+fn struck(spin_rad_s: f64) -> MachineStart {
+    MachineStart {
+        centre_velocity_m_s: V2::new(0.3, 0.1),
+        tilt_rate_rad_s: V2::new(-1.0, 2.0),
+        spin_rad_s,
+        ..MachineStart::default()
+    }
+}
+
+fn run(what: &str, params: &MachineParams, start: &MachineStart, duration_s: f64) -> Machine {
+    let mut machine = Machine::new(params, start, Options::default()).unwrap();
+    let nothing = MachineInputs::default();
+    for i in 1..=(duration_s * 2e4) as u32 {
+        let t = f64::from(i) / 2e4;
+        machine
+            .advance(t, &nothing, &mut |_, _| {})
+            .unwrap_or_else(|e| panic!("{what}: {e}"));
+    }
+    let residual = machine.audit().residual();
+    assert!(residual < 1e-7, "{what}: {residual:e} of the energy");
+    machine
+}
+
+fn modes(machine: &Machine) -> Vec<Mode> {
+    (0..4).map_while(|p| machine.mode(p)).collect()
+}
+
+fn spin_of(mut machine: Machine) -> f64 {
+    machine.snapshot().spin_rad_s
+}
+
+#[test]
+fn inertias_and_spins() {
+    let disc = || {
+        let mut params = base();
+        params.rotor = rigid(0.2, 0.4);
+        params
+    };
+    run("a thin disc", &disc(), &struck(400.0), 0.5);
+    run("no spin", &base(), &struck(0.0), 0.5);
+    let fast = run("3 kHz", &disc(), &struck(18_850.0), 0.2);
+    assert!(fast.meters()[1].peak_backward_speed_m_s > 40.0);
+}
+
+#[test]
+fn planes() {
+    let mut params = base();
+    params.planes[1].contact.clearance_m = 1e-9;
+    run("no clearance left", &params, &struck(400.0), 0.2);
+
+    let mut params = base();
+    params.planes[1] = params.planes[0];
+    let same = run("two planes at one place", &params, &struck(400.0), 0.5);
+    // What both hold they share equally.
+    assert_eq!(modes(&same), [Mode::Roll; 2]);
+    let [a, b] = [0, 1].map(|p| same.meters()[p].peak_friction_torque_n_m);
+    assert!((a / b - 1.0).abs() < 1e-6, "{a}, {b}");
+
+    let mut params = base();
+    let law = params.planes[1].contact.law.linear_mut().unwrap();
+    law.stiffness_n_m *= 100.0;
+    run("100 times stiffer at one end", &params, &struck(400.0), 0.3);
+
+    let mut params = base();
+    params.planes = [-0.2, -0.07, 0.07, 0.2].map(|z| plane(z, 0.5)).to_vec();
+    for (i, plane) in params.planes.iter_mut().enumerate() {
+        plane.centre_m = V2::new(1e-5 * i as f64, 0.0);
+        plane.friction.rolling_coefficient = 0.003;
+    }
+    run("four planes out of line", &params, &struck(400.0), 0.5);
+}
+
+#[test]
+fn shafts_and_supports() {
+    let mut params = base();
+    let mut modes = bending(1, 62_832.0);
+    modes[0].damping_ratio = 0.001;
+    params.rotor = Rotor::Modal {
+        rigid: *rigid(0.2, 0.05).rigid(),
+        bending: modes,
+        polar_coupling_kg_m2: vec![],
+    };
+    run("bending at 10 kHz", &params, &struck(400.0), 0.2);
+
+    let mut params = base();
+    for support in &mut params.supports {
+        (support.stiffness_n_m, support.damping_n_s_m) = (-2e5, 0.0);
+    }
+    run("unstable in tilt", &params, &struck(400.0), 0.3);
+}
+
+#[test]
+fn drops() {
+    let spinning = MachineStart {
+        spin_rad_s: 1500.0,
+        ..MachineStart::default()
+    };
+    let rolling = run("a drop at speed", &dropped(), &spinning, 1.0);
+    assert_eq!(modes(&rolling), [Mode::Roll; 2]);
+    assert!(spin_of(rolling) < 1500.0);
+
+    let mut params = dropped();
+    for plane in &mut params.planes {
+        plane.friction.rolling_coefficient = 0.002;
+    }
+    (params.spin, params.unbalances) = (SpinParams::Held, vec![]);
+    let still = run(
+        "a drop without spin",
+        &params,
+        &MachineStart::default(),
+        2.0,
+    );
+    assert_eq!(modes(&still), [Mode::Seated; 2]);
+
+    let leaning = MachineStart {
+        spin_rad_s: 100.0,
+        tilt_rad: V2::new(1e-4, 0.0),
+        ..MachineStart::default()
+    };
+    let mut params = dropped();
+    for plane in &mut params.planes {
+        plane.contact.law.linear_mut().unwrap().damping_n_s_m = 0.0;
+    }
+    run("no contact damping", &params, &leaning, 0.5);
+    for plane in &mut params.planes {
+        plane.friction.sliding = SlidingFriction::Constant { coefficient: 0.0 };
+    }
+    run("neither damping nor friction", &params, &leaning, 0.5);
+}
