@@ -302,7 +302,7 @@ def found_in(path, pattern):
 def machine():
     lock = lambda crate: found_in("Cargo.lock", rf'name = "{crate}"\nversion = "(.*)"')
     sundials = found_in("/usr/include/sundials/sundials_config.h", r'SUNDIALS_VERSION "(.*)"')
-    python = " ".join(f"{p} {importlib.metadata.version(p)}" for p in ("scipy", "numpy"))
+    python = " ".join(f"{p} {importlib.metadata.version(p)}" for p in ("heyoka", "scipy", "numpy"))
     return {
         "date": datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%d"),
         "cpu": found_in("/proc/cpuinfo", r"^model name\s*:(.*)$"),
@@ -311,7 +311,7 @@ def machine():
         "minutes": f"{int(content('out/seconds')) / 60:.0f}",
         "compilers": f"{first_line('rustc', '--version')}; {first_line('cc', '--version')}",
         "libraries": f"SUNDIALS {sundials}, ivp {lock('ivp')}, diffsol {lock('diffsol')}, "
-        f"{python.replace(' numpy', ', numpy')}, Python {platform.python_version()}",
+        f"{python.replace(' scipy', ', scipy').replace(' numpy', ', numpy')}, Python {platform.python_version()}",
     }
 
 
@@ -325,6 +325,7 @@ STYLES = {
     "ivp DOP853": ("#d62728", "triangle", ""),
     "CVODE Adams": ("#e08214", "square", "6 3"),
     "CVODE BDF": ("#8c510a", "circle", "6 3"),
+    "heyoka": ("#2ca02c", "diamond", ""),
     "diffsol tsit45": ("#df65b0", "triangle", "2 3"),
     "diffsol BDF": ("#7a0177", "diamond", "2 3"),
     "SciPy DOP853": ("#7f7f7f", "square", "8 3 2 3"),
