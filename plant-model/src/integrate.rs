@@ -13,6 +13,7 @@ pub(crate) mod flight_map;
 mod frame;
 mod lu;
 mod pair;
+pub(crate) mod progress;
 pub(crate) mod radau;
 mod radau_tableau;
 mod scales;

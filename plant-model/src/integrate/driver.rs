@@ -7,6 +7,7 @@ use super::contact_step::{ContactStepper, Task};
 use super::dop853::Dop853;
 use super::flight::Segment;
 use super::flight_map::FlightMaps;
+use super::progress::Progress;
 use super::radau::Radau;
 use super::scales::Scales;
 use super::series_step::SeriesStepper;
@@ -50,7 +51,7 @@ pub(crate) struct Run<S: Stator, W: Spin, M: Amplifier, B: Bore, R: Raceway> {
     /// Energy of the spin that may never take part.
     spare_j: f64,
     options: Options,
-    events_without_progress: u32,
+    progress: Progress,
     steps: u64,
     /// Guard that is not asked in the next step.
     suppressed: SuppressedGuards,
@@ -69,10 +70,6 @@ pub(crate) const SPARE: f64 = 1.0 - 1e-4;
 /// A start is on the wall within this share of the clearance, and moves along it within this share of its speed: sine,
 /// cosine, a product and the length leave up to 2.5ε. The [search](super::flight) for the wall knows it as well.
 pub(crate) const ON_WALL: f64 = 4.0 * f64::EPSILON;
-
-/// Events without time in between from which on modes are taken to follow each other in a circle, and those that are too many.
-pub(crate) const CIRCLE: u32 = 4;
-pub(crate) const MOST_AT_ONCE: u32 = 50;
 
 impl<S: Stator, W: Spin, M: Amplifier, B: Bore, R: Raceway> Run<S, W, M, B, R> {
     pub(crate) fn new(
@@ -113,7 +110,7 @@ impl<S: Stator, W: Spin, M: Amplifier, B: Bore, R: Raceway> Run<S, W, M, B, R> {
             stored_peak_j: 0.0,
             spare_j: 0.0,
             options,
-            events_without_progress: 0,
+            progress: Progress::default(),
             steps: 0,
             suppressed: SuppressedGuards::NONE,
             just_left: false,
@@ -199,7 +196,7 @@ impl<S: Stator, W: Spin, M: Amplifier, B: Bore, R: Raceway> Run<S, W, M, B, R> {
                 Phase::Contact(slide, whirl) => self.touch(t_end_s, (slide, whirl))?,
             }
             self.check_state()?;
-            self.count_progress(self.t_s > t_before)?;
+            self.progress.count(self.t_s, self.t_s > t_before)?;
             if self.phase.mode() != phase_before.mode() {
                 on_change(&self.snapshot());
             }
@@ -218,19 +215,6 @@ impl<S: Stator, W: Spin, M: Amplifier, B: Bore, R: Raceway> Run<S, W, M, B, R> {
         }
         let stored = self.system.stored_j(&self.y, self.in_contact()) - self.spare_j;
         self.stored_peak_j = self.stored_peak_j.max(stored.abs());
-        Ok(())
-    }
-
-    /// Modes may follow each other at one instant, but not for ever.
-    fn count_progress(&mut self, moved: bool) -> Result<(), PlantError> {
-        self.events_without_progress = if moved {
-            0
-        } else {
-            self.events_without_progress + 1
-        };
-        if self.events_without_progress > MOST_AT_ONCE {
-            return Err(PlantError::ModeUndecided { t_s: self.t_s });
-        }
         Ok(())
     }
 
@@ -276,8 +260,7 @@ impl<S: Stator, W: Spin, M: Amplifier, B: Bore, R: Raceway> Run<S, W, M, B, R> {
                 if next == pair && stood_still {
                     self.suppressed = suppressed.and(guard);
                 }
-                // Round-off alone leads round in a circle.
-                if self.events_without_progress >= CIRCLE {
+                if self.progress.is_circle() {
                     self.suppressed = SuppressedGuards::MODES;
                 }
                 self.phase = Phase::Contact(next.0, next.1);

@@ -107,7 +107,7 @@ impl FlightMap {
                     lagging += 2;
                 }
                 None => {
-                    machine.control += inputs.commands_n[m].dot(&system.body.magnets[m].of(path))
+                    machine.control += inputs.commands_n[m].dot(&system.body.magnets[m].of(path));
                 }
             }
         }

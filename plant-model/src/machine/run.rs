@@ -13,9 +13,10 @@ use super::system::{MachineInputs, MachineState, MachineSystem};
 use crate::V2;
 use crate::energy::Flows;
 use crate::integrate::contact_step::turn_rad;
-use crate::integrate::driver::{CIRCLE, MOST_AT_ONCE, ON_WALL, SPARE};
+use crate::integrate::driver::{ON_WALL, SPARE};
+use crate::integrate::progress::Progress;
 use crate::integrate::{Options, PlantError};
-use crate::mode::{Mode, Phase, Slide, Whirl};
+use crate::mode::{Mode, Phase};
 use crate::readout::{HARD_IMPACT_M_S, Meters, Work};
 use settle::AtZero;
 
@@ -33,7 +34,7 @@ pub struct Machine {
     forces: Vec<f64>,
     /// Room for modes that are tried.
     trial: Vec<Phase>,
-    phases_before: Vec<Phase>,
+    fallback: Vec<Phase>,
     t_s: f64,
     flows: Flows,
     stored_at_start_j: f64,
@@ -50,7 +51,7 @@ pub struct Machine {
     suppressed: Vec<u8>,
     just_left: Vec<bool>,
     left_at_s: Vec<f64>,
-    events_without_progress: u32,
+    progress: Progress,
     steps: u64,
 }
 
@@ -86,7 +87,7 @@ impl Machine {
             forces: system.body.gravity.clone(),
             phases: vec![Phase::Inside; planes],
             trial: vec![Phase::Inside; planes],
-            phases_before: vec![Phase::Inside; planes],
+            fallback: vec![Phase::Inside; planes],
             t_s: 0.0,
             flows: Flows::default(),
             stored_at_start_j: 0.0,
@@ -102,7 +103,7 @@ impl Machine {
             suppressed: vec![0; planes],
             just_left: vec![false; planes],
             left_at_s: vec![f64::NEG_INFINITY; planes],
-            events_without_progress: 0,
+            progress: Progress::default(),
             steps: 0,
             system,
             y,
@@ -113,8 +114,6 @@ impl Machine {
             let depth = motion.distance_m - data.clearance_m;
             if depth > ON_WALL * data.clearance_m {
                 if data.law.normal_force_n(depth, motion.normal_m_s) > 0.0 {
-                    machine.phases[p] =
-                        Phase::Contact(Slide::from_speed(motion.sliding_m_s), Whirl::Ignored);
                     machine.settle(p, AtZero::default());
                 } else {
                     machine.phases[p] = Phase::Beyond;
@@ -182,7 +181,7 @@ impl Machine {
             let t_before = self.t_s;
             self.step(t_end_s)?;
             self.check_state()?;
-            self.count_progress(self.t_s > t_before)?;
+            self.progress.count(self.t_s, self.t_s > t_before)?;
             let after = self.modes();
             // How many free flights there are is up to the span and the fastest rate: nothing moves too fast.
             steps -= u64::from(free && after == before && self.t_s > t_before);
@@ -245,10 +244,9 @@ impl Machine {
         self.book(reach.theta);
         let stood_still = reach.t_s == self.t_s;
         self.t_s = reach.t_s;
-        let suppressed = |machine: &mut Self, p: usize| std::mem::take(&mut machine.suppressed[p]);
         let mut before = [0; MAX_PLANES];
-        for (p, kept) in before.iter_mut().enumerate().take(self.phases.len()) {
-            *kept = suppressed(self, p);
+        for (kept, suppressed) in before.iter_mut().zip(&mut self.suppressed) {
+            *kept = std::mem::take(suppressed);
         }
         if reach.theta > 0.0 {
             self.just_left.fill(false);
@@ -293,8 +291,7 @@ impl Machine {
                 if self.phases[p] == phase && stood_still {
                     self.suppressed[p] = before[p] | guard.bit();
                 }
-                // Round-off alone leads round in a circle.
-                if self.events_without_progress >= CIRCLE {
+                if self.progress.is_circle() {
                     for (kept, phase) in self.suppressed.iter_mut().zip(&self.phases) {
                         if matches!(phase, Phase::Contact(..)) {
                             *kept = !Guard::Normal.bit();
@@ -404,19 +401,6 @@ impl Machine {
         }
         let stored = self.system.stored_j(&self.y, &self.phases) - self.spare_j;
         self.stored_peak_j = self.stored_peak_j.max(stored.abs());
-        Ok(())
-    }
-
-    /// Modes may follow each other at one instant, but not for ever.
-    fn count_progress(&mut self, moved: bool) -> Result<(), PlantError> {
-        self.events_without_progress = if moved {
-            0
-        } else {
-            self.events_without_progress + 1
-        };
-        if self.events_without_progress > MOST_AT_ONCE {
-            return Err(PlantError::ModeUndecided { t_s: self.t_s });
-        }
         Ok(())
     }
 

@@ -3,12 +3,10 @@
 use super::Machine;
 use crate::V2;
 use crate::machine::guards::Guard;
-use crate::machine::holding::Holding;
 use crate::machine::params::MAX_PLANES;
 use crate::machine::series::Step;
 use crate::machine::system::{Channel, MAX_HELD};
 use crate::mode::{Phase, Slide, Whirl};
-use crate::vector::perp;
 
 /// Speeds of a plane that are known to be zero, or the only direction that they can take.
 #[derive(Debug, Clone, Copy, Default)]
@@ -149,7 +147,7 @@ impl Machine {
             .flatten()
             .map(|c| c.slide_count * c.whirl_count)
             .product();
-        let mut first = None;
+        let mut fallback = false;
         for way in 0..ways {
             let mut rest = way;
             let mut fits = true;
@@ -169,13 +167,13 @@ impl Machine {
                 self.phases.copy_from_slice(&self.trial);
                 return;
             }
-            if first.is_none() {
-                first = Some(way);
-                self.phases_before.copy_from_slice(&self.trial);
+            if !fallback {
+                fallback = true;
+                self.fallback.copy_from_slice(&self.trial);
             }
         }
-        if first.is_some() {
-            self.phases.copy_from_slice(&self.phases_before);
+        if fallback {
+            self.phases.copy_from_slice(&self.fallback);
         }
     }
 
@@ -242,29 +240,24 @@ impl Machine {
         }
         let (sin, cos) = self.y.phase_rad.sin_cos();
         let normals = self.normals();
-        let mut holding = std::mem::replace(&mut self.holding, Holding::new(0));
-        holding.set(
-            &self.system,
-            channels[..count].iter().copied(),
-            |p| normals[p],
-            V2::new(cos, sin),
-        );
+        let Self {
+            system, y, holding, ..
+        } = self;
+        let channels = channels[..count].iter().copied();
+        holding.set(system, channels, |p| normals[p], V2::new(cos, sin));
         let impulses = holding.against(|held| {
-            let whirl = perp(normals[held.plane])
-                .dot(&self.system.body.contacts[held.plane].of(&self.y.velocity));
-            let race = self.y.races_rad_s[held.plane];
-            whirl
-                + self
-                    .system
-                    .surface_of(held.plane, held.channel, self.y.spin_rad_s, race)
+            let whirl = held
+                .tangent
+                .dot(&system.contact(held.plane).of(&y.velocity));
+            let race = y.races_rad_s[held.plane];
+            whirl + system.surface_of(held.plane, held.channel, y.spin_rad_s, race)
         });
         for (held, impulse) in holding.held().iter().zip(impulses) {
-            for (v, a) in self.y.velocity.iter_mut().zip(&held.accelerations) {
+            for (v, a) in y.velocity.iter_mut().zip(&held.accelerations) {
                 *v += impulse * a;
             }
-            self.y.spin_rad_s += impulse * held.spin;
-            self.y.races_rad_s[held.plane] += impulse * held.race;
+            y.spin_rad_s += impulse * held.spin;
+            y.races_rad_s[held.plane] += impulse * held.race;
         }
-        self.holding = holding;
     }
 }
