@@ -71,6 +71,7 @@ mod body;
 mod flight_map;
 mod guards;
 mod holding;
+pub mod modes;
 pub mod params;
 mod readout;
 mod run;

@@ -87,7 +87,12 @@ impl Port {
 
     /// Mobility of the port along x, which is that in every direction but for rings of unequal mountings \[1/kg\].
     pub(crate) fn mobility(&self) -> f64 {
-        self.x.iter().map(|a| a * a).sum()
+        self.mobility_with(self)
+    }
+
+    /// Mobility between two ports along x \[1/kg\].
+    pub(crate) fn mobility_with(&self, other: &Self) -> f64 {
+        self.x.iter().zip(&other.x).map(|(a, b)| a * b).sum()
     }
 
     fn subtract(&mut self, other: &Self) {
