@@ -1,0 +1,308 @@
+//! Ranges of a machine's values, and what contradicts each other.
+
+use super::{
+    MAX_PLANES, MachineError, MachineParams, MachinePlane, MachineStart, RigidRotor, Rotor,
+};
+use crate::params::{ContactLaw, SlidingFriction, SpinParams, StatorParams};
+
+fn check(
+    ok: bool,
+    field: impl Into<String>,
+    value: f64,
+    expected: &'static str,
+) -> Result<(), MachineError> {
+    if ok && value.is_finite() {
+        return Ok(());
+    }
+    Err(MachineError {
+        field: field.into(),
+        value,
+        expected,
+    })
+}
+
+const POSITIVE: &str = "a finite number greater than 0";
+const NOT_NEGATIVE: &str = "a finite number, 0 or greater";
+const FINITE: &str = "a finite number";
+
+impl RigidRotor {
+    fn validate(&self) -> Result<(), MachineError> {
+        let (transverse, polar) = (self.transverse_inertia_kg_m2, self.polar_inertia_kg_m2);
+        check(self.mass_kg > 0.0, "rotor.mass_kg", self.mass_kg, POSITIVE)?;
+        check(
+            transverse > 0.0,
+            "rotor.transverse_inertia_kg_m2",
+            transverse,
+            POSITIVE,
+        )?;
+        let rule =
+            "from 0 to twice transverse_inertia_kg_m2: no body has more, a thin disc has just that";
+        check(
+            (0.0..=2.0 * transverse).contains(&polar),
+            "rotor.polar_inertia_kg_m2",
+            polar,
+            rule,
+        )
+    }
+}
+
+impl Rotor {
+    fn validate(&self) -> Result<(), MachineError> {
+        self.rigid().validate()?;
+        for (i, mode) in self.bending().iter().enumerate() {
+            let field = |name: &str| format!("rotor.bending[{i}].{name}");
+            check(
+                mode.frequency_rad_s > 0.0,
+                field("frequency_rad_s"),
+                mode.frequency_rad_s,
+                POSITIVE,
+            )?;
+            check(
+                mode.damping_ratio >= 0.0,
+                field("damping_ratio"),
+                mode.damping_ratio,
+                NOT_NEGATIVE,
+            )?;
+            let places = mode.shape.len();
+            check(
+                places >= 2,
+                field("shape"),
+                places as f64,
+                "at least two places",
+            )?;
+            for (j, (place, shape)) in mode.shape.iter().enumerate() {
+                let rises = j == 0 || *place > mode.shape[j - 1].0;
+                check(rises, field("shape"), *place, "finite places that rise")?;
+                check(true, field("shape"), *shape, FINITE)?;
+            }
+        }
+        if let Self::Modal {
+            bending,
+            polar_coupling_kg_m2,
+            ..
+        } = self
+            && !polar_coupling_kg_m2.is_empty()
+        {
+            let size = bending.len() + 1;
+            let (field, count) = ("rotor.polar_coupling_kg_m2", polar_coupling_kg_m2.len());
+            check(
+                count == size * size,
+                field,
+                count as f64,
+                "(1 + bending modes)² numbers, or none",
+            )?;
+            for (i, value) in polar_coupling_kg_m2.iter().enumerate() {
+                let mirrored = polar_coupling_kg_m2[(i % size) * size + i / size];
+                check(
+                    *value == mirrored,
+                    field,
+                    *value,
+                    "a symmetric matrix of finite numbers",
+                )?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether a place lies on the rotor, as far as its shapes say.
+    fn reaches(&self, position_m: f64) -> bool {
+        self.bending().iter().all(|mode| {
+            let ends = (mode.shape.first(), mode.shape.last());
+            matches!(ends, (Some(a), Some(b)) if (a.0..=b.0).contains(&position_m))
+        })
+    }
+}
+
+impl MachinePlane {
+    fn validate(&self, i: usize) -> Result<(), MachineError> {
+        let field = |name: &str| format!("planes[{i}].{name}");
+        let finite = |name, value| check(true, field(name), value, FINITE);
+        let positive = |name, value: f64| check(value > 0.0, field(name), value, POSITIVE);
+        let not_negative = |name, value: f64| check(value >= 0.0, field(name), value, NOT_NEGATIVE);
+        finite("centre_m", self.centre_m.x)?;
+        finite("centre_m", self.centre_m.y)?;
+        positive("radius_m", self.radius_m)?;
+        positive("contact.clearance_m", self.contact.clearance_m)?;
+        match self.contact.law {
+            ContactLaw::Linear(law) => {
+                positive("contact.stiffness_n_m", law.stiffness_n_m)?;
+                not_negative("contact.damping_n_s_m", law.damping_n_s_m)?;
+            }
+            ContactLaw::HuntCrossley(law) => {
+                let only = "a linear contact law: no other has a power series at the touch";
+                check(false, field("contact.law"), law.exponent, only)?;
+            }
+        }
+        match self.friction.sliding {
+            SlidingFriction::Constant { coefficient } => {
+                not_negative("friction.coefficient", coefficient)?;
+            }
+            SlidingFriction::Falling { at_speed, .. } => {
+                let only = "sliding friction that is the same at every speed";
+                check(
+                    false,
+                    field("friction.coefficient_at_speed"),
+                    at_speed,
+                    only,
+                )?;
+            }
+        }
+        not_negative(
+            "friction.rolling_coefficient",
+            self.friction.rolling_coefficient,
+        )?;
+        match &self.stator {
+            StatorParams::Rigid => {}
+            StatorParams::RigidEllipse(bore) => {
+                check(
+                    false,
+                    field("stator.ellipticity"),
+                    bore.ellipticity,
+                    "a round bore",
+                )?;
+            }
+            StatorParams::OneMass(ring) => ring.validate_as(&field, "stator.inner")?,
+            StatorParams::TwoMass { inner, outer } => {
+                inner.validate_as(&field, "stator.inner")?;
+                outer.validate_as(&field, "stator.outer")?;
+            }
+        }
+        let Some(race) = &self.race else {
+            return Ok(());
+        };
+        positive("race.inertia_kg_m2", race.inertia_kg_m2)?;
+        not_negative("race.drag_n_m_s", race.drag_n_m_s)?;
+        finite("race.start_spin_rad_s", race.start_spin_rad_s)
+    }
+}
+
+impl crate::params::RingParams {
+    fn validate_as(&self, field: &impl Fn(&str) -> String, ring: &str) -> Result<(), MachineError> {
+        let name = |key: &str| field(&format!("{ring}.{key}"));
+        check(self.mass_kg > 0.0, name("mass_kg"), self.mass_kg, POSITIVE)?;
+        for axis in [0, 1] {
+            let (k, d) = (self.stiffness_n_m[axis], self.damping_n_s_m[axis]);
+            check(k >= 0.0, name("stiffness_n_m"), k, NOT_NEGATIVE)?;
+            check(d >= 0.0, name("damping_n_s_m"), d, NOT_NEGATIVE)?;
+        }
+        Ok(())
+    }
+}
+
+impl MachineParams {
+    /// Checks every value against its range, and against the others.
+    ///
+    /// # Errors
+    /// The first that is out of range, by name.
+    pub fn validate(&self) -> Result<(), MachineError> {
+        self.rotor.validate()?;
+        let polar = self.rotor.rigid().polar_inertia_kg_m2;
+        if let SpinParams::Free {
+            inertia_kg_m2,
+            drive_torque_n_m,
+        } = self.spin
+        {
+            let rule = "more than 0 and at least the rotor's polar inertia, which turns with it";
+            check(
+                inertia_kg_m2 > 0.0 && inertia_kg_m2 >= polar,
+                "spin.inertia_kg_m2",
+                inertia_kg_m2,
+                rule,
+            )?;
+            check(true, "spin.drive_torque_n_m", drive_torque_n_m, FINITE)?;
+        }
+        let place = |list: &str, i: usize, position_m: f64| {
+            let rule = "a place on the rotor: within the shape of every bending mode";
+            check(
+                self.rotor.reaches(position_m),
+                format!("{list}[{i}].position_m"),
+                position_m,
+                rule,
+            )
+        };
+        for (i, support) in self.supports.iter().enumerate() {
+            place("supports", i, support.position_m)?;
+            check(
+                true,
+                format!("supports[{i}].stiffness_n_m"),
+                support.stiffness_n_m,
+                FINITE,
+            )?;
+            let d = support.damping_n_s_m;
+            check(
+                d >= 0.0,
+                format!("supports[{i}].damping_n_s_m"),
+                d,
+                NOT_NEGATIVE,
+            )?;
+        }
+        for (i, unbalance) in self.unbalances.iter().enumerate() {
+            place("unbalances", i, unbalance.position_m)?;
+            let u = unbalance.moment_kg_m;
+            check(
+                u >= 0.0,
+                format!("unbalances[{i}].moment_kg_m"),
+                u,
+                NOT_NEGATIVE,
+            )?;
+            check(
+                true,
+                format!("unbalances[{i}].angle_rad"),
+                unbalance.angle_rad,
+                FINITE,
+            )?;
+        }
+        for (i, magnet) in self.magnets.iter().enumerate() {
+            place("magnets", i, magnet.position_m)?;
+            let (cap, lag) = (magnet.force_max_n, magnet.lag_s);
+            check(
+                cap > 0.0,
+                format!("magnets[{i}].force_max_n"),
+                cap,
+                POSITIVE,
+            )?;
+            check(lag >= 0.0, format!("magnets[{i}].lag_s"), lag, NOT_NEGATIVE)?;
+        }
+        for (list, places) in [("loads", &self.loads_m), ("probes", &self.probes_m)] {
+            for (i, position_m) in places.iter().enumerate() {
+                place(list, i, *position_m)?;
+            }
+        }
+        for axis in [0, 1] {
+            check(true, "gravity_m_s2", self.gravity_m_s2[axis], FINITE)?;
+        }
+        let planes = self.planes.len();
+        check(
+            (1..=MAX_PLANES).contains(&planes),
+            "planes",
+            planes as f64,
+            "one to four planes",
+        )?;
+        for (i, plane) in self.planes.iter().enumerate() {
+            place("planes", i, plane.position_m)?;
+            plane.validate(i)?;
+        }
+        Ok(())
+    }
+}
+
+impl MachineStart {
+    /// Checks that every value is finite.
+    ///
+    /// # Errors
+    /// The first that is not.
+    pub fn validate(&self) -> Result<(), MachineError> {
+        let vectors = [
+            ("start.centre_m", self.centre_m),
+            ("start.centre_velocity_m_s", self.centre_velocity_m_s),
+            ("start.tilt_rad", self.tilt_rad),
+            ("start.tilt_rate_rad_s", self.tilt_rate_rad_s),
+        ];
+        for (field, v) in vectors {
+            check(true, field, v.x, FINITE)?;
+            check(true, field, v.y, FINITE)?;
+        }
+        check(true, "start.spin_rad_s", self.spin_rad_s, FINITE)?;
+        check(true, "start.spin_phase_rad", self.spin_phase_rad, FINITE)
+    }
+}
