@@ -35,6 +35,12 @@ impl LinearContact {
         self.stiffness_n_m * penetration_m + self.damping_n_s_m * penetration_rate_m_s
     }
 
+    /// Energy in the contact spring \[J\].
+    #[inline]
+    pub(crate) fn stored_j(&self, penetration_m: f64) -> f64 {
+        0.5 * self.stiffness_n_m * penetration_m * penetration_m
+    }
+
     /// The law at a penetration and its rate.
     #[inline]
     pub(crate) fn at(&self, penetration_m: f64, penetration_rate_m_s: f64) -> Normal {
@@ -89,7 +95,7 @@ impl ContactLaw {
     #[inline]
     pub fn stored_j(&self, penetration_m: f64) -> f64 {
         match self {
-            Self::Linear(law) => 0.5 * law.stiffness_n_m * penetration_m * penetration_m,
+            Self::Linear(law) => law.stored_j(penetration_m),
             Self::HuntCrossley(law) => law.stored_j(penetration_m),
         }
     }

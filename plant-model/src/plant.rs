@@ -187,12 +187,7 @@ impl Parts<'_> {
         let Some(race) = &self.params.race else {
             return self.with_spin(stator, ());
         };
-        let race = Race {
-            radius_m: self.params.bore_radius_m(),
-            inertia_kg_m2: race.inertia_kg_m2,
-            drag_n_m_s: race.drag_n_m_s,
-            start_spin_rad_s: race.start_spin_rad_s,
-        };
+        let race = Race::new(self.params.bore_radius_m(), race);
         self.with_amplifier(stator, self.phased_spin(), self.plane((), race))
     }
 

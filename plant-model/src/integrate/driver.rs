@@ -52,7 +52,6 @@ pub(crate) struct Run<S: Stator, W: Spin, M: Amplifier, B: Bore, R: Raceway> {
     spare_j: f64,
     options: Options,
     progress: Progress,
-    steps: u64,
     /// Guard that is not asked in the next step.
     suppressed: SuppressedGuards,
     /// The rotor has left the wall at this instant.
@@ -111,7 +110,6 @@ impl<S: Stator, W: Spin, M: Amplifier, B: Bore, R: Raceway> Run<S, W, M, B, R> {
             spare_j: 0.0,
             options,
             progress: Progress::default(),
-            steps: 0,
             suppressed: SuppressedGuards::NONE,
             just_left: false,
             left_at_s: f64::NEG_INFINITY,
@@ -171,27 +169,20 @@ impl<S: Stator, W: Spin, M: Amplifier, B: Bore, R: Raceway> Run<S, W, M, B, R> {
                 self.flows.add_scaled(1.0, &flows);
                 (self.y, self.t_s) = (end, t_end_s);
                 self.just_left = false;
-                self.steps += 1;
+                self.progress.whole_sample();
                 return self.check_state();
             }
         }
-        let mut steps = 0;
+        self.progress.begin_sample();
         while self.t_s < t_end_s {
-            steps += 1;
-            self.steps += 1;
-            for (done, limit) in [
-                (steps, self.options.steps_per_sample),
-                (self.steps, self.options.steps),
-            ] {
-                if done > limit {
-                    let t_s = self.t_s;
-                    return Err(PlantError::WorkLimit { t_s, steps: limit });
-                }
-            }
+            self.progress.begin_step(&self.options, self.t_s)?;
             let (t_before, phase_before) = (self.t_s, self.phase);
             match self.phase {
-                // How many of these there are is up to the span and the fastest rate: nothing moves too fast.
-                Phase::Inside => steps -= u64::from(self.fly_inside(t_end_s)),
+                Phase::Inside => {
+                    if self.fly_inside(t_end_s) {
+                        self.progress.was_free();
+                    }
+                }
                 Phase::Beyond => self.fly_beyond(t_end_s),
                 Phase::Contact(slide, whirl) => self.touch(t_end_s, (slide, whirl))?,
             }

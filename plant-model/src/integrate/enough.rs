@@ -1,7 +1,28 @@
-//! To which order a power series is worth carrying on.
+//! To which order a power series is worth carrying on, and how far it can then be trusted.
+
+use crate::series::MAX_ORDER;
 
 /// Below this order the last two terms say too little about the rest.
 pub(crate) const LOWEST_ORDER: usize = 6;
+
+/// The largest order that pays at a tolerance. Measured on bouncing into rolling: between these orders the time to a given
+/// error is flat, below and above it rises.
+pub(crate) fn highest_order(rtol: f64) -> usize {
+    match rtol {
+        r if r > 1e-7 => 16,
+        r if r > 1e-11 => 20,
+        _ => MAX_ORDER,
+    }
+}
+
+/// θ up to which a series can be trusted, by the weighed squares of its two highest coefficients: they say how far the rest
+/// can be left out. Where the step was far too long they have lost their digits, or overflowed.
+#[inline]
+pub(crate) fn trusted_theta(order: usize, square: impl Fn(usize) -> f64) -> f64 {
+    let reach = |k: usize| square(k).powf(-0.5 / k as f64);
+    let (a, b) = (reach(order), reach(order - 1));
+    0.9 * if a < b || a.is_nan() { a } else { b }
+}
 
 /// Whether the series reaches to the end of the span, asked from order to order: its last two terms there are
 /// small, by a margin as to the distance.

@@ -2,7 +2,7 @@
 
 use super::contact_series::ContactSeries;
 use super::contact_step::{ContactStep, Task};
-use super::enough::{Enough, LOWEST_ORDER};
+use super::enough::{Enough, LOWEST_ORDER, highest_order, trusted_theta};
 use super::first_fall::{Fall, first_fall};
 use super::scales::Scales;
 use crate::integrate::PlantError;
@@ -10,7 +10,7 @@ use crate::magnet::Amplifier;
 use crate::params::LinearContact;
 use crate::plane::{Bore, Raceway};
 use crate::readout::Work;
-use crate::series::{MAX_ORDER, Scalar};
+use crate::series::Scalar;
 use crate::spin::Spin;
 use crate::stator::Stator;
 use crate::system::{GUARDS, NORMAL, StateOf, System};
@@ -27,17 +27,10 @@ pub(crate) struct SeriesStepper<S: Stator> {
 
 impl<S: Stator> SeriesStepper<S> {
     pub(crate) fn new(rtol: f64, contact_rate_rad_s: f64, law: LinearContact) -> Self {
-        // Measured on bouncing into rolling: between these orders the time to a given error is flat,
-        // below and above it rises.
-        let highest_order = match rtol {
-            r if r > 1e-7 => 16,
-            r if r > 1e-11 => 20,
-            _ => MAX_ORDER,
-        };
         Self {
             series: ContactSeries::new(law),
             guard: Scalar::default(),
-            highest_order,
+            highest_order: highest_order(rtol),
             step_s: 1.0 / contact_rate_rad_s,
         }
     }
@@ -69,11 +62,7 @@ impl<S: Stator> SeriesStepper<S> {
                 self.step_s = self.step_s.max(remaining);
                 break (order, f64::INFINITY);
             }
-            // The two highest coefficients say how far the rest can be left out. Where the reference was
-            // far too long they have lost their digits, or overflowed.
-            let reach = |k: usize| square(&self.series, k).powf(-0.5 / k as f64);
-            let (a, b) = (reach(order), reach(order - 1));
-            let trusted = 0.9 * if a < b || a.is_nan() { a } else { b };
+            let trusted = trusted_theta(order, |k| square(&self.series, k));
             if trusted > 1e-2 {
                 self.step_s = (trusted * reference).min(1e3 * reference);
                 break (order, trusted);

@@ -10,6 +10,7 @@
 use super::params::{MachineError, MachineParams, MachinePlane};
 use crate::V2;
 use crate::params::{RingParams, StatorParams};
+use nalgebra::DMatrix;
 
 /// A square matrix by its entries that are not zero.
 #[derive(Debug, Clone, Default)]
@@ -284,6 +285,25 @@ impl LinearBody {
             at_planes: ports(&mut params.planes.iter().map(|p| p.position_m)),
             rings,
         })
+    }
+
+    /// A of ż = A·z for z = (ω·q, q̇) without forces at a spin \[rad/s\], ω a rate that makes all entries of one size.
+    pub(crate) fn generator(&self, rate_rad_s: f64, spin_rad_s: f64) -> DMatrix<f64> {
+        let n = self.n;
+        let mut a = DMatrix::zeros(2 * n, 2 * n);
+        for i in 0..n {
+            a[(i, n + i)] = rate_rad_s;
+        }
+        for (row, column, k) in &self.stiffness.0 {
+            a[(n + row, *column)] -= k / rate_rad_s;
+        }
+        for (row, column, d) in &self.damping.0 {
+            a[(n + row, n + column)] -= d;
+        }
+        for (row, column, g) in &self.gyroscopic.0 {
+            a[(n + row, n + column)] -= spin_rad_s * g;
+        }
+        a
     }
 
     /// Rate of the fastest undamped motion, by a bound \[rad/s\].

@@ -89,9 +89,6 @@ impl FlightMap {
         for (row, out) in self.out.iter_mut().enumerate() {
             *out = dot(&self.end[row * d..(row + 1) * d], &self.z);
         }
-        let mut machine = Flows::default();
-        let [damping, control, unbalance] = [0, 1, 2].map(|w| self.work(w));
-        (machine.rotor_damping, machine.control, machine.unbalance) = (damping, control, unbalance);
         let per = 1.0 / self.rate;
         for (i, path) in path.iter_mut().enumerate().take(n) {
             let q = per * self.out[i];
@@ -100,27 +97,27 @@ impl FlightMap {
             y.velocity[i] = self.out[n + i];
         }
         let mut lagging = self.layout.magnets;
-        for (m, rate) in system.magnet_rates.iter().enumerate() {
-            match rate {
-                Some(_) => {
-                    y.magnets_n[m] = V2::new(self.out[lagging], self.out[lagging + 1]);
-                    lagging += 2;
-                }
-                None => {
-                    machine.control += inputs.commands_n[m].dot(&system.body.magnets[m].of(path));
-                }
+        for (force_n, rate) in y.magnets_n.iter_mut().zip(&system.magnet_rates) {
+            if rate.is_some() {
+                *force_n = V2::new(self.out[lagging], self.out[lagging + 1]);
+                lagging += 2;
             }
         }
-        for (port, load_n) in system.body.loads.iter().zip(&inputs.loads_n) {
-            machine.external += load_n.dot(&port.of(path));
-        }
-        machine.external += dot(&system.body.gravity, path);
+        let (control, external) = system.held_work_j(inputs, path);
+        let [rotor_damping, lagged, unbalance] = [0, 1, 2].map(|w| self.work(w));
+        let machine = Flows {
+            control: control + lagged,
+            external,
+            unbalance,
+            rotor_damping,
+            ..Flows::default()
+        };
         y.phase_rad += y.spin_rad_s * dt_s;
         let mut flows = StepFlows::of_machine(machine);
         for (p, plane) in system.planes.iter().enumerate() {
             if let Some(race) = &plane.race {
                 let before = y.races_rad_s[p];
-                y.races_rad_s[p] *= (-race.drag_n_m_s / race.inertia_kg_m2 * dt_s).exp();
+                y.races_rad_s[p] = race.coasted_rad_s(before, dt_s);
                 flows.planes[p].race_drag = race.coasting_loss_j(before, y.races_rad_s[p]);
                 flows.machine.stator_damping += flows.planes[p].race_drag;
             }
@@ -181,28 +178,12 @@ impl FlightMap {
         } = self.layout;
         let (body, rate, spin) = (&system.body, self.rate, self.spin_rad_s);
         let mut a = DMatrix::zeros(one + 1, one + 1);
-        let mut column = vec![0.0; n];
-        for i in 0..n {
-            a[(i, n + i)] = rate;
-            let unit = |column: &mut [f64], at: usize| {
-                column.fill(0.0);
-                column[at] = 1.0;
-            };
-            let mut x = vec![0.0; n];
-            unit(&mut x, i);
-            column.fill(0.0);
-            body.stiffness.add_product(&mut column, -1.0 / rate, &x);
-            for row in 0..n {
-                a[(n + row, i)] = column[row];
-            }
-            column.fill(0.0);
-            body.damping.add_product(&mut column, -1.0, &x);
-            body.gyroscopic.add_product(&mut column, -spin, &x);
-            for row in 0..n {
-                a[(n + row, n + i)] = column[row];
-            }
-            a[(n + i, one)] = body.gravity[i];
+        a.view_mut((0, 0), (2 * n, 2 * n))
+            .copy_from(&body.generator(rate, spin));
+        for (i, force) in body.gravity.iter().enumerate() {
+            a[(n + i, one)] = *force;
         }
+        let mut column = vec![0.0; n];
         let mut pushes =
             |a: &mut DMatrix<f64>, at: usize, port: &super::body::Port, factor: f64| {
                 for (axis, unit) in [V2::x(), V2::y()].into_iter().enumerate() {
@@ -259,11 +240,8 @@ impl FlightMap {
         let d = one + 1;
         (self.z, self.size, self.out) = (vec![0.0; d], vec![0.0; d], vec![0.0; direction]);
         let a = self.generator(system) * self.dt_s;
-        let end = a.clone().exp();
-        self.end = (0..direction)
-            .flat_map(|row| (0..d).map(move |c| (row, c)))
-            .map(|at| end[at])
-            .collect();
+        let end = a.exp();
+        self.end = by_rows(&end, direction);
 
         // Σ_k |S·A^k/k!|: on θ from 0 to 1 no power of it is larger.
         let mut ports = DMatrix::zeros(2 * body.contacts.len(), d);
@@ -285,10 +263,7 @@ impl FlightMap {
                 break;
             }
         }
-        self.reach = (0..reach.nrows())
-            .flat_map(|row| (0..d).map(move |c| (row, c)))
-            .map(|at| reach[at])
-            .collect();
+        self.reach = by_rows(&reach, reach.nrows());
         self.works = self.make_works(system, &a);
         self.made = true;
     }
@@ -302,11 +277,7 @@ impl FlightMap {
             direction,
             ..
         } = self.layout;
-        let mut powers = [
-            DMatrix::zeros(d, d),
-            DMatrix::zeros(d, d),
-            DMatrix::zeros(d, d),
-        ];
+        let mut powers = [(); 3].map(|()| DMatrix::zeros(d, d));
         for i in 0..n {
             let (mut x, mut column) = (vec![0.0; n], vec![0.0; n]);
             x[i] = 1.0;
@@ -336,11 +307,7 @@ impl FlightMap {
         let nodes = Nodes::stretched(&EIGHT, 1.0 / parts);
         let within = nodes.theta.map(|theta| (a * theta).exp());
         let mut from = DMatrix::identity(d, d);
-        let mut works = [
-            DMatrix::zeros(d, d),
-            DMatrix::zeros(d, d),
-            DMatrix::zeros(d, d),
-        ];
+        let mut works = [(); 3].map(|()| DMatrix::zeros(d, d));
         for _ in 0..parts as usize {
             for (j, inner) in within.iter().enumerate() {
                 let at = inner * &from;
@@ -358,6 +325,13 @@ impl FlightMap {
             false => vec![],
         })
     }
+}
+
+/// The first rows of a matrix, one after the other.
+fn by_rows(a: &DMatrix<f64>, rows: usize) -> Vec<f64> {
+    (a.row_iter().take(rows))
+        .flat_map(|row| row.iter().copied().collect::<Vec<_>>())
+        .collect()
 }
 
 #[inline]

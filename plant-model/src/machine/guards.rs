@@ -65,10 +65,12 @@ impl Guard {
             Phase::Contact(slide, whirl) => (slide, whirl),
             _ => (Slide::Rolling, Whirl::Ignored),
         };
-        let mut cone = |mu: f64, held: &Scalar, side: f64| {
-            out.combine((mu, &plane.force), (-side, held), order);
+        // a·x + b·y, and there is something to ask.
+        let mut ask = |x: (f64, &Scalar), y: (f64, &Scalar)| {
+            out.combine(x, y, order);
             true
         };
+        let (force, none) = (&plane.force, (0.0, &plane.force));
         match self {
             Self::Gap => {
                 let reach = plane.gap.0[1..=order]
@@ -87,36 +89,24 @@ impl Guard {
                 true
             }
             Self::Beyond => {
-                out.combine((1.0, &plane.distance), (0.0, &plane.distance), order);
+                ask((1.0, &plane.distance), none);
                 out.0[0] -= data.clearance_m;
                 true
             }
-            Self::NoForce => {
-                out.combine((-1.0, &plane.force), (0.0, &plane.force), order);
-                true
+            Self::NoForce => ask((-1.0, force), none),
+            Self::Normal => ask((1.0, force), none),
+            Self::Slide if slide == Slide::Rolling => {
+                ask((data.sliding, force), (-1.0, &plane.sliding))
             }
-            Self::Normal => {
-                out.combine((1.0, &plane.force), (0.0, &plane.force), order);
-                true
-            }
-            Self::Slide if slide == Slide::Rolling => cone(data.sliding, &plane.sliding, 1.0),
-            Self::SlideLow => cone(data.sliding, &plane.sliding, -1.0),
+            Self::SlideLow => ask((data.sliding, force), (1.0, &plane.sliding)),
             // Without friction the direction of slip changes nothing.
             Self::Slide if data.sliding == 0.0 => false,
-            Self::Slide => {
-                out.combine((slide.sign(), &plane.slip), (0.0, &plane.slip), order);
-                true
+            Self::Slide => ask((slide.sign(), &plane.slip), none),
+            Self::Whirl if whirl == Whirl::Still => {
+                ask((data.rolling, force), (-1.0, &plane.rolling))
             }
-            Self::Whirl if whirl == Whirl::Still => cone(data.rolling, &plane.rolling, 1.0),
-            Self::WhirlLow => cone(data.rolling, &plane.rolling, -1.0),
-            Self::Whirl => {
-                out.combine(
-                    (whirl.sign(), &plane.whirl_speed),
-                    (0.0, &plane.whirl_speed),
-                    order,
-                );
-                true
-            }
+            Self::WhirlLow => ask((data.rolling, force), (1.0, &plane.rolling)),
+            Self::Whirl => ask((whirl.sign(), &plane.whirl_speed), none),
         }
     }
 }

@@ -38,27 +38,8 @@ const TOLD_APART: f64 = 1e-6;
 /// The first value that is out of range.
 pub fn modes(params: &MachineParams, spin_rad_s: f64) -> Result<Vec<MachineMode>, MachineError> {
     let body = LinearBody::new(params)?;
-    let n = body.n;
-    // Positions counted in units of the fastest rate: all entries are of one size.
     let rate = body.undamped_rate_rad_s().max(1.0);
-    let mut a = DMatrix::<f64>::zeros(2 * n, 2 * n);
-    let (mut unit, mut column) = (vec![0.0; n], vec![0.0; n]);
-    for i in 0..n {
-        unit.fill(0.0);
-        unit[i] = 1.0;
-        a[(i, n + i)] = rate;
-        column.fill(0.0);
-        body.stiffness.add_product(&mut column, -1.0 / rate, &unit);
-        for row in 0..n {
-            a[(n + row, i)] = column[row];
-        }
-        column.fill(0.0);
-        body.damping.add_product(&mut column, -1.0, &unit);
-        body.gyroscopic.add_product(&mut column, -spin_rad_s, &unit);
-        for row in 0..n {
-            a[(n + row, n + i)] = column[row];
-        }
-    }
+    let a = body.generator(rate, spin_rad_s);
     let values = a.complex_eigenvalues();
     let complex = a.map(|x| Complex::new(x, 0.0));
     let mut modes: Vec<MachineMode> = (values.iter())
@@ -81,7 +62,7 @@ pub fn modes(params: &MachineParams, spin_rad_s: f64) -> Result<Vec<MachineMode>
     Ok(modes)
 }
 
-/// Which way the eigenvector goes round, from one step of inverse iteration.
+/// Which way the eigenvector goes round, from inverse iteration.
 fn direction(
     body: &LinearBody,
     a: &DMatrix<Complex<f64>>,

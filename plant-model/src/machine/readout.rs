@@ -10,6 +10,7 @@ use crate::mode::{Mode, Phase, Slide, Whirl};
 use crate::part::Body;
 use crate::quadrature::{EIGHT, Nodes, SIX};
 use crate::readout::Peaks;
+use crate::series::Scalar;
 
 /// What can be read off one plane at an instant, SI units.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -74,6 +75,8 @@ pub struct PlaneFlows {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ContactMotion {
     pub(crate) distance_m: f64,
+    /// A; negative inside the clearance.
+    pub(crate) penetration_m: f64,
     pub(crate) normal: V2,
     pub(crate) normal_m_s: f64,
     pub(crate) whirl_m_s: f64,
@@ -97,6 +100,7 @@ impl MachineSystem {
         let surface = data.radius_m * y.spin_rad_s - data.race_radius_m() * y.races_rad_s[plane];
         ContactMotion {
             distance_m,
+            penetration_m: distance_m - data.clearance_m,
             normal,
             normal_m_s: normal.dot(&w),
             whirl_m_s,
@@ -112,9 +116,7 @@ impl MachineSystem {
             0.5 * (kinetic + self.body.stiffness.quadratic(&y.position)) + self.turning_j(y);
         for (p, phase) in phases.iter().enumerate() {
             if matches!(phase, Phase::Contact(..)) {
-                let data = &self.planes[p];
-                let depth = self.motion(p, y).distance_m - data.clearance_m;
-                stored += 0.5 * data.law.stiffness_n_m * depth * depth;
+                stored += self.planes[p].law.stored_j(self.motion(p, y).penetration_m);
             }
         }
         stored
@@ -195,24 +197,14 @@ impl MachineSeries {
     ) -> StepFlows {
         let (h, order, body) = (self.step_s, self.order, &system.body);
         let Held { inputs, path } = held;
-        let mut machine = Flows::default();
+        let (control, external) = system.held_work_j(inputs, path);
+        let mut machine = Flows {
+            control,
+            external,
+            ..Flows::default()
+        };
         let mut planes = [PlaneFlows::default(); MAX_PLANES];
-        for (port, force_n) in body.loads.iter().zip(&inputs.loads_n) {
-            machine.external += force_n.dot(&port.of(path));
-        }
-        machine.external += body
-            .gravity
-            .iter()
-            .zip(path)
-            .map(|(f, q)| f * q)
-            .sum::<f64>();
-        let mut lags = false;
-        for (m, port) in body.magnets.iter().enumerate() {
-            match system.magnet_rates[m] {
-                Some(_) => lags = true,
-                None => machine.control += inputs.commands_n[m].dot(&port.of(path)),
-            }
-        }
+        let lags = system.magnet_rates.iter().any(Option::is_some);
         let damped = !body.damping.is_zero();
         if damped || lags || body.unbalance.is_some() {
             let mut powers = [Flows::default(); N];
@@ -286,7 +278,14 @@ impl MachineSeries {
         (theta, backward): (f64, f64),
     ) -> Peaks {
         let (series, data, order) = (&self.planes[plane], &system.planes[plane], self.order);
-        let top = |s, sign| highest((s, sign), (theta, series_end(s, theta, order)), order).1;
+        let top = |s, sign| {
+            highest(
+                (s, sign),
+                (theta, Scalar::with_slope(s, theta, order)),
+                order,
+            )
+            .1
+        };
         let normal_n = top(&series.force, 1.0);
         Peaks {
             normal_n,
@@ -296,10 +295,6 @@ impl MachineSeries {
             backward_m_s: top(&series.whirl_speed, backward),
         }
     }
-}
-
-fn series_end(series: &crate::series::Scalar, theta: f64, order: usize) -> (f64, f64) {
-    series.with_slope(theta, order)
 }
 
 impl PlaneFlows {

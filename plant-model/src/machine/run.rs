@@ -52,7 +52,6 @@ pub struct Machine {
     just_left: Vec<bool>,
     left_at_s: Vec<f64>,
     progress: Progress,
-    steps: u64,
 }
 
 impl Machine {
@@ -104,14 +103,13 @@ impl Machine {
             just_left: vec![false; planes],
             left_at_s: vec![f64::NEG_INFINITY; planes],
             progress: Progress::default(),
-            steps: 0,
             system,
             y,
         };
         for p in 0..planes {
             let motion = machine.contact_motion(p);
             let data = &machine.system.planes[p];
-            let depth = motion.distance_m - data.clearance_m;
+            let depth = motion.penetration_m;
             if depth > ON_WALL * data.clearance_m {
                 if data.law.normal_force_n(depth, motion.normal_m_s) > 0.0 {
                     machine.settle(p, AtZero::default());
@@ -157,25 +155,13 @@ impl Machine {
                 }
                 self.t_s = t_end_s;
                 self.just_left.fill(false);
-                self.steps += 1;
+                self.progress.whole_sample();
                 return self.check_state();
             }
         }
-        let mut steps = 0;
+        self.progress.begin_sample();
         while self.t_s < t_end_s {
-            steps += 1;
-            self.steps += 1;
-            for (done, limit) in [
-                (steps, self.options.steps_per_sample),
-                (self.steps, self.options.steps),
-            ] {
-                if done > limit {
-                    return Err(PlantError::WorkLimit {
-                        t_s: self.t_s,
-                        steps: limit,
-                    });
-                }
-            }
+            self.progress.begin_step(&self.options, self.t_s)?;
             let free = self.phases.iter().all(|phase| *phase == Phase::Inside);
             let before: [Mode; MAX_PLANES] = self.modes();
             let t_before = self.t_s;
@@ -183,8 +169,9 @@ impl Machine {
             self.check_state()?;
             self.progress.count(self.t_s, self.t_s > t_before)?;
             let after = self.modes();
-            // How many free flights there are is up to the span and the fastest rate: nothing moves too fast.
-            steps -= u64::from(free && after == before && self.t_s > t_before);
+            if free && after == before && self.t_s > t_before {
+                self.progress.was_free();
+            }
             if after != before {
                 let snapshot = self.snapshot();
                 for p in (0..self.phases.len()).filter(|p| after[*p] != before[*p]) {
@@ -225,7 +212,7 @@ impl Machine {
     }
 
     fn step(&mut self, t_end_s: f64) -> Result<(), PlantError> {
-        let moment_s = self.system.moment_s();
+        let moment_s = self.system.moment_s;
         let t_end_s = match self.suppressed.iter().all(|s| *s == 0) {
             true => t_end_s,
             false => t_end_s.min(self.t_s + 100.0 * moment_s),
@@ -355,7 +342,7 @@ impl Machine {
     /// moment.
     fn touch_down(&mut self, p: usize) {
         self.zero_speeds(None);
-        if self.t_s - self.left_at_s[p] <= self.system.moment_s() {
+        if self.t_s - self.left_at_s[p] <= self.system.moment_s {
             self.suppressed[p] = Guard::Normal.bit();
         }
         self.settle(p, AtZero::default());
@@ -365,7 +352,7 @@ impl Machine {
         self.zero_speeds(None);
         self.just_left[p] = true;
         self.left_at_s[p] = self.t_s;
-        let depth_m = self.contact_motion(p).distance_m - self.system.planes[p].clearance_m;
+        let depth_m = self.contact_motion(p).penetration_m;
         self.phases[p] = if self.system.planes[p].leaves_dent(depth_m) {
             // The dent relaxes on the contact damper alone.
             let dent_j = self.dent_j(p);
@@ -377,9 +364,8 @@ impl Machine {
     }
 
     fn dent_j(&self, p: usize) -> f64 {
-        let data = &self.system.planes[p];
-        let depth_m = self.contact_motion(p).distance_m - data.clearance_m;
-        0.5 * data.law.stiffness_n_m * depth_m * depth_m
+        let depth_m = self.contact_motion(p).penetration_m;
+        self.system.planes[p].law.stored_j(depth_m)
     }
 
     fn book_dent(&mut self, p: usize, dent_j: f64) {

@@ -5,11 +5,11 @@ use super::series::{MachineSeries, Step};
 use super::system::{MachineState, MachineSystem};
 use crate::V2;
 use crate::integrate::PlantError;
-use crate::integrate::enough::{Enough, LOWEST_ORDER};
+use crate::integrate::enough::{Enough, LOWEST_ORDER, highest_order, trusted_theta};
 use crate::integrate::first_fall::{Fall, first_fall};
 use crate::mode::Phase;
 use crate::readout::Work;
-use crate::series::{MAX_ORDER, Scalar};
+use crate::series::Scalar;
 
 /// What a step is asked for.
 #[derive(Clone, Copy)]
@@ -80,12 +80,7 @@ impl Stepper {
             series: MachineSeries::new(&system.body),
             guard: Scalar::default(),
             rtol: MARGIN * rtol,
-            // As with one plane: measured there.
-            highest_order: match rtol {
-                r if r > 1e-7 => 16,
-                r if r > 1e-11 => 20,
-                _ => MAX_ORDER,
-            },
+            highest_order: highest_order(rtol),
             references_s: [1.0 / rate; 2],
             fastest_m_s: 0.0,
             mobility: most(&|p| system.contact(p).mobility()),
@@ -153,9 +148,7 @@ impl Stepper {
                 *kept = kept.max(remaining);
                 break f64::INFINITY;
             }
-            let reach = |k: usize| square(&self.series, k).powf(-0.5 / k as f64);
-            let (a, b) = (reach(order), reach(order - 1));
-            let trusted = 0.9 * if a < b || a.is_nan() { a } else { b };
+            let trusted = trusted_theta(order, |k| square(&self.series, k));
             if trusted > 1e-2 {
                 *kept = (trusted * reference).min(1e3 * reference);
                 break trusted;

@@ -5,7 +5,8 @@ use super::params::{MAX_PLANES, MachineError, MachineParams, MachineStart};
 use crate::V2;
 use crate::contact::NO_DENT;
 use crate::mode::{Phase, Slide, Whirl};
-use crate::params::{ContactLaw, LinearContact, SlidingFriction, SpinParams};
+use crate::params::{ContactLaw, LinearContact, SpinParams};
+use crate::part::Body;
 use crate::plane::race::Race;
 use nalgebra::SMatrix;
 
@@ -83,6 +84,14 @@ pub(crate) struct MachineState {
 }
 
 impl MachineState {
+    /// Motion at a port.
+    pub(crate) fn motion_at(&self, port: &Port) -> Body {
+        Body {
+            position: port.of(&self.position),
+            velocity: port.of(&self.velocity),
+        }
+    }
+
     pub(crate) fn is_finite(&self) -> bool {
         let numbers = self
             .position
@@ -144,6 +153,8 @@ pub(crate) struct MachineSystem {
     /// 1/τ of each magnet that lags.
     pub(crate) magnet_rates: Vec<Option<f64>>,
     pub(crate) caps_n: Vec<f64>,
+    /// A time that nothing in contact notices.
+    pub(crate) moment_s: f64,
 }
 
 impl MachineSystem {
@@ -161,17 +172,10 @@ impl MachineSystem {
                     damping_n_s_m: 0.0,
                 },
             },
-            sliding: match plane.friction.sliding {
-                SlidingFriction::Constant { coefficient } => coefficient,
-                SlidingFriction::Falling { at_rest, .. } => at_rest,
-            },
+            sliding: plane.friction.sliding.coefficient(0.0),
             rolling: plane.friction.rolling_coefficient,
-            race: plane.race.map(|race| Race {
-                radius_m: plane.radius_m + plane.contact.clearance_m,
-                inertia_kg_m2: race.inertia_kg_m2,
-                drag_n_m_s: race.drag_n_m_s,
-                start_spin_rad_s: race.start_spin_rad_s,
-            }),
+            race: (plane.race.as_ref())
+                .map(|race| Race::new(plane.radius_m + plane.contact.clearance_m, race)),
         });
         let (inverse_inertia, drive_torque_n_m) = match params.spin {
             SpinParams::Held => (0.0, 0.0),
@@ -180,7 +184,7 @@ impl MachineSystem {
                 drive_torque_n_m,
             } => (1.0 / inertia_kg_m2, drive_torque_n_m),
         };
-        Ok(Self {
+        let mut system = Self {
             body,
             planes: planes.collect(),
             inverse_inertia,
@@ -191,7 +195,10 @@ impl MachineSystem {
                 .map(|m| (m.lag_s > 0.0).then(|| 1.0 / m.lag_s))
                 .collect(),
             caps_n: params.magnets.iter().map(|m| m.force_max_n).collect(),
-        })
+            moment_s: 0.0,
+        };
+        system.moment_s = 1e-6 / system.contact_rate_rad_s();
+        Ok(system)
     }
 
     pub(crate) fn start(
@@ -306,8 +313,21 @@ impl MachineSystem {
         rates.fold(0.0, f64::max)
     }
 
-    /// A time that nothing in contact notices.
-    pub(crate) fn moment_s(&self) -> f64 {
-        1e-6 / self.contact_rate_rad_s()
+    /// Work of what is held along the coordinates' way: of magnets that do not lag, and of loads and gravity \[J\].
+    pub(crate) fn held_work_j(&self, inputs: &MachineInputs, path: &[f64]) -> (f64, f64) {
+        let (mut control, mut external) = (0.0, 0.0);
+        for (port, load_n) in self.body.loads.iter().zip(&inputs.loads_n) {
+            external += load_n.dot(&port.of(path));
+        }
+        for (force, way) in self.body.gravity.iter().zip(path) {
+            external += force * way;
+        }
+        let magnets = self.body.magnets.iter().zip(&self.magnet_rates);
+        for ((port, lag), command_n) in magnets.zip(&inputs.commands_n) {
+            if lag.is_none() {
+                control += command_n.dot(&port.of(path));
+            }
+        }
+        (control, external)
     }
 }

@@ -2,6 +2,7 @@
 //! J_i·Ω̇_i = −R_i·s − b·Ω_i, eq. (2.37).
 
 use super::Raceway;
+use crate::params::RaceParams;
 use crate::spin::{Single, SpinState};
 
 /// The race, without its spin.
@@ -18,6 +19,22 @@ pub(crate) struct Race {
 }
 
 impl Race {
+    /// A race that runs on a bore of this radius \[m\].
+    pub(crate) fn new(radius_m: f64, params: &RaceParams) -> Self {
+        Self {
+            radius_m,
+            inertia_kg_m2: params.inertia_kg_m2,
+            drag_n_m_s: params.drag_n_m_s,
+            start_spin_rad_s: params.start_spin_rad_s,
+        }
+    }
+
+    /// Ω_i after `dt_s` without contact \[rad/s\].
+    pub(crate) fn coasted_rad_s(&self, spin_rad_s: f64, dt_s: f64) -> f64 {
+        let decay = (-self.drag_n_m_s / self.inertia_kg_m2 * dt_s).exp();
+        spin_rad_s * decay
+    }
+
     /// Ω̇_i under sliding friction on the rotor \[rad/s²\]. Linear in both.
     #[inline]
     pub(crate) fn acceleration(&self, spin_rad_s: f64, sliding_n: f64) -> f64 {
@@ -80,7 +97,6 @@ impl Raceway for Race {
     }
     #[inline]
     fn coast(&self, state: &SpinState, dt_s: f64) -> SpinState {
-        let decay = (-self.drag_n_m_s / self.inertia_kg_m2 * dt_s).exp();
-        Single(state.0 * decay)
+        Single(self.coasted_rad_s(state.0, dt_s))
     }
 }

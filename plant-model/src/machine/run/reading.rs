@@ -30,29 +30,22 @@ impl Machine {
             phases: &self.phases,
             forces: &self.forces,
             commands_n: &self.inputs.commands_n,
-            step_s: self.system.moment_s(),
+            step_s: self.system.moment_s,
         };
         (self.stepper.series).fill(&step, &self.y, ORDER, |_, _| false);
         let body = &self.system.body;
         let mut planes = [None; MAX_PLANES];
         for (p, phase) in self.phases.iter().enumerate() {
             let motion = self.system.motion(p, &self.y);
-            let (series, data) = (&self.stepper.series.planes[p], &self.system.planes[p]);
+            let series = &self.stepper.series.planes[p];
             let touching = matches!(phase, Phase::Contact(..));
             let force = |x: f64| if touching { x } else { 0.0 };
             planes[p] = Some(PlaneSnapshot {
-                rotor: Body {
-                    position: body.at_planes[p].of(&self.y.position),
-                    velocity: body.at_planes[p].of(&self.y.velocity),
-                },
-                ring: body.rings[p]
-                    .as_ref()
-                    .map_or_else(Body::default, |ring| Body {
-                        position: ring.of(&self.y.position),
-                        velocity: ring.of(&self.y.velocity),
-                    }),
+                rotor: self.y.motion_at(&body.at_planes[p]),
+                ring: (body.rings[p].as_ref())
+                    .map_or_else(Body::default, |ring| self.y.motion_at(ring)),
                 mode: phase.mode(),
-                penetration_m: motion.distance_m - data.clearance_m,
+                penetration_m: motion.penetration_m,
                 normal_force_n: force(series.force.0[0]).max(0.0),
                 sliding_force_n: force(series.sliding.0[0]),
                 rolling_force_n: force(series.rolling.0[0]),
@@ -72,10 +65,7 @@ impl Machine {
     /// Motion at a probe, as they stand in the parameters; `None` where there is no such probe.
     pub fn probe(&self, index: usize) -> Option<Body> {
         let port = self.system.body.probes.get(index)?;
-        Some(Body {
-            position: port.of(&self.y.position),
-            velocity: port.of(&self.y.velocity),
-        })
+        Some(self.y.motion_at(port))
     }
 
     /// Force that a magnet delivers \[N\]; `None` where there is no such magnet.

@@ -185,7 +185,7 @@ impl Machine {
             phases: &self.trial,
             forces: &self.forces,
             commands_n: &self.inputs.commands_n,
-            step_s: self.system.moment_s(),
+            step_s: self.system.moment_s,
         };
         self.stepper
             .series

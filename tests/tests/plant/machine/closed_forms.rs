@@ -14,23 +14,33 @@ const OPTIONS: Options = Options {
     steps: 50_000_000,
 };
 
+const TRANSVERSE: f64 = 0.2;
+const ARM_M: f64 = 0.2;
+const STIFFNESS_N_M: f64 = 1e6;
+
+/// A balanced rotor on two undamped springs, with Ω·I_p/(2·I_t) and the root beside it in its conical frequencies.
+fn conical(ratio: f64, spin: f64) -> (MachineParams, f64, f64) {
+    let mut params = machine();
+    params.rotor = rigid(TRANSVERSE, ratio * TRANSVERSE);
+    params.unbalances.clear();
+    params.supports = [-ARM_M, ARM_M]
+        .map(|position_m| Support {
+            position_m,
+            stiffness_n_m: STIFFNESS_N_M,
+            damping_n_s_m: 0.0,
+        })
+        .to_vec();
+    let half = 0.5 * spin * ratio;
+    let root = (half * half + 2.0 * STIFFNESS_N_M * ARM_M * ARM_M / TRANSVERSE).sqrt();
+    (params, half, root)
+}
+
 /// ω = Ω·I_p/(2·I_t) ± √((Ω·I_p/(2·I_t))² + k_φ/I_t), forward and backward, to many periods.
 #[test]
 fn conical_modes_part_with_spin() {
-    let (transverse, z, stiffness, spin) = (0.2, 0.2, 1e6, 800.0);
+    let spin = 800.0;
     for ratio in [0.05, 0.3, 0.9, 1.0, 1.5, 1.9] {
-        let mut params = machine();
-        params.rotor = rigid(transverse, ratio * transverse);
-        params.unbalances.clear();
-        params.supports = [-z, z]
-            .map(|position_m| Support {
-                position_m,
-                stiffness_n_m: stiffness,
-                damping_n_s_m: 0.0,
-            })
-            .to_vec();
-        let half: f64 = 0.5 * spin * ratio;
-        let root = (half * half + 2.0 * stiffness * z * z / transverse).sqrt();
+        let (params, half, root) = conical(ratio, spin);
         for omega in [half + root, half - root] {
             let amplitude = 1e-4;
             let start = MachineStart {
@@ -43,7 +53,7 @@ fn conical_modes_part_with_spin() {
             rotor
                 .advance(1.0, &MachineInputs::default(), &mut |_, _| {})
                 .unwrap();
-            let at = rotor.snapshot().planes().next().unwrap().rotor.position / -z;
+            let at = rotor.snapshot().planes().next().unwrap().rotor.position / -ARM_M;
             let off = (at / amplitude - V2::new(omega.cos(), omega.sin())).norm();
             // Round-off of some thousand radians.
             assert!(off < 1e-10, "I_p/I_t {ratio}, {omega} rad/s: {off:e}");
@@ -209,20 +219,10 @@ fn a_map_of_whole_samples_changes_nothing() {
 /// The same frequencies and senses from the eigenvalues, with the Jeffcott pair beside them.
 #[test]
 fn modes_are_those_of_the_closed_forms() {
-    let (transverse, z, stiffness, spin) = (0.2, 0.2, 1e6, 800.0);
+    let spin = 800.0;
     for ratio in [0.05, 0.9, 1.5, 1.9] {
-        let mut params = machine();
-        params.rotor = rigid(transverse, ratio * transverse);
-        params.supports = [-z, z]
-            .map(|position_m| Support {
-                position_m,
-                stiffness_n_m: stiffness,
-                damping_n_s_m: 0.0,
-            })
-            .to_vec();
-        let half: f64 = 0.5 * spin * ratio;
-        let root = (half * half + 2.0 * stiffness * z * z / transverse).sqrt();
-        let translation = (2.0 * stiffness / 10.0_f64).sqrt();
+        let (params, half, root) = conical(ratio, spin);
+        let translation = (2.0 * STIFFNESS_N_M / 10.0).sqrt();
         let found = modes(&params, spin).unwrap();
         assert_eq!(found.len(), 4);
         for (expected, direction) in [
