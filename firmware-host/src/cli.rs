@@ -19,13 +19,25 @@ pub mod target;
 use crate::cli::error::say;
 use firmware_bench::scene::Scene;
 use firmware_bench::scene::diagnostic::SceneError;
+use firmware_bench::scene::machine::AnyScene;
 use std::path::Path;
 
-/// A scene, with its warnings said.
+/// A scene of one plane, with its warnings said.
 pub(crate) fn load(path: &Path) -> Result<Scene, SceneError> {
     let scene = Scene::load(path)?;
-    for warning in &scene.warnings {
+    warn(&scene.warnings);
+    Ok(scene)
+}
+
+/// Any scene, with its warnings said.
+pub(crate) fn load_any(path: &Path) -> Result<AnyScene, SceneError> {
+    let scene = AnyScene::load(path)?;
+    warn(scene.warnings());
+    Ok(scene)
+}
+
+fn warn(warnings: &[String]) {
+    for warning in warnings {
         say(format_args!("warning: {warning}"));
     }
-    Ok(scene)
 }

@@ -73,12 +73,13 @@ mod guards;
 mod holding;
 pub mod modes;
 pub mod params;
+pub mod point_mass;
 mod readout;
 mod run;
 mod series;
 mod step;
 mod system;
 
-pub use readout::{MachineSnapshot, PlaneFlows, PlaneSnapshot};
+pub use readout::{AxisMotion, MachineSnapshot, PlaneFlows, PlaneSnapshot};
 pub use run::Machine;
 pub use system::MachineInputs;

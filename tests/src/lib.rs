@@ -33,12 +33,29 @@ pub fn scene(name: &str) -> Scene {
     Scene::load(&scene_path(name)).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// Names of all the project's scenes, in order.
+/// Path of one of the project's scenes of a whole rotor.
+pub fn machine_scene_path(name: &str) -> PathBuf {
+    scene_path(&format!("machines/{name}"))
+}
+
+/// Names of all the project's scenes of one plane, in order.
 ///
 /// # Panics
 /// If their folder cannot be read.
 pub fn scene_names() -> Vec<String> {
-    let folder = root().join("firmware-host/scenes");
+    names_in("firmware-host/scenes")
+}
+
+/// Names of all the project's scenes of a whole rotor, in order.
+///
+/// # Panics
+/// If their folder cannot be read.
+pub fn machine_scene_names() -> Vec<String> {
+    names_in("firmware-host/scenes/machines")
+}
+
+fn names_in(folder: &str) -> Vec<String> {
+    let folder = root().join(folder);
     let entries =
         std::fs::read_dir(&folder).unwrap_or_else(|e| panic!("{}: {e}", folder.display()));
     let mut names: Vec<String> = entries

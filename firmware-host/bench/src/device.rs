@@ -5,5 +5,6 @@ pub mod axis;
 pub mod levitation;
 pub mod loads;
 pub mod loop_shape;
+pub mod modal_levitation;
 pub mod sensor;
 pub mod sensor_fault;

@@ -5,6 +5,7 @@ mod axes;
 #[cfg(test)]
 pub(crate) mod fixture;
 mod happenings;
+pub mod machine;
 mod panels;
 pub mod plot;
 mod quantities;
@@ -18,7 +19,7 @@ use self::axes::focus_window;
 use self::panels::{Key, PanelRow};
 pub use crate::report::plot::PlotError;
 use crate::report::plot::text::{escape, figures};
-use crate::report::summary::{Disturbed, SceneSummary};
+use crate::report::summary::{Disturbed, Fact, SceneSummary};
 use crate::report::table::shown;
 use crate::run::figures::{Figure, Figures, Timing, Value};
 use crate::run::outcome::Outcome;
@@ -33,27 +34,38 @@ const STYLE: &str = include_str!("report/style.css");
 /// [`PlotError`] if the drawing backend refuses.
 pub fn html(scene: &SceneSummary, results: &Results) -> Result<String, PlotError> {
     let runs = &results.runs;
-    let title = escape(&scene.title);
-    let mut page = format!(
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
-         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-         <meta http-equiv=\"Content-Security-Policy\" \
-         content=\"default-src 'none'; style-src 'unsafe-inline'\">\n\
-         <title>{title}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n<header>\n<h1>{title}</h1>\n"
-    );
+    let mut page = begun(&scene.title);
     push_story(&mut page, &scene.story);
     push_facts(&mut page, scene);
     push_warnings(&mut page, &scene.warnings);
     push_warnings(&mut page, &results.untrusted());
     page.push_str("</header>\n<main>\n");
-    push_table(&mut page, runs, scene.clearance_m);
-    verification::push_table(&mut page, runs);
-    if !runs.is_empty() {
-        push_sections(&mut page, scene, runs)?;
-    }
-    happenings::push_tables(&mut page, runs);
+    push_runs(&mut page, scene, runs)?;
     page.push_str("</main>\n</body>\n</html>\n");
     Ok(page)
+}
+
+/// A page up to its title.
+fn begun(title: &str) -> String {
+    let title = escape(title);
+    format!(
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+         <meta http-equiv=\"Content-Security-Policy\" \
+         content=\"default-src 'none'; style-src 'unsafe-inline'\">\n\
+         <title>{title}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n<header>\n<h1>{title}</h1>\n"
+    )
+}
+
+/// What the policies did in one plane.
+fn push_runs(page: &mut String, scene: &SceneSummary, runs: &[PolicyRun]) -> Result<(), PlotError> {
+    push_table(page, runs, scene.clearance_m);
+    verification::push_table(page, runs);
+    if !runs.is_empty() {
+        push_sections(page, scene, runs)?;
+    }
+    happenings::push_tables(page, runs);
+    Ok(())
 }
 
 /// Lines that a scene file wraps belong to one paragraph; an empty line begins another.
@@ -84,16 +96,20 @@ fn push_facts(page: &mut String, scene: &SceneSummary) {
         ("Duration", figures(1e3 * scene.duration_s) + " ms"),
     ];
     facts.extend(scene.facts.iter().cloned());
+    push_list(page, &facts);
+    push_disturbances(page, &scene.disturbances);
+}
+
+fn push_list(page: &mut String, facts: &[Fact]) {
     page.push_str("<dl class=\"facts\">\n");
     for (name, value) in facts {
-        let value = escape(&value);
+        let value = escape(value);
         push(
             page,
             format_args!("<div><dt>{name}</dt><dd>{value}</dd></div>\n"),
         );
     }
     page.push_str("</dl>\n");
-    push_disturbances(page, &scene.disturbances);
 }
 
 fn push_warnings<T: AsRef<str>>(page: &mut String, warnings: &[T]) {

@@ -10,6 +10,7 @@ mod judge;
 pub mod outcome;
 pub mod overview;
 pub mod recording;
+mod rig;
 pub mod supervision;
 mod swings;
 pub mod trace;

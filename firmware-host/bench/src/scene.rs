@@ -7,10 +7,13 @@ mod guess;
 pub mod keys;
 mod limits;
 mod lint;
+pub mod machine;
 pub mod nominal;
+mod plane_spec;
 mod plant;
 pub mod policy_kind;
 mod resolve;
+mod rotor;
 pub mod schema;
 pub mod spec;
 pub mod suggest;
@@ -19,7 +22,7 @@ mod values;
 
 use crate::device::actuator::{AmplifierParams, Outage};
 use crate::device::levitation::LevitationParams;
-use crate::device::loads::{self, BaseMotion, Disturbance, TimedChange};
+use crate::device::loads::{BaseMotion, Disturbance, Loads, TimedChange};
 use crate::device::sensor::{SensorParams, SpinSensorParams};
 use crate::device::sensor_fault::{Fault, Samples};
 use crate::scene::diagnostic::SceneError;
@@ -129,17 +132,11 @@ impl Scene {
         position_m + self.centre_offset_m
     }
 
-    /// External force on the rotor to be held over the two halves of a part in which there is no [edge](Self::edges) \[N\]:
-    /// weight, loads, and what shaft and magnets do about their own centre more than about that of the plant. Both are the
-    /// same where nothing varies.
-    pub fn external_n(&self, from_s: f64, to_s: f64) -> [V2; 2] {
+    /// External force on the rotor: weight, loads, and what shaft and magnets do about their own centre more than about that
+    /// of the plant. Between two [edges](Self::edges) nothing begins or ends.
+    pub fn external(&self) -> Loads {
         let constant_n = self.weight_n - self.plant.rotor.stiffness_n_m * self.centre_offset_m;
-        loads::halves_n(self.loads(), constant_n, (from_s, to_s))
-    }
-
-    /// Parts over whose halves [`Self::external_n`] is to be held from one time to another; `None` where nothing varies.
-    pub fn parts(&self, from_s: f64, to_s: f64) -> Option<u32> {
-        loads::parts(self.loads(), (from_s, to_s))
+        Loads::new(constant_n, self.loads().collect())
     }
 
     /// Times at which something sets in or ends \[s\], in order.

@@ -196,6 +196,8 @@ impl Numbers {
             centre_offset_m: self.centre_offset_m.unwrap_or_default(),
             spin_hz: self.spin_hz,
             runout_m: None,
+            retainer_plane_ratio: 1.0,
+            magnet_plane_ratio: 1.0,
         })
     }
 }
@@ -212,7 +214,7 @@ pub fn execute(args: &AdviseArgs) -> Result<(), CommandError> {
         return Err(refused("runout_m", &is, "a finite number, 0 or greater"));
     }
     let told = |nominal: Nominal| Nominal {
-        runout_m: args.runout_m,
+        runout_m: args.runout_m.or(nominal.runout_m),
         ..nominal
     };
     let advice = match &args.scene {

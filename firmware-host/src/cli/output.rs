@@ -1,6 +1,6 @@
 //! Results appear whole or not at all.
 
-use firmware_bench::run::trace_file::{self, TraceFile};
+use firmware_bench::run::trace_file::{self, Columns, TraceFile};
 use std::ffi::OsString;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -120,9 +120,13 @@ impl Staging {
     ///
     /// # Errors
     /// [`OutputError`].
-    pub fn trace(&self, name: &str) -> Result<TraceFile<std::fs::File>, OutputError> {
+    pub fn trace<R: Clone>(
+        &self,
+        name: &str,
+        columns: Columns<R>,
+    ) -> Result<TraceFile<std::fs::File, R>, OutputError> {
         (std::fs::File::create(self.path(name)))
-            .and_then(|file| TraceFile::new(file).map_err(trace_file::reason))
+            .and_then(|file| TraceFile::new(file, columns).map_err(trace_file::reason))
             .map_err(OutputError::at(&self.final_place.join(name)))
     }
 
@@ -130,7 +134,11 @@ impl Staging {
     ///
     /// # Errors
     /// [`OutputError`], also of what was written before.
-    pub fn end_trace(&self, name: &str, file: TraceFile<std::fs::File>) -> Result<(), OutputError> {
+    pub fn end_trace<R: Clone>(
+        &self,
+        name: &str,
+        file: TraceFile<std::fs::File, R>,
+    ) -> Result<(), OutputError> {
         (file.end().map_err(trace_file::reason))
             .map_err(OutputError::at(&self.final_place.join(name)))
     }

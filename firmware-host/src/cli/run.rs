@@ -1,15 +1,20 @@
 //! `run SCENE.toml`: every policy of the scene, one table, traces and a report.
 
+mod machine;
+
 use crate::cli::error::{CommandError, Contradiction, pretty, print};
-use crate::cli::load;
+use crate::cli::load_any;
 use crate::cli::output::{self, OutputError, Staging};
 use crate::cli::progress::{LateProgress, Threads};
 use firmware_bench::report::summary::summary;
 use firmware_bench::report::{self, table};
+use firmware_bench::run::closed_loop::RunError;
 use firmware_bench::run::recording::recorded;
+use firmware_bench::run::trace_file::Columns;
 use firmware_bench::run::verdict::{FailedRun, PolicyRun, Results};
 use firmware_bench::run::verify::{self, Check};
 use firmware_bench::scene::Scene;
+use firmware_bench::scene::machine::AnyScene;
 use firmware_bench::scene::policy_kind::PolicyKind;
 use firmware_studies::campaign::Progress;
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
@@ -42,7 +47,7 @@ pub struct RunArgs {
 /// # Errors
 /// [`CommandError`]; nothing is left behind then, except by [`CommandError::Contradicted`] and [`CommandError::Untrusted`].
 pub fn execute(args: &RunArgs) -> Result<(), CommandError> {
-    let scene = load(&args.scene)?;
+    let scene = load_any(&args.scene)?;
     let out = args
         .out
         .clone()
@@ -50,38 +55,73 @@ pub fn execute(args: &RunArgs) -> Result<(), CommandError> {
     // Before any work: a folder that cannot be written to is the user's to know at once.
     output::probe(&out)?;
     let staging = Staging::for_folder(&out)?;
-    let results = run_all(&scene, args, &staging)?;
-    let verdicts = table::json(&scene, &results);
-    let verdicts = pretty(&verdicts, "formatting verdict.json")? + "\n";
-    write_results(&staging, &scene, &results, &verdicts)?;
+    let ran = match &scene {
+        AnyScene::Plane(scene) => run_plane(scene, args, &staging)?,
+        AnyScene::Machine(scene) => machine::run(scene, args, &staging)?,
+    };
     let out = staging.publish_over(of_a_policy)?;
     let text = if args.json {
-        verdicts
+        ran.verdicts
     } else {
         let report = out.join("report.html");
-        format!(
-            "{}\nreport: {}\n",
-            table::text(&scene, &results),
-            report.display()
-        )
+        format!("{}\nreport: {}\n", ran.table, report.display())
     };
     print(&text)?;
-    let (untrusted, contradictions) = (results.untrusted(), contradictions(&results.runs));
-    if !untrusted.is_empty() {
-        let contradicted = contradictions.iter().map(Contradiction::to_string);
-        let lines = untrusted.into_iter().map(str::to_owned).chain(contradicted);
+    if !ran.untrusted.is_empty() {
+        let contradicted = ran.contradictions.iter().map(Contradiction::to_string);
+        let lines = ran.untrusted.into_iter().chain(contradicted);
         return Err(CommandError::Untrusted(lines.collect()));
     }
-    match contradictions.is_empty() {
+    match ran.contradictions.is_empty() {
         true => Ok(()),
-        false => Err(CommandError::Contradicted(contradictions)),
+        false => Err(CommandError::Contradicted(ran.contradictions)),
     }
+}
+
+/// What a scene came to, as it is told.
+struct Ran {
+    table: String,
+    /// JSON.
+    verdicts: String,
+    untrusted: Vec<String>,
+    contradictions: Vec<Contradiction>,
+}
+
+fn run_plane(scene: &Scene, args: &RunArgs, staging: &Staging) -> Result<Ran, CommandError> {
+    let results = run_all(scene, args, staging)?;
+    let verdicts = pretty(&table::json(scene, &results), VERDICT)? + "\n";
+    staging.write("verdict.json", &verdicts)?;
+    write_records(staging, &results.runs, record_name)?;
+    let html = report::html(&summary(scene), &results).map_err(undrawn)?;
+    staging.write("report.html", html)?;
+    Ok(Ran {
+        table: table::text(scene, &results),
+        verdicts,
+        untrusted: results.untrusted().into_iter().map(str::to_owned).collect(),
+        contradictions: contradictions(&results.runs),
+    })
+}
+
+const VERDICT: &str = "formatting verdict.json";
+
+fn undrawn(error: report::PlotError) -> CommandError {
+    CommandError::other("drawing the report", error)
 }
 
 /// Whether a file is a run's of one policy: an earlier one may have had policies that this one has not, and what they
 /// left would be taken for results of this scene.
 fn of_a_policy(file: &str) -> bool {
-    let of = |policy| file == trace_name(policy) || file == record_name(policy);
+    // With the names of planes behind them.
+    let of = |policy: &str| {
+        let of = |start: &str, end: &str| {
+            let rest = file
+                .strip_prefix(start)
+                .and_then(|rest| rest.strip_suffix(end));
+            rest.and_then(|rest| rest.strip_prefix(policy))
+                .is_some_and(|plane| plane.is_empty() || plane.starts_with('_'))
+        };
+        of("trace_", ".parquet") || of("axis_", ".parquet") || of("record_", ".bin")
+    };
     PolicyKind::ALL.iter().any(|kind| of(kind.name()))
 }
 
@@ -114,69 +154,82 @@ fn default_folder(scene: &Path) -> PathBuf {
     Path::new("runs").join(scene.file_stem().unwrap_or(scene.as_os_str()))
 }
 
-/// Every policy of the scene, in the scene's order whatever finishes first; traces are written meanwhile.
+/// What comes of each policy, in the scene's order whatever finishes first: a run, or why there is none.
+type Outcomes<T> = Vec<Result<T, RunError>>;
+
+/// Runs every policy; where none can be trusted there is nothing to keep, and the first error says it.
+fn each_policy<T: Send>(
+    scene: &Scene,
+    args: &RunArgs,
+    checks: usize,
+    one: impl Fn(PolicyKind, &mut dyn FnMut(u64)) -> Result<Result<T, RunError>, OutputError> + Sync,
+) -> Result<Outcomes<T>, CommandError> {
+    let ticks = (scene.duration_s * scene.sample_rate_hz).round() as u64;
+    let all = ticks * ((1 + checks) * scene.policies.len()) as u64;
+    let progress = LateProgress::new(all, "ticks");
+    let one = |kind: &PolicyKind| one(*kind, &mut |ticks| progress.add(ticks));
+    let all = args.threads.pool()?.install(|| {
+        let all: Vec<_> = scene.policies.par_iter().map(one).collect();
+        all.into_iter()
+            .collect::<Result<Outcomes<T>, OutputError>>()
+    });
+    progress.finish();
+    let all = all?;
+    if all.iter().all(Result::is_err) {
+        all.into_iter().collect::<Result<Vec<_>, _>>()?;
+        return Ok(Vec::new());
+    }
+    Ok(all)
+}
+
+fn failed(kind: PolicyKind, error: &RunError) -> FailedRun {
+    FailedRun {
+        name: kind.name().to_owned(),
+        error: error.to_string(),
+    }
+}
+
+/// Every policy of the scene; traces are written meanwhile.
 fn run_all(scene: &Scene, args: &RunArgs, staging: &Staging) -> Result<Results, CommandError> {
     let checks = match args.verify {
         true => verify::check_scenes(scene)?.to_vec(),
         false => Vec::new(),
     };
-    let ticks = (scene.duration_s * scene.sample_rate_hz).round() as u64;
-    let all = ticks * ((1 + checks.len()) * scene.policies.len()) as u64;
-    let progress = LateProgress::new(all, "ticks");
-    let one = |kind: &PolicyKind| {
+    let all = each_policy(scene, args, checks.len(), |kind, on_tick| {
         let name = trace_name(kind.name());
         let mut file = match args.no_trace {
             true => None,
-            false => Some(staging.trace(&name)?),
+            false => Some(staging.trace(&name, Columns::of_plane())?),
         };
-        let on_tick = &mut |ticks| progress.add(ticks);
-        let ran = recorded(scene, *kind, &checks, file.as_mut(), on_tick);
+        let ran = recorded(scene, kind, &checks, file.as_mut(), on_tick);
         match (&ran, file) {
             (Ok(_), Some(file)) => staging.end_trace(&name, file)?,
             (Err(_), Some(_)) => staging.discard(&name)?,
             _ => {}
         }
         Ok(ran)
-    };
-    let all = args.threads.pool()?.install(|| {
-        let all: Vec<_> = scene.policies.par_iter().map(one).collect();
-        all.into_iter().collect::<Result<Vec<_>, OutputError>>()
-    });
-    progress.finish();
-    let all = all?;
-    if all.iter().all(Result::is_err) {
-        // There is nothing to keep: the first error says it.
-        all.into_iter().collect::<Result<Vec<_>, _>>()?;
-        return Ok(Results::default());
-    }
+    })?;
     let mut results = Results::default();
     for (kind, ran) in scene.policies.iter().zip(all) {
         match ran {
             Ok(run) => results.runs.push(run),
-            Err(error) => results.failed.push(FailedRun {
-                name: kind.name().to_owned(),
-                error: error.to_string(),
-            }),
+            Err(error) => results.failed.push(failed(*kind, &error)),
         }
     }
     Ok(results)
 }
 
-fn write_results(
+/// Frozen flight records, each under the name that its policy has.
+fn write_records(
     staging: &Staging,
-    scene: &Scene,
-    results: &Results,
-    verdicts: &str,
+    runs: &[PolicyRun],
+    name: impl Fn(&str) -> String,
 ) -> Result<(), CommandError> {
-    staging.write("verdict.json", verdicts)?;
-    for run in &results.runs {
+    for run in runs {
         let read_out = run.trace.read_out.as_ref();
         if let Some(record) = read_out.and_then(|read_out| read_out.flight_record.as_ref()) {
-            staging.write(&record_name(&run.name), &record.entries)?;
+            staging.write(&name(&run.name), &record.entries)?;
         }
     }
-    let html = report::html(&summary(scene), results)
-        .map_err(|e| CommandError::other("drawing the report", e))?;
-    staging.write("report.html", html)?;
     Ok(())
 }

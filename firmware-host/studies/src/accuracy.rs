@@ -183,6 +183,7 @@ pub(crate) fn run(scene: &Scene, method: Method, rtol: f64) -> Result<Ending, Ac
         steps_per_sample: Options::default().steps,
         ..Options::default()
     };
+    let external = scene.external();
     let mut plant = scene.build(options)?;
     let mut edges = scene.edges();
     edges.retain(|t| *t > 0.0 && *t < scene.duration_s);
@@ -193,9 +194,9 @@ pub(crate) fn run(scene: &Scene, method: Method, rtol: f64) -> Result<Ending, Ac
         while let Some(due) = changes.next_if(|c| c.at_s <= from) {
             plant.change(&due.change).map_err(BuildError::Param)?;
         }
-        let parts = scene.parts(from, to);
+        let parts = external.parts(from, to);
         for [begin, middle, end] in loads::cuts((from, to), parts.unwrap_or(1)) {
-            let [first_n, second_n] = scene.external_n(begin, end);
+            let [first_n, second_n] = external.halves_n(begin, end);
             let holds = match parts {
                 Some(_) => &[(middle, first_n), (end, second_n)][..],
                 None => &[(end, first_n)],

@@ -123,9 +123,15 @@ pub(crate) struct LinearBody {
     pub(crate) probes: Vec<Port>,
     /// Rotor against what it touches.
     pub(crate) contacts: Vec<Port>,
-    /// Rotor at the planes, and the rings it touches there.
+    /// Rotor at the planes, the rings that it touches there, and those below them.
     pub(crate) at_planes: Vec<Port>,
     pub(crate) rings: Vec<Option<Port>>,
+    pub(crate) outer_rings: Vec<Option<Port>>,
+    /// Centre of mass and slope of the axis.
+    pub(crate) centre: Port,
+    pub(crate) tilt: Port,
+    /// Amplitudes of the bending modes, and the rates of the free shaft \[rad/s\].
+    pub(crate) bending: Vec<(Port, f64)>,
 }
 
 fn rings_of(plane: &MachinePlane) -> Vec<RingParams> {
@@ -137,7 +143,7 @@ fn rings_of(plane: &MachinePlane) -> Vec<RingParams> {
 }
 
 /// Displacement of a shape at a place, straight between its points.
-fn shape_at(shape: &[(f64, f64)], position_m: f64) -> f64 {
+pub(crate) fn shape_at(shape: &[(f64, f64)], position_m: f64) -> f64 {
     let after = shape
         .partition_point(|(z, _)| *z <= position_m)
         .clamp(1, shape.len() - 1);
@@ -221,11 +227,11 @@ impl LinearBody {
         }
 
         let mut contacts = Vec::new();
-        let mut rings = Vec::new();
+        let (mut rings, mut outer_rings) = (Vec::new(), Vec::new());
         let mut next = rotor;
         for plane in &params.planes {
             let mut contact = at(plane.position_m);
-            let mut inner: Option<Port> = None;
+            let (mut inner, mut outer): (Option<Port>, Option<Port>) = (None, None);
             let mut mounted = rings_of(plane)
                 .into_iter()
                 .map(|ring| {
@@ -245,14 +251,23 @@ impl LinearBody {
                 }
                 add_at_port(&mut stiffness, n, &stretch, ring.stiffness_n_m);
                 add_at_port(&mut damping, n, &stretch, ring.damping_n_s_m);
-                inner.get_or_insert(port);
+                match inner.is_none() {
+                    true => inner = Some(port),
+                    false => outer = Some(port),
+                }
             }
             if let Some(ring) = &inner {
                 contact.subtract(ring);
             }
             contacts.push(contact);
             rings.push(inner);
+            outer_rings.push(outer);
         }
+        let pair = |i: usize, scale: f64| {
+            let mut port = Port::zero(n);
+            (port.x[i], port.y[i + 1]) = (scale, scale);
+            port
+        };
 
         let mut gravity = vec![0.0; n];
         let mut weight = Port::zero(n);
@@ -284,6 +299,12 @@ impl LinearBody {
             contacts,
             at_planes: ports(&mut params.planes.iter().map(|p| p.position_m)),
             rings,
+            outer_rings,
+            centre: pair(0, per_mass),
+            tilt: pair(2, per_inertia),
+            bending: (bending.iter().enumerate())
+                .map(|(i, mode)| (pair(4 + 2 * i, per_mass), mode.frequency_rad_s))
+                .collect(),
         })
     }
 

@@ -19,6 +19,8 @@ pub struct MachineError {
 
 /// Most planes of a machine.
 pub const MAX_PLANES: usize = 4;
+/// Most magnets.
+pub const MAX_MAGNETS: usize = 4;
 
 /// A rigid rotor with four lateral degrees of freedom. Positions along the axis count from its centre of mass.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -123,7 +125,7 @@ pub struct MachineParams {
     pub spin: SpinParams,
     /// Unbalances.
     pub unbalances: Vec<Unbalance>,
-    /// Magnets.
+    /// Magnets, at most [`MAX_MAGNETS`].
     pub magnets: Vec<MachineMagnet>,
     /// Where forces from outside act \[m\].
     pub loads_m: Vec<f64>,

@@ -1,6 +1,7 @@
 //! What can be read off a machine.
 
-use super::params::MAX_PLANES;
+use super::body::shape_at;
+use super::params::{MAX_MAGNETS, MAX_PLANES, Rotor};
 use super::series::MachineSeries;
 use super::system::{MachineInputs, MachineState, MachineSystem};
 use crate::V2;
@@ -19,6 +20,8 @@ pub struct PlaneSnapshot {
     pub rotor: Body,
     /// Centre of the ring that it touches there, without the offset of its bore; at rest at zero for a rigid one.
     pub ring: Body,
+    /// The ring below that; at rest at zero where there is none.
+    pub outer_ring: Body,
     /// What the rotor does here.
     pub mode: Mode,
     /// A of eq. (2.8) \[m\]; negative inside the clearance.
@@ -35,6 +38,19 @@ pub struct PlaneSnapshot {
     pub sliding_speed_m_s: f64,
     /// Spin of the race \[rad/s\]; 0 for a bushing.
     pub race_spin_rad_s: f64,
+    /// Angle of the contact point, summed over all contact so far \[rad\]; differences are meaningful within one contact.
+    pub whirl_angle_rad: f64,
+}
+
+/// The rotor's axis at an instant.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct AxisMotion {
+    /// Centre of mass \[m\] and its velocity \[m/s\].
+    pub centre: Body,
+    /// Slope, dx/dz and dy/dz \[rad\], and its rate \[rad/s\].
+    pub tilt: Body,
+    /// Kinetic and elastic energy of the bending modes \[J\].
+    pub bending_j: f64,
 }
 
 /// What can be read off a machine at an instant.
@@ -47,12 +63,28 @@ pub struct MachineSnapshot {
     /// Angle σ of the rotor \[rad\], not wound back.
     pub phase_rad: f64,
     pub(crate) planes: [Option<PlaneSnapshot>; MAX_PLANES],
+    pub(crate) delivered_n: [Option<V2>; MAX_MAGNETS],
 }
 
 impl MachineSnapshot {
     /// The planes, as they stand in the parameters.
     pub fn planes(&self) -> impl Iterator<Item = &PlaneSnapshot> {
         self.planes.iter().flatten()
+    }
+
+    /// Forces that the magnets deliver \[N\], as they stand in the parameters.
+    pub fn delivered_n(&self) -> impl Iterator<Item = V2> + '_ {
+        self.delivered_n.iter().flatten().copied()
+    }
+}
+
+impl Rotor {
+    /// Where the centre line is at a place, for the motion of the axis and of the bending modes \[m\].
+    pub fn centre_line_m(&self, axis: &AxisMotion, bending: &[Body], position_m: f64) -> V2 {
+        let straight = axis.centre.position + position_m * axis.tilt.position;
+        (self.bending().iter().zip(bending)).fold(straight, |sum, (mode, motion)| {
+            sum + shape_at(&mode.shape, position_m) * motion.position
+        })
     }
 }
 

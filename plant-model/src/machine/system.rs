@@ -147,6 +147,7 @@ fn inverse(
 pub(crate) struct MachineSystem {
     pub(crate) body: LinearBody,
     pub(crate) planes: Vec<PlaneData>,
+    pub(crate) mass_kg: f64,
     /// 1/J; 0 where the speed is held.
     pub(crate) inverse_inertia: f64,
     pub(crate) drive_torque_n_m: f64,
@@ -187,6 +188,7 @@ impl MachineSystem {
         let mut system = Self {
             body,
             planes: planes.collect(),
+            mass_kg: params.rotor.rigid().mass_kg,
             inverse_inertia,
             drive_torque_n_m,
             magnet_rates: params

@@ -41,6 +41,8 @@ fn amb() -> Nominal {
         centre_offset_m: 0.0,
         spin_hz: None,
         runout_m: None,
+        retainer_plane_ratio: 1.0,
+        magnet_plane_ratio: 1.0,
     }
 }
 

@@ -8,6 +8,7 @@ mod flight_record;
 mod instruments_and_events;
 mod judged;
 mod layering;
+mod machine_scenes;
 mod run;
 mod scene_keys;
 mod verify;

@@ -3,7 +3,7 @@
 use firmware_bench::run::closed_loop::{Keep, Rigour, record, run};
 use firmware_bench::run::figures::Figures;
 use firmware_bench::run::recording::recorded;
-use firmware_bench::run::trace::{Recorder, Trace};
+use firmware_bench::run::trace::{Recorder, Trace, TraceRow};
 use firmware_bench::run::trace_file::TraceFile;
 use firmware_bench::run::verify::{Track, Verification, check, check_scenes, verification};
 use firmware_bench::scene::Scene;
@@ -173,7 +173,7 @@ fn a_failed_check_leaves_the_run() {
         ..scene.clone()
     };
     let kind = PolicyKind::Supervisor;
-    let no_file = None::<&mut TraceFile<fs::File>>;
+    let no_file = None::<&mut TraceFile<fs::File, TraceRow>>;
     let run = recorded(&scene, kind, &[broken], no_file, &mut |_| {}).unwrap();
     let error = run.verification.unwrap().unwrap_err();
     assert!(

@@ -121,29 +121,37 @@ pub struct TimedChange {
     pub change: Change,
 }
 
-/// What to hold over the two halves of a part in which no load begins or ends \[N\].
-pub(crate) fn halves_n(
-    loads: impl Iterator<Item = Disturbance>,
+/// What acts at one place.
+#[derive(Debug, Clone)]
+pub struct Loads {
     constant_n: V2,
-    (from_s, to_s): (f64, f64),
-) -> [V2; 2] {
-    let acting = |d: &Disturbance| d.start_s <= from_s && from_s < d.end_s();
-    loads.filter(acting).fold([constant_n; 2], |[a, b], d| {
-        let [first, second] = (d.shape).halves((d.start_s, d.duration_s), (from_s, to_s));
-        [a + first * d.force_n, b + second * d.force_n]
-    })
+    all: Vec<Disturbance>,
 }
 
-/// Parts over which the forces from one time to another are to be held; `None` where none varies.
-pub(crate) fn parts(
-    loads: impl Iterator<Item = Disturbance>,
-    (from_s, to_s): (f64, f64),
-) -> Option<u32> {
-    let acting = |d: &Disturbance| d.start_s <= from_s && from_s < d.end_s();
-    loads
-        .filter(acting)
-        .filter_map(|d| d.shape.parts(d.duration_s, to_s - from_s))
-        .max()
+impl Loads {
+    /// A force that is always there, and what comes and goes.
+    pub fn new(constant_n: V2, all: Vec<Disturbance>) -> Self {
+        Self { constant_n, all }
+    }
+
+    fn acting(&self, at_s: f64) -> impl Iterator<Item = &Disturbance> {
+        (self.all.iter()).filter(move |d| d.start_s <= at_s && at_s < d.end_s())
+    }
+
+    /// What to hold over the two halves of a part in which no load begins or ends \[N\].
+    pub fn halves_n(&self, from_s: f64, to_s: f64) -> [V2; 2] {
+        (self.acting(from_s)).fold([self.constant_n; 2], |[a, b], d| {
+            let [first, second] = (d.shape).halves((d.start_s, d.duration_s), (from_s, to_s));
+            [a + first * d.force_n, b + second * d.force_n]
+        })
+    }
+
+    /// Parts over which the forces from one time to another are to be held; `None` where none varies.
+    pub fn parts(&self, from_s: f64, to_s: f64) -> Option<u32> {
+        self.acting(from_s)
+            .filter_map(|d| d.shape.parts(d.duration_s, to_s - from_s))
+            .max()
+    }
 }
 
 /// Beginning, middle and end of each of the parts into which a stretch is cut; the last end is that of the stretch to the bit.

@@ -7,7 +7,7 @@ use rand_core::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use std::collections::VecDeque;
 
-/// A position sensor with its converter: what it is always like. Swapped axes, gain, offset, noise,
+/// A position sensor with its converter: what it is always like. Runout, age, swapped axes, gain, offset, noise,
 /// range and step apply in this order.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SensorParams {
@@ -25,6 +25,10 @@ pub struct SensorParams {
     pub swapped: bool,
     /// Largest reading to either side \[m\]; `None`: no limit.
     pub range_m: Option<f64>,
+    /// What the target adds to the reading once a turn: amplitude \[m\] …
+    pub runout_m: f64,
+    /// … and angle at the first reading \[rad\].
+    pub runout_phase_rad: f64,
 }
 
 impl Default for SensorParams {
@@ -37,6 +41,8 @@ impl Default for SensorParams {
             delay_samples: 0,
             swapped: false,
             range_m: None,
+            runout_m: 0.0,
+            runout_phase_rad: 0.0,
         }
     }
 }
@@ -88,6 +94,9 @@ struct More {
     past_m: VecDeque<V2>,
     longest_delay: usize,
     last: Option<Reading>,
+    /// Angle of the runout, and time and spin of the reading that it is of.
+    runout_rad: f64,
+    turned: (f64, f64),
 }
 
 impl Sensor {
@@ -107,6 +116,8 @@ impl Sensor {
                 faults,
                 past_m: VecDeque::new(),
                 last: None,
+                runout_rad: params.runout_phase_rad,
+                turned: (0.0, 0.0),
             })
         });
         Self {
@@ -117,12 +128,13 @@ impl Sensor {
         }
     }
 
-    /// Reads the position once.
-    pub fn read(&mut self, t_s: f64, position_m: V2) -> Reading {
+    /// Reads the position of a rotor that spins so once.
+    pub fn read(&mut self, t_s: f64, position_m: V2, spin_rad_s: f64) -> Reading {
         let p = &self.params;
         let (mut x, mut noise) = (position_m, V2::repeat(p.noise_rms_m));
         if let Some(more) = &mut self.more {
-            x = more.analogue(p, t_s, x);
+            let target_m = x + more.runout_m(p, t_s, spin_rad_s);
+            x = more.analogue(p, t_s, target_m);
             noise = noise.component_mul(&more.faults.noise(t_s));
         }
         for i in [0, 1] {
@@ -151,6 +163,18 @@ impl Sensor {
 }
 
 impl More {
+    /// What the target adds. Between readings the spin changes little: its mean is as good as its course.
+    fn runout_m(&mut self, p: &SensorParams, t_s: f64, spin_rad_s: f64) -> V2 {
+        if p.runout_m == 0.0 {
+            return V2::zeros();
+        }
+        let (last_s, last_rad_s) = self.turned;
+        self.runout_rad += 0.5 * (spin_rad_s + last_rad_s) * (t_s - last_s);
+        self.turned = (t_s, spin_rad_s);
+        let (sin, cos) = self.runout_rad.sin_cos();
+        p.runout_m * V2::new(cos, sin)
+    }
+
     /// What reaches the converter, but for the noise. Before the run the rotor stood where it started.
     fn analogue(&mut self, p: &SensorParams, t_s: f64, position_m: V2) -> V2 {
         self.past_m.push_front(position_m);

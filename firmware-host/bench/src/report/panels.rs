@@ -86,6 +86,23 @@ pub(super) fn whole_run(
     Ok(rows)
 }
 
+/// Orbits of one policy in several planes, each with axes of its own.
+pub(super) fn orbits_of_planes(
+    scenes: &[SceneSummary],
+    runs: &[PolicyRun],
+) -> Result<Option<PanelRow>, PlotError> {
+    let mut all: Option<PanelRow> = None;
+    for (scene, run) in scenes.iter().zip(runs) {
+        let runs = std::slice::from_ref(run);
+        let row = View::new(scene, runs, run_window(scene, runs)).orbits()?;
+        match &mut all {
+            Some(all) => all.cells.extend(row.cells),
+            None => all = Some(row),
+        }
+    }
+    Ok(all)
+}
+
 /// What changes fast, over `window` \[ms\].
 pub(super) fn close_up(
     scene: &SceneSummary,

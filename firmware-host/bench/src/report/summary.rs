@@ -135,7 +135,8 @@ fn facts(scene: &Scene) -> Vec<Fact> {
     facts
 }
 
-type Fact = (&'static str, String);
+/// Name and value.
+pub(super) type Fact = (&'static str, String);
 
 /// Wall, friction that a rolling rotor has, race and bore; what is not there has no row.
 fn contact(scene: &Scene) -> Vec<Fact> {

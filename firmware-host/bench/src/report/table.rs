@@ -3,13 +3,14 @@
 use crate::report::plot::text::figures;
 use crate::run::figures::{Digits, Figure, Figures, Timing, Value};
 use crate::run::supervision::{Account, Supervision};
-use crate::run::verdict::{PolicyRun, Results, far_into_the_wall};
+use crate::run::verdict::{MachineResults, PolicyRun, Results, far_into_the_wall};
 use crate::run::verify::{Check, Verification};
 use crate::scene::Scene;
+use crate::scene::machine::MachineScene;
 use crate::scene::nominal::named;
 use comfy_table::{Cell, CellAlignment, LineStyle, Table, TableStyle};
 use serde_json::json;
-use std::fmt::Display;
+use std::fmt::{Display, Write as _};
 
 /// A row of the table: name with unit, and the value as text.
 type Row<T> = (&'static str, fn(&T) -> String);
@@ -128,7 +129,35 @@ pub fn right(value: impl Display) -> Cell {
 /// The table: one row a figure, one column a policy.
 pub fn text(scene: &Scene, results: &Results) -> String {
     let runs = &results.runs;
-    let mut header = vec![Cell::new("policy")];
+    let note = far_into_the_wall(runs, scene.plant.contact.clearance_m);
+    let notes = notes(note.as_deref(), results);
+    format!("{}\n{}{notes}", scene.title, table("policy", runs))
+}
+
+/// The tables of a whole rotor: as a whole, and plane by plane.
+pub fn machine_text(scene: &MachineScene, results: &MachineResults) -> String {
+    let mut text = format!(
+        "{}\n{}",
+        scene.common().title,
+        table("machine", &results.whole.runs)
+    );
+    for (plane, runs) in scene.planes.iter().zip(&results.planes) {
+        let _ = write!(text, "\n\n{}", table(&plane.name, runs));
+        if let Some(note) = far_into_the_wall(runs, plane.scene.plant.contact.clearance_m) {
+            let _ = write!(text, "\n{note}");
+        }
+    }
+    text + &notes(None, &results.whole)
+}
+
+fn notes(note: Option<&str>, results: &Results) -> String {
+    (note.into_iter().chain(results.untrusted()))
+        .map(|note| format!("\n{note}"))
+        .collect()
+}
+
+fn table(of: &str, runs: &[PolicyRun]) -> Table {
+    let mut header = vec![Cell::new(of)];
     header.extend(runs.iter().map(|r| right(&r.name)));
     let mut table = lined(header);
     add_figures(&mut table, Figures::ALL, runs, |r| &r.verdict.figures);
@@ -137,11 +166,7 @@ pub fn text(scene: &Scene, results: &Results) -> String {
         r.supervision.as_ref()
     });
     add_rows(&mut table, CHECK_FIGURES, runs, PolicyRun::checked);
-    let note = far_into_the_wall(runs, scene.plant.contact.clearance_m);
-    let notes: String = (note.as_deref().into_iter().chain(results.untrusted()))
-        .map(|note| format!("\n{note}"))
-        .collect();
-    format!("{}\n{table}{notes}", scene.title)
+    table
 }
 
 fn add_figures<T>(
@@ -172,30 +197,42 @@ fn add_rows<T>(
     }
 }
 
-/// The verdicts under stable keys: `policies.<name>.<figure>`.
-pub fn json(scene: &Scene, results: &Results) -> serde_json::Value {
-    let runs = &results.runs;
+/// A run under stable keys.
+fn run_json(run: &PolicyRun) -> serde_json::Value {
+    let mut figures = json!(run.verdict);
+    match &run.verification {
+        Some(Ok(verification)) => figures["verification"] = json!(verification),
+        Some(Err(error)) => figures["verification"] = json!({ "error": error }),
+        None => {}
+    }
+    if let Some(supervision) = &run.supervision {
+        figures["supervision"] = json!(supervision);
+    }
+    figures
+}
+
+fn told_of_plant(scene: &Scene) -> serde_json::Map<String, serde_json::Value> {
+    named(&scene.overrides)
+        .map(|(name, value)| (name.to_owned(), value.into()))
+        .collect()
+}
+
+/// What failed, and the runs that `json` makes of the others, by their policies.
+fn by_policy(
+    results: &Results,
+    run_json: impl Fn(usize, &PolicyRun) -> serde_json::Value,
+) -> serde_json::Map<String, serde_json::Value> {
     let failed = (results.failed.iter())
         .map(|failed| (failed.name.clone(), json!({ "error": failed.error })));
-    let policies: serde_json::Map<String, serde_json::Value> = (runs.iter())
-        .map(|run| {
-            let mut figures = json!(run.verdict);
-            match &run.verification {
-                Some(Ok(verification)) => figures["verification"] = json!(verification),
-                Some(Err(error)) => figures["verification"] = json!({ "error": error }),
-                None => {}
-            }
-            if let Some(supervision) = &run.supervision {
-                figures["supervision"] = json!(supervision);
-            }
-            (run.name.clone(), figures)
-        })
+    let runs = results.runs.iter().enumerate();
+    runs.map(|(i, run)| (run.name.clone(), run_json(i, run)))
         .chain(failed)
-        .collect();
-    let told: serde_json::Map<String, serde_json::Value> = named(&scene.overrides)
-        .map(|(name, value)| (name.to_owned(), value.into()))
-        .collect();
-    let far = far_into_the_wall(runs, scene.plant.contact.clearance_m);
+        .collect()
+}
+
+/// The verdicts under stable keys: `policies.<name>.<figure>`.
+pub fn json(scene: &Scene, results: &Results) -> serde_json::Value {
+    let far = far_into_the_wall(&results.runs, scene.plant.contact.clearance_m);
     let warnings: Vec<_> = scene.warnings.iter().cloned().chain(far).collect();
     json!({
         "scene": scene.title,
@@ -205,7 +242,49 @@ pub fn json(scene: &Scene, results: &Results) -> serde_json::Value {
         "rtol": scene.rtol,
         "whirl_speed_m_s": scene.whirl_speed_m_s,
         "warnings": warnings,
-        "supervisor_told": told,
+        "supervisor_told": told_of_plant(scene),
+        "policies": by_policy(results, |_, run| run_json(run)),
+    })
+}
+
+/// The same of a whole rotor, with `policies.<name>.planes`: figures of each plane under its name.
+pub fn machine_json(scene: &MachineScene, results: &MachineResults) -> serde_json::Value {
+    let planes = || scene.planes.iter().zip(&results.planes);
+    let far = planes().filter_map(|(plane, runs)| {
+        let note = far_into_the_wall(runs, plane.scene.plant.contact.clearance_m)?;
+        Some(format!("{}: {note}", plane.name))
+    });
+    let warnings: Vec<_> = scene.warnings.iter().cloned().chain(far).collect();
+    let policies = by_policy(&results.whole, |i, whole| {
+        let mut figures = run_json(whole);
+        let of_plane = planes().filter_map(|(plane, runs)| {
+            let mut figures = run_json(runs.get(i)?);
+            figures["name"] = json!(plane.name);
+            // Of the machine.
+            for key in ["run_time_s", "real_time_ratio"] {
+                figures.as_object_mut()?.remove(key);
+            }
+            Some(figures)
+        });
+        figures["planes"] = of_plane.collect();
+        figures
+    });
+    let of_planes = scene.planes.iter().map(|plane| {
+        json!({
+            "name": plane.name,
+            "whirl_speed_m_s": plane.scene.whirl_speed_m_s,
+            "supervisor_told": told_of_plant(&plane.scene),
+        })
+    });
+    let common = scene.common();
+    json!({
+        "scene": common.title,
+        "duration_s": common.simulated_s(),
+        "sample_rate_hz": common.sample_rate_hz,
+        "seed": common.seed,
+        "rtol": common.rtol,
+        "warnings": warnings,
+        "planes": of_planes.collect::<Vec<_>>(),
         "policies": policies,
     })
 }

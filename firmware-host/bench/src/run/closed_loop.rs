@@ -2,17 +2,21 @@
 //! effect at the next sample.
 
 use crate::device::actuator::Amplifier;
-use crate::device::loads::cuts;
+use crate::device::loads::{Loads, cuts};
+use crate::device::modal_levitation::{ModalLevitation, any_holds};
 use crate::device::sensor::Sensor;
 use crate::device::sensor_fault::seen_until_s;
-use crate::run::controller::{Controller, Force, Seen, controller};
+use crate::run::controller::{Controller, Force, Seen, controller, controller_below};
 use crate::run::figures::{Ended, Figures};
 use crate::run::judge::Judge;
-use crate::run::trace::{ReadOut, Recorder, Said, Trace, TraceRow};
+use crate::run::rig::{OnePlane, Rig, WholeRotor};
+use crate::run::trace::{AxisRow, ReadOut, Recorder, Said, Trace, TraceRow};
 use crate::scene::Scene;
+use crate::scene::machine::MachineScene;
 use crate::scene::policy_kind::PolicyKind;
+use plant_model::machine::params::MachineError;
 use plant_model::params::StatorParams;
-use plant_model::{BuildError, Inputs, Options, Plant, PlantError, Snapshot, V2};
+use plant_model::{BuildError, Options, PlantError, Snapshot, V2};
 use supervisor::{Events, Status};
 
 /// Why a run has no result.
@@ -21,6 +25,9 @@ pub enum RunError {
     /// The plant's parameters are out of range.
     #[error(transparent)]
     Build(#[from] BuildError),
+    /// A machine's parameters are out of range.
+    #[error(transparent)]
+    Machine(#[from] MachineError),
     /// The simulation cannot be trusted any further.
     #[error("policy {policy}: {reason}")]
     Plant {
@@ -141,13 +148,13 @@ pub fn run_policy(
         true => Some(&mut trace),
         false => None,
     };
-    let (figures, read_out) = ride(
-        scene,
-        acting,
-        (recorder, keep.to_decision()),
-        Rigour::default(),
-        on_tick,
-    )?;
+    let (controller, policy) = acting;
+    let task = Task {
+        policy,
+        to_decision: keep.to_decision(),
+        rigour: Rigour::default(),
+    };
+    let (figures, read_out) = ride_one(scene, controller, recorder, task, on_tick)?;
     trace.read_out = read_out;
     Ok((figures, trace))
 }
@@ -165,29 +172,99 @@ pub fn record(
 ) -> Result<(Figures, Option<ReadOut>), RunError> {
     let policy = kind.name();
     let acting = controller(kind, scene).ok_or(RunError::Incomplete { policy })?;
-    ride(
-        scene,
-        (acting, policy),
-        (Some(recorder), false),
+    let task = Task {
+        policy,
+        to_decision: false,
         rigour,
-        on_tick,
-    )
+    };
+    ride_one(scene, acting, Some(recorder), task, on_tick)
 }
 
-fn ride<'a>(
-    scene: &'a Scene,
-    (controller, policy): (Box<dyn Controller>, &'static str),
-    (recorder, to_decision): (Option<&'a mut dyn Recorder>, bool),
+/// Who is given the rows of a machine's run.
+pub struct MachineRecorders<'a> {
+    /// Of each plane, in their order.
+    pub planes: Vec<&'a mut dyn Recorder>,
+    /// Of the rotor's axis, at control samples.
+    pub axis: Option<&'a mut dyn Recorder<AxisRow>>,
+}
+
+/// What one plane of a machine came to, and what its supervisor leaves behind.
+pub type PlaneEnded = (Figures, Option<ReadOut>);
+
+/// Runs one policy on a whole rotor to the end of its scene, a controller for each plane; rows go to the recorders as they
+/// come. What comes back is of each plane.
+///
+/// # Errors
+/// As [`run`].
+pub fn record_machine<'a>(
+    scene: &'a MachineScene,
+    kind: PolicyKind,
+    recorders: MachineRecorders<'a>,
     rigour: Rigour,
     on_tick: &mut dyn FnMut(u64),
-) -> Result<(Figures, Option<ReadOut>), RunError> {
-    const REPORT_EVERY: u64 = 1024;
-    let options = Options {
+) -> Result<Vec<PlaneEnded>, RunError> {
+    let policy = kind.name();
+    let task = Task {
+        policy,
+        to_decision: false,
+        rigour,
+    };
+    let below = match scene.levitation {
+        Some(_) => controller_below,
+        None => controller,
+    };
+    let common = scene.common();
+    let rig = WholeRotor::new(scene, options(common, rigour))?;
+    let levitation = (scene.levitation.as_ref())
+        .map(|params| ModalLevitation::new(params, 1.0 / common.sample_rate_hz));
+    let mut recorders_of = recorders.planes.into_iter();
+    let mut stations = Vec::new();
+    for plane in &scene.planes {
+        let controller = below(kind, &plane.scene).ok_or(RunError::Incomplete { policy })?;
+        stations.push(Station::new(&plane.scene, controller, recorders_of.next()));
+    }
+    let loads = scene
+        .loads
+        .iter()
+        .map(|load| Loads::new(V2::zeros(), vec![*load]));
+    let bench = Bench::new(
+        common,
+        Box::new(rig),
+        stations,
+        (loads.collect(), scene.edges()),
+    );
+    Bench {
+        levitation,
+        axis: recorders.axis,
+        ..bench
+    }
+    .ride(task, on_tick)
+}
+
+/// A run as it is asked for.
+#[derive(Debug, Clone, Copy)]
+struct Task {
+    policy: &'static str,
+    to_decision: bool,
+    rigour: Rigour,
+}
+
+fn options(scene: &Scene, rigour: Rigour) -> Options {
+    Options {
         rtol: scene.rtol,
         method: scene.method,
         steps: rigour.steps,
         ..Options::default()
-    };
+    }
+}
+
+fn ride_one<'a>(
+    scene: &'a Scene,
+    controller: Box<dyn Controller>,
+    recorder: Option<&'a mut dyn Recorder>,
+    task: Task,
+    on_tick: &mut dyn FnMut(u64),
+) -> Result<PlaneEnded, RunError> {
     let rigid = matches!(
         scene.plant.stator,
         StatorParams::Rigid | StatorParams::RigidEllipse(_)
@@ -195,86 +272,55 @@ fn ride<'a>(
     if !scene.base_motions.is_empty() && !rigid {
         return Err(RunError::BaseMotionOnRings);
     }
-    let plant = scene.build(options)?;
-    let period_s = 1.0 / scene.sample_rate_hz;
-    let force_max_n = scene.plant.magnet.map_or(0.0, |m| m.force_max_n);
-    let mut bench = Bench {
-        scene,
-        policy_name: policy,
-        finer: rigour.parts,
-        plant,
-        sensor: Sensor::new(scene.sensor, &scene.faults, period_s, scene.seed),
-        controller,
-        amplifier: Amplifier::new(scene.amplifier, force_max_n, &scene.outages),
-        judge: Judge::new(scene),
-        recorder,
-        edges_s: scene.edges(),
-        edge_s: f64::NEG_INFINITY,
-        steady_n: None,
-        changes_done: 0,
-        changes: Vec::new(),
-        said: None,
-    };
-    let ticks = scene.samples().count();
-    for tick in 0..ticks {
-        bench.tick(tick)?;
-        if (tick + 1) % REPORT_EVERY == 0 {
-            on_tick(REPORT_EVERY);
-        }
-        if to_decision && bench.judge.decided(bench.plant.as_ref()) {
-            break;
-        }
-    }
-    on_tick(ticks % REPORT_EVERY);
-    let last = bench.plant.snapshot();
-    bench.judge.sample(&last);
-    bench.record(&last, scene.from_magnets_m(last.position_m), false);
-    let figures = Figures::new(&Ended::new(scene, &bench.judge, bench.plant.as_ref()));
-    let residual = figures.energy_residual;
-    let limit = (TRUSTED_TOLERANCES * scene.rtol).clamp(TRUSTED.0, TRUSTED.1);
-    if residual.is_nan() || residual > limit {
-        return Err(RunError::Energy {
-            policy,
-            residual,
-            limit,
-        });
-    }
-    let read_out = bench.recorder.and_then(|_| bench.controller.read_out());
-    Ok((figures, read_out))
+    let rig = OnePlane::new(scene, options(scene, task.rigour))?;
+    let stations = vec![Station::new(scene, controller, recorder)];
+    let loads = (vec![scene.external()], scene.edges());
+    let bench = Bench::new(scene, Box::new(rig), stations, loads);
+    let ended = bench.ride(task, on_tick)?.pop();
+    ended.ok_or(RunError::Incomplete {
+        policy: task.policy,
+    })
 }
 
-struct Bench<'a> {
+/// A bearing plane: what stands there, who drives its magnet, who watches.
+struct Station<'a> {
     scene: &'a Scene,
-    policy_name: &'static str,
-    /// As [`Rigour::parts`].
-    finer: u32,
-    plant: Box<dyn Plant>,
     sensor: Sensor,
     controller: Box<dyn Controller>,
     amplifier: Amplifier,
     judge: Judge,
     recorder: Option<&'a mut dyn Recorder>,
-    edges_s: Vec<f64>,
-    /// The next of them.
-    edge_s: f64,
-    /// External force up to there, where it does not vary \[N\].
-    steady_n: Option<V2>,
-    /// Changes that lie behind.
-    changes_done: usize,
-    /// Changes of mode within an advance: a buffer.
-    changes: Vec<Snapshot>,
+    /// The last reading of the position \[m\].
+    measured_m: V2,
     /// What the supervisor said to the last sample.
     said: Option<Said>,
 }
 
-impl Bench<'_> {
-    fn tick(&mut self, tick: u64) -> Result<(), RunError> {
-        let period = 1.0 / self.scene.sample_rate_hz;
-        let (t, t_next) = (tick as f64 * period, (tick + 1) as f64 * period);
-        self.amplifier.begin(tick);
-        let now = self.plant.snapshot();
-        let reading = (self.sensor).read(t, self.scene.from_magnets_m(now.position_m));
-        let seen = Seen {
+impl<'a> Station<'a> {
+    fn new(
+        scene: &'a Scene,
+        controller: Box<dyn Controller>,
+        recorder: Option<&'a mut dyn Recorder>,
+    ) -> Self {
+        let period_s = 1.0 / scene.sample_rate_hz;
+        let force_max_n = scene.plant.magnet.map_or(0.0, |m| m.force_max_n);
+        Self {
+            scene,
+            sensor: Sensor::new(scene.sensor, &scene.faults, period_s, scene.seed),
+            controller,
+            amplifier: Amplifier::new(scene.amplifier, force_max_n, &scene.outages),
+            judge: Judge::new(scene),
+            recorder,
+            measured_m: V2::zeros(),
+            said: None,
+        }
+    }
+
+    /// What firmware knows at a tick.
+    fn see(&mut self, t_s: f64, sensed_m: V2, now: &Snapshot) -> Seen {
+        let reading = (self.sensor).read(t_s, sensed_m, now.spin_rad_s);
+        self.measured_m = reading.position_m;
+        Seen {
             reading,
             spin_rad_s: self.scene.spin_sensor.gain * now.spin_rad_s,
             applied_n: if self.scene.amplifier.force_measured {
@@ -283,43 +329,24 @@ impl Bench<'_> {
             } else {
                 V2::zeros()
             },
-            status: self.status(seen_until_s(t, period)),
-        };
+            status: self.status(seen_until_s(t_s, 1.0 / self.scene.sample_rate_hz)),
+            levitation_n: V2::zeros(),
+        }
+    }
+
+    fn answer(&mut self, tick: u64, seen: &Seen, now: &Snapshot) {
         let with_weight = |force_n: V2| force_n + self.scene.feed_forward_n;
-        match self.controller.command(&seen, &now) {
+        match self.controller.command(seen, now) {
             Force::Computed(force_n) => self.amplifier.command(tick, with_weight(force_n)),
             Force::AtOnce(force_n) => self.amplifier.command_at_once(with_weight(force_n)),
         }
-        self.judge.sample(&now);
+        self.judge.sample(now);
         self.said = self.controller.said();
-        self.record(&now, reading.position_m, false);
+        self.record(now, false);
         // What happened at this sample is not to be read a second time.
         if let Some(said) = &mut self.said {
             said.events = Events::empty();
         }
-
-        let mut from = t;
-        while from < t_next {
-            if from >= self.edge_s {
-                self.pass_edges(from)?;
-            }
-            let to = self.edge_s.min(t_next);
-            let loads = match self.steady_n {
-                Some(_) => None,
-                None => self.scene.parts(from, to),
-            };
-            let measured_m = reading.position_m;
-            let advanced = match loads.max(self.amplifier.parts(from)) {
-                None => self.advance_steadily((from, to), measured_m),
-                Some(parts) => self.advance_by_parts((from, to), parts * self.finer, measured_m),
-            };
-            advanced.map_err(|reason| RunError::Plant {
-                policy: self.policy_name,
-                reason,
-            })?;
-            from = to;
-        }
-        Ok(())
     }
 
     /// What the firmware knows to be valid and ready at a time.
@@ -335,79 +362,265 @@ impl Bench<'_> {
         status
     }
 
-    /// Makes the changes that are due, and looks at what acts up to the next edge.
-    fn pass_edges(&mut self, t_s: f64) -> Result<(), RunError> {
-        let next = self.edges_s.iter().find(|edge| **edge > t_s);
-        self.edge_s = next.copied().unwrap_or(f64::INFINITY);
-        let [now_n, _] = self.scene.external_n(t_s, t_s);
-        self.steady_n = (self.scene.parts(t_s, t_s).is_none()).then_some(now_n);
-        while let Some(due) = self.scene.changes.get(self.changes_done)
-            && due.at_s <= t_s
-        {
-            self.plant.change(&due.change).map_err(BuildError::Param)?;
-            self.changes_done += 1;
-        }
-        Ok(())
-    }
-
-    fn advance_steadily(
-        &mut self,
-        (from_s, to_s): (f64, f64),
-        measured_m: V2,
-    ) -> Result<(), PlantError> {
-        let [command_n, _] = self.amplifier.deliver(from_s, to_s);
-        let external_n = self.steady_n.unwrap_or_default();
-        self.advance(to_s, (command_n, external_n), measured_m)
-    }
-
-    fn advance_by_parts(
-        &mut self,
-        stretch_s: (f64, f64),
-        parts: u32,
-        measured_m: V2,
-    ) -> Result<(), PlantError> {
-        for [begin, middle, end] in cuts(stretch_s, parts) {
-            let commands_n = self.amplifier.deliver(begin, end);
-            let external_n = match self.steady_n {
-                Some(steady_n) => [steady_n; 2],
-                None => self.scene.external_n(begin, end),
-            };
-            self.advance(middle, (commands_n[0], external_n[0]), measured_m)?;
-            self.advance(end, (commands_n[1], external_n[1]), measured_m)?;
-        }
-        Ok(())
-    }
-
-    fn advance(
-        &mut self,
-        to_s: f64,
-        (command_n, external_n): (V2, V2),
-        measured_m: V2,
-    ) -> Result<(), PlantError> {
-        let inputs = Inputs {
-            command_n,
-            external_n,
-        };
-        let mut changes = std::mem::take(&mut self.changes);
-        (self.plant).advance(to_s, &inputs, &mut |snapshot| changes.push(*snapshot))?;
-        for snapshot in changes.drain(..) {
-            self.judge.change(&snapshot);
-            self.record(&snapshot, measured_m, true);
-        }
-        self.changes = changes;
-        Ok(())
-    }
-
-    fn record(&mut self, plant: &Snapshot, measured_m: V2, mode_change: bool) {
+    fn record(&mut self, plant: &Snapshot, mode_change: bool) {
         let Some(recorder) = &mut self.recorder else {
             return;
         };
         recorder.row(&TraceRow {
             plant: *plant,
-            measured_m,
+            measured_m: self.measured_m,
             commanded_n: self.amplifier.in_effect_n(),
             supervisor: self.said,
             mode_change,
         });
+    }
+}
+
+struct Bench<'a> {
+    /// What holds for all planes.
+    scene: &'a Scene,
+    rig: Box<dyn Rig + 'a>,
+    stations: Vec<Station<'a>>,
+    /// Who levitates the rotor as a whole.
+    levitation: Option<ModalLevitation>,
+    axis: Option<&'a mut dyn Recorder<AxisRow>>,
+    /// What acts at each place for loads.
+    loads: Vec<Loads>,
+    edges_s: Vec<f64>,
+    /// The next of them.
+    edge_s: f64,
+    /// Whether nothing varies up to there.
+    steady: bool,
+    /// Changes that lie behind.
+    changes_done: usize,
+    // Buffers: planes at a sample, what is seen and commanded there, forces that are held, changes of mode within an advance.
+    now: Vec<Snapshot>,
+    seen: Vec<Seen>,
+    levitation_n: Vec<V2>,
+    commands_n: [Vec<V2>; 2],
+    loads_n: [Vec<V2>; 2],
+    changes: Vec<(usize, Snapshot)>,
+}
+
+impl<'a> Bench<'a> {
+    fn new(
+        scene: &'a Scene,
+        rig: Box<dyn Rig + 'a>,
+        stations: Vec<Station<'a>>,
+        (loads, edges_s): (Vec<Loads>, Vec<f64>),
+    ) -> Self {
+        let (planes, places) = (stations.len(), loads.len());
+        Self {
+            scene,
+            rig,
+            stations,
+            levitation: None,
+            axis: None,
+            loads,
+            edges_s,
+            edge_s: f64::NEG_INFINITY,
+            steady: true,
+            changes_done: 0,
+            now: Vec::with_capacity(planes),
+            seen: Vec::with_capacity(planes),
+            levitation_n: vec![V2::zeros(); planes],
+            commands_n: [vec![V2::zeros(); planes], vec![V2::zeros(); planes]],
+            loads_n: [vec![V2::zeros(); places], vec![V2::zeros(); places]],
+            changes: Vec::new(),
+        }
+    }
+
+    /// To the end of the scene.
+    fn ride(
+        mut self,
+        task: Task,
+        on_tick: &mut dyn FnMut(u64),
+    ) -> Result<Vec<PlaneEnded>, RunError> {
+        const REPORT_EVERY: u64 = 1024;
+        let ticks = self.scene.samples().count();
+        for tick in 0..ticks {
+            self.tick(tick, task)?;
+            if (tick + 1) % REPORT_EVERY == 0 {
+                on_tick(REPORT_EVERY);
+            }
+            if task.to_decision && self.decided() {
+                break;
+            }
+        }
+        on_tick(ticks % REPORT_EVERY);
+        self.rig.read(&mut self.now);
+        let mut ended = Vec::with_capacity(self.stations.len());
+        for (plane, (station, last)) in self.stations.iter_mut().zip(&self.now).enumerate() {
+            station.judge.sample(last);
+            station.measured_m = station.scene.from_magnets_m(last.position_m);
+            station.record(last, false);
+            let run = Ended::new(station.scene, &station.judge, &*self.rig, (plane, last));
+            ended.push((
+                Figures::new(&run),
+                (station.recorder.as_ref()).and_then(|_| station.controller.read_out()),
+            ));
+        }
+        self.record_axis();
+        let residual = self.rig.audit().residual();
+        let limit = (TRUSTED_TOLERANCES * self.scene.rtol).clamp(TRUSTED.0, TRUSTED.1);
+        if residual.is_nan() || residual > limit {
+            return Err(RunError::Energy {
+                policy: task.policy,
+                residual,
+                limit,
+            });
+        }
+        Ok(ended)
+    }
+
+    /// Whether nothing can change any more of whether the rotor has recovered.
+    fn decided(&self) -> bool {
+        let stations = self.stations.iter().enumerate();
+        let mut decided = stations.map(|(plane, s)| s.judge.decided(&self.rig.meters(plane)));
+        decided.all(|decided| decided)
+    }
+
+    fn tick(&mut self, tick: u64, task: Task) -> Result<(), RunError> {
+        let period = 1.0 / self.scene.sample_rate_hz;
+        let (t, t_next) = (tick as f64 * period, (tick + 1) as f64 * period);
+        self.rig.read(&mut self.now);
+        self.seen.clear();
+        for (plane, (station, now)) in self.stations.iter_mut().zip(&self.now).enumerate() {
+            station.amplifier.begin(tick);
+            let sensed_m = self.rig.sensed_m(plane, now);
+            self.seen.push(station.see(t, sensed_m, now));
+        }
+        self.levitate();
+        for (i, station) in self.stations.iter_mut().enumerate() {
+            station.answer(tick, &self.seen[i], &self.now[i]);
+        }
+        self.record_axis();
+
+        let mut from = t;
+        while from < t_next {
+            if from >= self.edge_s {
+                self.pass_edges(from)?;
+            }
+            let to = self.edge_s.min(t_next);
+            let parts = self.parts(from, to);
+            let advanced = match parts {
+                None => self.advance_steadily(from, to),
+                Some(parts) => self.advance_by_parts((from, to), parts * task.rigour.parts),
+            };
+            advanced.map_err(|reason| RunError::Plant {
+                policy: task.policy,
+                reason,
+            })?;
+            from = to;
+        }
+        Ok(())
+    }
+
+    /// The levitation controller of the whole rotor, where there is one.
+    fn levitate(&mut self) {
+        let Some(levitation) = &mut self.levitation else {
+            return;
+        };
+        let hold = any_holds(self.stations.iter().map(|s| s.controller.hint()));
+        let readings = self.seen.iter().map(|seen| seen.reading.position_m);
+        let spin_rad_s = self.seen.first().map_or(0.0, |seen| seen.spin_rad_s);
+        levitation.forces_n(readings, spin_rad_s, hold, &mut self.levitation_n);
+        for (seen, force_n) in self.seen.iter_mut().zip(&self.levitation_n) {
+            seen.levitation_n = *force_n;
+        }
+    }
+
+    /// Parts over whose halves what varies is to be held; `None` where nothing does.
+    fn parts(&self, from_s: f64, to_s: f64) -> Option<u32> {
+        let loads = match self.steady {
+            true => None,
+            false => self
+                .loads
+                .iter()
+                .filter_map(|l| l.parts(from_s, to_s))
+                .max(),
+        };
+        let ramps = self
+            .stations
+            .iter()
+            .filter_map(|s| s.amplifier.parts(from_s));
+        loads.max(ramps.max())
+    }
+
+    /// Makes the changes that are due, and looks at what acts up to the next edge.
+    fn pass_edges(&mut self, t_s: f64) -> Result<(), RunError> {
+        let next = self.edges_s.iter().find(|edge| **edge > t_s);
+        self.edge_s = next.copied().unwrap_or(f64::INFINITY);
+        self.steady = self.loads.iter().all(|l| l.parts(t_s, t_s).is_none());
+        for (load, held_n) in self.loads.iter().zip(&mut self.loads_n[0]) {
+            [*held_n, _] = load.halves_n(t_s, t_s);
+        }
+        while let Some(due) = self.scene.changes.get(self.changes_done)
+            && due.at_s <= t_s
+        {
+            self.rig.change(&due.change)?;
+            self.changes_done += 1;
+        }
+        Ok(())
+    }
+
+    fn advance_steadily(&mut self, from_s: f64, to_s: f64) -> Result<(), PlantError> {
+        self.deliver(from_s, to_s);
+        self.advance(to_s, 0, 0)
+    }
+
+    fn advance_by_parts(&mut self, stretch_s: (f64, f64), parts: u32) -> Result<(), PlantError> {
+        for [begin, middle, end] in cuts(stretch_s, parts) {
+            self.deliver(begin, end);
+            let second = match self.steady {
+                true => 0,
+                false => {
+                    self.hold_loads(begin, end);
+                    1
+                }
+            };
+            self.advance(middle, 0, 0)?;
+            self.advance(end, 1, second)?;
+        }
+        Ok(())
+    }
+
+    /// What the amplifiers deliver over the halves of a stretch.
+    fn deliver(&mut self, from_s: f64, to_s: f64) {
+        for (i, station) in self.stations.iter_mut().enumerate() {
+            let halves_n = station.amplifier.deliver(from_s, to_s);
+            [self.commands_n[0][i], self.commands_n[1][i]] = halves_n;
+        }
+    }
+
+    fn hold_loads(&mut self, from_s: f64, to_s: f64) {
+        for (i, load) in self.loads.iter().enumerate() {
+            [self.loads_n[0][i], self.loads_n[1][i]] = load.halves_n(from_s, to_s);
+        }
+    }
+
+    /// With what was laid down for one of two halves.
+    fn advance(&mut self, to_s: f64, commands: usize, loads: usize) -> Result<(), PlantError> {
+        let (commands_n, loads_n) = (&self.commands_n[commands], &self.loads_n[loads]);
+        (self.rig).advance(to_s, commands_n, loads_n, &mut self.changes)?;
+        for (plane, snapshot) in self.changes.drain(..) {
+            let station = &mut self.stations[plane];
+            station.judge.change(&snapshot);
+            station.record(&snapshot, true);
+        }
+        Ok(())
+    }
+
+    fn record_axis(&mut self) {
+        let Some(recorder) = &mut self.axis else {
+            return;
+        };
+        if let (Some((axis, bending)), Some(now)) = (self.rig.axis(), self.now.first()) {
+            recorder.row(&AxisRow {
+                t_s: now.t_s,
+                axis,
+                bending,
+            });
+        }
     }
 }

@@ -14,6 +14,11 @@ pub trait Controller: core::fmt::Debug {
     /// The force that answers a sample, from what firmware has seen; a reference may look at the truth.
     fn command(&mut self, seen: &Seen, truth: &Snapshot) -> Force;
 
+    /// What a levitation controller of the whole rotor is to do about its integrators.
+    fn hint(&self) -> IntegratorHint {
+        IntegratorHint::Run
+    }
+
     /// What a supervisor in it said to the last sample.
     fn said(&self) -> Option<Said> {
         None
@@ -45,6 +50,8 @@ pub struct Seen {
     pub applied_n: V2,
     /// What is valid and ready.
     pub status: Status,
+    /// Force that a levitation controller of the whole rotor asks this plane for \[N\]; zero where there is none.
+    pub levitation_n: V2,
 }
 
 /// The controller of a policy, set up for a scene; `None` where the scene lacks what it needs (which [`Scene::load`] refuses).
@@ -64,7 +71,7 @@ pub fn controller(kind: PolicyKind, scene: &Scene) -> Option<Box<dyn Controller>
                 force_max_n,
             })
         }
-        PolicyKind::Levitation => Box::new(levitation_of(scene)?),
+        PolicyKind::Levitation => levitation_of(scene)?,
         PolicyKind::Supervisor => {
             let supervisor = Supervisor::new(&scene.supervisor?).ok()?;
             return supervised(scene, Box::new(supervisor));
@@ -82,10 +89,55 @@ pub fn supervised(scene: &Scene, supervisor: Box<dyn Supervise>) -> Option<Box<d
     }))
 }
 
+/// As [`controller`], of a plane of a rotor that is levitated as a whole.
+pub(crate) fn controller_below(kind: PolicyKind, scene: &Scene) -> Option<Box<dyn Controller>> {
+    Some(match kind {
+        PolicyKind::Levitation => Box::new(Passing),
+        PolicyKind::Supervisor => Box::new(Supervised {
+            supervisor: Box::new(Supervisor::new(&scene.supervisor?).ok()?),
+            levitation: Box::new(Passing),
+            hint: IntegratorHint::Run,
+            said: None,
+        }),
+        _ => return controller(kind, scene),
+    })
+}
+
+/// Who levitates: a controller of the plane's own, or whoever levitates the whole rotor.
+trait Levitate: core::fmt::Debug {
+    fn levitation_n(&mut self, seen: &Seen, hint: IntegratorHint) -> V2;
+}
+
+impl Levitate for Levitation {
+    fn levitation_n(&mut self, seen: &Seen, hint: IntegratorHint) -> V2 {
+        self.force_n(seen.reading.position_m, hint)
+    }
+}
+
+/// Passes on what the controller of the whole rotor asks for.
+#[derive(Debug)]
+struct Passing;
+
+impl Levitate for Passing {
+    fn levitation_n(&mut self, seen: &Seen, _hint: IntegratorHint) -> V2 {
+        seen.levitation_n
+    }
+}
+
+impl Controller for Passing {
+    fn command(&mut self, seen: &Seen, _truth: &Snapshot) -> Force {
+        Force::Computed(seen.levitation_n)
+    }
+}
+
 /// The scene's levitation controller, where it has one.
-fn levitation_of(scene: &Scene) -> Option<Levitation> {
+fn levitation_of(scene: &Scene) -> Option<Box<Levitation>> {
     let period_s = 1.0 / scene.sample_rate_hz;
-    Some(Levitation::new(scene.levitation?, period_s, cap_n(scene)))
+    Some(Box::new(Levitation::new(
+        scene.levitation?,
+        period_s,
+        cap_n(scene),
+    )))
 }
 
 fn cap_n(scene: &Scene) -> f64 {
@@ -188,7 +240,7 @@ impl Supervise for Supervisor {
 struct Supervised {
     supervisor: Box<dyn Supervise>,
     /// What it passes through.
-    levitation: Levitation,
+    levitation: Box<dyn Levitate>,
     /// What it told the controller's integrator.
     hint: IntegratorHint,
     said: Option<Said>,
@@ -198,7 +250,7 @@ impl Controller for Supervised {
     fn command(&mut self, seen: &Seen, _truth: &Snapshot) -> Force {
         let single = |v: V2| [v.x as f32, v.y as f32];
         let measured_m = seen.reading.position_m;
-        let levitation_n = single(self.levitation.force_n(measured_m, self.hint));
+        let levitation_n = single(self.levitation.levitation_n(seen, self.hint));
         let command = self.supervisor.tick(&Sample {
             sequence: seen.reading.sequence,
             status: seen.status,
@@ -211,6 +263,10 @@ impl Controller for Supervised {
         self.said = Some(Said::new(&command, levitation_n));
         let [x, y] = command.force_n;
         Force::Computed(V2::new(f64::from(x), f64::from(y)))
+    }
+
+    fn hint(&self) -> IntegratorHint {
+        self.hint
     }
 
     fn said(&self) -> Option<Said> {

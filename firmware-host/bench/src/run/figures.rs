@@ -3,9 +3,9 @@
 
 use crate::run::judge::Judge;
 use crate::run::outcome::Outcome;
+use crate::run::rig::Rig;
 use crate::scene::Scene;
-use plant_model::energy::Audit;
-use plant_model::{Meters, Plant};
+use plant_model::{Meters, Method, Snapshot};
 use serde::Serialize;
 use std::f64::consts::TAU;
 use std::time::Duration;
@@ -109,7 +109,7 @@ figures! {
     contact_time_s: f64 = |run| run.meters.contact_time_s
         => "contact time", "ms", 1e3, Significant, Full;
     /// Impulse of the normal force, ∫ f_n dt \[N s\].
-    contact_impulse_n_s: f64 = |run| run.audit.flows.normal_impulse_n_s
+    contact_impulse_n_s: f64 = |run| run.normal_impulse_n_s
         => "contact impulse", "N s", 1.0, Significant, Everywhere;
     /// Number of touches with a normal speed above 20 mm/s.
     contacts_over_20_mm_s: u64 = |run| run.meters.hard_impacts
@@ -127,7 +127,7 @@ figures! {
     peak_friction_torque_n_m: f64 = |run| run.meters.peak_friction_torque_n_m
         => "peak friction torque", "N m", 1.0, Significant, Full;
     /// Spin lost from start to end \[Hz\].
-    spin_lost_hz: f64 = |run| run.judge.spin_lost_rad_s(run.plant.snapshot().spin_rad_s) / TAU
+    spin_lost_hz: f64 = |run| run.judge.spin_lost_rad_s(run.last.spin_rad_s) / TAU
         => "spin lost", "Hz", 1.0, Fixed(2), Full;
     /// Largest backward tangential speed in contact \[m/s\].
     peak_backward_speed_m_s: f64 = |run| run.meters.peak_backward_speed_m_s
@@ -139,10 +139,10 @@ figures! {
     relevitation_time_s: Option<f64> = |run| run.judge.relevitation_time_s(run.outcome)
         => "re-levitated after last event", "ms", 1e3, Fixed(2), Everywhere;
     /// Energy-audit residual: energy from nowhere over energy turned over.
-    energy_residual: f64 = |run| run.audit.residual()
+    energy_residual: f64 = |run| run.energy_residual
         => "energy-audit residual", "", 1.0, Power, Full;
     /// Method that integrated contact: `series`, `explicit` or `stiff`.
-    method: &'static str = |run| run.plant.method().name()
+    method: &'static str = |run| run.method.name()
         => "method", "", 1.0, Fixed(0), Full;
 }
 
@@ -162,22 +162,68 @@ figures! {
 pub(crate) struct Ended<'a> {
     outcome: Outcome,
     meters: Meters,
-    audit: Audit,
+    normal_impulse_n_s: f64,
+    energy_residual: f64,
     judge: &'a Judge,
-    plant: &'a dyn Plant,
+    last: Snapshot,
+    method: Method,
 }
 
 impl<'a> Ended<'a> {
-    pub(crate) fn new(scene: &Scene, judge: &'a Judge, plant: &'a dyn Plant) -> Self {
-        let meters = plant.meters();
+    /// A plane of a rig at its end, `last` of it.
+    pub(crate) fn new(
+        scene: &Scene,
+        judge: &'a Judge,
+        rig: &dyn Rig,
+        (plane, last): (usize, &Snapshot),
+    ) -> Self {
+        let meters = rig.meters(plane);
         let backward_m_s = meters.peak_backward_speed_m_s;
         Self {
-            outcome: judge.outcome(scene, &plant.snapshot(), backward_m_s),
+            outcome: judge.outcome(scene, last, backward_m_s),
             meters,
-            audit: plant.audit(),
+            normal_impulse_n_s: rig.normal_impulse_n_s(plane),
+            energy_residual: rig.audit().residual(),
             judge,
-            plant,
+            last: *last,
+            method: rig.method(),
         }
+    }
+}
+
+impl Figures {
+    /// Of a machine, from those of its planes; `None` without one. How it ended is how the worst ended.
+    pub(crate) fn of_machine(planes: &[Self]) -> Option<Self> {
+        let first = planes.first()?;
+        let sum = |of: fn(&Self) -> f64| planes.iter().map(of).sum::<f64>();
+        let count = |of: fn(&Self) -> u64| planes.iter().map(of).sum::<u64>();
+        let most = |of: fn(&Self) -> f64| planes.iter().map(of).fold(f64::NEG_INFINITY, f64::max);
+        let outcome = (planes.iter().map(|f| f.outcome)).fold(first.outcome, Outcome::max);
+        Some(Self {
+            outcome,
+            recovered: outcome.recovered(),
+            impacts: count(|f| f.impacts),
+            contact_time_s: sum(|f| f.contact_time_s),
+            contact_impulse_n_s: sum(|f| f.contact_impulse_n_s),
+            contacts_over_20_mm_s: count(|f| f.contacts_over_20_mm_s),
+            first_contact_s: (planes.iter().filter_map(|f| f.first_contact_s)).reduce(f64::min),
+            peak_penetration_m: most(|f| f.peak_penetration_m),
+            peak_contact_force_n: most(|f| f.peak_contact_force_n),
+            peak_friction_torque_n_m: most(|f| f.peak_friction_torque_n_m),
+            spin_lost_hz: first.spin_lost_hz,
+            peak_backward_speed_m_s: most(|f| f.peak_backward_speed_m_s),
+            max_backward_whirl_hz: (planes.iter().filter_map(|f| f.max_backward_whirl_hz))
+                .reduce(f64::max),
+            // Only of a machine that is back in all its planes, and then of the last.
+            relevitation_time_s: match outcome {
+                Outcome::Recovered => {
+                    (planes.iter().filter_map(|f| f.relevitation_time_s)).reduce(f64::max)
+                }
+                _ => None,
+            },
+            energy_residual: first.energy_residual,
+            method: first.method,
+        })
     }
 }
 

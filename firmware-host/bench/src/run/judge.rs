@@ -5,7 +5,7 @@ use crate::run::outcome::Outcome;
 use crate::run::swings::Swings;
 use crate::scene::Scene;
 use plant_model::analysis::whirl::WhirlMeter;
-use plant_model::{Plant, Snapshot, V2};
+use plant_model::{Meters, Snapshot, V2};
 use std::f64::consts::TAU;
 
 /// Inside this share of the clearance the rotor is back in the middle …
@@ -117,8 +117,8 @@ impl Judge {
     }
 
     /// Whether the run may end: whirl, or back for so long that nothing will change.
-    pub(crate) fn decided(&self, plant: &dyn Plant) -> bool {
-        plant.meters().peak_backward_speed_m_s > self.whirl_speed_m_s
+    pub(crate) fn decided(&self, meters: &Meters) -> bool {
+        meters.peak_backward_speed_m_s > self.whirl_speed_m_s
             || (self.in_middle_since_s).is_some_and(|since| self.now_s - since >= DECIDED_S)
     }
 

@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
-/// How a run ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+/// How a run ended, the better the earlier.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[cfg_attr(test, derive(Default))]
 #[serde(rename_all = "lowercase")]
 pub enum Outcome {

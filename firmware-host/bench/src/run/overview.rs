@@ -1,6 +1,6 @@
 //! The rows of a run that a report shows: all while they are few, and of a long run those that stand out.
 
-use crate::run::trace::{Recorder, Trace, TraceRow};
+use crate::run::trace::{AxisRow, Recorder, Trace, TraceRow};
 
 /// So many rows are kept at most, some 0.3 KB each.
 const MOST_ROWS: usize = 1 << 17;
@@ -67,6 +67,48 @@ fn standing_out(block: &[TraceRow]) -> impl Iterator<Item = TraceRow> {
             || before.iter().all(|b| b.supervisor_mode() != mode);
     }
     (block.iter().zip(stays)).filter_map(|(row, stays)| stays.then_some(*row))
+}
+
+/// The axis of a whole rotor as far as a report draws it: rows at equal times.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AxisTrack {
+    /// In time order.
+    pub rows: Vec<AxisRow>,
+    /// Of so many samples one is kept.
+    every: usize,
+    samples: usize,
+}
+
+/// So many rows of an axis are kept at most.
+const MOST_AXES: usize = 1 << 13;
+
+impl Default for AxisTrack {
+    fn default() -> Self {
+        Self {
+            rows: Vec::new(),
+            every: 1,
+            samples: 0,
+        }
+    }
+}
+
+impl Recorder<AxisRow> for AxisTrack {
+    fn row(&mut self, row: &AxisRow) {
+        if self.samples.is_multiple_of(self.every) {
+            if self.rows.len() == MOST_AXES {
+                let mut index = 0;
+                self.rows.retain(|_| {
+                    index += 1;
+                    index % 2 == 1
+                });
+                self.every *= 2;
+            }
+            if self.samples.is_multiple_of(self.every) {
+                self.rows.push(row.clone());
+            }
+        }
+        self.samples += 1;
+    }
 }
 
 #[cfg(test)]

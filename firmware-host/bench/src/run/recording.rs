@@ -1,13 +1,15 @@
 //! A policy's run as `run` wants it: its rows written while it goes on, and kept as far as a report needs them.
 
-use crate::run::closed_loop::{Rigour, RunError, record};
-use crate::run::overview::Overview;
+use crate::run::closed_loop::{MachineRecorders, Rigour, RunError, record, record_machine};
+use crate::run::figures::Figures;
+use crate::run::overview::{AxisTrack, Overview};
 use crate::run::supervision::{Happenings, SupervisionCount};
-use crate::run::trace::{Recorder, TraceRow};
+use crate::run::trace::{AxisRow, Recorder, Trace, TraceRow};
 use crate::run::trace_file::TraceFile;
-use crate::run::verdict::{PolicyRun, Verdict};
-use crate::run::verify::{Check, Track, check, verification};
+use crate::run::verdict::{MachineRun, PolicyRun, Verdict};
+use crate::run::verify::{Check, Track, Verification, check, check_machine, verification, worst};
 use crate::scene::Scene;
+use crate::scene::machine::MachineScene;
 use crate::scene::policy_kind::PolicyKind;
 use std::io::Write;
 use std::time::{Duration, Instant};
@@ -17,7 +19,7 @@ const WARM_UP_S: f64 = 0.05;
 
 /// Everything that listens to a run.
 struct Recording<'a, W: Write + Send> {
-    file: Option<&'a mut TraceFile<W>>,
+    file: Option<&'a mut TraceFile<W, TraceRow>>,
     /// Only for checks.
     track: Option<Track>,
     overview: Overview,
@@ -39,6 +41,24 @@ impl<W: Write + Send> Recorder for Recording<'_, W> {
     }
 }
 
+impl<'a, W: Write + Send> Recording<'a, W> {
+    fn new(file: Option<&'a mut TraceFile<W, TraceRow>>, checked: bool) -> Self {
+        Self {
+            file,
+            track: checked.then(Track::default),
+            overview: Overview::default(),
+            supervision: SupervisionCount::default(),
+            happenings: Happenings::default(),
+        }
+    }
+
+    fn writing(&self) -> Duration {
+        self.file
+            .as_ref()
+            .map_or(Duration::ZERO, |file| file.took())
+    }
+}
+
 /// Runs a policy of a scene, and then once more for each of `checks`; its trace goes to `file` where there is one. A check that
 /// cannot be trusted leaves the run as it is.
 ///
@@ -48,21 +68,14 @@ pub fn recorded<W: Write + Send>(
     scene: &Scene,
     kind: PolicyKind,
     checks: &[Scene],
-    file: Option<&mut TraceFile<W>>,
+    file: Option<&mut TraceFile<W, TraceRow>>,
     on_tick: &mut dyn FnMut(u64),
 ) -> Result<PolicyRun, RunError> {
     warm_up(scene, kind);
-    let mut recording = Recording {
-        file,
-        track: (!checks.is_empty()).then(Track::default),
-        overview: Overview::default(),
-        supervision: SupervisionCount::default(),
-        happenings: Happenings::default(),
-    };
+    let mut recording = Recording::new(file, !checks.is_empty());
     let started = Instant::now();
     let (figures, read_out) = record(scene, kind, &mut recording, Rigour::default(), on_tick)?;
-    let writing = recording.file.map_or(Duration::ZERO, |file| file.took());
-    let elapsed = started.elapsed().saturating_sub(writing);
+    let elapsed = started.elapsed().saturating_sub(recording.writing());
     let verification = recording.track.map(|track| {
         let all: Result<Vec<Check>, RunError> = (checks.iter())
             .map(|scene| check(scene, kind, &track, on_tick))
@@ -79,6 +92,111 @@ pub fn recorded<W: Write + Send>(
         supervision: recording.supervision.ended(trace.read_out.as_ref()),
         happenings: recording.happenings,
         trace,
+    })
+}
+
+/// Trace files of a machine's run.
+pub struct MachineFiles<W: Write + Send> {
+    /// Of each plane.
+    pub planes: Vec<TraceFile<W, TraceRow>>,
+    /// Of the rotor's axis.
+    pub axis: TraceFile<W, AxisRow>,
+}
+
+/// Listens to the axis.
+struct AxisRecording<'a, W: Write + Send> {
+    file: Option<&'a mut TraceFile<W, AxisRow>>,
+    track: AxisTrack,
+}
+
+impl<W: Write + Send> Recorder<AxisRow> for AxisRecording<'_, W> {
+    fn row(&mut self, row: &AxisRow) {
+        if let Some(file) = &mut self.file {
+            file.row(row);
+        }
+        self.track.row(row);
+    }
+}
+
+/// Runs a policy on a whole rotor, and then once more by `check`, where it is to be checked.
+///
+/// # Errors
+/// [`RunError`] of the run.
+pub fn recorded_machine<W: Write + Send>(
+    scene: &MachineScene,
+    kind: PolicyKind,
+    check: Option<&MachineScene>,
+    files: Option<&mut MachineFiles<W>>,
+    on_tick: &mut dyn FnMut(u64),
+) -> Result<MachineRun, RunError> {
+    let (planes, axis) = match files {
+        Some(files) => (Some(&mut files.planes), Some(&mut files.axis)),
+        None => (None, None),
+    };
+    let mut files = planes.into_iter().flatten();
+    let mut recordings: Vec<Recording<'_, W>> = (scene.planes.iter())
+        .map(|_| Recording::new(files.next(), check.is_some()))
+        .collect();
+    let track = AxisTrack::default();
+    let mut axis = AxisRecording { file: axis, track };
+    let started = Instant::now();
+    let recorders = MachineRecorders {
+        planes: (recordings.iter_mut())
+            .map(|recording| recording as &mut dyn Recorder)
+            .collect(),
+        axis: Some(&mut axis),
+    };
+    let ended = record_machine(scene, kind, recorders, Rigour::default(), on_tick)?;
+    let writing: Duration = recordings.iter().map(Recording::writing).sum();
+    let writing = writing
+        + axis
+            .file
+            .as_ref()
+            .map_or(Duration::ZERO, |file| file.took());
+    let elapsed = started.elapsed().saturating_sub(writing);
+    let tracks: Vec<Track> = (recordings.iter_mut())
+        .filter_map(|recording| recording.track.take())
+        .collect();
+    let checks = check.map(|scene| {
+        check_machine(scene, kind, &tracks, on_tick).map_err(|error| error.to_string())
+    });
+    let figures: Vec<Figures> = ended.iter().map(|(figures, _)| figures.clone()).collect();
+    let mut runs = Vec::new();
+    for (i, ((figures, read_out), recording)) in ended.into_iter().zip(recordings).enumerate() {
+        let verification = checks.as_ref().map(|checks| match checks {
+            Ok(checks) => Ok(verification(&figures, &tracks[i], vec![checks[i].clone()])),
+            Err(error) => Err(error.clone()),
+        });
+        let mut trace = recording.overview.into_trace();
+        trace.read_out = read_out;
+        runs.push(PolicyRun {
+            name: kind.name().to_owned(),
+            verdict: Verdict::new(figures, scene.common(), elapsed),
+            verification,
+            supervision: recording.supervision.ended(trace.read_out.as_ref()),
+            happenings: recording.happenings,
+            trace,
+        });
+    }
+    let policy = kind.name();
+    let figures = Figures::of_machine(&figures).ok_or(RunError::Incomplete { policy })?;
+    let checked: Vec<&Verification> = runs.iter().filter_map(PolicyRun::checked).collect();
+    let whole = PolicyRun {
+        name: policy.to_owned(),
+        verdict: Verdict::new(figures, scene.common(), elapsed),
+        verification: match checks {
+            Some(Ok(_)) => Some(Ok(worst(&checked))),
+            Some(Err(error)) => Some(Err(error)),
+            None => None,
+        },
+        supervision: None,
+        happenings: Happenings::default(),
+        trace: Trace::default(),
+    };
+    Ok(MachineRun {
+        whole,
+        planes: runs,
+        axis: axis.track,
     })
 }
 

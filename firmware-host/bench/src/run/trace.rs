@@ -1,6 +1,7 @@
 //! What is recorded of a run: a row at every control sample and at every change of mode.
 
-use plant_model::{Mode, Snapshot, V2};
+use plant_model::machine::AxisMotion;
+use plant_model::{Body, Mode, Snapshot, V2};
 use supervisor::{Command, Events, Limits, Report};
 
 /// One row, SI units.
@@ -74,9 +75,20 @@ pub struct Trace {
 }
 
 /// Who is given the rows of a run, one by one.
-pub trait Recorder {
+pub trait Recorder<R = TraceRow> {
     /// The next row.
-    fn row(&mut self, row: &TraceRow);
+    fn row(&mut self, row: &R);
+}
+
+/// The axis of a whole rotor at a control sample.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AxisRow {
+    /// When \[s\].
+    pub t_s: f64,
+    /// Centre of mass, slope, bending energy.
+    pub axis: AxisMotion,
+    /// Amplitudes of the bending modes \[m\] and their rates \[m/s\].
+    pub bending: Vec<Body>,
 }
 
 impl Recorder for Trace {

@@ -2,7 +2,7 @@
 //! a time.
 
 use crate::run::supervision::names;
-use crate::run::trace::{Recorder, Said, TraceRow};
+use crate::run::trace::{AxisRow, Recorder, Said, TraceRow};
 use parquet::basic::Compression;
 use parquet::data_type::{BoolType, ByteArray, ByteArrayType, DoubleType};
 use parquet::errors::ParquetError;
@@ -13,11 +13,72 @@ use std::io::{self, Write};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-type Number = (&'static str, fn(&TraceRow) -> f64);
-type Text = (&'static str, fn(&TraceRow) -> String);
+type Number<R> = (String, Box<dyn Fn(&R) -> f64 + Send>);
+type Text<R> = (&'static str, fn(&R) -> String);
+type Flag<R> = (&'static str, fn(&R) -> bool);
+
+/// Columns of rows of some kind, in file order.
+pub struct Columns<R: 'static> {
+    numbers: Vec<Number<R>>,
+    texts: &'static [Text<R>],
+    flags: &'static [Flag<R>],
+}
+
+impl Columns<TraceRow> {
+    /// Of a plane.
+    pub fn of_plane() -> Self {
+        let numbers = NUMBERS.iter().copied();
+        Self {
+            numbers: numbers.map(|(name, value)| number(name, value)).collect(),
+            texts: TEXTS,
+            // Whether a row stands at a change of mode between two control samples.
+            flags: &[("mode_change", |r| r.mode_change)],
+        }
+    }
+}
+
+impl Columns<AxisRow> {
+    /// Of a rotor's axis with so many bending modes.
+    pub fn of_axis(modes: usize) -> Self {
+        let axis = AXIS.iter().copied();
+        let mut numbers: Vec<Number<AxisRow>> =
+            axis.map(|(name, value)| number(name, value)).collect();
+        for mode in 0..modes {
+            for (axis, name) in ["x", "y"].into_iter().enumerate() {
+                let value = move |r: &AxisRow| r.bending[mode].position[axis];
+                numbers.push(number(&format!("bending_{}_{name}_m", mode + 1), value));
+            }
+        }
+        Self {
+            numbers,
+            texts: &[],
+            flags: &[],
+        }
+    }
+}
+
+fn number<R>(name: &str, value: impl Fn(&R) -> f64 + Send + 'static) -> Number<R> {
+    (name.to_owned(), Box::new(value))
+}
+
+type Plain<R> = (&'static str, fn(&R) -> f64);
+
+/// The axis of a whole rotor.
+const AXIS: &[Plain<AxisRow>] = &[
+    ("t_s", |r| r.t_s),
+    ("centre_x_m", |r| r.axis.centre.position.x),
+    ("centre_y_m", |r| r.axis.centre.position.y),
+    ("centre_vx_m_s", |r| r.axis.centre.velocity.x),
+    ("centre_vy_m_s", |r| r.axis.centre.velocity.y),
+    ("tilt_x_rad", |r| r.axis.tilt.position.x),
+    ("tilt_y_rad", |r| r.axis.tilt.position.y),
+    ("tilt_rate_x_rad_s", |r| r.axis.tilt.velocity.x),
+    ("tilt_rate_y_rad_s", |r| r.axis.tilt.velocity.y),
+    ("bending_energy_j", |r| r.axis.bending_j),
+];
 
 /// Columns of numbers, in file order.
-const NUMBERS: &[Number] = &[
+const NUMBERS: &[Plain<TraceRow>] = &[
     ("t_s", |r| r.plant.t_s),
     ("rotor_x_m", |r| r.plant.position_m.x),
     ("rotor_y_m", |r| r.plant.position_m.y),
@@ -53,7 +114,7 @@ const NUMBERS: &[Number] = &[
 ];
 
 /// Columns of names, after the numbers.
-const TEXTS: &[Text] = &[
+const TEXTS: &[Text<TraceRow>] = &[
     ("mode", |r| r.plant.mode.name().to_owned()),
     ("supervisor_mode", |r| {
         r.supervisor_mode()
@@ -75,35 +136,36 @@ fn said(row: &TraceRow, what: fn(&Said) -> f32) -> f64 {
     row.supervisor.map_or(0.0, |said| f64::from(what(&said)))
 }
 
-/// Whether a row stands at a change of mode between two control samples; the last column.
-const MODE_CHANGE: &str = "mode_change";
-
 /// Rows of a group; so many are in memory before they are written.
 const GROUP_ROWS: usize = 1 << 16;
 
 /// A trace file that is being written.
-pub struct TraceFile<W: Write + Send> {
+pub struct TraceFile<W: Write + Send, R: 'static> {
     file: SerializedFileWriter<W>,
-    rows: Vec<TraceRow>,
+    columns: Columns<R>,
+    rows: Vec<R>,
     /// The first thing that went wrong; nothing is written after it.
     broken: Option<ParquetError>,
     took: Duration,
 }
 
-impl<W: Write + Send> TraceFile<W> {
+impl<W: Write + Send, R: Clone> TraceFile<W, R> {
     /// Begins a file.
     ///
     /// # Errors
     /// What the file system or the format refuses.
-    pub fn new(sink: W) -> Result<Self, ParquetError> {
+    pub fn new(sink: W, columns: Columns<R>) -> Result<Self, ParquetError> {
         let mut message = String::from("message trace {\n");
-        for (name, _) in NUMBERS {
+        for (name, _) in &columns.numbers {
             message += &format!("  required double {name};\n");
         }
-        for (name, _) in TEXTS {
+        for (name, _) in columns.texts {
             message += &format!("  required binary {name} (utf8);\n");
         }
-        message += &format!("  required boolean {MODE_CHANGE};\n}}");
+        for (name, _) in columns.flags {
+            message += &format!("  required boolean {name};\n");
+        }
+        message += "}";
         let schema = Arc::new(parse_message_type(&message)?);
         // Numbers hardly repeat: a dictionary of them is work for nothing, and larger than they are. Of names there are few.
         let mut properties = WriterProperties::builder()
@@ -111,12 +173,13 @@ impl<W: Write + Send> TraceFile<W> {
             .set_dictionary_enabled(false)
             .set_statistics_enabled(EnabledStatistics::None)
             .set_created_by("firmware-host".to_owned());
-        for (name, _) in TEXTS {
+        for (name, _) in columns.texts {
             properties = properties.set_column_dictionary_enabled((*name).into(), true);
         }
         let properties = properties.build();
         Ok(Self {
             file: SerializedFileWriter::new(sink, schema, Arc::new(properties))?,
+            columns,
             rows: Vec::new(),
             broken: None,
             took: Duration::ZERO,
@@ -144,13 +207,13 @@ impl<W: Write + Send> TraceFile<W> {
 
     fn write_group(&mut self) -> Result<(), ParquetError> {
         let mut group = self.file.next_row_group()?;
-        for (_, value) in NUMBERS {
+        for (_, value) in &self.columns.numbers {
             let column: Vec<f64> = self.rows.iter().map(value).collect();
             column_of(&mut group, |c| {
                 c.typed::<DoubleType>().write_batch(&column, None, None)
             })?;
         }
-        for (_, value) in TEXTS {
+        for (_, value) in self.columns.texts {
             let column: Vec<ByteArray> = (self.rows.iter())
                 .map(|r| ByteArray::from(value(r).into_bytes()))
                 .collect();
@@ -158,22 +221,24 @@ impl<W: Write + Send> TraceFile<W> {
                 c.typed::<ByteArrayType>().write_batch(&column, None, None)
             })?;
         }
-        let column: Vec<bool> = self.rows.iter().map(|r| r.mode_change).collect();
-        column_of(&mut group, |c| {
-            c.typed::<BoolType>().write_batch(&column, None, None)
-        })?;
+        for (_, value) in self.columns.flags {
+            let column: Vec<bool> = self.rows.iter().map(value).collect();
+            column_of(&mut group, |c| {
+                c.typed::<BoolType>().write_batch(&column, None, None)
+            })?;
+        }
         group.close()?;
         self.rows.clear();
         Ok(())
     }
 }
 
-impl<W: Write + Send> Recorder for TraceFile<W> {
-    fn row(&mut self, row: &TraceRow) {
+impl<W: Write + Send, R: Clone> Recorder<R> for TraceFile<W, R> {
+    fn row(&mut self, row: &R) {
         if self.broken.is_some() {
             return;
         }
-        self.rows.push(*row);
+        self.rows.push(row.clone());
         if self.rows.len() == GROUP_ROWS {
             let started = Instant::now();
             self.broken = self.write_group().err();
@@ -226,7 +291,7 @@ mod tests {
                 Ok(())
             }
         }
-        let begun = TraceFile::new(Full);
+        let begun = TraceFile::new(Full, Columns::of_plane());
         let told = begun.and_then(|mut file| {
             (0..GROUP_ROWS).for_each(|i| file.row(&fixture::row(i as f64, false)));
             file.end()

@@ -1,6 +1,7 @@
 //! What a run came to: figures, how long it took, and what stands beside them.
 
 use crate::run::figures::{Figures, Timing, Took};
+use crate::run::overview::AxisTrack;
 use crate::run::supervision::{Happenings, Supervision};
 use crate::run::trace::Trace;
 use crate::run::verify::Verification;
@@ -55,6 +56,40 @@ impl PolicyRun {
     /// What its checks say, where they were asked for and can be trusted.
     pub fn checked(&self) -> Option<&Verification> {
         self.verification.as_ref()?.as_ref().ok()
+    }
+}
+
+/// One policy's run of a whole rotor.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MachineRun {
+    /// What it came to as a whole; its rows are those of the planes.
+    pub whole: PolicyRun,
+    /// Its planes, each under the name of the policy.
+    pub planes: Vec<PolicyRun>,
+    /// The rotor's axis over time.
+    pub axis: AxisTrack,
+}
+
+/// What came of a scene of a whole rotor.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct MachineResults {
+    /// The policies' runs as a whole.
+    pub whole: Results,
+    /// Of each plane, the runs in the order of the whole.
+    pub planes: Vec<Vec<PolicyRun>>,
+    /// The axis of each run.
+    pub axes: Vec<AxisTrack>,
+}
+
+impl MachineResults {
+    /// With one more run.
+    pub fn push(&mut self, run: MachineRun) {
+        self.planes.resize_with(run.planes.len(), Vec::new);
+        for (runs, plane) in self.planes.iter_mut().zip(run.planes) {
+            runs.push(plane);
+        }
+        self.whole.runs.push(run.whole);
+        self.axes.push(run.axis);
     }
 }
 

@@ -1,11 +1,12 @@
 //! A run's own estimate of its global error: the closed loop once more at a tighter tolerance, and
 //! once more by another method.
 
-use crate::run::closed_loop::{Rigour, RunError, record};
+use crate::run::closed_loop::{MachineRecorders, Rigour, RunError, record, record_machine};
 use crate::run::figures::Figures;
 use crate::run::outcome::Outcome;
 use crate::run::trace::{Recorder, TraceRow};
 use crate::scene::Scene;
+use crate::scene::machine::MachineScene;
 use crate::scene::policy_kind::PolicyKind;
 use plant_model::{Method, Mode, Options, V2};
 use serde::Serialize;
@@ -142,6 +143,50 @@ impl Recorder for Comparison<'_> {
     }
 }
 
+impl<'a> Comparison<'a> {
+    fn new(run: &'a Track, clearance_m: f64) -> Self {
+        Self {
+            run,
+            clearance_m,
+            samples: 0,
+            mode_changes: 0,
+            same_modes: true,
+            last: 0.0,
+            largest: 0.0,
+            differs_from_s: None,
+        }
+    }
+
+    fn ended(self, figures: &Figures, rtol: f64) -> Check {
+        Check {
+            method: figures.method,
+            rtol,
+            outcome: figures.outcome,
+            mode_changes: self.mode_changes as u64,
+            same_modes: self.same_modes && self.mode_changes == self.run.modes.len(),
+            end_difference_clearances: self.last,
+            largest_difference_clearances: self.largest,
+            differs_from_s: self.differs_from_s,
+        }
+    }
+}
+
+fn rigour(scene: &Scene) -> Rigour {
+    Rigour {
+        parts: FINER_PARTS,
+        steps: STEPS + STEPS_PER_SAMPLE * scene.samples().count(),
+    }
+}
+
+fn untrusted(scene: &Scene) -> impl Fn(RunError) -> RunError {
+    let (method, rtol) = (scene.method.name(), scene.rtol);
+    move |reason| RunError::Check {
+        method,
+        rtol,
+        reason: Box::new(reason),
+    }
+}
+
 /// Runs a policy of one of [`check_scenes`] and holds it against the run itself.
 ///
 /// # Errors
@@ -152,36 +197,47 @@ pub fn check(
     run: &Track,
     on_tick: &mut dyn FnMut(u64),
 ) -> Result<Check, RunError> {
-    let mut comparison = Comparison {
-        run,
-        clearance_m: scene.plant.contact.clearance_m,
-        samples: 0,
-        mode_changes: 0,
-        same_modes: true,
-        last: 0.0,
-        largest: 0.0,
-        differs_from_s: None,
+    let mut comparison = Comparison::new(run, scene.plant.contact.clearance_m);
+    let ended = record(scene, kind, &mut comparison, rigour(scene), on_tick);
+    let (figures, _) = ended.map_err(untrusted(scene))?;
+    Ok(comparison.ended(&figures, scene.rtol))
+}
+
+/// The scene that checks one of a whole rotor: its series at a tighter tolerance, and loads that vary in finer parts.
+pub fn check_machine_scene(scene: &MachineScene) -> MachineScene {
+    let mut tighter = scene.clone();
+    for plane in &mut tighter.planes {
+        let rtol = plane.scene.rtol;
+        plane.scene.rtol = (rtol * TIGHTER).max(TIGHTEST).min(rtol);
+    }
+    tighter
+}
+
+/// Runs a policy of [`check_machine_scene`] and holds each of its planes against the run itself.
+///
+/// # Errors
+/// [`RunError::Check`].
+pub fn check_machine(
+    scene: &MachineScene,
+    kind: PolicyKind,
+    tracks: &[Track],
+    on_tick: &mut dyn FnMut(u64),
+) -> Result<Vec<Check>, RunError> {
+    let common = scene.common();
+    let mut comparisons: Vec<Comparison> = (scene.planes.iter().zip(tracks))
+        .map(|(plane, run)| Comparison::new(run, plane.scene.plant.contact.clearance_m))
+        .collect();
+    let recorders = MachineRecorders {
+        planes: (comparisons.iter_mut())
+            .map(|c| c as &mut dyn Recorder)
+            .collect(),
+        axis: None,
     };
-    let rigour = Rigour {
-        parts: FINER_PARTS,
-        steps: STEPS + STEPS_PER_SAMPLE * scene.samples().count(),
-    };
-    let ended = record(scene, kind, &mut comparison, rigour, on_tick);
-    let (figures, _) = ended.map_err(|reason| RunError::Check {
-        method: scene.method.name(),
-        rtol: scene.rtol,
-        reason: Box::new(reason),
-    })?;
-    Ok(Check {
-        method: figures.method,
-        rtol: scene.rtol,
-        outcome: figures.outcome,
-        mode_changes: comparison.mode_changes as u64,
-        same_modes: comparison.same_modes && comparison.mode_changes == run.modes.len(),
-        end_difference_clearances: comparison.last,
-        largest_difference_clearances: comparison.largest,
-        differs_from_s: comparison.differs_from_s,
-    })
+    let ended = record_machine(scene, kind, recorders, rigour(common), on_tick);
+    let ended = ended.map_err(untrusted(common))?;
+    Ok((comparisons.into_iter().zip(&ended))
+        .map(|(comparison, (figures, _))| comparison.ended(figures, common.rtol))
+        .collect())
 }
 
 /// What the checks of a run say together.
@@ -196,5 +252,20 @@ pub fn verification(figures: &Figures, run: &Track, checks: Vec<Check>) -> Verif
         threshold_clearances: THRESHOLD_CLEARANCES,
         differs_from_s: (checks.iter().filter_map(|c| c.differs_from_s)).reduce(f64::min),
         checks,
+    }
+}
+
+/// What the planes of a machine say together: the worst of each.
+pub(crate) fn worst(planes: &[&Verification]) -> Verification {
+    let largest = |of: fn(&Verification) -> f64| planes.iter().map(|v| of(v)).fold(0.0, f64::max);
+    Verification {
+        same_outcome: planes.iter().all(|v| v.same_outcome),
+        same_modes: planes.iter().all(|v| v.same_modes),
+        mode_changes: planes.iter().map(|v| v.mode_changes).sum(),
+        estimated_error_clearances: largest(|v| v.estimated_error_clearances),
+        largest_difference_clearances: largest(|v| v.largest_difference_clearances),
+        threshold_clearances: THRESHOLD_CLEARANCES,
+        differs_from_s: (planes.iter().filter_map(|v| v.differs_from_s)).reduce(f64::min),
+        checks: planes.iter().flat_map(|v| v.checks.clone()).collect(),
     }
 }

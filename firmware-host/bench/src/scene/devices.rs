@@ -4,7 +4,7 @@ use crate::device::actuator::AmplifierParams;
 use crate::device::levitation::LevitationParams;
 use crate::device::sensor::SensorParams;
 use crate::scene::diagnostic::SceneError;
-use crate::scene::spec::Spec;
+use crate::scene::plane_spec::PlaneSpec;
 use crate::scene::tables::{LevitationTable, MagnetTable, SensorTable};
 use plant_model::V2;
 
@@ -18,6 +18,8 @@ impl From<&SensorTable> for SensorParams {
             delay_samples: s.delay_samples as usize,
             swapped: s.swapped,
             range_m: s.range_m,
+            runout_m: s.runout_m,
+            runout_phase_rad: s.runout_phase_rad,
         }
     }
 }
@@ -45,10 +47,10 @@ impl From<&LevitationTable> for LevitationParams {
 }
 
 /// Where the retainer bearing stands as seen from the magnets \[m\].
-pub(crate) fn centre_offset_m(spec: &Spec) -> Result<V2, SceneError> {
+pub(crate) fn centre_offset_m(spec: &PlaneSpec) -> Result<V2, SceneError> {
     let offset: V2 = spec.tables.retainer.centre_offset_m.into();
     let size = offset.norm();
-    if size < spec.tables.contact.clearance_m {
+    if size < spec.contact.clearance_m {
         return Ok(offset);
     }
     let expected = "a length below contact.clearance_m, so that the rotor can be levitated";

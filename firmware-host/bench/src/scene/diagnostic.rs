@@ -72,9 +72,37 @@ impl SceneError {
 pub(crate) struct SceneText {
     pub(crate) path: PathBuf,
     pub(crate) text: String,
+    /// Of which plane is spoken; its own tables come before the scene's.
+    pub(crate) plane: Option<usize>,
 }
 
 impl SceneText {
+    /// The same, speaking of a plane.
+    pub(crate) fn of_plane(&self, index: usize) -> Self {
+        Self {
+            plane: Some(index),
+            ..self.clone()
+        }
+    }
+
+    /// Where a key of the plane that is spoken of stands: in its own tables, or in the scene's.
+    fn placed(&self, key: &str) -> String {
+        let Some(index) = self.plane else {
+            return key.to_owned();
+        };
+        let own = match key {
+            "rotor.contact_radius_m" => "contact_radius_m",
+            key => key,
+        };
+        let table = own.split(['.', '[']).next().unwrap_or(own);
+        let of_plane = format!("plane[{index}]");
+        let all = |key: &str| self.spans(key).count();
+        match all(&format!("{of_plane}.{table}")) == 2 {
+            true => format!("{of_plane}.{own}"),
+            false => key.to_owned(),
+        }
+    }
+
     pub(crate) fn read(path: &Path) -> Result<Self, SceneError> {
         let bytes = std::fs::read(path).map_err(|reason| SceneError::Read {
             path: path.to_owned(),
@@ -90,6 +118,7 @@ impl SceneText {
         Ok(Self {
             path: path.to_owned(),
             text,
+            plane: None,
         })
     }
 
@@ -137,9 +166,15 @@ impl SceneText {
                 message = format!("{}: {message}", key.trim());
             }
             help = written_otherwise(value);
-            // All lists of numbers are pairs.
-            if message.ends_with("a list in square brackets") && key.trim() != "policies" {
-                help = Some("give x and y, [x, y]".to_owned());
+            // Most lists of numbers are pairs.
+            if message.ends_with("a list in square brackets") {
+                help = match key.trim() {
+                    "policies" => None,
+                    "positions_m" | "displacements" | "polar_coupling_kg_m2" => {
+                        Some("give numbers, [a, b, …]".to_owned())
+                    }
+                    _ => Some("give x and y, [x, y]".to_owned()),
+                };
             }
         }
         let help = guess::from_message(&message).or(help);
@@ -153,11 +188,9 @@ impl SceneText {
         message: String,
         help: Option<String>,
     ) -> SceneError {
-        self.error_at(
-            self.find(key).unwrap_or(0..0),
-            format!("{key}: {message}"),
-            help,
-        )
+        let key = self.placed(key);
+        let range = self.spans(&key).last().unwrap_or(0..0);
+        self.error_at(range, format!("{key}: {message}"), help)
     }
 
     /// What such an error would say on its one line.
@@ -185,25 +218,30 @@ impl SceneText {
             let lacks = keys.iter().find(|key| {
                 matches!(key.absent, Absent::Required(_)) && !table.contains_key(key.name)
             })?;
-            let is = if path.is_empty() { " is" } else { ": is" };
-            let message = format!("{}{is} missing", joined(&path, lacks.name));
-            let range = self.find(&path).unwrap_or(0..0);
-            Some(self.error_at(range, message, Some(lacks.what_to_give())))
+            Some(self.missing_at(&joined(&path, lacks.name), lacks.what_to_give()))
         })
     }
 
-    fn find(&self, key: &str) -> Option<std::ops::Range<usize>> {
+    /// An error of a key that is not there, at its table.
+    pub(crate) fn missing_at(&self, key: &str, help: String) -> SceneError {
+        let range = self.spans(key).last().unwrap_or(0..0);
+        let is = if key.contains('.') { ": is" } else { " is" };
+        self.error_at(range, format!("{key}{is} missing"), Some(help))
+    }
+
+    /// Where the parts of a dotted key are, as far as they are there.
+    fn spans(&self, key: &str) -> impl Iterator<Item = std::ops::Range<usize>> {
         use toml::de::{DeTable, DeValue};
-        let document = DeTable::parse(&self.text).ok()?;
-        let mut table = document.get_ref();
-        let mut span = None;
+        let mut spans = Vec::new();
+        let document = DeTable::parse(&self.text).ok();
+        let mut table = document.as_ref().map(toml::Spanned::get_ref);
         for part in key.split('.') {
             // `disturbance[1]` is the second of an array of tables.
             let (name, index) = match part.split_once('[') {
                 Some((name, rest)) => (name, rest.trim_end_matches(']').parse::<usize>().ok()),
                 None => (part, None),
             };
-            let Some(mut value) = table.get(name) else {
+            let Some(mut value) = table.and_then(|table| table.get(name)) else {
                 break;
             };
             if let (Some(index), DeValue::Array(array)) = (index, value.get_ref()) {
@@ -212,13 +250,13 @@ impl SceneText {
                     None => break,
                 }
             }
-            span = Some(value.span());
-            match value.get_ref() {
-                DeValue::Table(inner) => table = inner,
-                _ => break,
-            }
+            spans.push(value.span());
+            table = match value.get_ref() {
+                DeValue::Table(inner) => Some(inner),
+                _ => None,
+            };
         }
-        span
+        spans.into_iter()
     }
 }
 

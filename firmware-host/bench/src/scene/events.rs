@@ -6,7 +6,7 @@ use crate::device::loads::{BaseMotion, Disturbance, Shape, TimedChange};
 use crate::device::sensor_fault::{Fault, FaultKind};
 use crate::scene::diagnostic::SceneError;
 use crate::scene::keys::{Absent, Range};
-use crate::scene::spec::Spec;
+use crate::scene::plane_spec::PlaneSpec;
 use crate::scene::tables::{ChangeTable, FaultTable, OutageTable};
 use crate::scene::values::{FaultName, ShapeName};
 use plant_model::Change;
@@ -22,7 +22,7 @@ pub(crate) struct Events {
 }
 
 /// The events of a scene file, checked.
-pub(crate) fn events(spec: &Spec) -> Result<Events, SceneError> {
+pub(crate) fn events(spec: &PlaneSpec) -> Result<Events, SceneError> {
     let reader = Reader { spec };
     let written = &spec.tables;
     let disturbances = each("disturbance", &written.disturbance, |path, d| {
@@ -90,7 +90,7 @@ impl ChangeTable {
 }
 
 struct Reader<'a> {
-    spec: &'a Spec,
+    spec: &'a PlaneSpec,
 }
 
 impl Reader<'_> {

@@ -43,6 +43,8 @@ pub enum Kind {
     Pair,
     /// One number for both axes, or [x, y].
     PerAxis,
+    /// A list of numbers.
+    Numbers,
     /// A table with these keys.
     Table(&'static [Key]),
     /// Any number of tables with these keys.
@@ -142,6 +144,7 @@ impl Key {
             Kind::Number | Kind::Whole => format!("give a number{unit}"),
             Kind::Pair => format!("give two numbers{unit}, [x, y]"),
             Kind::PerAxis => format!("give a number{unit}, or one for each axis, [x, y]"),
+            Kind::Numbers => format!("give a list of numbers{unit}, [a, b, …]"),
             Kind::Word(words) => format!("give one of {}", words.join(", ")),
             Kind::Policies => {
                 let names = PolicyKind::ALL.map(PolicyKind::name).join(", ");

@@ -1,14 +1,14 @@
 //! What a scene leaves to be derived from the speed at which its magnet can still lift the rotor off.
 
 use crate::scene::diagnostic::{SceneError, SceneText};
-use crate::scene::spec::Spec;
+use crate::scene::plane_spec::PlaneSpec;
 use plant_model::analysis::onset::lift_off_speed_m_s;
 use plant_model::params::PlantParams;
 
 /// The scene's own limit of whirl; else 3·ω0·c with a shaft, and three times the speed at which the magnet can
 /// still lift the rotor off without one. A shaft against which magnets pull may have little stiffness left, and then it
 /// is the larger of both \[m/s\].
-pub(crate) fn whirl_speed_m_s(spec: &Spec, plant: &PlantParams) -> Result<f64, SceneError> {
+pub(crate) fn whirl_speed_m_s(spec: &PlaneSpec, plant: &PlantParams) -> Result<f64, SceneError> {
     const KEY: &str = "verdict.whirl_speed_m_s";
     if let Some(speed) = spec.tables.verdict.whirl_speed_m_s {
         return Ok(speed);
@@ -35,7 +35,7 @@ pub(crate) fn whirl_speed_m_s(spec: &Spec, plant: &PlantParams) -> Result<f64, S
 
 /// Gain of the policy `damping` \[N s/m\]: the scene's, or the whole cap at lift-off speed.
 pub(crate) fn damping_n_s_m(
-    spec: &Spec,
+    spec: &PlaneSpec,
     plant: &PlantParams,
     wanted: bool,
 ) -> Result<f64, SceneError> {

@@ -5,7 +5,7 @@ use crate::device::loop_shape::{BADLY_DAMPED, SampledPlant};
 use crate::device::sensor_fault::Samples;
 use crate::scene::diagnostic::SceneText;
 use crate::scene::nominal::Override;
-use crate::scene::spec::Spec;
+use crate::scene::plane_spec::PlaneSpec;
 use crate::scene::suggest::{Nominal, SUPERVISED_RATES_HZ, suggested};
 use crate::scene::tables::SceneTables;
 use plant_model::V2;
@@ -44,10 +44,12 @@ pub(crate) struct Told<'a> {
     pub(crate) overrides: &'a [Override],
     /// What comes of both where a supervisor runs.
     pub(crate) config: Option<&'a Config>,
+    /// Whether the levitation loop is the plane's own.
+    pub(crate) levitated_alone: bool,
 }
 
 /// Warnings with file and line.
-pub(crate) fn warnings(spec: &Spec, plant: &PlantParams, told: Told<'_>) -> Vec<String> {
+pub(crate) fn warnings(spec: &PlaneSpec, plant: &PlantParams, told: Told<'_>) -> Vec<String> {
     let (file, text, nominal) = (&spec.tables, &spec.text, told.nominal);
     let warning = |key: &str, message| text.warning(key, message);
     let clearance_m = plant.contact.clearance_m;
@@ -89,7 +91,9 @@ pub(crate) fn warnings(spec: &Spec, plant: &PlantParams, told: Told<'_>) -> Vec<
         );
         warnings.push(warning(key, message));
     }
-    warnings.extend(of_the_loop(spec, plant));
+    if told.levitated_alone {
+        warnings.extend(of_the_loop(spec, plant));
+    }
     if !told.overrides.is_empty() {
         warnings.extend(of_another_machine(
             text,
@@ -118,7 +122,7 @@ pub(crate) fn warnings(spec: &Spec, plant: &PlantParams, told: Told<'_>) -> Vec<
 }
 
 /// A levitation loop that holds nothing, is not stable or is badly damped: as sampled, delayed and lagged, without the cap.
-fn of_the_loop(spec: &Spec, plant: &PlantParams) -> Option<String> {
+fn of_the_loop(spec: &PlaneSpec, plant: &PlantParams) -> Option<String> {
     let (file, text) = (&spec.tables, &spec.text);
     let levitation: LevitationParams = file.levitation.as_ref()?.into();
     let delay = file.magnet.as_ref()?.delay_samples + file.sensor.delay_samples;
@@ -145,16 +149,16 @@ fn of_the_loop(spec: &Spec, plant: &PlantParams) -> Option<String> {
 }
 
 /// Values that one look at them makes doubtful: also of a scene that is refused, for that may be why.
-pub(crate) fn slips(spec: &Spec) -> Vec<String> {
+pub(crate) fn slips(spec: &PlaneSpec) -> Vec<String> {
     let file = &spec.tables;
     let warning = |key: &str, message| spec.text.warning(key, message);
-    let clearance_m = file.contact.clearance_m;
+    let clearance_m = spec.contact.clearance_m;
     let mut warnings = Vec::new();
     if file.rotor.eccentricity_m > clearance_m {
         let message = "is larger than the clearance; lengths are in metres".to_owned();
         warnings.push(warning("rotor.eccentricity_m", message));
     }
-    if clearance_m > file.rotor.contact_radius_m {
+    if clearance_m > spec.contact_radius_m {
         let message = "is larger than the rotor's radius there; lengths are in metres".to_owned();
         warnings.push(warning("contact.clearance_m", message));
     }
@@ -172,7 +176,7 @@ pub(crate) fn slips(spec: &Spec) -> Vec<String> {
         let message = format!("is {hz:e} turns a second; a speed in turns a minute?");
         warnings.push(warning("spin.frequency_hz", message));
     }
-    if file.rotor.contact_radius_m > WIDEST_M {
+    if spec.contact_radius_m > WIDEST_M {
         let message = format!("is wider than {WIDEST_M} m; lengths are in metres");
         warnings.push(warning("rotor.contact_radius_m", message));
     }
@@ -200,7 +204,7 @@ pub(crate) fn slips(spec: &Spec) -> Vec<String> {
 }
 
 /// What falls between samples, or behind the last: nobody sees it, or it does not happen at all.
-pub(crate) fn unseen(spec: &Spec) -> Vec<String> {
+pub(crate) fn unseen(spec: &PlaneSpec) -> Vec<String> {
     let (file, text) = (&spec.tables, &spec.text);
     let samples = Samples::new(file.run.duration_s, file.run.sample_rate_hz);
     let unseen = |start_s: f64, duration_s: f64| !samples.any_within(start_s, start_s + duration_s);

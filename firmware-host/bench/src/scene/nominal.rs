@@ -3,14 +3,14 @@
 use crate::scene::diagnostic::{SceneError, SceneText};
 use crate::scene::guess;
 use crate::scene::keys::{number, parameter};
-use crate::scene::spec::Spec;
+use crate::scene::plane_spec::PlaneSpec;
 use crate::scene::suggest::{Nominal, suggested};
-use crate::scene::tables::SceneTables;
 use plant_model::params::PlantParams;
 use supervisor::{Config, ConfigError, PARAMETERS};
 
 /// What a data sheet would say of the scene's bearing.
-pub(crate) fn nominal(plant: &PlantParams, file: &SceneTables) -> Nominal {
+pub(crate) fn nominal(plant: &PlantParams, spec: &PlaneSpec) -> Nominal {
+    let (file, contact) = (&spec.tables, &spec.contact);
     let magnet = file.magnet.as_ref();
     Nominal {
         sample_rate_hz: file.run.sample_rate_hz,
@@ -19,9 +19,9 @@ pub(crate) fn nominal(plant: &PlantParams, file: &SceneTables) -> Nominal {
         damping_n_s_m: plant.rotor.damping_n_s_m,
         clearance_m: plant.contact.clearance_m,
         contact_stiffness_n_m: plant.contact.stiffness_n_m(),
-        contact_hardens: file.contact.stiffness_n_mn.is_some(),
+        contact_hardens: contact.stiffness_n_mn.is_some(),
         contact_mass_kg: plant.contact_mass_kg(),
-        restitution: file.contact.restitution,
+        restitution: contact.restitution,
         friction_coefficient: plant.friction.sliding.coefficient(0.0),
         rolling_coefficient: plant.friction.rolling_coefficient,
         force_max_n: plant.magnet.map_or(0.0, |m| m.force_max_n),
@@ -35,8 +35,9 @@ pub(crate) fn nominal(plant: &PlantParams, file: &SceneTables) -> Nominal {
         load_n: plant.rotor.mass_kg * file.rotor.gravity_m_s2.length(),
         centre_offset_m: file.retainer.centre_offset_m.length(),
         spin_hz: Some(file.spin.frequency_hz),
-        // No scene has one.
-        runout_m: None,
+        runout_m: (file.sensor.runout_m > 0.0).then_some(file.sensor.runout_m),
+        retainer_plane_ratio: 1.0,
+        magnet_plane_ratio: 1.0,
     }
 }
 
@@ -50,8 +51,9 @@ pub struct NominalKeys {
 
 impl NominalKeys {
     /// The keys that a file's nominal data come from.
-    pub(crate) fn new(nominal: &Nominal, file: &SceneTables) -> Self {
-        let (rotor, contact) = (&file.rotor, &file.contact);
+    pub(crate) fn new(nominal: &Nominal, spec: &PlaneSpec) -> Self {
+        let (file, contact) = (&spec.tables, &spec.contact);
+        let rotor = &file.rotor;
         Self {
             stiffness: match (&file.magnet, rotor.natural_frequency_hz) {
                 // The magnets' part outweighs the shaft's.
@@ -89,6 +91,8 @@ impl NominalKeys {
             "noise_rms_m" => "sensor.noise_rms_m",
             "quantum_m" => "sensor.quantum_m",
             "range_m" => "sensor.range_m",
+            "retainer_plane_ratio" => "sensor.position_m",
+            "magnet_plane_ratio" => "magnet.position_m",
             _ => "rotor",
         }
     }
@@ -113,7 +117,7 @@ pub fn replaced(config: &Config, overrides: &[Override]) -> Config {
 
 /// The parameters that `[supervisor]` gives, each checked by itself: also where the policy is not run, in
 /// which case nothing else would look at them.
-pub(crate) fn overrides(spec: &Spec) -> Result<Vec<Override>, SceneError> {
+pub(crate) fn overrides(spec: &PlaneSpec) -> Result<Vec<Override>, SceneError> {
     let (text, supervisor) = (&spec.text, &spec.tables.supervisor);
     let mut given = Vec::with_capacity(supervisor.len());
     for (key, value) in supervisor {

@@ -1,8 +1,8 @@
 //! The plant from the scene's keys: alternatives resolved, every value checked.
 
 use crate::scene::diagnostic::{Given, SceneError, SceneText};
-use crate::scene::spec::Spec;
-use crate::scene::tables::{ContactTable, FrictionTable, RingTable, RotorTable, SceneTables};
+use crate::scene::plane_spec::PlaneSpec;
+use crate::scene::tables::{ContactTable, FrictionTable, RingTable, SceneTables};
 use plant_model::contact::{damping_for_restitution, hunt_crossley};
 use plant_model::params::{
     ContactLaw, ContactParams, EllipseParams, FrictionParams, HuntCrossley, LinearContact,
@@ -12,12 +12,17 @@ use plant_model::params::{
 use std::f64::consts::TAU;
 
 /// The plant that a scene file describes, checked.
-pub(crate) fn plant(spec: &Spec) -> Result<PlantParams, SceneError> {
+pub(crate) fn plant(spec: &PlaneSpec) -> Result<PlantParams, SceneError> {
+    let rotor = rotor(spec)?;
+    plant_of(spec, rotor)
+}
+
+/// The plant with a rotor that is known otherwise.
+pub(crate) fn plant_of(spec: &PlaneSpec, rotor: RotorParams) -> Result<PlantParams, SceneError> {
     let (file, text) = (&spec.tables, &spec.text);
     let magnet = file.magnet.as_ref();
-    let negative_n_m = magnet.map_or(0.0, |m| m.negative_stiffness_n_m);
     let mut plant = PlantParams {
-        rotor: rotor(&file.rotor, negative_n_m, text)?,
+        rotor,
         spin: match (file.spin.inertia_kg_m2, file.spin.drive_torque_n_m) {
             (Some(inertia_kg_m2), torque) => SpinParams::Free {
                 inertia_kg_m2,
@@ -32,12 +37,12 @@ pub(crate) fn plant(spec: &Spec) -> Result<PlantParams, SceneError> {
         },
         stator: stator(file, text)?,
         contact: ContactParams {
-            clearance_m: file.contact.clearance_m,
-            law: law(&file.contact, text)?,
+            clearance_m: spec.contact.clearance_m,
+            law: law(&spec.contact, text)?,
         },
         friction: FrictionParams {
-            sliding: sliding(&file.friction, text)?,
-            rolling_coefficient: file.friction.rolling_coefficient,
+            sliding: sliding(&spec.friction, text)?,
+            rolling_coefficient: spec.friction.rolling_coefficient,
         },
         magnet: magnet.map(|m| MagnetParams {
             force_max_n: m.force_max_n,
@@ -50,7 +55,7 @@ pub(crate) fn plant(spec: &Spec) -> Result<PlantParams, SceneError> {
         }),
     };
     plant.validate().map_err(|error| refused(&error, text))?;
-    restore(&mut plant, &file.contact, text)?;
+    restore(&mut plant, &spec.contact, text)?;
     Ok(plant)
 }
 
@@ -203,11 +208,11 @@ fn restore(
     Ok(())
 }
 
-fn rotor(
-    file: &RotorTable,
-    negative_n_m: f64,
-    text: &SceneText,
-) -> Result<RotorParams, SceneError> {
+/// A point mass on its shaft and in its magnet's field.
+fn rotor(spec: &PlaneSpec) -> Result<RotorParams, SceneError> {
+    let (file, text) = (&spec.tables.rotor, &spec.text);
+    let magnet = spec.tables.magnet.as_ref();
+    let negative_n_m = magnet.map_or(0.0, |m| m.negative_stiffness_n_m);
     let shaft_n_m = text
         .either(
             Given::new("rotor.stiffness_n_m", file.stiffness_n_m),
@@ -237,7 +242,7 @@ fn rotor(
         stiffness_n_m: shaft_n_m - negative_n_m,
         damping_n_s_m,
         eccentricity_m: file.eccentricity_m,
-        contact_radius_m: file.contact_radius_m,
+        contact_radius_m: spec.contact_radius_m,
     })
 }
 

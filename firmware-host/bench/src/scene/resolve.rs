@@ -9,13 +9,15 @@ use crate::scene::guess;
 use crate::scene::limits::{damping_n_s_m, whirl_speed_m_s};
 use crate::scene::lint::{Told, slips, unseen, warnings};
 use crate::scene::nominal::{NominalKeys, config, nominal, overrides};
-use crate::scene::plant::{plant, refused};
+use crate::scene::plane_spec::PlaneSpec;
+use crate::scene::plant::{plant, plant_of, refused};
 use crate::scene::policy_kind::PolicyKind;
 use crate::scene::spec::Spec;
 use crate::scene::tables::SceneTables;
 use crate::scene::values::MethodName;
 use plant_model::V2;
-use plant_model::params::{PlantParams, Start};
+use plant_model::machine::point_mass::PointMass;
+use plant_model::params::{PlantParams, RotorParams, Start};
 use std::f64::consts::TAU;
 
 /// Rows of traces that a run may keep, of all its policies: some 0.3 KB each.
@@ -27,13 +29,45 @@ impl Spec {
     /// # Errors
     /// [`SceneError`] with file, line and key, and with slips beside it that may be the reason.
     pub fn resolve(&self) -> Result<Scene, SceneError> {
-        self.resolved().map_err(|error| error.beside(&slips(self)))
+        let plane = self.only_plane()?;
+        let resolved = || {
+            self.check_ranges()?;
+            plane.resolve(None)
+        };
+        resolved().map_err(|error| error.beside(&slips(&plane)))
     }
+}
 
-    fn resolved(&self) -> Result<Scene, SceneError> {
+/// What a plane is to the rotor that it shares with others.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct OfMachine {
+    /// The rotor as an impact in this plane finds it.
+    pub(crate) point: PointMass,
+    /// Share of the weight that its magnet carries.
+    pub(crate) weight_share: f64,
+    pub(crate) retainer_plane_ratio: f64,
+    pub(crate) magnet_plane_ratio: f64,
+    /// Whether it is levitated by a controller of its own.
+    pub(crate) levitated_alone: bool,
+}
+
+impl PlaneSpec {
+    /// A scene of this plane alone; `of` a rotor that it shares, the design model that controllers of the plane have of it.
+    pub(crate) fn resolve(&self, of: Option<&OfMachine>) -> Result<Scene, SceneError> {
         let (written, text) = (&self.tables, &self.text);
-        self.check_ranges()?;
-        let plant = plant(self)?;
+        let plant = match of {
+            None => plant(self)?,
+            Some(of) => {
+                let point = RotorParams {
+                    mass_kg: of.point.mass_kg,
+                    stiffness_n_m: of.point.stiffness_n_m,
+                    damping_n_s_m: of.point.damping_n_s_m,
+                    eccentricity_m: 0.0,
+                    contact_radius_m: self.contact_radius_m,
+                };
+                plant_of(self, point)?
+            }
+        };
         let mut start = Start {
             position_m: written.start.position_m.into(),
             velocity_m_s: written.start.velocity_m_s.into(),
@@ -50,8 +84,17 @@ impl Spec {
         let whirl_speed_m_s = whirl_speed_m_s(self, &plant)?;
         let damps = policies.contains(&PolicyKind::Damping);
         let damping_n_s_m = damping_n_s_m(self, &plant, damps)?;
-        let nominal = nominal(&plant, written);
-        let nominal_keys = NominalKeys::new(&nominal, written);
+        let weight_n = match of {
+            None => plant.rotor.mass_kg,
+            Some(of) => of.weight_share * written.rotor.mass_kg,
+        } * V2::from(written.rotor.gravity_m_s2);
+        let mut nominal = nominal(&plant, self);
+        if let Some(of) = of {
+            nominal.load_n = weight_n.norm();
+            nominal.retainer_plane_ratio = of.retainer_plane_ratio;
+            nominal.magnet_plane_ratio = of.magnet_plane_ratio;
+        }
+        let nominal_keys = NominalKeys::new(&nominal, self);
         let overrides = overrides(self)?;
         let supervised = policies.contains(&PolicyKind::Supervisor);
         let supervisor = supervised
@@ -61,10 +104,10 @@ impl Spec {
             nominal: &nominal,
             overrides: &overrides,
             config: supervisor.as_ref(),
+            levitated_alone: of.is_none_or(|of| of.levitated_alone),
         };
         let mut warnings = warnings(self, &plant, told);
         warnings.extend(unseen(self));
-        let weight_n = plant.rotor.mass_kg * V2::from(written.rotor.gravity_m_s2);
         let (run, spin_sensor) = (&written.run, &written.spin_sensor);
         let levitation = written.levitation.as_ref();
         Ok(Scene {
@@ -111,7 +154,7 @@ impl Spec {
     }
 }
 
-fn check_method(spec: &Spec, plant: &PlantParams) -> Result<(), SceneError> {
+fn check_method(spec: &PlaneSpec, plant: &PlantParams) -> Result<(), SceneError> {
     if spec.tables.run.method != MethodName::Series || plant.has_series() {
         return Ok(());
     }
@@ -144,7 +187,7 @@ fn check_title_and_length(written: &SceneTables, text: &SceneText) -> Result<(),
     Ok(())
 }
 
-fn policies(spec: &Spec) -> Result<Vec<PolicyKind>, SceneError> {
+fn policies(spec: &PlaneSpec) -> Result<Vec<PolicyKind>, SceneError> {
     let known = PolicyKind::ALL.map(PolicyKind::name);
     let names = known.join(", ");
     let refused = |message: String, help: String| {

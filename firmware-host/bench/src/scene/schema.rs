@@ -10,6 +10,8 @@ use supervisor::PARAMETERS;
 /// The schema. Draft 4, which is what editors of TOML understand.
 pub fn json_schema() -> Value {
     let mut schema = object(KEYS);
+    // What each plane may have of its own.
+    schema["anyOf"] = json!([{"required": ["contact", "friction"]}, {"required": ["plane"]}]);
     schema["$schema"] = json!("http://json-schema.org/draft-04/schema#");
     schema["title"] = json!("Scene of an AMB rotor on its retainer bearing");
     schema
@@ -55,6 +57,7 @@ fn property(key: &Key) -> Value {
         }),
         Kind::Pair => pair(&number),
         Kind::PerAxis => json!({"anyOf": [number, pair(&number)]}),
+        Kind::Numbers => json!({"type": "array", "items": number}),
         Kind::Table(keys) => object(keys),
         Kind::Tables(keys) => json!({"type": "array", "items": object(keys)}),
         Kind::Parameters => parameters(),
@@ -186,6 +189,7 @@ fn kind(key: &Key) -> String {
         Kind::Policies => "list of names".to_owned(),
         Kind::Pair => format!("[x, y], {unit}"),
         Kind::PerAxis => format!("{unit} or [x, y]"),
+        Kind::Numbers => format!("[a, b, …], {unit}"),
         Kind::Table(_) | Kind::Parameters => "table".to_owned(),
         Kind::Tables(_) => "tables".to_owned(),
     }

@@ -36,6 +36,7 @@ impl Spec {
         Self::new(SceneText {
             path: name.into(),
             text: text.to_owned(),
+            plane: None,
         })
     }
 

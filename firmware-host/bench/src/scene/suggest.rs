@@ -73,6 +73,10 @@ pub struct Nominal {
     pub spin_hz: Option<f64>,
     /// Amplitude of the runout that turns with the spin, of the reading on one axis, where it is known \[m\].
     pub runout_m: Option<f64>,
+    /// Position at the retainer bearing over position at the sensor, as an impact moves them.
+    pub retainer_plane_ratio: f64,
+    /// Position at the magnet over position at the retainer bearing, likewise.
+    pub magnet_plane_ratio: f64,
 }
 
 impl Nominal {
@@ -257,13 +261,24 @@ pub fn suggested(n: &Nominal) -> Suggested {
         // Several periods of a whirl of some hundred hertz; the stop of the machine takes far longer.
         coast_down_s: 5e-3, None, "rule of thumb: several periods of the whirl";
         severity_limit: 20.0, None, "rule of thumb, until a landing has been measured";
-        retainer_plane_ratio: 1.0, None, "one plane: sensor and retainer bearing move alike";
-        magnet_plane_ratio: 1.0, None, "one plane: magnet and retainer bearing move alike";
+        retainer_plane_ratio: n.retainer_plane_ratio, lever_source(n.retainer_plane_ratio, "retainer_plane_ratio"), match n.retainer_plane_ratio {
+            1.0 => "one plane: sensor and retainer bearing move alike",
+            _ => "as an impact moves them",
+        };
+        magnet_plane_ratio: n.magnet_plane_ratio, lever_source(n.magnet_plane_ratio, "magnet_plane_ratio"), match n.magnet_plane_ratio {
+            1.0 => "one plane: magnet and retainer bearing move alike",
+            _ => "as an impact moves them",
+        };
         // Whirl is no faster than the rotor on the contact spring; half more for its deflection.
         speed_max_m_s: (1.5 * n.clearance_m * contact_rate).max(2.0), Some("contact_stiffness_n_m"), "1.5·c·√(k_c/m), at least 2 m/s";
         // A sensor without noise and steps is not a thing that gets stuck.
         sensor_step_m: step_m.max(5e-4 * n.clearance_m), Some(step_source), "noise or step, at least 1/2000 of the clearance";
     }
+}
+
+/// What a lever comes from that is none of one plane.
+fn lever_source(ratio: f64, field: &'static str) -> Option<&'static str> {
+    (ratio != 1.0).then_some(field)
 }
 
 /// Poles in flight and in contact.

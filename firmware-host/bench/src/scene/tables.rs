@@ -6,7 +6,7 @@ use crate::scene::keys::Range::{
     Because, Elsewhere, Finite, NotNegative, Positive, PositiveUpTo, Within,
 };
 use crate::scene::keys::{Absent, Key, KeyType, Kind, Range, absent, empty, key_tables};
-use crate::scene::values::{FaultName, MethodName, Pair, PerAxis, PolicyNames, ShapeName};
+use crate::scene::values::{FaultName, MethodName, Numbers, Pair, PerAxis, PolicyNames, ShapeName};
 
 /// No number, or any.
 const ANY: Range = Elsewhere("");
@@ -28,8 +28,8 @@ key_tables! {
         spin: SpinTable [required], "", ANY, "how it turns";
         start: StartTable [= StartTable::default()], "", ANY, "where the rotor starts", "initial";
         stator: StatorTable [= StatorTable::default()], "", ANY, "rings of the stator; none: rigid", "housing";
-        contact: ContactTable [required], "", ANY, "the contact, linear or with a stiffness that grows with depth", "wall";
-        friction: FrictionTable [required], "", ANY, "friction, constant unless it falls with sliding speed";
+        contact: Option<ContactTable> [or "that of each plane"], "", ANY, "the contact, linear or with a stiffness that grows with depth; required without `[[plane]]`", "wall";
+        friction: Option<FrictionTable> [or "that of each plane"], "", ANY, "friction, constant unless it falls with sliding speed; required without `[[plane]]`";
         retainer: RetainerTable [= RetainerTable::default()], "", ANY, "the retainer bearing", "touchdown", "backup_bearing", "auxiliary_bearing", "catcher";
         race: Option<RaceTable> [or "a bushing"], "", ANY, "the race that the rotor touches, of a [ball bearing](../theory/model.md#retainer-bearing). Its bore is `rotor.contact_radius_m` + `contact.clearance_m`", "ball_bearing";
         magnet: Option<MagnetTable> [or "no magnet"], "", ANY, "the magnet with its amplifier", "actuator", "amplifier", "amb", "bearing";
@@ -45,6 +45,9 @@ key_tables! {
         fault: Vec<FaultTable> [= Vec::new()], "", ANY, "of the position sensor, at samples from the start to before the end; see [faults](#faults)", "sensor_fault";
         change: Vec<ChangeTable> [= Vec::new()], "", ANY, "parameters of the plant that take other values from a time on; see [changes](#changes)";
         verdict: VerdictTable [= VerdictTable::default()], "", ANY, "how the end is judged", "outcome";
+        plane: Vec<PlaneTable> [= Vec::new()], "", ANY, "a bearing plane of a [whole rotor](#several-planes), at most four; none: a point mass in one plane", "bearing_plane", "station";
+        support: Vec<SupportTable> [= Vec::new()], "", ANY, "a spring with a damper from the rotor to ground; with `[[plane]]` only", "spring", "seal";
+        unbalance: Vec<UnbalanceTable> [= Vec::new()], "", ANY, "a residual unbalance; with `[[plane]]` only", "imbalance";
     }
 
     RunTable {
@@ -63,8 +66,20 @@ key_tables! {
         damping_n_s_m: Option<f64> [or "0"], "N s/m", NotNegative, "d_r; excludes `damping_ratio`", "d", "c";
         damping_ratio: Option<f64> [or "–"], "1", Within(0.0, 100.0), "gives 2·ratio·√(m_r·k), k the *shaft* stiffness; refused without a positive one", "zeta", "xi";
         eccentricity_m: f64 [= 0.0], "m", NotNegative, "ε_r, the unbalance", "unbalance", "imbalance", "e";
-        contact_radius_m: f64 [required "give the rotor's radius in the retainer bearing in m"], "m", Positive, "R_r", "radius", "r", "diameter";
+        contact_radius_m: Option<f64> [or "that of each plane"], "m", Positive, "R_r; required without `[[plane]]`", "radius", "r", "diameter";
         gravity_m_s2: Pair [= Pair::default()], "m/s²", Within(-1e4, 1e4), "weight = m_r times this", "g";
+        transverse_inertia_kg_m2: Option<f64> [or "–"], "kg m²", Positive, "I_t about the centre of mass; with `[[plane]]`, and required there", "i_t", "it";
+        polar_inertia_kg_m2: Option<f64> [or "–"], "kg m²", NotNegative, "I_p, at most twice I_t; with `[[plane]]`, and required there", "i_p", "ip";
+        bending: Vec<BendingTable> [= Vec::new()], "", ANY, "a bending mode of the free shaft; with `[[plane]]` only", "mode", "flexible";
+        polar_coupling_kg_m2: Numbers [= Numbers::default()], "kg m²", Finite, "∫ I_p′·φ_i′·φ_j′ dz of the slopes of tilt and bending modes, row by row, its first number left to I_p; none: bending modes are not turned by the spin";
+    }
+
+    /// A bending mode of the free shaft at standstill.
+    BendingTable {
+        frequency_hz: f64 [required], "Hz", PositiveUpTo(1e6), "natural frequency", "f", "frequency";
+        damping_ratio: f64 [= 0.0], "1", Within(0.0, 100.0), "share of critical damping", "zeta", "xi";
+        positions_m: Numbers [required], "m", Finite, "places along the axis, rising; every plane, magnet, sensor and load lies between the first and the last", "z", "places_m";
+        displacements: Numbers [required], "1", Finite, "displacement at each place, for a modal mass that is the rotor's mass; straight in between", "shape", "phi";
     }
 
     SpinTable {
@@ -76,6 +91,8 @@ key_tables! {
     StartTable [Default] {
         position_m: Pair [= Pair::default()], "m", Finite, "as seen from the magnets; may lie in the wall", "x", "displacement";
         velocity_m_s: Pair [= Pair::default()], "m/s", Finite, "velocity of the rotor's centre", "v", "speed";
+        tilt_rad: Option<Pair> [or "0"], "rad", Finite, "slope of the axis, dx/dz and dy/dz; with `[[plane]]` only", "tilt", "angle_rad";
+        tilt_rate_rad_s: Option<Pair> [or "0"], "rad/s", Finite, "its rate; with `[[plane]]` only", "tilt_rate";
         spin_phase_rad: f64 [= 0.0], "rad", Finite, "σ at t = 0, the angle of the unbalance", "angle", "phase";
     }
 
@@ -128,6 +145,7 @@ key_tables! {
         axis_force_max_n: Option<f64> [or "none"], "N", Positive, "cap on each component, after the cap on the vector; the supervisor is told";
         slew_n_s: Option<f64> [or "none"], "N/s", Positive, "fastest change of each component, before the lag: the voltage limit", "slew_rate", "rate";
         delay_samples: u32 [= 1], "samples", Within(1.0, 7.0), "from a position to the effect of the command computed from it", "delay", "latency";
+        position_m: Option<f64> [or "that of its plane"], "m", Finite, "along the axis, from the centre of mass; with `[[plane]]` only", "z";
         force_measured: bool [= false], "", ANY, "whether the supervisor is given the force that the magnet delivers at the sample, less what is fed forward (`APPLIED_VALID`)";
     }
 
@@ -139,6 +157,9 @@ key_tables! {
         range_m: Option<f64> [or "none"], "m", Within(1e-9, 1.0), "largest reading to either side; clipped there", "limit";
         delay_samples: u32 [= 0], "samples", Within(0.0, 7.0), "age of the position that is read; with the policy `supervisor` at most 7 together with `magnet.delay_samples`", "delay", "latency";
         swapped: bool [= false], "", ANY, "x reads y and y reads x";
+        runout_m: f64 [= 0.0], "m", Within(0.0, 1.0), "amplitude of what the target adds to the reading once a turn; `advise` says what it comes to", "run_out";
+        runout_phase_rad: f64 [= 0.0], "rad", Within(-1e6, 1e6), "its angle at t = 0";
+        position_m: Option<f64> [or "that of its plane"], "m", Finite, "along the axis, from the centre of mass; with `[[plane]]` only", "z";
     }
 
     SpinSensorTable [Default] {
@@ -152,7 +173,16 @@ key_tables! {
         integral_n_m_s: f64 [= 0.0], "N/(m s)", Within(0.0, 1e15), "K_i", "ki", "k_i", "i";
         derivative_n_s_m: f64 [required], "N s/m", Within(0.0, 1e9), "K_d", "kd", "k_d", "d", "damping";
         derivative_filter_s: f64 [= 0.0], "s", Within(0.0, 1.0), "filter of the derivative; 0: plain difference", "filter", "tau_d";
+        tilt: Option<TiltTable> [or "each plane by itself"], "", ANY, "levitation by mode: the gains above are then of the translation, of all magnets together, these of the tilt; with `[[plane]]` only", "conical";
         feed_forward_weight: bool [= false], "", ANY, "the firmware adds minus the weight to what any policy commands, `passive` included; the amplifier's limits hold for the sum", "feed_forward", "gravity_compensation";
+    }
+
+    /// Gains of the tilt.
+    TiltTable {
+        proportional_n_m_rad: f64 [required], "N m/rad", Within(0.0, 1e12), "moment per slope", "kp";
+        integral_n_m_rad_s: f64 [= 0.0], "N m/(rad s)", Within(0.0, 1e15), "moment per slope and time", "ki";
+        derivative_n_m_s_rad: f64 [required], "N m s/rad", Within(0.0, 1e9), "moment per rate of slope", "kd";
+        cross_feedback: f64 [= 0.0], "1", Within(-2.0, 2.0), "share of the gyroscopic moment I_p·Ω times rate of slope that is set against it, by the reported spin", "gyroscopic";
     }
 
     RadialTable [Default] {
@@ -167,6 +197,7 @@ key_tables! {
         start_s: f64 [required], "s", START_S, "must lie before the end of the run", "t", "time", "at_s";
         duration_s: f64 [required], "s", DURATION_S, "how long it acts", "length";
         force_n: Pair [required], "N", Within(-1e9, 1e9), "force on the rotor; the amplitude where it varies", "f", "amplitude";
+        position_m: Option<f64> [or "the centre of mass"], "m", Finite, "where along the axis; with `[[plane]]` only", "z";
         shape: ShapeName [= ShapeName::Constant], "", ANY, "[course](#loads) over the interval", "form", "kind";
         frequency_hz: Option<f64> [or "–"], "Hz", Elsewhere("0 to the control rate"), "with `sine` only", "f";
         phase_rad: Option<f64> [or "0"], "rad", Within(-1e6, 1e6), "at the start; with `sine` only";
@@ -213,5 +244,37 @@ key_tables! {
 
     VerdictTable [Default] {
         whirl_speed_m_s: Option<f64> [or "see [outcomes](#outcomes)"], "m/s", Within(1e-9, 1e6), "limit of whirl: the backward contact speed above which a run counts as whirl", "limit";
+    }
+
+    /// A bearing plane of a whole rotor. What it does not give of its own is the scene's.
+    PlaneTable {
+        name: String [required "give a name in one line, as \"coupling end\""], "", Elsewhere("one line; no two alike"), "heads its figures", "title", "label";
+        position_m: f64 [required], "m", Finite, "of the retainer bearing along the axis, from the centre of mass", "z", "place";
+        contact_radius_m: Option<f64> [or "the scene's"], "m", Positive, "R_r", "radius", "r";
+        start_position_m: Option<Pair> [or "by `start`"], "m", Finite, "where the rotor starts in this plane, as seen from the magnets; of two planes, both or none";
+        start_velocity_m_s: Option<Pair> [or "by `start`"], "m/s", Finite, "its velocity there; with `start_position_m`, or both planes alone";
+        stator: Option<StatorTable> [or "the scene's"], "", ANY, "rings of the stator";
+        contact: Option<ContactTable> [or "the scene's"], "", ANY, "the contact; linear";
+        friction: Option<FrictionTable> [or "the scene's"], "", ANY, "friction; the same at every speed";
+        retainer: Option<RetainerTable> [or "the scene's"], "", ANY, "the retainer bearing; round";
+        race: Option<RaceTable> [or "the scene's"], "", ANY, "the race that the rotor touches";
+        magnet: Option<MagnetTable> [or "the scene's"], "", ANY, "the magnet with its amplifier";
+        sensor: Option<SensorTable> [or "the scene's"], "", ANY, "the position sensor; its noise is the plane's own";
+        levitation: Option<LevitationTable> [or "the scene's"], "", ANY, "the levitation controller of this plane";
+        supervisor: Option<toml::Table> [or "the scene's"], "", ANY, "replaces single suggested parameters";
+        outage: Vec<OutageTable> [= Vec::new()], "", ANY, "of this magnet; none: the scene's";
+        fault: Vec<FaultTable> [= Vec::new()], "", ANY, "of this sensor; none: the scene's";
+    }
+
+    SupportTable {
+        position_m: f64 [required], "m", Finite, "along the axis, from the centre of mass", "z";
+        stiffness_n_m: f64 [= 0.0], "N/m", Finite, "the same in every direction; may be negative", "k";
+        damping_n_s_m: f64 [= 0.0], "N s/m", NotNegative, "the same in every direction", "d", "c";
+    }
+
+    UnbalanceTable {
+        position_m: f64 [required], "m", Finite, "along the axis, from the centre of mass", "z";
+        moment_kg_m: f64 [required], "kg m", NotNegative, "mass times eccentricity", "u", "unbalance";
+        angle_rad: f64 [= 0.0], "rad", Within(-1e6, 1e6), "on the rotor, from that of the spin", "phase", "angle";
     }
 }

@@ -55,6 +55,11 @@ impl From<PerAxis> for V2 {
     }
 }
 
+/// Any number of numbers.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+#[serde(transparent)]
+pub(crate) struct Numbers(pub(crate) Vec<f64>);
+
 /// Names of policies, not yet known to be such.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(transparent)]
@@ -136,6 +141,7 @@ words! {
 key_types! {
     Pair => Kind::Pair;
     PerAxis => Kind::PerAxis;
+    Numbers => Kind::Numbers;
     PolicyNames => Kind::Policies;
     MethodName => Kind::Word(Self::WORDS);
     ShapeName => Kind::Word(Self::WORDS);

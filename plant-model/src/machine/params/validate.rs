@@ -1,7 +1,8 @@
 //! Ranges of a machine's values, and what contradicts each other.
 
 use super::{
-    MAX_PLANES, MachineError, MachineParams, MachinePlane, MachineStart, RigidRotor, Rotor,
+    MAX_MAGNETS, MAX_PLANES, MachineError, MachineParams, MachinePlane, MachineStart, RigidRotor,
+    Rotor,
 };
 use crate::params::{ContactLaw, SlidingFriction, SpinParams, StatorParams};
 
@@ -252,6 +253,9 @@ impl MachineParams {
                 FINITE,
             )?;
         }
+        let magnets = self.magnets.len();
+        let few = magnets <= MAX_MAGNETS;
+        check(few, "magnets", magnets as f64, "at most four magnets")?;
         for (i, magnet) in self.magnets.iter().enumerate() {
             place("magnets", i, magnet.position_m)?;
             let (cap, lag) = (magnet.force_max_n, magnet.lag_s);

@@ -3,8 +3,9 @@
 use super::Machine;
 use crate::V2;
 use crate::energy::Audit;
-use crate::machine::params::MAX_PLANES;
-use crate::machine::readout::{ContactMotion, MachineSnapshot, PlaneSnapshot};
+use crate::machine::body::Port;
+use crate::machine::params::{MAX_MAGNETS, MAX_PLANES};
+use crate::machine::readout::{AxisMotion, ContactMotion, MachineSnapshot, PlaneSnapshot};
 use crate::machine::series::Step;
 use crate::mode::Phase;
 use crate::part::Body;
@@ -34,6 +35,9 @@ impl Machine {
         };
         (self.stepper.series).fill(&step, &self.y, ORDER, |_, _| false);
         let body = &self.system.body;
+        let of_ring = |ring: &Option<Port>| {
+            (ring.as_ref()).map_or_else(Body::default, |ring| self.y.motion_at(ring))
+        };
         let mut planes = [None; MAX_PLANES];
         for (p, phase) in self.phases.iter().enumerate() {
             let motion = self.system.motion(p, &self.y);
@@ -42,8 +46,8 @@ impl Machine {
             let force = |x: f64| if touching { x } else { 0.0 };
             planes[p] = Some(PlaneSnapshot {
                 rotor: self.y.motion_at(&body.at_planes[p]),
-                ring: (body.rings[p].as_ref())
-                    .map_or_else(Body::default, |ring| self.y.motion_at(ring)),
+                ring: of_ring(&body.rings[p]),
+                outer_ring: of_ring(&body.outer_rings[p]),
                 mode: phase.mode(),
                 penetration_m: motion.penetration_m,
                 normal_force_n: force(series.force.0[0]).max(0.0),
@@ -52,14 +56,41 @@ impl Machine {
                 whirl_speed_m_s: motion.whirl_m_s,
                 sliding_speed_m_s: motion.sliding_m_s,
                 race_spin_rad_s: self.y.races_rad_s[p],
+                whirl_angle_rad: self.meters[p].whirl_angle_rad,
             });
+        }
+        let mut delivered_n = [None; MAX_MAGNETS];
+        for (m, force_n) in delivered_n.iter_mut().enumerate() {
+            *force_n = self.delivered_n(m);
         }
         MachineSnapshot {
             t_s: self.t_s,
             spin_rad_s: self.y.spin_rad_s,
             phase_rad: self.y.phase_rad,
             planes,
+            delivered_n,
         }
+    }
+
+    /// The rotor's axis now.
+    pub fn axis(&self) -> AxisMotion {
+        let body = &self.system.body;
+        // Of the free shaft alone: what supports hold is theirs.
+        let squares = |mode: &(Port, f64)| {
+            let motion = self.y.motion_at(&mode.0);
+            (mode.1 * motion.position).norm_squared() + motion.velocity.norm_squared()
+        };
+        AxisMotion {
+            centre: self.y.motion_at(&body.centre),
+            tilt: self.y.motion_at(&body.tilt),
+            bending_j: 0.5 * self.system.mass_kg * body.bending.iter().map(squares).sum::<f64>(),
+        }
+    }
+
+    /// Amplitude of a bending mode, times the displacement of its shape \[m\]; `None` where there is no such mode.
+    pub fn bending(&self, mode: usize) -> Option<Body> {
+        let (port, _) = self.system.body.bending.get(mode)?;
+        Some(self.y.motion_at(port))
     }
 
     /// Motion at a probe, as they stand in the parameters; `None` where there is no such probe.

@@ -25,7 +25,7 @@ fn read(params: SensorParams, kind: FaultKind, axis: Axis) -> Vec<Reading> {
     };
     let mut sensor = Sensor::new(params, &[fault], PERIOD_S, 7);
     (0..40)
-        .map(|i| sensor.read(i as f64 * PERIOD_S, position(i)))
+        .map(|i| sensor.read(i as f64 * PERIOD_S, position(i), 0.0))
         .collect()
 }
 
@@ -141,7 +141,7 @@ fn a_sensor_has_gain_offset_delay_range_and_wrong_wires() {
     };
     let mut sensor = Sensor::new(params, &[], PERIOD_S, 0);
     for i in 0..40 {
-        let reading = sensor.read(i as f64 * PERIOD_S, position(i));
+        let reading = sensor.read(i as f64 * PERIOD_S, position(i), 0.0);
         let old = position(i.max(2) - 2);
         let expected = V2::new(2.0 * old.y + 1e-6, 0.5 * old.x + 2e-6);
         let expected = expected.map(|x| x.clamp(-2e-4, 2e-4));

@@ -4,7 +4,7 @@ use super::{names, short_scene};
 use firmware_bench::run::closed_loop::{Keep, run};
 use firmware_bench::run::flight_record::{FlightRecord, Units, entries};
 use firmware_bench::run::trace::Recorder;
-use firmware_bench::run::trace_file::TraceFile;
+use firmware_bench::run::trace_file::{Columns, TraceFile};
 use firmware_bench::scene::policy_kind::PolicyKind;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::record::{Field, Row, RowAccessor};
@@ -22,7 +22,7 @@ fn a_long_trace_has_several_groups() {
     let rows = || trace.rows.iter().cycle().take(70_000);
     let folder = TempDir::new().unwrap();
     let path = folder.path().join("trace.parquet");
-    let mut file = TraceFile::new(fs::File::create(&path).unwrap()).unwrap();
+    let mut file = TraceFile::new(fs::File::create(&path).unwrap(), Columns::of_plane()).unwrap();
     rows().for_each(|row| file.row(row));
     file.end().unwrap();
     let reader = SerializedFileReader::new(fs::File::open(path).unwrap()).unwrap();

@@ -1,0 +1,326 @@
+//! A scene of a whole rotor: what a scene of one plane says, for each of its planes, and the rotor that they share.
+
+mod refused;
+mod start;
+
+use self::refused::refused;
+use self::start::start;
+use crate::device::levitation::LevitationParams;
+use crate::device::loads::Disturbance;
+use crate::device::modal_levitation::{ModalLevitationParams, Station, TiltParams, Weights};
+use crate::scene::Scene;
+use crate::scene::diagnostic::{SceneError, SceneText};
+use crate::scene::lint::slips;
+use crate::scene::plane_spec::PlaneSpec;
+use crate::scene::resolve::OfMachine;
+use crate::scene::rotor;
+use crate::scene::spec::Spec;
+use crate::scene::tables::{PlaneTable, SceneTables, TiltTable};
+use crate::scene::values::MethodName;
+use plant_model::machine::params::{
+    MachineMagnet, MachineParams, MachinePlane, MachineStart, Support,
+};
+use std::path::Path;
+
+/// A plane of a machine.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlaneScene {
+    /// Its name.
+    pub name: String,
+    /// The plane alone: its instruments and controllers, its wall, and as rotor a point mass that moves as an impact there
+    /// moves the machine's. That is what its controllers are designed for; what runs is the machine.
+    pub scene: Scene,
+    /// Which magnet of the machine is its own.
+    pub magnet: Option<usize>,
+}
+
+/// A plane's name as it stands in names of files.
+pub fn in_file_names(name: &str) -> String {
+    let plain = |c: char| match c.is_alphanumeric() {
+        true => c,
+        false => '_',
+    };
+    name.to_lowercase().chars().map(plain).collect()
+}
+
+/// A scene of a whole rotor that can be run: every value checked.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MachineScene {
+    /// The machine; sensor i is the probe of plane i, and every load has a place of its own.
+    pub machine: MachineParams,
+    /// Where it starts, as seen from the line of the magnets.
+    pub start: MachineStart,
+    /// Its planes.
+    pub planes: Vec<PlaneScene>,
+    /// Loads, in the order of the machine's places for them.
+    pub loads: Vec<Disturbance>,
+    /// The levitation controller, where one holds the whole rotor; else each plane has its own.
+    pub levitation: Option<ModalLevitationParams>,
+    /// What is allowed and yet unlikely to be meant, with file and line.
+    pub warnings: Vec<String>,
+}
+
+/// A scene file that can be run.
+#[derive(Debug, Clone, PartialEq)]
+pub enum AnyScene {
+    /// A point mass in one plane.
+    Plane(Box<Scene>),
+    /// A whole rotor.
+    Machine(Box<MachineScene>),
+}
+
+impl AnyScene {
+    /// Reads and checks a scene file.
+    ///
+    /// # Errors
+    /// [`SceneError`] with file, line and key.
+    pub fn load(path: &Path) -> Result<Self, SceneError> {
+        Self::resolve(&Spec::load(path)?)
+    }
+
+    /// A scene from the text of a file; errors name it `name`.
+    ///
+    /// # Errors
+    /// [`SceneError`] with line and key.
+    pub fn parse(name: &str, text: &str) -> Result<Self, SceneError> {
+        Self::resolve(&Spec::parse(name, text)?)
+    }
+
+    fn resolve(spec: &Spec) -> Result<Self, SceneError> {
+        Ok(match spec.has_planes() {
+            true => Self::Machine(Box::new(spec.resolve_machine()?)),
+            false => Self::Plane(Box::new(spec.resolve()?)),
+        })
+    }
+
+    /// What it warns of.
+    pub fn warnings(&self) -> &[String] {
+        match self {
+            Self::Plane(scene) => &scene.warnings,
+            Self::Machine(scene) => &scene.warnings,
+        }
+    }
+}
+
+impl MachineScene {
+    /// A scene from the text of a file; errors name it `name`.
+    ///
+    /// # Errors
+    /// [`SceneError`] with line and key, also of a scene that has one plane.
+    pub fn parse(name: &str, text: &str) -> Result<Self, SceneError> {
+        Spec::parse(name, text)?.resolve_machine()
+    }
+
+    /// What holds for the machine as a whole: time, accuracy, policies, title.
+    pub fn common(&self) -> &Scene {
+        // There is one plane at least: the machine has been checked.
+        &self.planes[0].scene
+    }
+
+    /// Times at which something sets in or ends in any plane \[s\], in order.
+    pub fn edges(&self) -> Vec<f64> {
+        let mut edges: Vec<f64> = self.planes.iter().flat_map(|p| p.scene.edges()).collect();
+        edges.sort_by(f64::total_cmp);
+        edges.dedup();
+        edges
+    }
+}
+
+impl Spec {
+    /// The scene of a whole rotor, every value checked.
+    ///
+    /// # Errors
+    /// [`SceneError`] with file, line and key.
+    pub fn resolve_machine(&self) -> Result<MachineScene, SceneError> {
+        let planes = self.planes()?;
+        let resolved = self.machine_of(&planes);
+        let doubts = planes.first().map(slips).unwrap_or_default();
+        resolved.map_err(|error| error.beside(&doubts))
+    }
+
+    fn machine_of(&self, planes: &[PlaneSpec]) -> Result<MachineScene, SceneError> {
+        let (tables, text) = (&self.tables, &self.text);
+        self.check_ranges()?;
+        check_together(tables, text)?;
+        let mut machine = rotor::machine(tables, text)?;
+        for (plane, written) in planes.iter().zip(&tables.plane) {
+            let place = |own: Option<f64>| own.unwrap_or(written.position_m);
+            machine.probes_m.push(place(plane.tables.sensor.position_m));
+            if let Some(magnet) = &plane.tables.magnet {
+                let position_m = place(magnet.position_m);
+                machine.magnets.push(MachineMagnet {
+                    position_m,
+                    force_max_n: magnet.force_max_n,
+                    lag_s: magnet.lag_s,
+                });
+                if magnet.negative_stiffness_n_m > 0.0 {
+                    machine.supports.push(Support {
+                        position_m,
+                        stiffness_n_m: -magnet.negative_stiffness_n_m,
+                        damping_n_s_m: 0.0,
+                    });
+                }
+            }
+        }
+        let levitation = modal_levitation(planes, &tables.plane, &machine, text)?;
+        let weights = Weights::new(&positions(&machine.magnets));
+        let mut magnet = 0;
+        let mut scenes = Vec::new();
+        for (index, (plane, written)) in planes.iter().zip(&tables.plane).enumerate() {
+            let own = plane.tables.magnet.is_some().then_some(magnet);
+            let rigid = machine.rotor.rigid();
+            let lever = |place_m: f64| rigid.lever(place_m, written.position_m);
+            let of = OfMachine {
+                point: machine.point_mass(written.position_m),
+                weight_share: own.map_or(0.0, |m| weights.translation[m]),
+                retainer_plane_ratio: 1.0 / lever(machine.probes_m[index]),
+                magnet_plane_ratio: own.map_or(1.0, |m| lever(machine.magnets[m].position_m)),
+                levitated_alone: levitation.is_none(),
+            };
+            let mut scene = plane.resolve(Some(&of))?;
+            // Noise of its own, and that of the file for the first.
+            scene.seed =
+                (scene.seed).wrapping_add(0x9E37_79B9_7F4A_7C15_u64.wrapping_mul(index as u64));
+            machine.planes.push(MachinePlane {
+                position_m: written.position_m,
+                centre_m: scene.centre_offset_m,
+                radius_m: plane.contact_radius_m,
+                contact: scene.plant.contact,
+                friction: scene.plant.friction,
+                stator: scene.plant.stator,
+                race: scene.plant.race,
+            });
+            magnet += usize::from(own.is_some());
+            scenes.push(PlaneScene {
+                name: written.name.clone(),
+                scene,
+                magnet: own,
+            });
+        }
+        let loads = self.loads(&scenes, &mut machine);
+        let start = start(tables, text)?;
+        (machine.validate().and_then(|()| start.validate()))
+            .map_err(|error| refused(&error, self, &scenes))?;
+        let mut warnings: Vec<String> = Vec::new();
+        for warning in scenes.iter().flat_map(|plane| &plane.scene.warnings) {
+            if !warnings.contains(warning) {
+                warnings.push(warning.clone());
+            }
+        }
+        Ok(MachineScene {
+            machine,
+            start,
+            planes: scenes,
+            loads,
+            levitation,
+            warnings,
+        })
+    }
+
+    /// Loads and where they act; those of base motions at the centre of mass, which bending modes do not feel.
+    fn loads(&self, planes: &[PlaneScene], machine: &mut MachineParams) -> Vec<Disturbance> {
+        let Some(PlaneScene { scene, .. }) = planes.first() else {
+            return Vec::new();
+        };
+        let mass_kg = machine.rotor.rigid().mass_kg;
+        let inertial = scene.base_motions.iter().map(|b| b.on_mass(mass_kg));
+        let places = self
+            .tables
+            .disturbance
+            .iter()
+            .map(|d| d.position_m.unwrap_or(0.0));
+        machine.loads_m = places
+            .chain(scene.base_motions.iter().map(|_| 0.0))
+            .collect();
+        scene.disturbances.iter().copied().chain(inertial).collect()
+    }
+}
+
+fn positions(magnets: &[MachineMagnet]) -> Vec<f64> {
+    magnets.iter().map(|m| m.position_m).collect()
+}
+
+/// What a machine does not have, and names that are needed to tell its planes apart.
+fn check_together(tables: &SceneTables, text: &SceneText) -> Result<(), SceneError> {
+    let error = |key: &str, message: &str, help: &str| {
+        Err(text.error_at_key(key, message.to_owned(), Some(help.to_owned())))
+    };
+    for (i, plane) in tables.plane.iter().enumerate() {
+        let key = format!("plane[{i}].name");
+        if plane.name.trim().is_empty() || plane.name.chars().any(char::is_control) {
+            let message = "expected a name in one line, without control characters";
+            return error(&key, message, "as \"coupling end\"");
+        }
+        let alike = |other: &PlaneTable| in_file_names(&other.name) == in_file_names(&plane.name);
+        if let Some(j) = tables.plane[..i].iter().position(alike) {
+            let message = format!("is that of plane[{j}], or makes the same name of a file");
+            return error(&key, &message, "give each plane a name of its own");
+        }
+        let own = plane.levitation.as_ref();
+        if own.is_some_and(|l| l.tilt.is_some()) {
+            let key = format!("plane[{i}].levitation.tilt");
+            let message = "is of the whole rotor, and not of one plane";
+            return error(&key, message, "give it as [levitation.tilt]");
+        }
+        let by_mode = tables.levitation.as_ref().is_some_and(|l| l.tilt.is_some());
+        if by_mode && own.is_some() {
+            let key = format!("plane[{i}].levitation");
+            let message = "does not go with [levitation.tilt], which holds the whole rotor";
+            return error(&key, message, "remove one of them");
+        }
+    }
+    if !matches!(tables.run.method, MethodName::Auto | MethodName::Series) {
+        let message = "is of a point mass in one plane; a whole rotor is integrated by series";
+        return error("run.method", message, "take auto or series");
+    }
+    if !tables.change.is_empty() {
+        let message = "does not go with [[plane]]: nothing of a whole rotor changes during a run";
+        return error("change[0]", message, "remove it");
+    }
+    Ok(())
+}
+
+/// The controller of the whole rotor, where the scene has one.
+fn modal_levitation(
+    planes: &[PlaneSpec],
+    written: &[PlaneTable],
+    machine: &MachineParams,
+    text: &SceneText,
+) -> Result<Option<ModalLevitationParams>, SceneError> {
+    let Some((levitation, tilt)) = (planes.first())
+        .and_then(|plane| plane.tables.levitation.as_ref())
+        .and_then(|l| Some((l, l.tilt.as_ref()?)))
+    else {
+        return Ok(None);
+    };
+    let apart = |places: &[f64]| places.iter().any(|z| *z != places[0]);
+    let magnets_m = positions(&machine.magnets);
+    for (places, what) in [(&machine.probes_m, "sensors"), (&magnets_m, "magnets")] {
+        if places.len() < 2 || !apart(places) {
+            let message = format!("needs {what} at two places at least to tell and turn a tilt");
+            let help = "give planes of different position_m a sensor and a magnet each".to_owned();
+            return Err(text.error_at_key("levitation.tilt", message, Some(help)));
+        }
+    }
+    let stations = planes.iter().zip(written).zip(&machine.probes_m);
+    Ok(Some(ModalLevitationParams {
+        translation: LevitationParams::from(levitation),
+        tilt: tilt_params(tilt, machine.rotor.rigid().polar_inertia_kg_m2),
+        stations: stations
+            .map(|((plane, written), sensor_m)| Station {
+                sensor_m: *sensor_m,
+                magnet: (plane.tables.magnet.as_ref())
+                    .map(|m| (m.position_m.unwrap_or(written.position_m), m.force_max_n)),
+            })
+            .collect(),
+    }))
+}
+
+fn tilt_params(tilt: &TiltTable, polar_inertia_kg_m2: f64) -> TiltParams {
+    TiltParams {
+        proportional_n_m_rad: tilt.proportional_n_m_rad,
+        integral_n_m_rad_s: tilt.integral_n_m_rad_s,
+        derivative_n_m_s_rad: tilt.derivative_n_m_s_rad,
+        cross_kg_m2: tilt.cross_feedback * polar_inertia_kg_m2,
+    }
+}

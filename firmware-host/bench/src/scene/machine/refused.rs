@@ -1,0 +1,62 @@
+//! What a machine refuses, at the key that it comes from.
+
+use super::PlaneScene;
+use crate::scene::diagnostic::SceneError;
+use crate::scene::spec::Spec;
+use plant_model::machine::params::MachineError;
+
+/// The error of a value by its name in [`plant_model::machine::params::MachineParams`].
+pub(super) fn refused(error: &MachineError, spec: &Spec, planes: &[PlaneScene]) -> SceneError {
+    let (tables, text) = (&spec.tables, &spec.text);
+    let (list, rest) = error.field.split_once('[').unwrap_or((&error.field, ""));
+    let (index, field) = match rest.split_once("].") {
+        Some((index, field)) => (index.parse().unwrap_or(0), field),
+        None => (0, ""),
+    };
+    let at = |key: &str| text.refused(key, error.value, error.expected);
+    let of_plane =
+        |index: usize, key: &str| (text.of_plane(index)).refused(key, error.value, error.expected);
+    // Where it has no place of its own, that of its plane is meant.
+    let place = |plane: usize, own: Option<f64>, table: &str| match own {
+        Some(_) => of_plane(plane, &format!("{table}.position_m")),
+        None => at(&format!("plane[{plane}].position_m")),
+    };
+    match (list, field) {
+        ("planes", "") | ("magnets", "") => at("plane"),
+        ("planes", "position_m") => at(&format!("plane[{index}].position_m")),
+        ("planes", "radius_m") => of_plane(index, "rotor.contact_radius_m"),
+        ("planes", "centre_m") => of_plane(index, "retainer.centre_offset_m"),
+        ("planes", "contact.law") => of_plane(index, "contact.stiffness_n_mn"),
+        ("planes", "stator.ellipticity") => of_plane(index, "retainer.ellipticity"),
+        ("planes", key) => of_plane(index, key),
+        ("probes", _) => {
+            let plane = tables.plane.get(index);
+            let sensor = plane
+                .and_then(|p| p.sensor.as_ref())
+                .unwrap_or(&tables.sensor);
+            place(index, sensor.position_m, "sensor")
+        }
+        ("magnets", key) => {
+            let plane = planes
+                .iter()
+                .position(|p| p.magnet == Some(index))
+                .unwrap_or(0);
+            let own = tables.plane.get(plane).and_then(|p| p.magnet.as_ref());
+            match (own.or(tables.magnet.as_ref()), key) {
+                (Some(magnet), "position_m") => place(plane, magnet.position_m, "magnet"),
+                _ => of_plane(plane, &format!("magnet.{key}")),
+            }
+        }
+        ("supports", key) if index < tables.support.len() => at(&format!("support[{index}].{key}")),
+        ("supports", _) => at("plane"),
+        ("unbalances", key) if index < tables.unbalance.len() => {
+            at(&format!("unbalance[{index}].{key}"))
+        }
+        ("unbalances", _) => at("rotor.eccentricity_m"),
+        ("loads", _) => at(&format!("disturbance[{index}].position_m")),
+        ("rotor.bending", "frequency_rad_s") => at(&format!("rotor.bending[{index}].frequency_hz")),
+        ("rotor.bending", "shape") => at(&format!("rotor.bending[{index}].positions_m")),
+        ("gravity_m_s2", _) => at("rotor.gravity_m_s2"),
+        _ => at(&error.field),
+    }
+}

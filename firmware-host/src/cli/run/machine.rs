@@ -1,0 +1,125 @@
+//! A scene of a whole rotor.
+
+use super::{
+    Ran, RunArgs, VERDICT, contradictions, each_policy, failed, record_name, undrawn, write_records,
+};
+use crate::cli::error::{CommandError, pretty};
+use crate::cli::output::{OutputError, Staging};
+use firmware_bench::report::{self, table};
+use firmware_bench::run::recording::{MachineFiles, recorded_machine};
+use firmware_bench::run::trace_file::Columns;
+use firmware_bench::run::verdict::MachineResults;
+use firmware_bench::run::verify;
+use firmware_bench::scene::machine::{MachineScene, in_file_names};
+use std::fs::File;
+
+pub(super) fn run(
+    scene: &MachineScene,
+    args: &RunArgs,
+    staging: &Staging,
+) -> Result<Ran, CommandError> {
+    let results = run_all(scene, args, staging)?;
+    let verdicts = pretty(&table::machine_json(scene, &results), VERDICT)? + "\n";
+    staging.write("verdict.json", &verdicts)?;
+    let mut contradicted = Vec::new();
+    for (plane, runs) in scene.planes.iter().zip(&results.planes) {
+        let name = in_file_names(&plane.name);
+        write_records(staging, runs, |policy| {
+            record_name(&format!("{policy}_{name}"))
+        })?;
+        for mut contradiction in contradictions(runs) {
+            contradiction.policy = format!("{}, {}", contradiction.policy, plane.name);
+            contradicted.push(contradiction);
+        }
+    }
+    let html = report::machine::html(scene, &results).map_err(undrawn)?;
+    staging.write("report.html", html)?;
+    Ok(Ran {
+        table: table::machine_text(scene, &results),
+        verdicts,
+        untrusted: (results.whole.untrusted().into_iter())
+            .map(str::to_owned)
+            .collect(),
+        contradictions: contradicted,
+    })
+}
+
+fn run_all(
+    scene: &MachineScene,
+    args: &RunArgs,
+    staging: &Staging,
+) -> Result<MachineResults, CommandError> {
+    let common = scene.common();
+    let check = args.verify.then(|| verify::check_machine_scene(scene));
+    let checks = usize::from(args.verify);
+    let all = each_policy(common, args, checks, |kind, on_tick| {
+        let names = Names::new(scene, kind.name());
+        let mut files = match args.no_trace {
+            true => None,
+            false => Some(names.begin(scene, staging)?),
+        };
+        let ran = recorded_machine(scene, kind, check.as_ref(), files.as_mut(), on_tick);
+        match (&ran, files) {
+            (Ok(_), Some(files)) => names.end(files, staging)?,
+            (Err(_), Some(_)) => names.discard(staging)?,
+            _ => {}
+        }
+        Ok(ran)
+    })?;
+    let mut results = MachineResults::default();
+    for (kind, ran) in common.policies.iter().zip(all) {
+        match ran {
+            Ok(run) => results.push(run),
+            Err(error) => results.whole.failed.push(failed(*kind, &error)),
+        }
+    }
+    Ok(results)
+}
+
+/// Names of the trace files of a policy.
+struct Names {
+    planes: Vec<String>,
+    axis: String,
+}
+
+impl Names {
+    fn new(scene: &MachineScene, policy: &str) -> Self {
+        let planes = scene.planes.iter().map(|plane| in_file_names(&plane.name));
+        Self {
+            planes: planes
+                .map(|plane| super::trace_name(&format!("{policy}_{plane}")))
+                .collect(),
+            axis: format!("axis_{policy}.parquet"),
+        }
+    }
+
+    fn begin(
+        &self,
+        scene: &MachineScene,
+        staging: &Staging,
+    ) -> Result<MachineFiles<File>, OutputError> {
+        let planes = self
+            .planes
+            .iter()
+            .map(|name| staging.trace(name, Columns::of_plane()));
+        let modes = scene.machine.rotor.bending().len();
+        Ok(MachineFiles {
+            planes: planes.collect::<Result<_, _>>()?,
+            axis: staging.trace(&self.axis, Columns::of_axis(modes))?,
+        })
+    }
+
+    fn end(&self, files: MachineFiles<File>, staging: &Staging) -> Result<(), OutputError> {
+        for (name, file) in self.planes.iter().zip(files.planes) {
+            staging.end_trace(name, file)?;
+        }
+        staging.end_trace(&self.axis, files.axis)
+    }
+
+    fn discard(&self, staging: &Staging) -> Result<(), OutputError> {
+        for name in self.planes.iter().chain([&self.axis]) {
+            staging.discard(name)?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,220 @@
+//! What a scene of a whole rotor is refused for, and what it says then.
+
+use super::{TWO_PLANES, as_machine};
+use firmware_bench::scene::Scene;
+use firmware_bench::scene::machine::MachineScene;
+
+/// What is changed in a good scene, what the error must name, and what it must say.
+const CASES: &[(&str, &str, &str, &str)] = &[
+    (
+        "transverse_inertia_kg_m2 = 0.6\n",
+        "",
+        "rotor.transverse_inertia_kg_m2: is missing",
+        "missing",
+    ),
+    (
+        "polar_inertia_kg_m2 = 0.0\n",
+        "",
+        "rotor.polar_inertia_kg_m2: is missing",
+        "missing",
+    ),
+    (
+        "polar_inertia_kg_m2 = 0.0",
+        "polar_inertia_kg_m2 = 1.3",
+        "rotor.polar_inertia_kg_m2",
+        "a thin disc has just that",
+    ),
+    (
+        "mass_kg = 10.0",
+        "mass_kg = 10.0\nstiffness_n_m = 1e6",
+        "rotor.stiffness_n_m",
+        "stands on supports",
+    ),
+    (
+        "name = \"other end\"",
+        "name = \"Struck_End\"",
+        "plane[1].name",
+        "that of plane[0]",
+    ),
+    (
+        "name = \"other end\"",
+        "name = \" \"",
+        "plane[1].name",
+        "a name in one line",
+    ),
+    (
+        "name = \"other end\"\n",
+        "",
+        "plane[1].name: is missing",
+        "missing",
+    ),
+    (
+        "position_m = 0.3",
+        "position_m = -0.2",
+        "plane[0].start_velocity_m_s",
+        "both planes stand at one place",
+    ),
+    (
+        "[verdict]",
+        "[start]\ntilt_rad = [1e-4, 0.0]\n[verdict]",
+        "plane[0].start_velocity_m_s",
+        "what [start] says as well",
+    ),
+    (
+        "contact_radius_m = 0.03\n",
+        "",
+        "plane[1].contact_radius_m: is missing",
+        "missing",
+    ),
+    (
+        "contact_radius_m = 0.03",
+        "contact_radius_m = -0.03",
+        "plane[1].contact_radius_m",
+        "greater than 0",
+    ),
+    (
+        "contact_radius_m = 0.03",
+        "contact_radius_m = 0.03\ncontact = { clearance_m = 2e-4, stiffness_n_mn = 1e13 }",
+        "plane[1].contact.stiffness_n_mn",
+        "a linear contact law",
+    ),
+    (
+        "contact_radius_m = 0.03",
+        "contact_radius_m = 0.03\nretainer = { ellipticity = 0.1 }",
+        "plane[1].retainer.ellipticity",
+        "a round bore",
+    ),
+    (
+        "contact_radius_m = 0.03",
+        "contact_radius_m = 0.03\nfriction = { coefficient = 0.2, coefficient_at_speed = 0.1, speed_scale_m_s = 1.0 }",
+        "plane[1].friction.coefficient_at_speed",
+        "the same at every speed",
+    ),
+    (
+        "contact_radius_m = 0.03",
+        "contact_radius_m = 0.03\ncolour = 3",
+        "colour",
+        "unknown field",
+    ),
+    (
+        "contact_radius_m = 0.03",
+        "contact_radius_m = 0.03\nretainer = { centre_offset_m = [3e-4, 0.0] }",
+        "plane[1].retainer.centre_offset_m",
+        "below contact.clearance_m",
+    ),
+    (
+        "policies = [\"passive\"]",
+        "policies = [\"passive\"]\nmethod = \"explicit\"",
+        "run.method",
+        "integrated by series",
+    ),
+    (
+        "policies = [\"passive\"]",
+        "policies = [\"levitation\"]",
+        "run.policies",
+        "needs a magnet",
+    ),
+    (
+        "[verdict]",
+        "[[change]]\nat_s = 0.01\neccentricity_m = 1e-5\n[verdict]",
+        "change[0]",
+        "nothing of a whole rotor changes",
+    ),
+    (
+        "[verdict]",
+        "[[rotor.bending]]\nfrequency_hz = 300.0\npositions_m = [-0.3, 0.2]\ndisplacements = [1.0, 1.0]\n[verdict]",
+        "plane[1].position_m",
+        "within the shape of every bending mode",
+    ),
+    (
+        "[verdict]",
+        "[[rotor.bending]]\nfrequency_hz = 300.0\npositions_m = [-0.3, 0.4]\ndisplacements = [1.0]\n[verdict]",
+        "rotor.bending[0].displacements",
+        "for 2 places",
+    ),
+    (
+        "[verdict]",
+        "[[support]]\nposition_m = 0.0\ndamping_n_s_m = -1.0\n[verdict]",
+        "support[0].damping_n_s_m",
+        "0 or greater",
+    ),
+    (
+        "frequency_hz = 100.0",
+        "frequency_hz = 100.0\ninertia_kg_m2 = 0.01\n",
+        "spin.inertia_kg_m2",
+        "polar inertia",
+    ),
+];
+
+#[test]
+fn contradictions_are_refused_with_line_key_and_rule() {
+    let refused = |text: &str| {
+        let error = MachineScene::parse("scene.toml", text).expect_err(text);
+        error.to_string()
+    };
+    for (from, to, key, says) in CASES {
+        let mut text = TWO_PLANES.replacen(from, to, 1);
+        if to.contains("0.01") && key.starts_with("spin") {
+            text = text.replace("polar_inertia_kg_m2 = 0.0", "polar_inertia_kg_m2 = 0.05");
+        }
+        assert_ne!(text, TWO_PLANES, "{from}");
+        let message = refused(&text);
+        assert!(message.starts_with("scene.toml:"), "{message}");
+        assert!(
+            message.contains(key) && message.contains(says),
+            "{key}, {says}: {message}"
+        );
+    }
+    let many: String = (0..4)
+        .map(|i| format!("[[plane]]\nname = \"n{i}\"\nposition_m = 0.1\n"))
+        .collect();
+    let message = refused(&(as_machine() + &many));
+    assert!(
+        message.contains("plane: is 5") || message.contains("at most four"),
+        "{message}"
+    );
+}
+
+#[test]
+fn what_is_of_a_whole_rotor_is_refused_of_a_point_mass() {
+    let one = TWO_PLANES.split("[[plane]]").next().unwrap().to_owned();
+    let plain = one
+        .replace("mass_kg = 10.0", "mass_kg = 10.0\ncontact_radius_m = 0.05")
+        .replace(
+            "transverse_inertia_kg_m2 = 0.6\npolar_inertia_kg_m2 = 0.0\n",
+            "",
+        );
+    Scene::parse("scene.toml", &plain).unwrap();
+    for (more, key) in [
+        (
+            "[[support]]\nposition_m = 0.1\nstiffness_n_m = 1e5\n",
+            "support",
+        ),
+        (
+            "[[unbalance]]\nposition_m = 0.1\nmoment_kg_m = 1e-5\n",
+            "unbalance",
+        ),
+        ("[start]\ntilt_rad = [1e-4, 0.0]\n", "start.tilt_rad"),
+        ("[sensor]\nposition_m = 0.1\n", "sensor.position_m"),
+        (
+            "[[disturbance]]\nstart_s = 0.0\nduration_s = 0.01\nforce_n = [1.0, 0.0]\nposition_m = 0.1\n",
+            "disturbance[0].position_m",
+        ),
+    ] {
+        let message = Scene::parse("scene.toml", &(plain.clone() + more))
+            .unwrap_err()
+            .to_string();
+        assert!(
+            message.contains(key) && message.contains("whole rotor"),
+            "{message}"
+        );
+    }
+    // And the other way round.
+    let message = Scene::parse("scene.toml", TWO_PLANES)
+        .unwrap_err()
+        .to_string();
+    assert!(
+        message.contains("plane: makes this a scene of a whole rotor"),
+        "{message}"
+    );
+}
