@@ -40,8 +40,13 @@ pub(crate) struct FlightMap {
     end: Vec<f64>,
     /// Bound of each plane's way, x and y.
     reach: Vec<f64>,
-    /// Quadratic forms of the work: rotor damping, magnets that lag, unbalance; empty where there is none.
+    /// Quadratic forms of the work: rotor damping, magnets that lag, unbalance; the upper triangle row by row, with what
+    /// stands below added to it. Empty where there is none.
     works: [Vec<f64>; 3],
+    /// Σ z·zᵀ over the samples flown, likewise: the forms are asked for by those who read the audit, not in every sample.
+    moments: Vec<f64>,
+    /// What they made of the samples under earlier maps.
+    booked: Flows,
     z: Vec<f64>,
     size: Vec<f64>,
     out: Vec<f64>,
@@ -63,6 +68,8 @@ impl FlightMap {
         }
         let same = (dt_s - self.dt_s).abs() <= SAME * dt_s && y.spin_rad_s == self.spin_rad_s;
         if !same {
+            self.booked = self.works();
+            self.moments.clear();
             (self.dt_s, self.spin_rad_s) = (dt_s, y.spin_rad_s);
             (self.repeats, self.made) = (0, false);
             return None;
@@ -104,12 +111,10 @@ impl FlightMap {
             }
         }
         let (control, external) = system.held_work_j(inputs, path);
-        let [rotor_damping, lagged, unbalance] = [0, 1, 2].map(|w| self.work(w));
+        self.add_moments();
         let machine = Flows {
-            control: control + lagged,
+            control,
             external,
-            unbalance,
-            rotor_damping,
             ..Flows::default()
         };
         y.phase_rad += y.spin_rad_s * dt_s;
@@ -125,10 +130,34 @@ impl FlightMap {
         Some(flows)
     }
 
-    fn work(&self, which: usize) -> f64 {
-        let (form, d) = (&self.works[which], self.z.len());
-        let rows = form.chunks_exact(d).zip(&self.z);
-        rows.map(|(row, z)| z * dot(row, &self.z)).sum()
+    fn add_moments(&mut self) {
+        let mut rest = self.moments.as_mut_slice();
+        for (i, z) in self.z.iter().enumerate() {
+            let (row, after) = rest.split_at_mut(self.z.len() - i);
+            rest = after;
+            if *z != 0.0 {
+                for (sum, other) in row.iter_mut().zip(&self.z[i..]) {
+                    *sum += z * other;
+                }
+            }
+        }
+    }
+
+    /// Work of rotor damping, lagging magnets and unbalance over all samples flown so far.
+    pub(crate) fn works(&self) -> Flows {
+        let work = |form: &Vec<f64>| dot(form, &self.moments);
+        let [rotor_damping, control, unbalance] = [0, 1, 2].map(|w| work(&self.works[w]));
+        let mut all = self.booked;
+        all.add_scaled(
+            1.0,
+            &Flows {
+                control,
+                unbalance,
+                rotor_damping,
+                ..Flows::default()
+            },
+        );
+        all
     }
 
     fn read(&mut self, system: &MachineSystem, y: &MachineState, inputs: &MachineInputs) {
@@ -265,6 +294,7 @@ impl FlightMap {
         }
         self.reach = by_rows(&reach, reach.nrows());
         self.works = self.make_works(system, &a);
+        self.moments = vec![0.0; d * (d + 1) / 2];
         self.made = true;
     }
 
@@ -321,7 +351,13 @@ impl FlightMap {
             from = &part * from;
         }
         works.map(|work| match work.amax() > 0.0 {
-            true => work.iter().copied().collect(),
+            true => (0..d)
+                .flat_map(|i| (i..d).map(move |j| (i, j)))
+                .map(|(i, j)| match i == j {
+                    true => work[(i, i)],
+                    false => work[(i, j)] + work[(j, i)],
+                })
+                .collect(),
             false => vec![],
         })
     }

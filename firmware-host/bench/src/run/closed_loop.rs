@@ -400,6 +400,7 @@ struct Bench<'a> {
     commands_n: [Vec<V2>; 2],
     loads_n: [Vec<V2>; 2],
     changes: Vec<(usize, Snapshot)>,
+    axis_row: AxisRow,
 }
 
 impl<'a> Bench<'a> {
@@ -427,6 +428,7 @@ impl<'a> Bench<'a> {
             commands_n: [vec![V2::zeros(); planes], vec![V2::zeros(); planes]],
             loads_n: [vec![V2::zeros(); places], vec![V2::zeros(); places]],
             changes: Vec::new(),
+            axis_row: AxisRow::default(),
         }
     }
 
@@ -612,15 +614,9 @@ impl<'a> Bench<'a> {
     }
 
     fn record_axis(&mut self) {
-        let Some(recorder) = &mut self.axis else {
-            return;
-        };
-        if let (Some((axis, bending)), Some(now)) = (self.rig.axis(), self.now.first()) {
-            recorder.row(&AxisRow {
-                t_s: now.t_s,
-                axis,
-                bending,
-            });
+        if let Some(recorder) = &mut self.axis {
+            self.rig.read_axis(&mut self.axis_row);
+            recorder.row(&self.axis_row);
         }
     }
 }

@@ -1,12 +1,13 @@
 //! What a closed loop moves: a plant of one plane, or a whole rotor in several.
 
+use crate::run::trace::AxisRow;
 use crate::scene::Scene;
 use crate::scene::machine::MachineScene;
 use plant_model::energy::Audit;
 use plant_model::machine::params::MachineError;
-use plant_model::machine::{AxisMotion, Machine, MachineInputs, MachineSnapshot};
+use plant_model::machine::{Machine, MachineInputs, MachineSnapshot};
 use plant_model::{
-    Body, BuildError, Change, Inputs, Meters, Method, Options, Plant, PlantError, Snapshot, V2,
+    BuildError, Change, Inputs, Meters, Method, Options, Plant, PlantError, Snapshot, V2,
 };
 
 /// A plant with planes, each seen from the centre of its retainer bearing.
@@ -34,10 +35,8 @@ pub(crate) trait Rig {
     fn audit(&self) -> Audit;
     fn method(&self) -> Method;
 
-    /// The axis of a whole rotor, and the motion of its bending modes.
-    fn axis(&self) -> Option<(AxisMotion, Vec<Body>)> {
-        None
-    }
+    /// Reads the axis of a whole rotor and the motion of its bending modes; nothing of one plane.
+    fn read_axis(&self, _row: &mut AxisRow) {}
 }
 
 /// One plane.
@@ -195,9 +194,12 @@ impl Rig for WholeRotor<'_> {
         Method::Series
     }
 
-    fn axis(&self) -> Option<(AxisMotion, Vec<Body>)> {
+    fn read_axis(&self, row: &mut AxisRow) {
         let modes = 0..self.scene.machine.rotor.bending().len();
-        let modes = modes.filter_map(|mode| self.machine.bending(mode));
-        Some((self.machine.axis(), modes.collect()))
+        row.t_s = self.machine.t_s();
+        row.axis = self.machine.axis();
+        row.bending.clear();
+        row.bending
+            .extend(modes.filter_map(|mode| self.machine.bending(mode)));
     }
 }

@@ -81,7 +81,7 @@ pub trait Recorder<R = TraceRow> {
 }
 
 /// The axis of a whole rotor at a control sample.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct AxisRow {
     /// When \[s\].
     pub t_s: f64,

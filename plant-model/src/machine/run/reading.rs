@@ -33,7 +33,9 @@ impl Machine {
             commands_n: &self.inputs.commands_n,
             step_s: self.system.moment_s,
         };
-        (self.stepper.series).fill(&step, &self.y, ORDER, |_, _| false);
+        if (self.phases.iter()).any(|phase| matches!(phase, Phase::Contact(..))) {
+            (self.stepper.series).fill(&step, &self.y, ORDER, |_, _| false);
+        }
         let body = &self.system.body;
         let of_ring = |ring: &Option<Port>| {
             (ring.as_ref()).map_or_else(Body::default, |ring| self.y.motion_at(ring))
@@ -109,8 +111,10 @@ impl Machine {
 
     /// The energy audit of the machine so far. Dampers of rings are booked with the rotor's.
     pub fn audit(&self) -> Audit {
+        let mut flows = self.flows;
+        flows.add_scaled(1.0, &self.map.works());
         Audit {
-            flows: self.flows,
+            flows,
             stored_at_start_j: self.stored_at_start_j,
             stored_j: self.system.stored_j(&self.y, &self.phases),
             stored_peak_j: self
