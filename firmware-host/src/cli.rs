@@ -5,6 +5,7 @@ pub mod advise;
 mod chapters;
 pub mod error;
 pub mod harm;
+pub mod modes;
 pub mod output;
 pub mod overloads;
 pub mod paper;

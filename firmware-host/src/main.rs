@@ -2,8 +2,8 @@
 
 use clap::{Parser, Subcommand};
 use firmware_host::cli::{
-    accuracy, advise, error, harm, overloads, paper, record, run, schema, sensitivity, study,
-    target,
+    accuracy, advise, error, harm, modes, overloads, paper, record, run, schema, sensitivity,
+    study, target,
 };
 use std::process::ExitCode;
 
@@ -35,6 +35,8 @@ enum Command {
     Record(record::RecordArgs),
     /// Print every key of scene files, as a JSON Schema for editors or as a table.
     Schema(schema::SchemaArgs),
+    /// Natural frequencies of a whole rotor over its spin, critical speeds, response to its unbalance, coupling of its planes.
+    Modes(modes::ModesArgs),
     /// Run one of the studies and hold its claims against what was measured; `study list` names them.
     Study(study::StudyArgs),
     /// Run the supervisor on emulated processors: bit for bit, instructions, sizes, closed loops.
@@ -53,6 +55,7 @@ fn main() -> ExitCode {
         Command::Paper(args) => paper::execute(args),
         Command::Record(args) => record::execute(args),
         Command::Schema(args) => schema::execute(args),
+        Command::Modes(args) => modes::execute(args),
         Command::Study(args) => study::execute(args),
         Command::Target(args) => target::execute(args),
     };

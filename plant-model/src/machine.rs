@@ -71,12 +71,13 @@ mod body;
 mod flight_map;
 mod guards;
 mod holding;
-pub mod modes;
+pub mod linear;
 pub mod params;
 pub mod point_mass;
 mod readout;
 mod run;
 mod series;
+pub mod shaft;
 mod step;
 mod system;
 

@@ -2,6 +2,7 @@
 //! no network and no fonts of its own.
 
 mod axes;
+pub mod campbell;
 #[cfg(test)]
 pub(crate) mod fixture;
 mod happenings;

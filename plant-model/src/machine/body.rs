@@ -30,6 +30,11 @@ impl Sparse {
         }
     }
 
+    /// Row, column and value of each.
+    pub(crate) fn entries(&self) -> impl Iterator<Item = (usize, usize, f64)> + '_ {
+        self.0.iter().copied()
+    }
+
     /// xᵀ·A·x.
     pub(crate) fn quadratic(&self, x: &[f64]) -> f64 {
         self.0
@@ -84,6 +89,11 @@ impl Port {
         for (o, (a, b)) in out.iter_mut().zip(self.x.iter().zip(&self.y)) {
             *o += a * f.x + b * f.y;
         }
+    }
+
+    /// What coordinate i moves here: column i of S.
+    pub(crate) fn column(&self, i: usize) -> V2 {
+        V2::new(self.x[i], self.y[i])
     }
 
     /// Mobility of the port along x, which is that in every direction but for rings of unequal mountings \[1/kg\].
@@ -164,6 +174,11 @@ fn add_at_port(dense: &mut [f64], n: usize, port: &Port, k: V2) {
 impl LinearBody {
     /// Puts rotor, supports and rings of a machine together.
     pub(crate) fn new(params: &MachineParams) -> Result<Self, MachineError> {
+        Self::with_walls(params, false)
+    }
+
+    /// The same; where `closed`, with the contact springs and dampers of all planes as if the rotor never left its walls.
+    pub(crate) fn with_walls(params: &MachineParams, closed: bool) -> Result<Self, MachineError> {
         params.validate()?;
         let rigid = params.rotor.rigid();
         let bending = params.rotor.bending();
@@ -222,8 +237,8 @@ impl LinearBody {
         }
         for support in &params.supports {
             let port = at(support.position_m);
-            add_at_port(&mut stiffness, n, &port, V2::repeat(support.stiffness_n_m));
-            add_at_port(&mut damping, n, &port, V2::repeat(support.damping_n_s_m));
+            add_at_port(&mut stiffness, n, &port, support.stiffness_n_m);
+            add_at_port(&mut damping, n, &port, support.damping_n_s_m);
         }
 
         let mut contacts = Vec::new();
@@ -258,6 +273,10 @@ impl LinearBody {
             }
             if let Some(ring) = &inner {
                 contact.subtract(ring);
+            }
+            if let (true, Some(law)) = (closed, plane.contact.law.linear()) {
+                add_at_port(&mut stiffness, n, &contact, V2::repeat(law.stiffness_n_m));
+                add_at_port(&mut damping, n, &contact, V2::repeat(law.damping_n_s_m));
             }
             contacts.push(contact);
             rings.push(inner);

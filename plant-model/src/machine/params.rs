@@ -62,15 +62,15 @@ pub enum Rotor {
     },
 }
 
-/// A spring with a damper from the rotor to ground, the same in every direction. A magnet's negative stiffness is one.
+/// A spring with a damper from the rotor to ground, along x and y. A magnet's negative stiffness is one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Support {
     /// Where \[m\].
     pub position_m: f64,
     /// Stiffness \[N/m\], either sign.
-    pub stiffness_n_m: f64,
+    pub stiffness_n_m: V2,
     /// Damping \[N s/m\], ≥ 0.
-    pub damping_n_s_m: f64,
+    pub damping_n_s_m: V2,
 }
 
 /// An unbalance.

@@ -7,9 +7,9 @@ use super::params::{MachineParams, RigidRotor};
 pub struct PointMass {
     /// 1/(1/m + z²/I_t) \[kg\], eq. (6.4).
     pub mass_kg: f64,
-    /// Stiffness of the supports against that motion \[N/m\].
+    /// Stiffness of the supports against that motion, the mean of x and y \[N/m\].
     pub stiffness_n_m: f64,
-    /// Damping of the supports against that motion \[N s/m\].
+    /// Damping of the supports against that motion, likewise \[N s/m\].
     pub damping_n_s_m: f64,
 }
 
@@ -37,8 +37,8 @@ impl MachineParams {
         };
         for support in &self.supports {
             let square = rigid.lever(support.position_m, position_m).powi(2);
-            point.stiffness_n_m += square * support.stiffness_n_m;
-            point.damping_n_s_m += square * support.damping_n_s_m;
+            point.stiffness_n_m += square * support.stiffness_n_m.mean();
+            point.damping_n_s_m += square * support.damping_n_s_m.mean();
         }
         point
     }

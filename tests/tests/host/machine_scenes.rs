@@ -1,5 +1,6 @@
 //! Scenes of a whole rotor: the same as one plane where there is no more, what their files say, what is written of them.
 
+mod modes;
 mod refusals;
 
 use firmware_bench::run::closed_loop::{Keep, MachineRecorders, Rigour, record_machine, run};

@@ -3,7 +3,9 @@
 mod closed_forms;
 mod degenerate;
 mod extremes;
+mod linear;
 mod reference;
 mod refusals;
 mod rotor;
+mod shaft;
 mod silently_wrong;

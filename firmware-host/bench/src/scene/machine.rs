@@ -13,10 +13,11 @@ use crate::scene::diagnostic::{SceneError, SceneText};
 use crate::scene::lint::slips;
 use crate::scene::plane_spec::PlaneSpec;
 use crate::scene::resolve::OfMachine;
-use crate::scene::rotor;
+use crate::scene::rotor::{self, Origin};
 use crate::scene::spec::Spec;
 use crate::scene::tables::{PlaneTable, SceneTables, TiltTable};
 use crate::scene::values::MethodName;
+use plant_model::V2;
 use plant_model::machine::params::{
     MachineMagnet, MachineParams, MachinePlane, MachineStart, Support,
 };
@@ -142,9 +143,9 @@ impl Spec {
         let (tables, text) = (&self.tables, &self.text);
         self.check_ranges()?;
         check_together(tables, text)?;
-        let mut machine = rotor::machine(tables, text)?;
+        let (mut machine, origin) = rotor::machine(tables, text)?;
         for (plane, written) in planes.iter().zip(&tables.plane) {
-            let place = |own: Option<f64>| own.unwrap_or(written.position_m);
+            let place = |own: Option<f64>| origin.centred_m(own.unwrap_or(written.position_m));
             machine.probes_m.push(place(plane.tables.sensor.position_m));
             if let Some(magnet) = &plane.tables.magnet {
                 let position_m = place(magnet.position_m);
@@ -156,23 +157,25 @@ impl Spec {
                 if magnet.negative_stiffness_n_m > 0.0 {
                     machine.supports.push(Support {
                         position_m,
-                        stiffness_n_m: -magnet.negative_stiffness_n_m,
-                        damping_n_s_m: 0.0,
+                        stiffness_n_m: V2::repeat(-magnet.negative_stiffness_n_m),
+                        damping_n_s_m: V2::zeros(),
                     });
                 }
             }
         }
-        let levitation = modal_levitation(planes, &tables.plane, &machine, text)?;
+        let levitation = modal_levitation(planes, &machine, text)?;
         let weights = Weights::new(&positions(&machine.magnets));
         let mut magnet = 0;
         let mut scenes = Vec::new();
         for (index, (plane, written)) in planes.iter().zip(&tables.plane).enumerate() {
             let own = plane.tables.magnet.is_some().then_some(magnet);
             let rigid = machine.rotor.rigid();
-            let lever = |place_m: f64| rigid.lever(place_m, written.position_m);
+            let position_m = origin.centred_m(written.position_m);
+            let lever = |place_m: f64| rigid.lever(place_m, position_m);
             let of = OfMachine {
-                point: machine.point_mass(written.position_m),
-                weight_share: own.map_or(0.0, |m| weights.translation[m]),
+                point: machine.point_mass(position_m),
+                carried_kg: own.map_or(0.0, |m| weights.translation[m] * rigid.mass_kg),
+                residual_m_n: origin.residual_m_n(index),
                 retainer_plane_ratio: 1.0 / lever(machine.probes_m[index]),
                 magnet_plane_ratio: own.map_or(1.0, |m| lever(machine.magnets[m].position_m)),
                 levitated_alone: levitation.is_none(),
@@ -182,7 +185,7 @@ impl Spec {
             scene.seed =
                 (scene.seed).wrapping_add(0x9E37_79B9_7F4A_7C15_u64.wrapping_mul(index as u64));
             machine.planes.push(MachinePlane {
-                position_m: written.position_m,
+                position_m,
                 centre_m: scene.centre_offset_m,
                 radius_m: plane.contact_radius_m,
                 contact: scene.plant.contact,
@@ -197,8 +200,8 @@ impl Spec {
                 magnet: own,
             });
         }
-        let loads = self.loads(&scenes, &mut machine);
-        let start = start(tables, text)?;
+        let loads = self.loads(&scenes, &mut machine, &origin);
+        let start = start(tables, text, &machine)?;
         (machine.validate().and_then(|()| start.validate()))
             .map_err(|error| refused(&error, self, &scenes))?;
         let mut warnings: Vec<String> = Vec::new();
@@ -218,7 +221,12 @@ impl Spec {
     }
 
     /// Loads and where they act; those of base motions at the centre of mass, which bending modes do not feel.
-    fn loads(&self, planes: &[PlaneScene], machine: &mut MachineParams) -> Vec<Disturbance> {
+    fn loads(
+        &self,
+        planes: &[PlaneScene],
+        machine: &mut MachineParams,
+        origin: &Origin,
+    ) -> Vec<Disturbance> {
         let Some(PlaneScene { scene, .. }) = planes.first() else {
             return Vec::new();
         };
@@ -228,7 +236,7 @@ impl Spec {
             .tables
             .disturbance
             .iter()
-            .map(|d| d.position_m.unwrap_or(0.0));
+            .map(|d| d.position_m.map_or(0.0, |z| origin.centred_m(z)));
         machine.loads_m = places
             .chain(scene.base_motions.iter().map(|_| 0.0))
             .collect();
@@ -283,7 +291,6 @@ fn check_together(tables: &SceneTables, text: &SceneText) -> Result<(), SceneErr
 /// The controller of the whole rotor, where the scene has one.
 fn modal_levitation(
     planes: &[PlaneSpec],
-    written: &[PlaneTable],
     machine: &MachineParams,
     text: &SceneText,
 ) -> Result<Option<ModalLevitationParams>, SceneError> {
@@ -302,15 +309,16 @@ fn modal_levitation(
             return Err(text.error_at_key("levitation.tilt", message, Some(help)));
         }
     }
-    let stations = planes.iter().zip(written).zip(&machine.probes_m);
+    let mut magnets = machine.magnets.iter();
     Ok(Some(ModalLevitationParams {
         translation: LevitationParams::from(levitation),
         tilt: tilt_params(tilt, machine.rotor.rigid().polar_inertia_kg_m2),
-        stations: stations
-            .map(|((plane, written), sensor_m)| Station {
+        stations: (planes.iter().zip(&machine.probes_m))
+            .map(|(plane, sensor_m)| Station {
                 sensor_m: *sensor_m,
                 magnet: (plane.tables.magnet.as_ref())
-                    .map(|m| (m.position_m.unwrap_or(written.position_m), m.force_max_n)),
+                    .and_then(|_| magnets.next())
+                    .map(|m| (m.position_m, m.force_max_n)),
             })
             .collect(),
     }))

@@ -48,6 +48,14 @@ impl Spec {
             ),
             ("start.tilt_rad", start.tilt_rad.is_some()),
             ("start.tilt_rate_rad_s", start.tilt_rate_rad_s.is_some()),
+            ("shaft", !tables.shaft.is_empty()),
+            ("disc", !tables.disc.is_empty()),
+            ("rotor.bending_to_hz", rotor.bending_to_hz.is_some()),
+            (
+                "rotor.bending_damping_ratio",
+                rotor.bending_damping_ratio.is_some(),
+            ),
+            ("rotor.elements", rotor.elements.is_some()),
             ("support", !tables.support.is_empty()),
             ("unbalance", !tables.unbalance.is_empty()),
             (

@@ -213,13 +213,15 @@ fn rotor(spec: &PlaneSpec) -> Result<RotorParams, SceneError> {
     let (file, text) = (&spec.tables.rotor, &spec.text);
     let magnet = spec.tables.magnet.as_ref();
     let negative_n_m = magnet.map_or(0.0, |m| m.negative_stiffness_n_m);
+    let mass_kg = (file.mass_kg)
+        .ok_or_else(|| text.missing_at("rotor.mass_kg", "give a number in kg".to_owned()))?;
     let shaft_n_m = text
         .either(
             Given::new("rotor.stiffness_n_m", file.stiffness_n_m),
             Given::new(
                 "rotor.natural_frequency_hz",
                 file.natural_frequency_hz
-                    .map(|f| file.mass_kg * (f * TAU).powi(2)),
+                    .map(|f| mass_kg * (f * TAU).powi(2)),
             ),
         )?
         .unwrap_or(0.0);
@@ -230,7 +232,7 @@ fn rotor(spec: &PlaneSpec) -> Result<RotorParams, SceneError> {
     }
     let by_ratio = file
         .damping_ratio
-        .map(|ratio| 2.0 * ratio * (file.mass_kg * shaft_n_m).sqrt());
+        .map(|ratio| 2.0 * ratio * (mass_kg * shaft_n_m).sqrt());
     let damping_n_s_m = text
         .either(
             Given::new("rotor.damping_n_s_m", file.damping_n_s_m),
@@ -238,7 +240,7 @@ fn rotor(spec: &PlaneSpec) -> Result<RotorParams, SceneError> {
         )?
         .unwrap_or(0.0);
     Ok(RotorParams {
-        mass_kg: file.mass_kg,
+        mass_kg,
         stiffness_n_m: shaft_n_m - negative_n_m,
         damping_n_s_m,
         eccentricity_m: file.eccentricity_m,

@@ -17,7 +17,7 @@ use crate::scene::tables::SceneTables;
 use crate::scene::values::MethodName;
 use plant_model::V2;
 use plant_model::machine::point_mass::PointMass;
-use plant_model::params::{PlantParams, RotorParams, Start};
+use plant_model::params::{ContactLaw, PlantParams, RotorParams, Start};
 use std::f64::consts::TAU;
 
 /// Rows of traces that a run may keep, of all its policies: some 0.3 KB each.
@@ -43,8 +43,10 @@ impl Spec {
 pub(crate) struct OfMachine {
     /// The rotor as an impact in this plane finds it.
     pub(crate) point: PointMass,
-    /// Share of the weight that its magnet carries.
-    pub(crate) weight_share: f64,
+    /// Mass whose weight its magnet carries \[kg\].
+    pub(crate) carried_kg: f64,
+    /// What the shaft gives way there beside its modes \[m/N\].
+    pub(crate) residual_m_n: f64,
     pub(crate) retainer_plane_ratio: f64,
     pub(crate) magnet_plane_ratio: f64,
     /// Whether it is levitated by a controller of its own.
@@ -65,7 +67,9 @@ impl PlaneSpec {
                     eccentricity_m: 0.0,
                     contact_radius_m: self.contact_radius_m,
                 };
-                plant_of(self, point)?
+                let mut plant = plant_of(self, point)?;
+                give_way(&mut plant, of.residual_m_n);
+                plant
             }
         };
         let mut start = Start {
@@ -86,7 +90,7 @@ impl PlaneSpec {
         let damping_n_s_m = damping_n_s_m(self, &plant, damps)?;
         let weight_n = match of {
             None => plant.rotor.mass_kg,
-            Some(of) => of.weight_share * written.rotor.mass_kg,
+            Some(of) => of.carried_kg,
         } * V2::from(written.rotor.gravity_m_s2);
         let mut nominal = nominal(&plant, self);
         if let Some(of) = of {
@@ -151,6 +155,16 @@ impl PlaneSpec {
             whirl_speed_m_s,
             warnings,
         })
+    }
+}
+
+/// A contact in series with a spring: what the shaft bends there in modes that are not kept.
+fn give_way(plant: &mut PlantParams, residual_m_n: f64) {
+    if let ContactLaw::Linear(law) = &mut plant.contact.law {
+        let share = 1.0 / (1.0 + law.stiffness_n_m * residual_m_n);
+        law.stiffness_n_m *= share;
+        // Of slow motions the damper sees that share of the way, and its force counts by it once more.
+        law.damping_n_s_m *= share * share;
     }
 }
 

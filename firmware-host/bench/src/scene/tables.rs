@@ -46,6 +46,8 @@ key_tables! {
         change: Vec<ChangeTable> [= Vec::new()], "", ANY, "parameters of the plant that take other values from a time on; see [changes](#changes)";
         verdict: VerdictTable [= VerdictTable::default()], "", ANY, "how the end is judged", "outcome";
         plane: Vec<PlaneTable> [= Vec::new()], "", ANY, "a bearing plane of a [whole rotor](#several-planes), at most four; none: a point mass in one plane", "bearing_plane", "station";
+        shaft: Vec<ShaftTable> [= Vec::new()], "", ANY, "a section of the [shaft](#shafts), from left to right; with `[[plane]]` only. Every `position_m` then counts from its left end", "section", "beam";
+        disc: Vec<DiscTable> [= Vec::new()], "", ANY, "a rigid disc on the shaft", "disk", "wheel", "impeller";
         support: Vec<SupportTable> [= Vec::new()], "", ANY, "a spring with a damper from the rotor to ground; with `[[plane]]` only", "spring", "seal";
         unbalance: Vec<UnbalanceTable> [= Vec::new()], "", ANY, "a residual unbalance; with `[[plane]]` only", "imbalance";
     }
@@ -60,7 +62,7 @@ key_tables! {
     }
 
     RotorTable {
-        mass_kg: f64 [required], "kg", Positive, "m_r", "m", "weight";
+        mass_kg: Option<f64> [or "that of `[[shaft]]` and `[[disc]]`"], "kg", Positive, "m_r; required without `[[shaft]]`", "m", "weight";
         stiffness_n_m: Option<f64> [or "0"], "N/m", Finite, "shaft stiffness; excludes `natural_frequency_hz`", "k", "shaft_stiffness";
         natural_frequency_hz: Option<f64> [or "–"], "Hz", Within(0.0, 1e6), "gives m_r·(2πf)² as shaft stiffness", "f0", "omega0", "eigenfrequency";
         damping_n_s_m: Option<f64> [or "0"], "N s/m", NotNegative, "d_r; excludes `damping_ratio`", "d", "c";
@@ -70,6 +72,9 @@ key_tables! {
         gravity_m_s2: Pair [= Pair::default()], "m/s²", Within(-1e4, 1e4), "weight = m_r times this", "g";
         transverse_inertia_kg_m2: Option<f64> [or "–"], "kg m²", Positive, "I_t about the centre of mass; with `[[plane]]`, and required there", "i_t", "it";
         polar_inertia_kg_m2: Option<f64> [or "–"], "kg m²", NotNegative, "I_p, at most twice I_t; with `[[plane]]`, and required there", "i_p", "ip";
+        bending_to_hz: Option<f64> [or "3000"], "Hz", NotNegative, "of a `[[shaft]]` the bending modes up to here are kept, of the others their static compliance; 0: rigid";
+        bending_damping_ratio: Option<f64> [or "0"], "1", Within(0.0, 100.0), "of the modes of a `[[shaft]]`";
+        elements: Option<u32> [or "16"], "", Within(1.0, 200.0), "of a `[[shaft]]`, at least so many";
         bending: Vec<BendingTable> [= Vec::new()], "", ANY, "a bending mode of the free shaft; with `[[plane]]` only", "mode", "flexible";
         polar_coupling_kg_m2: Numbers [= Numbers::default()], "kg m²", Finite, "∫ I_p′·φ_i′·φ_j′ dz of the slopes of tilt and bending modes, row by row, its first number left to I_p; none: bending modes are not turned by the spin";
     }
@@ -266,10 +271,27 @@ key_tables! {
         fault: Vec<FaultTable> [= Vec::new()], "", ANY, "of this sensor; none: the scene's";
     }
 
+    /// A cylindrical piece of the shaft; steel, unless it says otherwise.
+    ShaftTable {
+        length_m: f64 [required], "m", Positive, "of the section", "l", "length";
+        outer_diameter_m: f64 [required], "m", Positive, "of the section", "od", "diameter", "outer_diameter";
+        inner_diameter_m: f64 [= 0.0], "m", NotNegative, "less than the outer one", "id", "bore";
+        density_kg_m3: f64 [= 7850.0], "kg/m³", Positive, "of the material", "rho", "density";
+        youngs_modulus_n_m2: f64 [= 2.1e11], "N/m²", Positive, "of the material", "e", "youngs_modulus";
+        poisson_ratio: f64 [= 0.3], "1", Within(0.0, 0.5), "of the material; gives the shear modulus", "nu", "poisson";
+    }
+
+    DiscTable {
+        position_m: f64 [required], "m", NotNegative, "of its centre, from the left end of the shaft", "z";
+        mass_kg: f64 [required], "kg", NotNegative, "of the disc", "m";
+        transverse_inertia_kg_m2: f64 [= 0.0], "kg m²", NotNegative, "about its own centre", "i_t", "id";
+        polar_inertia_kg_m2: f64 [= 0.0], "kg m²", NotNegative, "about the axis", "i_p", "ip";
+    }
+
     SupportTable {
         position_m: f64 [required], "m", Finite, "along the axis, from the centre of mass", "z";
-        stiffness_n_m: f64 [= 0.0], "N/m", Finite, "the same in every direction; may be negative", "k";
-        damping_n_s_m: f64 [= 0.0], "N s/m", NotNegative, "the same in every direction", "d", "c";
+        stiffness_n_m: PerAxis [= PerAxis::Both(0.0)], "N/m", Finite, "of the spring; may be negative", "k";
+        damping_n_s_m: PerAxis [= PerAxis::Both(0.0)], "N s/m", NotNegative, "of the damper", "d", "c";
     }
 
     UnbalanceTable {

@@ -223,19 +223,12 @@ impl MachineParams {
         };
         for (i, support) in self.supports.iter().enumerate() {
             place("supports", i, support.position_m)?;
-            check(
-                true,
-                format!("supports[{i}].stiffness_n_m"),
-                support.stiffness_n_m,
-                FINITE,
-            )?;
-            let d = support.damping_n_s_m;
-            check(
-                d >= 0.0,
-                format!("supports[{i}].damping_n_s_m"),
-                d,
-                NOT_NEGATIVE,
-            )?;
+            for axis in [0, 1] {
+                let (k, d) = (support.stiffness_n_m[axis], support.damping_n_s_m[axis]);
+                check(true, format!("supports[{i}].stiffness_n_m"), k, FINITE)?;
+                let field = format!("supports[{i}].damping_n_s_m");
+                check(d >= 0.0, field, d, NOT_NEGATIVE)?;
+            }
         }
         for (i, unbalance) in self.unbalances.iter().enumerate() {
             place("unbalances", i, unbalance.position_m)?;

@@ -38,7 +38,7 @@ fn a_magnet_that_cannot_lift_is_named_with_the_policy_damping_too() {
 fn what_is_missing_is_named_with_its_table_and_unit() {
     let folder = TempDir::new().unwrap();
     let more = "
-[stator.inner]\nmass_kg = 10.0 # inner\nstiffness_n_m = 1e9 # inner\ndamping_n_s_m = 1e4 # inner
+[stator.inner]\nmass_kg = 12.0 # inner\nstiffness_n_m = 1e9 # inner\ndamping_n_s_m = 1e4 # inner
 [race]\ninertia_kg_m2 = 1e-3
 [[outage]]\nstart_s = 0.01 # outage\nduration_s = 0.001 # outage
 [[disturbance]]\nstart_s = 0.02 # second\nduration_s = 0.001 # second\nforce_n = [1.0, 0.0] # second

@@ -1,7 +1,6 @@
 //! Motions of a whole rotor that can be written down.
 
 use super::rotor::*;
-use plant_model::machine::modes::{Direction, mobility_of_planes, modes};
 use plant_model::machine::params::*;
 use plant_model::machine::{Machine, MachineInputs};
 use plant_model::params::*;
@@ -14,20 +13,20 @@ const OPTIONS: Options = Options {
     steps: 50_000_000,
 };
 
-const TRANSVERSE: f64 = 0.2;
-const ARM_M: f64 = 0.2;
-const STIFFNESS_N_M: f64 = 1e6;
+pub(super) const TRANSVERSE: f64 = 0.2;
+pub(super) const ARM_M: f64 = 0.2;
+pub(super) const STIFFNESS_N_M: f64 = 1e6;
 
 /// A balanced rotor on two undamped springs, with Ω·I_p/(2·I_t) and the root beside it in its conical frequencies.
-fn conical(ratio: f64, spin: f64) -> (MachineParams, f64, f64) {
+pub(super) fn conical(ratio: f64, spin: f64) -> (MachineParams, f64, f64) {
     let mut params = machine();
     params.rotor = rigid(TRANSVERSE, ratio * TRANSVERSE);
     params.unbalances.clear();
     params.supports = [-ARM_M, ARM_M]
         .map(|position_m| Support {
             position_m,
-            stiffness_n_m: STIFFNESS_N_M,
-            damping_n_s_m: 0.0,
+            stiffness_n_m: V2::repeat(STIFFNESS_N_M),
+            damping_n_s_m: V2::repeat(0.0),
         })
         .to_vec();
     let half = 0.5 * spin * ratio;
@@ -97,7 +96,7 @@ fn unbalance_off_the_centre_gives_its_forced_response() {
     let (spin, z, moment) = (300.0_f64, 0.07, 2e-5);
     let mut params = machine();
     for support in &mut params.supports {
-        support.damping_n_s_m = 0.0;
+        support.damping_n_s_m = V2::zeros();
     }
     params.unbalances = vec![Unbalance {
         position_m: z,
@@ -214,72 +213,4 @@ fn a_map_of_whole_samples_changes_nothing() {
             "{name}: {x:e} J, {y:e} J"
         );
     }
-}
-
-/// The same frequencies and senses from the eigenvalues, with the Jeffcott pair beside them.
-#[test]
-fn modes_are_those_of_the_closed_forms() {
-    let spin = 800.0;
-    for ratio in [0.05, 0.9, 1.5, 1.9] {
-        let (params, half, root) = conical(ratio, spin);
-        let translation = (2.0 * STIFFNESS_N_M / 10.0).sqrt();
-        let found = modes(&params, spin).unwrap();
-        assert_eq!(found.len(), 4);
-        for (expected, direction) in [
-            (half + root, Direction::Forward),
-            (root - half, Direction::Backward),
-        ] {
-            let near = found.iter().find(|mode| {
-                (mode.frequency_rad_s - expected).abs() < 1e-9 * expected
-                    && mode.direction == direction
-            });
-            let mode = near.unwrap_or_else(|| panic!("{expected}: {found:?}"));
-            assert!(mode.damping_ratio.abs() < 1e-12);
-        }
-        let translations = found
-            .iter()
-            .filter(|mode| (mode.frequency_rad_s - translation).abs() < 1e-9 * translation);
-        assert_eq!(translations.count(), 2);
-    }
-}
-
-/// A damped support damps by d/(2·√(k·m)), a negative stiffness grows by √(k/m), and what nothing holds is at zero.
-#[test]
-fn modes_tell_damping_and_instability() {
-    let mut params = machine();
-    let damped = modes(&params, 0.0).unwrap();
-    let expected = 200.0 / (2.0 * (4e5_f64 * 10.0).sqrt());
-    let near = damped
-        .iter()
-        .filter(|m| (m.damping_ratio - expected).abs() < 1e-12);
-    assert_eq!(near.count(), 2, "{damped:?}");
-    for support in &mut params.supports {
-        (support.stiffness_n_m, support.damping_n_s_m) = (-2e5, 0.0);
-    }
-    let grows = modes(&params, 0.0).unwrap();
-    let fastest = grows.iter().map(|m| m.growth_s).fold(0.0, f64::max);
-    let tilt = (4e5 * 0.15 * 0.15 / 0.2_f64).sqrt();
-    assert!(
-        (fastest - tilt.max(4e4_f64.sqrt())).abs() < 1e-9 * fastest,
-        "{grows:?}"
-    );
-    params.supports.clear();
-    for mode in modes(&params, 0.0).unwrap() {
-        assert!(
-            mode.frequency_rad_s < 1e-6 && mode.growth_s.abs() < 1e-6,
-            "{mode:?}"
-        );
-    }
-}
-
-/// 1/m + z_a·z_b/I_t: none between planes that are each other's centres of percussion.
-#[test]
-fn planes_feel_each_other_by_their_mobility() {
-    let mut params = machine();
-    params.rotor = rigid(10.0 * 0.16 * 0.125, 0.0);
-    params.planes = vec![plane(-0.16, 1.0), plane(0.125, 1.0)];
-    let mobility = mobility_of_planes(&params).unwrap();
-    assert!(mobility[0][1].abs() < 1e-15 && mobility[1][0].abs() < 1e-15);
-    let expected = 0.1 + 0.125 * 0.125 / 0.2;
-    assert!((mobility[1][1] - expected).abs() < 1e-15);
 }

@@ -111,7 +111,7 @@ fn shafts_and_supports() {
 
     let mut params = base();
     for support in &mut params.supports {
-        (support.stiffness_n_m, support.damping_n_s_m) = (-2e5, 0.0);
+        (support.stiffness_n_m, support.damping_n_s_m) = (V2::repeat(-2e5), V2::zeros());
     }
     run("unstable in tilt", &params, &struck(400.0), 0.3);
 }

@@ -46,7 +46,7 @@ fn values_out_of_range_are_named() {
         });
     });
     refused("supports[1].stiffness_n_m", |p| {
-        p.supports[1].stiffness_n_m = f64::NAN;
+        p.supports[1].stiffness_n_m.x = f64::NAN;
     });
     refused("unbalances[0].moment_kg_m", |p| {
         p.unbalances[0].moment_kg_m = -1.0;

@@ -33,8 +33,8 @@ pub(super) fn plane(position_m: f64, share: f64) -> MachinePlane {
 pub(super) fn support(position_m: f64) -> Support {
     Support {
         position_m,
-        stiffness_n_m: 2e5,
-        damping_n_s_m: 100.0,
+        stiffness_n_m: V2::repeat(2e5),
+        damping_n_s_m: V2::repeat(100.0),
     }
 }
 

@@ -38,8 +38,8 @@ fn case(bending_modes: usize, stiffness_n_m: f64) -> (MachineParams, Reference) 
     let modes = bending(bending_modes, 300.0 * TAU);
     let support = |position_m: f64| Support {
         position_m,
-        stiffness_n_m: 2e5,
-        damping_n_s_m: 100.0,
+        stiffness_n_m: V2::repeat(2e5),
+        damping_n_s_m: V2::repeat(100.0),
     };
     let supports = vec![support(-0.15), support(0.12)];
     let planes = [
@@ -56,7 +56,7 @@ fn case(bending_modes: usize, stiffness_n_m: f64) -> (MachineParams, Reference) 
         gravity,
         supports: supports
             .iter()
-            .map(|s| (s.position_m, s.stiffness_n_m, s.damping_n_s_m))
+            .map(|s| (s.position_m, s.stiffness_n_m.x, s.damping_n_s_m.x))
             .collect(),
         planes: planes.map(|p| {
             let law = p.contact.law.linear().unwrap();

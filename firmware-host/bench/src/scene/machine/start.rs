@@ -3,11 +3,15 @@
 use crate::scene::diagnostic::{SceneError, SceneText};
 use crate::scene::tables::{PlaneTable, SceneTables};
 use plant_model::V2;
-use plant_model::machine::params::MachineStart;
+use plant_model::machine::params::{MachineParams, MachineStart};
 use std::f64::consts::TAU;
 
 /// The start: centre of mass and tilt, or what both planes say.
-pub(super) fn start(tables: &SceneTables, text: &SceneText) -> Result<MachineStart, SceneError> {
+pub(super) fn start(
+    tables: &SceneTables,
+    text: &SceneText,
+    machine: &MachineParams,
+) -> Result<MachineStart, SceneError> {
     let (start, spin) = (&tables.start, &tables.spin);
     let mut at = MachineStart {
         centre_m: start.position_m.into(),
@@ -47,9 +51,10 @@ pub(super) fn start(tables: &SceneTables, text: &SceneText) -> Result<MachineSta
         let message = "does not say how the rotor is tilted: both planes stand at one place";
         return error(message, "give start.position_m and start.tilt_rad");
     }
+    let [from_m, to_m] = [0, 1].map(|plane| machine.planes[plane].position_m);
     let both = |of: fn(&PlaneTable) -> V2| {
-        let slope = (of(b) - of(a)) / (b.position_m - a.position_m);
-        (of(a) - a.position_m * slope, slope)
+        let slope = (of(b) - of(a)) / (to_m - from_m);
+        (of(a) - from_m * slope, slope)
     };
     (at.centre_m, at.tilt_rad) = both(|p| p.start_position_m.unwrap_or_default().into());
     (at.centre_velocity_m_s, at.tilt_rate_rad_s) =

@@ -1,0 +1,298 @@
+//! A whole rotor as a linear system at a spin that is held: modes, critical speeds, response to its unbalance, and how its
+//! planes feel each other.
+
+use super::body::{LinearBody, Port};
+use super::params::{MachineError, MachineParams};
+use nalgebra::{Complex, DMatrix, DVector, Schur};
+
+/// Which way a mode goes round.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Direction {
+    /// With a positive spin: counter-clockwise.
+    Forward,
+    /// Clockwise.
+    Backward,
+    /// To and fro, as on mountings that differ along x and y.
+    Planar,
+}
+
+impl Direction {
+    /// The word for it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Forward => "forward",
+            Self::Backward => "backward",
+            Self::Planar => "planar",
+        }
+    }
+}
+
+/// A mode of the linear rotor: supports and rings included, magnets without command.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MachineMode {
+    /// Damped frequency \[rad/s\], ≥ 0.
+    pub frequency_rad_s: f64,
+    /// Rate of growth \[1/s\]; below zero it decays.
+    pub growth_s: f64,
+    /// −growth over the length of the eigenvalue, from −1 to 1; 0 for a rigid motion that nothing holds.
+    pub damping_ratio: f64,
+    /// By where the rotor moves most in the planes. Of two modes that are one mixture, as at standstill, one counts as each.
+    pub direction: Direction,
+}
+
+/// What the walls do.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Walls {
+    /// Nothing: the rotor is off them.
+    #[default]
+    Off,
+    /// Contact springs and dampers of all planes hold it, without friction and as if it never left.
+    Closed,
+}
+
+/// A spin at which the unbalance turns as fast as a mode.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CriticalSpeed {
+    /// Without damping \[rad/s\].
+    pub spin_rad_s: f64,
+    /// Which way the mode goes round there; an unbalance excites those that go forward.
+    pub direction: Direction,
+}
+
+/// A linear machine.
+#[derive(Debug, Clone)]
+pub struct LinearMachine {
+    body: LinearBody,
+    rate_rad_s: f64,
+}
+
+type C = Complex<f64>;
+
+/// Share of the larger amplitude by which forward and backward must differ to be told apart.
+const TOLD_APART: f64 = 1e-6;
+/// Rates within this share of each other are those of one mixture of modes.
+const ALIKE: f64 = 1e-6;
+
+impl LinearMachine {
+    /// Of a machine.
+    ///
+    /// # Errors
+    /// The first value that is out of range.
+    pub fn new(params: &MachineParams, walls: Walls) -> Result<Self, MachineError> {
+        let body = LinearBody::with_walls(params, walls == Walls::Closed)?;
+        let rate_rad_s = body.undamped_rate_rad_s().max(1.0);
+        Ok(Self { body, rate_rad_s })
+    }
+
+    /// Modes at a spin \[rad/s\], slowest first; a pair of eigenvalues counts once. The more modes bend, the longer it takes:
+    /// the third power of their number. `None` where the search for eigenvalues does not end, as with rates too far apart.
+    pub fn modes(&self, spin_rad_s: f64) -> Option<Vec<MachineMode>> {
+        let a = self.body.generator(self.rate_rad_s, spin_rad_s);
+        let values = eigenvalues(&a)?;
+        let complex = a.map(|x| C::new(x, 0.0));
+        let mut modes: Vec<MachineMode> = (values.iter())
+            // Of two that are conjugate the one that turns forward in time; real ones as they are.
+            .filter(|value| value.im >= 0.0)
+            .map(|value| MachineMode {
+                frequency_rad_s: value.im,
+                growth_s: value.re,
+                damping_ratio: match value.norm() {
+                    0.0 => 0.0,
+                    size => -value.re / size,
+                },
+                direction: match value.im {
+                    0.0 => Direction::Planar,
+                    _ => self.direction(&complex, *value),
+                },
+            })
+            .collect();
+        modes.sort_by(|a, b| a.frequency_rad_s.total_cmp(&b.frequency_rad_s));
+        part_mixtures(&mut modes, self.rate_rad_s);
+        Some(modes)
+    }
+
+    /// Critical speeds, slowest first: K·q = Ω²·(1 − jG)·q, of which a rotor that turns into a disc has no forward one. `None`
+    /// as of [`Self::modes`].
+    pub fn critical_speeds(&self) -> Option<Vec<CriticalSpeed>> {
+        let n = self.body.n;
+        // 1 − jG as a real matrix on real and imaginary parts, K likewise; Ω² = 1/μ − s for the eigenvalues μ of
+        // (K + s·B)⁻¹·B, which there are where B or K is singular, too.
+        let mut b = DMatrix::identity(2 * n, 2 * n);
+        for (row, column, g) in self.body.gyroscopic.entries() {
+            b[(row, n + column)] += g;
+            b[(n + row, column)] -= g;
+        }
+        let mut k = DMatrix::zeros(2 * n, 2 * n);
+        for (row, column, value) in self.body.stiffness.entries() {
+            k[(row, column)] += value;
+            k[(n + row, n + column)] += value;
+        }
+        let shift = self.rate_rad_s * self.rate_rad_s * SHIFT;
+        let inverse = (k + shift * &b).try_inverse()?;
+        let mut speeds: Vec<f64> = eigenvalues(&(inverse * b))?
+            .iter()
+            .filter(|mu| mu.re.abs() * shift > 1e-10 && mu.im.abs() <= ALIKE * mu.re.abs())
+            .map(|mu| 1.0 / mu.re - shift)
+            .filter(|square| *square > ALIKE * shift)
+            .map(f64::sqrt)
+            .collect();
+        speeds.sort_by(f64::total_cmp);
+        // Real and imaginary part of one vector count twice.
+        let mut speeds = speeds.into_iter().step_by(2).peekable();
+        let mut all = Vec::new();
+        while let Some(spin_rad_s) = speeds.next() {
+            let twice = speeds.next_if(|next| (next - spin_rad_s).abs() <= ALIKE * spin_rad_s);
+            let modes = self.modes(spin_rad_s)?;
+            let near = |mode: &MachineMode| {
+                // Damping moves the frequency; the undamped one is meant.
+                let undamped = mode.frequency_rad_s.hypot(mode.growth_s);
+                (undamped - spin_rad_s).abs()
+            };
+            let mut nearest: Vec<&MachineMode> = modes.iter().collect();
+            nearest.sort_by(|a, b| near(a).total_cmp(&near(b)));
+            let count = 1 + usize::from(twice.is_some());
+            all.extend(nearest.iter().take(count).map(|mode| CriticalSpeed {
+                spin_rad_s,
+                direction: mode.direction,
+            }));
+        }
+        Some(all)
+    }
+
+    /// Receptance at a frequency \[rad/s\] and a spin: motions x, y of plane after plane per force along x, y of plane after
+    /// plane \[m/N\], of the rotor against what it touches there; `None` where an undamped mode is hit.
+    pub fn receptance(&self, frequency_rad_s: f64, spin_rad_s: f64) -> Option<DMatrix<C>> {
+        let ports = &self.body.contacts;
+        let inverse = self
+            .dynamic_stiffness(frequency_rad_s, spin_rad_s)
+            .try_inverse()?;
+        let rows = DMatrix::from_fn(2 * ports.len(), self.body.n, |row, i| {
+            C::new(ports[row / 2].column(i)[row % 2], 0.0)
+        });
+        Some(&rows * inverse * rows.transpose())
+    }
+
+    /// Steady response to the unbalance at a spin \[rad/s\]: largest distance from the middle, of the rotor in each plane \[m\],
+    /// then at each probe; `None` where an undamped mode is hit.
+    pub fn unbalance_response_m(&self, spin_rad_s: f64) -> Option<Vec<f64>> {
+        let body = &self.body;
+        let ports = || body.at_planes.iter().chain(&body.probes);
+        let Some(unbalance) = &body.unbalance else {
+            return Some(ports().map(|_| 0.0).collect());
+        };
+        // Ω²·(U_x·cos σ + U_y·sin σ) = Re(Ω²·(U_x − j·U_y)·e^jΩt).
+        let force = DVector::from_fn(body.n, |i, _| {
+            let along = unbalance.column(i);
+            C::new(along.x, -along.y) * (spin_rad_s * spin_rad_s)
+        });
+        let motion = self
+            .dynamic_stiffness(spin_rad_s, spin_rad_s)
+            .lu()
+            .solve(&force)?;
+        Some(
+            ports()
+                .map(|port| largest(port, motion.as_slice()))
+                .collect(),
+        )
+    }
+
+    fn dynamic_stiffness(&self, frequency_rad_s: f64, spin_rad_s: f64) -> DMatrix<C> {
+        let (body, omega) = (&self.body, frequency_rad_s);
+        let mut a = DMatrix::from_diagonal_element(body.n, body.n, C::new(-omega * omega, 0.0));
+        for (row, column, k) in body.stiffness.entries() {
+            a[(row, column)] += C::new(k, 0.0);
+        }
+        for (row, column, d) in body.damping.entries() {
+            a[(row, column)] += C::new(0.0, omega * d);
+        }
+        for (row, column, g) in body.gyroscopic.entries() {
+            a[(row, column)] += C::new(0.0, omega * spin_rad_s * g);
+        }
+        a
+    }
+
+    /// Mobility of the rotor between its planes \[1/kg\], row by row: velocity of one by an impulse on another, eq. (6.4). One
+    /// over a number of the diagonal is the mass that a plane feels at an impact.
+    pub fn mobility(&self) -> Vec<Vec<f64>> {
+        let ports = &self.body.at_planes;
+        ports
+            .iter()
+            .map(|a| ports.iter().map(|b| a.mobility_with(b)).collect())
+            .collect()
+    }
+
+    /// Which way the eigenvector goes round, from inverse iteration.
+    fn direction(&self, a: &DMatrix<C>, value: C) -> Direction {
+        let (n, rate) = (self.body.n, self.rate_rad_s);
+        let near = value + C::new(1e-9, 1e-9) * rate;
+        let shifted = a - DMatrix::from_diagonal_element(2 * n, 2 * n, near);
+        // No mode is orthogonal to this by construction.
+        let mut vector = DVector::from_fn(2 * n, |i, _| {
+            C::new(1.0 + 0.37 * (i as f64).sin(), 0.41 * (i as f64).cos())
+        });
+        let factors = shifted.lu();
+        for _ in 0..3 {
+            let Some(next) = factors.solve(&vector) else {
+                return Direction::Planar;
+            };
+            let size = next.norm();
+            vector = next / C::new(size, 0.0);
+        }
+        let ports = self.body.at_planes.iter().chain(&self.body.contacts);
+        let (mut forward, mut backward) = (0.0, 0.0);
+        for port in ports {
+            let [ahead, back] = senses(port, &vector.as_slice()[..n]);
+            forward = f64::max(forward, ahead);
+            backward = f64::max(backward, back);
+        }
+        match (forward - backward) / forward.max(backward) {
+            d if d > TOLD_APART => Direction::Forward,
+            d if d < -TOLD_APART => Direction::Backward,
+            _ => Direction::Planar,
+        }
+    }
+}
+
+/// Eigenvalues by Schur's form, as exact as its iteration ends; `None` where it does not.
+fn eigenvalues(a: &DMatrix<f64>) -> Option<DVector<C>> {
+    const SWEEPS: usize = 30;
+    let most = SWEEPS * a.nrows();
+    let schur = [f64::EPSILON, 1e-14, 1e-12]
+        .into_iter()
+        .find_map(|eps| Schur::try_new(a.clone(), eps, most))?;
+    Some(schur.complex_eigenvalues())
+}
+
+/// Where the pencil of the critical speeds is shifted to, of the largest square of a rate.
+const SHIFT: f64 = 1e-8;
+
+/// Amplitudes of the parts that go forward and backward, x = Re(X·e^jωt) and y likewise: |X + jY|/2 and |X − jY|/2.
+fn senses(port: &Port, motion: &[C]) -> [f64; 2] {
+    let part = |of: fn(&C) -> f64| motion.iter().map(of).collect::<Vec<f64>>();
+    let (re, im) = (port.of(&part(|z| z.re)), port.of(&part(|z| z.im)));
+    let x = C::new(re.x, im.x);
+    let turned = C::new(-im.y, re.y);
+    [0.5 * (x + turned).norm(), 0.5 * (x - turned).norm()]
+}
+
+/// The larger half axis of the ellipse that a place runs through.
+fn largest(port: &Port, motion: &[C]) -> f64 {
+    senses(port, motion).iter().sum()
+}
+
+/// Of two modes that are alike any mixture is one as well: one counts as forward, one as backward.
+fn part_mixtures(modes: &mut [MachineMode], rate_rad_s: f64) {
+    let mut i = 0;
+    while i + 1 < modes.len() {
+        let (a, b) = (modes[i], modes[i + 1]);
+        let apart = (a.frequency_rad_s - b.frequency_rad_s).hypot(a.growth_s - b.growth_s);
+        let alike =
+            a.frequency_rad_s > 0.0 && apart <= ALIKE * a.frequency_rad_s.max(ALIKE * rate_rad_s);
+        if alike {
+            modes[i].direction = Direction::Backward;
+            modes[i + 1].direction = Direction::Forward;
+            i += 1;
+        }
+        i += 1;
+    }
+}

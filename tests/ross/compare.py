@@ -1,0 +1,132 @@
+"""Three rotors of ROSS in both programs: natural frequencies over the spin to 0.1 %, unbalance response to 0.5 %.
+
+    python compare.py PATH_TO_firmware-host
+
+Ends with 1 where a number is farther off. Rotors are taken as `to_scene` takes them over, in ROSS too: bearings with their
+direct coefficients, seals without cross coupling, and shaft elements cut into some sixty in all, for ROSS's elements converge
+with the square of their length.
+"""
+
+import json
+import math
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import numpy as np
+import ross as rs
+
+from to_scene import to_scene
+
+FREQUENCIES, RESPONSE = 1e-3, 5e-3
+MODES = 6
+
+
+def plain(rotor, cut):
+    """The rotor with finer elements and direct bearing coefficients only."""
+    shaft = []
+    for e in sorted(rotor.shaft_elements, key=lambda e: e.n):
+        for _ in range(cut):
+            shaft.append(
+                rs.ShaftElement(
+                    L=e.L / cut,
+                    idl=0.5 * (e.idl + e.idr),
+                    odl=0.5 * (e.odl + e.odr),
+                    material=e.material,
+                    shear_effects=True,
+                    rotary_inertia=True,
+                    gyroscopic=True,
+                )
+            )
+    discs = [rs.DiskElement(n=cut * d.n, m=d.m, Id=d.Id, Ip=d.Ip) for d in rotor.disk_elements]
+    bearings = [
+        rs.BearingElement(
+            n=cut * b.n,
+            kxx=float(b.kxx[0]),
+            kyy=float(b.kyy[0]),
+            cxx=float(b.cxx[0]),
+            cyy=float(b.cyy[0]),
+        )
+        for b in rotor.bearing_elements
+    ]
+    return rs.Rotor(shaft, discs, bearings)
+
+
+def rosss(rotor, spin):
+    """Lateral natural frequencies that swing [Hz], slowest first."""
+    modal = rotor.run_modal(speed=spin, num_modes=60, sparse=False)
+    values = modal.evalues
+    lateral = []
+    for i, value in enumerate(values):
+        if value.imag <= 1.0:
+            continue
+        # Degrees of freedom of a node: x, y, z, α, β, θ. Axial and torsional modes move z and θ alone.
+        shape = np.abs(modal.evectors[: rotor.ndof, i])
+        per = rotor.number_dof
+        if per == 6 and max(shape[0::per].max(), shape[1::per].max()) < 1e-3 * shape.max():
+            continue
+        lateral.append(value.imag / (2 * math.pi))
+    return sorted(lateral)
+
+
+def response(rotor, node, moment, spins):
+    """Largest distance from the middle at each node and spin [m]."""
+    found = rotor.run_unbalance_response(
+        node=node, unbalance_magnitude=moment, unbalance_phase=0.0, frequency=np.array(spins)
+    )
+    per = rotor.number_dof
+    x, y = found.forced_resp[0::per], found.forced_resp[1::per]
+    return 0.5 * (np.abs(x + 1j * y) + np.abs(x - 1j * y))
+
+
+def ours(host, scene, to_hz, points):
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "scene.toml"
+        path.write_text(scene)
+        run = [host, "modes", path, "--json", "--to-hz", str(to_hz), "--points", str(points)]
+        return json.loads(subprocess.run(run, check=True, capture_output=True).stdout)
+
+
+def main():
+    host = sys.argv[1]
+    rotors = {
+        "rotor_example": rs.rotor_example(),
+        "rotor_example_with_damping": rs.rotor_example_with_damping(),
+        "rotor_amb_example": rs.rotor_amb_example(),
+    }
+    failed = False
+    for name, given in rotors.items():
+        cut = max(1, round(60 / len(given.shaft_elements)))
+        rotor = plain(given, cut)
+        disc = given.disk_elements[0]
+        moment = 1e-4
+        scene = to_scene(given, name)
+        scene += f"[[unbalance]]\nposition_m = {float(given.nodes_pos[disc.n])!r}\nmoment_kg_m = {moment}\n"
+        points, to_hz = 5, 200.0
+        found = ours(host, scene, to_hz, points)
+        spins = sorted({m["spin_rad_s"] for m in found["modes"]})
+        worst = 0.0
+        for spin in spins:
+            mine = [m["frequency_hz"] for m in found["modes"] if m["spin_rad_s"] == spin][:MODES]
+            theirs = rosss(rotor, spin)[:MODES]
+            off = max(abs(a / b - 1) for a, b in zip(mine, theirs))
+            worst = max(worst, off)
+            if off > FREQUENCIES:
+                print(name, f"{spin:.0f} rad/s", mine, theirs)
+        bearings = [b for b in given.bearing_elements if type(b).__name__ == "BearingElement"][:4]
+        # At standstill there is none.
+        at = [s for s in found["unbalance_response"] if s["spin_rad_s"] > 0]
+        theirs = response(rotor, cut * disc.n, moment, [s["spin_rad_s"] for s in at])
+        farthest = 0.0
+        for j, s in enumerate(at):
+            for bearing, mine in zip(bearings, s["planes_m"]):
+                farthest = max(farthest, abs(mine / theirs[cut * bearing.n, j] - 1))
+        print(f"{name}: {len(given.shaft_elements)} elements, {MODES} modes at {len(spins)} spins off by {worst:.1e}, "
+              f"unbalance response off by {farthest:.1e}")
+        failed |= worst > FREQUENCIES or farthest > RESPONSE
+    sys.exit(failed)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,87 @@
+"""Writes a rotor of ROSS (https://github.com/petrobras/ross) as a scene: shaft, discs, and bearings as supports.
+
+    python to_scene.py > scene.toml          # ROSS's own example
+    from to_scene import to_scene            # of any ross.Rotor
+
+Taken over: shaft elements (cylindrical; of a cone the mean diameters), their material, discs, and of bearings and seals the
+direct stiffness and damping along x and y at the lowest speed that they are given for. Left out: cross-coupled coefficients,
+bearing masses, links to other nodes. Bearing planes with a retainer bearing are the user's to add; one is written at each
+bearing with numbers to be replaced.
+"""
+
+import sys
+
+
+def to_scene(rotor, title="A rotor of ROSS", bending_to_hz=2e4, spin_hz=50.0):
+    """TOML text of a scene with this rotor."""
+    out = [
+        f'title = "{title}"',
+        "[run]",
+        "duration_s = 0.1",
+        "sample_rate_hz = 20000",
+        'policies = ["passive"]',
+        "[rotor]",
+        f"bending_to_hz = {bending_to_hz!r}",
+        "elements = 1",
+        "[spin]",
+        f"frequency_hz = {spin_hz!r}",
+        "[contact]",
+        "clearance_m = 2e-4",
+        "stiffness_n_m = 1e8",
+        "[friction]",
+        "coefficient = 0.15",
+        "[verdict]",
+        "whirl_speed_m_s = 1.0",
+    ]
+    for layer in layers(rotor):
+        out.append("[[shaft]]")
+        out += [f"{key} = {value!r}" for key, value in layer.items()]
+    places = [float(z) for z in rotor.nodes_pos]
+    for disc in rotor.disk_elements:
+        out += [
+            "[[disc]]",
+            f"position_m = {places[disc.n]!r}",
+            f"mass_kg = {float(disc.m)!r}",
+            f"transverse_inertia_kg_m2 = {float(disc.Id)!r}",
+            f"polar_inertia_kg_m2 = {float(disc.Ip)!r}",
+        ]
+    for bearing in rotor.bearing_elements:
+        direct = [float(c[0]) for c in (bearing.kxx, bearing.kyy, bearing.cxx, bearing.cyy)]
+        out += [
+            "[[support]]",
+            f"position_m = {places[bearing.n]!r}",
+            f"stiffness_n_m = {direct[:2]!r}",
+            f"damping_n_s_m = {direct[2:]!r}",
+        ]
+    ends = [b for b in rotor.bearing_elements if type(b).__name__ == "BearingElement"][:4]
+    for i, bearing in enumerate(ends):
+        out += [
+            "[[plane]]",
+            f'name = "bearing {i + 1}"',
+            f"position_m = {places[bearing.n]!r}",
+            "contact_radius_m = 0.05",
+        ]
+    return "\n".join(out) + "\n"
+
+
+def layers(rotor):
+    """Shaft elements from left to right; several at one place are refused."""
+    last = -1
+    for element in sorted(rotor.shaft_elements, key=lambda e: e.n):
+        if element.n == last:
+            raise ValueError(f"two shaft elements at node {element.n}: a scene has one")
+        last = element.n
+        yield {
+            "length_m": float(element.L),
+            "outer_diameter_m": 0.5 * float(element.odl + element.odr),
+            "inner_diameter_m": 0.5 * float(element.idl + element.idr),
+            "density_kg_m3": float(element.material.rho),
+            "youngs_modulus_n_m2": float(element.material.E),
+            "poisson_ratio": float(element.material.Poisson),
+        }
+
+
+if __name__ == "__main__":
+    import ross
+
+    sys.stdout.write(to_scene(ross.rotor_example(), "ROSS's example"))

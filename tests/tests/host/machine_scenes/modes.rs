@@ -1,0 +1,195 @@
+//! Modes of scenes, and rotors that are described by their shaft.
+
+use super::{TWO_PLANES, machine};
+use firmware_bench::scene::machine::MachineScene;
+use serde_json::Value;
+use std::fs;
+use std::process::Output;
+use system_tests::{host, machine_scene_path, scene_path};
+use tempfile::TempDir;
+
+fn modes(args: &[&str]) -> Output {
+    host()
+        .arg("modes")
+        .args(args)
+        .output()
+        .expect("the host starts")
+}
+
+fn json(args: &[&str]) -> Value {
+    let output = modes(&[args, &["--json"]].concat());
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{errors}");
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+/// Two springs under a rigid rotor: translation at √(2k/m) both ways, the tilt apart by the spin.
+#[test]
+fn a_scene_has_the_modes_of_its_rotor() {
+    let folder = TempDir::new().unwrap();
+    let path = folder.path().join("scene.toml");
+    let springs = [-0.2, 0.2]
+        .map(|z| format!("[[support]]\nposition_m = {z}\nstiffness_n_m = 1e6\n"))
+        .concat();
+    let text = TWO_PLANES.replace("polar_inertia_kg_m2 = 0.0", "polar_inertia_kg_m2 = 0.5");
+    fs::write(
+        &path,
+        text + &springs + "[[unbalance]]\nposition_m = 0.0\nmoment_kg_m = 1e-5\n",
+    )
+    .unwrap();
+    let found = json(&[path.to_str().unwrap(), "--to-hz", "100", "--points", "2"]);
+    let tau = std::f64::consts::TAU;
+    let at = |spin: f64, whirl: &str| {
+        let modes = found["modes"].as_array().unwrap().iter();
+        let near = |m: &&Value| (m["spin_rad_s"].as_f64().unwrap() - spin).abs() < 1e-9;
+        let mut rates: Vec<f64> = modes
+            .filter(near)
+            .filter(|m| m["whirl"] == whirl)
+            .map(|m| tau * m["frequency_hz"].as_f64().unwrap())
+            .collect();
+        rates.sort_by(f64::total_cmp);
+        rates
+    };
+    let (spin, translation) = (100.0 * tau, (2e6_f64 / 10.0).sqrt());
+    let half = 0.5 * spin * 0.5 / 0.6;
+    let root = (half * half + 2e6 * 0.04 / 0.6).sqrt();
+    for (whirl, tilt) in [("forward", root + half), ("backward", root - half)] {
+        let mut expected = [translation, tilt];
+        expected.sort_by(f64::total_cmp);
+        let found = at(spin, whirl);
+        assert_eq!(found.len(), 2, "{found:?}");
+        for (a, b) in found.iter().zip(expected) {
+            assert!(
+                (a / b - 1.0).abs() < 1e-9,
+                "{whirl}: {found:?}, {expected:?}"
+            );
+        }
+    }
+    for (a, b) in at(0.0, "forward").iter().zip(at(0.0, "backward")) {
+        assert!((a / b - 1.0).abs() < 1e-9);
+    }
+    assert_eq!(at(0.0, "forward").len(), 2);
+    // U·Ω²/|k − m·Ω²| in every plane: it does not tilt.
+    let response = &found["unbalance_response"][1]["planes_m"];
+    let expected = 1e-5 * spin * spin / (2e6 - 10.0 * spin * spin).abs();
+    for plane in response.as_array().unwrap() {
+        assert!((plane.as_f64().unwrap() / expected - 1.0).abs() < 1e-9);
+    }
+    let mass = found["effective_mass_kg"][0].as_f64().unwrap();
+    assert!((mass - 6.0).abs() < 1e-9);
+}
+
+#[test]
+fn the_command_says_what_it_cannot_do() {
+    let drop = machine_scene_path("drop_of_both_ends");
+    let drop = drop.to_str().unwrap();
+    let one = scene_path("impact_at_40_hz");
+    for (args, says) in [
+        (&[one.to_str().unwrap()][..], "point mass in one plane"),
+        (&[drop, "--to-hz", "0"], "--to-hz is 0"),
+        (&[drop, "--points", "1"], "--points is 1"),
+    ] {
+        let output = modes(args);
+        let errors = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{errors}");
+        assert!(errors.contains(says), "{errors}");
+    }
+    let folder = TempDir::new().unwrap();
+    let page = folder.path().join("page.html");
+    let flexible = machine_scene_path("overload_of_a_flexible_rotor");
+    let output = modes(&[
+        flexible.to_str().unwrap(),
+        "--levitated",
+        "--html",
+        page.to_str().unwrap(),
+    ]);
+    assert!(output.status.success());
+    let table = String::from_utf8(output.stdout).unwrap();
+    for words in ["critical speed [Hz]", "forward", "coupling end struck"] {
+        assert!(table.contains(words), "{table}");
+    }
+    let page = fs::read_to_string(page).unwrap();
+    assert!(page.contains("Campbell diagram") && page.matches("<svg").count() == 2);
+}
+
+/// A uniform shaft between two planes.
+const SHAFT: &str = "[[shaft]]\nlength_m = 0.5\nouter_diameter_m = 0.06\n[[shaft]]\nlength_m = 0.5\nouter_diameter_m = 0.06\n";
+
+fn shaft() -> String {
+    TWO_PLANES
+        .replace(
+            "mass_kg = 10.0\ntransverse_inertia_kg_m2 = 0.6\npolar_inertia_kg_m2 = 0.0\n",
+            "bending_to_hz = 1000.0\n",
+        )
+        .replace("position_m = -0.2", "position_m = 0.1")
+        .replace("position_m = 0.3\n", "position_m = 1.0\n")
+        + SHAFT
+}
+
+#[test]
+fn a_shaft_is_the_rotor_that_it_weighs() {
+    let scene = machine(&shaft());
+    let rotor = &scene.machine.rotor;
+    let mass = 7850.0 * std::f64::consts::PI * 0.03 * 0.03;
+    assert!((rotor.rigid().mass_kg / mass - 1.0).abs() < 1e-12);
+    assert_eq!(rotor.bending().len(), 2);
+    // From the left end in the file, from the centre of mass in the machine.
+    let places: Vec<f64> = scene.machine.planes.iter().map(|p| p.position_m).collect();
+    assert!(
+        (places[0] + 0.4).abs() < 1e-12 && (places[1] - 0.5).abs() < 1e-12,
+        "{places:?}"
+    );
+    // What the other modes give way makes the contact softer.
+    for plane in &scene.machine.planes {
+        let stiffness = plane.contact.law.linear().unwrap().stiffness_n_m;
+        assert!(stiffness > 0.5e8 && stiffness < 0.99e8, "{stiffness:e}");
+    }
+    let rigid = machine(&shaft().replace("bending_to_hz = 1000.0", "bending_to_hz = 0.0"));
+    assert!(rigid.machine.rotor.bending().is_empty());
+    let start = |scene: &MachineScene| scene.start;
+    assert_eq!(start(&rigid), start(&scene));
+}
+
+#[test]
+fn what_is_no_shaft_is_refused_with_its_key() {
+    for (from, to, key, says) in [
+        (
+            "bending_to_hz",
+            "mass_kg = 3.0\nbending_to_hz",
+            "rotor.mass_kg",
+            "follows from [[shaft]]",
+        ),
+        (
+            "outer_diameter_m = 0.06",
+            "outer_diameter_m = 0.06\ninner_diameter_m = 0.07",
+            "shaft[0].inner_diameter_m",
+            "less than the outer",
+        ),
+        (
+            "position_m = 1.0\n",
+            "position_m = 1.1\n",
+            "plane[1].position_m",
+            "a place on the shaft",
+        ),
+        (
+            "[[shaft]]",
+            "[[disc]]\nposition_m = 2.0\nmass_kg = 1.0\n[[shaft]]",
+            "disc[0].position_m",
+            "a place on the shaft",
+        ),
+    ] {
+        let text = shaft().replacen(from, to, 1);
+        let error = MachineScene::parse("scene.toml", &text)
+            .unwrap_err()
+            .to_string();
+        assert!(error.contains(key) && error.contains(says), "{error}");
+    }
+    let without = shaft().replace(SHAFT, "");
+    let error = MachineScene::parse("scene.toml", &without)
+        .unwrap_err()
+        .to_string();
+    assert!(
+        error.contains("rotor.bending_to_hz: is of a shaft"),
+        "{error}"
+    );
+}
