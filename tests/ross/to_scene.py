@@ -53,7 +53,7 @@ def to_scene(rotor, title="A rotor of ROSS", bending_to_hz=2e4, spin_hz=50.0):
             f"stiffness_n_m = {direct[:2]!r}",
             f"damping_n_s_m = {direct[2:]!r}",
         ]
-    ends = [b for b in rotor.bearing_elements if type(b).__name__ == "BearingElement"][:4]
+    ends = [b for b in rotor.bearing_elements if type(b).__name__.endswith("BearingElement")][:4]
     for i, bearing in enumerate(ends):
         out += [
             "[[plane]]",

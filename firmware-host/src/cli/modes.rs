@@ -10,7 +10,7 @@ use std::path::PathBuf;
 /// Arguments of `modes`.
 #[derive(Debug, Clone, clap::Args)]
 pub struct ModesArgs {
-    /// Scene file with [[plane]], e.g. firmware-host/scenes/machines/drop_of_both_ends.toml.
+    /// Scene file of a whole rotor, e.g. firmware-host/scenes/machines/drop_of_both_ends.toml.
     pub scene: PathBuf,
     /// Highest spin in Hz [default: one and a half times that of the scene, 100 Hz at least].
     #[arg(long)]

@@ -1,0 +1,258 @@
+//! The loop itself: sample, compute, hold.
+
+use super::station::Station;
+use super::{PlaneEnded, RunError, TRUSTED, TRUSTED_TOLERANCES, Task};
+use crate::device::loads::{Loads, cuts};
+use crate::device::modal_levitation::{ModalLevitation, any_holds};
+use crate::run::controller::Seen;
+use crate::run::figures::{Ended, Figures};
+use crate::run::rig::Rig;
+use crate::run::trace::{AxisRow, Recorder};
+use crate::scene::Scene;
+use plant_model::{PlantError, Snapshot, V2};
+
+/// A rig with its stations, sample by sample.
+pub(super) struct Bench<'a> {
+    /// What holds for all planes.
+    scene: &'a Scene,
+    rig: Box<dyn Rig + 'a>,
+    stations: Vec<Station<'a>>,
+    /// Who levitates the rotor as a whole.
+    pub(super) levitation: Option<ModalLevitation>,
+    pub(super) axis: Option<&'a mut dyn Recorder<AxisRow>>,
+    /// What acts at each place for loads.
+    loads: Vec<Loads>,
+    edges_s: Vec<f64>,
+    /// The next of them.
+    edge_s: f64,
+    /// Whether nothing varies up to there.
+    steady: bool,
+    /// Changes that lie behind.
+    changes_done: usize,
+    // Buffers: planes at a sample, what is seen and commanded there, forces that are held, changes of mode within an advance.
+    now: Vec<Snapshot>,
+    seen: Vec<Seen>,
+    levitation_n: Vec<V2>,
+    commands_n: [Vec<V2>; 2],
+    loads_n: [Vec<V2>; 2],
+    changes: Vec<(usize, Snapshot)>,
+    axis_row: AxisRow,
+}
+
+impl<'a> Bench<'a> {
+    pub(super) fn new(
+        scene: &'a Scene,
+        rig: Box<dyn Rig + 'a>,
+        stations: Vec<Station<'a>>,
+        (loads, edges_s): (Vec<Loads>, Vec<f64>),
+    ) -> Self {
+        let (planes, places) = (stations.len(), loads.len());
+        Self {
+            scene,
+            rig,
+            stations,
+            levitation: None,
+            axis: None,
+            loads,
+            edges_s,
+            edge_s: f64::NEG_INFINITY,
+            steady: true,
+            changes_done: 0,
+            now: Vec::with_capacity(planes),
+            seen: Vec::with_capacity(planes),
+            levitation_n: vec![V2::zeros(); planes],
+            commands_n: [vec![V2::zeros(); planes], vec![V2::zeros(); planes]],
+            loads_n: [vec![V2::zeros(); places], vec![V2::zeros(); places]],
+            changes: Vec::new(),
+            axis_row: AxisRow::default(),
+        }
+    }
+
+    /// To the end of the scene.
+    pub(super) fn ride(
+        mut self,
+        task: Task,
+        on_tick: &mut dyn FnMut(u64),
+    ) -> Result<Vec<PlaneEnded>, RunError> {
+        const REPORT_EVERY: u64 = 1024;
+        let ticks = self.scene.samples().count();
+        for tick in 0..ticks {
+            self.tick(tick, task)?;
+            if (tick + 1) % REPORT_EVERY == 0 {
+                on_tick(REPORT_EVERY);
+            }
+            if task.to_decision && self.decided() {
+                break;
+            }
+        }
+        on_tick(ticks % REPORT_EVERY);
+        self.rig.read(&mut self.now);
+        let mut ended = Vec::with_capacity(self.stations.len());
+        for (plane, (station, last)) in self.stations.iter_mut().zip(&self.now).enumerate() {
+            station.judge.sample(last);
+            station.measured_m = station.scene.from_magnets_m(last.position_m);
+            station.record(last, false);
+            let run = Ended::new(station.scene, &station.judge, &*self.rig, (plane, last));
+            ended.push((
+                Figures::new(&run),
+                (station.recorder.as_ref()).and_then(|_| station.controller.read_out()),
+            ));
+        }
+        self.record_axis();
+        let residual = self.rig.audit().residual();
+        let limit = (TRUSTED_TOLERANCES * self.scene.rtol).clamp(TRUSTED.0, TRUSTED.1);
+        if residual.is_nan() || residual > limit {
+            return Err(RunError::Energy {
+                policy: task.policy,
+                residual,
+                limit,
+            });
+        }
+        Ok(ended)
+    }
+
+    /// Whether nothing can change any more of whether the rotor has recovered.
+    fn decided(&self) -> bool {
+        let stations = self.stations.iter().enumerate();
+        let mut decided = stations.map(|(plane, s)| s.judge.decided(&self.rig.meters(plane)));
+        decided.all(|decided| decided)
+    }
+
+    fn tick(&mut self, tick: u64, task: Task) -> Result<(), RunError> {
+        let period = 1.0 / self.scene.sample_rate_hz;
+        let (t, t_next) = (tick as f64 * period, (tick + 1) as f64 * period);
+        self.rig.read(&mut self.now);
+        self.seen.clear();
+        for (plane, (station, now)) in self.stations.iter_mut().zip(&self.now).enumerate() {
+            station.amplifier.begin(tick);
+            let sensed_m = self.rig.sensed_m(plane, now);
+            self.seen.push(station.see(t, sensed_m, now));
+        }
+        self.levitate();
+        for (i, station) in self.stations.iter_mut().enumerate() {
+            station.answer(tick, &self.seen[i], &self.now[i]);
+        }
+        self.record_axis();
+
+        let mut from = t;
+        while from < t_next {
+            if from >= self.edge_s {
+                self.pass_edges(from)?;
+            }
+            let to = self.edge_s.min(t_next);
+            let parts = self.parts(from, to);
+            let advanced = match parts {
+                None => self.advance_steadily(from, to),
+                Some(parts) => self.advance_by_parts((from, to), parts * task.rigour.parts),
+            };
+            advanced.map_err(|reason| RunError::Plant {
+                policy: task.policy,
+                reason,
+            })?;
+            from = to;
+        }
+        Ok(())
+    }
+
+    /// The levitation controller of the whole rotor, where there is one.
+    fn levitate(&mut self) {
+        let Some(levitation) = &mut self.levitation else {
+            return;
+        };
+        let hold = any_holds(self.stations.iter().map(|s| s.controller.hint()));
+        let readings = self.seen.iter().map(|seen| seen.reading.position_m);
+        let spin_rad_s = self.seen.first().map_or(0.0, |seen| seen.spin_rad_s);
+        levitation.forces_n(readings, spin_rad_s, hold, &mut self.levitation_n);
+        for (seen, force_n) in self.seen.iter_mut().zip(&self.levitation_n) {
+            seen.levitation_n = *force_n;
+        }
+    }
+
+    /// Parts over whose halves what varies is to be held; `None` where nothing does.
+    fn parts(&self, from_s: f64, to_s: f64) -> Option<u32> {
+        let loads = match self.steady {
+            true => None,
+            false => self
+                .loads
+                .iter()
+                .filter_map(|l| l.parts(from_s, to_s))
+                .max(),
+        };
+        let ramps = self
+            .stations
+            .iter()
+            .filter_map(|s| s.amplifier.parts(from_s));
+        loads.max(ramps.max())
+    }
+
+    /// Makes the changes that are due, and looks at what acts up to the next edge.
+    fn pass_edges(&mut self, t_s: f64) -> Result<(), RunError> {
+        let next = self.edges_s.iter().find(|edge| **edge > t_s);
+        self.edge_s = next.copied().unwrap_or(f64::INFINITY);
+        self.steady = self.loads.iter().all(|l| l.parts(t_s, t_s).is_none());
+        for (load, held_n) in self.loads.iter().zip(&mut self.loads_n[0]) {
+            [*held_n, _] = load.halves_n(t_s, t_s);
+        }
+        while let Some(due) = self.scene.changes.get(self.changes_done)
+            && due.at_s <= t_s
+        {
+            self.rig.change(&due.change)?;
+            self.changes_done += 1;
+        }
+        Ok(())
+    }
+
+    fn advance_steadily(&mut self, from_s: f64, to_s: f64) -> Result<(), PlantError> {
+        self.deliver(from_s, to_s);
+        self.advance(to_s, 0, 0)
+    }
+
+    fn advance_by_parts(&mut self, stretch_s: (f64, f64), parts: u32) -> Result<(), PlantError> {
+        for [begin, middle, end] in cuts(stretch_s, parts) {
+            self.deliver(begin, end);
+            let second = match self.steady {
+                true => 0,
+                false => {
+                    self.hold_loads(begin, end);
+                    1
+                }
+            };
+            self.advance(middle, 0, 0)?;
+            self.advance(end, 1, second)?;
+        }
+        Ok(())
+    }
+
+    /// What the amplifiers deliver over the halves of a stretch.
+    fn deliver(&mut self, from_s: f64, to_s: f64) {
+        for (i, station) in self.stations.iter_mut().enumerate() {
+            let halves_n = station.amplifier.deliver(from_s, to_s);
+            [self.commands_n[0][i], self.commands_n[1][i]] = halves_n;
+        }
+    }
+
+    fn hold_loads(&mut self, from_s: f64, to_s: f64) {
+        for (i, load) in self.loads.iter().enumerate() {
+            [self.loads_n[0][i], self.loads_n[1][i]] = load.halves_n(from_s, to_s);
+        }
+    }
+
+    /// With what was laid down for one of two halves.
+    fn advance(&mut self, to_s: f64, commands: usize, loads: usize) -> Result<(), PlantError> {
+        let (commands_n, loads_n) = (&self.commands_n[commands], &self.loads_n[loads]);
+        (self.rig).advance(to_s, commands_n, loads_n, &mut self.changes)?;
+        for (plane, snapshot) in self.changes.drain(..) {
+            let station = &mut self.stations[plane];
+            station.judge.change(&snapshot);
+            station.record(&snapshot, true);
+        }
+        Ok(())
+    }
+
+    fn record_axis(&mut self) {
+        if let Some(recorder) = &mut self.axis {
+            self.rig.read_axis(&mut self.axis_row);
+            recorder.row(&self.axis_row);
+        }
+    }
+}

@@ -1,0 +1,105 @@
+//! A bearing plane in the loop.
+
+use crate::device::actuator::Amplifier;
+use crate::device::sensor::Sensor;
+use crate::device::sensor_fault::seen_until_s;
+use crate::run::controller::{Controller, Force, Seen};
+use crate::run::judge::Judge;
+use crate::run::trace::{Recorder, Said, TraceRow};
+use crate::scene::Scene;
+use plant_model::{Snapshot, V2};
+use supervisor::{Events, Status};
+
+/// A bearing plane: what stands there, who drives its magnet, who watches.
+pub(super) struct Station<'a> {
+    pub(super) scene: &'a Scene,
+    sensor: Sensor,
+    pub(super) controller: Box<dyn Controller>,
+    pub(super) amplifier: Amplifier,
+    pub(super) judge: Judge,
+    pub(super) recorder: Option<&'a mut dyn Recorder>,
+    /// The last reading of the position \[m\].
+    pub(super) measured_m: V2,
+    /// What the supervisor said to the last sample.
+    said: Option<Said>,
+}
+
+impl<'a> Station<'a> {
+    pub(super) fn new(
+        scene: &'a Scene,
+        controller: Box<dyn Controller>,
+        recorder: Option<&'a mut dyn Recorder>,
+    ) -> Self {
+        let period_s = 1.0 / scene.sample_rate_hz;
+        let force_max_n = scene.plant.magnet.map_or(0.0, |m| m.force_max_n);
+        Self {
+            scene,
+            sensor: Sensor::new(scene.sensor, &scene.faults, period_s, scene.seed),
+            controller,
+            amplifier: Amplifier::new(scene.amplifier, force_max_n, &scene.outages),
+            judge: Judge::new(scene),
+            recorder,
+            measured_m: V2::zeros(),
+            said: None,
+        }
+    }
+
+    /// What firmware knows at a tick.
+    pub(super) fn see(&mut self, t_s: f64, sensed_m: V2, now: &Snapshot) -> Seen {
+        let reading = (self.sensor).read(t_s, sensed_m, now.spin_rad_s);
+        self.measured_m = reading.position_m;
+        Seen {
+            reading,
+            spin_rad_s: self.scene.spin_sensor.gain * now.spin_rad_s,
+            applied_n: if self.scene.amplifier.force_measured {
+                // What is fed forward the supervisor does not know of: with the weight it is nothing.
+                now.delivered_n - self.scene.feed_forward_n
+            } else {
+                V2::zeros()
+            },
+            status: self.status(seen_until_s(t_s, 1.0 / self.scene.sample_rate_hz)),
+            levitation_n: V2::zeros(),
+        }
+    }
+
+    pub(super) fn answer(&mut self, tick: u64, seen: &Seen, now: &Snapshot) {
+        let with_weight = |force_n: V2| force_n + self.scene.feed_forward_n;
+        match self.controller.command(seen, now) {
+            Force::Computed(force_n) => self.amplifier.command(tick, with_weight(force_n)),
+            Force::AtOnce(force_n) => self.amplifier.command_at_once(with_weight(force_n)),
+        }
+        self.judge.sample(now);
+        self.said = self.controller.said();
+        self.record(now, false);
+        // What happened at this sample is not to be read a second time.
+        if let Some(said) = &mut self.said {
+            said.events = Events::empty();
+        }
+    }
+
+    /// What the firmware knows to be valid and ready at a time.
+    fn status(&self, t_s: f64) -> Status {
+        let mut status = Status::empty();
+        status.set(Status::SPIN_VALID, self.scene.spin_sensor.valid);
+        let measured = self.scene.amplifier.force_measured;
+        status.set(Status::APPLIED_VALID, measured);
+        let [x_off, y_off] = self.amplifier.known_off(t_s);
+        status.set(Status::BEARING_ON, !(x_off && y_off));
+        status.set(Status::AXIS_X_LOST, x_off);
+        status.set(Status::AXIS_Y_LOST, y_off);
+        status
+    }
+
+    pub(super) fn record(&mut self, plant: &Snapshot, mode_change: bool) {
+        let Some(recorder) = &mut self.recorder else {
+            return;
+        };
+        recorder.row(&TraceRow {
+            plant: *plant,
+            measured_m: self.measured_m,
+            commanded_n: self.amplifier.in_effect_n(),
+            supervisor: self.said,
+            mode_change,
+        });
+    }
+}
