@@ -1,10 +1,14 @@
 //! `advise`: what can be known of a bearing before the supervisor goes in, and a suggested configuration.
 
 use crate::cli::error::{CommandError, pretty, print, say};
-use crate::cli::load;
+use crate::cli::load_any;
 use firmware_bench::advise::{self, Advice, Language, OutOfRange};
+use firmware_bench::report::campbell::{self, Coupling};
+use firmware_bench::scene::Scene;
+use firmware_bench::scene::machine::{AnyScene, MachineScene};
 use firmware_bench::scene::suggest::Nominal;
-use std::path::PathBuf;
+use serde::Serialize;
+use std::path::{Path, PathBuf};
 
 /// As what the configuration is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
@@ -41,6 +45,9 @@ pub struct AdviseArgs {
     /// Amplitude of the runout of the reading on one axis, as measured at slow roll; also beside a scene.
     #[arg(long, allow_hyphen_values = true, value_name = "NUMBER")]
     pub runout_m: Option<f64>,
+    /// Of a whole rotor, the plane of this name alone.
+    #[arg(long, value_name = "NAME", requires = "scene")]
+    pub plane: Option<String>,
     #[command(flatten)]
     numbers: NumberArgs,
 }
@@ -213,24 +220,22 @@ pub fn execute(args: &AdviseArgs) -> Result<(), CommandError> {
         let is = format!("is {runout_m}");
         return Err(refused("runout_m", &is, "a finite number, 0 or greater"));
     }
-    let told = |nominal: Nominal| Nominal {
-        runout_m: args.runout_m.or(nominal.runout_m),
-        ..nominal
-    };
     let advice = match &args.scene {
-        Some(path) => {
-            let scene = load(path)?;
-            if scene.plant.magnet.is_none() {
+        Some(path) => match load_any(path)? {
+            AnyScene::Plane(_) if args.plane.is_some() => {
                 return Err(CommandError::Numbers {
-                    message: format!("{} has no magnet", path.display()),
-                    help: "add [magnet]: without one there is nothing to configure".to_owned(),
+                    message: format!("--plane: {} has one plane without a name", path.display()),
+                    help: "leave the option out".to_owned(),
                 });
             }
-            Advice::new(&scene.title, &told(scene.nominal), &scene.overrides)
-                .map_err(|e| out_of_range(&e, |field| scene.nominal_keys.key(field).to_owned()))?
-        }
+            AnyScene::Plane(scene) => of_scene(args, path, &scene, &scene.title)?,
+            AnyScene::Machine(scene) => match of_machine(args, path, &scene)? {
+                Some(advice) => advice,
+                None => return Ok(()),
+            },
+        },
         None => {
-            let nominal = told(args.numbers.nominal()?.nominal()?);
+            let nominal = told(args, args.numbers.nominal()?.nominal()?);
             if nominal.runout_m.is_some() && nominal.spin_hz.is_none() {
                 return Err(CommandError::Numbers {
                     message: "--runout-m is given without --spin-hz".to_owned(),
@@ -257,6 +262,85 @@ pub fn execute(args: &AdviseArgs) -> Result<(), CommandError> {
         }
         None => advise::text(&advice),
     })
+}
+
+/// With the runout of the command line.
+fn told(args: &AdviseArgs, nominal: Nominal) -> Nominal {
+    Nominal {
+        runout_m: args.runout_m.or(nominal.runout_m),
+        ..nominal
+    }
+}
+
+fn of_scene(
+    args: &AdviseArgs,
+    path: &Path,
+    scene: &Scene,
+    title: &str,
+) -> Result<Advice, CommandError> {
+    if scene.plant.magnet.is_none() {
+        return Err(CommandError::Numbers {
+            message: format!("{} has no magnet", path.display()),
+            help: "add [magnet]: without one there is nothing to configure".to_owned(),
+        });
+    }
+    Advice::new(title, &told(args, scene.nominal), &scene.overrides)
+        .map_err(|e| out_of_range(&e, |field| scene.nominal_keys.key(field).to_owned()))
+}
+
+/// Advice for all planes of a rotor.
+#[derive(Serialize)]
+struct MachineAdvice<'a> {
+    scene: &'a str,
+    coupling: Coupling,
+    planes: Vec<Advice>,
+}
+
+/// Advice for the plane that is asked for; without one that for all of them is printed, and how they feel each other.
+fn of_machine(
+    args: &AdviseArgs,
+    path: &Path,
+    scene: &MachineScene,
+) -> Result<Option<Advice>, CommandError> {
+    let names = || {
+        let names: Vec<&str> = scene.planes.iter().map(|p| p.name.as_str()).collect();
+        format!("planes are {}", names.join(", "))
+    };
+    let refused = |message: String| CommandError::Numbers {
+        message,
+        help: names(),
+    };
+    let title = &scene.common().title;
+    if let Some(name) = &args.plane {
+        let plane = (scene.planes.iter().find(|plane| plane.name == *name))
+            .ok_or_else(|| refused(format!("--plane: there is no plane \"{name}\"")))?;
+        return of_scene(args, path, &plane.scene, &format!("{title}: {name}")).map(Some);
+    }
+    if args.format.is_some() {
+        return Err(refused("--format is of one plane: give --plane".to_owned()));
+    }
+    let with_magnet = scene.planes.iter().filter(|plane| plane.magnet.is_some());
+    let all: Vec<Advice> = with_magnet
+        .map(|plane| of_scene(args, path, &plane.scene, &plane.name))
+        .collect::<Result<_, _>>()?;
+    let coupling =
+        Coupling::new(scene).map_err(|e| CommandError::other("reading the machine", e))?;
+    if args.json {
+        let all = MachineAdvice {
+            scene: title,
+            coupling,
+            planes: all,
+        };
+        print(&(pretty(&all, "formatting the advice")? + "\n"))?;
+    } else {
+        let texts: Vec<String> = all.iter().map(advise::text).collect();
+        print(&format!(
+            "{title}\n{}\n\n{}",
+            campbell::coupling(&coupling),
+            texts.join("\n")
+        ))?;
+    }
+    Ok(None)
 }
 
 /// A suggested value that the supervisor would refuse is a number that does not fit.

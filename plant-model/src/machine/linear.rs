@@ -142,21 +142,30 @@ impl LinearMachine {
         let mut all = Vec::new();
         while let Some(spin_rad_s) = speeds.next() {
             let twice = speeds.next_if(|next| (next - spin_rad_s).abs() <= ALIKE * spin_rad_s);
-            let modes = self.modes(spin_rad_s)?;
-            let near = |mode: &MachineMode| {
-                // Damping moves the frequency; the undamped one is meant.
-                let undamped = mode.frequency_rad_s.hypot(mode.growth_s);
-                (undamped - spin_rad_s).abs()
+            let directions = match twice {
+                // Any mixture of the two is a mode.
+                Some(_) => vec![Direction::Backward, Direction::Forward],
+                None => {
+                    let a = self.undamped(spin_rad_s);
+                    vec![self.direction(&a, C::new(0.0, spin_rad_s))]
+                }
             };
-            let mut nearest: Vec<&MachineMode> = modes.iter().collect();
-            nearest.sort_by(|a, b| near(a).total_cmp(&near(b)));
-            let count = 1 + usize::from(twice.is_some());
-            all.extend(nearest.iter().take(count).map(|mode| CriticalSpeed {
+            all.extend(directions.into_iter().map(|direction| CriticalSpeed {
                 spin_rad_s,
-                direction: mode.direction,
+                direction,
             }));
         }
         Some(all)
+    }
+
+    /// The generator at a spin without its damping.
+    fn undamped(&self, spin_rad_s: f64) -> DMatrix<C> {
+        let n = self.body.n;
+        let mut a = self.body.generator(self.rate_rad_s, spin_rad_s);
+        for (row, column, d) in self.body.damping.entries() {
+            a[(n + row, n + column)] += d;
+        }
+        a.map(|x| C::new(x, 0.0))
     }
 
     /// Receptance at a frequency \[rad/s\] and a spin: motions x, y of plane after plane per force along x, y of plane after
@@ -224,7 +233,7 @@ impl LinearMachine {
     /// Which way the eigenvector goes round, from inverse iteration.
     fn direction(&self, a: &DMatrix<C>, value: C) -> Direction {
         let (n, rate) = (self.body.n, self.rate_rad_s);
-        let near = value + C::new(1e-9, 1e-9) * rate;
+        let near = value + C::new(1e-9, 1e-9) * rate.min(1e3 * value.norm());
         let shifted = a - DMatrix::from_diagonal_element(2 * n, 2 * n, near);
         // No mode is orthogonal to this by construction.
         let mut vector = DVector::from_fn(2 * n, |i, _| {
@@ -255,9 +264,9 @@ impl LinearMachine {
 
 /// Eigenvalues by Schur's form, as exact as its iteration ends; `None` where it does not.
 fn eigenvalues(a: &DMatrix<f64>) -> Option<DVector<C>> {
-    const SWEEPS: usize = 30;
+    const SWEEPS: usize = 100;
     let most = SWEEPS * a.nrows();
-    let schur = [f64::EPSILON, 1e-14, 1e-12]
+    let schur = [f64::EPSILON, 1e-14, 1e-12, 1e-10]
         .into_iter()
         .find_map(|eps| Schur::try_new(a.clone(), eps, most))?;
     Some(schur.complex_eigenvalues())

@@ -61,6 +61,34 @@ pub struct Response {
     pub sensors_m: Option<Vec<f64>>,
 }
 
+/// How the planes of a rotor feel each other, with bending.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Coupling {
+    /// Names of the planes.
+    pub planes: Vec<String>,
+    /// Mass that each feels in an impact \[kg\].
+    pub effective_mass_kg: Vec<f64>,
+    /// Mobility between them, row by row \[1/kg\].
+    pub mobility_1_kg: Vec<Vec<f64>>,
+}
+
+impl Coupling {
+    /// Of the rotor of a scene.
+    ///
+    /// # Errors
+    /// The first value that is out of range.
+    pub fn new(scene: &MachineScene) -> Result<Self, MachineError> {
+        let machine = LinearMachine::new(&scene.machine, Walls::Off)?;
+        let mobility = machine.mobility();
+        let names = scene.planes.iter().map(|plane| plane.name.clone());
+        Ok(Self {
+            planes: names.collect(),
+            effective_mass_kg: (0..mobility.len()).map(|p| 1.0 / mobility[p][p]).collect(),
+            mobility_1_kg: mobility,
+        })
+    }
+}
+
 /// A rotor as a linear system.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Analysis {
@@ -68,18 +96,15 @@ pub struct Analysis {
     pub scene: String,
     /// What was looked at.
     pub range: Range,
-    /// Names of the planes.
-    pub planes: Vec<String>,
+    /// Coupling of the planes.
+    #[serde(flatten)]
+    pub coupling: Coupling,
     /// Modes that turn or swing, spin by spin, slowest first.
     pub modes: Vec<ModeAtSpin>,
     /// Critical speeds, slowest first, also above the range.
     pub critical_speeds: Vec<CriticalSpeed>,
     /// Response to the unbalance.
     pub unbalance_response: Vec<Response>,
-    /// Mass that each plane feels in an impact, with bending \[kg\].
-    pub effective_mass_kg: Vec<f64>,
-    /// Mobility between the planes, row by row \[1/kg\].
-    pub mobility_1_kg: Vec<Vec<f64>>,
     /// Rates at which unstable motions grow at the highest spin \[1/s\].
     pub growth_1_s: Vec<f64>,
 }
@@ -145,17 +170,12 @@ impl Analysis {
                 sensors_m: part(true),
             }
         };
-        let mobility = machine.mobility();
         let at_highest = machine.modes(TAU * range.to_hz).ok_or_else(none)?;
         let growing = at_highest.into_iter().map(|mode| mode.growth_s);
         Ok(Self {
             scene: scene.common().title.clone(),
             range,
-            planes: scene
-                .planes
-                .iter()
-                .map(|plane| plane.name.clone())
-                .collect(),
+            coupling: Coupling::new(scene)?,
             modes,
             critical_speeds: (critical_speeds.into_iter())
                 .map(|speed| CriticalSpeed {
@@ -164,8 +184,6 @@ impl Analysis {
                 })
                 .collect(),
             unbalance_response: spins.iter().map(|spin| response(*spin)).collect(),
-            effective_mass_kg: (0..planes).map(|p| 1.0 / mobility[p][p]).collect(),
-            mobility_1_kg: mobility,
             growth_1_s: growing.filter(|rate| *rate > GROWS_1_S).collect(),
         })
     }
@@ -220,7 +238,7 @@ pub fn text(scene: &MachineScene, analysis: &Analysis) -> String {
         let spin_hz = figures(speed.spin_rad_s / TAU);
         table.add_row([right(spin_hz), Cell::new(speed.whirl)]);
     }
-    let _ = write!(text, "{table}\n\n{}", coupling(analysis));
+    let _ = write!(text, "{table}\n\n{}", coupling(&analysis.coupling));
     for rate in &analysis.growth_1_s {
         let _ = write!(
             text,
@@ -233,17 +251,17 @@ pub fn text(scene: &MachineScene, analysis: &Analysis) -> String {
 }
 
 /// Mass of each plane, and how far each other one moves when it is struck.
-pub fn coupling(analysis: &Analysis) -> String {
+pub fn coupling(coupling: &Coupling) -> String {
     let mut header = vec!["plane".to_owned(), "effective mass [kg]".to_owned()];
-    header.extend(analysis.planes.iter().map(|name| format!("{name} moves")));
+    header.extend(coupling.planes.iter().map(|name| format!("{name} moves")));
     let mut table = lined(header);
-    for (i, name) in analysis.planes.iter().enumerate() {
-        let row = &analysis.mobility_1_kg[i];
+    for (i, name) in coupling.planes.iter().enumerate() {
+        let row = &coupling.mobility_1_kg[i];
         // Without the sign of a rounded zero.
         let moves = row
             .iter()
             .map(|m| right(format!("{:.3}", (1e3 * m / row[i]).round() / 1e3 + 0.0)));
-        let mass = right(figures(analysis.effective_mass_kg[i]));
+        let mass = right(figures(coupling.effective_mass_kg[i]));
         table.add_row(
             [Cell::new(format!("{name} struck")), mass]
                 .into_iter()
@@ -329,7 +347,13 @@ fn responses(analysis: &Analysis) -> Chart {
         mark: Mark::Line,
         colour: plane,
     };
-    let curves: Vec<Curve> = analysis.planes.iter().enumerate().map(of).collect();
+    let curves: Vec<Curve> = analysis
+        .coupling
+        .planes
+        .iter()
+        .enumerate()
+        .map(of)
+        .collect();
     let values = || {
         curves
             .iter()

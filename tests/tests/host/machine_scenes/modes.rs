@@ -193,3 +193,39 @@ fn what_is_no_shaft_is_refused_with_its_key() {
         "{error}"
     );
 }
+
+#[test]
+fn advice_is_for_every_plane_or_for_one() {
+    let flexible = machine_scene_path("overload_of_a_flexible_rotor");
+    let advise = |args: &[&str]| {
+        let mut command = host();
+        command.arg("advise").arg(&flexible).args(args);
+        command.output().expect("the host starts")
+    };
+    let all: Value = serde_json::from_slice(&advise(&["--json"]).stdout).unwrap();
+    assert_eq!(all["planes"].as_array().unwrap().len(), 2);
+    assert_eq!(
+        all["coupling"]["effective_mass_kg"]
+            .as_array()
+            .unwrap()
+            .len(),
+        2
+    );
+    let one: Value =
+        serde_json::from_slice(&advise(&["--plane", "far end", "--json"]).stdout).unwrap();
+    assert_eq!(one["parameters"], all["planes"][0]["parameters"]);
+    let text = String::from_utf8(advise(&[]).stdout).unwrap();
+    assert!(
+        text.contains("coupling end struck") && text.contains("\nfar end\n"),
+        "{text}"
+    );
+    for args in [&["--format", "c"][..], &["--plane", "nowhere"]] {
+        let refused = advise(args);
+        assert_eq!(refused.status.code(), Some(2));
+        let errors = String::from_utf8_lossy(&refused.stderr).into_owned();
+        assert!(
+            errors.contains("planes are far end, coupling end"),
+            "{errors}"
+        );
+    }
+}
