@@ -174,8 +174,8 @@ impl ModalLevitation {
 }
 
 /// Whether one of these lets no integrator run.
-pub fn any_holds(hints: impl Iterator<Item = IntegratorHint>) -> bool {
-    hints.into_iter().any(|hint| hint == IntegratorHint::Hold)
+pub fn any_holds(mut hints: impl Iterator<Item = IntegratorHint>) -> bool {
+    hints.any(|hint| hint == IntegratorHint::Hold)
 }
 
 #[cfg(test)]

@@ -78,14 +78,21 @@ impl Coupling {
     /// # Errors
     /// The first value that is out of range.
     pub fn new(scene: &MachineScene) -> Result<Self, MachineError> {
-        let machine = LinearMachine::new(&scene.machine, Walls::Off)?;
+        Ok(Self::of(
+            scene,
+            &LinearMachine::new(&scene.machine, Walls::Off)?,
+        ))
+    }
+
+    /// Neither supports nor walls have a share in it.
+    fn of(scene: &MachineScene, machine: &LinearMachine) -> Self {
         let mobility = machine.mobility();
         let names = scene.planes.iter().map(|plane| plane.name.clone());
-        Ok(Self {
+        Self {
             planes: names.collect(),
             effective_mass_kg: (0..mobility.len()).map(|p| 1.0 / mobility[p][p]).collect(),
             mobility_1_kg: mobility,
-        })
+        }
     }
 }
 
@@ -146,9 +153,11 @@ impl Analysis {
             let size = mode.frequency_rad_s.hypot(mode.growth_s);
             mode.frequency_rad_s > STANDS * size.max(1.0)
         };
-        let mut modes = Vec::new();
+        let (mut modes, mut growing) = (Vec::new(), Vec::new());
         for spin_rad_s in &spins {
             let at_spin = machine.modes(*spin_rad_s).ok_or_else(none)?;
+            // The last is the highest.
+            growing = at_spin.iter().map(|mode| mode.growth_s).collect();
             modes.extend(at_spin.into_iter().filter(turns).map(|mode| ModeAtSpin {
                 spin_rad_s: *spin_rad_s,
                 frequency_hz: mode.frequency_rad_s / TAU,
@@ -170,12 +179,11 @@ impl Analysis {
                 sensors_m: part(true),
             }
         };
-        let at_highest = machine.modes(TAU * range.to_hz).ok_or_else(none)?;
-        let growing = at_highest.into_iter().map(|mode| mode.growth_s);
+        growing.retain(|rate| *rate > GROWS_1_S);
         Ok(Self {
             scene: scene.common().title.clone(),
             range,
-            coupling: Coupling::new(scene)?,
+            coupling: Coupling::of(scene, &machine),
             modes,
             critical_speeds: (critical_speeds.into_iter())
                 .map(|speed| CriticalSpeed {
@@ -184,7 +192,7 @@ impl Analysis {
                 })
                 .collect(),
             unbalance_response: spins.iter().map(|spin| response(*spin)).collect(),
-            growth_1_s: growing.filter(|rate| *rate > GROWS_1_S).collect(),
+            growth_1_s: growing,
         })
     }
 }

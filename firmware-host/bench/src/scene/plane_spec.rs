@@ -99,9 +99,7 @@ fn with_own(mut tables: SceneTables, plane: &PlaneTable) -> SceneTables {
             table.clone_from(own);
         }
     }
-    let or = |own: f64| Some(own);
-    tables.rotor.contact_radius_m =
-        (plane.contact_radius_m.and_then(or)).or(tables.rotor.contact_radius_m);
+    tables.rotor.contact_radius_m = plane.contact_radius_m.or(tables.rotor.contact_radius_m);
     over(&mut tables.stator, plane.stator.as_ref());
     over(&mut tables.retainer, plane.retainer.as_ref());
     over(&mut tables.sensor, plane.sensor.as_ref());

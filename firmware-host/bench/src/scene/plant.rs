@@ -23,18 +23,7 @@ pub(crate) fn plant_of(spec: &PlaneSpec, rotor: RotorParams) -> Result<PlantPara
     let magnet = file.magnet.as_ref();
     let mut plant = PlantParams {
         rotor,
-        spin: match (file.spin.inertia_kg_m2, file.spin.drive_torque_n_m) {
-            (Some(inertia_kg_m2), torque) => SpinParams::Free {
-                inertia_kg_m2,
-                drive_torque_n_m: torque.unwrap_or(0.0),
-            },
-            (None, None) => SpinParams::Held,
-            (None, Some(_)) => {
-                let message = "has no effect while the speed is held".to_owned();
-                let help = Some("give spin.inertia_kg_m2, or remove the torque".to_owned());
-                return Err(text.error_at_key("spin.drive_torque_n_m", message, help));
-            }
-        },
+        spin: spin(file, text)?,
         stator: stator(file, text)?,
         contact: ContactParams {
             clearance_m: spec.contact.clearance_m,
@@ -57,6 +46,22 @@ pub(crate) fn plant_of(spec: &PlaneSpec, rotor: RotorParams) -> Result<PlantPara
     plant.validate().map_err(|error| refused(&error, text))?;
     restore(&mut plant, &spec.contact, text)?;
     Ok(plant)
+}
+
+/// Held, or free with its inertia.
+pub(crate) fn spin(file: &SceneTables, text: &SceneText) -> Result<SpinParams, SceneError> {
+    match (file.spin.inertia_kg_m2, file.spin.drive_torque_n_m) {
+        (Some(inertia_kg_m2), torque) => Ok(SpinParams::Free {
+            inertia_kg_m2,
+            drive_torque_n_m: torque.unwrap_or(0.0),
+        }),
+        (None, None) => Ok(SpinParams::Held),
+        (None, Some(_)) => {
+            let message = "has no effect while the speed is held".to_owned();
+            let help = Some("give spin.inertia_kg_m2, or remove the torque".to_owned());
+            Err(text.error_at_key("spin.drive_torque_n_m", message, help))
+        }
+    }
 }
 
 /// What the plant refuses, at the key that it comes from.

@@ -1,12 +1,12 @@
 //! The rotor of a machine, and what acts on it apart from its planes.
 
 use crate::scene::diagnostic::{SceneError, SceneText};
+use crate::scene::plant::spin;
 use crate::scene::tables::{BendingTable, SceneTables};
 use plant_model::machine::params::{
     BendingMode, MachineError, MachineParams, RigidRotor, Rotor, Support, Unbalance,
 };
 use plant_model::machine::shaft::{Disc, ReducedShaft, Shaft, ShaftSection};
-use plant_model::params::SpinParams;
 use std::f64::consts::TAU;
 
 /// Bending modes of a shaft are kept up to here, where the scene does not say \[Hz\].
@@ -70,7 +70,6 @@ pub(crate) fn machine(
         moment_kg_m,
         angle_rad: 0.0,
     });
-    let spin = &tables.spin;
     let unbalances = tables.unbalance.iter().map(|u| Unbalance {
         position_m: origin.centred_m(u.position_m),
         moment_kg_m: u.moment_kg_m,
@@ -85,13 +84,7 @@ pub(crate) fn machine(
                 damping_n_s_m: s.damping_n_s_m.into(),
             })
             .collect(),
-        spin: match spin.inertia_kg_m2 {
-            None => SpinParams::Held,
-            Some(inertia_kg_m2) => SpinParams::Free {
-                inertia_kg_m2,
-                drive_torque_n_m: spin.drive_torque_n_m.unwrap_or(0.0),
-            },
-        },
+        spin: spin(tables, text)?,
         unbalances: unbalances.chain(eccentric).collect(),
         magnets: Vec::new(),
         loads_m: Vec::new(),
