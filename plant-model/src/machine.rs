@@ -75,6 +75,7 @@ pub mod linear;
 pub mod params;
 pub mod point_mass;
 mod readout;
+pub mod reduced;
 mod run;
 mod series;
 pub mod shaft;

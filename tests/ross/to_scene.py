@@ -1,6 +1,6 @@
 """Writes a rotor of ROSS (https://github.com/petrobras/ross) as a scene: shaft, discs, and bearings as supports.
 
-    python to_scene.py > scene.toml          # ROSS's own example
+    python to_scene.py scene.toml            # ROSS's own example
     from to_scene import to_scene            # of any ross.Rotor
 
 Taken over: shaft elements (cylindrical; of a cone the mean diameters), their material, discs, and of bearings and seals the
@@ -10,10 +10,11 @@ bearing with numbers to be replaced.
 """
 
 import sys
+from pathlib import Path
 
 
-def to_scene(rotor, title="A rotor of ROSS", bending_to_hz=2e4, spin_hz=50.0):
-    """TOML text of a scene with this rotor."""
+def to_scene(rotor, title="A rotor of ROSS", bending_to_hz=2e4, spin_hz=50.0, matrices_file=None):
+    """TOML text of a scene with this rotor; with a file that `to_npz` wrote, by that in the place of shaft and discs."""
     out = [
         f'title = "{title}"',
         "[run]",
@@ -22,7 +23,7 @@ def to_scene(rotor, title="A rotor of ROSS", bending_to_hz=2e4, spin_hz=50.0):
         'policies = ["passive"]',
         "[rotor]",
         f"bending_to_hz = {bending_to_hz!r}",
-        "elements = 1",
+        f'matrices_file = "{matrices_file}"' if matrices_file else "elements = 24",
         "[spin]",
         f"frequency_hz = {spin_hz!r}",
         "[contact]",
@@ -33,11 +34,11 @@ def to_scene(rotor, title="A rotor of ROSS", bending_to_hz=2e4, spin_hz=50.0):
         "[verdict]",
         "whirl_speed_m_s = 1.0",
     ]
-    for layer in layers(rotor):
+    places = [float(z) for z in rotor.nodes_pos]
+    for layer in [] if matrices_file else layers(rotor):
         out.append("[[shaft]]")
         out += [f"{key} = {value!r}" for key, value in layer.items()]
-    places = [float(z) for z in rotor.nodes_pos]
-    for disc in rotor.disk_elements:
+    for disc in [] if matrices_file else rotor.disk_elements:
         out += [
             "[[disc]]",
             f"position_m = {places[disc.n]!r}",
@@ -84,4 +85,5 @@ def layers(rotor):
 if __name__ == "__main__":
     import ross
 
-    sys.stdout.write(to_scene(ross.rotor_example(), "ROSS's example"))
+    # Not to standard output: importing ROSS prints there.
+    Path(sys.argv[1]).write_text(to_scene(ross.rotor_example(), "ROSS's example"))

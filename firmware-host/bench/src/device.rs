@@ -8,3 +8,5 @@ pub mod loop_shape;
 pub mod modal_levitation;
 pub mod sensor;
 pub mod sensor_fault;
+pub mod state_space;
+pub mod whole_levitation;

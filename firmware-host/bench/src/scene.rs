@@ -1,5 +1,6 @@
 //! A scene: the plant, its instruments and controllers, what happens to it, and what is asked.
 
+mod arrays;
 mod devices;
 pub mod diagnostic;
 mod events;
@@ -16,6 +17,7 @@ mod resolve;
 mod rotor;
 pub mod schema;
 pub mod spec;
+mod state_space;
 pub mod suggest;
 pub mod tables;
 mod values;
@@ -25,6 +27,7 @@ use crate::device::levitation::LevitationParams;
 use crate::device::loads::{BaseMotion, Disturbance, Loads, TimedChange};
 use crate::device::sensor::{SensorParams, SpinSensorParams};
 use crate::device::sensor_fault::{Fault, Samples};
+use crate::device::whole_levitation::WholeLevitationParams;
 use crate::scene::diagnostic::SceneError;
 use crate::scene::nominal::{NominalKeys, Override};
 use crate::scene::policy_kind::PolicyKind;
@@ -82,6 +85,8 @@ pub struct Scene {
     pub spin_sensor: SpinSensorParams,
     /// The levitation controller; needed by the policies that use one.
     pub levitation: Option<LevitationParams>,
+    /// The controller of the user's in its place.
+    pub state_space: Option<WholeLevitationParams>,
     /// `radial` pushes beyond this share of the clearance.
     pub radial_band: f64,
     /// `damping` sets so much force against speed \[N s/m\].

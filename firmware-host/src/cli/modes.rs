@@ -63,7 +63,7 @@ pub fn execute(args: &ModesArgs) -> Result<(), CommandError> {
         return Err(numbers(message, "give a number from 2 to 1001"));
     }
     if args.levitated && scene.levitation.is_some() {
-        let message = "--levitated: this rotor is levitated by mode".to_owned();
+        let message = "--levitated: this rotor is levitated as a whole".to_owned();
         let help = "that controller is no spring at each magnet; leave the option out";
         return Err(numbers(message, help));
     }

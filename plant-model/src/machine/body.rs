@@ -210,30 +210,23 @@ impl LinearBody {
                 damping[row * n + row] += 2.0 * mode.damping_ratio * mode.frequency_rad_s;
             }
         }
-        // Coordinates of slopes in pairs (x, y): the tilt, then the bending modes.
-        let slopes = 1 + bending.len();
-        let scale = |i: usize| if i == 0 { per_inertia } else { per_mass };
-        let polar = |i: usize, j: usize| match (&params.rotor, (i, j)) {
-            (_, (0, 0)) => rigid.polar_inertia_kg_m2,
-            (
-                super::params::Rotor::Modal {
-                    polar_coupling_kg_m2,
-                    ..
-                },
-                _,
-            ) => polar_coupling_kg_m2
-                .get(i * slopes + j)
-                .copied()
-                .unwrap_or(0.0),
-            _ => 0.0,
-        };
+        // Coordinates of slopes in pairs (x, y): the tilt, then the bending modes; before them those of the centre.
+        let scale = |i: usize| if i == 1 { per_inertia } else { per_mass };
+        let (slopes, motions) = (1 + bending.len(), 2 + bending.len());
         for i in 0..slopes {
             for j in 0..slopes {
-                let g = polar(i, j) * scale(i) * scale(j);
+                let g = params.rotor.polar_kg_m2(i, j) * scale(i + 1) * scale(j + 1);
                 let (row, column) = (2 + 2 * i, 2 + 2 * j);
                 gyroscopic[row * n + column + 1] += g;
                 gyroscopic[(row + 1) * n + column] -= g;
             }
+        }
+        for (at, value) in params.rotor.damping_n_s_m().iter().enumerate() {
+            let (i, j) = (at / motions, at % motions);
+            let d = value * scale(i) * scale(j);
+            let (row, column) = (2 * i, 2 * j);
+            damping[row * n + column] += d;
+            damping[(row + 1) * n + column + 1] += d;
         }
         for support in &params.supports {
             let port = at(support.position_m);

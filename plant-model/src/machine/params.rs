@@ -59,6 +59,9 @@ pub enum Rotor {
         /// Polar inertia coupling of the bending modes' slopes \[kg m²\], row by row, symmetric: ∫ I_p′·φ_i′·φ_j′ dz over
         /// (tilt, mode 1, mode 2 …), the tilt's own entry left out as I_p. Empty for none.
         polar_coupling_kg_m2: Vec<f64>,
+        /// Damping beside that of the modes' ratios, over (translation, tilt, mode 1, mode 2 …), row by row, symmetric and such
+        /// that no motion gains by it \[N s/m; of the tilt N m s/rad\]. Empty for none.
+        damping_n_s_m: Vec<f64>,
     },
 }
 
@@ -167,6 +170,27 @@ impl Rotor {
         match self {
             Self::Rigid(_) => &[],
             Self::Modal { bending, .. } => bending,
+        }
+    }
+
+    /// Polar inertia on the slopes of motions i and j: the tilt is the first, the bending modes follow.
+    pub(crate) fn polar_kg_m2(&self, i: usize, j: usize) -> f64 {
+        match self {
+            _ if (i, j) == (0, 0) => self.rigid().polar_inertia_kg_m2,
+            Self::Modal {
+                bending,
+                polar_coupling_kg_m2: coupling,
+                ..
+            } => (coupling.get(i * (1 + bending.len()) + j)).map_or(0.0, |polar| *polar),
+            Self::Rigid(_) => 0.0,
+        }
+    }
+
+    /// Damping beside that of the modes' ratios, over (translation, tilt, bending modes), row by row; empty for none.
+    pub(crate) fn damping_n_s_m(&self) -> &[f64] {
+        match self {
+            Self::Rigid(_) => &[],
+            Self::Modal { damping_n_s_m, .. } => damping_n_s_m,
         }
     }
 }

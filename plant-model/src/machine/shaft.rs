@@ -1,10 +1,11 @@
-//! A shaft with discs as a rotor: Timoshenko beam elements, reduced to the bending modes of the free shaft.
+//! A shaft with discs as a rotor: the matrices of its Timoshenko beam elements.
 //!
 //! Elements have shear, rotary inertia and gyroscopics, and Cowper's (1966) shear coefficient of round sections. Every place at
 //! which something acts or is read is a node.
 
-use super::params::{BendingMode, MachineError, RigidRotor, Rotor};
-use nalgebra::{Cholesky, DMatrix, DVector, SymmetricEigen};
+use super::params::MachineError;
+use super::reduced::{ReducedRotor, RigidMotions, RotorMatrices, check};
+use nalgebra::{DMatrix, DVector};
 
 /// A cylindrical piece of shaft.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -47,30 +48,8 @@ pub struct Shaft {
     pub elements: usize,
 }
 
-/// A shaft reduced to modes.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ReducedShaft {
-    /// The rotor, positions counted from its centre of mass.
-    pub rotor: Rotor,
-    /// Where the centre of mass is, from the left end \[m\].
-    pub centre_m: f64,
-    /// Length \[m\].
-    pub length_m: f64,
-    /// Static compliance of the modes that were left out, at each node that was asked for \[m/N\].
-    pub residual_m_n: Vec<f64>,
-}
-
-impl ReducedShaft {
-    /// A place given from the left end, from the centre of mass \[m\].
-    pub fn centred_m(&self, from_left_m: f64) -> f64 {
-        from_left_m.clamp(0.0, self.length_m) - self.centre_m
-    }
-}
-
 /// Nodes nearer than this to each other are one, of the shaft's length.
 const SAME_PLACE: f64 = 1e-9;
-/// Squares of rates below this share of the largest are those of the rigid motions.
-const RIGID: f64 = 1e-13;
 
 impl ShaftSection {
     fn area_m2(&self) -> f64 {
@@ -161,17 +140,6 @@ fn lagrange(at: f64) -> [[f64; NODES]; 2] {
     [values, slopes]
 }
 
-fn check(ok: bool, field: String, value: f64, expected: &'static str) -> Result<(), MachineError> {
-    match ok && value.is_finite() {
-        true => Ok(()),
-        false => Err(MachineError {
-            field,
-            value,
-            expected,
-        }),
-    }
-}
-
 impl Shaft {
     /// Its length \[m\].
     pub fn length_m(&self) -> f64 {
@@ -226,7 +194,7 @@ impl Shaft {
             elements,
             "elements".to_owned(),
             self.elements as f64,
-            "1 to 1000",
+            "1 to 200",
         )
     }
 
@@ -264,90 +232,33 @@ impl Shaft {
         nodes_m: &[f64],
         up_to_rad_s: f64,
         damping_ratio: f64,
-    ) -> Result<ReducedShaft, MachineError> {
+    ) -> Result<ReducedRotor, MachineError> {
         self.validate(nodes_m)?;
         let nodes = self.nodes_m(nodes_m);
-        let Assembled { k, m, polar } = self.assembled(&nodes);
         let n = 2 * nodes.len();
-        let translation = DVector::from_fn(n, |i, _| if i % 2 == 0 { 1.0 } else { 0.0 });
-        let mass_kg = translation.dot(&(&m * &translation));
-        let about_end = DVector::from_fn(n, |i, _| if i % 2 == 0 { nodes[i / 2] } else { 1.0 });
-        let centre_m = translation.dot(&(&m * &about_end)) / mass_kg;
-        let tilt = &about_end - centre_m * &translation;
-        let rigid = RigidRotor {
-            mass_kg,
-            transverse_inertia_kg_m2: tilt.dot(&(&m * &tilt)),
-            polar_inertia_kg_m2: tilt.dot(&(&polar * &tilt)),
+        let rigid = RigidMotions {
+            translation: DVector::from_fn(n, |i, _| if i % 2 == 0 { 1.0 } else { 0.0 }),
+            tilt: DVector::from_fn(n, |i, _| if i % 2 == 0 { nodes[i / 2] } else { 1.0 }),
         };
-        let no_modes = || MachineError {
-            field: "shaft".to_owned(),
-            value: mass_kg,
-            expected: "a shaft whose mass and stiffness a computer can tell apart",
+        let (mass, stiffness, gyroscopic) = self.assembled(&nodes);
+        let matrices = RotorMatrices {
+            mass,
+            stiffness,
+            damping: None,
+            gyroscopic: Some(gyroscopic),
+            displacement: DMatrix::from_fn(nodes.len(), n, |row, column| {
+                if column == 2 * row { 1.0 } else { 0.0 }
+            }),
+            places_m: nodes,
         };
-        let root = Cholesky::new(m).ok_or_else(no_modes)?;
-        // L⁻¹·K·L⁻ᵀ has the squares of the rates.
-        let half = root.l().solve_lower_triangular(&k).ok_or_else(no_modes)?;
-        let whole = (root.l().solve_lower_triangular(&half.transpose())).ok_or_else(no_modes)?;
-        let symmetric = 0.5 * (&whole + whole.transpose());
-        let eigen = SymmetricEigen::new(symmetric);
-        let largest = eigen.eigenvalues.amax();
-        let mut order: Vec<usize> = (0..n).collect();
-        order.sort_by(|a, b| eigen.eigenvalues[*a].total_cmp(&eigen.eigenvalues[*b]));
-        let (mut bending, mut shapes) = (Vec::new(), vec![tilt]);
-        let mut residual_m_n = vec![0.0; nodes_m.len()];
-        // The two slowest are the rigid motions.
-        for i in order.into_iter().skip(2) {
-            let square = eigen.eigenvalues[i].max(RIGID * largest);
-            let vector = eigen.eigenvectors.column(i).into_owned();
-            let free = (root.l().tr_solve_lower_triangular(&vector)).ok_or_else(no_modes)?;
-            // φᵀ·M·φ is the rotor's mass.
-            let shape = free * mass_kg.sqrt();
-            let frequency_rad_s = square.sqrt();
-            if frequency_rad_s <= up_to_rad_s {
-                let places = nodes.iter().zip(shape.iter().step_by(2));
-                bending.push(BendingMode {
-                    frequency_rad_s,
-                    damping_ratio,
-                    shape: places.map(|(z, phi)| (z - centre_m, *phi)).collect(),
-                });
-                shapes.push(shape);
-            } else {
-                for (sum, z) in residual_m_n.iter_mut().zip(nodes_m) {
-                    let phi = shape[2 * nearest(&nodes, *z)];
-                    *sum += phi * phi / (mass_kg * square);
-                }
-            }
-        }
-        let size = shapes.len();
-        let mut coupling = vec![0.0; size * size];
-        for i in 0..size {
-            for j in 0..=i {
-                let value = shapes[i].dot(&(&polar * &shapes[j]));
-                (coupling[i * size + j], coupling[j * size + i]) = (value, value);
-            }
-        }
-        Ok(ReducedShaft {
-            rotor: match bending.is_empty() {
-                true => Rotor::Rigid(rigid),
-                false => Rotor::Modal {
-                    rigid,
-                    bending,
-                    polar_coupling_kg_m2: coupling,
-                },
-            },
-            centre_m,
-            length_m: self.length_m(),
-            residual_m_n,
-        })
+        matrices.reduced_with(&rigid, nodes_m, up_to_rad_s, damping_ratio)
     }
 
-    fn assembled(&self, nodes: &[f64]) -> Assembled {
+    /// Mass, stiffness and polar inertia of the free shaft in one plane, over (displacement, rotation) of its nodes.
+    fn assembled(&self, nodes: &[f64]) -> (DMatrix<f64>, DMatrix<f64>, DMatrix<f64>) {
         let n = 2 * nodes.len();
-        let mut all = Assembled {
-            k: DMatrix::zeros(n, n),
-            m: DMatrix::zeros(n, n),
-            polar: DMatrix::zeros(n, n),
-        };
+        let zeros = || DMatrix::zeros(n, n);
+        let (mut mass, mut stiffness, mut polar) = (zeros(), zeros(), zeros());
         let mut ends = Vec::new();
         let mut end_m = 0.0;
         for section in &self.sections {
@@ -365,33 +276,26 @@ impl Shaft {
             for row in 0..2 * NODES {
                 for column in 0..2 * NODES {
                     let at = (2 * first + row, 2 * first + column);
-                    all.k[at] += element.k[row][column];
-                    all.m[at] += element.m[row][column];
+                    stiffness[at] += element.k[row][column];
+                    mass[at] += element.m[row][column];
                 }
             }
             for (i, row) in element.turning.iter().enumerate() {
                 for (j, turning) in row.iter().enumerate() {
                     let at = (2 * (first + i) + 1, 2 * (first + j) + 1);
-                    all.m[at] += turning;
-                    all.polar[at] += 2.0 * turning;
+                    mass[at] += turning;
+                    polar[at] += 2.0 * turning;
                 }
             }
         }
         for disc in &self.discs {
             let at = 2 * nearest(nodes, disc.position_m);
-            all.m[(at, at)] += disc.mass_kg;
-            all.m[(at + 1, at + 1)] += disc.transverse_inertia_kg_m2;
-            all.polar[(at + 1, at + 1)] += disc.polar_inertia_kg_m2;
+            mass[(at, at)] += disc.mass_kg;
+            mass[(at + 1, at + 1)] += disc.transverse_inertia_kg_m2;
+            polar[(at + 1, at + 1)] += disc.polar_inertia_kg_m2;
         }
-        all
+        (mass, stiffness, polar)
     }
-}
-
-/// Matrices of the free shaft in one plane, over (displacement, rotation) of its nodes.
-struct Assembled {
-    k: DMatrix<f64>,
-    m: DMatrix<f64>,
-    polar: DMatrix<f64>,
 }
 
 /// The node at a place.

@@ -4,6 +4,7 @@ mod closed_forms;
 mod degenerate;
 mod extremes;
 mod linear;
+mod matrices;
 mod reference;
 mod refusals;
 mod rotor;

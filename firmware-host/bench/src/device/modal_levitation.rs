@@ -4,7 +4,6 @@
 use crate::device::actuator::limited_n;
 use crate::device::levitation::{LevitationParams, VelocityFilter};
 use plant_model::V2;
-use supervisor::IntegratorHint;
 
 /// Gains of the tilt; its derivative has the filter of the translation's.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -171,11 +170,6 @@ impl ModalLevitation {
             }
         }
     }
-}
-
-/// Whether one of these lets no integrator run.
-pub fn any_holds(mut hints: impl Iterator<Item = IntegratorHint>) -> bool {
-    hints.any(|hint| hint == IntegratorHint::Hold)
 }
 
 #[cfg(test)]

@@ -5,6 +5,7 @@ use super::summary::{Fact, SceneSummary, summary};
 use super::{
     begun, push, push_list, push_runs, push_section, push_story, push_table, push_warnings,
 };
+use crate::device::whole_levitation::WholeLevitationParams;
 use crate::report::plot::PlotError;
 use crate::report::plot::chart::{Axis, Chart, Curve, Mark, chart};
 use crate::report::plot::text::{escape, figures};
@@ -76,8 +77,13 @@ fn facts(scene: &MachineScene) -> Vec<Fact> {
         .map(|(plane, at)| format!("{} at {} mm", plane.name, figures(1e3 * at.position_m)))
         .collect();
     facts.push(("Planes", planes.join(", ")));
-    if scene.levitation.is_some() {
-        facts.push(("Levitation", "by mode".to_owned()));
+    match &scene.levitation {
+        None => {}
+        Some(WholeLevitationParams::Modal(_)) => facts.push(("Levitation", "by mode".to_owned())),
+        Some(WholeLevitationParams::StateSpace(own)) => {
+            let states = format!("a state space with {} states", own.a.nrows());
+            facts.push(("Levitation", states));
+        }
     }
     facts
 }

@@ -7,7 +7,7 @@ mod station;
 use self::bench::Bench;
 use self::station::Station;
 use crate::device::loads::Loads;
-use crate::device::modal_levitation::ModalLevitation;
+use crate::device::whole_levitation::WholeLevitation;
 use crate::run::controller::{Controller, controller, controller_below};
 use crate::run::figures::Figures;
 use crate::run::rig::{OnePlane, WholeRotor};
@@ -216,7 +216,7 @@ pub fn record_machine<'a>(
     let common = scene.common();
     let rig = WholeRotor::new(scene, options(common, rigour))?;
     let levitation = (scene.levitation.as_ref())
-        .map(|params| ModalLevitation::new(params, 1.0 / common.sample_rate_hz));
+        .map(|params| WholeLevitation::new(params, 1.0 / common.sample_rate_hz));
     let mut recorders_of = recorders.planes.into_iter();
     let mut stations = Vec::new();
     for plane in &scene.planes {
@@ -271,7 +271,9 @@ fn ride_one<'a>(
     let rig = OnePlane::new(scene, options(scene, task.rigour))?;
     let stations = vec![Station::new(scene, controller, recorder)];
     let loads = (vec![scene.external()], scene.edges());
-    let bench = Bench::new(scene, Box::new(rig), stations, loads);
+    let mut bench = Bench::new(scene, Box::new(rig), stations, loads);
+    bench.levitation = (scene.state_space.as_ref())
+        .map(|params| WholeLevitation::new(params, 1.0 / scene.sample_rate_hz));
     let ended = bench.ride(task, on_tick)?.pop();
     ended.ok_or(RunError::Incomplete {
         policy: task.policy,

@@ -71,7 +71,8 @@ pub fn controller(kind: PolicyKind, scene: &Scene) -> Option<Box<dyn Controller>
                 force_max_n,
             })
         }
-        PolicyKind::Levitation => levitation_of(scene)?,
+        PolicyKind::Levitation if scene.state_space.is_some() => Box::new(Passing),
+        PolicyKind::Levitation => own_levitation(scene)?,
         PolicyKind::Supervisor => {
             let supervisor = Supervisor::new(&scene.supervisor?).ok()?;
             return supervised(scene, Box::new(supervisor));
@@ -130,8 +131,16 @@ impl Controller for Passing {
     }
 }
 
-/// The scene's levitation controller, where it has one.
-fn levitation_of(scene: &Scene) -> Option<Box<Levitation>> {
+/// Whoever levitates in a scene, where somebody does.
+fn levitation_of(scene: &Scene) -> Option<Box<dyn Levitate>> {
+    match scene.state_space {
+        Some(_) => Some(Box::new(Passing)),
+        None => Some(own_levitation(scene)?),
+    }
+}
+
+/// The scene's levitation controller by gains, where it has one.
+fn own_levitation(scene: &Scene) -> Option<Box<Levitation>> {
     let period_s = 1.0 / scene.sample_rate_hz;
     Some(Box::new(Levitation::new(
         scene.levitation?,

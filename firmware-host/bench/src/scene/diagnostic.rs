@@ -170,9 +170,13 @@ impl SceneText {
             if message.ends_with("a list in square brackets") {
                 help = match key.trim() {
                     "policies" => None,
-                    "positions_m" | "displacements" | "polar_coupling_kg_m2" => {
-                        Some("give numbers, [a, b, …]".to_owned())
-                    }
+                    "positions_m"
+                    | "displacements"
+                    | "polar_coupling_kg_m2"
+                    | "a"
+                    | "b"
+                    | "c"
+                    | "d" => Some("give numbers, [a, b, …]".to_owned()),
                     _ => Some("give x and y, [x, y]".to_owned()),
                 };
             }
@@ -319,6 +323,21 @@ impl SceneText {
     pub(crate) fn refused(&self, key: &str, value: f64, expected: &str) -> SceneError {
         let message = format!("is {}, expected {expected}", short(value));
         self.error_at_key(key, message, Some(format!("give {expected}")))
+    }
+
+    /// An error at the first of these keys that is given, none of which may be.
+    pub(crate) fn none_given(
+        &self,
+        keys: &[(&str, bool)],
+        message: &str,
+        help: &str,
+    ) -> Result<(), SceneError> {
+        match keys.iter().find(|(_, given)| *given) {
+            None => Ok(()),
+            Some((key, _)) => {
+                Err(self.error_at_key(key, message.to_owned(), Some(help.to_owned())))
+            }
+        }
     }
 
     /// One of two keys that say the same.

@@ -244,8 +244,7 @@ pub(crate) fn unseen(spec: &PlaneSpec) -> Vec<String> {
 /// Force that a weight that is fed forward leaves in every direction \[N\], which is what `advise` says to give the
 /// supervisor then.
 fn left_by_the_weight(file: &SceneTables, nominal: &Nominal) -> Option<f64> {
-    let fed = file.levitation.as_ref()?.feed_forward_weight;
-    fed.then_some(nominal.force_everywhere_n() - nominal.load_n)
+    (file.feeds_weight_forward()).then_some(nominal.force_everywhere_n() - nominal.load_n)
 }
 
 /// What the scene tells the supervisor otherwise than it is.

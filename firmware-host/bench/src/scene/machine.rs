@@ -8,6 +8,7 @@ use self::start::start;
 use crate::device::levitation::LevitationParams;
 use crate::device::loads::Disturbance;
 use crate::device::modal_levitation::{ModalLevitationParams, Station, TiltParams, Weights};
+use crate::device::whole_levitation::WholeLevitationParams;
 use crate::scene::Scene;
 use crate::scene::diagnostic::{SceneError, SceneText};
 use crate::scene::lint::slips;
@@ -15,12 +16,11 @@ use crate::scene::plane_spec::PlaneSpec;
 use crate::scene::resolve::OfMachine;
 use crate::scene::rotor::{self, Origin};
 use crate::scene::spec::Spec;
+use crate::scene::state_space::state_space;
 use crate::scene::tables::{PlaneTable, SceneTables, TiltTable};
 use crate::scene::values::MethodName;
 use plant_model::V2;
-use plant_model::machine::params::{
-    MachineMagnet, MachineParams, MachinePlane, MachineStart, Support,
-};
+use plant_model::machine::params::{MachineMagnet, MachineParams, MachinePlane, MachineStart};
 use std::path::Path;
 
 /// A plane of a machine.
@@ -56,7 +56,7 @@ pub struct MachineScene {
     /// Loads, in the order of the machine's places for them.
     pub loads: Vec<Disturbance>,
     /// The levitation controller, where one holds the whole rotor; else each plane has its own.
-    pub levitation: Option<ModalLevitationParams>,
+    pub levitation: Option<WholeLevitationParams>,
     /// What is allowed and yet unlikely to be meant, with file and line.
     pub warnings: Vec<String>,
 }
@@ -155,15 +155,17 @@ impl Spec {
                     lag_s: magnet.lag_s,
                 });
                 if magnet.negative_stiffness_n_m > 0.0 {
-                    machine.supports.push(Support {
-                        position_m,
-                        stiffness_n_m: V2::repeat(-magnet.negative_stiffness_n_m),
-                        damping_n_s_m: V2::zeros(),
-                    });
+                    let pulls_n_m = V2::repeat(-magnet.negative_stiffness_n_m);
+                    let at = magnet.position_m.unwrap_or(written.position_m);
+                    (machine.supports).push(rotor::support(&origin, at, pulls_n_m, V2::zeros()));
                 }
             }
         }
-        let levitation = modal_levitation(planes, &machine, text)?;
+        let caps_n = (planes.iter()).map(|p| Some(p.tables.magnet.as_ref()?.force_max_n));
+        let levitation = match state_space(tables, text, caps_n.collect())? {
+            Some(own) => Some(WholeLevitationParams::StateSpace(own)),
+            None => modal_levitation(planes, &machine, text)?.map(WholeLevitationParams::Modal),
+        };
         let weights = Weights::new(&positions(&machine.magnets));
         let mut magnet = 0;
         let mut scenes = Vec::new();
@@ -175,7 +177,7 @@ impl Spec {
             let of = OfMachine {
                 point: machine.point_mass(position_m),
                 carried_kg: own.map_or(0.0, |m| weights.translation[m] * rigid.mass_kg),
-                residual_m_n: origin.residual_m_n(index),
+                residual_m_n: origin.residual_m_n(written.position_m),
                 retainer_plane_ratio: 1.0 / lever(machine.probes_m[index]),
                 magnet_plane_ratio: own.map_or(1.0, |m| lever(machine.magnets[m].position_m)),
                 levitated_alone: levitation.is_none(),
@@ -269,6 +271,11 @@ fn check_together(tables: &SceneTables, text: &SceneText) -> Result<(), SceneErr
             let key = format!("plane[{i}].levitation.tilt");
             let message = "is of the whole rotor, and not of one plane";
             return error(&key, message, "give it as [levitation.tilt]");
+        }
+        if tables.state_space.is_some() && own.is_some() {
+            let key = format!("plane[{i}].levitation");
+            let message = "does not go with [state_space], which holds the whole rotor";
+            return error(&key, message, "remove one of them");
         }
         let by_mode = tables.levitation.as_ref().is_some_and(|l| l.tilt.is_some());
         if by_mode && own.is_some() {

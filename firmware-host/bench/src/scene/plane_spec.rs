@@ -56,6 +56,7 @@ impl Spec {
                 rotor.bending_damping_ratio.is_some(),
             ),
             ("rotor.elements", rotor.elements.is_some()),
+            ("rotor.matrices_file", rotor.matrices_file.is_some()),
             ("support", !tables.support.is_empty()),
             ("unbalance", !tables.unbalance.is_empty()),
             (
@@ -71,13 +72,11 @@ impl Spec {
                 tables.levitation.as_ref().is_some_and(|l| l.tilt.is_some()),
             ),
         ];
-        let of_load = load.map(|i| format!("disturbance[{i}].position_m"));
-        let given = of_several.iter().find(|(_, given)| *given);
-        if let Some(key) = given.map(|(key, _)| (*key).to_owned()).or(of_load) {
-            let message = "is of a whole rotor, and this scene has a point mass in one plane";
-            let help = "describe the bearing planes by [[plane]], or remove it";
-            return Err(text.error_at_key(&key, message.to_owned(), Some(help.to_owned())));
-        }
+        let of_load = load.map_or_else(String::new, |i| format!("disturbance[{i}].position_m"));
+        let message = "is of a whole rotor, and this scene has a point mass in one plane";
+        let help = "describe the bearing planes by [[plane]], or remove it";
+        text.none_given(&of_several, message, help)?;
+        text.none_given(&[(of_load.as_str(), load.is_some())], message, help)?;
         PlaneSpec::new(text.clone(), tables.clone())
     }
 

@@ -1,6 +1,7 @@
 //! From what the user wrote to a scene that can be run.
 
 use crate::device::sensor::SpinSensorParams;
+use crate::device::whole_levitation::WholeLevitationParams;
 use crate::scene::Scene;
 use crate::scene::devices::centre_offset_m;
 use crate::scene::diagnostic::{SceneError, SceneText};
@@ -13,6 +14,7 @@ use crate::scene::plane_spec::PlaneSpec;
 use crate::scene::plant::{plant, plant_of, refused};
 use crate::scene::policy_kind::PolicyKind;
 use crate::scene::spec::Spec;
+use crate::scene::state_space::state_space;
 use crate::scene::tables::SceneTables;
 use crate::scene::values::MethodName;
 use plant_model::V2;
@@ -114,15 +116,23 @@ impl PlaneSpec {
         warnings.extend(unseen(self));
         let (run, spin_sensor) = (&written.run, &written.spin_sensor);
         let levitation = written.levitation.as_ref();
+        let state_space = match of {
+            // That of several planes is the machine's.
+            Some(_) => None,
+            None => {
+                let cap_n = written.magnet.as_ref().map(|m| m.force_max_n);
+                state_space(written, text, vec![cap_n])?.map(WholeLevitationParams::StateSpace)
+            }
+        };
         Ok(Scene {
             title: written.title.clone(),
             story: written.story.trim().to_owned(),
             plant,
             start,
             weight_n,
-            feed_forward_n: match levitation {
-                Some(l) if l.feed_forward_weight => -weight_n,
-                _ => V2::zeros(),
+            feed_forward_n: match written.feeds_weight_forward() {
+                true => -weight_n,
+                false => V2::zeros(),
             },
             disturbances: events.disturbances,
             base_motions: events.base_motions,
@@ -146,6 +156,7 @@ impl PlaneSpec {
                 },
             },
             levitation: levitation.map(Into::into),
+            state_space,
             radial_band: written.radial.band,
             damping_n_s_m,
             supervisor,
@@ -217,10 +228,10 @@ fn policies(spec: &PlaneSpec) -> Result<Vec<PolicyKind>, SceneError> {
             ("is named twice", "name each policy once")
         } else if kind != PolicyKind::Passive && spec.tables.magnet.is_none() {
             ("needs a magnet", "add a [magnet], or run only \"passive\"")
-        } else if kind.levitates() && spec.tables.levitation.is_none() {
+        } else if kind.levitates() && !spec.tables.levitates() {
             (
                 "needs a levitation controller",
-                "add [levitation] with its gains",
+                "add [levitation] with its gains, or [state_space]",
             )
         } else {
             policies.push(kind);

@@ -1,25 +1,30 @@
 //! The rotor of a machine, and what acts on it apart from its planes.
 
+use crate::scene::arrays::Arrays;
 use crate::scene::diagnostic::{SceneError, SceneText};
 use crate::scene::plant::spin;
 use crate::scene::tables::{BendingTable, SceneTables};
+use plant_model::V2;
 use plant_model::machine::params::{
     BendingMode, MachineError, MachineParams, RigidRotor, Rotor, Support, Unbalance,
 };
-use plant_model::machine::shaft::{Disc, ReducedShaft, Shaft, ShaftSection};
+use plant_model::machine::reduced::{ReducedRotor, RotorMatrices};
+use plant_model::machine::shaft::{Disc, Shaft, ShaftSection};
 use std::f64::consts::TAU;
 
 /// Bending modes of a shaft are kept up to here, where the scene does not say \[Hz\].
 const BENDING_TO_HZ: f64 = 3000.0;
 /// Elements of a shaft.
 const ELEMENTS: u32 = 16;
+/// Coordinates of a file of matrices: finding the modes takes the third power.
+const MOST_COORDINATES: usize = 1000;
 
 /// Where positions of the scene count from.
 pub(crate) enum Origin {
     /// From the centre of mass.
     Centre,
-    /// From the left end of a shaft.
-    LeftEnd(ReducedShaft),
+    /// From the left end of a shaft, or as a file of matrices has it.
+    Given(ReducedRotor),
 }
 
 impl Origin {
@@ -27,15 +32,15 @@ impl Origin {
     pub(crate) fn centred_m(&self, position_m: f64) -> f64 {
         match self {
             Self::Centre => position_m,
-            Self::LeftEnd(shaft) => shaft.centred_m(position_m),
+            Self::Given(rotor) => rotor.centred_m(position_m),
         }
     }
 
-    /// What gives way beside the modes at the plane of this number \[m/N\].
-    pub(crate) fn residual_m_n(&self, plane: usize) -> f64 {
+    /// What gives way beside the modes at a place of the scene \[m/N\].
+    pub(crate) fn residual_m_n(&self, position_m: f64) -> f64 {
         match self {
             Self::Centre => 0.0,
-            Self::LeftEnd(shaft) => shaft.residual_m_n[plane],
+            Self::Given(rotor) => rotor.residual_m_n(position_m),
         }
     }
 }
@@ -47,22 +52,26 @@ pub(crate) fn machine(
 ) -> Result<(MachineParams, Origin), SceneError> {
     let written = &tables.rotor;
     let of_a_point = [
-        ("rotor.stiffness_n_m", written.stiffness_n_m),
-        ("rotor.natural_frequency_hz", written.natural_frequency_hz),
-        ("rotor.damping_n_s_m", written.damping_n_s_m),
-        ("rotor.damping_ratio", written.damping_ratio),
+        ("rotor.stiffness_n_m", written.stiffness_n_m.is_some()),
+        (
+            "rotor.natural_frequency_hz",
+            written.natural_frequency_hz.is_some(),
+        ),
+        ("rotor.damping_n_s_m", written.damping_n_s_m.is_some()),
+        ("rotor.damping_ratio", written.damping_ratio.is_some()),
     ];
-    if let Some((key, _)) = of_a_point.iter().find(|(_, value)| value.is_some()) {
-        let message = "is of a point mass; a whole rotor stands on supports".to_owned();
-        let help = "give a [[support]] with position_m, stiffness_n_m and damping_n_s_m".to_owned();
-        return Err(text.error_at_key(key, message, Some(help)));
-    }
-    let (rotor, origin) = match tables.shaft.is_empty() {
-        true => (by_numbers(tables, text)?, Origin::Centre),
-        false => {
-            let shaft = of_a_shaft(tables, text)?;
-            (shaft.rotor.clone(), Origin::LeftEnd(shaft))
-        }
+    let help = "give a [[support]] with position_m, stiffness_n_m and damping_n_s_m";
+    text.none_given(
+        &of_a_point,
+        "is of a point mass; a whole rotor stands on supports",
+        help,
+    )?;
+    let (rotor, origin) = if let Some(file) = &written.matrices_file {
+        given(by_matrices(file, tables, text)?)
+    } else if tables.shaft.is_empty() {
+        (by_numbers(tables, text)?, Origin::Centre)
+    } else {
+        given(of_a_shaft(tables, text)?)
     };
     let moment_kg_m = rotor.rigid().mass_kg * written.eccentricity_m;
     let eccentric = (moment_kg_m > 0.0).then_some(Unbalance {
@@ -78,10 +87,10 @@ pub(crate) fn machine(
     let machine = MachineParams {
         rotor,
         supports: (tables.support.iter())
-            .map(|s| Support {
-                position_m: origin.centred_m(s.position_m),
-                stiffness_n_m: s.stiffness_n_m.into(),
-                damping_n_s_m: s.damping_n_s_m.into(),
+            .map(|s| {
+                let (stiffness_n_m, damping_n_s_m) =
+                    (s.stiffness_n_m.into(), s.damping_n_s_m.into());
+                support(&origin, s.position_m, stiffness_n_m, damping_n_s_m)
             })
             .collect(),
         spin: spin(tables, text)?,
@@ -93,6 +102,27 @@ pub(crate) fn machine(
         planes: Vec::new(),
     };
     Ok((machine, origin))
+}
+
+fn given(rotor: ReducedRotor) -> (Rotor, Origin) {
+    (rotor.rotor.clone(), Origin::Given(rotor))
+}
+
+/// A support at a place of the scene, in series with what the rotor gives way there beside its modes. Spring and damper share
+/// the way as of slow motions, as a contact does.
+pub(crate) fn support(
+    origin: &Origin,
+    position_m: f64,
+    stiffness_n_m: V2,
+    damping_n_s_m: V2,
+) -> Support {
+    let residual_m_n = origin.residual_m_n(position_m);
+    let share = stiffness_n_m.map(|k| 1.0 / (1.0 + k * residual_m_n));
+    Support {
+        position_m: origin.centred_m(position_m),
+        stiffness_n_m: stiffness_n_m.component_mul(&share),
+        damping_n_s_m: damping_n_s_m.component_mul(&share).component_mul(&share),
+    }
 }
 
 /// A rotor by mass, inertias and modes.
@@ -107,11 +137,11 @@ fn by_numbers(tables: &SceneTables, text: &SceneText) -> Result<Rotor, SceneErro
         ),
         ("rotor.elements", written.elements.is_some()),
     ];
-    if let Some((key, _)) = of_a_shaft.iter().find(|(_, given)| *given) {
-        let message = "is of a shaft, and there is none".to_owned();
-        let help = "describe it by [[shaft]], or remove this".to_owned();
-        return Err(text.error_at_key(key, message, Some(help)));
-    }
+    text.none_given(
+        &of_a_shaft,
+        "is of a shaft, and there is none",
+        "describe it by [[shaft]], or remove this",
+    )?;
     let needed = |key: &str, value: Option<f64>, give: &str| {
         value.ok_or_else(|| text.missing_at(&format!("rotor.{key}"), give.to_owned()))
     };
@@ -140,14 +170,15 @@ fn by_numbers(tables: &SceneTables, text: &SceneText) -> Result<Rotor, SceneErro
                 .map(|(i, mode)| bending(i, mode, text))
                 .collect::<Result<_, _>>()?,
             polar_coupling_kg_m2: written.polar_coupling_kg_m2.0.clone(),
+            damping_n_s_m: Vec::new(),
         },
     })
 }
 
-/// A rotor by its shaft.
-fn of_a_shaft(tables: &SceneTables, text: &SceneText) -> Result<ReducedShaft, SceneError> {
+/// Keys of a rotor by numbers.
+fn of_numbers(tables: &SceneTables) -> [(&'static str, bool); 5] {
     let written = &tables.rotor;
-    let of_numbers = [
+    [
         ("rotor.mass_kg", written.mass_kg.is_some()),
         (
             "rotor.transverse_inertia_kg_m2",
@@ -162,11 +193,94 @@ fn of_a_shaft(tables: &SceneTables, text: &SceneText) -> Result<ReducedShaft, Sc
             "rotor.polar_coupling_kg_m2",
             !written.polar_coupling_kg_m2.0.is_empty(),
         ),
-    ];
-    if let Some((key, _)) = of_numbers.iter().find(|(_, given)| *given) {
-        let message = "follows from [[shaft]] and [[disc]]".to_owned();
-        return Err(text.error_at_key(key, message, Some("remove it".to_owned())));
+    ]
+}
+
+/// What is asked of a rotor that is reduced to modes, with the name of each place.
+struct Asked {
+    places: Vec<(String, f64)>,
+    up_to_rad_s: f64,
+    damping_ratio: f64,
+}
+
+impl Asked {
+    fn new(tables: &SceneTables) -> Self {
+        let written = &tables.rotor;
+        Self {
+            places: places(tables),
+            up_to_rad_s: TAU * written.bending_to_hz.unwrap_or(BENDING_TO_HZ),
+            damping_ratio: written.bending_damping_ratio.unwrap_or(0.0),
+        }
     }
+
+    fn nodes_m(&self) -> Vec<f64> {
+        self.places.iter().map(|(_, z)| *z).collect()
+    }
+
+    /// Key of the place that an error is about.
+    fn key(&self, error: &MachineError) -> Option<&str> {
+        let index = error.field.strip_prefix("nodes[")?;
+        let index: usize = index.trim_end_matches(']').parse().ok()?;
+        self.places.get(index).map(|(key, _)| key.as_str())
+    }
+}
+
+/// A rotor by the matrices in a file.
+fn by_matrices(
+    file: &str,
+    tables: &SceneTables,
+    text: &SceneText,
+) -> Result<ReducedRotor, SceneError> {
+    let key = "rotor.matrices_file";
+    let message = "follows from rotor.matrices_file, or contradicts it";
+    text.none_given(&of_numbers(tables), message, "remove it")?;
+    let of_a_shaft = [
+        ("shaft", !tables.shaft.is_empty()),
+        ("disc", !tables.disc.is_empty()),
+        ("rotor.elements", tables.rotor.elements.is_some()),
+    ];
+    text.none_given(&of_a_shaft, message, "remove it")?;
+    let mut arrays = Arrays::load(text, key, file)?;
+    let matrices = RotorMatrices {
+        mass: arrays.take("M")?,
+        stiffness: arrays.take("K")?,
+        damping: arrays.take_if_there("D"),
+        gyroscopic: arrays.take_if_there("G"),
+        places_m: arrays.take("places_m")?.as_slice().to_vec(),
+        displacement: arrays.take("displacement")?,
+    };
+    let coordinates = matrices.mass.nrows();
+    if coordinates > MOST_COORDINATES {
+        let message =
+            format!("M of {file} has {coordinates} coordinates, at most {MOST_COORDINATES}");
+        let help = "reduce the rotor before, to some hundred".to_owned();
+        return Err(text.error_at_key(key, message, Some(help)));
+    }
+    let asked = Asked::new(tables);
+    matrices
+        .reduced(&asked.nodes_m(), asked.up_to_rad_s, asked.damping_ratio)
+        .map_err(|error| match asked.key(&error) {
+            Some(place) => text.refused(place, error.value, error.expected),
+            None => {
+                let name = match error.field.as_str() {
+                    "mass" => "M",
+                    "stiffness" => "K",
+                    "damping" => "D",
+                    "gyroscopic" => "G",
+                    name => name,
+                };
+                let (value, expected) = (error.value, error.expected);
+                let message = format!("{name} of {file} has {value}: expected {expected}");
+                text.error_at_key(key, message, Some(format!("give {expected}")))
+            }
+        })
+}
+
+/// A rotor by its shaft.
+fn of_a_shaft(tables: &SceneTables, text: &SceneText) -> Result<ReducedRotor, SceneError> {
+    let written = &tables.rotor;
+    let message = "follows from [[shaft]] and [[disc]]";
+    text.none_given(&of_numbers(tables), message, "remove it")?;
     let shaft = Shaft {
         sections: (tables.shaft.iter())
             .map(|s| ShaftSection {
@@ -188,23 +302,16 @@ fn of_a_shaft(tables: &SceneTables, text: &SceneText) -> Result<ReducedShaft, Sc
             .collect(),
         elements: written.elements.unwrap_or(ELEMENTS) as usize,
     };
-    let places = places(tables);
-    let nodes_m: Vec<f64> = places.iter().map(|(_, z)| *z).collect();
-    let up_to_rad_s = TAU * written.bending_to_hz.unwrap_or(BENDING_TO_HZ);
-    let damping_ratio = written.bending_damping_ratio.unwrap_or(0.0);
-    let refused = |error: MachineError| {
-        let node = (error.field.strip_prefix("nodes["))
-            .and_then(|rest| rest.trim_end_matches(']').parse::<usize>().ok())
-            .and_then(|i| places.get(i));
-        let key = match node {
-            Some((key, _)) => key.clone(),
-            None => error.field.replace("discs[", "disc["),
-        };
-        text.refused(&key, error.value, error.expected)
-    };
+    let asked = Asked::new(tables);
     shaft
-        .reduced(&nodes_m, up_to_rad_s, damping_ratio)
-        .map_err(refused)
+        .reduced(&asked.nodes_m(), asked.up_to_rad_s, asked.damping_ratio)
+        .map_err(|error| {
+            let key = match asked.key(&error) {
+                Some(place) => place.to_owned(),
+                None => error.field.replace("discs[", "disc["),
+            };
+            text.refused(&key, error.value, error.expected)
+        })
 }
 
 /// Keys and values of all places on the rotor, those of the planes first.

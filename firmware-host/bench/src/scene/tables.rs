@@ -36,6 +36,7 @@ key_tables! {
         sensor: SensorTable [= SensorTable::default()], "", ANY, "the position sensor", "probe";
         spin_sensor: SpinSensorTable [= SpinSensorTable::default()], "", ANY, "what is known of the spin", "tacho", "encoder";
         levitation: Option<LevitationTable> [or "no controller"], "", ANY, "the levitation controller of the firmware", "pid", "pd", "controller";
+        state_space: Option<StateSpaceTable> [or "`levitation`"], "", ANY, "a [controller of one's own](#state-space) in the place of `levitation`, of all planes together", "lqg", "h_infinity", "mu_synthesis";
         radial: RadialTable [= RadialTable::default()], "", ANY, "the policy `radial`";
         damping: DampingTable [= DampingTable::default()], "", ANY, "the policy `damping`";
         supervisor: toml::Table [= toml::Table::new()], "", ANY, "replaces single suggested parameters, of [this table](../supervisor/linking.md#parameters)", "config";
@@ -72,9 +73,10 @@ key_tables! {
         gravity_m_s2: Pair [= Pair::default()], "m/s²", Within(-1e4, 1e4), "weight = m_r times this", "g";
         transverse_inertia_kg_m2: Option<f64> [or "–"], "kg m²", Positive, "I_t about the centre of mass; with `[[plane]]`, and required there", "i_t", "it";
         polar_inertia_kg_m2: Option<f64> [or "–"], "kg m²", NotNegative, "I_p, at most twice I_t; with `[[plane]]`, and required there", "i_p", "ip";
-        bending_to_hz: Option<f64> [or "3000"], "Hz", NotNegative, "of a `[[shaft]]` the bending modes up to here are kept, of the others their static compliance; 0: rigid";
-        bending_damping_ratio: Option<f64> [or "0"], "1", Within(0.0, 100.0), "of the modes of a `[[shaft]]`";
+        bending_to_hz: Option<f64> [or "3000"], "Hz", NotNegative, "of a `[[shaft]]` or a `matrices_file` the bending modes up to here are kept, of the others their static compliance; 0: rigid";
+        bending_damping_ratio: Option<f64> [or "0"], "1", Within(0.0, 100.0), "of the modes of a `[[shaft]]` or a `matrices_file`";
         elements: Option<u32> [or "16"], "", Within(1.0, 200.0), "of a `[[shaft]]`, at least so many";
+        matrices_file: Option<String> [or "–"], "", ANY, "a [file](#rotor-by-matrices) with the matrices of the free rotor in the place of mass, inertias and `[[shaft]]`; every `position_m` then counts as its places do", "npz";
         bending: Vec<BendingTable> [= Vec::new()], "", ANY, "a bending mode of the free shaft; with `[[plane]]` only", "mode", "flexible";
         polar_coupling_kg_m2: Numbers [= Numbers::default()], "kg m²", Finite, "∫ I_p′·φ_i′·φ_j′ dz of the slopes of tilt and bending modes, row by row, its first number left to I_p; none: bending modes are not turned by the spin";
     }
@@ -188,6 +190,17 @@ key_tables! {
         integral_n_m_rad_s: f64 [= 0.0], "N m/(rad s)", Within(0.0, 1e15), "moment per slope and time", "ki";
         derivative_n_m_s_rad: f64 [required], "N m s/rad", Within(0.0, 1e9), "moment per rate of slope", "kd";
         cross_feedback: f64 [= 0.0], "1", Within(-2.0, 2.0), "share of the gyroscopic moment I_p·Ω times rate of slope that is set against it, by the reported spin", "gyroscopic";
+    }
+
+    /// x ← A·x + B·y, f = C·x + D·y from the readings y of all planes, x and y of one after the other, to the forces f of all
+    /// planes that have a magnet.
+    StateSpaceTable {
+        file: Option<String> [or "–"], "", ANY, "an `.npz` file with arrays A, B, C and D", "npz";
+        a: Numbers [= Numbers::default()], "1", Finite, "A, row by row, n × n; none: a controller without state";
+        b: Numbers [= Numbers::default()], "1/m", Finite, "B, n × readings";
+        c: Numbers [= Numbers::default()], "N", Finite, "C, forces × n";
+        d: Numbers [= Numbers::default()], "N/m", Finite, "D, forces × readings; none: zero";
+        feed_forward_weight: bool [= false], "", ANY, "as of `levitation`";
     }
 
     RadialTable [Default] {

@@ -5,6 +5,7 @@ use super::{
     Rotor,
 };
 use crate::params::{ContactLaw, SlidingFriction, SpinParams, StatorParams};
+use nalgebra::DMatrix;
 
 fn check(
     ok: bool,
@@ -25,6 +26,27 @@ fn check(
 const POSITIVE: &str = "a finite number greater than 0";
 const NOT_NEGATIVE: &str = "a finite number, 0 or greater";
 const FINITE: &str = "a finite number";
+
+/// A symmetric matrix, row by row, or nothing.
+fn symmetric(
+    field: &str,
+    values: &[f64],
+    (size, count): (usize, &'static str),
+) -> Result<(), MachineError> {
+    let given = values.len();
+    check(
+        given == 0 || given == size * size,
+        field,
+        given as f64,
+        count,
+    )?;
+    for (i, value) in values.iter().enumerate() {
+        let mirrored = values[(i % size) * size + i / size];
+        let rule = "a symmetric matrix of finite numbers";
+        check(*value == mirrored, field, *value, rule)?;
+    }
+    Ok(())
+}
 
 impl RigidRotor {
     fn validate(&self) -> Result<(), MachineError> {
@@ -77,32 +99,31 @@ impl Rotor {
                 check(true, field("shape"), *shape, FINITE)?;
             }
         }
-        if let Self::Modal {
+        let Self::Modal {
             bending,
             polar_coupling_kg_m2,
+            damping_n_s_m,
             ..
         } = self
-            && !polar_coupling_kg_m2.is_empty()
-        {
-            let size = bending.len() + 1;
-            let (field, count) = ("rotor.polar_coupling_kg_m2", polar_coupling_kg_m2.len());
-            check(
-                count == size * size,
-                field,
-                count as f64,
-                "(1 + bending modes)² numbers, or none",
-            )?;
-            for (i, value) in polar_coupling_kg_m2.iter().enumerate() {
-                let mirrored = polar_coupling_kg_m2[(i % size) * size + i / size];
-                check(
-                    *value == mirrored,
-                    field,
-                    *value,
-                    "a symmetric matrix of finite numbers",
-                )?;
-            }
+        else {
+            return Ok(());
+        };
+        let modes = bending.len();
+        symmetric(
+            "rotor.polar_coupling_kg_m2",
+            polar_coupling_kg_m2,
+            (1 + modes, "(1 + bending modes)² numbers, or none"),
+        )?;
+        let field = "rotor.damping_n_s_m";
+        let count = (2 + modes, "(2 + bending modes)² numbers, or none");
+        symmetric(field, damping_n_s_m, count)?;
+        if damping_n_s_m.is_empty() {
+            return Ok(());
         }
-        Ok(())
+        let matrix = DMatrix::from_row_slice(2 + modes, 2 + modes, damping_n_s_m);
+        let least = matrix.symmetric_eigenvalues().min();
+        let rule = "a damping that takes energy from every motion: no eigenvalue below 0";
+        check(least >= -1e-9 * matrix.amax(), field, least, rule)
     }
 
     /// Whether a place lies on the rotor, as far as its shapes say.

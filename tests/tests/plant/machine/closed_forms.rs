@@ -139,6 +139,12 @@ fn a_map_of_whole_samples_changes_nothing() {
             (coupling[1], coupling[5], coupling[6]) = (0.2, 0.2, 0.5);
             coupling
         },
+        damping_n_s_m: {
+            // Of a damper somewhere along the shaft.
+            let moved = [1.0, 0.05, 0.7, -0.4, 0.2, 0.1];
+            let both = moved.iter().flat_map(|a| moved.map(|b| 40.0 * (a * b)));
+            both.collect()
+        },
     };
     let ring = RingParams {
         mass_kg: 2.0,

@@ -272,6 +272,7 @@ fn a_stiff_shaft_is_a_rigid_rotor() {
             rigid: *rigid(0.2, 0.05).rigid(),
             bending: modes,
             polar_coupling_kg_m2: vec![],
+            damping_n_s_m: vec![],
         };
         (end(rotor) - stiff).norm() / CLEARANCE_M
     };

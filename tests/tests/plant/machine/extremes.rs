@@ -106,6 +106,7 @@ fn shafts_and_supports() {
         rigid: *rigid(0.2, 0.05).rigid(),
         bending: modes,
         polar_coupling_kg_m2: vec![],
+        damping_n_s_m: vec![],
     };
     run("bending at 10 kHz", &params, &struck(400.0), 0.2);
 

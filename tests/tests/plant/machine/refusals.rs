@@ -61,11 +61,20 @@ fn a_place_off_the_shaft_is_named() {
             rigid: *rigid(0.2, 0.05).rigid(),
             bending: bending(2, 2000.0),
             polar_coupling_kg_m2: vec![],
+            damping_n_s_m: vec![],
         };
     };
     refused("planes[1].position_m", |p| {
         modal(p);
         p.planes[1].position_m = 0.26;
+    });
+    refused("rotor.damping_n_s_m", |p| {
+        modal(p);
+        if let Rotor::Modal { damping_n_s_m, .. } = &mut p.rotor {
+            // It would drive the second mode.
+            *damping_n_s_m = vec![0.0; 16];
+            damping_n_s_m[15] = -1.0;
+        }
     });
     refused("rotor.polar_coupling_kg_m2", |p| {
         modal(p);

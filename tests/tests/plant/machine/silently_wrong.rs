@@ -82,6 +82,7 @@ fn case(bending_modes: usize, stiffness_n_m: f64) -> (MachineParams, Reference) 
                 rigid,
                 bending: modes,
                 polar_coupling_kg_m2: vec![],
+                damping_n_s_m: vec![],
             },
         },
         supports,

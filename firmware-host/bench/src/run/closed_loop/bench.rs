@@ -3,13 +3,14 @@
 use super::station::Station;
 use super::{PlaneEnded, RunError, TRUSTED, TRUSTED_TOLERANCES, Task};
 use crate::device::loads::{Loads, cuts};
-use crate::device::modal_levitation::{ModalLevitation, any_holds};
+use crate::device::whole_levitation::WholeLevitation;
 use crate::run::controller::Seen;
 use crate::run::figures::{Ended, Figures};
 use crate::run::rig::Rig;
 use crate::run::trace::{AxisRow, Recorder};
 use crate::scene::Scene;
 use plant_model::{PlantError, Snapshot, V2};
+use supervisor::IntegratorHint;
 
 /// A rig with its stations, sample by sample.
 pub(super) struct Bench<'a> {
@@ -18,7 +19,7 @@ pub(super) struct Bench<'a> {
     rig: Box<dyn Rig + 'a>,
     stations: Vec<Station<'a>>,
     /// Who levitates the rotor as a whole.
-    pub(super) levitation: Option<ModalLevitation>,
+    pub(super) levitation: Option<WholeLevitation>,
     pub(super) axis: Option<&'a mut dyn Recorder<AxisRow>>,
     /// What acts at each place for loads.
     loads: Vec<Loads>,
@@ -159,7 +160,8 @@ impl<'a> Bench<'a> {
         let Some(levitation) = &mut self.levitation else {
             return;
         };
-        let hold = any_holds(self.stations.iter().map(|s| s.controller.hint()));
+        let holds = |s: &Station| s.controller.hint() == IntegratorHint::Hold;
+        let hold = self.stations.iter().any(holds);
         let readings = self.seen.iter().map(|seen| seen.reading.position_m);
         let spin_rad_s = self.seen.first().map_or(0.0, |seen| seen.spin_rad_s);
         levitation.forces_n(readings, spin_rad_s, hold, &mut self.levitation_n);

@@ -1,0 +1,131 @@
+//! Matrices from files of NumPy, as a scene names them.
+
+use crate::scene::diagnostic::{SceneError, SceneText};
+use nalgebra::DMatrix;
+use npyz::{NpyFile, Order};
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::BufReader;
+use zip::ZipArchive;
+
+/// Most numbers of an array.
+const MOST_NUMBERS: u64 = 4_000_000;
+
+/// The arrays of an `.npz` file; one of a single dimension is a column.
+pub(crate) struct Arrays<'a> {
+    text: &'a SceneText,
+    key: &'a str,
+    file: &'a str,
+    all: BTreeMap<String, DMatrix<f64>>,
+}
+
+impl<'a> Arrays<'a> {
+    /// Reads a file that a key names; a relative path counts from the scene's folder.
+    pub(crate) fn load(
+        text: &'a SceneText,
+        key: &'a str,
+        file: &'a str,
+    ) -> Result<Self, SceneError> {
+        let folder = text.path.parent().unwrap_or(std::path::Path::new(""));
+        let refused = |reason: String| {
+            let message = format!("{file}: {reason}");
+            let help =
+                "give an .npz file, as numpy.savez writes it, by its path from the scene file";
+            text.error_at_key(key, message, Some(help.to_owned()))
+        };
+        let opened = File::open(folder.join(file)).map_err(|e| refused(e.to_string()))?;
+        let mut archive =
+            ZipArchive::new(BufReader::new(opened)).map_err(|e| refused(e.to_string()))?;
+        let mut all = BTreeMap::new();
+        for i in 0..archive.len() {
+            let entry = archive.by_index(i).map_err(|e| refused(e.to_string()))?;
+            let name = entry
+                .name()
+                .map_err(|e| refused(e.to_string()))?
+                .into_owned();
+            let Some(name) = name.strip_suffix(".npy").map(str::to_owned) else {
+                continue;
+            };
+            let read = |reader| matrix(NpyFile::new(reader).map_err(|e| e.to_string())?);
+            let array = read(entry).map_err(|reason| refused(format!("{name}: {reason}")))?;
+            all.insert(name, array);
+        }
+        Ok(Self {
+            text,
+            key,
+            file,
+            all,
+        })
+    }
+
+    /// The array of a name.
+    pub(crate) fn take(&mut self, name: &str) -> Result<DMatrix<f64>, SceneError> {
+        self.take_if_there(name).ok_or_else(|| {
+            let message = format!("{} has no array {name}", self.file);
+            let names: Vec<&str> = self.all.keys().map(String::as_str).collect();
+            let help = match names.is_empty() {
+                true => format!("save it with an array {name}"),
+                false => format!(
+                    "save it with an array {name}; beside others it has {}",
+                    names.join(", ")
+                ),
+            };
+            (self.text).error_at_key(self.key, message, Some(help))
+        })
+    }
+
+    /// The array of a name, where the file has one.
+    pub(crate) fn take_if_there(&mut self, name: &str) -> Option<DMatrix<f64>> {
+        self.all.remove(name)
+    }
+}
+
+fn matrix<R: std::io::Read>(array: NpyFile<R>) -> Result<DMatrix<f64>, String> {
+    let (rows, columns) = match *array.shape() {
+        [] => (1, 1),
+        [rows] => (rows, 1),
+        [rows, columns] => (rows, columns),
+        _ => {
+            return Err(format!(
+                "has {} dimensions, at most two",
+                array.shape().len()
+            ));
+        }
+    };
+    if rows.saturating_mul(columns) > MOST_NUMBERS {
+        return Err(format!(
+            "is {rows} × {columns}, at most {MOST_NUMBERS} numbers"
+        ));
+    }
+    let order = array.order();
+    let kind = array.dtype().descr();
+    let numbers: Vec<f64> = match array.try_data::<f64>() {
+        Ok(data) => collected(data, |x| x)?,
+        Err(array) => match array.try_data::<f32>() {
+            Ok(data) => collected(data, f64::from)?,
+            Err(array) => match array.try_data::<i64>() {
+                Ok(data) => collected(data, |x| x as f64)?,
+                Err(_) => return Err(format!("holds {kind}, expected real numbers (float64)")),
+            },
+        },
+    };
+    let (rows, columns) = (rows as usize, columns as usize);
+    if numbers.len() != rows * columns {
+        return Err(format!(
+            "has {} numbers for {rows} × {columns}",
+            numbers.len()
+        ));
+    }
+    Ok(match order {
+        Order::C => DMatrix::from_row_slice(rows, columns, &numbers),
+        Order::Fortran => DMatrix::from_column_slice(rows, columns, &numbers),
+    })
+}
+
+fn collected<T>(
+    data: impl Iterator<Item = std::io::Result<T>>,
+    number: impl Fn(T) -> f64,
+) -> Result<Vec<f64>, String> {
+    let all: std::io::Result<Vec<f64>> = data.map(|x| x.map(&number)).collect();
+    all.map_err(|error| error.to_string())
+}

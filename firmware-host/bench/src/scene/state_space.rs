@@ -1,0 +1,117 @@
+//! Controllers of the user's, by their matrices.
+
+use crate::device::state_space::StateSpaceParams;
+use crate::scene::arrays::Arrays;
+use crate::scene::diagnostic::{SceneError, SceneText};
+use crate::scene::tables::SceneTables;
+use nalgebra::DMatrix;
+
+/// Most states.
+const MOST_STATES: usize = 500;
+
+impl SceneTables {
+    /// Whether somebody levitates.
+    pub(crate) fn levitates(&self) -> bool {
+        self.levitation.is_some() || self.state_space.is_some()
+    }
+
+    /// Whether whoever does adds minus the weight.
+    pub(crate) fn feeds_weight_forward(&self) -> bool {
+        (self.levitation.as_ref()).is_some_and(|l| l.feed_forward_weight)
+            || (self.state_space.as_ref()).is_some_and(|s| s.feed_forward_weight)
+    }
+}
+
+/// The controller of `[state_space]` for stations with a cap each, where they have a magnet.
+pub(crate) fn state_space(
+    tables: &SceneTables,
+    text: &SceneText,
+    caps_n: Vec<Option<f64>>,
+) -> Result<Option<StateSpaceParams>, SceneError> {
+    let Some(written) = &tables.state_space else {
+        return Ok(None);
+    };
+    let message = "does not go with [state_space], which stands in its place";
+    let gains = [("levitation", tables.levitation.is_some())];
+    text.none_given(&gains, message, "remove one of them")?;
+    let readings = 2 * caps_n.len();
+    let forces = 2 * caps_n.iter().flatten().count();
+    let key = "state_space";
+    let wrong = |key: &str, message: String| {
+        let help = format!(
+            "{readings} readings, x and y of each plane; {forces} forces, x and y of each plane with a magnet"
+        );
+        text.error_at_key(key, message, Some(help))
+    };
+    let [a, b, c, d] = match &written.file {
+        Some(file) => {
+            let of_numbers = [
+                ("state_space.a", !written.a.0.is_empty()),
+                ("state_space.b", !written.b.0.is_empty()),
+                ("state_space.c", !written.c.0.is_empty()),
+                ("state_space.d", !written.d.0.is_empty()),
+            ];
+            let message = "stands in state_space.file already";
+            text.none_given(&of_numbers, message, "remove one of them")?;
+            let mut arrays = Arrays::load(text, "state_space.file", file)?;
+            let d = arrays.take_if_there("D");
+            let [a, b, c] = ["A", "B", "C"].map(|name| arrays.take(name));
+            let d = d.unwrap_or_else(|| DMatrix::zeros(forces, readings));
+            [a?, b?, c?, d]
+        }
+        None => {
+            let count = written.a.0.len();
+            let states = (count as f64).sqrt().round() as usize;
+            if states * states != count {
+                let message = format!("has {count} numbers, no square of a number of states");
+                return Err(wrong("state_space.a", message));
+            }
+            let part = |name: &str, numbers: &[f64], rows: usize, columns: usize| {
+                let (count, wanted) = (numbers.len(), rows * columns);
+                if count != wanted {
+                    let message =
+                        format!("has {count} numbers, expected {rows} × {columns} = {wanted}");
+                    return Err(wrong(&format!("{key}.{name}"), message));
+                }
+                Ok(DMatrix::from_row_slice(rows, columns, numbers))
+            };
+            let d = match written.d.0.is_empty() && states > 0 {
+                true => DMatrix::zeros(forces, readings),
+                false => part("d", &written.d.0, forces, readings)?,
+            };
+            [
+                part("a", &written.a.0, states, states)?,
+                part("b", &written.b.0, states, readings)?,
+                part("c", &written.c.0, forces, states)?,
+                d,
+            ]
+        }
+    };
+    let states = a.nrows();
+    if states > MOST_STATES {
+        return Err(wrong(
+            key,
+            format!("has {states} states, at most {MOST_STATES}"),
+        ));
+    }
+    let sizes = [
+        ("A", &a, (states, states)),
+        ("B", &b, (states, readings)),
+        ("C", &c, (forces, states)),
+        ("D", &d, (forces, readings)),
+    ];
+    for (name, matrix, (rows, columns)) in sizes {
+        if matrix.shape() != (rows, columns) {
+            let (found, wide) = matrix.shape();
+            let message = format!("{name} is {found} × {wide}, expected {rows} × {columns}");
+            return Err(wrong(key, message));
+        }
+        if matrix.iter().any(|x| !x.is_finite()) {
+            return Err(wrong(
+                key,
+                format!("{name} has a number that is not finite"),
+            ));
+        }
+    }
+    Ok(Some(StateSpaceParams { a, b, c, d, caps_n }))
+}
