@@ -81,6 +81,7 @@ mod series;
 pub mod shaft;
 mod step;
 mod system;
+pub mod whirl_ranges;
 
 pub use readout::{AxisMotion, MachineSnapshot, PlaneFlows, PlaneSnapshot};
 pub use run::Machine;

@@ -33,13 +33,14 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Rooms, each importing only from those above it: `words`, `device`, `scene`, `run`, `report`, `advise`.
+//! Rooms, each importing only from those above it: `words`, `device`, `scene`, `run`, `modes`, `report`, `advise`.
 
 #![forbid(unsafe_code)]
 #![warn(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 pub mod advise;
 pub mod device;
+pub mod modes;
 pub mod report;
 pub mod run;
 pub mod scene;

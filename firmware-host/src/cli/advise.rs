@@ -3,7 +3,8 @@
 use crate::cli::error::{CommandError, pretty, print, say};
 use crate::cli::load_any;
 use firmware_bench::advise::{self, Advice, Language, OutOfRange};
-use firmware_bench::report::campbell::{self, Coupling};
+use firmware_bench::modes::Coupling;
+use firmware_bench::report::campbell;
 use firmware_bench::scene::Scene;
 use firmware_bench::scene::machine::{AnyScene, MachineScene};
 use firmware_bench::scene::suggest::Nominal;

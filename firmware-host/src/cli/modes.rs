@@ -3,7 +3,8 @@
 
 use crate::cli::error::{CommandError, pretty, print};
 use crate::cli::load_any;
-use firmware_bench::report::campbell::{self, Analysis, Range};
+use firmware_bench::modes::{Analysis, Range};
+use firmware_bench::report::campbell;
 use firmware_bench::scene::machine::{AnyScene, MachineScene};
 use std::path::PathBuf;
 

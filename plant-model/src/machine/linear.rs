@@ -62,11 +62,22 @@ pub struct CriticalSpeed {
 /// A linear machine.
 #[derive(Debug, Clone)]
 pub struct LinearMachine {
-    body: LinearBody,
+    pub(super) body: LinearBody,
     rate_rad_s: f64,
+    /// Of each plane.
+    pub(super) walls: Vec<Wall>,
 }
 
-type C = Complex<f64>;
+/// What a plane is to whirl that slides or rolls there.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Wall {
+    pub(super) clearance_m: f64,
+    pub(super) stiffness_n_m: f64,
+    /// Sliding friction at rest less rolling friction.
+    pub(super) driving_friction: f64,
+}
+
+pub(super) type C = Complex<f64>;
 
 /// Share of the larger amplitude by which forward and backward must differ to be told apart.
 const TOLD_APART: f64 = 1e-6;
@@ -81,7 +92,18 @@ impl LinearMachine {
     pub fn new(params: &MachineParams, walls: Walls) -> Result<Self, MachineError> {
         let body = LinearBody::with_walls(params, walls == Walls::Closed)?;
         let rate_rad_s = body.undamped_rate_rad_s().max(1.0);
-        Ok(Self { body, rate_rad_s })
+        let walls = params.planes.iter().map(|plane| Wall {
+            clearance_m: plane.contact.clearance_m,
+            stiffness_n_m: (plane.contact.law.linear())
+                .map_or(f64::INFINITY, |law| law.stiffness_n_m),
+            driving_friction: plane.friction.sliding.coefficient(0.0)
+                - plane.friction.rolling_coefficient,
+        });
+        Ok(Self {
+            walls: walls.collect(),
+            body,
+            rate_rad_s,
+        })
     }
 
     /// Modes at a spin \[rad/s\], slowest first; a pair of eigenvalues counts once. The more modes bend, the longer it takes:
@@ -230,27 +252,60 @@ impl LinearMachine {
             .collect()
     }
 
-    /// Which way the eigenvector goes round, from inverse iteration.
-    fn direction(&self, a: &DMatrix<C>, value: C) -> Direction {
-        let (n, rate) = (self.body.n, self.rate_rad_s);
-        let near = value + C::new(1e-9, 1e-9) * rate.min(1e3 * value.norm());
-        let shifted = a - DMatrix::from_diagonal_element(2 * n, 2 * n, near);
-        // No mode is orthogonal to this by construction.
-        let mut vector = DVector::from_fn(2 * n, |i, _| {
-            C::new(1.0 + 0.37 * (i as f64).sin(), 0.41 * (i as f64).cos())
-        });
-        let factors = shifted.lu();
-        for _ in 0..3 {
-            let Some(next) = factors.solve(&vector) else {
-                return Direction::Planar;
-            };
-            let size = next.norm();
-            vector = next / C::new(size, 0.0);
+    /// Shapes of the modes of [`Self::modes`] that turn or swing, in their order: motion at each probe, as a complex number
+    /// x ± j·y of its larger sense, largest 1. Of a mixture any one is given. `None` as of [`Self::modes`].
+    pub fn shapes(&self, spin_rad_s: f64) -> Option<Vec<(MachineMode, Vec<C>)>> {
+        let a = self.body.generator(self.rate_rad_s, spin_rad_s);
+        let complex = a.map(|x| C::new(x, 0.0));
+        let modes = self.modes(spin_rad_s)?.into_iter();
+        let turning = modes.filter(|mode| mode.frequency_rad_s > 0.0);
+        Some(
+            turning
+                .map(|mode| {
+                    let value = C::new(mode.growth_s, mode.frequency_rad_s);
+                    (mode, self.shape(&complex, value))
+                })
+                .collect(),
+        )
+    }
+
+    fn shape(&self, a: &DMatrix<C>, value: C) -> Vec<C> {
+        let Some(vector) = self.vector(a, value) else {
+            return vec![C::new(0.0, 0.0); self.body.probes.len()];
+        };
+        let motion = vector_of(&vector, self.body.n);
+        let turning = |sign: f64| {
+            let probes = self.body.probes.iter();
+            probes
+                .map(move |port| circular(port, motion, sign))
+                .collect::<Vec<C>>()
+        };
+        let size = |shape: &[C]| shape.iter().map(|z| z.norm()).fold(0.0, f64::max);
+        let [ahead, back] = [1.0, -1.0].map(turning);
+        let shape = if size(&ahead) >= size(&back) {
+            ahead
+        } else {
+            back
+        };
+        let largest = shape
+            .iter()
+            .copied()
+            .max_by(|a, b| a.norm().total_cmp(&b.norm()));
+        match largest.filter(|z| z.norm() > 0.0) {
+            Some(largest) => shape.into_iter().map(|z| z / largest).collect(),
+            None => shape,
         }
+    }
+
+    /// Which way the eigenvector goes round.
+    fn direction(&self, a: &DMatrix<C>, value: C) -> Direction {
+        let Some(vector) = self.vector(a, value) else {
+            return Direction::Planar;
+        };
         let ports = self.body.at_planes.iter().chain(&self.body.contacts);
         let (mut forward, mut backward) = (0.0, 0.0);
         for port in ports {
-            let [ahead, back] = senses(port, &vector.as_slice()[..n]);
+            let [ahead, back] = senses(port, vector_of(&vector, self.body.n));
             forward = f64::max(forward, ahead);
             backward = f64::max(backward, back);
         }
@@ -260,28 +315,76 @@ impl LinearMachine {
             _ => Direction::Planar,
         }
     }
+
+    /// The eigenvector, from inverse iteration.
+    fn vector(&self, a: &DMatrix<C>, value: C) -> Option<DVector<C>> {
+        let (n, rate) = (self.body.n, self.rate_rad_s);
+        let near = value + C::new(1e-9, 1e-9) * rate.min(1e3 * value.norm());
+        let shifted = a - DMatrix::from_diagonal_element(2 * n, 2 * n, near);
+        // No mode is orthogonal to this by construction.
+        let mut vector = DVector::from_fn(2 * n, |i, _| {
+            C::new(1.0 + 0.37 * (i as f64).sin(), 0.41 * (i as f64).cos())
+        });
+        let factors = shifted.lu();
+        for _ in 0..3 {
+            let next = factors.solve(&vector)?;
+            let size = next.norm();
+            vector = next / C::new(size, 0.0);
+        }
+        Some(vector)
+    }
 }
 
-/// Eigenvalues by Schur's form, as exact as its iteration ends; `None` where it does not.
+/// The positions of an eigenvector.
+fn vector_of(vector: &DVector<C>, n: usize) -> &[C] {
+    &vector.as_slice()[..n]
+}
+
+/// Eigenvalues by Schur's form; `None` where its iteration does not end.
+///
+/// The iteration has no exceptional shifts and may go round in circles, as it does with two like pairs. Seen from other axes the
+/// same matrix ends; only then is less than rounding asked of it.
 fn eigenvalues(a: &DMatrix<f64>) -> Option<DVector<C>> {
     const SWEEPS: usize = 100;
+    const TURNS: usize = 4;
     let most = SWEEPS * a.nrows();
-    let schur = [f64::EPSILON, 1e-14, 1e-12, 1e-10]
-        .into_iter()
-        .find_map(|eps| Schur::try_new(a.clone(), eps, most))?;
+    let schur = [f64::EPSILON, 1e-14, 1e-12].into_iter().find_map(|eps| {
+        let mut seen = a.clone();
+        (0..TURNS).find_map(|turn| {
+            if turn > 0 {
+                reflect(&mut seen, turn);
+            }
+            Schur::try_new(seen.clone(), eps, most)
+        })
+    })?;
     Some(schur.complex_eigenvalues())
+}
+
+/// The matrix seen in a mirror: (1 − 2vvᵀ)·A·(1 − 2vvᵀ).
+fn reflect(a: &mut DMatrix<f64>, turn: usize) {
+    let v = DVector::from_fn(a.nrows(), |i, _| {
+        ((i + 1) as f64 * (0.7 + turn as f64)).sin()
+    });
+    let v = v.normalize();
+    let row = v.transpose() * &*a;
+    *a -= 2.0 * &v * row;
+    let column = &*a * &v;
+    *a -= 2.0 * column * v.transpose();
 }
 
 /// Where the pencil of the critical speeds is shifted to, of the largest square of a rate.
 const SHIFT: f64 = 1e-8;
 
-/// Amplitudes of the parts that go forward and backward, x = Re(X·e^jωt) and y likewise: |X + jY|/2 and |X − jY|/2.
-fn senses(port: &Port, motion: &[C]) -> [f64; 2] {
+/// The part of a motion that goes forward (sign 1) or backward (−1), x = Re(X·e^jωt) and y likewise: (X ± jY)/2.
+fn circular(port: &Port, motion: &[C], sign: f64) -> C {
     let part = |of: fn(&C) -> f64| motion.iter().map(of).collect::<Vec<f64>>();
     let (re, im) = (port.of(&part(|z| z.re)), port.of(&part(|z| z.im)));
-    let x = C::new(re.x, im.x);
-    let turned = C::new(-im.y, re.y);
-    [0.5 * (x + turned).norm(), 0.5 * (x - turned).norm()]
+    0.5 * (C::new(re.x, im.x) + sign * C::new(-im.y, re.y))
+}
+
+/// Amplitudes of the two.
+fn senses(port: &Port, motion: &[C]) -> [f64; 2] {
+    [1.0, -1.0].map(|sign| circular(port, motion, sign).norm())
 }
 
 /// The larger half axis of the ellipse that a place runs through.

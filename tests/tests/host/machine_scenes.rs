@@ -12,7 +12,7 @@ use firmware_bench::scene::machine::{AnyScene, MachineScene};
 use firmware_bench::scene::policy_kind::PolicyKind;
 use serde_json::Value;
 use std::fs;
-use system_tests::{machine_scene_names, machine_scene_path, run_scene};
+use system_tests::{machine_scene_names, machine_scene_path, root, run_scene};
 use tempfile::TempDir;
 
 /// A magnetic bearing with everything that one plane may have and a whole rotor as well.
@@ -415,5 +415,47 @@ fn the_scenes_of_machines_run_and_are_confirmed() {
         );
         let errors = String::from_utf8_lossy(&result.stderr);
         assert!(result.status.success(), "{name}: {errors}");
+    }
+}
+
+/// The same overload on the same machine, seen ever more closely: the wall is struck less hard the more gives way, and the end that
+/// is not struck takes part.
+#[test]
+fn one_machine_is_seen_in_three_ways() {
+    let path = |name: &str| root().join(format!("firmware-host/scenes/one_machine/{name}.toml"));
+    let load = |name: &str| {
+        let scene = AnyScene::load(&path(name)).unwrap();
+        assert_eq!(scene.warnings(), [""; 0], "{name}");
+        scene
+    };
+    let AnyScene::Plane(point) = load("point_mass") else {
+        panic!("a scene of one plane");
+    };
+    let [rigid, flexible] = ["rigid", "flexible"].map(|name| match load(name) {
+        AnyScene::Machine(scene) => scene,
+        AnyScene::Plane(_) => panic!("{name} is of one plane"),
+    });
+    // The point mass is what an impact at the coupling finds of the rigid rotor.
+    let mass_kg = rigid.planes[1].scene.plant.rotor.mass_kg;
+    assert!(
+        (point.plant.rotor.mass_kg / mass_kg - 1.0).abs() < 1e-3,
+        "{mass_kg}"
+    );
+    for kind in [PolicyKind::Levitation, PolicyKind::Supervisor] {
+        let alone = run(&point, kind, Keep::Verdict, &mut |_| {}).unwrap().0;
+        let [rigid, flexible] = [&rigid, &flexible].map(|scene| planes(scene, kind));
+        let forces = [
+            alone.peak_contact_force_n,
+            rigid[1].0.peak_contact_force_n,
+            flexible[1].0.peak_contact_force_n,
+        ];
+        assert!(
+            forces[0] > forces[1] && forces[1] > forces[2],
+            "{kind:?} {forces:?}"
+        );
+        let far = [&rigid, &flexible].map(|ends| ends[0].0.impacts > 0);
+        assert_eq!(far, [kind == PolicyKind::Levitation; 2], "{kind:?}");
+        let ended = rigid.iter().chain(&flexible).map(|(figures, _)| figures);
+        assert!(ended.chain([&alone]).all(|figures| figures.recovered));
     }
 }

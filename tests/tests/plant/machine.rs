@@ -10,3 +10,4 @@ mod refusals;
 mod rotor;
 mod shaft;
 mod silently_wrong;
+mod whirl_ranges;

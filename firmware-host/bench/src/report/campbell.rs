@@ -1,221 +1,16 @@
-//! A whole rotor as a linear system, for people and programs: modes over the spin, critical speeds, response to the unbalance,
-//! coupling of the planes.
+//! A whole rotor as a linear system, for people: tables, Campbell diagram, response to the unbalance, mode shapes.
 
 use super::plot::PlotError;
 use super::plot::chart::{Axis, Chart, Curve, Mark, chart};
 use super::plot::text::figures;
 use super::table::{lined, right};
 use super::{begun, push, push_story};
+use crate::modes::{Analysis, Coupling, HeldWhirl};
 use crate::scene::machine::MachineScene;
 use comfy_table::Cell;
-use plant_model::V2;
-use plant_model::machine::linear::{Direction, LinearMachine, MachineMode, Walls};
-use plant_model::machine::params::{MachineError, MachineParams, Support};
-use serde::Serialize;
-use std::f64::consts::TAU;
+use plant_model::machine::linear::Direction;
+use std::f64::consts::{FRAC_PI_2, TAU};
 use std::fmt::Write as _;
-
-/// What is looked at.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Range {
-    /// Highest spin \[Hz\].
-    pub to_hz: f64,
-    /// At how many spins from 0.
-    pub points: usize,
-    /// Whether contact springs and dampers of all planes hold the rotor.
-    pub contact: bool,
-    /// Whether the gains of the levitation controllers do, at the magnets.
-    pub levitated: bool,
-}
-
-/// A mode at a spin.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct ModeAtSpin {
-    /// Spin \[rad/s\].
-    pub spin_rad_s: f64,
-    /// Damped frequency \[Hz\].
-    pub frequency_hz: f64,
-    /// `forward`, `backward` or `planar`.
-    pub whirl: &'static str,
-    /// Below 0 it grows.
-    pub damping_ratio: f64,
-}
-
-/// A critical speed.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct CriticalSpeed {
-    /// Without damping \[rad/s\].
-    pub spin_rad_s: f64,
-    /// `forward`, `backward` or `planar`.
-    pub whirl: &'static str,
-}
-
-/// Response to the unbalance at a spin.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Response {
-    /// Spin \[rad/s\].
-    pub spin_rad_s: f64,
-    /// Largest distance of the rotor from the middle in each plane \[m\]; null where an undamped mode is hit.
-    pub planes_m: Option<Vec<f64>>,
-    /// The same at their sensors \[m\].
-    pub sensors_m: Option<Vec<f64>>,
-}
-
-/// How the planes of a rotor feel each other, with bending.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Coupling {
-    /// Names of the planes.
-    pub planes: Vec<String>,
-    /// Mass that each feels in an impact \[kg\].
-    pub effective_mass_kg: Vec<f64>,
-    /// Mobility between them, row by row \[1/kg\].
-    pub mobility_1_kg: Vec<Vec<f64>>,
-}
-
-impl Coupling {
-    /// Of the rotor of a scene.
-    ///
-    /// # Errors
-    /// The first value that is out of range.
-    pub fn new(scene: &MachineScene) -> Result<Self, MachineError> {
-        Ok(Self::of(
-            scene,
-            &LinearMachine::new(&scene.machine, Walls::Off)?,
-        ))
-    }
-
-    /// Neither supports nor walls have a share in it.
-    fn of(scene: &MachineScene, machine: &LinearMachine) -> Self {
-        let mobility = machine.mobility();
-        let names = scene.planes.iter().map(|plane| plane.name.clone());
-        Self {
-            planes: names.collect(),
-            effective_mass_kg: (0..mobility.len()).map(|p| 1.0 / mobility[p][p]).collect(),
-            mobility_1_kg: mobility,
-        }
-    }
-}
-
-/// A rotor as a linear system.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Analysis {
-    /// Title of the scene.
-    pub scene: String,
-    /// What was looked at.
-    pub range: Range,
-    /// Coupling of the planes.
-    #[serde(flatten)]
-    pub coupling: Coupling,
-    /// Modes that turn or swing, spin by spin, slowest first.
-    pub modes: Vec<ModeAtSpin>,
-    /// Critical speeds, slowest first, also above the range.
-    pub critical_speeds: Vec<CriticalSpeed>,
-    /// Response to the unbalance.
-    pub unbalance_response: Vec<Response>,
-    /// Rates at which unstable motions grow at the highest spin \[1/s\].
-    pub growth_1_s: Vec<f64>,
-}
-
-/// Of an eigenvalue that turns by less than this share of its size, or than this \[rad/s\], it is rounding that turns.
-const STANDS: f64 = 1e-6;
-
-/// Why there is no analysis.
-#[derive(Debug, thiserror::Error)]
-pub enum AnalysisError {
-    /// A value is out of range.
-    #[error(transparent)]
-    Machine(#[from] MachineError),
-    /// The search for eigenvalues does not end.
-    #[error(
-        "its rates lie too far apart to find its modes; keep fewer of them (rotor.bending_to_hz), or make supports softer"
-    )]
-    NoEigenvalues,
-}
-
-impl Analysis {
-    /// Of the machine of a scene.
-    ///
-    /// # Errors
-    /// [`AnalysisError`].
-    pub fn new(scene: &MachineScene, range: Range) -> Result<Self, AnalysisError> {
-        let none = || AnalysisError::NoEigenvalues;
-        let params = held(scene, range);
-        let walls = match range.contact {
-            true => Walls::Closed,
-            false => Walls::Off,
-        };
-        let machine = LinearMachine::new(&params, walls)?;
-        let last = (range.points - 1) as f64;
-        let spins: Vec<f64> = (0..range.points)
-            .map(|i| TAU * range.to_hz * i as f64 / last)
-            .collect();
-        let turns = |mode: &MachineMode| {
-            let size = mode.frequency_rad_s.hypot(mode.growth_s);
-            mode.frequency_rad_s > STANDS * size.max(1.0)
-        };
-        let (mut modes, mut growing) = (Vec::new(), Vec::new());
-        for spin_rad_s in &spins {
-            let at_spin = machine.modes(*spin_rad_s).ok_or_else(none)?;
-            // The last is the highest.
-            growing = at_spin.iter().map(|mode| mode.growth_s).collect();
-            modes.extend(at_spin.into_iter().filter(turns).map(|mode| ModeAtSpin {
-                spin_rad_s: *spin_rad_s,
-                frequency_hz: mode.frequency_rad_s / TAU,
-                whirl: mode.direction.name(),
-                damping_ratio: mode.damping_ratio,
-            }));
-        }
-        let critical_speeds = machine.critical_speeds().ok_or_else(none)?;
-        let planes = scene.planes.len();
-        let response = |spin_rad_s: f64| {
-            let all = machine.unbalance_response_m(spin_rad_s);
-            let part = |sensors: bool| {
-                let (of_planes, of_sensors) = all.as_ref()?.split_at(planes);
-                Some(if sensors { of_sensors } else { of_planes }.to_vec())
-            };
-            Response {
-                spin_rad_s,
-                planes_m: part(false),
-                sensors_m: part(true),
-            }
-        };
-        growing.retain(|rate| *rate > GROWS_1_S);
-        Ok(Self {
-            scene: scene.common().title.clone(),
-            range,
-            coupling: Coupling::of(scene, &machine),
-            modes,
-            critical_speeds: (critical_speeds.into_iter())
-                .map(|speed| CriticalSpeed {
-                    spin_rad_s: speed.spin_rad_s,
-                    whirl: speed.direction.name(),
-                })
-                .collect(),
-            unbalance_response: spins.iter().map(|spin| response(*spin)).collect(),
-            growth_1_s: growing,
-        })
-    }
-}
-
-/// Faster than this a motion grows, and not by rounding alone \[1/s\].
-const GROWS_1_S: f64 = 1e-3;
-
-/// The machine, with the gains of its planes' controllers as supports where that is asked for.
-fn held(scene: &MachineScene, range: Range) -> MachineParams {
-    let mut params = scene.machine.clone();
-    if range.levitated {
-        let magnets = (scene.planes.iter())
-            .filter_map(|plane| Some((plane.magnet?, plane.scene.levitation?)));
-        params
-            .supports
-            .extend(magnets.map(|(magnet, gains)| Support {
-                position_m: scene.machine.magnets[magnet].position_m,
-                stiffness_n_m: V2::repeat(gains.proportional_n_m),
-                damping_n_s_m: V2::repeat(gains.derivative_n_s_m),
-            }));
-    }
-    params
-}
 
 /// Tables of it: modes at standstill, at the spin nearest to that of the scene and at the highest, critical speeds, coupling.
 pub fn text(scene: &MachineScene, analysis: &Analysis) -> String {
@@ -247,6 +42,9 @@ pub fn text(scene: &MachineScene, analysis: &Analysis) -> String {
         table.add_row([right(spin_hz), Cell::new(speed.whirl)]);
     }
     let _ = write!(text, "{table}\n\n{}", coupling(&analysis.coupling));
+    if let Some(ranges) = &analysis.held_whirl {
+        let _ = write!(text, "\n\n{}", held_whirl(analysis, ranges));
+    }
     for rate in &analysis.growth_1_s {
         let _ = write!(
             text,
@@ -256,6 +54,31 @@ pub fn text(scene: &MachineScene, analysis: &Analysis) -> String {
         );
     }
     text + "\n"
+}
+
+/// Whirl that friction can hold.
+fn held_whirl(analysis: &Analysis, ranges: &[HeldWhirl]) -> String {
+    let spin_hz = figures(analysis.spin_rad_s.abs() / TAU);
+    let header = format!("backward whirl that friction can hold at {spin_hz} Hz");
+    let mut table = lined([header.as_str(), "from [Hz]", "to [Hz]"]);
+    if ranges.is_empty() {
+        return format!("{header}: none");
+    }
+    for range in ranges {
+        let shape = |phase_rad: f64| match phase_rad.abs() < FRAC_PI_2 {
+            true => "cylindrical",
+            false => "conical",
+        };
+        let [low, high] = range.phases_rad.map(shape);
+        let shapes = match (range.planes.len(), low == high) {
+            (1, _) => String::new(),
+            (_, true) => format!(", {low}"),
+            (_, false) => format!(", {low} to {high}"),
+        };
+        let [from, to] = range.rates_rad_s.map(|rate| right(figures(rate / TAU)));
+        table.add_row([Cell::new(range.planes.join(" and ") + &shapes), from, to]);
+    }
+    table.to_string()
 }
 
 /// Mass of each plane, and how far each other one moves when it is struck.
@@ -295,6 +118,11 @@ pub fn html(scene: &MachineScene, analysis: &Analysis) -> Result<String, PlotErr
     push(
         &mut page,
         format_args!("<figure>{}</figure>\n", chart(&responses(analysis))?),
+    );
+    page.push_str("</section>\n<section><h2>Mode shapes</h2>\n");
+    push(
+        &mut page,
+        format_args!("<figure>{}</figure>\n", chart(&shapes(scene, analysis))?),
     );
     page.push_str("</section>\n<section><pre>");
     page.push_str(&super::plot::text::escape(&text(scene, analysis)));
@@ -339,21 +167,58 @@ fn diagram(analysis: &Analysis) -> Chart {
     curves.retain(|curve| !curve.points.is_empty());
     Chart {
         label: "Natural frequencies over the spin".to_owned(),
-        x: axis("spin / Hz", (0.0, to_hz), false),
-        y: axis("frequency / Hz", (0.0, 1.05 * highest), false),
+        x: Axis::linear("spin / Hz", (0.0, to_hz)),
+        y: Axis::linear("frequency / Hz", (0.0, 1.05 * highest)),
+        curves,
+    }
+}
+
+/// The slowest shapes, along the place that moves most.
+fn shapes(scene: &MachineScene, analysis: &Analysis) -> Chart {
+    const SHOWN: usize = 6;
+    let places = &analysis.shape_positions_m;
+    let curves = analysis.mode_shapes.iter().take(SHOWN).enumerate();
+    let mut curves: Vec<Curve> = curves
+        .map(|(i, shape)| {
+            let points = places.iter().copied().zip(shape.along.iter().copied());
+            let name = format!("{} Hz {}", figures(shape.frequency_hz), shape.whirl);
+            Curve::line(name, points.collect(), i)
+        })
+        .collect();
+    curves.extend(
+        scene
+            .planes
+            .iter()
+            .zip(&scene.machine.planes)
+            .map(|(plane, at)| Curve {
+                name: plane.name.clone(),
+                points: vec![(at.position_m, 0.0)],
+                mark: Mark::Name,
+                colour: 8,
+            }),
+    );
+    let (first, last) = (places.first(), places.last());
+    let ends = (first.copied().unwrap_or(0.0), last.copied().unwrap_or(1.0));
+    let ends = if ends.1 > ends.0 {
+        ends
+    } else {
+        (ends.0 - 0.1, ends.0 + 0.1)
+    };
+    let spin_hz = figures(analysis.spin_rad_s.abs() / TAU);
+    Chart {
+        label: format!("Mode shapes at {spin_hz} Hz"),
+        x: Axis::linear("place from the centre of mass / m", ends),
+        y: Axis::linear("displacement, largest 1", (-1.1, 1.1)),
         curves,
     }
 }
 
 fn responses(analysis: &Analysis) -> Chart {
-    let of = |(plane, name): (usize, &String)| Curve {
-        name: name.clone(),
-        points: (analysis.unbalance_response.iter())
+    let of = |(plane, name): (usize, &String)| {
+        let points = (analysis.unbalance_response.iter())
             .filter_map(|at| Some((at.spin_rad_s / TAU, 1e6 * at.planes_m.as_ref()?[plane])))
-            .filter(|point| point.1 > 0.0)
-            .collect(),
-        mark: Mark::Line,
-        colour: plane,
+            .filter(|point| point.1 > 0.0);
+        Curve::line(name.clone(), points.collect(), plane)
     };
     let curves: Vec<Curve> = analysis
         .coupling
@@ -378,16 +243,8 @@ fn responses(analysis: &Analysis) -> Chart {
     };
     Chart {
         label: "Distance from the middle over the spin".to_owned(),
-        x: axis("spin / Hz", (0.0, analysis.range.to_hz), false),
-        y: axis("amplitude / µm", range, true),
+        x: Axis::linear("spin / Hz", (0.0, analysis.range.to_hz)),
+        y: Axis::log("amplitude / µm", range),
         curves,
-    }
-}
-
-fn axis(name: &str, range: (f64, f64), log: bool) -> Axis {
-    Axis {
-        name: name.to_owned(),
-        range,
-        log,
     }
 }

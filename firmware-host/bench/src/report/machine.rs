@@ -7,7 +7,7 @@ use super::{
 };
 use crate::device::whole_levitation::WholeLevitationParams;
 use crate::report::plot::PlotError;
-use crate::report::plot::chart::{Axis, Chart, Curve, Mark, chart};
+use crate::report::plot::chart::{Axis, Chart, Curve, chart};
 use crate::report::plot::text::{escape, figures};
 use crate::run::overview::AxisTrack;
 use crate::run::trace::AxisRow;
@@ -137,7 +137,7 @@ fn push_axes(
 fn plots(machine: &MachineParams, track: &AxisTrack) -> Vec<Chart> {
     let over_time = |name: String, colour: usize, value: &dyn Fn(&AxisRow) -> f64| {
         let points = track.rows.iter().map(|row| (1e3 * row.t_s, value(row)));
-        line(name, points.collect(), colour)
+        Curve::line(name, points.collect(), colour)
     };
     let slope = ["x", "y"].into_iter().enumerate().map(|(axis, name)| {
         over_time(format!("d{name}/dz"), axis, &|row| {
@@ -167,8 +167,8 @@ fn plots(machine: &MachineParams, track: &AxisTrack) -> Vec<Chart> {
 fn timed(what: &str, y: &str, curves: Vec<Curve>) -> Chart {
     Chart {
         label: format!("{what} over time"),
-        x: axis("t / ms", reach(&curves, |p| p.0)),
-        y: axis(y, reach(&curves, |p| p.1)),
+        x: Axis::linear("t / ms", reach(&curves, |p| p.0)),
+        y: Axis::linear(y, reach(&curves, |p| p.1)),
         curves,
     }
 }
@@ -192,31 +192,14 @@ fn from_the_side(machine: &MachineParams, track: &AxisTrack) -> Chart {
             (1e3 * z, 1e3 * line_m.x)
         };
         let name = format!("{} ms", figures(1e3 * row.t_s));
-        Some(line(name, (0..PLACES).map(point).collect(), instant))
+        Some(Curve::line(name, (0..PLACES).map(point).collect(), instant))
     };
     let curves: Vec<Curve> = (0..INSTANTS).filter_map(at).collect();
     Chart {
         label: "The axis from the side, at equal times".to_owned(),
-        x: axis("z / mm", reach(&curves, |p| p.0)),
-        y: axis("x / mm", reach(&curves, |p| p.1)),
+        x: Axis::linear("z / mm", reach(&curves, |p| p.0)),
+        y: Axis::linear("x / mm", reach(&curves, |p| p.1)),
         curves,
-    }
-}
-
-fn line(name: String, points: Vec<(f64, f64)>, colour: usize) -> Curve {
-    Curve {
-        name,
-        points,
-        mark: Mark::Line,
-        colour,
-    }
-}
-
-fn axis(name: &str, range: (f64, f64)) -> Axis {
-    Axis {
-        name: name.to_owned(),
-        range,
-        log: false,
     }
 }
 

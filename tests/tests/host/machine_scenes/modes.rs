@@ -23,6 +23,59 @@ fn json(args: &[&str]) -> Value {
     serde_json::from_slice(&output.stdout).unwrap()
 }
 
+/// A translation moves every place alike, a tilt as its distance; friction holds whirl from above the slowest backward mode.
+#[test]
+fn a_scene_has_shapes_and_whirl_that_friction_holds() {
+    let folder = TempDir::new().unwrap();
+    let path = folder.path().join("scene.toml");
+    let springs = [-0.2, 0.2]
+        .map(|z| {
+            format!("[[support]]\nposition_m = {z}\nstiffness_n_m = 1e6\ndamping_n_s_m = 10.0\n")
+        })
+        .concat();
+    fs::write(&path, TWO_PLANES.to_owned() + &springs).unwrap();
+    let name = path.to_str().unwrap();
+    let found = json(&[name, "--points", "2"]);
+    let numbers = |value: &Value| -> Vec<f64> {
+        value
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|x| x.as_f64().unwrap())
+            .collect()
+    };
+    let places = numbers(&found["shape_positions_m"]);
+    assert_eq!(places, [-0.2, 0.2, 0.3]);
+    let shapes = found["mode_shapes"].as_array().unwrap();
+    assert_eq!(shapes.len(), 4);
+    for shape in shapes {
+        let tau = std::f64::consts::TAU;
+        let translates = shape["frequency_hz"].as_f64().unwrap() * tau > 0.5 * 2e5_f64.sqrt() * 1.7;
+        let (along, across) = (numbers(&shape["along"]), numbers(&shape["across"]));
+        for (z, (a, b)) in places.iter().zip(along.iter().zip(&across)) {
+            let expected = if translates { 1.0 } else { z / 0.3 };
+            assert!((a - expected).abs() < 1e-6 && b.abs() < 1e-6, "{z} {a} {b}");
+        }
+    }
+    let held = found["held_whirl"].as_array().unwrap();
+    let of = |range: &&Value, count: usize| range["planes"].as_array().unwrap().len() == count;
+    let slowest = held
+        .iter()
+        .filter(|range| of(range, 1))
+        .map(|r| numbers(&r["rates_rad_s"])[0]);
+    let tilt = (2e6 * 0.04 / 0.6_f64).sqrt();
+    assert!(slowest.clone().count() >= 2);
+    assert!(slowest.fold(f64::INFINITY, f64::min) > tilt);
+    assert!(held.iter().any(|range| of(&range, 2)));
+    // Walls that hold the rotor leave no clearance to whirl in.
+    assert!(json(&[name, "--points", "2", "--contact"])["held_whirl"].is_null());
+    let text = String::from_utf8(modes(&[name]).stdout).unwrap();
+    assert!(
+        text.contains("backward whirl that friction can hold at 100 Hz"),
+        "{text}"
+    );
+}
+
 /// Two springs under a rigid rotor: translation at √(2k/m) both ways, the tilt apart by the spin.
 #[test]
 fn a_scene_has_the_modes_of_its_rotor() {
@@ -109,7 +162,7 @@ fn the_command_says_what_it_cannot_do() {
         assert!(table.contains(words), "{table}");
     }
     let page = fs::read_to_string(page).unwrap();
-    assert!(page.contains("Campbell diagram") && page.matches("<svg").count() == 2);
+    assert!(page.contains("Campbell diagram") && page.matches("<svg").count() == 3);
 }
 
 /// A uniform shaft between two planes.

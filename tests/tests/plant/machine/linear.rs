@@ -195,3 +195,28 @@ fn unequal_supports_part_the_axes() {
         assert_eq!(found[0].direction, Direction::Planar);
     }
 }
+
+/// Two like pairs of real and complex rates, at which a search for eigenvalues may go round in circles.
+#[test]
+fn a_rotor_in_magnets_alone_has_its_modes_at_every_spin() {
+    let mut params = machine();
+    params.rotor = rigid(0.5, 0.045);
+    for support in &mut params.supports {
+        (support.stiffness_n_m, support.damping_n_s_m) = (V2::repeat(-1e5), V2::zeros());
+    }
+    let linear = linear(&params);
+    for i in 0..100 {
+        let spin = 35.0 * f64::from(i);
+        let found = linear
+            .modes(spin)
+            .unwrap_or_else(|| panic!("none at {spin}"));
+        let rates: f64 = found.iter().map(|mode| mode.growth_s).sum();
+        // They grow and decay alike; and the translations by √(2k/m).
+        assert!(rates.abs() < 1e-6, "{rates} at {spin}");
+        let grows = (2e5_f64 / 10.0).sqrt();
+        let near = found
+            .iter()
+            .filter(|m| (m.growth_s / grows - 1.0).abs() < 1e-9);
+        assert!(near.count() >= 2, "{found:?}");
+    }
+}

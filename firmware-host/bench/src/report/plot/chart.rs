@@ -26,6 +26,22 @@ pub struct Axis {
     pub log: bool,
 }
 
+impl Axis {
+    /// A linear one.
+    pub fn linear(name: &str, range: (f64, f64)) -> Self {
+        let (name, log) = (name.to_owned(), false);
+        Self { name, range, log }
+    }
+
+    /// A logarithmic one.
+    pub fn log(name: &str, range: (f64, f64)) -> Self {
+        Self {
+            log: true,
+            ..Self::linear(name, range)
+        }
+    }
+}
+
 /// How a curve is drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Mark {
@@ -52,6 +68,18 @@ pub struct Curve {
     pub mark: Mark,
     /// Place among nine colours.
     pub colour: usize,
+}
+
+impl Curve {
+    /// A line.
+    pub fn line(name: String, points: Vec<(f64, f64)>, colour: usize) -> Self {
+        Self {
+            name,
+            points,
+            mark: Mark::Line,
+            colour,
+        }
+    }
 }
 
 /// Curves over an axis.

@@ -13,14 +13,6 @@ const DRAWN_KG_M2: [Option<f64>; 4] = [None, Some(1e-2), Some(3e-3), Some(1e-3)]
 /// A figure's file, caption and label.
 type Words = (&'static str, &'static str, &'static str);
 
-fn axis(name: &str, range: (f64, f64), log: bool) -> Axis {
-    Axis {
-        name: name.to_owned(),
-        range,
-        log,
-    }
-}
-
 fn chart((file, caption, label): Words, (x, y): (Axis, Axis), curves: Vec<Curve>) -> Figure {
     Figure {
         file,
@@ -31,15 +23,6 @@ fn chart((file, caption, label): Words, (x, y): (Axis, Axis), curves: Vec<Curve>
             y,
             curves,
         }),
-    }
-}
-
-fn line(name: String, points: Vec<(f64, f64)>, colour: usize) -> Curve {
-    Curve {
-        name,
-        points,
-        mark: Mark::Line,
-        colour,
     }
 }
 
@@ -57,14 +40,14 @@ fn over_time(all: &[Tried], points: impl Fn(&Tried) -> Vec<(f64, f64)>) -> Vec<C
                 None => "bushing".to_owned(),
                 Some(inertia) => format!("race of {inertia:.0e} kg m²"),
             };
-            Some(line(name, points(tried), colour))
+            Some(Curve::line(name, points(tried), colour))
         })
         .collect()
 }
 
 /// All of the chapter.
 pub(super) fn all(all: &[Tried]) -> Vec<Figure> {
-    let time = || axis("Time [ms]", (0.0, SHOWN_MS), false);
+    let time = || Axis::linear("Time [ms]", (0.0, SHOWN_MS));
     let shown = |t_s: f64| 1e3 * t_s <= SHOWN_MS;
     let whirl = over_time(all, |t| {
         let readings = t.run.course.whirl.iter().filter(|r| shown(r.t_s));
@@ -84,7 +67,7 @@ pub(super) fn all(all: &[Tried]) -> Vec<Figure> {
             ),
             (
                 time(),
-                axis("Whirl frequency [Hz]", (0.0, highest_hz), false),
+                Axis::linear("Whirl frequency [Hz]", (0.0, highest_hz)),
             ),
             whirl,
         ),
@@ -96,7 +79,7 @@ pub(super) fn all(all: &[Tried]) -> Vec<Figure> {
             ),
             (
                 time(),
-                axis("Sliding speed [m/s]", (0.0, highest_m_s), false),
+                Axis::linear("Sliding speed [m/s]", (0.0, highest_m_s)),
             ),
             slip,
         ),
@@ -119,17 +102,17 @@ fn surfaces(all: &[Tried], time: Axis) -> Option<Figure> {
     };
     let touching = |s: &plant_model::analysis::course::Sample| s.mode.in_contact();
     let curves = vec![
-        line(
+        Curve::line(
             "rotor's surface R·Ω".to_owned(),
             of(&|s| radius * TAU * s.spin_hz),
             0,
         ),
-        line(
+        Curve::line(
             "race R_i·Ω_i".to_owned(),
             of(&|s| bore * TAU * s.race_spin_hz),
             1,
         ),
-        line(
+        Curve::line(
             "backward whirl, in contact".to_owned(),
             of(&|s| {
                 if touching(s) {
@@ -148,7 +131,7 @@ fn surfaces(all: &[Tried], time: Axis) -> Option<Figure> {
             "Race of 3e-3 kg m²: sliding ends where the rotor's surface is as fast as race and whirl together.",
             "Speeds of the surfaces and of the whirl over time",
         ),
-        (time, axis("Speed [m/s]", (0.0, highest), false)),
+        (time, Axis::linear("Speed [m/s]", (0.0, highest))),
         curves,
     ))
 }
@@ -181,8 +164,8 @@ fn over_inertia(all: &[Tried]) -> Figure {
             "Fastest whirl over the inertia of the race",
         ),
         (
-            axis("Inertia of the race [kg m²]", (1e-4, 1e-1), true),
-            axis("Fastest whirl [Hz]", (10.0, 2000.0), true),
+            Axis::log("Inertia of the race [kg m²]", (1e-4, 1e-1)),
+            Axis::log("Fastest whirl [Hz]", (10.0, 2000.0)),
         ),
         vec![
             curve(
