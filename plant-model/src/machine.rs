@@ -68,6 +68,7 @@
 //! ```
 
 mod body;
+mod collocation;
 mod flight_map;
 mod guards;
 mod holding;

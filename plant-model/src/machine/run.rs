@@ -6,7 +6,7 @@ mod settle;
 use super::flight_map::FlightMap;
 use super::guards::Guard;
 use super::holding::Holding;
-use super::params::{MAX_PLANES, MachineError, MachineParams, MachineStart};
+use super::params::{MAX_PLANES, MachineError, MachineParams, MachinePlane, MachineStart};
 use super::readout::{Held, MachineSnapshot, PlaneFlows};
 use super::step::{Stepper, Task};
 use super::system::{MachineInputs, MachineState, MachineSystem};
@@ -15,8 +15,9 @@ use crate::energy::Flows;
 use crate::integrate::contact_step::turn_rad;
 use crate::integrate::driver::{ON_WALL, SPARE};
 use crate::integrate::progress::Progress;
-use crate::integrate::{Options, PlantError};
+use crate::integrate::{Method, Options, PlantError};
 use crate::mode::{Mode, Phase};
+use crate::params::SlidingFriction;
 use crate::readout::{HARD_IMPACT_M_S, Meters, Work};
 use settle::AtZero;
 
@@ -54,8 +55,31 @@ pub struct Machine {
     progress: Progress,
 }
 
+/// What a method comes to. Friction that falls with speed has no series here.
+fn resolved(params: &MachineParams, method: Method) -> Result<Method, MachineError> {
+    let falls =
+        |plane: &MachinePlane| matches!(plane.friction.sliding, SlidingFriction::Falling { .. });
+    let falling = params.planes.iter().position(falls);
+    match (method, falling) {
+        (Method::Auto, None) => Ok(Method::Series),
+        (Method::Auto, Some(_)) => Ok(Method::Explicit),
+        (Method::Series, Some(p)) => Err(MachineError {
+            field: format!("planes[{p}].friction.coefficient_at_speed"),
+            value: (params.planes[p].friction.sliding).coefficient(f64::INFINITY),
+            expected: "sliding friction that is the same at every speed, or another method than series",
+        }),
+        (Method::Stiff, _) => Err(MachineError {
+            field: "run.method".into(),
+            value: f64::NAN,
+            expected: "auto, series or explicit",
+        }),
+        (method, _) => Ok(method),
+    }
+}
+
 impl Machine {
-    /// Puts a machine together.
+    /// Puts a machine together. [`Method::Auto`] is [`Method::Series`], or [`Method::Explicit`], collocation, where friction falls
+    /// with speed; there is no stiff method.
     ///
     /// # Errors
     /// The first value that is out of range.
@@ -73,10 +97,14 @@ impl Machine {
                 expected: "a number from 1e-14 to 0.01",
             });
         }
+        let options = Options {
+            method: resolved(params, options.method)?,
+            ..options
+        };
         let y = system.start(params, start)?;
         let (n, planes) = (system.body.n, system.planes.len());
         let mut machine = Self {
-            stepper: Stepper::new(&system, options.rtol),
+            stepper: Stepper::new(&system, options.rtol, options.method),
             map: FlightMap::default(),
             holding: Holding::new(n),
             inputs: MachineInputs {
@@ -144,7 +172,8 @@ impl Machine {
             return Err(PlantError::NotFinite { t_s });
         }
         self.take(inputs);
-        if self.t_s < t_end_s && self.phases.iter().all(|phase| *phase == Phase::Inside) {
+        let flies = self.options.method == Method::Series;
+        if flies && self.t_s < t_end_s && self.phases.iter().all(|phase| *phase == Phase::Inside) {
             let dt_s = t_end_s - self.t_s;
             let (map, y) = (&mut self.map, &mut self.y);
             let flown = map.fly(&self.system, y, &self.inputs, dt_s, &mut self.path);
@@ -235,7 +264,8 @@ impl Machine {
         for (kept, suppressed) in before.iter_mut().zip(&mut self.suppressed) {
             *kept = std::mem::take(suppressed);
         }
-        if reach.theta > 0.0 {
+        // Another plane may leave its wall with this one, up to rounding.
+        if reach.theta * self.stepper.series.step_s > moment_s {
             self.just_left.fill(false);
         }
         let Some((p, guard)) = reach.event else {
@@ -408,6 +438,11 @@ impl Machine {
     /// Work done so far.
     pub fn work(&self) -> Work {
         self.work
+    }
+
+    /// How it is integrated: [`Method::Series`], or [`Method::Explicit`] for collocation in points.
+    pub fn method(&self) -> Method {
+        self.options.method
     }
 
     /// Time now \[s\].

@@ -254,7 +254,9 @@ impl MachineSeries {
             plane.surface.0[k] =
                 data.radius_m * self.spin.0[k] - data.race_radius_m() * plane.race.0[k];
             plane.slip.0[k] = plane.whirl_speed.0[k] + plane.surface.0[k];
-            plane.sliding.0[k] = -slide.sign() * data.sliding * plane.force.0[k];
+            // Friction that falls with speed is not integrated by series: a moment's look has it as it is now.
+            let mu = data.friction.coefficient(slide.sign() * plane.slip.0[0]);
+            plane.sliding.0[k] = -slide.sign() * mu * plane.force.0[k];
             plane.rolling.0[k] = match whirl {
                 Whirl::Still | Whirl::Ignored => 0.0,
                 _ => -whirl.sign() * data.rolling * plane.force.0[k],

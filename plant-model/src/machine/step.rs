@@ -1,12 +1,13 @@
 //! One step of a machine: as far as the series can be trusted, or to the first guard of any plane that falls to zero.
 
+use super::collocation::{Collocation, ERROR_POWER, Scales};
 use super::guards::Guard;
 use super::series::{MachineSeries, Step};
 use super::system::{MachineState, MachineSystem};
 use crate::V2;
-use crate::integrate::PlantError;
 use crate::integrate::enough::{Enough, LOWEST_ORDER, highest_order, trusted_theta};
 use crate::integrate::first_fall::{Fall, first_fall};
+use crate::integrate::{Method, PlantError};
 use crate::mode::Phase;
 use crate::readout::Work;
 use crate::series::Scalar;
@@ -55,6 +56,8 @@ const MARGIN: f64 = 0.1;
 #[derive(Debug, Clone)]
 pub(crate) struct Stepper {
     pub(crate) series: MachineSeries,
+    /// The second method, where it is asked for.
+    collocation: Option<Box<Collocation>>,
     guard: Scalar,
     rtol: f64,
     highest_order: usize,
@@ -70,7 +73,7 @@ pub(crate) struct Stepper {
 }
 
 impl Stepper {
-    pub(crate) fn new(system: &MachineSystem, rtol: f64) -> Self {
+    pub(crate) fn new(system: &MachineSystem, rtol: f64, method: Method) -> Self {
         let planes = 0..system.planes.len();
         let least =
             |of: &dyn Fn(usize) -> f64| planes.clone().map(of).fold(f64::INFINITY, f64::min);
@@ -78,6 +81,7 @@ impl Stepper {
         let rate = system.contact_rate_rad_s();
         Self {
             series: MachineSeries::new(&system.body),
+            collocation: (method == Method::Explicit).then(|| Box::new(Collocation::new(system))),
             guard: Scalar::default(),
             rtol: MARGIN * rtol,
             highest_order: highest_order(rtol),
@@ -111,7 +115,7 @@ impl Stepper {
         }
     }
 
-    /// Carries the series from `y` towards the end of the span until it, the series or an event stops it.
+    /// Carries the solution from `y` towards the end of the span until it, the series or an event stops it.
     pub(crate) fn step(
         &mut self,
         system: &MachineSystem,
@@ -120,44 +124,13 @@ impl Stepper {
         work: &mut Work,
     ) -> Result<Reach, PlantError> {
         let (t_s, t_end_s) = task.span;
-        let weights = self.weights(y);
-        let remaining = t_end_s - t_s;
-        let highest = self.highest_order;
-        let touching = task.phases.iter().any(|phase| *phase != Phase::Inside);
-        let square =
-            |series: &MachineSeries, k: usize| square(series, system, task.phases, (k, &weights));
-        let mut reference = self.references_s[usize::from(touching)].min(remaining);
         work.steps += 1;
-        let given = |step_s: f64| Step {
-            system,
-            phases: task.phases,
-            forces: task.forces,
-            commands_n: task.commands_n,
-            step_s,
+        let remaining = t_end_s - t_s;
+        let trusted = match self.collocation.is_some() {
+            false => self.by_series(system, y, task, work)?,
+            true => self.by_collocation(system, y, task, work)?,
         };
-        let trusted = loop {
-            let mut enough = Enough::new(remaining / reference);
-            self.series
-                .fill(&given(reference), y, highest, |series, k| {
-                    k >= LOWEST_ORDER - 1 && enough.with(square(series, k))
-                });
-            let order = self.series.order;
-            work.evaluations += order as u64 + 1;
-            let kept = &mut self.references_s[usize::from(touching)];
-            if order < highest {
-                *kept = kept.max(remaining);
-                break f64::INFINITY;
-            }
-            let trusted = trusted_theta(order, |k| square(&self.series, k));
-            if trusted > 1e-2 {
-                *kept = (trusted * reference).min(1e3 * reference);
-                break trusted;
-            }
-            reference *= if trusted > 1e-6 { trusted } else { 1e-6 };
-            if t_s + reference == t_s {
-                return Err(PlantError::StepTooSmall { t_s });
-            }
-        };
+        let reference = self.series.step_s;
         let mut whole = trusted * reference >= remaining;
         let mut theta = if whole {
             remaining / reference
@@ -201,6 +174,117 @@ impl Stepper {
             t_s + theta * reference
         };
         Ok(Reach { t_s, theta, event })
+    }
+
+    /// Fills the series, and says up to which θ it can be trusted.
+    fn by_series(
+        &mut self,
+        system: &MachineSystem,
+        y: &MachineState,
+        task: &Task<'_>,
+        work: &mut Work,
+    ) -> Result<f64, PlantError> {
+        let (t_s, t_end_s) = task.span;
+        let weights = self.weights(y);
+        let remaining = t_end_s - t_s;
+        let highest = self.highest_order;
+        let touching = task.touches();
+        let square =
+            |series: &MachineSeries, k: usize| square(series, system, task.phases, (k, &weights));
+        let mut reference = self.references_s[usize::from(touching)].min(remaining);
+        loop {
+            let mut enough = Enough::new(remaining / reference);
+            self.series
+                .fill(&task.step(system, reference), y, highest, |series, k| {
+                    k >= LOWEST_ORDER - 1 && enough.with(square(series, k))
+                });
+            let order = self.series.order;
+            work.evaluations += order as u64 + 1;
+            let kept = &mut self.references_s[usize::from(touching)];
+            if order < highest {
+                *kept = kept.max(remaining);
+                return Ok(f64::INFINITY);
+            }
+            let trusted = trusted_theta(order, |k| square(&self.series, k));
+            if trusted > 1e-2 {
+                *kept = (trusted * reference).min(1e3 * reference);
+                return Ok(trusted);
+            }
+            reference *= if trusted > 1e-6 { trusted } else { 1e-6 };
+            if t_s + reference == t_s {
+                return Err(PlantError::StepTooSmall { t_s });
+            }
+        }
+    }
+
+    /// The same by collocation, whose steps are taken whole.
+    fn by_collocation(
+        &mut self,
+        system: &MachineSystem,
+        y: &MachineState,
+        task: &Task<'_>,
+        work: &mut Work,
+    ) -> Result<f64, PlantError> {
+        let (t_s, t_end_s) = task.span;
+        let weights = self.weights(y);
+        let rounding = 100.0 * f64::EPSILON / self.rtol;
+        let scales = Scales {
+            velocity: weights.velocity,
+            spin: match system.inverse_inertia > 0.0 {
+                true => weights.spin,
+                false => 0.0,
+            },
+            force: weights.force,
+            gap: weights.gap,
+            speed: weights.velocity / self.mobility.sqrt(),
+            rounding,
+        };
+        let touching = usize::from(task.touches());
+        let Some(collocation) = &mut self.collocation else {
+            return Ok(0.0);
+        };
+        let remaining = t_end_s - t_s;
+        let mut whole = remaining < self.references_s[touching];
+        let mut step_s = self.references_s[touching].min(remaining);
+        loop {
+            let step = task.step(system, step_s);
+            let error = collocation.solve(&step, y, &scales);
+            work.evaluations += 1;
+            let pace = 0.9 * error.max(1e-30).powf(-1.0 / ERROR_POWER);
+            if error <= rounding.max(1.0) {
+                collocation.write(&step, y, &mut self.series);
+                let next_s = step_s * pace.clamp(0.5, 2.0);
+                let kept = &mut self.references_s[touching];
+                // A step that the span has cut short says nothing against longer ones.
+                *kept = if whole { kept.max(next_s) } else { next_s };
+                return Ok(1.0);
+            }
+            whole = false;
+            step_s *= if error.is_finite() {
+                pace.clamp(0.1, 0.8)
+            } else {
+                0.3
+            };
+            if t_s + step_s == t_s {
+                return Err(PlantError::StepTooSmall { t_s });
+            }
+        }
+    }
+}
+
+impl Task<'_> {
+    fn touches(&self) -> bool {
+        self.phases.iter().any(|phase| *phase != Phase::Inside)
+    }
+
+    fn step<'a>(&'a self, system: &'a MachineSystem, step_s: f64) -> Step<'a> {
+        Step {
+            system,
+            phases: self.phases,
+            forces: self.forces,
+            commands_n: self.commands_n,
+            step_s,
+        }
     }
 }
 

@@ -5,7 +5,7 @@ use super::params::{MAX_PLANES, MachineError, MachineParams, MachineStart};
 use crate::V2;
 use crate::contact::NO_DENT;
 use crate::mode::{Phase, Slide, Whirl};
-use crate::params::{ContactLaw, LinearContact, SpinParams};
+use crate::params::{ContactLaw, LinearContact, SlidingFriction, SpinParams};
 use crate::part::Body;
 use crate::plane::race::Race;
 use nalgebra::SMatrix;
@@ -43,7 +43,8 @@ pub(crate) struct PlaneData {
     pub(crate) radius_m: f64,
     pub(crate) clearance_m: f64,
     pub(crate) law: LinearContact,
-    /// μ and μ_r.
+    /// Of sliding; μ at rest, and μ_r.
+    pub(crate) friction: SlidingFriction,
     pub(crate) sliding: f64,
     pub(crate) rolling: f64,
     pub(crate) race: Option<Race>,
@@ -173,6 +174,7 @@ impl MachineSystem {
                     damping_n_s_m: 0.0,
                 },
             },
+            friction: plane.friction.sliding,
             sliding: plane.friction.sliding.coefficient(0.0),
             rolling: plane.friction.rolling_coefficient,
             race: (plane.race.as_ref())

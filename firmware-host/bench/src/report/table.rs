@@ -18,7 +18,18 @@ type Row<T> = (&'static str, fn(&T) -> String);
 /// Rows below those, where runs were checked.
 const CHECK_FIGURES: &[Row<Verification>] = &[
     ("checked by", |v| {
-        each(v, |c| format!("{} {:.0e}", c.method, c.rtol))
+        // Of a machine the checks of all its planes are the same.
+        let mut checks: Vec<String> = Vec::new();
+        for check in v
+            .checks
+            .iter()
+            .map(|c| format!("{} {:.0e}", c.method, c.rtol))
+        {
+            if !checks.contains(&check) {
+                checks.push(check);
+            }
+        }
+        checks.join(", ")
     }),
     ("outcome when checked", |v| match v.same_outcome {
         true => "the same".to_owned(),

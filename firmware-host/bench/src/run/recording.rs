@@ -125,7 +125,7 @@ impl<W: Write + Send> Recorder<AxisRow> for AxisRecording<'_, W> {
 pub fn recorded_machine<W: Write + Send>(
     scene: &MachineScene,
     kind: PolicyKind,
-    check: Option<&MachineScene>,
+    checks: Option<&[MachineScene]>,
     files: Option<&mut MachineFiles<W>>,
     on_tick: &mut dyn FnMut(u64),
 ) -> Result<MachineRun, RunError> {
@@ -135,7 +135,7 @@ pub fn recorded_machine<W: Write + Send>(
     };
     let mut files = planes.into_iter().flatten();
     let mut recordings: Vec<Recording<'_, W>> = (scene.planes.iter())
-        .map(|_| Recording::new(files.next(), check.is_some()))
+        .map(|_| Recording::new(files.next(), checks.is_some()))
         .collect();
     let track = AxisTrack::default();
     let mut axis = AxisRecording { file: axis, track };
@@ -157,14 +157,22 @@ pub fn recorded_machine<W: Write + Send>(
     let tracks: Vec<Track> = (recordings.iter_mut())
         .filter_map(|recording| recording.track.take())
         .collect();
-    let checks = check.map(|scene| {
-        check_machine(scene, kind, &tracks, on_tick).map_err(|error| error.to_string())
+    // By check, and then by plane.
+    let checks = checks.map(|scenes| -> Result<Vec<Vec<Check>>, String> {
+        let each = scenes.iter();
+        let checked = each.map(|scene| check_machine(scene, kind, &tracks, on_tick));
+        checked
+            .collect::<Result<_, _>>()
+            .map_err(|error| error.to_string())
     });
     let figures: Vec<Figures> = ended.iter().map(|(figures, _)| figures.clone()).collect();
     let mut runs = Vec::new();
     for (i, ((figures, read_out), recording)) in ended.into_iter().zip(recordings).enumerate() {
         let verification = checks.as_ref().map(|checks| match checks {
-            Ok(checks) => Ok(verification(&figures, &tracks[i], vec![checks[i].clone()])),
+            Ok(checks) => {
+                let own = checks.iter().map(|of_planes| of_planes[i].clone());
+                Ok(verification(&figures, &tracks[i], own.collect()))
+            }
             Err(error) => Err(error.clone()),
         });
         let mut trace = recording.overview.into_trace();

@@ -191,7 +191,7 @@ impl Rig for WholeRotor<'_> {
     }
 
     fn method(&self) -> Method {
-        Method::Series
+        self.machine.method()
     }
 
     fn read_axis(&self, row: &mut AxisRow) {

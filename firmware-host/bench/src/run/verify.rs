@@ -8,6 +8,8 @@ use crate::run::trace::{Recorder, TraceRow};
 use crate::scene::Scene;
 use crate::scene::machine::MachineScene;
 use crate::scene::policy_kind::PolicyKind;
+use plant_model::machine::Machine;
+use plant_model::machine::params::MachineError;
 use plant_model::{Method, Mode, Options, V2};
 use serde::Serialize;
 
@@ -203,17 +205,38 @@ pub fn check(
     Ok(comparison.ended(&figures, scene.rtol))
 }
 
-/// The scene that checks one of a whole rotor: its series at a tighter tolerance, and loads that vary in finer parts.
-pub fn check_machine_scene(scene: &MachineScene) -> MachineScene {
-    let mut tighter = scene.clone();
-    for plane in &mut tighter.planes {
-        let rtol = plane.scene.rtol;
-        plane.scene.rtol = (rtol * TIGHTER).max(TIGHTEST).min(rtol);
-    }
-    tighter
+/// The scenes that check one of a whole rotor: its own method at a tighter tolerance, and the other one. Friction that falls with
+/// speed leaves no other, and is looked at twice as tightly.
+///
+/// # Errors
+/// [`RunError::Machine`].
+pub fn check_machine_scenes(scene: &MachineScene) -> Result<[MachineScene; CHECKS], RunError> {
+    let common = scene.common();
+    let method = |method: Method| {
+        let options = Options {
+            method,
+            ..Options::default()
+        };
+        let machine = Machine::new(&scene.machine, &scene.start, options)?;
+        Ok::<_, MachineError>(machine.method())
+    };
+    let own = method(common.method).map_err(RunError::Machine)?;
+    let other = match method(Method::Series) {
+        Ok(Method::Series) if own == Method::Explicit => Method::Series,
+        Ok(_) | Err(_) => Method::Explicit,
+    };
+    let check = |method: Method, rtol: f64| {
+        let mut checking = scene.clone();
+        for plane in &mut checking.planes {
+            plane.scene.rtol = rtol.max(TIGHTEST).min(common.rtol);
+            plane.scene.method = method;
+        }
+        checking
+    };
+    Ok([check(own, common.rtol * TIGHTER), check(other, TIGHTEST)])
 }
 
-/// Runs a policy of [`check_machine_scene`] and holds each of its planes against the run itself.
+/// Runs a policy of one of [`check_machine_scenes`] and holds each of its planes against the run itself.
 ///
 /// # Errors
 /// [`RunError::Check`].

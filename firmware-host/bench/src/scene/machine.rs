@@ -183,6 +183,14 @@ impl Spec {
                 levitated_alone: levitation.is_none(),
             };
             let mut scene = plane.resolve(Some(&of))?;
+            if tables.run.method == MethodName::Series
+                && plane.friction.coefficient_at_speed.is_some()
+            {
+                let message = "has no power series in a whole rotor".to_owned();
+                let help = "take run.method = \"auto\" or \"explicit\", or friction that is the same at every speed";
+                let key = "friction.coefficient_at_speed";
+                return Err(plane.text.error_at_key(key, message, Some(help.to_owned())));
+            }
             // Noise of its own, and that of the file for the first.
             scene.seed =
                 (scene.seed).wrapping_add(0x9E37_79B9_7F4A_7C15_u64.wrapping_mul(index as u64));
@@ -284,9 +292,9 @@ fn check_together(tables: &SceneTables, text: &SceneText) -> Result<(), SceneErr
             return error(&key, message, "remove one of them");
         }
     }
-    if !matches!(tables.run.method, MethodName::Auto | MethodName::Series) {
-        let message = "is of a point mass in one plane; a whole rotor is integrated by series";
-        return error("run.method", message, "take auto or series");
+    if tables.run.method == MethodName::Stiff {
+        let message = "is of a point mass in one plane";
+        return error("run.method", message, "take auto, series or explicit");
     }
     if !tables.change.is_empty() {
         let message = "does not go with [[plane]]: nothing of a whole rotor changes during a run";

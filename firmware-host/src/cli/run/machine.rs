@@ -50,15 +50,20 @@ fn run_all(
     staging: &Staging,
 ) -> Result<MachineResults, CommandError> {
     let common = scene.common();
-    let check = args.verify.then(|| verify::check_machine_scene(scene));
-    let checks = usize::from(args.verify);
-    let all = each_policy(common, args, checks, |kind, on_tick| {
+    let checks = match args.verify {
+        true => verify::check_machine_scenes(scene)
+            .map_err(|error| CommandError::other("setting up the checks", error))?
+            .to_vec(),
+        false => Vec::new(),
+    };
+    let checking = args.verify.then_some(&checks[..]);
+    let all = each_policy(common, args, checks.len(), |kind, on_tick| {
         let names = Names::new(scene, kind.name());
         let mut files = match args.no_trace {
             true => None,
             false => Some(names.begin(scene, staging)?),
         };
-        let ran = recorded_machine(scene, kind, check.as_ref(), files.as_mut(), on_tick);
+        let ran = recorded_machine(scene, kind, checking, files.as_mut(), on_tick);
         match (&ran, files) {
             (Ok(_), Some(files)) => names.end(files, staging)?,
             (Err(_), Some(_)) => names.discard(staging)?,

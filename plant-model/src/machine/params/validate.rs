@@ -159,14 +159,21 @@ impl MachinePlane {
             SlidingFriction::Constant { coefficient } => {
                 not_negative("friction.coefficient", coefficient)?;
             }
-            SlidingFriction::Falling { at_speed, .. } => {
-                let only = "sliding friction that is the same at every speed";
+            SlidingFriction::Falling {
+                at_rest,
+                at_speed,
+                speed_scale_m_s,
+            } => {
+                not_negative("friction.coefficient", at_rest)?;
+                let falls = (0.0..=at_rest).contains(&at_speed);
+                let rule = "from 0 to the coefficient at rest";
                 check(
-                    false,
+                    falls,
                     field("friction.coefficient_at_speed"),
                     at_speed,
-                    only,
+                    rule,
                 )?;
+                positive("friction.speed_scale_m_s", speed_scale_m_s)?;
             }
         }
         not_negative(

@@ -85,10 +85,10 @@ const CASES: &[(&str, &str, &str, &str)] = &[
         "a round bore",
     ),
     (
-        "contact_radius_m = 0.03",
-        "contact_radius_m = 0.03\nfriction = { coefficient = 0.2, coefficient_at_speed = 0.1, speed_scale_m_s = 1.0 }",
-        "plane[1].friction.coefficient_at_speed",
-        "the same at every speed",
+        "sample_rate_hz = 20000",
+        "sample_rate_hz = 20000\nmethod = \"stiff\"",
+        "run.method",
+        "is of a point mass in one plane",
     ),
     (
         "contact_radius_m = 0.03",
@@ -165,6 +165,18 @@ fn contradictions_are_refused_with_line_key_and_rule() {
             "{key}, {says}: {message}"
         );
     }
+    // Friction that falls with speed is taken, but not by series.
+    let falling = TWO_PLANES.replace(
+        "contact_radius_m = 0.03",
+        "contact_radius_m = 0.03\nfriction = { coefficient = 0.2, coefficient_at_speed = 0.1, speed_scale_m_s = 1.0 }",
+    );
+    MachineScene::parse("scene.toml", &falling).unwrap();
+    let series = falling.replace("[run]", "[run]\nmethod = \"series\"");
+    let message = refused(&series);
+    assert!(
+        message.contains("plane[1].friction.coefficient_at_speed"),
+        "{message}"
+    );
     let many: String = (0..4)
         .map(|i| format!("[[plane]]\nname = \"n{i}\"\nposition_m = 0.1\n"))
         .collect();

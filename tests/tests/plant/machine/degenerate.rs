@@ -56,14 +56,20 @@ fn stators() -> [(StatorParams, StatorParams); 3] {
 }
 
 /// Runs both under the same forces, shared equally between the ends, and compares everything that both have.
-fn alike(params: &MachineParams, one: &PlantParams, what: &str) {
+fn alike(params: &MachineParams, one: &PlantParams, (method, worst): (Method, f64), what: &str) {
+    let auto = Options {
+        method: Method::Auto,
+        ..OPTIONS
+    };
     let start = MachineStart {
         centre_velocity_m_s: V2::new(0.3, 0.0),
         spin_rad_s: 400.0,
         ..MachineStart::default()
     };
-    let mut rotor = Machine::new(params, &start, OPTIONS).unwrap();
-    let mut point = build(one, &point_start(V2::new(0.3, 0.0)), OPTIONS).unwrap();
+    let options = Options { method, ..OPTIONS };
+    let mut rotor = Machine::new(params, &start, options).unwrap();
+    assert_eq!(rotor.method(), method);
+    let mut point = build(one, &point_start(V2::new(0.3, 0.0)), auto).unwrap();
     let (mut changes, mut expected) = (vec![vec![]; 2], vec![]);
     for i in 1..=100 {
         let t = 2e-4 * f64::from(i);
@@ -90,7 +96,7 @@ fn alike(params: &MachineParams, one: &PlantParams, what: &str) {
         assert_eq!(changes[p], expected, "{what}, plane {p}");
         let near = |a: f64, b: f64, scale: f64, name: &str| {
             assert!(
-                (a - b).abs() <= 1e-10 * scale,
+                (a - b).abs() <= worst * scale,
                 "{what}, plane {p}: {name} {a:e}, {b:e}"
             );
         };
@@ -144,9 +150,9 @@ fn alike(params: &MachineParams, one: &PlantParams, what: &str) {
         near(speeds.0, speeds.1, 1.0, "backward speed");
     }
     let (books, all) = (rotor.audit(), point.audit());
-    assert!(books.residual() < 1e-10, "{what}: {:e}", books.residual());
+    assert!(books.residual() < worst, "{what}: {:e}", books.residual());
     let (a, b) = (books.flows, all.flows);
-    let scale = 1e-10 * all.turnover_j();
+    let scale = worst * all.turnover_j();
     for (name, a, b) in [
         ("supplied", a.supplied(), b.supplied()),
         ("dissipated", a.dissipated(), b.dissipated()),
@@ -204,8 +210,47 @@ fn a_rotor_without_tilt_is_a_point_mass() {
                 force_max_n: 300.0,
                 lag_s,
             });
-            alike(&params, &one, &format!("{stator:?}, case {case:04b}"));
+            // The second method goes the same way.
+            for (method, worst) in [(Method::Series, 1e-10), (Method::Explicit, 1e-9)] {
+                let what = format!("{}, {stator:?}, case {case:04b}", method.name());
+                alike(&params, &one, (method, worst), &what);
+            }
         }
+    }
+}
+
+/// Friction that falls with speed, which is left to the second method.
+#[test]
+fn friction_that_falls_with_speed_is_that_of_a_point_mass() {
+    let falling = SlidingFriction::Falling {
+        at_rest: 0.3,
+        at_speed: 0.1,
+        speed_scale_m_s: 0.4,
+    };
+    for (stator, halves) in stators() {
+        let (mut params, mut one) = (machine(), point());
+        let magnet = |position_m: f64| MachineMagnet {
+            position_m,
+            force_max_n: 150.0,
+            lag_s: 2e-4,
+        };
+        params.magnets = vec![magnet(-0.1), magnet(0.1)];
+        params.loads_m = vec![0.0];
+        for plane in &mut params.planes {
+            plane.stator = halves;
+            plane.friction.sliding = falling;
+        }
+        (one.stator, one.friction.sliding) = (stator, falling);
+        one.magnet = Some(MagnetParams {
+            force_max_n: 300.0,
+            lag_s: 2e-4,
+        });
+        let what = format!("falling friction, {stator:?}");
+        alike(&params, &one, (Method::Explicit, 1e-8), &what);
+        let auto = Machine::new(&params, &MachineStart::default(), Options::default()).unwrap();
+        assert_eq!(auto.method(), Method::Explicit);
+        let refused = Machine::new(&params, &MachineStart::default(), OPTIONS).unwrap_err();
+        assert_eq!(refused.field, "planes[0].friction.coefficient_at_speed");
     }
 }
 

@@ -1,0 +1,524 @@
+//! A second way through a step of a machine, to hold the series against: collocation in Gauss's eight points.
+//!
+//! Accelerations are a polynomial of degree 7 in θ = time / step that meets the equations of motion at the points, found by
+//! iteration; speeds and positions are its integrals. Nothing here knows a recurrence: forces are those of an instant, held
+//! speeds are held there, and what laws say may be anything smooth, as friction that falls with speed. How well the polynomial meets
+//! the equations where it does not have to, at the end of the step, says how good it is.
+//!
+//! The result is put where the series puts its own, so events, energies and readings are those of [`super::step`].
+
+use super::holding::Holding;
+use super::series::{MachineSeries, Step};
+use super::system::{Channel, MachineState, MachineSystem, holding_channels};
+use crate::V2;
+use crate::mode::{Phase, Slide, Whirl};
+use crate::quadrature::{EIGHT, Nodes};
+use crate::series::{INVERSE, Scalar, Series};
+use crate::vector::perp;
+
+/// Points of collocation.
+const GAUSS: usize = 8;
+/// With both ends.
+const POINTS: usize = GAUSS + 2;
+/// Degree of positions, and of what is read off at the points.
+const DEGREE: usize = POINTS - 1;
+/// That of the guard of a clearance, their square: what is written is a polynomial and not the beginning of a series.
+const ORDER: usize = 2 * DEGREE;
+const END: usize = POINTS - 1;
+
+/// Powers of the error by which it falls with the step.
+pub(crate) const ERROR_POWER: f64 = (GAUSS + 1) as f64;
+
+/// What a value carried to the end of a step from inside has of rounding: units in the last place times the sizes of the weights.
+const ROUNDING: f64 = 500.0 * f64::EPSILON;
+
+/// Iterations at most, each of which gains some digit.
+const ITERATIONS: usize = 40;
+
+/// Tables of the rule, of a polynomial through values at points.
+#[derive(Debug, Clone)]
+struct Tables {
+    /// Both ends and Gauss's points between.
+    theta: [f64; POINTS],
+    /// ∫ and ∬ of the Lagrange polynomials of Gauss's points, up to each point.
+    once: [[f64; GAUSS]; POINTS],
+    twice: [[f64; GAUSS]; POINTS],
+    /// Values of them at both ends, and at the end those of the polynomials of the start and Gauss's points.
+    at_ends: [[f64; GAUSS]; 2],
+    from_start: [f64; GAUSS + 1],
+    /// Power by power, from values at Gauss's points, and at all points.
+    inner: [[f64; GAUSS]; GAUSS],
+    all: [[f64; POINTS]; POINTS],
+}
+
+/// Σ over the other places: value of the Lagrange polynomial of place j.
+fn lagrange(places: &[f64], j: usize, at: f64) -> f64 {
+    let others = places.iter().enumerate().filter(|(m, _)| *m != j);
+    others
+        .map(|(_, place)| (at - place) / (places[j] - place))
+        .product()
+}
+
+/// Coefficients of the Lagrange polynomials of N places: row k has those of θ^k.
+fn powers<const N: usize>(places: &[f64; N]) -> [[f64; N]; N] {
+    let mut rows = [[0.0; N]; N];
+    for j in 0..N {
+        let mut product = [0.0; N];
+        product[0] = 1.0;
+        for (m, place) in places.iter().enumerate().filter(|(m, _)| *m != j) {
+            let per = 1.0 / (places[j] - place);
+            let degree = if m < j { m } else { m - 1 };
+            for k in (0..=degree).rev() {
+                product[k + 1] += per * product[k];
+                product[k] *= -per * place;
+            }
+        }
+        for (row, coefficient) in rows.iter_mut().zip(product) {
+            row[j] = coefficient;
+        }
+    }
+    rows
+}
+
+impl Tables {
+    fn new() -> Self {
+        let gauss = EIGHT.theta;
+        let mut theta = [0.0; POINTS];
+        theta[1..END].copy_from_slice(&gauss);
+        theta[END] = 1.0;
+        let (mut once, mut twice) = ([[0.0; GAUSS]; POINTS], [[0.0; GAUSS]; POINTS]);
+        for i in 0..POINTS {
+            let nodes = Nodes::stretched(&EIGHT, theta[i]);
+            for j in 0..GAUSS {
+                let value = |n: usize| lagrange(&gauss, j, nodes.theta[n]);
+                once[i][j] = nodes.integral(value);
+                twice[i][j] = nodes.integral(|n| (theta[i] - nodes.theta[n]) * value(n));
+            }
+        }
+        Self {
+            once,
+            twice,
+            at_ends: [0.0, 1.0].map(|end| std::array::from_fn(|j| lagrange(&gauss, j, end))),
+            from_start: std::array::from_fn(|j| lagrange(&theta[..END], j, 1.0)),
+            inner: powers(&gauss),
+            all: powers(&theta),
+            theta,
+        }
+    }
+}
+
+/// What an instant says of a plane that is touched.
+#[derive(Debug, Clone, Copy, Default)]
+struct Touch {
+    distance_m: f64,
+    normal_m_s: f64,
+    force_n: f64,
+    whirl_m_s: f64,
+    slip_m_s: f64,
+    sliding_n: f64,
+    rolling_n: f64,
+    normal: V2,
+}
+
+/// An instant: state, its rates, and what the planes say.
+#[derive(Debug, Clone)]
+struct Instant {
+    y: MachineState,
+    acceleration: Vec<f64>,
+    spin_rate: f64,
+    race_rates: Vec<f64>,
+    magnet_rates: Vec<V2>,
+    unbalance: V2,
+    touches: Vec<Touch>,
+}
+
+/// Scales against which errors of speed, spin and magnets are weighed.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Scales {
+    pub(crate) velocity: f64,
+    pub(crate) spin: f64,
+    pub(crate) force: f64,
+    /// Of distances in planes, and of speeds there.
+    pub(crate) gap: f64,
+    pub(crate) speed: f64,
+    /// Weighed errors below this are rounding.
+    pub(crate) rounding: f64,
+}
+
+/// The method, with room for a step.
+#[derive(Debug, Clone)]
+pub(crate) struct Collocation {
+    tables: Tables,
+    instants: Vec<Instant>,
+    holding: Holding,
+    before: Vec<f64>,
+}
+
+impl Collocation {
+    pub(crate) fn new(system: &MachineSystem) -> Self {
+        let (n, planes, magnets) = (
+            system.body.n,
+            system.planes.len(),
+            system.body.magnets.len(),
+        );
+        let instant = Instant {
+            y: MachineState::default(),
+            acceleration: vec![0.0; n],
+            spin_rate: 0.0,
+            race_rates: vec![0.0; planes],
+            magnet_rates: vec![V2::zeros(); magnets],
+            unbalance: V2::zeros(),
+            touches: vec![Touch::default(); planes],
+        };
+        Self {
+            tables: Tables::new(),
+            instants: vec![instant; POINTS],
+            holding: Holding::new(n),
+            before: vec![0.0; n],
+        }
+    }
+
+    /// Goes through a step; its error in units of the scales, or infinity where the iteration does not settle.
+    pub(crate) fn solve(&mut self, step: &Step<'_>, y: &MachineState, scales: &Scales) -> f64 {
+        for instant in &mut self.instants {
+            instant.y.clone_from(y);
+        }
+        self.evaluate(step, 0);
+        let (first, rest) = self.instants.split_at_mut(1);
+        for instant in rest {
+            instant.take_rates(&first[0]);
+        }
+        let mut last = f64::INFINITY;
+        let mut settled = false;
+        for iteration in 0..ITERATIONS {
+            let mut change: f64 = 0.0;
+            for i in 1..END {
+                self.place(step, y, i);
+            }
+            for i in 1..END {
+                change = change.max(self.renew(step, i, scales));
+            }
+            if change.is_nan() {
+                return f64::INFINITY;
+            }
+            settled = change <= scales.rounding.max(1e-2);
+            if settled || (iteration > 3 && change > 0.5 * last) {
+                break;
+            }
+            last = change;
+        }
+        if !settled {
+            return f64::INFINITY;
+        }
+        self.place(step, y, END);
+        self.evaluate(step, END);
+        let error = (self.defect(step, scales, 0))
+            .max(self.defect(step, scales, END))
+            .max(self.misread(step, scales));
+        if error.is_nan() { f64::INFINITY } else { error }
+    }
+
+    /// Puts the state of a point: the start, and the integrals of the rates.
+    fn place(&mut self, step: &Step<'_>, start: &MachineState, i: usize) {
+        let h = step.step_s;
+        let (once, twice) = (&self.tables.once[i], &self.tables.twice[i]);
+        let t_s = h * self.tables.theta[i];
+        // The state is taken out while the rates of all points are read.
+        let mut y = std::mem::take(&mut self.instants[i].y);
+        y.clone_from(start);
+        for (q, v) in y.position.iter_mut().zip(&start.velocity) {
+            *q += t_s * v;
+        }
+        y.phase_rad += t_s * start.spin_rad_s;
+        for (j, instant) in self.instants[1..END].iter().enumerate() {
+            let (b, bb) = (h * once[j], h * h * twice[j]);
+            for (v, a) in y.velocity.iter_mut().zip(&instant.acceleration) {
+                *v += b * a;
+            }
+            for (q, a) in y.position.iter_mut().zip(&instant.acceleration) {
+                *q += bb * a;
+            }
+            y.spin_rad_s += b * instant.spin_rate;
+            y.phase_rad += bb * instant.spin_rate;
+            for (spin, rate) in y.races_rad_s.iter_mut().zip(&instant.race_rates) {
+                *spin += b * rate;
+            }
+            for (force, rate) in y.magnets_n.iter_mut().zip(&instant.magnet_rates) {
+                *force += b * rate;
+            }
+        }
+        self.instants[i].y = y;
+    }
+
+    /// Evaluates a point again; by how much its rates have changed.
+    fn renew(&mut self, step: &Step<'_>, i: usize, scales: &Scales) -> f64 {
+        self.before.copy_from_slice(&self.instants[i].acceleration);
+        let (spin, magnets) = (
+            self.instants[i].spin_rate,
+            self.instants[i].magnet_rates.first().copied(),
+        );
+        self.evaluate(step, i);
+        let now = &self.instants[i];
+        let off = now.acceleration.iter().zip(&self.before);
+        let moved: f64 = off.map(|(a, b)| (a - b).powi(2)).sum();
+        let magnet = match (now.magnet_rates.first(), magnets) {
+            (Some(a), Some(b)) => (a - b).norm(),
+            _ => 0.0,
+        };
+        step.step_s
+            * (moved.sqrt() * scales.velocity)
+                .max((now.spin_rate - spin).abs() * scales.spin)
+                .max(magnet * scales.force)
+    }
+
+    /// How far the rates at an end are from the polynomial through those between, in units of the scales.
+    fn defect(&self, step: &Step<'_>, scales: &Scales, end: usize) -> f64 {
+        let (end, weights) = (&self.instants[end], &self.tables.at_ends[end.min(1)]);
+        let inner = || self.instants[1..END].iter().zip(weights);
+        let mut square = 0.0;
+        for (c, a) in end.acceleration.iter().enumerate() {
+            let through: f64 = inner().map(|(at, w)| w * at.acceleration[c]).sum();
+            square += (a - through).powi(2);
+        }
+        let spin: f64 = inner().map(|(at, w)| w * at.spin_rate).sum();
+        let mut magnets = 0.0;
+        for (m, rate) in end.magnet_rates.iter().enumerate() {
+            let through = inner().fold(V2::zeros(), |sum, (at, w)| sum + *w * at.magnet_rates[m]);
+            magnets += (rate - through).norm_squared();
+        }
+        // A distance is known to a few units in its last place, and walls are stiff.
+        let planes = step.system.planes.iter().enumerate();
+        let forces = planes.map(|(p, data)| {
+            let grip = end.touches[p].distance_m * data.law.stiffness_n_m;
+            grip * step.system.contact(p).mobility().sqrt()
+        });
+        let noise = ROUNDING * forces.fold(0.0, f64::max);
+        step.step_s
+            * ((square.sqrt() - noise).max(0.0) * scales.velocity)
+                .hypot((end.spin_rate - spin) * scales.spin)
+                .hypot(magnets.sqrt() * scales.force)
+    }
+
+    /// The same of what guards are made of in planes that touch.
+    fn misread(&self, step: &Step<'_>, scales: &Scales) -> f64 {
+        let mut worst: f64 = 0.0;
+        for (p, phase) in step.phases.iter().enumerate() {
+            if *phase == Phase::Inside {
+                continue;
+            }
+            let end = &self.instants[END].touches[p];
+            let off = |size: f64, value: &dyn Fn(&Touch) -> f64| {
+                let before = self.instants[..END].iter().zip(&self.tables.from_start);
+                let through: f64 = before.map(|(at, w)| w * value(&at.touches[p])).sum();
+                ((value(end) - through).abs() - ROUNDING * size).max(0.0)
+            };
+            let stiffness_n_m = step.system.planes[p].law.stiffness_n_m;
+            let (grip_n, per_n) = (stiffness_n_m * end.distance_m, scales.gap / stiffness_n_m);
+            worst = (worst.max(off(grip_n, &|t| t.force_n) * per_n))
+                .max(off(grip_n, &|t| t.sliding_n) * per_n)
+                .max(off(grip_n, &|t| t.rolling_n) * per_n)
+                .max(off(end.distance_m, &|t| t.distance_m) * scales.gap)
+                .max(off(end.whirl_m_s.abs(), &|t| t.whirl_m_s) * scales.speed);
+        }
+        worst
+    }
+
+    /// The equations of motion at a point.
+    fn evaluate(&mut self, step: &Step<'_>, i: usize) {
+        let (system, instant) = (step.system, &mut self.instants[i]);
+        let (body, y) = (&system.body, &instant.y);
+        let a = &mut instant.acceleration;
+        a.copy_from_slice(step.forces);
+        body.stiffness.add_product(a, -1.0, &y.position);
+        body.damping.add_product(a, -1.0, &y.velocity);
+        body.gyroscopic.add_product(a, -y.spin_rad_s, &y.velocity);
+        for (m, port) in body.magnets.iter().enumerate() {
+            if let Some(rate) = system.magnet_rates[m] {
+                instant.magnet_rates[m] = rate * (step.commands_n[m] - y.magnets_n[m]);
+                port.push(a, y.magnets_n[m]);
+            }
+        }
+        let mut torque = system.drive_torque_n_m;
+        for (p, phase) in step.phases.iter().enumerate() {
+            let (data, touch) = (&system.planes[p], &mut instant.touches[p]);
+            *touch = Touch::default();
+            if *phase == Phase::Inside {
+                continue;
+            }
+            let motion = system.motion(p, y);
+            touch.distance_m = motion.distance_m;
+            touch.normal = motion.normal;
+            touch.normal_m_s = motion.normal_m_s;
+            touch.force_n = (data.law).normal_force_n(motion.penetration_m, motion.normal_m_s);
+            let Phase::Contact(slide, whirl) = *phase else {
+                continue;
+            };
+            touch.whirl_m_s = motion.whirl_m_s;
+            touch.slip_m_s = motion.sliding_m_s;
+            if slide != Slide::Rolling {
+                let sign = slide.sign();
+                let mu = data.friction.coefficient(sign * motion.sliding_m_s);
+                touch.sliding_n = -sign * mu * touch.force_n;
+            }
+            if !matches!(whirl, Whirl::Still | Whirl::Ignored) {
+                touch.rolling_n = -whirl.sign() * data.rolling * touch.force_n;
+            }
+            torque += data.radius_m * touch.sliding_n;
+            let grip = touch.sliding_n + touch.rolling_n;
+            let force = grip * perp(touch.normal) - touch.force_n * touch.normal;
+            body.contacts[p].push(a, force);
+        }
+        instant.spin_rate = torque * system.inverse_inertia;
+        for (p, rate) in instant.race_rates.iter_mut().enumerate() {
+            if let Some(race) = &system.planes[p].race {
+                *rate = race.acceleration(y.races_rad_s[p], instant.touches[p].sliding_n);
+            }
+        }
+        let direction = match &body.unbalance {
+            None => V2::x(),
+            Some(unbalance) => {
+                let (sin, cos) = y.phase_rad.sin_cos();
+                let direction = V2::new(cos, sin);
+                instant.unbalance =
+                    y.spin_rad_s * y.spin_rad_s * direction - instant.spin_rate * perp(direction);
+                unbalance.push(a, instant.unbalance);
+                direction
+            }
+        };
+        self.hold(step, i, direction);
+    }
+
+    /// Adds the friction that holds speeds at zero: so that their rates are zero.
+    fn hold(&mut self, step: &Step<'_>, i: usize, direction: V2) {
+        let (system, instant) = (step.system, &mut self.instants[i]);
+        let touches = &instant.touches;
+        let channels = holding_channels(step.phases);
+        (self.holding).set(system, channels, |p| touches[p].normal, direction);
+        let friction_n = self.holding.against(|held| {
+            let touch = &instant.touches[held.plane];
+            let port = &system.body.contacts[held.plane];
+            // The tangent turns by v_w/ρ.
+            let turned = -touch.whirl_m_s / touch.distance_m * touch.normal_m_s;
+            held.tangent.dot(&port.of(&instant.acceleration))
+                + turned
+                + system.surface_of(
+                    held.plane,
+                    held.channel,
+                    instant.spin_rate,
+                    instant.race_rates[held.plane],
+                )
+        });
+        for (held, force_n) in self.holding.held().iter().zip(friction_n) {
+            for (a, by) in instant.acceleration.iter_mut().zip(&held.accelerations) {
+                *a += force_n * by;
+            }
+            instant.spin_rate += force_n * held.spin;
+            instant.race_rates[held.plane] += force_n * held.race;
+            instant.unbalance -= force_n * held.spin * perp(direction);
+            let touch = &mut instant.touches[held.plane];
+            match held.channel {
+                Channel::Sliding => touch.sliding_n += force_n,
+                Channel::Rolling => touch.rolling_n += force_n,
+            }
+        }
+    }
+
+    /// Puts the solution where the series has its own.
+    pub(crate) fn write(&self, step: &Step<'_>, y: &MachineState, out: &mut MachineSeries) {
+        let (system, h) = (step.system, step.step_s);
+        (out.step_s, out.order) = (h, ORDER);
+        out.position.row_mut(0).copy_from_slice(&y.position);
+        out.velocity.row_mut(0).copy_from_slice(&y.velocity);
+        for k in 0..ORDER {
+            let velocity = out.velocity.row_mut(k + 1);
+            velocity.fill(0.0);
+            if k < GAUSS {
+                for (instant, c) in self.instants[1..END].iter().zip(&self.tables.inner[k]) {
+                    let c = h * c * INVERSE[k + 1];
+                    for (v, a) in velocity.iter_mut().zip(&instant.acceleration) {
+                        *v += c * a;
+                    }
+                }
+            }
+            let next = h * INVERSE[k + 1];
+            let (rows, before) = (&mut out.position, &out.velocity);
+            for (q, v) in rows.row_mut(k + 1).iter_mut().zip(before.row(k)) {
+                *q = next * v;
+            }
+        }
+        self.integrals(&mut out.spin, y.spin_rad_s, h, |at| at.spin_rate);
+        for (m, series) in out.magnets.iter_mut().enumerate() {
+            for axis in [0, 1] {
+                let mut one = Scalar::default();
+                self.integrals(&mut one, y.magnets_n[m][axis], h, |at| {
+                    at.magnet_rates[m][axis]
+                });
+                for (c, x) in series.0[..=ORDER].iter_mut().zip(one.0) {
+                    c[axis] = x;
+                }
+            }
+        }
+        if system.body.unbalance.is_some() {
+            out.unbalance.0[..=ORDER].fill(V2::zeros());
+            for (k, row) in self.tables.all.iter().enumerate() {
+                let all = self.instants.iter().zip(row);
+                out.unbalance.0[k] = all.fold(V2::zeros(), |sum, (at, c)| sum + *c * at.unbalance);
+            }
+        }
+        for (p, plane) in out.planes.iter_mut().enumerate() {
+            let port = &system.body.contacts[p];
+            for k in 0..=ORDER {
+                plane.gap.0[k] = port.of(out.position.row(k));
+            }
+            plane.gap.0[0] -= system.planes[p].centre_m;
+            self.integrals(&mut plane.race, y.races_rad_s[p], h, |at| at.race_rates[p]);
+            if step.phases[p] == Phase::Inside {
+                continue;
+            }
+            rates_at(&mut plane.gap_rate, |k| port.of(out.velocity.row(k)));
+            self.through(&mut plane.distance, |at| at.touches[p].distance_m);
+            self.through(&mut plane.normal_speed, |at| at.touches[p].normal_m_s);
+            self.through(&mut plane.force, |at| at.touches[p].force_n);
+            self.through(&mut plane.whirl_speed, |at| at.touches[p].whirl_m_s);
+            self.through(&mut plane.slip, |at| at.touches[p].slip_m_s);
+            self.through(&mut plane.sliding, |at| at.touches[p].sliding_n);
+            self.through(&mut plane.rolling, |at| at.touches[p].rolling_n);
+        }
+    }
+
+    /// The polynomial that starts at a value and has these rates.
+    fn integrals(&self, out: &mut Scalar, start: f64, h: f64, rate: impl Fn(&Instant) -> f64) {
+        out.0[..=ORDER].fill(0.0);
+        out.0[0] = start;
+        for (k, row) in self.tables.inner.iter().enumerate() {
+            let rates = self.instants[1..END].iter().zip(row);
+            out.0[k + 1] = h * INVERSE[k + 1] * rates.map(|(at, c)| c * rate(at)).sum::<f64>();
+        }
+    }
+
+    /// The polynomial through values at all points.
+    fn through(&self, out: &mut Scalar, value: impl Fn(&Instant) -> f64) {
+        out.0[..=ORDER].fill(0.0);
+        for (c, row) in out.0.iter_mut().zip(&self.tables.all) {
+            let values = self.instants.iter().zip(row);
+            *c = values.map(|(at, c)| c * value(at)).sum();
+        }
+        // A guard that starts at zero is to do so to the last bit.
+        out.0[0] = value(&self.instants[0]);
+    }
+}
+
+fn rates_at(out: &mut Series, row: impl Fn(usize) -> V2) {
+    for (k, c) in out.0[..=ORDER].iter_mut().enumerate() {
+        *c = row(k);
+    }
+}
+
+impl Instant {
+    fn take_rates(&mut self, of: &Self) {
+        self.acceleration.copy_from_slice(&of.acceleration);
+        self.race_rates.copy_from_slice(&of.race_rates);
+        self.magnet_rates.copy_from_slice(&of.magnet_rates);
+        self.spin_rate = of.spin_rate;
+    }
+}
