@@ -75,6 +75,7 @@ mod holding;
 pub mod linear;
 pub mod params;
 pub mod point_mass;
+mod poles;
 mod readout;
 pub mod reduced;
 mod run;

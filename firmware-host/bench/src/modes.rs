@@ -259,7 +259,7 @@ const GROWS_1_S: f64 = 1e-3;
 
 /// The machine, with the gains of its planes' controllers as supports where that is asked for.
 fn held(scene: &MachineScene, range: Range) -> MachineParams {
-    let mut params = scene.machine.clone();
+    let mut params = scene.machine.linear_magnets();
     if range.levitated {
         let magnets = (scene.planes.iter())
             .filter_map(|plane| Some((plane.magnet?, plane.scene.levitation?)));

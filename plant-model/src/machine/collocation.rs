@@ -8,6 +8,7 @@
 //! The result is put where the series puts its own, so events, energies and readings are those of [`super::step`].
 
 use super::holding::Holding;
+use super::poles::MagnetLaw;
 use super::series::{MachineSeries, Step};
 use super::system::{Channel, MachineState, MachineSystem, holding_channels};
 use crate::V2;
@@ -128,6 +129,8 @@ struct Instant {
     spin_rate: f64,
     race_rates: Vec<f64>,
     magnet_rates: Vec<V2>,
+    /// Their forces.
+    magnets_n: Vec<V2>,
     unbalance: V2,
     touches: Vec<Touch>,
 }
@@ -152,6 +155,7 @@ pub(crate) struct Collocation {
     instants: Vec<Instant>,
     holding: Holding,
     before: Vec<f64>,
+    magnets_before: Vec<V2>,
 }
 
 impl Collocation {
@@ -167,6 +171,7 @@ impl Collocation {
             spin_rate: 0.0,
             race_rates: vec![0.0; planes],
             magnet_rates: vec![V2::zeros(); magnets],
+            magnets_n: vec![V2::zeros(); magnets],
             unbalance: V2::zeros(),
             touches: vec![Touch::default(); planes],
         };
@@ -175,6 +180,7 @@ impl Collocation {
             instants: vec![instant; POINTS],
             holding: Holding::new(n),
             before: vec![0.0; n],
+            magnets_before: vec![V2::zeros(); magnets],
         }
     }
 
@@ -243,7 +249,7 @@ impl Collocation {
             for (spin, rate) in y.races_rad_s.iter_mut().zip(&instant.race_rates) {
                 *spin += b * rate;
             }
-            for (force, rate) in y.magnets_n.iter_mut().zip(&instant.magnet_rates) {
+            for (force, rate) in y.magnets.iter_mut().zip(&instant.magnet_rates) {
                 *force += b * rate;
             }
         }
@@ -253,18 +259,17 @@ impl Collocation {
     /// Evaluates a point again; by how much its rates have changed.
     fn renew(&mut self, step: &Step<'_>, i: usize, scales: &Scales) -> f64 {
         self.before.copy_from_slice(&self.instants[i].acceleration);
-        let (spin, magnets) = (
-            self.instants[i].spin_rate,
-            self.instants[i].magnet_rates.first().copied(),
-        );
+        let spin = self.instants[i].spin_rate;
+        self.magnets_before
+            .copy_from_slice(&self.instants[i].magnet_rates);
         self.evaluate(step, i);
         let now = &self.instants[i];
         let off = now.acceleration.iter().zip(&self.before);
         let moved: f64 = off.map(|(a, b)| (a - b).powi(2)).sum();
-        let magnet = match (now.magnet_rates.first(), magnets) {
-            (Some(a), Some(b)) => (a - b).norm(),
-            _ => 0.0,
-        };
+        let magnets = now.magnet_rates.iter().zip(&self.magnets_before);
+        let magnet = (magnets.zip(&step.system.magnets))
+            .map(|((a, b), law)| law.per_state_n() * (a - b).norm())
+            .fold(0.0, f64::max);
         step.step_s
             * (moved.sqrt() * scales.velocity)
                 .max((now.spin_rate - spin).abs() * scales.spin)
@@ -284,7 +289,7 @@ impl Collocation {
         let mut magnets = 0.0;
         for (m, rate) in end.magnet_rates.iter().enumerate() {
             let through = inner().fold(V2::zeros(), |sum, (at, w)| sum + *w * at.magnet_rates[m]);
-            magnets += (rate - through).norm_squared();
+            magnets += (step.system.magnets[m].per_state_n() * (rate - through)).norm_squared();
         }
         // A distance is known to a few units in its last place, and walls are stiff.
         let planes = step.system.planes.iter().enumerate();
@@ -333,10 +338,16 @@ impl Collocation {
         body.damping.add_product(a, -1.0, &y.velocity);
         body.gyroscopic.add_product(a, -y.spin_rad_s, &y.velocity);
         for (m, port) in body.magnets.iter().enumerate() {
-            if let Some(rate) = system.magnet_rates[m] {
-                instant.magnet_rates[m] = rate * (step.commands_n[m] - y.magnets_n[m]);
-                port.push(a, y.magnets_n[m]);
-            }
+            let (state, command_n) = (y.magnets[m], step.commands_n[m]);
+            instant.magnet_rates[m] = match &system.magnets[m] {
+                MagnetLaw::Held => continue,
+                MagnetLaw::Lag(rate) => *rate * (command_n - state),
+                MagnetLaw::Poles(poles) => {
+                    poles.current_rate(state, command_n, port.of(&y.velocity))
+                }
+            };
+            instant.magnets_n[m] = system.magnet_n(m, y);
+            port.push(a, instant.magnets_n[m]);
         }
         let mut torque = system.drive_torque_n_m;
         for (p, phase) in step.phases.iter().enumerate() {
@@ -447,14 +458,19 @@ impl Collocation {
             }
         }
         self.integrals(&mut out.spin, y.spin_rad_s, h, |at| at.spin_rate);
-        for (m, series) in out.magnets.iter_mut().enumerate() {
+        for (m, law) in system.magnets.iter().enumerate() {
             for axis in [0, 1] {
                 let mut one = Scalar::default();
-                self.integrals(&mut one, y.magnets_n[m][axis], h, |at| {
-                    at.magnet_rates[m][axis]
-                });
-                for (c, x) in series.0[..=ORDER].iter_mut().zip(one.0) {
-                    c[axis] = x;
+                let rate = |at: &Instant| at.magnet_rates[m][axis];
+                self.integrals(&mut one, y.magnets[m][axis], h, rate);
+                match law {
+                    MagnetLaw::Held => {}
+                    MagnetLaw::Lag(_) => put(&mut out.magnets[m], axis, &one),
+                    MagnetLaw::Poles(_) => {
+                        put(&mut out.currents[m], axis, &one);
+                        self.through(&mut one, |at| at.magnets_n[m][axis]);
+                        put(&mut out.magnets[m], axis, &one);
+                    }
                 }
             }
         }
@@ -505,6 +521,12 @@ impl Collocation {
         }
         // A guard that starts at zero is to do so to the last bit.
         out.0[0] = value(&self.instants[0]);
+    }
+}
+
+fn put(out: &mut Series, axis: usize, one: &Scalar) {
+    for (c, x) in out.0[..=ORDER].iter_mut().zip(one.0) {
+        c[axis] = x;
     }
 }
 

@@ -4,6 +4,7 @@
 //! z = (ω·q, q̇, delivered forces of magnets that lag, direction of the spin, commands, loads, 1) obeys ż = A·z, with ω the
 //! fastest rate, so that all entries of A are of one size.
 
+use super::poles::MagnetLaw;
 use super::readout::StepFlows;
 use super::system::{MachineInputs, MachineState, MachineSystem};
 use crate::V2;
@@ -104,8 +105,8 @@ impl FlightMap {
             y.velocity[i] = self.out[n + i];
         }
         let mut lagging = self.layout.magnets;
-        for (force_n, rate) in y.magnets_n.iter_mut().zip(&system.magnet_rates) {
-            if rate.is_some() {
+        for (force_n, law) in y.magnets.iter_mut().zip(&system.magnets) {
+            if law.lag().is_some() {
                 *force_n = V2::new(self.out[lagging], self.out[lagging + 1]);
                 lagging += 2;
             }
@@ -175,9 +176,9 @@ impl FlightMap {
         }
         let put = |z: &mut [f64], at: usize, v: V2| (z[at], z[at + 1]) = (v.x, v.y);
         let mut lagging = magnets;
-        for (m, rate) in system.magnet_rates.iter().enumerate() {
-            if rate.is_some() {
-                put(&mut self.z, lagging, y.magnets_n[m]);
+        for (m, law) in system.magnets.iter().enumerate() {
+            if law.lag().is_some() {
+                put(&mut self.z, lagging, y.magnets[m]);
                 lagging += 2;
             }
             put(&mut self.z, commands + 2 * m, inputs.commands_n[m]);
@@ -224,13 +225,13 @@ impl FlightMap {
                 }
             };
         let mut lagging = magnets;
-        for (m, lag) in system.magnet_rates.iter().enumerate() {
-            match lag {
+        for (m, law) in system.magnets.iter().enumerate() {
+            match law.lag() {
                 Some(lag) => {
                     pushes(&mut a, lagging, &body.magnets[m], 1.0);
                     for axis in [0, 1] {
                         a[(lagging + axis, lagging + axis)] = -lag;
-                        a[(lagging + axis, commands + 2 * m + axis)] = *lag;
+                        a[(lagging + axis, commands + 2 * m + axis)] = lag;
                     }
                     lagging += 2;
                 }
@@ -251,7 +252,7 @@ impl FlightMap {
     fn make(&mut self, system: &MachineSystem) {
         let body = &system.body;
         let n = body.n;
-        let lagging = system.magnet_rates.iter().flatten().count();
+        let lagging = system.magnets.iter().filter_map(MagnetLaw::lag).count();
         let magnets = 2 * n;
         let direction = magnets + 2 * lagging;
         let commands = direction + if body.unbalance.is_some() { 2 } else { 0 };
@@ -316,8 +317,8 @@ impl FlightMap {
                 powers[0][(n + row, n + i)] = column[row];
             }
             let mut lagging = magnets;
-            for (port, rate) in body.magnets.iter().zip(&system.magnet_rates) {
-                if rate.is_some() {
+            for (port, law) in body.magnets.iter().zip(&system.magnets) {
+                if law.lag().is_some() {
                     let at = port.of(&x);
                     (powers[1][(lagging, n + i)], powers[1][(lagging + 1, n + i)]) = (at.x, at.y);
                     lagging += 2;

@@ -87,6 +87,38 @@ pub struct Unbalance {
     pub angle_rad: f64,
 }
 
+/// A magnet as it is: on each axis two poles that face each other, and a drive that sets their currents.
+///
+/// ```text
+/// (6.7)  f = k·( (i_0 + i)²/(s_0 − x)² − (i_0 − i)²/(s_0 + x)² )
+/// (6.8)  L·di/dt = u − R·i − k_i·ẋ        u = (L/τ)·(i_c − i) + R·i_c, at most U
+/// ```
+///
+/// k is such that the largest current gives the magnet's cap in the middle, k_i = 4·k·i_0/s_0², and τ is the magnet's lag. A command
+/// asks for the current i_c = F/k_i, at most the largest. Without an inductance the voltage has no limit, and i follows i_c with τ.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Poles {
+    /// Bias current i_0 \[A\], > 0.
+    pub bias_current_a: f64,
+    /// Largest control current \[A\], > 0.
+    pub current_max_a: f64,
+    /// Air gap s_0 with the rotor in the middle \[m\], larger than the clearance that leaves it there.
+    pub air_gap_m: f64,
+    /// What drives the current.
+    pub coil: Option<Coil>,
+}
+
+/// The electric side of a pair of poles.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Coil {
+    /// L \[H\], > 0.
+    pub inductance_h: f64,
+    /// R \[Ω\], ≥ 0.
+    pub resistance_ohm: f64,
+    /// Largest voltage U \[V\], > 0.
+    pub voltage_max_v: f64,
+}
+
 /// A radial magnet.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MachineMagnet {
@@ -94,8 +126,20 @@ pub struct MachineMagnet {
     pub position_m: f64,
     /// Largest force, as the length of the vector \[N\], > 0.
     pub force_max_n: f64,
-    /// Time constant of the amplifier's lag \[s\], ≥ 0; 0 means none.
+    /// Time constant of the amplifier's lag \[s\], ≥ 0; 0 means none, which poles do not take.
     pub lag_s: f64,
+    /// Poles; without them the force is what is commanded, within cap and lag, wherever the rotor is.
+    pub poles: Option<Poles>,
+}
+
+impl MachineMagnet {
+    /// Stiffness with which poles push the rotor out of the middle, −4·k·i_0²/s_0³ \[N/m\]; 0 without.
+    pub fn stiffness_n_m(&self) -> f64 {
+        self.poles.map_or(0.0, |poles| {
+            let per_current = poles.bias_current_a / poles.current_max_a;
+            -self.force_max_n * per_current / poles.air_gap_m
+        })
+    }
 }
 
 /// A plane in which the rotor may touch.
@@ -155,6 +199,25 @@ pub struct MachineStart {
     pub spin_rad_s: f64,
     /// Angle σ of the spin at t = 0 \[rad\].
     pub spin_phase_rad: f64,
+}
+
+impl MachineParams {
+    /// The same with magnets that are linear about the middle: poles become the negative stiffness that they have there.
+    pub fn linear_magnets(&self) -> Self {
+        let mut linear = self.clone();
+        for magnet in &mut linear.magnets {
+            let stiffness_n_m = magnet.stiffness_n_m();
+            if stiffness_n_m != 0.0 {
+                linear.supports.push(Support {
+                    position_m: magnet.position_m,
+                    stiffness_n_m: V2::repeat(stiffness_n_m),
+                    damping_n_s_m: V2::zeros(),
+                });
+            }
+            magnet.poles = None;
+        }
+        linear
+    }
 }
 
 impl Rotor {

@@ -2,6 +2,7 @@
 
 use super::body::shape_at;
 use super::params::{MAX_MAGNETS, MAX_PLANES, Rotor};
+use super::poles::MagnetLaw;
 use super::series::MachineSeries;
 use super::system::{MachineInputs, MachineState, MachineSystem};
 use crate::V2;
@@ -236,7 +237,7 @@ impl MachineSeries {
             ..Flows::default()
         };
         let mut planes = [PlaneFlows::default(); MAX_PLANES];
-        let lags = system.magnet_rates.iter().any(Option::is_some);
+        let lags = !system.magnets.iter().all(MagnetLaw::is_held);
         let damped = !body.damping.is_zero();
         if damped || lags || body.unbalance.is_some() {
             let mut powers = [Flows::default(); N];
@@ -246,7 +247,7 @@ impl MachineSeries {
                     power.rotor_damping = body.damping.quadratic(scratch);
                 }
                 for (m, port) in body.magnets.iter().enumerate() {
-                    if system.magnet_rates[m].is_some() {
+                    if !system.magnets[m].is_held() {
                         power.control += self.magnets[m].at(at, order).dot(&port.of(scratch));
                     }
                 }

@@ -57,6 +57,16 @@ pub struct Machine {
 
 /// What a method comes to. Friction that falls with speed has no series here.
 fn resolved(params: &MachineParams, method: Method) -> Result<Method, MachineError> {
+    if params.magnets.iter().any(|magnet| magnet.poles.is_some()) {
+        return match method {
+            Method::Auto | Method::Explicit => Ok(Method::Explicit),
+            Method::Series | Method::Stiff => Err(MachineError {
+                field: "run.method".into(),
+                value: f64::NAN,
+                expected: "auto or explicit: magnets with poles have no power series here",
+            }),
+        };
+    }
     let falls =
         |plane: &MachinePlane| matches!(plane.friction.sliding, SlidingFriction::Falling { .. });
     let falling = params.planes.iter().position(falls);
@@ -230,7 +240,7 @@ impl Machine {
                 *command_n
             };
             self.inputs.commands_n[m] = held;
-            if self.system.magnet_rates[m].is_none() {
+            if self.system.magnets[m].is_held() {
                 self.system.body.magnets[m].push(&mut self.forces, held);
             }
         }

@@ -8,6 +8,7 @@
 
 use super::body::LinearBody;
 use super::holding::Holding;
+use super::poles::MagnetLaw;
 use super::system::{Channel, MachineState, MachineSystem, holding_channels};
 use crate::V2;
 use crate::mode::{Phase, Whirl};
@@ -94,7 +95,9 @@ pub(crate) struct MachineSeries {
     direction: Series,
     turning: Series,
     pub(crate) unbalance: Series,
+    /// Forces of magnets that are not held, and currents of poles.
     pub(crate) magnets: Vec<Series>,
+    pub(crate) currents: Vec<Series>,
     pub(crate) planes: Vec<PlaneSeries>,
     acceleration: Vec<f64>,
     spun: Vec<f64>,
@@ -127,6 +130,7 @@ impl MachineSeries {
             turning: Series::default(),
             unbalance: Series::default(),
             magnets: vec![Series::default(); body.magnets.len()],
+            currents: vec![Series::default(); body.magnets.len()],
             planes: vec![PlaneSeries::default(); planes],
             acceleration: vec![0.0; body.n],
             spun: vec![0.0; body.n],
@@ -156,8 +160,8 @@ impl MachineSeries {
             let (sin, cos) = y.phase_rad.sin_cos();
             self.direction.0[0] = V2::new(cos, sin);
         }
-        for (series, force_n) in self.magnets.iter_mut().zip(&y.magnets_n) {
-            series.0[0] = *force_n;
+        for (m, series) in self.magnets.iter_mut().enumerate() {
+            series.0[0] = system.magnet_n(m, y);
         }
         for (p, plane) in self.planes.iter_mut().enumerate() {
             plane.gap.0[0] = system.body.contacts[p].of(&y.position) - system.planes[p].centre_m;
@@ -271,7 +275,9 @@ impl MachineSeries {
         let (system, next) = (step.system, step.step_s * INVERSE[k + 1]);
         let body = &system.body;
         for (m, series) in self.magnets.iter_mut().enumerate() {
-            let Some(rate) = system.magnet_rates[m] else {
+            let Some(rate) = system.magnets[m].lag() else {
+                // Poles are not integrated by series: a moment's look has their force as it is now.
+                series.0[k + 1] = V2::zeros();
                 continue;
             };
             let command_n = if k == 0 {
@@ -320,7 +326,7 @@ impl MachineSeries {
             body.gyroscopic.add_product(acceleration, -1.0, &self.spun);
         }
         for (m, series) in self.magnets.iter().enumerate() {
-            if system.magnet_rates[m].is_some() {
+            if !system.magnets[m].is_held() {
                 body.magnets[m].push(acceleration, series.0[k]);
             }
         }
@@ -410,9 +416,11 @@ impl MachineSeries {
                 y.races_rad_s[p] = plane.race.at(theta, order);
             }
         }
-        for (m, series) in self.magnets.iter().enumerate() {
-            if system.magnet_rates[m].is_some() {
-                y.magnets_n[m] = series.at(theta, order);
+        for (m, law) in system.magnets.iter().enumerate() {
+            match law {
+                MagnetLaw::Held => {}
+                MagnetLaw::Lag(_) => y.magnets[m] = self.magnets[m].at(theta, order),
+                MagnetLaw::Poles(_) => y.magnets[m] = self.currents[m].at(theta, order),
             }
         }
     }

@@ -310,8 +310,8 @@ fn square(
     if system.inverse_inertia > 0.0 {
         sum += (series.spin.0[k] * weights.spin).powi(2);
     }
-    for (series, rate) in series.magnets.iter().zip(&system.magnet_rates) {
-        if rate.is_some() {
+    for (series, law) in series.magnets.iter().zip(&system.magnets) {
+        if law.lag().is_some() {
             sum += series.0[k].norm_squared() * weights.force * weights.force;
         }
     }

@@ -2,6 +2,7 @@
 
 use super::body::{LinearBody, Port};
 use super::params::{MAX_PLANES, MachineError, MachineParams, MachineStart};
+use super::poles::MagnetLaw;
 use crate::V2;
 use crate::contact::NO_DENT;
 use crate::mode::{Phase, Slide, Whirl};
@@ -80,8 +81,8 @@ pub(crate) struct MachineState {
     pub(crate) spin_rad_s: f64,
     pub(crate) phase_rad: f64,
     pub(crate) races_rad_s: Vec<f64>,
-    /// Delivered forces.
-    pub(crate) magnets_n: Vec<V2>,
+    /// Forces of magnets that lag, control currents of poles.
+    pub(crate) magnets: Vec<V2>,
 }
 
 impl MachineState {
@@ -152,8 +153,7 @@ pub(crate) struct MachineSystem {
     /// 1/J; 0 where the speed is held.
     pub(crate) inverse_inertia: f64,
     pub(crate) drive_torque_n_m: f64,
-    /// 1/τ of each magnet that lags.
-    pub(crate) magnet_rates: Vec<Option<f64>>,
+    pub(crate) magnets: Vec<MagnetLaw>,
     pub(crate) caps_n: Vec<f64>,
     /// A time that nothing in contact notices.
     pub(crate) moment_s: f64,
@@ -193,11 +193,7 @@ impl MachineSystem {
             mass_kg: params.rotor.rigid().mass_kg,
             inverse_inertia,
             drive_torque_n_m,
-            magnet_rates: params
-                .magnets
-                .iter()
-                .map(|m| (m.lag_s > 0.0).then(|| 1.0 / m.lag_s))
-                .collect(),
+            magnets: params.magnets.iter().map(MagnetLaw::new).collect(),
             caps_n: params.magnets.iter().map(|m| m.force_max_n).collect(),
             moment_s: 0.0,
         };
@@ -233,7 +229,7 @@ impl MachineSystem {
                 .iter()
                 .map(|p| p.race.map_or(0.0, |r| r.start_spin_rad_s))
                 .collect(),
-            magnets_n: vec![V2::zeros(); self.caps_n.len()],
+            magnets: vec![V2::zeros(); self.caps_n.len()],
         })
     }
 
@@ -298,6 +294,17 @@ impl MachineSystem {
         give
     }
 
+    /// Force of a magnet that is not held \[N\].
+    pub(crate) fn magnet_n(&self, magnet: usize, y: &MachineState) -> V2 {
+        match &self.magnets[magnet] {
+            MagnetLaw::Poles(poles) => {
+                let port = &self.body.magnets[magnet];
+                poles.force_n(y.magnets[magnet], port.of(&y.position))
+            }
+            _ => y.magnets[magnet],
+        }
+    }
+
     /// Port of a plane's contact.
     pub(crate) fn contact(&self, plane: usize) -> &Port {
         &self.body.contacts[plane]
@@ -326,9 +333,9 @@ impl MachineSystem {
         for (force, way) in self.body.gravity.iter().zip(path) {
             external += force * way;
         }
-        let magnets = self.body.magnets.iter().zip(&self.magnet_rates);
-        for ((port, lag), command_n) in magnets.zip(&inputs.commands_n) {
-            if lag.is_none() {
+        let magnets = self.body.magnets.iter().zip(&self.magnets);
+        for ((port, law), command_n) in magnets.zip(&inputs.commands_n) {
+            if law.is_held() {
                 control += command_n.dot(&port.of(path));
             }
         }

@@ -418,6 +418,46 @@ fn the_scenes_of_machines_run_and_are_confirmed() {
     }
 }
 
+/// Poles in the place of a force and its negative stiffness: near the middle the loop is the same, and beside it they pull harder.
+#[test]
+fn magnets_with_poles_levitate_as_their_linear_ones_near_the_middle() {
+    let linear = LEVITATED
+        .replace("CROSS", "0.5")
+        .replace("duration_s = 0.4", "duration_s = 0.03");
+    // 1000 N at 4 A of 4 A over 5 mm: the stiffness of 2e5 N/m.
+    let poles = linear.replace(
+        "negative_stiffness_n_m = 2e5",
+        "poles = { bias_current_a = 4.0, air_gap_m = 5e-3 }",
+    );
+    let ended = [&linear, &poles].map(|text| planes(&machine(text), PolicyKind::Levitation));
+    for (a, b) in ended[0].iter().zip(&ended[1]) {
+        assert!(a.0.impacts == 0 && b.0.impacts == 0);
+        let off = apart(&a.1, &b.1);
+        // (x/s_0)² is 1.4e-4 at the start.
+        assert!(off < 5e-3 && off > 1e-5, "{off:e} clearances");
+    }
+    let scene = machine(&poles);
+    let design = |scene: &MachineScene| scene.planes[0].scene.plant.rotor;
+    let (a, b) = (design(&scene), design(&machine(&linear)));
+    assert!(
+        (a.stiffness_n_m / b.stiffness_n_m - 1.0).abs() < 1e-12,
+        "{a:?} {b:?}"
+    );
+
+    for (more, says) in [
+        ("inductance_h = 0.02", "needs magnet.poles.voltage_max_v"),
+        ("voltage_max_v = 100.0", "needs magnet.poles.inductance_h"),
+        ("resistance_ohm = 1.0", "needs magnet.poles.inductance_h"),
+    ] {
+        let text = poles.replace("air_gap_m = 5e-3", &format!("air_gap_m = 5e-3, {more}"));
+        let error = MachineScene::parse("test", &text).unwrap_err().to_string();
+        assert!(error.contains(says), "{error}");
+    }
+    let both = poles.replace("poles =", "negative_stiffness_n_m = 1e5\npoles =");
+    let error = MachineScene::parse("test", &both).unwrap_err().to_string();
+    assert!(error.contains("follows from magnet.poles"), "{error}");
+}
+
 /// The same overload on the same machine, seen ever more closely: the wall is struck less hard the more gives way, and the end that
 /// is not struck takes part.
 #[test]

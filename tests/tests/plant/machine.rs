@@ -5,6 +5,7 @@ mod degenerate;
 mod extremes;
 mod linear;
 mod matrices;
+mod poles;
 mod reference;
 mod refusals;
 mod rotor;

@@ -1,8 +1,10 @@
 //! A scene of a whole rotor: what a scene of one plane says, for each of its planes, and the rotor that they share.
 
+mod poles;
 mod refused;
 mod start;
 
+use self::poles::poles;
 use self::refused::refused;
 use self::start::start;
 use crate::device::levitation::LevitationParams;
@@ -153,6 +155,7 @@ impl Spec {
                     position_m,
                     force_max_n: magnet.force_max_n,
                     lag_s: magnet.lag_s,
+                    poles: poles(magnet, tables, &plane.text)?,
                 });
                 if magnet.negative_stiffness_n_m > 0.0 {
                     let pulls_n_m = V2::repeat(-magnet.negative_stiffness_n_m);
@@ -166,6 +169,8 @@ impl Spec {
             Some(own) => Some(WholeLevitationParams::StateSpace(own)),
             None => modal_levitation(planes, &machine, text)?.map(WholeLevitationParams::Modal),
         };
+        // What controllers are designed for.
+        let linear = machine.linear_magnets();
         let weights = Weights::new(&positions(&machine.magnets));
         let mut magnet = 0;
         let mut scenes = Vec::new();
@@ -175,7 +180,7 @@ impl Spec {
             let position_m = origin.centred_m(written.position_m);
             let lever = |place_m: f64| rigid.lever(place_m, position_m);
             let of = OfMachine {
-                point: machine.point_mass(position_m),
+                point: linear.point_mass(position_m),
                 carried_kg: own.map_or(0.0, |m| weights.translation[m] * rigid.mass_kg),
                 residual_m_n: origin.residual_m_n(written.position_m),
                 retainer_plane_ratio: 1.0 / lever(machine.probes_m[index]),

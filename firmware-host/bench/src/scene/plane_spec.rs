@@ -66,6 +66,10 @@ impl Spec {
                     .as_ref()
                     .is_some_and(|m| m.position_m.is_some()),
             ),
+            (
+                "magnet.poles",
+                (tables.magnet.as_ref()).is_some_and(|m| m.poles.is_some()),
+            ),
             ("sensor.position_m", tables.sensor.position_m.is_some()),
             (
                 "levitation.tilt",

@@ -153,7 +153,18 @@ key_tables! {
         slew_n_s: Option<f64> [or "none"], "N/s", Positive, "fastest change of each component, before the lag: the voltage limit", "slew_rate", "rate";
         delay_samples: u32 [= 1], "samples", Within(1.0, 7.0), "from a position to the effect of the command computed from it", "delay", "latency";
         position_m: Option<f64> [or "that of its plane"], "m", Finite, "along the axis, from the centre of mass; with `[[plane]]` only", "z";
+        poles: Option<PolesTable> [or "a force that does not depend on the place"], "", ANY, "the magnet [as it is](#poles), attracting poles with currents; with `[[plane]]` only", "coils";
         force_measured: bool [= false], "", ANY, "whether the supervisor is given the force that the magnet delivers at the sample, less what is fed forward (`APPLIED_VALID`)";
+    }
+
+    /// Two poles that face each other on each axis, and the drive of their currents.
+    PolesTable {
+        bias_current_a: f64 [required], "A", Positive, "i_0", "bias", "i0";
+        air_gap_m: f64 [required], "m", Positive, "s_0, with the rotor in the middle", "gap", "s0";
+        current_max_a: Option<f64> [or "`bias_current_a`"], "A", Positive, "largest control current; it gives `force_max_n` in the middle", "i_max";
+        inductance_h: Option<f64> [or "no limit of voltage"], "H", Positive, "L of an axis; needs `voltage_max_v`", "l";
+        resistance_ohm: Option<f64> [or "0"], "Ω", NotNegative, "R of an axis; needs `inductance_h`", "r";
+        voltage_max_v: Option<f64> [or "–"], "V", Positive, "U, largest voltage; needs `inductance_h`", "u", "v_max", "dc_link";
     }
 
     SensorTable [Default] {

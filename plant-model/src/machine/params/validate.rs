@@ -1,8 +1,8 @@
 //! Ranges of a machine's values, and what contradicts each other.
 
 use super::{
-    MAX_MAGNETS, MAX_PLANES, MachineError, MachineParams, MachinePlane, MachineStart, RigidRotor,
-    Rotor,
+    MAX_MAGNETS, MAX_PLANES, MachineError, MachineParams, MachinePlane, MachineStart, Poles,
+    RigidRotor, Rotor,
 };
 use crate::params::{ContactLaw, SlidingFriction, SpinParams, StatorParams};
 use nalgebra::DMatrix;
@@ -132,6 +132,22 @@ impl Rotor {
             let ends = (mode.shape.first(), mode.shape.last());
             matches!(ends, (Some(a), Some(b)) if (a.0..=b.0).contains(&position_m))
         })
+    }
+}
+
+impl Poles {
+    fn validate(&self, of: &str) -> Result<(), MachineError> {
+        let positive = |name: &str, x: f64| check(x > 0.0, format!("{of}.{name}"), x, POSITIVE);
+        positive("bias_current_a", self.bias_current_a)?;
+        positive("current_max_a", self.current_max_a)?;
+        positive("air_gap_m", self.air_gap_m)?;
+        let Some(coil) = &self.coil else {
+            return Ok(());
+        };
+        positive("inductance_h", coil.inductance_h)?;
+        positive("voltage_max_v", coil.voltage_max_v)?;
+        let (field, ohm) = (format!("{of}.resistance_ohm"), coil.resistance_ohm);
+        check(ohm >= 0.0, field, ohm, NOT_NEGATIVE)
     }
 }
 
@@ -287,6 +303,12 @@ impl MachineParams {
                 POSITIVE,
             )?;
             check(lag >= 0.0, format!("magnets[{i}].lag_s"), lag, NOT_NEGATIVE)?;
+            if let Some(poles) = &magnet.poles {
+                let rule =
+                    "more than 0: it is the time constant with which poles' currents are set";
+                check(lag > 0.0, format!("magnets[{i}].lag_s"), lag, rule)?;
+                poles.validate(&format!("magnets[{i}].poles"))?;
+            }
         }
         for (list, places) in [("loads", &self.loads_m), ("probes", &self.probes_m)] {
             for (i, position_m) in places.iter().enumerate() {

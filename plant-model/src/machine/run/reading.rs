@@ -103,9 +103,9 @@ impl Machine {
 
     /// Force that a magnet delivers \[N\]; `None` where there is no such magnet.
     pub fn delivered_n(&self, magnet: usize) -> Option<V2> {
-        Some(match (*self.system.magnet_rates.get(magnet)?).is_some() {
-            true => self.y.magnets_n[magnet],
-            false => self.inputs.commands_n[magnet],
+        Some(match self.system.magnets.get(magnet)?.is_held() {
+            true => self.inputs.commands_n[magnet],
+            false => self.system.magnet_n(magnet, &self.y),
         })
     }
 

@@ -104,12 +104,6 @@ const CASES: &[(&str, &str, &str, &str)] = &[
     ),
     (
         "policies = [\"passive\"]",
-        "policies = [\"passive\"]\nmethod = \"explicit\"",
-        "run.method",
-        "integrated by series",
-    ),
-    (
-        "policies = [\"passive\"]",
         "policies = [\"levitation\"]",
         "run.policies",
         "needs a magnet",

@@ -194,6 +194,7 @@ fn a_rotor_without_tilt_is_a_point_mass() {
                 position_m,
                 force_max_n: 150.0,
                 lag_s,
+                poles: None,
             };
             params.magnets = vec![magnet(-0.1), magnet(0.1)];
             params.loads_m = vec![0.0];
@@ -233,6 +234,7 @@ fn friction_that_falls_with_speed_is_that_of_a_point_mass() {
             position_m,
             force_max_n: 150.0,
             lag_s: 2e-4,
+            poles: None,
         };
         params.magnets = vec![magnet(-0.1), magnet(0.1)];
         params.loads_m = vec![0.0];
