@@ -4,6 +4,8 @@
 use crate::device::axis::Axis;
 use crate::words::words;
 use plant_model::V2;
+use rand_chacha::ChaCha8Rng;
+use rand_core::{Rng, SeedableRng};
 
 /// What a magnet's amplifier does beside the plant's cap and lag.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -14,9 +16,15 @@ pub struct AmplifierParams {
     pub slew_n_s: Option<f64>,
     /// Samples from a position to the effect of the command computed from it, 1 to 7.
     pub delay_samples: usize,
+    /// So many samples more a command may be late, each by chance; one that comes after a newer one is dropped. Together with the
+    /// delay at most 7.
+    pub jitter_samples: usize,
     /// Whether the firmware measures the force that the magnet delivers.
     pub force_measured: bool,
 }
+
+/// What tells the chance of the amplifier from that of the sensor, which has the same seed.
+const STREAM: u64 = 0x6a09_e667_f3bc_c908;
 
 /// Longest delay \[samples\].
 pub(crate) const MOST_DELAY: usize = 7;
@@ -27,6 +35,7 @@ impl Default for AmplifierParams {
             axis_force_max_n: None,
             slew_n_s: None,
             delay_samples: 1,
+            jitter_samples: 0,
             force_measured: false,
         }
     }
@@ -91,24 +100,34 @@ pub(crate) struct Amplifier {
     outages: Vec<Outage>,
     /// Whether commands go to the plant as they are.
     plain: bool,
-    /// Commands that wait, by the tick at which they take effect.
-    pending_n: [V2; MOST_DELAY + 1],
-    /// The command in effect.
+    /// Commands that wait, by the tick at which they take effect; each with a number, from 1.
+    pending_n: [(u64, V2); MOST_DELAY + 1],
+    /// The command in effect, and its number.
     register_n: V2,
+    number: u64,
+    /// How late commands are.
+    chance: ChaCha8Rng,
     /// Where the slew limit has got to.
     ramped_n: V2,
 }
 
 impl Amplifier {
-    pub(crate) fn new(params: AmplifierParams, force_max_n: f64, outages: &[Outage]) -> Self {
+    pub(crate) fn new(
+        params: AmplifierParams,
+        force_max_n: f64,
+        outages: &[Outage],
+        seed: u64,
+    ) -> Self {
         let limited = params.axis_force_max_n.is_some() || params.slew_n_s.is_some();
         Self {
             params,
             force_max_n,
             outages: outages.to_vec(),
             plain: outages.is_empty() && !limited,
-            pending_n: [V2::zeros(); MOST_DELAY + 1],
+            pending_n: [(0, V2::zeros()); MOST_DELAY + 1],
             register_n: V2::zeros(),
+            number: 0,
+            chance: ChaCha8Rng::seed_from_u64(seed ^ STREAM),
             ramped_n: V2::zeros(),
         }
     }
@@ -116,8 +135,14 @@ impl Amplifier {
     /// The command computed at a tick; what is no number is no command.
     pub(crate) fn command(&mut self, tick: u64, command_n: V2) {
         let finite = command_n.iter().all(|x| x.is_finite());
-        let delay = self.params.delay_samples.clamp(1, MOST_DELAY) as u64;
-        *self.slot(tick + delay) = if finite { command_n } else { V2::zeros() };
+        let delay = self.params.delay_samples.clamp(1, MOST_DELAY);
+        let most = self.params.jitter_samples.min(MOST_DELAY - delay) as u64;
+        let late = match most {
+            0 => 0,
+            most => self.chance.next_u64() % (most + 1),
+        };
+        let command_n = if finite { command_n } else { V2::zeros() };
+        *self.slot(tick + delay as u64 + late) = (tick + 1, command_n);
     }
 
     /// A command that takes effect without delay: only for a policy that needs no time.
@@ -127,10 +152,13 @@ impl Amplifier {
 
     /// A tick begins.
     pub(crate) fn begin(&mut self, tick: u64) {
-        self.register_n = *self.slot(tick);
+        let (number, command_n) = *self.slot(tick);
+        if number > self.number {
+            (self.number, self.register_n) = (number, command_n);
+        }
     }
 
-    fn slot(&mut self, tick: u64) -> &mut V2 {
+    fn slot(&mut self, tick: u64) -> &mut (u64, V2) {
         &mut self.pending_n[tick as usize % (MOST_DELAY + 1)]
     }
 

@@ -30,6 +30,7 @@ impl From<&MagnetTable> for AmplifierParams {
             axis_force_max_n: m.axis_force_max_n,
             slew_n_s: m.slew_n_s,
             delay_samples: m.delay_samples as usize,
+            jitter_samples: m.delay_jitter_samples as usize,
             force_measured: m.force_measured,
         }
     }

@@ -83,6 +83,16 @@ impl PlaneSpec {
         start.validate().map_err(|error| refused(&error, text))?;
         check_method(self, &plant)?;
         check_title_and_length(written, text)?;
+        if let Some(m) = &written.magnet
+            && m.delay_samples + m.delay_jitter_samples > 7
+        {
+            let message = format!(
+                "makes {} samples with magnet.delay_samples, expected at most 7",
+                m.delay_samples + m.delay_jitter_samples
+            );
+            let help = Some("shorten one of them".to_owned());
+            return Err(text.error_at_key("magnet.delay_jitter_samples", message, help));
+        }
         let policies = policies(self)?;
         let events = events(self)?;
         let centre_offset_m = centre_offset_m(self)?;

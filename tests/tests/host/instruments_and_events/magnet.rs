@@ -5,10 +5,10 @@ use firmware_bench::device::actuator::{Delivers, Outage};
 use firmware_bench::device::axis::Axis;
 use firmware_bench::device::sensor_fault::{Fault, FaultKind};
 use firmware_bench::run::closed_loop::{Keep, run_policy};
-use firmware_bench::run::controller::{Supervise, supervised};
+use firmware_bench::run::controller::{Controller, Force, Seen, Supervise, supervised};
 use firmware_bench::scene::Scene;
 use firmware_bench::scene::policy_kind::PolicyKind;
-use plant_model::V2;
+use plant_model::{Snapshot, V2};
 use std::cell::RefCell;
 use std::rc::Rc;
 use supervisor::{Command, Sample, Status, Supervisor};
@@ -217,6 +217,56 @@ fn commands_take_effect_after_their_delay() {
         let speed = 1000.0 * (0.004 - 5e-5 * delay as f64) / 10.0;
         near("speed", last(&trace).plant.velocity_m_s.x, speed, 1e-12);
     }
+}
+
+/// Asks for as many newtons as it has been asked.
+#[derive(Debug, Default)]
+struct Counting(f64);
+
+impl Controller for Counting {
+    fn command(&mut self, _seen: &Seen, _truth: &Snapshot) -> Force {
+        self.0 += 1.0;
+        Force::Computed(V2::new(self.0, 0.0))
+    }
+}
+
+/// Each is late by 0 to 3 samples more than the delay, none comes after a newer one, and the seed decides.
+#[test]
+fn commands_may_be_late_by_chance() {
+    let mut scene = pushed(V2::new(1.0, 0.0));
+    scene.duration_s = 0.1;
+    (
+        scene.amplifier.delay_samples,
+        scene.amplifier.jitter_samples,
+    ) = (2, 3);
+    let in_effect = |scene: &Scene| -> Vec<f64> {
+        let counting: Box<dyn Controller> = Box::<Counting>::default();
+        let trace = run_policy(scene, (counting, "counting"), Keep::Trace, &mut |_| {})
+            .unwrap()
+            .1;
+        samples(&trace)
+            .iter()
+            .map(|row| row.commanded_n.x)
+            .collect()
+    };
+    let first = in_effect(&scene);
+    let mut seen = [0; 4];
+    for (i, pair) in first.windows(2).enumerate().skip(8) {
+        assert!(pair[1] >= pair[0], "{pair:?}");
+        // The command of sample i has the number i + 1.
+        let age = (i + 2) as f64 - pair[1];
+        assert!((2.0..=5.0).contains(&age), "{age}");
+        seen[age as usize - 2] += 1;
+    }
+    assert!(seen[..3].iter().all(|count| *count > 100), "{seen:?}");
+    assert_eq!(in_effect(&scene), first);
+    scene.seed += 1;
+    assert_ne!(in_effect(&scene), first);
+    scene.amplifier.jitter_samples = 0;
+    let plain = in_effect(&scene);
+    // The last row is that of the end, at which nothing takes effect any more.
+    let ticks = plain[..plain.len() - 1].iter().enumerate();
+    assert!(ticks.skip(2).all(|(i, x)| *x == i as f64 - 1.0));
 }
 
 /// Firmware that knows of an outage of both axes switches the supervisor to watching; of one, it tells it

@@ -102,6 +102,12 @@ fn bad_keys_are_named() {
         ),
         (
             "delay_samples = 2",
+            "delay_samples = 2\ndelay_jitter_samples = 6".into(),
+            "magnet.delay_jitter_samples",
+            "at most 7",
+        ),
+        (
+            "delay_samples = 2",
             "delay_samples = 8".into(),
             "magnet.delay_samples",
             "from 1 to 7",

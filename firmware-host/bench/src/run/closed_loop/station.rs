@@ -36,7 +36,7 @@ impl<'a> Station<'a> {
             scene,
             sensor: Sensor::new(scene.sensor, &scene.faults, period_s, scene.seed),
             controller,
-            amplifier: Amplifier::new(scene.amplifier, force_max_n, &scene.outages),
+            amplifier: Amplifier::new(scene.amplifier, force_max_n, &scene.outages, scene.seed),
             judge: Judge::new(scene),
             recorder,
             measured_m: V2::zeros(),
