@@ -5,7 +5,7 @@ use crate::cli::error::{CommandError, pretty, print};
 use crate::cli::load_any;
 use firmware_bench::modes::{Analysis, Range};
 use firmware_bench::report::campbell;
-use firmware_bench::scene::machine::{AnyScene, MachineScene};
+use firmware_bench::scene::machine::{AnyScene, MachineScene, PlaneScene};
 use std::path::PathBuf;
 
 /// Arguments of `modes`.
@@ -67,6 +67,14 @@ pub fn execute(args: &ModesArgs) -> Result<(), CommandError> {
         let message = "--levitated: this rotor is levitated as a whole".to_owned();
         let help = "that controller is no spring at each magnet; leave the option out";
         return Err(numbers(message, help));
+    }
+    let gains = |plane: &PlaneScene| plane.magnet.is_some() && plane.scene.levitation.is_some();
+    if args.levitated && !scene.planes.iter().any(gains) {
+        let message = format!(
+            "--levitated: {} has no magnet with [levitation]",
+            args.scene.display()
+        );
+        return Err(numbers(message, "leave the option out, or add the gains"));
     }
     let range = Range {
         to_hz,

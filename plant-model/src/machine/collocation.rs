@@ -156,6 +156,8 @@ pub(crate) struct Collocation {
     holding: Holding,
     before: Vec<f64>,
     magnets_before: Vec<V2>,
+    /// How often the equations have been evaluated.
+    pub(crate) evaluations: u64,
 }
 
 impl Collocation {
@@ -181,6 +183,7 @@ impl Collocation {
             holding: Holding::new(n),
             before: vec![0.0; n],
             magnets_before: vec![V2::zeros(); magnets],
+            evaluations: 0,
         }
     }
 
@@ -198,14 +201,10 @@ impl Collocation {
         let mut settled = false;
         for iteration in 0..ITERATIONS {
             let mut change: f64 = 0.0;
+            // Each point sees what those before it have just come to.
             for i in 1..END {
                 self.place(step, y, i);
-            }
-            for i in 1..END {
                 change = change.max(self.renew(step, i, scales));
-            }
-            if change.is_nan() {
-                return f64::INFINITY;
             }
             settled = change <= scales.rounding.max(1e-2);
             if settled || (iteration > 3 && change > 0.5 * last) {
@@ -213,11 +212,12 @@ impl Collocation {
             }
             last = change;
         }
-        if !settled {
-            return f64::INFINITY;
-        }
         self.place(step, y, END);
         self.evaluate(step, END);
+        // Comparisons do not see what is no number.
+        if !settled || !self.instants.iter().all(Instant::is_finite) {
+            return f64::INFINITY;
+        }
         let error = (self.defect(step, scales, 0))
             .max(self.defect(step, scales, END))
             .max(self.misread(step, scales));
@@ -330,6 +330,7 @@ impl Collocation {
 
     /// The equations of motion at a point.
     fn evaluate(&mut self, step: &Step<'_>, i: usize) {
+        self.evaluations += 1;
         let (system, instant) = (step.system, &mut self.instants[i]);
         let (body, y) = (&system.body, &instant.y);
         let a = &mut instant.acceleration;
@@ -537,6 +538,14 @@ fn rates_at(out: &mut Series, row: impl Fn(usize) -> V2) {
 }
 
 impl Instant {
+    fn is_finite(&self) -> bool {
+        let magnets = self.magnet_rates.iter().flat_map(|rate| [rate.x, rate.y]);
+        let rates = (self.acceleration.iter().copied())
+            .chain(self.race_rates.iter().copied())
+            .chain(magnets);
+        self.spin_rate.is_finite() && rates.into_iter().all(f64::is_finite)
+    }
+
     fn take_rates(&mut self, of: &Self) {
         self.acceleration.copy_from_slice(&of.acceleration);
         self.race_rates.copy_from_slice(&of.race_rates);

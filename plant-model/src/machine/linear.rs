@@ -64,8 +64,8 @@ pub struct CriticalSpeed {
 pub struct LinearMachine {
     pub(super) body: LinearBody,
     rate_rad_s: f64,
-    /// Of each plane.
-    pub(super) walls: Vec<Wall>,
+    /// Of each plane; none where they are closed and in the body already.
+    pub(super) walls: Option<Vec<Wall>>,
 }
 
 /// What a plane is to whirl that slides or rolls there.
@@ -81,6 +81,8 @@ pub(super) type C = Complex<f64>;
 
 /// Share of the larger amplitude by which forward and backward must differ to be told apart.
 const TOLD_APART: f64 = 1e-6;
+/// Growth below this share of an eigenvalue is rounding.
+const ROUNDING: f64 = 1e-12;
 /// Rates within this share of each other are those of one mixture of modes.
 const ALIKE: f64 = 1e-6;
 
@@ -89,18 +91,19 @@ impl LinearMachine {
     ///
     /// # Errors
     /// The first value that is out of range.
-    pub fn new(params: &MachineParams, walls: Walls) -> Result<Self, MachineError> {
-        let body = LinearBody::with_walls(params, walls == Walls::Closed)?;
+    pub fn new(params: &MachineParams, state: Walls) -> Result<Self, MachineError> {
+        let body = LinearBody::with_walls(params, state == Walls::Closed)?;
         let rate_rad_s = body.undamped_rate_rad_s().max(1.0);
         let walls = params.planes.iter().map(|plane| Wall {
             clearance_m: plane.contact.clearance_m,
             stiffness_n_m: (plane.contact.law.linear())
                 .map_or(f64::INFINITY, |law| law.stiffness_n_m),
-            driving_friction: plane.friction.sliding.coefficient(0.0)
-                - plane.friction.rolling_coefficient,
+            driving_friction: (plane.friction.sliding.coefficient(0.0)
+                - plane.friction.rolling_coefficient)
+                .max(0.0),
         });
         Ok(Self {
-            walls: walls.collect(),
+            walls: (state == Walls::Off).then(|| walls.collect()),
             body,
             rate_rad_s,
         })
@@ -119,8 +122,8 @@ impl LinearMachine {
                 frequency_rad_s: value.im,
                 growth_s: value.re,
                 damping_ratio: match value.norm() {
-                    0.0 => 0.0,
-                    size => -value.re / size,
+                    size if value.re.abs() > ROUNDING * size => -value.re / size,
+                    _ => 0.0,
                 },
                 direction: match value.im {
                     0.0 => Direction::Planar,
@@ -348,16 +351,30 @@ fn eigenvalues(a: &DMatrix<f64>) -> Option<DVector<C>> {
     const SWEEPS: usize = 100;
     const TURNS: usize = 4;
     let most = SWEEPS * a.nrows();
-    let schur = [f64::EPSILON, 1e-14, 1e-12].into_iter().find_map(|eps| {
+    let real = |eps: f64| {
         let mut seen = a.clone();
         (0..TURNS).find_map(|turn| {
             if turn > 0 {
                 reflect(&mut seen, turn);
             }
-            Schur::try_new(seen.clone(), eps, most)
+            Schur::try_new(seen.clone(), eps, most).map(|schur| schur.complex_eigenvalues())
         })
-    })?;
-    Some(schur.complex_eigenvalues())
+    };
+    let complex = |eps: f64| {
+        let schur = Schur::try_new(a.map(|x| C::new(x, 0.0)), eps, most)?;
+        // Of real ones rounding leaves an imaginary part.
+        let values = schur.eigenvalues()?;
+        let real = |z: C| {
+            if z.im.abs() <= ALIKE * z.norm() {
+                C::new(z.re, 0.0)
+            } else {
+                z
+            }
+        };
+        Some(values.map(real))
+    };
+    let tolerances = [f64::EPSILON, 1e-14, 1e-12];
+    (tolerances.into_iter().find_map(real)).or_else(|| tolerances.into_iter().find_map(complex))
 }
 
 /// The matrix seen in a mirror: (1 − 2vvᵀ)·A·(1 − 2vvᵀ).

@@ -2,6 +2,8 @@
 
 mod validate;
 
+pub(super) use validate::check;
+
 use crate::V2;
 use crate::params::{ContactParams, FrictionParams, RaceParams, SpinParams, StatorParams};
 
@@ -100,7 +102,7 @@ pub struct Unbalance {
 pub struct Poles {
     /// Bias current i_0 \[A\], > 0.
     pub bias_current_a: f64,
-    /// Largest control current \[A\], > 0.
+    /// Largest control current \[A\], > 0 and at most i_0.
     pub current_max_a: f64,
     /// Air gap s_0 with the rotor in the middle \[m\], larger than the clearance that leaves it there.
     pub air_gap_m: f64,

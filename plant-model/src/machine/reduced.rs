@@ -1,7 +1,7 @@
 //! A rotor by the matrices of its motion in one plane, reduced to its rigid motions and to bending modes.
 
 use super::body::shape_at;
-use super::params::{BendingMode, MachineError, RigidRotor, Rotor};
+use super::params::{BendingMode, MachineError, RigidRotor, Rotor, check};
 use nalgebra::{Cholesky, DMatrix, DVector, SymmetricEigen};
 
 /// A free rotor, the same in every plane through its axis, by the matrices of one of them:
@@ -67,26 +67,10 @@ pub(super) struct RigidMotions {
 const ROUNDING: f64 = 1e-13;
 /// Entries that should be alike may differ by this share of the largest.
 const SYMMETRIC: f64 = 1e-9;
-/// Strain of a rigid motion, of that of the slowest bending mode.
-const STRAINS: f64 = 1e-4;
+/// Square of the rate of a rigid motion, of that of the slowest bending mode.
+const STRAINS: f64 = 1e-8;
 /// How far a rigid motion may be from straight.
 const STRAIGHT: f64 = 1e-6;
-
-pub(super) fn check(
-    ok: bool,
-    field: impl Into<String>,
-    value: f64,
-    expected: &'static str,
-) -> Result<(), MachineError> {
-    match ok && value.is_finite() {
-        true => Ok(()),
-        false => Err(MachineError {
-            field: field.into(),
-            value,
-            expected,
-        }),
-    }
-}
 
 fn no_modes(mass_kg: f64) -> MachineError {
     MachineError {
@@ -182,7 +166,7 @@ impl RotorMatrices {
         let rule = "the stiffness of the free rotor, without bearings: a translation and a tilt that strain nothing";
         let crooked = || MachineError {
             field: "stiffness".to_owned(),
-            value: modes[1].0.max(0.0).sqrt(),
+            value: modes[1].0.abs().sqrt(),
             expected: rule,
         };
         let normal = (moved.transpose() * &moved)
@@ -191,7 +175,9 @@ impl RotorMatrices {
         let mix = normal * moved.transpose() * &wanted;
         let off = (&moved * &mix - &wanted).amax() / wanted.amax();
         let bends = modes.get(2).map_or(f64::INFINITY, |mode| mode.0);
-        if off > STRAIGHT || modes[1].0.abs() > STRAINS * bends {
+        let fastest = modes[modes.len() - 1].0;
+        let strains = modes[0].0.abs().max(modes[1].0.abs());
+        if off > STRAIGHT || strains > (STRAINS * bends).max(ROUNDING * fastest) {
             return Err(crooked());
         }
         let motions = slowest * mix;

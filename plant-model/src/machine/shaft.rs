@@ -3,8 +3,8 @@
 //! Elements have shear, rotary inertia and gyroscopics, and Cowper's (1966) shear coefficient of round sections. Every place at
 //! which something acts or is read is a node.
 
-use super::params::MachineError;
-use super::reduced::{ReducedRotor, RigidMotions, RotorMatrices, check};
+use super::params::{MachineError, check};
+use super::reduced::{ReducedRotor, RigidMotions, RotorMatrices};
 use nalgebra::{DMatrix, DVector};
 
 /// A cylindrical piece of shaft.

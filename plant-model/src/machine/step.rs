@@ -126,9 +126,13 @@ impl Stepper {
         let (t_s, t_end_s) = task.span;
         work.steps += 1;
         let remaining = t_end_s - t_s;
-        let trusted = match self.collocation.is_some() {
-            false => self.by_series(system, y, task, work)?,
-            true => self.by_collocation(system, y, task, work)?,
+        let trusted = match self.collocation.take() {
+            None => self.by_series(system, y, task, work)?,
+            Some(mut collocation) => {
+                let trusted = self.by_collocation(&mut collocation, (system, y), task, work);
+                self.collocation = Some(collocation);
+                trusted?
+            }
         };
         let reference = self.series.step_s;
         let mut whole = trusted * reference >= remaining;
@@ -220,8 +224,8 @@ impl Stepper {
     /// The same by collocation, whose steps are taken whole.
     fn by_collocation(
         &mut self,
-        system: &MachineSystem,
-        y: &MachineState,
+        collocation: &mut Collocation,
+        (system, y): (&MachineSystem, &MachineState),
         task: &Task<'_>,
         work: &mut Work,
     ) -> Result<f64, PlantError> {
@@ -240,16 +244,13 @@ impl Stepper {
             rounding,
         };
         let touching = usize::from(task.touches());
-        let Some(collocation) = &mut self.collocation else {
-            return Ok(0.0);
-        };
         let remaining = t_end_s - t_s;
         let mut whole = remaining < self.references_s[touching];
         let mut step_s = self.references_s[touching].min(remaining);
         loop {
             let step = task.step(system, step_s);
             let error = collocation.solve(&step, y, &scales);
-            work.evaluations += 1;
+            work.evaluations += std::mem::take(&mut collocation.evaluations);
             let pace = 0.9 * error.max(1e-30).powf(-1.0 / ERROR_POWER);
             if error <= rounding.max(1.0) {
                 collocation.write(&step, y, &mut self.series);

@@ -99,7 +99,8 @@ impl MachineState {
             .position
             .iter()
             .chain(&self.velocity)
-            .chain(&self.races_rad_s);
+            .chain(&self.races_rad_s)
+            .chain(self.magnets.iter().flatten());
         self.spin_rad_s.is_finite()
             && self.phase_rad.is_finite()
             && numbers.copied().all(f64::is_finite)

@@ -12,7 +12,7 @@
 //! phases that need least decide. The ends of the ranges in which that is no more than there is are Black's limits, where
 //! friction slides; inside it rolls. Of one plane that is the condition of [`crate::analysis::black`].
 
-use super::linear::{C, LinearMachine};
+use super::linear::{C, LinearMachine, Wall};
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::TAU;
 
@@ -46,32 +46,34 @@ const SLOWEST: f64 = 1e-3;
 const ROUND: f64 = 1e-6;
 
 impl LinearMachine {
-    /// Ranges of steady backward whirl at a spin \[rad/s\], of each plane alone and of each two together, slowest first. `None`
-    /// where mountings differ along x and y: whirl is no circle there. The machine is to be one with [`super::linear::Walls::Off`].
+    /// Ranges of steady backward whirl at a spin \[rad/s\], of each plane alone and of each two together, slowest first. Looked at
+    /// are rates from a thousandth of the fastest to that, one and a half times the fastest on a contact spring; a range may go
+    /// on beyond. `None` where mountings differ along x and y, as whirl is no circle there, and where walls are closed.
     pub fn whirl_ranges(&self, spin_rad_s: f64) -> Option<Vec<WhirlRange>> {
-        let planes = self.walls.len();
+        let walls = self.walls.as_deref()?;
+        let planes = walls.len();
         let mut sets: Vec<Vec<usize>> = (0..planes).map(|p| vec![p]).collect();
         for p in 0..planes {
             sets.extend((p + 1..planes).map(|q| vec![p, q]));
         }
-        let fastest = 1.5 * self.fastest_whirl_rad_s();
+        let fastest = 1.5 * self.fastest_whirl_rad_s(walls);
         let at = |i: usize| fastest * SLOWEST.powf(1.0 - i as f64 / (RATES - 1) as f64);
         let spin_rad_s = spin_rad_s.abs();
         let mut compliances = Vec::with_capacity(RATES);
         for i in 0..RATES {
-            compliances.push(self.compliance(at(i), spin_rad_s)?);
+            compliances.push(self.compliance(walls, at(i), spin_rad_s)?);
         }
         let mut ranges = Vec::new();
         for set in sets {
-            let need = |rate: f64| match self.compliance(rate, spin_rad_s) {
-                Some(Some(whole)) => self.need(&whole, &set),
+            let need = |rate: f64| match self.compliance(walls, rate, spin_rad_s) {
+                Some(Some(whole)) => need_of(walls, &whole, &set),
                 _ => NONE,
             };
             let mut open: Option<(f64, f64)> = None;
             let mut before = false;
             for (i, compliance) in compliances.iter().enumerate() {
                 let now = match compliance {
-                    Some(whole) => self.need(whole, &set),
+                    Some(whole) => need_of(walls, whole, &set),
                     None => NONE,
                 };
                 let holds = now.share <= 1.0;
@@ -99,19 +101,24 @@ impl LinearMachine {
     }
 
     /// Rate of the fastest plane on its contact spring.
-    fn fastest_whirl_rad_s(&self) -> f64 {
-        let planes = self.walls.iter().zip(&self.body.contacts);
+    fn fastest_whirl_rad_s(&self, walls: &[Wall]) -> f64 {
+        let planes = walls.iter().zip(&self.body.contacts);
         let squares = planes.map(|(wall, port)| wall.stiffness_n_m * port.mobility());
         squares.fold(0.0, f64::max).sqrt()
     }
 
     /// Receptances in backward circles with the contact springs; inner `None` where an undamped mode is hit, outer where circles
     /// are none.
-    fn compliance(&self, rate_rad_s: f64, spin_rad_s: f64) -> Option<Option<DMatrix<C>>> {
+    fn compliance(
+        &self,
+        walls: &[Wall],
+        rate_rad_s: f64,
+        spin_rad_s: f64,
+    ) -> Option<Option<DMatrix<C>>> {
         let Some(all) = self.receptance(rate_rad_s, spin_rad_s) else {
             return Some(None);
         };
-        let planes = self.walls.len();
+        let planes = walls.len();
         let size = all.iter().map(|z| z.norm()).fold(0.0, f64::max);
         let mut whole = DMatrix::zeros(planes, planes);
         for p in 0..planes {
@@ -123,39 +130,52 @@ impl LinearMachine {
                 }
                 whole[(p, q)] = (xx + C::i() * xy).conj();
             }
-            whole[(p, p)] += 1.0 / self.walls[p].stiffness_n_m;
+            whole[(p, p)] += 1.0 / walls[p].stiffness_n_m;
         }
         Some(Some(whole))
     }
+}
 
-    /// The least friction that whirl in these planes needs.
-    fn need(&self, whole: &DMatrix<C>, set: &[usize]) -> Need {
-        let part = DMatrix::from_fn(set.len(), set.len(), |i, j| whole[(set[i], set[j])]);
-        let Some(stiffness) = part.try_inverse() else {
-            return NONE;
+/// The least friction that whirl in these planes needs.
+fn need_of(walls: &[Wall], whole: &DMatrix<C>, set: &[usize]) -> Need {
+    let part = DMatrix::from_fn(set.len(), set.len(), |i, j| whole[(set[i], set[j])]);
+    let Some(stiffness) = part.try_inverse() else {
+        return NONE;
+    };
+    let share = |phase_rad: f64| {
+        let turn = |i: usize| C::from_polar(1.0, i as f64 * phase_rad);
+        let gap = DVector::from_fn(set.len(), |i, _| walls[set[i]].clearance_m * turn(i));
+        let forces = -(&stiffness * gap);
+        let shares = forces.iter().enumerate().map(|(i, force)| {
+            let own = force / turn(i);
+            match own.re > 0.0 {
+                true => own.im.abs() / own.re / walls[set[i]].driving_friction,
+                false => f64::INFINITY,
+            }
+        });
+        shares.fold(0.0, f64::max)
+    };
+    if set.len() == 1 {
+        return Need {
+            share: share(0.0),
+            phase_rad: 0.0,
         };
-        let share = |phase_rad: f64| {
-            let turn = |i: usize| C::from_polar(1.0, i as f64 * phase_rad);
-            let gap = DVector::from_fn(set.len(), |i, _| self.walls[set[i]].clearance_m * turn(i));
-            let forces = -(&stiffness * gap);
-            let shares = forces.iter().enumerate().map(|(i, force)| {
-                let own = force / turn(i);
-                match own.re > 0.0 {
-                    true => own.im.abs() / own.re / self.walls[set[i]].driving_friction,
-                    false => f64::INFINITY,
-                }
-            });
-            shares.fold(0.0, f64::max)
-        };
-        if set.len() == 1 {
-            return Need {
-                share: share(0.0),
-                phase_rad: 0.0,
+    }
+    let mut best = NONE;
+    for i in 0..PHASES {
+        let phase_rad = TAU * (i as f64 / PHASES as f64 - 0.5);
+        let need = share(phase_rad);
+        if need < best.share {
+            best = Need {
+                share: need,
+                phase_rad,
             };
         }
-        let mut best = NONE;
-        for i in 0..PHASES {
-            let phase_rad = TAU * (i as f64 / PHASES as f64 - 0.5);
+    }
+    let mut step = TAU / PHASES as f64;
+    while step > 1e-6 {
+        step *= 0.5;
+        for phase_rad in [best.phase_rad - step, best.phase_rad + step] {
             let need = share(phase_rad);
             if need < best.share {
                 best = Need {
@@ -164,21 +184,8 @@ impl LinearMachine {
                 };
             }
         }
-        let mut step = TAU / PHASES as f64;
-        while step > 1e-6 {
-            step *= 0.5;
-            for phase_rad in [best.phase_rad - step, best.phase_rad + step] {
-                let need = share(phase_rad);
-                if need < best.share {
-                    best = Need {
-                        share: need,
-                        phase_rad,
-                    };
-                }
-            }
-        }
-        best
     }
+    best
 }
 
 const NONE: Need = Need {

@@ -206,7 +206,7 @@ pub fn check(
 }
 
 /// The scenes that check one of a whole rotor: its own method at a tighter tolerance, and the other one. Friction that falls with
-/// speed leaves no other, and is looked at twice as tightly.
+/// speed and magnets with poles leave no other, and are looked at a third time by the same, as tightly as it can.
 ///
 /// # Errors
 /// [`RunError::Machine`].

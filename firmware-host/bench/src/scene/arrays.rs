@@ -16,15 +16,16 @@ pub(crate) struct Arrays<'a> {
     text: &'a SceneText,
     key: &'a str,
     file: &'a str,
-    all: BTreeMap<String, DMatrix<f64>>,
+    /// Each, or why it is no matrix.
+    all: BTreeMap<String, Result<DMatrix<f64>, String>>,
 }
 
 impl<'a> Arrays<'a> {
-    /// Reads a file that a key names; a relative path counts from the scene's folder.
+    /// Reads a file that a key names, with no other arrays than these; a relative path counts from the scene's folder.
     pub(crate) fn load(
         text: &'a SceneText,
-        key: &'a str,
-        file: &'a str,
+        (key, file): (&'a str, &'a str),
+        known: &[&str],
     ) -> Result<Self, SceneError> {
         let folder = text.path.parent().unwrap_or(std::path::Path::new(""));
         let refused = |reason: String| {
@@ -47,8 +48,12 @@ impl<'a> Arrays<'a> {
                 continue;
             };
             let read = |reader| matrix(NpyFile::new(reader).map_err(|e| e.to_string())?);
-            let array = read(entry).map_err(|reason| refused(format!("{name}: {reason}")))?;
-            all.insert(name, array);
+            if !known.contains(&name.as_str()) {
+                let message = format!("{file}: no array {name} is expected");
+                let help = format!("it may have {}", known.join(", "));
+                return Err(text.error_at_key(key, message, Some(help)));
+            }
+            all.insert(name, read(entry));
         }
         Ok(Self {
             text,
@@ -60,23 +65,24 @@ impl<'a> Arrays<'a> {
 
     /// The array of a name.
     pub(crate) fn take(&mut self, name: &str) -> Result<DMatrix<f64>, SceneError> {
-        self.take_if_there(name).ok_or_else(|| {
+        self.take_if_there(name)?.ok_or_else(|| {
             let message = format!("{} has no array {name}", self.file);
             let names: Vec<&str> = self.all.keys().map(String::as_str).collect();
             let help = match names.is_empty() {
                 true => format!("save it with an array {name}"),
-                false => format!(
-                    "save it with an array {name}; beside others it has {}",
-                    names.join(", ")
-                ),
+                false => format!("save it with {name} beside {}", names.join(", ")),
             };
             (self.text).error_at_key(self.key, message, Some(help))
         })
     }
 
     /// The array of a name, where the file has one.
-    pub(crate) fn take_if_there(&mut self, name: &str) -> Option<DMatrix<f64>> {
-        self.all.remove(name)
+    pub(crate) fn take_if_there(&mut self, name: &str) -> Result<Option<DMatrix<f64>>, SceneError> {
+        self.all.remove(name).transpose().map_err(|reason| {
+            let message = format!("{}: {name}: {reason}", self.file);
+            let help = "save it as a matrix of real numbers".to_owned();
+            (self.text).error_at_key(self.key, message, Some(help))
+        })
     }
 }
 

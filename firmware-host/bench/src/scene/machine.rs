@@ -22,7 +22,9 @@ use crate::scene::state_space::state_space;
 use crate::scene::tables::{PlaneTable, SceneTables, TiltTable};
 use crate::scene::values::MethodName;
 use plant_model::V2;
-use plant_model::machine::params::{MachineMagnet, MachineParams, MachinePlane, MachineStart};
+use plant_model::machine::params::{
+    MachineMagnet, MachineParams, MachinePlane, MachineStart, Support,
+};
 use std::path::Path;
 
 /// A plane of a machine.
@@ -158,9 +160,11 @@ impl Spec {
                     poles: poles(magnet, tables, &plane.text)?,
                 });
                 if magnet.negative_stiffness_n_m > 0.0 {
-                    let pulls_n_m = V2::repeat(-magnet.negative_stiffness_n_m);
-                    let at = magnet.position_m.unwrap_or(written.position_m);
-                    (machine.supports).push(rotor::support(&origin, at, pulls_n_m, V2::zeros()));
+                    machine.supports.push(Support {
+                        position_m,
+                        stiffness_n_m: V2::repeat(-magnet.negative_stiffness_n_m),
+                        damping_n_s_m: V2::zeros(),
+                    });
                 }
             }
         }
@@ -185,7 +189,8 @@ impl Spec {
                 residual_m_n: origin.residual_m_n(written.position_m),
                 retainer_plane_ratio: 1.0 / lever(machine.probes_m[index]),
                 magnet_plane_ratio: own.map_or(1.0, |m| lever(machine.magnets[m].position_m)),
-                levitated_alone: levitation.is_none(),
+                // What a plane's loop is worth where other magnets pull too no plane can say.
+                levitated_alone: levitation.is_none() && machine.magnets.len() < 2,
             };
             let mut scene = plane.resolve(Some(&of))?;
             if tables.run.method == MethodName::Series

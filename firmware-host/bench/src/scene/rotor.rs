@@ -117,7 +117,8 @@ pub(crate) fn support(
     damping_n_s_m: V2,
 ) -> Support {
     let residual_m_n = origin.residual_m_n(position_m);
-    let share = stiffness_n_m.map(|k| 1.0 / (1.0 + k * residual_m_n));
+    // What pulls outwards is no spring in series with one.
+    let share = stiffness_n_m.map(|k| 1.0 / (1.0 + k.max(0.0) * residual_m_n));
     Support {
         position_m: origin.centred_m(position_m),
         stiffness_n_m: stiffness_n_m.component_mul(&share),
@@ -240,12 +241,13 @@ fn by_matrices(
         ("rotor.elements", tables.rotor.elements.is_some()),
     ];
     text.none_given(&of_a_shaft, message, "remove it")?;
-    let mut arrays = Arrays::load(text, key, file)?;
+    let known = ["M", "K", "D", "G", "places_m", "displacement"];
+    let mut arrays = Arrays::load(text, (key, file), &known)?;
     let matrices = RotorMatrices {
         mass: arrays.take("M")?,
         stiffness: arrays.take("K")?,
-        damping: arrays.take_if_there("D"),
-        gyroscopic: arrays.take_if_there("G"),
+        damping: arrays.take_if_there("D")?,
+        gyroscopic: arrays.take_if_there("G")?,
         places_m: arrays.take("places_m")?.as_slice().to_vec(),
         displacement: arrays.take("displacement")?,
     };
@@ -257,20 +259,23 @@ fn by_matrices(
         return Err(text.error_at_key(key, message, Some(help)));
     }
     let asked = Asked::new(tables);
-    matrices
-        .reduced(&asked.nodes_m(), asked.up_to_rad_s, asked.damping_ratio)
+    let reduced = matrices.reduced(&asked.nodes_m(), asked.up_to_rad_s, asked.damping_ratio);
+    reduced
+        .and_then(|reduced| reduced.rotor.validate().map(|()| reduced))
         .map_err(|error| match asked.key(&error) {
             Some(place) => text.refused(place, error.value, error.expected),
             None => {
                 let name = match error.field.as_str() {
-                    "mass" => "M",
+                    "mass" | "rotor.mass_kg" | "rotor.transverse_inertia_kg_m2" => "M",
                     "stiffness" => "K",
-                    "damping" => "D",
-                    "gyroscopic" => "G",
+                    "damping" | "rotor.damping_n_s_m" => "D",
+                    "gyroscopic" | "rotor.polar_inertia_kg_m2" | "rotor.polar_coupling_kg_m2" => {
+                        "G"
+                    }
                     name => name,
                 };
                 let (value, expected) = (error.value, error.expected);
-                let message = format!("{name} of {file} has {value}: expected {expected}");
+                let message = format!("{name} of {file} has {value:e}: expected {expected}");
                 text.error_at_key(key, message, Some(format!("give {expected}")))
             }
         })

@@ -53,11 +53,28 @@ pub(crate) fn state_space(
             ];
             let message = "stands in state_space.file already";
             text.none_given(&of_numbers, message, "remove one of them")?;
-            let mut arrays = Arrays::load(text, "state_space.file", file)?;
-            let d = arrays.take_if_there("D");
-            let [a, b, c] = ["A", "B", "C"].map(|name| arrays.take(name));
-            let d = d.unwrap_or_else(|| DMatrix::zeros(forces, readings));
-            [a?, b?, c?, d]
+            let known = ["A", "B", "C", "D"];
+            let mut arrays = Arrays::load(text, ("state_space.file", file), &known)?;
+            match (arrays.take_if_there("A")?, arrays.take_if_there("D")?) {
+                // Without state.
+                (None, Some(d)) => [
+                    DMatrix::zeros(0, 0),
+                    DMatrix::zeros(0, readings),
+                    DMatrix::zeros(forces, 0),
+                    d,
+                ],
+                (None, None) => [
+                    arrays.take("A")?,
+                    arrays.take("B")?,
+                    arrays.take("C")?,
+                    arrays.take("D")?,
+                ],
+                (Some(a), d) => {
+                    let [b, c] = ["B", "C"].map(|name| arrays.take(name));
+                    let d = d.unwrap_or_else(|| DMatrix::zeros(forces, readings));
+                    [a, b?, c?, d]
+                }
+            }
         }
         None => {
             let count = written.a.0.len();

@@ -154,7 +154,7 @@ key_tables! {
         delay_samples: u32 [= 1], "samples", Within(1.0, 7.0), "from a position to the effect of the command computed from it", "delay", "latency";
         delay_jitter_samples: u32 [= 0], "samples", Within(0.0, 6.0), "so many samples more each command may be late, by chance from `run.seed`; one that comes after a newer one is dropped. Together with `delay_samples` at most 7; the supervisor is not told", "jitter";
         position_m: Option<f64> [or "that of its plane"], "m", Finite, "along the axis, from the centre of mass; with `[[plane]]` only", "z";
-        poles: Option<PolesTable> [or "a force that does not depend on the place"], "", ANY, "the magnet [as it is](#poles), attracting poles with currents; with `[[plane]]` only", "coils";
+        poles: Option<PolesTable> [or "a force that does not depend on the place"], "", ANY, "the magnet [as it is](#poles), attracting poles with currents; with `[[plane]]` only, and needs `lag_s`", "coils";
         force_measured: bool [= false], "", ANY, "whether the supervisor is given the force that the magnet delivers at the sample, less what is fed forward (`APPLIED_VALID`)";
     }
 

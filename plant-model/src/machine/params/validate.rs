@@ -7,7 +7,7 @@ use super::{
 use crate::params::{ContactLaw, SlidingFriction, SpinParams, StatorParams};
 use nalgebra::DMatrix;
 
-fn check(
+pub(in crate::machine) fn check(
     ok: bool,
     field: impl Into<String>,
     value: f64,
@@ -70,7 +70,11 @@ impl RigidRotor {
 }
 
 impl Rotor {
-    fn validate(&self) -> Result<(), MachineError> {
+    /// Checks every value against its range, and against the others.
+    ///
+    /// # Errors
+    /// The first that is out of range, by name.
+    pub fn validate(&self) -> Result<(), MachineError> {
         self.rigid().validate()?;
         for (i, mode) in self.bending().iter().enumerate() {
             let field = |name: &str| format!("rotor.bending[{i}].{name}");
@@ -139,13 +143,24 @@ impl Poles {
     fn validate(&self, of: &str) -> Result<(), MachineError> {
         let positive = |name: &str, x: f64| check(x > 0.0, format!("{of}.{name}"), x, POSITIVE);
         positive("bias_current_a", self.bias_current_a)?;
-        positive("current_max_a", self.current_max_a)?;
+        let (most, bias) = (self.current_max_a, self.bias_current_a);
+        let within = most > 0.0 && most <= bias;
+        let rule = "more than 0, and at most bias_current_a: beyond it one pole is off, and the force no more in proportion";
+        check(within, format!("{of}.current_max_a"), most, rule)?;
         positive("air_gap_m", self.air_gap_m)?;
         let Some(coil) = &self.coil else {
             return Ok(());
         };
         positive("inductance_h", coil.inductance_h)?;
-        positive("voltage_max_v", coil.voltage_max_v)?;
+        let needed = coil.resistance_ohm * self.current_max_a;
+        let enough = coil.voltage_max_v > 0.0 && coil.voltage_max_v > needed;
+        let rule = "more than the resistance takes at the largest current";
+        check(
+            enough,
+            format!("{of}.voltage_max_v"),
+            coil.voltage_max_v,
+            rule,
+        )?;
         let (field, ohm) = (format!("{of}.resistance_ohm"), coil.resistance_ohm);
         check(ohm >= 0.0, field, ohm, NOT_NEGATIVE)
     }
@@ -308,6 +323,17 @@ impl MachineParams {
                     "more than 0: it is the time constant with which poles' currents are set";
                 check(lag > 0.0, format!("magnets[{i}].lag_s"), lag, rule)?;
                 poles.validate(&format!("magnets[{i}].poles"))?;
+                let reach =
+                    |plane: &MachinePlane| plane.contact.clearance_m + plane.centre_m.norm();
+                let widest = self.planes.iter().map(reach).fold(0.0, f64::max);
+                let rule = "more than the clearance of every plane with its offset: retainer bearings keep rotor and poles apart";
+                let gap_m = poles.air_gap_m;
+                check(
+                    gap_m > widest,
+                    format!("magnets[{i}].poles.air_gap_m"),
+                    gap_m,
+                    rule,
+                )?;
             }
         }
         for (list, places) in [("loads", &self.loads_m), ("probes", &self.probes_m)] {

@@ -155,6 +155,20 @@ fn files_that_are_no_rotor_are_refused_by_name() {
     odd[1].1[(0, 1)] += 1.0;
     save(&path, &odd);
     refused(&scene, &["K of rotor.npz", "symmetric"]);
+    // A damping that drives, and an inertia that no body has, by their names in the file.
+    let out = three_masses()[1].1.clone();
+    for (name, matrix) in [
+        ("D", -1e-4 * &out),
+        ("G", 1e3 * three_masses()[0].1.clone()),
+    ] {
+        let mut more = three_masses().to_vec();
+        more.push((name, matrix));
+        save(&path, &more);
+        refused(
+            &scene,
+            &["rotor.matrices_file", &format!("{name} of rotor.npz")],
+        );
+    }
     save(&path, &three_masses());
     load(&folder, &scene).unwrap();
     let outside = scene.replace("position_m = 0.7", "position_m = 0.9");

@@ -282,3 +282,27 @@ fn advice_is_for_every_plane_or_for_one() {
         );
     }
 }
+
+/// A slender shaft gives way by more than a magnet pulls: what pulls outwards stays what it is.
+#[test]
+fn negative_stiffness_is_not_turned_by_a_soft_shaft() {
+    let text = TWO_PLANES
+        .replace(
+            "mass_kg = 10.0\ntransverse_inertia_kg_m2 = 0.6\npolar_inertia_kg_m2 = 0.0\n",
+            "bending_to_hz = 0.0\n",
+        )
+        .replace("position_m = -0.2", "position_m = 0.3")
+        .replace(
+            "position_m = 0.3\ncontact_radius_m = 0.03",
+            "position_m = 0.7\ncontact_radius_m = 0.03",
+        )
+        + "[[shaft]]\nlength_m = 1.0\nouter_diameter_m = 0.02\n[magnet]\nforce_max_n = 100.0\nnegative_stiffness_n_m = 5e6\n";
+    let scene = machine(&text);
+    let pulls: Vec<f64> = scene
+        .machine
+        .supports
+        .iter()
+        .map(|s| s.stiffness_n_m.x)
+        .collect();
+    assert_eq!(pulls, [-5e6; 2]);
+}

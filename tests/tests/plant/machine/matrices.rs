@@ -90,6 +90,13 @@ fn what_is_no_free_rotor_is_refused_by_name() {
         let at = m.displacement.row(0).into_owned();
         m.stiffness += at.transpose() * 1e6 * at;
     });
+    // A soft one, and one that pulls.
+    for stiffness_n_m in [100.0, -100.0] {
+        refused("stiffness", &|m| {
+            let all = DMatrix::from_element(1, 3, 1.0) * &m.displacement;
+            m.stiffness += all.transpose() * stiffness_n_m * all;
+        });
+    }
     // Displacements that no straight line has.
     refused("stiffness", &|m| m.displacement[(1, 1)] *= 1.1);
     refused("places_m", &|m| m.places_m[1] = 0.05);

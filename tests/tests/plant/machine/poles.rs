@@ -212,5 +212,18 @@ fn poles_that_cannot_be_are_refused_by_name() {
             ..POLES
         });
     });
+    // Less than the clearance, and more than the bias.
+    refused("magnets[1].poles.air_gap_m", Method::Auto, &|m| {
+        m.poles = Some(Poles {
+            air_gap_m: 2.9e-4,
+            ..POLES
+        });
+    });
+    refused("magnets[1].poles.current_max_a", Method::Auto, &|m| {
+        m.poles = Some(Poles {
+            current_max_a: 3.1,
+            ..POLES
+        });
+    });
     refused("run.method", Method::Series, &|_| {});
 }

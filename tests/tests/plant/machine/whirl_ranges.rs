@@ -138,6 +138,18 @@ fn like_planes_whirl_as_a_cylinder_and_as_a_cone() {
     }
 }
 
+/// Rolling friction that is more than sliding friction leaves none to drive with; of closed walls nothing is said.
+#[test]
+fn what_drives_nothing_holds_nothing() {
+    let mut params = machine();
+    for plane in &mut params.planes {
+        plane.friction.rolling_coefficient = 0.4;
+    }
+    assert_eq!(ranges(&params, 500.0), []);
+    let closed = LinearMachine::new(&machine(), Walls::Closed).unwrap();
+    assert_eq!(closed.whirl_ranges(500.0), None);
+}
+
 #[test]
 fn whirl_is_no_circle_on_supports_that_differ() {
     let mut params = machine();
