@@ -28,6 +28,14 @@ impl<const N: usize> Nodes<N> {
     }
 }
 
+/// Value at a place of the polynomial that is one at place j and zero at the others.
+pub(crate) fn lagrange(places: &[f64], j: usize, at: f64) -> f64 {
+    let others = places.iter().enumerate().filter(|(m, _)| *m != j);
+    others
+        .map(|(_, place)| (at - place) / (places[j] - place))
+        .product()
+}
+
 /// Exact to the power 11; 9e-8 off for the power 12.
 #[rustfmt::skip]
 pub(crate) const SIX: Nodes<6> = Nodes {

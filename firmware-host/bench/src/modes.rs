@@ -199,18 +199,15 @@ impl Analysis {
         let shapes = LinearMachine::new(&along_the_axis, walls)?.shapes(spin_rad_s);
         let shapes = (shapes.ok_or_else(none)?.into_iter()).filter(|(mode, _)| turns(mode));
         let name = |plane: &usize| scene.planes[*plane].name.clone();
-        let held_whirl = match range.contact {
-            true => None,
-            false => machine.whirl_ranges(spin_rad_s).map(|ranges| {
-                (ranges.into_iter())
-                    .map(|range| HeldWhirl {
-                        planes: range.planes.iter().map(name).collect(),
-                        rates_rad_s: range.rates_rad_s,
-                        phases_rad: range.phases_rad,
-                    })
-                    .collect()
-            }),
-        };
+        let held_whirl = machine.whirl_ranges(spin_rad_s).map(|ranges| {
+            (ranges.into_iter())
+                .map(|range| HeldWhirl {
+                    planes: range.planes.iter().map(name).collect(),
+                    rates_rad_s: range.rates_rad_s,
+                    phases_rad: range.phases_rad,
+                })
+                .collect()
+        });
         let critical_speeds = machine.critical_speeds().ok_or_else(none)?;
         let planes = scene.planes.len();
         let response = |spin_rad_s: f64| {

@@ -7,13 +7,15 @@
 //!
 //! The result is put where the series puts its own, so events, energies and readings are those of [`super::step`].
 
+mod tables;
+
+use self::tables::Tables;
 use super::holding::Holding;
 use super::poles::MagnetLaw;
 use super::series::{MachineSeries, Step};
 use super::system::{Channel, MachineState, MachineSystem, holding_channels};
 use crate::V2;
 use crate::mode::{Phase, Slide, Whirl};
-use crate::quadrature::{EIGHT, Nodes};
 use crate::series::{INVERSE, Scalar, Series};
 use crate::vector::perp;
 
@@ -35,78 +37,6 @@ const ROUNDING: f64 = 500.0 * f64::EPSILON;
 
 /// Iterations at most, each of which gains some digit.
 const ITERATIONS: usize = 40;
-
-/// Tables of the rule, of a polynomial through values at points.
-#[derive(Debug, Clone)]
-struct Tables {
-    /// Both ends and Gauss's points between.
-    theta: [f64; POINTS],
-    /// ∫ and ∬ of the Lagrange polynomials of Gauss's points, up to each point.
-    once: [[f64; GAUSS]; POINTS],
-    twice: [[f64; GAUSS]; POINTS],
-    /// Values of them at both ends, and at the end those of the polynomials of the start and Gauss's points.
-    at_ends: [[f64; GAUSS]; 2],
-    from_start: [f64; GAUSS + 1],
-    /// Power by power, from values at Gauss's points, and at all points.
-    inner: [[f64; GAUSS]; GAUSS],
-    all: [[f64; POINTS]; POINTS],
-}
-
-/// Σ over the other places: value of the Lagrange polynomial of place j.
-fn lagrange(places: &[f64], j: usize, at: f64) -> f64 {
-    let others = places.iter().enumerate().filter(|(m, _)| *m != j);
-    others
-        .map(|(_, place)| (at - place) / (places[j] - place))
-        .product()
-}
-
-/// Coefficients of the Lagrange polynomials of N places: row k has those of θ^k.
-fn powers<const N: usize>(places: &[f64; N]) -> [[f64; N]; N] {
-    let mut rows = [[0.0; N]; N];
-    for j in 0..N {
-        let mut product = [0.0; N];
-        product[0] = 1.0;
-        for (m, place) in places.iter().enumerate().filter(|(m, _)| *m != j) {
-            let per = 1.0 / (places[j] - place);
-            let degree = if m < j { m } else { m - 1 };
-            for k in (0..=degree).rev() {
-                product[k + 1] += per * product[k];
-                product[k] *= -per * place;
-            }
-        }
-        for (row, coefficient) in rows.iter_mut().zip(product) {
-            row[j] = coefficient;
-        }
-    }
-    rows
-}
-
-impl Tables {
-    fn new() -> Self {
-        let gauss = EIGHT.theta;
-        let mut theta = [0.0; POINTS];
-        theta[1..END].copy_from_slice(&gauss);
-        theta[END] = 1.0;
-        let (mut once, mut twice) = ([[0.0; GAUSS]; POINTS], [[0.0; GAUSS]; POINTS]);
-        for i in 0..POINTS {
-            let nodes = Nodes::stretched(&EIGHT, theta[i]);
-            for j in 0..GAUSS {
-                let value = |n: usize| lagrange(&gauss, j, nodes.theta[n]);
-                once[i][j] = nodes.integral(value);
-                twice[i][j] = nodes.integral(|n| (theta[i] - nodes.theta[n]) * value(n));
-            }
-        }
-        Self {
-            once,
-            twice,
-            at_ends: [0.0, 1.0].map(|end| std::array::from_fn(|j| lagrange(&gauss, j, end))),
-            from_start: std::array::from_fn(|j| lagrange(&theta[..END], j, 1.0)),
-            inner: powers(&gauss),
-            all: powers(&theta),
-            theta,
-        }
-    }
-}
 
 /// What an instant says of a plane that is touched.
 #[derive(Debug, Clone, Copy, Default)]
@@ -492,7 +422,9 @@ impl Collocation {
             if step.phases[p] == Phase::Inside {
                 continue;
             }
-            rates_at(&mut plane.gap_rate, |k| port.of(out.velocity.row(k)));
+            for k in 0..=ORDER {
+                plane.gap_rate.0[k] = port.of(out.velocity.row(k));
+            }
             self.through(&mut plane.distance, |at| at.touches[p].distance_m);
             self.through(&mut plane.normal_speed, |at| at.touches[p].normal_m_s);
             self.through(&mut plane.force, |at| at.touches[p].force_n);
@@ -528,12 +460,6 @@ impl Collocation {
 fn put(out: &mut Series, axis: usize, one: &Scalar) {
     for (c, x) in out.0[..=ORDER].iter_mut().zip(one.0) {
         c[axis] = x;
-    }
-}
-
-fn rates_at(out: &mut Series, row: impl Fn(usize) -> V2) {
-    for (k, c) in out.0[..=ORDER].iter_mut().enumerate() {
-        *c = row(k);
     }
 }
 

@@ -1,5 +1,6 @@
 //! A rotor in several planes, as data.
 
+mod method;
 mod validate;
 
 pub(super) use validate::check;

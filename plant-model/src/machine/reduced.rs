@@ -63,6 +63,9 @@ pub(super) struct RigidMotions {
     pub(super) tilt: DVector<f64>,
 }
 
+/// Square of a mode's rate, and its motion of unit modal mass.
+pub(super) type FreeMode = (f64, DVector<f64>);
+
 /// Squares of rates below this share of the largest are rounding.
 const ROUNDING: f64 = 1e-13;
 /// Entries that should be alike may differ by this share of the largest.
@@ -146,8 +149,9 @@ impl RotorMatrices {
             let rule = "a place between the first and the last of places_m";
             check((first..=last).contains(z), format!("nodes[{i}]"), *z, rule)?;
         }
-        let rigid = self.rigid_motions()?;
-        self.reduced_with(&rigid, nodes_m, up_to_rad_s, damping_ratio)
+        let modes = self.modes()?;
+        let rigid = self.rigid_motions(&modes)?;
+        Ok(self.reduced_with(modes, &rigid, nodes_m, (up_to_rad_s, damping_ratio)))
     }
 
     fn ends_m(&self) -> (f64, f64) {
@@ -155,8 +159,7 @@ impl RotorMatrices {
     }
 
     /// The two slowest motions, mixed to a translation and a tilt.
-    fn rigid_motions(&self) -> Result<RigidMotions, MachineError> {
-        let modes = self.modes()?;
+    fn rigid_motions(&self, modes: &[FreeMode]) -> Result<RigidMotions, MachineError> {
         let slowest = DMatrix::from_columns(&[modes[0].1.clone(), modes[1].1.clone()]);
         let moved = &self.displacement * &slowest;
         let wanted = DMatrix::from_fn(self.places_m.len(), 2, |row, column| match column {
@@ -187,8 +190,8 @@ impl RotorMatrices {
         })
     }
 
-    /// Squares of rates and motions of unit modal mass, slowest first.
-    fn modes(&self) -> Result<Vec<(f64, DVector<f64>)>, MachineError> {
+    /// Modes of the free rotor, slowest first; the rigid motions are among them.
+    pub(super) fn modes(&self) -> Result<Vec<FreeMode>, MachineError> {
         let failed = || no_modes(self.mass.trace());
         let root = Cholesky::new(self.mass.clone()).ok_or_else(failed)?;
         // L⁻¹·K·L⁻ᵀ has the squares of the rates.
@@ -213,18 +216,17 @@ impl RotorMatrices {
 
     pub(super) fn reduced_with(
         &self,
+        modes: Vec<FreeMode>,
         rigid: &RigidMotions,
         nodes_m: &[f64],
-        up_to_rad_s: f64,
-        damping_ratio: f64,
-    ) -> Result<ReducedRotor, MachineError> {
+        (up_to_rad_s, damping_ratio): (f64, f64),
+    ) -> ReducedRotor {
         let translation = rigid.translation.clone();
         let heavy = &self.mass * &translation;
         let mass_kg = translation.dot(&heavy);
         let centre_m = rigid.tilt.dot(&heavy) / mass_kg;
         let tilt = &rigid.tilt - centre_m * &translation;
         let transverse_inertia_kg_m2 = tilt.dot(&(&self.mass * &tilt));
-        let modes = self.modes()?;
         let fastest = modes.last().map_or(0.0, |mode| mode.0);
         let mut bending = Vec::new();
         let mut shapes = vec![translation, tilt];
@@ -271,7 +273,7 @@ impl RotorMatrices {
             polar_inertia_kg_m2: polar_coupling_kg_m2.first().copied().unwrap_or(0.0),
         };
         let damping_n_s_m = seen_by(&self.damping, &shapes);
-        Ok(ReducedRotor {
+        ReducedRotor {
             rotor: match bending.is_empty() && damping_n_s_m.is_empty() {
                 true => Rotor::Rigid(rigid),
                 false => Rotor::Modal {
@@ -284,6 +286,6 @@ impl RotorMatrices {
             centre_m,
             ends_m: self.ends_m(),
             residual,
-        })
+        }
     }
 }

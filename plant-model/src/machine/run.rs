@@ -6,7 +6,7 @@ mod settle;
 use super::flight_map::FlightMap;
 use super::guards::Guard;
 use super::holding::Holding;
-use super::params::{MAX_PLANES, MachineError, MachineParams, MachinePlane, MachineStart};
+use super::params::{MAX_PLANES, MachineError, MachineParams, MachineStart};
 use super::readout::{Held, MachineSnapshot, PlaneFlows};
 use super::step::{Stepper, Task};
 use super::system::{MachineInputs, MachineState, MachineSystem};
@@ -17,7 +17,6 @@ use crate::integrate::driver::{ON_WALL, SPARE};
 use crate::integrate::progress::Progress;
 use crate::integrate::{Method, Options, PlantError};
 use crate::mode::{Mode, Phase};
-use crate::params::SlidingFriction;
 use crate::readout::{HARD_IMPACT_M_S, Meters, Work};
 use settle::AtZero;
 
@@ -55,38 +54,6 @@ pub struct Machine {
     progress: Progress,
 }
 
-/// What a method comes to. Friction that falls with speed has no series here.
-fn resolved(params: &MachineParams, method: Method) -> Result<Method, MachineError> {
-    if params.magnets.iter().any(|magnet| magnet.poles.is_some()) {
-        return match method {
-            Method::Auto | Method::Explicit => Ok(Method::Explicit),
-            Method::Series | Method::Stiff => Err(MachineError {
-                field: "run.method".into(),
-                value: f64::NAN,
-                expected: "auto or explicit: magnets with poles have no power series here",
-            }),
-        };
-    }
-    let falls =
-        |plane: &MachinePlane| matches!(plane.friction.sliding, SlidingFriction::Falling { .. });
-    let falling = params.planes.iter().position(falls);
-    match (method, falling) {
-        (Method::Auto, None) => Ok(Method::Series),
-        (Method::Auto, Some(_)) => Ok(Method::Explicit),
-        (Method::Series, Some(p)) => Err(MachineError {
-            field: format!("planes[{p}].friction.coefficient_at_speed"),
-            value: (params.planes[p].friction.sliding).coefficient(f64::INFINITY),
-            expected: "sliding friction that is the same at every speed, or another method than series",
-        }),
-        (Method::Stiff, _) => Err(MachineError {
-            field: "run.method".into(),
-            value: f64::NAN,
-            expected: "auto, series or explicit",
-        }),
-        (method, _) => Ok(method),
-    }
-}
-
 impl Machine {
     /// Puts a machine together. [`Method::Auto`] is [`Method::Series`], or [`Method::Explicit`], collocation, where friction falls
     /// with speed; there is no stiff method.
@@ -108,7 +75,7 @@ impl Machine {
             });
         }
         let options = Options {
-            method: resolved(params, options.method)?,
+            method: params.method(options.method)?,
             ..options
         };
         let y = system.start(params, start)?;

@@ -5,6 +5,7 @@
 
 use super::params::{MachineError, check};
 use super::reduced::{ReducedRotor, RigidMotions, RotorMatrices};
+use crate::quadrature::lagrange;
 use nalgebra::{DMatrix, DVector};
 
 /// A cylindrical piece of shaft.
@@ -82,7 +83,7 @@ impl ShaftSection {
         let shear = self.shear_coefficient() * self.shear_modulus_n_m2() * area;
         let mut all = Element::default();
         for (at, weight) in GAUSS {
-            let ([n, slope], dx) = (lagrange(at), weight * l);
+            let ([n, slope], dx) = (cubics(at), weight * l);
             for i in 0..NODES {
                 for j in 0..NODES {
                     // EI·θ′² + κGA·(w′ − θ)²
@@ -123,21 +124,21 @@ const GAUSS: [(f64, f64); 4] = [
 ];
 
 /// Cubics that are one at one of the nodes and zero at the others, and their slopes, at a share of the length.
-fn lagrange(at: f64) -> [[f64; NODES]; 2] {
-    let place = |i: usize| i as f64 / (NODES - 1) as f64;
-    let (mut values, mut slopes) = ([0.0; NODES], [0.0; NODES]);
-    for i in 0..NODES {
+fn cubics(at: f64) -> [[f64; NODES]; 2] {
+    let places: [f64; NODES] = std::array::from_fn(|i| i as f64 / (NODES - 1) as f64);
+    let slope = |i: usize| {
         let others = || (0..NODES).filter(move |j| *j != i);
-        let factor = |j: usize| (at - place(j)) / (place(i) - place(j));
-        values[i] = others().map(factor).product();
-        slopes[i] = (others())
-            .map(|k| {
-                let rest: f64 = others().filter(|j| *j != k).map(factor).product();
-                rest / (place(i) - place(k))
-            })
-            .sum();
-    }
-    [values, slopes]
+        let factor = |j: usize| (at - places[j]) / (places[i] - places[j]);
+        let terms = others().map(|k| {
+            let rest: f64 = others().filter(|j| *j != k).map(factor).product();
+            rest / (places[i] - places[k])
+        });
+        terms.sum()
+    };
+    [
+        std::array::from_fn(|i| lagrange(&places, i, at)),
+        std::array::from_fn(slope),
+    ]
 }
 
 impl Shaft {
@@ -251,7 +252,8 @@ impl Shaft {
             }),
             places_m: nodes,
         };
-        matrices.reduced_with(&rigid, nodes_m, up_to_rad_s, damping_ratio)
+        let modes = matrices.modes()?;
+        Ok(matrices.reduced_with(modes, &rigid, nodes_m, (up_to_rad_s, damping_ratio)))
     }
 
     /// Mass, stiffness and polar inertia of the free shaft in one plane, over (displacement, rotation) of its nodes.

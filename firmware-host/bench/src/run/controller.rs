@@ -56,6 +56,23 @@ pub struct Seen {
 
 /// The controller of a policy, set up for a scene; `None` where the scene lacks what it needs (which [`Scene::load`] refuses).
 pub fn controller(kind: PolicyKind, scene: &Scene) -> Option<Box<dyn Controller>> {
+    match scene.state_space {
+        Some(_) => controller_below(kind, scene),
+        None => controller_over(kind, scene, own_levitation(scene)),
+    }
+}
+
+/// As [`controller`], of a plane of a rotor that is levitated as a whole.
+pub(crate) fn controller_below(kind: PolicyKind, scene: &Scene) -> Option<Box<dyn Controller>> {
+    controller_over(kind, scene, Some(Passing))
+}
+
+/// The controller of a policy over whoever levitates, where somebody does.
+fn controller_over<L: Levitate + Controller + 'static>(
+    kind: PolicyKind,
+    scene: &Scene,
+    levitation: Option<L>,
+) -> Option<Box<dyn Controller>> {
     let force_max_n = cap_n(scene);
     Some(match kind {
         PolicyKind::Passive => Box::new(Passive),
@@ -71,37 +88,21 @@ pub fn controller(kind: PolicyKind, scene: &Scene) -> Option<Box<dyn Controller>
                 force_max_n,
             })
         }
-        PolicyKind::Levitation if scene.state_space.is_some() => Box::new(Passing),
-        PolicyKind::Levitation => own_levitation(scene)?,
+        PolicyKind::Levitation => Box::new(levitation?),
         PolicyKind::Supervisor => {
             let supervisor = Supervisor::new(&scene.supervisor?).ok()?;
-            return supervised(scene, Box::new(supervisor));
+            Box::new(Supervised::new(Box::new(supervisor), Box::new(levitation?)))
         }
     })
 }
 
 /// A supervisor of the caller's in front of the scene's levitation controller; `None` where the scene has no controller.
 pub fn supervised(scene: &Scene, supervisor: Box<dyn Supervise>) -> Option<Box<dyn Controller>> {
-    Some(Box::new(Supervised {
-        supervisor,
-        levitation: levitation_of(scene)?,
-        hint: IntegratorHint::Run,
-        said: None,
-    }))
-}
-
-/// As [`controller`], of a plane of a rotor that is levitated as a whole.
-pub(crate) fn controller_below(kind: PolicyKind, scene: &Scene) -> Option<Box<dyn Controller>> {
-    Some(match kind {
-        PolicyKind::Levitation => Box::new(Passing),
-        PolicyKind::Supervisor => Box::new(Supervised {
-            supervisor: Box::new(Supervisor::new(&scene.supervisor?).ok()?),
-            levitation: Box::new(Passing),
-            hint: IntegratorHint::Run,
-            said: None,
-        }),
-        _ => return controller(kind, scene),
-    })
+    let levitation: Box<dyn Levitate> = match scene.state_space {
+        Some(_) => Box::new(Passing),
+        None => Box::new(own_levitation(scene)?),
+    };
+    Some(Box::new(Supervised::new(supervisor, levitation)))
 }
 
 /// Who levitates: a controller of the plane's own, or whoever levitates the whole rotor.
@@ -131,22 +132,10 @@ impl Controller for Passing {
     }
 }
 
-/// Whoever levitates in a scene, where somebody does.
-fn levitation_of(scene: &Scene) -> Option<Box<dyn Levitate>> {
-    match scene.state_space {
-        Some(_) => Some(Box::new(Passing)),
-        None => Some(own_levitation(scene)?),
-    }
-}
-
 /// The scene's levitation controller by gains, where it has one.
-fn own_levitation(scene: &Scene) -> Option<Box<Levitation>> {
+fn own_levitation(scene: &Scene) -> Option<Levitation> {
     let period_s = 1.0 / scene.sample_rate_hz;
-    Some(Box::new(Levitation::new(
-        scene.levitation?,
-        period_s,
-        cap_n(scene),
-    )))
+    Some(Levitation::new(scene.levitation?, period_s, cap_n(scene)))
 }
 
 fn cap_n(scene: &Scene) -> f64 {
@@ -253,6 +242,17 @@ struct Supervised {
     /// What it told the controller's integrator.
     hint: IntegratorHint,
     said: Option<Said>,
+}
+
+impl Supervised {
+    fn new(supervisor: Box<dyn Supervise>, levitation: Box<dyn Levitate>) -> Self {
+        Self {
+            supervisor,
+            levitation,
+            hint: IntegratorHint::Run,
+            said: None,
+        }
+    }
 }
 
 impl Controller for Supervised {

@@ -8,8 +8,6 @@ use crate::run::trace::{Recorder, TraceRow};
 use crate::scene::Scene;
 use crate::scene::machine::MachineScene;
 use crate::scene::policy_kind::PolicyKind;
-use plant_model::machine::Machine;
-use plant_model::machine::params::MachineError;
 use plant_model::{Method, Mode, Options, V2};
 use serde::Serialize;
 
@@ -212,16 +210,8 @@ pub fn check(
 /// [`RunError::Machine`].
 pub fn check_machine_scenes(scene: &MachineScene) -> Result<[MachineScene; CHECKS], RunError> {
     let common = scene.common();
-    let method = |method: Method| {
-        let options = Options {
-            method,
-            ..Options::default()
-        };
-        let machine = Machine::new(&scene.machine, &scene.start, options)?;
-        Ok::<_, MachineError>(machine.method())
-    };
-    let own = method(common.method).map_err(RunError::Machine)?;
-    let other = match method(Method::Series) {
+    let own = (scene.machine.method(common.method)).map_err(RunError::Machine)?;
+    let other = match scene.machine.method(Method::Series) {
         Ok(Method::Series) if own == Method::Explicit => Method::Series,
         Ok(_) | Err(_) => Method::Explicit,
     };

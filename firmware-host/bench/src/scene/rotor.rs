@@ -3,7 +3,7 @@
 use crate::scene::arrays::Arrays;
 use crate::scene::diagnostic::{SceneError, SceneText};
 use crate::scene::plant::spin;
-use crate::scene::tables::{BendingTable, SceneTables};
+use crate::scene::tables::{BendingTable, SceneTables, SupportTable};
 use plant_model::V2;
 use plant_model::machine::params::{
     BendingMode, MachineError, MachineParams, RigidRotor, Rotor, Support, Unbalance,
@@ -87,11 +87,7 @@ pub(crate) fn machine(
     let machine = MachineParams {
         rotor,
         supports: (tables.support.iter())
-            .map(|s| {
-                let (stiffness_n_m, damping_n_s_m) =
-                    (s.stiffness_n_m.into(), s.damping_n_s_m.into());
-                support(&origin, s.position_m, stiffness_n_m, damping_n_s_m)
-            })
+            .map(|written| support(&origin, written))
             .collect(),
         spin: spin(tables, text)?,
         unbalances: unbalances.chain(eccentric).collect(),
@@ -108,19 +104,16 @@ fn given(rotor: ReducedRotor) -> (Rotor, Origin) {
     (rotor.rotor.clone(), Origin::Given(rotor))
 }
 
-/// A support at a place of the scene, in series with what the rotor gives way there beside its modes. Spring and damper share
+/// A support, in series with what the rotor gives way there beside its modes. Spring and damper share
 /// the way as of slow motions, as a contact does.
-pub(crate) fn support(
-    origin: &Origin,
-    position_m: f64,
-    stiffness_n_m: V2,
-    damping_n_s_m: V2,
-) -> Support {
-    let residual_m_n = origin.residual_m_n(position_m);
+fn support(origin: &Origin, written: &SupportTable) -> Support {
+    let (stiffness_n_m, damping_n_s_m): (V2, V2) =
+        (written.stiffness_n_m.into(), written.damping_n_s_m.into());
+    let residual_m_n = origin.residual_m_n(written.position_m);
     // What pulls outwards is no spring in series with one.
     let share = stiffness_n_m.map(|k| 1.0 / (1.0 + k.max(0.0) * residual_m_n));
     Support {
-        position_m: origin.centred_m(position_m),
+        position_m: origin.centred_m(written.position_m),
         stiffness_n_m: stiffness_n_m.component_mul(&share),
         damping_n_s_m: damping_n_s_m.component_mul(&share).component_mul(&share),
     }

@@ -63,17 +63,12 @@ pub(crate) fn state_space(
                     DMatrix::zeros(forces, 0),
                     d,
                 ],
-                (None, None) => [
-                    arrays.take("A")?,
+                (a, d) => [
+                    a.map_or_else(|| arrays.take("A"), Ok)?,
                     arrays.take("B")?,
                     arrays.take("C")?,
-                    arrays.take("D")?,
+                    d.unwrap_or_else(|| DMatrix::zeros(forces, readings)),
                 ],
-                (Some(a), d) => {
-                    let [b, c] = ["B", "C"].map(|name| arrays.take(name));
-                    let d = d.unwrap_or_else(|| DMatrix::zeros(forces, readings));
-                    [a, b?, c?, d]
-                }
             }
         }
         None => {
