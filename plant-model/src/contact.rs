@@ -1,6 +1,7 @@
 //! The contact law: the linear one, f_n = k_c·A + d_c·B, eqs (2.8), (2.9), with its restitution, and Hunt
 //! and Crossley's.
 
+pub mod ball_bearing;
 pub mod hunt_crossley;
 
 use crate::bisection::bracket_until;

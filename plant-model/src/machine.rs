@@ -37,6 +37,8 @@
 //!     },
 //!     stator: StatorParams::Rigid,
 //!     race: None,
+//!     load_drag: None,
+//!     heat: None,
 //! };
 //! let params = MachineParams {
 //!     rotor: Rotor::Rigid(RigidRotor {
@@ -86,5 +88,5 @@ mod system;
 pub mod whirl_ranges;
 
 pub use readout::{AxisMotion, MachineSnapshot, PlaneFlows, PlaneSnapshot};
-pub use run::Machine;
+pub use run::{Machine, Warmth};
 pub use system::MachineInputs;

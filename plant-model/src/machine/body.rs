@@ -267,9 +267,12 @@ impl LinearBody {
             if let Some(ring) = &inner {
                 contact.subtract(ring);
             }
-            if let (true, Some(law)) = (closed, plane.contact.law.linear()) {
-                add_at_port(&mut stiffness, n, &contact, V2::repeat(law.stiffness_n_m));
-                add_at_port(&mut damping, n, &contact, V2::repeat(law.damping_n_s_m));
+            if closed {
+                let (depth_m, grip_n_m) =
+                    (plane.contact.clearance_m, plane.contact.stiffness_n_m());
+                let damper_n_s_m = plane.contact.law.by_rate_n_s_m(depth_m);
+                add_at_port(&mut stiffness, n, &contact, V2::repeat(grip_n_m));
+                add_at_port(&mut damping, n, &contact, V2::repeat(damper_n_s_m));
             }
             contacts.push(contact);
             rings.push(inner);

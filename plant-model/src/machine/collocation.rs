@@ -44,6 +44,8 @@ struct Touch {
     distance_m: f64,
     normal_m_s: f64,
     force_n: f64,
+    /// What is positive while contact lasts.
+    lift: f64,
     whirl_m_s: f64,
     slip_m_s: f64,
     sliding_n: f64,
@@ -59,6 +61,7 @@ struct Instant {
     spin_rate: f64,
     race_rates: Vec<f64>,
     magnet_rates: Vec<V2>,
+    slope_rates: Vec<V2>,
     /// Their forces.
     magnets_n: Vec<V2>,
     unbalance: V2,
@@ -86,6 +89,7 @@ pub(crate) struct Collocation {
     holding: Holding,
     before: Vec<f64>,
     magnets_before: Vec<V2>,
+    races_before: Vec<f64>,
     /// How often the equations have been evaluated.
     pub(crate) evaluations: u64,
 }
@@ -103,6 +107,7 @@ impl Collocation {
             spin_rate: 0.0,
             race_rates: vec![0.0; planes],
             magnet_rates: vec![V2::zeros(); magnets],
+            slope_rates: vec![V2::zeros(); magnets],
             magnets_n: vec![V2::zeros(); magnets],
             unbalance: V2::zeros(),
             touches: vec![Touch::default(); planes],
@@ -113,6 +118,7 @@ impl Collocation {
             holding: Holding::new(n),
             before: vec![0.0; n],
             magnets_before: vec![V2::zeros(); magnets],
+            races_before: vec![0.0; planes],
             evaluations: 0,
         }
     }
@@ -182,6 +188,9 @@ impl Collocation {
             for (force, rate) in y.magnets.iter_mut().zip(&instant.magnet_rates) {
                 *force += b * rate;
             }
+            for (slope, rate) in y.magnet_slopes.iter_mut().zip(&instant.slope_rates) {
+                *slope += b * rate;
+            }
         }
         self.instants[i].y = y;
     }
@@ -192,6 +201,8 @@ impl Collocation {
         let spin = self.instants[i].spin_rate;
         self.magnets_before
             .copy_from_slice(&self.instants[i].magnet_rates);
+        self.races_before
+            .copy_from_slice(&self.instants[i].race_rates);
         self.evaluate(step, i);
         let now = &self.instants[i];
         let off = now.acceleration.iter().zip(&self.before);
@@ -200,10 +211,15 @@ impl Collocation {
         let magnet = (magnets.zip(&step.system.magnets))
             .map(|((a, b), law)| law.per_state_n() * (a - b).norm())
             .fold(0.0, f64::max);
+        let races = now.race_rates.iter().zip(&self.races_before);
+        let race = (races.zip(&step.system.planes))
+            .map(|((a, b), data)| data.race_radius_m() * (a - b).abs())
+            .fold(0.0, f64::max);
         step.step_s
             * (moved.sqrt() * scales.velocity)
                 .max((now.spin_rate - spin).abs() * scales.spin)
                 .max(magnet * scales.force)
+                .max(race * scales.speed)
     }
 
     /// How far the rates at an end are from the polynomial through those between, in units of the scales.
@@ -218,19 +234,28 @@ impl Collocation {
         let spin: f64 = inner().map(|(at, w)| w * at.spin_rate).sum();
         let mut magnets = 0.0;
         for (m, rate) in end.magnet_rates.iter().enumerate() {
+            let law = &step.system.magnets[m];
             let through = inner().fold(V2::zeros(), |sum, (at, w)| sum + *w * at.magnet_rates[m]);
-            magnets += (step.system.magnets[m].per_state_n() * (rate - through)).norm_squared();
+            magnets += (law.per_state_n() * (rate - through)).norm_squared();
+            let through = inner().fold(V2::zeros(), |sum, (at, w)| sum + *w * at.slope_rates[m]);
+            magnets += (law.per_slope_s() * (end.slope_rates[m] - through)).norm_squared();
         }
         // A distance is known to a few units in its last place, and walls are stiff.
-        let planes = step.system.planes.iter().enumerate();
-        let forces = planes.map(|(p, data)| {
-            let grip = end.touches[p].distance_m * data.law.stiffness_n_m;
-            grip * step.system.contact(p).mobility().sqrt()
-        });
-        let noise = ROUNDING * forces.fold(0.0, f64::max);
+        let (mut noise, mut races) = (0.0_f64, 0.0_f64);
+        for (p, data) in step.system.planes.iter().enumerate() {
+            let rounding_n = ROUNDING * end.touches[p].distance_m * data.stiffness_n_m;
+            noise = noise.max(rounding_n * step.system.contact(p).mobility().sqrt());
+            if let Some(race) = &data.race {
+                let through: f64 = inner().map(|(at, w)| w * at.race_rates[p]).sum();
+                let off = race.radius_m * (end.race_rates[p] - through).abs();
+                // Friction passes the force's rounding on.
+                races = races.max(off - data.sliding.max(1.0) * rounding_n * race.mobility());
+            }
+        }
         step.step_s
             * ((square.sqrt() - noise).max(0.0) * scales.velocity)
                 .hypot((end.spin_rate - spin) * scales.spin)
+                .hypot(races.max(0.0) * scales.speed)
                 .hypot(magnets.sqrt() * scales.force)
     }
 
@@ -247,7 +272,7 @@ impl Collocation {
                 let through: f64 = before.map(|(at, w)| w * value(&at.touches[p])).sum();
                 ((value(end) - through).abs() - ROUNDING * size).max(0.0)
             };
-            let stiffness_n_m = step.system.planes[p].law.stiffness_n_m;
+            let stiffness_n_m = step.system.planes[p].stiffness_n_m;
             let (grip_n, per_n) = (stiffness_n_m * end.distance_m, scales.gap / stiffness_n_m);
             worst = (worst.max(off(grip_n, &|t| t.force_n) * per_n))
                 .max(off(grip_n, &|t| t.sliding_n) * per_n)
@@ -273,6 +298,12 @@ impl Collocation {
             instant.magnet_rates[m] = match &system.magnets[m] {
                 MagnetLaw::Held => continue,
                 MagnetLaw::Lag(rate) => *rate * (command_n - state),
+                MagnetLaw::SecondOrder(rate, ratio) => {
+                    let slope = y.magnet_slopes[m];
+                    instant.slope_rates[m] =
+                        *rate * (*rate * (command_n - state) - 2.0 * ratio * slope);
+                    slope
+                }
                 MagnetLaw::Poles(poles) => {
                     poles.current_rate(state, command_n, port.of(&y.velocity))
                 }
@@ -291,7 +322,8 @@ impl Collocation {
             touch.distance_m = motion.distance_m;
             touch.normal = motion.normal;
             touch.normal_m_s = motion.normal_m_s;
-            touch.force_n = (data.law).normal_force_n(motion.penetration_m, motion.normal_m_s);
+            let normal = data.law.at(motion.penetration_m, motion.normal_m_s);
+            (touch.force_n, touch.lift) = (normal.force_n, normal.guard);
             let Phase::Contact(slide, whirl) = *phase else {
                 continue;
             };
@@ -312,9 +344,13 @@ impl Collocation {
         }
         instant.spin_rate = torque * system.inverse_inertia;
         for (p, rate) in instant.race_rates.iter_mut().enumerate() {
-            if let Some(race) = &system.planes[p].race {
-                *rate = race.acceleration(y.races_rad_s[p], instant.touches[p].sliding_n);
-            }
+            let touch = &instant.touches[p];
+            // Beyond the wall without force there is none that would load the bearing.
+            let load_n = match step.phases[p] {
+                Phase::Contact(..) => touch.force_n,
+                _ => 0.0,
+            };
+            *rate = system.race_acceleration(p, y.races_rad_s[p], (touch.sliding_n, load_n));
         }
         let direction = match &body.unbalance {
             None => V2::x(),
@@ -397,6 +433,12 @@ impl Collocation {
                 match law {
                     MagnetLaw::Held => {}
                     MagnetLaw::Lag(_) => put(&mut out.magnets[m], axis, &one),
+                    MagnetLaw::SecondOrder(..) => {
+                        put(&mut out.magnets[m], axis, &one);
+                        let rate = |at: &Instant| at.slope_rates[m][axis];
+                        self.integrals(&mut one, y.magnet_slopes[m][axis], h, rate);
+                        put(&mut out.currents[m], axis, &one);
+                    }
                     MagnetLaw::Poles(_) => {
                         put(&mut out.currents[m], axis, &one);
                         self.through(&mut one, |at| at.magnets_n[m][axis]);
@@ -428,6 +470,7 @@ impl Collocation {
             self.through(&mut plane.distance, |at| at.touches[p].distance_m);
             self.through(&mut plane.normal_speed, |at| at.touches[p].normal_m_s);
             self.through(&mut plane.force, |at| at.touches[p].force_n);
+            self.through(&mut plane.lift, |at| at.touches[p].lift);
             self.through(&mut plane.whirl_speed, |at| at.touches[p].whirl_m_s);
             self.through(&mut plane.slip, |at| at.touches[p].slip_m_s);
             self.through(&mut plane.sliding, |at| at.touches[p].sliding_n);
@@ -465,7 +508,8 @@ fn put(out: &mut Series, axis: usize, one: &Scalar) {
 
 impl Instant {
     fn is_finite(&self) -> bool {
-        let magnets = self.magnet_rates.iter().flat_map(|rate| [rate.x, rate.y]);
+        let magnets = self.magnet_rates.iter().chain(&self.slope_rates);
+        let magnets = magnets.flat_map(|rate| [rate.x, rate.y]);
         let rates = (self.acceleration.iter().copied())
             .chain(self.race_rates.iter().copied())
             .chain(magnets);
@@ -476,6 +520,7 @@ impl Instant {
         self.acceleration.copy_from_slice(&of.acceleration);
         self.race_rates.copy_from_slice(&of.race_rates);
         self.magnet_rates.copy_from_slice(&of.magnet_rates);
+        self.slope_rates.copy_from_slice(&of.slope_rates);
         self.spin_rate = of.spin_rate;
     }
 }

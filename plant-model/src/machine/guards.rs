@@ -93,8 +93,8 @@ impl Guard {
                 out.0[0] -= data.clearance_m;
                 true
             }
-            Self::NoForce => ask((-1.0, force), none),
-            Self::Normal => ask((1.0, force), none),
+            Self::NoForce => ask((-1.0, plane.lift(data)), none),
+            Self::Normal => ask((1.0, plane.lift(data)), none),
             Self::Slide if slide == Slide::Rolling => {
                 ask((data.sliding, force), (-1.0, &plane.sliding))
             }

@@ -96,8 +96,7 @@ impl LinearMachine {
         let rate_rad_s = body.undamped_rate_rad_s().max(1.0);
         let walls = params.planes.iter().map(|plane| Wall {
             clearance_m: plane.contact.clearance_m,
-            stiffness_n_m: (plane.contact.law.linear())
-                .map_or(f64::INFINITY, |law| law.stiffness_n_m),
+            stiffness_n_m: plane.contact.stiffness_n_m(),
             driving_friction: (plane.friction.sliding.coefficient(0.0)
                 - plane.friction.rolling_coefficient)
                 .max(0.0),

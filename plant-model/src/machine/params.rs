@@ -1,8 +1,10 @@
 //! A rotor in several planes, as data.
 
+mod bearing;
 mod method;
 mod validate;
 
+pub use bearing::{BearingHeat, LoadDrag};
 pub(super) use validate::check;
 
 use crate::V2;
@@ -131,6 +133,9 @@ pub struct MachineMagnet {
     pub force_max_n: f64,
     /// Time constant of the amplifier's lag \[s\], ≥ 0; 0 means none, which poles do not take.
     pub lag_s: f64,
+    /// Damping ratio ζ > 0 of an amplifier of second order, τ²·f̈ + 2ζτ·ḟ + f = command with τ the lag; without it the amplifier
+    /// is of first order. Not with poles.
+    pub lag_damping_ratio: Option<f64>,
     /// Poles; without them the force is what is commanded, within cap and lag, wherever the rotor is.
     pub poles: Option<Poles>,
 }
@@ -154,14 +159,18 @@ pub struct MachinePlane {
     pub centre_m: V2,
     /// Radius R_r of the rotor there \[m\], > 0.
     pub radius_m: f64,
-    /// Clearance and law; the linear law only.
+    /// Clearance and law.
     pub contact: ContactParams,
-    /// Friction; sliding friction that does not depend on speed.
+    /// Friction.
     pub friction: FrictionParams,
     /// What the bore is mounted on; round only.
     pub stator: StatorParams,
     /// Race of a ball bearing; none for a bushing.
     pub race: Option<RaceParams>,
+    /// Drag of the race that grows with the load; needs a race.
+    pub load_drag: Option<LoadDrag>,
+    /// What the bearing's losses do to it; none: nothing.
+    pub heat: Option<BearingHeat>,
 }
 
 /// Everything that does not change during a run.

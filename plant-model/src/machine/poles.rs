@@ -10,6 +10,8 @@ pub(crate) enum MagnetLaw {
     Held,
     /// It follows the command with a rate; its state is the force.
     Lag(f64),
+    /// It follows with a natural rate and a damping ratio; its state is the force and the force's rate.
+    SecondOrder(f64, f64),
     /// Poles; its state is the control current.
     Poles(PoleLaw),
 }
@@ -36,8 +38,11 @@ const NARROWEST: f64 = 0.02;
 impl MagnetLaw {
     pub(crate) fn new(magnet: &MachineMagnet) -> Self {
         match &magnet.poles {
-            None if magnet.lag_s > 0.0 => Self::Lag(1.0 / magnet.lag_s),
-            None => Self::Held,
+            None => match (magnet.lag_s > 0.0, magnet.lag_damping_ratio) {
+                (true, Some(ratio)) => Self::SecondOrder(1.0 / magnet.lag_s, ratio),
+                (true, None) => Self::Lag(1.0 / magnet.lag_s),
+                (false, _) => Self::Held,
+            },
             Some(poles) => {
                 let (bias_a, gap_m) = (poles.bias_current_a, poles.air_gap_m);
                 let per_ampere_n = magnet.force_max_n / poles.current_max_a;
@@ -66,6 +71,14 @@ impl MagnetLaw {
     /// Whether its force is the command.
     pub(crate) fn is_held(&self) -> bool {
         matches!(self, Self::Held)
+    }
+
+    /// Time in which the rate of a force of second order moves the force \[s\]; 0 where there is none.
+    pub(crate) fn per_slope_s(&self) -> f64 {
+        match self {
+            Self::SecondOrder(rate, _) => 1.0 / rate,
+            _ => 0.0,
+        }
     }
 
     /// Force by a newton of command, per unit of state.

@@ -9,6 +9,7 @@ use crate::V2;
 use crate::energy::Flows;
 use crate::integrate::series_readout::highest;
 use crate::mode::{Mode, Phase, Slide, Whirl};
+use crate::params::ContactLaw;
 use crate::part::Body;
 use crate::quadrature::{EIGHT, Nodes, SIX};
 use crate::readout::Peaks;
@@ -269,6 +270,11 @@ impl MachineSeries {
             if let Some(race) = &data.race {
                 let spin = series.race.at_all(&nodes.theta, order);
                 plane.race_drag = h * nodes.integral(|j| race.drag_w(spin[j]));
+                if let (Some(drag), Phase::Contact(..)) = (&data.load_drag, phase) {
+                    let load = series.force.at_all(&nodes.theta, order);
+                    plane.race_drag +=
+                        h * nodes.integral(|j| drag.per_load_m(spin[j]) * load[j] * spin[j]);
+                }
             }
             if let Phase::Contact(slide, whirl) = phase {
                 plane.normal_impulse_n_s = h * series.force.integral(theta, order);
@@ -277,8 +283,17 @@ impl MachineSeries {
                         data.radius_m * h * self.spin.0[0] * series.sliding.integral(theta, order);
                 }
                 let speed = series.normal_speed.at_all(&nodes.theta, order);
-                plane.contact_damping =
-                    data.law.damping_n_s_m * h * nodes.integral(|j| speed[j] * speed[j]);
+                plane.contact_damping = match &data.law {
+                    ContactLaw::Linear(law) => {
+                        law.damping_n_s_m * h * nodes.integral(|j| speed[j] * speed[j])
+                    }
+                    law @ ContactLaw::HuntCrossley(_) => {
+                        let distance = series.distance.at_all(&nodes.theta, order);
+                        let damper_n =
+                            |j: usize| law.at(distance[j] - data.clearance_m, speed[j]).damper_n;
+                        h * nodes.integral(|j| damper_n(j) * speed[j])
+                    }
+                };
                 if *slide != Slide::Rolling {
                     let (force, speed) = (
                         series.sliding.at_all(&nodes.theta, order),
@@ -331,6 +346,11 @@ impl MachineSeries {
 }
 
 impl PlaneFlows {
+    /// What the bearing has taken as heat \[J\].
+    pub fn losses_j(&self) -> f64 {
+        self.contact_damping + self.sliding_friction + self.rolling_friction + self.race_drag
+    }
+
     pub(crate) fn add(&mut self, other: &Self) {
         self.contact_damping += other.contact_damping;
         self.sliding_friction += other.sliding_friction;

@@ -2,6 +2,7 @@
 
 mod reading;
 mod settle;
+mod warming;
 
 use super::flight_map::FlightMap;
 use super::guards::Guard;
@@ -19,6 +20,8 @@ use crate::integrate::{Method, Options, PlantError};
 use crate::mode::{Mode, Phase};
 use crate::readout::{HARD_IMPACT_M_S, Meters, Work};
 use settle::AtZero;
+use warming::Warming;
+pub use warming::Warmth;
 
 /// A rotor that may touch in several planes, being run. Deterministic: the same calls give the same bits.
 #[derive(Debug, Clone)]
@@ -42,6 +45,8 @@ pub struct Machine {
     /// Energy of the spins that may never take part.
     spare_j: f64,
     plane_flows: Vec<PlaneFlows>,
+    /// Of bearings that have heat; others stay as they are.
+    warmings: Vec<Warming>,
     meters: Vec<Meters>,
     work: Work,
     options: Options,
@@ -98,6 +103,9 @@ impl Machine {
             stored_peak_j: 0.0,
             spare_j: SPARE * system.turning_j(&y),
             plane_flows: vec![PlaneFlows::default(); planes],
+            warmings: (params.planes.iter())
+                .map(|plane| Warming::new(plane.heat.map_or(0.0, |heat| heat.start_rise_k)))
+                .collect(),
             meters: vec![Meters::default(); planes],
             work: Work::default(),
             options,
@@ -149,6 +157,7 @@ impl Machine {
             return Err(PlantError::NotFinite { t_s });
         }
         self.take(inputs);
+        self.warm();
         let flies = self.options.method == Method::Series;
         if flies && self.t_s < t_end_s && self.phases.iter().all(|phase| *phase == Phase::Inside) {
             let dt_s = t_end_s - self.t_s;
@@ -254,7 +263,7 @@ impl Machine {
         let guard = match (phase, guard) {
             (Phase::Contact(..), guard) if guard != Guard::Normal => {
                 let force = self.stepper.series.planes[p]
-                    .force
+                    .lift(&self.system.planes[p])
                     .with_slope(reach.theta, self.stepper.series.order);
                 let rate = force.1 / self.stepper.series.step_s;
                 if force.0 < -rate * moment_s {

@@ -9,9 +9,10 @@
 use super::body::LinearBody;
 use super::holding::Holding;
 use super::poles::MagnetLaw;
-use super::system::{Channel, MachineState, MachineSystem, holding_channels};
+use super::system::{Channel, MachineState, MachineSystem, PlaneData, holding_channels};
 use crate::V2;
 use crate::mode::{Phase, Whirl};
+use crate::params::ContactLaw;
 use crate::series::{INVERSE, MAX_ORDER, Scalar, Series};
 use crate::vector::perp;
 
@@ -69,6 +70,8 @@ pub(crate) struct PlaneSeries {
     /// f_n and f_n·r̂.
     pub(crate) force: Scalar,
     push: Series,
+    /// What falls through zero where contact of a law that is not linear ends; of collocation alone.
+    pub(crate) lift: Scalar,
     /// v_w, R·Ω − R_i·Ω_i, v_rel.
     pub(crate) whirl_speed: Scalar,
     surface: Scalar,
@@ -95,7 +98,7 @@ pub(crate) struct MachineSeries {
     direction: Series,
     turning: Series,
     pub(crate) unbalance: Series,
-    /// Forces of magnets that are not held, and currents of poles.
+    /// Forces of magnets that are not held; currents of poles, and rates of forces of second order.
     pub(crate) magnets: Vec<Series>,
     pub(crate) currents: Vec<Series>,
     pub(crate) planes: Vec<PlaneSeries>,
@@ -114,6 +117,16 @@ pub(crate) struct Step<'a> {
     /// Commands of magnets that lag.
     pub(crate) commands_n: &'a [V2],
     pub(crate) step_s: f64,
+}
+
+impl PlaneSeries {
+    /// What is positive while contact lasts.
+    pub(crate) fn lift(&self, data: &PlaneData) -> &Scalar {
+        match data.law {
+            ContactLaw::Linear(_) => &self.force,
+            ContactLaw::HuntCrossley(_) => &self.lift,
+        }
+    }
 }
 
 impl MachineSeries {
@@ -247,9 +260,20 @@ impl MachineSeries {
                 continue;
             }
             let first = if k == 0 { data.clearance_m } else { 0.0 };
-            plane.force.0[k] = data
-                .law
-                .normal_force_n(plane.distance.0[k] - first, plane.normal_speed.0[k]);
+            let (depth_m, rate_m_s) = (plane.distance.0[k] - first, plane.normal_speed.0[k]);
+            plane.force.0[k] = match &data.law {
+                ContactLaw::Linear(law) => law.normal_force_n(depth_m, rate_m_s),
+                law @ ContactLaw::HuntCrossley(_) => {
+                    // A moment's look, by the slopes a moment from now: at the touch itself there are none.
+                    let rate_now_m_s = plane.normal_speed.0[0];
+                    let now_m = plane.distance.0[0] - data.clearance_m;
+                    let soon = law.at(now_m + rate_now_m_s.abs() * step.step_s, rate_now_m_s);
+                    match k {
+                        0 => law.normal_force_n(depth_m, rate_m_s),
+                        _ => soon.by_depth_n_m * depth_m + soon.by_rate_n_s_m * rate_m_s,
+                    }
+                }
+            };
             let Phase::Contact(slide, whirl) = step.phases[p] else {
                 continue;
             };
@@ -298,6 +322,10 @@ impl MachineSeries {
             torque += data.radius_m * sliding_n;
             if let Some(race) = &data.race {
                 plane.race.0[k + 1] = next * race.acceleration(plane.race.0[k], sliding_n);
+                if let (Some(drag), Phase::Contact(..)) = (&data.load_drag, step.phases[p]) {
+                    let drag_m = drag.per_load_m(plane.race.0[0]);
+                    plane.race.0[k + 1] -= next * drag_m * plane.force.0[k] / race.inertia_kg_m2;
+                }
             }
         }
         self.spin_rate.0[k] = torque * system.inverse_inertia;
@@ -420,6 +448,10 @@ impl MachineSeries {
             match law {
                 MagnetLaw::Held => {}
                 MagnetLaw::Lag(_) => y.magnets[m] = self.magnets[m].at(theta, order),
+                MagnetLaw::SecondOrder(..) => {
+                    y.magnets[m] = self.magnets[m].at(theta, order);
+                    y.magnet_slopes[m] = self.currents[m].at(theta, order);
+                }
                 MagnetLaw::Poles(_) => y.magnets[m] = self.currents[m].at(theta, order),
             }
         }

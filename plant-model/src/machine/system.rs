@@ -1,12 +1,12 @@
 //! A machine's equations, apart from how they are integrated: what holds what, and how much it takes.
 
 use super::body::{LinearBody, Port};
-use super::params::{MAX_PLANES, MachineError, MachineParams, MachineStart};
+use super::params::{BearingHeat, LoadDrag, MAX_PLANES, MachineError, MachineParams, MachineStart};
 use super::poles::MagnetLaw;
 use crate::V2;
 use crate::contact::NO_DENT;
 use crate::mode::{Phase, Slide, Whirl};
-use crate::params::{ContactLaw, LinearContact, SlidingFriction, SpinParams};
+use crate::params::{ContactLaw, SlidingFriction, SpinParams};
 use crate::part::Body;
 use crate::plane::race::Race;
 use nalgebra::SMatrix;
@@ -42,13 +42,19 @@ pub(crate) fn holding_channels(phases: &[Phase]) -> impl Iterator<Item = (usize,
 pub(crate) struct PlaneData {
     pub(crate) centre_m: V2,
     pub(crate) radius_m: f64,
+    /// Now, and when cold.
     pub(crate) clearance_m: f64,
-    pub(crate) law: LinearContact,
+    pub(crate) cold_m: f64,
+    pub(crate) heat: Option<BearingHeat>,
+    pub(crate) law: ContactLaw,
+    /// Of the contact; where it grows with the depth, at that of one clearance.
+    pub(crate) stiffness_n_m: f64,
     /// Of sliding; μ at rest, and μ_r.
     pub(crate) friction: SlidingFriction,
     pub(crate) sliding: f64,
     pub(crate) rolling: f64,
     pub(crate) race: Option<Race>,
+    pub(crate) load_drag: Option<LoadDrag>,
 }
 
 impl PlaneData {
@@ -60,7 +66,11 @@ impl PlaneData {
 
     /// Whether contact that ends leaves a dent that relaxes alone.
     pub(crate) fn leaves_dent(&self, penetration_m: f64) -> bool {
-        self.law.damping_n_s_m > 0.0 && penetration_m > NO_DENT * self.clearance_m
+        let damped = match &self.law {
+            ContactLaw::Linear(law) => law.damping_n_s_m > 0.0,
+            ContactLaw::HuntCrossley(law) => law.damping_s_m > 0.0,
+        };
+        damped && penetration_m > NO_DENT * self.clearance_m
     }
 }
 
@@ -83,6 +93,8 @@ pub(crate) struct MachineState {
     pub(crate) races_rad_s: Vec<f64>,
     /// Forces of magnets that lag, control currents of poles.
     pub(crate) magnets: Vec<V2>,
+    /// Rates of the forces of amplifiers of second order.
+    pub(crate) magnet_slopes: Vec<V2>,
 }
 
 impl MachineState {
@@ -100,7 +112,7 @@ impl MachineState {
             .iter()
             .chain(&self.velocity)
             .chain(&self.races_rad_s)
-            .chain(self.magnets.iter().flatten());
+            .chain(self.magnets.iter().chain(&self.magnet_slopes).flatten());
         self.spin_rad_s.is_finite()
             && self.phase_rad.is_finite()
             && numbers.copied().all(f64::is_finite)
@@ -166,20 +178,19 @@ impl MachineSystem {
         let planes = params.planes.iter().map(|plane| PlaneData {
             centre_m: plane.centre_m,
             radius_m: plane.radius_m,
-            clearance_m: plane.contact.clearance_m,
-            law: match plane.contact.law {
-                ContactLaw::Linear(law) => law,
-                // Refused by the check.
-                ContactLaw::HuntCrossley(_) => LinearContact {
-                    stiffness_n_m: f64::NAN,
-                    damping_n_s_m: 0.0,
-                },
-            },
+            clearance_m: (plane.heat).map_or(plane.contact.clearance_m, |heat| {
+                heat.clearance_m(plane.contact.clearance_m, heat.start_rise_k)
+            }),
+            cold_m: plane.contact.clearance_m,
+            heat: plane.heat,
+            law: plane.contact.law,
+            stiffness_n_m: plane.contact.stiffness_n_m(),
             friction: plane.friction.sliding,
             sliding: plane.friction.sliding.coefficient(0.0),
             rolling: plane.friction.rolling_coefficient,
             race: (plane.race.as_ref())
                 .map(|race| Race::new(plane.radius_m + plane.contact.clearance_m, race)),
+            load_drag: plane.load_drag,
         });
         let (inverse_inertia, drive_torque_n_m) = match params.spin {
             SpinParams::Held => (0.0, 0.0),
@@ -231,6 +242,7 @@ impl MachineSystem {
                 .map(|p| p.race.map_or(0.0, |r| r.start_spin_rad_s))
                 .collect(),
             magnets: vec![V2::zeros(); self.caps_n.len()],
+            magnet_slopes: vec![V2::zeros(); self.caps_n.len()],
         })
     }
 
@@ -246,6 +258,20 @@ impl MachineSystem {
             }
             Channel::Rolling => (0.0, 0.0),
         }
+    }
+
+    /// Acceleration of a plane's race under sliding friction and load \[rad/s²\]; 0 for a bushing.
+    #[inline]
+    pub(crate) fn race_acceleration(
+        &self,
+        plane: usize,
+        spin: f64,
+        (sliding_n, load_n): (f64, f64),
+    ) -> f64 {
+        let data = &self.planes[plane];
+        let Some(race) = &data.race else { return 0.0 };
+        let drag_m = data.load_drag.map_or(0.0, |drag| drag.per_load_m(spin));
+        race.acceleration(spin, sliding_n) - drag_m * load_n / race.inertia_kg_m2
     }
 
     /// What the spins add to the speed that a channel holds.
@@ -313,13 +339,14 @@ impl MachineSystem {
 
     /// Rate of a plane's contact spring on the mobility there \[rad/s\].
     pub(crate) fn undamped_contact_rate_rad_s(&self, plane: usize) -> f64 {
-        (self.planes[plane].law.stiffness_n_m * self.contact(plane).mobility()).sqrt()
+        (self.planes[plane].stiffness_n_m * self.contact(plane).mobility()).sqrt()
     }
 
     /// The largest of them with their dampers \[rad/s\].
     pub(crate) fn contact_rate_rad_s(&self) -> f64 {
         let rates = (0..self.planes.len()).map(|p| {
-            let damping = self.planes[p].law.damping_n_s_m * self.contact(p).mobility();
+            let data = &self.planes[p];
+            let damping = data.law.by_rate_n_s_m(data.clearance_m) * self.contact(p).mobility();
             self.undamped_contact_rate_rad_s(p) + damping
         });
         rates.fold(0.0, f64::max)

@@ -1,5 +1,6 @@
 //! Scenes of a whole rotor: the same as one plane where there is no more, what their files say, what is written of them.
 
+mod bearings;
 mod files;
 mod modes;
 mod refusals;

@@ -1,7 +1,7 @@
 //! The verdicts as a table for people and as JSON for programs.
 
 use crate::report::plot::text::figures;
-use crate::run::figures::{Digits, Figure, Figures, Timing, Value};
+use crate::run::figures::{BearingFigures, Digits, Figure, Figures, Timing, Value};
 use crate::run::supervision::{Account, Supervision};
 use crate::run::verdict::{MachineResults, PolicyRun, Results, far_into_the_wall};
 use crate::run::verify::{Check, Verification};
@@ -14,6 +14,17 @@ use std::fmt::{Display, Write as _};
 
 /// A row of the table: name with unit, and the value as text.
 type Row<T> = (&'static str, fn(&T) -> String);
+
+/// Rows of bearings that have heat.
+const BEARING_FIGURES: &[Row<BearingFigures>] = &[
+    ("heat of the bearing [J]", |b| format!("{:.3}", b.heat_j)),
+    ("bearing warmer by [K]", |b| {
+        format!("{:.3}", b.temperature_rise_k)
+    }),
+    ("clearance at the end [µm]", |b| {
+        format!("{:.2}", 1e6 * b.clearance_m)
+    }),
+];
 
 /// Rows below those, where runs were checked.
 const CHECK_FIGURES: &[Row<Verification>] = &[
@@ -175,6 +186,9 @@ fn table(of: &str, runs: &[PolicyRun]) -> Table {
     add_figures(&mut table, Timing::ALL, runs, |r| &r.verdict.timing);
     add_rows(&mut table, SUPERVISION_FIGURES, runs, |r| {
         r.supervision.as_ref()
+    });
+    add_rows(&mut table, BEARING_FIGURES, runs, |r| {
+        r.verdict.figures.bearing.as_ref()
     });
     add_rows(&mut table, CHECK_FIGURES, runs, PolicyRun::checked);
     table

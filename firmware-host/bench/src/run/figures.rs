@@ -141,6 +141,9 @@ figures! {
     /// Energy-audit residual: energy from nowhere over energy turned over.
     energy_residual: f64 = |run| run.energy_residual
         => "energy-audit residual", "", 1.0, Power, Full;
+    /// How warm the bearing is, of a plane that has `retainer.heat`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    bearing: Option<BearingFigures> = |run| run.bearing;
     /// Method that integrated contact: `series`, `explicit` or `stiff`.
     method: &'static str = |run| run.method.name()
         => "method", "", 1.0, Fixed(0), Full;
@@ -158,6 +161,17 @@ figures! {
         => "ratio to real time", "", 1.0, Fixed(0), Full;
 }
 
+/// How warm a bearing is at the end.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct BearingFigures {
+    /// What it has lost by friction, damping and drag \[J\].
+    pub heat_j: f64,
+    /// Rise of its temperature over the surroundings \[K\].
+    pub temperature_rise_k: f64,
+    /// Its clearance \[m\].
+    pub clearance_m: f64,
+}
+
 /// A run at its end.
 pub(crate) struct Ended<'a> {
     outcome: Outcome,
@@ -166,6 +180,7 @@ pub(crate) struct Ended<'a> {
     energy_residual: f64,
     judge: &'a Judge,
     last: Snapshot,
+    bearing: Option<BearingFigures>,
     method: Method,
 }
 
@@ -186,6 +201,11 @@ impl<'a> Ended<'a> {
             energy_residual: rig.audit().residual(),
             judge,
             last: *last,
+            bearing: rig.warmth(plane).map(|warmth| BearingFigures {
+                heat_j: warmth.heat_j,
+                temperature_rise_k: warmth.rise_k,
+                clearance_m: warmth.clearance_m,
+            }),
             method: rig.method(),
         }
     }
@@ -222,6 +242,8 @@ impl Figures {
                 _ => None,
             },
             energy_residual: first.energy_residual,
+            // Each has its own.
+            bearing: None,
             method: first.method,
         })
     }

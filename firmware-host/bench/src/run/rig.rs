@@ -5,7 +5,7 @@ use crate::scene::Scene;
 use crate::scene::machine::MachineScene;
 use plant_model::energy::Audit;
 use plant_model::machine::params::MachineError;
-use plant_model::machine::{Machine, MachineInputs, MachineSnapshot};
+use plant_model::machine::{Machine, MachineInputs, MachineSnapshot, Warmth};
 use plant_model::{
     BuildError, Change, Inputs, Meters, Method, Options, Plant, PlantError, Snapshot, V2,
 };
@@ -34,6 +34,11 @@ pub(crate) trait Rig {
     fn normal_impulse_n_s(&self, plane: usize) -> f64;
     fn audit(&self) -> Audit;
     fn method(&self) -> Method;
+
+    /// How warm the bearing of a plane is, where that is modelled.
+    fn warmth(&self, _plane: usize) -> Option<Warmth> {
+        None
+    }
 
     /// Reads the axis of a whole rotor and the motion of its bending modes; nothing of one plane.
     fn read_axis(&self, _row: &mut AxisRow) {}
@@ -188,6 +193,10 @@ impl Rig for WholeRotor<'_> {
 
     fn audit(&self) -> Audit {
         self.machine.audit()
+    }
+
+    fn warmth(&self, plane: usize) -> Option<Warmth> {
+        self.machine.warmth(plane)
     }
 
     fn method(&self) -> Method {

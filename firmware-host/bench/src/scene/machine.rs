@@ -1,5 +1,6 @@
 //! A scene of a whole rotor: what a scene of one plane says, for each of its planes, and the rotor that they share.
 
+mod bearing;
 mod poles;
 mod refused;
 mod start;
@@ -157,7 +158,8 @@ impl Spec {
                     position_m,
                     force_max_n: magnet.force_max_n,
                     lag_s: magnet.lag_s,
-                    poles: poles(magnet, tables, &plane.text)?,
+                    lag_damping_ratio: magnet.lag_damping_ratio,
+                    poles: poles(magnet, &plane.text)?,
                 });
                 if magnet.negative_stiffness_n_m > 0.0 {
                     machine.supports.push(Support {
@@ -193,14 +195,6 @@ impl Spec {
                 levitated_alone: levitation.is_none() && machine.magnets.len() < 2,
             };
             let mut scene = plane.resolve(Some(&of))?;
-            if tables.run.method == MethodName::Series
-                && plane.friction.coefficient_at_speed.is_some()
-            {
-                let message = "has no power series in a whole rotor".to_owned();
-                let help = "take run.method = \"auto\" or \"explicit\", or friction that is the same at every speed";
-                let key = "friction.coefficient_at_speed";
-                return Err(plane.text.error_at_key(key, message, Some(help.to_owned())));
-            }
             // Noise of its own, and that of the file for the first.
             scene.seed =
                 (scene.seed).wrapping_add(0x9E37_79B9_7F4A_7C15_u64.wrapping_mul(index as u64));
@@ -212,6 +206,8 @@ impl Spec {
                 friction: scene.plant.friction,
                 stator: scene.plant.stator,
                 race: scene.plant.race,
+                load_drag: bearing::load_drag(&plane.tables),
+                heat: bearing::heat(&plane.tables),
             });
             magnet += usize::from(own.is_some());
             scenes.push(PlaneScene {
@@ -222,7 +218,9 @@ impl Spec {
         }
         let loads = self.loads(&scenes, &mut machine, &origin);
         let start = start(tables, text, &machine)?;
-        (machine.validate().and_then(|()| start.validate()))
+        (machine.validate())
+            .and_then(|()| machine.method(tables.run.method.into()).map(drop))
+            .and_then(|()| start.validate())
             .map_err(|error| refused(&error, self, &scenes))?;
         let mut warnings: Vec<String> = Vec::new();
         for warning in scenes.iter().flat_map(|plane| &plane.scene.warnings) {

@@ -4,6 +4,7 @@ use crate::scene::diagnostic::{SceneError, SceneText};
 use crate::scene::guess;
 use crate::scene::keys::{number, parameter};
 use crate::scene::plane_spec::PlaneSpec;
+use crate::scene::plant::hardening_key;
 use crate::scene::suggest::{Nominal, suggested};
 use plant_model::params::PlantParams;
 use supervisor::{Config, ConfigError, PARAMETERS};
@@ -19,7 +20,7 @@ pub(crate) fn nominal(plant: &PlantParams, spec: &PlaneSpec) -> Nominal {
         damping_n_s_m: plant.rotor.damping_n_s_m,
         clearance_m: plant.contact.clearance_m,
         contact_stiffness_n_m: plant.contact.stiffness_n_m(),
-        contact_hardens: contact.stiffness_n_mn.is_some(),
+        contact_hardens: hardening_key(contact).is_some(),
         contact_mass_kg: plant.contact_mass_kg(),
         restitution: contact.restitution,
         friction_coefficient: plant.friction.sliding.coefficient(0.0),
@@ -65,10 +66,7 @@ impl NominalKeys {
                 Some(_) => "rotor.damping_ratio",
                 None => "rotor.damping_n_s_m",
             },
-            contact_stiffness: match contact.stiffness_n_mn {
-                Some(_) => "contact.stiffness_n_mn",
-                None => "contact.stiffness_n_m",
-            },
+            contact_stiffness: hardening_key(contact).unwrap_or("contact.stiffness_n_m"),
         }
     }
 

@@ -70,6 +70,15 @@ impl Spec {
                 "magnet.poles",
                 (tables.magnet.as_ref()).is_some_and(|m| m.poles.is_some()),
             ),
+            (
+                "magnet.lag_damping_ratio",
+                (tables.magnet.as_ref()).is_some_and(|m| m.lag_damping_ratio.is_some()),
+            ),
+            (
+                "race.load_drag_m",
+                (tables.race.as_ref()).is_some_and(|race| race.load_drag_m.is_some()),
+            ),
+            ("retainer.heat", tables.retainer.heat.is_some()),
             ("sensor.position_m", tables.sensor.position_m.is_some()),
             (
                 "levitation.tilt",

@@ -3,6 +3,7 @@
 use crate::scene::diagnostic::{Given, SceneError, SceneText};
 use crate::scene::plane_spec::PlaneSpec;
 use crate::scene::tables::{ContactTable, FrictionTable, RingTable, SceneTables};
+use plant_model::contact::ball_bearing::{BallBearing, fitted_curve};
 use plant_model::contact::{damping_for_restitution, hunt_crossley};
 use plant_model::params::{
     ContactLaw, ContactParams, EllipseParams, FrictionParams, HuntCrossley, LinearContact,
@@ -119,11 +120,8 @@ fn law(file: &ContactTable, text: &SceneText) -> Result<ContactLaw, SceneError> 
     let refused = |key: &str, message: String, help: String| {
         Err::<ContactLaw, _>(text.error_at_key(key, message, Some(help)))
     };
-    let (linear, hardening) = (file.stiffness_n_m, file.stiffness_n_mn);
-    text.either(
-        Given::new("contact.stiffness_n_m", linear),
-        Given::new("contact.stiffness_n_mn", hardening),
-    )?;
+    let linear = file.stiffness_n_m;
+    let hardening = hardening(file, text)?;
     let (foreign, own) = match hardening {
         Some(_) => (
             &[("contact.damping_n_s_m", file.damping_n_s_m)][..],
@@ -143,10 +141,9 @@ fn law(file: &ContactTable, text: &SceneText) -> Result<ContactLaw, SceneError> 
         return refused(key, message, format!("remove it, or give contact.{own}"));
     }
     match (linear, hardening) {
-        (_, Some(stiffness_n_mn)) => Ok(HuntCrossley {
-            stiffness_n_mn,
-            exponent: file.exponent.unwrap_or(1.5),
+        (_, Some(law)) => Ok(HuntCrossley {
             damping_s_m: file.damping_s_m.unwrap_or(0.0),
+            ..law
         }
         .into()),
         (Some(stiffness_n_m), None) => Ok(LinearContact {
@@ -155,9 +152,97 @@ fn law(file: &ContactTable, text: &SceneText) -> Result<ContactLaw, SceneError> 
         }
         .into()),
         (None, None) => {
-            let help = "give stiffness_n_m (linear) or stiffness_n_mn (Hunt and Crossley)";
+            let help = "give stiffness_n_m (linear), stiffness_n_mn (Hunt and Crossley), balls (a ball bearing), or deflections_m and forces_n (a measured curve)";
             refused("contact", "has no stiffness".to_owned(), help.to_owned())
         }
+    }
+}
+
+/// Share of a force by which a fitted curve may miss it.
+const MISFIT: f64 = 0.1;
+
+/// A stiffness that grows with the depth, however it is given.
+fn hardening(file: &ContactTable, text: &SceneText) -> Result<Option<HuntCrossley>, SceneError> {
+    let refused = |key: &str, message: String, help: &str| {
+        Err(text.error_at_key(key, message, Some(help.to_owned())))
+    };
+    let given = [
+        ("contact.stiffness_n_m", file.stiffness_n_m.is_some()),
+        ("contact.stiffness_n_mn", file.stiffness_n_mn.is_some()),
+        ("contact.balls", file.balls.is_some()),
+        ("contact.deflections_m", file.deflections_m.is_some()),
+    ];
+    let mut stiff = given.iter().filter(|(_, given)| *given);
+    if let (Some((key, _)), Some((other, _))) = (stiff.next(), stiff.next()) {
+        let message = format!("given together with {other}, which says the same");
+        return refused(key, message, &format!("remove {key} or {other}"));
+    }
+    let by_other = file.balls.is_some() || file.deflections_m.is_some();
+    if by_other && file.exponent.is_some() {
+        let message = "follows from the balls or the curve".to_owned();
+        return refused("contact.exponent", message, "remove it");
+    }
+    if let Some(balls) = &file.balls {
+        let bearing = BallBearing {
+            balls: balls.count,
+            ball_diameter_m: balls.diameter_m,
+            contact_angle_rad: balls.contact_angle_deg.to_radians(),
+        };
+        return Ok(Some(hertz(bearing.stiffness_n_mn(), 1.5)));
+    }
+    let (deflections, forces) = match (&file.deflections_m, &file.forces_n) {
+        (Some(deflections), Some(forces)) => (&deflections.0, &forces.0),
+        (None, None) => {
+            let exponent = file.exponent.unwrap_or(1.5);
+            return Ok(file.stiffness_n_mn.map(|k| hertz(k, exponent)));
+        }
+        (Some(_), None) => {
+            let help = "give a force for each deflection";
+            return refused("contact.deflections_m", "needs forces_n".to_owned(), help);
+        }
+        (None, Some(_)) => {
+            let help = "give the deflections of these forces";
+            return refused("contact.forces_n", "needs deflections_m".to_owned(), help);
+        }
+    };
+    let Some(fitted) = fitted_curve(deflections, forces) else {
+        let message = format!(
+            "is no curve with forces_n: {} deflections, {} forces",
+            deflections.len(),
+            forces.len()
+        );
+        let help =
+            "give as many deflections as forces, at least two, all above 0 and not all alike";
+        return refused("contact.deflections_m", message, help);
+    };
+    let exponent = fitted.law.exponent;
+    if fitted.misfit > MISFIT || !(1.0..=3.0).contains(&exponent) {
+        let message = format!(
+            "is no power of the deflection: the best, {exponent:.2}, misses a force by {:.0} %",
+            100.0 * fitted.misfit
+        );
+        let help = "take out the internal clearance and the ends; a power from 1 to 3 is to miss no force by more than 10 %";
+        return refused("contact.forces_n", message, help);
+    }
+    Ok(Some(fitted.law))
+}
+
+/// The key by which a contact has a stiffness that grows with the depth.
+pub(crate) fn hardening_key(file: &ContactTable) -> Option<&'static str> {
+    let keys = [
+        ("contact.stiffness_n_mn", file.stiffness_n_mn.is_some()),
+        ("contact.balls", file.balls.is_some()),
+        ("contact.deflections_m", file.deflections_m.is_some()),
+    ];
+    let given = keys.into_iter().find(|(_, given)| *given)?;
+    Some(given.0)
+}
+
+fn hertz(stiffness_n_mn: f64, exponent: f64) -> HuntCrossley {
+    HuntCrossley {
+        stiffness_n_mn,
+        exponent,
+        damping_s_m: 0.0,
     }
 }
 

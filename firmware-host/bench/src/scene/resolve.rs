@@ -11,7 +11,7 @@ use crate::scene::limits::{damping_n_s_m, whirl_speed_m_s};
 use crate::scene::lint::{Told, slips, unseen, warnings};
 use crate::scene::nominal::{NominalKeys, config, nominal, overrides};
 use crate::scene::plane_spec::PlaneSpec;
-use crate::scene::plant::{plant, plant_of, refused};
+use crate::scene::plant::{hardening_key, plant, plant_of, refused};
 use crate::scene::policy_kind::PolicyKind;
 use crate::scene::spec::Spec;
 use crate::scene::state_space::state_space;
@@ -193,10 +193,7 @@ fn check_method(spec: &PlaneSpec, plant: &PlantParams) -> Result<(), SceneError>
     if spec.tables.run.method != MethodName::Series || plant.has_series() {
         return Ok(());
     }
-    let with = match plant.contact.law.linear() {
-        None => "contact.stiffness_n_mn",
-        Some(_) => "retainer.ellipticity",
-    };
+    let with = hardening_key(&spec.contact).unwrap_or("retainer.ellipticity");
     let message = format!("series does not go with {with}");
     let help = "take auto, explicit or stiff: this contact has no power series at the touch";
     Err((spec.text).error_at_key("run.method", message, Some(help.to_owned())))

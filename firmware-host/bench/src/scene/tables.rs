@@ -119,11 +119,21 @@ key_tables! {
         clearance_m: f64 [required "give the radial clearance in m, as 2e-4"], "m", Positive, "radial clearance c", "gap", "air_gap", "radial_clearance", "delta";
         stiffness_n_m: Option<f64> [or "–"], "N/m", Positive, "k_c of the linear contact; this or `stiffness_n_mn`", "k", "k_c";
         damping_n_s_m: Option<f64> [or "0"], "N s/m", NotNegative, "d_c; excludes `restitution`", "d", "d_c";
+        balls: Option<BallsTable> [or "–"], "", ANY, "a [ball bearing](../theory/model.md#balls) in the place of a stiffness: it gives k_h, with n = 1.5", "ball_bearing";
+        deflections_m: Option<Numbers> [or "–"], "m", Positive, "a measured curve in the place of a stiffness: k_h·δⁿ is fitted to it; needs `forces_n`", "curve";
+        forces_n: Option<Numbers> [or "–"], "N", Positive, "its forces";
         stiffness_n_mn: Option<f64> [or "–"], "N/mⁿ", Positive, "k_h of [Hunt and Crossley's contact](../theory/model.md#hunt-and-crossleys-law), which `exponent`, `damping_s_m` and `restitution_speed_m_s` need", "k_h", "hertz";
         exponent: Option<f64> [or "1.5"], "1", Within(1.0, 3.0), "n", "n";
         damping_s_m: Option<f64> [or "0"], "s/m", NotNegative, "λ; excludes `restitution`", "lambda";
         restitution: Option<f64> [or "–"], "1", PositiveUpTo(1.0), "e; gives d_c by [(2.12)](../theory/model.md#restitution-and-contact-damping) with the reduced mass", "e", "cor";
         restitution_speed_m_s: Option<f64> [or "–"], "m/s", Within(1e-9, 1e6), "impact speed that `restitution` belongs to, by (2.34); required with it for Hunt and Crossley's contact";
+    }
+
+    /// What a ball bearing's stiffness follows from.
+    BallsTable {
+        count: u32 [required], "", Within(3.0, 1000.0), "Z, of one row", "number", "z";
+        diameter_m: f64 [required], "m", PositiveUpTo(1.0), "D of a ball", "d";
+        contact_angle_deg: f64 [= 0.0], "°", Within(0.0, 89.0), "α", "angle", "alpha";
     }
 
     FrictionTable {
@@ -137,17 +147,29 @@ key_tables! {
         centre_offset_m: Pair [= Pair::default()], "m", Elsewhere("shorter than the clearance"), "centre of the retainer bearing as seen from the centre of magnets and sensors; see [centres](#centres)", "misalignment";
         ellipticity: f64 [= 0.0], "1", Within(0.0, 0.2), "ε of a bearing [out of round](../theory/model.md#out-of-round): semi-axes c·(1 ± ε); only for a rigid stator without a race", "ovality";
         long_axis_deg: Option<f64> [or "0"], "°", Finite, "direction of the longer axis, counter-clockwise from x; needs `ellipticity`";
+        heat: Option<HeatTable> [or "stays as it is"], "", ANY, "what its losses do to the bearing; with `[[plane]]` only", "thermal", "temperature";
+    }
+
+    /// One mass that all losses of a bearing warm.
+    HeatTable {
+        capacity_j_k: f64 [required], "J/K", Positive, "heat capacity C", "c";
+        conductance_w_k: f64 [= 0.0], "W/K", NotNegative, "G to the surroundings", "g";
+        expansion_m_k: f64 [= 0.0], "m/K", Within(-1e-4, 1e-4), "growth of the radial clearance with the rise of temperature; negative: it closes", "growth";
+        start_rise_k: f64 [= 0.0], "K", Within(-1e3, 1e4), "rise over the surroundings at the start";
     }
 
     RaceTable {
         inertia_kg_m2: f64 [required], "kg m²", Positive, "J_i", "j";
         drag_n_m_s: f64 [= 0.0], "N m s", NotNegative, "b, viscous drag of the bearing", "b";
         start_frequency_hz: f64 [= 0.0], "Hz", Finite, "Ω_i/2π at the start", "frequency", "speed", "rpm";
+        load_drag_m: Option<f64> [or "none"], "m", NotNegative, "κ: the moment against the race's spin for a newton of load, the bearing's coefficient of friction times half its bore; with `[[plane]]` only", "kappa";
+        load_drag_from_hz: f64 [= 1.0], "Hz", Positive, "spin from which on that drag has its size";
     }
 
     MagnetTable {
         force_max_n: f64 [required "give the force cap in N"], "N", Positive, "cap on the length of the force vector", "force", "max_force", "cap", "f_max";
         lag_s: f64 [= 0.0], "s", NotNegative, "amplifier lag τ", "tau", "time_constant", "bandwidth";
+        lag_damping_ratio: Option<f64> [or "first order"], "1", PositiveUpTo(100.0), "ζ of an amplifier of second order, τ²·f̈ + 2ζτ·ḟ + f = command; with `[[plane]]` only, and needs `lag_s`", "order";
         negative_stiffness_n_m: f64 [= 0.0], "N/m", Because(0.0, 1e12, "that it is negative is in the name"), "subtracted from the shaft stiffness, also under `passive`", "k_s", "stiffness", "ks";
         axis_force_max_n: Option<f64> [or "none"], "N", Positive, "cap on each component, after the cap on the vector; the supervisor is told";
         slew_n_s: Option<f64> [or "none"], "N/s", Positive, "fastest change of each component, before the lag: the voltage limit", "slew_rate", "rate";

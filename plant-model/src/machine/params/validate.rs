@@ -23,9 +23,9 @@ pub(in crate::machine) fn check(
     })
 }
 
-const POSITIVE: &str = "a finite number greater than 0";
-const NOT_NEGATIVE: &str = "a finite number, 0 or greater";
-const FINITE: &str = "a finite number";
+pub(super) const POSITIVE: &str = "a finite number greater than 0";
+pub(super) const NOT_NEGATIVE: &str = "a finite number, 0 or greater";
+pub(super) const FINITE: &str = "a finite number";
 
 /// A symmetric matrix, row by row, or nothing.
 fn symmetric(
@@ -182,8 +182,10 @@ impl MachinePlane {
                 not_negative("contact.damping_n_s_m", law.damping_n_s_m)?;
             }
             ContactLaw::HuntCrossley(law) => {
-                let only = "a linear contact law: no other has a power series at the touch";
-                check(false, field("contact.law"), law.exponent, only)?;
+                positive("contact.stiffness_n_mn", law.stiffness_n_mn)?;
+                let (n, rule) = (law.exponent, "a number from 1 to 3");
+                check((1.0..=3.0).contains(&n), field("contact.exponent"), n, rule)?;
+                not_negative("contact.damping_s_m", law.damping_s_m)?;
             }
         }
         match self.friction.sliding {
@@ -226,6 +228,19 @@ impl MachinePlane {
                 inner.validate_as(&field, "stator.inner")?;
                 outer.validate_as(&field, "stator.outer")?;
             }
+        }
+        if let Some(heat) = &self.heat {
+            heat.validate(field)?;
+        }
+        if let Some(drag) = &self.load_drag {
+            drag.validate(field)?;
+            let rule = "a race, which it brakes";
+            check(
+                self.race.is_some(),
+                field("load_drag.arm_m"),
+                drag.arm_m,
+                rule,
+            )?;
         }
         let Some(race) = &self.race else {
             return Ok(());
@@ -318,6 +333,12 @@ impl MachineParams {
                 POSITIVE,
             )?;
             check(lag >= 0.0, format!("magnets[{i}].lag_s"), lag, NOT_NEGATIVE)?;
+            if let Some(ratio) = magnet.lag_damping_ratio {
+                let field = format!("magnets[{i}].lag_damping_ratio");
+                let rule = "more than 0, with a lag and without poles";
+                let alone = lag > 0.0 && magnet.poles.is_none();
+                check(ratio > 0.0 && alone, field, ratio, rule)?;
+            }
             if let Some(poles) = &magnet.poles {
                 let rule =
                     "more than 0: it is the time constant with which poles' currents are set";

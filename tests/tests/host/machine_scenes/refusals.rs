@@ -74,12 +74,6 @@ const CASES: &[(&str, &str, &str, &str)] = &[
     ),
     (
         "contact_radius_m = 0.03",
-        "contact_radius_m = 0.03\ncontact = { clearance_m = 2e-4, stiffness_n_mn = 1e13 }",
-        "plane[1].contact.stiffness_n_mn",
-        "a linear contact law",
-    ),
-    (
-        "contact_radius_m = 0.03",
         "contact_radius_m = 0.03\nretainer = { ellipticity = 0.1 }",
         "plane[1].retainer.ellipticity",
         "a round bore",

@@ -161,6 +161,7 @@ fn a_map_of_whole_samples_changes_nothing() {
         position_m,
         force_max_n: 500.0,
         lag_s,
+        lag_damping_ratio: None,
         poles: None,
     };
     params.magnets = vec![magnet(-0.12, 2e-4), magnet(0.14, 0.0)];

@@ -24,6 +24,7 @@ fn rotor(modes: usize, poles: bool) -> MachineParams {
         position_m,
         force_max_n: 500.0,
         lag_s: 1.6e-4,
+        lag_damping_ratio: None,
         poles: poles.then_some(Poles {
             bias_current_a: 4.0,
             current_max_a: 4.0,

@@ -20,6 +20,7 @@ fn magnet(position_m: f64, poles: Option<Poles>) -> MachineMagnet {
         position_m,
         force_max_n: CAP_N,
         lag_s: LAG_S,
+        lag_damping_ratio: None,
         poles,
     }
 }

@@ -26,6 +26,8 @@ pub(super) fn plane(position_m: f64, share: f64) -> MachinePlane {
         },
         stator: StatorParams::Rigid,
         race: None,
+        load_drag: None,
+        heat: None,
     }
 }
 

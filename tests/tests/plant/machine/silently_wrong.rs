@@ -29,6 +29,8 @@ fn case(bending_modes: usize, stiffness_n_m: f64) -> (MachineParams, Reference) 
         },
         stator: StatorParams::Rigid,
         race: None,
+        load_drag: None,
+        heat: None,
     };
     let rigid = RigidRotor {
         mass_kg: 10.0,

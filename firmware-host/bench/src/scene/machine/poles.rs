@@ -1,24 +1,14 @@
 //! Magnets with poles.
 
 use crate::scene::diagnostic::{SceneError, SceneText};
-use crate::scene::tables::{MagnetTable, SceneTables};
-use crate::scene::values::MethodName;
+use crate::scene::tables::MagnetTable;
 use plant_model::machine::params::{Coil, Poles};
 
 /// Poles of a magnet, where it has them.
-pub(super) fn poles(
-    magnet: &MagnetTable,
-    tables: &SceneTables,
-    text: &SceneText,
-) -> Result<Option<Poles>, SceneError> {
+pub(super) fn poles(magnet: &MagnetTable, text: &SceneText) -> Result<Option<Poles>, SceneError> {
     let Some(written) = &magnet.poles else {
         return Ok(None);
     };
-    if tables.run.method == MethodName::Series {
-        let message = "magnets with poles have no power series".to_owned();
-        let help = "take auto or explicit".to_owned();
-        return Err(text.error_at_key("run.method", message, Some(help)));
-    }
     let of_poles = [(
         "magnet.negative_stiffness_n_m",
         magnet.negative_stiffness_n_m > 0.0,

@@ -2,6 +2,7 @@
 
 use super::PlaneScene;
 use crate::scene::diagnostic::SceneError;
+use crate::scene::plant::hardening_key;
 use crate::scene::spec::Spec;
 use plant_model::machine::params::MachineError;
 
@@ -26,7 +27,20 @@ pub(super) fn refused(error: &MachineError, spec: &Spec, planes: &[PlaneScene]) 
         ("planes", "position_m") => at(&format!("plane[{index}].position_m")),
         ("planes", "radius_m") => of_plane(index, "rotor.contact_radius_m"),
         ("planes", "centre_m") => of_plane(index, "retainer.centre_offset_m"),
-        ("planes", "contact.law") => of_plane(index, "contact.stiffness_n_mn"),
+        ("run.method", _) => {
+            let message = format!("expected {}", error.expected);
+            text.error_at_key("run.method", message, None)
+        }
+        ("planes", "contact.stiffness_n_mn") => {
+            let contact = spec.planes().ok().and_then(|planes| {
+                let plane = planes.into_iter().nth(index)?;
+                hardening_key(&plane.contact)
+            });
+            of_plane(index, contact.unwrap_or("contact.stiffness_n_mn"))
+        }
+        ("planes", "load_drag.arm_m") => of_plane(index, "race.load_drag_m"),
+        ("planes", "load_drag.still_rad_s") => of_plane(index, "race.load_drag_from_hz"),
+        ("planes", key) if key.starts_with("heat.") => of_plane(index, &format!("retainer.{key}")),
         ("planes", "stator.ellipticity") => of_plane(index, "retainer.ellipticity"),
         ("planes", key) => of_plane(index, key),
         ("probes", _) => {
