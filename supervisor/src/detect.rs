@@ -1,6 +1,7 @@
 //! Approach and contact: where the rotor is against the clearance, and whether contact can still be
 //! avoided.
 
+use crate::beside::Tilting;
 use crate::coeffs::Coeffs;
 use crate::estimate::{Contact, Motion};
 use crate::scalar::Scalar;
@@ -93,6 +94,7 @@ impl Detector {
         (motion, beside): (&Motion<S>, S),
         (touched, left): (bool, bool),
         (cap, margin): (S, S),
+        tilting: Option<&Tilting<S>>,
         coeffs: &Coeffs<S>,
     ) -> ContactEstimate<S> {
         let per_radius = motion.position.inverse_length();
@@ -111,7 +113,12 @@ impl Detector {
             unavoidable: false,
         };
         let outward = contact.radial_speed - margin;
-        let alarm = outward > S::ZERO && !contact.stops(outward, cap, S::ONE, coeffs);
+        let mut alarm = outward > S::ZERO && !contact.stops(outward, cap, S::ONE, coeffs);
+        if let Some(tilting) = tilting
+            && alarm
+        {
+            alarm = !contact.curls(motion, tilting, (margin, cap, S::ONE), coeffs);
+        }
         self.alarmed = if alarm {
             self.alarmed.saturating_add(1)
         } else {
@@ -127,6 +134,28 @@ impl Detector {
 }
 
 impl<S: Scalar> ContactEstimate<S> {
+    /// Whether nutation keeps the rotor off the wall: it goes round a centre that a share of this force stops in time.
+    #[inline(never)]
+    pub(crate) fn curls(
+        &self,
+        motion: &Motion<S>,
+        tilting: &Tilting<S>,
+        (margin, force, share): (S, S, S),
+        coeffs: &Coeffs<S>,
+    ) -> bool {
+        let Some((centre, velocity, distance)) = tilting.centre(motion) else {
+            return false;
+        };
+        let normal = centre.direction();
+        let about = Self {
+            radius: centre.dot(normal),
+            reach: self.reach - distance,
+            ..*self
+        };
+        let outward = (velocity.dot(normal) - margin).max(S::ZERO);
+        about.reach > about.radius && about.stops(outward, force, share, coeffs)
+    }
+
     /// Whether a share of what this force inwards has over load and magnets' pull, from when it can act, stops a rotor of
     /// this speed before the wall, or before where the pull is stronger: v² against twice the work up to there, the shaft's
     /// with it.

@@ -135,6 +135,17 @@ impl<S: Scalar> Observer<S> {
         (free, S::ZERO)
     }
 
+    /// Takes in, before the tick that it comes in, a speed that the rest of the rotor gives evenly over it: half of the way
+    /// that a tick makes of it is not gone.
+    #[inline]
+    pub(crate) fn push(&mut self, gained: Vec2<S>, wall: Contact, coeffs: &Coeffs<S>) {
+        if wall != Contact::Resting {
+            let m = &mut self.motion;
+            m.velocity = m.velocity + gained;
+            m.position = m.position - gained * (coeffs.tick * S::from_f32(0.5));
+        }
+    }
+
     /// Coasts over ticks that were missed: nobody commanded anything new meanwhile, and nobody measured. What the sample
     /// after them says of the velocity it says of all of them: with the gain for one tick, gaps that come again and again
     /// would make the estimate swing.
@@ -218,6 +229,11 @@ impl<S: Scalar> Observer<S> {
         } else {
             self.motion.velocity
         }
+    }
+
+    /// The same where it is known by more than one sample.
+    pub(crate) fn known_velocity(&self) -> Option<Vec2<S>> {
+        (self.started && !self.motion.fresh).then_some(self.motion.velocity)
     }
 
     /// Force that acts.

@@ -48,8 +48,8 @@
 //! ```
 //!
 //! Files, each importing only from those above it: `scalar`, `product`, `q`, `math`, `vec2`, `signal`, `config`, `coeffs`,
-//! `spin`, `unbalance`, `innovation`, `reading`, `stuck`, `guard`, `actuator_monitor`, `estimate`, `detect`, `impact`, `classify`, `phase`, `trust`, `law`, `limit`, `handover`, `severity`,
-//! `recorder`, `per_unit`, `supervisor`, `self_test`, `watch`, `log_format`.
+//! `spin`, `unbalance`, `innovation`, `reading`, `stuck`, `guard`, `actuator_monitor`, `estimate`, `beside`, `detect`, `impact`, `classify`, `phase`, `trust`, `law`, `limit`, `handover`, `severity`,
+//! `recorder`, `per_unit`, `supervisor`, `rotor`, `self_test`, `watch`, `log_format`.
 
 // Unconditional: under `cfg(test)` std's own methods would silently replace micromath's.
 #![no_std]
@@ -57,6 +57,7 @@
 #![warn(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod actuator_monitor;
+mod beside;
 mod classify;
 mod coeffs;
 mod config;
@@ -77,6 +78,7 @@ mod product;
 mod q;
 mod reading;
 mod recorder;
+mod rotor;
 mod scalar;
 mod self_test;
 mod severity;
@@ -94,6 +96,7 @@ pub use config::{Config, ConfigError, CoreError, NotRepresentable, PARAMETERS, P
 pub use per_unit::{Core, Prepared};
 pub use q::{AccumulatorQ, Q};
 pub use recorder::{Entry, PER_UNIT, QueuedEvent, RECORD_TRIGGERS, RECORD_VERSION, Record, crc_of};
+pub use rotor::{Place, Rotor, RotorCommand, Shaft, ShaftError};
 pub use scalar::{Accumulator, Scalar};
 pub use self_test::{SelfTest, self_test};
 pub use signal::{

@@ -1,5 +1,6 @@
 //! The tick, per unit: its body reads as the list of files.
 
+use crate::beside::Beside;
 use crate::classify::Classifier;
 use crate::coeffs::{Coeffs, Scaling};
 use crate::config::{Config, CoreError, NotRepresentable};
@@ -136,8 +137,23 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
     /// ticks.
     #[inline]
     pub fn tick(&mut self, sample: &CoreSample<S>) -> CoreCommand<S> {
+        self.tick_beside(sample, &())
+    }
+
+    /// The same of a plane that knows what is beside it.
+    #[inline]
+    pub(crate) fn tick_beside(
+        &mut self,
+        sample: &CoreSample<S>,
+        beside: &impl Beside<S>,
+    ) -> CoreCommand<S> {
+        let tilting = beside.tilting();
         let coeffs = &self.coeffs;
         let pinned = matches!(self.phase, Phase::Pinned { .. });
+        if let Some(tilting) = tilting {
+            let gained = tilting.gained(coeffs.tick);
+            (self.observer).push(gained, self.detector.wall(pinned), coeffs);
+        }
         // An axis that does not track its command is as good as lost.
         let status = sample.status | self.observer.monitor.lost(sample.status);
         let estimated = || {
@@ -158,13 +174,14 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
         let (position, actuator) = (reading.position(), reading.actuator());
         let touch = self.detector.sample(position, coeffs);
         let wall = self.detector.wall(pinned);
-        let (motion, beside) = (self.observer).advance(position, spin, wall, actuator, coeffs);
+        let (motion, off_axis) = (self.observer).advance(position, spin, wall, actuator, coeffs);
         let envelope = ForceEnvelope::new(&self.budget, actuator.axes, coeffs);
         let margin = self.trust.margin;
         let contact = (self.detector).contact_estimate(
-            (&motion, beside),
+            (&motion, off_axis),
             touch,
             (envelope.cap, margin),
+            tilting,
             coeffs,
         );
         let made_up = || match wall {
@@ -191,8 +208,14 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
             if !contact.touching {
                 ahead = Impact::ahead(&motion, contact.radius, &speed);
                 let beyond = (speed.value - margin).max(S::ZERO);
-                calm =
-                    flies && contact.stops(beyond, envelope.cap, S::from_f32(CALM_SHARE), coeffs);
+                let share = S::from_f32(CALM_SHARE);
+                calm = flies && contact.stops(beyond, envelope.cap, share, coeffs);
+                if let Some(tilting) = tilting
+                    && flies
+                    && !calm
+                {
+                    calm = contact.curls(&motion, tilting, (margin, envelope.cap, share), coeffs);
+                }
             }
         }
         let patience = (calm, self.readiness.ready(), judged);
@@ -200,8 +223,16 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
         self.phase = phase;
         let mode = phase.mode();
 
+        let led;
+        let acted_on = match tilting {
+            Some(tilting) if phase.is_engaged() => {
+                led = tilting.ahead(&motion, coeffs);
+                &led
+            }
+            _ => &motion,
+        };
         let view = View {
-            motion: &motion,
+            motion: acted_on,
             contact: &contact,
             speed: &speed,
             ahead: ahead.as_ref(),
@@ -336,6 +367,18 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
             self.observer.forget();
             self.classifier.forget();
         }
+    }
+
+    /// Velocity of the axis; `None` where it is not known by more than one sample.
+    #[inline]
+    pub(crate) fn velocity(&self) -> Option<Vec2<S>> {
+        self.observer.known_velocity()
+    }
+
+    /// Force that acts now.
+    #[inline]
+    pub(crate) fn delivered(&self) -> Vec2<S> {
+        self.observer.delivered()
     }
 
     /// The units of samples and commands.

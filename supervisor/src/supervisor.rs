@@ -1,5 +1,6 @@
 //! The supervisor in SI units and `f32`: the core behind the one conversion.
 
+use crate::beside::Beside;
 use crate::config::{Config, ConfigError};
 use crate::per_unit::{Core, Prepared};
 use crate::recorder::{QueuedEvent, Record};
@@ -8,7 +9,7 @@ use crate::signal::{Command, Mode, Report, Sample, Status};
 /// Supervisor of one bearing plane with a flight record of `RECORD` ticks (a power of two).
 #[derive(Debug, Clone)]
 pub struct Supervisor<const RECORD: usize = 512> {
-    core: Core<f32, RECORD>,
+    pub(crate) core: Core<f32, RECORD>,
 }
 
 impl<const RECORD: usize> Supervisor<RECORD> {
@@ -40,9 +41,15 @@ impl<const RECORD: usize> Supervisor<RECORD> {
 
     /// One tick: total and bounded; see [`Core::tick`].
     pub fn tick(&mut self, sample: &Sample) -> Command {
+        self.tick_beside(sample, &())
+    }
+
+    /// The same of a plane that knows what is beside it.
+    #[inline]
+    pub(crate) fn tick_beside(&mut self, sample: &Sample, beside: &impl Beside<f32>) -> Command {
         let per_unit = self.core.scaling().sample(sample);
         let levitation = per_unit.levitation;
-        let command = self.core.tick(&per_unit);
+        let command = self.core.tick_beside(&per_unit, beside);
         let mut newtons = self.core.scaling().command(&command);
         // Transparent means bit for bit: what the core left alone does not come back from per unit. A lost axis
         // gets nothing, also where a command is so small that per unit it is nothing. (Scaled as a whole before:

@@ -1,6 +1,6 @@
 //! What the Cortex-M images share, and the bytes in which the host talks to them.
 //!
-//! The host needs [`wire`], [`line`](mod@line), [`two_planes`] and [`under_test`]; everything else is built for a target without an
+//! The host needs [`wire`], [`line`](mod@line) and [`under_test`]; everything else is built for a target without an
 //! operating system only.
 
 #![cfg_attr(target_os = "none", no_std)]
@@ -8,7 +8,6 @@
 pub mod line;
 #[cfg(target_os = "none")]
 mod on_target;
-pub mod two_planes;
 pub mod under_test;
 pub mod wire;
 

@@ -1,10 +1,9 @@
 //! The supervisors that the images run, one for each kind of number.
 
-use crate::two_planes::{PairCommand, TwoPlanes};
 use crate::wire::{self, CommandBits, Hash, SampleBits};
 use supervisor::{
-    Command, Config, Core, CoreCommand, CoreSample, Mode, Prepared, Q, Sample, Supervisor,
-    self_test,
+    Command, Config, Core, CoreCommand, CoreSample, Mode, Place, Prepared, Q, Rotor, RotorCommand,
+    Sample, Shaft, Supervisor, self_test,
 };
 
 /// Ticks of the flight record in floats. Host and image must agree: the tick at which a record freezes is part of
@@ -18,8 +17,8 @@ pub type Float = Supervisor<RECORD>;
 /// Fixed point per unit: the core alone, behind whatever converts there.
 pub type Fixed = Core<Q, SHORT_RECORD>;
 
-/// Floats in SI, one for each of two bearing planes.
-pub type Pair = TwoPlanes<RECORD>;
+/// Floats in SI, of a rotor in two bearing planes.
+pub type Pair = Rotor<RECORD>;
 
 /// What can be ticked, and its ticks counted.
 pub trait Ticked: Sized {
@@ -147,23 +146,23 @@ impl UnderTest for Float {
 impl Ticked for Pair {
     const RAM_BYTES: usize = size_of::<Self>() - 2 * Core::<f32, RECORD>::RECORDER_BYTES;
     type Sample = [Sample; 2];
-    type Command = PairCommand;
+    type Command = RotorCommand;
 
     fn self_test() -> bool {
         self_test::<f32>()
     }
     fn new(config: &Config) -> Option<Self> {
-        Self::new(&[*config; 2]).ok()
+        Self::new(&shaft(config), &[*config; 2]).ok()
     }
     #[inline(always)]
-    fn step(&mut self, samples: &[Sample; 2]) -> PairCommand {
+    fn step(&mut self, samples: &[Sample; 2]) -> RotorCommand {
         self.tick(samples)
     }
     fn sample(bits: &SampleBits) -> [Sample; 2] {
         let sample = wire::sample_of_bits(bits);
         [sample, half_a_turn(&sample)]
     }
-    fn mode_of(command: &PairCommand) -> Mode {
+    fn mode_of(command: &RotorCommand) -> Mode {
         let [first, _] = command.planes;
         first.mode
     }
@@ -172,6 +171,23 @@ impl Ticked for Pair {
             while self.plane(end).next_event().is_some() {}
         }
         self.collect(|_, _| ());
+    }
+}
+
+/// A gyroscopic rotor whose impacts at either end move the mass of this configuration.
+pub fn shaft(config: &Config) -> Shaft {
+    let (mass_kg, arm_m) = (2.0 * config.mass_kg, 0.2);
+    let end = |place_m: f32| Place {
+        retainer_m: place_m,
+        sensor_m: place_m,
+        magnet_m: 0.8 * place_m,
+    };
+    let transverse = mass_kg * arm_m * arm_m;
+    Shaft {
+        mass_kg,
+        transverse_inertia_kg_m2: transverse,
+        polar_inertia_kg_m2: 0.8 * transverse,
+        places: [end(-arm_m), end(arm_m)],
     }
 }
 

@@ -34,7 +34,7 @@
 //! ```
 //!
 //! Rooms, each importing only from those above it: `campaign`, `machines`, `accuracy`, `paper`, `overloads`, `harm`,
-//! `trials`, `unseen_machines`, `loop_rates`, `sensitivity`, `on_target`.
+//! `trials`, `unseen_machines`, `whole_rotors`, `loop_rates`, `sensitivity`, `on_target`.
 
 #![forbid(unsafe_code)]
 #![warn(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
@@ -50,6 +50,7 @@ pub mod paper;
 pub mod sensitivity;
 pub mod trials;
 pub mod unseen_machines;
+pub mod whole_rotors;
 
 use campaign::Study;
 
@@ -94,5 +95,10 @@ pub const STUDIES: &[Study] = &[
         name: "unseen-machines",
         about: "the catalogue on machines that nothing was tuned on, by how late their forces come",
         run: unseen_machines::study,
+    },
+    Study {
+        name: "whole-rotors",
+        about: "the supervisor of both planes against levitation alone on rotors drawn at random: rigid, gyroscopic, flexible",
+        run: whole_rotors::study::study,
     },
 ];

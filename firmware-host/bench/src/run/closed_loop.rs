@@ -8,7 +8,7 @@ use self::bench::Bench;
 use self::station::Station;
 use crate::device::loads::Loads;
 use crate::device::whole_levitation::WholeLevitation;
-use crate::run::controller::{Controller, controller, controller_below};
+use crate::run::controller::{Controller, controller, controller_of_plane};
 use crate::run::figures::Figures;
 use crate::run::rig::{OnePlane, WholeRotor};
 use crate::run::trace::{AxisRow, ReadOut, Recorder, Trace};
@@ -209,10 +209,11 @@ pub fn record_machine<'a>(
         to_decision: false,
         rigour,
     };
-    let below = match scene.levitation {
-        Some(_) => controller_below,
-        None => controller,
+    let supervisor = match kind {
+        PolicyKind::Supervisor => scene.supervisor(),
+        _ => None,
     };
+    let whole = (scene.levitation.is_some(), supervisor.is_some());
     let common = scene.common();
     let rig = WholeRotor::new(scene, options(common, rigour))?;
     let levitation = (scene.levitation.as_ref())
@@ -220,7 +221,8 @@ pub fn record_machine<'a>(
     let mut recorders_of = recorders.planes.into_iter();
     let mut stations = Vec::new();
     for plane in &scene.planes {
-        let controller = below(kind, &plane.scene).ok_or(RunError::Incomplete { policy })?;
+        let controller = controller_of_plane(kind, &plane.scene, whole);
+        let controller = controller.ok_or(RunError::Incomplete { policy })?;
         stations.push(Station::new(&plane.scene, controller, recorders_of.next()));
     }
     let loads = scene
@@ -234,6 +236,7 @@ pub fn record_machine<'a>(
         (loads.collect(), scene.edges()),
     );
     (bench.levitation, bench.axis) = (levitation, recorders.axis);
+    bench.supervisor = supervisor;
     bench.ride(task, on_tick)
 }
 

@@ -14,6 +14,15 @@ pub trait Controller: core::fmt::Debug {
     /// The force that answers a sample, from what firmware has seen; a reference may look at the truth.
     fn command(&mut self, seen: &Seen, truth: &Snapshot) -> Force;
 
+    /// What the supervisor of a whole rotor is to be told of this plane; its answer comes by [`Self::answered`] before
+    /// [`Self::command`]. `None` of who has nobody to ask.
+    fn ask(&mut self, _seen: &Seen) -> Option<Sample> {
+        None
+    }
+
+    /// The answer.
+    fn answered(&mut self, _command: Command) {}
+
     /// What a levitation controller of the whole rotor is to do about its integrators.
     fn hint(&self) -> IntegratorHint {
         IntegratorHint::Run
@@ -57,21 +66,28 @@ pub struct Seen {
 /// The controller of a policy, set up for a scene; `None` where the scene lacks what it needs (which [`Scene::load`] refuses).
 pub fn controller(kind: PolicyKind, scene: &Scene) -> Option<Box<dyn Controller>> {
     match scene.state_space {
-        Some(_) => controller_below(kind, scene),
-        None => controller_over(kind, scene, own_levitation(scene)),
+        Some(_) => controller_over(kind, scene, (Some(Passing), true)),
+        None => controller_over(kind, scene, (own_levitation(scene), true)),
     }
 }
 
-/// As [`controller`], of a plane of a rotor that is levitated as a whole.
-pub(crate) fn controller_below(kind: PolicyKind, scene: &Scene) -> Option<Box<dyn Controller>> {
-    controller_over(kind, scene, Some(Passing))
+/// As [`controller`], of a plane of a rotor, which as a whole may be levitated and may be supervised.
+pub(crate) fn controller_of_plane(
+    kind: PolicyKind,
+    scene: &Scene,
+    (levitated, supervised): (bool, bool),
+) -> Option<Box<dyn Controller>> {
+    match levitated {
+        true => controller_over(kind, scene, (Some(Passing), !supervised)),
+        false => controller_over(kind, scene, (own_levitation(scene), !supervised)),
+    }
 }
 
-/// The controller of a policy over whoever levitates, where somebody does.
+/// The controller of a policy over whoever levitates, where somebody does; `own`: with a supervisor of its own.
 fn controller_over<L: Levitate + Controller + 'static>(
     kind: PolicyKind,
     scene: &Scene,
-    levitation: Option<L>,
+    (levitation, own): (Option<L>, bool),
 ) -> Option<Box<dyn Controller>> {
     let force_max_n = cap_n(scene);
     Some(match kind {
@@ -90,8 +106,11 @@ fn controller_over<L: Levitate + Controller + 'static>(
         }
         PolicyKind::Levitation => Box::new(levitation?),
         PolicyKind::Supervisor => {
-            let supervisor = Supervisor::new(&scene.supervisor?).ok()?;
-            Box::new(Supervised::new(Box::new(supervisor), Box::new(levitation?)))
+            let supervisor: Option<Box<dyn Supervise>> = match own {
+                true => Some(Box::new(Supervisor::new(&scene.supervisor?).ok()?)),
+                false => None,
+            };
+            Box::new(Supervised::new(supervisor, Box::new(levitation?)))
         }
     })
 }
@@ -102,7 +121,7 @@ pub fn supervised(scene: &Scene, supervisor: Box<dyn Supervise>) -> Option<Box<d
         Some(_) => Box::new(Passing),
         None => Box::new(own_levitation(scene)?),
     };
-    Some(Box::new(Supervised::new(supervisor, levitation)))
+    Some(Box::new(Supervised::new(Some(supervisor), levitation)))
 }
 
 /// Who levitates: a controller of the plane's own, or whoever levitates the whole rotor.
@@ -236,19 +255,26 @@ impl Supervise for Supervisor {
 /// A supervisor with the levitation controller behind it.
 #[derive(Debug)]
 struct Supervised {
-    supervisor: Box<dyn Supervise>,
+    /// Its own; none where that of the whole rotor answers.
+    supervisor: Option<Box<dyn Supervise>>,
+    /// The command of this sample, where it is there already.
+    command: Option<Command>,
     /// What it passes through.
     levitation: Box<dyn Levitate>,
+    /// What that asked for at the last sample \[N\].
+    levitation_n: [f32; 2],
     /// What it told the controller's integrator.
     hint: IntegratorHint,
     said: Option<Said>,
 }
 
 impl Supervised {
-    fn new(supervisor: Box<dyn Supervise>, levitation: Box<dyn Levitate>) -> Self {
+    fn new(supervisor: Option<Box<dyn Supervise>>, levitation: Box<dyn Levitate>) -> Self {
         Self {
             supervisor,
+            command: None,
             levitation,
+            levitation_n: [0.0; 2],
             hint: IntegratorHint::Run,
             said: None,
         }
@@ -256,20 +282,33 @@ impl Supervised {
 }
 
 impl Controller for Supervised {
-    fn command(&mut self, seen: &Seen, _truth: &Snapshot) -> Force {
+    fn ask(&mut self, seen: &Seen) -> Option<Sample> {
         let single = |v: V2| [v.x as f32, v.y as f32];
-        let measured_m = seen.reading.position_m;
-        let levitation_n = single(self.levitation.levitation_n(seen, self.hint));
-        let command = self.supervisor.tick(&Sample {
+        self.levitation_n = single(self.levitation.levitation_n(seen, self.hint));
+        Some(Sample {
             sequence: seen.reading.sequence,
             status: seen.status,
-            position_m: single(measured_m),
+            position_m: single(seen.reading.position_m),
             spin_rad_s: seen.spin_rad_s as f32,
-            levitation_n,
+            levitation_n: self.levitation_n,
             applied_n: single(seen.applied_n),
+        })
+    }
+
+    fn answered(&mut self, command: Command) {
+        self.command = Some(command);
+    }
+
+    fn command(&mut self, seen: &Seen, _truth: &Snapshot) -> Force {
+        let answered = self.command.take().or_else(|| {
+            let sample = self.ask(seen)?;
+            Some(self.supervisor.as_mut()?.tick(&sample))
         });
+        let Some(command) = answered else {
+            return Force::Computed(V2::zeros());
+        };
         self.hint = command.integrator;
-        self.said = Some(Said::new(&command, levitation_n));
+        self.said = Some(Said::new(&command, self.levitation_n));
         let [x, y] = command.force_n;
         Force::Computed(V2::new(f64::from(x), f64::from(y)))
     }
@@ -283,6 +322,6 @@ impl Controller for Supervised {
     }
 
     fn read_out(&self) -> Option<ReadOut> {
-        self.supervisor.read_out()
+        self.supervisor.as_ref()?.read_out()
     }
 }

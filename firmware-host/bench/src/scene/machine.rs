@@ -27,6 +27,7 @@ use plant_model::machine::params::{
     MachineMagnet, MachineParams, MachinePlane, MachineStart, Support,
 };
 use std::path::Path;
+use supervisor::{Place, Rotor, Shaft};
 
 /// A plane of a machine.
 #[derive(Debug, Clone, PartialEq)]
@@ -129,6 +130,40 @@ impl MachineScene {
         edges.sort_by(f64::total_cmp);
         edges.dedup();
         edges
+    }
+}
+
+impl MachineScene {
+    /// The rotor as the supervisor is told it: rigid, in two planes that have a magnet each; `None` of another.
+    pub fn shaft(&self) -> Option<Shaft> {
+        let [first, second] = self.planes.as_slice() else {
+            return None;
+        };
+        let place = |plane: usize, scene: &PlaneScene| {
+            let magnet = self.machine.magnets.get(scene.magnet?)?;
+            Some(Place {
+                retainer_m: self.machine.planes[plane].position_m as f32,
+                sensor_m: self.machine.probes_m[plane] as f32,
+                magnet_m: magnet.position_m as f32,
+            })
+        };
+        let rigid = self.machine.rotor.rigid();
+        Some(Shaft {
+            mass_kg: rigid.mass_kg as f32,
+            transverse_inertia_kg_m2: rigid.transverse_inertia_kg_m2 as f32,
+            polar_inertia_kg_m2: rigid.polar_inertia_kg_m2 as f32,
+            places: [place(0, first)?, place(1, second)?],
+        })
+    }
+
+    /// The supervisor of the whole rotor, where there is one for it.
+    pub(crate) fn supervisor(&self) -> Option<Rotor> {
+        let shaft = self.shaft()?;
+        let [first, second] = self.planes.as_slice() else {
+            return None;
+        };
+        let configs = [first.scene.supervisor?, second.scene.supervisor?];
+        Rotor::as_told(&shaft, &configs).ok()
     }
 }
 

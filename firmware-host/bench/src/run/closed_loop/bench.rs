@@ -4,13 +4,13 @@ use super::station::Station;
 use super::{PlaneEnded, RunError, TRUSTED, TRUSTED_TOLERANCES, Task};
 use crate::device::loads::{Loads, cuts};
 use crate::device::whole_levitation::WholeLevitation;
-use crate::run::controller::Seen;
+use crate::run::controller::{Seen, Supervise as _};
 use crate::run::figures::{Ended, Figures};
 use crate::run::rig::Rig;
 use crate::run::trace::{AxisRow, Recorder};
 use crate::scene::Scene;
 use plant_model::{PlantError, Snapshot, V2};
-use supervisor::IntegratorHint;
+use supervisor::{IntegratorHint, Rotor};
 
 /// A rig with its stations, sample by sample.
 pub(super) struct Bench<'a> {
@@ -20,6 +20,8 @@ pub(super) struct Bench<'a> {
     stations: Vec<Station<'a>>,
     /// Who levitates the rotor as a whole.
     pub(super) levitation: Option<WholeLevitation>,
+    /// Who supervises it as a whole.
+    pub(super) supervisor: Option<Rotor>,
     pub(super) axis: Option<&'a mut dyn Recorder<AxisRow>>,
     /// What acts at each place for loads.
     loads: Vec<Loads>,
@@ -53,6 +55,7 @@ impl<'a> Bench<'a> {
             rig,
             stations,
             levitation: None,
+            supervisor: None,
             axis: None,
             loads,
             edges_s,
@@ -94,10 +97,12 @@ impl<'a> Bench<'a> {
             station.measured_m = station.scene.from_magnets_m(last.position_m);
             station.record(last, false);
             let run = Ended::new(station.scene, &station.judge, &*self.rig, (plane, last));
-            ended.push((
-                Figures::new(&run),
-                (station.recorder.as_ref()).and_then(|_| station.controller.read_out()),
-            ));
+            let read_out = || match &mut self.supervisor {
+                Some(supervisor) => supervisor.plane(plane).read_out(),
+                None => station.controller.read_out(),
+            };
+            let recorded = station.recorder.is_some();
+            ended.push((Figures::new(&run), recorded.then(read_out).flatten()));
         }
         self.record_axis();
         let residual = self.rig.audit().residual();
@@ -130,6 +135,7 @@ impl<'a> Bench<'a> {
             self.seen.push(station.see(t, sensed_m, now));
         }
         self.levitate();
+        self.supervise();
         for (i, station) in self.stations.iter_mut().enumerate() {
             station.answer(tick, &self.seen[i], &self.now[i]);
         }
@@ -153,6 +159,23 @@ impl<'a> Bench<'a> {
             from = to;
         }
         Ok(())
+    }
+
+    /// The supervisor of the whole rotor, where there is one.
+    fn supervise(&mut self) {
+        let (Some(supervisor), [first, second]) = (&mut self.supervisor, &mut self.stations[..])
+        else {
+            return;
+        };
+        let asked = (
+            first.controller.ask(&self.seen[0]),
+            second.controller.ask(&self.seen[1]),
+        );
+        if let (Some(at_first), Some(at_second)) = asked {
+            let [to_first, to_second] = supervisor.tick(&[at_first, at_second]).planes;
+            first.controller.answered(to_first);
+            second.controller.answered(to_second);
+        }
     }
 
     /// The levitation controller of the whole rotor, where there is one.

@@ -1,8 +1,7 @@
 //! Both ends of one rotor: who is told what, and records that belong together.
 
-use firmware_image::two_planes::{PairCommand, TwoPlanes};
-use firmware_image::under_test::half_a_turn;
-use supervisor::{Config, Events, Mode, Sample};
+use firmware_image::under_test::{half_a_turn, shaft};
+use supervisor::{Config, Events, Mode, Rotor, RotorCommand, Sample};
 use system_tests::rig::{RADIUS_M, WHIRL_STEP, config, on_circle, sample};
 
 /// Ticks to the wall, and of whirl on it.
@@ -29,10 +28,10 @@ fn led(tick: u32, from: u32) -> [f32; 2] {
 
 /// Ticks of both ends, each led from a tick on; `None`: it stays in the middle.
 fn run(
-    rotor: &mut TwoPlanes<RECORD>,
+    rotor: &mut Rotor<RECORD>,
     ticks: std::ops::Range<u32>,
     from: [Option<u32>; 2],
-) -> Vec<PairCommand> {
+) -> Vec<RotorCommand> {
     ticks
         .map(|i| {
             let at = |from: Option<u32>| from.map_or([0.0; 2], |from| led(i, from));
@@ -44,12 +43,12 @@ fn run(
         .collect()
 }
 
-fn rotor(config: &Config) -> TwoPlanes<RECORD> {
-    TwoPlanes::new(&[*config; 2]).unwrap()
+fn rotor(config: &Config) -> Rotor<RECORD> {
+    Rotor::new(&shaft(config), &[*config; 2]).unwrap()
 }
 
-fn engaged_at(commands: &[PairCommand], end: usize) -> Option<usize> {
-    let engages = |c: &PairCommand| c.planes[end].events.contains(Events::ENGAGED);
+fn engaged_at(commands: &[RotorCommand], end: usize) -> Option<usize> {
+    let engages = |c: &RotorCommand| c.planes[end].events.contains(Events::ENGAGED);
     commands.iter().position(engages)
 }
 
@@ -119,7 +118,7 @@ fn a_request_to_coast_down_is_of_the_machine() {
     };
     let mut rotor = rotor(&impatient);
     let commands = run(&mut rotor, 0..400, [None, Some(20)]);
-    let asked = |c: &PairCommand| c.planes[1].events.contains(Events::COAST_DOWN);
+    let asked = |c: &RotorCommand| c.planes[1].events.contains(Events::COAST_DOWN);
     let first = commands.iter().position(asked).unwrap();
     for (i, command) in commands.iter().enumerate() {
         assert_eq!(command.coast_down, i >= first, "tick {i}");

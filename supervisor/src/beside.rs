@@ -1,0 +1,83 @@
+//! What a plane knows of the rest of its rotor: forces elsewhere, and the tilt that the spin turns.
+
+use crate::coeffs::Coeffs;
+use crate::estimate::Motion;
+use crate::scalar::Scalar;
+use crate::vec2::Vec2;
+
+/// A plane's neighbourhood: nothing for one that stands alone, which then costs nothing.
+pub(crate) trait Beside<S: Scalar> {
+    /// Of a rotor with tilt.
+    #[inline]
+    fn tilting(&self) -> Option<&Tilting<S>> {
+        None
+    }
+}
+
+impl<S: Scalar> Beside<S> for () {}
+
+/// A rotor's tilt as a plane sees it, per unit of the plane.
+///
+/// Without forces the tilt's part w of a plane's velocity turns with the nutation, ν = (I_p/I_t)·Ω: ẇ = ν·ẑ×w. Then the plane
+/// goes round a centre that moves with the rest of the velocity, at the distance |w|/ν.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Tilting<S: Scalar> {
+    /// Acceleration by known forces elsewhere.
+    pub(crate) known: Vec2<S>,
+    /// w.
+    pub(crate) velocity: Vec2<S>,
+    /// ν.
+    pub(crate) rate: S,
+}
+
+/// A turn beyond which a lead helps no more \[rad\].
+const MOST_TURN: f32 = 1.5;
+/// Slower than this nutation is none \[1/t₀\]: within the time of an approach it does not turn.
+const LEAST_RATE: f32 = 0.25;
+
+impl<S: Scalar> Beside<S> for Tilting<S> {
+    #[inline]
+    fn tilting(&self) -> Option<&Self> {
+        Some(self)
+    }
+}
+
+impl<S: Scalar> Tilting<S> {
+    /// By what w changes within a time.
+    #[inline]
+    fn turned(&self, time: S) -> Vec2<S> {
+        let most = S::from_f32(MOST_TURN);
+        let angle = (self.rate * time).clamp(-most, most);
+        self.velocity.rotated(Vec2::at_angle(angle)) - self.velocity
+    }
+
+    /// Speed gained in a tick.
+    #[inline]
+    pub(crate) fn gained(&self, tick: S) -> Vec2<S> {
+        self.known * tick + self.turned(tick)
+    }
+
+    /// The motion with the velocity that it has when a force that is decided now acts.
+    #[inline]
+    pub(crate) fn ahead(&self, motion: &Motion<S>, coeffs: &Coeffs<S>) -> Motion<S> {
+        Motion {
+            velocity: motion.velocity + self.turned(coeffs.horizon),
+            ..*motion
+        }
+    }
+
+    /// The centre that the plane goes round, its velocity, and the distance from it; `None` where nutation is slow.
+    #[inline]
+    pub(crate) fn centre(&self, motion: &Motion<S>) -> Option<(Vec2<S>, Vec2<S>, S)> {
+        if self.rate.abs() < S::from_f32(LEAST_RATE) {
+            return None;
+        }
+        let per_rate = S::ONE.div(self.rate);
+        let arm = self.velocity.perp() * per_rate;
+        Some((
+            motion.position + arm,
+            motion.velocity - self.velocity,
+            arm.about_length(),
+        ))
+    }
+}
