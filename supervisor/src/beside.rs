@@ -62,6 +62,8 @@ impl<S: Scalar> Tilting<S> {
     pub(crate) fn ahead(&self, motion: &Motion<S>, coeffs: &Coeffs<S>) -> Motion<S> {
         Motion {
             velocity: motion.velocity + self.turned(coeffs.horizon),
+            // Here it is a load like any other.
+            load_step: motion.load_step + self.known * coeffs.tick,
             ..*motion
         }
     }

@@ -112,6 +112,10 @@ impl Detector {
             left,
             unavoidable: false,
         };
+        if let Some(tilting) = tilting {
+            // The observer is told of it and takes it for no load.
+            contact.load = contact.load + tilting.known.dot(normal);
+        }
         let outward = contact.radial_speed - margin;
         let mut alarm = outward > S::ZERO && !contact.stops(outward, cap, S::ONE, coeffs);
         if let Some(tilting) = tilting

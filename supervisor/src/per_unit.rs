@@ -225,7 +225,7 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
 
         let led;
         let acted_on = match tilting {
-            Some(tilting) if phase.is_engaged() => {
+            Some(tilting) if phase.is_engaged() && !contact.touching => {
                 led = tilting.ahead(&motion, coeffs);
                 &led
             }
@@ -373,6 +373,11 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
     #[inline]
     pub(crate) fn velocity(&self) -> Option<Vec2<S>> {
         self.observer.known_velocity()
+    }
+
+    /// The recorder, to ask how far it is.
+    pub(crate) fn recorder(&self) -> &Recorder<RECORD> {
+        &self.recorder
     }
 
     /// Force that acts now.

@@ -238,6 +238,16 @@ impl<const N: usize> Recorder<N> {
         })
     }
 
+    /// Whether it waits for an engagement.
+    pub(crate) fn is_armed(&self) -> bool {
+        self.state == State::Armed
+    }
+
+    /// Whether a record has begun that is not frozen yet.
+    pub(crate) fn is_recording(&self) -> bool {
+        matches!(self.state, State::Triggered(_) | State::Freezing(_))
+    }
+
     pub(crate) fn rearm(&mut self) {
         self.state = State::Armed;
     }

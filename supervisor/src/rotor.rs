@@ -39,7 +39,8 @@ pub enum ShaftError {
     Plane(usize, ConfigError),
     /// Mass or inertias are not what a body can have.
     Inertia,
-    /// A position is no number, or both retainer bearings stand at one place.
+    /// A position is no number, both retainer bearings stand at one place, or so far from each other or from the magnets that
+    /// the ends move each other a thousand times as far as themselves.
     Places,
 }
 
@@ -51,7 +52,7 @@ impl core::fmt::Display for ShaftError {
                 "mass and transverse inertia are to be above 0, the polar one from 0 to twice the transverse one",
             ),
             Self::Places => f.write_str(
-                "positions are to be numbers, and those of the two retainer bearings to differ",
+                "positions are to be numbers, those of the two retainer bearings to differ, and no other so far out",
             ),
         }
     }
@@ -97,6 +98,9 @@ impl Shaft {
     }
 }
 
+/// Couplings beyond this are of no rotor, and would leave the numbers.
+const MOST_COUPLED: f32 = 1e3;
+
 /// What couples a plane to the other, per unit.
 #[derive(Debug, Clone, Copy)]
 struct Coupling {
@@ -106,11 +110,14 @@ struct Coupling {
     arm: [f32; 2],
     /// (I_p/I_t)·t₀.
     nutation_s: f32,
+    /// A radian in a tick \[1/t₀\]: nothing that is sampled nutates faster.
+    fastest: f32,
 }
 
 impl Coupling {
-    fn of_both(shaft: &Shaft, [first, second]: [&Config; 2]) -> [Self; 2] {
+    fn of_both(shaft: &Shaft, [first, second]: [&Config; 2]) -> Result<[Self; 2], ShaftError> {
         let [a, b] = shaft.places;
+        let period_s = first.sample_period_s;
         let (first, second) = (first.scaling(), second.scaling());
         let gap_m = b.retainer_m - a.retainer_m;
         let of = |here: Place, there: Place, own: &Scaling, other: &Scaling| {
@@ -120,9 +127,17 @@ impl Coupling {
                 per_cap: acceleration * own.time_s * own.time_s / own.length_m,
                 arm: [-share * first.speed_m_s(), share * second.speed_m_s()],
                 nutation_s: shaft.polar_inertia_kg_m2 / shaft.transverse_inertia_kg_m2 * own.time_s,
+                fastest: own.time_s / period_s,
             }
         };
-        [of(a, b, &first, &second), of(b, a, &second, &first)]
+        let both = [of(a, b, &first, &second), of(b, a, &second, &first)];
+        let held = |x: f32| x.abs() <= MOST_COUPLED;
+        let usable = |c: &Self| held(c.per_cap) && c.arm.iter().all(|arm| held(*arm));
+        if both.iter().all(usable) {
+            Ok(both)
+        } else {
+            Err(ShaftError::Places)
+        }
     }
 
     /// What the plane knows of the rest: from the velocities of both ends, and the force at the other.
@@ -132,10 +147,15 @@ impl Coupling {
         force: Vec2<f32>,
         spin_rad_s: f32,
     ) -> Tilting<f32> {
+        let rate = self.nutation_s * spin_rad_s;
         Tilting {
             known: force * self.per_cap,
             velocity: first * self.arm[0] + second * self.arm[1],
-            rate: self.nutation_s * spin_rad_s,
+            rate: if rate.abs() <= self.fastest {
+                rate
+            } else {
+                0.0
+            },
         }
     }
 }
@@ -206,7 +226,7 @@ impl<const RECORD: usize> Rotor<RECORD> {
         };
         Ok(Self {
             planes: [plane(0, first)?, plane(1, second)?],
-            couplings: Coupling::of_both(shaft, [first, second]),
+            couplings: Coupling::of_both(shaft, [first, second])?,
             engaged: [false; 2],
             coast_down: false,
         })
@@ -229,7 +249,7 @@ impl<const RECORD: usize> Rotor<RECORD> {
                 .validate()
                 .map_err(|error| ShaftError::Plane(end, error))?;
         }
-        self.couplings = Coupling::of_both(shaft, [first, second]);
+        self.couplings = Coupling::of_both(shaft, [first, second])?;
         for (plane, config) in self.planes.iter_mut().zip(&configs) {
             // Checked above.
             let _ = plane.reconfigure(config);
@@ -252,8 +272,11 @@ impl<const RECORD: usize> Rotor<RECORD> {
             first.tick_beside(at_first, &beside_first),
             second.tick_beside(at_second, &beside_second),
         ];
-        for (engaged, command) in self.engaged.iter_mut().zip(&planes) {
-            *engaged |= command.events.contains(Events::ENGAGED);
+        for ((engaged, plane), command) in self.engaged.iter_mut().zip(&self.planes).zip(&planes) {
+            let engages = command.mode.is_engaged();
+            // Over, and nothing was worth a record.
+            let leaves_nothing = !engages && plane.core.recorder().is_armed();
+            *engaged = (*engaged || engages) && !leaves_nothing;
             self.coast_down |= command.events.contains(Events::COAST_DOWN);
         }
         let [first, second] = self.engaged;
@@ -271,9 +294,9 @@ impl<const RECORD: usize> Rotor<RECORD> {
     /// kept out meanwhile; where writing takes too long for that, copy the entries of a frozen record in pieces and
     /// rearm at the end.
     pub fn collect(&mut self, mut write: impl FnMut(usize, &Record<'_, RECORD>)) {
-        let mut planes = self.planes.iter().zip(self.engaged);
-        let pending = planes.any(|(plane, engaged)| engaged && plane.record().is_none());
-        if pending || !self.engaged.contains(&true) {
+        let mut planes = self.planes.iter();
+        let pending = planes.any(|plane| plane.core.recorder().is_recording());
+        if pending || self.planes.iter().all(|plane| plane.record().is_none()) {
             return;
         }
         for (end, plane) in self.planes.iter().enumerate() {

@@ -60,8 +60,8 @@ pub struct Machine {
 }
 
 impl Machine {
-    /// Puts a machine together. [`Method::Auto`] is [`Method::Series`], or [`Method::Explicit`], collocation, where friction falls
-    /// with speed; there is no stiff method.
+    /// Puts a machine together. [`Method::Auto`] is [`Method::Series`], or [`Method::Explicit`], collocation, where something has no
+    /// series ([`MachineParams::method`]); there is no stiff method.
     ///
     /// # Errors
     /// The first value that is out of range.
@@ -157,7 +157,9 @@ impl Machine {
             return Err(PlantError::NotFinite { t_s });
         }
         self.take(inputs);
+        let before = self.modes();
         self.warm();
+        self.tell(before, on_change);
         let flies = self.options.method == Method::Series;
         if flies && self.t_s < t_end_s && self.phases.iter().all(|phase| *phase == Phase::Inside) {
             let dt_s = t_end_s - self.t_s;
@@ -187,14 +189,24 @@ impl Machine {
             if free && after == before && self.t_s > t_before {
                 self.progress.was_free();
             }
-            if after != before {
-                let snapshot = self.snapshot();
-                for p in (0..self.phases.len()).filter(|p| after[*p] != before[*p]) {
-                    on_change(p, &snapshot);
-                }
-            }
+            self.tell(before, on_change);
         }
         Ok(())
+    }
+
+    /// Calls for each plane whose mode is another than before.
+    fn tell(
+        &mut self,
+        before: [Mode; MAX_PLANES],
+        on_change: &mut dyn FnMut(usize, &MachineSnapshot),
+    ) {
+        let after = self.modes();
+        if after != before {
+            let snapshot = self.snapshot();
+            for p in (0..self.phases.len()).filter(|p| after[*p] != before[*p]) {
+                on_change(p, &snapshot);
+            }
+        }
     }
 
     fn modes(&self) -> [Mode; MAX_PLANES] {

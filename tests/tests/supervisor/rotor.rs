@@ -1,8 +1,10 @@
 //! Both ends of one rotor: who is told what, and records that belong together.
 
 use firmware_image::under_test::{half_a_turn, shaft};
-use supervisor::{Config, Events, Mode, Rotor, RotorCommand, Sample};
-use system_tests::rig::{RADIUS_M, WHIRL_STEP, config, on_circle, sample};
+use supervisor::{
+    Config, Events, Mode, Place, Rotor, RotorCommand, Sample, Shaft, ShaftError, Status, Supervisor,
+};
+use system_tests::rig::{RADIUS_M, WHIRL_STEP, check, config, on_circle, sample};
 
 /// Ticks to the wall, and of whirl on it.
 const OUT: u32 = 40;
@@ -109,6 +111,35 @@ fn records_of_one_event_are_read_together() {
     assert_eq!(again, [0]);
 }
 
+/// An engagement without a touch leaves no record: nobody waits for one, and nobody is told of it any more.
+#[test]
+fn an_engagement_without_a_touch_holds_nothing_up() {
+    let mut rotor = rotor(&config());
+    let mut read = Vec::new();
+    let (mut engaged, mut told) = (false, false);
+    for i in 0..1200_u32 {
+        // The first end comes at the wall and turns round before it; later the second lands.
+        let near = match i.checked_sub(20) {
+            Some(i) if i < 36 => 0.9 * i as f32 / 36.0,
+            Some(i) => 0.9 * (1.0 - (i - 36) as f32 / 60.0).max(0.0),
+            None => 0.0,
+        };
+        let noise = 1e-6 * (i % 3) as f32;
+        let first = [1.95e-4 * near + noise, noise];
+        let second = led(i, 600).map(|x| x + noise);
+        let command = rotor.tick(&[sample(i, first), sample(i, second)]);
+        engaged |= command.planes[0].events.contains(Events::ENGAGED);
+        told = command.other_engaged[1];
+        if i == 590 {
+            assert!(engaged && !told, "{engaged} {told}");
+            assert_eq!(rotor.plane(0).report().landings, 0);
+        }
+        rotor.collect(|end, _| read.push(end));
+    }
+    assert_eq!(read, [1]);
+    assert!(!told);
+}
+
 /// One end's request is the machine's, and stays.
 #[test]
 fn a_request_to_coast_down_is_of_the_machine() {
@@ -142,4 +173,188 @@ fn half_a_turn_turns_the_commands() {
             (second.mode, second.events, second.limits, second.severity)
         );
     }
+}
+
+/// A tilt that turns freely with the nutation, its radius growing to 0.6 of the clearance, too fast to pass for usual: both ends go round faster than
+/// any force could stop them, and neither comes near the wall. `sense` of the turning: 1 with the spin.
+fn nutating(spin_rad_s: f32, sense: f32, mut tick: impl FnMut(&[Sample; 2])) {
+    let config = free();
+    let shaft = shaft(&config);
+    let rate = shaft.polar_inertia_kg_m2 / shaft.transverse_inertia_kg_m2 * spin_rad_s * sense;
+    for i in 0..2000_u32 {
+        let radius = 0.6 * config.clearance_m * (i as f32 / 60.0).min(1.0);
+        let angle = (rate * config.sample_period_s * i as f32) % std::f32::consts::TAU;
+        let at = [radius * angle.cos(), radius * angle.sin()];
+        let of = |position_m: [f32; 2]| Sample {
+            spin_rad_s,
+            ..sample(i, position_m)
+        };
+        tick(&[of(at.map(|x| -x)), of(at)]);
+    }
+}
+
+fn free() -> Config {
+    Config {
+        stiffness_n_m: 0.0,
+        damping_n_s_m: 0.0,
+        ..config()
+    }
+}
+
+#[test]
+fn free_nutation_is_no_approach() {
+    let engages = |spin: f32, sense: f32| {
+        let mut rotor = rotor(&free());
+        let mut engaged = [false; 2];
+        nutating(spin, sense, |samples| {
+            let commands = rotor.tick(samples).planes;
+            for (engaged, command) in engaged.iter_mut().zip(commands) {
+                *engaged |= command.mode != Mode::Levitated;
+            }
+        });
+        engaged
+    };
+    // 450 Hz of nutation either way.
+    for spin in [3500.0, -3500.0] {
+        assert_eq!(engages(spin, 1.0), [false; 2], "{spin}");
+        // Nothing turns the other way round by itself.
+        assert_eq!(engages(spin, -1.0), [true; 2], "{spin}");
+    }
+    // A plane alone takes the first for an approach, too.
+    let config = free();
+    let shaft = shaft(&config);
+    let mut alone = Supervisor::<RECORD>::new(&shaft.plane(0, &config)).unwrap();
+    let mut engaged = false;
+    nutating(3500.0, 1.0, |[sample, _]| {
+        engaged |= alone.tick(sample).mode != Mode::Levitated;
+    });
+    assert!(engaged);
+}
+
+/// Without a valid spin nothing is known to turn the tilt, and without forces the planes are two that stand alone.
+#[test]
+fn without_spin_there_is_no_nutation() {
+    let config = free();
+    let shaft = shaft(&config);
+    let mut rotor = rotor(&config);
+    let mut alone =
+        [0, 1].map(|end| Supervisor::<RECORD>::new(&shaft.plane(end, &config)).unwrap());
+    nutating(3500.0, 1.0, |samples| {
+        let blind = samples.map(|sample| Sample {
+            status: Status::BEARING_ON,
+            ..sample
+        });
+        let commands = rotor.tick(&blind).planes;
+        for ((command, alone), sample) in commands.iter().zip(&mut alone).zip(&blind) {
+            assert_eq!(*command, alone.tick(sample));
+        }
+    });
+}
+
+/// Whatever bits come in, and whatever shaft a data sheet may hold: finite and within the caps.
+#[test]
+fn arbitrary_bits_give_forces_within_the_caps() {
+    let mut state = 0x9E37_79B9_7F4A_7C15_u64;
+    let mut next = move || {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        (state >> 32) as u32
+    };
+    let config = config();
+    let mut ran = 0;
+    for extent in 0..60 {
+        let spread = |bits: u32| 10_f32.powi(bits as i32 % 9 - 4);
+        let transverse = spread(next());
+        let mut end = |sign: f32| Place {
+            retainer_m: sign * spread(next()),
+            sensor_m: sign * spread(next()),
+            magnet_m: sign * spread(next()),
+        };
+        let shaft = Shaft {
+            mass_kg: 20.0,
+            transverse_inertia_kg_m2: transverse,
+            polar_inertia_kg_m2: 1.9 * transverse,
+            places: [end(-1.0), end(1.0)],
+        };
+        // One whose ends throw each other about is refused.
+        let Ok(mut rotor) = Rotor::<RECORD>::as_told(&shaft, &[config; 2]) else {
+            continue;
+        };
+        ran += 1;
+        let mut last = [[0.0; 2]; 2];
+        for i in 0..5000_u32 {
+            let mut any = || {
+                let bits = next();
+                // Half of them near what is usual.
+                match bits & 1 {
+                    0 => f32::from_bits(bits),
+                    _ => (bits >> 8) as f32 * 1e-11 - 1e-4,
+                }
+            };
+            let samples = [(); 2].map(|()| Sample {
+                sequence: i,
+                status: Status::SPIN_VALID | Status::BEARING_ON,
+                position_m: [any(), any()],
+                spin_rad_s: any() * 1e7,
+                levitation_n: [any(), any()],
+                ..Sample::default()
+            });
+            let commands = rotor.tick(&samples).planes;
+            for ((last, command), sample) in last.iter_mut().zip(&commands).zip(&samples) {
+                *last = check(command, *last, sample.status, &config)
+                    .unwrap_or_else(|e| panic!("shaft {extent}, tick {i}: {e}"));
+            }
+        }
+    }
+    assert!(ran >= 10, "{ran}");
+}
+
+#[test]
+fn a_shaft_that_no_body_has_is_refused() {
+    let good = shaft(&config());
+    let [first, second] = good.places;
+    let refused = |shaft: Shaft| Rotor::<RECORD>::new(&shaft, &[config(); 2]).unwrap_err();
+    for mass_kg in [0.0, -1.0, f32::NAN, f32::INFINITY] {
+        assert_eq!(refused(Shaft { mass_kg, ..good }), ShaftError::Inertia);
+    }
+    for share in [-0.1, 2.1, f32::NAN] {
+        let polar_inertia_kg_m2 = share * good.transverse_inertia_kg_m2;
+        let wrong = Shaft {
+            polar_inertia_kg_m2,
+            ..good
+        };
+        assert_eq!(refused(wrong), ShaftError::Inertia);
+    }
+    for places in [
+        [first, first],
+        [
+            first,
+            Place {
+                sensor_m: f32::NAN,
+                ..second
+            },
+        ],
+    ] {
+        assert_eq!(refused(Shaft { places, ..good }), ShaftError::Places);
+    }
+    // A magnet so far beyond the centre of percussion that it pushes the bearing the other way.
+    let beyond = Place {
+        magnet_m: -10.0 * second.magnet_m,
+        ..second
+    };
+    let places = [first, beyond];
+    let error = refused(Shaft { places, ..good });
+    assert!(matches!(error, ShaftError::Plane(1, _)), "{error}");
+    assert!(error.to_string().contains("magnet_plane_ratio"), "{error}");
+    // What is refused changes nothing.
+    let mut rotor = rotor(&config());
+    let before = rotor.clone();
+    assert!(
+        rotor
+            .reconfigure(&Shaft { places, ..good }, &[config(); 2])
+            .is_err()
+    );
+    assert_eq!(format!("{rotor:?}"), format!("{before:?}"));
+    assert!(rotor.reconfigure(&good, &[config(); 2]).is_ok());
 }

@@ -203,8 +203,8 @@ pub fn check(
     Ok(comparison.ended(&figures, scene.rtol))
 }
 
-/// The scenes that check one of a whole rotor: its own method at a tighter tolerance, and the other one. Friction that falls with
-/// speed and magnets with poles leave no other, and are looked at a third time by the same, as tightly as it can.
+/// The scenes that check one of a whole rotor: its own method at a tighter tolerance, and the other one. What has no series
+/// leaves no other, and is looked at a third time by the same, as tightly as it can.
 ///
 /// # Errors
 /// [`RunError::Machine`].

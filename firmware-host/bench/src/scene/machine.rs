@@ -27,7 +27,7 @@ use plant_model::machine::params::{
     MachineMagnet, MachineParams, MachinePlane, MachineStart, Support,
 };
 use std::path::Path;
-use supervisor::{Place, Rotor, Shaft};
+use supervisor::{Place, Rotor, Shaft, ShaftError};
 
 /// A plane of a machine.
 #[derive(Debug, Clone, PartialEq)]
@@ -159,12 +159,15 @@ impl MachineScene {
     /// The supervisor of the whole rotor, where there is one for it.
     pub(crate) fn supervisor(&self) -> Option<Rotor> {
         let shaft = self.shaft()?;
-        let [first, second] = self.planes.as_slice() else {
-            return None;
-        };
-        let configs = [first.scene.supervisor?, second.scene.supervisor?];
-        Rotor::as_told(&shaft, &configs).ok()
+        supervisor_of(&shaft, &self.planes)?.ok()
     }
+}
+
+/// The supervisor of both planes, where both have one.
+fn supervisor_of(shaft: &Shaft, planes: &[PlaneScene]) -> Option<Result<Rotor, ShaftError>> {
+    let [first, second] = planes else { return None };
+    let configs = [first.scene.supervisor?, second.scene.supervisor?];
+    Some(Rotor::as_told(shaft, &configs))
 }
 
 impl Spec {
@@ -263,14 +266,23 @@ impl Spec {
                 warnings.push(warning.clone());
             }
         }
-        Ok(MachineScene {
+        let scene = MachineScene {
             machine,
             start,
             planes: scenes,
             loads,
             levitation,
             warnings,
-        })
+        };
+        let told = scene.shaft();
+        match told.and_then(|shaft| supervisor_of(&shaft, &scene.planes)?.err()) {
+            Some(error) => {
+                let message = format!("leaves no supervisor for the rotor: {error}");
+                let help = Some("or run without the policy supervisor".to_owned());
+                Err(text.error_at_key("plane[1].position_m", message, help))
+            }
+            None => Ok(scene),
+        }
     }
 
     /// Loads and where they act; those of base motions at the centre of mass, which bending modes do not feel.

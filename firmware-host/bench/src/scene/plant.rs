@@ -36,7 +36,8 @@ pub(crate) fn plant_of(spec: &PlaneSpec, rotor: RotorParams) -> Result<PlantPara
         },
         magnet: magnet.map(|m| MagnetParams {
             force_max_n: m.force_max_n,
-            lag_s: m.lag_s,
+            // Of second order, its mean delay.
+            lag_s: m.lag_s * m.lag_damping_ratio.map_or(1.0, |ratio| 2.0 * ratio),
         }),
         race: file.race.as_ref().map(|race| RaceParams {
             inertia_kg_m2: race.inertia_kg_m2,
@@ -182,6 +183,10 @@ fn hardening(file: &ContactTable, text: &SceneText) -> Result<Option<HuntCrossle
         let message = "follows from the balls or the curve".to_owned();
         return refused("contact.exponent", message, "remove it");
     }
+    if file.deflections_m.is_none() && file.forces_n.is_some() {
+        let help = "give the deflections of these forces";
+        return refused("contact.forces_n", "needs deflections_m".to_owned(), help);
+    }
     if let Some(balls) = &file.balls {
         let bearing = BallBearing {
             balls: balls.count,
@@ -192,17 +197,13 @@ fn hardening(file: &ContactTable, text: &SceneText) -> Result<Option<HuntCrossle
     }
     let (deflections, forces) = match (&file.deflections_m, &file.forces_n) {
         (Some(deflections), Some(forces)) => (&deflections.0, &forces.0),
-        (None, None) => {
+        (None, _) => {
             let exponent = file.exponent.unwrap_or(1.5);
             return Ok(file.stiffness_n_mn.map(|k| hertz(k, exponent)));
         }
         (Some(_), None) => {
             let help = "give a force for each deflection";
             return refused("contact.deflections_m", "needs forces_n".to_owned(), help);
-        }
-        (None, Some(_)) => {
-            let help = "give the deflections of these forces";
-            return refused("contact.forces_n", "needs deflections_m".to_owned(), help);
         }
     };
     let Some(fitted) = fitted_curve(deflections, forces) else {

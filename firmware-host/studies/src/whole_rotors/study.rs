@@ -122,7 +122,7 @@ pub fn study(extent: Extent, progress: &dyn Progress) -> Result<Report, StudyErr
         chapters.push(Chapter::new(class.name(), blocks));
     }
     let story = format!(
-        "{rotors} rotors of seed {SEED} in each class: two magnets with a PD controller each, sensors up to 30 mm beside them, nothing told of bending. Touches and impulse are those with the supervisor over those of levitation alone, summed where both recover. Struck on and on: twice the touches of levitation alone, and ten more."
+        "{rotors} rotors of seed {SEED} in each class: two magnets with a PD controller each, magnets at the retainer bearings and sensors up to 30 mm outside them, nothing told of bending. Touches and impulse are those with the supervisor over those of levitation alone, summed where both recover. Struck on and on: twice the touches of levitation alone, and ten more."
     );
     chapters.insert(0, Chapter::new("What was run", vec![Block::text(story)]));
     Ok(Report {

@@ -75,9 +75,9 @@ impl Machine {
         }
     }
 
-    /// Energy in a plane's contact spring, or what it would be \[J\].
+    /// Energy in a plane's contact spring \[J\]; it is not pulled.
     fn grip_j(&self, p: usize) -> f64 {
         let depth_m = self.contact_motion(p).penetration_m;
-        self.system.planes[p].law.stored_j(depth_m)
+        self.system.planes[p].law.stored_j(depth_m.max(0.0))
     }
 }
