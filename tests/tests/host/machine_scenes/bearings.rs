@@ -148,7 +148,7 @@ fn an_overdamped_amplifier_is_one_of_first_order() {
     let quiet = as_machine()
         .replace("noise_rms_m = 1e-6\n", "")
         .replace("quantum_m = 1e-7\n", "");
-    let slow = quiet.replace("lag_s = 1.6e-4", "lag_s = 8e-7\nlag_damping_ratio = 100.0");
+    let slow = quiet.replace("lag_s = 1.6e-4", "lag_s = 4e-6\nlag_damping_ratio = 20.0");
     assert_ne!(slow, quiet);
     let of = |text: &str| {
         let (figures, trace) = planes(&machine(text), PolicyKind::Levitation).remove(0);
