@@ -294,7 +294,7 @@ impl Machine {
                 self.just_left[p] = true;
             }
             Guard::NoForce => {
-                let dent_j = self.dent_j(p);
+                let dent_j = self.spring_j(p);
                 self.book_dent(p, -dent_j);
                 self.touch_down(p);
             }
@@ -383,7 +383,7 @@ impl Machine {
         let depth_m = self.contact_motion(p).penetration_m;
         self.phases[p] = if self.system.planes[p].leaves_dent(depth_m) {
             // The dent relaxes on the contact damper alone.
-            let dent_j = self.dent_j(p);
+            let dent_j = self.spring_j(p);
             self.book_dent(p, dent_j);
             Phase::Beyond
         } else {
@@ -391,8 +391,9 @@ impl Machine {
         };
     }
 
-    fn dent_j(&self, p: usize) -> f64 {
-        let depth_m = self.contact_motion(p).penetration_m;
+    /// Energy in a plane's contact spring \[J\], of a dent as well; it is not pulled.
+    fn spring_j(&self, p: usize) -> f64 {
+        let depth_m = self.contact_motion(p).penetration_m.max(0.0);
         self.system.planes[p].law.stored_j(depth_m)
     }
 

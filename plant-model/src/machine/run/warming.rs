@@ -57,7 +57,7 @@ impl Machine {
             (warming.taken_j, warming.taken_at_s) = (losses_j, self.t_s);
             let wanted_m = heat.clearance_m(self.system.planes[p].cold_m, warming.rise_k);
             let distance_m = self.contact_motion(p).distance_m;
-            let before_j = self.grip_j(p);
+            let before_j = self.spring_j(p);
             self.system.planes[p].clearance_m = match self.phases[p] {
                 // A bore does not close on a rotor that is off its wall: the touch is an event of its own.
                 Phase::Inside => wanted_m.max(distance_m),
@@ -67,17 +67,11 @@ impl Machine {
             let law = self.system.planes[p].law;
             let force_n = law.normal_force_n(motion.penetration_m, motion.normal_m_s);
             if matches!(self.phases[p], Phase::Contact(..)) {
-                self.flows.external += self.grip_j(p) - before_j;
+                self.flows.external += self.spring_j(p) - before_j;
                 if force_n <= 0.0 {
                     self.lift_off(p);
                 }
             }
         }
-    }
-
-    /// Energy in a plane's contact spring \[J\]; it is not pulled.
-    fn grip_j(&self, p: usize) -> f64 {
-        let depth_m = self.contact_motion(p).penetration_m;
-        self.system.planes[p].law.stored_j(depth_m.max(0.0))
     }
 }
