@@ -115,7 +115,14 @@ struct Coupling {
 }
 
 impl Coupling {
-    fn of_both(shaft: &Shaft, [first, second]: [&Config; 2]) -> Result<[Self; 2], ShaftError> {
+    /// Both, once everything is known to be in its range.
+    fn of_checked(shaft: &Shaft, [first, second]: &[Config; 2]) -> Result<[Self; 2], ShaftError> {
+        shaft.check()?;
+        for (end, config) in [(0, first), (1, second)] {
+            config
+                .validate()
+                .map_err(|error| ShaftError::Plane(end, error))?;
+        }
         let [a, b] = shaft.places;
         let period_s = first.sample_period_s;
         let (first, second) = (first.scaling(), second.scaling());
@@ -219,14 +226,15 @@ impl<const RECORD: usize> Rotor<RECORD> {
     ///
     /// # Errors
     /// [`ShaftError`].
-    pub fn as_told(shaft: &Shaft, [first, second]: &[Config; 2]) -> Result<Self, ShaftError> {
-        shaft.check()?;
-        let plane = |end: usize, config: &Config| {
-            Supervisor::new(config).map_err(|error| ShaftError::Plane(end, error))
-        };
+    pub fn as_told(shaft: &Shaft, configs: &[Config; 2]) -> Result<Self, ShaftError> {
+        let couplings = Coupling::of_checked(shaft, configs)?;
+        let [first, second] = configs;
         Ok(Self {
-            planes: [plane(0, first)?, plane(1, second)?],
-            couplings: Coupling::of_both(shaft, [first, second])?,
+            planes: [
+                Supervisor::from_valid(first),
+                Supervisor::from_valid(second),
+            ],
+            couplings,
             engaged: [false; 2],
             coast_down: false,
         })
@@ -241,15 +249,8 @@ impl<const RECORD: usize> Rotor<RECORD> {
         shaft: &Shaft,
         [first, second]: &[Config; 2],
     ) -> Result<(), ShaftError> {
-        shaft.check()?;
         let configs = [shaft.plane(0, first), shaft.plane(1, second)];
-        let [first, second] = &configs;
-        for (end, config) in [(0, first), (1, second)] {
-            config
-                .validate()
-                .map_err(|error| ShaftError::Plane(end, error))?;
-        }
-        self.couplings = Coupling::of_both(shaft, [first, second])?;
+        self.couplings = Coupling::of_checked(shaft, &configs)?;
         for (plane, config) in self.planes.iter_mut().zip(&configs) {
             // Checked above.
             let _ = plane.reconfigure(config);
@@ -290,20 +291,35 @@ impl<const RECORD: usize> Rotor<RECORD> {
     /// The records of one event, in the background: once every plane that engaged has frozen its own, `write` gets
     /// what there is with the number of its plane, 0 or 1, and both wait for the next engagement.
     ///
-    /// A plane that engages while the other's record waits delays the reading, and is then in it. The tick has to be
-    /// kept out meanwhile; where writing takes too long for that, copy the entries of a frozen record in pieces and
-    /// rearm at the end.
+    /// The tick has to be kept out meanwhile; where writing takes too long for that, copy the entries of [`Self::record`]
+    /// in pieces and [`Self::rearm`] at the end.
     pub fn collect(&mut self, mut write: impl FnMut(usize, &Record<'_, RECORD>)) {
-        let mut planes = self.planes.iter();
-        let pending = planes.any(|plane| plane.core.recorder().is_recording());
-        if pending || self.planes.iter().all(|plane| plane.record().is_none()) {
-            return;
-        }
-        for (end, plane) in self.planes.iter().enumerate() {
-            if let Some(record) = plane.record() {
+        let mut any = false;
+        for end in [0, 1] {
+            if let Some(record) = self.record(end) {
                 write(end, &record);
+                any = true;
             }
         }
+        if any {
+            self.rearm();
+        }
+    }
+
+    /// The frozen record of a plane, 0 or 1 (anything else is the second), if there is one and no other belongs to the
+    /// same event that has still to freeze: a plane that engages while the other's record waits delays the reading, and
+    /// is then in it.
+    pub fn record(&self, end: usize) -> Option<Record<'_, RECORD>> {
+        let mut planes = self.planes.iter();
+        if planes.any(|plane| plane.core.recorder().is_recording()) {
+            return None;
+        }
+        let [first, second] = &self.planes;
+        if end == 0 { first } else { second }.record()
+    }
+
+    /// Discards frozen records; both planes wait for the next engagement.
+    pub fn rearm(&mut self) {
         self.planes.iter_mut().for_each(Supervisor::rearm);
         self.engaged = [false; 2];
     }

@@ -19,11 +19,15 @@ impl<const RECORD: usize> Supervisor<RECORD> {
     /// The first parameter of `config` that is outside its range.
     pub fn new(config: &Config) -> Result<Self, ConfigError> {
         config.validate()?;
+        Ok(Self::from_valid(config))
+    }
+
+    pub(crate) fn from_valid(config: &Config) -> Self {
         // Whatever is in range `f32` holds.
         let (prepared, _) = Prepared::from_valid(config);
-        Ok(Self {
+        Self {
             core: Core::new(&prepared),
-        })
+        }
     }
 
     /// Takes another configuration over, to hold from the next tick on; see [`Core::reconfigure`]. It

@@ -3,7 +3,7 @@
  * Real-time supervisor that keeps a rotor on active magnetic bearings out of dry friction backward whirl
  * when it touches its retainer bearing. C99 and C++98 or later.
  *
- * One supervisor serves one bearing plane. Make it once with amb_init(), then call amb_tick() at a fixed
+ * An amb_supervisor serves one bearing plane, an amb_rotor both planes of one rotor. Make it once with amb_init(), then call amb_tick() at a fixed
  * rate, usually in an interrupt:
  *
  * @code
@@ -64,6 +64,14 @@
 #define amb_record_entry AMB_JOIN(amb_record_entry, AMB_ABI)
 #define amb_crc AMB_JOIN(amb_crc, AMB_ABI)
 #define amb_rearm AMB_JOIN(amb_rearm, AMB_ABI)
+#define amb_rotor_init AMB_JOIN(amb_rotor_init, AMB_ABI)
+#define amb_rotor_reconfigure AMB_JOIN(amb_rotor_reconfigure, AMB_ABI)
+#define amb_rotor_tick AMB_JOIN(amb_rotor_tick, AMB_ABI)
+#define amb_rotor_report_now AMB_JOIN(amb_rotor_report_now, AMB_ABI)
+#define amb_rotor_next_event AMB_JOIN(amb_rotor_next_event, AMB_ABI)
+#define amb_rotor_record_frozen AMB_JOIN(amb_rotor_record_frozen, AMB_ABI)
+#define amb_rotor_record_entry AMB_JOIN(amb_rotor_record_entry, AMB_ABI)
+#define amb_rotor_rearm AMB_JOIN(amb_rotor_rearm, AMB_ABI)
 #define amb_watch_init AMB_JOIN(amb_watch_init, AMB_ABI)
 #define amb_watch_renew AMB_JOIN(amb_watch_renew, AMB_ABI)
 #define amb_watch_force AMB_JOIN(amb_watch_force, AMB_ABI)
@@ -98,7 +106,7 @@ typedef int32_t amb_code;
 #define AMB_ERROR_BUSY (-5) /**< supervisor is in use by a call that this one interrupted */
 #define AMB_ERROR_VALUES_NULL (-6) /**< values is null */
 #define AMB_ERROR_VALUES_MISALIGNED (-7) /**< values is not aligned as a float */
-#define AMB_ERROR_VALUES_COUNT (-8) /**< values has not AMB_PARAMETERS elements */
+#define AMB_ERROR_VALUES_COUNT (-8) /**< values has not AMB_PARAMETERS elements for each plane */
 #define AMB_ERROR_SAMPLE_NULL (-9) /**< sample is null */
 #define AMB_ERROR_SAMPLE_MISALIGNED (-10) /**< sample is not aligned to 4 bytes */
 #define AMB_ERROR_COMMAND_NULL (-11) /**< command is null */
@@ -117,7 +125,17 @@ typedef int32_t amb_code;
 #define AMB_ERROR_FORCE_NULL (-24) /**< force is null */
 #define AMB_ERROR_FORCE_MISALIGNED (-25) /**< force is not aligned as a float */
 #define AMB_ERROR_SELF_TEST (-26) /**< this processor, compiler or memory computes something else */
-/** The parameter of this index is outside its range. */
+#define AMB_ERROR_ROTOR_NULL (-27) /**< rotor is null */
+#define AMB_ERROR_ROTOR_MISALIGNED (-28) /**< rotor is not aligned to AMB_SUPERVISOR_ALIGN bytes */
+#define AMB_ERROR_ROTOR_TOO_SMALL (-29) /**< rotor has fewer than AMB_ROTOR_BYTES bytes */
+#define AMB_ERROR_ROTOR_NOT_INITIALISED (-30) /**< rotor was not made by amb_rotor_init */
+#define AMB_ERROR_ROTOR_BUSY (-31) /**< rotor is in use by a call that this one interrupted */
+#define AMB_ERROR_SHAFT_NULL (-32) /**< shaft is null */
+#define AMB_ERROR_SHAFT_MISALIGNED (-33) /**< shaft is not aligned as a float */
+#define AMB_ERROR_SHAFT_INERTIA (-34) /**< mass and transverse inertia must be above 0, the polar one from 0 to twice the transverse one */
+#define AMB_ERROR_SHAFT_PLACES (-35) /**< positions must be numbers, those of the retainer bearings must differ, and none be far beyond them */
+#define AMB_ERROR_PLANE (-36) /**< plane is neither 0 nor 1 */
+/** The parameter of this index is outside its range; in a rotor's second plane its index is AMB_PARAMETERS more. */
 #define AMB_ERROR_PARAMETER(index) (-1000 - (amb_code)(index))
 /** @} */
 
@@ -247,6 +265,25 @@ typedef union amb_supervisor {
     uint64_t align;
 } amb_supervisor;
 
+/** Bytes of an amb_rotor. */
+#define AMB_ROTOR_BYTES 18432
+
+/** A supervisor of a rotor in two bearing planes. Opaque and static, or zero, as an amb_supervisor. */
+typedef union amb_rotor {
+    uint8_t bytes[AMB_ROTOR_BYTES];
+    uint64_t align;
+} amb_rotor;
+
+/** A rigid rotor. Positions are along its axis from the centre of mass, first those of plane 0, and have a sign. */
+typedef struct amb_shaft {
+    float mass_kg;                  /**< mass [kg], > 0 */
+    float transverse_inertia_kg_m2; /**< transverse moment of inertia about the centre of mass [kg m^2], > 0 */
+    float polar_inertia_kg_m2;      /**< polar moment of inertia [kg m^2], 0 to twice the transverse one */
+    float retainer_m[2];            /**< retainer bearings [m] */
+    float sensor_m[2];              /**< sensors [m] */
+    float magnet_m[2];              /**< magnets [m] */
+} amb_shaft;
+
 /** Bytes of an amb_watch. */
 #define AMB_WATCH_BYTES 32
 /** Its alignment in bytes. */
@@ -283,6 +320,14 @@ typedef struct amb_command {
     uint32_t events;     /**< AMB_EVENT_ bits */
     uint32_t integrator; /**< AMB_INTEGRATOR_ */
 } amb_command;
+
+/** What to do at both ends of a rotor until the next tick. */
+typedef struct amb_rotor_command {
+    amb_command planes[2];     /**< each plane its own */
+    uint32_t other_engaged[2]; /**< 1 for a plane if the other has engaged since the records were read: hold back what would
+                                    disturb now (excitation, a set-down, a reconfiguration) */
+    uint32_t coast_down;       /**< 1 once a plane has asked for coasting down, until amb_rotor_init() */
+} amb_rotor_command;
 
 /** An event with its tick. */
 typedef struct amb_event {
@@ -348,6 +393,8 @@ typedef struct amb_parameter {
 /** @name Sizes in bytes @{ */
 #define AMB_SIZEOF_SAMPLE 36
 #define AMB_SIZEOF_COMMAND 36
+#define AMB_SIZEOF_ROTOR_COMMAND 84
+#define AMB_SIZEOF_SHAFT 36
 #define AMB_SIZEOF_EVENT 12
 #define AMB_SIZEOF_RECORD 12
 #define AMB_SIZEOF_ENTRY 16
@@ -356,6 +403,7 @@ typedef struct amb_parameter {
 
 /* The library was compiled with the same numbers: see structs.rs and storage.rs. */
 AMB_ASSERT(supervisor_size, sizeof(amb_supervisor) == AMB_SUPERVISOR_BYTES);
+AMB_ASSERT(rotor_size, sizeof(amb_rotor) == AMB_ROTOR_BYTES);
 AMB_ASSERT(watch_size, sizeof(amb_watch) == AMB_WATCH_BYTES);
 AMB_ASSERT(sample_size, sizeof(amb_sample) == AMB_SIZEOF_SAMPLE);
 AMB_ASSERT(sample_sequence, offsetof(amb_sample, sequence) == 0);
@@ -372,6 +420,17 @@ AMB_ASSERT(command_mode, offsetof(amb_command, mode) == 20);
 AMB_ASSERT(command_limits, offsetof(amb_command, limits) == 24);
 AMB_ASSERT(command_events, offsetof(amb_command, events) == 28);
 AMB_ASSERT(command_integrator, offsetof(amb_command, integrator) == 32);
+AMB_ASSERT(rotor_command_size, sizeof(amb_rotor_command) == AMB_SIZEOF_ROTOR_COMMAND);
+AMB_ASSERT(rotor_command_planes, offsetof(amb_rotor_command, planes) == 0);
+AMB_ASSERT(rotor_command_other_engaged, offsetof(amb_rotor_command, other_engaged) == 72);
+AMB_ASSERT(rotor_command_coast_down, offsetof(amb_rotor_command, coast_down) == 80);
+AMB_ASSERT(shaft_size, sizeof(amb_shaft) == AMB_SIZEOF_SHAFT);
+AMB_ASSERT(shaft_mass_kg, offsetof(amb_shaft, mass_kg) == 0);
+AMB_ASSERT(shaft_transverse_inertia_kg_m2, offsetof(amb_shaft, transverse_inertia_kg_m2) == 4);
+AMB_ASSERT(shaft_polar_inertia_kg_m2, offsetof(amb_shaft, polar_inertia_kg_m2) == 8);
+AMB_ASSERT(shaft_retainer_m, offsetof(amb_shaft, retainer_m) == 12);
+AMB_ASSERT(shaft_sensor_m, offsetof(amb_shaft, sensor_m) == 20);
+AMB_ASSERT(shaft_magnet_m, offsetof(amb_shaft, magnet_m) == 28);
 AMB_ASSERT(event_size, sizeof(amb_event) == AMB_SIZEOF_EVENT);
 AMB_ASSERT(event_sequence, offsetof(amb_event, sequence) == 0);
 AMB_ASSERT(event_mode, offsetof(amb_event, mode) == 4);
@@ -547,6 +606,85 @@ amb_code amb_crc(const amb_entry *entries, uint32_t count, uint32_t *crc);
  * @return AMB_OK, or an error of supervisor.
  */
 amb_code amb_rearm(amb_supervisor *supervisor);
+
+/**
+ * Makes a supervisor of a rotor in two bearing planes, levitated: a supervisor for each, which know the force at the
+ * other end and how the spin turns a tilt. Takes four kilobytes of stack.
+ * @param rotor memory for it, zero or made before. After an error it is as it was.
+ * @param bytes sizeof *rotor.
+ * @param shaft the rotor. From it follow, for each plane, AMB_P_MASS_KG (what an impact there moves),
+ * AMB_P_RETAINER_PLANE_RATIO and AMB_P_MAGNET_PLANE_RATIO: their values are not used.
+ * @param values the configurations: those of plane 0 as amb_init() takes them, then those of plane 1.
+ * @param count 2 * AMB_PARAMETERS.
+ * @return AMB_OK, an error of rotor, shaft or values, or AMB_ERROR_PARAMETER(index) for the first value outside its range:
+ * index into values, or what follows from the shaft in its place.
+ */
+amb_code amb_rotor_init(amb_rotor *rotor, size_t bytes, const amb_shaft *shaft, const float *values, size_t count);
+
+/**
+ * Another shaft and other configurations for a rotor that is there, as amb_reconfigure().
+ * @param rotor made by amb_rotor_init(). After an error nothing has changed.
+ * @param shaft as for amb_rotor_init().
+ * @param values as for amb_rotor_init().
+ * @param count 2 * AMB_PARAMETERS.
+ * @return as of amb_rotor_init().
+ */
+amb_code amb_rotor_reconfigure(amb_rotor *rotor, const amb_shaft *shaft, const float *values, size_t count);
+
+/**
+ * One tick of both planes: bounded in time, whatever the samples hold.
+ * @param rotor made by amb_rotor_init().
+ * @param samples two, of plane 0 and plane 1, taken at one instant and with one sequence number.
+ * @param[out] command what to do. After an error it is zero force and AMB_MODE_SENSOR_FAULT in both planes, unless
+ * command itself is null or misaligned.
+ * @return AMB_OK, or an error of rotor, sample or command.
+ */
+amb_code amb_rotor_tick(amb_rotor *rotor, const amb_sample *samples, amb_rotor_command *command);
+
+/**
+ * What has happened to a plane since amb_rotor_init().
+ * @param rotor made by amb_rotor_init().
+ * @param plane 0 or 1; anything else is AMB_ERROR_PLANE.
+ * @param[out] report untouched after an error.
+ * @return AMB_OK, AMB_ERROR_PLANE, or an error of rotor or result.
+ */
+amb_code amb_rotor_report_now(amb_rotor *rotor, uint32_t plane, amb_report *report);
+
+/**
+ * Takes the oldest event of a plane out of its queue of 16. Call it from the background until it is AMB_NOTHING.
+ * @param rotor made by amb_rotor_init().
+ * @param plane 0 or 1; anything else is AMB_ERROR_PLANE.
+ * @param[out] event untouched unless AMB_OK.
+ * @return AMB_OK, AMB_NOTHING, AMB_ERROR_PLANE, or an error of rotor or result.
+ */
+amb_code amb_rotor_next_event(amb_rotor *rotor, uint32_t plane, amb_event *event);
+
+/**
+ * The frozen flight record of a plane. AMB_NOTHING where there is none, and as long as the other plane still records
+ * what belongs to the same event. It stays as it is until amb_rotor_rearm().
+ * @param rotor made by amb_rotor_init().
+ * @param plane 0 or 1; anything else is AMB_ERROR_PLANE.
+ * @param[out] record untouched unless AMB_OK.
+ * @return AMB_OK, AMB_NOTHING, AMB_ERROR_PLANE, or an error of rotor or result.
+ */
+amb_code amb_rotor_record_frozen(amb_rotor *rotor, uint32_t plane, amb_record *record);
+
+/**
+ * An entry of the frozen record of a plane, or AMB_NOTHING without one.
+ * @param rotor made by amb_rotor_init().
+ * @param plane 0 or 1; anything else is AMB_ERROR_PLANE.
+ * @param index 0 (oldest) to AMB_RECORD_ENTRIES - 1; anything else is AMB_ERROR_INDEX where there is a record.
+ * @param[out] entry untouched unless AMB_OK.
+ * @return AMB_OK, AMB_NOTHING, AMB_ERROR_INDEX, AMB_ERROR_PLANE, or an error of rotor or result.
+ */
+amb_code amb_rotor_record_entry(amb_rotor *rotor, uint32_t plane, uint32_t index, amb_entry *entry);
+
+/**
+ * Discards the frozen records of both planes; they wait for the next engagement.
+ * @param rotor made by amb_rotor_init().
+ * @return AMB_OK, or an error of rotor.
+ */
+amb_code amb_rotor_rearm(amb_rotor *rotor);
 
 /**
  * Makes an output watch, without a command. A control loop that is no longer called must not leave its last

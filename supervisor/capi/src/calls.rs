@@ -1,13 +1,13 @@
-//! The functions of the header, in its order; those on an output watch are in `watch`. Their names in the library end with the version of the
+//! The functions of the header, in its order; those on a rotor are in `rotor`, those on an output watch in `watch`. Their names in the library end with the version of the
 //! interface, so that a program compiled against another one does not link.
 
 use crate::code::Code;
 use crate::pointer::{Argument, Place};
-use crate::storage::{self, Lease, RECORD, Storage};
+use crate::storage::{self, Content, Kept, Lease, RECORD, Storage};
 use crate::structs::{CCommand, CEvent, CParameter, CRecord, CReport, CSample};
 use crate::{parameters, version};
 use core::ffi::{CStr, c_char};
-use supervisor::{Config, Entry, Mode, PARAMETERS, RECORD_VERSION};
+use supervisor::{Config, Entry, PARAMETERS, RECORD_VERSION, Record};
 
 /// Ending of the names; [`version::ABI`] as text.
 macro_rules! ending {
@@ -135,26 +135,29 @@ pub unsafe extern "C" fn amb_init(
         return code;
     }
     // SAFETY: the caller's promise.
-    let config = match unsafe { configuration(values, count) } {
-        Ok(config) => config,
+    let [config] = match unsafe { configurations(values, count) } {
+        Ok(configs) => configs,
         Err(code) => return code,
     };
     // SAFETY: the caller's promise.
     Code::from_result(unsafe { storage::make_supervisor(supervisor, bytes, &config) })
 }
 
-/// The configuration that these values make, not yet compared with their ranges.
+/// The configurations of so many planes that these values make, not yet compared with their ranges.
 ///
 /// # Safety
 /// `values` is null, misaligned, or points to `count` floats.
-unsafe fn configuration(values: *const f32, count: usize) -> Result<Config, Code> {
+pub(crate) unsafe fn configurations<const PLANES: usize>(
+    values: *const f32,
+    count: usize,
+) -> Result<[Config; PLANES], Code> {
     Argument::Values.check(values)?;
-    if count != PARAMETERS.len() {
+    if count != PLANES * PARAMETERS.len() {
         return Err(Code::ERROR_VALUES_COUNT);
     }
     // SAFETY: neither null nor misaligned, and as many as an array of this type has.
-    let values = unsafe { values.cast::<[f32; PARAMETERS.len()]>().read() };
-    Ok(Config::from_values(values))
+    let values = unsafe { values.cast::<[[f32; PARAMETERS.len()]; PLANES]>().read() };
+    Ok(values.map(Config::from_values))
 }
 
 /// Another configuration for a supervisor that is there, from its next tick on. After an error nothing has
@@ -173,7 +176,7 @@ pub unsafe extern "C" fn amb_reconfigure(
     let lease = unsafe { Lease::new(supervisor) };
     let done = lease.and_then(|mut lease| {
         // SAFETY: the caller's promise.
-        let config = unsafe { configuration(values, count) }?;
+        let [config] = unsafe { configurations(values, count) }?;
         let done = lease.content().reconfigure(&config);
         done.map_err(|error| storage::code_of(error.parameter()))
     });
@@ -215,28 +218,26 @@ pub unsafe extern "C" fn amb_tick(
             Code::OK
         }
         Err(code) => {
-            place.put(CCommand {
-                mode: Mode::SensorFault as u32,
-                ..CCommand::default()
-            });
+            place.put(CCommand::NO_FORCE);
             code
         }
     }
 }
 
-/// Gives `result` what a supervisor is asked for; `None` is that there is nothing.
+/// Gives `result` what a supervisor, or that of a rotor, is asked for.
 ///
 /// # Safety
-/// `supervisor` as for [`amb_tick`]; `result` is null, misaligned, or points to memory for a `T`.
-unsafe fn ask<T: Copy>(
-    supervisor: *mut Storage,
+/// `asked` is null, misaligned, or points to storage in which one was made or that is full of zeros; `result` is null,
+/// misaligned, or points to memory for a `T`.
+pub(crate) unsafe fn ask<C: Content, T: Copy>(
+    asked: *mut Kept<C>,
     result: *mut T,
-    question: impl FnOnce(&mut supervisor::Supervisor<RECORD>) -> Result<T, Code>,
+    question: impl FnOnce(&mut C) -> Result<T, Code>,
 ) -> Code {
     // SAFETY: the caller's promise.
     let place = unsafe { Place::new(Argument::Result, result) };
     // SAFETY: the caller's promise.
-    let lease = unsafe { Lease::new(supervisor) };
+    let lease = unsafe { Lease::new(asked) };
     let answer = lease.and_then(|mut lease| {
         // Asked only where the answer has a place: an event without one would be lost.
         let place = place?;
@@ -312,16 +313,18 @@ pub unsafe extern "C" fn amb_next_event(supervisor: *mut Storage, event: *mut CE
 // SAFETY: a name of its own, see `amb_abi_version`.
 #[unsafe(export_name = concat!("amb_record_frozen", ending!()))]
 pub unsafe extern "C" fn amb_record_frozen(supervisor: *mut Storage, record: *mut CRecord) -> Code {
-    let found = |s: &mut supervisor::Supervisor<RECORD>| {
-        let crc = s.record().ok_or(Code::NOTHING)?.crc;
-        Ok(CRecord {
-            version: u32::from(RECORD_VERSION),
-            entries: RECORD as u32,
-            crc,
-        })
-    };
     // SAFETY: the caller's promise.
-    unsafe { ask(supervisor, record, found) }
+    unsafe { ask(supervisor, record, |s| frozen(s.record())) }
+}
+
+/// A frozen record without its entries.
+pub(crate) fn frozen(record: Option<Record<'_, RECORD>>) -> Result<CRecord, Code> {
+    let crc = record.ok_or(Code::NOTHING)?.crc;
+    Ok(CRecord {
+        version: u32::from(RECORD_VERSION),
+        entries: RECORD as u32,
+        crc,
+    })
 }
 
 /// An entry of the frozen record, 0 the oldest.
@@ -335,13 +338,15 @@ pub unsafe extern "C" fn amb_record_entry(
     index: u32,
     entry: *mut Entry,
 ) -> Code {
-    let found = |s: &mut supervisor::Supervisor<RECORD>| {
-        let record = s.record().ok_or(Code::NOTHING)?;
-        let entry = record.entries().nth(index as usize);
-        entry.copied().ok_or(Code::ERROR_INDEX)
-    };
     // SAFETY: the caller's promise.
-    unsafe { ask(supervisor, entry, found) }
+    unsafe { ask(supervisor, entry, |s| entry_of(s.record(), index)) }
+}
+
+/// An entry of a frozen record.
+pub(crate) fn entry_of(record: Option<Record<'_, RECORD>>, index: u32) -> Result<Entry, Code> {
+    let record = record.ok_or(Code::NOTHING)?;
+    let entry = record.entries().nth(index as usize);
+    entry.copied().ok_or(Code::ERROR_INDEX)
 }
 
 /// CRC-32 of entries, oldest first, as a record has it.

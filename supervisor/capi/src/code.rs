@@ -2,6 +2,7 @@
 
 use crate::parameters;
 use core::ffi::CStr;
+use supervisor::PARAMETERS;
 
 /// Result of a call: 0 is success, 1 that there is nothing to be had, negative numbers are errors.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -53,7 +54,7 @@ codes! {
     ERROR_BUSY = -5, "supervisor is in use by a call that this one interrupted";
     ERROR_VALUES_NULL = -6, "values is null";
     ERROR_VALUES_MISALIGNED = -7, "values is not aligned as a float";
-    ERROR_VALUES_COUNT = -8, "values has not AMB_PARAMETERS elements";
+    ERROR_VALUES_COUNT = -8, "values has not AMB_PARAMETERS elements for each plane";
     ERROR_SAMPLE_NULL = -9, "sample is null";
     ERROR_SAMPLE_MISALIGNED = -10, "sample is not aligned to 4 bytes";
     ERROR_COMMAND_NULL = -11, "command is null";
@@ -72,9 +73,19 @@ codes! {
     ERROR_FORCE_NULL = -24, "force is null";
     ERROR_FORCE_MISALIGNED = -25, "force is not aligned as a float";
     ERROR_SELF_TEST = -26, "this processor, compiler or memory computes something else";
+    ERROR_ROTOR_NULL = -27, "rotor is null";
+    ERROR_ROTOR_MISALIGNED = -28, "rotor is not aligned to AMB_SUPERVISOR_ALIGN bytes";
+    ERROR_ROTOR_TOO_SMALL = -29, "rotor has fewer than AMB_ROTOR_BYTES bytes";
+    ERROR_ROTOR_NOT_INITIALISED = -30, "rotor was not made by amb_rotor_init";
+    ERROR_ROTOR_BUSY = -31, "rotor is in use by a call that this one interrupted";
+    ERROR_SHAFT_NULL = -32, "shaft is null";
+    ERROR_SHAFT_MISALIGNED = -33, "shaft is not aligned as a float";
+    ERROR_SHAFT_INERTIA = -34, "mass and transverse inertia must be above 0, the polar one from 0 to twice the transverse one";
+    ERROR_SHAFT_PLACES = -35, "positions must be numbers, those of the retainer bearings must differ, and none be far beyond them";
+    ERROR_PLANE = -36, "plane is neither 0 nor 1";
 }
 
-/// Code of the first parameter; the others follow downwards.
+/// Code of the first parameter; the others follow downwards, and after them those of a rotor's second plane.
 pub const FIRST_PARAMETER: i32 = -1000;
 
 impl Code {
@@ -82,6 +93,15 @@ impl Code {
     pub(crate) const fn parameter(index: usize) -> Self {
         // The table has far fewer rows than there are numbers.
         Self(FIRST_PARAMETER - index as i32)
+    }
+
+    /// The same parameter of a rotor's plane.
+    pub(crate) const fn of_plane(self, plane: usize) -> Self {
+        if plane == 0 {
+            self
+        } else {
+            Self(self.0 - PARAMETERS.len() as i32)
+        }
     }
 
     /// Success, or the error.
@@ -98,7 +118,10 @@ impl Code {
             return row.text;
         }
         let index = FIRST_PARAMETER.wrapping_sub(self.0);
-        let texts = usize::try_from(index).ok().and_then(parameters::texts);
+        let texts = usize::try_from(index).ok().and_then(|index| {
+            let second = index.checked_sub(PARAMETERS.len());
+            parameters::texts(second.unwrap_or(index))
+        });
         texts.map_or(c"unknown code", |texts| texts.error)
     }
 }

@@ -13,7 +13,7 @@
 //! cannot be checked is under "Safety" of each function.
 //!
 //! Files, each importing only from those above it: `version`, `parameters`, `code`, `layout`,
-//! `structs`, `pointer`, `storage`, `calls`, `watch`.
+//! `structs`, `pointer`, `storage`, `calls`, `rotor`, `watch`.
 
 #![cfg_attr(target_os = "none", no_std)]
 #![deny(clippy::undocumented_unsafe_blocks, unsafe_op_in_unsafe_fn)]
@@ -24,13 +24,14 @@ pub mod code;
 pub mod layout;
 mod parameters;
 mod pointer;
+pub mod rotor;
 mod storage;
 pub mod structs;
 mod version;
 pub mod watch;
 
 pub use code::Code;
-pub use storage::{RECORD, Storage, WatchStorage};
+pub use storage::{RECORD, RotorStorage, Storage, WatchStorage};
 pub use version::ABI;
 
 #[cfg(target_os = "none")]

@@ -13,6 +13,8 @@ pub(crate) enum Argument {
     Result,
     Watch,
     Force,
+    Rotor,
+    Shaft,
 }
 
 impl Argument {
@@ -26,6 +28,8 @@ impl Argument {
             Self::Result => Code::ERROR_RESULT_NULL,
             Self::Watch => Code::ERROR_WATCH_NULL,
             Self::Force => Code::ERROR_FORCE_NULL,
+            Self::Rotor => Code::ERROR_ROTOR_NULL,
+            Self::Shaft => Code::ERROR_SHAFT_NULL,
         }
     }
 
@@ -39,6 +43,8 @@ impl Argument {
             Self::Result => Code::ERROR_RESULT_MISALIGNED,
             Self::Watch => Code::ERROR_WATCH_MISALIGNED,
             Self::Force => Code::ERROR_FORCE_MISALIGNED,
+            Self::Rotor => Code::ERROR_ROTOR_MISALIGNED,
+            Self::Shaft => Code::ERROR_SHAFT_MISALIGNED,
         }
     }
 

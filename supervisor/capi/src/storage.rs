@@ -10,7 +10,7 @@ use crate::pointer::Argument;
 use core::cell::UnsafeCell;
 use core::mem::MaybeUninit;
 use core::sync::atomic::{AtomicU32, Ordering};
-use supervisor::{CommandWatchdog, Config, ConfigError, Supervisor};
+use supervisor::{CommandWatchdog, Config, ConfigError, Rotor, Shaft, ShaftError, Supervisor};
 
 /// Entries of the flight record.
 pub const RECORD: usize = 512;
@@ -24,6 +24,8 @@ pub struct Kept<T> {
 
 /// What is in an `amb_supervisor`.
 pub type Storage = Kept<Supervisor<RECORD>>;
+/// What is in an `amb_rotor`.
+pub type RotorStorage = Kept<Rotor<RECORD>>;
 /// What is in an `amb_watch`.
 pub type WatchStorage = Kept<CommandWatchdog<f32>>;
 
@@ -55,6 +57,16 @@ impl Content for Supervisor<RECORD> {
     const IN_USE: Code = Code::ERROR_BUSY;
 }
 
+impl Content for Rotor<RECORD> {
+    const ARGUMENT: Argument = Argument::Rotor;
+    const BYTES: usize = defined("AMB_ROTOR_BYTES");
+    const ALIGN: usize = defined("AMB_SUPERVISOR_ALIGN");
+    const READY: u32 = 0xA3B1_2070;
+    const BUSY: u32 = 0xA3B1_20B5;
+    const NOT_MADE: Code = Code::ERROR_ROTOR_NOT_INITIALISED;
+    const IN_USE: Code = Code::ERROR_ROTOR_BUSY;
+}
+
 impl Content for CommandWatchdog<f32> {
     const ARGUMENT: Argument = Argument::Watch;
     const BYTES: usize = defined("AMB_WATCH_BYTES");
@@ -78,6 +90,7 @@ const fn fits<T: Content>(spare: usize) -> bool {
 const _: () = {
     // Room for the pointers and the alignment of any target, and to grow a little.
     assert!(fits::<Supervisor<RECORD>>(2048) && fits::<CommandWatchdog<f32>>(16));
+    assert!(fits::<Rotor<RECORD>>(4096));
     assert!(defined("AMB_RECORD_ENTRIES") == RECORD);
 };
 
@@ -99,6 +112,51 @@ pub(crate) unsafe fn make_supervisor(
     put(making.place(), config).map_err(|error| code_of(error.parameter()))?;
     making.done();
     Ok(())
+}
+
+/// Makes a supervisor of a rotor; after an error the storage is as it was.
+///
+/// # Safety
+/// As for [`Making::new`], with `bytes` bytes.
+pub(crate) unsafe fn make_rotor(
+    storage: *mut RotorStorage,
+    bytes: usize,
+    (shaft, configs): (&Shaft, &[Config; 2]),
+) -> Result<(), Code> {
+    check(storage)?;
+    if bytes < Rotor::<RECORD>::BYTES {
+        return Err(Code::ERROR_ROTOR_TOO_SMALL);
+    }
+    // SAFETY: large enough now, the rest is the caller's promise.
+    let mut making = unsafe { Making::new(storage) }?;
+    put_rotor(making.place(), shaft, configs).map_err(|error| code_of_shaft(&error))?;
+    making.done();
+    Ok(())
+}
+
+/// As [`put`].
+#[inline(never)]
+fn put_rotor(
+    place: &mut MaybeUninit<Rotor<RECORD>>,
+    shaft: &Shaft,
+    configs: &[Config; 2],
+) -> Result<(), ShaftError> {
+    match Rotor::new(shaft, configs) {
+        Ok(rotor) => {
+            place.write(rotor);
+            Ok(())
+        }
+        Err(error) => Err(error),
+    }
+}
+
+/// What is wrong with a shaft or the configuration of one of its planes.
+pub(crate) fn code_of_shaft(error: &ShaftError) -> Code {
+    match error {
+        ShaftError::Inertia => Code::ERROR_SHAFT_INERTIA,
+        ShaftError::Places => Code::ERROR_SHAFT_PLACES,
+        ShaftError::Plane(plane, error) => code_of(error.parameter()).of_plane(*plane),
+    }
 }
 
 /// In a function of its own, after a check of its own: then the compiler makes the supervisor in its place.

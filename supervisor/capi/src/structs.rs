@@ -4,7 +4,9 @@
 use crate::layout::{Layout, defined};
 use core::ffi::c_char;
 use core::mem::offset_of;
-use supervisor::{Command, Entry, QueuedEvent, Report, Sample, Status};
+use supervisor::{
+    Command, Entry, Mode, Place, QueuedEvent, Report, RotorCommand, Sample, Shaft, Status,
+};
 
 /// A struct with the offset of each field, checked at compile time.
 macro_rules! c_struct {
@@ -72,6 +74,36 @@ c_struct! {
         events: u32 = 28,
         /// [`supervisor::IntegratorHint`] as a number.
         integrator: u32 = 32,
+    }
+}
+
+c_struct! {
+    /// What to do at both ends of a rotor until the next tick: [`RotorCommand`].
+    CRotorCommand = "amb_rotor_command", 84 {
+        /// Each plane its own.
+        planes: [CCommand; 2] = 0,
+        /// For each plane, whether the other has engaged since the records were read: 0 or 1.
+        other_engaged: [u32; 2] = 72,
+        /// Whether a plane has asked for coasting down: 0 or 1.
+        coast_down: u32 = 80,
+    }
+}
+
+c_struct! {
+    /// A rigid rotor: [`Shaft`].
+    CShaft = "amb_shaft", 36 {
+        /// Mass \[kg\].
+        mass_kg: f32 = 0,
+        /// Transverse moment of inertia \[kg m²\].
+        transverse_inertia_kg_m2: f32 = 4,
+        /// Polar moment of inertia \[kg m²\].
+        polar_inertia_kg_m2: f32 = 8,
+        /// Retainer bearings, from the centre of mass \[m\].
+        retainer_m: [f32; 2] = 12,
+        /// Sensors \[m\].
+        sensor_m: [f32; 2] = 20,
+        /// Magnets \[m\].
+        magnet_m: [f32; 2] = 28,
     }
 }
 
@@ -170,9 +202,11 @@ pub const ENTRY_LAYOUT: Layout = Layout {
 };
 
 /// Structs without pointers, whose layout is the same everywhere.
-pub const LAYOUTS: [Layout; 6] = [
+pub const LAYOUTS: [Layout; 8] = [
     CSample::LAYOUT,
     CCommand::LAYOUT,
+    CRotorCommand::LAYOUT,
+    CShaft::LAYOUT,
     CEvent::LAYOUT,
     CRecord::LAYOUT,
     CReport::LAYOUT,
@@ -197,6 +231,8 @@ const _: () = {
 
     assert!(defined("AMB_SIZEOF_SAMPLE") == size_of::<CSample>());
     assert!(defined("AMB_SIZEOF_COMMAND") == size_of::<CCommand>());
+    assert!(defined("AMB_SIZEOF_ROTOR_COMMAND") == size_of::<CRotorCommand>());
+    assert!(defined("AMB_SIZEOF_SHAFT") == size_of::<CShaft>());
     assert!(defined("AMB_SIZEOF_EVENT") == size_of::<CEvent>());
     assert!(defined("AMB_SIZEOF_RECORD") == size_of::<CRecord>());
     assert!(defined("AMB_SIZEOF_REPORT") == size_of::<CReport>());
@@ -212,6 +248,49 @@ impl From<CSample> for Sample {
             spin_rad_s: c.spin_rad_s,
             levitation_n: c.levitation_n,
             applied_n: c.applied_n,
+        }
+    }
+}
+
+impl From<CShaft> for Shaft {
+    fn from(c: CShaft) -> Self {
+        let [retainer, sensor, magnet] = [c.retainer_m, c.sensor_m, c.magnet_m];
+        let place = |retainer_m, sensor_m, magnet_m| Place {
+            retainer_m,
+            sensor_m,
+            magnet_m,
+        };
+        Self {
+            mass_kg: c.mass_kg,
+            transverse_inertia_kg_m2: c.transverse_inertia_kg_m2,
+            polar_inertia_kg_m2: c.polar_inertia_kg_m2,
+            places: [
+                place(retainer[0], sensor[0], magnet[0]),
+                place(retainer[1], sensor[1], magnet[1]),
+            ],
+        }
+    }
+}
+
+impl CCommand {
+    /// After an error: so that no old command stays in use.
+    pub(crate) const NO_FORCE: Self = Self {
+        force_n: [0.0; 2],
+        own_n: [0.0; 2],
+        severity: 0.0,
+        mode: Mode::SensorFault as u32,
+        limits: 0,
+        events: 0,
+        integrator: 0,
+    };
+}
+
+impl From<RotorCommand> for CRotorCommand {
+    fn from(command: RotorCommand) -> Self {
+        Self {
+            planes: command.planes.map(Into::into),
+            other_engaged: command.other_engaged.map(u32::from),
+            coast_down: u32::from(command.coast_down),
         }
     }
 }

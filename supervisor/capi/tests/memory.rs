@@ -9,9 +9,15 @@ use supervisor_capi::calls::{
     amb_crc, amb_init, amb_next_event, amb_parameter_at, amb_parameter_index, amb_rearm,
     amb_reconfigure, amb_record_entry, amb_record_frozen, amb_report_now, amb_self_test, amb_tick,
 };
-use supervisor_capi::structs::{CCommand, CEvent, CParameter, CRecord, CReport, CSample};
+use supervisor_capi::rotor::{
+    amb_rotor_init, amb_rotor_next_event, amb_rotor_rearm, amb_rotor_reconfigure,
+    amb_rotor_record_entry, amb_rotor_record_frozen, amb_rotor_report_now, amb_rotor_tick,
+};
+use supervisor_capi::structs::{
+    CCommand, CEvent, CParameter, CRecord, CReport, CRotorCommand, CSample, CShaft,
+};
 use supervisor_capi::watch::{amb_watch_expired, amb_watch_force, amb_watch_init, amb_watch_renew};
-use supervisor_capi::{Code, RECORD, Storage, WatchStorage};
+use supervisor_capi::{Code, RECORD, RotorStorage, Storage, WatchStorage};
 
 /// Memory as C has it.
 #[repr(C, align(8))]
@@ -81,6 +87,72 @@ fn calls_touch_only_what_they_were_given() {
         let off = (&raw mut command).cast::<u8>().wrapping_add(1).cast();
         let code = amb_tick(plane, &raw const sample, off);
         assert_eq!(code, Code::ERROR_COMMAND_MISALIGNED);
+    }
+}
+
+#[test]
+fn calls_on_a_rotor_touch_only_what_they_were_given() {
+    let mut memory = Box::new([Memory([0; 9216]), Memory([0; 9216])]);
+    let size = size_of::<[Memory; 2]>();
+    let rotor: *mut RotorStorage = (&raw mut *memory).cast();
+    let values = Box::new([VALUES; 2]);
+    let values: *const f32 = (&raw const *values).cast();
+    let count = 2 * PARAMETERS.len();
+    let shaft = CShaft {
+        mass_kg: 20.0,
+        transverse_inertia_kg_m2: 0.8,
+        polar_inertia_kg_m2: 0.5,
+        retainer_m: [-0.2, 0.22],
+        sensor_m: [-0.19, 0.21],
+        magnet_m: [-0.17, 0.19],
+    };
+    let mut samples = Box::new(
+        [CSample {
+            status: (Status::BEARING_ON | Status::SPIN_VALID).bits(),
+            ..CSample::default()
+        }; 2],
+    );
+    let mut command = CRotorCommand::default();
+    let mut event = MaybeUninit::<CEvent>::uninit();
+    let mut record = MaybeUninit::<CRecord>::uninit();
+    let mut report = MaybeUninit::<CReport>::uninit();
+    let mut entry = Entry::default();
+    // SAFETY: every pointer points to what its type says; the memory is zero, and used through these calls alone.
+    unsafe {
+        let tick = |samples: &[CSample; 2], command: &mut CRotorCommand| {
+            amb_rotor_tick(rotor, (&raw const *samples).cast(), &raw mut *command)
+        };
+        let not_made = tick(&samples, &mut command);
+        assert_eq!(not_made, Code::ERROR_ROTOR_NOT_INITIALISED);
+        let code = amb_rotor_init(rotor, size, &raw const shaft, values, count);
+        assert_eq!(code, Code::OK);
+        for plane in [0, 1] {
+            let mut ticks = 0;
+            while amb_rotor_record_frozen(rotor, plane, record.as_mut_ptr()) == Code::NOTHING {
+                for sample in samples.iter_mut() {
+                    sample.sequence += 1;
+                    sample.position_m[0] = (ticks as f32 * 5e-5).min(2e-4);
+                }
+                ticks += 1;
+                assert_eq!(tick(&samples, &mut command), Code::OK);
+                assert!(ticks < 10 * RECORD);
+            }
+            let last = RECORD as u32 - 1;
+            let code = amb_rotor_record_entry(rotor, plane, last, &raw mut entry);
+            assert_eq!(code, Code::OK);
+            assert_eq!(
+                amb_rotor_next_event(rotor, plane, event.as_mut_ptr()),
+                Code::OK
+            );
+            assert_eq!(
+                amb_rotor_report_now(rotor, plane, report.as_mut_ptr()),
+                Code::OK
+            );
+            assert_eq!(report.assume_init().landings, 1);
+        }
+        assert_eq!(amb_rotor_rearm(rotor), Code::OK);
+        let code = amb_rotor_reconfigure(rotor, &raw const shaft, values, count);
+        assert_eq!(code, Code::OK);
     }
 }
 

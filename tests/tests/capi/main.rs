@@ -10,4 +10,5 @@ mod header;
 mod library;
 mod misuse;
 mod rig;
+mod rotor;
 mod versions;

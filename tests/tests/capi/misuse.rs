@@ -4,6 +4,9 @@ use crate::library::{Target, beside, built, capi, good, host_program};
 use std::process::Command;
 use supervisor_capi::{Code, code::CODES};
 
+/// One plane, and a rotor in two.
+const SOURCES: [&str; 2] = ["misuse.c", "misuse_rotor.c"];
+
 #[test]
 fn every_misuse_gives_its_error_and_text() {
     let Some(library) = built(Target::Host, "") else {
@@ -11,19 +14,22 @@ fn every_misuse_gives_its_error_and_text() {
     };
     let folder = tempfile::tempdir().unwrap();
     let program = folder.path().join("misuse");
-    let sources = [beside("misuse.c"), capi().join("examples/rig.c")];
-    let Some(output) = host_program(&sources, &library, &program) else {
-        return;
-    };
-    good(&output);
-    let said = good(&Command::new(program).output().unwrap());
-    assert!(said.ends_with(" checks, 0 failures\n"), "{said}");
+    for source in SOURCES {
+        let sources = [beside(source), capi().join("examples/rig.c")];
+        let Some(output) = host_program(&sources, &library, &program) else {
+            return;
+        };
+        good(&output);
+        let said = good(&Command::new(&program).output().unwrap());
+        assert!(said.ends_with(" checks, 0 failures\n"), "{said}");
+    }
 }
 
 /// No code was forgotten.
 #[test]
 fn every_code_is_provoked() {
-    let text = std::fs::read_to_string(beside("misuse.c")).unwrap();
+    let text = SOURCES.map(|source| std::fs::read_to_string(beside(source)).unwrap());
+    let text = text.concat();
     for row in CODES {
         let name = format!("AMB_{}", row.name);
         assert!(text.contains(&name), "{name} is in no check");

@@ -4,8 +4,10 @@
 #include "rig.h"
 
 #include <stdio.h>
+#include <string.h>
 
 static amb_supervisor plane;
+static amb_rotor rotor;
 static rig machine;
 
 void control_interrupt(void) {
@@ -25,6 +27,37 @@ __attribute__((noinline)) static unsigned depth(uint32_t *top) {
     const volatile uint32_t *word = top - WORDS;
     while (word < top - CLEAR && *word == PAINT) word++;
     return (unsigned)((const volatile char *)top - (const volatile char *)word);
+}
+
+/* The same of a rotor, both of its ends on the rig. */
+static int of_rotor(void) {
+    static const amb_shaft shaft = {20.0f, 0.8f, 0.5f, {-0.2f, 0.22f}, {-0.19f, 0.21f}, {-0.17f, 0.19f}};
+    static float values[2 * AMB_PARAMETERS];
+    uint32_t *const top = __builtin_frame_address(0);
+    unsigned deepest = 0;
+    memcpy(values, rig_config, sizeof rig_config);
+    memcpy(values + AMB_PARAMETERS, rig_config, sizeof rig_config);
+    paint(top);
+    if (amb_rotor_init(&rotor, sizeof rotor, &shaft, values, 2 * AMB_PARAMETERS) != AMB_OK) return 1;
+    printf("rotor-init %u\n", depth(top));
+    paint(top);
+    if (amb_rotor_reconfigure(&rotor, &shaft, values, 2 * AMB_PARAMETERS) != AMB_OK) return 1;
+    printf("rotor-reconfigure %u\n", depth(top));
+    rig_start(&machine);
+    while (machine.tick < RIG_TICKS) {
+        amb_sample samples[2];
+        amb_rotor_command command;
+        unsigned now;
+        rig_sample(&machine, &samples[0]);
+        samples[1] = samples[0];
+        paint(top);
+        if (amb_rotor_tick(&rotor, samples, &command) != AMB_OK) return 1;
+        now = depth(top);
+        if (now > deepest) deepest = now;
+        rig_actuate(&machine, &command.planes[0]);
+    }
+    printf("rotor-tick %u\n", deepest);
+    return 0;
 }
 
 int main(void) {
@@ -56,5 +89,5 @@ int main(void) {
         rig_actuate(&machine, &command);
     }
     printf("tick %u\n", deepest);
-    return 0;
+    return of_rotor();
 }

@@ -44,7 +44,7 @@ const ONLY_PARSED: [(&str, &str); 12] = [
 ];
 
 /// What is not this program: what it needs, or what builds and runs firmware.
-const OTHERS: [(&str, &str); 11] = [
+const OTHERS: [(&str, &str); 13] = [
     ("git clone", "fetches the project"),
     ("curl", "installs Rust"),
     ("apt-get", "installs packages"),
@@ -53,6 +53,8 @@ const OTHERS: [(&str, &str); 11] = [
     ("tests/peers/run", "installs other people's integrators"),
     ("cargo rustc", "the tests of the C library do it"),
     ("cargo build", "the tests of the images do it"),
+    ("cc -std=c99", "the tests of the C library do it"),
+    ("./two_planes", "the tests of the C library do it"),
     ("arm-none-eabi-gcc", "the tests of the C library do it"),
     ("qemu-system-arm", "the tests of the images do it"),
     ("cd ", "leads to the next line"),

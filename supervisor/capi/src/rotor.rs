@@ -1,0 +1,207 @@
+//! The functions of the header on the supervisor of a rotor in two bearing planes.
+
+use crate::calls::{ask, configurations, ending, entry_of, frozen};
+use crate::code::Code;
+use crate::pointer::{Argument, Place};
+use crate::storage::{self, Lease, RECORD, RotorStorage};
+use crate::structs::{CCommand, CEvent, CRecord, CReport, CRotorCommand, CSample, CShaft};
+use supervisor::{Entry, Rotor};
+
+/// Makes a supervisor of a rotor in storage of the caller's. After an error the storage is as it was.
+///
+/// # Safety
+/// `rotor` is null, misaligned, or points to `bytes` bytes that have been written to, and that only this library
+/// touches from now on; `shaft` is null, misaligned, or points to its struct; `values` is null, misaligned, or points to
+/// `count` floats.
+// SAFETY: all names of this library begin with amb_, and none twice.
+#[unsafe(export_name = concat!("amb_rotor_init", ending!()))]
+pub unsafe extern "C" fn amb_rotor_init(
+    rotor: *mut RotorStorage,
+    bytes: usize,
+    shaft: *const CShaft,
+    values: *const f32,
+    count: usize,
+) -> Code {
+    if let Err(code) = Argument::Rotor.check(rotor.cast_const()) {
+        return code;
+    }
+    // SAFETY: the caller's promise.
+    let shaft = match unsafe { Argument::Shaft.read(shaft) } {
+        Ok(shaft) => shaft.into(),
+        Err(code) => return code,
+    };
+    // SAFETY: the caller's promise.
+    let configs = match unsafe { configurations(values, count) } {
+        Ok(configs) => configs,
+        Err(code) => return code,
+    };
+    // SAFETY: the caller's promise.
+    Code::from_result(unsafe { storage::make_rotor(rotor, bytes, (&shaft, &configs)) })
+}
+
+/// Another shaft and other configurations, from the next tick on. After an error nothing has changed.
+///
+/// # Safety
+/// `rotor` as for [`amb_rotor_tick`]; the others as for [`amb_rotor_init`].
+// SAFETY: a name of its own, see `amb_rotor_init`.
+#[unsafe(export_name = concat!("amb_rotor_reconfigure", ending!()))]
+pub unsafe extern "C" fn amb_rotor_reconfigure(
+    rotor: *mut RotorStorage,
+    shaft: *const CShaft,
+    values: *const f32,
+    count: usize,
+) -> Code {
+    // SAFETY: the caller's promise.
+    let lease = unsafe { Lease::new(rotor) };
+    let done = lease.and_then(|mut lease| {
+        // SAFETY: the caller's promise.
+        let shaft = unsafe { Argument::Shaft.read(shaft) }?;
+        // SAFETY: the caller's promise.
+        let configs = unsafe { configurations(values, count) }?;
+        let done = lease.content().reconfigure(&shaft.into(), &configs);
+        done.map_err(|error| storage::code_of_shaft(&error))
+    });
+    Code::from_result(done)
+}
+
+/// One tick of both planes. An error gives commands of no force, so that no old ones stay in use.
+///
+/// # Safety
+/// `rotor` is null, misaligned, or points to storage given to [`amb_rotor_init`] or full of zeros; `samples` is null,
+/// misaligned, or points to two of them; `command` is null, misaligned, or points to its struct.
+// SAFETY: a name of its own, see `amb_rotor_init`.
+#[unsafe(export_name = concat!("amb_rotor_tick", ending!()))]
+pub unsafe extern "C" fn amb_rotor_tick(
+    rotor: *mut RotorStorage,
+    samples: *const CSample,
+    command: *mut CRotorCommand,
+) -> Code {
+    // SAFETY: the caller's promise.
+    let place = match unsafe { Place::new(Argument::Command, command) } {
+        Ok(place) => place,
+        Err(code) => return code,
+    };
+    // SAFETY: the caller's promise; an array is aligned as its elements. Read before the command is written: both may be
+    // the same memory.
+    let samples = unsafe { Argument::Sample.read(samples.cast::<[CSample; 2]>()) };
+    let done = samples.and_then(|samples| {
+        // SAFETY: the caller's promise.
+        let mut lease = unsafe { Lease::new(rotor) }?;
+        Ok(lease.content().tick(&samples.map(Into::into)))
+    });
+    match done {
+        Ok(command) => {
+            place.put(command.into());
+            Code::OK
+        }
+        Err(code) => {
+            place.put(CRotorCommand {
+                planes: [CCommand::NO_FORCE; 2],
+                ..CRotorCommand::default()
+            });
+            code
+        }
+    }
+}
+
+/// Gives `result` what a plane is asked for.
+///
+/// # Safety
+/// `rotor` as for [`amb_rotor_tick`]; `result` is null, misaligned, or points to memory for a `T`.
+unsafe fn ask_plane<T: Copy>(
+    rotor: *mut RotorStorage,
+    plane: u32,
+    result: *mut T,
+    question: impl FnOnce(&mut Rotor<RECORD>, usize) -> Result<T, Code>,
+) -> Code {
+    // SAFETY: the caller's promise.
+    unsafe {
+        ask(rotor, result, |rotor| match plane {
+            0 => question(rotor, 0),
+            1 => question(rotor, 1),
+            _ => Err(Code::ERROR_PLANE),
+        })
+    }
+}
+
+/// What has happened to a plane since the supervisor was made.
+///
+/// # Safety
+/// `rotor` as for [`amb_rotor_tick`]; `report` is null, misaligned, or points to memory for its struct.
+// SAFETY: a name of its own, see `amb_rotor_init`.
+#[unsafe(export_name = concat!("amb_rotor_report_now", ending!()))]
+pub unsafe extern "C" fn amb_rotor_report_now(
+    rotor: *mut RotorStorage,
+    plane: u32,
+    report: *mut CReport,
+) -> Code {
+    // SAFETY: the caller's promise.
+    unsafe {
+        ask_plane(rotor, plane, report, |r, end| {
+            Ok(r.plane(end).report().into())
+        })
+    }
+}
+
+/// Takes the oldest event of a plane out of its queue.
+///
+/// # Safety
+/// `rotor` as for [`amb_rotor_tick`]; `event` is null, misaligned, or points to memory for its struct.
+// SAFETY: a name of its own, see `amb_rotor_init`.
+#[unsafe(export_name = concat!("amb_rotor_next_event", ending!()))]
+pub unsafe extern "C" fn amb_rotor_next_event(
+    rotor: *mut RotorStorage,
+    plane: u32,
+    event: *mut CEvent,
+) -> Code {
+    // SAFETY: the caller's promise.
+    unsafe {
+        ask_plane(rotor, plane, event, |r, end| {
+            let event = r.plane(end).next_event();
+            event.map(Into::into).ok_or(Code::NOTHING)
+        })
+    }
+}
+
+/// The frozen record of a plane without its entries.
+///
+/// # Safety
+/// `rotor` as for [`amb_rotor_tick`]; `record` is null, misaligned, or points to memory for its struct.
+// SAFETY: a name of its own, see `amb_rotor_init`.
+#[unsafe(export_name = concat!("amb_rotor_record_frozen", ending!()))]
+pub unsafe extern "C" fn amb_rotor_record_frozen(
+    rotor: *mut RotorStorage,
+    plane: u32,
+    record: *mut CRecord,
+) -> Code {
+    // SAFETY: the caller's promise.
+    unsafe { ask_plane(rotor, plane, record, |r, end| frozen(r.record(end))) }
+}
+
+/// An entry of the frozen record of a plane, 0 the oldest.
+///
+/// # Safety
+/// `rotor` as for [`amb_rotor_tick`]; `entry` is null, misaligned, or points to memory for its struct.
+// SAFETY: a name of its own, see `amb_rotor_init`.
+#[unsafe(export_name = concat!("amb_rotor_record_entry", ending!()))]
+pub unsafe extern "C" fn amb_rotor_record_entry(
+    rotor: *mut RotorStorage,
+    plane: u32,
+    index: u32,
+    entry: *mut Entry,
+) -> Code {
+    // SAFETY: the caller's promise.
+    unsafe { ask_plane(rotor, plane, entry, |r, end| entry_of(r.record(end), index)) }
+}
+
+/// Discards frozen records; both planes wait for the next engagement.
+///
+/// # Safety
+/// `rotor` as for [`amb_rotor_tick`].
+// SAFETY: a name of its own, see `amb_rotor_init`.
+#[unsafe(export_name = concat!("amb_rotor_rearm", ending!()))]
+pub unsafe extern "C" fn amb_rotor_rearm(rotor: *mut RotorStorage) -> Code {
+    // SAFETY: the caller's promise.
+    let lease = unsafe { Lease::new(rotor) };
+    Code::from_result(lease.map(|mut lease| lease.content().rearm()))
+}
