@@ -200,7 +200,8 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
         let quiet = self.guard.innovation.is_quiet(coeffs);
         let judged = Judged {
             quiet,
-            hands_back: (self.trust).tick((square, flies), (self.phase, rubs), coeffs),
+            hands_back: (self.trust).tick((square, flies), (self.phase, rubs, sample.spin), coeffs),
+            rubs_on: self.trust.rubs_on(),
             trusted: quiet && self.trust.is_granted(),
         };
         if self.phase != Phase::Levitated || contact.unavoidable || contact.touching {

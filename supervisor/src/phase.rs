@@ -21,6 +21,8 @@ pub(crate) struct Judged {
     pub(crate) quiet: bool,
     /// The reading may be acted on.
     pub(crate) trusted: bool,
+    /// A forward rub has gone on for windows, at one spin.
+    pub(crate) rubs_on: bool,
     /// The bearing has to be handed back, for so many ticks.
     pub(crate) hands_back: Option<u32>,
 }
@@ -142,7 +144,12 @@ impl<S: Scalar> Phase<S> {
             return Self::SensorFault { bouncing };
         }
         // Where what the reading usually does is too fast, a contact that goes on all the time still says what it is.
-        let whirls = judged.quiet && contact.touching && class == Class::BackwardWhirl;
+        let goes_round = match class {
+            Class::BackwardWhirl => true,
+            Class::ForwardRub { .. } => judged.rubs_on,
+            _ => false,
+        };
+        let whirls = judged.quiet && contact.touching && goes_round;
         if self == Self::Levitated && !judged.trusted && !whirls {
             return self;
         }

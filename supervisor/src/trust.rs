@@ -40,15 +40,16 @@ const MOST_DOUBLED: u8 = 7;
 pub(crate) struct Trust<S> {
     /// Largest square of the speed in this window.
     peak: S,
-    /// Fastest in the last window.
+    /// Fastest in the last window; while a forward rub lasts, which teaches no speed, the size of the spin.
     before: S,
     /// Speed that an approach has to exceed, by what the reading usually does.
     pub(crate) margin: S,
     /// Lowest peak of this engagement.
     lowest: S,
     ticks_left: u16,
-    /// In this window the wall or the supervisor has moved the rotor.
-    disturbed: bool,
+    /// In this window the wall or the supervisor has moved the rotor: not, or 1 and so many levitated windows more that a
+    /// forward rub has lasted at one spin.
+    disturbed: u8,
     debt: u16,
     doubled: u8,
     pub(crate) handed_back: u16,
@@ -62,13 +63,18 @@ impl<S: Scalar> Default for Trust<S> {
             margin: S::ZERO,
             lowest: S::from_f32(MOST_SQUARE),
             ticks_left: 0,
-            disturbed: false,
+            disturbed: 0,
             debt: 0,
             doubled: 0,
             handed_back: 0,
         }
     }
 }
+
+/// Windows that a forward rub has to last, and the share by which the spin may differ from one to the next: at the critical
+/// speeds of a run-up it comes and goes.
+const RUBS_ON: u8 = 3;
+const SAME_SPIN: f32 = 0.003;
 
 /// More than any square of a speed is.
 const MOST_SQUARE: f32 = 500.0;
@@ -80,35 +86,53 @@ impl<S: Scalar> Trust<S> {
         self.margin <= S::from_f32(UNTRUSTED_FROM * MARGIN - ORDINARY)
     }
 
-    /// A tick in a phase, with the square of the speed and whether the wall is away; `rubs`: forward, as unbalance drives it.
-    /// Whether the bearing has to be handed back, and for how many ticks.
+    /// Whether a forward rub goes on and on, at one spin.
+    #[inline]
+    pub(crate) fn rubs_on(&self) -> bool {
+        self.disturbed >= RUBS_ON
+    }
+
+    /// A tick in a phase, with the square of the speed and whether the wall is away; `rubs`: forward, as unbalance drives it,
+    /// at this spin. Whether the bearing has to be handed back, and for how many ticks.
     #[inline]
     pub(crate) fn tick(
         &mut self,
         (square, flies): (S, bool),
-        (phase, rubs): (Phase<S>, bool),
+        (phase, rubs, spin): (Phase<S>, bool, S),
         coeffs: &Coeffs<S>,
     ) -> Option<u32> {
         self.peak = self.peak.max(square);
-        self.disturbed |= !flies || phase.is_engaged();
+        if !flies || phase.is_engaged() {
+            self.disturbed = self.disturbed.max(1);
+        }
         match self.ticks_left.checked_sub(1) {
             Some(left) => {
                 self.ticks_left = left;
                 None
             }
-            None => self.window((phase, rubs), coeffs),
+            None => self.window((phase, rubs, spin.abs()), coeffs),
         }
     }
 
     /// The end of a window.
     #[inline(never)]
-    fn window(&mut self, (phase, rubs): (Phase<S>, bool), coeffs: &Coeffs<S>) -> Option<u32> {
+    fn window(
+        &mut self,
+        (phase, rubs, spin): (Phase<S>, bool, S),
+        coeffs: &Coeffs<S>,
+    ) -> Option<u32> {
         self.ticks_left = coeffs.window_ticks;
         let peak = core::mem::replace(&mut self.peak, S::ZERO);
-        let disturbed = core::mem::replace(&mut self.disturbed, false);
+        let disturbed = core::mem::replace(&mut self.disturbed, 0);
+        if rubs && phase == Phase::Levitated {
+            let before = core::mem::replace(&mut self.before, spin);
+            if (spin - before).abs() <= spin * S::from_f32(SAME_SPIN) {
+                self.disturbed = disturbed.saturating_add(1);
+            }
+        }
         if !phase.is_engaged() {
             // What the wall or the supervisor did is not usual.
-            if !disturbed {
+            if disturbed == 0 {
                 self.learn(peak.sqrt());
             }
             self.lowest = S::from_f32(MOST_SQUARE);

@@ -5,6 +5,7 @@ mod bisection;
 mod crossover;
 mod listing;
 mod noise;
+mod rotor;
 mod show;
 mod warnings;
 
@@ -18,6 +19,7 @@ use supervisor::{Config, ConfigError, PARAMETERS};
 pub use crossover::{Crossover, SmallSignals};
 pub use listing::{Language, listing, table};
 pub use noise::Noise;
+pub use rotor::{MOST_TURN_RAD, ModeAtRisk, RotorAdvice};
 pub use show::text;
 pub use warnings::Warning;
 
@@ -59,6 +61,18 @@ pub struct Advice {
     pub supervisor_table: String,
     /// What is weak, and what to do.
     pub warnings: Vec<Warning>,
+}
+
+impl Advice {
+    /// The configuration that it is about: suggested, but for what the scene replaces.
+    pub fn in_use(&self) -> Config {
+        let mut rows = self.parameters.iter();
+        let values = [(); PARAMETERS.len()].map(|()| {
+            let row = rows.next();
+            row.map_or(0.0, |row| row.replaced_by.unwrap_or(row.value))
+        });
+        Config::from_values(values)
+    }
 }
 
 /// Speeds that matter in continuous contact.

@@ -2,7 +2,7 @@
 
 use crate::cli::error::{CommandError, pretty, print, say};
 use crate::cli::load_any;
-use firmware_bench::advise::{self, Advice, Language, OutOfRange};
+use firmware_bench::advise::{self, Advice, Language, OutOfRange, RotorAdvice};
 use firmware_bench::modes::Coupling;
 use firmware_bench::report::campbell;
 use firmware_bench::scene::Scene;
@@ -10,6 +10,7 @@ use firmware_bench::scene::machine::{AnyScene, MachineScene};
 use firmware_bench::scene::suggest::Nominal;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
+use supervisor::Config;
 
 /// As what the configuration is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
@@ -294,6 +295,7 @@ fn of_scene(
 struct MachineAdvice<'a> {
     scene: &'a str,
     coupling: Coupling,
+    rotor: Option<RotorAdvice>,
     planes: Vec<Advice>,
 }
 
@@ -326,17 +328,22 @@ fn of_machine(
         .collect::<Result<_, _>>()?;
     let coupling =
         Coupling::new(scene).map_err(|e| CommandError::other("reading the machine", e))?;
+    // With the configurations that are advised, not those of the scene.
+    let in_use: Vec<Config> = all.iter().map(Advice::in_use).collect();
+    let rotor = RotorAdvice::new(scene, &in_use);
     if args.json {
         let all = MachineAdvice {
             scene: title,
             coupling,
+            rotor,
             planes: all,
         };
         print(&(pretty(&all, "formatting the advice")? + "\n"))?;
     } else {
         let texts: Vec<String> = all.iter().map(advise::text).collect();
+        let rotor = rotor.map_or_else(String::new, |rotor| rotor.text() + "\n");
         print(&format!(
-            "{title}\n{}\n\n{}",
+            "{title}\n{}\n\n{rotor}{}",
             campbell::coupling(&coupling),
             texts.join("\n")
         ))?;

@@ -34,7 +34,7 @@
 //! ```
 //!
 //! Rooms, each importing only from those above it: `campaign`, `machines`, `accuracy`, `paper`, `overloads`, `harm`,
-//! `trials`, `unseen_machines`, `whole_rotors`, `loop_rates`, `sensitivity`, `on_target`.
+//! `trials`, `unseen_machines`, `whole_rotors`, `rub`, `loop_rates`, `sensitivity`, `on_target`.
 
 #![forbid(unsafe_code)]
 #![warn(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
@@ -47,6 +47,7 @@ pub mod machines;
 pub mod on_target;
 pub mod overloads;
 pub mod paper;
+pub mod rub;
 pub mod sensitivity;
 pub mod trials;
 pub mod unseen_machines;
@@ -80,6 +81,16 @@ pub const STUDIES: &[Study] = &[
         name: "paper",
         about: "every number and figure of the paper, computed",
         run: paper::study,
+    },
+    Study {
+        name: "rotor-catalogue",
+        about: "hardest blows and overloads of the catalogue's whole rotors, P5 to P8",
+        run: whole_rotors::catalogue::study,
+    },
+    Study {
+        name: "rub",
+        about: "forward rub that levitation alone stays in, on machines drawn at random: how often it is broken",
+        run: rub::study::study,
     },
     Study {
         name: "sensitivity",

@@ -1,8 +1,13 @@
-//! Whole rotors drawn at random: levitation alone beside the supervisor of both planes.
+//! Whole rotors under levitation alone and with the supervisor of both planes: drawn at random (`study`), and those of the
+//! catalogue (`catalogue`).
 
+pub mod catalogue;
 mod compared;
 mod drawn;
+mod hardest;
+mod plants;
 pub mod study;
 
 pub use self::compared::{Ran, Run};
 pub use self::drawn::{Class, Event, RotorCase};
+pub use self::plants::{Blow, Loop, RotorPlant};

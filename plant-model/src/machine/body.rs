@@ -152,15 +152,6 @@ fn rings_of(plane: &MachinePlane) -> Vec<RingParams> {
     }
 }
 
-/// Displacement of a shape at a place, straight between its points.
-pub(crate) fn shape_at(shape: &[(f64, f64)], position_m: f64) -> f64 {
-    let after = shape
-        .partition_point(|(z, _)| *z <= position_m)
-        .clamp(1, shape.len() - 1);
-    let ((za, a), (zb, b)) = (shape[after - 1], shape[after]);
-    a + (b - a) * (position_m - za) / (zb - za)
-}
-
 /// Adds what a spring (or damper) of port S gives, SᵀkS.
 fn add_at_port(dense: &mut [f64], n: usize, port: &Port, k: V2) {
     for row in 0..n {
@@ -196,7 +187,7 @@ impl LinearBody {
             (port.x[0], port.y[1]) = (per_mass, per_mass);
             (port.x[2], port.y[3]) = (position_m * per_inertia, position_m * per_inertia);
             for (i, mode) in bending.iter().enumerate() {
-                let phi = per_mass * shape_at(&mode.shape, position_m);
+                let phi = per_mass * mode.displacement(position_m);
                 (port.x[4 + 2 * i], port.y[5 + 2 * i]) = (phi, phi);
             }
             port

@@ -50,6 +50,24 @@ pub struct BendingMode {
     pub shape: Vec<(f64, f64)>,
 }
 
+impl BendingMode {
+    /// Displacement at a place \[m\], straight between those of the shape and beyond them; 0 of a shape that has not two.
+    pub fn displacement(&self, position_m: f64) -> f64 {
+        shape_at(&self.shape, position_m)
+    }
+}
+
+/// The same of a shape alone.
+pub(crate) fn shape_at(shape: &[(f64, f64)], position_m: f64) -> f64 {
+    let after = shape
+        .partition_point(|(z, _)| *z <= position_m)
+        .clamp(1, shape.len().max(2) - 1);
+    match shape.get(after - 1..=after) {
+        Some(&[(za, a), (zb, b)]) => a + (b - a) * (position_m - za) / (zb - za),
+        _ => 0.0,
+    }
+}
+
 /// What turns and bends.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Rotor {

@@ -1,6 +1,5 @@
 //! What can be read off a machine.
 
-use super::body::shape_at;
 use super::params::{MAX_MAGNETS, MAX_PLANES, Rotor};
 use super::poles::MagnetLaw;
 use super::series::MachineSeries;
@@ -85,7 +84,7 @@ impl Rotor {
     pub fn centre_line_m(&self, axis: &AxisMotion, bending: &[Body], position_m: f64) -> V2 {
         let straight = axis.centre.position + position_m * axis.tilt.position;
         (self.bending().iter().zip(bending)).fold(straight, |sum, (mode, motion)| {
-            sum + shape_at(&mode.shape, position_m) * motion.position
+            sum + mode.displacement(position_m) * motion.position
         })
     }
 }

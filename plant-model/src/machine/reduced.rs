@@ -1,6 +1,6 @@
 //! A rotor by the matrices of its motion in one plane, reduced to its rigid motions and to bending modes.
 
-use super::body::shape_at;
+use super::params::shape_at;
 use super::params::{BendingMode, MachineError, RigidRotor, Rotor, check};
 use nalgebra::{Cholesky, DMatrix, DVector, SymmetricEigen};
 

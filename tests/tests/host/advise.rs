@@ -5,6 +5,7 @@ mod crossover;
 mod keys;
 mod listing;
 mod noise;
+mod rotor;
 mod shaken;
 mod vibration;
 

@@ -13,6 +13,8 @@ mod paper_maps;
 mod paper_onset;
 mod paper_phases;
 mod paper_retainer;
+mod rotor_catalogue;
+mod rub;
 mod sensitivity;
 mod silently_wrong_runs;
 mod situations;

@@ -1,9 +1,9 @@
 //! The judge of the model: doubt about single samples, what the reading usually does, and the way out of an engagement
 //! that comes no farther.
 
-use supervisor::{Core, Events, Limits, Mode, Prepared, Q, RejectReason, Supervisor};
+use supervisor::{Core, Events, Limits, Mode, Prepared, Q, RejectReason, Sample, Supervisor};
 use system_tests::bench::Bench;
-use system_tests::rig::{config, sample};
+use system_tests::rig::{RADIUS_M, config, on_circle, sample};
 use system_tests::storm::{AnyBits, Chance, Storm};
 
 /// Clearance of the rig \[m\], and √(m·c/F) \[ticks\].
@@ -193,6 +193,45 @@ fn what_is_usual_is_no_approach() {
         }
         assert_eq!(engaged, 0, "{speed} at {amplitude}");
     }
+}
+
+/// An orbit that is too fast to be trusted hides an approach, and not a forward rub: contact at the spin's rate that goes on
+/// for three windows engages the supervisor. At another rate it says nothing, nor while the spin changes.
+#[test]
+fn a_forward_rub_engages_one_that_trusts_no_reading() {
+    let engaged_after = |rate: f32, run_up: f32| {
+        let mut supervisor = Supervisor::<64>::new(&config()).unwrap();
+        let spin = 1000.0 * config().sample_period_s;
+        // Ticks of an orbit at half the clearance, and of one on the wall.
+        let (free, rubbing) = (6 * WINDOW_TICKS, 6 * WINDOW_TICKS);
+        let (mut engaged, mut angle) = (None, 0.0);
+        for i in 0..free + rubbing {
+            let over = 1.0 + run_up * i.saturating_sub(free) as f32 / WINDOW_TICKS as f32;
+            let (radius_m, step) = match i < free {
+                true => (0.5 * C_M, spin),
+                false => (RADIUS_M, rate * spin * over),
+            };
+            // Counter-clockwise, as the spin.
+            angle -= step;
+            let command = supervisor.tick(&Sample {
+                spin_rad_s: 1000.0 * over,
+                ..sample(i, on_circle(radius_m, angle))
+            });
+            if i >= 3 * WINDOW_TICKS && i < free {
+                assert_eq!(command.mode, Mode::Levitated, "tick {i}");
+            }
+            if i >= free && command.mode.is_engaged() {
+                assert_eq!(command.mode, Mode::Bounce);
+                engaged = engaged.or(Some(i - free));
+            }
+        }
+        engaged
+    };
+    let after = engaged_after(1.0, 0.0).unwrap();
+    let windows = 2 * WINDOW_TICKS..4 * WINDOW_TICKS;
+    assert!(windows.contains(&after), "{after}");
+    assert_eq!(engaged_after(0.6, 0.0), None);
+    assert_eq!(engaged_after(1.0, 0.02), None);
 }
 
 /// An engagement without a touch leaves the record to one with it, and is counted apart.

@@ -135,7 +135,7 @@ fn the_example_firmware_tells_that_it_is_late() {
         assert!(report.starts_with("Report { landings: 1, "), "{report}");
         let (_, late) = report.split_once("late_ticks: ").unwrap();
         let late: u32 = late.split(',').next().unwrap().parse().unwrap();
-        // From the way to the wall to the end of the hand-over: 40, 120, 100 and 50 ticks.
-        assert!((120..=310).contains(&late), "{report}");
+        // From the way to the wall to the end of the hand-over, 40, 120, 100 and 50 ticks, and ten in which it catches up.
+        assert!((120..=320).contains(&late), "{report}");
     }
 }

@@ -63,6 +63,8 @@ pub struct MachineScene {
     pub loads: Vec<Disturbance>,
     /// The levitation controller, where one holds the whole rotor; else each plane has its own.
     pub levitation: Option<WholeLevitationParams>,
+    /// The rotor as its supervisor is told it, where that is another than it is.
+    pub told: Option<Shaft>,
     /// What is allowed and yet unlikely to be meant, with file and line.
     pub warnings: Vec<String>,
 }
@@ -158,8 +160,15 @@ impl MachineScene {
 
     /// The supervisor of the whole rotor, where there is one for it.
     pub(crate) fn supervisor(&self) -> Option<Rotor> {
-        let shaft = self.shaft()?;
-        supervisor_of(&shaft, &self.planes)?.ok()
+        match &self.told {
+            Some(told) => {
+                let [first, second] = self.planes.as_slice() else {
+                    return None;
+                };
+                Rotor::new(told, &[first.scene.supervisor?, second.scene.supervisor?]).ok()
+            }
+            None => supervisor_of(&self.shaft()?, &self.planes)?.ok(),
+        }
     }
 }
 
@@ -272,6 +281,7 @@ impl Spec {
             planes: scenes,
             loads,
             levitation,
+            told: None,
             warnings,
         };
         let told = scene.shaft();

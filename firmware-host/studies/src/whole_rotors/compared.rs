@@ -29,7 +29,8 @@ pub struct Ran {
     pub own: Run,
 }
 
-fn run(scene: &MachineScene, kind: PolicyKind) -> Option<Run> {
+/// A policy on a scene; `None` where the run cannot be trusted.
+pub(super) fn run(scene: &MachineScene, kind: PolicyKind) -> Option<Run> {
     let recorders = MachineRecorders {
         planes: Vec::new(),
         axis: None,

@@ -1,0 +1,144 @@
+//! What a supervisor of both planes meets beyond the point mass: nutation, and bending modes that it is not told of.
+
+use super::crossover::SmallSignals;
+use crate::report::plot::text::figures;
+use crate::scene::machine::MachineScene;
+use serde::Serialize;
+use std::f64::consts::TAU;
+use std::fmt::Write;
+use supervisor::Config;
+
+/// A turn of the nutation by the time a force acts beyond which the supervisor's lead ends \[rad\].
+pub const MOST_TURN_RAD: f64 = 1.5;
+
+/// Of a rotor with a supervisor; keys are stable.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct RotorAdvice {
+    /// Frequency with which a free tilt turns at the scene's spin, (I_p/I_t)·Ω \[Hz\]; its sign is that of the spin.
+    pub nutation_hz: f64,
+    /// By how much that turns from a sample to its force, the later plane's \[rad\].
+    pub nutation_turn_rad: f64,
+    /// The same at which the supervisor leads no farther, as a spin \[Hz\]; none of a rotor without polar inertia.
+    pub spin_of_most_turn_hz: Option<f64>,
+    /// Bending modes below half the control rate, in the order of their frequencies.
+    pub modes: Vec<ModeAtRisk>,
+}
+
+/// A bending mode under the supervisor's force in flight, for small vibrations; at rest.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ModeAtRisk {
+    /// Natural frequency \[Hz\].
+    pub frequency_hz: f64,
+    /// Its own damping ratio.
+    pub damping_ratio: f64,
+    /// What the force adds to that, of all planes; negative: it drives.
+    pub added_damping_ratio: f64,
+    /// Displacement at the sensor of each plane, over the rigid rotor's …
+    pub at_sensors: Vec<f64>,
+    /// … and at its magnet.
+    pub at_magnets: Vec<f64>,
+}
+
+impl ModeAtRisk {
+    /// Whether an engaged supervisor would make it grow.
+    pub fn grows(&self) -> bool {
+        self.damping_ratio + self.added_damping_ratio < 0.0
+    }
+}
+
+impl RotorAdvice {
+    /// With these configurations of its planes; `None` of a rotor that has no supervisor for both.
+    pub fn new(scene: &MachineScene, configs: &[Config]) -> Option<Self> {
+        let shaft = scene.shaft()?;
+        let [first, second] = configs else {
+            return None;
+        };
+        let inertias =
+            f64::from(shaft.polar_inertia_kg_m2) / f64::from(shaft.transverse_inertia_kg_m2);
+        let late_s = |config: &Config| {
+            let period_s = f64::from(config.sample_period_s);
+            (f64::from(config.delay_samples.round()) + 0.5) * period_s
+                + f64::from(config.amplifier_lag_s)
+        };
+        let later_s = late_s(first).max(late_s(second));
+        let nutation_hz = inertias * scene.start.spin_rad_s / TAU;
+        let mass_kg = f64::from(shaft.mass_kg);
+        let signals = [first, second].map(SmallSignals::new);
+        let nyquist_hz = signals[0].nyquist_hz();
+        let mut modes: Vec<ModeAtRisk> = (scene.machine.rotor.bending().iter())
+            .map(|mode| {
+                let frequency_hz = mode.frequency_rad_s / TAU;
+                let at = |places: [f32; 2]| places.map(|z| mode.displacement(f64::from(z)));
+                let [a, b] = shaft.places;
+                let at_sensors = at([a.sensor_m, b.sensor_m]);
+                let at_magnets = at([a.magnet_m, b.magnet_m]);
+                let felt = |plane: usize| {
+                    let damping = signals[plane]
+                        .damping_n_s_m(frequency_hz)
+                        .unwrap_or_default();
+                    damping * at_sensors[plane] * at_magnets[plane]
+                };
+                ModeAtRisk {
+                    frequency_hz,
+                    damping_ratio: mode.damping_ratio,
+                    added_damping_ratio: (felt(0) + felt(1))
+                        / (2.0 * mass_kg * mode.frequency_rad_s),
+                    at_sensors: at_sensors.to_vec(),
+                    at_magnets: at_magnets.to_vec(),
+                }
+            })
+            .filter(|mode| mode.frequency_hz < nyquist_hz)
+            .collect();
+        modes.sort_by(|a, b| a.frequency_hz.total_cmp(&b.frequency_hz));
+        Some(Self {
+            nutation_hz,
+            nutation_turn_rad: (TAU * nutation_hz * later_s).abs(),
+            spin_of_most_turn_hz: (inertias > 0.0)
+                .then(|| MOST_TURN_RAD / (TAU * inertias * later_s)),
+            modes,
+        })
+    }
+
+    /// For people.
+    pub fn text(&self) -> String {
+        let mut text = format!(
+            "Nutation\n  {} Hz, which turns by {:.2} rad until a force acts",
+            figures(self.nutation_hz),
+            self.nutation_turn_rad
+        );
+        if let Some(spin_hz) = self.spin_of_most_turn_hz {
+            let _ = write!(
+                text,
+                "; {MOST_TURN_RAD} rad, beyond which no lead helps, at a spin of {} Hz",
+                figures(spin_hz)
+            );
+        }
+        text.push('\n');
+        if !self.modes.is_empty() {
+            text.push_str(
+                "\nBending modes under the supervisor's force, which is not told of them\n",
+            );
+        }
+        for mode in &self.modes {
+            let verdict = match (mode.grows(), mode.added_damping_ratio < 0.0) {
+                (true, _) => "it would grow",
+                (_, true) => "driven, less than it is damped",
+                _ => "damped",
+            };
+            let percent = |x: f64| format!("{:.2} %", 100.0 * x);
+            let _ = writeln!(
+                text,
+                "  {} Hz: damping ratio {} and {} by the force: {verdict}",
+                figures(mode.frequency_hz),
+                percent(mode.damping_ratio),
+                percent(mode.added_damping_ratio)
+            );
+        }
+        if self.modes.iter().any(ModeAtRisk::grows) {
+            text.push_str(
+                "    do: move sensor and magnet to the same side of the node, raise observer_pole_flight, or notch what the supervisor reads\n",
+            );
+        }
+        text
+    }
+}

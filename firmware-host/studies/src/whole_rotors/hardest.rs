@@ -1,0 +1,86 @@
+//! The hardest blow that a whole rotor comes back from, and the search for the levitation loop that takes the hardest.
+
+use super::compared::run;
+use super::plants::{Blow, Loop, RotorPlant};
+use crate::campaign::{Progress, run_all};
+use crate::overloads::impact::STEP;
+use crate::overloads::tune::{IDLE_NOISE, SENSITIVITY, shape};
+use firmware_bench::device::loop_shape::SampledPlant;
+use firmware_bench::scene::policy_kind::PolicyKind;
+
+/// First speed \[m/s\].
+const FIRST_M_S: f64 = 0.1;
+/// Nothing is searched beyond this speed \[m/s\].
+const LAST_M_S: f64 = 6.0;
+
+/// The hardest blow \[m/s\] of a direction and seed, on a grid, all slighter ones being recovered from too; 0 if the first
+/// is not, or where a run cannot be trusted.
+pub(super) fn hardest_m_s(
+    plant: &RotorPlant,
+    blow: Blow,
+    kind: PolicyKind,
+    (angle_rad, seed): (f64, u64),
+) -> f64 {
+    let (mut last, mut speed) = (0.0, FIRST_M_S);
+    while speed < LAST_M_S {
+        let scene = plant.struck(blow, speed, angle_rad, seed);
+        if !run(&scene, kind).is_some_and(|run| run.recovered) {
+            break;
+        }
+        last = speed;
+        speed *= STEP;
+    }
+    last
+}
+
+/// Loops that are tried: from 12 to 140 Hz, well damped or not, by plane, or by mode with cross feedback.
+fn candidates(cross: &[Option<f64>]) -> Vec<Loop> {
+    let mut all = Vec::new();
+    for i in 0..7 {
+        for damping_ratio in [0.5, 0.8, 1.2, 2.0] {
+            all.extend(cross.iter().map(|cross| Loop {
+                frequency_hz: 12.0 * 1.5_f64.powi(i),
+                damping_ratio,
+                filter: 1.0,
+                cross: *cross,
+            }));
+        }
+    }
+    all
+}
+
+/// Whether an engineer would accept it: in every plane taken alone, peak sensitivity below 3, and less than 5 % of the cap for
+/// noise.
+fn is_fit(plant: &RotorPlant, by: &Loop) -> bool {
+    let alone = plant.levitated_by(&Loop { cross: None, ..*by });
+    alone.scene.planes.iter().all(|plane| {
+        let scene = &plane.scene;
+        let sampled = SampledPlant::new(&scene.plant, scene.sample_rate_hz, 1);
+        let found = (scene.levitation).and_then(|gains| shape(scene, &sampled, &gains));
+        found.is_some_and(|(loop_shape, noise)| {
+            loop_shape.peak_sensitivity < SENSITIVITY && noise < IDLE_NOISE
+        })
+    })
+}
+
+/// The loop that takes the hardest blows, by the product over all directions, of those that are fit; `None` where none is.
+pub(super) fn tuned(
+    plant: &RotorPlant,
+    cross: &[Option<f64>],
+    progress: &dyn Progress,
+) -> Option<(Loop, f64)> {
+    let fit: Vec<Loop> = (candidates(cross).into_iter())
+        .filter(|by| is_fit(plant, by))
+        .collect();
+    let scores = run_all(&fit, progress, |by| score(&plant.levitated_by(by)));
+    let all = fit.into_iter().zip(scores);
+    all.max_by(|a, b| a.1.total_cmp(&b.1))
+}
+
+/// Geometric mean of the hardest blows of all directions under levitation alone \[m/s\].
+pub(super) fn score(plant: &RotorPlant) -> f64 {
+    let hardest =
+        |blow: &Blow| hardest_m_s(plant, *blow, PolicyKind::Levitation, (0.4, 1)).max(1e-3);
+    let product: f64 = Blow::ALL.iter().map(hardest).product();
+    product.powf(0.25)
+}

@@ -1,0 +1,196 @@
+//! The plants of the catalogue that are whole rotors, from their scene files.
+
+use firmware_bench::device::levitation::LevitationParams;
+use firmware_bench::device::modal_levitation::{ModalLevitationParams, Station, TiltParams};
+use firmware_bench::device::whole_levitation::WholeLevitationParams;
+use firmware_bench::scene::diagnostic::SceneError;
+use firmware_bench::scene::machine::{MachineScene, PlaneScene};
+use plant_model::V2;
+use std::f64::consts::TAU;
+
+/// A rotor of the catalogue with its file's levitation controllers, in the middle, nothing happening.
+#[derive(Debug, Clone)]
+pub struct RotorPlant {
+    /// Name, `P5`.
+    pub name: &'static str,
+    /// What it is.
+    pub scene: MachineScene,
+    text: &'static str,
+}
+
+const FILES: [(&str, &str); 4] = [
+    ("P5", include_str!("../../../scenes/rotors/p5.toml")),
+    ("P6", include_str!("../../../scenes/rotors/p6.toml")),
+    ("P7", include_str!("../../../scenes/rotors/p7.toml")),
+    ("P8", include_str!("../../../scenes/rotors/p8.toml")),
+];
+
+/// Which way a blow moves the rotor: as an impulse at a place does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Blow {
+    /// At the centre of mass.
+    Centre,
+    /// At the first plane, at the second.
+    End(usize),
+    /// A pair at both planes against each other.
+    Conical,
+}
+
+impl Blow {
+    /// All.
+    pub const ALL: [Self; 4] = [Self::Centre, Self::End(0), Self::End(1), Self::Conical];
+
+    /// In words.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Centre => "at the centre",
+            Self::End(0) => "at the first end",
+            Self::End(_) => "at the second end",
+            Self::Conical => "conical",
+        }
+    }
+}
+
+/// Gains by frequency, so that one search serves plants of any size.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Loop {
+    /// Natural frequency \[Hz\].
+    pub frequency_hz: f64,
+    /// Damping ratio.
+    pub damping_ratio: f64,
+    /// Time constant of the derivative's filter \[samples\].
+    pub filter: f64,
+    /// Share of the gyroscopic moment that cross feedback takes, by mode; `None`: each plane its own PD.
+    pub cross: Option<f64>,
+}
+
+impl Loop {
+    fn gains(&self, mass: f64, stiffness: f64, period_s: f64) -> LevitationParams {
+        let omega = TAU * self.frequency_hz;
+        LevitationParams {
+            proportional_n_m: mass * omega * omega - stiffness,
+            integral_n_m_s: 0.0,
+            derivative_n_s_m: 2.0 * self.damping_ratio * mass * omega,
+            derivative_filter_s: self.filter * period_s,
+        }
+    }
+}
+
+impl RotorPlant {
+    /// All of them.
+    ///
+    /// # Errors
+    /// [`SceneError`] if a file of the catalogue is not valid.
+    pub fn all() -> Result<Vec<Self>, SceneError> {
+        let of = |(name, text): &(&'static str, &'static str)| {
+            let scene = MachineScene::parse(&format!("rotors/{}.toml", name.to_lowercase()), text)?;
+            Ok(Self { name, scene, text })
+        };
+        FILES.iter().map(of).collect()
+    }
+
+    /// The same with another levitation controller.
+    pub fn levitated_by(&self, by: &Loop) -> Self {
+        let mut with = self.clone();
+        let period_s = 1.0 / self.scene.common().sample_rate_hz;
+        let Some(cross) = by.cross else {
+            with.scene.levitation = None;
+            for plane in &mut with.scene.planes {
+                let rotor = &plane.scene.plant.rotor;
+                let gains = by.gains(rotor.mass_kg, rotor.stiffness_n_m, period_s);
+                plane.scene.levitation = Some(gains);
+            }
+            return with;
+        };
+        let machine = &self.scene.machine;
+        let rigid = machine.rotor.rigid();
+        let (mut pull, mut pull_of_tilt) = (0.0, 0.0);
+        for support in &machine.supports {
+            let stiffness = support.stiffness_n_m.mean();
+            pull += stiffness;
+            pull_of_tilt += stiffness * support.position_m.powi(2);
+        }
+        let translation = by.gains(rigid.mass_kg, pull, period_s);
+        let tilt = by.gains(rigid.transverse_inertia_kg_m2, pull_of_tilt, period_s);
+        let station = |plane: &PlaneScene, sensor_m: f64| Station {
+            sensor_m,
+            magnet: plane
+                .magnet
+                .and_then(|m| machine.magnets.get(m))
+                .map(|m| (m.position_m, m.force_max_n)),
+        };
+        with.scene.levitation = Some(WholeLevitationParams::Modal(ModalLevitationParams {
+            translation,
+            tilt: TiltParams {
+                proportional_n_m_rad: tilt.proportional_n_m,
+                integral_n_m_rad_s: 0.0,
+                derivative_n_m_s_rad: tilt.derivative_n_s_m,
+                cross_kg_m2: cross * rigid.polar_inertia_kg_m2,
+            },
+            stations: (self.scene.planes.iter().zip(&machine.probes_m))
+                .map(|(plane, sensor_m)| station(plane, *sensor_m))
+                .collect(),
+        }));
+        with
+    }
+
+    /// Under a load of so many caps (in the middle: of all caps together) for so long \[s\], in this direction, with other
+    /// noise and the file's levitation controllers.
+    ///
+    /// # Errors
+    /// None of a plant of the catalogue.
+    pub fn overloaded(
+        &self,
+        end: Option<usize>,
+        (share, duration_s): (f64, f64),
+        (angle_rad, seed): (f64, u64),
+    ) -> Result<MachineScene, SceneError> {
+        let machine = &self.scene.machine;
+        let plane = end.and_then(|end| machine.planes.get(end));
+        let cap_n: f64 = match end {
+            Some(end) => machine.magnets.get(end).map_or(0.0, |m| m.force_max_n),
+            None => machine.magnets.iter().map(|m| m.force_max_n).sum(),
+        };
+        let (sin, cos) = angle_rad.sin_cos();
+        let [x, y] = [cos, sin].map(|part| share * cap_n * part);
+        let text = format!(
+            "{}\n[[disturbance]]\nstart_s = 0.02\nduration_s = {duration_s}\nforce_n = [{x}, {y}]\nposition_m = {}\n",
+            self.text,
+            plane.map_or(0.0, |plane| plane.position_m),
+        );
+        let mut scene = MachineScene::parse(self.name, &text)?;
+        for plane in &mut scene.planes {
+            plane.scene.seed = plane.scene.seed.wrapping_add(seed);
+        }
+        Ok(scene)
+    }
+
+    /// After a blow that gives the plane that it moves most this speed, in this direction, with other noise.
+    pub fn struck(&self, blow: Blow, speed_m_s: f64, angle_rad: f64, seed: u64) -> MachineScene {
+        let mut scene = self.scene.clone();
+        let machine = &scene.machine;
+        let places: Vec<f64> = machine.planes.iter().map(|p| p.position_m).collect();
+        let rigid = machine.rotor.rigid();
+        let (centre, tilt) = match blow {
+            Blow::Centre => (speed_m_s, 0.0),
+            Blow::Conical => {
+                let farthest_m = places.iter().fold(0.0, |far: f64, z| far.max(z.abs()));
+                (0.0, speed_m_s / farthest_m)
+            }
+            Blow::End(end) => {
+                let z = places.get(end).copied().unwrap_or_default();
+                let impulse = speed_m_s / rigid.mobility(z, z);
+                let tilt = impulse * z / rigid.transverse_inertia_kg_m2;
+                (impulse / rigid.mass_kg, tilt)
+            }
+        };
+        let (sin, cos) = angle_rad.sin_cos();
+        let along = V2::new(cos, sin);
+        scene.start.centre_velocity_m_s = centre * along;
+        scene.start.tilt_rate_rad_s = tilt * along;
+        for plane in &mut scene.planes {
+            plane.scene.seed = plane.scene.seed.wrapping_add(seed);
+        }
+        scene
+    }
+}

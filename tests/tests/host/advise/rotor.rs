@@ -1,0 +1,79 @@
+//! Advice for a supervisor of both planes: nutation, and bending modes under its force.
+
+use firmware_bench::advise::RotorAdvice;
+use firmware_bench::scene::machine::MachineScene;
+use serde_json::Value;
+use system_tests::{host, root};
+
+/// Of a plant of the catalogue, with the displacement at both magnets times a factor.
+fn of(plant: &str, at_magnets: f64) -> RotorAdvice {
+    let path = root().join(format!("firmware-host/scenes/rotors/{plant}.toml"));
+    let text = std::fs::read_to_string(path).unwrap();
+    let mut scene = MachineScene::parse(plant, &text).unwrap();
+    let magnets: Vec<f64> = scene.machine.magnets.iter().map(|m| m.position_m).collect();
+    if let plant_model::machine::params::Rotor::Modal { bending, .. } = &mut scene.machine.rotor {
+        for (z, displacement) in bending.iter_mut().flat_map(|mode| &mut mode.shape) {
+            if magnets.iter().any(|magnet| (magnet - *z).abs() < 1e-6) {
+                *displacement *= at_magnets;
+            }
+        }
+    }
+    let configs: Vec<_> = scene
+        .planes
+        .iter()
+        .map(|p| p.scene.supervisor.unwrap())
+        .collect();
+    RotorAdvice::new(&scene, &configs).unwrap()
+}
+
+#[test]
+fn nutation_is_the_inertias_share_of_the_spin() {
+    let advice = of("p6", 1.0);
+    assert!((advice.nutation_hz / (1.3 * 300.0) - 1.0).abs() < 1e-6);
+    // One and a half samples at 20 kHz, and the lag.
+    let late_s = 1.5 / 20e3 + 8e-5;
+    let turn = std::f64::consts::TAU * advice.nutation_hz * late_s;
+    assert!((advice.nutation_turn_rad / turn - 1.0).abs() < 1e-6);
+    let spin_hz = advice.spin_of_most_turn_hz.unwrap();
+    assert!((spin_hz / 300.0 * turn / 1.5 - 1.0).abs() < 1e-6);
+    assert!(advice.modes.is_empty());
+}
+
+/// A node between sensor and magnet turns what damps into what drives, as strongly; a mode that moves the magnet twice as
+/// much is damped twice as much.
+#[test]
+fn a_node_between_sensor_and_magnet_turns_the_sign() {
+    let (same, opposite, twice) = (of("p7", 1.0), of("p7", -1.0), of("p7", 2.0));
+    assert_eq!(same.modes.len(), 2);
+    for ((a, b), c) in same.modes.iter().zip(&opposite.modes).zip(&twice.modes) {
+        assert!(a.added_damping_ratio > 0.0 && !a.grows());
+        assert!((b.added_damping_ratio / a.added_damping_ratio + 1.0).abs() < 1e-6);
+        assert!((c.added_damping_ratio / a.added_damping_ratio - 2.0).abs() < 1e-6);
+    }
+    assert!(opposite.modes[0].grows() && opposite.text().contains("it would grow"));
+}
+
+#[test]
+fn it_is_printed_and_has_keys() {
+    let scene = "firmware-host/scenes/rotors/p7.toml";
+    let run = |more: &[&str]| {
+        let output = host()
+            .args(["advise", scene])
+            .args(more)
+            .current_dir(root())
+            .output()
+            .unwrap();
+        assert!(output.status.success());
+        String::from_utf8(output.stdout).unwrap()
+    };
+    let text = run(&[]);
+    assert!(
+        text.contains("Nutation") && text.contains("Bending modes"),
+        "{text}"
+    );
+    let json: Value = serde_json::from_str(&run(&["--json"])).unwrap();
+    let rotor = &json["rotor"];
+    assert!((rotor["nutation_hz"].as_f64().unwrap() - 10.0).abs() < 0.01);
+    assert!(rotor["modes"][0]["added_damping_ratio"].as_f64().unwrap() > 0.0);
+    assert_eq!(rotor["modes"][1]["at_sensors"].as_array().unwrap().len(), 2);
+}

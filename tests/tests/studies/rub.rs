@@ -1,0 +1,44 @@
+//! Forward rub that levitation alone stays in is broken where a force within the cap can.
+
+use firmware_studies::campaign::Extent;
+use firmware_studies::rub::{Motion, RubCase, study};
+
+#[test]
+fn rubs_are_broken_where_the_cap_can() {
+    let report = study::study(Extent::Quick, &()).unwrap();
+    let claim = |name: &str| {
+        report
+            .claims
+            .iter()
+            .find(|c| c.name.contains(name))
+            .unwrap()
+    };
+    let within = claim("within the cap");
+    assert!(within.holds, "{within:?}");
+    // Of some two hundred that run free two, driven on to the wall on and on, are lost.
+    let lost = claim("only levitation alone");
+    assert!(lost.measured < 0.015, "{lost:?}");
+}
+
+/// (4.18) tells where no rub can be: far inside it levitation alone comes free of every wall, far outside it stays in some.
+#[test]
+fn the_closed_form_parts_them() {
+    use firmware_bench::scene::policy_kind::PolicyKind::Levitation;
+    let (mut inside, mut outside) = (0, 0);
+    for number in 0..300 {
+        let case = RubCase::new(7, Motion::OnePlane, number);
+        if case.runs_free() != Some(true) {
+            continue;
+        }
+        let stays = case.driven(Levitation).is_some_and(|run| run.stays());
+        match case.reserve() {
+            r if r > 4.0 => {
+                inside += 1;
+                assert!(!stays, "{}", case.text());
+            }
+            r if r < 1.5 => outside += u32::from(stays),
+            _ => {}
+        }
+    }
+    assert!(inside > 5 && outside > 5, "{inside} {outside}");
+}
