@@ -328,7 +328,7 @@ fn of_machine(
         .collect::<Result<_, _>>()?;
     let coupling =
         Coupling::new(scene).map_err(|e| CommandError::other("reading the machine", e))?;
-    // With the configurations that are advised, not those of the scene.
+    // As suggested, but for what the scene replaces.
     let in_use: Vec<Config> = all.iter().map(Advice::in_use).collect();
     let rotor = RotorAdvice::new(scene, &in_use);
     if args.json {
