@@ -1,11 +1,12 @@
 //! The supervisor on an emulated processor in a closed loop with the plant here; and the example firmware.
 
-use defmt_decoder::{DecodeError, Table};
 use firmware_studies::on_target::emulator::{EmulatorError, Time, output_of, version};
 use firmware_studies::on_target::images::Project;
 use firmware_studies::on_target::machines::{MACHINES, Machine};
 use serde_json::Value;
+use std::io::Write;
 use std::path::Path;
+use std::process::{Command, Stdio};
 use std::time::Duration;
 use system_tests::root;
 use system_tests::target::{build_images, skipped, target};
@@ -43,22 +44,25 @@ fn a_processor_without_an_image_for_the_loop_is_named() {
 type Log = Vec<(String, String)>;
 
 /// What an image has logged, by what its file says of its log.
-fn logged(image: &Path, output: &[u8]) -> Log {
-    let file = std::fs::read(image).unwrap();
-    let table = Table::parse(&file).unwrap().expect("it logs");
-    let mut decoder = table.new_stream_decoder();
-    decoder.received(output);
-    let mut lines = Vec::new();
-    loop {
-        match decoder.decode() {
-            Ok(frame) => {
-                let level = frame.level().map_or("", |level| level.as_str());
-                lines.push((level.to_owned(), frame.display_message().to_string()));
-            }
-            Err(DecodeError::UnexpectedEof) => return lines,
-            Err(DecodeError::Malformed) => panic!("no frame after {lines:?}"),
-        }
-    }
+fn logged(image: &Path, bytes: &[u8]) -> Log {
+    let mut decoder = Command::new("cargo")
+        .args(["run", "--quiet", "--release", "--locked", "--manifest-path"])
+        .arg(root().join("tests/log/Cargo.toml"))
+        .arg("--target-dir")
+        .arg(root().join("target/log"))
+        .arg(image)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .spawn()
+        .unwrap();
+    decoder.stdin.take().unwrap().write_all(bytes).unwrap();
+    let output = decoder.wait_with_output().unwrap();
+    assert!(output.status.success());
+    let lines = String::from_utf8(output.stdout).unwrap();
+    (lines.lines())
+        .map(|line| line.split_once(' ').unwrap())
+        .map(|(level, text)| (level.to_owned(), text.to_owned()))
+        .collect()
 }
 
 /// Log of the example firmware on all processors with an FPU, at 2^shift nanoseconds an instruction.

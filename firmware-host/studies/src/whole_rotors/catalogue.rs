@@ -246,6 +246,11 @@ pub fn study(extent: Extent, progress: &dyn Progress) -> Result<Report, StudyErr
                     1.0,
                     touches[1] / touches[0].max(1.0),
                 ));
+                claims.push(Claim::at_most(
+                    format!("{name}: impulse of an overload {place}, over levitation's"),
+                    0.5,
+                    impulse[1] / impulse[0],
+                ));
             }
             if extent == Extent::Full {
                 for (what, over) in told_wrong(&loops.plant, &all, progress) {
