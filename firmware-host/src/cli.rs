@@ -10,7 +10,7 @@ pub mod output;
 pub mod overloads;
 pub mod paper;
 mod progress;
-pub mod record;
+pub mod review;
 pub mod run;
 pub mod schema;
 pub mod sensitivity;

@@ -2,7 +2,7 @@
 
 use clap::{Parser, Subcommand};
 use firmware_host::cli::{
-    accuracy, advise, error, harm, modes, overloads, paper, record, run, schema, sensitivity,
+    accuracy, advise, error, harm, modes, overloads, paper, review, run, schema, sensitivity,
     study, target,
 };
 use std::process::ExitCode;
@@ -31,8 +31,8 @@ enum Command {
     Sensitivity(sensitivity::SensitivityArgs),
     /// Compute every number and figure of the paper; write a page with tables and plots.
     Paper(paper::PaperArgs),
-    /// Show what happened in a flight record that a supervisor has frozen on its machine.
-    Record(record::RecordArgs),
+    /// Say what happened in a flight record that a supervisor has frozen on its machine, and replay it.
+    Review(review::ReviewArgs),
     /// Print every key of scene files, as a JSON Schema for editors or as a table.
     Schema(schema::SchemaArgs),
     /// Natural frequencies of a whole rotor over its spin, critical speeds, response to its unbalance, coupling of its planes.
@@ -53,7 +53,7 @@ fn main() -> ExitCode {
         Command::Advise(args) => advise::execute(args),
         Command::Sensitivity(args) => sensitivity::execute(args),
         Command::Paper(args) => paper::execute(args),
-        Command::Record(args) => record::execute(args),
+        Command::Review(args) => review::execute(args),
         Command::Schema(args) => schema::execute(args),
         Command::Modes(args) => modes::execute(args),
         Command::Study(args) => study::execute(args),

@@ -5,6 +5,7 @@ use crate::reading::Actuator;
 use crate::scalar::Scalar;
 use crate::signal::Status;
 use crate::vec2::Vec2;
+use crate::words::words_of_fields;
 
 /// Largest deviation of the measured force from the model of amplifier and delay that is tracking \[caps\]: a lag
 /// twice or half as long as configured makes it no larger, whatever is commanded …
@@ -29,6 +30,8 @@ pub(crate) struct ActuatorMonitor<S> {
     /// Of each axis: ticks in a row in which it did not track; or, negative, how long it will get nothing.
     off: [i8; 2],
 }
+
+words_of_fields!(ActuatorMonitor<S> { modelled, seen, off });
 
 impl<S: Scalar> ActuatorMonitor<S> {
     /// Axes that get nothing because they do not track. Where the supervisor does not act it takes nothing away.

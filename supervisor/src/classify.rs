@@ -4,6 +4,7 @@ use crate::coeffs::Coeffs;
 use crate::detect::ContactEstimate;
 use crate::scalar::Scalar;
 use crate::spin::Spin;
+use crate::words::words_of_fields;
 
 /// Kind of motion on the retainer bearing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -42,6 +43,8 @@ pub(crate) struct Classifier<S> {
     resting: bool,
     rubbing: bool,
 }
+
+words_of_fields!(Classifier<S> { contact_share, ticks_slow, resting, rubbing });
 
 impl<S: Scalar> Classifier<S> {
     /// Whether the last tick was one of forward rub.

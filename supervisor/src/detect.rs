@@ -6,6 +6,7 @@ use crate::coeffs::Coeffs;
 use crate::estimate::{Contact, Motion};
 use crate::scalar::Scalar;
 use crate::vec2::Vec2;
+use crate::words::words_of_fields;
 
 /// What was found at this tick.
 #[derive(Debug, Clone, Copy, Default)]
@@ -50,7 +51,19 @@ pub(crate) struct Detector {
     alarmed: u8,
 }
 
+words_of_fields!(Detector {
+    touching,
+    recovery,
+    alarmed
+});
+
 impl Detector {
+    /// Whether the rotor touches.
+    #[inline]
+    pub(crate) fn is_touching(&self) -> bool {
+        self.touching
+    }
+
     /// What the wall does; `resting`: the rotor did at the last tick.
     #[inline]
     pub(crate) fn wall(&self, resting: bool) -> Contact {

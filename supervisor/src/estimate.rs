@@ -11,6 +11,7 @@ use crate::scalar::Scalar;
 use crate::spin::Spin;
 use crate::unbalance::{Turn, Unbalance};
 use crate::vec2::Vec2;
+use crate::words::words_of_fields;
 
 /// Estimated motion, per unit.
 #[derive(Debug, Clone, Copy, Default)]
@@ -22,6 +23,8 @@ pub(crate) struct Motion<S> {
     /// From one sample only: the velocity is not known yet.
     pub(crate) fresh: bool,
 }
+
+words_of_fields!(Motion<S> { position, velocity, load_step, fresh });
 
 /// What the wall does to the rotor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -61,6 +64,8 @@ pub(crate) struct Observer<S> {
     were_late: u8,
     late: Vec2<S>,
 }
+
+words_of_fields!(Observer<S> { motion, unbalance, started, has_run, delivered, monitor, commands, newest, were_late, late });
 
 impl<S: Scalar> Observer<S> {
     /// Carries the estimate over one tick and corrects it by the sample, if there is one. What moves, and how far the

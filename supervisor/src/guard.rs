@@ -12,6 +12,7 @@ use crate::signal::{CoreSample, Events, RejectReason, Status};
 use crate::spin::Spin;
 use crate::stuck::StuckDetector;
 use crate::vec2::Vec2;
+use crate::words::words_of_fields;
 
 /// Missed ticks over which the observer's model is carried: bounds the time of a tick.
 pub(crate) const MAX_MISSED: u32 = 4;
@@ -40,12 +41,22 @@ struct Refused {
     apart: u8,
 }
 
+words_of_fields!(Refused {
+    all,
+    bad,
+    jumps,
+    dropouts,
+    apart
+});
+
 /// In a fault: samples in a row that fit, with the same coordinates bad.
 #[derive(Debug, Clone, Copy, Default)]
 struct RecoveryCount {
     bad: SampleFlags,
     samples: u16,
 }
+
+words_of_fields!(RecoveryCount { bad, samples });
 
 /// Memory of the guard.
 #[derive(Debug, Clone, Copy)]
@@ -83,6 +94,8 @@ pub(crate) struct Guard<S> {
     pub(crate) repeated_ticks: u32,
     pub(crate) late_ticks: u32,
 }
+
+words_of_fields!(Guard<S> { last_sequence, last_good, age, repeats, begun, jumped, faulty, stuck_is_old, stuck_detector, innovation, stuck, refused, recovery, usual, usual_flags, lost, refusal, fault, missed_ticks, repeated_ticks, late_ticks });
 
 impl<S: Scalar> Default for Guard<S> {
     fn default() -> Self {

@@ -8,6 +8,7 @@ use crate::reading::SampleFlags;
 use crate::scalar::Scalar;
 use crate::signal::IntegratorHint;
 use crate::vec2::Vec2;
+use crate::words::words_of_fields;
 
 /// In a fault of the sensor: along a coordinate that is bad the last force fades, so fast that a whole cap would be gone in
 /// the time of the fading; along one that is good the levitation controller acts, and goes first. A levitated rotor loses the
@@ -41,6 +42,8 @@ pub(crate) struct Readiness<S> {
     /// Inward force that the controller asks for less than the supervisor, filtered \[caps\].
     shortfall: S,
 }
+
+words_of_fields!(Readiness<S> { shortfall });
 
 /// Shortfall that the blend can cover \[caps\].
 const COVERED: f32 = 0.06;

@@ -4,6 +4,7 @@
 use crate::coeffs::Coeffs;
 use crate::scalar::Scalar;
 use crate::vec2::Vec2;
+use crate::words::words_of_fields;
 
 /// Where the next sample is expected.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -42,6 +43,8 @@ pub(crate) struct Innovation<S> {
     /// Samples in a row that were doubted.
     doubted: u8,
 }
+
+words_of_fields!(Innovation<S> { level, last, known, doubted });
 
 impl<S: Scalar> Innovation<S> {
     /// Whether a sample this far off agrees with what was expected, or with the one before it. The first after what cannot

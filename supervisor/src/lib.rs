@@ -47,9 +47,9 @@
 //!                                                                                 └─► recorder
 //! ```
 //!
-//! Files, each importing only from those above it: `scalar`, `product`, `q`, `math`, `vec2`, `signal`, `config`, `coeffs`,
+//! Files, each importing only from those above it: `words`, `scalar`, `product`, `q`, `math`, `vec2`, `signal`, `config`, `coeffs`,
 //! `spin`, `unbalance`, `innovation`, `reading`, `stuck`, `guard`, `actuator_monitor`, `estimate`, `beside`, `detect`, `impact`, `classify`, `phase`, `trust`, `law`, `limit`, `handover`, `severity`,
-//! `recorder`, `per_unit`, `supervisor`, `rotor`, `self_test`, `watch`, `log_format`.
+//! `tick`, `track`, `recorder`, `shaft`, `record`, `per_unit`, `supervisor`, `rotor`, `self_test`, `watch`, `log_format`.
 
 // Unconditional: under `cfg(test)` std's own methods would silently replace micromath's.
 #![no_std]
@@ -77,31 +77,42 @@ mod phase;
 mod product;
 mod q;
 mod reading;
+mod record;
 mod recorder;
 mod rotor;
 mod scalar;
 mod self_test;
 mod severity;
+mod shaft;
 mod signal;
 mod spin;
 mod stuck;
 mod supervisor;
+mod tick;
+mod track;
 mod trust;
 mod unbalance;
 mod vec2;
 mod watch;
+mod words;
 
 pub use coeffs::Scaling;
 pub use config::{Config, ConfigError, CoreError, NotRepresentable, PARAMETERS, Parameter};
 pub use per_unit::{Core, Prepared};
 pub use q::{AccumulatorQ, Q};
-pub use recorder::{Entry, PER_UNIT, QueuedEvent, RECORD_TRIGGERS, RECORD_VERSION, Record, crc_of};
-pub use rotor::{Place, Rotor, RotorCommand, Shaft, ShaftError};
-pub use scalar::{Accumulator, Scalar};
+pub use record::{
+    Head, MOST_WORDS, NO_STATE, Part, Record, SECTION_BYTES, SUPERVISOR_VERSION, Section, Stamp,
+    Summary, crc_of,
+};
+pub use recorder::{Entry, QueuedEvent, RECORD_VERSION};
+pub use rotor::{Rotor, RotorCommand};
+pub use scalar::{Accumulator, Number, Scalar};
 pub use self_test::{SelfTest, self_test};
+pub use shaft::{Place, Shaft, ShaftError};
 pub use signal::{
     Command, CoreCommand, CoreSample, Events, IntegratorHint, Limits, Mode, RejectReason, Report,
     Sample, Status,
 };
 pub use supervisor::Supervisor;
+pub use track::{STRETCHES, Stretch};
 pub use watch::CommandWatchdog;

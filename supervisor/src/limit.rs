@@ -6,6 +6,7 @@ use crate::reading::SampleFlags;
 use crate::scalar::{Accumulator, Scalar};
 use crate::signal::Limits;
 use crate::vec2::Vec2;
+use crate::words::words_of_fields;
 
 /// What a force may be at this tick \[caps\]: a disc, and a box of the axes that act.
 #[derive(Debug, Clone, Copy)]
@@ -261,6 +262,8 @@ fn one_step<S: Scalar>(last: Vec2<S>, change: Vec2<S>, coeffs: &Coeffs<S>) -> Ve
 pub(crate) struct Budget<S: Scalar> {
     state: S::Accumulator,
 }
+
+words_of_fields!(Budget<S> { state });
 
 impl<S: Scalar> Budget<S> {
     /// Cap now \[caps\]: a function of the state alone, so that it comes back as it fell.

@@ -13,6 +13,7 @@ use crate::detect::ContactEstimate;
 use crate::reading::SampleFlags;
 use crate::scalar::Scalar;
 use crate::signal::{Events, Mode};
+use crate::words::Words;
 
 /// What [`crate::trust`] says.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -47,6 +48,42 @@ pub(crate) enum Phase<S> {
     SensorFault { bouncing: bool },
     /// The levitation controller has the bearing for so many more ticks, whatever the rotor does.
     HandedBack { left: u32 },
+}
+
+/// Always as many: its number, ticks, and a share.
+impl<S: Scalar> Words for Phase<S> {
+    fn put(&self, to: &mut dyn FnMut(u32)) {
+        let (ticks, share) = match *self {
+            Self::Approach { calm_ticks } | Self::Bounce { calm_ticks } => (calm_ticks, S::ZERO),
+            Self::HandedBack { left } => (left, S::ZERO),
+            Self::SensorFault { bouncing } => (u32::from(bouncing), S::ZERO),
+            Self::Pinned { hold } => (0, hold),
+            Self::Handover { weight } => (0, weight),
+            Self::Levitated | Self::BackwardWhirl => (0, S::ZERO),
+        };
+        to(self.mode() as u32);
+        to(ticks);
+        share.put(to);
+    }
+    fn take(from: &mut dyn Iterator<Item = u32>) -> Self {
+        let (mode, ticks, share) = (u32::take(from), u32::take(from), S::take(from));
+        match mode {
+            1 => Self::Approach { calm_ticks: ticks },
+            2 => Self::Bounce { calm_ticks: ticks },
+            3 => Self::BackwardWhirl,
+            4 => Self::Pinned { hold: share },
+            5 => Self::Handover { weight: share },
+            6 => Self::SensorFault {
+                bouncing: ticks != 0,
+            },
+            7 => Self::HandedBack { left: ticks },
+            _ => Self::Levitated,
+        }
+    }
+    #[inline]
+    fn word_count(&self) -> u32 {
+        2 + S::ZERO.word_count()
+    }
 }
 
 impl<S: Scalar> Phase<S> {

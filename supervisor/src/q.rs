@@ -2,7 +2,8 @@
 //! the core (clearances, caps, √(m·c/F)) all that counts is between a thousandth and some tens.
 
 use crate::product;
-use crate::scalar::{Accumulator, Scalar, sealed::Sealed};
+use crate::scalar::{Accumulator, Number, Scalar, sealed::Sealed};
+use crate::words::Words;
 use fixed::types::I10F22;
 
 /// A fixed-point number of the supervisor, for processors without floating point.
@@ -138,7 +139,8 @@ impl Scalar for Q {
     const ZERO: Self = Self::from_bits(0);
     const ONE: Self = Self::from_bits(1 << FRACTION);
     const JUST_BELOW_ONE: Self = Self::from_bits((1 << FRACTION) - 8);
-    const KNOWN_ANSWER: u32 = 0x2CEA_D5BB;
+    const KNOWN_ANSWER: u32 = 0xDB83_D5BB;
+    const NUMBER: Number = Number::Fixed;
 
     #[inline]
     fn from_f32(x: f32) -> Self {
@@ -222,26 +224,39 @@ impl Scalar for Q {
     }
 
     #[inline]
-    fn packed(self) -> i16 {
-        let rounded = (self.to_bits().saturating_add(1 << 9)) >> 10;
-        if rounded > i32::from(i16::MAX) {
-            i16::MAX
-        } else if rounded < i32::from(i16::MIN) {
-            i16::MIN
-        } else {
-            rounded as i16
-        }
-    }
-
-    #[inline]
     fn bits(self) -> u32 {
         self.to_bits() as u32
+    }
+
+    fn of_bits(bits: u32) -> Self {
+        Self::from_bits(bits as i32)
     }
 }
 
 /// Sum of 64 bits, 52 of them fraction.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct AccumulatorQ(i64);
+
+impl Words for AccumulatorQ {
+    fn put(&self, to: &mut dyn FnMut(u32)) {
+        (self.0 as u64).put(to);
+    }
+    fn take(from: &mut dyn Iterator<Item = u32>) -> Self {
+        Self(u64::take(from) as i64)
+    }
+    fn word_count(&self) -> u32 {
+        2
+    }
+}
+
+impl Words for Q {
+    fn put(&self, to: &mut dyn FnMut(u32)) {
+        to(self.bits());
+    }
+    fn take(from: &mut dyn Iterator<Item = u32>) -> Self {
+        Self::of_bits(u32::take(from))
+    }
+}
 
 impl Accumulator<Q> for AccumulatorQ {
     /// In units of 2⁻³⁰, within ±2.

@@ -4,6 +4,7 @@ use crate::scalar::Scalar;
 use crate::signal::{Events, RejectReason, Status};
 use crate::spin::Spin;
 use crate::vec2::Vec2;
+use crate::words::Words;
 
 bitflags::bitflags! {
     /// What the guard has found, in one register. Bits that a [`Status`] says have their place in it.
@@ -35,6 +36,15 @@ bitflags::bitflags! {
         const SAID = Self::ON.bits() | Self::LOST.bits() | Self::LATE.bits();
         /// What the observer has to be told before the tick.
         const UNUSUAL = Self::FAULTY.bits() | Self::ANEW.bits() | Self::LATE.bits() | Self::MISSED.bits();
+    }
+}
+
+impl Words for SampleFlags {
+    fn put(&self, to: &mut dyn FnMut(u32)) {
+        self.bits().put(to);
+    }
+    fn take(from: &mut dyn Iterator<Item = u32>) -> Self {
+        Self::from_bits_truncate(u16::take(from))
     }
 }
 

@@ -2,101 +2,12 @@
 
 use crate::beside::Tilting;
 use crate::coeffs::Scaling;
-use crate::config::{Config, ConfigError};
-use crate::recorder::Record;
-use crate::signal::{Command, Events, Sample, Status};
+use crate::config::Config;
+use crate::record::Record;
+use crate::shaft::{Place, Shaft, ShaftError};
+use crate::signal::{Command, CoreCommand, CoreSample, Events, Sample, Status};
 use crate::supervisor::Supervisor;
 use crate::vec2::Vec2;
-
-/// Where a plane has what, along the axis from the centre of mass \[m\].
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Place {
-    /// Retainer bearing.
-    pub retainer_m: f32,
-    /// Sensor.
-    pub sensor_m: f32,
-    /// Magnet.
-    pub magnet_m: f32,
-}
-
-/// A rigid rotor, as a data sheet has it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Shaft {
-    /// Mass \[kg\], > 0.
-    pub mass_kg: f32,
-    /// Transverse moment of inertia I_t about the centre of mass \[kg m²\], > 0.
-    pub transverse_inertia_kg_m2: f32,
-    /// Polar moment of inertia I_p \[kg m²\], 0 to 2·I_t.
-    pub polar_inertia_kg_m2: f32,
-    /// Its two ends.
-    pub places: [Place; 2],
-}
-
-/// Why there is no supervisor for a rotor.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum ShaftError {
-    /// A parameter of a plane, 0 or 1, is outside its range.
-    Plane(usize, ConfigError),
-    /// Mass or inertias are not what a body can have.
-    Inertia,
-    /// A position is no number, both retainer bearings stand at one place, or so far from each other or from the magnets that
-    /// the ends move each other a thousand times as far as themselves.
-    Places,
-}
-
-impl core::fmt::Display for ShaftError {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        match self {
-            Self::Plane(plane, error) => write!(f, "plane {plane}: {error}"),
-            Self::Inertia => f.write_str(
-                "mass and transverse inertia are to be above 0, the polar one from 0 to twice the transverse one",
-            ),
-            Self::Places => f.write_str(
-                "positions are to be numbers, those of the two retainer bearings to differ, and no other so far out",
-            ),
-        }
-    }
-}
-
-impl core::error::Error for ShaftError {}
-
-impl Shaft {
-    /// Velocity at one place by an impulse at another, 1/m + z_i·z_j/I_t \[1/kg\].
-    pub fn mobility(&self, at_m: f32, of_m: f32) -> f32 {
-        1.0 / self.mass_kg + at_m * of_m / self.transverse_inertia_kg_m2
-    }
-
-    /// A plane's configuration with the mass that an impact there moves, and the ratios in which its sensor and its magnet
-    /// move with it; 0 or 1, and for anything else the second.
-    pub fn plane(&self, end: usize, config: &Config) -> Config {
-        let [first, second] = self.places;
-        let place = if end == 0 { first } else { second };
-        let own = self.mobility(place.retainer_m, place.retainer_m);
-        Config {
-            mass_kg: 1.0 / own,
-            retainer_plane_ratio: own / self.mobility(place.sensor_m, place.retainer_m),
-            magnet_plane_ratio: self.mobility(place.magnet_m, place.retainer_m) / own,
-            ..*config
-        }
-    }
-
-    fn check(&self) -> Result<(), ShaftError> {
-        let (transverse, polar) = (self.transverse_inertia_kg_m2, self.polar_inertia_kg_m2);
-        let body = self.mass_kg > 0.0 && transverse > 0.0;
-        let finite = self.mass_kg.is_finite() && transverse.is_finite();
-        if !(body && finite && polar >= 0.0 && polar <= 2.0 * transverse) {
-            return Err(ShaftError::Inertia);
-        }
-        let [first, second] = self.places;
-        let place =
-            |p: Place| p.retainer_m.is_finite() && p.sensor_m.is_finite() && p.magnet_m.is_finite();
-        if place(first) && place(second) && first.retainer_m != second.retainer_m {
-            Ok(())
-        } else {
-            Err(ShaftError::Places)
-        }
-    }
-}
 
 /// Couplings beyond this are of no rotor, and would leave the numbers.
 const MOST_COUPLED: f32 = 1e3;
@@ -108,8 +19,8 @@ struct Coupling {
     per_cap: f32,
     /// z over the distance of the planes, times metres a second per unit of each plane's speed, here per unit.
     arm: [f32; 2],
-    /// (I_p/I_t)·t₀.
-    nutation_s: f32,
+    /// I_p/I_t.
+    nutation: f32,
     /// A radian in a tick \[1/t₀\]: nothing that is sampled nutates faster.
     fastest: f32,
 }
@@ -133,7 +44,7 @@ impl Coupling {
             Self {
                 per_cap: acceleration * own.time_s * own.time_s / own.length_m,
                 arm: [-share * first.speed_m_s(), share * second.speed_m_s()],
-                nutation_s: shaft.polar_inertia_kg_m2 / shaft.transverse_inertia_kg_m2 * own.time_s,
+                nutation: shaft.polar_inertia_kg_m2 / shaft.transverse_inertia_kg_m2,
                 fastest: own.time_s / period_s,
             }
         };
@@ -152,9 +63,9 @@ impl Coupling {
         &self,
         [first, second]: [Vec2<f32>; 2],
         force: Vec2<f32>,
-        spin_rad_s: f32,
+        spin: f32,
     ) -> Tilting<f32> {
-        let rate = self.nutation_s * spin_rad_s;
+        let rate = self.nutation * spin;
         Tilting {
             known: force * self.per_cap,
             velocity: first * self.arm[0] + second * self.arm[1],
@@ -205,6 +116,9 @@ pub struct RotorCommand {
 /// ```
 #[derive(Debug, Clone)]
 pub struct Rotor<const RECORD: usize = 512> {
+    shaft: Shaft,
+    /// The shaft when the states of both planes were kept.
+    kept_shaft: Shaft,
     planes: [Supervisor<RECORD>; 2],
     couplings: [Coupling; 2],
     /// Planes that have engaged since the records were read.
@@ -230,9 +144,11 @@ impl<const RECORD: usize> Rotor<RECORD> {
         let couplings = Coupling::of_checked(shaft, configs)?;
         let [first, second] = configs;
         Ok(Self {
+            shaft: *shaft,
+            kept_shaft: *shaft,
             planes: [
-                Supervisor::from_valid(first),
-                Supervisor::from_valid(second),
+                Supervisor::from_valid(first, [0, 2]),
+                Supervisor::from_valid(second, [1, 2]),
             ],
             couplings,
             engaged: [false; 2],
@@ -251,6 +167,7 @@ impl<const RECORD: usize> Rotor<RECORD> {
     ) -> Result<(), ShaftError> {
         let configs = [shaft.plane(0, first), shaft.plane(1, second)];
         self.couplings = Coupling::of_checked(shaft, &configs)?;
+        self.shaft = *shaft;
         for (plane, config) in self.planes.iter_mut().zip(&configs) {
             // Checked above.
             let _ = plane.reconfigure(config);
@@ -260,23 +177,22 @@ impl<const RECORD: usize> Rotor<RECORD> {
 
     /// One tick of both, in the control interrupt. Both samples carry the number of one counter.
     pub fn tick(&mut self, samples: &[Sample; 2]) -> RotorCommand {
-        let [first, second] = &mut self.planes;
+        let [first, second] = &self.planes;
         let [at_first, at_second] = samples;
-        let [to_first, to_second] = &self.couplings;
-        // As they are before either tick. Where one end's velocity is not known nothing is known of the tilt.
-        let known = first.core.velocity().zip(second.core.velocity());
-        let (v1, v2) = known.unwrap_or_default();
-        let forces = [first.core.delivered(), second.core.delivered()];
-        let beside_first = to_first.tilting([v1, v2], forces[1], spin(at_first));
-        let beside_second = to_second.tilting([v1, v2], forces[0], spin(at_second));
+        let per_unit = [
+            first.core.scaling().sample(at_first),
+            second.core.scaling().sample(at_second),
+        ];
+        let [to_first, to_second] = self.tick_per_unit(&per_unit);
+        let [first, second] = &self.planes;
         let planes = [
-            first.tick_beside(at_first, &beside_first),
-            second.tick_beside(at_second, &beside_second),
+            first.in_newtons(at_first, &per_unit[0], &to_first),
+            second.in_newtons(at_second, &per_unit[1], &to_second),
         ];
         for ((engaged, plane), command) in self.engaged.iter_mut().zip(&self.planes).zip(&planes) {
             let engages = command.mode.is_engaged();
             // Over, and nothing was worth a record.
-            let leaves_nothing = !engages && plane.core.recorder().is_armed();
+            let leaves_nothing = !engages && plane.core.is_armed();
             *engaged = (*engaged || engages) && !leaves_nothing;
             self.coast_down |= command.events.contains(Events::COAST_DOWN);
         }
@@ -288,12 +204,54 @@ impl<const RECORD: usize> Rotor<RECORD> {
         }
     }
 
-    /// The records of one event, in the background: once every plane that engaged has frozen its own, `write` gets
-    /// what there is with the number of its plane, 0 or 1, and both wait for the next engagement.
+    /// The same per unit of each plane, without what the whole machine is told: what a record is replayed with.
+    pub fn tick_per_unit(&mut self, samples: &[CoreSample<f32>; 2]) -> [CoreCommand<f32>; 2] {
+        let [first, second] = &mut self.planes;
+        let [at_first, at_second] = samples;
+        let [to_first, to_second] = &self.couplings;
+        // As they are before either tick. Where one end's velocity is not known nothing is known of the tilt.
+        let known = first.core.velocity().zip(second.core.velocity());
+        let (v1, v2) = known.unwrap_or_default();
+        let forces = [first.core.delivered(), second.core.delivered()];
+        let beside_first = to_first.tilting([v1, v2], forces[1], spin(at_first));
+        let beside_second = to_second.tilting([v1, v2], forces[0], spin(at_second));
+        let (to_first, first) = first.core.tick_beside(at_first, &beside_first);
+        let (to_second, second) = second.core.tick_beside(at_second, &beside_second);
+        // One event of one machine: both planes record it, over the same ticks.
+        let (mut commands, seen) = ([to_first, to_second], first.or(second));
+        for ((plane, command), sample) in self.planes.iter_mut().zip(&mut commands).zip(samples) {
+            command.events |= plane.core.advance(seen, sample, command.mode);
+        }
+        // Both or none: a replay needs what both remembered before the same tick.
+        if self.planes.iter().all(|plane| plane.core.may_keep()) {
+            self.planes.iter_mut().for_each(|plane| plane.core.keep());
+            self.kept_shaft = self.shaft;
+        }
+        commands
+    }
+
+    /// One that goes on from what another one remembered, as the records of both planes hold it; see [`crate::Core::resumed`].
     ///
-    /// The tick has to be kept out meanwhile; where writing takes too long for that, copy the entries of [`Self::record`]
-    /// in pieces and [`Self::rearm`] at the end.
-    pub fn collect(&mut self, mut write: impl FnMut(usize, &Record<'_, RECORD>)) {
+    /// # Errors
+    /// [`ShaftError`].
+    pub fn resumed(
+        shaft: &Shaft,
+        configs: &[Config; 2],
+        [first, second]: [&[u32]; 2],
+    ) -> Result<Self, ShaftError> {
+        let mut rotor = Self::as_told(shaft, configs)?;
+        for (plane, words) in rotor.planes.iter_mut().zip([first, second]) {
+            plane.core.resume(words);
+        }
+        Ok(rotor)
+    }
+
+    /// The records of one event, in the background: where they have frozen, which both planes do at once, `write` gets
+    /// them with the number of the plane, 0 or 1, and both wait for the next engagement.
+    ///
+    /// The tick has to be kept out meanwhile; where writing takes too long for that, take the sections of [`Self::record`]
+    /// one by one and [`Self::rearm`] at the end.
+    pub fn collect(&mut self, mut write: impl FnMut(usize, &Record<'_, f32, RECORD>)) {
         let mut any = false;
         for end in [0, 1] {
             if let Some(record) = self.record(end) {
@@ -306,16 +264,12 @@ impl<const RECORD: usize> Rotor<RECORD> {
         }
     }
 
-    /// The frozen record of a plane, 0 or 1 (anything else is the second), if there is one and no other belongs to the
-    /// same event that has still to freeze: a plane that engages while the other's record waits delays the reading, and
-    /// is then in it.
-    pub fn record(&self, end: usize) -> Option<Record<'_, RECORD>> {
-        let mut planes = self.planes.iter();
-        if planes.any(|plane| plane.core.recorder().is_recording()) {
-            return None;
-        }
+    /// The frozen record of a plane, 0 or 1 (anything else is the second), if there is one.
+    pub fn record(&self, end: usize) -> Option<Record<'_, f32, RECORD>> {
         let [first, second] = &self.planes;
-        if end == 0 { first } else { second }.record()
+        let mut record = if end == 0 { first } else { second }.record()?;
+        record.shaft = Some(self.kept_shaft.values());
+        Some(record)
     }
 
     /// Discards frozen records; both planes wait for the next engagement.
@@ -324,15 +278,16 @@ impl<const RECORD: usize> Rotor<RECORD> {
         self.engaged = [false; 2];
     }
 
-    /// Supervisor of a plane, for its report, record and events; 0 or 1, and for anything else the second.
+    /// Supervisor of a plane, for its report and events; 0 or 1, and for anything else the second. Its ticks, configuration and
+    /// record are the rotor's: they go with those of the other plane.
     pub fn plane(&mut self, end: usize) -> &mut Supervisor<RECORD> {
         let [first, second] = &mut self.planes;
         if end == 0 { first } else { second }
     }
 }
 
-/// The spin where it is known \[rad/s\], else 0: then nothing is known to turn the tilt.
-fn spin(sample: &Sample) -> f32 {
-    let known = sample.status.contains(Status::SPIN_VALID) && sample.spin_rad_s.is_finite();
-    if known { sample.spin_rad_s } else { 0.0 }
+/// The spin where it is known \[1/t₀\], else 0: then nothing is known to turn the tilt.
+fn spin(sample: &CoreSample<f32>) -> f32 {
+    let known = sample.status.contains(Status::SPIN_VALID) && sample.spin.is_finite();
+    if known { sample.spin } else { 0.0 }
 }

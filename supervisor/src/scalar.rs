@@ -2,6 +2,7 @@
 //! where there is none, `f64` as the reference on the host. All operations are total and the same bits on
 //! every target.
 
+use crate::words::{Words, words_of_fields};
 use core::fmt::Debug;
 use core::ops::{Add, Mul, Neg, Sub};
 
@@ -10,6 +11,18 @@ pub(crate) mod sealed {
     pub trait Sealed {}
     impl Sealed for f32 {}
     impl Sealed for f64 {}
+}
+
+/// Kinds of numbers that a core can compute with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Number {
+    /// `f32`.
+    Single = 0,
+    /// [`crate::Q`].
+    Fixed = 1,
+    /// `f64`, of which a record keeps no samples.
+    Double = 2,
 }
 
 /// A number of the supervisor: `f32`, `f64` or [`crate::Q`].
@@ -24,6 +37,7 @@ pub trait Scalar:
     + Sub<Output = Self>
     + Mul<Output = Self>
     + Neg<Output = Self>
+    + Words
 {
     /// A sum that a small rate still moves.
     type Accumulator: Accumulator<Self>;
@@ -36,6 +50,8 @@ pub trait Scalar:
     const JUST_BELOW_ONE: Self;
     /// Hash of the self-test.
     const KNOWN_ANSWER: u32;
+    /// What a record calls these numbers.
+    const NUMBER: Number;
 
     /// The nearest number; saturating, 0 for NaN.
     fn from_f32(x: f32) -> Self;
@@ -57,10 +73,10 @@ pub trait Scalar:
     fn div(self, divisor: Self) -> Self;
     /// A count of ticks; saturating.
     fn count(ticks: u32) -> Self;
-    /// Its bits, for a hash; the two halves together where there are more than 32.
+    /// Its bits, for a hash and for a record; the two halves together where there are more than 32.
     fn bits(self) -> u32;
-    /// In units of 1/4096, rounded, saturating at ±8. NaN, which nothing that is recorded is, saturates at either end.
-    fn packed(self) -> i16;
+    /// The number of these bits, where there are no more than 32; else 0.
+    fn of_bits(bits: u32) -> Self;
 
     /// Held between `low` and `high` (`low` ≤ `high`); NaN becomes `low`.
     #[inline]
@@ -107,7 +123,7 @@ pub trait Scalar:
 }
 
 /// A sum of many small steps that rounding must not stop.
-pub trait Accumulator<S>: Copy + Default + Debug {
+pub trait Accumulator<S>: Copy + Default + Debug + Words {
     /// A factor that may be smaller than what `S` resolves.
     type Rate: Copy + Debug + PartialEq;
 
@@ -130,14 +146,17 @@ pub struct KahanSum<S> {
     rest: S,
 }
 
+words_of_fields!(KahanSum<S> { value, rest });
+
 macro_rules! floating_point {
-    ($type:ident, $bits:ident, $known_answer:literal) => {
+    ($type:ident, $known_answer:literal, $number:ident, $of_bits:expr) => {
         impl Scalar for $type {
             type Accumulator = KahanSum<$type>;
             const ZERO: Self = 0.0;
             const ONE: Self = 1.0;
             const JUST_BELOW_ONE: Self = 1.0 - 4.0 * $type::EPSILON;
             const KNOWN_ANSWER: u32 = $known_answer;
+            const NUMBER: Number = Number::$number;
 
             #[inline]
             fn from_f32(x: f32) -> Self {
@@ -190,16 +209,8 @@ macro_rules! floating_point {
                 (bits ^ (bits >> 32)) as u32
             }
             #[inline]
-            fn packed(self) -> i16 {
-                // Added to a number whose last digit is 1/4096 it ends in the low bits; what is too far for that is
-                // farther still in the bits of the sum. A third of the instructions of a conversion that saturates.
-                const DIGITS: $type = 1.5 * ((1_u64 << ($type::MANTISSA_DIGITS - 1 - 12)) as $type);
-                let sum = (self + DIGITS).to_bits() as $bits;
-                let [low, high] = [i16::MIN, i16::MAX].map($bits::from);
-                // Not `clamp`: its assertion stays in where the compiler saves size.
-                sum.saturating_sub(DIGITS.to_bits() as $bits)
-                    .max(low)
-                    .min(high) as i16
+            fn of_bits(bits: u32) -> Self {
+                $of_bits(bits)
             }
         }
 
@@ -235,8 +246,8 @@ macro_rules! floating_point {
     };
 }
 
-floating_point!(f32, i32, 0x9DD6_BC80);
-floating_point!(f64, i64, 0x9988_0906);
+floating_point!(f32, 0x31BD_BC80, Single, f32::from_bits);
+floating_point!(f64, 0xAD25_0906, Double, |_| 0.0);
 
 /// Reciprocal square roots by Newton's method, from + − × only: every target gives the same bits. `core`
 /// has no root, and libm's costs three times as many instructions where there is an FPU. 0 below 1e-30

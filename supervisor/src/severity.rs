@@ -9,6 +9,7 @@ use crate::reading::SampleFlags;
 use crate::scalar::{Accumulator, Scalar};
 use crate::signal::{Events, Limits, Mode, Report};
 use crate::vec2::Vec2;
+use crate::words::words_of_fields;
 
 /// Largest severity and severity index that are reported.
 const MOST_SEVERITY: f32 = 1e6;
@@ -21,8 +22,8 @@ pub(crate) struct Severity<S: Scalar> {
     nuisances: u32,
     impacts: u32,
     contact_ticks: u32,
-    impact_speed_max: S,
-    backward_speed_max: S,
+    /// Of the event that is recorded, or since it was.
+    pub(crate) fastest: Fastest<S>,
     /// Severity index over its limit.
     index: S::Accumulator,
     /// An engagement is under way; the rotor has touched in it.
@@ -34,6 +35,41 @@ pub(crate) struct Severity<S: Scalar> {
     index_told: bool,
     /// Velocity at the last tick: what it was before an impact that the sample shows.
     before: Vec2<S>,
+}
+
+words_of_fields!(Severity<S> { landings, nuisances, impacts, contact_ticks, fastest,    index, engaged, landed, beyond_ticks, coast_down, index_told, before });
+
+/// Fastest normal speed before an impact, and backward in contact.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Fastest<S> {
+    impact: S,
+    backward: S,
+}
+
+words_of_fields!(Fastest<S> { impact, backward });
+
+impl<S: Scalar> Fastest<S> {
+    /// Of both.
+    pub(crate) fn or(self, other: Self) -> Self {
+        Self {
+            impact: self.impact.max(other.impact),
+            backward: self.backward.max(other.backward),
+        }
+    }
+
+    /// In another unit.
+    pub(crate) fn rescaled(self, speed: S) -> Self {
+        Self {
+            impact: self.impact * speed,
+            backward: self.backward * speed,
+        }
+    }
+
+    /// Both \[m/s\].
+    pub(crate) fn in_m_s(self, coeffs: &Coeffs<S>) -> [f32; 2] {
+        let of = |speed: S| speed.to_f32() * coeffs.scaling.speed_m_s();
+        [of(self.impact), of(self.backward)]
+    }
 }
 
 /// What a tick has to report.
@@ -150,12 +186,12 @@ impl<S: Scalar> Severity<S> {
             self.landings = self.landings.saturating_add(1);
         }
         self.contact_ticks = self.contact_ticks.saturating_add(1);
-        self.backward_speed_max = self.backward_speed_max.max(backward);
+        self.fastest.backward = self.fastest.backward.max(backward);
         let mut energy = S::ZERO;
         if contact.touched {
             self.impacts = self.impacts.saturating_add(1);
             let speed = before.dot(contact.normal).max(S::ZERO);
-            self.impact_speed_max = self.impact_speed_max.max(speed);
+            self.fastest.impact = self.fastest.impact.max(speed);
             energy = speed * speed;
         }
         // Normal force that keeps the rotor on its circle against what pulls it off.
@@ -169,16 +205,23 @@ impl<S: Scalar> Severity<S> {
         }
     }
 
-    pub(crate) fn report(&self, coeffs: &Coeffs<S>) -> Report {
+    /// Whether coasting down was asked for, and the bearing has been on since.
+    pub(crate) fn coast_down(&self) -> bool {
+        self.coast_down
+    }
+
+    /// `earlier`: fastest before what is recorded.
+    pub(crate) fn report(&self, earlier: Fastest<S>, coeffs: &Coeffs<S>) -> Report {
         let speed_m_s = coeffs.scaling.speed_m_s();
+        let [impact, backward] = self.fastest.or(earlier).in_m_s(coeffs);
         let index = self.index.value().to_f32() * coeffs.severity_limit;
         Report {
             landings: self.landings,
             nuisance_engagements: self.nuisances,
             impacts: self.impacts,
             contact_ticks: self.contact_ticks,
-            impact_speed_max_m_s: self.impact_speed_max.to_f32() * speed_m_s,
-            backward_speed_max_m_s: self.backward_speed_max.to_f32() * speed_m_s,
+            impact_speed_max_m_s: impact,
+            backward_speed_max_m_s: backward,
             whirl_limit_m_s: speed_m_s / coeffs.per_whirl_limit.to_f32(),
             severity_index: Scalar::min(index, MOST_INDEX),
             coast_down: self.coast_down,
@@ -188,8 +231,7 @@ impl<S: Scalar> Severity<S> {
 
     /// After a change of the units of speed and of what the index is measured by.
     pub(crate) fn rescale(&mut self, speed: S, index: f32) {
-        self.impact_speed_max = self.impact_speed_max * speed;
-        self.backward_speed_max = self.backward_speed_max * speed;
+        self.fastest = self.fastest.rescaled(speed);
         self.before = self.before * speed;
         self.index = self.index.scaled(index);
     }

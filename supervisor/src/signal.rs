@@ -1,5 +1,7 @@
 //! What crosses the border at every tick: [`Sample`] in, [`Command`] out.
 
+use crate::words::Words;
+
 /// What the firmware knows at one sampling instant. Any bit pattern is allowed.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -140,6 +142,26 @@ pub enum RejectReason {
     Stuck = 5,
     /// Farther from where the rotor was bound to than noise and any force could take it.
     Doubted = 6,
+}
+
+impl Words for RejectReason {
+    fn put(&self, to: &mut dyn FnMut(u32)) {
+        to(*self as u32);
+    }
+    fn take(from: &mut dyn Iterator<Item = u32>) -> Self {
+        let all = [
+            Self::None,
+            Self::NotFinite,
+            Self::Range,
+            Self::Slew,
+            Self::Dropout,
+            Self::Stuck,
+            Self::Doubted,
+        ];
+        let number = u32::take(from);
+        let named = all.into_iter().find(|reason| *reason as u32 == number);
+        named.unwrap_or_default()
+    }
 }
 
 impl RejectReason {

@@ -4,6 +4,7 @@ use crate::coeffs::Coeffs;
 use crate::reading::SampleFlags;
 use crate::scalar::Scalar;
 use crate::vec2::Vec2;
+use crate::words::words_of_fields;
 
 /// What is remembered of a coordinate. `seen`: there is a last value.
 #[derive(Debug, Clone, Copy, Default)]
@@ -20,6 +21,8 @@ pub(crate) struct Coordinate<S> {
     awaited: bool,
 }
 
+words_of_fields!(Coordinate<S> { last, seen, way, stuck, unchanged, awaited });
+
 /// Both coordinates.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct StuckDetector<S> {
@@ -27,6 +30,8 @@ pub(crate) struct StuckDetector<S> {
     /// Step of the converter, which may be coarser than was told.
     step: S,
 }
+
+words_of_fields!(StuckDetector<S> { at, step });
 
 /// A change that is longer is one of the rotor \[clearances\].
 const COARSEST: f32 = 0.03;

@@ -1,10 +1,10 @@
 //! The supervisor in SI units and `f32`: the core behind the one conversion.
 
-use crate::beside::Beside;
 use crate::config::{Config, ConfigError};
 use crate::per_unit::{Core, Prepared};
-use crate::recorder::{QueuedEvent, Record};
-use crate::signal::{Command, Mode, Report, Sample, Status};
+use crate::record::Record;
+use crate::recorder::QueuedEvent;
+use crate::signal::{Command, CoreCommand, CoreSample, Mode, Report, Sample, Status};
 
 /// Supervisor of one bearing plane with a flight record of `RECORD` ticks (a power of two).
 #[derive(Debug, Clone)]
@@ -19,14 +19,14 @@ impl<const RECORD: usize> Supervisor<RECORD> {
     /// The first parameter of `config` that is outside its range.
     pub fn new(config: &Config) -> Result<Self, ConfigError> {
         config.validate()?;
-        Ok(Self::from_valid(config))
+        Ok(Self::from_valid(config, [0, 1]))
     }
 
-    pub(crate) fn from_valid(config: &Config) -> Self {
+    pub(crate) fn from_valid(config: &Config, plane: [u8; 2]) -> Self {
         // Whatever is in range `f32` holds.
         let (prepared, _) = Prepared::from_valid(config);
         Self {
-            core: Core::new(&prepared),
+            core: Core::of_plane(&prepared, plane),
         }
     }
 
@@ -45,16 +45,21 @@ impl<const RECORD: usize> Supervisor<RECORD> {
 
     /// One tick: total and bounded; see [`Core::tick`].
     pub fn tick(&mut self, sample: &Sample) -> Command {
-        self.tick_beside(sample, &())
+        let per_unit = self.core.scaling().sample(sample);
+        let command = self.core.tick(&per_unit);
+        self.in_newtons(sample, &per_unit, &command)
     }
 
-    /// The same of a plane that knows what is beside it.
+    /// The command for a sample in SI.
     #[inline]
-    pub(crate) fn tick_beside(&mut self, sample: &Sample, beside: &impl Beside<f32>) -> Command {
-        let per_unit = self.core.scaling().sample(sample);
+    pub(crate) fn in_newtons(
+        &self,
+        sample: &Sample,
+        per_unit: &CoreSample<f32>,
+        command: &CoreCommand<f32>,
+    ) -> Command {
         let levitation = per_unit.levitation;
-        let command = self.core.tick_beside(&per_unit, beside);
-        let mut newtons = self.core.scaling().command(&command);
+        let mut newtons = self.core.scaling().command(command);
         // Transparent means bit for bit: what the core left alone does not come back from per unit. A lost axis
         // gets nothing, also where a command is so small that per unit it is nothing. (Scaled as a whole before:
         // chosen number by number, x86-64 got vectors with integers in spare lanes, subnormal as floats and slow.)
@@ -88,7 +93,7 @@ impl<const RECORD: usize> Supervisor<RECORD> {
     }
 
     /// The frozen flight record, if there is one.
-    pub fn record(&self) -> Option<Record<'_, RECORD>> {
+    pub fn record(&self) -> Option<Record<'_, f32, RECORD>> {
         self.core.record()
     }
 

@@ -8,6 +8,7 @@
 use crate::coeffs::Coeffs;
 use crate::phase::Phase;
 use crate::scalar::Scalar;
+use crate::words::words_of_fields;
 
 /// Speeds up to here are no sign of anything: what told noise and slow motion come to \[lift-off speeds\].
 const ORDINARY: f32 = 0.2;
@@ -54,6 +55,8 @@ pub(crate) struct Trust<S> {
     doubled: u8,
     pub(crate) handed_back: u16,
 }
+
+words_of_fields!(Trust<S> { peak, before, margin, lowest, ticks_left, disturbed, debt, doubled, handed_back });
 
 impl<S: Scalar> Default for Trust<S> {
     fn default() -> Self {
@@ -148,19 +151,20 @@ impl<S: Scalar> Trust<S> {
         if progress {
             self.lowest = peak;
         }
-        self.debt += match phase {
+        let debt = match phase {
             Phase::SensorFault { .. } => BLIND,
             _ if peak <= S::from_f32(QUIET_SQUARE) => HELD,
             _ if progress || rubs => MOVING,
             _ => RESTLESS,
         };
+        self.debt = self.debt.saturating_add(debt);
         if self.debt < MOST_DEBT {
             return None;
         }
         self.debt = LEFT_DEBT;
         self.handed_back = self.handed_back.saturating_add(1);
-        let windows = HANDED_BACK_WINDOWS << self.doubled;
-        self.doubled = (self.doubled + 1).min(MOST_DOUBLED);
+        let windows = HANDED_BACK_WINDOWS << self.doubled.min(MOST_DOUBLED);
+        self.doubled = self.doubled.saturating_add(1).min(MOST_DOUBLED);
         Some(windows * u32::from(coeffs.window_ticks))
     }
 

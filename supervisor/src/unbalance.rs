@@ -9,6 +9,7 @@ use crate::coeffs::Coeffs;
 use crate::scalar::Scalar;
 use crate::spin::Spin;
 use crate::vec2::Vec2;
+use crate::words::words_of_fields;
 
 /// Slowest spin \[1/t₀\]. Slower, a load that turns is a load: the cap has to stop the rotor against it before it
 /// has gone round.
@@ -60,6 +61,8 @@ pub(crate) struct Unbalance<S> {
     /// From the axis to the mass centre, times the size of the spin.
     arm: Vec2<S>,
 }
+
+words_of_fields!(Unbalance<S> { arm });
 
 impl<S: Scalar> Unbalance<S> {
     /// Turns it by a tick; its mean acceleration in that.

@@ -1,6 +1,7 @@
 //! Vectors in the plane of the bearing.
 
 use crate::scalar::Scalar;
+use crate::words::words_of_fields;
 
 /// A plane vector (x right, y up).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -8,6 +9,8 @@ pub(crate) struct Vec2<S> {
     pub(crate) x: S,
     pub(crate) y: S,
 }
+
+words_of_fields!(Vec2<S> { x, y });
 
 impl<S: Scalar> Vec2<S> {
     pub(crate) const ZERO: Self = Self {

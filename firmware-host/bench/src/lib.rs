@@ -33,7 +33,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Rooms, each importing only from those above it: `words`, `device`, `scene`, `run`, `modes`, `report`, `advise`.
+//! Rooms, each importing only from those above it: `words`, `device`, `scene`, `record`, `run`, `modes`, `report`, `advise`.
 
 #![forbid(unsafe_code)]
 #![warn(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
@@ -41,6 +41,7 @@
 pub mod advise;
 pub mod device;
 pub mod modes;
+pub mod record;
 pub mod report;
 pub mod run;
 pub mod scene;

@@ -4,7 +4,6 @@ pub mod clairvoyant;
 pub mod closed_loop;
 pub mod controller;
 pub mod figures;
-pub mod flight_record;
 pub mod history;
 mod judge;
 pub mod outcome;

@@ -3,14 +3,14 @@
 use crate::wire::{self, CommandBits, Hash, SampleBits};
 use supervisor::{
     Command, Config, Core, CoreCommand, CoreSample, Mode, Place, Prepared, Q, Rotor, RotorCommand,
-    Sample, Shaft, Supervisor, self_test,
+    Sample, Shaft, Stamp, Supervisor, self_test,
 };
 
 /// Ticks of the flight record in floats. Host and image must agree: the tick at which a record freezes is part of
 /// a command.
 pub const RECORD: usize = 512;
 /// The same in fixed point, for a processor with 16 KiB of RAM.
-pub const SHORT_RECORD: usize = 64;
+pub const SHORT_RECORD: usize = 32;
 
 /// Floats in SI.
 pub type Float = Supervisor<RECORD>;
@@ -83,10 +83,8 @@ macro_rules! asked {
                 wire::add_event(hash, &event);
             }
             if let Some(record) = Self::record(self) {
-                hash.add(&record.crc.to_le_bytes());
-                for entry in record.entries() {
-                    hash.add(&entry.to_bytes());
-                }
+                let sections = (0..).map_while(|i| record.section(i, &Stamp::default()));
+                sections.for_each(|mut section| hash.add(section.seal()));
             }
         }
         fn everything_else(&mut self) {
@@ -97,11 +95,14 @@ macro_rules! asked {
                 black_box(event);
             }
             if let Some(record) = Self::record(self) {
-                black_box(record.crc);
+                black_box(record.summary());
                 for entry in record.entries() {
                     black_box(entry);
                 }
-                black_box(supervisor::crc_of(record.entries()));
+                let sections = (0..).map_while(|i| record.section(i, &Stamp::default()));
+                for mut section in sections {
+                    black_box(section.seal());
+                }
             }
             Self::rearm(self);
         }

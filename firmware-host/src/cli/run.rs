@@ -228,7 +228,7 @@ fn write_records(
     for run in runs {
         let read_out = run.trace.read_out.as_ref();
         if let Some(record) = read_out.and_then(|read_out| read_out.flight_record.as_ref()) {
-            staging.write(&name(&run.name), &record.entries)?;
+            staging.write(&name(&run.name), record)?;
         }
     }
     Ok(())

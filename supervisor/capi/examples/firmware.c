@@ -53,12 +53,20 @@ static amb_code next_event(amb_event *event) {
     return code;
 }
 
-static amb_code record_entry(uint32_t index, amb_entry *entry) {
+static amb_code record_section(uint32_t index, amb_section *section) {
+    /* A machine's firmware has its build number here, and the time of its clock. */
+    static const amb_stamp stamp = {1, 0, {0, 0}};
     amb_code code;
     interrupts_hold();
-    code = amb_record_entry(&plane, index, entry);
+    code = amb_record_section(&plane, index, &stamp, section);
     interrupts_release();
     return code;
+}
+
+/* To flash, or over a bus. */
+static void save(const uint8_t *bytes, uint32_t length) {
+    (void)bytes;
+    (void)length;
 }
 
 static void show_events(void) {
@@ -69,22 +77,17 @@ static void show_events(void) {
     }
 }
 
-/* Copies a frozen record away, an entry at a time, then lets the recorder wait for the next event. */
+/* Writes a frozen record down, a section at a time, then lets the recorder wait for the next event. */
 static void take_record(void) {
-    static amb_entry entries[AMB_RECORD_ENTRIES];
-    amb_record record;
-    uint32_t i, crc = 0;
-    amb_code code;
-    interrupts_hold();
-    code = amb_record_frozen(&plane, &record);
-    interrupts_release();
-    if (code != AMB_OK) return; /* AMB_NOTHING: there is none */
-    for (i = 0; i < record.entries; i++) {
-        if (record_entry(i, &entries[i]) != AMB_OK) return;
+    static amb_section section;
+    uint32_t index = 0, bytes = 0;
+    while (record_section(index, &section) == AMB_OK) { /* AMB_NOTHING: there is none, or no more of it */
+        save(section.bytes, section.length);
+        bytes += section.length;
+        index++;
     }
-    amb_crc(entries, record.entries, &crc); /* does not touch the supervisor */
-    printf("record from tick %u, %s\n", (unsigned)entries[0].sequence,
-           crc == record.crc ? "checksum right" : "checksum wrong");
+    if (index == 0) return;
+    printf("record of version %u, %u sections, %u bytes\n", AMB_RECORD_VERSION, (unsigned)index, (unsigned)bytes);
     interrupts_hold();
     amb_rearm(&plane);
     interrupts_release();

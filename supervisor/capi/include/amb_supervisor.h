@@ -38,7 +38,7 @@
 #include <stdint.h>
 
 /** Version of the interface that this header describes. */
-#define AMB_ABI 1
+#define AMB_ABI 2
 
 /* Written beside the library when that is built; give its folder to the compiler with -I. */
 #include "amb_supervisor_abi.h"
@@ -60,17 +60,14 @@
 #define amb_mode_name AMB_JOIN(amb_mode_name, AMB_ABI)
 #define amb_report_now AMB_JOIN(amb_report_now, AMB_ABI)
 #define amb_next_event AMB_JOIN(amb_next_event, AMB_ABI)
-#define amb_record_frozen AMB_JOIN(amb_record_frozen, AMB_ABI)
-#define amb_record_entry AMB_JOIN(amb_record_entry, AMB_ABI)
-#define amb_crc AMB_JOIN(amb_crc, AMB_ABI)
+#define amb_record_section AMB_JOIN(amb_record_section, AMB_ABI)
 #define amb_rearm AMB_JOIN(amb_rearm, AMB_ABI)
 #define amb_rotor_init AMB_JOIN(amb_rotor_init, AMB_ABI)
 #define amb_rotor_reconfigure AMB_JOIN(amb_rotor_reconfigure, AMB_ABI)
 #define amb_rotor_tick AMB_JOIN(amb_rotor_tick, AMB_ABI)
 #define amb_rotor_report_now AMB_JOIN(amb_rotor_report_now, AMB_ABI)
 #define amb_rotor_next_event AMB_JOIN(amb_rotor_next_event, AMB_ABI)
-#define amb_rotor_record_frozen AMB_JOIN(amb_rotor_record_frozen, AMB_ABI)
-#define amb_rotor_record_entry AMB_JOIN(amb_rotor_record_entry, AMB_ABI)
+#define amb_rotor_record_section AMB_JOIN(amb_rotor_record_section, AMB_ABI)
 #define amb_rotor_rearm AMB_JOIN(amb_rotor_rearm, AMB_ABI)
 #define amb_watch_init AMB_JOIN(amb_watch_init, AMB_ABI)
 #define amb_watch_renew AMB_JOIN(amb_watch_renew, AMB_ABI)
@@ -114,8 +111,8 @@ typedef int32_t amb_code;
 #define AMB_ERROR_NAME_NULL (-13) /**< name is null */
 #define AMB_ERROR_NAME_UNKNOWN (-14) /**< no parameter has this name */
 #define AMB_ERROR_INDEX (-15) /**< index is beyond the end */
-#define AMB_ERROR_ENTRIES_NULL (-16) /**< entries is null */
-#define AMB_ERROR_ENTRIES_MISALIGNED (-17) /**< entries is not aligned to 4 bytes */
+#define AMB_ERROR_STAMP_NULL (-16) /**< stamp is null */
+#define AMB_ERROR_STAMP_MISALIGNED (-17) /**< stamp is not aligned to 4 bytes */
 #define AMB_ERROR_RESULT_NULL (-18) /**< the pointer to the result is null */
 #define AMB_ERROR_RESULT_MISALIGNED (-19) /**< the pointer to the result is not aligned as its type */
 #define AMB_ERROR_WATCH_NULL (-20) /**< watch is null */
@@ -251,7 +248,7 @@ typedef int32_t amb_code;
 /** @} */
 
 /** Bytes of an amb_supervisor; some more than the library needs. */
-#define AMB_SUPERVISOR_BYTES 9216
+#define AMB_SUPERVISOR_BYTES 29184
 /** Its alignment in bytes. */
 #define AMB_SUPERVISOR_ALIGN 8
 
@@ -266,7 +263,7 @@ typedef union amb_supervisor {
 } amb_supervisor;
 
 /** Bytes of an amb_rotor. */
-#define AMB_ROTOR_BYTES 18432
+#define AMB_ROTOR_BYTES 58368
 
 /** A supervisor of a rotor in two bearing planes. Opaque and static, or zero, as an amb_supervisor. */
 typedef union amb_rotor {
@@ -336,29 +333,26 @@ typedef struct amb_event {
     uint32_t events;   /**< AMB_EVENT_ bits */
 } amb_event;
 
-/** A frozen flight record without its entries. */
-typedef struct amb_record {
-    uint32_t version; /**< AMB_RECORD_VERSION of the library */
-    uint32_t entries; /**< how many; AMB_RECORD_ENTRIES */
-    uint32_t crc;     /**< CRC-32 (IEEE) over the entries from oldest to newest; see amb_crc() */
-} amb_record;
-
-/** Version of the layout of an entry. */
-#define AMB_RECORD_VERSION 2
-/** Entries of a record: one a tick, a quarter of them from before the supervisor engaged. */
+/** Version of the format of a flight record. */
+#define AMB_RECORD_VERSION 3
+/** Most ticks of a record, a quarter of them from before the supervisor engaged. */
 #define AMB_RECORD_ENTRIES 512
-/** Recorded lengths are in 1/4096 of the clearance, forces in 1/4096 of force_max_n, saturated at 8. */
-#define AMB_PER_UNIT 4096
 
-/** One tick in a flight record. */
-typedef struct amb_entry {
-    uint32_t sequence;   /**< sequence number of the sample */
-    int16_t position[2]; /**< measured position [clearance / AMB_PER_UNIT] */
-    int16_t force[2];    /**< own_n of the command [force_max_n / AMB_PER_UNIT] */
-    uint8_t mode;        /**< AMB_MODE_ */
-    uint8_t limits;      /**< AMB_LIMIT_ bits */
-    uint16_t events;     /**< AMB_EVENT_ bits, the low 16 */
-} amb_entry;
+/** What firmware adds to a flight record. */
+typedef struct amb_stamp {
+    uint32_t firmware;    /**< which firmware this is */
+    uint32_t at_sequence; /**< sequence number of the sample at the time of time_us */
+    uint32_t time_us[2];  /**< a clock's time [us], the lower half first */
+} amb_stamp;
+
+/** Most bytes of a section. */
+#define AMB_SECTION_BYTES 736
+
+/** A section of a flight record, to be written down as it is. */
+typedef struct amb_section {
+    uint32_t length;                  /**< how many of the bytes count */
+    uint8_t bytes[AMB_SECTION_BYTES]; /**< they, and zeros */
+} amb_section;
 
 /** What has happened since amb_init(). */
 typedef struct amb_report {
@@ -396,8 +390,8 @@ typedef struct amb_parameter {
 #define AMB_SIZEOF_ROTOR_COMMAND 84
 #define AMB_SIZEOF_SHAFT 36
 #define AMB_SIZEOF_EVENT 12
-#define AMB_SIZEOF_RECORD 12
-#define AMB_SIZEOF_ENTRY 16
+#define AMB_SIZEOF_STAMP 16
+#define AMB_SIZEOF_SECTION 740
 #define AMB_SIZEOF_REPORT 68
 /** @} */
 
@@ -435,17 +429,13 @@ AMB_ASSERT(event_size, sizeof(amb_event) == AMB_SIZEOF_EVENT);
 AMB_ASSERT(event_sequence, offsetof(amb_event, sequence) == 0);
 AMB_ASSERT(event_mode, offsetof(amb_event, mode) == 4);
 AMB_ASSERT(event_events, offsetof(amb_event, events) == 8);
-AMB_ASSERT(record_size, sizeof(amb_record) == AMB_SIZEOF_RECORD);
-AMB_ASSERT(record_version, offsetof(amb_record, version) == 0);
-AMB_ASSERT(record_entries, offsetof(amb_record, entries) == 4);
-AMB_ASSERT(record_crc, offsetof(amb_record, crc) == 8);
-AMB_ASSERT(entry_size, sizeof(amb_entry) == AMB_SIZEOF_ENTRY);
-AMB_ASSERT(entry_sequence, offsetof(amb_entry, sequence) == 0);
-AMB_ASSERT(entry_position, offsetof(amb_entry, position) == 4);
-AMB_ASSERT(entry_force, offsetof(amb_entry, force) == 8);
-AMB_ASSERT(entry_mode, offsetof(amb_entry, mode) == 12);
-AMB_ASSERT(entry_limits, offsetof(amb_entry, limits) == 13);
-AMB_ASSERT(entry_events, offsetof(amb_entry, events) == 14);
+AMB_ASSERT(stamp_size, sizeof(amb_stamp) == AMB_SIZEOF_STAMP);
+AMB_ASSERT(stamp_firmware, offsetof(amb_stamp, firmware) == 0);
+AMB_ASSERT(stamp_at_sequence, offsetof(amb_stamp, at_sequence) == 4);
+AMB_ASSERT(stamp_time_us, offsetof(amb_stamp, time_us) == 8);
+AMB_ASSERT(section_size, sizeof(amb_section) == AMB_SIZEOF_SECTION);
+AMB_ASSERT(section_length, offsetof(amb_section, length) == 0);
+AMB_ASSERT(section_bytes, offsetof(amb_section, bytes) == 4);
 AMB_ASSERT(report_size, sizeof(amb_report) == AMB_SIZEOF_REPORT);
 AMB_ASSERT(report_landings, offsetof(amb_report, landings) == 0);
 AMB_ASSERT(report_impacts, offsetof(amb_report, impacts) == 4);
@@ -573,32 +563,17 @@ amb_code amb_report_now(amb_supervisor *supervisor, amb_report *report);
 amb_code amb_next_event(amb_supervisor *supervisor, amb_event *event);
 
 /**
- * The frozen flight record, or AMB_NOTHING. It freezes some ticks for each entry after the last one, in which
- * its checksum is made a little at a time, and stays as it is until amb_rearm(), so that its entries may
- * be read one at a time, with ticks between.
+ * A section of the frozen flight record. AMB_NOTHING where none has frozen, and beyond the last section. The record is frozen
+ * (AMB_EVENT_RECORD_FROZEN) once its ticks are full and the levitation controller has the bearing again, or the slow track is full, and stays as it is
+ * until amb_rearm(), so that sections may be read one at a time, with ticks between. Written one after the other they are the file
+ * that `firmware-host review` reads.
  * @param supervisor made by amb_init().
- * @param[out] record untouched unless AMB_OK.
- * @return AMB_OK, AMB_NOTHING, or an error of supervisor or result.
+ * @param index 0 for the first.
+ * @param stamp the same for all sections of a record.
+ * @param[out] section untouched unless AMB_OK.
+ * @return AMB_OK, AMB_NOTHING, or an error of supervisor, stamp or result.
  */
-amb_code amb_record_frozen(amb_supervisor *supervisor, amb_record *record);
-
-/**
- * An entry of the frozen record, or AMB_NOTHING without one.
- * @param supervisor made by amb_init().
- * @param index 0 (oldest) to AMB_RECORD_ENTRIES - 1; anything else is AMB_ERROR_INDEX where there is a record.
- * @param[out] entry untouched unless AMB_OK.
- * @return AMB_OK, AMB_NOTHING, AMB_ERROR_INDEX, or an error of supervisor or result.
- */
-amb_code amb_record_entry(amb_supervisor *supervisor, uint32_t index, amb_entry *entry);
-
-/**
- * CRC-32 of entries, for a reader of a record to compare with.
- * @param entries from oldest to newest.
- * @param count at most AMB_RECORD_ENTRIES; more is AMB_ERROR_INDEX.
- * @param[out] crc untouched after an error.
- * @return AMB_OK, AMB_ERROR_INDEX, or an error of entries or result.
- */
-amb_code amb_crc(const amb_entry *entries, uint32_t count, uint32_t *crc);
+amb_code amb_record_section(amb_supervisor *supervisor, uint32_t index, const amb_stamp *stamp, amb_section *section);
 
 /**
  * Discards a frozen record and waits for the next engagement.
@@ -660,24 +635,17 @@ amb_code amb_rotor_report_now(amb_rotor *rotor, uint32_t plane, amb_report *repo
 amb_code amb_rotor_next_event(amb_rotor *rotor, uint32_t plane, amb_event *event);
 
 /**
- * The frozen flight record of a plane. AMB_NOTHING where there is none, and as long as the other plane still records
- * what belongs to the same event. It stays as it is until amb_rotor_rearm().
+ * A section of the frozen flight record of a plane, as amb_record_section(). Both planes record the same ticks of one event and
+ * freeze at once; the sections of both planes may be written into one file.
  * @param rotor made by amb_rotor_init().
  * @param plane 0 or 1; anything else is AMB_ERROR_PLANE.
- * @param[out] record untouched unless AMB_OK.
- * @return AMB_OK, AMB_NOTHING, AMB_ERROR_PLANE, or an error of rotor or result.
+ * @param index 0 for the first.
+ * @param stamp the same for all sections of a record.
+ * @param[out] section untouched unless AMB_OK.
+ * @return AMB_OK, AMB_NOTHING, AMB_ERROR_PLANE, or an error of rotor, stamp or result.
  */
-amb_code amb_rotor_record_frozen(amb_rotor *rotor, uint32_t plane, amb_record *record);
-
-/**
- * An entry of the frozen record of a plane, or AMB_NOTHING without one.
- * @param rotor made by amb_rotor_init().
- * @param plane 0 or 1; anything else is AMB_ERROR_PLANE.
- * @param index 0 (oldest) to AMB_RECORD_ENTRIES - 1; anything else is AMB_ERROR_INDEX where there is a record.
- * @param[out] entry untouched unless AMB_OK.
- * @return AMB_OK, AMB_NOTHING, AMB_ERROR_INDEX, AMB_ERROR_PLANE, or an error of rotor or result.
- */
-amb_code amb_rotor_record_entry(amb_rotor *rotor, uint32_t plane, uint32_t index, amb_entry *entry);
+amb_code amb_rotor_record_section(amb_rotor *rotor, uint32_t plane, uint32_t index, const amb_stamp *stamp,
+                                  amb_section *section);
 
 /**
  * Discards the frozen records of both planes; they wait for the next engagement.

@@ -4,15 +4,15 @@
 use crate::code::Code;
 use crate::pointer::{Argument, Place};
 use crate::storage::{self, Content, Kept, Lease, RECORD, Storage};
-use crate::structs::{CCommand, CEvent, CParameter, CRecord, CReport, CSample};
+use crate::structs::{CCommand, CEvent, CParameter, CReport, CSample, CSection, CStamp};
 use crate::{parameters, version};
 use core::ffi::{CStr, c_char};
-use supervisor::{Config, Entry, PARAMETERS, RECORD_VERSION, Record};
+use supervisor::{Config, PARAMETERS, Section, Stamp, Supervisor};
 
 /// Ending of the names; [`version::ABI`] as text.
 macro_rules! ending {
     () => {
-        "_abi1"
+        "_abi2"
     };
 }
 
@@ -306,74 +306,42 @@ pub unsafe extern "C" fn amb_next_event(supervisor: *mut Storage, event: *mut CE
     }
 }
 
-/// The frozen record without its entries.
+/// A section of the frozen record, 0 the first.
 ///
 /// # Safety
-/// `supervisor` as for [`amb_tick`]; `record` is null, misaligned, or points to memory for its struct.
+/// `supervisor` as for [`amb_tick`]; `stamp` and `section` are null, misaligned, or point to their structs.
 // SAFETY: a name of its own, see `amb_abi_version`.
-#[unsafe(export_name = concat!("amb_record_frozen", ending!()))]
-pub unsafe extern "C" fn amb_record_frozen(supervisor: *mut Storage, record: *mut CRecord) -> Code {
-    // SAFETY: the caller's promise.
-    unsafe { ask(supervisor, record, |s| frozen(s.record())) }
-}
-
-/// A frozen record without its entries.
-pub(crate) fn frozen(record: Option<Record<'_, RECORD>>) -> Result<CRecord, Code> {
-    let crc = record.ok_or(Code::NOTHING)?.crc;
-    Ok(CRecord {
-        version: u32::from(RECORD_VERSION),
-        entries: RECORD as u32,
-        crc,
-    })
-}
-
-/// An entry of the frozen record, 0 the oldest.
-///
-/// # Safety
-/// `supervisor` as for [`amb_tick`]; `entry` is null, misaligned, or points to memory for its struct.
-// SAFETY: a name of its own, see `amb_abi_version`.
-#[unsafe(export_name = concat!("amb_record_entry", ending!()))]
-pub unsafe extern "C" fn amb_record_entry(
+#[unsafe(export_name = concat!("amb_record_section", ending!()))]
+pub unsafe extern "C" fn amb_record_section(
     supervisor: *mut Storage,
     index: u32,
-    entry: *mut Entry,
+    stamp: *const CStamp,
+    section: *mut CSection,
 ) -> Code {
+    let section_of = |s: &Supervisor<RECORD>, stamp: &Stamp| s.record()?.section(index, stamp);
     // SAFETY: the caller's promise.
-    unsafe { ask(supervisor, entry, |s| entry_of(s.record(), index)) }
+    Code::from_result(unsafe { write_section(supervisor, stamp, section, section_of) })
 }
 
-/// An entry of a frozen record.
-pub(crate) fn entry_of(record: Option<Record<'_, RECORD>>, index: u32) -> Result<Entry, Code> {
-    let record = record.ok_or(Code::NOTHING)?;
-    let entry = record.entries().nth(index as usize);
-    entry.copied().ok_or(Code::ERROR_INDEX)
-}
-
-/// CRC-32 of entries, oldest first, as a record has it.
+/// Writes a section of a record down. The content is in use only while its words are copied.
 ///
 /// # Safety
-/// `entries` is null, misaligned, or points to `count` entries; `crc` is null, misaligned, or points to
-/// memory for a number.
-// SAFETY: a name of its own, see `amb_abi_version`.
-#[unsafe(export_name = concat!("amb_crc", ending!()))]
-pub unsafe extern "C" fn amb_crc(entries: *const Entry, count: u32, crc: *mut u32) -> Code {
-    if let Err(code) = Argument::Entries.check(entries) {
-        return code;
-    }
+/// `kept` as for [`ask`]; `stamp` and `section` are null, misaligned, or point to their structs.
+pub(crate) unsafe fn write_section<C: Content>(
+    kept: *mut Kept<C>,
+    stamp: *const CStamp,
+    section: *mut CSection,
+    section_of: impl FnOnce(&C, &Stamp) -> Option<Section>,
+) -> Result<(), Code> {
     // SAFETY: the caller's promise.
-    let place = match unsafe { Place::new(Argument::Result, crc) } {
-        Ok(place) => place,
-        Err(code) => return code,
-    };
-    if count as usize > RECORD {
-        // No record is longer; and a slice may not be longer than the memory.
-        return Code::ERROR_INDEX;
-    }
-    // SAFETY: neither null nor misaligned, and there are so many, by the caller's promise. Any bytes
-    // make an entry.
-    let entries = unsafe { core::slice::from_raw_parts(entries, count as usize) };
-    place.put(supervisor::crc_of(entries.iter()));
-    Code::OK
+    let stamp = unsafe { Argument::Stamp.read(stamp) }?.into();
+    // SAFETY: the caller's promise.
+    let place = unsafe { Place::new(Argument::Result, section) }?;
+    // SAFETY: the caller's promise.
+    let made = section_of(unsafe { Lease::new(kept) }?.content(), &stamp);
+    let mut made = made.ok_or(Code::NOTHING)?;
+    place.put(CSection::new(made.seal()));
+    Ok(())
 }
 
 /// Discards a frozen record and waits for the next engagement.

@@ -62,8 +62,8 @@ codes! {
     ERROR_NAME_NULL = -13, "name is null";
     ERROR_NAME_UNKNOWN = -14, "no parameter has this name";
     ERROR_INDEX = -15, "index is beyond the end";
-    ERROR_ENTRIES_NULL = -16, "entries is null";
-    ERROR_ENTRIES_MISALIGNED = -17, "entries is not aligned to 4 bytes";
+    ERROR_STAMP_NULL = -16, "stamp is null";
+    ERROR_STAMP_MISALIGNED = -17, "stamp is not aligned to 4 bytes";
     ERROR_RESULT_NULL = -18, "the pointer to the result is null";
     ERROR_RESULT_MISALIGNED = -19, "the pointer to the result is not aligned as its type";
     ERROR_WATCH_NULL = -20, "watch is null";

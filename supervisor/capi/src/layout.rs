@@ -68,5 +68,5 @@ const _: () = {
     assert!(defined("AMB_ABI") == crate::version::ABI as usize);
     assert!(defined("AMB_PARAMETERS") == supervisor::PARAMETERS.len());
     assert!(defined("AMB_RECORD_VERSION") == supervisor::RECORD_VERSION as usize);
-    assert!(defined("AMB_PER_UNIT") == supervisor::PER_UNIT as usize);
+    assert!(defined("AMB_SECTION_BYTES") == supervisor::SECTION_BYTES);
 };

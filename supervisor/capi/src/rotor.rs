@@ -1,11 +1,11 @@
 //! The functions of the header on the supervisor of a rotor in two bearing planes.
 
-use crate::calls::{ask, configurations, ending, entry_of, frozen};
+use crate::calls::{ask, configurations, ending, write_section};
 use crate::code::Code;
 use crate::pointer::{Argument, Place};
 use crate::storage::{self, Lease, RECORD, RotorStorage};
-use crate::structs::{CCommand, CEvent, CRecord, CReport, CRotorCommand, CSample, CShaft};
-use supervisor::{Entry, Rotor};
+use crate::structs::{CCommand, CEvent, CReport, CRotorCommand, CSample, CSection, CShaft, CStamp};
+use supervisor::{Rotor, Stamp};
 
 /// Makes a supervisor of a rotor in storage of the caller's. After an error the storage is as it was.
 ///
@@ -163,35 +163,28 @@ pub unsafe extern "C" fn amb_rotor_next_event(
     }
 }
 
-/// The frozen record of a plane without its entries.
+/// A section of the frozen record of a plane, 0 the first.
 ///
 /// # Safety
-/// `rotor` as for [`amb_rotor_tick`]; `record` is null, misaligned, or points to memory for its struct.
+/// `rotor` as for [`amb_rotor_tick`]; `stamp` and `section` are null, misaligned, or point to their structs.
 // SAFETY: a name of its own, see `amb_rotor_init`.
-#[unsafe(export_name = concat!("amb_rotor_record_frozen", ending!()))]
-pub unsafe extern "C" fn amb_rotor_record_frozen(
-    rotor: *mut RotorStorage,
-    plane: u32,
-    record: *mut CRecord,
-) -> Code {
-    // SAFETY: the caller's promise.
-    unsafe { ask_plane(rotor, plane, record, |r, end| frozen(r.record(end))) }
-}
-
-/// An entry of the frozen record of a plane, 0 the oldest.
-///
-/// # Safety
-/// `rotor` as for [`amb_rotor_tick`]; `entry` is null, misaligned, or points to memory for its struct.
-// SAFETY: a name of its own, see `amb_rotor_init`.
-#[unsafe(export_name = concat!("amb_rotor_record_entry", ending!()))]
-pub unsafe extern "C" fn amb_rotor_record_entry(
+#[unsafe(export_name = concat!("amb_rotor_record_section", ending!()))]
+pub unsafe extern "C" fn amb_rotor_record_section(
     rotor: *mut RotorStorage,
     plane: u32,
     index: u32,
-    entry: *mut Entry,
+    stamp: *const CStamp,
+    section: *mut CSection,
 ) -> Code {
+    if plane > 1 {
+        return Code::ERROR_PLANE;
+    }
+    let section_of = |rotor: &Rotor<RECORD>, stamp: &Stamp| {
+        let record = rotor.record(plane as usize)?;
+        record.section(index, stamp)
+    };
     // SAFETY: the caller's promise.
-    unsafe { ask_plane(rotor, plane, entry, |r, end| entry_of(r.record(end), index)) }
+    Code::from_result(unsafe { write_section(rotor, stamp, section, section_of) })
 }
 
 /// Discards frozen records; both planes wait for the next engagement.

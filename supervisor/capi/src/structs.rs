@@ -5,7 +5,8 @@ use crate::layout::{Layout, defined};
 use core::ffi::c_char;
 use core::mem::offset_of;
 use supervisor::{
-    Command, Entry, Mode, Place, QueuedEvent, Report, RotorCommand, Sample, Shaft, Status,
+    Command, Mode, Place, QueuedEvent, Report, RotorCommand, SECTION_BYTES, Sample, Shaft, Stamp,
+    Status,
 };
 
 /// A struct with the offset of each field, checked at compile time.
@@ -120,14 +121,25 @@ c_struct! {
 }
 
 c_struct! {
-    /// A frozen record without its entries.
-    CRecord = "amb_record", 12 {
-        /// Version of the layout of an entry.
-        version: u32 = 0,
-        /// Entries.
-        entries: u32 = 4,
-        /// CRC-32 over the entries from oldest to newest.
-        crc: u32 = 8,
+    /// What firmware adds to a record: [`Stamp`].
+    CStamp = "amb_stamp", 16 {
+        /// Which firmware this is.
+        firmware: u32 = 0,
+        /// Sequence number of the sample at that time.
+        at_sequence: u32 = 4,
+        /// A clock's time \[µs\], the lower half first.
+        time_us: [u32; 2] = 8,
+    }
+}
+
+impl From<CStamp> for Stamp {
+    fn from(stamp: CStamp) -> Self {
+        let [low, high] = stamp.time_us.map(u64::from);
+        Self {
+            firmware: stamp.firmware,
+            time_us: low | high << 32,
+            at_sequence: stamp.at_sequence,
+        }
     }
 }
 
@@ -187,19 +199,34 @@ pub struct CParameter {
     pub high: f32,
 }
 
-/// The supervisor's own [`Entry`] is `amb_entry`.
-pub const ENTRY_LAYOUT: Layout = Layout {
-    name: "amb_entry",
-    size: 16,
-    fields: &[
-        ("sequence", 0, 4),
-        ("position", 4, 4),
-        ("force", 8, 4),
-        ("mode", 12, 1),
-        ("limits", 13, 1),
-        ("events", 14, 2),
-    ],
-};
+/// A section of a record.
+#[derive(Debug, Clone, Copy)]
+#[repr(C)]
+pub struct CSection {
+    /// Bytes that count.
+    pub length: u32,
+    /// They, and zeros.
+    pub bytes: [u8; SECTION_BYTES],
+}
+
+impl CSection {
+    /// Where everything is.
+    pub const LAYOUT: Layout = Layout {
+        name: "amb_section",
+        size: 740,
+        fields: &[("length", 0, 4), ("bytes", 4, SECTION_BYTES)],
+    };
+
+    /// Of these bytes, of which a section has no more than there is room for.
+    pub(crate) fn new(section: &[u8]) -> Self {
+        let mut made = Self {
+            length: section.len() as u32,
+            bytes: [0; SECTION_BYTES],
+        };
+        (made.bytes.iter_mut().zip(section)).for_each(|(to, from)| *to = *from);
+        made
+    }
+}
 
 /// Structs without pointers, whose layout is the same everywhere.
 pub const LAYOUTS: [Layout; 8] = [
@@ -208,19 +235,15 @@ pub const LAYOUTS: [Layout; 8] = [
     CRotorCommand::LAYOUT,
     CShaft::LAYOUT,
     CEvent::LAYOUT,
-    CRecord::LAYOUT,
+    CStamp::LAYOUT,
+    CSection::LAYOUT,
     CReport::LAYOUT,
-    ENTRY_LAYOUT,
 ];
 
 const _: () = {
-    assert!(size_of::<Entry>() == ENTRY_LAYOUT.size && align_of::<Entry>() == 4);
-    assert!(offset_of!(Entry, sequence) == 0);
-    assert!(offset_of!(Entry, position) == 4);
-    assert!(offset_of!(Entry, force) == 8);
-    assert!(offset_of!(Entry, mode) == 12);
-    assert!(offset_of!(Entry, limits) == 13);
-    assert!(offset_of!(Entry, events) == 14);
+    assert!(size_of::<CSection>() == CSection::LAYOUT.size && align_of::<CSection>() == 4);
+    assert!(offset_of!(CSection, length) == 0);
+    assert!(offset_of!(CSection, bytes) == 4);
 
     let pointer = size_of::<*const c_char>();
     assert!(offset_of!(CParameter, name) == 0);
@@ -234,9 +257,9 @@ const _: () = {
     assert!(defined("AMB_SIZEOF_ROTOR_COMMAND") == size_of::<CRotorCommand>());
     assert!(defined("AMB_SIZEOF_SHAFT") == size_of::<CShaft>());
     assert!(defined("AMB_SIZEOF_EVENT") == size_of::<CEvent>());
-    assert!(defined("AMB_SIZEOF_RECORD") == size_of::<CRecord>());
+    assert!(defined("AMB_SIZEOF_STAMP") == size_of::<CStamp>());
+    assert!(defined("AMB_SIZEOF_SECTION") == size_of::<CSection>());
     assert!(defined("AMB_SIZEOF_REPORT") == size_of::<CReport>());
-    assert!(defined("AMB_SIZEOF_ENTRY") == size_of::<Entry>());
 };
 
 impl From<CSample> for Sample {

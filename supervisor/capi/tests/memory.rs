@@ -4,33 +4,40 @@
 
 use core::mem::MaybeUninit;
 use std::ptr::{null, null_mut};
-use supervisor::{Entry, PARAMETERS, Status};
+use supervisor::{PARAMETERS, Status};
 use supervisor_capi::calls::{
-    amb_crc, amb_init, amb_next_event, amb_parameter_at, amb_parameter_index, amb_rearm,
-    amb_reconfigure, amb_record_entry, amb_record_frozen, amb_report_now, amb_self_test, amb_tick,
+    amb_init, amb_next_event, amb_parameter_at, amb_parameter_index, amb_rearm, amb_reconfigure,
+    amb_record_section, amb_report_now, amb_self_test, amb_tick,
 };
 use supervisor_capi::rotor::{
     amb_rotor_init, amb_rotor_next_event, amb_rotor_rearm, amb_rotor_reconfigure,
-    amb_rotor_record_entry, amb_rotor_record_frozen, amb_rotor_report_now, amb_rotor_tick,
+    amb_rotor_record_section, amb_rotor_report_now, amb_rotor_tick,
 };
 use supervisor_capi::structs::{
-    CCommand, CEvent, CParameter, CRecord, CReport, CRotorCommand, CSample, CShaft,
+    CCommand, CEvent, CParameter, CReport, CRotorCommand, CSample, CSection, CShaft, CStamp,
 };
 use supervisor_capi::watch::{amb_watch_expired, amb_watch_force, amb_watch_init, amb_watch_renew};
 use supervisor_capi::{Code, RECORD, RotorStorage, Storage, WatchStorage};
 
 /// Memory as C has it.
 #[repr(C, align(8))]
-struct Memory([u8; 9216]);
+struct Memory([u8; 29184]);
 
 const VALUES: [f32; PARAMETERS.len()] = [
     50e-6, 10.0, 0.0, 0.0, 2e-4, 1000.0, 0.0, 1.0, 0.15, 0.7, 0.5, 0.2, 0.02, 4.0, 2e-3, 0.8, 1e-3,
     2e-3, 1e-3, 10.0, 1000.0, 1e7, 400.0, 5.0, 2e8, 5e-3, 20.0, 1.0, 1.0, 2.0, 1e-8,
 ];
 
+/// Onto the wall, a while there, and back.
+fn way_m(tick: usize) -> f32 {
+    let out = (tick as f32 * 5e-5).min(2e-4);
+    let back = (tick.saturating_sub(60) as f32 * 2e-6).min(out);
+    out - back + 1e-7 * (tick % 3) as f32
+}
+
 #[test]
 fn calls_touch_only_what_they_were_given() {
-    let mut memory = Box::new(Memory([0; 9216]));
+    let mut memory = Box::new(Memory([0; 29184]));
     let size = size_of::<Memory>();
     let plane: *mut Storage = (&raw mut *memory).cast();
     let mut command = CCommand::default();
@@ -39,11 +46,11 @@ fn calls_touch_only_what_they_were_given() {
         ..CSample::default()
     };
     let mut event = MaybeUninit::<CEvent>::uninit();
-    let mut record = MaybeUninit::<CRecord>::uninit();
+    let mut section = MaybeUninit::<CSection>::uninit();
+    let stamp = CStamp::default();
     let mut report = MaybeUninit::<CReport>::uninit();
     let mut row = MaybeUninit::<CParameter>::uninit();
-    let mut entries = vec![Entry::default(); RECORD];
-    let (mut index, mut crc) = (0, 0);
+    let mut index = 0;
     // SAFETY: every pointer is null, misaligned, or points to what its type says; the memory is zero, and
     // used through these calls alone.
     unsafe {
@@ -57,22 +64,22 @@ fn calls_touch_only_what_they_were_given() {
             amb_init(null_mut(), size, null(), count),
             Code::ERROR_SUPERVISOR_NULL
         );
-        // Outwards at 1 m/s, until a record is frozen.
+        let take = |index, section: &mut MaybeUninit<CSection>| {
+            let section = section.as_mut_ptr();
+            amb_record_section(plane, index, &raw const stamp, section)
+        };
+        // Outwards at 1 m/s and then in the middle, until a record is frozen.
         let mut ticks = 0;
-        while amb_record_frozen(plane, record.as_mut_ptr()) == Code::NOTHING {
+        while take(0, &mut section) == Code::NOTHING {
             sample.sequence += 1;
-            sample.position_m[0] = (ticks as f32 * 5e-5).min(2e-4);
+            sample.position_m[0] = way_m(ticks);
             ticks += 1;
             let code = amb_tick(plane, &raw const sample, &raw mut command);
             assert_eq!(code, Code::OK);
             assert!(ticks < 10 * RECORD);
         }
-        for (i, entry) in (0..).zip(&mut entries) {
-            assert_eq!(amb_record_entry(plane, i, entry), Code::OK);
-        }
-        let count = RECORD as u32;
-        assert_eq!(amb_crc(entries.as_ptr(), count, &raw mut crc), Code::OK);
-        assert_eq!(record.assume_init().crc, crc);
+        let sections = (0..).take_while(|i| take(*i, &mut section) == Code::OK);
+        assert!(sections.count() > RECORD / 32);
         assert_eq!(amb_next_event(plane, event.as_mut_ptr()), Code::OK);
         assert_eq!(amb_report_now(plane, report.as_mut_ptr()), Code::OK);
         assert_eq!(report.assume_init().landings, 1);
@@ -92,7 +99,7 @@ fn calls_touch_only_what_they_were_given() {
 
 #[test]
 fn calls_on_a_rotor_touch_only_what_they_were_given() {
-    let mut memory = Box::new([Memory([0; 9216]), Memory([0; 9216])]);
+    let mut memory = Box::new([Memory([0; 29184]), Memory([0; 29184])]);
     let size = size_of::<[Memory; 2]>();
     let rotor: *mut RotorStorage = (&raw mut *memory).cast();
     let values = Box::new([VALUES; 2]);
@@ -114,9 +121,9 @@ fn calls_on_a_rotor_touch_only_what_they_were_given() {
     );
     let mut command = CRotorCommand::default();
     let mut event = MaybeUninit::<CEvent>::uninit();
-    let mut record = MaybeUninit::<CRecord>::uninit();
+    let mut section = MaybeUninit::<CSection>::uninit();
+    let stamp = CStamp::default();
     let mut report = MaybeUninit::<CReport>::uninit();
-    let mut entry = Entry::default();
     // SAFETY: every pointer points to what its type says; the memory is zero, and used through these calls alone.
     unsafe {
         let tick = |samples: &[CSample; 2], command: &mut CRotorCommand| {
@@ -126,20 +133,23 @@ fn calls_on_a_rotor_touch_only_what_they_were_given() {
         assert_eq!(not_made, Code::ERROR_ROTOR_NOT_INITIALISED);
         let code = amb_rotor_init(rotor, size, &raw const shaft, values, count);
         assert_eq!(code, Code::OK);
-        for plane in [0, 1] {
-            let mut ticks = 0;
-            while amb_rotor_record_frozen(rotor, plane, record.as_mut_ptr()) == Code::NOTHING {
-                for sample in samples.iter_mut() {
-                    sample.sequence += 1;
-                    sample.position_m[0] = (ticks as f32 * 5e-5).min(2e-4);
-                }
-                ticks += 1;
-                assert_eq!(tick(&samples, &mut command), Code::OK);
-                assert!(ticks < 10 * RECORD);
+        let mut take = |plane, index| {
+            let section = section.as_mut_ptr();
+            amb_rotor_record_section(rotor, plane, index, &raw const stamp, section)
+        };
+        let mut ticks = 0;
+        while take(0, 0) == Code::NOTHING {
+            for sample in samples.iter_mut() {
+                sample.sequence += 1;
+                sample.position_m[0] = way_m(ticks);
             }
-            let last = RECORD as u32 - 1;
-            let code = amb_rotor_record_entry(rotor, plane, last, &raw mut entry);
-            assert_eq!(code, Code::OK);
+            ticks += 1;
+            assert_eq!(tick(&samples, &mut command), Code::OK);
+            assert!(ticks < 10 * RECORD);
+        }
+        for plane in [0, 1] {
+            let sections = (0..).take_while(|i| take(plane, *i) == Code::OK);
+            assert!(sections.count() > RECORD / 32);
             assert_eq!(
                 amb_rotor_next_event(rotor, plane, event.as_mut_ptr()),
                 Code::OK

@@ -4,9 +4,7 @@
 #[path = "../../src/rig.rs"]
 pub mod rig;
 
-// The host's decoder of flight records.
-#[path = "../../../firmware-host/bench/src/run/flight_record.rs"]
-pub mod flight_record;
+pub mod record;
 
 /// An AMB rotor: 10 kg, 0.2 mm, 1000 N, 20 kHz.
 pub use rig::config as plausible;

@@ -1,74 +1,25 @@
-//! A flight record as its reader gets it: the checksum over any entries is the CRC-32 of their bytes, one wrong bit
-//! does not go unnoticed, what the recorder freezes it has summed up itself, and the host's decoder takes any bytes:
-//! refused with a reason, or read so that every byte of them counts.
+//! A flight record as its reader gets it: what the recorder freezes is read and replayed to the bit, and the host's decoder takes
+//! any bytes: it gives what is whole and names the rest, of version 3, and refuses or reads all of version 2.
 
 #![no_main]
 
-use fuzz::flight_record::{FlightRecord, NotARecord, Units, entries};
+use fuzz::record::file::RecordFile;
+use fuzz::record::replay::replay;
+use fuzz::record::ticks::{FlightRecord, NotARecord, Ticks, Units};
 use fuzz::{Bytes, plausible};
 use libfuzzer_sys::fuzz_target;
-use supervisor::{Entry, Sample, Status, Supervisor, crc_of};
+use supervisor::{Sample, Stamp, Status, Supervisor, crc_of};
 
 /// CRC-32 (IEEE), bit by bit.
-fn crc_by_bits(bytes: impl Iterator<Item = u8>) -> u32 {
-    !bytes.fold(!0_u32, |crc, byte| {
-        (0..8).fold(crc ^ u32::from(byte), |crc, _| {
+fn crc_by_bits(bytes: &[u8]) -> u32 {
+    !bytes.iter().fold(!0_u32, |crc, byte| {
+        (0..8).fold(crc ^ u32::from(*byte), |crc, _| {
             (crc >> 1) ^ if crc & 1 == 1 { 0xEDB8_8320 } else { 0 }
         })
     })
 }
 
-fn bytes_of(e: &Entry) -> Vec<u8> {
-    let mut bytes = e.sequence.to_le_bytes().to_vec();
-    for number in e.position.iter().chain(&e.force) {
-        bytes.extend(number.to_le_bytes());
-    }
-    bytes.extend([e.mode, e.limits]);
-    bytes.extend(e.events.to_le_bytes());
-    bytes
-}
-
-fn entry_of(b: &[u8; 16]) -> Entry {
-    let i16_at = |i: usize| i16::from_le_bytes([b[i], b[i + 1]]);
-    Entry {
-        sequence: u32::from_le_bytes([b[0], b[1], b[2], b[3]]),
-        position: [i16_at(4), i16_at(6)],
-        force: [i16_at(8), i16_at(10)],
-        mode: b[12],
-        limits: b[13],
-        events: u16::from_le_bytes([b[14], b[15]]),
-    }
-}
-
-fn any_entries(data: &[u8]) {
-    let entries: Vec<Entry> = (data.as_chunks::<16>().0.iter()).map(entry_of).collect();
-    let whole = &data[..16 * entries.len()];
-    let crc = crc_of(entries.iter());
-    assert_eq!(crc, crc_by_bits(whole.iter().copied()));
-    if let Some(bit) = data
-        .first()
-        .map(|b| usize::from(*b) % (8 * whole.len().max(1)))
-    {
-        let mut wrong = whole.to_vec();
-        if let Some(byte) = wrong.get_mut(bit / 8) {
-            *byte ^= 1 << (bit % 8);
-            assert_ne!(
-                crc,
-                crc_of(
-                    wrong
-                        .as_chunks::<16>()
-                        .0
-                        .iter()
-                        .map(entry_of)
-                        .collect::<Vec<_>>()
-                        .iter()
-                )
-            );
-        }
-    }
-}
-
-/// Two records, with a call of `rearm` and of `next_event` where the input wants it.
+/// Records, with a call of `rearm` and of `next_event` where the input wants it; each with some bytes of the input in it.
 fn what_is_recorded(data: &[u8]) {
     let mut bytes = Bytes::new(data);
     let mut supervisor = Supervisor::<8>::new(&plausible()).expect("in range");
@@ -85,44 +36,57 @@ fn what_is_recorded(data: &[u8]) {
         if what & 2 != 0 {
             let _ = supervisor.next_event();
         }
-        if let Some(record) = supervisor.record() {
-            assert_eq!(record.entries().count(), 8);
-            assert_eq!(record.crc, crc_of(record.entries()));
-            assert_eq!(record.crc, crc_by_bits(record.entries().flat_map(bytes_of)));
-            if what & 0x1C == 0 {
-                supervisor.rearm();
-            }
+        let Some(record) = supervisor.record() else {
+            continue;
+        };
+        let sections = (0..).map_while(|i| record.section(i, &Stamp::default()));
+        let mut written: Vec<u8> = (sections.flat_map(|mut s| s.seal().to_vec())).collect();
+        let file = RecordFile::of(&written);
+        assert!(file.is_intact());
+        if let Ok(replay) = replay(&file.records.iter().collect::<Vec<_>>()) {
+            assert_eq!(replay.differing, 0);
+        }
+        let at = usize::from(what) * written.len() / 256;
+        written[at] ^= bytes.u8() | 1;
+        let damaged = RecordFile::of(&written);
+        assert!(!damaged.is_intact());
+        for entry in damaged.records.iter().flat_map(|r| &r.entries) {
+            assert_eq!(file.records[0].entries.get(entry.0), Some(entry.1));
+        }
+        if what & 0x1C == 0 {
+            supervisor.rearm();
         }
     }
 }
 
 fn decoded(data: &[u8]) {
+    for record in &RecordFile::of(data).records {
+        let _ = Ticks::of(record);
+    }
+    assert_eq!(crc_of(&data[..data.len() / 4 * 4]), crc_by_bits(&data[..data.len() / 4 * 4]));
     let modes = data.as_chunks::<16>().0.iter().map(|b| b[12]);
-    match entries(data) {
-        Ok(entries) => {
-            assert!(modes.into_iter().all(|mode| mode <= 6));
-            assert_eq!(entries.iter().flat_map(bytes_of).collect::<Vec<_>>(), data);
-            let record = FlightRecord::of(&entries, Units::default());
-            assert_eq!(record.crc, crc_by_bits(data.iter().copied()));
-            assert_eq!(record.empty + record.ticks.len(), entries.len());
-            let in_stretches: usize = record.stretches.iter().map(|s| s.ticks).sum();
-            assert_eq!(in_stretches, record.ticks.len());
-            assert!(record.turning_points().count() >= record.stretches.len());
+    match FlightRecord::of(data, Units::default()) {
+        Ok(record) => {
+            assert!(modes.into_iter().all(|mode| mode <= 7));
+            assert_eq!(record.crc, crc_by_bits(data));
+            assert_eq!(record.empty + record.of.ticks.len(), data.len() / 16);
+            let in_stretches: usize = record.of.stretches.iter().map(|s| s.ticks).sum();
+            assert_eq!(in_stretches, record.of.ticks.len());
+            assert!(record.of.turning_points().count() >= record.of.stretches.len());
         }
         Err(NotARecord::Length(length)) => assert!(length == 0 || length % 16 != 0),
         Err(NotARecord::Mode { entry, mode }) => {
-            assert!(mode > 6 && data[16 * entry + 12] == mode);
+            assert!(mode > 7 && data[16 * entry + 12] == mode);
         }
     }
 }
 
 fuzz_target!(|data: &[u8]| {
-    any_entries(data);
     decoded(data);
     // Mostly modes that there are, or hardly an input would be read to its end.
     let mut data_with_modes = data[..data.len() / 16 * 16].to_vec();
     for entry in data_with_modes.as_chunks_mut::<16>().0 {
-        entry[12] %= 7;
+        entry[12] %= 8;
     }
     decoded(&data_with_modes);
     what_is_recorded(data);

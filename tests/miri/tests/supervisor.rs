@@ -1,7 +1,7 @@
 //! The supervisor as Miri interprets it.
 
 use miri::config as plausible;
-use supervisor::{Q, Sample, Status, Supervisor, crc_of, self_test};
+use supervisor::{Q, Sample, Stamp, Status, Supervisor, self_test};
 
 /// Every mode in every number, with the same answers as on any other processor.
 #[test]
@@ -35,7 +35,9 @@ fn any_bits_are_survived() {
             }
         };
         let angle = 0.1 * i as f32;
-        let position_m = numbers([2.05e-4 * angle.cos(), 2.05e-4 * angle.sin()]);
+        // Round on the wall, and back to the middle.
+        let radius_m = 2.05e-4 - 2.5e-6 * (i % 150).saturating_sub(60).min(80) as f32;
+        let position_m = numbers([radius_m * angle.cos(), radius_m * angle.sin()]);
         let (levitation_n, applied_n) = (numbers([3.0, 4.0]), numbers([100.0, 0.0]));
         let command = supervisor.tick(&Sample {
             sequence,
@@ -49,10 +51,11 @@ fn any_bits_are_survived() {
         assert!(x.hypot(y) <= with.force_max_n * 1.000_000_2);
         while supervisor.next_event().is_some() {}
         if let Some(record) = supervisor.record() {
-            assert_eq!(record.crc, crc_of(record.entries()));
+            let sections = (0..).map_while(|i| record.section(i, &Stamp::default()));
+            assert!(sections.map(|mut s| s.seal().len()).sum::<usize>() > 1000);
             records += 1;
             supervisor.rearm();
         }
     }
-    assert!(records > 3);
+    assert!(records > 1);
 }

@@ -159,41 +159,30 @@ static void asking(void) {
     uint32_t numbers[2] = {77, 77};
     amb_report report[2];
     amb_event event[2];
-    amb_record record[2];
-    amb_entry entry[2];
-    memset(entry, 0, sizeof entry);
+    static amb_section section[2];
+    static const amb_stamp stamp[2] = {{1, 2, {3, 4}}, {1, 2, {3, 4}}};
 #define REFUSALS(call_with, result)                                                                          \
     EXPECT(call_with(NULL, result), AMB_ERROR_SUPERVISOR_NULL, NULL_TEXT);                                   \
     EXPECT(call_with(OFF(three), result), AMB_ERROR_SUPERVISOR_MISALIGNED, ALIGN_TEXT);                      \
     EXPECT(call_with(&zero, result), AMB_ERROR_NOT_INITIALISED, NOT_MADE_TEXT);                              \
     EXPECT(call_with(&plane, NULL), AMB_ERROR_RESULT_NULL, RESULT_NULL_TEXT);                                \
     EXPECT(call_with(&plane, OFF(result)), AMB_ERROR_RESULT_MISALIGNED, RESULT_ALIGN_TEXT)
-#define ENTRY_0(supervisor, result) amb_record_entry(supervisor, 0, result)
+#define SECTION_0(supervisor, result) amb_record_section(supervisor, 0, stamp, result)
     REFUSALS(amb_mode, numbers);
     REFUSALS(amb_report_now, report);
     REFUSALS(amb_next_event, event);
-    REFUSALS(amb_record_frozen, record);
-    REFUSALS(ENTRY_0, entry);
+    REFUSALS(SECTION_0, section);
     EXPECT(amb_rearm(NULL), AMB_ERROR_SUPERVISOR_NULL, NULL_TEXT);
     EXPECT(amb_rearm(OFF(three)), AMB_ERROR_SUPERVISOR_MISALIGNED, ALIGN_TEXT);
     EXPECT(amb_rearm(&zero), AMB_ERROR_NOT_INITIALISED, NOT_MADE_TEXT);
     EXPECT(amb_rearm(&plane), AMB_OK, "done");
     EXPECT(amb_next_event(&plane, event), AMB_NOTHING, "there is none");
-    EXPECT(amb_record_frozen(&plane, record), AMB_NOTHING, "there is none");
-    EXPECT(amb_record_entry(&plane, 0, entry), AMB_NOTHING, "there is none");
+    EXPECT(SECTION_0(&plane, section), AMB_NOTHING, "there is none");
 
-    EXPECT(amb_crc(NULL, 1, numbers), AMB_ERROR_ENTRIES_NULL, "entries is null");
-    EXPECT(amb_crc(OFF(entry), 1, numbers), AMB_ERROR_ENTRIES_MISALIGNED,
-           "entries is not aligned to 4 bytes");
-    EXPECT(amb_crc(entry, 1, NULL), AMB_ERROR_RESULT_NULL, RESULT_NULL_TEXT);
-    EXPECT(amb_crc(entry, 1, OFF(numbers)), AMB_ERROR_RESULT_MISALIGNED, RESULT_ALIGN_TEXT);
-    EXPECT(amb_crc(entry, AMB_RECORD_ENTRIES + 1, numbers), AMB_ERROR_INDEX, "index is beyond the end");
+    EXPECT(amb_record_section(&plane, 0, NULL, section), AMB_ERROR_STAMP_NULL, "stamp is null");
+    EXPECT(amb_record_section(&plane, 0, OFF(stamp), section), AMB_ERROR_STAMP_MISALIGNED,
+           "stamp is not aligned to 4 bytes");
     check(numbers[0] == 77, "results are untouched after errors");
-    EXPECT(amb_crc(entry, 0, numbers), AMB_OK, "done");
-    check(numbers[0] == 0, "checksum of nothing");
-    /* CRC-32 of 16 zero bytes. */
-    EXPECT(amb_crc(entry, 1, numbers), AMB_OK, "done");
-    check(numbers[0] == 0xECBB4B55u, "checksum of zeros");
 }
 
 static void table(void) {
@@ -307,14 +296,31 @@ static void rig_until(rig *r, uint32_t end) {
     }
 }
 
+/* A word of a section. */
+static uint32_t word_at(const amb_section *section, uint32_t word) {
+    const uint8_t *b = section->bytes + 4 * word;
+    return b[0] | (uint32_t)b[1] << 8 | (uint32_t)b[2] << 16 | (uint32_t)b[3] << 24;
+}
+
+/* CRC-32 as everybody knows it, a bit at a time. */
+static uint32_t crc_of(const uint8_t *bytes, uint32_t length) {
+    uint32_t crc = 0xFFFFFFFFu, i, bit;
+    for (i = 0; i < length; i++) {
+        crc ^= bytes[i];
+        for (bit = 0; bit < 8; bit++) crc = crc >> 1 ^ (crc & 1 ? 0xEDB88320u : 0);
+    }
+    return ~crc;
+}
+
 /* An event, a report and a record, from the first blow of the rig. */
 static void record(void) {
     static rig r;
-    static amb_entry entries[AMB_RECORD_ENTRIES];
-    amb_record frozen;
+    static amb_section section;
+    static const amb_stamp stamp = {7, 9, {5, 0}};
     amb_event event;
     amb_report report;
-    uint32_t i, engaged, crc = 0;
+    uint32_t i, engaged, ticks = 0, triggered = 0;
+    int ended = 0;
     EXPECT(amb_init(&plane, sizeof plane, rig_config, AMB_PARAMETERS), AMB_OK, "done");
     rig_start(&r);
     rig_until(&r, 1900);
@@ -330,22 +336,29 @@ static void record(void) {
     check(report.fault == AMB_REFUSAL_NONE && report.coast_down == 0, "report without faults");
     check(report.missed_ticks == 0 && report.repeated_ticks == 0, "report without lost ticks");
     check(report.late_ticks == 1, "report of the late command");
-    /* It freezes some time after its last entry. */
-    while (r.tick < RIG_TICKS && amb_record_frozen(&plane, &frozen) == AMB_NOTHING) rig_until(&r, r.tick + 1);
-    EXPECT(amb_record_frozen(&plane, &frozen), AMB_OK, "done");
-    check(frozen.version == AMB_RECORD_VERSION && frozen.entries == AMB_RECORD_ENTRIES, "record");
-    for (i = 0; i < frozen.entries; i++) {
-        if (amb_record_entry(&plane, i, &entries[i]) != AMB_OK) check(0, "entry");
-        if (i > 0 && entries[i].sequence != entries[i - 1].sequence + 1) check(0, "order of entries");
+#define SECTION(index) amb_record_section(&plane, index, &stamp, &section)
+    while (r.tick < RIG_TICKS && SECTION(0) == AMB_NOTHING) rig_until(&r, r.tick + 1);
+    EXPECT(SECTION(0), AMB_OK, "done");
+    check(memcmp(section.bytes, "AMBR", 4) == 0 && word_at(&section, 3) == AMB_RECORD_VERSION, "head");
+    for (i = 0; SECTION(i) == AMB_OK; i++) {
+        const uint32_t words = section.length / 4;
+        check(section.length % 4 == 0 && word_at(&section, 2) >> 16 == words - 4, "length of a section");
+        check(crc_of(section.bytes, section.length - 4) == word_at(&section, words - 1), "checksum of a section");
+        ended = memcmp(section.bytes, "ENDS", 4) == 0;
+        if (memcmp(section.bytes, "TICK", 4) == 0) {
+            const uint32_t here = (words - 4) / 12, trigger = AMB_RECORD_ENTRIES / 4 - 1;
+            if (trigger >= ticks && trigger < ticks + here) {
+                const uint32_t entry = 3 + 12 * (trigger - ticks);
+                check(word_at(&section, entry) == engaged, "a quarter before the trigger");
+                triggered = word_at(&section, entry + 10) >> 16 & AMB_EVENT_ENGAGED;
+            }
+            ticks += here;
+        }
     }
-    EXPECT(amb_record_entry(&plane, frozen.entries, &entries[0]), AMB_ERROR_INDEX,
-           "index is beyond the end");
-    EXPECT(amb_crc(entries, frozen.entries, &crc), AMB_OK, "done");
-    check(crc == frozen.crc && crc != 0, "checksum of the record");
-    check(entries[AMB_RECORD_ENTRIES / 4 - 1].events & AMB_EVENT_ENGAGED, "a quarter before the trigger");
-    check(engaged == entries[AMB_RECORD_ENTRIES / 4 - 1].sequence, "its tick");
+    check(ended && ticks == AMB_RECORD_ENTRIES && triggered, "record");
+    EXPECT(SECTION(i), AMB_NOTHING, "there is none");
     EXPECT(amb_rearm(&plane), AMB_OK, "done");
-    EXPECT(amb_record_frozen(&plane, &frozen), AMB_NOTHING, "there is none");
+    EXPECT(SECTION(0), AMB_NOTHING, "there is none");
 }
 
 static void reconfiguring(void) {

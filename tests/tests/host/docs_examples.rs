@@ -37,10 +37,7 @@ const ONLY_PARSED: [(&str, &str); 12] = [
     ("study overloads", "minutes"),
     ("study unseen-machines", "minutes"),
     ("study loop-rates", "minutes"),
-    (
-        "record landing.bin --crc",
-        "the checksum is that of a record of the reader",
-    ),
+    ("review landing.bin", "the record is the reader's"),
 ];
 
 /// What is not this program: what it needs, or what builds and runs firmware.

@@ -13,6 +13,7 @@ mod paper_maps;
 mod paper_onset;
 mod paper_phases;
 mod paper_retainer;
+mod records;
 mod rotor_catalogue;
 mod rub;
 mod sensitivity;

@@ -321,13 +321,15 @@ fn positions_are_carried_to_the_plane_of_the_retainer_bearing() {
             ..config()
         };
         let mut supervisor = Supervisor::<64>::new(&with).unwrap();
-        let commands: Vec<Command> = (0..400_u32)
+        // A record is frozen once the event is over.
+        let commands: Vec<Command> = (0..1000_u32)
             .map(|i| {
-                let at = on_circle(RADIUS_M, WHIRL_STEP * i as f32);
+                let share = 1.0 - (i.saturating_sub(400) as f32 / 100.0).min(0.99);
+                let at = on_circle(share * RADIUS_M, WHIRL_STEP * i as f32);
                 supervisor.tick(&sample(i, at.map(|x| x / ratio)))
             })
             .collect();
-        let record: Vec<[i16; 2]> = supervisor
+        let record: Vec<[u32; 2]> = supervisor
             .record()
             .unwrap()
             .entries()

@@ -2,8 +2,8 @@
 
 use proptest::prelude::*;
 use supervisor::{
-    Command, Config, Entry, Events, IntegratorHint, Limits, Mode, PARAMETERS, Sample, Status,
-    Supervisor, crc_of,
+    Command, Config, Entry, Events, IntegratorHint, Limits, Mode, PARAMETERS, Sample, Stamp,
+    Status, Supervisor, crc_of,
 };
 use system_tests::rig::config;
 
@@ -320,23 +320,25 @@ fn sensor_fault_blends_to_zero_and_ends() {
     assert_ne!(good[9].mode, Mode::SensorFault);
 }
 
-/// The record holds the ticks around the engagement, oldest first, under a checksum that any other
-/// implementation of CRC-32 gives.
+/// The record holds the ticks around the engagement, oldest first, and freezes once the levitation controller has the bearing
+/// again; its sections are under a checksum that any other implementation of CRC-32 gives.
 #[test]
 fn recorder_freezes_around_the_engagement() {
     let mut supervisor = new();
-    let mut frozen_at = None;
-    for i in 0..500_u32 {
-        let x = if i < 100 {
-            0.0
-        } else {
-            (3e-5 * (i - 99) as f32).min(2.02e-4)
-        };
-        let command = supervisor.tick(&sample(i, [x, 0.0]));
+    let (mut frozen_at, mut levitated_at) = (None, None);
+    for i in 0..900_u32 {
+        let out = (3e-5 * i.saturating_sub(99) as f32).min(2.02e-4);
+        let back = (2e-6 * i.saturating_sub(250) as f32).min(out);
+        let command = supervisor.tick(&sample(i, [out - back, 0.0]));
         if command.events.contains(Events::RECORD_FROZEN) {
             frozen_at = Some(i);
         }
+        if command.events.contains(Events::LEVITATED) {
+            levitated_at = Some(i);
+        }
     }
+    assert!(levitated_at > Some(250));
+    assert_eq!(frozen_at, levitated_at);
     let record = supervisor.record().expect("frozen");
     let entries: Vec<Entry> = record.entries().copied().collect();
     assert_eq!(entries.len(), 64);
@@ -349,17 +351,24 @@ fn recorder_freezes_around_the_engagement() {
         .iter()
         .position(|e| Events::from_bits_retain(e.events.into()).contains(Events::ENGAGED));
     assert_eq!(engaged, Some(15), "a quarter before the trigger");
-    // The rest of the ring, a tick of its own, and a word of the checksum a tick.
-    let last = entries[63].sequence;
-    assert_eq!(frozen_at, Some(last + 1 + 4 * 64));
-    assert_eq!(record.crc, crc_of(entries.iter()));
-    let known = Entry {
-        sequence: u32::from_le_bytes(*b"1234"),
-        position: [i16::from_le_bytes(*b"56"), i16::from_le_bytes(*b"78")],
-        ..Entry::default()
-    };
-    let bytes = [b"12345678".as_slice(), &[0; 8]].concat();
-    assert_eq!(crc_of([known].iter()), bitwise_crc(&bytes));
+    let summary = record.summary();
+    assert_eq!(summary.mode, Mode::Levitated as u32);
+    let report = supervisor.report();
+    assert_eq!(
+        (summary.touches, summary.contact_ticks, summary.landings),
+        (report.impacts, report.contact_ticks, 1)
+    );
+    assert_eq!(summary.hardest_impact_m_s, report.impact_speed_max_m_s);
+    assert_eq!(summary.severity, report.severity_index);
+    let mut sections = 0;
+    while let Some(mut section) = record.section(sections, &Stamp::default()) {
+        let bytes = section.seal();
+        let (of, crc) = bytes.split_last_chunk::<4>().unwrap();
+        assert_eq!(bitwise_crc(of), u32::from_le_bytes(*crc));
+        assert_eq!(crc_of(of), bitwise_crc(of));
+        sections += 1;
+    }
+    assert!(sections > 8, "{sections}");
     assert_eq!(
         bitwise_crc(b"123456789"),
         0xCBF4_3926,

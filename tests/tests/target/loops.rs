@@ -115,7 +115,7 @@ fn the_example_firmware_records_a_landing() {
         let [.., (_, record), (_, report)] = log.as_slice() else {
             panic!("{log:?}")
         };
-        assert_eq!(record, "record of version 2, 512 ticks, intact");
+        assert!(record.starts_with("record of version 3, "), "{record}");
         assert!(
             report.starts_with(
                 "Report { landings: 1, nuisance_engagements: 0, handed_back: 0, impacts: 1, "
@@ -131,15 +131,17 @@ fn the_example_firmware_records_a_landing() {
 #[test]
 fn the_example_firmware_tells_that_it_is_late() {
     for log in logs_of_the_example(5).unwrap_or_default() {
-        let [.., frozen, (_, record), (_, report)] = log.as_slice() else {
+        let [.., (_, record), (_, report)] = log.as_slice() else {
             panic!("{log:?}")
         };
-        assert!(frozen.1.contains("RECORD_FROZEN | QUEUE_FULL"), "{log:?}");
-        assert_eq!(record, "record of version 2, 512 ticks, intact");
+        let full = log.iter().any(|(_, text)| text.contains("QUEUE_FULL"));
+        assert!(full, "{log:?}");
+        assert!(record.starts_with("record of version 3, "), "{record}");
         assert!(report.starts_with("Report { landings: 1, "), "{report}");
         let (_, late) = report.split_once("late_ticks: ").unwrap();
         let late: u32 = late.split(',').next().unwrap().parse().unwrap();
-        // From the way to the wall to the end of the hand-over, 40, 120, 100 and 50 ticks, and ten in which it catches up.
-        assert!((120..=320).contains(&late), "{report}");
+        // From the way to the wall to the end of the hand-over, 40, 120, 100 and 50 ticks; and some for each of 15 sections of
+        // the record, which are copied under the lock.
+        assert!((120..=420).contains(&late), "{report}");
     }
 }

@@ -3,11 +3,11 @@
 use crate::device::actuator::limited_n;
 use crate::device::levitation::{Levitation, TrueLevitation, VelocityFilter};
 use crate::device::sensor::Reading;
-use crate::run::trace::{FlightRecordBytes, ReadOut, Said};
+use crate::run::trace::{ReadOut, Said};
 use crate::scene::Scene;
 use crate::scene::policy_kind::PolicyKind;
 use plant_model::{Snapshot, V2};
-use supervisor::{Command, Entry, IntegratorHint, Sample, Status, Supervisor};
+use supervisor::{Command, IntegratorHint, Record, Sample, Scalar, Stamp, Status, Supervisor};
 
 /// Who drives the magnet.
 pub trait Controller: core::fmt::Debug {
@@ -244,12 +244,17 @@ impl Supervise for Supervisor {
     fn read_out(&self) -> Option<ReadOut> {
         Some(ReadOut {
             report: self.report(),
-            flight_record: self.record().map(|record| FlightRecordBytes {
-                entries: record.entries().flat_map(Entry::to_bytes).collect(),
-                crc: record.crc,
-            }),
+            flight_record: self.record().map(|record| written(&record)),
         })
     }
+}
+
+/// A record as firmware would write it, without a stamp.
+pub fn written<S: Scalar, const N: usize>(record: &Record<'_, S, N>) -> Vec<u8> {
+    let sections = (0..).map_while(|i| record.section(i, &Stamp::default()));
+    sections
+        .flat_map(|mut section| section.seal().to_vec())
+        .collect()
 }
 
 /// A supervisor with the levitation controller behind it.

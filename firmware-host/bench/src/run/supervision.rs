@@ -43,7 +43,7 @@ pub struct Account {
     pub severity_index: f64,
     /// Whether it asks for coasting down at the end.
     pub coast_down: bool,
-    /// Checksum of the flight record, where one was frozen.
+    /// Checksum of all bytes of the flight record, where one was frozen.
     pub flight_record_crc: Option<u32>,
 }
 
@@ -126,7 +126,7 @@ impl Account {
             whirl_limit_m_s: widened(report.whirl_limit_m_s),
             severity_index: widened(report.severity_index),
             coast_down: report.coast_down,
-            flight_record_crc: read_out.flight_record.as_ref().map(|record| record.crc),
+            flight_record_crc: read_out.flight_record.as_deref().map(supervisor::crc_of),
         }
     }
 }

@@ -52,17 +52,8 @@ impl Said {
 pub struct ReadOut {
     /// Its own account.
     pub report: Report,
-    /// The flight record, where one was frozen.
-    pub flight_record: Option<FlightRecordBytes>,
-}
-
-/// A frozen flight record.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct FlightRecordBytes {
-    /// Its entries as in memory, oldest first.
-    pub entries: Vec<u8>,
-    /// Its checksum.
-    pub crc: u32,
+    /// The bytes of the flight record, where one was frozen.
+    pub flight_record: Option<Vec<u8>>,
 }
 
 /// A run, in time order.

@@ -11,19 +11,19 @@ fn negative_numbers_reach_their_option() {
     let scene = path.to_str().unwrap();
     for (args, said) in [
         (
-            vec!["record", "R.bin", "--clearance-m", "-1"],
+            vec!["review", "R.bin", "--clearance-m", "-1"],
             "--clearance-m is -1, expected",
         ),
         (
-            vec!["record", "R.bin", "--force-max-n", "-1e3"],
+            vec!["review", "R.bin", "--force-max-n", "-1e3"],
             "--force-max-n is -1000, expected",
         ),
         (
-            vec!["record", "R.bin", "--sample-rate-hz", "-1"],
+            vec!["review", "R.bin", "--sample-rate-hz", "-1"],
             "--sample-rate-hz is -1, expected",
         ),
         (
-            vec!["record", "R.bin", "--crc", "-1"],
+            vec!["review", "R.bin", "--crc", "-1"],
             "--crc is -1, expected",
         ),
         (

@@ -1,8 +1,9 @@
 //! What is in the traces, and what the supervisor left behind.
 
 use super::{names, short_scene};
+use firmware_bench::record::file::RecordFile;
+use firmware_bench::record::ticks::Ticks;
 use firmware_bench::run::closed_loop::{Keep, run};
-use firmware_bench::run::flight_record::{FlightRecord, Units, entries};
 use firmware_bench::run::trace::Recorder;
 use firmware_bench::run::trace_file::{Columns, TraceFile};
 use firmware_bench::scene::policy_kind::PolicyKind;
@@ -186,13 +187,9 @@ fn what_the_supervisor_said_is_in_trace_record_verdict_and_report() {
 
     let cap_n = 150.0;
     let bytes = fs::read(out.join("record_supervisor.bin")).unwrap();
-    let record = FlightRecord::of(
-        &entries(&bytes).unwrap(),
-        Units {
-            force_max_n: Some(cap_n),
-            ..Units::default()
-        },
-    );
+    let file = RecordFile::of(&bytes);
+    assert!(file.is_intact(), "{:?}", file.damage);
+    let record = Ticks::of(&file.records[0]);
     assert!(record.ticks.len() > 300 && record.missing == 0);
     for tick in &record.ticks {
         let at = tick.sequence as usize;
@@ -205,7 +202,7 @@ fn what_the_supervisor_said_is_in_trace_record_verdict_and_report() {
         assert_eq!(kept, tick.events.join(" "), "{at}");
         let recorded_n = tick.force_n.unwrap()[0];
         let apart = (commanded[at + 1] - recorded_n).abs();
-        assert!(apart <= 0.51 * cap_n / 4096.0, "{at}: {apart} N");
+        assert!(apart <= 1e-6 * cap_n, "{at}: {apart} N");
     }
 
     let text = fs::read(out.join("verdict.json")).unwrap();
@@ -244,7 +241,7 @@ fn what_the_supervisor_said_is_in_trace_record_verdict_and_report() {
     );
     assert_eq!(supervision["sensor_faults"], 0);
     assert_eq!(supervision["landings"], 1);
-    assert_eq!(supervision["flight_record_crc"], record.crc);
+    assert_eq!(supervision["flight_record_crc"], supervisor::crc_of(&bytes));
     // It begins on the wall at 0.35 m/s, which nobody has seen coming; the later impacts are slower.
     let fastest = supervision["impact_speed_max_m_s"].as_f64().unwrap();
     assert!(fastest > 0.1 && fastest < 0.35, "{fastest}");

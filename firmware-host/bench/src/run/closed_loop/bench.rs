@@ -4,10 +4,10 @@ use super::station::Station;
 use super::{PlaneEnded, RunError, TRUSTED, TRUSTED_TOLERANCES, Task};
 use crate::device::loads::{Loads, cuts};
 use crate::device::whole_levitation::WholeLevitation;
-use crate::run::controller::{Seen, Supervise as _};
+use crate::run::controller::{Seen, written};
 use crate::run::figures::{Ended, Figures};
 use crate::run::rig::Rig;
-use crate::run::trace::{AxisRow, Recorder};
+use crate::run::trace::{AxisRow, ReadOut, Recorder};
 use crate::scene::Scene;
 use plant_model::{PlantError, Snapshot, V2};
 use supervisor::{IntegratorHint, Rotor};
@@ -98,7 +98,10 @@ impl<'a> Bench<'a> {
             station.record(last, false);
             let run = Ended::new(station.scene, &station.judge, &*self.rig, (plane, last));
             let read_out = || match &mut self.supervisor {
-                Some(supervisor) => supervisor.plane(plane).read_out(),
+                Some(supervisor) => Some(ReadOut {
+                    report: supervisor.plane(plane).report(),
+                    flight_record: supervisor.record(plane).map(|record| written(&record)),
+                }),
                 None => station.controller.read_out(),
             };
             let recorded = station.recorder.is_some();

@@ -1,32 +1,51 @@
-//! `record`: from the memory of a supervisor to what a person reads.
+//! `review` of a record of version 2, which is its entries and nothing else: files of earlier firmware.
 
+use firmware_bench::record::ticks::PER_UNIT;
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
 use std::process::Output;
-use supervisor::{Command, Entry, Events, Mode, Supervisor};
+use supervisor::{Command, Entry, Events, Mode, Supervisor, crc_of};
 use system_tests::host;
 use system_tests::rig::{config, sample};
 use tempfile::TempDir;
 
-/// A landing, and the commands that answered it: the record as firmware writes it down, and its checksum.
+/// A landing, and the commands that answered it: the record as earlier firmware has written it down, and its checksum.
 fn landing(first: u32) -> (Vec<u8>, u32, Vec<Command>) {
     let mut supervisor = Supervisor::<64>::new(&config()).expect("valid");
-    let commands: Vec<Command> = (0..500)
+    let commands: Vec<Command> = (0..900)
         .map(|i: u16| {
-            let outwards = 3e-5 * (f32::from(i) - 99.0);
-            let x = outwards.clamp(0.0, 2.02e-4);
-            supervisor.tick(&sample(first.wrapping_add(i.into()), [x, 0.0]))
+            let outwards = (3e-5 * (f32::from(i) - 99.0)).clamp(0.0, 2.02e-4);
+            let back = (2e-6 * (f32::from(i) - 250.0)).clamp(0.0, outwards);
+            supervisor.tick(&sample(
+                first.wrapping_add(i.into()),
+                [outwards - back, 0.0],
+            ))
         })
         .collect();
     let record = supervisor.record().expect("frozen");
-    let bytes = record.entries().flat_map(Entry::to_bytes).collect();
-    (bytes, record.crc, commands)
+    let bytes: Vec<u8> = record.entries().flat_map(version_2).collect();
+    let crc = crc_of(&bytes);
+    (bytes, crc, commands)
+}
+
+/// An entry as version 2 had it: position and force in 1/4096 of clearance and cap.
+fn version_2(entry: &Entry) -> [u8; 16] {
+    let short = |bits: u32| (f64::from(f32::from_bits(bits)) * PER_UNIT).round() as i16;
+    let (position, force) = (entry.position.map(short), entry.force.map(short));
+    let mut bytes = [0; 16];
+    bytes[..4].copy_from_slice(&entry.sequence.to_le_bytes());
+    for (i, x) in position.into_iter().chain(force).enumerate() {
+        bytes[4 + 2 * i..6 + 2 * i].copy_from_slice(&x.to_le_bytes());
+    }
+    (bytes[12], bytes[13]) = (entry.mode, entry.limits);
+    bytes[14..].copy_from_slice(&entry.events.to_le_bytes());
+    bytes
 }
 
 fn show(file: &Path, more: &[&str]) -> Output {
     let mut command = host();
-    command.arg("record").arg(file).args(more);
+    command.arg("review").arg(file).args(more);
     command.output().expect("the host starts")
 }
 
@@ -70,7 +89,8 @@ fn what_was_recorded_is_what_is_shown() {
                 let half_a_step = 0.51 * 1000.0 / 4096.0;
                 assert!((shown - real).abs() < half_a_step, "{shown} N, {real} N");
             }
-            let events: Vec<_> = command.events.iter_names().map(|(name, _)| name).collect();
+            let recorded = Events::from_bits_truncate(command.events.bits() & 0xFFFF);
+            let events: Vec<_> = recorded.iter_names().map(|(name, _)| name).collect();
             assert_eq!(tick["events"], serde_json::json!(events));
         }
         assert_eq!(ticks[0]["tick"], -15, "a quarter before the engagement");
@@ -190,10 +210,10 @@ fn no_digit_is_finer_than_what_is_recorded() {
     let file = folder.path().join("record.bin");
     let at_cap = Entry {
         sequence: 1,
-        force: [2896, 2897],
+        force: [2896.0_f64, 2897.0].map(|x| ((x / PER_UNIT) as f32).to_bits()),
         ..Entry::default()
     };
-    fs::write(&file, at_cap.to_bytes()).unwrap();
+    fs::write(&file, version_2(&at_cap)).unwrap();
     for (cap, shown) in [("1000", " 1000 "), ("40", " 40.00 "), ("0.5", " 0.500 ")] {
         let output = show(&file, &["--force-max-n", cap]);
         let said = String::from_utf8_lossy(&output.stdout).into_owned();

@@ -1,12 +1,20 @@
-//! A flight record as firmware has written it down: its entries, and what happened in them.
+//! The ticks of a flight record for a person: what happened in them, of any version.
 
+use crate::record::file::PlaneRecord;
 use firmware_image::wire::mode_of;
 use serde::Serialize;
 use std::ops::RangeInclusive;
-use supervisor::{Entry, Events, Limits, Mode, PER_UNIT, RECORD_TRIGGERS, crc_of};
+use supervisor::{Entry, Events, Limits, Mode, Number, Q, Scalar, crc_of};
 
-/// Bytes of an entry.
+/// Units of version 2: 1/4096 of the clearance and of the cap.
+pub const PER_UNIT: f64 = 4096.0;
+/// Bytes of an entry of version 2.
 pub const ENTRY_BYTES: usize = 16;
+
+/// What froze a record of version 2 at the end of its first quarter.
+const TRIGGERS: Events = Events::ENGAGED
+    .union(Events::TOUCHED)
+    .union(Events::SENSOR_FAULT);
 
 /// What the units of a record are in SI, as far as they are known.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -19,14 +27,14 @@ pub struct Units {
     pub sample_rate_hz: Option<f64>,
 }
 
-/// Why bytes are no flight record.
+/// Why bytes are no flight record of version 2.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum NotARecord {
     /// The length is that of no number of entries.
     #[error("{0} bytes are no whole number of entries of {ENTRY_BYTES} bytes, or none")]
     Length(usize),
     /// A field that no supervisor writes.
-    #[error("entry {entry} (byte {}) has mode {mode}; there are modes 0 to 6", entry * ENTRY_BYTES)]
+    #[error("entry {entry} (byte {}) has mode {mode}; there are modes 0 to 7", entry * ENTRY_BYTES)]
     Mode {
         /// Number of the entry, from 0.
         entry: usize,
@@ -75,7 +83,23 @@ pub struct Stretch {
     pub largest_force: f64,
 }
 
-/// A flight record.
+/// Name of the mode of this number.
+pub fn mode_name(number: u8) -> Option<&'static str> {
+    mode_of(number).map(Mode::name)
+}
+
+/// Ticks of a record.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Ticks {
+    /// Sequence numbers that are missing between two neighbours.
+    pub missing: u64,
+    /// The ticks, oldest first.
+    pub ticks: Vec<Tick>,
+    /// Modes in their order.
+    pub stretches: Vec<Stretch>,
+}
+
+/// A flight record of version 2, which is its entries and nothing else.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct FlightRecord {
     /// Checksum of all entries, to compare with the one that the firmware gave.
@@ -85,19 +109,24 @@ pub struct FlightRecord {
     pub whole: bool,
     /// Entries that were never written, before the first that was.
     pub empty: usize,
-    /// Sequence numbers that are missing between two neighbours.
-    pub missing: u64,
-    /// The ticks, oldest first.
-    pub ticks: Vec<Tick>,
-    /// Modes in their order.
-    pub stretches: Vec<Stretch>,
+    /// What is in it.
+    #[serde(flatten)]
+    pub of: Ticks,
 }
 
-/// Entries from bytes, little-endian, oldest first.
-///
-/// # Errors
-/// [`NotARecord`].
-pub fn entries(bytes: &[u8]) -> Result<Vec<Entry>, NotARecord> {
+/// An entry of any version.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+struct Brief {
+    sequence: u32,
+    position: [f64; 2],
+    force: [f64; 2],
+    mode: u8,
+    limits: u8,
+    events: u16,
+}
+
+/// Entries of version 2, little-endian, oldest first.
+fn entries(bytes: &[u8]) -> Result<Vec<Brief>, NotARecord> {
     let (entries, rest) = bytes.as_chunks::<ENTRY_BYTES>();
     if entries.is_empty() || !rest.is_empty() {
         return Err(NotARecord::Length(bytes.len()));
@@ -105,14 +134,14 @@ pub fn entries(bytes: &[u8]) -> Result<Vec<Entry>, NotARecord> {
     let entry = |(number, b): (usize, &[u8; ENTRY_BYTES])| {
         let pair = |at: usize| {
             let of = |at| i16::from_le_bytes([b[at], b[at + 1]]);
-            [of(at), of(at + 2)]
+            per_unit([of(at), of(at + 2)])
         };
         let mode = b[12];
         if mode_of(mode).is_none() {
             let entry = number;
             return Err(NotARecord::Mode { entry, mode });
         }
-        Ok(Entry {
+        Ok(Brief {
             sequence: u32::from_le_bytes([b[0], b[1], b[2], b[3]]),
             position: pair(4),
             force: pair(8),
@@ -124,27 +153,79 @@ pub fn entries(bytes: &[u8]) -> Result<Vec<Entry>, NotARecord> {
     entries.iter().enumerate().map(entry).collect()
 }
 
+fn per_unit(v: [i16; 2]) -> [f64; 2] {
+    v.map(|x| f64::from(x) / PER_UNIT)
+}
+
 impl FlightRecord {
-    /// What entries say, oldest first. Times are counted from the last engagement in them, or from the first entry.
-    pub fn of(entries: &[Entry], units: Units) -> Self {
+    /// What the bytes of a record of version 2 say. Times are counted from the last engagement in them, or from the first
+    /// entry.
+    ///
+    /// # Errors
+    /// [`NotARecord`].
+    pub fn of(bytes: &[u8], units: Units) -> Result<Self, NotARecord> {
+        let entries = entries(bytes)?;
         let empty = entries
             .iter()
-            .take_while(|entry| **entry == Entry::default())
+            .take_while(|entry| **entry == Brief::default())
             .count();
         let written = &entries[empty..];
-        let triggers = |entry: &Entry| entry.events & RECORD_TRIGGERS.bits() as u16 != 0;
-        let engaged = |entry: &&Entry| entry.events & Events::ENGAGED.bits() as u16 != 0;
+        let triggers = |entry: &Brief| entry.events & TRIGGERS.bits() as u16 != 0;
         let trigger = (entries.len() / 4).checked_sub(1);
         let a_length = entries.len().is_power_of_two();
-        let start = written.iter().rev().find(engaged).or(written.first());
-        let start = start.map_or(0, |entry| entry.sequence);
-        let ticks: Vec<Tick> = written.iter().map(|e| tick(e, start, units)).collect();
         // A ring that was written down from elsewhere ends before it begins.
         let in_order = match written {
             [first, .., last] => last.sequence.wrapping_sub(first.sequence).cast_signed() >= 0,
             _ => true,
         };
-        let gap = |pair: &[Entry]| {
+        Ok(Self {
+            crc: crc_of(bytes),
+            whole: a_length && trigger.is_some_and(|at| triggers(&entries[at])) && in_order,
+            empty,
+            of: Ticks::new(written, units),
+        })
+    }
+}
+
+impl PlaneRecord {
+    /// A number of the core that is recorded as its bits; NaN of one that keeps none.
+    pub fn number(&self, bits: u32) -> f64 {
+        match self.head.number {
+            n if n == Number::Single as u32 => f64::from(f32::from_bits(bits)),
+            n if n == Number::Fixed as u32 => f64::from(Q::of_bits(bits).to_f32()),
+            _ => f64::NAN,
+        }
+    }
+}
+
+impl Ticks {
+    /// Those of a record of version 3 that are whole, in SI where its configuration is.
+    pub fn of(record: &PlaneRecord) -> Self {
+        let config = record.config.as_ref();
+        let units = Units {
+            clearance_m: config.map(|c| f64::from(c.clearance_m)),
+            force_max_n: config.map(|c| f64::from(c.force_max_n)),
+            sample_rate_hz: config.map(|c| 1.0 / f64::from(c.sample_period_s)),
+        };
+        let number = |bits: u32| record.number(bits);
+        let brief = |entry: &Entry| Brief {
+            sequence: entry.sequence,
+            position: entry.position.map(number),
+            force: entry.force.map(number),
+            mode: entry.mode,
+            limits: entry.limits,
+            events: entry.events,
+        };
+        let entries: Vec<Brief> = record.entries.values().map(brief).collect();
+        Self::new(&entries, units)
+    }
+
+    fn new(entries: &[Brief], units: Units) -> Self {
+        let engaged = |entry: &&Brief| entry.events & Events::ENGAGED.bits() as u16 != 0;
+        let start = entries.iter().rev().find(engaged).or(entries.first());
+        let start = start.map_or(0, |entry| entry.sequence);
+        let ticks: Vec<Tick> = entries.iter().map(|e| tick(e, start, units)).collect();
+        let gap = |pair: &[Brief]| {
             let step = pair[1].sequence.wrapping_sub(pair[0].sequence);
             // A number that is older than the one before is no gap.
             match step.cast_signed() {
@@ -153,10 +234,7 @@ impl FlightRecord {
             }
         };
         Self {
-            crc: crc_of(entries.iter()),
-            whole: a_length && trigger.is_some_and(|at| triggers(&entries[at])) && in_order,
-            empty,
-            missing: written.windows(2).map(gap).sum(),
+            missing: entries.windows(2).map(gap).sum(),
             stretches: stretches(&ticks),
             ticks,
         }
@@ -175,9 +253,8 @@ impl FlightRecord {
     }
 }
 
-fn tick(entry: &Entry, start: u32, units: Units) -> Tick {
-    let per_unit = |v: [i16; 2]| v.map(|x| f64::from(x) / f64::from(PER_UNIT));
-    let (position, force) = (per_unit(entry.position), per_unit(entry.force));
+fn tick(entry: &Brief, start: u32, units: Units) -> Tick {
+    let (position, force) = (entry.position, entry.force);
     // Sequence numbers may wrap: what is before the start is negative.
     let tick = i64::from(entry.sequence.wrapping_sub(start).cast_signed());
     let limits = Limits::from_bits_truncate(entry.limits.into());

@@ -1,0 +1,322 @@
+//! The tick, per unit: its body reads as the list of files.
+
+use crate::beside::Beside;
+use crate::classify::Classifier;
+use crate::coeffs::Coeffs;
+use crate::detect::Detector;
+use crate::estimate::{Contact, Observer};
+use crate::guard::Guard;
+use crate::handover::Readiness;
+use crate::impact::{Impact, Speed};
+use crate::law::View;
+use crate::limit::{Budget, ForceEnvelope};
+use crate::phase::{Judged, Phase};
+use crate::reading::{Reading, SampleFlags};
+use crate::scalar::Scalar;
+use crate::severity::Severity;
+use crate::signal::{
+    CoreCommand, CoreSample, Events, IntegratorHint, Limits, Mode, RejectReason, Status,
+};
+use crate::spin::Spin;
+use crate::trust::Trust;
+use crate::vec2::Vec2;
+use crate::words::words_of_fields;
+use crate::{handover, limit};
+
+/// Contact can be avoided for good where this share of the work that force and shaft can do is enough: with a half some
+/// rotors come into the middle one swing of their shaft later.
+const CALM_SHARE: f32 = 0.3;
+
+/// All that a core remembers from tick to tick, but for what is recorded.
+#[derive(Debug, Clone, Copy, Default)]
+#[repr(C)]
+pub(crate) struct State<S: Scalar> {
+    pub(crate) guard: Guard<S>,
+    pub(crate) observer: Observer<S>,
+    pub(crate) classifier: Classifier<S>,
+    pub(crate) readiness: Readiness<S>,
+    pub(crate) phase: Phase<S>,
+    pub(crate) trust: Trust<S>,
+    pub(crate) budget: Budget<S>,
+    pub(crate) severity: Severity<S>,
+    /// Last command …
+    pub(crate) force: Vec2<S>,
+    /// … and what would have been it, which is the same but in shadow.
+    pub(crate) own: Vec2<S>,
+    pub(crate) detector: Detector,
+    pub(crate) reconfigured: bool,
+}
+
+words_of_fields!(State<S> {
+    guard,
+    observer,
+    classifier,
+    readiness,
+    phase,
+    trust,
+    budget,
+    severity,
+    force,
+    own,
+    detector,
+    reconfigured,
+});
+
+impl<S: Scalar> State<S> {
+    /// One tick: total and bounded; the one loop that depends on data makes up for at most four missed
+    /// ticks.
+    #[inline]
+    pub(crate) fn tick(
+        &mut self,
+        sample: &CoreSample<S>,
+        beside: &impl Beside<S>,
+        coeffs: &Coeffs<S>,
+    ) -> CoreCommand<S> {
+        let tilting = beside.tilting();
+        let pinned = matches!(self.phase, Phase::Pinned { .. });
+        if let Some(tilting) = tilting {
+            let gained = tilting.gained(coeffs.tick);
+            (self.observer).push(gained, self.detector.wall(pinned), coeffs);
+        }
+        // An axis that does not track its command is as good as lost.
+        let status = sample.status | self.observer.monitor.lost(sample.status);
+        let estimated = || {
+            let blind = self.detector.wall(pinned) != Contact::None;
+            (self.observer.velocity(), blind)
+        };
+        let expected = (self.observer).expected(self.detector.wall(pinned), coeffs);
+        let reading = (self.guard).judge((sample, status), expected, estimated, coeffs);
+        let assessment = reading.assessment;
+        let flags = assessment.flags;
+        let spin = (reading.spin, sample.spin);
+        if flags.intersects(SampleFlags::UNUSUAL) {
+            // A copy, so that the usual one stays in registers.
+            let unusual = reading;
+            self.catch_up(&unusual, spin, coeffs);
+        }
+        let (position, actuator) = (reading.position(), reading.actuator());
+        let touch = self.detector.sample(position, coeffs);
+        let wall = self.detector.wall(pinned);
+        let (motion, off_axis) = (self.observer).advance(position, spin, wall, actuator, coeffs);
+        let envelope = ForceEnvelope::new(&self.budget, actuator.axes, coeffs);
+        let margin = self.trust.margin;
+        let contact = (self.detector).contact_estimate(
+            (&motion, off_axis),
+            touch,
+            (envelope.cap, margin),
+            tilting,
+            coeffs,
+        );
+        let made_up = || match wall {
+            Contact::Impact => self.observer.made_up(contact.normal, coeffs),
+            _ => S::ZERO,
+        };
+        let seen = position.is_some();
+        let rubs = self.classifier.rubs();
+        let class = (self.classifier).classify(&contact, (seen, made_up), spin, coeffs);
+
+        // A rotor that levitates, and will, needs none of what follows.
+        let (mut speed, mut ahead, mut calm) = (Speed::default(), None, false);
+        // Of the axis: an orbit is no approach, and no sign of the model either.
+        let square = self.observer.velocity().length_squared();
+        let flies = wall == Contact::None;
+        let quiet = self.guard.innovation.is_quiet(coeffs);
+        let judged = Judged {
+            quiet,
+            hands_back: (self.trust).tick((square, flies), (self.phase, rubs, sample.spin), coeffs),
+            rubs_on: self.trust.rubs_on(),
+            trusted: quiet && self.trust.is_granted(),
+        };
+        if self.phase != Phase::Levitated || contact.unavoidable || contact.touching {
+            speed = Speed::new(motion.velocity);
+            if !contact.touching {
+                ahead = Impact::ahead(&motion, contact.radius, &speed);
+                let beyond = (speed.value - margin).max(S::ZERO);
+                let share = S::from_f32(CALM_SHARE);
+                calm = flies && contact.stops(beyond, envelope.cap, share, coeffs);
+                if let Some(tilting) = tilting
+                    && flies
+                    && !calm
+                {
+                    calm = contact.curls(&motion, tilting, (margin, envelope.cap, share), coeffs);
+                }
+            }
+        }
+        let patience = (calm, self.readiness.ready(), judged);
+        let (phase, events) = (self.phase).next(&contact, patience, class, flags, coeffs);
+        self.phase = phase;
+        let mode = phase.mode();
+
+        let led;
+        let acted_on = match tilting {
+            Some(tilting) if phase.is_engaged() && !contact.touching => {
+                led = tilting.ahead(&motion, coeffs);
+                &led
+            }
+            _ => &motion,
+        };
+        let view = View {
+            motion: acted_on,
+            contact: &contact,
+            speed: &speed,
+            ahead: ahead.as_ref(),
+            spin: reading.spin,
+            delivered: self.observer.delivered(),
+            coeffs,
+        };
+        let shadow = sample.status.contains(Status::SHADOW);
+        if actuator.axes.has_lost() {
+            // Such an axis has no force to start from; one that does not track may have.
+            let known = actuator.axes.known(sample.status);
+            (self.force, self.own) = (known.carried(self.force), known.carried(self.own));
+        }
+        let last = if shadow { self.own } else { self.force };
+        // Under impacts and in whirl nobody asks what the levitation controller wants.
+        let holds = mode == Mode::Pinned || !contact.touching;
+        let has_a_say =
+            holds || matches!(mode, Mode::Levitated | Mode::HandedBack | Mode::SensorFault);
+        let command = Vec2::from_array(sample.levitation);
+        let (levitation, levitation_limits) = if has_a_say {
+            // What it makes of a coordinate that is none takes no room from the other.
+            let command = if mode == Mode::SensorFault {
+                flags.sensed(command, Vec2::ZERO)
+            } else {
+                command
+            };
+            limit::levitation(command, envelope)
+        } else {
+            (Vec2::ZERO, Limits::empty())
+        };
+        // What the controller makes of such a sample does not go through.
+        // A doubt counts as much as the model that it is by.
+        let wrong = flags.contains(SampleFlags::ON)
+            && match assessment.refusal {
+                RejectReason::Doubted => judged.trusted,
+                refusal => refusal.is_wrong(),
+            };
+        if !phase.is_engaged() {
+            self.readiness = Readiness::default();
+        }
+        let (target, bound) = if wrong && matches!(mode, Mode::Levitated | Mode::Handover) {
+            limit::within(last, envelope)
+        } else if !phase.is_engaged() {
+            (levitation, levitation_limits)
+        } else {
+            let (allocated, mut own_limits) = limit::allocate(&view.demand(phase), envelope);
+            if holds && !wrong {
+                // The controller has to ask for what the rotor is really held with.
+                let held = actuator.applied().unwrap_or(allocated);
+                self.readiness
+                    .compare(held, levitation, (contact.normal, contact.radius), coeffs);
+            }
+            let blended = match phase {
+                Phase::SensorFault { bouncing } => {
+                    own_limits = levitation_limits;
+                    handover::faded(bouncing, (last, levitation), flags, envelope, coeffs)
+                }
+                Phase::Handover { weight } => allocated * (S::ONE - weight) + levitation * weight,
+                _ => allocated,
+            };
+            let (target, bound) = limit::within(blended, envelope);
+            (target, own_limits | bound)
+        };
+        let (own, slew) = limit::slewed(target, last, coeffs);
+        let mut limits = bound | slew;
+        self.own = own;
+        let on = flags.contains(SampleFlags::ON);
+        let mut integrator = handover::integrator_hint(phase, calm, on);
+        if shadow {
+            let (levitation, _) = limit::levitation(command, envelope);
+            (self.force, _) = limit::slewed(levitation, self.force, coeffs);
+            if on {
+                integrator = IntegratorHint::Run;
+            }
+            self.observer.monitor.switched_off();
+        } else {
+            self.force = own;
+        }
+        if position.is_none() {
+            limits |= Limits::SAMPLE_REFUSED;
+        }
+        self.observer.commanded(self.force);
+        let acting = actuator.acting(self.force);
+        self.budget.spend(S::ONE, acting, coeffs);
+        let severity =
+            (self.severity).assess(mode, &view, flags, (acting, self.observer.velocity()));
+
+        let mut events = events | assessment.events | severity.events;
+        if core::mem::take(&mut self.reconfigured) {
+            events |= Events::RECONFIGURED;
+        }
+        limits |= severity.limits;
+        CoreCommand {
+            force: self.force.to_array(),
+            own: self.own.to_array(),
+            mode,
+            limits,
+            events,
+            integrator,
+            severity: severity.severity,
+        }
+    }
+
+    /// What a tick has to make up for: commands that came too late, ticks that were missed, an estimate that
+    /// cannot go on.
+    #[cold]
+    fn catch_up(&mut self, reading: &Reading<S>, spin: (Spin, S), coeffs: &Coeffs<S>) {
+        let assessment = reading.assessment;
+        let flags = assessment.flags;
+        if flags.contains(SampleFlags::LATE) {
+            self.observer.late();
+        }
+        if assessment.missed > 0 {
+            let missed = u32::from(assessment.missed);
+            self.observer
+                .bridge(missed, self.force, (reading.position(), spin), coeffs);
+            let acting = reading.actuator().acting(self.force);
+            (self.budget).spend(S::count(missed), acting, coeffs);
+        }
+        let lost = flags.contains(SampleFlags::FAULTY) && !flags.contains(SampleFlags::USED);
+        if flags.intersects(SampleFlags::ANEW | SampleFlags::MISSED) {
+            self.observer.monitor.unseen();
+        }
+        if flags.contains(SampleFlags::ANEW) || lost {
+            self.observer.forget();
+            self.classifier.forget();
+        }
+    }
+
+    /// After a change of units and coefficients. What a speed and the severity index are multiplied by.
+    pub(crate) fn rescale(&mut self, old: &Coeffs<S>, new: &Coeffs<S>) -> (S, f32) {
+        // What a sensor showed is now at another place in another unit.
+        let length = new.scaling.position_per_m / old.scaling.position_per_m;
+        let [new_s, old_s] = [new, old].map(|coeffs| coeffs.scaling.time_s);
+        let speed = length * new_s / old_s;
+        let tick = (new_s * new.tick.to_f32()) / (old_s * old.tick.to_f32());
+        let force = old.scaling.force_n / new.scaling.force_n;
+        let index = old.severity_limit / new.severity_limit;
+        self.guard.rescale(S::from_f32(length));
+        self.trust.rescale(S::from_f32(speed));
+        (self.observer).rescale(
+            S::from_f32(length),
+            S::from_f32(speed),
+            S::from_f32(tick),
+            S::from_f32(force),
+        );
+        self.readiness.rescale(S::from_f32(force));
+        self.budget.rescale(force);
+        self.severity.rescale(S::from_f32(speed), index);
+        self.reconfigured = true;
+        // A cap that is smaller now holds at once; what the budget leaves of it is come down to by the slew limit, as ever.
+        let envelope = ForceEnvelope::below(S::ONE, SampleFlags::empty(), new);
+        let held = |last: Vec2<S>| limit::levitation(last * S::from_f32(force), envelope).0;
+        (self.force, self.own) = (held(self.force), held(self.own));
+        (S::from_f32(speed), index)
+    }
+
+    /// Where the axis is by the estimate, and whether it touches.
+    #[inline]
+    pub(crate) fn whereabouts(&self) -> (Vec2<S>, bool) {
+        (self.observer.position(), self.detector.is_touching())
+    }
+}

@@ -1,0 +1,136 @@
+//! What a core remembers, as words of 32 bits that are the same on every target: a flight record keeps them, to be replayed
+//! from.
+
+/// Something that goes into words and comes back the same.
+pub trait Words: Copy {
+    /// Hands its words over, in an order that never changes.
+    fn put(&self, to: &mut dyn FnMut(u32));
+    /// From words that [`Self::put`] made; any others, or too few, make something as well.
+    fn take(from: &mut dyn Iterator<Item = u32>) -> Self;
+    /// How many words it has: always as many.
+    #[inline]
+    fn word_count(&self) -> u32 {
+        1
+    }
+    /// Becomes the same as another one: of what is large piece by piece, as the routine for all at once takes a hundred bytes of
+    /// stack.
+    #[inline]
+    fn become_as(&mut self, other: &Self) {
+        *self = *other;
+    }
+}
+
+/// Words of a struct: those of its fields, all of which have to be named.
+macro_rules! words_of_fields {
+    ($name:ident $(<$s:ident>)? { $($field:ident),* $(,)? }) => {
+        impl $(<$s: Scalar>)? crate::words::Words for $name $(<$s>)? {
+            // Once, and not wherever a record is written.
+            #[inline(never)]
+            fn put(&self, to: &mut dyn FnMut(u32)) {
+                let Self { $($field),* } = self;
+                $(crate::words::Words::put($field, to);)*
+            }
+            fn take(from: &mut dyn Iterator<Item = u32>) -> Self {
+                Self { $($field: crate::words::Words::take(from)),* }
+            }
+            #[inline]
+            fn word_count(&self) -> u32 {
+                0 $(+ crate::words::Words::word_count(&self.$field))*
+            }
+            #[inline]
+            fn become_as(&mut self, other: &Self) {
+                $(crate::words::Words::become_as(&mut self.$field, &other.$field);)*
+            }
+        }
+    };
+}
+
+pub(crate) use words_of_fields;
+
+/// A word each.
+macro_rules! words_of_integers {
+    ($($type:ty),*) => {$(
+        impl Words for $type {
+            fn put(&self, to: &mut dyn FnMut(u32)) {
+                to(*self as u32);
+            }
+            fn take(from: &mut dyn Iterator<Item = u32>) -> Self {
+                from.next().unwrap_or_default() as $type
+            }
+        }
+    )*};
+}
+
+words_of_integers!(u8, i8, u16, u32, i32);
+
+impl Words for bool {
+    fn put(&self, to: &mut dyn FnMut(u32)) {
+        to(u32::from(*self));
+    }
+    fn take(from: &mut dyn Iterator<Item = u32>) -> Self {
+        from.next() == Some(1)
+    }
+}
+
+/// The lower half first.
+impl Words for u64 {
+    fn put(&self, to: &mut dyn FnMut(u32)) {
+        to(*self as u32);
+        to((self >> 32) as u32);
+    }
+    fn take(from: &mut dyn Iterator<Item = u32>) -> Self {
+        let [low, high] = [(); 2].map(|()| u64::from(u32::take(from)));
+        low | high << 32
+    }
+    fn word_count(&self) -> u32 {
+        2
+    }
+}
+
+impl Words for f32 {
+    fn put(&self, to: &mut dyn FnMut(u32)) {
+        to(self.to_bits());
+    }
+    fn take(from: &mut dyn Iterator<Item = u32>) -> Self {
+        Self::from_bits(u32::take(from))
+    }
+}
+
+impl Words for f64 {
+    fn put(&self, to: &mut dyn FnMut(u32)) {
+        self.to_bits().put(to);
+    }
+    fn take(from: &mut dyn Iterator<Item = u32>) -> Self {
+        Self::from_bits(u64::take(from))
+    }
+    fn word_count(&self) -> u32 {
+        2
+    }
+}
+
+impl<T: Words, const N: usize> Words for [T; N] {
+    fn put(&self, to: &mut dyn FnMut(u32)) {
+        self.iter().for_each(|x| x.put(to));
+    }
+    fn take(from: &mut dyn Iterator<Item = u32>) -> Self {
+        [(); N].map(|()| T::take(from))
+    }
+    #[inline]
+    fn word_count(&self) -> u32 {
+        self.iter().map(T::word_count).sum()
+    }
+}
+
+/// Four bytes into a CRC-32 (IEEE, reflected), a nibble at a time: no table of a kilobyte.
+pub(crate) fn crc_of_word(crc: u32, word: u32) -> u32 {
+    #[rustfmt::skip]
+    const NIBBLE: [u32; 16] = [
+        0x0000_0000, 0x1DB7_1064, 0x3B6E_20C8, 0x26D9_30AC, 0x76DC_4190, 0x6B6B_51F4, 0x4DB2_6158, 0x5005_713C,
+        0xEDB8_8320, 0xF00F_9344, 0xD6D6_A3E8, 0xCB61_B38C, 0x9B64_C2B0, 0x86D3_D2D4, 0xA00A_E278, 0xBDBD_F21C,
+    ];
+    let mut crc = crc ^ word;
+    for _ in 0..8 {
+        crc = (crc >> 4) ^ NIBBLE[(crc & 15) as usize];
+    }
+    crc
+}

@@ -1,0 +1,463 @@
+//! `review`: from the memory of a supervisor to what a person reads, of files that are whole and of those that are not.
+
+use firmware_bench::record::file::{Damage, PlaneRecord, RecordFile};
+use firmware_bench::record::replay::replay;
+use firmware_bench::run::controller::written;
+use firmware_image::under_test::shaft;
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+use std::process::Output;
+use supervisor::{
+    Config, Core, Entry, Events, NO_STATE, Part, Prepared, Q, Record, Rotor, Scalar, Stamp, Status,
+    Supervisor, crc_of,
+};
+use system_tests::rig::{config, sample};
+use system_tests::storm::{AnyBits, Chance, Storm};
+use system_tests::{host, run_scene, scene_path};
+use tempfile::TempDir;
+
+/// Towards the wall, some ticks on it, and back \[m\].
+fn way(tick: u32) -> [f32; 2] {
+    let out = (3e-5 * tick.saturating_sub(99) as f32).min(2.02e-4);
+    let back = (2e-6 * tick.saturating_sub(150) as f32).min(out);
+    let noise = 4e-7 * (tick % 3) as f32;
+    [out - back + noise, noise]
+}
+
+/// A landing of one plane, of a core without floating point, and of a rotor.
+fn landings() -> [Vec<u8>; 3] {
+    let mut plane = Supervisor::<64>::new(&config()).unwrap();
+    let prepared = Prepared::<Q>::new(&config()).unwrap();
+    let mut core = Core::<Q, 64>::new(&prepared);
+    let mut rotor = Rotor::<64>::new(&shaft(&config()), &[config(); 2]).unwrap();
+    let scaling = config().scaling();
+    for i in 0..900 {
+        let at = sample(i, way(i));
+        plane.tick(&at);
+        core.tick(&system_tests::per_unit::in_numbers(&scaling.sample(&at)));
+        rotor.tick(&[at, sample(i, [1e-6 * (i % 3) as f32; 2])]);
+    }
+    let both = [0, 1].map(|end| written(&rotor.record(end).unwrap()));
+    [
+        written(&plane.record().unwrap()),
+        written(&core.record().unwrap()),
+        both.concat(),
+    ]
+}
+
+#[test]
+fn what_was_written_is_read_and_replays() {
+    for (bytes, planes) in landings().iter().zip([1, 1, 2]) {
+        let file = RecordFile::of(bytes);
+        assert_eq!(file.damage, []);
+        assert_eq!(file.records.len(), planes);
+        let events = file.events();
+        let [event] = &events[..] else {
+            panic!("{} events", events.len())
+        };
+        let replay = event.replay.unwrap();
+        assert_eq!(replay.differing, 0);
+        assert!(replay.ticks > planes * 48, "{replay:?}");
+        let told = event.told().unwrap();
+        assert_eq!(
+            (told.outcome, told.touches, told.landings),
+            ("levitated", 1, 1)
+        );
+        // A tick that was told something else is found.
+        let mut wrong = file.clone();
+        let entry = wrong.records[0].entries.get_mut(&40).unwrap();
+        entry.position[0] ^= 1 << 16;
+        let of: Vec<&PlaneRecord> = wrong.records.iter().collect();
+        let differs = replay_of(&of);
+        assert!(differs.0 > 0, "{differs:?}");
+        let after = wrong.records[0].entries[&40].sequence..;
+        assert!(after.contains(&differs.1.unwrap()), "{differs:?}");
+    }
+}
+
+fn replay_of(records: &[&PlaneRecord]) -> (usize, Option<u32>) {
+    let replay = replay(records).unwrap();
+    (replay.differing, replay.first_difference)
+}
+
+/// A core and its samples.
+trait Stormed: Scalar + AnyBits {}
+impl Stormed for f32 {}
+impl Stormed for Q {}
+
+/// Records of streams with arbitrary bits in them, gaps and faults.
+fn storms<S: Stormed>(seeds: std::ops::Range<u64>) -> usize {
+    let mut records = 0;
+    for seed in seeds {
+        let mut chance = Chance::new(seed ^ 0xF00D);
+        let with = Config {
+            handover_dwell_s: 5e-4 * chance.share(),
+            ..config()
+        };
+        let mut core = Core::<S, 64>::new(&Prepared::new(&with).unwrap());
+        let mut storm = Storm::new(seed);
+        for _ in 0..4000 {
+            core.tick(&storm.next_sample::<S>());
+            let Some(record) = core.record() else {
+                continue;
+            };
+            let file = RecordFile::of(&written(&record));
+            assert_eq!(file.damage, [], "{seed}");
+            let of: Vec<&PlaneRecord> = file.records.iter().collect();
+            // One that began before there was a tick to keep the state after has none.
+            match replay(&of) {
+                Ok(replay) => {
+                    assert_eq!(replay.differing, 0, "{seed}");
+                    records += 1;
+                }
+                Err(why) => assert_eq!(file.records[0].head.state_at, NO_STATE, "{seed}: {why}"),
+            }
+            core.rearm();
+        }
+    }
+    records
+}
+
+#[test]
+fn records_of_arbitrary_samples_replay_to_the_bit() {
+    let records = [storms::<f32>(0..150), storms::<Q>(0..150)];
+    assert!(records.iter().all(|n| *n > 100), "{records:?}");
+}
+
+/// Those that began while another waited are counted, and told in the next record.
+#[test]
+fn what_is_in_no_record_is_counted() {
+    let mut plane = Supervisor::<64>::new(&config()).unwrap();
+    let mut head = |from: u32, to: u32| {
+        for i in from..to {
+            plane.tick(&sample(i, way(i % 900)));
+        }
+        let bytes = written(&plane.record().unwrap());
+        // It does not change while it waits.
+        plane.reconfigure(&config()).unwrap();
+        assert_eq!(written(&plane.record().unwrap()), bytes);
+        RecordFile::of(&bytes).records[0].head
+    };
+    let first = head(0, 2700);
+    assert_eq!((first.dropped, first.closed_at < 900), (0, true));
+    plane.rearm();
+    let mut plane = plane;
+    for i in 2700..3600 {
+        plane.tick(&sample(i, way(i % 900)));
+    }
+    let second = RecordFile::of(&written(&plane.record().unwrap())).records[0].clone();
+    assert_eq!(second.head.dropped, 2);
+    assert_eq!(second.summary.unwrap().touches, 1);
+}
+
+/// Whatever ends an event is said, and no verdict is given that it does not bear.
+#[test]
+fn a_bearing_that_is_switched_off_is_no_recovery() {
+    let mut plane = Supervisor::<64>::new(&config()).unwrap();
+    for i in 0..400 {
+        let mut at = sample(i, way(i.min(140)));
+        if i > 200 {
+            at.status -= Status::BEARING_ON;
+        }
+        plane.tick(&at);
+    }
+    let file = RecordFile::of(&written(&plane.record().unwrap()));
+    let told = file.events()[0].told().unwrap();
+    assert_eq!(told.outcome, "bearing off");
+    assert!(
+        told.paragraph().contains("Look at the machine"),
+        "{}",
+        told.paragraph()
+    );
+    // One plane of two says nothing of the machine.
+    let [.., rotor] = landings();
+    let half = RecordFile::of(&rotor[..rotor.len() / 2]);
+    assert!(half.is_intact() && half.events()[0].told().is_none());
+}
+
+/// A change of the configuration on the way ends the replay before it: the record has the one of the beginning.
+#[test]
+fn a_replay_ends_where_the_configuration_changes() {
+    let mut plane = Supervisor::<64>::new(&config()).unwrap();
+    for i in 0..900 {
+        if i == 110 {
+            let other = Config {
+                friction_coefficient: 0.3,
+                ..config()
+            };
+            plane.reconfigure(&other).unwrap();
+        }
+        plane.tick(&sample(i, way(i)));
+    }
+    let file = RecordFile::of(&written(&plane.record().unwrap()));
+    let [record] = &file.records[..] else {
+        panic!()
+    };
+    assert_eq!(record.config.unwrap().friction_coefficient, 0.15);
+    let changed = (record.entries.iter())
+        .find(|(_, e)| u32::from(e.events) & Events::RECONFIGURED.bits() != 0);
+    let (at, _) = changed.unwrap();
+    let replay = replay(&[record]).unwrap();
+    assert_eq!(replay.differing, 0);
+    assert_eq!(replay.ticks, at - record.head.state_at as usize);
+}
+
+/// Sections of these bytes.
+fn sections(bytes: &[u8]) -> Vec<&[u8]> {
+    let mut sections = Vec::new();
+    let mut rest = bytes;
+    while !rest.is_empty() {
+        let words = u16::from_le_bytes([rest[10], rest[11]]);
+        let (section, more) = rest.split_at(4 * (usize::from(words) + 4));
+        sections.push(section);
+        rest = more;
+    }
+    sections
+}
+
+/// Bytes with something wrong with them.
+fn damaged(of: &[Vec<u8>; 3], chance: &mut Chance) -> Vec<u8> {
+    let below = |n: usize, chance: &mut Chance| (chance.bits() % n as u64) as usize;
+    let one = &of[below(3, chance)];
+    let other = &of[below(3, chance)];
+    let mut bytes = one.clone();
+    match chance.bits() % 7 {
+        // Flipped bits.
+        0 => {
+            for _ in 0..=below(8, chance) {
+                let at = below(bytes.len(), chance);
+                bytes[at] ^= 1 << below(8, chance);
+            }
+        }
+        // Cut off, at either end.
+        1 => bytes.truncate(below(one.len(), chance)),
+        2 => _ = bytes.drain(..below(one.len(), chance)),
+        // Bytes that are missing, or there twice.
+        3 => {
+            let from = below(one.len(), chance);
+            let to = (from + below(600, chance)).min(one.len());
+            bytes.drain(from..to);
+        }
+        4 => {
+            let from = below(one.len(), chance);
+            let to = (from + below(600, chance)).min(one.len());
+            bytes.splice(from..from, one[from..to].iter().copied());
+        }
+        // Sections in another order, or of another record.
+        5 => {
+            let mut all = sections(one);
+            for _ in 0..=below(5, chance) {
+                let (a, b) = (below(all.len(), chance), below(all.len(), chance));
+                all.swap(a, b);
+            }
+            let others = sections(other);
+            let at = below(all.len(), chance);
+            all[at] = others[below(others.len(), chance)];
+            bytes = all.concat();
+        }
+        // Joined, and then cut.
+        _ => {
+            bytes.extend(other);
+            bytes.truncate(below(bytes.len(), chance));
+        }
+    }
+    bytes
+}
+
+/// Ten thousand damaged files: what is given back was written so, and what is missing is named.
+#[test]
+fn no_damage_makes_a_wrong_figure() {
+    let whole = landings();
+    let originals: Vec<PlaneRecord> = (whole.iter())
+        .flat_map(|bytes| RecordFile::of(bytes).records)
+        .collect();
+    let mut chance = Chance::new(35);
+    let mut parts = 0;
+    for number in 0..10_000 {
+        let bytes = damaged(&whole, &mut chance);
+        let file = RecordFile::of(&bytes);
+        for record in &file.records {
+            let original = (originals.iter()).find(|o| o.head == record.head);
+            let original =
+                original.unwrap_or_else(|| panic!("{number}: a head that was not written"));
+            let same = |of: bool, what: &str| assert!(of, "{number}: {what} that was not written");
+            same(
+                record.summary.is_none() || record.summary == original.summary,
+                "a summary",
+            );
+            same(
+                record.config.is_none() || record.config == original.config,
+                "a configuration",
+            );
+            same(
+                record.shaft.is_none() || record.shaft == original.shaft,
+                "a shaft",
+            );
+            same(
+                record.state.is_none() || record.state == original.state,
+                "a state",
+            );
+            same(
+                record.track.iter().all(|s| original.track.contains(s)),
+                "a stretch",
+            );
+            for (at, entry) in &record.entries {
+                same(original.entries.get(at) == Some(entry), "a tick");
+            }
+            parts += record.entries.len();
+            if file.is_intact() {
+                assert_eq!(record, original, "{number}");
+            }
+        }
+        if let Ok(replay) = replay(&file.records.iter().collect::<Vec<_>>()) {
+            assert_eq!(replay.differing, 0, "{number}");
+        }
+        let known = whole.contains(&bytes);
+        assert!(
+            known || !file.is_intact() || !file.records.is_empty(),
+            "{number}"
+        );
+    }
+    assert!(parts > 300_000, "{parts} ticks");
+}
+
+/// Cut at any byte it gives every tick of the sections before.
+#[test]
+fn what_is_before_a_cut_is_there() {
+    let [bytes, ..] = landings();
+    let all = sections(&bytes);
+    for cut in 1..bytes.len() {
+        let file = RecordFile::of(&bytes[..cut]);
+        assert!(!file.is_intact());
+        let mut left = cut;
+        let whole = all.iter().take_while(|section| {
+            let fits = section.len() <= left;
+            left = left.saturating_sub(section.len());
+            fits
+        });
+        let ticks = whole
+            .filter(|section| section.starts_with(&(Part::Ticks as u32).to_le_bytes()))
+            .map(|section| (section.len() - 16) / size_of::<Entry>());
+        let found = file
+            .records
+            .first()
+            .map_or(0, |record| record.entries.len());
+        assert_eq!(found, ticks.sum::<usize>(), "{cut}");
+    }
+}
+
+/// A head of another version is named.
+#[test]
+fn another_version_is_named() {
+    let [mut bytes, ..] = landings();
+    let length = sections(&bytes)[0].len();
+    let (head, _) = bytes.split_at_mut(length);
+    let end = head.len() - 4;
+    head[12] = 9;
+    let crc = crc_of(&head[..end]).to_le_bytes();
+    head[end..].copy_from_slice(&crc);
+    let file = RecordFile::of(&bytes);
+    assert!(
+        file.damage.contains(&Damage::Version(9)),
+        "{:?}",
+        file.damage
+    );
+    assert_eq!(file.records, []);
+}
+
+fn review(file: &Path, more: &[&str]) -> Output {
+    let mut command = host();
+    command.arg("review").arg(file).args(more);
+    command.output().expect("the host starts")
+}
+
+/// A run leaves a record; a person reads what happened, and a program the same.
+#[test]
+fn a_person_and_a_program_read_what_happened() {
+    let folder = TempDir::new().unwrap();
+    let out = folder.path().join("out");
+    let scene = scene_path("overload_then_release");
+    assert!(run_scene(&scene, &out, &[]).status.success());
+    let file = out.join("record_supervisor.bin");
+    let shown = review(&file, &[]);
+    let text = String::from_utf8(shown.stdout).unwrap();
+    assert!(shown.status.success(), "{text}");
+    for word in [
+        "touch",
+        "the levitation controller has the bearing again",
+        "Nothing speaks against running on",
+        "all to the last bit",
+        "ENGAGED",
+        "[ms]",
+        "[µm]",
+        "[N]",
+        "to the end of the event",
+    ] {
+        assert!(text.contains(word), "{word} is not in\n{text}");
+    }
+    let json = review(&file, &["--json"]);
+    let told: Value = serde_json::from_slice(&json.stdout).unwrap();
+    assert_eq!(
+        (&told["intact"], &told["format"]),
+        (&true.into(), &3.into())
+    );
+    assert_eq!(told["summary"]["outcome"], "levitated");
+    assert_eq!(told["summary"]["coast_down"], false);
+    assert_eq!(told["replay"]["differing"], 0);
+    assert!(told["replay"]["ticks"].as_u64() > Some(300));
+    let text = fs::read(out.join("verdict.json")).unwrap();
+    let verdict: Value = serde_json::from_slice(&text).unwrap();
+    let supervision = &verdict["policies"]["supervisor"]["supervision"];
+    assert_eq!(told["summary"]["landings"], supervision["landings"]);
+    let ticks = told["planes"][0]["ticks"].as_array().unwrap();
+    let csv = String::from_utf8(review(&file, &["--csv"]).stdout).unwrap();
+    assert_eq!(csv.lines().count(), 1 + ticks.len());
+
+    // Damaged: what is whole is shown, and the exit code is that of bad input.
+    let mut bytes = fs::read(&file).unwrap();
+    let at = bytes.len() / 2;
+    bytes[at] ^= 1;
+    fs::write(&file, &bytes).unwrap();
+    let shown = review(&file, &[]);
+    assert_eq!(shown.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&shown.stderr).contains("are of no whole section"));
+    assert!(String::from_utf8_lossy(&shown.stdout).contains("ENGAGED"));
+    let json = review(&file, &["--json"]);
+    assert_eq!(json.status.code(), Some(2));
+    let told: Value = serde_json::from_slice(&json.stdout).unwrap();
+    assert_eq!(told["intact"], false);
+    assert!(told["error"].as_str().unwrap().contains("bytes"));
+    // What version 2 needs to be told is not asked for.
+    let shown = review(&file, &["--clearance-m", "2e-4"]);
+    assert_eq!(shown.status.code(), Some(2));
+    assert!(shown.stdout.is_empty());
+}
+
+/// A stamp comes back.
+#[test]
+fn a_stamp_comes_back() {
+    let mut plane = Supervisor::<64>::new(&config()).unwrap();
+    for i in 0..900 {
+        plane.tick(&sample(i, way(i)));
+    }
+    let record = plane.record().unwrap();
+    let stamp = Stamp {
+        firmware: 77,
+        time_us: 0x1_2345_6789,
+        at_sequence: 899,
+    };
+    let bytes = stamped(&record, &stamp);
+    let head = RecordFile::of(&bytes).records[0].head;
+    assert_eq!(
+        (head.firmware, head.time_us, head.at_sequence),
+        (stamp.firmware, stamp.time_us, stamp.at_sequence)
+    );
+}
+
+fn stamped<S: Scalar, const N: usize>(record: &Record<'_, S, N>, stamp: &Stamp) -> Vec<u8> {
+    let sections = (0..).map_while(|i| record.section(i, stamp));
+    sections
+        .flat_map(|mut section| section.seal().to_vec())
+        .collect()
+}
