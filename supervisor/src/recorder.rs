@@ -328,11 +328,12 @@ impl<S: Scalar, const N: usize> Recorder<S, N> {
     #[inline(never)]
     fn happened(&mut self, sequence: u32, mode: Mode, events: Events) -> Seen {
         self.queue((sequence, mode), events);
-        self.coast_down |= events.contains(Events::COAST_DOWN);
         let engaged = mode.is_engaged();
         let touched = engaged && events.intersects(WORTH_IT);
         let begins = events.contains(Events::ENGAGED);
-        if begins && self.progress == Progress::Frozen {
+        if self.progress != Progress::Frozen {
+            self.coast_down |= events.contains(Events::COAST_DOWN);
+        } else if begins {
             self.dropping = self.dropping.saturating_add(1);
         }
         Seen {
