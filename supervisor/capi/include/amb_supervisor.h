@@ -584,7 +584,7 @@ amb_code amb_rearm(amb_supervisor *supervisor);
 
 /**
  * Makes a supervisor of a rotor in two bearing planes, levitated: a supervisor for each, which know the force at the
- * other end and how the spin turns a tilt. Takes four kilobytes of stack.
+ * other end and how the spin turns a tilt. Takes five kilobytes of stack.
  * @param rotor memory for it, zero or made before. After an error it is as it was.
  * @param bytes sizeof *rotor.
  * @param shaft the rotor. From it follow, for each plane, AMB_P_MASS_KG (what an impact there moves),
