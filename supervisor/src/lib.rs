@@ -104,7 +104,7 @@ pub use record::{
     Head, MOST_WORDS, NO_STATE, Part, Record, SECTION_BYTES, SUPERVISOR_VERSION, Section, Stamp,
     Summary, crc_of,
 };
-pub use recorder::{Entry, QueuedEvent, RECORD_VERSION};
+pub use recorder::{ENTRY_WORDS, Entry, QueuedEvent, RECORD_VERSION};
 pub use rotor::{Rotor, RotorCommand};
 pub use scalar::{Accumulator, Number, Scalar};
 pub use self_test::{SelfTest, self_test};
@@ -114,5 +114,5 @@ pub use signal::{
     Sample, Status,
 };
 pub use supervisor::Supervisor;
-pub use track::{STRETCHES, Stretch};
+pub use track::{STRETCH_WORDS, STRETCHES, Stretch};
 pub use watch::CommandWatchdog;

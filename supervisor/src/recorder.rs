@@ -42,7 +42,7 @@ pub struct Entry {
 }
 
 /// Words of an entry.
-pub(crate) const ENTRY_WORDS: usize = 12;
+pub const ENTRY_WORDS: usize = 12;
 
 impl Entry {
     fn new<S: Scalar>(sample: &CoreSample<S>, command: &CoreCommand<S>) -> Self {

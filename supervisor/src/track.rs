@@ -12,7 +12,7 @@ const FIRST_TICKS: u16 = 32;
 const DOUBLES_AFTER: usize = 8;
 
 /// Words of a stretch.
-pub(crate) const STRETCH_WORDS: usize = 6;
+pub const STRETCH_WORDS: usize = 6;
 
 /// Some ticks of an event, 24 bytes. Extremes are numbers of the core, per unit, as their bits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

@@ -2,7 +2,7 @@
 
 use firmware_bench::record::file::{Damage, PlaneRecord, RecordFile};
 use firmware_bench::record::replay::replay;
-use firmware_bench::run::controller::written;
+use firmware_bench::run::controller as bench;
 use firmware_image::under_test::shaft;
 use serde_json::Value;
 use std::fs;
@@ -16,6 +16,11 @@ use system_tests::rig::{config, sample};
 use system_tests::storm::{AnyBits, Chance, Storm};
 use system_tests::{host, run_scene, scene_path};
 use tempfile::TempDir;
+
+/// A record without a stamp.
+fn written<S: Scalar, const N: usize>(record: &Record<'_, S, N>) -> Vec<u8> {
+    bench::written(record, &Stamp::default())
+}
 
 /// Towards the wall, some ticks on it, and back \[m\].
 fn way(tick: u32) -> [f32; 2] {
@@ -447,17 +452,10 @@ fn a_stamp_comes_back() {
         time_us: 0x1_2345_6789,
         at_sequence: 899,
     };
-    let bytes = stamped(&record, &stamp);
+    let bytes = bench::written(&record, &stamp);
     let head = RecordFile::of(&bytes).records[0].head;
     assert_eq!(
         (head.firmware, head.time_us, head.at_sequence),
         (stamp.firmware, stamp.time_us, stamp.at_sequence)
     );
-}
-
-fn stamped<S: Scalar, const N: usize>(record: &Record<'_, S, N>, stamp: &Stamp) -> Vec<u8> {
-    let sections = (0..).map_while(|i| record.section(i, stamp));
-    sections
-        .flat_map(|mut section| section.seal().to_vec())
-        .collect()
 }

@@ -2,15 +2,13 @@
 
 use std::collections::BTreeMap;
 use supervisor::{
-    Config, Entry, Head, MOST_WORDS, NO_STATE, PARAMETERS, Part, RECORD_VERSION, Shaft, Stretch,
-    Summary, crc_of,
+    Config, ENTRY_WORDS, Entry, Head, MOST_WORDS, NO_STATE, Number, PARAMETERS, Part, Q,
+    RECORD_VERSION, STRETCH_WORDS, Scalar, Shaft, Stretch, Summary, crc_of,
 };
 
 /// Words of a section before those of its part, and with the checksum.
 const HEAD_WORDS: usize = 3;
 const FRAME_WORDS: usize = HEAD_WORDS + 1;
-const WORDS_OF_ENTRY: usize = 12;
-const WORDS_OF_STRETCH: usize = 6;
 
 /// What is wrong with a file.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -100,6 +98,17 @@ struct Section {
 /// once in 2³² ticks.
 pub fn begins(bytes: &[u8]) -> bool {
     bytes.starts_with(&(Part::Head as u32).to_le_bytes())
+}
+
+impl PlaneRecord {
+    /// A number of the core that is recorded as its bits; NaN of one that keeps none.
+    pub fn number(&self, bits: u32) -> f64 {
+        match self.head.number {
+            n if n == Number::Single as u32 => f64::from(f32::from_bits(bits)),
+            n if n == Number::Fixed as u32 => f64::from(Q::of_bits(bits).to_f32()),
+            _ => f64::NAN,
+        }
+    }
 }
 
 impl RecordFile {
@@ -232,18 +241,13 @@ fn plane_record(head: Head, parts: &Parts, damage: &mut Vec<Damage>) -> PlaneRec
         .and_then(|words| <[f32; 9]>::try_from(floats(words)).ok())
         .map(Shaft::from_values);
     let per_section = |words: usize| MOST_WORDS / words * words;
-    let entries: BTreeMap<usize, Entry> = chunks(
-        many(Part::Ticks, per_section(WORDS_OF_ENTRY)),
-        WORDS_OF_ENTRY,
-    )
-    .filter_map(|(i, words)| Some((i, Entry::from_words(words.try_into().ok()?))))
-    .collect();
-    let track: Vec<Stretch> = chunks(
-        many(Part::Track, per_section(WORDS_OF_STRETCH)),
-        WORDS_OF_STRETCH,
-    )
-    .filter_map(|(_, words)| Some(Stretch::from_words(words.try_into().ok()?)))
-    .collect();
+    let entries: BTreeMap<usize, Entry> =
+        chunks(many(Part::Ticks, per_section(ENTRY_WORDS)), ENTRY_WORDS)
+            .filter_map(|(i, words)| Some((i, Entry::from_words(words.try_into().ok()?))))
+            .collect();
+    let track: Vec<Stretch> = chunks(many(Part::Track, per_section(STRETCH_WORDS)), STRETCH_WORDS)
+        .filter_map(|(_, words)| Some(Stretch::from_words(words.try_into().ok()?)))
+        .collect();
     let state: Vec<u32> = many(Part::State, MOST_WORDS)
         .map(|(_, word)| word)
         .collect();

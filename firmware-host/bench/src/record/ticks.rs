@@ -4,7 +4,7 @@ use crate::record::file::PlaneRecord;
 use firmware_image::wire::mode_of;
 use serde::Serialize;
 use std::ops::RangeInclusive;
-use supervisor::{Entry, Events, Limits, Mode, Number, Q, Scalar, crc_of};
+use supervisor::{Entry, Events, Limits, Mode, crc_of};
 
 /// Units of version 2: 1/4096 of the clearance and of the cap.
 pub const PER_UNIT: f64 = 4096.0;
@@ -188,12 +188,13 @@ impl FlightRecord {
 }
 
 impl PlaneRecord {
-    /// A number of the core that is recorded as its bits; NaN of one that keeps none.
-    pub fn number(&self, bits: u32) -> f64 {
-        match self.head.number {
-            n if n == Number::Single as u32 => f64::from(f32::from_bits(bits)),
-            n if n == Number::Fixed as u32 => f64::from(Q::of_bits(bits).to_f32()),
-            _ => f64::NAN,
+    /// What its units are in SI, where its configuration is whole.
+    pub fn units(&self) -> Units {
+        let config = self.config.as_ref();
+        Units {
+            clearance_m: config.map(|c| f64::from(c.clearance_m)),
+            force_max_n: config.map(|c| f64::from(c.force_max_n)),
+            sample_rate_hz: config.map(|c| 1.0 / f64::from(c.sample_period_s)),
         }
     }
 }
@@ -201,12 +202,6 @@ impl PlaneRecord {
 impl Ticks {
     /// Those of a record of version 3 that are whole, in SI where its configuration is.
     pub fn of(record: &PlaneRecord) -> Self {
-        let config = record.config.as_ref();
-        let units = Units {
-            clearance_m: config.map(|c| f64::from(c.clearance_m)),
-            force_max_n: config.map(|c| f64::from(c.force_max_n)),
-            sample_rate_hz: config.map(|c| 1.0 / f64::from(c.sample_period_s)),
-        };
         let number = |bits: u32| record.number(bits);
         let brief = |entry: &Entry| Brief {
             sequence: entry.sequence,
@@ -217,7 +212,7 @@ impl Ticks {
             events: entry.events,
         };
         let entries: Vec<Brief> = record.entries.values().map(brief).collect();
-        Self::new(&entries, units)
+        Self::new(&entries, record.units())
     }
 
     fn new(entries: &[Brief], units: Units) -> Self {

@@ -244,14 +244,16 @@ impl Supervise for Supervisor {
     fn read_out(&self) -> Option<ReadOut> {
         Some(ReadOut {
             report: self.report(),
-            flight_record: self.record().map(|record| written(&record)),
+            flight_record: self
+                .record()
+                .map(|record| written(&record, &Stamp::default())),
         })
     }
 }
 
-/// A record as firmware would write it, without a stamp.
-pub fn written<S: Scalar, const N: usize>(record: &Record<'_, S, N>) -> Vec<u8> {
-    let sections = (0..).map_while(|i| record.section(i, &Stamp::default()));
+/// A record as firmware would write it.
+pub fn written<S: Scalar, const N: usize>(record: &Record<'_, S, N>, stamp: &Stamp) -> Vec<u8> {
+    let sections = (0..).map_while(|i| record.section(i, stamp));
     sections
         .flat_map(|mut section| section.seal().to_vec())
         .collect()

@@ -10,7 +10,7 @@ use crate::run::rig::Rig;
 use crate::run::trace::{AxisRow, ReadOut, Recorder};
 use crate::scene::Scene;
 use plant_model::{PlantError, Snapshot, V2};
-use supervisor::{IntegratorHint, Rotor};
+use supervisor::{IntegratorHint, Rotor, Stamp};
 
 /// A rig with its stations, sample by sample.
 pub(super) struct Bench<'a> {
@@ -100,7 +100,8 @@ impl<'a> Bench<'a> {
             let read_out = || match &mut self.supervisor {
                 Some(supervisor) => Some(ReadOut {
                     report: supervisor.plane(plane).report(),
-                    flight_record: supervisor.record(plane).map(|record| written(&record)),
+                    flight_record: (supervisor.record(plane))
+                        .map(|r| written(&r, &Stamp::default())),
                 }),
                 None => station.controller.read_out(),
             };
