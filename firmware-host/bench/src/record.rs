@@ -1,7 +1,13 @@
-//! Flight records as firmware has written them down: what of a file is whole, what happened in it, and whether the supervisor of
-//! this build does the same.
+//! Flight records as firmware has written them down: what of a file is whole, what happened in it, what it tells of the machine,
+//! and whether the supervisor of this build does the same.
 
+mod contacts;
 pub mod file;
+mod flights;
+pub mod identify;
+mod motion;
 pub mod replay;
 pub mod story;
 pub mod ticks;
+
+pub use contacts::{Contact, Impulse};

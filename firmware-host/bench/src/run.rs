@@ -1,5 +1,6 @@
 //! A scene in closed loop under a controller: what is decided of it while it runs, what is kept of it, how far it can be trusted.
 
+pub mod again;
 pub mod clairvoyant;
 pub mod closed_loop;
 pub mod controller;

@@ -1,13 +1,20 @@
 //! `review`: a flight record from a machine, for a person who asks what happened.
 
+mod again;
+mod findings;
 mod tables;
 mod version_2;
 
 use crate::cli::error::{CommandError, pretty, print};
+use again::Again;
+use firmware_bench::record::Contact;
 use firmware_bench::record::file::{RecordFile, begins};
+use firmware_bench::record::identify::{Findings, Identified};
 use firmware_bench::record::replay::Replay;
 use firmware_bench::record::story::{Event, Told};
 use firmware_bench::record::ticks::{Ticks, Units};
+use firmware_bench::report::table;
+use firmware_bench::scene::spec::Setting;
 use serde::Serialize;
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -32,6 +39,13 @@ pub struct ReviewArgs {
     /// Of version 2: control rate, for times in ms.
     #[arg(long, allow_negative_numbers = true, value_name = "NUMBER")]
     pub sample_rate_hz: Option<f64>,
+    /// Scene of the machine: the event is simulated on it, with what the record tells, under levitation alone, passively and
+    /// under the supervisor.
+    #[arg(long, value_name = "SCENE")]
+    pub scene: Option<PathBuf>,
+    /// A key of the scene with another value, e.g. supervisor.hold_share=0.5: the supervisor once more with it.
+    #[arg(long, value_name = "KEY=VALUE", requires = "scene")]
+    pub set: Vec<Setting>,
     /// Print every tick as CSV instead of tables.
     #[arg(long, conflicts_with = "json")]
     pub csv: bool,
@@ -82,6 +96,15 @@ struct Reviewed {
     at_sequence: u32,
     /// Events before this one that found a record frozen, and are in none.
     dropped: u32,
+    /// What the event tells of the machine; null where nothing can be found out.
+    identified: Option<Identified>,
+    /// Contacts that were found, times in ticks from the sequence number `contacts_from` on.
+    contacts: Vec<Contact>,
+    contacts_from: Option<u32>,
+    /// The event once more on a scene's machine, as `run` has it.
+    simulated: Option<serde_json::Value>,
+    /// Parameters of the supervisor that the scene gives other values than the record has.
+    told_otherwise: Vec<&'static str>,
     /// Ticks of each plane.
     planes: Vec<Ticks>,
 }
@@ -97,8 +120,32 @@ struct Review {
     others: Vec<Reviewed>,
 }
 
-fn reviewed(event: &Event<'_>) -> Reviewed {
-    let head = event.records[0].head;
+/// An event with what is found out from it.
+struct Examined<'a> {
+    event: Event<'a>,
+    findings: Option<Findings>,
+    again: Option<Again>,
+}
+
+fn examined<'a>(args: &ReviewArgs, event: Event<'a>) -> Result<Examined<'a>, CommandError> {
+    let findings = event.findings();
+    let again = match (&args.scene, &findings) {
+        (Some(scene), Some(findings)) => {
+            Some(again::simulate(scene, &args.set, (&event, findings))?)
+        }
+        _ => None,
+    };
+    Ok(Examined {
+        event,
+        findings,
+        again,
+    })
+}
+
+fn reviewed(of: &Examined<'_>) -> Reviewed {
+    let (event, head) = (&of.event, of.event.records[0].head);
+    let findings = of.findings.as_ref();
+    let again = of.again.as_ref();
     Reviewed {
         summary: event.told(),
         replay: event.replay.ok(),
@@ -107,13 +154,21 @@ fn reviewed(event: &Event<'_>) -> Reviewed {
         time_us: head.time_us,
         at_sequence: head.at_sequence,
         dropped: head.dropped,
+        identified: findings.map(|f| f.identified),
+        contacts: findings.map_or_else(Vec::new, |f| f.contacts.clone()),
+        contacts_from: findings.map(|f| f.first),
+        simulated: again.map(|again| table::json(&again.scene, &again.results)),
+        told_otherwise: again.map_or_else(Vec::new, |again| again.differing.clone()),
         planes: event.records.iter().map(|r| Ticks::of(r)).collect(),
     }
 }
 
 /// What is whole is shown; that something is not is an error all the same.
 fn of_sections(args: &ReviewArgs, file: &RecordFile) -> Result<(), CommandError> {
-    let events = file.events();
+    let events: Result<Vec<Examined<'_>>, CommandError> = (file.events().into_iter())
+        .map(|event| examined(args, event))
+        .collect();
+    let events = events?;
     let damage: Vec<String> = file.damage.iter().map(ToString::to_string).collect();
     let error = (!file.is_intact()).then(|| damage.join("; "));
     if args.json {
@@ -128,8 +183,8 @@ fn of_sections(args: &ReviewArgs, file: &RecordFile) -> Result<(), CommandError>
         print(&(pretty(&review, "writing JSON")? + "\n"))?;
     } else if args.csv {
         let mut out = String::new();
-        for (number, event) in events.iter().enumerate() {
-            for record in &event.records {
+        for (number, of) in events.iter().enumerate() {
+            for record in &of.event.records {
                 let ticks = csv(&Ticks::of(record));
                 let mut lines = ticks.lines();
                 let head = lines.next().unwrap_or_default();
@@ -143,7 +198,9 @@ fn of_sections(args: &ReviewArgs, file: &RecordFile) -> Result<(), CommandError>
         }
         print(&out)?;
     } else {
-        let texts: Vec<String> = events.iter().map(told).collect();
+        let texts: Vec<String> = (events.iter())
+            .map(|of| told(of, args.scene.is_some()))
+            .collect();
         print(&texts.join("\n"))?;
     }
     match error {
@@ -155,8 +212,9 @@ fn of_sections(args: &ReviewArgs, file: &RecordFile) -> Result<(), CommandError>
     }
 }
 
-/// An event for a person.
-fn told(event: &Event<'_>) -> String {
+/// An event for a person; `asked`: whether it was to be simulated.
+fn told(of: &Examined<'_>, asked: bool) -> String {
+    let event = &of.event;
     let head = event.records[0].head;
     let mut out = String::new();
     match event.told() {
@@ -206,7 +264,22 @@ fn told(event: &Event<'_>) -> String {
             let _ = writeln!(out, "\nPlane {}:", record.head.plane);
         }
         out += &tables(&ticks, units);
+        if let (Some(findings), Some(rate)) = (&of.findings, units.sample_rate_hz) {
+            out += &findings::tables(findings, &ticks, 1.0 / rate);
+        }
         out += &track(record, &ticks, units);
+    }
+    if let Some(again) = &of.again {
+        let _ = writeln!(out, "\n{}", table::text(&again.scene, &again.results));
+        if !again.differing.is_empty() {
+            let _ = writeln!(
+                out,
+                "By the scene the supervisor would be told otherwise than it was on the machine: {}.",
+                again.differing.join(", ")
+            );
+        }
+    } else if asked {
+        out += "\nNot simulated: that needs the record of one plane in which the rotor is seen to fly.\n";
     }
     out
 }

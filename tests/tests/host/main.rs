@@ -10,6 +10,7 @@ mod layering;
 mod machine_scenes;
 mod record_version_2;
 mod review;
+mod review_findings;
 mod run;
 mod scene_keys;
 mod verify;

@@ -1,6 +1,7 @@
 //! The studies: what they compute and what they claim.
 
 mod accuracy;
+mod found_in_records;
 mod harm;
 mod loop_rates;
 mod overloads;

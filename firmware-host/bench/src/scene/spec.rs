@@ -19,6 +19,39 @@ pub struct Spec {
     pub(crate) tables: SceneTables,
 }
 
+/// A key with a value, as `supervisor.hold_share=0.5`: what is to be put in the place of a file's.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Setting {
+    /// The path of the key, as [`Spec::set`] has it.
+    pub path: String,
+    /// The value.
+    pub value: Value,
+    text: String,
+}
+
+/// Text that is no key with a value.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("expected KEY=VALUE, with a key and a value of scene files, as supervisor.hold_share=0.5")]
+pub struct NoSetting;
+
+impl std::str::FromStr for Setting {
+    type Err = NoSetting;
+
+    fn from_str(text: &str) -> Result<Self, NoSetting> {
+        let (path, value) = text.split_once('=').ok_or(NoSetting)?;
+        let table: Table = toml::from_str(&format!("value = {value}")).map_err(|_| NoSetting)?;
+        let value = table.get("value").cloned().ok_or(NoSetting)?;
+        let (path, text) = (path.trim().to_owned(), text.to_owned());
+        Ok(Self { path, value, text })
+    }
+}
+
+impl std::fmt::Display for Setting {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.text)
+    }
+}
+
 impl Spec {
     /// Reads a scene file.
     ///

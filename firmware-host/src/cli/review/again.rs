@@ -1,0 +1,83 @@
+//! `review --scene`: the event once more, on a scene's machine.
+
+use crate::cli::error::CommandError;
+use firmware_bench::record::file::PlaneRecord;
+use firmware_bench::record::identify::Findings;
+use firmware_bench::record::story::Event;
+use firmware_bench::run::again::scene_of_event;
+use firmware_bench::run::recording::recorded;
+use firmware_bench::run::verdict::{FailedRun, PolicyRun, Results};
+use firmware_bench::scene::Scene;
+use firmware_bench::scene::policy_kind::PolicyKind;
+use firmware_bench::scene::spec::{Setting, Spec};
+use std::fs::File;
+use std::path::Path;
+use supervisor::PARAMETERS;
+
+/// The scene that was run, and what came of it.
+pub(super) struct Again {
+    pub(super) scene: Scene,
+    pub(super) results: Results,
+    /// Parameters of the supervisor that the scene gives other values than the record has.
+    pub(super) differing: Vec<&'static str>,
+}
+
+/// Simulates the event with every policy, and where something is set with the supervisor on the scene so changed.
+pub(super) fn simulate(
+    path: &Path,
+    settings: &[Setting],
+    (event, findings): (&Event<'_>, &Findings),
+) -> Result<Again, CommandError> {
+    let of = (event.records[0], findings);
+    let scene = scene_of_event(Spec::load(path)?, of, &[])?;
+    let differing = differing(of.0, &scene);
+    if differing.contains(&"sample_period_s") {
+        return Err(CommandError::Numbers {
+            message: format!(
+                "{}: run.sample_rate_hz is not the rate of the record",
+                path.display()
+            ),
+            help: "give the scene of the machine that the record is of".to_owned(),
+        });
+    }
+    let mut results = Results::default();
+    for kind in &scene.policies {
+        keep(&mut results, kind.name(), &scene, *kind);
+    }
+    if !settings.is_empty() {
+        let other = scene_of_event(Spec::load(path)?, of, settings)?;
+        let said: Vec<String> = settings.iter().map(Setting::to_string).collect();
+        let name = format!("supervisor, {}", said.join(", "));
+        keep(&mut results, &name, &other, PolicyKind::Supervisor);
+    }
+    Ok(Again {
+        scene,
+        results,
+        differing,
+    })
+}
+
+/// Names of parameters of which record and scene have values more than a hundredth apart.
+fn differing(record: &PlaneRecord, scene: &Scene) -> Vec<&'static str> {
+    let (Some(told), Some(derived)) = (record.config, scene.supervisor) else {
+        return Vec::new();
+    };
+    let values = told.values().into_iter().zip(derived.values());
+    let apart = |(a, b): (f32, f32)| (a - b).abs() > 0.01 * a.abs().max(b.abs());
+    let named = PARAMETERS.iter().zip(values);
+    named
+        .filter(|(_, pair)| apart(*pair))
+        .map(|(p, _)| p.name)
+        .collect()
+}
+
+fn keep(results: &mut Results, name: &str, scene: &Scene, kind: PolicyKind) {
+    let name = name.to_owned();
+    match recorded::<File>(scene, kind, &[], None, &mut |_| {}) {
+        Ok(run) => results.runs.push(PolicyRun { name, ..run }),
+        Err(error) => results.failed.push(FailedRun {
+            name,
+            error: error.to_string(),
+        }),
+    }
+}

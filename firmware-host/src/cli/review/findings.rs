@@ -1,0 +1,72 @@
+//! What is found out from an event, for a person.
+
+use comfy_table::Cell;
+use firmware_bench::record::identify::{Estimate, Findings, Identified};
+use firmware_bench::record::ticks::Ticks;
+use firmware_bench::report::table::{lined, or_dash, right};
+
+/// Name, unit, how many of it one of SI is, digits.
+type Row = (
+    &'static str,
+    &'static str,
+    f64,
+    usize,
+    fn(&Identified) -> Option<Estimate>,
+);
+
+const ROWS: [Row; 6] = [
+    ("coefficient of friction", "", 1.0, 3, |i| {
+        i.friction_coefficient
+    }),
+    ("restitution", "", 1.0, 2, |i| i.restitution),
+    ("load along x", "N", 1.0, 0, |i| i.load_x_n),
+    ("load along y", "N", 1.0, 0, |i| i.load_y_n),
+    ("eccentricity", "µm", 1e6, 2, |i| i.eccentricity_m),
+    ("clearance", "µm", 1e6, 1, |i| i.clearance_m),
+];
+
+/// Contacts, and what they tell of the machine.
+pub(super) fn tables(findings: &Findings, ticks: &Ticks, period_s: f64) -> String {
+    let mut contacts = lined([
+        "contact from [ms]",
+        "to [ms]",
+        "normal speed [m/s]",
+        "restitution",
+        "friction/normal impulse",
+    ]);
+    // From the same tick on as those of the other tables.
+    let zero = (ticks.ticks.first()).map_or(0, |t| t.sequence.wrapping_sub(t.tick as u32));
+    let offset = f64::from(findings.first.wrapping_sub(zero).cast_signed());
+    for contact in &findings.contacts {
+        let ms = |tick: f64| format!("{:.3}", 1e3 * period_s * (tick + offset));
+        let impulse = contact.impulse.as_ref();
+        let restitution = impulse
+            .filter(|i| i.single)
+            .map(|i| i.normal_m_s[1] / i.normal_m_s[0]);
+        let friction = impulse.map(|i| i.over_mass_m_s[1] / i.over_mass_m_s[0]);
+        contacts.add_row([
+            right(ms(contact.from_tick)),
+            right(ms(contact.to_tick)),
+            right(or_dash(contact.normal_m_s, 1.0, 3)),
+            right(or_dash(restitution, 1.0, 2)),
+            right(or_dash(friction, 1.0, 3)),
+        ]);
+    }
+    let mut told = lined(["the machine, by this event", "value", "from", "to"]);
+    for (name, unit, factor, digits, of) in ROWS {
+        let name = match unit {
+            "" => name.to_owned(),
+            unit => format!("{name} [{unit}]"),
+        };
+        let estimate = of(&findings.identified);
+        let mut row = vec![Cell::new(name)];
+        match estimate {
+            Some(Estimate { value, low, high }) => {
+                row.extend([value, low, high].map(|x| right(format!("{:.digits$}", x * factor))));
+            }
+            None => row.push(Cell::new("not identifiable")),
+        }
+        told.add_row(row);
+    }
+    format!("\n{contacts}\n\n{told}\n")
+}
