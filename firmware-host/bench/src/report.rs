@@ -1,72 +1,100 @@
-//! The report: one HTML document that shows what every policy did with a scene. It needs no script,
-//! no network and no fonts of its own.
+//! The report: one HTML document that shows what every policy did with a scene, or what is in a flight record. It needs no
+//! network and no fonts of its own; without its script the figures stand still.
 
 mod axes;
 pub mod campbell;
+mod data;
+mod document;
 #[cfg(test)]
 pub(crate) mod fixture;
 mod happenings;
+mod headline;
 pub mod machine;
 mod panels;
 pub mod plot;
 mod quantities;
+pub mod record;
 pub mod summary;
 pub mod table;
+pub mod track;
 mod verification;
 
 use std::fmt::Write as _;
 
-use self::axes::focus_window;
-use self::panels::{Key, PanelRow};
+use self::axes::{disturbances, focus_window, run_window};
+use self::document::{Document, Times};
+use self::headline::{Concluded, headline};
+use self::panels::{Shown, View};
+use self::track::Track;
 pub use crate::report::plot::PlotError;
 use crate::report::plot::text::{escape, figures};
 use crate::report::summary::{Disturbed, Fact, SceneSummary};
-use crate::report::table::shown;
-use crate::run::figures::{Figure, Figures, Timing, Value};
+use crate::run::figures::Figures;
 use crate::run::outcome::Outcome;
 use crate::run::verdict::{PolicyRun, Results, far_into_the_wall};
 
-const STYLE: &str = include_str!("report/style.css");
-
-/// Complete HTML document on the results of one scene, policies side by side in the order given.
+/// Complete HTML document on the results of one scene, policies side by side, the supervisor first.
 /// Deterministic: the same input gives the same bytes.
 ///
 /// # Errors
 /// [`PlotError`] if the drawing backend refuses.
 pub fn html(scene: &SceneSummary, results: &Results) -> Result<String, PlotError> {
-    let runs = &results.runs;
-    let mut page = begun(&scene.title);
-    push_story(&mut page, &scene.story);
-    push_facts(&mut page, scene);
-    push_warnings(&mut page, &scene.warnings);
-    push_warnings(&mut page, &results.untrusted());
+    let runs = supervisor_first(&results.runs);
+    let mut document = Document::begun(&scene.title);
+    let page = &mut document.html;
+    let concluded: Vec<_> = runs.iter().map(|run| Concluded::of(run)).collect();
+    push_headline(page, &headline(&concluded));
+    push_story(page, &scene.story);
+    push_facts(page, scene);
+    push_warnings(page, &scene.warnings);
+    push_warnings(page, &results.untrusted());
     page.push_str("</header>\n<main>\n");
-    push_runs(&mut page, scene, runs)?;
-    page.push_str("</main>\n</body>\n</html>\n");
-    Ok(page)
-}
-
-/// A page up to its title.
-fn begun(title: &str) -> String {
-    let title = escape(title);
-    format!(
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
-         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-         <meta http-equiv=\"Content-Security-Policy\" \
-         content=\"default-src 'none'; style-src 'unsafe-inline'\">\n\
-         <title>{title}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n<header>\n<h1>{title}</h1>\n"
-    )
-}
-
-/// What the policies did in one plane.
-fn push_runs(page: &mut String, scene: &SceneSummary, runs: &[PolicyRun]) -> Result<(), PlotError> {
-    push_table(page, runs, scene.clearance_m);
-    verification::push_table(page, runs);
-    if !runs.is_empty() {
-        push_sections(page, scene, runs)?;
+    push_table(page, "Verdicts", &runs);
+    push_far(page, &results.runs, scene.clearance_m);
+    verification::push_table(page, &runs);
+    happenings::push_tables(page, &runs, None);
+    let tracks: Vec<Track> = (runs.iter()).map(|run| Track::of_run(scene, run)).collect();
+    let times = times_of(scene, &tracks);
+    if !tracks.is_empty() {
+        document.controls();
+        let shown = shown(&tracks);
+        push_sections(&mut document, &shown, &times, "")?;
     }
-    happenings::push_tables(page, runs);
-    Ok(())
+    document.ended(&tracks, &times)
+}
+
+/// Runs in the order of a page.
+fn supervisor_first(runs: &[PolicyRun]) -> Vec<&PolicyRun> {
+    let mut runs: Vec<&PolicyRun> = runs.iter().collect();
+    runs.sort_by_key(|run| run.supervision.is_none());
+    runs
+}
+
+/// All of them, under their own names.
+fn shown(tracks: &[Track]) -> Vec<Shown<'_>> {
+    let all = tracks.iter().enumerate();
+    all.map(|(at, track)| Shown {
+        name: &track.name,
+        at,
+        track,
+    })
+    .collect()
+}
+
+fn times_of(scene: &SceneSummary, tracks: &[Track]) -> Times {
+    let (window, shaded) = (run_window(scene, tracks), disturbances(scene));
+    Times {
+        window,
+        focus: focus_window(window, &shaded, tracks),
+        shaded,
+    }
+}
+
+fn push_headline(page: &mut String, text: &str) {
+    push(
+        page,
+        format_args!("<p class=\"headline\">{}</p>\n", escape(text)),
+    );
 }
 
 /// Lines that a scene file wraps belong to one paragraph; an empty line begins another.
@@ -126,7 +154,7 @@ fn push_warnings<T: AsRef<str>>(page: &mut String, warnings: &[T]) {
 fn push_disturbances(page: &mut String, all: &[Disturbed]) {
     const SHOWN: usize = 20;
     if all.is_empty() {
-        page.push_str("<p class=\"story\">Nothing happens from outside.</p>\n");
+        page.push_str("<p class=\"story\">No external loads, outages or sensor faults.</p>\n");
         return;
     }
     page.push_str("<ul class=\"story\">\n");
@@ -150,41 +178,52 @@ fn push_disturbances(page: &mut String, all: &[Disturbed]) {
     page.push_str("</ul>\n");
 }
 
-fn push_table(page: &mut String, runs: &[PolicyRun], clearance_m: f64) {
-    page.push_str("<section class=\"scroll\">\n<table>\n<caption>Verdicts</caption>\n<thead><tr>");
-    page.push_str("<th scope=\"col\">policy</th>");
-    push_headings(page, Figures::ALL);
-    push_headings(page, Timing::ALL);
-    page.push_str("</tr></thead>\n<tbody>\n");
+/// The rows of the terminal's table.
+fn push_table(page: &mut String, caption: &str, runs: &[&PolicyRun]) {
+    let caption = escape(caption);
+    push(
+        page,
+        format_args!(
+            "<div class=\"scroll\" role=\"group\" tabindex=\"0\" aria-label=\"{caption}\">\n<table class=\"verdicts\">\n\
+             <caption>{caption}</caption>\n<thead><tr><th scope=\"col\">figure</th>"
+        ),
+    );
     for run in runs {
         let name = escape(&run.name);
-        push(page, format_args!("<tr><th scope=\"row\">{name}</th>"));
-        push_cells(page, Figures::ALL, &run.verdict.figures);
-        push_cells(page, Timing::ALL, &run.verdict.timing);
-        page.push_str("</tr>\n");
+        push(page, format_args!("<th scope=\"col\">{name}</th>"));
     }
-    page.push_str("</tbody>\n</table>\n</section>\n");
-    if let Some(note) = far_into_the_wall(runs, clearance_m) {
-        push(page, format_args!("<p>{}</p>\n", escape(&note)));
-    }
-}
-
-fn push_headings<T>(page: &mut String, figures: &[Figure<T>]) {
-    for Figure { heading, unit, .. } in figures {
+    page.push_str("</tr></thead>\n<tbody>\n");
+    let outcome = Figures::ALL[0].title();
+    for (title, cells) in table::rows(runs) {
         push(
             page,
-            format_args!("<th scope=\"col\">{heading} <small>{unit}</small></th>"),
+            format_args!("<tr><th scope=\"row\">{}</th>", escape(&title)),
         );
+        for (cell, run) in cells.iter().zip(runs) {
+            let cell = match title == outcome {
+                true => badge(run.verdict.figures.outcome),
+                false => escape(cell),
+            };
+            push(page, format_args!("<td>{cell}</td>"));
+        }
+        page.push_str("</tr>\n");
     }
+    page.push_str("</tbody>\n</table>\n</div>\n<p class=\"note\">");
+    let mut outcomes: Vec<Outcome> = runs.iter().map(|r| r.verdict.figures.outcome).collect();
+    outcomes.sort();
+    outcomes.dedup();
+    let meanings: Vec<String> = (outcomes.iter())
+        .map(|outcome| format!("<b>{}</b>: {}.", outcome.name(), outcome.meaning()))
+        .collect();
+    push(page, format_args!("{}</p>\n", meanings.join(" ")));
 }
 
-fn push_cells<T>(page: &mut String, figures: &[Figure<T>], of: &T) {
-    for figure in figures {
-        let text = match (figure.value)(of) {
-            Value::Outcome(outcome) => badge(outcome),
-            _ => shown(figure, of),
-        };
-        push(page, format_args!("<td>{text}</td>"));
+fn push_far(page: &mut String, runs: &[PolicyRun], clearance_m: f64) {
+    if let Some(note) = far_into_the_wall(runs, clearance_m) {
+        push(
+            page,
+            format_args!("<p class=\"warning\">{}</p>\n", escape(&note)),
+        );
     }
 }
 
@@ -202,90 +241,36 @@ fn badge(outcome: Outcome) -> String {
     format!("<span class=\"outcome {class}\">{word}</span>")
 }
 
+/// Panels of the whole run and, for readers without script, of the close-up; `of` stands before the headings.
 fn push_sections(
-    page: &mut String,
-    scene: &SceneSummary,
-    runs: &[PolicyRun],
+    document: &mut Document,
+    shown: &[Shown<'_>],
+    times: &Times,
+    of: &str,
 ) -> Result<(), PlotError> {
     let text = "Panels of one row share their axes. A whirling run that would stretch them more than \
                 three times has axes of its own, marked <em class=\"own\">own scale</em>. The \
                 background is shaded while one of the things listed above goes on.";
-    let rows = panels::whole_run(scene, runs)?;
-    push_section(page, runs, "Whole run", text, &rows);
-    if let Some(window) = focus_window(scene, runs) {
+    let view = |window| View {
+        shown,
+        window,
+        shaded: &times.shaded,
+    };
+    let rows = view(times.window).whole_run()?;
+    document.section(shown, (&format!("{of}Whole run"), text), &rows, false);
+    if let Some(window) = times.focus {
         let heading = format!(
-            "Close-up: {} to {} ms",
+            "{of}Close-up: {} to {} ms",
             figures(window.lo),
             figures(window.hi)
         );
         let text = "From the start, or a little before the first event, to a little after the last \
                     contact or change of mode of the runs that settle. The axes are shared within \
                     this stretch.";
-        let rows = panels::close_up(scene, runs, window)?;
-        push_section(page, runs, &heading, text, &rows);
+        let rows = view(window).fast()?;
+        document.section(shown, (&heading, text), &rows, true);
     }
     Ok(())
-}
-
-fn push_section(
-    page: &mut String,
-    runs: &[PolicyRun],
-    heading: &str,
-    text: &str,
-    rows: &[PanelRow],
-) {
-    push(
-        page,
-        format_args!("<section>\n<h2>{heading}</h2>\n<p class=\"note\">{text}</p>\n"),
-    );
-    push(
-        page,
-        format_args!(
-            "<div class=\"scroll\"><div class=\"grid\" style=\"--policies:{}\">\n",
-            runs.len()
-        ),
-    );
-    for row in rows {
-        push_row(page, runs, row);
-    }
-    page.push_str("</div></div>\n</section>\n");
-}
-
-fn push_row(page: &mut String, runs: &[PolicyRun], row: &PanelRow) {
-    push(
-        page,
-        format_args!("<div class=\"head\"><h3>{}</h3> ", row.heading),
-    );
-    for Key {
-        name,
-        colour,
-        dashed,
-    } in &row.legend
-    {
-        let class = if *dashed { "key dashed" } else { "key" };
-        push(
-            page,
-            format_args!("<span class=\"{class}\" style=\"--colour:{colour}\">{name}</span> "),
-        );
-    }
-    push(
-        page,
-        format_args!("<span class=\"note\">{}</span></div>\n", row.note),
-    );
-    for (run, cell) in runs.iter().zip(&row.cells) {
-        let (name, outcome) = (escape(&run.name), badge(run.verdict.figures.outcome));
-        let own = if cell.own_scale {
-            " <em class=\"own\">own scale</em>"
-        } else {
-            ""
-        };
-        push(
-            page,
-            format_args!("<figure><figcaption><b>{name}</b> {outcome}{own}</figcaption>\n"),
-        );
-        page.push_str(&cell.svg);
-        page.push_str("</figure>\n");
-    }
 }
 
 fn push(page: &mut String, text: std::fmt::Arguments<'_>) {
@@ -309,9 +294,13 @@ mod tests {
 
     fn page(scene: &SceneSummary, runs: &[PolicyRun]) -> String {
         let page = html(scene, &results(runs)).unwrap();
-        for word in ["NaN", "\"inf", " inf", "<script"] {
-            assert!(!page.contains(word), "{word}");
+        let (drawn, data) = page.split_once("<script").unwrap();
+        for word in ["NaN", "\"inf", " inf"] {
+            assert!(!drawn.contains(word), "{word}");
         }
+        let (_, data) = data.split_once('>').unwrap();
+        let (data, _) = data.split_once("</script>").unwrap();
+        assert!(serde_json::from_str::<serde_json::Value>(data).is_ok());
         page
     }
 
@@ -325,7 +314,7 @@ mod tests {
         let page = page(&scene(), &runs);
         assert!(page.contains("<h1>Title &lt;b&gt;</h1>"));
         assert!(page.contains("And a &quot;second&quot; one.</p>"));
-        assert!(page.contains("<th scope=\"row\">&lt;script&gt;</th>"));
+        assert!(page.contains("<th scope=\"col\">&lt;script&gt;</th>"));
         assert!(page.contains("<span class=\"outcome bad\">whirl</span>"));
         assert!(page.contains("Close-up: 0 to"));
         // Seven panels of the whole run and five close-ups for each.

@@ -2,6 +2,7 @@
 
 mod again;
 mod findings;
+mod page;
 mod tables;
 mod version_2;
 
@@ -52,6 +53,9 @@ pub struct ReviewArgs {
     /// Print JSON instead of tables.
     #[arg(long)]
     pub json: bool,
+    /// Folder for report.html, the recorded ticks as a page, beside what is printed.
+    #[arg(long, value_name = "FOLDER")]
+    pub out: Option<PathBuf>,
 }
 
 /// Runs the command.
@@ -171,6 +175,11 @@ fn of_sections(args: &ReviewArgs, file: &RecordFile) -> Result<(), CommandError>
     let events = events?;
     let damage: Vec<String> = file.damage.iter().map(ToString::to_string).collect();
     let error = (!file.is_intact()).then(|| damage.join("; "));
+    if let Some(out) = &args.out {
+        let name = args.file.display().to_string();
+        let head = page::head(&name, &events, &damage);
+        page::write(out, &head, &page::tracks(&events))?;
+    }
     if args.json {
         let mut all = events.iter().map(reviewed);
         let review = Review {

@@ -385,9 +385,9 @@ fn what_is_written_and_printed_has_every_plane() {
     let page = fs::read_to_string(out.join("report.html")).unwrap();
     for words in [
         "Planes side by side: supervisor",
-        "Axis: levitation",
+        "Axis from the side: levitation",
         "Plane: the other",
-        "from the side",
+        "<h3>Slope</h3>",
     ] {
         assert!(page.contains(words), "{words}");
     }

@@ -9,6 +9,7 @@ mod judged;
 mod layering;
 mod machine_scenes;
 mod record_version_2;
+mod report_page;
 mod review;
 mod review_findings;
 mod run;

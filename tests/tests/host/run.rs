@@ -72,7 +72,31 @@ fn the_impact_scene_shows_the_table_and_writes_everything() {
     );
     let report = fs::read_to_string(out.join("report.html")).unwrap();
     assert!(report.contains("<svg") && report.contains("Impact at 40 Hz"));
-    assert!(!report.contains("<script") && !report.contains("src=\"http"));
+    // One script, which the page names by its hash, and one block of data.
+    assert_eq!(report.matches("<script").count(), 2);
+    assert!(report.contains("script-src 'sha256-") && !report.contains("src=\"http"));
+    // The conclusion before everything else, and the supervisor before the others.
+    let conclusion = report
+        .find("With the supervisor the rotor is back in the middle")
+        .unwrap();
+    assert!(
+        conclusion
+            < report
+                .find("Without it the rotor whirls backward (passive")
+                .unwrap()
+    );
+    assert!(report.find(">supervisor<").unwrap() < report.find(">passive<").unwrap());
+    for row in [
+        "landings seen",
+        "severity index of them",
+        "asks to coast down",
+        "contact impulse [N s]",
+    ] {
+        assert!(
+            report.contains(&format!("<th scope=\"row\">{row}</th>")),
+            "{row}"
+        );
+    }
 
     let verdict: Value =
         serde_json::from_slice(&fs::read(out.join("verdict.json")).unwrap()).unwrap();

@@ -235,6 +235,12 @@ impl Ticks {
         }
     }
 
+    /// Ticks since the engagement of a sequence number.
+    pub fn tick_of(&self, sequence: u32) -> i64 {
+        let zero = (self.ticks.first()).map_or(0, |t| t.sequence.wrapping_sub(t.tick as u32));
+        i64::from(sequence.wrapping_sub(zero).cast_signed())
+    }
+
     /// Ticks that a person wants to see: in which something happened or the mode changed.
     pub fn turning_points(&self) -> impl Iterator<Item = &Tick> {
         let before = std::iter::once(None).chain(self.ticks.iter().map(Some));

@@ -1,10 +1,11 @@
 //! A whole rotor as a linear system, for people: tables, Campbell diagram, response to the unbalance, mode shapes.
 
+use super::document::begun;
 use super::plot::PlotError;
 use super::plot::chart::{Axis, Chart, Curve, Mark, chart};
 use super::plot::text::figures;
 use super::table::{lined, right};
-use super::{begun, push, push_story};
+use super::{push, push_story};
 use crate::modes::{Analysis, Coupling, HeldWhirl};
 use crate::scene::machine::MachineScene;
 use comfy_table::Cell;
@@ -107,7 +108,7 @@ pub fn coupling(coupling: &Coupling) -> String {
 /// # Errors
 /// [`PlotError`] if the drawing backend refuses.
 pub fn html(scene: &MachineScene, analysis: &Analysis) -> Result<String, PlotError> {
-    let mut page = begun(&analysis.scene);
+    let mut page = begun(&analysis.scene, "");
     push_story(&mut page, &scene.common().story);
     page.push_str("</header>\n<main>\n<section><h2>Campbell diagram</h2>\n");
     push(

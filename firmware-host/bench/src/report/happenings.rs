@@ -1,28 +1,50 @@
-//! What the supervisor did, as a table for the reviewer of an overload.
+//! What happened, as a table for the reviewer of an overload; the script makes its times lead there.
 
 use super::push;
+use super::track::Track;
 use crate::report::plot::text::{escape, figures};
-use crate::run::supervision::{Happening, names};
+use crate::run::supervision::{Happening, Happenings, names};
 use crate::run::verdict::PolicyRun;
 
-/// One table for each run with a supervisor.
-pub(super) fn push_tables(page: &mut String, runs: &[PolicyRun]) {
+/// So many rows of a record are told.
+const MOST: usize = Happenings::MOST;
+
+/// One table for each run with a supervisor, told with the name of its plane, if it has one.
+pub(super) fn push_tables(page: &mut String, runs: &[&PolicyRun], plane: Option<&str>) {
     for run in runs.iter().filter(|run| run.supervision.is_some()) {
-        push_table(page, run);
+        let name = match plane {
+            Some(plane) => format!("{}, {plane}", run.name),
+            None => run.name.clone(),
+        };
+        push_table(page, &name, run);
     }
 }
 
-fn push_table(page: &mut String, run: &PolicyRun) {
-    let (name, happenings) = (escape(&run.name), &run.happenings);
+fn begun(page: &mut String, name: &str, headings: &[&str]) {
+    let name = escape(name);
     push(
         page,
         format_args!(
-            "<section class=\"scroll\">\n<table class=\"words\">\n<caption>What happened: {name}</caption>\n<thead><tr>\
-             <th scope=\"col\">At <small>ms</small></th><th scope=\"col\">Mode</th>\
-             <th scope=\"col\">Expected severity</th>\
-             <th scope=\"col\">Bound by</th><th scope=\"col\">Events</th></tr></thead>\n<tbody>\n"
+            "<div class=\"scroll events\" role=\"group\" tabindex=\"0\" aria-label=\"What happened: {name}\">\n\
+             <table class=\"words\">\n<caption>What happened: {name}</caption>\n<thead><tr>"
         ),
     );
+    for heading in headings {
+        push(page, format_args!("<th scope=\"col\">{heading}</th>"));
+    }
+    page.push_str("</tr></thead>\n<tbody>\n");
+}
+
+fn push_table(page: &mut String, name: &str, run: &PolicyRun) {
+    let happenings = &run.happenings;
+    let headings = [
+        "At <small>ms</small>",
+        "Mode",
+        "Expected severity",
+        "Bound by",
+        "Events",
+    ];
+    begun(page, name, &headings);
     if happenings.all.is_empty() {
         page.push_str("<tr><td colspan=\"5\">nothing</td></tr>\n");
     }
@@ -30,9 +52,9 @@ fn push_table(page: &mut String, run: &PolicyRun) {
         push_row(page, happening);
     }
     page.push_str(
-        "</tbody>\n</table>\n<p class=\"note\">Samples at which the mode changed or something happened, as the supervisor saw it; \
-         touches that changed nothing are counted. Expected severity: backward speed after the impacts to come, if \
-         nobody brakes, over the highest that the cap can arrest.",
+        "</tbody>\n</table>\n</div>\n<p class=\"note\">Samples at which the mode changed or something happened, as the \
+         supervisor saw it; touches that changed nothing are counted. Expected severity: backward speed after the impacts to \
+         come, if nobody brakes, over the highest that the cap can arrest.",
     );
     match (happenings.more, happenings.touches_after) {
         (0, 0) => {}
@@ -42,7 +64,7 @@ fn push_table(page: &mut String, run: &PolicyRun) {
         ),
         (more, _) => push(page, format_args!(" {more} more are in the trace.")),
     }
-    page.push_str("</p>\n</section>\n");
+    page.push_str("</p>\n");
 }
 
 fn push_row(page: &mut String, happening: &Happening) {
@@ -51,7 +73,7 @@ fn push_row(page: &mut String, happening: &Happening) {
     push(
         page,
         format_args!(
-            "<tr><th scope=\"row\">{t_ms:.3}</th><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
+            "<tr><th scope=\"row\" data-t=\"{t_ms}\">{t_ms:.3}</th><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
             said.mode.name(),
             figures(said.severity.into()),
             names(said.limits.iter_names()),
@@ -61,4 +83,28 @@ fn push_row(page: &mut String, happening: &Happening) {
             },
         ),
     );
+}
+
+/// The same of a track: what its record has.
+pub(super) fn push_of_track(page: &mut String, track: &Track) {
+    let at = format!("At <small>{}</small>", track.units.time);
+    begun(page, &track.name, &[&at, "Mode", "Bound by", "Events"]);
+    for event in track.events.iter().take(MOST) {
+        let (t, decimals) = (event.t, track.units.decimals);
+        push(
+            page,
+            format_args!(
+                "<tr><th scope=\"row\" data-t=\"{t}\">{t:.decimals$}</th><td>{}</td><td>{}</td><td>{}</td></tr>\n",
+                event.mode, event.limits, event.events,
+            ),
+        );
+    }
+    page.push_str("</tbody>\n</table>\n</div>\n");
+    let more = track.events.len().saturating_sub(MOST);
+    if more > 0 {
+        push(
+            page,
+            format_args!("<p class=\"note\">{more} more are in the record.</p>\n"),
+        );
+    }
 }

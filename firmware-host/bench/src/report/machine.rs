@@ -1,21 +1,31 @@
 //! The report on a whole rotor: its ends side by side, its axis over time and from the side, then each plane.
 
-use super::panels::orbits_of_planes;
+use super::document::{Document, Times};
+use super::headline::{Concluded, headline};
+use super::panels::{PanelRow, Shown, View};
+use super::quantities::{BENDING_ENERGY, SLOPE, bending};
 use super::summary::{Fact, SceneSummary, summary};
+use super::track::Track;
 use super::{
-    begun, push, push_list, push_runs, push_section, push_story, push_table, push_warnings,
+    happenings, push, push_disturbances, push_far, push_headline, push_list, push_sections,
+    push_story, push_table, push_warnings, times_of, verification,
 };
 use crate::device::whole_levitation::WholeLevitationParams;
 use crate::report::plot::PlotError;
 use crate::report::plot::chart::{Axis, Chart, Curve, chart};
 use crate::report::plot::text::{escape, figures};
 use crate::run::overview::AxisTrack;
-use crate::run::trace::AxisRow;
 use crate::run::verdict::{MachineResults, PolicyRun};
 use crate::scene::machine::MachineScene;
 use plant_model::machine::params::MachineParams;
 use plant_model::params::SpinParams;
 use std::f64::consts::TAU;
+
+/// What the tracks of a page are of: first the axes of all policies, then plane by plane their runs, the supervisor first.
+struct Tracks {
+    all: Vec<Track>,
+    policies: usize,
+}
 
 /// Complete HTML document on the results of a scene of a whole rotor. Deterministic: the same input gives the same bytes.
 ///
@@ -26,28 +36,149 @@ pub fn html(scene: &MachineScene, results: &MachineResults) -> Result<String, Pl
     let summaries: Vec<SceneSummary> = (scene.planes.iter())
         .map(|plane| summary(&plane.scene))
         .collect();
-    let mut page = begun(&common.title);
-    push_story(&mut page, &common.story);
-    push_list(&mut page, &facts(scene));
-    super::push_disturbances(&mut page, &summaries[0].disturbances);
-    push_warnings(&mut page, &scene.warnings);
-    push_warnings(&mut page, &results.whole.untrusted());
+    let whole = &results.whole.runs;
+    let concluded: Vec<Concluded<'_>> = (whole.iter().enumerate())
+        .map(|(i, run)| {
+            let planes = results.planes.iter().filter_map(move |runs| runs.get(i));
+            Concluded::of_planes(run, planes)
+        })
+        .collect();
+    let mut order: Vec<usize> = (0..whole.len()).collect();
+    order.sort_by_key(|i| !concluded[*i].is_supervised());
+    let mut document = Document::begun(&common.title);
+    let page = &mut document.html;
+    push_headline(page, &headline(&concluded));
+    push_story(page, &common.story);
+    push_list(page, &facts(scene));
+    push_disturbances(page, &summaries[0].disturbances);
+    push_warnings(page, &scene.warnings);
+    push_warnings(page, &results.whole.untrusted());
     page.push_str("</header>\n<main>\n");
-    let narrowest_m = (summaries.iter().map(|s| s.clearance_m)).fold(f64::INFINITY, f64::min);
-    push_table(&mut page, &results.whole.runs, narrowest_m);
-    page.push_str(
-        "<p class=\"note\">Of the machine: the worst of its planes, and their sums.</p>\n",
+    push_table(
+        page,
+        "Machine: the worst of its planes, and their sums",
+        &in_order(whole, &order),
     );
-    push_ends(&mut page, scene, &summaries, results)?;
-    push_axes(&mut page, scene, results)?;
     for ((plane, summary), runs) in scene.planes.iter().zip(&summaries).zip(&results.planes) {
-        let name = escape(&plane.name);
-        push(&mut page, format_args!("<h1>Plane: {name}</h1>\n"));
-        push_list(&mut page, &summary.facts);
-        push_runs(&mut page, summary, runs)?;
+        push(
+            page,
+            format_args!("<section>\n<h2>Plane: {}</h2>\n", escape(&plane.name)),
+        );
+        push_list(page, &summary.facts);
+        let runs_in_order = in_order(runs, &order);
+        push_table(page, &format!("Verdicts: {}", plane.name), &runs_in_order);
+        push_far(page, runs, summary.clearance_m);
+        verification::push_table(page, &runs_in_order);
+        happenings::push_tables(page, &runs_in_order, Some(&plane.name));
+        page.push_str("</section>\n");
     }
-    page.push_str("</main>\n</body>\n</html>\n");
-    Ok(page)
+    let axes = (order.iter()).filter_map(|i| Some((whole.get(*i)?, results.axes.get(*i)?)));
+    let mut tracks = Tracks {
+        all: (axes.clone())
+            .map(|(run, axis)| Track::of_axis(&run.name, &scene.machine, axis))
+            .collect(),
+        policies: order.len(),
+    };
+    for (summary, runs) in summaries.iter().zip(&results.planes) {
+        let runs = in_order(runs, &order).into_iter();
+        tracks
+            .all
+            .extend(runs.map(|run| Track::of_run(summary, run)));
+    }
+    let times = times_of(&summaries[0], &tracks.all);
+    document.controls();
+    tracks.push_ends(&mut document, scene, &times)?;
+    tracks.push_axes(&mut document, scene, &times)?;
+    for (run, axis) in axes {
+        let plot = from_the_side(&scene.machine, axis);
+        push(
+            &mut document.html,
+            format_args!(
+                "<section>\n<h2>Axis from the side: {}</h2>\n<figure>{}</figure>\n</section>\n",
+                escape(&run.name),
+                chart(&plot)?
+            ),
+        );
+    }
+    for (i, plane) in scene.planes.iter().enumerate() {
+        let shown = tracks.of_plane(i);
+        push_sections(&mut document, &shown, &times, &format!("{}: ", plane.name))?;
+    }
+    document.ended(&tracks.all, &times)
+}
+
+fn in_order<'a>(runs: &'a [PolicyRun], order: &[usize]) -> Vec<&'a PolicyRun> {
+    order.iter().filter_map(|i| runs.get(*i)).collect()
+}
+
+impl Tracks {
+    /// A track under its own name.
+    fn shown(&self, at: usize) -> Shown<'_> {
+        let track = &self.all[at];
+        Shown {
+            name: &track.name,
+            at,
+            track,
+        }
+    }
+
+    fn of_plane(&self, plane: usize) -> Vec<Shown<'_>> {
+        let first = self.policies * (1 + plane);
+        (first..first + self.policies)
+            .map(|at| self.shown(at))
+            .collect()
+    }
+
+    /// Of each policy the orbits in all planes.
+    fn push_ends(
+        &self,
+        document: &mut Document,
+        scene: &MachineScene,
+        times: &Times,
+    ) -> Result<(), PlotError> {
+        for policy in 0..self.policies {
+            let ends: Vec<Shown<'_>> = (scene.planes.iter().enumerate())
+                .map(|(i, plane)| Shown {
+                    name: &plane.name,
+                    ..self.shown(self.policies * (1 + i) + policy)
+                })
+                .collect();
+            let view = View {
+                shown: &ends,
+                window: times.window,
+                shaded: &times.shaded,
+            };
+            let heading = format!("Planes side by side: {}", self.all[policy].name);
+            document.section(&ends, (&heading, ""), &[view.orbits(false)?], false);
+        }
+        Ok(())
+    }
+
+    /// Slope and bending over time, of all policies.
+    fn push_axes(
+        &self,
+        document: &mut Document,
+        scene: &MachineScene,
+        times: &Times,
+    ) -> Result<(), PlotError> {
+        let axes: Vec<Shown<'_>> = (0..self.policies).map(|at| self.shown(at)).collect();
+        let view = View {
+            shown: &axes,
+            window: times.window,
+            shaded: &times.shaded,
+        };
+        let modes = scene.machine.rotor.bending().len();
+        let mut charts = vec![SLOPE];
+        if modes > 0 {
+            charts.extend([bending(modes), BENDING_ENERGY]);
+        }
+        let rows = charts.iter().map(|chart| view.chart(chart));
+        let rows: Vec<Option<PanelRow>> = rows.collect::<Result<_, _>>()?;
+        let rows: Vec<PanelRow> = rows.into_iter().flatten().collect();
+        let text = "At equal times; of a long run not at all samples.";
+        document.section(&axes, ("Axis", text), &rows, false);
+        Ok(())
+    }
 }
 
 fn facts(scene: &MachineScene) -> Vec<Fact> {
@@ -86,91 +217,6 @@ fn facts(scene: &MachineScene) -> Vec<Fact> {
         }
     }
     facts
-}
-
-/// Of each policy the orbits in all planes.
-fn push_ends(
-    page: &mut String,
-    scene: &MachineScene,
-    summaries: &[SceneSummary],
-    results: &MachineResults,
-) -> Result<(), PlotError> {
-    for (i, whole) in results.whole.runs.iter().enumerate() {
-        let ends: Vec<PolicyRun> = (results.planes.iter().zip(&scene.planes))
-            .filter_map(|(runs, plane)| {
-                let mut run = runs.get(i)?.clone();
-                run.name.clone_from(&plane.name);
-                Some(run)
-            })
-            .collect();
-        if let Some(row) = orbits_of_planes(summaries, &ends)? {
-            let heading = format!("Planes side by side: {}", escape(&whole.name));
-            push_section(page, &ends, &heading, "", &[row]);
-        }
-    }
-    Ok(())
-}
-
-/// Of each policy slope and bending over time, and the axis from the side.
-fn push_axes(
-    page: &mut String,
-    scene: &MachineScene,
-    results: &MachineResults,
-) -> Result<(), PlotError> {
-    for (whole, track) in results.whole.runs.iter().zip(&results.axes) {
-        let name = escape(&whole.name);
-        push(
-            page,
-            format_args!(
-                "<section>\n<h2>Axis: {name}</h2>\n<p class=\"note\">At equal times; of a long run at {} of them.</p>\n",
-                track.rows.len()
-            ),
-        );
-        for plot in plots(&scene.machine, track) {
-            push(page, format_args!("<figure>{}</figure>\n", chart(&plot)?));
-        }
-        page.push_str("</section>\n");
-    }
-    Ok(())
-}
-
-fn plots(machine: &MachineParams, track: &AxisTrack) -> Vec<Chart> {
-    let over_time = |name: String, colour: usize, value: &dyn Fn(&AxisRow) -> f64| {
-        let points = track.rows.iter().map(|row| (1e3 * row.t_s, value(row)));
-        Curve::line(name, points.collect(), colour)
-    };
-    let slope = ["x", "y"].into_iter().enumerate().map(|(axis, name)| {
-        over_time(format!("d{name}/dz"), axis, &|row| {
-            1e3 * row.axis.tilt.position[axis]
-        })
-    });
-    let mut plots = vec![timed("Slope", "slope / mrad", slope.collect())];
-    let modes = machine.rotor.bending().len();
-    if modes > 0 {
-        let amplitude = |mode: usize| {
-            over_time(format!("mode {}", mode + 1), mode, &|row| {
-                1e6 * row.bending[mode].position.norm()
-            })
-        };
-        plots.push(timed(
-            "Bending",
-            "amplitude / µm",
-            (0..modes).map(amplitude).collect(),
-        ));
-        let energy = over_time("bending".to_owned(), 0, &|row| row.axis.bending_j);
-        plots.push(timed("Bending energy", "energy / J", vec![energy]));
-    }
-    plots.push(from_the_side(machine, track));
-    plots
-}
-
-fn timed(what: &str, y: &str, curves: Vec<Curve>) -> Chart {
-    Chart {
-        label: format!("{what} over time"),
-        x: Axis::linear("t / ms", reach(&curves, |p| p.0)),
-        y: Axis::linear(y, reach(&curves, |p| p.1)),
-        curves,
-    }
 }
 
 /// Instants at which the axis is drawn.

@@ -1,357 +1,333 @@
-//! Panels: which data of a trace goes into which axes, and which axes the policies share.
+//! Panels: which data of a track goes into which axes, and which axes the tracks share.
 
-use plant_model::Mode;
 use plotters::style::RGBColor;
+use serde_json::{Value, json};
 
-use super::axes::{axes, disturbances, one_axis, run_window};
+use super::axes::{axes, one_axis};
+use super::data;
 use super::quantities::{
-    CONTACT_FORCE, CONTROL_FORCE, Chart, Quantity, RADIUS, SPIN, TANGENTIAL_SPEED, radial,
+    CONTACT_FORCE, CONTROL_FORCE, Chart, FORCE_COMPONENTS, POSITION, RADIUS, SPIN, TANGENTIAL_SPEED,
 };
+use super::track::{ROTOR_MODES, SUPERVISOR_MODES, Track};
 use crate::report::plot::text::hex;
-use crate::report::plot::thin::{Band, Interval, PathPoint, drawable, thinned};
+use crate::report::plot::thin::{Interval, PathPoint, thinned};
 use crate::report::plot::{
     COLUMNS, FREE, LIMIT, Lane, Line, OrbitPlot, PlotError, TOUCHING, TimeAxis, TimePlot, Wall,
     orbit_plot, strip_plot, time_plot,
 };
-use crate::report::summary::SceneSummary;
-use crate::run::trace::TraceRow;
-use crate::run::verdict::PolicyRun;
 
-/// One panel of every policy.
+/// One panel of every track.
 pub(super) struct PanelRow {
     /// What is shown.
     pub(super) heading: &'static str,
-    /// What a reader must know to read it; may be empty.
+    /// What a reader must know to read it, as HTML; may be empty.
     pub(super) note: &'static str,
     /// What the colours stand for.
     pub(super) legend: Vec<Key>,
-    /// One for each policy, in their order.
+    /// In the order of the tracks, of those that have what is shown.
     pub(super) cells: Vec<PanelCell>,
 }
 
 /// One entry of a legend.
 pub(super) struct Key {
     /// What is drawn so.
-    pub(super) name: &'static str,
+    pub(super) name: String,
     /// CSS colour.
     pub(super) colour: String,
     /// A dashed line.
     pub(super) dashed: bool,
 }
 
-/// One panel of one policy.
+/// One panel of one track.
 pub(super) struct PanelCell {
+    /// Place among the shown ones.
+    pub(super) shown: usize,
     /// The figure.
     pub(super) svg: String,
-    /// Whether its axes differ from those of the other policies.
+    /// Whether its axes differ from those of the others.
     pub(super) own_scale: bool,
+    /// What it shows, as a table.
+    pub(super) table: String,
+    /// What the script needs to draw it.
+    pub(super) live: Value,
 }
 
-/// What a section shows: all runs, one stretch of time \[ms\].
-struct View<'a> {
-    scene: &'a SceneSummary,
-    runs: &'a [PolicyRun],
-    window: Interval,
-    shaded: Vec<Interval>,
+/// A track of a page, and its name there.
+#[derive(Clone)]
+pub(super) struct Shown<'a> {
+    pub(super) name: &'a str,
+    /// Place among the tracks of the page.
+    pub(super) at: usize,
+    pub(super) track: &'a Track,
 }
 
-const MODES: [(Mode, RGBColor); 5] = [
-    (Mode::Flight, RGBColor(0xd5, 0xde, 0xe8)),
-    (Mode::SlipPositive, TOUCHING),
-    (Mode::SlipNegative, RGBColor(0x2f, 0x80, 0xc9)),
-    (Mode::Roll, RGBColor(0x7a, 0x4f, 0xb5)),
-    (Mode::Seated, RGBColor(0x4a, 0x52, 0x5c)),
-];
-
-const SUPERVISOR_COLOURS: [(supervisor::Mode, RGBColor); 8] = [
-    (supervisor::Mode::Levitated, RGBColor(0xa8, 0xd5, 0xba)),
-    (supervisor::Mode::Approach, RGBColor(0xf3, 0xc0, 0x6b)),
-    (supervisor::Mode::Bounce, RGBColor(0xe3, 0x8f, 0x8f)),
-    (supervisor::Mode::BackwardWhirl, RGBColor(0xc9, 0xa7, 0xe0)),
-    (supervisor::Mode::Pinned, RGBColor(0xd6, 0xc6, 0xa5)),
-    (supervisor::Mode::Handover, RGBColor(0x9d, 0xb7, 0xe8)),
-    (supervisor::Mode::HandedBack, RGBColor(0xa8, 0xd5, 0xa2)),
-    (supervisor::Mode::SensorFault, RGBColor(0xc4, 0xc9, 0xd0)),
-];
-
-/// The whole run: orbit, every quantity, modes.
-pub(super) fn whole_run(
-    scene: &SceneSummary,
-    runs: &[PolicyRun],
-) -> Result<Vec<PanelRow>, PlotError> {
-    let view = View::new(scene, runs, run_window(scene, runs));
-    let mut rows = vec![view.orbits()?];
-    rows.extend(view.fast()?);
-    rows.push(view.chart(&SPIN)?);
-    Ok(rows)
+/// What a section shows: some tracks, one stretch of time.
+pub(super) struct View<'a> {
+    pub(super) shown: &'a [Shown<'a>],
+    pub(super) window: Interval,
+    pub(super) shaded: &'a [Interval],
 }
 
-/// Orbits of one policy in several planes, each with axes of its own.
-pub(super) fn orbits_of_planes(
-    scenes: &[SceneSummary],
-    runs: &[PolicyRun],
-) -> Result<Option<PanelRow>, PlotError> {
-    let mut all: Option<PanelRow> = None;
-    for (scene, run) in scenes.iter().zip(runs) {
-        let runs = std::slice::from_ref(run);
-        let row = View::new(scene, runs, run_window(scene, runs)).orbits()?;
-        match &mut all {
-            Some(all) => all.cells.extend(row.cells),
-            None => all = Some(row),
+impl View<'_> {
+    /// Orbit, every quantity that the tracks have, modes.
+    pub(super) fn whole_run(&self) -> Result<Vec<PanelRow>, PlotError> {
+        let mut rows = vec![self.orbits(true)?];
+        rows.extend(self.fast()?);
+        rows.extend(self.chart(&SPIN)?);
+        Ok(rows)
+    }
+
+    /// What changes fast.
+    pub(super) fn fast(&self) -> Result<Vec<PanelRow>, PlotError> {
+        const ALL: [Chart; 6] = [
+            POSITION,
+            RADIUS,
+            CONTACT_FORCE,
+            CONTROL_FORCE,
+            FORCE_COMPONENTS,
+            TANGENTIAL_SPEED,
+        ];
+        // What is measured is shown of records, and with them of what is laid beside them.
+        let recorded = self.shown.iter().any(|s| FORCE_COMPONENTS.is_of(s.track));
+        let mut rows = Vec::new();
+        for chart in ALL {
+            if recorded || chart.heading != POSITION.heading {
+                rows.extend(self.chart(&chart)?);
+            }
         }
-    }
-    Ok(all)
-}
-
-/// What changes fast, over `window` \[ms\].
-pub(super) fn close_up(
-    scene: &SceneSummary,
-    runs: &[PolicyRun],
-    window: Interval,
-) -> Result<Vec<PanelRow>, PlotError> {
-    View::new(scene, runs, window).fast()
-}
-
-impl Key {
-    fn new(name: &'static str, colour: RGBColor) -> Self {
-        Self {
-            name,
-            colour: hex(colour),
-            dashed: false,
-        }
-    }
-}
-
-impl<'a> View<'a> {
-    fn new(scene: &'a SceneSummary, runs: &'a [PolicyRun], window: Interval) -> Self {
-        Self {
-            scene,
-            runs,
-            window,
-            shaded: disturbances(scene),
-        }
+        rows.push(self.modes()?);
+        Ok(rows)
     }
 
-    fn time(&self) -> TimeAxis<'_> {
-        TimeAxis {
-            window: self.window,
-            shaded: &self.shaded,
-        }
-    }
-
-    fn fast(&self) -> Result<Vec<PanelRow>, PlotError> {
-        Ok(vec![
-            self.chart(&RADIUS)?,
-            self.chart(&CONTACT_FORCE)?,
-            self.chart(&CONTROL_FORCE)?,
-            self.chart(&TANGENTIAL_SPEED)?,
-            self.modes()?,
-        ])
-    }
-
-    fn chart(&self, chart: &Chart) -> Result<PanelRow, PlotError> {
-        let ranges: Vec<_> = self
-            .runs
-            .iter()
-            .map(|run| chart.range(self.scene, run, self.window))
+    /// `None` where no track has any of it.
+    pub(super) fn chart(&self, chart: &Chart) -> Result<Option<PanelRow>, PlotError> {
+        let having = self.shown.iter().enumerate();
+        let having: Vec<_> = having.filter(|(_, s)| chart.is_of(s.track)).collect();
+        let tracks: Vec<&Track> = having.iter().map(|(_, s)| s.track).collect();
+        let ranges: Vec<_> = (tracks.iter())
+            .map(|track| chart.range(track, self.window))
             .collect();
         let axes = if chart.own_scale {
-            axes(&ranges, self.runs)
+            axes(&ranges, &tracks)
         } else {
             one_axis(&ranges)
         };
         let mut cells = Vec::new();
-        for ((run, range), (axis, own_scale)) in self.runs.iter().zip(&ranges).zip(axes) {
-            let limit = chart.limit_at(self.scene, run);
-            let label = self.label(run, chart.heading, chart.y_name, *range);
+        for (((place, shown), range), (axis, own_scale)) in having.iter().zip(&ranges).zip(axes) {
+            let track = shown.track;
+            let (limit, y) = (chart.limit_at(track), axis.widened(0.05));
+            let y_name = chart.y_name(track);
+            let label = self.label(shown, chart.heading, &y_name, *range);
             let svg = time_plot(&TimePlot {
                 label: &label,
-                time: self.time(),
-                y: axis.widened(0.05),
-                y_name: chart.y_name,
-                lines: &self.lines(chart, run),
+                time: self.time(track),
+                y,
+                y_name: &y_name,
+                lines: &self.lines(chart, track),
                 limit,
             })?;
-            cells.push(PanelCell { svg, own_scale });
+            let lines = chart
+                .lines_of(track)
+                .map(|(line, _)| json!({ "column": line.column, "colour": hex(line.colour) }));
+            cells.push(PanelCell {
+                shown: *place,
+                svg,
+                own_scale,
+                table: data::extremes(chart, track, self.window),
+                live: json!({
+                    "kind": "lines", "track": shown.at, "own": own_scale, "name": y_name,
+                    "lines": lines.collect::<Vec<_>>(), "y": [y.lo, y.hi], "limit": limit,
+                    "always": chart.always,
+                }),
+            });
         }
-        Ok(PanelRow {
+        Ok((!cells.is_empty()).then(|| PanelRow {
             heading: chart.heading,
             note: chart.note,
-            legend: legend(chart),
+            legend: legend(chart, &tracks),
             cells,
-        })
+        }))
     }
 
-    fn lines(&self, chart: &Chart, run: &PolicyRun) -> Vec<Line> {
-        let line = |quantity: &Quantity| {
-            let rows = run.trace.rows.iter();
-            let points = rows.map(|row| (1e3 * row.plant.t_s, (quantity.value)(row)));
+    fn lines(&self, chart: &Chart, track: &Track) -> Vec<Line> {
+        let line = |(line, values): (&super::quantities::Line, &[f64])| {
+            let points = track.t.iter().copied().zip(values.iter().copied());
             Line {
                 points: thinned(points, self.window, COLUMNS),
-                colour: quantity.colour,
+                colour: line.colour,
             }
         };
-        chart.lines.iter().map(line).collect()
+        chart.lines_of(track).map(line).collect()
     }
 
-    fn orbits(&self) -> Result<PanelRow, PlotError> {
-        let circle = Some(1e3 * self.scene.clearance_m)
-            .filter(|c| drawable(*c))
-            .unwrap_or(0.0);
-        let (ellipticity, tilt_rad) = self.scene.out_of_round.unwrap_or_default();
-        let wall = Wall {
-            semi_axes: [1.0 + ellipticity, 1.0 - ellipticity].map(|share| share * circle),
-            tilt_rad,
-        };
-        let widest = wall.semi_axes[0];
-        let paths: Vec<_> = self.runs.iter().map(path).collect();
-        let reach = |path: &Vec<PathPoint>| {
+    /// Orbits, on one scale where that is wanted.
+    pub(super) fn orbits(&self, one_scale: bool) -> Result<PanelRow, PlotError> {
+        let paths: Vec<_> = self.shown.iter().map(|s| s.track.path()).collect();
+        let walls: Vec<_> = (self.shown.iter())
+            .map(|s| s.track.wall.unwrap_or(Wall::NONE))
+            .collect();
+        let reach = |(path, wall): (&Vec<PathPoint>, &Wall)| {
+            let widest = wall.semi_axes[0];
             let all = Interval::of(path.iter().flat_map(|p| [p.0, p.1]).chain([widest]));
             Interval::symmetric(all.map_or(widest, Interval::magnitude))
         };
-        let ranges: Vec<_> = paths.iter().map(reach).collect();
+        let ranges: Vec<_> = paths.iter().zip(&walls).map(reach).collect();
+        let tracks: Vec<&Track> = self.shown.iter().map(|s| s.track).collect();
+        let axes = match one_scale {
+            true => axes(&ranges, &tracks),
+            false => ranges.iter().map(|range| (*range, false)).collect(),
+        };
         let mut cells = Vec::new();
-        for (((run, path), range), (axis, own_scale)) in self
-            .runs
-            .iter()
-            .zip(&paths)
-            .zip(&ranges)
-            .zip(axes(&ranges, self.runs))
-        {
+        for (place, (axis, own_scale)) in axes.into_iter().enumerate() {
+            let (shown, wall) = (&self.shown[place], walls[place]);
+            let (reach, unit) = (axis.widened(0.05).hi, shown.track.units.length);
+            let quantity = format!("x and y / {unit}");
             let svg = orbit_plot(&OrbitPlot {
-                label: &self.label(run, "Orbit", "x and y / mm", *range),
-                reach: axis.widened(0.05).hi,
+                label: &self.label(shown, "Orbit", &quantity, ranges[place]),
+                reach,
+                unit,
                 wall,
-                path,
+                path: &paths[place],
             })?;
-            cells.push(PanelCell { svg, own_scale });
+            cells.push(PanelCell {
+                shown: place,
+                svg,
+                own_scale,
+                table: data::places(shown.track, self.window),
+                live: json!({
+                    "kind": "orbit", "track": shown.at, "own": own_scale, "reach": reach, "unit": unit,
+                    "wall": [wall.semi_axes[0], wall.semi_axes[1], wall.tilt_rad],
+                }),
+            });
         }
+        let round = walls.iter().all(|w| w.semi_axes[0] == w.semi_axes[1]);
+        let touching = tracks.iter().any(|track| !track.touching.is_empty());
+        let mut legend = vec![Key::new("flight", FREE)];
+        if touching {
+            legend.push(Key::new("contact", TOUCHING));
+        } else {
+            legend[0].name = "path".to_owned();
+        }
+        let wall = if round {
+            "clearance circle"
+        } else {
+            "clearance ellipse"
+        };
+        legend.push(Key::new(wall, LIMIT));
         Ok(PanelRow {
             heading: "Orbit",
-            note: "Rotor against the centre of the inner ring; ring mark: start, dot: end.",
-            legend: vec![
-                Key::new("flight", FREE),
-                Key::new("contact", TOUCHING),
-                Key::new(
-                    match self.scene.out_of_round {
-                        None => "clearance circle",
-                        Some(_) => "clearance ellipse",
-                    },
-                    LIMIT,
-                ),
-            ],
+            note: "Rotor against the centre of the inner ring. <span class=\"still\">Ring mark: start, dot: end.</span>\
+                   <span class=\"moving\">Arrows: direction at equal times; dot: where it is at the time of all panels.</span>",
+            legend,
             cells,
         })
     }
 
     fn modes(&self) -> Result<PanelRow, PlotError> {
-        let plant = MODES.map(|(mode, colour)| (mode.name(), colour));
-        let supervisor = supervisor_classes(self.runs);
+        let rotor = ROTOR_MODES.map(|(mode, colour)| (mode.name(), colour));
+        let supervisor = SUPERVISOR_MODES.map(|(mode, colour)| (mode.name(), colour));
+        let any = |has: fn(&Track) -> bool| self.shown.iter().any(|s| has(s.track));
+        // Every track gets a lane that one has, so that the panels stay comparable.
+        let lanes = [
+            any(|t| !t.rotor.is_empty()),
+            any(|t| !t.supervisor.is_empty()),
+        ];
         let mut cells = Vec::new();
-        for run in self.runs {
-            let (motion, modes) = (plant_bands(run), supervisor_bands(run, &supervisor));
-            let mut lanes = vec![Lane {
-                name: "rotor",
-                classes: &plant,
-                bands: &motion,
-            }];
-            // Every policy gets the lane, so that the panels stay comparable.
-            if !supervisor.is_empty() {
-                lanes.push(Lane {
+        for (place, shown) in self.shown.iter().enumerate() {
+            let track = shown.track;
+            let all = [
+                Lane {
+                    name: "rotor",
+                    classes: &rotor,
+                    bands: &track.rotor,
+                },
+                Lane {
                     name: "supervisor",
                     classes: &supervisor,
-                    bands: &modes,
-                });
-            }
-            let label = format!("{}, modes: {} stretches of motion", run.name, motion.len());
-            let svg = strip_plot(&label, self.time(), &lanes)?;
+                    bands: &track.supervisor,
+                },
+            ];
+            let drawn: Vec<Lane<'_>> = (all.into_iter().zip(lanes))
+                .filter_map(|(lane, there)| there.then_some(lane))
+                .collect();
+            let stretches: Vec<String> = (drawn.iter())
+                .map(|lane| format!("{} of the {}", lane.bands.len(), lane.name))
+                .collect();
+            let label = format!("{}, modes: stretches, {}", shown.name, stretches.join(", "));
             cells.push(PanelCell {
-                svg,
+                shown: place,
+                svg: strip_plot(&label, self.time(track), &drawn)?,
                 own_scale: false,
+                table: data::stretches(&drawn, self.window, track.units.time),
+                live: json!({
+                    "kind": "modes", "track": shown.at,
+                    "lanes": drawn.iter().map(|lane| lane.name).collect::<Vec<_>>(),
+                }),
             });
         }
-        let classes = plant.iter().chain(&supervisor);
+        let occurs = |class: usize, of: fn(&Track) -> &[_]| {
+            let mut bands = self.shown.iter().flat_map(|s| of(s.track));
+            bands.any(|band: &super::plot::thin::Band| band.class == class)
+        };
+        let rotor = rotor.iter().filter(|_| lanes[0]);
+        let supervisor = (supervisor.iter().enumerate())
+            .filter(|(class, _)| occurs(*class, |track| &track.supervisor))
+            .map(|(_, key)| key);
         Ok(PanelRow {
             heading: "Modes",
-            note: "slip+: friction drives the rotor clockwise; slip-: counter-clockwise. Where modes \
-                   share a pixel, the one that is rarest in the window is drawn.",
-            legend: classes
+            note: match lanes[0] {
+                true => {
+                    "slip+: friction drives the rotor clockwise; slip-: counter-clockwise. Where modes \
+                     share a pixel, the one that is rarest in the window is drawn."
+                }
+                false => {
+                    "Where modes share a pixel, the one that is rarest in the window is drawn."
+                }
+            },
+            legend: rotor
+                .chain(supervisor)
                 .map(|(name, colour)| Key::new(name, *colour))
                 .collect(),
             cells,
         })
     }
 
+    fn time(&self, track: &Track) -> TimeAxis<'_> {
+        TimeAxis {
+            window: self.window,
+            unit: track.units.time,
+            shaded: self.shaded,
+        }
+    }
+
     /// What a screen reader says of a figure.
-    fn label(&self, run: &PolicyRun, heading: &str, quantity: &str, range: Interval) -> String {
-        let time = self.window;
+    fn label(&self, shown: &Shown<'_>, heading: &str, quantity: &str, range: Interval) -> String {
+        let (time, unit) = (self.window, shown.track.units.time);
         format!(
-            "{}, {heading}: {quantity} between {:.4} and {:.4}, from {:.1} ms to {:.1} ms",
-            run.name, range.lo, range.hi, time.lo, time.hi
+            "{}, {heading}: {quantity} between {:.4} and {:.4}, from {:.1} {unit} to {:.1} {unit}",
+            shown.name, range.lo, range.hi, time.lo, time.hi
         )
     }
 }
 
-fn legend(chart: &Chart) -> Vec<Key> {
-    let lines = chart
-        .lines
-        .iter()
-        .map(|line| Key::new(line.name, line.colour));
-    let limit = chart.limit.as_ref().map(|limit| Key {
+impl Key {
+    fn new(name: &str, colour: RGBColor) -> Self {
+        Self {
+            name: name.to_owned(),
+            colour: hex(colour),
+            dashed: false,
+        }
+    }
+}
+
+fn legend(chart: &Chart, tracks: &[&Track]) -> Vec<Key> {
+    let there = |line: &&super::quantities::Line| {
+        (tracks.iter()).any(|track| track.column(&line.column).is_some())
+    };
+    let lines = (chart.lines.iter().filter(there)).map(|line| Key::new(&line.column, line.colour));
+    let limit = (chart.limit.as_ref()).map(|limit| Key {
         dashed: true,
         ..Key::new(limit.name, LIMIT)
     });
     lines.chain(limit).collect()
-}
-
-fn path(run: &PolicyRun) -> Vec<PathPoint> {
-    let point = |row: &TraceRow| {
-        let r = 1e3 * radial(row);
-        (r.x, r.y, row.plant.mode.in_contact())
-    };
-    let points = run.trace.rows.iter().map(point);
-    points.filter(|p| drawable(p.0) && drawable(p.1)).collect()
-}
-
-fn plant_bands(run: &PolicyRun) -> Vec<Band> {
-    let bands = run.trace.mode_bands().into_iter();
-    let band = |(mode, from, to): (Mode, f64, f64)| {
-        let class = MODES.iter().position(|known| known.0 == mode)?;
-        let span = Interval::of([1e3 * from, 1e3 * to])?;
-        Some(Band { class, span })
-    };
-    bands.filter_map(band).collect()
-}
-
-/// Names of the supervisor's modes that occur, each with its colour, which is the same in every report.
-fn supervisor_classes(runs: &[PolicyRun]) -> Vec<(&'static str, RGBColor)> {
-    let occurs = |mode: supervisor::Mode| {
-        let mut rows = runs.iter().flat_map(|run| &run.trace.rows);
-        rows.any(|row| row.supervisor_mode() == Some(mode))
-    };
-    (SUPERVISOR_COLOURS.into_iter())
-        .filter(|(mode, _)| occurs(*mode))
-        .map(|(mode, colour)| (mode.name(), colour))
-        .collect()
-}
-
-fn supervisor_bands(run: &PolicyRun, classes: &[(&'static str, RGBColor)]) -> Vec<Band> {
-    let mut bands: Vec<Band> = Vec::new();
-    for row in &run.trace.rows {
-        let t = 1e3 * row.plant.t_s;
-        let named = |mode: supervisor::Mode| classes.iter().position(|c| c.0 == mode.name());
-        let (Some(now), Some(class)) = (Interval::of([t]), row.supervisor_mode().and_then(named))
-        else {
-            continue;
-        };
-        match bands.last_mut() {
-            Some(last) if last.class == class => last.span = last.span.with(now),
-            Some(last) => {
-                last.span = last.span.with(now);
-                bands.push(Band { class, span: now });
-            }
-            None => bands.push(Band { class, span: now }),
-        }
-    }
-    bands
 }

@@ -66,7 +66,7 @@ pub const TOUCHING: RGBColor = RGBColor(0xdd, 0x5a, 0x0b);
 
 /// A line of a [`TimePlot`].
 pub(crate) struct Line {
-    /// (time \[ms\], value), in time order.
+    /// (time, value), in time order.
     pub(crate) points: Vec<(f64, f64)>,
     pub(crate) colour: RGBColor,
 }
@@ -74,9 +74,11 @@ pub(crate) struct Line {
 /// The time axis of a figure.
 #[derive(Clone, Copy)]
 pub(crate) struct TimeAxis<'a> {
-    /// What it spans \[ms\].
+    /// What it spans.
     pub(crate) window: Interval,
-    /// Intervals to shade \[ms\].
+    /// Name of the unit of times.
+    pub(crate) unit: &'static str,
+    /// Intervals to shade.
     pub(crate) shaded: &'a [Interval],
 }
 
@@ -95,18 +97,28 @@ pub(crate) struct TimePlot<'a> {
 /// An ellipse about the centre.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Wall {
-    /// Semi-axes \[mm\].
+    /// Semi-axes.
     pub(crate) semi_axes: [f64; 2],
     /// Direction of the first \[rad\].
     pub(crate) tilt_rad: f64,
 }
 
-/// A path in the plane \[mm\] with equal axes and the wall about the centre.
+impl Wall {
+    /// Where nothing is known of one.
+    pub(crate) const NONE: Self = Self {
+        semi_axes: [0.0; 2],
+        tilt_rad: 0.0,
+    };
+}
+
+/// A path in the plane with equal axes and the wall about the centre.
 pub(crate) struct OrbitPlot<'a> {
     /// What a screen reader says.
     pub(crate) label: &'a str,
     /// Both axes span ± this.
     pub(crate) reach: f64,
+    /// Name of the unit of lengths.
+    pub(crate) unit: &'static str,
     pub(crate) wall: Wall,
     /// In time order.
     pub(crate) path: &'a [PathPoint],
@@ -128,7 +140,8 @@ pub(crate) fn time_plot(plot: &TimePlot<'_>) -> Result<String, PlotError> {
     svg(plot.label, TOP + HEIGHT + BOTTOM, |root| {
         let mut chart = chart(root, plot.time.window, plot.y, BOTTOM)?;
         shade(&mut chart, plot.time, plot.y)?;
-        let x = (plot.time.window, " ms", "");
+        let unit = format!(" {}", plot.time.unit);
+        let x = (plot.time.window, &unit[..], "");
         mesh(&mut chart, x, Some((plot.y, plot.y_name)))?;
         if let Some(limit) = plot.limit.filter(|at| plot.y.contains(*at)) {
             dashed(&mut chart, plot.time.window, limit)?;
@@ -147,7 +160,8 @@ pub(crate) fn orbit_plot(plot: &OrbitPlot<'_>) -> Result<String, PlotError> {
     let bottom = BOTTOM + DESCRIPTION;
     svg(plot.label, TOP + PLOT + bottom, |root| {
         let mut chart = chart(root, axis, axis, bottom)?;
-        mesh(&mut chart, (axis, "", "x / mm"), Some((axis, "y / mm")))?;
+        let [x_name, y_name] = ["x", "y"].map(|name| format!("{name} / {}", plot.unit));
+        mesh(&mut chart, (axis, "", &x_name), Some((axis, &y_name)))?;
         let [a, b] = plot.wall.semi_axes;
         let (turn_sin, turn_cos) = plot.wall.tilt_rad.sin_cos();
         let wall = (0..=120).map(|i| {
@@ -192,7 +206,8 @@ pub(crate) fn strip_plot(
     svg(label, TOP + LANE * count + BOTTOM, |root| {
         let mut chart = chart(root, time.window, y, BOTTOM)?;
         shade(&mut chart, time, y)?;
-        mesh(&mut chart, (time.window, " ms", ""), None)?;
+        let unit = format!(" {}", time.unit);
+        mesh(&mut chart, (time.window, &unit, ""), None)?;
         for (lane, top) in lanes.iter().zip((1..=count).rev()) {
             let middle = (TOP + LANE * (count - top) + LANE / 2) * SCALE;
             let style = lettering(INK, HPos::Right);
@@ -350,6 +365,7 @@ mod tests {
     fn a_figure_is_accessible_and_has_no_fixed_size() {
         let time = TimeAxis {
             window: UNIT,
+            unit: "ms",
             shaded: &[UNIT],
         };
         let points = vec![(0.0, 0.0), (1.0, 1.0)];
@@ -375,10 +391,8 @@ mod tests {
         let plot = |path| OrbitPlot {
             label: "",
             reach: 0.0,
-            wall: Wall {
-                semi_axes: [0.0; 2],
-                tilt_rad: 0.0,
-            },
+            unit: "mm",
+            wall: Wall::NONE,
             path,
         };
         assert!(orbit_plot(&plot(&[])).is_ok());

@@ -1,22 +1,21 @@
-//! Quantities over time: how each is read from a trace and how its axes are laid out.
+//! Charts over time: which columns of a track they draw, and how their axes are laid out.
 
-use std::f64::consts::TAU;
+use std::borrow::Cow;
 
-use plant_model::V2;
 use plotters::style::RGBColor;
 
 use crate::report::plot::TOUCHING;
-use crate::report::plot::thin::{Interval, drawable};
-use crate::report::summary::SceneSummary;
-use crate::run::trace::TraceRow;
-use crate::run::verdict::PolicyRun;
+use crate::report::plot::thin::Interval;
+use crate::report::track::{Track, bending_name};
 
-/// A quantity over time, to be drawn with shared axes.
+/// Columns over time, to be drawn with shared axes.
+#[derive(Clone)]
 pub(super) struct Chart {
     pub(super) heading: &'static str,
     pub(super) note: &'static str,
-    pub(super) y_name: &'static str,
-    pub(super) lines: &'static [Quantity],
+    symbol: &'static str,
+    unit: Unit,
+    pub(super) lines: Cow<'static, [Line]>,
     pub(super) limit: Option<Limit>,
     /// Whether a whirling run may have an axis of its own.
     pub(super) own_scale: bool,
@@ -24,37 +23,62 @@ pub(super) struct Chart {
     pub(super) always: &'static [f64],
 }
 
-/// A dashed line.
+/// What the values of a chart are counted in.
+#[derive(Clone, Copy)]
+enum Unit {
+    /// That of lengths of the track.
+    Length,
+    /// That of forces of the track.
+    Force,
+    Fixed(&'static str),
+}
+
+/// A dashed line, by its name in [`Track::limits`].
+#[derive(Clone, Copy)]
 pub(super) struct Limit {
     pub(super) name: &'static str,
-    /// Its place on the axis.
-    at: fn(&SceneSummary, &PolicyRun) -> Option<f64>,
     /// Further out than this many times the data it stays off the axis.
     reach: f64,
 }
 
-/// One line of a chart.
-pub(super) struct Quantity {
-    pub(super) name: &'static str,
+/// One line of a chart: a column of the track, by its name.
+#[derive(Clone)]
+pub(super) struct Line {
+    pub(super) column: Cow<'static, str>,
     pub(super) colour: RGBColor,
-    pub(super) value: fn(&TraceRow) -> f64,
 }
 
 const DARK: RGBColor = RGBColor(0x24, 0x4f, 0x7d);
 const PALE: RGBColor = RGBColor(0xe0, 0x9b, 0x2d);
+
+const fn line(column: &'static str, colour: RGBColor) -> Line {
+    Line {
+        column: Cow::Borrowed(column),
+        colour,
+    }
+}
+
+/// Position along both axes.
+pub(super) const POSITION: Chart = Chart {
+    heading: "Position",
+    note: "Of a record as it was measured.",
+    symbol: "x, y",
+    unit: Unit::Length,
+    lines: Cow::Borrowed(&[line("x", DARK), line("y", PALE)]),
+    limit: None,
+    own_scale: false,
+    always: &[],
+};
+
 /// Distance of the rotor from the centre of the ring.
 pub(super) const RADIUS: Chart = Chart {
     heading: "Radius",
     note: "Rotor against the centre of the inner ring.",
-    y_name: "r / mm",
-    lines: &[Quantity {
-        name: "r",
-        colour: DARK,
-        value: |row| 1e3 * radial(row).norm(),
-    }],
+    symbol: "r",
+    unit: Unit::Length,
+    lines: Cow::Borrowed(&[line("r", DARK)]),
     limit: Some(Limit {
         name: "clearance",
-        at: |scene, _| Some(1e3 * scene.clearance_m),
         reach: f64::INFINITY,
     }),
     own_scale: true,
@@ -65,12 +89,9 @@ pub(super) const RADIUS: Chart = Chart {
 pub(super) const CONTACT_FORCE: Chart = Chart {
     heading: "Contact force",
     note: "Normal force at the samples and changes of mode; the table has the peaks in between.",
-    y_name: "f_n / N",
-    lines: &[Quantity {
-        name: "normal force",
-        colour: TOUCHING,
-        value: |row| row.plant.normal_force_n,
-    }],
+    symbol: "f_n",
+    unit: Unit::Force,
+    lines: Cow::Borrowed(&[line("normal force", TOUCHING)]),
     limit: None,
     own_scale: true,
     always: &[0.0, 1.0],
@@ -80,25 +101,26 @@ pub(super) const CONTACT_FORCE: Chart = Chart {
 pub(super) const CONTROL_FORCE: Chart = Chart {
     heading: "Control force",
     note: "Magnitudes of the force that the policy commands and of the one that the magnet delivers.",
-    y_name: "|F| / N",
-    lines: &[
-        Quantity {
-            name: "commanded",
-            colour: PALE,
-            value: |row| row.commanded_n.norm(),
-        },
-        Quantity {
-            name: "delivered",
-            colour: DARK,
-            value: |row| row.plant.delivered_n.norm(),
-        },
-    ],
+    symbol: "|F|",
+    unit: Unit::Force,
+    lines: Cow::Borrowed(&[line("commanded", PALE), line("delivered", DARK)]),
     limit: Some(Limit {
         name: "force cap",
-        at: |scene, _| scene.force_max_n,
         reach: f64::INFINITY,
     }),
     own_scale: true,
+    always: &[0.0, 1.0],
+};
+
+/// What was commanded along both axes.
+pub(super) const FORCE_COMPONENTS: Chart = Chart {
+    heading: "Commanded force along the axes",
+    note: "",
+    symbol: "F",
+    unit: Unit::Force,
+    lines: Cow::Borrowed(&[line("F_x", DARK), line("F_y", PALE)]),
+    limit: None,
+    own_scale: false,
     always: &[0.0, 1.0],
 };
 
@@ -108,15 +130,11 @@ pub(super) const TANGENTIAL_SPEED: Chart = Chart {
     note: "Rotor about the centre of the inner ring, counter-clockwise positive: whirl with the sign \
            of the dashed limit is backward. It counts against the limit in contact only. The limit is drawn \
            where it is near.",
-    y_name: "v_t / (m/s)",
-    lines: &[Quantity {
-        name: "v_t",
-        colour: DARK,
-        value: tangential_speed,
-    }],
+    symbol: "v_t",
+    unit: Unit::Fixed("(m/s)"),
+    lines: Cow::Borrowed(&[line("v_t", DARK)]),
     limit: Some(Limit {
         name: "counts as whirl",
-        at: backward_limit,
         reach: 4.0,
     }),
     own_scale: true,
@@ -127,69 +145,109 @@ pub(super) const TANGENTIAL_SPEED: Chart = Chart {
 pub(super) const SPIN: Chart = Chart {
     heading: "Spin",
     note: "The axis need not begin at zero.",
-    y_name: "spin / Hz",
-    lines: &[Quantity {
-        name: "spin",
-        colour: DARK,
-        value: |row| row.plant.spin_rad_s / TAU,
-    }],
+    symbol: "spin",
+    unit: Unit::Fixed("Hz"),
+    lines: Cow::Borrowed(&[line("spin", DARK)]),
     limit: None,
     own_scale: false,
     always: &[],
 };
 
-/// Rotor against the centre of the inner ring \[m\].
-pub(super) fn radial(row: &TraceRow) -> V2 {
-    row.plant.position_m - row.plant.inner_ring.position
-}
+/// Slope of a whole rotor's axis.
+pub(super) const SLOPE: Chart = Chart {
+    heading: "Slope",
+    note: "",
+    symbol: "slope",
+    unit: Unit::Fixed("mrad"),
+    lines: Cow::Borrowed(&[line("dx/dz", DARK), line("dy/dz", PALE)]),
+    limit: None,
+    own_scale: false,
+    always: &[],
+};
 
-fn tangential_speed(row: &TraceRow) -> f64 {
-    let (r, v) = (
-        radial(row),
-        row.plant.velocity_m_s - row.plant.inner_ring.velocity,
-    );
-    // Exactly in the centre there is no direction to be tangential to.
-    if r.norm() > 0.0 {
-        r.perp(&v) / r.norm()
-    } else {
-        0.0
+/// Energy of a whole rotor's bending.
+pub(super) const BENDING_ENERGY: Chart = Chart {
+    heading: "Bending energy",
+    note: "",
+    symbol: "energy",
+    unit: Unit::Fixed("J"),
+    lines: Cow::Borrowed(&[line("bending energy", DARK)]),
+    limit: None,
+    own_scale: false,
+    always: &[0.0],
+};
+
+/// Amplitudes of the bending modes of a whole rotor.
+pub(super) fn bending(modes: usize) -> Chart {
+    const COLOURS: [RGBColor; 6] = [
+        DARK,
+        PALE,
+        TOUCHING,
+        RGBColor(0x3a, 0x8f, 0x5c),
+        RGBColor(0x7a, 0x4f, 0xb5),
+        RGBColor(0x4a, 0x52, 0x5c),
+    ];
+    let line = |mode: usize| Line {
+        column: bending_name(mode),
+        colour: COLOURS[mode % COLOURS.len()],
+    };
+    Chart {
+        heading: "Bending",
+        note: "",
+        symbol: "amplitude",
+        unit: Unit::Fixed("µm"),
+        lines: (0..modes).map(line).collect(),
+        limit: None,
+        own_scale: false,
+        always: &[0.0],
     }
-}
-
-/// Backward is against the spin that the run starts with; without spin, as if counter-clockwise.
-fn backward_limit(scene: &SceneSummary, run: &PolicyRun) -> Option<f64> {
-    let spin = run
-        .trace
-        .rows
-        .first()
-        .map_or(0.0, |row| row.plant.spin_rad_s);
-    let limit = scene.whirl_speed_m_s.abs();
-    Some(if spin < 0.0 { limit } else { -limit })
 }
 
 impl Chart {
-    /// Place of the limit, where it can be drawn.
-    pub(super) fn limit_at(&self, scene: &SceneSummary, run: &PolicyRun) -> Option<f64> {
-        let limit = self.limit.as_ref()?;
-        (limit.at)(scene, run).filter(|at| drawable(*at))
+    /// Name and unit of the vertical axis.
+    pub(super) fn y_name(&self, track: &Track) -> String {
+        let unit = match self.unit {
+            Unit::Length => track.units.length,
+            Unit::Force => track.units.force,
+            Unit::Fixed(unit) => unit,
+        };
+        format!("{} / {unit}", self.symbol)
     }
 
-    /// What the axis has to show of a run.
-    pub(super) fn range(
-        &self,
-        scene: &SceneSummary,
-        run: &PolicyRun,
-        window: Interval,
-    ) -> Interval {
-        let rows = run.trace.rows.iter();
-        let visible = rows.filter(|row| window.contains(1e3 * row.plant.t_s));
-        let values = visible.flat_map(|row| self.lines.iter().map(|line| (line.value)(row)));
-        let range = Interval::of(values.chain(self.always.iter().copied()));
+    /// Its lines of a track, each with its values.
+    pub(super) fn lines_of<'a>(
+        &'a self,
+        track: &'a Track,
+    ) -> impl Iterator<Item = (&'a Line, &'a [f64])> {
+        (self.lines.iter()).filter_map(|line| Some((line, track.column(&line.column)?)))
+    }
+
+    /// Whether a track has any of its columns.
+    pub(super) fn is_of(&self, track: &Track) -> bool {
+        self.lines_of(track).next().is_some()
+    }
+
+    /// Place of the limit, where it can be drawn.
+    pub(super) fn limit_at(&self, track: &Track) -> Option<f64> {
+        track.limit(self.limit.as_ref()?.name)
+    }
+
+    /// What the axis has to show of a track.
+    pub(super) fn range(&self, track: &Track, window: Interval) -> Interval {
+        let visible = |values: &[f64]| {
+            let pairs = track.t.iter().zip(values);
+            let inside = pairs.filter(|(t, _)| window.contains(**t));
+            Interval::of(inside.map(|(_, value)| *value))
+        };
+        let lines = self
+            .lines_of(track)
+            .filter_map(|(_, values)| visible(values));
+        let range = (lines.chain(Interval::of(self.always.iter().copied()))).reduce(Interval::with);
         let range = range.unwrap_or(Interval { lo: 0.0, hi: 1.0 });
         // The smallest positive number keeps an infinite reach times zero from being no number.
         let size = range.magnitude().max(f64::MIN_POSITIVE);
         let reach = self.limit.as_ref().map_or(0.0, |limit| limit.reach * size);
-        match self.limit_at(scene, run) {
+        match self.limit_at(track) {
             Some(at) if at.abs() <= reach => range.with(Interval { lo: at, hi: at }),
             _ => range,
         }

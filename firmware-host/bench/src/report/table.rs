@@ -153,18 +153,20 @@ pub fn text(scene: &Scene, results: &Results) -> String {
     let runs = &results.runs;
     let note = far_into_the_wall(runs, scene.plant.contact.clearance_m);
     let notes = notes(note.as_deref(), results);
-    format!("{}\n{}{notes}", scene.title, table("policy", runs))
+    let all: Vec<&PolicyRun> = runs.iter().collect();
+    format!("{}\n{}{notes}", scene.title, table("policy", &all))
 }
 
 /// The tables of a whole rotor: as a whole, and plane by plane.
 pub fn machine_text(scene: &MachineScene, results: &MachineResults) -> String {
+    let of = |name: &str, runs: &[PolicyRun]| table(name, &runs.iter().collect::<Vec<_>>());
     let mut text = format!(
         "{}\n{}",
         scene.common().title,
-        table("machine", &results.whole.runs)
+        of("machine", &results.whole.runs)
     );
     for (plane, runs) in scene.planes.iter().zip(&results.planes) {
-        let _ = write!(text, "\n\n{}", table(&plane.name, runs));
+        let _ = write!(text, "\n\n{}", of(&plane.name, runs));
         if let Some(note) = far_into_the_wall(runs, plane.scene.plant.contact.clearance_m) {
             let _ = write!(text, "\n{note}");
         }
@@ -178,47 +180,57 @@ fn notes(note: Option<&str>, results: &Results) -> String {
         .collect()
 }
 
-fn table(of: &str, runs: &[PolicyRun]) -> Table {
+fn table(of: &str, runs: &[&PolicyRun]) -> Table {
     let mut header = vec![Cell::new(of)];
     header.extend(runs.iter().map(|r| right(&r.name)));
     let mut table = lined(header);
-    add_figures(&mut table, Figures::ALL, runs, |r| &r.verdict.figures);
-    add_figures(&mut table, Timing::ALL, runs, |r| &r.verdict.timing);
-    add_rows(&mut table, SUPERVISION_FIGURES, runs, |r| {
-        r.supervision.as_ref()
-    });
-    add_rows(&mut table, BEARING_FIGURES, runs, |r| {
-        r.verdict.figures.bearing.as_ref()
-    });
-    add_rows(&mut table, CHECK_FIGURES, runs, PolicyRun::checked);
+    for (title, cells) in rows(runs) {
+        let cells = cells.into_iter().map(right);
+        table.add_row([Cell::new(title)].into_iter().chain(cells));
+    }
     table
 }
 
+/// Every figure that one of the runs has: its title with the unit, and a cell for each run.
+pub(super) fn rows(runs: &[&PolicyRun]) -> Vec<(String, Vec<String>)> {
+    let mut rows = Vec::new();
+    add_figures(&mut rows, Figures::ALL, runs, |r| &r.verdict.figures);
+    add_figures(&mut rows, Timing::ALL, runs, |r| &r.verdict.timing);
+    add_rows(&mut rows, SUPERVISION_FIGURES, runs, |r| {
+        r.supervision.as_ref()
+    });
+    add_rows(&mut rows, BEARING_FIGURES, runs, |r| {
+        r.verdict.figures.bearing.as_ref()
+    });
+    add_rows(&mut rows, CHECK_FIGURES, runs, PolicyRun::checked);
+    rows
+}
+
 fn add_figures<T>(
-    table: &mut Table,
+    rows: &mut Vec<(String, Vec<String>)>,
     figures: &[Figure<T>],
-    runs: &[PolicyRun],
+    runs: &[&PolicyRun],
     of: impl Fn(&PolicyRun) -> &T,
 ) {
     for figure in figures {
-        let cells = runs.iter().map(|run| right(shown(figure, of(run))));
-        table.add_row([Cell::new(figure.title())].into_iter().chain(cells));
+        let cells = runs.iter().map(|run| shown(figure, of(run)));
+        rows.push((figure.title(), cells.collect()));
     }
 }
 
 /// Rows of something that not every run has; none where no run has it.
 fn add_rows<T>(
-    table: &mut Table,
-    rows: &[Row<T>],
-    runs: &[PolicyRun],
+    rows: &mut Vec<(String, Vec<String>)>,
+    all: &[Row<T>],
+    runs: &[&PolicyRun],
     of: impl Fn(&PolicyRun) -> Option<&T>,
 ) {
     if runs.iter().all(|run| of(run).is_none()) {
         return;
     }
-    for (name, value) in rows {
-        let cells = (runs.iter()).map(|run| right(of(run).map_or("–".to_owned(), value)));
-        table.add_row([Cell::new(name)].into_iter().chain(cells));
+    for (name, value) in all {
+        let cells = (runs.iter()).map(|run| of(run).map_or("–".to_owned(), value));
+        rows.push(((*name).to_owned(), cells.collect()));
     }
 }
 

@@ -6,9 +6,9 @@ use crate::run::verdict::PolicyRun;
 use crate::run::verify::{Check, Verification};
 
 /// One row for each check, headed by its policy; nothing where no run was checked.
-pub(super) fn push_table(page: &mut String, runs: &[PolicyRun]) {
+pub(super) fn push_table(page: &mut String, runs: &[&PolicyRun]) {
     let mut checked = (runs.iter())
-        .filter_map(|r| Some((r, r.checked()?)))
+        .filter_map(|r| Some((*r, r.checked()?)))
         .peekable();
     let Some((_, first)) = checked.peek() else {
         return;
@@ -17,7 +17,7 @@ pub(super) fn push_table(page: &mut String, runs: &[PolicyRun]) {
     push(
         page,
         format_args!(
-            "<section class=\"scroll\">\n<table>\n<caption>Checks</caption>\n<thead><tr>\
+            "<div class=\"scroll\" role=\"group\" tabindex=\"0\" aria-label=\"Checks\">\n<table>\n<caption>Checks</caption>\n<thead><tr>\
              <th scope=\"col\">Policy</th><th scope=\"col\">Outcome</th>\
              <th scope=\"col\">Checked by</th><th scope=\"col\">Tolerance</th>\
              <th scope=\"col\">Changes of mode</th>\
@@ -33,8 +33,8 @@ pub(super) fn push_table(page: &mut String, runs: &[PolicyRun]) {
         }
     }
     page.push_str(
-        "</tbody>\n</table>\n<p class=\"note\">Every policy was run again with the same seed. \
-         Differences are distances of the rotor from where the run above has it.</p>\n</section>\n",
+        "</tbody>\n</table>\n</div>\n<p class=\"note\">Every policy was run again with the same seed. \
+         Differences are distances of the rotor from where the run above has it.</p>\n",
     );
 }
 

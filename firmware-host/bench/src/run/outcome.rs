@@ -41,6 +41,23 @@ impl Outcome {
         }
     }
 
+    /// What it means, for a person.
+    pub fn meaning(self) -> &'static str {
+        match self {
+            Self::Recovered => "back within 0.3 of the clearance and held there, no touch since",
+            Self::Decayed => {
+                "free of the wall to the end, but not held in the middle: nothing holds it there, or it hangs beside the centre \
+                 under a steady load because the levitation controller has no integrator"
+            }
+            Self::Diverging => "free, but swinging wider each time: it would touch soon",
+            Self::Resting => "lying on the retainer bearing",
+            Self::Pinned => "held against the retainer bearing by a load that is still on",
+            Self::Rubbing => "in unbroken contact, moving, without whirl",
+            Self::Bouncing => "still hitting the retainer bearing when the run ended",
+            Self::Whirl => "dry friction backward whirl, above the limit of contact speed",
+        }
+    }
+
     /// Whether the rotor is free again, and stays so as far as the run shows.
     pub fn recovered(self) -> bool {
         matches!(self, Self::Recovered | Self::Decayed)

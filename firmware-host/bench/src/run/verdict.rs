@@ -129,7 +129,6 @@ pub fn far_into_the_wall(runs: &[PolicyRun], clearance_m: f64) -> Option<String>
         .map(|run| run.name.as_str())
         .collect();
     let who = names.join(", ");
-    let note =
-        "the wall gave way by more than the clearance: figures from there on are of no machine";
+    let note = "the wall gave way by more than the clearance: the model does not hold for any machine from there on";
     (!names.is_empty()).then(|| format!("{who}: {note}"))
 }

@@ -34,9 +34,7 @@ pub(super) fn tables(findings: &Findings, ticks: &Ticks, period_s: f64) -> Strin
         "restitution",
         "friction/normal impulse",
     ]);
-    // From the same tick on as those of the other tables.
-    let zero = (ticks.ticks.first()).map_or(0, |t| t.sequence.wrapping_sub(t.tick as u32));
-    let offset = f64::from(findings.first.wrapping_sub(zero).cast_signed());
+    let offset = ticks.tick_of(findings.first) as f64;
     for contact in &findings.contacts {
         let ms = |tick: f64| format!("{:.3}", 1e3 * period_s * (tick + offset));
         let impulse = contact.impulse.as_ref();

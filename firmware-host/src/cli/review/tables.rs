@@ -18,12 +18,7 @@ pub(super) fn track(record: &PlaneRecord, recorded: &Ticks, units: Units) -> Str
         format!("force [{}]", force(units).0),
         "severity".to_owned(),
     ]);
-    // From the same tick on as those of the other tables.
-    let zero = recorded
-        .ticks
-        .first()
-        .map_or(0, |t| t.sequence.wrapping_sub(t.tick as u32));
-    let since = |sequence: u32| i64::from(sequence.wrapping_sub(zero).cast_signed());
+    let since = |sequence: u32| recorded.tick_of(sequence);
     for same in record.track.chunk_by(|a, b| a.modes == b.modes) {
         let ticks: i64 = same.iter().map(|s| i64::from(s.ticks)).sum();
         let contact: i64 = same.iter().map(|s| i64::from(s.contact_ticks)).sum();

@@ -1,9 +1,12 @@
 //! Records of version 2, which are their entries and nothing else: units and checksum come from the command line.
 
 use super::ReviewArgs;
+use super::page;
 use super::tables::{csv, tables};
 use crate::cli::error::{CommandError, pretty, print};
 use firmware_bench::record::ticks::{ANY_UNIT, FlightRecord, Units};
+use firmware_bench::report::record::RecordHead;
+use firmware_bench::report::track::Track;
 use std::fmt::Write;
 
 /// Shows one; `expected`: what its checksum may be.
@@ -44,6 +47,19 @@ pub(super) fn show(
                    without --crc it is shown as it is"
                     .to_owned(),
         });
+    }
+    if let Some(out) = &args.out {
+        let head = RecordHead {
+            title: format!("Flight record {name}"),
+            headline: "A record of version 2 has no summary: what happened is in its ticks."
+                .to_owned(),
+            ..RecordHead::default()
+        };
+        page::write(
+            out,
+            &head,
+            &[Track::of_ticks("recorded", &record.of, units)],
+        )?;
     }
     print(&if args.json {
         pretty(&record, "writing JSON")? + "\n"

@@ -249,8 +249,11 @@ fn what_the_supervisor_said_is_in_trace_record_verdict_and_report() {
     let report = fs::read_to_string(out.join("report.html")).unwrap();
     assert!(report.contains("What happened: supervisor"));
     assert!(!report.contains(">nothing<"));
+    // The data for the script has them once more.
+    let (drawn, data) = report.split_once("<script").unwrap();
     for event in ["ENGAGED", "HANDOVER", "LEVITATED", "RECORD_FROZEN"] {
-        let (told, said) = (report.matches(event).count(), with(event));
+        assert!(data.contains(event), "{event}");
+        let (told, said) = (drawn.matches(event).count(), with(event));
         assert!(said > 0 && told == said, "{event}: {told} of {said}");
     }
 }

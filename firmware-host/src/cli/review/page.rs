@@ -1,0 +1,90 @@
+//! `review --out`: the recorded ticks as a page.
+
+use crate::cli::error::CommandError;
+use crate::cli::output::{self, Staging};
+use crate::cli::review::Examined;
+use firmware_bench::record::file::PlaneRecord;
+use firmware_bench::record::ticks::Ticks;
+use firmware_bench::report::record::{RecordHead, record_html};
+use firmware_bench::report::summary::summary;
+use firmware_bench::report::track::Track;
+use firmware_bench::run::verdict::PolicyRun;
+use std::path::Path;
+
+/// Writes `report.html` to a folder, whole or not at all.
+pub(super) fn write(out: &Path, head: &RecordHead, tracks: &[Track]) -> Result<(), CommandError> {
+    output::probe(out)?;
+    let html =
+        record_html(head, tracks).map_err(|e| CommandError::other("drawing the report", e))?;
+    let staging = Staging::for_folder(out)?;
+    staging.write("report.html", html)?;
+    staging.publish()?;
+    Ok(())
+}
+
+/// What stands above the figures of these events; `damage`: what is wrong with their file.
+pub(super) fn head(name: &str, events: &[Examined<'_>], damage: &[String]) -> RecordHead {
+    let many = events.len() > 1;
+    let told: Vec<String> = (events.iter().enumerate())
+        .map(|(i, of)| {
+            let told = of.event.told().map_or_else(
+                || "No verdict: what came of the event is not whole in the file.".to_owned(),
+                |told| told.paragraph(),
+            );
+            match many {
+                true => format!("Event {}: {told}", i + 1),
+                false => told,
+            }
+        })
+        .collect();
+    let differs = events.iter().filter_map(|of| {
+        let replay = of.event.replay.as_ref().ok()?;
+        let text = format!(
+            "replayed, {} of {} ticks are not as they are recorded",
+            replay.differing, replay.ticks
+        );
+        (replay.differing > 0).then_some(text)
+    });
+    RecordHead {
+        title: format!("Flight record {name}"),
+        headline: told.join(" "),
+        story: String::new(),
+        warnings: damage.iter().cloned().chain(differs).collect(),
+    }
+}
+
+/// What each plane of each event has recorded, under a name that tells it from the others, and what was simulated of it.
+pub(super) fn tracks(events: &[Examined<'_>]) -> Vec<Track> {
+    let mut tracks = Vec::new();
+    for (i, of) in events.iter().enumerate() {
+        for record in &of.event.records {
+            let name = name(i, record, events.len() > 1);
+            tracks.push(Track::of_ticks(&name, &Ticks::of(record), record.units()));
+        }
+        let (Some(again), Some(findings)) = (&of.again, &of.findings) else {
+            continue;
+        };
+        let ticks = Ticks::of(of.event.records[0]);
+        let begins = ticks.tick_of(findings.first) as f64 + findings.launch.tick as f64;
+        let begins_ms = 1e3 * begins / again.scene.sample_rate_hz;
+        let scene = summary(&again.scene);
+        for run in &again.results.runs {
+            let run = PolicyRun {
+                name: format!("simulated: {}", run.name),
+                ..run.clone()
+            };
+            tracks.push(Track::of_run(&scene, &run).later(begins_ms));
+        }
+    }
+    tracks
+}
+
+fn name(event: usize, record: &PlaneRecord, many: bool) -> String {
+    let plane = (record.head.planes > 1).then(|| format!("plane {}", record.head.plane));
+    let event = many.then(|| format!("event {}", event + 1));
+    let parts: Vec<String> = event.into_iter().chain(plane).collect();
+    match parts.is_empty() {
+        true => "recorded".to_owned(),
+        false => format!("recorded, {}", parts.join(", ")),
+    }
+}

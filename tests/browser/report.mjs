@@ -1,0 +1,222 @@
+// Pages of the host in a real browser: node report.mjs CHROMIUM RUN.html MACHINE.html RECORD.html
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { createRequire } from "node:module";
+import { pathToFileURL } from "node:url";
+import { chromium } from "playwright-core";
+
+const AXE = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
+const SIZES = [[390, 844], [1280, 800], [2560, 1440]];
+// On an idle machine it takes less than one; here others may be at work.
+const OPENS_WITHIN_MS = 6000;
+
+const [executablePath, run, machine, record] = process.argv.slice(2);
+const browser = await chromium.launch({ executablePath, args: ["--no-sandbox"] });
+
+async function opened(file, { size, colorScheme = "light", javaScriptEnabled = true }) {
+  const [width, height] = size;
+  const context = await browser.newContext({ viewport: { width, height }, colorScheme, javaScriptEnabled });
+  const page = await context.newPage();
+  const said = [], requests = [];
+  page.on("console", (message) => said.push(message.text()));
+  page.on("pageerror", (error) => said.push(error.message));
+  page.on("request", (request) => requests.push(request.url()));
+  const began = performance.now();
+  await page.goto(pathToFileURL(file).href);
+  if (javaScriptEnabled) {
+    await page.waitForSelector("html.scripted", { state: "attached" });
+    // Until everything is on the screen.
+    await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => setTimeout(done))));
+  }
+  const took = performance.now() - began;
+  const closed = async () => {
+    assert.deepEqual(said, [], `${file}: the console is empty`);
+    assert.deepEqual(requests, [pathToFileURL(file).href], "nothing but the file is asked for");
+    await context.close();
+  };
+  return { page, took, closed };
+}
+
+// Reads what the figures show from the outside: pixels, lines, texts.
+const shownBy = (page) => page.evaluate(() => {
+  const panels = [...document.querySelectorAll("[data-panel]")];
+  // Read from a copy: reading a canvas of the page would change how it is drawn.
+  const copy = document.createElement("canvas").getContext("2d", { willReadFrequently: true });
+  const pixels = (canvas) => {
+    if (!canvas) return null;
+    [copy.canvas.width, copy.canvas.height] = [canvas.width, canvas.height];
+    copy.drawImage(canvas, 0, 0);
+    return new Uint32Array(copy.getImageData(0, 0, canvas.width, canvas.height).data.buffer);
+  };
+  const sum = (canvas) => pixels(canvas)?.reduce((sum, pixel) => (Math.imul(sum, 31) + pixel) | 0, 0) ?? null;
+  return {
+    colours: panels.map((panel) => new Set(pixels(panel.querySelector("canvas"))).size),
+    drawn: panels.map((panel) => sum(panel.querySelector("canvas"))),
+    overTime: panels.map((panel) => panel.querySelector(".u-over") !== null),
+    lines: panels.map((panel) => {
+      const line = panel.querySelector(".u-cursor-x"), over = panel.querySelector(".u-over");
+      if (!line) return null;
+      const at = line.getBoundingClientRect(), room = over.getBoundingClientRect();
+      return (at.right - room.left) / room.width;
+    }),
+    orbits: panels.map((panel) => sum(panel.querySelector("canvas.over"))),
+    values: panels.map((panel) => panel.querySelector(".value").textContent),
+    said: document.querySelector("#controls output").textContent,
+  };
+});
+
+const same = (values) => Math.max(...values) - Math.min(...values) < 0.01;
+const instant = async (page) => parseFloat(await page.textContent("#controls output"));
+
+async function fits(page, what) {
+  const [wide, room] = await page.evaluate(() => [document.documentElement.scrollWidth, innerWidth]);
+  assert.ok(wide <= room, `${what}: ${wide} px in ${room} px`);
+  // What is wider than its room must be in a part that scrolls.
+  const cut = await page.evaluate(() => [...document.querySelectorAll("body *")]
+    .filter((e) => e.getClientRects().length && !e.closest(".scroll, svg, .live") && e.getBoundingClientRect().right > innerWidth + 1)
+    .map((e) => e.outerHTML.slice(0, 80)));
+  assert.deepEqual(cut, [], `${what}: nothing is cut`);
+}
+
+// In the dark only the colours are others. What is not to be seen is not looked at: thousands of lines of drawings would only
+// be walked through. One table and the keys are opened.
+async function accessible(page, what, rules) {
+  await page.evaluate(() => {
+    document.querySelectorAll(".still").forEach((drawing) => drawing.checkVisibility() || drawing.remove());
+    for (const folded of [".data", "#controls details"]) document.querySelector(folded).open = true;
+  });
+  await page.evaluate(AXE);
+  const { violations } = await page.evaluate((rules) => axe.run(rules ? { runOnly: rules } : {}), rules);
+  const told = violations.map((v) => `${v.id}: ${v.nodes.slice(0, 3).map((n) => n.html.slice(0, 120)).join(" ")}`);
+  assert.deepEqual(told, [], what);
+}
+
+async function allDrawn(page, what) {
+  const { colours, overTime } = await shownBy(page);
+  assert.ok(colours.length >= 5, `${what}: ${colours.length} panels`);
+  assert.ok(overTime.some((is) => is) && overTime.some((is) => !is), what);
+  colours.forEach((count, i) => assert.ok(count > 5, `${what}: panel ${i} has ${count} colours`));
+}
+
+async function moves(page) {
+  const before = await shownBy(page);
+  const times = before.overTime.flatMap((is, i) => (is ? [i] : []));
+  const first = page.locator("[data-panel] .u-over").first();
+  await first.scrollIntoViewIfNeeded();
+  const room = await first.boundingBox();
+
+  // The mouse moves one time for all.
+  await page.mouse.move(room.x + 0.3 * room.width, room.y + 20);
+  const pointed = await shownBy(page);
+  assert.ok(same(times.map((i) => pointed.lines[i])), `lines at ${pointed.lines}`);
+  assert.ok(Math.abs(pointed.lines[times[0]] - 0.3) < 0.02, `${pointed.lines[times[0]]}`);
+  assert.notDeepEqual(pointed.orbits, before.orbits, "the dots of the orbits move too");
+  assert.notDeepEqual(pointed.values, before.values);
+
+  // Dragging zooms all; double click goes back.
+  await page.mouse.move(room.x + 0.2 * room.width, room.y + 20);
+  await page.mouse.down();
+  await page.mouse.move(room.x + 0.4 * room.width, room.y + 30, { steps: 5 });
+  await page.mouse.up();
+  const zoomed = await shownBy(page);
+  for (const i of times) assert.notEqual(zoomed.drawn[i], before.drawn[i], `panel ${i} is zoomed`);
+  const [from, to] = await page.evaluate(() => {
+    const time = document.querySelector('[data-do="time"]');
+    return [+time.min, +time.max];
+  });
+  const [first_, last] = await page.evaluate(() => JSON.parse(document.getElementById("report-data").textContent).window);
+  assert.ok(Math.abs((to - from) / (last - first_) - 0.2) < 0.01, `${from} to ${to} of ${first_} to ${last}`);
+  await page.mouse.dblclick(room.x + 0.5 * room.width, room.y + 20);
+  assert.equal(+(await page.getAttribute('[data-do="time"]', "max")), last);
+
+  // An entry of the event list leads to its time, also when that is not in view.
+  const entry = page.locator("[data-t] button").last();
+  const at = parseFloat(await entry.textContent());
+  await entry.click();
+  assert.ok(Math.abs((await instant(page)) - at) < 2e-3, `${await instant(page)} for ${at}`);
+  await page.keyboard.press("p");
+  assert.ok((await instant(page)) < at, "P goes to the event before");
+  await page.keyboard.press("n");
+  assert.ok(Math.abs((await instant(page)) - at) < 2e-3, "N goes to the next");
+
+  // Keys alone: zoom, step, escape, play.
+  await page.evaluate(() => document.activeElement.blur());
+  await page.keyboard.press("+");
+  const half = +(await page.getAttribute('[data-do="time"]', "max")) - +(await page.getAttribute('[data-do="time"]', "min"));
+  assert.ok(Math.abs(half / (last - first_) - 0.5) < 0.01, `+ shows ${half}`);
+  const here = await instant(page);
+  await page.keyboard.press("ArrowLeft");
+  assert.ok((await instant(page)) < here);
+  await page.keyboard.press("Escape");
+  assert.equal(+(await page.getAttribute('[data-do="time"]', "max")), last);
+  await page.keyboard.press("0");
+  await page.evaluate(() => document.activeElement.blur());
+  const still = await instant(page);
+  await page.keyboard.press("Space");
+  await page.waitForTimeout(400);
+  const playing = await instant(page);
+  assert.notEqual(playing, still, "space plays");
+  await page.keyboard.press("Space");
+  const stopped = await instant(page);
+  await page.waitForTimeout(150);
+  assert.equal(await instant(page), stopped, "and stops");
+  await page.click('[data-do="play"]');
+  await page.waitForTimeout(200);
+  assert.notEqual(await instant(page), stopped, "the button plays as well");
+  await page.click('[data-do="play"]');
+
+  // Every control can be reached by the tab key.
+  await page.focus('[data-do="play"]');
+  const reached = new Set();
+  for (let i = 0; i < 12; i++) {
+    reached.add(await page.evaluate(() => document.activeElement.dataset.do));
+    await page.keyboard.press("Tab");
+  }
+  for (const name of ["play", "speed", "next", "previous", "in", "out", "whole", "back", "time"])
+    assert.ok(reached.has(name), `${name} among ${[...reached]}`);
+}
+
+async function works(name, file) {
+  for (const size of SIZES) {
+    for (const colorScheme of ["light", "dark"]) {
+      const what = `${name}, ${size.join("x")}, ${colorScheme}`;
+      const { page, closed } = await opened(file, { size, colorScheme });
+      await allDrawn(page, what);
+      await fits(page, what);
+      if (colorScheme === "light") {
+        await moves(page);
+        await accessible(page, what);
+      } else await accessible(page, what, ["color-contrast"]);
+      await closed();
+    }
+  }
+  // Without script the figures stand still, on paper too.
+  const { page, closed } = await opened(file, { size: SIZES[0], javaScriptEnabled: false });
+  const figures = page.locator("figure svg");
+  assert.ok((await figures.count()) >= 5);
+  assert.ok(await figures.first().isVisible());
+  assert.ok(!(await page.locator("#controls").isVisible()));
+  await fits(page, `${name} without script`);
+  await closed();
+  const printed = await opened(file, { size: SIZES[1] });
+  await printed.page.emulateMedia({ media: "print" });
+  assert.ok(await printed.page.locator("figure svg").first().isVisible());
+  assert.ok(!(await printed.page.locator(".live").first().isVisible()));
+  if (name === "record") await accessible(printed.page, "drawings of the record");
+  await printed.closed();
+}
+
+try {
+  // Alone, and once before to start the browser's processes.
+  for (const which of ["first", "second"]) {
+    const { took, closed } = await opened(run, { size: SIZES[1] });
+    await closed();
+    console.log(`${which} opening of the run: ${took.toFixed(0)} ms`);
+    assert.ok(took < OPENS_WITHIN_MS, `opened in ${took} ms`);
+  }
+  const began = performance.now();
+  await Promise.all(Object.entries({ run, machine, record }).map(([name, file]) => works(name, file)));
+  console.log(`everything else: ${(performance.now() - began).toFixed(0)} ms`);
+} finally {
+  await browser.close();
+}
