@@ -47,9 +47,9 @@
 //!                                                                                 └─► recorder
 //! ```
 //!
-//! Files, each importing only from those above it: `words`, `scalar`, `product`, `q`, `math`, `vec2`, `signal`, `config`, `coeffs`,
-//! `spin`, `unbalance`, `innovation`, `reading`, `stuck`, `guard`, `actuator_monitor`, `estimate`, `beside`, `detect`, `impact`, `classify`, `phase`, `trust`, `law`, `limit`, `handover`, `severity`,
-//! `tick`, `track`, `recorder`, `shaft`, `record`, `per_unit`, `supervisor`, `rotor`, `self_test`, `watch`, `log_format`.
+//! Files, each importing only from those above it: `cells`, `words`, `scalar`, `product`, `q`, `math`, `vec2`, `signal`, `config`, `coeffs`,
+//! `spin`, `unbalance`, `innovation`, `reading`, `stuck`, `guard`, `actuator_monitor`, `estimate`, `beside`, `detect`, `impact`, `classify`, `phase`, `trust`, `law`, `limit`, `handover`, `tally`, `severity`,
+//! `tick`, `entry`, `track`, `events`, `latest`, `tape`, `recorder`, `record`, `per_unit`, `supervisor`, `split`, `shaft`, `coupling`, `rotor`, `self_test`, `watch`, `log_format`.
 
 // Unconditional: under `cfg(test)` std's own methods would silently replace micromath's.
 #![no_std]
@@ -58,15 +58,20 @@
 
 mod actuator_monitor;
 mod beside;
+mod cells;
 mod classify;
 mod coeffs;
 mod config;
+mod coupling;
 mod detect;
+mod entry;
 mod estimate;
+mod events;
 mod guard;
 mod handover;
 mod impact;
 mod innovation;
+mod latest;
 mod law;
 mod limit;
 #[cfg(feature = "defmt")]
@@ -86,8 +91,11 @@ mod severity;
 mod shaft;
 mod signal;
 mod spin;
+mod split;
 mod stuck;
 mod supervisor;
+mod tally;
+mod tape;
 mod tick;
 mod track;
 mod trust;
@@ -98,14 +106,15 @@ mod words;
 
 pub use coeffs::Scaling;
 pub use config::{Config, ConfigError, CoreError, NotRepresentable, PARAMETERS, Parameter};
+pub use entry::{ENTRY_WORDS, Entry};
+pub use events::QueuedEvent;
 pub use per_unit::{Core, Prepared};
 pub use q::{AccumulatorQ, Q};
 pub use record::{
-    Head, MOST_WORDS, NO_STATE, Part, Record, SECTION_BYTES, SUPERVISOR_VERSION, Section, Stamp,
-    Summary, crc_of,
+    Head, MOST_WORDS, NO_STATE, Part, RECORD_VERSION, Record, SECTION_BYTES, SUPERVISOR_VERSION,
+    Section, Stamp, Summary, crc_of,
 };
-pub use recorder::{ENTRY_WORDS, Entry, QueuedEvent, RECORD_VERSION};
-pub use rotor::{Rotor, RotorCommand};
+pub use rotor::{Machine, Rotor, RotorCommand, RotorReader, RotorTicker};
 pub use scalar::{Accumulator, Number, Scalar};
 pub use self_test::{SelfTest, self_test};
 pub use shaft::{Place, Shaft, ShaftError};
@@ -113,6 +122,7 @@ pub use signal::{
     Command, CoreCommand, CoreSample, Events, IntegratorHint, Limits, Mode, RejectReason, Report,
     Sample, Status,
 };
+pub use split::{CoreTicker, Published, Reader, Ticker};
 pub use supervisor::Supervisor;
 pub use track::{STRETCH_WORDS, STRETCHES, Stretch};
 pub use watch::CommandWatchdog;

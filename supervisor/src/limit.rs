@@ -266,21 +266,13 @@ pub(crate) struct Budget<S: Scalar> {
 words_of_fields!(Budget<S> { state });
 
 impl<S: Scalar> Budget<S> {
-    /// Cap now \[caps\]: a function of the state alone, so that it comes back as it fell.
+    /// Cap now \[caps\].
     #[inline]
     pub(crate) fn cap(&self, coeffs: &Coeffs<S>) -> S {
-        let Some(continuous) = coeffs.continuous else {
-            return S::ONE;
-        };
-        let square = continuous * continuous;
-        let over = self.state.value() - square;
-        if over <= S::ZERO {
-            return S::ONE;
+        match coeffs.continuous {
+            Some(continuous) => derated(self.state.value(), continuous),
+            None => S::ONE,
         }
-        let x = over.div(square * S::from_f32(FALL)).min(S::ONE);
-        // So written it ends at the continuous force however small that is.
-        let three = S::from_f32(3.0) - (x + x);
-        continuous + (S::ONE - continuous) * (S::ONE - x * x * three)
     }
 
     /// Some ticks, few against the thermal time, with this force \[caps\].
@@ -292,16 +284,29 @@ impl<S: Scalar> Budget<S> {
         }
     }
 
-    /// State over that of the continuous force; 0 without a budget.
-    pub(crate) fn state(&self, coeffs: &Coeffs<S>) -> f32 {
-        match coeffs.continuous {
-            Some(continuous) => self.state.value().to_f32() / (continuous * continuous).to_f32(),
-            None => 0.0,
-        }
+    /// The state \[caps²\].
+    #[inline]
+    pub(crate) fn state(&self) -> S {
+        self.state.value()
     }
 
     /// After a change of the unit of force.
     pub(crate) fn rescale(&mut self, force: f32) {
         self.state = self.state.scaled(force * force);
     }
+}
+
+/// The cap \[caps\] in a thermal state, for a force that is borne for ever: a function of the state alone, so that it comes back
+/// as it fell.
+#[inline]
+pub(crate) fn derated<S: Scalar>(state: S, continuous: S) -> S {
+    let square = continuous * continuous;
+    let over = state - square;
+    if over <= S::ZERO {
+        return S::ONE;
+    }
+    let x = over.div(square * S::from_f32(FALL)).min(S::ONE);
+    // So written it ends at the continuous force however small that is.
+    let three = S::from_f32(3.0) - (x + x);
+    continuous + (S::ONE - continuous) * (S::ONE - x * x * three)
 }

@@ -3,10 +3,12 @@
 use crate::beside::Beside;
 use crate::coeffs::{Coeffs, Scaling};
 use crate::config::{Config, CoreError, NotRepresentable};
+use crate::events::QueuedEvent;
 use crate::record::Record;
-use crate::recorder::{QueuedEvent, Recorder, Seen};
+use crate::recorder::{Recorder, Seen, Shared};
 use crate::scalar::Scalar;
 use crate::signal::{CoreCommand, CoreSample, Events, Mode, Report};
+use crate::tally::{Tally, Units};
 use crate::tick::State;
 use crate::vec2::Vec2;
 use crate::words::Words;
@@ -19,9 +21,17 @@ use crate::words::Words;
 #[derive(Debug, Clone)]
 #[repr(C)]
 pub struct Core<S: Scalar, const RECORD: usize = 512> {
+    pub(crate) plane: Plane<S>,
+    pub(crate) shared: Shared<RECORD>,
+}
+
+/// What the tick of a plane works with alone; what others see as well is in a [`Shared`] beside it.
+#[derive(Debug, Clone)]
+#[repr(C)]
+pub(crate) struct Plane<S: Scalar> {
     coeffs: Coeffs<S>,
     state: State<S>,
-    recorder: Recorder<S, RECORD>,
+    recorder: Recorder<S>,
 }
 
 /// Checked and converted configuration: made in the background, taken over between two ticks.
@@ -47,9 +57,142 @@ impl<S: Scalar> Prepared<S> {
     }
 }
 
+impl<S: Scalar> Plane<S> {
+    /// Takes another configuration over; see [`Core::reconfigure`].
+    pub(crate) fn reconfigure(&mut self, prepared: &Prepared<S>) {
+        let (speed, _) = self.state.rescale(&self.coeffs, &prepared.0);
+        self.coeffs = prepared.0;
+        self.recorder.reconfigured(&prepared.1, speed);
+    }
+
+    /// One tick, with what the recorder does between two ticks.
+    #[inline]
+    pub(crate) fn tick<const N: usize>(
+        &mut self,
+        shared: &Shared<N>,
+        sample: &CoreSample<S>,
+    ) -> CoreCommand<S> {
+        if self.is_back(shared) {
+            self.rearm(shared);
+        }
+        let (mut command, seen) = self.tick_beside(shared, sample, &());
+        command.events |= self.advance(shared, seen, sample, command.mode);
+        if self.may_keep() {
+            self.keep(shared);
+        }
+        command
+    }
+
+    /// A tick of a plane that knows what is beside it, without what the recorder does between two ticks; and what it was for
+    /// that.
+    #[inline]
+    pub(crate) fn tick_beside<const N: usize>(
+        &mut self,
+        shared: &Shared<N>,
+        sample: &CoreSample<S>,
+        beside: &impl Beside<S>,
+    ) -> (CoreCommand<S>, Seen) {
+        self.recorder.told(&shared.tape, sample);
+        let command = self.state.tick(sample, beside, &self.coeffs);
+        let seen = (self.recorder).push(shared, sample, &self.state, &command);
+        (command, seen)
+    }
+
+    /// Velocity of the axis; `None` where it is not known by more than one sample.
+    #[inline]
+    pub(crate) fn velocity(&self) -> Option<Vec2<S>> {
+        self.state.observer.known_velocity()
+    }
+
+    /// Force that acts now.
+    #[inline]
+    pub(crate) fn delivered(&self) -> Vec2<S> {
+        self.state.observer.delivered()
+    }
+
+    /// The recorder goes on, by what both planes of a rotor have seen.
+    #[inline]
+    pub(crate) fn advance<const N: usize>(
+        &mut self,
+        shared: &Shared<N>,
+        seen: Seen,
+        sample: &CoreSample<S>,
+        mode: Mode,
+    ) -> Events {
+        let by = (&self.state.severity, &self.coeffs);
+        (self.recorder).advance(shared, seen, (sample, mode), by)
+    }
+
+    /// Whether the recorder wants what is remembered, and the tick was one that has time for it.
+    #[inline]
+    pub(crate) fn may_keep(&self) -> bool {
+        self.recorder.is_due() && !self.state.phase.is_engaged()
+    }
+
+    /// Keeps what is remembered: a replay begins here.
+    pub(crate) fn keep<const N: usize>(&mut self, shared: &Shared<N>) {
+        (self.recorder).keep(&shared.tape, &mut self.state, &self.coeffs);
+    }
+
+    /// Whether no event is being recorded, and none waits to be read.
+    #[inline]
+    pub(crate) fn is_armed(&self) -> bool {
+        self.recorder.is_armed()
+    }
+
+    /// Whether the background has given a frozen record back.
+    #[inline]
+    pub(crate) fn is_back<const N: usize>(&self, shared: &Shared<N>) -> bool {
+        self.recorder.is_back(&shared.tape)
+    }
+
+    /// Waits for the next engagement.
+    pub(crate) fn rearm<const N: usize>(&mut self, shared: &Shared<N>) {
+        self.recorder.rearm(&shared.tape);
+        self.recorder.part(&mut self.state.severity.fastest);
+    }
+
+    /// The units of samples and commands.
+    #[inline]
+    pub(crate) fn scaling(&self) -> &Scaling {
+        &self.coeffs.scaling
+    }
+
+    #[inline]
+    fn tally(&self) -> Tally<S> {
+        let State {
+            guard,
+            phase,
+            trust,
+            budget,
+            severity,
+            ..
+        } = &self.state;
+        Tally {
+            mode: phase.mode(),
+            handed_back: trust.handed_back,
+            missed_ticks: guard.missed_ticks,
+            repeated_ticks: guard.repeated_ticks,
+            late_ticks: guard.late_ticks,
+            refusal: guard.refusal,
+            fault: guard.fault,
+            thermal: budget.state(),
+            ..severity.tally(self.recorder.earlier)
+        }
+    }
+
+    /// What has happened, for everybody to see; and in which units, where these may have changed. With a frame of its own, and not
+    /// in that of the tick.
+    #[inline(never)]
+    pub(crate) fn publish<const N: usize>(&self, shared: &Shared<N>, with_units: bool) {
+        let units = with_units.then(|| Units::of(&self.coeffs));
+        shared.latest.put(&self.tally(), units.as_ref());
+    }
+}
+
 impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
     /// Bytes of the whole that are the flight recorder's: its ring, the queue of events, and where it is.
-    pub const RECORDER_BYTES: usize = size_of::<Recorder<S, RECORD>>();
+    pub const RECORDER_BYTES: usize = size_of::<Recorder<S>>() + size_of::<Shared<RECORD>>();
 
     /// A supervisor that starts levitated.
     pub fn new(prepared: &Prepared<S>) -> Self {
@@ -57,11 +200,15 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
     }
 
     /// That of one plane, of so many.
+    #[inline(always)]
     pub(crate) fn of_plane(prepared: &Prepared<S>, plane: [u8; 2]) -> Self {
         Self {
-            coeffs: prepared.0,
-            state: State::default(),
-            recorder: Recorder::new(&prepared.1, plane),
+            plane: Plane {
+                coeffs: prepared.0,
+                state: State::default(),
+                recorder: Recorder::new::<RECORD>(&prepared.1, plane),
+            },
+            shared: Shared::new(),
         }
     }
 
@@ -80,7 +227,7 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
 
     /// Goes on from these words.
     pub(crate) fn resume(&mut self, words: &[u32]) {
-        self.state = State::take(&mut words.iter().copied());
+        self.plane.state = State::take(&mut words.iter().copied());
     }
 
     /// Takes another configuration over, to hold from the next tick on. What is known of the rotor stays,
@@ -88,110 +235,45 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
     /// their time, and the tick of the change has [`Events::RECONFIGURED`]. A smaller cap holds at once: from
     /// there on the slew limit holds.
     pub fn reconfigure(&mut self, prepared: &Prepared<S>) {
-        let (speed, index) = self.state.rescale(&self.coeffs, &prepared.0);
-        self.coeffs = prepared.0;
-        self.recorder.reconfigured(&prepared.1, speed, index);
+        self.plane.reconfigure(prepared);
     }
 
     /// One tick: total and bounded; the one loop that depends on data makes up for at most four missed
     /// ticks.
     #[inline]
     pub fn tick(&mut self, sample: &CoreSample<S>) -> CoreCommand<S> {
-        let (mut command, seen) = self.tick_beside(sample, &());
-        command.events |= self.advance(seen, sample, command.mode);
-        if self.may_keep() {
-            self.keep();
-        }
-        command
-    }
-
-    /// The same of a plane that knows what is beside it, without what the recorder does between two ticks; and what it was for
-    /// that.
-    #[inline]
-    pub(crate) fn tick_beside(
-        &mut self,
-        sample: &CoreSample<S>,
-        beside: &impl Beside<S>,
-    ) -> (CoreCommand<S>, Seen) {
-        let command = self.state.tick(sample, beside, &self.coeffs);
-        let seen = (self.recorder).push(sample, &self.state, &command);
-        (command, seen)
-    }
-
-    /// Velocity of the axis; `None` where it is not known by more than one sample.
-    #[inline]
-    pub(crate) fn velocity(&self) -> Option<Vec2<S>> {
-        self.state.observer.known_velocity()
-    }
-
-    /// Whether the recorder wants what is remembered, and the tick was one that has time for it.
-    #[inline]
-    pub(crate) fn may_keep(&self) -> bool {
-        self.recorder.is_due() && !self.state.phase.is_engaged()
-    }
-
-    /// Keeps what is remembered: a replay begins here.
-    pub(crate) fn keep(&mut self) {
-        self.recorder.keep(&mut self.state);
-    }
-
-    /// The recorder goes on, by what both planes of a rotor have seen.
-    #[inline]
-    pub(crate) fn advance(&mut self, seen: Seen, sample: &CoreSample<S>, mode: Mode) -> Events {
-        (self.recorder).advance(seen, (sample, mode), &self.state.severity)
-    }
-
-    /// Whether no event is being recorded, and none waits to be read.
-    #[inline]
-    pub(crate) fn is_armed(&self) -> bool {
-        self.recorder.is_armed()
-    }
-
-    /// Force that acts now.
-    #[inline]
-    pub(crate) fn delivered(&self) -> Vec2<S> {
-        self.state.observer.delivered()
+        self.plane.tick(&self.shared, sample)
     }
 
     /// The units of samples and commands.
     #[inline]
     pub fn scaling(&self) -> &Scaling {
-        &self.coeffs.scaling
+        self.plane.scaling()
     }
 
     /// What the supervisor is doing.
     pub fn mode(&self) -> Mode {
-        self.state.phase.mode()
+        self.plane.state.phase.mode()
     }
 
     /// What has happened since the supervisor was made, in SI.
     pub fn report(&self) -> Report {
-        Report {
-            thermal_state: self.state.budget.state(&self.coeffs),
-            force_cap_n: self.state.budget.cap(&self.coeffs).to_f32() * self.coeffs.scaling.force_n,
-            missed_ticks: self.state.guard.missed_ticks,
-            repeated_ticks: self.state.guard.repeated_ticks,
-            late_ticks: self.state.guard.late_ticks,
-            refusal: self.state.guard.refusal,
-            fault: self.state.guard.fault,
-            handed_back: u32::from(self.state.trust.handed_back),
-            ..(self.state.severity).report(self.recorder.earlier, &self.coeffs)
-        }
+        let plane = &self.plane;
+        plane.tally().report(&Units::of(&plane.coeffs))
     }
 
     /// The frozen flight record, if there is one.
     pub fn record(&self) -> Option<Record<'_, S, RECORD>> {
-        Record::new(&self.recorder, &self.coeffs)
+        Record::new(&self.shared.tape)
     }
 
     /// Discards a frozen record and waits for the next engagement.
     pub fn rearm(&mut self) {
-        self.recorder.rearm();
-        self.recorder.part(&mut self.state.severity.fastest);
+        self.plane.rearm(&self.shared);
     }
 
     /// Next event for the background task, oldest first.
     pub fn next_event(&mut self) -> Option<QueuedEvent> {
-        self.recorder.next_event()
+        self.shared.events.pop()
     }
 }

@@ -4,14 +4,19 @@
 //! A section is, in words of 32 bits, little-endian: its [`Part`]; the record that it belongs to; its number among those of its
 //! part in the lower half and the count of words that follow in the upper; these; the CRC-32 (IEEE) of all before.
 
-use crate::coeffs::Coeffs;
-use crate::config::Config;
-use crate::recorder::{Closed, ENTRY_WORDS, Entry, RECORD_VERSION, Recorder};
-use crate::scalar::Scalar;
+use crate::config::{Config, PARAMETERS};
+use crate::entry::{ENTRY_WORDS, Entry};
+use crate::scalar::{Number, Scalar};
 use crate::severity::{Fastest, Severity};
+use crate::tally::Units;
+use crate::tape::{Closed, STATE_WORDS, Tape};
+use crate::tick::State;
 use crate::track::STRETCH_WORDS;
 use crate::words::{Words, crc_of_word};
+use core::marker::PhantomData;
 
+/// Version of what is written.
+pub const RECORD_VERSION: u16 = 3;
 /// Most words that a section has between its head and its checksum.
 pub const MOST_WORDS: usize = 180;
 /// Most bytes of a section.
@@ -173,18 +178,71 @@ impl Summary {
     pub fn from_words(words: &[u32]) -> Self {
         Self::take(&mut words.iter().copied())
     }
+}
 
-    fn new<S: Scalar>(
-        (before, after): (&Severity<S>, &Severity<S>),
-        (closed, coast_down): (Closed, bool),
-        coeffs: &Coeffs<S>,
-    ) -> Self {
-        let none = Fastest::default();
-        let (before, now) = (before.report(none, coeffs), after.report(none, coeffs));
-        Self {
+/// A frozen record. It does not change while this is there.
+#[derive(Debug, Clone, Copy)]
+pub struct Record<'a, S: Scalar, const N: usize> {
+    tape: &'a Tape<N>,
+    closed: Closed,
+    number: PhantomData<S>,
+    /// Of a rotor.
+    pub(crate) shaft: Option<[f32; 9]>,
+}
+
+impl<'a, S: Scalar, const N: usize> Record<'a, S, N> {
+    pub(crate) fn new(tape: &'a Tape<N>) -> Option<Self> {
+        tape.is_frozen().then(|| Self {
+            tape,
+            closed: Closed::from_words(Words::take(&mut tape.closed.words())),
+            number: PhantomData,
+            shaft: None,
+        })
+    }
+
+    fn entry(&self, index: usize) -> Option<Entry> {
+        let Closed { written, ticks, .. } = self.closed;
+        let index = u32::try_from(index).ok().filter(|index| *index < ticks)?;
+        let place = self
+            .tape
+            .entry(written.wrapping_sub(ticks).wrapping_add(index))?;
+        Some(Entry::from_words(Words::take(&mut place.words())))
+    }
+
+    /// Entries from oldest to newest.
+    pub fn entries(&self) -> impl Iterator<Item = Entry> {
+        (0..N).map_while(|index| self.entry(index))
+    }
+
+    /// The configuration that the core had when its state was kept.
+    pub fn config(&self) -> Config {
+        let values: [f32; PARAMETERS.len()] = Words::take(&mut self.tape.config.words());
+        Config::from_values(values)
+    }
+
+    /// What came of the event.
+    pub fn summary(&self) -> Summary {
+        let (tape, closed) = (self.tape, &self.closed);
+        let opening = match (closed.keeps, closed.is_new) {
+            (false, _) => Severity::take(&mut tape.opening.words()),
+            (true, false) => State::<S>::severity_in(tape.state.words()),
+            (true, true) => Severity::default(),
+        };
+        let [before, now] = [
+            (opening, &tape.opening_units),
+            (
+                Severity::take(&mut tape.closing.words()),
+                &tape.closing_units,
+            ),
+        ]
+        .map(|(severity, units)| {
+            let units = Units::take(&mut units.words());
+            severity.tally(Fastest::default()).report(&units)
+        });
+        Summary {
             mode: closed.mode as u32,
             bearing_on: closed.on,
-            coast_down,
+            coast_down: closed.coast_down,
             touches: now.impacts.wrapping_sub(before.impacts),
             contact_ticks: now.contact_ticks.wrapping_sub(before.contact_ticks),
             hardest_impact_m_s: now.impact_speed_max_m_s,
@@ -195,75 +253,39 @@ impl Summary {
             landings: now.landings,
         }
     }
-}
-
-/// A frozen record.
-#[derive(Debug, Clone, Copy)]
-pub struct Record<'a, S: Scalar, const N: usize> {
-    recorder: &'a Recorder<S, N>,
-    coeffs: &'a Coeffs<S>,
-    /// Of a rotor.
-    pub(crate) shaft: Option<[f32; 9]>,
-}
-
-impl<'a, S: Scalar, const N: usize> Record<'a, S, N> {
-    pub(crate) fn new(recorder: &'a Recorder<S, N>, coeffs: &'a Coeffs<S>) -> Option<Self> {
-        recorder.is_frozen().then_some(Self {
-            recorder,
-            coeffs,
-            shaft: None,
-        })
-    }
-
-    /// Entries from oldest to newest.
-    pub fn entries(&self) -> impl Iterator<Item = &'a Entry> {
-        let recorder = self.recorder;
-        (0..N).map_while(|index| recorder.entry(index))
-    }
-
-    /// The configuration that the core had when its state was kept.
-    pub fn config(&self) -> &'a Config {
-        self.recorder.config()
-    }
-
-    /// What came of the event.
-    pub fn summary(&self) -> Summary {
-        let recorder = self.recorder;
-        Summary::new(
-            (&recorder.opening, &recorder.closing),
-            (recorder.closed, recorder.coast_down),
-            self.coeffs,
-        )
-    }
 
     fn head(&self, stamp: &Stamp) -> Head {
-        let recorder = self.recorder;
-        let (ticks, since) = recorder.lengths();
-        let [plane, planes] = recorder.plane.map(u32::from);
+        let closed = &self.closed;
+        let [plane, planes] = closed.plane.map(u32::from);
+        let state_at = if closed.keeps && S::NUMBER != Number::Double {
+            closed.ticks.wrapping_sub(closed.since)
+        } else {
+            NO_STATE
+        };
         Head {
             version: u32::from(RECORD_VERSION),
             supervisor: SUPERVISOR_VERSION,
             number: S::NUMBER as u32,
             plane,
             planes,
-            ticks: ticks as u32,
-            state_at: since.map_or(NO_STATE, |since| ticks.wrapping_sub(since) as u32),
-            state_words: recorder.kept.word_count(),
-            stretches: recorder.track.stretches().len() as u32,
-            closed_at: recorder.closed.sequence,
-            dropped: recorder.dropped,
+            ticks: closed.ticks,
+            state_at,
+            state_words: STATE_WORDS as u32,
+            stretches: closed.stretches,
+            closed_at: closed.sequence,
+            dropped: closed.dropped,
             firmware: stamp.firmware,
             time_us: stamp.time_us,
             at_sequence: stamp.at_sequence,
         }
     }
 
-    /// A section of the record, 0 the first; `None` beyond the last. `stamp` is the same for all sections. To be written one after the other as they are; [`Section::seal`] comes between, where the supervisor
-    /// need not be locked.
+    /// A section of the record, 0 the first; `None` beyond the last. `stamp` is the same for all sections. They are written one
+    /// after the other as they are, each sealed by [`Section::seal`].
     pub fn section(&self, index: u32, stamp: &Stamp) -> Option<Section> {
         let head = self.head(stamp);
         let mut section = Section::new(&head);
-        let recorder = self.recorder;
+        let tape = self.tape;
         let mut index = index as usize;
         for part in Part::ALL {
             let (words, per_section) = match part {
@@ -288,21 +310,25 @@ impl<'a, S: Scalar, const N: usize> Record<'a, S, N> {
                 Part::Config => self.config().values().put(&mut put),
                 Part::Shaft => self.shaft.unwrap_or_default().put(&mut put),
                 Part::Track => {
-                    let stretches = recorder.track.stretches().iter().skip(from);
-                    let these = stretches.take(per_section);
-                    these.for_each(|stretch| stretch.words().put(&mut put));
+                    let complete = tape.track.iter().take(head.stretches as usize);
+                    let these = complete.skip(from).take(per_section);
+                    these.for_each(|stretch| stretch.words().for_each(&mut put));
                 }
                 Part::State => {
                     let mut at = 0;
-                    recorder.kept.put(&mut |word| {
+                    let mut word = |word| {
                         if (from..from + per_section).contains(&at) {
                             put(word);
                         }
                         at += 1;
-                    });
+                    };
+                    match self.closed.is_new {
+                        true => State::<S>::default().put(&mut word),
+                        false => tape.state.words().for_each(&mut word),
+                    }
                 }
                 Part::Ticks => {
-                    let these = (from..from + per_section).map_while(|i| recorder.entry(i));
+                    let these = (from..from + per_section).map_while(|i| self.entry(i));
                     these.for_each(|entry| entry.words().put(&mut put));
                 }
                 Part::End => {}
@@ -332,8 +358,7 @@ const fn number(text: &str) -> u32 {
 #[derive(Debug, Clone)]
 pub struct Section {
     /// Little-endian.
-    words: [[u8; 4]; SECTION_BYTES / 4],
-    length: usize,
+    words: heapless::Vec<[u8; 4], { SECTION_BYTES / 4 }>,
     /// Of the record that it belongs to.
     head: Head,
     sealed: bool,
@@ -342,8 +367,7 @@ pub struct Section {
 impl Section {
     fn new(head: &Head) -> Self {
         Self {
-            words: [[0; 4]; SECTION_BYTES / 4],
-            length: 0,
+            words: heapless::Vec::new(),
             head: *head,
             sealed: false,
         }
@@ -359,10 +383,8 @@ impl Section {
     /// Once, and not for each word of the state.
     #[inline(never)]
     fn push(&mut self, word: u32) {
-        if let Some(place) = self.words.get_mut(self.length) {
-            *place = word.to_le_bytes();
-            self.length += 1;
-        }
+        // There is room: a section has no more words than this.
+        let _full = self.words.push(word.to_le_bytes());
     }
 
     /// Adds the record, the count and the checksum; the bytes are then as they are to be written.
@@ -372,10 +394,11 @@ impl Section {
             let mut record = !0;
             self.head
                 .put(&mut |word| record = crc_of_word(record, word));
-            let count = self.length.saturating_sub(3) as u32;
-            let [_, of, numbers, ..] = &mut self.words;
-            *of = record.to_le_bytes();
-            *numbers = (u32::from_le_bytes(*numbers) | count << 16).to_le_bytes();
+            let count = self.words.len().saturating_sub(3) as u32;
+            if let [_, of, numbers, ..] = self.words.as_mut_slice() {
+                *of = record.to_le_bytes();
+                *numbers = (u32::from_le_bytes(*numbers) | count << 16).to_le_bytes();
+            }
             let crc = crc_of(self.as_bytes());
             self.push(crc);
         }
@@ -383,10 +406,7 @@ impl Section {
     }
 
     fn as_bytes(&self) -> &[u8] {
-        self.words
-            .get(..self.length)
-            .unwrap_or_default()
-            .as_flattened()
+        self.words.as_slice().as_flattened()
     }
 }
 

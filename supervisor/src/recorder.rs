@@ -1,134 +1,21 @@
-//! Flight recorder: what the ticks of an event were told and what came of it, from a state on from which they can be replayed;
-//! a slow track that reaches to its end; and a queue of events for the background task.
+//! Flight recorder, the tick's side of it: writes what the ticks of an event were told and what came of it, from a state on from
+//! which they can be replayed; a slow track that reaches to its end; and events for the background task.
 
+use crate::coeffs::Coeffs;
 use crate::config::Config;
+use crate::entry;
+use crate::events::{EventQueue, QueuedEvent};
+use crate::latest::Latest;
 use crate::scalar::Scalar;
 use crate::severity::{Fastest, Severity};
 use crate::signal::{CoreCommand, CoreSample, Events, Mode, Status};
+use crate::tally::Units;
+use crate::tape::{CONFIG_WORDS, Closed, Tape};
 use crate::tick::State;
-use crate::track::Track;
+use crate::track;
 use crate::vec2::Vec2;
 use crate::words::Words as _;
-
-/// Version of what [`crate::Record`] writes.
-pub const RECORD_VERSION: u16 = 3;
-
-/// One tick, 48 bytes: all that it depends on but for what was before, and what came of it. Numbers are those of the core, per
-/// unit, as their bits.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[repr(C)]
-pub struct Entry {
-    /// Sequence number of the sample.
-    pub sequence: u32,
-    /// Position of the sample \[clearances\].
-    pub position: [u32; 2],
-    /// Spin \[1/t₀\].
-    pub spin: u32,
-    /// Force that the levitation controller wanted \[caps\].
-    pub levitation: [u32; 2],
-    /// What the actuator was measured to deliver \[caps\].
-    pub applied: [u32; 2],
-    /// Commanded force, in shadow what it would have been \[caps\].
-    pub force: [u32; 2],
-    /// [`Mode`] as a number.
-    pub mode: u8,
-    /// Low byte of [`crate::Limits`].
-    pub limits: u8,
-    /// Low 16 bits of [`Events`].
-    pub events: u16,
-    /// Bits of [`Status`].
-    pub status: u32,
-}
-
-/// Words of an entry.
-pub const ENTRY_WORDS: usize = 12;
-
-impl Entry {
-    fn new<S: Scalar>(sample: &CoreSample<S>, command: &CoreCommand<S>) -> Self {
-        Self {
-            sequence: sample.sequence,
-            position: sample.position.map(S::bits),
-            spin: sample.spin.bits(),
-            levitation: sample.levitation.map(S::bits),
-            applied: sample.applied.map(S::bits),
-            force: command.own.map(S::bits),
-            mode: command.mode as u8,
-            limits: command.limits.bits() as u8,
-            events: command.events.bits() as u16,
-            status: sample.status.bits(),
-        }
-    }
-
-    /// The sample, as the core got it.
-    pub fn sample<S: Scalar>(&self) -> CoreSample<S> {
-        CoreSample {
-            sequence: self.sequence,
-            status: Status::from_bits_retain(self.status),
-            position: self.position.map(S::of_bits),
-            spin: S::of_bits(self.spin),
-            levitation: self.levitation.map(S::of_bits),
-            applied: self.applied.map(S::of_bits),
-        }
-    }
-
-    /// Whether this is the command that the tick gave, to the last bit.
-    pub fn gave<S: Scalar>(&self, command: &CoreCommand<S>) -> bool {
-        Self::new(&self.sample::<S>(), command) == *self
-    }
-
-    /// As words, each to be written down little-endian.
-    pub(crate) fn words(&self) -> [u32; ENTRY_WORDS] {
-        let [x, y] = self.position;
-        let [lx, ly] = self.levitation;
-        let [ax, ay] = self.applied;
-        let [fx, fy] = self.force;
-        let said = u32::from(self.mode) | u32::from(self.limits) << 8;
-        [
-            self.sequence,
-            x,
-            y,
-            self.spin,
-            lx,
-            ly,
-            ax,
-            ay,
-            fx,
-            fy,
-            said | u32::from(self.events) << 16,
-            self.status,
-        ]
-    }
-
-    /// From words as a record has them.
-    pub fn from_words(words: [u32; ENTRY_WORDS]) -> Self {
-        let [sequence, x, y, spin, lx, ly, ax, ay, fx, fy, said, status] = words;
-        Self {
-            sequence,
-            position: [x, y],
-            spin,
-            levitation: [lx, ly],
-            applied: [ax, ay],
-            force: [fx, fy],
-            mode: said as u8,
-            limits: (said >> 8) as u8,
-            events: (said >> 16) as u16,
-            status,
-        }
-    }
-}
-
-/// An event with its tick, for the background task.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct QueuedEvent {
-    /// Sequence number of the sample.
-    pub sequence: u32,
-    /// Mode after the tick.
-    pub mode: Mode,
-    /// What changed.
-    pub events: Events,
-}
+use core::sync::atomic::{AtomicU32, Ordering};
 
 /// What makes an engagement worth a record: one without must not spend the record of one with it.
 const WORTH_IT: Events = Events::TOUCHED.union(Events::SENSOR_FAULT);
@@ -164,29 +51,17 @@ impl Seen {
     }
 }
 
-/// How an event ended.
-#[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Closed {
-    pub(crate) sequence: u32,
-    pub(crate) mode: Mode,
-    /// The bearing was on.
-    pub(crate) on: bool,
-}
-
-/// Ring of `N` entries (a power of two).
-///
-/// The order of the fields is kept, and has written numbers on both sides of the entries: then the compiler
-/// clears these where the recorder will stay, and has no copy of them on the stack on the way there.
+/// What the tick's side knows of the record.
 #[derive(Debug, Clone)]
-#[repr(C)]
-pub(crate) struct Recorder<S: Scalar, const N: usize> {
+pub(crate) struct Recorder<S: Scalar> {
     progress: Progress,
     /// Entries written, those before the first without a break, and those when the state was kept: all modulo 2³².
     written: u32,
     begun_at: u32,
     kept_at: u32,
-    /// The state that is kept is of the entries that are there.
+    /// The state that is kept is of the entries that are there; and is the one of a new core, which is not written down.
     keeps: bool,
+    is_new: bool,
     /// Ticks until it is kept again.
     due: u32,
     /// The engagement that triggered has had a touch, or a fault.
@@ -195,66 +70,85 @@ pub(crate) struct Recorder<S: Scalar, const N: usize> {
     /// Fastest in the events before the one that is recorded.
     pub(crate) earlier: Fastest<S>,
     /// Which plane this is, of how many.
-    pub(crate) plane: [u8; 2],
-    /// Of the last tick of the record.
-    pub(crate) closed: Closed,
-    /// Coasting down was asked for in the event, or before it and still.
-    pub(crate) coast_down: bool,
+    plane: [u8; 2],
+    /// Coasting down was asked for in the event, or before it and still; and whether it had been when the state was kept.
+    coast_down: bool,
+    kept_coast_down: bool,
     /// Events that have found a record frozen, and those that did before this one began.
     dropping: u32,
-    pub(crate) dropped: u32,
-    /// What had come to the bearing when the event began.
-    pub(crate) opening: Severity<S>,
-    /// The state before some tick.
-    pub(crate) kept: State<S>,
-    /// The configuration now, and that of the state where it is another: not copied in a tick.
-    configs: [Config; 2],
-    now: u8,
-    kept_in: u8,
-    /// What had come to the bearing when the record froze.
-    pub(crate) closing: Severity<S>,
-    entries: [Entry; N],
-    pub(crate) track: Track<S>,
-    queued: heapless::Deque<QueuedEvent, 16>,
+    dropped: u32,
+    /// Values of the configuration now, and whether the tape has others.
+    config: [f32; CONFIG_WORDS],
+    stale: bool,
+    track: track::Progress<S>,
 }
 
-impl<S: Scalar, const N: usize> Recorder<S, N> {
-    const MASK: usize = {
-        assert!(
-            N.is_power_of_two() && N >= 4,
-            "record length must be a power of two, at least 4"
-        );
-        N - 1
-    };
-    /// Entries before the trigger.
-    const BEFORE: usize = N / 4;
+/// What both sides use.
+#[derive(Debug, Clone)]
+#[repr(C)]
+pub(crate) struct Shared<const N: usize> {
+    pub(crate) latest: Latest,
+    pub(crate) tape: Tape<N>,
+    pub(crate) events: EventQueue,
+}
 
-    pub(crate) fn new(config: &Config, plane: [u8; 2]) -> Self {
+impl<const N: usize> Shared<N> {
+    #[inline(always)]
+    pub(crate) const fn new() -> Self {
+        Self {
+            latest: Latest::new(),
+            tape: Tape::new(),
+            events: EventQueue::new(),
+        }
+    }
+}
+
+// Each once, and not wherever it is wanted; with a frame of its own and not in that of the tick.
+
+#[inline(never)]
+fn lay_severity<S: Scalar>(severity: &Severity<S>, cells: &[AtomicU32]) {
+    severity.lay(cells, 0);
+}
+
+#[inline(never)]
+fn lay_units<S: Scalar>(coeffs: &Coeffs<S>, cells: &[AtomicU32]) {
+    Units::of(coeffs).lay(cells, 0);
+}
+
+#[inline(never)]
+fn lay_values(values: &[f32], cells: &[AtomicU32]) {
+    (values.iter().zip(cells))
+        .for_each(|(value, cell)| cell.store(value.to_bits(), Ordering::Relaxed));
+}
+
+/// Entries before the trigger.
+const fn before<const N: usize>() -> usize {
+    N / 4
+}
+
+impl<S: Scalar> Recorder<S> {
+    /// Before the first tick.
+    #[inline(always)]
+    pub(crate) fn new<const N: usize>(config: &Config, plane: [u8; 2]) -> Self {
         Self {
             progress: Progress::Armed,
             written: 0,
             begun_at: 0,
             kept_at: 0,
-            // What is remembered before the first tick.
             keeps: true,
-            due: Self::BEFORE as u32,
+            is_new: true,
+            due: before::<N>() as u32,
             worth_it: false,
             lost: false,
             earlier: Fastest::default(),
             plane,
-            closed: Closed::default(),
             coast_down: false,
+            kept_coast_down: false,
             dropping: 0,
             dropped: 0,
-            opening: Severity::default(),
-            kept: State::default(),
-            configs: [*config; 2],
-            now: 0,
-            kept_in: 0,
-            closing: Severity::default(),
-            entries: [Entry::default(); N],
-            track: Track::new(),
-            queued: heapless::Deque::new(),
+            config: config.values(),
+            stale: true,
+            track: track::Progress::new(),
         }
     }
 
@@ -266,34 +160,57 @@ impl<S: Scalar, const N: usize> Recorder<S, N> {
 
     /// Keeps the state. In a quiet tick: it costs some hundred instructions.
     #[inline(never)]
-    pub(crate) fn keep(&mut self, state: &mut State<S>) {
+    pub(crate) fn keep<const N: usize>(
+        &mut self,
+        tape: &Tape<N>,
+        state: &mut State<S>,
+        coeffs: &Coeffs<S>,
+    ) {
         self.part(&mut state.severity.fastest);
-        self.kept.become_as(state);
-        self.kept_in = self.now;
-        (self.kept_at, self.keeps, self.due) = (self.written, true, Self::BEFORE as u32);
+        if core::mem::take(&mut self.stale) {
+            lay_values(&self.config, tape.config.all());
+            lay_units(coeffs, tape.opening_units.all());
+        }
+        self.kept_coast_down = state.severity.coast_down();
+        state.lay(tape.state.all(), 0);
+        (self.kept_at, self.due) = (self.written, before::<N>() as u32);
+        (self.keeps, self.is_new) = (true, false);
         // Before counts begin anew.
         let length = self.written.wrapping_sub(self.begun_at).min(N as u32);
         self.begun_at = self.written.wrapping_sub(length);
     }
 
-    /// What is kept is of another configuration.
-    pub(crate) fn reconfigured(&mut self, config: &Config, speed: S, index: f32) {
+    /// Another configuration.
+    pub(crate) fn reconfigured(&mut self, config: &Config, speed: S) {
         self.earlier = self.earlier.rescaled(speed);
-        self.opening.rescale(speed, index);
-        self.closing.rescale(speed, index);
-        self.now = 1 - (self.kept_in & 1);
-        let [first, second] = &mut self.configs;
-        *if self.now == 0 { first } else { second } = *config;
+        (self.config, self.stale) = (config.values(), true);
         if self.progress == Progress::Armed {
             (self.begun_at, self.due) = (self.written, 0);
             self.keeps = false;
         }
     }
 
+    /// Whether ticks are written down.
+    #[inline]
+    fn writes(&self) -> bool {
+        matches!(self.progress, Progress::Armed | Progress::Triggered(1..))
+    }
+
+    /// Takes in what a tick is told. Before the tick, which needs the registers for something else then.
+    #[inline]
+    pub(crate) fn told<const N: usize>(&mut self, tape: &Tape<N>, sample: &CoreSample<S>) {
+        if self.writes()
+            && let Some(place) = tape.entry(self.written)
+        {
+            entry::lay_told(sample, place);
+        }
+    }
+
     /// Takes a tick in, with what is remembered after it. What the tick was.
     #[inline]
-    pub(crate) fn push(
+    pub(crate) fn push<const N: usize>(
         &mut self,
+        shared: &Shared<N>,
         sample: &CoreSample<S>,
         state: &State<S>,
         command: &CoreCommand<S>,
@@ -304,11 +221,16 @@ impl<S: Scalar, const N: usize> Recorder<S, N> {
                 ..Seen::default()
             }
         } else {
-            self.happened(sample.sequence, command.mode, command.events)
+            self.happened(
+                &shared.events,
+                sample.sequence,
+                command.mode,
+                command.events,
+            )
         };
-        if let Progress::Armed | Progress::Triggered(1..) = self.progress {
-            if let Some(entry) = self.entries.get_mut(self.written as usize & Self::MASK) {
-                *entry = Entry::new(sample, command);
+        if self.writes() {
+            if let Some(place) = shared.tape.entry(self.written) {
+                entry::lay_answer(command, place);
             }
             self.written = self.written.wrapping_add(1);
             self.due = self.due.saturating_sub(1);
@@ -319,15 +241,16 @@ impl<S: Scalar, const N: usize> Recorder<S, N> {
             let own = Vec2::from_array(command.own);
             let squares = [position.length_squared(), own.length_squared()];
             let happened = (command.mode, command.events, touching);
-            (self.track).push(sample.sequence, squares, command.severity, happened);
+            let track = &shared.tape.track;
+            (self.track).push(track, sample.sequence, squares, command.severity, happened);
         }
         seen
     }
 
     /// A tick with events.
     #[inline(never)]
-    fn happened(&mut self, sequence: u32, mode: Mode, events: Events) -> Seen {
-        self.queue((sequence, mode), events);
+    fn happened(&mut self, queue: &EventQueue, sequence: u32, mode: Mode, events: Events) -> Seen {
+        self.queue(queue, (sequence, mode), events);
         let engaged = mode.is_engaged();
         let touched = engaged && events.intersects(WORTH_IT);
         let begins = events.contains(Events::ENGAGED);
@@ -346,18 +269,19 @@ impl<S: Scalar, const N: usize> Recorder<S, N> {
 
     /// Goes on by a tick; what the recorder itself has to report.
     #[inline]
-    pub(crate) fn advance(
+    pub(crate) fn advance<const N: usize>(
         &mut self,
+        shared: &Shared<N>,
         seen: Seen,
         (sample, mode): (&CoreSample<S>, Mode),
-        severity: &Severity<S>,
+        (severity, coeffs): (&Severity<S>, &Coeffs<S>),
     ) -> Events {
         match self.progress {
             Progress::Armed if seen.triggers => {
                 self.worth_it = seen.worth_it;
-                self.begin(severity);
+                self.begin(&shared.tape, severity, coeffs);
                 // A quarter before the trigger, three quarters after it.
-                self.progress = Progress::Triggered(N - Self::BEFORE);
+                self.progress = Progress::Triggered(N - before::<N>());
                 self.due = u32::MAX;
             }
             Progress::Triggered(left) => {
@@ -365,9 +289,10 @@ impl<S: Scalar, const N: usize> Recorder<S, N> {
                 self.progress = Progress::Triggered(left.saturating_sub(1));
                 let over = !seen.engaged || self.track.is_full();
                 if over && !self.worth_it {
-                    self.discard(left);
+                    self.discard(&shared.tape, left);
                 } else if over && left <= 1 {
-                    return self.freeze((sample.sequence, sample.status, mode), severity);
+                    let last = (sample.sequence, sample.status, mode);
+                    return self.freeze(shared, last, severity, coeffs);
                 }
             }
             Progress::Armed | Progress::Frozen => {}
@@ -376,22 +301,48 @@ impl<S: Scalar, const N: usize> Recorder<S, N> {
     }
 
     #[inline(never)]
-    fn freeze(&mut self, last: (u32, Status, Mode), severity: &Severity<S>) -> Events {
-        let (sequence, status, mode) = last;
-        let on = status.contains(Status::BEARING_ON);
-        self.closing = *severity;
-        self.track.finish(sequence);
-        self.closed = Closed { sequence, mode, on };
+    fn freeze<const N: usize>(
+        &mut self,
+        shared: &Shared<N>,
+        (sequence, status, mode): (u32, Status, Mode),
+        severity: &Severity<S>,
+        coeffs: &Coeffs<S>,
+    ) -> Events {
+        let tape = &shared.tape;
+        self.track.finish(&tape.track, sequence);
+        let (ticks, since) = self.lengths::<N>();
+        // Without a state that says it. A new core's begins with nothing, whatever the units.
+        if self.stale && (since.is_none() || self.is_new) {
+            lay_values(&self.config, tape.config.all());
+        }
+        lay_severity(severity, tape.closing.all());
+        lay_units(coeffs, tape.closing_units.all());
+        let closed = Closed {
+            plane: self.plane,
+            written: self.written,
+            ticks,
+            since: since.unwrap_or_default(),
+            keeps: since.is_some(),
+            is_new: self.is_new,
+            stretches: self.track.done(),
+            sequence,
+            mode,
+            on: status.contains(Status::BEARING_ON),
+            coast_down: self.coast_down,
+            dropped: self.dropped,
+        };
+        closed.words().lay(tape.closed.all(), 0);
+        tape.freeze();
         self.progress = Progress::Frozen;
-        self.queue((sequence, mode), Events::RECORD_FROZEN);
+        self.queue(&shared.events, (sequence, mode), Events::RECORD_FROZEN);
         Events::RECORD_FROZEN
     }
 
     /// Nothing was worth a record. The ring goes on, if it has not stopped.
     #[inline(never)]
-    fn discard(&mut self, left: usize) {
+    fn discard<const N: usize>(&mut self, tape: &Tape<N>, left: usize) {
         let begun_at = self.begun_at;
-        self.rearm();
+        self.rearm(tape);
         if left > 1 {
             self.begun_at = begun_at;
         }
@@ -399,17 +350,25 @@ impl<S: Scalar, const N: usize> Recorder<S, N> {
 
     /// What had come to the bearing when the rotor still levitated, or, where that was not kept, until now.
     #[inline(never)]
-    fn begin(&mut self, severity: &Severity<S>) {
-        let (_, since) = self.lengths();
-        match since {
-            Some(_) => self.opening.become_as(&self.kept.severity),
-            None => self.opening.become_as(severity),
-        }
-        self.coast_down |= self.opening.coast_down();
+    fn begin<const N: usize>(
+        &mut self,
+        tape: &Tape<N>,
+        severity: &Severity<S>,
+        coeffs: &Coeffs<S>,
+    ) {
+        let (_, since) = self.lengths::<N>();
+        self.coast_down |= match since {
+            Some(_) => self.kept_coast_down,
+            None => {
+                lay_severity(severity, tape.opening.all());
+                lay_units(coeffs, tape.opening_units.all());
+                severity.coast_down()
+            }
+        };
         self.dropped = core::mem::take(&mut self.dropping);
     }
 
-    fn queue(&mut self, (sequence, mode): (u32, Mode), mut events: Events) {
+    fn queue(&mut self, queue: &EventQueue, (sequence, mode): (u32, Mode), mut events: Events) {
         if self.lost {
             events |= Events::QUEUE_FULL;
         }
@@ -418,45 +377,29 @@ impl<S: Scalar, const N: usize> Recorder<S, N> {
             mode,
             events,
         };
-        self.lost = self.queued.push_back(event).is_err();
+        self.lost = !queue.push(event);
     }
 
     /// Entries of a record, and how many of them are since the state that was kept.
-    pub(crate) fn lengths(&self) -> (usize, Option<usize>) {
-        let length = (self.written.wrapping_sub(self.begun_at) as usize).min(N);
-        let since = self.written.wrapping_sub(self.kept_at) as usize;
+    fn lengths<const N: usize>(&self) -> (u32, Option<u32>) {
+        let length = self.written.wrapping_sub(self.begun_at).min(N as u32);
+        let since = self.written.wrapping_sub(self.kept_at);
         (length, (self.keeps && since <= length).then_some(since))
     }
 
-    /// The configuration of the state, or, where none is of use, that of now.
-    pub(crate) fn config(&self) -> &Config {
-        let (_, since) = self.lengths();
-        let [first, second] = &self.configs;
-        let which = since.map_or(self.now, |_| self.kept_in);
-        if which == 0 { first } else { second }
-    }
-
-    /// An entry of the record, 0 the oldest.
-    pub(crate) fn entry(&self, index: usize) -> Option<&Entry> {
-        let (length, _) = self.lengths();
-        if index >= length {
-            return None;
-        }
-        let oldest = (self.written as usize).wrapping_sub(length);
-        self.entries.get(oldest.wrapping_add(index) & Self::MASK)
-    }
-
     /// Whether it waits for an engagement.
+    #[inline]
     pub(crate) fn is_armed(&self) -> bool {
         self.progress == Progress::Armed
     }
 
-    /// Whether there is a record to be read.
-    pub(crate) fn is_frozen(&self) -> bool {
-        self.progress == Progress::Frozen
+    /// Whether the background has given a frozen record back.
+    #[inline]
+    pub(crate) fn is_back<const N: usize>(&self, tape: &Tape<N>) -> bool {
+        self.progress == Progress::Frozen && tape.is_back()
     }
 
-    pub(crate) fn rearm(&mut self) {
+    pub(crate) fn rearm<const N: usize>(&mut self, tape: &Tape<N>) {
         if self.progress != Progress::Armed {
             self.progress = Progress::Armed;
             // What comes now does not follow what is there.
@@ -464,15 +407,12 @@ impl<S: Scalar, const N: usize> Recorder<S, N> {
             self.keeps = false;
             self.coast_down = false;
             self.track.clear();
+            tape.take();
         }
     }
 
     /// What comes now is of another event.
     pub(crate) fn part(&mut self, fastest: &mut Fastest<S>) {
         self.earlier = self.earlier.or(core::mem::take(fastest));
-    }
-
-    pub(crate) fn next_event(&mut self) -> Option<QueuedEvent> {
-        self.queued.pop_front()
     }
 }

@@ -1,82 +1,17 @@
 //! Both ends of one rotor: a supervisor for each, which know of each other what two ends of a rigid body do.
 
-use crate::beside::Tilting;
-use crate::coeffs::Scaling;
+use crate::cells::Cells;
 use crate::config::Config;
+use crate::coupling::{Coupling, spin};
+use crate::events::QueuedEvent;
+use crate::per_unit::{Plane, Prepared};
 use crate::record::Record;
-use crate::shaft::{Place, Shaft, ShaftError};
-use crate::signal::{Command, CoreCommand, CoreSample, Events, Sample, Status};
-use crate::supervisor::Supervisor;
-use crate::vec2::Vec2;
-
-/// Couplings beyond this are of no rotor, and would leave the numbers.
-const MOST_COUPLED: f32 = 1e3;
-
-/// What couples a plane to the other, per unit.
-#[derive(Debug, Clone, Copy)]
-struct Coupling {
-    /// Acceleration here per cap of the other magnet.
-    per_cap: f32,
-    /// z over the distance of the planes, times metres a second per unit of each plane's speed, here per unit.
-    arm: [f32; 2],
-    /// I_p/I_t.
-    nutation: f32,
-    /// A radian in a tick \[1/t₀\]: nothing that is sampled nutates faster.
-    fastest: f32,
-}
-
-impl Coupling {
-    /// Both, once everything is known to be in its range.
-    fn of_checked(shaft: &Shaft, [first, second]: &[Config; 2]) -> Result<[Self; 2], ShaftError> {
-        shaft.check()?;
-        for (end, config) in [(0, first), (1, second)] {
-            config
-                .validate()
-                .map_err(|error| ShaftError::Plane(end, error))?;
-        }
-        let [a, b] = shaft.places;
-        let period_s = first.sample_period_s;
-        let (first, second) = (first.scaling(), second.scaling());
-        let gap_m = b.retainer_m - a.retainer_m;
-        let of = |here: Place, there: Place, own: &Scaling, other: &Scaling| {
-            let share = here.retainer_m / gap_m / own.speed_m_s();
-            let acceleration = shaft.mobility(here.retainer_m, there.magnet_m) * other.force_n;
-            Self {
-                per_cap: acceleration * own.time_s * own.time_s / own.length_m,
-                arm: [-share * first.speed_m_s(), share * second.speed_m_s()],
-                nutation: shaft.polar_inertia_kg_m2 / shaft.transverse_inertia_kg_m2,
-                fastest: own.time_s / period_s,
-            }
-        };
-        let both = [of(a, b, &first, &second), of(b, a, &second, &first)];
-        let held = |x: f32| x.abs() <= MOST_COUPLED;
-        let usable = |c: &Self| held(c.per_cap) && c.arm.iter().all(|arm| held(*arm));
-        if both.iter().all(usable) {
-            Ok(both)
-        } else {
-            Err(ShaftError::Places)
-        }
-    }
-
-    /// What the plane knows of the rest: from the velocities of both ends, and the force at the other.
-    fn tilting(
-        &self,
-        [first, second]: [Vec2<f32>; 2],
-        force: Vec2<f32>,
-        spin: f32,
-    ) -> Tilting<f32> {
-        let rate = self.nutation * spin;
-        Tilting {
-            known: force * self.per_cap,
-            velocity: first * self.arm[0] + second * self.arm[1],
-            rate: if rate.abs() <= self.fastest {
-                rate
-            } else {
-                0.0
-            },
-        }
-    }
-}
+use crate::recorder::Shared;
+use crate::shaft::{Shaft, ShaftError};
+use crate::signal::{Command, CoreCommand, CoreSample, Events, Sample};
+use crate::split::{Published, Reader};
+use crate::supervisor::{Supervisor, in_newtons};
+use crate::words::Words;
 
 /// What both planes commanded at a tick.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -116,14 +51,45 @@ pub struct RotorCommand {
 /// ```
 #[derive(Debug, Clone)]
 pub struct Rotor<const RECORD: usize = 512> {
-    shaft: Shaft,
-    /// The shaft when the states of both planes were kept.
-    kept_shaft: Shaft,
+    machine: Machine,
     planes: [Supervisor<RECORD>; 2],
+}
+
+/// The shaft when the states of both planes were kept.
+type KeptShaft = Cells<9>;
+
+/// A rotor without its planes, for memory that is made piece by piece: whoever has no stack for a whole [`Rotor`] makes this and
+/// two supervisors in their places, and joins them.
+#[derive(Debug, Clone)]
+pub struct Machine {
+    state: MachineState,
+    kept_shaft: KeptShaft,
+}
+
+/// What is of the machine and not of a plane.
+#[derive(Debug, Clone)]
+struct MachineState {
+    shaft: Shaft,
     couplings: [Coupling; 2],
     /// Planes that have engaged since the records were read.
     engaged: [bool; 2],
     coast_down: bool,
+}
+
+/// The half of a [`Rotor`] that ticks: for the control interrupt, or whatever owns the bearings.
+#[derive(Debug)]
+pub struct RotorTicker<'a, const RECORD: usize = 512> {
+    machine: &'a mut MachineState,
+    planes: [&'a mut Plane<f32>; 2],
+    shared: [&'a Shared<RECORD>; 2],
+    kept_shaft: &'a KeptShaft,
+}
+
+/// The half of a [`Rotor`] that reads; as a [`Reader`], of both planes. A plane is 0 or 1, and anything else the second.
+#[derive(Debug)]
+pub struct RotorReader<'a, const RECORD: usize = 512> {
+    planes: [Reader<'a, f32, RECORD>; 2],
+    kept_shaft: &'a KeptShaft,
 }
 
 impl<const RECORD: usize> Rotor<RECORD> {
@@ -141,18 +107,14 @@ impl<const RECORD: usize> Rotor<RECORD> {
     /// # Errors
     /// [`ShaftError`].
     pub fn as_told(shaft: &Shaft, configs: &[Config; 2]) -> Result<Self, ShaftError> {
-        let couplings = Coupling::of_checked(shaft, configs)?;
+        let machine = Machine::as_told(shaft, configs)?;
         let [first, second] = configs;
         Ok(Self {
-            shaft: *shaft,
-            kept_shaft: *shaft,
+            machine,
             planes: [
                 Supervisor::from_valid(first, [0, 2]),
                 Supervisor::from_valid(second, [1, 2]),
             ],
-            couplings,
-            engaged: [false; 2],
-            coast_down: false,
         })
     }
 
@@ -165,69 +127,29 @@ impl<const RECORD: usize> Rotor<RECORD> {
         shaft: &Shaft,
         [first, second]: &[Config; 2],
     ) -> Result<(), ShaftError> {
-        let configs = [shaft.plane(0, first), shaft.plane(1, second)];
-        self.couplings = Coupling::of_checked(shaft, &configs)?;
-        self.shaft = *shaft;
-        for (plane, config) in self.planes.iter_mut().zip(&configs) {
-            // Checked above.
-            let _ = plane.reconfigure(config);
-        }
-        Ok(())
+        self.ticking().reconfigured(shaft, [first, second])
+    }
+
+    #[inline]
+    fn ticking(&mut self) -> RotorTicker<'_, RECORD> {
+        let [first, second] = &mut self.planes;
+        self.machine.ticking([first, second])
+    }
+
+    /// Two halves for two priorities, as [`Supervisor::split`].
+    pub fn split(&mut self) -> (RotorTicker<'_, RECORD>, RotorReader<'_, RECORD>) {
+        let [first, second] = &mut self.planes;
+        self.machine.join([first, second])
     }
 
     /// One tick of both, in the control interrupt. Both samples carry the number of one counter.
     pub fn tick(&mut self, samples: &[Sample; 2]) -> RotorCommand {
-        let [first, second] = &self.planes;
-        let [at_first, at_second] = samples;
-        let per_unit = [
-            first.core.scaling().sample(at_first),
-            second.core.scaling().sample(at_second),
-        ];
-        let [to_first, to_second] = self.tick_per_unit(&per_unit);
-        let [first, second] = &self.planes;
-        let planes = [
-            first.in_newtons(at_first, &per_unit[0], &to_first),
-            second.in_newtons(at_second, &per_unit[1], &to_second),
-        ];
-        for ((engaged, plane), command) in self.engaged.iter_mut().zip(&self.planes).zip(&planes) {
-            let engages = command.mode.is_engaged();
-            // Over, and nothing was worth a record.
-            let leaves_nothing = !engages && plane.core.is_armed();
-            *engaged = (*engaged || engages) && !leaves_nothing;
-            self.coast_down |= command.events.contains(Events::COAST_DOWN);
-        }
-        let [first, second] = self.engaged;
-        RotorCommand {
-            planes,
-            other_engaged: [second, first],
-            coast_down: self.coast_down,
-        }
+        self.ticking().ticked(samples)
     }
 
     /// The same per unit of each plane, without what the whole machine is told: what a record is replayed with.
     pub fn tick_per_unit(&mut self, samples: &[CoreSample<f32>; 2]) -> [CoreCommand<f32>; 2] {
-        let [first, second] = &mut self.planes;
-        let [at_first, at_second] = samples;
-        let [to_first, to_second] = &self.couplings;
-        // As they are before either tick. Where one end's velocity is not known nothing is known of the tilt.
-        let known = first.core.velocity().zip(second.core.velocity());
-        let (v1, v2) = known.unwrap_or_default();
-        let forces = [first.core.delivered(), second.core.delivered()];
-        let beside_first = to_first.tilting([v1, v2], forces[1], spin(at_first));
-        let beside_second = to_second.tilting([v1, v2], forces[0], spin(at_second));
-        let (to_first, first) = first.core.tick_beside(at_first, &beside_first);
-        let (to_second, second) = second.core.tick_beside(at_second, &beside_second);
-        // One event of one machine: both planes record it, over the same ticks.
-        let (mut commands, seen) = ([to_first, to_second], first.or(second));
-        for ((plane, command), sample) in self.planes.iter_mut().zip(&mut commands).zip(samples) {
-            command.events |= plane.core.advance(seen, sample, command.mode);
-        }
-        // Both or none: a replay needs what both remembered before the same tick.
-        if self.planes.iter().all(|plane| plane.core.may_keep()) {
-            self.planes.iter_mut().for_each(|plane| plane.core.keep());
-            self.kept_shaft = self.shaft;
-        }
-        commands
+        self.ticking().per_unit(samples)
     }
 
     /// One that goes on from what another one remembered, as the records of both planes hold it; see [`crate::Core::resumed`].
@@ -249,8 +171,7 @@ impl<const RECORD: usize> Rotor<RECORD> {
     /// The records of one event, in the background: where they have frozen, which both planes do at once, `write` gets
     /// them with the number of the plane, 0 or 1, and both wait for the next engagement.
     ///
-    /// The tick has to be kept out meanwhile; where writing takes too long for that, take the sections of [`Self::record`]
-    /// one by one and [`Self::rearm`] at the end.
+    /// The tick has to be kept out meanwhile; a [`RotorReader`] reads with ticks between.
     pub fn collect(&mut self, mut write: impl FnMut(usize, &Record<'_, f32, RECORD>)) {
         let mut any = false;
         for end in [0, 1] {
@@ -266,16 +187,13 @@ impl<const RECORD: usize> Rotor<RECORD> {
 
     /// The frozen record of a plane, 0 or 1 (anything else is the second), if there is one.
     pub fn record(&self, end: usize) -> Option<Record<'_, f32, RECORD>> {
-        let [first, second] = &self.planes;
-        let mut record = if end == 0 { first } else { second }.record()?;
-        record.shaft = Some(self.kept_shaft.values());
-        Some(record)
+        let planes = self.planes.each_ref().map(|plane| &plane.core.shared);
+        record_of(planes, &self.machine.kept_shaft, end)
     }
 
     /// Discards frozen records; both planes wait for the next engagement.
     pub fn rearm(&mut self) {
-        self.planes.iter_mut().for_each(Supervisor::rearm);
-        self.engaged = [false; 2];
+        self.ticking().rearm();
     }
 
     /// Supervisor of a plane, for its report and events; 0 or 1, and for anything else the second. Its ticks, configuration and
@@ -286,8 +204,210 @@ impl<const RECORD: usize> Rotor<RECORD> {
     }
 }
 
-/// The spin where it is known \[1/t₀\], else 0: then nothing is known to turn the tilt.
-fn spin(sample: &CoreSample<f32>) -> f32 {
-    let known = sample.status.contains(Status::SPIN_VALID) && sample.spin.is_finite();
-    if known { sample.spin } else { 0.0 }
+impl Machine {
+    /// Of this shaft; and the configurations of its planes, with the masses and ratios that follow from it.
+    ///
+    /// # Errors
+    /// [`ShaftError`].
+    pub fn new(
+        shaft: &Shaft,
+        [first, second]: &[Config; 2],
+    ) -> Result<(Self, [Config; 2]), ShaftError> {
+        let configs = [shaft.plane(0, first), shaft.plane(1, second)];
+        Ok((Self::as_told(shaft, &configs)?, configs))
+    }
+
+    fn as_told(shaft: &Shaft, configs: &[Config; 2]) -> Result<Self, ShaftError> {
+        Ok(Self {
+            state: MachineState {
+                couplings: Coupling::of_checked(shaft, configs)?,
+                shaft: *shaft,
+                engaged: [false; 2],
+                coast_down: false,
+            },
+            kept_shaft: Cells::of(shaft.values().map(f32::to_bits)),
+        })
+    }
+
+    #[inline]
+    fn ticking<'a, const RECORD: usize>(
+        &'a mut self,
+        [first, second]: [&'a mut Supervisor<RECORD>; 2],
+    ) -> RotorTicker<'a, RECORD> {
+        let (first, second) = (&mut first.core, &mut second.core);
+        RotorTicker {
+            machine: &mut self.state,
+            planes: [&mut first.plane, &mut second.plane],
+            shared: [&first.shared, &second.shared],
+            kept_shaft: &self.kept_shaft,
+        }
+    }
+
+    /// The halves of a rotor of these planes, made by [`Supervisor::of_rotor`]; as [`Rotor::split`].
+    pub fn join<'a, const RECORD: usize>(
+        &'a mut self,
+        planes: [&'a mut Supervisor<RECORD>; 2],
+    ) -> (RotorTicker<'a, RECORD>, RotorReader<'a, RECORD>) {
+        let ticker = self.ticking(planes);
+        ticker.publish(true);
+        let reader = RotorReader {
+            planes: ticker.shared.map(Reader::new),
+            kept_shaft: ticker.kept_shaft,
+        };
+        (ticker, reader)
+    }
+}
+
+/// The record of a plane, once both have frozen.
+fn record_of<'a, const RECORD: usize>(
+    [first, second]: [&'a Shared<RECORD>; 2],
+    kept_shaft: &KeptShaft,
+    end: usize,
+) -> Option<Record<'a, f32, RECORD>> {
+    let [first, second] = [Record::new(&first.tape)?, Record::new(&second.tape)?];
+    let mut record = if end == 0 { first } else { second };
+    record.shaft = Some(Words::take(&mut kept_shaft.words()));
+    Some(record)
+}
+
+impl<const RECORD: usize> RotorTicker<'_, RECORD> {
+    /// As [`Rotor::tick`]; the reader sees what has come of it from then on.
+    pub fn tick(&mut self, samples: &[Sample; 2]) -> RotorCommand {
+        let command = self.ticked(samples);
+        self.publish(false);
+        command
+    }
+
+    /// As [`Rotor::reconfigure`]: between two ticks.
+    ///
+    /// # Errors
+    /// [`ShaftError`]; then nothing has changed.
+    pub fn reconfigure(&mut self, shaft: &Shaft, configs: &[Config; 2]) -> Result<(), ShaftError> {
+        let [first, second] = configs;
+        self.reconfigured(shaft, [first, second])?;
+        self.publish(true);
+        Ok(())
+    }
+
+    fn reconfigured(
+        &mut self,
+        shaft: &Shaft,
+        [first, second]: [&Config; 2],
+    ) -> Result<(), ShaftError> {
+        let configs = [shaft.plane(0, first), shaft.plane(1, second)];
+        self.machine.couplings = Coupling::of_checked(shaft, &configs)?;
+        self.machine.shaft = *shaft;
+        for (plane, config) in self.planes.iter_mut().zip(&configs) {
+            // Checked above.
+            let (prepared, _) = Prepared::from_valid(config);
+            plane.reconfigure(&prepared);
+        }
+        Ok(())
+    }
+
+    fn publish(&self, with_units: bool) {
+        let pairs = self.planes.iter().zip(self.shared);
+        pairs.for_each(|(plane, shared)| plane.publish(shared, with_units));
+    }
+
+    fn rearm(&mut self) {
+        let pairs = self.planes.iter_mut().zip(self.shared);
+        pairs.for_each(|(plane, shared)| plane.rearm(shared));
+        self.machine.engaged = [false; 2];
+    }
+
+    #[inline]
+    fn ticked(&mut self, samples: &[Sample; 2]) -> RotorCommand {
+        let [at_first, at_second] = samples;
+        let [first, second] = &self.planes;
+        let per_unit = [
+            first.scaling().sample(at_first),
+            second.scaling().sample(at_second),
+        ];
+        let [to_first, to_second] = self.per_unit(&per_unit);
+        let [first, second] = &self.planes;
+        let planes = [
+            in_newtons(first.scaling(), at_first, &per_unit[0], &to_first),
+            in_newtons(second.scaling(), at_second, &per_unit[1], &to_second),
+        ];
+        let machine = &mut *self.machine;
+        for ((engaged, plane), command) in machine.engaged.iter_mut().zip(&self.planes).zip(&planes)
+        {
+            let engages = command.mode.is_engaged();
+            // Over, and nothing was worth a record.
+            let leaves_nothing = !engages && plane.is_armed();
+            *engaged = (*engaged || engages) && !leaves_nothing;
+            machine.coast_down |= command.events.contains(Events::COAST_DOWN);
+        }
+        let [first, second] = machine.engaged;
+        RotorCommand {
+            planes,
+            other_engaged: [second, first],
+            coast_down: machine.coast_down,
+        }
+    }
+
+    #[inline]
+    fn per_unit(&mut self, samples: &[CoreSample<f32>; 2]) -> [CoreCommand<f32>; 2] {
+        // Both are given back, one after the other.
+        let mut pairs = self.planes.iter().zip(self.shared);
+        if pairs.all(|(plane, shared)| plane.is_back(shared)) {
+            self.rearm();
+        }
+        let [first, second] = &mut self.planes;
+        let [at_first, at_second] = samples;
+        let [to_first, to_second] = &self.machine.couplings;
+        // As they are before either tick. Where one end's velocity is not known nothing is known of the tilt.
+        let known = first.velocity().zip(second.velocity());
+        let (v1, v2) = known.unwrap_or_default();
+        let forces = [first.delivered(), second.delivered()];
+        let beside_first = to_first.tilting([v1, v2], forces[1], spin(at_first));
+        let beside_second = to_second.tilting([v1, v2], forces[0], spin(at_second));
+        let [of_first, of_second] = self.shared;
+        let (to_first, first) = first.tick_beside(of_first, at_first, &beside_first);
+        let (to_second, second) = second.tick_beside(of_second, at_second, &beside_second);
+        // One event of one machine: both planes record it, over the same ticks.
+        let (mut commands, seen) = ([to_first, to_second], first.or(second));
+        let planes = self.planes.iter_mut().zip(self.shared);
+        for (((plane, shared), command), sample) in planes.zip(&mut commands).zip(samples) {
+            command.events |= plane.advance(shared, seen, sample, command.mode);
+        }
+        // Both or none: a replay needs what both remembered before the same tick.
+        if self.planes.iter().all(|plane| plane.may_keep()) {
+            let planes = self.planes.iter_mut().zip(self.shared);
+            planes.for_each(|(plane, shared)| plane.keep(shared));
+            self.machine.shaft.values().lay(self.kept_shaft.all(), 0);
+        }
+        commands
+    }
+}
+
+impl<'a, const RECORD: usize> RotorReader<'a, RECORD> {
+    fn plane(&mut self, end: usize) -> &mut Reader<'a, f32, RECORD> {
+        let [first, second] = &mut self.planes;
+        if end == 0 { first } else { second }
+    }
+
+    /// Next event of a plane, oldest first; as [`Reader::next_event`].
+    pub fn next_event(&mut self, end: usize) -> Option<QueuedEvent> {
+        self.plane(end).next_event()
+    }
+
+    /// The frozen record of a plane, once both have frozen, which they do at the same tick. It stays as it is until
+    /// [`Self::rearm`].
+    pub fn record(&self, end: usize) -> Option<Record<'_, f32, RECORD>> {
+        let planes = self.planes.each_ref().map(Reader::shared);
+        record_of(planes, self.kept_shaft, end)
+    }
+
+    /// Gives frozen records back; with the next tick both planes wait for an engagement again. Without any nothing happens.
+    pub fn rearm(&mut self) {
+        self.planes.iter_mut().for_each(Reader::rearm);
+    }
+
+    /// For other tasks that want to know how a plane stands.
+    pub fn published(&self, end: usize) -> Published<'a, f32, RECORD> {
+        let [first, second] = &self.planes;
+        if end == 0 { first } else { second }.published()
+    }
 }

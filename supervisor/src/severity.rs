@@ -7,13 +7,13 @@ use crate::impact::sum_of_impacts;
 use crate::law::View;
 use crate::reading::SampleFlags;
 use crate::scalar::{Accumulator, Scalar};
-use crate::signal::{Events, Limits, Mode, Report};
+use crate::signal::{Events, Limits, Mode};
+use crate::tally::{MOST_INDEX, Tally};
 use crate::vec2::Vec2;
 use crate::words::words_of_fields;
 
-/// Largest severity and severity index that are reported.
+/// Largest severity that is reported.
 const MOST_SEVERITY: f32 = 1e6;
-const MOST_INDEX: f32 = 1e9;
 
 /// Counters since the supervisor was made, per unit.
 #[derive(Debug, Clone, Copy, Default)]
@@ -63,12 +63,6 @@ impl<S: Scalar> Fastest<S> {
             impact: self.impact * speed,
             backward: self.backward * speed,
         }
-    }
-
-    /// Both \[m/s\].
-    pub(crate) fn in_m_s(self, coeffs: &Coeffs<S>) -> [f32; 2] {
-        let of = |speed: S| speed.to_f32() * coeffs.scaling.speed_m_s();
-        [of(self.impact), of(self.backward)]
     }
 }
 
@@ -210,22 +204,20 @@ impl<S: Scalar> Severity<S> {
         self.coast_down
     }
 
-    /// `earlier`: fastest before what is recorded.
-    pub(crate) fn report(&self, earlier: Fastest<S>, coeffs: &Coeffs<S>) -> Report {
-        let speed_m_s = coeffs.scaling.speed_m_s();
-        let [impact, backward] = self.fastest.or(earlier).in_m_s(coeffs);
-        let index = self.index.value().to_f32() * coeffs.severity_limit;
-        Report {
+    /// What it has to report; `earlier`: fastest before what is recorded.
+    #[inline]
+    pub(crate) fn tally(&self, earlier: Fastest<S>) -> Tally<S> {
+        let fastest = self.fastest.or(earlier);
+        Tally {
             landings: self.landings,
-            nuisance_engagements: self.nuisances,
+            nuisances: self.nuisances,
             impacts: self.impacts,
             contact_ticks: self.contact_ticks,
-            impact_speed_max_m_s: impact,
-            backward_speed_max_m_s: backward,
-            whirl_limit_m_s: speed_m_s / coeffs.per_whirl_limit.to_f32(),
-            severity_index: Scalar::min(index, MOST_INDEX),
             coast_down: self.coast_down,
-            ..Report::default()
+            impact: fastest.impact,
+            backward: fastest.backward,
+            index: self.index.value(),
+            ..Tally::default()
         }
     }
 

@@ -198,6 +198,27 @@ pub enum Mode {
     HandedBack = 7,
 }
 
+impl Words for Mode {
+    fn put(&self, to: &mut dyn FnMut(u32)) {
+        to(*self as u32);
+    }
+    fn take(from: &mut dyn Iterator<Item = u32>) -> Self {
+        let all = [
+            Self::Levitated,
+            Self::Approach,
+            Self::Bounce,
+            Self::BackwardWhirl,
+            Self::Pinned,
+            Self::Handover,
+            Self::SensorFault,
+            Self::HandedBack,
+        ];
+        let number = u32::take(from);
+        let named = all.into_iter().find(|mode| *mode as u32 == number);
+        named.unwrap_or_default()
+    }
+}
+
 impl Mode {
     /// Whether the supervisor has the bearing, alone or in part.
     #[inline]

@@ -1,9 +1,10 @@
 //! The supervisor in SI units and `f32`: the core behind the one conversion.
 
+use crate::coeffs::Scaling;
 use crate::config::{Config, ConfigError};
+use crate::events::QueuedEvent;
 use crate::per_unit::{Core, Prepared};
 use crate::record::Record;
-use crate::recorder::QueuedEvent;
 use crate::signal::{Command, CoreCommand, CoreSample, Mode, Report, Sample, Status};
 
 /// Supervisor of one bearing plane with a flight record of `RECORD` ticks (a power of two).
@@ -22,6 +23,17 @@ impl<const RECORD: usize> Supervisor<RECORD> {
         Ok(Self::from_valid(config, [0, 1]))
     }
 
+    /// One for a plane of a rotor, 0 or 1, of which [`crate::Machine::new`] has told the configuration.
+    ///
+    /// # Errors
+    /// The first parameter of `config` that is outside its range.
+    pub fn of_rotor(config: &Config, end: u8) -> Result<Self, ConfigError> {
+        config.validate()?;
+        Ok(Self::from_valid(config, [end, 2]))
+    }
+
+    // Always in its caller: then the compiler makes the whole where it will stay, and not on the stack first.
+    #[inline(always)]
     pub(crate) fn from_valid(config: &Config, plane: [u8; 2]) -> Self {
         // Whatever is in range `f32` holds.
         let (prepared, _) = Prepared::from_valid(config);
@@ -47,39 +59,7 @@ impl<const RECORD: usize> Supervisor<RECORD> {
     pub fn tick(&mut self, sample: &Sample) -> Command {
         let per_unit = self.core.scaling().sample(sample);
         let command = self.core.tick(&per_unit);
-        self.in_newtons(sample, &per_unit, &command)
-    }
-
-    /// The command for a sample in SI.
-    #[inline]
-    pub(crate) fn in_newtons(
-        &self,
-        sample: &Sample,
-        per_unit: &CoreSample<f32>,
-        command: &CoreCommand<f32>,
-    ) -> Command {
-        let levitation = per_unit.levitation;
-        let mut newtons = self.core.scaling().command(command);
-        // Transparent means bit for bit: what the core left alone does not come back from per unit. A lost axis
-        // gets nothing, also where a command is so small that per unit it is nothing. (Scaled as a whole before:
-        // chosen number by number, x86-64 got vectors with integers in spare lanes, subnormal as floats and slow.)
-        // Without a loop: where the compiler saves size it keeps the loop, and a check of its index that can panic.
-        let [lost_x, lost_y] = Status::LOST_AXES.map(|lost| sample.status.contains(lost));
-        let as_asked = |newtons: &mut [f32; 2], force: [f32; 2]| {
-            if force[0] == levitation[0] && !lost_x {
-                newtons[0] = sample.levitation_n[0];
-            }
-            if force[1] == levitation[1] && !lost_y {
-                newtons[1] = sample.levitation_n[1];
-            }
-        };
-        as_asked(&mut newtons.force_n, command.force);
-        if sample.status.contains(Status::SHADOW) {
-            as_asked(&mut newtons.own_n, command.own);
-        } else {
-            newtons.own_n = newtons.force_n;
-        }
-        newtons
+        in_newtons(self.core.scaling(), sample, &per_unit, &command)
     }
 
     /// What the supervisor is doing.
@@ -106,4 +86,36 @@ impl<const RECORD: usize> Supervisor<RECORD> {
     pub fn next_event(&mut self) -> Option<QueuedEvent> {
         self.core.next_event()
     }
+}
+
+/// The command for a sample in SI.
+#[inline]
+pub(crate) fn in_newtons(
+    scaling: &Scaling,
+    sample: &Sample,
+    per_unit: &CoreSample<f32>,
+    command: &CoreCommand<f32>,
+) -> Command {
+    let levitation = per_unit.levitation;
+    let mut newtons = scaling.command(command);
+    // Transparent means bit for bit: what the core left alone does not come back from per unit. A lost axis
+    // gets nothing, also where a command is so small that per unit it is nothing. (Scaled as a whole before:
+    // chosen number by number, x86-64 got vectors with integers in spare lanes, subnormal as floats and slow.)
+    // Without a loop: where the compiler saves size it keeps the loop, and a check of its index that can panic.
+    let [lost_x, lost_y] = Status::LOST_AXES.map(|lost| sample.status.contains(lost));
+    let as_asked = |newtons: &mut [f32; 2], force: [f32; 2]| {
+        if force[0] == levitation[0] && !lost_x {
+            newtons[0] = sample.levitation_n[0];
+        }
+        if force[1] == levitation[1] && !lost_y {
+            newtons[1] = sample.levitation_n[1];
+        }
+    };
+    as_asked(&mut newtons.force_n, command.force);
+    if sample.status.contains(Status::SHADOW) {
+        as_asked(&mut newtons.own_n, command.own);
+    } else {
+        newtons.own_n = newtons.force_n;
+    }
+    newtons
 }

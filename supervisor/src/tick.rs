@@ -20,7 +20,7 @@ use crate::signal::{
 use crate::spin::Spin;
 use crate::trust::Trust;
 use crate::vec2::Vec2;
-use crate::words::words_of_fields;
+use crate::words::{Words as _, words_of_fields};
 use crate::{handover, limit};
 
 /// Contact can be avoided for good where this share of the work that force and shaft can do is enough: with a half some
@@ -312,6 +312,28 @@ impl<S: Scalar> State<S> {
         let held = |last: Vec2<S>| limit::levitation(last * S::from_f32(force), envelope).0;
         (self.force, self.own) = (held(self.force), held(self.own));
         (S::from_f32(speed), index)
+    }
+
+    /// The severity in words of the whole.
+    pub(crate) fn severity_in(words: impl Iterator<Item = u32>) -> Severity<S> {
+        let Self {
+            guard,
+            observer,
+            classifier,
+            readiness,
+            phase,
+            trust,
+            budget,
+            ..
+        } = &Self::default();
+        let before = guard.word_count()
+            + observer.word_count()
+            + classifier.word_count()
+            + readiness.word_count()
+            + phase.word_count()
+            + trust.word_count()
+            + budget.word_count();
+        Severity::take(&mut words.skip(before as usize))
     }
 
     /// Where the axis is by the estimate, and whether it touches.

@@ -1,8 +1,10 @@
 //! The slow track of a record: extremes over stretches of ticks that grow with the time since the event began, so that few
 //! words reach from its first milliseconds to seconds.
 
+use crate::cells::Cells;
 use crate::scalar::Scalar;
 use crate::signal::{Events, Mode};
+use crate::words::Words as _;
 
 /// Stretches of a track …
 pub const STRETCHES: usize = 64;
@@ -73,19 +75,21 @@ impl Stretch {
     }
 }
 
-/// The track, and the stretch that is under way.
+/// The stretches that are complete.
+pub(crate) type Track = [Cells<STRETCH_WORDS>; STRETCHES];
+
+/// How many of them there are, and the one that is under way.
 #[derive(Debug, Clone)]
-pub(crate) struct Track<S> {
+pub(crate) struct Progress<S> {
     done: usize,
     now: Stretch,
     /// Squares of radius and force; severity.
     radius: S,
     force: S,
     severity: S,
-    stretches: [Stretch; STRETCHES],
 }
 
-impl<S: Scalar> Track<S> {
+impl<S: Scalar> Progress<S> {
     pub(crate) fn new() -> Self {
         Self {
             done: 0,
@@ -93,7 +97,6 @@ impl<S: Scalar> Track<S> {
             radius: S::ZERO,
             force: S::ZERO,
             severity: S::ZERO,
-            stretches: [Stretch::default(); STRETCHES],
         }
     }
 
@@ -117,6 +120,7 @@ impl<S: Scalar> Track<S> {
     #[inline(never)]
     pub(crate) fn push(
         &mut self,
+        track: &Track,
         sequence: u32,
         [radius, force]: [S; 2],
         severity: S,
@@ -133,19 +137,19 @@ impl<S: Scalar> Track<S> {
         self.severity = self.severity.max(severity);
         let ticks = FIRST_TICKS << (self.done / DOUBLES_AFTER).min(STRETCHES / DOUBLES_AFTER - 1);
         if now.ticks >= ticks {
-            self.end(sequence);
+            self.end(track, sequence);
         }
     }
 
     /// The event is over.
-    pub(crate) fn finish(&mut self, sequence: u32) {
+    pub(crate) fn finish(&mut self, track: &Track, sequence: u32) {
         if self.now.ticks > 0 {
-            self.end(sequence);
+            self.end(track, sequence);
         }
     }
 
     #[inline(never)]
-    fn end(&mut self, sequence: u32) {
+    fn end(&mut self, track: &Track, sequence: u32) {
         let done = Stretch {
             sequence,
             radius_square: self.radius.bits(),
@@ -153,15 +157,15 @@ impl<S: Scalar> Track<S> {
             severity: self.severity.bits(),
             ..self.now
         };
-        if let Some(stretch) = self.stretches.get_mut(self.done) {
-            *stretch = done;
+        if let Some(stretch) = track.get(self.done) {
+            done.words().lay(stretch.all(), 0);
             self.done += 1;
         }
         self.begin();
     }
 
-    /// Those that are complete.
-    pub(crate) fn stretches(&self) -> &[Stretch] {
-        self.stretches.get(..self.done).unwrap_or_default()
+    /// How many are complete.
+    pub(crate) fn done(&self) -> u32 {
+        self.done as u32
     }
 }

@@ -1,6 +1,9 @@
 //! What a core remembers, as words of 32 bits that are the same on every target: a flight record keeps them, to be replayed
 //! from.
 
+use crate::cells;
+use core::sync::atomic::AtomicU32;
+
 /// Something that goes into words and comes back the same.
 pub trait Words: Copy {
     /// Hands its words over, in an order that never changes.
@@ -12,11 +15,16 @@ pub trait Words: Copy {
     fn word_count(&self) -> u32 {
         1
     }
-    /// Becomes the same as another one: of what is large piece by piece, as the routine for all at once takes a hundred bytes of
-    /// stack.
+    /// Lays its words into cells from `at` on, as far as there are any. Where the next ones come. Piece by piece: a routine that
+    /// copies all at once takes a hundred bytes of stack.
     #[inline]
-    fn become_as(&mut self, other: &Self) {
-        *self = *other;
+    fn lay(&self, cells: &[AtomicU32], at: usize) -> usize {
+        let mut at = at;
+        self.put(&mut |word| {
+            cells::set(cells, at, word);
+            at += 1;
+        });
+        at
     }
 }
 
@@ -38,8 +46,9 @@ macro_rules! words_of_fields {
                 0 $(+ crate::words::Words::word_count(&self.$field))*
             }
             #[inline]
-            fn become_as(&mut self, other: &Self) {
-                $(crate::words::Words::become_as(&mut self.$field, &other.$field);)*
+            fn lay(&self, cells: &[core::sync::atomic::AtomicU32], at: usize) -> usize {
+                $(let at = crate::words::Words::lay(&self.$field, cells, at);)*
+                at
             }
         }
     };
@@ -118,6 +127,10 @@ impl<T: Words, const N: usize> Words for [T; N] {
     #[inline]
     fn word_count(&self) -> u32 {
         self.iter().map(T::word_count).sum()
+    }
+    #[inline]
+    fn lay(&self, cells: &[AtomicU32], at: usize) -> usize {
+        self.iter().fold(at, |at, x| x.lay(cells, at))
     }
 }
 

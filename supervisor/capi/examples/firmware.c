@@ -10,7 +10,7 @@
 #include <stdbool.h>
 #include <stdio.h>
 
-/* Static, so that they are zero before they are made; nine kilobytes have no place on a stack. */
+/* Static, so that they are zero before they are made; 28 kilobytes have no place on a stack. */
 static amb_supervisor plane;
 static amb_watch watch;
 static rig machine;
@@ -18,7 +18,7 @@ static volatile bool finished;
 /* A call that failed in the interrupt: to be shown by the background. */
 static volatile amb_code failed = AMB_OK;
 
-/* Every 50 us, above everything else that uses the supervisor. */
+/* Every 50 us, above everything else that uses the supervisor, which never has to hold it. */
 void control_interrupt(void) {
     amb_sample sample;
     amb_command command;
@@ -43,26 +43,6 @@ void control_interrupt(void) {
     finished = machine.tick == RIG_TICKS;
 }
 
-/* Calls from the background must not be interrupted by the tick. Each is short, so the interrupt is held
- * for one call at a time and not for a whole loop. */
-static amb_code next_event(amb_event *event) {
-    amb_code code;
-    interrupts_hold();
-    code = amb_next_event(&plane, event);
-    interrupts_release();
-    return code;
-}
-
-static amb_code record_section(uint32_t index, amb_section *section) {
-    /* A machine's firmware has its build number here, and the time of its clock. */
-    static const amb_stamp stamp = {1, 0, {0, 0}};
-    amb_code code;
-    interrupts_hold();
-    code = amb_record_section(&plane, index, &stamp, section);
-    interrupts_release();
-    return code;
-}
-
 /* To flash, or over a bus. */
 static void save(const uint8_t *bytes, uint32_t length) {
     (void)bytes;
@@ -71,26 +51,26 @@ static void save(const uint8_t *bytes, uint32_t length) {
 
 static void show_events(void) {
     amb_event event;
-    while (next_event(&event) == AMB_OK) {
+    while (amb_next_event(&plane, &event) == AMB_OK) {
         printf("tick %u: %s, events 0x%04x\n", (unsigned)event.sequence, amb_mode_name(event.mode),
                (unsigned)event.events);
     }
 }
 
-/* Writes a frozen record down, a section at a time, then lets the recorder wait for the next event. */
+/* Writes a frozen record down, a section at a time, then lets the recorder wait for the next event. Ticks go on meanwhile. */
 static void take_record(void) {
+    /* A machine's firmware has its build number here, and the time of its clock. */
+    static const amb_stamp stamp = {1, 0, {0, 0}};
     static amb_section section;
     uint32_t index = 0, bytes = 0;
-    while (record_section(index, &section) == AMB_OK) { /* AMB_NOTHING: there is none, or no more of it */
+    while (amb_record_section(&plane, index, &stamp, &section) == AMB_OK) { /* AMB_NOTHING: there is none, or no more of it */
         save(section.bytes, section.length);
         bytes += section.length;
         index++;
     }
     if (index == 0) return;
     printf("record of version %u, %u sections, %u bytes\n", AMB_RECORD_VERSION, (unsigned)index, (unsigned)bytes);
-    interrupts_hold();
     amb_rearm(&plane);
-    interrupts_release();
 }
 
 int main(void) {

@@ -1,6 +1,6 @@
 /**
  * @file mps2.h
- * What the example needs of its board: a timer interrupt, and a way to hold it.
+ * What the example needs of its board: a timer interrupt.
  */
 #ifndef MPS2_H
 #define MPS2_H
@@ -12,14 +12,5 @@ void control_interrupt(void);
 
 /** Starts the timer. @param rate_hz calls of control_interrupt() in a second. */
 void control_start(uint32_t rate_hz);
-
-/* The compiler must not move memory accesses across these. */
-static inline void interrupts_hold(void) {
-    __asm volatile("cpsid i" ::: "memory");
-}
-
-static inline void interrupts_release(void) {
-    __asm volatile("cpsie i" ::: "memory");
-}
 
 #endif

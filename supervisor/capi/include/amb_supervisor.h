@@ -26,10 +26,16 @@
  * to anything else than what its type says cannot be found out. Nothing is allocated, nothing is printed,
  * nothing blocks.
  *
- * Calls on the same supervisor must not interrupt each other: hold the interrupt that ticks while the
- * background calls. A call that does interrupt another is refused with AMB_ERROR_BUSY. The same holds for
- * calls on the same watch (AMB_ERROR_WATCH_BUSY). Calls with neither in their arguments may come from
- * anywhere.
+ * Calls on a supervisor come from three sides, none of which holds another up, in whatever order they interrupt each other:
+ *
+ * - the tick's: amb_tick, amb_reconfigure, and those of a rotor. One call at a time.
+ * - one reader's, of any lower priority or on another processor: amb_next_event, amb_record_section, amb_rearm, and those of a
+ *   rotor. One call at a time.
+ * - everybody's, with a pointer to const: amb_mode, amb_report_now, amb_rotor_report_now. Any number of calls at a time.
+ *
+ * A call that interrupts another one of its own side is refused with AMB_ERROR_BUSY: a tick only by a tick or a
+ * reconfiguration that it interrupts. amb_init has the memory for itself. Calls on the same watch must not interrupt each
+ * other (AMB_ERROR_WATCH_BUSY). Calls with neither in their arguments may come from anywhere.
  */
 #ifndef AMB_SUPERVISOR_H
 #define AMB_SUPERVISOR_H
@@ -38,7 +44,7 @@
 #include <stdint.h>
 
 /** Version of the interface that this header describes. */
-#define AMB_ABI 2
+#define AMB_ABI 3
 
 /* Written beside the library when that is built; give its folder to the compiler with -I. */
 #include "amb_supervisor_abi.h"
@@ -254,8 +260,8 @@ typedef int32_t amb_code;
 
 /**
  * A supervisor: memory of the caller's with nothing in it to look at. Make it static (then it is zero at
- * start), or fill it with zeros, before amb_init(). It may be moved while no call uses it, and needs no
- * clean-up.
+ * start), or fill it with zeros, before amb_init(). It stays where it was made: a copy of it is no supervisor
+ * (AMB_ERROR_NOT_INITIALISED). It needs no clean-up.
  */
 typedef union amb_supervisor {
     uint8_t bytes[AMB_SUPERVISOR_BYTES];
@@ -532,12 +538,12 @@ amb_code amb_reconfigure(amb_supervisor *supervisor, const float *values, size_t
 amb_code amb_tick(amb_supervisor *supervisor, const amb_sample *sample, amb_command *command);
 
 /**
- * What the supervisor is doing.
+ * What the supervisor was doing after its last tick. From anywhere, at any time.
  * @param supervisor made by amb_init().
  * @param[out] mode AMB_MODE_; untouched after an error.
- * @return AMB_OK, or an error of supervisor or result.
+ * @return AMB_OK, or an error of supervisor or result; never AMB_ERROR_BUSY.
  */
-amb_code amb_mode(amb_supervisor *supervisor, uint32_t *mode);
+amb_code amb_mode(const amb_supervisor *supervisor, uint32_t *mode);
 
 /**
  * Name of a mode, for people.
@@ -547,15 +553,16 @@ amb_code amb_mode(amb_supervisor *supervisor, uint32_t *mode);
 const char *amb_mode_name(uint32_t mode);
 
 /**
- * What has happened since amb_init().
+ * What had happened from amb_init() to the last tick, all of it of the same tick. From anywhere, at any time.
  * @param supervisor made by amb_init().
  * @param[out] report untouched after an error.
- * @return AMB_OK, or an error of supervisor or result.
+ * @return AMB_OK, or an error of supervisor or result. AMB_ERROR_BUSY where ticks came in between eight times in a row, and
+ * where it is called by what has interrupted a tick.
  */
-amb_code amb_report_now(amb_supervisor *supervisor, amb_report *report);
+amb_code amb_report_now(const amb_supervisor *supervisor, amb_report *report);
 
 /**
- * Takes the oldest event out of the queue of 16. Call it from the background until it is AMB_NOTHING.
+ * Takes the oldest event out of the queue of 16. Call it from the background until it is AMB_NOTHING; ticks may come meanwhile.
  * @param supervisor made by amb_init().
  * @param[out] event untouched unless AMB_OK.
  * @return AMB_OK, AMB_NOTHING, or an error of supervisor or result.
@@ -576,7 +583,7 @@ amb_code amb_next_event(amb_supervisor *supervisor, amb_event *event);
 amb_code amb_record_section(amb_supervisor *supervisor, uint32_t index, const amb_stamp *stamp, amb_section *section);
 
 /**
- * Discards a frozen record and waits for the next engagement.
+ * Discards a frozen record; with the next tick the recorder waits for an engagement again. Without one nothing happens.
  * @param supervisor made by amb_init().
  * @return AMB_OK, or an error of supervisor.
  */
@@ -584,7 +591,7 @@ amb_code amb_rearm(amb_supervisor *supervisor);
 
 /**
  * Makes a supervisor of a rotor in two bearing planes, levitated: a supervisor for each, which know the force at the
- * other end and how the spin turns a tilt. Takes five kilobytes of stack.
+ * other end and how the spin turns a tilt. Takes three kilobytes of stack.
  * @param rotor memory for it, zero or made before. After an error it is as it was.
  * @param bytes sizeof *rotor.
  * @param shaft the rotor. From it follow, for each plane, AMB_P_MASS_KG (what an impact there moves),
@@ -617,13 +624,13 @@ amb_code amb_rotor_reconfigure(amb_rotor *rotor, const amb_shaft *shaft, const f
 amb_code amb_rotor_tick(amb_rotor *rotor, const amb_sample *samples, amb_rotor_command *command);
 
 /**
- * What has happened to a plane since amb_rotor_init().
+ * What had happened to a plane from amb_rotor_init() to the last tick, as amb_report_now(). From anywhere, at any time.
  * @param rotor made by amb_rotor_init().
  * @param plane 0 or 1; anything else is AMB_ERROR_PLANE.
  * @param[out] report untouched after an error.
- * @return AMB_OK, AMB_ERROR_PLANE, or an error of rotor or result.
+ * @return AMB_OK, AMB_ERROR_PLANE, or an error of rotor or result; AMB_ERROR_ROTOR_BUSY as AMB_ERROR_BUSY there.
  */
-amb_code amb_rotor_report_now(amb_rotor *rotor, uint32_t plane, amb_report *report);
+amb_code amb_rotor_report_now(const amb_rotor *rotor, uint32_t plane, amb_report *report);
 
 /**
  * Takes the oldest event of a plane out of its queue of 16. Call it from the background until it is AMB_NOTHING.
@@ -648,7 +655,7 @@ amb_code amb_rotor_record_section(amb_rotor *rotor, uint32_t plane, uint32_t ind
                                   amb_section *section);
 
 /**
- * Discards the frozen records of both planes; they wait for the next engagement.
+ * Discards the frozen records of both planes; with the next tick they wait for an engagement again.
  * @param rotor made by amb_rotor_init().
  * @return AMB_OK, or an error of rotor.
  */

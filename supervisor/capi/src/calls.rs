@@ -2,17 +2,17 @@
 //! interface, so that a program compiled against another one does not link.
 
 use crate::code::Code;
+use crate::halves::{self, Halves, Split, Storage};
 use crate::pointer::{Argument, Place};
-use crate::storage::{self, Content, Kept, Lease, RECORD, Storage};
 use crate::structs::{CCommand, CEvent, CParameter, CReport, CSample, CSection, CStamp};
 use crate::{parameters, version};
 use core::ffi::{CStr, c_char};
-use supervisor::{Config, PARAMETERS, Section, Stamp, Supervisor};
+use supervisor::{Config, PARAMETERS, Section, Stamp};
 
 /// Ending of the names; [`version::ABI`] as text.
 macro_rules! ending {
     () => {
-        "_abi2"
+        "_abi3"
     };
 }
 
@@ -140,7 +140,7 @@ pub unsafe extern "C" fn amb_init(
         Err(code) => return code,
     };
     // SAFETY: the caller's promise.
-    Code::from_result(unsafe { storage::make_supervisor(supervisor, bytes, &config) })
+    Code::from_result(unsafe { halves::make_supervisor(supervisor, bytes, &config) })
 }
 
 /// The configurations of so many planes that these values make, not yet compared with their ranges.
@@ -173,12 +173,12 @@ pub unsafe extern "C" fn amb_reconfigure(
     count: usize,
 ) -> Code {
     // SAFETY: the caller's promise.
-    let lease = unsafe { Lease::new(supervisor) };
+    let lease = unsafe { halves::ticker(supervisor) };
     let done = lease.and_then(|mut lease| {
         // SAFETY: the caller's promise.
         let [config] = unsafe { configurations(values, count) }?;
         let done = lease.content().reconfigure(&config);
-        done.map_err(|error| storage::code_of(error.parameter()))
+        done.map_err(|error| halves::code_of(error.parameter()))
     });
     Code::from_result(done)
 }
@@ -204,7 +204,7 @@ pub unsafe extern "C" fn amb_tick(
     let sample = unsafe { Argument::Sample.read(sample) };
     let done = sample.and_then(|sample| {
         // SAFETY: the caller's promise.
-        let mut lease = unsafe { Lease::new(supervisor) }?;
+        let mut lease = unsafe { halves::ticker(supervisor) }?;
         Ok(lease.content().tick(&sample.into()))
     });
     #[cfg(feature = "planted-panic")]
@@ -224,24 +224,44 @@ pub unsafe extern "C" fn amb_tick(
     }
 }
 
-/// Gives `result` what a supervisor, or that of a rotor, is asked for.
+/// Gives `result` what is taken from the reading half of a supervisor, or that of a rotor.
 ///
 /// # Safety
 /// `asked` is null, misaligned, or points to storage in which one was made or that is full of zeros; `result` is null,
 /// misaligned, or points to memory for a `T`.
-pub(crate) unsafe fn ask<C: Content, T: Copy>(
-    asked: *mut Kept<C>,
+pub(crate) unsafe fn take<S: Split, T: Copy>(
+    asked: *mut Halves<S>,
     result: *mut T,
-    question: impl FnOnce(&mut C) -> Result<T, Code>,
+    question: impl FnOnce(&mut S::Reader) -> Result<T, Code>,
 ) -> Code {
     // SAFETY: the caller's promise.
     let place = unsafe { Place::new(Argument::Result, result) };
     // SAFETY: the caller's promise.
-    let lease = unsafe { Lease::new(asked) };
+    let lease = unsafe { halves::reader(asked) };
     let answer = lease.and_then(|mut lease| {
         // Asked only where the answer has a place: an event without one would be lost.
         let place = place?;
         place.put(question(lease.content())?);
+        Ok(())
+    });
+    Code::from_result(answer)
+}
+
+/// Gives `result` what the last tick has published; at any time, to any number of callers.
+///
+/// # Safety
+/// As for [`take`].
+pub(crate) unsafe fn see<S: Split, T: Copy>(
+    asked: *const Halves<S>,
+    result: *mut T,
+    question: impl FnOnce(S::Published) -> Result<T, Code>,
+) -> Code {
+    // SAFETY: the caller's promise.
+    let place = unsafe { Place::new(Argument::Result, result) };
+    // SAFETY: the caller's promise.
+    let published = unsafe { halves::published(asked) };
+    let answer = published.and_then(|published| {
+        place?.put(question(published)?);
         Ok(())
     });
     Code::from_result(answer)
@@ -253,9 +273,9 @@ pub(crate) unsafe fn ask<C: Content, T: Copy>(
 /// `supervisor` as for [`amb_tick`]; `mode` is null, misaligned, or points to memory for a number.
 // SAFETY: a name of its own, see `amb_abi_version`.
 #[unsafe(export_name = concat!("amb_mode", ending!()))]
-pub unsafe extern "C" fn amb_mode(supervisor: *mut Storage, mode: *mut u32) -> Code {
+pub unsafe extern "C" fn amb_mode(supervisor: *const Storage, mode: *mut u32) -> Code {
     // SAFETY: the caller's promise.
-    unsafe { ask(supervisor, mode, |s| Ok(s.mode() as u32)) }
+    unsafe { see(supervisor, mode, |s| Ok(s.mode() as u32)) }
 }
 
 /// Name of a mode, for people; never null.
@@ -286,9 +306,13 @@ pub fn mode_name(mode: u32) -> &'static CStr {
 /// `supervisor` as for [`amb_tick`]; `report` is null, misaligned, or points to memory for its struct.
 // SAFETY: a name of its own, see `amb_abi_version`.
 #[unsafe(export_name = concat!("amb_report_now", ending!()))]
-pub unsafe extern "C" fn amb_report_now(supervisor: *mut Storage, report: *mut CReport) -> Code {
+pub unsafe extern "C" fn amb_report_now(supervisor: *const Storage, report: *mut CReport) -> Code {
     // SAFETY: the caller's promise.
-    unsafe { ask(supervisor, report, |s| Ok(s.report().into())) }
+    unsafe {
+        see(supervisor, report, |s| {
+            s.report().map(Into::into).ok_or(Code::ERROR_BUSY)
+        })
+    }
 }
 
 /// Takes the oldest event out of the queue.
@@ -300,7 +324,7 @@ pub unsafe extern "C" fn amb_report_now(supervisor: *mut Storage, report: *mut C
 pub unsafe extern "C" fn amb_next_event(supervisor: *mut Storage, event: *mut CEvent) -> Code {
     // SAFETY: the caller's promise.
     unsafe {
-        ask(supervisor, event, |s| {
+        take(supervisor, event, |s| {
             s.next_event().map(Into::into).ok_or(Code::NOTHING)
         })
     }
@@ -318,27 +342,31 @@ pub unsafe extern "C" fn amb_record_section(
     stamp: *const CStamp,
     section: *mut CSection,
 ) -> Code {
-    let section_of = |s: &Supervisor<RECORD>, stamp: &Stamp| s.record()?.section(index, stamp);
     // SAFETY: the caller's promise.
-    Code::from_result(unsafe { write_section(supervisor, stamp, section, section_of) })
+    let done = unsafe {
+        write_section(supervisor, stamp, section, |reader, stamp| {
+            reader.record()?.section(index, stamp)
+        })
+    };
+    Code::from_result(done)
 }
 
-/// Writes a section of a record down. The content is in use only while its words are copied.
+/// Writes a section of a record down.
 ///
 /// # Safety
-/// `kept` as for [`ask`]; `stamp` and `section` are null, misaligned, or point to their structs.
-pub(crate) unsafe fn write_section<C: Content>(
-    kept: *mut Kept<C>,
+/// `asked` as for [`take`]; `stamp` and `section` are null, misaligned, or point to their structs.
+pub(crate) unsafe fn write_section<S: Split>(
+    asked: *mut Halves<S>,
     stamp: *const CStamp,
     section: *mut CSection,
-    section_of: impl FnOnce(&C, &Stamp) -> Option<Section>,
+    section_of: impl FnOnce(&S::Reader, &Stamp) -> Option<Section>,
 ) -> Result<(), Code> {
     // SAFETY: the caller's promise.
     let stamp = unsafe { Argument::Stamp.read(stamp) }?.into();
     // SAFETY: the caller's promise.
     let place = unsafe { Place::new(Argument::Result, section) }?;
     // SAFETY: the caller's promise.
-    let made = section_of(unsafe { Lease::new(kept) }?.content(), &stamp);
+    let made = section_of(unsafe { halves::reader(asked) }?.content(), &stamp);
     let mut made = made.ok_or(Code::NOTHING)?;
     place.put(CSection::new(made.seal()));
     Ok(())
@@ -352,6 +380,6 @@ pub(crate) unsafe fn write_section<C: Content>(
 #[unsafe(export_name = concat!("amb_rearm", ending!()))]
 pub unsafe extern "C" fn amb_rearm(supervisor: *mut Storage) -> Code {
     // SAFETY: the caller's promise.
-    let lease = unsafe { Lease::new(supervisor) };
+    let lease = unsafe { halves::reader(supervisor) };
     Code::from_result(lease.map(|mut lease| lease.content().rearm()))
 }

@@ -13,7 +13,7 @@
 //! cannot be checked is under "Safety" of each function.
 //!
 //! Files, each importing only from those above it: `version`, `parameters`, `code`, `layout`,
-//! `structs`, `pointer`, `storage`, `calls`, `rotor`, `watch`.
+//! `structs`, `pointer`, `storage`, `halves`, `calls`, `rotor`, `watch`.
 
 #![cfg_attr(target_os = "none", no_std)]
 #![deny(clippy::undocumented_unsafe_blocks, unsafe_op_in_unsafe_fn)]
@@ -21,6 +21,7 @@
 
 pub mod calls;
 pub mod code;
+mod halves;
 pub mod layout;
 mod parameters;
 mod pointer;
@@ -31,8 +32,9 @@ mod version;
 pub mod watch;
 
 pub use code::Code;
-pub use storage::{RECORD, RotorStorage, Storage, WatchStorage};
+pub use halves::{RECORD, RotorStorage, Storage};
 pub use version::ABI;
+pub use watch::WatchStorage;
 
 #[cfg(target_os = "none")]
 mod trap {

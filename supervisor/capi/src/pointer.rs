@@ -4,7 +4,7 @@ use crate::code::Code;
 
 /// An argument of a call that is a pointer, for an error to name.
 #[derive(Debug, Clone, Copy)]
-pub(crate) enum Argument {
+pub enum Argument {
     Supervisor,
     Values,
     Sample,

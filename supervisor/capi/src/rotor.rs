@@ -1,11 +1,10 @@
 //! The functions of the header on the supervisor of a rotor in two bearing planes.
 
-use crate::calls::{ask, configurations, ending, write_section};
+use crate::calls::{configurations, ending, see, take, write_section};
 use crate::code::Code;
+use crate::halves::{self, RotorStorage};
 use crate::pointer::{Argument, Place};
-use crate::storage::{self, Lease, RECORD, RotorStorage};
 use crate::structs::{CCommand, CEvent, CReport, CRotorCommand, CSample, CSection, CShaft, CStamp};
-use supervisor::{Rotor, Stamp};
 
 /// Makes a supervisor of a rotor in storage of the caller's. After an error the storage is as it was.
 ///
@@ -36,7 +35,7 @@ pub unsafe extern "C" fn amb_rotor_init(
         Err(code) => return code,
     };
     // SAFETY: the caller's promise.
-    Code::from_result(unsafe { storage::make_rotor(rotor, bytes, (&shaft, &configs)) })
+    Code::from_result(unsafe { halves::make_rotor(rotor, bytes, (&shaft, &configs)) })
 }
 
 /// Another shaft and other configurations, from the next tick on. After an error nothing has changed.
@@ -52,14 +51,14 @@ pub unsafe extern "C" fn amb_rotor_reconfigure(
     count: usize,
 ) -> Code {
     // SAFETY: the caller's promise.
-    let lease = unsafe { Lease::new(rotor) };
+    let lease = unsafe { halves::ticker(rotor) };
     let done = lease.and_then(|mut lease| {
         // SAFETY: the caller's promise.
         let shaft = unsafe { Argument::Shaft.read(shaft) }?;
         // SAFETY: the caller's promise.
         let configs = unsafe { configurations(values, count) }?;
         let done = lease.content().reconfigure(&shaft.into(), &configs);
-        done.map_err(|error| storage::code_of_shaft(&error))
+        done.map_err(|error| halves::code_of_shaft(&error))
     });
     Code::from_result(done)
 }
@@ -86,7 +85,7 @@ pub unsafe extern "C" fn amb_rotor_tick(
     let samples = unsafe { Argument::Sample.read(samples.cast::<[CSample; 2]>()) };
     let done = samples.and_then(|samples| {
         // SAFETY: the caller's promise.
-        let mut lease = unsafe { Lease::new(rotor) }?;
+        let mut lease = unsafe { halves::ticker(rotor) }?;
         Ok(lease.content().tick(&samples.map(Into::into)))
     });
     match done {
@@ -104,23 +103,12 @@ pub unsafe extern "C" fn amb_rotor_tick(
     }
 }
 
-/// Gives `result` what a plane is asked for.
-///
-/// # Safety
-/// `rotor` as for [`amb_rotor_tick`]; `result` is null, misaligned, or points to memory for a `T`.
-unsafe fn ask_plane<T: Copy>(
-    rotor: *mut RotorStorage,
-    plane: u32,
-    result: *mut T,
-    question: impl FnOnce(&mut Rotor<RECORD>, usize) -> Result<T, Code>,
-) -> Code {
-    // SAFETY: the caller's promise.
-    unsafe {
-        ask(rotor, result, |rotor| match plane {
-            0 => question(rotor, 0),
-            1 => question(rotor, 1),
-            _ => Err(Code::ERROR_PLANE),
-        })
+/// A plane that there is.
+fn plane(number: u32) -> Result<usize, Code> {
+    match number {
+        0 => Ok(0),
+        1 => Ok(1),
+        _ => Err(Code::ERROR_PLANE),
     }
 }
 
@@ -131,14 +119,20 @@ unsafe fn ask_plane<T: Copy>(
 // SAFETY: a name of its own, see `amb_rotor_init`.
 #[unsafe(export_name = concat!("amb_rotor_report_now", ending!()))]
 pub unsafe extern "C" fn amb_rotor_report_now(
-    rotor: *mut RotorStorage,
+    rotor: *const RotorStorage,
     plane: u32,
     report: *mut CReport,
 ) -> Code {
     // SAFETY: the caller's promise.
     unsafe {
-        ask_plane(rotor, plane, report, |r, end| {
-            Ok(r.plane(end).report().into())
+        see(rotor, report, |[first, second]| {
+            let published = if self::plane(plane)? == 0 {
+                first
+            } else {
+                second
+            };
+            let report = published.report().map(Into::into);
+            report.ok_or(Code::ERROR_ROTOR_BUSY)
         })
     }
 }
@@ -156,8 +150,8 @@ pub unsafe extern "C" fn amb_rotor_next_event(
 ) -> Code {
     // SAFETY: the caller's promise.
     unsafe {
-        ask_plane(rotor, plane, event, |r, end| {
-            let event = r.plane(end).next_event();
+        take(rotor, event, |reader| {
+            let event = reader.next_event(self::plane(plane)?);
             event.map(Into::into).ok_or(Code::NOTHING)
         })
     }
@@ -176,15 +170,17 @@ pub unsafe extern "C" fn amb_rotor_record_section(
     stamp: *const CStamp,
     section: *mut CSection,
 ) -> Code {
-    if plane > 1 {
-        return Code::ERROR_PLANE;
-    }
-    let section_of = |rotor: &Rotor<RECORD>, stamp: &Stamp| {
-        let record = rotor.record(plane as usize)?;
-        record.section(index, stamp)
+    let end = match self::plane(plane) {
+        Ok(end) => end,
+        Err(code) => return code,
     };
     // SAFETY: the caller's promise.
-    Code::from_result(unsafe { write_section(rotor, stamp, section, section_of) })
+    let done = unsafe {
+        write_section(rotor, stamp, section, |reader, stamp| {
+            reader.record(end)?.section(index, stamp)
+        })
+    };
+    Code::from_result(done)
 }
 
 /// Discards frozen records; both planes wait for the next engagement.
@@ -195,6 +191,6 @@ pub unsafe extern "C" fn amb_rotor_record_section(
 #[unsafe(export_name = concat!("amb_rotor_rearm", ending!()))]
 pub unsafe extern "C" fn amb_rotor_rearm(rotor: *mut RotorStorage) -> Code {
     // SAFETY: the caller's promise.
-    let lease = unsafe { Lease::new(rotor) };
+    let lease = unsafe { halves::reader(rotor) };
     Code::from_result(lease.map(|mut lease| lease.content().rearm()))
 }

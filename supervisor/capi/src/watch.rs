@@ -2,9 +2,36 @@
 
 use crate::calls::ending;
 use crate::code::Code;
+use crate::layout::defined;
 use crate::pointer::{Argument, Place};
-use crate::storage::{Lease, Making, WatchStorage};
+use crate::storage::{Content, Kept, Lease, Making};
 use supervisor::CommandWatchdog;
+
+/// What is in an `amb_watch`.
+pub type WatchStorage = Kept<CommandWatchdog<f32>>;
+
+impl Content for CommandWatchdog<f32> {
+    const READY: u32 = 0xA3B1_07C8;
+    const BUSY: u32 = 0xA3B1_07B5;
+    const NOT_MADE: Code = Code::ERROR_WATCH_NOT_INITIALISED;
+    const IN_USE: Code = Code::ERROR_WATCH_BUSY;
+}
+
+const _: () = {
+    let (bytes, align) = (defined("AMB_WATCH_BYTES"), defined("AMB_WATCH_ALIGN"));
+    assert!(size_of::<WatchStorage>() <= bytes && bytes <= size_of::<WatchStorage>() + 16);
+    assert!(align_of::<WatchStorage>() == align);
+};
+
+/// # Safety
+/// Where `watch` is neither null nor misaligned it points to an `amb_watch` that has been written to (static memory has) and that
+/// only this library touches.
+unsafe fn kept<'a>(watch: *mut WatchStorage) -> Result<&'a WatchStorage, Code> {
+    Argument::Watch.check(watch.cast_const())?;
+    // SAFETY: not null, aligned and large enough; any bytes are valid, because its word is an integer and the rest may be
+    // uninitialised.
+    Ok(unsafe { &*watch })
+}
 
 /// Makes a watch without a command in storage of the caller's.
 ///
@@ -15,11 +42,8 @@ use supervisor::CommandWatchdog;
 #[unsafe(export_name = concat!("amb_watch_init", ending!()))]
 pub unsafe extern "C" fn amb_watch_init(watch: *mut WatchStorage, periods: u32) -> Code {
     // SAFETY: the caller's promise.
-    let making = unsafe { Making::new(watch) };
-    Code::from_result(making.map(|mut making| {
-        making.place().write(CommandWatchdog::new(periods));
-        making.done();
-    }))
+    let making = unsafe { kept(watch) }.and_then(Making::new);
+    Code::from_result(making.map(|making| making.finish(CommandWatchdog::new(periods))))
 }
 
 /// After each tick: its force is the command from now on.
@@ -31,7 +55,7 @@ pub unsafe extern "C" fn amb_watch_init(watch: *mut WatchStorage, periods: u32) 
 #[unsafe(export_name = concat!("amb_watch_renew", ending!()))]
 pub unsafe extern "C" fn amb_watch_renew(watch: *mut WatchStorage, force: *const f32) -> Code {
     // SAFETY: the caller's promise.
-    let lease = unsafe { Lease::new(watch) };
+    let lease = unsafe { kept(watch) }.and_then(Lease::new);
     let done = lease.and_then(|mut lease| {
         // SAFETY: the caller's promise. An array is aligned as its elements.
         let force = unsafe { Argument::Force.read(force.cast::<[f32; 2]>()) }?;
@@ -54,7 +78,7 @@ pub unsafe extern "C" fn amb_watch_force(watch: *mut WatchStorage, force: *mut f
         Err(code) => return code,
     };
     // SAFETY: the caller's promise.
-    match unsafe { Lease::new(watch) } {
+    match unsafe { kept(watch) }.and_then(Lease::new) {
         Ok(mut lease) => {
             place.put(lease.content().force());
             Code::OK
@@ -76,7 +100,7 @@ pub unsafe extern "C" fn amb_watch_expired(watch: *mut WatchStorage, expired: *m
     // SAFETY: the caller's promise.
     let place = unsafe { Place::new(Argument::Result, expired) };
     // SAFETY: the caller's promise.
-    let lease = unsafe { Lease::new(watch) };
+    let lease = unsafe { kept(watch) }.and_then(Lease::new);
     let answer = lease.and_then(|mut lease| {
         place?.put(u32::from(lease.content().expired()));
         Ok(())

@@ -286,6 +286,18 @@ static void interrupted(void) {
            "supervisor is in use by a call that this one interrupted");
 }
 
+/* A supervisor is one in its place alone. */
+static void moved(void) {
+    uint32_t mode;
+    EXPECT(amb_init(&plane, sizeof plane, rig_config, AMB_PARAMETERS), AMB_OK, "done");
+    memcpy(&three[0], &plane, sizeof plane);
+    EXPECT(amb_mode(&three[0], &mode), AMB_ERROR_NOT_INITIALISED, NOT_MADE_TEXT);
+    EXPECT(amb_rearm(&three[0]), AMB_ERROR_NOT_INITIALISED, NOT_MADE_TEXT);
+    EXPECT(amb_init(&three[0], sizeof three[0], rig_config, AMB_PARAMETERS), AMB_OK, "done");
+    EXPECT(amb_mode(&three[0], &mode), AMB_OK, "done");
+    memset(three, 0, sizeof three);
+}
+
 static void rig_until(rig *r, uint32_t end) {
     while (r->tick < end) {
         amb_sample sample;
@@ -310,6 +322,70 @@ static uint32_t crc_of(const uint8_t *bytes, uint32_t length) {
         for (bit = 0; bit < 8; bit++) crc = crc >> 1 ^ (crc & 1 ? 0xEDB88320u : 0);
     }
     return ~crc;
+}
+
+/* Ticks of the rig from the interrupt's side, and what went wrong with them. */
+static rig ticked;
+static volatile sig_atomic_t ticks_refused = 0;
+static volatile sig_atomic_t ticks_done = 0;
+
+static void ticking_interrupt(int signal_number) {
+    amb_sample sample;
+    amb_command command;
+    (void)signal_number;
+    if (ticked.tick == RIG_TICKS) rig_start(&ticked);
+    rig_sample(&ticked, &sample);
+    sample.sequence = (uint32_t)ticks_done;
+    if (amb_tick(&plane, &sample, &command) != AMB_OK) ticks_refused = 1;
+    rig_actuate(&ticked, &command);
+    ticks_done++;
+}
+
+/* Two priorities without a lock: whatever the background calls, no tick is refused, and what it gets is whole. */
+static void two_priorities(void) {
+    static amb_section section;
+    static const amb_stamp stamp = {7, 9, {5, 0}};
+    struct sigaction action;
+    struct itimerval timer;
+    const time_t start = time(NULL);
+    uint32_t records = 0, events = 0, last = 0, index, mode;
+    int whole = 1, in_order = 1, reports = 1;
+    EXPECT(amb_init(&plane, sizeof plane, rig_config, AMB_PARAMETERS), AMB_OK, "done");
+    rig_start(&ticked);
+    memset(&action, 0, sizeof action);
+    memset(&timer, 0, sizeof timer);
+    action.sa_handler = ticking_interrupt;
+    timer.it_interval.tv_usec = timer.it_value.tv_usec = 50;
+    sigaction(SIGALRM, &action, NULL);
+    setitimer(ITIMER_REAL, &timer, NULL);
+    while ((records < 2 || ticks_done < 9000) && time(NULL) - start < 60) {
+        amb_event event;
+        amb_report report;
+        const amb_code code = amb_report_now(&plane, &report);
+        if (code != AMB_OK && code != AMB_ERROR_BUSY) reports = 0;
+        if (code == AMB_OK && !(report.force_cap_n >= 400.0f && report.force_cap_n <= 1000.0f)) reports = 0;
+        if (amb_mode(&plane, &mode) != AMB_OK || mode > AMB_MODE_HANDED_BACK) reports = 0;
+        if (amb_next_event(&plane, &event) == AMB_OK) {
+            if (events > 0 && event.sequence < last) in_order = 0;
+            last = event.sequence;
+            events++;
+        }
+        for (index = 0; amb_record_section(&plane, index, &stamp, &section) == AMB_OK; index++) {
+            const uint32_t words = section.length / 4;
+            if (crc_of(section.bytes, section.length - 4) != word_at(&section, words - 1)) whole = 0;
+        }
+        if (index > 0) {
+            if (memcmp(section.bytes, "ENDS", 4) != 0) whole = 0;
+            records++;
+            if (amb_rearm(&plane) != AMB_OK) whole = 0;
+        }
+    }
+    timer.it_value.tv_usec = timer.it_interval.tv_usec = 0;
+    setitimer(ITIMER_REAL, &timer, NULL);
+    check(ticks_done >= 9000 && !ticks_refused, "no tick is refused");
+    check(records >= 2 && whole, "records are whole");
+    check(events > 10 && in_order, "events come in order");
+    check(reports, "reports and modes are of a tick");
 }
 
 /* An event, a report and a record, from the first blow of the rig. */
@@ -483,6 +559,8 @@ int main(void) {
     self_testing();
     watching();
     interrupted();
+    two_priorities();
+    moved();
     printf("%d checks, %d failures\n", checks, failures);
     return failures > 0;
 }

@@ -119,11 +119,21 @@ static void ticking(void) {
         EXPECT(amb_rotor_rearm((amb_rotor *)(void *)&plane), AMB_ERROR_ROTOR_NOT_INITIALISED, NOT_MADE_TEXT);
         EXPECT(amb_rearm((amb_supervisor *)(void *)&rotor), AMB_ERROR_NOT_INITIALISED,
                "supervisor was not made by amb_init");
-        /* As a call finds it that interrupts another: the first word says so. */
+        /* A copy is none either. */
         memcpy(&zero, &rotor, sizeof rotor);
-        zero.bytes[0] = 0xB5;
-        zero.bytes[1] = 0x20;
-        EXPECT(amb_rotor_rearm(&zero), AMB_ERROR_ROTOR_BUSY, "rotor is in use by a call that this one interrupted");
+        EXPECT(amb_rotor_rearm(&zero), AMB_ERROR_ROTOR_NOT_INITIALISED, NOT_MADE_TEXT);
+        /* As a call finds it that interrupts a tick: the first word says so. What reads does not mind. */
+        {
+            const uint8_t ready = rotor.bytes[0];
+            amb_report report;
+            rotor.bytes[0] = 0xB5;
+            EXPECT(amb_rotor_tick(&rotor, samples, command), AMB_ERROR_ROTOR_BUSY,
+                   "rotor is in use by a call that this one interrupted");
+            no_force("busy", command);
+            EXPECT(amb_rotor_rearm(&rotor), AMB_OK, "done");
+            EXPECT(amb_rotor_report_now(&rotor, 0, &report), AMB_OK, "done");
+            rotor.bytes[0] = ready;
+        }
         memset(&zero, 0, sizeof zero);
     }
 }

@@ -24,7 +24,7 @@ fn landing(first: u32) -> (Vec<u8>, u32, Vec<Command>) {
         })
         .collect();
     let record = supervisor.record().expect("frozen");
-    let bytes: Vec<u8> = record.entries().flat_map(version_2).collect();
+    let bytes: Vec<u8> = record.entries().flat_map(|e| version_2(&e)).collect();
     let crc = crc_of(&bytes);
     (bytes, crc, commands)
 }

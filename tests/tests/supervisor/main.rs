@@ -21,6 +21,7 @@ mod rotor;
 mod service;
 mod severity;
 mod soft_controller;
+mod split;
 mod static_overload;
 mod suggested_config;
 mod trust;

@@ -1,7 +1,7 @@
 //! The supervisor's numbers: fixed point against f64, and the self-test's known answers.
 
 use proptest::prelude::*;
-use supervisor::{Events, Q, Scalar, SelfTest, self_test};
+use supervisor::{Core, Events, Q, Scalar, SelfTest, self_test};
 
 /// A unit of Q.
 const LAST: f64 = 1.0 / 4_194_304.0;
@@ -88,4 +88,11 @@ fn self_test_knows_its_answers() {
         assert!(run.events.contains(drive), "{name}: {run:x?}");
         assert!(passes, "{name}: {run:x?}");
     }
+}
+
+/// A record has room for what a core of either number remembers.
+#[test]
+fn states_fit_their_place_in_a_record() {
+    assert_eq!(Core::<f32, 4>::state_words(), 123);
+    assert_eq!(Core::<Q, 4>::state_words(), 123);
 }

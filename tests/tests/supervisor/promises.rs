@@ -340,7 +340,7 @@ fn recorder_freezes_around_the_engagement() {
     assert!(levitated_at > Some(250));
     assert_eq!(frozen_at, levitated_at);
     let record = supervisor.record().expect("frozen");
-    let entries: Vec<Entry> = record.entries().copied().collect();
+    let entries: Vec<Entry> = record.entries().collect();
     assert_eq!(entries.len(), 64);
     assert!(
         entries

@@ -1,5 +1,6 @@
 //! Firmware as it could be, small enough to be read in one go: a timer interrupt ticks the supervisor at
-//! 20 kHz, and the background drains its events and picks up its flight record.
+//! 19 kHz, and the background drains its events and picks up its flight record. Each has its half of the supervisor, so that
+//! neither locks the other out.
 //!
 //! The board is made up: `measured_position_m` stands for converter and position sensor, the levitation
 //! controller is a spring, and the commanded force is kept where a driver of amplifiers would take it from. The
@@ -9,7 +10,7 @@
 
 #[cfg(target_os = "none")]
 mod firmware {
-    use core::cell::RefCell;
+    use core::cell::Cell;
     use cortex_m::peripheral::SCB;
     use cortex_m::peripheral::syst::SystClkSource;
     use cortex_m_rt::{entry, exception};
@@ -17,11 +18,13 @@ mod firmware {
     use defmt::{error, info, warn};
     use firmware_image::{exit, planted};
     use supervisor::{
-        Config, Events, IntegratorHint, QueuedEvent, Sample, Section, Stamp, Status, Supervisor,
+        Config, Events, IntegratorHint, QueuedEvent, Reader, Record, Sample, Stamp, Status,
+        Supervisor, Ticker,
     };
 
     const CORE_HZ: u32 = 25_000_000;
-    const TICK_HZ: u32 = 20_000;
+    /// So that at 31 million instructions a second, where a landing is too much, ticks at rest leave some time to the background.
+    const TICK_HZ: u32 = 19_000;
     /// Ticks that can be replayed: 6 ms, for a processor with 16 KiB of RAM. The slow track reaches farther.
     const RECORD: usize = 128;
 
@@ -38,12 +41,11 @@ mod firmware {
     };
     const CLEARANCE_M: f32 = 2e-4;
 
-    /// What interrupt and background share. `None` until `main` has put it there: the timer starts after that. By
-    /// reference: `None` of the whole would be an image of all its bytes in flash, the record's 10 KiB among them.
-    static CONTROL: Mutex<RefCell<Option<&'static mut Control>>> = Mutex::new(RefCell::new(None));
+    /// The interrupt's own, on its way there: taken once.
+    static HANDED: Mutex<Cell<Option<Control>>> = Mutex::new(Cell::new(None));
 
     struct Control {
-        supervisor: Supervisor<RECORD>,
+        supervisor: Ticker<'static, RECORD>,
         sequence: u32,
         /// The last command came when the next period had begun.
         late: bool,
@@ -75,18 +77,15 @@ mod firmware {
         }
     }
 
-    /// Control, for as short a time as possible: the interrupt waits meanwhile.
-    fn with_control<T>(work: impl FnOnce(&mut Control) -> T) -> Option<T> {
-        critical_section::with(|cs| {
-            // It is never borrowed twice, and if it were, a tick would be left out and not the firmware end.
-            let mut control = CONTROL.borrow(cs).try_borrow_mut().ok()?;
-            control.as_deref_mut().map(work)
-        })
-    }
-
     #[exception]
     fn SysTick() {
-        with_control(Control::tick);
+        static mut CONTROL: Option<Control> = None;
+        if CONTROL.is_none() {
+            *CONTROL = critical_section::with(|cs| HANDED.borrow(cs).take());
+        }
+        if let Some(control) = CONTROL {
+            control.tick();
+        }
     }
 
     #[entry]
@@ -108,39 +107,38 @@ mod firmware {
                 exit::failure()
             }
         };
-        let control = cortex_m::singleton!(: Control = Control {
-            supervisor,
+        // In a place of its own, which is no initial data in flash and no stack.
+        let Some(supervisor) = cortex_m::singleton!(: Supervisor<RECORD> = supervisor) else {
+            exit::failure()
+        };
+        let (ticker, reader) = supervisor.split();
+        let control = Control {
+            supervisor: ticker,
             sequence: 0,
             late: false,
             hint: IntegratorHint::Run,
             force_n: [0.0; 2],
-        });
-        critical_section::with(|cs| {
-            // `replace` would panic where it cannot, and then the image would not link.
-            if let Ok(mut shared) = CONTROL.borrow(cs).try_borrow_mut() {
-                *shared = control;
-            }
-        });
+        };
+        critical_section::with(|cs| HANDED.borrow(cs).set(Some(control)));
         let timer = &mut peripherals.SYST;
         timer.set_clock_source(SystClkSource::Core);
         timer.set_reload(CORE_HZ / TICK_HZ - 1);
         timer.clear_current();
         timer.enable_counter();
         timer.enable_interrupt();
-        background()
+        background(reader)
     }
 
     /// Everything that has time.
-    fn background() -> ! {
+    fn background(mut reader: Reader<'static, f32, RECORD>) -> ! {
         loop {
-            // One event for each lock.
-            while let Some(event) = with_control(|c| c.supervisor.next_event()).flatten() {
+            while let Some(event) = reader.next_event() {
                 log(event);
             }
-            if let Some(first) = section(0) {
-                pick_up(first);
-                with_control(|c| c.supervisor.rearm());
-                if let Some(report) = with_control(|c| c.supervisor.report()) {
+            if let Some(record) = reader.record() {
+                pick_up(&record);
+                reader.rearm();
+                if let Some(report) = reader.published().report() {
                     info!("{}", report);
                 }
                 exit::success();
@@ -149,24 +147,17 @@ mod firmware {
         }
     }
 
-    /// A frozen record does not change, so it is copied a section at a time, between the ticks. The checksum is made outside of
-    /// the lock, which holds the next tick up.
-    fn section(index: u32) -> Option<Section> {
+    /// Firmware would write it to flash or a bus. Ticks go on meanwhile: the record stays as it is until it is given back.
+    fn pick_up(record: &Record<'_, f32, RECORD>) {
         const STAMP: Stamp = Stamp {
             firmware: 1,
             time_us: 0,
             at_sequence: 0,
         };
-        with_control(|c| c.supervisor.record()?.section(index, &STAMP)).flatten()
-    }
-
-    /// Firmware would write it to flash or a bus.
-    fn pick_up(first: Section) {
-        let (mut next, mut sections, mut bytes) = (Some(first), 0, 0);
-        while let Some(mut this) = next {
-            bytes += this.seal().len();
+        let (mut sections, mut bytes) = (0, 0);
+        while let Some(mut section) = record.section(sections, &STAMP) {
+            bytes += section.seal().len();
             sections += 1;
-            next = section(sections);
         }
         info!(
             "record of version {}, {} sections, {} bytes",
