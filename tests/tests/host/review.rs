@@ -1,7 +1,9 @@
 //! `review`: from the memory of a supervisor to what a person reads, of files that are whole and of those that are not.
 
 use firmware_bench::record::file::{Damage, PlaneRecord, RecordFile};
+use firmware_bench::record::identify::Estimate;
 use firmware_bench::record::replay::replay;
+use firmware_bench::record::story::Event;
 use firmware_bench::run::controller as bench;
 use firmware_image::under_test::shaft;
 use serde_json::Value;
@@ -86,6 +88,27 @@ fn replay_of(records: &[&PlaneRecord]) -> (usize, Option<u32>) {
     (replay.differing, replay.first_difference)
 }
 
+/// What is found out of whatever a file has is a number in its interval, and a contact ends after it began.
+fn finds_sound_figures(file: &RecordFile, name: &str) {
+    for found in file.events().iter().filter_map(Event::findings) {
+        let told = &found.identified;
+        let all = [
+            told.friction_coefficient,
+            told.restitution,
+            told.load_x_n,
+            told.load_y_n,
+            told.eccentricity_m,
+            told.clearance_m,
+        ];
+        for Estimate { value, low, high } in all.into_iter().flatten() {
+            assert!(low <= value && value <= high, "{name}: {told:?}");
+        }
+        for contact in &found.contacts {
+            assert!(contact.from_tick <= contact.to_tick, "{name}: {contact:?}");
+        }
+    }
+}
+
 /// A core and its samples.
 trait Stormed: Scalar + AnyBits {}
 impl Stormed for f32 {}
@@ -109,6 +132,7 @@ fn storms<S: Stormed>(seeds: std::ops::Range<u64>) -> usize {
             };
             let file = RecordFile::of(&written(&record));
             assert_eq!(file.damage, [], "{seed}");
+            finds_sound_figures(&file, &seed.to_string());
             let of: Vec<&PlaneRecord> = file.records.iter().collect();
             // One that began before there was a tick to keep the state after has none.
             match replay(&of) {
@@ -147,7 +171,6 @@ fn what_is_in_no_record_is_counted() {
     let first = head(0, 2700);
     assert_eq!((first.dropped, first.closed_at < 900), (0, true));
     plane.rearm();
-    let mut plane = plane;
     for i in 2700..3600 {
         plane.tick(&sample(i, way(i % 900)));
     }
@@ -314,6 +337,9 @@ fn no_damage_makes_a_wrong_figure() {
             if file.is_intact() {
                 assert_eq!(record, original, "{number}");
             }
+        }
+        if number % 50 == 0 {
+            finds_sound_figures(&file, &number.to_string());
         }
         if let Ok(replay) = replay(&file.records.iter().collect::<Vec<_>>()) {
             assert_eq!(replay.differing, 0, "{number}");

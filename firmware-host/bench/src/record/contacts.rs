@@ -221,9 +221,9 @@ pub(super) fn passes(
     for _ in 0..12 {
         let middle = 0.5 * (inside + outside);
         if beyond(middle) {
-            outside = middle
+            outside = middle;
         } else {
-            inside = middle
+            inside = middle;
         }
     }
     Some(outside)
@@ -254,7 +254,7 @@ fn began(motion: &Motion, fit: &Fit<'_>) -> Option<Contact> {
         let to = passes(fit, 0, reach, motion.clearance_m(), true);
         Contact {
             from_tick: 0.0,
-            to_tick: to.unwrap_or(first as f64),
+            to_tick: to.unwrap_or(first as f64).max(0.0),
             normal_m_s: None,
             impulse: None,
         }
@@ -268,6 +268,7 @@ fn stayed(motion: &Motion, fit: &Fit<'_>) -> Option<Contact> {
     was_kept(motion, fit, number, last + 1..end.min(last + BEYOND)).then(|| {
         let reach = (last as f64 - 2.0, BEYOND as f64);
         let from = passes(fit, number, reach, motion.clearance_m(), false).unwrap_or(last as f64);
+        let from = from.min((end - 1) as f64);
         let state = fit.state(number, from);
         Contact {
             from_tick: from,

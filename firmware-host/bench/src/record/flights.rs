@@ -158,14 +158,14 @@ impl<'m> Fit<'m> {
                     continue;
                 }
                 let basis = &fit.paths[number].at[tick - fit.paths[number].begin];
-                for axis in 0..2 {
+                for (axis, along) in basis.iter().enumerate() {
                     let columns = fit.columns(number, axis);
-                    let rest = instant.position_m[axis] - basis[axis][KNOWN][0];
+                    let rest = instant.position_m[axis] - along[KNOWN][0];
                     for (i, a) in &columns {
-                        let a = basis[axis][*a][0];
+                        let a = along[*a][0];
                         right[*i] += a * rest;
                         for (j, b) in &columns {
-                            normal[(*i, *j)] += a * basis[axis][*b][0];
+                            normal[(*i, *j)] += a * along[*b][0];
                         }
                     }
                     total += rest * rest;
@@ -242,11 +242,10 @@ impl<'m> Fit<'m> {
                     continue;
                 }
                 let basis = &path.at[tick - path.begin];
-                for axis in 0..2 {
-                    let by =
-                        |(i, column): &(usize, usize)| self.unknowns[*i] * basis[axis][*column][0];
+                for (axis, along) in basis.iter().enumerate() {
+                    let by = |(i, column): &(usize, usize)| self.unknowns[*i] * along[*column][0];
                     let fitted: f64 = self.columns(number, axis).iter().map(by).sum();
-                    let rest = instant.position_m[axis] - basis[axis][KNOWN][0] - fitted;
+                    let rest = instant.position_m[axis] - along[KNOWN][0] - fitted;
                     squares += rest * rest;
                 }
             }
@@ -260,15 +259,12 @@ impl<'m> Fit<'m> {
         let count = self.count();
         let mut rows = [(); 4].map(|()| RowDVector::zeros(count));
         let mut values = [0.0; 4];
-        for axis in 0..2 {
-            let columns = self.columns(flight, axis);
-            for part in 0..2 {
-                let of = 2 * axis + part;
-                for (i, column) in &columns {
-                    rows[of][*i] = basis[axis][*column][part];
-                }
-                values[of] = basis[axis][KNOWN][part] + (&rows[of] * &self.unknowns)[0];
+        for (of, (row, value)) in rows.iter_mut().zip(&mut values).enumerate() {
+            let (axis, part) = (of / 2, of % 2);
+            for (i, column) in self.columns(flight, axis) {
+                row[i] = basis[axis][column][part];
             }
+            *value = basis[axis][KNOWN][part] + (&*row * &self.unknowns)[0];
         }
         let [x, v_x, y, v_y] = values;
         State {

@@ -237,7 +237,7 @@ fn loaded(fit: &Fit<'_>, load: usize) -> (usize, Option<usize>) {
     let of = || fit.flights.iter().filter(|f| f.load == load);
     let from = of().next().map_or(0, |f| f.from);
     let ends = fit.flights.last().is_some_and(|f| f.load != load);
-    (from, of().last().filter(|_| ends).map(|f| f.to))
+    (from, of().next_back().filter(|_| ends).map(|f| f.to))
 }
 
 /// At the begin of the flight in which the supervisor engaged, or of the one before.
