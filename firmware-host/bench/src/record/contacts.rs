@@ -123,6 +123,12 @@ fn between(motion: &Motion, left_out: impl Fn(usize) -> bool) -> Vec<Flight> {
     flights
 }
 
+/// Sum of squares \[m²\] and noise \[m\] of a fit.
+fn squares(motion: &Motion, flights: &[Flight]) -> Option<(f64, f64)> {
+    let fit = Fit::new(motion, flights, motion.spin_known)?;
+    Some((fit.squares_m2, fit.noise_m))
+}
+
 /// A flight in parts, each with a load of its own: what pushes sets in and ends.
 fn cut(motion: &Motion, whole: Flight, parts: &mut Vec<Flight>) {
     let two = |at: usize| {
@@ -138,16 +144,12 @@ fn cut(motion: &Motion, whole: Flight, parts: &mut Vec<Flight>) {
         [before, after]
     };
     let whole = Flight { load: 0, ..whole };
-    let squares = |flights: &[Flight]| {
-        let fit = Fit::new(motion, flights, motion.spin_known)?;
-        Some((fit.squares_m2, fit.noise_m))
-    };
     let (first, end) = (
         whole.from + PART_TICKS,
         (whole.to + 1).saturating_sub(PART_TICKS),
     );
     let best_of = |cuts: &mut dyn Iterator<Item = usize>| {
-        let tried = cuts.filter_map(|at| Some((at, squares(&two(at))?)));
+        let tried = cuts.filter_map(|at| Some((at, squares(motion, &two(at))?)));
         tried.min_by(|(_, (a, _)), (_, (b, _))| a.total_cmp(b))
     };
     // Some places all along, and then those around the best of them.
@@ -156,7 +158,7 @@ fn cut(motion: &Motion, whole: Flight, parts: &mut Vec<Flight>) {
         let around = first.max((at + 1).saturating_sub(step))..end.min(at + step);
         best_of(&mut around.into_iter())
     });
-    if let (Some((at, (apart, noise_m))), Some((together, _))) = (best, squares(&[whole]))
+    if let (Some((at, (apart, noise_m))), Some((together, _))) = (best, squares(motion, &[whole]))
         && together - apart > CUT * noise_m * noise_m
     {
         let [before, after] = two(at);
@@ -169,10 +171,6 @@ fn cut(motion: &Motion, whole: Flight, parts: &mut Vec<Flight>) {
 
 /// Neighbours with one load where that fits as well.
 fn with_loads(motion: &Motion, mut flights: Vec<Flight>) -> Option<Fit<'_>> {
-    let fit = |flights: &[Flight]| {
-        let fit = Fit::new(motion, flights, motion.spin_known)?;
-        Some((fit.squares_m2, fit.noise_m))
-    };
     let mut load = 0;
     for i in 0..flights.len() {
         // Of the flights with the load so far the last ones; numbers count from their first.
@@ -181,11 +179,11 @@ fn with_loads(motion: &Motion, mut flights: Vec<Flight>) -> Option<Fit<'_>> {
             .filter(|f| f.from == flights[i].from || f.load == load)
             .map(|f| Flight { load: 0, ..*f })
             .collect();
-        let together = fit(&same);
+        let together = squares(motion, &same);
         if let Some(last) = same.last_mut() {
             last.load = usize::from(i > 0);
         }
-        let other = match (together, fit(&same)) {
+        let other = match (together, squares(motion, &same)) {
             (Some((together, _)), Some((apart, noise_m))) => {
                 together - apart > SAME_LOAD * noise_m * noise_m
             }
@@ -198,7 +196,7 @@ fn with_loads(motion: &Motion, mut flights: Vec<Flight>) -> Option<Fit<'_>> {
 }
 
 /// When a flight passes a radius \[ticks\]: outwards from `from` on, or inwards before it (`back`); within so many ticks.
-pub(super) fn passes(
+fn passes(
     fit: &Fit<'_>,
     flight: usize,
     (from, reach): (f64, f64),
@@ -227,6 +225,19 @@ pub(super) fn passes(
         }
     }
     Some(outside)
+}
+
+/// When a flight comes out to a radius and when the next one comes in from there \[ticks\]; `None` of one that does not.
+pub(super) fn meets(fit: &Fit<'_>, before: usize, radius_m: f64) -> [Option<f64>; 2] {
+    let (last, first) = (
+        fit.flights[before].to as f64,
+        fit.flights[before + 1].from as f64,
+    );
+    let reach = first - last + 2.0;
+    [
+        passes(fit, before, (last - 2.0, reach), radius_m, false),
+        passes(fit, before + 1, (first + 2.0, reach), radius_m, true),
+    ]
 }
 
 /// Whether a flight that went on as it did would be beyond the wall where the rotor was not, in some of these ticks.
@@ -283,16 +294,12 @@ fn stayed(motion: &Motion, fit: &Fit<'_>) -> Option<Contact> {
 fn contact(motion: &Motion, fit: &Fit<'_>, before: usize) -> Option<Contact> {
     let (a, b) = (fit.flights[before], fit.flights[before + 1]);
     let (last, first) = (a.to as f64, b.from as f64);
-    let gap = first - last;
-    let wall = motion.clearance_m();
-    let from = passes(fit, before, (last - 2.0, gap + 2.0), wall, false);
-    let to = passes(fit, before + 1, (first + 2.0, gap + 2.0), wall, true);
-    let (from, to) = match (from, to) {
-        (Some(from), Some(to)) if from <= to => (from, to),
-        (Some(from), Some(to)) => [0.5 * (from + to); 2].into(),
-        (Some(from), None) => (from, from.max(first)),
-        (None, Some(to)) => (to.min(last), to),
-        (None, None) => (0.5 * (last + first), 0.5 * (last + first)),
+    let (from, to) = match meets(fit, before, motion.clearance_m()) {
+        [Some(from), Some(to)] if from <= to => (from, to),
+        [Some(from), Some(to)] => [0.5 * (from + to); 2].into(),
+        [Some(from), None] => (from, from.max(first)),
+        [None, Some(to)] => (to.min(last), to),
+        [None, None] => (0.5 * (last + first), 0.5 * (last + first)),
     };
     // The wall lets go before the rotor is back where it came to it, and what turns fast is drawn outwards from there on.
     let single = to - from < SINGLE * motion.impact_ticks() + 1.5;

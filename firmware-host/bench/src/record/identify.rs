@@ -1,8 +1,8 @@
 //! What an event tells of its machine: friction, restitution, load, unbalance and clearance, each with an interval.
 
-use crate::record::contacts::{Contact, Found, passes};
+use crate::record::contacts::{Contact, Found, meets};
 use crate::record::flights::Fit;
-use crate::record::motion::{Instant, Motion};
+use crate::record::motion::{Instant, Motion, is_measured};
 use crate::record::story::Event;
 use plant_model::V2;
 use serde::Serialize;
@@ -91,7 +91,13 @@ impl Event<'_> {
         let config = record.config.filter(|_| record.head.planes == 1)?;
         // How much of the delay is the sensor's is not told.
         let delay = config.delay_samples.clamp(0.0, 7.0) as usize;
-        let found = (0..=delay).filter_map(|late| found_in(&Motion::of(record, late)?));
+        // By commands alone forces come at the time that the whole delay says.
+        let latest = if is_measured(record.entries.values()) {
+            delay
+        } else {
+            0
+        };
+        let found = (0..=latest).filter_map(|late| found_in(&Motion::of(record, late)?));
         let (_, findings) = found.min_by(|(a, _), (b, _)| a.total_cmp(b))?;
         Some(findings)
     }
@@ -269,13 +275,9 @@ fn eccentricity(fit: &Fit<'_>) -> Option<Estimate> {
 
 /// The clearance at which the flights before and after a contact are apart by the time that an impact lasts.
 fn clearance(motion: &Motion, fit: &Fit<'_>, before: usize) -> Option<f64> {
-    let (a, b) = (fit.flights[before], fit.flights[before + 1]);
-    let (last, first) = (a.to as f64, b.from as f64);
     let lasts = |radius_m: f64| {
-        let reach = first - last + 2.0;
-        let from = passes(fit, before, (last - 2.0, reach), radius_m, false)?;
-        let to = passes(fit, before + 1, (first + 2.0, reach), radius_m, true)?;
-        Some(to - from)
+        let [from, to] = meets(fit, before, radius_m);
+        Some(to? - from?)
     };
     let told = motion.clearance_m();
     let (mut low, mut high) = (0.9 * told, 1.1 * told);

@@ -118,6 +118,11 @@ fn maps(config: &Config, period_s: f64) -> [Matrix3<f64>; 2] {
     [period_s, -period_s].map(|t| (rate * t).exp())
 }
 
+/// Whether each tick says what the actuator delivered.
+pub(super) fn is_measured<'a>(mut entries: impl Iterator<Item = &'a Entry>) -> bool {
+    entries.all(|e| Status::from_bits_retain(e.status).contains(Status::APPLIED_VALID))
+}
+
 /// Force at the retainer bearing in each tick, mean over it: as measured, else by delay and lag from the commands.
 fn delivered(record: &PlaneRecord, entries: &[&Entry], config: &Config, late: usize) -> Vec<V2> {
     let unit_n = f64::from(config.force_max_n) * f64::from(config.magnet_plane_ratio);
@@ -131,10 +136,7 @@ fn delivered(record: &PlaneRecord, entries: &[&Entry], config: &Config, late: us
         }
     };
     let status = |e: &Entry| Status::from_bits_retain(e.status);
-    if entries
-        .iter()
-        .all(|e| status(e).contains(Status::APPLIED_VALID))
-    {
+    if is_measured(entries.iter().copied()) {
         let at = |i: usize| vector(entries[i.saturating_sub(late).min(entries.len() - 1)].applied);
         return (0..entries.len())
             .map(|i| 0.5 * (at(i) + at(i + 1)))

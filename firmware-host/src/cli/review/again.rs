@@ -29,7 +29,8 @@ pub(super) fn simulate(
     (event, findings): (&Event<'_>, &Findings),
 ) -> Result<Again, CommandError> {
     let of = (event.records[0], findings);
-    let scene = scene_of_event(Spec::load(path)?, of, &[])?;
+    let spec = Spec::load(path)?;
+    let scene = scene_of_event(spec.clone(), of, &[])?;
     let differing = differing(of.0, &scene);
     if differing.contains(&"sample_period_s") {
         return Err(CommandError::Numbers {
@@ -45,7 +46,7 @@ pub(super) fn simulate(
         keep(&mut results, kind.name(), &scene, *kind);
     }
     if !settings.is_empty() {
-        let other = scene_of_event(Spec::load(path)?, of, settings)?;
+        let other = scene_of_event(spec, of, settings)?;
         let said: Vec<String> = settings.iter().map(Setting::to_string).collect();
         let name = format!("supervisor, {}", said.join(", "));
         keep(&mut results, &name, &other, PolicyKind::Supervisor);
