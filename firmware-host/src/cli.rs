@@ -14,6 +14,7 @@ pub mod review;
 pub mod run;
 pub mod schema;
 pub mod sensitivity;
+pub mod serve_controller;
 pub mod study;
 pub mod target;
 

@@ -3,7 +3,7 @@
 use clap::{Parser, Subcommand};
 use firmware_host::cli::{
     accuracy, advise, error, harm, modes, overloads, paper, review, run, schema, sensitivity,
-    study, target,
+    serve_controller, study, target,
 };
 use std::process::ExitCode;
 
@@ -41,10 +41,14 @@ enum Command {
     Study(study::StudyArgs),
     /// Run the supervisor on emulated processors: bit for bit, instructions, sizes, closed loops.
     Target(target::TargetArgs),
+    /// Serve the shared library of a scene's controller to the run that started this.
+    #[command(hide = true)]
+    ServeController(serve_controller::ServeArgs),
 }
 
 fn main() -> ExitCode {
     let cli = Cli::parse();
+    serve_controller::by_this_program();
     let result = match &cli.command {
         Command::Run(args) => run::execute(args),
         Command::Accuracy(args) => accuracy::execute(args),
@@ -58,6 +62,7 @@ fn main() -> ExitCode {
         Command::Modes(args) => modes::execute(args),
         Command::Study(args) => study::execute(args),
         Command::Target(args) => target::execute(args),
+        Command::ServeController(args) => serve_controller::execute(args),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -2,6 +2,8 @@
 
 pub mod actuator;
 pub mod axis;
+pub mod biquads;
+pub mod external;
 pub mod levitation;
 pub mod loads;
 pub mod loop_shape;

@@ -1,15 +1,18 @@
 //! A scene: the plant, its instruments and controllers, what happens to it, and what is asked.
 
 mod arrays;
+mod biquads;
 mod devices;
 pub mod diagnostic;
 mod events;
+mod external;
 mod guess;
 pub mod keys;
 mod limits;
 mod lint;
 pub mod machine;
 pub mod nominal;
+mod own_controller;
 mod plane_spec;
 mod plant;
 pub mod policy_kind;
@@ -86,7 +89,7 @@ pub struct Scene {
     /// The levitation controller; needed by the policies that use one.
     pub levitation: Option<LevitationParams>,
     /// The controller of the user's in its place.
-    pub state_space: Option<WholeLevitationParams>,
+    pub controller: Option<WholeLevitationParams>,
     /// `radial` pushes beyond this share of the clearance.
     pub radial_band: f64,
     /// `damping` sets so much force against speed \[N s/m\].

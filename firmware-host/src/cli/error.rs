@@ -23,7 +23,16 @@ pub enum CommandError {
     /// A run ended without a result that can be trusted.
     #[error(transparent)]
     #[diagnostic(help("nothing was written"))]
-    Run(#[from] RunError),
+    Run(RunError),
+    /// The controller that the scene names cannot be set up.
+    #[error("{message}")]
+    #[diagnostic(help("{help}"))]
+    Controller {
+        /// Which, and why.
+        message: String,
+        /// What to do.
+        help: String,
+    },
     /// Some policies' runs, or their checks, ended without a result that can be trusted.
     #[error("{}", .0.join("\n"))]
     #[diagnostic(help("results were written, and what cannot be trusted is marked in them"))]
@@ -107,6 +116,18 @@ fn list(contradictions: &[Contradiction]) -> String {
     lines.join("\n")
 }
 
+impl From<RunError> for CommandError {
+    fn from(error: RunError) -> Self {
+        match error {
+            RunError::Controller { reason, .. } if reason.help().is_some() => Self::Controller {
+                message: reason.to_string(),
+                help: reason.help().unwrap_or_default().to_owned(),
+            },
+            error => Self::Run(error),
+        }
+    }
+}
+
 impl CommandError {
     /// Exit code: 2 for what the user gave, 1 for the rest.
     pub fn exit_code(&self) -> u8 {
@@ -114,6 +135,7 @@ impl CommandError {
             Self::Scene(_)
             | Self::Output(_)
             | Self::Numbers { .. }
+            | Self::Controller { .. }
             | Self::Target(TargetError::Image(ImageError::NoProject(_))) => 2,
             Self::Run(_)
             | Self::Untrusted(_)

@@ -174,12 +174,20 @@ fn each_policy<T: Send>(
             .collect::<Result<Outcomes<T>, OutputError>>()
     });
     progress.finish();
-    let all = all?;
+    let mut all = all?;
+    // A controller that cannot be set up is an error of the scene, whatever else has run.
+    if let Some(i) = all.iter().position(is_of_the_scene) {
+        all.swap_remove(i)?;
+    }
     if all.iter().all(Result::is_err) {
         all.into_iter().collect::<Result<Vec<_>, _>>()?;
         return Ok(Vec::new());
     }
     Ok(all)
+}
+
+fn is_of_the_scene<T>(outcome: &Result<T, RunError>) -> bool {
+    matches!(outcome, Err(RunError::Controller { reason, .. }) if reason.help().is_some())
 }
 
 fn failed(kind: PolicyKind, error: &RunError) -> FailedRun {

@@ -48,7 +48,10 @@ pub fn execute(args: &SensitivityArgs) -> Result<(), CommandError> {
     let scene = load(&args.scene)?;
     for (there, table) in [
         (scene.plant.magnet.is_some(), "[magnet]"),
-        (scene.levitation.is_some(), "[levitation]"),
+        (
+            scene.levitation.is_some() || scene.controller.is_some(),
+            "[levitation]",
+        ),
     ] {
         if !there {
             return Err(CommandError::Numbers {

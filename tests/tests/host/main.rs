@@ -8,6 +8,7 @@ mod instruments_and_events;
 mod judged;
 mod layering;
 mod machine_scenes;
+mod own_controllers;
 mod record_version_2;
 mod report_page;
 mod review;

@@ -10,7 +10,6 @@ use super::{
     happenings, push, push_disturbances, push_far, push_headline, push_list, push_sections,
     push_story, push_table, push_warnings, times_of, verification,
 };
-use crate::device::whole_levitation::WholeLevitationParams;
 use crate::report::plot::PlotError;
 use crate::report::plot::chart::{Axis, Chart, Curve, chart};
 use crate::report::plot::text::{escape, figures};
@@ -208,14 +207,8 @@ fn facts(scene: &MachineScene) -> Vec<Fact> {
         .map(|(plane, at)| format!("{} at {} mm", plane.name, figures(1e3 * at.position_m)))
         .collect();
     facts.push(("Planes", planes.join(", ")));
-    match &scene.levitation {
-        None => {}
-        Some(WholeLevitationParams::Modal(_)) => facts.push(("Levitation", "by mode".to_owned())),
-        Some(WholeLevitationParams::StateSpace(own)) => {
-            let states = format!("a state space with {} states", own.a.nrows());
-            facts.push(("Levitation", states));
-        }
-    }
+    let levitation = scene.levitation.as_ref();
+    facts.extend(levitation.map(|whole| ("Levitation", whole.described())));
     facts
 }
 

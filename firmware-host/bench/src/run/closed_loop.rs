@@ -6,8 +6,8 @@ mod station;
 
 use self::bench::Bench;
 use self::station::Station;
+use crate::device::external::ControllerError;
 use crate::device::loads::Loads;
-use crate::device::whole_levitation::WholeLevitation;
 use crate::run::controller::{Controller, controller, controller_of_plane};
 use crate::run::figures::Figures;
 use crate::run::rig::{OnePlane, WholeRotor};
@@ -35,6 +35,14 @@ pub enum RunError {
         policy: &'static str,
         /// Why.
         reason: PlantError,
+    },
+    /// The user's levitation controller does not answer as it should.
+    #[error("policy {policy}: {reason}")]
+    Controller {
+        /// The policy that was running.
+        policy: &'static str,
+        /// Why.
+        reason: Box<ControllerError>,
     },
     /// The energy audit does not close: the run made or lost energy.
     #[error(
@@ -68,6 +76,15 @@ pub enum RunError {
         /// The policy.
         policy: &'static str,
     },
+}
+
+impl RunError {
+    fn of_controller(policy: &'static str) -> impl Fn(ControllerError) -> Self {
+        move |reason| Self::Controller {
+            policy,
+            reason: Box::new(reason),
+        }
+    }
 }
 
 /// A run whose energy residual exceeds this many tolerances is not trusted; random plants keep within 0.3 by the series, 50 by
@@ -216,8 +233,6 @@ pub fn record_machine<'a>(
     let whole = (scene.levitation.is_some(), supervisor.is_some());
     let common = scene.common();
     let rig = WholeRotor::new(scene, options(common, rigour))?;
-    let levitation = (scene.levitation.as_ref())
-        .map(|params| WholeLevitation::new(params, 1.0 / common.sample_rate_hz));
     let mut recorders_of = recorders.planes.into_iter();
     let mut stations = Vec::new();
     for plane in &scene.planes {
@@ -235,8 +250,8 @@ pub fn record_machine<'a>(
         stations,
         (loads.collect(), scene.edges()),
     );
-    (bench.levitation, bench.axis) = (levitation, recorders.axis);
-    bench.supervisor = supervisor;
+    bench.levitated_by(scene.levitation.as_ref(), policy)?;
+    (bench.supervisor, bench.axis) = (supervisor, recorders.axis);
     bench.ride(task, on_tick)
 }
 
@@ -275,8 +290,7 @@ fn ride_one<'a>(
     let stations = vec![Station::new(scene, controller, recorder)];
     let loads = (vec![scene.external()], scene.edges());
     let mut bench = Bench::new(scene, Box::new(rig), stations, loads);
-    bench.levitation = (scene.state_space.as_ref())
-        .map(|params| WholeLevitation::new(params, 1.0 / scene.sample_rate_hz));
+    bench.levitated_by(scene.controller.as_ref(), task.policy)?;
     let ended = bench.ride(task, on_tick)?.pop();
     ended.ok_or(RunError::Incomplete {
         policy: task.policy,

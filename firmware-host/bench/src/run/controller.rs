@@ -23,6 +23,11 @@ pub trait Controller: core::fmt::Debug {
     /// The answer.
     fn answered(&mut self, _command: Command) {}
 
+    /// Whether it passes on what a levitation controller of the whole rotor asks for.
+    fn levitates(&self) -> bool {
+        false
+    }
+
     /// What a levitation controller of the whole rotor is to do about its integrators.
     fn hint(&self) -> IntegratorHint {
         IntegratorHint::Run
@@ -65,7 +70,7 @@ pub struct Seen {
 
 /// The controller of a policy, set up for a scene; `None` where the scene lacks what it needs (which [`Scene::load`] refuses).
 pub fn controller(kind: PolicyKind, scene: &Scene) -> Option<Box<dyn Controller>> {
-    match scene.state_space {
+    match scene.controller {
         Some(_) => controller_over(kind, scene, (Some(Passing), true)),
         None => controller_over(kind, scene, (own_levitation(scene), true)),
     }
@@ -117,7 +122,7 @@ fn controller_over<L: Levitate + Controller + 'static>(
 
 /// A supervisor of the caller's in front of the scene's levitation controller; `None` where the scene has no controller.
 pub fn supervised(scene: &Scene, supervisor: Box<dyn Supervise>) -> Option<Box<dyn Controller>> {
-    let levitation: Box<dyn Levitate> = match scene.state_space {
+    let levitation: Box<dyn Levitate> = match scene.controller {
         Some(_) => Box::new(Passing),
         None => Box::new(own_levitation(scene)?),
     };
@@ -148,6 +153,10 @@ impl Levitate for Passing {
 impl Controller for Passing {
     fn command(&mut self, seen: &Seen, _truth: &Snapshot) -> Force {
         Force::Computed(seen.levitation_n)
+    }
+
+    fn levitates(&self) -> bool {
+        true
     }
 }
 
@@ -318,6 +327,10 @@ impl Controller for Supervised {
         self.said = Some(Said::new(&command, self.levitation_n));
         let [x, y] = command.force_n;
         Force::Computed(V2::new(f64::from(x), f64::from(y)))
+    }
+
+    fn levitates(&self) -> bool {
+        true
     }
 
     fn hint(&self) -> IntegratorHint {

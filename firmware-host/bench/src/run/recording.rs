@@ -1,5 +1,6 @@
 //! A policy's run as `run` wants it: its rows written while it goes on, and kept as far as a report needs them.
 
+use crate::device::whole_levitation::WholeLevitationParams;
 use crate::run::closed_loop::{MachineRecorders, Rigour, RunError, record, record_machine};
 use crate::run::figures::Figures;
 use crate::run::overview::{AxisTrack, Overview};
@@ -210,6 +211,10 @@ pub fn recorded_machine<W: Write + Send>(
 
 /// Whatever comes of it comes again.
 fn warm_up(scene: &Scene, kind: PolicyKind) {
+    // A process of the user's is not started for nothing.
+    if matches!(scene.controller, Some(WholeLevitationParams::External(_))) {
+        return;
+    }
     let duration_s = scene.duration_s.min(WARM_UP_S);
     let brief = Scene {
         duration_s,

@@ -176,7 +176,10 @@ impl SceneText {
                     | "a"
                     | "b"
                     | "c"
-                    | "d" => Some("give numbers, [a, b, …]".to_owned()),
+                    | "d"
+                    | "sections"
+                    | "sections_y"
+                    | "parameters" => Some("give numbers, [a, b, …]".to_owned()),
                     _ => Some("give x and y, [x, y]".to_owned()),
                 };
             }

@@ -15,11 +15,11 @@ use crate::device::whole_levitation::WholeLevitationParams;
 use crate::scene::Scene;
 use crate::scene::diagnostic::{SceneError, SceneText};
 use crate::scene::lint::slips;
+use crate::scene::own_controller::own_controller;
 use crate::scene::plane_spec::PlaneSpec;
 use crate::scene::resolve::OfMachine;
 use crate::scene::rotor::{self, Origin};
 use crate::scene::spec::Spec;
-use crate::scene::state_space::state_space;
 use crate::scene::tables::{PlaneTable, SceneTables, TiltTable};
 use crate::scene::values::MethodName;
 use plant_model::V2;
@@ -217,9 +217,8 @@ impl Spec {
                 }
             }
         }
-        let caps_n = (planes.iter()).map(|p| Some(p.tables.magnet.as_ref()?.force_max_n));
-        let levitation = match state_space(tables, text, caps_n.collect())? {
-            Some(own) => Some(WholeLevitationParams::StateSpace(own)),
+        let levitation = match own_controller(tables, text, planes)? {
+            Some(own) => Some(own),
             None => modal_levitation(planes, &machine, text)?.map(WholeLevitationParams::Modal),
         };
         // What controllers are designed for.
@@ -345,10 +344,16 @@ fn check_together(tables: &SceneTables, text: &SceneText) -> Result<(), SceneErr
             let message = "is of the whole rotor, and not of one plane";
             return error(&key, message, "give it as [levitation.tilt]");
         }
-        if tables.state_space.is_some() && own.is_some() {
-            let key = format!("plane[{i}].levitation");
-            let message = "does not go with [state_space], which holds the whole rotor";
-            return error(&key, message, "remove one of them");
+        let gains_or_filters = [
+            ("levitation", own.is_some()),
+            ("biquads", plane.biquads.is_some()),
+        ];
+        for whole in tables.own_of_the_whole() {
+            if let Some((key, _)) = gains_or_filters.iter().find(|(_, given)| *given) {
+                let key = format!("plane[{i}].{key}");
+                let message = format!("does not go with [{whole}], which holds the whole rotor");
+                return error(&key, &message, "remove one of them");
+            }
         }
         let by_mode = tables.levitation.as_ref().is_some_and(|l| l.tilt.is_some());
         if by_mode && own.is_some() {

@@ -120,6 +120,7 @@ fn with_own(mut tables: SceneTables, plane: &PlaneTable) -> SceneTables {
     tables.friction = plane.friction.clone().or(tables.friction);
     tables.race = plane.race.clone().or(tables.race);
     tables.magnet = plane.magnet.clone().or(tables.magnet);
+    tables.biquads = plane.biquads.clone().or(tables.biquads);
     tables.levitation = plane.levitation.clone().or(tables.levitation);
     if !plane.outage.is_empty() {
         tables.outage.clone_from(&plane.outage);

@@ -1,7 +1,6 @@
 //! From what the user wrote to a scene that can be run.
 
 use crate::device::sensor::SpinSensorParams;
-use crate::device::whole_levitation::WholeLevitationParams;
 use crate::scene::Scene;
 use crate::scene::devices::centre_offset_m;
 use crate::scene::diagnostic::{SceneError, SceneText};
@@ -10,11 +9,11 @@ use crate::scene::guess;
 use crate::scene::limits::{damping_n_s_m, whirl_speed_m_s};
 use crate::scene::lint::{Told, slips, unseen, warnings};
 use crate::scene::nominal::{NominalKeys, config, nominal, overrides};
+use crate::scene::own_controller::own_controller;
 use crate::scene::plane_spec::PlaneSpec;
 use crate::scene::plant::{hardening_key, plant, plant_of, refused};
 use crate::scene::policy_kind::PolicyKind;
 use crate::scene::spec::Spec;
-use crate::scene::state_space::state_space;
 use crate::scene::tables::SceneTables;
 use crate::scene::values::MethodName;
 use plant_model::V2;
@@ -126,13 +125,10 @@ impl PlaneSpec {
         warnings.extend(unseen(self));
         let (run, spin_sensor) = (&written.run, &written.spin_sensor);
         let levitation = written.levitation.as_ref();
-        let state_space = match of {
+        let controller = match of {
             // That of several planes is the machine's.
             Some(_) => None,
-            None => {
-                let cap_n = written.magnet.as_ref().map(|m| m.force_max_n);
-                state_space(written, text, vec![cap_n])?.map(WholeLevitationParams::StateSpace)
-            }
+            None => own_controller(written, text, std::slice::from_ref(self))?,
         };
         Ok(Scene {
             title: written.title.clone(),
@@ -166,7 +162,7 @@ impl PlaneSpec {
                 },
             },
             levitation: levitation.map(Into::into),
-            state_space,
+            controller,
             radial_band: written.radial.band,
             damping_n_s_m,
             supervisor,
@@ -238,7 +234,7 @@ fn policies(spec: &PlaneSpec) -> Result<Vec<PolicyKind>, SceneError> {
         } else if kind.levitates() && !spec.tables.levitates() {
             (
                 "needs a levitation controller",
-                "add [levitation] with its gains, or [state_space]",
+                "add [levitation] with its gains, or a controller of your own: [state_space], [biquads] or [controller]",
             )
         } else {
             policies.push(kind);

@@ -9,19 +9,6 @@ use nalgebra::DMatrix;
 /// Most states.
 const MOST_STATES: usize = 500;
 
-impl SceneTables {
-    /// Whether somebody levitates.
-    pub(crate) fn levitates(&self) -> bool {
-        self.levitation.is_some() || self.state_space.is_some()
-    }
-
-    /// Whether whoever does adds minus the weight.
-    pub(crate) fn feeds_weight_forward(&self) -> bool {
-        (self.levitation.as_ref()).is_some_and(|l| l.feed_forward_weight)
-            || (self.state_space.as_ref()).is_some_and(|s| s.feed_forward_weight)
-    }
-}
-
 /// The controller of `[state_space]` for stations with a cap each, where they have a magnet.
 pub(crate) fn state_space(
     tables: &SceneTables,
@@ -31,9 +18,6 @@ pub(crate) fn state_space(
     let Some(written) = &tables.state_space else {
         return Ok(None);
     };
-    let message = "does not go with [state_space], which stands in its place";
-    let gains = [("levitation", tables.levitation.is_some())];
-    text.none_given(&gains, message, "remove one of them")?;
     let readings = 2 * caps_n.len();
     let forces = 2 * caps_n.iter().flatten().count();
     let key = "state_space";

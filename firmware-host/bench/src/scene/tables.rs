@@ -35,8 +35,10 @@ key_tables! {
         magnet: Option<MagnetTable> [or "no magnet"], "", ANY, "the magnet with its amplifier", "actuator", "amplifier", "amb", "bearing";
         sensor: SensorTable [= SensorTable::default()], "", ANY, "the position sensor", "probe";
         spin_sensor: SpinSensorTable [= SpinSensorTable::default()], "", ANY, "what is known of the spin", "tacho", "encoder";
-        levitation: Option<LevitationTable> [or "no controller"], "", ANY, "the levitation controller of the firmware", "pid", "pd", "controller";
+        levitation: Option<LevitationTable> [or "no controller"], "", ANY, "the levitation controller of the firmware", "pid", "pd";
         state_space: Option<StateSpaceTable> [or "`levitation`"], "", ANY, "a [controller of one's own](#state-space) in the place of `levitation`, of all planes together", "lqg", "h_infinity", "mu_synthesis";
+        biquads: Option<BiquadsTable> [or "`levitation`"], "", ANY, "[filters of one's own](#biquads) in the place of `levitation`: a chain of second-order sections on each axis", "sos", "filter", "sections";
+        controller: Option<ControllerTable> [or "`levitation`"], "", ANY, "a [program of one's own](controllers.md) in the place of `levitation`, of all planes together: Python or a shared library", "external", "plugin", "python", "library", "fmu";
         radial: RadialTable [= RadialTable::default()], "", ANY, "the policy `radial`";
         damping: DampingTable [= DampingTable::default()], "", ANY, "the policy `damping`";
         supervisor: toml::Table [= toml::Table::new()], "", ANY, "replaces single suggested parameters, of [this table](../supervisor/linking.md#parameters)", "config";
@@ -237,6 +239,23 @@ key_tables! {
         feed_forward_weight: bool [= false], "", ANY, "as of `levitation`";
     }
 
+    /// f = −gain·H(z)·y from a plane's reading to its magnet's force, axis by axis.
+    BiquadsTable {
+        gain_n_m: f64 [= 1.0], "N/m", Finite, "f = −`gain_n_m`·H(z)·y on each axis, from the plane's reading to its magnet", "gain", "k";
+        sections: Numbers [= Numbers::default()], "1", Finite, "H(z), six numbers a section: b0, b1, b2, a0, a1, a2, as SciPy orders them; none: 1", "sos";
+        sections_y: Numbers [= Numbers::default()], "1", Finite, "of y; none: as of x", "sos_y";
+        file: Option<String> [or "–"], "", ANY, "in the place of `sections`, an `.npz` file with an array `sos`, sections × 6, and where y has others `sos_y`", "npz";
+        feed_forward_weight: bool [= false], "", ANY, "as of `levitation`";
+    }
+
+    ControllerTable {
+        python: Option<String> [or "–"], "", ANY, "a file of Python with `make(scene)`; this or `library`", "script", "module";
+        library: Option<String> [or "–"], "", ANY, "a shared library with the functions of `amb_controller.h`", "shared_library", "so", "dll";
+        parameters: Numbers [= Numbers::default()], "1", Finite, "numbers that it is given, as its gains", "gains", "arguments";
+        timeout_s: f64 [= 10.0], "s", Within(0.01, 3600.0), "it has so long for each answer, the start included; after that the run ends", "timeout";
+        feed_forward_weight: bool [= false], "", ANY, "as of `levitation`";
+    }
+
     RadialTable [Default] {
         band: f64 [= 0.7], "1", Within(0.0, 1.0), "share of the clearance beyond which it pushes";
     }
@@ -313,6 +332,7 @@ key_tables! {
         magnet: Option<MagnetTable> [or "the scene's"], "", ANY, "the magnet with its amplifier";
         sensor: Option<SensorTable> [or "the scene's"], "", ANY, "the position sensor; its noise is the plane's own";
         levitation: Option<LevitationTable> [or "the scene's"], "", ANY, "the levitation controller of this plane";
+        biquads: Option<BiquadsTable> [or "the scene's"], "", ANY, "the filters of this plane";
         supervisor: Option<toml::Table> [or "the scene's"], "", ANY, "replaces single suggested parameters";
         outage: Vec<OutageTable> [= Vec::new()], "", ANY, "of this magnet; none: the scene's";
         fault: Vec<FaultTable> [= Vec::new()], "", ANY, "of this sensor; none: the scene's";

@@ -3,7 +3,7 @@
 use super::station::Station;
 use super::{PlaneEnded, RunError, TRUSTED, TRUSTED_TOLERANCES, Task};
 use crate::device::loads::{Loads, cuts};
-use crate::device::whole_levitation::WholeLevitation;
+use crate::device::whole_levitation::{AtSample, WholeLevitation, WholeLevitationParams};
 use crate::run::controller::{Seen, written};
 use crate::run::figures::{Ended, Figures};
 use crate::run::rig::Rig;
@@ -19,7 +19,7 @@ pub(super) struct Bench<'a> {
     rig: Box<dyn Rig + 'a>,
     stations: Vec<Station<'a>>,
     /// Who levitates the rotor as a whole.
-    pub(super) levitation: Option<WholeLevitation>,
+    levitation: Option<WholeLevitation>,
     /// Who supervises it as a whole.
     pub(super) supervisor: Option<Rotor>,
     pub(super) axis: Option<&'a mut dyn Recorder<AxisRow>>,
@@ -72,6 +72,19 @@ impl<'a> Bench<'a> {
         }
     }
 
+    /// Has the rotor levitated as a whole, where a policy asks for that.
+    pub(super) fn levitated_by(
+        &mut self,
+        params: Option<&WholeLevitationParams>,
+        policy: &'static str,
+    ) -> Result<(), RunError> {
+        let asked = self.stations.iter().any(|s| s.controller.levitates());
+        let started = (params.filter(|_| asked))
+            .map(|params| WholeLevitation::new(params, 1.0 / self.scene.sample_rate_hz));
+        self.levitation = (started.transpose()).map_err(RunError::of_controller(policy))?;
+        Ok(())
+    }
+
     /// To the end of the scene.
     pub(super) fn ride(
         mut self,
@@ -90,6 +103,9 @@ impl<'a> Bench<'a> {
             }
         }
         on_tick(ticks % REPORT_EVERY);
+        if let Some(levitation) = self.levitation.take() {
+            (levitation.close()).map_err(RunError::of_controller(task.policy))?;
+        }
         self.rig.read(&mut self.now);
         let mut ended = Vec::with_capacity(self.stations.len());
         for (plane, (station, last)) in self.stations.iter_mut().zip(&self.now).enumerate() {
@@ -138,7 +154,7 @@ impl<'a> Bench<'a> {
             let sensed_m = self.rig.sensed_m(plane, now);
             self.seen.push(station.see(t, sensed_m, now));
         }
-        self.levitate();
+        self.levitate(t, task)?;
         self.supervise();
         for (i, station) in self.stations.iter_mut().enumerate() {
             station.answer(tick, &self.seen[i], &self.now[i]);
@@ -183,18 +199,25 @@ impl<'a> Bench<'a> {
     }
 
     /// The levitation controller of the whole rotor, where there is one.
-    fn levitate(&mut self) {
+    fn levitate(&mut self, t_s: f64, task: Task) -> Result<(), RunError> {
         let Some(levitation) = &mut self.levitation else {
-            return;
+            return Ok(());
         };
         let holds = |s: &Station| s.controller.hint() == IntegratorHint::Hold;
         let hold = self.stations.iter().any(holds);
-        let readings = self.seen.iter().map(|seen| seen.reading.position_m);
-        let spin_rad_s = self.seen.first().map_or(0.0, |seen| seen.spin_rad_s);
-        levitation.forces_n(readings, spin_rad_s, hold, &mut self.levitation_n);
+        let at = AtSample {
+            t_s,
+            spin_rad_s: self.seen.first().map_or(0.0, |seen| seen.spin_rad_s),
+            hold,
+        };
+        let readings = self.seen.iter().map(|seen| seen.reading);
+        levitation
+            .forces_n(readings, at, &mut self.levitation_n)
+            .map_err(RunError::of_controller(task.policy))?;
         for (seen, force_n) in self.seen.iter_mut().zip(&self.levitation_n) {
             seen.levitation_n = *force_n;
         }
+        Ok(())
     }
 
     /// Parts over whose halves what varies is to be held; `None` where nothing does.

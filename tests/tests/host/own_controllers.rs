@@ -1,0 +1,352 @@
+//! Levitation controllers of the user's: they hold as the built-in one does where they compute the same, and what goes wrong
+//! with them is said.
+
+mod mistakes;
+
+use firmware_bench::run::closed_loop::{Keep, MachineRecorders, Rigour, record_machine, run};
+use firmware_bench::run::trace::{Recorder, Trace};
+use firmware_bench::scene::Scene;
+use firmware_bench::scene::machine::AnyScene;
+use firmware_bench::scene::policy_kind::PolicyKind;
+use nalgebra::DMatrix;
+use npyz::WriterBuilder;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use system_tests::{root, run_scene, scene_path};
+use tempfile::TempDir;
+
+/// The gains that the example scenes' controllers have.
+const GAINS: &str = "[levitation]
+proportional_n_m = 5e5
+integral_n_m_s = 1e7
+derivative_n_s_m = 1500.0
+derivative_filter_s = 1.5e-4
+";
+const PARAMETERS: &str = "parameters = [5e5, 1e7, 1500.0, 1.5e-4]";
+const BOTH: [PolicyKind; 2] = [PolicyKind::Levitation, PolicyKind::Supervisor];
+
+fn examples() -> PathBuf {
+    root().join("firmware-host/scenes/controllers")
+}
+
+/// Python, where it is installed; in CI it has to be.
+pub(crate) fn python() -> bool {
+    let there = Command::new("python3").arg("--version").output().is_ok();
+    assert!(
+        there || std::env::var_os("CI").is_none(),
+        "python3 is missing; tests/run installs it"
+    );
+    there
+}
+
+/// An example scene with another controller.
+fn with(table: &str) -> String {
+    let scene = fs::read_to_string(scene_path("controllers/pid_in_python")).unwrap();
+    let start = scene.find("[controller]").unwrap();
+    let end = scene.find("feed_forward_weight").unwrap();
+    format!("{}{table}{}", &scene[..start], &scene[end..])
+}
+
+fn written(folder: &Path, name: &str, text: &str) -> PathBuf {
+    let path = folder.join(name);
+    fs::write(&path, text).unwrap();
+    path
+}
+
+/// Compiles a controller as its users do.
+fn library(folder: &Path, name: &str, source: &str) {
+    let source = written(folder, &format!("{name}.c"), source);
+    let mut cc = Command::new("cc");
+    cc.args(["-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror"]);
+    cc.args(["-O2", "-shared", "-fPIC", "-I"]);
+    cc.arg(root().join("firmware-host/controller/include"));
+    cc.arg("-o").arg(folder.join(format!("{name}.so")));
+    let output = cc.arg(source).arg("-lm").output().unwrap();
+    assert!(
+        output.status.success(),
+        "{name}: {}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+}
+
+fn trace(path: &Path, kind: PolicyKind) -> (Trace, u64) {
+    let scene = Scene::load(path).unwrap_or_else(|e| panic!("{e}"));
+    let (figures, trace) = run(&scene, kind, Keep::Trace, &mut |_| {}).unwrap();
+    (trace, figures.impacts)
+}
+
+/// Same bits in every row: a controller that computes what the built-in one does, in the same order, is that controller,
+/// limited force and integrators that stand included.
+#[test]
+fn the_pid_in_c_and_in_python_is_the_built_in_one() {
+    let folder = TempDir::new().unwrap();
+    let source = fs::read_to_string(examples().join("pid.c")).unwrap();
+    assert!(source.lines().count() <= 41);
+    library(folder.path(), "pid", &source);
+    fs::copy(examples().join("pid.py"), folder.path().join("pid.py")).unwrap();
+    // Of a magnet that is soon at its cap.
+    let weak = |table: &str| with(table).replace("force_max_n = 1000.0", "force_max_n = 150.0");
+    let built_in = written(folder.path(), "gains.toml", &weak(GAINS));
+    let mut others = vec![format!(
+        "[controller]\nlibrary = \"pid.so\"\n{PARAMETERS}\n"
+    )];
+    if python() {
+        others.push(format!("[controller]\npython = \"pid.py\"\n{PARAMETERS}\n"));
+    }
+    for kind in BOTH {
+        let (expected, impacts) = trace(&built_in, kind);
+        let limited = expected
+            .rows
+            .iter()
+            .filter(|r| r.commanded_n.norm() > 149.0);
+        let limited = limited.count();
+        assert!(impacts > 0 && limited > 10, "{kind:?} {impacts} {limited}");
+        for other in &others {
+            let own = written(folder.path(), "own.toml", &weak(other));
+            let (rows, _) = trace(&own, kind);
+            assert_eq!(rows.rows.len(), expected.rows.len());
+            assert!(rows == expected, "{kind:?} {other}");
+        }
+    }
+}
+
+/// Farthest apart of two runs at the same rows \[m\].
+fn apart_m(a: &Trace, b: &Trace) -> f64 {
+    assert_eq!(a.rows.len(), b.rows.len());
+    let pairs = a.rows.iter().zip(&b.rows);
+    pairs
+        .map(|(a, b)| (a.plant.position_m - b.plant.position_m).norm())
+        .fold(0.0, f64::max)
+}
+
+/// As long as the force is not limited, which is when the built-in integrators stand.
+#[test]
+fn the_pid_by_matrices_and_by_sections_moves_the_rotor_alike() {
+    let folder = TempDir::new().unwrap();
+    // From the middle and without noise: the built-in one takes its first reading as the one before it.
+    let gentle = |table: &str| {
+        (with(table).replace("noise_rms_m = 1e-6\n", ""))
+            .replace("[1300.0, 750.0]", "[130.0, 75.0]")
+    };
+    let of_example = |name: &str, table: &str| {
+        let scene = fs::read_to_string(scene_path(&format!("controllers/{name}"))).unwrap();
+        let start = scene.find(table).unwrap();
+        let end = scene.find("feed_forward_weight").unwrap();
+        scene[start..end].to_owned()
+    };
+    let matrices = of_example("state_space", "[state_space]");
+    let sections =
+        "[biquads]\ngain_n_m = 5e5\nsections = [16.0, -31.749, 15.74925, 1.0, -1.75, 0.75]\n";
+    let rows = [16.0, -31.749, 15.74925, 1.0, -1.75, 0.75];
+    let doubled: Vec<f64> = rows.iter().map(|x| 2.0 * x).collect();
+    save_sections(&folder.path().join("pid.npz"), &doubled);
+    let in_file = "[biquads]\ngain_n_m = 5e5\nfile = \"pid.npz\"\n";
+    let (expected, _) = trace(
+        &written(folder.path(), "gains.toml", &gentle(GAINS)),
+        BOTH[0],
+    );
+    let way = expected.rows.iter().map(|row| row.plant.position_m.norm());
+    assert!(way.fold(0.0, f64::max) > 1e-4);
+    for table in [matrices.as_str(), sections, in_file] {
+        let own = written(folder.path(), "own.toml", &gentle(table));
+        let (rows, _) = trace(&own, BOTH[0]);
+        let off = apart_m(&rows, &expected);
+        assert!(off < 1e-12, "{table} {off:e}");
+    }
+}
+
+/// As NumPy saves sections, with a row each.
+fn save_sections(path: &Path, numbers: &[f64]) {
+    let mut archive = zip::ZipWriter::new(fs::File::create(path).unwrap());
+    let options = zip::write::SimpleFileOptions::default();
+    archive.start_file("sos.npy", options).unwrap();
+    let sos = DMatrix::from_row_slice(numbers.len() / 6, 6, numbers);
+    let mut array = npyz::WriteOptions::new()
+        .default_dtype()
+        .shape(&[sos.nrows() as u64, 6])
+        .order(npyz::Order::Fortran)
+        .writer(&mut archive)
+        .begin_nd()
+        .unwrap();
+    array.extend(sos.iter()).unwrap();
+    array.finish().unwrap();
+    archive.finish().unwrap();
+}
+
+/// Every example holds its rotor under both policies, whatever the number of threads, to the last bit.
+#[test]
+fn the_examples_hold_their_rotor() {
+    let folder = TempDir::new().unwrap();
+    let mut scenes = vec!["state_space", "biquads"];
+    if python() {
+        scenes.push("pid_in_python");
+    }
+    for name in scenes {
+        let path = scene_path(&format!("controllers/{name}"));
+        let ran = |threads: &str| {
+            let out = folder.path().join(format!("{name}_{threads}"));
+            let output = run_scene(&path, &out, &["--json", "--threads", threads]);
+            let said = String::from_utf8_lossy(&output.stderr);
+            assert!(output.status.success(), "{name}: {said}");
+            let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+            for policy in ["levitation", "supervisor"] {
+                let outcome = &json["policies"][policy]["outcome"];
+                assert_eq!(outcome, "recovered", "{name} {policy}");
+            }
+            ["levitation", "supervisor"]
+                .map(|policy| fs::read(out.join(format!("trace_{policy}.parquet"))).unwrap())
+        };
+        assert!(ran("1") == ran("2"), "{name}");
+    }
+}
+
+/// As the built-in controller does it, without integrators and filter.
+const WHOLE: &str = "
+class Pd:
+    def __init__(self, scene):
+        self.scene, self.last_m = scene, None
+        self.speed_m_s = [0.0] * (2 * scene.sensors)
+
+    def step(self, now):
+        last_m, self.last_m = self.last_m or now.position_m, now.position_m
+        (kp, kd), force_n = self.scene.parameters, []
+        for plane in self.scene.magnet_plane:
+            for i in (2 * plane, 2 * plane + 1):
+                m, rate = now.position_m[i], (now.position_m[i] - last_m[i]) / self.scene.period_s
+                self.speed_m_s[i] += rate - self.speed_m_s[i]
+                force_n.append(-kp * m - kd * self.speed_m_s[i])
+        return force_n
+
+make = Pd
+";
+
+/// A rotor in two planes with this controller in the place of its gains.
+fn rotor_with(table: &str) -> String {
+    let gains = "[levitation]\nproportional_n_m = 4e5\nderivative_n_s_m = 900.0\nderivative_filter_s = 1e-4\n";
+    let scene = fs::read_to_string(scene_path("one_machine/rigid")).unwrap();
+    assert!(scene.contains(gains));
+    (scene.replace("duration_s = 0.3", "duration_s = 0.1")).replace(gains, table)
+}
+
+/// Gains of its planes without a filter.
+const PLAIN: &str = "[levitation]\nproportional_n_m = 4e5\nderivative_n_s_m = 900.0\n";
+
+fn traces(folder: &Path, text: &str, kind: PolicyKind) -> Vec<Trace> {
+    let path = written(folder, "rotor.toml", text);
+    let AnyScene::Machine(scene) = AnyScene::load(&path).unwrap_or_else(|e| panic!("{e}")) else {
+        panic!("a whole rotor");
+    };
+    let mut traces = vec![Trace::default(); scene.planes.len()];
+    let recorders = MachineRecorders {
+        planes: traces.iter_mut().map(|t| t as &mut dyn Recorder).collect(),
+        axis: None,
+    };
+    record_machine(&scene, kind, recorders, Rigour::default(), &mut |_| {}).unwrap();
+    traces
+}
+
+#[test]
+fn a_program_holds_a_whole_rotor_as_gains_of_its_planes_do() {
+    if !python() {
+        return;
+    }
+    let folder = TempDir::new().unwrap();
+    written(folder.path(), "pd.py", WHOLE);
+    let program = "[controller]\npython = \"pd.py\"\nparameters = [4e5, 900.0]\n";
+    for kind in BOTH {
+        let [expected, own] =
+            [PLAIN, program].map(|table| traces(folder.path(), &rotor_with(table), kind));
+        assert_eq!(own.len(), 2);
+        for (a, b) in own.iter().zip(&expected) {
+            assert!(b.rows.len() > 1000 && a.rows == b.rows, "{kind:?}");
+        }
+    }
+}
+
+/// One plane with the scene's sections, one with its own.
+#[test]
+fn sections_hold_a_whole_rotor_as_gains_of_its_planes_do() {
+    let folder = TempDir::new().unwrap();
+    // K_p + K_d·(1 − z⁻¹)/T.
+    let scenes = "[biquads]\nsections = [18.4e6, -18e6, 0.0, 1.0, 0.0, 0.0]\n";
+    let own = "[plane.biquads]\ngain_n_m = 4e5\nsections = [92.0, -90.0, 0.0, 2.0, 0.0, 0.0]\nfeed_forward_weight = true\n";
+    let name = "name = \"coupling end\"\nposition_m = 0.7\ncontact_radius_m = 0.02\n";
+    // From the middle and without noise, as above.
+    let quiet = |table: &str| rotor_with(table).replace("noise_rms_m = 1e-6\n", "");
+    let filters = quiet(scenes).replace(name, &format!("{name}{own}"));
+    assert!(filters.contains(own));
+    for kind in BOTH {
+        let expected = traces(folder.path(), &quiet(PLAIN), kind);
+        let own = traces(folder.path(), &filters, kind);
+        for (a, b) in own.iter().zip(&expected) {
+            let off = apart_m(a, b);
+            assert!(off < 1e-11, "{kind:?} {off:e}");
+        }
+    }
+    let refused = |text: &str, says: &str| {
+        let path = written(folder.path(), "rotor.toml", text);
+        let error = AnyScene::load(&path).expect_err("taken").to_string();
+        assert!(error.contains(says), "{error}");
+    };
+    let alone = filters.replace(&format!("{scenes}feed_forward_weight = true\n"), "");
+    refused(&alone, "plane[0].biquads: is missing");
+    let both = filters.replace(scenes, "[state_space]\nd = [0.0]\n");
+    refused(&both, "plane[1].biquads: does not go with [state_space]");
+}
+
+/// What the C controller is told, checked by itself.
+const ASKS_IN_C: &str = "#include \"amb_controller.h\"
+AMB_CONTROLLER_DEFINE_ABI
+static uint32_t n;
+void *amb_controller_init(const amb_controller_setup *s) {
+    int good = s->period_s == 5e-5 && s->sensors == 1 && s->magnets == 1 && s->parameters == 2 && s->reserved == 0
+        && s->magnet_plane[0] == 0 && s->force_max_n[0] == 1000.0 && s->parameter[0] == 3.0 && s->parameter[1] == -7.0;
+    return good ? &n : 0;
+}
+int amb_controller_step(void *it, const amb_controller_sample *s, double *force_n) {
+    int good = it == &n && s->t_s == n * 5e-5 && s->sequence[0] == n && s->integrator == AMB_CONTROLLER_RUN
+        && s->reserved == 0 && s->spin_rad_s > 942.4 && s->spin_rad_s < 942.5;
+    force_n[0] = -8e5 * s->position_m[0], force_n[1] = -8e5 * s->position_m[1], n++;
+    return good ? 0 : 1;
+}
+void amb_controller_close(void *it) { (void)it; }
+";
+
+/// The same in Python.
+const ASKS_IN_PYTHON: &str = "
+class Asks:
+    def __init__(self, scene):
+        self.n = 0
+        assert (scene.period_s, scene.sensors, scene.magnets, scene.magnet_plane) == (5e-5, 1, 1, [0])
+        assert (scene.force_max_n, scene.parameters) == ([1000.0], [3.0, -7.0])
+
+    def step(self, sample):
+        assert (sample.t_s, sample.sequence, sample.hold) == (self.n * 5e-5, [self.n], False)
+        assert 942.4 < sample.spin_rad_s < 942.5 and len(sample.position_m) == 2
+        self.n += 1
+        return tuple(-8e5 * m for m in sample.position_m)
+
+    def close(self):
+        assert self.n == 2000
+
+make = Asks
+";
+
+#[test]
+fn controllers_are_told_what_the_scene_says() {
+    let folder = TempDir::new().unwrap();
+    library(folder.path(), "asks", ASKS_IN_C);
+    written(folder.path(), "asks.py", ASKS_IN_PYTHON);
+    let mut programs = vec!["library = \"asks.so\""];
+    if python() {
+        programs.push("python = \"asks.py\"");
+    }
+    let rows = programs.iter().map(|program| {
+        let table = format!("[controller]\n{program}\nparameters = [3.0, -7.0]\n");
+        let scene = written(folder.path(), "asks.toml", &with(&table));
+        trace(&scene, PolicyKind::Levitation).0
+    });
+    let rows: Vec<Trace> = rows.collect();
+    assert!(rows.windows(2).all(|pair| pair[0] == pair[1]));
+}
