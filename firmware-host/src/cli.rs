@@ -17,6 +17,7 @@ pub mod sensitivity;
 pub mod serve_controller;
 pub mod study;
 pub mod target;
+pub mod vectors;
 
 use crate::cli::error::say;
 use firmware_bench::scene::Scene;

@@ -3,7 +3,7 @@
 use clap::{Parser, Subcommand};
 use firmware_host::cli::{
     accuracy, advise, error, harm, modes, overloads, paper, review, run, schema, sensitivity,
-    serve_controller, study, target,
+    serve_controller, study, target, vectors,
 };
 use std::process::ExitCode;
 
@@ -44,6 +44,8 @@ enum Command {
     /// Serve the shared library of a scene's controller to the run that started this.
     #[command(hide = true)]
     ServeController(serve_controller::ServeArgs),
+    /// Write samples with the commands that answer them as text, for a port to another language or processor.
+    Vectors(vectors::VectorsArgs),
 }
 
 fn main() -> ExitCode {
@@ -63,6 +65,7 @@ fn main() -> ExitCode {
         Command::Study(args) => study::execute(args),
         Command::Target(args) => target::execute(args),
         Command::ServeController(args) => serve_controller::execute(args),
+        Command::Vectors(args) => vectors::execute(args),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -126,3 +126,8 @@ pub use split::{CoreTicker, Published, Reader, Ticker};
 pub use supervisor::Supervisor;
 pub use track::{STRETCH_WORDS, STRETCHES, Stretch};
 pub use watch::CommandWatchdog;
+
+/// The example of the crate's README runs with those of the documentation.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadMe;

@@ -6,6 +6,7 @@ pub mod golden;
 pub mod per_unit;
 pub mod plants;
 pub mod recording;
+pub mod requirements;
 pub mod rig;
 pub mod storm;
 pub mod target;

@@ -19,3 +19,4 @@ pub mod record;
 pub mod results;
 pub mod study;
 pub mod tape;
+pub mod vectors;

@@ -7,17 +7,19 @@
  * rate, usually in an interrupt:
  *
  * @code
- * static amb_supervisor plane;                        // zero at start
+ * static amb_supervisor plane;
  * static const float config[AMB_PARAMETERS] = {[AMB_P_SAMPLE_PERIOD_S] = 50e-6f, ...};
  *
  * amb_code code = amb_init(&plane, sizeof plane, config, AMB_PARAMETERS);
- * if (code != AMB_OK) stop(amb_error_text(code));     // names the parameter outside its range
+ * if (code != AMB_OK) stop(amb_error_text(code));
  *
- * // in the control interrupt
  * amb_command command;
  * amb_tick(&plane, &sample, &command);
  * amplifiers_set(command.force_n);
  * @endcode
+ *
+ * A static supervisor is zero at start; the text of a code names the parameter that is outside its range; the last three lines
+ * are those of the control interrupt.
  *
  * Units are in the names: _m, _n (newton), _s, _rad_s, _m_s, _n_m (N/m), _hz. x right, y up, angles and
  * spin counter-clockwise positive.

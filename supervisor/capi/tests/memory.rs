@@ -35,6 +35,7 @@ fn way_m(tick: usize) -> f32 {
     out - back + 1e-7 * (tick % 3) as f32
 }
 
+/// Requirement: SR-37
 #[test]
 fn calls_touch_only_what_they_were_given() {
     let mut memory = Box::new(Memory([0; 29184]));
@@ -97,6 +98,7 @@ fn calls_touch_only_what_they_were_given() {
     }
 }
 
+/// Requirement: SR-37
 #[test]
 fn calls_on_a_rotor_touch_only_what_they_were_given() {
     let mut memory = Box::new([Memory([0; 29184]), Memory([0; 29184])]);
@@ -166,6 +168,7 @@ fn calls_on_a_rotor_touch_only_what_they_were_given() {
     }
 }
 
+/// Requirement: SR-21
 #[test]
 fn a_watch_touches_only_what_it_was_given() {
     let mut memory = Box::new([0_u32; 8]);

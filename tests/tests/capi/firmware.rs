@@ -52,6 +52,7 @@ fn summary_of_rust() -> String {
     )
 }
 
+/// Requirement: SR-34
 #[test]
 fn c_on_this_machine_does_what_rust_does() {
     let Some(library) = built(Target::Host, "") else {
@@ -98,6 +99,7 @@ pub(crate) fn said_by(target: Target, main: &Path) -> Option<String> {
     Some(good(&run.arg("-kernel").arg(image).output().unwrap()))
 }
 
+/// Requirement: SR-34
 #[test]
 fn c_firmware_does_what_rust_does() {
     // With an FPU, and with floats in software.
@@ -114,6 +116,7 @@ fn c_firmware_does_what_rust_does() {
 }
 
 /// As the page on C says: nothing needs a large stack, and a supervisor of 28 kilobytes is made in its place.
+/// Requirement: SR-36
 #[test]
 fn calls_need_little_stack() {
     let Some(said) = said_by(Target::CortexM4F, &beside("stack.c")) else {
@@ -141,6 +144,7 @@ fn calls_need_little_stack() {
 }
 
 /// At whatever level the library is optimised, firmware links: no panic can be reached.
+/// Requirement: SR-32
 #[test]
 fn no_level_of_optimisation_leaves_a_panic_path() {
     let folder = tempfile::tempdir().unwrap();
@@ -157,6 +161,7 @@ fn no_level_of_optimisation_leaves_a_panic_path() {
 }
 
 /// Firmware in which a panic can be reached does not link.
+/// Requirement: SR-32
 #[test]
 fn a_planted_panic_does_not_link() {
     let folder = tempfile::tempdir().unwrap();

@@ -7,6 +7,7 @@ use supervisor_capi::{Code, code::CODES};
 /// One plane, and a rotor in two.
 const SOURCES: [&str; 2] = ["misuse.c", "misuse_rotor.c"];
 
+/// Requirements: SR-28, SR-37
 #[test]
 fn every_misuse_gives_its_error_and_text() {
     let Some(library) = built(Target::Host, "") else {
@@ -26,6 +27,7 @@ fn every_misuse_gives_its_error_and_text() {
 }
 
 /// No code was forgotten.
+/// Requirement: SR-37
 #[test]
 fn every_code_is_provoked() {
     let text = SOURCES.map(|source| std::fs::read_to_string(beside(source)).unwrap());

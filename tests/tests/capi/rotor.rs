@@ -46,6 +46,7 @@ fn pair_of_rust() -> String {
     )
 }
 
+/// Requirement: SR-34
 #[test]
 fn a_rotor_in_c_does_what_it_does_in_rust() {
     let Some(library) = built(Target::Host, "") else {

@@ -43,6 +43,7 @@ fn the_same_version_compiles_and_links() {
     }
 }
 
+/// Requirement: SR-38
 #[test]
 fn another_version_does_not_compile() {
     let own = supervisor_capi::ABI;
@@ -58,6 +59,7 @@ fn another_version_does_not_compile() {
 }
 
 /// Where the version file was not taken from beside the library, the linker finds out.
+/// Requirement: SR-38
 #[test]
 fn another_version_does_not_link() {
     let other = supervisor_capi::ABI + 1;
@@ -70,6 +72,7 @@ fn another_version_does_not_link() {
 }
 
 /// The build says of the library what the library says of itself.
+/// Requirement: SR-38
 #[test]
 fn the_version_is_beside_the_library() {
     for target in [Target::Host, Target::CortexM4F] {

@@ -46,7 +46,7 @@ const ONLY_PARSED: [(&str, &str); 13] = [
 ];
 
 /// What is not this program: what it needs, or what builds and runs firmware.
-const OTHERS: [(&str, &str); 14] = [
+const OTHERS: [(&str, &str); 17] = [
     ("git clone", "fetches the project"),
     ("curl", "installs Rust"),
     ("apt-get", "installs packages"),
@@ -60,6 +60,15 @@ const OTHERS: [(&str, &str); 14] = [
     ("./two_planes", "the tests of the C library do it"),
     ("arm-none-eabi-gcc", "the tests of the C library do it"),
     ("qemu-system-arm", "the tests of the images do it"),
+    (
+        "cargo run --release -p system-tests",
+        "the test of the requirements compares what it writes",
+    ),
+    ("cargo package", "the tests of the C library do it"),
+    (
+        "supervisor/capi/prebuilt/build",
+        "the tests of the C library do it",
+    ),
     ("cd ", "leads to the next line"),
 ];
 

@@ -210,6 +210,7 @@ fn no_modules_import_each_other_in_circles() {
 }
 
 /// The plant knows no control, the supervisor no plant.
+/// Requirement: SR-33
 #[test]
 fn crates_keep_their_distance() {
     let manifest = |krate: &str| {
@@ -227,6 +228,7 @@ fn crates_keep_their_distance() {
 
 /// Unsafe code is in the C interface, in the images, which talk to the linker, and in the file that calls shared libraries of
 /// the user's, and nowhere else.
+/// Requirement: SR-33
 #[test]
 fn unsafe_code_stays_at_the_border() {
     let root = system_tests::root();

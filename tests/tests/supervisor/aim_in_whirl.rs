@@ -10,6 +10,7 @@ use supervisor::Mode;
 
 /// Against the whirl and up to atan μ inwards of it, in spite of delay and lag; never outwards, which would press the
 /// rotor on. Also where soft walls let the orbit grow to twice the clearance (P1 with 1500 N).
+/// Requirement: SR-23
 #[test]
 fn the_delivered_force_is_aimed_against_the_whirl_and_never_outwards() {
     for rate_hz in RATES_HZ {

@@ -170,21 +170,25 @@ fn keeps_every_limit<D: Driven>(ticks: u64) {
     );
 }
 
+/// Requirements: SR-01, SR-02, SR-03
 #[test]
 fn f32_keeps_every_limit() {
     keeps_every_limit::<Core<f32, 64>>(TICKS);
 }
 
+/// Requirements: SR-01, SR-02, SR-03
 #[test]
 fn the_supervisor_in_newtons_keeps_every_limit() {
     keeps_every_limit::<InNewtons>(TICKS);
 }
 
+/// Requirements: SR-01, SR-02, SR-03
 #[test]
 fn fixed_point_keeps_every_limit() {
     keeps_every_limit::<Core<Q, 64>>(TICKS);
 }
 
+/// Requirements: SR-01, SR-02
 #[test]
 fn f64_keeps_every_limit() {
     keeps_every_limit::<Core<f64, 64>>(TICKS);

@@ -28,6 +28,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 2000, failure_persistence: None, ..ProptestConfig::default() })]
 
     /// Whatever bits come in, in whatever mode: finite, within the cap, the axes' caps and the slew limit.
+    /// Requirements: SR-01, SR-02, SR-03, SR-04
     #[test]
     fn any_bits_keep_every_limit(
         samples in prop::collection::vec(
@@ -62,6 +63,7 @@ proptest! {
     }
 
     /// A levitation command within every limit goes through bit for bit, and nothing is said to bind.
+    /// Requirement: SR-06
     #[test]
     fn levitation_within_the_limits_is_transparent(
         changes in prop::collection::vec([-90.0..90.0_f32, -90.0..90.0_f32], 1..80),
@@ -81,6 +83,7 @@ proptest! {
 }
 
 /// All modes go by, and every limit holds and is named.
+/// Requirement: SR-02
 #[test]
 fn limits_hold_and_are_named_through_a_whirl() {
     let with = bound();
@@ -120,6 +123,7 @@ fn a_box_does_not_turn_the_braking_force() {
 }
 
 /// A slow command arrives after the time that its slew limit gives, exactly.
+/// Requirement: SR-03
 #[test]
 fn the_slew_limit_is_the_length_of_the_change_per_time() {
     // 5 N a tick; 300 N are 60 ticks away.
@@ -149,6 +153,7 @@ fn the_slew_limit_is_the_length_of_the_change_per_time() {
 
 /// On a lost axis nothing is commanded, the other brakes with the sign that takes power from the whirl
 /// and with nearly all that one axis can take; losing and regaining are events, once each.
+/// Requirement: SR-04
 #[test]
 fn a_lost_axis_leaves_the_best_of_the_other() {
     for (lost, axis) in [(Status::AXIS_X_LOST, 1), (Status::AXIS_Y_LOST, 0)] {
@@ -189,6 +194,7 @@ fn a_lost_axis_leaves_the_best_of_the_other() {
 }
 
 /// With both axes lost there is no force, and the mode still says what the rotor does.
+/// Requirement: SR-04
 #[test]
 fn without_axes_the_mode_stays_meaningful() {
     let mut supervisor = Supervisor::new(&config()).unwrap();
@@ -210,6 +216,7 @@ fn without_axes_the_mode_stays_meaningful() {
 }
 
 /// A continuous force of at least the cap is no budget.
+/// Requirement: SR-05
 #[test]
 fn without_a_budget_the_cap_never_falls() {
     let mut supervisor = Supervisor::new(&config()).unwrap();
@@ -384,6 +391,7 @@ fn idle(ticks: u32) -> u32 {
 
 const IDLE_TICKS: u32 = 1_000_000;
 
+/// Requirements: SR-06, SR-10
 #[test]
 fn an_idle_supervisor_changes_nothing() {
     assert_eq!(idle(IDLE_TICKS), 0);

@@ -33,6 +33,7 @@ fn counted(number: impl Fn(u32) -> u32) -> Vec<Command> {
 
 /// Numbers that jump at every tick, or run backwards, compare no sample with any other: a fault within three ticks, and
 /// not a guard that is off.
+/// Requirement: SR-14
 #[test]
 fn numbers_that_do_not_count_are_a_fault() {
     let numbers: [fn(u32) -> u32; 2] = [|i| 6 * i, |i| 1000 - i];
@@ -46,6 +47,7 @@ fn numbers_that_do_not_count_are_a_fault() {
 }
 
 /// Two samples in the wrong order: the older one is no new sample, and four thousand million ticks were not missed.
+/// Requirement: SR-14
 #[test]
 fn an_older_number_is_no_new_sample() {
     let mut supervisor = Supervisor::<64>::new(&config()).unwrap();

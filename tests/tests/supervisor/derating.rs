@@ -5,6 +5,7 @@ use system_tests::rig::{config, length, sample};
 
 /// The cap falls when the closed form says so, by the curve that is documented, to the force at which
 /// state and cap agree, and comes back by the same curve.
+/// Requirement: SR-05
 #[test]
 fn the_cap_follows_the_thermal_state() {
     for continuous in [300.0_f64, 500.0, 900.0] {
@@ -65,6 +66,7 @@ fn the_cap_follows_the_thermal_state() {
 
 /// Ticks that were missed are charged with the force that acts: what is measured, or nothing while the bearing is off, or
 /// else the last command.
+/// Requirement: SR-05
 #[test]
 fn missed_ticks_are_charged_with_what_acts() {
     let charged = |status: Status| {

@@ -68,6 +68,7 @@ proptest! {
 
     /// A drive that obeys is left alone: with half or twice the lag, weak, with another delay, whatever is commanded. (With a
     /// third of its force, twice the lag and a tick more of delay at once a count of five begins to be reached.)
+    /// Requirement: SR-22
     #[test]
     fn a_drive_that_obeys_is_left_alone(
         lag in 0.5..2.0_f32,
@@ -96,6 +97,7 @@ proptest! {
 
 /// A drive that is slow because its voltage is small comes nearer to the command all the time, and that is enough, however
 /// often one looks.
+/// Requirement: SR-22
 #[test]
 fn a_slow_drive_is_left_alone() {
     for sample_period_s in [20e-6_f32, 50e-6, 100e-6] {
@@ -128,6 +130,7 @@ fn left_alone(with: &Config) {
 /// Inverted, dead, swapped and stuck axes are found within `fault_ticks` and the few that the force needs to get there, while
 /// the whole cap brakes a whirl; they get nothing for eight times as long, then they are tried again; and an axis
 /// that obeys keeps its force.
+/// Requirement: SR-22
 #[test]
 fn an_axis_that_does_not_obey_gets_nothing_for_a_while() {
     let drives: [(&str, Makes, [bool; 2]); 6] = [
@@ -184,6 +187,7 @@ fn an_axis_that_does_not_obey_gets_nothing_for_a_while() {
 }
 
 /// Nothing is said of a drive whose force is not measured, or which is off.
+/// Requirement: SR-22
 #[test]
 fn what_is_not_measured_is_not_judged() {
     for without in [Status::APPLIED_VALID, Status::BEARING_ON] {
@@ -320,6 +324,7 @@ fn off_and_on_ends_a_rest() {
 
 /// In shadow the supervisor has no drive: whatever that does, the levitation command goes through bit for bit, and
 /// nothing is held against it when the supervisor may act.
+/// Requirement: SR-09
 #[test]
 fn in_shadow_nothing_is_taken_from_the_levitation_controller() {
     let mut bench = Bench::new(&config(), 1.6e-4, 1);

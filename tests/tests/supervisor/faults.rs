@@ -6,6 +6,7 @@ use system_tests::rig::{RADIUS_M, config, length, on_circle, sample};
 
 /// In a fault each component falls by the same in every tick, the cap in `fault_blend_s`, and stays zero as long as the
 /// sensor is bad.
+/// Requirement: SR-17
 #[test]
 fn the_force_is_blended_to_zero_in_the_configured_time() {
     for blend_s in [0.0_f32, 5e-4, 2e-3] {
@@ -35,6 +36,7 @@ fn the_force_is_blended_to_zero_in_the_configured_time() {
 /// Where one coordinate is no number or out of range, the force along it goes to zero in the time of a hand-over, and along
 /// the other the levitation controller acts from the first tick on, bit for bit, whatever it makes of the bad one. Once the
 /// other is wrong too, the force along that fades as well.
+/// Requirement: SR-18
 #[test]
 fn a_coordinate_that_is_good_is_left_to_the_levitation_controller() {
     let with = Config {
@@ -171,6 +173,7 @@ const BAD: [(usize, f32); 5] = [
 /// A step of the good coordinate that the rotor cannot make is no position: what the levitation controller makes of it does
 /// not go through in that tick, and after two in a row no more. One that it can make is none, nor one of as many ticks as were
 /// missed.
+/// Requirement: SR-18
 #[test]
 fn a_jump_of_the_coordinate_that_is_left_is_not_believed() {
     for (bad, reads_m) in BAD {
@@ -310,6 +313,7 @@ fn a_good_sample_between_two_jumps_parts_them() {
 
 /// Of a jump, a dropout or a sensor that is stuck nobody knows which coordinate is wrong: nothing of the levitation controller
 /// goes through.
+/// Requirement: SR-18
 #[test]
 fn what_may_concern_both_coordinates_leaves_neither() {
     for kind in 0..3 {
@@ -335,6 +339,7 @@ fn what_may_concern_both_coordinates_leaves_neither() {
 
 /// A fault ends with the K-th good sample in a row and not before, whatever it was about, and what the
 /// estimate was before has no part in what comes after.
+/// Requirement: SR-19
 #[test]
 fn a_fault_ends_after_enough_good_samples_in_a_row() {
     for good_ticks in [2_u32, 10, 25] {
@@ -377,6 +382,7 @@ fn a_fault_ends_after_enough_good_samples_in_a_row() {
 
 /// After a sensor that was stuck no sample counts as good before both coordinates have changed; then the rotor may
 /// rest, and they need not change any more.
+/// Requirement: SR-19
 #[test]
 fn a_stuck_sensor_is_not_believed_before_it_changes() {
     let (mut bench, angle) = Bench::whirl(&config());
@@ -415,6 +421,7 @@ fn a_rotor_at_rest_ends_a_stuck_sensors_fault() {
 
 /// In shadow a fault of the sensor takes nothing from the levitation command, and what the supervisor would command still leaves
 /// out what the controller makes of the bad coordinate.
+/// Requirement: SR-09
 #[test]
 fn in_shadow_a_fault_takes_nothing_from_the_levitation_controller() {
     let (mut bench, angle) = Bench::whirl(&config());

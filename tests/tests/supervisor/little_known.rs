@@ -202,6 +202,7 @@ fn unseen_time_is_no_time_in_contact() {
 }
 
 /// A bearing that is off is not heated by what the controller asks for.
+/// Requirement: SR-08
 #[test]
 fn a_bearing_that_is_off_stays_cold() {
     let with = Config {

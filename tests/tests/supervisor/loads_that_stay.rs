@@ -15,6 +15,7 @@ use supervisor::Mode;
 /// On machines that nothing was tuned on: a load of a third to two thirds of the cap comes and stays, alone or with a
 /// landing. Where levitation alone carries it in the end without contact, the supervisor has it levitated in the end, too,
 /// also where forces come late (the law's own spring would leave such a rotor at the wall) and where magnets pull hard.
+/// Requirement: SR-26
 #[test]
 fn what_levitation_carries_it_is_given() {
     let (mut carried, mut touched) = (0, 0);
@@ -99,6 +100,7 @@ fn magnets_that_pull_with_the_whole_cap_are_overcome() {
 
 /// A converter whose step is the noise: readings that are the last one by chance, of x here and of y there, are no stuck
 /// sensor. A second of it on each plant, with an unbalance that moves the rotor by some steps a tick.
+/// Requirement: SR-15
 #[test]
 fn a_coarse_converter_is_no_stuck_sensor() {
     for rate_hz in [10_000.0, 20_000.0] {

@@ -76,6 +76,7 @@ proptest! {
 }
 
 /// The self-test goes through every mode, and has a drive that does not obey; and its answers are the known ones.
+/// Requirement: SR-35
 #[test]
 fn self_test_knows_its_answers() {
     for (name, run, passes) in [

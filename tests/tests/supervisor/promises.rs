@@ -87,6 +87,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 2000, failure_persistence: None, ..ProptestConfig::default() })]
 
     /// Any bits in every field, any valid configuration: a finite force no longer than the cap.
+    /// Requirements: SR-01, SR-02
     #[test]
     fn any_bits_give_a_finite_capped_force(
         config in any_config(),
@@ -102,6 +103,7 @@ proptest! {
     }
 
     /// In the middle the levitation command goes through bit for bit, signed zeros included.
+    /// Requirement: SR-06
     #[test]
     fn levitated_is_transparent(
         positions in prop::collection::vec([-2e-5..2e-5_f32, -2e-5..2e-5_f32], 1..50),
@@ -146,6 +148,7 @@ proptest! {
 }
 
 /// Every parameter is refused just outside its range and for NaN, and named.
+/// Requirement: SR-28
 #[test]
 fn config_errors_name_field_value_and_range() {
     for (i, p) in PARAMETERS.iter().enumerate() {
@@ -179,6 +182,7 @@ fn config_errors_name_field_value_and_range() {
 }
 
 /// A command beyond the cap is shortened in its direction; one that is no number becomes zero.
+/// Requirement: SR-07
 #[test]
 fn levitation_commands_are_limited_with_a_flag() {
     let mut supervisor = new();
@@ -247,6 +251,7 @@ fn approach_is_tangential_where_it_is_dangerous() {
 }
 
 /// In sustained backward whirl the force brakes: against the motion, and mostly along the wall.
+/// Requirement: SR-23
 #[test]
 fn whirl_is_braked_along_the_wall() {
     for spin in [1000.0_f32, -1000.0] {
@@ -282,6 +287,7 @@ fn whirl_is_braked_along_the_wall() {
 
 /// NaN for longer than the configured ticks: a sensor fault, and the force goes to zero in the
 /// configured time; plausible samples for as long end it.
+/// Requirement: SR-17
 #[test]
 fn sensor_fault_blends_to_zero_and_ends() {
     let mut supervisor = new();
@@ -322,6 +328,7 @@ fn sensor_fault_blends_to_zero_and_ends() {
 
 /// The record holds the ticks around the engagement, oldest first, and freezes once the levitation controller has the bearing
 /// again; its sections are under a checksum that any other implementation of CRC-32 gives.
+/// Requirement: SR-30
 #[test]
 fn recorder_freezes_around_the_engagement() {
     let mut supervisor = new();
@@ -398,6 +405,7 @@ fn bitwise_crc(bytes: &[u8]) -> u32 {
 }
 
 /// Missed and repeated samples are reported, and a repeated one is not used twice.
+/// Requirement: SR-20
 #[test]
 fn sequence_is_watched() {
     let mut supervisor = new();
@@ -417,6 +425,7 @@ fn sequence_is_watched() {
 }
 
 /// A bearing that is switched off is left alone, wherever the rotor lies; switched on, it is not.
+/// Requirement: SR-08
 #[test]
 fn nothing_happens_while_the_bearing_is_off() {
     let mut supervisor = new();
@@ -434,6 +443,7 @@ fn nothing_happens_while_the_bearing_is_off() {
 }
 
 /// However long the fault was, what it left in the observer is forgotten.
+/// Requirement: SR-19
 #[test]
 fn a_long_sensor_fault_leaves_nothing_behind() {
     let after = |fault_ticks: u32| {

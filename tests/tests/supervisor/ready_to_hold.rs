@@ -27,6 +27,7 @@ impl Supervise for BeforeNothing {
 /// in which it is dropped again and again.) What is calm is calm because the supervisor holds it; with
 /// readiness compared only while calm, the mean of the shortfall forgot the load between calm spells, and the bearing went back
 /// two to three times as often (91 times in these scenes instead of 35).
+/// Requirement: SR-26
 #[test]
 fn a_rising_load_is_not_handed_over_again_and_again() {
     let mut all = 0;

@@ -32,6 +32,7 @@ fn highest_speed_m_s(scene: &Scene, policy: PolicyKind) -> f64 {
     panic!("no whirl below 2 m/s");
 }
 
+/// Requirement: SR-24
 #[test]
 fn policies_rank_as_promised() {
     let rig = rig();

@@ -20,6 +20,7 @@ fn ticks_to_fault(mut tick: impl FnMut(u32) -> Command) -> u32 {
 }
 
 /// NaN, infinity and range are refused in the same tick and are a fault after `fault_ticks`.
+/// Requirement: SR-12
 #[test]
 fn what_is_no_number_or_out_of_range_is_refused_at_once() {
     let cases = [
@@ -49,6 +50,7 @@ fn what_is_no_number_or_out_of_range_is_refused_at_once() {
 }
 
 /// A jump that stays is a fault in the second tick.
+/// Requirement: SR-13
 #[test]
 fn a_jump_that_stays_is_a_fault_within_two_ticks() {
     let (mut bench, angle) = Bench::whirl(&config());
@@ -62,6 +64,7 @@ fn a_jump_that_stays_is_a_fault_within_two_ticks() {
 
 /// The way that is allowed is speed_max·T and three steps of the sensor, for each tick since the last
 /// good sample.
+/// Requirement: SR-13
 #[test]
 fn the_limit_of_a_jump_is_speed_and_three_steps() {
     // 2 m/s in 50 µs, and 3 µm.
@@ -75,6 +78,7 @@ fn the_limit_of_a_jump_is_speed_and_three_steps() {
 }
 
 /// A repeated number is refused in the same tick and a fault in the third, wherever the samples lie.
+/// Requirement: SR-14
 #[test]
 fn a_dropout_is_a_fault_within_three_ticks() {
     let (mut bench, angle) = Bench::whirl(&config());
@@ -89,6 +93,7 @@ fn a_dropout_is_a_fault_within_three_ticks() {
 
 /// A sensor that stands still while the rotor moves is a fault within ten ticks: both coordinates, or
 /// one of them; in flight and in contact; at any speed of three steps in some ticks.
+/// Requirement: SR-15
 #[test]
 fn a_stuck_sensor_is_a_fault_within_ten_ticks() {
     for stuck in [[true, true], [true, false], [false, true]] {
@@ -123,6 +128,7 @@ fn a_stuck_sensor_is_a_fault_within_ten_ticks() {
 }
 
 /// Electronics that die one channel after the other are a fault as soon as neither has changed for three samples.
+/// Requirement: SR-15
 #[test]
 fn coordinates_may_stick_one_after_the_other() {
     for later in 0..4_u32 {
@@ -139,6 +145,7 @@ fn coordinates_may_stick_one_after_the_other() {
 
 /// A sensor that rightly stands still is left alone: a rotor at rest in the middle, on the wall under a
 /// force, or with a coarse converter.
+/// Requirement: SR-15
 #[test]
 fn a_rotor_at_rest_is_no_stuck_sensor() {
     for position_m in [[0.0, 0.0], [1e-4, -5e-5], [2.01e-4, 0.0]] {
@@ -189,6 +196,7 @@ fn a_change_beside_a_bad_coordinate_is_a_change() {
 
 /// A single bad sample of any kind costs no force, makes no fault and gives the estimate no kick: the
 /// commands stay near those of a run without it.
+/// Requirement: SR-16
 #[test]
 fn a_single_bad_sample_neither_drops_the_force_nor_kicks() {
     /// What comes in place of a good sample; nothing new for `None`.
@@ -228,6 +236,7 @@ fn a_single_bad_sample_neither_drops_the_force_nor_kicks() {
 
 /// In mode Levitated the controller's answer to a sample that cannot be does not go through, since it saw the same reading: the
 /// command before it stays, to a rounding. In shadow, with the bearing off, and where a sample is merely missing, it does.
+/// Requirement: SR-16
 #[test]
 fn the_command_of_a_sample_that_cannot_be_does_not_go_through() {
     for (status, through) in [
@@ -271,6 +280,7 @@ fn the_command_of_a_sample_that_cannot_be_does_not_go_through() {
 }
 
 /// Over some missed ticks the estimate coasts: the force is within a tenth of the cap of what it would have been.
+/// Requirement: SR-20
 #[test]
 fn missed_ticks_are_made_up_for() {
     for missed in 1..=4_u32 {
@@ -304,6 +314,7 @@ fn missed_ticks_are_made_up_for() {
 }
 
 /// Gaps that come again and again make nothing of the noise of a rotor that stands still under a force and a load.
+/// Requirement: SR-10
 #[test]
 fn repeated_gaps_do_not_engage() {
     for (missed, good) in (1..=4).flat_map(|missed| (1..=5).map(move |good| (missed, good))) {

@@ -76,6 +76,7 @@ fn an_engagement_is_told_to_the_other_end() {
 
 /// Both planes record the same ticks of one event, whichever engages, and freeze at once when it is over for both; then both
 /// are ready for the next one.
+/// Requirement: SR-30
 #[test]
 fn records_of_one_event_are_of_the_same_ticks() {
     let mut rotor = rotor(&config());
@@ -138,6 +139,7 @@ fn an_engagement_without_a_touch_holds_nothing_up() {
 }
 
 /// One end's request is the machine's, and stays.
+/// Requirement: SR-27
 #[test]
 fn a_request_to_coast_down_is_of_the_machine() {
     let impatient = Config {
@@ -198,6 +200,7 @@ fn free() -> Config {
     }
 }
 
+/// Requirement: SR-10
 #[test]
 fn free_nutation_is_no_approach() {
     let engages = |spin: f32, sense: f32| {
@@ -249,6 +252,7 @@ fn without_spin_there_is_no_nutation() {
 }
 
 /// Whatever bits come in, and whatever shaft a data sheet may hold: finite and within the caps.
+/// Requirements: SR-01, SR-02
 #[test]
 fn arbitrary_bits_give_forces_within_the_caps() {
     let mut state = 0x9E37_79B9_7F4A_7C15_u64;
@@ -307,6 +311,7 @@ fn arbitrary_bits_give_forces_within_the_caps() {
     assert!(ran >= 10, "{ran}");
 }
 
+/// Requirement: SR-28
 #[test]
 fn a_shaft_that_no_body_has_is_refused() {
     let good = shaft(&config());

@@ -16,6 +16,7 @@ fn with_larger_cap() -> Config {
 
 /// What is known of the rotor survives a change of every unit: there and back again, a tick in between, and the
 /// supervisor engages at the same tick as without.
+/// Requirement: SR-29
 #[test]
 fn reconfiguration_keeps_what_is_known_of_the_rotor() {
     let other = Config {
@@ -51,6 +52,7 @@ fn reconfiguration_keeps_what_is_known_of_the_rotor() {
 
 /// A whirl is braked across the change without a tick of rest, and the force stays within the old and
 /// the new cap.
+/// Requirement: SR-29
 #[test]
 fn reconfiguration_in_a_whirl_goes_on_braking() {
     let mut supervisor = Supervisor::<64>::new(&config()).unwrap();
@@ -71,6 +73,7 @@ fn reconfiguration_in_a_whirl_goes_on_braking() {
 }
 
 /// A parameter out of range changes nothing.
+/// Requirement: SR-28
 #[test]
 fn a_refused_configuration_leaves_everything_as_it_is() {
     let mut supervisor = Supervisor::<64>::new(&config()).unwrap();
@@ -86,6 +89,7 @@ fn a_refused_configuration_leaves_everything_as_it_is() {
 
 /// In shadow the machine sees its levitation controller, bit for bit; what the supervisor would have done is
 /// what it does without the bit.
+/// Requirement: SR-09
 #[test]
 fn shadow_computes_and_does_not_act() {
     let (mut acting, mut shadow) = (
@@ -143,6 +147,7 @@ fn in_shadow_of_a_bearing_that_is_off_the_integrator_holds() {
 
 /// A command that came a tick late is taken to have left its tick to the one before: the same estimate, and
 /// with it the same force, as if that had been commanded.
+/// Requirement: SR-20
 #[test]
 fn a_late_command_leaves_its_tick_to_the_one_before() {
     let levitation = |i: u32| [10.0 * (i % 7) as f32, -20.0 * (i % 5) as f32];
@@ -181,6 +186,7 @@ fn a_late_command_leaves_its_tick_to_the_one_before() {
 }
 
 /// Missed and repeated ticks are counted.
+/// Requirement: SR-20
 #[test]
 fn missed_and_repeated_ticks_are_counted() {
     let mut supervisor = Supervisor::<64>::new(&config()).unwrap();
@@ -242,6 +248,7 @@ fn the_core_is_the_supervisor_per_unit() {
 }
 
 /// A command holds for its time and no longer.
+/// Requirement: SR-21
 #[test]
 fn commands_expire() {
     let mut watch = CommandWatchdog::<f32>::new(3);

@@ -163,6 +163,7 @@ fn the_index_grows_by_friction_in_whirl() {
 
 /// Whirl beyond the limit is named in each tick and asks for coasting down once, after its time; whirl
 /// below it is not and does not. Switched off and on, it may ask again.
+/// Requirement: SR-27
 #[test]
 fn whirl_beyond_the_limit_asks_once_to_coast_down() {
     let limit = whirl_limit_m_s(&config(), 1000.0) as f32;
@@ -202,6 +203,7 @@ fn whirl_beyond_the_limit_asks_once_to_coast_down() {
 }
 
 /// So does the severity index, when it passes its limit.
+/// Requirement: SR-27
 #[test]
 fn a_severity_index_beyond_its_limit_asks_once_to_coast_down() {
     let with = Config {

@@ -13,6 +13,7 @@ use supervisor::Mode;
 
 /// On a shaft that centres the rotor a damper alone levitates. A jump of the sensor engages the supervisor; when it is
 /// over the rotor stands in the middle, and noise of 1 µm must not keep it from the hand-over, whatever the seed.
+/// Requirement: SR-26
 #[test]
 fn noise_in_the_middle_does_not_hold_the_hand_over_up() {
     for plant in plants(20_000.0).unwrap() {

@@ -48,6 +48,7 @@ fn taken<S: Scalar, const N: usize>(
     }
 }
 
+/// Requirement: SR-31
 #[test]
 fn halves_do_what_the_whole_does() {
     let mut whole = Supervisor::<RECORD>::new(&config()).unwrap();
@@ -108,6 +109,7 @@ fn a_whole_goes_on_where_its_halves_left_off() {
 }
 
 /// Two processors that see the same memory: one ticks as fast as it can, the other reads as fast as it can.
+/// Requirement: SR-31
 #[test]
 fn nothing_is_torn_where_both_run_at_once() {
     let mut plane = Supervisor::<RECORD>::new(&config()).unwrap();
@@ -178,6 +180,7 @@ fn nothing_is_torn_where_both_run_at_once() {
     }
 }
 
+/// Requirement: SR-31
 #[test]
 fn halves_of_a_rotor_do_what_the_whole_does() {
     let mut whole = Rotor::<RECORD>::new(&shaft(&config()), &[config(); 2]).unwrap();

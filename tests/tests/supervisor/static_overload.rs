@@ -41,6 +41,7 @@ fn under(
 
 /// A load a little below the cap throws the rotor onto the bearing once; then it is lifted off and kept away, also where
 /// the levitation controller would leave it there.
+/// Requirement: SR-25
 #[test]
 fn a_load_just_below_the_cap_is_lifted_off_and_kept_away() {
     for plant in ["P2", "P3", "P4"] {
@@ -64,6 +65,7 @@ fn a_load_just_below_the_cap_is_lifted_off_and_kept_away() {
 }
 
 /// What cannot be lifted off is relieved by the whole cap.
+/// Requirement: SR-25
 #[test]
 fn what_the_cap_cannot_lift_is_held_with_all_of_it() {
     for plant in ["P2", "P4"] {

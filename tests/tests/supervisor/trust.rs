@@ -32,6 +32,7 @@ fn longest_in_a_storm<S: AnyBits>(seed: u64, ticks: u32) -> u32 {
     longest
 }
 
+/// Requirement: SR-11
 #[test]
 fn no_engagement_of_any_bits_lasts_beyond_its_bound() {
     for seed in 0..4 {
@@ -62,6 +63,7 @@ fn longest_kept(position: impl Fn(u32, Mode) -> [f32; 2], ticks: u32) -> (u32, u
 }
 
 /// A rotor that lies on the bearing for good is held for long, and not for ever: the bound is reached, to a window or two.
+/// Requirement: SR-11
 #[test]
 fn what_rests_is_held_to_the_bound() {
     let lying = |i: u32, _| [1.01 * C_M, 1e-8 * (i % 2) as f32];
@@ -81,6 +83,7 @@ fn bouncing(i: u32, speed: f32) -> [f32; 2] {
 }
 
 /// One that bounces on without losing speed is given up after four windows and a part of one, and the pauses double.
+/// Requirement: SR-11
 #[test]
 fn bouncing_on_is_given_up_and_pauses_double() {
     let mut bench = Bench::new(&config());
@@ -112,6 +115,7 @@ fn bouncing_on_is_given_up_and_pauses_double() {
 }
 
 /// A single sample that is off moves nothing, in either direction and of any size; what the second shows as well is so.
+/// Requirement: SR-16
 #[test]
 fn one_sample_that_is_off_is_refused_and_two_are_not() {
     for size in [0.1, 0.3, 0.9] {
@@ -150,6 +154,7 @@ fn one_sample_that_is_off_is_refused_and_two_are_not() {
 }
 
 /// The command that a levitation controller makes of a doubted sample does not go through.
+/// Requirement: SR-16
 #[test]
 fn the_controllers_answer_to_a_doubted_sample_does_not_go_through() {
     let mut supervisor = Supervisor::<64>::new(&config()).unwrap();
@@ -176,6 +181,7 @@ fn the_controllers_answer_to_a_doubted_sample_does_not_go_through() {
 
 /// Runout that is there for two windows is the usual: the supervisor is not noticed, not even where the reading goes round
 /// with three times the lift-off speed.
+/// Requirement: SR-10
 #[test]
 fn what_is_usual_is_no_approach() {
     for (speed, amplitude) in [(0.6, 0.1), (1.0, 0.1), (3.0, 0.1), (2.0, 0.05)] {
@@ -235,6 +241,7 @@ fn a_forward_rub_engages_one_that_trusts_no_reading() {
 }
 
 /// An engagement without a touch leaves the record to one with it, and is counted apart.
+/// Requirement: SR-30
 #[test]
 fn an_engagement_without_contact_does_not_spend_the_record() {
     let mut bench = Bench::new(&config());

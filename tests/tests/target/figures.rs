@@ -9,6 +9,7 @@ fn parsed(stdout: &[u8]) -> Value {
 }
 
 /// Every tick of the short streams, which have every mode and every way between modes.
+/// Requirements: SR-34, SR-36
 #[test]
 fn every_processor_gives_the_bits_of_the_host_within_its_budgets() {
     let Some(output) = target(&["--quick", "--json"]) else {

@@ -24,6 +24,7 @@ const IMAGES: [&str; 9] = [
     "timer-interrupt",
 ];
 
+/// Requirements: SR-32, SR-33
 #[test]
 fn linked_images_hold_no_panic_path() {
     for target in TARGETS {
@@ -40,6 +41,7 @@ fn linked_images_hold_no_panic_path() {
 }
 
 /// Where the compiler saves size it leaves checks in that it removes for speed.
+/// Requirement: SR-32
 #[test]
 fn no_level_of_optimisation_leaves_a_panic_path() {
     for level in OTHER_LEVELS {
@@ -74,6 +76,7 @@ fn assert_no_panic_in(image: &Path) {
 const PLANTED: [&str; 3] = ["--features", "planted-panic", "--keep-going"];
 
 /// The check finds a panic that is put in, in every image for every target.
+/// Requirement: SR-32
 #[test]
 fn a_planted_panic_fails_to_link() {
     for target in TARGETS {

@@ -12,6 +12,7 @@ use system_tests::root;
 use system_tests::target::{build_images, skipped, target};
 
 /// Samples, commands, plant and verdict are those of the host alone, bit for bit.
+/// Requirement: SR-34
 #[test]
 fn a_processor_in_the_loop_changes_nothing() {
     let Some(output) = target(&["--loop", "--json", "--only", "M4F"]) else {

@@ -3,3 +3,4 @@
 mod figures;
 mod images;
 mod loops;
+mod vectors;

@@ -1,0 +1,55 @@
+//! The header against MISRA C:2012, as far as a free checker goes: what it finds is a deviation that the safety manual explains.
+
+use crate::library::{capi, good, tool};
+use std::collections::BTreeSet;
+use system_tests::root;
+
+/// Rules that cppcheck finds broken in a file, as 10.4.
+fn broken(text: &str, standard: &str) -> BTreeSet<String> {
+    let Some(mut cppcheck) = tool("cppcheck") else {
+        return BTreeSet::new();
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+    let version = format!("#define AMB_LIBRARY_ABI {}\n", supervisor_capi::ABI);
+    write("amb_supervisor_abi.h", &version);
+    write("use.c", text);
+    cppcheck.args(["--addon=misra", "--enable=style", "--quiet"]);
+    cppcheck
+        .arg("--template={id}")
+        .arg(format!("--std={standard}"));
+    cppcheck.arg("-I.").arg("-I").arg(capi().join("include"));
+    let output = cppcheck.current_dir(&folder).arg("use.c").output().unwrap();
+    good(&output);
+    let said = String::from_utf8_lossy(&output.stderr);
+    let rules = said
+        .lines()
+        .filter_map(|id| id.strip_prefix("misra-c2012-"));
+    rules.map(str::to_owned).collect()
+}
+
+#[test]
+fn deviations_of_the_header_are_explained() {
+    if tool("cppcheck").is_none() {
+        return;
+    }
+    let manual = root().join("docs/src/supervisor/safety-manual.md");
+    let manual = std::fs::read_to_string(manual).unwrap();
+    let mut found = BTreeSet::new();
+    for standard in ["c99", "c11"] {
+        found.extend(broken("#include \"amb_supervisor.h\"\n", standard));
+    }
+    assert!(
+        found.contains("19.2"),
+        "the checker sees nothing: {found:?}"
+    );
+    for rule in &found {
+        assert!(
+            manual.contains(&format!("| {rule} | ")),
+            "rule {rule} is not in the safety manual"
+        );
+    }
+    // A goto is found, so an empty list says something.
+    let with_goto = "int main(void) { goto end; end: return 0; }\n";
+    assert!(broken(with_goto, "c99").contains("15.1"));
+}
