@@ -1,6 +1,7 @@
 //! Whether the drive does what it is told, where its force is measured.
 
 use crate::coeffs::Coeffs;
+use crate::parts::AXIS_MONITOR;
 use crate::reading::Actuator;
 use crate::scalar::Scalar;
 use crate::signal::Status;
@@ -37,7 +38,7 @@ impl<S: Scalar> ActuatorMonitor<S> {
     /// Axes that get nothing because they do not track. Where the supervisor does not act it takes nothing away.
     #[inline]
     pub(crate) fn lost(&self, status: Status) -> Status {
-        if self.off == [0; 2] {
+        if !AXIS_MONITOR || self.off == [0; 2] {
             return Status::empty();
         }
         self.resting(status)

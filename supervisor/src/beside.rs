@@ -47,7 +47,7 @@ impl<S: Scalar> Tilting<S> {
     #[inline]
     fn turned(&self, time: S) -> Vec2<S> {
         let most = S::from_f32(MOST_TURN);
-        let angle = (self.rate * time).clamp(-most, most);
+        let angle = (self.rate * time).within(most);
         self.velocity.rotated(Vec2::at_angle(angle)) - self.velocity
     }
 

@@ -1,5 +1,7 @@
 //! The parameters: one table gives the struct, its check, its documentation and its test cases.
 
+use crate::parts::THERMAL_BUDGET;
+
 /// One row of the table.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Parameter {
@@ -45,6 +47,12 @@ impl core::fmt::Display for ConfigError {
             ..
         } = self.parameter();
         write!(f, "{name} = {}: expected ", Written(self.value))?;
+        if self.index == CONTINUOUS_FORCE && self.value >= *low && self.value <= *high {
+            return write!(
+                f,
+                "at least force_max_n: the feature thermal-budget is left out"
+            );
+        }
         write!(f, "{} to {}", Written(*low), Written(*high))?;
         match *unit {
             "1" => Ok(()),
@@ -165,6 +173,14 @@ parameters! {
     sensor_step_m, "m", 1e-9 ..= 1e-3, "Step of the sensor's converter or its noise (root mean square), whichever is larger, at the sensor.";
 }
 
+/// Its place in the table.
+const CONTINUOUS_FORCE: usize = 22;
+
+const _: () = assert!(matches!(
+    PARAMETERS[CONTINUOUS_FORCE].name.as_bytes(),
+    b"continuous_force_n"
+));
+
 impl Config {
     /// An example, and no default for any machine: a rotor of 10 kg in a clearance of 0.2 mm, with a cap of 1 kN and a tick of
     /// 50 µs, as `advise` of the command line suggests it for 1 µm of sensor noise; slew limit and thermal budget are the
@@ -194,7 +210,7 @@ impl Config {
             fault_ticks: 5.0,
             axis_force_max_n: 1000.0, // no cap of the axes
             force_slew_n_s: 1e7,
-            continuous_force_n: 400.0,
+            continuous_force_n: if THERMAL_BUDGET { 400.0 } else { 1000.0 },
             thermal_time_s: 5.0,
             contact_stiffness_n_m: 1e9,
             coast_down_s: 5e-3,
@@ -209,12 +225,20 @@ impl Config {
     /// Checks every value against the table.
     ///
     /// # Errors
-    /// The first value outside its range; NaN is outside every range.
+    /// The first value outside its range; NaN is outside every range. Where the feature `thermal-budget` is left out, a continuous
+    /// force below the cap is as well.
     pub fn validate(&self) -> Result<(), ConfigError> {
         for (index, ([low, high], value)) in RANGES.into_iter().zip(self.values()).enumerate() {
             if !(value >= low && value <= high) {
                 return Err(ConfigError { index, value });
             }
+        }
+        if !THERMAL_BUDGET && self.continuous_force_n < self.force_max_n {
+            let value = self.continuous_force_n;
+            return Err(ConfigError {
+                index: CONTINUOUS_FORCE,
+                value,
+            });
         }
         Ok(())
     }

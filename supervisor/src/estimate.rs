@@ -6,6 +6,7 @@
 use crate::actuator_monitor::{ActuatorMonitor, lagging};
 use crate::coeffs::{Coeffs, MAX_DELAY};
 use crate::innovation::Expected;
+use crate::parts::AXIS_MONITOR;
 use crate::reading::{Actuator, SampleFlags};
 use crate::scalar::Scalar;
 use crate::spin::Spin;
@@ -187,6 +188,7 @@ impl<S: Scalar> Observer<S> {
         let before = self.delivered;
         let measured = actuator.applied();
         match measured {
+            _ if !AXIS_MONITOR => {}
             _ if !actuator.axes.contains(SampleFlags::ON) => self.monitor.switched_off(),
             None => self.monitor.unseen(),
             Some(now) => self.monitor.watch(now, (before, due), &actuator, coeffs),
@@ -354,7 +356,7 @@ impl<S: Scalar> Motion<S> {
     #[cold]
     #[inline(never)]
     fn hold_back(&mut self, coeffs: &Coeffs<S>) {
-        let held = |v: Vec2<S>, most: S| v.map(|x| x.clamp(-most, most));
+        let held = |v: Vec2<S>, most: S| v.map(|x| x.within(most));
         self.position = held(self.position, S::from_f32(FAR));
         self.velocity = held(self.velocity, S::from_f32(FAR));
         self.load_step = held(self.load_step, coeffs.tick * S::from_f32(MOST_LOAD));

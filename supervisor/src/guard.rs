@@ -141,9 +141,16 @@ impl<S: Scalar> Guard<S> {
                 ..SampleAssessment::default()
             },
             None => {
-                // A copy, so that the usual sample stays in registers.
-                let sample = *sample;
-                self.judge_in_full((&sample, status), expected, estimated(), coeffs)
+                // By value, so that the usual sample stays in registers.
+                let position = Vec2::from_array(sample.position);
+                self.judge_in_full(
+                    sample.sequence,
+                    position,
+                    status,
+                    expected,
+                    estimated(),
+                    coeffs,
+                )
             }
         };
         self.refusal = assessment.refusal;
@@ -196,7 +203,9 @@ impl<S: Scalar> Guard<S> {
     #[inline(never)]
     fn judge_in_full(
         &mut self,
-        (sample, status): (&CoreSample<S>, Status),
+        sequence: u32,
+        position: Vec2<S>,
+        status: Status,
         expected: Expected<S>,
         (velocity, in_contact): (Vec2<S>, bool),
         coeffs: &Coeffs<S>,
@@ -205,7 +214,7 @@ impl<S: Scalar> Guard<S> {
             self.stuck_detector.moved_to(self.last_good);
         }
         let mut flags = SampleFlags::from_status(status);
-        let (repeated, gap) = self.sequence(sample.sequence);
+        let (repeated, gap) = self.sequence(sequence);
         let mut events = Events::empty();
         if repeated || gap > 0 {
             events |= Events::SEQUENCE;
@@ -222,7 +231,6 @@ impl<S: Scalar> Guard<S> {
             flags |= SampleFlags::MISSED;
         }
 
-        let position = Vec2::from_array(sample.position);
         // A bearing that is off is not known to deliver what the model moves by.
         let trusted = if self.faulty || anew || !flags.contains(SampleFlags::ON) {
             Vec2::ZERO

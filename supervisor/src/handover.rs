@@ -29,7 +29,7 @@ pub(crate) fn faded<S: Scalar>(
     };
     // What the other coordinate is sure to leave of the cap.
     let most = (envelope.cap - levitation.x.abs() - levitation.y.abs()).max(S::ZERO);
-    let left = last.map(|force| (force - force.clamp(-step, step)).clamp(-most, most));
+    let left = last.map(|force| (force - force.within(step)).within(most));
     flags.sensed(levitation, left)
 }
 

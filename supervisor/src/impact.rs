@@ -39,7 +39,7 @@ pub(crate) struct Impact<S> {
 
 impl<S: Scalar> Impact<S> {
     /// `None` for a rotor without speed, or beyond the wall.
-    #[inline]
+    #[inline(never)]
     pub(crate) fn ahead(motion: &Motion<S>, radius: S, speed: &Speed<S>) -> Option<Self> {
         let room = (S::ONE - radius) * (S::ONE + radius);
         if speed.inverse <= S::ZERO || room <= S::ZERO {

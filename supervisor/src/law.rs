@@ -63,7 +63,7 @@ pub(crate) struct View<'a, S: Scalar> {
 
 impl<S: Scalar> View<'_, S> {
     /// The wanted force of a phase; zero for those in which the supervisor wants nothing itself.
-    #[inline]
+    #[inline(never)]
     pub(crate) fn demand(&self, phase: Phase<S>) -> ForceDemand<S> {
         match phase {
             Phase::Levitated | Phase::HandedBack { .. } | Phase::SensorFault { .. } => {
@@ -220,7 +220,7 @@ impl<S: Scalar> View<'_, S> {
     #[inline]
     fn lead(&self, rate: S) -> Vec2<S> {
         // Up to a radian, beyond which no lead would help.
-        let angle = (rate * self.coeffs.delay_time).clamp(-S::ONE, S::ONE);
+        let angle = (rate * self.coeffs.delay_time).within(S::ONE);
         Vec2::at_angle(angle)
             .rotated(Vec2::new(S::ONE, rate * self.coeffs.lag))
             .direction()

@@ -47,7 +47,7 @@
 //!                                                                                 └─► recorder
 //! ```
 //!
-//! Files, each importing only from those above it: `cells`, `words`, `scalar`, `product`, `q`, `math`, `vec2`, `signal`, `config`, `coeffs`,
+//! Files, each importing only from those above it: `parts`, `cells`, `words`, `scalar`, `product`, `q`, `math`, `vec2`, `signal`, `config`, `coeffs`,
 //! `spin`, `unbalance`, `innovation`, `reading`, `stuck`, `guard`, `actuator_monitor`, `estimate`, `beside`, `detect`, `impact`, `classify`, `phase`, `trust`, `law`, `limit`, `handover`, `tally`, `severity`,
 //! `tick`, `entry`, `track`, `events`, `latest`, `tape`, `recorder`, `record`, `per_unit`, `supervisor`, `split`, `shaft`, `coupling`, `rotor`, `self_test`, `watch`, `log_format`.
 
@@ -77,6 +77,7 @@ mod limit;
 #[cfg(feature = "defmt")]
 mod log_format;
 mod math;
+mod parts;
 mod per_unit;
 mod phase;
 mod product;
@@ -116,7 +117,7 @@ pub use record::{
 };
 pub use rotor::{Machine, Rotor, RotorCommand, RotorReader, RotorTicker};
 pub use scalar::{Accumulator, Number, Scalar};
-pub use self_test::{SelfTest, self_test};
+pub use self_test::SelfTest;
 pub use shaft::{Place, Shaft, ShaftError};
 pub use signal::{
     Command, CoreCommand, CoreSample, Events, IntegratorHint, Limits, Mode, RejectReason, Report,

@@ -2,6 +2,7 @@
 
 use crate::coeffs::{Coeffs, FALL};
 use crate::law::ForceDemand;
+use crate::parts::THERMAL_BUDGET;
 use crate::reading::SampleFlags;
 use crate::scalar::{Accumulator, Scalar};
 use crate::signal::Limits;
@@ -124,8 +125,8 @@ fn on_what_is_left<S: Scalar>(demand: &ForceDemand<S>, envelope: ForceEnvelope<S
         } else {
             (S::ZERO, restoring)
         };
-        let sum = (first.clamp(-cap, cap) + damping).clamp(-cap, cap);
-        (sum + last).clamp(-cap, cap)
+        let sum = (first.within(cap) + damping).within(cap);
+        (sum + last).within(cap)
     };
     let d = demand;
     Vec2::new(
@@ -249,7 +250,7 @@ fn one_step<S: Scalar>(last: Vec2<S>, change: Vec2<S>, coeffs: &Coeffs<S>) -> Ve
     let force = last + change * change.inverse_length() * coeffs.slew_step;
     // Both ends are within the caps; rounding may have left them between. The way inwards makes no step longer.
     let axis = coeffs.axis_cap;
-    let force = force.map(|x| x.clamp(-axis, axis));
+    let force = force.map(|x| x.within(axis));
     if force.exceeds(S::ONE) {
         force * S::JUST_BELOW_ONE
     } else {
@@ -270,15 +271,15 @@ impl<S: Scalar> Budget<S> {
     #[inline]
     pub(crate) fn cap(&self, coeffs: &Coeffs<S>) -> S {
         match coeffs.continuous {
-            Some(continuous) => derated(self.state.value(), continuous),
-            None => S::ONE,
+            Some(continuous) if THERMAL_BUDGET => derated(self.state.value(), continuous),
+            _ => S::ONE,
         }
     }
 
     /// Some ticks, few against the thermal time, with this force \[caps\].
     #[inline]
     pub(crate) fn spend(&mut self, ticks: S, force: Vec2<S>, coeffs: &Coeffs<S>) {
-        if coeffs.continuous.is_some() {
+        if THERMAL_BUDGET && coeffs.continuous.is_some() {
             let way = force.length_squared() - self.state.value();
             self.state.add(way * ticks, coeffs.thermal_rate);
         }

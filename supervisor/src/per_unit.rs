@@ -146,6 +146,20 @@ impl<S: Scalar> Plane<S> {
         self.recorder.is_back(&shared.tape)
     }
 
+    /// For a test in its place: nothing remembered, other coefficients, and no recorder. Gives those back that it had.
+    pub(crate) fn begin_test(&mut self, prepared: &Prepared<S>) -> Coeffs<S> {
+        self.recorder.pause();
+        self.state = State::default();
+        core::mem::replace(&mut self.coeffs, prepared.0)
+    }
+
+    /// After it, as new.
+    pub(crate) fn end_test<const N: usize>(&mut self, shared: &Shared<N>, coeffs: Coeffs<S>) {
+        self.coeffs = coeffs;
+        self.state = State::default();
+        self.recorder.restart(&shared.tape);
+    }
+
     /// Waits for the next engagement.
     pub(crate) fn rearm<const N: usize>(&mut self, shared: &Shared<N>) {
         self.recorder.rearm(&shared.tape);
@@ -240,7 +254,8 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
 
     /// One tick: total and bounded; the one loop that depends on data makes up for at most four missed
     /// ticks.
-    #[inline]
+    // One copy, whoever calls it: the self-test does, too.
+    #[inline(never)]
     pub fn tick(&mut self, sample: &CoreSample<S>) -> CoreCommand<S> {
         self.plane.tick(&self.shared, sample)
     }

@@ -139,7 +139,7 @@ impl Scalar for Q {
     const ZERO: Self = Self::from_bits(0);
     const ONE: Self = Self::from_bits(1 << FRACTION);
     const JUST_BELOW_ONE: Self = Self::from_bits((1 << FRACTION) - 8);
-    const KNOWN_ANSWER: u32 = 0xDB83_D5BB;
+    const KNOWN_ANSWERS: [u32; 2] = [0xDB83_D5BB, 0xD759_A43A];
     const NUMBER: Number = Number::Fixed;
 
     #[inline]

@@ -4,8 +4,10 @@
 //! A section is, in words of 32 bits, little-endian: its [`Part`]; the record that it belongs to; its number among those of its
 //! part in the lower half and the count of words that follow in the upper; these; the CRC-32 (IEEE) of all before.
 
+use crate::cells::Cells;
 use crate::config::{Config, PARAMETERS};
 use crate::entry::{ENTRY_WORDS, Entry};
+use crate::parts::LEFT_OUT;
 use crate::scalar::{Number, Scalar};
 use crate::severity::{Fastest, Severity};
 use crate::tally::Units;
@@ -77,7 +79,8 @@ pub struct Stamp {
 pub struct Head {
     /// [`RECORD_VERSION`].
     pub version: u32,
-    /// Version of the supervisor: major, minor and patch, a byte each, from the highest but one.
+    /// Version of the supervisor: major, minor and patch, a byte each, from the highest but one. In the highest, a bit for each part
+    /// that is left out: unbalance, axis monitor, thermal budget.
     pub supervisor: u32,
     /// [`crate::Number`] of the core.
     pub number: u32,
@@ -315,17 +318,16 @@ impl<'a, S: Scalar, const N: usize> Record<'a, S, N> {
                     these.for_each(|stretch| stretch.words().for_each(&mut put));
                 }
                 Part::State => {
-                    let mut at = 0;
-                    let mut word = |word| {
-                        if (from..from + per_section).contains(&at) {
-                            put(word);
+                    let new = Cells::new();
+                    let state = match self.closed.is_new {
+                        true => {
+                            State::<S>::default().lay_all(&new);
+                            &new
                         }
-                        at += 1;
+                        false => &tape.state,
                     };
-                    match self.closed.is_new {
-                        true => State::<S>::default().put(&mut word),
-                        false => tape.state.words().for_each(&mut word),
-                    }
+                    let these = state.words().skip(from).take(per_section);
+                    these.for_each(&mut put);
                 }
                 Part::Ticks => {
                     let these = (from..from + per_section).map_while(|i| self.entry(i));
@@ -342,7 +344,8 @@ impl<'a, S: Scalar, const N: usize> Record<'a, S, N> {
 /// Version of this crate as [`Head::supervisor`] has it.
 pub const SUPERVISOR_VERSION: u32 = number(env!("CARGO_PKG_VERSION_MAJOR")) << 16
     | number(env!("CARGO_PKG_VERSION_MINOR")) << 8
-    | number(env!("CARGO_PKG_VERSION_PATCH"));
+    | number(env!("CARGO_PKG_VERSION_PATCH"))
+    | LEFT_OUT << 24;
 
 /// A number in decimal digits.
 const fn number(text: &str) -> u32 {

@@ -27,6 +27,8 @@ enum Progress {
     /// Recording for so many more ticks, and then the slow track alone until the event is over.
     Triggered(usize),
     Frozen,
+    /// The ticks are those of a self-test: nothing is written down.
+    Paused,
 }
 
 /// What a tick was for the recorder; of a rotor, for those of both planes.
@@ -172,7 +174,7 @@ impl<S: Scalar> Recorder<S> {
             lay_units(coeffs, tape.opening_units.all());
         }
         self.kept_coast_down = state.severity.coast_down();
-        state.lay(tape.state.all(), 0);
+        state.lay_all(&tape.state);
         (self.kept_at, self.due) = (self.written, before::<N>() as u32);
         (self.keeps, self.is_new) = (true, false);
         // Before counts begin anew.
@@ -250,7 +252,9 @@ impl<S: Scalar> Recorder<S> {
     /// A tick with events.
     #[inline(never)]
     fn happened(&mut self, queue: &EventQueue, sequence: u32, mode: Mode, events: Events) -> Seen {
-        self.queue(queue, (sequence, mode), events);
+        if self.progress != Progress::Paused {
+            self.queue(queue, (sequence, mode), events);
+        }
         let engaged = mode.is_engaged();
         let touched = engaged && events.intersects(WORTH_IT);
         let begins = events.contains(Events::ENGAGED);
@@ -295,7 +299,7 @@ impl<S: Scalar> Recorder<S> {
                     return self.freeze(shared, last, severity, coeffs);
                 }
             }
-            Progress::Armed | Progress::Frozen => {}
+            Progress::Armed | Progress::Frozen | Progress::Paused => {}
         }
         Events::empty()
     }
@@ -409,6 +413,18 @@ impl<S: Scalar> Recorder<S> {
             self.track.clear();
             tape.take();
         }
+    }
+
+    /// Looks away.
+    pub(crate) fn pause(&mut self) {
+        (self.progress, self.due) = (Progress::Paused, u32::MAX);
+    }
+
+    /// As new, for a core that is.
+    pub(crate) fn restart<const N: usize>(&mut self, tape: &Tape<N>) {
+        let config = Config::from_values(self.config);
+        *self = Self::new::<N>(&config, self.plane);
+        tape.take();
     }
 
     /// What comes now is of another event.

@@ -1,6 +1,7 @@
 //! Both ends of one rotor: a supervisor for each, which know of each other what two ends of a rigid body do.
 
 use crate::cells::Cells;
+use crate::coeffs::Coeffs;
 use crate::config::Config;
 use crate::coupling::{Coupling, spin};
 use crate::events::QueuedEvent;
@@ -76,6 +77,12 @@ struct MachineState {
     coast_down: bool,
 }
 
+/// What a test has to give back.
+pub(crate) struct Kept {
+    machine: MachineState,
+    coeffs: [Coeffs<f32>; 2],
+}
+
 /// The half of a [`Rotor`] that ticks: for the control interrupt, or whatever owns the bearings.
 #[derive(Debug)]
 pub struct RotorTicker<'a, const RECORD: usize = 512> {
@@ -131,7 +138,7 @@ impl<const RECORD: usize> Rotor<RECORD> {
     }
 
     #[inline]
-    fn ticking(&mut self) -> RotorTicker<'_, RECORD> {
+    pub(crate) fn ticking(&mut self) -> RotorTicker<'_, RECORD> {
         let [first, second] = &mut self.planes;
         self.machine.ticking([first, second])
     }
@@ -143,6 +150,8 @@ impl<const RECORD: usize> Rotor<RECORD> {
     }
 
     /// One tick of both, in the control interrupt. Both samples carry the number of one counter.
+    // One copy, whoever calls it: the self-test does, too.
+    #[inline(never)]
     pub fn tick(&mut self, samples: &[Sample; 2]) -> RotorCommand {
         self.ticking().ticked(samples)
     }
@@ -272,6 +281,8 @@ fn record_of<'a, const RECORD: usize>(
 
 impl<const RECORD: usize> RotorTicker<'_, RECORD> {
     /// As [`Rotor::tick`]; the reader sees what has come of it from then on.
+    // One copy, whoever calls it: the self-test does, too.
+    #[inline(never)]
     pub fn tick(&mut self, samples: &[Sample; 2]) -> RotorCommand {
         let command = self.ticked(samples);
         self.publish(false);
@@ -305,7 +316,34 @@ impl<const RECORD: usize> RotorTicker<'_, RECORD> {
         Ok(())
     }
 
-    fn publish(&self, with_units: bool) {
+    /// For a test in its place, see [`Plane::begin_test`]: another shaft and both planes alike.
+    pub(crate) fn begin_test(&mut self, shaft: &Shaft, config: &Config) -> Kept {
+        let configs = [shaft.plane(0, config), shaft.plane(1, config)];
+        let kept = self.machine.clone();
+        if let Ok(couplings) = Coupling::of_checked(shaft, &configs) {
+            self.machine.couplings = couplings;
+        }
+        let [first, second] = &mut self.planes;
+        let [to_first, to_second] = configs.map(|config| Prepared::from_valid(&config).0);
+        Kept {
+            machine: kept,
+            coeffs: [first.begin_test(&to_first), second.begin_test(&to_second)],
+        }
+    }
+
+    /// After it, as new.
+    pub(crate) fn end_test(&mut self, kept: Kept) {
+        *self.machine = MachineState {
+            engaged: [false; 2],
+            coast_down: false,
+            ..kept.machine
+        };
+        let planes = self.planes.iter_mut().zip(self.shared);
+        (planes.zip(kept.coeffs))
+            .for_each(|((plane, shared), coeffs)| plane.end_test(shared, coeffs));
+    }
+
+    pub(crate) fn publish(&self, with_units: bool) {
         let pairs = self.planes.iter().zip(self.shared);
         pairs.for_each(|(plane, shared)| plane.publish(shared, with_units));
     }

@@ -13,14 +13,20 @@ use core::marker::PhantomData;
 /// The half of a [`Core`] that ticks: for the control interrupt, or whatever owns the bearing.
 #[derive(Debug)]
 pub struct CoreTicker<'a, S: Scalar, const RECORD: usize = 512> {
-    plane: &'a mut Plane<S>,
-    shared: &'a Shared<RECORD>,
+    pub(crate) plane: &'a mut Plane<S>,
+    pub(crate) shared: &'a Shared<RECORD>,
 }
 
 impl<S: Scalar, const RECORD: usize> CoreTicker<'_, S, RECORD> {
     /// As [`Core::tick`]; the reader sees what has come of it from then on.
-    #[inline]
+    // One copy, whoever calls it: the self-test does, too.
+    #[inline(never)]
     pub fn tick(&mut self, sample: &CoreSample<S>) -> CoreCommand<S> {
+        self.ticked(sample)
+    }
+
+    #[inline]
+    fn ticked(&mut self, sample: &CoreSample<S>) -> CoreCommand<S> {
         let command = self.plane.tick(self.shared, sample);
         self.plane.publish(self.shared, false);
         command
@@ -35,14 +41,15 @@ impl<S: Scalar, const RECORD: usize> CoreTicker<'_, S, RECORD> {
 
 /// The half of a [`Supervisor`] that ticks: for the control interrupt, or whatever owns the bearing.
 #[derive(Debug)]
-pub struct Ticker<'a, const RECORD: usize = 512>(CoreTicker<'a, f32, RECORD>);
+pub struct Ticker<'a, const RECORD: usize = 512>(pub(crate) CoreTicker<'a, f32, RECORD>);
 
 impl<const RECORD: usize> Ticker<'_, RECORD> {
     /// As [`Supervisor::tick`]; the reader sees what has come of it from then on.
-    #[inline]
+    // One copy, whoever calls it: the self-test does, too.
+    #[inline(never)]
     pub fn tick(&mut self, sample: &Sample) -> Command {
         let per_unit = self.0.plane.scaling().sample(sample);
-        let command = self.0.tick(&per_unit);
+        let command = self.0.ticked(&per_unit);
         in_newtons(self.0.plane.scaling(), sample, &per_unit, &command)
     }
 

@@ -56,9 +56,12 @@ impl<const RECORD: usize> Supervisor<RECORD> {
     }
 
     /// One tick: total and bounded; see [`Core::tick`].
+    // One copy, whoever calls it: the self-test does, too.
+    #[inline(never)]
     pub fn tick(&mut self, sample: &Sample) -> Command {
         let per_unit = self.core.scaling().sample(sample);
-        let command = self.core.tick(&per_unit);
+        let core = &mut self.core;
+        let command = core.plane.tick(&core.shared, &per_unit);
         in_newtons(self.core.scaling(), sample, &per_unit, &command)
     }
 

@@ -1,6 +1,7 @@
 //! The tick, per unit: its body reads as the list of files.
 
 use crate::beside::Beside;
+use crate::cells::Cells;
 use crate::classify::Classifier;
 use crate::coeffs::Coeffs;
 use crate::detect::Detector;
@@ -312,6 +313,12 @@ impl<S: Scalar> State<S> {
         let held = |last: Vec2<S>| limit::levitation(last * S::from_f32(force), envelope).0;
         (self.force, self.own) = (held(self.force), held(self.own));
         (S::from_f32(speed), index)
+    }
+
+    /// Lays all of it down. Once, for who keeps it and for who writes down a new one.
+    #[inline(never)]
+    pub(crate) fn lay_all<const WORDS: usize>(&self, cells: &Cells<WORDS>) {
+        self.lay(cells.all(), 0);
     }
 
     /// The severity in words of the whole.

@@ -6,6 +6,7 @@
 //! to which the wall is ε nearer.
 
 use crate::coeffs::Coeffs;
+use crate::parts::UNBALANCE;
 use crate::scalar::Scalar;
 use crate::spin::Spin;
 use crate::vec2::Vec2;
@@ -44,7 +45,7 @@ impl<S: Scalar> Turn<S> {
         let (angle, half_behind) = (of_one * ticks, of_one * coeffs.flight_lag);
         let seen = half_behind.abs() <= S::from_f32(MOST_LAG) && angle.abs() <= S::ONE;
         let rate = rate.abs();
-        if !(seen && rate >= S::from_f32(SLOWEST)) || spin == Spin::Unknown {
+        if !UNBALANCE || !(seen && rate >= S::from_f32(SLOWEST)) || spin == Spin::Unknown {
             return None;
         }
         Some(Self {

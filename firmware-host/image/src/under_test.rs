@@ -3,7 +3,7 @@
 use crate::wire::{self, CommandBits, Hash, SampleBits};
 use supervisor::{
     Command, Config, Core, CoreCommand, CoreSample, Mode, Place, Prepared, Q, Rotor, RotorCommand,
-    Sample, Shaft, Stamp, Supervisor, self_test,
+    Sample, Shaft, Stamp, Supervisor,
 };
 
 /// Ticks of the flight record in floats. Host and image must agree: the tick at which a record freezes is part of
@@ -24,17 +24,17 @@ pub type Pair = Rotor<RECORD>;
 pub trait Ticked: Sized {
     /// Bytes of its state without the recorder.
     const RAM_BYTES: usize;
+    /// One tick with the recorder's part, as firmware calls it.
+    const TICK: fn(&mut Self, &Self::Sample) -> Self::Command;
     /// What it is told.
     type Sample;
     /// What it commands.
     type Command: Default;
 
-    /// Whether this processor computes in its numbers as it should.
-    fn self_test() -> bool;
     /// A new one; `None` for a configuration that is not valid or does not fit.
     fn new(config: &Config) -> Option<Self>;
-    /// One tick with the recorder's part.
-    fn step(&mut self, sample: &Self::Sample) -> Self::Command;
+    /// Whether this processor computes as it should.
+    fn self_test(&mut self) -> bool;
     /// The sample of these bits.
     fn sample(bits: &SampleBits) -> Self::Sample;
     /// Mode after a tick.
@@ -57,15 +57,12 @@ pub trait UnderTest: Ticked {
     fn everything_else(&mut self);
 }
 
-/// One tick. A function of its own, so that there is one place to count in.
-#[inline(never)]
-pub fn tick<U: Ticked>(supervisor: &mut U, sample: &U::Sample, command: &mut U::Command) {
-    *command = supervisor.step(sample);
-}
-
 // The methods have the same names but belong to different types.
 macro_rules! served {
     () => {
+        fn self_test(&mut self) -> bool {
+            Self::self_test(self).passed
+        }
         fn background(&mut self) {
             while Self::next_event(self).is_some() {}
             if Self::record(self).is_some() {
@@ -111,18 +108,12 @@ macro_rules! asked {
 
 impl Ticked for Float {
     const RAM_BYTES: usize = size_of::<Self>() - Core::<f32, RECORD>::RECORDER_BYTES;
+    const TICK: fn(&mut Self, &Self::Sample) -> Self::Command = Self::tick;
     type Sample = Sample;
     type Command = Command;
 
-    fn self_test() -> bool {
-        self_test::<f32>()
-    }
     fn new(config: &Config) -> Option<Self> {
-        Supervisor::new(config).ok()
-    }
-    #[inline(always)]
-    fn step(&mut self, sample: &Sample) -> Command {
-        self.tick(sample)
+        Supervisor::new(&fitting(config)).ok()
     }
     fn sample(bits: &SampleBits) -> Sample {
         wire::sample_of_bits(bits)
@@ -146,18 +137,12 @@ impl UnderTest for Float {
 /// half a turn about the centre.
 impl Ticked for Pair {
     const RAM_BYTES: usize = size_of::<Self>() - 2 * Core::<f32, RECORD>::RECORDER_BYTES;
+    const TICK: fn(&mut Self, &Self::Sample) -> Self::Command = Self::tick;
     type Sample = [Sample; 2];
     type Command = RotorCommand;
 
-    fn self_test() -> bool {
-        self_test::<f32>()
-    }
     fn new(config: &Config) -> Option<Self> {
-        Self::new(&shaft(config), &[*config; 2]).ok()
-    }
-    #[inline(always)]
-    fn step(&mut self, samples: &[Sample; 2]) -> RotorCommand {
-        self.tick(samples)
+        Self::new(&shaft(config), &[fitting(config); 2]).ok()
     }
     fn sample(bits: &SampleBits) -> [Sample; 2] {
         let sample = wire::sample_of_bits(bits);
@@ -167,11 +152,27 @@ impl Ticked for Pair {
         let [first, _] = command.planes;
         first.mode
     }
+    fn self_test(&mut self) -> bool {
+        Self::self_test(self).passed
+    }
     fn background(&mut self) {
         for end in [0, 1] {
             while self.plane(end).next_event().is_some() {}
         }
         self.collect(|_, _| ());
+    }
+}
+
+/// A supervisor without a thermal budget refuses one.
+fn fitting(config: &Config) -> Config {
+    let continuous_force_n = if cfg!(feature = "all-parts") {
+        config.continuous_force_n
+    } else {
+        config.force_max_n
+    };
+    Config {
+        continuous_force_n,
+        ..*config
     }
 }
 
@@ -205,19 +206,13 @@ pub fn half_a_turn(sample: &Sample) -> Sample {
 
 impl Ticked for Fixed {
     const RAM_BYTES: usize = size_of::<Self>() - Self::RECORDER_BYTES;
+    const TICK: fn(&mut Self, &Self::Sample) -> Self::Command = Self::tick;
     type Sample = CoreSample<Q>;
     type Command = CoreCommand<Q>;
 
-    fn self_test() -> bool {
-        self_test::<Q>()
-    }
     fn new(config: &Config) -> Option<Self> {
-        let prepared = Prepared::new(config).ok()?;
+        let prepared = Prepared::new(&fitting(config)).ok()?;
         Some(Core::new(&prepared))
-    }
-    #[inline(always)]
-    fn step(&mut self, sample: &CoreSample<Q>) -> CoreCommand<Q> {
-        self.tick(sample)
     }
     fn sample(bits: &SampleBits) -> CoreSample<Q> {
         wire::core_sample_of_bits(bits)

@@ -75,9 +75,9 @@ static void take_record(void) {
 
 int main(void) {
     amb_report report;
-    amb_code code = amb_self_test(); /* does this processor compute what it should? */
+    amb_code code = amb_init(&plane, sizeof plane, rig_config, AMB_PARAMETERS);
+    if (code == AMB_OK) code = amb_self_test(&plane); /* does this processor compute what it should? */
     if (code == AMB_OK) code = amb_watch_init(&watch, 2);
-    if (code == AMB_OK) code = amb_init(&plane, sizeof plane, rig_config, AMB_PARAMETERS);
     if (code != AMB_OK) {
         printf("supervisor: %s\n", amb_error_text(code)); /* names the parameter */
         return 1;

@@ -30,7 +30,7 @@
  *
  * Calls on a supervisor come from three sides, none of which holds another up, in whatever order they interrupt each other:
  *
- * - the tick's: amb_tick, amb_reconfigure, and those of a rotor. One call at a time.
+ * - the tick's: amb_tick, amb_reconfigure, amb_self_test, and those of a rotor. One call at a time.
  * - one reader's, of any lower priority or on another processor: amb_next_event, amb_record_section, amb_rearm, and those of a
  *   rotor. One call at a time.
  * - everybody's, with a pointer to const: amb_mode, amb_report_now, amb_rotor_report_now. Any number of calls at a time.
@@ -46,7 +46,7 @@
 #include <stdint.h>
 
 /** Version of the interface that this header describes. */
-#define AMB_ABI 3
+#define AMB_ABI 4
 
 /* Written beside the library when that is built; give its folder to the compiler with -I. */
 #include "amb_supervisor_abi.h"
@@ -57,11 +57,11 @@
 /* Names in the library end with the version, so that objects compiled against another one do not link. */
 #define AMB_JOINED(name, abi) name##_abi##abi
 #define AMB_JOIN(name, abi) AMB_JOINED(name, abi)
-#define amb_self_test AMB_JOIN(amb_self_test, AMB_ABI)
 #define amb_error_text AMB_JOIN(amb_error_text, AMB_ABI)
 #define amb_parameter_at AMB_JOIN(amb_parameter_at, AMB_ABI)
 #define amb_parameter_index AMB_JOIN(amb_parameter_index, AMB_ABI)
 #define amb_init AMB_JOIN(amb_init, AMB_ABI)
+#define amb_self_test AMB_JOIN(amb_self_test, AMB_ABI)
 #define amb_reconfigure AMB_JOIN(amb_reconfigure, AMB_ABI)
 #define amb_tick AMB_JOIN(amb_tick, AMB_ABI)
 #define amb_mode AMB_JOIN(amb_mode, AMB_ABI)
@@ -71,6 +71,7 @@
 #define amb_record_section AMB_JOIN(amb_record_section, AMB_ABI)
 #define amb_rearm AMB_JOIN(amb_rearm, AMB_ABI)
 #define amb_rotor_init AMB_JOIN(amb_rotor_init, AMB_ABI)
+#define amb_rotor_self_test AMB_JOIN(amb_rotor_self_test, AMB_ABI)
 #define amb_rotor_reconfigure AMB_JOIN(amb_rotor_reconfigure, AMB_ABI)
 #define amb_rotor_tick AMB_JOIN(amb_rotor_tick, AMB_ABI)
 #define amb_rotor_report_now AMB_JOIN(amb_rotor_report_now, AMB_ABI)
@@ -476,14 +477,6 @@ AMB_ASSERT(parameter_high, offsetof(amb_parameter, high) == 3 * sizeof(char *) +
 uint32_t amb_abi_version(void);
 
 /**
- * Self-test at boot: a supervisor of the test's own goes through every mode, and all its commands have to be
- * what they were when this version was made. Takes some milliseconds, without an FPU some tenths of a second,
- * and two kilobytes of stack; touches no other supervisor.
- * @return AMB_OK, or AMB_ERROR_SELF_TEST: do not use the supervisor on this processor.
- */
-amb_code amb_self_test(void);
-
-/**
  * What a code means, for people.
  * @param code what a call returned; any other number has a text, too.
  * @return a text that ends with zero and lives as long as the program. Never null.
@@ -516,6 +509,16 @@ amb_code amb_parameter_index(const char *name, uint32_t *index);
  * range; NaN is outside every range.
  */
 amb_code amb_init(amb_supervisor *supervisor, size_t bytes, const float *values, size_t count);
+
+/**
+ * Self-test at boot, before the first sample: a rotor of the test's own goes through every mode by the very ticks that amb_tick()
+ * makes, and all commands have to be what they were when this version was made. What the supervisor remembered is forgotten: it
+ * is as amb_init() left it, and no event and no record comes of the test. Takes some milliseconds, without an FPU some tenths of
+ * a second, and two kilobytes of stack. Meanwhile amb_mode() and amb_report_now() tell of the test. One of the tick's calls.
+ * @param supervisor made by amb_init().
+ * @return AMB_OK, AMB_ERROR_SELF_TEST: do not use the supervisor on this processor, or an error of supervisor.
+ */
+amb_code amb_self_test(amb_supervisor *supervisor);
 
 /**
  * Another configuration for a supervisor that is there, to hold from its next tick on. What is known of the
@@ -604,6 +607,13 @@ amb_code amb_rearm(amb_supervisor *supervisor);
  * index into values, or what follows from the shaft in its place.
  */
 amb_code amb_rotor_init(amb_rotor *rotor, size_t bytes, const amb_shaft *shaft, const float *values, size_t count);
+
+/**
+ * Self-test at boot, before the first samples, as amb_self_test(): both planes, and what they know of each other.
+ * @param rotor made by amb_rotor_init().
+ * @return AMB_OK, AMB_ERROR_SELF_TEST, or an error of rotor.
+ */
+amb_code amb_rotor_self_test(amb_rotor *rotor);
 
 /**
  * Another shaft and other configurations for a rotor that is there, as amb_reconfigure().

@@ -12,7 +12,7 @@ use supervisor::{Config, PARAMETERS, Section, Stamp};
 /// Ending of the names; [`version::ABI`] as text.
 macro_rules! ending {
     () => {
-        "_abi3"
+        "_abi4"
     };
 }
 
@@ -28,17 +28,6 @@ const _: () = {
 #[unsafe(no_mangle)]
 pub extern "C" fn amb_abi_version() -> u32 {
     version::ABI
-}
-
-/// Whether this processor computes what it should.
-// SAFETY: a name of its own, see `amb_abi_version`.
-#[unsafe(export_name = concat!("amb_self_test", ending!()))]
-pub extern "C" fn amb_self_test() -> Code {
-    if supervisor::self_test::<f32>() {
-        Code::OK
-    } else {
-        Code::ERROR_SELF_TEST
-    }
 }
 
 /// What a code means, for people; never null.
@@ -158,6 +147,18 @@ pub(crate) unsafe fn configurations<const PLANES: usize>(
     // SAFETY: neither null nor misaligned, and as many as an array of this type has.
     let values = unsafe { values.cast::<[[f32; PARAMETERS.len()]; PLANES]>().read() };
     Ok(values.map(Config::from_values))
+}
+
+/// Whether this processor computes what it should, by the ticks of a supervisor that is as new afterwards.
+///
+/// # Safety
+/// `supervisor` as for [`amb_tick`].
+// SAFETY: a name of its own, see `amb_abi_version`.
+#[unsafe(export_name = concat!("amb_self_test", ending!()))]
+pub unsafe extern "C" fn amb_self_test(supervisor: *mut Storage) -> Code {
+    // SAFETY: the caller's promise.
+    let lease = unsafe { halves::ticker(supervisor) };
+    Code::of_test(lease.map(|mut lease| lease.content().self_test()))
 }
 
 /// Another configuration for a supervisor that is there, from its next tick on. After an error nothing has

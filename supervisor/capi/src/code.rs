@@ -3,6 +3,7 @@
 use crate::parameters;
 use core::ffi::CStr;
 use supervisor::PARAMETERS;
+use supervisor::SelfTest;
 
 /// Result of a call: 0 is success, 1 that there is nothing to be had, negative numbers are errors.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -110,6 +111,14 @@ impl Code {
             Ok(()) => Self::OK,
             Err(code) => code,
         }
+    }
+
+    /// What a self-test says.
+    pub(crate) fn of_test(result: Result<SelfTest, Self>) -> Self {
+        Self::from_result(result.and_then(|test| match test.passed {
+            true => Ok(()),
+            false => Err(Self::ERROR_SELF_TEST),
+        }))
     }
 
     /// What happened, for people.

@@ -38,6 +38,18 @@ pub unsafe extern "C" fn amb_rotor_init(
     Code::from_result(unsafe { halves::make_rotor(rotor, bytes, (&shaft, &configs)) })
 }
 
+/// As [`crate::calls::amb_self_test`], by the ticks of both planes.
+///
+/// # Safety
+/// `rotor` as for [`amb_rotor_tick`].
+// SAFETY: a name of its own, see `amb_rotor_init`.
+#[unsafe(export_name = concat!("amb_rotor_self_test", ending!()))]
+pub unsafe extern "C" fn amb_rotor_self_test(rotor: *mut RotorStorage) -> Code {
+    // SAFETY: the caller's promise.
+    let lease = unsafe { halves::ticker(rotor) };
+    Code::of_test(lease.map(|mut lease| lease.content().self_test()))
+}
+
 /// Another shaft and other configurations, from the next tick on. After an error nothing has changed.
 ///
 /// # Safety

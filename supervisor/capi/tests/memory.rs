@@ -11,7 +11,7 @@ use supervisor_capi::calls::{
 };
 use supervisor_capi::rotor::{
     amb_rotor_init, amb_rotor_next_event, amb_rotor_rearm, amb_rotor_reconfigure,
-    amb_rotor_record_section, amb_rotor_report_now, amb_rotor_tick,
+    amb_rotor_record_section, amb_rotor_report_now, amb_rotor_self_test, amb_rotor_tick,
 };
 use supervisor_capi::structs::{
     CCommand, CEvent, CParameter, CReport, CRotorCommand, CSample, CSection, CShaft, CStamp,
@@ -91,7 +91,7 @@ fn calls_touch_only_what_they_were_given() {
         assert_eq!(row.assume_init().low, 1e-9);
         let count = PARAMETERS.len();
         assert_eq!(amb_reconfigure(plane, VALUES.as_ptr(), count), Code::OK);
-        assert_eq!(amb_self_test(), Code::OK);
+        assert_eq!(amb_self_test(plane), Code::OK);
         let off = (&raw mut command).cast::<u8>().wrapping_add(1).cast();
         let code = amb_tick(plane, &raw const sample, off);
         assert_eq!(code, Code::ERROR_COMMAND_MISALIGNED);
@@ -163,6 +163,7 @@ fn calls_on_a_rotor_touch_only_what_they_were_given() {
             assert_eq!(report.assume_init().landings, 1);
         }
         assert_eq!(amb_rotor_rearm(rotor), Code::OK);
+        assert_eq!(amb_rotor_self_test(rotor), Code::OK);
         let code = amb_rotor_reconfigure(rotor, &raw const shaft, values, count);
         assert_eq!(code, Code::OK);
     }

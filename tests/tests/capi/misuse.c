@@ -480,13 +480,16 @@ static void reconfiguring(void) {
 static void self_testing(void) {
     const int usual = fegetround();
     amb_code code;
-    EXPECT(amb_self_test(), AMB_OK, "done");
+    static amb_supervisor zero_plane;
+    EXPECT(amb_self_test(NULL), AMB_ERROR_SUPERVISOR_NULL, "supervisor is null");
+    EXPECT(amb_self_test(&zero_plane), AMB_ERROR_NOT_INITIALISED, NOT_MADE_TEXT);
+    EXPECT(amb_self_test(&plane), AMB_OK, "done");
     check(fesetround(FE_UPWARD) == 0, "another rounding");
-    code = amb_self_test();
+    code = amb_self_test(&plane);
     check(fesetround(usual) == 0, "the usual rounding");
     expect("self-test with another rounding", code, AMB_ERROR_SELF_TEST,
            "this processor, compiler or memory computes something else");
-    EXPECT(amb_self_test(), AMB_OK, "done");
+    EXPECT(amb_self_test(&plane), AMB_OK, "done");
 }
 
 static void watching(void) {

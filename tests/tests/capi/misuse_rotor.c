@@ -202,6 +202,9 @@ static void reconfiguring(void) {
     amb_report report;
     amb_shaft wrong = good;
     memset(samples, 0, sizeof samples);
+    EXPECT(amb_rotor_self_test(NULL), AMB_ERROR_ROTOR_NULL, NULL_TEXT);
+    EXPECT(amb_rotor_self_test(&zero), AMB_ERROR_ROTOR_NOT_INITIALISED, NOT_MADE_TEXT);
+    EXPECT(amb_rotor_self_test(&rotor), AMB_OK, "done");
     EXPECT(amb_rotor_reconfigure(NULL, &good, values, COUNT), AMB_ERROR_ROTOR_NULL, NULL_TEXT);
     EXPECT(amb_rotor_reconfigure(&zero, &good, values, COUNT), AMB_ERROR_ROTOR_NOT_INITIALISED, NOT_MADE_TEXT);
     EXPECT(amb_rotor_reconfigure(&rotor, NULL, values, COUNT), AMB_ERROR_SHAFT_NULL, "shaft is null");

@@ -73,7 +73,7 @@ int main(void) {
     if (code != AMB_OK) return 1;
     printf("reconfigure %u\n", depth(top));
     paint(top);
-    code = amb_self_test();
+    code = amb_self_test(&plane);
     if (code != AMB_OK) return 1;
     printf("self-test %u\n", depth(top));
     rig_start(&machine);

@@ -1,7 +1,10 @@
 //! The supervisor's numbers: fixed point against f64, and the self-test's known answers.
 
 use proptest::prelude::*;
-use supervisor::{Core, Events, Q, Scalar, SelfTest, self_test};
+use supervisor::{
+    Config, Core, Events, Place, Prepared, Q, Rotor, Sample, Scalar, Shaft, Stamp, Status,
+    Supervisor,
+};
 
 /// A unit of Q.
 const LAST: f64 = 1.0 / 4_194_304.0;
@@ -79,16 +82,83 @@ proptest! {
 /// Requirement: SR-35
 #[test]
 fn self_test_knows_its_answers() {
-    for (name, run, passes) in [
-        ("f32", SelfTest::run::<f32>(), self_test::<f32>()),
-        ("f64", SelfTest::run::<f64>(), self_test::<f64>()),
-        ("Q", SelfTest::run::<Q>(), self_test::<Q>()),
-    ] {
-        assert_eq!(run.modes, 0b111_1111, "{name}: {run:x?}");
+    let config = Config::example();
+    let end = |retainer_m: f32| Place {
+        retainer_m,
+        sensor_m: 0.9 * retainer_m,
+        magnet_m: 0.8 * retainer_m,
+    };
+    let shaft = Shaft {
+        mass_kg: 20.0,
+        transverse_inertia_kg_m2: 1.2,
+        polar_inertia_kg_m2: 0.3,
+        places: [end(-0.2), end(0.3)],
+    };
+    let mut supervisor = Supervisor::<64>::new(&config).unwrap();
+    let mut rotor = Rotor::<64>::new(&shaft, &[config; 2]).unwrap();
+    let tests = [
+        ("f32", core_of::<f32>(&config).self_test()),
+        ("f64", core_of::<f64>(&config).self_test()),
+        ("Q", core_of::<Q>(&config).self_test()),
+        (
+            "f32 of a ticker",
+            core_of::<f32>(&config).split().0.self_test(),
+        ),
+        ("newtons", supervisor.self_test()),
+        ("newtons of a ticker", supervisor.split().0.self_test()),
+        ("rotor", rotor.self_test()),
+        ("rotor of a ticker", rotor.split().0.self_test()),
+    ];
+    for (name, test) in tests {
+        assert_eq!(test.modes, 0b111_1111, "{name}: {test:x?}");
         let drive = Events::AXIS_LOST | Events::AXIS_BACK;
-        assert!(run.events.contains(drive), "{name}: {run:x?}");
-        assert!(passes, "{name}: {run:x?}");
+        assert!(test.events.contains(drive), "{name}: {test:x?}");
+        assert!(test.passed, "{name}: {test:x?}");
     }
+}
+
+fn core_of<S: Scalar>(config: &Config) -> Core<S, 64> {
+    Core::new(&Prepared::new(config).unwrap())
+}
+
+/// A rotor that is thrown onto its bearing.
+fn thrown(sequence: u32) -> Sample {
+    Sample {
+        sequence,
+        status: Status::SPIN_VALID | Status::BEARING_ON,
+        position_m: [1e-5 + 2e-5 * sequence.min(9) as f32, -2e-5],
+        spin_rad_s: 1000.0,
+        ..Sample::default()
+    }
+}
+
+/// After the self-test a supervisor is as new, whatever it had gone through; and nothing of the test is in its queue or its record.
+#[test]
+fn self_test_leaves_a_new_supervisor() {
+    let new = || Supervisor::<64>::new(&Config::example()).unwrap();
+    let (mut used, mut untouched) = (new(), new());
+    for sequence in 0..200 {
+        used.tick(&thrown(sequence));
+    }
+    assert!(used.record().is_some() && used.report().landings > 0);
+    while used.next_event().is_some() {}
+    assert!(used.self_test().passed);
+    assert_eq!(used.next_event(), None);
+    assert!(used.record().is_none());
+    assert_eq!(used.report(), untouched.report());
+    for sequence in 0..200 {
+        let sample = thrown(sequence);
+        assert_eq!(used.tick(&sample), untouched.tick(&sample), "{sequence}");
+    }
+    assert_eq!(used.report(), untouched.report());
+    let sections = |s: &Supervisor<64>| -> Vec<Vec<u8>> {
+        let record = s.record().unwrap();
+        let sections = (0..).map_while(|i| record.section(i, &Stamp::default()));
+        sections
+            .map(|mut section| section.seal().to_vec())
+            .collect()
+    };
+    assert_eq!(sections(&used), sections(&untouched));
 }
 
 /// A record has room for what a core of either number remembers.

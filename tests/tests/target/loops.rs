@@ -1,8 +1,7 @@
 //! The supervisor on an emulated processor in a closed loop with the plant here; and the example firmware.
 
 use firmware_studies::on_target::emulator::{EmulatorError, Time, output_of, version};
-use firmware_studies::on_target::images::Project;
-use firmware_studies::on_target::machines::{MACHINES, Machine};
+use firmware_studies::on_target::machines::{Build, MACHINES, Machine};
 use serde_json::Value;
 use std::io::Write;
 use std::path::Path;
@@ -73,12 +72,12 @@ fn logs_of_the_example(shift: u8) -> Option<Vec<Log>> {
         skipped(&why.to_string());
         return None;
     }
-    let with_fpu = |m: &Machine| m.target.ends_with("eabihf");
+    let with_fpu = |m: &Machine| m.target.ends_with("eabihf") && m.build != Build::Bare;
     let mut logs = Vec::new();
     for machine in MACHINES.into_iter().filter(with_fpu) {
         assert!(build_images(machine.target, &[])?.status.success());
-        let project = Project::around(&root()).unwrap();
-        let image = project.image(machine.target, "timer-interrupt");
+        let folder = root().join("target-fw").join(machine.target).join("fw");
+        let image = folder.join("timer-interrupt");
         let folder = tempfile::tempdir().unwrap();
         let time = Time::Counted { shift };
         let limit = Duration::from_secs(60);

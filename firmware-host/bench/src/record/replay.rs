@@ -17,6 +17,9 @@ pub struct Replay {
     pub first_difference: Option<u32>,
 }
 
+/// Parts of the supervisor that a build may leave out, in the order of their bits in a record.
+const PARTS: [&str; 3] = ["unbalance", "axis monitor", "thermal budget"];
+
 /// Why ticks cannot be replayed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum NoReplay {
@@ -31,6 +34,12 @@ pub enum NoReplay {
     /// The state has another size than that of this build.
     #[error("it was made by version {}.{}.{} of the supervisor, which remembers something else", .0 >> 16 & 0xFF, .0 >> 8 & 0xFF, .0 & 0xFF)]
     Version(u32),
+    /// By a supervisor that lacks parts which this build has.
+    #[error(
+        "it was made by a supervisor without {}, which would command something else here",
+        .0.iter().copied().zip(PARTS).filter_map(|(left_out, part)| left_out.then_some(part)).collect::<Vec<_>>().join(", ")
+    )]
+    Parts([bool; 3]),
     /// The configuration is not one.
     #[error("its configuration is not valid for this version of the supervisor")]
     Configuration,
@@ -92,6 +101,12 @@ fn check<S: Scalar>(record: &PlaneRecord) -> Result<&[u32], NoReplay> {
         return Err(NoReplay::Missing);
     }
     let version = record.head.supervisor;
+    let of_version = |version: u32| version & 0x00FF_FFFF;
+    if of_version(version) == of_version(SUPERVISOR_VERSION) && version != SUPERVISOR_VERSION {
+        return Err(NoReplay::Parts(
+            [24, 25, 26].map(|bit| version >> bit & 1 == 1),
+        ));
+    }
     if version != SUPERVISOR_VERSION || state.len() != Core::<S, 4>::state_words() {
         return Err(NoReplay::Version(version));
     }

@@ -6,15 +6,13 @@
 mod image {
     use cortex_m_rt::entry;
     use firmware_image::file::File;
-    use firmware_image::under_test::{self, Float, Ticked};
+    use firmware_image::under_test::{Float, Ticked};
     use firmware_image::wire::{self, COMMAND_BYTES};
     use firmware_image::{checked, exit, line, planted, report};
-    use supervisor::Command;
 
     #[entry]
     fn main() -> ! {
         planted();
-        checked::<Float>();
         // The name of the console.
         let (Some(mut input), Some(mut output)) = (File::read(c":tt"), File::create(c":tt")) else {
             report::failed("there is no console")
@@ -25,8 +23,11 @@ mod image {
                 (line::CONFIGURE, _) => {
                     let config = input.take().map(|bytes| wire::config_of(&bytes));
                     supervisor = config.as_ref().and_then(<Float as Ticked>::new);
-                    output.append(&[match supervisor {
-                        Some(_) => line::READY,
+                    output.append(&[match &mut supervisor {
+                        Some(supervisor) => {
+                            checked(supervisor);
+                            line::READY
+                        }
                         None => line::REFUSED,
                     }])
                 }
@@ -35,8 +36,7 @@ mod image {
                         break;
                     };
                     let sample = wire::sample_of_bits(&wire::sample_of(&bytes));
-                    let mut command = Command::default();
-                    under_test::tick(supervisor, &sample, &mut command);
+                    let command = supervisor.tick(&sample);
                     let mut bytes = [0; COMMAND_BYTES];
                     wire::put_command(&wire::command_bits(&command), &mut bytes);
                     output.append(&bytes)

@@ -7,7 +7,7 @@
 //! The emulator runs with `-icount shift=10`: an instruction takes 1024 ns of its time.
 
 use super::{checked, exit, file, planted, report, stack};
-use crate::under_test::{self, Ticked};
+use crate::under_test::Ticked;
 use crate::wire::{self, SampleBits, TICK_BYTES};
 use core::hint::black_box;
 use core::sync::atomic::{AtomicU32, Ordering};
@@ -33,15 +33,16 @@ const INSTRUCTIONS: u32 = 125;
 /// Turns of [`turns`].
 static TURNS: AtomicU32 = AtomicU32::new(1);
 
-type Work<U> = fn(&mut U, &<U as Ticked>::Sample, &mut <U as Ticked>::Command);
+/// What is counted; `R` is where the compiler lets the caller make room for it.
+type Work<U, R> = fn(&mut U, &<U as Ticked>::Sample) -> R;
 
-/// As [`under_test::tick`], doing nothing: one instruction, the return.
+/// As a tick, but that it does nothing: one instruction, the return.
 #[inline(never)]
-fn nothing<U: Ticked>(_: &mut U, _: &U::Sample, _: &mut U::Command) {}
+fn nothing<U: Ticked>(_: &mut U, _: &U::Sample) {}
 
 /// Two instructions a turn, and a few around them.
 #[inline(never)]
-fn turns<U: Ticked>(_: &mut U, _: &U::Sample, _: &mut U::Command) {
+fn turns<U: Ticked>(_: &mut U, _: &U::Sample) {
     let turns = TURNS.load(Ordering::Relaxed);
     // SAFETY: the loop touches one register, which is told, and the flags; the number is not zero.
     unsafe {
@@ -57,11 +58,11 @@ fn turns<U: Ticked>(_: &mut U, _: &U::Sample, _: &mut U::Command) {
 
 /// Whether the clock counts instructions: a loop of 3000 turns has 4000 more than one of 1000.
 fn clock_is_right<U: Ticked>(supervisor: &mut U) -> bool {
-    let work: Work<U> = black_box(turns);
+    let work: Work<U, ()> = black_box(turns);
     let sample = U::sample(&SampleBits::default());
     let mut count = |turns| {
         TURNS.store(turns, Ordering::Relaxed);
-        between(work, supervisor, &sample, &mut U::Command::default())
+        between(work, supervisor, &sample).1
     };
     let short = count(1000);
     count(3000).wrapping_sub(short) == 4000
@@ -69,24 +70,18 @@ fn clock_is_right<U: Ticked>(supervisor: &mut U) -> bool {
 
 /// Instructions between two looks at SysTick with a call between them.
 #[inline(never)]
-fn between<U: Ticked>(
-    work: Work<U>,
-    supervisor: &mut U,
-    sample: &U::Sample,
-    command: &mut U::Command,
-) -> u32 {
+fn between<U: Ticked, R>(work: Work<U, R>, supervisor: &mut U, sample: &U::Sample) -> (R, u32) {
     let before = SYST::get_current();
-    work(supervisor, sample, command);
+    let result = work(supervisor, sample);
     let after = SYST::get_current();
     // SysTick counts down.
     let periods = before.wrapping_sub(after) & SYSTICK_MASK;
-    (periods * INSTRUCTIONS + PERIODS / 2) / PERIODS
+    (result, (periods * INSTRUCTIONS + PERIODS / 2) / PERIODS)
 }
 
 /// The whole image.
 pub fn run<U: Ticked>() -> ! {
     planted();
-    checked::<U>();
     let Some(mut peripherals) = cortex_m::Peripherals::take() else {
         exit::failure()
     };
@@ -112,6 +107,7 @@ pub fn run<U: Ticked>() -> ! {
         let Some(mut supervisor) = U::new(&segment.config) else {
             report::failed("a configuration is not valid")
         };
+        checked(&mut supervisor);
         if !clock_is_right(&mut supervisor) {
             report::failed("SysTick does not count instructions; it does with -icount shift=10")
         }
@@ -132,12 +128,11 @@ pub fn run<U: Ticked>() -> ! {
                     break;
                 };
                 let sample = U::sample(&wire::sample_of(sample));
-                let mut command = U::Command::default();
-                let work: Work<U> = black_box(nothing);
-                let empty = between(work, &mut supervisor, &sample, &mut command);
-                let work: Work<U> = black_box(under_test::tick);
+                let work: Work<U, ()> = black_box(nothing);
+                let ((), empty) = between(work, &mut supervisor, &sample);
+                let work: Work<U, U::Command> = black_box(U::TICK);
                 let painted = stack::paint();
-                let full = between(work, &mut supervisor, &sample, &mut command);
+                let (command, full) = between(work, &mut supervisor, &sample);
                 stack_bytes = stack_bytes.max(painted.used_bytes());
                 // The empty call's return is one; a tick has its own.
                 let instructions = full.wrapping_sub(empty).wrapping_add(1);

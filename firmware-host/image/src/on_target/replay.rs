@@ -3,7 +3,7 @@
 //! each supervisor leaves behind.
 
 use super::{checked, exit, file, planted, report};
-use crate::under_test::{self, UnderTest};
+use crate::under_test::UnderTest;
 use crate::wire::{self, COMMAND_BYTES, Hash, TICK_BYTES};
 
 /// Ticks that are read at once: small enough for a small machine.
@@ -12,7 +12,6 @@ const CHUNK: usize = 16;
 /// The whole image.
 pub fn run<U: UnderTest>() -> ! {
     planted();
-    checked::<U>();
     report::text("number", U::NUMBER);
     let Some(mut stream) = file::File::read(c"stream.bin") else {
         report::failed("stream.bin cannot be read")
@@ -29,6 +28,7 @@ pub fn run<U: UnderTest>() -> ! {
         let Some(mut supervisor) = U::new(&segment.config) else {
             report::failed("a configuration is not valid")
         };
+        checked(&mut supervisor);
         let mut left = segment.ticks as usize;
         while left > 0 {
             let mut chunk = [[0; TICK_BYTES]; CHUNK];
@@ -44,9 +44,8 @@ pub fn run<U: UnderTest>() -> ! {
                 let Some((sample, expected)) = tick.split_first_chunk() else {
                     break;
                 };
-                let mut command = U::Command::default();
                 let sample = U::sample(&wire::sample_of(sample));
-                under_test::tick(&mut supervisor, &sample, &mut command);
+                let command = U::TICK(&mut supervisor, &sample);
                 let mut bytes = [0; COMMAND_BYTES];
                 wire::put_command(&U::bits(&command), &mut bytes);
                 hash.add(&bytes);

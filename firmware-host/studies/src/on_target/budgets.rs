@@ -79,6 +79,8 @@ struct Required {
     #[serde(default)]
     worst_instructions: Option<u64>,
     #[serde(default)]
+    median_instructions: Option<u64>,
+    #[serde(default)]
     text_bytes: Option<u64>,
     #[serde(default)]
     ram_bytes: Option<u64>,
@@ -93,6 +95,7 @@ impl Required {
     fn of(&self, figure: &str) -> Option<u64> {
         match figure {
             "worst_instructions" => self.worst_instructions,
+            "median_instructions" => self.median_instructions,
             "text_bytes" => self.text_bytes,
             "ram_bytes" => self.ram_bytes,
             "stack_bytes" => self.stack_bytes,

@@ -1,6 +1,6 @@
 //! Images: built by cargo, found again, and looked into.
 
-use super::numbers::Number;
+use super::machines::{Build, Machine};
 use object::{Object, ObjectSection, SectionKind};
 use std::io;
 use std::path::{Path, PathBuf};
@@ -69,16 +69,25 @@ impl Project {
     ///
     /// # Errors
     /// [`ImageError`].
-    pub fn build(&self, target: &'static str) -> Result<(), ImageError> {
+    pub fn build(&self, target: &'static str, build: Build) -> Result<(), ImageError> {
         // Under `cargo run` the same cargo.
         let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-        let output = Command::new(cargo)
+        let mut cargo = Command::new(cargo);
+        cargo
             .current_dir(&self.root)
             .args(["build", "-p", "firmware-image", "--bins"])
             .args(["--profile", "fw", "--target", target])
-            .args(["--target-dir", FOLDER])
-            .output()
-            .map_err(ImageError::NoCargo)?;
+            .args(["--target-dir", &build.folder()]);
+        match build {
+            Build::Usual => {}
+            Build::For(processor) => {
+                cargo.env("RUSTFLAGS", format!("-C target-cpu={processor}"));
+            }
+            Build::Bare => {
+                cargo.arg("--no-default-features");
+            }
+        }
+        let output = cargo.output().map_err(ImageError::NoCargo)?;
         if output.status.success() {
             return Ok(());
         }
@@ -96,8 +105,9 @@ impl Project {
     }
 
     /// An image that has been built.
-    pub fn image(&self, target: &str, name: &str) -> PathBuf {
-        self.root.join(FOLDER).join(target).join("fw").join(name)
+    pub fn image(&self, machine: &Machine, name: &str) -> PathBuf {
+        let folder = self.root.join(machine.build.folder());
+        folder.join(machine.target).join("fw").join(name)
     }
 
     /// The file of budgets.
@@ -105,12 +115,12 @@ impl Project {
         self.root.join("firmware-host/image/budgets.toml")
     }
 
-    /// Size of the supervisor on a target.
+    /// Size of the supervisor on a machine.
     ///
     /// # Errors
     /// [`ImageError::Image`].
-    pub fn text(&self, target: &str, number: Number) -> Result<Text, ImageError> {
-        let image = self.image(target, &number.image("panic-free"));
+    pub fn text(&self, machine: &Machine) -> Result<Text, ImageError> {
+        let image = self.image(machine, &machine.number.image("panic-free"));
         let wrong = |reason: &dyn ToString| ImageError::Image {
             image: image.clone(),
             reason: reason.to_string(),
@@ -129,8 +139,6 @@ impl Project {
 }
 
 const MANIFEST: &str = "firmware-host/image/Cargo.toml";
-/// Apart from the host's builds, whose lock it would wait for.
-const FOLDER: &str = "target-fw";
 
 /// What the supervisor takes of the flash, with everything that it calls.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

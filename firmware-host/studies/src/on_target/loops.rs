@@ -87,7 +87,7 @@ fn ran(scene: &Scene, supervisor: Box<dyn Supervise>) -> Result<Ran, RunError> {
 /// [`TargetError`].
 pub fn in_the_loop(project: &Project, machine: &Machine) -> Result<Vec<LoopRow>, TargetError> {
     let folder = TempDir::with_prefix("supervisor-loop-")?;
-    let image = project.image(machine.target, "in-the-loop");
+    let image = project.image(machine, "in-the-loop");
     let board = Board::start(machine, &image, folder.path())?;
     let board = Rc::new(RefCell::new(board));
     let mut rows = Vec::new();

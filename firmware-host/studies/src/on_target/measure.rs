@@ -6,10 +6,10 @@ use super::coverage::ways;
 use super::emulator::{self, EmulatorError, Time};
 use super::images::{ImageError, Project};
 use super::link::LinkError;
-use super::machines::Machine;
+use super::machines::{Build, Machine};
 use super::numbers::Number;
 use super::record::{Length, Stream};
-use super::results::{LongStream, ModeTicks, PairOfPlanes, StreamRow, TargetRow};
+use super::results::{LongStream, ModeTicks, PairOfPlanes, Replayed, StreamRow, TargetRow};
 use crate::overloads::plan::CatalogueError;
 use firmware_bench::run::closed_loop::RunError;
 use firmware_image::wire::MODES;
@@ -164,7 +164,7 @@ fn count(
     stream_folder: &Path,
     limit: Duration,
 ) -> Result<Counted, TargetError> {
-    let image = project.image(machine.target, image_name);
+    let image = project.image(machine, image_name);
     // A folder of its own: machines write files of the same name.
     let folder = TempDir::with_prefix("supervisor-counts-")?;
     let stream = Path::new("stream.bin");
@@ -216,11 +216,11 @@ pub fn measure(
         Number::Float => Some(count_in(&streams.counted, "count-pair")?),
         Number::Fixed => None,
     };
-    let image = project.image(machine.target, &machine.number.image("replay"));
-    let folder = streams.replayed.path();
-    let lines = emulator::run(machine, &image, folder, Time::Free, streams.limit)?;
-    let replay = ("replay", machine);
-    let text = project.text(machine.target, machine.number)?;
+    let replayed = match machine.build {
+        Build::Usual | Build::For(_) => Some(replay(project, machine, streams)?),
+        Build::Bare => None,
+    };
+    let text = project.text(machine)?;
     Ok(TargetRow {
         name: machine.name,
         number: machine.number.name(),
@@ -242,10 +242,25 @@ pub fn measure(
         code_bytes: text.code_bytes,
         ram_bytes,
         stack_bytes,
+        replayed,
+        budgets: Vec::new(),
+    })
+}
+
+/// Replays the stream and compares it with the host's commands.
+fn replay(
+    project: &Project,
+    machine: &Machine,
+    streams: &Streams,
+) -> Result<Replayed, TargetError> {
+    let image = project.image(machine, &machine.number.image("replay"));
+    let folder = streams.replayed.path();
+    let lines = emulator::run(machine, &image, folder, Time::Free, streams.limit)?;
+    let replay = ("replay", machine);
+    Ok(Replayed {
         ticks: number(&lines, replay, "ticks")?,
         bit_exact_ticks: number(&lines, replay, "bit_exact_ticks")?,
         hash: said(&lines, replay, "hash")?.clone(),
         read_outs: said(&lines, replay, "read_outs")?.clone(),
-        budgets: Vec::new(),
     })
 }

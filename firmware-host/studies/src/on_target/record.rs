@@ -132,7 +132,7 @@ fn read_outs_of<U: UnderTest>(pieces: &[Piece]) -> Hash {
             continue;
         };
         for tick in &piece.ticks {
-            let _command = supervisor.step(&U::sample(&sample_of(&tick.sample)));
+            let _command = U::TICK(&mut supervisor, &U::sample(&sample_of(&tick.sample)));
         }
         supervisor.read_out(&mut hash);
     }

@@ -37,6 +37,16 @@ pub struct TargetRow {
     pub ram_bytes: u64,
     /// Deepest stack of a tick, from its caller.
     pub stack_bytes: u64,
+    /// Against the host; none of a build that the host does not have.
+    #[serde(flatten)]
+    pub replayed: Option<Replayed>,
+    /// Figures against their budgets.
+    pub budgets: Vec<Verdict>,
+}
+
+/// What came of a replay.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Replayed {
     /// Ticks that were replayed.
     pub ticks: u64,
     /// Of these, the ones with the same bits as on the host.
@@ -45,8 +55,28 @@ pub struct TargetRow {
     pub hash: String,
     /// Hash over what the supervisors leave behind: reports, events, frozen records.
     pub read_outs: String,
-    /// Figures against their budgets.
-    pub budgets: Vec<Verdict>,
+}
+
+impl Replayed {
+    /// What is wrong, against the host's stream.
+    fn failures(&self, stream: &StreamRow) -> Vec<String> {
+        let mut failures = Vec::new();
+        if stream.read_outs != self.read_outs {
+            failures.push("reports, events or records differ from the host's".to_owned());
+        }
+        if self.bit_exact_ticks != self.ticks {
+            let differ = self.ticks - self.bit_exact_ticks;
+            failures.push(format!(
+                "{differ} of {} ticks differ from the host",
+                self.ticks
+            ));
+        }
+        // An image that read another stream would agree with that.
+        if stream.ticks != self.ticks || stream.hash != self.hash {
+            failures.push("the hash over all ticks is not the host's".to_owned());
+        }
+        failures
+    }
 }
 
 /// Figures of the long stream.
@@ -185,24 +215,10 @@ impl Report {
         }
         for t in &self.targets {
             let name = format!("{} {}", t.name, t.number);
-            let mut of_its_number = self.streams.iter().filter(|s| s.number == t.number);
-            if of_its_number.any(|s| s.read_outs != t.read_outs) {
-                failures.push(format!(
-                    "{name}: reports, events or records differ from the host's"
-                ));
-            }
-            if t.bit_exact_ticks != t.ticks {
-                let differ = t.ticks - t.bit_exact_ticks;
-                failures.push(format!(
-                    "{name}: {differ} of {} ticks differ from the host",
-                    t.ticks
-                ));
-            }
-            // An image that read another stream would agree with that.
             let stream = self.streams.iter().find(|s| s.number == t.number);
-            if stream.is_some_and(|s| s.ticks != t.ticks || s.hash != t.hash) {
-                failures.push(format!("{name}: the hash over all ticks is not the host's"));
-            }
+            let replayed = t.replayed.as_ref().zip(stream);
+            let differs = replayed.map_or_else(Vec::new, |(r, stream)| r.failures(stream));
+            failures.extend(differs.iter().map(|f| format!("{name}: {f}")));
             let pair = t.pair.and_then(|pair| pair.failure(t));
             failures.extend(pair.map(|f| format!("{name}: {f}")));
             let broken = t.budgets.iter().filter_map(Verdict::failure);

@@ -5,7 +5,7 @@ use super::counts::OfMode;
 use super::emulator;
 use super::images::Project;
 use super::loops::in_the_loop;
-use super::machines::{MACHINES, Machine};
+use super::machines::{Build, MACHINES, Machine};
 use super::measure::{Streams, TargetError, measure};
 use super::numbers::Number;
 use super::record::Length;
@@ -41,16 +41,18 @@ pub fn run_on(folder: &Path, machines: &[Machine], wanted: Wanted) -> Result<Rep
     let mut machines = machines.to_vec();
     if wanted == Wanted::Loops {
         let all: Vec<String> = machines.iter().map(Machine::title).collect();
-        machines.retain(|m| m.number == Number::Float);
+        machines.retain(|m| m.number == Number::Float && m.build != Build::Bare);
         if machines.is_empty() {
             return Err(TargetError::NoLoop(all.join(", ")));
         }
     }
-    let mut targets: Vec<&'static str> = machines.iter().map(|m| m.target).collect();
-    targets.sort_unstable();
-    targets.dedup();
-    for target in targets {
-        project.build(target)?;
+    let mut builds: Vec<(&'static str, Build)> = Vec::new();
+    for machine in &machines {
+        let build = (machine.target, machine.build);
+        if !builds.contains(&build) {
+            project.build(machine.target, machine.build)?;
+            builds.push(build);
+        }
     }
     let mut report = Report {
         qemu,
@@ -125,7 +127,9 @@ pub fn study(extent: Extent, _: &dyn Progress) -> Result<campaign::Report, Study
     Ok(campaign::Report {
         title: "On the target".to_owned(),
         claims: report.targets.iter().flat_map(claims).collect(),
-        cases: report.targets.iter().map(|t| t.ticks).sum(),
+        cases: (report.targets.iter())
+            .filter_map(|t| Some(t.replayed.as_ref()?.ticks))
+            .sum(),
         chapters: chapters(&report),
     })
 }
@@ -171,7 +175,9 @@ fn ticks(report: &Report) -> Block {
             t.text_bytes.to_string(),
             t.ram_bytes.to_string(),
             t.stack_bytes.to_string(),
-            format!("{} of {}", t.bit_exact_ticks, t.ticks),
+            (t.replayed.as_ref()).map_or_else(String::new, |r| {
+                format!("{} of {}", r.bit_exact_ticks, r.ticks)
+            }),
         ]
     };
     Block::table(COLUMNS, report.targets.iter().map(row))
@@ -218,11 +224,13 @@ fn two_planes(report: &Report) -> Block {
 
 fn claims(row: &TargetRow) -> Vec<Claim> {
     let name = name(row);
-    let exact = Claim::at_least(
-        format!("{name}: ticks with the bits of the host"),
-        row.ticks as f64,
-        row.bit_exact_ticks as f64,
-    );
+    let exact = row.replayed.as_ref().map(|replayed| {
+        Claim::at_least(
+            format!("{name}: ticks with the bits of the host"),
+            replayed.ticks as f64,
+            replayed.bit_exact_ticks as f64,
+        )
+    });
     let budget = |v: &Verdict| {
         let bound = v.required.unwrap_or(v.budget).min(v.budget);
         Claim::at_most(
@@ -231,7 +239,7 @@ fn claims(row: &TargetRow) -> Vec<Claim> {
             v.measured as f64,
         )
     };
-    [exact]
+    exact
         .into_iter()
         .chain(row.budgets.iter().map(budget))
         .collect()
