@@ -15,6 +15,34 @@ pub struct Parameter {
     pub high: f32,
     /// What it is and how to choose it.
     pub text: &'static str,
+    /// What it is of.
+    pub group: Group,
+    /// What [`Config::for_bearing`] puts there.
+    pub default: DefaultRule,
+}
+
+/// What a parameter is of: who knows it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Group {
+    /// Rotor and retainer bearing.
+    Machine,
+    /// Loop, amplifier and magnet.
+    Drive,
+    /// Position sensor.
+    Sensor,
+    /// How the supervisor behaves.
+    Tuning,
+}
+
+/// Value of a parameter in [`Config::for_bearing`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum DefaultRule {
+    /// Given by [`crate::Bearing`]: it cannot be guessed.
+    Given,
+    /// The same for every bearing, and why.
+    Constant(f32, &'static str),
+    /// Derived from [`crate::Bearing`], and how.
+    Derived(&'static str),
 }
 
 /// A parameter outside its range.
@@ -108,19 +136,52 @@ impl core::fmt::Display for CoreError {
 
 impl core::error::Error for CoreError {}
 
+macro_rules! default_rule {
+    ([given]) => {
+        DefaultRule::Given
+    };
+    ([= $value:literal, $reason:literal]) => {
+        DefaultRule::Constant($value, $reason)
+    };
+    ([by $rule:literal]) => {
+        DefaultRule::Derived($rule)
+    };
+}
+
+macro_rules! default_text {
+    ([given]) => {
+        "given by [`crate::Bearing`]"
+    };
+    ([= $value:literal, $reason:literal]) => {
+        concat!(stringify!($value), ", ", $reason)
+    };
+    ([by $rule:literal]) => {
+        $rule
+    };
+}
+
 macro_rules! parameters {
-    ($($name:ident, $unit:literal, $low:literal ..= $high:literal, $text:literal;)*) => {
-        /// Everything the supervisor must be told about its bearing, SI units.
+    ($($name:ident, $group:ident, $unit:literal, $low:literal ..= $high:literal, $default:tt, $text:literal;)*) => {
+        /// Everything the supervisor must be told about its bearing, SI units; [`Config::for_bearing`] makes it of nine numbers.
         #[derive(Debug, Clone, Copy, PartialEq)]
         #[repr(C)]
         pub struct Config {
             $(#[doc = $text] #[doc = concat!("\nUnit: ", $unit, "; ", stringify!($low), " to ", stringify!($high), ".")]
+            #[doc = concat!("\nOf [`Config::for_bearing`]: ", default_text!($default), ".")]
             pub $name: f32,)*
         }
 
         /// The table: one row a field of [`Config`], in its order.
         pub const PARAMETERS: &[Parameter] = &[
-            $(Parameter { name: stringify!($name), unit: $unit, low: $low, high: $high, text: $text },)*
+            $(Parameter {
+                name: stringify!($name),
+                unit: $unit,
+                low: $low,
+                high: $high,
+                text: $text,
+                group: Group::$group,
+                default: default_rule!($default),
+            },)*
         ];
 
         const RANGES: [[f32; 2]; PARAMETERS.len()] = [$([$low, $high]),*];
@@ -140,37 +201,68 @@ macro_rules! parameters {
 }
 
 parameters! {
-    sample_period_s, "s", 1e-6 ..= 1e-2, "Period of the tick.";
-    mass_kg, "kg", 1e-4 ..= 1e6, "Mass of the rotor that this bearing plane carries.";
-    stiffness_n_m, "N/m", -1e10 ..= 1e10, "Shaft stiffness plus the magnets' negative stiffness, either sign.";
-    damping_n_s_m, "N s/m", 0.0 ..= 1e8, "Passive damping of the rotor in flight.";
-    clearance_m, "m", 1e-6 ..= 0.1, "Radial clearance of the retainer bearing.";
-    force_max_n, "N", 1e-3 ..= 1e7, "Force cap of the magnet, as the length of the vector.";
-    amplifier_lag_s, "s", 0.0 ..= 0.1, "Time constant of the amplifier with the magnet.";
-    delay_samples, "ticks", 0.0 ..= 7.0, "Ticks between a sample and the start of the force computed from it; rounded to whole ticks.";
-    friction_coefficient, "1", 0.0 ..= 2.0, "Coefficient of friction on the retainer bearing; choose the upper end of what is likely.";
-    restitution, "1", 0.0 ..= 0.99, "Restitution of a radial impact on the retainer bearing.";
-    observer_pole_flight, "1", 0.0 ..= 0.98, "Pole of the observer in flight: nearer to 1 smooths sensor noise more and follows later.";
-    observer_pole_contact, "1", 0.0 ..= 0.98, "Pole of the observer in contact, where the model knows nothing of the contact force.";
-    contact_band, "clearance", 0.001 ..= 0.3, "The rotor counts as touching within this band below the clearance; at least the retainer's offset and three times the sensor noise.";
-    position_limit, "clearance", 1.1 ..= 20.0, "A measured radius beyond this is refused as implausible.";
-    whirl_time_s, "s", 1e-5 ..= 0.1, "Contact that lasts this long is whirl or rest, not a bounce: some periods of the rotor on the contact stiffness.";
-    hold_share, "1", 0.1 ..= 0.95, "Share of the cap that pushes inwards on the bearing: at most in an impact, and at first at rest, where it grows.";
-    handover_dwell_s, "s", 0.0 ..= 1.0, "Contact must be avoidable for this long before hand-over begins.";
-    handover_blend_s, "s", 0.0 ..= 1.0, "Time of the blend to the levitation controller.";
-    fault_blend_s, "s", 0.0 ..= 1.0, "Time in which the force goes to zero when the position cannot be trusted; of a levitated rotor, or along one coordinate alone, no longer than handover_blend_s.";
-    fault_ticks, "ticks", 2.0 ..= 10000.0, "Good samples in a row that end a sensor fault, and refused ones that make it; jumps, dropouts and a stuck sensor make it sooner.";
-    axis_force_max_n, "N", 1e-3 ..= 1e7, "Force cap of each axis; none where it is at least force_max_n.";
-    force_slew_n_s, "N/s", 1.0 ..= 1e12, "Fastest change of the commanded force, as the length of the vector.";
-    continuous_force_n, "N", 1e-3 ..= 1e7, "Force that the magnet bears for ever; at least force_max_n means no budget.";
-    thermal_time_s, "s", 0.01 ..= 1e5, "Time constant of the force-time budget.";
-    contact_stiffness_n_m, "N/m", 1e3 ..= 1e13, "Stiffness of the contact with the retainer bearing.";
-    coast_down_s, "s", 0.0 ..= 100.0, "Whirl beyond what the cap can arrest for this long asks for coasting down.";
-    severity_limit, "1", 1e-3 ..= 1e8, "Severity index that asks for coasting down.";
-    retainer_plane_ratio, "1", 0.1 ..= 10.0, "Position at the retainer bearing over position at the sensor.";
-    magnet_plane_ratio, "1", 0.1 ..= 10.0, "Position at the magnet over position at the retainer bearing: the leverage of its force.";
-    speed_max_m_s, "m/s", 1e-3 ..= 1000.0, "No rotor is faster than this at the retainer bearing: a sample that would need it is refused.";
-    sensor_step_m, "m", 1e-9 ..= 1e-3, "Step of the sensor's converter or its noise (root mean square), whichever is larger, at the sensor.";
+    sample_period_s, Drive, "s", 1e-6 ..= 1e-2, [given],
+        "Period of the tick.";
+    mass_kg, Machine, "kg", 1e-4 ..= 1e6, [given],
+        "Mass of the rotor that this bearing plane carries.";
+    stiffness_n_m, Machine, "N/m", -1e10 ..= 1e10, [given],
+        "Shaft stiffness plus the magnets' negative stiffness, either sign.";
+    damping_n_s_m, Machine, "N s/m", 0.0 ..= 1e8, [= 0.0, "on the safe side"],
+        "Passive damping of the rotor in flight.";
+    clearance_m, Machine, "m", 1e-6 ..= 0.1, [given],
+        "Radial clearance of the retainer bearing.";
+    force_max_n, Drive, "N", 1e-3 ..= 1e7, [given],
+        "Force cap of the magnet, as the length of the vector.";
+    amplifier_lag_s, Drive, "s", 0.0 ..= 0.1, [given],
+        "Time constant of the amplifier with the magnet.";
+    delay_samples, Drive, "ticks", 0.0 ..= 7.0, [= 1.0, "a command computed from a sample holds from the next one on"],
+        "Ticks between a sample and the start of the force computed from it; rounded to whole ticks.";
+    friction_coefficient, Machine, "1", 0.0 ..= 2.0, [given],
+        "Coefficient of friction on the retainer bearing; choose the upper end of what is likely.";
+    restitution, Machine, "1", 0.0 ..= 0.99, [= 0.7, "steel on steel"],
+        "Restitution of a radial impact on the retainer bearing.";
+    observer_pole_flight, Tuning, "1", 0.0 ..= 0.98, [by "quickest from 0.5 to 0.97 whose speed noise is at most 4 % of √(F·c/m)"],
+        "Pole of the observer in flight: nearer to 1 smooths sensor noise more and follows later.";
+    observer_pole_contact, Tuning, "1", 0.0 ..= 0.98, [by "quickest from 0.2 to 0.97 whose speed noise is at most 4 % of √(F·c/m)"],
+        "Pole of the observer in contact, where the model knows nothing of the contact force.";
+    contact_band, Tuning, "clearance", 0.001 ..= 0.3, [by "4 times noise or step over clearance, at least 0.01"],
+        "The rotor counts as touching within this band below the clearance; at least the retainer's offset and three times the sensor noise.";
+    position_limit, Sensor, "clearance", 1.1 ..= 20.0, [= 20.0, "the sensor's range is not known: no machine measures so far out"],
+        "A measured radius beyond this is refused as implausible.";
+    whirl_time_s, Tuning, "s", 1e-5 ..= 0.1, [by "a period on the contact, 2π·√(m/k_c), at least 1 ms and at most 0.1 s"],
+        "Contact that lasts this long is whirl or rest, not a bounce: some periods of the rotor on the contact stiffness.";
+    hold_share, Tuning, "1", 0.1 ..= 0.95, [= 0.8, "rule of thumb: gentle at first"],
+        "Share of the cap that pushes inwards on the bearing: at most in an impact, and at first at rest, where it grows.";
+    handover_dwell_s, Tuning, "s", 0.0 ..= 1.0, [= 5e-4, "rule of thumb: some samples without doubt"],
+        "Contact must be avoidable for this long before hand-over begins.";
+    handover_blend_s, Tuning, "s", 0.0 ..= 1.0, [= 2e-3, "rule of thumb: shorter than a levitation loop settles"],
+        "Time of the blend to the levitation controller.";
+    fault_blend_s, Tuning, "s", 0.0 ..= 1.0, [= 2e-2, "rule of thumb: longer than most interruptions; a force that stands still holds the rotor to one side, none lets it whirl"],
+        "Time in which the force goes to zero when the position cannot be trusted; of a levitated rotor, or along one coordinate alone, no longer than handover_blend_s.";
+    fault_ticks, Tuning, "ticks", 2.0 ..= 10000.0, [= 5.0, "rule of thumb: longer than a burst of interference, and little against the time to cross the clearance"],
+        "Good samples in a row that end a sensor fault, and refused ones that make it; jumps, dropouts and a stuck sensor make it sooner.";
+    axis_force_max_n, Drive, "N", 1e-3 ..= 1e7, [by "the cap: no limit of an axis was given"],
+        "Force cap of each axis; none where it is at least force_max_n.";
+    force_slew_n_s, Drive, "N/s", 1.0 ..= 1e12, [by "a thousand caps per sample: no limit was given"],
+        "Fastest change of the commanded force, as the length of the vector.";
+    continuous_force_n, Drive, "N", 1e-3 ..= 1e7, [by "the cap: no thermal budget"],
+        "Force that the magnet bears for ever; at least force_max_n means no budget.";
+    thermal_time_s, Drive, "s", 0.01 ..= 1e5, [= 5.0, "without effect while there is no thermal budget"],
+        "Time constant of the force-time budget.";
+    contact_stiffness_n_m, Machine, "N/m", 1e3 ..= 1e13, [given],
+        "Stiffness of the contact with the retainer bearing.";
+    coast_down_s, Tuning, "s", 0.0 ..= 100.0, [= 5e-3, "rule of thumb: several periods of the whirl"],
+        "Whirl beyond what the cap can arrest for this long asks for coasting down.";
+    severity_limit, Tuning, "1", 1e-3 ..= 1e8, [= 20.0, "rule of thumb, until a landing has been measured"],
+        "Severity index that asks for coasting down.";
+    retainer_plane_ratio, Machine, "1", 0.1 ..= 10.0, [= 1.0, "one plane: sensor and retainer bearing move alike"],
+        "Position at the retainer bearing over position at the sensor.";
+    magnet_plane_ratio, Machine, "1", 0.1 ..= 10.0, [= 1.0, "one plane: magnet and retainer bearing move alike"],
+        "Position at the magnet over position at the retainer bearing: the leverage of its force.";
+    speed_max_m_s, Sensor, "m/s", 1e-3 ..= 1000.0, [by "1.5·c·√(k_c/m), at least 2 m/s and at most 1000 m/s"],
+        "No rotor is faster than this at the retainer bearing: a sample that would need it is refused.";
+    sensor_step_m, Sensor, "m", 1e-9 ..= 1e-3, [by "noise or step, at least 1/2000 of the clearance"],
+        "Step of the sensor's converter or its noise (root mean square), whichever is larger, at the sensor.";
 }
 
 /// Its place in the table.

@@ -49,7 +49,7 @@
 //!
 //! Files, each importing only from those above it: `parts`, `cells`, `words`, `scalar`, `product`, `q`, `math`, `vec2`, `signal`, `config`, `coeffs`,
 //! `spin`, `unbalance`, `innovation`, `reading`, `stuck`, `guard`, `actuator_monitor`, `estimate`, `beside`, `detect`, `impact`, `classify`, `phase`, `trust`, `law`, `limit`, `handover`, `tally`, `severity`,
-//! `tick`, `entry`, `track`, `events`, `latest`, `tape`, `recorder`, `record`, `per_unit`, `supervisor`, `split`, `shaft`, `coupling`, `rotor`, `self_test`, `watch`, `log_format`.
+//! `tick`, `entry`, `track`, `events`, `latest`, `tape`, `recorder`, `record`, `per_unit`, `supervisor`, `split`, `shaft`, `bearing`, `coupling`, `rotor`, `self_test`, `watch`, `log_format`.
 
 // Unconditional: under `cfg(test)` std's own methods would silently replace micromath's.
 #![no_std]
@@ -57,6 +57,7 @@
 #![warn(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod actuator_monitor;
+mod bearing;
 mod beside;
 mod cells;
 mod classify;
@@ -105,8 +106,11 @@ mod vec2;
 mod watch;
 mod words;
 
+pub use bearing::Bearing;
 pub use coeffs::Scaling;
-pub use config::{Config, ConfigError, CoreError, NotRepresentable, PARAMETERS, Parameter};
+pub use config::{
+    Config, ConfigError, CoreError, DefaultRule, Group, NotRepresentable, PARAMETERS, Parameter,
+};
 pub use entry::{ENTRY_WORDS, Entry};
 pub use events::QueuedEvent;
 pub use per_unit::{Core, Prepared};

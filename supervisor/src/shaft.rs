@@ -56,13 +56,13 @@ impl core::error::Error for ShaftError {}
 
 impl Shaft {
     /// Velocity at one place by an impulse at another, 1/m + z_i·z_j/I_t \[1/kg\].
-    pub fn mobility(&self, at_m: f32, of_m: f32) -> f32 {
+    pub const fn mobility(&self, at_m: f32, of_m: f32) -> f32 {
         1.0 / self.mass_kg + at_m * of_m / self.transverse_inertia_kg_m2
     }
 
     /// A plane's configuration with the mass that an impact there moves, and the ratios in which its sensor and its magnet
     /// move with it; 0 or 1, and for anything else the second.
-    pub fn plane(&self, end: usize, config: &Config) -> Config {
+    pub const fn plane(&self, end: usize, config: &Config) -> Config {
         let [first, second] = self.places;
         let place = if end == 0 { first } else { second };
         let own = self.mobility(place.retainer_m, place.retainer_m);

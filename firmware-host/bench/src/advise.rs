@@ -17,7 +17,7 @@ use serde::Serialize;
 use supervisor::{Config, ConfigError, PARAMETERS};
 
 pub use crossover::{Crossover, SmallSignals};
-pub use listing::{Language, listing, table};
+pub use listing::{Language, listing, short, table};
 pub use noise::Noise;
 pub use rotor::{MOST_TURN_RAD, ModeAtRisk, RotorAdvice};
 pub use show::text;

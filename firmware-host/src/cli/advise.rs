@@ -19,7 +19,7 @@ pub enum Format {
     Toml,
     /// The struct of a firmware in Rust.
     Rust,
-    /// The array of a firmware in C.
+    /// The array of a firmware in C or C++.
     C,
 }
 
@@ -44,6 +44,9 @@ pub struct AdviseArgs {
     /// Print the configuration alone, as it is written there. What the scene's own [supervisor] sets is in it.
     #[arg(long, value_enum, conflicts_with = "json")]
     pub format: Option<Format>,
+    /// With --format: the nine numbers that cannot be guessed, and only what does not follow from them.
+    #[arg(long, requires = "format")]
+    pub short: bool,
     /// Amplitude of the runout of the reading on one axis, as measured at slow roll; also beside a scene.
     #[arg(long, allow_hyphen_values = true, value_name = "NUMBER")]
     pub runout_m: Option<f64>,
@@ -251,8 +254,9 @@ pub fn execute(args: &AdviseArgs) -> Result<(), CommandError> {
     if args.json {
         return print(&(pretty(&advice, "formatting the advice")? + "\n"));
     }
-    print(&match args.format {
-        Some(format) => {
+    let listing = args.format.map(|format| listing(args, &advice, format));
+    print(&match listing.transpose()? {
+        Some(listing) => {
             // The listing goes into a file; these are for whoever puts it there.
             for w in &advice.warnings {
                 say(format_args!(
@@ -260,9 +264,21 @@ pub fn execute(args: &AdviseArgs) -> Result<(), CommandError> {
                     w.key, w.text, w.remedy
                 ));
             }
-            advise::listing(&advice.parameters, format.into())
+            listing
         }
         None => advise::text(&advice),
+    })
+}
+
+/// The configuration alone.
+fn listing(args: &AdviseArgs, advice: &Advice, format: Format) -> Result<String, CommandError> {
+    if !args.short {
+        return Ok(advise::listing(&advice.parameters, format.into()));
+    }
+    advise::short(advice, format.into()).ok_or_else(|| CommandError::Numbers {
+        message: "--short is given with --format toml".to_owned(),
+        help: "take --format rust or c: a scene has the nine numbers in its other tables"
+            .to_owned(),
     })
 }
 

@@ -10,6 +10,35 @@
 #include <stdbool.h>
 #include <stdio.h>
 
+/* The bearing in nine numbers: a first configuration needs no more. */
+static const amb_bearing bearing = {
+    50e-6f,  /* s: period of the tick */
+    10.0f,   /* kg: mass of the rotor that this plane carries */
+    0.0f,    /* N/m: shaft stiffness plus the magnets' negative stiffness */
+    2e-4f,   /* m: radial clearance of the retainer bearing */
+    1000.0f, /* N: force cap of the magnet */
+    0.0f,    /* s: time constant of the amplifier with the magnet */
+    0.15f,   /* coefficient of friction on the retainer bearing */
+    2e8f,    /* N/m: stiffness of the contact with it */
+    1e-8f,   /* m: noise of the sensor, or its step */
+};
+
+/* What is known better than that, or wanted otherwise, of this rig. */
+static amb_code configure(float values[AMB_PARAMETERS]) {
+    const amb_code code = amb_config_for_bearing(&bearing, values, AMB_PARAMETERS);
+    if (code != AMB_OK) return code;
+    values[AMB_P_CONTACT_BAND] = 0.02f;
+    values[AMB_P_POSITION_LIMIT] = 4.0f; /* the sensor's range */
+    values[AMB_P_WHIRL_TIME_S] = 2e-3f;
+    values[AMB_P_HANDOVER_DWELL_S] = 1e-3f;
+    values[AMB_P_FAULT_BLEND_S] = 1e-3f;
+    values[AMB_P_FAULT_TICKS] = 10.0f;
+    values[AMB_P_FORCE_SLEW_N_S] = 1e7f; /* slew limit and budget of the drive */
+    values[AMB_P_CONTINUOUS_FORCE_N] = 400.0f;
+    values[AMB_P_SENSOR_STEP_M] = 1e-8f;
+    return AMB_OK;
+}
+
 /* Static, so that they are zero before they are made; 28 kilobytes have no place on a stack. */
 static amb_supervisor plane;
 static amb_watch watch;
@@ -75,7 +104,9 @@ static void take_record(void) {
 
 int main(void) {
     amb_report report;
-    amb_code code = amb_init(&plane, sizeof plane, rig_config, AMB_PARAMETERS);
+    float values[AMB_PARAMETERS];
+    amb_code code = configure(values);
+    if (code == AMB_OK) code = amb_init(&plane, sizeof plane, values, AMB_PARAMETERS);
     if (code == AMB_OK) code = amb_self_test(&plane); /* does this processor compute what it should? */
     if (code == AMB_OK) code = amb_watch_init(&watch, 2);
     if (code != AMB_OK) {

@@ -14,7 +14,7 @@
 /** Ticks of the whole story. */
 #define RIG_TICKS 4400u
 
-/** The configuration of its supervisor at start. */
+/** The configuration of its supervisor at start, all of it; firmware.c makes the same of nine numbers. */
 extern const float rig_config[AMB_PARAMETERS];
 
 typedef struct rig {

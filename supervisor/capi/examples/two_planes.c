@@ -36,39 +36,17 @@ static const amb_shaft shaft = {
     {-0.17f, 0.19f},  /* magnets, m */
 };
 
-/* What both planes have in common; mass and ratios follow from the shaft. */
-static const float plane_config[AMB_PARAMETERS] = {
-    [AMB_P_SAMPLE_PERIOD_S] = 50e-6f,
-    [AMB_P_MASS_KG] = 1.0f,
-    [AMB_P_STIFFNESS_N_M] = 0.0f,
-    [AMB_P_DAMPING_N_S_M] = 0.0f,
-    [AMB_P_CLEARANCE_M] = 2e-4f,
-    [AMB_P_FORCE_MAX_N] = 1000.0f,
-    [AMB_P_AMPLIFIER_LAG_S] = 1.6e-4f,
-    [AMB_P_DELAY_SAMPLES] = 1.0f,
-    [AMB_P_FRICTION_COEFFICIENT] = 0.2f,
-    [AMB_P_RESTITUTION] = 0.7f,
-    [AMB_P_OBSERVER_POLE_FLIGHT] = 0.5f,
-    [AMB_P_OBSERVER_POLE_CONTACT] = 0.2f,
-    [AMB_P_CONTACT_BAND] = 0.02f,
-    [AMB_P_POSITION_LIMIT] = 4.0f,
-    [AMB_P_WHIRL_TIME_S] = 2e-3f,
-    [AMB_P_HOLD_SHARE] = 0.8f,
-    [AMB_P_HANDOVER_DWELL_S] = 1e-3f,
-    [AMB_P_HANDOVER_BLEND_S] = 2e-3f,
-    [AMB_P_FAULT_BLEND_S] = 1e-3f,
-    [AMB_P_FAULT_TICKS] = 10.0f,
-    [AMB_P_AXIS_FORCE_MAX_N] = 1000.0f,
-    [AMB_P_FORCE_SLEW_N_S] = 1e7f,
-    [AMB_P_CONTINUOUS_FORCE_N] = 1000.0f,
-    [AMB_P_THERMAL_TIME_S] = 5.0f,
-    [AMB_P_CONTACT_STIFFNESS_N_M] = 1e8f,
-    [AMB_P_COAST_DOWN_S] = 0.0f,
-    [AMB_P_SEVERITY_LIMIT] = 20.0f,
-    [AMB_P_RETAINER_PLANE_RATIO] = 1.0f,
-    [AMB_P_MAGNET_PLANE_RATIO] = 1.0f,
-    [AMB_P_SPEED_MAX_M_S] = 4.0f,
-    [AMB_P_SENSOR_STEP_M] = 1e-8f,
+/* What both planes have in common: nine numbers, of which the mass follows from the shaft. All else follows from them. */
+static const amb_bearing bearing = {
+    50e-6f,   /* s, tick */
+    0.0f,     /* kg */
+    0.0f,     /* N/m, stiffness in flight */
+    2e-4f,    /* m, clearance */
+    1000.0f,  /* N, cap */
+    1.6e-4f,  /* s, lag of the amplifier */
+    0.2f,     /* friction, with a margin */
+    1e8f,     /* N/m, contact */
+    1e-8f,    /* m, step of the sensor */
 };
 
 /* Centre of mass and slope of the axis, x and y, with their velocities: a place z of the axis is at r + z * s. */
@@ -170,12 +148,13 @@ static int run(const char *who, int supervised, double blow_n_s) {
     static amb_rotor rotor; /* zero at start; eighteen kilobytes have no place on a stack */
     model m;
     uint32_t tick, quiet = 0;
+    amb_bearing bearings[2];
     float values[2 * AMB_PARAMETERS];
     amb_code code;
     memset(&m, 0, sizeof m);
-    memcpy(values, plane_config, sizeof plane_config);
-    memcpy(values + AMB_PARAMETERS, plane_config, sizeof plane_config);
-    code = amb_rotor_init(&rotor, sizeof rotor, &shaft, values, 2 * AMB_PARAMETERS);
+    bearings[0] = bearings[1] = bearing;
+    code = amb_config_for_rotor(&shaft, bearings, values, 2 * AMB_PARAMETERS);
+    if (code == AMB_OK) code = amb_rotor_init(&rotor, sizeof rotor, &shaft, values, 2 * AMB_PARAMETERS);
     if (code != AMB_OK) {
         fprintf(stderr, "supervisor: %s\n", amb_error_text(code));
         return 1;

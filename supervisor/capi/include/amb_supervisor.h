@@ -8,9 +8,12 @@
  *
  * @code
  * static amb_supervisor plane;
- * static const float config[AMB_PARAMETERS] = {[AMB_P_SAMPLE_PERIOD_S] = 50e-6f, ...};
+ * static const amb_bearing bearing = {50e-6f, 10.0f, ...};
  *
- * amb_code code = amb_init(&plane, sizeof plane, config, AMB_PARAMETERS);
+ * float config[AMB_PARAMETERS];
+ * amb_code code = amb_config_for_bearing(&bearing, config, AMB_PARAMETERS);
+ * config[AMB_P_RESTITUTION] = 0.5f;
+ * if (code == AMB_OK) code = amb_init(&plane, sizeof plane, config, AMB_PARAMETERS);
  * if (code != AMB_OK) stop(amb_error_text(code));
  *
  * amb_command command;
@@ -60,6 +63,8 @@
 #define amb_error_text AMB_JOIN(amb_error_text, AMB_ABI)
 #define amb_parameter_at AMB_JOIN(amb_parameter_at, AMB_ABI)
 #define amb_parameter_index AMB_JOIN(amb_parameter_index, AMB_ABI)
+#define amb_config_for_bearing AMB_JOIN(amb_config_for_bearing, AMB_ABI)
+#define amb_config_for_rotor AMB_JOIN(amb_config_for_rotor, AMB_ABI)
 #define amb_init AMB_JOIN(amb_init, AMB_ABI)
 #define amb_self_test AMB_JOIN(amb_self_test, AMB_ABI)
 #define amb_reconfigure AMB_JOIN(amb_reconfigure, AMB_ABI)
@@ -141,6 +146,8 @@ typedef int32_t amb_code;
 #define AMB_ERROR_SHAFT_INERTIA (-34) /**< mass and transverse inertia must be above 0, the polar one from 0 to twice the transverse one */
 #define AMB_ERROR_SHAFT_PLACES (-35) /**< positions must be numbers, those of the retainer bearings must differ, and none be far beyond them */
 #define AMB_ERROR_PLANE (-36) /**< plane is neither 0 nor 1 */
+#define AMB_ERROR_BEARING_NULL (-37) /**< bearing is null */
+#define AMB_ERROR_BEARING_MISALIGNED (-38) /**< bearing is not aligned as a float */
 /** The parameter of this index is outside its range; in a rotor's second plane its index is AMB_PARAMETERS more. */
 #define AMB_ERROR_PARAMETER(index) (-1000 - (amb_code)(index))
 /** @} */
@@ -280,6 +287,21 @@ typedef union amb_rotor {
     uint64_t align;
 } amb_rotor;
 
+/** What cannot be guessed of a bearing plane; all other parameters follow from it with amb_config_for_bearing(). The ranges are
+ * those of the parameters of the same names. */
+typedef struct amb_bearing {
+    float sample_period_s;       /**< period of the tick [s] */
+    float mass_kg;               /**< mass of the rotor that this plane carries [kg] */
+    float stiffness_n_m;         /**< shaft stiffness plus the magnets' negative stiffness, either sign [N/m] */
+    float clearance_m;           /**< radial clearance of the retainer bearing [m] */
+    float force_max_n;           /**< force cap of the magnet, as the length of the vector [N] */
+    float amplifier_lag_s;       /**< time constant of the amplifier with the magnet [s] */
+    float friction_coefficient;  /**< friction on the retainer bearing, the upper end of what is likely */
+    float contact_stiffness_n_m; /**< stiffness of the contact with the retainer bearing [N/m] */
+    float sensor_noise_m;        /**< noise of the sensor (root mean square) or step of its converter, whichever is larger [m]:
+                                      0 to 0.001, and at most 7 % of the clearance */
+} amb_bearing;
+
 /** A rigid rotor. Positions are along its axis from the centre of mass, first those of plane 0, and have a sign. */
 typedef struct amb_shaft {
     float mass_kg;                  /**< mass [kg], > 0 */
@@ -394,6 +416,7 @@ typedef struct amb_parameter {
 } amb_parameter;
 
 /** @name Sizes in bytes @{ */
+#define AMB_SIZEOF_BEARING 36
 #define AMB_SIZEOF_SAMPLE 36
 #define AMB_SIZEOF_COMMAND 36
 #define AMB_SIZEOF_ROTOR_COMMAND 84
@@ -427,6 +450,16 @@ AMB_ASSERT(rotor_command_size, sizeof(amb_rotor_command) == AMB_SIZEOF_ROTOR_COM
 AMB_ASSERT(rotor_command_planes, offsetof(amb_rotor_command, planes) == 0);
 AMB_ASSERT(rotor_command_other_engaged, offsetof(amb_rotor_command, other_engaged) == 72);
 AMB_ASSERT(rotor_command_coast_down, offsetof(amb_rotor_command, coast_down) == 80);
+AMB_ASSERT(bearing_size, sizeof(amb_bearing) == AMB_SIZEOF_BEARING);
+AMB_ASSERT(bearing_sample_period_s, offsetof(amb_bearing, sample_period_s) == 0);
+AMB_ASSERT(bearing_mass_kg, offsetof(amb_bearing, mass_kg) == 4);
+AMB_ASSERT(bearing_stiffness_n_m, offsetof(amb_bearing, stiffness_n_m) == 8);
+AMB_ASSERT(bearing_clearance_m, offsetof(amb_bearing, clearance_m) == 12);
+AMB_ASSERT(bearing_force_max_n, offsetof(amb_bearing, force_max_n) == 16);
+AMB_ASSERT(bearing_amplifier_lag_s, offsetof(amb_bearing, amplifier_lag_s) == 20);
+AMB_ASSERT(bearing_friction_coefficient, offsetof(amb_bearing, friction_coefficient) == 24);
+AMB_ASSERT(bearing_contact_stiffness_n_m, offsetof(amb_bearing, contact_stiffness_n_m) == 28);
+AMB_ASSERT(bearing_sensor_noise_m, offsetof(amb_bearing, sensor_noise_m) == 32);
 AMB_ASSERT(shaft_size, sizeof(amb_shaft) == AMB_SIZEOF_SHAFT);
 AMB_ASSERT(shaft_mass_kg, offsetof(amb_shaft, mass_kg) == 0);
 AMB_ASSERT(shaft_transverse_inertia_kg_m2, offsetof(amb_shaft, transverse_inertia_kg_m2) == 4);
@@ -498,6 +531,28 @@ amb_code amb_parameter_at(uint32_t index, amb_parameter *parameter);
  * @return AMB_OK, AMB_ERROR_NAME_NULL or _UNKNOWN, AMB_ERROR_RESULT_NULL or _MISALIGNED.
  */
 amb_code amb_parameter_index(const char *name, uint32_t *index);
+
+/**
+ * A configuration from nine numbers: what they leave open has the default that the table of parameters in the book names. What is
+ * known better goes into the place of single values before amb_init(). Takes a kilobyte of stack.
+ * @param bearing the nine numbers.
+ * @param[out] values value of each parameter, in the order of their indexes, as amb_init() takes them; untouched after an error.
+ * @param count AMB_PARAMETERS.
+ * @return AMB_OK, an error of bearing or values, or AMB_ERROR_PARAMETER(index) for the first value outside its range. For
+ * sensor_noise_m that is the one of AMB_P_SENSOR_STEP_M, or of AMB_P_CONTACT_BAND where it is too much for the clearance.
+ */
+amb_code amb_config_for_bearing(const amb_bearing *bearing, float *values, size_t count);
+
+/**
+ * The same for both planes of a rotor: mass and ratios of a plane follow from the shaft, and all that follows from the mass with them.
+ * Takes three kilobytes of stack.
+ * @param shaft the rotor.
+ * @param bearings two, of plane 0 and plane 1; mass_kg is not used.
+ * @param[out] values those of plane 0, then those of plane 1, as amb_rotor_init() takes them; untouched after an error.
+ * @param count 2 * AMB_PARAMETERS.
+ * @return AMB_OK, an error of shaft, bearing or values, or AMB_ERROR_PARAMETER(index) as amb_rotor_init().
+ */
+amb_code amb_config_for_rotor(const amb_shaft *shaft, const amb_bearing *bearings, float *values, size_t count);
 
 /**
  * Makes a supervisor, levitated. Takes two kilobytes of stack.

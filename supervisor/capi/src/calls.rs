@@ -179,7 +179,7 @@ pub unsafe extern "C" fn amb_reconfigure(
         // SAFETY: the caller's promise.
         let [config] = unsafe { configurations(values, count) }?;
         let done = lease.content().reconfigure(&config);
-        done.map_err(|error| halves::code_of(error.parameter()))
+        done.map_err(|error| halves::code_of(&error))
     });
     Code::from_result(done)
 }

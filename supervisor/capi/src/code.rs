@@ -84,6 +84,8 @@ codes! {
     ERROR_SHAFT_INERTIA = -34, "mass and transverse inertia must be above 0, the polar one from 0 to twice the transverse one";
     ERROR_SHAFT_PLACES = -35, "positions must be numbers, those of the retainer bearings must differ, and none be far beyond them";
     ERROR_PLANE = -36, "plane is neither 0 nor 1";
+    ERROR_BEARING_NULL = -37, "bearing is null";
+    ERROR_BEARING_MISALIGNED = -38, "bearing is not aligned as a float";
 }
 
 /// Code of the first parameter; the others follow downwards, and after them those of a rotor's second plane.

@@ -248,7 +248,7 @@ pub(crate) unsafe fn make_supervisor(
     bytes: usize,
     config: &Config,
 ) -> Result<(), Code> {
-    let put = |place: &mut _| put(place, config).map_err(|error| code_of(error.parameter()));
+    let put = |place: &mut _| put(place, config).map_err(|error| code_of(&error));
     // SAFETY: the caller's promise.
     unsafe { make(storage, bytes, put) }
 }
@@ -326,15 +326,11 @@ pub(crate) fn code_of_shaft(error: &ShaftError) -> Code {
     match error {
         ShaftError::Inertia => Code::ERROR_SHAFT_INERTIA,
         ShaftError::Places => Code::ERROR_SHAFT_PLACES,
-        ShaftError::Plane(plane, error) => code_of(error.parameter()).of_plane(*plane),
+        ShaftError::Plane(plane, error) => code_of(error).of_plane(*plane),
     }
 }
 
-/// Number of the parameter that was refused.
-pub(crate) fn code_of(refused: &supervisor::Parameter) -> Code {
-    let index = supervisor::PARAMETERS
-        .iter()
-        .position(|p| p.name == refused.name);
-    // Refused parameters are in the table; were one not, its index would be the first beyond.
-    Code::parameter(index.unwrap_or(supervisor::PARAMETERS.len()))
+/// Code of the parameter that was refused.
+pub(crate) fn code_of(refused: &ConfigError) -> Code {
+    Code::parameter(refused.index)
 }

@@ -13,12 +13,13 @@
 //! cannot be checked is under "Safety" of each function.
 //!
 //! Files, each importing only from those above it: `version`, `parameters`, `code`, `layout`,
-//! `structs`, `pointer`, `storage`, `halves`, `calls`, `rotor`, `watch`.
+//! `structs`, `pointer`, `storage`, `halves`, `calls`, `rotor`, `watch`, `bearing`.
 
 #![cfg_attr(target_os = "none", no_std)]
 #![deny(clippy::undocumented_unsafe_blocks, unsafe_op_in_unsafe_fn)]
 #![warn(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+pub mod bearing;
 pub mod calls;
 pub mod code;
 mod halves;

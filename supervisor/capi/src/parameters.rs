@@ -54,6 +54,7 @@ impl<const N: usize> Pool<N> {
                 low,
                 high,
                 text,
+                ..
             } = PARAMETERS[i];
             pool.begin(i, 0);
             pool.put(name);

@@ -15,6 +15,7 @@ pub enum Argument {
     Force,
     Rotor,
     Shaft,
+    Bearing,
 }
 
 impl Argument {
@@ -30,6 +31,7 @@ impl Argument {
             Self::Force => Code::ERROR_FORCE_NULL,
             Self::Rotor => Code::ERROR_ROTOR_NULL,
             Self::Shaft => Code::ERROR_SHAFT_NULL,
+            Self::Bearing => Code::ERROR_BEARING_NULL,
         }
     }
 
@@ -45,6 +47,7 @@ impl Argument {
             Self::Force => Code::ERROR_FORCE_MISALIGNED,
             Self::Rotor => Code::ERROR_ROTOR_MISALIGNED,
             Self::Shaft => Code::ERROR_SHAFT_MISALIGNED,
+            Self::Bearing => Code::ERROR_BEARING_MISALIGNED,
         }
     }
 

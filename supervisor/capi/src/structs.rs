@@ -5,8 +5,8 @@ use crate::layout::{Layout, defined};
 use core::ffi::c_char;
 use core::mem::offset_of;
 use supervisor::{
-    Command, Mode, Place, QueuedEvent, Report, RotorCommand, SECTION_BYTES, Sample, Shaft, Stamp,
-    Status,
+    Bearing, Command, Mode, Place, QueuedEvent, Report, RotorCommand, SECTION_BYTES, Sample, Shaft,
+    Stamp, Status,
 };
 
 /// A struct with the offset of each field, checked at compile time.
@@ -87,6 +87,30 @@ c_struct! {
         other_engaged: [u32; 2] = 72,
         /// Whether a plane has asked for coasting down: 0 or 1.
         coast_down: u32 = 80,
+    }
+}
+
+c_struct! {
+    /// What cannot be guessed of a bearing plane: [`Bearing`].
+    CBearing = "amb_bearing", 36 {
+        /// Period of the tick \[s\].
+        sample_period_s: f32 = 0,
+        /// Mass that this plane carries \[kg\].
+        mass_kg: f32 = 4,
+        /// Shaft stiffness plus the magnets' negative stiffness \[N/m\].
+        stiffness_n_m: f32 = 8,
+        /// Radial clearance of the retainer bearing \[m\].
+        clearance_m: f32 = 12,
+        /// Force cap of the magnet \[N\].
+        force_max_n: f32 = 16,
+        /// Time constant of the amplifier with the magnet \[s\].
+        amplifier_lag_s: f32 = 20,
+        /// Coefficient of friction on the retainer bearing.
+        friction_coefficient: f32 = 24,
+        /// Stiffness of the contact \[N/m\].
+        contact_stiffness_n_m: f32 = 28,
+        /// Noise of the sensor, or its step \[m\].
+        sensor_noise_m: f32 = 32,
     }
 }
 
@@ -229,7 +253,8 @@ impl CSection {
 }
 
 /// Structs without pointers, whose layout is the same everywhere.
-pub const LAYOUTS: [Layout; 8] = [
+pub const LAYOUTS: [Layout; 9] = [
+    CBearing::LAYOUT,
     CSample::LAYOUT,
     CCommand::LAYOUT,
     CRotorCommand::LAYOUT,
@@ -251,11 +276,18 @@ const _: () = {
     assert!(offset_of!(CParameter, text) == 2 * pointer);
     assert!(offset_of!(CParameter, low) == 3 * pointer);
     assert!(offset_of!(CParameter, high) == 3 * pointer + 4);
+};
 
+// In blocks of few: each searches the header, and the compiler asks what takes long.
+const _: () = {
+    assert!(defined("AMB_SIZEOF_BEARING") == size_of::<CBearing>());
     assert!(defined("AMB_SIZEOF_SAMPLE") == size_of::<CSample>());
     assert!(defined("AMB_SIZEOF_COMMAND") == size_of::<CCommand>());
     assert!(defined("AMB_SIZEOF_ROTOR_COMMAND") == size_of::<CRotorCommand>());
     assert!(defined("AMB_SIZEOF_SHAFT") == size_of::<CShaft>());
+};
+
+const _: () = {
     assert!(defined("AMB_SIZEOF_EVENT") == size_of::<CEvent>());
     assert!(defined("AMB_SIZEOF_STAMP") == size_of::<CStamp>());
     assert!(defined("AMB_SIZEOF_SECTION") == size_of::<CSection>());
@@ -271,6 +303,22 @@ impl From<CSample> for Sample {
             spin_rad_s: c.spin_rad_s,
             levitation_n: c.levitation_n,
             applied_n: c.applied_n,
+        }
+    }
+}
+
+impl From<CBearing> for Bearing {
+    fn from(c: CBearing) -> Self {
+        Self {
+            sample_period_s: c.sample_period_s,
+            mass_kg: c.mass_kg,
+            stiffness_n_m: c.stiffness_n_m,
+            clearance_m: c.clearance_m,
+            force_max_n: c.force_max_n,
+            amplifier_lag_s: c.amplifier_lag_s,
+            friction_coefficient: c.friction_coefficient,
+            contact_stiffness_n_m: c.contact_stiffness_n_m,
+            sensor_noise_m: c.sensor_noise_m,
         }
     }
 }

@@ -5,6 +5,7 @@
 use core::mem::MaybeUninit;
 use std::ptr::{null, null_mut};
 use supervisor::{PARAMETERS, Status};
+use supervisor_capi::bearing::{amb_config_for_bearing, amb_config_for_rotor};
 use supervisor_capi::calls::{
     amb_init, amb_next_event, amb_parameter_at, amb_parameter_index, amb_rearm, amb_reconfigure,
     amb_record_section, amb_report_now, amb_self_test, amb_tick,
@@ -14,7 +15,8 @@ use supervisor_capi::rotor::{
     amb_rotor_record_section, amb_rotor_report_now, amb_rotor_self_test, amb_rotor_tick,
 };
 use supervisor_capi::structs::{
-    CCommand, CEvent, CParameter, CReport, CRotorCommand, CSample, CSection, CShaft, CStamp,
+    CBearing, CCommand, CEvent, CParameter, CReport, CRotorCommand, CSample, CSection, CShaft,
+    CStamp,
 };
 use supervisor_capi::watch::{amb_watch_expired, amb_watch_force, amb_watch_init, amb_watch_renew};
 use supervisor_capi::{Code, RECORD, RotorStorage, Storage, WatchStorage};
@@ -195,4 +197,46 @@ fn a_watch_touches_only_what_it_was_given() {
         assert_eq!(amb_watch_expired(watch, &raw mut expired), Code::OK);
         assert_eq!(expired, 1);
     }
+}
+
+#[test]
+fn configurations_go_only_where_their_values_are() {
+    let bearing = CBearing {
+        sample_period_s: 50e-6,
+        mass_kg: 10.0,
+        clearance_m: 2e-4,
+        force_max_n: 1000.0,
+        friction_coefficient: 0.15,
+        contact_stiffness_n_m: 2e8,
+        ..CBearing::default()
+    };
+    let shaft = CShaft {
+        mass_kg: 20.0,
+        transverse_inertia_kg_m2: 0.8,
+        polar_inertia_kg_m2: 0.5,
+        retainer_m: [-0.2, 0.22],
+        sensor_m: [-0.19, 0.21],
+        magnet_m: [-0.17, 0.19],
+    };
+    let bearings = Box::new([bearing; 2]);
+    let first: *const CBearing = (&raw const *bearings).cast();
+    let mut one = Box::new([0.0_f32; PARAMETERS.len()]);
+    let mut both = Box::new([0.0_f32; 2 * PARAMETERS.len()]);
+    let (to_one, to_both) = (
+        (&raw mut *one).cast::<f32>(),
+        (&raw mut *both).cast::<f32>(),
+    );
+    // SAFETY: every pointer is null or points to what its type says, and the values to as many floats as is told.
+    unsafe {
+        assert_eq!(amb_config_for_bearing(first, to_one, one.len()), Code::OK);
+        let code = amb_config_for_rotor(&raw const shaft, first, to_both, both.len());
+        assert_eq!(code, Code::OK);
+        let code = amb_config_for_rotor(&raw const shaft, first, to_both, one.len());
+        assert_eq!(code, Code::ERROR_VALUES_COUNT);
+        let code = amb_config_for_bearing(null(), to_one, one.len());
+        assert_eq!(code, Code::ERROR_BEARING_NULL);
+    }
+    assert_eq!(one[1], 10.0);
+    assert_ne!(both[1], both[1 + PARAMETERS.len()]);
+    assert_eq!(one[0], both[PARAMETERS.len()]);
 }

@@ -106,6 +106,45 @@ static void making(void) {
     EXPECT(amb_mode(&plane, &i), AMB_OK, "done");
 }
 
+/* A configuration from nine numbers. */
+static void bearings(void) {
+    static const amb_bearing good = {50e-6f, 10.0f, 0.0f, 2e-4f, 1000.0f, 0.0f, 0.15f, 2e8f, 1e-8f};
+    amb_bearing wrong[2];
+    float values[AMB_PARAMETERS + 1];
+    float *const number = (float *)&wrong[0];
+    /* The parameter of each number, in its order. */
+    static const uint32_t parameter[9] = {
+        AMB_P_SAMPLE_PERIOD_S, AMB_P_MASS_KG, AMB_P_STIFFNESS_N_M, AMB_P_CLEARANCE_M, AMB_P_FORCE_MAX_N,
+        AMB_P_AMPLIFIER_LAG_S, AMB_P_FRICTION_COEFFICIENT, AMB_P_CONTACT_STIFFNESS_N_M, AMB_P_SENSOR_STEP_M,
+    };
+    uint32_t i;
+    wrong[0] = wrong[1] = good;
+    values[0] = 77.0f;
+    EXPECT(amb_config_for_bearing(NULL, values, AMB_PARAMETERS), AMB_ERROR_BEARING_NULL, "bearing is null");
+    EXPECT(amb_config_for_bearing(OFF(wrong), values, AMB_PARAMETERS), AMB_ERROR_BEARING_MISALIGNED,
+           "bearing is not aligned as a float");
+    EXPECT(amb_config_for_bearing(&good, NULL, AMB_PARAMETERS), AMB_ERROR_VALUES_NULL, "values is null");
+    EXPECT(amb_config_for_bearing(&good, OFF(values), AMB_PARAMETERS), AMB_ERROR_VALUES_MISALIGNED,
+           "values is not aligned as a float");
+    EXPECT(amb_config_for_bearing(&good, values, AMB_PARAMETERS - 1), AMB_ERROR_VALUES_COUNT,
+           "values has not AMB_PARAMETERS elements for each plane");
+    EXPECT(amb_config_for_bearing(&good, values, 2 * AMB_PARAMETERS), AMB_ERROR_VALUES_COUNT,
+           "values has not AMB_PARAMETERS elements for each plane");
+    for (i = 0; i < 9; i++) {
+        wrong[0] = good;
+        number[i] = i == 2 ? -2e10f : -1.0f;
+        check(amb_config_for_bearing(wrong, values, AMB_PARAMETERS) == AMB_ERROR_PARAMETER(parameter[i]), "a wrong number");
+    }
+    /* More noise than a touch can be told from. */
+    wrong[0] = good;
+    wrong[0].sensor_noise_m = 5e-5f;
+    EXPECT(amb_config_for_bearing(wrong, values, AMB_PARAMETERS), AMB_ERROR_PARAMETER(AMB_P_CONTACT_BAND),
+           "contact_band is outside 0.001 to 0.3 clearance");
+    check(values[0] == 77.0f, "values are untouched after an error");
+    EXPECT(amb_config_for_bearing(&good, values, AMB_PARAMETERS), AMB_OK, "done");
+    check(values[AMB_P_MASS_KG] == 10.0f && values[AMB_P_RESTITUTION] == 0.7f, "given, and derived");
+}
+
 /* After an error a command is zero force. */
 static void no_force(const char *what, amb_command *command) {
     check(command->force_n[0] == 0.0f && command->force_n[1] == 0.0f && command->severity == 0.0f, what);
@@ -553,6 +592,7 @@ static void watching(void) {
 
 int main(void) {
     making();
+    bearings();
     ticking();
     asking();
     table();

@@ -77,6 +77,38 @@ static void making(void) {
     EXPECT(amb_rotor_rearm(&rotor), AMB_OK, "done");
 }
 
+/* Configurations from the shaft and nine numbers for each plane. */
+static void bearings(void) {
+    static const amb_bearing plane = {50e-6f, -1.0f, 0.0f, 2e-4f, 1000.0f, 0.0f, 0.15f, 2e8f, 1e-8f};
+    amb_bearing two[3];
+    amb_shaft shafts[2], wrong = good;
+    float made[COUNT + 1];
+    made[0] = 77.0f;
+    two[0] = two[1] = two[2] = plane;
+    shafts[0] = shafts[1] = good;
+    EXPECT(amb_config_for_rotor(NULL, two, made, COUNT), AMB_ERROR_SHAFT_NULL, "shaft is null");
+    EXPECT(amb_config_for_rotor(OFF(shafts), two, made, COUNT), AMB_ERROR_SHAFT_MISALIGNED, "shaft is not aligned as a float");
+    EXPECT(amb_config_for_rotor(&good, NULL, made, COUNT), AMB_ERROR_BEARING_NULL, "bearing is null");
+    EXPECT(amb_config_for_rotor(&good, OFF(two), made, COUNT), AMB_ERROR_BEARING_MISALIGNED,
+           "bearing is not aligned as a float");
+    EXPECT(amb_config_for_rotor(&good, two, NULL, COUNT), AMB_ERROR_VALUES_NULL, "values is null");
+    EXPECT(amb_config_for_rotor(&good, two, OFF(made), COUNT), AMB_ERROR_VALUES_MISALIGNED,
+           "values is not aligned as a float");
+    EXPECT(amb_config_for_rotor(&good, two, made, AMB_PARAMETERS), AMB_ERROR_VALUES_COUNT, COUNT_TEXT);
+    wrong.mass_kg = 0.0f;
+    EXPECT(amb_config_for_rotor(&wrong, two, made, COUNT), AMB_ERROR_SHAFT_INERTIA, INERTIA_TEXT);
+    two[1].friction_coefficient = -1.0f;
+    EXPECT(amb_config_for_rotor(&good, two, made, COUNT),
+           AMB_ERROR_PARAMETER(AMB_PARAMETERS + AMB_P_FRICTION_COEFFICIENT), "friction_coefficient is outside 0 to 2");
+    check(made[0] == 77.0f, "values are untouched after an error");
+    two[1] = plane;
+    EXPECT(amb_config_for_rotor(&good, two, made, COUNT), AMB_OK, "done");
+    /* A blow at an end moves less than the whole. */
+    check(made[AMB_P_MASS_KG] > 0.0f && made[AMB_P_MASS_KG] < 20.0f, "the mass follows from the shaft");
+    EXPECT(amb_rotor_init(&rotor, sizeof rotor, &good, made, COUNT), AMB_OK, "done");
+    memset(&rotor, 0, sizeof rotor);
+}
+
 /* After an error both commands are zero force. */
 static void no_force(const char *what, amb_rotor_command *command) {
     int plane;
@@ -229,6 +261,7 @@ static void reconfiguring(void) {
 int main(void) {
     memcpy(values, rig_config, sizeof rig_config);
     memcpy(values + AMB_PARAMETERS, rig_config, sizeof rig_config);
+    bearings();
     making();
     ticking();
     asking();

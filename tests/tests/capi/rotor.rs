@@ -6,7 +6,7 @@ use crate::rig::Rig;
 use std::process::Command;
 use supervisor::{Config, Place, Rotor, Shaft};
 
-fn shaft() -> Shaft {
+pub(crate) fn shaft() -> Shaft {
     let place = |retainer_m, sensor_m, magnet_m| Place {
         retainer_m,
         sensor_m,

@@ -9,6 +9,10 @@
 static amb_supervisor plane;
 static amb_rotor rotor;
 static rig machine;
+static const amb_bearing bearings[2] = {
+    {50e-6f, 10.0f, -2e5f, 2e-4f, 1000.0f, 1.6e-4f, 0.15f, 1e9f, 1e-6f},
+    {50e-6f, 10.0f, -2e5f, 2e-4f, 1000.0f, 1.6e-4f, 0.15f, 1e9f, 3e-6f},
+};
 
 void control_interrupt(void) {
 }
@@ -35,6 +39,9 @@ static int of_rotor(void) {
     static float values[2 * AMB_PARAMETERS];
     uint32_t *const top = __builtin_frame_address(0);
     unsigned deepest = 0;
+    paint(top);
+    if (amb_config_for_rotor(&shaft, bearings, values, 2 * AMB_PARAMETERS) != AMB_OK) return 1;
+    printf("config-for-rotor %u\n", depth(top));
     memcpy(values, rig_config, sizeof rig_config);
     memcpy(values + AMB_PARAMETERS, rig_config, sizeof rig_config);
     paint(top);
@@ -63,7 +70,12 @@ static int of_rotor(void) {
 int main(void) {
     uint32_t *const top = __builtin_frame_address(0);
     unsigned deepest = 0;
+    static float values[AMB_PARAMETERS];
     amb_code code;
+    paint(top);
+    code = amb_config_for_bearing(bearings, values, AMB_PARAMETERS);
+    if (code != AMB_OK) return 1;
+    printf("config-for-bearing %u\n", depth(top));
     paint(top);
     code = amb_init(&plane, sizeof plane, rig_config, AMB_PARAMETERS);
     if (code != AMB_OK) return 1;

@@ -13,7 +13,7 @@ use firmware_bench::advise::Advice;
 use firmware_bench::scene::Scene;
 use firmware_bench::scene::suggest::{Nominal, suggested};
 use std::process::Output;
-use supervisor::PARAMETERS;
+use supervisor::{DefaultRule, PARAMETERS};
 use system_tests::{host, root, scene, scene_names, scene_path};
 
 /// The AMB rotor of the theory chapter: 10 kg, −2e5 N/m, 0.2 mm, 1000 N, a 1 kHz amplifier, 20 kHz.
@@ -417,6 +417,40 @@ fn the_table_holds_every_bit() {
     }
 }
 
+/// Under the heading of its group each parameter has its unit, range, default and text.
+fn the_tables_of_parameters_say_what_the_crate_says() {
+    let page = std::fs::read_to_string(root().join("docs/src/supervisor/linking.md")).unwrap();
+    let (_, tables) = page.split_once("\n## Parameters\n").unwrap();
+    for p in PARAMETERS {
+        let of_group = tables
+            .split("\n### ")
+            .find(|part| part.starts_with(&format!("{:?}\n", p.group)));
+        let name = format!("`{}`", p.name);
+        let mut rows = of_group
+            .unwrap()
+            .lines()
+            .map(|l| l.split(" | ").collect::<Vec<_>>());
+        let row = rows.find(|row| row[0].trim_start_matches("| ") == name);
+        let row = row.unwrap_or_else(|| panic!("{name} is not of {:?}", p.group));
+        let (low, high) = row[2].split_once(" to ").unwrap();
+        assert_eq!(
+            (row[1], low.parse(), high.parse()),
+            (p.unit, Ok(p.low), Ok(p.high)),
+            "{name}"
+        );
+        let default = match p.default {
+            DefaultRule::Given => "**given**".to_owned(),
+            DefaultRule::Derived(rule) => rule.to_owned(),
+            DefaultRule::Constant(value, reason) => {
+                let (shown, _) = row[3].split_once(": ").unwrap();
+                assert_eq!(shown.parse(), Ok(value), "{name}");
+                format!("{shown}: {reason}")
+            }
+        };
+        assert_eq!((row[3], row[4]), (default.as_str(), p.text), "{name}");
+    }
+}
+
 /// Both tables of the book know every parameter, and the page every warning.
 #[test]
 fn the_book_says_how_to_choose_every_parameter() {
@@ -429,6 +463,7 @@ fn the_book_says_how_to_choose_every_parameter() {
             assert!(in_table, "{page}.md: {}", p.name);
         }
     }
+    the_tables_of_parameters_say_what_the_crate_says();
     let source = std::fs::read_to_string(root().join("firmware-host/bench/src/advise/warnings.rs"));
     let page = std::fs::read_to_string(root().join("docs/src/supervisor/advise.md")).unwrap();
     let source = source.unwrap();

@@ -8,6 +8,7 @@ mod comes_back;
 mod derating;
 mod drive;
 mod faults;
+mod first_configuration;
 mod first_sample;
 mod fixed_point;
 mod little_known;

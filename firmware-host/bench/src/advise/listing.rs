@@ -1,6 +1,7 @@
 //! The configuration as it is written in a scene or in firmware.
 
-use super::Parameter;
+use super::{Advice, Parameter};
+use supervisor::{Config, DefaultRule, PARAMETERS};
 
 /// Where a configuration is written down.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -9,7 +10,7 @@ pub enum Language {
     Toml,
     /// The struct of a firmware in Rust.
     Rust,
-    /// The array of a firmware in C.
+    /// The array of a firmware in C or C++.
     C,
 }
 
@@ -18,60 +19,190 @@ pub fn table(parameters: &[Parameter]) -> String {
     let line = |p: &Parameter| {
         let own = p.replaced_by.map(decimal);
         let own = own.map_or(String::new(), |own| format!(" (this scene sets {own})"));
-        Language::Toml.line(p, p.value, &format!("{}{own}", p.reason))
+        Line {
+            value: p.value,
+            remark: format!("{}{own}", p.reason),
+            ..Line::in_use(p)
+        }
     };
-    Language::Toml.listing(parameters.iter().map(line))
+    toml(parameters.iter().map(line))
 }
 
 /// The configuration that holds, with what the scene sets itself.
 pub fn listing(parameters: &[Parameter], language: Language) -> String {
-    let line = |p: &Parameter| match p.replaced_by {
-        None => language.line(p, p.value, &p.reason),
-        Some(own) => {
-            let remark = format!("set in the scene; suggested {}", decimal(p.value));
-            language.line(p, own, &remark)
+    let lines = parameters.iter().map(Line::in_use);
+    match language {
+        Language::Toml => toml(lines),
+        Language::Rust => {
+            let fields: String = lines.map(|line| line.rust_field()).collect();
+            format!("static CONFIG: supervisor::Config = supervisor::Config {{\n{fields}}};\n")
         }
-    };
-    language.listing(parameters.iter().map(line))
+        Language::C => {
+            // C++ knows no designated elements, so that their order is compared instead.
+            let values: String = lines.map(|line| line.c_element(&line.c_index())).collect();
+            let places: Vec<String> = (parameters.iter().enumerate())
+                .map(|(i, p)| format!("{} == {i}", Line::in_use(p).c_index()))
+                .collect();
+            format!(
+                "static const float config[AMB_PARAMETERS] = {{\n{values}}};\nAMB_ASSERT(config_in_order,\n           {});\n",
+                places.join(" &&\n           ")
+            )
+        }
+    }
 }
 
-impl Language {
-    fn listing(self, lines: impl Iterator<Item = String>) -> String {
-        let (begin, end) = match self {
-            Self::Toml => ("[supervisor]\n", ""),
-            Self::Rust => (
-                "static CONFIG: supervisor::Config = supervisor::Config {\n",
-                "};\n",
-            ),
-            Self::C => ("static const float config[AMB_PARAMETERS] = {\n", "};\n"),
-        };
-        lines.fold(begin.to_owned(), |listing, line| listing + &line) + end
-    }
+/// The nine numbers of the bearing, and what of the configuration that holds does not follow from them. There is none for a scene,
+/// whose other tables have the numbers.
+pub fn short(advice: &Advice, language: Language) -> Option<String> {
+    let bearing = advice.nominal.bearing();
+    let follows = Config::for_bearing(&bearing).values();
+    let rows = || (advice.parameters.iter().zip(PARAMETERS)).zip(follows);
+    let given = rows().filter(|((_, p), _)| p.default == DefaultRule::Given);
+    let given = given.map(|((row, _), value)| Line {
+        value,
+        remark: row.reason.clone(),
+        ..Line::in_use(row)
+    });
+    let noise = Line {
+        name: "sensor_noise_m",
+        unit: "m",
+        value: bearing.sensor_noise_m,
+        remark: "noise (root mean square), with that of the converter's steps".to_owned(),
+    };
+    let given = given.chain([noise]);
+    let otherwise: Vec<Line> = rows()
+        .map(|((row, _), value)| (Line::in_use(row), value))
+        .filter(|(line, value)| line.value != *value)
+        .map(|(line, _)| line)
+        .collect();
+    Some(match language {
+        Language::Toml => return None,
+        Language::Rust => {
+            let given: String = given.map(|line| line.rust_field()).collect();
+            let follows = "supervisor::Config::for_bearing(&BEARING)";
+            let config = match otherwise.as_slice() {
+                [] => follows.to_owned(),
+                lines => {
+                    let fields: String = lines.iter().map(Line::rust_field).collect();
+                    format!("supervisor::Config {{\n{fields}    ..{follows}\n}}")
+                }
+            };
+            format!(
+                "const BEARING: supervisor::Bearing = supervisor::Bearing {{\n{given}}};\n\
+                 static CONFIG: supervisor::Config = {config};\n"
+            )
+        }
+        Language::C => {
+            let given: String = given.map(|line| line.c_element(line.name)).collect();
+            let settings: String = otherwise.iter().map(Line::c_setting).collect();
+            format!(
+                "static const amb_bearing bearing = {{\n{given}}};\n\
+                 /* The values for amb_init(). */\n\
+                 static inline amb_code configure(float config[AMB_PARAMETERS]) {{\n\
+                 \x20   const amb_code code = amb_config_for_bearing(&bearing, config, AMB_PARAMETERS);\n\
+                 \x20   if (code != AMB_OK) return code;\n\
+                 {settings}    return AMB_OK;\n}}\n"
+            )
+        }
+    })
+}
 
-    /// A value with its unit and a remark.
-    fn line(self, p: &Parameter, value: f32, remark: &str) -> String {
-        let unit = if p.unit == "1" { "–" } else { p.unit };
-        let (name, number) = (p.name, decimal(value));
-        // In Rust and C a number without a point is an integer.
-        let fraction = match number.contains(['.', 'e']) {
-            true => number.clone(),
-            false => format!("{number}.0"),
+fn toml(lines: impl Iterator<Item = Line>) -> String {
+    lines.fold("[supervisor]\n".to_owned(), |table, line| {
+        let unit = if line.unit == "1" { "–" } else { line.unit };
+        let setting = format!("{} = {}", line.name, decimal(line.value));
+        table + &format!("{setting:<38}# {unit}; {}\n", line.remark)
+    })
+}
+
+/// A value with its unit and a remark.
+struct Line {
+    name: &'static str,
+    unit: &'static str,
+    value: f32,
+    remark: String,
+}
+
+impl Line {
+    /// What holds, suggested or set.
+    fn in_use(p: &Parameter) -> Self {
+        let (value, remark) = match p.replaced_by {
+            None => (p.value, p.reason.clone()),
+            Some(own) => {
+                let suggested = decimal(p.value);
+                (own, format!("set in the scene; suggested {suggested}"))
+            }
         };
-        match self {
-            Self::Toml => {
-                let setting = format!("{name} = {number}");
-                format!("{setting:<38}# {unit}; {remark}\n")
-            }
-            Self::Rust => {
-                let setting = format!("    {name}: {fraction},");
-                format!("{setting:<42}// {unit}; {remark}\n")
-            }
-            Self::C => {
-                let setting = format!("    [AMB_P_{}] = {fraction}f,", name.to_uppercase());
-                format!("{setting:<50}/* {unit}; {remark} */\n")
-            }
+        Self {
+            name: p.name,
+            unit: p.unit,
+            value,
+            remark,
         }
     }
+
+    /// The number as Rust and C take it, to which one without a point is an integer.
+    fn number(&self) -> String {
+        let number = decimal(self.value);
+        match number.contains(['.', 'e']) {
+            true => number,
+            false => format!("{number}.0"),
+        }
+    }
+
+    /// Unit and remark for the compilers, which are not all told what a file is encoded in.
+    fn comment(&self) -> String {
+        ascii(&format!("{}; {}", self.unit, self.remark))
+    }
+
+    fn rust_field(&self) -> String {
+        let field = format!("    {}: {},", self.name, self.number());
+        format!("{field:<42}// {}\n", self.comment())
+    }
+
+    /// Name of its index in C.
+    fn c_index(&self) -> String {
+        format!("AMB_P_{}", self.name.to_uppercase())
+    }
+
+    /// An element of a list in C, under its name.
+    fn c_element(&self, name: &str) -> String {
+        let element = format!("    {}f,", self.number());
+        format!("{element:<22}/* {name}: {} */\n", self.comment())
+    }
+
+    /// An assignment in C.
+    fn c_setting(&self) -> String {
+        let setting = format!("    config[{}] = {}f;", self.c_index(), self.number());
+        format!("{setting:<56}/* {} */\n", self.comment())
+    }
+}
+
+/// The text in ASCII, without what ends a comment.
+fn ascii(text: &str) -> String {
+    let written = |c: char| match c {
+        '√' => "sqrt",
+        '·' => "*",
+        'π' => "pi",
+        'ρ' => "rho",
+        'µ' | 'μ' => "u",
+        '²' => "^2",
+        '³' => "^3",
+        '×' => "x",
+        '≤' => "<=",
+        '≥' => ">=",
+        '–' | '—' | '−' => "-",
+        '…' => "...",
+        _ => "?",
+    };
+    let mut written_text = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c.is_ascii() {
+            true => written_text.push(c),
+            false => written_text.push_str(written(c)),
+        }
+    }
+    written_text.replace("*/", "* /")
 }
 
 /// The shortest decimals that give the same value again.

@@ -3,11 +3,9 @@
 use super::bisection::by_logarithm;
 use super::{Limits, reaction};
 use crate::scene::nominal::{Override, replaced};
-use crate::scene::suggest::{
-    Nominal, POLE_AIM, QUICKEST_POLES, SLOWEST_POLE, speed_noise_m_s, suggested,
-};
+use crate::scene::suggest::{Nominal, speed_noise_m_s, suggested};
 use serde::Serialize;
-use supervisor::{Config, PARAMETERS};
+use supervisor::{Bearing, Config, PARAMETERS};
 
 /// Noise of the speed may be this share of the speed that matters: three times it is then a third.
 pub(super) const TOLERABLE_SHARE: f64 = 0.1;
@@ -117,9 +115,9 @@ impl Judge {
         let used = [config.observer_pole_flight, config.observer_pole_contact];
         let suggested = [own.observer_pole_flight, own.observer_pole_contact];
         let quiet = (0..2).all(|i| {
-            let stepped = used[i] == suggested[i] && used[i] > QUICKEST_POLES[i] as f32;
+            let stepped = used[i] == suggested[i] && used[i] > Bearing::QUICKEST_POLES[i];
             let most = if stepped {
-                POLE_AIM * n.force_speed_m_s()
+                f64::from(Bearing::SPEED_NOISE_SHARE) * n.force_speed_m_s()
             } else {
                 0.0
             };
@@ -169,7 +167,7 @@ impl Judge {
     fn quiet_poles(&self, n: &Nominal) -> Option<[f64; 2]> {
         let used = self.config(n);
         let used = [used.observer_pole_flight, used.observer_pole_contact].map(f64::from);
-        [used, QUICKEST_POLES]
+        [used, Bearing::QUICKEST_POLES.map(f64::from)]
             .into_iter()
             .find_map(|from| self.quiet_poles_from(n, from))
     }
@@ -185,7 +183,7 @@ impl Judge {
         let hundredths = |pole: f64| (100.0 * pole - 1e-4).ceil() as u32;
         let quickest = |i: usize| {
             let noise = |pole: f64| speed_noise_m_s(n, &with(pole, pole))[i];
-            (hundredths(from[i])..=hundredths(SLOWEST_POLE))
+            (hundredths(from[i])..=hundredths(f64::from(Bearing::SLOWEST_POLE)))
                 .map(|pole| f64::from(pole) / 100.0)
                 .find(|pole| self.is_quiet(noise(*pole)))
         };

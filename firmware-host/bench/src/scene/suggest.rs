@@ -1,22 +1,15 @@
-//! From data sheets to the supervisor's configuration: one function for scenes and `advise`, so that they
-//! cannot differ.
+//! From data sheets to the supervisor's configuration: one function for scenes and `advise`, on top of the one that firmware
+//! has, [`Config::for_bearing`], so that none of them can differ.
 
 use plant_model::params::{
     ContactParams, FrictionParams, LinearContact, MagnetParams, PlantParams, RotorParams,
     SlidingFriction, SpinParams, StatorParams,
 };
 use serde::Serialize;
-use supervisor::Config;
+use supervisor::{Bearing, Config, DefaultRule, PARAMETERS};
 
 /// Control rates that the supervisor is made for \[Hz\].
 pub const SUPERVISED_RATES_HZ: std::ops::RangeInclusive<f64> = 1e4..=5e4;
-
-/// Suggested poles of the observer have a noise of the speed of at most this share of √(F·c/m), …
-pub(crate) const POLE_AIM: f64 = 0.04;
-/// … and are the quickest that have it, from these upwards, in flight and in contact, …
-pub(crate) const QUICKEST_POLES: [f64; 2] = [0.5, 0.2];
-/// … to this one.
-pub(crate) const SLOWEST_POLE: f64 = 0.97;
 
 /// The suggested limit of positions lies at this share of the sensor's range, clear of the rail by more than its noise, …
 pub(crate) const RAIL_SHARE: f64 = 0.95;
@@ -107,11 +100,6 @@ impl Nominal {
         (self.noise_rms_m.powi(2) + self.quantum_m.powi(2) / 12.0).sqrt()
     }
 
-    /// √(k_c/m) of the rotor on the contact \[rad/s\].
-    fn contact_rate_rad_s(&self) -> f64 {
-        (self.contact_stiffness_n_m / self.contact_mass_kg).sqrt()
-    }
-
     /// The plant that the closed forms are about: rigid wall, held spin, constant friction.
     pub fn plant(&self) -> PlantParams {
         PlantParams {
@@ -153,7 +141,7 @@ impl Nominal {
 pub struct Reason {
     /// Name of the field of [`Config`].
     pub name: &'static str,
-    /// Field of [`Nominal`] that decides most; `None` for a rule of thumb.
+    /// Field of [`Nominal`] that decides most; `None` where it is the same for every bearing.
     pub source: Option<&'static str>,
     /// How it was chosen, one line.
     pub text: String,
@@ -175,120 +163,134 @@ impl Suggested {
     }
 }
 
-/// The struct literal makes the compiler see that no field is missing.
-macro_rules! suggested {
-    ($($name:ident: $value:expr, $source:expr, $text:expr;)*) => {
-        Suggested {
-            config: Config { $($name: $value as f32),* },
-            reasons: vec![
-                $(Reason { name: stringify!($name), source: $source, text: $text.to_string() }),*
-            ],
+impl Nominal {
+    /// The nine numbers that firmware derives its configuration from.
+    pub fn bearing(&self) -> Bearing {
+        Bearing {
+            sample_period_s: self.period_s() as f32,
+            mass_kg: self.mass_kg as f32,
+            stiffness_n_m: self.stiffness_n_m as f32,
+            clearance_m: self.clearance_m as f32,
+            force_max_n: self.force_max_n as f32,
+            amplifier_lag_s: self.lag_s as f32,
+            friction_coefficient: self.friction_coefficient as f32,
+            contact_stiffness_n_m: self.contact_stiffness_n_m as f32,
+            sensor_noise_m: self.sensor_noise_m() as f32,
         }
-    };
-}
-
-/// The configuration as an engineer would derive it from data sheets.
-pub fn suggested(n: &Nominal) -> Suggested {
-    let period_s = n.period_s();
-    let contact_rate = n.contact_rate_rad_s();
-    let step_m = n.noise_rms_m.max(n.quantum_m);
-    // What the magnet does not limit is limited by nothing that matters.
-    let axis_force_max_n = n.axis_force_max_n.unwrap_or(n.force_max_n);
-    let free_slew_n_s = (1e3 * n.force_max_n / period_s).clamp(1.0, 1e12);
-    let [flight, contact] = observer_poles(n);
-    let axis_source = match n.axis_force_max_n {
-        Some(_) => "axis_force_max_n",
-        None => "force_max_n",
-    };
-    let slew_source = match n.slew_n_s {
-        Some(_) => "slew_n_s",
-        None => "force_max_n",
-    };
-    let step_source = if n.quantum_m > n.noise_rms_m {
-        "quantum_m"
-    } else {
-        "noise_rms_m"
-    };
-    let below_rail = n
-        .range_m
-        .map(|range_m| RAIL_SHARE * range_m / n.clearance_m);
-    let position_limit = below_rail.map_or(20.0, |limit| limit.clamp(LEAST_LIMIT, 20.0));
-    let limit_source = n.range_m.map(|_| "range_m");
-    const QUICKEST: &str = "speed noise is at most 4 % of √(F·c/m)";
-    suggested! {
-        sample_period_s: period_s, Some("sample_rate_hz"), "inverse of the control rate";
-        mass_kg: n.mass_kg, Some("mass_kg"), "as given";
-        stiffness_n_m: n.stiffness_n_m, Some("stiffness_n_m"), "shaft less the magnets' negative stiffness";
-        damping_n_s_m: n.damping_n_s_m, Some("damping_n_s_m"), "as given; 0 is on the safe side";
-        clearance_m: n.clearance_m, Some("clearance_m"), "as given";
-        force_max_n: n.force_max_n, Some("force_max_n"), "as given";
-        amplifier_lag_s: n.lag_s, Some("lag_s"), "as given";
-        delay_samples: n.delay_samples, Some("delay_samples"), "ticks of the sensor and of the actuator together";
-        friction_coefficient: n.friction_coefficient, Some("friction_coefficient"), "sliding friction at rest";
-        restitution: n.restitution.unwrap_or(0.7).min(0.95), Some("restitution"), match n.restitution {
-            Some(_) => "as given, at most 0.95: nearer to 1 the bounces never end",
-            None => "not given: 0.7, steel on steel",
-        };
-        observer_pole_flight: flight, Some(step_source), format!("quickest from 0.5 to 0.97 whose {QUICKEST}");
-        observer_pole_contact: contact, Some(step_source), format!("quickest from 0.2 to 0.97 whose {QUICKEST}");
-        contact_band: (4.0 * (step_m / n.clearance_m)).max(0.01), Some(step_source), "4 times noise or step over clearance, at least 0.01";
-        position_limit: position_limit, limit_source, match below_rail {
-            Some(limit) if limit < LEAST_LIMIT => "the least there is: 0.95 of the sensor's range is less, its rail is not told from a position",
-            Some(_) => "0.95 of the sensor's range over clearance, from 1.1 to 20: at the rail it measures nothing",
-            None => "the sensor's range is not known: no machine measures so far out",
-        };
-        // Two half periods on the contact spring, but no less than a millisecond.
-        whirl_time_s: (std::f64::consts::TAU / contact_rate).max(1e-3), Some("contact_stiffness_n_m"), "a period on the contact, 2π·√(m/k_c), at least 1 ms";
-        hold_share: 0.8, None, "rule of thumb: gentle at first";
-        handover_dwell_s: 5e-4, None, "rule of thumb: some samples without doubt";
-        handover_blend_s: 2e-3, None, "rule of thumb: shorter than a levitation loop settles";
-        fault_blend_s: 2e-2, None, "rule of thumb: longer than most interruptions; a force that stands still holds the rotor to one side, none lets it whirl";
-        fault_ticks: 5.0, None, "rule of thumb: longer than a burst of interference, and little against the time to cross the clearance";
-        axis_force_max_n: axis_force_max_n, Some(axis_source), match n.axis_force_max_n {
-            Some(_) => "as given",
-            None => "the cap: no limit of an axis was given",
-        };
-        force_slew_n_s: n.slew_n_s.unwrap_or(free_slew_n_s), Some(slew_source), match n.slew_n_s {
-            Some(_) => "as given",
-            None => "a thousand caps per sample: no limit was given",
-        };
-        continuous_force_n: n.force_max_n, Some("force_max_n"), "the cap: no thermal budget";
-        thermal_time_s: 5.0, None, "without effect while there is no thermal budget";
-        contact_stiffness_n_m: n.contact_stiffness_n_m, Some("contact_stiffness_n_m"), match n.contact_hardens {
-            true => "tangent at a depth of one clearance of the Hunt-Crossley law that is given",
-            false => "as given",
-        };
-        // Several periods of a whirl of some hundred hertz; the stop of the machine takes far longer.
-        coast_down_s: 5e-3, None, "rule of thumb: several periods of the whirl";
-        severity_limit: 20.0, None, "rule of thumb, until a landing has been measured";
-        retainer_plane_ratio: n.retainer_plane_ratio, lever_source(n.retainer_plane_ratio, "retainer_plane_ratio"), match n.retainer_plane_ratio {
-            1.0 => "one plane: sensor and retainer bearing move alike",
-            _ => "as an impact moves them",
-        };
-        magnet_plane_ratio: n.magnet_plane_ratio, lever_source(n.magnet_plane_ratio, "magnet_plane_ratio"), match n.magnet_plane_ratio {
-            1.0 => "one plane: magnet and retainer bearing move alike",
-            _ => "as an impact moves them",
-        };
-        // Whirl is no faster than the rotor on the contact spring; half more for its deflection.
-        speed_max_m_s: (1.5 * n.clearance_m * contact_rate).max(2.0), Some("contact_stiffness_n_m"), "1.5·c·√(k_c/m), at least 2 m/s";
-        // A sensor without noise and steps is not a thing that gets stuck.
-        sensor_step_m: step_m.max(5e-4 * n.clearance_m), Some(step_source), "noise or step, at least 1/2000 of the clearance";
     }
 }
 
-/// What a lever comes from that is none of one plane.
-fn lever_source(ratio: f64, field: &'static str) -> Option<&'static str> {
-    (ratio != 1.0).then_some(field)
+/// The configuration as an engineer would derive it from data sheets: that of [`Config::for_bearing`], and on top what is known
+/// beyond its nine numbers.
+pub fn suggested(n: &Nominal) -> Suggested {
+    let bearing = n.bearing();
+    let own = Config::for_bearing(&bearing);
+    // The poles are about what noise and step do together, the others about the larger of them.
+    let stepped = Config::for_bearing(&Bearing {
+        sensor_noise_m: n.noise_rms_m.max(n.quantum_m) as f32,
+        ..bearing
+    });
+    // What moves against the contact may be less than the rotor.
+    let in_contact = Config::for_bearing(&Bearing {
+        mass_kg: n.contact_mass_kg as f32,
+        ..bearing
+    });
+    let position_limit = n.below_rail().map_or(own.position_limit, |limit| {
+        limit.clamp(LEAST_LIMIT, f64::from(own.position_limit)) as f32
+    });
+    let config = Config {
+        damping_n_s_m: n.damping_n_s_m as f32,
+        delay_samples: n.delay_samples as f32,
+        restitution: (n.restitution).map_or(own.restitution, |e| e.min(0.95) as f32),
+        contact_band: stepped.contact_band,
+        position_limit,
+        whirl_time_s: in_contact.whirl_time_s,
+        axis_force_max_n: (n.axis_force_max_n).map_or(own.axis_force_max_n, |axis| axis as f32),
+        force_slew_n_s: n.slew_n_s.map_or(own.force_slew_n_s, |slew| slew as f32),
+        retainer_plane_ratio: n.retainer_plane_ratio as f32,
+        magnet_plane_ratio: n.magnet_plane_ratio as f32,
+        speed_max_m_s: in_contact.speed_max_m_s,
+        sensor_step_m: stepped.sensor_step_m,
+        ..own
+    };
+    let reasons = PARAMETERS.iter().map(|p| n.reason(p)).collect();
+    Suggested { config, reasons }
 }
 
-/// Poles in flight and in contact.
-fn observer_poles(n: &Nominal) -> [f64; 2] {
-    // Noise of the estimated speed in units of the speed that the force can still lift off.
-    let noise = n.sensor_noise_m() / n.period_s() / n.force_speed_m_s();
-    [
-        pole_for(noise, QUICKEST_POLES[0], second_order_noise),
-        pole_for(noise, QUICKEST_POLES[1], first_order_noise),
-    ]
+impl Nominal {
+    /// Limit of positions that is clear of the sensor's rail \[clearances\], where that is known.
+    fn below_rail(&self) -> Option<f64> {
+        (self.range_m).map(|range_m| RAIL_SHARE * range_m / self.clearance_m)
+    }
+
+    /// Why a parameter has its value: what was given, or else the rule of its default.
+    fn reason(&self, parameter: &supervisor::Parameter) -> Reason {
+        let name = parameter.name;
+        let by_rule = match parameter.default {
+            DefaultRule::Given => "as given",
+            DefaultRule::Constant(_, rule) | DefaultRule::Derived(rule) => rule,
+        };
+        let step_source = if self.quantum_m > self.noise_rms_m {
+            "quantum_m"
+        } else {
+            "noise_rms_m"
+        };
+        let (source, text) = match name {
+            "sample_period_s" => (Some("sample_rate_hz"), "inverse of the control rate"),
+            "stiffness_n_m" => (Some(name), "shaft less the magnets' negative stiffness"),
+            "amplifier_lag_s" => (Some("lag_s"), by_rule),
+            "damping_n_s_m" => (Some(name), "as given; 0 is on the safe side"),
+            "friction_coefficient" => (Some(name), "sliding friction at rest"),
+            "delay_samples" => (
+                Some(name),
+                "ticks of the sensor and of the actuator together",
+            ),
+            "restitution" if self.restitution.is_some() => (
+                Some(name),
+                "as given, at most 0.95: nearer to 1 the bounces never end",
+            ),
+            "contact_stiffness_n_m" if self.contact_hardens => (
+                Some(name),
+                "tangent at a depth of one clearance of the Hunt-Crossley law that is given",
+            ),
+            "observer_pole_flight" | "observer_pole_contact" | "contact_band" | "sensor_step_m" => {
+                (Some(step_source), by_rule)
+            }
+            "position_limit" => match self.below_rail() {
+                None => (None, by_rule),
+                Some(limit) if limit < LEAST_LIMIT => (
+                    Some("range_m"),
+                    "the least there is: 0.95 of the sensor's range is less, its rail is not told from a position",
+                ),
+                Some(_) => (
+                    Some("range_m"),
+                    "0.95 of the sensor's range over clearance, from 1.1 to 20: at the rail it measures nothing",
+                ),
+            },
+            "axis_force_max_n" if self.axis_force_max_n.is_some() => (Some(name), "as given"),
+            "force_slew_n_s" if self.slew_n_s.is_some() => (Some("slew_n_s"), "as given"),
+            "axis_force_max_n" | "force_slew_n_s" | "continuous_force_n" => {
+                (Some("force_max_n"), by_rule)
+            }
+            "whirl_time_s" | "speed_max_m_s" => (Some("contact_stiffness_n_m"), by_rule),
+            "retainer_plane_ratio" if self.retainer_plane_ratio != 1.0 => {
+                (Some(name), "as an impact moves them")
+            }
+            "magnet_plane_ratio" if self.magnet_plane_ratio != 1.0 => {
+                (Some(name), "as an impact moves them")
+            }
+            "restitution" => (Some(name), by_rule),
+            _ => match parameter.default {
+                DefaultRule::Given => (Some(name), by_rule),
+                DefaultRule::Constant(..) | DefaultRule::Derived(_) => (None, by_rule),
+            },
+        };
+        Reason {
+            name,
+            source,
+            text: text.to_owned(),
+        }
+    }
 }
 
 /// Noise of the speed that the observer makes of the sensor's (root mean square), in flight and in
@@ -310,14 +312,4 @@ fn second_order_noise(p: f64) -> f64 {
 /// … and of first order.
 fn first_order_noise(p: f64) -> f64 {
     (2.0 * ((1.0 - p) / (1.0 + p)).powi(3)).sqrt()
-}
-
-/// The quickest pole, not below `quickest`, whose speed noise is at most a share of the lift-off
-/// speed that the laws do not feel.
-fn pole_for(noise: f64, quickest: f64, gain: fn(f64) -> f64) -> f64 {
-    let mut pole = quickest;
-    while pole < SLOWEST_POLE && noise * gain(pole) > POLE_AIM {
-        pole += 0.01;
-    }
-    pole
 }

@@ -2,7 +2,7 @@
 
 use super::{AMB, advise, amb, stderr};
 use firmware_bench::scene::suggest::suggested;
-use supervisor::{Config, PARAMETERS};
+use supervisor::{Bearing, Config, PARAMETERS};
 use system_tests::{root, scene_path};
 
 /// The fields of a `Config` as Rust writes it.
@@ -13,6 +13,41 @@ fn fields(source: &str) -> Vec<(String, f32)> {
         Some((name.trim_start_matches("//!").trim().to_owned(), value))
     };
     source.lines().filter_map(field).collect()
+}
+
+/// What nine numbers and what is behind them make, as Rust has it.
+fn first_configuration(source: &str) -> Config {
+    let (_, rest) = source.split_once("Bearing = ").unwrap();
+    let (given, rest) = rest.split_once("};").unwrap();
+    let given = fields(given);
+    let names: Vec<&str> = given.iter().map(|(name, _)| name.as_str()).collect();
+    let number = |name: &str| {
+        let at = names.iter().position(|n| *n == name);
+        given[at.unwrap_or_else(|| panic!("{name}: {names:?}"))].1
+    };
+    assert_eq!(given.len(), 9, "{names:?}");
+    let follows = Config::for_bearing(&Bearing {
+        sample_period_s: number("sample_period_s"),
+        mass_kg: number("mass_kg"),
+        stiffness_n_m: number("stiffness_n_m"),
+        clearance_m: number("clearance_m"),
+        force_max_n: number("force_max_n"),
+        amplifier_lag_s: number("amplifier_lag_s"),
+        friction_coefficient: number("friction_coefficient"),
+        contact_stiffness_n_m: number("contact_stiffness_n_m"),
+        sensor_noise_m: number("sensor_noise_m"),
+    });
+    let (_, otherwise) = rest.split_once("CONFIG").unwrap();
+    let (otherwise, _) = otherwise.split_once(";\n").unwrap();
+    assert!(otherwise.contains("Config::for_bearing(&BEARING)"));
+    let otherwise = fields(otherwise);
+    let mut values = follows.values();
+    for (name, value) in otherwise {
+        let index = PARAMETERS.iter().position(|p| p.name == name).unwrap();
+        assert_ne!(values[index], value, "{name} follows");
+        values[index] = value;
+    }
+    Config::from_values(values)
 }
 
 /// What Rust takes is what the table for a scene says, and what the book shows is the example of the crate, and that is what is advised: but
@@ -34,18 +69,62 @@ fn a_listing_for_rust_is_the_suggested_configuration() {
     assert!(advised(&[]).ends_with(&table), "{table}");
 
     let own = ["force_slew_n_s", "continuous_force_n", "thermal_time_s"];
-    let example: Vec<(String, f32)> = (PARAMETERS.iter().zip(Config::example().values()))
-        .map(|(p, value)| (p.name.to_owned(), value))
-        .collect();
-    for ((name, shown), (_, value)) in example.iter().zip(&values) {
+    for (shown, (name, value)) in Config::example().values().iter().zip(&values) {
         assert!(
             shown == value || own.contains(&name.as_str()),
             "{name} = {value}"
         );
     }
     let page = std::fs::read_to_string(root().join("docs/src/supervisor/linking.md")).unwrap();
-    let (_, rest) = page.split_once("Config {").unwrap();
-    assert_eq!(fields(rest.split_once("};").unwrap().0), example);
+    assert_eq!(first_configuration(&page), Config::example());
+}
+
+/// Nine numbers and what does not follow from them are the whole configuration, and nothing that follows is repeated.
+#[test]
+fn a_short_listing_makes_the_same_configuration() {
+    let folder = tempfile::TempDir::new().unwrap();
+    let own = std::fs::read_to_string(scene_path("overload_then_release")).unwrap();
+    let path = folder.path().join("own.toml");
+    std::fs::write(
+        &path,
+        own + "\n[supervisor]\nhold_share = 0.625\nmass_kg = 9.0\n",
+    )
+    .unwrap();
+    let plant = root().join("firmware-host/scenes/plants/p4.toml");
+    let plant = plant.to_str().unwrap();
+    let noisy = [&AMB[..9], &["--noise-rms-m=2e-7", "--quantum-m=3e-6"]].concat();
+    for args in [&AMB[..], &noisy, &[plant], &[path.to_str().unwrap()]] {
+        let said = |more: &[&str]| {
+            let output = advise(&[args, &["--format", "rust"], more].concat());
+            assert!(output.status.success(), "{}", stderr(&output));
+            String::from_utf8(output.stdout).unwrap()
+        };
+        let (all, short) = (said(&[]), said(&["--short"]));
+        assert!(all.is_ascii() && short.is_ascii(), "{all}\n{short}");
+        let made = first_configuration(&short);
+        let made: Vec<(String, f32)> = (PARAMETERS.iter().zip(made.values()))
+            .map(|(p, value)| (p.name.to_owned(), value))
+            .collect();
+        assert_eq!(fields(&all), made);
+    }
+}
+
+/// A scene has the nine numbers in its other tables.
+#[test]
+fn there_is_no_short_table() {
+    for (args, message) in [
+        (
+            &["--short", "--format", "toml"][..],
+            "--short is given with --format toml",
+        ),
+        (&["--short"][..], "--format"),
+    ] {
+        let output = advise(&[&AMB[..], args].concat());
+        let said = stderr(&output);
+        assert_eq!(output.status.code(), Some(2), "{said}");
+        assert!(said.contains(message), "{said}");
+        assert!(output.stdout.is_empty());
+    }
 }
 
 /// What a scene sets itself is in the listing, also where it does not run the supervisor, and warnings go beside it.
@@ -61,7 +140,7 @@ fn a_listing_has_what_the_scene_sets() {
     for (language, line) in [
         ("toml", "hold_share = 0.625 "),
         ("rust", "hold_share: 0.625, "),
-        ("c", "[AMB_P_HOLD_SHARE] = 0.625f, "),
+        ("c", "0.625f,           /* AMB_P_HOLD_SHARE: "),
     ] {
         let output = advise(&[path.to_str().unwrap(), "--format", language]);
         let said = stderr(&output);

@@ -1,0 +1,260 @@
+//! A configuration from nine numbers: valid for all that a bearing may be, refused by name for all that it may not.
+
+use proptest::prelude::*;
+use std::hint::black_box;
+use supervisor::{
+    Bearing, Config, DefaultRule, PARAMETERS, Place, Rotor, Sample, Shaft, Supervisor,
+};
+
+const EXAMPLE: Bearing = Bearing {
+    sample_period_s: 50e-6,
+    mass_kg: 10.0,
+    stiffness_n_m: -2e5,
+    clearance_m: 2e-4,
+    force_max_n: 1000.0,
+    amplifier_lag_s: 1.6e-4,
+    friction_coefficient: 0.15,
+    contact_stiffness_n_m: 1e9,
+    sensor_noise_m: 1e-6,
+};
+
+/// The parameters that the numbers are given under, and the noise at the end.
+const NAMES: [&str; 9] = [
+    "sample_period_s",
+    "mass_kg",
+    "stiffness_n_m",
+    "clearance_m",
+    "force_max_n",
+    "amplifier_lag_s",
+    "friction_coefficient",
+    "contact_stiffness_n_m",
+    "sensor_step_m",
+];
+
+fn bearing(numbers: [f32; 9]) -> Bearing {
+    let [
+        period,
+        mass,
+        stiffness,
+        clearance,
+        cap,
+        lag,
+        friction,
+        contact,
+        noise,
+    ] = numbers;
+    Bearing {
+        sample_period_s: period,
+        mass_kg: mass,
+        stiffness_n_m: stiffness,
+        clearance_m: clearance,
+        force_max_n: cap,
+        amplifier_lag_s: lag,
+        friction_coefficient: friction,
+        contact_stiffness_n_m: contact,
+        sensor_noise_m: noise,
+    }
+}
+
+fn numbers(b: &Bearing) -> [f32; 9] {
+    [
+        b.sample_period_s,
+        b.mass_kg,
+        b.stiffness_n_m,
+        b.clearance_m,
+        b.force_max_n,
+        b.amplifier_lag_s,
+        b.friction_coefficient,
+        b.contact_stiffness_n_m,
+        b.sensor_noise_m,
+    ]
+}
+
+fn range(name: &str) -> [f32; 2] {
+    let row = PARAMETERS.iter().find(|p| p.name == name).unwrap();
+    [row.low, row.high]
+}
+
+/// Both ends often, what lies between on the scale of the number.
+fn within([low, high]: [f32; 2], share: f32) -> f32 {
+    let inside = match low > 0.0 {
+        true => low * (high / low).powf(share),
+        false => low + share * (high - low),
+    };
+    match share {
+        ..0.1 => low,
+        0.9.. => high,
+        _ => inside.clamp(low, high),
+    }
+}
+
+/// Numbers in their ranges.
+fn any_bearing() -> impl Strategy<Value = Bearing> {
+    prop::array::uniform9(0.0..=1.0_f32).prop_map(|shares| {
+        let mut numbers = [0.0; 9];
+        for ((number, name), share) in numbers.iter_mut().zip(NAMES).zip(shares) {
+            *number = within(range(name), share);
+        }
+        let mut bearing = bearing(numbers);
+        let most_m = (0.07 * bearing.clearance_m).min(1e-3);
+        bearing.sensor_noise_m = match shares[8] {
+            ..0.1 => 0.0,
+            share => within([1e-10, most_m], share),
+        };
+        bearing
+    })
+}
+
+/// Speed over position noise per tick, as the observer's page has them.
+fn gain(p: f64, in_flight: bool) -> f64 {
+    match in_flight {
+        true => {
+            let square =
+                (1.0 - p).powi(3) / (1.0 + p).powi(5) * (13.0 + 50.0 * p + 49.0 * p * p) / 2.0;
+            square.sqrt()
+        }
+        false => (2.0 * ((1.0 - p) / (1.0 + p)).powi(3)).sqrt(),
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 20_000, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// Valid, and what a supervisor can be made of; the nine numbers are in it as they are, and known rules hold.
+    #[test]
+    fn nine_numbers_in_their_ranges_give_a_valid_configuration(b in any_bearing()) {
+        let config = Config::for_bearing(&b);
+        prop_assert_eq!(config.validate(), Ok(()), "{:?}", b);
+        for ((p, value), name) in PARAMETERS.iter().zip(config.values()).filter(|(p, _)| p.default == DefaultRule::Given).zip(NAMES) {
+            prop_assert_eq!(p.name, name);
+            let given = numbers(&b)[NAMES.iter().position(|n| *n == name).unwrap()];
+            prop_assert_eq!(value.to_bits(), given.to_bits());
+        }
+        let mut supervisor = Supervisor::<16>::new(&config).unwrap();
+        prop_assert!(supervisor.tick(&Sample::default()).force_n.iter().all(|f| f.is_finite()));
+
+        let close = |value: f32, wanted: f64| (f64::from(value) / wanted - 1.0).abs() < 1e-6;
+        let rate = (f64::from(b.contact_stiffness_n_m) / f64::from(b.mass_kg)).sqrt();
+        prop_assert!(close(config.whirl_time_s, (std::f64::consts::TAU / rate).clamp(1e-3, 0.1)));
+        prop_assert!(close(config.speed_max_m_s, (1.5 * f64::from(b.clearance_m) * rate).clamp(2.0, 1e3)));
+        let band = 4.0 * f64::from(b.sensor_noise_m) / f64::from(b.clearance_m);
+        prop_assert!(close(config.contact_band, band.max(0.01)));
+    }
+
+    /// The quickest poles in hundredths with which the speed is quiet enough, by the formulas in double precision.
+    #[test]
+    fn poles_are_the_quickest_that_are_quiet(b in any_bearing()) {
+        let config = Config::for_bearing(&b);
+        let force_speed = (f64::from(b.force_max_n) * f64::from(b.clearance_m) / f64::from(b.mass_kg)).sqrt();
+        let noise = f64::from(b.sensor_noise_m) / f64::from(b.sample_period_s) / force_speed;
+        for (pole, quickest, in_flight) in [
+            (config.observer_pole_flight, 50, true),
+            (config.observer_pole_contact, 20, false),
+        ] {
+            let hundredths = (100.0 * pole).round() as i32;
+            prop_assert_eq!(pole, hundredths as f32 / 100.0);
+            let speed = |hundredths: i32| noise * gain(f64::from(hundredths) / 100.0, in_flight);
+            prop_assert!(hundredths == 97 || speed(hundredths) <= 0.04 * (1.0 + 1e-5), "{:?}: {}", b, pole);
+            prop_assert!(hundredths == quickest || speed(hundredths - 1) > 0.04 * (1.0 - 1e-5), "{:?}: {}", b, pole);
+        }
+    }
+
+    /// Whatever the bits: what is refused is refused by the name of the first number that is outside its range.
+    #[test]
+    fn any_bits_are_accepted_or_refused_by_their_name(
+        good in any_bearing(),
+        bits in prop::array::uniform9(any::<u32>()),
+        taken in prop::array::uniform9(prop::bool::weighted(0.2)),
+    ) {
+        let mut numbers = numbers(&good);
+        for ((number, bits), taken) in numbers.iter_mut().zip(bits).zip(taken) {
+            if taken {
+                *number = f32::from_bits(bits);
+            }
+        }
+        let b = bearing(numbers);
+        let wrong = NAMES.iter().zip(numbers).find(|(name, value)| {
+            let [low, high] = range(name);
+            // No sensor need have any noise.
+            let low = if **name == "sensor_step_m" { 0.0 } else { low };
+            !(*value >= low && *value <= high)
+        });
+        let refused = Config::for_bearing(&b).validate().map_err(|e| e.parameter().name);
+        // A noise that is much for the clearance is told by the band, which the table has before the contact's stiffness.
+        let in_doubt = f64::from(b.sensor_noise_m) > 0.07 * f64::from(b.clearance_m);
+        let by_band = refused == Err("contact_band");
+        match wrong.map(|(name, _)| *name) {
+            Some("contact_stiffness_n_m") | None if in_doubt && by_band => {}
+            Some(name) => prop_assert_eq!(refused, Err(name), "{:?}", b),
+            None => prop_assert_eq!(refused, Ok(()), "{:?}", b),
+        }
+    }
+
+    /// A plane of a rotor is the plane of its mass, and the rotor takes the configurations as they are.
+    #[test]
+    fn planes_of_a_rotor_follow_from_its_shaft(
+        share in 0.1..0.9_f32,
+        mass_kg in 0.1..1e3_f32,
+        b in any_bearing(),
+    ) {
+        let ends = [b, Bearing { friction_coefficient: 0.3, sensor_noise_m: 0.5 * b.sensor_noise_m, ..b }];
+        let end = |retainer_m: f32| Place { retainer_m, sensor_m: 0.95 * retainer_m, magnet_m: 0.9 * retainer_m };
+        let shaft = Shaft {
+            mass_kg,
+            transverse_inertia_kg_m2: 0.05 * mass_kg,
+            polar_inertia_kg_m2: 0.03 * mass_kg,
+            places: [end(-share), end(1.0 - share)],
+        };
+        let configs = Config::for_rotor(&shaft, &ends);
+        let made = Rotor::<16>::new(&shaft, &configs).map(drop);
+        prop_assert_eq!(made, Ok(()), "{:?}", configs);
+        for (plane, (config, b)) in configs.iter().zip(&ends).enumerate() {
+            let alone = Config::for_bearing(&Bearing { mass_kg: config.mass_kg, ..*b });
+            prop_assert_eq!(*config, shaft.plane(plane, &alone));
+            prop_assert!(config.mass_kg < mass_kg);
+        }
+    }
+}
+
+/// The example of the crate is a configuration from nine numbers with what the drive says of itself.
+#[test]
+fn the_example_follows_from_nine_numbers() {
+    let config = Config {
+        force_slew_n_s: 1e7,
+        continuous_force_n: 400.0,
+        ..Config::for_bearing(&EXAMPLE)
+    };
+    assert_eq!(config, Config::example());
+}
+
+/// A constant, which the compiler computes, has the bits that the processor gives it.
+#[test]
+fn a_constant_has_the_same_bits() {
+    const NOISY: Bearing = Bearing {
+        sensor_noise_m: 3.3e-6,
+        mass_kg: 7.3,
+        ..EXAMPLE
+    };
+    const CONSTANTS: [Config; 2] = [Config::for_bearing(&EXAMPLE), Config::for_bearing(&NOISY)];
+    let now = [EXAMPLE, NOISY].map(|b| Config::for_bearing(&black_box(b)));
+    let bits = |configs: [Config; 2]| configs.map(|c| c.values().map(f32::to_bits));
+    assert_eq!(bits(now), bits(CONSTANTS));
+}
+
+/// The table says what is there: constants are the same for two bearings that have nothing in common, and all else is not.
+#[test]
+fn the_table_has_the_defaults() {
+    let other = bearing([1e-4, 2.0, 3e4, 5e-4, 77.0, 1e-3, 0.3, 2e7, 2e-5]);
+    let values = [EXAMPLE, other].map(|b| Config::for_bearing(&b).values());
+    for (i, p) in PARAMETERS.iter().enumerate() {
+        let [a, b] = values.map(|v| v[i]);
+        match p.default {
+            DefaultRule::Constant(value, reason) => {
+                assert_eq!([a, b], [value; 2], "{}", p.name);
+                assert!(!reason.is_empty());
+            }
+            DefaultRule::Given => assert!(NAMES.contains(&p.name) && a != b, "{}", p.name),
+            DefaultRule::Derived(rule) => assert!(a != b && !rule.is_empty(), "{}", p.name),
+        }
+    }
+}
