@@ -5,6 +5,7 @@ pub mod advise;
 mod chapters;
 pub mod error;
 pub mod harm;
+pub mod init;
 pub mod modes;
 pub mod output;
 pub mod overloads;
@@ -16,6 +17,7 @@ pub mod schema;
 pub mod sensitivity;
 pub mod serve_controller;
 pub mod study;
+pub mod sweep;
 pub mod target;
 pub mod vectors;
 
@@ -23,6 +25,7 @@ use crate::cli::error::say;
 use firmware_bench::scene::Scene;
 use firmware_bench::scene::diagnostic::SceneError;
 use firmware_bench::scene::machine::AnyScene;
+use firmware_bench::scene::spec::Spec;
 use std::path::Path;
 
 /// A scene of one plane, with its warnings said.
@@ -34,7 +37,17 @@ pub(crate) fn load(path: &Path) -> Result<Scene, SceneError> {
 
 /// Any scene, with its warnings said.
 pub(crate) fn load_any(path: &Path) -> Result<AnyScene, SceneError> {
-    let scene = AnyScene::load(path)?;
+    load_changed(path, |_| Ok(()))
+}
+
+/// Any scene with changes to what the file says, with its warnings said.
+pub(crate) fn load_changed(
+    path: &Path,
+    change: impl FnOnce(&mut Spec) -> Result<(), SceneError>,
+) -> Result<AnyScene, SceneError> {
+    let mut spec = Spec::load(path)?;
+    change(&mut spec)?;
+    let scene = AnyScene::resolve(&spec)?;
     warn(scene.warnings());
     Ok(scene)
 }

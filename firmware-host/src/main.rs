@@ -2,8 +2,8 @@
 
 use clap::{Parser, Subcommand};
 use firmware_host::cli::{
-    accuracy, advise, error, harm, modes, overloads, paper, review, run, schema, sensitivity,
-    serve_controller, study, target, vectors,
+    accuracy, advise, error, harm, init, modes, overloads, paper, review, run, schema, sensitivity,
+    serve_controller, study, sweep, target, vectors,
 };
 use std::process::ExitCode;
 
@@ -17,8 +17,12 @@ struct Cli {
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    /// Write a commented scene of a machine from its numbers, to run and to change.
+    Init(init::InitArgs),
     /// Run a scene under each of its policies; print a table, write traces and a report.
     Run(run::RunArgs),
+    /// Run a scene again and again with keys that vary by a design, into one file with a row a run.
+    Sweep(sweep::SweepArgs),
     /// Error against run time of a scene's plant, over tolerances and methods, and silently wrong runs.
     Accuracy(accuracy::AccuracyArgs),
     /// Run the catalogue of overloads under every policy, and hold the supervisor's promises against it.
@@ -52,7 +56,9 @@ fn main() -> ExitCode {
     let cli = Cli::parse();
     serve_controller::by_this_program();
     let result = match &cli.command {
+        Command::Init(args) => init::execute(args),
         Command::Run(args) => run::execute(args),
+        Command::Sweep(args) => sweep::execute(args),
         Command::Accuracy(args) => accuracy::execute(args),
         Command::Overloads(args) => overloads::execute(args),
         Command::Harm(args) => harm::execute(args),

@@ -33,7 +33,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Rooms, each importing only from those above it: `words`, `device`, `scene`, `record`, `run`, `modes`, `report`, `advise`.
+//! Rooms, each importing only from those above it: `words`, `device`, `scene`, `record`, `run`, `modes`, `report`, `advise`, `sweep`.
 
 #![forbid(unsafe_code)]
 #![warn(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
@@ -45,4 +45,5 @@ pub mod record;
 pub mod report;
 pub mod run;
 pub mod scene;
+pub mod sweep;
 mod words;

@@ -3,6 +3,7 @@
 pub mod again;
 pub mod clairvoyant;
 pub mod closed_loop;
+pub mod columns;
 pub mod controller;
 pub mod figures;
 pub mod history;

@@ -6,7 +6,7 @@ mod devices;
 pub mod diagnostic;
 mod events;
 mod external;
-mod guess;
+pub(crate) mod guess;
 pub mod keys;
 mod limits;
 mod lint;
@@ -23,7 +23,7 @@ pub mod spec;
 mod state_space;
 pub mod suggest;
 pub mod tables;
-mod values;
+pub(crate) mod values;
 
 use crate::device::actuator::{AmplifierParams, Outage};
 use crate::device::levitation::LevitationParams;

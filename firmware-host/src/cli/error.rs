@@ -3,6 +3,7 @@
 use crate::cli::output::OutputError;
 use firmware_bench::run::closed_loop::RunError;
 use firmware_bench::scene::diagnostic::SceneError;
+use firmware_bench::sweep::error::SweepError;
 use firmware_studies::on_target::images::ImageError;
 use firmware_studies::on_target::measure::TargetError;
 use miette::MietteHandlerOpts;
@@ -16,6 +17,10 @@ pub enum CommandError {
     #[error(transparent)]
     #[diagnostic(transparent)]
     Scene(#[from] SceneError),
+    /// The sweep is wrong, or another than what is in its folder.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Sweep(#[from] SweepError),
     /// The results cannot be written.
     #[error(transparent)]
     #[diagnostic(transparent)]
@@ -133,6 +138,7 @@ impl CommandError {
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Scene(_)
+            | Self::Sweep(_)
             | Self::Output(_)
             | Self::Numbers { .. }
             | Self::Controller { .. }

@@ -3,7 +3,7 @@
 mod machine;
 
 use crate::cli::error::{CommandError, Contradiction, pretty, print};
-use crate::cli::load_any;
+use crate::cli::load_changed;
 use crate::cli::output::{self, OutputError, Staging};
 use crate::cli::progress::{LateProgress, Threads};
 use firmware_bench::report::summary::summary;
@@ -16,6 +16,7 @@ use firmware_bench::run::verify::{self, Check};
 use firmware_bench::scene::Scene;
 use firmware_bench::scene::machine::AnyScene;
 use firmware_bench::scene::policy_kind::PolicyKind;
+use firmware_bench::scene::spec::Setting;
 use firmware_studies::campaign::Progress;
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 use std::path::{Path, PathBuf};
@@ -28,6 +29,12 @@ pub struct RunArgs {
     /// Folder for verdict.json, the traces and report.html [default: runs/ and the name of the scene file].
     #[arg(long)]
     pub out: Option<PathBuf>,
+    /// Put a value in the place of the scene's, as friction.coefficient=0.2 or supervisor.hold_share=0.5; any number of times.
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub set: Vec<Setting>,
+    /// The same as --set run.seed=NUMBER.
+    #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(i64).range(0..))]
+    pub seed: Option<i64>,
     /// Run each policy twice more, tighter and by another method, and say how far the runs lie apart.
     #[arg(long)]
     pub verify: bool,
@@ -47,7 +54,14 @@ pub struct RunArgs {
 /// # Errors
 /// [`CommandError`]; nothing is left behind then, except by [`CommandError::Contradicted`] and [`CommandError::Untrusted`].
 pub fn execute(args: &RunArgs) -> Result<(), CommandError> {
-    let scene = load_any(&args.scene)?;
+    let scene = load_changed(&args.scene, |spec| {
+        let set = args
+            .set
+            .iter()
+            .map(|setting| (setting.path.as_str(), setting.value.clone()));
+        let seed = args.seed.map(|seed| ("run.seed", seed.into()));
+        spec.set_all(&set.chain(seed).collect::<Vec<_>>())
+    })?;
     let out = args
         .out
         .clone()

@@ -3,6 +3,7 @@
 mod causes;
 mod command_line;
 mod refusals;
+mod settings;
 mod slips;
 mod traces;
 

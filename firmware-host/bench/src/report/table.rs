@@ -124,9 +124,12 @@ pub fn shown<T>(figure: &Figure<T>, of: &T) -> String {
         Value::Outcome(outcome) => return outcome.name().to_owned(),
         Value::Number(number) => number.filter(|x| x.is_finite()),
     };
-    let Some(x) = number.map(|x| x * figure.per_si) else {
-        return "–".to_owned();
-    };
+    number.map_or("–".to_owned(), |x| shown_as(figure, x))
+}
+
+/// A number as the figure's, from SI units.
+pub fn shown_as<T>(figure: &Figure<T>, value_si: f64) -> String {
+    let x = value_si * figure.per_si;
     match figure.digits {
         Digits::Significant => figures(x),
         Digits::Fixed(digits) => format!("{x:.digits$}"),

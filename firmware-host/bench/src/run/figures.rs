@@ -1,6 +1,7 @@
 //! The figures of a run, a row each: its key in JSON and in code, where it comes from, how tables head it and show it.
 //! A new figure is a new row here; verdict, JSON, terminal, report and studies take it from there.
 
+use crate::run::columns::{Cell, Column, InColumns, below, columns_of, in_columns};
 use crate::run::judge::Judge;
 use crate::run::outcome::Outcome;
 use crate::run::rig::Rig;
@@ -87,6 +88,8 @@ macro_rules! figures {
                 Self { $($key: { let from: fn(&$source) -> $ty = $from; from(source) },)* }
             }
         }
+
+        in_columns!($name { $($key),* });
     };
 }
 
@@ -171,6 +174,12 @@ pub struct BearingFigures {
     /// Its clearance \[m\].
     pub clearance_m: f64,
 }
+
+in_columns!(BearingFigures {
+    heat_j,
+    temperature_rise_k,
+    clearance_m
+});
 
 /// A run at its end.
 pub(crate) struct Ended<'a> {

@@ -1,5 +1,6 @@
 //! What the supervisor did in a run, in figures.
 
+use crate::run::columns::{Cell, Column, InColumns, below, columns_of, in_columns};
 use crate::run::trace::{ReadOut, Recorder, Said, Trace, TraceRow};
 use serde::Serialize;
 use supervisor::{Events, Mode};
@@ -47,6 +48,21 @@ pub struct Account {
     pub flight_record_crc: Option<u32>,
 }
 
+in_columns!(Supervision {
+    engagements, first_engaged_s, engaged_s, longest_engagement_s, handed_back, sensor_faults, expected_severity_max;
+    .. account
+});
+in_columns!(Account {
+    landings,
+    nuisance_engagements,
+    impact_speed_max_m_s,
+    backward_speed_max_m_s,
+    whirl_limit_m_s,
+    severity_index,
+    coast_down,
+    flight_record_crc
+});
+
 /// Counts what the supervisor does while a run goes on.
 #[derive(Debug, Clone, Default)]
 pub struct SupervisionCount {
@@ -60,7 +76,7 @@ pub struct SupervisionCount {
     longest_engagement_s: f64,
     handed_back: u64,
     sensor_faults: u64,
-    expected_severity_max: f64,
+    expected_severity_max: f32,
 }
 
 impl Recorder for SupervisionCount {
@@ -85,7 +101,7 @@ impl Recorder for SupervisionCount {
         if said.events.contains(Events::ENGAGED) {
             self.first_engaged_s.get_or_insert(t_s);
         }
-        self.expected_severity_max = self.expected_severity_max.max(widened(said.severity));
+        self.expected_severity_max = self.expected_severity_max.max(said.severity);
     }
 }
 
@@ -100,7 +116,7 @@ impl SupervisionCount {
             longest_engagement_s: self.longest_engagement_s,
             handed_back: self.handed_back,
             sensor_faults: self.sensor_faults,
-            expected_severity_max: self.expected_severity_max,
+            expected_severity_max: widened(self.expected_severity_max),
             account: read_out.map(Account::of),
         })
     }

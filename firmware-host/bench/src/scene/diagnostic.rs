@@ -74,6 +74,8 @@ pub(crate) struct SceneText {
     pub(crate) text: String,
     /// Of which plane is spoken; its own tables come before the scene's.
     pub(crate) plane: Option<usize>,
+    /// Whether anybody wants to hear of what is allowed and yet unlikely to be meant.
+    pub(crate) warns: bool,
 }
 
 impl SceneText {
@@ -119,6 +121,7 @@ impl SceneText {
             path: path.to_owned(),
             text,
             plane: None,
+            warns: true,
         })
     }
 
@@ -288,7 +291,7 @@ fn written_otherwise(value: &str) -> Option<String> {
 }
 
 /// What serde says of a value, in the words of scene files.
-fn in_words(message: &str) -> String {
+pub(crate) fn in_words(message: &str) -> String {
     const WORDS: &[(&str, &str)] = &[
         ("expected f64", "expected a number"),
         ("expected u64", "expected a whole number, 0 or greater"),

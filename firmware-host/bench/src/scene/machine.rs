@@ -95,7 +95,11 @@ impl AnyScene {
         Self::resolve(&Spec::parse(name, text)?)
     }
 
-    fn resolve(spec: &Spec) -> Result<Self, SceneError> {
+    /// The scene that keys and values make, every value checked.
+    ///
+    /// # Errors
+    /// [`SceneError`] with file, line and key.
+    pub fn resolve(spec: &Spec) -> Result<Self, SceneError> {
         Ok(match spec.has_planes() {
             true => Self::Machine(Box::new(spec.resolve_machine()?)),
             false => Self::Plane(Box::new(spec.resolve()?)),

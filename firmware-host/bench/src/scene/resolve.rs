@@ -121,8 +121,10 @@ impl PlaneSpec {
             config: supervisor.as_ref(),
             levitated_alone: of.is_none_or(|of| of.levitated_alone),
         };
-        let mut warnings = warnings(self, &plant, told);
-        warnings.extend(unseen(self));
+        let warnings = match text.warns {
+            true => [warnings(self, &plant, told), unseen(self)].concat(),
+            false => Vec::new(),
+        };
         let (run, spin_sensor) = (&written.run, &written.spin_sensor);
         let levitation = written.levitation.as_ref();
         let controller = match of {

@@ -70,7 +70,15 @@ impl Spec {
             path: name.into(),
             text: text.to_owned(),
             plane: None,
+            warns: true,
         })
+    }
+
+    /// The same for scenes without warnings, which cost as much as the rest.
+    #[must_use]
+    pub fn without_warnings(mut self) -> Self {
+        self.text.warns = false;
+        self
     }
 
     fn new(text: SceneText) -> Result<Self, SceneError> {
@@ -100,28 +108,59 @@ impl Spec {
     /// # Errors
     /// [`SceneError`] for a path that no scene has, a value of another type, or a table that lacks other keys.
     pub fn set(&mut self, path: &str, value: impl Into<Value>) -> Result<(), SceneError> {
-        let kind = self.kind(path)?;
-        let value = match (kind, value.into()) {
-            (Some(Kind::Whole), Value::Float(x)) if x.fract() == 0.0 && x.abs() < 2f64.powi(53) => {
-                Value::Integer(x as i64)
-            }
-            (_, value) => value,
-        };
+        self.set_all(&[(path, value.into())])
+    }
+
+    /// Puts several values at their paths, in this order, and all or none.
+    ///
+    /// # Errors
+    /// As [`Self::set`], for the first that is refused by itself, or else for the last.
+    pub fn set_all(&mut self, all: &[(&str, Value)]) -> Result<(), SceneError> {
         let mut values = self.values.clone();
-        match place(&mut values, path) {
-            Some(place) => *place = value,
-            None => {
-                let message = "there is none of this number".to_owned();
-                let help = "add it to the file first".to_owned();
-                return Err(self.text.error_at_key(path, message, Some(help)));
+        for (path, value) in all {
+            let value = match (self.kind(path)?, value) {
+                (Some(Kind::Whole), Value::Float(x))
+                    if x.fract() == 0.0 && x.abs() < 2f64.powi(53) =>
+                {
+                    Value::Integer(*x as i64)
+                }
+                (_, value) => value.clone(),
+            };
+            match place(&mut values, path) {
+                Some(place) => *place = value,
+                None => {
+                    let message = "there is none of this number".to_owned();
+                    let help = "add it to the file first".to_owned();
+                    return Err(self.text.error_at_key(path, message, Some(help)));
+                }
             }
         }
-        let tables = (SceneTables::deserialize(values.clone()))
-            .map_err(|error| self.text.error_of_value(path, error.message(), &values))?;
+        let tables = SceneTables::deserialize(values.clone()).map_err(|error| {
+            let alone = |(path, value): &(&str, Value)| self.clone().set(path, value.clone()).err();
+            let path = all.last().map_or("", |(path, _)| path);
+            match all.len() {
+                0 | 1 => self.text.error_of_value(path, error.message(), &values),
+                _ => (all.iter().find_map(alone))
+                    .unwrap_or_else(|| self.text.error_of_value(path, error.message(), &values)),
+            }
+        })?;
         // With the defaults of what is new.
         self.values = values_of(&tables, &self.text)?;
         self.tables = tables;
         Ok(())
+    }
+
+    /// Files that the scene names, each as it is written at a key that ends with `file`: relative to the scene's folder.
+    pub fn files(&self) -> Vec<&str> {
+        let of_table = |(_, keys, table): (String, &[Key], _)| {
+            let table: &Table = table;
+            let named = keys.iter().filter(|key| names_a_file(key.name));
+            named
+                .filter_map(|key| table.get(key.name)?.as_str())
+                .collect::<Vec<_>>()
+        };
+        let tables = walk(KEYS, "", &self.values).into_iter();
+        tables.flat_map(of_table).collect()
     }
 
     /// How the value at a path is written; `None` for a part of one.
@@ -166,6 +205,12 @@ impl Spec {
         }
         Ok(())
     }
+}
+
+/// Whether the text at a path is that of a file.
+pub(crate) fn names_a_file(path: &str) -> bool {
+    let key = path.rsplit('.').next().unwrap_or(path);
+    key.ends_with("file") || ["python", "library"].contains(&key)
 }
 
 /// The values with all defaults.

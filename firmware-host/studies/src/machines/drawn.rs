@@ -292,8 +292,9 @@ impl Machine {
     }
 }
 
-/// Two and a half times the stiffness that it has to overcome, and a little more than critical damping.
-fn rule_of_thumb(mass_kg: f64, pull_n_m: f64, overcome_n_m: f64) -> LevitationParams {
+/// A levitation controller with two and a half times the stiffness that it has to overcome, and a little more than critical
+/// damping.
+pub fn rule_of_thumb(mass_kg: f64, pull_n_m: f64, overcome_n_m: f64) -> LevitationParams {
     let proportional_n_m = 2.6 * overcome_n_m;
     LevitationParams {
         proportional_n_m,

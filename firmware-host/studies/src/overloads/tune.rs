@@ -53,21 +53,40 @@ fn candidates(scene: &Scene) -> Vec<LevitationParams> {
     all
 }
 
+/// A PD loop that a commissioning engineer would accept: the one whose stiffness is nearest to this, of equals the one with
+/// the lowest peak sensitivity. `None` where none of those that are tried is acceptable on this plant.
+pub fn acceptable_near(scene: &Scene, proportional_n_m: f64) -> Option<LevitationParams> {
+    let sampled = SampledPlant::new(&scene.plant, scene.sample_rate_hz, 1);
+    let off = |params: &LevitationParams| (params.proportional_n_m / proportional_n_m).ln().abs();
+    let accepted = accepted(scene, &sampled, candidates(scene)).into_iter();
+    let best = accepted.min_by(|(a, peak_a), (b, peak_b)| {
+        off(a).total_cmp(&off(b)).then(peak_a.total_cmp(peak_b))
+    });
+    best.map(|(params, _)| params)
+}
+
+/// Those that keep to the limits, with their peak sensitivities.
+fn accepted(
+    scene: &Scene,
+    sampled: &SampledPlant,
+    all: Vec<LevitationParams>,
+) -> Vec<(LevitationParams, f64)> {
+    (all.into_iter())
+        .filter_map(|params| {
+            let (loop_shape, noise) = shape(scene, sampled, &params)?;
+            let fits = loop_shape.peak_sensitivity < SENSITIVITY && noise < IDLE_NOISE;
+            fits.then_some((params, loop_shape.peak_sensitivity))
+        })
+        .collect()
+}
+
 /// The tuned loop: the best PD, or with integrators of 0.1 s or 0.03 s where one of these is better.
 ///
 /// # Errors
 /// [`RunError`] of a run that cannot be trusted.
 pub fn tuned(scene: &Scene) -> Result<Option<LevitationParams>, RunError> {
     let sampled = SampledPlant::new(&scene.plant, scene.sample_rate_hz, 1);
-    let accepted = |all: Vec<LevitationParams>| -> Vec<(LevitationParams, f64)> {
-        (all.into_iter())
-            .filter_map(|params| {
-                let (loop_shape, noise) = shape(scene, &sampled, &params)?;
-                let fits = loop_shape.peak_sensitivity < SENSITIVITY && noise < IDLE_NOISE;
-                fits.then_some((params, loop_shape.peak_sensitivity))
-            })
-            .collect()
-    };
+    let accepted = |all| accepted(scene, &sampled, all);
     let rated = |all: Vec<(LevitationParams, f64)>| {
         (all.par_iter())
             .map(|(params, sensitivity)| {

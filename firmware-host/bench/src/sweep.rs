@@ -1,0 +1,20 @@
+//! A sweep: one scene run again and again with keys that vary by a design, into one file with a row a run and policy.
+//!
+//! A run is its number: values and seed follow from it and from the sweep file alone, so that any part of a sweep may be run
+//! anywhere, in any order, and gives the same rows.
+//!
+//! Files, each importing only from those above it: `error`, `permutation`, `design`, `values`, `file`, `table`, `figures_of`,
+//! `plan`, `store`, `influence`, `summary`, `worst`.
+
+pub mod design;
+pub mod error;
+pub mod figures_of;
+pub mod file;
+pub mod influence;
+pub mod permutation;
+pub mod plan;
+pub mod store;
+pub mod summary;
+pub mod table;
+pub mod values;
+pub mod worst;

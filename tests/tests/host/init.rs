@@ -1,0 +1,111 @@
+//! `init`: from numbers to a scene that runs.
+
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+use std::process::{Output, Stdio};
+use system_tests::{host, run_scene};
+use tempfile::TempDir;
+
+const SMALL: &str = "--sample-rate-hz 20000 --mass-kg 10 --stiffness-n-m -2e5 --clearance-m 2e-4 \
+    --contact-stiffness-n-m 1e9 --force-max-n 1000 --lag-s 1.6e-4 --friction 0.15 --noise-rms-m 1e-6";
+/// A horizontal one of 200 kg on a shaft, slow, with a late and weak magnet.
+const LARGE: &str = "--sample-rate-hz 10000 --mass-kg 200 --stiffness-n-m 1e6 --clearance-m 4e-4 \
+    --contact-stiffness-n-m 3e8 --force-max-n 6000 --lag-s 5e-4 --friction 0.25 --noise-rms-m 2e-6 \
+    --load-n 1962 --spin-hz -60 --contact-radius-m 0.15";
+
+fn init(file: &Path, numbers: &str) -> Output {
+    let mut init = host();
+    init.arg("init").arg(file).args(numbers.split_whitespace());
+    init.stdin(Stdio::null()).output().expect("the host starts")
+}
+
+#[test]
+fn a_scene_from_nine_numbers_runs_and_is_levitated() {
+    let folder = TempDir::new().unwrap();
+    for (name, numbers) in [("small", SMALL), ("large", LARGE)] {
+        let file = folder.path().join(format!("{name}.toml"));
+        let written = init(&file, numbers);
+        let error = String::from_utf8_lossy(&written.stderr).into_owned();
+        assert!(
+            written.status.success() && error.is_empty(),
+            "{name}: {error}"
+        );
+        assert!(String::from_utf8_lossy(&written.stdout).contains("firmware-host run"));
+        let text = fs::read_to_string(&file).unwrap();
+        assert!(text.starts_with("#:schema ./scene.schema.json\n"));
+        assert_eq!(
+            text.matches("# assumed: put in your own").count(),
+            if name == "small" { 2 } else { 0 }
+        );
+        let schema: Value =
+            serde_json::from_slice(&fs::read(folder.path().join("scene.schema.json")).unwrap())
+                .unwrap();
+        assert!(schema["properties"]["rotor"].is_object());
+
+        let out = folder.path().join("out");
+        let ran = run_scene(&file, &out, &["--json", "--no-trace"]);
+        let error = String::from_utf8_lossy(&ran.stderr).into_owned();
+        assert!(ran.status.success(), "{name}: {error}");
+        let verdict: Value = serde_json::from_slice(&ran.stdout).unwrap();
+        let policies = &verdict["policies"];
+        assert_eq!(policies["supervisor"]["outcome"], "recovered", "{name}");
+        assert!(
+            policies["supervisor"]["impacts"].as_u64().unwrap() > 0,
+            "{name}"
+        );
+        // Before the overload and without it the controller holds the rotor and never touches.
+        let alone = [
+            "--json",
+            "--no-trace",
+            "--set",
+            "disturbance=[]",
+            "--set",
+            "run.policies=[\"levitation\"]",
+        ];
+        let ran = run_scene(&file, &out, &alone);
+        let verdict: Value = serde_json::from_slice(&ran.stdout).unwrap();
+        let levitation = &verdict["policies"]["levitation"];
+        assert_eq!(
+            (&levitation["outcome"], &levitation["impacts"]),
+            (&"recovered".into(), &0.into()),
+            "{name}"
+        );
+
+        let again = init(&file, numbers);
+        assert_eq!(again.status.code(), Some(2));
+        assert!(String::from_utf8_lossy(&again.stderr).contains("is there already"));
+        assert_eq!(fs::read_to_string(&file).unwrap(), text);
+    }
+}
+
+#[test]
+fn what_is_missing_or_wrong_is_named_and_nothing_is_written() {
+    let folder = TempDir::new().unwrap();
+    let file = folder.path().join("machine.toml");
+    let cases = [
+        ("--mass-kg 10", "", "--mass-kg missing"),
+        (
+            "--mass-kg 10",
+            "--mass-kg -1",
+            "--mass-kg is -1, expected a finite number greater than 0",
+        ),
+        (
+            "--friction 0.15 --noise-rms-m 1e-6",
+            "",
+            "--friction, --noise-rms-m missing",
+        ),
+        // It falls away before a force can come, …
+        ("1.6e-4", "5e-2", "no levitation controller"),
+        // … and pulls more than the cap.
+        ("-2e5", "-2e9", "cannot lift the rotor off"),
+    ];
+    for (from, to, said) in cases {
+        assert!(SMALL.contains(from));
+        let refused = init(&file, &SMALL.replace(from, to));
+        let error = String::from_utf8_lossy(&refused.stderr);
+        assert_eq!(refused.status.code(), Some(2), "{error}");
+        assert!(error.contains(said), "{said} is not in\n{error}");
+    }
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+}
