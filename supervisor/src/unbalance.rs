@@ -45,7 +45,8 @@ impl<S: Scalar> Turn<S> {
         let (angle, half_behind) = (of_one * ticks, of_one * coeffs.flight_lag);
         let seen = half_behind.abs() <= S::from_f32(MOST_LAG) && angle.abs() <= S::ONE;
         let rate = rate.abs();
-        if !UNBALANCE || !(seen && rate >= S::from_f32(SLOWEST)) || spin == Spin::Unknown {
+        let usable = UNBALANCE && seen && rate >= S::from_f32(SLOWEST);
+        if !usable || spin == Spin::Unknown {
             return None;
         }
         Some(Self {

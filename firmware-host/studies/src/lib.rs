@@ -112,4 +112,9 @@ pub const STUDIES: &[Study] = &[
         about: "the supervisor of both planes against levitation alone on rotors drawn at random: rigid, gyroscopic, flexible",
         run: whole_rotors::study::study,
     },
+    Study {
+        name: "worst-tick",
+        about: "the dearest tick on an emulated Cortex-M4, looked for by changing the dearest so far",
+        run: on_target::worst_tick::study,
+    },
 ];

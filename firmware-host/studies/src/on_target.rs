@@ -20,3 +20,4 @@ pub mod results;
 pub mod study;
 pub mod tape;
 pub mod vectors;
+pub mod worst_tick;

@@ -206,23 +206,18 @@ pub unsafe extern "C" fn amb_tick(
     let done = sample.and_then(|sample| {
         // SAFETY: the caller's promise.
         let mut lease = unsafe { halves::ticker(supervisor) }?;
-        Ok(lease.content().tick(&sample.into()))
+        place.put(lease.content().tick(&sample.into()).into());
+        Ok(())
     });
     #[cfg(feature = "planted-panic")]
     {
         let few = [1_u8, 2, 3];
         core::hint::black_box(few[core::hint::black_box(2_usize)]);
     }
-    match done {
-        Ok(command) => {
-            place.put(command.into());
-            Code::OK
-        }
-        Err(code) => {
-            place.put(CCommand::NO_FORCE);
-            code
-        }
+    if done.is_err() {
+        place.put(CCommand::NO_FORCE);
     }
+    Code::from_result(done)
 }
 
 /// Gives `result` what is taken from the reading half of a supervisor, or that of a rotor.

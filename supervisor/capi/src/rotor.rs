@@ -98,21 +98,16 @@ pub unsafe extern "C" fn amb_rotor_tick(
     let done = samples.and_then(|samples| {
         // SAFETY: the caller's promise.
         let mut lease = unsafe { halves::ticker(rotor) }?;
-        Ok(lease.content().tick(&samples.map(Into::into)))
+        place.put(lease.content().tick(&samples.map(Into::into)).into());
+        Ok(())
     });
-    match done {
-        Ok(command) => {
-            place.put(command.into());
-            Code::OK
-        }
-        Err(code) => {
-            place.put(CRotorCommand {
-                planes: [CCommand::NO_FORCE; 2],
-                ..CRotorCommand::default()
-            });
-            code
-        }
+    if done.is_err() {
+        place.put(CRotorCommand {
+            planes: [CCommand::NO_FORCE; 2],
+            ..CRotorCommand::default()
+        });
     }
+    Code::from_result(done)
 }
 
 /// A plane that there is.

@@ -133,12 +133,12 @@ fn calls_need_little_stack() {
         ("config-for-bearing", 776),
         ("config-for-rotor", 2316),
         ("init", 1676),
-        ("tick", 720),
+        ("tick", 680),
         ("reconfigure", 1256),
-        ("self-test", 1496),
+        ("self-test", 1344),
         ("rotor-init", 2820),
         ("rotor-reconfigure", 2068),
-        ("rotor-tick", 1048),
+        ("rotor-tick", 1248),
     ] {
         let needed = bytes(call);
         assert!(needed <= most && 10 * needed >= 9 * most, "{call}: {said}");

@@ -121,12 +121,20 @@ fn core_of<S: Scalar>(config: &Config) -> Core<S, 64> {
     Core::new(&Prepared::new(config).unwrap())
 }
 
-/// A rotor that is thrown onto its bearing.
+/// Ticks until all is over.
+const THROW: u32 = 2000;
+
+/// A rotor that is thrown onto its bearing and comes back to the middle.
 fn thrown(sequence: u32) -> Sample {
+    let radius_m = match sequence {
+        0..10 => 2.2e-5 * sequence as f32,
+        10..60 => 2.2e-4 - 4e-6 * (sequence - 10) as f32,
+        _ => 2e-5 + 1e-7 * (sequence % 3) as f32,
+    };
     Sample {
         sequence,
         status: Status::SPIN_VALID | Status::BEARING_ON,
-        position_m: [1e-5 + 2e-5 * sequence.min(9) as f32, -2e-5],
+        position_m: [radius_m, -2e-5 + 1e-7 * (sequence % 5) as f32],
         spin_rad_s: 1000.0,
         ..Sample::default()
     }
@@ -137,7 +145,7 @@ fn thrown(sequence: u32) -> Sample {
 fn self_test_leaves_a_new_supervisor() {
     let new = || Supervisor::<64>::new(&Config::example()).unwrap();
     let (mut used, mut untouched) = (new(), new());
-    for sequence in 0..200 {
+    for sequence in 0..THROW {
         used.tick(&thrown(sequence));
     }
     assert!(used.record().is_some() && used.report().landings > 0);
@@ -146,7 +154,7 @@ fn self_test_leaves_a_new_supervisor() {
     assert_eq!(used.next_event(), None);
     assert!(used.record().is_none());
     assert_eq!(used.report(), untouched.report());
-    for sequence in 0..200 {
+    for sequence in 0..THROW {
         let sample = thrown(sequence);
         assert_eq!(used.tick(&sample), untouched.tick(&sample), "{sequence}");
     }

@@ -233,12 +233,11 @@ impl Store {
         let path = self.chunk(chunk);
         std::fs::create_dir_all(self.chunks()).map_err(SweepError::write(&path))?;
         let mut file = temporary(&self.chunks()).map_err(SweepError::write(&path))?;
-        let write = || {
+        let mut write = || {
             let mut rows_file = RowsFile::new(file.as_file_mut(), &plan.columns())?;
             rows_file.group(rows)?;
             rows_file.end()
         };
-        let mut write = write;
         write().map_err(SweepError::written(&path))?;
         persist(file, &path)
     }

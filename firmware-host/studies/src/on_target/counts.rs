@@ -49,16 +49,23 @@ pub struct Counts {
     pub modes: Vec<OfMode>,
 }
 
+/// Instructions and mode of each tick, of the image's file.
+pub fn ticks_of(bytes: &[u8]) -> impl Iterator<Item = (u32, u8)> {
+    let (words, _) = bytes.as_chunks::<4>();
+    words.iter().map(|[low, middle, high, mode]| {
+        let instructions = u32::from_le_bytes([*low, *middle, *high, 0]);
+        (instructions, *mode)
+    })
+}
+
 /// Reads the image's file; `None` if it is not one.
 pub fn counts_of(bytes: &[u8]) -> Option<Counts> {
-    let (words, []) = bytes.as_chunks::<4>() else {
+    let ([], true) = (bytes.as_chunks::<4>().1, !bytes.is_empty()) else {
         return None;
     };
     let mut by_mode: Vec<(u8, Vec<u32>)> = Vec::new();
-    let mut all = Vec::with_capacity(words.len());
-    for word in words {
-        let [low, middle, high, mode] = *word;
-        let instructions = u32::from_le_bytes([low, middle, high, 0]);
+    let mut all = Vec::with_capacity(bytes.len() / 4);
+    for (instructions, mode) in ticks_of(bytes) {
         all.push(instructions);
         match by_mode.iter_mut().find(|(m, _)| *m == mode) {
             Some((_, counts)) => counts.push(instructions),

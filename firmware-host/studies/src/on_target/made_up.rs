@@ -27,7 +27,11 @@ pub fn made_up(number: Number, ticks: usize) -> Result<(Vec<Piece>, usize), Cata
     made_up_by(SEED, number, ticks)
 }
 
-fn made_up_by(
+/// The same by another seed.
+///
+/// # Errors
+/// As [`made_up`].
+pub(super) fn made_up_by(
     seed: u64,
     number: Number,
     ticks: usize,
@@ -40,7 +44,7 @@ fn made_up_by(
     let before = configs.len();
     configs.retain(|config| number.fits(config));
     let mut left_out = before - configs.len();
-    let mut chance = Chance(ChaCha8Rng::seed_from_u64(seed));
+    let mut chance = Chance::new(seed);
     let mut pieces = Vec::new();
     let mut left = ticks;
     while left > 0 && !configs.is_empty() {
@@ -64,20 +68,23 @@ fn made_up_by(
 }
 
 /// Draws.
-struct Chance(ChaCha8Rng);
+pub(super) struct Chance(ChaCha8Rng);
 
 impl Chance {
-    fn below(&mut self, n: usize) -> usize {
+    pub(super) fn new(seed: u64) -> Self {
+        Self(ChaCha8Rng::seed_from_u64(seed))
+    }
+    pub(super) fn below(&mut self, n: usize) -> usize {
         self.0.next_u64() as usize % n
     }
-    fn one_in(&mut self, n: usize) -> bool {
+    pub(super) fn one_in(&mut self, n: usize) -> bool {
         self.below(n) == 0
     }
     /// From 0 to 1.
     fn share(&mut self) -> f32 {
         (self.0.next_u32() >> 8) as f32 / 16_777_216.0
     }
-    fn between(&mut self, low: f32, high: f32) -> f32 {
+    pub(super) fn between(&mut self, low: f32, high: f32) -> f32 {
         low + (high - low) * self.share()
     }
     fn any_bits(&mut self) -> f32 {

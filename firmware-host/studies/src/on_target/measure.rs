@@ -164,14 +164,7 @@ fn count(
     stream_folder: &Path,
     limit: Duration,
 ) -> Result<Counted, TargetError> {
-    let image = project.image(machine, image_name);
-    // A folder of its own: machines write files of the same name.
-    let folder = TempDir::with_prefix("supervisor-counts-")?;
-    let stream = Path::new("stream.bin");
-    std::fs::copy(stream_folder.join(stream), folder.path().join(stream))?;
-    let time = Time::Counted { shift: SHIFT };
-    let lines = emulator::run(machine, &image, folder.path(), time, limit)?;
-    let bytes = std::fs::read(folder.path().join("counts.bin"))?;
+    let (lines, bytes) = counted(project, (machine, image_name), stream_folder, limit)?;
     let counts = counts_of(&bytes).ok_or(EmulatorError::Silent {
         image: "count",
         machine: machine.name,
@@ -182,6 +175,37 @@ fn count(
         stack_bytes: number(&lines, ("count", machine), "stack_bytes")?,
         ram_bytes: number(&lines, ("count", machine), "ram_bytes")?,
     })
+}
+
+/// The words that an image which counts has written of the stream in a folder.
+///
+/// # Errors
+/// [`TargetError`].
+pub(super) fn count_words(
+    project: &Project,
+    of: (&Machine, &str),
+    stream_folder: &Path,
+    limit: Duration,
+) -> Result<Vec<u8>, TargetError> {
+    Ok(counted(project, of, stream_folder, limit)?.1)
+}
+
+/// What it has said, and its words.
+fn counted(
+    project: &Project,
+    (machine, image_name): (&Machine, &str),
+    stream_folder: &Path,
+    limit: Duration,
+) -> Result<(BTreeMap<String, String>, Vec<u8>), TargetError> {
+    let image = project.image(machine, image_name);
+    // A folder of its own: machines write files of the same name.
+    let folder = TempDir::with_prefix("supervisor-counts-")?;
+    let stream = Path::new("stream.bin");
+    std::fs::copy(stream_folder.join(stream), folder.path().join(stream))?;
+    let time = Time::Counted { shift: SHIFT };
+    let lines = emulator::run(machine, &image, folder.path(), time, limit)?;
+    let bytes = std::fs::read(folder.path().join("counts.bin"))?;
+    Ok((lines, bytes))
 }
 
 /// Everything of one machine but the verdicts on its figures; its images have been built.
