@@ -172,7 +172,7 @@ fn change(samples: &mut [SampleBits], at: usize, donor: &SampleBits, chance: &mu
 /// # Errors
 /// [`TargetError`].
 pub fn study(extent: Extent, progress: &dyn Progress) -> Result<Report, StudyError> {
-    let rounds: u64 = extent.pick(10, 400);
+    let rounds: u64 = extent.pick(10, 150);
     emulator::version()?;
     let project = Project::around(Path::new("."))?;
     let usual = |m: &&Machine| m.name == "M4F";
@@ -221,7 +221,7 @@ pub fn study(extent: Extent, progress: &dyn Progress) -> Result<Report, StudyErr
             ),
             Claim::at_most(
                 "dearest found, over that of the counted stream",
-                1.15,
+                1.3,
                 f64::from(found) / f64::from(counted.max(1)),
             ),
         ],
