@@ -65,7 +65,7 @@ impl Project {
         .ok_or_else(|| ImageError::NoProject(folder.to_owned()))
     }
 
-    /// Builds every image for a target.
+    /// Builds the images for a target; of a build of its own, those that are run or measured of it.
     ///
     /// # Errors
     /// [`ImageError`].
@@ -75,16 +75,20 @@ impl Project {
         let mut cargo = Command::new(cargo);
         cargo
             .current_dir(&self.root)
-            .args(["build", "-p", "firmware-image", "--bins"])
+            .args(["build", "-p", "firmware-image"])
             .args(["--profile", "fw", "--target", target])
             .args(["--target-dir", &build.folder()]);
         match build {
-            Build::Usual => {}
+            Build::Usual => {
+                cargo.arg("--bins");
+            }
             Build::For(processor) => {
                 cargo.env("RUSTFLAGS", format!("-C target-cpu={processor}"));
+                cargo.args(FLOATS.map(|image| format!("--bin={image}")));
             }
             Build::Bare => {
                 cargo.arg("--no-default-features");
+                cargo.args(FLOATS.map(|image| format!("--bin={image}")));
             }
         }
         let output = cargo.output().map_err(ImageError::NoCargo)?;
@@ -138,6 +142,8 @@ impl Project {
     }
 }
 
+/// Images in floats that are measured.
+const FLOATS: [&str; 5] = ["panic-free", "replay", "count", "count-pair", "in-the-loop"];
 const MANIFEST: &str = "firmware-host/image/Cargo.toml";
 
 /// What the supervisor takes of the flash, with everything that it calls.
