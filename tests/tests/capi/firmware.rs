@@ -138,7 +138,7 @@ fn calls_need_little_stack() {
         ("self-test", 1344),
         ("rotor-init", 2820),
         ("rotor-reconfigure", 2068),
-        ("rotor-tick", 1248),
+        ("rotor-tick", 1176),
     ] {
         let needed = bytes(call);
         assert!(needed <= most && 10 * needed >= 9 * most, "{call}: {said}");
