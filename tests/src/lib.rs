@@ -1,5 +1,6 @@
 //! What several tests share: plants, scenes, golden tables.
 
+pub mod bearing;
 pub mod bench;
 pub mod cost;
 pub mod golden;

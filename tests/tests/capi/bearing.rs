@@ -3,7 +3,8 @@
 use crate::firmware::said_by;
 use crate::library::{Target, beside, built, capi, good, host_program};
 use std::process::Command;
-use supervisor::{Bearing, Config};
+use supervisor::Config;
+use system_tests::bearing::bearing;
 
 /// Those of `bearing.c`.
 const NUMBERS: [[f32; 9]; 3] = [
@@ -13,29 +14,7 @@ const NUMBERS: [[f32; 9]; 3] = [
 ];
 
 fn of_rust() -> String {
-    let bearings = NUMBERS.map(
-        |[
-            period,
-            mass,
-            stiffness,
-            clearance,
-            cap,
-            lag,
-            friction,
-            contact,
-            noise,
-        ]| Bearing {
-            sample_period_s: period,
-            mass_kg: mass,
-            stiffness_n_m: stiffness,
-            clearance_m: clearance,
-            force_max_n: cap,
-            amplifier_lag_s: lag,
-            friction_coefficient: friction,
-            contact_stiffness_n_m: contact,
-            sensor_noise_m: noise,
-        },
-    );
+    let bearings = NUMBERS.map(bearing);
     let [first, second, third] = bearings.map(|b| Config::for_bearing(&b));
     let pair = [bearings[0], bearings[1]];
     let ends = Config::for_rotor(&crate::rotor::shaft(), &pair);

@@ -5,6 +5,7 @@ use std::hint::black_box;
 use supervisor::{
     Bearing, Config, DefaultRule, PARAMETERS, Place, Rotor, Sample, Shaft, Supervisor,
 };
+use system_tests::bearing::bearing;
 
 const EXAMPLE: Bearing = Bearing {
     sample_period_s: 50e-6,
@@ -30,31 +31,6 @@ const NAMES: [&str; 9] = [
     "contact_stiffness_n_m",
     "sensor_step_m",
 ];
-
-fn bearing(numbers: [f32; 9]) -> Bearing {
-    let [
-        period,
-        mass,
-        stiffness,
-        clearance,
-        cap,
-        lag,
-        friction,
-        contact,
-        noise,
-    ] = numbers;
-    Bearing {
-        sample_period_s: period,
-        mass_kg: mass,
-        stiffness_n_m: stiffness,
-        clearance_m: clearance,
-        force_max_n: cap,
-        amplifier_lag_s: lag,
-        friction_coefficient: friction,
-        contact_stiffness_n_m: contact,
-        sensor_noise_m: noise,
-    }
-}
 
 fn numbers(b: &Bearing) -> [f32; 9] {
     [

@@ -15,6 +15,14 @@ fn words(row: &str) -> (usize, Vec<u32>) {
 /// A supervisor under test, from bits to bits: those of a sample behind sequence and status, and those of a command.
 type Port = Box<dyn FnMut(u32, Status, [u32; 7]) -> [u32; 9]>;
 
+/// The columns of a command.
+fn answer([f_x, f_y, o_x, o_y, severity]: [u32; 5], said: [u32; 4]) -> [u32; 9] {
+    let [mode, limits, events, integrator] = said;
+    [
+        f_x, f_y, o_x, o_y, severity, mode, limits, events, integrator,
+    ]
+}
+
 fn float(config: &Config) -> Port {
     let mut supervisor = Box::new(Supervisor::<16>::new(config).unwrap());
     Box::new(move |sequence, status, bits| {
@@ -28,20 +36,14 @@ fn float(config: &Config) -> Port {
             applied_n: [a_x, a_y],
         });
         let ([f_x, f_y], [o_x, o_y]) = (command.force_n, command.own_n);
-        let [f_x, f_y, o_x, o_y, severity] =
-            [f_x, f_y, o_x, o_y, command.severity].map(f32::to_bits);
-        let (limits, events) = (command.limits.bits(), command.events.bits());
-        [
-            f_x,
-            f_y,
-            o_x,
-            o_y,
-            severity,
+        let numbers = [f_x, f_y, o_x, o_y, command.severity].map(f32::to_bits);
+        let said = [
             command.mode as u32,
-            limits,
-            events,
+            command.limits.bits(),
+            command.events.bits(),
             command.integrator as u32,
-        ]
+        ];
+        answer(numbers, said)
     })
 }
 
@@ -58,20 +60,14 @@ fn fixed(config: &Config) -> Port {
             applied: [a_x, a_y],
         });
         let ([f_x, f_y], [o_x, o_y]) = (command.force, command.own);
-        let words = [f_x, f_y, o_x, o_y, command.severity].map(|q| q.to_bits() as u32);
-        let [f_x, f_y, o_x, o_y, severity] = words;
-        let (limits, events) = (command.limits.bits(), command.events.bits());
-        [
-            f_x,
-            f_y,
-            o_x,
-            o_y,
-            severity,
+        let numbers = [f_x, f_y, o_x, o_y, command.severity].map(|q| q.to_bits() as u32);
+        let said = [
             command.mode as u32,
-            limits,
-            events,
+            command.limits.bits(),
+            command.events.bits(),
             command.integrator as u32,
-        ]
+        ];
+        answer(numbers, said)
     })
 }
 

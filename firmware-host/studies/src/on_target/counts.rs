@@ -60,9 +60,9 @@ pub fn ticks_of(bytes: &[u8]) -> impl Iterator<Item = (u32, u8)> {
 
 /// Reads the image's file; `None` if it is not one.
 pub fn counts_of(bytes: &[u8]) -> Option<Counts> {
-    let ([], true) = (bytes.as_chunks::<4>().1, !bytes.is_empty()) else {
+    if !bytes.len().is_multiple_of(4) {
         return None;
-    };
+    }
     let mut by_mode: Vec<(u8, Vec<u32>)> = Vec::new();
     let mut all = Vec::with_capacity(bytes.len() / 4);
     for (instructions, mode) in ticks_of(bytes) {

@@ -205,6 +205,8 @@ pub fn study(extent: Extent, progress: &dyn Progress) -> Result<Report, StudyErr
     let dearest = search.kept.first();
     let found = dearest.map_or(0, |dear| dear.instructions);
     let mode = dearest.and_then(|dear| mode_of(dear.mode));
+    let over_counted = f64::from(found) / f64::from(counted.max(1));
+    let dearest_found = "dearest found, over that of the counted stream";
     let story = format!(
         "On {}: the dearest tick of the stream that budgets are of has {counted} instructions, the dearest that was found {found}; it ends in mode {}. Rounds of {ROUND_TICKS} ticks, a quarter of them drawn anew, the others from the {KEPT} dearest so far with some of the last {CHANGED} samples before the dearest tick changed.",
         machine.text,
@@ -214,16 +216,8 @@ pub fn study(extent: Extent, progress: &dyn Progress) -> Result<Report, StudyErr
     Ok(Report {
         title: "The worst tick".to_owned(),
         claims: vec![
-            Claim::at_least(
-                "dearest found, over that of the counted stream",
-                1.0,
-                f64::from(found) / f64::from(counted.max(1)),
-            ),
-            Claim::at_most(
-                "dearest found, over that of the counted stream",
-                1.3,
-                f64::from(found) / f64::from(counted.max(1)),
-            ),
+            Claim::at_least(dearest_found, 1.0, over_counted),
+            Claim::at_most(dearest_found, 1.3, over_counted),
         ],
         cases: search.ticks as u64,
         chapters: vec![Chapter::new(
