@@ -47,7 +47,7 @@ const ONLY_PARSED: [(&str, &str); 14] = [
 ];
 
 /// What is not this program: what it needs, or what builds and runs firmware.
-const OTHERS: [(&str, &str); 17] = [
+const OTHERS: [(&str, &str); 18] = [
     ("git clone", "fetches the project"),
     ("curl", "installs Rust"),
     ("apt-get", "installs packages"),
@@ -56,6 +56,10 @@ const OTHERS: [(&str, &str); 17] = [
     ("tests/peers/run", "installs other people's integrators"),
     ("cargo rustc", "the tests of the C library do it"),
     ("cargo build", "the tests of the images do it"),
+    (
+        "cargo build --locked --release --manifest-path firmware-host/boards",
+        ".ci/run does it",
+    ),
     ("cc -std=c99", "the tests of the C library do it"),
     ("cc -O2 -shared", "the tests of own controllers do it"),
     ("./two_planes", "the tests of the C library do it"),
