@@ -9,6 +9,7 @@ pub mod plants;
 pub mod recording;
 pub mod requirements;
 pub mod rig;
+pub mod slurm;
 pub mod storm;
 pub mod target;
 

@@ -63,6 +63,11 @@ pub const STUDIES: &[Study] = &[
         run: accuracy::study::study,
     },
     Study {
+        name: "cycles",
+        about: "what a tick takes in cycles, by a model of each processor and a trace of every instruction",
+        run: on_target::cycles::study,
+    },
+    Study {
         name: "harm",
         about: "the supervisor against levitation alone on machines drawn at random, with sensors as they are",
         run: harm::study::study,

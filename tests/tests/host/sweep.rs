@@ -2,6 +2,7 @@
 
 mod refusals;
 mod rows;
+mod slurm;
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -10,6 +10,7 @@ use super::{checked, exit, file, planted, report, stack};
 use crate::under_test::Ticked;
 use crate::wire::{self, SampleBits, TICK_BYTES};
 use core::hint::black_box;
+use core::mem::{MaybeUninit, transmute};
 use core::sync::atomic::{AtomicU32, Ordering};
 use cortex_m::peripheral::SYST;
 use cortex_m::peripheral::syst::SystClkSource;
@@ -33,16 +34,39 @@ const INSTRUCTIONS: u32 = 125;
 /// Turns of [`turns`].
 static TURNS: AtomicU32 = AtomicU32::new(1);
 
-/// What is counted; `R` is where the compiler lets the caller make room for it.
-type Work<U, R> = fn(&mut U, &<U as Ticked>::Sample) -> R;
+/// What is counted: a tick, or what takes the place of one and commands nothing.
+type Work<U> = fn(&mut U, &<U as Ticked>::Sample) -> MaybeUninit<<U as Ticked>::Command>;
+
+// A function of one instruction: what a compiler makes of an empty one has a frame, too.
+core::arch::global_asm!(
+    ".pushsection .text.counted_nothing",
+    ".thumb_func",
+    ".global counted_nothing",
+    ".type counted_nothing, %function",
+    "counted_nothing: bx lr",
+    ".size counted_nothing, . - counted_nothing",
+    ".popsection",
+);
+unsafe extern "Rust" {
+    fn counted_nothing();
+}
 
 /// As a tick, but that it does nothing: one instruction, the return.
-#[inline(never)]
-fn nothing<U: Ticked>(_: &mut U, _: &U::Sample) {}
+fn nothing<U: Ticked>() -> Work<U> {
+    // SAFETY: it returns at once: it looks at no argument and writes no command, which the caller does not expect either.
+    black_box(unsafe { transmute::<unsafe extern "Rust" fn(), Work<U>>(counted_nothing) })
+}
+
+/// A tick with the recorder's part.
+fn tick<U: Ticked>() -> Work<U> {
+    type Tick<U> = fn(&mut U, &<U as Ticked>::Sample) -> <U as Ticked>::Command;
+    // SAFETY: `MaybeUninit` is transparent, so that a function which returns it is called like one that returns what is in it.
+    black_box(unsafe { transmute::<Tick<U>, Work<U>>(U::TICK) })
+}
 
 /// Two instructions a turn, and a few around them.
 #[inline(never)]
-fn turns<U: Ticked>(_: &mut U, _: &U::Sample) {
+fn turns<U: Ticked>(_: &mut U, _: &U::Sample) -> MaybeUninit<U::Command> {
     let turns = TURNS.load(Ordering::Relaxed);
     // SAFETY: the loop touches one register, which is told, and the flags; the number is not zero.
     unsafe {
@@ -54,11 +78,12 @@ fn turns<U: Ticked>(_: &mut U, _: &U::Sample) {
             options(nomem, nostack)
         );
     }
+    MaybeUninit::uninit()
 }
 
 /// Whether the clock counts instructions: a loop of 3000 turns has 4000 more than one of 1000.
 fn clock_is_right<U: Ticked>(supervisor: &mut U) -> bool {
-    let work: Work<U, ()> = black_box(turns);
+    let work: Work<U> = black_box(turns);
     let sample = U::sample(&SampleBits::default());
     let mut count = |turns| {
         TURNS.store(turns, Ordering::Relaxed);
@@ -70,7 +95,11 @@ fn clock_is_right<U: Ticked>(supervisor: &mut U) -> bool {
 
 /// Instructions between two looks at SysTick with a call between them.
 #[inline(never)]
-fn between<U: Ticked, R>(work: Work<U, R>, supervisor: &mut U, sample: &U::Sample) -> (R, u32) {
+fn between<U: Ticked>(
+    work: Work<U>,
+    supervisor: &mut U,
+    sample: &U::Sample,
+) -> (MaybeUninit<U::Command>, u32) {
     let before = SYST::get_current();
     let result = work(supervisor, sample);
     let after = SYST::get_current();
@@ -123,16 +152,16 @@ pub fn run<U: Ticked>() -> ! {
             {
                 report::failed("stream.bin ends within a segment")
             }
-            for (tick, word) in chunk.iter().zip(&mut words).take(now) {
-                let Some((sample, _)) = tick.split_first_chunk() else {
+            for (bytes, word) in chunk.iter().zip(&mut words).take(now) {
+                let Some((sample, _)) = bytes.split_first_chunk() else {
                     break;
                 };
                 let sample = U::sample(&wire::sample_of(sample));
-                let work: Work<U, ()> = black_box(nothing);
-                let ((), empty) = between(work, &mut supervisor, &sample);
-                let work: Work<U, U::Command> = black_box(U::TICK);
+                let (_, empty) = between(nothing(), &mut supervisor, &sample);
                 let painted = stack::paint();
-                let (command, full) = between(work, &mut supervisor, &sample);
+                let (command, full) = between(tick(), &mut supervisor, &sample);
+                // SAFETY: a tick has returned it.
+                let command = unsafe { command.assume_init() };
                 stack_bytes = stack_bytes.max(painted.used_bytes());
                 // The empty call's return is one; a tick has its own.
                 let instructions = full.wrapping_sub(empty).wrapping_add(1);

@@ -4,7 +4,7 @@ use super::machines::Machine;
 use std::collections::BTreeMap;
 use std::io::{self, Read};
 use std::path::Path;
-use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
+use std::process::{Child, ChildStderr, ChildStdin, ChildStdout, Command, Stdio};
 use std::time::{Duration, Instant};
 
 /// The emulator.
@@ -93,6 +93,21 @@ impl Running {
         time: Time,
         input: Stdio,
     ) -> Result<Self, EmulatorError> {
+        Self::start_with(machine, image, folder, time, input, &[])
+    }
+
+    /// The same with more arguments, e.g. what it is to log.
+    ///
+    /// # Errors
+    /// [`EmulatorError::Missing`], [`EmulatorError::Start`].
+    pub fn start_with(
+        machine: &Machine,
+        image: &Path,
+        folder: &Path,
+        time: Time,
+        input: Stdio,
+        more: &[&str],
+    ) -> Result<Self, EmulatorError> {
         let mut command = Command::new(QEMU);
         command
             .current_dir(folder)
@@ -104,6 +119,7 @@ impl Running {
             command.args(["-icount", &format!("shift={shift},sleep=off")]);
         }
         let child = command
+            .args(more)
             .arg("-kernel")
             .arg(image)
             .stdin(input)
@@ -120,6 +136,11 @@ impl Running {
     /// The console of an emulator that was started with a piped input, once.
     pub fn console(&mut self) -> Option<(ChildStdin, ChildStdout)> {
         self.child.stdin.take().zip(self.child.stdout.take())
+    }
+
+    /// What it logs and says, once; [`wait`](Self::wait) then has none of it.
+    pub fn log(&mut self) -> Option<ChildStderr> {
+        self.child.stderr.take()
     }
 
     /// Waits for the end. `None` after the limit.

@@ -59,7 +59,7 @@ pub enum TargetError {
 /// A replay may take so long for each million ticks.
 const LIMIT_S_PER_MILLION: u64 = 600;
 /// The instructions of a tick on the emulator's clock, 2^10 ns each: what the image `count` knows too.
-const SHIFT: u8 = 10;
+pub(super) const SHIFT: u8 = 10;
 
 /// The streams of one kind of numbers on disk, where the emulator reads them.
 #[derive(Debug)]
