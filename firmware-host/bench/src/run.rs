@@ -16,5 +16,6 @@ pub mod supervision;
 mod swings;
 pub mod trace;
 pub mod trace_file;
+pub mod trace_table;
 pub mod verdict;
 pub mod verify;

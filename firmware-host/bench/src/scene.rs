@@ -143,8 +143,12 @@ impl Scene {
     /// External force on the rotor: weight, loads, and what shaft and magnets do about their own centre more than about that
     /// of the plant. Between two [edges](Self::edges) nothing begins or ends.
     pub fn external(&self) -> Loads {
-        let constant_n = self.weight_n - self.plant.rotor.stiffness_n_m * self.centre_offset_m;
-        Loads::new(constant_n, self.loads().collect())
+        Loads::new(self.constant_n(), self.loads().collect())
+    }
+
+    /// What of it never changes \[N\].
+    pub fn constant_n(&self) -> V2 {
+        self.weight_n - self.plant.rotor.stiffness_n_m * self.centre_offset_m
     }
 
     /// Times at which something sets in or ends \[s\], in order.

@@ -48,7 +48,7 @@ const ONLY_PARSED: [(&str, &str); 15] = [
 ];
 
 /// What is not this program: what it needs, or what builds and runs firmware.
-const OTHERS: [(&str, &str); 18] = [
+const OTHERS: [(&str, &str); 21] = [
     ("git clone", "fetches the project"),
     ("curl", "installs Rust"),
     ("apt-get", "installs packages"),
@@ -74,6 +74,18 @@ const OTHERS: [(&str, &str); 18] = [
     (
         "supervisor/capi/prebuilt/build",
         "the tests of the C library do it",
+    ),
+    (
+        "pip install",
+        "firmware-host/python/test does it, in an environment of its own",
+    ),
+    (
+        "firmware-host/python/build",
+        "firmware-host/python/test does it",
+    ),
+    (
+        "python3 firmware-host/python/examples",
+        "the Python package's own tests do it",
     ),
     ("cd ", "leads to the next line"),
 ];

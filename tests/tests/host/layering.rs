@@ -145,6 +145,7 @@ fn files_import_only_upwards() {
     check("firmware-host/controller");
     check("firmware-host/bench");
     check("firmware-host/studies");
+    check("firmware-host/python");
 }
 
 /// Neighbours in a folder that import each other, directly or through others: one circle, if there is any. A folder
@@ -244,6 +245,7 @@ fn unsafe_code_stays_at_the_border() {
         "firmware-host/studies/src",
         "firmware-host/board-machine/src",
         "firmware-host/boards/stm32g4-rtic/src",
+        "firmware-host/python/src",
         "tests/src",
         "tests/tests",
     ] {

@@ -3,16 +3,21 @@
 
 mod mistakes;
 
+use firmware_bench::device::external::{Caller, Make, Question, Setup, Step};
+use firmware_bench::device::levitation::{Levitation, LevitationParams};
 use firmware_bench::run::closed_loop::{Keep, MachineRecorders, Rigour, record_machine, run};
 use firmware_bench::run::trace::{Recorder, Trace};
 use firmware_bench::scene::Scene;
 use firmware_bench::scene::machine::AnyScene;
 use firmware_bench::scene::policy_kind::PolicyKind;
+use firmware_bench::scene::spec::Spec;
 use nalgebra::DMatrix;
 use npyz::WriterBuilder;
+use plant_model::V2;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use supervisor::IntegratorHint;
 use system_tests::{root, run_scene, scene_path};
 use tempfile::TempDir;
 
@@ -109,6 +114,68 @@ fn the_pid_in_c_and_in_python_is_the_built_in_one() {
             assert!(rows == expected, "{kind:?} {other}");
         }
     }
+}
+
+/// The built-in controller as one of the caller's.
+#[derive(Debug)]
+struct Gains(Levitation, usize);
+
+/// Makes them.
+struct ByGains(LevitationParams);
+
+impl Make for ByGains {
+    fn make(&self, setup: &Setup) -> Result<Box<dyn Step>, String> {
+        if setup.parameters == [13.0] {
+            return Err("has no luck".to_owned());
+        }
+        let levitation = Levitation::new(self.0, setup.period_s, setup.force_max_n[0]);
+        Ok(Box::new(Gains(levitation, setup.parameters.len())))
+    }
+}
+
+impl Step for Gains {
+    fn step(&mut self, question: &Question) -> Result<Vec<f64>, String> {
+        let hint = match question.hold {
+            true => IntegratorHint::Hold,
+            false => IntegratorHint::Run,
+        };
+        let measured_m = V2::new(question.position_m[0], question.position_m[1]);
+        let force_n = self.0.force_n(measured_m, hint);
+        // One more than asked for with each parameter.
+        let more = (0..self.1).map(|_| 0.0);
+        Ok(force_n.iter().copied().chain(more).collect())
+    }
+}
+
+/// A controller in this process is asked, limited and judged as one in another is.
+#[test]
+fn a_controller_of_the_callers_stands_in_the_place_of_gains() {
+    let expected = Scene::parse("gains.toml", &with(GAINS)).unwrap();
+    let gains = expected.levitation.unwrap();
+    let of_caller = |table: &str| {
+        let mut spec = Spec::parse("own.toml", &with(table)).unwrap();
+        spec.levitated_by(Caller::new("gains", ByGains(gains)))
+            .unwrap();
+        spec.resolve().unwrap()
+    };
+    let trace = |scene: &Scene, kind| run(scene, kind, Keep::Trace, &mut |_| {});
+    for kind in BOTH {
+        let (figures, rows) = trace(&expected, kind).unwrap();
+        // In the place of gains, and of a program that need not be there.
+        for table in [GAINS, "[controller]\npython = \"nowhere.py\"\n"] {
+            let (own, own_rows) = trace(&of_caller(table), kind).unwrap();
+            assert!(own == figures && own_rows == rows, "{kind:?} {table}");
+        }
+    }
+    let said = |table: &str| trace(&of_caller(table), BOTH[0]).unwrap_err().to_string();
+    assert_eq!(
+        said("[controller]\nparameters = [1.0]\n"),
+        "policy levitation: controller gains at 0 s: answered 3 forces, expected 2"
+    );
+    assert_eq!(
+        said("[controller]\nparameters = [13.0]\n"),
+        "policy levitation: controller: gains has no luck"
+    );
 }
 
 /// Farthest apart of two runs at the same rows \[m\].

@@ -1,18 +1,17 @@
-//! A levitation controller of the user's that runs in a process of its own: a file of Python or a shared library.
+//! A levitation controller of the user's by a program: a file of Python or a shared library in a process of its own, or a
+//! function of whoever calls this library.
 
+mod process;
+
+use self::process::Process;
 use crate::device::actuator::limited_n;
-use firmware_controller::PYTHON;
-use firmware_controller::frame::{Answer, Question, Setup};
 use plant_model::V2;
-use std::fmt::Display;
-use std::io::{ErrorKind, Write, stderr};
-use std::os::fd::OwnedFd;
-use std::os::unix::net::UnixStream;
-use std::path::{Path, PathBuf};
-use std::process::{Child, Command, ExitStatus, Stdio};
-use std::sync::OnceLock;
-use std::thread::sleep;
-use std::time::{Duration, Instant};
+use std::fmt;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+pub use firmware_controller::frame::{Question, Setup};
+pub use process::{SERVE, serve_libraries_by};
 
 /// In what a controller is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -23,21 +22,90 @@ pub enum Language {
     Library,
 }
 
+/// What computes the forces.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Program {
+    /// A process of its own.
+    Process {
+        /// In what it is written.
+        language: Language,
+        /// The file, from the root.
+        file: PathBuf,
+        /// It has so long for an answer \[s\].
+        timeout_s: f64,
+    },
+    /// The caller, in this process.
+    Caller(Caller),
+}
+
+/// Makes controllers in this process: one for each run, which begins at rest.
+pub trait Make: Send + Sync {
+    /// One more.
+    ///
+    /// # Errors
+    /// In words: why there is none.
+    fn make(&self, setup: &Setup) -> Result<Box<dyn Step>, String>;
+}
+
+/// A controller in this process.
+pub trait Step: fmt::Debug {
+    /// Forces for a sample \[N\], x and y of each magnet.
+    ///
+    /// # Errors
+    /// In words: why there are none.
+    fn step(&mut self, question: &Question) -> Result<Vec<f64>, String>;
+
+    /// The last sample was answered.
+    ///
+    /// # Errors
+    /// In words: what went wrong then.
+    fn close(&mut self) -> Result<(), String> {
+        Ok(())
+    }
+}
+
+/// Who makes controllers in this process.
+#[derive(Clone)]
+pub struct Caller {
+    /// What they are called where people read of them.
+    pub name: String,
+    make: Arc<dyn Make>,
+}
+
+impl Caller {
+    /// From whoever makes them, under a name.
+    pub fn new(name: impl Into<String>, make: impl Make + 'static) -> Self {
+        Self {
+            name: name.into(),
+            make: Arc::new(make),
+        }
+    }
+}
+
+impl fmt::Debug for Caller {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_tuple("Caller").field(&self.name).finish()
+    }
+}
+
+/// The same one.
+impl PartialEq for Caller {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.make, &other.make)
+    }
+}
+
 /// Which controller, and what it is told.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ExternalParams {
-    /// In what it is written.
-    pub language: Language,
-    /// The file, as the scene names it.
+    /// What computes the forces.
+    pub program: Program,
+    /// The file, as the scene names it, or what the caller calls it.
     pub named: String,
-    /// The same from the root.
-    pub file: PathBuf,
     /// The key that names it, with the file and line of the scene.
     pub key: String,
     /// Numbers that it is given.
     pub parameters: Vec<f64>,
-    /// It has so long for an answer \[s\].
-    pub timeout_s: f64,
     /// From one sample to the next \[s\].
     pub period_s: f64,
     /// Cap of each plane's magnet \[N\]; none where it has no magnet.
@@ -89,47 +157,21 @@ impl ControllerError {
     }
 }
 
-/// The program with the hidden command that serves shared libraries.
-static SERVER: OnceLock<PathBuf> = OnceLock::new();
-
-/// Says which program serves shared libraries as `firmware-host` does; the first word counts. Without one it is the
-/// `firmware-host` in the folder of the program that runs, or in the folder above.
-pub fn serve_libraries_by(program: PathBuf) {
-    let _earlier_holds = SERVER.set(program);
-}
-
-/// The command of [`serve_libraries_by`]'s program.
-pub const SERVE: &str = "serve-controller";
-
-fn server() -> Option<PathBuf> {
-    let known = SERVER.get().cloned();
-    known.or_else(|| {
-        let here = std::env::current_exe().ok()?;
-        let mut folders = here.ancestors().skip(1).take(2);
-        folders.find_map(|folder| {
-            let program = folder.join("firmware-host");
-            program.is_file().then_some(program)
-        })
-    })
-}
-
 /// The controller at work.
 #[derive(Debug)]
 pub struct External {
     params: ExternalParams,
-    process: Process,
+    asked: Asked,
     question: Question,
-    /// Bytes of a question.
-    bytes: Vec<u8>,
 }
 
-/// A process that answers.
+/// Who is asked.
 #[derive(Debug)]
-struct Process {
-    child: Child,
-    /// Its standard input; none where it is closed.
-    socket: Option<UnixStream>,
-    timeout: Duration,
+enum Asked {
+    /// A process, with the bytes of a question.
+    Process(Process, Vec<u8>),
+    /// The caller's.
+    Caller(Box<dyn Step>),
 }
 
 impl External {
@@ -144,13 +186,6 @@ impl External {
             what,
             help: help.to_owned(),
         };
-        let mut process = Process::start(params).map_err(|what| {
-            let help = match params.language {
-                Language::Python => "install Python 3, as `python3` on the search path",
-                Language::Library => "run the scene with firmware-host",
-            };
-            refused(what, help)
-        })?;
         let magnets = (0u32..).zip(&params.caps_n);
         let (magnet_plane, force_max_n) = magnets
             .filter_map(|(plane, cap_n)| Some((plane, (*cap_n)?)))
@@ -162,27 +197,32 @@ impl External {
             force_max_n,
             parameters: params.parameters.clone(),
         };
-        let help = match params.language {
-            Language::Python => {
-                "docs/src/host/controllers.md says what the file has to have: make(scene), which returns an object with step(sample)"
+        let asked = match &params.program {
+            Program::Process {
+                language,
+                file,
+                timeout_s,
+            } => {
+                let mut process = Process::start((*language, file), *timeout_s)
+                    .map_err(|what| refused(what, language.help_to_start()))?;
+                (process.asked(&setup.bytes()))
+                    .map_err(|what| refused(what, language.help_to_answer()))?;
+                Asked::Process(process, Vec::new())
             }
-            Language::Library => {
-                "compile it against amb_controller.h of this version: cc -O2 -shared -fPIC; docs/src/host/controllers.md says what it has to have"
+            Program::Caller(caller) => {
+                let help = "give a function of the controller's setup that returns a controller";
+                Asked::Caller((caller.make.make(&setup)).map_err(|what| refused(what, help))?)
             }
         };
-        match process.asked(&setup.bytes()) {
-            Ok(_ready) => Ok(Self {
-                question: Question {
-                    sequence: vec![0; params.caps_n.len()],
-                    position_m: vec![0.0; 2 * params.caps_n.len()],
-                    ..Question::default()
-                },
-                bytes: Vec::new(),
-                params: params.clone(),
-                process,
-            }),
-            Err(what) => Err(refused(what, help)),
-        }
+        Ok(Self {
+            question: Question {
+                sequence: vec![0; params.caps_n.len()],
+                position_m: vec![0.0; 2 * params.caps_n.len()],
+                ..Question::default()
+            },
+            params: params.clone(),
+            asked,
+        })
     }
 
     /// Forces of the planes \[N\] for what their sensors measure \[m\] with the number of the reading, each within its cap;
@@ -207,8 +247,13 @@ impl External {
                 }
             }
         }
-        question.put(&mut self.bytes);
-        let asked = self.process.asked(&self.bytes);
+        let asked = match &mut self.asked {
+            Asked::Process(process, bytes) => {
+                question.put(bytes);
+                process.asked(bytes)
+            }
+            Asked::Caller(controller) => controller.step(question),
+        };
         let asked = asked.and_then(|asked| self.checked(asked));
         let asked = asked.map_err(|what| ControllerError::Step {
             file: self.params.named.clone(),
@@ -257,118 +302,35 @@ impl External {
     /// # Errors
     /// [`ControllerError::Close`].
     pub fn close(mut self) -> Result<(), ControllerError> {
-        drop(self.process.socket.take());
-        let what = match self.process.ended() {
-            Some(status) if status.success() => return Ok(()),
-            Some(status) => said(status),
-            None => format!(
-                "has not ended within {} s and was stopped",
-                self.params.timeout_s
-            ),
+        let closed = match &mut self.asked {
+            Asked::Process(process, _) => process.close(),
+            Asked::Caller(controller) => controller.close(),
         };
-        Err(ControllerError::Close {
+        closed.map_err(|what| ControllerError::Close {
             file: self.params.named.clone(),
             what,
         })
     }
 }
 
-impl Process {
-    fn start(params: &ExternalParams) -> Result<Self, String> {
-        let mut command = match params.language {
-            Language::Python => {
-                let mut python = Command::new("python3");
-                // What it compiles does not stay beside the scene, and sets are in the same order every time.
-                python.args(["-B", "-c", PYTHON]).env("PYTHONHASHSEED", "0");
-                python
+impl Language {
+    /// What to do where it does not start.
+    fn help_to_start(self) -> &'static str {
+        match self {
+            Self::Python => "install Python 3, as `python3` on the search path",
+            Self::Library => "run the scene with firmware-host",
+        }
+    }
+
+    /// What to do where it does not answer.
+    fn help_to_answer(self) -> &'static str {
+        match self {
+            Self::Python => {
+                "docs/src/host/controllers.md says what the file has to have: make(scene), which returns an object with step(sample)"
             }
-            Language::Library => {
-                let program = server()
-                    .ok_or("needs firmware-host to load it, which is not beside this program")?;
-                let mut host = Command::new(program);
-                host.arg(SERVE);
-                host
+            Self::Library => {
+                "compile it against amb_controller.h of this version: cc -O2 -shared -fPIC; docs/src/host/controllers.md says what it has to have"
             }
-        };
-        // Sums that several threads share differ from run to run, and policies run side by side as it is.
-        for threads in ["OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"] {
-            command.env(threads, "1");
         }
-        command.arg(&params.file);
-        command.current_dir(params.file.parent().unwrap_or(Path::new("/")));
-        let program = command.get_program().to_string_lossy().into_owned();
-        let unstarted = |error: &dyn Display| format!("needs {program}: {error}");
-        let (socket, theirs) = UnixStream::pair().map_err(|error| unstarted(&error))?;
-        let timeout = Duration::from_secs_f64(params.timeout_s);
-        for set in [UnixStream::set_read_timeout, UnixStream::set_write_timeout] {
-            set(&socket, Some(timeout)).map_err(|error| unstarted(&error))?;
-        }
-        // What it prints must not get between what the host prints.
-        let child = command
-            .stdin(Stdio::from(OwnedFd::from(theirs)))
-            .stdout(Stdio::from(stderr()))
-            .spawn();
-        Ok(Self {
-            child: child.map_err(|error| unstarted(&error))?,
-            socket: Some(socket),
-            timeout,
-        })
-    }
-
-    /// Asks, and waits for the answer; or what it did instead.
-    fn asked(&mut self, bytes: &[u8]) -> Result<Vec<f64>, String> {
-        let answer = match &mut self.socket {
-            Some(socket) => socket
-                .write_all(bytes)
-                .and_then(|()| Answer::read(&mut *socket)),
-            None => Err(ErrorKind::BrokenPipe.into()),
-        };
-        match answer {
-            Ok(Answer::Forces(forces_n)) => Ok(forces_n),
-            Ok(Answer::Failed(text)) => Err(text),
-            Err(error) => Err(match error.kind() {
-                ErrorKind::WouldBlock | ErrorKind::TimedOut => {
-                    let timeout_s = self.timeout.as_secs_f64();
-                    format!("did not answer within {timeout_s} s, its controller.timeout_s")
-                }
-                ErrorKind::UnexpectedEof | ErrorKind::BrokenPipe | ErrorKind::ConnectionReset => {
-                    match self.ended() {
-                        Some(status) => said(status),
-                        None => "has closed its standard input".to_owned(),
-                    }
-                }
-                _ => format!("cannot be asked: {error}"),
-            }),
-        }
-    }
-
-    /// How it has ended, where it does so in time.
-    fn ended(&mut self) -> Option<ExitStatus> {
-        let until = Instant::now() + self.timeout;
-        let mut pause = Duration::from_micros(50);
-        loop {
-            match self.child.try_wait() {
-                Ok(Some(status)) => return Some(status),
-                Err(_) => return None,
-                Ok(None) if Instant::now() >= until => return None,
-                Ok(None) => sleep(pause),
-            }
-            pause = (2 * pause).min(Duration::from_millis(20));
-        }
-    }
-}
-
-impl Drop for Process {
-    fn drop(&mut self) {
-        // One that has ended is not there to be killed, and nobody waits for what this says.
-        let _gone = self.child.kill();
-        let _status = self.child.wait();
-    }
-}
-
-fn said(status: ExitStatus) -> String {
-    match status.code() {
-        Some(code) => format!("ended with exit code {code}"),
-        None => format!("crashed: {status}"),
     }
 }

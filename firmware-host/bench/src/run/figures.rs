@@ -222,7 +222,7 @@ impl<'a> Ended<'a> {
 
 impl Figures {
     /// Of a machine, from those of its planes; `None` without one. How it ended is how the worst ended.
-    pub(crate) fn of_machine(planes: &[Self]) -> Option<Self> {
+    pub fn of_machine(planes: &[Self]) -> Option<Self> {
         let first = planes.first()?;
         let sum = |of: fn(&Self) -> f64| planes.iter().map(of).sum::<f64>();
         let count = |of: fn(&Self) -> u64| planes.iter().map(of).sum::<u64>();

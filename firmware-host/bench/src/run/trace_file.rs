@@ -19,9 +19,9 @@ type Flag<R> = (&'static str, fn(&R) -> bool);
 
 /// Columns of rows of some kind, in file order.
 pub struct Columns<R: 'static> {
-    numbers: Vec<Number<R>>,
-    texts: &'static [Text<R>],
-    flags: &'static [Flag<R>],
+    pub(super) numbers: Vec<Number<R>>,
+    pub(super) texts: &'static [Text<R>],
+    pub(super) flags: &'static [Flag<R>],
 }
 
 impl Columns<TraceRow> {

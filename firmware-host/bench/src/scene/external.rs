@@ -1,6 +1,6 @@
 //! Controllers of the user's, by a program.
 
-use crate::device::external::{ExternalParams, Language};
+use crate::device::external::{Caller, ExternalParams, Language, Program};
 use crate::scene::diagnostic::{SceneError, SceneText};
 use crate::scene::tables::ControllerTable;
 use std::path::{Path, absolute};
@@ -46,16 +46,35 @@ pub(crate) fn external(
         Err(reason) => return Err(refused(key, format!("{named}: {reason}"), help)),
     };
     Ok(ExternalParams {
-        language,
+        program: Program::Process {
+            language,
+            file,
+            timeout_s: written.timeout_s,
+        },
         named: named.clone(),
-        file,
         key: text
             .warning(key, String::new())
             .trim_end_matches(": ")
             .to_owned(),
         parameters: written.parameters.0.clone(),
-        timeout_s: written.timeout_s,
         period_s,
         caps_n,
     })
+}
+
+/// The controller of whoever calls, in the place of the program that `[controller]` names.
+pub(crate) fn of_caller(
+    written: &ControllerTable,
+    caller: &Caller,
+    period_s: f64,
+    caps_n: Vec<Option<f64>>,
+) -> ExternalParams {
+    ExternalParams {
+        program: Program::Caller(caller.clone()),
+        named: caller.name.clone(),
+        key: "controller".to_owned(),
+        parameters: written.parameters.0.clone(),
+        period_s,
+        caps_n,
+    }
 }

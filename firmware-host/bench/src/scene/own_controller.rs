@@ -1,12 +1,14 @@
 //! Controllers of the user's, whichever the scene names.
 
+use crate::device::external::Caller;
 use crate::device::whole_levitation::WholeLevitationParams;
 use crate::scene::biquads::biquads;
 use crate::scene::diagnostic::{SceneError, SceneText};
-use crate::scene::external::external;
+use crate::scene::external::{external, of_caller};
 use crate::scene::plane_spec::PlaneSpec;
+use crate::scene::spec::Spec;
 use crate::scene::state_space::state_space;
-use crate::scene::tables::SceneTables;
+use crate::scene::tables::{ControllerTable, SceneTables};
 
 impl SceneTables {
     /// Whether somebody levitates.
@@ -31,6 +33,35 @@ impl SceneTables {
         tables
             .into_iter()
             .filter_map(|(table, given)| given.then_some(table))
+    }
+}
+
+impl Spec {
+    /// Has a controller of the caller's levitate: as if `[controller]` stood in the place of whatever
+    /// levitates in the file, with the parameters that it may have there, and with the weight fed forward where it is.
+    ///
+    /// # Errors
+    /// [`SceneError`] of a value that no scene may have.
+    pub fn levitated_by(&mut self, caller: Caller) -> Result<(), SceneError> {
+        let mut tables = self.tables.clone();
+        let feed_forward_weight = tables.feeds_weight_forward()
+            || tables.plane.iter().any(|plane| {
+                (plane.levitation.as_ref()).is_some_and(|l| l.feed_forward_weight)
+                    || (plane.biquads.as_ref()).is_some_and(|b| b.feed_forward_weight)
+            });
+        let written = tables.controller.take();
+        for plane in &mut tables.plane {
+            (plane.levitation, plane.biquads) = (None, None);
+        }
+        (tables.levitation, tables.state_space, tables.biquads) = (None, None, None);
+        tables.controller = Some(ControllerTable {
+            python: None,
+            library: None,
+            feed_forward_weight,
+            ..written.unwrap_or_default()
+        });
+        self.caller = Some(caller);
+        self.put(tables)
     }
 }
 
@@ -60,7 +91,11 @@ pub(crate) fn own_controller(
         .collect();
     if let Some(written) = &tables.controller {
         let period_s = 1.0 / tables.run.sample_rate_hz;
-        let own = external(written, text, period_s, caps_n)?;
+        let caller = planes.iter().find_map(|plane| plane.caller.as_ref());
+        let own = match caller {
+            Some(caller) => of_caller(written, caller, period_s, caps_n),
+            None => external(written, text, period_s, caps_n)?,
+        };
         return Ok(Some(WholeLevitationParams::External(own)));
     }
     Ok(match state_space(tables, text, caps_n)? {

@@ -1,5 +1,6 @@
 //! What a scene file says of one plane: of the only one, or of one of several with what is the scene's.
 
+use crate::device::external::Caller;
 use crate::scene::diagnostic::{SceneError, SceneText};
 use crate::scene::spec::Spec;
 use crate::scene::tables::{ContactTable, FrictionTable, PlaneTable, SceneTables};
@@ -14,6 +15,8 @@ pub(crate) struct PlaneSpec {
     pub(crate) contact: ContactTable,
     pub(crate) friction: FrictionTable,
     pub(crate) contact_radius_m: f64,
+    /// Who levitates in the place of the program that `[controller]` names.
+    pub(crate) caller: Option<Caller>,
 }
 
 impl Spec {
@@ -90,7 +93,7 @@ impl Spec {
         let help = "describe the bearing planes by [[plane]], or remove it";
         text.none_given(&of_several, message, help)?;
         text.none_given(&[(of_load.as_str(), load.is_some())], message, help)?;
-        PlaneSpec::new(text.clone(), tables.clone())
+        PlaneSpec::new(text.clone(), tables.clone(), self.caller.clone())
     }
 
     /// The planes of a whole rotor.
@@ -98,7 +101,8 @@ impl Spec {
         let planes = self.tables.plane.iter().enumerate();
         planes
             .map(|(i, plane)| {
-                PlaneSpec::new(self.text.of_plane(i), with_own(self.tables.clone(), plane))
+                let tables = with_own(self.tables.clone(), plane);
+                PlaneSpec::new(self.text.of_plane(i), tables, self.caller.clone())
             })
             .collect()
     }
@@ -133,7 +137,11 @@ fn with_own(mut tables: SceneTables, plane: &PlaneTable) -> SceneTables {
 }
 
 impl PlaneSpec {
-    fn new(text: SceneText, tables: SceneTables) -> Result<Self, SceneError> {
+    fn new(
+        text: SceneText,
+        tables: SceneTables,
+        caller: Option<Caller>,
+    ) -> Result<Self, SceneError> {
         let missing = |key: &str, give: &str| {
             let (key, help) = match text.plane {
                 None => (key.to_owned(), give.to_owned()),
@@ -158,6 +166,7 @@ impl PlaneSpec {
             })?,
             text,
             tables,
+            caller,
         })
     }
 }

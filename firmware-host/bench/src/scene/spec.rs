@@ -1,5 +1,6 @@
 //! What the user wrote: a scene file's keys and values, which may be read and edited by their paths.
 
+use crate::device::external::Caller;
 use crate::scene::diagnostic::{SceneError, SceneText};
 use crate::scene::guess;
 use crate::scene::keys::{Key, Kind, joined, number, parameter, walk};
@@ -17,6 +18,8 @@ pub struct Spec {
     values: Table,
     /// … and by type.
     pub(crate) tables: SceneTables,
+    /// Who levitates in the place of the program that `[controller]` names.
+    pub(crate) caller: Option<Caller>,
 }
 
 /// A key with a value, as `supervisor.hold_share=0.5`: what is to be put in the place of a file's.
@@ -88,6 +91,7 @@ impl Spec {
             values: values_of(&tables, &text)?,
             text,
             tables,
+            caller: None,
         })
     }
 
@@ -144,6 +148,11 @@ impl Spec {
                     .unwrap_or_else(|| self.text.error_of_value(path, error.message(), &values)),
             }
         })?;
+        self.put(tables)
+    }
+
+    /// Puts other tables in the place of all.
+    pub(crate) fn put(&mut self, tables: SceneTables) -> Result<(), SceneError> {
         // With the defaults of what is new.
         self.values = values_of(&tables, &self.text)?;
         self.tables = tables;

@@ -248,7 +248,7 @@ key_tables! {
         feed_forward_weight: bool [= false], "", ANY, "as of `levitation`";
     }
 
-    ControllerTable {
+    ControllerTable [Default] {
         python: Option<String> [or "–"], "", ANY, "a file of Python with `make(scene)`; this or `library`", "script", "module";
         library: Option<String> [or "–"], "", ANY, "a shared library with the functions of `amb_controller.h`", "shared_library", "so", "dll";
         parameters: Numbers [= Numbers::default()], "1", Finite, "numbers that it is given, as its gains", "gains", "arguments";

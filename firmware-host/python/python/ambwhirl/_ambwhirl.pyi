@@ -1,0 +1,244 @@
+from os import PathLike
+from typing import Any, Callable, final
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+class SceneError(ValueError):
+    """A scene cannot be used. Says file, line, key and what was expected, as the command line does, and what to do."""
+
+    message: str
+    help: str | None
+
+class ConfigError(ValueError):
+    """A parameter of the supervisor is outside its range."""
+
+class RunError(RuntimeError):
+    """A run cannot be trusted any further. There is no half-trusted result."""
+
+class ControllerError(RunError):
+    """A levitation controller does not answer as it should."""
+
+class RecordError(ValueError):
+    """Bytes are no flight record."""
+
+@final
+class Scene:
+    """A scene as it is written: its keys are known and of their types. Whether the values make a scene is said where it is
+    used, or by check()."""
+
+    def __new__(cls, path: str | PathLike[str], values: dict[str, Any] | None = None) -> Scene: ...
+    @staticmethod
+    def parse(text: str, values: dict[str, Any] | None = None, *, name: str = "scene.toml") -> Scene:
+        """From the text of a file; errors name it so."""
+    def replace(self, values: dict[str, Any]) -> Scene:
+        """The same with other values of keys, as {"friction.coefficient": 0.2}."""
+    def get(self, key: str) -> Any:
+        """The value of a key, or its default; None where there is neither."""
+    def check(self) -> list[str]:
+        """Checks every value. What comes back are warnings: what is allowed and yet unlikely to be meant."""
+
+@final
+class Setup:
+    """What a controller is told before the first sample."""
+
+    @property
+    def period_s(self) -> float:
+        """From one sample to the next."""
+    @property
+    def sensors(self) -> int: ...
+    @property
+    def magnets(self) -> int: ...
+    @property
+    def magnet_plane(self) -> list[int]:
+        """The plane of each magnet, from 0."""
+    @property
+    def force_max_n(self) -> list[float]:
+        """Cap of each magnet."""
+    @property
+    def parameters(self) -> list[float]:
+        """Of the scene's controller.parameters."""
+
+@final
+class Sample:
+    """What is known at a control sample."""
+
+    @property
+    def t_s(self) -> float: ...
+    @property
+    def position_m(self) -> list[float]:
+        """x and y of each sensor."""
+    @property
+    def sequence(self) -> list[int]:
+        """Number of each sensor's reading; one that did not come has that of the last."""
+    @property
+    def spin_rad_s(self) -> float:
+        """Spin as reported."""
+    @property
+    def hold(self) -> bool:
+        """True while integrators are to stand."""
+
+def run_policies(scene: Scene, controller: Callable[[Setup], Any] | None, trace: bool) -> dict[str, Any]: ...
+def decoded(bytes: bytes) -> dict[str, Any]: ...
+
+@final
+class Plant:
+    """A point mass in one plane, from the start of a scene. Positions count from the centre of the retainer bearing. Weight and
+    shaft act; loads, sensors and amplifier delay of the scene are a closed loop's."""
+
+    def __new__(cls, scene: Scene) -> Plant: ...
+    @property
+    def period_s(self) -> float:
+        """The control period of the scene."""
+    @property
+    def t_s(self) -> float: ...
+    @property
+    def mode(self) -> str: ...
+    @property
+    def position_m(self) -> NDArray[np.float64]: ...
+    @property
+    def velocity_m_s(self) -> NDArray[np.float64]: ...
+    @property
+    def energy_residual(self) -> float:
+        """Energy from nowhere over energy turned over."""
+    def advance(self, to_s: float, command_n: ArrayLike | None = None, external_n: ArrayLike | None = None) -> list[tuple[float, str]]:
+        """Carries it to a time under forces that are held; changes of mode come back. A command is limited to the magnet's cap;
+        an external force comes on top of the weight."""
+    def step(self, command_n: ArrayLike | None = None, external_n: ArrayLike | None = None) -> NDArray[np.float64]:
+        """To the end of the control period; the position there."""
+    def steps(self, commands_n: ArrayLike, external_n: ArrayLike | None = None) -> NDArray[np.float64]:
+        """A control period for each row of commands; the positions at their ends, in rows."""
+    def read(self) -> dict[str, Any]:
+        """Everything that can be read off now."""
+    def meters(self) -> dict[str, Any]:
+        """Extremes and sums so far."""
+
+@final
+class Machine:
+    """A whole rotor in several planes, from the start of a scene. Positions count from the line of the magnets. A row for each
+    magnet, load or plane."""
+
+    def __new__(cls, scene: Scene) -> Machine: ...
+    @property
+    def period_s(self) -> float: ...
+    @property
+    def planes(self) -> list[str]:
+        """Names of the planes."""
+    @property
+    def magnets(self) -> int: ...
+    @property
+    def loads(self) -> int:
+        """Places at which loads of the scene act."""
+    @property
+    def t_s(self) -> float: ...
+    @property
+    def spin_rad_s(self) -> float: ...
+    @property
+    def modes(self) -> list[str]: ...
+    @property
+    def sensed_m(self) -> NDArray[np.float64]:
+        """Where the rotor is at the sensors."""
+    @property
+    def position_m(self) -> NDArray[np.float64]: ...
+    @property
+    def velocity_m_s(self) -> NDArray[np.float64]: ...
+    @property
+    def normal_force_n(self) -> list[float]: ...
+    @property
+    def energy_residual(self) -> float: ...
+    def advance(self, to_s: float, commands_n: ArrayLike | None = None, loads_n: ArrayLike | None = None) -> list[tuple[float, str, str]]:
+        """Carries it to a time under forces that are held; changes of mode come back, with the plane."""
+    def step(self, commands_n: ArrayLike | None = None, loads_n: ArrayLike | None = None) -> NDArray[np.float64]:
+        """To the end of the control period; the positions at the sensors there."""
+    def meters(self) -> list[dict[str, Any]]:
+        """Extremes and sums of each plane so far."""
+
+@final
+class Config:
+    """A configuration of the supervisor: every parameter is in its range. Numbers are single precision, as in firmware. Each
+    parameter is an attribute; parameters() lists them."""
+
+    def __new__(cls, **keys: float) -> Config:
+        """From all parameters."""
+    @staticmethod
+    def for_bearing(
+        *,
+        sample_period_s: float,
+        mass_kg: float,
+        stiffness_n_m: float,
+        clearance_m: float,
+        force_max_n: float,
+        amplifier_lag_s: float,
+        friction_coefficient: float,
+        contact_stiffness_n_m: float,
+        sensor_noise_m: float,
+        **keys: float,
+    ) -> Config:
+        """From nine numbers of a data sheet; more keys replace what is derived."""
+    @staticmethod
+    def example() -> Config:
+        """An example, and no default for any machine."""
+    def replace(self, **keys: float) -> Config:
+        """The same with other values."""
+    def to_dict(self) -> dict[str, float]: ...
+    def __getattr__(self, key: str) -> float: ...
+
+def parameters() -> list[dict[str, Any]]:
+    """The table of the supervisor's parameters: name, unit, low, high, text, default."""
+
+@final
+class Command:
+    """What to do until the next tick."""
+
+    @property
+    def force_n(self) -> NDArray[np.float64]: ...
+    @property
+    def own_n(self) -> NDArray[np.float64]:
+        """What the supervisor would command, which differs under shadow."""
+    @property
+    def mode(self) -> str: ...
+    @property
+    def limits(self) -> list[str]:
+        """What binds now."""
+    @property
+    def events(self) -> list[str]:
+        """What changed."""
+    @property
+    def hold(self) -> bool:
+        """Whether the levitation controller's integrators are to stand."""
+    @property
+    def severity(self) -> float: ...
+
+@final
+class Supervisor:
+    """The supervisor of one bearing plane, as firmware links it, with a flight record of 512 ticks."""
+
+    def __new__(cls, config: Config) -> Supervisor: ...
+    def tick(
+        self,
+        position_m: ArrayLike,
+        levitation_n: ArrayLike | None = None,
+        *,
+        spin_rad_s: float | None = None,
+        applied_n: ArrayLike | None = None,
+        sequence: int | None = None,
+        bearing_on: bool = True,
+        axis_x_lost: bool = False,
+        axis_y_lost: bool = False,
+        late: bool = False,
+        shadow: bool = False,
+    ) -> Command:
+        """One tick. Numbers may be any, NaN too, as from a sensor: the supervisor judges them. Without a sequence number samples
+        are counted; without a spin, or the force that the actuator delivers, it does without."""
+    @property
+    def mode(self) -> str: ...
+    def take_events(self) -> list[tuple[int, str, list[str]]]:
+        """Events that nobody has taken yet: sequence number, mode, names."""
+    def reconfigure(self, config: Config) -> None:
+        """Another configuration, from the next tick on."""
+    def record(self) -> bytes | None:
+        """The flight record as firmware would write it, where one is frozen."""
+    def rearm(self) -> None:
+        """Discards a frozen record."""
+    def report(self) -> dict[str, Any]:
+        """What has happened since it was made."""

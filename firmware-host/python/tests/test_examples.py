@@ -1,0 +1,77 @@
+"""What is shown works: the example, the page of the documentation, the notebook. Stubs name what there is."""
+
+import ast
+import json
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import ambwhirl
+import pytest
+from conftest import ROOT
+
+HERE = Path(__file__).parent
+
+
+def test_the_example_is_short_and_runs(tmp_path):
+    path = HERE.parent / "examples" / "own_controller.py"
+    assert len(path.read_text().splitlines()) < 20
+    done = subprocess.run([sys.executable, path], capture_output=True, text=True, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert re.search(r"levitation +recovered", done.stdout) and re.search(r"supervisor +recovered", done.stdout), done.stdout
+
+
+def test_what_measures_runs():
+    path = HERE.parent / "examples" / "measure.py"
+    done = subprocess.run([sys.executable, path, "0.01"], capture_output=True, text=True)
+    assert done.returncode == 0 and len(re.findall(r"^ *\d+\.\d µs  ", done.stdout, re.MULTILINE)) == 6, done
+
+
+@pytest.fixture
+def project(tmp_path, monkeypatch):
+    """A folder in which the project's scenes are where a reader of the documentation has them."""
+    os.symlink(ROOT / "firmware-host", tmp_path / "firmware-host")
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("MPLBACKEND", "agg")
+
+
+def test_the_page_runs_from_its_top_to_its_end(project):
+    page = (ROOT / "docs" / "src" / "host" / "python.md").read_text()
+    blocks = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
+    assert len(blocks) >= 5
+    names = {}
+    for number, block in enumerate(blocks):
+        exec(compile(block, f"python.md, block {number + 1}", "exec"), names)
+
+
+def test_the_notebook_runs_from_its_top_to_its_end(project):
+    """Its cells are plain Python, so that no kernel is needed: one would bring thirty packages for the same."""
+    notebook = json.loads((ROOT / "docs" / "notebooks" / "own_controller.ipynb").read_text())
+    assert notebook["nbformat"] == 4
+    cells = ["".join(cell["source"]) for cell in notebook["cells"] if cell["cell_type"] == "code"]
+    assert len(cells) >= 5
+    names = {}
+    for number, cell in enumerate(cells):
+        exec(compile(cell, f"own_controller.ipynb, cell {number + 1}", "exec"), names)
+
+
+def members(of):
+    return {name for name in vars(of) if not name.startswith("_") and name not in ("message", "help")}
+
+
+def test_stubs_name_what_there_is():
+    """Every class and function of the module, and every member, both ways."""
+    from ambwhirl import _ambwhirl
+
+    folder = Path(ambwhirl.__file__).parent
+    assert (folder / "py.typed").exists()
+    stub = ast.parse((folder / "_ambwhirl.pyi").read_text())
+    named = {node.name: node for node in stub.body if isinstance(node, (ast.ClassDef, ast.FunctionDef))}
+    assert set(named) == members(_ambwhirl)
+    for name, node in named.items():
+        if isinstance(node, ast.ClassDef):
+            defined = {below.name for below in node.body if isinstance(below, ast.FunctionDef)}
+            assert {name for name in defined if not name.startswith("_")} == members(getattr(_ambwhirl, name)), name
+    assert set(ambwhirl.__all__) == {name for name in vars(ambwhirl) if name[0].isupper()} | {"parameters", "read_record", "run_scene"}
