@@ -31,13 +31,18 @@ impl<const N: usize> Cells<N> {
     pub(crate) fn words(&self) -> impl Iterator<Item = u32> {
         self.0.iter().map(|cell| cell.load(Ordering::Relaxed))
     }
+
+    /// Takes over what is in others.
+    pub(crate) fn become_copy_of(&self, other: &Self) {
+        let pairs = self.0.iter().zip(other.words());
+        pairs.for_each(|(cell, word)| cell.store(word, Ordering::Relaxed));
+    }
 }
 
 impl<const N: usize> Clone for Cells<N> {
     fn clone(&self) -> Self {
         let copy = Self::new();
-        let pairs = copy.0.iter().zip(self.words());
-        pairs.for_each(|(cell, word)| cell.store(word, Ordering::Relaxed));
+        copy.become_copy_of(self);
         copy
     }
 }

@@ -49,7 +49,7 @@
 //!
 //! Files, each importing only from those above it: `parts`, `cells`, `words`, `scalar`, `product`, `q`, `math`, `vec2`, `signal`, `config`, `coeffs`,
 //! `spin`, `unbalance`, `innovation`, `reading`, `stuck`, `guard`, `actuator_monitor`, `estimate`, `beside`, `detect`, `impact`, `classify`, `phase`, `trust`, `law`, `limit`, `handover`, `tally`, `severity`,
-//! `tick`, `entry`, `track`, `events`, `latest`, `tape`, `recorder`, `record`, `per_unit`, `supervisor`, `split`, `shaft`, `bearing`, `coupling`, `rotor`, `self_test`, `watch`, `log_format`.
+//! `tick`, `entry`, `track`, `events`, `latest`, `tape`, `recorder`, `record`, `ledger`, `per_unit`, `supervisor`, `split`, `shaft`, `bearing`, `coupling`, `rotor`, `archive`, `self_test`, `watch`, `log_format`.
 
 // Unconditional: under `cfg(test)` std's own methods would silently replace micromath's.
 #![no_std]
@@ -57,6 +57,7 @@
 #![warn(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod actuator_monitor;
+mod archive;
 mod bearing;
 mod beside;
 mod cells;
@@ -74,6 +75,7 @@ mod impact;
 mod innovation;
 mod latest;
 mod law;
+mod ledger;
 mod limit;
 #[cfg(feature = "defmt")]
 mod log_format;
@@ -106,6 +108,7 @@ mod vec2;
 mod watch;
 mod words;
 
+pub use archive::{Archive, RotorArchive};
 pub use bearing::Bearing;
 pub use coeffs::Scaling;
 pub use config::{
@@ -113,6 +116,7 @@ pub use config::{
 };
 pub use entry::{ENTRY_WORDS, Entry};
 pub use events::QueuedEvent;
+pub use ledger::{LEDGER_BYTES, LEDGER_VERSION, Ledger, LedgerError};
 pub use per_unit::{Core, Prepared};
 pub use q::{AccumulatorQ, Q};
 pub use record::{

@@ -98,7 +98,7 @@ pub struct Head {
     pub stretches: u32,
     /// Sequence number of the last tick before the record froze.
     pub closed_at: u32,
-    /// Events before this one that found a record frozen, and are in none.
+    /// Events before this one that found a record frozen, or have gone from an [`crate::Archive`]: they are in no file.
     pub dropped: u32,
     /// [`Stamp::firmware`].
     pub firmware: u32,
@@ -221,6 +221,16 @@ impl<'a, S: Scalar, const N: usize> Record<'a, S, N> {
     pub fn config(&self) -> Config {
         let values: [f32; PARAMETERS.len()] = Words::take(&mut self.tape.config.words());
         Config::from_values(values)
+    }
+
+    /// [`Head::dropped`].
+    pub(crate) fn dropped(&mut self) -> &mut u32 {
+        &mut self.closed.dropped
+    }
+
+    /// [`Head::closed_at`].
+    pub(crate) fn closed_at(&self) -> u32 {
+        self.closed.sequence
     }
 
     /// What came of the event.

@@ -12,6 +12,7 @@ use crate::shaft::{Shaft, ShaftError};
 use crate::signal::{Command, CoreCommand, CoreSample, Events, Sample};
 use crate::split::{Published, Reader};
 use crate::supervisor::{Supervisor, in_newtons};
+use crate::tape::Tape;
 use crate::words::Words;
 
 /// What both planes commanded at a tick.
@@ -436,6 +437,10 @@ impl<'a, const RECORD: usize> RotorReader<'a, RECORD> {
     pub fn record(&self, end: usize) -> Option<Record<'_, f32, RECORD>> {
         let planes = self.planes.each_ref().map(Reader::shared);
         record_of(planes, self.kept_shaft, end)
+    }
+
+    pub(crate) fn tapes(&self) -> [&'a Tape<RECORD>; 2] {
+        self.planes.each_ref().map(|plane| &plane.shared().tape)
     }
 
     /// Gives frozen records back; with the next tick both planes wait for an engagement again. Without any nothing happens.

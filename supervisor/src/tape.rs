@@ -120,10 +120,22 @@ impl<const N: usize> Tape<N> {
         N - 1
     };
 
+    /// That of a recorder.
     #[inline(always)]
     pub(crate) const fn new() -> Self {
+        Self::of(RECORDS)
+    }
+
+    /// For a copy: all zero, so that a `static` needs no flash.
+    #[inline(always)]
+    pub(crate) const fn blank() -> Self {
+        Self::of(0)
+    }
+
+    #[inline(always)]
+    const fn of(owner: u32) -> Self {
         Self {
-            owner: AtomicU32::new(RECORDS),
+            owner: AtomicU32::new(owner),
             state: Cells::new(),
             config: Cells::new(),
             opening: Cells::new(),
@@ -150,6 +162,32 @@ impl<const N: usize> Tape<N> {
     /// By the background: whether there is a record to be read.
     pub(crate) fn is_frozen(&self) -> bool {
         self.owner.load(Ordering::Acquire) == FROZEN
+    }
+
+    /// By the background: what is written in another one, which has frozen.
+    pub(crate) fn become_copy_of(&self, other: &Self) {
+        let Self {
+            owner,
+            state,
+            config,
+            opening,
+            opening_units,
+            closing,
+            closing_units,
+            closed,
+            entries,
+            track,
+        } = self;
+        state.become_copy_of(&other.state);
+        config.become_copy_of(&other.config);
+        opening.become_copy_of(&other.opening);
+        opening_units.become_copy_of(&other.opening_units);
+        closing.become_copy_of(&other.closing);
+        closing_units.become_copy_of(&other.closing_units);
+        closed.become_copy_of(&other.closed);
+        (entries.iter().zip(&other.entries)).for_each(|(to, from)| to.become_copy_of(from));
+        (track.iter().zip(&other.track)).for_each(|(to, from)| to.become_copy_of(from));
+        owner.store(FROZEN, Ordering::Release);
     }
 
     /// By the background: it has read what it wanted of a frozen record.

@@ -28,6 +28,18 @@ pub fn sample(sequence: u32, position_m: [f32; 2]) -> Sample {
     }
 }
 
+/// Ticks of a [`landing`] with what comes before and after it.
+pub const LANDING_TICKS: u32 = 900;
+
+/// From the middle to the wall and back, once in so many ticks, with the last digits of a sensor \[m\].
+pub fn landing(tick: u32) -> [f32; 2] {
+    let tick = tick % LANDING_TICKS;
+    let out = (3e-5 * tick.saturating_sub(99) as f32).min(2.02e-4);
+    let back = (2e-6 * tick.saturating_sub(150) as f32).min(out);
+    let noise = 4e-7 * (tick % 3) as f32;
+    [out - back + noise, noise]
+}
+
 /// Point of a backward whirl (clockwise) at this angle \[rad\].
 pub fn on_circle(radius_m: f32, angle: f32) -> [f32; 2] {
     [radius_m * angle.cos(), -radius_m * angle.sin()]

@@ -6,6 +6,7 @@ pub mod file;
 mod flights;
 pub mod identify;
 mod motion;
+pub mod remaining;
 pub mod replay;
 pub mod story;
 pub mod ticks;

@@ -11,6 +11,7 @@ use again::Again;
 use firmware_bench::record::Contact;
 use firmware_bench::record::file::{RecordFile, begins};
 use firmware_bench::record::identify::{Findings, Identified};
+use firmware_bench::record::remaining::{Remaining, ledgers};
 use firmware_bench::record::replay::Replay;
 use firmware_bench::record::story::{Event, Told};
 use firmware_bench::record::ticks::{Ticks, Units};
@@ -40,6 +41,13 @@ pub struct ReviewArgs {
     /// Of version 2: control rate, for times in ms.
     #[arg(long, allow_negative_numbers = true, value_name = "NUMBER")]
     pub sample_rate_hz: Option<f64>,
+    /// Ledger of the retainer bearing as firmware has written it, of each plane one after the other: how many landings it may
+    /// still bear.
+    #[arg(long, value_name = "FILE")]
+    pub ledger: Option<PathBuf>,
+    /// Severity that the retainer bearing may bear in all, in place of what the ledger has, or without one severity_limit.
+    #[arg(long, allow_negative_numbers = true, value_name = "NUMBER")]
+    pub allowance: Option<f32>,
     /// Scene of the machine: the event is simulated on it, with what the record tells, under levitation alone, passively and
     /// under the supervisor.
     #[arg(long, value_name = "SCENE")]
@@ -84,6 +92,14 @@ pub fn execute(args: &ReviewArgs) -> Result<(), CommandError> {
         }
         return of_sections(args, &sections);
     }
+    if args.ledger.is_some() || args.allowance.is_some() {
+        return Err(CommandError::Numbers {
+            message: format!(
+                "{name} is no record of version 3, and says nothing of a bearing's landings"
+            ),
+            help: "leave --ledger and --allowance out".to_owned(),
+        });
+    }
     version_2::show(args, &bytes, units, expected.as_deref())
 }
 
@@ -122,6 +138,8 @@ struct Review {
     #[serde(flatten)]
     first: Option<Reviewed>,
     others: Vec<Reviewed>,
+    /// Retainer bearings after the last event, and how many landings they may still bear.
+    bearings: Vec<Remaining>,
 }
 
 /// An event with what is found out from it.
@@ -167,17 +185,57 @@ fn reviewed(of: &Examined<'_>) -> Reviewed {
     }
 }
 
+/// Retainer bearings after the last event of a file.
+fn remaining(args: &ReviewArgs, events: &[Examined<'_>]) -> Result<Vec<Remaining>, CommandError> {
+    if let Some(allowed) = args.allowance
+        && !(allowed > 0.0 && allowed.is_finite())
+    {
+        return Err(CommandError::Numbers {
+            message: format!("--allowance {allowed}: expected a severity above 0"),
+            help: "give the number of landings that the bearing's maker allows, times the severity of one of them".to_owned(),
+        });
+    }
+    let Some(Examined { event, .. }) = events.last() else {
+        return Ok(Vec::new());
+    };
+    let kept = match &args.ledger {
+        None => Vec::new(),
+        Some(file) => {
+            let name = file.display();
+            let planes = event.records[0].head.planes as usize;
+            let wrong = |message: String, help: &str| CommandError::Numbers {
+                message: format!("{name}: {message}"),
+                help: help.to_owned(),
+            };
+            let bytes = std::fs::read(file).map_err(|e| {
+                wrong(
+                    e.to_string(),
+                    "give the file that the ledger was written to",
+                )
+            })?;
+            ledgers(&bytes, planes).map_err(|e| {
+                wrong(
+                    e.to_string(),
+                    "take the ledger from the firmware once more, or its other copy; without --ledger the record alone is reviewed",
+                )
+            })?
+        }
+    };
+    Ok(Remaining::of(event, &kept, args.allowance))
+}
+
 /// What is whole is shown; that something is not is an error all the same.
 fn of_sections(args: &ReviewArgs, file: &RecordFile) -> Result<(), CommandError> {
     let events: Result<Vec<Examined<'_>>, CommandError> = (file.events().into_iter())
         .map(|event| examined(args, event))
         .collect();
     let events = events?;
+    let bearings = remaining(args, &events)?;
     let damage: Vec<String> = file.damage.iter().map(ToString::to_string).collect();
     let error = (!file.is_intact()).then(|| damage.join("; "));
     if let Some(out) = &args.out {
         let name = args.file.display().to_string();
-        let head = page::head(&name, &events, &damage);
+        let head = page::head(&name, (&events, &bearings), &damage);
         page::write(out, &head, &page::tracks(&events))?;
     }
     if args.json {
@@ -188,6 +246,7 @@ fn of_sections(args: &ReviewArgs, file: &RecordFile) -> Result<(), CommandError>
             error: error.clone(),
             first: all.next(),
             others: all.collect(),
+            bearings,
         };
         print(&(pretty(&review, "writing JSON")? + "\n"))?;
     } else if args.csv {
@@ -207,8 +266,8 @@ fn of_sections(args: &ReviewArgs, file: &RecordFile) -> Result<(), CommandError>
         }
         print(&out)?;
     } else {
-        let texts: Vec<String> = (events.iter())
-            .map(|of| told(of, args.scene.is_some()))
+        let texts: Vec<String> = (events.iter().enumerate())
+            .map(|(i, of)| told(of, args.scene.is_some(), of_event(&bearings, i, &events)))
             .collect();
         print(&texts.join("\n"))?;
     }
@@ -221,16 +280,40 @@ fn of_sections(args: &ReviewArgs, file: &RecordFile) -> Result<(), CommandError>
     }
 }
 
+/// What is said of the bearings with an event: with the last one alone, after which they are as their ledgers say.
+fn of_event<'a>(
+    bearings: &'a [Remaining],
+    event: usize,
+    events: &[Examined<'_>],
+) -> &'a [Remaining] {
+    if event + 1 == events.len() {
+        bearings
+    } else {
+        &[]
+    }
+}
+
+/// The largest share of what a bearing may bear that is used up.
+fn used(bearings: &[Remaining]) -> f64 {
+    bearings.iter().map(Remaining::used).fold(0.0, f64::max)
+}
+
 /// An event for a person; `asked`: whether it was to be simulated.
-fn told(of: &Examined<'_>, asked: bool) -> String {
+fn told(of: &Examined<'_>, asked: bool, bearings: &[Remaining]) -> String {
     let event = &of.event;
     let head = event.records[0].head;
     let mut out = String::new();
     match event.told() {
-        Some(told) => _ = writeln!(out, "{}\n", told.paragraph()),
+        Some(told) => _ = writeln!(out, "{}\n", told.paragraph(used(bearings))),
         None => {
             out += "What came of the event is not whole in this file, or not there of all planes: no verdict.\n\n";
         }
+    }
+    for bearing in bearings {
+        if bearings.len() > 1 {
+            let _ = write!(out, "Plane {}. ", bearing.plane);
+        }
+        let _ = writeln!(out, "{}\n", bearing.told());
     }
     let _ = match &event.replay {
         Ok(Replay {
@@ -253,7 +336,7 @@ fn told(of: &Examined<'_>, asked: bool) -> String {
     if head.dropped > 0 {
         let _ = writeln!(
             out,
-            "{} events came while a record waited to be read, and are in none.",
+            "{} events before this one are in no record: they came while one waited to be read, or had to make room.",
             head.dropped
         );
     }

@@ -33,7 +33,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Rooms, each importing only from those above it: `campaign`, `machines`, `accuracy`, `paper`, `overloads`, `harm`,
+//! Rooms, each importing only from those above it: `campaign`, `machines`, `accuracy`, `paper`, `overloads`, `found_in_records`, `harm`,
 //! `trials`, `unseen_machines`, `whole_rotors`, `rub`, `loop_rates`, `sensitivity`, `on_target`.
 
 #![forbid(unsafe_code)]
@@ -41,6 +41,7 @@
 
 pub mod accuracy;
 pub mod campaign;
+pub mod found_in_records;
 pub mod harm;
 pub mod loop_rates;
 pub mod machines;
@@ -66,6 +67,11 @@ pub const STUDIES: &[Study] = &[
         name: "cycles",
         about: "what a tick takes in cycles, by a model of each processor and a trace of every instruction",
         run: on_target::cycles::study,
+    },
+    Study {
+        name: "found-in-records",
+        about: "impacts, friction, restitution and outcome as found in flight records of the catalogue, against the plant",
+        run: found_in_records::study,
     },
     Study {
         name: "harm",

@@ -35,7 +35,7 @@
  *
  * - the tick's: amb_tick, amb_reconfigure, amb_self_test, and those of a rotor. One call at a time.
  * - one reader's, of any lower priority or on another processor: amb_next_event, amb_record_section, amb_rearm, and those of a
- *   rotor. One call at a time.
+ *   rotor; amb_ledger_take_in and amb_ledger_take_in_plane. One call at a time.
  * - everybody's, with a pointer to const: amb_mode, amb_report_now, amb_rotor_report_now. Any number of calls at a time.
  *
  * A call that interrupts another one of its own side is refused with AMB_ERROR_BUSY: a tick only by a tick or a
@@ -87,6 +87,13 @@
 #define amb_watch_renew AMB_JOIN(amb_watch_renew, AMB_ABI)
 #define amb_watch_force AMB_JOIN(amb_watch_force, AMB_ABI)
 #define amb_watch_expired AMB_JOIN(amb_watch_expired, AMB_ABI)
+#define amb_ledger_new AMB_JOIN(amb_ledger_new, AMB_ABI)
+#define amb_ledger_read AMB_JOIN(amb_ledger_read, AMB_ABI)
+#define amb_ledger_newer AMB_JOIN(amb_ledger_newer, AMB_ABI)
+#define amb_ledger_take_in AMB_JOIN(amb_ledger_take_in, AMB_ABI)
+#define amb_ledger_take_in_plane AMB_JOIN(amb_ledger_take_in_plane, AMB_ABI)
+#define amb_ledger_write AMB_JOIN(amb_ledger_write, AMB_ABI)
+#define amb_ledger_landings_left AMB_JOIN(amb_ledger_landings_left, AMB_ABI)
 
 /* What is true when this compiles, whatever the language. */
 #if defined(__cplusplus) && __cplusplus >= 201103L
@@ -103,13 +110,14 @@ extern "C" {
 
 /**
  * @name Codes
- * What a call returns. AMB_OK and AMB_NOTHING are no errors, negative codes are; amb_error_text() says
+ * What a call returns. AMB_OK, AMB_NOTHING and AMB_ONE_COPY are no errors, negative codes are; amb_error_text() says
  * what they mean.
  * @{
  */
 typedef int32_t amb_code;
 #define AMB_OK 0 /**< done */
 #define AMB_NOTHING 1 /**< there is none */
+#define AMB_ONE_COPY 2 /**< one of the two copies is not whole: the last landing may be missing */
 #define AMB_ERROR_SUPERVISOR_NULL (-1) /**< supervisor is null */
 #define AMB_ERROR_SUPERVISOR_MISALIGNED (-2) /**< supervisor is not aligned to AMB_SUPERVISOR_ALIGN bytes */
 #define AMB_ERROR_SUPERVISOR_TOO_SMALL (-3) /**< supervisor has fewer than AMB_SUPERVISOR_BYTES bytes */
@@ -148,6 +156,15 @@ typedef int32_t amb_code;
 #define AMB_ERROR_PLANE (-36) /**< plane is neither 0 nor 1 */
 #define AMB_ERROR_BEARING_NULL (-37) /**< bearing is null */
 #define AMB_ERROR_BEARING_MISALIGNED (-38) /**< bearing is not aligned as a float */
+#define AMB_ERROR_LEDGER_NULL (-39) /**< ledger is null */
+#define AMB_ERROR_LEDGER_MISALIGNED (-40) /**< ledger is not aligned to 4 bytes */
+#define AMB_ERROR_BYTES_NULL (-41) /**< bytes is null */
+#define AMB_ERROR_LEDGER_LENGTH (-42) /**< a ledger has AMB_LEDGER_BYTES bytes */
+#define AMB_ERROR_LEDGER_BLANK (-43) /**< nothing was ever written there: the ledger is lost, or was never made */
+#define AMB_ERROR_LEDGER_LETTERS (-44) /**< no ledger begins there */
+#define AMB_ERROR_LEDGER_DAMAGED (-45) /**< the ledger is damaged: its checksum is another one */
+#define AMB_ERROR_LEDGER_VERSION (-46) /**< the ledger is of another version */
+#define AMB_ERROR_LEDGER_BEARINGS (-47) /**< the copies are of two bearings */
 /** The parameter of this index is outside its range; in a rotor's second plane its index is AMB_PARAMETERS more. */
 #define AMB_ERROR_PARAMETER(index) (-1000 - (amb_code)(index))
 /** @} */
@@ -406,6 +423,27 @@ typedef struct amb_report {
     uint32_t handed_back;         /**< times that the bearing was handed back, as an engagement came no farther */
 } amb_report;
 
+/** Version of the format of a ledger. */
+#define AMB_LEDGER_VERSION 1
+/** Bytes of a ledger as it is written down. */
+#define AMB_LEDGER_BYTES 48
+
+/** Landings of a retainer bearing since it was fitted. Only amb_ledger_ calls write to it; all of it may be looked at. */
+typedef struct amb_ledger {
+    uint32_t bearing;                /**< the user's number of the bearing: another one for each that is fitted */
+    uint32_t updates;                /**< how often it has been added to; the lowest bit: in which of two places the next copy goes */
+    float severity_allowed;          /**< severity that the bearing may bear in all */
+    uint32_t landings;               /**< landings */
+    uint32_t severity_millionths[2]; /**< sum of their severities, in millionths, the lower half first */
+    float worst_severity;            /**< largest severity of what was added at once: a landing, with those before it that are
+                                          in no record */
+    float hardest_impact_m_s;        /**< fastest normal speed before an impact, of those in records [m/s] */
+    uint32_t closed_at;              /**< sequence number at which the record froze that was added last */
+    uint32_t run_landings;           /**< what the supervisor has counted since amb_init(), as far as it is in here already: not
+                                          written down */
+    uint32_t run_severity_millionths[2]; /**< the same of severity, in millionths, the lower half first */
+} amb_ledger;
+
 /** A row of the table of parameters. Its texts live as long as the program. */
 typedef struct amb_parameter {
     const char *name; /**< name, as in the configuration of the Rust crate */
@@ -425,6 +463,7 @@ typedef struct amb_parameter {
 #define AMB_SIZEOF_STAMP 16
 #define AMB_SIZEOF_SECTION 740
 #define AMB_SIZEOF_REPORT 68
+#define AMB_SIZEOF_LEDGER 48
 /** @} */
 
 /* The library was compiled with the same numbers: see structs.rs and storage.rs. */
@@ -496,6 +535,17 @@ AMB_ASSERT(report_thermal_state, offsetof(amb_report, thermal_state) == 52);
 AMB_ASSERT(report_force_cap_n, offsetof(amb_report, force_cap_n) == 56);
 AMB_ASSERT(report_nuisance_engagements, offsetof(amb_report, nuisance_engagements) == 60);
 AMB_ASSERT(report_handed_back, offsetof(amb_report, handed_back) == 64);
+AMB_ASSERT(ledger_size, sizeof(amb_ledger) == AMB_SIZEOF_LEDGER);
+AMB_ASSERT(ledger_bearing, offsetof(amb_ledger, bearing) == 0);
+AMB_ASSERT(ledger_updates, offsetof(amb_ledger, updates) == 4);
+AMB_ASSERT(ledger_severity_allowed, offsetof(amb_ledger, severity_allowed) == 8);
+AMB_ASSERT(ledger_landings, offsetof(amb_ledger, landings) == 12);
+AMB_ASSERT(ledger_severity_millionths, offsetof(amb_ledger, severity_millionths) == 16);
+AMB_ASSERT(ledger_worst_severity, offsetof(amb_ledger, worst_severity) == 24);
+AMB_ASSERT(ledger_hardest_impact_m_s, offsetof(amb_ledger, hardest_impact_m_s) == 28);
+AMB_ASSERT(ledger_closed_at, offsetof(amb_ledger, closed_at) == 32);
+AMB_ASSERT(ledger_run_landings, offsetof(amb_ledger, run_landings) == 36);
+AMB_ASSERT(ledger_run_severity_millionths, offsetof(amb_ledger, run_severity_millionths) == 40);
 AMB_ASSERT(parameter_name, offsetof(amb_parameter, name) == 0);
 AMB_ASSERT(parameter_unit, offsetof(amb_parameter, unit) == sizeof(char *));
 AMB_ASSERT(parameter_text, offsetof(amb_parameter, text) == 2 * sizeof(char *));
@@ -762,6 +812,72 @@ amb_code amb_watch_force(amb_watch *watch, float *force);
  * @return AMB_OK, or an error of watch or result.
  */
 amb_code amb_watch_expired(amb_watch *watch, uint32_t *expired);
+
+/**
+ * Ledger of a retainer bearing without landings: once, when the bearing is fitted. Write it to both places of the memory that
+ * keeps it. A ledger is told apart from one that was lost: amb_ledger_read() of memory that nobody has written to is an error.
+ * @param bearing the user's number of the bearing.
+ * @param severity_allowed severity that it may bear in all; below 0 or no number counts as 0.
+ * @param[out] ledger untouched after an error.
+ * @return AMB_OK, or an error of ledger.
+ */
+amb_code amb_ledger_new(uint32_t bearing, float severity_allowed, amb_ledger *ledger);
+
+/**
+ * Ledger from what was written down: once for each amb_init(), as all that the supervisor has counted since then will be added.
+ * @param bytes as amb_ledger_write() gave them.
+ * @param count AMB_LEDGER_BYTES.
+ * @param[out] ledger untouched after an error: then there are no figures.
+ * @return AMB_OK, AMB_ERROR_BYTES_NULL, AMB_ERROR_LEDGER_LENGTH, _BLANK, _LETTERS, _DAMAGED or _VERSION, or an error of ledger.
+ */
+amb_code amb_ledger_read(const uint8_t *bytes, size_t count, amb_ledger *ledger);
+
+/**
+ * The newer of two copies, which are written in turn (updates) so that one of them is whole whenever the power fails.
+ * @param first one copy.
+ * @param second the other.
+ * @param count AMB_LEDGER_BYTES, of each.
+ * @param[out] ledger untouched unless AMB_OK or AMB_ONE_COPY.
+ * @return AMB_OK, AMB_ONE_COPY, AMB_ERROR_LEDGER_BEARINGS where the copies are of two bearings, or as amb_ledger_read().
+ */
+amb_code amb_ledger_newer(const uint8_t *first, const uint8_t *second, size_t count, amb_ledger *ledger);
+
+/**
+ * Adds the frozen flight record, and the landings before it that are in none. Call it before amb_rearm(); the same record once
+ * more adds nothing. One of the reader's calls.
+ * @param[in,out] ledger from amb_ledger_read() or amb_ledger_new(); untouched unless AMB_OK.
+ * @param supervisor made by amb_init().
+ * @return AMB_OK: write it down; AMB_NOTHING: there is no record, or nothing new in it; or an error of ledger or supervisor.
+ */
+amb_code amb_ledger_take_in(amb_ledger *ledger, amb_supervisor *supervisor);
+
+/**
+ * The same of a plane of a rotor, with a ledger for each of its bearings.
+ * @param[in,out] ledger as for amb_ledger_take_in().
+ * @param rotor made by amb_rotor_init().
+ * @param plane 0 or 1; anything else is AMB_ERROR_PLANE.
+ * @return as of amb_ledger_take_in().
+ */
+amb_code amb_ledger_take_in_plane(amb_ledger *ledger, amb_rotor *rotor, uint32_t plane);
+
+/**
+ * A ledger as it is to be written down, with a checksum.
+ * @param ledger the ledger.
+ * @param[out] bytes untouched after an error.
+ * @param count AMB_LEDGER_BYTES.
+ * @return AMB_OK, AMB_ERROR_BYTES_NULL, AMB_ERROR_LEDGER_LENGTH, or an error of ledger.
+ */
+amb_code amb_ledger_write(const amb_ledger *ledger, uint8_t *bytes, size_t count);
+
+/**
+ * How many landings of a severity the bearing may still bear, by the rule of Palmgren and Miner: what is left of its allowance
+ * over the severity.
+ * @param ledger the ledger.
+ * @param severity of one landing, as worst_severity.
+ * @param[out] landings untouched unless AMB_OK.
+ * @return AMB_OK, AMB_NOTHING where the severity is not above 0, or an error of ledger or result.
+ */
+amb_code amb_ledger_landings_left(const amb_ledger *ledger, float severity, uint32_t *landings);
 
 #ifdef __cplusplus
 }

@@ -48,6 +48,7 @@ macro_rules! codes {
 codes! {
     OK = 0, "done";
     NOTHING = 1, "there is none";
+    ONE_COPY = 2, "one of the two copies is not whole: the last landing may be missing";
     ERROR_SUPERVISOR_NULL = -1, "supervisor is null";
     ERROR_SUPERVISOR_MISALIGNED = -2, "supervisor is not aligned to AMB_SUPERVISOR_ALIGN bytes";
     ERROR_SUPERVISOR_TOO_SMALL = -3, "supervisor has fewer than AMB_SUPERVISOR_BYTES bytes";
@@ -86,6 +87,15 @@ codes! {
     ERROR_PLANE = -36, "plane is neither 0 nor 1";
     ERROR_BEARING_NULL = -37, "bearing is null";
     ERROR_BEARING_MISALIGNED = -38, "bearing is not aligned as a float";
+    ERROR_LEDGER_NULL = -39, "ledger is null";
+    ERROR_LEDGER_MISALIGNED = -40, "ledger is not aligned to 4 bytes";
+    ERROR_BYTES_NULL = -41, "bytes is null";
+    ERROR_LEDGER_LENGTH = -42, "a ledger has AMB_LEDGER_BYTES bytes";
+    ERROR_LEDGER_BLANK = -43, "nothing was ever written there: the ledger is lost, or was never made";
+    ERROR_LEDGER_LETTERS = -44, "no ledger begins there";
+    ERROR_LEDGER_DAMAGED = -45, "the ledger is damaged: its checksum is another one";
+    ERROR_LEDGER_VERSION = -46, "the ledger is of another version";
+    ERROR_LEDGER_BEARINGS = -47, "the copies are of two bearings";
 }
 
 /// Code of the first parameter; the others follow downwards, and after them those of a rotor's second plane.

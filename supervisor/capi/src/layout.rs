@@ -69,4 +69,6 @@ const _: () = {
     assert!(defined("AMB_PARAMETERS") == supervisor::PARAMETERS.len());
     assert!(defined("AMB_RECORD_VERSION") == supervisor::RECORD_VERSION as usize);
     assert!(defined("AMB_SECTION_BYTES") == supervisor::SECTION_BYTES);
+    assert!(defined("AMB_LEDGER_VERSION") == supervisor::LEDGER_VERSION as usize);
+    assert!(defined("AMB_LEDGER_BYTES") == supervisor::LEDGER_BYTES);
 };

@@ -13,7 +13,7 @@
 //! cannot be checked is under "Safety" of each function.
 //!
 //! Files, each importing only from those above it: `version`, `parameters`, `code`, `layout`,
-//! `structs`, `pointer`, `storage`, `halves`, `calls`, `rotor`, `watch`, `bearing`.
+//! `structs`, `pointer`, `storage`, `halves`, `calls`, `rotor`, `watch`, `bearing`, `ledger`.
 
 #![cfg_attr(target_os = "none", no_std)]
 #![deny(clippy::undocumented_unsafe_blocks, unsafe_op_in_unsafe_fn)]
@@ -24,6 +24,7 @@ pub mod calls;
 pub mod code;
 mod halves;
 pub mod layout;
+pub mod ledger;
 mod parameters;
 mod pointer;
 pub mod rotor;

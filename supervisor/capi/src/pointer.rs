@@ -16,6 +16,9 @@ pub enum Argument {
     Rotor,
     Shaft,
     Bearing,
+    Ledger,
+    /// Of any address.
+    Bytes,
 }
 
 impl Argument {
@@ -32,6 +35,8 @@ impl Argument {
             Self::Rotor => Code::ERROR_ROTOR_NULL,
             Self::Shaft => Code::ERROR_SHAFT_NULL,
             Self::Bearing => Code::ERROR_BEARING_NULL,
+            Self::Ledger => Code::ERROR_LEDGER_NULL,
+            Self::Bytes => Code::ERROR_BYTES_NULL,
         }
     }
 
@@ -48,6 +53,9 @@ impl Argument {
             Self::Rotor => Code::ERROR_ROTOR_MISALIGNED,
             Self::Shaft => Code::ERROR_SHAFT_MISALIGNED,
             Self::Bearing => Code::ERROR_BEARING_MISALIGNED,
+            Self::Ledger => Code::ERROR_LEDGER_MISALIGNED,
+            // Never asked for.
+            Self::Bytes => Code::ERROR_BYTES_NULL,
         }
     }
 

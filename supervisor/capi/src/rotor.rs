@@ -111,7 +111,7 @@ pub unsafe extern "C" fn amb_rotor_tick(
 }
 
 /// A plane that there is.
-fn plane(number: u32) -> Result<usize, Code> {
+pub(crate) fn plane(number: u32) -> Result<usize, Code> {
     match number {
         0 => Ok(0),
         1 => Ok(1),

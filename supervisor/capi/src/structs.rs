@@ -158,10 +158,9 @@ c_struct! {
 
 impl From<CStamp> for Stamp {
     fn from(stamp: CStamp) -> Self {
-        let [low, high] = stamp.time_us.map(u64::from);
         Self {
             firmware: stamp.firmware,
-            time_us: low | high << 32,
+            time_us: whole(stamp.time_us),
             at_sequence: stamp.at_sequence,
         }
     }
@@ -205,6 +204,42 @@ c_struct! {
         /// Times that the bearing was handed back.
         handed_back: u32 = 64,
     }
+}
+
+c_struct! {
+    /// Landings of a retainer bearing: [`supervisor::Ledger`].
+    CLedger = "amb_ledger", 48 {
+        /// The user's number of the bearing.
+        bearing: u32 = 0,
+        /// How often it has been added to.
+        updates: u32 = 4,
+        /// Severity that the bearing may bear in all.
+        severity_allowed: f32 = 8,
+        /// Landings.
+        landings: u32 = 12,
+        /// Sum of their severities, in millionths, the lower half first.
+        severity_millionths: [u32; 2] = 16,
+        /// Largest severity of what was added at once.
+        worst_severity: f32 = 24,
+        /// Fastest normal speed before an impact \[m/s\].
+        hardest_impact_m_s: f32 = 28,
+        /// Sequence number at which the record froze that was added last.
+        closed_at: u32 = 32,
+        /// What the supervisor has counted since it was made, as far as it is in here.
+        run_landings: u32 = 36,
+        /// The same, in millionths, the lower half first.
+        run_severity_millionths: [u32; 2] = 40,
+    }
+}
+
+/// Of a number of 64 bits, the lower half first.
+pub(crate) fn whole([low, high]: [u32; 2]) -> u64 {
+    u64::from(low) | u64::from(high) << 32
+}
+
+/// See [`whole`].
+pub(crate) fn halves(x: u64) -> [u32; 2] {
+    [x as u32, (x >> 32) as u32]
 }
 
 /// A row of the table of parameters; its texts live as long as the program.
@@ -253,7 +288,7 @@ impl CSection {
 }
 
 /// Structs without pointers, whose layout is the same everywhere.
-pub const LAYOUTS: [Layout; 9] = [
+pub const LAYOUTS: [Layout; 10] = [
     CBearing::LAYOUT,
     CSample::LAYOUT,
     CCommand::LAYOUT,
@@ -263,6 +298,7 @@ pub const LAYOUTS: [Layout; 9] = [
     CStamp::LAYOUT,
     CSection::LAYOUT,
     CReport::LAYOUT,
+    CLedger::LAYOUT,
 ];
 
 const _: () = {
@@ -292,6 +328,7 @@ const _: () = {
     assert!(defined("AMB_SIZEOF_STAMP") == size_of::<CStamp>());
     assert!(defined("AMB_SIZEOF_SECTION") == size_of::<CSection>());
     assert!(defined("AMB_SIZEOF_REPORT") == size_of::<CReport>());
+    assert!(defined("AMB_SIZEOF_LEDGER") == size_of::<CLedger>());
 };
 
 impl From<CSample> for Sample {

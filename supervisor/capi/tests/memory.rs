@@ -4,19 +4,23 @@
 
 use core::mem::MaybeUninit;
 use std::ptr::{null, null_mut};
-use supervisor::{PARAMETERS, Status};
+use supervisor::{LEDGER_BYTES, PARAMETERS, Status};
 use supervisor_capi::bearing::{amb_config_for_bearing, amb_config_for_rotor};
 use supervisor_capi::calls::{
     amb_init, amb_next_event, amb_parameter_at, amb_parameter_index, amb_rearm, amb_reconfigure,
     amb_record_section, amb_report_now, amb_self_test, amb_tick,
+};
+use supervisor_capi::ledger::{
+    amb_ledger_landings_left, amb_ledger_new, amb_ledger_newer, amb_ledger_read,
+    amb_ledger_take_in, amb_ledger_take_in_plane, amb_ledger_write,
 };
 use supervisor_capi::rotor::{
     amb_rotor_init, amb_rotor_next_event, amb_rotor_rearm, amb_rotor_reconfigure,
     amb_rotor_record_section, amb_rotor_report_now, amb_rotor_self_test, amb_rotor_tick,
 };
 use supervisor_capi::structs::{
-    CBearing, CCommand, CEvent, CParameter, CReport, CRotorCommand, CSample, CSection, CShaft,
-    CStamp,
+    CBearing, CCommand, CEvent, CLedger, CParameter, CReport, CRotorCommand, CSample, CSection,
+    CShaft, CStamp,
 };
 use supervisor_capi::watch::{amb_watch_expired, amb_watch_force, amb_watch_init, amb_watch_renew};
 use supervisor_capi::{Code, RECORD, RotorStorage, Storage, WatchStorage};
@@ -86,6 +90,21 @@ fn calls_touch_only_what_they_were_given() {
         assert_eq!(amb_next_event(plane, event.as_mut_ptr()), Code::OK);
         assert_eq!(amb_report_now(plane, report.as_mut_ptr()), Code::OK);
         assert_eq!(report.assume_init().landings, 1);
+        let mut ledger = Box::new(CLedger::default());
+        let ledger = &raw mut *ledger;
+        let mut bytes = Box::new([0_u8; LEDGER_BYTES]);
+        let bytes = bytes.as_mut_ptr();
+        assert_eq!(amb_ledger_new(7, 20.0, ledger), Code::OK);
+        assert_eq!(amb_ledger_take_in(ledger, plane), Code::OK);
+        assert_eq!(amb_ledger_take_in(ledger, plane), Code::NOTHING);
+        assert_eq!(amb_ledger_write(ledger, bytes, LEDGER_BYTES), Code::OK);
+        assert_eq!(amb_ledger_read(bytes, LEDGER_BYTES, ledger), Code::OK);
+        let newer = amb_ledger_newer(bytes, bytes, LEDGER_BYTES, ledger);
+        assert_eq!(newer, Code::OK);
+        let mut left = 0;
+        let asked = amb_ledger_landings_left(ledger, 1.0, &raw mut left);
+        assert_eq!(asked, Code::OK);
+        assert!(((*ledger).landings, (*ledger).bearing) == (1, 7) && left < 20);
         assert_eq!(amb_rearm(plane), Code::OK);
         let found = amb_parameter_index(c"sensor_step_m".as_ptr(), &raw mut index);
         assert_eq!(found, Code::OK);
@@ -163,6 +182,11 @@ fn calls_on_a_rotor_touch_only_what_they_were_given() {
                 Code::OK
             );
             assert_eq!(report.assume_init().landings, 1);
+            let mut ledger = Box::new(CLedger::default());
+            let ledger = &raw mut *ledger;
+            assert_eq!(amb_ledger_new(plane, 20.0, ledger), Code::OK);
+            let code = amb_ledger_take_in_plane(ledger, rotor, plane);
+            assert_eq!((code, (*ledger).landings), (Code::OK, 1));
         }
         assert_eq!(amb_rotor_rearm(rotor), Code::OK);
         assert_eq!(amb_rotor_self_test(rotor), Code::OK);

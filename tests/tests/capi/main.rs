@@ -8,6 +8,7 @@ mod advised;
 mod bearing;
 mod firmware;
 mod header;
+mod ledger;
 mod library;
 mod misra;
 mod misuse;

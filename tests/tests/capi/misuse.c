@@ -249,7 +249,7 @@ static void table(void) {
 }
 
 static void texts(void) {
-    check(strcmp(amb_error_text(2), "unknown code") == 0, "code 2");
+    check(strcmp(amb_error_text(3), "unknown code") == 0, "code 3");
     check(strcmp(amb_error_text(-999), "unknown code") == 0, "code -999");
     check(strcmp(amb_error_text(AMB_ERROR_PARAMETER(2 * AMB_PARAMETERS)), "unknown code") == 0, "beyond");
     check(strcmp(amb_error_text(INT32_MIN), "unknown code") == 0, "smallest code");

@@ -4,8 +4,8 @@ use crate::library::{Target, beside, built, capi, good, host_program};
 use std::process::Command;
 use supervisor_capi::{Code, code::CODES};
 
-/// One plane, and a rotor in two.
-const SOURCES: [&str; 2] = ["misuse.c", "misuse_rotor.c"];
+/// One plane, a rotor in two, and a ledger.
+const SOURCES: [&str; 3] = ["misuse.c", "misuse_rotor.c", "misuse_ledger.c"];
 
 /// Requirements: SR-28, SR-37
 #[test]

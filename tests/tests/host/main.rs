@@ -16,6 +16,7 @@ mod report_page;
 mod requirements;
 mod review;
 mod review_findings;
+mod review_ledger;
 mod run;
 mod scene_keys;
 mod sweep;

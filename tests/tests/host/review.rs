@@ -194,9 +194,9 @@ fn a_bearing_that_is_switched_off_is_no_recovery() {
     let told = file.events()[0].told().unwrap();
     assert_eq!(told.outcome, "bearing off");
     assert!(
-        told.paragraph().contains("Look at the machine"),
+        told.paragraph(0.0).contains("Look at the machine"),
         "{}",
-        told.paragraph()
+        told.paragraph(0.0)
     );
     // One plane of two says nothing of the machine.
     let [.., rotor] = landings();

@@ -2,6 +2,7 @@
 
 mod aim_in_whirl;
 mod arbitrary_bits;
+mod archive;
 mod border;
 mod closed_loop_fixed_point;
 mod comes_back;
@@ -11,6 +12,7 @@ mod faults;
 mod first_configuration;
 mod first_sample;
 mod fixed_point;
+mod ledger;
 mod little_known;
 mod loads_that_stay;
 mod numbers;

@@ -9,20 +9,9 @@ use supervisor::{
     Status, Supervisor,
 };
 use system_tests::per_unit::in_numbers;
-use system_tests::rig::{config, sample};
+use system_tests::rig::{LANDING_TICKS as LANDING, config, landing as way, sample};
 
 const RECORD: usize = 64;
-/// Ticks of a landing with what comes before and after it.
-const LANDING: u32 = 900;
-
-/// From the middle to the wall and back, with the last digits of a sensor.
-fn way(tick: u32) -> [f32; 2] {
-    let tick = tick % LANDING;
-    let out = (3e-5 * tick.saturating_sub(99) as f32).min(2.02e-4);
-    let back = (2e-6 * tick.saturating_sub(150) as f32).min(out);
-    let noise = 4e-7 * (tick % 3) as f32;
-    [out - back + noise, noise]
-}
 
 fn written<S: Scalar, const N: usize>(record: &Record<'_, S, N>) -> Vec<u8> {
     let sections = (0..).map_while(|i| record.section(i, &Stamp::default()));

@@ -145,8 +145,8 @@ impl Told {
         }
     }
 
-    /// The event in a few sentences.
-    pub fn paragraph(&self) -> String {
+    /// The event in a few sentences. `used`: share of what the retainer bearing may bear that its ledger says is used up; 0 without.
+    pub fn paragraph(&self, used: f64) -> String {
         let touches = match self.touches {
             0 => "No touch".to_owned(),
             1 => "One touch".to_owned(),
@@ -180,7 +180,7 @@ impl Told {
             "bearing off" => "the bearing was switched off".to_owned(),
             mode => format!("it was not over when the record was full ({mode})"),
         };
-        let used = self.severity_index / self.severity_limit;
+        let used = used.max(self.severity_index / self.severity_limit);
         let verdict = if self.coast_down || used >= 1.0 {
             "The retainer bearing has had its share: inspect it before the machine runs on"
         } else if self.outcome != "levitated" {

@@ -2,8 +2,9 @@
 
 use crate::cli::error::CommandError;
 use crate::cli::output::{self, Staging};
-use crate::cli::review::Examined;
+use crate::cli::review::{Examined, of_event, used};
 use firmware_bench::record::file::PlaneRecord;
+use firmware_bench::record::remaining::Remaining;
 use firmware_bench::record::ticks::Ticks;
 use firmware_bench::report::record::{RecordHead, record_html};
 use firmware_bench::report::summary::summary;
@@ -23,13 +24,17 @@ pub(super) fn write(out: &Path, head: &RecordHead, tracks: &[Track]) -> Result<(
 }
 
 /// What stands above the figures of these events; `damage`: what is wrong with their file.
-pub(super) fn head(name: &str, events: &[Examined<'_>], damage: &[String]) -> RecordHead {
+pub(super) fn head(
+    name: &str,
+    (events, bearings): (&[Examined<'_>], &[Remaining]),
+    damage: &[String],
+) -> RecordHead {
     let many = events.len() > 1;
     let told: Vec<String> = (events.iter().enumerate())
         .map(|(i, of)| {
             let told = of.event.told().map_or_else(
                 || "No verdict: what came of the event is not whole in the file.".to_owned(),
-                |told| told.paragraph(),
+                |told| told.paragraph(used(of_event(bearings, i, events))),
             );
             match many {
                 true => format!("Event {}: {told}", i + 1),
@@ -48,7 +53,7 @@ pub(super) fn head(name: &str, events: &[Examined<'_>], damage: &[String]) -> Re
     RecordHead {
         title: format!("Flight record {name}"),
         headline: told.join(" "),
-        story: String::new(),
+        story: (bearings.iter().map(Remaining::told).collect::<Vec<_>>()).join("\n\n"),
         warnings: damage.iter().cloned().chain(differs).collect(),
     }
 }

@@ -1,0 +1,179 @@
+//! Records of several events, in memory of the background's: it copies what has frozen and gives it back at once, so that the
+//! recorder waits for the next event while nobody has written the last one down yet. The tick knows nothing of it.
+
+use crate::record::Record;
+use crate::rotor::RotorReader;
+use crate::scalar::Scalar;
+use crate::split::Reader;
+use crate::tape::Tape;
+use core::marker::PhantomData;
+
+/// A record, and of a rotor its shaft.
+#[derive(Debug)]
+struct Kept<const RECORD: usize> {
+    tape: Tape<RECORD>,
+    shaft: Option<[f32; 9]>,
+}
+
+/// Room for the records of `EVENTS` events of one plane. Where one more comes the oldest goes, and is counted: the next that is
+/// written down says how many are in no file ([`crate::Head::dropped`]).
+///
+/// ```
+/// use supervisor::{Archive, Config, Sample, Stamp, Supervisor};
+///
+/// let mut archive = Archive::<f32, 64, 4>::new(); // in a `static`
+/// let mut supervisor = Supervisor::<64>::new(&Config::example())?;
+/// let (mut ticker, mut reader) = supervisor.split();
+///
+/// ticker.tick(&Sample::default()); // in the control interrupt
+///
+/// archive.take(&mut reader); // in the background, as often as it comes round
+/// if let Some(record) = archive.oldest() {
+///     // When there is time for it.
+///     let sections = (0..).map_while(|index| record.section(index, &Stamp::default()));
+///     sections.for_each(|mut section| drop(section.seal()));
+///     archive.discard();
+/// }
+/// # Ok::<(), supervisor::ConfigError>(())
+/// ```
+#[derive(Debug)]
+pub struct Archive<S: Scalar = f32, const RECORD: usize = 512, const EVENTS: usize = 4> {
+    places: [Kept<RECORD>; EVENTS],
+    /// Place of the oldest.
+    oldest: usize,
+    count: usize,
+    /// Events that have gone since the last record was discarded, with those that these knew of.
+    gone: u32,
+    number: PhantomData<S>,
+}
+
+impl<S: Scalar, const RECORD: usize, const EVENTS: usize> Archive<S, RECORD, EVENTS> {
+    /// Without a record.
+    #[inline(always)]
+    pub const fn new() -> Self {
+        const { assert!(EVENTS > 0, "an archive has room for an event") };
+        Self {
+            places: [const {
+                Kept {
+                    tape: Tape::blank(),
+                    shaft: None,
+                }
+            }; EVENTS],
+            oldest: 0,
+            count: 0,
+            gone: 0,
+            number: PhantomData,
+        }
+    }
+
+    /// Copies a frozen record, if there is one, and gives it back: the next tick waits for an engagement again. Whether there was
+    /// one.
+    pub fn take(&mut self, reader: &mut Reader<'_, S, RECORD>) -> bool {
+        let took = self.copy(&reader.shared().tape, None);
+        reader.rearm();
+        took
+    }
+
+    fn copy(&mut self, tape: &Tape<RECORD>, shaft: Option<[f32; 9]>) -> bool {
+        if !tape.is_frozen() {
+            return false;
+        }
+        if self.count == EVENTS {
+            let knew = self.oldest().map_or(0, |mut record| *record.dropped());
+            self.remove();
+            self.gone = knew.saturating_add(1);
+        }
+        let free = self.oldest + self.count;
+        let free = if free < EVENTS { free } else { free - EVENTS };
+        if let Some(place) = self.places.get_mut(free) {
+            place.tape.become_copy_of(tape);
+            place.shaft = shaft;
+            self.count += 1;
+        }
+        true
+    }
+
+    /// How many records are kept.
+    pub fn count(&self) -> usize {
+        self.count
+    }
+
+    /// The oldest record. It stays as it is until [`Self::discard`], or until its place is needed.
+    pub fn oldest(&self) -> Option<Record<'_, S, RECORD>> {
+        if self.count == 0 {
+            return None;
+        }
+        let kept = self.places.get(self.oldest)?;
+        let mut record = Record::new(&kept.tape)?;
+        record.shaft = kept.shaft;
+        let dropped = record.dropped();
+        *dropped = dropped.saturating_add(self.gone);
+        Some(record)
+    }
+
+    /// Makes room where the oldest record was, if there was one.
+    pub fn discard(&mut self) {
+        if self.count > 0 {
+            self.remove();
+            self.gone = 0;
+        }
+    }
+
+    fn remove(&mut self) {
+        self.count -= 1;
+        let next = self.oldest + 1;
+        self.oldest = if next < EVENTS { next } else { 0 };
+    }
+}
+
+impl<S: Scalar, const RECORD: usize, const EVENTS: usize> Default for Archive<S, RECORD, EVENTS> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// Room for the records of `EVENTS` events of a rotor, of both planes each; as [`Archive`].
+#[derive(Debug, Default)]
+pub struct RotorArchive<const RECORD: usize = 512, const EVENTS: usize = 4> {
+    planes: [Archive<f32, RECORD, EVENTS>; 2],
+}
+
+impl<const RECORD: usize, const EVENTS: usize> RotorArchive<RECORD, EVENTS> {
+    /// Without a record.
+    #[inline(always)]
+    pub const fn new() -> Self {
+        Self {
+            planes: [const { Archive::new() }; 2],
+        }
+    }
+
+    /// As [`Archive::take`], of both planes, which freeze at once.
+    pub fn take(&mut self, reader: &mut RotorReader<'_, RECORD>) -> bool {
+        let Some(shaft) = reader.record(0).and_then(|record| record.shaft) else {
+            return false;
+        };
+        let planes = self.planes.iter_mut().zip(reader.tapes());
+        let took = planes.fold(true, |all, (archive, tape)| {
+            archive.copy(tape, Some(shaft)) && all
+        });
+        reader.rearm();
+        took
+    }
+
+    /// How many events are kept.
+    pub fn count(&self) -> usize {
+        let [first, _] = &self.planes;
+        first.count()
+    }
+
+    /// The record of a plane of the oldest event, 0 or 1 (anything else is the second).
+    pub fn oldest(&self, end: usize) -> Option<Record<'_, f32, RECORD>> {
+        let [first, second] = &self.planes;
+        if end == 0 { first } else { second }.oldest()
+    }
+
+    /// Makes room where the oldest event was, if there was one.
+    pub fn discard(&mut self) {
+        self.planes.iter_mut().for_each(Archive::discard);
+    }
+}

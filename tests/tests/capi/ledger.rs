@@ -1,0 +1,61 @@
+//! A ledger of landings in C: the bytes of the one in Rust, on this machine and in the emulator.
+
+use crate::firmware::said_by;
+use crate::library::{Target, beside, built, capi, good, host_program};
+use crate::rig::Rig;
+use std::fmt::Write;
+use std::process::Command;
+use supervisor::{Config, Ledger, Supervisor};
+
+/// What `ledger.c` says.
+fn said_in_rust() -> String {
+    let mut supervisor = Supervisor::<512>::new(&Config::from_values(Rig::VALUES)).unwrap();
+    let (mut rig, mut ledger, mut writes) = (Rig::new(), Ledger::new(7, 20.0), 0);
+    while rig.tick < Rig::TICKS {
+        if let Some(config) = rig.reconfigures() {
+            supervisor.reconfigure(&config).unwrap();
+        }
+        let command = supervisor.tick(&rig.sample());
+        rig.actuate(&command);
+        if let Some(record) = supervisor.record() {
+            writes += u32::from(ledger.take_in(&record));
+            supervisor.rearm();
+        }
+    }
+    // More than one, so that both places are written to.
+    assert!(writes >= 2 && ledger.landings >= 2, "{ledger:?}");
+    let mut said = String::new();
+    for byte in ledger.to_bytes() {
+        let _ = write!(said, "{byte:02x}");
+    }
+    let left = ledger.landings_left(ledger.worst_severity).unwrap();
+    let landings = ledger.landings;
+    said + &format!(" {writes} written, {landings} landings, {left} left\n")
+}
+
+/// Requirement: SR-39
+#[test]
+fn a_ledger_in_c_is_that_of_rust() {
+    let Some(library) = built(Target::Host, "") else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let program = folder.path().join("ledger");
+    let sources = [beside("ledger.c"), capi().join("examples/rig.c")];
+    let Some(output) = host_program(&sources, &library, &program) else {
+        return;
+    };
+    good(&output);
+    let said = Command::new(program).output().unwrap();
+    assert_eq!(good(&said), said_in_rust());
+}
+
+#[test]
+fn a_ledger_in_firmware_is_that_of_rust() {
+    for target in [Target::CortexM4F, Target::CortexM0] {
+        let Some(said) = said_by(target, &beside("ledger.c")) else {
+            return;
+        };
+        assert_eq!(said, said_in_rust(), "{target:?}");
+    }
+}

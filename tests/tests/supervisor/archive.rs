@@ -1,0 +1,144 @@
+//! Records of several events in memory of the background's.
+
+use firmware_bench::record::file::RecordFile;
+use firmware_bench::record::replay::replay;
+use firmware_image::under_test::shaft;
+use supervisor::{
+    Archive, Core, Prepared, Q, Record, Rotor, RotorArchive, Scalar, Stamp, Supervisor,
+};
+use system_tests::per_unit::in_numbers;
+use system_tests::rig::{LANDING_TICKS as LANDING, config, landing, sample};
+use system_tests::root;
+
+const RECORD: usize = 64;
+
+fn written<S: Scalar, const N: usize>(record: &Record<'_, S, N>) -> Vec<u8> {
+    let sections = (0..).map_while(|i| record.section(i, &Stamp::default()));
+    sections
+        .flat_map(|mut section| section.seal().to_vec())
+        .collect()
+}
+
+/// What an archive gives, oldest first, is what would have been written down at once, but for the count of those that are gone.
+fn drained<S: Scalar, const N: usize, const E: usize>(
+    archive: &mut Archive<S, N, E>,
+) -> Vec<Vec<u8>> {
+    let mut records = Vec::new();
+    while let Some(record) = archive.oldest().map(|record| written(&record)) {
+        records.push(record);
+        archive.discard();
+    }
+    records
+}
+
+/// Requirement: SR-40
+#[test]
+fn each_event_is_kept_as_it_froze() {
+    let mut supervisor = Supervisor::<RECORD>::new(&config()).unwrap();
+    let mut alone = supervisor.clone();
+    let (mut ticker, mut reader) = supervisor.split();
+    let mut archive = Archive::<f32, RECORD, 4>::new();
+    let mut at_once = Vec::new();
+    for i in 0..3 * LANDING {
+        let at = sample(i, landing(i));
+        assert_eq!(ticker.tick(&at), alone.tick(&at), "tick {i}");
+        assert_eq!(archive.take(&mut reader), alone.record().is_some());
+        if let Some(record) = alone.record() {
+            at_once.push(written(&record));
+            alone.rearm();
+        }
+    }
+    assert_eq!((archive.count(), at_once.len()), (3, 3));
+    assert_eq!(drained(&mut archive), at_once);
+    assert!(archive.oldest().is_none() && archive.count() == 0);
+    archive.discard();
+    assert!(!archive.take(&mut reader), "nothing has frozen");
+}
+
+/// The oldest goes first, and the next that is written down says so.
+/// Requirement: SR-40
+#[test]
+fn the_oldest_goes_first_and_is_counted() {
+    let mut core = Core::<Q, RECORD>::new(&Prepared::new(&config()).unwrap());
+    let scaling = config().scaling();
+    let (mut ticker, mut reader) = core.split();
+    let mut archive = Archive::<Q, RECORD, 2>::new();
+    let mut dropped = Vec::new();
+    let mut drain = |archive: &mut Archive<Q, RECORD, 2>| {
+        let bytes = drained(archive).concat();
+        let file = RecordFile::of(&bytes);
+        assert_eq!(file.damage, []);
+        for record in &file.records {
+            assert_eq!(replay(&[record]).unwrap().differing, 0);
+            let landings = record.summary.map(|summary| summary.landings);
+            dropped.push((landings.unwrap(), record.head.dropped));
+        }
+    };
+    for event in 1..=9_u32 {
+        for i in (event - 1) * LANDING..event * LANDING {
+            ticker.tick(&in_numbers(&scaling.sample(&sample(i, landing(i)))));
+            // The fourth and fifth find the third frozen.
+            if !(3..=5).contains(&event) {
+                archive.take(&mut reader);
+            }
+        }
+        if event == 6 || event == 9 {
+            drain(&mut archive);
+        }
+    }
+    // Of six: 1 and 2 are gone, 4 and 5 in no record. Of the three after them one is gone.
+    let wanted = [(3, 2), (6, 2), (8, 1), (9, 0)];
+    assert_eq!(dropped, wanted);
+}
+
+/// Both planes of an event stay together.
+/// Requirement: SR-40
+#[test]
+fn of_a_rotor_both_planes_are_kept() {
+    let mut rotor = Rotor::<RECORD>::new(&shaft(&config()), &[config(); 2]).unwrap();
+    let (mut ticker, mut reader) = rotor.split();
+    let mut archive = RotorArchive::<RECORD, 2>::new();
+    let mut at_once = Vec::new();
+    for i in 0..3 * LANDING {
+        ticker.tick(&[sample(i, landing(i)), sample(i, [1e-6 * (i % 3) as f32; 2])]);
+        let both = [0, 1].map(|end| reader.record(end).map(|record| written(&record)));
+        assert_eq!(archive.take(&mut reader), both[0].is_some());
+        at_once.extend(both[0].is_some().then_some(both));
+    }
+    assert_eq!((at_once.len(), archive.count()), (3, 2));
+    let mut events = Vec::new();
+    while archive.count() > 0 {
+        let both = [0, 1].map(|end| written(&archive.oldest(end).unwrap()));
+        let bytes = both.concat();
+        let file = RecordFile::of(&bytes);
+        assert_eq!(file.damage, []);
+        let event = &file.events()[..];
+        assert_eq!(event.len(), 1);
+        assert_eq!(event[0].replay.unwrap().differing, 0);
+        assert!(file.records.iter().all(|record| record.shaft.is_some()));
+        events.push((file.records[0].head.dropped, both.map(Some)));
+        archive.discard();
+    }
+    assert_eq!([events[0].0, events[1].0], [1, 0]);
+    assert_eq!(events[1].1, at_once[2]);
+}
+
+/// As the page on records has it.
+#[test]
+fn an_event_takes_as_much_as_the_page_says() {
+    const fn per_event<const N: usize>() -> usize {
+        size_of::<Archive<f32, N, 3>>() - size_of::<Archive<f32, N, 2>>()
+    }
+    let sizes = [
+        (64, per_event::<64>()),
+        (128, per_event::<128>()),
+        (256, per_event::<256>()),
+        (512, per_event::<512>()),
+        (1024, per_event::<1024>()),
+    ];
+    let page = std::fs::read_to_string(root().join("docs/src/supervisor/records.md")).unwrap();
+    for (entries, bytes) in sizes {
+        let row = format!("| {entries} | {} {:03} |", bytes / 1000, bytes % 1000);
+        assert!(page.contains(&row), "{row}");
+    }
+}
