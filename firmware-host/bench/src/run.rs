@@ -19,3 +19,4 @@ pub mod trace_file;
 pub mod trace_table;
 pub mod verdict;
 pub mod verify;
+pub mod whole_clairvoyant;

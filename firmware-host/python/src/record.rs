@@ -34,7 +34,8 @@ fn event<'py>(py: Python<'py>, event: &Event<'_>) -> PyResult<Bound<'py, PyDict>
     let dict = PyDict::new(py);
     let told = event.told();
     dict.set_item("summary", python(py, &told)?)?;
-    dict.set_item("text", told.map(|told| told.paragraph()))?;
+    // Without a ledger nothing is used up.
+    dict.set_item("text", told.map(|told| told.paragraph(0.0)))?;
     let replay = event.replay.as_ref();
     dict.set_item("replay", python(py, &replay.ok())?)?;
     dict.set_item("no_replay", replay.err().map(ToString::to_string))?;

@@ -10,6 +10,7 @@ use firmware_studies::campaign::{Extent, Progress, html};
 use firmware_studies::overloads::histories::{CASES, Way, compare};
 use firmware_studies::overloads::page;
 use firmware_studies::overloads::plan::{Catalogue, CatalogueError, Plan, search};
+use firmware_studies::whole_rotors::reference::search_laws;
 use std::borrow::Cow;
 use std::path::PathBuf;
 
@@ -32,6 +33,10 @@ pub struct OverloadsArgs {
     /// them to found.json in the folder.
     #[arg(long, conflicts_with_all = ["json", "quick", "scene"])]
     pub search: bool,
+    /// With --search: search the reference's weights on the whole rotors P5 to P8 instead, and write them to
+    /// found_rotors.json in the folder.
+    #[arg(long, requires = "search")]
+    pub rotors: bool,
     /// Instead of the catalogue: search force histories that were laid down beforehand against the reference,
     /// and write them to histories.json in the folder; takes minutes.
     #[arg(long, conflicts_with_all = ["json", "quick", "scene", "search"])]
@@ -102,15 +107,20 @@ fn command(args: &OverloadsArgs) -> String {
 
 fn search_anew(args: &OverloadsArgs) -> Result<(), CommandError> {
     let progress = LateProgress::default();
-    let rows = (args.threads.pool()?)
-        .install(|| search(&progress))
-        .map_err(failed)?;
+    let pool = args.threads.pool()?;
+    let (name, json) = if args.rotors {
+        let rows = pool.install(|| search_laws(&progress))?;
+        let name = "found_rotors.json";
+        (name, pretty(&rows, "formatting found_rotors.json")?)
+    } else {
+        let rows = pool.install(|| search(&progress)).map_err(failed)?;
+        ("found.json", pretty(&rows, "formatting found.json")?)
+    };
     progress.finish();
-    let json = pretty(&rows, "formatting found.json")?;
     let staging = Staging::for_folder(&args.out)?;
-    staging.write("found.json", format!("{json}\n"))?;
+    staging.write(name, format!("{json}\n"))?;
     let out = staging.publish()?;
-    print(&format!("found: {}\n", out.join("found.json").display()))
+    print(&format!("found: {}\n", out.join(name).display()))
 }
 
 fn against_histories(args: &OverloadsArgs) -> Result<(), CommandError> {

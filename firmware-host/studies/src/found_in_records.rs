@@ -5,10 +5,11 @@ use crate::machines::plants::{PlantCase, RATES_HZ, plants};
 use crate::machines::tuned_gains::{TunedGains, stored};
 use crate::overloads::case::Case;
 use crate::overloads::catalogue::cases;
-use crate::overloads::contenders::{Contender, Task, restitution};
+use crate::overloads::contenders::{Contender, Task};
 use crate::overloads::plan::CatalogueError;
 use firmware_bench::record::file::RecordFile;
 use firmware_bench::record::identify::{Estimate, Findings};
+use firmware_bench::run::clairvoyant::restitution;
 use firmware_bench::run::closed_loop::{Keep, run_policy};
 use firmware_bench::run::trace::{Trace, TraceRow};
 use firmware_bench::scene::Scene;
@@ -184,7 +185,7 @@ pub fn compare(scene: &Scene, trace: &Trace, last: u32, found: &Findings) -> Cou
     if let Some(mu) = mu {
         (counts.friction).of_estimate(told.friction_coefficient, mu, 0.1 * mu);
     }
-    (counts.restitution).of_estimate(told.restitution, restitution(scene), 0.1);
+    (counts.restitution).of_estimate(told.restitution, restitution(&scene.plant), 0.1);
     counts
 }
 

@@ -5,9 +5,14 @@ pub mod catalogue;
 mod compared;
 mod drawn;
 mod hardest;
+mod incidents;
+mod loops;
 mod plants;
+pub mod reference;
 pub mod study;
+mod wrong_shaft;
 
 pub use self::compared::{Ran, Run};
 pub use self::drawn::{Class, Event, RotorCase};
+pub use self::incidents::Incident;
 pub use self::plants::{Blow, Loop, RotorPlant};

@@ -23,7 +23,7 @@ fn the_scene_with_everything_runs() {
 }
 
 /// What takes long, or asks for what is not here: only whether words and options are known is tried.
-const ONLY_PARSED: [(&str, &str); 15] = [
+const ONLY_PARSED: [(&str, &str); 16] = [
     (
         "accuracy",
         "seconds of reference runs; the studies' tests run it",
@@ -32,6 +32,7 @@ const ONLY_PARSED: [(&str, &str); 15] = [
     ("overloads", "half a minute and more"),
     ("paper", "half a minute and more"),
     ("target", "needs an emulator"),
+    ("study rotor-catalogue", "the studies' tests run it"),
     ("study harm", "minutes"),
     ("study sensitivity", "minutes"),
     ("study target", "needs an emulator"),

@@ -2,6 +2,7 @@
 
 use firmware_bench::record::file::RecordFile;
 use firmware_bench::record::identify::{Estimate, Findings};
+use firmware_bench::run::clairvoyant::restitution;
 use firmware_bench::run::closed_loop::{Keep, run};
 use firmware_bench::run::trace::Trace;
 use firmware_bench::scene::Scene;
@@ -11,7 +12,6 @@ use firmware_studies::found_in_records::{Share, contacts, study};
 use firmware_studies::harm::conditions::Condition;
 use firmware_studies::harm::events::Event;
 use firmware_studies::harm::plan::scene;
-use firmware_studies::overloads::contenders::restitution;
 
 const SEED: u64 = 20_261_201;
 const MACHINES: u64 = 40;
@@ -55,7 +55,7 @@ fn compare(event: Event, scene: &Scene, trace: &Trace, last: u32, found: &Findin
     near(
         &mut counts.restitution,
         told.restitution,
-        restitution(scene),
+        restitution(&scene.plant),
         0.1,
     );
     near(

@@ -57,7 +57,7 @@ impl VelocityFilter {
 }
 
 /// The controller's law on the true state, for references: no filter, and no integrator, which holds loads only.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct TrueLevitation {
     /// Gains.
     pub params: LevitationParams,

@@ -2,6 +2,7 @@
 //! of the supervisor's, in double precision, with every weight free to be searched.
 
 use crate::run::controller::{Controller, Force, Seen};
+use plant_model::contact::restitution_of;
 use plant_model::params::PlantParams;
 use plant_model::{Snapshot, V2};
 
@@ -37,6 +38,15 @@ pub struct Clairvoyant {
     half_period_s: f64,
 }
 
+/// Restitution of a plant's contact, as the law is told.
+pub fn restitution(plant: &PlantParams) -> f64 {
+    // The catalogues' contacts are linear; a nonlinear one loses little at low speed.
+    plant.contact.law.linear().map_or(1.0, |law| {
+        let critical = 2.0 * (law.stiffness_n_m * plant.contact_mass_kg()).sqrt();
+        restitution_of(law.damping_n_s_m / critical)
+    })
+}
+
 impl Clairvoyant {
     /// Sets the law up.
     pub fn new(
@@ -65,6 +75,16 @@ impl Clairvoyant {
 
     /// Force for the true state \[N\].
     pub fn force_n(&self, now: &Snapshot) -> V2 {
+        let mut sum = V2::zeros();
+        for part in self.parts(now, now.velocity_m_s) {
+            sum += part * largest_share(sum, part);
+        }
+        sum * self.force_max_n
+    }
+
+    /// What is wanted of the force, the most urgent first, as shares of the cap: braking, damping, restoring. Damping is
+    /// against the velocity \[m/s\] that the rotor is expected to have when the force has come.
+    pub(crate) fn parts(&self, now: &Snapshot, damped_m_s: V2) -> [V2; 3] {
         let (x, v) = (
             now.position_m / self.clearance_m,
             now.velocity_m_s / self.lift_off_m_s,
@@ -75,19 +95,25 @@ impl Clairvoyant {
         } else {
             -now.spin_rad_s.signum()
         };
-        let parts = if now.mode.in_contact() {
-            self.in_contact(x, v, sense)
+        let damping = damped_m_s / self.lift_off_m_s * -self.law.damper;
+        if now.mode.in_contact() {
+            [self.in_contact(x, v, sense), damping, V2::zeros()]
         } else {
-            self.in_flight(x, v, sense)
-        };
-        let mut sum = V2::zeros();
-        for part in parts {
-            sum += part * largest_share(sum, part);
+            [
+                self.in_flight(x, v, sense),
+                damping,
+                -x * self.law.restoring,
+            ]
         }
-        sum * self.force_max_n
     }
 
-    fn in_contact(&self, x: V2, v: V2, sense: f64) -> [V2; 3] {
+    /// Mean time from a command to its force \[s\].
+    pub(crate) fn horizon_s(&self) -> f64 {
+        self.horizon_s
+    }
+
+    /// Braking on the wall.
+    fn in_contact(&self, x: V2, v: V2, sense: f64) -> V2 {
         let radius = x.norm();
         let n = x / radius;
         let b = quarter(n) * sense;
@@ -97,17 +123,15 @@ impl Clairvoyant {
         // The force turns with the contact: lag and half a period of hold are made up for.
         let rate = v.dot(&quarter(n)) / radius * self.lift_off_m_s / self.clearance_m;
         let lead = (rate * self.lag_s).atan() + rate * self.half_period_s;
-        [rotated(aim, lead), -v * self.law.damper, V2::zeros()]
+        rotated(aim, lead)
     }
 
-    fn in_flight(&self, x: V2, v: V2, sense: f64) -> [V2; 3] {
-        let damping = -v * self.law.damper;
-        let restoring = -x * self.law.restoring;
-        let rest = [V2::zeros(), damping, restoring];
+    /// Braking of the impact to come.
+    fn in_flight(&self, x: V2, v: V2, sense: f64) -> V2 {
         let per_unit = self.clearance_m / self.lift_off_m_s;
         let (mut x, mut v) = (x, v);
         let Some(mut hit) = ahead(x, v) else {
-            return rest;
+            return V2::zeros();
         };
         let gain = self.law.flight_gain;
         let mut act_after = self.horizon_s / per_unit;
@@ -119,7 +143,7 @@ impl Clairvoyant {
             x = n * 0.999;
             match ahead(x, v) {
                 Some(next) => hit = next,
-                None => return rest,
+                None => return V2::zeros(),
             }
             act_after = act_after.min(hit.0);
         }
@@ -130,12 +154,11 @@ impl Clairvoyant {
         let strength = (sum.max(0.0) * self.law.damper).min(1.0);
         let gradient = quarter(at) * (sense * (v_n - gain * v_b)) + v * gain;
         let size = gradient.norm();
-        let braking = if size > 0.0 {
+        if size > 0.0 {
             gradient * (-strength / size)
         } else {
             V2::zeros()
-        };
-        [braking, damping, restoring]
+        }
     }
 }
 
@@ -149,7 +172,7 @@ fn quarter(v: V2) -> V2 {
     V2::new(-v.y, v.x)
 }
 
-fn rotated(v: V2, angle: f64) -> V2 {
+pub(crate) fn rotated(v: V2, angle: f64) -> V2 {
     let (s, c) = angle.sin_cos();
     V2::new(c * v.x - s * v.y, s * v.x + c * v.y)
 }
@@ -167,7 +190,7 @@ fn ahead(x: V2, v: V2) -> Option<(f64, V2)> {
 }
 
 /// Largest s in [0, 1] with |sum + s·part| ≤ 1.
-fn largest_share(sum: V2, part: V2) -> f64 {
+pub(crate) fn largest_share(sum: V2, part: V2) -> f64 {
     let square = part.norm_squared();
     if square <= 1e-18 {
         return 1.0;

@@ -8,10 +8,11 @@ use self::bench::Bench;
 use self::station::Station;
 use crate::device::external::ControllerError;
 use crate::device::loads::Loads;
-use crate::run::controller::{Controller, controller, controller_of_plane};
+use crate::run::controller::{Controller, Referred, controller, controller_of_plane};
 use crate::run::figures::Figures;
 use crate::run::rig::{OnePlane, WholeRotor};
 use crate::run::trace::{AxisRow, ReadOut, Recorder, Trace};
+use crate::run::whole_clairvoyant::WholeReference;
 use crate::scene::Scene;
 use crate::scene::machine::MachineScene;
 use crate::scene::policy_kind::PolicyKind;
@@ -231,28 +232,60 @@ pub fn record_machine<'a>(
         _ => None,
     };
     let whole = (scene.levitation.is_some(), supervisor.is_some());
+    let controller = |plane: &Scene| controller_of_plane(kind, plane, whole);
+    let mut bench = machine_bench(scene, (&controller, recorders.planes), task)?;
+    bench.levitated_by(scene.levitation.as_ref(), policy)?;
+    (bench.supervisor, bench.axis) = (supervisor, recorders.axis);
+    bench.ride(task, on_tick)
+}
+
+/// Runs a reference on a whole rotor; what comes back is of each plane. [`Keep`] says when it ends; no rows are kept.
+///
+/// # Errors
+/// As [`run`].
+pub fn refer_machine(
+    scene: &MachineScene,
+    reference: &WholeReference,
+    keep: Keep,
+) -> Result<Vec<Figures>, RunError> {
+    let task = Task {
+        policy: "clairvoyant",
+        to_decision: keep.to_decision(),
+        rigour: Rigour::default(),
+    };
+    let controller = |_: &Scene| -> Option<Box<dyn Controller>> { Some(Box::new(Referred)) };
+    let mut bench = machine_bench(scene, (&controller, Vec::new()), task)?;
+    bench.reference = Some(reference);
+    let ended = bench.ride(task, &mut |_| {})?;
+    Ok(ended.into_iter().map(|(figures, _)| figures).collect())
+}
+
+/// Sets up the controller of a plane; `None` where the plane lacks something.
+type ControllerOf<'f> = &'f dyn Fn(&Scene) -> Option<Box<dyn Controller>>;
+
+/// A whole rotor in the loop, nobody holding it as a whole.
+fn machine_bench<'a>(
+    scene: &'a MachineScene,
+    (controller_of, recorders): (ControllerOf<'_>, Vec<&'a mut dyn Recorder>),
+    task: Task,
+) -> Result<Bench<'a>, RunError> {
     let common = scene.common();
-    let rig = WholeRotor::new(scene, options(common, rigour))?;
-    let mut recorders_of = recorders.planes.into_iter();
+    let rig = WholeRotor::new(scene, options(common, task.rigour))?;
+    let mut recorders = recorders.into_iter();
     let mut stations = Vec::new();
     for plane in &scene.planes {
-        let controller = controller_of_plane(kind, &plane.scene, whole);
-        let controller = controller.ok_or(RunError::Incomplete { policy })?;
-        stations.push(Station::new(&plane.scene, controller, recorders_of.next()));
+        let controller = controller_of(&plane.scene).ok_or(RunError::Incomplete {
+            policy: task.policy,
+        })?;
+        stations.push(Station::new(&plane.scene, controller, recorders.next()));
     }
-    let loads = scene
-        .loads
-        .iter()
-        .map(|load| Loads::new(V2::zeros(), vec![*load]));
-    let mut bench = Bench::new(
+    let loads = (scene.loads.iter()).map(|load| Loads::new(V2::zeros(), vec![*load]));
+    Ok(Bench::new(
         common,
         Box::new(rig),
         stations,
         (loads.collect(), scene.edges()),
-    );
-    bench.levitated_by(scene.levitation.as_ref(), policy)?;
-    (bench.supervisor, bench.axis) = (supervisor, recorders.axis);
-    bench.ride(task, on_tick)
+    ))
 }
 
 /// A run as it is asked for.

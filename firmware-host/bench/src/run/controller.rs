@@ -64,7 +64,8 @@ pub struct Seen {
     pub applied_n: V2,
     /// What is valid and ready.
     pub status: Status,
-    /// Force that a levitation controller of the whole rotor asks this plane for \[N\]; zero where there is none.
+    /// Force that a levitation controller of the whole rotor, or a reference, asks this plane for \[N\]; zero where there is
+    /// none.
     pub levitation_n: V2,
 }
 
@@ -157,6 +158,16 @@ impl Controller for Passing {
 
     fn levitates(&self) -> bool {
         true
+    }
+}
+
+/// Passes on, at once, what a reference of the whole rotor asks for.
+#[derive(Debug)]
+pub(crate) struct Referred;
+
+impl Controller for Referred {
+    fn command(&mut self, seen: &Seen, _truth: &Snapshot) -> Force {
+        Force::AtOnce(seen.levitation_n)
     }
 }
 

@@ -116,10 +116,14 @@ impl Judge {
         }
     }
 
-    /// Whether the run may end: whirl, or back for so long that nothing will change.
-    pub(crate) fn decided(&self, meters: &Meters) -> bool {
+    /// Whether it has come to whirl, which no run takes back.
+    pub(crate) fn whirls(&self, meters: &Meters) -> bool {
         meters.peak_backward_speed_m_s > self.whirl_speed_m_s
-            || (self.in_middle_since_s).is_some_and(|since| self.now_s - since >= DECIDED_S)
+    }
+
+    /// Whether the rotor has been back for so long that nothing will change.
+    pub(crate) fn is_back(&self) -> bool {
+        (self.in_middle_since_s).is_some_and(|since| self.now_s - since >= DECIDED_S)
     }
 
     /// When it touched first \[s\]; `None` if never.

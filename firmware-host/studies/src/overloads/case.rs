@@ -3,9 +3,10 @@
 //! Sizes are taken from the plant: forces from its capacity, speeds from the impact whose bounces, left to
 //! themselves, would add up to the fastest whirl that the cap can stop, v_ref = v_lim·(1 − e)/(μ·(1 + e)).
 
-use super::contenders::{Contender, restitution};
+use super::contenders::Contender;
 use super::takeover::arrest_of;
 use firmware_bench::device::loads::{Disturbance, Shape};
+use firmware_bench::run::clairvoyant::restitution;
 use firmware_bench::scene::Scene;
 use plant_model::V2;
 use plant_model::params::Start;
@@ -39,7 +40,7 @@ impl Sizes {
     pub fn of(scene: &Scene) -> Option<Self> {
         let force_n = scene.plant.magnet?.force_max_n;
         let limit_m_s = arrest_of(scene)?.limit_m_s;
-        let e = restitution(scene);
+        let e = restitution(&scene.plant);
         let mu = scene.plant.friction.sliding.coefficient(0.0);
         Some(Self {
             force_n,

@@ -2,11 +2,10 @@
 
 use crate::machines::tuned_gains::TunedGains;
 use firmware_bench::device::levitation::{LevitationParams, TrueLevitation};
-use firmware_bench::run::clairvoyant::{Clairvoyant, ClairvoyantLaw};
+use firmware_bench::run::clairvoyant::{Clairvoyant, ClairvoyantLaw, restitution};
 use firmware_bench::run::controller::{Controller, controller};
 use firmware_bench::scene::Scene;
 use firmware_bench::scene::policy_kind::PolicyKind;
-use plant_model::contact::restitution_of;
 use plant_model::params::PlantParams;
 
 /// A policy of the catalogue.
@@ -123,18 +122,10 @@ impl Contender {
     }
 }
 
-/// Restitution of a scene's contact.
-pub fn restitution(scene: &Scene) -> f64 {
-    // The catalogue's contacts are linear; a nonlinear one loses little at low speed.
-    scene.plant.contact.law.linear().map_or(1.0, |law| {
-        let critical = 2.0 * (law.stiffness_n_m * scene.plant.contact_mass_kg()).sqrt();
-        restitution_of(law.damping_n_s_m / critical)
-    })
-}
-
 /// The reference with given weights.
 pub fn clairvoyant(law: ClairvoyantLaw, scene: &Scene) -> Clairvoyant {
-    Clairvoyant::new(law, &scene.plant, restitution(scene), scene.sample_rate_hz)
+    let restitution = restitution(&scene.plant);
+    Clairvoyant::new(law, &scene.plant, restitution, scene.sample_rate_hz)
 }
 
 /// The damping that spends the whole cap at the lift-off speed √(F·c/m) \[N s/m\].

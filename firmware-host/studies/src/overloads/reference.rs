@@ -18,18 +18,22 @@ const AROUND: usize = 60;
 /// Rounds of the second.
 const ROUNDS: usize = 2;
 /// The search distinguishes speeds by this factor.
-const FINE: f64 = 1.0125;
+pub(crate) const FINE: f64 = 1.0125;
 
 /// Ranges of the weights: the law that comes out of the supervisor's derivation is well inside.
-const RANGES: [(f64, f64); 5] = [
+pub(crate) const RANGES: [(f64, f64); 5] = [
     (0.0, 3.0),
     (0.0, 3.0),
     (-0.3, 0.8),
     (1.5, 40.0),
     (0.0, 0.95),
 ];
+/// Which of them is drawn by its logarithm: the damper.
+const BY_LOGARITHM: usize = 3;
+/// Where a search begins.
+pub(crate) const START: [f64; 5] = [0.8, 0.8, 0.15, 4.0, 0.2];
 
-fn law_of(w: [f64; 5]) -> ClairvoyantLaw {
+pub(crate) fn law_of(w: [f64; 5]) -> ClairvoyantLaw {
     ClairvoyantLaw {
         flight_gain: w[0],
         contact_gain: w[1],
@@ -39,10 +43,12 @@ fn law_of(w: [f64; 5]) -> ClairvoyantLaw {
     }
 }
 
-/// Searches the weights with the highest score.
-fn search(
-    score: &(dyn Fn(ClairvoyantLaw) -> Result<f64, RunError> + Sync),
-) -> Result<ClairvoyantLaw, RunError> {
+/// Searches the weights with the highest score, from a start.
+pub(crate) fn search<const N: usize>(
+    ranges: [(f64, f64); N],
+    start: [f64; N],
+    score: &(dyn Fn([f64; N]) -> Result<f64, RunError> + Sync),
+) -> Result<(f64, [f64; N]), RunError> {
     let mut random = ChaCha8Rng::seed_from_u64(1);
     let mut share = || -> f64 {
         match Uniform::new(0.0, 1.0) {
@@ -50,40 +56,48 @@ fn search(
             Err(_) => 0.5,
         }
     };
-    let mut draw = |centre: Option<[f64; 5]>| {
-        let mut w = [0.0; 5];
-        for (i, (low, high)) in RANGES.into_iter().enumerate() {
-            // The damper by its logarithm.
+    let mut draw = |centre: Option<[f64; N]>| {
+        let mut w = [0.0; N];
+        for (i, (low, high)) in ranges.into_iter().enumerate() {
             let s = share();
             w[i] = match centre {
-                None if i == 3 => low * (high / low).powf(s),
+                None if i == BY_LOGARITHM => low * (high / low).powf(s),
                 None => low + (high - low) * s,
-                Some(c) if i == 3 => (c[i] * 1.5_f64.powf(2.0 * s - 1.0)).clamp(low, high),
+                Some(c) if i == BY_LOGARITHM => {
+                    (c[i] * 1.5_f64.powf(2.0 * s - 1.0)).clamp(low, high)
+                }
                 Some(c) => (c[i] + 0.1 * (high - low) * (2.0 * s - 1.0)).clamp(low, high),
             };
         }
         w
     };
-    let rate = |all: &[[f64; 5]]| {
+    let rate = |all: &[[f64; N]]| {
         (all.par_iter())
-            .map(|w| Ok((score(law_of(*w))?, *w)))
+            .map(|w| Ok((score(*w)?, *w)))
             .collect::<Result<Vec<_>, RunError>>()
     };
-    let best = |all: Vec<(f64, [f64; 5])>, before: (f64, [f64; 5])| {
+    let best = |all: Vec<(f64, [f64; N])>, before: (f64, [f64; N])| {
         (all.into_iter()).fold(
             before,
             |best, next| if next.0 > best.0 { next } else { best },
         )
     };
-    let start = [0.8, 0.8, 0.15, 4.0, 0.2];
-    let mut all: Vec<[f64; 5]> = (0..AT_RANDOM).map(|_| draw(None)).collect();
+    let mut all: Vec<[f64; N]> = (0..AT_RANDOM).map(|_| draw(None)).collect();
     all.push(start);
     let mut found = best(rate(&all)?, (f64::NEG_INFINITY, start));
     for _ in 0..ROUNDS {
-        let all: Vec<[f64; 5]> = (0..AROUND).map(|_| draw(Some(found.1))).collect();
+        let all: Vec<[f64; N]> = (0..AROUND).map(|_| draw(Some(found.1))).collect();
         found = best(rate(&all)?, found);
     }
-    Ok(law_of(found.1))
+    Ok(found)
+}
+
+/// Searches the law of one plane with the highest score.
+fn search_law(
+    score: &(dyn Fn(ClairvoyantLaw) -> Result<f64, RunError> + Sync),
+) -> Result<ClairvoyantLaw, RunError> {
+    let (_, weights) = search(RANGES, START, &|w| score(law_of(w)))?;
+    Ok(law_of(weights))
 }
 
 /// Weights with the hardest impact recovered from.
@@ -91,7 +105,7 @@ fn search(
 /// # Errors
 /// [`RunError`] of a run that cannot be trusted.
 pub fn impact_law(scene: &Scene, from_m_s: f64) -> Result<ClairvoyantLaw, RunError> {
-    search(&|law| {
+    search_law(&|law| {
         let mut scene = scene.clone();
         let (mut speed, mut last) = (from_m_s, 0.0);
         loop {
@@ -134,5 +148,5 @@ pub fn whirl_law(scene: &Scene) -> Result<Option<ClairvoyantLaw>, RunError> {
         let time_s = run(0.85)?.arrested_s.unwrap_or(1.0);
         Ok(last - time_s)
     };
-    search(&score).map(Some)
+    search_law(&score).map(Some)
 }

@@ -33,7 +33,7 @@ pub fn whirling(scene: &Scene, speed_m_s: f64) -> Start {
 }
 
 /// Speed in contact above which whirl that began at a speed \[m/s\] counts as held by nobody: half as fast again.
-fn lost_beyond_m_s(speed_m_s: f64) -> f64 {
+pub(crate) fn lost_beyond_m_s(speed_m_s: f64) -> f64 {
     1.5 * speed_m_s
 }
 

@@ -18,11 +18,9 @@ pub struct Run {
     pub impulse_n_s: f64,
 }
 
-/// Both runs of an event.
+/// Both runs of a scene.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ran {
-    /// What happened.
-    pub event: Event,
     /// Levitation alone.
     pub alone: Run,
     /// With the supervisor.
@@ -52,11 +50,14 @@ pub(super) fn run(scene: &MachineScene, kind: PolicyKind) -> Option<Run> {
 impl Ran {
     /// What comes of an event; `None` where a run cannot be trusted.
     pub fn new(rotor: &RotorCase, event: Event) -> Option<Self> {
-        let scene = rotor.scene(event).ok()?;
+        Self::of(&rotor.scene(event).ok()?)
+    }
+
+    /// What comes of a scene; `None` where a run cannot be trusted.
+    pub(super) fn of(scene: &MachineScene) -> Option<Self> {
         Some(Self {
-            event,
-            alone: run(&scene, PolicyKind::Levitation)?,
-            own: run(&scene, PolicyKind::Supervisor)?,
+            alone: run(scene, PolicyKind::Levitation)?,
+            own: run(scene, PolicyKind::Supervisor)?,
         })
     }
 
@@ -70,3 +71,80 @@ impl Ran {
         self.own.touches > 2 * self.alone.touches + 10
     }
 }
+
+/// What came of many scenes.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Sum {
+    pub(super) runs: u64,
+    pub(super) untrusted: u64,
+    pub(super) alone: u64,
+    pub(super) own: u64,
+    pub(super) lost: u64,
+    pub(super) gained: u64,
+    pub(super) hammered: u64,
+    /// Where both recover.
+    touches: [u64; 2],
+    impulse_n_s: [f64; 2],
+}
+
+impl Sum {
+    pub(super) fn of<'a>(all: impl Iterator<Item = &'a Option<Ran>>) -> Self {
+        let mut sum = Self::default();
+        for ran in all {
+            sum.runs += 1;
+            let Some(ran) = ran else {
+                sum.untrusted += 1;
+                continue;
+            };
+            let (alone, own) = (&ran.alone, &ran.own);
+            sum.alone += u64::from(alone.recovered);
+            sum.own += u64::from(own.recovered);
+            sum.lost += u64::from(ran.is_lost());
+            sum.gained += u64::from(own.recovered && !alone.recovered);
+            sum.hammered += u64::from(ran.is_hammered());
+            if alone.recovered && own.recovered {
+                for (i, run) in [alone, own].into_iter().enumerate() {
+                    sum.touches[i] += run.touches;
+                    sum.impulse_n_s[i] += run.impulse_n_s;
+                }
+            }
+        }
+        sum
+    }
+
+    pub(super) fn touched(&self) -> f64 {
+        self.touches[1] as f64 / self.touches[0] as f64
+    }
+
+    pub(super) fn cells(&self, name: String) -> [String; 9] {
+        let impulse = self.impulse_n_s[1] / self.impulse_n_s[0];
+        let ratio = |x: f64| match x.is_finite() {
+            true => format!("{x:.2}"),
+            false => "–".to_owned(),
+        };
+        [
+            name,
+            self.runs.to_string(),
+            self.alone.to_string(),
+            self.own.to_string(),
+            self.lost.to_string(),
+            self.gained.to_string(),
+            self.hammered.to_string(),
+            ratio(self.touched()),
+            ratio(impulse),
+        ]
+    }
+}
+
+/// Headings of [`Sum::cells`].
+pub(super) const COLUMNS: [&str; 9] = [
+    "event",
+    "pairs",
+    "levitation alone",
+    "supervisor",
+    "lost",
+    "gained",
+    "struck on and on",
+    "touches",
+    "impulse",
+];

@@ -9,26 +9,36 @@ use firmware_bench::device::loop_shape::SampledPlant;
 use firmware_bench::scene::policy_kind::PolicyKind;
 
 /// First speed \[m/s\].
-const FIRST_M_S: f64 = 0.1;
+pub(super) const FIRST_M_S: f64 = 0.1;
 /// Nothing is searched beyond this speed \[m/s\].
 const LAST_M_S: f64 = 6.0;
 
 /// The hardest blow \[m/s\] of a direction and seed, on a grid, all slighter ones being recovered from too; 0 if the first
 /// is not, or where a run cannot be trusted.
-pub(super) fn hardest_m_s(
+pub(super) fn hardest_m_s(plant: &RotorPlant, blow: Blow, kind: PolicyKind, of: (f64, u64)) -> f64 {
+    hardest_from_m_s((FIRST_M_S, STEP), |speed_m_s| {
+        brings_back(plant, (blow, speed_m_s), kind, of)
+    })
+}
+
+/// Whether a policy recovers from a blow in a direction \[rad\] with a seed.
+pub(super) fn brings_back(
     plant: &RotorPlant,
-    blow: Blow,
+    (blow, speed_m_s): (Blow, f64),
     kind: PolicyKind,
     (angle_rad, seed): (f64, u64),
-) -> f64 {
-    let (mut last, mut speed) = (0.0, FIRST_M_S);
-    while speed < LAST_M_S {
-        let scene = plant.struck(blow, speed, angle_rad, seed);
-        if !run(&scene, kind).is_some_and(|run| run.recovered) {
-            break;
-        }
+) -> bool {
+    let scene = plant.struck(blow, speed_m_s, angle_rad, seed);
+    run(&scene, kind).is_some_and(|run| run.recovered)
+}
+
+/// The last speed \[m/s\] that somebody comes back from, of a grid that grows by a factor from a first one, all before it being
+/// come back from too; 0 if the first is not.
+pub(super) fn hardest_from_m_s((first_m_s, factor): (f64, f64), back: impl Fn(f64) -> bool) -> f64 {
+    let (mut last, mut speed) = (0.0, first_m_s);
+    while speed < LAST_M_S && back(speed) {
         last = speed;
-        speed *= STEP;
+        speed *= factor;
     }
     last
 }

@@ -1,6 +1,7 @@
 //! The plants of the catalogue that are whole rotors, from their scene files.
 
 use firmware_bench::device::levitation::LevitationParams;
+use firmware_bench::device::loads::{Disturbance, Shape};
 use firmware_bench::device::modal_levitation::{ModalLevitationParams, Station, TiltParams};
 use firmware_bench::device::whole_levitation::WholeLevitationParams;
 use firmware_bench::scene::diagnostic::SceneError;
@@ -15,14 +16,32 @@ pub struct RotorPlant {
     pub name: &'static str,
     /// What it is.
     pub scene: MachineScene,
-    text: &'static str,
+    /// Text of the scene with its robust loop.
+    robust: &'static str,
 }
 
-const FILES: [(&str, &str); 4] = [
-    ("P5", include_str!("../../../scenes/rotors/p5.toml")),
-    ("P6", include_str!("../../../scenes/rotors/p6.toml")),
-    ("P7", include_str!("../../../scenes/rotors/p7.toml")),
-    ("P8", include_str!("../../../scenes/rotors/p8.toml")),
+/// Name, scene, scene with the robust loop.
+const FILES: [(&str, &str, &str); 4] = [
+    (
+        "P5",
+        include_str!("../../../scenes/rotors/p5.toml"),
+        include_str!("../../../scenes/rotors/p5_robust.toml"),
+    ),
+    (
+        "P6",
+        include_str!("../../../scenes/rotors/p6.toml"),
+        include_str!("../../../scenes/rotors/p6_robust.toml"),
+    ),
+    (
+        "P7",
+        include_str!("../../../scenes/rotors/p7.toml"),
+        include_str!("../../../scenes/rotors/p7_robust.toml"),
+    ),
+    (
+        "P8",
+        include_str!("../../../scenes/rotors/p8.toml"),
+        include_str!("../../../scenes/rotors/p8_robust.toml"),
+    ),
 ];
 
 /// Which way a blow moves the rotor: as an impulse at a place does.
@@ -82,9 +101,13 @@ impl RotorPlant {
     /// # Errors
     /// [`SceneError`] if a file of the catalogue is not valid.
     pub fn all() -> Result<Vec<Self>, SceneError> {
-        let of = |(name, text): &(&'static str, &'static str)| {
+        let of = |(name, text, robust): &(&'static str, &'static str, &'static str)| {
             let scene = MachineScene::parse(&format!("rotors/{}.toml", name.to_lowercase()), text)?;
-            Ok(Self { name, scene, text })
+            Ok(Self {
+                name,
+                scene,
+                robust,
+            })
         };
         FILES.iter().map(of).collect()
     }
@@ -134,40 +157,56 @@ impl RotorPlant {
         with
     }
 
-    /// Under a load of so many caps (in the middle: of all caps together) for so long \[s\], in this direction, with other
-    /// noise and the file's levitation controllers.
+    /// The same with the robust loop that is stored for it.
     ///
     /// # Errors
-    /// None of a plant of the catalogue.
+    /// [`SceneError`] if the stored scene is not valid.
+    pub fn robust(&self) -> Result<Self, SceneError> {
+        let mut with = self.clone();
+        let file = format!("rotors/{}_robust.toml", self.name.to_lowercase());
+        with.scene.levitation = MachineScene::parse(&file, self.robust)?.levitation;
+        Ok(with)
+    }
+
+    /// Under a load of so many caps (in the middle: of all caps together) for so long \[s\], in this direction, with other
+    /// noise.
     pub fn overloaded(
         &self,
         end: Option<usize>,
         (share, duration_s): (f64, f64),
         (angle_rad, seed): (f64, u64),
-    ) -> Result<MachineScene, SceneError> {
-        let machine = &self.scene.machine;
+    ) -> MachineScene {
+        let mut scene = self.with_noise(seed);
+        let machine = &scene.machine;
         let plane = end.and_then(|end| machine.planes.get(end));
+        let position_m = plane.map_or(0.0, |plane| plane.position_m);
         let cap_n: f64 = match end {
             Some(end) => machine.magnets.get(end).map_or(0.0, |m| m.force_max_n),
             None => machine.magnets.iter().map(|m| m.force_max_n).sum(),
         };
         let (sin, cos) = angle_rad.sin_cos();
-        let [x, y] = [cos, sin].map(|part| share * cap_n * part);
-        let text = format!(
-            "{}\n[[disturbance]]\nstart_s = 0.02\nduration_s = {duration_s}\nforce_n = [{x}, {y}]\nposition_m = {}\n",
-            self.text,
-            plane.map_or(0.0, |plane| plane.position_m),
-        );
-        let mut scene = MachineScene::parse(self.name, &text)?;
+        let load = Disturbance {
+            start_s: 0.02,
+            duration_s,
+            force_n: share * cap_n * V2::new(cos, sin),
+            shape: Shape::Constant,
+        };
+        load_at(&mut scene, load, position_m);
+        scene
+    }
+
+    /// Nothing happens to it, with other noise.
+    fn with_noise(&self, seed: u64) -> MachineScene {
+        let mut scene = self.scene.clone();
         for plane in &mut scene.planes {
             plane.scene.seed = plane.scene.seed.wrapping_add(seed);
         }
-        Ok(scene)
+        scene
     }
 
     /// After a blow that gives the plane that it moves most this speed, in this direction, with other noise.
     pub fn struck(&self, blow: Blow, speed_m_s: f64, angle_rad: f64, seed: u64) -> MachineScene {
-        let mut scene = self.scene.clone();
+        let mut scene = self.with_noise(seed);
         let machine = &scene.machine;
         let places: Vec<f64> = machine.planes.iter().map(|p| p.position_m).collect();
         let rigid = machine.rotor.rigid();
@@ -188,9 +227,15 @@ impl RotorPlant {
         let along = V2::new(cos, sin);
         scene.start.centre_velocity_m_s = centre * along;
         scene.start.tilt_rate_rad_s = tilt * along;
-        for plane in &mut scene.planes {
-            plane.scene.seed = plane.scene.seed.wrapping_add(seed);
-        }
         scene
+    }
+}
+
+/// Adds a load at a place.
+pub(super) fn load_at(scene: &mut MachineScene, load: Disturbance, position_m: f64) {
+    scene.loads.push(load);
+    scene.machine.loads_m.push(position_m);
+    for plane in &mut scene.planes {
+        plane.scene.disturbances.push(load);
     }
 }

@@ -1,86 +1,11 @@
 //! What the supervisor does to whole rotors, as a study.
 
+use super::compared::{COLUMNS, Sum};
 use super::{Class, Event, Ran, RotorCase};
 use crate::campaign::{Block, Chapter, Claim, Extent, Progress, Report, StudyError, run_all};
 
 /// Nothing was tuned on the rotors of this seed.
 const SEED: u64 = 20_261_126;
-
-/// What came of a class, or of an event in it.
-#[derive(Debug, Clone, Copy, Default)]
-struct Sum {
-    runs: u64,
-    untrusted: u64,
-    alone: u64,
-    own: u64,
-    lost: u64,
-    gained: u64,
-    hammered: u64,
-    /// Where both recover.
-    touches: [u64; 2],
-    impulse_n_s: [f64; 2],
-}
-
-impl Sum {
-    fn of<'a>(all: impl Iterator<Item = &'a Option<Ran>>) -> Self {
-        let mut sum = Self::default();
-        for ran in all {
-            sum.runs += 1;
-            let Some(ran) = ran else {
-                sum.untrusted += 1;
-                continue;
-            };
-            let (alone, own) = (&ran.alone, &ran.own);
-            sum.alone += u64::from(alone.recovered);
-            sum.own += u64::from(own.recovered);
-            sum.lost += u64::from(ran.is_lost());
-            sum.gained += u64::from(own.recovered && !alone.recovered);
-            sum.hammered += u64::from(ran.is_hammered());
-            if alone.recovered && own.recovered {
-                for (i, run) in [alone, own].into_iter().enumerate() {
-                    sum.touches[i] += run.touches;
-                    sum.impulse_n_s[i] += run.impulse_n_s;
-                }
-            }
-        }
-        sum
-    }
-
-    fn touched(&self) -> f64 {
-        self.touches[1] as f64 / self.touches[0] as f64
-    }
-
-    fn cells(&self, name: String) -> [String; 9] {
-        let impulse = self.impulse_n_s[1] / self.impulse_n_s[0];
-        let ratio = |x: f64| match x.is_finite() {
-            true => format!("{x:.2}"),
-            false => "–".to_owned(),
-        };
-        [
-            name,
-            self.runs.to_string(),
-            self.alone.to_string(),
-            self.own.to_string(),
-            self.lost.to_string(),
-            self.gained.to_string(),
-            self.hammered.to_string(),
-            ratio(self.touched()),
-            ratio(impulse),
-        ]
-    }
-}
-
-const COLUMNS: [&str; 9] = [
-    "event",
-    "pairs",
-    "levitation alone",
-    "supervisor",
-    "lost",
-    "gained",
-    "struck on and on",
-    "touches",
-    "impulse",
-];
 
 /// Every event on three hundred rotors of each class, or on eight.
 ///

@@ -8,6 +8,7 @@ use crate::run::controller::{Seen, written};
 use crate::run::figures::{Ended, Figures};
 use crate::run::rig::Rig;
 use crate::run::trace::{AxisRow, ReadOut, Recorder};
+use crate::run::whole_clairvoyant::WholeReference;
 use crate::scene::Scene;
 use plant_model::{PlantError, Snapshot, V2};
 use supervisor::{IntegratorHint, Rotor, Stamp};
@@ -20,6 +21,8 @@ pub(super) struct Bench<'a> {
     stations: Vec<Station<'a>>,
     /// Who levitates the rotor as a whole.
     levitation: Option<WholeLevitation>,
+    /// Who sees its true state.
+    pub(super) reference: Option<&'a WholeReference>,
     /// Who supervises it as a whole.
     pub(super) supervisor: Option<Rotor>,
     pub(super) axis: Option<&'a mut dyn Recorder<AxisRow>>,
@@ -55,6 +58,7 @@ impl<'a> Bench<'a> {
             rig,
             stations,
             levitation: None,
+            reference: None,
             supervisor: None,
             axis: None,
             loads,
@@ -139,9 +143,9 @@ impl<'a> Bench<'a> {
 
     /// Whether nothing can change any more of whether the rotor has recovered.
     fn decided(&self) -> bool {
-        let stations = self.stations.iter().enumerate();
-        let mut decided = stations.map(|(plane, s)| s.judge.decided(&self.rig.meters(plane)));
-        decided.all(|decided| decided)
+        let stations = || self.stations.iter().enumerate();
+        stations().any(|(plane, s)| s.judge.whirls(&self.rig.meters(plane)))
+            || stations().all(|(_, s)| s.judge.is_back())
     }
 
     fn tick(&mut self, tick: u64, task: Task) -> Result<(), RunError> {
@@ -155,6 +159,7 @@ impl<'a> Bench<'a> {
             self.seen.push(station.see(t, sensed_m, now));
         }
         self.levitate(t, task)?;
+        self.refer();
         self.supervise();
         for (i, station) in self.stations.iter_mut().enumerate() {
             station.answer(tick, &self.seen[i], &self.now[i]);
@@ -179,6 +184,14 @@ impl<'a> Bench<'a> {
             from = to;
         }
         Ok(())
+    }
+
+    /// The reference of the whole rotor, where there is one.
+    fn refer(&mut self) {
+        let forces_n = self.reference.and_then(|r| r.forces_n(&self.now));
+        for (seen, force_n) in self.seen.iter_mut().zip(forces_n.into_iter().flatten()) {
+            seen.levitation_n = force_n;
+        }
     }
 
     /// The supervisor of the whole rotor, where there is one.

@@ -1,0 +1,122 @@
+//! What else happens, under every loop.
+
+use super::tries;
+use crate::campaign::{Block, Chapter, Claim, Extent, Progress, run_all};
+use crate::whole_rotors::compared::{COLUMNS, Ran, Sum};
+use crate::whole_rotors::incidents::Incident;
+use crate::whole_rotors::loops::Loops;
+
+/// A run of an incident on a plant.
+struct Row {
+    plant: &'static str,
+    by: &'static str,
+    incident: Incident,
+    seed: u64,
+    ran: Option<Ran>,
+}
+
+/// All that has happened so far.
+#[derive(Default)]
+pub(super) struct Happened {
+    rows: Vec<Row>,
+}
+
+impl Sum {
+    /// What is claimed of the incidents on a plant.
+    pub(super) fn claims(&self, plant: &str) -> [Claim; 3] {
+        [
+            Claim::at_most(
+                format!("{plant}, incidents: recoveries lost"),
+                0.0,
+                self.lost as f64,
+            ),
+            Claim::at_least(
+                format!("{plant}, incidents: recoveries, over levitation's"),
+                1.0,
+                self.own as f64 / self.alone as f64,
+            ),
+            Claim::at_most(
+                format!("{plant}, incidents: pairs that cannot be trusted"),
+                0.0,
+                self.untrusted as f64,
+            ),
+        ]
+    }
+}
+
+impl Happened {
+    /// Lets everything happen to a plant under each of its loops. `struck_m_s` is the hardest blow at the first end that the
+    /// file's loop alone recovers from.
+    pub(super) fn of(
+        &mut self,
+        loops: &Loops,
+        struck_m_s: f64,
+        extent: Extent,
+        progress: &dyn Progress,
+    ) -> Sum {
+        let mut cases = Vec::new();
+        for (by, plant) in &loops.by {
+            for incident in Incident::ALL {
+                cases.extend(tries(extent).iter().map(|of| (*by, plant, incident, *of)));
+            }
+        }
+        let ran = run_all(&cases, progress, |(_, plant, incident, of)| {
+            Ran::of(&incident.scene(plant, struck_m_s, *of))
+        });
+        let sum = Sum::of(ran.iter());
+        let rows = cases.into_iter().zip(ran);
+        (self.rows).extend(rows.map(|((by, plant, incident, (_, seed)), ran)| Row {
+            plant: plant.name,
+            by,
+            incident,
+            seed,
+            ran,
+        }));
+        sum
+    }
+
+    fn sum(&self, of: impl Fn(&Row) -> bool) -> Sum {
+        Sum::of(self.rows.iter().filter(|row| of(row)).map(|row| &row.ran))
+    }
+
+    pub(super) fn chapter(self) -> Chapter {
+        let by_incident =
+            (Incident::ALL.iter()).map(|i| self.sum(|row| row.incident == *i).cells(i.name()));
+        let mut groups: Vec<(&str, &str)> = Vec::new();
+        for row in &self.rows {
+            if !groups.contains(&(row.plant, row.by)) {
+                groups.push((row.plant, row.by));
+            }
+        }
+        let by_loop = groups.iter().map(|(plant, by)| {
+            let of = self.sum(|row| (row.plant, row.by) == (*plant, *by));
+            of.cells(format!("{plant}, {by}"))
+        });
+        let named = self.rows.iter().filter_map(|row| {
+            let ran = row.ran.as_ref()?;
+            let what = match (ran.is_lost(), ran.is_hammered()) {
+                (true, _) => "lost",
+                (false, true) => "struck on and on",
+                _ => return None,
+            };
+            let name = row.incident.name();
+            Some(format!(
+                "{what}: {}, {}; {name}; seed {}",
+                row.plant, row.by, row.seed
+            ))
+        });
+        let mut columns = COLUMNS;
+        columns[0] = "plant and levitation";
+        Chapter::new(
+            "What else happens",
+            vec![
+                Block::text(
+                    "Three directions and seeds of everything under every loop. Blows are at the first end with 0.7 of the hardest that the file's loop alone recovers from; what comes after one comes 2 ms after it. Magnet, axis and sensor are those of the first plane, lost ones known to be. Power goes with the weight fed forward. Touches and impulse are those with the supervisor over those of levitation alone, summed where both recover. Struck on and on: twice the touches of levitation alone, and ten more.",
+                ),
+                Block::table(COLUMNS, by_incident),
+                Block::table(columns, by_loop),
+                Block::List(named.collect()),
+            ],
+        )
+    }
+}
