@@ -4,6 +4,8 @@ pub mod accuracy;
 pub mod advise;
 mod chapters;
 pub mod error;
+pub mod export;
+pub mod fmu;
 pub mod harm;
 pub mod init;
 pub mod modes;

@@ -2,8 +2,8 @@
 
 use clap::{Parser, Subcommand};
 use firmware_host::cli::{
-    accuracy, advise, error, harm, init, modes, overloads, paper, review, run, schema, sensitivity,
-    serve_controller, study, sweep, target, vectors,
+    accuracy, advise, error, export, fmu, harm, init, modes, overloads, paper, review, run, schema,
+    sensitivity, serve_controller, study, sweep, target, vectors,
 };
 use std::process::ExitCode;
 
@@ -23,6 +23,10 @@ enum Command {
     Run(run::RunArgs),
     /// Run a scene again and again with keys that vary by a design, into one file with a row a run.
     Sweep(sweep::SweepArgs),
+    /// Write a trace as CSV, or as MCAP for Foxglove.
+    Export(export::ExportArgs),
+    /// Write plant, supervisor and closed loop of a scene as co-simulation units (FMI), for other simulation tools.
+    Fmu(fmu::FmuArgs),
     /// Error against run time of a scene's plant, over tolerances and methods, and silently wrong runs.
     Accuracy(accuracy::AccuracyArgs),
     /// Run the catalogue of overloads under every policy, and hold the supervisor's promises against it.
@@ -59,6 +63,8 @@ fn main() -> ExitCode {
         Command::Init(args) => init::execute(args),
         Command::Run(args) => run::execute(args),
         Command::Sweep(args) => sweep::execute(args),
+        Command::Export(args) => export::execute(args),
+        Command::Fmu(args) => fmu::execute(args),
         Command::Accuracy(args) => accuracy::execute(args),
         Command::Overloads(args) => overloads::execute(args),
         Command::Harm(args) => harm::execute(args),

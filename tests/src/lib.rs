@@ -41,6 +41,19 @@ pub fn machine_scene_path(name: &str) -> PathBuf {
     scene_path(&format!("machines/{name}"))
 }
 
+/// Python with what `tests/python/requirements.txt` names. `None` on a user's machine without it, with a message.
+///
+/// # Panics
+/// In CI without it.
+pub fn python() -> Option<PathBuf> {
+    let python = root().join("target/tests-venv/bin/python");
+    if !python.is_file() {
+        target::skipped("target/tests-venv is missing");
+        return None;
+    }
+    Some(python)
+}
+
 /// Names of all the project's scenes of one plane, in order.
 ///
 /// # Panics

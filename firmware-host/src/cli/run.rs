@@ -17,6 +17,7 @@ use firmware_bench::scene::Scene;
 use firmware_bench::scene::machine::AnyScene;
 use firmware_bench::scene::policy_kind::PolicyKind;
 use firmware_bench::scene::spec::Setting;
+use firmware_bench::sweep::plan::digest;
 use firmware_studies::campaign::Progress;
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 use std::path::{Path, PathBuf};
@@ -47,6 +48,35 @@ pub struct RunArgs {
     /// How many threads it may use.
     #[command(flatten)]
     pub threads: Threads,
+}
+
+impl RunArgs {
+    /// What a trace says of itself.
+    fn about(
+        &self,
+        scene: &Scene,
+        policy: &str,
+        plane: Option<&str>,
+    ) -> Vec<(&'static str, String)> {
+        let file = self.scene.file_name().unwrap_or(self.scene.as_os_str());
+        let mut set: Vec<String> = self.set.iter().map(Setting::to_string).collect();
+        set.extend(self.seed.map(|seed| format!("run.seed={seed}")));
+        let program = concat!("firmware-host ", env!("CARGO_PKG_VERSION"));
+        let all = [
+            ("program", Some(program.to_owned())),
+            ("scene", Some(file.to_string_lossy().into_owned())),
+            ("scene_title", Some(scene.title.clone())),
+            // It has just been read: what cannot be read again has no digest.
+            ("scene_sha256", digest(&self.scene).ok()),
+            ("set", (!set.is_empty()).then(|| set.join("; "))),
+            ("policy", Some(policy.to_owned())),
+            ("plane", plane.map(str::to_owned)),
+        ];
+        let given = all
+            .into_iter()
+            .filter_map(|(key, value)| Some((key, value?)));
+        given.collect()
+    }
 }
 
 /// Runs the scene and writes its results.
@@ -221,7 +251,10 @@ fn run_all(scene: &Scene, args: &RunArgs, staging: &Staging) -> Result<Results, 
         let name = trace_name(kind.name());
         let mut file = match args.no_trace {
             true => None,
-            false => Some(staging.trace(&name, Columns::of_plane())?),
+            false => {
+                let about = args.about(scene, kind.name(), None);
+                Some(staging.trace(&name, Columns::of_plane().about(about))?)
+            }
         };
         let ran = recorded(scene, kind, &checks, file.as_mut(), on_tick);
         match (&ran, file) {

@@ -16,4 +16,5 @@ mod packages;
 mod prebuilt;
 mod rig;
 mod rotor;
+mod simulink;
 mod versions;

@@ -49,7 +49,7 @@ const ONLY_PARSED: [(&str, &str); 16] = [
 ];
 
 /// What is not this program: what it needs, or what builds and runs firmware.
-const OTHERS: [(&str, &str); 21] = [
+const OTHERS: [(&str, &str); 22] = [
     ("git clone", "fetches the project"),
     ("curl", "installs Rust"),
     ("apt-get", "installs packages"),
@@ -78,7 +78,7 @@ const OTHERS: [(&str, &str); 21] = [
     ),
     (
         "pip install",
-        "firmware-host/python/test does it, in an environment of its own",
+        "firmware-host/python/test and tests/run do it, in environments of their own",
     ),
     (
         "firmware-host/python/build",
@@ -89,6 +89,10 @@ const OTHERS: [(&str, &str); 21] = [
         "the Python package's own tests do it",
     ),
     ("cd ", "leads to the next line"),
+    (
+        "python firmware-host/fmu/examples",
+        "the tests of the units do it",
+    ),
 ];
 
 /// Lines of the blocks for a shell, in one where they are continued, without what is behind a `#` or goes to a file.

@@ -146,6 +146,7 @@ fn files_import_only_upwards() {
     check("firmware-host/bench");
     check("firmware-host/studies");
     check("firmware-host/python");
+    check("firmware-host/fmu");
 }
 
 /// Neighbours in a folder that import each other, directly or through others: one circle, if there is any. A folder

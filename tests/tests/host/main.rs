@@ -4,6 +4,8 @@ mod advise;
 mod closed_loop;
 mod docs_book;
 mod docs_examples;
+mod export;
+mod fmu;
 mod init;
 mod instruments_and_events;
 mod judged;

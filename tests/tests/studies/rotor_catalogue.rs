@@ -8,7 +8,7 @@ use firmware_studies::campaign::Extent;
 use firmware_studies::whole_rotors::{Blow, Incident, RotorPlant, catalogue};
 use plant_model::V2;
 use std::process::Command;
-use system_tests::root;
+use system_tests::{python, root};
 
 #[test]
 fn harder_blows_than_levitation_alone() {
@@ -75,17 +75,9 @@ fn robust_loops_are_on_the_same_plants() {
 /// The script of the robust loops computes the controllers that are stored, and would say if it did not.
 #[test]
 fn the_script_computes_the_stored_loops() {
-    let own = root().join("tests/python/venv/bin/python");
-    let python = if own.exists() { own } else { "python3".into() };
-    let ready = Command::new(&python).args(["-c", "import scipy"]).output();
-    if !ready.is_ok_and(|ready| ready.status.success()) {
-        assert!(
-            std::env::var_os("CI").is_none(),
-            "SciPy is missing; tests/run installs it"
-        );
-        eprintln!("skipped: SciPy is missing; tests/run installs it");
+    let Some(python) = python() else {
         return;
-    }
+    };
     let check = |folder: &std::path::Path| {
         let script = folder.join("robust.py");
         let ran = Command::new(&python)

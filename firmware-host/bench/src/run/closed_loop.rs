@@ -3,6 +3,7 @@
 
 mod bench;
 mod station;
+pub mod stepwise;
 
 use self::bench::Bench;
 use self::station::Station;
@@ -190,11 +191,7 @@ pub fn record(
 ) -> Result<(Figures, Option<ReadOut>), RunError> {
     let policy = kind.name();
     let acting = controller(kind, scene).ok_or(RunError::Incomplete { policy })?;
-    let task = Task {
-        policy,
-        to_decision: false,
-        rigour,
-    };
+    let task = Task::to_the_end(policy, rigour);
     ride_one(scene, acting, Some(recorder), task, on_tick)
 }
 
@@ -221,12 +218,17 @@ pub fn record_machine<'a>(
     rigour: Rigour,
     on_tick: &mut dyn FnMut(u64),
 ) -> Result<Vec<PlaneEnded>, RunError> {
-    let policy = kind.name();
-    let task = Task {
-        policy,
-        to_decision: false,
-        rigour,
-    };
+    let task = Task::to_the_end(kind.name(), rigour);
+    bench_of_machine(scene, kind, recorders, task)?.ride(task, on_tick)
+}
+
+fn bench_of_machine<'a>(
+    scene: &'a MachineScene,
+    kind: PolicyKind,
+    recorders: MachineRecorders<'a>,
+    task: Task,
+) -> Result<Bench<'a>, RunError> {
+    let policy = task.policy;
     let supervisor = match kind {
         PolicyKind::Supervisor => scene.supervisor(),
         _ => None,
@@ -236,7 +238,7 @@ pub fn record_machine<'a>(
     let mut bench = machine_bench(scene, (&controller, recorders.planes), task)?;
     bench.levitated_by(scene.levitation.as_ref(), policy)?;
     (bench.supervisor, bench.axis) = (supervisor, recorders.axis);
-    bench.ride(task, on_tick)
+    Ok(bench)
 }
 
 /// Runs a reference on a whole rotor; what comes back is of each plane. [`Keep`] says when it ends; no rows are kept.
@@ -296,6 +298,16 @@ struct Task {
     rigour: Rigour,
 }
 
+impl Task {
+    fn to_the_end(policy: &'static str, rigour: Rigour) -> Self {
+        Self {
+            policy,
+            to_decision: false,
+            rigour,
+        }
+    }
+}
+
 fn options(scene: &Scene, rigour: Rigour) -> Options {
     Options {
         rtol: scene.rtol,
@@ -312,6 +324,19 @@ fn ride_one<'a>(
     task: Task,
     on_tick: &mut dyn FnMut(u64),
 ) -> Result<PlaneEnded, RunError> {
+    let bench = bench_of_one(scene, controller, recorder, task)?;
+    let ended = bench.ride(task, on_tick)?.pop();
+    ended.ok_or(RunError::Incomplete {
+        policy: task.policy,
+    })
+}
+
+fn bench_of_one<'a>(
+    scene: &'a Scene,
+    controller: Box<dyn Controller>,
+    recorder: Option<&'a mut dyn Recorder>,
+    task: Task,
+) -> Result<Bench<'a>, RunError> {
     let rigid = matches!(
         scene.plant.stator,
         StatorParams::Rigid | StatorParams::RigidEllipse(_)
@@ -324,8 +349,5 @@ fn ride_one<'a>(
     let loads = (vec![scene.external()], scene.edges());
     let mut bench = Bench::new(scene, Box::new(rig), stations, loads);
     bench.levitated_by(scene.controller.as_ref(), task.policy)?;
-    let ended = bench.ride(task, on_tick)?.pop();
-    ended.ok_or(RunError::Incomplete {
-        policy: task.policy,
-    })
+    Ok(bench)
 }

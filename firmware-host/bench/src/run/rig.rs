@@ -28,6 +28,9 @@ pub(crate) trait Rig {
     /// Where the rotor is at the sensor of a plane, as seen from the centre of the magnets \[m\].
     fn sensed_m(&self, plane: usize, now: &Snapshot) -> V2;
 
+    /// Has a force act on the rotor beside the loads, from now on \[N\]; of a whole rotor, which has no place for it, none does.
+    fn push(&mut self, _force_n: V2) {}
+
     fn change(&mut self, change: &Change) -> Result<(), BuildError>;
     fn meters(&self, plane: usize) -> Meters;
     /// ∫ f_n dt of a plane \[N s\].
@@ -48,12 +51,17 @@ pub(crate) trait Rig {
 pub(crate) struct OnePlane<'a> {
     scene: &'a Scene,
     plant: Box<dyn Plant>,
+    push_n: V2,
 }
 
 impl<'a> OnePlane<'a> {
     pub(crate) fn new(scene: &'a Scene, options: Options) -> Result<Self, BuildError> {
         let plant = scene.build(options)?;
-        Ok(Self { scene, plant })
+        Ok(Self {
+            scene,
+            plant,
+            push_n: V2::zeros(),
+        })
     }
 }
 
@@ -67,7 +75,11 @@ impl Rig for OnePlane<'_> {
     ) -> Result<(), PlantError> {
         let inputs = Inputs {
             command_n: commands_n[0],
-            external_n: loads_n[0],
+            // Without a push the loads' own bits, the sign of a zero included.
+            external_n: match self.push_n == V2::zeros() {
+                true => loads_n[0],
+                false => loads_n[0] + self.push_n,
+            },
         };
         (self.plant).advance(to_s, &inputs, &mut |snapshot| changes.push((0, *snapshot)))
     }
@@ -79,6 +91,10 @@ impl Rig for OnePlane<'_> {
 
     fn sensed_m(&self, _plane: usize, now: &Snapshot) -> V2 {
         self.scene.from_magnets_m(now.position_m)
+    }
+
+    fn push(&mut self, force_n: V2) {
+        self.push_n = force_n;
     }
 
     fn change(&mut self, change: &Change) -> Result<(), BuildError> {

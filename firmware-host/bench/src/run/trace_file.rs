@@ -6,6 +6,7 @@ use crate::run::trace::{AxisRow, Recorder, Said, TraceRow};
 use parquet::basic::Compression;
 use parquet::data_type::{BoolType, ByteArray, ByteArrayType, DoubleType};
 use parquet::errors::ParquetError;
+use parquet::file::metadata::KeyValue;
 use parquet::file::properties::{EnabledStatistics, WriterProperties};
 use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
 use parquet::schema::parser::parse_message_type;
@@ -13,7 +14,18 @@ use std::io::{self, Write};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-type Number<R> = (String, Box<dyn Fn(&R) -> f64 + Send>);
+/// A column of numbers.
+pub struct Number<R> {
+    /// Its name, with the unit behind it.
+    pub name: String,
+    /// The unit; "1" of a plain number.
+    pub unit: &'static str,
+    /// What it is.
+    pub about: &'static str,
+    /// Reads it off a row.
+    pub value: Box<dyn Fn(&R) -> f64 + Send>,
+}
+
 type Text<R> = (&'static str, fn(&R) -> String);
 type Flag<R> = (&'static str, fn(&R) -> bool);
 
@@ -22,6 +34,8 @@ pub struct Columns<R: 'static> {
     pub(super) numbers: Vec<Number<R>>,
     pub(super) texts: &'static [Text<R>],
     pub(super) flags: &'static [Flag<R>],
+    /// What the file says of itself: keys and values.
+    about: Vec<(&'static str, String)>,
 }
 
 impl Columns<TraceRow> {
@@ -29,10 +43,13 @@ impl Columns<TraceRow> {
     pub fn of_plane() -> Self {
         let numbers = NUMBERS.iter().copied();
         Self {
-            numbers: numbers.map(|(name, value)| number(name, value)).collect(),
+            numbers: numbers
+                .map(|(name, unit, about, value)| number(name, (unit, about), value))
+                .collect(),
             texts: TEXTS,
             // Whether a row stands at a change of mode between two control samples.
             flags: &[("mode_change", |r| r.mode_change)],
+            about: Vec::new(),
         }
     }
 }
@@ -41,76 +58,244 @@ impl Columns<AxisRow> {
     /// Of a rotor's axis with so many bending modes.
     pub fn of_axis(modes: usize) -> Self {
         let axis = AXIS.iter().copied();
-        let mut numbers: Vec<Number<AxisRow>> =
-            axis.map(|(name, value)| number(name, value)).collect();
+        let mut numbers: Vec<Number<AxisRow>> = axis
+            .map(|(name, unit, about, value)| number(name, (unit, about), value))
+            .collect();
         for mode in 0..modes {
             for (axis, name) in ["x", "y"].into_iter().enumerate() {
                 let value = move |r: &AxisRow| r.bending[mode].position[axis];
-                numbers.push(number(&format!("bending_{}_{name}_m", mode + 1), value));
+                let about = ("m", "amplitude of a bending mode");
+                numbers.push(number(
+                    &format!("bending_{}_{name}_m", mode + 1),
+                    about,
+                    value,
+                ));
             }
         }
         Self {
             numbers,
             texts: &[],
             flags: &[],
+            about: Vec::new(),
         }
     }
 }
 
-fn number<R>(name: &str, value: impl Fn(&R) -> f64 + Send + 'static) -> Number<R> {
-    (name.to_owned(), Box::new(value))
+impl<R> Columns<R> {
+    /// Those of numbers, in file order.
+    pub fn into_numbers(self) -> Vec<Number<R>> {
+        self.numbers
+    }
+
+    /// The same for a file that says this of itself, beside the [units](UNITS).
+    #[must_use]
+    pub fn about(mut self, about: Vec<(&'static str, String)>) -> Self {
+        self.about = about;
+        self
+    }
+
+    /// Keys and values of the file.
+    fn key_values(&self) -> Vec<KeyValue> {
+        let units: serde_json::Map<String, serde_json::Value> = (self.numbers.iter())
+            .map(|number| (number.name.clone(), number.unit.into()))
+            .collect();
+        let units = (UNITS, serde_json::Value::from(units).to_string());
+        let about = self.about.iter().cloned().chain([units]);
+        about
+            .map(|(key, value)| KeyValue::new(key.to_owned(), value))
+            .collect()
+    }
 }
 
-type Plain<R> = (&'static str, fn(&R) -> f64);
+fn number<R>(
+    name: &str,
+    (unit, about): (&'static str, &'static str),
+    value: impl Fn(&R) -> f64 + Send + 'static,
+) -> Number<R> {
+    Number {
+        name: name.to_owned(),
+        unit,
+        about,
+        value: Box::new(value),
+    }
+}
+
+/// Name, unit, what it is, value.
+type Plain<R> = (&'static str, &'static str, &'static str, fn(&R) -> f64);
 
 /// The axis of a whole rotor.
 const AXIS: &[Plain<AxisRow>] = &[
-    ("t_s", |r| r.t_s),
-    ("centre_x_m", |r| r.axis.centre.position.x),
-    ("centre_y_m", |r| r.axis.centre.position.y),
-    ("centre_vx_m_s", |r| r.axis.centre.velocity.x),
-    ("centre_vy_m_s", |r| r.axis.centre.velocity.y),
-    ("tilt_x_rad", |r| r.axis.tilt.position.x),
-    ("tilt_y_rad", |r| r.axis.tilt.position.y),
-    ("tilt_rate_x_rad_s", |r| r.axis.tilt.velocity.x),
-    ("tilt_rate_y_rad_s", |r| r.axis.tilt.velocity.y),
-    ("bending_energy_j", |r| r.axis.bending_j),
+    ("t_s", "s", "time", |r| r.t_s),
+    ("centre_x_m", "m", "centre of mass", |r| {
+        r.axis.centre.position.x
+    }),
+    ("centre_y_m", "m", "centre of mass", |r| {
+        r.axis.centre.position.y
+    }),
+    ("centre_vx_m_s", "m/s", "its velocity", |r| {
+        r.axis.centre.velocity.x
+    }),
+    ("centre_vy_m_s", "m/s", "its velocity", |r| {
+        r.axis.centre.velocity.y
+    }),
+    ("tilt_x_rad", "rad", "slope of the axis, dx/dz", |r| {
+        r.axis.tilt.position.x
+    }),
+    ("tilt_y_rad", "rad", "slope of the axis, dy/dz", |r| {
+        r.axis.tilt.position.y
+    }),
+    ("tilt_rate_x_rad_s", "rad/s", "its rate", |r| {
+        r.axis.tilt.velocity.x
+    }),
+    ("tilt_rate_y_rad_s", "rad/s", "its rate", |r| {
+        r.axis.tilt.velocity.y
+    }),
+    ("bending_energy_j", "J", "energy of bending", |r| {
+        r.axis.bending_j
+    }),
 ];
 
 /// Columns of numbers, in file order.
 const NUMBERS: &[Plain<TraceRow>] = &[
-    ("t_s", |r| r.plant.t_s),
-    ("rotor_x_m", |r| r.plant.position_m.x),
-    ("rotor_y_m", |r| r.plant.position_m.y),
-    ("rotor_vx_m_s", |r| r.plant.velocity_m_s.x),
-    ("rotor_vy_m_s", |r| r.plant.velocity_m_s.y),
-    ("inner_ring_x_m", |r| r.plant.inner_ring.position.x),
-    ("inner_ring_y_m", |r| r.plant.inner_ring.position.y),
-    ("inner_ring_vx_m_s", |r| r.plant.inner_ring.velocity.x),
-    ("inner_ring_vy_m_s", |r| r.plant.inner_ring.velocity.y),
-    ("outer_ring_x_m", |r| r.plant.outer_ring.position.x),
-    ("outer_ring_y_m", |r| r.plant.outer_ring.position.y),
-    ("outer_ring_vx_m_s", |r| r.plant.outer_ring.velocity.x),
-    ("outer_ring_vy_m_s", |r| r.plant.outer_ring.velocity.y),
-    ("spin_rad_s", |r| r.plant.spin_rad_s),
-    ("race_spin_rad_s", |r| r.plant.race_spin_rad_s),
-    ("penetration_m", |r| r.plant.penetration_m),
-    ("contact_force_n", |r| r.plant.normal_force_n),
-    ("sliding_force_n", |r| r.plant.sliding_force_n),
-    ("rolling_force_n", |r| r.plant.rolling_force_n),
-    ("contact_tangential_speed_m_s", |r| {
-        r.plant.contact_tangential_speed_m_s
+    ("t_s", "s", "time", |r| r.plant.t_s),
+    (
+        "rotor_x_m",
+        "m",
+        "rotor, from the centre of the retainer bearing",
+        |r| r.plant.position_m.x,
+    ),
+    (
+        "rotor_y_m",
+        "m",
+        "rotor, from the centre of the retainer bearing",
+        |r| r.plant.position_m.y,
+    ),
+    ("rotor_vx_m_s", "m/s", "velocity of the rotor", |r| {
+        r.plant.velocity_m_s.x
     }),
-    ("whirl_angle_rad", |r| r.plant.whirl_angle_rad),
-    ("measured_x_m", |r| r.measured_m.x),
-    ("measured_y_m", |r| r.measured_m.y),
-    ("commanded_x_n", |r| r.commanded_n.x),
-    ("commanded_y_n", |r| r.commanded_n.y),
-    ("delivered_x_n", |r| r.plant.delivered_n.x),
-    ("delivered_y_n", |r| r.plant.delivered_n.y),
-    ("levitation_x_n", |r| said(r, |s| s.levitation_n[0])),
-    ("levitation_y_n", |r| said(r, |s| s.levitation_n[1])),
-    ("supervisor_severity", |r| said(r, |s| s.severity)),
+    ("rotor_vy_m_s", "m/s", "velocity of the rotor", |r| {
+        r.plant.velocity_m_s.y
+    }),
+    ("inner_ring_x_m", "m", "inner ring", |r| {
+        r.plant.inner_ring.position.x
+    }),
+    ("inner_ring_y_m", "m", "inner ring", |r| {
+        r.plant.inner_ring.position.y
+    }),
+    (
+        "inner_ring_vx_m_s",
+        "m/s",
+        "velocity of the inner ring",
+        |r| r.plant.inner_ring.velocity.x,
+    ),
+    (
+        "inner_ring_vy_m_s",
+        "m/s",
+        "velocity of the inner ring",
+        |r| r.plant.inner_ring.velocity.y,
+    ),
+    ("outer_ring_x_m", "m", "outer ring", |r| {
+        r.plant.outer_ring.position.x
+    }),
+    ("outer_ring_y_m", "m", "outer ring", |r| {
+        r.plant.outer_ring.position.y
+    }),
+    (
+        "outer_ring_vx_m_s",
+        "m/s",
+        "velocity of the outer ring",
+        |r| r.plant.outer_ring.velocity.x,
+    ),
+    (
+        "outer_ring_vy_m_s",
+        "m/s",
+        "velocity of the outer ring",
+        |r| r.plant.outer_ring.velocity.y,
+    ),
+    ("spin_rad_s", "rad/s", "spin of the rotor", |r| {
+        r.plant.spin_rad_s
+    }),
+    (
+        "race_spin_rad_s",
+        "rad/s",
+        "spin of the race that it touches",
+        |r| r.plant.race_spin_rad_s,
+    ),
+    (
+        "penetration_m",
+        "m",
+        "depth in the wall; negative inside the clearance",
+        |r| r.plant.penetration_m,
+    ),
+    ("contact_force_n", "N", "normal force of the contact", |r| {
+        r.plant.normal_force_n
+    }),
+    (
+        "sliding_force_n",
+        "N",
+        "sliding friction on the rotor, counter-clockwise",
+        |r| r.plant.sliding_force_n,
+    ),
+    (
+        "rolling_force_n",
+        "N",
+        "rolling friction on the rotor, counter-clockwise",
+        |r| r.plant.rolling_force_n,
+    ),
+    (
+        "contact_tangential_speed_m_s",
+        "m/s",
+        "tangential speed of the rotor against the ring",
+        |r| r.plant.contact_tangential_speed_m_s,
+    ),
+    (
+        "whirl_angle_rad",
+        "rad",
+        "angle of the contact point, summed over all contact",
+        |r| r.plant.whirl_angle_rad,
+    ),
+    (
+        "measured_x_m",
+        "m",
+        "position as the sensor reads it",
+        |r| r.measured_m.x,
+    ),
+    (
+        "measured_y_m",
+        "m",
+        "position as the sensor reads it",
+        |r| r.measured_m.y,
+    ),
+    ("commanded_x_n", "N", "command in effect", |r| {
+        r.commanded_n.x
+    }),
+    ("commanded_y_n", "N", "command in effect", |r| {
+        r.commanded_n.y
+    }),
+    ("delivered_x_n", "N", "force of the magnet", |r| {
+        r.plant.delivered_n.x
+    }),
+    ("delivered_y_n", "N", "force of the magnet", |r| {
+        r.plant.delivered_n.y
+    }),
+    (
+        "levitation_x_n",
+        "N",
+        "what the levitation controller asks for",
+        |r| said(r, |s| s.levitation_n[0]),
+    ),
+    (
+        "levitation_y_n",
+        "N",
+        "what the levitation controller asks for",
+        |r| said(r, |s| s.levitation_n[1]),
+    ),
+    (
+        "supervisor_severity",
+        "1",
+        "severity of what is coming, as a share of what the cap can stop",
+        |r| said(r, |s| s.severity),
+    ),
 ];
 
 /// Columns of names, after the numbers.
@@ -136,6 +321,9 @@ fn said(row: &TraceRow, what: fn(&Said) -> f32) -> f64 {
     row.supervisor.map_or(0.0, |said| f64::from(what(&said)))
 }
 
+/// Key of a file under which the units of its columns of numbers stand, a JSON object; "1" of a plain number.
+pub const UNITS: &str = "units";
+
 /// Rows of a group; so many are in memory before they are written.
 const GROUP_ROWS: usize = 1 << 16;
 
@@ -156,8 +344,8 @@ impl<W: Write + Send, R: Clone> TraceFile<W, R> {
     /// What the file system or the format refuses.
     pub fn new(sink: W, columns: Columns<R>) -> Result<Self, ParquetError> {
         let mut message = String::from("message trace {\n");
-        for (name, _) in &columns.numbers {
-            message += &format!("  required double {name};\n");
+        for number in &columns.numbers {
+            message += &format!("  required double {};\n", number.name);
         }
         for (name, _) in columns.texts {
             message += &format!("  required binary {name} (utf8);\n");
@@ -172,6 +360,7 @@ impl<W: Write + Send, R: Clone> TraceFile<W, R> {
             .set_compression(Compression::SNAPPY)
             .set_dictionary_enabled(false)
             .set_statistics_enabled(EnabledStatistics::None)
+            .set_key_value_metadata(Some(columns.key_values()))
             .set_created_by("firmware-host".to_owned());
         for (name, _) in columns.texts {
             properties = properties.set_column_dictionary_enabled((*name).into(), true);
@@ -207,8 +396,8 @@ impl<W: Write + Send, R: Clone> TraceFile<W, R> {
 
     fn write_group(&mut self) -> Result<(), ParquetError> {
         let mut group = self.file.next_row_group()?;
-        for (_, value) in &self.columns.numbers {
-            let column: Vec<f64> = self.rows.iter().map(value).collect();
+        for number in &self.columns.numbers {
+            let column: Vec<f64> = self.rows.iter().map(&number.value).collect();
             column_of(&mut group, |c| {
                 c.typed::<DoubleType>().write_batch(&column, None, None)
             })?;

@@ -52,7 +52,7 @@ impl<R> TraceTable<R> {
             numbers: columns
                 .numbers
                 .iter()
-                .map(|(name, _)| name.clone())
+                .map(|number| number.name.clone())
                 .collect(),
             names: columns.texts.iter().map(|(name, _)| *name).collect(),
             flags: columns.flags.iter().map(|(name, _)| *name).collect(),
@@ -81,8 +81,8 @@ impl NameColumn {
 
 impl<R> Recorder<R> for TraceTable<R> {
     fn row(&mut self, row: &R) {
-        for (column, (_, value)) in self.numbers.iter_mut().zip(&self.columns.numbers) {
-            column.push(value(row));
+        for (column, number) in self.numbers.iter_mut().zip(&self.columns.numbers) {
+            column.push((number.value)(row));
         }
         for (column, (_, name)) in self.names.iter_mut().zip(self.columns.texts) {
             column.push(name(row));

@@ -106,6 +106,14 @@ impl AnyScene {
         })
     }
 
+    /// What holds for all planes: time, accuracy, policies, title.
+    pub fn common(&self) -> &Scene {
+        match self {
+            Self::Plane(scene) => scene,
+            Self::Machine(scene) => scene.common(),
+        }
+    }
+
     /// What it warns of.
     pub fn warnings(&self) -> &[String] {
         match self {
@@ -163,7 +171,7 @@ impl MachineScene {
     }
 
     /// The supervisor of the whole rotor, where there is one for it.
-    pub(crate) fn supervisor(&self) -> Option<Rotor> {
+    pub fn supervisor(&self) -> Option<Rotor> {
         match &self.told {
             Some(told) => {
                 let [first, second] = self.planes.as_slice() else {

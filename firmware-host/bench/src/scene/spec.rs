@@ -32,6 +32,17 @@ pub struct Setting {
     text: String,
 }
 
+/// A number of a scene.
+#[derive(Debug, Clone)]
+pub struct NumberAt {
+    /// Its path, as [`Spec::set`] has it.
+    pub path: String,
+    /// The key that it is of.
+    pub key: &'static Key,
+    /// The number, whole or not.
+    pub value: Value,
+}
+
 /// Text that is no key with a value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("expected KEY=VALUE, with a key and a value of scene files, as supervisor.hold_share=0.5")]
@@ -172,6 +183,34 @@ impl Spec {
         tables.flat_map(of_table).collect()
     }
 
+    /// Numbers that the scene has, written or by default, in the order of the tables; of what is written as [x, y] each one.
+    /// Lists of numbers are left out, and parameters of the supervisor.
+    pub fn numbers(&self) -> Vec<NumberAt> {
+        let mut all = Vec::new();
+        for (path, keys, table) in walk(KEYS, "", &self.values) {
+            for key in keys {
+                let Some(value) = table.get(key.name) else {
+                    continue;
+                };
+                let path = joined(&path, key.name);
+                let values = match (key.kind, value) {
+                    (Kind::Pair | Kind::PerAxis, Value::Array(both)) => {
+                        let at = |i| format!("{path}[{i}]");
+                        both.iter().enumerate().map(|(i, x)| (at(i), x)).collect()
+                    }
+                    (Kind::Number | Kind::Whole | Kind::PerAxis, value) => vec![(path, value)],
+                    _ => Vec::new(),
+                };
+                let of_key = |(path, value): (String, &Value)| {
+                    let value = number(value).map(|_| value.clone())?;
+                    Some(NumberAt { path, key, value })
+                };
+                all.extend(values.into_iter().filter_map(of_key));
+            }
+        }
+        all
+    }
+
     /// How the value at a path is written; `None` for a part of one.
     fn kind(&self, path: &str) -> Result<Option<Kind>, SceneError> {
         let (mut keys, mut kind, mut table) = (KEYS, None, String::new());
@@ -217,7 +256,7 @@ impl Spec {
 }
 
 /// Whether the text at a path is that of a file.
-pub(crate) fn names_a_file(path: &str) -> bool {
+pub fn names_a_file(path: &str) -> bool {
     let key = path.rsplit('.').next().unwrap_or(path);
     key.ends_with("file") || ["python", "library"].contains(&key)
 }

@@ -61,7 +61,7 @@ fn run_all(
         let names = Names::new(scene, kind.name());
         let mut files = match args.no_trace {
             true => None,
-            false => Some(names.begin(scene, staging)?),
+            false => Some(names.begin(scene, (args, kind.name()), staging)?),
         };
         let ran = recorded_machine(scene, kind, checking, files.as_mut(), on_tick);
         match (&ran, files) {
@@ -101,16 +101,18 @@ impl Names {
     fn begin(
         &self,
         scene: &MachineScene,
+        (args, policy): (&RunArgs, &str),
         staging: &Staging,
     ) -> Result<MachineFiles<File>, OutputError> {
-        let planes = self
-            .planes
-            .iter()
-            .map(|name| staging.trace(name, Columns::of_plane()));
+        let about = |plane| args.about(scene.common(), policy, plane);
+        let planes = self.planes.iter().zip(&scene.planes).map(|(name, plane)| {
+            let columns = Columns::of_plane().about(about(Some(&plane.name)));
+            staging.trace(name, columns)
+        });
         let modes = scene.machine.rotor.bending().len();
         Ok(MachineFiles {
             planes: planes.collect::<Result<_, _>>()?,
-            axis: staging.trace(&self.axis, Columns::of_axis(modes))?,
+            axis: staging.trace(&self.axis, Columns::of_axis(modes).about(about(None)))?,
         })
     }
 

@@ -17,8 +17,8 @@ use supervisor::{IntegratorHint, Rotor, Stamp};
 pub(super) struct Bench<'a> {
     /// What holds for all planes.
     scene: &'a Scene,
-    rig: Box<dyn Rig + 'a>,
-    stations: Vec<Station<'a>>,
+    pub(super) rig: Box<dyn Rig + 'a>,
+    pub(super) stations: Vec<Station<'a>>,
     /// Who levitates the rotor as a whole.
     levitation: Option<WholeLevitation>,
     /// Who sees its true state.
@@ -36,8 +36,8 @@ pub(super) struct Bench<'a> {
     /// Changes that lie behind.
     changes_done: usize,
     // Buffers: planes at a sample, what is seen and commanded there, forces that are held, changes of mode within an advance.
-    now: Vec<Snapshot>,
-    seen: Vec<Seen>,
+    pub(super) now: Vec<Snapshot>,
+    pub(super) seen: Vec<Seen>,
     levitation_n: Vec<V2>,
     commands_n: [Vec<V2>; 2],
     loads_n: [Vec<V2>; 2],
@@ -129,6 +129,12 @@ impl<'a> Bench<'a> {
             ended.push((Figures::new(&run), recorded.then(read_out).flatten()));
         }
         self.record_axis();
+        self.trusted(task)?;
+        Ok(ended)
+    }
+
+    /// Whether the energy audit closes.
+    pub(super) fn trusted(&self, task: Task) -> Result<(), RunError> {
         let residual = self.rig.audit().residual();
         let limit = (TRUSTED_TOLERANCES * self.scene.rtol).clamp(TRUSTED.0, TRUSTED.1);
         if residual.is_nan() || residual > limit {
@@ -138,7 +144,7 @@ impl<'a> Bench<'a> {
                 limit,
             });
         }
-        Ok(ended)
+        Ok(())
     }
 
     /// Whether nothing can change any more of whether the rotor has recovered.
@@ -149,8 +155,18 @@ impl<'a> Bench<'a> {
     }
 
     fn tick(&mut self, tick: u64, task: Task) -> Result<(), RunError> {
-        let period = 1.0 / self.scene.sample_rate_hz;
-        let (t, t_next) = (tick as f64 * period, (tick + 1) as f64 * period);
+        self.sample(tick, task)?;
+        self.carry_on(tick, task)
+    }
+
+    /// Time of a control sample \[s\].
+    pub(super) fn at_s(&self, tick: u64) -> f64 {
+        tick as f64 * (1.0 / self.scene.sample_rate_hz)
+    }
+
+    /// What there is and what firmware sees of it.
+    pub(super) fn see(&mut self, tick: u64) {
+        let t = self.at_s(tick);
         self.rig.read(&mut self.now);
         self.seen.clear();
         for (plane, (station, now)) in self.stations.iter_mut().zip(&self.now).enumerate() {
@@ -158,14 +174,24 @@ impl<'a> Bench<'a> {
             let sensed_m = self.rig.sensed_m(plane, now);
             self.seen.push(station.see(t, sensed_m, now));
         }
-        self.levitate(t, task)?;
+    }
+
+    /// A control sample: what firmware sees, and what it answers.
+    pub(super) fn sample(&mut self, tick: u64, task: Task) -> Result<(), RunError> {
+        self.see(tick);
+        self.levitate(self.at_s(tick), task)?;
         self.refer();
         self.supervise();
         for (i, station) in self.stations.iter_mut().enumerate() {
             station.answer(tick, &self.seen[i], &self.now[i]);
         }
         self.record_axis();
+        Ok(())
+    }
 
+    /// From a control sample to the next.
+    pub(super) fn carry_on(&mut self, tick: u64, task: Task) -> Result<(), RunError> {
+        let (t, t_next) = (self.at_s(tick), self.at_s(tick + 1));
         let mut from = t;
         while from < t_next {
             if from >= self.edge_s {

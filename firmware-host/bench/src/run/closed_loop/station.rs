@@ -22,6 +22,8 @@ pub(super) struct Station<'a> {
     pub(super) measured_m: V2,
     /// What the supervisor said to the last sample.
     said: Option<Said>,
+    /// What happened at it.
+    events: Events,
 }
 
 impl<'a> Station<'a> {
@@ -41,6 +43,7 @@ impl<'a> Station<'a> {
             recorder,
             measured_m: V2::zeros(),
             said: None,
+            events: Events::empty(),
         }
     }
 
@@ -63,8 +66,14 @@ impl<'a> Station<'a> {
     }
 
     pub(super) fn answer(&mut self, tick: u64, seen: &Seen, now: &Snapshot) {
+        let force = self.controller.command(seen, now);
+        self.command(tick, force, now);
+    }
+
+    /// Passes on the answer to a sample, whoever gives it.
+    pub(super) fn command(&mut self, tick: u64, force: Force, now: &Snapshot) {
         let with_weight = |force_n: V2| force_n + self.scene.feed_forward_n;
-        match self.controller.command(seen, now) {
+        match force {
             Force::Computed(force_n) => self.amplifier.command(tick, with_weight(force_n)),
             Force::AtOnce(force_n) => self.amplifier.command_at_once(with_weight(force_n)),
         }
@@ -73,7 +82,7 @@ impl<'a> Station<'a> {
         self.record(now, false);
         // What happened at this sample is not to be read a second time.
         if let Some(said) = &mut self.said {
-            said.events = Events::empty();
+            self.events = std::mem::take(&mut said.events);
         }
     }
 
@@ -91,15 +100,31 @@ impl<'a> Station<'a> {
     }
 
     pub(super) fn record(&mut self, plant: &Snapshot, mode_change: bool) {
-        let Some(recorder) = &mut self.recorder else {
-            return;
-        };
-        recorder.row(&TraceRow {
+        if self.recorder.is_some() {
+            let row = self.row(plant, mode_change);
+            if let Some(recorder) = &mut self.recorder {
+                recorder.row(&row);
+            }
+        }
+    }
+
+    /// The row of the last control sample, with what happened at it.
+    pub(super) fn sampled(&self, plant: &Snapshot) -> TraceRow {
+        let events = self.events;
+        TraceRow {
+            supervisor: self.said.map(|said| Said { events, ..said }),
+            ..self.row(plant, false)
+        }
+    }
+
+    /// The row of the plant as it was.
+    fn row(&self, plant: &Snapshot, mode_change: bool) -> TraceRow {
+        TraceRow {
             plant: *plant,
             measured_m: self.measured_m,
             commanded_n: self.amplifier.in_effect_n(),
             supervisor: self.said,
             mode_change,
-        });
+        }
     }
 }

@@ -1,0 +1,228 @@
+//! The supervisor of a scene by itself, as firmware calls it.
+
+use crate::model::{Model, Set};
+use crate::parameters;
+use crate::quantities::{SUPERVISION, of_plane, split_plane};
+use crate::variable::{Kind, Role, Value, Variable};
+use firmware_bench::scene::machine::AnyScene;
+use supervisor::{Command, Config, IntegratorHint, PARAMETERS, Rotor, Sample, Status, Supervisor};
+
+/// Configurations of the planes that have one; none where the scene has no supervisor.
+fn configs(scene: &AnyScene) -> Vec<Config> {
+    match scene {
+        AnyScene::Plane(scene) => scene.supervisor.into_iter().collect(),
+        AnyScene::Machine(scene) => {
+            let planes = scene.planes.iter();
+            planes.filter_map(|plane| plane.scene.supervisor).collect()
+        }
+    }
+}
+
+/// Whether a scene has one.
+pub(crate) fn is_in(scene: &AnyScene) -> bool {
+    !configs(scene).is_empty()
+}
+
+/// Inputs of a plane, in the order of [`sample`].
+const INPUTS: [(&str, &str, &str, Kind); 9] = [
+    ("measured_x_m", "m", "position at the sensor", Kind::Float64),
+    ("measured_y_m", "m", "the same along y", Kind::Float64),
+    ("sequence", "", "counts up by one each sample", Kind::UInt32),
+    (
+        "status",
+        "",
+        "bits of what is valid and ready, as of the plant",
+        Kind::UInt32,
+    ),
+    ("spin_reported_rad_s", "rad/s", "spin", Kind::Float64),
+    (
+        "levitation_x_n",
+        "N",
+        "force that the levitation controller wants",
+        Kind::Float64,
+    ),
+    ("levitation_y_n", "N", "the same along y", Kind::Float64),
+    (
+        "applied_x_n",
+        "N",
+        "what the actuator delivers; counts with bit 4 of status",
+        Kind::Float64,
+    ),
+    ("applied_y_n", "N", "the same along y", Kind::Float64),
+];
+
+type Output = (
+    &'static str,
+    &'static str,
+    &'static str,
+    Kind,
+    fn(&Command) -> Value,
+);
+
+/// Outputs of a plane.
+const OUTPUTS: &[Output] = &[
+    ("command_x_n", "N", "force to command", Kind::Float64, |c| {
+        Value::Float64(f64::from(c.force_n[0]))
+    }),
+    ("command_y_n", "N", "the same along y", Kind::Float64, |c| {
+        Value::Float64(f64::from(c.force_n[1]))
+    }),
+    (
+        "integrator_hold",
+        "",
+        "the levitation controller is to keep its integrators",
+        Kind::Boolean,
+        |c| Value::Boolean(c.integrator == IntegratorHint::Hold),
+    ),
+    (
+        "supervisor_mode",
+        "",
+        "what the supervisor is doing",
+        Kind::Enumeration(&SUPERVISION),
+        |c| Value::Int64(c.mode as i64),
+    ),
+    (
+        "supervisor_limits",
+        "",
+        "bits of what binds its command",
+        Kind::UInt32,
+        |c| Value::UInt32(c.limits.bits()),
+    ),
+    (
+        "supervisor_events",
+        "",
+        "bits of what happened at this sample",
+        Kind::UInt32,
+        |c| Value::UInt32(c.events.bits()),
+    ),
+    (
+        "supervisor_severity",
+        "1",
+        "severity of what is coming, as a share of what the cap can stop",
+        Kind::Float64,
+        |c| Value::Float64(f64::from(c.severity)),
+    ),
+];
+
+/// Its variables but the time.
+pub(crate) fn variables(scene: &AnyScene) -> Vec<Variable> {
+    let configs = configs(scene);
+    let planes = configs.len();
+    let mut all = Vec::new();
+    for (plane, config) in configs.iter().enumerate() {
+        all.extend(parameters::of_supervisor(
+            config,
+            &of_plane(planes, plane, ""),
+        ));
+    }
+    for plane in 0..planes {
+        all.extend(INPUTS.iter().map(|(name, unit, about, kind)| {
+            let name = of_plane(planes, plane, name);
+            Variable::signal(Role::Input, name, about, unit, *kind)
+        }));
+    }
+    for plane in 0..planes {
+        all.extend(OUTPUTS.iter().map(|(name, unit, about, kind, _)| {
+            let name = of_plane(planes, plane, name);
+            Variable::signal(Role::Output, name, about, unit, *kind)
+        }));
+    }
+    all
+}
+
+/// The supervisor before its first sample.
+pub(crate) fn start(scene: &AnyScene, set: &[Set<'_>]) -> Result<Box<dyn Model>, String> {
+    let mut configs = configs(scene);
+    for s in set {
+        let (plane, name) = split_plane(s.name);
+        let index = PARAMETERS.iter().position(|p| p.name == name);
+        let place = configs.get_mut(plane).zip(index);
+        let (config, index) = place.ok_or_else(|| format!("{}: is no parameter", s.name))?;
+        let mut values = config.values();
+        values[index] = s.value.number() as f32;
+        *config = Config::from_values(values);
+    }
+    let commands = vec![Command::default(); configs.len()];
+    // As the closed loop has it: one for the whole rotor where the scene has that.
+    let of_rotor = match (scene, configs.as_slice()) {
+        (AnyScene::Machine(machine), [first, second]) if machine.supervisor().is_some() => {
+            let shaft = machine
+                .shaft()
+                .ok_or("the rotor cannot be told to a supervisor")?;
+            let rotor = Rotor::as_told(&shaft, &[*first, *second]);
+            Some(rotor.map_err(|error| error.to_string())?)
+        }
+        _ => None,
+    };
+    let supervisors = match of_rotor {
+        Some(rotor) => Supervisors::Rotor(Box::new(rotor)),
+        None => {
+            let each = configs.iter().map(Supervisor::new);
+            let all: Result<Vec<_>, _> = each.collect();
+            Supervisors::Planes(all.map_err(|error| error.to_string())?)
+        }
+    };
+    Ok(Box::new(Supervision {
+        supervisors,
+        commands,
+    }))
+}
+
+enum Supervisors {
+    Planes(Vec<Supervisor>),
+    Rotor(Box<Rotor>),
+}
+
+struct Supervision {
+    supervisors: Supervisors,
+    commands: Vec<Command>,
+}
+
+/// The sample that inputs of a plane are.
+fn sample(inputs: &[Value]) -> Sample {
+    let single = |i: usize| inputs.get(i).map_or(0.0, |value| value.number()) as f32;
+    let bits = |i: usize| match inputs.get(i) {
+        Some(Value::UInt32(bits)) => *bits,
+        _ => 0,
+    };
+    Sample {
+        position_m: [single(0), single(1)],
+        sequence: bits(2),
+        status: Status::from_bits_retain(bits(3)),
+        spin_rad_s: single(4),
+        levitation_n: [single(5), single(6)],
+        applied_n: [single(7), single(8)],
+    }
+}
+
+impl Model for Supervision {
+    fn step(&mut self, inputs: &[Value]) -> Result<bool, String> {
+        let samples: Vec<Sample> = inputs.chunks_exact(INPUTS.len()).map(sample).collect();
+        let before: Vec<_> = self.commands.iter().map(|c| c.mode).collect();
+        match (&mut self.supervisors, samples.as_slice()) {
+            (Supervisors::Rotor(rotor), [first, second]) => {
+                self.commands = rotor.tick(&[*first, *second]).planes.to_vec();
+            }
+            (Supervisors::Planes(all), samples) => {
+                let ticks = all.iter_mut().zip(samples);
+                self.commands = ticks.map(|(one, sample)| one.tick(sample)).collect();
+            }
+            (Supervisors::Rotor(_), _) => return Err("a rotor has two planes".to_owned()),
+        }
+        Ok(self.commands.iter().map(|c| c.mode).ne(before))
+    }
+
+    fn outputs(&self, into: &mut Vec<Value>) {
+        for command in &self.commands {
+            into.extend(OUTPUTS.iter().map(|(.., value)| value(command)));
+        }
+    }
+
+    fn tune(&mut self, name: &str, _value: f64) -> Result<(), String> {
+        Err(format!("{name} is not tunable"))
+    }
+
+    fn trusted(&self) -> Result<(), String> {
+        Ok(())
+    }
+}

@@ -1,0 +1,1 @@
+/* In Simulink this file joins the functions of the block to it. Here the driver calls them itself. */

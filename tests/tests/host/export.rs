@@ -1,0 +1,48 @@
+//! Traces in other formats: the same numbers to the last bit, with units and the digest of their scene.
+
+use crate::fmu::checked;
+use std::path::Path;
+use std::process::Output;
+use system_tests::{host, python, run_scene, scene_path};
+use tempfile::TempDir;
+
+fn export(trace: &Path, more: &[&str]) -> Output {
+    let mut export = host();
+    export.arg("export").arg(trace).args(more);
+    export.output().unwrap()
+}
+
+#[test]
+fn a_trace_is_the_same_in_every_format() {
+    let Some(python) = python() else { return };
+    let folder = TempDir::new().unwrap();
+    let scene = scene_path("impact_at_40_hz");
+    let set = ["--set", "friction.coefficient=0.12", "--seed", "3"];
+    assert!(run_scene(&scene, folder.path(), &set).status.success());
+    let trace = folder.path().join("trace_supervisor.parquet");
+    for format in ["csv", "mcap"] {
+        let output = export(&trace, &["--to", format]);
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{said}");
+    }
+    let digest = firmware_bench::sweep::plan::digest(&scene).unwrap();
+    let name = folder.path().to_str().unwrap();
+    let arguments = [name, "trace_supervisor", digest.as_str()];
+    let said = checked(&python, "tests/python/exports.py", &arguments);
+    assert!(said.contains("rows the same three times"), "{said}");
+}
+
+#[test]
+fn what_is_no_trace_is_refused_and_leaves_nothing() {
+    let folder = TempDir::new().unwrap();
+    let out = folder.path().join("out");
+    let scene = scene_path("impact_at_40_hz");
+    for file in [scene, folder.path().join("nowhere.parquet")] {
+        let output = export(&file, &["--to", "csv", "--out", out.to_str().unwrap()]);
+        let said = String::from_utf8_lossy(&output.stderr);
+        let name = file.file_name().unwrap().to_str().unwrap();
+        assert_eq!(output.status.code(), Some(2), "{said}");
+        assert!(said.contains(name) && said.contains("a trace that run has written"));
+        assert!(!out.exists());
+    }
+}
