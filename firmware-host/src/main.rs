@@ -1,9 +1,9 @@
 //! Command line of the host.
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 use firmware_host::cli::{
-    accuracy, advise, error, export, fmu, harm, init, modes, overloads, paper, review, run, schema,
-    sensitivity, serve_controller, study, sweep, target, vectors,
+    accuracy, advise, completions, error, export, fmu, harm, init, modes, overloads, paper, review,
+    run, schema, sensitivity, serve_controller, study, sweep, target, vectors,
 };
 use std::process::ExitCode;
 
@@ -49,6 +49,8 @@ enum Command {
     Study(study::StudyArgs),
     /// Run the supervisor on emulated processors: bit for bit, instructions, sizes, closed loops.
     Target(target::TargetArgs),
+    /// Print the script by which a shell completes commands and options.
+    Completions(completions::CompletionsArgs),
     /// Serve the shared library of a scene's controller to the run that started this.
     #[command(hide = true)]
     ServeController(serve_controller::ServeArgs),
@@ -76,6 +78,7 @@ fn main() -> ExitCode {
         Command::Modes(args) => modes::execute(args),
         Command::Study(args) => study::execute(args),
         Command::Target(args) => target::execute(args),
+        Command::Completions(args) => completions::execute(args, &Cli::command()),
         Command::ServeController(args) => serve_controller::execute(args),
         Command::Vectors(args) => vectors::execute(args),
     };

@@ -43,8 +43,11 @@ pub struct RunArgs {
     #[arg(long)]
     pub no_trace: bool,
     /// Print the verdicts as JSON instead of the table.
-    #[arg(long)]
+    #[arg(long, conflicts_with = "quiet")]
     pub json: bool,
+    /// Print no results, which are in the folder; warnings about the scene and errors are told as ever.
+    #[arg(long, short)]
+    pub quiet: bool,
     /// How many threads it may use.
     #[command(flatten)]
     pub threads: Threads,
@@ -104,7 +107,9 @@ pub fn execute(args: &RunArgs) -> Result<(), CommandError> {
         AnyScene::Machine(scene) => machine::run(scene, args, &staging)?,
     };
     let out = staging.publish_over(of_a_policy)?;
-    let text = if args.json {
+    let text = if args.quiet {
+        String::new()
+    } else if args.json {
         ran.verdicts
     } else {
         let report = out.join("report.html");

@@ -3,7 +3,7 @@
 mod show;
 
 use crate::cli::error::{CommandError, pretty, print};
-use crate::cli::progress::Threads;
+use crate::cli::progress::{LateProgress, Threads};
 use firmware_studies::campaign::Extent;
 use firmware_studies::on_target::machines::{MACHINES, Machine};
 use firmware_studies::on_target::results::Report;
@@ -78,6 +78,9 @@ fn run(args: &TargetArgs, machines: &[Machine]) -> Result<Report, CommandError> 
             renew: args.renew,
         },
     };
-    let report = (args.threads.pool()?).install(|| run_on(&args.project, machines, wanted))?;
-    Ok(report)
+    let progress = LateProgress::default();
+    let run = || run_on(&args.project, machines, wanted, &progress);
+    let report = (args.threads.pool()?).install(run);
+    progress.finish();
+    Ok(report?)
 }

@@ -290,3 +290,39 @@ fn a_closed_pipe_is_no_panic() {
     assert!(result.status.success() && error.is_empty(), "{error}");
     assert!(out.join("verdict.json").exists());
 }
+
+/// What is not printed is in the folder all the same.
+#[test]
+fn quiet_prints_nothing_and_writes_everything() {
+    let folder = TempDir::new().unwrap();
+    let scene = short_scene(folder.path(), |t| t);
+    let [loud, quiet] = ["loud", "quiet"].map(|name| folder.path().join(name));
+    assert!(!run_scene(&scene, &loud, &[]).stdout.is_empty());
+    let output = run_scene(&scene, &quiet, &["--quiet"]);
+    assert!(output.status.success() && output.stdout.is_empty());
+    assert!(stripped(&loud) == stripped(&quiet));
+    let both = run_scene(&scene, &quiet, &["--quiet", "--json"]);
+    assert_eq!(both.status.code(), Some(2));
+}
+
+/// Each shell's script knows commands and options.
+#[test]
+fn shells_can_complete() {
+    for shell in ["bash", "zsh", "fish"] {
+        let output = host().args(["completions", shell]).output().unwrap();
+        let script = String::from_utf8(output.stdout).unwrap();
+        for word in ["sweep", "no-trace", "sensitivity"] {
+            assert!(output.status.success() && script.contains(word), "{shell}");
+        }
+        assert!(!script.contains("serve-controller"), "{shell}");
+    }
+    assert_eq!(
+        host()
+            .args(["completions", "dos"])
+            .output()
+            .unwrap()
+            .status
+            .code(),
+        Some(2)
+    );
+}

@@ -33,7 +33,12 @@ pub enum Wanted {
 ///
 /// # Errors
 /// [`TargetError`].
-pub fn run_on(folder: &Path, machines: &[Machine], wanted: Wanted) -> Result<Report, TargetError> {
+pub fn run_on(
+    folder: &Path,
+    machines: &[Machine],
+    wanted: Wanted,
+    progress: &dyn Progress,
+) -> Result<Report, TargetError> {
     // What is missing is told before anything takes its time.
     let qemu = emulator::version()?;
     let project = Project::around(folder)?;
@@ -50,9 +55,16 @@ pub fn run_on(folder: &Path, machines: &[Machine], wanted: Wanted) -> Result<Rep
     for machine in &machines {
         let build = (machine.target, machine.build);
         if !builds.contains(&build) {
-            project.build(machine.target, machine.build)?;
             builds.push(build);
         }
+    }
+    progress.begin(
+        (builds.len() + machines.len()) as u64,
+        "builds and processors",
+    );
+    for (target, build) in builds {
+        project.build(target, build)?;
+        progress.add(1);
     }
     let mut report = Report {
         qemu,
@@ -65,10 +77,11 @@ pub fn run_on(folder: &Path, machines: &[Machine], wanted: Wanted) -> Result<Rep
         Wanted::Loops => {
             for machine in &machines {
                 report.loops.extend(in_the_loop(&project, machine)?);
+                progress.add(1);
             }
         }
         Wanted::Replay { extent, renew } => {
-            replay(&project, &machines, extent, &mut report)?;
+            replay(&project, &machines, (extent, progress), &mut report)?;
             judge(&project, renew, &mut report.targets)?;
         }
     }
@@ -78,7 +91,7 @@ pub fn run_on(folder: &Path, machines: &[Machine], wanted: Wanted) -> Result<Rep
 fn replay(
     project: &Project,
     machines: &[Machine],
-    extent: Extent,
+    (extent, progress): (Extent, &dyn Progress),
     report: &mut Report,
 ) -> Result<(), TargetError> {
     let length = extent.pick(Length::QUICK, Length::FULL);
@@ -94,7 +107,11 @@ fn replay(
     let pairs: Vec<(&Machine, &Streams)> = (machines.iter())
         .filter_map(|m| Some((m, &work.iter().find(|(n, _)| *n == m.number)?.1)))
         .collect();
-    let rows = pairs.par_iter().map(|(m, s)| measure(project, m, s));
+    let rows = pairs.par_iter().map(|(m, s)| {
+        let row = measure(project, m, s);
+        progress.add(1);
+        row
+    });
     report.targets = rows.collect::<Result<_, TargetError>>()?;
     Ok(())
 }
@@ -118,12 +135,12 @@ fn judge(project: &Project, make: bool, rows: &mut [TargetRow]) -> Result<(), Bu
 ///
 /// # Errors
 /// [`TargetError`].
-pub fn study(extent: Extent, _: &dyn Progress) -> Result<campaign::Report, StudyError> {
+pub fn study(extent: Extent, progress: &dyn Progress) -> Result<campaign::Report, StudyError> {
     let wanted = Wanted::Replay {
         extent,
         renew: false,
     };
-    let report = run_on(Path::new("."), &MACHINES, wanted)?;
+    let report = run_on(Path::new("."), &MACHINES, wanted, progress)?;
     Ok(campaign::Report {
         title: "On the target".to_owned(),
         claims: report.targets.iter().flat_map(claims).collect(),
