@@ -96,28 +96,42 @@ impl Cluster {
         command
     }
 
+    /// Stops a node and who keeps the jobs on it, so that nothing there begins or is told to have ended; or lets them go on.
+    pub fn freeze(&self, node: &str, frozen: bool) {
+        let Some(slurmd) = self.nodes.get(node) else {
+            return;
+        };
+        let signal = if frozen { "-STOP" } else { "-CONT" };
+        let all = std::iter::once(slurmd.id()).chain(self.processes_on(node));
+        let _sent = (Command::new("kill").arg(signal))
+            .args(all.map(|process| process.to_string()))
+            .output();
+    }
+
     /// Takes a node away with all that runs on it, as a lost power supply does.
     pub fn lose(&mut self, node: &'static str) {
+        // Who keeps a job must be gone before he can tell of the end of the job.
+        let processes = self.processes_on(node);
         let Some(mut slurmd) = self.nodes.remove(node) else {
             return;
         };
+        let _ended = slurmd.kill();
+        let _gone = (Command::new("kill").arg("-9"))
+            .args(processes.iter().map(u32::to_string))
+            .output();
+        let _status = slurmd.wait();
+    }
+
+    /// Who keeps the jobs of a node, children of nobody, and all below them.
+    fn processes_on(&self, node: &str) -> Vec<u32> {
         let mut squeue = self.command("squeue");
         squeue
             .args(["--noheader", "--states=running", "--format=%A"])
             .arg(format!("--nodelist={node}"));
         let jobs = squeue.output().map(|o| o.stdout).unwrap_or_default();
         let jobs = String::from_utf8_lossy(&jobs);
-        // Who keeps a job is a child of nobody, and must be gone before he can tell of the end of the job.
-        let keepers = jobs
-            .split_whitespace()
-            .map(|job| format!("slurmstepd: [{job}."));
-        let processes = with_descendants(&keepers.collect::<Vec<_>>());
-        let _ended = slurmd.kill();
-        let _gone = Command::new("kill")
-            .arg("-9")
-            .args(processes.iter().map(u32::to_string))
-            .output();
-        let _status = slurmd.wait();
+        let keepers = (jobs.split_whitespace()).map(|job| format!("slurmstepd: [{job}."));
+        with_descendants(&keepers.collect::<Vec<_>>())
     }
 
     fn config(&self) -> PathBuf {

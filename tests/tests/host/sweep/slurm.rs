@@ -90,7 +90,7 @@ fn an_array_that_loses_a_node_merges_to_the_bytes_of_one_machine() {
         .args([&file, &parts]);
     said(&sbatch.output().unwrap());
 
-    // Some tasks are done; one has just begun on the node that is lost.
+    // Some tasks are done, and one runs on the node that is lost: once that is frozen it cannot end any more.
     let until = Instant::now() + Duration::from_secs(240);
     let late = |cluster: &Cluster| {
         let logs = (1..=TASKS).map(|i| {
@@ -103,15 +103,23 @@ fn an_array_that_loses_a_node_merges_to_the_bytes_of_one_machine() {
             logs.collect::<String>()
         )
     };
-    let mut before: Option<String> = None;
+    let on_two = |cluster: &Cluster| {
+        let tasks = queue(cluster);
+        let left = tasks.len();
+        let mut tasks = tasks.into_iter();
+        let (name, ..) = tasks.find(|(_, state, node)| state == "RUNNING" && node == "two")?;
+        Some((name, left))
+    };
     let lost = loop {
         assert!(Instant::now() < until, "{}", late(&cluster));
-        let tasks = queue(&cluster);
-        let on_two = (tasks.iter()).find(|(_, state, node)| state == "RUNNING" && node == "two");
-        let on_two = on_two.map(|(name, ..)| name.clone());
-        match on_two {
-            Some(name) if tasks.len() <= TASKS - 4 && before.as_ref() != Some(&name) => break name,
-            other => before = other.or(before),
+        if let Some((name, _)) = on_two(&cluster).filter(|(_, left)| *left <= TASKS - 4) {
+            cluster.freeze("two", true);
+            // What was said of its end before has arrived by then.
+            std::thread::sleep(Duration::from_millis(500));
+            if on_two(&cluster).is_some_and(|(still, _)| still == name) {
+                break name;
+            }
+            cluster.freeze("two", false);
         }
         std::thread::sleep(Duration::from_millis(20));
     };
