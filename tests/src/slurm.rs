@@ -110,11 +110,11 @@ impl Cluster {
 
     /// Takes a node away with all that runs on it, as a lost power supply does.
     pub fn lose(&mut self, node: &'static str) {
-        // Who keeps a job must be gone before he can tell of the end of the job.
-        let processes = self.processes_on(node);
         let Some(mut slurmd) = self.nodes.remove(node) else {
             return;
         };
+        // Who keeps a job must be gone before he can tell of the end of the job.
+        let processes = self.processes_on(node);
         let _ended = slurmd.kill();
         let _gone = (Command::new("kill").arg("-9"))
             .args(processes.iter().map(u32::to_string))

@@ -15,6 +15,7 @@ mod rig;
 pub mod supervision;
 mod swings;
 pub mod trace;
+pub mod trace_columns;
 pub mod trace_file;
 pub mod trace_table;
 pub mod verdict;

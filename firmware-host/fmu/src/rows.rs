@@ -1,11 +1,11 @@
 //! Outputs of a plane: the columns of its traces, and what firmware sees there.
 
 use crate::quantities::{CONTACT, SUPERVISION, contact_number, of_plane};
-use crate::variable::{Kind, Role, Value, Variable};
+use crate::variable::{Kind, Output, Role, Value, Variable};
 use firmware_bench::run::closed_loop::stepwise::Stepwise;
 use firmware_bench::run::controller::Seen;
 use firmware_bench::run::trace::{Said, TraceRow};
-use firmware_bench::run::trace_file::{Columns, Number};
+use firmware_bench::run::trace_columns::{Columns, Number};
 
 /// Which of the columns an output is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -16,16 +16,8 @@ pub(crate) enum Of {
     ClosedLoop,
 }
 
-type Word<T> = (
-    &'static str,
-    &'static str,
-    &'static str,
-    Kind,
-    fn(&T) -> Value,
-);
-
 /// What firmware sees at a sample, beside the position.
-const SEEN: &[Word<Seen>] = &[
+const SEEN: &[Output<Seen>] = &[
     (
         "sequence",
         "",
@@ -60,7 +52,7 @@ const SEEN: &[Word<Seen>] = &[
 ];
 
 /// What the supervisor says, beside numbers.
-const SAID: &[Word<Said>] = &[
+const SAID: &[Output<Said>] = &[
     (
         "supervisor_mode",
         "",
@@ -145,7 +137,7 @@ impl Rows {
             match self.of {
                 Of::Plant => into.extend(SEEN.iter().map(|(.., value)| value(&seen))),
                 Of::ClosedLoop => {
-                    let value = |(.., kind, value): &Word<Said>| {
+                    let value = |(.., kind, value): &Output<Said>| {
                         row.supervisor.map_or(kind.zero(), |said| value(&said))
                     };
                     into.extend(SAID.iter().map(value));

@@ -3,7 +3,7 @@
 use crate::model::{Model, Set};
 use crate::parameters;
 use crate::quantities::{SUPERVISION, of_plane, split_plane};
-use crate::variable::{Kind, Role, Value, Variable};
+use crate::variable::{Kind, Output, Role, Value, Variable};
 use firmware_bench::scene::machine::AnyScene;
 use supervisor::{Command, Config, IntegratorHint, PARAMETERS, Rotor, Sample, Status, Supervisor};
 
@@ -51,16 +51,8 @@ const INPUTS: [(&str, &str, &str, Kind); 9] = [
     ("applied_y_n", "N", "the same along y", Kind::Float64),
 ];
 
-type Output = (
-    &'static str,
-    &'static str,
-    &'static str,
-    Kind,
-    fn(&Command) -> Value,
-);
-
 /// Outputs of a plane.
-const OUTPUTS: &[Output] = &[
+const OUTPUTS: &[Output<Command>] = &[
     ("command_x_n", "N", "force to command", Kind::Float64, |c| {
         Value::Float64(f64::from(c.force_n[0]))
     }),

@@ -39,6 +39,15 @@ pub enum Value {
     Boolean(bool),
 }
 
+/// An output and how it is read off something: name, unit, what it is, type, value.
+pub(crate) type Output<T> = (
+    &'static str,
+    &'static str,
+    &'static str,
+    Kind,
+    fn(&T) -> Value,
+);
+
 impl Value {
     /// Whether both are the same to the last bit.
     pub fn same(self, other: Self) -> bool {

@@ -11,7 +11,7 @@ use firmware_bench::run::closed_loop::{
 use firmware_bench::run::figures::Figures;
 use firmware_bench::run::supervision::{Supervision, SupervisionCount};
 use firmware_bench::run::trace::{AxisRow, Recorder, TraceRow};
-use firmware_bench::run::trace_file::Columns;
+use firmware_bench::run::trace_columns::Columns;
 use firmware_bench::run::trace_table::TraceTable;
 use firmware_bench::scene::machine::{AnyScene, MachineScene};
 use firmware_bench::scene::policy_kind::PolicyKind;

@@ -1,6 +1,7 @@
 //! Results appear whole or not at all.
 
-use firmware_bench::run::trace_file::{self, Columns, TraceFile};
+use firmware_bench::run::trace_columns::Columns;
+use firmware_bench::run::trace_file::{self, TraceFile};
 use std::ffi::OsString;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};

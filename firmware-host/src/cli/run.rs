@@ -10,7 +10,7 @@ use firmware_bench::report::summary::summary;
 use firmware_bench::report::{self, table};
 use firmware_bench::run::closed_loop::RunError;
 use firmware_bench::run::recording::recorded;
-use firmware_bench::run::trace_file::Columns;
+use firmware_bench::run::trace_columns::Columns;
 use firmware_bench::run::verdict::{FailedRun, PolicyRun, Results};
 use firmware_bench::run::verify::{self, Check};
 use firmware_bench::scene::Scene;

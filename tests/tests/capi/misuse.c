@@ -1,6 +1,7 @@
 /* Every misuse that the header names, with the code and the text that it gives. */
 #define _XOPEN_SOURCE 600
 #include "amb_supervisor.h"
+#include "check.h"
 #include "rig.h"
 
 #include <fenv.h>
@@ -9,31 +10,6 @@
 #include <string.h>
 #include <sys/time.h>
 #include <time.h>
-
-static int failures = 0, checks = 0;
-
-static void check(int good, const char *what) {
-    checks++;
-    if (!good) {
-        failures++;
-        printf("FAILED: %s\n", what);
-    }
-}
-
-/* A call gave this code, and the code has this text. */
-static void expect(const char *what, amb_code code, amb_code wanted, const char *text) {
-    checks++;
-    if (code != wanted || strcmp(amb_error_text(code), text) != 0) {
-        failures++;
-        printf("FAILED: %s: code %d \"%s\", expected %d \"%s\"\n", what, (int)code, amb_error_text(code),
-               (int)wanted, text);
-    }
-}
-
-#define EXPECT(call, wanted, text) expect(#call, call, wanted, text)
-
-/* Any object, one byte on. */
-#define OFF(pointer) ((void *)((char *)(pointer) + 1))
 
 static amb_supervisor plane, zero, three[3];
 static amb_watch watch, zero_watch, three_watches[3];

@@ -1,25 +1,9 @@
 /* Every misuse of a rotor that the header names, with the code and the text that it gives. */
+#include "check.h"
 #include "rig.h"
 
 #include <stdio.h>
 #include <string.h>
-
-static int failures = 0, checks = 0;
-
-static void check(int is_good, const char *what) {
-    checks++;
-    if (!is_good) {
-        failures++;
-        printf("FAILED: %s\n", what);
-    }
-}
-
-static void expect(const char *what, amb_code code, amb_code wanted, const char *text) {
-    check(code == wanted && strcmp(amb_error_text(code), text) == 0, what);
-}
-
-#define EXPECT(call, wanted, text) expect(#call, call, wanted, text)
-#define OFF(pointer) ((void *)((char *)(pointer) + 1))
 
 enum { COUNT = 2 * AMB_PARAMETERS };
 static amb_rotor rotor, zero, three[3];

@@ -1,7 +1,7 @@
 //! Traces in memory, column by column, under the names and in the order of the files.
 
 use crate::run::trace::Recorder;
-use crate::run::trace_file::Columns;
+use crate::run::trace_columns::Columns;
 
 /// A column with a few names, and for each row which.
 #[derive(Debug, Clone, PartialEq, Default)]

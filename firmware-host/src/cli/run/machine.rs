@@ -7,7 +7,7 @@ use crate::cli::error::{CommandError, pretty};
 use crate::cli::output::{OutputError, Staging};
 use firmware_bench::report::{self, table};
 use firmware_bench::run::recording::{MachineFiles, recorded_machine};
-use firmware_bench::run::trace_file::Columns;
+use firmware_bench::run::trace_columns::Columns;
 use firmware_bench::run::verdict::MachineResults;
 use firmware_bench::run::verify;
 use firmware_bench::scene::machine::{MachineScene, in_file_names};
