@@ -139,6 +139,8 @@ impl Config {
             } else {
                 sensor_noise_m
             },
+            bending_first_hz: 0.0,
+            bending_second_hz: 0.0,
         }
     }
 

@@ -5,6 +5,7 @@
 //! of the full force, and acceleration is force. In these units all that counts is near 1, which is what
 //! fixed point needs; a tick is h = T/t₀, some hundredths.
 
+use crate::bending::Modes;
 use crate::config::{Config, NotRepresentable};
 use crate::math::{exp_neg, max, min, sqrt};
 use crate::scalar::{Accumulator, Scalar};
@@ -195,6 +196,8 @@ pub(crate) struct Coeffs<S: Scalar> {
     pub(crate) never_doubted: S,
     /// Ticks of a window of [`crate::trust`], less one.
     pub(crate) window_ticks: u16,
+    /// Bending modes that were told and can be kept apart.
+    pub(crate) bending: Option<Modes<S>>,
     /// Being blind for the contact force, the observer makes up a speed of so much times the acceleration of all others.
     pub(crate) blind_time: S,
 }
@@ -403,6 +406,7 @@ impl<S: Scalar> Coeffs<S> {
             quiet_noise: s("sensor step", quiet_noise),
             never_doubted: s("tick", max(0.5 * SHOCK * h * h, LEAST_DOUBTED)),
             window_ticks: min(max(WINDOW / h, LEAST_WINDOW), 60000.0) as u16,
+            bending: Modes::new(config),
             blind_time: s("observer", h * (1.0 + touch_pole) / touch_free),
         };
         (coeffs, taken.lost)

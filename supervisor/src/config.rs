@@ -1,6 +1,6 @@
 //! The parameters: one table gives the struct, its check, its documentation and its test cases.
 
-use crate::parts::THERMAL_BUDGET;
+use crate::parts::{BENDING, THERMAL_BUDGET};
 
 /// One row of the table.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -75,11 +75,12 @@ impl core::fmt::Display for ConfigError {
             ..
         } = self.parameter();
         write!(f, "{name} = {}: expected ", Written(self.value))?;
-        if self.index == CONTINUOUS_FORCE && self.value >= *low && self.value <= *high {
-            return write!(
-                f,
-                "at least force_max_n: the feature thermal-budget is left out"
-            );
+        // In its range, and yet refused: for want of a part.
+        if self.value >= *low && self.value <= *high {
+            return f.write_str(match self.index {
+                CONTINUOUS_FORCE => "at least force_max_n: the feature thermal-budget is left out",
+                _ => "0: the feature bending is left out",
+            });
         }
         write!(f, "{} to {}", Written(*low), Written(*high))?;
         match *unit {
@@ -263,15 +264,27 @@ parameters! {
         "No rotor is faster than this at the retainer bearing: a sample that would need it is refused.";
     sensor_step_m, Sensor, "m", 1e-9 ..= 1e-3, [by "noise or step, at least 1/2000 of the clearance"],
         "Step of the sensor's converter or its noise (root mean square), whichever is larger, at the sensor.";
+    bending_first_hz, Machine, "Hz", 0.0 ..= 1e5, [= 0.0, "a rigid rotor"],
+        "Natural frequency of a bending mode that the force would drive, the lower end of what is likely; 0 where there is none.";
+    bending_second_hz, Machine, "Hz", 0.0 ..= 1e5, [= 0.0, "a rigid rotor"],
+        "The same of a second mode; 0 where there is none.";
 }
 
 /// Its place in the table.
 const CONTINUOUS_FORCE: usize = 22;
 
-const _: () = assert!(matches!(
-    PARAMETERS[CONTINUOUS_FORCE].name.as_bytes(),
-    b"continuous_force_n"
-));
+/// The first of two.
+const BENDING_FIRST: usize = PARAMETERS.len() - 2;
+
+const _: () = assert!(
+    matches!(
+        PARAMETERS[CONTINUOUS_FORCE].name.as_bytes(),
+        b"continuous_force_n"
+    ) && matches!(
+        PARAMETERS[BENDING_FIRST].name.as_bytes(),
+        b"bending_first_hz"
+    )
+);
 
 impl Config {
     /// An example, and no default for any machine: a rotor of 10 kg in a clearance of 0.2 mm, with a cap of 1 kN and a tick of
@@ -311,6 +324,8 @@ impl Config {
             magnet_plane_ratio: 1.0,
             speed_max_m_s: 3.0,
             sensor_step_m: 1e-6,
+            bending_first_hz: 0.0,
+            bending_second_hz: 0.0,
         }
     }
 
@@ -318,7 +333,7 @@ impl Config {
     ///
     /// # Errors
     /// The first value outside its range; NaN is outside every range. Where the feature `thermal-budget` is left out, a continuous
-    /// force below the cap is as well.
+    /// force below the cap is as well, and without `bending` every natural frequency but 0.
     pub fn validate(&self) -> Result<(), ConfigError> {
         for (index, ([low, high], value)) in RANGES.into_iter().zip(self.values()).enumerate() {
             if !(value >= low && value <= high) {
@@ -331,6 +346,19 @@ impl Config {
                 index: CONTINUOUS_FORCE,
                 value,
             });
+        }
+        if !BENDING {
+            for (i, value) in [self.bending_first_hz, self.bending_second_hz]
+                .into_iter()
+                .enumerate()
+            {
+                if value != 0.0 {
+                    return Err(ConfigError {
+                        index: BENDING_FIRST + i,
+                        value,
+                    });
+                }
+            }
         }
         Ok(())
     }

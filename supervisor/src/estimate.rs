@@ -4,6 +4,7 @@
 //! observer may be slow and smooth. In contact it is blind for the contact force and must be quick.
 
 use crate::actuator_monitor::{ActuatorMonitor, lagging};
+use crate::bending::Bending;
 use crate::coeffs::{Coeffs, MAX_DELAY};
 use crate::innovation::Expected;
 use crate::parts::AXIS_MONITOR;
@@ -51,6 +52,7 @@ const FAR: f32 = 14.0;
 pub(crate) struct Observer<S> {
     motion: Motion<S>,
     unbalance: Unbalance<S>,
+    bending: Bending<S>,
     started: bool,
     /// It has known a velocity before: what it knew is lost, but it is not switched on into anything.
     has_run: bool,
@@ -66,7 +68,7 @@ pub(crate) struct Observer<S> {
     late: Vec2<S>,
 }
 
-words_of_fields!(Observer<S> { motion, unbalance, started, has_run, delivered, monitor, commands, newest, were_late, late });
+words_of_fields!(Observer<S> { motion, unbalance, bending, started, has_run, delivered, monitor, commands, newest, were_late, late });
 
 impl<S: Scalar> Observer<S> {
     /// Carries the estimate over one tick and corrects it by the sample, if there is one. What moves, and how far the
@@ -96,16 +98,22 @@ impl<S: Scalar> Observer<S> {
         {
             self.unbalance.fade(turn);
         }
+        let mut bent = self.bending.carry(&coeffs.bending);
+        if wall != Contact::None {
+            self.bending.fade(&coeffs.bending);
+            bent = Vec2::ZERO;
+        }
         let m = &mut self.motion;
         m.carry(mean, turning, wall, coeffs);
         if let Some(position) = sample {
-            let error = position - m.position;
+            let error = position - m.position - bent;
             let error_speed = error * coeffs.per_tick;
             if wall == Contact::None {
                 let [on_position, on_velocity, on_load] = coeffs.flight_gains;
                 m.position = m.position + error * on_position;
                 m.velocity = m.velocity + error_speed * on_velocity;
                 m.load_step = m.load_step + error_speed * on_load;
+                self.bending.learn(error, &coeffs.bending);
                 if let Some(turn) = &turn {
                     self.unbalance.learn(turn, m.load_step);
                 }
@@ -166,6 +174,7 @@ impl<S: Scalar> Observer<S> {
             self.commanded(command);
         }
         self.started &= !self.motion.fresh;
+        self.bending.forget();
         let ticks = S::count(missed);
         self.unbalance
             .carry(Turn::new(spin, ticks, coeffs).as_ref());
@@ -216,8 +225,9 @@ impl<S: Scalar> Observer<S> {
     /// Where the next sample is expected.
     #[inline]
     pub(crate) fn expected(&self, wall: Contact, coeffs: &Coeffs<S>) -> Expected<S> {
-        let position = self.motion.position + self.motion.velocity * coeffs.tick;
+        let rigid = self.motion.position + self.motion.velocity * coeffs.tick;
         let free = wall == Contact::None && self.started && !self.motion.fresh;
+        let position = rigid + self.bending.ahead(&coeffs.bending);
         Expected {
             position,
             sure: free && !position.exceeds(S::from_f32(WALL_IN_REACH)),
@@ -260,6 +270,7 @@ impl<S: Scalar> Observer<S> {
     pub(crate) fn forget(&mut self) {
         self.started = false;
         self.motion = Motion::default();
+        self.bending.forget();
         self.unbalance.forget();
     }
 
@@ -297,6 +308,7 @@ impl<S: Scalar> Observer<S> {
         m.velocity = m.velocity * speed;
         m.load_step = m.load_step * speed * tick;
         self.unbalance.rescale(speed);
+        self.bending.rescale(length);
         self.delivered = self.delivered * force;
         self.late = self.late * force;
         self.monitor.rescale(force);

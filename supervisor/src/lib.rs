@@ -47,7 +47,7 @@
 //!                                                                                 └─► recorder
 //! ```
 //!
-//! Files, each importing only from those above it: `parts`, `cells`, `words`, `scalar`, `product`, `q`, `math`, `vec2`, `signal`, `config`, `coeffs`,
+//! Files, each importing only from those above it: `parts`, `cells`, `words`, `scalar`, `product`, `q`, `math`, `vec2`, `signal`, `config`, `bending`, `coeffs`,
 //! `spin`, `unbalance`, `innovation`, `reading`, `stuck`, `guard`, `actuator_monitor`, `estimate`, `beside`, `detect`, `impact`, `classify`, `phase`, `trust`, `law`, `limit`, `handover`, `tally`, `severity`,
 //! `tick`, `entry`, `track`, `events`, `latest`, `tape`, `recorder`, `record`, `ledger`, `per_unit`, `supervisor`, `split`, `shaft`, `bearing`, `coupling`, `rotor`, `archive`, `self_test`, `watch`, `log_format`.
 
@@ -59,6 +59,7 @@
 mod actuator_monitor;
 mod archive;
 mod bearing;
+mod bending;
 mod beside;
 mod cells;
 mod classify;

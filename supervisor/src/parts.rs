@@ -8,10 +8,14 @@ pub(crate) const UNBALANCE: bool = cfg!(feature = "unbalance");
 pub(crate) const AXIS_MONITOR: bool = cfg!(feature = "axis-monitor");
 /// The cap falls to what the magnet bears for ever. Without it a configuration that asks for that is refused.
 pub(crate) const THERMAL_BUDGET: bool = cfg!(feature = "thermal-budget");
+/// Bending modes may be told, so that the force does not drive them. Without it a configuration that tells one is refused.
+pub(crate) const BENDING: bool = cfg!(feature = "bending");
 
 /// Nothing is left out.
-pub(crate) const ALL: bool = UNBALANCE && AXIS_MONITOR && THERMAL_BUDGET;
+pub(crate) const ALL: bool = UNBALANCE && AXIS_MONITOR && THERMAL_BUDGET && BENDING;
 
 /// What is left out, a bit each.
-pub(crate) const LEFT_OUT: u32 =
-    !UNBALANCE as u32 | (!AXIS_MONITOR as u32) << 1 | (!THERMAL_BUDGET as u32) << 2;
+pub(crate) const LEFT_OUT: u32 = !UNBALANCE as u32
+    | (!AXIS_MONITOR as u32) << 1
+    | (!THERMAL_BUDGET as u32) << 2
+    | (!BENDING as u32) << 3;

@@ -64,6 +64,11 @@ pub const STUDIES: &[Study] = &[
         run: accuracy::study::study,
     },
     Study {
+        name: "bending",
+        about: "what it is worth to tell the supervisor of a bending mode, and what it costs to tell it wrong",
+        run: whole_rotors::told_bending::study,
+    },
+    Study {
         name: "cycles",
         about: "what a tick takes in cycles, by a model of each processor and a trace of every instruction",
         run: on_target::cycles::study,

@@ -10,6 +10,7 @@ mod loops;
 mod plants;
 pub mod reference;
 pub mod study;
+pub mod told_bending;
 mod wrong_shaft;
 
 pub use self::compared::{Ran, Run};

@@ -12,7 +12,7 @@ use supervisor::{Config, PARAMETERS, Section, Stamp};
 /// Ending of the names; [`version::ABI`] as text.
 macro_rules! ending {
     () => {
-        "_abi4"
+        "_abi5"
     };
 }
 

@@ -103,8 +103,15 @@ fn records_of_rotors_replay_to_the_bit() {
         }
     }
     let ran = run_all(&jobs, &(), |(class, event, number)| {
-        let scene = RotorCase::new(20_261_126, *class, *number).scene(*event);
-        let scene = scene.unwrap_or_else(|error| panic!("{error}"));
+        let rotor = RotorCase::new(20_261_126, *class, *number);
+        let scene = rotor.scene(*event);
+        let mut scene = scene.unwrap_or_else(|error| panic!("{error}"));
+        // Told, so that what is kept apart is replayed as well.
+        for plane in &mut scene.planes {
+            if let (Some(config), Some(hz)) = (&mut plane.scene.supervisor, rotor.bending_hz()) {
+                config.bending_first_hz = hz as f32;
+            }
+        }
         let (mut first, mut second) = (Nobody, Nobody);
         let recorders = MachineRecorders {
             planes: vec![&mut first, &mut second],

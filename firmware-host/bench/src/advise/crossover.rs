@@ -11,6 +11,12 @@
 //! f̄ = M·f                   M = z^(−n−1)·(1 − λ + λ·(1 − q)/(z − q)),   q = e^(−T/τ),  λ = (τ/T)·(1 − q): (5.6a)
 //! ```
 //!
+//! Of what swings at a frequency that was told the observer takes its own part Q·ν out of the reading, ν being what is left:
+//!
+//! ```text
+//! ν = (y − p⁻)/(1 + Σ Q),   Q = ½·(w·g/(z − w) + w̄·ḡ/(z − w̄)),   w = e^(jω_bT):  (5.7b);   G/(1 + Σ Q) in the place of G
+//! ```
+//!
 //! With E = (1, 0, 0) that is (1 − (1 − G·E)·(A/z − M·B·N))·x = G·y. What comes back to the rotor is the command n ticks
 //! late, held for a tick, and behind the amplifier. Of what a hold makes at other frequencies nothing works against this one:
 //!
@@ -31,6 +37,10 @@ const FULL_FORCE_FROM: f64 = 0.4;
 /// As in (5.10c) and (5.10e): the restoring share where forces come soon.
 const NEARLY_ALL: f64 = 0.95;
 
+/// As in (5.7b).
+const LEARNT: f64 = 1.0 / 8.0;
+const CENTRE: f64 = 0.97;
+
 /// Frequencies that are looked at, evenly by their logarithm, up to half the rate of the loop and down to this share of it.
 const FREQUENCIES: u32 = 1500;
 const LOWEST_SHARE: f64 = 1e-4;
@@ -43,6 +53,8 @@ pub struct SmallSignals {
     input: Vector3<f64>,
     law: RowVector3<f64>,
     gains: Vector3<f64>,
+    /// w and g of the bending modes that were told and are kept apart.
+    kept_apart: [Option<[C; 2]>; 2],
     period_s: f64,
     lag_s: f64,
     delay: u32,
@@ -99,6 +111,11 @@ impl SmallSignals {
                 1.5 * free * free * (1.0 + pole) / h,
                 free.powi(3) / h,
             ),
+            kept_apart: [config.bending_first_hz, config.bending_second_hz].map(|hz| {
+                let turn = C::from_polar(1.0, TAU * CENTRE * of(hz) * period_s);
+                let left = (1.0 - turn.conj()) / (1.0 - pole * turn.conj());
+                (config.keeps_apart(hz)).then(|| [turn, LEARNT / left.powu(3)])
+            }),
             period_s,
             lag_s,
             delay: delay as u32,
@@ -127,12 +144,18 @@ impl SmallSignals {
         let follows = back * (1.0 - left) / (one - back * left);
         let mean = late * back * (follows * mean_left + (1.0 - mean_left));
 
-        let mut kept = Matrix3::<f64>::identity();
-        kept.set_column(0, &(kept.column(0) - self.gains));
+        let swings = |[turn, gain]: [C; 2]| {
+            let part = |w: C, g: C| w * g * back / (one - w * back);
+            (part(turn, gain) + part(turn.conj(), gain.conj())) * 0.5
+        };
+        let apart: C = self.kept_apart.into_iter().flatten().map(swings).sum();
+        let gains = self.gains.map(C::from) / (one + apart);
+        let mut kept = Matrix3::<C>::identity();
+        kept.set_column(0, &(kept.column(0) - gains));
         let own_force = (self.input * self.law).map(C::from) * mean;
         let tick = self.model.map(C::from) * back - own_force;
-        let matrix = Matrix3::identity() - kept.map(C::from) * tick;
-        let state = matrix.lu().solve(&self.gains.map(C::from))?;
+        let matrix = Matrix3::identity() - kept * tick;
+        let state = matrix.lu().solve(&gains)?;
         let command = -(self.law.map(C::from) * state)[0];
         let held = (one - back) / (rate * self.period_s);
         let delivered = command * late * held / (rate * self.lag_s + 1.0);

@@ -1,4 +1,4 @@
-//! What a supervisor of both planes meets beyond the point mass: nutation, and bending modes that it is not told of.
+//! What a supervisor of both planes meets beyond the point mass: nutation and bending.
 
 use super::crossover::SmallSignals;
 use crate::report::plot::text::figures;
@@ -31,8 +31,10 @@ pub struct ModeAtRisk {
     pub frequency_hz: f64,
     /// Its own damping ratio.
     pub damping_ratio: f64,
-    /// What the force adds to that, of all planes; negative: it drives.
+    /// What the force adds to that, of all planes, with what they are told of bending; negative: it drives.
     pub added_damping_ratio: f64,
+    /// The same if both planes were told of this mode alone; none where it cannot be kept apart.
+    pub told_damping_ratio: Option<f64>,
     /// Displacement at the sensor of each plane, over the rigid rotor's …
     pub at_sensors: Vec<f64>,
     /// … and at its magnet.
@@ -72,17 +74,29 @@ impl RotorAdvice {
                 let [a, b] = shaft.places;
                 let at_sensors = at([a.sensor_m, b.sensor_m]);
                 let at_magnets = at([a.magnet_m, b.magnet_m]);
-                let felt = |plane: usize| {
-                    let damping = signals[plane]
-                        .damping_n_s_m(frequency_hz)
-                        .unwrap_or_default();
-                    damping * at_sensors[plane] * at_magnets[plane]
+                // At exactly the centre of what is kept apart the analysis has no number: nothing is felt.
+                let ratio = |signals: &[SmallSignals; 2]| {
+                    let felt = |plane: usize| {
+                        let damping = signals[plane].damping_n_s_m(frequency_hz);
+                        damping.filter(|d| d.is_finite()).unwrap_or_default()
+                            * at_sensors[plane]
+                            * at_magnets[plane]
+                    };
+                    (felt(0) + felt(1)) / (2.0 * mass_kg * mode.frequency_rad_s)
                 };
+                let told = [first, second].map(|config| Config {
+                    bending_first_hz: frequency_hz as f32,
+                    bending_second_hz: 0.0,
+                    ..*config
+                });
+                let apart = told.iter().all(|c| c.keeps_apart(c.bending_first_hz));
                 ModeAtRisk {
                     frequency_hz,
                     damping_ratio: mode.damping_ratio,
-                    added_damping_ratio: (felt(0) + felt(1))
-                        / (2.0 * mass_kg * mode.frequency_rad_s),
+                    added_damping_ratio: ratio(&signals),
+                    told_damping_ratio: apart.then(|| {
+                        ratio(&[SmallSignals::new(&told[0]), SmallSignals::new(&told[1])])
+                    }),
                     at_sensors: at_sensors.to_vec(),
                     at_magnets: at_magnets.to_vec(),
                 }
@@ -115,9 +129,7 @@ impl RotorAdvice {
         }
         text.push('\n');
         if !self.modes.is_empty() {
-            text.push_str(
-                "\nBending modes under the supervisor's force, which is not told of them\n",
-            );
+            text.push_str("\nBending modes under the supervisor's force\n");
         }
         for mode in &self.modes {
             let verdict = match (mode.grows(), mode.added_damping_ratio < 0.0) {
@@ -133,11 +145,22 @@ impl RotorAdvice {
                 percent(mode.damping_ratio),
                 percent(mode.added_damping_ratio)
             );
-        }
-        if self.modes.iter().any(ModeAtRisk::grows) {
-            text.push_str(
-                "    do: move sensor and magnet to the same side of the node, raise observer_pole_flight, or notch what the supervisor reads\n",
-            );
+            if !mode.grows() {
+                continue;
+            }
+            let better = (mode.told_damping_ratio).filter(|told| *told > mode.added_damping_ratio);
+            let _ = match better {
+                Some(told) => writeln!(
+                    text,
+                    "    do: tell the supervisor bending_first_hz = {} (or bending_second_hz); then the force adds {}",
+                    figures(mode.frequency_hz),
+                    percent(told)
+                ),
+                None => writeln!(
+                    text,
+                    "    do: move sensor and magnet to the same side of the node, or raise observer_pole_flight"
+                ),
+            };
         }
         text
     }

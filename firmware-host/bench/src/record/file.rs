@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 use supervisor::{
-    Config, ENTRY_WORDS, Entry, Head, MOST_WORDS, NO_STATE, Number, PARAMETERS, Part, Q,
-    RECORD_VERSION, STRETCH_WORDS, Scalar, Shaft, Stretch, Summary, crc_of,
+    Config, DefaultRule, ENTRY_WORDS, Entry, Head, MOST_WORDS, NO_STATE, Number, PARAMETERS, Part,
+    Q, RECORD_VERSION, STRETCH_WORDS, Scalar, Shaft, Stretch, Summary, crc_of,
 };
 
 /// Words of a section before those of its part, and with the checksum.
@@ -234,9 +234,7 @@ fn plane_record(head: Head, parts: &Parts, damage: &mut Vec<Damage>) -> PlaneRec
         })
     };
     let summary = one(Part::Summary).map(|words| Summary::from_words(words));
-    let config = one(Part::Config)
-        .and_then(|words| <[f32; PARAMETERS.len()]>::try_from(floats(words)).ok())
-        .map(Config::from_values);
+    let config = one(Part::Config).and_then(|words| config(&floats(words)));
     let shaft = one(Part::Shaft)
         .and_then(|words| <[f32; 9]>::try_from(floats(words)).ok())
         .map(Shaft::from_values);
@@ -275,6 +273,17 @@ fn plane_record(head: Head, parts: &Parts, damage: &mut Vec<Damage>) -> PlaneRec
         state: whole.then_some(state),
         entries,
     }
+}
+
+/// Of a version that has fewer parameters: those that came later have the value with which nothing is otherwise.
+fn config(values: &[f32]) -> Option<Config> {
+    let later = PARAMETERS.get(values.len()..)?;
+    let of_later = later.iter().map(|parameter| match parameter.default {
+        DefaultRule::Constant(value, _) => Some(value),
+        _ => None,
+    });
+    let all: Option<Vec<f32>> = values.iter().copied().map(Some).chain(of_later).collect();
+    Some(Config::from_values(all?.try_into().ok()?))
 }
 
 /// Words by so many, each with its number.

@@ -18,7 +18,7 @@ pub struct Replay {
 }
 
 /// Parts of the supervisor that a build may leave out, in the order of their bits in a record.
-const PARTS: [&str; 3] = ["unbalance", "axis monitor", "thermal budget"];
+const PARTS: [&str; 4] = ["unbalance", "axis monitor", "thermal budget", "bending"];
 
 /// Why ticks cannot be replayed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
@@ -39,7 +39,7 @@ pub enum NoReplay {
         "it was made by a supervisor without {}, which would command something else here",
         .0.iter().copied().zip(PARTS).filter_map(|(left_out, part)| left_out.then_some(part)).collect::<Vec<_>>().join(", ")
     )]
-    Parts([bool; 3]),
+    Parts([bool; 4]),
     /// The configuration is not one.
     #[error("its configuration is not valid for this version of the supervisor")]
     Configuration,
@@ -104,7 +104,7 @@ fn check<S: Scalar>(record: &PlaneRecord) -> Result<&[u32], NoReplay> {
     let of_version = |version: u32| version & 0x00FF_FFFF;
     if of_version(version) == of_version(SUPERVISOR_VERSION) && version != SUPERVISOR_VERSION {
         return Err(NoReplay::Parts(
-            [24, 25, 26].map(|bit| version >> bit & 1 == 1),
+            [24, 25, 26, 27].map(|bit| version >> bit & 1 == 1),
         ));
     }
     if version != SUPERVISOR_VERSION || state.len() != Core::<S, 4>::state_words() {

@@ -159,6 +159,11 @@ impl RotorCase {
         }
     }
 
+    /// Natural frequency of the bending mode \[Hz\].
+    pub fn bending_hz(&self) -> Option<f64> {
+        self.bending.map(|(hz, ..)| hz)
+    }
+
     /// Frequency with which the free tilt turns \[Hz\], with the sense of the spin.
     pub fn nutation_hz(&self) -> f64 {
         self.polar_kg_m2 / self.transverse_kg_m2 * self.spin_hz

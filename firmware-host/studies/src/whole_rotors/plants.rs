@@ -20,11 +20,14 @@ pub struct RotorPlant {
     robust: &'static str,
 }
 
+/// Text of its scene.
+pub(super) const P5: &str = include_str!("../../../scenes/rotors/p5.toml");
+
 /// Name, scene, scene with the robust loop.
 const FILES: [(&str, &str, &str); 4] = [
     (
         "P5",
-        include_str!("../../../scenes/rotors/p5.toml"),
+        P5,
         include_str!("../../../scenes/rotors/p5_robust.toml"),
     ),
     (

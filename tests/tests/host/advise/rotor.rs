@@ -53,6 +53,37 @@ fn a_node_between_sensor_and_magnet_turns_the_sign() {
     assert!(opposite.modes[0].grows() && opposite.text().contains("it would grow"));
 }
 
+/// Of a mode that the force would drive it is advised to tell it where that helps; told, it is not driven any more.
+#[test]
+fn a_mode_is_told_where_that_helps() {
+    let bends = "[[rotor.bending]]\nfrequency_hz = 1200.0\ndamping_ratio = 0.003\npositions_m = [-0.25, 0.0, 0.25]\ndisplacements = [0.6, -0.4, 0.6]\n\n[spin]";
+    let path = root().join("firmware-host/scenes/rotors/p5.toml");
+    let text = std::fs::read_to_string(path).unwrap();
+    let text = text.replacen("[spin]", bends, 1);
+    let advised = |text: &str| {
+        let scene = MachineScene::parse("bends", text).unwrap();
+        let configs: Vec<_> = (scene.planes.iter())
+            .map(|p| p.scene.supervisor.unwrap())
+            .collect();
+        RotorAdvice::new(&scene, &configs).unwrap()
+    };
+    let before = advised(&text);
+    let promised = before.modes[0].told_damping_ratio.unwrap();
+    assert!(before.modes[0].grows() && promised > before.modes[0].added_damping_ratio);
+    assert!(
+        before.text().contains("bending_first_hz = 1200"),
+        "{}",
+        before.text()
+    );
+    let after = advised(&format!("{text}\n[supervisor]\nbending_first_hz = 1200\n"));
+    assert!((after.modes[0].added_damping_ratio / promised - 1.0).abs() < 1e-6);
+    assert!(
+        !after.modes[0].grows() && !after.text().contains("do:"),
+        "{}",
+        after.text()
+    );
+}
+
 #[test]
 fn it_is_printed_and_has_keys() {
     let scene = "firmware-host/scenes/rotors/p7.toml";
