@@ -255,8 +255,8 @@ impl<S: Scalar> Observer<S> {
 
     /// Force that acts.
     #[inline]
-    pub(crate) fn delivered(&self) -> Vec2<S> {
-        self.delivered
+    pub(crate) fn delivered(&self) -> &Vec2<S> {
+        &self.delivered
     }
 
     /// Speed along the normal of a wall that holds against what the model accelerates by.
@@ -365,8 +365,7 @@ impl<S: Scalar> Motion<S> {
     }
 
     /// Bounds what has run away, or is no number.
-    #[cold]
-    #[inline(never)]
+    #[inline]
     fn hold_back(&mut self, coeffs: &Coeffs<S>) {
         let held = |v: Vec2<S>, most: S| v.map(|x| x.within(most));
         self.position = held(self.position, S::from_f32(FAR));

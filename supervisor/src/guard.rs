@@ -348,11 +348,13 @@ impl<S: Scalar> Guard<S> {
         velocity: Vec2<S>,
         coeffs: &Coeffs<S>,
     ) -> RejectReason {
-        if !position.is_finite() {
-            return RejectReason::NotFinite;
-        }
+        // What is no number exceeds everything.
         if position.exceeds(coeffs.position_limit) {
-            return RejectReason::Range;
+            return if position.is_finite() {
+                RejectReason::Range
+            } else {
+                RejectReason::NotFinite
+            };
         }
         let (stuck, both) = (self.stuck_detector).watch(position, velocity, coeffs);
         self.stuck = stuck >= if both >= STUCK { STUCK } else { ONE_STUCK };

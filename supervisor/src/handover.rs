@@ -61,9 +61,8 @@ impl<S: Scalar> Readiness<S> {
         self.shortfall = self.shortfall * force;
     }
 
-    /// Compares the forces of this tick along the outward direction at a radius. On its own: within the tick it costs
-    /// stack that there is not.
-    #[inline(never)]
+    /// Compares the forces of this tick along the outward direction at a radius.
+    #[inline]
     pub(crate) fn compare(
         &mut self,
         own: Vec2<S>,

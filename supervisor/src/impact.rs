@@ -9,7 +9,6 @@ use crate::vec2::Vec2;
 pub(crate) struct Speed<S> {
     /// v²; over that of the lift-off speed, which is 1.
     pub(crate) square: S,
-    pub(crate) value: S,
     /// 1/v; 0 for a rotor without speed.
     pub(crate) inverse: S,
 }
@@ -18,11 +17,13 @@ impl<S: Scalar> Speed<S> {
     #[inline]
     pub(crate) fn new(velocity: Vec2<S>) -> Self {
         let (square, inverse) = (velocity.length_squared(), velocity.inverse_length());
-        Self {
-            square,
-            value: square * inverse,
-            inverse,
-        }
+        Self { square, inverse }
+    }
+
+    /// Its size. Not kept: a product costs less than a place on the stack.
+    #[inline]
+    pub(crate) fn value(&self) -> S {
+        self.square * self.inverse
     }
 }
 
@@ -39,7 +40,7 @@ pub(crate) struct Impact<S> {
 
 impl<S: Scalar> Impact<S> {
     /// `None` for a rotor without speed, or beyond the wall.
-    #[inline(never)]
+    #[inline]
     pub(crate) fn ahead(motion: &Motion<S>, radius: S, speed: &Speed<S>) -> Option<Self> {
         let room = (S::ONE - radius) * (S::ONE + radius);
         if speed.inverse <= S::ZERO || room <= S::ZERO {
@@ -52,7 +53,7 @@ impl<S: Scalar> Impact<S> {
         Some(Self {
             time: chord * speed.inverse,
             normal: motion.position + heading * chord,
-            normal_speed: speed.value * cosine,
+            normal_speed: speed.value() * cosine,
             along: motion.position.perp().dot(motion.velocity),
         })
     }

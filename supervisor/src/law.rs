@@ -10,8 +10,6 @@
 //! friction: −(b̂ + μ·n̂).
 
 use crate::coeffs::{Coeffs, NEARLY_ALL};
-use crate::detect::ContactEstimate;
-use crate::estimate::Motion;
 use crate::impact::{Impact, Speed, sum_of_impacts};
 use crate::phase::Phase;
 use crate::scalar::Scalar;
@@ -48,16 +46,26 @@ const LOAD_SHARE: f32 = 0.5;
 /// At rest on the wall a slower speed is noise, and costs no force \[lift-off speeds\].
 const STILL: f32 = 0.1;
 
-/// What the law looks at.
+/// What the law looks at: a copy of what it needs, for the law is called and not part of the tick, and what it was shown by reference
+/// would have to be in memory in every tick.
 pub(crate) struct View<'a, S: Scalar> {
-    pub(crate) motion: &'a Motion<S>,
-    pub(crate) contact: &'a ContactEstimate<S>,
-    pub(crate) speed: &'a Speed<S>,
+    pub(crate) position: Vec2<S>,
+    pub(crate) velocity: Vec2<S>,
+    /// As in [`crate::estimate::Motion`].
+    pub(crate) load_step: Vec2<S>,
+    pub(crate) speed: Speed<S>,
+    /// As in [`crate::detect::ContactEstimate`].
+    pub(crate) normal: Vec2<S>,
+    pub(crate) per_radius: S,
+    pub(crate) radial_speed: S,
+    pub(crate) tangential_speed: S,
+    pub(crate) load: S,
+    pub(crate) touching: bool,
     /// The next impact in flight.
     pub(crate) ahead: Option<&'a Impact<S>>,
     pub(crate) spin: Spin,
     /// Force that acts.
-    pub(crate) delivered: Vec2<S>,
+    pub(crate) delivered: &'a Vec2<S>,
     pub(crate) coeffs: &'a Coeffs<S>,
 }
 
@@ -71,7 +79,7 @@ impl<S: Scalar> View<'_, S> {
             }
             Phase::Pinned { hold } => self.hold(hold),
             Phase::BackwardWhirl => self.in_contact(true),
-            _ if self.contact.touching => self.in_contact(false),
+            _ if self.touching => self.in_contact(false),
             _ => self.in_flight(),
         }
     }
@@ -87,35 +95,34 @@ impl<S: Scalar> View<'_, S> {
 
     /// What the cap has over an outward load \[caps\].
     fn braked(&self) -> S {
-        (S::ONE - self.contact.load).clamp(S::ZERO, S::ONE)
+        (S::ONE - self.load).clamp(S::ZERO, S::ONE)
     }
 
     /// Against the speed, −D·v; no longer than twice the cap, which no envelope holds either.
     fn damping(&self) -> Vec2<S> {
         let twice = self.speed.inverse + self.speed.inverse;
-        self.motion.velocity * -self.coeffs.damper.min(twice)
+        self.velocity * -self.coeffs.damper.min(twice)
     }
 
     /// In flight. What speed leaves of the capacity brings the rotor back: damping alone would let it lie.
     /// When slow, a little more of it than a hold on the wall has, or the two would take turns; but no more than is
     /// stable with a force that comes late.
-    #[inline(never)]
+    #[inline]
     fn in_flight(&self) -> ForceDemand<S> {
         let coeffs = self.coeffs;
         let most = coeffs.restoring;
         let share = (most - self.speed.square).max(most.min(S::from_f32(FLIGHT_SHARE)));
         let slow = (S::ONE - self.speed.square).max(S::ZERO);
-        let load =
-            self.contact.load.clamp(S::ZERO, S::ONE) * (slow * most * S::from_f32(LOAD_SHARE));
+        let load = self.load.clamp(S::ZERO, S::ONE) * (slow * most * S::from_f32(LOAD_SHARE));
         let carrying = (S::ONE - most * S::from_f32(1.0 / NEARLY_ALL)).max(S::ZERO);
-        let carried = self.motion.load_step * (coeffs.per_tick * slow * carrying);
+        let carried = self.load_step * (coeffs.per_tick * slow * carrying);
         ForceDemand {
             braking: match self.ahead {
                 Some(impact) => self.before(impact),
                 None => Vec2::ZERO,
             },
             damping: self.damping(),
-            restoring: self.motion.position * -(share + load) - carried,
+            restoring: self.position * -(share + load) - carried,
             touching: false,
         }
     }
@@ -130,10 +137,10 @@ impl<S: Scalar> View<'_, S> {
         let sense = self.spin.sense_of_backward(impact.along);
         let (mut normal_speed, mut backward) = (impact.normal_speed, impact.along * sense);
         // What a force that acts already, and after that the cap, against the speed leaves of it until the impact.
-        let speed = self.speed.value;
+        let speed = self.speed.value();
         let way = impact.time * speed;
         let early = way.min(coeffs.horizon * speed);
-        let slowing = -self.delivered.dot(self.motion.velocity) * self.speed.inverse;
+        let slowing = -self.delivered.dot(self.velocity) * self.speed.inverse;
         let work = early * slowing + (way - early) * self.braked();
         let left = (self.speed.square - (work + work)).sqrt();
         let time = (way + way).div(speed + left);
@@ -143,7 +150,7 @@ impl<S: Scalar> View<'_, S> {
         if urgency <= S::ZERO {
             return Vec2::ZERO;
         }
-        let (mut position, mut velocity) = (self.motion.position, self.motion.velocity);
+        let (mut position, mut velocity) = (self.position, self.velocity);
         let mut act_after = coeffs.horizon;
         if time < act_after {
             let n = impact.normal;
@@ -177,11 +184,11 @@ impl<S: Scalar> View<'_, S> {
     /// is over when that part has come, it would only shorten the chord to the next one.
     #[inline]
     fn in_contact(&self, driven: bool) -> ForceDemand<S> {
-        let (coeffs, contact) = (self.coeffs, self.contact);
-        let n = contact.normal;
-        let sense = self.spin.sense_of_backward(contact.tangential_speed);
-        let outward = contact.radial_speed.max(S::ZERO);
-        let backward = contact.tangential_speed * sense;
+        let coeffs = self.coeffs;
+        let n = self.normal;
+        let sense = self.spin.sense_of_backward(self.tangential_speed);
+        let outward = self.radial_speed.max(S::ZERO);
+        let backward = self.tangential_speed * sense;
         let sum = sum_of_impacts(backward, outward, self.bounce_gain());
         let mut strength = sum * coeffs.damper;
         if !driven {
@@ -192,7 +199,7 @@ impl<S: Scalar> View<'_, S> {
         }
         let strength = strength.clamp(S::ZERO, S::ONE);
         let braking = if strength > S::ZERO {
-            let rate = contact.tangential_speed * contact.per_radius;
+            let rate = self.tangential_speed * self.per_radius;
             // Unit vector against b̂, or b̂ + μ·n̂.
             let along = n.perp() * sense;
             let (against, length) = if driven {
@@ -205,7 +212,7 @@ impl<S: Scalar> View<'_, S> {
             Vec2::ZERO
         };
         // Slower than lift-off an inward force can end the contact.
-        let pressing = (contact.load.min(S::JUST_BELOW_ONE)).max(coeffs.pressing);
+        let pressing = (self.load.min(S::JUST_BELOW_ONE)).max(coeffs.pressing);
         let inward = (pressing - self.speed.square).max(S::ZERO);
         ForceDemand {
             braking,
@@ -228,16 +235,16 @@ impl<S: Scalar> View<'_, S> {
 
     /// On the wall under a load: push inwards, keep still.
     fn hold(&self, share: S) -> ForceDemand<S> {
-        let (coeffs, contact) = (self.coeffs, self.contact);
-        let sense = self.spin.sense_of_backward(contact.tangential_speed);
+        let coeffs = self.coeffs;
+        let sense = self.spin.sense_of_backward(self.tangential_speed);
         let still = S::from_f32(STILL);
-        let backward = contact.tangential_speed * sense - still;
+        let backward = self.tangential_speed * sense - still;
         let strength = (backward * coeffs.damper).clamp(S::ZERO, S::ONE);
         let moving = (S::ONE - still * self.speed.inverse).max(S::ZERO);
         ForceDemand {
-            braking: contact.normal.perp() * -(sense * strength),
+            braking: self.normal.perp() * -(sense * strength),
             damping: self.damping() * moving,
-            restoring: contact.normal * -share,
+            restoring: self.normal * -share,
             touching: true,
         }
     }

@@ -113,7 +113,7 @@ pub(crate) fn allocate<S: Scalar>(
 /// off without being able to catch it. There a force u takes A = f̂·u from the power of the motion (f̂ its aim): the whole of
 /// the axis with the sign of f̂ would take most, but u = f̂·|f̂| is the whole along the aim, and across it next
 /// to nothing.
-#[inline(never)]
+#[inline]
 fn on_what_is_left<S: Scalar>(demand: &ForceDemand<S>, envelope: ForceEnvelope<S>) -> Vec2<S> {
     let along = |lost: SampleFlags, aim: S, damping: S, restoring: S| {
         if envelope.axes.contains(lost) {
@@ -298,8 +298,8 @@ impl<S: Scalar> Budget<S> {
 }
 
 /// The cap \[caps\] in a thermal state, for a force that is borne for ever: a function of the state alone, so that it comes back
-/// as it fell.
-#[inline]
+/// as it fell. On its own: within the tick it costs more stack than the call.
+#[inline(never)]
 pub(crate) fn derated<S: Scalar>(state: S, continuous: S) -> S {
     let square = continuous * continuous;
     let over = state - square;

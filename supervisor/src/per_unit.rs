@@ -107,7 +107,7 @@ impl<S: Scalar> Plane<S> {
     /// Force that acts now.
     #[inline]
     pub(crate) fn delivered(&self) -> Vec2<S> {
-        self.state.observer.delivered()
+        *self.state.observer.delivered()
     }
 
     /// The recorder goes on, by what both planes of a rotor have seen.

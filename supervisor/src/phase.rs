@@ -171,8 +171,13 @@ impl<S: Scalar> Phase<S> {
                 None => Self::Levitated,
             };
         }
+        let faulty = flags.contains(SampleFlags::FAULTY);
+        // Most ticks: whatever is judged, such a rotor goes on levitating.
+        if self == Self::Levitated && !faulty && !contact.touching && !contact.unavoidable {
+            return self;
+        }
         let new_bounce = Self::Bounce { calm_ticks: 0 };
-        if flags.contains(SampleFlags::FAULTY) {
+        if faulty {
             let bouncing = match self {
                 Self::SensorFault { bouncing } => bouncing,
                 Self::Bounce { .. } | Self::BackwardWhirl | Self::Pinned { .. } => true,

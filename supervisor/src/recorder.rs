@@ -64,8 +64,8 @@ pub(crate) struct Recorder<S: Scalar> {
     /// The state that is kept is of the entries that are there; and is the one of a new core, which is not written down.
     keeps: bool,
     is_new: bool,
-    /// Ticks until it is kept again.
-    due: u32,
+    /// Ticks until it is kept again; negative where it has been due for so many, since no tick had time for it.
+    due: i32,
     /// The engagement that triggered has had a touch, or a fault.
     worth_it: bool,
     lost: bool,
@@ -139,7 +139,7 @@ impl<S: Scalar> Recorder<S> {
             kept_at: 0,
             keeps: true,
             is_new: true,
-            due: before::<N>() as u32,
+            due: before::<N>() as i32,
             worth_it: false,
             lost: false,
             earlier: Fastest::default(),
@@ -157,7 +157,7 @@ impl<S: Scalar> Recorder<S> {
     /// Whether the state is to be kept before the next tick: so often that one is never far before a trigger.
     #[inline]
     pub(crate) fn is_due(&self) -> bool {
-        self.due == 0
+        self.due <= 0
     }
 
     /// Keeps the state. In a quiet tick: it costs some hundred instructions.
@@ -175,7 +175,7 @@ impl<S: Scalar> Recorder<S> {
         }
         self.kept_coast_down = state.severity.coast_down();
         state.lay_all(&tape.state);
-        (self.kept_at, self.due) = (self.written, before::<N>() as u32);
+        (self.kept_at, self.due) = (self.written, before::<N>() as i32);
         (self.keeps, self.is_new) = (true, false);
         // Before counts begin anew.
         let length = self.written.wrapping_sub(self.begun_at).min(N as u32);
@@ -235,7 +235,7 @@ impl<S: Scalar> Recorder<S> {
                 entry::lay_answer(command, place);
             }
             self.written = self.written.wrapping_add(1);
-            self.due = self.due.saturating_sub(1);
+            self.due = self.due.wrapping_sub(1);
         }
         let begins = seen.triggers && self.progress == Progress::Armed;
         if begins || matches!(self.progress, Progress::Triggered(_)) {
@@ -286,7 +286,7 @@ impl<S: Scalar> Recorder<S> {
                 self.begin(&shared.tape, severity, coeffs);
                 // A quarter before the trigger, three quarters after it.
                 self.progress = Progress::Triggered(N - before::<N>());
-                self.due = u32::MAX;
+                self.due = i32::MAX;
             }
             Progress::Triggered(left) => {
                 self.worth_it |= seen.worth_it;
@@ -417,7 +417,7 @@ impl<S: Scalar> Recorder<S> {
 
     /// Looks away.
     pub(crate) fn pause(&mut self) {
-        (self.progress, self.due) = (Progress::Paused, u32::MAX);
+        (self.progress, self.due) = (Progress::Paused, i32::MAX);
     }
 
     /// As new, for a core that is.

@@ -3,11 +3,11 @@
 
 use crate::coeffs::Coeffs;
 use crate::detect::ContactEstimate;
-use crate::impact::sum_of_impacts;
-use crate::law::View;
+use crate::impact::{Impact, sum_of_impacts};
 use crate::reading::SampleFlags;
 use crate::scalar::{Accumulator, Scalar};
 use crate::signal::{Events, Limits, Mode};
+use crate::spin::Spin;
 use crate::tally::{MOST_INDEX, Tally};
 use crate::vec2::Vec2;
 use crate::words::words_of_fields;
@@ -66,6 +66,17 @@ impl<S: Scalar> Fastest<S> {
     }
 }
 
+/// What it is judged by while the supervisor acts. Taken apart within the tick: none of it is laid down for a rotor that levitates.
+pub(crate) struct Evidence<'a, S: Scalar> {
+    /// The speed is a guess.
+    pub(crate) fresh: bool,
+    pub(crate) contact: &'a ContactEstimate<S>,
+    /// The next impact in flight.
+    pub(crate) ahead: Option<&'a Impact<S>>,
+    pub(crate) spin: Spin,
+    pub(crate) coeffs: &'a Coeffs<S>,
+}
+
 /// What a tick has to report.
 #[derive(Default)]
 pub(crate) struct SeverityAssessment<S> {
@@ -81,7 +92,7 @@ impl<S: Scalar> Severity<S> {
     pub(crate) fn assess(
         &mut self,
         mode: Mode,
-        view: &View<'_, S>,
+        evidence: &Evidence<'_, S>,
         flags: SampleFlags,
         (force, velocity): (Vec2<S>, Vec2<S>),
     ) -> SeverityAssessment<S> {
@@ -91,10 +102,9 @@ impl<S: Scalar> Severity<S> {
         }
         match mode {
             Mode::Levitated => {
-                let nuisance = core::mem::take(&mut self.engaged) && !self.landed;
-                self.nuisances = self.nuisances.saturating_add(u32::from(nuisance));
-                self.landed = false;
-                self.beyond_ticks = 0;
+                if self.engaged {
+                    self.ends();
+                }
                 SeverityAssessment::default()
             }
             // What is not measured is not counted.
@@ -104,27 +114,35 @@ impl<S: Scalar> Severity<S> {
             }
             _ => {
                 self.engaged = true;
-                self.engaged(view, flags, (force, before))
+                self.engaged(evidence, flags, (force, before))
             }
         }
     }
 
-    /// `before` is the velocity of the axis at the last tick. On its own: within the tick it saves next to nothing, and
-    /// costs stack.
-    #[inline(never)]
+    /// The rotor levitates again.
+    #[cold]
+    fn ends(&mut self) {
+        self.engaged = false;
+        let nuisance = !core::mem::take(&mut self.landed);
+        self.nuisances = self.nuisances.saturating_add(u32::from(nuisance));
+        self.beyond_ticks = 0;
+    }
+
+    /// `before` is the velocity of the axis at the last tick.
+    #[inline]
     fn engaged(
         &mut self,
-        view: &View<'_, S>,
+        evidence: &Evidence<'_, S>,
         flags: SampleFlags,
         (force, before): (Vec2<S>, Vec2<S>),
     ) -> SeverityAssessment<S> {
         let mut result = SeverityAssessment::default();
-        let (contact, coeffs) = (view.contact, view.coeffs);
+        let (contact, coeffs) = (evidence.contact, evidence.coeffs);
         // The speed of a first sample is a guess.
-        let backward = if view.motion.fresh {
+        let backward = if evidence.fresh {
             S::ZERO
         } else {
-            view.spin.backward(contact.tangential_speed)
+            evidence.spin.backward(contact.tangential_speed)
         };
         let coming = if contact.touching {
             if flags.contains(SampleFlags::USED) {
@@ -133,9 +151,9 @@ impl<S: Scalar> Severity<S> {
             let outward = contact.radial_speed.max(S::ZERO);
             sum_of_impacts(backward, outward, coeffs.bounce_gain)
         } else {
-            match view.ahead {
+            match evidence.ahead {
                 Some(impact) if contact.unavoidable => {
-                    let backward = view.spin.backward(impact.along);
+                    let backward = evidence.spin.backward(impact.along);
                     sum_of_impacts(backward, impact.normal_speed, coeffs.bounce_gain)
                 }
                 _ => S::ZERO,

@@ -49,6 +49,10 @@ impl<S: Scalar> StuckDetector<S> {
         for (coordinate, now) in [(&*x, position.x), (&*y, position.y)] {
             self.step = coordinate.coarseness(now, self.step);
         }
+        if x.changes(position.x) && y.changes(position.y) {
+            self.moved_to(position);
+            return (0, 0);
+        }
         let twice = (self.step + self.step) * coeffs.per_tick;
         let most = coeffs.sensor_speeds.max(twice);
         let samples =
@@ -117,8 +121,12 @@ impl<S: Scalar> Coordinate<S> {
         }
     }
 
+    fn changes(&self, now: S) -> bool {
+        !self.seen || now != self.last
+    }
+
     fn watch(&mut self, now: S, step: S, most: S) -> u8 {
-        if !self.seen || now != self.last {
+        if self.changes(now) {
             self.moved_to(now);
             return 0;
         }

@@ -14,7 +14,7 @@ use crate::limit::{Budget, ForceEnvelope};
 use crate::phase::{Judged, Phase};
 use crate::reading::{Reading, SampleFlags};
 use crate::scalar::Scalar;
-use crate::severity::Severity;
+use crate::severity::{Evidence, Severity};
 use crate::signal::{
     CoreCommand, CoreSample, Events, IntegratorHint, Limits, Mode, RejectReason, Status,
 };
@@ -132,7 +132,7 @@ impl<S: Scalar> State<S> {
             speed = Speed::new(motion.velocity);
             if !contact.touching {
                 ahead = Impact::ahead(&motion, contact.radius, &speed);
-                let beyond = (speed.value - margin).max(S::ZERO);
+                let beyond = (speed.value() - margin).max(S::ZERO);
                 let share = S::from_f32(CALM_SHARE);
                 calm = flies && contact.stops(beyond, envelope.cap, share, coeffs);
                 if let Some(tilting) = tilting
@@ -148,23 +148,6 @@ impl<S: Scalar> State<S> {
         self.phase = phase;
         let mode = phase.mode();
 
-        let led;
-        let acted_on = match tilting {
-            Some(tilting) if phase.is_engaged() && !contact.touching => {
-                led = tilting.ahead(&motion, coeffs);
-                &led
-            }
-            _ => &motion,
-        };
-        let view = View {
-            motion: acted_on,
-            contact: &contact,
-            speed: &speed,
-            ahead: ahead.as_ref(),
-            spin: reading.spin,
-            delivered: self.observer.delivered(),
-            coeffs,
-        };
         let shadow = sample.status.contains(Status::SHADOW);
         if actuator.axes.has_lost() {
             // Such an axis has no force to start from; one that does not track may have.
@@ -203,6 +186,27 @@ impl<S: Scalar> State<S> {
         } else if !phase.is_engaged() {
             (levitation, levitation_limits)
         } else {
+            // Laid down here alone: in most ticks nobody wants a force, and all of it stays in registers.
+            let acted_on = match tilting {
+                Some(tilting) if !contact.touching => tilting.ahead(&motion, coeffs),
+                _ => motion,
+            };
+            let view = View {
+                position: acted_on.position,
+                velocity: acted_on.velocity,
+                load_step: acted_on.load_step,
+                speed,
+                normal: contact.normal,
+                per_radius: contact.per_radius,
+                radial_speed: contact.radial_speed,
+                tangential_speed: contact.tangential_speed,
+                load: contact.load,
+                touching: contact.touching,
+                ahead: ahead.as_ref(),
+                spin: reading.spin,
+                delivered: self.observer.delivered(),
+                coeffs,
+            };
             let (allocated, mut own_limits) = limit::allocate(&view.demand(phase), envelope);
             if holds && !wrong {
                 // The controller has to ask for what the rotor is really held with.
@@ -242,8 +246,15 @@ impl<S: Scalar> State<S> {
         self.observer.commanded(self.force);
         let acting = actuator.acting(self.force);
         self.budget.spend(S::ONE, acting, coeffs);
-        let severity =
-            (self.severity).assess(mode, &view, flags, (acting, self.observer.velocity()));
+        let evidence = Evidence {
+            fresh: motion.fresh,
+            contact: &contact,
+            ahead: ahead.as_ref(),
+            spin: reading.spin,
+            coeffs,
+        };
+        let forces = (acting, self.observer.velocity());
+        let severity = (self.severity).assess(mode, &evidence, flags, forces);
 
         let mut events = events | assessment.events | severity.events;
         if core::mem::take(&mut self.reconfigured) {

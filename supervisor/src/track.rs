@@ -116,8 +116,8 @@ impl<S: Scalar> Progress<S> {
         self.done >= STRETCHES
     }
 
-    /// A tick, with the squares of radius and force. On its own: within the tick it would cost stack.
-    #[inline(never)]
+    /// A tick, with the squares of radius and force.
+    #[inline]
     pub(crate) fn push(
         &mut self,
         track: &Track,

@@ -1,5 +1,6 @@
 //! Cycles of ticks as a study.
 
+use super::disassembly::Instruction;
 use super::table::{Counter, Cycles, Kind, Processor};
 use super::trace::{TraceError, Traced, trace};
 use crate::campaign::{Block, Chapter, Claim, Extent, Progress, Report, StudyError};
@@ -34,6 +35,8 @@ const MODELLED: [(&str, Number, Processor, f64); 4] = [
 #[derive(Debug, Clone, Copy)]
 struct Tick {
     instructions: u32,
+    /// Of these, those that are there whatever compiles it, see [`is_needed`].
+    needed: u32,
     cycles: Cycles,
 }
 
@@ -58,6 +61,8 @@ struct Row {
     agreeing: usize,
     /// The one with most instructions in the stream.
     worst: Tick,
+    /// Instructions of the stream's median tick; and how many are needed in traced ticks that have about as many, on average.
+    median: (u32, f64),
     /// What it is made of: instructions and cycles at most.
     mix: Vec<(&'static str, u32, Cycles)>,
 }
@@ -92,6 +97,26 @@ fn cut(piece: &Piece, ticks: usize) -> Piece {
     }
 }
 
+/// Whether an instruction is the algorithm's. What moves floats between registers, announces conditions, or reads and writes
+/// the frame or the constants beside the code is the compiler's: a better one might do without.
+fn is_needed(kind: Kind, instruction: &Instruction) -> bool {
+    let beside = |base: &&str| instruction.operands.contains(*base);
+    !matches!(kind, Kind::FloatMove | Kind::Choice) && !["[sp", "[pc"].iter().any(beside)
+}
+
+/// Ticks within this share of the median are about as dear.
+const ABOUT: f64 = 0.01;
+
+/// What is needed of ticks that are about as dear as the median one, on average.
+fn needed_about(median: u32, ticks: &[Tick]) -> f64 {
+    let off = |tick: &&Tick| f64::from(tick.instructions.abs_diff(median));
+    let near = ticks.iter().filter(|t| off(t) <= ABOUT * f64::from(median));
+    let (count, sum) = near.fold((0.0, 0.0), |(n, sum), t| {
+        (n + 1.0, sum + f64::from(t.needed))
+    });
+    sum / count
+}
+
 /// Instructions and cycles by kind.
 type Mix = HashMap<Kind, (u32, Cycles)>;
 
@@ -99,10 +124,13 @@ type Mix = HashMap<Kind, (u32, Cycles)>;
 fn cost(traced: &Traced, processor: Processor, path: &[u32]) -> Result<(Tick, Mix), TraceError> {
     let mut counter = Counter::new(processor);
     let mut mix = Mix::new();
+    let mut needed = 0;
     for (at, address) in path.iter().enumerate() {
         // The last one returns.
         let then = path.get(at + 1).copied().unwrap_or(u32::MAX - 1);
-        let (kind, cycles) = counter.add(traced.at(*address)?, then);
+        let instruction = traced.at(*address)?;
+        let (kind, cycles) = counter.add(instruction, then);
+        needed += u32::from(is_needed(kind, instruction));
         let (instructions, sum) = mix.entry(kind).or_default();
         *instructions += 1;
         sum.low += cycles.low;
@@ -113,6 +141,7 @@ fn cost(traced: &Traced, processor: Processor, path: &[u32]) -> Result<(Tick, Mi
     }
     let tick = Tick {
         instructions: path.len() as u32,
+        needed,
         cycles: counter.total(),
     };
     Ok((tick, mix))
@@ -131,7 +160,11 @@ fn row(
     };
     let image = machine.number.image("count");
     let count = |folder: &TempDir| count_words(project, (machine, &image), folder.path(), LIMIT);
-    let pieces = chosen(stream, &count(&write(stream)?)?, beginnings);
+    let words = count(&write(stream)?)?;
+    let mut all: Vec<u32> = ticks_of(&words).map(|(n, _)| n).collect();
+    all.sort_unstable();
+    let median = all.get(all.len() / 2).copied().unwrap_or_default();
+    let pieces = chosen(stream, &words, beginnings);
     let folder = write(&Stream {
         number: stream.number,
         pieces,
@@ -165,6 +198,7 @@ fn row(
         clock_mhz,
         agreeing,
         worst,
+        median: (median, needed_about(median, &ticks)),
         mix: mix.collect(),
         ticks,
     })
@@ -203,7 +237,7 @@ pub fn study(extent: Extent, progress: &dyn Progress) -> Result<Report, StudyErr
         title: "Cycles of a tick, by a model".to_owned(),
         claims: rows.iter().flat_map(claims).collect(),
         cases: rows.iter().map(|r| r.ticks.len() as u64).sum(),
-        chapters: vec![ticks(&rows), worst_ticks(&rows)],
+        chapters: vec![ticks(&rows), worst_ticks(&rows), needed(&rows)],
     })
 }
 
@@ -277,5 +311,32 @@ fn worst_ticks(rows: &[Row]) -> Chapter {
     Chapter::new(
         "What the dearest tick is made of",
         vec![Block::table(columns, lines)],
+    )
+}
+
+fn needed(rows: &[Row]) -> Chapter {
+    let lines = rows.iter().flat_map(|row| {
+        let (median, needed) = row.median;
+        let line = |which: &str, instructions: u32, needed: f64| {
+            [
+                row.machine.title(),
+                which.to_owned(),
+                instructions.to_string(),
+                format!("{needed:.0}"),
+            ]
+        };
+        [
+            line("worst", row.worst.instructions, f64::from(row.worst.needed)),
+            line("median", median, needed),
+        ]
+    });
+    let story = format!(
+        "Instructions without those that move floats between registers, announce conditions (`IT`), or read and write the frame of a function or the constants beside it. What is left is arithmetic, comparisons, branches, and what goes between registers and memory that is not the frame: what the computation takes as it is written, with any compiler for the processor. Of the median tick they are the average over the traced ticks that are within {:.0} % of it.",
+        100.0 * ABOUT
+    );
+    let columns = ["target", "tick", "instructions", "of these needed"];
+    Chapter::new(
+        "What no compiler saves",
+        vec![Block::text(story), Block::table(columns, lines)],
     )
 }
