@@ -17,6 +17,7 @@ mod progress;
 pub mod review;
 pub mod run;
 pub mod schema;
+pub mod screen;
 pub mod sensitivity;
 pub mod serve_controller;
 pub mod study;

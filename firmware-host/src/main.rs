@@ -3,7 +3,7 @@
 use clap::{CommandFactory, Parser, Subcommand};
 use firmware_host::cli::{
     accuracy, advise, completions, error, export, fmu, harm, init, modes, overloads, paper, review,
-    run, schema, sensitivity, serve_controller, study, sweep, target, vectors,
+    run, schema, screen, sensitivity, serve_controller, study, sweep, target, vectors,
 };
 use std::process::ExitCode;
 
@@ -61,6 +61,7 @@ enum Command {
 fn main() -> ExitCode {
     let cli = Cli::parse();
     serve_controller::by_this_program();
+    screen::prepare();
     let result = match &cli.command {
         Command::Init(args) => init::execute(args),
         Command::Run(args) => run::execute(args),

@@ -8,11 +8,112 @@ use crate::split::Reader;
 use crate::tape::Tape;
 use core::marker::PhantomData;
 
-/// A record, and of a rotor its shaft.
+/// Room for the record of an event of one plane: the record, and of a rotor its shaft. It consists of words alone, and with all
+/// bits zero it is one without a record.
 #[derive(Debug)]
-struct Kept<const RECORD: usize> {
+pub struct ArchivePlace<const RECORD: usize = 512> {
     tape: Tape<RECORD>,
-    shaft: Option<[f32; 9]>,
+    of_rotor: bool,
+    shaft: [f32; 9],
+}
+
+impl<const RECORD: usize> ArchivePlace<RECORD> {
+    /// Without a record.
+    #[inline(always)]
+    pub const fn new() -> Self {
+        Self {
+            tape: Tape::blank(),
+            of_rotor: false,
+            shaft: [0.0; 9],
+        }
+    }
+}
+
+impl<const RECORD: usize> Default for ArchivePlace<RECORD> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// Which of some places are taken.
+#[derive(Debug)]
+struct Order {
+    /// Place of the oldest.
+    oldest: usize,
+    count: usize,
+    /// Events that have gone since the last record was discarded, with those that these knew of.
+    gone: u32,
+}
+
+impl Order {
+    #[inline(always)]
+    const fn new() -> Self {
+        Self {
+            oldest: 0,
+            count: 0,
+            gone: 0,
+        }
+    }
+
+    /// Copies a tape that has frozen to the next place.
+    fn copy<const RECORD: usize>(
+        &mut self,
+        places: &mut [ArchivePlace<RECORD>],
+        tape: &Tape<RECORD>,
+        shaft: Option<[f32; 9]>,
+    ) -> bool {
+        if places.is_empty() || !tape.is_frozen() {
+            return false;
+        }
+        if self.count >= places.len() {
+            let oldest = self.record::<f32, RECORD>(places);
+            let knew = oldest.map_or(0, |mut record| *record.dropped());
+            self.remove(places.len());
+            self.gone = knew.saturating_add(1);
+        }
+        let free = self.oldest + self.count;
+        let free = if free < places.len() {
+            free
+        } else {
+            free - places.len()
+        };
+        if let Some(place) = places.get_mut(free) {
+            place.tape.become_copy_of(tape);
+            place.of_rotor = shaft.is_some();
+            place.shaft = shaft.unwrap_or_default();
+            self.count += 1;
+        }
+        true
+    }
+
+    /// The oldest record.
+    fn record<'a, S: Scalar, const RECORD: usize>(
+        &self,
+        places: &'a [ArchivePlace<RECORD>],
+    ) -> Option<Record<'a, S, RECORD>> {
+        if self.count == 0 {
+            return None;
+        }
+        let kept = places.get(self.oldest)?;
+        let mut record = Record::new(&kept.tape)?;
+        record.shaft = kept.of_rotor.then_some(kept.shaft);
+        let dropped = record.dropped();
+        *dropped = dropped.saturating_add(self.gone);
+        Some(record)
+    }
+
+    fn discard(&mut self, places: usize) {
+        if self.count > 0 {
+            self.remove(places);
+            self.gone = 0;
+        }
+    }
+
+    fn remove(&mut self, places: usize) {
+        self.count -= 1;
+        let next = self.oldest + 1;
+        self.oldest = if next < places { next } else { 0 };
+    }
 }
 
 /// Room for the records of `EVENTS` events of one plane. Where one more comes the oldest goes, and is counted: the next that is
@@ -38,12 +139,8 @@ struct Kept<const RECORD: usize> {
 /// ```
 #[derive(Debug)]
 pub struct Archive<S: Scalar = f32, const RECORD: usize = 512, const EVENTS: usize = 4> {
-    places: [Kept<RECORD>; EVENTS],
-    /// Place of the oldest.
-    oldest: usize,
-    count: usize,
-    /// Events that have gone since the last record was discarded, with those that these knew of.
-    gone: u32,
+    places: [ArchivePlace<RECORD>; EVENTS],
+    order: Order,
     number: PhantomData<S>,
 }
 
@@ -53,15 +150,8 @@ impl<S: Scalar, const RECORD: usize, const EVENTS: usize> Archive<S, RECORD, EVE
     pub const fn new() -> Self {
         const { assert!(EVENTS > 0, "an archive has room for an event") };
         Self {
-            places: [const {
-                Kept {
-                    tape: Tape::blank(),
-                    shaft: None,
-                }
-            }; EVENTS],
-            oldest: 0,
-            count: 0,
-            gone: 0,
+            places: [const { ArchivePlace::new() }; EVENTS],
+            order: Order::new(),
             number: PhantomData,
         }
     }
@@ -75,54 +165,22 @@ impl<S: Scalar, const RECORD: usize, const EVENTS: usize> Archive<S, RECORD, EVE
     }
 
     fn copy(&mut self, tape: &Tape<RECORD>, shaft: Option<[f32; 9]>) -> bool {
-        if !tape.is_frozen() {
-            return false;
-        }
-        if self.count == EVENTS {
-            let knew = self.oldest().map_or(0, |mut record| *record.dropped());
-            self.remove();
-            self.gone = knew.saturating_add(1);
-        }
-        let free = self.oldest + self.count;
-        let free = if free < EVENTS { free } else { free - EVENTS };
-        if let Some(place) = self.places.get_mut(free) {
-            place.tape.become_copy_of(tape);
-            place.shaft = shaft;
-            self.count += 1;
-        }
-        true
+        self.order.copy(&mut self.places, tape, shaft)
     }
 
     /// How many records are kept.
     pub fn count(&self) -> usize {
-        self.count
+        self.order.count
     }
 
     /// The oldest record. It stays as it is until [`Self::discard`], or until its place is needed.
     pub fn oldest(&self) -> Option<Record<'_, S, RECORD>> {
-        if self.count == 0 {
-            return None;
-        }
-        let kept = self.places.get(self.oldest)?;
-        let mut record = Record::new(&kept.tape)?;
-        record.shaft = kept.shaft;
-        let dropped = record.dropped();
-        *dropped = dropped.saturating_add(self.gone);
-        Some(record)
+        self.order.record(&self.places)
     }
 
     /// Makes room where the oldest record was, if there was one.
     pub fn discard(&mut self) {
-        if self.count > 0 {
-            self.remove();
-            self.gone = 0;
-        }
-    }
-
-    fn remove(&mut self) {
-        self.count -= 1;
-        let next = self.oldest + 1;
-        self.oldest = if next < EVENTS { next } else { 0 };
+        self.order.discard(EVENTS);
     }
 }
 
@@ -175,5 +233,57 @@ impl<const RECORD: usize, const EVENTS: usize> RotorArchive<RECORD, EVENTS> {
     /// Makes room where the oldest event was, if there was one.
     pub fn discard(&mut self) {
         self.planes.iter_mut().for_each(Archive::discard);
+    }
+}
+
+/// An [`Archive`] of one plane in places that are borrowed, for as many events as there are. Without a place it keeps none.
+#[derive(Debug)]
+pub struct ArchiveIn<'a, const RECORD: usize = 512> {
+    places: &'a mut [ArchivePlace<RECORD>],
+    order: Order,
+}
+
+impl<'a, const RECORD: usize> ArchiveIn<'a, RECORD> {
+    /// Without a record; what was in the places is forgotten.
+    pub fn new(places: &'a mut [ArchivePlace<RECORD>]) -> Self {
+        Self {
+            places,
+            order: Order::new(),
+        }
+    }
+
+    /// As [`Archive::take`].
+    pub fn take(&mut self, reader: &mut Reader<'_, f32, RECORD>) -> bool {
+        let took = (self.order).copy(self.places, &reader.shared().tape, None);
+        reader.rearm();
+        took
+    }
+
+    /// As [`RotorArchive::take`], with an archive for each plane.
+    pub fn take_rotor(planes: [&mut Self; 2], reader: &mut RotorReader<'_, RECORD>) -> bool {
+        let Some(shaft) = reader.record(0).and_then(|record| record.shaft) else {
+            return false;
+        };
+        let planes = planes.into_iter().zip(reader.tapes());
+        let took = planes.fold(true, |all, (archive, tape)| {
+            (archive.order).copy(archive.places, tape, Some(shaft)) && all
+        });
+        reader.rearm();
+        took
+    }
+
+    /// As [`Archive::count`].
+    pub fn count(&self) -> usize {
+        self.order.count
+    }
+
+    /// As [`Archive::oldest`].
+    pub fn oldest(&self) -> Option<Record<'_, f32, RECORD>> {
+        self.order.record(self.places)
+    }
+
+    /// As [`Archive::discard`].
+    pub fn discard(&mut self) {
+        self.order.discard(self.places.len());
     }
 }

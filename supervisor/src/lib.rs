@@ -109,7 +109,7 @@ mod vec2;
 mod watch;
 mod words;
 
-pub use archive::{Archive, RotorArchive};
+pub use archive::{Archive, ArchiveIn, ArchivePlace, RotorArchive};
 pub use bearing::Bearing;
 pub use coeffs::Scaling;
 pub use config::{

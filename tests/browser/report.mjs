@@ -176,6 +176,34 @@ async function moves(page) {
     assert.ok(reached.has(name), `${name} among ${[...reached]}`);
 }
 
+// What goes on after the ticks that were recorded one by one: in view, with the time of all, and zoomed with all.
+async function slowTrack(page) {
+  const panels = await page.evaluate(() => [...document.querySelectorAll("[data-panel]")]
+    .map((panel) => panel.querySelector("figcaption b").textContent));
+  const slow = panels.flatMap((name, i) => (name.endsWith("slow track") ? [i] : []));
+  assert.ok(slow.length >= 5, `${slow.length} panels of the slow track among ${panels}`);
+  const { tracks } = await page.evaluate(() => JSON.parse(document.getElementById("report-data").textContent));
+  const end = ({ t: { step, differences } }) => step * differences.reduce((sum, d) => sum + d, 0);
+  const of = (wanted) => end(tracks.find((track) => track.name.endsWith("slow track") === wanted));
+  const late = 0.5 * (of(true) + of(false));
+  assert.ok(of(true) > 2 * of(false), `${of(true)} ms after ${of(false)} ms`);
+  // There the ticks have no value any more, and the slow track has.
+  await page.evaluate((t) => {
+    const time = document.querySelector('[data-do="time"]');
+    time.value = t;
+    time.dispatchEvent(new Event("input"));
+  }, late);
+  const shown = await shownBy(page);
+  const fast = panels.indexOf("recorded", 1);
+  assert.equal(shown.values[fast], "–", "the ticks are over");
+  for (const i of slow) assert.notEqual(shown.values[i], "–", `panel ${i} at ${late} ms`);
+  assert.ok(same(slow.map((i) => shown.lines[i]).concat(shown.lines[fast])), `lines at ${shown.lines}`);
+  await page.click('[data-do="focus"]');
+  const close = await shownBy(page);
+  for (const i of slow) assert.notEqual(close.drawn[i], shown.drawn[i], `panel ${i} is zoomed`);
+  await page.click('[data-do="whole"]');
+}
+
 async function works(name, file) {
   for (const size of SIZES) {
     for (const colorScheme of ["light", "dark"]) {
@@ -185,6 +213,7 @@ async function works(name, file) {
       await fits(page, what);
       if (colorScheme === "light") {
         await moves(page);
+        if (name === "record") await slowTrack(page);
         await accessible(page, what);
       } else await accessible(page, what, ["color-contrast"]);
       await closed();

@@ -12,6 +12,7 @@ pub mod rig;
 pub mod slurm;
 pub mod storm;
 pub mod target;
+pub mod terminal;
 
 use firmware_bench::scene::Scene;
 use std::path::{Path, PathBuf};

@@ -9,11 +9,13 @@ mod document;
 pub(crate) mod fixture;
 mod happenings;
 mod headline;
+pub mod lines;
 pub mod machine;
 mod panels;
 pub mod plot;
 mod quantities;
 pub mod record;
+mod slow_track;
 pub mod summary;
 pub mod table;
 pub mod track;
@@ -25,6 +27,7 @@ use self::axes::{disturbances, focus_window, run_window};
 use self::document::{Document, Times};
 use self::headline::{Concluded, headline};
 use self::panels::{Shown, View};
+use self::table::supervisor_first;
 use self::track::Track;
 pub use crate::report::plot::PlotError;
 use crate::report::plot::text::{escape, figures};
@@ -61,13 +64,6 @@ pub fn html(scene: &SceneSummary, results: &Results) -> Result<String, PlotError
         push_sections(&mut document, &shown, &times, "")?;
     }
     document.ended(&tracks, &times)
-}
-
-/// Runs in the order of a page.
-fn supervisor_first(runs: &[PolicyRun]) -> Vec<&PolicyRun> {
-    let mut runs: Vec<&PolicyRun> = runs.iter().collect();
-    runs.sort_by_key(|run| run.supervision.is_none());
-    runs
 }
 
 /// All of them, under their own names.

@@ -64,6 +64,8 @@ pub struct Scene {
     /// The centre of the retainer bearing as seen from the centre of magnets and sensors \[m\]. The plant
     /// keeps the retainer bearing at its origin, so a levitated rotor stands at minus this.
     pub centre_offset_m: V2,
+    /// Severity that the retainer bearing may bear in all, where the scene says it.
+    pub severity_allowed: Option<f64>,
     /// End of the run \[s\].
     pub duration_s: f64,
     /// Control rate \[Hz\].

@@ -7,6 +7,7 @@ use crate::cli::error::{CommandError, pretty, print, say};
 use crate::cli::load;
 use crate::cli::output::{self, Staging};
 use crate::cli::progress::{LateProgress, Threads};
+use crate::cli::screen::tell;
 use firmware_studies::accuracy::study::{WrongRuns, benchmarks, chapters as chapters_of, measure};
 use std::path::PathBuf;
 
@@ -96,6 +97,6 @@ pub fn execute(args: &AccuracyArgs) -> Result<(), CommandError> {
     if args.json {
         print(&(json + "\n"))
     } else {
-        print(&chapters::text(&chapters_of(&found)))
+        tell(&chapters::text(&chapters_of(&found)))
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::cli::error::{CommandError, pretty, print, say};
 use crate::cli::load_any;
+use crate::cli::screen::tell;
 use firmware_bench::advise::{self, Advice, Language, OutOfRange, RotorAdvice};
 use firmware_bench::modes::Coupling;
 use firmware_bench::report::campbell;
@@ -255,7 +256,7 @@ pub fn execute(args: &AdviseArgs) -> Result<(), CommandError> {
         return print(&(pretty(&advice, "formatting the advice")? + "\n"));
     }
     let listing = args.format.map(|format| listing(args, &advice, format));
-    print(&match listing.transpose()? {
+    match listing.transpose()? {
         Some(listing) => {
             // The listing goes into a file; these are for whoever puts it there.
             for w in &advice.warnings {
@@ -264,10 +265,10 @@ pub fn execute(args: &AdviseArgs) -> Result<(), CommandError> {
                     w.key, w.text, w.remedy
                 ));
             }
-            listing
+            print(&listing)
         }
-        None => advise::text(&advice),
-    })
+        None => tell(&advise::text(&advice)),
+    }
 }
 
 /// The configuration alone.
@@ -358,7 +359,7 @@ fn of_machine(
     } else {
         let texts: Vec<String> = all.iter().map(advise::text).collect();
         let rotor = rotor.map_or_else(String::new, |rotor| rotor.text() + "\n");
-        print(&format!(
+        tell(&format!(
             "{title}\n{}\n\n{rotor}{}",
             campbell::coupling(&coupling),
             texts.join("\n")

@@ -1,17 +1,18 @@
 //! Chapters and claims for the terminal.
 
-use comfy_table::{Cell, Table as Lines};
-use firmware_bench::report::table::{lined, right};
+use firmware_bench::report::lines::{Cell, Lines, lined, right};
 use firmware_studies::campaign::{Block, CLAIM_COLUMNS, Chapter, Claim, Table};
 
 /// Chapters that are not folded, without figures.
 pub(super) fn text(chapters: &[Chapter]) -> String {
     let shown = chapters.iter().filter(|chapter| !chapter.folded);
-    let of = |chapter: &Chapter| {
-        let blocks: String = chapter.blocks.iter().filter_map(block).collect();
-        format!("{}\n{blocks}\n", chapter.title)
-    };
+    let of = |chapter: &Chapter| format!("{}\n{}\n", chapter.title, of_blocks(&chapter.blocks));
     shown.map(of).collect()
+}
+
+/// Without figures.
+pub(super) fn of_blocks(blocks: &[Block]) -> String {
+    blocks.iter().filter_map(block).collect()
 }
 
 fn block(block: &Block) -> Option<String> {

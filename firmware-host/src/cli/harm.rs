@@ -1,8 +1,10 @@
 //! `harm`: the supervisor against levitation alone, on machines drawn at random.
 
+use crate::cli::chapters;
 use crate::cli::error::{CommandError, pretty, print};
 use crate::cli::progress::{LateProgress, Threads};
-use firmware_studies::campaign::{Block, markdown_block};
+use crate::cli::screen::tell;
+use firmware_studies::campaign::Block;
 use firmware_studies::harm::conditions::Condition;
 use firmware_studies::harm::events::Event;
 use firmware_studies::harm::page::{lists, rows, table};
@@ -59,16 +61,14 @@ pub fn execute(args: &HarmArgs) -> Result<(), CommandError> {
     let runs = (args.threads.pool()?).install(|| plan.run(&progress));
     progress.finish();
     let rows = rows(&runs);
-    print(&if args.json {
-        let value = serde_json::json!({
-            "seed": args.seed,
-            "machines": args.machines,
-            "rows": rows,
-        });
-        pretty(&value, "formatting the rows")? + "\n"
-    } else {
-        let parts = [table(&rows), Block::List(lists(&rows))];
-        let parts: Vec<String> = parts.iter().filter_map(markdown_block).collect();
-        parts.join("\n\n") + "\n"
-    })
+    if !args.json {
+        let blocks = [table(&rows), Block::List(lists(&rows))];
+        return tell(&chapters::of_blocks(&blocks));
+    }
+    let value = serde_json::json!({
+        "seed": args.seed,
+        "machines": args.machines,
+        "rows": rows,
+    });
+    print(&(pretty(&value, "formatting the rows")? + "\n"))
 }

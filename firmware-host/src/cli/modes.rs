@@ -3,6 +3,7 @@
 
 use crate::cli::error::{CommandError, pretty, print};
 use crate::cli::load_any;
+use crate::cli::screen::tell;
 use firmware_bench::modes::{Analysis, Range};
 use firmware_bench::report::campbell;
 use firmware_bench::scene::machine::{AnyScene, MachineScene, PlaneScene};
@@ -92,7 +93,7 @@ pub fn execute(args: &ModesArgs) -> Result<(), CommandError> {
     if args.json {
         return print(&(pretty(&analysis, "formatting the modes")? + "\n"));
     }
-    print(&campbell::text(&scene, &analysis))
+    tell(&campbell::text(&scene, &analysis))
 }
 
 fn default_hz(scene: &MachineScene) -> f64 {

@@ -5,7 +5,8 @@ use crate::cli::error::{CommandError, pretty, print};
 use crate::cli::load;
 use crate::cli::output::{self, Staging};
 use crate::cli::progress::{LateProgress, Threads};
-use firmware_bench::report::table::lined;
+use crate::cli::screen::tell;
+use firmware_bench::report::lines::lined;
 use firmware_studies::campaign::{Extent, Progress, html};
 use firmware_studies::overloads::histories::{CASES, Way, compare};
 use firmware_studies::overloads::page;
@@ -82,7 +83,7 @@ pub fn execute(args: &OverloadsArgs) -> Result<(), CommandError> {
         return print(&format!("{json}\n"));
     }
     let page = out.join("overloads.html");
-    print(&format!(
+    tell(&format!(
         "{}\n\n{}page: {}\n",
         promises(&catalogue),
         chapters::text(&page::in_brief(&catalogue)),
@@ -156,7 +157,7 @@ fn against_histories(args: &OverloadsArgs) -> Result<(), CommandError> {
         table.add_row(cells);
     }
     let path = out.join("histories.json");
-    print(&format!(
+    tell(&format!(
         "{table}\nspeeds in m/s; histories: {}\n",
         path.display()
     ))

@@ -3,6 +3,7 @@
 use crate::cli::error::{CommandError, pretty, print};
 use crate::cli::output::{self, Staging};
 use crate::cli::progress::{LateProgress, Threads};
+use crate::cli::screen::tell;
 use firmware_studies::campaign::{Extent, html};
 use firmware_studies::paper::{chapters, json, page, text};
 use std::path::PathBuf;
@@ -48,5 +49,5 @@ pub fn execute(args: &PaperArgs) -> Result<(), CommandError> {
         return print(&rows);
     }
     let page = out.join("paper.html");
-    print(&format!("{}\npage: {}\n", text(&chapters), page.display()))
+    tell(&format!("{}\npage: {}\n", text(&chapters), page.display()))
 }

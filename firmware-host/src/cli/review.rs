@@ -7,6 +7,7 @@ mod tables;
 mod version_2;
 
 use crate::cli::error::{CommandError, pretty, print};
+use crate::cli::screen::tell;
 use again::Again;
 use firmware_bench::record::Contact;
 use firmware_bench::record::file::{RecordFile, begins};
@@ -45,11 +46,12 @@ pub struct ReviewArgs {
     /// still bear.
     #[arg(long, value_name = "FILE")]
     pub ledger: Option<PathBuf>,
-    /// Severity that the retainer bearing may bear in all, in place of what the ledger has, or without one severity_limit.
+    /// Severity that the retainer bearing may bear in all, in place of what the scene has as retainer.severity_allowed, the ledger,
+    /// or without these severity_limit.
     #[arg(long, allow_negative_numbers = true, value_name = "NUMBER")]
     pub allowance: Option<f32>,
     /// Scene of the machine: the event is simulated on it, with what the record tells, under levitation alone, passively and
-    /// under the supervisor.
+    /// under the supervisor; and it may say what its retainer bearings may bear.
     #[arg(long, value_name = "SCENE")]
     pub scene: Option<PathBuf>,
     /// A key of the scene with another value, e.g. supervisor.hold_share=0.5: the supervisor once more with it.
@@ -64,6 +66,9 @@ pub struct ReviewArgs {
     /// Folder for report.html, the recorded ticks as a page, beside what is printed.
     #[arg(long, value_name = "FOLDER")]
     pub out: Option<PathBuf>,
+    /// Folder for the figures of that page, each as a drawing of its own (SVG), as for a document.
+    #[arg(long, value_name = "FOLDER")]
+    pub figures: Option<PathBuf>,
 }
 
 /// Runs the command.
@@ -221,7 +226,13 @@ fn remaining(args: &ReviewArgs, events: &[Examined<'_>]) -> Result<Vec<Remaining
             })?
         }
     };
-    Ok(Remaining::of(event, &kept, args.allowance))
+    let planes = event.records[0].head.planes as usize;
+    let allowed = match (args.allowance, &args.scene) {
+        (Some(allowed), _) => vec![Some(allowed); planes],
+        (None, Some(scene)) => again::allowances(scene, &args.set)?,
+        (None, None) => Vec::new(),
+    };
+    Ok(Remaining::of(event, &kept, &allowed))
 }
 
 /// What is whole is shown; that something is not is an error all the same.
@@ -237,6 +248,9 @@ fn of_sections(args: &ReviewArgs, file: &RecordFile) -> Result<(), CommandError>
         let name = args.file.display().to_string();
         let head = page::head(&name, (&events, &bearings), &damage);
         page::write(out, &head, &page::tracks(&events))?;
+    }
+    if let Some(folder) = &args.figures {
+        page::write_figures(folder, &page::tracks(&events))?;
     }
     if args.json {
         let mut all = events.iter().map(reviewed);
@@ -269,7 +283,7 @@ fn of_sections(args: &ReviewArgs, file: &RecordFile) -> Result<(), CommandError>
         let texts: Vec<String> = (events.iter().enumerate())
             .map(|(i, of)| told(of, args.scene.is_some(), of_event(&bearings, i, &events)))
             .collect();
-        print(&texts.join("\n"))?;
+        tell(&texts.join("\n"))?;
     }
     match error {
         None => Ok(()),

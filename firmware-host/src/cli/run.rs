@@ -6,6 +6,7 @@ use crate::cli::error::{CommandError, Contradiction, pretty, print};
 use crate::cli::load_changed;
 use crate::cli::output::{self, OutputError, Staging};
 use crate::cli::progress::{LateProgress, Threads};
+use crate::cli::screen::tell;
 use firmware_bench::report::summary::summary;
 use firmware_bench::report::{self, table};
 use firmware_bench::run::closed_loop::RunError;
@@ -107,15 +108,12 @@ pub fn execute(args: &RunArgs) -> Result<(), CommandError> {
         AnyScene::Machine(scene) => machine::run(scene, args, &staging)?,
     };
     let out = staging.publish_over(of_a_policy)?;
-    let text = if args.quiet {
-        String::new()
-    } else if args.json {
-        ran.verdicts
-    } else {
+    if args.json && !args.quiet {
+        print(&ran.verdicts)?;
+    } else if !args.quiet {
         let report = out.join("report.html");
-        format!("{}\nreport: {}\n", ran.table, report.display())
-    };
-    print(&text)?;
+        tell(&format!("{}\nreport: {}\n", ran.table, report.display()))?;
+    }
     if !ran.untrusted.is_empty() {
         let contradicted = ran.contradictions.iter().map(Contradiction::to_string);
         let lines = ran.untrusted.into_iter().chain(contradicted);

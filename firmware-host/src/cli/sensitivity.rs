@@ -3,8 +3,9 @@
 use crate::cli::error::{CommandError, pretty, print};
 use crate::cli::load;
 use crate::cli::progress::{LateProgress, Threads};
-use comfy_table::Cell;
-use firmware_bench::report::table::{lined, right, shown};
+use crate::cli::screen::tell;
+use firmware_bench::report::lines::{Cell, lined, right};
+use firmware_bench::report::table::shown;
 use firmware_bench::run::figures::{Figure, Figures, Place};
 use firmware_bench::scene::Scene;
 use firmware_bench::scene::policy_kind::PolicyKind;
@@ -61,16 +62,15 @@ pub fn execute(args: &SensitivityArgs) -> Result<(), CommandError> {
         }
     }
     let rows = rows(&scene, args)?;
-    print(&if args.json {
-        let value = serde_json::json!({
-            "scene": scene.title,
-            "width": args.width,
-            "rows": rows,
-        });
-        pretty(&value, "formatting the rows")? + "\n"
-    } else {
-        text(&scene, &rows)
-    })
+    if !args.json {
+        return tell(&text(&scene, &rows));
+    }
+    let value = serde_json::json!({
+        "scene": scene.title,
+        "width": args.width,
+        "rows": rows,
+    });
+    print(&(pretty(&value, "formatting the rows")? + "\n"))
 }
 
 fn rows(scene: &Scene, args: &SensitivityArgs) -> Result<Vec<Row>, CommandError> {
@@ -103,7 +103,12 @@ fn text(scene: &Scene, rows: &[Row]) -> String {
     let mut header = vec![Cell::new("the supervisor is told"), right("engaged")];
     header.extend(columns().map(Figure::title).map(right));
     let mut table = lined(header);
-    for row in rows {
+    // Levitation alone is the first of the rows.
+    let mut shown_rows: Vec<&Row> = rows.iter().collect();
+    if let [alone, supervisor, ..] = &mut shown_rows[..] {
+        std::mem::swap(alone, supervisor);
+    }
+    for row in shown_rows {
         let mut cells = vec![Cell::new(&row.told)];
         match (&row.metrics, &row.error) {
             (Some(figures), _) => {

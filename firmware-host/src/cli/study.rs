@@ -4,6 +4,7 @@ use crate::cli::chapters;
 use crate::cli::error::{CommandError, pretty, print};
 use crate::cli::output::{self, Staging};
 use crate::cli::progress::{LateProgress, Threads};
+use crate::cli::screen::tell;
 use firmware_studies::STUDIES;
 use firmware_studies::campaign::{Claim, Extent, Report, Study, StudyError, html, markdown};
 use firmware_studies::on_target::measure::TargetError;
@@ -111,7 +112,7 @@ fn run(study: &Study, args: &StudyArgs) -> Result<(), CommandError> {
         print(&(pretty(&measured, "formatting the claims")? + "\n"))?;
     } else {
         let text = chapters::of_claims(&report.claims);
-        print(&format!("{text}; {} cases, {seconds:.1} s\n", report.cases))?;
+        tell(&format!("{text}; {} cases, {seconds:.1} s\n", report.cases))?;
     }
     strictly(args.strict, &report)
 }

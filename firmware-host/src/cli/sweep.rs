@@ -6,6 +6,7 @@ mod show;
 use self::shard::Shard;
 use crate::cli::error::{CommandError, pretty, print, say};
 use crate::cli::progress::{RunProgress, Threads};
+use crate::cli::screen::tell;
 use crate::cli::warn;
 use firmware_bench::sweep::error::SweepError;
 use firmware_bench::sweep::plan::{Plan, digest};
@@ -109,10 +110,10 @@ pub fn execute(args: &SweepArgs) -> Result<(), CommandError> {
         let there = (0..plan.chunks()).filter(|chunk| store.has(&plan, *chunk));
         let chunks = [there.count() as u64, plan.chunks()];
         done.chunks = Some(chunks);
-        return print(&match args.json {
-            true => pretty(&done, FORMATTING)? + "\n",
-            false => show::part(&args.sweep, &done, chunks),
-        });
+        return match args.json {
+            true => print(&(pretty(&done, FORMATTING)? + "\n")),
+            false => tell(&show::part(&args.sweep, &done, chunks)),
+        };
     }
     store.tidy()?;
     let summary = Summary::new(&plan, &store)?;
@@ -124,10 +125,10 @@ pub fn execute(args: &SweepArgs) -> Result<(), CommandError> {
     done.worst = (summary.worst.iter())
         .map(|worst| store.path(&worst.file))
         .collect();
-    print(&match args.json {
-        true => pretty(&done, FORMATTING)? + "\n",
-        false => show::all(&plan, &summary, &done),
-    })?;
+    match args.json {
+        true => print(&(pretty(&done, FORMATTING)? + "\n"))?,
+        false => tell(&show::all(&plan, &summary, &done))?,
+    }
     match summary.failed == plan.runs() * plan.policies().len() as u64 {
         true => Err(CommandError::Untrusted(summary.errors)),
         false => Ok(()),

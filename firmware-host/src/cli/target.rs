@@ -4,6 +4,7 @@ mod show;
 
 use crate::cli::error::{CommandError, pretty, print};
 use crate::cli::progress::{LateProgress, Threads};
+use crate::cli::screen::tell;
 use firmware_studies::campaign::Extent;
 use firmware_studies::on_target::machines::{MACHINES, Machine};
 use firmware_studies::on_target::results::Report;
@@ -58,12 +59,10 @@ pub fn execute(args: &TargetArgs) -> Result<(), CommandError> {
         })
         .collect();
     let report = run(args, &machines)?;
-    let text = if args.json {
-        pretty(&report, "formatting the results")? + "\n"
-    } else {
-        show::text(&report)
-    };
-    print(&text)?;
+    match args.json {
+        true => print(&(pretty(&report, "formatting the results")? + "\n"))?,
+        false => tell(&show::text(&report))?,
+    }
     match report.failures() {
         none if none.is_empty() => Ok(()),
         failures => Err(CommandError::Targets(failures)),

@@ -1,5 +1,5 @@
 /* Firmware with the supervisor: an interrupt at 20 kHz samples, ticks and commands; the background drains
- * events and takes flight records away. It runs on Arm's MPS2 board or in QEMU (mps2.c), with a rotor of
+ * events, takes flight records away and keeps count of what the retainer bearing has borne. It runs on Arm's MPS2 board or in QEMU (mps2.c), with a rotor of
  * integers (rig.c) in place of converters and amplifiers.
  *
  * How to build and run it is on the page "Linking it into C firmware" of the book. */
@@ -42,6 +42,8 @@ static amb_code configure(float values[AMB_PARAMETERS]) {
 /* Static, so that they are zero before they are made; 28 kilobytes have no place on a stack. */
 static amb_supervisor plane;
 static amb_watch watch;
+static amb_ledger ledger;
+static bool counts; /* there is a ledger */
 static rig machine;
 static volatile bool finished;
 /* A call that failed in the interrupt: to be shown by the background. */
@@ -78,6 +80,32 @@ static void save(const uint8_t *bytes, uint32_t length) {
     (void)length;
 }
 
+/* One of the two places of the ledger. */
+static uint8_t *copy_of_ledger(uint32_t place) {
+    return &board_kept[place * AMB_LEDGER_BYTES];
+}
+
+/* What the bearing had borne when the power was switched on. */
+static void load_ledger(void) {
+    amb_code code = amb_ledger_newer(copy_of_ledger(0), copy_of_ledger(1), AMB_LEDGER_BYTES, &ledger);
+    if (code == AMB_ERROR_LEDGER_BLANK) {
+        /* Nobody has ever written there. A service tool would do this, when the bearing is fitted. */
+        code = amb_ledger_new(1, 20.0f, &ledger);
+        if (code == AMB_OK) code = amb_ledger_write(&ledger, copy_of_ledger(0), AMB_LEDGER_BYTES);
+        if (code == AMB_OK) code = amb_ledger_write(&ledger, copy_of_ledger(1), AMB_LEDGER_BYTES);
+    }
+    /* Of a damaged one nothing is written over: what is left may still be read by a person. */
+    counts = code == AMB_OK || code == AMB_ONE_COPY;
+    if (code != AMB_OK) printf("ledger: %s\n", amb_error_text(code));
+    if (counts) printf("bearing %u: %u landings so far\n", (unsigned)ledger.bearing, (unsigned)ledger.landings);
+}
+
+/* Of a frozen record, before it is discarded. The older copy is written: where power fails meanwhile, the other one is whole. */
+static void count_landings(void) {
+    if (!counts || amb_ledger_take_in(&ledger, &plane) != AMB_OK) return;
+    if (amb_ledger_write(&ledger, copy_of_ledger(ledger.updates & 1u), AMB_LEDGER_BYTES) != AMB_OK) counts = false;
+}
+
 static void show_events(void) {
     amb_event event;
     while (amb_next_event(&plane, &event) == AMB_OK) {
@@ -98,6 +126,7 @@ static void take_record(void) {
         index++;
     }
     if (index == 0) return;
+    count_landings();
     printf("record of version %u, %u sections, %u bytes\n", AMB_RECORD_VERSION, (unsigned)index, (unsigned)bytes);
     amb_rearm(&plane);
 }
@@ -113,6 +142,7 @@ int main(void) {
         printf("supervisor: %s\n", amb_error_text(code)); /* names the parameter */
         return 1;
     }
+    load_ledger();
     rig_start(&machine);
     control_start(20000);
     while (!finished) {
@@ -128,6 +158,7 @@ int main(void) {
     if (amb_report_now(&plane, &report) != AMB_OK) return 1;
     printf("landings %u, impacts %u, severity index %.2f\n", (unsigned)report.landings,
            (unsigned)report.impacts, (double)report.severity_index);
+    if (counts) printf("bearing %u: %u landings\n", (unsigned)ledger.bearing, (unsigned)ledger.landings);
     printf("ticks %u modes 0x%02x events 0x%04x hash 0x%08x\n", (unsigned)machine.tick,
            (unsigned)machine.modes, (unsigned)machine.events, (unsigned)machine.hash);
     return 0;

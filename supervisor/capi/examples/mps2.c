@@ -9,6 +9,7 @@
 #define SYSTICK_RELOAD REGISTER(0xE000E014u)
 #define SYSTICK_VALUE REGISTER(0xE000E018u)
 #define COPROCESSOR_ACCESS REGISTER(0xE000ED88u)
+#define RESET_CONTROL REGISTER(0xE000ED0Cu)
 
 static const uint32_t CLOCK_HZ = 25000000u;
 
@@ -38,6 +39,11 @@ __attribute__((section(".vectors"), used)) static const void *const vectors[16] 
     (void *)fault, 0,            0,             0,             0,             (void *)fault,
     (void *)fault, 0,            (void *)fault, (void *)control_interrupt,
 };
+
+void board_reset(void) {
+    RESET_CONTROL = 0x05FA0004u;
+    for (;;) __asm volatile("dsb" ::: "memory");
+}
 
 void control_start(uint32_t rate_hz) {
     SYSTICK_RELOAD = CLOCK_HZ / rate_hz - 1;

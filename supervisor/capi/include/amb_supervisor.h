@@ -35,7 +35,7 @@
  *
  * - the tick's: amb_tick, amb_reconfigure, amb_self_test, and those of a rotor. One call at a time.
  * - one reader's, of any lower priority or on another processor: amb_next_event, amb_record_section, amb_rearm, and those of a
- *   rotor; amb_ledger_take_in and amb_ledger_take_in_plane. One call at a time.
+ *   rotor; amb_ledger_take_in and amb_ledger_take_in_plane, and all calls of an archive. One call at a time.
  * - everybody's, with a pointer to const: amb_mode, amb_report_now, amb_rotor_report_now. Any number of calls at a time.
  *
  * A call that interrupts another one of its own side is refused with AMB_ERROR_BUSY: a tick only by a tick or a
@@ -94,6 +94,12 @@
 #define amb_ledger_take_in_plane AMB_JOIN(amb_ledger_take_in_plane, AMB_ABI)
 #define amb_ledger_write AMB_JOIN(amb_ledger_write, AMB_ABI)
 #define amb_ledger_landings_left AMB_JOIN(amb_ledger_landings_left, AMB_ABI)
+#define amb_archive_init AMB_JOIN(amb_archive_init, AMB_ABI)
+#define amb_archive_take AMB_JOIN(amb_archive_take, AMB_ABI)
+#define amb_archive_take_rotor AMB_JOIN(amb_archive_take_rotor, AMB_ABI)
+#define amb_archive_count AMB_JOIN(amb_archive_count, AMB_ABI)
+#define amb_archive_section AMB_JOIN(amb_archive_section, AMB_ABI)
+#define amb_archive_discard AMB_JOIN(amb_archive_discard, AMB_ABI)
 
 /* What is true when this compiles, whatever the language. */
 #if defined(__cplusplus) && __cplusplus >= 201103L
@@ -165,6 +171,13 @@ typedef int32_t amb_code;
 #define AMB_ERROR_LEDGER_DAMAGED (-45) /**< the ledger is damaged: its checksum is another one */
 #define AMB_ERROR_LEDGER_VERSION (-46) /**< the ledger is of another version */
 #define AMB_ERROR_LEDGER_BEARINGS (-47) /**< the copies are of two bearings */
+#define AMB_ERROR_ARCHIVE_NULL (-48) /**< archive is null */
+#define AMB_ERROR_ARCHIVE_MISALIGNED (-49) /**< archive is not aligned to AMB_SUPERVISOR_ALIGN bytes */
+#define AMB_ERROR_ARCHIVE_NOT_INITIALISED (-50) /**< archive was not made by amb_archive_init */
+#define AMB_ERROR_ARCHIVE_BUSY (-51) /**< archive is in use by a call that this one interrupted, or is there twice */
+#define AMB_ERROR_PLACES_NULL (-52) /**< places is null */
+#define AMB_ERROR_PLACES_MISALIGNED (-53) /**< places are not aligned to AMB_SUPERVISOR_ALIGN bytes */
+#define AMB_ERROR_PLACES_COUNT (-54) /**< an archive has a place at least, and no more than there can be */
 /** The parameter of this index is outside its range; in a rotor's second plane its index is AMB_PARAMETERS more. */
 #define AMB_ERROR_PARAMETER(index) (-1000 - (amb_code)(index))
 /** @} */
@@ -331,6 +344,27 @@ typedef struct amb_shaft {
     float magnet_m[2];              /**< magnets [m] */
 } amb_shaft;
 
+/** Bytes of an amb_archive_place. */
+#define AMB_ARCHIVE_PLACE_BYTES 27040
+
+/** Room for the record of one event of one plane. Opaque and aligned as an amb_supervisor. */
+typedef union amb_archive_place {
+    uint8_t bytes[AMB_ARCHIVE_PLACE_BYTES];
+    uint64_t align;
+} amb_archive_place;
+
+/** Bytes of an amb_archive. */
+#define AMB_ARCHIVE_BYTES 64
+
+/**
+ * Records of several events of one plane, in as many places as the caller has. The oldest goes where one more comes, and is
+ * counted. Opaque and static, or zero, as an amb_supervisor; it stays where it was made, and so do its places.
+ */
+typedef union amb_archive {
+    uint8_t bytes[AMB_ARCHIVE_BYTES];
+    uint64_t align;
+} amb_archive;
+
 /** Bytes of an amb_watch. */
 #define AMB_WATCH_BYTES 32
 /** Its alignment in bytes. */
@@ -472,6 +506,8 @@ typedef struct amb_parameter {
 AMB_ASSERT(supervisor_size, sizeof(amb_supervisor) == AMB_SUPERVISOR_BYTES);
 AMB_ASSERT(rotor_size, sizeof(amb_rotor) == AMB_ROTOR_BYTES);
 AMB_ASSERT(watch_size, sizeof(amb_watch) == AMB_WATCH_BYTES);
+AMB_ASSERT(archive_place_size, sizeof(amb_archive_place) == AMB_ARCHIVE_PLACE_BYTES);
+AMB_ASSERT(archive_size, sizeof(amb_archive) == AMB_ARCHIVE_BYTES);
 AMB_ASSERT(sample_size, sizeof(amb_sample) == AMB_SIZEOF_SAMPLE);
 AMB_ASSERT(sample_sequence, offsetof(amb_sample, sequence) == 0);
 AMB_ASSERT(sample_status, offsetof(amb_sample, status) == 4);
@@ -880,6 +916,58 @@ amb_code amb_ledger_write(const amb_ledger *ledger, uint8_t *bytes, size_t count
  * @return AMB_OK, AMB_NOTHING where the severity is not above 0, or an error of ledger or result.
  */
 amb_code amb_ledger_landings_left(const amb_ledger *ledger, float severity, uint32_t *landings);
+
+/**
+ * Makes an archive without a record.
+ * @param archive memory for it, zero or made before.
+ * @param places room for the records, used by nothing else from now on; what was in it is forgotten.
+ * @param count how many places there are: events that are kept at a time, 1 or more.
+ * @return AMB_OK, AMB_ERROR_PLACES_COUNT, or an error of archive or places.
+ */
+amb_code amb_archive_init(amb_archive *archive, amb_archive_place *places, size_t count);
+
+/**
+ * Copies the frozen flight record, if there is one, and discards it: with the next tick the supervisor waits for an engagement
+ * again. In place of amb_rearm(), and after amb_ledger_take_in(). Where no place is free the oldest record goes.
+ * @param archive made by amb_archive_init().
+ * @param supervisor made by amb_init().
+ * @return AMB_OK, AMB_NOTHING where none has frozen, or an error of archive or supervisor.
+ */
+amb_code amb_archive_take(amb_archive *archive, amb_supervisor *supervisor);
+
+/**
+ * The same of both planes of a rotor, which freeze at once. Give both archives the same number of places.
+ * @param first of plane 0, made by amb_archive_init().
+ * @param second of plane 1; the first once more is AMB_ERROR_ARCHIVE_BUSY.
+ * @param rotor made by amb_rotor_init().
+ * @return AMB_OK, AMB_NOTHING, or an error of an archive or of rotor.
+ */
+amb_code amb_archive_take_rotor(amb_archive *first, amb_archive *second, amb_rotor *rotor);
+
+/**
+ * How many records there are.
+ * @param archive made by amb_archive_init().
+ * @param[out] count untouched after an error.
+ * @return AMB_OK, or an error of archive or result.
+ */
+amb_code amb_archive_count(amb_archive *archive, uint32_t *count);
+
+/**
+ * A section of the oldest record, as amb_record_section() of a frozen one. It says how many events are in no record before it.
+ * @param archive made by amb_archive_init().
+ * @param index 0 for the first.
+ * @param stamp the same for all sections of a record.
+ * @param[out] section untouched unless AMB_OK.
+ * @return AMB_OK, AMB_NOTHING where there is no record or all of it has been given, or an error of archive, stamp or result.
+ */
+amb_code amb_archive_section(amb_archive *archive, uint32_t index, const amb_stamp *stamp, amb_section *section);
+
+/**
+ * Makes room where the oldest record was, once it is written down.
+ * @param archive made by amb_archive_init().
+ * @return AMB_OK, AMB_NOTHING where there is none, or an error of archive.
+ */
+amb_code amb_archive_discard(amb_archive *archive);
 
 #ifdef __cplusplus
 }

@@ -96,6 +96,13 @@ codes! {
     ERROR_LEDGER_DAMAGED = -45, "the ledger is damaged: its checksum is another one";
     ERROR_LEDGER_VERSION = -46, "the ledger is of another version";
     ERROR_LEDGER_BEARINGS = -47, "the copies are of two bearings";
+    ERROR_ARCHIVE_NULL = -48, "archive is null";
+    ERROR_ARCHIVE_MISALIGNED = -49, "archive is not aligned to AMB_SUPERVISOR_ALIGN bytes";
+    ERROR_ARCHIVE_NOT_INITIALISED = -50, "archive was not made by amb_archive_init";
+    ERROR_ARCHIVE_BUSY = -51, "archive is in use by a call that this one interrupted, or is there twice";
+    ERROR_PLACES_NULL = -52, "places is null";
+    ERROR_PLACES_MISALIGNED = -53, "places are not aligned to AMB_SUPERVISOR_ALIGN bytes";
+    ERROR_PLACES_COUNT = -54, "an archive has a place at least, and no more than there can be";
 }
 
 /// Code of the first parameter; the others follow downwards, and after them those of a rotor's second plane.

@@ -13,12 +13,13 @@
 //! cannot be checked is under "Safety" of each function.
 //!
 //! Files, each importing only from those above it: `version`, `parameters`, `code`, `layout`,
-//! `structs`, `pointer`, `storage`, `halves`, `calls`, `rotor`, `watch`, `bearing`, `ledger`.
+//! `structs`, `pointer`, `storage`, `halves`, `calls`, `rotor`, `watch`, `bearing`, `ledger`, `archive`.
 
 #![cfg_attr(target_os = "none", no_std)]
 #![deny(clippy::undocumented_unsafe_blocks, unsafe_op_in_unsafe_fn)]
 #![warn(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+pub mod archive;
 pub mod bearing;
 pub mod calls;
 pub mod code;
@@ -33,6 +34,7 @@ pub mod structs;
 mod version;
 pub mod watch;
 
+pub use archive::{ArchiveStorage, Shelf};
 pub use code::Code;
 pub use halves::{RECORD, RotorStorage, Storage};
 pub use version::ABI;

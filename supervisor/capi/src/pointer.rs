@@ -19,6 +19,8 @@ pub enum Argument {
     Ledger,
     /// Of any address.
     Bytes,
+    Archive,
+    Places,
 }
 
 impl Argument {
@@ -37,6 +39,8 @@ impl Argument {
             Self::Bearing => Code::ERROR_BEARING_NULL,
             Self::Ledger => Code::ERROR_LEDGER_NULL,
             Self::Bytes => Code::ERROR_BYTES_NULL,
+            Self::Archive => Code::ERROR_ARCHIVE_NULL,
+            Self::Places => Code::ERROR_PLACES_NULL,
         }
     }
 
@@ -56,6 +60,8 @@ impl Argument {
             Self::Ledger => Code::ERROR_LEDGER_MISALIGNED,
             // Never asked for.
             Self::Bytes => Code::ERROR_BYTES_NULL,
+            Self::Archive => Code::ERROR_ARCHIVE_MISALIGNED,
+            Self::Places => Code::ERROR_PLACES_MISALIGNED,
         }
     }
 
@@ -67,6 +73,15 @@ impl Argument {
             Err(self.misaligned())
         } else {
             Ok(())
+        }
+    }
+
+    /// The same of an alignment (a power of two) that the header promises, stricter than a target may need.
+    pub(crate) fn check_to<T>(self, align: usize, pointer: *const T) -> Result<(), Code> {
+        self.check(pointer)?;
+        match pointer.addr() & (align - 1) {
+            0 => Ok(()),
+            _ => Err(self.misaligned()),
         }
     }
 

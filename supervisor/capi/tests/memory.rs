@@ -5,6 +5,10 @@
 use core::mem::MaybeUninit;
 use std::ptr::{null, null_mut};
 use supervisor::{LEDGER_BYTES, PARAMETERS, Status};
+use supervisor_capi::archive::{
+    amb_archive_count, amb_archive_discard, amb_archive_init, amb_archive_section,
+    amb_archive_take, amb_archive_take_rotor,
+};
 use supervisor_capi::bearing::{amb_config_for_bearing, amb_config_for_rotor};
 use supervisor_capi::calls::{
     amb_init, amb_next_event, amb_parameter_at, amb_parameter_index, amb_rearm, amb_reconfigure,
@@ -23,11 +27,33 @@ use supervisor_capi::structs::{
     CShaft, CStamp,
 };
 use supervisor_capi::watch::{amb_watch_expired, amb_watch_force, amb_watch_init, amb_watch_renew};
-use supervisor_capi::{Code, RECORD, RotorStorage, Storage, WatchStorage};
+use supervisor_capi::{ArchiveStorage, Code, RECORD, RotorStorage, Shelf, Storage, WatchStorage};
 
 /// Memory as C has it.
 #[repr(C, align(8))]
 struct Memory([u8; 29184]);
+
+/// Memory of two archives of one event each.
+struct Archived {
+    archives: Box<[[u64; 8]; 2]>,
+    places: Box<[[u64; 3380]; 2]>,
+}
+
+impl Archived {
+    fn new() -> Self {
+        Self {
+            archives: Box::new([[0; 8]; 2]),
+            places: Box::new([[0; 3380]; 2]),
+        }
+    }
+
+    fn pointers(&mut self, of: usize) -> (*mut ArchiveStorage, *mut Shelf) {
+        (
+            (&raw mut self.archives[of]).cast(),
+            (&raw mut self.places[of]).cast(),
+        )
+    }
+}
 
 const VALUES: [f32; PARAMETERS.len()] = [
     50e-6, 10.0, 0.0, 0.0, 2e-4, 1000.0, 0.0, 1.0, 0.15, 0.7, 0.5, 0.2, 0.02, 4.0, 2e-3, 0.8, 1e-3,
@@ -105,6 +131,19 @@ fn calls_touch_only_what_they_were_given() {
         let asked = amb_ledger_landings_left(ledger, 1.0, &raw mut left);
         assert_eq!(asked, Code::OK);
         assert!(((*ledger).landings, (*ledger).bearing) == (1, 7) && left < 20);
+        let mut kept = Archived::new();
+        let (archive, places) = kept.pointers(0);
+        assert_eq!(amb_archive_init(archive, places, 1), Code::OK);
+        assert_eq!(amb_archive_take(archive, plane), Code::OK);
+        assert_eq!(amb_archive_take(archive, plane), Code::NOTHING);
+        let mut count = 0;
+        assert_eq!(amb_archive_count(archive, &raw mut count), Code::OK);
+        assert_eq!(count, 1);
+        let mut take =
+            |index| amb_archive_section(archive, index, &raw const stamp, section.as_mut_ptr());
+        let sections = (0..).take_while(|i| take(*i) == Code::OK);
+        assert!(sections.count() > RECORD / 32);
+        assert_eq!(amb_archive_discard(archive), Code::OK);
         assert_eq!(amb_rearm(plane), Code::OK);
         let found = amb_parameter_index(c"sensor_step_m".as_ptr(), &raw mut index);
         assert_eq!(found, Code::OK);
@@ -187,6 +226,19 @@ fn calls_on_a_rotor_touch_only_what_they_were_given() {
             assert_eq!(amb_ledger_new(plane, 20.0, ledger), Code::OK);
             let code = amb_ledger_take_in_plane(ledger, rotor, plane);
             assert_eq!((code, (*ledger).landings), (Code::OK, 1));
+        }
+        let mut kept = Archived::new();
+        let ((first, places), (second, others)) = (kept.pointers(0), kept.pointers(1));
+        assert_eq!(amb_archive_init(first, places, 1), Code::OK);
+        assert_eq!(amb_archive_init(second, others, 1), Code::OK);
+        let twice = amb_archive_take_rotor(first, first, rotor);
+        assert_eq!(twice, Code::ERROR_ARCHIVE_BUSY);
+        let took = amb_archive_take_rotor(first, second, rotor);
+        assert_eq!(took, Code::OK);
+        for archive in [first, second] {
+            let stamp = &raw const stamp;
+            let code = amb_archive_section(archive, 0, stamp, section.as_mut_ptr());
+            assert_eq!(code, Code::OK);
         }
         assert_eq!(amb_rotor_rearm(rotor), Code::OK);
         assert_eq!(amb_rotor_self_test(rotor), Code::OK);

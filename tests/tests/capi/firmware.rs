@@ -115,6 +115,31 @@ fn c_firmware_does_what_rust_does() {
     }
 }
 
+/// Requirement: SR-39
+#[test]
+fn landings_are_counted_over_a_reset() {
+    let Some(said) = said_by(Target::CortexM4F, &beside("kept.c")) else {
+        return;
+    };
+    let landings = |text: &str, begin: &str| -> Vec<u32> {
+        let lines = said.lines().filter_map(|line| line.strip_prefix(begin));
+        let rests = lines.filter_map(|rest| rest.strip_suffix(text));
+        rests.map(|number| number.parse().unwrap()).collect()
+    };
+    let at_boot = landings(" landings so far", "bearing 1: ");
+    let at_end = landings(" landings", "bearing 1: ");
+    assert_eq!((at_boot.len(), at_end.len()), (2, 2), "{said}");
+    assert!(at_boot[0] == 0 && at_end[0] > 0, "{said}");
+    assert_eq!(
+        (at_boot[1], at_end[1]),
+        (at_end[0], 2 * at_end[0]),
+        "{said}"
+    );
+    // Both courses are the same.
+    let summary = summary_of_rust();
+    assert_eq!(said.matches(summary.as_str()).count(), 2, "{said}");
+}
+
 /// As the page on C says: nothing needs a large stack, and a supervisor of 28 kilobytes is made in its place.
 /// Requirement: SR-36
 #[test]
@@ -139,6 +164,9 @@ fn calls_need_little_stack() {
         ("rotor-init", 2820),
         ("rotor-reconfigure", 2068),
         ("rotor-tick", 1176),
+        ("archive-init", 128),
+        ("archive-take", 240),
+        ("archive-section", 4560),
     ] {
         let needed = bytes(call);
         assert!(needed <= most && 10 * needed >= 9 * most, "{call}: {said}");

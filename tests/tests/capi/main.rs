@@ -5,6 +5,7 @@
 //! test on a user's machine, and fails it in CI; tests/run installs it.
 
 mod advised;
+mod archive;
 mod bearing;
 mod firmware;
 mod header;

@@ -4,8 +4,13 @@ use crate::library::{Target, beside, built, capi, good, host_program};
 use std::process::Command;
 use supervisor_capi::{Code, code::CODES};
 
-/// One plane, a rotor in two, and a ledger.
-const SOURCES: [&str; 3] = ["misuse.c", "misuse_rotor.c", "misuse_ledger.c"];
+/// One plane, a rotor in two, a ledger, and an archive.
+const SOURCES: [&str; 4] = [
+    "misuse.c",
+    "misuse_rotor.c",
+    "misuse_ledger.c",
+    "misuse_archive.c",
+];
 
 /// Requirements: SR-28, SR-37
 #[test]

@@ -8,6 +8,8 @@
 
 static amb_supervisor plane;
 static amb_rotor rotor;
+static amb_archive archive;
+static amb_archive_place places[2];
 static rig machine;
 static const amb_bearing bearings[2] = {
     {50e-6f, 10.0f, -2e5f, 2e-4f, 1000.0f, 1.6e-4f, 0.15f, 1e9f, 1e-6f},
@@ -67,9 +69,24 @@ static int of_rotor(void) {
     return 0;
 }
 
+/* What the background does with a record that has frozen. */
+static int of_archive(unsigned *take, unsigned *section) {
+    static const amb_stamp stamp = {0, 0, {0, 0}};
+    static amb_section written;
+    uint32_t *const top = __builtin_frame_address(0);
+    uint32_t index;
+    paint(top);
+    if (amb_archive_take(&archive, &plane) != AMB_OK) return 1;
+    if (depth(top) > *take) *take = depth(top);
+    paint(top);
+    for (index = 0; amb_archive_section(&archive, index, &stamp, &written) == AMB_OK; index++) {}
+    if (depth(top) > *section) *section = depth(top);
+    return 0;
+}
+
 int main(void) {
     uint32_t *const top = __builtin_frame_address(0);
-    unsigned deepest = 0;
+    unsigned deepest = 0, take = 0, section = 0;
     static float values[AMB_PARAMETERS];
     amb_code code;
     paint(top);
@@ -88,6 +105,10 @@ int main(void) {
     code = amb_self_test(&plane);
     if (code != AMB_OK) return 1;
     printf("self-test %u\n", depth(top));
+    paint(top);
+    code = amb_archive_init(&archive, places, 2);
+    if (code != AMB_OK) return 1;
+    printf("archive-init %u\n", depth(top));
     rig_start(&machine);
     while (machine.tick < RIG_TICKS) {
         amb_sample sample;
@@ -99,7 +120,9 @@ int main(void) {
         now = depth(top);
         if (now > deepest) deepest = now;
         rig_actuate(&machine, &command);
+        if ((command.events & AMB_EVENT_RECORD_FROZEN) != 0 && of_archive(&take, &section) != 0) return 1;
     }
+    printf("archive-take %u\narchive-section %u\n", take, section);
     printf("tick %u\n", deepest);
     return of_rotor();
 }

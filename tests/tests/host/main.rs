@@ -23,4 +23,5 @@ mod review_ledger;
 mod run;
 mod scene_keys;
 mod sweep;
+mod terminal;
 mod verify;

@@ -1,8 +1,12 @@
 //! The pages of `run` and `review` in a real browser: drawn, moved, read aloud, and without script.
 
+use firmware_bench::record::file::RecordFile;
+use serde_json::Value;
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::{env, fs};
+use supervisor::Stretch;
 use system_tests::target::skipped;
 use system_tests::{host, machine_scene_path, root, run_scene, scene_path};
 use tempfile::TempDir;
@@ -49,6 +53,8 @@ fn a_record_becomes_a_page() {
         "Radius",
         "Control force",
         "Commanded force along the axes",
+        "Severity",
+        "Time in contact",
         "Modes",
     ] {
         assert!(whole.contains(&format!("<h3>{heading}</h3>")), "{heading}");
@@ -58,6 +64,8 @@ fn a_record_becomes_a_page() {
         "no record has it"
     );
     assert!(whole.contains("ENGAGED") && !whole.contains("class=\"warning\""));
+
+    the_slow_track_is_that_of_the_record(&whole, &fs::read(&record).unwrap());
 
     let mut bytes = fs::read(&record).unwrap();
     let last = bytes.len() - 40;
@@ -72,6 +80,93 @@ fn a_record_becomes_a_page() {
     let reviewed = review(&here("none.bin"), &here("none"));
     assert_eq!(reviewed.status.code(), Some(2));
     assert!(!here("none").exists());
+}
+
+/// What is written of a column: differences in steps.
+fn decoded(column: &Value) -> Vec<f64> {
+    let step = column["step"].as_f64().unwrap();
+    let mut at = 0.0;
+    (column["differences"].as_array().unwrap().iter())
+        .map(|difference| {
+            at += difference.as_f64().unwrap();
+            at * step
+        })
+        .collect()
+}
+
+/// It goes on when the recorded ticks are over, and each stretch is a step of its largest values.
+fn the_slow_track_is_that_of_the_record(page: &str, bytes: &[u8]) {
+    let (_, data) = page.split_once("id=\"report-data\">").unwrap();
+    let data: Value = serde_json::from_str(data.split_once("</script>").unwrap().0).unwrap();
+    let track = |name: &str| {
+        let mut tracks = data["tracks"].as_array().unwrap().iter();
+        tracks.find(|track| track["name"] == name).unwrap()
+    };
+    let (slow, fast) = (track("recorded: slow track"), track("recorded"));
+    let file = RecordFile::of(bytes);
+    let record = file.records.first().unwrap();
+    let units = record.units();
+    let (t, until) = (decoded(&slow["t"]), decoded(&fast["t"]));
+    assert_eq!(t.len(), 2 * record.track.len());
+    assert!(t.last() > Some(&(2.0 * until.last().unwrap())), "{t:?}");
+    let radius = decoded(&slow["columns"]["largest r"]);
+    let share = decoded(&slow["columns"]["in contact"]);
+    let ms = 1e3 / units.sample_rate_hz.unwrap();
+    for (i, stretch) in record.track.iter().enumerate() {
+        let (from, to) = (2 * i, 2 * i + 1);
+        let lasts = f64::from(stretch.ticks) * ms;
+        assert!((t[to] - t[from] - lasts).abs() < 1e-3, "stretch {i}");
+        let clearances = record.number(stretch.radius_square).sqrt();
+        let expected = 1e3 * units.clearance_m.unwrap() * clearances;
+        let contact = 100.0 * f64::from(stretch.contact_ticks) / f64::from(stretch.ticks);
+        for at in [from, to] {
+            assert!((radius[at] - expected).abs() < 1e-4, "stretch {i}");
+            assert!((share[at] - contact).abs() < 0.1, "stretch {i}");
+        }
+    }
+    // No time is said of the modes of a stretch that has several.
+    let modes = slow["bands"]["supervisor"].as_array().unwrap();
+    let alone = |stretch: &&Stretch| stretch.modes.count_ones() == 1;
+    assert!(!modes.is_empty() && modes.len() <= record.track.iter().filter(alone).count());
+}
+
+/// What the walk-through shows is what the tool draws today of the record that it is about, and all of it is small.
+#[test]
+fn pictures_of_the_walk_through_are_the_tools() {
+    let folder = TempDir::new().unwrap();
+    let here = |name: &str| folder.path().join(name);
+    page(&scene_path("overload_then_release"), &here("run"));
+    let mut review = host();
+    review.arg("review").arg(here("run/record_supervisor.bin"));
+    let reviewed = review.arg("--figures").arg(here("drawn")).output().unwrap();
+    assert!(reviewed.status.success(), "{reviewed:?}");
+    let kept = root().join("docs/src/start/overload");
+    let names = |folder: &Path| -> BTreeSet<String> {
+        let entries = fs::read_dir(folder).unwrap();
+        let name = |entry: fs::DirEntry| entry.file_name().to_string_lossy().into_owned();
+        entries.map(|entry| name(entry.unwrap())).collect()
+    };
+    let drawn = names(&here("drawn"));
+    assert_eq!(drawn, names(&kept), "docs/src/start/overload has others");
+    for name in &drawn {
+        let svg = fs::read_to_string(here("drawn").join(name)).unwrap();
+        assert!(svg.len() < 60_000, "{name} has {} bytes", svg.len());
+        assert!(
+            svg == fs::read_to_string(kept.join(name)).unwrap(),
+            "docs/src/start/overload/{name} is another: renew it with the command of docs/src/start/review.md"
+        );
+    }
+    // Every sentence that the page has of the verdict is printed.
+    let text = fs::read_to_string(root().join("docs/src/start/review.md")).unwrap();
+    let (_, shown) = text.split_once("```text\n").unwrap();
+    let words = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
+    let shown = words(shown.split_once("```").unwrap().0);
+    let printed = words(&String::from_utf8_lossy(&reviewed.stdout));
+    assert!(printed.starts_with(&shown), "{printed}");
+    for link in text.split("](overload/").skip(1) {
+        let name = link.split(')').next().unwrap();
+        assert!(drawn.contains(name), "{name}");
+    }
 }
 
 #[test]

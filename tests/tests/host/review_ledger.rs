@@ -6,8 +6,8 @@ use serde_json::Value;
 use std::path::PathBuf;
 use std::process::Output;
 use supervisor::{LEDGER_BYTES, Ledger, Record, Rotor, Stamp, Supervisor};
-use system_tests::host;
 use system_tests::rig::{LANDING_TICKS, config, landing, sample};
+use system_tests::{host, scene_path};
 use tempfile::TempDir;
 
 struct Files {
@@ -252,4 +252,34 @@ fn a_ledger_that_is_none_gives_an_error_and_no_figure() {
     }
     files.put("landing.bin", &[1; 64]);
     refused(&["--allowance", "5"], "is no record of version 3");
+}
+
+/// What a bearing may bear: the command line before the scene, that before the ledger, and that before the configuration.
+#[test]
+fn the_allowance_is_the_first_that_is_given() {
+    let files = Files::new();
+    let text = std::fs::read_to_string(scene_path("overload_then_release")).unwrap();
+    let told = text.clone() + "\n[retainer]\nseverity_allowed = 3.0\n";
+    files.put("told.toml", told.as_bytes());
+    files.put("untold.toml", text.as_bytes());
+    let run = ["run", "told.toml", "--no-trace", "--quiet", "--out", "run"];
+    let ran = host().current_dir(files.folder.path()).args(run).output();
+    assert!(ran.unwrap().status.success());
+    let run = files.folder.path().join("run/record_supervisor.bin");
+    std::fs::copy(run, files.folder.path().join("landing.bin")).unwrap();
+    files.put("ledger.bin", &Ledger::new(7, 11.0).to_bytes());
+    let allowed = |more: &[&str]| number(&files.told(more).0[0]["severity_allowed"]);
+    let (ledger, scene) = (["--ledger", "ledger.bin"], ["--scene", "told.toml"]);
+    assert_eq!(allowed(&[]), 20.0);
+    assert_eq!(allowed(&ledger), 11.0);
+    assert_eq!(allowed(&["--scene", "untold.toml"]), 20.0);
+    assert_eq!(allowed(&scene), 3.0);
+    let both = [&ledger[..], &scene].concat();
+    assert_eq!(allowed(&both), 3.0);
+    let set = [&both[..], &["--set", "retainer.severity_allowed=4"]].concat();
+    assert_eq!(allowed(&set), 4.0);
+    let all = [&set[..], &["--allowance", "5"]].concat();
+    assert_eq!(allowed(&all), 5.0);
+    let (_, text) = files.told(&both);
+    assert!(text.contains(" of 3 ("), "{text}");
 }

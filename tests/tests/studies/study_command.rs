@@ -5,6 +5,7 @@ use serde_json::Value;
 use std::collections::BTreeSet;
 use std::fs;
 use std::process::Output;
+use system_tests::terminal::assert_fits;
 use system_tests::{host, root};
 
 fn study(args: &[&str]) -> Output {
@@ -71,6 +72,7 @@ fn claims_for_programs() {
     let strict = study(&["unseen-machines", "--quick", "--strict"]);
     assert_eq!(strict.status.code(), Some(1));
     assert!(said(&strict.stderr).contains(broken["name"].as_str().unwrap()));
+    assert_fits(&said(&strict.stdout), 80);
     assert!(
         said(&strict.stdout).contains("claims hold"),
         "results are printed all the same"

@@ -4,7 +4,8 @@ use firmware_bench::record::file::RecordFile;
 use firmware_bench::record::replay::replay;
 use firmware_image::under_test::shaft;
 use supervisor::{
-    Archive, Core, Prepared, Q, Record, Rotor, RotorArchive, Scalar, Stamp, Supervisor,
+    Archive, ArchiveIn, ArchivePlace, Core, Prepared, Q, Record, Rotor, RotorArchive, Scalar,
+    Stamp, Supervisor,
 };
 use system_tests::per_unit::in_numbers;
 use system_tests::rig::{LANDING_TICKS as LANDING, config, landing, sample};
@@ -121,6 +122,46 @@ fn of_a_rotor_both_planes_are_kept() {
     }
     assert_eq!([events[0].0, events[1].0], [1, 0]);
     assert_eq!(events[1].1, at_once[2]);
+}
+
+/// Places that are borrowed keep what those of an archive keep, of a plane and of a rotor; without one nothing is kept.
+/// Requirement: SR-40
+#[test]
+fn borrowed_places_keep_the_same() {
+    let mut rotor = Rotor::<RECORD>::new(&shaft(&config()), &[config(); 2]).unwrap();
+    let mut other = rotor.clone();
+    let ((mut ticker, mut reader), (mut also, mut reads)) = (rotor.split(), other.split());
+    let mut archive = RotorArchive::<RECORD, 2>::new();
+    let mut places = [const { [const { ArchivePlace::<RECORD>::new() }; 2] }; 2];
+    let [first, second] = &mut places;
+    let mut borrowed = [ArchiveIn::new(first), ArchiveIn::new(second)];
+    for i in 0..3 * LANDING {
+        let samples = [sample(i, landing(i)), sample(i, [1e-6 * (i % 3) as f32; 2])];
+        assert_eq!(ticker.tick(&samples), also.tick(&samples));
+        let took = archive.take(&mut reader);
+        assert_eq!(ArchiveIn::take_rotor(borrowed.each_mut(), &mut reads), took);
+    }
+    assert_eq!(archive.count(), 2);
+    while archive.count() > 0 {
+        for (end, borrowed) in borrowed.iter_mut().enumerate() {
+            assert_eq!(borrowed.count(), archive.count());
+            let record = borrowed.oldest().map(|record| written(&record));
+            assert_eq!(record, archive.oldest(end).map(|record| written(&record)));
+            borrowed.discard();
+        }
+        archive.discard();
+    }
+    assert!(borrowed.iter().all(|archive| archive.oldest().is_none()));
+
+    let mut supervisor = Supervisor::<RECORD>::new(&config()).unwrap();
+    let (mut ticker, mut reader) = supervisor.split();
+    let mut none = ArchiveIn::<RECORD>::new(&mut []);
+    for i in 0..LANDING {
+        ticker.tick(&sample(i, landing(i)));
+        assert!(!none.take(&mut reader) && none.count() == 0);
+    }
+    none.discard();
+    assert!(none.oldest().is_none() && reader.record().is_none());
 }
 
 /// As the page on records has it.

@@ -123,6 +123,11 @@ fn the_example_firmware_records_a_landing() {
             "{report}"
         );
         assert!(report.contains("late_ticks: 0, "), "{report}");
+        // Memory that nobody had written to: a bearing without landings, and then with one.
+        let kept: Vec<&str> = (log.iter())
+            .filter_map(|(_, text)| text.strip_prefix("bearing 1: "))
+            .collect();
+        assert_eq!(kept, ["0 landings so far", "1 landings"], "{log:?}");
     }
 }
 

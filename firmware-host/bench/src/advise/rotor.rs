@@ -1,6 +1,7 @@
 //! What a supervisor of both planes meets beyond the point mass: nutation and bending.
 
 use super::crossover::SmallSignals;
+use crate::report::lines::{width, wrapped};
 use crate::report::plot::text::figures;
 use crate::scene::machine::MachineScene;
 use serde::Serialize;
@@ -162,6 +163,9 @@ impl RotorAdvice {
                 ),
             };
         }
-        text
+        let lines = text
+            .lines()
+            .map(|line| wrapped(line, "    ", width()) + "\n");
+        lines.collect()
     }
 }

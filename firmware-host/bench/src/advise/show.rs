@@ -1,20 +1,31 @@
 //! Advice as text.
 
 use super::{ARREST_SHARE, Advice, USEFUL_LAG_DEG};
+use crate::report::lines::{Cell, Lines, right, unlined, width, wrapped};
 use std::fmt::Write;
 
 /// Rows of name, value and remark under a heading.
-struct Page(String);
+struct Page {
+    text: String,
+    rows: Lines,
+}
 
 impl Page {
     fn heading(&mut self, text: &str) {
-        let _ = write!(self.0, "\n{text}\n");
+        self.end_rows();
+        let _ = write!(self.text, "\n{text}\n");
     }
 
     fn row(&mut self, name: &str, value: String, remark: &str) {
-        let line = format!("  {name:<40} {value:>14}  {remark}");
-        self.0.push_str(line.trim_end());
-        self.0.push('\n');
+        self.rows
+            .add_row([Cell::new(name), right(value), Cell::new(remark)]);
+    }
+
+    fn end_rows(&mut self) {
+        let rows = std::mem::replace(&mut self.rows, unlined()).to_string();
+        for line in rows.lines() {
+            let _ = writeln!(self.text, "{}", line.trim_end());
+        }
     }
 }
 
@@ -28,7 +39,10 @@ fn milliseconds(value: f64) -> String {
 
 /// All of it for people.
 pub fn text(advice: &Advice) -> String {
-    let mut page = Page(format!("{}\n", advice.title));
+    let mut page = Page {
+        text: format!("{}\n", advice.title),
+        rows: unlined(),
+    };
     whirl(&mut page, advice);
     reaction(&mut page, advice);
     noise(&mut page, advice);
@@ -36,14 +50,30 @@ pub fn text(advice: &Advice) -> String {
     vibration(&mut page, advice);
     page.heading("Warnings");
     if advice.warnings.is_empty() {
-        page.0.push_str("  none\n");
+        page.text.push_str("  none\n");
     }
     for w in &advice.warnings {
-        let _ = writeln!(page.0, "  {}: {}\n    do: {}", w.key, w.text, w.remedy);
+        for line in [
+            format!("  {}: {}", w.key, w.text),
+            format!("    do: {}", w.remedy),
+        ] {
+            let _ = writeln!(page.text, "{}", wrapped(&line, "    ", width()));
+        }
     }
     page.heading("Suggested configuration, for a scene");
-    page.0.push_str(&advice.supervisor_table);
-    page.0
+    for line in advice.supervisor_table.lines() {
+        let _ = writeln!(page.text, "{}", narrow(line));
+    }
+    page.text
+}
+
+/// A line of a scene, with its comment broken where it is too long.
+fn narrow(line: &str) -> String {
+    let indent = match line.find('#') {
+        Some(at) => format!("{:at$}# ", ""),
+        None => String::new(),
+    };
+    wrapped(line, &indent, width())
 }
 
 fn whirl(page: &mut Page, advice: &Advice) {

@@ -84,9 +84,9 @@ pub struct Remaining {
 }
 
 impl Remaining {
-    /// Of each plane of an event, as far as it is known; `ledgers`: none, or one for each plane of the machine; `allowed`: another
-    /// severity that a bearing may bear in all than the ledger, or the configuration, has.
-    pub fn of(event: &Event<'_>, ledgers: &[Ledger], allowed: Option<f32>) -> Vec<Self> {
+    /// Of each plane of an event, as far as it is known; `ledgers`: none, or one for each plane of the machine; `allowed`: of each
+    /// plane another severity that its bearing may bear in all than the ledger, or the configuration, has.
+    pub fn of(event: &Event<'_>, ledgers: &[Ledger], allowed: &[Option<f32>]) -> Vec<Self> {
         let records = event.records.iter();
         let all = records.filter_map(|record| {
             let plane = record.head.plane;
@@ -100,7 +100,7 @@ impl Remaining {
                     ledger
                 }
             };
-            if let Some(allowed) = allowed {
+            if let Some(allowed) = allowed.get(plane as usize).copied().flatten() {
                 ledger.severity_allowed = allowed;
             }
             let mean = ledger.severity_sum() / ledger.landings as f32;

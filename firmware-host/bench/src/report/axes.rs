@@ -9,8 +9,11 @@ use crate::run::outcome::Outcome;
 const OWN_SCALE_FROM: f64 = 3.0;
 
 /// From the start to the end of the longest track, and what else is to be in it.
-pub(super) fn window_of(tracks: &[Track], also: Option<Interval>) -> Interval {
-    let ends = tracks.iter().filter_map(|track| {
+pub(super) fn window_of<'a>(
+    tracks: impl IntoIterator<Item = &'a Track>,
+    also: Option<Interval>,
+) -> Interval {
+    let ends = tracks.into_iter().filter_map(|track| {
         let ends = [track.t.first(), track.t.last()];
         Interval::of(ends.into_iter().flatten().copied())
     });

@@ -1,14 +1,13 @@
 //! A whole rotor as a linear system, for people: tables, Campbell diagram, response to the unbalance, mode shapes.
 
 use super::document::begun;
+use super::lines::{Cell, lined, right};
 use super::plot::PlotError;
 use super::plot::chart::{Axis, Chart, Curve, Mark, chart};
 use super::plot::text::figures;
-use super::table::{lined, right};
 use super::{push, push_story};
 use crate::modes::{Analysis, Coupling, HeldWhirl};
 use crate::scene::machine::MachineScene;
-use comfy_table::Cell;
 use plant_model::machine::linear::Direction;
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::fmt::Write as _;

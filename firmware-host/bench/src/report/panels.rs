@@ -6,7 +6,8 @@ use serde_json::{Value, json};
 use super::axes::{axes, one_axis};
 use super::data;
 use super::quantities::{
-    CONTACT_FORCE, CONTROL_FORCE, Chart, FORCE_COMPONENTS, POSITION, RADIUS, SPIN, TANGENTIAL_SPEED,
+    CONTACT_FORCE, CONTACT_SHARE, CONTROL_FORCE, Chart, FORCE_COMPONENTS, POSITION, RADIUS,
+    SEVERITY, SPIN, TANGENTIAL_SPEED,
 };
 use super::track::{ROTOR_MODES, SUPERVISOR_MODES, Track};
 use crate::report::plot::text::hex;
@@ -79,13 +80,15 @@ impl View<'_> {
 
     /// What changes fast.
     pub(super) fn fast(&self) -> Result<Vec<PanelRow>, PlotError> {
-        const ALL: [Chart; 6] = [
+        const ALL: [Chart; 8] = [
             POSITION,
             RADIUS,
             CONTACT_FORCE,
             CONTROL_FORCE,
             FORCE_COMPONENTS,
             TANGENTIAL_SPEED,
+            SEVERITY,
+            CONTACT_SHARE,
         ];
         // What is measured is shown of records, and with them of what is laid beside them.
         let recorded = self.shown.iter().any(|s| FORCE_COMPONENTS.is_of(s.track));
@@ -162,9 +165,12 @@ impl View<'_> {
 
     /// Orbits, on one scale where that is wanted.
     pub(super) fn orbits(&self, one_scale: bool) -> Result<PanelRow, PlotError> {
-        let paths: Vec<_> = self.shown.iter().map(|s| s.track.path()).collect();
-        let walls: Vec<_> = (self.shown.iter())
-            .map(|s| s.track.wall.unwrap_or(Wall::NONE))
+        let having = self.shown.iter().enumerate();
+        let having: Vec<_> = having.filter(|(_, s)| s.track.has_path()).collect();
+        let tracks: Vec<&Track> = having.iter().map(|(_, s)| s.track).collect();
+        let paths: Vec<_> = tracks.iter().map(|track| track.path()).collect();
+        let walls: Vec<_> = (tracks.iter())
+            .map(|track| track.wall.unwrap_or(Wall::NONE))
             .collect();
         let reach = |(path, wall): (&Vec<PathPoint>, &Wall)| {
             let widest = wall.semi_axes[0];
@@ -172,22 +178,21 @@ impl View<'_> {
             Interval::symmetric(all.map_or(widest, Interval::magnitude))
         };
         let ranges: Vec<_> = paths.iter().zip(&walls).map(reach).collect();
-        let tracks: Vec<&Track> = self.shown.iter().map(|s| s.track).collect();
         let axes = match one_scale {
             true => axes(&ranges, &tracks),
             false => ranges.iter().map(|range| (*range, false)).collect(),
         };
         let mut cells = Vec::new();
-        for (place, (axis, own_scale)) in axes.into_iter().enumerate() {
-            let (shown, wall) = (&self.shown[place], walls[place]);
+        for (i, (axis, own_scale)) in axes.into_iter().enumerate() {
+            let ((place, shown), wall) = (having[i], walls[i]);
             let (reach, unit) = (axis.widened(0.05).hi, shown.track.units.length);
             let quantity = format!("x and y / {unit}");
             let svg = orbit_plot(&OrbitPlot {
-                label: &self.label(shown, "Orbit", &quantity, ranges[place]),
+                label: &self.label(shown, "Orbit", &quantity, ranges[i]),
                 reach,
                 unit,
                 wall,
-                path: &paths[place],
+                path: &paths[i],
             })?;
             cells.push(PanelCell {
                 shown: place,

@@ -264,6 +264,13 @@ fn svg(
     ))
 }
 
+/// A figure as a file of its own, on paper of its own.
+pub(crate) fn alone(svg: &str) -> String {
+    let paper = "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>";
+    let of_its_own = svg.replacen("<svg ", "<svg xmlns=\"http://www.w3.org/2000/svg\" ", 1);
+    of_its_own.replacen('>', &format!(">\n{paper}"), 1)
+}
+
 fn chart<'c, 'a>(
     root: &'c Area<'a>,
     x: Interval,

@@ -76,7 +76,7 @@ pub(super) const RADIUS: Chart = Chart {
     note: "Rotor against the centre of the inner ring.",
     symbol: "r",
     unit: Unit::Length,
-    lines: Cow::Borrowed(&[line("r", DARK)]),
+    lines: Cow::Borrowed(&[line("r", DARK), line("largest r", PALE)]),
     limit: Some(Limit {
         name: "clearance",
         reach: f64::INFINITY,
@@ -103,7 +103,11 @@ pub(super) const CONTROL_FORCE: Chart = Chart {
     note: "Magnitudes of the force that the policy commands and of the one that the magnet delivers.",
     symbol: "|F|",
     unit: Unit::Force,
-    lines: Cow::Borrowed(&[line("commanded", PALE), line("delivered", DARK)]),
+    lines: Cow::Borrowed(&[
+        line("commanded", PALE),
+        line("delivered", DARK),
+        line("largest command", PALE),
+    ]),
     limit: Some(Limit {
         name: "force cap",
         reach: f64::INFINITY,
@@ -139,6 +143,30 @@ pub(super) const TANGENTIAL_SPEED: Chart = Chart {
     }),
     own_scale: true,
     always: &[-1e-3, 1e-3],
+};
+
+/// How hard a slow track has the contacts to be.
+pub(super) const SEVERITY: Chart = Chart {
+    heading: "Severity",
+    note: "",
+    symbol: "severity",
+    unit: Unit::Fixed("1"),
+    lines: Cow::Borrowed(&[line("largest severity", TOUCHING)]),
+    limit: None,
+    own_scale: false,
+    always: &[0.0, 1.0],
+};
+
+/// How much of a slow track is contact.
+pub(super) const CONTACT_SHARE: Chart = Chart {
+    heading: "Time in contact",
+    note: "Of each stretch of the slow track.",
+    symbol: "share",
+    unit: Unit::Fixed("%"),
+    lines: Cow::Borrowed(&[line("in contact", TOUCHING)]),
+    limit: None,
+    own_scale: false,
+    always: &[0.0, 100.0],
 };
 
 /// Spin of the rotor.

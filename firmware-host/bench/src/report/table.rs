@@ -1,5 +1,6 @@
 //! The verdicts as a table for people and as JSON for programs.
 
+use crate::report::lines::{Cell, Lines, lined, right};
 use crate::report::plot::text::figures;
 use crate::run::figures::{BearingFigures, Digits, Figure, Figures, Timing, Value};
 use crate::run::supervision::{Account, Supervision};
@@ -8,9 +9,8 @@ use crate::run::verify::{Check, Verification};
 use crate::scene::Scene;
 use crate::scene::machine::MachineScene;
 use crate::scene::nominal::named;
-use comfy_table::{Cell, CellAlignment, LineStyle, Table, TableStyle};
 use serde_json::json;
-use std::fmt::{Display, Write as _};
+use std::fmt::Write as _;
 
 /// A row of the table: name with unit, and the value as text.
 type Row<T> = (&'static str, fn(&T) -> String);
@@ -131,38 +131,34 @@ pub fn shown<T>(figure: &Figure<T>, of: &T) -> String {
 pub fn shown_as<T>(figure: &Figure<T>, value_si: f64) -> String {
     let x = value_si * figure.per_si;
     match figure.digits {
-        Digits::Significant => figures(x),
+        Digits::Significant => figures(rounded(x)),
         Digits::Fixed(digits) => format!("{x:.digits$}"),
         Digits::Power => format!("{x:.1e}"),
     }
 }
 
-/// A table with one line, between header and rows.
-pub fn lined(header: impl Into<comfy_table::Row>) -> Table {
-    let mut table = Table::new();
-    let line = LineStyle::none().fill('─').junction('─');
-    table.load_style(TableStyle::new().header_separator(line));
-    table.set_header(header);
-    table
+/// To three significant figures.
+fn rounded(x: f64) -> f64 {
+    let unit = 10_f64.powf(x.abs().log10().floor() - 2.0);
+    match unit >= 1.0 && unit.is_finite() {
+        true => (x / unit).round() * unit,
+        // `figures` does it.
+        false => x,
+    }
 }
 
-/// A figure in a table.
-pub fn right(value: impl Display) -> Cell {
-    Cell::new(value).set_alignment(CellAlignment::Right)
-}
-
-/// The table: one row a figure, one column a policy.
+/// The table: one row a figure, one column a policy, the supervisor's first.
 pub fn text(scene: &Scene, results: &Results) -> String {
     let runs = &results.runs;
     let note = far_into_the_wall(runs, scene.plant.contact.clearance_m);
     let notes = notes(note.as_deref(), results);
-    let all: Vec<&PolicyRun> = runs.iter().collect();
-    format!("{}\n{}{notes}", scene.title, table("policy", &all))
+    let table = table("policy", &supervisor_first(runs));
+    format!("{}\n{table}{notes}", scene.title)
 }
 
 /// The tables of a whole rotor: as a whole, and plane by plane.
 pub fn machine_text(scene: &MachineScene, results: &MachineResults) -> String {
-    let of = |name: &str, runs: &[PolicyRun]| table(name, &runs.iter().collect::<Vec<_>>());
+    let of = |name: &str, runs: &[PolicyRun]| table(name, &supervisor_first(runs));
     let mut text = format!(
         "{}\n{}",
         scene.common().title,
@@ -177,13 +173,20 @@ pub fn machine_text(scene: &MachineScene, results: &MachineResults) -> String {
     text + &notes(None, &results.whole)
 }
 
+/// Runs in the order in which they are shown.
+pub(super) fn supervisor_first(runs: &[PolicyRun]) -> Vec<&PolicyRun> {
+    let mut runs: Vec<&PolicyRun> = runs.iter().collect();
+    runs.sort_by_key(|run| run.supervision.is_none());
+    runs
+}
+
 fn notes(note: Option<&str>, results: &Results) -> String {
     (note.into_iter().chain(results.untrusted()))
         .map(|note| format!("\n{note}"))
         .collect()
 }
 
-fn table(of: &str, runs: &[&PolicyRun]) -> Table {
+fn table(of: &str, runs: &[&PolicyRun]) -> Lines {
     let mut header = vec![Cell::new(of)];
     header.extend(runs.iter().map(|r| right(&r.name)));
     let mut table = lined(header);
@@ -194,18 +197,21 @@ fn table(of: &str, runs: &[&PolicyRun]) -> Table {
     table
 }
 
-/// Every figure that one of the runs has: its title with the unit, and a cell for each run.
+/// Every figure that one of the runs has: its title with the unit, and a cell for each run. What came of it first, then what the
+/// supervisor did.
 pub(super) fn rows(runs: &[&PolicyRun]) -> Vec<(String, Vec<String>)> {
     let mut rows = Vec::new();
-    add_figures(&mut rows, Figures::ALL, runs, |r| &r.verdict.figures);
-    add_figures(&mut rows, Timing::ALL, runs, |r| &r.verdict.timing);
+    let (outcome, figures) = Figures::ALL.split_at(1);
+    add_figures(&mut rows, outcome, runs, |r| &r.verdict.figures);
     add_rows(&mut rows, SUPERVISION_FIGURES, runs, |r| {
         r.supervision.as_ref()
     });
+    add_figures(&mut rows, figures, runs, |r| &r.verdict.figures);
     add_rows(&mut rows, BEARING_FIGURES, runs, |r| {
         r.verdict.figures.bearing.as_ref()
     });
     add_rows(&mut rows, CHECK_FIGURES, runs, PolicyRun::checked);
+    add_figures(&mut rows, Timing::ALL, runs, |r| &r.verdict.timing);
     rows
 }
 

@@ -82,6 +82,24 @@ pub(super) struct TrackUnits {
     pub(super) decimals: usize,
 }
 
+impl TrackUnits {
+    /// Those of a record, with how many of each one tick, one clearance and one cap are.
+    pub(super) fn of(units: Units) -> (Self, [f64; 3]) {
+        let (length, mm) = (units.clearance_m)
+            .map_or(("clearances", 1.0), |clearance_m| ("mm", 1e3 * clearance_m));
+        let (force, newtons) = (units.force_max_n).map_or(("caps", 1.0), |cap_n| ("N", cap_n));
+        let (time, ms) = (units.sample_rate_hz).map_or(("ticks", 1.0), |rate| ("ms", 1e3 / rate));
+        let decimals = if time == SI.time { SI.decimals } else { 0 };
+        let names = Self {
+            time,
+            length,
+            force,
+            decimals,
+        };
+        (names, [ms, mm, newtons])
+    }
+}
+
 /// A column of a run: its name, and its value in a row.
 type ColumnOf = (&'static str, fn(&TraceRow) -> f64);
 
@@ -93,7 +111,7 @@ const SI: TrackUnits = TrackUnits {
 };
 
 impl Track {
-    fn new(name: &str, units: TrackUnits) -> Self {
+    pub(super) fn new(name: &str, units: TrackUnits) -> Self {
         Self {
             name: name.to_owned(),
             outcome: None,
@@ -165,12 +183,7 @@ impl Track {
     /// Of a flight record, or of what a simulation of it recorded: in mm, N and ms where the units are known, else in
     /// clearances, force caps and ticks.
     pub fn of_ticks(name: &str, ticks: &Ticks, units: Units) -> Self {
-        let (length, mm) = (units.clearance_m)
-            .map_or(("clearances", 1.0), |clearance_m| ("mm", 1e3 * clearance_m));
-        let (force, newtons) = units
-            .force_max_n
-            .map_or(("caps", 1.0), |cap_n| ("N", cap_n));
-        let (time, ms) = (units.sample_rate_hz).map_or(("ticks", 1.0), |rate| ("ms", 1e3 / rate));
+        let (names, [ms, mm, newtons]) = TrackUnits::of(units);
         // A ring that was written down from elsewhere ends before it begins.
         let mut all: Vec<&Tick> = ticks.ticks.iter().collect();
         all.sort_by_key(|tick| tick.tick);
@@ -211,15 +224,7 @@ impl Track {
                 })
                 .collect(),
             t,
-            ..Self::new(
-                name,
-                TrackUnits {
-                    time,
-                    length,
-                    force,
-                    decimals: if time == SI.time { SI.decimals } else { 0 },
-                },
-            )
+            ..Self::new(name, names)
         }
     }
 
@@ -268,6 +273,11 @@ impl Track {
     pub(super) fn limit(&self, name: &str) -> Option<f64> {
         let found = self.limits.iter().find(|(known, _)| *known == name)?;
         Some(found.1).filter(|at| drawable(*at))
+    }
+
+    /// Whether it says where the rotor was at each of its times.
+    pub(super) fn has_path(&self) -> bool {
+        self.column("x").is_some() && self.column("y").is_some()
     }
 
     /// The rotor's path, without what cannot be drawn.

@@ -105,6 +105,8 @@ figures! {
         => "outcome", "", 1.0, Fixed(0), Everywhere;
     /// True for recovered or decayed.
     recovered: bool = |run| run.outcome.recovered();
+    /// True where the rotor was free at the end and would have stayed so, whether it had whirled before or not.
+    free_at_end: bool = |run| run.free_at_end;
     /// Number of touches.
     impacts: u64 = |run| run.meters.impacts
         => "impacts", "", 1.0, Fixed(0), Everywhere;
@@ -184,6 +186,7 @@ in_columns!(BearingFigures {
 /// A run at its end.
 pub(crate) struct Ended<'a> {
     outcome: Outcome,
+    free_at_end: bool,
     meters: Meters,
     normal_impulse_n_s: f64,
     energy_residual: f64,
@@ -205,6 +208,7 @@ impl<'a> Ended<'a> {
         let backward_m_s = meters.peak_backward_speed_m_s;
         Self {
             outcome: judge.outcome(scene, last, backward_m_s),
+            free_at_end: judge.at_end(scene, last).recovered(),
             meters,
             normal_impulse_n_s: rig.normal_impulse_n_s(plane),
             energy_residual: rig.audit().residual(),
@@ -231,6 +235,7 @@ impl Figures {
         Some(Self {
             outcome,
             recovered: outcome.recovered(),
+            free_at_end: planes.iter().all(|f| f.free_at_end),
             impacts: count(|f| f.impacts),
             contact_time_s: sum(|f| f.contact_time_s),
             contact_impulse_n_s: sum(|f| f.contact_impulse_n_s),

@@ -171,9 +171,14 @@ impl Judge {
         last: &Snapshot,
         peak_backward_m_s: f64,
     ) -> Outcome {
-        if peak_backward_m_s > scene.whirl_speed_m_s {
-            return Outcome::Whirl;
+        match peak_backward_m_s > scene.whirl_speed_m_s {
+            true => Outcome::Whirl,
+            false => self.at_end(scene, last),
         }
+    }
+
+    /// The same without a look at whirl, which a strong magnet stops even beyond the scene's limit.
+    pub(crate) fn at_end(&self, scene: &Scene, last: &Snapshot) -> Outcome {
         let natural = scene.plant.natural_frequency_rad_s();
         // A rotor whose distance grows as if it were to touch soon is free, and not back.
         let free = |outcome: Outcome| {

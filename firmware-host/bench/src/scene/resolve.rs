@@ -146,6 +146,7 @@ impl PlaneSpec {
             base_motions: events.base_motions,
             changes: events.changes,
             centre_offset_m,
+            severity_allowed: written.retainer.severity_allowed,
             duration_s: run.duration_s,
             sample_rate_hz: run.sample_rate_hz,
             rtol: run.rtol,

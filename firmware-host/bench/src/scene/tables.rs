@@ -149,6 +149,7 @@ key_tables! {
         centre_offset_m: Pair [= Pair::default()], "m", Elsewhere("shorter than the clearance"), "centre of the retainer bearing as seen from the centre of magnets and sensors; see [centres](#centres)", "misalignment";
         ellipticity: f64 [= 0.0], "1", Within(0.0, 0.2), "ε of a bearing [out of round](../theory/model.md#out-of-round): semi-axes c·(1 ± ε); only for a rigid stator without a race", "ovality";
         long_axis_deg: Option<f64> [or "0"], "°", Finite, "direction of the longer axis, counter-clockwise from x; needs `ellipticity`";
+        severity_allowed: Option<f64> [or "that of its ledger, else `supervisor.severity_limit`"], "1", Within(1e-3, 1e8), "severity that it may bear in all, by which [`review`](review.md#landings-that-are-left) says how many landings are left", "allowance";
         heat: Option<HeatTable> [or "stays as it is"], "", ANY, "what its losses do to the bearing; with `[[plane]]` only", "thermal", "temperature";
     }
 

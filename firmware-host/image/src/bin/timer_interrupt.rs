@@ -4,13 +4,14 @@
 //!
 //! The board is made up: `measured_position_m` stands for converter and position sensor, the levitation
 //! controller is a spring, and the commanded force is kept where a driver of amplifiers would take it from. The
-//! rotor falls onto its retainer bearing, whirls there for a while and comes back. Logs with defmt, and ends when
-//! the record has been read.
+//! rotor falls onto its retainer bearing, whirls there for a while and comes back. What the bearing has borne is kept over
+//! resets. Logs with defmt, and ends when the record has been read.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]
 mod firmware {
     use core::cell::Cell;
+    use core::sync::atomic::{AtomicU8, Ordering};
     use cortex_m::peripheral::SCB;
     use cortex_m::peripheral::syst::SystClkSource;
     use cortex_m_rt::{entry, exception};
@@ -18,8 +19,8 @@ mod firmware {
     use defmt::{error, info, warn};
     use firmware_image::{exit, planted};
     use supervisor::{
-        Config, Events, IntegratorHint, QueuedEvent, Reader, Record, Sample, Stamp, Status,
-        Supervisor, Ticker,
+        Config, Events, IntegratorHint, LEDGER_BYTES, Ledger, LedgerError, QueuedEvent, Reader,
+        Record, Sample, Stamp, Status, Supervisor, Ticker,
     };
 
     const CORE_HZ: u32 = 25_000_000;
@@ -40,6 +41,12 @@ mod firmware {
         ..Config::example()
     };
     const CLEARANCE_M: f32 = 2e-4;
+
+    /// Two copies of the ledger of landings. RAM that the start-up leaves as it is stands for EEPROM, FRAM or flash, which keep it
+    /// without power, too.
+    #[unsafe(link_section = ".uninit.LEDGER")]
+    static KEPT: [Kept; 2] = [const { [const { AtomicU8::new(0) }; LEDGER_BYTES] }; 2];
+    type Kept = [AtomicU8; LEDGER_BYTES];
 
     /// The interrupt's own, on its way there: taken once.
     static HANDED: Mutex<Cell<Option<Control>>> = Mutex::new(Cell::new(None));
@@ -107,6 +114,7 @@ mod firmware {
             exit::failure()
         };
         let (mut ticker, reader) = supervisor.split();
+        let ledger = kept_ledger();
         // A processor that computes something else must not drive a magnet.
         if !ticker.self_test().passed {
             error!("the self-test does not pass on this processor");
@@ -126,16 +134,65 @@ mod firmware {
         timer.clear_current();
         timer.enable_counter();
         timer.enable_interrupt();
-        background(reader)
+        background(reader, ledger)
+    }
+
+    /// What the retainer bearing had borne when the power was switched on; `None` where nobody can say.
+    fn kept_ledger() -> Option<Ledger> {
+        let copies = (KEPT.each_ref())
+            .map(|place| place.each_ref().map(|byte| byte.load(Ordering::Relaxed)));
+        let [first, second] = &copies;
+        let (ledger, other) = match Ledger::newer([first, second]) {
+            Ok(found) => found,
+            // A service tool would do this, when the bearing is fitted.
+            Err(LedgerError::Blank) => {
+                let fitted = Ledger::new(1, CONFIG.severity_limit);
+                KEPT.iter().for_each(|place| write(place, &fitted));
+                (fitted, None)
+            }
+            // Nothing is written over: what is left may still be read by a person.
+            Err(why) => {
+                error!("ledger of landings: {}", why);
+                return None;
+            }
+        };
+        if let Some(why) = other {
+            warn!("ledger of landings, the last may be missing: {}", why);
+        }
+        info!(
+            "bearing {}: {} landings so far",
+            ledger.bearing, ledger.landings
+        );
+        Some(ledger)
+    }
+
+    fn write(place: &Kept, ledger: &Ledger) {
+        for (byte, value) in place.iter().zip(ledger.to_bytes()) {
+            byte.store(value, Ordering::Relaxed);
+        }
+    }
+
+    /// Adds a record, before it is given back, and writes the older of both copies anew: where power fails meanwhile, the other one
+    /// is whole.
+    fn keep(ledger: &mut Ledger, record: &Record<'_, f32, RECORD>) {
+        if ledger.take_in(record) {
+            let [even, odd] = &KEPT;
+            let place = if ledger.updates & 1 == 0 { even } else { odd };
+            write(place, ledger);
+        }
+        info!("bearing {}: {} landings", ledger.bearing, ledger.landings);
     }
 
     /// Everything that has time.
-    fn background(mut reader: Reader<'static, f32, RECORD>) -> ! {
+    fn background(mut reader: Reader<'static, f32, RECORD>, mut ledger: Option<Ledger>) -> ! {
         loop {
             while let Some(event) = reader.next_event() {
                 log(event);
             }
             if let Some(record) = reader.record() {
+                if let Some(ledger) = &mut ledger {
+                    keep(ledger, &record);
+                }
                 pick_up(&record);
                 reader.rearm();
                 if let Some(report) = reader.published().report() {

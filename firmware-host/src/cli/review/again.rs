@@ -8,6 +8,7 @@ use firmware_bench::run::again::scene_of_event;
 use firmware_bench::run::recording::recorded;
 use firmware_bench::run::verdict::{FailedRun, PolicyRun, Results};
 use firmware_bench::scene::Scene;
+use firmware_bench::scene::machine::AnyScene;
 use firmware_bench::scene::policy_kind::PolicyKind;
 use firmware_bench::scene::spec::{Setting, Spec};
 use std::fs::File;
@@ -55,6 +56,22 @@ pub(super) fn simulate(
         scene,
         results,
         differing,
+    })
+}
+
+/// What the scene has its retainer bearings bear in all, of each plane.
+pub(super) fn allowances(
+    path: &Path,
+    settings: &[Setting],
+) -> Result<Vec<Option<f32>>, CommandError> {
+    let mut spec = Spec::load(path)?;
+    let set = (settings.iter()).map(|setting| (setting.path.as_str(), setting.value.clone()));
+    spec.set_all(&set.collect::<Vec<_>>())?;
+    let scene = AnyScene::resolve(&spec)?;
+    let of = |scene: &Scene| scene.severity_allowed.map(|allowed| allowed as f32);
+    Ok(match &scene {
+        AnyScene::Plane(scene) => vec![of(scene)],
+        AnyScene::Machine(scene) => scene.planes.iter().map(|plane| of(&plane.scene)).collect(),
     })
 }
 

@@ -1,9 +1,9 @@
 //! What is found out from an event, for a person.
 
-use comfy_table::Cell;
 use firmware_bench::record::identify::{Estimate, Findings, Identified};
 use firmware_bench::record::ticks::Ticks;
-use firmware_bench::report::table::{lined, or_dash, right};
+use firmware_bench::report::lines::{Cell, lined, right};
+use firmware_bench::report::table::or_dash;
 
 /// Name, unit, how many of it one of SI is, digits.
 type Row = (
@@ -24,6 +24,15 @@ const ROWS: [Row; 6] = [
     ("eccentricity", "µm", 1e6, 2, |i| i.eccentricity_m),
     ("clearance", "µm", 1e6, 1, |i| i.clearance_m),
 ];
+
+/// With so many digits after the point; a zero has no sign.
+fn whole(x: f64, digits: usize) -> String {
+    let text = format!("{x:.digits$}");
+    match text.trim_start_matches('-').trim_matches(['0', '.']) {
+        "" => text.trim_start_matches('-').to_owned(),
+        _ => text,
+    }
+}
 
 /// Contacts, and what they tell of the machine.
 pub(super) fn tables(findings: &Findings, ticks: &Ticks, period_s: f64) -> String {
@@ -60,7 +69,7 @@ pub(super) fn tables(findings: &Findings, ticks: &Ticks, period_s: f64) -> Strin
         let mut row = vec![Cell::new(name)];
         match estimate {
             Some(Estimate { value, low, high }) => {
-                row.extend([value, low, high].map(|x| right(format!("{:.digits$}", x * factor))));
+                row.extend([value, low, high].map(|x| right(whole(x * factor, digits))));
             }
             None => row.push(Cell::new("not identifiable")),
         }

@@ -6,7 +6,7 @@ use crate::cli::review::{Examined, of_event, used};
 use firmware_bench::record::file::PlaneRecord;
 use firmware_bench::record::remaining::Remaining;
 use firmware_bench::record::ticks::Ticks;
-use firmware_bench::report::record::{RecordHead, record_html};
+use firmware_bench::report::record::{FigureFile, RecordHead, record_figures, record_html};
 use firmware_bench::report::summary::summary;
 use firmware_bench::report::track::Track;
 use firmware_bench::run::verdict::PolicyRun;
@@ -19,6 +19,19 @@ pub(super) fn write(out: &Path, head: &RecordHead, tracks: &[Track]) -> Result<(
         record_html(head, tracks).map_err(|e| CommandError::other("drawing the report", e))?;
     let staging = Staging::for_folder(out)?;
     staging.write("report.html", html)?;
+    staging.publish()?;
+    Ok(())
+}
+
+/// Writes each figure to a file of its own in a folder, all or none.
+pub(super) fn write_figures(folder: &Path, tracks: &[Track]) -> Result<(), CommandError> {
+    output::probe(folder)?;
+    let figures =
+        record_figures(tracks).map_err(|e| CommandError::other("drawing the figures", e))?;
+    let staging = Staging::for_folder(folder)?;
+    for FigureFile { name, svg } in &figures {
+        staging.write(name, svg)?;
+    }
     staging.publish()?;
     Ok(())
 }
@@ -64,7 +77,10 @@ pub(super) fn tracks(events: &[Examined<'_>]) -> Vec<Track> {
     for (i, of) in events.iter().enumerate() {
         for record in &of.event.records {
             let name = name(i, record, events.len() > 1);
-            tracks.push(Track::of_ticks(&name, &Ticks::of(record), record.units()));
+            let ticks = Ticks::of(record);
+            tracks.push(Track::of_ticks(&name, &ticks, record.units()));
+            let slow = format!("{name}: slow track");
+            tracks.extend(Track::of_stretches(&slow, record, &ticks));
         }
         let (Some(again), Some(findings)) = (&of.again, &of.findings) else {
             continue;

@@ -1,9 +1,8 @@
 //! Ticks and the slow track of a record as tables and as CSV.
 
-use comfy_table::Cell;
 use firmware_bench::record::file::PlaneRecord;
 use firmware_bench::record::ticks::{PER_UNIT, Tick, Ticks, Units, mode_name};
-use firmware_bench::report::table::{lined, right};
+use firmware_bench::report::lines::{Cell, lined, right};
 use std::fmt::Write;
 
 /// The slow track, neighbours of the same modes together.

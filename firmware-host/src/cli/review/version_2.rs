@@ -4,6 +4,7 @@ use super::ReviewArgs;
 use super::page;
 use super::tables::{csv, tables};
 use crate::cli::error::{CommandError, pretty, print};
+use crate::cli::screen::tell;
 use firmware_bench::record::ticks::{ANY_UNIT, FlightRecord, Units};
 use firmware_bench::report::record::RecordHead;
 use firmware_bench::report::track::Track;
@@ -61,13 +62,16 @@ pub(super) fn show(
             &[Track::of_ticks("recorded", &record.of, units)],
         )?;
     }
-    print(&if args.json {
-        pretty(&record, "writing JSON")? + "\n"
+    if let Some(folder) = &args.figures {
+        page::write_figures(folder, &[Track::of_ticks("recorded", &record.of, units)])?;
+    }
+    if args.json {
+        print(&(pretty(&record, "writing JSON")? + "\n"))
     } else if args.csv {
-        csv(&record.of)
+        print(&csv(&record.of))
     } else {
-        text(&record, units, expected.is_some())
-    })
+        tell(&text(&record, units, expected.is_some()))
+    }
 }
 
 pub(super) fn units(args: &ReviewArgs) -> Result<Units, CommandError> {

@@ -1,9 +1,10 @@
 //! What a sweep came to, as text.
 
 use super::Done;
-use comfy_table::Cell;
-use firmware_bench::report::table::{lined, right, shown_as};
+use firmware_bench::report::lines::{Cell, lined, right};
+use firmware_bench::report::table::shown_as;
 use firmware_bench::run::figures::Figures;
+use firmware_bench::scene::policy_kind::PolicyKind;
 use firmware_bench::sweep::influence::Influence;
 use firmware_bench::sweep::plan::Plan;
 use firmware_bench::sweep::summary::{PolicySummary, Summary};
@@ -39,7 +40,9 @@ pub(super) fn all(plan: &Plan, summary: &Summary, done: &Done) -> String {
             "quantiles and influences of {sampled} of them, drawn at random"
         );
     }
-    for policy in &summary.policies {
+    let mut policies: Vec<&PolicySummary> = summary.policies.iter().collect();
+    policies.sort_by_key(|of| of.policy != PolicyKind::Supervisor.name());
+    for policy in policies {
         let _ = write!(text, "\n{}", of_policy(policy));
     }
     if !summary.influences.is_empty() {
@@ -105,7 +108,7 @@ fn of_policy(policy: &PolicySummary) -> String {
         );
     }
     let mut table = lined(vec![
-        Cell::new("  figure"),
+        Cell::new("figure"),
         right("runs"),
         right("median"),
         right("90 %"),
@@ -116,7 +119,7 @@ fn of_policy(policy: &PolicySummary) -> String {
         let Some(figure) = Figures::ALL.iter().find(|figure| figure.key == of.key) else {
             continue;
         };
-        let mut cells = vec![Cell::new(format!("  {}", figure.title())), right(of.runs)];
+        let mut cells = vec![Cell::new(figure.title()), right(of.runs)];
         let values = [of.median, of.q90, of.q99, of.largest];
         cells.extend(values.map(|x| right(shown_as(figure, x))));
         table.add_row(cells);
@@ -126,14 +129,14 @@ fn of_policy(policy: &PolicySummary) -> String {
 
 fn influences(summary: &Summary) -> String {
     let mut table = lined(vec![
-        Cell::new("  key"),
+        Cell::new("key"),
         right("loss: share"),
         right("correlation"),
         right(format!("{}: share", summary.worst_by)),
         right("correlation"),
     ]);
     for of in &summary.influences {
-        let mut cells = vec![Cell::new(format!("  {}", of.key))];
+        let mut cells = vec![Cell::new(&of.key)];
         for Influence {
             rank_correlation,
             first_order,

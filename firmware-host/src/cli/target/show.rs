@@ -1,8 +1,7 @@
 //! The results of `target` as tables.
 
 use crate::cli::chapters;
-use comfy_table::{Cell, Table};
-use firmware_bench::report::table::{lined, right};
+use firmware_bench::report::lines::{Cell, Lines, lined, right};
 use firmware_studies::on_target::results::{LoopRow, Report, StreamRow, TargetRow};
 use firmware_studies::on_target::study::chapters as chapters_of;
 
@@ -37,7 +36,7 @@ fn named(name: &str, number: &str) -> Cell {
     Cell::new(format!("{name} {number}"))
 }
 
-fn against_budgets(targets: &[TargetRow]) -> Table {
+fn against_budgets(targets: &[TargetRow]) -> Lines {
     let mut table = lined([
         "target", "figure", "measured", "budget", "in it", "required", "met",
     ]);
@@ -82,7 +81,7 @@ fn stream_line(stream: &StreamRow) -> String {
     )
 }
 
-fn loops(rows: &[LoopRow]) -> Table {
+fn loops(rows: &[LoopRow]) -> Lines {
     let mut table = lined([
         "target",
         "scene",

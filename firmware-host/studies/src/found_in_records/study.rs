@@ -61,9 +61,10 @@ fn ran(job: &Job<'_>) -> Option<Ran> {
         && report.handed_back == 0
     {
         let levitated = told.outcome == supervisor::Mode::Levitated.name();
-        let same = levitated == figures.recovered;
+        // The summary has how it ended; that it whirled before is another of its figures.
+        let same = levitated == figures.free_at_end;
         ran.counts.outcomes.count(same);
-        ran.differs = (!same).then_some((told.outcome, figures.recovered));
+        ran.differs = (!same).then_some((told.outcome, figures.free_at_end));
     }
     Some(ran)
 }
@@ -130,12 +131,8 @@ pub fn study(extent: Extent, progress: &dyn Progress) -> Result<Report, StudyErr
             )
         };
         missed.extend(ran.counts.missed.iter().map(|m| missed_cells(name(), m)));
-        differing.extend(ran.differs.map(|(by_record, recovered)| {
-            let by_plant = if recovered {
-                "recovered"
-            } else {
-                "not recovered"
-            };
+        differing.extend(ran.differs.map(|(by_record, free)| {
+            let by_plant = if free { "free" } else { "not free" };
             [name(), by_record.to_owned(), by_plant.to_owned()]
         }));
     }
@@ -206,6 +203,10 @@ pub fn study(extent: Extent, progress: &dyn Progress) -> Result<Report, StudyErr
         "Every fourth scene at 20 kHz, before the tuned loop",
         "Every scene at 10 and 20 kHz, before the tuned and the ordinary loop",
     );
+    let differences = match differing.is_empty() {
+        true => Block::text("None."),
+        false => Block::table(["scene", "record", "plant"], differing),
+    };
     Ok(Report {
         title: "What is found in records".to_owned(),
         claims,
@@ -215,7 +216,7 @@ pub fn study(extent: Extent, progress: &dyn Progress) -> Result<Report, StudyErr
                 "By kind of overload",
                 vec![
                     Block::text(format!(
-                        "{what}. Each record is that of the first event that was over before the run was. Friction and restitution count where they were identifiable; the outcome, levitated or not, where the event is the only one of the run and nothing was handed back."
+                        "{what}. Each record is that of the first event that was over before the run was. Friction and restitution count where they were identifiable; the outcome, levitated by the record and free at the end by the plant or neither, where the event is the only one of the run and nothing was handed back."
                     )),
                     Block::table(COLUMNS, rows),
                     Block::text(
@@ -230,10 +231,7 @@ pub fn study(extent: Extent, progress: &dyn Progress) -> Result<Report, StudyErr
                     vec![Block::table(MISSED, missed)],
                 )
             },
-            Chapter::new(
-                "Outcomes that differ",
-                vec![Block::table(["scene", "record", "plant"], differing)],
-            ),
+            Chapter::new("Outcomes that differ", vec![differences]),
         ],
     })
 }

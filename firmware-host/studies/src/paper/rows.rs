@@ -2,9 +2,8 @@
 
 use super::summary::{Summary, all};
 use super::{Chapter, Kind, Row, Stated};
-use comfy_table::Cell;
+use firmware_bench::report::lines::{Cell, lined, right};
 use firmware_bench::report::plot::text::figures;
-use firmware_bench::report::table::{lined, right};
 use serde::Serialize;
 
 /// A row as programs get it.

@@ -142,6 +142,11 @@ function place(panel) {
   const left = inView(instant) ? (share * chart.bbox.width) / devicePixelRatio : -10;
   chart.setCursor({ left, top: 0 }, false);
   const at = placeOf(track, instant);
+  // A slow track goes on when the ticks are over, and begins later.
+  if (instant < track.t[0] - hair || instant > track.t.at(-1) + hair) {
+    panel.value.textContent = "–";
+    return;
+  }
   const said = spec.kind === "modes"
     ? spec.lanes.map((lane) => {
         const band = bandAt(track.bands[lane], instant);
