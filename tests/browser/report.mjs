@@ -1,4 +1,4 @@
-// Pages of the host in a real browser: node report.mjs CHROMIUM RUN.html MACHINE.html RECORD.html
+// Pages of the host in a real browser: node report.mjs CHROMIUM RUN.html MACHINE.html RECORD.html SWEEP.html
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { createRequire } from "node:module";
@@ -10,10 +10,12 @@ const SIZES = [[390, 844], [1280, 800], [2560, 1440]];
 // On an idle machine it takes less than one; here others may be at work.
 const OPENS_WITHIN_MS = 6000;
 
-const [executablePath, run, machine, record] = process.argv.slice(2);
+const [executablePath, run, machine, record, sweep] = process.argv.slice(2);
+// A page that stands still is wanted from the smallest screen to the largest.
+const STILL_SIZES = [[320, 640], [1280, 800], [3840, 2160]];
 const browser = await chromium.launch({ executablePath, args: ["--no-sandbox"] });
 
-async function opened(file, { size, colorScheme = "light", javaScriptEnabled = true }) {
+async function opened(file, { size, colorScheme = "light", javaScriptEnabled = true, scripted = javaScriptEnabled }) {
   const [width, height] = size;
   const context = await browser.newContext({ viewport: { width, height }, colorScheme, javaScriptEnabled });
   const page = await context.newPage();
@@ -23,7 +25,7 @@ async function opened(file, { size, colorScheme = "light", javaScriptEnabled = t
   page.on("request", (request) => requests.push(request.url()));
   const began = performance.now();
   await page.goto(pathToFileURL(file).href);
-  if (javaScriptEnabled) {
+  if (scripted) {
     await page.waitForSelector("html.scripted", { state: "attached" });
     // Until everything is on the screen.
     await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => setTimeout(done))));
@@ -83,7 +85,8 @@ async function fits(page, what) {
 async function accessible(page, what, rules) {
   await page.evaluate(() => {
     document.querySelectorAll(".still").forEach((drawing) => drawing.checkVisibility() || drawing.remove());
-    for (const folded of [".data", "#controls details"]) document.querySelector(folded).open = true;
+    for (const folded of [".data", "#controls details"])
+      for (const found of [document.querySelector(folded)].filter(Boolean)) found.open = true;
   });
   await page.evaluate(AXE);
   const { violations } = await page.evaluate((rules) => axe.run(rules ? { runOnly: rules } : {}), rules);
@@ -235,6 +238,40 @@ async function works(name, file) {
   await printed.closed();
 }
 
+// A page without a script: drawn, with the numbers of each drawing, and links to files that are there.
+async function stands(name, file) {
+  for (const size of STILL_SIZES) {
+    for (const colorScheme of ["light", "dark"]) {
+      const what = `${name}, ${size.join("x")}, ${colorScheme}`;
+      const { page, closed } = await opened(file, { size, colorScheme, scripted: false });
+      const figures = page.locator("figure");
+      assert.ok((await figures.count()) >= 6, what);
+      for (const figure of await figures.all()) {
+        assert.ok(await figure.locator("svg").isVisible(), what);
+        const wide = await figure.locator("svg").evaluate((drawing) => drawing.getBoundingClientRect().width);
+        assert.ok(wide > 240, `${what}: ${wide} px`);
+        await figure.locator("summary").click();
+        assert.ok((await figure.locator("td").count()) >= 3, what);
+        assert.ok(await figure.locator("table").isVisible(), what);
+      }
+      await fits(page, what);
+      await accessible(page, what, colorScheme === "dark" ? ["color-contrast"] : undefined);
+      for (const link of await page.locator("a").all()) {
+        const target = new URL(await link.getAttribute("href"), pathToFileURL(file));
+        assert.ok(readFileSync(target, "utf8").includes("[start]"), `${what}: ${target}`);
+      }
+      assert.equal(await page.locator("a").count(), 3, what);
+      await closed();
+    }
+  }
+  const printed = await opened(file, { size: SIZES[1], scripted: false });
+  await printed.page.emulateMedia({ media: "print" });
+  assert.ok(await printed.page.locator("figure svg").first().isVisible());
+  assert.ok(!(await printed.page.locator(".data").first().isVisible()));
+  await fits(printed.page, `${name} on paper`);
+  await printed.closed();
+}
+
 try {
   // Alone, and once before to start the browser's processes.
   for (const which of ["first", "second"]) {
@@ -244,7 +281,7 @@ try {
     assert.ok(took < OPENS_WITHIN_MS, `opened in ${took} ms`);
   }
   const began = performance.now();
-  await Promise.all(Object.entries({ run, machine, record }).map(([name, file]) => works(name, file)));
+  await Promise.all([...Object.entries({ run, machine, record }).map(([name, file]) => works(name, file)), stands("sweep", sweep)]);
   console.log(`everything else: ${(performance.now() - began).toFixed(0)} ms`);
 } finally {
   await browser.close();

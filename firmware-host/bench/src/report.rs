@@ -16,6 +16,7 @@ pub mod plot;
 mod quantities;
 pub mod record;
 mod slow_track;
+pub mod still;
 pub mod summary;
 pub mod table;
 pub mod track;

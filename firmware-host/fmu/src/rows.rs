@@ -1,6 +1,7 @@
 //! Outputs of a plane: the columns of its traces, and what firmware sees there.
 
-use crate::quantities::{CONTACT, SUPERVISION, contact_number, of_plane};
+use crate::quantities::{CONTACT, contact_number, of_plane};
+use crate::said::SAID;
 use crate::variable::{Kind, Output, Role, Value, Variable};
 use firmware_bench::run::closed_loop::stepwise::Stepwise;
 use firmware_bench::run::controller::Seen;
@@ -49,31 +50,6 @@ const SEEN: &[Output<Seen>] = &[
     ("applied_y_n", "N", "the same along y", Kind::Float64, |s| {
         Value::Float64(s.applied_n.y)
     }),
-];
-
-/// What the supervisor says, beside numbers.
-const SAID: &[Output<Said>] = &[
-    (
-        "supervisor_mode",
-        "",
-        "what the supervisor is doing",
-        Kind::Enumeration(&SUPERVISION),
-        |said| Value::Int64(said.mode as i64),
-    ),
-    (
-        "supervisor_limits",
-        "",
-        "bits of what binds its command",
-        Kind::UInt32,
-        |said| Value::UInt32(said.limits.bits()),
-    ),
-    (
-        "supervisor_events",
-        "",
-        "bits of what happened at this sample",
-        Kind::UInt32,
-        |said| Value::UInt32(said.events.bits()),
-    ),
 ];
 
 fn is_for(of: Of, name: &str) -> bool {

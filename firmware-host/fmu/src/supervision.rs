@@ -2,8 +2,10 @@
 
 use crate::model::{Model, Set};
 use crate::parameters;
-use crate::quantities::{SUPERVISION, of_plane, split_plane};
+use crate::quantities::{of_plane, split_plane};
+use crate::said::SAID;
 use crate::variable::{Kind, Output, Role, Value, Variable};
+use firmware_bench::run::trace::Said;
 use firmware_bench::scene::machine::AnyScene;
 use supervisor::{Command, Config, IntegratorHint, PARAMETERS, Rotor, Sample, Status, Supervisor};
 
@@ -51,7 +53,7 @@ const INPUTS: [(&str, &str, &str, Kind); 9] = [
     ("applied_y_n", "N", "the same along y", Kind::Float64),
 ];
 
-/// Outputs of a plane.
+/// Outputs of a plane that are the command's own; what it says beside numbers follows.
 const OUTPUTS: &[Output<Command>] = &[
     ("command_x_n", "N", "force to command", Kind::Float64, |c| {
         Value::Float64(f64::from(c.force_n[0]))
@@ -65,27 +67,6 @@ const OUTPUTS: &[Output<Command>] = &[
         "the levitation controller is to keep its integrators",
         Kind::Boolean,
         |c| Value::Boolean(c.integrator == IntegratorHint::Hold),
-    ),
-    (
-        "supervisor_mode",
-        "",
-        "what the supervisor is doing",
-        Kind::Enumeration(&SUPERVISION),
-        |c| Value::Int64(c.mode as i64),
-    ),
-    (
-        "supervisor_limits",
-        "",
-        "bits of what binds its command",
-        Kind::UInt32,
-        |c| Value::UInt32(c.limits.bits()),
-    ),
-    (
-        "supervisor_events",
-        "",
-        "bits of what happened at this sample",
-        Kind::UInt32,
-        |c| Value::UInt32(c.events.bits()),
     ),
     (
         "supervisor_severity",
@@ -114,10 +95,12 @@ pub(crate) fn variables(scene: &AnyScene) -> Vec<Variable> {
         }));
     }
     for plane in 0..planes {
-        all.extend(OUTPUTS.iter().map(|(name, unit, about, kind, _)| {
+        let output = |(name, unit, about, kind): (&str, &'static str, &str, Kind)| {
             let name = of_plane(planes, plane, name);
-            Variable::signal(Role::Output, name, about, unit, *kind)
-        }));
+            Variable::signal(Role::Output, name, about, unit, kind)
+        };
+        all.extend(OUTPUTS.iter().map(|(n, u, a, k, _)| output((n, u, a, *k))));
+        all.extend(SAID.iter().map(|(n, u, a, k, _)| output((n, u, a, *k))));
     }
     all
 }
@@ -207,6 +190,9 @@ impl Model for Supervision {
     fn outputs(&self, into: &mut Vec<Value>) {
         for command in &self.commands {
             into.extend(OUTPUTS.iter().map(|(.., value)| value(command)));
+            // No output says what the levitation controller asked for: that is an input.
+            let said = Said::new(command, [0.0; 2]);
+            into.extend(SAID.iter().map(|(.., value)| value(&said)));
         }
     }
 

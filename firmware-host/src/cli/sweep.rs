@@ -9,6 +9,8 @@ use crate::cli::progress::{RunProgress, Threads};
 use crate::cli::screen::tell;
 use crate::cli::warn;
 use firmware_bench::sweep::error::SweepError;
+use firmware_bench::sweep::indices::Indices;
+use firmware_bench::sweep::page::{self, PAGE};
 use firmware_bench::sweep::plan::{Plan, digest};
 use firmware_bench::sweep::store::{Program, Store};
 use firmware_bench::sweep::summary::Summary;
@@ -24,7 +26,7 @@ use std::time::Instant;
 pub struct SweepArgs {
     /// Sweep file, e.g. firmware-host/scenes/sweeps/impact.toml.
     pub sweep: PathBuf,
-    /// Folder for results.parquet, summary.json and the worst runs [default: runs/ and the name of the sweep file]. A sweep
+    /// Folder for results.parquet, report.html, summary.json and the worst runs [default: runs/ and the name of the sweep file]. A sweep
     /// that was stopped goes on there.
     #[arg(long)]
     pub out: Option<PathBuf>,
@@ -63,7 +65,12 @@ struct Done {
     results: Option<PathBuf>,
     #[serde(skip_serializing_if = "Option::is_none")]
     summary: Option<PathBuf>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    page: Option<PathBuf>,
     worst: Vec<PathBuf>,
+    /// Of a design that is made for them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    indices: Option<Indices>,
 }
 
 /// Runs what is missing of a sweep, and says what came of it.
@@ -104,7 +111,9 @@ pub fn execute(args: &SweepArgs) -> Result<(), CommandError> {
         folder,
         results: None,
         summary: None,
+        page: None,
         worst: Vec::new(),
+        indices: None,
     };
     if !store.is_done(&plan) {
         let there = (0..plan.chunks()).filter(|chunk| store.has(&plan, *chunk));
@@ -120,6 +129,9 @@ pub fn execute(args: &SweepArgs) -> Result<(), CommandError> {
     worst::keep(&plan, &store, &summary)?;
     let text = pretty(&summary, FORMATTING)? + "\n";
     store.write("summary.json", text.as_bytes())?;
+    let text = page::html(&summary).map_err(|e| CommandError::other("drawing the page", e))?;
+    store.write(PAGE, text.as_bytes())?;
+    (done.page, done.indices) = (Some(store.path(PAGE)), summary.indices.clone());
     (done.runs, done.failed) = (plan.runs(), summary.failed);
     (done.results, done.summary) = (Some(store.results()), Some(store.path("summary.json")));
     done.worst = (summary.worst.iter())

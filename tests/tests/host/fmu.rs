@@ -1,6 +1,7 @@
 //! Co-simulation units: valid, equal to the native run of their scene, and clear about what is wrong. FMPy is the importer.
 
 mod import;
+mod rotor;
 
 use std::fs;
 use std::path::Path;

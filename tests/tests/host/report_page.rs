@@ -1,4 +1,4 @@
-//! The pages of `run` and `review` in a real browser: drawn, moved, read aloud, and without script.
+//! The pages of `run`, `review` and `sweep` in a real browser: drawn, moved, read aloud, and without script.
 
 use firmware_bench::record::file::RecordFile;
 use serde_json::Value;
@@ -198,9 +198,25 @@ fn pages_work_in_a_browser() {
     let size = fs::metadata(&run).unwrap().len();
     assert!(size < 3_000_000, "the page has {size} bytes");
 
+    // Maps of both kinds, and indices.
+    let lines = format!(
+        "scene = {:?}\npolicies = [\"levitation\", \"supervisor\"]\ndesign = \"saltelli\"\nsamples = 24\n\
+         maps = [[\"start.velocity_m_s[0]\", \"friction.coefficient\"], [\"magnet.delay_samples\", \"friction.coefficient\"]]\n\
+         [[vary]]\nkey = \"start.velocity_m_s[0]\"\nuniform = [0.1, 0.5]\n\
+         [[vary]]\nkey = \"friction.coefficient\"\nuniform = [0.05, 0.2]\n\
+         [[vary]]\nkey = \"magnet.delay_samples\"\nvalues = [1, 2]\n",
+        scene_path("impact_at_40_hz").display().to_string()
+    );
+    fs::write(here("sweep.toml"), lines).unwrap();
+    let mut sweep = host();
+    let swept = sweep.arg("sweep").arg(here("sweep.toml"));
+    let swept = swept.arg("--out").arg(here("swept")).output().unwrap();
+    assert!(swept.status.success(), "{swept:?}");
+    let sweep = here("swept/report.html");
+
     let driven = Command::new(node)
         .arg(driver.join("report.mjs"))
-        .args([&chromium, &run, &machine, &record])
+        .args([&chromium, &run, &machine, &record, &sweep])
         .output()
         .unwrap();
     let said = String::from_utf8_lossy(&driven.stdout);

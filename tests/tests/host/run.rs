@@ -2,6 +2,7 @@
 
 mod causes;
 mod command_line;
+mod errors;
 mod refusals;
 mod settings;
 mod slips;

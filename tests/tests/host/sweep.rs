@@ -1,5 +1,7 @@
 //! `sweep`: the same bytes however it is stopped, split and spread over threads, and rows that say what `run` says.
 
+mod indices;
+mod page;
 mod refusals;
 mod rows;
 mod slurm;
@@ -86,10 +88,15 @@ fn neither_threads_nor_parts_change_a_byte() {
     let whole = contents(&out("one"));
     let names: Vec<&str> = whole.iter().map(|(name, _)| name.as_str()).collect();
     assert_eq!(
-        names[..3],
-        ["results.parquet", "summary.json", "sweep.json"]
+        names[..4],
+        [
+            "report.html",
+            "results.parquet",
+            "summary.json",
+            "sweep.json"
+        ]
     );
-    assert_eq!(names.len(), 6, "three of the worst: {names:?}");
+    assert_eq!(names.len(), 7, "three of the worst: {names:?}");
     succeeds(&sweep(&file, &out("three"), &["--threads", "3"]));
     assert!(whole == contents(&out("three")), "threads");
 

@@ -18,6 +18,7 @@ mod loads_that_stay;
 mod numbers;
 mod promises;
 mod ready_to_hold;
+mod recorded;
 mod recoverable_impact;
 mod refusals;
 mod rotor;

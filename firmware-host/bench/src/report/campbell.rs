@@ -1,11 +1,10 @@
 //! A whole rotor as a linear system, for people: tables, Campbell diagram, response to the unbalance, mode shapes.
 
-use super::document::begun;
 use super::lines::{Cell, lined, right};
 use super::plot::PlotError;
 use super::plot::chart::{Axis, Chart, Curve, Mark, chart};
 use super::plot::text::figures;
-use super::{push, push_story};
+use super::still::StillPage;
 use crate::modes::{Analysis, Coupling, HeldWhirl};
 use crate::scene::machine::MachineScene;
 use plant_model::machine::linear::Direction;
@@ -107,27 +106,17 @@ pub fn coupling(coupling: &Coupling) -> String {
 /// # Errors
 /// [`PlotError`] if the drawing backend refuses.
 pub fn html(scene: &MachineScene, analysis: &Analysis) -> Result<String, PlotError> {
-    let mut page = begun(&analysis.scene, "");
-    push_story(&mut page, &scene.common().story);
-    page.push_str("</header>\n<main>\n<section><h2>Campbell diagram</h2>\n");
-    push(
-        &mut page,
-        format_args!("<figure>{}</figure>\n", chart(&diagram(analysis))?),
-    );
-    page.push_str("</section>\n<section><h2>Response to the unbalance</h2>\n");
-    push(
-        &mut page,
-        format_args!("<figure>{}</figure>\n", chart(&responses(analysis))?),
-    );
-    page.push_str("</section>\n<section><h2>Mode shapes</h2>\n");
-    push(
-        &mut page,
-        format_args!("<figure>{}</figure>\n", chart(&shapes(scene, analysis))?),
-    );
-    page.push_str("</section>\n<section><pre>");
-    page.push_str(&super::plot::text::escape(&text(scene, analysis)));
-    page.push_str("</pre></section>\n</main>\n</body>\n</html>\n");
-    Ok(page)
+    let mut page = StillPage::begun(&analysis.scene, ("", &scene.common().story), &[], &[]);
+    for (heading, plot) in [
+        ("Campbell diagram", diagram(analysis)),
+        ("Response to the unbalance", responses(analysis)),
+        ("Mode shapes", shapes(scene, analysis)),
+    ] {
+        let drawing = chart(&plot)?;
+        page.section(heading, |page| page.figure(&drawing));
+    }
+    page.section("Tables", |page| page.lines(&text(scene, analysis)));
+    Ok(page.ended())
 }
 
 fn diagram(analysis: &Analysis) -> Chart {

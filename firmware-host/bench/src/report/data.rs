@@ -20,7 +20,7 @@ pub(super) fn extremes(chart: &Chart, track: &Track, window: Interval) -> String
         headings.push(format!("{name}, highest"));
     }
     let part = window.size() / ROWS as f64;
-    let rows = (0..ROWS).filter_map(|row| {
+    let mut rows = (0..ROWS).filter_map(|row| {
         let lo = window.lo + part * row as f64;
         let within = |t: f64| t >= lo && (t < lo + part || row + 1 == ROWS);
         let of = |values: &[f64]| {
@@ -37,7 +37,7 @@ pub(super) fn extremes(chart: &Chart, track: &Track, window: Interval) -> String
         (found.iter().any(Option::is_some)).then_some(row)
     });
     let caption = format!("Extremes: {}", escape(&chart.y_name(track)));
-    table(&caption, &headings, rows)
+    folded(&caption, &headings, &mut rows)
 }
 
 /// Where the rotor was at equal times.
@@ -51,13 +51,13 @@ pub(super) fn places(track: &Track, window: Interval) -> String {
         format!("x <small>{length}</small>"),
         format!("y <small>{length}</small>"),
     ];
-    let rows = (0..=ROWS).filter_map(|row| {
+    let mut rows = (0..=ROWS).filter_map(|row| {
         let at = window.lo + window.size() * row as f64 / ROWS as f64;
         let i = track.t.partition_point(|t| *t < at);
         let i = i.min(track.t.len().checked_sub(1)?);
         Some([track.t[i], x[i], y[i]].map(figures).to_vec())
     });
-    table("Places at equal times", &headings, rows)
+    folded("Places at equal times", &headings, &mut rows)
 }
 
 /// Stretches of each lane; those that are shorter than a 200th of the window share their row.
@@ -92,11 +92,26 @@ pub(super) fn stretches(lanes: &[Lane<'_>], window: Interval, time: &str) -> Str
             ]);
         }
     }
-    table("Stretches", &headings, rows.into_iter())
+    folded("Stretches", &headings, &mut rows.into_iter())
 }
 
-fn table(caption: &str, headings: &[String], rows: impl Iterator<Item = Vec<String>>) -> String {
-    let mut html = String::from("<details class=\"data\"><summary>Data</summary>");
+/// A table that is folded below its figure.
+pub(super) fn folded(
+    caption: &str,
+    headings: &[String],
+    rows: &mut dyn Iterator<Item = Vec<String>>,
+) -> String {
+    let table = table(caption, headings, rows);
+    format!("<details class=\"data\"><summary>Data</summary>{table}</details>\n")
+}
+
+/// A table; caption, headings and cells are HTML.
+pub(super) fn table(
+    caption: &str,
+    headings: &[String],
+    rows: &mut dyn Iterator<Item = Vec<String>>,
+) -> String {
+    let mut html = String::new();
     push(
         &mut html,
         format_args!(
@@ -117,6 +132,6 @@ fn table(caption: &str, headings: &[String], rows: impl Iterator<Item = Vec<Stri
         }
         html.push_str("</tr>\n");
     }
-    html.push_str("</tbody></table></div></details>\n");
+    html.push_str("</tbody></table></div>\n");
     html
 }

@@ -3,6 +3,7 @@
 //! The canvas has `SCALE` units per CSS pixel, because the backend rounds to whole units; the browser
 //! scales it back. All figures have one width and the same margins, so that time axes line up.
 
+pub mod bars;
 pub mod chart;
 pub mod log_log;
 pub mod text;

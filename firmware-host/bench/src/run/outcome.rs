@@ -27,6 +27,23 @@ pub enum Outcome {
 }
 
 impl Outcome {
+    /// All of them, the better the earlier.
+    pub const ALL: [Self; 8] = [
+        Self::Recovered,
+        Self::Decayed,
+        Self::Diverging,
+        Self::Resting,
+        Self::Pinned,
+        Self::Rubbing,
+        Self::Bouncing,
+        Self::Whirl,
+    ];
+
+    /// That of a word.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|outcome| outcome.name() == name)
+    }
+
     /// The word for it, as in `verdict.json`.
     pub fn name(self) -> &'static str {
         match self {

@@ -1,6 +1,9 @@
 //! Designs: where in the unit cube of what varies each run lies.
 
+use crate::sweep::morris;
 use crate::sweep::permutation::{Permutation, mixed};
+use crate::sweep::saltelli;
+use crate::sweep::sobol::coordinate;
 use crate::words::words;
 use rand_chacha::ChaCha8Rng;
 use rand_core::{Rng, SeedableRng};
@@ -16,6 +19,10 @@ words! {
         Sobol = "sobol",
         /// Independent draws.
         MonteCarlo = "monte_carlo",
+        /// For Sobol indices of first and total order.
+        Saltelli = "saltelli",
+        /// For elementary effects.
+        Morris = "morris",
     }
 }
 
@@ -28,23 +35,31 @@ impl Design {
 
 /// Most runs of a sweep: so many strata a key still have numbers between them.
 pub const MOST_RUNS: u64 = 100_000_000;
-/// Points that the Sobol sequence has, and its dimensions.
-pub const SOBOL_POINTS: u64 = 1 << 16;
-/// Its dimensions.
-pub const SOBOL_DIMENSIONS: usize = 256;
 
 /// The runs of a sweep by their numbers.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Points {
-    design: Design,
+    keys: usize,
     runs: u64,
     seed: u64,
-    /// Values of each key, of a grid.
-    levels: Vec<u64>,
-    /// Runs of each combination of a grid.
-    repeats: u64,
-    /// Strata of each key, of a Latin hypercube.
-    strata: Vec<Permutation>,
+    scheme: Scheme,
+}
+
+/// What is kept of each design.
+#[derive(Debug, Clone, PartialEq)]
+enum Scheme {
+    /// Values of each key, and runs of each combination.
+    Grid {
+        levels: Vec<u64>,
+        repeats: u64,
+    },
+    /// Strata of each key.
+    LatinHypercube(Vec<Permutation>),
+    Sobol,
+    MonteCarlo,
+    Saltelli,
+    /// Levels of each key.
+    Morris(u64),
 }
 
 /// A run's place and seed.
@@ -61,28 +76,61 @@ impl Points {
     pub fn grid(levels: Vec<u64>, repeats: u64, seed: u64) -> Self {
         let combinations = levels.iter().fold(1_u64, |n, of| n.saturating_mul(*of));
         Self {
-            design: Design::Grid,
+            keys: levels.len(),
             runs: combinations.saturating_mul(repeats),
             seed,
-            levels,
-            repeats,
-            strata: Vec::new(),
+            scheme: Scheme::Grid { levels, repeats },
         }
     }
 
-    /// So many runs of another design, with so many keys.
-    pub fn spread(design: Design, runs: u64, keys: usize, seed: u64) -> Self {
+    /// One run from each of as many strata of each key as there are runs.
+    pub fn latin_hypercube(runs: u64, keys: usize, seed: u64) -> Self {
         let strata = |key: usize| Permutation::new(runs, mixed(seed) ^ mixed(key as u64));
         Self {
-            design,
+            keys,
             runs,
             seed,
-            levels: vec![0; keys],
-            repeats: 1,
-            strata: match design {
-                Design::LatinHypercube => (0..keys).map(strata).collect(),
-                _ => Vec::new(),
-            },
+            scheme: Scheme::LatinHypercube((0..keys).map(strata).collect()),
+        }
+    }
+
+    /// So many points of a Sobol sequence, at most [`SOBOL_POINTS`](crate::sweep::sobol::SOBOL_POINTS).
+    pub fn sobol(runs: u64, keys: usize, seed: u64) -> Self {
+        Self {
+            keys,
+            runs,
+            seed,
+            scheme: Scheme::Sobol,
+        }
+    }
+
+    /// So many independent draws.
+    pub fn monte_carlo(runs: u64, keys: usize, seed: u64) -> Self {
+        Self {
+            keys,
+            runs,
+            seed,
+            scheme: Scheme::MonteCarlo,
+        }
+    }
+
+    /// So many samples of Saltelli's design, a block of runs each.
+    pub fn saltelli(samples: u64, keys: usize, seed: u64) -> Self {
+        Self {
+            keys,
+            runs: samples.saturating_mul(saltelli::block_runs(keys)),
+            seed,
+            scheme: Scheme::Saltelli,
+        }
+    }
+
+    /// So many trajectories of Morris's design through so many levels a key, an even number.
+    pub fn morris(trajectories: u64, levels: u64, keys: usize, seed: u64) -> Self {
+        Self {
+            keys,
+            runs: trajectories.saturating_mul(morris::trajectory_runs(keys)),
+            seed,
+            scheme: Scheme::Morris(levels),
         }
     }
 
@@ -91,44 +139,89 @@ impl Points {
         self.runs
     }
 
+    /// Whether a run is one of those whose keys are drawn independently of each other and of other runs.
+    pub fn is_independent(&self, run: u64) -> bool {
+        match self.scheme {
+            Scheme::Saltelli => saltelli::is_independent(run, self.keys),
+            Scheme::Morris(_) => false,
+            _ => true,
+        }
+    }
+
     /// A run, from 0.
     pub fn at(&self, run: u64) -> Point {
-        let mut stream = ChaCha8Rng::seed_from_u64(self.seed);
-        stream.set_stream(run);
-        // A number that floats hold, too: programs that read it may have no others.
-        let seed = stream.next_u64() >> 11;
-        let mut chance = || (f64::from(stream.next_u32() >> 8) + 0.5) / f64::from(1 << 24);
-        let keys = self.levels.len();
-        let shares = match self.design {
-            Design::Grid => self.combination(run),
-            Design::MonteCarlo => (0..keys).map(|_| chance()).collect(),
-            Design::LatinHypercube => (self.strata.iter())
-                .map(|stratum| (stratum.at(run) as f64 + chance()) / self.runs as f64)
+        let keys = self.keys;
+        let shares = match &self.scheme {
+            Scheme::Saltelli => {
+                let (shares, of) = saltelli::point(run, keys, self.seed);
+                let seed = seed(&mut self.stream(of));
+                return Point { shares, seed };
+            }
+            Scheme::Morris(levels) => {
+                let size = morris::trajectory_runs(keys);
+                let mut stream = self.stream(run / size);
+                // One seed a trajectory: what is random within runs moves nothing.
+                let seed = seed(&mut stream);
+                let shares = morris::point(run % size, keys, *levels, &mut stream);
+                return Point { shares, seed };
+            }
+            Scheme::Grid { levels, repeats } => combination(run / repeats, levels),
+            Scheme::Sobol => (0..keys)
+                .map(|key| coordinate(run, key, self.seed))
                 .collect(),
-            Design::Sobol => (0..keys as u32)
-                .map(|key| {
-                    let share = sobol_burley::sample(run as u32, key, mixed(self.seed) as u32);
-                    // Shares are multiples of 2⁻²⁴, 0 among them.
-                    f64::from(share) + 0.5 / f64::from(1 << 24)
-                })
-                .collect(),
+            Scheme::MonteCarlo => {
+                let mut stream = self.drawing(run);
+                (0..keys).map(|_| chance(&mut stream)).collect()
+            }
+            Scheme::LatinHypercube(strata) => {
+                let mut stream = self.drawing(run);
+                (strata.iter())
+                    .map(|stratum| {
+                        (stratum.at(run) as f64 + chance(&mut stream)) / self.runs as f64
+                    })
+                    .collect()
+            }
         };
+        let seed = seed(&mut self.stream(run));
         Point { shares, seed }
     }
 
-    /// The middles of the parts that a key's values have of the unit interval.
-    fn combination(&self, run: u64) -> Vec<f64> {
-        let mut rest = run / self.repeats;
-        let mut shares: Vec<f64> = (self.levels.iter().rev())
-            .map(|levels| {
-                let level = rest % levels;
-                rest /= levels;
-                (level as f64 + 0.5) / *levels as f64
-            })
-            .collect();
-        shares.reverse();
-        shares
+    fn stream(&self, number: u64) -> ChaCha8Rng {
+        let mut stream = ChaCha8Rng::seed_from_u64(self.seed);
+        stream.set_stream(number);
+        stream
     }
+
+    /// The stream of a run behind its seed.
+    fn drawing(&self, run: u64) -> ChaCha8Rng {
+        let mut stream = self.stream(run);
+        seed(&mut stream);
+        stream
+    }
+}
+
+/// A seed that floats hold, too: programs that read it may have no other numbers.
+fn seed(stream: &mut ChaCha8Rng) -> u64 {
+    stream.next_u64() >> 11
+}
+
+/// Within 0 and 1, and neither.
+fn chance(stream: &mut ChaCha8Rng) -> f64 {
+    (f64::from(stream.next_u32() >> 8) + 0.5) / f64::from(1 << 24)
+}
+
+/// The middles of the parts that each key's values have of the unit interval.
+fn combination(number: u64, levels: &[u64]) -> Vec<f64> {
+    let mut rest = number;
+    let mut shares: Vec<f64> = (levels.iter().rev())
+        .map(|levels| {
+            let level = rest % levels;
+            rest /= levels;
+            (level as f64 + 0.5) / *levels as f64
+        })
+        .collect();
+    shares.reverse();
+    shares
 }
 
 #[cfg(test)]
@@ -149,7 +242,7 @@ mod tests {
     #[test]
     fn a_latin_hypercube_has_one_run_in_each_stratum_of_each_key() {
         for runs in [1, 7, 100, 1009] {
-            let points = Points::spread(Design::LatinHypercube, runs, 4, 5);
+            let points = Points::latin_hypercube(runs, 4, 5);
             for key in 0..4 {
                 let counts = slices(&points, key, runs);
                 assert!(counts.iter().all(|count| *count == 1), "{runs}, key {key}");
@@ -160,7 +253,7 @@ mod tests {
     /// And what one key has says nothing of what another has: squares of a fifth by a fifth are filled as by chance.
     #[test]
     fn keys_of_a_latin_hypercube_are_paired_by_chance() {
-        let points = Points::spread(Design::LatinHypercube, 5000, 2, 1);
+        let points = Points::latin_hypercube(5000, 2, 1);
         let mut squares = [0_u32; 25];
         for run in 0..5000 {
             let shares = points.at(run).shares;
@@ -175,7 +268,7 @@ mod tests {
     #[test]
     fn a_sobol_sequence_fills_boxes_evenly() {
         for seed in [0, 1, 99] {
-            let points = Points::spread(Design::Sobol, 256, 12, seed);
+            let points = Points::sobol(256, 12, seed);
             for key in 0..12 {
                 assert!(slices(&points, key, 256).iter().all(|count| *count == 1));
             }
@@ -187,18 +280,18 @@ mod tests {
             }
             assert_eq!(boxes, [1; 256]);
         }
-        let first = |seed| Points::spread(Design::Sobol, 4, 1, seed).at(0).shares;
+        let first = |seed| Points::sobol(4, 1, seed).at(0).shares;
         assert_ne!(first(1), first(2));
     }
 
     #[test]
     fn independent_draws_are_uniform_and_of_their_run_alone() {
-        let points = Points::spread(Design::MonteCarlo, 10_000, 2, 3);
+        let points = Points::monte_carlo(10_000, 2, 3);
         for key in 0..2 {
             let counts = slices(&points, key, 10);
             assert!(counts.iter().all(|n| n.abs_diff(1000) < 150), "{counts:?}");
         }
-        let more = Points::spread(Design::MonteCarlo, 20_000, 2, 3);
+        let more = Points::monte_carlo(20_000, 2, 3);
         assert_eq!(points.at(77), more.at(77));
         assert_ne!(points.at(77).seed, points.at(78).seed);
     }
@@ -216,5 +309,26 @@ mod tests {
         assert_eq!(all, once.map(|at| [at, at]).concat());
         // The same place, another seed.
         assert_ne!(points.at(0).seed, points.at(1).seed);
+    }
+
+    /// Runs of a block, or of a trajectory, have one seed; B, which is another draw, has its own.
+    #[test]
+    fn what_is_random_within_runs_does_not_part_those_that_are_compared() {
+        let seeds = |points: &Points| (0..12).map(|run| points.at(run).seed).collect::<Vec<_>>();
+        let saltelli = Points::saltelli(3, 2, 1);
+        assert_eq!(saltelli.runs(), 12);
+        let of = seeds(&saltelli);
+        assert!(of[0] == of[1] && of[1] == of[2] && of[3] != of[0] && of[4] != of[0]);
+        let alone: Vec<u64> = (0..8).filter(|run| saltelli.is_independent(*run)).collect();
+        assert_eq!(alone, [0, 3, 4, 7]);
+        let morris = Points::morris(4, 4, 2, 1);
+        let of = seeds(&morris);
+        assert!(morris.runs() == 12 && of[0] == of[2] && of[3] == of[5] && of[0] != of[3]);
+        for run in 0..12 {
+            for points in [&saltelli, &morris] {
+                let shares = points.at(run).shares;
+                assert!(shares.len() == 2 && shares.iter().all(|x| *x > 0.0 && *x < 1.0));
+            }
+        }
     }
 }

@@ -3,15 +3,16 @@
 use crate::scene::diagnostic::{SceneError, SceneText, in_words};
 use crate::scene::guess;
 use crate::scene::policy_kind::PolicyKind;
-use crate::sweep::design::{Design, MOST_RUNS, Points, SOBOL_DIMENSIONS, SOBOL_POINTS};
+use crate::sweep::design::{Design, Points};
 use crate::sweep::error::SweepError;
-use crate::sweep::values::{Values, VaryTable};
+use crate::sweep::size::{Sizes, points};
+use crate::sweep::values::{Variation, VaryTable};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 use toml::{Spanned, Table};
 
 /// Keys that say what is shown of results, and not what they are.
-const OF_THE_SUMMARY: [&str; 3] = ["worst", "worst_by", "worst_policy"];
+const OF_THE_SUMMARY: [&str; 4] = ["worst", "worst_by", "worst_policy", "maps"];
 
 /// A sweep file as written.
 #[derive(Debug, Deserialize)]
@@ -21,6 +22,9 @@ struct Written {
     design: Design,
     runs: Option<u64>,
     repeats: Option<u64>,
+    samples: Option<u64>,
+    trajectories: Option<u64>,
+    levels: Option<u64>,
     #[serde(default)]
     seed: u64,
     policies: Option<Vec<String>>,
@@ -29,22 +33,13 @@ struct Written {
     worst_by: Option<String>,
     worst_policy: Option<String>,
     #[serde(default)]
+    maps: Vec<[String; 2]>,
+    #[serde(default)]
     vary: Vec<Spanned<VaryTable>>,
 }
 
 fn three() -> u32 {
     3
-}
-
-/// A key of scenes that varies.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Variation {
-    /// Its path, as [`Spec::set`](crate::scene::spec::Spec::set) has it.
-    pub key: String,
-    /// What it varies over.
-    pub values: Values,
-    /// The key of the sweep file that says so.
-    pub(crate) said_by: String,
 }
 
 /// Which runs are kept as scene files.
@@ -74,6 +69,8 @@ pub struct SweepFile {
     pub policies: Option<Vec<PolicyKind>>,
     /// Which runs are kept.
     pub worst: Worst,
+    /// Pairs of keys, by their places among those that vary, over which outcomes are shown; empty: over the two strongest.
+    pub maps: Vec<[usize; 2]>,
     /// What decides about results, as written.
     pub(crate) settings: Table,
 }
@@ -111,7 +108,13 @@ impl SweepFile {
         Ok(Self {
             scene: folder.join(&written.scene),
             design: written.design,
-            points: points(&written, &variations, &text)?,
+            points: points(
+                (written.design, written.seed),
+                &sizes(&written),
+                &variations,
+                &text,
+            )?,
+            maps: maps(&written, &variations, &text)?,
             variations,
             policies: policies(&written, &text)?,
             worst: Worst {
@@ -134,7 +137,9 @@ fn missing(message: &str) -> Option<String> {
     let (_, name) = message.split_once("missing field `")?;
     let give = match name.trim_end_matches('`') {
         "scene" => "give the scene that is varied: scene = \"…\", by its path from this file",
-        "design" => "give design = \"grid\", \"latin_hypercube\", \"sobol\" or \"monte_carlo\"",
+        "design" => {
+            "give design = \"grid\", \"latin_hypercube\", \"sobol\", \"monte_carlo\", \"saltelli\" or \"morris\""
+        }
         "key" => "give the key of the scene that varies: key = \"friction.coefficient\"",
         "from" | "to" | "count" => "give { from = 1.0, to = 2.0, count = 11 }",
         "mean" | "standard_deviation" | "low" | "high" => {
@@ -171,87 +176,42 @@ fn variations(written: &Written, text: &SceneText) -> Result<Vec<Variation>, Sce
     Ok(variations)
 }
 
-fn points(
+fn sizes(written: &Written) -> Sizes {
+    Sizes {
+        runs: written.runs,
+        repeats: written.repeats,
+        samples: written.samples,
+        trajectories: written.trajectories,
+        levels: written.levels,
+    }
+}
+
+fn maps(
     written: &Written,
     variations: &[Variation],
     text: &SceneText,
-) -> Result<Points, SceneError> {
-    let refused = |key: &str, message: String, help: &str| {
-        Err(text.error_at_key(key, message, Some(help.to_owned())))
+) -> Result<Vec<[usize; 2]>, SceneError> {
+    let keys = || variations.iter().map(|variation| variation.key.as_str());
+    let place = |i: usize, key: &str| {
+        keys().position(|other| other == key).ok_or_else(|| {
+            let help = "give pairs of keys that vary, [[\"a.key\", \"another.key\"]]".to_owned();
+            let help = guess::before(help, key, keys());
+            text.error_at_key(
+                "maps",
+                format!("maps[{i}]: {key} does not vary"),
+                Some(help),
+            )
+        })
     };
-    let design = written.design.name();
-    if written.seed > i64::MAX.cast_unsigned() {
-        return refused(
-            "seed",
-            "is too large".to_owned(),
-            "give a whole number below 2^63",
-        );
-    }
-    if written.design != Design::Grid {
-        if written.repeats.is_some() {
-            let message = format!("goes with a grid, and not with {design}");
-            return refused("repeats", message, "give runs alone");
+    let pair = |(i, [x, y]): (usize, &[String; 2])| match x == y {
+        true => {
+            let message = format!("maps[{i}]: is {x} twice");
+            let help = "give two keys that vary".to_owned();
+            Err(text.error_at_key("maps", message, Some(help)))
         }
-        let Some(runs) = written.runs else {
-            let help = "give the number of runs: runs = 1000".to_owned();
-            return Err(text.error_at(0..0, "runs is missing".to_owned(), Some(help)));
-        };
-        let (most, why) = match written.design {
-            Design::Sobol => (SOBOL_POINTS, "; a latin_hypercube or monte_carlo has more"),
-            _ => (MOST_RUNS, ""),
-        };
-        if !(1..=most).contains(&runs) {
-            let message = format!("is {runs}, expected a whole number from 1 to {most}{why}");
-            return refused("runs", message, "give another number of runs");
-        }
-        if written.design == Design::Sobol && variations.len() > SOBOL_DIMENSIONS {
-            let message = format!(
-                "{} keys vary, a Sobol sequence has {SOBOL_DIMENSIONS}",
-                variations.len()
-            );
-            return refused("vary", message, "take latin_hypercube or monte_carlo");
-        }
-        return Ok(Points::spread(
-            written.design,
-            runs,
-            variations.len(),
-            written.seed,
-        ));
-    }
-    if let Some(runs) = written.runs {
-        let message = format!("is {runs}, but a grid has as many runs as combinations");
-        return refused(
-            "runs",
-            message,
-            "remove it; repeats = 10 runs each combination ten times",
-        );
-    }
-    let mut levels = Vec::new();
-    for variation in variations {
-        match variation.values.levels() {
-            Some(count) => levels.push(count),
-            None => {
-                let message = format!(
-                    "is a distribution of {}, and a grid has none",
-                    variation.key
-                );
-                return refused(
-                    &variation.said_by,
-                    message,
-                    "give values, linspace or logspace, or take another design",
-                );
-            }
-        }
-    }
-    let points = Points::grid(levels, written.repeats.unwrap_or(1), written.seed);
-    match points.runs() {
-        0 => refused("repeats", "is 0".to_owned(), "give a whole number from 1"),
-        runs if runs > MOST_RUNS => {
-            let message = format!("grid of {runs} combinations, at most {MOST_RUNS}");
-            refused("design", message, "take fewer values, or another design")
-        }
-        _ => Ok(points),
-    }
+        false => Ok([place(i, x)?, place(i, y)?]),
+    };
+    written.maps.iter().enumerate().map(pair).collect()
 }
 
 fn policies(written: &Written, text: &SceneText) -> Result<Option<Vec<PolicyKind>>, SceneError> {

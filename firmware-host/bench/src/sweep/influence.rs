@@ -110,11 +110,11 @@ fn first_order(bins: &[usize], y: &[f64]) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sweep::design::{Design, Points};
+    use crate::sweep::design::Points;
 
     /// Shares of keys by independent draws, a column a key.
     fn drawn(runs: u64, keys: usize) -> Vec<Vec<f64>> {
-        let points = Points::spread(Design::MonteCarlo, runs, keys, 4);
+        let points = Points::monte_carlo(runs, keys, 4);
         let all: Vec<Vec<f64>> = (0..runs).map(|run| points.at(run).shares).collect();
         (0..keys)
             .map(|key| all.iter().map(|of| of[key]).collect())

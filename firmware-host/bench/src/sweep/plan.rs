@@ -9,9 +9,9 @@ use crate::scene::policy_kind::PolicyKind;
 use crate::scene::spec::{Spec, names_a_file};
 use crate::sweep::error::SweepError;
 use crate::sweep::figures_of::{cells, columns};
-use crate::sweep::file::{SweepFile, Variation};
+use crate::sweep::file::SweepFile;
 use crate::sweep::table::Rows;
-use crate::sweep::values::Values;
+use crate::sweep::values::{Values, Variation};
 use sha2::{Digest as _, Sha256};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -142,6 +142,11 @@ impl Plan {
         named
             .or_else(|| default().map(PolicyKind::name))
             .unwrap_or_default()
+    }
+
+    /// Whether a policy, by its place, is that one.
+    pub(crate) fn is_worst_policy(&self, place: usize) -> bool {
+        (self.policies.get(place)).is_some_and(|kind| kind.name() == self.worst_policy())
     }
 
     /// Columns of the results.

@@ -4,17 +4,17 @@ use crate::run::columns::Kind;
 use crate::run::figures::{Figures, Place};
 use crate::sweep::design::Design;
 use crate::sweep::error::SweepError;
+use crate::sweep::indices::{CameTo, Indices};
 use crate::sweep::influence::Influence;
-use crate::sweep::permutation::mixed;
+use crate::sweep::map::{OutcomeMap, maps};
 use crate::sweep::plan::Plan;
+use crate::sweep::sample::{Row, Sample, Sampled};
 use crate::sweep::store::Store;
-use crate::sweep::table::{Cells, Rows, RowsReader};
+use crate::sweep::table::RowsReader;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fs::File;
 
-/// Of more runs than this a part drawn at random is looked at for quantiles and influences: memory does not grow with runs.
-const MOST_SAMPLED: u64 = 1 << 16;
 /// So many errors are told.
 const ERRORS_TOLD: usize = 3;
 
@@ -39,8 +39,14 @@ pub struct Summary {
     pub worst_policy: String,
     /// The figure that they are of.
     pub worst_by: String,
-    /// Influence of each key, the largest first.
+    /// Influence of each key, the largest first: of ranks, in runs whose keys are drawn independently.
     pub influences: Vec<KeyInfluence>,
+    /// Indices of a design that is made for them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub indices: Option<Indices>,
+    /// Outcomes over pairs of keys. Programs have the results.
+    #[serde(skip)]
+    pub maps: Vec<OutcomeMap>,
     /// The runs with the most of that figure, the worst first.
     pub worst: Vec<WorstRun>,
 }
@@ -118,16 +124,6 @@ struct Tally {
     largest: Vec<f64>,
 }
 
-/// What is kept of the policy of the worst runs.
-struct Varied {
-    /// Of each key, a value a run, and the texts of which they are numbers.
-    values: Vec<(Vec<f64>, BTreeMap<String, usize>)>,
-    lost: Vec<f64>,
-    /// With the runs that have it.
-    figure: Vec<Option<f64>>,
-    worst: Vec<WorstRun>,
-}
-
 /// Keys of the main figures.
 fn main_figures() -> Vec<&'static str> {
     let main = (Figures::ALL.iter()).filter(|figure| figure.place == Place::Everywhere);
@@ -148,38 +144,47 @@ impl Summary {
         let reader = RowsReader::open(file, plan.columns()).map_err(refused)?;
         let sampled = Sampled::new(plan.runs());
         let mut tallies: Vec<Tally> = plan.policies().iter().map(|_| Tally::default()).collect();
-        let mut varied = Varied::new(plan);
-        let mut errors = Vec::new();
-        let mut sampled_runs = 0;
+        let (mut sample, mut came_to) = (Sample::new(plan), CameTo::new(plan));
+        let (mut worst, mut errors) = (Vec::new(), Vec::new());
         for group in reader.groups() {
             let rows = group.map_err(refused)?;
             for i in 0..rows.len() {
                 let row = Row { rows: &rows, i };
                 let run = row.number("run").unwrap_or_default() as u64;
                 let kept = sampled.has(run);
-                let policy = row.text("policy").unwrap_or_default();
-                let at = plan
-                    .policies()
-                    .iter()
-                    .position(|kind| kind.name() == policy);
-                let Some(tally) = at.and_then(|at| tallies.get_mut(at)) else {
+                let name = row.text("policy").unwrap_or_default();
+                let policy = (plan.policies().iter()).position(|kind| kind.name() == name);
+                let Some((policy, tally)) = policy.and_then(|at| Some((at, tallies.get_mut(at)?)))
+                else {
                     continue;
                 };
-                sampled_runs += u64::from(kept && at == Some(0));
+                if kept {
+                    sample.add(plan, &row, run, policy);
+                }
                 if let Some(error) = row.text("error") {
                     tally.failed += 1;
                     if errors.len() < ERRORS_TOLD {
-                        errors.push(format!("run {run}, {policy}: {error}"));
+                        errors.push(format!("run {run}, {name}: {error}"));
                     }
                     continue;
                 }
                 tally.add(&row, kept);
-                if policy == plan.worst_policy() {
-                    varied.add(plan, &row, run, kept);
+                if plan.is_worst_policy(policy) {
+                    came_to.add(plan, &row, run);
+                    rank(&mut worst, plan, &row, run);
                 }
             }
         }
         let independent = plan.file.design == Design::MonteCarlo;
+        let (influences, indices) = (influences(plan, &sample), came_to.indices(plan));
+        let pairs = match plan.file.maps.is_empty() {
+            true => strongest(plan, &influences, indices.as_ref()),
+            false => plan.file.maps.clone(),
+        };
+        for (place, run) in worst.iter_mut().enumerate() {
+            run.file = format!("worst_{}_run_{}.toml", place + 1, run.run);
+        }
+        let sampled_runs = sample.len() as u64;
         Ok(Self {
             scene: plan.title().to_owned(),
             design: plan.file.design,
@@ -192,59 +197,89 @@ impl Summary {
                 .collect(),
             worst_policy: plan.worst_policy().to_owned(),
             worst_by: plan.file.worst.by.clone(),
-            influences: varied.influences(plan),
-            worst: varied.worst,
+            maps: maps(plan, &sample, &pairs),
+            influences,
+            indices,
+            worst,
         })
     }
 }
 
-/// Which runs are looked at.
-struct Sampled {
-    below: u64,
+/// Puts a run among the worst, if it is one.
+fn rank(worst: &mut Vec<WorstRun>, plan: &Plan, row: &Row<'_>, run: u64) {
+    let Some(value) = (row.number(&plan.file.worst.by)).filter(|x| !x.is_nan()) else {
+        return;
+    };
+    // Of equals the first.
+    let at = worst.partition_point(|other| other.value >= value);
+    let outcome = row.text("outcome").unwrap_or_default().to_owned();
+    let file = String::new();
+    worst.insert(
+        at,
+        WorstRun {
+            run,
+            value,
+            outcome,
+            file,
+        },
+    );
+    worst.truncate(plan.file.worst.count as usize);
 }
 
-impl Sampled {
-    fn new(runs: u64) -> Self {
-        let share = MOST_SAMPLED as f64 / runs as f64;
-        Self {
-            // What is beyond the largest number is the largest.
-            below: (share * u64::MAX as f64) as u64,
-        }
-    }
-
-    /// By a number of its own, so that no pattern of a grid meets one of the part.
-    fn has(&self, run: u64) -> bool {
-        self.below == u64::MAX || mixed(mixed(run)) < self.below
-    }
+/// The largest first.
+fn influences(plan: &Plan, sample: &Sample) -> Vec<KeyInfluence> {
+    let policy = (0..plan.policies().len()).find(|at| plan.is_worst_policy(*at));
+    let places = sample.independent(plan, policy.unwrap_or_default());
+    let outcomes = policy.and_then(|at| sample.outcomes.get(at));
+    let is_lost = |i: &usize| {
+        let outcome = outcomes.and_then(|of| of.get(*i)).copied().flatten();
+        f64::from(u8::from(outcome.is_some_and(|of| !of.recovered())))
+    };
+    let lost: Vec<f64> = places.iter().map(is_lost).collect();
+    let (with, figure): (Vec<usize>, Vec<f64>) = (places.iter())
+        .filter_map(|i| Some((*i, sample.figure.get(*i).copied().flatten()?)))
+        .unzip();
+    let mut all: Vec<KeyInfluence> = (plan.file.variations.iter().zip(&sample.keys))
+        .map(|(variation, key)| {
+            let ordered = variation.values.kind() != Kind::Text;
+            let of = |places: &[usize]| places.iter().map(|i| key.values[*i]).collect::<Vec<f64>>();
+            KeyInfluence {
+                key: variation.key.clone(),
+                lost: Influence::of(&of(&places), ordered, &lost),
+                figure: Influence::of(&of(&with), ordered, &figure),
+            }
+        })
+        .collect();
+    let size = |of: &KeyInfluence| {
+        let shares = [of.lost.first_order, of.figure.first_order];
+        shares.into_iter().flatten().fold(0.0, f64::max)
+    };
+    all.sort_by(|a, b| size(b).total_cmp(&size(a)));
+    all
 }
 
-struct Row<'a> {
-    rows: &'a Rows,
-    i: usize,
-}
-
-impl Row<'_> {
-    fn column(&self, name: &str) -> Option<&Cells> {
-        self.rows.column(name)
-    }
-
-    fn number(&self, name: &str) -> Option<f64> {
-        self.column(name)?.number(self.i)
-    }
-
-    fn text(&self, name: &str) -> Option<&str> {
-        self.column(name)?.text(self.i)
-    }
-
-    fn is_lost(&self) -> bool {
-        self.number("recovered") != Some(1.0)
+/// The two keys of most influence, the stronger to the right; none where fewer vary.
+fn strongest(
+    plan: &Plan,
+    influences: &[KeyInfluence],
+    indices: Option<&Indices>,
+) -> Vec<[usize; 2]> {
+    let ranked: Vec<&str> = match indices {
+        Some(indices) => indices.keys.iter().map(|of| of.key.as_str()).collect(),
+        None => influences.iter().map(|of| of.key.as_str()).collect(),
+    };
+    let place = |key: &&str| plan.file.variations.iter().position(|of| of.key == **key);
+    let places: Vec<usize> = ranked.iter().filter_map(place).collect();
+    match places[..] {
+        [x, y, ..] => vec![[x, y]],
+        _ => Vec::new(),
     }
 }
 
 impl Tally {
     fn add(&mut self, row: &Row<'_>, kept: bool) {
         self.runs += 1;
-        self.lost += u64::from(row.is_lost());
+        self.lost += u64::from(row.outcome().is_none_or(|outcome| !outcome.recovered()));
         let outcome = row.text("outcome").unwrap_or_default();
         *self.outcomes.entry(outcome.to_owned()).or_default() += 1;
         let main = main_figures();
@@ -296,81 +331,5 @@ impl Quantiles {
             q99: quantile(0.99)?,
             largest,
         })
-    }
-}
-
-impl Varied {
-    fn new(plan: &Plan) -> Self {
-        Self {
-            values: vec![Default::default(); plan.file.variations.len()],
-            lost: Vec::new(),
-            figure: Vec::new(),
-            worst: Vec::new(),
-        }
-    }
-
-    fn add(&mut self, plan: &Plan, row: &Row<'_>, run: u64, kept: bool) {
-        let worst = &plan.file.worst;
-        let value = row.number(&worst.by).filter(|x| !x.is_nan());
-        if let Some(value) = value {
-            // Of equals the first.
-            let at = self.worst.partition_point(|other| other.value >= value);
-            let outcome = row.text("outcome").unwrap_or_default().to_owned();
-            let file = String::new();
-            self.worst.insert(
-                at,
-                WorstRun {
-                    run,
-                    value,
-                    outcome,
-                    file,
-                },
-            );
-            self.worst.truncate(worst.count as usize);
-        }
-        if !kept {
-            return;
-        }
-        for (variation, (values, words)) in plan.file.variations.iter().zip(&mut self.values) {
-            let cells = row.column(&variation.key);
-            values.push(match cells {
-                Some(cells @ Cells::Text(_)) => {
-                    let next = words.len();
-                    *words.entry(cells.shown(row.i)).or_insert(next) as f64
-                }
-                cells => cells
-                    .and_then(|cells| cells.number(row.i))
-                    .unwrap_or(f64::NAN),
-            });
-        }
-        self.lost.push(f64::from(u8::from(row.is_lost())));
-        self.figure.push(value);
-    }
-
-    fn influences(&mut self, plan: &Plan) -> Vec<KeyInfluence> {
-        for (place, run) in self.worst.iter_mut().enumerate() {
-            run.file = format!("worst_{}_run_{}.toml", place + 1, run.run);
-        }
-        let with: Vec<usize> = (0..self.figure.len())
-            .filter(|i| self.figure[*i].is_some())
-            .collect();
-        let figure: Vec<f64> = self.figure.iter().copied().flatten().collect();
-        let mut all: Vec<KeyInfluence> = (plan.file.variations.iter().zip(&self.values))
-            .map(|(variation, (values, _))| {
-                let ordered = variation.values.kind() != Kind::Text;
-                let of_figure: Vec<f64> = with.iter().map(|i| values[*i]).collect();
-                KeyInfluence {
-                    key: variation.key.clone(),
-                    lost: Influence::of(values, ordered, &self.lost),
-                    figure: Influence::of(&of_figure, ordered, &figure),
-                }
-            })
-            .collect();
-        let size = |of: &KeyInfluence| {
-            let shares = [of.lost.first_order, of.figure.first_order];
-            shares.into_iter().flatten().fold(0.0, f64::max)
-        };
-        all.sort_by(|a, b| size(b).total_cmp(&size(a)));
-        all
     }
 }

@@ -72,6 +72,17 @@ pub enum Values {
     },
 }
 
+/// A key of scenes that varies.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Variation {
+    /// Its path, as [`Spec::set`](crate::scene::spec::Spec::set) has it.
+    pub key: String,
+    /// What it varies over.
+    pub values: Values,
+    /// The key of the sweep file that says so.
+    pub(crate) said_by: String,
+}
+
 /// What is wrong with a table, at which of its keys, and what to do; no key: the table itself.
 pub(crate) type Wrong = (Option<&'static str>, String, String);
 
@@ -248,6 +259,19 @@ impl Values {
                 value.unwrap_or(mean).max(low).min(high)
             }
         })
+    }
+
+    /// The values of a list as its cells have them, for a list that is not of numbers.
+    pub(crate) fn words(&self) -> Vec<String> {
+        match self {
+            Self::Listed(values) if self.kind() == Kind::Text => (values.iter())
+                .map(|value| match self.cell(value) {
+                    Cell::Text(text) => text.unwrap_or_default(),
+                    _ => String::new(),
+                })
+                .collect(),
+            _ => Vec::new(),
+        }
     }
 
     /// What a column of its values holds.

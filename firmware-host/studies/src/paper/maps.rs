@@ -268,6 +268,7 @@ fn map(
             label: format!("Critical impact speed over {} and {}", x.name, y.name),
             x: axis(&x),
             y: axis(&y),
+            names: Default::default(),
             cells,
             scale: (low, high, "v_r,crit [m/s]".to_owned()),
         }),

@@ -1,6 +1,7 @@
 //! Rotors and controllers out of files of matrices.
 
-use super::{LEVITATED, ONE_PLANE, apart, machine, planes};
+use super::levitated::LEVITATED;
+use super::{ONE_PLANE, apart, machine, planes};
 use firmware_bench::device::modal_levitation::Weights;
 use firmware_bench::run::closed_loop::{Keep, run};
 use firmware_bench::scene::Scene;

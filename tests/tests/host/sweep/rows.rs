@@ -149,26 +149,30 @@ fn a_whole_rotor_has_the_figures_of_its_planes() {
     }
 }
 
-/// The sweep file that the documentation shows.
+/// The sweep files that the documentation shows.
 #[test]
-fn the_example_of_the_page_is_a_sweep() {
+fn the_examples_of_the_page_are_sweeps() {
     let page = fs::read_to_string(root().join("docs/src/host/sweep.md")).unwrap();
-    let (_, rest) = page.split_once("```toml\n").unwrap();
-    let (text, _) = rest.split_once("```").unwrap();
     let folder = TempDir::new().unwrap();
     let below = folder.path().join("sweeps");
     fs::create_dir(&below).unwrap();
-    let scene = "overload_then_release";
-    fs::copy(
-        scene_path(scene),
-        folder.path().join(format!("{scene}.toml")),
-    )
-    .unwrap();
-    fs::write(below.join("example.toml"), text).unwrap();
-    let plan = Plan::load(&below.join("example.toml")).unwrap();
-    assert_eq!((plan.runs(), plan.policies().len()), (1000, 2));
+    for scene in ["overload_then_release", "impact_at_40_hz"] {
+        let beside = folder.path().join(format!("{scene}.toml"));
+        fs::copy(scene_path(scene), beside).unwrap();
+    }
+    let texts = page.split("```toml\n").skip(1);
+    let plans: Vec<Plan> = (texts.filter_map(|text| text.split("```").next()))
+        .map(|text| {
+            fs::write(below.join("example.toml"), text).unwrap();
+            Plan::load(&below.join("example.toml")).unwrap()
+        })
+        .collect();
+    let sizes: Vec<(u64, usize)> = (plans.iter())
+        .map(|plan| (plan.runs(), plan.policies().len()))
+        .collect();
+    assert_eq!(sizes, [(1000, 2), (1024, 4)]);
     let forces: std::collections::BTreeSet<Option<i64>> = (0..1000)
-        .map(|run| plan.drawn(run).values[1].as_integer())
+        .map(|run| plans[0].drawn(run).values[1].as_integer())
         .collect();
     assert!(forces.into_iter().eq([900, 1300, 1700].map(Some)));
 }

@@ -104,6 +104,8 @@ pub struct HeatMap {
     pub x: Axis,
     /// Vertical axis.
     pub y: Axis,
+    /// Names of the columns, and of the rows, in the place of numbers; of an axis without names none.
+    pub names: [Vec<String>; 2],
     /// Rows from bottom to top, cells from left to right; not finite is left white.
     pub cells: Vec<Vec<f64>>,
     /// Values of the lightest and the darkest colour, and what the value is.
@@ -124,9 +126,11 @@ const COLOURS: [RGBColor; 9] = [
 ];
 
 // CSS pixels.
-const WIDTH: u32 = 680;
+pub(super) const WIDTH: u32 = 680;
 const HEIGHT: u32 = 380;
-const FONT: u32 = 17;
+pub(super) const FONT: u32 = 17;
+/// Room for a letter of it.
+const LETTER: u32 = 9;
 /// Room for half of the last number of the x axis.
 const RIGHT: u32 = 24;
 
@@ -166,24 +170,46 @@ pub fn chart(plot: &Chart) -> Result<String, PlotError> {
 /// Draws a map.
 pub fn heat_map(plot: &HeatMap) -> Result<String, PlotError> {
     let picture = svg(&plot.label, |area| {
-        // Cells are laid out evenly; a logarithmic axis says what their places mean.
-        let range = |axis: &Axis| if axis.log { 0.0..1.0 } else { linear(axis) };
-        let value = |axis: &Axis, place: f64| if axis.log { at(axis, place) } else { place };
+        // Cells are laid out evenly; a logarithmic axis says what their places mean, names stand in their middles.
+        let [columns, rows] = &plot.names;
+        let range = |axis: &Axis, names: &[String]| match (names.len(), axis.log) {
+            (0, false) => linear(axis),
+            (0, true) => 0.0..1.0,
+            (count, _) => -0.5..count as f64 - 0.5,
+        };
+        let label = |axis: &Axis, names: &[String], place: f64| match (names.len(), axis.log) {
+            (0, false) => figures(place),
+            (0, true) => figures(at(axis, place)),
+            // Between two names.
+            _ if place.fract() != 0.0 => String::new(),
+            _ => names.get(place as usize).cloned().unwrap_or_default(),
+        };
+        let names = [columns, rows]
+            .map(|names| names.iter().map(|name| shortened(name)).collect::<Vec<_>>());
+        let widest = |names: &[String]| names.iter().map(|name| name.chars().count()).max();
+        let [columns, rows] = &names;
+        // A mark a name, as far as there is room for them beside each other.
+        let room = (WIDTH - 120) as usize / (LETTER as usize * (widest(columns).unwrap_or(0) + 1));
+        let marks = |names: &[String], most: usize| match names.len() {
+            0 => 6,
+            _ => most.clamp(2, 25),
+        };
+        let beside = widest(rows).map_or(70, |letters| LETTER * letters as u32 + 34);
         let mut chart = ChartBuilder::on(area)
             .margin(10)
             .margin_right(RIGHT)
             .x_label_area_size(44)
-            .y_label_area_size(70)
-            .build_cartesian_2d(range(&plot.x), range(&plot.y))?;
+            .y_label_area_size(beside)
+            .build_cartesian_2d(range(&plot.x, columns), range(&plot.y, rows))?;
         chart
             .configure_mesh()
             .disable_mesh()
             .x_desc(&plot.x.name)
             .y_desc(&plot.y.name)
-            .x_labels(6)
-            .y_labels(6)
-            .x_label_formatter(&|place| figures(value(&plot.x, *place)))
-            .y_label_formatter(&|place| figures(value(&plot.y, *place)))
+            .x_labels(marks(columns, room))
+            .y_labels(marks(rows, 2 * rows.len()))
+            .x_label_formatter(&|place| label(&plot.x, columns, *place))
+            .y_label_formatter(&|place| label(&plot.y, rows, *place))
             .label_style(("sans-serif", FONT))
             .axis_style(INK)
             .draw()?;
@@ -201,6 +227,14 @@ pub fn heat_map(plot: &HeatMap) -> Result<String, PlotError> {
     }
     legend.push_str("</ul>");
     Ok(picture + &legend)
+}
+
+/// What there is room for beside an axis.
+fn shortened(name: &str) -> String {
+    match name.char_indices().nth(8) {
+        Some((end, _)) if name.chars().count() > 9 => format!("{}…", &name[..end]),
+        _ => name.to_owned(),
+    }
 }
 
 /// The cells, one path a colour and one rectangle for each run of it: a rectangle a cell would make pages of
@@ -338,7 +372,7 @@ fn at(axis: &Axis, share: f64) -> f64 {
     from * (to / from).powf(share)
 }
 
-fn colour(place: usize) -> RGBColor {
+pub(super) fn colour(place: usize) -> RGBColor {
     COLOURS[place % COLOURS.len()]
 }
 

@@ -41,6 +41,7 @@ pub(super) fn figure(
                 log: false,
             },
             y,
+            names: Default::default(),
             cells,
             scale: (
                 1.0,

@@ -1,0 +1,128 @@
+//! Tables of parameters: the one that is printed to be pasted into a scene, and those of the book.
+
+use super::{advice, advise, amb, stderr};
+use firmware_bench::advise::Advice;
+use firmware_bench::scene::Scene;
+use firmware_bench::scene::suggest::{Nominal, suggested};
+use supervisor::{DefaultRule, PARAMETERS};
+use system_tests::{root, scene_names, scene_path};
+
+/// Every scene with a supervisor: with the printed table in it its configuration is the suggested one,
+/// and without one, too.
+#[test]
+fn the_pasted_table_gives_the_same_configuration() {
+    let mut pasted = 0;
+    for name in scene_names() {
+        let path = scene_path(&name);
+        let scene = Scene::load(&path).unwrap();
+        if scene.supervisor.is_none() {
+            continue;
+        }
+        let output = advise(&[path.to_str().unwrap()]);
+        assert!(output.status.success(), "{}", stderr(&output));
+        let text = String::from_utf8(output.stdout).unwrap();
+        let table = &text[text.find("[supervisor]").unwrap()..];
+        let own = std::fs::read_to_string(&path).unwrap();
+        // What a scene sets itself makes way for the table.
+        let (before, rest) = own.split_once("[supervisor]").unwrap_or((&own, ""));
+        let after = rest.find("\n[").map_or("", |at| &rest[at..]);
+        let with_table = Scene::parse(&name, &format!("{before}\n{after}\n{table}")).unwrap();
+        let config = suggested(&scene.nominal).config;
+        assert_eq!(with_table.supervisor.unwrap(), config, "{name}");
+        if scene.overrides.is_empty() {
+            assert_eq!(scene.supervisor.unwrap(), config, "{name}");
+        }
+        pasted += 1;
+    }
+    assert!(pasted >= 3, "{pasted}");
+}
+
+/// A bearing with awkward numbers: f32 through decimals and back.
+#[test]
+fn the_table_holds_every_bit() {
+    let n = Nominal {
+        mass_kg: 1.0 / 3.0,
+        clearance_m: 1.234_567_89e-4,
+        stiffness_n_m: -98_765.432_1,
+        sample_rate_hz: 17_777.7,
+        noise_rms_m: 3.333e-7,
+        contact_stiffness_n_m: 1.234_567_8e8,
+        ..amb()
+    };
+    let a = advice(&n);
+    let config = suggested(&n).config;
+    let own = std::fs::read_to_string(scene_path("overload_then_release")).unwrap();
+    let scene = Scene::parse("scene", &format!("{own}\n{}", a.supervisor_table)).unwrap();
+    assert_eq!(scene.supervisor.unwrap(), config);
+    // Against a scene of its own the table says what that replaces.
+    let with_own = Advice::new("test", &scene.nominal, &scene.overrides).unwrap();
+    assert!(
+        with_own
+            .supervisor_table
+            .contains("(this scene sets 0.33333334)")
+    );
+    for (p, value) in PARAMETERS.iter().zip(config.values()) {
+        let row = a.parameters.iter().find(|r| r.name == p.name).unwrap();
+        assert_eq!((row.value, row.unit), (value, p.unit));
+        assert!(!row.reason.is_empty(), "{}", p.name);
+    }
+}
+
+/// Under the heading of its group each parameter has its unit, range, default and text.
+fn the_tables_of_parameters_say_what_the_crate_says() {
+    let page = std::fs::read_to_string(root().join("docs/src/supervisor/linking.md")).unwrap();
+    let (_, tables) = page.split_once("\n## Parameters\n").unwrap();
+    for p in PARAMETERS {
+        let of_group = tables
+            .split("\n### ")
+            .find(|part| part.starts_with(&format!("{:?}\n", p.group)));
+        let name = format!("`{}`", p.name);
+        let mut rows = of_group
+            .unwrap()
+            .lines()
+            .map(|l| l.split(" | ").collect::<Vec<_>>());
+        let row = rows.find(|row| row[0].trim_start_matches("| ") == name);
+        let row = row.unwrap_or_else(|| panic!("{name} is not of {:?}", p.group));
+        let (low, high) = row[2].split_once(" to ").unwrap();
+        assert_eq!(
+            (row[1], low.parse(), high.parse()),
+            (p.unit, Ok(p.low), Ok(p.high)),
+            "{name}"
+        );
+        let default = match p.default {
+            DefaultRule::Given => "**given**".to_owned(),
+            DefaultRule::Derived(rule) => rule.to_owned(),
+            DefaultRule::Constant(value, reason) => {
+                let (shown, _) = row[3].split_once(": ").unwrap();
+                assert_eq!(shown.parse(), Ok(value), "{name}");
+                format!("{shown}: {reason}")
+            }
+        };
+        assert_eq!((row[3], row[4]), (default.as_str(), p.text), "{name}");
+    }
+}
+
+/// Both tables of the book know every parameter, and the page every warning.
+#[test]
+fn the_book_says_how_to_choose_every_parameter() {
+    for page in ["linking", "advise"] {
+        let path = root().join(format!("docs/src/supervisor/{page}.md"));
+        let text = std::fs::read_to_string(path).unwrap();
+        for p in PARAMETERS {
+            let row = format!("`{}`", p.name);
+            let in_table = (text.lines()).any(|l| l.starts_with('|') && l.contains(&row));
+            assert!(in_table, "{page}.md: {}", p.name);
+        }
+    }
+    the_tables_of_parameters_say_what_the_crate_says();
+    let source = std::fs::read_to_string(root().join("firmware-host/bench/src/advise/warnings.rs"));
+    let page = std::fs::read_to_string(root().join("docs/src/supervisor/advise.md")).unwrap();
+    let source = source.unwrap();
+    let keys: Vec<&str> = (source.split("warning(").skip(1))
+        .filter_map(|rest| rest.trim_start().strip_prefix('"')?.split('"').next())
+        .collect();
+    assert_eq!(keys.len(), 13, "{keys:?}");
+    for key in keys {
+        assert!(page.contains(&format!("| `{key}` |")), "{key}");
+    }
+}

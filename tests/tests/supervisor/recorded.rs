@@ -1,0 +1,82 @@
+//! What the flight record keeps of an engagement.
+
+use super::promises::{new, sample};
+use supervisor::{Entry, Events, Mode, Stamp, crc_of};
+
+/// The record holds the ticks around the engagement, oldest first, and freezes once the levitation controller has the bearing
+/// again; its sections are under a checksum that any other implementation of CRC-32 gives.
+/// Requirement: SR-30
+#[test]
+fn recorder_freezes_around_the_engagement() {
+    let mut supervisor = new();
+    let (mut frozen_at, mut levitated_at) = (None, None);
+    for i in 0..900_u32 {
+        let out = (3e-5 * i.saturating_sub(99) as f32).min(2.02e-4);
+        let back = (2e-6 * i.saturating_sub(250) as f32).min(out);
+        let command = supervisor.tick(&sample(i, [out - back, 0.0]));
+        if command.events.contains(Events::RECORD_FROZEN) {
+            frozen_at = Some(i);
+        }
+        if command.events.contains(Events::LEVITATED) {
+            levitated_at = Some(i);
+        }
+    }
+    assert!(levitated_at > Some(250));
+    assert_eq!(frozen_at, levitated_at);
+    let record = supervisor.record().expect("frozen");
+    let entries: Vec<Entry> = record.entries().collect();
+    assert_eq!(entries.len(), 64);
+    assert!(
+        entries
+            .windows(2)
+            .all(|w| w[1].sequence == w[0].sequence + 1)
+    );
+    let engaged = entries
+        .iter()
+        .position(|e| Events::from_bits_retain(e.events.into()).contains(Events::ENGAGED));
+    assert_eq!(engaged, Some(15), "a quarter before the trigger");
+    let summary = record.summary();
+    assert_eq!(summary.mode, Mode::Levitated as u32);
+    let report = supervisor.report();
+    assert_eq!(
+        (summary.touches, summary.contact_ticks, summary.landings),
+        (report.impacts, report.contact_ticks, 1)
+    );
+    assert_eq!(summary.hardest_impact_m_s, report.impact_speed_max_m_s);
+    assert_eq!(summary.severity, report.severity_index);
+    let mut sections = 0;
+    while let Some(mut section) = record.section(sections, &Stamp::default()) {
+        let bytes = section.seal();
+        let (of, crc) = bytes.split_last_chunk::<4>().unwrap();
+        assert_eq!(bitwise_crc(of), u32::from_le_bytes(*crc));
+        assert_eq!(crc_of(of), bitwise_crc(of));
+        sections += 1;
+    }
+    assert!(sections > 8, "{sections}");
+    assert_eq!(
+        bitwise_crc(b"123456789"),
+        0xCBF4_3926,
+        "the published check value"
+    );
+
+    let mut seen = Events::empty();
+    while let Some(event) = supervisor.next_event() {
+        seen |= event.events;
+    }
+    assert!(seen.contains(Events::ENGAGED | Events::TOUCHED | Events::RECORD_FROZEN));
+}
+
+fn bitwise_crc(bytes: &[u8]) -> u32 {
+    let mut crc = !0_u32;
+    for byte in bytes {
+        crc ^= u32::from(*byte);
+        for _ in 0..8 {
+            crc = if crc & 1 == 1 {
+                (crc >> 1) ^ 0xEDB8_8320
+            } else {
+                crc >> 1
+            };
+        }
+    }
+    !crc
+}
