@@ -10,7 +10,7 @@ use crate::vec2::Vec2;
 use crate::words::words_of_fields;
 
 /// Modes that may be told.
-const MODES: usize = if BENDING { 2 } else { 0 };
+pub(crate) const MODES: usize = if BENDING { 2 } else { 0 };
 /// Share of what is left of the swing that is learnt in a tick. The double of it makes the observer swing by itself near the
 /// slowest modes that it can tell.
 const LEARNT: f32 = 1.0 / 8.0;

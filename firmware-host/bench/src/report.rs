@@ -334,7 +334,7 @@ mod tests {
         for error in ["Warning: lost", "Warning: no &lt;check&gt;"] {
             assert!(page.contains(error), "{error}");
         }
-        let text = include_str!("../../scenes/overload_then_release.toml");
+        let text = include_str!("../scenes/overload_then_release.toml");
         let scene = Scene::parse("test", text).unwrap();
         let json = table::json(&scene, &results);
         let policies = &json["policies"];

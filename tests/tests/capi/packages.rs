@@ -1,4 +1,5 @@
-//! The crates as they are packed for firmware that vendors them: complete, and built where nothing else of the project is.
+//! The crates as they are packed for a registry, and for firmware that vendors them: complete, and built where nothing else of the
+//! project is.
 
 use crate::library::{finished, good, tool};
 use std::path::{Path, PathBuf};
@@ -6,10 +7,28 @@ use std::process::Command;
 use system_tests::root;
 
 /// Folder in the project and name of each crate that is packed.
-const CRATES: [(&str, &str); 3] = [
+const CRATES: [(&str, &str); 9] = [
     ("supervisor", "supervisor"),
     ("supervisor/capi", "supervisor-capi"),
     ("plant-model", "plant-model"),
+    ("firmware-host", "firmware-host"),
+    ("firmware-host/controller", "firmware-controller"),
+    ("firmware-host/image", "firmware-image"),
+    ("firmware-host/bench", "firmware-bench"),
+    ("firmware-host/studies", "firmware-studies"),
+    ("firmware-host/fmu", "firmware-fmu"),
+];
+
+/// What a package has at its top, beside what cargo writes and what every crate has.
+const OTHERS: [&str; 8] = [
+    "src",
+    "include",
+    "examples",
+    "tests",
+    "scenes",
+    "build.rs",
+    "panic_free.x",
+    "CHANGELOG.md",
 ];
 
 fn cargo() -> Command {
@@ -23,7 +42,10 @@ fn unpacked(here: &Path) -> Vec<(PathBuf, PathBuf)> {
     pack.args(["package", "--no-verify", "--offline", "--allow-dirty"]);
     pack.args(CRATES.map(|(_, name)| format!("-p={name}")));
     pack.arg("--target-dir").arg(here.join("target"));
-    good(&pack.output().unwrap());
+    let packed = pack.output().unwrap();
+    good(&packed);
+    let said = String::from_utf8_lossy(&packed.stderr);
+    assert!(!said.contains("warning"), "{said}");
     CRATES
         .map(|(folder, name)| {
             let name = format!("{name}-{}", env!("CARGO_PKG_VERSION"));
@@ -42,6 +64,22 @@ fn unpacked(here: &Path) -> Vec<(PathBuf, PathBuf)> {
         .to_vec()
 }
 
+/// Files that the sources below a folder name to have their text compiled in.
+fn included(folder: &Path) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            found.extend(included(&path));
+        } else if path.extension().is_some_and(|e| e == "rs") {
+            let text = std::fs::read_to_string(&path).unwrap();
+            let named = text.split("include_str!(\"").skip(1);
+            found.extend(named.map(|rest| folder.join(rest.split('"').next().unwrap())));
+        }
+    }
+    found
+}
+
 #[test]
 fn packed_crates_are_complete_and_build_alone() {
     let folder = tempfile::tempdir().unwrap();
@@ -57,14 +95,23 @@ fn packed_crates_are_complete_and_build_alone() {
                 package.display()
             );
         }
-        assert!(read(package.join("README.md")) == read(source.join("README.md")));
         let manifest = read(package.join("Cargo.toml"));
+        // The crates of the host share its own.
+        let readme = [source.as_path(), source.parent().unwrap()]
+            .map(|folder| folder.join("README.md"))
+            .into_iter()
+            .find(|readme| readme.exists());
+        assert!(read(package.join("README.md")) == read(readme.unwrap()));
+        for file in included(&package.join("src")) {
+            assert!(file.exists(), "{}", file.display());
+        }
         for part in [
             "rust-version = \"",
             "license = \"MIT OR Apache-2.0\"",
             "readme = ",
             "keywords = ",
             "categories = ",
+            "documentation = ",
         ] {
             assert!(manifest.contains(part), "{}: {part}", package.display());
         }
@@ -75,11 +122,7 @@ fn packed_crates_are_complete_and_build_alone() {
             .unwrap()
             .map(|e| e.unwrap().file_name())
             .collect();
-        others.retain(|name| {
-            !["src", "include", "examples", "tests", "build.rs"]
-                .iter()
-                .any(|known| name == known)
-        });
+        others.retain(|name| !OTHERS.iter().any(|known| name == known));
         // Three of those above, and three that cargo writes; one more where the sources are in a repository.
         let count = others
             .iter()
@@ -89,8 +132,8 @@ fn packed_crates_are_complete_and_build_alone() {
     }
 
     // As the README of the C interface says: a folder beside it, and what cargo has to know.
-    let [(_, supervisor), (_, capi), _] = packed.as_slice() else {
-        panic!("three crates")
+    let [(_, supervisor), (_, capi), ..] = packed.as_slice() else {
+        panic!("CRATES begins with these")
     };
     let vendor = folder.path().join("vendor");
     std::fs::create_dir_all(folder.path().join(".cargo")).unwrap();

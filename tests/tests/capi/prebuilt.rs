@@ -86,10 +86,12 @@ fn it_is_used_without_rust_and_has_the_same_bytes_from_elsewhere() {
     }
     if let Some(mut cmake) = tool("cmake") {
         let project = format!(
-            "cmake_minimum_required(VERSION 3.20)\nproject(check C)\nfind_package(amb_supervisor 0.1 REQUIRED)\n\
+            "cmake_minimum_required(VERSION 3.20)\nproject(check C)\nfind_package(amb_supervisor {1}.{2} REQUIRED)\n\
              add_executable(static {0})\ntarget_link_libraries(static amb_supervisor::amb_supervisor m)\n\
              add_executable(shared {0})\ntarget_link_libraries(shared amb_supervisor::shared m)\n",
-            two_planes.display()
+            two_planes.display(),
+            env!("CARGO_PKG_VERSION_MAJOR"),
+            env!("CARGO_PKG_VERSION_MINOR"),
         );
         let sources = folder.path().join("cmake");
         std::fs::create_dir(&sources).unwrap();

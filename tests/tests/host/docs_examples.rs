@@ -49,7 +49,7 @@ const ONLY_PARSED: [(&str, &str); 16] = [
 ];
 
 /// What is not this program: what it needs, or what builds and runs firmware.
-const OTHERS: [(&str, &str); 22] = [
+const OTHERS: [(&str, &str); 24] = [
     ("git clone", "fetches the project"),
     ("curl", "installs Rust"),
     ("apt-get", "installs packages"),
@@ -72,6 +72,14 @@ const OTHERS: [(&str, &str); 22] = [
         "the test of the requirements compares what it writes",
     ),
     ("cargo package", "the tests of the C library do it"),
+    (
+        "tests/semver",
+        "needs cargo-semver-checks, and a release before",
+    ),
+    (
+        "firmware-host/dist",
+        "the test of the release does it, around what is built",
+    ),
     (
         "supervisor/capi/prebuilt/build",
         "the tests of the C library do it",

@@ -7,7 +7,7 @@ use std::process::Command;
 use system_tests::root;
 
 /// Packages of the workspace and what they depend on, on this machine.
-fn metadata() -> Value {
+pub(crate) fn metadata() -> Value {
     let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     cargo.args(["metadata", "--format-version", "1", "--offline", "--locked"]);
     let host = Command::new("rustc")

@@ -15,6 +15,7 @@ mod machine_scenes;
 mod own_controllers;
 mod record_of_fewer_parameters;
 mod record_version_2;
+mod release;
 mod report_page;
 mod requirements;
 mod review;

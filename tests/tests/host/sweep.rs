@@ -5,6 +5,7 @@ mod page;
 mod refusals;
 mod rows;
 mod slurm;
+mod workflows;
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -353,7 +353,7 @@ mod tests {
     /// What decides a result has a row, and what is not there has none.
     #[test]
     fn what_decides_a_result_is_among_the_facts() {
-        let scene = include_str!("../../../scenes/shock_15_g_on_amb.toml");
+        let scene = include_str!("../../scenes/shock_15_g_on_amb.toml");
         let (facts, _) = said(scene);
         for fact in [
             "Contact stiffness 1e9 N/m",
@@ -409,7 +409,7 @@ mod tests {
 
     #[test]
     fn a_scene_is_told_whole() {
-        let scene = include_str!("../../../scenes/shock_15_g_on_amb.toml");
+        let scene = include_str!("../../scenes/shock_15_g_on_amb.toml");
         let (facts, _) = said(scene);
         for fact in ["Mass 10 kg", "Spin 200 Hz", "20 µm off", "seed 1"] {
             assert!(facts.contains(fact), "{facts}");

@@ -145,7 +145,7 @@ mod tests {
     use crate::report::fixture;
     use crate::run::closed_loop::{Keep, refer_machine};
 
-    const P6: &str = include_str!("../../../scenes/rotors/p6.toml");
+    const P6: &str = include_str!("../../scenes/rotors/p6.toml");
 
     fn law(lent: f64) -> WholeClairvoyantLaw {
         WholeClairvoyantLaw {

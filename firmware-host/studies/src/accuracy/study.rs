@@ -12,23 +12,23 @@ use serde::Serialize;
 const BENCHMARKS: [(&str, &str); 5] = [
     (
         "benchmark_b1.toml",
-        include_str!("../../../scenes/benchmark_b1.toml"),
+        include_str!("../../scenes/benchmark_b1.toml"),
     ),
     (
         "benchmark_b2.toml",
-        include_str!("../../../scenes/benchmark_b2.toml"),
+        include_str!("../../scenes/benchmark_b2.toml"),
     ),
     (
         "benchmark_b3a.toml",
-        include_str!("../../../scenes/benchmark_b3a.toml"),
+        include_str!("../../scenes/benchmark_b3a.toml"),
     ),
     (
         "benchmark_b3b.toml",
-        include_str!("../../../scenes/benchmark_b3b.toml"),
+        include_str!("../../scenes/benchmark_b3b.toml"),
     ),
     (
         "benchmark_b3c.toml",
-        include_str!("../../../scenes/benchmark_b3c.toml"),
+        include_str!("../../scenes/benchmark_b3c.toml"),
     ),
 ];
 /// Problems whose references take more evaluations are swept only when asked to: with fewer, the sweep

@@ -27,25 +27,25 @@ const FILES: [File; 4] = [
     File {
         name: "P1",
         file: "plants/p1.toml",
-        text: include_str!("../../../scenes/plants/p1.toml"),
+        text: include_str!("../../scenes/plants/p1.toml"),
         caps_n: &[50.0, 150.0, 500.0, 1500.0],
     },
     File {
         name: "P2",
         file: "plants/p2.toml",
-        text: include_str!("../../../scenes/plants/p2.toml"),
+        text: include_str!("../../scenes/plants/p2.toml"),
         caps_n: &[],
     },
     File {
         name: "P3",
         file: "plants/p3.toml",
-        text: include_str!("../../../scenes/plants/p3.toml"),
+        text: include_str!("../../scenes/plants/p3.toml"),
         caps_n: &[],
     },
     File {
         name: "P4",
         file: "plants/p4.toml",
-        text: include_str!("../../../scenes/plants/p4.toml"),
+        text: include_str!("../../scenes/plants/p4.toml"),
         caps_n: &[],
     },
 ];

@@ -31,7 +31,7 @@ pub struct Row {
 }
 
 /// What is kept in the project, written by `overloads --search`.
-const KEPT: &str = include_str!("../../../scenes/plants/found.json");
+const KEPT: &str = include_str!("../../scenes/plants/found.json");
 
 /// All kept results; none if the file is not what it should be.
 fn all_kept() -> &'static [Row] {

@@ -21,29 +21,29 @@ pub struct RotorPlant {
 }
 
 /// Text of its scene.
-pub(super) const P5: &str = include_str!("../../../scenes/rotors/p5.toml");
+pub(super) const P5: &str = include_str!("../../scenes/rotors/p5.toml");
 
 /// Name, scene, scene with the robust loop.
 const FILES: [(&str, &str, &str); 4] = [
     (
         "P5",
         P5,
-        include_str!("../../../scenes/rotors/p5_robust.toml"),
+        include_str!("../../scenes/rotors/p5_robust.toml"),
     ),
     (
         "P6",
-        include_str!("../../../scenes/rotors/p6.toml"),
-        include_str!("../../../scenes/rotors/p6_robust.toml"),
+        include_str!("../../scenes/rotors/p6.toml"),
+        include_str!("../../scenes/rotors/p6_robust.toml"),
     ),
     (
         "P7",
-        include_str!("../../../scenes/rotors/p7.toml"),
-        include_str!("../../../scenes/rotors/p7_robust.toml"),
+        include_str!("../../scenes/rotors/p7.toml"),
+        include_str!("../../scenes/rotors/p7_robust.toml"),
     ),
     (
         "P8",
-        include_str!("../../../scenes/rotors/p8.toml"),
-        include_str!("../../../scenes/rotors/p8_robust.toml"),
+        include_str!("../../scenes/rotors/p8.toml"),
+        include_str!("../../scenes/rotors/p8_robust.toml"),
     ),
 ];
 

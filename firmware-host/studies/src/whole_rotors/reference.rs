@@ -35,7 +35,7 @@ pub struct FoundLaw {
 }
 
 /// What is kept in the project, written by `overloads --search --rotors`.
-const KEPT: &str = include_str!("../../../scenes/rotors/found.json");
+const KEPT: &str = include_str!("../../scenes/rotors/found.json");
 
 /// All kept results; none if the file is not what it should be.
 fn kept() -> &'static [FoundLaw] {

@@ -1,0 +1,69 @@
+//! The recipes for other people's tools that spread tasks: Snakemake runs its own, Dask's is read.
+
+use super::{DRAWS, contents, succeeds, sweep, sweep_file};
+use crate::own_controllers::python;
+use std::path::Path;
+use std::process::{Command, Output};
+use system_tests::target::skipped;
+use system_tests::{host, root};
+use tempfile::TempDir;
+
+/// The recipe on a sweep, in parts, as a user types it.
+fn snakemake(tool: &Path, folder: &Path, (sweep, out): (&Path, &Path)) -> Output {
+    let program = host();
+    let programs = Path::new(program.get_program()).parent().unwrap();
+    let path = std::env::var("PATH").unwrap_or_default();
+    let mut command = Command::new(tool);
+    command
+        .args(["--cores", "2", "--snakefile"])
+        .arg(root().join("firmware-host/scenes/sweeps/Snakefile"))
+        .arg("--config")
+        .arg(format!("sweep={}", sweep.display()))
+        .arg(format!("folder={}", out.display()))
+        .arg("parts=3");
+    // What it keeps for itself goes there, too.
+    command
+        .env("PATH", format!("{}:{path}", programs.display()))
+        .env("HOME", folder)
+        .env("XDG_CACHE_HOME", folder)
+        .current_dir(folder);
+    command.output().unwrap()
+}
+
+#[test]
+fn snakemake_makes_the_bytes_of_one_machine() {
+    let tool = root().join("target/tests-venv/bin/snakemake");
+    if !tool.is_file() {
+        return skipped("snakemake is not there");
+    }
+    let folder = TempDir::new().unwrap();
+    let file = sweep_file(folder.path(), DRAWS);
+    let (parts, whole) = (folder.path().join("my parts"), folder.path().join("whole"));
+    succeeds(&sweep(&file, &whole, &[]));
+
+    let first = snakemake(&tool, folder.path(), (&file, &parts));
+    let said = succeeds(&first) + &String::from_utf8_lossy(&first.stderr);
+    // Three parts and the whole, for which nothing was left.
+    assert!(said.contains("4 of 4 steps (100%) done"), "{said}");
+    assert!(said.contains("nothing was left to run"), "{said}");
+    assert!(contents(&parts) == contents(&whole));
+
+    let again = snakemake(&tool, folder.path(), (&file, &parts));
+    let said = succeeds(&again) + &String::from_utf8_lossy(&again.stderr);
+    assert!(said.contains("Nothing to be done"), "{said}");
+}
+
+#[test]
+fn the_recipe_for_dask_is_python() {
+    if !python() {
+        return;
+    }
+    let recipe = root().join("firmware-host/scenes/sweeps/parts_by_dask.py");
+    let parse = "import ast, sys; ast.parse(open(sys.argv[1]).read())";
+    let parsed = Command::new("python3")
+        .args(["-c", parse])
+        .arg(recipe)
+        .output()
+        .unwrap();
+    succeeds(&parsed);
+}
