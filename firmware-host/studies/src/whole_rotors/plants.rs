@@ -25,11 +25,7 @@ pub(super) const P5: &str = include_str!("../../scenes/rotors/p5.toml");
 
 /// Name, scene, scene with the robust loop.
 const FILES: [(&str, &str, &str); 4] = [
-    (
-        "P5",
-        P5,
-        include_str!("../../scenes/rotors/p5_robust.toml"),
-    ),
+    ("P5", P5, include_str!("../../scenes/rotors/p5_robust.toml")),
     (
         "P6",
         include_str!("../../scenes/rotors/p6.toml"),
