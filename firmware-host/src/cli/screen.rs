@@ -14,7 +14,7 @@ pub fn prepare() {
 /// Prints a command's result for a person.
 ///
 /// # Errors
-/// As of [`print`].
+/// As of [`print()`].
 pub(crate) fn tell(text: &str) -> Result<(), CommandError> {
     // For a terminal alone: what a script reads or searches must not depend on how long a path is.
     if !stdout().is_terminal() {
