@@ -219,8 +219,8 @@ typedef int32_t amb_code;
 #define AMB_P_MAGNET_PLANE_RATIO 28 /**< 1, 0.1 to 10: Position at the magnet over position at the retainer bearing: the leverage of its force. */
 #define AMB_P_SPEED_MAX_M_S 29 /**< m/s, 0.001 to 1000: No rotor is faster than this at the retainer bearing: a sample that would need it is refused. */
 #define AMB_P_SENSOR_STEP_M 30 /**< m, 1e-9 to 0.001: Step of the sensor's converter or its noise (root mean square), whichever is larger, at the sensor. */
-#define AMB_P_BENDING_FIRST_HZ 31 /**< Hz, 0 to 100000: Natural frequency of a bending mode that the force would drive, the lower end of what is likely; 0 where there is none. */
-#define AMB_P_BENDING_SECOND_HZ 32 /**< Hz, 0 to 100000: The same of a second mode; 0 where there is none. */
+#define AMB_P_BENDING_FIRST_HZ 31 /**< Hz, 0 to 1e5: Natural frequency of a bending mode that the force would drive, the lower end of what is likely; 0 where there is none. */
+#define AMB_P_BENDING_SECOND_HZ 32 /**< Hz, 0 to 1e5: The same of a second mode; 0 where there is none. */
 /** How many there are. */
 #define AMB_PARAMETERS 33
 /** @} */
