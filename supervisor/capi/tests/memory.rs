@@ -36,14 +36,14 @@ struct Memory([u8; 29184]);
 /// Memory of two archives of one event each.
 struct Archived {
     archives: Box<[[u64; 8]; 2]>,
-    places: Box<[[u64; 3380]; 2]>,
+    places: Box<[[u64; size_of::<Shelf>() / 8]; 2]>,
 }
 
 impl Archived {
     fn new() -> Self {
         Self {
             archives: Box::new([[0; 8]; 2]),
-            places: Box::new([[0; 3380]; 2]),
+            places: Box::new([[0; size_of::<Shelf>() / 8]; 2]),
         }
     }
 
