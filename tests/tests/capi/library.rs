@@ -160,6 +160,16 @@ pub(crate) fn host_program(sources: &[PathBuf], library: &Path, program: &Path) 
     Some(cc.output().expect("the compiler starts"))
 }
 
+/// What a program says that a C file beside these tests and the rig make on the host; `None` where a tool is missing.
+pub(crate) fn said_with_rig(source: &str) -> Option<String> {
+    let library = built(Target::Host, "")?;
+    let folder = tempfile::tempdir().unwrap();
+    let program = folder.path().join("program");
+    let sources = [beside(source), capi().join("examples/rig.c")];
+    good(&host_program(&sources, &library, &program)?);
+    Some(good(&Command::new(program).output().unwrap()))
+}
+
 /// A C file beside these tests.
 pub(crate) fn beside(name: &str) -> PathBuf {
     root().join("tests/tests/capi").join(name)

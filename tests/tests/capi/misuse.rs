@@ -1,7 +1,6 @@
 //! Every documented misuse, from C.
 
-use crate::library::{Target, beside, built, capi, good, host_program};
-use std::process::Command;
+use crate::library::{beside, said_with_rig};
 use supervisor_capi::{Code, code::CODES};
 
 /// One plane, a rotor in two, a ledger, and an archive.
@@ -15,18 +14,10 @@ const SOURCES: [&str; 4] = [
 /// Requirements: SR-28, SR-37
 #[test]
 fn every_misuse_gives_its_error_and_text() {
-    let Some(library) = built(Target::Host, "") else {
-        return;
-    };
-    let folder = tempfile::tempdir().unwrap();
-    let program = folder.path().join("misuse");
     for source in SOURCES {
-        let sources = [beside(source), capi().join("examples/rig.c")];
-        let Some(output) = host_program(&sources, &library, &program) else {
+        let Some(said) = said_with_rig(source) else {
             return;
         };
-        good(&output);
-        let said = good(&Command::new(&program).output().unwrap());
         assert!(said.ends_with(" checks, 0 failures\n"), "{said}");
     }
 }

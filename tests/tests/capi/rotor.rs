@@ -1,7 +1,7 @@
 //! The supervisor of a rotor in C: what Rust computes, in the emulator too; and the example with a model of its own.
 
 use crate::firmware::said_by;
-use crate::library::{Target, beside, built, capi, good, host_program};
+use crate::library::{Target, beside, built, capi, good, host_program, said_with_rig};
 use crate::rig::Rig;
 use std::process::Command;
 use supervisor::{Config, Place, Rotor, Shaft};
@@ -49,17 +49,9 @@ fn pair_of_rust() -> String {
 /// Requirement: SR-34
 #[test]
 fn a_rotor_in_c_does_what_it_does_in_rust() {
-    let Some(library) = built(Target::Host, "") else {
+    let Some(said) = said_with_rig("pair.c") else {
         return;
     };
-    let folder = tempfile::tempdir().unwrap();
-    let program = folder.path().join("pair");
-    let sources = [beside("pair.c"), capi().join("examples/rig.c")];
-    let Some(output) = host_program(&sources, &library, &program) else {
-        return;
-    };
-    good(&output);
-    let said = good(&Command::new(program).output().unwrap());
     assert_eq!(said.lines().last(), Some(pair_of_rust().as_str()));
 }
 
