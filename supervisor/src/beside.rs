@@ -5,6 +5,19 @@ use crate::estimate::Motion;
 use crate::scalar::Scalar;
 use crate::vec2::Vec2;
 
+/// What a plane tells the other one of its rotor, as it is before a tick.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct End<S: Scalar> {
+    /// Of the axis, where it is known.
+    pub(crate) velocity: Option<Vec2<S>>,
+    /// The force that acts there \[caps\].
+    pub(crate) force: Vec2<S>,
+    /// As in [`crate::unbalance::Unbalance`].
+    pub(crate) unbalance: Vec2<S>,
+    /// The supervisor has acted there, and no window has passed in peace since.
+    pub(crate) unsettled: bool,
+}
+
 /// A plane's neighbourhood: nothing for one that stands alone, which then costs nothing.
 pub(crate) trait Beside<S: Scalar> {
     /// Of a rotor with tilt.
@@ -28,6 +41,11 @@ pub(crate) struct Tilting<S: Scalar> {
     pub(crate) velocity: Vec2<S>,
     /// ν.
     pub(crate) rate: S,
+    /// What the unbalance of the tilt is more than it seems to a plane: beside a principal axis that is inclined the axis
+    /// goes round by all of its angle τ, but nutation turns that as well, so that what is left to pull is (1 − I_p/I_t)·τ.
+    pub(crate) unbalance: Vec2<S>,
+    /// Since the supervisor acted at one end, one or the other has not been left in peace.
+    pub(crate) unsettled: bool,
 }
 
 /// A turn beyond which a lead helps no more \[rad\].

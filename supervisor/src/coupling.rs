@@ -1,6 +1,6 @@
 //! What the two planes of a rigid rotor do to each other.
 
-use crate::beside::Tilting;
+use crate::beside::{End, Tilting};
 use crate::coeffs::Scaling;
 use crate::config::Config;
 use crate::shaft::{Place, Shaft, ShaftError};
@@ -9,6 +9,8 @@ use crate::vec2::Vec2;
 
 /// Couplings beyond this are of no rotor, and would leave the numbers.
 const MOST_COUPLED: f32 = 1e3;
+/// I_p/I_t beyond which the unbalance of a tilt does not show enough to be known.
+const MOST_NUTATION: f32 = 0.85;
 
 /// What couples a plane to the other, per unit.
 #[derive(Debug, Clone, Copy)]
@@ -19,6 +21,8 @@ pub(crate) struct Coupling {
     arm: [f32; 2],
     /// I_p/I_t.
     nutation: f32,
+    /// Of the unbalance of the tilt, what a plane does not see over what it does.
+    unseen: f32,
     /// A radian in a tick \[1/t₀\]: nothing that is sampled nutates faster.
     fastest: f32,
 }
@@ -39,13 +43,20 @@ impl Coupling {
         let period_s = first.sample_period_s;
         let (first, second) = (first.scaling(), second.scaling());
         let gap_m = b.retainer_m - a.retainer_m;
+        let nutation = shaft.polar_inertia_kg_m2 / shaft.transverse_inertia_kg_m2;
+        let unseen = if nutation <= MOST_NUTATION {
+            nutation / (1.0 - nutation)
+        } else {
+            0.0
+        };
         let of = |here: Place, there: Place, own: &Scaling, other: &Scaling| {
             let share = here.retainer_m / gap_m / own.speed_m_s();
             let acceleration = shaft.mobility(here.retainer_m, there.magnet_m) * other.force_n;
             Self {
                 per_cap: acceleration * own.time_s * own.time_s / own.length_m,
                 arm: [-share * first.speed_m_s(), share * second.speed_m_s()],
-                nutation: shaft.polar_inertia_kg_m2 / shaft.transverse_inertia_kg_m2,
+                nutation,
+                unseen,
                 fastest: own.time_s / period_s,
             }
         };
@@ -59,17 +70,23 @@ impl Coupling {
         }
     }
 
-    /// What the plane knows of the rest: from the velocities of both ends, and the force at the other.
+    /// What the plane knows of the rest: from both ends, and from the force at the other.
     pub(crate) fn tilting(
         &self,
-        [first, second]: [Vec2<f32>; 2],
-        force: Vec2<f32>,
+        [first, second]: &[End<f32>; 2],
+        other: &End<f32>,
         spin: f32,
     ) -> Tilting<f32> {
         let rate = self.nutation * spin;
+        let tilt = |first: Vec2<f32>, second: Vec2<f32>| first * self.arm[0] + second * self.arm[1];
+        // Where one end's velocity is not known nothing is known of the tilt.
+        let known = first.velocity.zip(second.velocity);
+        let (v1, v2) = known.unwrap_or_default();
         Tilting {
-            known: force * self.per_cap,
-            velocity: first * self.arm[0] + second * self.arm[1],
+            known: other.force * self.per_cap,
+            velocity: tilt(v1, v2),
+            unbalance: tilt(first.unbalance, second.unbalance) * self.unseen,
+            unsettled: first.unsettled || second.unsettled,
             rate: if rate.abs() <= self.fastest {
                 rate
             } else {

@@ -72,14 +72,14 @@ words_of_fields!(Observer<S> { motion, unbalance, bending, started, has_run, del
 
 impl<S: Scalar> Observer<S> {
     /// Carries the estimate over one tick and corrects it by the sample, if there is one. What moves, and how far the
-    /// axis is beside it: in flight that is the mass centre, where it is known.
+    /// axis is beside it: in flight that is the mass centre, where it is known. `tilted`: as in [`Unbalance::counts`].
     #[inline]
     pub(crate) fn advance(
         &mut self,
         sample: Option<Vec2<S>>,
         (spin, rate): (Spin, S),
         wall: Contact,
-        actuator: Actuator<S>,
+        (actuator, tilted): (Actuator<S>, Option<Vec2<S>>),
         coeffs: &Coeffs<S>,
     ) -> (Motion<S>, S) {
         let mean = self.deliver(actuator, coeffs);
@@ -140,7 +140,7 @@ impl<S: Scalar> Observer<S> {
         let mut free = *m;
         if wall == Contact::None
             && let Some(turn) = &turn
-            && let Some([offset, speed]) = self.unbalance.counts(turn, turning)
+            && let Some([offset, speed]) = self.unbalance.counts(turn, turning, tilted)
         {
             free.position = free.position + offset;
             free.velocity = free.velocity + speed;
@@ -251,6 +251,12 @@ impl<S: Scalar> Observer<S> {
     /// The same where it is known by more than one sample.
     pub(crate) fn known_velocity(&self) -> Option<Vec2<S>> {
         (self.started && !self.motion.fresh).then_some(self.motion.velocity)
+    }
+
+    /// As in [`Unbalance::arm`].
+    #[inline]
+    pub(crate) fn unbalance(&self) -> Vec2<S> {
+        self.unbalance.arm()
     }
 
     /// Force that acts.

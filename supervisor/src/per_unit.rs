@@ -1,6 +1,6 @@
 //! The supervisor per unit: coefficients, what is remembered, and the recorder beside it.
 
-use crate::beside::Beside;
+use crate::beside::{Beside, End};
 use crate::coeffs::{Coeffs, Scaling};
 use crate::config::{Config, CoreError, NotRepresentable};
 use crate::events::QueuedEvent;
@@ -10,7 +10,6 @@ use crate::scalar::Scalar;
 use crate::signal::{CoreCommand, CoreSample, Events, Mode, Report};
 use crate::tally::{Tally, Units};
 use crate::tick::State;
-use crate::vec2::Vec2;
 use crate::words::Words;
 
 /// Supervisor of one bearing plane in clearances and force caps, for a number `S`, with a flight record of
@@ -98,16 +97,16 @@ impl<S: Scalar> Plane<S> {
         (command, seen)
     }
 
-    /// Velocity of the axis; `None` where it is not known by more than one sample.
+    /// What the other plane of a rotor is told.
     #[inline]
-    pub(crate) fn velocity(&self) -> Option<Vec2<S>> {
-        self.state.observer.known_velocity()
-    }
-
-    /// Force that acts now.
-    #[inline]
-    pub(crate) fn delivered(&self) -> Vec2<S> {
-        *self.state.observer.delivered()
+    pub(crate) fn end(&self) -> End<S> {
+        let observer = &self.state.observer;
+        End {
+            velocity: observer.known_velocity(),
+            force: *observer.delivered(),
+            unbalance: observer.unbalance(),
+            unsettled: self.state.trust.is_unsettled(),
+        }
     }
 
     /// The recorder goes on, by what both planes of a rotor have seen.

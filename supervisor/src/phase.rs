@@ -22,6 +22,8 @@ pub(crate) struct Judged {
     pub(crate) quiet: bool,
     /// The reading may be acted on.
     pub(crate) trusted: bool,
+    /// The supervisor has acted on the rotor, which has not settled since: a touch is its affair, however the reading moves.
+    pub(crate) unsettled: bool,
     /// A forward rub has gone on for windows, at one spin.
     pub(crate) rubs_on: bool,
     /// The bearing has to be handed back, for so many ticks.
@@ -191,8 +193,8 @@ impl<S: Scalar> Phase<S> {
             Class::ForwardRub { .. } => judged.rubs_on,
             _ => false,
         };
-        let whirls = judged.quiet && contact.touching && goes_round;
-        if self == Self::Levitated && !judged.trusted && !whirls {
+        let evident = contact.touching && (judged.unsettled || (judged.quiet && goes_round));
+        if self == Self::Levitated && !judged.trusted && !evident {
             return self;
         }
         if contact.touching {

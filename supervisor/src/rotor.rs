@@ -396,12 +396,10 @@ impl<const RECORD: usize> RotorTicker<'_, RECORD> {
         let [first, second] = &mut self.planes;
         let [at_first, at_second] = samples;
         let [to_first, to_second] = &self.machine.couplings;
-        // As they are before either tick. Where one end's velocity is not known nothing is known of the tilt.
-        let known = first.velocity().zip(second.velocity());
-        let (v1, v2) = known.unwrap_or_default();
-        let forces = [first.delivered(), second.delivered()];
-        let beside_first = to_first.tilting([v1, v2], forces[1], spin(at_first));
-        let beside_second = to_second.tilting([v1, v2], forces[0], spin(at_second));
+        // As they are before either tick.
+        let ends = [first.end(), second.end()];
+        let beside_first = to_first.tilting(&ends, &ends[1], spin(at_first));
+        let beside_second = to_second.tilting(&ends, &ends[0], spin(at_second));
         let [of_first, of_second] = self.shared;
         let (to_first, first) = first.tick_beside(of_first, at_first, &beside_first);
         let (to_second, second) = second.tick_beside(of_second, at_second, &beside_second);

@@ -98,7 +98,8 @@ impl<S: Scalar> State<S> {
         let (position, actuator) = (reading.position(), reading.actuator());
         let touch = self.detector.sample(position, coeffs);
         let wall = self.detector.wall(pinned);
-        let (motion, off_axis) = (self.observer).advance(position, spin, wall, actuator, coeffs);
+        let acting = (actuator, tilting.map(|tilting| tilting.unbalance));
+        let (motion, off_axis) = (self.observer).advance(position, spin, wall, acting, coeffs);
         let envelope = ForceEnvelope::new(&self.budget, actuator.axes, coeffs);
         let margin = self.trust.margin;
         let contact = (self.detector).contact_estimate(
@@ -127,6 +128,7 @@ impl<S: Scalar> State<S> {
             hands_back: (self.trust).tick((square, flies), (self.phase, rubs, sample.spin), coeffs),
             rubs_on: self.trust.rubs_on(),
             trusted: quiet && self.trust.is_granted(),
+            unsettled: quiet && tilting.is_some_and(|tilting| tilting.unsettled),
         };
         if self.phase != Phase::Levitated || contact.unavoidable || contact.touching {
             speed = Speed::new(motion.velocity);
@@ -180,6 +182,8 @@ impl<S: Scalar> State<S> {
             };
         if !phase.is_engaged() {
             self.readiness = Readiness::default();
+        } else if tilting.is_some() {
+            self.trust.acts();
         }
         let (target, bound) = if wrong && matches!(mode, Mode::Levitated | Mode::Handover) {
             limit::within(last, envelope)

@@ -8,7 +8,7 @@
 use crate::coeffs::Coeffs;
 use crate::phase::Phase;
 use crate::scalar::Scalar;
-use crate::words::words_of_fields;
+use crate::words::{Words, words_of_fields};
 
 /// Speeds up to here are no sign of anything: what told noise and slow motion come to \[lift-off speeds\].
 const ORDINARY: f32 = 0.2;
@@ -48,15 +48,37 @@ pub(crate) struct Trust<S> {
     /// Lowest peak of this engagement.
     lowest: S,
     ticks_left: u16,
-    /// In this window the wall or the supervisor has moved the rotor: not, or 1 and so many levitated windows more that a
-    /// forward rub has lasted at one spin.
-    disturbed: u8,
+    stir: Stir,
     debt: u16,
     doubled: u8,
     pub(crate) handed_back: u16,
 }
 
-words_of_fields!(Trust<S> { peak, before, margin, lowest, ticks_left, disturbed, debt, doubled, handed_back });
+words_of_fields!(Trust<S> { peak, before, margin, lowest, ticks_left, stir, debt, doubled, handed_back });
+
+/// What the wall and the supervisor do to the rotor, beside what it does by itself.
+#[derive(Debug, Clone, Copy, Default)]
+struct Stir {
+    /// In this window they have moved it: not, or 1 and so many levitated windows more that a forward rub has lasted at one
+    /// spin.
+    windows: u8,
+    /// Of a plane of a rotor: since the supervisor acted no levitated window has passed in which they have not.
+    unsettled: bool,
+}
+
+/// In one word, so that records keep their length.
+impl Words for Stir {
+    fn put(&self, to: &mut dyn FnMut(u32)) {
+        to(u32::from(self.windows) | u32::from(self.unsettled) << 8);
+    }
+    fn take(from: &mut dyn Iterator<Item = u32>) -> Self {
+        let [windows, unsettled, ..] = u32::take(from).to_le_bytes();
+        Self {
+            windows,
+            unsettled: unsettled != 0,
+        }
+    }
+}
 
 impl<S: Scalar> Default for Trust<S> {
     fn default() -> Self {
@@ -66,7 +88,7 @@ impl<S: Scalar> Default for Trust<S> {
             margin: S::ZERO,
             lowest: S::from_f32(MOST_SQUARE),
             ticks_left: 0,
-            disturbed: 0,
+            stir: Stir::default(),
             debt: 0,
             doubled: 0,
             handed_back: 0,
@@ -92,7 +114,19 @@ impl<S: Scalar> Trust<S> {
     /// Whether a forward rub goes on and on, at one spin.
     #[inline]
     pub(crate) fn rubs_on(&self) -> bool {
-        self.disturbed >= RUBS_ON
+        self.stir.windows >= RUBS_ON
+    }
+
+    /// Of a plane of a rotor: whether the supervisor has acted on it, and it has not settled since.
+    #[inline]
+    pub(crate) fn is_unsettled(&self) -> bool {
+        self.stir.unsettled
+    }
+
+    /// The supervisor acts on a rotor.
+    #[inline]
+    pub(crate) fn acts(&mut self) {
+        self.stir.unsettled = true;
     }
 
     /// A tick in a phase, with the square of the speed and whether the wall is away; `rubs`: forward, as unbalance drives it,
@@ -106,7 +140,7 @@ impl<S: Scalar> Trust<S> {
     ) -> Option<u32> {
         self.peak = self.peak.max(square);
         if !flies || phase.is_engaged() {
-            self.disturbed = self.disturbed.max(1);
+            self.stir.windows = self.stir.windows.max(1);
         }
         match self.ticks_left.checked_sub(1) {
             Some(left) => {
@@ -126,16 +160,17 @@ impl<S: Scalar> Trust<S> {
     ) -> Option<u32> {
         self.ticks_left = coeffs.window_ticks;
         let peak = core::mem::replace(&mut self.peak, S::ZERO);
-        let disturbed = core::mem::replace(&mut self.disturbed, 0);
+        let disturbed = core::mem::take(&mut self.stir.windows);
         if rubs && phase == Phase::Levitated {
             let before = core::mem::replace(&mut self.before, spin);
             if (spin - before).abs() <= spin * S::from_f32(SAME_SPIN) {
-                self.disturbed = disturbed.saturating_add(1);
+                self.stir.windows = disturbed.saturating_add(1);
             }
         }
         if !phase.is_engaged() {
             // What the wall or the supervisor did is not usual.
             if disturbed == 0 {
+                self.stir.unsettled = false;
                 self.learn(peak.sqrt());
             }
             self.lowest = S::from_f32(MOST_SQUARE);

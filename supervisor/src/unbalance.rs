@@ -99,9 +99,14 @@ impl<S: Scalar> Unbalance<S> {
     }
 
     /// From the axis to the mass centre, and the speed of the one about the other, as far as an acceleration like this
-    /// counts.
+    /// counts. `tilted`: what a plane of a rotor does not see of it, a tick ago.
     #[inline]
-    pub(crate) fn counts(&self, turn: &Turn<S>, acceleration: Vec2<S>) -> Option<[Vec2<S>; 2]> {
+    pub(crate) fn counts(
+        &self,
+        turn: &Turn<S>,
+        acceleration: Vec2<S>,
+        tilted: Option<Vec2<S>>,
+    ) -> Option<[Vec2<S>; 2]> {
         let beyond = acceleration.length_squared() - S::from_f32(BEGINS_TO_COUNT);
         if beyond <= S::ZERO {
             return None;
@@ -109,7 +114,20 @@ impl<S: Scalar> Unbalance<S> {
         let share = (beyond * S::from_f32(1.0 / (COUNTS - BEGINS_TO_COUNT))).min(S::ONE);
         let clockwise = turn.by.y < S::ZERO;
         let sense = if clockwise { -share } else { share };
-        Some([self.arm * share.div(turn.rate), self.arm.perp() * sense])
+        let mut arm = self.arm;
+        if let Some(tilted) = tilted {
+            let whole = arm + tilted.rotated(turn.by);
+            if !whole.exceeds(turn.rate) {
+                arm = whole;
+            }
+        }
+        Some([arm * share.div(turn.rate), arm.perp() * sense])
+    }
+
+    /// From the axis to the mass centre as a plane sees it, times the size of the spin.
+    #[inline]
+    pub(crate) fn arm(&self) -> Vec2<S> {
+        self.arm
     }
 
     pub(crate) fn forget(&mut self) {

@@ -1,7 +1,10 @@
 //! The judge of the model: doubt about single samples, what the reading usually does, and the way out of an engagement
 //! that comes no farther.
 
-use supervisor::{Core, Events, Limits, Mode, Prepared, Q, RejectReason, Sample, Supervisor};
+use firmware_image::under_test::shaft;
+use supervisor::{
+    Core, Events, Limits, Mode, Prepared, Q, RejectReason, Rotor, Sample, Status, Supervisor,
+};
 use system_tests::bench::Bench;
 use system_tests::rig::{RADIUS_M, config, on_circle, sample};
 use system_tests::storm::{AnyBits, Chance, Storm};
@@ -238,6 +241,59 @@ fn a_forward_rub_engages_one_that_trusts_no_reading() {
     assert!(windows.contains(&after), "{after}");
     assert_eq!(engaged_after(0.6, 0.0), None);
     assert_eq!(engaged_after(1.0, 0.02), None);
+}
+
+/// An end of a rotor whose reading is not trusted does not act on a touch, until the supervisor has acted at one of them: then it
+/// does at both, and does not any more once a window has passed in peace. A plane that stands alone stands by.
+#[test]
+fn a_rotor_that_was_acted_on_is_not_left_before_it_has_settled() {
+    let spin = 1000.0 * config().sample_period_s;
+    let orbit = |i: u32, radius_m: f32| Sample {
+        spin_rad_s: 1000.0,
+        ..sample(i, on_circle(radius_m, -spin * i as f32))
+    };
+    // Ends of stretches: both orbit; one rubs; both orbit; the other one touches; the bearing is off; it touches again.
+    let free = 6 * WINDOW_TICKS;
+    let rubbed = free + 5 * WINDOW_TICKS;
+    let (touch, touched) = (rubbed + 20, rubbed + 26);
+    let (off, on) = (touched + 20, touched + 20 + 4 * WINDOW_TICKS);
+    let (again, ended) = (on + 20, on + 26);
+    let modes = |rubs: bool| {
+        let mut rotor = Rotor::<64>::new(&shaft(&config()), &[config(); 2]).unwrap();
+        let mut alone = Supervisor::<64>::new(&config()).unwrap();
+        let mut seen = Vec::new();
+        for i in 0..ended {
+            let at = |wall: bool| orbit(i, if wall { RADIUS_M } else { 0.5 * C_M });
+            let mut samples = [
+                at(rubs && (free..rubbed).contains(&i)),
+                at((touch..touched).contains(&i) || (again..ended).contains(&i)),
+            ];
+            if (off..on).contains(&i) {
+                samples = samples.map(|sample| Sample {
+                    status: Status::SPIN_VALID,
+                    ..sample
+                });
+            }
+            let [first, second] = rotor.tick(&samples).planes;
+            seen.push([first.mode, second.mode, alone.tick(&samples[1]).mode]);
+        }
+        seen
+    };
+    let engages = |modes: &[[Mode; 3]], end: usize, ticks: std::ops::Range<u32>| {
+        let of = &modes[ticks.start as usize..ticks.end as usize];
+        of.iter().any(|at| at[end].is_engaged())
+    };
+    let (rubbed_before, undisturbed) = (modes(true), modes(false));
+    assert!(engages(&rubbed_before, 0, free..rubbed));
+    assert!(!engages(&rubbed_before, 1, 3 * WINDOW_TICKS..touch));
+    assert!(engages(&rubbed_before, 1, touch..touched));
+    assert!(!engages(&rubbed_before, 1, on..ended), "it has settled");
+    for end in [0, 1] {
+        assert!(!engages(&undisturbed, end, 3 * WINDOW_TICKS..ended));
+    }
+    for modes in [&rubbed_before, &undisturbed] {
+        assert!(!engages(modes, 2, 3 * WINDOW_TICKS..ended), "alone");
+    }
 }
 
 /// An engagement without a touch leaves the record to one with it, and is counted apart.

@@ -5,7 +5,7 @@ use crate::campaign::{Block, Chapter, Claim, Extent, Progress, Report, StudyErro
 use firmware_bench::scene::policy_kind::PolicyKind;
 
 /// Nothing was tuned on the machines of this seed.
-const SEED: u64 = 20_261_128;
+const SEED: u64 = 20_261_129;
 
 /// Both runs of a machine that is free from the middle.
 #[derive(Debug, Clone, Copy)]
