@@ -1,43 +1,16 @@
 // Pages of the host in a real browser: node report.mjs CHROMIUM RUN.html MACHINE.html RECORD.html SWEEP.html
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
-import { createRequire } from "node:module";
 import { pathToFileURL } from "node:url";
-import { chromium } from "playwright-core";
+import { SIZES, accessible, fits, launched } from "./browser.mjs";
 
-const AXE = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
-const SIZES = [[390, 844], [1280, 800], [2560, 1440]];
 // On an idle machine it takes less than one; here others may be at work.
 const OPENS_WITHIN_MS = 6000;
 
 const [executablePath, run, machine, record, sweep] = process.argv.slice(2);
 // A page that stands still is wanted from the smallest screen to the largest.
 const STILL_SIZES = [[320, 640], [1280, 800], [3840, 2160]];
-const browser = await chromium.launch({ executablePath, args: ["--no-sandbox"] });
-
-async function opened(file, { size, colorScheme = "light", javaScriptEnabled = true, scripted = javaScriptEnabled }) {
-  const [width, height] = size;
-  const context = await browser.newContext({ viewport: { width, height }, colorScheme, javaScriptEnabled });
-  const page = await context.newPage();
-  const said = [], requests = [];
-  page.on("console", (message) => said.push(message.text()));
-  page.on("pageerror", (error) => said.push(error.message));
-  page.on("request", (request) => requests.push(request.url()));
-  const began = performance.now();
-  await page.goto(pathToFileURL(file).href);
-  if (scripted) {
-    await page.waitForSelector("html.scripted", { state: "attached" });
-    // Until everything is on the screen.
-    await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => setTimeout(done))));
-  }
-  const took = performance.now() - began;
-  const closed = async () => {
-    assert.deepEqual(said, [], `${file}: the console is empty`);
-    assert.deepEqual(requests, [pathToFileURL(file).href], "nothing but the file is asked for");
-    await context.close();
-  };
-  return { page, took, closed };
-}
+const { browser, opened } = await launched(executablePath);
 
 // Reads what the figures show from the outside: pixels, lines, texts.
 const shownBy = (page) => page.evaluate(() => {
@@ -70,35 +43,18 @@ const shownBy = (page) => page.evaluate(() => {
 const same = (values) => Math.max(...values) - Math.min(...values) < 0.01;
 const instant = async (page) => parseFloat(await page.textContent("#controls output"));
 
-async function fits(page, what) {
-  const [wide, room] = await page.evaluate(() => [document.documentElement.scrollWidth, innerWidth]);
-  assert.ok(wide <= room, `${what}: ${wide} px in ${room} px`);
-  // What is wider than its room must be in a part that scrolls.
-  const cut = await page.evaluate(() => [...document.querySelectorAll("body *")]
-    .filter((e) => e.getClientRects().length && !e.closest(".scroll, svg, .live") && e.getBoundingClientRect().right > innerWidth + 1)
-    .map((e) => e.outerHTML.slice(0, 80)));
-  assert.deepEqual(cut, [], `${what}: nothing is cut`);
-}
-
-// In the dark only the colours are others. What is not to be seen is not looked at: thousands of lines of drawings would only
-// be walked through. One table and the keys are opened.
-async function accessible(page, what, rules) {
-  await page.evaluate(() => {
-    document.querySelectorAll(".still").forEach((drawing) => drawing.checkVisibility() || drawing.remove());
-    for (const folded of [".data", "#controls details"])
-      for (const found of [document.querySelector(folded)].filter(Boolean)) found.open = true;
-  });
-  await page.evaluate(AXE);
-  const { violations } = await page.evaluate((rules) => axe.run(rules ? { runOnly: rules } : {}), rules);
-  const told = violations.map((v) => `${v.id}: ${v.nodes.slice(0, 3).map((n) => n.html.slice(0, 120)).join(" ")}`);
-  assert.deepEqual(told, [], what);
-}
-
 async function allDrawn(page, what) {
   const { colours, overTime } = await shownBy(page);
   assert.ok(colours.length >= 5, `${what}: ${colours.length} panels`);
   assert.ok(overTime.some((is) => is) && overTime.some((is) => !is), what);
   colours.forEach((count, i) => assert.ok(count > 5, `${what}: panel ${i} has ${count} colours`));
+  // What does not move stays in sight beside what does, with its numbers.
+  const still = await page.locator("section:not(.still) figure:not([data-panel])").all();
+  if (what.startsWith("machine")) assert.ok(still.length >= 2, `${what}: ${still.length} drawings of the axis`);
+  for (const figure of still) {
+    assert.ok(await figure.locator("svg").isVisible(), what);
+    assert.ok((await figure.locator("td").count()) >= 3, what);
+  }
 }
 
 async function moves(page) {

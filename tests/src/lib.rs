@@ -2,6 +2,7 @@
 
 pub mod bearing;
 pub mod bench;
+pub mod browser;
 pub mod cost;
 pub mod golden;
 pub mod per_unit;

@@ -8,6 +8,7 @@ pub mod identify;
 mod motion;
 pub mod remaining;
 pub mod replay;
+pub mod shapes;
 pub mod story;
 pub mod ticks;
 

@@ -5,20 +5,24 @@ mod axes;
 pub mod campbell;
 mod data;
 mod document;
+pub mod drawn;
 #[cfg(test)]
 pub(crate) mod fixture;
 mod happenings;
 mod headline;
+pub mod html_page;
 pub mod lines;
+pub mod listing;
 pub mod machine;
+pub mod markup;
 mod panels;
 pub mod plot;
 mod quantities;
 pub mod record;
 mod slow_track;
-pub mod still;
 pub mod summary;
 pub mod table;
+pub mod tone;
 pub mod track;
 mod verification;
 
@@ -27,11 +31,14 @@ use std::fmt::Write as _;
 use self::axes::{disturbances, focus_window, run_window};
 use self::document::{Document, Times};
 use self::headline::{Concluded, headline};
+use self::html_page::{Head, HtmlPage};
+use self::listing::Listing;
+use self::markup::Markup;
 use self::panels::{Shown, View};
 use self::table::supervisor_first;
 use self::track::Track;
 pub use crate::report::plot::PlotError;
-use crate::report::plot::text::{escape, figures};
+use crate::report::plot::text::figures;
 use crate::report::summary::{Disturbed, Fact, SceneSummary};
 use crate::run::figures::Figures;
 use crate::run::outcome::Outcome;
@@ -44,15 +51,16 @@ use crate::run::verdict::{PolicyRun, Results, far_into_the_wall};
 /// [`PlotError`] if the drawing backend refuses.
 pub fn html(scene: &SceneSummary, results: &Results) -> Result<String, PlotError> {
     let runs = supervisor_first(&results.runs);
-    let mut document = Document::begun(&scene.title);
-    let page = &mut document.html;
     let concluded: Vec<_> = runs.iter().map(|run| Concluded::of(run)).collect();
-    push_headline(page, &headline(&concluded));
-    push_story(page, &scene.story);
-    push_facts(page, scene);
-    push_warnings(page, &scene.warnings);
-    push_warnings(page, &results.untrusted());
-    page.push_str("</header>\n<main>\n");
+    let mut document = Document::begun(&Head {
+        title: scene.title.clone(),
+        headline: headline(&concluded),
+        story: scene.story.clone(),
+        facts: facts(scene),
+        points: disturbances_told(&scene.disturbances),
+        warnings: warnings(&scene.warnings, results),
+    });
+    let page = &mut document.page;
     push_table(page, "Verdicts", &runs);
     push_far(page, &results.runs, scene.clearance_m);
     verification::push_table(page, &runs);
@@ -64,7 +72,7 @@ pub fn html(scene: &SceneSummary, results: &Results) -> Result<String, PlotError
         let shown = shown(&tracks);
         push_sections(&mut document, &shown, &times, "")?;
     }
-    document.ended(&tracks, &times)
+    Ok(document.ended(&tracks, &times))
 }
 
 /// All of them, under their own names.
@@ -87,28 +95,7 @@ fn times_of(scene: &SceneSummary, tracks: &[Track]) -> Times {
     }
 }
 
-fn push_headline(page: &mut String, text: &str) {
-    push(
-        page,
-        format_args!("<p class=\"headline\">{}</p>\n", escape(text)),
-    );
-}
-
-/// Lines that a scene file wraps belong to one paragraph; an empty line begins another.
-fn push_story(page: &mut String, story: &str) {
-    let lines: Vec<_> = story.lines().map(str::trim).collect();
-    for paragraph in lines
-        .split(|line| line.is_empty())
-        .filter(|p| !p.is_empty())
-    {
-        push(
-            page,
-            format_args!("<p class=\"story\">{}</p>\n", escape(&paragraph.join("\n"))),
-        );
-    }
-}
-
-fn push_facts(page: &mut String, scene: &SceneSummary) {
+fn facts(scene: &SceneSummary) -> Vec<Fact> {
     let cap = scene
         .force_max_n
         .map_or("no magnet".to_owned(), |cap| figures(cap) + " N");
@@ -122,120 +109,65 @@ fn push_facts(page: &mut String, scene: &SceneSummary) {
         ("Duration", figures(1e3 * scene.duration_s) + " ms"),
     ];
     facts.extend(scene.facts.iter().cloned());
-    push_list(page, &facts);
-    push_disturbances(page, &scene.disturbances);
+    facts
 }
 
-fn push_list(page: &mut String, facts: &[Fact]) {
-    page.push_str("<dl class=\"facts\">\n");
-    for (name, value) in facts {
-        let value = escape(value);
-        push(
-            page,
-            format_args!("<div><dt>{name}</dt><dd>{value}</dd></div>\n"),
-        );
-    }
-    page.push_str("</dl>\n");
+/// Of the scene, and of what cannot be trusted.
+fn warnings(of_scene: &[String], results: &Results) -> Vec<String> {
+    let untrusted = results.untrusted().into_iter().map(str::to_owned);
+    of_scene.iter().cloned().chain(untrusted).collect()
 }
 
-fn push_warnings<T: AsRef<str>>(page: &mut String, warnings: &[T]) {
-    for warning in warnings {
-        let warning = escape(warning.as_ref());
-        push(
-            page,
-            format_args!("<p class=\"warning\">Warning: {warning}</p>\n"),
-        );
-    }
-}
-
-fn push_disturbances(page: &mut String, all: &[Disturbed]) {
+/// A line each, of many the first.
+fn disturbances_told(all: &[Disturbed]) -> Vec<String> {
     const SHOWN: usize = 20;
     if all.is_empty() {
-        page.push_str("<p class=\"story\">No external loads, outages or sensor faults.</p>\n");
-        return;
+        return vec!["No external loads, outages or sensor faults.".to_owned()];
     }
-    page.push_str("<ul class=\"story\">\n");
-    for d in all.iter().take(SHOWN) {
+    let line = |d: &Disturbed| {
         let (from, to) = (figures(1e3 * d.from_s), figures(1e3 * d.to_s));
         let span = match d.from_s == d.to_s {
             true => from,
             false => format!("{from}–{to}"),
         };
-        push(
-            page,
-            format_args!("<li>{span} ms: {}</li>\n", escape(&d.what)),
-        );
-    }
-    if all.len() > SHOWN {
-        push(
-            page,
-            format_args!("<li>and {} more</li>\n", all.len() - SHOWN),
-        );
-    }
-    page.push_str("</ul>\n");
+        format!("{span} ms: {}", d.what)
+    };
+    let more = all.len().saturating_sub(SHOWN);
+    let more = (more > 0).then(|| format!("and {more} more"));
+    all.iter().take(SHOWN).map(line).chain(more).collect()
 }
 
 /// The rows of the terminal's table.
-fn push_table(page: &mut String, caption: &str, runs: &[&PolicyRun]) {
-    let caption = escape(caption);
-    push(
-        page,
-        format_args!(
-            "<div class=\"scroll\" role=\"group\" tabindex=\"0\" aria-label=\"{caption}\">\n<table class=\"verdicts\">\n\
-             <caption>{caption}</caption>\n<thead><tr><th scope=\"col\">figure</th>"
-        ),
-    );
-    for run in runs {
-        let name = escape(&run.name);
-        push(page, format_args!("<th scope=\"col\">{name}</th>"));
-    }
-    page.push_str("</tr></thead>\n<tbody>\n");
+fn push_table(page: &mut HtmlPage, caption: &str, runs: &[&PolicyRun]) {
     let outcome = Figures::ALL[0].title();
-    for (title, cells) in table::rows(runs) {
-        push(
-            page,
-            format_args!("<tr><th scope=\"row\">{}</th>", escape(&title)),
-        );
-        for (cell, run) in cells.iter().zip(runs) {
-            let cell = match title == outcome {
-                true => badge(run.verdict.figures.outcome),
-                false => escape(cell),
-            };
-            push(page, format_args!("<td>{cell}</td>"));
-        }
-        page.push_str("</tr>\n");
-    }
-    page.push_str("</tbody>\n</table>\n</div>\n<p class=\"note\">");
+    let row = |(title, cells): (String, Vec<String>)| {
+        let cell = |(cell, run): (&String, &&PolicyRun)| match title == outcome {
+            true => Markup::outcome(run.verdict.figures.outcome),
+            false => Markup::text(cell),
+        };
+        let cells: Vec<Markup> = cells.iter().zip(runs).map(cell).collect();
+        [Markup::text(&title)].into_iter().chain(cells).collect()
+    };
+    let names = runs.iter().map(|run| Markup::text(&run.name));
+    page.table(&Listing {
+        caption: caption.to_owned(),
+        headings: [Markup::text("figure")].into_iter().chain(names).collect(),
+        rows: table::rows(runs).into_iter().map(row).collect(),
+        ..Listing::default()
+    });
     let mut outcomes: Vec<Outcome> = runs.iter().map(|r| r.verdict.figures.outcome).collect();
     outcomes.sort();
     outcomes.dedup();
     let meanings: Vec<String> = (outcomes.iter())
         .map(|outcome| format!("<b>{}</b>: {}.", outcome.name(), outcome.meaning()))
         .collect();
-    push(page, format_args!("{}</p>\n", meanings.join(" ")));
+    page.note(&Markup::written(meanings.join(" ")));
 }
 
-fn push_far(page: &mut String, runs: &[PolicyRun], clearance_m: f64) {
+fn push_far(page: &mut HtmlPage, runs: &[PolicyRun], clearance_m: f64) {
     if let Some(note) = far_into_the_wall(runs, clearance_m) {
-        push(
-            page,
-            format_args!("<p class=\"warning\">{}</p>\n", escape(&note)),
-        );
+        page.warning(&note);
     }
-}
-
-fn badge(outcome: Outcome) -> String {
-    let class = match outcome {
-        Outcome::Recovered | Outcome::Decayed => "good",
-        Outcome::Diverging
-        | Outcome::Resting
-        | Outcome::Pinned
-        | Outcome::Rubbing
-        | Outcome::Bouncing => "fair",
-        Outcome::Whirl => "bad",
-    };
-    let word = outcome.name();
-    format!("<span class=\"outcome {class}\">{word}</span>")
 }
 
 /// Panels of the whole run and, for readers without script, of the close-up; `of` stands before the headings.

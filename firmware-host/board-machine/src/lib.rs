@@ -1,14 +1,18 @@
 //! What both examples know of the machine, and no chip: nine numbers of the bearing, scale factors of sensor and magnet, a
-//! levitation controller to be replaced, and the two rules that say when outputs may go on and when the watchdog is fed.
+//! levitation controller to be replaced, the ledger of landings in memory that keeps it, and the two rules that say when outputs may go on and when the watchdog is fed.
 //!
 //! All numbers are made up. They fit each other: a rotor of 10 kg in a clearance of 0.2 mm.
 #![no_std]
 #![forbid(unsafe_code)]
 
+mod landings;
 mod levitation;
 mod scale;
 mod switch;
 
+pub use landings::{
+    KEPT_WORDS, Kept, Landings, MISSING as LANDINGS_MISSING, NOT_COUNTED as LANDINGS_NOT_COUNTED,
+};
 pub use levitation::Levitation;
 pub use scale::{CURRENT_FULL_SCALE_A, Magnets, SENSOR_RANGE_M, position_m, signed_currents_a};
 pub use switch::{Liveness, Request, Switch};

@@ -1,6 +1,7 @@
 //! Chapters and claims for the terminal.
 
 use firmware_bench::report::lines::{Cell, Lines, lined, right};
+use firmware_bench::report::tone::Tone;
 use firmware_studies::campaign::{Block, CLAIM_COLUMNS, Chapter, Claim, Table};
 
 /// Chapters that are not folded, without figures.
@@ -38,11 +39,14 @@ fn lines(table: &Table) -> Lines {
 
 /// A row for each claim, and how many hold.
 pub(super) fn of_claims(claims: &[Claim]) -> String {
-    let table = Table {
-        caption: String::new(),
-        columns: CLAIM_COLUMNS.map(str::to_owned).to_vec(),
-        rows: claims.iter().map(|claim| claim.cells().to_vec()).collect(),
-    };
+    let mut lines = lined(CLAIM_COLUMNS);
+    for claim in claims {
+        let [name, bound, measured, holds] = claim.cells();
+        let holds = Cell::new(holds).toned(Tone::of_claim(claim.holds));
+        lines.add_row([Cell::new(name), right(bound), right(measured), holds]);
+    }
     let kept = claims.iter().filter(|claim| claim.holds).count();
-    format!("{}\n{kept} of {} claims hold", lines(&table), claims.len())
+    let told = Tone::of_claim(kept == claims.len())
+        .said(&format!("{kept} of {} claims hold", claims.len()));
+    format!("{lines}\n{told}")
 }

@@ -3,7 +3,9 @@
 mod again;
 mod findings;
 mod page;
+mod planes;
 mod tables;
+mod told;
 mod version_2;
 
 use crate::cli::error::{CommandError, pretty, print};
@@ -14,6 +16,7 @@ use firmware_bench::record::file::{RecordFile, begins};
 use firmware_bench::record::identify::{Findings, Identified};
 use firmware_bench::record::remaining::{Remaining, ledgers};
 use firmware_bench::record::replay::Replay;
+use firmware_bench::record::shapes::Shapes;
 use firmware_bench::record::story::{Event, Told};
 use firmware_bench::record::ticks::{Ticks, Units};
 use firmware_bench::report::table;
@@ -21,7 +24,8 @@ use firmware_bench::scene::spec::Setting;
 use serde::Serialize;
 use std::fmt::Write;
 use std::path::PathBuf;
-use tables::{csv, tables, track};
+use tables::csv;
+use told::told;
 
 /// Arguments of `review`.
 #[derive(Debug, Clone, clap::Args)]
@@ -121,6 +125,8 @@ struct Reviewed {
     at_sequence: u32,
     /// Events before this one that found a record frozen, and are in none.
     dropped: u32,
+    /// How both planes of a rotor moved while one of them bounced or whirled; null for one plane.
+    shapes: Option<Shapes>,
     /// What the event tells of the machine; null where nothing can be found out.
     identified: Option<Identified>,
     /// Contacts that were found, times in ticks from the sequence number `contacts_from` on.
@@ -181,6 +187,7 @@ fn reviewed(of: &Examined<'_>) -> Reviewed {
         time_us: head.time_us,
         at_sequence: head.at_sequence,
         dropped: head.dropped,
+        shapes: Shapes::of(&event.records),
         identified: findings.map(|f| f.identified),
         contacts: findings.map_or_else(Vec::new, |f| f.contacts.clone()),
         contacts_from: findings.map(|f| f.first),
@@ -247,7 +254,8 @@ fn of_sections(args: &ReviewArgs, file: &RecordFile) -> Result<(), CommandError>
     if let Some(out) = &args.out {
         let name = args.file.display().to_string();
         let head = page::head(&name, (&events, &bearings), &damage);
-        page::write(out, &head, &page::tracks(&events))?;
+        let parts = told::parts(&events, args.scene.is_some());
+        page::write(out, (&head, &parts), &page::tracks(&events))?;
     }
     if let Some(folder) = &args.figures {
         page::write_figures(folder, &page::tracks(&events))?;
@@ -310,82 +318,4 @@ fn of_event<'a>(
 /// The largest share of what a bearing may bear that is used up.
 fn used(bearings: &[Remaining]) -> f64 {
     bearings.iter().map(Remaining::used).fold(0.0, f64::max)
-}
-
-/// An event for a person; `asked`: whether it was to be simulated.
-fn told(of: &Examined<'_>, asked: bool, bearings: &[Remaining]) -> String {
-    let event = &of.event;
-    let head = event.records[0].head;
-    let mut out = String::new();
-    match event.told() {
-        Some(told) => _ = writeln!(out, "{}\n", told.paragraph(used(bearings))),
-        None => {
-            out += "What came of the event is not whole in this file, or not there of all planes: no verdict.\n\n";
-        }
-    }
-    for bearing in bearings {
-        if bearings.len() > 1 {
-            let _ = write!(out, "Plane {}. ", bearing.plane);
-        }
-        let _ = writeln!(out, "{}\n", bearing.told());
-    }
-    let _ = match &event.replay {
-        Ok(Replay {
-            ticks,
-            differing: 0,
-            ..
-        }) => writeln!(
-            out,
-            "Replayed: {ticks} ticks, all to the last bit as they are recorded."
-        ),
-        Ok(replay) => writeln!(
-            out,
-            "Replayed: {} of {} ticks are NOT as they are recorded, the first with sequence number {}.",
-            replay.differing,
-            replay.ticks,
-            replay.first_difference.unwrap_or_default()
-        ),
-        Err(why) => writeln!(out, "Not replayed: {why}."),
-    };
-    if head.dropped > 0 {
-        let _ = writeln!(
-            out,
-            "{} events before this one are in no record: they came while one waited to be read, or had to make room.",
-            head.dropped
-        );
-    }
-    if head.time_us > 0 {
-        let _ = writeln!(
-            out,
-            "Firmware {}; its clock was {:.6} s at sequence number {}.",
-            head.firmware,
-            head.time_us as f64 * 1e-6,
-            head.at_sequence
-        );
-    }
-    for record in &event.records {
-        let ticks = Ticks::of(record);
-        let units = record.units();
-        if event.records.len() > 1 || head.planes > 1 {
-            let _ = writeln!(out, "\nPlane {}:", record.head.plane);
-        }
-        out += &tables(&ticks, units);
-        if let (Some(findings), Some(rate)) = (&of.findings, units.sample_rate_hz) {
-            out += &findings::tables(findings, &ticks, 1.0 / rate);
-        }
-        out += &track(record, &ticks, units);
-    }
-    if let Some(again) = &of.again {
-        let _ = writeln!(out, "\n{}", table::text(&again.scene, &again.results));
-        if !again.differing.is_empty() {
-            let _ = writeln!(
-                out,
-                "By the scene the supervisor would be told otherwise than it was on the machine: {}.",
-                again.differing.join(", ")
-            );
-        }
-    } else if asked {
-        out += "\nNot simulated: that needs the record of one plane in which the rotor is seen to fly.\n";
-    }
-    out
 }

@@ -1,13 +1,19 @@
 //! How results for people reach the terminal.
 
 use crate::cli::error::{CommandError, print};
+use anstream::{AutoStream, ColorChoice};
 use firmware_bench::report::lines::{set_width, width, wrapped};
+use firmware_bench::report::tone::set_colours;
 use std::io::{IsTerminal, stdout};
 
-/// Tables are made as wide as the terminal; before any is.
+/// Tables are made as wide as the terminal, and verdicts in its colours; before any is.
 pub fn prepare() {
     if let Some((columns, _)) = terminal_size::terminal_size_of(stdout()) {
         set_width(columns.0.into());
+    }
+    // Whatever CLICOLOR_FORCE says, for a terminal alone: what a script reads or a file keeps has no colours.
+    if stdout().is_terminal() && AutoStream::choice(&stdout()) != ColorChoice::Never {
+        set_colours();
     }
 }
 

@@ -128,6 +128,7 @@ impl Report {
         );
         Page {
             title: self.title.clone(),
+            headline: claim::conclusion(&self.claims, self.cases),
             lead: vec![repeat],
             chapters: [claims]
                 .into_iter()

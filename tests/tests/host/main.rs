@@ -21,6 +21,7 @@ mod requirements;
 mod review;
 mod review_findings;
 mod review_ledger;
+mod review_planes;
 mod run;
 mod scene_keys;
 mod sweep;

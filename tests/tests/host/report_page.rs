@@ -3,19 +3,13 @@
 use firmware_bench::record::file::RecordFile;
 use serde_json::Value;
 use std::collections::BTreeSet;
+use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
-use std::{env, fs};
+use std::process::Output;
 use supervisor::Stretch;
-use system_tests::target::skipped;
+use system_tests::browser::Browser;
 use system_tests::{host, machine_scene_path, root, run_scene, scene_path};
 use tempfile::TempDir;
-
-fn found(program: &str) -> Option<PathBuf> {
-    let path = env::var_os("PATH")?;
-    let mut places = env::split_paths(&path).map(|folder| folder.join(program));
-    places.find(|place| place.is_file())
-}
 
 fn page(scene: &Path, out: &Path) -> PathBuf {
     let result = run_scene(scene, out, &["--no-trace"]);
@@ -171,15 +165,9 @@ fn pictures_of_the_walk_through_are_the_tools() {
 
 #[test]
 fn pages_work_in_a_browser() {
-    let driver = root().join("tests/browser");
-    let (Some(chromium), Some(node)) = (found("chromium"), found("node")) else {
-        skipped("chromium or node is not installed");
+    let Some(browser) = Browser::found() else {
         return;
     };
-    if !driver.join("node_modules").is_dir() {
-        skipped("tests/browser has no node_modules");
-        return;
-    }
     let folder = TempDir::new().unwrap();
     let here = |name: &str| folder.path().join(name);
     // Two seconds at 20 kHz.
@@ -214,13 +202,6 @@ fn pages_work_in_a_browser() {
     assert!(swept.status.success(), "{swept:?}");
     let sweep = here("swept/report.html");
 
-    let driven = Command::new(node)
-        .arg(driver.join("report.mjs"))
-        .args([&chromium, &run, &machine, &record, &sweep])
-        .output()
-        .unwrap();
-    let said = String::from_utf8_lossy(&driven.stdout);
-    let error = String::from_utf8_lossy(&driven.stderr);
-    println!("{size} bytes\n{said}");
-    assert!(driven.status.success(), "{said}\n{error}");
+    println!("{size} bytes");
+    browser.check("report.mjs", &[&run, &machine, &record, &sweep]);
 }

@@ -58,8 +58,24 @@ fn said(args: &[String]) -> String {
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// The same on a terminal of so many columns; `None` without a program that makes one.
+/// The same on a terminal of so many columns, without its colours; `None` without a program that makes one.
 fn on_a_terminal(args: &[String], columns: usize) -> Option<String> {
+    let text = on_a_terminal_with(args, columns, &[])?;
+    // All sequences that this program writes end in `m`.
+    let parts = text.split("\u{1b}[").enumerate();
+    let bare = parts.map(|(i, part)| match i {
+        0 => part,
+        _ => part.split_once('m').unwrap().1,
+    });
+    Some(bare.collect())
+}
+
+/// As it comes, with some variables of the environment.
+fn on_a_terminal_with(
+    args: &[String],
+    columns: usize,
+    environment: &[(&str, &str)],
+) -> Option<String> {
     let quoted: Vec<String> = args.iter().map(|arg| format!("'{arg}'")).collect();
     let program = host().get_program().to_string_lossy().into_owned();
     let command = format!(
@@ -68,13 +84,20 @@ fn on_a_terminal(args: &[String], columns: usize) -> Option<String> {
     );
     let mut script = Command::new("script");
     script.args(["--quiet", "--return", "--command", &command, "/dev/null"]);
-    let Ok(output) = script.env("SHELL", "/bin/sh").output() else {
+    script.env("SHELL", "/bin/sh").env("TERM", "xterm-256color");
+    for name in COLOUR_VARIABLES {
+        script.env_remove(name);
+    }
+    let Ok(output) = script.envs(environment.iter().copied()).output() else {
         skipped("script, of util-linux, is not installed");
         return None;
     };
     assert!(output.status.success(), "{output:?}");
     Some(String::from_utf8(output.stdout).unwrap().replace('\r', ""))
 }
+
+/// What decides elsewhere whether there are colours.
+const COLOUR_VARIABLES: [&str; 4] = ["NO_COLOR", "CLICOLOR", "CLICOLOR_FORCE", "CI"];
 
 /// In a pipe or a file, whatever the terminal is.
 #[test]
@@ -143,4 +166,50 @@ fn a_narrow_terminal_loses_nothing() {
         heading.find("supervisor").unwrap() < heading.find("passive").unwrap(),
         "{heading}"
     );
+}
+
+/// Verdicts have colours on a terminal, and nowhere else: not where the user or the terminal has none, not in pipes and files, and
+/// never in JSON.
+#[test]
+fn verdicts_have_colours_on_a_terminal_alone() {
+    const ESCAPE: char = '\u{1b}';
+    const GOOD: &str = "\u{1b}[1m\u{1b}[32m";
+    const BAD: &str = "\u{1b}[1m\u{1b}[31m";
+    let folder = TempDir::new().unwrap();
+    let scene = path(&scene_path("impact_at_40_hz"));
+    let out = path(&folder.path().join("run"));
+    let run = arguments(&["run", &scene, "--no-trace", "--out", &out]);
+    let record = path(&folder.path().join("run/record_supervisor.bin"));
+    let json = |args: &[String]| [args, &arguments(&["--json"])].concat();
+
+    let Some(text) = on_a_terminal_with(&run, 100, &[]) else {
+        return;
+    };
+    for word in [format!("{GOOD}recovered"), format!("{BAD}whirl")] {
+        assert!(text.contains(&word), "{word} in {text}");
+    }
+    // The supervisor's word is the first of them.
+    assert!(text.find(GOOD) < text.find(BAD), "{text}");
+    let review = arguments(&["review", &record]);
+    let reviewed = on_a_terminal_with(&review, 100, &[]).unwrap();
+    let verdict = format!("{GOOD}Nothing speaks against running on.\u{1b}[0m");
+    let words = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(words(&reviewed).contains(&verdict), "{reviewed}");
+
+    for args in [&run, &review] {
+        for without in [("NO_COLOR", "1"), ("TERM", "dumb"), ("CLICOLOR", "0")] {
+            let text = on_a_terminal_with(args, 100, &[without]).unwrap();
+            assert!(!text.contains(ESCAPE), "{without:?}: {text}");
+        }
+        let text = on_a_terminal_with(&json(args), 100, &[]).unwrap();
+        assert!(!text.contains(ESCAPE), "{text}");
+        let mut piped = host();
+        piped.args(args).env("TERM", "xterm-256color");
+        let piped = piped.env("CLICOLOR_FORCE", "1").output().unwrap();
+        assert!(!piped.stdout.contains(&(ESCAPE as u8)), "{piped:?}");
+    }
+    for file in ["verdict.json", "report.html"] {
+        let written = std::fs::read(folder.path().join("run").join(file)).unwrap();
+        assert!(!written.contains(&(ESCAPE as u8)), "{file}");
+    }
 }

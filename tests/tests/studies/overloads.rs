@@ -13,6 +13,7 @@ use firmware_studies::overloads::tune::{IDLE_NOISE, SENSITIVITY, shape};
 use plant_model::{Options, V2};
 use serde_json::Value;
 use std::collections::BTreeSet;
+use system_tests::browser::Browser;
 use system_tests::terminal::{assert_fits, tables};
 use system_tests::{host, scene_path};
 
@@ -105,7 +106,18 @@ fn promises_of_a_quick_run() {
     let scenes: BTreeSet<&str> = (results.iter())
         .map(|r| r["scene"].as_str().unwrap())
         .collect();
-    assert_eq!(page.matches("<details>").count(), scenes.len());
+    assert_eq!(
+        page.matches("<details class=\"part\">").count(),
+        scenes.len()
+    );
+    // The conclusion comes first, and names what is not kept.
+    let (_, headline) = page.split_once("<p class=\"headline\">").unwrap();
+    let (headline, rest) = headline.split_once("</p>").unwrap();
+    assert!(rest.find("</header>") < rest.find("<nav"), "{headline}");
+    for name in MISSED {
+        let name = name.replace('\'', "&#39;");
+        assert!(headline.contains(&name), "{name} in {headline}");
+    }
 
     // The scene of one's own: told, and compared, and no promise is about it.
     let harms = root["against_levitation"].as_array().unwrap();
@@ -122,7 +134,13 @@ fn promises_of_a_quick_run() {
     let (_, section) = page.split_once(" Own scene: AMB rotor").unwrap();
     let (section, _) = section.split_once("</section>").unwrap();
     for policy in ["passive", "radial", "levitation", "supervisor"] {
-        assert!(section.contains(&format!("<td>{policy}</td>")), "{policy}");
+        let cell = format!("<td class=\"words\">{policy}</td>");
+        assert!(section.contains(&cell), "{policy}");
+    }
+
+    if let Some(browser) = Browser::found() {
+        let page = folder.path().join("overloads/overloads.html");
+        browser.check("chapters.mjs", &[&page]);
     }
 
     let (text, folder) = quick("1", false);

@@ -4,6 +4,7 @@ use serde_json::Value;
 use std::fs;
 use std::path::Path;
 use std::process::Output;
+use system_tests::browser::Browser;
 use system_tests::host;
 use system_tests::terminal::{assert_fits, tables};
 use tempfile::TempDir;
@@ -78,6 +79,9 @@ fn page_and_json_do_not_depend_on_threads() {
     let [(json, page), (other_json, other_page)] = written;
     assert!(json == other_json, "JSON differs between threads");
     assert!(page == other_page, "the page differs between threads");
+    if let Some(browser) = Browser::found() {
+        browser.check("chapters.mjs", &[&folder.path().join("1/paper.html")]);
+    }
     // Nothing but the two folders: no temporary name is left.
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
 
@@ -88,6 +92,7 @@ fn page_and_json_do_not_depend_on_threads() {
         "Rows that miss, and why",
         "predicted (nothing was chosen for them)",
         "<svg",
+        "<p class=\"headline\">The model meets ",
     ] {
         assert!(page.contains(word), "{word}");
     }

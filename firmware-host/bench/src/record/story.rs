@@ -37,6 +37,35 @@ pub struct Told {
     pub coast_down: bool,
 }
 
+/// What speaks for or against running on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Verdict {
+    /// Nothing against it.
+    RunOn,
+    /// Much of what the retainer bearing may bear is used up.
+    Plan,
+    /// The event was not over, or not by the supervisor's doing.
+    Look,
+    /// All of it is used up.
+    Inspect,
+}
+
+impl Verdict {
+    /// In a sentence.
+    pub fn sentence(self) -> &'static str {
+        match self {
+            Self::RunOn => "Nothing speaks against running on.",
+            Self::Plan => {
+                "More than half of what the retainer bearing may bear is used up: plan its inspection."
+            }
+            Self::Look => "Look at the machine before it runs on.",
+            Self::Inspect => {
+                "The retainer bearing has had its share: inspect it before the machine runs on."
+            }
+        }
+    }
+}
+
 /// An event: the record of one plane, or those of both planes of a rotor.
 #[derive(Debug)]
 pub struct Event<'a> {
@@ -145,8 +174,28 @@ impl Told {
         }
     }
 
-    /// The event in a few sentences. `used`: share of what the retainer bearing may bear that its ledger says is used up; 0 without.
+    /// What speaks for or against running on. `used`: share of what the retainer bearing may bear that its ledger says is used up; 0
+    /// without.
+    pub fn verdict(&self, used: f64) -> Verdict {
+        let used = used.max(self.severity_index / self.severity_limit);
+        if self.coast_down || used >= 1.0 {
+            Verdict::Inspect
+        } else if self.outcome != "levitated" {
+            Verdict::Look
+        } else if used >= 0.5 {
+            Verdict::Plan
+        } else {
+            Verdict::RunOn
+        }
+    }
+
+    /// The event in a few sentences, the last of them the verdict.
     pub fn paragraph(&self, used: f64) -> String {
+        format!("{} {}", self.sentences(), self.verdict(used).sentence())
+    }
+
+    /// What happened, without the verdict.
+    pub fn sentences(&self) -> String {
         let touches = match self.touches {
             0 => "No touch".to_owned(),
             1 => "One touch".to_owned(),
@@ -180,18 +229,8 @@ impl Told {
             "bearing off" => "the bearing was switched off".to_owned(),
             mode => format!("it was not over when the record was full ({mode})"),
         };
-        let used = used.max(self.severity_index / self.severity_limit);
-        let verdict = if self.coast_down || used >= 1.0 {
-            "The retainer bearing has had its share: inspect it before the machine runs on"
-        } else if self.outcome != "levitated" {
-            "Look at the machine before it runs on"
-        } else if used >= 0.5 {
-            "More than half of what the retainer bearing may bear is used up: plan its inspection"
-        } else {
-            "Nothing speaks against running on"
-        };
         format!(
-            "{touches}{impacts}; {whirl}; {end}. Severity {:.2}, in all {:.2} of {:.0} that ask for coasting down. {verdict}.",
+            "{touches}{impacts}; {whirl}; {end}. Severity {:.2}, in all {:.2} of {:.0} that ask for coasting down.",
             self.severity, self.severity_index, self.severity_limit
         )
     }

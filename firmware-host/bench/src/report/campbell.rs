@@ -1,10 +1,11 @@
 //! A whole rotor as a linear system, for people: tables, Campbell diagram, response to the unbalance, mode shapes.
 
+use super::drawn::Drawn;
+use super::html_page::{Head, HtmlPage};
 use super::lines::{Cell, lined, right};
 use super::plot::PlotError;
-use super::plot::chart::{Axis, Chart, Curve, Mark, chart};
+use super::plot::chart::{Axis, Chart, Curve, Mark};
 use super::plot::text::figures;
-use super::still::StillPage;
 use crate::modes::{Analysis, Coupling, HeldWhirl};
 use crate::scene::machine::MachineScene;
 use plant_model::machine::linear::Direction;
@@ -106,14 +107,18 @@ pub fn coupling(coupling: &Coupling) -> String {
 /// # Errors
 /// [`PlotError`] if the drawing backend refuses.
 pub fn html(scene: &MachineScene, analysis: &Analysis) -> Result<String, PlotError> {
-    let mut page = StillPage::begun(&analysis.scene, ("", &scene.common().story), &[], &[]);
+    let mut page = HtmlPage::begun(&Head {
+        title: analysis.scene.clone(),
+        story: scene.common().story.clone(),
+        ..Head::default()
+    });
     for (heading, plot) in [
         ("Campbell diagram", diagram(analysis)),
         ("Response to the unbalance", responses(analysis)),
         ("Mode shapes", shapes(scene, analysis)),
     ] {
-        let drawing = chart(&plot)?;
-        page.section(heading, |page| page.figure(&drawing));
+        let drawn = Drawn::of_chart(&plot)?;
+        page.section(heading, |page| page.figures(&[drawn]));
     }
     page.section("Tables", |page| page.lines(&text(scene, analysis)));
     Ok(page.ended())

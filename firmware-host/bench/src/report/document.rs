@@ -1,23 +1,18 @@
-//! A page that a browser shows without the network: figures that stay when there is no script, the data of all tracks, and one
-//! script, named by its hash, that makes the figures move together.
+//! A page whose figures move together where there is a script: the data of all tracks, and that one script, named by its hash.
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
 
+use super::drawn::Drawn;
+use super::html_page::{Head, HtmlPage};
+use super::markup::Markup;
 use super::panels::{Key, PanelRow, Shown};
+use super::push;
 use super::track::{ROTOR_MODES, SUPERVISOR_MODES, Track};
-use super::{badge, push};
-use crate::report::plot::PlotError;
 use crate::report::plot::text::{escape, hex};
 use crate::report::plot::thin::{Band, Interval, drawable, one_band_a_column};
-
-const STYLE: &str = concat!(
-    include_str!("style.css"),
-    include_str!("uplot/uPlot.min.css"),
-    "\n"
-);
 
 /// The library under its licence, and what drives it, in the order in which they need each other.
 const SCRIPT: &str = concat!(
@@ -54,29 +49,17 @@ pub(super) struct Times {
 
 /// A page that is being written.
 pub(super) struct Document {
-    pub(super) html: String,
+    pub(super) page: HtmlPage,
     panels: Vec<Value>,
     groups: usize,
 }
 
-/// Head of a page up to its title, with what its scripts may be.
-pub(super) fn begun(title: &str, scripts: &str) -> String {
-    let title = escape(title);
-    format!(
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
-         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-         <meta http-equiv=\"Content-Security-Policy\" \
-         content=\"default-src 'none'; style-src 'unsafe-inline'{scripts}\">\n\
-         <title>{title}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n<header>\n<h1>{title}</h1>\n"
-    )
-}
-
 impl Document {
-    /// Up to its title.
-    pub(super) fn begun(title: &str) -> Self {
+    /// A page with its head.
+    pub(super) fn begun(head: &Head) -> Self {
         let hash = STANDARD.encode(Sha256::digest(SCRIPT));
         Self {
-            html: begun(title, &format!("; script-src 'sha256-{hash}'")),
+            page: HtmlPage::with_scripts(head, &format!("; script-src 'sha256-{hash}'")),
             panels: Vec::new(),
             groups: 0,
         }
@@ -84,7 +67,7 @@ impl Document {
 
     /// The controls of the figures, from here on in sight.
     pub(super) fn controls(&mut self) {
-        self.html.push_str(CONTROLS);
+        self.page.push(CONTROLS);
     }
 
     /// A part with figures. One that is `still` is left to readers without script, as the others show the same when zoomed.
@@ -95,85 +78,53 @@ impl Document {
         rows: &[PanelRow],
         still: bool,
     ) {
-        let class = if still { " class=\"still\"" } else { "" };
-        let heading = escape(heading);
-        push(
-            &mut self.html,
-            format_args!("<section{class}>\n<h2>{heading}</h2>\n"),
-        );
-        if !text.is_empty() {
-            push(
-                &mut self.html,
-                format_args!("<p class=\"note\">{text}</p>\n"),
-            );
-        }
-        for row in rows {
-            self.row(shown, row, still);
-        }
-        self.html.push_str("</section>\n");
-    }
-
-    fn row(&mut self, shown: &[Shown<'_>], row: &PanelRow, still: bool) {
-        let page = &mut self.html;
-        push(
-            page,
-            format_args!("<div class=\"head\"><h3>{}</h3> ", row.heading),
-        );
-        for Key {
-            name,
-            colour,
-            dashed,
-        } in &row.legend
-        {
-            let class = if *dashed { "key dashed" } else { "key" };
-            let name = escape(name);
-            push(
-                page,
-                format_args!("<span class=\"{class}\" style=\"--colour:{colour}\">{name}</span> "),
-            );
-        }
-        push(
-            page,
-            format_args!(
-                "<span class=\"note\">{}</span></div>\n<div class=\"grid\" style=\"--panels:{}\">\n",
-                row.note,
-                row.cells.len()
-            ),
-        );
-        for cell in &row.cells {
-            let Some(of) = shown.get(cell.shown) else {
-                continue;
-            };
-            let name = escape(of.name);
-            let outcome = of.track.outcome.map_or(String::new(), badge);
-            let own = match cell.own_scale {
-                true => " <em class=\"own\">own scale</em>",
-                false => "",
-            };
-            let panel = match still {
-                true => String::new(),
-                false => {
-                    let mut live = cell.live.clone();
-                    live["group"] = json!(self.groups);
-                    self.panels.push(live);
-                    format!(" data-panel=\"{}\"", self.panels.len() - 1)
+        let (panels, groups) = (&mut self.panels, &mut self.groups);
+        let write = |page: &mut HtmlPage| {
+            if !text.is_empty() {
+                page.note(&Markup::written(text));
+            }
+            for row in rows {
+                heading_of(page, row);
+                for cell in &row.cells {
+                    let Some(of) = shown.get(cell.shown) else {
+                        continue;
+                    };
+                    let panel = match still {
+                        true => String::new(),
+                        false => {
+                            let mut live = cell.live.clone();
+                            live["group"] = json!(*groups);
+                            panels.push(live);
+                            format!(" data-panel=\"{}\"", panels.len() - 1)
+                        }
+                    };
+                    let outcome = of.track.outcome.map_or(Markup::default(), Markup::outcome);
+                    let own = match cell.own_scale {
+                        true => " <em class=\"own\">own scale</em>",
+                        false => "",
+                    };
+                    let caption = format!("<b>{}</b> {}{own}", escape(of.name), outcome.as_html());
+                    let drawn = Drawn {
+                        id: None,
+                        caption: Markup::written(caption),
+                        // For readers without script, and for paper.
+                        drawing: format!("<div class=\"still\">{}</div>", cell.svg),
+                        data: cell.data.clone(),
+                    };
+                    page.figure(&panel, &drawn);
                 }
-            };
-            push(
-                page,
-                format_args!(
-                    "<figure{panel}><figcaption><b>{name}</b> {outcome}{own}</figcaption>\n\
-                     <div class=\"still\">{}</div>\n{}</figure>\n",
-                    cell.svg, cell.table
-                ),
-            );
+                page.push("</div>\n");
+                *groups += 1;
+            }
+        };
+        match still {
+            true => self.page.still_section(heading, write),
+            false => self.page.section(heading, write),
         }
-        page.push_str("</div>\n");
-        self.groups += 1;
     }
 
     /// The whole page, with what the script needs of the tracks.
-    pub(super) fn ended(mut self, tracks: &[Track], times: &Times) -> Result<String, PlotError> {
+    pub(super) fn ended(self, tracks: &[Track], times: &Times) -> String {
         let classes = json!({
             "rotor": ROTOR_MODES.map(|(mode, colour)| json!([mode.name(), hex(colour)])),
             "supervisor": SUPERVISOR_MODES.map(|(mode, colour)| json!([mode.name(), hex(colour)])),
@@ -190,15 +141,37 @@ impl Document {
         });
         // An end tag in a text would end the block.
         let data = data.to_string().replace('<', "\\u003c");
-        push(
-            &mut self.html,
-            format_args!(
-                "</main>\n<script type=\"application/json\" id=\"report-data\">{data}</script>\n\
-                 <script>{SCRIPT}</script>\n</body>\n</html>\n"
-            ),
-        );
-        Ok(self.html)
+        self.page.ended_with(&format!(
+            "<script type=\"application/json\" id=\"report-data\">{data}</script>\n<script>{SCRIPT}</script>\n"
+        ))
     }
+}
+
+/// Heading and legend of a row of panels, up to where they begin.
+fn heading_of(page: &mut HtmlPage, row: &PanelRow) {
+    let mut html = format!("<div class=\"head\"><h3>{}</h3> ", row.heading);
+    for Key {
+        name,
+        colour,
+        dashed,
+    } in &row.legend
+    {
+        let class = if *dashed { "key dashed" } else { "key" };
+        let name = escape(name);
+        push(
+            &mut html,
+            format_args!("<span class=\"{class}\" style=\"--colour:{colour}\">{name}</span> "),
+        );
+    }
+    push(
+        &mut html,
+        format_args!(
+            "<span class=\"note\">{}</span></div>\n<div class=\"grid\" style=\"--panels:{}\">\n",
+            row.note,
+            row.cells.len()
+        ),
+    );
+    page.push(&html);
 }
 
 fn of_track(track: &Track, times: &Times, budget: usize) -> Value {

@@ -1,5 +1,6 @@
 //! Tables for a terminal. All of them are laid out here, and none is wider than what it is shown on.
 
+use super::tone::{Tone, coloured, colours};
 use comfy_table::{
     CellAlignment, ColumnConstraint, ContentArrangement, LineStyle, Table, TableStyle, Width,
 };
@@ -46,6 +47,8 @@ pub struct Cell {
     text: String,
     /// Of a figure, which stands to the right and is not broken.
     figure: bool,
+    /// Its colour on a terminal.
+    tone: Option<Tone>,
 }
 
 impl Cell {
@@ -54,6 +57,23 @@ impl Cell {
         Self {
             text: words.to_string(),
             figure: false,
+            tone: None,
+        }
+    }
+
+    /// In a colour, where there are colours.
+    #[must_use]
+    pub fn toned(self, tone: impl Into<Option<Tone>>) -> Self {
+        Self {
+            tone: tone.into(),
+            ..self
+        }
+    }
+
+    fn marked(&self, colours: bool) -> String {
+        match self.tone.filter(|_| colours) {
+            None => self.text.clone(),
+            Some(tone) => tone.marked(&self.text),
         }
     }
 
@@ -71,8 +91,8 @@ impl Cell {
 /// A figure in a table.
 pub fn right(value: impl Display) -> Cell {
     Cell {
-        text: value.to_string(),
         figure: true,
+        ..Cell::new(value)
     }
 }
 
@@ -104,6 +124,21 @@ pub fn unlined() -> Lines {
 }
 
 impl Lines {
+    /// Texts of the headings.
+    pub(super) fn headings(&self) -> impl Iterator<Item = &str> {
+        self.header.iter().map(|cell| &cell.text[..])
+    }
+
+    /// Texts of the rows.
+    pub(super) fn rows(&self) -> impl Iterator<Item = Vec<&str>> {
+        (self.rows.iter()).map(|row| row.iter().map(|cell| &cell.text[..]).collect())
+    }
+
+    /// Whether what is in a column stands to the right.
+    pub(super) fn is_of_figures(&self, i: usize) -> bool {
+        self.column(i).right
+    }
+
     /// One row more.
     pub fn add_row<C: Into<Cell>>(&mut self, row: impl IntoIterator<Item = C>) {
         self.rows.push(row.into_iter().map(Into::into).collect());
@@ -112,11 +147,17 @@ impl Lines {
     /// As text of at most so many columns: cells of words are broken first, then the columns stand in groups one below the
     /// other, each with the first ones beside it.
     pub fn within(&self, width: usize) -> String {
+        let colours = colours();
+        let text = self.laid_out(width, colours);
+        if colours { coloured(&text) } else { text }
+    }
+
+    fn laid_out(&self, width: usize, colours: bool) -> String {
         let columns: Vec<Column> = (0..self.columns()).map(|i| self.column(i)).collect();
         let key = self.key(&columns, width);
         let groups = groups(&columns, key, width);
         let parts: Vec<String> = (groups.iter())
-            .map(|group| self.part(&columns, group, width).to_string())
+            .map(|group| self.part(&columns, group, width, colours).to_string())
             .collect();
         parts.join("\n\n")
     }
@@ -158,7 +199,7 @@ impl Lines {
     }
 
     /// Some of the columns.
-    fn part(&self, columns: &[Column], group: &[usize], width: usize) -> Table {
+    fn part(&self, columns: &[Column], group: &[usize], width: usize, colours: bool) -> Table {
         let mut table = Table::new();
         let line = LineStyle::none().fill('─');
         table.load_style(match self.header.is_empty() {
@@ -168,7 +209,9 @@ impl Lines {
         table.set_content_arrangement(ContentArrangement::Dynamic);
         let of = |row: &[Cell], header: bool| -> Vec<comfy_table::Cell> {
             let cell = |i: &usize| {
-                let (text, figure) = row.get(*i).map_or(("", false), |c| (&c.text, c.figure));
+                let cell = row.get(*i);
+                let text = cell.map_or(String::new(), |cell| cell.marked(colours));
+                let figure = cell.is_some_and(|cell| cell.figure);
                 let aligned = match figure || header && columns[*i].right {
                     true => CellAlignment::Right,
                     false => CellAlignment::Left,
@@ -262,7 +305,8 @@ fn fitted(columns: &[Column], group: &[usize], width: usize) -> Vec<usize> {
 
 #[cfg(test)]
 mod tests {
-    use super::{lined, right, unlined};
+    use super::{Cell, lined, right, unlined};
+    use crate::report::tone::{Tone, coloured};
     use unicode_width::UnicodeWidthStr;
 
     fn widest(text: &str) -> usize {
@@ -275,6 +319,47 @@ mod tests {
         table.add_row([right("µ"), right(12)]);
         let wide = " of  peak force [N] \n────────────────────\n  µ              12 ";
         assert_eq!(table.within(80), wide);
+    }
+
+    /// Colours change nothing but colours: the same lines at every width, and none goes on into the next cell or line.
+    #[test]
+    fn colours_take_no_room() {
+        let mut plain = lined(["policy", "how it ended", "remark"]);
+        let mut toned = plain.clone();
+        for (tone, words) in [
+            (Tone::Good, "recovered"),
+            (Tone::Fair, "held against it by a load"),
+            (Tone::Bad, "whirl"),
+        ] {
+            let row = [
+                Cell::new("p"),
+                right(words),
+                Cell::new("some words behind it"),
+            ];
+            plain.add_row(row.clone());
+            let [policy, ended, remark] = row;
+            toned.add_row([policy, ended.toned(tone), remark]);
+        }
+        for width in [40, 60, 80] {
+            let text = coloured(&toned.laid_out(width, true));
+            let mut bare = String::new();
+            for part in text.split('\u{1b}') {
+                let (code, rest) = part
+                    .split_once('m')
+                    .filter(|(code, _)| code.starts_with('['))
+                    .unwrap_or(("", part));
+                assert!(
+                    rest.matches('\n').count() == 0 || !matches!(code, "[31m" | "[32m" | "[33m")
+                );
+                bare.push_str(rest);
+            }
+            assert_eq!(bare, plain.within(width));
+            for colour in ["[32m", "[33m", "[31m"] {
+                assert!(text.contains(colour), "{text}");
+            }
+            // Without a terminal nothing of it is there.
+            assert_eq!(toned.within(width), plain.within(width));
+        }
     }
 
     #[test]

@@ -1,18 +1,20 @@
 //! The report on a whole rotor: its ends side by side, its axis over time and from the side, then each plane.
 
 use super::document::{Document, Times};
+use super::drawn::Drawn;
 use super::headline::{Concluded, headline};
+use super::html_page::Head;
 use super::panels::{PanelRow, Shown, View};
 use super::quantities::{BENDING_ENERGY, SLOPE, bending};
 use super::summary::{Fact, SceneSummary, summary};
 use super::track::Track;
 use super::{
-    happenings, push, push_disturbances, push_far, push_headline, push_list, push_sections,
-    push_story, push_table, push_warnings, times_of, verification,
+    disturbances_told, happenings, push_far, push_sections, push_table, times_of, verification,
+    warnings,
 };
 use crate::report::plot::PlotError;
-use crate::report::plot::chart::{Axis, Chart, Curve, chart};
-use crate::report::plot::text::{escape, figures};
+use crate::report::plot::chart::{Axis, Chart, Curve};
+use crate::report::plot::text::figures;
 use crate::run::overview::AxisTrack;
 use crate::run::verdict::{MachineResults, PolicyRun};
 use crate::scene::machine::MachineScene;
@@ -44,32 +46,29 @@ pub fn html(scene: &MachineScene, results: &MachineResults) -> Result<String, Pl
         .collect();
     let mut order: Vec<usize> = (0..whole.len()).collect();
     order.sort_by_key(|i| !concluded[*i].is_supervised());
-    let mut document = Document::begun(&common.title);
-    let page = &mut document.html;
-    push_headline(page, &headline(&concluded));
-    push_story(page, &common.story);
-    push_list(page, &facts(scene));
-    push_disturbances(page, &summaries[0].disturbances);
-    push_warnings(page, &scene.warnings);
-    push_warnings(page, &results.whole.untrusted());
-    page.push_str("</header>\n<main>\n");
+    let mut document = Document::begun(&Head {
+        title: common.title.clone(),
+        headline: headline(&concluded),
+        story: common.story.clone(),
+        facts: facts(scene),
+        points: disturbances_told(&summaries[0].disturbances),
+        warnings: warnings(&scene.warnings, &results.whole),
+    });
     push_table(
-        page,
+        &mut document.page,
         "Machine: the worst of its planes, and their sums",
         &in_order(whole, &order),
     );
     for ((plane, summary), runs) in scene.planes.iter().zip(&summaries).zip(&results.planes) {
-        push(
-            page,
-            format_args!("<section>\n<h2>Plane: {}</h2>\n", escape(&plane.name)),
-        );
-        push_list(page, &summary.facts);
-        let runs_in_order = in_order(runs, &order);
-        push_table(page, &format!("Verdicts: {}", plane.name), &runs_in_order);
-        push_far(page, runs, summary.clearance_m);
-        verification::push_table(page, &runs_in_order);
-        happenings::push_tables(page, &runs_in_order, Some(&plane.name));
-        page.push_str("</section>\n");
+        let heading = format!("Plane: {}", plane.name);
+        document.page.section(&heading, |page| {
+            page.facts(&summary.facts);
+            let runs_in_order = in_order(runs, &order);
+            push_table(page, &format!("Verdicts: {}", plane.name), &runs_in_order);
+            push_far(page, runs, summary.clearance_m);
+            verification::push_table(page, &runs_in_order);
+            happenings::push_tables(page, &runs_in_order, Some(&plane.name));
+        });
     }
     let axes = (order.iter()).filter_map(|i| Some((whole.get(*i)?, results.axes.get(*i)?)));
     let mut tracks = Tracks {
@@ -89,21 +88,17 @@ pub fn html(scene: &MachineScene, results: &MachineResults) -> Result<String, Pl
     tracks.push_ends(&mut document, scene, &times)?;
     tracks.push_axes(&mut document, scene, &times)?;
     for (run, axis) in axes {
-        let plot = from_the_side(&scene.machine, axis);
-        push(
-            &mut document.html,
-            format_args!(
-                "<section>\n<h2>Axis from the side: {}</h2>\n<figure>{}</figure>\n</section>\n",
-                escape(&run.name),
-                chart(&plot)?
-            ),
-        );
+        let drawn = Drawn::of_chart(&from_the_side(&scene.machine, axis))?;
+        let heading = format!("Axis from the side: {}", run.name);
+        document
+            .page
+            .section(&heading, |page| page.figures(&[drawn]));
     }
     for (i, plane) in scene.planes.iter().enumerate() {
         let shown = tracks.of_plane(i);
         push_sections(&mut document, &shown, &times, &format!("{}: ", plane.name))?;
     }
-    document.ended(&tracks.all, &times)
+    Ok(document.ended(&tracks.all, &times))
 }
 
 fn in_order<'a>(runs: &'a [PolicyRun], order: &[usize]) -> Vec<&'a PolicyRun> {

@@ -5,6 +5,7 @@ use serde_json::{Value, json};
 
 use super::axes::{axes, one_axis};
 use super::data;
+use super::listing::Listing;
 use super::quantities::{
     CONTACT_FORCE, CONTACT_SHARE, CONTROL_FORCE, Chart, FORCE_COMPONENTS, POSITION, RADIUS,
     SEVERITY, SPIN, TANGENTIAL_SPEED,
@@ -48,7 +49,7 @@ pub(super) struct PanelCell {
     /// Whether its axes differ from those of the others.
     pub(super) own_scale: bool,
     /// What it shows, as a table.
-    pub(super) table: String,
+    pub(super) data: Listing,
     /// What the script needs to draw it.
     pub(super) live: Value,
 }
@@ -136,7 +137,7 @@ impl View<'_> {
                 shown: *place,
                 svg,
                 own_scale,
-                table: data::extremes(chart, track, self.window),
+                data: data::extremes(chart, track, self.window),
                 live: json!({
                     "kind": "lines", "track": shown.at, "own": own_scale, "name": y_name,
                     "lines": lines.collect::<Vec<_>>(), "y": [y.lo, y.hi], "limit": limit,
@@ -198,7 +199,7 @@ impl View<'_> {
                 shown: place,
                 svg,
                 own_scale,
-                table: data::places(shown.track, self.window),
+                data: data::places(shown.track, self.window),
                 live: json!({
                     "kind": "orbit", "track": shown.at, "own": own_scale, "reach": reach, "unit": unit,
                     "wall": [wall.semi_axes[0], wall.semi_axes[1], wall.tilt_rad],
@@ -263,7 +264,7 @@ impl View<'_> {
                 shown: place,
                 svg: strip_plot(&label, self.time(track), &drawn)?,
                 own_scale: false,
-                table: data::stretches(&drawn, self.window, track.units.time),
+                data: data::stretches(&drawn, self.window, track.units.time),
                 live: json!({
                     "kind": "modes", "track": shown.at,
                     "lanes": drawn.iter().map(|lane| lane.name).collect::<Vec<_>>(),

@@ -2,38 +2,74 @@
 
 use super::axes::window_of;
 use super::document::{Document, Times};
+use super::html_page::{Head, HtmlPage};
+use super::lines::Lines;
+use super::listing::Listing;
+use super::markup::Markup;
 use super::panels::View;
 use super::plot::{PlotError, alone};
+use super::table::supervisor_first;
 use super::track::Track;
-use super::{happenings, push_headline, push_story, push_warnings, shown};
+use super::{happenings, push_table, shown};
+use crate::run::verdict::PolicyRun;
 
-/// What stands above the figures.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct RecordHead {
-    /// Title of the page, one line.
-    pub title: String,
-    /// What happened, the conclusion of it.
-    pub headline: String,
-    /// Paragraphs below it, with an empty line between two.
-    pub story: String,
-    /// What is damaged or does not fit.
-    pub warnings: Vec<String>,
+/// A part of what is printed of a record, under a heading.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RecordPart {
+    /// What it is of.
+    pub heading: String,
+    /// Paragraphs.
+    pub said: Vec<String>,
+    /// Tables with their captions.
+    pub tables: Vec<(String, Lines)>,
+    /// Runs that are compared, as `run` shows them.
+    pub runs: Vec<PolicyRun>,
 }
 
-/// Complete HTML document on what was recorded, tracks side by side: those of the record, and simulations of it, if any.
+/// What stands above the figures and below them.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct RecordParts {
+    /// What came of the event.
+    pub above: Vec<RecordPart>,
+    /// What it is found out from.
+    pub below: Vec<RecordPart>,
+}
+
+fn push_parts(page: &mut HtmlPage, parts: &[RecordPart]) {
+    /// Of a longer table the rows scroll.
+    const IN_SIGHT: usize = 16;
+    for part in parts {
+        page.section(&part.heading, |page| {
+            for text in &part.said {
+                page.paragraph(&Markup::text(text));
+            }
+            for (caption, lines) in &part.tables {
+                let listing = Listing::of_lines(caption, lines);
+                let low = listing.rows.len() > IN_SIGHT;
+                page.table(&Listing { low, ..listing });
+            }
+            if !part.runs.is_empty() {
+                push_table(page, "Verdicts", &supervisor_first(&part.runs));
+            }
+        });
+    }
+}
+
+/// Complete HTML document on what was recorded: what is printed of it, then tracks side by side, those of the record, and
+/// simulations of it, if any.
 /// Deterministic: the same input gives the same bytes.
 ///
 /// # Errors
 /// [`PlotError`] if the drawing backend refuses.
-pub fn record_html(head: &RecordHead, tracks: &[Track]) -> Result<String, PlotError> {
-    let mut document = Document::begun(&head.title);
-    let page = &mut document.html;
-    push_headline(page, &head.headline);
-    push_story(page, &head.story);
-    push_warnings(page, &head.warnings);
-    page.push_str("</header>\n<main>\n");
+pub fn record_html(
+    head: &Head,
+    parts: &RecordParts,
+    tracks: &[Track],
+) -> Result<String, PlotError> {
+    let mut document = Document::begun(head);
+    push_parts(&mut document.page, &parts.above);
     for track in tracks.iter().filter(|track| !track.events.is_empty()) {
-        happenings::push_of_track(page, track);
+        happenings::push_of_track(&mut document.page, track);
     }
     let window = window_of(tracks, None);
     // A slow track may go on for long after what was recorded tick by tick.
@@ -63,7 +99,8 @@ pub fn record_html(head: &RecordHead, tracks: &[Track]) -> Result<String, PlotEr
             document.section(&shown, ("Close-up", text), &rows, true);
         }
     }
-    document.ended(tracks, &times)
+    push_parts(&mut document.page, &parts.below);
+    Ok(document.ended(tracks, &times))
 }
 
 /// A figure in a file of its own.

@@ -2,6 +2,7 @@
 
 use crate::report::lines::{Cell, Lines, lined, right};
 use crate::report::plot::text::figures;
+use crate::report::tone::Tone;
 use crate::run::figures::{BearingFigures, Digits, Figure, Figures, Timing, Value};
 use crate::run::supervision::{Account, Supervision};
 use crate::run::verdict::{MachineResults, PolicyRun, Results, far_into_the_wall};
@@ -44,7 +45,7 @@ const CHECK_FIGURES: &[Row<Verification>] = &[
     }),
     ("outcome when checked", |v| match v.same_outcome {
         true => "the same".to_owned(),
-        false => format!("OTHER: {}", each(v, |c| c.outcome.name().to_owned())),
+        false => format!("{OTHER}: {}", each(v, |c| c.outcome.name().to_owned())),
     }),
     ("modes when checked", |v| match v.same_modes {
         true => format!("the same {}", v.mode_changes),
@@ -87,9 +88,17 @@ const SUPERVISION_FIGURES: &[Row<Supervision>] = &[
     ("severity index of them", |s| {
         told(s, |account| format!("{:.3}", account.severity_index))
     }),
+    ("hardest impact seen [m/s]", |s| {
+        told(s, |account| figures(account.impact_speed_max_m_s))
+    }),
+    ("backward motion, of limit [%]", |s| {
+        told(s, |account| {
+            figures(100.0 * account.backward_speed_max_m_s / account.whirl_limit_m_s)
+        })
+    }),
     ("asks to coast down", |s| {
         told(s, |account| {
-            let word = if account.coast_down { "YES" } else { "no" };
+            let word = if account.coast_down { ASKS } else { "no" };
             word.to_owned()
         })
     }),
@@ -190,12 +199,25 @@ fn table(of: &str, runs: &[&PolicyRun]) -> Lines {
     let mut header = vec![Cell::new(of)];
     header.extend(runs.iter().map(|r| right(&r.name)));
     let mut table = lined(header);
+    let outcome = Figures::ALL[0].title();
     for (title, cells) in rows(runs) {
-        let cells = cells.into_iter().map(right);
-        table.add_row([Cell::new(title)].into_iter().chain(cells));
+        let cells = cells.into_iter().zip(runs).map(|(cell, run)| {
+            let tone = match &cell[..] {
+                _ if title == outcome => Some(Tone::of(run.verdict.figures.outcome)),
+                ASKS => Some(Tone::Bad),
+                cell => cell.starts_with(OTHER).then_some(Tone::Bad),
+            };
+            right(cell).toned(tone)
+        });
+        table.add_row([Cell::new(&title)].into_iter().chain(cells));
     }
     table
 }
+
+/// Said where the supervisor asks for coasting down, …
+const ASKS: &str = "YES";
+/// … and before outcomes that are not that of the run.
+const OTHER: &str = "OTHER";
 
 /// Every figure that one of the runs has: its title with the unit, and a cell for each run. What came of it first, then what the
 /// supervisor did.

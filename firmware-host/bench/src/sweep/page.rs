@@ -1,10 +1,13 @@
 //! The page of a sweep: what became of the runs, where they are lost, what decides it, and the worst of them.
 
+use crate::report::drawn::Drawn;
+use crate::report::html_page::{Head, HtmlPage};
+use crate::report::listing::Listing;
+use crate::report::markup::Markup;
 use crate::report::plot::PlotError;
 use crate::report::plot::bars::{Bars, Measured, Thing, bars};
 use crate::report::plot::chart::{Axis, Chart, Curve, HeatMap, Mark, chart, heat_map};
 use crate::report::plot::text::figures;
-use crate::report::still::{Listing, Markup, StillPage};
 use crate::report::table::shown_as;
 use crate::run::figures::Figures;
 use crate::run::outcome::Outcome;
@@ -33,14 +36,19 @@ pub fn html(summary: &Summary) -> Result<String, PlotError> {
             "{more} more rows have an error in the place of figures"
         ));
     }
-    let facts = [
+    let facts = vec![
         ("Design", summary.design.name().to_owned()),
         ("Runs", summary.runs.to_string()),
         ("Policies", summary.policies.len().to_string()),
         ("Keys that vary", summary.influences.len().to_string()),
     ];
-    let title = format!("Sweep: {}", summary.scene);
-    let mut page = StillPage::begun(&title, (&head.join(" "), ""), &facts, &warnings);
+    let mut page = HtmlPage::begun(&Head {
+        title: format!("Sweep: {}", summary.scene),
+        headline: head.join(" "),
+        facts,
+        warnings,
+        ..Head::default()
+    });
     page.section("Outcomes", |page| {
         page.table(&outcomes(summary));
         page.note(&Markup::text(bound(summary)));
@@ -117,6 +125,7 @@ fn outcomes(summary: &Summary) -> Listing {
         caption: "How runs ended".to_owned(),
         rows: rows.collect(),
         headings,
+        ..Listing::default()
     }
 }
 
@@ -160,10 +169,11 @@ fn quantiles(policy: &PolicySummary) -> Listing {
             .map(Markup::text)
             .to_vec(),
         rows: policy.figures.iter().filter_map(row).collect(),
+        ..Listing::default()
     }
 }
 
-fn map(map: &OutcomeMap) -> Result<(String, String, Listing), PlotError> {
+fn map(map: &OutcomeMap) -> Result<Drawn, PlotError> {
     let OutcomeMap {
         policy, x, y, dots, ..
     } = map;
@@ -193,7 +203,7 @@ fn map(map: &OutcomeMap) -> Result<(String, String, Listing), PlotError> {
             scale: (0.0, 1.0, "share lost".to_owned()),
         })?,
     };
-    Ok((name, drawing, counted(map)))
+    Ok(Drawn::new(&name, drawing, counted(map)))
 }
 
 /// Those that are lost as crosses, on top.
@@ -271,6 +281,7 @@ fn counted(map: &OutcomeMap) -> Listing {
         caption: format!("Lost runs under {}", map.policy),
         headings,
         rows: rows.collect(),
+        ..Listing::default()
     }
 }
 
@@ -279,7 +290,7 @@ type Shown<'a> = (&'a str, [Vec<Option<Measured>>; 2]);
 
 /// A figure for loss and one for the figure that the worst runs are chosen by, with what their tables show.
 fn decided(
-    page: &mut StillPage,
+    page: &mut HtmlPage,
     summary: &Summary,
     (series, least_ranges): (&[&str], [f64; 2]),
     keys: &[Shown<'_>],
@@ -309,22 +320,16 @@ fn decided(
         };
         let mut listing = std::mem::take(&mut listings[i]);
         listing.caption.clone_from(&label);
-        drawn.push((label, bars(&plot), listing));
+        drawn.push(Drawn::new(&label, bars(&plot), listing));
     }
     page.figures(&drawn);
 }
 
 fn listing(headings: &[&str], rows: impl Iterator<Item = Vec<String>>) -> Listing {
-    Listing {
-        caption: String::new(),
-        headings: headings.iter().map(Markup::text).collect(),
-        rows: rows
-            .map(|row| row.iter().map(Markup::text).collect())
-            .collect(),
-    }
+    Listing::of_texts("", headings, rows)
 }
 
-fn decided_by_ranks(page: &mut StillPage, summary: &Summary) {
+fn decided_by_ranks(page: &mut HtmlPage, summary: &Summary) {
     page.note(&Markup::text(
         "Share of the variance of ranks that goes away when a key is known, as from groups of runs with close values: a \
          first-order index. What keys do only together it does not show; the designs saltelli and morris do.",
@@ -359,7 +364,7 @@ fn decided_by_ranks(page: &mut StillPage, summary: &Summary) {
     );
 }
 
-fn decided_by_indices(page: &mut StillPage, summary: &Summary, indices: &Indices) {
+fn decided_by_indices(page: &mut HtmlPage, summary: &Summary, indices: &Indices) {
     let saltelli = indices
         .keys
         .iter()
@@ -493,5 +498,6 @@ fn worst(summary: &Summary) -> Listing {
             Markup::text("scene"),
         ],
         rows: rows.collect(),
+        ..Listing::default()
     }
 }

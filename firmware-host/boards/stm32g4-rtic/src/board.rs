@@ -322,3 +322,30 @@ pub(crate) mod serial {
         }
     }
 }
+
+/// Backup registers: they keep what they hold over resets, and without power where a battery is at VBAT.
+pub(crate) mod backup {
+    use super::RCC;
+    use board_machine::{KEPT_WORDS, Kept};
+    use stm32_metapac::{PWR, TAMP};
+
+    /// 24 of the 32.
+    pub(crate) struct Registers;
+
+    /// After the clocks: they can be written to from here on. A reset of the core leaves them and this as they are.
+    pub(crate) fn set_up() -> Registers {
+        RCC.apb1enr1().modify(|w| w.set_rtcapben(true));
+        PWR.cr1().modify(|w| w.set_dbp(true));
+        Registers
+    }
+
+    impl Kept for Registers {
+        fn word(&self, at: usize) -> u32 {
+            TAMP.bkpr(at % KEPT_WORDS).read().bkp()
+        }
+
+        fn put(&mut self, at: usize, word: u32) {
+            TAMP.bkpr(at % KEPT_WORDS).write(|w| w.set_bkp(word));
+        }
+    }
+}

@@ -32,9 +32,11 @@ fn panic(_: &PanicInfo<'_>) -> ! {
 
 #[rtic::app(device = stm32_metapac, peripherals = false)]
 mod app {
-    use crate::board::{self, command_watch, outputs, sampling, serial, watchdog};
+    use crate::board::{self, backup, command_watch, outputs, sampling, serial, watchdog};
     use crate::clocks;
-    use board_machine::{CONFIG, Control, Liveness, RECORD, Request, Switch, TICK_HZ, position_m};
+    use board_machine::{
+        CONFIG, Control, Landings, Liveness, RECORD, Request, Switch, TICK_HZ, position_m,
+    };
     use supervisor::{Events, Reader, Record, Stamp, Supervisor};
 
     static LIVENESS: Liveness = Liveness::new();
@@ -47,6 +49,7 @@ mod app {
         control: Control,
         switch: Switch,
         reader: Reader<'static, f32, RECORD>,
+        landings: Option<Landings<backup::Registers>>,
     }
 
     #[init]
@@ -69,6 +72,7 @@ mod app {
         if !ticker.self_test().passed {
             stay_off("the self-test does not pass on this processor\n");
         }
+        let landings = landings();
         // With an open interlock nothing can be tried, and nothing can be switched on.
         while !board::interlock_is_closed() {}
         if !command_watch::works() {
@@ -80,6 +84,7 @@ mod app {
             control: Control::new(ticker),
             switch: Switch::default(),
             reader,
+            landings,
         };
         (Shared {}, local)
     }
@@ -112,9 +117,11 @@ mod app {
     }
 
     /// Everything that has time.
-    #[idle(local = [reader])]
+    #[idle(local = [reader, landings])]
     fn idle(cx: idle::Context) -> ! {
-        let reader = cx.local.reader;
+        let idle::LocalResources {
+            reader, landings, ..
+        } = cx.local;
         let mut fed_at = 0;
         loop {
             feed(&mut fed_at);
@@ -125,11 +132,31 @@ mod app {
                 }
             }
             if let Some(record) = reader.record() {
+                // First of all: sending takes its time.
+                if let Some(landings) = landings {
+                    landings.take_in(&record);
+                }
                 send(&record, &mut fed_at);
                 reader.rearm();
             }
             // The next tick wakes it.
             cortex_m::asm::wfi();
+        }
+    }
+
+    /// What the retainer bearing had borne at the last reset; `None` where nobody can say.
+    fn landings() -> Option<Landings<backup::Registers>> {
+        match Landings::at_boot(backup::set_up()) {
+            Ok((landings, told)) => {
+                if told.is_some() {
+                    serial::send(board_machine::LANDINGS_MISSING);
+                }
+                Some(landings)
+            }
+            Err(_) => {
+                serial::send(board_machine::LANDINGS_NOT_COUNTED);
+                None
+            }
         }
     }
 

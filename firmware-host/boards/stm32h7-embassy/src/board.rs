@@ -271,3 +271,30 @@ pub(crate) mod command_watch {
         held && ended
     }
 }
+
+/// Backup registers: they keep what they hold over resets, and without power where a battery is at VBAT.
+pub(crate) mod backup {
+    use super::{Peri, pac, peripherals};
+    use board_machine::{KEPT_WORDS, Kept};
+    use pac::{PWR, RCC, RTC};
+
+    /// 24 of the 32.
+    pub(crate) struct Registers;
+
+    /// They can be written to from here on.
+    pub(crate) fn set_up(_clock: Peri<'static, peripherals::RTC>) -> Registers {
+        RCC.apb4enr().modify(|w| w.set_rtcapben(true));
+        PWR.cr1().modify(|w| w.set_dbp(true));
+        Registers
+    }
+
+    impl Kept for Registers {
+        fn word(&self, at: usize) -> u32 {
+            RTC.bkpr(at % KEPT_WORDS).read().bkp()
+        }
+
+        fn put(&mut self, at: usize, word: u32) {
+            RTC.bkpr(at % KEPT_WORDS).write(|w| w.set_bkp(word));
+        }
+    }
+}

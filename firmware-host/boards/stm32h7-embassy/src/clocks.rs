@@ -4,8 +4,8 @@ use embassy_stm32::Config;
 use embassy_stm32::interrupt::Priority;
 use embassy_stm32::rcc::mux::Adcsel;
 use embassy_stm32::rcc::{
-    AHBPrescaler, APBPrescaler, Hse, HseMode, Pll, PllDiv, PllMul, PllPreDiv, PllSource, Sysclk,
-    VoltageScale,
+    AHBPrescaler, APBPrescaler, Hse, HseMode, LsConfig, Pll, PllDiv, PllMul, PllPreDiv, PllSource,
+    Sysclk, VoltageScale,
 };
 use embassy_stm32::time::Hertz;
 
@@ -21,6 +21,8 @@ pub(crate) fn config() -> Config {
     config.dma_interrupt_priority = Priority::P8;
     config.bdma_interrupt_priority = Priority::P8;
     let rcc = &mut config.rcc;
+    // No clock of the calendar. To change to another one would reset the backup registers, and the ledger with them.
+    rcc.ls = LsConfig::off();
     rcc.hse = Some(Hse {
         freq: Hertz(8_000_000),
         mode: HseMode::Bypass,

@@ -19,9 +19,10 @@
 mod board;
 mod clocks;
 
-use board::{command_watch, outputs, sampling};
+use board::{backup, command_watch, outputs, sampling};
 use board_machine::{
-    CONFIG, Control, Liveness, RECORD, Request, Switch, TICK_HZ, WATCHDOG_MS, position_m,
+    CONFIG, Control, LANDINGS_MISSING, LANDINGS_NOT_COUNTED, Landings, Liveness, RECORD, Request,
+    Switch, TICK_HZ, WATCHDOG_MS, position_m,
 };
 use core::cell::Cell;
 use core::panic::PanicInfo;
@@ -133,6 +134,18 @@ async fn main(_spawner: Spawner) {
         )
         .await;
     }
+    let landings = match Landings::at_boot(backup::set_up(p.RTC)) {
+        Ok((landings, told)) => {
+            if told.is_some() {
+                say(&mut serial, LANDINGS_MISSING).await;
+            }
+            Some(landings)
+        }
+        Err(_) => {
+            say(&mut serial, LANDINGS_NOT_COUNTED).await;
+            None
+        }
+    };
     sampling::start((p.ADC1, p.ADC2), (p.PC0, p.PC1), (p.TIM4, p.TIM2));
     if !command_watch::works() {
         return say(
@@ -153,12 +166,15 @@ async fn main(_spawner: Spawner) {
     interrupt::ADC.set_priority(Priority::P0);
     // SAFETY: no critical section is open here, and what the interrupt takes over is there.
     unsafe { interrupt::ADC.enable() };
-    background(reader, watchdog, coast_down, serial).await
+    background((reader, landings), watchdog, coast_down, serial).await
 }
 
 /// Everything that has time. Other tasks of the firmware run beside it; one that does not let go starves the watchdog.
 async fn background(
-    mut reader: Reader<'static, f32, RECORD>,
+    (mut reader, mut landings): (
+        Reader<'static, f32, RECORD>,
+        Option<Landings<backup::Registers>>,
+    ),
     mut watchdog: IndependentWatchdog<'static, IWDG1>,
     mut coast_down: Output<'static>,
     mut serial: UartTx<'static, Async>,
@@ -180,6 +196,10 @@ async fn background(
             }
         }
         if let Some(record) = reader.record() {
+            // First of all: sending takes its time.
+            if let Some(landings) = &mut landings {
+                landings.take_in(&record);
+            }
             let at_sequence = sampling::count();
             let stamp = Stamp {
                 firmware: 1,

@@ -2,7 +2,7 @@
 
 use firmware_bench::record::identify::{Estimate, Findings, Identified};
 use firmware_bench::record::ticks::Ticks;
-use firmware_bench::report::lines::{Cell, lined, right};
+use firmware_bench::report::lines::{Cell, Lines, lined, right};
 use firmware_bench::report::table::or_dash;
 
 /// Name, unit, how many of it one of SI is, digits.
@@ -34,8 +34,12 @@ fn whole(x: f64, digits: usize) -> String {
     }
 }
 
-/// Contacts, and what they tell of the machine.
-pub(super) fn tables(findings: &Findings, ticks: &Ticks, period_s: f64) -> String {
+/// Contacts, and what they tell of the machine, with captions.
+pub(super) fn tables(
+    findings: &Findings,
+    ticks: &Ticks,
+    period_s: f64,
+) -> [(&'static str, Lines); 2] {
     let mut contacts = lined([
         "contact from [ms]",
         "to [ms]",
@@ -75,5 +79,8 @@ pub(super) fn tables(findings: &Findings, ticks: &Ticks, period_s: f64) -> Strin
         }
         told.add_row(row);
     }
-    format!("\n{contacts}\n\n{told}\n")
+    [
+        ("Contacts that were found", contacts),
+        ("The machine, by this event", told),
+    ]
 }

@@ -2,21 +2,27 @@
 
 use crate::cli::error::CommandError;
 use crate::cli::output::{self, Staging};
+use crate::cli::review::told::of_bearings;
 use crate::cli::review::{Examined, of_event, used};
 use firmware_bench::record::file::PlaneRecord;
 use firmware_bench::record::remaining::Remaining;
 use firmware_bench::record::ticks::Ticks;
-use firmware_bench::report::record::{FigureFile, RecordHead, record_figures, record_html};
+use firmware_bench::report::html_page::Head;
+use firmware_bench::report::record::{FigureFile, RecordParts, record_figures, record_html};
 use firmware_bench::report::summary::summary;
 use firmware_bench::report::track::Track;
 use firmware_bench::run::verdict::PolicyRun;
 use std::path::Path;
 
 /// Writes `report.html` to a folder, whole or not at all.
-pub(super) fn write(out: &Path, head: &RecordHead, tracks: &[Track]) -> Result<(), CommandError> {
+pub(super) fn write(
+    out: &Path,
+    (head, parts): (&Head, &RecordParts),
+    tracks: &[Track],
+) -> Result<(), CommandError> {
     output::probe(out)?;
-    let html =
-        record_html(head, tracks).map_err(|e| CommandError::other("drawing the report", e))?;
+    let html = record_html(head, parts, tracks)
+        .map_err(|e| CommandError::other("drawing the report", e))?;
     let staging = Staging::for_folder(out)?;
     staging.write("report.html", html)?;
     staging.publish()?;
@@ -41,7 +47,7 @@ pub(super) fn head(
     name: &str,
     (events, bearings): (&[Examined<'_>], &[Remaining]),
     damage: &[String],
-) -> RecordHead {
+) -> Head {
     let many = events.len() > 1;
     let told: Vec<String> = (events.iter().enumerate())
         .map(|(i, of)| {
@@ -63,11 +69,12 @@ pub(super) fn head(
         );
         (replay.differing > 0).then_some(text)
     });
-    RecordHead {
+    Head {
         title: format!("Flight record {name}"),
         headline: told.join(" "),
-        story: (bearings.iter().map(Remaining::told).collect::<Vec<_>>()).join("\n\n"),
+        story: of_bearings(bearings).join("\n\n"),
         warnings: damage.iter().cloned().chain(differs).collect(),
+        ..Head::default()
     }
 }
 

@@ -2,11 +2,11 @@
 
 use firmware_bench::record::file::PlaneRecord;
 use firmware_bench::record::ticks::{PER_UNIT, Tick, Ticks, Units, mode_name};
-use firmware_bench::report::lines::{Cell, lined, right};
+use firmware_bench::report::lines::{Cell, Lines, lined, right};
 use std::fmt::Write;
 
 /// The slow track, neighbours of the same modes together.
-pub(super) fn track(record: &PlaneRecord, recorded: &Ticks, units: Units) -> String {
+pub(super) fn track(record: &PlaneRecord, recorded: &Ticks, units: Units) -> Lines {
     let mut table = lined([
         format!("from [{}]", time_unit(units)),
         format!("to [{}]", time_unit(units)),
@@ -47,7 +47,7 @@ pub(super) fn track(record: &PlaneRecord, recorded: &Ticks, units: Units) -> Str
             right(format!("{:.2}", most(|s| s.severity))),
         ]);
     }
-    format!("\nThe largest of each, to the end of the event:\n\n{table}\n")
+    table
 }
 
 pub(super) fn csv(record: &Ticks) -> String {
@@ -109,18 +109,39 @@ fn scaled(x: f64, (_, unit): (&str, f64)) -> String {
     format!("{:.*}", digits(unit), x * unit)
 }
 
+/// What the recorded ticks show.
+pub(super) struct TickTables {
+    /// Where ticks are missing between others.
+    pub(super) missing: Option<String>,
+    /// Their modes.
+    pub(super) modes: Lines,
+    /// Ticks in which something happened.
+    happened: Lines,
+}
+
+impl TickTables {
+    /// For a terminal.
+    pub(super) fn text(&self) -> String {
+        let missing = self.missing.iter().map(|text| format!("{text}\n"));
+        format!(
+            "{}\n{}\n\nThese ticks end in the last of the modes.\n\n{}\n",
+            missing.collect::<String>(),
+            self.modes,
+            self.happened
+        )
+    }
+}
+
 /// Modes of the ticks, and what happened in them.
-pub(super) fn tables(record: &Ticks, units: Units) -> String {
+pub(super) fn tick_tables(record: &Ticks, units: Units) -> TickTables {
     let (time_unit, length, force) = (time_unit(units), length(units), force(units));
-    let mut out = String::new();
-    if record.missing > 0 {
-        let _ = writeln!(
-            out,
+    let missing = (record.missing > 0).then(|| {
+        format!(
             "{} sequence numbers are missing between neighbours: lost ticks, or the oldest entries are of the \
              event before",
             record.missing
-        );
-    }
+        )
+    });
     let mut modes = lined([
         "mode".to_owned(),
         format!("from [{time_unit}]"),
@@ -165,9 +186,9 @@ pub(super) fn tables(record: &Ticks, units: Units) -> String {
             Cell::new(events.join(" ")),
         ]);
     }
-    let _ = writeln!(
-        out,
-        "\n{modes}\n\nThese ticks end in the last of the modes.\n\n{happened}"
-    );
-    out
+    TickTables {
+        missing,
+        modes,
+        happened,
+    }
 }

@@ -2,11 +2,12 @@
 
 use super::ReviewArgs;
 use super::page;
-use super::tables::{csv, tables};
+use super::tables::{csv, tick_tables};
 use crate::cli::error::{CommandError, pretty, print};
 use crate::cli::screen::tell;
 use firmware_bench::record::ticks::{ANY_UNIT, FlightRecord, Units};
-use firmware_bench::report::record::RecordHead;
+use firmware_bench::report::html_page::Head;
+use firmware_bench::report::record::RecordParts;
 use firmware_bench::report::track::Track;
 use std::fmt::Write;
 
@@ -50,15 +51,15 @@ pub(super) fn show(
         });
     }
     if let Some(out) = &args.out {
-        let head = RecordHead {
+        let head = Head {
             title: format!("Flight record {name}"),
             headline: "A record of version 2 has no summary: what happened is in its ticks."
                 .to_owned(),
-            ..RecordHead::default()
+            ..Head::default()
         };
         page::write(
             out,
-            &head,
+            (&head, &RecordParts::default()),
             &[Track::of_ticks("recorded", &record.of, units)],
         )?;
     }
@@ -129,5 +130,5 @@ fn text(record: &FlightRecord, units: Units, compared: bool) -> String {
             record.empty
         );
     }
-    out + &tables(&record.of, units)
+    out + &tick_tables(&record.of, units).text()
 }

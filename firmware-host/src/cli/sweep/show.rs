@@ -4,7 +4,9 @@ use super::Done;
 use firmware_bench::report::lines::{Cell, lined, right};
 use firmware_bench::report::plot::text::figures;
 use firmware_bench::report::table::shown_as;
+use firmware_bench::report::tone::Tone;
 use firmware_bench::run::figures::Figures;
+use firmware_bench::run::outcome::Outcome;
 use firmware_bench::scene::policy_kind::PolicyKind;
 use firmware_bench::sweep::indices::{Index, Indices};
 use firmware_bench::sweep::influence::Influence;
@@ -67,7 +69,8 @@ pub(super) fn all(plan: &Plan, summary: &Summary, done: &Done) -> String {
             let (value, outcome) = (worst.value, &worst.outcome);
             let _ = writeln!(
                 text,
-                "  {value:.4e}, {outcome}: firmware-host run {}",
+                "  {value:.4e}, {}: firmware-host run {}",
+                said(outcome),
                 path.display()
             );
         }
@@ -98,12 +101,18 @@ pub(super) fn all(plan: &Plan, summary: &Summary, done: &Done) -> String {
     text
 }
 
+/// In its colour on a terminal.
+fn said(outcome: &str) -> String {
+    Outcome::from_name(outcome)
+        .map_or_else(|| outcome.to_owned(), |known| Tone::of(known).said(outcome))
+}
+
 fn of_policy(policy: &PolicySummary) -> String {
     let mut outcomes: Vec<(&String, &u64)> = policy.outcomes.iter().collect();
     outcomes.sort_by_key(|(_, count)| std::cmp::Reverse(**count));
     let mut counts: Vec<String> = outcomes
         .iter()
-        .map(|(outcome, count)| format!("{count} {outcome}"))
+        .map(|(outcome, count)| format!("{count} {}", said(outcome)))
         .collect();
     if policy.failed > 0 {
         counts.push(format!("{} failed", policy.failed));

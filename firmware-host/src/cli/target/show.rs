@@ -2,6 +2,7 @@
 
 use crate::cli::chapters;
 use firmware_bench::report::lines::{Cell, Lines, lined, right};
+use firmware_bench::report::tone::Tone;
 use firmware_studies::on_target::results::{LoopRow, Report, StreamRow, TargetRow};
 use firmware_studies::on_target::study::chapters as chapters_of;
 
@@ -36,6 +37,10 @@ fn named(name: &str, number: &str) -> Cell {
     Cell::new(format!("{name} {number}"))
 }
 
+fn yes_or_no(holds: bool) -> Cell {
+    Cell::new(if holds { "yes" } else { "NO" }).toned(Tone::of_claim(holds))
+}
+
 fn against_budgets(targets: &[TargetRow]) -> Lines {
     let mut table = lined([
         "target", "figure", "measured", "budget", "in it", "required", "met",
@@ -47,18 +52,13 @@ fn against_budgets(targets: &[TargetRow]) -> Lines {
                 Cell::new(v.figure),
                 right(v.measured),
                 right(format!("{} to {}", v.least, v.budget)),
-                Cell::new(if (v.least..=v.budget).contains(&v.measured) {
-                    "yes"
-                } else {
-                    "NO"
-                }),
+                yes_or_no((v.least..=v.budget).contains(&v.measured)),
                 right(v.required.map_or_else(String::new, |r| format!("≤ {r}"))),
-                Cell::new(match v.met() {
-                    None => "",
-                    Some(true) => "yes",
-                    Some(false) if v.known_not_met => "not yet",
-                    Some(false) => "NO",
-                }),
+                match v.met() {
+                    None => Cell::new(""),
+                    Some(false) if v.known_not_met => Cell::new("not yet").toned(Tone::Fair),
+                    Some(met) => yes_or_no(met),
+                },
             ]);
         }
     }
@@ -94,7 +94,7 @@ fn loops(rows: &[LoopRow]) -> Lines {
             named(row.name, row.number),
             Cell::new(&row.scene),
             right(format!("{} of {}", row.bit_exact_ticks, row.ticks)),
-            Cell::new(if row.same_plant { "yes" } else { "NO" }),
+            yes_or_no(row.same_plant),
             right(format!("{:.0}", row.ticks_per_s)),
         ]);
     }

@@ -1,5 +1,6 @@
 //! Pages: chapters of text, tables and figures. Nothing here says how they are shown.
 
+use firmware_bench::report::listing::Column;
 use firmware_bench::report::plot::chart::{Chart, HeatMap};
 
 /// A table.
@@ -11,17 +12,6 @@ pub struct Table {
     pub columns: Vec<String>,
     /// Cells as they are to be read.
     pub rows: Vec<Vec<String>>,
-}
-
-/// What is in a column of a table.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Column {
-    /// Mostly numbers, which stand to the right.
-    Numbers,
-    /// Words.
-    Words,
-    /// Texts that need room.
-    LongTexts,
 }
 
 impl Table {
@@ -130,6 +120,8 @@ impl Chapter {
 pub struct Page {
     /// Its title.
     pub title: String,
+    /// The conclusion in a sentence or two, above everything on the HTML page; Markdown begins with the claims.
+    pub headline: String,
     /// What comes before the chapters.
     pub lead: Vec<Block>,
     /// The chapters in order.

@@ -74,6 +74,26 @@ impl Claim {
     }
 }
 
+/// What came of the claims, in a sentence for the top of a page; those that do not hold by name, of many the first.
+pub(super) fn conclusion(claims: &[Claim], cases: u64) -> String {
+    const NAMED: usize = 5;
+    let broken: Vec<&str> = (claims.iter().filter(|claim| !claim.holds))
+        .map(|claim| &claim.name[..])
+        .collect();
+    let all = claims.len();
+    if broken.is_empty() {
+        return format!("All {all} claims hold, in {cases} cases.");
+    }
+    let more = broken.len().saturating_sub(NAMED);
+    let more = match more {
+        0 => String::new(),
+        more => format!("; and {more} more"),
+    };
+    let named = broken[..broken.len().min(NAMED)].join("; ");
+    let kept = all - broken.len();
+    format!("{kept} of {all} claims hold, in {cases} cases. Not held: {named}{more}.")
+}
+
 /// Headings of [`Claim::cells`].
 pub const CLAIM_COLUMNS: [&str; 4] = ["claim", "bound", "measured", "holds"];
 

@@ -1,6 +1,7 @@
 //! A page in Markdown, for the documentation.
 
-use super::chapter::{Block, Column, Page};
+use super::chapter::{Block, Page};
+use firmware_bench::report::listing::Column;
 
 /// The page. Figures are in the HTML page alone, and so are folded chapters. Deterministic.
 pub fn markdown(page: &Page) -> String {

@@ -260,9 +260,13 @@ const SCENE_COLUMNS: [&str; 12] = [
 fn scene_rows(results: &[&ResultRow]) -> Vec<[String; SCENE_COLUMNS.len()]> {
     let mut groups: BTreeMap<(&str, u64, usize), Vec<&ResultRow>> = BTreeMap::new();
     for row in results {
-        // Policies of a scene of one's own that have no contender come last: there is one, `levitation`.
+        // The supervisor comes first. Policies of a scene of one's own that have no contender come last: there is one,
+        // `levitation`.
         let order = (Contender::ALL.iter()).position(|s| s.name() == row.policy);
-        let order = order.unwrap_or(Contender::ALL.len());
+        let order = match row.policy == Contender::Supervisor.name() {
+            true => 0,
+            false => 1 + order.unwrap_or(Contender::ALL.len()),
+        };
         let key = (row.plant.as_str(), row.rate_hz as u64, order);
         groups.entry(key).or_default().push(row);
     }

@@ -105,6 +105,7 @@ pub fn page(chapters: &[Chapter]) -> Page {
     }
     Page {
         title: "Dry friction backward whirl: the paper, reproduced".to_owned(),
+        headline: summary.conclusion(),
         lead,
         chapters: chapters.iter().map(shown).collect(),
     }

@@ -4,6 +4,7 @@ use super::summary::{Summary, all};
 use super::{Chapter, Kind, Row, Stated};
 use firmware_bench::report::lines::{Cell, lined, right};
 use firmware_bench::report::plot::text::figures;
+use firmware_bench::report::tone::Tone;
 use serde::Serialize;
 
 /// A row as programs get it.
@@ -111,7 +112,7 @@ pub fn text(chapters: &[Chapter]) -> String {
                 right(paper(row)),
                 right(computed(row)),
                 Cell::new(row.unit),
-                right(deviation(row)),
+                right(deviation(row)).toned(row.holds().map(Tone::of_claim)),
                 Cell::new(kind(row.kind)),
             ]);
         }

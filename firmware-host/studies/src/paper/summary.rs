@@ -56,9 +56,33 @@ impl<'a> Summary<'a> {
         }
     }
 
+    fn compared(&self) -> usize {
+        self.compared.iter().map(Vec::len).sum()
+    }
+
+    /// What comes of it, in a sentence.
+    pub(super) fn conclusion(&self) -> String {
+        let compared = self.compared();
+        let misses = self.misses.len();
+        let predicted = &self.compared[0];
+        let met = |rows: &[&Row]| rows.iter().filter(|r| r.holds() == Some(true)).count();
+        format!(
+            "The model meets {} of the {compared} numbers, bounds and ranges that the paper gives; {} of the {} for which nothing was \
+             chosen. {}",
+            compared - misses,
+            met(predicted),
+            predicted.len(),
+            match misses {
+                0 => "None misses.".to_owned(),
+                1 => "The one that misses is listed with the reason.".to_owned(),
+                _ => format!("The {misses} that miss are listed with the reasons."),
+            }
+        )
+    }
+
     /// The summary in sentences.
     pub(super) fn sentences(&self) -> Vec<String> {
-        let compared: usize = self.compared.iter().map(Vec::len).sum();
+        let compared = self.compared();
         let mut out = vec![format!(
             "{} rows in {} chapters; the paper has a number for {compared} of them. A value is met within {:.0} %, \
              a bound or range where it holds: {} are met, {} miss.",

@@ -354,5 +354,5 @@ fn a_table_of_nothing_says_nothing() {
     assert!(result.status.success());
     let report = fs::read_to_string(out.join("report.html")).unwrap();
     let (_, table) = report.split_once("What happened: supervisor").unwrap();
-    assert!(table.contains("<td colspan=\"5\">nothing</td>"));
+    assert!(table.contains("<td class=\"words\" colspan=\"5\">nothing</td>"));
 }

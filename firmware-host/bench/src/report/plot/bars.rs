@@ -109,7 +109,7 @@ pub fn bars(plot: &Bars) -> String {
         let (colour, name) = (hex(colour(i)), escape(name));
         let _ = write!(
             svg,
-            "<li><span style=\"color:{colour}\">■</span> {name}</li>"
+            "<li><span data-sign=\"■\" style=\"color:{colour}\"></span> {name}</li>"
         );
     }
     svg + "</ul>"

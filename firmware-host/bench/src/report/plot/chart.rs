@@ -40,6 +40,15 @@ impl Axis {
             ..Self::linear(name, range)
         }
     }
+
+    /// Value at a share of its length.
+    pub(in crate::report) fn at(&self, share: f64) -> f64 {
+        let (from, to) = self.range;
+        match self.log {
+            true => from * (to / from).powf(share),
+            false => from + (to - from) * share,
+        }
+    }
 }
 
 /// How a curve is drawn.
@@ -160,7 +169,7 @@ pub fn chart(plot: &Chart) -> Result<String, PlotError> {
         let name = escape(&curve.name);
         let _ = write!(
             legend,
-            "<li><span style=\"color:{colour}\">{sign}</span> {name}</li>"
+            "<li><span data-sign=\"{sign}\" style=\"color:{colour}\"></span> {name}</li>"
         );
     }
     legend.push_str("</ul>");
@@ -179,7 +188,7 @@ pub fn heat_map(plot: &HeatMap) -> Result<String, PlotError> {
         };
         let label = |axis: &Axis, names: &[String], place: f64| match (names.len(), axis.log) {
             (0, false) => figures(place),
-            (0, true) => figures(at(axis, place)),
+            (0, true) => figures(axis.at(place)),
             // Between two names.
             _ if place.fract() != 0.0 => String::new(),
             _ => names.get(place as usize).cloned().unwrap_or_default(),
@@ -222,7 +231,7 @@ pub fn heat_map(plot: &HeatMap) -> Result<String, PlotError> {
         let (colour, value) = (hex(shade(value, &plot.scale)), figures(value));
         let _ = write!(
             legend,
-            "<li><span style=\"color:{colour}\">■</span> {value}</li>"
+            "<li><span data-sign=\"■\" style=\"color:{colour}\"></span> {value}</li>"
         );
     }
     legend.push_str("</ul>");
@@ -364,12 +373,6 @@ where
 
 fn linear(axis: &Axis) -> Range<f64> {
     axis.range.0..axis.range.1
-}
-
-/// Value of a logarithmic axis at a share of its length.
-fn at(axis: &Axis, share: f64) -> f64 {
-    let (from, to) = axis.range;
-    from * (to / from).powf(share)
 }
 
 pub(super) fn colour(place: usize) -> RGBColor {

@@ -1,0 +1,202 @@
+//! An event for a person: as text, and as the parts of the page that say the same.
+
+use super::planes::{figures_of_planes, shapes};
+use super::tables::{tick_tables, track};
+use super::{Examined, findings, used};
+use firmware_bench::record::remaining::Remaining;
+use firmware_bench::record::replay::Replay;
+use firmware_bench::record::shapes::Shapes;
+use firmware_bench::record::story::{Event, Verdict};
+use firmware_bench::record::ticks::Ticks;
+use firmware_bench::report::lines::Lines;
+use firmware_bench::report::record::{RecordPart, RecordParts};
+use firmware_bench::report::table;
+use firmware_bench::report::tone::Tone;
+use std::fmt::Write;
+
+/// Where an event cannot be simulated.
+const NOT_SIMULATED: &str =
+    "Not simulated: that needs the record of one plane in which the rotor is seen to fly.";
+
+/// Above the slow track.
+const TRACK: &str = "The largest of each, to the end of the event";
+
+/// What is said of retainer bearings, each by its plane where there are several.
+pub(super) fn of_bearings(bearings: &[Remaining]) -> Vec<String> {
+    let told = bearings.iter().map(|bearing| match bearings.len() {
+        1 => bearing.told(),
+        _ => format!("Plane {}. {}", bearing.plane, bearing.told()),
+    });
+    told.collect()
+}
+
+/// Whether this build does the same, and what the firmware says of the event.
+fn circumstances(event: &Event<'_>) -> Vec<String> {
+    let head = event.records[0].head;
+    let mut said = vec![match &event.replay {
+        Ok(Replay {
+            ticks,
+            differing: 0,
+            ..
+        }) => format!("Replayed: {ticks} ticks, all to the last bit as they are recorded."),
+        Ok(replay) => format!(
+            "Replayed: {} of {} ticks are NOT as they are recorded, the first with sequence number {}.",
+            replay.differing,
+            replay.ticks,
+            replay.first_difference.unwrap_or_default()
+        ),
+        Err(why) => format!("Not replayed: {why}."),
+    }];
+    if head.dropped > 0 {
+        said.push(format!(
+            "{} events before this one are in no record: they came while one waited to be read, or had to make room.",
+            head.dropped
+        ));
+    }
+    if head.time_us > 0 {
+        said.push(format!(
+            "Firmware {}; its clock was {:.6} s at sequence number {}.",
+            head.firmware,
+            head.time_us as f64 * 1e-6,
+            head.at_sequence
+        ));
+    }
+    said
+}
+
+/// Of a rotor, both planes beside each other, with captions.
+fn of_planes(event: &Event<'_>) -> Vec<(String, Lines)> {
+    let figures = figures_of_planes(event).map(|table| ("Planes".to_owned(), table));
+    let moved = Shapes::of(&event.records).map(|moved| {
+        let caption = "Motion of both planes while one bounced or whirled".to_owned();
+        (caption, shapes(&moved))
+    });
+    figures.into_iter().chain(moved).collect()
+}
+
+fn differing(names: &[&str]) -> Option<String> {
+    (!names.is_empty()).then(|| {
+        format!(
+            "By the scene the supervisor would be told otherwise than it was on the machine: {}.",
+            names.join(", ")
+        )
+    })
+}
+
+fn tone(verdict: Verdict) -> Tone {
+    match verdict {
+        Verdict::RunOn => Tone::Good,
+        Verdict::Plan | Verdict::Look => Tone::Fair,
+        Verdict::Inspect => Tone::Bad,
+    }
+}
+
+/// As text; `asked`: whether it was to be simulated.
+pub(super) fn told(of: &Examined<'_>, asked: bool, bearings: &[Remaining]) -> String {
+    let event = &of.event;
+    let mut out = String::new();
+    match event.told() {
+        Some(told) => {
+            let verdict = told.verdict(used(bearings));
+            let verdict = tone(verdict).said(verdict.sentence());
+            let _ = writeln!(out, "{} {verdict}\n", told.sentences());
+        }
+        None => {
+            out += "What came of the event is not whole in this file, or not there of all planes: no verdict.\n\n";
+        }
+    }
+    for told in of_bearings(bearings) {
+        let _ = writeln!(out, "{told}\n");
+    }
+    for said in circumstances(event) {
+        let _ = writeln!(out, "{said}");
+    }
+    for (_, table) in of_planes(event) {
+        let _ = writeln!(out, "\n{table}");
+    }
+    let planes = event.records[0].head.planes;
+    for record in &event.records {
+        let ticks = Ticks::of(record);
+        let units = record.units();
+        if planes > 1 {
+            let _ = writeln!(out, "\nPlane {}:", record.head.plane);
+        }
+        out += &tick_tables(&ticks, units).text();
+        if let (Some(findings), Some(rate)) = (&of.findings, units.sample_rate_hz) {
+            for (_, table) in findings::tables(findings, &ticks, 1.0 / rate) {
+                let _ = writeln!(out, "\n{table}");
+            }
+        }
+        let _ = write!(out, "\n{TRACK}:\n\n{}\n", track(record, &ticks, units));
+    }
+    if let Some(again) = &of.again {
+        let _ = writeln!(out, "\n{}", table::text(&again.scene, &again.results));
+        if let Some(said) = differing(&again.differing) {
+            let _ = writeln!(out, "{said}");
+        }
+    } else if asked {
+        let _ = writeln!(out, "\n{NOT_SIMULATED}");
+    }
+    out
+}
+
+/// The same as parts of a page, but for what stands in its head and in its list of events.
+pub(super) fn parts(events: &[Examined<'_>], asked: bool) -> RecordParts {
+    let mut parts = RecordParts::default();
+    for (i, of) in events.iter().enumerate() {
+        let event = &of.event;
+        let of_event = match events.len() {
+            1 => String::new(),
+            _ => format!("Event {}: ", i + 1),
+        };
+        parts.above.push(RecordPart {
+            heading: format!("{of_event}What came of it"),
+            said: circumstances(event),
+            tables: of_planes(event),
+            runs: Vec::new(),
+        });
+        let planes = event.records[0].head.planes;
+        for record in &event.records {
+            let ticks = Ticks::of(record);
+            let units = record.units();
+            let heading = match planes {
+                1 => format!("{of_event}Tables"),
+                _ => format!("{of_event}Tables of plane {}", record.head.plane),
+            };
+            let of_ticks = tick_tables(&ticks, units);
+            let mut tables = vec![("Modes of the recorded ticks".to_owned(), of_ticks.modes)];
+            if let (Some(findings), Some(rate)) = (&of.findings, units.sample_rate_hz) {
+                let found = findings::tables(findings, &ticks, 1.0 / rate);
+                tables.extend(found.map(|(caption, table)| (caption.to_owned(), table)));
+            }
+            tables.push((TRACK.to_owned(), track(record, &ticks, units)));
+            parts.below.push(RecordPart {
+                heading,
+                said: of_ticks.missing.into_iter().collect(),
+                tables,
+                runs: Vec::new(),
+            });
+        }
+        let (said, runs) = match &of.again {
+            Some(again) => (
+                again
+                    .results
+                    .untrusted()
+                    .into_iter()
+                    .map(str::to_owned)
+                    .chain(differing(&again.differing))
+                    .collect(),
+                again.results.runs.clone(),
+            ),
+            None if asked => (vec![NOT_SIMULATED.to_owned()], Vec::new()),
+            None => continue,
+        };
+        parts.below.push(RecordPart {
+            heading: format!("{of_event}The event once more"),
+            said,
+            tables: Vec::new(),
+            runs,
+        });
+    }
+    parts
+}
