@@ -9,13 +9,19 @@ use firmware_bench::run::trace::Said;
 use firmware_bench::scene::machine::AnyScene;
 use supervisor::{Command, Config, IntegratorHint, PARAMETERS, Rotor, Sample, Status, Supervisor};
 
-/// Configurations of the planes that have one; none where the scene has no supervisor.
-fn configs(scene: &AnyScene) -> Vec<Config> {
+/// Configurations of the planes that have one, with the plane's number in the scene; none where the scene has no supervisor.
+fn configs(scene: &AnyScene) -> Vec<(usize, Config)> {
     match scene {
-        AnyScene::Plane(scene) => scene.supervisor.into_iter().collect(),
+        AnyScene::Plane(scene) => scene
+            .supervisor
+            .map(|config| (0, config))
+            .into_iter()
+            .collect(),
         AnyScene::Machine(scene) => {
-            let planes = scene.planes.iter();
-            planes.filter_map(|plane| plane.scene.supervisor).collect()
+            let planes = scene.planes.iter().enumerate();
+            planes
+                .filter_map(|(i, plane)| Some((i, plane.scene.supervisor?)))
+                .collect()
         }
     }
 }
@@ -82,21 +88,21 @@ pub(crate) fn variables(scene: &AnyScene) -> Vec<Variable> {
     let configs = configs(scene);
     let planes = configs.len();
     let mut all = Vec::new();
-    for (plane, config) in configs.iter().enumerate() {
+    for (plane, config) in &configs {
         all.extend(parameters::of_supervisor(
             config,
-            &of_plane(planes, plane, ""),
+            &of_plane(planes, *plane, ""),
         ));
     }
-    for plane in 0..planes {
+    for (plane, _) in &configs {
         all.extend(INPUTS.iter().map(|(name, unit, about, kind)| {
-            let name = of_plane(planes, plane, name);
+            let name = of_plane(planes, *plane, name);
             Variable::signal(Role::Input, name, about, unit, *kind)
         }));
     }
-    for plane in 0..planes {
+    for (plane, _) in &configs {
         let output = |(name, unit, about, kind): (&str, &'static str, &str, Kind)| {
-            let name = of_plane(planes, plane, name);
+            let name = of_plane(planes, *plane, name);
             Variable::signal(Role::Output, name, about, unit, kind)
         };
         all.extend(OUTPUTS.iter().map(|(n, u, a, k, _)| output((n, u, a, *k))));
@@ -108,15 +114,18 @@ pub(crate) fn variables(scene: &AnyScene) -> Vec<Variable> {
 /// The supervisor before its first sample.
 pub(crate) fn start(scene: &AnyScene, set: &[Set<'_>]) -> Result<Box<dyn Model>, String> {
     let mut configs = configs(scene);
+    let only = configs.len() == 1;
     for s in set {
         let (plane, name) = split_plane(s.name);
         let index = PARAMETERS.iter().position(|p| p.name == name);
-        let place = configs.get_mut(plane).zip(index);
+        let own = configs.iter_mut().find(|(of, _)| only || *of == plane);
+        let place = own.map(|(_, config)| config).zip(index);
         let (config, index) = place.ok_or_else(|| format!("{}: is no parameter", s.name))?;
         let mut values = config.values();
         values[index] = s.value.number() as f32;
         *config = Config::from_values(values);
     }
+    let configs: Vec<Config> = configs.into_iter().map(|(_, config)| config).collect();
     let commands = vec![Command::default(); configs.len()];
     // As the closed loop has it: one for the whole rotor where the scene has that.
     let of_rotor = match (scene, configs.as_slice()) {

@@ -15,5 +15,5 @@ mod wrong_shaft;
 
 pub use self::compared::{Ran, Run};
 pub use self::drawn::{Class, Event, RotorCase};
-pub use self::incidents::Incident;
+pub use self::incidents::{Hardest, Incident};
 pub use self::plants::{Blow, Loop, RotorPlant};

@@ -7,7 +7,7 @@
 //! in coordinates of unit mass, so that the mobility between two ports is S_a·S_bᵀ. The first four are √m·(x, y) and
 //! √I_t·(φ, ψ), the slopes of the axis; then a pair for each bending mode and a pair for each ring.
 
-use super::params::{MachineError, MachineParams, MachinePlane};
+use super::params::{MachineError, MachineParams, MachinePlane, Rotor, Unbalance};
 use crate::V2;
 use crate::params::{RingParams, StatorParams};
 use nalgebra::DMatrix;
@@ -120,6 +120,7 @@ impl Port {
 #[derive(Debug, Clone)]
 pub(crate) struct LinearBody {
     pub(crate) n: usize,
+    rotor: Rotor,
     pub(crate) stiffness: Sparse,
     pub(crate) damping: Sparse,
     /// Per unit of spin.
@@ -162,6 +163,21 @@ fn add_at_port(dense: &mut [f64], n: usize, port: &Port, k: V2) {
     }
 }
 
+/// A place on the rotor of a body of n coordinates.
+fn on_rotor(rotor: &Rotor, n: usize, position_m: f64) -> Port {
+    let rigid = rotor.rigid();
+    let per_mass = 1.0 / rigid.mass_kg.sqrt();
+    let per_inertia = 1.0 / rigid.transverse_inertia_kg_m2.sqrt();
+    let mut port = Port::zero(n);
+    (port.x[0], port.y[1]) = (per_mass, per_mass);
+    (port.x[2], port.y[3]) = (position_m * per_inertia, position_m * per_inertia);
+    for (i, mode) in rotor.bending().iter().enumerate() {
+        let phi = per_mass * mode.displacement(position_m);
+        (port.x[4 + 2 * i], port.y[5 + 2 * i]) = (phi, phi);
+    }
+    port
+}
+
 impl LinearBody {
     /// Puts rotor, supports and rings of a machine together.
     pub(crate) fn new(params: &MachineParams) -> Result<Self, MachineError> {
@@ -182,16 +198,7 @@ impl LinearBody {
                 .sum::<usize>();
         let per_mass = 1.0 / rigid.mass_kg.sqrt();
         let per_inertia = 1.0 / rigid.transverse_inertia_kg_m2.sqrt();
-        let at = |position_m: f64| {
-            let mut port = Port::zero(n);
-            (port.x[0], port.y[1]) = (per_mass, per_mass);
-            (port.x[2], port.y[3]) = (position_m * per_inertia, position_m * per_inertia);
-            for (i, mode) in bending.iter().enumerate() {
-                let phi = per_mass * mode.displacement(position_m);
-                (port.x[4 + 2 * i], port.y[5 + 2 * i]) = (phi, phi);
-            }
-            port
-        };
+        let at = |position_m: f64| on_rotor(&params.rotor, n, position_m);
 
         let (mut stiffness, mut damping, mut gyroscopic) =
             (vec![0.0; n * n], vec![0.0; n * n], vec![0.0; n * n]);
@@ -280,25 +287,15 @@ impl LinearBody {
         (weight.x[0], weight.y[1]) = (rigid.mass_kg.sqrt(), rigid.mass_kg.sqrt());
         weight.push(&mut gravity, params.gravity_m_s2);
 
-        let mut unbalance: Option<Port> = None;
-        for u in params.unbalances.iter().filter(|u| u.moment_kg_m > 0.0) {
-            let all = unbalance.get_or_insert_with(|| Port::zero(n));
-            let (sin, cos) = u.angle_rad.sin_cos();
-            let (along, across) = (u.moment_kg_m * cos, u.moment_kg_m * sin);
-            let port = at(u.position_m);
-            for i in 0..n {
-                all.x[i] += along * port.x[i] + across * port.y[i];
-                all.y[i] += along * port.y[i] - across * port.x[i];
-            }
-        }
         let ports = |places: &mut dyn Iterator<Item = f64>| places.map(at).collect::<Vec<_>>();
-        Ok(Self {
+        let mut body = Self {
             n,
+            rotor: params.rotor.clone(),
             stiffness: Sparse::from_dense(n, &stiffness),
             damping: Sparse::from_dense(n, &damping),
             gyroscopic: Sparse::from_dense(n, &gyroscopic),
             gravity,
-            unbalance,
+            unbalance: None,
             magnets: ports(&mut params.magnets.iter().map(|m| m.position_m)),
             loads: ports(&mut params.loads_m.iter().copied()),
             probes: ports(&mut params.probes_m.iter().copied()),
@@ -311,7 +308,31 @@ impl LinearBody {
             bending: (bending.iter().enumerate())
                 .map(|(i, mode)| (pair(4 + 2 * i, per_mass), mode.frequency_rad_s))
                 .collect(),
-        })
+        };
+        for unbalance in &params.unbalances {
+            body.add_unbalance(unbalance);
+        }
+        Ok(body)
+    }
+
+    /// The rotor that it has.
+    pub(crate) fn rotor(&self) -> &Rotor {
+        &self.rotor
+    }
+
+    /// Puts an unbalance on the rotor, beside those that it has.
+    pub(crate) fn add_unbalance(&mut self, unbalance: &Unbalance) {
+        if unbalance.moment_kg_m <= 0.0 {
+            return;
+        }
+        let all = (self.unbalance).get_or_insert_with(|| Port::zero(self.n));
+        let (sin, cos) = unbalance.angle_rad.sin_cos();
+        let (along, across) = (unbalance.moment_kg_m * cos, unbalance.moment_kg_m * sin);
+        let port = on_rotor(&self.rotor, self.n, unbalance.position_m);
+        for i in 0..self.n {
+            all.x[i] += along * port.x[i] + across * port.y[i];
+            all.y[i] += along * port.y[i] - across * port.x[i];
+        }
     }
 
     /// A of ż = A·z for z = (ω·q, q̇) without forces at a spin \[rad/s\], ω a rate that makes all entries of one size.

@@ -69,10 +69,8 @@ impl FlightMap {
         }
         let same = (dt_s - self.dt_s).abs() <= SAME * dt_s && y.spin_rad_s == self.spin_rad_s;
         if !same {
-            self.booked = self.works();
-            self.moments.clear();
+            self.forget();
             (self.dt_s, self.spin_rad_s) = (dt_s, y.spin_rad_s);
-            (self.repeats, self.made) = (0, false);
             return None;
         }
         if !self.made {
@@ -129,6 +127,13 @@ impl FlightMap {
             }
         }
         Some(flows)
+    }
+
+    /// To be made anew: the machine is another from now on.
+    pub(crate) fn forget(&mut self) {
+        self.booked = self.works();
+        self.moments.clear();
+        (self.repeats, self.made) = (0, false);
     }
 
     fn add_moments(&mut self) {

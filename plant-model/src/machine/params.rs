@@ -1,10 +1,12 @@
 //! A rotor in several planes, as data.
 
 mod bearing;
+mod change;
 mod method;
 mod validate;
 
 pub use bearing::{BearingHeat, LoadDrag};
+pub use change::MachineChange;
 pub(super) use validate::check;
 
 use crate::V2;

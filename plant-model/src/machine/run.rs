@@ -1,5 +1,6 @@
 //! Carries a machine from sample to sample, event by event.
 
+mod changing;
 mod reading;
 mod settle;
 mod warming;

@@ -1,7 +1,10 @@
 //! A machine's equations, apart from how they are integrated: what holds what, and how much it takes.
 
 use super::body::{LinearBody, Port};
-use super::params::{BearingHeat, LoadDrag, MAX_PLANES, MachineError, MachineParams, MachineStart};
+use super::params::{
+    BearingHeat, LoadDrag, MAX_PLANES, MachineChange, MachineError, MachineParams, MachineStart,
+    check,
+};
 use super::poles::MagnetLaw;
 use crate::V2;
 use crate::contact::NO_DENT;
@@ -244,6 +247,27 @@ impl MachineSystem {
             magnets: vec![V2::zeros(); self.caps_n.len()],
             magnet_slopes: vec![V2::zeros(); self.caps_n.len()],
         })
+    }
+
+    /// Takes other values over.
+    pub(crate) fn change(&mut self, change: &MachineChange) -> Result<(), MachineError> {
+        change.validate(self.body.rotor())?;
+        if let Some(torque) = change.drive_torque_n_m {
+            let rule = "nothing while the speed is held";
+            let free = self.inverse_inertia > 0.0;
+            check(free, "spin.drive_torque_n_m", torque, rule)?;
+            self.drive_torque_n_m = torque;
+        }
+        if let Some(unbalance) = &change.unbalance {
+            self.body.add_unbalance(unbalance);
+        }
+        if let Some(coefficient) = change.friction_coefficient {
+            for plane in &mut self.planes {
+                plane.friction = SlidingFriction::Constant { coefficient };
+                plane.sliding = coefficient;
+            }
+        }
+        Ok(())
     }
 
     /// Acceleration of the spin and of the race by one newton of a channel.

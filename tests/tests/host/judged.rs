@@ -94,7 +94,11 @@ fn what_no_sample_sees_does_not_move_the_clock() {
             eccentricity_m: Some(1e-6),
             ..Change::default()
         };
-        scene.changes = vec![TimedChange { at_s, change }];
+        scene.changes = vec![TimedChange {
+            at_s,
+            change,
+            unbalance: None,
+        }];
         assert_eq!(scene.clock_starts_s() == at_s, runs, "{at_s}");
     }
 }

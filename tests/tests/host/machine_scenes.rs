@@ -1,10 +1,12 @@
 //! Scenes of a whole rotor: the same as one plane where there is no more, what their files say, what is written of them.
 
 mod bearings;
+mod changes;
 mod files;
 mod levitated;
 mod modes;
 mod refusals;
+mod seals;
 
 use firmware_bench::run::closed_loop::{Keep, MachineRecorders, Rigour, record_machine, run};
 use firmware_bench::run::figures::Figures;

@@ -1,6 +1,7 @@
 //! A whole rotor in several planes: against the point mass, closed forms and an independent code, and at its limits.
 
 mod bearing;
+mod changes;
 mod closed_forms;
 mod cost;
 mod degenerate;

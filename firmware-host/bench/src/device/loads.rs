@@ -1,6 +1,7 @@
 //! What acts on the rotor from outside and comes and goes: forces, the motion of the base,
 //! and parameters that change.
 
+use plant_model::machine::params::Unbalance;
 use plant_model::{Change, V2};
 use std::f64::consts::{PI, TAU};
 
@@ -119,6 +120,8 @@ pub struct TimedChange {
     pub at_s: f64,
     /// What.
     pub change: Change,
+    /// Of a whole rotor an unbalance that comes on top of what there is.
+    pub unbalance: Option<Unbalance>,
 }
 
 /// What acts at one place.

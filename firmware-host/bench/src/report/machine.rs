@@ -17,7 +17,7 @@ use crate::report::plot::chart::{Axis, Chart, Curve};
 use crate::report::plot::text::figures;
 use crate::run::overview::AxisTrack;
 use crate::run::verdict::{MachineResults, PolicyRun};
-use crate::scene::machine::MachineScene;
+use crate::scene::machine::{MachineScene, PlaneScene};
 use plant_model::machine::params::MachineParams;
 use plant_model::params::SpinParams;
 use std::f64::consts::TAU;
@@ -34,9 +34,10 @@ struct Tracks {
 /// [`PlotError`] if the drawing backend refuses.
 pub fn html(scene: &MachineScene, results: &MachineResults) -> Result<String, PlotError> {
     let common = scene.common();
-    let summaries: Vec<SceneSummary> = (scene.planes.iter())
-        .map(|plane| summary(&plane.scene))
-        .collect();
+    let summaries: Vec<SceneSummary> = scene.planes.iter().map(of_plane).collect();
+    // What happens to sensors and magnets a seal does not know.
+    let bearing = (scene.planes.iter().zip(&summaries)).find(|(plane, _)| !plane.seal);
+    let told = bearing.map_or(&summaries[0], |(_, summary)| summary);
     let whole = &results.whole.runs;
     let concluded: Vec<Concluded<'_>> = (whole.iter().enumerate())
         .map(|(i, run)| {
@@ -51,7 +52,7 @@ pub fn html(scene: &MachineScene, results: &MachineResults) -> Result<String, Pl
         headline: headline(&concluded),
         story: common.story.clone(),
         facts: facts(scene),
-        points: disturbances_told(&summaries[0].disturbances),
+        points: disturbances_told(&told.disturbances),
         warnings: warnings(&scene.warnings, &results.whole),
     });
     push_table(
@@ -83,7 +84,7 @@ pub fn html(scene: &MachineScene, results: &MachineResults) -> Result<String, Pl
             .all
             .extend(runs.map(|run| Track::of_run(summary, run)));
     }
-    let times = times_of(&summaries[0], &tracks.all);
+    let times = times_of(told, &tracks.all);
     document.controls();
     tracks.push_ends(&mut document, scene, &times)?;
     tracks.push_axes(&mut document, scene, &times)?;
@@ -99,6 +100,16 @@ pub fn html(scene: &MachineScene, results: &MachineResults) -> Result<String, Pl
         push_sections(&mut document, &shown, &times, &format!("{}: ", plane.name))?;
     }
     Ok(document.ended(&tracks.all, &times))
+}
+
+/// A plane in words; of a seal nothing that instruments and firmware have.
+fn of_plane(plane: &PlaneScene) -> SceneSummary {
+    let mut summary = summary(&plane.scene);
+    if plane.seal {
+        let foreign = ["Control rate", "Sensor noise"];
+        summary.facts.retain(|(name, _)| !foreign.contains(name));
+    }
+    summary
 }
 
 fn in_order<'a>(runs: &'a [PolicyRun], order: &[usize]) -> Vec<&'a PolicyRun> {
@@ -199,7 +210,14 @@ fn facts(scene: &MachineScene) -> Vec<Fact> {
         facts.push(("Bending modes", rates.join(", ") + " Hz"));
     }
     let planes: Vec<String> = (scene.planes.iter().zip(&machine.planes))
-        .map(|(plane, at)| format!("{} at {} mm", plane.name, figures(1e3 * at.position_m)))
+        .map(|(plane, at)| {
+            let what = if plane.seal { " (seal)" } else { "" };
+            format!(
+                "{}{what} at {} mm",
+                plane.name,
+                figures(1e3 * at.position_m)
+            )
+        })
         .collect();
     facts.push(("Planes", planes.join(", ")));
     let levitation = scene.levitation.as_ref();

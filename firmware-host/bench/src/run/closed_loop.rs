@@ -11,7 +11,7 @@ use crate::device::external::ControllerError;
 use crate::device::loads::Loads;
 use crate::run::controller::{Controller, Referred, controller, controller_of_plane};
 use crate::run::figures::Figures;
-use crate::run::rig::{OnePlane, WholeRotor};
+use crate::run::rig::{ChangeError, OnePlane, WholeRotor};
 use crate::run::trace::{AxisRow, ReadOut, Recorder, Trace};
 use crate::run::whole_clairvoyant::WholeReference;
 use crate::scene::Scene;
@@ -78,6 +78,15 @@ pub enum RunError {
         /// The policy.
         policy: &'static str,
     },
+}
+
+impl From<ChangeError> for RunError {
+    fn from(error: ChangeError) -> Self {
+        match error {
+            ChangeError::OnePlane(error) => Self::Build(error.into()),
+            ChangeError::Machine(error) => Self::Machine(error),
+        }
+    }
 }
 
 impl RunError {
@@ -237,7 +246,8 @@ fn bench_of_machine<'a>(
     let controller = |plane: &Scene| controller_of_plane(kind, plane, whole);
     let mut bench = machine_bench(scene, (&controller, recorders.planes), task)?;
     bench.levitated_by(scene.levitation.as_ref(), policy)?;
-    (bench.supervisor, bench.axis) = (supervisor, recorders.axis);
+    bench.supervisor = supervisor.zip(scene.supervised());
+    bench.axis = recorders.axis;
     Ok(bench)
 }
 
@@ -279,7 +289,9 @@ fn machine_bench<'a>(
         let controller = controller_of(&plane.scene).ok_or(RunError::Incomplete {
             policy: task.policy,
         })?;
-        stations.push(Station::new(&plane.scene, controller, recorders.next()));
+        let mut station = Station::new(&plane.scene, controller, recorders.next());
+        station.seal = plane.seal;
+        stations.push(station);
     }
     let loads = (scene.loads.iter()).map(|load| Loads::new(V2::zeros(), vec![*load]));
     Ok(Bench::new(

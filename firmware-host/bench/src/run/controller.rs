@@ -83,6 +83,9 @@ pub(crate) fn controller_of_plane(
     scene: &Scene,
     (levitated, supervised): (bool, bool),
 ) -> Option<Box<dyn Controller>> {
+    if scene.plant.magnet.is_none() {
+        return Some(Box::new(Passive));
+    }
     match levitated {
         true => controller_over(kind, scene, (Some(Passing), !supervised)),
         false => controller_over(kind, scene, (own_levitation(scene), !supervised)),

@@ -4,11 +4,32 @@ use crate::run::trace::AxisRow;
 use crate::scene::Scene;
 use crate::scene::machine::MachineScene;
 use plant_model::energy::Audit;
-use plant_model::machine::params::MachineError;
+use plant_model::machine::params::{MachineChange, MachineError, Unbalance};
 use plant_model::machine::{Machine, MachineInputs, MachineSnapshot, Warmth};
+use plant_model::params::ParamError;
 use plant_model::{
     BuildError, Change, Inputs, Meters, Method, Options, Plant, PlantError, Snapshot, V2,
 };
+use std::f64::consts::PI;
+
+/// Why a plant does not take a change.
+#[derive(Debug)]
+pub(crate) enum ChangeError {
+    OnePlane(ParamError),
+    Machine(MachineError),
+}
+
+impl From<ParamError> for ChangeError {
+    fn from(error: ParamError) -> Self {
+        Self::OnePlane(error)
+    }
+}
+
+impl From<MachineError> for ChangeError {
+    fn from(error: MachineError) -> Self {
+        Self::Machine(error)
+    }
+}
 
 /// A plant with planes, each seen from the centre of its retainer bearing.
 pub(crate) trait Rig {
@@ -31,7 +52,8 @@ pub(crate) trait Rig {
     /// Has a force act on the rotor beside the loads, from now on \[N\]; of a whole rotor, which has no place for it, none does.
     fn push(&mut self, _force_n: V2) {}
 
-    fn change(&mut self, change: &Change) -> Result<(), BuildError>;
+    /// Parameters that are others from now on, and of a whole rotor an unbalance that comes on top of what there is.
+    fn change(&mut self, change: &Change, unbalance: Option<Unbalance>) -> Result<(), ChangeError>;
     fn meters(&self, plane: usize) -> Meters;
     /// ∫ f_n dt of a plane \[N s\].
     fn normal_impulse_n_s(&self, plane: usize) -> f64;
@@ -97,7 +119,12 @@ impl Rig for OnePlane<'_> {
         self.push_n = force_n;
     }
 
-    fn change(&mut self, change: &Change) -> Result<(), BuildError> {
+    fn change(
+        &mut self,
+        change: &Change,
+        _unbalance: Option<Unbalance>,
+    ) -> Result<(), ChangeError> {
+        // A scene of one plane with an unbalance of a rotor is refused.
         Ok(self.plant.change(change)?)
     }
 
@@ -123,6 +150,8 @@ pub(crate) struct WholeRotor<'a> {
     scene: &'a MachineScene,
     machine: Machine,
     inputs: MachineInputs,
+    /// Eccentricity of the centre of mass now, one of the unbalances \[m\].
+    eccentricity_m: f64,
 }
 
 impl<'a> WholeRotor<'a> {
@@ -133,6 +162,7 @@ impl<'a> WholeRotor<'a> {
                 commands_n: vec![V2::zeros(); scene.machine.magnets.len()],
                 loads_n: vec![V2::zeros(); scene.loads.len()],
             },
+            eccentricity_m: scene.eccentricity_m,
             scene,
         })
     }
@@ -194,8 +224,27 @@ impl Rig for WholeRotor<'_> {
         probe.map_or_else(V2::zeros, |probe| probe.position)
     }
 
-    fn change(&mut self, _change: &Change) -> Result<(), BuildError> {
-        // No scene of a whole rotor has changes.
+    fn change(&mut self, change: &Change, unbalance: Option<Unbalance>) -> Result<(), ChangeError> {
+        let eccentric = change.eccentricity_m.map(|eccentricity_m| {
+            let more_m = eccentricity_m - self.eccentricity_m;
+            self.eccentricity_m = eccentricity_m;
+            Unbalance {
+                position_m: 0.0,
+                moment_kg_m: self.scene.machine.rotor.rigid().mass_kg * more_m.abs(),
+                angle_rad: if more_m < 0.0 { PI } else { 0.0 },
+            }
+        });
+        self.machine.change(&MachineChange {
+            unbalance,
+            friction_coefficient: change.friction_coefficient,
+            drive_torque_n_m: change.drive_torque_n_m,
+        })?;
+        if eccentric.is_some() {
+            self.machine.change(&MachineChange {
+                unbalance: eccentric,
+                ..MachineChange::default()
+            })?;
+        }
         Ok(())
     }
 

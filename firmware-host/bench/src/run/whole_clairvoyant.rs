@@ -25,9 +25,17 @@ pub struct WholeClairvoyantLaw {
     pub lent: f64,
 }
 
-/// Who sees the true state of a rotor in two planes.
+/// Who sees the true state of a rotor in two planes with a magnet each.
 #[derive(Debug, Clone, PartialEq)]
-pub enum WholeReference {
+pub struct WholeReference {
+    /// Which planes these are.
+    planes: [usize; 2],
+    by: By,
+}
+
+/// What it does with that.
+#[derive(Debug, Clone, PartialEq)]
+enum By {
     /// A law with weights that were searched.
     Law(WholeClairvoyant),
     /// A PD of each plane.
@@ -36,7 +44,7 @@ pub enum WholeReference {
 
 /// The law on one rotor.
 #[derive(Debug, Clone, PartialEq)]
-pub struct WholeClairvoyant {
+struct WholeClairvoyant {
     planes: [OfPlane; 2],
     lent: f64,
     /// I_p/I_t.
@@ -54,12 +62,17 @@ struct OfPlane {
 
 impl WholeClairvoyant {
     /// The law on the rotor of a scene; `None` unless that has two planes with a magnet each.
-    pub fn new(law: WholeClairvoyantLaw, scene: &MachineScene) -> Option<Self> {
-        let [first, second] = scene.planes.as_slice() else {
-            return None;
-        };
+    fn new(law: WholeClairvoyantLaw, scene: &MachineScene) -> Option<Self> {
+        let [first, second] = scene.supervised_planes()?;
         let rigid = scene.machine.rotor.rigid();
-        let at = |plane: usize| scene.machine.planes.get(plane).map(|p| p.position_m);
+        let planes = scene.supervised()?;
+        let at = |plane: usize| {
+            scene
+                .machine
+                .planes
+                .get(planes[plane])
+                .map(|p| p.position_m)
+        };
         let of = |plane: usize, own: &PlaneScene| {
             let magnet = scene.machine.magnets.get(own.magnet?)?;
             let moves = |z_m: f64| rigid.mobility(z_m, magnet.position_m);
@@ -79,7 +92,7 @@ impl WholeClairvoyant {
         })
     }
 
-    fn forces_n(&self, now: &[Snapshot; 2]) -> [V2; 2] {
+    fn forces_n(&self, now: [&Snapshot; 2]) -> [V2; 2] {
         let slope = (now[1].velocity_m_s - now[0].velocity_m_s)
             / (self.planes[1].position_m - self.planes[0].position_m);
         let parts = [0, 1].map(|plane| {
@@ -88,7 +101,7 @@ impl WholeClairvoyant {
             let angle = self.nutation * now[plane].spin_rad_s * own.law.horizon_s();
             let tilting = own.position_m * slope;
             let damped = now[plane].velocity_m_s + rotated(tilting, angle) - tilting;
-            own.law.parts(&now[plane], damped)
+            own.law.parts(now[plane], damped)
         });
         let mut forces = [V2::zeros(); 2];
         let [of_first, of_second] = parts;
@@ -108,11 +121,17 @@ impl WholeClairvoyant {
 }
 
 impl WholeReference {
+    /// A law with weights on the rotor of a scene; `None` unless that has two planes with a magnet each.
+    pub fn law(law: WholeClairvoyantLaw, scene: &MachineScene) -> Option<Self> {
+        Some(Self {
+            planes: scene.supervised()?,
+            by: By::Law(WholeClairvoyant::new(law, scene)?),
+        })
+    }
+
     /// A PD of each plane; `None` unless there are two with a magnet each.
     pub fn loops(gains: [LevitationParams; 2], scene: &MachineScene) -> Option<Self> {
-        let [first, second] = scene.planes.as_slice() else {
-            return None;
-        };
+        let [first, second] = scene.supervised_planes()?;
         let of = |params, plane: &PlaneScene| {
             Some(TrueLevitation {
                 params,
@@ -121,21 +140,23 @@ impl WholeReference {
             })
         };
         let [for_first, for_second] = gains;
-        Some(Self::Loops([
-            of(for_first, first)?,
-            of(for_second, second)?,
-        ]))
+        Some(Self {
+            planes: scene.supervised()?,
+            by: By::Loops([of(for_first, first)?, of(for_second, second)?]),
+        })
     }
 
-    /// Forces of both magnets for the true state \[N\]; none of a rotor in another number of planes.
-    pub(crate) fn forces_n(&self, now: &[Snapshot]) -> Option<[V2; 2]> {
-        let now: &[Snapshot; 2] = now.try_into().ok()?;
-        Some(match self {
-            Self::Law(law) => law.forces_n(now),
-            Self::Loops(loops) => {
+    /// Planes, and forces of their magnets for the true state \[N\]; none where there are no such planes.
+    pub(crate) fn forces_n(&self, now: &[Snapshot]) -> Option<[(usize, V2); 2]> {
+        let [first, second] = self.planes;
+        let now = [now.get(first)?, now.get(second)?];
+        let forces = match &self.by {
+            By::Law(law) => law.forces_n(now),
+            By::Loops(loops) => {
                 [0, 1].map(|i| loops[i].force_n(now[i].position_m, now[i].velocity_m_s))
             }
-        })
+        };
+        Some([(first, forces[0]), (second, forces[1])])
     }
 }
 
@@ -180,7 +201,7 @@ mod tests {
         let forces = |lent: f64| {
             WholeClairvoyant::new(law(lent), &scene)
                 .unwrap()
-                .forces_n(&now)
+                .forces_n([&now[0], &now[1]])
         };
         let (by_itself, apart) = (forces(0.0), forces(-1.0));
         assert_eq!(by_itself[1], V2::zeros());
@@ -194,10 +215,9 @@ mod tests {
     fn brings_a_struck_rotor_back() {
         let mut scene = MachineScene::parse("p6.toml", P6).unwrap();
         scene.start.tilt_rate_rad_s = V2::new(3.0, 0.0);
-        let law = WholeClairvoyant::new(law(0.0), &scene).unwrap();
         let run =
             |reference: &WholeReference, keep| refer_machine(&scene, reference, keep).unwrap();
-        let reference = WholeReference::Law(law);
+        let reference = WholeReference::law(law(0.0), &scene).unwrap();
         let full = run(&reference, Keep::Verdict);
         assert!(full.iter().all(|f| f.recovered) && full.iter().any(|f| f.impacts > 0));
         // It may end as soon as it is decided.

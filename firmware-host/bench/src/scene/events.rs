@@ -10,6 +10,7 @@ use crate::scene::plane_spec::PlaneSpec;
 use crate::scene::tables::{ChangeTable, FaultTable, OutageTable};
 use crate::scene::values::{FaultName, ShapeName};
 use plant_model::Change;
+use plant_model::machine::params::Unbalance;
 use toml::Table;
 
 /// Everything that happens.
@@ -291,18 +292,29 @@ impl Reader<'_> {
             let help = "give spin.inertia_kg_m2, or remove the torque";
             return Err(self.error(&key, message, help));
         }
+        let of_one_plane = self.spec.text.plane.is_none();
+        if c.unbalance.is_some() && of_one_plane {
+            let key = format!("{path}.unbalance");
+            let message = "is of a whole rotor, and this scene has a point mass in one plane";
+            return Err(self.error(&key, message, "give eccentricity_m"));
+        }
         let change = Change {
             eccentricity_m: c.eccentricity_m,
             friction_coefficient: c.friction_coefficient,
             drive_torque_n_m: c.drive_torque_n_m,
         };
-        if change == Change::default() {
-            let help = "give eccentricity_m, friction_coefficient or drive_torque_n_m";
+        if change == Change::default() && c.unbalance.is_none() {
+            let help = match of_one_plane {
+                true => "give eccentricity_m, friction_coefficient or drive_torque_n_m",
+                false => "give unbalance, eccentricity_m, friction_coefficient or drive_torque_n_m",
+            };
             return Err(self.error(path, "changes nothing", help));
         }
         Ok(TimedChange {
             at_s: c.at_s,
             change,
+            // Its place counts as the scene has it until the rotor is known.
+            unbalance: c.unbalance.as_ref().map(Unbalance::from),
         })
     }
 }

@@ -7,16 +7,20 @@ use plant_model::params::PlantParams;
 
 /// The scene's own limit of whirl; else 3·ω0·c with a shaft, and three times the speed at which the magnet can
 /// still lift the rotor off without one. A shaft against which magnets pull may have little stiffness left, and then it
-/// is the larger of both \[m/s\].
-pub(crate) fn whirl_speed_m_s(spec: &PlaneSpec, plant: &PlantParams) -> Result<f64, SceneError> {
+/// is the larger of both, as it is in a plane of a rotor whose magnets stand elsewhere, and move it with `others_n` \[m/s\].
+pub(crate) fn whirl_speed_m_s(
+    spec: &PlaneSpec,
+    plant: &PlantParams,
+    others_n: f64,
+) -> Result<f64, SceneError> {
     const KEY: &str = "verdict.whirl_speed_m_s";
     if let Some(speed) = spec.tables.verdict.whirl_speed_m_s {
         return Ok(speed);
     }
-    let force = plant.magnet.map_or(0.0, |m| m.force_max_n);
+    let force = plant.magnet.map_or(others_n, |m| m.force_max_n);
     let by_magnet = 3.0 * lift_off_speed_m_s(plant, force);
-    let pulls =
-        (spec.tables.magnet.as_ref()).is_some_and(|magnet| magnet.negative_stiffness_n_m > 0.0);
+    let pulls = others_n > 0.0
+        || (spec.tables.magnet.as_ref()).is_some_and(|magnet| magnet.negative_stiffness_n_m > 0.0);
     let speed = match plant.natural_frequency_rad_s() {
         Some(natural) if pulls => by_magnet.max(3.0 * natural * plant.contact.clearance_m),
         Some(natural) => 3.0 * natural * plant.contact.clearance_m,

@@ -4,6 +4,7 @@ mod bearing;
 mod poles;
 mod refused;
 mod start;
+mod supervised;
 
 use self::poles::poles;
 use self::refused::refused;
@@ -24,10 +25,10 @@ use crate::scene::tables::{PlaneTable, SceneTables, TiltTable};
 use crate::scene::values::MethodName;
 use plant_model::V2;
 use plant_model::machine::params::{
-    MachineMagnet, MachineParams, MachinePlane, MachineStart, Support,
+    MachineChange, MachineMagnet, MachineParams, MachinePlane, MachineStart, Rotor, Support,
 };
 use std::path::Path;
-use supervisor::{Place, Rotor, Shaft, ShaftError};
+use supervisor::Shaft;
 
 /// A plane of a machine.
 #[derive(Debug, Clone, PartialEq)]
@@ -39,6 +40,8 @@ pub struct PlaneScene {
     pub scene: Scene,
     /// Which magnet of the machine is its own.
     pub magnet: Option<usize>,
+    /// Whether it is a seal or a bushing: no controller knows of it.
+    pub seal: bool,
 }
 
 /// A plane's name as it stands in names of files.
@@ -63,6 +66,8 @@ pub struct MachineScene {
     pub loads: Vec<Disturbance>,
     /// The levitation controller, where one holds the whole rotor; else each plane has its own.
     pub levitation: Option<WholeLevitationParams>,
+    /// Eccentricity of the centre of mass at the start, which is among the machine's unbalances \[m\].
+    pub eccentricity_m: f64,
     /// The rotor as its supervisor is told it, where that is another than it is.
     pub told: Option<Shaft>,
     /// What is allowed and yet unlikely to be meant, with file and line.
@@ -147,50 +152,6 @@ impl MachineScene {
     }
 }
 
-impl MachineScene {
-    /// The rotor as the supervisor is told it: rigid, in two planes that have a magnet each; `None` of another.
-    pub fn shaft(&self) -> Option<Shaft> {
-        let [first, second] = self.planes.as_slice() else {
-            return None;
-        };
-        let place = |plane: usize, scene: &PlaneScene| {
-            let magnet = self.machine.magnets.get(scene.magnet?)?;
-            Some(Place {
-                retainer_m: self.machine.planes[plane].position_m as f32,
-                sensor_m: self.machine.probes_m[plane] as f32,
-                magnet_m: magnet.position_m as f32,
-            })
-        };
-        let rigid = self.machine.rotor.rigid();
-        Some(Shaft {
-            mass_kg: rigid.mass_kg as f32,
-            transverse_inertia_kg_m2: rigid.transverse_inertia_kg_m2 as f32,
-            polar_inertia_kg_m2: rigid.polar_inertia_kg_m2 as f32,
-            places: [place(0, first)?, place(1, second)?],
-        })
-    }
-
-    /// The supervisor of the whole rotor, where there is one for it.
-    pub fn supervisor(&self) -> Option<Rotor> {
-        match &self.told {
-            Some(told) => {
-                let [first, second] = self.planes.as_slice() else {
-                    return None;
-                };
-                Rotor::new(told, &[first.scene.supervisor?, second.scene.supervisor?]).ok()
-            }
-            None => supervisor_of(&self.shaft()?, &self.planes)?.ok(),
-        }
-    }
-}
-
-/// The supervisor of both planes, where both have one.
-fn supervisor_of(shaft: &Shaft, planes: &[PlaneScene]) -> Option<Result<Rotor, ShaftError>> {
-    let [first, second] = planes else { return None };
-    let configs = [first.scene.supervisor?, second.scene.supervisor?];
-    Some(Rotor::as_told(shaft, &configs))
-}
-
 impl Spec {
     /// The scene of a whole rotor, every value checked.
     ///
@@ -229,7 +190,9 @@ impl Spec {
                 }
             }
         }
-        let levitation = match own_controller(tables, text, planes)? {
+        // What the firmware has to do with.
+        let known: Vec<PlaneSpec> = planes.iter().filter(|p| !p.seal).cloned().collect();
+        let levitation = match own_controller(tables, text, &known)? {
             Some(own) => Some(own),
             None => modal_levitation(planes, &machine, text)?.map(WholeLevitationParams::Modal),
         };
@@ -249,10 +212,19 @@ impl Spec {
                 residual_m_n: origin.residual_m_n(written.position_m),
                 retainer_plane_ratio: 1.0 / lever(machine.probes_m[index]),
                 magnet_plane_ratio: own.map_or(1.0, |m| lever(machine.magnets[m].position_m)),
+                others_n: match own {
+                    Some(_) => 0.0,
+                    None => (machine.magnets.iter())
+                        .map(|m| (lever(m.position_m) * m.force_max_n).abs())
+                        .sum(),
+                },
                 // What a plane's loop is worth where other magnets pull too no plane can say.
                 levitated_alone: levitation.is_none() && machine.magnets.len() < 2,
             };
             let mut scene = plane.resolve(Some(&of))?;
+            for change in &mut scene.changes {
+                change.unbalance = change.unbalance.map(|u| origin.centred(u));
+            }
             // Noise of its own, and that of the file for the first.
             scene.seed =
                 (scene.seed).wrapping_add(0x9E37_79B9_7F4A_7C15_u64.wrapping_mul(index as u64));
@@ -272,6 +244,7 @@ impl Spec {
                 name: written.name.clone(),
                 scene,
                 magnet: own,
+                seal: plane.seal,
             });
         }
         let loads = self.loads(&scenes, &mut machine, &origin);
@@ -280,6 +253,7 @@ impl Spec {
             .and_then(|()| machine.method(tables.run.method.into()).map(drop))
             .and_then(|()| start.validate())
             .map_err(|error| refused(&error, self, &scenes))?;
+        self.check_places_of_changes(&machine.rotor, &origin)?;
         let mut warnings: Vec<String> = Vec::new();
         for warning in scenes.iter().flat_map(|plane| &plane.scene.warnings) {
             if !warnings.contains(warning) {
@@ -292,18 +266,34 @@ impl Spec {
             planes: scenes,
             loads,
             levitation,
+            eccentricity_m: tables.rotor.eccentricity_m,
             told: None,
             warnings,
         };
-        let told = scene.shaft();
-        match told.and_then(|shaft| supervisor_of(&shaft, &scene.planes)?.err()) {
-            Some(error) => {
+        match scene.refused_by_supervisor() {
+            Some((plane, error)) => {
                 let message = format!("leaves no supervisor for the rotor: {error}");
                 let help = Some("or run without the policy supervisor".to_owned());
-                Err(text.error_at_key("plane[1].position_m", message, help))
+                let key = format!("plane[{plane}].position_m");
+                Err(text.error_at_key(&key, message, help))
             }
             None => Ok(scene),
         }
+    }
+
+    /// Unbalances that come later have to be on the rotor as well.
+    fn check_places_of_changes(&self, rotor: &Rotor, origin: &Origin) -> Result<(), SceneError> {
+        for (i, change) in self.tables.change.iter().enumerate() {
+            let change = MachineChange {
+                unbalance: (change.unbalance.as_ref()).map(|u| origin.centred(u.into())),
+                ..MachineChange::default()
+            };
+            change.validate(rotor).map_err(|error| {
+                let key = format!("change[{i}].{}", error.field);
+                self.text.refused(&key, error.value, error.expected)
+            })?;
+        }
+        Ok(())
     }
 
     /// Loads and where they act; those of base motions at the centre of mass, which bending modes do not feel.
@@ -356,6 +346,28 @@ fn check_together(tables: &SceneTables, text: &SceneText) -> Result<(), SceneErr
             let message = "is of the whole rotor, and not of one plane";
             return error(&key, message, "give it as [levitation.tilt]");
         }
+        if plane.seal {
+            let key = |table: &str| format!("plane[{i}].{table}");
+            let of_a_bearing = [
+                (key("magnet"), plane.magnet.is_some()),
+                (key("sensor"), plane.sensor.is_some()),
+                (key("levitation"), plane.levitation.is_some()),
+                (key("biquads"), plane.biquads.is_some()),
+                (key("supervisor"), plane.supervisor.is_some()),
+                (key("outage"), !plane.outage.is_empty()),
+                (key("fault"), !plane.fault.is_empty()),
+                (key("start_position_m"), plane.start_position_m.is_some()),
+                (
+                    key("start_velocity_m_s"),
+                    plane.start_velocity_m_s.is_some(),
+                ),
+            ];
+            let given = of_a_bearing
+                .each_ref()
+                .map(|(key, given)| (key.as_str(), *given));
+            let message = "is of a bearing, and this plane is a seal";
+            text.none_given(&given, message, "remove it, or seal = true")?;
+        }
         let gains_or_filters = [
             ("levitation", own.is_some()),
             ("biquads", plane.biquads.is_some()),
@@ -378,10 +390,6 @@ fn check_together(tables: &SceneTables, text: &SceneText) -> Result<(), SceneErr
         let message = "is of a point mass in one plane";
         return error("run.method", message, "take auto, series or explicit");
     }
-    if !tables.change.is_empty() {
-        let message = "does not go with [[plane]]: nothing of a whole rotor changes during a run";
-        return error("change[0]", message, "remove it");
-    }
     Ok(())
 }
 
@@ -391,15 +399,17 @@ fn modal_levitation(
     machine: &MachineParams,
     text: &SceneText,
 ) -> Result<Option<ModalLevitationParams>, SceneError> {
-    let Some((levitation, tilt)) = (planes.first())
-        .and_then(|plane| plane.tables.levitation.as_ref())
+    let with_sensor = || (planes.iter().zip(&machine.probes_m)).filter(|(plane, _)| !plane.seal);
+    let Some((levitation, tilt)) = (with_sensor().next())
+        .and_then(|(plane, _)| plane.tables.levitation.as_ref())
         .and_then(|l| Some((l, l.tilt.as_ref()?)))
     else {
         return Ok(None);
     };
     let apart = |places: &[f64]| places.iter().any(|z| *z != places[0]);
+    let sensors_m: Vec<f64> = with_sensor().map(|(_, sensor_m)| *sensor_m).collect();
     let magnets_m = positions(&machine.magnets);
-    for (places, what) in [(&machine.probes_m, "sensors"), (&magnets_m, "magnets")] {
+    for (places, what) in [(&sensors_m, "sensors"), (&magnets_m, "magnets")] {
         if places.len() < 2 || !apart(places) {
             let message = format!("needs {what} at two places at least to tell and turn a tilt");
             let help = "give planes of different position_m a sensor and a magnet each".to_owned();
@@ -410,7 +420,7 @@ fn modal_levitation(
     Ok(Some(ModalLevitationParams {
         translation: LevitationParams::from(levitation),
         tilt: tilt_params(tilt, machine.rotor.rigid().polar_inertia_kg_m2),
-        stations: (planes.iter().zip(&machine.probes_m))
+        stations: with_sensor()
             .map(|(plane, sensor_m)| Station {
                 sensor_m: *sensor_m,
                 magnet: (plane.tables.magnet.as_ref())

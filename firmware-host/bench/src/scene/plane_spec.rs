@@ -3,7 +3,7 @@
 use crate::device::external::Caller;
 use crate::scene::diagnostic::{SceneError, SceneText};
 use crate::scene::spec::Spec;
-use crate::scene::tables::{ContactTable, FrictionTable, PlaneTable, SceneTables};
+use crate::scene::tables::{ContactTable, FrictionTable, PlaneTable, SceneTables, SensorTable};
 
 /// One plane, with every table that it cannot do without.
 #[derive(Debug, Clone)]
@@ -15,6 +15,8 @@ pub(crate) struct PlaneSpec {
     pub(crate) contact: ContactTable,
     pub(crate) friction: FrictionTable,
     pub(crate) contact_radius_m: f64,
+    /// Whether no controller knows of it.
+    pub(crate) seal: bool,
     /// Who levitates in the place of the program that `[controller]` names.
     pub(crate) caller: Option<Caller>,
 }
@@ -93,7 +95,7 @@ impl Spec {
         let help = "describe the bearing planes by [[plane]], or remove it";
         text.none_given(&of_several, message, help)?;
         text.none_given(&[(of_load.as_str(), load.is_some())], message, help)?;
-        PlaneSpec::new(text.clone(), tables.clone(), self.caller.clone())
+        PlaneSpec::new(text.clone(), tables.clone(), self.caller.clone(), false)
     }
 
     /// The planes of a whole rotor.
@@ -102,7 +104,12 @@ impl Spec {
         planes
             .map(|(i, plane)| {
                 let tables = with_own(self.tables.clone(), plane);
-                PlaneSpec::new(self.text.of_plane(i), tables, self.caller.clone())
+                PlaneSpec::new(
+                    self.text.of_plane(i),
+                    tables,
+                    self.caller.clone(),
+                    plane.seal,
+                )
             })
             .collect()
     }
@@ -132,6 +139,13 @@ fn with_own(mut tables: SceneTables, plane: &PlaneTable) -> SceneTables {
     if !plane.fault.is_empty() {
         tables.fault.clone_from(&plane.fault);
     }
+    if plane.seal {
+        tables.sensor = SensorTable::default();
+        tables.supervisor.clear();
+        (tables.magnet, tables.biquads, tables.levitation) = (None, None, None);
+        tables.outage.clear();
+        tables.fault.clear();
+    }
     tables.plane.clear();
     tables
 }
@@ -141,6 +155,7 @@ impl PlaneSpec {
         text: SceneText,
         tables: SceneTables,
         caller: Option<Caller>,
+        seal: bool,
     ) -> Result<Self, SceneError> {
         let missing = |key: &str, give: &str| {
             let (key, help) = match text.plane {
@@ -164,6 +179,7 @@ impl PlaneSpec {
                 let give = "give the rotor's radius in the retainer bearing in m";
                 missing(radius_key, give)
             })?,
+            seal,
             text,
             tables,
             caller,

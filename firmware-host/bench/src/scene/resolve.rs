@@ -50,6 +50,9 @@ pub(crate) struct OfMachine {
     pub(crate) residual_m_n: f64,
     pub(crate) retainer_plane_ratio: f64,
     pub(crate) magnet_plane_ratio: f64,
+    /// Force at a plane without a magnet that moves it as all magnets elsewhere do together \[N\]; 0 where it has one, or
+    /// nobody has.
+    pub(crate) others_n: f64,
     /// Whether it is levitated by a controller of its own.
     pub(crate) levitated_alone: bool,
 }
@@ -92,12 +95,14 @@ impl PlaneSpec {
             let help = Some("shorten one of them".to_owned());
             return Err(text.error_at_key("magnet.delay_jitter_samples", message, help));
         }
-        let policies = policies(self)?;
+        // Where others have the magnets, policies are theirs.
+        let others_n = of.map_or(0.0, |of| of.others_n);
+        let policies = policies(self, others_n > 0.0)?;
         let events = events(self)?;
         let centre_offset_m = centre_offset_m(self)?;
         start.position_m -= centre_offset_m;
-        let whirl_speed_m_s = whirl_speed_m_s(self, &plant)?;
-        let damps = policies.contains(&PolicyKind::Damping);
+        let whirl_speed_m_s = whirl_speed_m_s(self, &plant, others_n)?;
+        let damps = policies.contains(&PolicyKind::Damping) && others_n == 0.0;
         let damping_n_s_m = damping_n_s_m(self, &plant, damps)?;
         let weight_n = match of {
             None => plant.rotor.mass_kg,
@@ -111,7 +116,7 @@ impl PlaneSpec {
         }
         let nominal_keys = NominalKeys::new(&nominal, self);
         let overrides = overrides(self)?;
-        let supervised = policies.contains(&PolicyKind::Supervisor);
+        let supervised = policies.contains(&PolicyKind::Supervisor) && others_n == 0.0;
         let supervisor = supervised
             .then(|| config(&nominal, &nominal_keys, &overrides, text))
             .transpose()?;
@@ -218,7 +223,7 @@ fn check_title_and_length(written: &SceneTables, text: &SceneText) -> Result<(),
     Ok(())
 }
 
-fn policies(spec: &PlaneSpec) -> Result<Vec<PolicyKind>, SceneError> {
+fn policies(spec: &PlaneSpec, of_others: bool) -> Result<Vec<PolicyKind>, SceneError> {
     let known = PolicyKind::ALL.map(PolicyKind::name);
     let names = known.join(", ");
     let refused = |message: String, help: String| {
@@ -232,6 +237,9 @@ fn policies(spec: &PlaneSpec) -> Result<Vec<PolicyKind>, SceneError> {
         })?;
         let (message, help) = if policies.contains(&kind) {
             ("is named twice", "name each policy once")
+        } else if of_others {
+            policies.push(kind);
+            continue;
         } else if kind != PolicyKind::Passive && spec.tables.magnet.is_none() {
             ("needs a magnet", "add a [magnet], or run only \"passive\"")
         } else if kind.levitates() && !spec.tables.levitates() {

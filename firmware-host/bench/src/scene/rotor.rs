@@ -3,7 +3,7 @@
 use crate::scene::arrays::Arrays;
 use crate::scene::diagnostic::{SceneError, SceneText};
 use crate::scene::plant::spin;
-use crate::scene::tables::{BendingTable, SceneTables, SupportTable};
+use crate::scene::tables::{BendingTable, SceneTables, SupportTable, UnbalanceTable};
 use plant_model::V2;
 use plant_model::machine::params::{
     BendingMode, MachineError, MachineParams, RigidRotor, Rotor, Support, Unbalance,
@@ -33,6 +33,14 @@ impl Origin {
         match self {
             Self::Centre => position_m,
             Self::Given(rotor) => rotor.centred_m(position_m),
+        }
+    }
+
+    /// An unbalance at a place of the scene.
+    pub(crate) fn centred(&self, unbalance: Unbalance) -> Unbalance {
+        Unbalance {
+            position_m: self.centred_m(unbalance.position_m),
+            ..unbalance
         }
     }
 
@@ -79,11 +87,7 @@ pub(crate) fn machine(
         moment_kg_m,
         angle_rad: 0.0,
     });
-    let unbalances = tables.unbalance.iter().map(|u| Unbalance {
-        position_m: origin.centred_m(u.position_m),
-        moment_kg_m: u.moment_kg_m,
-        angle_rad: u.angle_rad,
-    });
+    let unbalances = tables.unbalance.iter().map(|u| origin.centred(u.into()));
     let machine = MachineParams {
         rotor,
         supports: (tables.support.iter())
@@ -116,6 +120,16 @@ fn support(origin: &Origin, written: &SupportTable) -> Support {
         position_m: origin.centred_m(written.position_m),
         stiffness_n_m: stiffness_n_m.component_mul(&share),
         damping_n_s_m: damping_n_s_m.component_mul(&share).component_mul(&share),
+    }
+}
+
+impl From<&UnbalanceTable> for Unbalance {
+    fn from(written: &UnbalanceTable) -> Self {
+        Self {
+            position_m: written.position_m,
+            moment_kg_m: written.moment_kg_m,
+            angle_rad: written.angle_rad,
+        }
     }
 }
 
@@ -339,6 +353,10 @@ fn places(tables: &SceneTables) -> Vec<(String, f64)> {
     }
     for (i, load) in tables.disturbance.iter().enumerate() {
         put(format!("disturbance[{i}].position_m"), load.position_m);
+    }
+    for (i, change) in tables.change.iter().enumerate() {
+        let unbalance = change.unbalance.as_ref().map(|u| u.position_m);
+        put(format!("change[{i}].unbalance.position_m"), unbalance);
     }
     all
 }

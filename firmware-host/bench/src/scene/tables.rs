@@ -46,13 +46,13 @@ key_tables! {
         base_motion: Vec<BaseMotionTable> [= Vec::new()], "", ANY, "acceleration of the housing for a while; only of a rigid stator", "shock", "base", "earthquake";
         outage: Vec<OutageTable> [= Vec::new()], "", ANY, "the amplifier does not deliver what it should for a while", "power_loss", "failure";
         fault: Vec<FaultTable> [= Vec::new()], "", ANY, "of the position sensor, at samples from the start to before the end; see [faults](#faults)", "sensor_fault";
+        unbalance: Vec<UnbalanceTable> [= Vec::new()], "", ANY, "a residual unbalance; with `[[plane]]` only", "imbalance";
         change: Vec<ChangeTable> [= Vec::new()], "", ANY, "parameters of the plant that take other values from a time on; see [changes](#changes)";
         verdict: VerdictTable [= VerdictTable::default()], "", ANY, "how the end is judged", "outcome";
         plane: Vec<PlaneTable> [= Vec::new()], "", ANY, "a bearing plane of a [whole rotor](#several-planes), at most four; none: a point mass in one plane", "bearing_plane", "station";
         shaft: Vec<ShaftTable> [= Vec::new()], "", ANY, "a section of the [shaft](#shafts), from left to right; with `[[plane]]` only. Every `position_m` then counts from its left end", "section", "beam";
         disc: Vec<DiscTable> [= Vec::new()], "", ANY, "a rigid disc on the shaft", "disk", "wheel", "impeller";
         support: Vec<SupportTable> [= Vec::new()], "", ANY, "a spring with a damper from the rotor to ground; with `[[plane]]` only", "spring", "seal";
-        unbalance: Vec<UnbalanceTable> [= Vec::new()], "", ANY, "a residual unbalance; with `[[plane]]` only", "imbalance";
     }
 
     RunTable {
@@ -312,6 +312,7 @@ key_tables! {
         eccentricity_m: Option<f64> [or "as it was"], "m", Within(0.0, 1.0), "new ε_r", "unbalance", "imbalance";
         friction_coefficient: Option<f64> [or "as it was"], "1", Within(0.0, 10.0), "new μ, the same at every speed", "mu", "friction";
         drive_torque_n_m: Option<f64> [or "as it was"], "N m", Within(-1e9, 1e9), "new t_d; needs `spin.inertia_kg_m2`", "torque";
+        unbalance: Option<UnbalanceTable> [or "as it was"], "", ANY, "comes on top of the unbalances that there are: a lost blade; with `[[plane]]` only", "blade", "imbalance_added";
     }
 
     VerdictTable [Default] {
@@ -323,6 +324,7 @@ key_tables! {
         name: String [required "give a name in one line, as \"coupling end\""], "", Elsewhere("one line; no two alike"), "heads its figures", "title", "label";
         position_m: f64 [required], "m", Finite, "of the retainer bearing along the axis, from the centre of mass", "z", "place";
         contact_radius_m: Option<f64> [or "the scene's"], "m", Positive, "R_r", "radius", "r";
+        seal: bool [= false], "", ANY, "a [seal](#seals) or a bushing: the rotor may touch it, and it has neither magnet nor sensor nor a controller, whatever the scene's tables say", "bushing", "passive", "no_magnet";
         start_position_m: Option<Pair> [or "by `start`"], "m", Finite, "where the rotor starts in this plane, as seen from the magnets; of two planes, both or none";
         start_velocity_m_s: Option<Pair> [or "by `start`"], "m/s", Finite, "its velocity there; with `start_position_m`, or both planes alone";
         stator: Option<StatorTable> [or "the scene's"], "", ANY, "rings of the stator";

@@ -71,7 +71,10 @@ pub(super) fn allowances(
     let of = |scene: &Scene| scene.severity_allowed.map(|allowed| allowed as f32);
     Ok(match &scene {
         AnyScene::Plane(scene) => vec![of(scene)],
-        AnyScene::Machine(scene) => scene.planes.iter().map(|plane| of(&plane.scene)).collect(),
+        // A seal has no ledger.
+        AnyScene::Machine(scene) => (scene.planes.iter().filter(|plane| !plane.seal))
+            .map(|plane| of(&plane.scene))
+            .collect(),
     })
 }
 

@@ -8,6 +8,7 @@ mod struck;
 use self::happened::Happened;
 use self::loaded::Loaded;
 use self::struck::Struck;
+use super::incidents::Hardest;
 use super::loops::{OWN, loops};
 use super::plants::{Blow, RotorPlant};
 use super::wrong_shaft::told_wrong;
@@ -58,11 +59,15 @@ pub fn study(extent: Extent, progress: &dyn Progress) -> Result<Report, StudyErr
         };
         claims.extend(loaded.of(plant, extent, progress));
         cases += 4 * tries(extent).len() as u64;
-        let first_end = Blow::ALL.iter().position(|blow| *blow == Blow::End(0));
-        let alone_m_s = first_end
-            .and_then(|i| own.get(i))
-            .map_or(0.0, |[alone, _]| *alone);
-        let of = happened.of(&loops, alone_m_s, extent, progress);
+        let alone_m_s = |blow: Blow| {
+            let at = Blow::ALL.iter().position(|of| *of == blow);
+            at.and_then(|i| own.get(i)).map_or(0.0, |[alone, _]| *alone)
+        };
+        let hardest = Hardest {
+            end_m_s: alone_m_s(Blow::End(0)),
+            centre_m_s: alone_m_s(Blow::Centre),
+        };
+        let of = happened.of(&loops, hardest, extent, progress);
         claims.extend(of.claims(name));
         cases += of.runs;
         if extent == Extent::Full {

@@ -1,17 +1,18 @@
 //! What else happens to the catalogue's whole rotors than blows and overloads.
 
-use super::plants::{Blow, RotorPlant, load_at};
+use super::plants::{Blow, OVERLOAD, RotorPlant};
 use crate::overloads::takeover::{arrest_of, lost_beyond_m_s};
 use firmware_bench::device::actuator::{Delivers, Outage};
 use firmware_bench::device::axis::Axis;
-use firmware_bench::device::loads::{BaseMotion, Disturbance, Shape};
+use firmware_bench::device::loads::{BaseMotion, Shape, TimedChange};
 use firmware_bench::device::sensor_fault::{Fault, FaultKind};
+use firmware_bench::scene::diagnostic::SceneError;
 use firmware_bench::scene::machine::MachineScene;
-use plant_model::V2;
 use plant_model::analysis::arrest::circle_radius_m;
 use plant_model::machine::params::Unbalance;
 use plant_model::params::SpinParams;
-use std::f64::consts::{FRAC_PI_2, TAU};
+use plant_model::{Change, V2};
+use std::f64::consts::{PI, TAU};
 
 const G_M_S2: f64 = 9.81;
 /// When things begin that happen to a rotor at rest \[s\].
@@ -41,10 +42,13 @@ pub enum Incident {
     SensorLost(u32),
     /// The same after a blow.
     SensorLostStruck(u32),
-    /// A force that turns with the spin at the first plane, of so many percent of the cap, for 100 ms.
+    /// An unbalance at the first plane, whose force is so many percent of the cap, for 100 ms.
     BladeLost(u32),
     /// The same until the end.
     BladeLostForGood(u32),
+    /// An unbalance at the first plane, whose orbit far above the criticals is so many percent of the clearance; the drive trips
+    /// and brakes the rotor through them.
+    BladeLostSpinDown(u32),
     /// A half sine of the base: g, ms.
     Shock(u32, u32),
     /// No power for so many ms, known, with the weight fed forward before and after.
@@ -59,11 +63,24 @@ pub enum Incident {
     Misaligned(u32),
     /// The spin falls through the criticals of the levitated rotor with an unbalance at the first plane.
     SpinDown,
+    /// A blow at the centre with a seal in the middle, of so many percent of the clearance of the retainer bearings.
+    SealStruck(u32),
+    /// An overload there.
+    SealOverloaded(u32),
+}
+
+/// The hardest blows \[m/s\] that the file's loop alone recovers from.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Hardest {
+    /// At the first end.
+    pub end_m_s: f64,
+    /// At the centre.
+    pub centre_m_s: f64,
 }
 
 impl Incident {
     /// All.
-    pub const ALL: [Self; 25] = [
+    pub const ALL: [Self; 31] = [
         Self::MagnetLost(20),
         Self::MagnetLost(100),
         Self::MagnetLostStruck(20),
@@ -75,6 +92,8 @@ impl Incident {
         Self::BladeLost(50),
         Self::BladeLost(120),
         Self::BladeLostForGood(50),
+        Self::BladeLostSpinDown(40),
+        Self::BladeLostSpinDown(70),
         Self::Shock(5, 30),
         Self::Shock(15, 11),
         Self::Shock(30, 6),
@@ -89,6 +108,10 @@ impl Incident {
         Self::Misaligned(10),
         Self::Misaligned(20),
         Self::SpinDown,
+        Self::SealStruck(60),
+        Self::SealStruck(80),
+        Self::SealOverloaded(60),
+        Self::SealOverloaded(80),
     ];
 
     /// In words.
@@ -101,6 +124,9 @@ impl Incident {
             Self::SensorLostStruck(ms) => format!("blow, one sensor lost for {ms} ms"),
             Self::BladeLost(percent) => format!("blade lost, {percent} % of a cap for 100 ms"),
             Self::BladeLostForGood(percent) => format!("blade lost, {percent} % of a cap for good"),
+            Self::BladeLostSpinDown(percent) => {
+                format!("blade lost, orbit of {percent} % of c, and spun down")
+            }
             Self::Shock(g, ms) => format!("shock of {g} g, {ms} ms"),
             Self::PowerGone(ms) => format!("power gone for {ms} ms"),
             Self::Cylindrical(percent) => format!("cylindrical whirl, {percent} % of v_lim"),
@@ -108,25 +134,29 @@ impl Incident {
             Self::Runout(percent) => format!("blow, runout of {percent} % of c"),
             Self::Misaligned(percent) => format!("blow, retainers {percent} % of c off"),
             Self::SpinDown => "spin-down through the criticals".to_owned(),
+            Self::SealStruck(percent) => format!("blow, seal of {percent} % of c between"),
+            Self::SealOverloaded(percent) => format!("overload, seal of {percent} % of c between"),
         }
     }
 
-    /// The scene in which it happens, in this direction \[rad\] and with other noise. `struck_m_s` is the hardest blow at the
-    /// first end that the file's loop alone recovers from.
+    /// The scene in which it happens, in this direction \[rad\] and with other noise.
+    ///
+    /// # Errors
+    /// [`SceneError`] of a plant that takes no seal.
     pub fn scene(
         self,
         plant: &RotorPlant,
-        struck_m_s: f64,
+        hardest: Hardest,
         (angle_rad, seed): (f64, u64),
-    ) -> MachineScene {
-        let struck = || plant.struck(Blow::End(0), BLOW * struck_m_s, angle_rad, seed);
+    ) -> Result<MachineScene, SceneError> {
+        let struck = || plant.struck(Blow::End(0), BLOW * hardest.end_m_s, angle_rad, seed);
         // From rest, not in the very middle.
         let resting = || plant.struck(Blow::End(0), 1e-3, angle_rad, seed);
         let (sin, cos) = angle_rad.sin_cos();
         let along = V2::new(cos, sin);
         let seconds = |ms: u32| 1e-3 * f64::from(ms);
         let share = |percent: u32| 0.01 * f64::from(percent);
-        match self {
+        Ok(match self {
             Self::MagnetLost(ms) => {
                 without_force(resting(), (BEGIN_S, seconds(ms)), Axis::Both, 0..1)
             }
@@ -138,8 +168,15 @@ impl Incident {
             }
             Self::SensorLost(ms) => without_reading(resting(), (BEGIN_S, seconds(ms))),
             Self::SensorLostStruck(ms) => without_reading(struck(), (STRUCK_S, seconds(ms))),
-            Self::BladeLost(percent) => turning_load(resting(), share(percent), Some(0.1)),
-            Self::BladeLostForGood(percent) => turning_load(resting(), share(percent), None),
+            Self::BladeLost(percent) => {
+                blade_lost(resting(), (share(percent), angle_rad), Some(0.1))
+            }
+            Self::BladeLostForGood(percent) => {
+                blade_lost(resting(), (share(percent), angle_rad), None)
+            }
+            Self::BladeLostSpinDown(percent) => {
+                blade_lost_and_spun_down(resting(), (share(percent), angle_rad))
+            }
             Self::Shock(g, ms) => shaken(
                 resting(),
                 &BaseMotion {
@@ -177,7 +214,15 @@ impl Incident {
                 scene
             }
             Self::SpinDown => spinning_down(resting()),
-        }
+            Self::SealStruck(percent) => {
+                let sealed = plant.sealed(share(percent))?;
+                sealed.struck(Blow::Centre, BLOW * hardest.centre_m_s, angle_rad, seed)
+            }
+            Self::SealOverloaded(percent) => {
+                let sealed = plant.sealed(share(percent))?;
+                sealed.overloaded(None, OVERLOAD, (angle_rad, seed))
+            }
+        })
     }
 }
 
@@ -223,30 +268,50 @@ fn without_reading(mut scene: MachineScene, (start_s, duration_s): (f64, f64)) -
     scene
 }
 
-/// The force of an unbalance that is there from a time on at the first plane, a share of its magnet's cap. The spin being
-/// held, it is two that swing.
-fn turning_load(mut scene: MachineScene, share: f64, lasts_s: Option<f64>) -> MachineScene {
-    let spin_hz = scene.start.spin_rad_s / TAU;
-    let force_n = share * scene.machine.magnets.first().map_or(0.0, |m| m.force_max_n);
-    let position_m = scene.machine.planes.first().map_or(0.0, |p| p.position_m);
-    until(&mut scene, BEGIN_S + lasts_s.unwrap_or(0.1));
-    let duration_s = lasts_s.unwrap_or(scene.common().duration_s - BEGIN_S);
-    let part = |force_n: V2, phase_rad: f64| Disturbance {
-        start_s: BEGIN_S,
-        duration_s,
-        force_n,
-        shape: Shape::Sine {
-            frequency_hz: spin_hz.abs(),
-            phase_rad,
-        },
-    };
-    let sense = spin_hz.signum();
-    for part in [
-        part(V2::new(force_n, 0.0), FRAC_PI_2),
-        part(V2::new(0.0, sense * force_n), 0.0),
-    ] {
-        load_at(&mut scene, part, position_m);
+/// Parameters that change in a scene.
+fn changing(scene: &mut MachineScene, changes: &[TimedChange]) {
+    for plane in &mut scene.planes {
+        plane.scene.changes.extend(changes);
     }
+}
+
+/// An unbalance at the first plane, of this moment and at this angle on the rotor.
+fn unbalance(scene: &MachineScene, moment_kg_m: f64, angle_rad: f64) -> Unbalance {
+    Unbalance {
+        position_m: scene.machine.planes.first().map_or(0.0, |p| p.position_m),
+        moment_kg_m,
+        angle_rad,
+    }
+}
+
+/// An unbalance at the first plane whose orbit far above the criticals is this share of the clearance.
+fn unbalance_of_orbit(scene: &MachineScene, share: f64, angle_rad: f64) -> Unbalance {
+    let clearance_m =
+        (scene.planes.first()).map_or(0.0, |plane| plane.scene.plant.contact.clearance_m);
+    let mut unbalance = unbalance(scene, 0.0, angle_rad);
+    let z = unbalance.position_m;
+    unbalance.moment_kg_m = share * clearance_m / scene.machine.rotor.rigid().mobility(z, z);
+    unbalance
+}
+
+/// An unbalance at the first plane from a time on, its force a share of the magnet's cap; for a while, after which the opposite
+/// comes on top, or for good.
+fn blade_lost(
+    mut scene: MachineScene,
+    (share, angle_rad): (f64, f64),
+    lasts_s: Option<f64>,
+) -> MachineScene {
+    let force_n = share * scene.machine.magnets.first().map_or(0.0, |m| m.force_max_n);
+    let moment_kg_m = force_n / scene.start.spin_rad_s.powi(2);
+    until(&mut scene, BEGIN_S + lasts_s.unwrap_or(0.1));
+    let at = |at_s: f64, angle_rad: f64| TimedChange {
+        at_s,
+        change: Change::default(),
+        unbalance: Some(unbalance(&scene, moment_kg_m, angle_rad)),
+    };
+    let mut changes = vec![at(BEGIN_S, angle_rad)];
+    changes.extend(lasts_s.map(|lasts_s| at(BEGIN_S + lasts_s, angle_rad + PI)));
+    changing(&mut scene, &changes);
     scene
 }
 
@@ -307,29 +372,53 @@ fn whirling(mut scene: MachineScene, share: f64, along: V2, conical: bool) -> Ma
     scene
 }
 
-/// A drive brakes it.
-fn spinning_down(mut scene: MachineScene) -> MachineScene {
+/// Free to spin, from the first speed of the run-down or its own; the torque \[N m\] that brakes it down.
+fn braked(scene: &mut MachineScene) -> f64 {
     let (from_hz, to_hz) = SPIN_DOWN_HZ;
     let from = scene.start.spin_rad_s.abs().min(TAU * from_hz);
     let sense = scene.start.spin_rad_s.signum();
-    let rigid = scene.machine.rotor.rigid();
-    let inertia_kg_m2 = rigid.polar_inertia_kg_m2;
+    scene.start.spin_rad_s = sense * from;
+    let inertia_kg_m2 = scene.machine.rotor.rigid().polar_inertia_kg_m2;
     scene.machine.spin = SpinParams::Free {
         inertia_kg_m2,
-        drive_torque_n_m: -sense * (from - TAU * to_hz) / SPIN_DOWN_S * inertia_kg_m2,
+        drive_torque_n_m: 0.0,
     };
-    scene.start.spin_rad_s = sense * from;
-    if let (Some(plane), Some(own)) = (scene.machine.planes.first(), scene.planes.first()) {
-        let orbit_m = SPIN_DOWN_ORBIT * own.scene.plant.contact.clearance_m;
-        let unbalance = Unbalance {
-            position_m: plane.position_m,
-            moment_kg_m: orbit_m / rigid.mobility(plane.position_m, plane.position_m),
-            angle_rad: 0.0,
-        };
-        scene.machine.unbalances.push(unbalance);
+    -sense * (from - TAU * to_hz) / SPIN_DOWN_S * inertia_kg_m2
+}
+
+/// A drive brakes it.
+fn spinning_down(mut scene: MachineScene) -> MachineScene {
+    let torque_n_m = braked(&mut scene);
+    if let SpinParams::Free {
+        drive_torque_n_m, ..
+    } = &mut scene.machine.spin
+    {
+        *drive_torque_n_m = torque_n_m;
     }
+    let unbalance = unbalance_of_orbit(&scene, SPIN_DOWN_ORBIT, 0.0);
+    scene.machine.unbalances.push(unbalance);
     for plane in &mut scene.planes {
         plane.scene.duration_s = SPIN_DOWN_S;
+    }
+    scene
+}
+
+/// Balanced at its speed; then a blade is lost, and a drive brakes it.
+fn blade_lost_and_spun_down(
+    mut scene: MachineScene,
+    (share, angle_rad): (f64, f64),
+) -> MachineScene {
+    let lost = TimedChange {
+        at_s: BEGIN_S,
+        change: Change {
+            drive_torque_n_m: Some(braked(&mut scene)),
+            ..Change::default()
+        },
+        unbalance: Some(unbalance_of_orbit(&scene, share, angle_rad)),
+    };
+    changing(&mut scene, &[lost]);
+    for plane in &mut scene.planes {
+        plane.scene.duration_s = BEGIN_S + SPIN_DOWN_S;
     }
     scene
 }

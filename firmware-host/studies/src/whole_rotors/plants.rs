@@ -16,7 +16,8 @@ pub struct RotorPlant {
     pub name: &'static str,
     /// What it is.
     pub scene: MachineScene,
-    /// Text of the scene with its robust loop.
+    /// Text of the scene, and of that with its robust loop.
+    text: &'static str,
     robust: &'static str,
 }
 
@@ -42,6 +43,14 @@ const FILES: [(&str, &str, &str); 4] = [
         include_str!("../../scenes/rotors/p8_robust.toml"),
     ),
 ];
+
+/// Overload of the catalogue: over the caps that it is put against, and how long it lasts \[s\].
+pub(super) const OVERLOAD: (f64, f64) = (1.3, 0.1);
+/// Stiffness of a seal over that of a retainer bearing: thin teeth or carbon in a holder.
+const SEAL_STIFFNESS: f64 = 0.2;
+const SEAL_RESTITUTION: f64 = 0.5;
+/// Dry, and rougher than what a retainer bearing is made of.
+const SEAL_FRICTION: f64 = 0.3;
 
 /// Which way a blow moves the rotor: as an impulse at a place does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -105,6 +114,7 @@ impl RotorPlant {
             Ok(Self {
                 name,
                 scene,
+                text,
                 robust,
             })
         };
@@ -164,6 +174,35 @@ impl RotorPlant {
         let mut with = self.clone();
         let file = format!("rotors/{}_robust.toml", self.name.to_lowercase());
         with.scene.levitation = MachineScene::parse(&file, self.robust)?.levitation;
+        Ok(with)
+    }
+
+    /// The same with a seal in the middle between its planes, of a clearance that is this share of theirs.
+    ///
+    /// # Errors
+    /// [`SceneError`] if that is no valid scene.
+    pub fn sealed(&self, share: f64) -> Result<Self, SceneError> {
+        let mut with = self.clone();
+        let Some(plane) = self.scene.machine.planes.first() else {
+            return Ok(with);
+        };
+        let places = self.scene.machine.planes.iter().map(|p| p.position_m);
+        let seal = format!(
+            "[[plane]]\nname = \"seal\"\nposition_m = {:e}\ncontact_radius_m = {:e}\nseal = true\n\
+             contact = {{ clearance_m = {:e}, stiffness_n_m = {:e}, restitution = {SEAL_RESTITUTION:e} }}\n\
+             friction = {{ coefficient = {SEAL_FRICTION:e} }}\n",
+            places.sum::<f64>() / self.scene.planes.len() as f64,
+            plane.radius_m,
+            share * plane.contact.clearance_m,
+            SEAL_STIFFNESS * plane.contact.stiffness_n_m(),
+        );
+        let file = format!("rotors/{}.toml", self.name.to_lowercase());
+        with.scene = MachineScene::parse(&file, &format!("{}\n{seal}", self.text))?;
+        // Whoever levitates it here.
+        with.scene.levitation.clone_from(&self.scene.levitation);
+        for (plane, own) in with.scene.planes.iter_mut().zip(&self.scene.planes) {
+            plane.scene.levitation = own.scene.levitation;
+        }
         Ok(with)
     }
 
@@ -231,7 +270,7 @@ impl RotorPlant {
 }
 
 /// Adds a load at a place.
-pub(super) fn load_at(scene: &mut MachineScene, load: Disturbance, position_m: f64) {
+fn load_at(scene: &mut MachineScene, load: Disturbance, position_m: f64) {
     scene.loads.push(load);
     scene.machine.loads_m.push(position_m);
     for plane in &mut scene.planes {

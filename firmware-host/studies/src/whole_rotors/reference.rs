@@ -6,9 +6,7 @@ use super::plants::{Blow, RotorPlant};
 use crate::campaign::Progress;
 use crate::overloads::reference::{FINE, RANGES, START, law_of, search, search_from_m_s};
 use firmware_bench::run::closed_loop::{Keep, RunError, refer_machine};
-use firmware_bench::run::whole_clairvoyant::{
-    WholeClairvoyant, WholeClairvoyantLaw, WholeReference,
-};
+use firmware_bench::run::whole_clairvoyant::{WholeClairvoyantLaw, WholeReference};
 use firmware_bench::scene::diagnostic::SceneError;
 use firmware_bench::scene::machine::MachineScene;
 use firmware_bench::scene::policy_kind::PolicyKind;
@@ -88,7 +86,7 @@ fn whole([a, b, c, d, e, lent]: [f64; 6]) -> WholeClairvoyantLaw {
 
 /// Whether a law brings both planes back; not if its run cannot be trusted.
 fn recovers(scene: &MachineScene, law: WholeClairvoyantLaw, keep: Keep) -> bool {
-    let law = WholeClairvoyant::new(law, scene).map(WholeReference::Law);
+    let law = WholeReference::law(law, scene);
     law.is_some_and(|law| brings_back(scene, &law, keep))
 }
 

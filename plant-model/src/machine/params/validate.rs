@@ -2,7 +2,7 @@
 
 use super::{
     MAX_MAGNETS, MAX_PLANES, MachineError, MachineParams, MachinePlane, MachineStart, Poles,
-    RigidRotor, Rotor,
+    RigidRotor, Rotor, Unbalance,
 };
 use crate::params::{ContactLaw, SlidingFriction, SpinParams, StatorParams};
 use nalgebra::DMatrix;
@@ -136,6 +136,21 @@ impl Rotor {
             let ends = (mode.shape.first(), mode.shape.last());
             matches!(ends, (Some(a), Some(b)) if (a.0..=b.0).contains(&position_m))
         })
+    }
+
+    /// Refuses a place that does not.
+    fn has(&self, field: String, position_m: f64) -> Result<(), MachineError> {
+        let rule = "a place on the rotor: within the shape of every bending mode";
+        check(self.reaches(position_m), field, position_m, rule)
+    }
+}
+
+impl Unbalance {
+    pub(super) fn validate(&self, rotor: &Rotor, of: &str) -> Result<(), MachineError> {
+        rotor.has(format!("{of}.position_m"), self.position_m)?;
+        let (moment, field) = (self.moment_kg_m, format!("{of}.moment_kg_m"));
+        check(moment >= 0.0, field, moment, NOT_NEGATIVE)?;
+        check(true, format!("{of}.angle_rad"), self.angle_rad, FINITE)
     }
 }
 
@@ -287,13 +302,8 @@ impl MachineParams {
             check(true, "spin.drive_torque_n_m", drive_torque_n_m, FINITE)?;
         }
         let place = |list: &str, i: usize, position_m: f64| {
-            let rule = "a place on the rotor: within the shape of every bending mode";
-            check(
-                self.rotor.reaches(position_m),
-                format!("{list}[{i}].position_m"),
-                position_m,
-                rule,
-            )
+            self.rotor
+                .has(format!("{list}[{i}].position_m"), position_m)
         };
         for (i, support) in self.supports.iter().enumerate() {
             place("supports", i, support.position_m)?;
@@ -305,20 +315,7 @@ impl MachineParams {
             }
         }
         for (i, unbalance) in self.unbalances.iter().enumerate() {
-            place("unbalances", i, unbalance.position_m)?;
-            let u = unbalance.moment_kg_m;
-            check(
-                u >= 0.0,
-                format!("unbalances[{i}].moment_kg_m"),
-                u,
-                NOT_NEGATIVE,
-            )?;
-            check(
-                true,
-                format!("unbalances[{i}].angle_rad"),
-                unbalance.angle_rad,
-                FINITE,
-            )?;
+            unbalance.validate(&self.rotor, &format!("unbalances[{i}]"))?;
         }
         let magnets = self.magnets.len();
         let few = magnets <= MAX_MAGNETS;

@@ -10,7 +10,11 @@ use std::f64::consts::TAU;
 use system_tests::scene;
 
 fn at(at_s: f64, change: Change) -> Vec<TimedChange> {
-    vec![TimedChange { at_s, change }]
+    vec![TimedChange {
+        at_s,
+        change,
+        unbalance: None,
+    }]
 }
 
 fn unbalance(eccentricity_m: f64) -> Change {

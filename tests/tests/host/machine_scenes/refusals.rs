@@ -104,9 +104,39 @@ const CASES: &[(&str, &str, &str, &str)] = &[
     ),
     (
         "[verdict]",
-        "[[change]]\nat_s = 0.01\neccentricity_m = 1e-5\n[verdict]",
+        "[[change]]\nat_s = 0.01\n[verdict]",
         "change[0]",
-        "nothing of a whole rotor changes",
+        "changes nothing",
+    ),
+    (
+        "[verdict]",
+        "[[change]]\nat_s = 0.01\nunbalance = { position_m = 0.1, moment_kg_m = -1e-5 }\n[verdict]",
+        "change[0].unbalance.moment_kg_m",
+        "0 or greater",
+    ),
+    (
+        "[verdict]",
+        "[[rotor.bending]]\nfrequency_hz = 300.0\npositions_m = [-0.3, 0.3]\ndisplacements = [1.0, 1.0]\n[[change]]\nat_s = 0.01\nunbalance = { position_m = 0.35, moment_kg_m = 1e-5 }\n[verdict]",
+        "change[0].unbalance.position_m",
+        "within the shape of every bending mode",
+    ),
+    (
+        "[verdict]",
+        "[[change]]\nat_s = 0.01\ndrive_torque_n_m = 1.0\n[verdict]",
+        "change[0].drive_torque_n_m",
+        "while the speed is held",
+    ),
+    (
+        "contact_radius_m = 0.03",
+        "contact_radius_m = 0.03\nseal = true",
+        "plane[1].start_position_m",
+        "this plane is a seal",
+    ),
+    (
+        "contact_radius_m = 0.03",
+        "contact_radius_m = 0.03\nseal = true\nsensor = { noise_rms_m = 1e-6 }",
+        "plane[1].sensor",
+        "this plane is a seal",
     ),
     (
         "[verdict]",
@@ -199,6 +229,10 @@ fn what_is_of_a_whole_rotor_is_refused_of_a_point_mass() {
         (
             "[[disturbance]]\nstart_s = 0.0\nduration_s = 0.01\nforce_n = [1.0, 0.0]\nposition_m = 0.1\n",
             "disturbance[0].position_m",
+        ),
+        (
+            "[[change]]\nat_s = 0.01\nunbalance = { position_m = 0.1, moment_kg_m = 1e-5 }\n",
+            "change[0].unbalance",
         ),
     ] {
         let message = Scene::parse("scene.toml", &(plain.clone() + more))

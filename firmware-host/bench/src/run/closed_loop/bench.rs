@@ -23,8 +23,8 @@ pub(super) struct Bench<'a> {
     levitation: Option<WholeLevitation>,
     /// Who sees its true state.
     pub(super) reference: Option<&'a WholeReference>,
-    /// Who supervises it as a whole.
-    pub(super) supervisor: Option<Rotor>,
+    /// Who supervises it as a whole, and which planes it has.
+    pub(super) supervisor: Option<(Rotor, [usize; 2])>,
     pub(super) axis: Option<&'a mut dyn Recorder<AxisRow>>,
     /// What acts at each place for loads.
     loads: Vec<Loads>,
@@ -53,6 +53,7 @@ impl<'a> Bench<'a> {
         (loads, edges_s): (Vec<Loads>, Vec<f64>),
     ) -> Self {
         let (planes, places) = (stations.len(), loads.len());
+        let known = stations.iter().filter(|s| !s.seal).count();
         Self {
             scene,
             rig,
@@ -68,7 +69,7 @@ impl<'a> Bench<'a> {
             changes_done: 0,
             now: Vec::with_capacity(planes),
             seen: Vec::with_capacity(planes),
-            levitation_n: vec![V2::zeros(); planes],
+            levitation_n: vec![V2::zeros(); known],
             commands_n: [vec![V2::zeros(); planes], vec![V2::zeros(); planes]],
             loads_n: [vec![V2::zeros(); places], vec![V2::zeros(); places]],
             changes: Vec::new(),
@@ -117,11 +118,14 @@ impl<'a> Bench<'a> {
             station.measured_m = station.scene.from_magnets_m(last.position_m);
             station.record(last, false);
             let run = Ended::new(station.scene, &station.judge, &*self.rig, (plane, last));
-            let read_out = || match &mut self.supervisor {
-                Some(supervisor) => Some(ReadOut {
-                    report: supervisor.plane(plane).report(),
-                    flight_record: (supervisor.record(plane))
-                        .map(|r| written(&r, &Stamp::default())),
+            let of_rotor = self.supervisor.as_mut().and_then(|(supervisor, planes)| {
+                let own = planes.iter().position(|of| *of == plane)?;
+                Some((supervisor, own))
+            });
+            let read_out = || match of_rotor {
+                Some((supervisor, own)) => Some(ReadOut {
+                    report: supervisor.plane(own).report(),
+                    flight_record: (supervisor.record(own)).map(|r| written(&r, &Stamp::default())),
                 }),
                 None => station.controller.read_out(),
             };
@@ -214,21 +218,25 @@ impl<'a> Bench<'a> {
 
     /// The reference of the whole rotor, where there is one.
     fn refer(&mut self) {
-        let forces_n = self.reference.and_then(|r| r.forces_n(&self.now));
-        for (seen, force_n) in self.seen.iter_mut().zip(forces_n.into_iter().flatten()) {
-            seen.levitation_n = force_n;
+        let Some(reference) = self.reference else {
+            return;
+        };
+        for (plane, force_n) in reference.forces_n(&self.now).into_iter().flatten() {
+            self.seen[plane].levitation_n = force_n;
         }
     }
 
     /// The supervisor of the whole rotor, where there is one.
     fn supervise(&mut self) {
-        let (Some(supervisor), [first, second]) = (&mut self.supervisor, &mut self.stations[..])
-        else {
+        let Some((supervisor, planes)) = &mut self.supervisor else {
+            return;
+        };
+        let Ok([first, second]) = self.stations.get_disjoint_mut(*planes) else {
             return;
         };
         let asked = (
-            first.controller.ask(&self.seen[0]),
-            second.controller.ask(&self.seen[1]),
+            first.controller.ask(&self.seen[planes[0]]),
+            second.controller.ask(&self.seen[planes[1]]),
         );
         if let (Some(at_first), Some(at_second)) = asked {
             let [to_first, to_second] = supervisor.tick(&[at_first, at_second]).planes;
@@ -249,11 +257,15 @@ impl<'a> Bench<'a> {
             spin_rad_s: self.seen.first().map_or(0.0, |seen| seen.spin_rad_s),
             hold,
         };
-        let readings = self.seen.iter().map(|seen| seen.reading);
+        let known = |(_, station): &(&Seen, &Station)| !station.seal;
+        let readings = (self.seen.iter().zip(&self.stations)).filter(known);
+        let readings = readings.map(|(seen, _)| seen.reading);
         levitation
             .forces_n(readings, at, &mut self.levitation_n)
             .map_err(RunError::of_controller(task.policy))?;
-        for (seen, force_n) in self.seen.iter_mut().zip(&self.levitation_n) {
+        let known = self.seen.iter_mut().zip(&self.stations);
+        let known = known.filter(|(_, station)| !station.seal);
+        for ((seen, _), force_n) in known.zip(&self.levitation_n) {
             seen.levitation_n = *force_n;
         }
         Ok(())
@@ -287,7 +299,7 @@ impl<'a> Bench<'a> {
         while let Some(due) = self.scene.changes.get(self.changes_done)
             && due.at_s <= t_s
         {
-            self.rig.change(&due.change)?;
+            self.rig.change(&due.change, due.unbalance)?;
             self.changes_done += 1;
         }
         Ok(())

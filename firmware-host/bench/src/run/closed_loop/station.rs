@@ -13,6 +13,8 @@ use supervisor::{Events, Status};
 /// A bearing plane: what stands there, who drives its magnet, who watches.
 pub(super) struct Station<'a> {
     pub(super) scene: &'a Scene,
+    /// Whether no controller knows of it.
+    pub(super) seal: bool,
     sensor: Sensor,
     pub(super) controller: Box<dyn Controller>,
     pub(super) amplifier: Amplifier,
@@ -36,6 +38,7 @@ impl<'a> Station<'a> {
         let force_max_n = scene.plant.magnet.map_or(0.0, |m| m.force_max_n);
         Self {
             scene,
+            seal: false,
             sensor: Sensor::new(scene.sensor, &scene.faults, period_s, scene.seed),
             controller,
             amplifier: Amplifier::new(scene.amplifier, force_max_n, &scene.outages, scene.seed),

@@ -6,7 +6,7 @@ use crate::run::controller::{Force, Seen, controller};
 use crate::run::trace::TraceRow;
 use crate::scene::machine::AnyScene;
 use crate::scene::policy_kind::PolicyKind;
-use plant_model::{BuildError, Change, V2};
+use plant_model::{Change, V2};
 use self_cell::self_cell;
 use supervisor::Mode;
 
@@ -113,12 +113,12 @@ impl Stepwise {
         (self.ride).with_dependent_mut(|_, bench| bench.rig.push(force_n));
     }
 
-    /// Changes parameters of the plant from now on; of a whole rotor none can be changed.
+    /// Changes parameters of the plant from now on.
     ///
     /// # Errors
-    /// [`BuildError`] for values out of range, and for a change that the plant is not built for.
-    pub fn change(&mut self, change: &Change) -> Result<(), BuildError> {
-        (self.ride).with_dependent_mut(|_, bench| bench.rig.change(change))
+    /// [`RunError`] for values out of range, and for a change that the plant is not built for.
+    pub fn change(&mut self, change: &Change) -> Result<(), RunError> {
+        Ok((self.ride).with_dependent_mut(|_, bench| bench.rig.change(change, None))?)
     }
 
     /// To the next control sample. Returns whether something began on the way: a touch, another mode of a supervisor.

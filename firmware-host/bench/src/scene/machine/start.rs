@@ -33,7 +33,10 @@ pub(super) fn start(
         let key = format!("plane[{first}].{key}");
         Err(text.error_at_key(&key, message.to_owned(), Some(help.to_owned())))
     };
-    let [a, b] = tables.plane.as_slice() else {
+    let bearings: Vec<usize> = (0..tables.plane.len())
+        .filter(|plane| !tables.plane[*plane].seal)
+        .collect();
+    let [of_a, of_b] = bearings[..] else {
         let message = "says where the rotor starts for two planes, and there is another number";
         return error(message, "give start.position_m and start.tilt_rad");
     };
@@ -47,11 +50,12 @@ pub(super) fn start(
         let message = "says what [start] says as well";
         return error(message, "remove position, velocity and tilt from [start]");
     }
+    let [a, b] = [of_a, of_b].map(|plane| &tables.plane[plane]);
     if a.position_m == b.position_m {
         let message = "does not say how the rotor is tilted: both planes stand at one place";
         return error(message, "give start.position_m and start.tilt_rad");
     }
-    let [from_m, to_m] = [0, 1].map(|plane| machine.planes[plane].position_m);
+    let [from_m, to_m] = [of_a, of_b].map(|plane| machine.planes[plane].position_m);
     let both = |of: fn(&PlaneTable) -> V2| {
         let slope = (of(b) - of(a)) / (to_m - from_m);
         (of(a) - from_m * slope, slope)

@@ -3,7 +3,7 @@
 use super::tries;
 use crate::campaign::{Block, Chapter, Claim, Extent, Progress, run_all};
 use crate::whole_rotors::compared::{COLUMNS, Ran, Sum};
-use crate::whole_rotors::incidents::Incident;
+use crate::whole_rotors::incidents::{Hardest, Incident};
 use crate::whole_rotors::loops::Loops;
 
 /// A run of an incident on a plant.
@@ -45,12 +45,11 @@ impl Sum {
 }
 
 impl Happened {
-    /// Lets everything happen to a plant under each of its loops. `struck_m_s` is the hardest blow at the first end that the
-    /// file's loop alone recovers from.
+    /// Lets everything happen to a plant under each of its loops.
     pub(super) fn of(
         &mut self,
         loops: &Loops,
-        struck_m_s: f64,
+        hardest: Hardest,
         extent: Extent,
         progress: &dyn Progress,
     ) -> Sum {
@@ -61,7 +60,7 @@ impl Happened {
             }
         }
         let ran = run_all(&cases, progress, |(_, plant, incident, of)| {
-            Ran::of(&incident.scene(plant, struck_m_s, *of))
+            Ran::of(&incident.scene(plant, hardest, *of).ok()?)
         });
         let sum = Sum::of(ran.iter());
         let rows = cases.into_iter().zip(ran);
@@ -111,7 +110,7 @@ impl Happened {
             "What else happens",
             vec![
                 Block::text(
-                    "Three directions and seeds of everything under every loop. Blows are at the first end with 0.7 of the hardest that the file's loop alone recovers from; what comes after one comes 2 ms after it. Magnet, axis and sensor are those of the first plane, lost ones known to be. Power goes with the weight fed forward. Touches and impulse are those with the supervisor over those of levitation alone, summed where both recover. Struck on and on: twice the touches of levitation alone, and ten more.",
+                    "Three directions and seeds of everything under every loop. Blows are at the first end, over a seal at the centre, with 0.7 of the hardest there that the file's loop alone recovers from; what comes after one comes 2 ms after it. Magnet, axis and sensor are those of the first plane, lost ones known to be. Power goes with the weight fed forward. Touches and impulse are those with the supervisor over those of levitation alone, summed where both recover. Struck on and on: twice the touches of levitation alone, and ten more.",
                 ),
                 Block::table(COLUMNS, by_incident),
                 Block::table(columns, by_loop),

@@ -3,10 +3,8 @@
 use super::{KINDS, median, tries};
 use crate::campaign::{Block, Chapter, Claim, Extent, Progress, run_all};
 use crate::whole_rotors::compared::{Run, run};
-use crate::whole_rotors::plants::RotorPlant;
+use crate::whole_rotors::plants::{OVERLOAD, RotorPlant};
 
-/// Loads of so many caps, for so long.
-const OVERLOAD: (f64, f64) = (1.3, 0.1);
 /// Where they act.
 const PLACES: [(&str, Option<usize>); 2] =
     [("in the middle", None), ("at the second end", Some(1))];
