@@ -156,6 +156,7 @@ struct Review {
 /// An event with what is found out from it.
 struct Examined<'a> {
     event: Event<'a>,
+    shapes: Option<Shapes>,
     findings: Option<Findings>,
     again: Option<Again>,
 }
@@ -169,6 +170,7 @@ fn examined<'a>(args: &ReviewArgs, event: Event<'a>) -> Result<Examined<'a>, Com
         _ => None,
     };
     Ok(Examined {
+        shapes: Shapes::of(&event.records),
         event,
         findings,
         again,
@@ -187,7 +189,7 @@ fn reviewed(of: &Examined<'_>) -> Reviewed {
         time_us: head.time_us,
         at_sequence: head.at_sequence,
         dropped: head.dropped,
-        shapes: Shapes::of(&event.records),
+        shapes: of.shapes,
         identified: findings.map(|f| f.identified),
         contacts: findings.map_or_else(Vec::new, |f| f.contacts.clone()),
         contacts_from: findings.map(|f| f.first),

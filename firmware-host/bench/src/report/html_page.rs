@@ -140,7 +140,7 @@ impl HtmlPage {
 
     /// A part under a heading.
     pub fn section<T>(&mut self, heading: &str, write: impl FnOnce(&mut Self) -> T) -> T {
-        self.part("", "", heading, write)
+        self.numbered_part("", "", heading, write)
     }
 
     /// A part that the contents lead to, with its number.
@@ -151,7 +151,7 @@ impl HtmlPage {
         write: impl FnOnce(&mut Self) -> T,
     ) -> T {
         let id = format!(" id=\"{}\"", anchor(heading));
-        self.part(&id, &format!("{number} "), heading, write)
+        self.numbered_part(&id, &format!("{number} "), heading, write)
     }
 
     /// A part for readers without script alone.
@@ -160,10 +160,10 @@ impl HtmlPage {
         heading: &str,
         write: impl FnOnce(&mut Self) -> T,
     ) -> T {
-        self.part(" class=\"still\"", "", heading, write)
+        self.numbered_part(" class=\"still\"", "", heading, write)
     }
 
-    fn part<T>(
+    fn numbered_part<T>(
         &mut self,
         attributes: &str,
         number: &str,
@@ -171,27 +171,29 @@ impl HtmlPage {
         write: impl FnOnce(&mut Self) -> T,
     ) -> T {
         let escaped = escape(heading);
-        push(
-            &mut self.html,
-            format_args!("<section{attributes}>\n<h2>{number}{escaped}</h2>\n"),
-        );
+        let opened = format!("<section{attributes}>\n<h2>{number}{escaped}</h2>\n");
+        self.part(heading, [&opened, "</section>\n"], write)
+    }
+
+    /// What is written between two tags is under a heading.
+    fn part<T>(
+        &mut self,
+        heading: &str,
+        [opened, closed]: [&str; 2],
+        write: impl FnOnce(&mut Self) -> T,
+    ) -> T {
+        self.push(opened);
         heading.clone_into(&mut self.heading);
         let written = write(self);
-        self.push("</section>\n");
+        self.push(closed);
         written
     }
 
     /// A part that is shown as its heading until somebody opens it.
     pub fn folded<T>(&mut self, heading: &str, write: impl FnOnce(&mut Self) -> T) -> T {
-        let escaped = escape(heading);
-        push(
-            &mut self.html,
-            format_args!("<details class=\"part\">\n<summary>{escaped}</summary>\n"),
-        );
-        heading.clone_into(&mut self.heading);
-        let written = write(self);
-        self.push("</details>\n");
-        written
+        let summary = escape(heading);
+        let opened = format!("<details class=\"part\">\n<summary>{summary}</summary>\n");
+        self.part(heading, [&opened, "</details>\n"], write)
     }
 
     /// A paragraph.

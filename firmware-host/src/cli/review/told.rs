@@ -5,7 +5,6 @@ use super::tables::{tick_tables, track};
 use super::{Examined, findings, used};
 use firmware_bench::record::remaining::Remaining;
 use firmware_bench::record::replay::Replay;
-use firmware_bench::record::shapes::Shapes;
 use firmware_bench::record::story::{Event, Verdict};
 use firmware_bench::record::ticks::Ticks;
 use firmware_bench::report::lines::Lines;
@@ -65,9 +64,9 @@ fn circumstances(event: &Event<'_>) -> Vec<String> {
 }
 
 /// Of a rotor, both planes beside each other, with captions.
-fn of_planes(event: &Event<'_>) -> Vec<(String, Lines)> {
-    let figures = figures_of_planes(event).map(|table| ("Planes".to_owned(), table));
-    let moved = Shapes::of(&event.records).map(|moved| {
+fn of_planes(of: &Examined<'_>) -> Vec<(String, Lines)> {
+    let figures = figures_of_planes(&of.event).map(|table| ("Planes".to_owned(), table));
+    let moved = of.shapes.map(|moved| {
         let caption = "Motion of both planes while one bounced or whirled".to_owned();
         (caption, shapes(&moved))
     });
@@ -111,7 +110,7 @@ pub(super) fn told(of: &Examined<'_>, asked: bool, bearings: &[Remaining]) -> St
     for said in circumstances(event) {
         let _ = writeln!(out, "{said}");
     }
-    for (_, table) in of_planes(event) {
+    for (_, table) in of_planes(of) {
         let _ = writeln!(out, "\n{table}");
     }
     let planes = event.records[0].head.planes;
@@ -152,7 +151,7 @@ pub(super) fn parts(events: &[Examined<'_>], asked: bool) -> RecordParts {
         parts.above.push(RecordPart {
             heading: format!("{of_event}What came of it"),
             said: circumstances(event),
-            tables: of_planes(event),
+            tables: of_planes(of),
             runs: Vec::new(),
         });
         let planes = event.records[0].head.planes;
