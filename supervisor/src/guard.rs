@@ -4,6 +4,9 @@
 //! A refused sample costs nothing by itself: the observer carries its model over the tick. Only several
 //! in a row since the last good one make a fault, and how many depends on how sure the refusal is.
 
+mod faults;
+
+use self::faults::{RecoveryCount, Refused};
 use crate::coeffs::Coeffs;
 use crate::innovation::{Expected, Innovation};
 use crate::reading::{Reading, SampleAssessment, SampleFlags};
@@ -16,9 +19,7 @@ use crate::words::words_of_fields;
 
 /// Missed ticks over which the observer's model is carried: bounds the time of a tick.
 pub(crate) const MAX_MISSED: u32 = 4;
-/// Refused samples in a row that make a fault, of the kinds that are no mere interference.
-const JUMPS: u8 = 2;
-const DROPOUTS: u8 = 3;
+/// Readings in a row that have not moved and make a fault.
 const STUCK: u8 = 3;
 /// The same where only one coordinate stands still: a converter whose step is the noise repeats a reading of a moving rotor by
 /// chance, sometimes twice or thrice.
@@ -28,35 +29,6 @@ const MOST_APPLIED: f32 = 2.0;
 
 /// [`Guard::age`] where there is no good sample to compare with.
 const NEVER: u16 = u16::MAX;
-
-/// Refused samples since the last good one.
-#[derive(Debug, Clone, Copy, Default)]
-struct Refused {
-    all: u16,
-    /// Coordinates that were wrong.
-    bad: SampleFlags,
-    jumps: u8,
-    dropouts: u8,
-    /// Where one coordinate is bad: ticks since the other one fitted, none if it did last.
-    apart: u8,
-}
-
-words_of_fields!(Refused {
-    all,
-    bad,
-    jumps,
-    dropouts,
-    apart
-});
-
-/// In a fault: samples in a row that fit, with the same coordinates bad.
-#[derive(Debug, Clone, Copy, Default)]
-struct RecoveryCount {
-    bad: SampleFlags,
-    samples: u16,
-}
-
-words_of_fields!(RecoveryCount { bad, samples });
 
 /// Memory of the guard.
 #[derive(Debug, Clone, Copy)]
@@ -367,93 +339,6 @@ impl<S: Scalar> Guard<S> {
             return RejectReason::Stuck;
         }
         RejectReason::None
-    }
-
-    /// Judges the coordinate beside one that is bad, so many ticks after the last sample: whether it fits, or is farther
-    /// from that than the rotor can be. Then it is not used, and after the second in a row both are bad.
-    fn judge_other(
-        &mut self,
-        position: Vec2<S>,
-        bad: SampleFlags,
-        (ticks, anew): (u32, bool),
-        coeffs: &Coeffs<S>,
-    ) -> bool {
-        let refused = &mut self.refused;
-        let (other, now) = self.stuck_detector.beside(bad, position);
-        let ticks = ticks + u32::from(refused.apart);
-        let fits = anew || other.step(now) <= way_in(ticks, coeffs);
-        let all_bad = self.faulty && refused.bad == SampleFlags::BOTH_BAD;
-        let second = refused.apart > 0;
-        if fits || second || all_bad {
-            other.accept(now);
-            refused.apart = 0;
-        } else {
-            // At most one more than a gap that is made up for.
-            refused.apart = ticks as u8;
-        }
-        if !fits && second {
-            refused.bad = SampleFlags::BOTH_BAD;
-        }
-        fits && !(all_bad && other.is_awaited())
-    }
-
-    /// Before a fault: refused samples since the last good one, and whether they make one. Where nothing is known of the
-    /// rotor, the first does.
-    fn count(&mut self, refusal: RejectReason, position: Vec2<S>, coeffs: &Coeffs<S>) -> Events {
-        let refused = &mut self.refused;
-        let often = |count: &mut u8, most: u8| {
-            *count += 1;
-            *count >= most
-        };
-        let sure = match refusal {
-            RejectReason::None => {
-                (self.last_good, self.age) = (position, 0);
-                *refused = Refused::default();
-                return Events::empty();
-            }
-            // The next ones say whether it was right; too few are doubted for a fault.
-            RejectReason::Doubted => return Events::empty(),
-            RejectReason::NotFinite | RejectReason::Range => false,
-            RejectReason::Slew => often(&mut refused.jumps, JUMPS),
-            RejectReason::Dropout => often(&mut refused.dropouts, DROPOUTS),
-            RejectReason::Stuck => self.stuck,
-        };
-        // Readings that are the last ones by chance may be many in a row, of x here and of y there.
-        refused.all += u16::from(refusal != RejectReason::Stuck);
-        if !sure && refused.all < coeffs.fault_ticks && self.age != NEVER {
-            return Events::empty();
-        }
-        self.age = NEVER;
-        self.faulty = true;
-        self.fault = refusal;
-        self.recovery = RecoveryCount::default();
-        self.stuck_detector.freeze();
-        Events::SENSOR_FAULT
-    }
-
-    /// In a fault: after as many samples in a row that fit, with the same coordinates bad, no others are; with none bad
-    /// it is over.
-    fn recover(&mut self, bad: SampleFlags, fits: bool, coeffs: &Coeffs<S>) -> Events {
-        let recovery = &mut self.recovery;
-        if bad != recovery.bad {
-            *recovery = RecoveryCount { bad, samples: 0 };
-        }
-        let waits = bad.is_empty() && self.stuck_detector.is_awaited();
-        if !fits || waits || bad == SampleFlags::BOTH_BAD {
-            recovery.samples = 0;
-            return Events::empty();
-        }
-        recovery.samples = recovery.samples.saturating_add(1);
-        if recovery.samples < coeffs.fault_ticks {
-            return Events::empty();
-        }
-        self.refused.bad = bad;
-        if !bad.is_empty() {
-            return Events::empty();
-        }
-        self.faulty = false;
-        self.refused = Refused::default();
-        Events::SENSOR_OK
     }
 
     /// After a change of the unit of length.

@@ -2,6 +2,7 @@
 
 use super::drawn::{Event, RotorCase};
 use firmware_bench::run::closed_loop::{MachineRecorders, Rigour, record_machine};
+use firmware_bench::scene::diagnostic::SceneError;
 use firmware_bench::scene::machine::MachineScene;
 use firmware_bench::scene::policy_kind::PolicyKind;
 
@@ -27,13 +28,17 @@ pub struct Ran {
     pub own: Run,
 }
 
-/// A policy on a scene; `None` where the run cannot be trusted.
-pub(super) fn run(scene: &MachineScene, kind: PolicyKind) -> Option<Run> {
+/// A policy on a scene.
+///
+/// # Errors
+/// Why the run cannot be trusted.
+pub(super) fn run(scene: &MachineScene, kind: PolicyKind) -> Result<Run, String> {
     let recorders = MachineRecorders {
         planes: Vec::new(),
         axis: None,
     };
-    let planes = record_machine(scene, kind, recorders, Rigour::default(), &mut |_| {}).ok()?;
+    let planes = record_machine(scene, kind, recorders, Rigour::default(), &mut |_| {})
+        .map_err(|error| error.to_string())?;
     let mut sum = Run {
         recovered: true,
         ..Run::default()
@@ -44,18 +49,46 @@ pub(super) fn run(scene: &MachineScene, kind: PolicyKind) -> Option<Run> {
         sum.force_n = sum.force_n.max(figures.peak_contact_force_n);
         sum.impulse_n_s += figures.contact_impulse_n_s;
     }
-    Some(sum)
+    Ok(sum)
+}
+
+/// So long levitation alone has to hold a rotor for it to count \[s\]: some loops drive a mode so slowly that they recover
+/// from an event first.
+pub(super) const HOLDS_S: f64 = 3.0;
+
+/// Whether levitation alone has the rotor in the middle at the end of a scene, one of [`HOLDS_S`].
+pub(super) fn is_held(scene: Result<MachineScene, SceneError>) -> bool {
+    scene.is_ok_and(|scene| run(&scene, PolicyKind::Levitation).is_ok_and(|ran| ran.recovered))
+}
+
+/// Both runs of a scene, or why one of them cannot be trusted.
+pub(super) type Tried = Result<Ran, String>;
+
+/// What a list says of a pair; `None` where there is nothing to say.
+pub(super) fn told_of(tried: &Tried) -> Option<String> {
+    match tried {
+        Err(why) => Some(format!("cannot be trusted ({why})")),
+        Ok(ran) if ran.is_lost() => Some("lost".to_owned()),
+        Ok(ran) if ran.is_hammered() => Some("struck on and on".to_owned()),
+        Ok(_) => None,
+    }
 }
 
 impl Ran {
-    /// What comes of an event; `None` where a run cannot be trusted.
-    pub fn new(rotor: &RotorCase, event: Event) -> Option<Self> {
-        Self::of(&rotor.scene(event).ok()?)
+    /// What comes of an event.
+    ///
+    /// # Errors
+    /// Why a run cannot be trusted.
+    pub fn new(rotor: &RotorCase, event: Event) -> Result<Self, String> {
+        Self::of(&rotor.scene(event).map_err(|error| error.to_string())?)
     }
 
-    /// What comes of a scene; `None` where a run cannot be trusted.
-    pub(super) fn of(scene: &MachineScene) -> Option<Self> {
-        Some(Self {
+    /// What comes of a scene.
+    ///
+    /// # Errors
+    /// Why a run cannot be trusted.
+    pub(super) fn of(scene: &MachineScene) -> Tried {
+        Ok(Self {
             alone: run(scene, PolicyKind::Levitation)?,
             own: run(scene, PolicyKind::Supervisor)?,
         })
@@ -88,11 +121,11 @@ pub(super) struct Sum {
 }
 
 impl Sum {
-    pub(super) fn of<'a>(all: impl Iterator<Item = &'a Option<Ran>>) -> Self {
+    pub(super) fn of<'a>(all: impl Iterator<Item = &'a Tried>) -> Self {
         let mut sum = Self::default();
         for ran in all {
             sum.runs += 1;
-            let Some(ran) = ran else {
+            let Ok(ran) = ran else {
                 sum.untrusted += 1;
                 continue;
             };

@@ -193,6 +193,15 @@ impl RotorCase {
     /// # Errors
     /// None that a draw should cause.
     pub fn scene(&self, event: Event) -> Result<MachineScene, SceneError> {
+        self.scene_for(event, 0.6)
+    }
+
+    /// The same of another duration \[s\].
+    pub(super) fn scene_for(
+        &self,
+        event: Event,
+        duration_s: f64,
+    ) -> Result<MachineScene, SceneError> {
         let [a, b] = self.ends_m;
         let arm_m = 0.5 * (a + b);
         let lift_off_m_s = (2.0 * self.force_n / self.mass_kg * self.clearance_m).sqrt();
@@ -230,11 +239,11 @@ impl RotorCase {
             }
             Event::Idle => (String::new(), String::new()),
         };
-        let text = self.written(&start, &happens);
+        let text = self.written(duration_s, &start, &happens);
         MachineScene::parse(&self.text(), &text)
     }
 
-    fn written(&self, start: &str, happens: &str) -> String {
+    fn written(&self, duration_s: f64, start: &str, happens: &str) -> String {
         let Self {
             mass_kg,
             transverse_kg_m2,
@@ -263,7 +272,7 @@ impl RotorCase {
             r#"
 title = "A rotor drawn at random"
 [run]
-duration_s = 0.6
+duration_s = {duration_s}
 sample_rate_hz = {rate_hz}
 policies = ["levitation", "supervisor"]
 rtol = 1e-7

@@ -29,7 +29,7 @@ pub(super) fn brings_back(
     (angle_rad, seed): (f64, u64),
 ) -> bool {
     let scene = plant.struck(blow, speed_m_s, angle_rad, seed);
-    run(&scene, kind).is_some_and(|run| run.recovered)
+    run(&scene, kind).is_ok_and(|run| run.recovered)
 }
 
 /// The last speed \[m/s\] that somebody comes back from, of a grid that grows by a factor from a first one, all before it being

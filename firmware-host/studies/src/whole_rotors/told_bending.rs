@@ -1,6 +1,6 @@
 //! What it is worth to tell the supervisor of a bending mode, and what it costs to tell it wrong.
 
-use super::compared::{COLUMNS, Ran, Run, Sum, run};
+use super::compared::{COLUMNS, HOLDS_S, Ran, Run, Sum, is_held, run};
 use super::plants::P5;
 use crate::campaign::{Block, Chapter, Claim, Extent, Progress, Report, StudyError, run_all};
 use firmware_bench::scene::diagnostic::SceneError;
@@ -13,9 +13,6 @@ const TO_HZ: f64 = 4000.0;
 const DAMPING_RATIO: f64 = 0.003;
 /// Speeds of a blow at the centre \[m/s\].
 const BLOWS_M_S: [f64; 6] = [0.2, 0.3, 0.4, 0.5, 0.6, 0.65];
-/// So long levitation alone has to hold a rotor for it to count \[s\]: some loops drive a mode so slowly that they recover first.
-const HOLDS_S: &str = "3.0";
-
 /// What is told, over what is.
 const TOLD: [Option<f64>; 8] = [
     None,
@@ -112,18 +109,16 @@ impl Case {
 
     /// Whether levitation alone recovers, and holds the rotor long after.
     fn is_held(&self) -> bool {
-        let text =
-            (self.text(None)).replacen("duration_s = 0.5", &format!("duration_s = {HOLDS_S}"), 1);
-        let scene = MachineScene::parse("P5 that bends", &text);
-        let ran = scene
-            .ok()
-            .and_then(|scene| run(&scene, PolicyKind::Levitation));
-        ran.is_some_and(|ran| ran.recovered)
+        let duration = format!("duration_s = {HOLDS_S}");
+        let text = self.text(None).replacen("duration_s = 0.5", &duration, 1);
+        is_held(MachineScene::parse("P5 that bends", &text))
     }
 
     /// Levitation alone, and the supervisor told each of [`TOLD`].
-    fn ran(&self) -> (Option<Run>, Vec<Option<Run>>) {
-        let of = |told: Option<f64>, kind: PolicyKind| run(&self.scene(told).ok()?, kind);
+    fn ran(&self) -> (Result<Run, String>, Vec<Result<Run, String>>) {
+        let of = |told: Option<f64>, kind: PolicyKind| {
+            run(&self.scene(told).map_err(|error| error.to_string())?, kind)
+        };
         let own = TOLD.map(|told| of(told, PolicyKind::Supervisor));
         (of(None, PolicyKind::Levitation), own.to_vec())
     }
@@ -164,9 +159,9 @@ pub fn study(extent: Extent, progress: &dyn Progress) -> Result<Report, StudyErr
     }
     let ran = run_all(&cases, progress, |case| {
         let (alone, own) = case.ran();
-        let pair = |own: Option<Run>| {
-            Some(Ran {
-                alone: alone?,
+        let pair = |own: Result<Run, String>| {
+            Ok(Ran {
+                alone: alone.clone()?,
                 own: own?,
             })
         };

@@ -7,6 +7,7 @@ use crate::machine::params::MAX_PLANES;
 use crate::machine::series::Step;
 use crate::machine::system::{Channel, MAX_HELD};
 use crate::mode::{Phase, Slide, Whirl};
+use crate::series::Scalar;
 
 /// Speeds of a plane that are known to be zero, or the only direction that they can take.
 #[derive(Debug, Clone, Copy, Default)]
@@ -46,6 +47,11 @@ impl AtZero {
         at_zero
     }
 }
+
+/// By how much a held speed may be off zero after a moment, which is rounding: share of the speeds of the surfaces, and of
+/// the speed that the normal force gives in that time.
+const MOVED: f64 = 1e-13;
+const PUSHED: f64 = 1e-9;
 
 const SLIDES: [Slide; 3] = [Slide::Rolling, Slide::Positive, Slide::Negative];
 const WHIRLS: [Whirl; 3] = [Whirl::Still, Whirl::Positive, Whirl::Negative];
@@ -121,7 +127,8 @@ impl Machine {
 
     /// Puts the plane that has changed, and every other that touches, into modes that are consistent just after this instant.
     /// Forces are judged a moment later, because at a touch they all start from zero. All speeds at zero are tried
-    /// together: held, positive, negative.
+    /// together: held, positive, negative; those of the plane that has changed first, so that others stay as they are where
+    /// that will do.
     pub(crate) fn settle(&mut self, changed: usize, at_zero: AtZero) {
         let planes = self.phases.len();
         self.trial.copy_from_slice(&self.phases);
@@ -151,8 +158,8 @@ impl Machine {
         for way in 0..ways {
             let mut rest = way;
             let mut fits = true;
-            for (p, choice) in choices.iter().enumerate().take(planes) {
-                let Some(choice) = choice else { continue };
+            for p in std::iter::once(changed).chain((0..planes).filter(|p| *p != changed)) {
+                let Some(choice) = &choices[p] else { continue };
                 let slide = choice.slides[rest % choice.slide_count];
                 rest /= choice.slide_count;
                 let whirl = choice.whirls[rest % choice.whirl_count];
@@ -177,7 +184,9 @@ impl Machine {
         }
     }
 
-    /// Whether held speeds need no more than their cones, and others at zero move as their mode says, a moment from now.
+    /// Whether held speeds stay at zero and need no more than their cones, and others at zero move as their mode says, a
+    /// moment from now. Friction cannot hold each of three speeds of a rigid rotor whose normals are parallel there: two of
+    /// them say what the third is.
     fn is_consistent(&mut self, choices: &[Option<Choices>]) -> bool {
         const ORDER: usize = 3;
         let step = Step {
@@ -198,12 +207,23 @@ impl Machine {
             };
             let (series, data) = (&self.stepper.series.planes[p], &self.system.planes[p]);
             let normal_n = series.force.at(1.0, ORDER);
+            let (whirl_m_s, slip_m_s) = (series.whirl_speed.0[0], series.slip.0[0]);
+            let surfaces_m_s = whirl_m_s.abs() + (slip_m_s - whirl_m_s).abs();
+            let pushed_m_s = self.system.moment_s * self.system.contact(p).mobility() * normal_n;
+            let still_m_s = MOVED * surfaces_m_s + PUSHED * pushed_m_s;
+            let stays = |speed: &Scalar| (speed.at(1.0, ORDER) - speed.0[0]).abs() <= still_m_s;
             let slides = match slide {
-                Slide::Rolling => series.sliding.at(1.0, ORDER).abs() <= data.sliding * normal_n,
+                Slide::Rolling => {
+                    series.sliding.at(1.0, ORDER).abs() <= data.sliding * normal_n
+                        && stays(&series.slip)
+                }
                 _ => choice.slide_count == 1 || slide.sign() * series.slip.at(1.0, ORDER) >= 0.0,
             };
             let whirls = match whirl {
-                Whirl::Still => series.rolling.at(1.0, ORDER).abs() <= data.rolling * normal_n,
+                Whirl::Still => {
+                    series.rolling.at(1.0, ORDER).abs() <= data.rolling * normal_n
+                        && stays(&series.whirl_speed)
+                }
                 _ => {
                     choice.whirl_count == 1
                         || whirl.sign() * series.whirl_speed.at(1.0, ORDER) >= 0.0

@@ -97,6 +97,34 @@ fn planes() {
     run("four planes out of line", &params, &struck(400.0), 0.5);
 }
 
+/// Three planes roll at once: two speeds that are held say what the third is wherever the contact normals are parallel, and
+/// there it goes through zero, which no friction can hold.
+#[test]
+fn three_planes_that_roll() {
+    let mut params = base();
+    params.rotor = rigid(0.15, 0.195);
+    params.spin = SpinParams::Held;
+    params.supports.clear();
+    params.planes = vec![plane(-0.2, 2.0), plane(0.08, 2.0), plane(-0.06, 1.0)];
+    for plane in &mut params.planes {
+        plane.radius_m = 0.03;
+    }
+    params.planes[2].contact.clearance_m = 0.6 * CLEARANCE_M;
+    let start = MachineStart {
+        centre_velocity_m_s: V2::new(0.5, 0.2),
+        tilt_rate_rad_s: V2::new(-1.0, 0.5),
+        spin_rad_s: 600.0,
+        ..MachineStart::default()
+    };
+    let rolling = run("a seal between two planes", &params, &start, 0.3);
+    assert!(
+        rolling
+            .meters()
+            .iter()
+            .all(|m| m.peak_backward_speed_m_s > 15.0)
+    );
+}
+
 #[test]
 fn shafts_and_supports() {
     let mut params = base();

@@ -2,7 +2,7 @@
 
 use super::tries;
 use crate::campaign::{Block, Chapter, Claim, Extent, Progress, run_all};
-use crate::whole_rotors::compared::{COLUMNS, Ran, Sum};
+use crate::whole_rotors::compared::{COLUMNS, Ran, Sum, Tried, told_of};
 use crate::whole_rotors::incidents::{Hardest, Incident};
 use crate::whole_rotors::loops::Loops;
 
@@ -12,7 +12,7 @@ struct Row {
     by: &'static str,
     incident: Incident,
     seed: u64,
-    ran: Option<Ran>,
+    ran: Tried,
 }
 
 /// All that has happened so far.
@@ -60,7 +60,8 @@ impl Happened {
             }
         }
         let ran = run_all(&cases, progress, |(_, plant, incident, of)| {
-            Ran::of(&incident.scene(plant, hardest, *of).ok()?)
+            let scene = incident.scene(plant, hardest, *of);
+            Ran::of(&scene.map_err(|error| error.to_string())?)
         });
         let sum = Sum::of(ran.iter());
         let rows = cases.into_iter().zip(ran);
@@ -92,12 +93,7 @@ impl Happened {
             of.cells(format!("{plant}, {by}"))
         });
         let named = self.rows.iter().filter_map(|row| {
-            let ran = row.ran.as_ref()?;
-            let what = match (ran.is_lost(), ran.is_hammered()) {
-                (true, _) => "lost",
-                (false, true) => "struck on and on",
-                _ => return None,
-            };
+            let what = told_of(&row.ran)?;
             let name = row.incident.name();
             Some(format!(
                 "{what}: {}, {}; {name}; seed {}",
