@@ -48,8 +48,11 @@ pub(crate) struct Tilting<S: Scalar> {
     pub(crate) unsettled: bool,
 }
 
-/// A turn beyond which a lead helps no more \[rad\].
-const MOST_TURN: f32 = 1.5;
+/// Farthest turn of the nutation, from a decision until its force acts, that a lead makes up for \[rad\].
+const MOST_TURN: f32 = 1.25;
+/// Most of a lead \[rad\]. It turns all of the tilt's velocity, precession with it, whose damping falls with the cosine of
+/// the lead as that of nutation does with the cosine of what the lead leaves: half of [`MOST_TURN`], and both are alike there.
+const MOST_LEAD: f32 = 0.6;
 /// Slower than this nutation is none \[1/t₀\]: within the time of an approach it does not turn.
 const LEAST_RATE: f32 = 0.25;
 
@@ -61,25 +64,30 @@ impl<S: Scalar> Beside<S> for Tilting<S> {
 }
 
 impl<S: Scalar> Tilting<S> {
-    /// By what w changes within a time.
+    /// By what w changes with an angle.
     #[inline]
-    fn turned(&self, time: S) -> Vec2<S> {
-        let most = S::from_f32(MOST_TURN);
-        let angle = (self.rate * time).within(most);
+    fn turned(&self, angle: S) -> Vec2<S> {
         self.velocity.rotated(Vec2::at_angle(angle)) - self.velocity
     }
 
     /// Speed gained in a tick.
     #[inline]
     pub(crate) fn gained(&self, tick: S) -> Vec2<S> {
-        self.known * tick + self.turned(tick)
+        self.known * tick + self.turned(self.rate * tick)
     }
 
-    /// The motion with the velocity that it has when a force that is decided now acts.
+    /// Whether a force that is decided now acts before nutation has turned too far.
+    #[inline]
+    pub(crate) fn is_in_time(&self, coeffs: &Coeffs<S>) -> bool {
+        (self.rate * coeffs.horizon).abs() <= S::from_f32(MOST_TURN)
+    }
+
+    /// The motion with the velocity that it has when a force that is decided now acts, as far as a lead goes.
     #[inline]
     pub(crate) fn ahead(&self, motion: &Motion<S>, coeffs: &Coeffs<S>) -> Motion<S> {
+        let lead = (self.rate * coeffs.horizon).within(S::from_f32(MOST_LEAD));
         Motion {
-            velocity: motion.velocity + self.turned(coeffs.horizon),
+            velocity: motion.velocity + self.turned(lead),
             // Here it is a load like any other.
             load_step: motion.load_step + self.known * coeffs.tick,
             ..*motion

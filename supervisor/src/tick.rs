@@ -127,7 +127,9 @@ impl<S: Scalar> State<S> {
             quiet,
             hands_back: (self.trust).tick((square, flies), (self.phase, rubs, sample.spin), coeffs),
             rubs_on: self.trust.rubs_on(),
-            trusted: quiet && self.trust.is_granted(),
+            trusted: quiet
+                && self.trust.is_granted()
+                && tilting.is_none_or(|tilting| tilting.is_in_time(coeffs)),
             unsettled: quiet && tilting.is_some_and(|tilting| tilting.unsettled),
         };
         if self.phase != Phase::Levitated || contact.unavoidable || contact.touching {

@@ -145,7 +145,7 @@ static void measure(const model *m, uint32_t sequence, amb_sample samples[2]) {
 
 /* A second after a blow of so many newton seconds. */
 static int run(const char *who, int supervised, double blow_n_s) {
-    static amb_rotor rotor; /* zero at start; eighteen kilobytes have no place on a stack */
+    static amb_rotor rotor; /* zero at start; sizeof(amb_rotor) has no place on a stack */
     model m;
     uint32_t tick, quiet = 0;
     amb_bearing bearings[2];

@@ -338,7 +338,10 @@ typedef struct amb_bearing {
 typedef struct amb_shaft {
     float mass_kg;                  /**< mass [kg], > 0 */
     float transverse_inertia_kg_m2; /**< transverse moment of inertia about the centre of mass [kg m^2], > 0 */
-    float polar_inertia_kg_m2;      /**< polar moment of inertia [kg m^2], 0 to twice the transverse one */
+    float polar_inertia_kg_m2;      /**< polar moment of inertia [kg m^2], 0 to twice the transverse one. Where
+                                         nutation, its share of the transverse one times the spin, turns by more than
+                                         1.25 rad in one and a half sample periods, delay and lag, the supervisor acts
+                                         on backward whirl alone */
     float retainer_m[2];            /**< retainer bearings [m] */
     float sensor_m[2];              /**< sensors [m] */
     float magnet_m[2];              /**< magnets [m] */

@@ -163,7 +163,7 @@ fn calls_need_little_stack() {
         ("self-test", 1368),
         ("rotor-init", 2932),
         ("rotor-reconfigure", 2260),
-        ("rotor-tick", 1296),
+        ("rotor-tick", 1304),
         ("archive-init", 128),
         ("archive-take", 232),
         ("archive-section", 4536),

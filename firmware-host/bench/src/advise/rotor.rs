@@ -9,8 +9,9 @@ use std::f64::consts::TAU;
 use std::fmt::Write;
 use supervisor::Config;
 
-/// A turn of the nutation by the time a force acts beyond which the supervisor's lead ends \[rad\].
-pub const MOST_TURN_RAD: f64 = 1.5;
+/// A turn of the nutation by the time a force acts beyond which the supervisor leaves the rotor to levitation, but for
+/// backward whirl \[rad\].
+pub const MOST_TURN_RAD: f64 = 1.25;
 
 /// Of a rotor with a supervisor; keys are stable.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -19,7 +20,7 @@ pub struct RotorAdvice {
     pub nutation_hz: f64,
     /// By how much that turns from a sample to its force, the later plane's \[rad\].
     pub nutation_turn_rad: f64,
-    /// The same at which the supervisor leads no farther, as a spin \[Hz\]; none of a rotor without polar inertia.
+    /// The spin at which that is [`MOST_TURN_RAD`] \[Hz\]; none of a rotor without polar inertia.
     pub spin_of_most_turn_hz: Option<f64>,
     /// Bending modes below half the control rate, in the order of their frequencies.
     pub modes: Vec<ModeAtRisk>,
@@ -124,7 +125,7 @@ impl RotorAdvice {
         if let Some(spin_hz) = self.spin_of_most_turn_hz {
             let _ = write!(
                 text,
-                "; {MOST_TURN_RAD} rad, beyond which no lead helps, at a spin of {} Hz",
+                "; {MOST_TURN_RAD} rad, beyond which it acts on backward whirl alone, at a spin of {} Hz",
                 figures(spin_hz)
             );
         }
