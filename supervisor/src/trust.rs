@@ -21,7 +21,8 @@ const QUIET_SQUARE: f32 = 0.1;
 /// A square of the speed that has fallen to this share of the lowest before is progress.
 const PROGRESS: f32 = 0.7;
 /// What a window adds to the debt of an engagement: one of bouncing on, one without a position, one that comes farther or
-/// rubs, one in which the rotor is held.
+/// rubs, one in which the rotor is held. One of a rotor in flight that comes no farther makes all of it: nothing but the
+/// supervisor moves it.
 const RESTLESS: u16 = 1024;
 const BLIND: u16 = 256;
 const MOVING: u16 = 32;
@@ -64,18 +65,23 @@ struct Stir {
     windows: u8,
     /// Of a plane of a rotor: since the supervisor acted no levitated window has passed in which they have not.
     unsettled: bool,
+    /// In this window the wall has.
+    touched: bool,
 }
 
 /// In one word, so that records keep their length.
 impl Words for Stir {
     fn put(&self, to: &mut dyn FnMut(u32)) {
-        to(u32::from(self.windows) | u32::from(self.unsettled) << 8);
+        to(u32::from(self.windows)
+            | u32::from(self.unsettled) << 8
+            | u32::from(self.touched) << 16);
     }
     fn take(from: &mut dyn Iterator<Item = u32>) -> Self {
-        let [windows, unsettled, ..] = u32::take(from).to_le_bytes();
+        let [windows, unsettled, touched, ..] = u32::take(from).to_le_bytes();
         Self {
             windows,
             unsettled: unsettled != 0,
+            touched: touched != 0,
         }
     }
 }
@@ -142,6 +148,7 @@ impl<S: Scalar> Trust<S> {
         if !flies || phase.is_engaged() {
             self.stir.windows = self.stir.windows.max(1);
         }
+        self.stir.touched |= !flies;
         match self.ticks_left.checked_sub(1) {
             Some(left) => {
                 self.ticks_left = left;
@@ -161,6 +168,7 @@ impl<S: Scalar> Trust<S> {
         self.ticks_left = coeffs.window_ticks;
         let peak = core::mem::replace(&mut self.peak, S::ZERO);
         let disturbed = core::mem::take(&mut self.stir.windows);
+        let touched = core::mem::take(&mut self.stir.touched);
         if rubs && phase == Phase::Levitated {
             let before = core::mem::replace(&mut self.before, spin);
             if (spin - before).abs() <= spin * S::from_f32(SAME_SPIN) {
@@ -193,6 +201,7 @@ impl<S: Scalar> Trust<S> {
             Phase::SensorFault { .. } => BLIND,
             _ if peak <= S::from_f32(QUIET_SQUARE) => HELD,
             _ if progress || rubs => MOVING,
+            _ if self.stir.unsettled && !touched => MOST_DEBT,
             _ => RESTLESS,
         };
         self.debt = self.debt.saturating_add(debt);

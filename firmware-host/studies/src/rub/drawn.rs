@@ -170,8 +170,14 @@ impl RubCase {
 
     /// Whether the levitation controller holds it free of the wall from the middle; `None` of a run that cannot be trusted.
     pub fn runs_free(&self) -> Option<bool> {
-        let run = self.run(PolicyKind::Levitation, false)?;
+        let run = self.left_alone(PolicyKind::Levitation)?;
         Some(run.free && !run.touched)
+    }
+
+    /// A run that begins in the middle at full spin, where all of its unbalance begins to pull at once; `None` where it cannot be
+    /// trusted.
+    pub fn left_alone(&self, kind: PolicyKind) -> Option<Run> {
+        self.run(kind, false)
     }
 
     /// A run in which it is driven on to the wall; `None` where it cannot be trusted.
