@@ -39,8 +39,10 @@ pub(crate) struct Tilting<S: Scalar> {
     pub(crate) known: Vec2<S>,
     /// w.
     pub(crate) velocity: Vec2<S>,
-    /// ν.
+    /// ν; 0 where it turns by more than a radian in a tick, of which samples show nothing.
     pub(crate) rate: S,
+    /// It does.
+    pub(crate) too_fast: bool,
     /// What the unbalance of the tilt is more than it seems to a plane: beside a principal axis that is inclined the axis
     /// goes round by all of its angle τ, but nutation turns that as well, so that what is left to pull is (1 − I_p/I_t)·τ.
     pub(crate) unbalance: Vec2<S>,
@@ -79,7 +81,7 @@ impl<S: Scalar> Tilting<S> {
     /// Whether a force that is decided now acts before nutation has turned too far.
     #[inline]
     pub(crate) fn is_in_time(&self, coeffs: &Coeffs<S>) -> bool {
-        (self.rate * coeffs.horizon).abs() <= S::from_f32(MOST_TURN)
+        !self.too_fast && (self.rate * coeffs.horizon).abs() <= S::from_f32(MOST_TURN)
     }
 
     /// The motion with the velocity that it has when a force that is decided now acts, as far as a lead goes.

@@ -78,6 +78,7 @@ impl Coupling {
         spin: f32,
     ) -> Tilting<f32> {
         let rate = self.nutation * spin;
+        let too_fast = rate.abs() > self.fastest;
         let tilt = |first: Vec2<f32>, second: Vec2<f32>| first * self.arm[0] + second * self.arm[1];
         // Where one end's velocity is not known nothing is known of the tilt.
         let known = first.velocity.zip(second.velocity);
@@ -87,11 +88,8 @@ impl Coupling {
             velocity: tilt(v1, v2),
             unbalance: tilt(first.unbalance, second.unbalance) * self.unseen,
             unsettled: first.unsettled || second.unsettled,
-            rate: if rate.abs() <= self.fastest {
-                rate
-            } else {
-                0.0
-            },
+            rate: if too_fast { 0.0 } else { rate },
+            too_fast,
         }
     }
 }

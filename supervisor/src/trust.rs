@@ -184,7 +184,7 @@ impl<S: Scalar> Trust<S> {
             self.lowest = S::from_f32(MOST_SQUARE);
             if phase == Phase::Levitated && disturbed != 0 && self.stir.unsettled {
                 // Engagements that are over before a window is come to an end as well.
-                self.debt = (self.debt + MOVING).min(MOST_DEBT);
+                self.debt = self.debt.saturating_add(MOVING).min(MOST_DEBT);
             } else if phase == Phase::Levitated {
                 self.debt = self.debt.saturating_sub(FORGIVEN);
                 if self.debt == 0 {

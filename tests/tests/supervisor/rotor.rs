@@ -74,6 +74,40 @@ fn an_engagement_is_told_to_the_other_end() {
     }
 }
 
+/// Where nutation turns too far until a force acts, an approach and a touch are left to levitation, and backward whirl is not.
+#[test]
+fn beyond_its_turn_only_backward_whirl_is_acted_on() {
+    let config = config();
+    // A sample's age, the delay, and the lag.
+    let late_s = (0.5 + config.delay_samples) * config.sample_period_s + config.amplifier_lag_s;
+    let wall = 20 + OUT as usize;
+    let engaged_at_turn = |turn_rad: f32| {
+        let mut rotor = rotor(&config);
+        let commands: Vec<RotorCommand> = (0..200)
+            .map(|i| {
+                let noise = 1e-6 * (i % 3) as f32;
+                let one = Sample {
+                    spin_rad_s: turn_rad / late_s / 0.8,
+                    ..sample(i, led(i, 20).map(|x| x + noise))
+                };
+                rotor.tick(&[one; 2])
+            })
+            .collect();
+        engaged_at(&commands, 0).unwrap()
+    };
+    for turn_rad in [0.1, 0.6, 1.2] {
+        assert!(engaged_at_turn(turn_rad) < wall, "{turn_rad}");
+    }
+    // The last by more than a radian a tick.
+    for turn_rad in [1.3, 2.0, 8.0] {
+        let engaged = engaged_at_turn(turn_rad);
+        assert!(
+            engaged > wall + 1 && engaged < wall + ON_WALL as usize,
+            "{turn_rad}: {engaged}"
+        );
+    }
+}
+
 /// Both planes record the same ticks of one event, whichever engages, and freeze at once when it is over for both; then both
 /// are ready for the next one.
 /// Requirement: SR-30

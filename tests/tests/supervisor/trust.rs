@@ -117,6 +117,36 @@ fn bouncing_on_is_given_up_and_pauses_double() {
     }
 }
 
+/// Of a whole rotor one that swings on in flight without losing speed is given up after its second window: there is no wall
+/// that gives the speed, so it is the supervisor, or what it does not know. In one plane it has four.
+#[test]
+fn a_rotor_that_swings_on_in_flight_is_given_up_at_once() {
+    let swinging = |i: u32| {
+        let angle = 1.6 * i.saturating_sub(3 * WINDOW_TICKS) as f32 / UNIT_TICKS;
+        [0.75 * C_M * angle.sin(), 1e-7 * (i % 7) as f32]
+    };
+    let longest = |modes: &mut dyn FnMut(u32) -> Mode| {
+        let (mut longest, mut running, mut given_up) = (0, 0, 0);
+        for i in 0..40 * WINDOW_TICKS {
+            let mode = modes(i);
+            running = if mode.is_engaged() { running + 1 } else { 0 };
+            longest = longest.max(running);
+            given_up += u32::from(mode == Mode::HandedBack);
+        }
+        assert!(given_up > 0);
+        longest
+    };
+    let mut plane = Bench::new(&config());
+    let alone = longest(&mut |i| plane.tick(swinging(i)).mode);
+    let mut rotor = Rotor::<64>::new(&shaft(&config()), &[config(); 2]).unwrap();
+    let of_rotor = longest(&mut |i| rotor.tick(&[sample(i, swinging(i)); 2]).planes[0].mode);
+    assert!(
+        of_rotor > WINDOW_TICKS && of_rotor <= 2 * WINDOW_TICKS,
+        "{of_rotor}"
+    );
+    assert!(alone > 3 * WINDOW_TICKS, "{alone}");
+}
+
 /// A single sample that is off moves nothing, in either direction and of any size; what the second shows as well is so.
 /// Requirement: SR-16
 #[test]
