@@ -80,17 +80,18 @@ impl Ran {
     /// # Errors
     /// Why a run cannot be trusted.
     pub fn new(rotor: &RotorCase, event: Event) -> Result<Self, String> {
-        Self::of(&rotor.scene(event).map_err(|error| error.to_string())?)
+        Self::of(rotor.scene(event))
     }
 
     /// What comes of a scene.
     ///
     /// # Errors
-    /// Why a run cannot be trusted.
-    pub(super) fn of(scene: &MachineScene) -> Tried {
+    /// Why there is none, or why a run cannot be trusted.
+    pub(super) fn of(scene: Result<MachineScene, SceneError>) -> Tried {
+        let scene = scene.map_err(|error| error.to_string())?;
         Ok(Self {
-            alone: run(scene, PolicyKind::Levitation)?,
-            own: run(scene, PolicyKind::Supervisor)?,
+            alone: run(&scene, PolicyKind::Levitation)?,
+            own: run(&scene, PolicyKind::Supervisor)?,
         })
     }
 

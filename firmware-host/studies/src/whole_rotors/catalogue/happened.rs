@@ -60,8 +60,7 @@ impl Happened {
             }
         }
         let ran = run_all(&cases, progress, |(_, plant, incident, of)| {
-            let scene = incident.scene(plant, hardest, *of);
-            Ran::of(&scene.map_err(|error| error.to_string())?)
+            Ran::of(incident.scene(plant, hardest, *of))
         });
         let sum = Sum::of(ran.iter());
         let rows = cases.into_iter().zip(ran);
