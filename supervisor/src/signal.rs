@@ -46,6 +46,12 @@ bitflags::bitflags! {
         /// Compute and record, but let the levitation command through, within the limits: to watch the supervisor on a
         /// machine before it may act. A drive that disobeys is left to the controller, too.
         const SHADOW = 1 << 6;
+        /// The rotor is meant to be set down on its retainer bearing, or lies there and is to be lifted: the supervisor leaves it to
+        /// the levitation controller and acts on backward whirl alone.
+        const SET_DOWN = 1 << 7;
+        /// The rotor levitated until now, and its readings moved as they usually do: what they show is acted on from the first
+        /// sample on. Without it the supervisor looks for itself first, for twelve √(m·c/F), and until then acts on whirl alone.
+        const LEVITATED_BEFORE = 1 << 8;
     }
 
     /// What binds the command of this tick. Eight bits, so that the flight record keeps them all.

@@ -233,6 +233,8 @@ typedef int32_t amb_code;
 #define AMB_STATUS_AXIS_Y_LOST 0x10u  /**< the drive cannot act along y */
 #define AMB_STATUS_LATE 0x20u         /**< the last command came too late for its tick: the actuator kept the one before */
 #define AMB_STATUS_SHADOW 0x40u       /**< compute and record, but let the levitation command through, within the limits */
+#define AMB_STATUS_SET_DOWN 0x80u     /**< the rotor is to be set down, or lifted: the supervisor acts on backward whirl alone */
+#define AMB_STATUS_LEVITATED_BEFORE 0x100u /**< the rotor levitated until now: readings are acted on from the first sample on */
 /** @} */
 
 /** @name Modes @{ */
