@@ -52,6 +52,11 @@ impl<S: Scalar> Classifier<S> {
         self.rubbing
     }
 
+    /// Whether the rotor touches so slowly that it all but rests there.
+    pub(crate) fn is_slow(&self) -> bool {
+        self.ticks_slow > 0
+    }
+
     /// The motion is not known any more: a speed that is not known is no rest.
     pub(crate) fn forget(&mut self) {
         self.ticks_slow = 0;

@@ -28,6 +28,10 @@ pub(crate) struct Judged {
     pub(crate) rubs_on: bool,
     /// The bearing has to be handed back, for so many ticks.
     pub(crate) hands_back: Option<u32>,
+    /// Levitation keeps the rotor, also on the wall, and the supervisor acts on backward whirl alone.
+    pub(crate) whirl_only: bool,
+    /// What comes, or is there, is so slow that it can be left to a levitation controller that has force to spare.
+    pub(crate) harmless: bool,
 }
 
 /// A mode with the memory that belongs to it.
@@ -193,11 +197,20 @@ impl<S: Scalar> Phase<S> {
             Class::ForwardRub { .. } => judged.rubs_on,
             _ => false,
         };
+        if judged.whirl_only {
+            return self.follow_whirl_alone(contact, judged, class, coeffs);
+        }
         let evident = contact.touching && (judged.unsettled || (judged.quiet && goes_round));
-        if self == Self::Levitated && !judged.trusted && !evident {
+        if self == Self::Levitated && !evident && (judged.harmless || !judged.trusted) {
             return self;
         }
         if contact.touching {
+            if let Self::Handover { weight } = self
+                && judged.harmless
+                && !evident
+            {
+                return Self::blended(weight, coeffs);
+            }
             return match class {
                 Class::Bounce | Class::ForwardRub { .. } => new_bounce,
                 Class::BackwardWhirl => Self::BackwardWhirl,
@@ -223,15 +236,39 @@ impl<S: Scalar> Phase<S> {
             Self::SensorFault { bouncing: false } => Self::Approach { calm_ticks: 0 },
             Self::BackwardWhirl | Self::Pinned { .. } | Self::SensorFault { .. } => new_bounce,
             Self::HandedBack { .. } => self,
-            Self::Handover { .. } if contact.unavoidable => Self::Approach { calm_ticks: 0 },
-            Self::Handover { weight } => {
-                let weight = weight + coeffs.blend_step;
-                if weight < S::ONE {
-                    Self::Handover { weight }
-                } else {
-                    Self::Levitated
-                }
+            Self::Handover { .. } if contact.unavoidable && !judged.harmless => {
+                Self::Approach { calm_ticks: 0 }
             }
+            Self::Handover { weight } => Self::blended(weight, coeffs),
+        }
+    }
+
+    /// The same where levitation keeps the rotor: whatever is no backward whirl on the wall is blended over to it.
+    fn follow_whirl_alone(
+        self,
+        contact: &ContactEstimate<S>,
+        judged: Judged,
+        class: Class,
+        coeffs: &Coeffs<S>,
+    ) -> Self {
+        match self {
+            Self::BackwardWhirl if class == Class::BackwardWhirl => self,
+            _ if class == Class::BackwardWhirl && contact.touching && judged.quiet => {
+                Self::BackwardWhirl
+            }
+            Self::Levitated | Self::HandedBack { .. } => self,
+            Self::Handover { weight } => Self::blended(weight, coeffs),
+            _ => Self::Handover { weight: S::ZERO },
+        }
+    }
+
+    /// A tick of hand-over.
+    fn blended(weight: S, coeffs: &Coeffs<S>) -> Self {
+        let weight = weight + coeffs.blend_step;
+        if weight < S::ONE {
+            Self::Handover { weight }
+        } else {
+            Self::Levitated
         }
     }
 }

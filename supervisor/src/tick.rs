@@ -28,6 +28,11 @@ use crate::{handover, limit};
 /// rotors come into the middle one swing of their shaft later.
 const CALM_SHARE: f32 = 0.3;
 
+/// A square of the speed below which neither an approach nor what an impact leaves is dangerous, and the share of the cap
+/// below which the levitation controller has force to spare: it goes there slowly because it wants to.
+const SLOW_SQUARE: f32 = 0.05;
+const SPARES_BELOW: f32 = 0.75;
+
 /// All that a core remembers from tick to tick, but for what is recorded.
 #[derive(Debug, Clone, Copy, Default)]
 #[repr(C)]
@@ -122,8 +127,11 @@ impl<S: Scalar> State<S> {
         // Of the axis: an orbit is no approach, and no sign of the model either.
         let square = self.observer.velocity().length_squared();
         let flies = wall == Contact::None;
+        if sample.status.contains(Status::LEVITATED_BEFORE) {
+            self.trust.levitated_before();
+        }
         let quiet = self.guard.innovation.is_quiet(coeffs);
-        let judged = Judged {
+        let mut judged = Judged {
             quiet,
             hands_back: (self.trust).tick((square, flies), (self.phase, rubs, sample.spin), coeffs),
             rubs_on: self.trust.rubs_on(),
@@ -131,9 +139,20 @@ impl<S: Scalar> State<S> {
                 && self.trust.is_granted()
                 && tilting.is_none_or(|tilting| tilting.is_in_time(coeffs)),
             unsettled: quiet && tilting.is_some_and(|tilting| tilting.unsettled),
+            whirl_only: sample.status.contains(Status::SET_DOWN),
+            harmless: false,
         };
         if self.phase != Phase::Levitated || contact.unavoidable || contact.touching {
             speed = Speed::new(motion.velocity);
+            let asks = -Vec2::from_array(sample.levitation).dot(contact.normal);
+            // What is no number is no force to spare.
+            let spares = asks < envelope.cap * S::from_f32(SPARES_BELOW);
+            let slow = if contact.touching {
+                self.classifier.is_slow()
+            } else {
+                speed.square < S::from_f32(SLOW_SQUARE)
+            };
+            judged.harmless = slow && spares;
             if !contact.touching {
                 ahead = Impact::ahead(&motion, contact.radius, &speed);
                 let beyond = (speed.value() - margin).max(S::ZERO);

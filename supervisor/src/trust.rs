@@ -67,6 +67,20 @@ struct Stir {
     unsettled: bool,
     /// In this window the wall has.
     touched: bool,
+    /// What has been seen of how the reading moves by itself.
+    proof: Proof,
+}
+
+/// Whether the reading has been seen in peace for a window: before that nobody knows what is usual.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[repr(u8)]
+enum Proof {
+    /// There was no sample.
+    #[default]
+    Nothing = 0,
+    /// The first window is not over, or there was no peace in it.
+    Begun = 1,
+    Seen = 2,
 }
 
 /// In one word, so that records keep their length.
@@ -74,14 +88,20 @@ impl Words for Stir {
     fn put(&self, to: &mut dyn FnMut(u32)) {
         to(u32::from(self.windows)
             | u32::from(self.unsettled) << 8
-            | u32::from(self.touched) << 16);
+            | u32::from(self.touched) << 16
+            | (self.proof as u32) << 24);
     }
     fn take(from: &mut dyn Iterator<Item = u32>) -> Self {
-        let [windows, unsettled, touched, ..] = u32::take(from).to_le_bytes();
+        let [windows, unsettled, touched, proof] = u32::take(from).to_le_bytes();
         Self {
             windows,
             unsettled: unsettled != 0,
             touched: touched != 0,
+            proof: match proof {
+                0 => Proof::Nothing,
+                1 => Proof::Begun,
+                _ => Proof::Seen,
+            },
         }
     }
 }
@@ -90,8 +110,9 @@ impl<S: Scalar> Default for Trust<S> {
     fn default() -> Self {
         Self {
             peak: S::ZERO,
-            before: S::ZERO,
-            margin: S::ZERO,
+            // What has not been seen is not trusted.
+            before: S::from_f32(UNSEEN),
+            margin: S::from_f32(UNSEEN),
             lowest: S::from_f32(MOST_SQUARE),
             ticks_left: 0,
             stir: Stir::default(),
@@ -106,6 +127,9 @@ impl<S: Scalar> Default for Trust<S> {
 /// speeds of a run-up it comes and goes.
 const RUBS_ON: u8 = 3;
 const SAME_SPIN: f32 = 0.003;
+
+/// Usual speed while nothing has been seen: far beyond what is trusted \[lift-off speeds\].
+const UNSEEN: f32 = 4.0;
 
 /// More than any square of a speed is.
 const MOST_SQUARE: f32 = 500.0;
@@ -127,6 +151,15 @@ impl<S: Scalar> Trust<S> {
     #[inline]
     pub(crate) fn is_unsettled(&self) -> bool {
         self.stir.unsettled
+    }
+
+    /// The firmware knows that the rotor levitated until now, its reading moving as it usually does.
+    #[inline]
+    pub(crate) fn levitated_before(&mut self) {
+        if self.stir.proof != Proof::Seen {
+            self.stir.proof = Proof::Seen;
+            (self.before, self.margin) = (S::ZERO, S::ZERO);
+        }
     }
 
     /// The supervisor acts on a rotor.
@@ -167,6 +200,11 @@ impl<S: Scalar> Trust<S> {
     ) -> Option<u32> {
         self.ticks_left = coeffs.window_ticks;
         let peak = core::mem::replace(&mut self.peak, S::ZERO);
+        if self.stir.proof == Proof::Nothing {
+            // With the first sample the first window begins.
+            self.stir.proof = Proof::Begun;
+            return None;
+        }
         let disturbed = core::mem::take(&mut self.stir.windows);
         let touched = core::mem::take(&mut self.stir.touched);
         if rubs && phase == Phase::Levitated {
@@ -179,6 +217,7 @@ impl<S: Scalar> Trust<S> {
             // What the wall or the supervisor did is not usual.
             if disturbed == 0 {
                 self.stir.unsettled = false;
+                self.stir.proof = Proof::Seen;
                 self.learn(peak.sqrt());
             }
             self.lowest = S::from_f32(MOST_SQUARE);
