@@ -113,9 +113,11 @@ impl<S: Scalar> ActuatorMonitor<S> {
         ] {
             let nearer = (due - before).abs() - (due - now).abs();
             let doubt = doubt.max(modelled.abs() * S::from_f32(WEAK));
+            // What gives too little takes nothing away, and may be on its way: a drive without power shows what the firmware adds.
+            let against = now * due < S::ZERO && now.abs() > S::from_f32(DOUBT);
             *ticks = if *ticks < 0 {
                 *ticks + 1
-            } else if deviation.abs() <= doubt || nearer > progress {
+            } else if !against || deviation.abs() <= doubt || nearer > progress {
                 0
             } else if *ticks + 1 < most {
                 *ticks + 1

@@ -40,6 +40,8 @@ pub(crate) enum Contact {
 
 /// From this radius on the wall may be met in the next tick, also one that is out of round or off the centre.
 const WALL_IN_REACH: f32 = 0.8;
+/// Samples for which a wrong reading may be believed: near the wall anything may happen.
+const BELIEVED: u8 = 2;
 /// A load of so many caps is no load but a missed contact.
 const MOST_LOAD: f32 = 4.0;
 /// Farthest and fastest motion, along each axis: what fixed point can square. Above a friction of 0.005 the cap arrests
@@ -220,6 +222,21 @@ impl<S: Scalar> Observer<S> {
     #[inline]
     fn command(&self, number: u8) -> Vec2<S> {
         (self.commands.get(slot(number)).copied()).unwrap_or_default()
+    }
+
+    /// The command from before a reading went wrong, which may have been believed for some samples; nothing outwards of it, for a
+    /// force that is held pushes the rotor out to the wall.
+    pub(crate) fn sound_force(&self) -> Vec2<S> {
+        let force = self.command(self.newest.wrapping_sub(BELIEVED));
+        let inward = |force: S, position: S| {
+            if force * position > S::ZERO {
+                S::ZERO
+            } else {
+                force
+            }
+        };
+        let position = self.motion.position;
+        Vec2::new(inward(force.x, position.x), inward(force.y, position.y))
     }
 
     /// Where the next sample is expected.

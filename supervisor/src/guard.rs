@@ -24,6 +24,8 @@ const STUCK: u8 = 3;
 /// The same where only one coordinate stands still: a converter whose step is the noise repeats a reading of a moving rotor by
 /// chance, sometimes twice or thrice.
 const ONE_STUCK: u8 = 7;
+/// The same where the rotor must have gone far meanwhile.
+const FAR_STUCK: u8 = 2;
 /// Longest applied force that is believed \[caps\].
 const MOST_APPLIED: f32 = 2.0;
 
@@ -213,25 +215,11 @@ impl<S: Scalar> Guard<S> {
         } else {
             velocity
         };
-        let refusal = if repeated {
-            RejectReason::Dropout
+        let (refusal, bad) = if repeated {
+            (RejectReason::Dropout, SampleFlags::BOTH_BAD)
         } else {
-            match self.refusal(position, trusted, coeffs) {
-                refusal @ (RejectReason::NotFinite | RejectReason::Range) => refusal,
-                refusal => match expected.off(position) {
-                    Some(off) if gap == 0 && self.innovation.doubts(off, coeffs) => {
-                        RejectReason::Doubted
-                    }
-                    _ => refusal,
-                },
-            }
-        };
-        let bad = match refusal {
-            RejectReason::None => SampleFlags::empty(),
-            RejectReason::NotFinite | RejectReason::Range => {
-                bad_coordinates(position, coeffs.position_limit)
-            }
-            _ => SampleFlags::BOTH_BAD,
+            let expected = expected.off(position).filter(|_| gap == 0);
+            self.refusal(position, trusted, expected, coeffs)
         };
         if !self.faulty {
             events |= self.count(refusal, position, coeffs);
@@ -313,32 +301,55 @@ impl<S: Scalar> Guard<S> {
         (jumps, missed)
     }
 
-    /// What is wrong with a new sample.
+    /// What is wrong with a new sample, and with which coordinates. `off`: how far it is from where a rotor in flight is.
     fn refusal(
         &mut self,
         position: Vec2<S>,
         velocity: Vec2<S>,
+        off: Option<Vec2<S>>,
         coeffs: &Coeffs<S>,
-    ) -> RejectReason {
+    ) -> (RejectReason, SampleFlags) {
         // What is no number exceeds everything.
         if position.exceeds(coeffs.position_limit) {
+            let bad = bad_coordinates(position, coeffs.position_limit);
             return if position.is_finite() {
-                RejectReason::Range
+                (RejectReason::Range, bad)
             } else {
-                RejectReason::NotFinite
+                (RejectReason::NotFinite, bad)
             };
         }
-        let (stuck, both) = (self.stuck_detector).watch(position, velocity, coeffs);
-        self.stuck = stuck >= if both >= STUCK { STUCK } else { ONE_STUCK };
+        let still = (self.stuck_detector).watch(position, velocity, coeffs);
+        let enough = if still.far {
+            FAR_STUCK
+        } else if still.both >= STUCK {
+            STUCK
+        } else {
+            ONE_STUCK
+        };
+        self.stuck = still.samples >= enough;
+        if let Some(off) = off {
+            let doubted = self.innovation.doubted();
+            if self.innovation.doubts(off, coeffs) {
+                return (RejectReason::Doubted, SampleFlags::BOTH_BAD);
+            }
+            // The one after those that were doubted shows that they were right, but for what has not moved since.
+            if doubted > 0 && still.samples == 0 {
+                let bad = self.stuck_detector.jumped(off, doubted);
+                if !bad.is_empty() {
+                    self.stuck = true;
+                    return (RejectReason::Stuck, bad);
+                }
+            }
+        }
         let known = self.age != NEVER;
         let way = way_in(u32::from(self.age), coeffs) + self.innovation.untold(coeffs);
         if known && (position - self.last_good).exceeds(way) {
-            return RejectReason::Slew;
+            return (RejectReason::Slew, SampleFlags::BOTH_BAD);
         }
-        if stuck > 0 {
-            return RejectReason::Stuck;
+        if still.samples > 0 {
+            return (RejectReason::Stuck, self.stuck_detector.stuck());
         }
-        RejectReason::None
+        (RejectReason::None, SampleFlags::empty())
     }
 
     /// After a change of the unit of length.

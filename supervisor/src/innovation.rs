@@ -74,6 +74,11 @@ impl<S: Scalar> Innovation<S> {
             .clamp(coeffs.told_noise, S::from_f32(MOST_LEVEL));
     }
 
+    /// Samples in a row up to the last one that were doubted.
+    pub(crate) fn doubted(&self) -> u8 {
+        self.doubted
+    }
+
     /// Whether one that does not agree is refused.
     pub(crate) fn doubts(&mut self, off: Vec2<S>, coeffs: &Coeffs<S>) -> bool {
         let fits = self.fits(off, coeffs);

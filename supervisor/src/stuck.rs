@@ -33,31 +33,69 @@ pub(crate) struct StuckDetector<S> {
 
 words_of_fields!(StuckDetector<S> { at, step });
 
+/// A way that no converter hides \[clearances\].
+const FAR: f32 = 0.1;
+
 /// A change that is longer is one of the rotor \[clearances\].
 const COARSEST: f32 = 0.03;
 
+/// What a sample says of coordinates that stand still.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Standstill {
+    /// For how many samples in a row one has, for more than the estimate can be wrong; holds until it changes.
+    pub(crate) samples: u8,
+    /// For how many neither has changed.
+    pub(crate) both: u8,
+    /// The rotor must have gone too far meanwhile for a coarse converter to hide it.
+    pub(crate) far: bool,
+}
+
 impl<S: Scalar> StuckDetector<S> {
-    /// For how many samples in a row a coordinate has stood still for more than the estimate can be wrong, which holds until
-    /// it changes; and for how many neither has changed.
+    /// Looks at a sample, with the velocity that the rotor is known to have.
     pub(crate) fn watch(
         &mut self,
         position: Vec2<S>,
         velocity: Vec2<S>,
         coeffs: &Coeffs<S>,
-    ) -> (u8, u8) {
+    ) -> Standstill {
         let [x, y] = &mut self.at;
         for (coordinate, now) in [(&*x, position.x), (&*y, position.y)] {
             self.step = coordinate.coarseness(now, self.step);
         }
         if x.changes(position.x) && y.changes(position.y) {
             self.moved_to(position);
-            return (0, 0);
+            return Standstill::default();
         }
         let twice = (self.step + self.step) * coeffs.per_tick;
         let most = coeffs.sensor_speeds.max(twice);
         let samples =
             (x.watch(position.x, velocity.x, most)).max(y.watch(position.y, velocity.y, most));
-        (samples, x.unchanged.min(y.unchanged))
+        Standstill {
+            samples,
+            both: x.unchanged.min(y.unchanged),
+            far: x.is_far(coeffs.tick) || y.is_far(coeffs.tick),
+        }
+    }
+
+    /// Coordinates that have stood still for more than the estimate can be wrong.
+    pub(crate) fn stuck(&self) -> SampleFlags {
+        let [x, y] = &self.at;
+        let mut flags = SampleFlags::empty();
+        flags.set(SampleFlags::X_BAD, x.stuck > 0);
+        flags.set(SampleFlags::Y_BAD, y.stuck > 0);
+        flags
+    }
+
+    /// Coordinates that are far off and have not changed for so many samples, and count as stuck from here on: what jumps and
+    /// then stands still is no rotor.
+    pub(crate) fn jumped(&mut self, off: Vec2<S>, samples: u8) -> SampleFlags {
+        let [x, y] = &mut self.at;
+        for (coordinate, off) in [(x, off.x), (y, off.y)] {
+            if off.abs() > S::from_f32(FAR) && coordinate.unchanged >= samples {
+                coordinate.stuck = coordinate.stuck.max(1);
+            }
+        }
+        self.stuck()
     }
 
     /// After samples that nobody showed it, each of which changed in both coordinates.
@@ -121,6 +159,11 @@ impl<S: Scalar> Coordinate<S> {
         }
     }
 
+    /// `way` is a sum of speeds over ticks.
+    fn is_far(&self, tick: S) -> bool {
+        self.stuck > 0 && (self.way * tick).abs() > S::from_f32(FAR)
+    }
+
     fn changes(&self, now: S) -> bool {
         !self.seen || now != self.last
     }
@@ -131,10 +174,8 @@ impl<S: Scalar> Coordinate<S> {
             return 0;
         }
         self.unchanged = self.unchanged.saturating_add(1);
-        if self.stuck == 0 {
-            self.way = self.way + step;
-        }
-        if self.way > most || self.way < -most {
+        self.way = self.way + step;
+        if self.stuck > 0 || self.way > most || self.way < -most {
             self.stuck = self.stuck.saturating_add(1);
         }
         self.stuck

@@ -95,10 +95,11 @@ impl<S: Scalar> State<S> {
         let assessment = reading.assessment;
         let flags = assessment.flags;
         let spin = (reading.spin, sample.spin);
+        let mut sound = None;
         if flags.intersects(SampleFlags::UNUSUAL) {
             // A copy, so that the usual one stays in registers.
             let unusual = reading;
-            self.catch_up(&unusual, spin, coeffs);
+            sound = self.catch_up(&unusual, spin, coeffs);
         }
         let (position, actuator) = (reading.position(), reading.actuator());
         let touch = self.detector.sample(position, coeffs);
@@ -242,7 +243,8 @@ impl<S: Scalar> State<S> {
             let blended = match phase {
                 Phase::SensorFault { bouncing } => {
                     own_limits = levitation_limits;
-                    handover::faded(bouncing, (last, levitation), flags, envelope, coeffs)
+                    let from = sound.unwrap_or(last);
+                    handover::faded(bouncing, (from, levitation), flags, envelope, coeffs)
                 }
                 Phase::Handover { weight } => allocated * (S::ONE - weight) + levitation * weight,
                 _ => allocated,
@@ -298,11 +300,19 @@ impl<S: Scalar> State<S> {
     }
 
     /// What a tick has to make up for: commands that came too late, ticks that were missed, an estimate that
-    /// cannot go on.
+    /// cannot go on. Where a fault of the sensor begins: the force that fades.
     #[cold]
-    fn catch_up(&mut self, reading: &Reading<S>, spin: (Spin, S), coeffs: &Coeffs<S>) {
+    fn catch_up(
+        &mut self,
+        reading: &Reading<S>,
+        spin: (Spin, S),
+        coeffs: &Coeffs<S>,
+    ) -> Option<Vec2<S>> {
         let assessment = reading.assessment;
         let flags = assessment.flags;
+        let begins = flags.contains(SampleFlags::FAULTY)
+            && !matches!(self.phase, Phase::SensorFault { .. });
+        let sound = begins.then(|| self.observer.sound_force());
         if flags.contains(SampleFlags::LATE) {
             self.observer.late();
         }
@@ -321,6 +331,7 @@ impl<S: Scalar> State<S> {
             self.observer.forget();
             self.classifier.forget();
         }
+        sound
     }
 
     /// After a change of units and coefficients. What a speed and the severity index are multiplied by.
