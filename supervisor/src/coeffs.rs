@@ -10,11 +10,14 @@ use crate::config::{Config, NotRepresentable};
 use crate::math::{exp_neg, max, min, sqrt};
 use crate::scalar::{Accumulator, Scalar};
 use crate::signal::{Command, CoreCommand, CoreSample, Sample};
+use crate::vec2::Vec2;
 
 /// Smallest share of the lift-off speed from which the damping law spends the whole cap.
 const FULL_FORCE_FROM: f32 = 0.4;
 /// Most speed that the force of a contact may still give after it \[lift-off speeds\].
 const AFTER_LIFT_OFF: f32 = 0.45;
+/// Turn of the swing on the wall until a force has come, beyond which an impact is half over by then \[rad\].
+const MOST_CONTACT_TURN: f32 = 1.4;
 /// Largest share of the cap that the restoring law has at the wall.
 pub(crate) const NEARLY_ALL: f32 = 0.95;
 
@@ -139,6 +142,9 @@ pub(crate) struct Coeffs<S: Scalar> {
     /// Backward speed that all impacts to come will add, per normal speed of the next one:
     /// μ(1 + e)(1 + e + e² + …) = μ(1 + e)/(1 − e).
     pub(crate) bounce_gain: S,
+    /// By how much the rotor swings on a wall that gives way until a force has come, as cosine and sine, and how fast \[1/t₀\];
+    /// nothing where an impact is half over by then.
+    pub(crate) contact_ahead: Option<[S; 3]>,
     /// Observer gains (position by position, velocity and load step by difference quotient) in flight.
     pub(crate) flight_gains: [S; 3],
     /// Half of how far its load is behind \[ticks\]: three poles ρ with ρ/(1 − ρ) each, and the tick itself.
@@ -346,7 +352,14 @@ impl<S: Scalar> Coeffs<S> {
             let _: S = taken.of("continuous force", 1.0 / (64.0 * FALL * square));
         }
         let mut s = |name, x| taken.of::<S>(name, x);
+        let contact_rate = sqrt(config.contact_stiffness_n_m * c / (config.magnet_plane_ratio * f));
+        let turn = contact_rate * horizon;
+        let contact_ahead = (turn < MOST_CONTACT_TURN).then(|| {
+            let Vec2 { x, y } = Vec2::<f32>::at_angle(turn);
+            [x, y, contact_rate].map(|x| s("contact stiffness", x))
+        });
         let coeffs = Self {
+            contact_ahead,
             scaling,
             tick: s("tick", h),
             per_tick: s("ticks per unit of time", 1.0 / h),

@@ -180,14 +180,19 @@ impl<S: Scalar> View<'_, S> {
     }
 
     /// In contact: brake along the wall, aimed at where the rotor will be when the force has come. `driven`: friction
-    /// drives all the time, and an inward part takes away from it what it costs along the wall; in an impact, which
-    /// is over when that part has come, it would only shorten the chord to the next one.
+    /// drives all the time, and an inward part takes away from it what it costs along the wall; in an impact on a hard wall, which
+    /// is over when that part has come, it would only shorten the chord to the next one, and on a soft one it is worth
+    /// [`Self::inward_worth`].
     #[inline]
     fn in_contact(&self, driven: bool) -> ForceDemand<S> {
         let coeffs = self.coeffs;
         let n = self.normal;
         let sense = self.spin.sense_of_backward(self.tangential_speed);
-        let outward = self.radial_speed.max(S::ZERO);
+        let (worth, outward) = if driven {
+            (coeffs.friction, self.radial_speed.max(S::ZERO))
+        } else {
+            self.inward_worth()
+        };
         let backward = self.tangential_speed * sense;
         let sum = sum_of_impacts(backward, outward, self.bounce_gain());
         let mut strength = sum * coeffs.damper;
@@ -200,10 +205,13 @@ impl<S: Scalar> View<'_, S> {
         let strength = strength.clamp(S::ZERO, S::ONE);
         let braking = if strength > S::ZERO {
             let rate = self.tangential_speed * self.per_radius;
-            // Unit vector against b̂, or b̂ + μ·n̂.
+            // Unit vector against b̂ + w·n̂.
             let along = n.perp() * sense;
             let (against, length) = if driven {
-                (along + n * coeffs.friction, coeffs.tilt)
+                (along + n * worth, coeffs.tilt)
+            } else if worth > S::ZERO {
+                let against = along + n * worth;
+                (against, against.inverse_length() * S::JUST_BELOW_ONE)
             } else {
                 (along, S::JUST_BELOW_ONE)
             };
@@ -220,6 +228,29 @@ impl<S: Scalar> View<'_, S> {
             restoring: n * -inward,
             touching: true,
         }
+    }
+
+    /// What an inward force in an impact is worth over one along the wall, by the gradient of (4.8), and the outward speed that
+    /// counts. On a wall that gives way the rotor swings in with d = A·sin φ, and a push there takes J·(1 + cos φ) from ∫N dt and
+    /// J·cos φ from the speed with which it will leave: w = μ + (μ + K)·cos φ, at the time when the force has come. Nothing on a
+    /// wall that is left by then.
+    fn inward_worth(&self) -> (S, S) {
+        let coeffs = self.coeffs;
+        let outward = self.radial_speed.max(S::ZERO);
+        let Some([cosine, sine, rate]) = coeffs.contact_ahead else {
+            return (S::ZERO, outward);
+        };
+        let depth = (self.position.dot(self.normal) - S::ONE).max(S::ZERO);
+        let swing = depth * rate;
+        let per_amplitude = Vec2::new(self.radial_speed, swing).inverse_length();
+        let then = (self.radial_speed * cosine - swing * sine) * per_amplitude;
+        let gain = self.bounce_gain();
+        let friction = match self.spin {
+            Spin::Unknown => S::ZERO,
+            _ => coeffs.friction,
+        };
+        let worth = friction + (friction + gain) * then;
+        (worth.max(S::ZERO), outward)
     }
 
     /// Rotation that makes up for delay and lag on a circle at this rate: a delay of h turns a rotating

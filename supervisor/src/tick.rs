@@ -310,8 +310,8 @@ impl<S: Scalar> State<S> {
     ) -> Option<Vec2<S>> {
         let assessment = reading.assessment;
         let flags = assessment.flags;
-        let begins = flags.contains(SampleFlags::FAULTY)
-            && !matches!(self.phase, Phase::SensorFault { .. });
+        let begins =
+            flags.contains(SampleFlags::FAULTY) && !matches!(self.phase, Phase::SensorFault { .. });
         let sound = begins.then(|| self.observer.sound_force());
         if flags.contains(SampleFlags::LATE) {
             self.observer.late();
