@@ -233,7 +233,9 @@ impl<S: Scalar> Guard<S> {
             flags |= SampleFlags::USED;
             self.refused.apart = 0;
         } else {
-            self.refused.bad |= bad;
+            if refusal != RejectReason::Doubted {
+                self.refused.bad |= bad;
+            }
             if bad != SampleFlags::BOTH_BAD {
                 fits = self.judge_other(position, bad, (1 + missed, anew), coeffs);
             } else if self.faulty {
@@ -327,7 +329,15 @@ impl<S: Scalar> Guard<S> {
             ONE_STUCK
         };
         self.stuck = still.samples >= enough;
-        if let Some(off) = off {
+        // Of one coordinate that is wrong nothing is concluded for the other.
+        let alone = if self.faulty && self.refused.bad != SampleFlags::BOTH_BAD {
+            self.refused.bad
+        } else {
+            SampleFlags::empty()
+        };
+        if let Some(off) = off
+            && !self.faulty
+        {
             let doubted = self.innovation.doubted();
             if self.innovation.doubts(off, coeffs) {
                 return (RejectReason::Doubted, SampleFlags::BOTH_BAD);
@@ -343,8 +353,9 @@ impl<S: Scalar> Guard<S> {
         }
         let known = self.age != NEVER;
         let way = way_in(u32::from(self.age), coeffs) + self.innovation.untold(coeffs);
-        if known && (position - self.last_good).exceeds(way) {
-            return (RejectReason::Slew, SampleFlags::BOTH_BAD);
+        let step = alone.sensed(position - self.last_good, Vec2::ZERO);
+        if known && step.exceeds(way) {
+            return (RejectReason::Slew, bad_coordinates(step, way));
         }
         if still.samples > 0 {
             return (RejectReason::Stuck, self.stuck_detector.stuck());
