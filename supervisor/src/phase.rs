@@ -15,6 +15,9 @@ use crate::scalar::Scalar;
 use crate::signal::{Events, Mode};
 use crate::words::Words;
 
+/// Of the whirl limit: a whirl that levitation is left to, where it keeps the rotor.
+const DANGEROUS: f32 = 0.5;
+
 /// What [`crate::trust`] says.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Judged {
@@ -253,7 +256,12 @@ impl<S: Scalar> Phase<S> {
     ) -> Self {
         match self {
             Self::BackwardWhirl if class == Class::BackwardWhirl => self,
-            _ if class == Class::BackwardWhirl && contact.touching && judged.quiet => {
+            _ if class == Class::BackwardWhirl
+                && contact.touching
+                && judged.quiet
+                && contact.tangential_speed.abs() * coeffs.per_whirl_limit
+                    > S::from_f32(DANGEROUS) =>
+            {
                 Self::BackwardWhirl
             }
             Self::Levitated | Self::HandedBack { .. } => self,
