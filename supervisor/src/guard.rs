@@ -329,12 +329,6 @@ impl<S: Scalar> Guard<S> {
             ONE_STUCK
         };
         self.stuck = still.samples >= enough;
-        // Of one coordinate that is wrong nothing is concluded for the other.
-        let alone = if self.faulty && self.refused.bad != SampleFlags::BOTH_BAD {
-            self.refused.bad
-        } else {
-            SampleFlags::empty()
-        };
         if let Some(off) = off
             && !self.faulty
         {
@@ -353,7 +347,7 @@ impl<S: Scalar> Guard<S> {
         }
         let known = self.age != NEVER;
         let way = way_in(u32::from(self.age), coeffs) + self.innovation.untold(coeffs);
-        let step = alone.sensed(position - self.last_good, Vec2::ZERO);
+        let step = position - self.last_good;
         if known && step.exceeds(way) {
             return (RejectReason::Slew, bad_coordinates(step, way));
         }

@@ -82,7 +82,9 @@ enum Story {
     Centre,
 }
 
-const AS_USUAL: Status = Status::SPIN_VALID.union(Status::BEARING_ON);
+const AS_USUAL: Status = Status::SPIN_VALID
+    .union(Status::BEARING_ON)
+    .union(Status::LEVITATED_BEFORE);
 
 /// Where the force is measured, and a drive can be judged.
 const MEASURED: Status = if ALL {

@@ -50,7 +50,7 @@ bitflags::bitflags! {
         /// the levitation controller and acts on backward whirl alone.
         const SET_DOWN = 1 << 7;
         /// The rotor levitated until now, and its readings moved as they usually do: what they show is acted on from the first
-        /// sample on. Without it the supervisor looks for itself first, for twelve √(m·c/F), and until then acts on whirl alone.
+        /// sample on. Without it the supervisor looks for itself first, for six √(m·c/F) in peace, and until then acts on whirl alone.
         const LEVITATED_BEFORE = 1 << 8;
     }
 

@@ -312,7 +312,9 @@ impl<S: Scalar> State<S> {
         let flags = assessment.flags;
         let begins =
             flags.contains(SampleFlags::FAULTY) && !matches!(self.phase, Phase::SensorFault { .. });
-        let sound = begins.then(|| self.observer.sound_force());
+        // One that was no number has never been believed.
+        let lied = begins && assessment.refusal == RejectReason::Stuck;
+        let sound = lied.then(|| self.observer.sound_force());
         if flags.contains(SampleFlags::LATE) {
             self.observer.late();
         }

@@ -20,11 +20,12 @@ const UNTRUSTED_FROM: f32 = 0.4;
 const QUIET_SQUARE: f32 = 0.1;
 /// A square of the speed that has fallen to this share of the lowest before is progress.
 const PROGRESS: f32 = 0.7;
-/// What a window adds to the debt of an engagement: one of bouncing on, one without a position, one that comes farther or
-/// rubs, one in which the rotor is held. One of a rotor in flight that comes no farther makes all of it: nothing but the
-/// supervisor moves it.
+/// What a window adds to the debt of an engagement: one of bouncing on, one without a position, one of a forward rub, which breaks
+/// within some turns or not at all, one that makes progress, one in which the rotor is held. One of a rotor in flight that makes
+/// none makes all of it: nothing but the supervisor moves it.
 const RESTLESS: u16 = 1024;
 const BLIND: u16 = 256;
+const RUBBING: u16 = 256;
 const MOVING: u16 = 32;
 const HELD: u16 = 2;
 /// What a levitated window takes from it.
@@ -239,7 +240,8 @@ impl<S: Scalar> Trust<S> {
         let debt = match phase {
             Phase::SensorFault { .. } => BLIND,
             _ if peak <= S::from_f32(QUIET_SQUARE) => HELD,
-            _ if progress || rubs => MOVING,
+            _ if progress => MOVING,
+            _ if rubs => RUBBING,
             _ if self.stir.unsettled && !touched => MOST_DEBT,
             _ => RESTLESS,
         };

@@ -21,7 +21,7 @@ pub fn config() -> Config {
 pub fn sample(sequence: u32, position_m: [f32; 2]) -> Sample {
     Sample {
         sequence,
-        status: Status::SPIN_VALID | Status::BEARING_ON,
+        status: Status::SPIN_VALID | Status::BEARING_ON | Status::LEVITATED_BEFORE,
         position_m,
         spin_rad_s: 1000.0,
         ..Sample::default()

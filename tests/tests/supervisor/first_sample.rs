@@ -7,6 +7,8 @@ use system_tests::rig::{RADIUS_M, config, length, sample};
 fn first(radius: f32, status: Status) -> Command {
     let mut s = sample(0, [radius * config().clearance_m, 0.0]);
     s.status = status;
+    // Of a controller that has no force to spare.
+    s.levitation_n = [-900.0, 0.0];
     Supervisor::<64>::new(&config()).unwrap().tick(&s)
 }
 
@@ -17,7 +19,7 @@ fn a_whirl_is_braked_from_the_first_sample_on() {
     let c = config();
     let unit_s = f64::from(c.mass_kg * c.clearance_m / c.force_max_n).sqrt();
     let delay_s = 1.5 * f64::from(c.sample_period_s);
-    let on = Status::BEARING_ON | Status::SPIN_VALID;
+    let on = Status::BEARING_ON | Status::SPIN_VALID | Status::LEVITATED_BEFORE;
     for radius in [1.025_f32, 1.5] {
         let command = first(radius, on);
         let rate = 1.0 / (unit_s * f64::from(radius));
@@ -32,8 +34,9 @@ fn a_whirl_is_braked_from_the_first_sample_on() {
 /// Where nothing says so it is not taken for whirl: inwards, and nothing along the wall.
 #[test]
 fn nothing_is_braked_that_is_not_known_to_whirl() {
-    let on = Status::BEARING_ON | Status::SPIN_VALID;
-    for (radius, status) in [(1.025, Status::BEARING_ON), (1.015, on), (0.999, on)] {
+    let on = Status::BEARING_ON | Status::SPIN_VALID | Status::LEVITATED_BEFORE;
+    let blind = on - Status::SPIN_VALID;
+    for (radius, status) in [(1.025, blind), (1.015, on), (0.999, on)] {
         let command = first(radius, status);
         let [x, y] = command.force_n;
         assert!(x < 0.0 && y == 0.0, "{radius}, {status:?}: {command:?}");

@@ -133,7 +133,7 @@ fn thrown(sequence: u32) -> Sample {
     };
     Sample {
         sequence,
-        status: Status::SPIN_VALID | Status::BEARING_ON,
+        status: Status::SPIN_VALID | Status::BEARING_ON | Status::LEVITATED_BEFORE,
         position_m: [radius_m, -2e-5 + 1e-7 * (sequence % 5) as f32],
         spin_rad_s: 1000.0,
         ..Sample::default()

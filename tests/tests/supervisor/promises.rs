@@ -13,7 +13,7 @@ pub(super) fn new() -> Supervisor<64> {
 pub(super) fn sample(sequence: u32, position_m: [f32; 2]) -> Sample {
     Sample {
         sequence,
-        status: Status::SPIN_VALID | Status::BEARING_ON,
+        status: Status::SPIN_VALID | Status::BEARING_ON | Status::LEVITATED_BEFORE,
         position_m,
         spin_rad_s: 1000.0,
         levitation_n: [3.0, -4.0],
@@ -358,7 +358,9 @@ fn nothing_happens_while_the_bearing_is_off() {
         let command = supervisor.tick(&s);
         assert_eq!((command.mode, command.force_n), (Mode::Levitated, [0.0; 2]));
     }
-    s.status |= Status::BEARING_ON;
+    // On the wall, and its controller has no force to spare.
+    s.status |= Status::BEARING_ON | Status::LEVITATED_BEFORE;
+    s.levitation_n = [-900.0, 0.0];
     s.sequence = 200;
     assert_ne!(supervisor.tick(&s).mode, Mode::Levitated);
 }

@@ -329,7 +329,7 @@ fn arbitrary_bits_give_forces_within_the_caps() {
             };
             let samples = [(); 2].map(|()| Sample {
                 sequence: i,
-                status: Status::SPIN_VALID | Status::BEARING_ON,
+                status: Status::SPIN_VALID | Status::BEARING_ON | Status::LEVITATED_BEFORE,
                 position_m: [any(), any()],
                 spin_rad_s: any() * 1e7,
                 levitation_n: [any(), any()],

@@ -190,7 +190,7 @@ fn whirl_beyond_the_limit_asks_once_to_coast_down() {
             }
             asked
         };
-        let on = Status::SPIN_VALID | Status::BEARING_ON;
+        let on = Status::SPIN_VALID | Status::BEARING_ON | Status::LEVITATED_BEFORE;
         let asked = run(on, 1000);
         assert_eq!(asked.len(), usize::from(beyond));
         if beyond {

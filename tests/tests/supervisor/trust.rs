@@ -55,7 +55,13 @@ fn longest_kept(position: impl Fn(u32, Mode) -> [f32; 2], ticks: u32) -> (u32, u
     let mut mode = Mode::Levitated;
     let (mut longest, mut running, mut handed_back) = (0, 0, 0);
     for i in 0..ticks {
-        let command = bench.tick(position(i, mode));
+        // Whose controller has no force to spare.
+        bench.sequence += 1;
+        let [x, y] = position(i, mode);
+        let command = bench.supervisor.tick(&Sample {
+            levitation_n: [-900.0 * x.signum(), 0.0],
+            ..sample(bench.sequence, [x, y])
+        });
         mode = command.mode;
         running = if mode.is_engaged() { running + 1 } else { 0 };
         longest = longest.max(running);
