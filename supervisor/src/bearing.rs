@@ -141,6 +141,7 @@ impl Config {
             },
             bending_first_hz: 0.0,
             bending_second_hz: 0.0,
+            acts_in_flight: 1.0,
         }
     }
 

@@ -268,13 +268,15 @@ parameters! {
         "Natural frequency of a bending mode that the force would drive, the lower end of what is likely; 0 where there is none.";
     bending_second_hz, Machine, "Hz", 0.0 ..= 1e5, [= 0.0, "a rigid rotor"],
         "The same of a second mode; 0 where there is none.";
+    acts_in_flight, Tuning, "1", 0.0 ..= 1.0, [= 1.0, "the rotor is rigid, or the force damps its bending"],
+        "1: the supervisor acts from the approach on; 0: levitation keeps the rotor in the air, and the supervisor acts on evident backward whirl alone, for shafts whose bending its force would drive.";
 }
 
 /// Its place in the table.
 const CONTINUOUS_FORCE: usize = 22;
 
 /// The first of two.
-const BENDING_FIRST: usize = PARAMETERS.len() - 2;
+const BENDING_FIRST: usize = 31;
 
 const _: () = assert!(
     matches!(
@@ -326,6 +328,7 @@ impl Config {
             sensor_step_m: 1e-6,
             bending_first_hz: 0.0,
             bending_second_hz: 0.0,
+            acts_in_flight: 1.0,
         }
     }
 

@@ -221,8 +221,9 @@ typedef int32_t amb_code;
 #define AMB_P_SENSOR_STEP_M 30 /**< m, 1e-9 to 0.001: Step of the sensor's converter or its noise (root mean square), whichever is larger, at the sensor. */
 #define AMB_P_BENDING_FIRST_HZ 31 /**< Hz, 0 to 1e5: Natural frequency of a bending mode that the force would drive, the lower end of what is likely; 0 where there is none. */
 #define AMB_P_BENDING_SECOND_HZ 32 /**< Hz, 0 to 1e5: The same of a second mode; 0 where there is none. */
+#define AMB_P_ACTS_IN_FLIGHT 33 /**< 1, 0 to 1: 1: the supervisor acts from the approach on; 0: levitation keeps the rotor in the air, and the supervisor acts on evident backward whirl alone, for shafts whose bending its force would drive. */
 /** How many there are. */
-#define AMB_PARAMETERS 33
+#define AMB_PARAMETERS 34
 /** @} */
 
 /** @name Status bits of a sample @{ */
