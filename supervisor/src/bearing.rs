@@ -85,7 +85,7 @@ impl Config {
     /// A configuration from nine numbers. [`crate::PARAMETERS`] says how each value follows ([`crate::DefaultRule`]); what is known
     /// better goes into the place of single values. In a constant it costs firmware nothing.
     ///
-    /// Numbers in their ranges give a valid configuration. Any others give one that [`Config::validate`] refuses, by the
+    /// Numbers in their ranges that make no contradiction ([`RULES`](crate::RULES)) give a valid configuration. Any others give one that [`Config::validate`] refuses, by the
     /// parameter of the number's name: for the sensor's noise `sensor_step_m`, or `contact_band` where it is too much for the clearance.
     pub const fn for_bearing(bearing: &Bearing) -> Self {
         let Bearing {
@@ -164,7 +164,7 @@ const fn for_plane(shaft: &Shaft, end: usize, bearing: &Bearing) -> Config {
 
 /// Order of the filter that estimates the speed: second in flight, first in contact.
 #[derive(Clone, Copy)]
-enum Order {
+pub(crate) enum Order {
     First,
     Second,
 }
@@ -182,7 +182,7 @@ const fn quickest_pole(quickest: f32, noise_square: f32, order: Order) -> f32 {
 }
 
 /// Known variance of a critically damped fading-memory filter: speed over position noise per tick, squared.
-const fn gain_square(p: f32, order: Order) -> f32 {
+pub(crate) const fn gain_square(p: f32, order: Order) -> f32 {
     let (fading, memory) = (1.0 - p, 1.0 + p);
     let ratio = fading / memory;
     let cube = ratio * ratio * ratio;

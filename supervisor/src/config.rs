@@ -1,5 +1,7 @@
 //! The parameters: one table gives the struct, its check, its documentation and its test cases.
 
+use crate::bearing::{Order, gain_square};
+use crate::math::sqrt;
 use crate::parts::{BENDING, THERMAL_BUDGET};
 
 /// One row of the table.
@@ -45,7 +47,29 @@ pub enum DefaultRule {
     Derived(&'static str),
 }
 
-/// A parameter outside its range.
+/// What two parameters, each in its range, have to be to each other.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rule {
+    /// Whose value is refused: its place in [`PARAMETERS`].
+    pub index: usize,
+    /// What it does not go with, likewise.
+    pub other: usize,
+    /// Whether the limit is the least value and not the largest.
+    pub at_least: bool,
+    /// Why, and what to do.
+    pub text: &'static str,
+}
+
+/// A broken rule.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Contradiction {
+    /// Which: its place in [`RULES`].
+    pub rule: usize,
+    /// The largest or least value that the others leave.
+    pub limit: f32,
+}
+
+/// A parameter outside its range, or one that contradicts another.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ConfigError {
     /// Which one: its place in [`PARAMETERS`]. No reference to the row, so that firmware that prints no
@@ -53,9 +77,25 @@ pub struct ConfigError {
     pub index: usize,
     /// The refused value.
     pub value: f32,
+    /// What it contradicts; none where it is outside its own range.
+    pub contradiction: Option<Contradiction>,
 }
 
 impl ConfigError {
+    /// Outside its range.
+    pub(crate) const fn of_range(index: usize, value: f32) -> Self {
+        Self {
+            index,
+            value,
+            contradiction: None,
+        }
+    }
+
+    /// The rule that is broken.
+    pub fn rule(&self) -> Option<&'static Rule> {
+        RULES.get(self.contradiction?.rule)
+    }
+
     /// The row of the table.
     pub fn parameter(&self) -> &'static Parameter {
         match PARAMETERS.get(self.index) {
@@ -75,6 +115,17 @@ impl core::fmt::Display for ConfigError {
             ..
         } = self.parameter();
         write!(f, "{name} = {}: expected ", Written(self.value))?;
+        if let (Some(Contradiction { limit, .. }), Some(rule)) = (self.contradiction, self.rule()) {
+            let bound = if rule.at_least { "at least" } else { "at most" };
+            let unit = if *unit == "1" { "" } else { unit };
+            let other = PARAMETERS.get(rule.other).map_or("", |other| other.name);
+            return write!(
+                f,
+                "{bound} {} {unit} by {other}: {}",
+                Written(limit),
+                rule.text
+            );
+        }
         // In its range, and yet refused: for want of a part.
         if self.value >= *low && self.value <= *high {
             return f.write_str(match self.index {
@@ -185,6 +236,14 @@ macro_rules! parameters {
             },)*
         ];
 
+        /// Places in the table.
+        #[expect(non_camel_case_types, reason = "names of fields")]
+        #[derive(Clone, Copy)]
+        #[expect(dead_code, reason = "not all are part of a rule")]
+        enum At {
+            $($name),*
+        }
+
         const RANGES: [[f32; 2]; PARAMETERS.len()] = [$([$low, $high]),*];
 
         impl Config {
@@ -288,6 +347,54 @@ const _: () = assert!(
     )
 );
 
+/// Least ticks per t₀ = √(m·c/F): with fewer the rotor crosses half the clearance before a force has answered.
+const LEAST_TICKS: f32 = 3.5;
+/// Most noise of the estimated speed over the lift-off speed √(F·c/m). [`Config::for_bearing`] aims at 0.04; from a third on
+/// noise alone is an approach three times a second or more often.
+const MOST_SPEED_NOISE: f32 = 0.3;
+/// What rounding may add.
+const HAIR: f32 = 1e-5;
+
+/// Rules between parameters, in the order in which they are checked.
+pub const RULES: &[Rule] = &[
+    Rule {
+        index: At::sample_period_s as usize,
+        other: At::force_max_n as usize,
+        at_least: false,
+        text: "3.5 ticks at least in sqrt(mass_kg*clearance_m/force_max_n); check these four, or tick faster",
+    },
+    Rule {
+        index: At::sensor_step_m as usize,
+        other: At::observer_pole_flight as usize,
+        at_least: false,
+        text: "noise of the speed would be more than 30 % of the lift-off speed; raise the pole, or correct the step",
+    },
+    Rule {
+        index: At::sensor_step_m as usize,
+        other: At::observer_pole_contact as usize,
+        at_least: false,
+        text: "noise of the speed would be more than 30 % of the lift-off speed; raise the pole, or correct the step",
+    },
+    Rule {
+        index: At::axis_force_max_n as usize,
+        other: At::force_max_n as usize,
+        at_least: true,
+        text: "both axes together do not reach the cap in any direction; lower force_max_n, or correct the cap of the axes",
+    },
+    Rule {
+        index: At::force_slew_n_s as usize,
+        other: At::force_max_n as usize,
+        at_least: true,
+        text: "the cap is not reached within sqrt(mass_kg*clearance_m/force_max_n); lower force_max_n, or correct the slew limit",
+    },
+    Rule {
+        index: At::contact_band as usize,
+        other: At::sensor_step_m as usize,
+        at_least: true,
+        text: "a step of the sensor alone would be a touch; widen the band, or correct the step",
+    },
+];
+
 impl Config {
     /// An example, and no default for any machine: a rotor of 10 kg in a clearance of 0.2 mm, with a cap of 1 kN and a tick of
     /// 50 µs, as `advise` of the command line suggests it for 1 µm of sensor noise; slew limit and thermal budget are the
@@ -332,23 +439,20 @@ impl Config {
         }
     }
 
-    /// Checks every value against the table.
+    /// Checks every value against the table, and against others by [`RULES`].
     ///
     /// # Errors
-    /// The first value outside its range; NaN is outside every range. Where the feature `thermal-budget` is left out, a continuous
+    /// The first value outside its range, or else the first that contradicts another; NaN is outside every range. Where the feature `thermal-budget` is left out, a continuous
     /// force below the cap is as well, and without `bending` every natural frequency but 0.
     pub fn validate(&self) -> Result<(), ConfigError> {
         for (index, ([low, high], value)) in RANGES.into_iter().zip(self.values()).enumerate() {
             if !(value >= low && value <= high) {
-                return Err(ConfigError { index, value });
+                return Err(ConfigError::of_range(index, value));
             }
         }
         if !THERMAL_BUDGET && self.continuous_force_n < self.force_max_n {
             let value = self.continuous_force_n;
-            return Err(ConfigError {
-                index: CONTINUOUS_FORCE,
-                value,
-            });
+            return Err(ConfigError::of_range(CONTINUOUS_FORCE, value));
         }
         if !BENDING {
             for (i, value) in [self.bending_first_hz, self.bending_second_hz]
@@ -356,11 +460,56 @@ impl Config {
                 .enumerate()
             {
                 if value != 0.0 {
-                    return Err(ConfigError {
-                        index: BENDING_FIRST + i,
-                        value,
-                    });
+                    return Err(ConfigError::of_range(BENDING_FIRST + i, value));
                 }
+            }
+        }
+        self.check_together()
+    }
+
+    /// Checks values against each other.
+    fn check_together(&self) -> Result<(), ConfigError> {
+        let scaling = self.scaling();
+        let unit_s = scaling.time_s;
+        let step_m = |pole: f32, order: Order| {
+            let per_speed = self.sample_period_s / self.retainer_plane_ratio;
+            MOST_SPEED_NOISE * scaling.speed_m_s() * per_speed / sqrt(gain_square(pole, order))
+        };
+        let limits = [
+            (self.sample_period_s, unit_s / LEAST_TICKS),
+            (
+                self.sensor_step_m,
+                step_m(self.observer_pole_flight, Order::Second),
+            ),
+            (
+                self.sensor_step_m,
+                step_m(self.observer_pole_contact, Order::First),
+            ),
+            (
+                self.axis_force_max_n,
+                core::f32::consts::FRAC_1_SQRT_2 * self.force_max_n,
+            ),
+            (self.force_slew_n_s, self.force_max_n / unit_s),
+            (
+                self.contact_band,
+                self.sensor_step_m * self.retainer_plane_ratio / self.clearance_m,
+            ),
+        ];
+        for (number, (rule, (value, limit))) in RULES.iter().zip(limits).enumerate() {
+            let kept = if rule.at_least {
+                value >= limit * (1.0 - HAIR)
+            } else {
+                value <= limit * (1.0 + HAIR)
+            };
+            if !kept {
+                return Err(ConfigError {
+                    index: rule.index,
+                    value,
+                    contradiction: Some(Contradiction {
+                        rule: number,
+                        limit,
+                    }),
+                });
             }
         }
         Ok(())

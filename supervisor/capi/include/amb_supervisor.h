@@ -180,6 +180,13 @@ typedef int32_t amb_code;
 #define AMB_ERROR_PLACES_COUNT (-54) /**< an archive has a place at least, and no more than there can be */
 /** The parameter of this index is outside its range; in a rotor's second plane its index is AMB_PARAMETERS more. */
 #define AMB_ERROR_PARAMETER(index) (-1000 - (amb_code)(index))
+/**
+ * Two parameters, each in its range, contradict each other; in a rotor's second plane the number is 6 more. Rules are
+ * 0: sample_period_s and force_max_n (with mass_kg and clearance_m), 1: sensor_step_m and observer_pole_flight,
+ * 2: sensor_step_m and observer_pole_contact, 3: axis_force_max_n and force_max_n, 4: force_slew_n_s and force_max_n,
+ * 5: contact_band and sensor_step_m.
+ */
+#define AMB_ERROR_RULE(rule) (-2000 - (amb_code)(rule))
 /** @} */
 
 /**
@@ -351,7 +358,7 @@ typedef struct amb_shaft {
 } amb_shaft;
 
 /** Bytes of an amb_archive_place. */
-#define AMB_ARCHIVE_PLACE_BYTES 27080
+#define AMB_ARCHIVE_PLACE_BYTES 27088
 
 /** Room for the record of one event of one plane. Opaque and aligned as an amb_supervisor. */
 typedef union amb_archive_place {
