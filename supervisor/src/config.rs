@@ -60,6 +60,17 @@ pub struct Rule {
     pub text: &'static str,
 }
 
+impl Rule {
+    /// Value over limit, or the other way round where the limit is the largest.
+    fn room(&self, value: f32, limit: f32) -> f32 {
+        if self.at_least {
+            value / limit
+        } else {
+            limit / value
+        }
+    }
+}
+
 /// A broken rule.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Contradiction {
@@ -315,9 +326,9 @@ parameters! {
         "Whirl beyond what the cap can arrest for this long asks for coasting down.";
     severity_limit, Tuning, "1", 1e-3 ..= 1e8, [= 20.0, "rule of thumb, until a landing has been measured"],
         "Severity index that asks for coasting down.";
-    retainer_plane_ratio, Machine, "1", 0.1 ..= 10.0, [= 1.0, "one plane: sensor and retainer bearing move alike"],
+    retainer_plane_ratio, Machine, "1", 0.2 ..= 5.0, [= 1.0, "one plane: sensor and retainer bearing move alike"],
         "Position at the retainer bearing over position at the sensor.";
-    magnet_plane_ratio, Machine, "1", 0.1 ..= 10.0, [= 1.0, "one plane: magnet and retainer bearing move alike"],
+    magnet_plane_ratio, Machine, "1", 0.2 ..= 5.0, [= 1.0, "one plane: magnet and retainer bearing move alike"],
         "Position at the magnet over position at the retainer bearing: the leverage of its force.";
     speed_max_m_s, Sensor, "m/s", 1e-3 ..= 1000.0, [by "1.5·c·√(k_c/m), at least 2 m/s and at most 1000 m/s"],
         "No rotor is faster than this at the retainer bearing: a sample that would need it is refused.";
@@ -469,13 +480,40 @@ impl Config {
 
     /// Checks values against each other.
     fn check_together(&self) -> Result<(), ConfigError> {
+        let checked = RULES.iter().zip(self.limits());
+        for (number, (rule, (value, limit))) in checked.enumerate() {
+            if rule.room(value, limit) < 1.0 - HAIR {
+                return Err(ConfigError {
+                    index: rule.index,
+                    value,
+                    contradiction: Some(Contradiction {
+                        rule: number,
+                        limit,
+                    }),
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// How far it is from breaking each of [`RULES`]: over 1 where the rule is kept, and at 1 just so.
+    pub fn room(&self) -> [f32; RULES.len()] {
+        let mut limits = RULES.iter().zip(self.limits());
+        [(); RULES.len()].map(|()| {
+            let next = limits.next();
+            next.map_or(1.0, |(rule, (value, limit))| rule.room(value, limit))
+        })
+    }
+
+    /// Values that the rules are about, and their limits.
+    fn limits(&self) -> [(f32, f32); RULES.len()] {
         let scaling = self.scaling();
         let unit_s = scaling.time_s;
         let step_m = |pole: f32, order: Order| {
             let per_speed = self.sample_period_s / self.retainer_plane_ratio;
             MOST_SPEED_NOISE * scaling.speed_m_s() * per_speed / sqrt(gain_square(pole, order))
         };
-        let limits = [
+        [
             (self.sample_period_s, unit_s / LEAST_TICKS),
             (
                 self.sensor_step_m,
@@ -494,24 +532,6 @@ impl Config {
                 self.contact_band,
                 self.sensor_step_m * self.retainer_plane_ratio / self.clearance_m,
             ),
-        ];
-        for (number, (rule, (value, limit))) in RULES.iter().zip(limits).enumerate() {
-            let kept = if rule.at_least {
-                value >= limit * (1.0 - HAIR)
-            } else {
-                value <= limit * (1.0 + HAIR)
-            };
-            if !kept {
-                return Err(ConfigError {
-                    index: rule.index,
-                    value,
-                    contradiction: Some(Contradiction {
-                        rule: number,
-                        limit,
-                    }),
-                });
-            }
-        }
-        Ok(())
+        ]
     }
 }

@@ -222,8 +222,8 @@ typedef int32_t amb_code;
 #define AMB_P_CONTACT_STIFFNESS_N_M 24 /**< N/m, 1000 to 1e13: Stiffness of the contact with the retainer bearing. */
 #define AMB_P_COAST_DOWN_S 25 /**< s, 0 to 100: Whirl beyond what the cap can arrest for this long asks for coasting down. */
 #define AMB_P_SEVERITY_LIMIT 26 /**< 1, 0.001 to 1e8: Severity index that asks for coasting down. */
-#define AMB_P_RETAINER_PLANE_RATIO 27 /**< 1, 0.1 to 10: Position at the retainer bearing over position at the sensor. */
-#define AMB_P_MAGNET_PLANE_RATIO 28 /**< 1, 0.1 to 10: Position at the magnet over position at the retainer bearing: the leverage of its force. */
+#define AMB_P_RETAINER_PLANE_RATIO 27 /**< 1, 0.2 to 5: Position at the retainer bearing over position at the sensor. */
+#define AMB_P_MAGNET_PLANE_RATIO 28 /**< 1, 0.2 to 5: Position at the magnet over position at the retainer bearing: the leverage of its force. */
 #define AMB_P_SPEED_MAX_M_S 29 /**< m/s, 0.001 to 1000: No rotor is faster than this at the retainer bearing: a sample that would need it is refused. */
 #define AMB_P_SENSOR_STEP_M 30 /**< m, 1e-9 to 0.001: Step of the sensor's converter or its noise (root mean square), whichever is larger, at the sensor. */
 #define AMB_P_BENDING_FIRST_HZ 31 /**< Hz, 0 to 1e5: Natural frequency of a bending mode that the force would drive, the lower end of what is likely; 0 where there is none. */
