@@ -1,6 +1,7 @@
 //! A first configuration from what a data sheet says of a bearing: nine numbers.
 
 use crate::config::Config;
+use crate::math::{Order, gain_square};
 use crate::shaft::Shaft;
 
 /// What cannot be guessed of a bearing plane; [`Config::for_bearing`] derives all the rest. Each has the range of the parameter
@@ -162,13 +163,6 @@ const fn for_plane(shaft: &Shaft, end: usize, bearing: &Bearing) -> Config {
     shaft.plane(end, &config)
 }
 
-/// Order of the filter that estimates the speed: second in flight, first in contact.
-#[derive(Clone, Copy)]
-pub(crate) enum Order {
-    First,
-    Second,
-}
-
 /// The quickest pole, from `quickest` on in hundredths, whose noise of the speed is at most what is aimed at. Squares, so that
 /// no root decides.
 const fn quickest_pole(quickest: f32, noise_square: f32, order: Order) -> f32 {
@@ -179,17 +173,6 @@ const fn quickest_pole(quickest: f32, noise_square: f32, order: Order) -> f32 {
         pole = ((100.0 * pole + 1.5) as u32) as f32 / 100.0;
     }
     pole
-}
-
-/// Known variance of a critically damped fading-memory filter: speed over position noise per tick, squared.
-pub(crate) const fn gain_square(p: f32, order: Order) -> f32 {
-    let (fading, memory) = (1.0 - p, 1.0 + p);
-    let ratio = fading / memory;
-    let cube = ratio * ratio * ratio;
-    match order {
-        Order::First => 2.0 * cube,
-        Order::Second => cube / (memory * memory) * (13.0 + 50.0 * p + 49.0 * p * p) / 2.0,
-    }
 }
 
 /// Held between `low` and `high`; NaN becomes `low`. As `Scalar::clamp`, which no constant can call.

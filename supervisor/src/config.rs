@@ -1,7 +1,6 @@
 //! The parameters: one table gives the struct, its check, its documentation and its test cases.
 
-use crate::bearing::{Order, gain_square};
-use crate::math::sqrt;
+use crate::math::{Order, gain_square, sqrt};
 use crate::parts::{BENDING, THERMAL_BUDGET};
 
 /// One row of the table.
