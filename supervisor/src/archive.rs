@@ -11,6 +11,8 @@ use core::marker::PhantomData;
 /// Room for the record of an event of one plane: the record, and of a rotor its shaft. It consists of words alone, and with all
 /// bits zero it is one without a record.
 #[derive(Debug)]
+// An array of places is one of places in C, whose alignment this is.
+#[repr(align(8))]
 pub struct ArchivePlace<const RECORD: usize = 512> {
     tape: Tape<RECORD>,
     of_rotor: bool,

@@ -1,6 +1,7 @@
 //! A first configuration from what a data sheet says of a bearing: nine numbers.
 
 use crate::config::Config;
+use crate::math::{Order, gain_square};
 use crate::shaft::Shaft;
 
 /// What cannot be guessed of a bearing plane; [`Config::for_bearing`] derives all the rest. Each has the range of the parameter
@@ -85,7 +86,7 @@ impl Config {
     /// A configuration from nine numbers. [`crate::PARAMETERS`] says how each value follows ([`crate::DefaultRule`]); what is known
     /// better goes into the place of single values. In a constant it costs firmware nothing.
     ///
-    /// Numbers in their ranges give a valid configuration. Any others give one that [`Config::validate`] refuses, by the
+    /// Numbers in their ranges that make no contradiction ([`RULES`](crate::RULES)) give a valid configuration. Any others give one that [`Config::validate`] refuses, by the
     /// parameter of the number's name: for the sensor's noise `sensor_step_m`, or `contact_band` where it is too much for the clearance.
     pub const fn for_bearing(bearing: &Bearing) -> Self {
         let Bearing {
@@ -141,6 +142,7 @@ impl Config {
             },
             bending_first_hz: 0.0,
             bending_second_hz: 0.0,
+            acts_in_flight: 1.0,
         }
     }
 
@@ -161,13 +163,6 @@ const fn for_plane(shaft: &Shaft, end: usize, bearing: &Bearing) -> Config {
     shaft.plane(end, &config)
 }
 
-/// Order of the filter that estimates the speed: second in flight, first in contact.
-#[derive(Clone, Copy)]
-enum Order {
-    First,
-    Second,
-}
-
 /// The quickest pole, from `quickest` on in hundredths, whose noise of the speed is at most what is aimed at. Squares, so that
 /// no root decides.
 const fn quickest_pole(quickest: f32, noise_square: f32, order: Order) -> f32 {
@@ -178,17 +173,6 @@ const fn quickest_pole(quickest: f32, noise_square: f32, order: Order) -> f32 {
         pole = ((100.0 * pole + 1.5) as u32) as f32 / 100.0;
     }
     pole
-}
-
-/// Known variance of a critically damped fading-memory filter: speed over position noise per tick, squared.
-const fn gain_square(p: f32, order: Order) -> f32 {
-    let (fading, memory) = (1.0 - p, 1.0 + p);
-    let ratio = fading / memory;
-    let cube = ratio * ratio * ratio;
-    match order {
-        Order::First => 2.0 * cube,
-        Order::Second => cube / (memory * memory) * (13.0 + 50.0 * p + 49.0 * p * p) / 2.0,
-    }
 }
 
 /// Held between `low` and `high`; NaN becomes `low`. As `Scalar::clamp`, which no constant can call.

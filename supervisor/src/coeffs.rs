@@ -204,6 +204,9 @@ pub(crate) struct Coeffs<S: Scalar> {
     pub(crate) window_ticks: u16,
     /// Bending modes that were told and can be kept apart.
     pub(crate) bending: Option<Modes<S>>,
+    /// Whether it acts from the approach on, and not on evident backward whirl alone.
+    #[expect(dead_code, reason = "phases do not ask for it yet")]
+    pub(crate) acts_in_flight: bool,
     /// Being blind for the contact force, the observer makes up a speed of so much times the acceleration of all others.
     pub(crate) blind_time: S,
 }
@@ -420,6 +423,7 @@ impl<S: Scalar> Coeffs<S> {
             never_doubted: s("tick", max(0.5 * SHOCK * h * h, LEAST_DOUBTED)),
             window_ticks: min(max(WINDOW / h, LEAST_WINDOW), 60000.0) as u16,
             bending: Modes::new(config),
+            acts_in_flight: config.acts_in_flight >= 0.5,
             blind_time: s("observer", h * (1.0 + touch_pole) / touch_free),
         };
         (coeffs, taken.lost)

@@ -1,5 +1,6 @@
 //! The parameters: one table gives the struct, its check, its documentation and its test cases.
 
+use crate::math::{Order, gain_square, sqrt};
 use crate::parts::{BENDING, THERMAL_BUDGET};
 
 /// One row of the table.
@@ -45,7 +46,40 @@ pub enum DefaultRule {
     Derived(&'static str),
 }
 
-/// A parameter outside its range.
+/// What two parameters, each in its range, have to be to each other.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rule {
+    /// Whose value is refused: its place in [`PARAMETERS`].
+    pub index: usize,
+    /// What it does not go with, likewise.
+    pub other: usize,
+    /// Whether the limit is the least value and not the largest.
+    pub at_least: bool,
+    /// Why, and what to do.
+    pub text: &'static str,
+}
+
+impl Rule {
+    /// Value over limit, or the other way round where the limit is the largest.
+    fn room(&self, value: f32, limit: f32) -> f32 {
+        if self.at_least {
+            value / limit
+        } else {
+            limit / value
+        }
+    }
+}
+
+/// A broken rule.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Contradiction {
+    /// Which: its place in [`RULES`].
+    pub rule: usize,
+    /// The largest or least value that the others leave.
+    pub limit: f32,
+}
+
+/// A parameter outside its range, or one that contradicts another.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ConfigError {
     /// Which one: its place in [`PARAMETERS`]. No reference to the row, so that firmware that prints no
@@ -53,9 +87,25 @@ pub struct ConfigError {
     pub index: usize,
     /// The refused value.
     pub value: f32,
+    /// What it contradicts; none where it is outside its own range.
+    pub contradiction: Option<Contradiction>,
 }
 
 impl ConfigError {
+    /// Outside its range.
+    pub(crate) const fn of_range(index: usize, value: f32) -> Self {
+        Self {
+            index,
+            value,
+            contradiction: None,
+        }
+    }
+
+    /// The rule that is broken.
+    pub fn rule(&self) -> Option<&'static Rule> {
+        RULES.get(self.contradiction?.rule)
+    }
+
     /// The row of the table.
     pub fn parameter(&self) -> &'static Parameter {
         match PARAMETERS.get(self.index) {
@@ -75,6 +125,17 @@ impl core::fmt::Display for ConfigError {
             ..
         } = self.parameter();
         write!(f, "{name} = {}: expected ", Written(self.value))?;
+        if let (Some(Contradiction { limit, .. }), Some(rule)) = (self.contradiction, self.rule()) {
+            let bound = if rule.at_least { "at least" } else { "at most" };
+            let unit = if *unit == "1" { "" } else { unit };
+            let other = PARAMETERS.get(rule.other).map_or("", |other| other.name);
+            return write!(
+                f,
+                "{bound} {} {unit} by {other}: {}",
+                Written(limit),
+                rule.text
+            );
+        }
         // In its range, and yet refused: for want of a part.
         if self.value >= *low && self.value <= *high {
             return f.write_str(match self.index {
@@ -185,6 +246,14 @@ macro_rules! parameters {
             },)*
         ];
 
+        /// Places in the table.
+        #[expect(non_camel_case_types, reason = "names of fields")]
+        #[derive(Clone, Copy)]
+        #[expect(dead_code, reason = "not all are part of a rule")]
+        enum At {
+            $($name),*
+        }
+
         const RANGES: [[f32; 2]; PARAMETERS.len()] = [$([$low, $high]),*];
 
         impl Config {
@@ -256,9 +325,9 @@ parameters! {
         "Whirl beyond what the cap can arrest for this long asks for coasting down.";
     severity_limit, Tuning, "1", 1e-3 ..= 1e8, [= 20.0, "rule of thumb, until a landing has been measured"],
         "Severity index that asks for coasting down.";
-    retainer_plane_ratio, Machine, "1", 0.1 ..= 10.0, [= 1.0, "one plane: sensor and retainer bearing move alike"],
+    retainer_plane_ratio, Machine, "1", 0.2 ..= 5.0, [= 1.0, "one plane: sensor and retainer bearing move alike"],
         "Position at the retainer bearing over position at the sensor.";
-    magnet_plane_ratio, Machine, "1", 0.1 ..= 10.0, [= 1.0, "one plane: magnet and retainer bearing move alike"],
+    magnet_plane_ratio, Machine, "1", 0.2 ..= 5.0, [= 1.0, "one plane: magnet and retainer bearing move alike"],
         "Position at the magnet over position at the retainer bearing: the leverage of its force.";
     speed_max_m_s, Sensor, "m/s", 1e-3 ..= 1000.0, [by "1.5·c·√(k_c/m), at least 2 m/s and at most 1000 m/s"],
         "No rotor is faster than this at the retainer bearing: a sample that would need it is refused.";
@@ -268,13 +337,15 @@ parameters! {
         "Natural frequency of a bending mode that the force would drive, the lower end of what is likely; 0 where there is none.";
     bending_second_hz, Machine, "Hz", 0.0 ..= 1e5, [= 0.0, "a rigid rotor"],
         "The same of a second mode; 0 where there is none.";
+    acts_in_flight, Tuning, "1", 0.0 ..= 1.0, [= 1.0, "the rotor is rigid, or the force damps its bending"],
+        "1: the supervisor acts from the approach on; 0: levitation keeps the rotor in the air, and the supervisor acts on evident backward whirl alone, for shafts whose bending its force would drive.";
 }
 
 /// Its place in the table.
 const CONTINUOUS_FORCE: usize = 22;
 
 /// The first of two.
-const BENDING_FIRST: usize = PARAMETERS.len() - 2;
+const BENDING_FIRST: usize = 31;
 
 const _: () = assert!(
     matches!(
@@ -285,6 +356,54 @@ const _: () = assert!(
         b"bending_first_hz"
     )
 );
+
+/// Least ticks per t₀ = √(m·c/F): with fewer the rotor crosses half the clearance before a force has answered.
+const LEAST_TICKS: f32 = 3.5;
+/// Most noise of the estimated speed over the lift-off speed √(F·c/m). [`Config::for_bearing`] aims at 0.04; from a third on
+/// noise alone is an approach three times a second or more often.
+const MOST_SPEED_NOISE: f32 = 0.3;
+/// What rounding may add.
+const HAIR: f32 = 1e-5;
+
+/// Rules between parameters, in the order in which they are checked.
+pub const RULES: &[Rule] = &[
+    Rule {
+        index: At::sample_period_s as usize,
+        other: At::force_max_n as usize,
+        at_least: false,
+        text: "3.5 ticks at least in sqrt(mass_kg*clearance_m/force_max_n); check these four, or tick faster",
+    },
+    Rule {
+        index: At::sensor_step_m as usize,
+        other: At::observer_pole_flight as usize,
+        at_least: false,
+        text: "noise of the speed would be more than 30 % of the lift-off speed; raise the pole, or correct the step",
+    },
+    Rule {
+        index: At::sensor_step_m as usize,
+        other: At::observer_pole_contact as usize,
+        at_least: false,
+        text: "noise of the speed would be more than 30 % of the lift-off speed; raise the pole, or correct the step",
+    },
+    Rule {
+        index: At::axis_force_max_n as usize,
+        other: At::force_max_n as usize,
+        at_least: true,
+        text: "both axes together do not reach the cap in any direction; lower force_max_n, or correct the cap of the axes",
+    },
+    Rule {
+        index: At::force_slew_n_s as usize,
+        other: At::force_max_n as usize,
+        at_least: true,
+        text: "the cap is not reached within sqrt(mass_kg*clearance_m/force_max_n); lower force_max_n, or correct the slew limit",
+    },
+    Rule {
+        index: At::contact_band as usize,
+        other: At::sensor_step_m as usize,
+        at_least: true,
+        text: "a step of the sensor alone would be a touch; widen the band, or correct the step",
+    },
+];
 
 impl Config {
     /// An example, and no default for any machine: a rotor of 10 kg in a clearance of 0.2 mm, with a cap of 1 kN and a tick of
@@ -326,26 +445,24 @@ impl Config {
             sensor_step_m: 1e-6,
             bending_first_hz: 0.0,
             bending_second_hz: 0.0,
+            acts_in_flight: 1.0,
         }
     }
 
-    /// Checks every value against the table.
+    /// Checks every value against the table, and against others by [`RULES`].
     ///
     /// # Errors
-    /// The first value outside its range; NaN is outside every range. Where the feature `thermal-budget` is left out, a continuous
+    /// The first value outside its range, or else the first that contradicts another; NaN is outside every range. Where the feature `thermal-budget` is left out, a continuous
     /// force below the cap is as well, and without `bending` every natural frequency but 0.
     pub fn validate(&self) -> Result<(), ConfigError> {
         for (index, ([low, high], value)) in RANGES.into_iter().zip(self.values()).enumerate() {
             if !(value >= low && value <= high) {
-                return Err(ConfigError { index, value });
+                return Err(ConfigError::of_range(index, value));
             }
         }
         if !THERMAL_BUDGET && self.continuous_force_n < self.force_max_n {
             let value = self.continuous_force_n;
-            return Err(ConfigError {
-                index: CONTINUOUS_FORCE,
-                value,
-            });
+            return Err(ConfigError::of_range(CONTINUOUS_FORCE, value));
         }
         if !BENDING {
             for (i, value) in [self.bending_first_hz, self.bending_second_hz]
@@ -353,13 +470,67 @@ impl Config {
                 .enumerate()
             {
                 if value != 0.0 {
-                    return Err(ConfigError {
-                        index: BENDING_FIRST + i,
-                        value,
-                    });
+                    return Err(ConfigError::of_range(BENDING_FIRST + i, value));
                 }
             }
         }
+        self.check_together()
+    }
+
+    /// Checks values against each other.
+    fn check_together(&self) -> Result<(), ConfigError> {
+        let checked = RULES.iter().zip(self.limits());
+        for (number, (rule, (value, limit))) in checked.enumerate() {
+            if rule.room(value, limit) < 1.0 - HAIR {
+                return Err(ConfigError {
+                    index: rule.index,
+                    value,
+                    contradiction: Some(Contradiction {
+                        rule: number,
+                        limit,
+                    }),
+                });
+            }
+        }
         Ok(())
+    }
+
+    /// How far it is from breaking each of [`RULES`]: over 1 where the rule is kept, and at 1 just so.
+    pub fn room(&self) -> [f32; RULES.len()] {
+        let mut limits = RULES.iter().zip(self.limits());
+        [(); RULES.len()].map(|()| {
+            let next = limits.next();
+            next.map_or(1.0, |(rule, (value, limit))| rule.room(value, limit))
+        })
+    }
+
+    /// Values that the rules are about, and their limits.
+    fn limits(&self) -> [(f32, f32); RULES.len()] {
+        let scaling = self.scaling();
+        let unit_s = scaling.time_s;
+        let step_m = |pole: f32, order: Order| {
+            let per_speed = self.sample_period_s / self.retainer_plane_ratio;
+            MOST_SPEED_NOISE * scaling.speed_m_s() * per_speed / sqrt(gain_square(pole, order))
+        };
+        [
+            (self.sample_period_s, unit_s / LEAST_TICKS),
+            (
+                self.sensor_step_m,
+                step_m(self.observer_pole_flight, Order::Second),
+            ),
+            (
+                self.sensor_step_m,
+                step_m(self.observer_pole_contact, Order::First),
+            ),
+            (
+                self.axis_force_max_n,
+                core::f32::consts::FRAC_1_SQRT_2 * self.force_max_n,
+            ),
+            (self.force_slew_n_s, self.force_max_n / unit_s),
+            (
+                self.contact_band,
+                self.sensor_step_m * self.retainer_plane_ratio / self.clearance_m,
+            ),
+        ]
     }
 }

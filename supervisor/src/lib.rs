@@ -113,7 +113,8 @@ pub use archive::{Archive, ArchiveIn, ArchivePlace, RotorArchive};
 pub use bearing::Bearing;
 pub use coeffs::Scaling;
 pub use config::{
-    Config, ConfigError, CoreError, DefaultRule, Group, NotRepresentable, PARAMETERS, Parameter,
+    Config, ConfigError, Contradiction, CoreError, DefaultRule, Group, NotRepresentable,
+    PARAMETERS, Parameter, RULES, Rule,
 };
 pub use entry::{ENTRY_WORDS, Entry};
 pub use events::QueuedEvent;

@@ -31,6 +31,17 @@ impl Format for ConfigError {
             high,
             ..
         } = self.parameter();
+        if let (Some(broken), Some(rule)) = (self.contradiction, self.rule()) {
+            let other = crate::config::PARAMETERS
+                .get(rule.other)
+                .map_or("", |other| other.name);
+            write!(
+                f,
+                "{=str} = {=f32}: its limit is {=f32} by {=str}",
+                name, self.value, broken.limit, other
+            );
+            return;
+        }
         write!(
             f,
             "{=str} = {=f32}: expected {=f32} to {=f32}, unit {=str}",

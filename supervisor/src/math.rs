@@ -33,3 +33,21 @@ pub(crate) fn exp_neg(x: f32) -> f32 {
     }
     y
 }
+
+/// Order of the filter that estimates the speed: second in flight, first in contact.
+#[derive(Clone, Copy)]
+pub(crate) enum Order {
+    First,
+    Second,
+}
+
+/// Known variance of a critically damped fading-memory filter: speed over position noise per tick, squared.
+pub(crate) const fn gain_square(p: f32, order: Order) -> f32 {
+    let (fading, memory) = (1.0 - p, 1.0 + p);
+    let ratio = fading / memory;
+    let cube = ratio * ratio * ratio;
+    match order {
+        Order::First => 2.0 * cube,
+        Order::Second => cube / (memory * memory) * (13.0 + 50.0 * p + 49.0 * p * p) / 2.0,
+    }
+}

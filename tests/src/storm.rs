@@ -42,6 +42,31 @@ impl Chance {
     }
 }
 
+/// The configuration with what contradicts itself mended, or the bench's where ranges leave no room for that.
+pub fn consistent(config: Config) -> Config {
+    let mut config = config;
+    for _ in 0..20 {
+        let Err(error) = config.validate() else {
+            return config;
+        };
+        let (Some(broken), Some(rule)) = (error.contradiction, error.rule()) else {
+            break;
+        };
+        let p = &PARAMETERS[rule.index];
+        let mut values = config.values();
+        values[rule.index] = broken.limit.clamp(p.low, p.high);
+        config = Config::from_values(values);
+        // Mass makes a machine slow.
+        if broken.limit < p.low && !rule.at_least || broken.limit > p.high && rule.at_least {
+            config.mass_kg = (4.0 * config.mass_kg).min(1e6);
+        }
+    }
+    match config.validate() {
+        Ok(()) => config,
+        Err(_) => rig::config(),
+    }
+}
+
 /// A valid configuration: a bearing like the one on the bench, or, once in three, any value in the range of its
 /// parameter; all of its magnitudes are as likely.
 pub fn any_config(chance: &mut Chance) -> Config {
@@ -56,11 +81,12 @@ pub fn any_config(chance: &mut Chance) -> Config {
                 _ => value.clamp(p.low, p.high),
             }
         });
-        return Config::from_values([(); PARAMETERS.len()].map(|()| values.next().unwrap_or(1.0)));
+        let values = [(); PARAMETERS.len()].map(|()| values.next().unwrap_or(1.0));
+        return consistent(Config::from_values(values));
     }
     let mut factor = |low: f32, high: f32| low * (high / low).powf(chance.share());
     let bench = rig::config();
-    Config {
+    consistent(Config {
         mass_kg: bench.mass_kg * factor(0.3, 3.0),
         force_max_n: 1000.0 * factor(0.1, 10.0),
         axis_force_max_n: 1000.0 * factor(0.1, 20.0),
@@ -74,7 +100,7 @@ pub fn any_config(chance: &mut Chance) -> Config {
         handover_dwell_s: factor(5e-5, 1e-3),
         severity_limit: factor(1e-3, 1e8),
         ..bench
-    }
+    })
 }
 
 /// What the rotor does for some ticks.

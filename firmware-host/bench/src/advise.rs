@@ -1,8 +1,6 @@
 //! What a control engineer wants to know of a bearing before the supervisor goes in: limits in closed
 //! form, reaction time, noise, a suggested configuration, and what is weak.
 
-mod bisection;
-mod crossover;
 mod listing;
 mod noise;
 mod rotor;
@@ -10,16 +8,17 @@ mod show;
 mod warnings;
 
 use crate::scene::nominal::{Override, replaced};
-use crate::scene::suggest::{Nominal, Suggested, suggested};
+use crate::scene::suggest::{Decided, Nominal, Suggested, suggested};
 use plant_model::analysis::arrest::Arrest;
 use plant_model::analysis::onset::{critical_tangential_speed_m_s, lift_off_speed_m_s};
 use serde::Serialize;
 use supervisor::{Config, ConfigError, PARAMETERS};
 
-pub use crossover::{Crossover, SmallSignals};
+pub use crate::crossover::{Crossover, SmallSignals};
+pub use crate::scene::machine::role::{LEAST_PERCENT, ModeAtRisk, Role};
 pub use listing::{Language, listing, short, table};
 pub use noise::Noise;
-pub use rotor::{MOST_TURN_RAD, ModeAtRisk, RotorAdvice};
+pub use rotor::{MOST_TURN_RAD, RotorAdvice};
 pub use show::text;
 pub use warnings::Warning;
 
@@ -205,7 +204,20 @@ impl Advice {
         nominal: &Nominal,
         overrides: &[Override],
     ) -> Result<Self, Box<OutOfRange>> {
-        let suggested = suggested(nominal);
+        Self::of_plane(title, nominal, &[], overrides)
+    }
+
+    /// The same of a plane of a rotor, of which `decided` is what the whole rotor puts in the place of suggested values.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn of_plane(
+        title: &str,
+        nominal: &Nominal,
+        decided: &[Decided],
+        overrides: &[Override],
+    ) -> Result<Self, Box<OutOfRange>> {
+        let suggested = suggested(nominal).with(decided);
         let config = &suggested.config;
         config.validate().map_err(|error| {
             let source = suggested.source(error.parameter().name);

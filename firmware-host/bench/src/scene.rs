@@ -35,7 +35,7 @@ use crate::scene::diagnostic::SceneError;
 use crate::scene::nominal::{NominalKeys, Override};
 use crate::scene::policy_kind::PolicyKind;
 use crate::scene::spec::Spec;
-use crate::scene::suggest::Nominal;
+use crate::scene::suggest::{Decided, Nominal};
 use plant_model::params::{PlantParams, Start};
 use plant_model::{BuildError, Method, Options, Plant, V2, build, build_for_changes};
 use std::path::Path;
@@ -102,6 +102,8 @@ pub struct Scene {
     pub nominal: Nominal,
     /// The keys that it comes from.
     pub nominal_keys: NominalKeys,
+    /// What the rotor decides that it is a plane of, in the place of suggested values.
+    pub decided: Vec<Decided>,
     /// What `[supervisor]` puts in the place of suggested values, also without that policy.
     pub overrides: Vec<Override>,
     /// Backward contact speed above which a run is whirl \[m/s\].

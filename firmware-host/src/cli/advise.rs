@@ -303,8 +303,13 @@ fn of_scene(
             help: "add [magnet]: without one there is nothing to configure".to_owned(),
         });
     }
-    Advice::new(title, &told(args, scene.nominal), &scene.overrides)
-        .map_err(|e| out_of_range(&e, |field| scene.nominal_keys.key(field).to_owned()))
+    Advice::of_plane(
+        title,
+        &told(args, scene.nominal),
+        &scene.decided,
+        &scene.overrides,
+    )
+    .map_err(|e| out_of_range(&e, |field| scene.nominal_keys.key(field).to_owned()))
 }
 
 /// Advice for all planes of a rotor.

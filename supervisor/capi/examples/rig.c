@@ -38,6 +38,7 @@ const float rig_config[AMB_PARAMETERS] = {
     [AMB_P_MAGNET_PLANE_RATIO] = 1.0f,
     [AMB_P_SPEED_MAX_M_S] = 2.0f,
     [AMB_P_SENSOR_STEP_M] = 1e-8f,
+    [AMB_P_ACTS_IN_FLIGHT] = 1.0f,
 };
 
 /* The converter's step: 2^12 lengths, which is 2^-28 m. */

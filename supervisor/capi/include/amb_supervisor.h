@@ -180,6 +180,13 @@ typedef int32_t amb_code;
 #define AMB_ERROR_PLACES_COUNT (-54) /**< an archive has a place at least, and no more than there can be */
 /** The parameter of this index is outside its range; in a rotor's second plane its index is AMB_PARAMETERS more. */
 #define AMB_ERROR_PARAMETER(index) (-1000 - (amb_code)(index))
+/**
+ * Two parameters, each in its range, contradict each other; in a rotor's second plane the number is 6 more. Rules are
+ * 0: sample_period_s and force_max_n (with mass_kg and clearance_m), 1: sensor_step_m and observer_pole_flight,
+ * 2: sensor_step_m and observer_pole_contact, 3: axis_force_max_n and force_max_n, 4: force_slew_n_s and force_max_n,
+ * 5: contact_band and sensor_step_m.
+ */
+#define AMB_ERROR_RULE(rule) (-2000 - (amb_code)(rule))
 /** @} */
 
 /**
@@ -215,14 +222,15 @@ typedef int32_t amb_code;
 #define AMB_P_CONTACT_STIFFNESS_N_M 24 /**< N/m, 1000 to 1e13: Stiffness of the contact with the retainer bearing. */
 #define AMB_P_COAST_DOWN_S 25 /**< s, 0 to 100: Whirl beyond what the cap can arrest for this long asks for coasting down. */
 #define AMB_P_SEVERITY_LIMIT 26 /**< 1, 0.001 to 1e8: Severity index that asks for coasting down. */
-#define AMB_P_RETAINER_PLANE_RATIO 27 /**< 1, 0.1 to 10: Position at the retainer bearing over position at the sensor. */
-#define AMB_P_MAGNET_PLANE_RATIO 28 /**< 1, 0.1 to 10: Position at the magnet over position at the retainer bearing: the leverage of its force. */
+#define AMB_P_RETAINER_PLANE_RATIO 27 /**< 1, 0.2 to 5: Position at the retainer bearing over position at the sensor. */
+#define AMB_P_MAGNET_PLANE_RATIO 28 /**< 1, 0.2 to 5: Position at the magnet over position at the retainer bearing: the leverage of its force. */
 #define AMB_P_SPEED_MAX_M_S 29 /**< m/s, 0.001 to 1000: No rotor is faster than this at the retainer bearing: a sample that would need it is refused. */
 #define AMB_P_SENSOR_STEP_M 30 /**< m, 1e-9 to 0.001: Step of the sensor's converter or its noise (root mean square), whichever is larger, at the sensor. */
 #define AMB_P_BENDING_FIRST_HZ 31 /**< Hz, 0 to 1e5: Natural frequency of a bending mode that the force would drive, the lower end of what is likely; 0 where there is none. */
 #define AMB_P_BENDING_SECOND_HZ 32 /**< Hz, 0 to 1e5: The same of a second mode; 0 where there is none. */
+#define AMB_P_ACTS_IN_FLIGHT 33 /**< 1, 0 to 1: 1: the supervisor acts from the approach on; 0: levitation keeps the rotor in the air, and the supervisor acts on evident backward whirl alone, for shafts whose bending its force would drive. */
 /** How many there are. */
-#define AMB_PARAMETERS 33
+#define AMB_PARAMETERS 34
 /** @} */
 
 /** @name Status bits of a sample @{ */
@@ -350,7 +358,7 @@ typedef struct amb_shaft {
 } amb_shaft;
 
 /** Bytes of an amb_archive_place. */
-#define AMB_ARCHIVE_PLACE_BYTES 27080
+#define AMB_ARCHIVE_PLACE_BYTES 27088
 
 /** Room for the record of one event of one plane. Opaque and aligned as an amb_supervisor. */
 typedef union amb_archive_place {

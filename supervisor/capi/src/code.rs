@@ -2,8 +2,7 @@
 
 use crate::parameters;
 use core::ffi::CStr;
-use supervisor::PARAMETERS;
-use supervisor::SelfTest;
+use supervisor::{PARAMETERS, RULES, SelfTest};
 
 /// Result of a call: 0 is success, 1 that there is nothing to be had, negative numbers are errors.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -108,7 +107,25 @@ codes! {
 /// Code of the first parameter; the others follow downwards, and after them those of a rotor's second plane.
 pub const FIRST_PARAMETER: i32 = -1000;
 
+/// Code of the first rule between two parameters; the others follow downwards, and after them those of a rotor's second plane.
+pub const FIRST_RULE: i32 = -2000;
+
+/// Texts of the rules, in their order.
+const RULE_TEXTS: [&CStr; RULES.len()] = [
+    c"sample_period_s is too long for force_max_n, mass_kg and clearance_m",
+    c"sensor_step_m is too much for observer_pole_flight",
+    c"sensor_step_m is too much for observer_pole_contact",
+    c"axis_force_max_n is too little for force_max_n",
+    c"force_slew_n_s is too little for force_max_n",
+    c"contact_band is too little for sensor_step_m",
+];
+
 impl Code {
+    /// This rule is broken.
+    pub(crate) const fn rule(index: usize) -> Self {
+        Self(FIRST_RULE - index as i32)
+    }
+
     /// This parameter is outside its range.
     pub(crate) const fn parameter(index: usize) -> Self {
         // The table has far fewer rows than there are numbers.
@@ -119,6 +136,8 @@ impl Code {
     pub(crate) const fn of_plane(self, plane: usize) -> Self {
         if plane == 0 {
             self
+        } else if self.0 <= FIRST_RULE {
+            Self(self.0 - RULES.len() as i32)
         } else {
             Self(self.0 - PARAMETERS.len() as i32)
         }
@@ -144,6 +163,11 @@ impl Code {
     pub fn text(self) -> &'static CStr {
         if let Some(row) = CODES.iter().find(|row| row.code == self) {
             return row.text;
+        }
+        let rule = usize::try_from(FIRST_RULE.wrapping_sub(self.0)).ok();
+        let of_plane = rule.map(|rule| rule.checked_sub(RULES.len()).unwrap_or(rule));
+        if let Some(text) = of_plane.and_then(|rule| RULE_TEXTS.get(rule)) {
+            return text;
         }
         let index = FIRST_PARAMETER.wrapping_sub(self.0);
         let texts = usize::try_from(index).ok().and_then(|index| {

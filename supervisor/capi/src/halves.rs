@@ -330,7 +330,10 @@ pub(crate) fn code_of_shaft(error: &ShaftError) -> Code {
     }
 }
 
-/// Code of the parameter that was refused.
+/// Code of the parameter that was refused, or of the rule that it breaks.
 pub(crate) fn code_of(refused: &ConfigError) -> Code {
-    Code::parameter(refused.index)
+    match refused.contradiction {
+        Some(broken) => Code::rule(broken.rule),
+        None => Code::parameter(refused.index),
+    }
 }

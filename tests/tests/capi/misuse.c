@@ -78,7 +78,7 @@ static void making(void) {
     EXPECT(amb_init(&plane, size, rig_config, AMB_PARAMETERS), AMB_OK, "done");
     /* One that is there survives a refused configuration. */
     EXPECT(amb_init(&plane, size, values, AMB_PARAMETERS), AMB_ERROR_PARAMETER(AMB_PARAMETERS - 1),
-           "bending_second_hz is outside 0 to 1e5 Hz");
+           "acts_in_flight is outside 0 to 1");
     EXPECT(amb_mode(&plane, &i), AMB_OK, "done");
 }
 

@@ -46,7 +46,7 @@ static void making(void) {
     wrong = good;
     wrong.magnet_m[1] = -0.4f;
     EXPECT(amb_rotor_init(&rotor, size, &wrong, values, COUNT),
-           AMB_ERROR_PARAMETER(AMB_PARAMETERS + AMB_P_MAGNET_PLANE_RATIO), "magnet_plane_ratio is outside 0.1 to 10");
+           AMB_ERROR_PARAMETER(AMB_PARAMETERS + AMB_P_MAGNET_PLANE_RATIO), "magnet_plane_ratio is outside 0.2 to 5");
     /* Of which plane is in the code. */
     values[AMB_P_FORCE_MAX_N] = -1.0f;
     EXPECT(amb_rotor_init(&rotor, size, &good, values, COUNT), AMB_ERROR_PARAMETER(AMB_P_FORCE_MAX_N),

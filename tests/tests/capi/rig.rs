@@ -26,9 +26,9 @@ impl Rig {
 
     /// Its configuration at start, in the order of the table.
     #[rustfmt::skip]
-    pub(crate) const VALUES: [f32; 33] = [
+    pub(crate) const VALUES: [f32; 34] = [
         50e-6, 10.0, 0.0, 0.0, 2e-4, 1000.0, 0.0, 1.0, 0.15, 0.7, 0.5, 0.2, 0.02, 4.0, 2e-3, 0.8,
-        1e-3, 2e-3, 1e-3, 10.0, 1000.0, 1e7, 400.0, 5.0, 2e8, 5e-3, 20.0, 1.0, 1.0, 2.0, 1e-8, 0.0, 0.0,
+        1e-3, 2e-3, 1e-3, 10.0, 1000.0, 1e7, 400.0, 5.0, 2e8, 5e-3, 20.0, 1.0, 1.0, 2.0, 1e-8, 0.0, 0.0, 1.0,
     ];
 
     pub(crate) fn new() -> Self {

@@ -6,6 +6,7 @@ mod archive;
 mod border;
 mod closed_loop_fixed_point;
 mod comes_back;
+mod contradictions;
 mod derating;
 mod drive;
 mod faults;

@@ -1,7 +1,7 @@
 //! Noise of the estimated speed against the speeds that the supervisor has to tell apart.
 
-use super::bisection::by_logarithm;
 use super::{Limits, reaction};
+use crate::bisection::by_logarithm;
 use crate::scene::nominal::{Override, replaced};
 use crate::scene::suggest::{Nominal, speed_noise_m_s, suggested};
 use serde::Serialize;

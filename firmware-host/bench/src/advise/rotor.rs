@@ -1,9 +1,9 @@
 //! What a supervisor of both planes meets beyond the point mass: nutation and bending.
 
-use super::crossover::SmallSignals;
 use crate::report::lines::{width, wrapped};
 use crate::report::plot::text::figures;
 use crate::scene::machine::MachineScene;
+use crate::scene::machine::role::{ModeAtRisk, Role};
 use serde::Serialize;
 use std::f64::consts::TAU;
 use std::fmt::Write;
@@ -24,30 +24,11 @@ pub struct RotorAdvice {
     pub spin_of_most_turn_hz: Option<f64>,
     /// Bending modes below half the control rate, in the order of their frequencies.
     pub modes: Vec<ModeAtRisk>,
-}
-
-/// A bending mode under the supervisor's force in flight, for small vibrations; at rest.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct ModeAtRisk {
-    /// Natural frequency \[Hz\].
-    pub frequency_hz: f64,
-    /// Its own damping ratio.
-    pub damping_ratio: f64,
-    /// What the force adds to that, of all planes, with what they are told of bending; negative: it drives.
-    pub added_damping_ratio: f64,
-    /// The same if both planes were told of this mode alone; none where it cannot be kept apart.
-    pub told_damping_ratio: Option<f64>,
-    /// Displacement at the sensor of each plane, over the rigid rotor's …
-    pub at_sensors: Vec<f64>,
-    /// … and at its magnet.
-    pub at_magnets: Vec<f64>,
-}
-
-impl ModeAtRisk {
-    /// Whether an engaged supervisor would make it grow.
-    pub fn grows(&self) -> bool {
-        self.damping_ratio + self.added_damping_ratio < 0.0
-    }
+    /// Bending between each retainer bearing and the straight line through both sensors, under the caps of both magnets, over
+    /// the clearance there: the larger of both planes; none where both sensors are at one place.
+    pub bending_over_clearance: Option<f64>,
+    /// What the supervisor does with these configurations.
+    pub role: Role,
 }
 
 impl RotorAdvice {
@@ -66,52 +47,15 @@ impl RotorAdvice {
         };
         let later_s = late_s(first).max(late_s(second));
         let nutation_hz = inertias * scene.start.spin_rad_s / TAU;
-        let mass_kg = f64::from(shaft.mass_kg);
-        let signals = [first, second].map(SmallSignals::new);
-        let nyquist_hz = signals[0].nyquist_hz();
-        let mut modes: Vec<ModeAtRisk> = (scene.machine.rotor.bending().iter())
-            .map(|mode| {
-                let frequency_hz = mode.frequency_rad_s / TAU;
-                let at = |places: [f32; 2]| places.map(|z| mode.displacement(f64::from(z)));
-                let [a, b] = shaft.places;
-                let at_sensors = at([a.sensor_m, b.sensor_m]);
-                let at_magnets = at([a.magnet_m, b.magnet_m]);
-                // At exactly the centre of what is kept apart the analysis has no number: nothing is felt.
-                let ratio = |signals: &[SmallSignals; 2]| {
-                    let felt = |plane: usize| {
-                        let damping = signals[plane].damping_n_s_m(frequency_hz);
-                        damping.filter(|d| d.is_finite()).unwrap_or_default()
-                            * at_sensors[plane]
-                            * at_magnets[plane]
-                    };
-                    (felt(0) + felt(1)) / (2.0 * mass_kg * mode.frequency_rad_s)
-                };
-                let told = [first, second].map(|config| Config {
-                    bending_first_hz: frequency_hz as f32,
-                    bending_second_hz: 0.0,
-                    ..*config
-                });
-                let apart = told.iter().all(|c| c.keeps_apart(c.bending_first_hz));
-                ModeAtRisk {
-                    frequency_hz,
-                    damping_ratio: mode.damping_ratio,
-                    added_damping_ratio: ratio(&signals),
-                    told_damping_ratio: apart.then(|| {
-                        ratio(&[SmallSignals::new(&told[0]), SmallSignals::new(&told[1])])
-                    }),
-                    at_sensors: at_sensors.to_vec(),
-                    at_magnets: at_magnets.to_vec(),
-                }
-            })
-            .filter(|mode| mode.frequency_hz < nyquist_hz)
-            .collect();
-        modes.sort_by(|a, b| a.frequency_hz.total_cmp(&b.frequency_hz));
+        let both = [*first, *second];
         Some(Self {
             nutation_hz,
             nutation_turn_rad: (TAU * nutation_hz * later_s).abs(),
             spin_of_most_turn_hz: (inertias > 0.0)
                 .then(|| MOST_TURN_RAD / (TAU * inertias * later_s)),
-            modes,
+            modes: scene.modes_at_risk(&both),
+            bending_over_clearance: scene.bending_over_clearance(&both),
+            role: scene.role(&both),
         })
     }
 
@@ -135,7 +79,8 @@ impl RotorAdvice {
         }
         for mode in &self.modes {
             let verdict = match (mode.grows(), mode.added_damping_ratio < 0.0) {
-                (true, _) => "it would grow",
+                (true, _) if self.role.name == "full" => "it would grow",
+                (true, _) => "it would grow if it acted in flight",
                 (_, true) => "driven, less than it is damped",
                 _ => "damped",
             };
@@ -147,14 +92,14 @@ impl RotorAdvice {
                 percent(mode.damping_ratio),
                 percent(mode.added_damping_ratio)
             );
-            if !mode.grows() {
+            if !mode.grows() || self.role.name != "full" {
                 continue;
             }
             let better = (mode.told_damping_ratio).filter(|told| *told > mode.added_damping_ratio);
             let _ = match better {
                 Some(told) => writeln!(
                     text,
-                    "    do: tell the supervisor bending_first_hz = {} (or bending_second_hz); then the force adds {}",
+                    "    do: set bending_first_hz = {} (or bending_second_hz) in [supervisor]; then the force adds {}",
                     figures(mode.frequency_hz),
                     percent(told)
                 ),
@@ -164,6 +109,15 @@ impl RotorAdvice {
                 ),
             };
         }
+        if let Some(bends) = self.bending_over_clearance.filter(|bends| *bends > 0.0) {
+            let _ = writeln!(
+                text,
+                "  under both caps the shaft bends by {:.1} % of the clearance between a retainer bearing and the line through both sensors",
+                100.0 * bends
+            );
+        }
+        let Role { name, reason } = &self.role;
+        let _ = write!(text, "\nRole of the supervisor\n  {name}: {reason}\n");
         let lines = text
             .lines()
             .map(|line| wrapped(line, "    ", width()) + "\n");

@@ -4,7 +4,7 @@ use super::noise::TIME_TO_ACT_S;
 use super::{Advice, USEFUL_LAG_DEG};
 use crate::scene::suggest::{LEAST_LIMIT, RAIL_SHARE, SUPERVISED_RATES_HZ};
 use serde::Serialize;
-use supervisor::Config;
+use supervisor::{Config, PARAMETERS, RULES};
 
 /// A weakness.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -31,6 +31,8 @@ pub(super) fn of(advice: &Advice, config: &Config) -> Vec<Warning> {
         lag_useless(advice),
         lead_too_short(advice),
         slew(advice),
+        clamped(advice, config),
+        near_a_limit(config),
         centre_offset(advice, config),
         runout(advice),
     ];
@@ -227,6 +229,45 @@ fn slew(advice: &Advice) -> Option<Warning> {
     );
     let remedy = "more voltage, or count on less than the cap in fast whirl";
     warning("slew", text, remedy)
+}
+
+/// What the supervisor is configured with holds for the levitation controller's command as well.
+fn clamped(advice: &Advice, config: &Config) -> Option<Warning> {
+    let n = &advice.nominal;
+    // What a load leaves that is carried beside the command.
+    let left_n = n.force_everywhere_n() - n.load_n;
+    let of = |name: &'static str, configured: f32, own: Option<f64>, unit: &'static str| {
+        let own = own.filter(|own| f64::from(configured) < 0.99 * own)?;
+        Some((name, configured, own, unit))
+    };
+    let cap = of("force_max_n", config.force_max_n, Some(n.force_max_n), "N")
+        .filter(|_| (f64::from(config.force_max_n) - left_n).abs() > 0.01 * left_n.abs());
+    let axis = of(
+        "axis_force_max_n",
+        config.axis_force_max_n,
+        n.axis_force_max_n,
+        "N",
+    );
+    let slew = of("force_slew_n_s", config.force_slew_n_s, n.slew_n_s, "N/s");
+    let (name, configured, own, unit) = cap.or(axis).or(slew)?;
+    let text = format!(
+        "{name} = {configured} {unit} is configured, less than the {own} {unit} of the magnet: levitation is clamped to it"
+    );
+    let remedy = "configure what the magnet has, unless levitation is to have no more";
+    warning("clamped", text, remedy)
+}
+
+/// Room that a rule between two values is to leave.
+const LEAST_ROOM: f32 = 1.2;
+
+fn near_a_limit(config: &Config) -> Option<Warning> {
+    let (rule, _) = RULES.iter().zip(config.room()).find(|(rule, room)| {
+        // Caps of the axes that just reach that of the vector are what a magnet has.
+        PARAMETERS[rule.index].name != "axis_force_max_n" && *room < LEAST_ROOM
+    })?;
+    let [name, other] = [rule.index, rule.other].map(|index| PARAMETERS[index].name);
+    let text = format!("{name} is near the limit that {other} sets it");
+    warning("near_a_limit", text, rule.text)
 }
 
 /// Beyond its range a sensor says nothing of how deep the rotor is in the wall.

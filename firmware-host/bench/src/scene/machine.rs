@@ -3,6 +3,7 @@
 mod bearing;
 mod poles;
 mod refused;
+pub mod role;
 mod start;
 mod supervised;
 
@@ -260,7 +261,7 @@ impl Spec {
                 warnings.push(warning.clone());
             }
         }
-        let scene = MachineScene {
+        let mut scene = MachineScene {
             machine,
             start,
             planes: scenes,
@@ -270,6 +271,7 @@ impl Spec {
             told: None,
             warnings,
         };
+        scene.decide(text);
         match scene.refused_by_supervisor() {
             Some((plane, error)) => {
                 let message = format!("leaves no supervisor for the rotor: {error}");

@@ -133,7 +133,11 @@ pub(crate) fn overrides(spec: &PlaneSpec) -> Result<Vec<Override>, SceneError> {
         };
         let value = number as f32;
         if !(parameter.low..=parameter.high).contains(&value) {
-            let refused = ConfigError { index, value };
+            let refused = ConfigError {
+                index,
+                value,
+                contradiction: None,
+            };
             let help = Some(parameter.text.to_owned());
             return Err(text.error_at_key(&path, refused.to_string(), help));
         }
@@ -151,9 +155,17 @@ pub(crate) fn config(
 ) -> Result<Config, SceneError> {
     let suggested = suggested(nominal);
     let config = replaced(&suggested.config, overrides);
-    // What was given is in its range; what is left was derived.
+    // What was given is in its range; what is left was derived, or contradicts what was given.
     config.validate().map_err(|e| {
         let name = e.parameter().name;
+        if let Some(rule) = e.rule()
+            && let Some((given, _)) = (overrides.iter())
+                .find(|(index, _)| [rule.index, rule.other].contains(index))
+        {
+            let path = format!("supervisor.{}", PARAMETERS[*given].name);
+            let help = Some(PARAMETERS[*given].text.to_owned());
+            return text.error_at_key(&path, e.to_string(), help);
+        }
         let Some(source) = suggested.source(name).map(|field| keys.key(field)) else {
             let path = format!("supervisor.{name}");
             return text.error_at_key(&path, e.to_string(), Some(e.parameter().text.to_owned()));

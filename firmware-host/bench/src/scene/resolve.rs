@@ -176,6 +176,7 @@ impl PlaneSpec {
             supervisor,
             nominal,
             nominal_keys,
+            decided: Vec::new(),
             overrides,
             whirl_speed_m_s,
             warnings,

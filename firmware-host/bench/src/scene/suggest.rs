@@ -156,7 +156,32 @@ pub struct Suggested {
     pub reasons: Vec<Reason>,
 }
 
+/// A value that the whole rotor decides, in the place of what is suggested of its plane.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Decided {
+    /// Place of the parameter in [`PARAMETERS`].
+    pub index: usize,
+    /// The value.
+    pub value: f32,
+    /// Why, one line.
+    pub reason: String,
+}
+
 impl Suggested {
+    /// With what the whole rotor decides.
+    #[must_use]
+    pub fn with(mut self, decided: &[Decided]) -> Self {
+        let mut values = self.config.values();
+        for of_rotor in decided {
+            values[of_rotor.index] = of_rotor.value;
+            self.reasons[of_rotor.index]
+                .text
+                .clone_from(&of_rotor.reason);
+        }
+        self.config = Config::from_values(values);
+        self
+    }
+
     /// Field of [`Nominal`] that a parameter comes from.
     pub fn source(&self, name: &str) -> Option<&'static str> {
         (self.reasons.iter().find(|r| r.name == name)).and_then(|r| r.source)

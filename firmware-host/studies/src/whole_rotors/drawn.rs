@@ -266,7 +266,7 @@ impl RotorCase {
         let bending = self.bending.map_or_else(String::new, |(hz, ratio, [at_a, at_b])| {
             let (from, to) = (a + 0.05, b + 0.05);
             let (past_a, past_b, within) = (1.4 * at_a, 1.4 * at_b, -0.8 * at_a);
-            format!("[[rotor.bending]]\nfrequency_hz = {hz}\ndamping_ratio = {ratio}\npositions_m = [-{from}, -{a}, 0.0, {b}, {to}]\ndisplacements = [{past_a}, {at_a}, {within}, {at_b}, {past_b}]\n")
+            format!("[[rotor.bending]]\nfrequency_hz = {hz}\ndamping_ratio = {ratio}\npositions_m = [-{from}, -{a}, 0.0, {b}, {to}]\ndisplacements = [{past_a}, {at_a}, {within}, {at_b}, {past_b}]\n\n[supervisor]\nbending_first_hz = 0\nacts_in_flight = 1\n")
         });
         format!(
             r#"

@@ -94,12 +94,11 @@ impl Case {
             .replacen("[spin]", &before_spin, 1)
             .replacen("position_m = -0.2\n", &sensor("-"), 1)
             .replacen("position_m = 0.2\n", &sensor(""), 1);
-        if let Some(ratio) = told {
-            text.push_str(&format!(
-                "\n[supervisor]\nbending_first_hz = {}\n",
-                ratio * hz
-            ));
-        }
+        // What is compared is set, and not decided by the scene; 0 configures none.
+        text.push_str(&format!(
+            "\n[supervisor]\nbending_first_hz = {}\nacts_in_flight = 1\n",
+            told.map_or(0.0, |ratio| ratio * hz)
+        ));
         text
     }
 

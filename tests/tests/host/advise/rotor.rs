@@ -1,8 +1,9 @@
 //! Advice for a supervisor of both planes: nutation, and bending modes under its force.
 
-use firmware_bench::advise::RotorAdvice;
+use firmware_bench::advise::{Advice, RotorAdvice};
 use firmware_bench::scene::machine::MachineScene;
 use serde_json::Value;
+use supervisor::Config;
 use system_tests::{host, root};
 
 /// Of a plant of the catalogue, with the displacement at both magnets times a factor.
@@ -53,6 +54,112 @@ fn a_node_between_sensor_and_magnet_turns_the_sign() {
     assert!(opposite.modes[0].grows() && opposite.text().contains("it would grow"));
 }
 
+/// A rotor of the catalogue that bends so, and what its `[supervisor]` sets.
+fn bends(displacements: [f64; 7], hz: f64, set: &str) -> MachineScene {
+    let mode = format!(
+        "[[rotor.bending]]\nfrequency_hz = {hz}\ndamping_ratio = 0.003\npositions_m = [-0.25, -0.23, -0.2, 0.0, 0.2, 0.23, 0.25]\ndisplacements = {displacements:?}\n\n[spin]"
+    );
+    let text = std::fs::read_to_string(root().join("firmware-host/scenes/rotors/p5.toml")).unwrap();
+    let text = (text.replacen("[spin]", &mode, 1))
+        .replacen(
+            "position_m = -0.2\n",
+            "position_m = -0.2\nsensor = { position_m = -0.23 }\n",
+            1,
+        )
+        .replacen(
+            "position_m = 0.2\n",
+            "position_m = 0.2\nsensor = { position_m = 0.23 }\n",
+            1,
+        );
+    MachineScene::parse("bends", &format!("{text}\n[supervisor]\n{set}")).unwrap()
+}
+
+fn configs(scene: &MachineScene) -> [Config; 2] {
+    [0, 1].map(|plane| scene.planes[plane].scene.supervisor.unwrap())
+}
+
+/// Sensors and magnets on the same side of every node, and with a node between them.
+const ALIKE: [f64; 7] = [0.6, 0.6, 0.5, -0.4, 0.5, 0.6, 0.6];
+const NODE_BETWEEN: [f64; 7] = [-0.9, -0.9, 0.9, 0.2, 0.9, -0.9, -0.9];
+
+/// A mode that the force damps leaves the configuration as it is.
+#[test]
+fn a_damped_mode_changes_nothing() {
+    let scene = bends(ALIKE, 250.0, "");
+    let [config, _] = configs(&scene);
+    assert_eq!((config.bending_first_hz, config.acts_in_flight), (0.0, 1.0));
+    assert!(
+        scene
+            .planes
+            .iter()
+            .all(|plane| plane.scene.decided.is_empty())
+    );
+    assert_eq!(scene.role(&configs(&scene)).name, "full");
+    assert!(
+        !scene.warnings.iter().any(|w| w.contains("flight")),
+        "{:?}",
+        scene.warnings
+    );
+}
+
+/// A mode that the force would drive is configured where that suffices, unless the scene says otherwise.
+#[test]
+fn a_mode_is_configured_where_that_suffices() {
+    let scene = bends(ALIKE, 1500.0, "");
+    let both = configs(&scene);
+    assert_eq!(both.map(|c| c.bending_first_hz), [1500.0; 2]);
+    assert_eq!(both.map(|c| c.acts_in_flight), [1.0; 2]);
+    let role = scene.role(&both);
+    assert!(
+        role.name == "full" && role.reason.contains("1500.0 Hz configured"),
+        "{role:?}"
+    );
+
+    let by_hand = bends(ALIKE, 1500.0, "bending_first_hz = 0\nacts_in_flight = 1\n");
+    let both = configs(&by_hand);
+    assert_eq!(both.map(|c| c.bending_first_hz), [0.0; 2]);
+    assert_eq!(both.map(|c| c.acts_in_flight), [1.0; 2]);
+    let warned = |w: &String| w.contains("1500.0 Hz") && w.contains('%');
+    assert!(
+        by_hand.warnings.iter().any(warned),
+        "{:?}",
+        by_hand.warnings
+    );
+}
+
+/// Where it does not, levitation keeps the rotor in the air, with a wider contact band; whoever sets it overrules that.
+#[test]
+fn a_mode_that_is_driven_all_the_same_leaves_flight_to_levitation() {
+    let scene = bends(NODE_BETWEEN, 200.0, "");
+    let both = configs(&scene);
+    let role = scene.role(&both);
+    assert_eq!(role.name, "whirl only", "{role:?}");
+    assert_eq!(both.map(|c| c.acts_in_flight), [0.0; 2]);
+    let plain = bends(NODE_BETWEEN, 200.0, "acts_in_flight = 1\n");
+    for (config, plain) in both.iter().zip(configs(&plain)) {
+        assert_eq!(config.contact_band, (2.0 * plain.contact_band).min(0.3));
+        assert_eq!(plain.acts_in_flight, 1.0);
+    }
+    assert!(
+        scene
+            .warnings
+            .iter()
+            .any(|w| w.contains("backward whirl only"))
+    );
+    assert!(role.reason.contains("200.0 Hz"), "{role:?}");
+    let advice = RotorAdvice::new(&scene, &both).unwrap();
+    assert!(advice.text().contains("whirl only"), "{}", advice.text());
+    assert!(advice.bending_over_clearance.unwrap() > 0.0);
+    let plane = &scene.planes[0].scene;
+    let of_plane = Advice::of_plane("end", &plane.nominal, &plane.decided, &plane.overrides);
+    let table = of_plane.unwrap().supervisor_table;
+    assert!(table.contains("acts_in_flight = 0 "), "{table}");
+
+    let band = configs(&bends(NODE_BETWEEN, 200.0, "contact_band = 0.05\n"));
+    assert_eq!(band.map(|c| c.contact_band), [0.05; 2]);
+    assert_eq!(band.map(|c| c.acts_in_flight), [0.0; 2]);
+}
+
 /// Of a mode that the force would drive it is advised to tell it where that helps; told, it is not driven any more.
 #[test]
 fn a_mode_is_told_where_that_helps() {
@@ -67,7 +174,9 @@ fn a_mode_is_told_where_that_helps() {
             .collect();
         RotorAdvice::new(&scene, &configs).unwrap()
     };
-    let before = advised(&text);
+    let before = advised(&format!(
+        "{text}\n[supervisor]\nbending_first_hz = 0\nacts_in_flight = 1\n"
+    ));
     let promised = before.modes[0].told_damping_ratio.unwrap();
     assert!(before.modes[0].grows() && promised > before.modes[0].added_damping_ratio);
     assert!(
@@ -106,5 +215,14 @@ fn it_is_printed_and_has_keys() {
     let rotor = &json["rotor"];
     assert!((rotor["nutation_hz"].as_f64().unwrap() - 10.0).abs() < 0.01);
     assert!(rotor["modes"][0]["added_damping_ratio"].as_f64().unwrap() > 0.0);
+    assert!(
+        rotor["modes"][0]["damping_by_force_percent"]
+            .as_f64()
+            .unwrap()
+            > 0.0
+    );
+    assert!(rotor["bending_over_clearance"].as_f64().unwrap() > 0.0);
+    assert_eq!(rotor["role"]["name"], "full");
+    assert!(!rotor["role"]["reason"].as_str().unwrap().is_empty());
     assert_eq!(rotor["modes"][1]["at_sensors"].as_array().unwrap().len(), 2);
 }

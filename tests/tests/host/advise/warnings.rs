@@ -35,7 +35,7 @@ fn warnings_appear_when_they_should() {
         ("slow_reaction", |n, x| n.lag_s = x, 9.7e-4, 9.8e-4),
         ("noise", |n, x| n.noise_rms_m = x, 5e-6, 1.45e-5),
         ("lag_drives", |n, x| n.lag_s = x, 1.5e-4, 3.5e-4),
-        ("slew", |n, x| n.slew_n_s = Some(x), 1e8, 1e5),
+        ("slew", |n, x| n.slew_n_s = Some(x), 1e8, 8e5),
         ("load", |n, x| n.load_n = x, 99.0, 100.0),
         ("range", |n, x| n.range_m = Some(x), 2.32e-4, 2.31e-4),
         ("range", |n, x| n.range_m = Some(x), 2.5e-4, 2e-4),

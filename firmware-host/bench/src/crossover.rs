@@ -25,7 +25,7 @@
 //! c_eq = −Re(f(jω)/(jω·y))                                       its mean power is −c_eq·(speed of the vibration)²/2
 //! ```
 
-use super::bisection::by_logarithm;
+use crate::bisection::by_logarithm;
 use nalgebra::{Complex, Matrix3, RowVector3, Vector3};
 use std::f64::consts::TAU;
 use supervisor::Config;
