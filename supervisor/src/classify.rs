@@ -4,7 +4,7 @@ use crate::coeffs::Coeffs;
 use crate::detect::ContactEstimate;
 use crate::scalar::Scalar;
 use crate::spin::Spin;
-use crate::words::words_of_fields;
+use crate::words::{Words, words_of_fields};
 
 /// Kind of motion on the retainer bearing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -31,6 +31,10 @@ const DOUBT: f32 = 0.25;
 /// Rest ends only beyond this share, so that noise does not end it.
 const MOVING_SPEED_SQUARED: f32 = 0.2;
 
+/// Turn that a whirl has to make to be one whatever the reading does beside it: runout of a tenth of the clearance seems to go
+/// to and fro by 0.2 rad.
+const EVIDENT_TURN: f32 = 0.5;
+
 /// Forward rub goes round at the rate of the spin to within this share.
 const RUB_RATE_SHARE: f32 = 0.25;
 
@@ -40,21 +44,48 @@ pub(crate) struct Classifier<S> {
     contact_share: S,
     /// Touching, and too slow for anything but rest. A rotor that turns round near the wall is that for a moment.
     ticks_slow: u32,
+    is: Motions,
+    /// Angle by which it has gone round without a break in a whirl \[rad\].
+    turned: S,
+}
+
+words_of_fields!(Classifier<S> { contact_share, ticks_slow, is, turned });
+
+/// Motions that go on as long as their conditions hold, which are wider than those by which they begin.
+#[derive(Debug, Clone, Copy, Default)]
+struct Motions {
     resting: bool,
     rubbing: bool,
 }
 
-words_of_fields!(Classifier<S> { contact_share, ticks_slow, resting, rubbing });
+/// In one word.
+impl Words for Motions {
+    fn put(&self, to: &mut dyn FnMut(u32)) {
+        to(u32::from(self.resting) | u32::from(self.rubbing) << 8);
+    }
+    fn take(from: &mut dyn Iterator<Item = u32>) -> Self {
+        let [resting, rubbing, ..] = u32::take(from).to_le_bytes();
+        Self {
+            resting: resting != 0,
+            rubbing: rubbing != 0,
+        }
+    }
+}
 
 impl<S: Scalar> Classifier<S> {
     /// Whether the last tick was one of forward rub.
     pub(crate) fn rubs(&self) -> bool {
-        self.rubbing
+        self.is.rubbing
     }
 
     /// Whether the rotor touches so slowly that it all but rests there.
     pub(crate) fn is_slow(&self) -> bool {
         self.ticks_slow > 0
+    }
+
+    /// Whether it has gone round so far that no vibration of the reading looks like it.
+    pub(crate) fn has_turned(&self) -> bool {
+        self.turned > S::from_f32(EVIDENT_TURN)
     }
 
     /// The motion is not known any more: a speed that is not known is no rest.
@@ -93,25 +124,26 @@ impl<S: Scalar> Classifier<S> {
             } else {
                 0
             };
-            self.resting = if self.resting {
+            self.is.resting = if self.is.resting {
                 square < S::from_f32(MOVING_SPEED_SQUARED)
             } else {
                 self.ticks_slow > coeffs.whirl_ticks
             };
         } else {
-            (self.ticks_slow, self.resting) = (0, false);
+            (self.ticks_slow, self.is.resting) = (0, false);
         }
-        let before = core::mem::take(&mut self.rubbing);
+        let before = core::mem::take(&mut self.is.rubbing);
+        let turned = core::mem::replace(&mut self.turned, S::ZERO);
         let slow = if before {
             REST_SPEED_SQUARED
         } else {
             WHIRL_SPEED_SQUARED
         };
-        let sliding = !self.resting
+        let sliding = !self.is.resting
             && self.contact_share > S::from_f32(CONTINUOUS)
             && along_square > S::from_f32(slow);
         if !sliding {
-            return if self.resting {
+            return if self.is.resting {
                 Class::Pinned
             } else {
                 Class::Bounce
@@ -119,13 +151,15 @@ impl<S: Scalar> Classifier<S> {
         }
         // With unknown spin every whirl counts as backward: friction will make it so.
         if spin.backward(along) >= S::ZERO {
+            let most = S::from_f32(EVIDENT_TURN * 2.0);
+            self.turned = (turned + along.abs() * contact.per_radius * coeffs.tick).min(most);
             return Class::BackwardWhirl;
         }
         // By the radius that there is: a soft wall gives way. What began stays until it slows or turns.
         let orbit = along * contact.per_radius;
         let at_its_rate = (orbit - rate).abs() <= rate.abs() * S::from_f32(RUB_RATE_SHARE);
-        self.rubbing = before || (contact.touching && at_its_rate);
-        if self.rubbing {
+        self.is.rubbing = before || (contact.touching && at_its_rate);
+        if self.is.rubbing {
             Class::ForwardRub { begins: !before }
         } else {
             Class::Bounce

@@ -205,7 +205,6 @@ pub(crate) struct Coeffs<S: Scalar> {
     /// Bending modes that were told and can be kept apart.
     pub(crate) bending: Option<Modes<S>>,
     /// Whether it acts from the approach on, and not on evident backward whirl alone.
-    #[expect(dead_code, reason = "phases do not ask for it yet")]
     pub(crate) acts_in_flight: bool,
     /// Being blind for the contact force, the observer makes up a speed of so much times the acceleration of all others.
     pub(crate) blind_time: S,

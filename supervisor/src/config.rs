@@ -359,6 +359,9 @@ const _: () = assert!(
 
 /// Least ticks per t₀ = √(m·c/F): with fewer the rotor crosses half the clearance before a force has answered.
 const LEAST_TICKS: f32 = 3.5;
+/// Least cap of an axis over the cap, and the longest rise to the cap \[t₀\]: less may be meant, and costs force.
+const LEAST_AXIS_SHARE: f32 = 0.2;
+const SLOWEST_RISE: f32 = 8.0;
 /// Most noise of the estimated speed over the lift-off speed √(F·c/m). [`Config::for_bearing`] aims at 0.04; from a third on
 /// noise alone is an approach three times a second or more often.
 const MOST_SPEED_NOISE: f32 = 0.3;
@@ -389,13 +392,13 @@ pub const RULES: &[Rule] = &[
         index: At::axis_force_max_n as usize,
         other: At::force_max_n as usize,
         at_least: true,
-        text: "both axes together do not reach the cap in any direction; lower force_max_n, or correct the cap of the axes",
+        text: "a fifth of the cap at least: a bearing whose axes have less has another cap; lower force_max_n, or correct the cap of the axes",
     },
     Rule {
         index: At::force_slew_n_s as usize,
         other: At::force_max_n as usize,
         at_least: true,
-        text: "the cap is not reached within sqrt(mass_kg*clearance_m/force_max_n); lower force_max_n, or correct the slew limit",
+        text: "the cap is not reached within eight times sqrt(mass_kg*clearance_m/force_max_n); lower force_max_n, or correct the slew limit",
     },
     Rule {
         index: At::contact_band as usize,
@@ -524,9 +527,9 @@ impl Config {
             ),
             (
                 self.axis_force_max_n,
-                core::f32::consts::FRAC_1_SQRT_2 * self.force_max_n,
+                LEAST_AXIS_SHARE * self.force_max_n,
             ),
-            (self.force_slew_n_s, self.force_max_n / unit_s),
+            (self.force_slew_n_s, self.force_max_n / (SLOWEST_RISE * unit_s)),
             (
                 self.contact_band,
                 self.sensor_step_m * self.retainer_plane_ratio / self.clearance_m,

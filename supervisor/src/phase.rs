@@ -27,6 +27,8 @@ pub(crate) struct Judged {
     pub(crate) trusted: bool,
     /// The supervisor has acted on the rotor, which has not settled since: a touch is its affair, however the reading moves.
     pub(crate) unsettled: bool,
+    /// A whirl has gone round far enough to be none of the reading alone.
+    pub(crate) has_turned: bool,
     /// A forward rub has gone on for windows, at one spin.
     pub(crate) rubs_on: bool,
     /// The bearing has to be handed back, for so many ticks.
@@ -196,7 +198,7 @@ impl<S: Scalar> Phase<S> {
         }
         // Where what the reading usually does is too fast, a contact that goes on all the time still says what it is.
         let goes_round = match class {
-            Class::BackwardWhirl => true,
+            Class::BackwardWhirl => judged.has_turned,
             Class::ForwardRub { .. } => judged.rubs_on,
             _ => false,
         };
@@ -259,6 +261,7 @@ impl<S: Scalar> Phase<S> {
             _ if class == Class::BackwardWhirl
                 && contact.touching
                 && judged.quiet
+                && judged.has_turned
                 && contact.tangential_speed.abs() * coeffs.per_whirl_limit
                     > S::from_f32(DANGEROUS) =>
             {

@@ -136,11 +136,12 @@ impl<S: Scalar> State<S> {
             quiet,
             hands_back: (self.trust).tick((square, flies), (self.phase, rubs, sample.spin), coeffs),
             rubs_on: self.trust.rubs_on(),
+            has_turned: self.classifier.has_turned(),
             trusted: quiet
                 && self.trust.is_granted()
                 && tilting.is_none_or(|tilting| tilting.is_in_time(coeffs)),
             unsettled: quiet && tilting.is_some_and(|tilting| tilting.unsettled),
-            whirl_only: sample.status.contains(Status::SET_DOWN),
+            whirl_only: !coeffs.acts_in_flight || sample.status.contains(Status::SET_DOWN),
             harmless: false,
         };
         if self.phase != Phase::Levitated || contact.unavoidable || contact.touching {

@@ -107,7 +107,7 @@ fn every_scene_is_confirmed() {
 #[test]
 fn the_estimate_sees_what_is_held_over_parts() {
     let exact = ("noise_rms_m = 1e-6\nquantum_m = 1e-7", "");
-    let slow = ("sample_rate_hz = 20000", "sample_rate_hz = 1000");
+    let slow = ("sample_rate_hz = 20000", "sample_rate_hz = 2500");
     let sine = (
         "force_n = [1300.0, 750.0]",
         "force_n = [6.0, 0.0]\nshape = \"sine\"\nfrequency_hz = 45.0",

@@ -32,7 +32,7 @@ fn a_slip_that_contradicts_another_value_names_both() {
     ];
     for (name, factor, other) in slips {
         let mut config = noisy();
-        config.force_slew_n_s = 1e6;
+        config.force_slew_n_s = 5e5;
         assert_eq!(config.validate(), Ok(()));
         let mut values = config.values();
         let index = PARAMETERS.iter().position(|p| p.name == name).unwrap();

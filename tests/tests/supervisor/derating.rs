@@ -101,6 +101,8 @@ fn missed_ticks_are_charged_with_what_acts() {
 fn a_gap_does_not_overshoot() {
     let mut supervisor = Supervisor::<16>::new(&Config {
         sample_period_s: 1e-2,
+        // So slow a rotor that this is no slow tick.
+        mass_kg: 1e4,
         continuous_force_n: 500.0,
         thermal_time_s: 1e-2,
         ..config()

@@ -13,8 +13,9 @@ use supervisor::{Config, PARAMETERS};
 /// Damping of a mode with that of the force \[%\] below which the supervisor leaves flight to levitation.
 pub const LEAST_PERCENT: f64 = -0.5;
 
-/// Largest contact band \[clearances\]: the end of its range.
-const WIDEST_BAND: f32 = 0.3;
+/// Bending beyond the line of the sensors, over the clearance, from which the rigid map from sensors to retainer bearings misleads
+/// a force that drives bending.
+const MOST_BENDING: f64 = 0.1;
 
 /// A bending mode under the supervisor's force in flight, for small vibrations; at rest.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -168,20 +169,31 @@ impl MachineScene {
             if !is_set("bending_first_hz") && !is_set("bending_second_hz") {
                 decided = self.with_modes(configs, &damping);
             }
-            let least = self.least_damping(&decided);
-            if least.is_some_and(|[percent, _]| percent < LEAST_PERCENT)
-                && !is_set("acts_in_flight")
-            {
-                for (config, given) in decided.iter_mut().zip(set) {
+            if self.misleads(&decided) && !is_set("acts_in_flight") {
+                for config in &mut decided {
                     config.acts_in_flight = 0.0;
-                    if !named(given).any(|(name, _)| name == "contact_band") {
-                        config.contact_band = (2.0 * config.contact_band).min(WIDEST_BAND);
-                    }
                 }
             }
         }
         let role = self.role(&decided);
         (decided, role)
+    }
+
+    /// Whether a mode grows under the force for all that is configured, or the retainer bearings are not where the sensors say.
+    fn misleads(&self, configs: &[Config; 2]) -> bool {
+        let least = self.least_damping(configs);
+        least.is_some_and(|[percent, _]| percent < LEAST_PERCENT)
+            || self.bends_by(configs) > MOST_BENDING
+    }
+
+    fn bends_by(&self, configs: &[Config; 2]) -> f64 {
+        self.bending_over_clearance(configs).unwrap_or_default()
+    }
+
+    /// Whether the force would drive a mode that nobody has configured.
+    fn drives(&self, configs: &[Config; 2]) -> bool {
+        let rigid = configured(configs, [0.0; 2]);
+        (self.least_damping(&rigid)).is_some_and(|[percent, _]| percent < 0.0)
     }
 
     /// With one or both of the two modes configured that are damped least, whichever leaves the most damping.
@@ -234,9 +246,14 @@ impl MachineScene {
                 }
             }
         };
-        let driven = self
-            .least_damping(configs)
-            .is_some_and(|[percent, _]| percent < LEAST_PERCENT);
+        let bends_by = self.bends_by(configs);
+        let reason = match bends_by > MOST_BENDING {
+            true => format!(
+                "{reason}; between sensors and retainer bearings the shaft bends by {bends_by:.2} clearances under both caps"
+            ),
+            false => reason,
+        };
+        let driven = self.drives(configs) && self.misleads(configs);
         let by_hand = |value: u8| format!("acts_in_flight = {value} is set; {reason}");
         match (acts, driven) {
             (true, false) => Role {
@@ -337,10 +354,6 @@ impl MachineScene {
 fn reason(parameter: &str, role: &Role) -> String {
     match parameter {
         "acts_in_flight" => role.reason.clone(),
-        "contact_band" => {
-            "twice as wide as suggested of the plane: it acts on evident backward whirl alone"
-                .to_owned()
-        }
         _ => "its force in flight would drive this bending mode".to_owned(),
     }
 }
