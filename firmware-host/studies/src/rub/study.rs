@@ -168,6 +168,7 @@ pub fn study(extent: Extent, progress: &dyn Progress) -> Result<Report, StudyErr
         Block::List(left.collect()),
     ];
     Ok(Report {
+        classes: Vec::new(),
         title: "Forward rub".to_owned(),
         claims,
         cases: cases.len() as u64,
