@@ -34,7 +34,7 @@
 //! ```
 //!
 //! Rooms, each importing only from those above it: `campaign`, `machines`, `accuracy`, `paper`, `overloads`, `found_in_records`, `paired`,
-//! `trials`, `unseen_machines`, `whole_rotors`, `rub`, `loop_rates`, `sensitivity`, `on_target`.
+//! `trials`, `unseen_machines`, `whole_rotors`, `loop_rates`, `sensitivity`, `on_target`.
 
 #![forbid(unsafe_code)]
 #![warn(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
@@ -48,7 +48,6 @@ pub mod on_target;
 pub mod overloads;
 pub mod paired;
 pub mod paper;
-pub mod rub;
 pub mod sensitivity;
 pub mod trials;
 pub mod unseen_machines;
@@ -115,8 +114,8 @@ pub const STUDIES: &[Study] = &[
     Study {
         name: "rub",
         about: "forward rub that levitation alone stays in, on machines drawn at random: how often it is broken",
-        run: rub::study::study,
-        drawn: None,
+        run: paired::rub::study,
+        drawn: Some(paired::rub::drawn),
     },
     Study {
         name: "sensitivity",

@@ -133,7 +133,7 @@ fn records_of_rotors_replay_to_the_bit() {
             .map(|(_, read_out)| read_out?.flight_record)
             .collect();
         Ran {
-            name: format!("{} {number}, {}", class.name(), event.name()),
+            name: format!("{} {number}, {}", kind.name(), class.event.name()),
             record: records.filter(|r| !r.is_empty()).map(|r| r.concat()),
             recovered: None,
         }

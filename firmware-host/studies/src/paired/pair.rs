@@ -28,6 +28,10 @@ pub struct Outcome {
     pub force_n: f64,
     /// ∫ N dt \[N s\].
     pub impulse_n_s: f64,
+    /// Time in contact, of the plane that has the longest \[s\].
+    pub contact_s: f64,
+    /// It whirled backward, in any plane.
+    pub whirled: bool,
 }
 
 impl Outcome {
@@ -41,6 +45,8 @@ impl Outcome {
             touches: planes.iter().map(|f| f.impacts).sum(),
             force_n: (planes.iter().map(|f| f.peak_contact_force_n)).fold(0.0, f64::max),
             impulse_n_s: planes.iter().map(|f| f.contact_impulse_n_s).sum(),
+            contact_s: (planes.iter().map(|f| f.contact_time_s)).fold(0.0, f64::max),
+            whirled: planes.iter().any(|f| f.outcome == Ending::Whirl),
         }
     }
 
