@@ -21,7 +21,7 @@ pub enum Drawn {
     /// In one plane.
     PointMass(Box<Machine>),
     /// In two.
-    Rotor(RotorCase),
+    Rotor(Box<RotorCase>),
 }
 
 impl MachineClass {
@@ -43,7 +43,7 @@ impl MachineClass {
         match self {
             Self::PointMass => Machine::drawn(seed, number).map(of),
             Self::ResilientMount => Machine::resilient(seed, number).map(of),
-            Self::Rotor(class) => Ok(Drawn::Rotor(RotorCase::new(seed, class, number))),
+            Self::Rotor(class) => Ok(Drawn::Rotor(Box::new(RotorCase::new(seed, class, number)))),
         }
         .map_err(|error| error.to_string())
     }
