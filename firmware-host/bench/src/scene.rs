@@ -26,7 +26,7 @@ pub mod tables;
 pub(crate) mod values;
 
 use crate::device::actuator::{AmplifierParams, Outage};
-use crate::device::levitation::LevitationParams;
+use crate::device::levitation::{LevitationParams, SetDown};
 use crate::device::loads::{BaseMotion, Disturbance, Loads, TimedChange};
 use crate::device::sensor::{SensorParams, SpinSensorParams};
 use crate::device::sensor_fault::{Fault, Samples};
@@ -61,6 +61,10 @@ pub struct Scene {
     pub base_motions: Vec<BaseMotion>,
     /// Parameters that change, in order of time.
     pub changes: Vec<TimedChange>,
+    /// Set-downs and lift-offs, in order of time.
+    pub set_downs: Vec<SetDown>,
+    /// Whether the samples say that the rotor levitated up to the start.
+    pub levitated_before: bool,
     /// The centre of the retainer bearing as seen from the centre of magnets and sensors \[m\]. The plant
     /// keeps the retainer bearing at its origin, so a levitated rotor stands at minus this.
     pub centre_offset_m: V2,
@@ -181,7 +185,21 @@ impl Scene {
             .chain(self.outages.iter().map(|o| within(o.start_s, o.end_s())))
             .chain(faults.map(|f| within(f.start_s, f.end_s())))
             .chain(changes.map(|c| c.at_s))
+            .chain(self.set_downs.iter().map(|s| within(s.start_s, s.end_s())))
             .fold(0.0, f64::max)
+    }
+
+    /// Where the levitation controller is to hold the rotor at a time, as seen from the centre of the magnets \[m\].
+    pub fn reference_m(&self, t_s: f64) -> V2 {
+        (self.set_downs.iter())
+            .filter(|s| s.start_s <= t_s)
+            .fold(V2::zeros(), |from_m, s| s.reference_m(from_m, t_s))
+    }
+
+    /// Whether the supervisor is told at a time that the rotor is set down.
+    pub fn set_down_announced(&self, t_s: f64) -> bool {
+        let mut begun = self.set_downs.iter().filter(|s| s.start_s <= t_s);
+        begun.next_back().is_some_and(|s| s.announced)
     }
 
     /// Control samples of a run.

@@ -5,10 +5,9 @@ use crate::cli::error::{CommandError, pretty, print};
 use crate::cli::progress::{LateProgress, Threads};
 use crate::cli::screen::tell;
 use firmware_studies::campaign::Block;
-use firmware_studies::harm::conditions::Condition;
-use firmware_studies::harm::events::Event;
-use firmware_studies::harm::page::{lists, rows, table};
-use firmware_studies::harm::plan::Plan;
+use firmware_studies::paired::harm::classes;
+use firmware_studies::paired::plan::{Class, Plan, rows};
+use firmware_studies::paired::row::{ClassName, lists, table};
 
 /// Arguments of `harm`.
 #[derive(Debug, Clone, clap::Args)]
@@ -19,12 +18,18 @@ pub struct HarmArgs {
     /// Seed of the draw: machines of another one nobody has seen.
     #[arg(long, default_value_t = 1, value_name = "NUMBER")]
     pub seed: u64,
+    /// Only machines whose class contains this.
+    #[arg(long, default_value = "", value_name = "TEXT")]
+    pub class: String,
     /// Only events whose name contains this.
     #[arg(long, default_value = "", value_name = "TEXT")]
     pub event: String,
     /// Only sensors whose name contains this.
     #[arg(long, default_value = "", value_name = "TEXT")]
     pub sensors: String,
+    /// Only configurations whose name contains this.
+    #[arg(long, default_value = "", value_name = "TEXT")]
+    pub configuration: String,
     /// Print JSON instead of the table.
     #[arg(long)]
     pub json: bool,
@@ -33,34 +38,58 @@ pub struct HarmArgs {
     pub threads: Threads,
 }
 
+/// Classes of which a name contains a text.
+fn named(
+    classes: Vec<Class>,
+    (option, text): (&str, &str),
+    of: fn(ClassName) -> String,
+) -> Result<Vec<Class>, CommandError> {
+    let mut names: Vec<String> = Vec::new();
+    let mut left = Vec::new();
+    for class in classes {
+        let name = of(class.name());
+        if name.contains(text) {
+            left.push(class);
+        }
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    if left.is_empty() {
+        return Err(CommandError::Numbers {
+            message: format!("--{option} {text}: no name contains this"),
+            help: format!("names are: {}", names.join("; ")),
+        });
+    }
+    Ok(left)
+}
+
 /// Runs every class and prints a row of each.
 ///
 /// # Errors
 /// [`CommandError`] where nothing is left to run.
 pub fn execute(args: &HarmArgs) -> Result<(), CommandError> {
-    let events: Vec<Event> = (Event::ALL.into_iter())
-        .filter(|event| event.name().contains(&args.event))
-        .collect();
-    let conditions: Vec<Condition> = (Condition::ALL.into_iter())
-        .filter(|condition| condition.name().contains(&args.sensors))
-        .collect();
-    let none = |option: &str, text: &str, names: Vec<String>| CommandError::Numbers {
-        message: format!("--{option} {text}: no name contains this"),
-        help: format!("names are: {}", names.join("; ")),
+    let mut classes = classes();
+    let filters: [(&str, &str, fn(ClassName) -> String); 4] = [
+        ("class", &args.class, |name| name.machine),
+        ("event", &args.event, |name| name.event),
+        ("sensors", &args.sensors, |name| name.sensors),
+        ("configuration", &args.configuration, |name| {
+            name.configuration
+        }),
+    ];
+    for (option, text, of) in filters {
+        classes = named(classes, (option, text), of)?;
+    }
+    let plan = Plan {
+        seed: args.seed,
+        machines: args.machines,
+        classes,
     };
-    if events.is_empty() {
-        let names = Event::ALL.map(|event| event.name().to_owned());
-        return Err(none("event", &args.event, names.to_vec()));
-    }
-    if conditions.is_empty() {
-        let names = Condition::ALL.map(Condition::name);
-        return Err(none("sensors", &args.sensors, names.to_vec()));
-    }
-    let plan = Plan::new(args.seed, args.machines, &events, &conditions);
     let progress = LateProgress::default();
-    let runs = (args.threads.pool()?).install(|| plan.run(&progress));
+    let cases = (args.threads.pool()?).install(|| plan.run(&progress));
     progress.finish();
-    let rows = rows(&runs);
+    let rows = rows(&cases);
     if !args.json {
         let blocks = [table(&rows), Block::List(lists(&rows))];
         return tell(&chapters::of_blocks(&blocks));
@@ -68,7 +97,7 @@ pub fn execute(args: &HarmArgs) -> Result<(), CommandError> {
     let value = serde_json::json!({
         "seed": args.seed,
         "machines": args.machines,
-        "rows": rows,
+        "classes": rows,
     });
     print(&(pretty(&value, "formatting the rows")? + "\n"))
 }

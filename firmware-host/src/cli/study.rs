@@ -6,7 +6,9 @@ use crate::cli::output::{self, Staging};
 use crate::cli::progress::{LateProgress, Threads};
 use crate::cli::screen::tell;
 use firmware_studies::STUDIES;
-use firmware_studies::campaign::{Claim, Extent, Report, Study, StudyError, html, markdown};
+use firmware_studies::campaign::{
+    Claim, Extent, Machines, Report, Study, StudyError, html, markdown,
+};
 use firmware_studies::on_target::measure::TargetError;
 use serde::Serialize;
 use std::path::PathBuf;
@@ -21,7 +23,13 @@ pub struct StudyArgs {
     /// Fewer cases: seconds to a minute.
     #[arg(long)]
     pub quick: bool,
-    /// Print claims, number of cases and seconds as JSON instead of the table.
+    /// Machines of each class, of a study on machines drawn at random.
+    #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u64).range(1..=100_000))]
+    pub machines: Option<u64>,
+    /// Seed of their draw.
+    #[arg(long, value_name = "NUMBER")]
+    pub seed: Option<u64>,
+    /// Print claims, classes, number of cases and seconds as JSON instead of the table.
     #[arg(long)]
     pub json: bool,
     /// Print the page of the documentation, in Markdown, instead of the table.
@@ -52,6 +60,8 @@ struct Measured<'a> {
     quick: bool,
     claims: &'a [Claim],
     cases: u64,
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    classes: &'a [serde_json::Value],
     seconds: f64,
 }
 
@@ -86,8 +96,12 @@ fn run(study: &Study, args: &StudyArgs) -> Result<(), CommandError> {
         output::probe(out)?;
     }
     let (bar, begun) = (LateProgress::default(), Instant::now());
+    let (extent, machines) = (Extent::new(args.quick), machines_of(study, args)?);
     let report = (args.threads.pool()?)
-        .install(|| (study.run)(Extent::new(args.quick), &bar))
+        .install(|| match (study.drawn, machines) {
+            (Some(drawn), Some(machines)) => drawn(machines, extent, &bar),
+            _ => (study.run)(extent, &bar),
+        })
         .map_err(|error| failed(study.name, error))?;
     bar.finish();
     let seconds = begun.elapsed().as_secs_f64();
@@ -107,6 +121,7 @@ fn run(study: &Study, args: &StudyArgs) -> Result<(), CommandError> {
             quick: args.quick,
             claims: &report.claims,
             cases: report.cases,
+            classes: &report.classes,
             seconds,
         };
         print(&(pretty(&measured, "formatting the claims")? + "\n"))?;
@@ -115,6 +130,26 @@ fn run(study: &Study, args: &StudyArgs) -> Result<(), CommandError> {
         tell(&format!("{text}; {} cases, {seconds:.1} s\n", report.cases))?;
     }
     strictly(args.strict, &report)
+}
+
+/// Machines that are asked for, of a study that has such.
+fn machines_of(study: &Study, args: &StudyArgs) -> Result<Option<Machines>, CommandError> {
+    let machines = Machines {
+        seed: args.seed,
+        number: args.machines,
+    };
+    if machines == Machines::default() {
+        return Ok(None);
+    }
+    if study.drawn.is_none() {
+        let with = STUDIES.iter().filter(|study| study.drawn.is_some());
+        let names: Vec<&str> = with.map(|study| study.name).collect();
+        return Err(CommandError::Numbers {
+            message: format!("{} is not on machines drawn at random", study.name),
+            help: format!("--seed and --machines are of {}", names.join(", ")),
+        });
+    }
+    Ok(Some(machines))
 }
 
 fn strictly(strict: bool, report: &Report) -> Result<(), CommandError> {

@@ -21,6 +21,7 @@
 //!         title: "There and back".to_owned(),
 //!         claims: vec![Claim::at_most("restitution, off", 1e-9, off.fold(0.0, f64::max))],
 //!         cases: cases.len() as u64,
+//!         classes: Vec::new(),
 //!         chapters: vec![Chapter::new("All", vec![Block::table(["e", "back"], rows)])],
 //!     })
 //! }
@@ -29,6 +30,7 @@
 //!     name: "there-and-back",
 //!     about: "whether the damping ratio of a restitution has that restitution",
 //!     run: there_and_back,
+//!     drawn: None,
 //! };
 //! let report = (study.run)(Extent::Quick, &()).unwrap();
 //! assert!(report.claims[0].holds && report.cases == 3);
@@ -88,6 +90,15 @@ impl Progress for () {
 /// Why a study has no result.
 pub type StudyError = Box<dyn std::error::Error + Send + Sync>;
 
+/// Machines drawn at random; `None`: as the study has it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Machines {
+    /// Seed of the draw.
+    pub seed: Option<u64>,
+    /// Machines of each class.
+    pub number: Option<u64>,
+}
+
 /// A study.
 #[derive(Debug)]
 pub struct Study {
@@ -97,7 +108,12 @@ pub struct Study {
     pub about: &'static str,
     /// Runs it on the threads of the pool that it is called in.
     pub run: fn(Extent, &dyn Progress) -> Result<Report, StudyError>,
+    /// The same on other machines, where they are drawn at random.
+    pub drawn: Option<OnMachines>,
 }
+
+/// Runs a study on machines drawn at random.
+pub type OnMachines = fn(Machines, Extent, &dyn Progress) -> Result<Report, StudyError>;
 
 /// What came out of a study.
 #[derive(Debug, Clone)]
@@ -108,6 +124,8 @@ pub struct Report {
     pub claims: Vec<Claim>,
     /// Runs or problems behind it.
     pub cases: u64,
+    /// Classes of pairs of runs, as programs read them; none of a study that has no such.
+    pub classes: Vec<serde_json::Value>,
     /// What is shown beside the claims.
     pub chapters: Vec<Chapter>,
 }

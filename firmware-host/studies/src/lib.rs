@@ -33,8 +33,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Rooms, each importing only from those above it: `campaign`, `machines`, `accuracy`, `paper`, `overloads`, `found_in_records`, `harm`,
-//! `trials`, `unseen_machines`, `whole_rotors`, `rub`, `loop_rates`, `sensitivity`, `on_target`.
+//! Rooms, each importing only from those above it: `campaign`, `machines`, `accuracy`, `paper`, `overloads`, `found_in_records`, `paired`,
+//! `trials`, `unseen_machines`, `whole_rotors`, `loop_rates`, `sensitivity`, `on_target`.
 
 #![forbid(unsafe_code)]
 #![warn(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
@@ -42,13 +42,12 @@
 pub mod accuracy;
 pub mod campaign;
 pub mod found_in_records;
-pub mod harm;
 pub mod loop_rates;
 pub mod machines;
 pub mod on_target;
 pub mod overloads;
+pub mod paired;
 pub mod paper;
-pub mod rub;
 pub mod sensitivity;
 pub mod trials;
 pub mod unseen_machines;
@@ -62,75 +61,90 @@ pub const STUDIES: &[Study] = &[
         name: "accuracy",
         about: "error against run time of the integrator on its benchmark problems",
         run: accuracy::study::study,
+        drawn: None,
     },
     Study {
         name: "bending",
         about: "what it is worth to tell the supervisor of a bending mode, and what it costs to tell it wrong",
-        run: whole_rotors::told_bending::study,
+        run: paired::bending::study,
+        drawn: None,
     },
     Study {
         name: "cycles",
         about: "what a tick takes in cycles, by a model of each processor and a trace of every instruction",
         run: on_target::cycles::study,
+        drawn: None,
     },
     Study {
         name: "found-in-records",
         about: "impacts, friction, restitution and outcome as found in flight records of the catalogue, against the plant",
         run: found_in_records::study,
+        drawn: None,
     },
     Study {
         name: "harm",
         about: "the supervisor against levitation alone on machines drawn at random, with sensors as they are",
-        run: harm::study::study,
+        run: paired::harm::study,
+        drawn: Some(paired::harm::drawn),
     },
     Study {
         name: "loop-rates",
         about: "what a slower call of the supervisor costs",
         run: loop_rates::study,
+        drawn: None,
     },
     Study {
         name: "overloads",
         about: "every overload of the catalogue under every policy, against what the supervisor promises",
         run: overloads::page::study,
+        drawn: None,
     },
     Study {
         name: "paper",
         about: "every number and figure of the paper, computed",
         run: paper::study,
+        drawn: None,
     },
     Study {
         name: "rotor-catalogue",
         about: "hardest blows and overloads of the catalogue's whole rotors, P5 to P8",
         run: whole_rotors::catalogue::study,
+        drawn: None,
     },
     Study {
         name: "rub",
         about: "forward rub that levitation alone stays in, on machines drawn at random: how often it is broken",
-        run: rub::study::study,
+        run: paired::rub::study,
+        drawn: Some(paired::rub::drawn),
     },
     Study {
         name: "sensitivity",
         about: "what it costs when the supervisor is told wrong data of its machine",
         run: sensitivity::study::study,
+        drawn: None,
     },
     Study {
         name: "target",
         about: "the supervisor on emulated processors: bits, instructions, sizes",
         run: on_target::study::study,
+        drawn: None,
     },
     Study {
         name: "unseen-machines",
         about: "the catalogue on machines that nothing was tuned on, by how late their forces come",
         run: unseen_machines::study,
+        drawn: None,
     },
     Study {
         name: "whole-rotors",
         about: "the supervisor of both planes against levitation alone on rotors drawn at random: rigid, gyroscopic, flexible",
-        run: whole_rotors::study::study,
+        run: paired::whole_rotors::study,
+        drawn: Some(paired::whole_rotors::drawn),
     },
     Study {
         name: "worst-tick",
         about: "the dearest tick on an emulated Cortex-M4, looked for by changing the dearest so far",
         run: on_target::worst_tick::study,
+        drawn: None,
     },
 ];

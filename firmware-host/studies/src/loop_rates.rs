@@ -156,6 +156,7 @@ pub fn study(extent: Extent, progress: &dyn Progress) -> Result<Report, StudyErr
         chapters.push(scenes(&by_rate, &mut claims));
     }
     Ok(Report {
+        classes: Vec::new(),
         title: "Rates of the loop".to_owned(),
         claims,
         cases: (all.len() + scenes_run) as u64,

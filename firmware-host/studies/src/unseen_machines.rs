@@ -88,6 +88,7 @@ pub fn study(extent: Extent, progress: &dyn Progress) -> Result<Report, StudyErr
         ),
     ];
     Ok(Report {
+        classes: Vec::new(),
         title: "Unseen machines".to_owned(),
         claims,
         cases: classes.iter().map(|of| of.runs as u64).sum(),

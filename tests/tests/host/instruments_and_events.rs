@@ -6,6 +6,7 @@ mod faults;
 mod loads;
 mod magnet;
 mod refusals;
+mod set_down;
 
 use firmware_bench::run::closed_loop::{Keep, run};
 use firmware_bench::run::figures::Figures;

@@ -6,12 +6,13 @@ use firmware_bench::run::clairvoyant::restitution;
 use firmware_bench::run::closed_loop::{Keep, run};
 use firmware_bench::run::trace::Trace;
 use firmware_bench::scene::Scene;
+use firmware_bench::scene::machine::AnyScene;
 use firmware_bench::scene::policy_kind::PolicyKind;
 use firmware_studies::campaign::{Extent, run_all};
 use firmware_studies::found_in_records::{Share, contacts, study};
-use firmware_studies::harm::conditions::Condition;
-use firmware_studies::harm::events::Event;
-use firmware_studies::harm::plan::scene;
+use firmware_studies::paired::events::Point as Event;
+use firmware_studies::paired::plan::Class;
+use firmware_studies::paired::sensors::Sensors;
 
 const SEED: u64 = 20_261_201;
 const MACHINES: u64 = 40;
@@ -104,7 +105,10 @@ fn what_is_found_in_records_is_what_the_plant_did() {
         jobs.extend(events.map(|event| (event, number)));
     }
     let all = run_all(&jobs, &(), |(event, number)| {
-        let (_, mut scene) = scene(SEED, (*event, Condition::Told), *number);
+        let class = Class::of_point_masses(*event, Sensors::AsConfigured);
+        let (AnyScene::Plane(mut scene), _) = class.scene(SEED, *number).unwrap() else {
+            unreachable!("a point mass")
+        };
         unbalance(&mut scene, *number);
         let ran = run(&scene, PolicyKind::Supervisor, Keep::Trace, &mut |_| {});
         let (_, trace) = ran.ok()?;

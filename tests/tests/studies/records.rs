@@ -3,12 +3,12 @@
 use firmware_bench::record::file::RecordFile;
 use firmware_bench::run::closed_loop::{Keep, MachineRecorders, Rigour, record_machine, run};
 use firmware_bench::run::trace::{Recorder, TraceRow};
+use firmware_bench::scene::machine::AnyScene;
 use firmware_bench::scene::policy_kind::PolicyKind;
 use firmware_studies::campaign::run_all;
-use firmware_studies::harm::conditions::Condition;
-use firmware_studies::harm::events::Event;
-use firmware_studies::harm::plan::scene;
-use firmware_studies::whole_rotors::{Class, Event as RotorEvent, RotorCase};
+use firmware_studies::machines::rotors::RotorCase;
+use firmware_studies::paired::machines::MachineClass;
+use firmware_studies::paired::{harm, whole_rotors};
 use supervisor::Mode;
 
 /// What came of a run with a record.
@@ -58,12 +58,12 @@ fn check(ran: &[Ran], planes: usize) -> (usize, usize, usize) {
 fn records_of_closed_loops_replay_to_the_bit() {
     let mut jobs = Vec::new();
     for number in 0..20 {
-        for event in Event::ALL {
-            jobs.extend(Condition::ALL.map(|condition| (event, condition, number)));
-        }
+        jobs.extend(harm::claimed().into_iter().map(|class| (class, number)));
     }
-    let ran = run_all(&jobs, &(), |(event, condition, number)| {
-        let (_, scene) = scene(20_261_126, (*event, *condition), *number);
+    let ran = run_all(&jobs, &(), |(class, number)| {
+        let (AnyScene::Plane(scene), _) = class.scene(20_261_126, *number).unwrap() else {
+            unreachable!("a point mass")
+        };
         let ran = run(&scene, PolicyKind::Supervisor, Keep::Trace, &mut |_| {});
         let (recovered, read_out) = match ran {
             Ok((figures, trace)) => (Some(figures.recovered), trace.read_out),
@@ -98,14 +98,17 @@ impl Recorder for Nobody {
 fn records_of_rotors_replay_to_the_bit() {
     let mut jobs = Vec::new();
     for number in 0..4 {
-        for class in [Class::Rigid, Class::Gyroscopic, Class::Flexible] {
-            jobs.extend(RotorEvent::ALL.map(|event| (class, event, number)));
-        }
+        let classes = whole_rotors::claimed().into_iter();
+        jobs.extend(classes.map(|class| (class, number)));
     }
-    let ran = run_all(&jobs, &(), |(class, event, number)| {
-        let rotor = RotorCase::new(20_261_126, *class, *number);
-        let scene = rotor.scene(*event);
-        let mut scene = scene.unwrap_or_else(|error| panic!("{error}"));
+    let ran = run_all(&jobs, &(), |(class, number)| {
+        let MachineClass::Rotor(kind) = class.machine else {
+            unreachable!("a rotor")
+        };
+        let rotor = RotorCase::new(20_261_126, kind, *number);
+        let (AnyScene::Machine(mut scene), _) = class.scene(20_261_126, *number).unwrap() else {
+            unreachable!("a rotor")
+        };
         // Told, so that what is kept apart is replayed as well.
         for plane in &mut scene.planes {
             if let (Some(config), Some(hz)) = (&mut plane.scene.supervisor, rotor.bending_hz()) {
@@ -130,7 +133,7 @@ fn records_of_rotors_replay_to_the_bit() {
             .map(|(_, read_out)| read_out?.flight_record)
             .collect();
         Ran {
-            name: format!("{} {number}, {}", class.name(), event.name()),
+            name: format!("{} {number}, {}", kind.name(), class.event.name()),
             record: records.filter(|r| !r.is_empty()).map(|r| r.concat()),
             recovered: None,
         }

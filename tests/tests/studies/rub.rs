@@ -1,12 +1,12 @@
 //! Forward rub that levitation alone stays in is broken where a force within the cap can.
 
-use firmware_bench::scene::policy_kind::PolicyKind::{Levitation, Supervisor};
 use firmware_studies::campaign::Extent;
-use firmware_studies::rub::{Motion, RubCase, study};
+use firmware_studies::machines::unbalanced::{Motion, RubCase};
+use firmware_studies::paired::rub::study;
 
 #[test]
 fn rubs_are_broken_where_the_cap_can() {
-    let report = study::study(Extent::Quick, &()).unwrap();
+    let report = study(Extent::Quick, &()).unwrap();
     let claim = |name: &str| {
         report
             .claims
@@ -27,13 +27,9 @@ fn rubs_are_broken_where_the_cap_can() {
 fn a_rotor_that_was_driven_off_the_wall_is_seen_to_the_middle() {
     for number in [41, 87, 253, 458] {
         let case = RubCase::new(7, Motion::Conical, number);
-        for kind in [Levitation, Supervisor] {
-            let run = case.driven(kind).unwrap();
-            assert!(
-                run.free && !run.whirled,
-                "{}: {kind:?} {run:?}",
-                case.text()
-            );
+        let [driven, _] = case.pairs().of_free().unwrap();
+        for run in [driven.levitation, driven.supervisor] {
+            assert!(run.recovered && !run.whirled, "{}: {run:?}", case.text());
         }
     }
 }
@@ -44,10 +40,10 @@ fn the_closed_form_parts_them() {
     let (mut inside, mut outside) = (0, 0);
     for number in 0..300 {
         let case = RubCase::new(7, Motion::OnePlane, number);
-        if case.runs_free() != Some(true) {
+        let Some([driven, _]) = case.pairs().of_free() else {
             continue;
-        }
-        let stays = case.driven(Levitation).is_some_and(|run| run.stays());
+        };
+        let stays = case.stays(&driven.levitation);
         match case.reserve() {
             r if r > 4.0 => {
                 inside += 1;

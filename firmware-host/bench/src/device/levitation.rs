@@ -19,6 +19,32 @@ pub struct LevitationParams {
     pub derivative_filter_s: f64,
 }
 
+/// The controller's reference goes to another place, evenly, and stays there.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SetDown {
+    /// Beginning \[s\].
+    pub start_s: f64,
+    /// Time in which it goes there \[s\].
+    pub duration_s: f64,
+    /// Where, as seen from the centre of the magnets \[m\].
+    pub to_m: V2,
+    /// Whether the supervisor is told.
+    pub announced: bool,
+}
+
+impl SetDown {
+    /// End of the way \[s\].
+    pub fn end_s(&self) -> f64 {
+        self.start_s + self.duration_s
+    }
+
+    /// The reference at a time not before the start, from where it was \[m\].
+    pub fn reference_m(&self, from_m: V2, t_s: f64) -> V2 {
+        let share = ((t_s - self.start_s) / self.duration_s).clamp(0.0, 1.0);
+        from_m + share * (self.to_m - from_m)
+    }
+}
+
 /// Velocity from positions by differences, smoothed.
 #[derive(Debug, Clone)]
 pub struct VelocityFilter {

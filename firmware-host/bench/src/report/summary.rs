@@ -258,6 +258,12 @@ fn disturbances(scene: &Scene) -> Vec<Disturbed> {
     for c in &scene.changes {
         all.push(disturbed(change(c), c.at_s, c.at_s));
     }
+    for s in &scene.set_downs {
+        let known = if s.announced { "" } else { "not " };
+        let to = vector(1e6 * s.to_m);
+        let what = format!("reference to {to} µm, {known}announced");
+        all.push(disturbed(what, s.start_s, s.end_s()));
+    }
     all.sort_by(|a, b| a.from_s.total_cmp(&b.from_s));
     all
 }

@@ -72,6 +72,7 @@ pub fn scene_of_event(
     scene.changes.clear();
     scene.outages.clear();
     scene.faults.clear();
+    scene.set_downs.clear();
     scene.duration_s = duration_s;
     scene.title = format!("The event once more, on: {}", scene.title);
     Ok(scene)

@@ -58,6 +58,8 @@ pub enum Force {
 pub struct Seen {
     /// Position and its number.
     pub reading: Reading,
+    /// Where the levitation controller is to hold the rotor, as readings are counted \[m\].
+    pub reference_m: V2,
     /// Spin as reported \[rad/s\].
     pub spin_rad_s: f64,
     /// Force that the magnet delivers \[N\]; counts with [`Status::APPLIED_VALID`].
@@ -67,6 +69,16 @@ pub struct Seen {
     /// Force that a levitation controller of the whole rotor, or a reference, asks this plane for \[N\]; zero where there is
     /// none.
     pub levitation_n: V2,
+}
+
+impl Seen {
+    /// The reading as the levitation controller takes it: from its reference.
+    pub(crate) fn off_reference(&self) -> Reading {
+        Reading {
+            position_m: self.reading.position_m - self.reference_m,
+            ..self.reading
+        }
+    }
 }
 
 /// The controller of a policy, set up for a scene; `None` where the scene lacks what it needs (which [`Scene::load`] refuses).
@@ -140,7 +152,7 @@ trait Levitate: core::fmt::Debug {
 
 impl Levitate for Levitation {
     fn levitation_n(&mut self, seen: &Seen, hint: IntegratorHint) -> V2 {
-        self.force_n(seen.reading.position_m, hint)
+        self.force_n(seen.off_reference().position_m, hint)
     }
 }
 
@@ -238,7 +250,7 @@ impl Controller for Damping {
 /// The saturated levitation controller alone.
 impl Controller for Levitation {
     fn command(&mut self, seen: &Seen, _truth: &Snapshot) -> Force {
-        Force::Computed(self.force_n(seen.reading.position_m, IntegratorHint::Run))
+        Force::Computed(self.force_n(seen.off_reference().position_m, IntegratorHint::Run))
     }
 }
 

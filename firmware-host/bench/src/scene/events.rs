@@ -2,15 +2,16 @@
 
 use crate::device::actuator::{Delivers, Outage};
 use crate::device::axis::Axis;
+use crate::device::levitation::SetDown;
 use crate::device::loads::{BaseMotion, Disturbance, Shape, TimedChange};
 use crate::device::sensor_fault::{Fault, FaultKind};
 use crate::scene::diagnostic::SceneError;
 use crate::scene::keys::{Absent, Range};
 use crate::scene::plane_spec::PlaneSpec;
-use crate::scene::tables::{ChangeTable, FaultTable, OutageTable};
+use crate::scene::tables::{ChangeTable, FaultTable, OutageTable, SetDownTable};
 use crate::scene::values::{FaultName, ShapeName};
-use plant_model::Change;
 use plant_model::machine::params::Unbalance;
+use plant_model::{Change, V2};
 use toml::Table;
 
 /// Everything that happens.
@@ -20,6 +21,7 @@ pub(crate) struct Events {
     pub(crate) outages: Vec<Outage>,
     pub(crate) faults: Vec<Fault>,
     pub(crate) changes: Vec<TimedChange>,
+    pub(crate) set_downs: Vec<SetDown>,
 }
 
 /// The events of a scene file, checked.
@@ -54,12 +56,17 @@ pub(crate) fn events(spec: &PlaneSpec) -> Result<Events, SceneError> {
     let mut changes = each("change", &written.change, |path, c| reader.change(path, c))?;
     reader.no_change_twice()?;
     changes.sort_by(|a, b| a.at_s.total_cmp(&b.at_s));
+    let mut set_downs = each("set_down", &written.set_down, |path, s| {
+        reader.set_down(path, s)
+    })?;
+    set_downs.sort_by(|a, b| a.start_s.total_cmp(&b.start_s));
     Ok(Events {
         disturbances,
         base_motions,
         outages,
         faults,
         changes,
+        set_downs,
     })
 }
 
@@ -116,6 +123,22 @@ impl Reader<'_> {
             delivers: o.delivers,
             axis: o.axis,
             known: o.known,
+        })
+    }
+
+    fn set_down(&self, path: &str, s: &SetDownTable) -> Result<SetDown, SceneError> {
+        let tables = &self.spec.tables;
+        if tables.levitation.is_none() {
+            let message = "moves the reference of [levitation], and there is none";
+            let help = "add [levitation] with its gains, or remove it";
+            return Err(self.error(path, message, help));
+        }
+        self.starts(path, "start_s", s.start_s)?;
+        Ok(SetDown {
+            start_s: s.start_s,
+            duration_s: s.duration_s,
+            to_m: self.spec.contact.clearance_m * V2::from(s.to),
+            announced: s.announced,
         })
     }
 

@@ -145,6 +145,7 @@ fn with_own(mut tables: SceneTables, plane: &PlaneTable) -> SceneTables {
         (tables.magnet, tables.biquads, tables.levitation) = (None, None, None);
         tables.outage.clear();
         tables.fault.clear();
+        tables.set_down.clear();
     }
     tables.plane.clear();
     tables

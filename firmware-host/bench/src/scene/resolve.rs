@@ -150,6 +150,8 @@ impl PlaneSpec {
             disturbances: events.disturbances,
             base_motions: events.base_motions,
             changes: events.changes,
+            set_downs: events.set_downs,
+            levitated_before: written.start.levitated_before,
             centre_offset_m,
             severity_allowed: written.retainer.severity_allowed,
             duration_s: run.duration_s,

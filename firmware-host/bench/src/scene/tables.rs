@@ -46,6 +46,7 @@ key_tables! {
         base_motion: Vec<BaseMotionTable> [= Vec::new()], "", ANY, "acceleration of the housing for a while; only of a rigid stator", "shock", "base", "earthquake";
         outage: Vec<OutageTable> [= Vec::new()], "", ANY, "the amplifier does not deliver what it should for a while", "power_loss", "failure";
         fault: Vec<FaultTable> [= Vec::new()], "", ANY, "of the position sensor, at samples from the start to before the end; see [faults](#faults)", "sensor_fault";
+        set_down: Vec<SetDownTable> [= Vec::new()], "", ANY, "the reference of `levitation` goes to another place and stays there: the rotor is set down, or lifted again", "landing", "reference", "lift_off";
         unbalance: Vec<UnbalanceTable> [= Vec::new()], "", ANY, "a residual unbalance; with `[[plane]]` only", "imbalance";
         change: Vec<ChangeTable> [= Vec::new()], "", ANY, "parameters of the plant that take other values from a time on; see [changes](#changes)";
         verdict: VerdictTable [= VerdictTable::default()], "", ANY, "how the end is judged", "outcome";
@@ -103,6 +104,7 @@ key_tables! {
         tilt_rad: Option<Pair> [or "0"], "rad", Finite, "slope of the axis, dx/dz and dy/dz; with `[[plane]]` only", "tilt", "angle_rad";
         tilt_rate_rad_s: Option<Pair> [or "0"], "rad/s", Finite, "its rate; with `[[plane]]` only", "tilt_rate";
         spin_phase_rad: f64 [= 0.0], "rad", Finite, "σ at t = 0, the angle of the unbalance", "angle", "phase";
+        levitated_before: bool [= false], "", ANY, "whether the rotor levitated up to t = 0, which every sample then says (`LEVITATED_BEFORE`): for a scene that begins with what happens";
     }
 
     StatorTable [Default] {
@@ -290,6 +292,13 @@ key_tables! {
         delivers: Delivers [= Delivers::Nothing], "", ANY, "no force, the force with the other sign, or along x what is meant for y and the other way round (both axes only)", "kind";
         axis: Axis [= Axis::Both], "", ANY, "which axis fails";
         known: bool [= false], "", ANY, "whether the firmware knows: while known outages cover both axes the supervisor is told that the bearing is off, and of each axis that it is lost. Only of an amplifier that delivers nothing";
+    }
+
+    SetDownTable {
+        start_s: f64 [required], "s", START_S, "must lie before the end of the run", "t", "time", "at_s";
+        duration_s: f64 [required], "s", DURATION_S, "in which the reference goes there, evenly", "length";
+        to: Pair [required "give [x, y] in clearances, as [0.0, -1.2]"], "1", Within(-100.0, 100.0), "where it goes, in clearances, as seen from the magnets; beyond 1 the rotor is pressed on its retainer bearing", "reference", "target";
+        announced: bool [= false], "", ANY, "whether the supervisor is told (`SET_DOWN`), from `start_s` until another one starts";
     }
 
     FaultTable {

@@ -156,6 +156,7 @@ pub fn study(extent: Extent, progress: &dyn Progress) -> Result<Report, StudyErr
     let found = measure(&scenes, when, progress)?;
     let runs_of_starts: u32 = found.wrong_runs.iter().map(|row| row.of).sum();
     Ok(Report {
+        classes: Vec::new(),
         title: "Error against run time".to_owned(),
         claims: claims(&found),
         cases: (found.rows.len() as u64) + u64::from(runs_of_starts),

@@ -208,6 +208,7 @@ pub fn study(extent: Extent, progress: &dyn Progress) -> Result<Report, StudyErr
         false => Block::table(["scene", "record", "plant"], differing),
     };
     Ok(Report {
+        classes: Vec::new(),
         title: "What is found in records".to_owned(),
         claims,
         cases: jobs.len() as u64,

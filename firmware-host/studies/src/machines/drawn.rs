@@ -15,6 +15,8 @@ pub struct Machine {
     pub number: u64,
     /// As a scene.
     pub scene: Scene,
+    /// As a scene file.
+    pub toml: String,
     /// In words.
     pub text: String,
 }
@@ -71,7 +73,7 @@ impl Drawn {
             derivative_n_s_m,
             derivative_filter_s,
         } = levitation;
-        let text = format!(
+        let toml = format!(
             r#"
 title = "{name}"
 [run]
@@ -106,7 +108,7 @@ integral_n_m_s = {integral_n_m_s}
 feed_forward_weight = true
 "#
         );
-        let scene = Scene::parse(name, &text)?;
+        let scene = Scene::parse(name, &toml)?;
         let unit_s = (clearance_m * mass_kg / force_n).sqrt();
         let text = format!(
             "{name}: {mass_kg:.1} kg, {:.0} µm, {force_n:.0} N, pull {pull:.2}, t₀ {:.2} ms, {:.0} kHz, spin {spin_hz:.0} Hz, noise {:.1} %",
@@ -118,6 +120,7 @@ feed_forward_weight = true
         Ok(Machine {
             number,
             scene,
+            toml,
             text,
         })
     }
@@ -132,6 +135,20 @@ impl Machine {
     /// # Errors
     /// A machine that is no valid scene: a mistake of this draw.
     pub fn drawn(seed: u64, number: u64) -> Result<Self, SceneError> {
+        Self::mounted(seed, number, None)
+    }
+
+    /// The same on a mount that gives way: contact stiffness of 5 to 30 caps over the clearance.
+    ///
+    /// # Errors
+    /// As [`Self::drawn`].
+    pub fn resilient(seed: u64, number: u64) -> Result<Self, SceneError> {
+        let caps = Draw::new(!seed, number).decades(5.0, 30.0);
+        Self::mounted(seed, number, Some(caps))
+    }
+
+    /// Machine of a number; its contact stiffness in caps over the clearance, where the mount has it.
+    fn mounted(seed: u64, number: u64, mount: Option<f64>) -> Result<Self, SceneError> {
         let mut draw = Draw::new(seed, number);
         let mass_kg = draw.decades(0.5, 300.0);
         let clearance_m = draw.decades(1e-4, 4e-4);
@@ -142,7 +159,8 @@ impl Machine {
         let negative_n_m = pull * per_clearance_n_m;
         let friction = draw.between(0.1, 0.35);
         let restitution = draw.between(0.4, 0.9);
-        let contact_n_m = mass_kg * (TAU * draw.decades(600.0, 2000.0)).powi(2);
+        let stiff_n_m = mass_kg * (TAU * draw.decades(600.0, 2000.0)).powi(2);
+        let contact_n_m = mount.map_or(stiff_n_m, |caps| caps * per_clearance_n_m);
         // A lag that is much of the time to cross the clearance makes any loop unstable.
         let unit_s = (clearance_m * mass_kg / force_n).sqrt();
         let lag_s = draw.decades(5e-5, 4e-4).min(0.2 * unit_s);

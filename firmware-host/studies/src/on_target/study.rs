@@ -142,6 +142,7 @@ pub fn study(extent: Extent, progress: &dyn Progress) -> Result<campaign::Report
     };
     let report = run_on(Path::new("."), &MACHINES, wanted, progress)?;
     Ok(campaign::Report {
+        classes: Vec::new(),
         title: "On the target".to_owned(),
         claims: report.targets.iter().flat_map(claims).collect(),
         cases: (report.targets.iter())

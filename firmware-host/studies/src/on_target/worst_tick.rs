@@ -214,6 +214,7 @@ pub fn study(extent: Extent, progress: &dyn Progress) -> Result<Report, StudyErr
     );
     let columns = ["rounds", "ticks", "most instructions of a tick"];
     Ok(Report {
+        classes: Vec::new(),
         title: "The worst tick".to_owned(),
         claims: vec![
             Claim::at_least(dearest_found, 1.0, over_counted),

@@ -36,7 +36,10 @@ pub fn recoverable_from(
     make: &dyn Fn(&Scene) -> Option<Box<dyn Controller>>,
     from_m_s: f64,
 ) -> Result<f64, RunError> {
-    let mut scene = scene.clone();
+    let mut scene = Scene {
+        levitated_before: true,
+        ..scene.clone()
+    };
     let skipped = (from_m_s / FIRST_M_S).ln() / STEP.ln();
     let mut step = skipped.floor().max(0.0) as i32;
     let mut last = 0.0;

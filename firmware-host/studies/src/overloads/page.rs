@@ -50,6 +50,7 @@ pub fn report(catalogue: &Catalogue, extent: Extent) -> Report {
         }),
     );
     Report {
+        classes: Vec::new(),
         title: "Catalogue of overloads".to_owned(),
         claims: catalogue.promises.clone(),
         cases: catalogue.results.len() as u64,

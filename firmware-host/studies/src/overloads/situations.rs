@@ -39,6 +39,7 @@ type Way<'a> = &'a dyn Fn(f64, &mut Scene);
 pub fn situations(base: &Scene, sizes: Sizes, tuned: LevitationParams) -> Vec<Situation> {
     let at_rest = |_share: f64, _scene: &mut Scene| {};
     let impact = |share: f64, scene: &mut Scene| {
+        scene.levitated_before = true;
         scene.start = aimed(base, share * sizes.impact_m_s, 30.0);
     };
     let whirl = |share: f64, scene: &mut Scene| {

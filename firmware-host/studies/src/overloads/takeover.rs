@@ -40,6 +40,7 @@ pub(crate) fn lost_beyond_m_s(speed_m_s: f64) -> f64 {
 /// Lets a scene begin [`whirling`]. Its limit of whirl gives way where the start is beyond it.
 pub fn let_whirl(scene: &mut Scene, speed_m_s: f64) {
     scene.start = whirling(scene, speed_m_s);
+    scene.levitated_before = true;
     scene.whirl_speed_m_s = scene.whirl_speed_m_s.max(lost_beyond_m_s(speed_m_s));
 }
 
@@ -60,6 +61,7 @@ pub fn take_over(
     let scene = Scene {
         start: whirling(scene, speed_m_s),
         whirl_speed_m_s: lost_beyond_m_s(speed_m_s),
+        levitated_before: true,
         ..scene.clone()
     };
     let backward = -scene.start.spin_rad_s.signum();

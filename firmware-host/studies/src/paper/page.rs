@@ -36,6 +36,7 @@ pub fn study(extent: Extent, progress: &dyn Progress) -> Result<Report, StudyErr
     } = page(&chapters);
     let rows = chapters.iter().flat_map(|chapter| &chapter.rows);
     Ok(Report {
+        classes: Vec::new(),
         title,
         cases: rows.clone().count() as u64,
         claims: rows.flat_map(claims).collect(),

@@ -182,6 +182,7 @@ pub fn study(extent: Extent, progress: &dyn Progress) -> Result<Report, StudyErr
         chapters.push(chapter(&outcome, *width, trials.len()));
     }
     Ok(Report {
+        classes: Vec::new(),
         title: "How well it must know its machine".to_owned(),
         claims,
         cases,

@@ -5,7 +5,7 @@ mod happened;
 mod loaded;
 mod struck;
 
-use self::happened::Happened;
+use self::happened::{Happened, claims as claims_of};
 use self::loaded::Loaded;
 use self::struck::Struck;
 use super::incidents::Hardest;
@@ -68,8 +68,8 @@ pub fn study(extent: Extent, progress: &dyn Progress) -> Result<Report, StudyErr
             centre_m_s: alone_m_s(Blow::Centre),
         };
         let of = happened.of(&loops, hardest, extent, progress);
-        claims.extend(of.claims(name));
-        cases += of.runs;
+        claims.extend(claims_of(&of, name));
+        cases += of.pairs + of.untrusted;
         if extent == Extent::Full {
             for (what, over) in told_wrong(plant, own, progress) {
                 cases += Blow::ALL.len() as u64;
@@ -97,6 +97,7 @@ pub fn study(extent: Extent, progress: &dyn Progress) -> Result<Report, StudyErr
         ));
     }
     Ok(Report {
+        classes: Vec::new(),
         title: "Catalogue on whole rotors".to_owned(),
         claims,
         cases,

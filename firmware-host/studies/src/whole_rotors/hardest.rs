@@ -1,10 +1,10 @@
 //! The hardest blow that a whole rotor comes back from, and the search for the levitation loop that takes the hardest.
 
-use super::compared::run;
 use super::plants::{Blow, Loop, RotorPlant};
 use crate::campaign::{Progress, run_all};
 use crate::overloads::impact::STEP;
 use crate::overloads::tune::{IDLE_NOISE, SENSITIVITY, shape};
+use crate::paired::pair::run_rotor;
 use firmware_bench::device::loop_shape::SampledPlant;
 use firmware_bench::scene::policy_kind::PolicyKind;
 
@@ -29,7 +29,7 @@ pub(super) fn brings_back(
     (angle_rad, seed): (f64, u64),
 ) -> bool {
     let scene = plant.struck(blow, speed_m_s, angle_rad, seed);
-    run(&scene, kind).is_ok_and(|run| run.recovered)
+    run_rotor(&scene, kind).is_ok_and(|run| run.recovered)
 }
 
 /// The last speed \[m/s\] that somebody comes back from, of a grid that grows by a factor from a first one, all before it being

@@ -368,6 +368,7 @@ fn whirling(mut scene: MachineScene, share: f64, along: V2, conical: bool) -> Ma
     for plane in &mut scene.planes {
         let lost = lost_beyond_m_s(speed_m_s);
         plane.scene.whirl_speed_m_s = plane.scene.whirl_speed_m_s.max(lost);
+        plane.scene.levitated_before = true;
     }
     scene
 }

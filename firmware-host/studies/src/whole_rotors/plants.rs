@@ -265,6 +265,9 @@ impl RotorPlant {
         let along = V2::new(cos, sin);
         scene.start.centre_velocity_m_s = centre * along;
         scene.start.tilt_rate_rad_s = tilt * along;
+        for plane in &mut scene.planes {
+            plane.scene.levitated_before = true;
+        }
         scene
     }
 }

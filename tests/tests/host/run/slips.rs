@@ -126,9 +126,9 @@ fn slips_are_warned_of() {
             [
                 (
                     "mass_kg = 10.0",
-                    "mass_kg = 10.0\ngravity_m_s2 = [0.0, -9.81]",
+                    "mass_kg = 30.0\ngravity_m_s2 = [0.0, -9.81]",
                 ),
-                ("[magnet]", "[magnet]\naxis_force_max_n = 98.0"),
+                ("[magnet]", "[magnet]\naxis_force_max_n = 280.0"),
             ],
             "magnet.axis_force_max_n",
         ),

@@ -259,7 +259,7 @@ impl<'a> Bench<'a> {
         };
         let known = |(_, station): &(&Seen, &Station)| !station.seal;
         let readings = (self.seen.iter().zip(&self.stations)).filter(known);
-        let readings = readings.map(|(seen, _)| seen.reading);
+        let readings = readings.map(|(seen, _)| seen.off_reference());
         levitation
             .forces_n(readings, at, &mut self.levitation_n)
             .map_err(RunError::of_controller(task.policy))?;

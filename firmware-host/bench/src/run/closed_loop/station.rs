@@ -54,8 +54,10 @@ impl<'a> Station<'a> {
     pub(super) fn see(&mut self, t_s: f64, sensed_m: V2, now: &Snapshot) -> Seen {
         let reading = (self.sensor).read(t_s, sensed_m, now.spin_rad_s);
         self.measured_m = reading.position_m;
+        let sampled_s = seen_until_s(t_s, 1.0 / self.scene.sample_rate_hz);
         Seen {
             reading,
+            reference_m: self.scene.reference_m(sampled_s),
             spin_rad_s: self.scene.spin_sensor.gain * now.spin_rad_s,
             applied_n: if self.scene.amplifier.force_measured {
                 // What is fed forward the supervisor does not know of: with the weight it is nothing.
@@ -63,7 +65,7 @@ impl<'a> Station<'a> {
             } else {
                 V2::zeros()
             },
-            status: self.status(seen_until_s(t_s, 1.0 / self.scene.sample_rate_hz)),
+            status: self.status(sampled_s),
             levitation_n: V2::zeros(),
         }
     }
@@ -99,6 +101,9 @@ impl<'a> Station<'a> {
         status.set(Status::BEARING_ON, !(x_off && y_off));
         status.set(Status::AXIS_X_LOST, x_off);
         status.set(Status::AXIS_Y_LOST, y_off);
+        status.set(Status::LEVITATED_BEFORE, self.scene.levitated_before);
+        let set_down = self.scene.set_down_announced(t_s);
+        status.set(Status::SET_DOWN, set_down);
         status
     }
 

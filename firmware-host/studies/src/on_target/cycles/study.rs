@@ -234,6 +234,7 @@ pub fn study(extent: Extent, progress: &dyn Progress) -> Result<Report, StudyErr
         progress.add(1);
     }
     Ok(Report {
+        classes: Vec::new(),
         title: "Cycles of a tick, by a model".to_owned(),
         claims: rows.iter().flat_map(claims).collect(),
         cases: rows.iter().map(|r| r.ticks.len() as u64).sum(),

@@ -2,7 +2,8 @@
 
 use super::tries;
 use crate::campaign::{Block, Chapter, Claim, Extent, Progress, run_all};
-use crate::whole_rotors::compared::{COLUMNS, Ran, Sum, Tried, told_of};
+use crate::paired::pair::{NoPair, Tried, pair_of_rotor, remark};
+use crate::paired::row::{COLUMNS, ClassName, Row as Sum};
 use crate::whole_rotors::incidents::{Hardest, Incident};
 use crate::whole_rotors::loops::Loops;
 
@@ -21,27 +22,29 @@ pub(super) struct Happened {
     rows: Vec<Row>,
 }
 
-impl Sum {
-    /// What is claimed of the incidents on a plant.
-    pub(super) fn claims(&self, plant: &str) -> [Claim; 3] {
-        [
-            Claim::at_most(
-                format!("{plant}, incidents: recoveries lost"),
-                0.0,
-                self.lost as f64,
-            ),
-            Claim::at_least(
-                format!("{plant}, incidents: recoveries, over levitation's"),
-                1.0,
-                self.own as f64 / self.alone as f64,
-            ),
-            Claim::at_most(
-                format!("{plant}, incidents: pairs that cannot be trusted"),
-                0.0,
-                self.untrusted as f64,
-            ),
-        ]
-    }
+/// What is claimed of the incidents on a plant.
+pub(super) fn claims(sum: &Sum, plant: &str) -> [Claim; 3] {
+    [
+        Claim::at_most(
+            format!("{plant}, incidents: recoveries lost"),
+            0.0,
+            sum.lost as f64,
+        ),
+        Claim::at_least(
+            format!("{plant}, incidents: recoveries, over levitation's"),
+            1.0,
+            sum.recovery_ratio(),
+        ),
+        Claim::at_most(
+            format!("{plant}, incidents: pairs that cannot be trusted"),
+            0.0,
+            sum.untrusted as f64,
+        ),
+    ]
+}
+
+fn summed<'a>(all: impl Iterator<Item = &'a Tried>) -> Sum {
+    Sum::new(ClassName::default(), all.map(|tried| (0, tried)))
 }
 
 impl Happened {
@@ -60,9 +63,11 @@ impl Happened {
             }
         }
         let ran = run_all(&cases, progress, |(_, plant, incident, of)| {
-            Ran::of(incident.scene(plant, hardest, *of))
+            let scene = incident.scene(plant, hardest, *of);
+            let scene = scene.map_err(|error| NoPair::Untrusted(error.to_string()))?;
+            pair_of_rotor(scene)
         });
-        let sum = Sum::of(ran.iter());
+        let sum = summed(ran.iter());
         let rows = cases.into_iter().zip(ran);
         (self.rows).extend(rows.map(|((by, plant, incident, (_, seed)), ran)| Row {
             plant: plant.name,
@@ -75,7 +80,7 @@ impl Happened {
     }
 
     fn sum(&self, of: impl Fn(&Row) -> bool) -> Sum {
-        Sum::of(self.rows.iter().filter(|row| of(row)).map(|row| &row.ran))
+        summed(self.rows.iter().filter(|row| of(row)).map(|row| &row.ran))
     }
 
     pub(super) fn chapter(self) -> Chapter {
@@ -92,7 +97,7 @@ impl Happened {
             of.cells(format!("{plant}, {by}"))
         });
         let named = self.rows.iter().filter_map(|row| {
-            let what = told_of(&row.ran)?;
+            let what = remark(&row.ran)?;
             let name = row.incident.name();
             Some(format!(
                 "{what}: {}, {}; {name}; seed {}",
@@ -105,7 +110,7 @@ impl Happened {
             "What else happens",
             vec![
                 Block::text(
-                    "Three directions and seeds of everything under every loop. Blows are at the first end, over a seal at the centre, with 0.7 of the hardest there that the file's loop alone recovers from; what comes after one comes 2 ms after it. Magnet, axis and sensor are those of the first plane, lost ones known to be. Power goes with the weight fed forward. Touches and impulse are those with the supervisor over those of levitation alone, summed where both recover. Struck on and on: twice the touches of levitation alone, and ten more.",
+                    "Three directions and seeds of everything under every loop. Blows are at the first end, over a seal at the centre, with 0.7 of the hardest there that the file's loop alone recovers from; what comes after one comes 2 ms after it. Magnet, axis and sensor are those of the first plane, lost ones known to be. Power goes with the weight fed forward. Force and impulse are those with the supervisor over those of levitation alone, touches the same, summed where both recover. Struck on and on: twice the touches of levitation alone, and ten more.",
                 ),
                 Block::table(COLUMNS, by_incident),
                 Block::table(columns, by_loop),

@@ -2,7 +2,7 @@
 
 use super::{KINDS, median, tries};
 use crate::campaign::{Block, Chapter, Claim, Extent, Progress, run_all};
-use crate::whole_rotors::compared::{Run, run};
+use crate::paired::pair::{Outcome, run_rotor};
 use crate::whole_rotors::plants::{OVERLOAD, RotorPlant};
 
 /// Where they act.
@@ -28,12 +28,14 @@ impl Loaded {
         for (place, end) in PLACES {
             let runs = KINDS.map(|kind| {
                 let runs = run_all(tries(extent), progress, |tried| {
-                    run(&plant.overloaded(end, OVERLOAD, *tried), kind)
+                    run_rotor(&plant.overloaded(end, OVERLOAD, *tried), kind)
                 });
-                runs.into_iter().flatten().collect::<Vec<Run>>()
+                runs.into_iter().flatten().collect::<Vec<Outcome>>()
             });
-            let of = |runs: &[Run], what: fn(&Run) -> f64| median(runs.iter().map(what).collect());
-            let figures: [fn(&Run) -> f64; 3] =
+            let of = |runs: &[Outcome], what: fn(&Outcome) -> f64| {
+                median(runs.iter().map(what).collect())
+            };
+            let figures: [fn(&Outcome) -> f64; 3] =
                 [|r| r.impulse_n_s, |r| r.touches as f64, |r| r.force_n];
             let [impulse, touches, force] =
                 figures.map(|what| runs.each_ref().map(|r| of(r, what)));

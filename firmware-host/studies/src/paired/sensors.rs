@@ -1,8 +1,8 @@
-//! How the machine's sensors are, beside what the supervisor is told of them.
+//! How the machine's sensors are, beside what the supervisor is configured for.
 
-use super::events::BEGIN_S;
+use super::row::AS_CONFIGURED;
+use super::written_events::BEGIN_S;
 use crate::machines::draw::Draw;
-use crate::machines::drawn::Machine;
 use firmware_bench::device::axis::Axis;
 use firmware_bench::device::sensor_fault::{Fault, FaultKind};
 use firmware_bench::scene::Scene;
@@ -10,9 +10,9 @@ use std::f64::consts::TAU;
 
 /// Kinds of sensors.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Condition {
-    /// As told.
-    Told,
+pub enum Sensors {
+    /// As configured.
+    AsConfigured,
     /// So many times the noise.
     Noise(f64),
     /// Runout of one axis, at the spin times a harmonic; its speed in √(F·c/m), its amplitude at most 10 % of the clearance.
@@ -27,16 +27,20 @@ pub enum Condition {
     Spikes,
     /// A converter with steps of 1 to 3 % of the clearance.
     Coarse,
-    /// The supervisor is told a wrong mass, friction, stiffness, lag.
-    WrongParameters,
     /// Two faults for 1 to 20 ms each, within 40 ms around what happens.
     FaultPair,
+    /// One coordinate reads zero for 2 to 20 ms around what happens.
+    Zero,
+    /// One coordinate sticks for as long.
+    Stuck,
+    /// One reads zero, the other sticks.
+    ZeroAndStuck,
 }
 
-impl Condition {
-    /// All of them.
-    pub const ALL: [Self; 14] = [
-        Self::Told,
+impl Sensors {
+    /// As configured, and what wears, hums or fails.
+    pub const WORSE: [Self; 13] = [
+        Self::AsConfigured,
         Self::Noise(3.0),
         Self::Noise(5.0),
         Self::Noise(10.0),
@@ -48,14 +52,16 @@ impl Condition {
         Self::Hum,
         Self::Spikes,
         Self::Coarse,
-        Self::WrongParameters,
         Self::FaultPair,
     ];
+
+    /// Coordinates that fail around what happens.
+    pub const FAILING: [Self; 3] = [Self::Zero, Self::Stuck, Self::ZeroAndStuck];
 
     /// Name in tables.
     pub fn name(self) -> String {
         match self {
-            Self::Told => "as told".to_owned(),
+            Self::AsConfigured => AS_CONFIGURED.to_owned(),
             Self::Noise(factor) => format!("noise × {factor}"),
             Self::Runout(speed) => format!("runout of one axis, up to {speed} √(Fc/m)"),
             Self::EllipticRunout => "elliptic runout".to_owned(),
@@ -63,14 +69,16 @@ impl Condition {
             Self::Hum => "hum".to_owned(),
             Self::Spikes => "spikes".to_owned(),
             Self::Coarse => "coarse converter".to_owned(),
-            Self::WrongParameters => "told wrong".to_owned(),
             Self::FaultPair => "pair of faults".to_owned(),
+            Self::Zero => "one coordinate zero".to_owned(),
+            Self::Stuck => "one coordinate stuck".to_owned(),
+            Self::ZeroAndStuck => "one coordinate zero, one stuck".to_owned(),
         }
     }
 
     /// Lets it be so.
-    pub fn apply(self, machine: &Machine, draw: &mut Draw, scene: &mut Scene) {
-        let c = machine.clearance_m();
+    pub fn apply(self, draw: &mut Draw, scene: &mut Scene) {
+        let c = scene.plant.contact.clearance_m;
         let for_good = |kind, axis| Fault {
             start_s: 0.0,
             duration_s: scene.duration_s + 1.0,
@@ -78,7 +86,7 @@ impl Condition {
             axis,
         };
         match self {
-            Self::Told => {}
+            Self::AsConfigured => {}
             Self::Noise(factor) => {
                 scene
                     .faults
@@ -87,21 +95,21 @@ impl Condition {
             Self::Runout(speed) => {
                 let speed = draw.between(0.5, 1.0) * speed;
                 let axis = draw.one_of(&[Axis::X, Axis::Y]);
-                runout(machine, scene, (1.0, speed, draw.angle_rad()), axis);
+                runout(scene, (1.0, speed, draw.angle_rad()), axis);
             }
             Self::EllipticRunout => {
                 let speed = draw.between(0.3, 2.0);
                 let phase = draw.angle_rad();
-                runout(machine, scene, (1.0, speed, phase), Axis::X);
+                runout(scene, (1.0, speed, phase), Axis::X);
                 let other = phase + draw.angle_rad();
                 let share = draw.between(0.2, 1.0);
-                runout(machine, scene, (1.0, share * speed, other), Axis::Y);
+                runout(scene, (1.0, share * speed, other), Axis::Y);
             }
             Self::Harmonic => {
                 let speed = draw.between(0.3, 1.5);
                 let times = draw.one_of(&[2.0, 3.0]);
                 let axis = draw.one_of(&[Axis::X, Axis::Y]);
-                runout(machine, scene, (times, speed, draw.angle_rad()), axis);
+                runout(scene, (times, speed, draw.angle_rad()), axis);
             }
             Self::Hum => {
                 let kind = FaultKind::Oscillation {
@@ -125,18 +133,6 @@ impl Condition {
                 scene
                     .faults
                     .push(for_good(FaultKind::Bits(bits), Axis::Both));
-            }
-            Self::WrongParameters => {
-                if let Some(config) = &mut scene.supervisor {
-                    let mut wrong = |x: &mut f32, by: f64| *x *= draw.decades(1.0 / by, by) as f32;
-                    wrong(&mut config.mass_kg, 1.3);
-                    wrong(&mut config.friction_coefficient, 1.5);
-                    wrong(&mut config.stiffness_n_m, 1.3);
-                    wrong(&mut config.amplifier_lag_s, 1.5);
-                    wrong(&mut config.clearance_m, 1.05);
-                    config.restitution =
-                        (config.restitution * draw.between(0.8, 1.2) as f32).min(0.95);
-                }
             }
             Self::FaultPair => {
                 for _ in 0..2 {
@@ -163,7 +159,26 @@ impl Condition {
                     });
                 }
             }
+            Self::Zero => fail(scene, draw, &[FaultKind::Zero]),
+            Self::Stuck => fail(scene, draw, &[FaultKind::Stuck]),
+            Self::ZeroAndStuck => fail(scene, draw, &[FaultKind::Zero, FaultKind::Stuck]),
         }
+    }
+}
+
+/// Lets coordinates fail around what happens, each in one way.
+fn fail(scene: &mut Scene, draw: &mut Draw, kinds: &[FaultKind]) {
+    let mut axes = draw
+        .one_of(&[[Axis::X, Axis::Y], [Axis::Y, Axis::X]])
+        .into_iter();
+    for kind in kinds {
+        let duration_s = draw.between(2e-3, 0.02);
+        scene.faults.push(Fault {
+            start_s: BEGIN_S - draw.between(0.0, 1.0) * duration_s,
+            duration_s,
+            kind: *kind,
+            axis: axes.next().unwrap_or_default(),
+        });
     }
 }
 
@@ -173,15 +188,10 @@ const STEPS: usize = 16;
 const GROWS_S: f64 = 0.1;
 
 /// Runout that grows from nothing: harmonic, speed in √(F·c/m), phase \[rad\].
-fn runout(
-    machine: &Machine,
-    scene: &mut Scene,
-    (times, speed, phase): (f64, f64, f64),
-    axis: Axis,
-) {
+fn runout(scene: &mut Scene, (times, speed, phase): (f64, f64, f64), axis: Axis) {
     let frequency_hz = (times * scene.start.spin_rad_s / TAU).abs();
-    let speed_m_s = speed * machine.unit_m_s();
-    let amplitude_m = (speed_m_s / (TAU * frequency_hz)).min(0.1 * machine.clearance_m());
+    let speed_m_s = speed * scene.nominal.force_speed_m_s();
+    let amplitude_m = (speed_m_s / (TAU * frequency_hz)).min(0.1 * scene.plant.contact.clearance_m);
     // Steps of a whole number of periods, so that all are in phase.
     let periods = (GROWS_S / STEPS as f64 * frequency_hz).ceil().max(1.0);
     for step in 0..STEPS {

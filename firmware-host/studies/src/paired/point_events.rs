@@ -1,5 +1,6 @@
-//! What happens to a machine.
+//! What happens to a point mass, put into its scene.
 
+use super::written_events::BEGIN_S;
 use crate::machines::draw::Draw;
 use crate::machines::drawn::Machine;
 use crate::overloads::takeover::{arrest_of, let_whirl};
@@ -8,14 +9,12 @@ use firmware_bench::scene::Scene;
 use plant_model::V2;
 use plant_model::params::SpinParams;
 
-/// When it happens: by then what turns with the spin has been there for long \[s\].
-pub const BEGIN_S: f64 = 0.25;
 /// What is left to come back in \[s\].
 const AFTER_S: f64 = 0.25;
 
 /// Kinds of events.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Event {
+pub enum Point {
     /// Nothing.
     Idle,
     /// A push from the centre that takes the rotor to the wall.
@@ -34,7 +33,7 @@ pub enum Event {
     RunUp,
 }
 
-impl Event {
+impl Point {
     /// All of them.
     pub const ALL: [Self; 8] = [
         Self::Idle,

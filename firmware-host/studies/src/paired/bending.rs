@@ -1,20 +1,22 @@
-//! What it is worth to tell the supervisor of a bending mode, and what it costs to tell it wrong.
+//! What it is worth to configure the supervisor for a bending mode, and what it costs to do so wrong.
 
-use super::compared::{COLUMNS, HOLDS_S, Ran, Run, Sum, is_held, run};
-use super::plants::P5;
+use super::pair::{Engaged, HOLDS_S, NoPair, Outcome, Pair, Tried, run_rotor};
+use super::row::{COLUMNS, ClassName, Row, values};
 use crate::campaign::{Block, Chapter, Claim, Extent, Progress, Report, StudyError, run_all};
 use firmware_bench::scene::diagnostic::SceneError;
 use firmware_bench::scene::machine::MachineScene;
 use firmware_bench::scene::policy_kind::PolicyKind;
 
+/// The rotor.
+const P5: &str = include_str!("../../scenes/rotors/p5.toml");
 /// Frequencies of the mode, evenly by their logarithm \[Hz\].
 const FROM_HZ: f64 = 300.0;
 const TO_HZ: f64 = 4000.0;
 const DAMPING_RATIO: f64 = 0.003;
 /// Speeds of a blow at the centre \[m/s\].
 const BLOWS_M_S: [f64; 6] = [0.2, 0.3, 0.4, 0.5, 0.6, 0.65];
-/// What is told, over what is.
-const TOLD: [Option<f64>; 8] = [
+/// Frequency that the supervisor is configured with, over what it is.
+const CONFIGURED: [Option<f64>; 8] = [
     None,
     Some(1.0),
     Some(0.8),
@@ -70,7 +72,7 @@ struct Case {
 }
 
 impl Case {
-    fn text(&self, told: Option<f64>) -> String {
+    fn text(&self, configured: Option<f64>) -> String {
         let Self {
             hz,
             shape,
@@ -84,7 +86,7 @@ impl Case {
         } = SHAPES[shape];
         let (m2, s2, middle) = (second * m, second * s, -0.4 * (1.0 + second) * m);
         let before_spin = format!(
-            "[[rotor.bending]]\nfrequency_hz = {hz}\ndamping_ratio = {DAMPING_RATIO}\npositions_m = [-0.25, -0.23, -0.2, 0.0, 0.2, 0.23, 0.25]\ndisplacements = [{s}, {s}, {m}, {middle}, {m2}, {s2}, {s2}]\n\n[start]\nvelocity_m_s = [{blow_m_s}, {}]\n\n[spin]",
+            "[[rotor.bending]]\nfrequency_hz = {hz}\ndamping_ratio = {DAMPING_RATIO}\npositions_m = [-0.25, -0.23, -0.2, 0.0, 0.2, 0.23, 0.25]\ndisplacements = [{s}, {s}, {m}, {middle}, {m2}, {s2}, {s2}]\n\n[start]\nlevitated_before = true\nvelocity_m_s = [{blow_m_s}, {}]\n\n[spin]",
             0.1 * blow_m_s
         );
         let sensor = |side: &str| {
@@ -97,37 +99,47 @@ impl Case {
         // What is compared is set, and not decided by the scene; 0 configures none.
         text.push_str(&format!(
             "\n[supervisor]\nbending_first_hz = {}\nacts_in_flight = 1\n",
-            told.map_or(0.0, |ratio| ratio * hz)
+            configured.map_or(0.0, |ratio| ratio * hz)
         ));
         text
     }
 
-    fn scene(&self, told: Option<f64>) -> Result<MachineScene, SceneError> {
-        MachineScene::parse("P5 that bends", &self.text(told))
+    fn scene(&self, configured: Option<f64>) -> Result<MachineScene, SceneError> {
+        MachineScene::parse("P5 that bends", &self.text(configured))
     }
 
     /// Whether levitation alone recovers, and holds the rotor long after.
     fn is_held(&self) -> bool {
         let duration = format!("duration_s = {HOLDS_S}");
         let text = self.text(None).replacen("duration_s = 0.5", &duration, 1);
-        is_held(MachineScene::parse("P5 that bends", &text))
+        MachineScene::parse("P5 that bends", &text).is_ok_and(|scene| {
+            run_rotor(&scene, PolicyKind::Levitation).is_ok_and(|outcome| outcome.recovered)
+        })
     }
 
-    /// Levitation alone, and the supervisor told each of [`TOLD`].
-    fn ran(&self) -> (Result<Run, String>, Vec<Result<Run, String>>) {
-        let of = |told: Option<f64>, kind: PolicyKind| {
-            run(&self.scene(told).map_err(|error| error.to_string())?, kind)
+    /// Levitation alone beside the supervisor with each of [`CONFIGURED`].
+    fn pairs(&self) -> Vec<Tried> {
+        let run = |configured: Option<f64>, kind: PolicyKind| -> Result<Outcome, NoPair> {
+            let scene = (self.scene(configured)).map_err(|e| NoPair::Untrusted(e.to_string()))?;
+            run_rotor(&scene, kind).map_err(NoPair::Untrusted)
         };
-        let own = TOLD.map(|told| of(told, PolicyKind::Supervisor));
-        (of(None, PolicyKind::Levitation), own.to_vec())
+        let alone = run(None, PolicyKind::Levitation);
+        let pair = |configured: &Option<f64>| {
+            Ok(Pair {
+                levitation: alone.clone()?,
+                supervisor: run(*configured, PolicyKind::Supervisor)?,
+                engaged: Engaged::default(),
+            })
+        };
+        CONFIGURED.iter().map(pair).collect()
     }
 }
 
-fn name(told: Option<f64>) -> String {
-    match told {
-        None => "not told".to_owned(),
-        Some(1.0) => "told as it is".to_owned(),
-        Some(ratio) => format!("told {ratio} of it"),
+fn name(configured: Option<f64>) -> String {
+    match configured {
+        None => "not configured".to_owned(),
+        Some(1.0) => "configured as it is".to_owned(),
+        Some(ratio) => format!("configured with {ratio} of it"),
     }
 }
 
@@ -156,35 +168,32 @@ pub fn study(extent: Extent, progress: &dyn Progress) -> Result<Report, StudyErr
         }
         cases.extend(BLOWS_M_S.map(|blow_m_s| Case { blow_m_s, ..*rotor }));
     }
-    let ran = run_all(&cases, progress, |case| {
-        let (alone, own) = case.ran();
-        let pair = |own: Result<Run, String>| {
-            Ok(Ran {
-                alone: alone.clone()?,
-                own: own?,
-            })
-        };
-        own.into_iter().map(pair).collect::<Vec<_>>()
-    });
-    let sum = |told: usize, counts: &dyn Fn(&Case) -> bool| {
+    let ran = run_all(&cases, progress, Case::pairs);
+    let sum = |configured: usize, counts: &dyn Fn(&Case) -> bool| {
         let of = cases.iter().zip(&ran).filter(|(case, _)| counts(case));
-        Sum::of(of.map(|(_, ran)| &ran[told]))
+        let class = ClassName {
+            configuration: name(CONFIGURED[configured]),
+            ..ClassName::default()
+        };
+        Row::new(class, of.map(|(_, ran)| (0, &ran[configured])))
     };
-    let all: Vec<Sum> = (0..TOLD.len()).map(|told| sum(told, &|_| true)).collect();
+    let all: Vec<Row> = (0..CONFIGURED.len())
+        .map(|configured| sum(configured, &|_| true))
+        .collect();
     let mut claims = Vec::new();
-    for (told, sum) in TOLD.iter().zip(&all) {
-        if matches!(told, Some(0.8..=1.05)) {
+    for (configured, sum) in CONFIGURED.iter().zip(&all) {
+        if matches!(configured, Some(0.8..=1.05)) {
             claims.push(Claim::at_most(
-                format!("{}: recoveries lost", name(*told)),
+                format!("{}: recoveries lost", name(*configured)),
                 0.0,
                 sum.lost as f64,
             ));
         }
     }
     claims.push(Claim::at_most(
-        "told as it is: touches over those when not told",
+        "configured as it is: touches over those when not configured",
         1.0,
-        all[1].touched() / all[0].touched(),
+        all[1].touch_ratio() / all[0].touch_ratio(),
     ));
     let untrusted: u64 = all.iter().map(|sum| sum.untrusted).sum();
     claims.push(Claim::at_most(
@@ -192,14 +201,14 @@ pub fn study(extent: Extent, progress: &dyn Progress) -> Result<Report, StudyErr
         0.0,
         untrusted as f64,
     ));
-    let rows: Vec<_> = TOLD
+    let rows: Vec<_> = CONFIGURED
         .iter()
         .zip(&all)
-        .map(|(told, sum)| sum.cells(name(*told)))
+        .map(|(configured, sum)| sum.cells(name(*configured)))
         .collect();
-    let by_shape = |told: usize| {
+    let by_shape = |configured: usize| {
         let rows: Vec<_> = (SHAPES.iter().enumerate())
-            .map(|(i, shape)| sum(told, &|case| case.shape == i).cells(shape.name.to_owned()))
+            .map(|(i, shape)| sum(configured, &|case| case.shape == i).cells(shape.name.to_owned()))
             .collect();
         Block::table(COLUMNS, rows)
     };
@@ -207,14 +216,15 @@ pub fn study(extent: Extent, progress: &dyn Progress) -> Result<Report, StudyErr
     of_hz.dedup();
     let by_hz: Vec<[String; 5]> = (of_hz.iter())
         .map(|hz| {
-            let [untold, told] = [0, 1].map(|told| sum(told, &|case| case.hz == *hz));
-            let touched = |sum: &Sum| format!("{:.2}", sum.touched());
+            let [without, configured] =
+                [0, 1].map(|configured| sum(configured, &|case| case.hz == *hz));
+            let touched = |sum: &Row| format!("{:.2}", sum.touch_ratio());
             [
                 format!("{hz:.0}"),
-                untold.lost.to_string(),
-                told.lost.to_string(),
-                touched(&untold),
-                touched(&told),
+                without.lost.to_string(),
+                configured.lost.to_string(),
+                touched(&without),
+                touched(&configured),
             ]
         })
         .collect();
@@ -223,26 +233,27 @@ pub fn study(extent: Extent, progress: &dyn Progress) -> Result<Report, StudyErr
         BLOWS_M_S[0], BLOWS_M_S[5]
     );
     Ok(Report {
-        title: "Bending that is told".to_owned(),
+        classes: values(&all),
+        title: "Bending that is configured".to_owned(),
         claims,
-        cases: (cases.len() * TOLD.len()) as u64,
+        cases: (cases.len() * CONFIGURED.len()) as u64,
         chapters: vec![
             Chapter::new(
                 "What was run",
                 vec![Block::text(story), Block::List(not_held)],
             ),
-            Chapter::new("What is told", vec![Block::table(COLUMNS, rows)]),
-            Chapter::new("Not told, by shape", vec![by_shape(0)]),
+            Chapter::new("What is configured", vec![Block::table(COLUMNS, rows)]),
+            Chapter::new("Not configured, by shape", vec![by_shape(0)]),
             Chapter::new("Told as it is, by shape", vec![by_shape(1)]),
             Chapter::new(
                 "By frequency",
                 vec![Block::table(
                     [
                         "frequency [Hz]",
-                        "lost, not told",
-                        "lost, told",
-                        "touches, not told",
-                        "touches, told",
+                        "lost, not configured",
+                        "lost, configured",
+                        "touches, not configured",
+                        "touches, configured",
                     ],
                     by_hz,
                 )],

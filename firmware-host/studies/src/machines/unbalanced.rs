@@ -1,13 +1,6 @@
-//! Machines with unbalance, drawn at random, and what each comes to from a start on the wall.
+//! Machines with unbalance drawn at random, left alone or driven on to the wall.
 
-use crate::machines::draw::Draw;
-use firmware_bench::run::closed_loop::{
-    Keep, MachineRecorders, Rigour, record_machine, run_policy,
-};
-use firmware_bench::run::controller::controller;
-use firmware_bench::run::outcome::Outcome;
-use firmware_bench::scene::machine::AnyScene;
-use firmware_bench::scene::policy_kind::PolicyKind;
+use super::draw::Draw;
 use std::f64::consts::TAU;
 
 /// How the rotor goes round.
@@ -35,39 +28,12 @@ impl Motion {
     }
 }
 
-/// Turns before something drives the rotor on to the wall, for how many it does, and after it.
+/// Turns before something drives the rotor on to the wall.
 const BEFORE: f64 = 40.0;
-const DRIVEN: f64 = 15.0;
-const TURNS: f64 = 150.0;
-/// A rub that has ended after so many turns is broken.
-const IN_TIME: f64 = 50.0;
-/// Contact for this share of the turns after that is a rub that stays.
-const STAYS: f64 = 0.8;
-
-/// What came of a run.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Run {
-    /// Free at the end.
-    pub free: bool,
-    /// Turns in contact beyond those in which it is driven.
-    pub turns: f64,
-    /// It touched the wall.
-    pub touched: bool,
-    /// It whirled backward.
-    pub whirled: bool,
-}
-
-impl Run {
-    /// Free after 50 turns in contact at most.
-    pub fn broken(&self) -> bool {
-        self.free && self.turns <= IN_TIME
-    }
-
-    /// A rub to the end, with the spin.
-    pub fn stays(&self) -> bool {
-        !self.free && !self.whirled && self.turns > STAYS * TURNS
-    }
-}
+/// Turns for which it does.
+pub const DRIVEN: f64 = 15.0;
+/// Turns after it.
+pub const TURNS: f64 = 150.0;
 
 /// A machine with unbalance.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -168,56 +134,9 @@ impl RubCase {
         )
     }
 
-    /// Whether the levitation controller holds it free of the wall from the middle; `None` of a run that cannot be trusted.
-    pub fn runs_free(&self) -> Option<bool> {
-        let run = self.left_alone(PolicyKind::Levitation)?;
-        Some(run.free && !run.touched)
-    }
-
-    /// A run that begins in the middle at full spin, where all of its unbalance begins to pull at once; `None` where it cannot be
-    /// trusted.
-    pub fn left_alone(&self, kind: PolicyKind) -> Option<Run> {
-        self.run(kind, false)
-    }
-
-    /// A run in which it is driven on to the wall; `None` where it cannot be trusted.
-    pub fn driven(&self, kind: PolicyKind) -> Option<Run> {
-        self.run(kind, true)
-    }
-
-    fn run(&self, kind: PolicyKind, driven: bool) -> Option<Run> {
-        let scene = AnyScene::parse(&self.text(), &self.scene(driven)).ok()?;
-        let per_turn_s = TAU / self.spin_rad_s;
-        let of = |free: bool, contact_s: f64, outcome: Outcome| Run {
-            free,
-            turns: (contact_s / per_turn_s - DRIVEN).max(0.0),
-            touched: contact_s > 0.0,
-            whirled: outcome == Outcome::Whirl,
-        };
-        match scene {
-            AnyScene::Plane(scene) => {
-                let acting = (controller(kind, &scene)?, kind.name());
-                let (f, _) = run_policy(&scene, acting, Keep::Verdict, &mut |_| {}).ok()?;
-                Some(of(f.recovered, f.contact_time_s, f.outcome))
-            }
-            AnyScene::Machine(scene) => {
-                let recorders = MachineRecorders {
-                    planes: Vec::new(),
-                    axis: None,
-                };
-                let rigour = Rigour::default();
-                let planes = record_machine(&scene, kind, recorders, rigour, &mut |_| {}).ok()?;
-                let runs = planes
-                    .iter()
-                    .map(|(f, _)| of(f.recovered, f.contact_time_s, f.outcome));
-                runs.reduce(|a, b| Run {
-                    free: a.free && b.free,
-                    turns: a.turns.max(b.turns),
-                    touched: a.touched || b.touched,
-                    whirled: a.whirled || b.whirled,
-                })
-            }
-        }
+    /// Time of a turn \[s\].
+    pub fn turn_s(&self) -> f64 {
+        TAU / self.spin_rad_s
     }
 
     /// What drives it: forces that turn with the unbalance, those of a clearance's unbalance and the cap besides.

@@ -1,8 +1,25 @@
-//! Rotors in two magnetic bearings drawn at random, and what happens to them.
+//! Rotors in two magnetic bearings drawn at random, as scenes in which nothing happens.
 
-use crate::machines::draw::Draw;
-use firmware_bench::scene::diagnostic::SceneError;
-use firmware_bench::scene::machine::MachineScene;
+use super::draw::Draw;
+
+/// What events on a rotor are measured by; cap and clearance of each end.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RotorMeasures {
+    /// Mass \[kg\].
+    pub mass_kg: f64,
+    /// Transverse inertia \[kg m²\].
+    pub transverse_kg_m2: f64,
+    /// Distances of the magnets from the centre of mass \[m\].
+    pub ends_m: [f64; 2],
+    /// Clearance \[m\].
+    pub clearance_m: f64,
+    /// Cap \[N\].
+    pub force_n: f64,
+    /// Spin \[Hz\].
+    pub spin_hz: f64,
+    /// Proportional gain \[N/m\].
+    pub proportional_n_m: f64,
+}
 
 /// What kind of rotor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -13,66 +30,21 @@ pub enum Class {
     Gyroscopic,
     /// As `Rigid`, with a bending mode between 300 Hz and 4 kHz that nobody is told of.
     Flexible,
+    /// As `Flexible`, sensors and retainer bearings up to 40 mm inboard or outboard of the magnets.
+    Bent,
+    /// As `Rigid`, with a seal between the bearings that is narrower than they are.
+    Sealed,
 }
 
 impl Class {
-    /// All.
-    pub const ALL: [Self; 3] = [Self::Rigid, Self::Gyroscopic, Self::Flexible];
-
     /// In words.
     pub fn name(self) -> &'static str {
         match self {
             Self::Rigid => "rigid",
             Self::Gyroscopic => "gyroscopic",
             Self::Flexible => "flexible",
-        }
-    }
-}
-
-/// What happens.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Event {
-    /// A velocity of both ends alike, in percent of the lift-off speed of half the rotor.
-    Centre(u32),
-    /// Of both ends against each other.
-    Conical(u32),
-    /// Of one end.
-    OneEnd(u32),
-    /// A load in the middle for 20 ms, in percent of a magnet's cap.
-    OverloadInTheMiddle(u32),
-    /// The same at an end.
-    OverloadAtOneEnd(u32),
-    /// Both magnets off for so many ms, which the firmware knows.
-    Outage(u32),
-    /// Nothing.
-    Idle,
-}
-
-impl Event {
-    /// All that a rotor goes through.
-    pub const ALL: [Self; 10] = [
-        Self::Centre(70),
-        Self::Centre(130),
-        Self::Conical(70),
-        Self::Conical(130),
-        Self::OneEnd(70),
-        Self::OneEnd(130),
-        Self::OverloadInTheMiddle(260),
-        Self::OverloadAtOneEnd(160),
-        Self::Outage(30),
-        Self::Idle,
-    ];
-
-    /// In words.
-    pub fn name(self) -> String {
-        match self {
-            Self::Centre(percent) => format!("blow at the centre, {percent} %"),
-            Self::Conical(percent) => format!("conical blow, {percent} %"),
-            Self::OneEnd(percent) => format!("blow at one end, {percent} %"),
-            Self::OverloadInTheMiddle(percent) => format!("load of {percent} % in the middle"),
-            Self::OverloadAtOneEnd(percent) => format!("load of {percent} % at one end"),
-            Self::Outage(ms) => format!("power gone for {ms} ms"),
-            Self::Idle => "nothing".to_owned(),
+            Self::Bent => "bent shaft",
+            Self::Sealed => "with a seal",
         }
     }
 }
@@ -95,6 +67,10 @@ pub struct RotorCase {
     /// Distances of the two ends from the centre of mass, and by how much sensors stand farther out.
     ends_m: [f64; 2],
     beyond_m: f64,
+    /// By how much retainer bearings stand farther out than magnets.
+    retainer_beyond_m: f64,
+    /// Clearance of a seal \[m\].
+    seal_m: Option<f64>,
     rate_hz: f64,
     lag_s: f64,
     noise_m: f64,
@@ -108,7 +84,9 @@ pub struct RotorCase {
 impl RotorCase {
     /// The rotor of a number.
     pub fn new(seed: u64, class: Class, number: u64) -> Self {
-        let mut draw = Draw::new(seed, 3 * number + class as u64);
+        // The first three kinds have the streams of a seed, others those of another one.
+        let kind = class as u64;
+        let mut draw = Draw::new(seed ^ ((kind / 3) << 32), 3 * number + kind % 3);
         let quick = class == Class::Gyroscopic;
         let mass_kg = draw.decades(2.0, 100.0);
         let clearance_m = draw.between(1.5e-4, 3e-4);
@@ -129,14 +107,14 @@ impl RotorCase {
         let proportional_n_m = negative_n_m + force_n / clearance_m * draw.between(0.6, 2.0);
         let half_kg = 0.5 * mass_kg;
         let critical = 2.0 * (half_kg * (proportional_n_m - negative_n_m)).sqrt();
-        let bending = (class == Class::Flexible).then(|| {
+        let bending = matches!(class, Class::Flexible | Class::Bent).then(|| {
             let displacement = draw.between(0.0, 0.7);
             let other = displacement * draw.one_of(&[1.0, -1.0]);
             let damping_ratio = draw.decades(0.003, 0.03);
             let frequency_hz = draw.decades(300.0, 4000.0);
             (frequency_hz, damping_ratio, [displacement, other])
         });
-        Self {
+        let rotor = Self {
             number,
             class,
             mass_kg,
@@ -149,6 +127,8 @@ impl RotorCase {
             restitution: draw.between(0.4, 0.8),
             ends_m,
             beyond_m: draw.between(0.0, 0.03),
+            retainer_beyond_m: 0.0,
+            seal_m: None,
             rate_hz,
             lag_s,
             noise_m: clearance_m * draw.decades(1e-3, 1e-2),
@@ -156,6 +136,31 @@ impl RotorCase {
             proportional_n_m,
             derivative_n_s_m: critical * draw.between(0.3, 0.6),
             bending,
+        };
+        match class {
+            Class::Bent => Self {
+                beyond_m: draw.between(-0.04, 0.04),
+                retainer_beyond_m: draw.between(-0.04, 0.04),
+                ..rotor
+            },
+            Class::Sealed => Self {
+                seal_m: Some(clearance_m * draw.between(0.6, 0.95)),
+                ..rotor
+            },
+            _ => rotor,
+        }
+    }
+
+    /// What events are measured by.
+    pub fn measures(&self) -> RotorMeasures {
+        RotorMeasures {
+            mass_kg: self.mass_kg,
+            transverse_kg_m2: self.transverse_kg_m2,
+            ends_m: self.ends_m,
+            clearance_m: self.clearance_m,
+            force_n: self.force_n,
+            spin_hz: self.spin_hz,
+            proportional_n_m: self.proportional_n_m,
         }
     }
 
@@ -188,62 +193,8 @@ impl RotorCase {
         )
     }
 
-    /// The scene of what happens to it.
-    ///
-    /// # Errors
-    /// None that a draw should cause.
-    pub fn scene(&self, event: Event) -> Result<MachineScene, SceneError> {
-        self.scene_for(event, 0.6)
-    }
-
-    /// The same of another duration \[s\].
-    pub(super) fn scene_for(
-        &self,
-        event: Event,
-        duration_s: f64,
-    ) -> Result<MachineScene, SceneError> {
-        let [a, b] = self.ends_m;
-        let arm_m = 0.5 * (a + b);
-        let lift_off_m_s = (2.0 * self.force_n / self.mass_kg * self.clearance_m).sqrt();
-        let of = |percent: u32| 0.01 * f64::from(percent);
-        let start = |centre: f64, tilt: f64| {
-            format!(
-                "velocity_m_s = [{centre}, {}]\ntilt_rate_rad_s = [{tilt}, 0.0]",
-                0.1 * centre
-            )
-        };
-        let load = |percent: u32, place_m: f64| {
-            let force_n = of(percent) * self.force_n;
-            format!(
-                "[[disturbance]]\nstart_s = 0.02\nduration_s = 0.02\nforce_n = [{force_n}, 0.0]\nposition_m = {place_m}\n"
-            )
-        };
-        let (start, happens) = match event {
-            Event::Centre(percent) => (start(of(percent) * lift_off_m_s, 0.0), String::new()),
-            Event::Conical(percent) => (
-                start(0.0, of(percent) * lift_off_m_s / arm_m),
-                String::new(),
-            ),
-            Event::OneEnd(percent) => {
-                let half = 0.5 * of(percent) * lift_off_m_s;
-                (start(half, half / arm_m), String::new())
-            }
-            Event::OverloadInTheMiddle(percent) => (String::new(), load(percent, 0.0)),
-            Event::OverloadAtOneEnd(percent) => (String::new(), load(percent, b)),
-            Event::Outage(ms) => {
-                let duration_s = 1e-3 * f64::from(ms);
-                let outage = format!(
-                    "[[outage]]\nstart_s = 0.02\nduration_s = {duration_s}\nknown = true\n"
-                );
-                (String::new(), outage)
-            }
-            Event::Idle => (String::new(), String::new()),
-        };
-        let text = self.written(duration_s, &start, &happens);
-        MachineScene::parse(&self.text(), &text)
-    }
-
-    fn written(&self, duration_s: f64, start: &str, happens: &str) -> String {
+    /// Its scene file, in which nothing happens.
+    pub fn toml(&self) -> String {
         let Self {
             mass_kg,
             transverse_kg_m2,
@@ -262,7 +213,14 @@ impl RotorCase {
             derivative_n_s_m,
             ..
         } = self;
-        let (sensor_a, sensor_b) = (a + self.beyond_m, b + self.beyond_m);
+        let [sensor_a, sensor_b] = self.ends_m.map(|end| end + self.beyond_m);
+        let [retainer_a, retainer_b] = self.ends_m.map(|end| end + self.retainer_beyond_m);
+        let magnet = format!(
+            "force_max_n = {force_n}, lag_s = {lag_s}, negative_stiffness_n_m = {negative_n_m}"
+        );
+        let seal = self.seal_m.map_or_else(String::new, |seal_m| {
+            format!("[[plane]]\nname = \"seal\"\nseal = true\nposition_m = {}\ncontact_radius_m = 0.03\ncontact = {{ clearance_m = {seal_m}, stiffness_n_m = 2e8, restitution = {restitution} }}\n", 0.3 * (b - a))
+        });
         let bending = self.bending.map_or_else(String::new, |(hz, ratio, [at_a, at_b])| {
             let (from, to) = (a + 0.05, b + 0.05);
             let (past_a, past_b, within) = (1.4 * at_a, 1.4 * at_b, -0.8 * at_a);
@@ -272,7 +230,7 @@ impl RotorCase {
             r#"
 title = "A rotor drawn at random"
 [run]
-duration_s = {duration_s}
+duration_s = 1.0
 sample_rate_hz = {rate_hz}
 policies = ["levitation", "supervisor"]
 rtol = 1e-7
@@ -284,8 +242,6 @@ polar_inertia_kg_m2 = {polar_kg_m2}
 {bending}
 [spin]
 frequency_hz = {spin_hz}
-[start]
-{start}
 [contact]
 clearance_m = {clearance_m}
 stiffness_n_m = 2e8
@@ -305,15 +261,17 @@ derivative_filter_s = {}
 whirl_speed_m_s = 0.6
 [[plane]]
 name = "A"
-position_m = -{a}
+position_m = -{retainer_a}
 contact_radius_m = 0.03
+magnet = {{ position_m = -{a}, {magnet} }}
 sensor = {{ position_m = -{sensor_a}, noise_rms_m = {noise_m} }}
 [[plane]]
 name = "B"
-position_m = {b}
+position_m = {retainer_b}
 contact_radius_m = 0.03
+magnet = {{ position_m = {b}, {magnet} }}
 sensor = {{ position_m = {sensor_b}, noise_rms_m = {noise_m} }}
-{happens}
+{seal}
 "#,
             self.number,
             1.0 / rate_hz,
