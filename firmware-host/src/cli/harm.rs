@@ -38,11 +38,14 @@ pub struct HarmArgs {
     pub threads: Threads,
 }
 
+/// A word of the name of a class.
+type NameOf = fn(ClassName) -> String;
+
 /// Classes of which a name contains a text.
 fn named(
     classes: Vec<Class>,
     (option, text): (&str, &str),
-    of: fn(ClassName) -> String,
+    of: NameOf,
 ) -> Result<Vec<Class>, CommandError> {
     let mut names: Vec<String> = Vec::new();
     let mut left = Vec::new();
@@ -70,7 +73,7 @@ fn named(
 /// [`CommandError`] where nothing is left to run.
 pub fn execute(args: &HarmArgs) -> Result<(), CommandError> {
     let mut classes = classes();
-    let filters: [(&str, &str, fn(ClassName) -> String); 4] = [
+    let filters: [(&str, &str, NameOf); 4] = [
         ("class", &args.class, |name| name.machine),
         ("event", &args.event, |name| name.event),
         ("sensors", &args.sensors, |name| name.sensors),

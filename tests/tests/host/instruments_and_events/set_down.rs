@@ -28,8 +28,7 @@ fn the_rotor_follows_its_reference() {
         let end_m = last(&ridden(&scene, PolicyKind::Levitation).1)
             .plant
             .position_m;
-        // The magnet's negative stiffness leaves it 5/3 of the way from the middle.
-        let off_m = (end_m - 5.0 / 3.0 * expected_m).norm();
+        let off_m = (end_m - expected_m).norm();
         assert!(off_m < 2e-6, "{until_s}: {end_m}");
     }
     assert!((scene.reference_m(0.045) - 0.5 * away_m).norm() < 1e-12);
