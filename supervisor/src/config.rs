@@ -525,11 +525,11 @@ impl Config {
                 self.sensor_step_m,
                 step_m(self.observer_pole_contact, Order::First),
             ),
+            (self.axis_force_max_n, LEAST_AXIS_SHARE * self.force_max_n),
             (
-                self.axis_force_max_n,
-                LEAST_AXIS_SHARE * self.force_max_n,
+                self.force_slew_n_s,
+                self.force_max_n / (SLOWEST_RISE * unit_s),
             ),
-            (self.force_slew_n_s, self.force_max_n / (SLOWEST_RISE * unit_s)),
             (
                 self.contact_band,
                 self.sensor_step_m * self.retainer_plane_ratio / self.clearance_m,

@@ -127,7 +127,7 @@ mod tests {
                 out_m.min(1.01 * BEARING.clearance_m) - back_m.min(1.01 * BEARING.clearance_m);
             supervisor.tick(&Sample {
                 sequence,
-                status: Status::BEARING_ON,
+                status: Status::BEARING_ON | Status::LEVITATED_BEFORE,
                 position_m: [x_m, 4e-7 * (sequence % 3) as f32],
                 ..Sample::default()
             });

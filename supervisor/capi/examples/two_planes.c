@@ -129,7 +129,8 @@ static void measure(const model *m, uint32_t sequence, amb_sample samples[2]) {
         amb_sample *sample = &samples[plane];
         double p[2], v[2], wanted[2], length;
         sample->sequence = sequence;
-        sample->status = AMB_STATUS_SPIN_VALID | AMB_STATUS_BEARING_ON;
+        /* It levitated until the blow, with which this begins. */
+        sample->status = AMB_STATUS_SPIN_VALID | AMB_STATUS_BEARING_ON | AMB_STATUS_LEVITATED_BEFORE;
         sample->spin_rad_s = (float)SPIN_RAD_S;
         at(m, (double)shaft.sensor_m[plane], p, v);
         for (i = 0; i < 2; i++) wanted[i] = -LEVITATION_N_M * p[i] - LEVITATION_N_S_M * v[i];

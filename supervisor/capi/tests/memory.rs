@@ -75,7 +75,7 @@ fn calls_touch_only_what_they_were_given() {
     let plane: *mut Storage = (&raw mut *memory).cast();
     let mut command = CCommand::default();
     let mut sample = CSample {
-        status: (Status::BEARING_ON | Status::SPIN_VALID).bits(),
+        status: (Status::BEARING_ON | Status::SPIN_VALID | Status::LEVITATED_BEFORE).bits(),
         ..CSample::default()
     };
     let mut event = MaybeUninit::<CEvent>::uninit();
@@ -177,7 +177,7 @@ fn calls_on_a_rotor_touch_only_what_they_were_given() {
     };
     let mut samples = Box::new(
         [CSample {
-            status: (Status::BEARING_ON | Status::SPIN_VALID).bits(),
+            status: (Status::BEARING_ON | Status::SPIN_VALID | Status::LEVITATED_BEFORE).bits(),
             ..CSample::default()
         }; 2],
     );

@@ -221,6 +221,7 @@ fn a_known_power_loss_is_told_at_its_first_and_last_sample() {
     let mut scene = Scene::parse("power_loss.toml", &(text + &outage)).unwrap();
     let c = scene.plant.contact.clearance_m;
     scene.start.position_m = V2::new(0.87 * c, 0.5 * c);
+    scene.levitated_before = true;
     let (_, trace) = run(&scene, PolicyKind::Supervisor, Keep::Trace, &mut |_| {}).unwrap();
     let modes: Vec<_> = (trace.rows.iter())
         .filter(|row| !row.mode_change)

@@ -65,6 +65,7 @@ fn unbalanced(plant: &str, eccentricity_m: f64) -> Scene {
     scene.duration_s = 0.5;
     scene.plant.rotor.eccentricity_m = eccentricity_m;
     scene.plant.spin = SpinParams::Held;
+    scene.levitated_before = true;
     scene
 }
 

@@ -42,6 +42,8 @@ pub fn scene_of_event(
     spec.set("start.position_m", pair(launch.position_m))?;
     spec.set("start.velocity_m_s", pair(launch.velocity_m_s))?;
     spec.set("spin.frequency_hz", launch.spin_rad_s / TAU)?;
+    // A record begins before the event.
+    spec.set("start.levitated_before", true)?;
     let policies = ["passive", "levitation", "supervisor"].map(|p| Value::String(p.to_owned()));
     spec.set("run.policies", policies.to_vec())?;
     for setting in given {

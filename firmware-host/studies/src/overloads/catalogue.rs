@@ -39,9 +39,8 @@ impl Collector<'_> {
         let mut scene = self.base.clone();
         scene.duration_s = end_s + AFTER_S;
         edit(&mut scene);
-        // It begins with what happens, or on the wall.
-        scene.levitated_before |= scene.start.velocity_m_s != V2::zeros()
-            || scene.start.position_m.norm() >= scene.plant.contact.clearance_m;
+        // What happens comes soon, or at once.
+        scene.levitated_before = true;
         self.cases.push(Case {
             group,
             name: name.into(),

@@ -59,7 +59,7 @@ int main(void) {
     for (uint32_t tick = 0; tick < 4000; tick++) {
         const double t_s = tick * 50e-6, angle = -150.0 * t_s;
         const double radius_m = tick < 2500 ? 2.02e-4 * fabs(sin(60.0 * t_s)) : 1e-5;
-        amb_sample sample = {tick, AMB_STATUS_SPIN_VALID | AMB_STATUS_BEARING_ON, {0}, 1000.0f, {0}, {0}};
+        amb_sample sample = {tick, AMB_STATUS_SPIN_VALID | AMB_STATUS_BEARING_ON | AMB_STATUS_LEVITATED_BEFORE, {0}, 1000.0f, {0}, {0}};
         amb_command command;
         SimStruct *blocks[2] = {&S, &all};
         for (int i = 0; i < 2; i++) {
@@ -71,7 +71,7 @@ int main(void) {
         (void)amb_tick(&directly, &sample, &command);
         for (int b = 0; b < 2; b++) {
             blocks[b]->in[SPIN][0] = 1000.0;
-            blocks[b]->in[STATUS][0] = AMB_STATUS_SPIN_VALID | AMB_STATUS_BEARING_ON;
+            blocks[b]->in[STATUS][0] = AMB_STATUS_SPIN_VALID | AMB_STATUS_BEARING_ON | AMB_STATUS_LEVITATED_BEFORE;
             mdlOutputs(blocks[b], 0);
             if (blocks[b]->error != NULL || differs(blocks[b], &command)) return printf("tick %u\n", (unsigned)tick), 1;
         }

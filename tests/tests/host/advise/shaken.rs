@@ -84,10 +84,11 @@ pub(super) fn shaken(config: &Config, path: Path, shake: Shake) -> Done {
         let known = spin.map_or(Status::empty(), |_| Status::SPIN_VALID);
         let command = core.tick(&CoreSample {
             sequence: tick,
-            status: Status::BEARING_ON | known,
+            status: Status::BEARING_ON | Status::LEVITATED_BEFORE | known,
             position: [x + e_x * way + dither, y + e_y * way + dither],
             spin: spin.unwrap_or_default(),
-            levitation: [0.0; 2],
+            // Of a controller that has no force to spare.
+            levitation: inwards(x, y),
             applied: [0.0; 2],
         });
         let [f_x, f_y] = command.force;
@@ -145,4 +146,10 @@ pub(super) fn on_the_wall(_: f64, _: f64) -> [f64; 2] {
 pub(super) fn round_the_wall(at_s: f64, unit_s: f64) -> [f64; 2] {
     let (sine, cosine) = (0.8 * at_s / unit_s).sin_cos();
     [1.02 * cosine, -1.02 * sine]
+}
+
+/// A command of nine tenths of the cap inwards \[caps\].
+fn inwards(x: f64, y: f64) -> [f64; 2] {
+    let radius = x.hypot(y).max(1e-3);
+    [-0.9 * x / radius, -0.9 * y / radius]
 }

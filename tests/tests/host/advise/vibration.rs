@@ -106,6 +106,8 @@ fn takes_over(n: &Nominal, amplitude: f64, told: bool) -> Option<Mode> {
         let command = core.tick(&CoreSample {
             sequence: i,
             status: Status::BEARING_ON | known,
+            // Of a controller that has no force to spare.
+            levitation: [0.0, -0.9],
             position: [way + dither, out + dither],
             spin: spin * unit_s,
             ..CoreSample::default()
