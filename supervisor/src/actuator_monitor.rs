@@ -13,6 +13,8 @@ use crate::words::words_of_fields;
 const DOUBT: f32 = 0.5;
 /// … and the largest as a share of the modelled force: a weak drive tracks.
 const WEAK: f32 = 0.75;
+/// A force that is next to none \[caps\].
+const LITTLE: f32 = 0.3;
 /// How fast a slow one comes nearer to its command, at least \[caps/t₀\].
 const PROGRESS: f32 = 0.5;
 /// Ticks for which an axis that does not track its command gets nothing, over those that made it one.
@@ -106,6 +108,8 @@ impl<S: Scalar> ActuatorMonitor<S> {
         }
         let progress = S::from_f32(PROGRESS) * coeffs.tick;
         let most = coeffs.fault_ticks.min(MOST_TICKS) as i8;
+        // Power that is gone, or comes back: a drive that gives next to nothing takes nothing away.
+        let powerless = now.x.abs() <= S::from_f32(LITTLE) && now.y.abs() <= S::from_f32(LITTLE);
         let [x, y] = &mut self.off;
         for (ticks, deviation, modelled, now, before, due) in [
             (x, deviation.x, modelled.x, now.x, before.x, due.x),
@@ -113,11 +117,11 @@ impl<S: Scalar> ActuatorMonitor<S> {
         ] {
             let nearer = (due - before).abs() - (due - now).abs();
             let doubt = doubt.max(modelled.abs() * S::from_f32(WEAK));
-            // What gives too little takes nothing away, and may be on its way: a drive without power shows what the firmware adds.
-            let against = now * due < S::ZERO && now.abs() > S::from_f32(DOUBT);
             *ticks = if *ticks < 0 {
                 *ticks + 1
-            } else if !against || deviation.abs() <= doubt || nearer > progress {
+            } else if powerless {
+                *ticks
+            } else if deviation.abs() <= doubt || nearer > progress {
                 0
             } else if *ticks + 1 < most {
                 *ticks + 1

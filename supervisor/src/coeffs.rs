@@ -18,6 +18,8 @@ const FULL_FORCE_FROM: f32 = 0.4;
 const AFTER_LIFT_OFF: f32 = 0.45;
 /// Turn of the swing on the wall until a force has come, beyond which an impact is half over by then \[rad\].
 const MOST_CONTACT_TURN: f32 = 1.4;
+/// Rate of the swing on a wall that gives way by much of the clearance \[1/t₀\].
+const SOFT_CONTACT: f32 = 6.5;
 /// Largest share of the cap that the restoring law has at the wall.
 pub(crate) const NEARLY_ALL: f32 = 0.95;
 
@@ -356,7 +358,8 @@ impl<S: Scalar> Coeffs<S> {
         let mut s = |name, x| taken.of::<S>(name, x);
         let contact_rate = sqrt(config.contact_stiffness_n_m * c / (config.magnet_plane_ratio * f));
         let turn = contact_rate * horizon;
-        let contact_ahead = (turn < MOST_CONTACT_TURN).then(|| {
+        let soft = contact_rate < SOFT_CONTACT && turn < MOST_CONTACT_TURN;
+        let contact_ahead = soft.then(|| {
             let Vec2 { x, y } = Vec2::<f32>::at_angle(turn);
             [x, y, contact_rate].map(|x| s("contact stiffness", x))
         });

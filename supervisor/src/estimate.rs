@@ -226,7 +226,7 @@ impl<S: Scalar> Observer<S> {
 
     /// The command from before a reading went wrong, which may have been believed for some samples; nothing outwards of it, for a
     /// force that is held pushes the rotor out to the wall.
-    pub(crate) fn sound_force(&self) -> Vec2<S> {
+    pub(crate) fn sound_force(&self, bad: SampleFlags) -> Vec2<S> {
         let force = self.command(self.newest.wrapping_sub(BELIEVED));
         let inward = |force: S, position: S| {
             if force * position > S::ZERO {
@@ -236,6 +236,10 @@ impl<S: Scalar> Observer<S> {
             }
         };
         let position = self.motion.position;
+        if bad.contains(SampleFlags::BOTH_BAD) {
+            let outward = position.direction();
+            return force - outward * force.dot(outward).max(S::ZERO);
+        }
         Vec2::new(inward(force.x, position.x), inward(force.y, position.y))
     }
 

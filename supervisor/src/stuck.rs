@@ -77,12 +77,12 @@ impl<S: Scalar> StuckDetector<S> {
         }
     }
 
-    /// Coordinates that have stood still for more than the estimate can be wrong.
+    /// Coordinates that stand still beside one that has done so for more than the estimate can be wrong, that one with them.
     pub(crate) fn stuck(&self) -> SampleFlags {
         let [x, y] = &self.at;
         let mut flags = SampleFlags::empty();
-        flags.set(SampleFlags::X_BAD, x.stuck > 0);
-        flags.set(SampleFlags::Y_BAD, y.stuck > 0);
+        flags.set(SampleFlags::X_BAD, x.stands_still());
+        flags.set(SampleFlags::Y_BAD, y.stands_still());
         flags
     }
 
@@ -133,7 +133,7 @@ impl<S: Scalar> StuckDetector<S> {
     /// A fault begins: from here on the model is no evidence.
     pub(crate) fn freeze(&mut self) {
         for coordinate in &mut self.at {
-            coordinate.awaited = coordinate.stuck > 0;
+            coordinate.awaited = coordinate.stands_still();
             (coordinate.way, coordinate.stuck) = (S::ZERO, 0);
         }
     }
@@ -162,6 +162,11 @@ impl<S: Scalar> Coordinate<S> {
     /// `way` is a sum of speeds over ticks.
     fn is_far(&self, tick: S) -> bool {
         self.stuck > 0 && (self.way * tick).abs() > S::from_f32(FAR)
+    }
+
+    /// In the last sample.
+    fn stands_still(&self) -> bool {
+        self.stuck > 0 || self.unchanged > 0
     }
 
     fn changes(&self, now: S) -> bool {

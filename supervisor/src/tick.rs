@@ -315,7 +315,7 @@ impl<S: Scalar> State<S> {
             flags.contains(SampleFlags::FAULTY) && !matches!(self.phase, Phase::SensorFault { .. });
         // One that was no number has never been believed.
         let lied = begins && assessment.refusal == RejectReason::Stuck;
-        let sound = lied.then(|| self.observer.sound_force());
+        let sound = lied.then(|| self.observer.sound_force(flags));
         if flags.contains(SampleFlags::LATE) {
             self.observer.late();
         }

@@ -227,7 +227,7 @@ fn a_known_power_loss_is_told_at_its_first_and_last_sample() {
         .filter(|row| !row.mode_change)
         .map(|row| row.supervisor_mode().unwrap())
         .collect();
-    for (tick, mode) in modes.iter().enumerate().take(144).skip(45) {
+    for (tick, mode) in modes.iter().enumerate().take(end as usize).skip(45) {
         let off = tick >= first as usize && tick < end as usize;
         assert_eq!(*mode == supervisor::Mode::Levitated, off, "sample {tick}");
     }

@@ -127,16 +127,17 @@ fn left_alone(with: &Config) {
     }
 }
 
-/// Inverted, swapped and stuck axes are found within `fault_ticks` and the few that the force needs to get there, while
+/// Inverted, dead, swapped and stuck axes are found within `fault_ticks` and the few that the force needs to get there, while
 /// the whole cap brakes a whirl; they get nothing for eight times as long, then they are tried again; and an axis
 /// that obeys keeps its force.
 /// Requirement: SR-22
 #[test]
 fn an_axis_that_does_not_obey_gets_nothing_for_a_while() {
-    let drives: [(&str, Makes, [bool; 2]); 5] = [
+    let drives: [(&str, Makes, [bool; 2]); 6] = [
         ("x inverted", |[x, y]| [-x, y], [true, false]),
         ("y inverted", |[x, y]| [x, -y], [false, true]),
         ("both inverted", |[x, y]| [-x, -y], [true, true]),
+        ("x dead", |[_, y]| [0.0, y], [true, false]),
         ("swapped", |[x, y]| [y, x], [true, true]),
         ("y stuck", |[x, _]| [x, 900.0], [false, true]),
     ];

@@ -39,11 +39,18 @@ const WAYS: [(Mode, &[Mode]); 8] = {
         ),
         (
             BackwardWhirl,
-            &[Levitated, Bounce, Pinned, SensorFault, HandedBack],
+            &[Levitated, Bounce, Pinned, Handover, SensorFault, HandedBack],
         ),
         (
             Pinned,
-            &[Levitated, Bounce, BackwardWhirl, SensorFault, HandedBack],
+            &[
+                Levitated,
+                Bounce,
+                BackwardWhirl,
+                Handover,
+                SensorFault,
+                HandedBack,
+            ],
         ),
         (
             Handover,
@@ -65,6 +72,7 @@ const WAYS: [(Mode, &[Mode]); 8] = {
                 Bounce,
                 BackwardWhirl,
                 Pinned,
+                Handover,
                 HandedBack,
             ],
         ),

@@ -189,7 +189,7 @@ impl Hand {
             left: 4,
             at: [0.0; 2],
             sequence: 0,
-            status: Status::SPIN_VALID | Status::BEARING_ON,
+            status: Status::SPIN_VALID | Status::BEARING_ON | Status::LEVITATED_BEFORE,
             spin_rad_s: 1000.0,
             gain: 1.0,
         }
@@ -292,6 +292,7 @@ impl Hand {
             self.status.set(Status::BEARING_ON, !chance.one_in(3));
             self.status.set(Status::SPIN_VALID, !chance.one_in(4));
             self.status.set(Status::APPLIED_VALID, chance.one_in(4));
+            self.status.set(Status::SET_DOWN, chance.one_in(6));
             self.status.set(Status::AXIS_X_LOST, chance.one_in(8));
             self.status.set(Status::AXIS_Y_LOST, chance.one_in(8));
             self.spin_rad_s = chance.between(-1000.0, 1000.0);

@@ -58,7 +58,7 @@ int main(void) {
     /* A rotor that flies to the wall, bounces along it backward, and comes back. */
     for (uint32_t tick = 0; tick < 4000; tick++) {
         const double t_s = tick * 50e-6, angle = -150.0 * t_s;
-        const double radius_m = tick < 2500 ? 2.02e-4 * fabs(sin(60.0 * t_s)) : 1e-5;
+        const double radius_m = tick < 2500 ? 2.02e-4 * fabs(sin(600.0 * t_s)) : 1e-5;
         amb_sample sample = {tick, AMB_STATUS_SPIN_VALID | AMB_STATUS_BEARING_ON | AMB_STATUS_LEVITATED_BEFORE, {0}, 1000.0f, {0}, {0}};
         amb_command command;
         SimStruct *blocks[2] = {&S, &all};
