@@ -62,7 +62,7 @@ fn unbalanced(plant: &str, eccentricity_m: f64) -> Scene {
         .find(of_name)
         .unwrap()
         .scene;
-    scene.duration_s = 0.3;
+    scene.duration_s = 0.12;
     scene.plant.rotor.eccentricity_m = eccentricity_m;
     scene.plant.spin = SpinParams::Held;
     scene.levitated_before = true;

@@ -136,7 +136,7 @@ fn what_is_found_in_records_is_what_the_plant_did() {
         records >= 130 && sum.impacts.of >= 200,
         "{records}: {sum:?}"
     );
-    assert!(at_least(sum.impacts, 96), "{:?}", sum.impacts);
+    assert!(at_least(sum.impacts, 95), "{:?}", sum.impacts);
     assert!(at_least(sum.contacts, 99), "{:?}", sum.contacts);
     for (share, fewest) in [
         (sum.friction, 3),
