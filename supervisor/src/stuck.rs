@@ -33,8 +33,9 @@ pub(crate) struct StuckDetector<S> {
 
 words_of_fields!(StuckDetector<S> { at, step });
 
-/// A way that no converter hides \[clearances\].
+/// A way that no converter hides \[clearances\], and in steps of a coarse one: noise of a step beside it seems to be speed.
 const FAR: f32 = 0.1;
+const FAR_STEPS: f32 = 8.0;
 
 /// A change that is longer is one of the rotor \[clearances\].
 const COARSEST: f32 = 0.03;
@@ -73,7 +74,7 @@ impl<S: Scalar> StuckDetector<S> {
         Standstill {
             samples,
             both: x.unchanged.min(y.unchanged),
-            far: x.is_far(coeffs.tick) || y.is_far(coeffs.tick),
+            far: x.is_far(coeffs.tick, self.step) || y.is_far(coeffs.tick, self.step),
         }
     }
 
@@ -159,9 +160,10 @@ impl<S: Scalar> Coordinate<S> {
         }
     }
 
-    /// `way` is a sum of speeds over ticks.
-    fn is_far(&self, tick: S) -> bool {
-        self.stuck > 0 && (self.way * tick).abs() > S::from_f32(FAR)
+    /// Whether its way, a sum of speeds over ticks, is more than a converter of this step hides.
+    fn is_far(&self, tick: S, step: S) -> bool {
+        let hidden = (step * S::from_f32(FAR_STEPS)).max(S::from_f32(FAR));
+        self.stuck > 0 && (self.way * tick).abs() > hidden
     }
 
     /// In the last sample.

@@ -128,13 +128,15 @@ impl<S: Scalar> State<S> {
         // Of the axis: an orbit is no approach, and no sign of the model either.
         let square = self.observer.velocity().length_squared();
         let flies = wall == Contact::None;
-        if sample.status.contains(Status::LEVITATED_BEFORE) {
-            self.trust.levitated_before();
-        }
         let quiet = self.guard.innovation.is_quiet(coeffs);
         let mut judged = Judged {
             quiet,
-            hands_back: (self.trust).tick((square, flies), (self.phase, rubs, sample.spin), coeffs),
+            hands_back: (self.trust).tick(
+                (square, flies),
+                (self.phase, rubs, sample.spin),
+                sample.status,
+                coeffs,
+            ),
             rubs_on: self.trust.rubs_on(),
             has_turned: self.classifier.has_turned(),
             trusted: quiet

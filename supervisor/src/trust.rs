@@ -8,6 +8,7 @@
 use crate::coeffs::Coeffs;
 use crate::phase::Phase;
 use crate::scalar::Scalar;
+use crate::signal::Status;
 use crate::words::{Words, words_of_fields};
 
 /// Speeds up to here are no sign of anything: what told noise and slow motion come to \[lift-off speeds\].
@@ -156,7 +157,7 @@ impl<S: Scalar> Trust<S> {
 
     /// The firmware knows that the rotor levitated until now, its reading moving as it usually does.
     #[inline]
-    pub(crate) fn levitated_before(&mut self) {
+    fn levitated_before(&mut self) {
         if self.stir.proof != Proof::Seen {
             self.stir.proof = Proof::Seen;
             (self.before, self.margin) = (S::ZERO, S::ZERO);
@@ -176,6 +177,7 @@ impl<S: Scalar> Trust<S> {
         &mut self,
         (square, flies): (S, bool),
         (phase, rubs, spin): (Phase<S>, bool, S),
+        status: Status,
         coeffs: &Coeffs<S>,
     ) -> Option<u32> {
         self.peak = self.peak.max(square);
@@ -188,7 +190,7 @@ impl<S: Scalar> Trust<S> {
                 self.ticks_left = left;
                 None
             }
-            None => self.window((phase, rubs, spin.abs()), coeffs),
+            None => self.window((phase, rubs, spin.abs()), status, coeffs),
         }
     }
 
@@ -197,8 +199,12 @@ impl<S: Scalar> Trust<S> {
     fn window(
         &mut self,
         (phase, rubs, spin): (Phase<S>, bool, S),
+        status: Status,
         coeffs: &Coeffs<S>,
     ) -> Option<u32> {
+        if status.contains(Status::LEVITATED_BEFORE) {
+            self.levitated_before();
+        }
         self.ticks_left = coeffs.window_ticks;
         let peak = core::mem::replace(&mut self.peak, S::ZERO);
         if self.stir.proof == Proof::Nothing {

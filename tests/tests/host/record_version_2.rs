@@ -137,7 +137,7 @@ fn a_person_sees_what_happened() {
         "2e4",
     ];
     let in_si = text(&units);
-    for word in ["-0.750", "[ms]", "[µm]", "202.0", "[N]"] {
+    for word in ["-0.750", "[ms]", "[µm]", "202.8", "[N]"] {
         assert!(in_si.contains(word), "{word} is not in\n{in_si}");
     }
     let csv = text(&["--csv"]);

