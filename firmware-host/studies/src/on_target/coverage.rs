@@ -80,15 +80,6 @@ const WAYS: [(Mode, &[Mode]); 8] = {
     ]
 };
 
-/// Whether a way is so rare since most engagements wait for proof that a stream need not go it.
-fn is_rare(from: Mode, to: Mode) -> bool {
-    matches!(
-        (from, to),
-        (Mode::Approach, Mode::Pinned | Mode::SensorFault | Mode::HandedBack)
-            | (Mode::Pinned | Mode::SensorFault, Mode::HandedBack)
-    )
-}
-
 /// The ways from mode to mode that the state machine has, one by one.
 pub fn ways() -> impl Iterator<Item = (Mode, Mode)> {
     (WAYS.iter()).flat_map(|(from, tos)| tos.iter().map(|to| (*from, *to)))
