@@ -157,16 +157,16 @@ fn calls_need_little_stack() {
     for (call, most) in [
         ("config-for-bearing", 932),
         ("config-for-rotor", 2500),
-        ("init", 2060),
+        ("init", 1804),
         ("tick", 800),
-        ("reconfigure", 1724),
-        ("self-test", 1480),
-        ("rotor-init", 3292),
-        ("rotor-reconfigure", 2124),
-        ("rotor-tick", 1352),
+        ("reconfigure", 1588),
+        ("self-test", 1392),
+        ("rotor-init", 3028),
+        ("rotor-reconfigure", 2332),
+        ("rotor-tick", 1304),
         ("archive-init", 128),
         ("archive-take", 232),
-        ("archive-section", 4696),
+        ("archive-section", 4536),
     ] {
         let needed = bytes(call);
         assert!(needed <= most && 10 * needed >= 9 * most, "{call}: {said}");
