@@ -11,7 +11,7 @@
 //! let mut supervisor = Supervisor::<512>::new(&config)?;
 //! let command = supervisor.tick(&Sample {
 //!     sequence: 0,
-//!     status: Status::SPIN_VALID | Status::BEARING_ON,
+//!     status: Status::SPIN_VALID | Status::BEARING_ON | Status::LEVITATED_BEFORE,
 //!     position_m: [1e-5, -2e-5],
 //!     spin_rad_s: 1000.0,
 //!     levitation_n: [-12.5, 25.0],
@@ -25,7 +25,7 @@
 //!     position_m[0] += 0.4 * config.sample_period_s;
 //!     let sample = Sample {
 //!         sequence,
-//!         status: Status::SPIN_VALID | Status::BEARING_ON,
+//!         status: Status::SPIN_VALID | Status::BEARING_ON | Status::LEVITATED_BEFORE,
 //!         position_m,
 //!         spin_rad_s: 1000.0,
 //!         ..Sample::default()
