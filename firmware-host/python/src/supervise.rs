@@ -85,7 +85,7 @@ impl Supervisor {
     }
 
     /// One tick. Any number is allowed, as from a sensor: what cannot be is for the supervisor to judge.
-    #[pyo3(signature = (position_m, levitation_n=None, *, spin_rad_s=None, applied_n=None, sequence=None, bearing_on=true, axis_x_lost=false, axis_y_lost=false, late=false, shadow=false))]
+    #[pyo3(signature = (position_m, levitation_n=None, *, spin_rad_s=None, applied_n=None, sequence=None, bearing_on=true, axis_x_lost=false, axis_y_lost=false, late=false, shadow=false, set_down=false, levitated_before=false))]
     #[allow(
         clippy::too_many_arguments,
         reason = "keyword arguments of Python, each named where it is called"
@@ -102,6 +102,8 @@ impl Supervisor {
         axis_y_lost: bool,
         late: bool,
         shadow: bool,
+        set_down: bool,
+        levitated_before: bool,
     ) -> PyResult<Command> {
         let single = |name: &str, given: Option<&Bound<'_, PyAny>>| {
             let given = given.map(|given| pair(name, given)).transpose()?;
@@ -115,6 +117,8 @@ impl Supervisor {
         status.set(Status::AXIS_Y_LOST, axis_y_lost);
         status.set(Status::LATE, late);
         status.set(Status::SHADOW, shadow);
+        status.set(Status::SET_DOWN, set_down);
+        status.set(Status::LEVITATED_BEFORE, levitated_before);
         let sample = Sample {
             sequence: sequence.unwrap_or(self.next),
             status,

@@ -84,7 +84,7 @@ def test_a_configuration_by_nine_numbers_and_by_keys():
 def test_an_approach():
     config = ambwhirl.Config.example()
     supervisor = ambwhirl.Supervisor(config)
-    command = supervisor.tick([1e-5, -2e-5], [-12.5, 25.0], spin_rad_s=1000.0)
+    command = supervisor.tick([1e-5, -2e-5], [-12.5, 25.0], spin_rad_s=1000.0, levitated_before=True)
     assert command.force_n.tolist() == [-12.5, 25.0] and command.mode == "levitated" and not command.hold
     x_m = 1e-5
     events = []

@@ -227,6 +227,8 @@ class Supervisor:
         axis_y_lost: bool = False,
         late: bool = False,
         shadow: bool = False,
+        set_down: bool = False,
+        levitated_before: bool = False,
     ) -> Command:
         """One tick. Numbers may be any, NaN too, as from a sensor: the supervisor judges them. Without a sequence number samples
         are counted; without a spin, or the force that the actuator delivers, it does without."""
