@@ -222,7 +222,7 @@ impl<S: Scalar> Guard<S> {
             self.refusal(position, trusted, expected, coeffs)
         };
         if !self.faulty {
-            events |= self.count(refusal, position, coeffs);
+            events |= self.count((refusal, bad), position, coeffs);
         }
         if flags.contains(SampleFlags::LATE) {
             self.late_ticks = self.late_ticks.saturating_add(1);

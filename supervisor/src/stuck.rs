@@ -91,12 +91,17 @@ impl<S: Scalar> StuckDetector<S> {
     /// then stands still is no rotor.
     pub(crate) fn jumped(&mut self, off: Vec2<S>, samples: u8) -> SampleFlags {
         let [x, y] = &mut self.at;
-        for (coordinate, off) in [(x, off.x), (y, off.y)] {
+        let mut flags = SampleFlags::empty();
+        for (coordinate, off, bad) in [
+            (x, off.x, SampleFlags::X_BAD),
+            (y, off.y, SampleFlags::Y_BAD),
+        ] {
             if off.abs() > S::from_f32(FAR) && coordinate.unchanged >= samples {
                 coordinate.stuck = coordinate.stuck.max(1);
+                flags |= bad;
             }
         }
-        self.stuck()
+        flags
     }
 
     /// After samples that nobody showed it, each of which changed in both coordinates.
@@ -131,10 +136,11 @@ impl<S: Scalar> StuckDetector<S> {
         self.at[0].awaited || self.at[1].awaited
     }
 
-    /// A fault begins: from here on the model is no evidence.
-    pub(crate) fn freeze(&mut self) {
-        for coordinate in &mut self.at {
-            coordinate.awaited = coordinate.stands_still();
+    /// A fault begins, in which these coordinates are the ones that are stuck: from here on the model is no evidence.
+    pub(crate) fn freeze(&mut self, stuck: SampleFlags) {
+        for (coordinate, bad) in (self.at.iter_mut()).zip([SampleFlags::X_BAD, SampleFlags::Y_BAD])
+        {
+            coordinate.awaited = coordinate.stuck > 0 || stuck.contains(bad);
             (coordinate.way, coordinate.stuck) = (S::ZERO, 0);
         }
     }

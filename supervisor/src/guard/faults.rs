@@ -70,11 +70,11 @@ impl<S: Scalar> Guard<S> {
         fits && !(all_bad && other.is_awaited())
     }
 
-    /// Before a fault: refused samples since the last good one, and whether they make one. Where nothing is known of the
-    /// rotor, the first does.
+    /// Before a fault: refused samples since the last good one, by the coordinates that are bad, and whether they make one.
+    /// Where nothing is known of the rotor, the first does.
     pub(super) fn count(
         &mut self,
-        refusal: RejectReason,
+        (refusal, bad): (RejectReason, SampleFlags),
         position: Vec2<S>,
         coeffs: &Coeffs<S>,
     ) -> Events {
@@ -105,7 +105,12 @@ impl<S: Scalar> Guard<S> {
         self.faulty = true;
         self.fault = refusal;
         self.recovery = RecoveryCount::default();
-        self.stuck_detector.freeze();
+        self.stuck_detector
+            .freeze(if refusal == RejectReason::Stuck {
+                bad
+            } else {
+                SampleFlags::empty()
+            });
         Events::SENSOR_FAULT
     }
 
