@@ -13,7 +13,12 @@ fn recorder_freezes_around_the_engagement() {
     for i in 0..900_u32 {
         let out = (3e-5 * i.saturating_sub(99) as f32).min(2.02e-4);
         let back = (2e-6 * i.saturating_sub(250) as f32).min(out);
-        let command = supervisor.tick(&sample(i, [out - back, 0.0]));
+        // A reading that does not change at all would be stuck.
+        let noise = 2e-7 * (i % 3) as f32;
+        let mut now = sample(i, [out - back + noise, noise]);
+        // A controller that has no force to spare at the wall.
+        now.levitation_n = [-5e6 * now.position_m[0], 0.0];
+        let command = supervisor.tick(&now);
         if command.events.contains(Events::RECORD_FROZEN) {
             frozen_at = Some(i);
         }

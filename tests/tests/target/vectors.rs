@@ -117,7 +117,7 @@ fn a_port_has_every_bit_from_the_text() {
         .unwrap();
     let said = String::from_utf8_lossy(&output.stdout);
     assert!(
-        output.status.success() && said.contains("42 of 42 ways"),
+        output.status.success() && said.contains("45 of 45 ways"),
         "{said}"
     );
     for (number, port) in [("f32", float as fn(&Config) -> Port), ("q", fixed)] {

@@ -39,7 +39,6 @@ type Way<'a> = &'a dyn Fn(f64, &mut Scene);
 pub fn situations(base: &Scene, sizes: Sizes, tuned: LevitationParams) -> Vec<Situation> {
     let at_rest = |_share: f64, _scene: &mut Scene| {};
     let impact = |share: f64, scene: &mut Scene| {
-        scene.levitated_before = true;
         scene.start = aimed(base, share * sizes.impact_m_s, 30.0);
     };
     let whirl = |share: f64, scene: &mut Scene| {
@@ -63,6 +62,7 @@ pub fn situations(base: &Scene, sizes: Sizes, tuned: LevitationParams) -> Vec<Si
     for (name, mode, shares, lead) in ways {
         all.extend(shares.iter().find_map(|&share| {
             let mut scene = base.clone();
+            scene.levitated_before = true;
             lead(share, &mut scene);
             let at_s = middle_of_longest(mode, &scene, tuned)?;
             Some(Situation {
