@@ -192,6 +192,25 @@ fn one_sample_that_is_off_is_refused_and_two_are_not() {
     }
 }
 
+/// After a doubted sample a coordinate that a coarse converter merely repeats is not stuck.
+/// Requirement: SR-16
+#[test]
+fn what_a_coarse_converter_repeats_beside_a_doubted_sample_is_not_stuck() {
+    let mut bench = Bench::new(&config());
+    let mut chance = Chance::new(3);
+    let mut doubted = 0;
+    for i in 0..400 {
+        let off = if i >= 200 && i % 20 == 0 { 0.3 } else { 0.0 };
+        let repeated = 2e-6 * (i / 3 % 2) as f32;
+        let command = bench.tick([off * C_M + noise(&mut chance, 5e-7), repeated]);
+        assert_eq!(command.mode, Mode::Levitated, "{i}");
+        let refused = command.limits.contains(Limits::SAMPLE_REFUSED);
+        assert_eq!(refused, off > 0.0, "{i}");
+        doubted += u32::from(bench.supervisor.report().refusal == RejectReason::Doubted);
+    }
+    assert_eq!(doubted, 10);
+}
+
 /// The command that a levitation controller makes of a doubted sample does not go through.
 /// Requirement: SR-16
 #[test]
