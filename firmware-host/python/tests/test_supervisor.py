@@ -50,6 +50,8 @@ def test_it_is_the_one_that_firmware_links(host, tmp_path):
                 axis_y_lost=bool(status & 16),
                 late=bool(status & 32),
                 shadow=bool(status & 64),
+                set_down=bool(status & 128),
+                levitated_before=bool(status & 256),
             )
             expected = [single(row["force_x"]), single(row["force_y"])]
             assert np.array_equal(command.force_n, expected), (piece, ticks)
