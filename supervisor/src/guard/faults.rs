@@ -70,8 +70,8 @@ impl<S: Scalar> Guard<S> {
         fits && !(all_bad && other.is_awaited())
     }
 
-    /// Before a fault: refused samples since the last good one, by the coordinates that are bad, and whether they make one.
-    /// Where nothing is known of the rotor, the first does.
+    /// Before a fault: counts a sample, refused in these coordinates or good, and says whether those since the last good one
+    /// make a fault. Where nothing is known of the rotor, the first does.
     pub(super) fn count(
         &mut self,
         (refusal, bad): (RejectReason, SampleFlags),
