@@ -93,6 +93,29 @@ impl<S: Scalar> Classifier<S> {
         self.ticks_slow = 0;
     }
 
+    /// Whether it touches so much of the time that it may be in a whirl.
+    #[inline]
+    pub(crate) fn is_continuous(&self) -> bool {
+        self.contact_share > S::from_f32(CONTINUOUS)
+    }
+
+    /// A sample shows contact all of this tick, or none.
+    #[inline]
+    fn share(&mut self, now: S, coeffs: &Coeffs<S>) {
+        self.contact_share =
+            self.contact_share + coeffs.contact_share_step * (now - self.contact_share);
+    }
+
+    /// A sample shows a rotor that flies, and has not touched for long.
+    #[inline]
+    pub(crate) fn flies(&mut self, coeffs: &Coeffs<S>) {
+        self.share(S::from_f32(NO_SHARE), coeffs);
+        *self = Self {
+            contact_share: self.contact_share,
+            ..Self::default()
+        };
+    }
+
     /// `seen`: by a sample of this tick; `made_up`: speed outwards that the observer has from being blind for the wall's
     /// force; `rate` is the spin \[1/t₀\].
     #[inline]
@@ -109,8 +132,7 @@ impl<S: Scalar> Classifier<S> {
             S::from_f32(NO_SHARE)
         };
         if seen {
-            self.contact_share =
-                self.contact_share + coeffs.contact_share_step * (now - self.contact_share);
+            self.share(now, coeffs);
         }
         let along = contact.tangential_speed;
         let along_square = along * along;
@@ -139,9 +161,7 @@ impl<S: Scalar> Classifier<S> {
         } else {
             WHIRL_SPEED_SQUARED
         };
-        let sliding = !self.is.resting
-            && self.contact_share > S::from_f32(CONTINUOUS)
-            && along_square > S::from_f32(slow);
+        let sliding = !self.is.resting && self.is_continuous() && along_square > S::from_f32(slow);
         if !sliding {
             return if self.is.resting {
                 Class::Pinned

@@ -210,6 +210,8 @@ pub(crate) struct Coeffs<S: Scalar> {
     pub(crate) acts_in_flight: bool,
     /// Being blind for the contact force, the observer makes up a speed of so much times the acceleration of all others.
     pub(crate) blind_time: S,
+    /// Square of a speed that is no approach.
+    pub(crate) ease_square: S,
 }
 
 /// Shortest way \[clearances\] that the estimate is sure of: a rotor at rest before a sensor without noise may seem to go round
@@ -286,6 +288,22 @@ impl Taken {
         }
         S::from_f32(x)
     }
+}
+
+/// A rotor within this radius, and the axis within this of it, may be at ease.
+pub(crate) const INSIDE: f32 = 0.49;
+pub(crate) const BESIDE: f32 = 0.25;
+
+/// Square of the speed that a quarter of the cap stops before the wall from [`INSIDE`] on, with the axis [`BESIDE`] it, under
+/// this pull of the magnets; a tenth less, for rounding.
+fn ease_square(pull: f32, horizon: f32) -> f32 {
+    let reach = min(1.0 - BESIDE, 0.25 / max(pull, 0.01));
+    let room = max(reach - INSIDE, 0.0);
+    // v² = 2·(room − v·τ)/4 − pull·room·(reach + r).
+    let square = max(0.5 * room - pull * room * (reach + INSIDE), 0.0);
+    let half = 0.25 * horizon;
+    let speed = sqrt(half * half + square) - half;
+    0.9 * speed * speed
 }
 
 impl<S: Scalar> Coeffs<S> {
@@ -427,6 +445,7 @@ impl<S: Scalar> Coeffs<S> {
             bending: Modes::new(config),
             acts_in_flight: config.acts_in_flight >= 0.5,
             blind_time: s("observer", h * (1.0 + touch_pole) / touch_free),
+            ease_square: s("speed", ease_square(pull, horizon)),
         };
         (coeffs, taken.lost)
     }

@@ -100,6 +100,12 @@ impl Detector {
         (self.touching && !before, before && !self.touching)
     }
 
+    /// Nothing is coming.
+    #[inline]
+    pub(crate) fn rest(&mut self) {
+        self.alarmed = 0;
+    }
+
     /// `cap` is what the force–time budget leaves \[caps\], `margin` an outward speed that does not count.
     #[inline]
     pub(crate) fn contact_estimate<S: Scalar>(

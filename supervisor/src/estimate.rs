@@ -5,7 +5,7 @@
 
 use crate::actuator_monitor::{ActuatorMonitor, lagging};
 use crate::bending::Bending;
-use crate::coeffs::{Coeffs, MAX_DELAY};
+use crate::coeffs::{BESIDE, Coeffs, INSIDE, MAX_DELAY};
 use crate::innovation::Expected;
 use crate::parts::AXIS_MONITOR;
 use crate::reading::{Actuator, SampleFlags};
@@ -28,6 +28,18 @@ pub(crate) struct Motion<S> {
 
 words_of_fields!(Motion<S> { position, velocity, load_step, fresh });
 
+impl<S: Scalar> Motion<S> {
+    /// Whether it comes inwards, or is so far inside and so slow that a quarter of the cap prevents any contact, so far beside the
+    /// axis as this.
+    #[inline]
+    pub(crate) fn is_at_ease(&self, beside: S, coeffs: &Coeffs<S>) -> bool {
+        self.position.dot(self.velocity) <= S::from_f32(INWARD)
+            || (self.position.length_squared() <= S::from_f32(INSIDE * INSIDE)
+                && beside <= S::from_f32(BESIDE)
+                && self.velocity.length_squared() <= coeffs.ease_square)
+    }
+}
+
 /// What the wall does to the rotor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Contact {
@@ -48,6 +60,9 @@ const MOST_LOAD: f32 = 4.0;
 /// no whirl that is faster, and a rotor farther out is in no bearing. The same for all numbers, so that all see the same
 /// motion.
 const FAR: f32 = 14.0;
+
+/// Position times velocity of a rotor that comes inwards, rounding apart.
+const INWARD: f32 = -1e-3;
 
 /// The observer.
 #[derive(Debug, Clone, Copy, Default)]

@@ -84,13 +84,19 @@ impl<S: Scalar> View<'_, S> {
         }
     }
 
-    /// (4.8)'s K; with unknown spin nobody knows which way an impact will push, and only the whirl counts
+    /// What friction adds; with unknown spin nobody knows which way an impact will push, and only the whirl counts
     /// that is there, or its sense, and the force with it, would change from tick to tick.
-    fn bounce_gain(&self) -> S {
+    #[inline]
+    fn by_friction(&self, added: S) -> S {
         match self.spin {
             Spin::Unknown => S::ZERO,
-            _ => self.coeffs.bounce_gain,
+            _ => added,
         }
+    }
+
+    /// (4.8)'s K.
+    fn bounce_gain(&self) -> S {
+        self.by_friction(self.coeffs.bounce_gain)
     }
 
     /// What the cap has over an outward load \[caps\].
@@ -155,10 +161,7 @@ impl<S: Scalar> View<'_, S> {
         if time < act_after {
             let n = impact.normal;
             let lost = (S::ONE + coeffs.restitution) * normal_speed;
-            let friction = match self.spin {
-                Spin::Unknown => S::ZERO,
-                _ => coeffs.friction * lost,
-            };
+            let friction = self.by_friction(coeffs.friction * lost);
             velocity = velocity - n * lost + n.perp() * (friction * sense);
             normal_speed = coeffs.restitution * normal_speed;
             backward = backward + friction;
@@ -188,8 +191,9 @@ impl<S: Scalar> View<'_, S> {
         let coeffs = self.coeffs;
         let n = self.normal;
         let sense = self.spin.sense_of_backward(self.tangential_speed);
-        let (worth, outward) = if driven {
-            (coeffs.friction, self.radial_speed.max(S::ZERO))
+        let outward = self.radial_speed.max(S::ZERO);
+        let worth = if driven {
+            coeffs.friction
         } else {
             self.inward_worth()
         };
@@ -230,27 +234,21 @@ impl<S: Scalar> View<'_, S> {
         }
     }
 
-    /// What an inward force in an impact is worth over one along the wall, by the gradient of (4.8), and the outward speed that
-    /// counts. On a wall that gives way the rotor swings in with d = A·sin φ, and a push there takes J·(1 + cos φ) from ∫N dt and
+    /// What an inward force in an impact is worth over one along the wall, by the gradient of (4.8). On a wall that gives way the rotor swings in with d = A·sin φ, and a push there takes J·(1 + cos φ) from ∫N dt and
     /// J·cos φ from the speed with which it will leave: w = μ + (μ + K)·cos φ, at the time when the force has come. Nothing on a
     /// wall that is left by then.
-    fn inward_worth(&self) -> (S, S) {
+    fn inward_worth(&self) -> S {
         let coeffs = self.coeffs;
-        let outward = self.radial_speed.max(S::ZERO);
         let Some([cosine, sine, rate]) = coeffs.contact_ahead else {
-            return (S::ZERO, outward);
+            return S::ZERO;
         };
         let depth = (self.position.dot(self.normal) - S::ONE).max(S::ZERO);
         let swing = depth * rate;
         let per_amplitude = Vec2::new(self.radial_speed, swing).inverse_length();
         let then = (self.radial_speed * cosine - swing * sine) * per_amplitude;
-        let gain = self.bounce_gain();
-        let friction = match self.spin {
-            Spin::Unknown => S::ZERO,
-            _ => coeffs.friction,
-        };
-        let worth = friction + (friction + gain) * then;
-        (worth.max(S::ZERO), outward)
+        let friction = self.by_friction(coeffs.friction);
+        let worth = friction + (friction + self.bounce_gain()) * then;
+        worth.max(S::ZERO)
     }
 
     /// Rotation that makes up for delay and lag on a circle at this rate: a delay of h turns a rotating

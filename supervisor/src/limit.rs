@@ -38,6 +38,12 @@ impl<S: Scalar> ForceEnvelope<S> {
         }
     }
 
+    /// Whether the budget leaves all of the cap.
+    #[inline]
+    pub(crate) fn is_whole(self) -> bool {
+        self.cap >= S::ONE
+    }
+
     /// Cap of x and of y, 0 for an axis that is lost.
     fn axes(self) -> [S; 2] {
         (self.axes.carried(Vec2::new(self.axis, self.axis))).to_array()
@@ -87,7 +93,7 @@ pub(crate) fn allocate<S: Scalar>(
     }
     let (mut sum, mut part) = (Vec2::ZERO, demand.braking);
     // No law wants to brake with more than the whole cap, but for rounding.
-    let whole_disc = !envelope.boxed && envelope.cap >= S::ONE;
+    let whole_disc = !envelope.boxed && envelope.is_whole();
     if whole_disc || envelope.holds(part) {
         (sum, part) = (part, demand.damping);
         if envelope.holds(sum + part) {

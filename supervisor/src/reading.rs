@@ -49,6 +49,12 @@ impl Words for SampleFlags {
 }
 
 impl SampleFlags {
+    /// What the flags of a sample are of which nothing is to be said, among those that say something.
+    pub(crate) const AT_EASE: (Self, Self) = {
+        let usual = Self::USED.union(Self::ON);
+        (usual, usual.union(Self::UNUSUAL).union(Self::LOST))
+    };
+
     /// What the status says.
     #[inline]
     pub(crate) fn from_status(status: Status) -> Self {

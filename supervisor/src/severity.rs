@@ -87,6 +87,12 @@ pub(crate) struct SeverityAssessment<S> {
 }
 
 impl<S: Scalar> Severity<S> {
+    /// The same of a rotor that levitates on.
+    #[inline]
+    pub(crate) fn levitated(&mut self, velocity: Vec2<S>) {
+        self.before = velocity;
+    }
+
     /// `force` is the one that acts \[caps\], `velocity` that of the axis: it is the axis that touches.
     #[inline]
     pub(crate) fn assess(

@@ -12,7 +12,7 @@ use crate::impact::{Impact, Speed};
 use crate::law::View;
 use crate::limit::{Budget, ForceEnvelope};
 use crate::phase::{Judged, Phase};
-use crate::reading::{Reading, SampleFlags};
+use crate::reading::{Actuator, Reading, SampleFlags};
 use crate::scalar::Scalar;
 use crate::severity::{Evidence, Severity};
 use crate::signal::{
@@ -80,17 +80,15 @@ impl<S: Scalar> State<S> {
     ) -> CoreCommand<S> {
         let tilting = beside.tilting();
         let pinned = matches!(self.phase, Phase::Pinned { .. });
+        let wall = self.detector.wall(pinned);
         if let Some(tilting) = tilting {
             let gained = tilting.gained(coeffs.tick);
-            (self.observer).push(gained, self.detector.wall(pinned), coeffs);
+            self.observer.push(gained, wall, coeffs);
         }
         // An axis that does not track its command is as good as lost.
         let status = sample.status | self.observer.monitor.lost(sample.status);
-        let estimated = || {
-            let blind = self.detector.wall(pinned) != Contact::None;
-            (self.observer.velocity(), blind)
-        };
-        let expected = (self.observer).expected(self.detector.wall(pinned), coeffs);
+        let estimated = || (self.observer.velocity(), wall != Contact::None);
+        let expected = self.observer.expected(wall, coeffs);
         let reading = (self.guard).judge((sample, status), expected, estimated, coeffs);
         let assessment = reading.assessment;
         let flags = assessment.flags;
@@ -107,6 +105,12 @@ impl<S: Scalar> State<S> {
         let acting = (actuator, tilting.map(|tilting| tilting.unbalance));
         let (motion, off_axis) = (self.observer).advance(position, spin, wall, acting, coeffs);
         let envelope = ForceEnvelope::new(&self.budget, actuator.axes, coeffs);
+        if self.levitates_at_ease(sample, flags, wall)
+            && envelope.is_whole()
+            && motion.is_at_ease(off_axis, coeffs)
+        {
+            return self.levitated(sample, (actuator, assessment.events), envelope, coeffs);
+        }
         let margin = self.trust.margin;
         let contact = (self.detector).contact_estimate(
             (&motion, off_axis),
@@ -148,15 +152,16 @@ impl<S: Scalar> State<S> {
         };
         if self.phase != Phase::Levitated || contact.unavoidable || contact.touching {
             speed = Speed::new(motion.velocity);
-            let asks = -Vec2::from_array(sample.levitation).dot(contact.normal);
-            // What is no number is no force to spare.
-            let spares = asks < envelope.cap * S::from_f32(SPARES_BELOW);
             let slow = if contact.touching {
                 self.classifier.is_slow()
             } else {
                 speed.square < S::from_f32(SLOW_SQUARE)
             };
-            judged.harmless = slow && spares;
+            if slow {
+                let asks = -Vec2::from_array(sample.levitation).dot(contact.normal);
+                // What is no number is no force to spare.
+                judged.harmless = asks < envelope.cap * S::from_f32(SPARES_BELOW);
+            }
             if !contact.touching {
                 ahead = Impact::ahead(&motion, contact.radius, &speed);
                 let beyond = (speed.value() - margin).max(S::ZERO);
@@ -299,6 +304,54 @@ impl<S: Scalar> State<S> {
             events,
             integrator,
             severity: severity.severity,
+        }
+    }
+
+    /// Whether nothing has happened that the tick would have to look at.
+    #[inline]
+    fn levitates_at_ease(&self, sample: &CoreSample<S>, flags: SampleFlags, wall: Contact) -> bool {
+        self.phase == Phase::Levitated
+            && flags & SampleFlags::AT_EASE.1 == SampleFlags::AT_EASE.0
+            && wall == Contact::None
+            && !sample.status.contains(Status::SHADOW)
+            && !self.reconfigured
+            && !self.classifier.is_continuous()
+    }
+
+    /// Most ticks: a rotor at ease is left to its levitation. To the bit what the rest of the tick comes to.
+    #[inline]
+    fn levitated(
+        &mut self,
+        sample: &CoreSample<S>,
+        (actuator, events): (Actuator<S>, Events),
+        envelope: ForceEnvelope<S>,
+        coeffs: &Coeffs<S>,
+    ) -> CoreCommand<S> {
+        let velocity = self.observer.velocity();
+        let rubs = self.classifier.rubs();
+        self.detector.rest();
+        self.classifier.flies(coeffs);
+        (self.trust).tick(
+            (velocity.length_squared(), true),
+            (self.phase, rubs, sample.spin),
+            sample.status,
+            coeffs,
+        );
+        let command = Vec2::from_array(sample.levitation);
+        let (levitation, bound) = limit::levitation(command, envelope);
+        let (force, slew) = limit::slewed(levitation, self.force, coeffs);
+        (self.force, self.own) = (force, force);
+        self.observer.commanded(force);
+        self.budget.spend(S::ONE, actuator.acting(force), coeffs);
+        self.severity.levitated(velocity);
+        CoreCommand {
+            force: force.to_array(),
+            own: force.to_array(),
+            mode: Mode::Levitated,
+            limits: bound | slew,
+            events,
+            integrator: IntegratorHint::Run,
+            severity: S::ZERO,
         }
     }
 
