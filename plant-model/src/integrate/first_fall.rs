@@ -13,17 +13,24 @@ pub(crate) enum Fall {
     ClearUntil(f64),
 }
 
-/// First θ in [0, `end`] at which a guard that starts positive, or at zero and rising, falls to zero.
+/// First θ in [0, `end`] at which a guard that starts positive, or at zero and rising, falls to zero. `rounding`: what it may be off
+/// by as it is a difference of larger numbers.
 ///
 /// Conservative advancement: with M an upper bound of |g̈| over a window, no root lies before that of
 /// g + ġ·τ − M·τ²/2. Windows shrink and grow with the moves, so that the bound stays close.
-pub(crate) fn first_fall(guard: &Scalar, end: f64, order: usize, normal: bool) -> Fall {
+pub(crate) fn first_fall(
+    guard: &Scalar,
+    end: f64,
+    order: usize,
+    (normal, rounding): (bool, f64),
+) -> Fall {
     let c = &guard.0[..=order];
     let swing = c[1..]
         .iter()
         .rev()
         .fold(0.0, |sum, c| (sum + c.abs()) * end);
-    if c[0] > swing {
+    // What does not move does not fall either.
+    if c[0] > swing || (swing <= rounding && c[0] >= -rounding) {
         return Fall::Never;
     }
     let bound = |window: f64| {
@@ -33,8 +40,8 @@ pub(crate) fn first_fall(guard: &Scalar, end: f64, order: usize, normal: bool) -
         })
     };
     // The state that the mode starts from carries the round-off of a whole step before.
-    let start_tiny = 1e-12 * (c[0].abs() + swing);
-    let tiny = 1e-15 * (c[0].abs() + swing);
+    let start_tiny = (1e-12 * (c[0].abs() + swing)).max(rounding);
+    let tiny = (1e-15 * (c[0].abs() + swing)).max(rounding);
     let (mut theta, mut window, mut curvature) = (0.0, end, bound(end));
     for _ in 0..200 {
         let (mut g, mut rate) = (0.0, 0.0);

@@ -5,11 +5,14 @@ use super::{Options, PlantError};
 /// Events without time in between from which on modes are taken to follow each other in a circle, and those that are too many.
 const CIRCLE: u32 = 4;
 const MOST_AT_ONCE: u32 = 50;
+/// Steps in a row that a machine may take without getting farther than a moment each: time that creeps is time that stands still.
+const MOST_CREEPING: u32 = 1000;
 
 /// Events at one instant, steps in this sample and steps of the run so far.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Progress {
     at_once: u32,
+    creeping: u32,
     in_sample: u64,
     steps: u64,
 }
@@ -50,6 +53,15 @@ impl Progress {
     pub(crate) fn count(&mut self, t_s: f64, moved: bool) -> Result<(), PlantError> {
         self.at_once = if moved { 0 } else { self.at_once + 1 };
         if self.at_once > MOST_AT_ONCE {
+            return Err(PlantError::ModeUndecided { t_s });
+        }
+        Ok(())
+    }
+
+    /// The same where that was no more than a moment, or was.
+    pub(crate) fn creeps(&mut self, t_s: f64, creeps: bool) -> Result<(), PlantError> {
+        self.creeping = if creeps { self.creeping + 1 } else { 0 };
+        if self.creeping > MOST_CREEPING {
             return Err(PlantError::ModeUndecided { t_s });
         }
         Ok(())

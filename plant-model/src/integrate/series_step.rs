@@ -84,7 +84,7 @@ impl<S: Stator> SeriesStepper<S> {
             if task.suppressed.has(i) || !self.series.guard(guard, system, task.mode, i) {
                 continue;
             }
-            let (stop, by) = match first_fall(guard, theta, order, i == NORMAL) {
+            let (stop, by) = match first_fall(guard, theta, order, (i == NORMAL, 0.0)) {
                 Fall::Never => continue,
                 Fall::At(stop) => (stop, Some(i)),
                 Fall::ClearUntil(stop) => (stop, None),

@@ -2,6 +2,7 @@
 
 use super::series::PlaneSeries;
 use super::system::PlaneData;
+use crate::integrate::driver::ON_WALL;
 use crate::mode::{Phase, Slide, Whirl};
 use crate::series::Scalar;
 
@@ -52,6 +53,14 @@ impl Guard {
     /// Its bit in a set.
     pub(crate) fn bit(self) -> u8 {
         1 << self as u8
+    }
+
+    /// What it may be off by as a difference of larger numbers.
+    pub(crate) fn rounding(self, data: &PlaneData) -> f64 {
+        match self {
+            Self::Gap | Self::Beyond => ON_WALL * data.clearance_m,
+            _ => 0.0,
+        }
     }
 
     /// Fills `out` with it over a step up to θ; says whether there is anything to ask.

@@ -266,13 +266,21 @@ impl MachineSeries {
         for (p, phase) in phases.iter().enumerate() {
             let (data, series) = (&system.planes[p], &self.planes[p]);
             let plane = &mut planes[p];
-            if let Some(race) = &data.race {
-                let spin = series.race.at_all(&nodes.theta, order);
-                plane.race_drag = h * nodes.integral(|j| race.drag_w(spin[j]));
-                if let (Some(drag), Phase::Contact(..)) = (&data.load_drag, phase) {
-                    let load = series.force.at_all(&nodes.theta, order);
-                    plane.race_drag +=
-                        h * nodes.integral(|j| drag.per_load_m(spin[j]) * load[j] * spin[j]);
+            match (&data.race, phase) {
+                (None, _) => {}
+                (Some(race), Phase::Contact(..)) => {
+                    let spin = series.race.at_all(&nodes.theta, order);
+                    plane.race_drag = h * nodes.integral(|j| race.drag_w(spin[j]));
+                    if let Some(drag) = &data.load_drag {
+                        let load = series.force.at_all(&nodes.theta, order);
+                        plane.race_drag +=
+                            h * nodes.integral(|j| drag.per_load_m(spin[j]) * load[j] * spin[j]);
+                    }
+                }
+                (Some(race), _) => {
+                    let before = series.race.0[0];
+                    let after = race.coasted_rad_s(before, theta * h);
+                    plane.race_drag = race.coasting_loss_j(before, after);
                 }
             }
             if let Phase::Contact(slide, whirl) = phase {

@@ -56,6 +56,8 @@ pub struct Machine {
     scratch: Vec<f64>,
     suppressed: Vec<u8>,
     just_left: Vec<bool>,
+    /// Planes in which it started on the wall, and along it if it moved.
+    rests: Vec<bool>,
     left_at_s: Vec<f64>,
     progress: Progress,
 }
@@ -115,6 +117,7 @@ impl Machine {
             scratch: vec![0.0; n],
             suppressed: vec![0; planes],
             just_left: vec![false; planes],
+            rests: vec![false; planes],
             left_at_s: vec![f64::NEG_INFINITY; planes],
             progress: Progress::default(),
             system,
@@ -124,6 +127,8 @@ impl Machine {
             let motion = machine.contact_motion(p);
             let data = &machine.system.planes[p];
             let depth = motion.penetration_m;
+            machine.rests[p] = depth.abs() <= ON_WALL * data.clearance_m
+                && motion.normal_m_s.abs() <= ON_WALL * motion.speed_m_s;
             if depth > ON_WALL * data.clearance_m {
                 if data.law.normal_force_n(depth, motion.normal_m_s) > 0.0 {
                     machine.settle(p, AtZero::default());
@@ -186,8 +191,9 @@ impl Machine {
             self.step(t_end_s)?;
             self.check_state()?;
             self.progress.count(self.t_s, self.t_s > t_before)?;
-            let after = self.modes();
-            if free && after == before && self.t_s > t_before {
+            let creeps = self.t_s - t_before <= self.system.moment_s && self.t_s < t_end_s;
+            self.progress.creeps(self.t_s, creeps)?;
+            if free && self.modes() == before && !creeps {
                 self.progress.was_free();
             }
             self.tell(before, on_change);
@@ -288,6 +294,7 @@ impl Machine {
             (_, guard) => guard,
         };
         match guard {
+            Guard::Gap if self.never_left(p) => self.touch_down(p),
             Guard::Gap => self.impact(p),
             Guard::Beyond => {
                 self.zero_speeds(None);
@@ -324,7 +331,7 @@ impl Machine {
         let series = &self.stepper.series;
         self.path.copy_from_slice(&self.y.position);
         let starts = self.turns();
-        series.at(&self.system, theta, &mut self.y);
+        series.at((&self.system, &self.phases), theta, &mut self.y);
         for (path, q) in self.path.iter_mut().zip(&self.y.position) {
             *path = q - *path;
         }
@@ -356,6 +363,12 @@ impl Machine {
             }
         }
         turns
+    }
+
+    /// From the start on the wall, and no farther from it since than rounding: under a push of ½·a·t² = ½·v·t.
+    fn never_left(&self, p: usize) -> bool {
+        let off_m = self.t_s * self.contact_motion(p).normal_m_s;
+        self.rests[p] && off_m <= 2.0 * ON_WALL * self.system.planes[p].clearance_m
     }
 
     fn impact(&mut self, p: usize) {

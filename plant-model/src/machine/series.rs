@@ -199,6 +199,7 @@ impl MachineSeries {
         loop {
             self.extend_positions(step, k);
             self.extend_forces(step, k);
+            self.extend_spins(step, k);
             let last = k == highest || enough(self, k);
             // What has to be held at the last order follows from the next one's speeds.
             if !last || !self.holding.held().is_empty() {
@@ -294,7 +295,41 @@ impl MachineSeries {
         }
     }
 
-    /// Coefficients k + 1 of the velocities and spins, and k of the friction that holds.
+    /// Coefficients k + 1 of the spins and k of what they do to the unbalance, which the energies are read off as well: also at the
+    /// last order. A race that is not touched coasts, which needs no series.
+    fn extend_spins(&mut self, step: &Step<'_>, k: usize) {
+        let (system, next) = (step.system, step.step_s * INVERSE[k + 1]);
+        let mut torque = if k == 0 { system.drive_torque_n_m } else { 0.0 };
+        for (p, plane) in self.planes.iter_mut().enumerate() {
+            let data = &system.planes[p];
+            if !matches!(step.phases[p], Phase::Contact(..)) {
+                plane.race.0[k + 1] = 0.0;
+                continue;
+            }
+            let sliding_n = plane.sliding.0[k];
+            torque += data.radius_m * sliding_n;
+            if let Some(race) = &data.race {
+                plane.race.0[k + 1] = next * race.acceleration(plane.race.0[k], sliding_n);
+                if let Some(drag) = &data.load_drag {
+                    let drag_m = drag.per_load_m(plane.race.0[0]);
+                    plane.race.0[k + 1] -= next * drag_m * plane.force.0[k] / race.inertia_kg_m2;
+                }
+            }
+        }
+        self.spin_rate.0[k] = torque * system.inverse_inertia;
+        self.spin.0[k + 1] = next * self.spin_rate.0[k];
+        if system.body.unbalance.is_some() {
+            self.turning.0[k] = self.direction.times_coefficient(&self.spin, k);
+            self.direction.0[k + 1] = next * perp(self.turning.0[k]);
+            let mut by_speed = self.turning.times_coefficient(&self.spin, k);
+            if system.inverse_inertia > 0.0 {
+                by_speed -= perp(self.direction.times_coefficient(&self.spin_rate, k));
+            }
+            self.unbalance.0[k] = by_speed;
+        }
+    }
+
+    /// Coefficients k + 1 of the velocities, and k of the friction that holds.
     fn extend_velocities(&mut self, step: &Step<'_>, k: usize) {
         let (system, next) = (step.system, step.step_s * INVERSE[k + 1]);
         let body = &system.body;
@@ -311,25 +346,6 @@ impl MachineSeries {
             };
             series.0[k + 1] = next * rate * (command_n - series.0[k]);
         }
-        // Spins.
-        let mut torque = if k == 0 { system.drive_torque_n_m } else { 0.0 };
-        for (p, plane) in self.planes.iter_mut().enumerate() {
-            let data = &system.planes[p];
-            let sliding_n = match step.phases[p] {
-                Phase::Contact(..) => plane.sliding.0[k],
-                _ => 0.0,
-            };
-            torque += data.radius_m * sliding_n;
-            if let Some(race) = &data.race {
-                plane.race.0[k + 1] = next * race.acceleration(plane.race.0[k], sliding_n);
-                if let (Some(drag), Phase::Contact(..)) = (&data.load_drag, step.phases[p]) {
-                    let drag_m = drag.per_load_m(plane.race.0[0]);
-                    plane.race.0[k + 1] -= next * drag_m * plane.force.0[k] / race.inertia_kg_m2;
-                }
-            }
-        }
-        self.spin_rate.0[k] = torque * system.inverse_inertia;
-        self.spin.0[k + 1] = next * self.spin_rate.0[k];
         // Forces on the coordinates.
         let acceleration = &mut self.acceleration;
         match k {
@@ -359,14 +375,7 @@ impl MachineSeries {
             }
         }
         if let Some(unbalance) = &body.unbalance {
-            self.turning.0[k] = self.direction.times_coefficient(&self.spin, k);
-            self.direction.0[k + 1] = next * perp(self.turning.0[k]);
-            let mut by_speed = self.turning.times_coefficient(&self.spin, k);
-            if system.inverse_inertia > 0.0 {
-                by_speed -= perp(self.direction.times_coefficient(&self.spin_rate, k));
-            }
-            self.unbalance.0[k] = by_speed;
-            unbalance.push(acceleration, by_speed);
+            unbalance.push(acceleration, self.unbalance.0[k]);
         }
         for (p, plane) in self.planes.iter().enumerate() {
             if matches!(step.phases[p], Phase::Contact(..)) {
@@ -431,7 +440,12 @@ impl MachineSeries {
     }
 
     /// State at θ.
-    pub(crate) fn at(&self, system: &MachineSystem, theta: f64, y: &mut MachineState) {
+    pub(crate) fn at(
+        &self,
+        (system, phases): (&MachineSystem, &[Phase]),
+        theta: f64,
+        y: &mut MachineState,
+    ) {
         let order = self.order;
         self.position.at(theta, order, &mut y.position);
         self.velocity.at(theta, order, &mut y.velocity);
@@ -440,9 +454,11 @@ impl MachineSeries {
             y.spin_rad_s = self.spin.at(theta, order);
         }
         for (p, plane) in self.planes.iter().enumerate() {
-            if system.planes[p].race.is_some() {
-                y.races_rad_s[p] = plane.race.at(theta, order);
-            }
+            y.races_rad_s[p] = match (&system.planes[p].race, phases[p]) {
+                (None, _) => continue,
+                (Some(_), Phase::Contact(..)) => plane.race.at(theta, order),
+                (Some(race), _) => race.coasted_rad_s(plane.race.0[0], theta * self.step_s),
+            };
         }
         for (m, law) in system.magnets.iter().enumerate() {
             match law {

@@ -45,6 +45,7 @@ struct Weights {
     velocity: f64,
     gap: f64,
     spin: f64,
+    race: f64,
     force: f64,
 }
 
@@ -106,11 +107,16 @@ impl Stepper {
                 .max(1e-3 * self.clearance_m * self.contact_rate);
         let speed = now.max(floor);
         let per = |x: f64| 1.0 / (self.rtol * x);
+        let race_rad_s = y
+            .races_rad_s
+            .iter()
+            .fold(0.0, |most: f64, x| most.max(x.abs()));
         Weights {
             position: per((speed / self.slow_rate).min(self.clearance_m)) * self.mobility.sqrt(),
             velocity: per(speed) * self.mobility.sqrt(),
             gap: per((speed / self.contact_rate).min(self.clearance_m)),
             spin: per((speed / self.radius_m).max(1e-2 * y.spin_rad_s.abs())),
+            race: per((speed / self.radius_m).max(1e-2 * race_rad_s)),
             force: per(speed * self.contact_rate / self.mobility),
         }
     }
@@ -161,7 +167,8 @@ impl Stepper {
                     }
                 }
                 let rising = matches!(guard, Guard::Normal | Guard::NoForce | Guard::Beyond);
-                let (stop, by) = match first_fall(&self.guard, theta, order, rising) {
+                let rounding = guard.rounding(&system.planes[p]);
+                let (stop, by) = match first_fall(&self.guard, theta, order, (rising, rounding)) {
                     Fall::Never => continue,
                     Fall::At(stop) => (stop, Some((p, *guard))),
                     Fall::ClearUntil(stop) => (stop, None),
@@ -307,6 +314,8 @@ fn square(
             Phase::Contact(..) => plane.gap.0[k].norm_squared(),
         };
         sum += gap * weights.gap * weights.gap;
+        // Of a race that is touched; another one has no coefficients.
+        sum += (plane.race.0[k] * weights.race).powi(2);
     }
     if system.inverse_inertia > 0.0 {
         sum += (series.spin.0[k] * weights.spin).powi(2);

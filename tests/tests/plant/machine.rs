@@ -14,4 +14,5 @@ mod refusals;
 mod rotor;
 mod shaft;
 mod silently_wrong;
+mod starts;
 mod whirl_ranges;

@@ -71,12 +71,14 @@ impl Collocation {
         instant.spin_rate = torque * system.inverse_inertia;
         for (p, rate) in instant.race_rates.iter_mut().enumerate() {
             let touch = &instant.touches[p];
-            // Beyond the wall without force there is none that would load the bearing.
-            let load_n = match step.phases[p] {
-                Phase::Contact(..) => touch.force_n,
+            *rate = match step.phases[p] {
+                Phase::Contact(..) => {
+                    let loads = (touch.sliding_n, touch.force_n);
+                    system.race_acceleration(p, y.races_rad_s[p], loads)
+                }
+                // It coasts.
                 _ => 0.0,
             };
-            *rate = system.race_acceleration(p, y.races_rad_s[p], (touch.sliding_n, load_n));
         }
         let direction = match &body.unbalance {
             None => V2::x(),

@@ -299,3 +299,61 @@ fn an_amplifier_of_second_order_answers_a_step() {
         assert_eq!(refused.field, "magnets[0].lag_damping_ratio");
     }
 }
+
+/// However fast its drag stops it against the sample and the step: alone by the exponential, and touched as by a smaller
+/// tolerance and the other method.
+#[test]
+fn drag_of_any_strength_is_under_control() {
+    let run = |rate: f64, velocity_m_s: f64, rtol: f64, method: Method| {
+        let mut params = machine();
+        for plane in &mut params.planes {
+            plane.race = Some(RaceParams {
+                inertia_kg_m2: 1e-6,
+                drag_n_m_s: 1e-6 * rate,
+                start_spin_rad_s: 60.0,
+            });
+        }
+        let start = MachineStart {
+            centre_velocity_m_s: V2::new(velocity_m_s, 0.0),
+            spin_rad_s: 200.0,
+            ..MachineStart::default()
+        };
+        let options = Options {
+            rtol,
+            method,
+            ..Options::default()
+        };
+        let mut machine = Machine::new(&params, &start, options).unwrap();
+        for i in 1..=100 {
+            machine
+                .advance(
+                    f64::from(i) / 2e4,
+                    &MachineInputs::default(),
+                    &mut |_, _| {},
+                )
+                .unwrap_or_else(|e| panic!("{rate} /s: {e}"));
+        }
+        let residual = machine.audit().residual();
+        assert!(residual < 1e-7, "{rate} /s: {residual:e} of the energy");
+        machine.snapshot().planes().next().unwrap().race_spin_rad_s
+    };
+    for rate in [1.0, 1e3, 2e4, 1e5, 1e6] {
+        let alone = run(rate, 0.01, 1e-6, Method::Series);
+        let exact = 60.0 * (-rate * 5e-3_f64).exp();
+        assert!((alone - exact).abs() <= 1e-9 * exact, "{rate} /s: {alone}");
+        let [loose, tight, other] = [
+            (1e-6, Method::Series),
+            (1e-10, Method::Series),
+            (1e-10, Method::Explicit),
+        ]
+        .map(|(rtol, method)| run(rate, 0.5, rtol, method));
+        assert!(
+            (loose - tight).abs() < 1e-4 * (60.0 + tight.abs()),
+            "{rate} /s: {loose}, {tight}"
+        );
+        assert!(
+            (other - tight).abs() < 1e-7 * (60.0 + tight.abs()),
+            "{rate} /s: {other}, {tight}"
+        );
+    }
+}

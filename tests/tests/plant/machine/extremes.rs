@@ -183,3 +183,39 @@ fn drops() {
     }
     run("neither damping nor friction", &params, &leaning, 0.5);
 }
+
+/// What an unbalance takes from a spin that is free is read off to the last order, also where one wall is so much stiffer than the
+/// other that the first step tried is far too long.
+#[test]
+fn walls_of_very_different_stiffness() {
+    for i in 0..12 {
+        let mut params = dropped();
+        params.gravity_m_s2 = V2::zeros();
+        params.rotor = Rotor::Rigid(RigidRotor {
+            mass_kg: 1.4,
+            transverse_inertia_kg_m2: 0.44,
+            polar_inertia_kg_m2: 0.0,
+        });
+        params.spin = SpinParams::Free {
+            inertia_kg_m2: 11.0,
+            drive_torque_n_m: 0.0,
+        };
+        params.unbalances[0].moment_kg_m = 1e-5;
+        params.unbalances[0].angle_rad = 0.7 * i as f64;
+        params.planes = vec![plane(-0.55, 80.0), plane(0.34, 0.8)];
+        for plane in &mut params.planes {
+            plane.radius_m = 0.13;
+            plane.contact.clearance_m = 5e-5;
+            plane.contact.law.linear_mut().unwrap().damping_n_s_m = 0.0;
+        }
+        params.planes[0].friction.sliding = SlidingFriction::Constant { coefficient: 0.0 };
+        let mut machine = Machine::new(&params, &struck(100.0), Options::default()).unwrap();
+        for ms in 1..=10 {
+            let t = f64::from(ms) * 1e-3;
+            let nothing = MachineInputs::default();
+            machine.advance(t, &nothing, &mut |_, _| {}).unwrap();
+        }
+        let residual = machine.audit().residual();
+        assert!(residual < 1e-9, "{i}: {residual:e} of the energy");
+    }
+}
