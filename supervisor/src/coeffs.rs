@@ -171,6 +171,8 @@ pub(crate) struct Coeffs<S: Scalar> {
     pub(crate) pressing: S,
     pub(crate) whirl_ticks: u32,
     pub(crate) dwell_ticks: u32,
+    /// For which a controller that comes no nearer to being ready is waited for.
+    pub(crate) patience_ticks: u32,
     /// Weight of the levitation controller gained per tick of hand-over.
     pub(crate) blend_step: S,
     /// Force lost per tick of a fault of the sensor \[caps\].
@@ -289,6 +291,9 @@ impl Taken {
         S::from_f32(x)
     }
 }
+
+/// Of a controller that comes no nearer to being ready \[t₀\].
+const PATIENCE: f32 = 40.0;
 
 /// A rotor within this radius, and the axis within this of it, may be at ease.
 pub(crate) const INSIDE: f32 = 0.49;
@@ -424,6 +429,7 @@ impl<S: Scalar> Coeffs<S> {
             pressing: s("pressing", min(config.hold_share, AFTER_LIFT_OFF / horizon)),
             whirl_ticks: (config.whirl_time_s / t) as u32,
             dwell_ticks: (config.handover_dwell_s / t) as u32,
+            patience_ticks: (PATIENCE / h) as u32,
             blend_step: s("hand-over blend", per_tick(config.handover_blend_s, t)),
             fault_step: s("fault blend", per_tick(config.fault_blend_s, t)),
             fault_ticks: config.fault_ticks as u16,

@@ -29,6 +29,8 @@ pub(crate) struct Judged {
     pub(crate) unsettled: bool,
     /// A whirl has gone round far enough to be none of the reading alone.
     pub(crate) has_turned: bool,
+    /// It touches most of the time.
+    pub(crate) touches_on: bool,
     /// A forward rub has gone on for windows, at one spin.
     pub(crate) rubs_on: bool,
     /// The bearing has to be handed back, for so many ticks.
@@ -109,6 +111,13 @@ impl<S: Scalar> Phase<S> {
             Self::SensorFault { .. } => Mode::SensorFault,
             Self::HandedBack { .. } => Mode::HandedBack,
         }
+    }
+
+    /// Whether it has waited for the controller for so long that it has to be asked what it wants.
+    #[inline]
+    pub(crate) fn has_waited(self, coeffs: &Coeffs<S>) -> bool {
+        let most = coeffs.dwell_ticks + coeffs.patience_ticks;
+        matches!(self, Self::Approach { calm_ticks } if calm_ticks >= most)
     }
 
     #[inline]
@@ -206,13 +215,17 @@ impl<S: Scalar> Phase<S> {
             return self.follow_whirl_alone(contact, judged, class, coeffs);
         }
         let evident = contact.touching && (judged.unsettled || (judged.quiet && goes_round));
-        if self == Self::Levitated && !evident && (judged.harmless || !judged.trusted) {
+        // What a load that turns takes round on the wall would only be thrown about.
+        let rides = contact.touching
+            && judged.touches_on
+            && matches!(class, Class::Bounce | Class::ForwardRub { .. });
+        let left_alone = !evident && (judged.harmless || rides);
+        if self == Self::Levitated && (left_alone || (!evident && !judged.trusted)) {
             return self;
         }
         if contact.touching {
             if let Self::Handover { weight } = self
-                && judged.harmless
-                && !evident
+                && left_alone
             {
                 return Self::blended(weight, coeffs);
             }
@@ -295,7 +308,12 @@ fn after_calm<S: Scalar>(
         Some(0)
     } else if calm_ticks < coeffs.dwell_ticks {
         Some(calm_ticks + 1)
+    } else if ready {
+        None
+    } else if calm_ticks < coeffs.dwell_ticks + coeffs.patience_ticks {
+        Some(calm_ticks + 1)
     } else {
-        (!ready).then_some(calm_ticks)
+        // It has come nearer.
+        Some(coeffs.dwell_ticks)
     }
 }

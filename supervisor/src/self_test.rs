@@ -32,7 +32,7 @@ pub struct SelfTest {
 /// Hash of what a [`Supervisor`] commands, and a [`Ticker`].
 const IN_NEWTONS: [u32; 2] = [0x3DC8_8487, 0xB0EF_3D67];
 /// Of what a [`Rotor`] commands for its first plane and its second.
-const OF_ROTOR: [u32; 2] = [0xFC88_0B86, 0x7FB0_8DFD];
+const OF_ROTOR: [u32; 2] = [0x5156_6E58, 0x5FA6_C03E];
 
 /// The example with some damping, caps of the axes and a quick budget.
 const CONFIG: Config = Config {

@@ -142,6 +142,7 @@ impl<S: Scalar> State<S> {
                 coeffs,
             ),
             rubs_on: self.trust.rubs_on(),
+            touches_on: self.classifier.is_continuous(),
             has_turned: self.classifier.has_turned(),
             trusted: quiet
                 && self.trust.is_granted()
@@ -175,7 +176,9 @@ impl<S: Scalar> State<S> {
                 }
             }
         }
-        let patience = (calm, self.readiness.ready(), judged);
+        // What is not calm is not handed over.
+        let ready = calm && self.is_ready((contact.normal, contact.radius), coeffs);
+        let patience = (calm, ready, judged);
         let (phase, events) = (self.phase).next(&contact, patience, class, flags, coeffs);
         self.phase = phase;
         let mode = phase.mode();
@@ -210,9 +213,10 @@ impl<S: Scalar> State<S> {
                 RejectReason::Doubted => judged.trusted,
                 refusal => refusal.is_wrong(),
             };
-        if !phase.is_engaged() {
+        if !phase.is_engaged() || mode == Mode::SensorFault {
             self.readiness = Readiness::default();
-        } else if tilting.is_some() {
+        }
+        if phase.is_engaged() && tilting.is_some() {
             self.trust.acts();
         }
         let (target, bound) = if wrong && matches!(mode, Mode::Levitated | Mode::Handover) {
@@ -221,10 +225,14 @@ impl<S: Scalar> State<S> {
             (levitation, levitation_limits)
         } else {
             // Laid down here alone: in most ticks nobody wants a force, and all of it stays in registers.
-            let acted_on = match tilting {
+            let mut acted_on = match tilting {
                 Some(tilting) if !contact.touching => tilting.ahead(&motion, coeffs),
                 _ => motion,
             };
+            if calm && matches!(phase, Phase::Approach { .. }) {
+                // In calm nothing else asks for the place.
+                acted_on.position = acted_on.position - self.readiness.rests_at();
+            }
             let view = View {
                 position: acted_on.position,
                 velocity: acted_on.velocity,
@@ -245,8 +253,7 @@ impl<S: Scalar> State<S> {
             if holds && !wrong {
                 // The controller has to ask for what the rotor is really held with.
                 let held = actuator.applied().unwrap_or(allocated);
-                self.readiness
-                    .compare(held, levitation, (contact.normal, contact.radius), coeffs);
+                self.readiness.compare(held, levitation, coeffs);
             }
             let blended = match phase {
                 Phase::SensorFault { bouncing } => {
@@ -264,7 +271,10 @@ impl<S: Scalar> State<S> {
         let mut limits = bound | slew;
         self.own = own;
         let on = flags.contains(SampleFlags::ON);
-        let mut integrator = handover::integrator_hint(phase, calm, on);
+        let mut integrator = handover::integrator_hint(phase, on, || {
+            // It pushes outwards in flight: it carries what is gone.
+            calm || (!contact.touching && command.dot(contact.normal) > S::ZERO)
+        });
         if shadow {
             let (levitation, _) = limit::levitation(command, envelope);
             (self.force, _) = limit::slewed(levitation, self.force, coeffs);
@@ -353,6 +363,13 @@ impl<S: Scalar> State<S> {
             integrator: IntegratorHint::Run,
             severity: S::ZERO,
         }
+    }
+
+    /// Whether the levitation controller can have the rotor, or wants something else than to be ready.
+    #[inline]
+    fn is_ready(&mut self, (outward, radius): (Vec2<S>, S), coeffs: &Coeffs<S>) -> bool {
+        self.readiness.ready(outward, radius)
+            || (self.phase.has_waited(coeffs) && !self.readiness.comes_nearer(outward))
     }
 
     /// What a tick has to make up for: commands that came too late, ticks that were missed, an estimate that

@@ -29,7 +29,9 @@ const BLIND: u16 = 256;
 const RUBBING: u16 = 256;
 const MOVING: u16 = 32;
 const HELD: u16 = 2;
-/// What a levitated window takes from it.
+/// What breaking a forward rub that goes on adds, however soon it is over.
+const TRY: u16 = 2048;
+/// What a levitated window in which nothing touches takes from it.
 const FORGIVEN: u16 = 128;
 /// The debt at which the bearing is handed back …
 const MOST_DEBT: u16 = 4096;
@@ -128,6 +130,8 @@ impl<S: Scalar> Default for Trust<S> {
 /// Windows that a forward rub has to last, and the share by which the spin may differ from one to the next: at the critical
 /// speeds of a run-up it comes and goes.
 const RUBS_ON: u8 = 3;
+/// It has been tried to break such a rub.
+const TRIED: u8 = u8::MAX;
 const SAME_SPIN: f32 = 0.003;
 
 /// Usual speed while nothing has been seen: far beyond what is trusted \[lift-off speeds\].
@@ -181,7 +185,10 @@ impl<S: Scalar> Trust<S> {
         coeffs: &Coeffs<S>,
     ) -> Option<u32> {
         self.peak = self.peak.max(square);
-        if !flies || phase.is_engaged() {
+        if phase.is_engaged() {
+            let tries = if self.rubs_on() { TRIED } else { 1 };
+            self.stir.windows = self.stir.windows.max(tries);
+        } else if !flies {
             self.stir.windows = self.stir.windows.max(1);
         }
         self.stir.touched |= !flies;
@@ -213,11 +220,17 @@ impl<S: Scalar> Trust<S> {
             return None;
         }
         let disturbed = core::mem::take(&mut self.stir.windows);
+        if disturbed == TRIED {
+            // It has been tried to break a forward rub. One that comes back will come back again.
+            self.debt = self.debt.saturating_add(TRY).min(MOST_DEBT);
+        }
         let touched = core::mem::take(&mut self.stir.touched);
         if rubs && phase == Phase::Levitated {
-            let before = core::mem::replace(&mut self.before, spin);
-            if (spin - before).abs() <= spin * S::from_f32(SAME_SPIN) {
-                self.stir.windows = disturbed.saturating_add(1);
+            // As when it began: a rub in a run-up is not tried to be broken.
+            if (spin - self.before).abs() <= spin * S::from_f32(SAME_SPIN) {
+                self.stir.windows = disturbed.saturating_add(1).min(RUBS_ON);
+            } else {
+                self.before = spin;
             }
         }
         if !phase.is_engaged() {
@@ -231,7 +244,7 @@ impl<S: Scalar> Trust<S> {
             if phase == Phase::Levitated && disturbed != 0 && self.stir.unsettled {
                 // Engagements that are over before a window is come to an end as well.
                 self.debt = self.debt.saturating_add(MOVING).min(MOST_DEBT);
-            } else if phase == Phase::Levitated {
+            } else if phase == Phase::Levitated && !touched {
                 self.debt = self.debt.saturating_sub(FORGIVEN);
                 if self.debt == 0 {
                     self.doubled = 0;

@@ -249,7 +249,8 @@ fn approach_is_tangential_where_it_is_dangerous() {
         assert!(command.force_n[0] < -0.99 * 3100.0, "{command:?}");
     }
     assert!(dangerous[0].events.contains(Events::ENGAGED));
-    assert_eq!(dangerous[0].integrator, IntegratorHint::Hold);
+    // It asks outwards: what it integrates undoes that.
+    assert_eq!(dangerous[0].integrator, IntegratorHint::Run);
 }
 
 /// In sustained backward whirl the force brakes: against the motion, and mostly along the wall.
