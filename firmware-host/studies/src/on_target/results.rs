@@ -104,7 +104,7 @@ pub struct PairOfPlanes {
 }
 
 /// What a tick of a rotor costs over that of one plane: twice that, and what the planes know of each other.
-const PAIR_OVER_ONE: std::ops::RangeInclusive<f64> = 2.4..=2.6;
+const PAIR_OVER_ONE: std::ops::RangeInclusive<f64> = 2.3..=2.6;
 
 impl PairOfPlanes {
     /// What is wrong, beside one supervisor in a row.
