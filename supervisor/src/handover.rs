@@ -39,58 +39,65 @@ pub(crate) fn faded<S: Scalar>(
 /// is gone: such a controller would drop the rotor, or throw it. It gets the bearing when it asks for as much.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Readiness<S> {
-    /// Force that the controller asks for beyond the supervisor's, filtered \[caps\].
-    pull: Vec2<S>,
-    /// How far outwards, when waiting for it began.
+    /// Inward force that the controller asks for less than the supervisor, filtered \[caps\].
+    shortfall: S,
+    /// The same when waiting for it began.
     mark: S,
 }
 
-words_of_fields!(Readiness<S> { pull, mark });
+words_of_fields!(Readiness<S> { shortfall, mark });
 
-/// Pull outwards that the blend can cover \[caps\].
+/// Shortfall that the blend can cover \[caps\].
 const COVERED: f32 = 0.06;
 /// By how much it has to fall while it is waited for.
 const NEARER: f32 = 0.03;
-/// From this radius on all of it counts. In the middle nothing has to be held, and what is outward there is
+/// From this radius on all of a shortfall counts. In the middle nothing has to be held, and what is outward there is
 /// noise, which the supervisor's force follows: a soft controller behind it would never seem ready.
 const COUNTS_FROM: f32 = 0.1;
-/// Farthest place along each axis, for a pull of so many caps or more, where the rotor is held for the controller to take its integral back.
+/// Farthest place, for a shortfall of so many caps or more, where the rotor is held for the controller to take its integral back.
 const RESTS_WITHIN: f32 = 0.3;
 
 impl<S: Scalar> Readiness<S> {
-    /// Of a rotor in this direction at a radius.
     #[inline]
-    pub(crate) fn ready(&self, outward: Vec2<S>, radius: S) -> bool {
-        let share = (radius * S::from_f32(1.0 / COUNTS_FROM)).min(S::ONE);
-        self.pull.dot(outward) * share < S::from_f32(COVERED)
+    pub(crate) fn ready(&self) -> bool {
+        self.shortfall < S::from_f32(COVERED)
     }
 
     /// Whether the controller has come nearer since it was asked last. One that has not wants something else.
     #[inline]
-    pub(crate) fn comes_nearer(&mut self, outward: Vec2<S>) -> bool {
-        let now = self.pull.dot(outward);
-        let before = core::mem::replace(&mut self.mark, now);
-        before <= S::ZERO || now < before - S::from_f32(NEARER)
+    pub(crate) fn comes_nearer(&mut self) -> bool {
+        let before = core::mem::replace(&mut self.mark, self.shortfall);
+        before <= S::ZERO || self.shortfall < before - S::from_f32(NEARER)
     }
 
-    /// Where the rotor, in calm, is held: near where the controller would hold it, so that its integrator sees the deviation which it
-    /// has to see.
+    /// Where the rotor, in calm, is held under a controller that itself pushes it there: near where the controller would hold it, so
+    /// that its integrator sees the deviation which it has to see.
     #[inline]
-    pub(crate) fn rests_at(&self) -> Vec2<S> {
-        let most = S::from_f32(RESTS_WITHIN);
-        self.pull.map(|x| x.within(most))
+    pub(crate) fn rests_at(&self, levitation: Vec2<S>, outward: Vec2<S>) -> Vec2<S> {
+        if levitation.dot(outward) * self.shortfall <= S::ZERO {
+            return Vec2::ZERO;
+        }
+        outward * self.shortfall.within(S::from_f32(RESTS_WITHIN))
     }
 
     /// After a change of the unit of force.
     pub(crate) fn rescale(&mut self, force: S) {
-        self.pull = self.pull * force;
+        self.shortfall = self.shortfall * force;
         self.mark = self.mark * force;
     }
 
-    /// Compares the forces of this tick.
+    /// Compares the forces of this tick along the outward direction at a radius.
     #[inline]
-    pub(crate) fn compare(&mut self, own: Vec2<S>, levitation: Vec2<S>, coeffs: &Coeffs<S>) {
-        self.pull = self.pull + (levitation - own - self.pull) * coeffs.blend_step;
+    pub(crate) fn compare(
+        &mut self,
+        own: Vec2<S>,
+        levitation: Vec2<S>,
+        (outward, radius): (Vec2<S>, S),
+        coeffs: &Coeffs<S>,
+    ) {
+        let share = (radius * S::from_f32(1.0 / COUNTS_FROM)).min(S::ONE);
+        let short = (levitation - own).dot(outward) * share;
+        self.shortfall = self.shortfall + (short - self.shortfall) * coeffs.blend_step;
     }
 }
 

@@ -32,7 +32,7 @@ pub struct SelfTest {
 /// Hash of what a [`Supervisor`] commands, and a [`Ticker`].
 const IN_NEWTONS: [u32; 2] = [0x3DC8_8487, 0xB0EF_3D67];
 /// Of what a [`Rotor`] commands for its first plane and its second.
-const OF_ROTOR: [u32; 2] = [0x5156_6E58, 0x5FA6_C03E];
+const OF_ROTOR: [u32; 2] = [0xF5A3_49E9, 0x99CD_40A3];
 
 /// The example with some damping, caps of the axes and a quick budget.
 const CONFIG: Config = Config {

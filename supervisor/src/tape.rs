@@ -10,7 +10,7 @@ use crate::words::Words as _;
 use core::sync::atomic::{AtomicU32, Ordering};
 
 /// Words of what a core of 32-bit numbers remembers. One of `f64` keeps no samples, and of its state what there is room for.
-pub(crate) const STATE_WORDS: usize = 125 + 4 * MODES;
+pub(crate) const STATE_WORDS: usize = 124 + 4 * MODES;
 /// Values of a configuration.
 pub(crate) const CONFIG_WORDS: usize = crate::config::PARAMETERS.len();
 /// Words of [`Closed`].

@@ -105,7 +105,7 @@ impl<S: Scalar> State<S> {
         let acting = (actuator, tilting.map(|tilting| tilting.unbalance));
         let (motion, off_axis) = (self.observer).advance(position, spin, wall, acting, coeffs);
         let envelope = ForceEnvelope::new(&self.budget, actuator.axes, coeffs);
-        if self.levitates_at_ease(sample, flags, wall)
+        if self.levitates_as_usual(sample, flags, wall)
             && envelope.is_whole()
             && motion.is_at_ease(off_axis, coeffs)
         {
@@ -176,8 +176,8 @@ impl<S: Scalar> State<S> {
                 }
             }
         }
-        // What is not calm is not handed over.
-        let ready = calm && self.is_ready((contact.normal, contact.radius), coeffs);
+        let waited = self.phase.has_waited(coeffs);
+        let ready = self.readiness.ready() || (waited && !self.readiness.comes_nearer());
         let patience = (calm, ready, judged);
         let (phase, events) = (self.phase).next(&contact, patience, class, flags, coeffs);
         self.phase = phase;
@@ -213,10 +213,9 @@ impl<S: Scalar> State<S> {
                 RejectReason::Doubted => judged.trusted,
                 refusal => refusal.is_wrong(),
             };
-        if !phase.is_engaged() || mode == Mode::SensorFault {
+        if !phase.is_engaged() {
             self.readiness = Readiness::default();
-        }
-        if phase.is_engaged() && tilting.is_some() {
+        } else if tilting.is_some() {
             self.trust.acts();
         }
         let (target, bound) = if wrong && matches!(mode, Mode::Levitated | Mode::Handover) {
@@ -231,7 +230,8 @@ impl<S: Scalar> State<S> {
             };
             if calm && matches!(phase, Phase::Approach { .. }) {
                 // In calm nothing else asks for the place.
-                acted_on.position = acted_on.position - self.readiness.rests_at();
+                acted_on.position =
+                    acted_on.position - self.readiness.rests_at(levitation, contact.normal);
             }
             let view = View {
                 position: acted_on.position,
@@ -253,7 +253,8 @@ impl<S: Scalar> State<S> {
             if holds && !wrong {
                 // The controller has to ask for what the rotor is really held with.
                 let held = actuator.applied().unwrap_or(allocated);
-                self.readiness.compare(held, levitation, coeffs);
+                self.readiness
+                    .compare(held, levitation, (contact.normal, contact.radius), coeffs);
             }
             let blended = match phase {
                 Phase::SensorFault { bouncing } => {
@@ -317,9 +318,14 @@ impl<S: Scalar> State<S> {
         }
     }
 
-    /// Whether nothing has happened that the tick would have to look at.
+    /// Whether nothing but a levitated rotor has to be looked at.
     #[inline]
-    fn levitates_at_ease(&self, sample: &CoreSample<S>, flags: SampleFlags, wall: Contact) -> bool {
+    fn levitates_as_usual(
+        &self,
+        sample: &CoreSample<S>,
+        flags: SampleFlags,
+        wall: Contact,
+    ) -> bool {
         self.phase == Phase::Levitated
             && flags & SampleFlags::AT_EASE.1 == SampleFlags::AT_EASE.0
             && wall == Contact::None
@@ -363,13 +369,6 @@ impl<S: Scalar> State<S> {
             integrator: IntegratorHint::Run,
             severity: S::ZERO,
         }
-    }
-
-    /// Whether the levitation controller can have the rotor, or wants something else than to be ready.
-    #[inline]
-    fn is_ready(&mut self, (outward, radius): (Vec2<S>, S), coeffs: &Coeffs<S>) -> bool {
-        self.readiness.ready(outward, radius)
-            || (self.phase.has_waited(coeffs) && !self.readiness.comes_nearer(outward))
     }
 
     /// What a tick has to make up for: commands that came too late, ticks that were missed, an estimate that

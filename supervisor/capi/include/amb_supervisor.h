@@ -358,7 +358,7 @@ typedef struct amb_shaft {
 } amb_shaft;
 
 /** Bytes of an amb_archive_place. */
-#define AMB_ARCHIVE_PLACE_BYTES 27096
+#define AMB_ARCHIVE_PLACE_BYTES 27088
 
 /** Room for the record of one event of one plane. Opaque and aligned as an amb_supervisor. */
 typedef union amb_archive_place {

@@ -129,15 +129,11 @@ fn count<S: Scalar>(wanted: impl Fn(&str) -> bool) -> Count {
 }
 
 /// The yardstick: what 24 bits make of it. A fifth of what is allowed, at the most after a hand-over that was apart in a fault,
-/// and a hand-over or two among all the faults; with sound sensors one, under a blade lost at more than the cap, after which the
-/// bearing is handed back a moment apart.
+/// and a hand-over or two among all the faults.
 #[test]
 fn f32_commands_what_f64_does() {
     let sound = count::<f32>(|group| group != SENSOR_FAULTS);
-    assert!(
-        sound.wrong_streams < 2 && sound.wrong + sound.wrong_handover < 200,
-        "{sound:?}"
-    );
+    assert_eq!(sound.wrong_streams, 0, "{sound:?}");
     let faulty = count::<f32>(|group| group == SENSOR_FAULTS);
     assert!(
         faulty.streams > 1500 && faulty.ticks > 3_700_000,
@@ -167,7 +163,7 @@ fn fixed_point_commands_what_f64_does() {
 }
 
 /// Under sensor faults noise more often decides at the edge: the same commands but for hand-overs in less than one
-/// stream of fifty and one tick of a thousand, and for one tick of 420 000 in which two cases of the law meet.
+/// stream of fifty and one tick of a thousand, and for one tick of 500 000 in which two cases of the law meet.
 #[test]
 fn fixed_point_commands_what_f64_does_under_sensor_faults() {
     let faulty = count::<Q>(|group| group == SENSOR_FAULTS);
@@ -175,7 +171,7 @@ fn fixed_point_commands_what_f64_does_under_sensor_faults() {
         faulty.streams > 1500 && faulty.ticks > 3_700_000,
         "{faulty:?}"
     );
-    assert!(420_000 * faulty.wrong < faulty.ticks, "{faulty:?}");
+    assert!(500_000 * faulty.wrong < faulty.ticks, "{faulty:?}");
     assert!(50 * faulty.wrong_streams < faulty.streams, "{faulty:?}");
     assert!(1000 * faulty.wrong_handover < faulty.ticks, "{faulty:?}");
 }

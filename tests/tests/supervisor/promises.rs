@@ -249,7 +249,7 @@ fn approach_is_tangential_where_it_is_dangerous() {
         assert!(command.force_n[0] < -0.99 * 3100.0, "{command:?}");
     }
     assert!(dangerous[0].events.contains(Events::ENGAGED));
-    // It asks outwards: what it integrates undoes that.
+    // The controller asks outwards there: running undoes what it holds.
     assert_eq!(dangerous[0].integrator, IntegratorHint::Run);
 }
 
