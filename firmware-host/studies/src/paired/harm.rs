@@ -4,7 +4,7 @@ use super::configured::{MANY_WRONG, ONE_WRONG};
 use super::events::{Event, OF_ANY_MACHINE, Point, Written};
 use super::machines::MachineClass::{self, PointMass, ResilientMount};
 use super::plan::{Axes, Case, Class, Plan, row_of, rows};
-use super::row::{ClassName, Row, lists, table, values};
+use super::row::{ClassName, Row, lists, table, values, worse};
 use super::sensors::Sensors;
 use crate::campaign::{Block, Chapter, Claim, Extent, Machines, Progress, Report, StudyError};
 
@@ -82,7 +82,7 @@ pub fn drawn(of: Machines, extent: Extent, progress: &dyn Progress) -> Result<Re
         claims: claims(&cases),
         cases: cases.len() as u64,
         classes: values(&rows),
-        chapters: vec![Chapter::new("By class", blocks)],
+        chapters: vec![worse(&rows), Chapter::new("By class", blocks)],
     })
 }
 

@@ -1,7 +1,7 @@
 //! A class as a row: of tables, and of JSON.
 
 use super::pair::{NoPair, Outcome, Pair, Tried};
-use crate::campaign::Block;
+use crate::campaign::{Block, Chapter};
 use serde::Serialize;
 
 /// What a class is: its place on every axis, in words.
@@ -220,6 +220,56 @@ pub fn table(rows: &[Row]) -> Block {
         COLUMNS,
         rows.iter().map(|row| row.cells(row.class.text(several))),
     )
+}
+
+/// Of a class: most recoveries lost, new touches and pairs struck on and on, and largest median impulse, that are none to speak of.
+const MOST_LOST: f64 = 1.0 / 2000.0;
+const MOST_NEW_TOUCHES: f64 = 1.0 / 1000.0;
+const MOST_STRUCK_ON: f64 = 1.0 / 500.0;
+const MOST_IMPULSE: f64 = 1.05;
+
+/// The classes in which the supervisor does more harm than that, the worst first.
+pub fn worse(rows: &[Row]) -> Chapter {
+    let share = |count: u64, of: u64| count as f64 / of.max(1) as f64;
+    let is_worse = |row: &Row| {
+        share(row.lost, row.levitation) > MOST_LOST
+            || share(row.new_touches, row.pairs) > MOST_NEW_TOUCHES
+            || share(row.struck_on, row.pairs) > MOST_STRUCK_ON
+            || row.impulse.median.is_some_and(|ratio| ratio > MOST_IMPULSE)
+    };
+    let mut worse: Vec<&Row> = rows.iter().filter(|row| is_worse(row)).collect();
+    worse.sort_by_key(|row| std::cmp::Reverse((row.lost, row.struck_on, row.new_touches)));
+    let story = format!(
+        "{} of {} classes: more than a 2000th of the recoveries lost, new touches in more than a 1000th of the pairs, struck on and on in more than a 500th, or a median impulse above {MOST_IMPULSE}.",
+        worse.len(),
+        rows.len()
+    );
+    let cells = worse.iter().map(|row| {
+        let impulse = row
+            .impulse
+            .median
+            .map_or("–".to_owned(), |x| format!("{x:.2}"));
+        let counts = [
+            row.levitation,
+            row.lost,
+            row.gained,
+            row.new_touches,
+            row.struck_on,
+        ];
+        let [a, b, c, d, e] = counts.map(|count| count.to_string());
+        [row.class.text(true), a, b, c, d, e, impulse]
+    });
+    let columns = [
+        "class",
+        "levitation alone",
+        "lost",
+        "gained",
+        "new touches",
+        "struck on and on",
+        "impulse: median",
+    ];
+    let blocks = vec![Block::text(story), Block::table(columns, cells)];
+    Chapter::new("Where it is worse than levitation alone", blocks)
 }
 
 impl ClassName {

@@ -5,7 +5,7 @@ use super::events::{Event, OF_ANY_MACHINE, OF_ROTORS, Written};
 use super::machines::MachineClass::{self, Rotor};
 use super::pair::HOLDS_S;
 use super::plan::{Axes, Case, Class, Plan, row_of, rows};
-use super::row::{COLUMNS, ClassName, Row, table, values};
+use super::row::{COLUMNS, ClassName, Row, table, values, worse};
 use super::sensors::Sensors;
 use crate::campaign::{Block, Chapter, Claim, Extent, Machines, Progress, Report, StudyError};
 use crate::machines::rotors::Class as Kind;
@@ -76,7 +76,11 @@ pub fn drawn(of: Machines, extent: Extent, progress: &dyn Progress) -> Result<Re
         plan.machines, plan.seed
     );
     let mut claims = Vec::new();
-    let mut chapters = vec![Chapter::new("What was run", vec![Block::text(story)])];
+    let rows_of_all = rows(&cases);
+    let mut chapters = vec![
+        Chapter::new("What was run", vec![Block::text(story)]),
+        worse(&rows_of_all),
+    ];
     let of_kind = |kind: MachineClass| {
         let held = cases.iter().filter(|case| case.held);
         held.filter(move |case| case.class.machine == kind)
@@ -99,7 +103,7 @@ pub fn drawn(of: Machines, extent: Extent, progress: &dyn Progress) -> Result<Re
         title: "Whole rotors".to_owned(),
         claims,
         cases: cases.len() as u64,
-        classes: values(&rows(&cases)),
+        classes: values(&rows_of_all),
         chapters,
     })
 }

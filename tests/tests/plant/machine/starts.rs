@@ -3,7 +3,6 @@
 use super::rotor::*;
 use plant_model::machine::params::*;
 use plant_model::machine::{Machine, MachineInputs};
-use plant_model::params::*;
 use plant_model::{Mode, Options, V2};
 
 /// Parked in both planes without a force on it, at an angle; `lifted`: springs draw it to the middle.
