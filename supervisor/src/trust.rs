@@ -127,12 +127,12 @@ impl<S: Scalar> Default for Trust<S> {
     }
 }
 
-/// Windows that a forward rub has to last, and the share by which the spin may differ from one to the next: at the critical
-/// speeds of a run-up it comes and goes.
+/// Windows that a forward rub has to last …
 const RUBS_ON: u8 = 3;
-/// It has been tried to break such a rub.
-const TRIED: u8 = u8::MAX;
+/// … and the share by which the spin may differ from what it was at the first: at the critical speeds of a run-up it comes and goes.
 const SAME_SPIN: f32 = 0.003;
+/// So many once it has been tried to break such a rub.
+const TRIED: u8 = u8::MAX;
 
 /// Usual speed while nothing has been seen: far beyond what is trusted \[lift-off speeds\].
 const UNSEEN: f32 = 4.0;

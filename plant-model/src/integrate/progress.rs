@@ -58,7 +58,7 @@ impl Progress {
         Ok(())
     }
 
-    /// The same where that was no more than a moment, or was.
+    /// The same step, whether time has got no farther in it than a moment.
     pub(crate) fn creeps(&mut self, t_s: f64, creeps: bool) -> Result<(), PlantError> {
         self.creeping = if creeps { self.creeping + 1 } else { 0 };
         if self.creeping > MOST_CREEPING {
