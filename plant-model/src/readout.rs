@@ -71,7 +71,7 @@ pub struct Meters {
 }
 
 /// Largest values over one step of contact.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Peaks {
     pub(crate) normal_n: f64,
     pub(crate) penetration_m: f64,
@@ -122,6 +122,16 @@ impl Peaks {
 }
 
 impl Meters {
+    /// Largest values of the steps so far, on a rotor of this radius.
+    pub(crate) fn peaks(&self, radius_m: f64) -> Peaks {
+        Peaks {
+            normal_n: self.peak_contact_force_n,
+            penetration_m: self.peak_penetration_m,
+            sliding_n: self.peak_friction_torque_n_m / radius_m,
+            backward_m_s: self.peak_backward_speed_m_s,
+        }
+    }
+
     /// Takes a step of contact in: its largest values, its length, how far the contact point turned.
     pub(crate) fn contact_step(
         &mut self,

@@ -7,7 +7,7 @@ use crate::V2;
 pub(crate) const MAX_ORDER: usize = 24;
 
 /// Room for one power more: positions run ahead of velocities.
-const LENGTH: usize = MAX_ORDER + 2;
+pub(crate) const LENGTH: usize = MAX_ORDER + 2;
 
 /// 1/k. Divisions would set the pace of the recurrences.
 pub(crate) const INVERSE: [f64; LENGTH + 1] = {
@@ -23,28 +23,31 @@ pub(crate) const INVERSE: [f64; LENGTH + 1] = {
 /// Largest product of step and fastest rate; twenty terms leave 1/21! = 2e-20, below round-off.
 pub(crate) const MAX_PHASE: f64 = 1.0;
 
-/// Σ a_i·b_{n−i} over two slices of the same length. Four sums side by side: one alone would wait for
-/// each addition to finish before it began the next.
+/// Σ a_i·b_{n−i} from `first` to n. Two sums side by side: one alone would wait for each addition to finish before it began the next.
 #[inline(always)]
-fn convolve<A, B, T>(a: &[A], b: &[B], times: impl Fn(A, B) -> T) -> T
+fn convolve<A, B, T>(
+    a: &[A; LENGTH],
+    b: &[B; LENGTH],
+    (first, n): (usize, usize),
+    times: impl Fn(A, B) -> T,
+) -> T
 where
     A: Copy,
     B: Copy,
     T: Copy + Default + std::ops::Add<Output = T>,
 {
-    let mut sums = [T::default(); 4];
-    let (front, back) = (a.chunks_exact(4), b.rchunks_exact(4));
-    let (rest_a, rest_b) = (front.remainder(), back.remainder());
-    for (a, b) in front.zip(back) {
-        sums[0] = sums[0] + times(a[0], b[3]);
-        sums[1] = sums[1] + times(a[1], b[2]);
-        sums[2] = sums[2] + times(a[2], b[1]);
-        sums[3] = sums[3] + times(a[3], b[0]);
+    let n = n.min(LENGTH - 1);
+    let (mut even, mut odd) = (T::default(), T::default());
+    let mut i = first;
+    while i < n {
+        even = even + times(a[i], b[n - i]);
+        odd = odd + times(a[i + 1], b[n - i - 1]);
+        i += 2;
     }
-    for (a, b) in rest_a.iter().zip(rest_b.iter().rev()) {
-        sums[0] = sums[0] + times(*a, *b);
+    if i == n {
+        even = even + times(a[n], b[0]);
     }
-    (sums[0] + sums[1]) + (sums[2] + sums[3])
+    even + odd
 }
 
 /// Coefficients of a plane vector over θ = time / step. Entry k already holds step^k.
@@ -68,6 +71,17 @@ impl Series {
         sum
     }
 
+    /// Value and derivative at θ.
+    #[inline]
+    pub(crate) fn with_slope(&self, theta: f64, order: usize) -> (V2, V2) {
+        let (mut value, mut slope) = (V2::zeros(), V2::zeros());
+        for c in self.0[..=order].iter().rev() {
+            slope = slope * theta + value;
+            value = value * theta + c;
+        }
+        (value, slope)
+    }
+
     /// Values at several θ.
     #[inline(always)]
     pub(crate) fn at_all<const N: usize>(&self, theta: &[f64; N], order: usize) -> [V2; N] {
@@ -80,17 +94,25 @@ impl Series {
         sums
     }
 
+    /// How far it can get from its start up to θ, x and y together: Σ |c_k|·θ^k.
+    #[inline]
+    pub(crate) fn reach(&self, theta: f64, order: usize) -> f64 {
+        let sum = self.0[1..=order].iter().rev();
+        let sum = sum.fold(V2::zeros(), |sum, c| (sum + c.abs()) * theta);
+        sum.x + sum.y
+    }
+
     /// Coefficient k of a·b.
     #[inline]
     pub(crate) fn dot_coefficient(&self, other: &Self, k: usize) -> f64 {
-        let sum = convolve(&self.0[..=k], &other.0[..=k], |a, b| a.component_mul(&b));
+        let sum = convolve(&self.0, &other.0, (0, k), |a, b| a.component_mul(&b));
         sum.x + sum.y
     }
 
     /// Coefficient k of a × b.
     #[inline]
     pub(crate) fn cross_coefficient(&self, other: &Self, k: usize) -> f64 {
-        let sum = convolve(&self.0[..=k], &other.0[..=k], |a, b| {
+        let sum = convolve(&self.0, &other.0, (0, k), |a, b| {
             V2::new(a.x * b.y, a.y * b.x)
         });
         sum.x - sum.y
@@ -99,7 +121,7 @@ impl Series {
     /// Coefficient k of the product with a scalar series.
     #[inline]
     pub(crate) fn times_coefficient(&self, other: &Scalar, k: usize) -> V2 {
-        convolve(&self.0[..=k], &other.0[..=k], |a, b| a * b)
+        convolve(&self.0, &other.0, (0, k), |a, b| a * b)
     }
 }
 
@@ -126,13 +148,13 @@ impl Scalar {
     /// Coefficient k of the product.
     #[inline]
     pub(crate) fn product_coefficient(&self, other: &Self, k: usize) -> f64 {
-        convolve(&self.0[..=k], &other.0[..=k], |a, b| a * b)
+        convolve(&self.0, &other.0, (0, k), |a, b| a * b)
     }
 
     /// The same without the term that holds the other series' coefficient k.
     #[inline]
     pub(crate) fn product_coefficient_below(&self, other: &Self, k: usize) -> f64 {
-        convolve(&self.0[1..=k], &other.0[..k], |a, b| a * b)
+        convolve(&self.0, &other.0, (1, k), |a, b| a * b)
     }
 
     /// Values at several θ.
@@ -145,6 +167,13 @@ impl Scalar {
             }
         }
         sums
+    }
+
+    /// How far it can get from its start up to θ: Σ |c_k|·θ^k.
+    #[inline]
+    pub(crate) fn reach(&self, theta: f64, order: usize) -> f64 {
+        let sum = self.0[1..=order].iter().rev();
+        sum.fold(0.0, |sum, c| (sum + c.abs()) * theta)
     }
 
     /// Value and derivative at θ.

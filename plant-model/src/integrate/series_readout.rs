@@ -212,11 +212,18 @@ impl<S: Stator> ContactSeries<S> {
         end: &End,
     ) -> Peaks {
         let (theta, order) = (end.theta, self.order);
-        let up_to = |series, at_end| highest((series, 1.0), (theta, at_end), order);
-        let (force_at, normal_n) = up_to(&self.force, end.force);
-        let (_, distance_m) = up_to(&self.distance, end.distance);
-        let whirl = (&self.whirl_speed, backward);
-        let (_, backward_m_s) = highest(whirl, (theta, end.whirl_speed), order);
+        let up_to = |(series, sign): (&Scalar, f64), at_end: (f64, f64)| {
+            let signed = |(value, slope): (f64, f64)| (sign * value, sign * slope);
+            let of = |at: f64| signed(series.with_slope(at, order));
+            highest(
+                of,
+                signed((series.0[0], series.0[1])),
+                (theta, signed(at_end)),
+            )
+        };
+        let (force_at, normal_n) = up_to((&self.force, 1.0), end.force);
+        let (_, distance_m) = up_to((&self.distance, 1.0), end.distance);
+        let (_, backward_m_s) = up_to((&self.whirl_speed, backward), end.whirl_speed);
         // A command or load that jumps may ask for more than friction holds: that is no force of the mode.
         let mu = system.plane.friction.sliding.coefficient(0.0);
         let within = |sliding: f64, force: f64| sliding.abs().min(mu * force.max(0.0));
@@ -262,19 +269,18 @@ pub(crate) struct End {
     whirl_speed: (f64, f64),
 }
 
-/// Highest value of a series times a sign over [0, θ], and where. At loose tolerances a step may be a little
-/// longer than half a vibration, its halves are not.
+/// Highest value of what is told with its slope over [0, θ], and where. At loose tolerances a step may be a little longer than half
+/// a vibration, its halves are not.
 pub(crate) fn highest(
-    (series, sign): (&Scalar, f64),
+    of: impl Fn(f64) -> (f64, f64),
+    start: (f64, f64),
     (theta, end): (f64, (f64, f64)),
-    order: usize,
 ) -> (f64, f64) {
-    let point = |at: f64, (value, slope): (f64, f64)| (at, sign * value, sign * slope);
-    let middle = point(0.5 * theta, series.with_slope(0.5 * theta, order));
-    let start = point(0.0, (series.0[0], series.0[1]));
+    let point = |at: f64, (value, slope): (f64, f64)| (at, value, slope);
+    let middle = point(0.5 * theta, of(0.5 * theta));
     let (a, b) = (
-        top_between((series, sign), start, middle, order),
-        top_between((series, sign), middle, point(theta, end), order),
+        top_between(&of, point(0.0, start), middle),
+        top_between(&of, middle, point(theta, end)),
     );
     if a.1 > b.1 { a } else { b }
 }
@@ -282,10 +288,9 @@ pub(crate) fn highest(
 /// Highest value between two points (θ, value, slope), and where: what rises at the first and falls at
 /// the second has one top in between.
 fn top_between(
-    (series, sign): (&Scalar, f64),
+    of: impl Fn(f64) -> (f64, f64),
     (from, start, start_slope): (f64, f64, f64),
     (to, end, end_slope): (f64, f64, f64),
-    order: usize,
 ) -> (f64, f64) {
     if start_slope > 0.0 && end_slope < 0.0 {
         // Regula falsi on the slope, with the Illinois rule. The value is flat at the top.
@@ -294,8 +299,7 @@ fn top_between(
         let mut rose = None;
         for _ in 0..6 {
             let at = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
-            let (value, slope) = series.with_slope(at, order);
-            let (value, slope) = (sign * value, sign * slope);
+            let (value, slope) = of(at);
             if value > top.1 {
                 top = (at, value);
             }

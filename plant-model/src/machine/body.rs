@@ -4,114 +4,197 @@
 //! q̈ + (D + Ω·G)·q̇ + K·q = Σ_p S_pᵀ·f_p
 //! ```
 //!
-//! in coordinates of unit mass, so that the mobility between two ports is S_a·S_bᵀ. The first four are √m·(x, y) and
-//! √I_t·(φ, ψ), the slopes of the axis; then a pair for each bending mode and a pair for each ring.
+//! in coordinates of unit mass, pairs (x, y), so that a port is a number for each pair and the mobility between two ports the sum of
+//! their products. The first pairs are √m·(x, y) and √I_t·(φ, ψ), the slopes of the axis, unless it does not tilt; then one for each
+//! bending mode and each ring.
 
 use super::params::{MachineError, MachineParams, MachinePlane, Rotor, Unbalance};
 use crate::V2;
 use crate::params::{RingParams, StatorParams};
+use crate::vector::rotate;
 use nalgebra::DMatrix;
 
-/// A square matrix by its entries that are not zero.
+/// A square matrix over the pairs by its entries that are not zero: what x does to x and y to y, and what each does to the other.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Sparse(Vec<(usize, usize, f64)>);
+pub(crate) struct Coupling {
+    along: Vec<(usize, usize, V2)>,
+    across: Vec<(usize, usize, V2)>,
+}
 
-impl Sparse {
-    fn from_dense(n: usize, dense: &[f64]) -> Self {
-        let entries = dense.iter().enumerate().filter(|(_, a)| **a != 0.0);
-        Self(entries.map(|(i, a)| (i / n, i % n, *a)).collect())
+impl Coupling {
+    fn add_to(list: &mut Vec<(usize, usize, V2)>, at: (usize, usize), value: V2) {
+        if value == V2::zeros() {
+            return;
+        }
+        match list
+            .iter_mut()
+            .find(|(row, column, _)| (*row, *column) == at)
+        {
+            Some((_, _, sum)) => *sum += value,
+            None => list.push((at.0, at.1, value)),
+        }
+    }
+
+    /// Adds (xx, yy) of a row and a column.
+    fn add_along(&mut self, at: (usize, usize), value: V2) {
+        Self::add_to(&mut self.along, at, value);
+    }
+
+    /// Adds (xy, yx).
+    fn add_across(&mut self, at: (usize, usize), value: V2) {
+        Self::add_to(&mut self.across, at, value);
+    }
+
+    /// Adds what a spring (or damper) of port S gives, SᵀkS.
+    fn add_at_port(&mut self, port: &Port, k: V2) {
+        for (row, a) in port.0.iter().enumerate() {
+            for (column, b) in port.0.iter().enumerate() {
+                self.add_along((row, column), a * b * k);
+            }
+        }
     }
 
     /// `out += factor · A·x`.
     #[inline]
-    pub(crate) fn add_product(&self, out: &mut [f64], factor: f64, x: &[f64]) {
-        for (row, column, a) in &self.0 {
-            out[*row] += factor * a * x[*column];
+    pub(crate) fn add_product(&self, out: &mut [V2], factor: f64, x: &[V2]) {
+        for (row, column, a) in &self.along {
+            out[*row] += factor * a.component_mul(&x[*column]);
+        }
+        for (row, column, a) in &self.across {
+            let x = x[*column];
+            out[*row] += factor * V2::new(a.x * x.y, a.y * x.x);
         }
     }
 
-    /// Row, column and value of each.
+    /// Rows and columns of what stays on an axis, and of what goes to the other one.
+    pub(crate) fn along(&self) -> impl Iterator<Item = &(usize, usize, V2)> {
+        self.along.iter()
+    }
+
+    pub(crate) fn across(&self) -> impl Iterator<Item = &(usize, usize, V2)> {
+        self.across.iter()
+    }
+
+    /// Without entries that have come to zero.
+    fn tidied(mut self) -> Self {
+        for list in [&mut self.along, &mut self.across] {
+            list.retain(|(_, _, a)| *a != V2::zeros());
+        }
+        self
+    }
+
+    /// Row, column and value of each, the coordinates of a pair one after the other.
     pub(crate) fn entries(&self) -> impl Iterator<Item = (usize, usize, f64)> + '_ {
-        self.0.iter().copied()
+        let along = self.along.iter().flat_map(|(row, column, a)| {
+            let (row, column) = (2 * row, 2 * column);
+            [(row, column, a.x), (row + 1, column + 1, a.y)]
+        });
+        let across = self.across.iter().flat_map(|(row, column, a)| {
+            let (row, column) = (2 * row, 2 * column);
+            [(row, column + 1, a.x), (row + 1, column, a.y)]
+        });
+        along.chain(across)
     }
 
     /// xᵀ·A·x.
-    pub(crate) fn quadratic(&self, x: &[f64]) -> f64 {
-        self.0
-            .iter()
-            .map(|(row, column, a)| x[*row] * a * x[*column])
-            .sum()
+    pub(crate) fn quadratic(&self, x: &[V2]) -> f64 {
+        let along = self.along.iter();
+        let along = along.map(|(row, column, a)| x[*row].dot(&a.component_mul(&x[*column])));
+        let across = self.across.iter().map(|(row, column, a)| {
+            let (r, c) = (x[*row], x[*column]);
+            r.x * a.x * c.y + r.y * a.y * c.x
+        });
+        along.sum::<f64>() + across.sum::<f64>()
     }
 
     pub(crate) fn is_zero(&self) -> bool {
-        self.0.is_empty()
+        self.along.is_empty() && self.across.is_empty()
     }
 
     /// Bound of its norm: the largest sum of a row's sizes.
-    pub(crate) fn norm(&self, n: usize) -> f64 {
-        let mut rows = vec![0.0; n];
-        for (row, _, a) in &self.0 {
-            rows[*row] += a.abs();
+    fn norm(&self, pairs: usize) -> f64 {
+        let mut rows = vec![0.0; 2 * pairs];
+        for (row, _, a) in self.entries() {
+            rows[row] += a.abs();
         }
         rows.into_iter().fold(0.0, f64::max)
     }
 }
 
-/// Where something acts or is read: a position is S·q, a force pushes by Sᵀ·f.
+/// Where something acts or is read, as a number for each pair: a position is Σ s·q, a force pushes by s·f.
 #[derive(Debug, Clone)]
-pub(crate) struct Port {
-    x: Vec<f64>,
-    y: Vec<f64>,
-}
+pub(crate) struct Port(Vec<f64>);
 
 impl Port {
-    fn zero(n: usize) -> Self {
-        Self {
-            x: vec![0.0; n],
-            y: vec![0.0; n],
-        }
+    fn zero(pairs: usize) -> Self {
+        Self(vec![0.0; pairs])
     }
 
-    /// S·q.
+    fn of_pair(pairs: usize, pair: usize, s: f64) -> Self {
+        let mut port = Self::zero(pairs);
+        port.0[pair] = s;
+        port
+    }
+
+    /// Σ s·q.
     #[inline]
-    pub(crate) fn of(&self, q: &[f64]) -> V2 {
-        let (mut x, mut y) = (0.0, 0.0);
-        for (q, (a, b)) in q.iter().zip(self.x.iter().zip(&self.y)) {
-            x += a * q;
-            y += b * q;
-        }
-        V2::new(x, y)
+    pub(crate) fn of(&self, q: &[V2]) -> V2 {
+        (self.0.iter().zip(q)).fold(V2::zeros(), |sum, (s, q)| sum + *s * q)
     }
 
-    /// `out += Sᵀ·f`.
+    /// `out += s·f`.
     #[inline]
-    pub(crate) fn push(&self, out: &mut [f64], f: V2) {
-        for (o, (a, b)) in out.iter_mut().zip(self.x.iter().zip(&self.y)) {
-            *o += a * f.x + b * f.y;
+    pub(crate) fn push(&self, out: &mut [V2], f: V2) {
+        for (o, s) in out.iter_mut().zip(&self.0) {
+            *o += *s * f;
         }
     }
 
-    /// What coordinate i moves here: column i of S.
-    pub(crate) fn column(&self, i: usize) -> V2 {
-        V2::new(self.x[i], self.y[i])
+    /// What a pair moves here.
+    pub(crate) fn of_each(&self) -> &[f64] {
+        &self.0
     }
 
-    /// Mobility of the port along x, which is that in every direction but for rings of unequal mountings \[1/kg\].
+    /// Mobility of the port \[1/kg\].
     pub(crate) fn mobility(&self) -> f64 {
         self.mobility_with(self)
     }
 
-    /// Mobility between two ports along x \[1/kg\].
+    /// Mobility between two ports \[1/kg\].
     pub(crate) fn mobility_with(&self, other: &Self) -> f64 {
-        self.x.iter().zip(&other.x).map(|(a, b)| a * b).sum()
+        self.0.iter().zip(&other.0).map(|(a, b)| a * b).sum()
     }
 
     fn subtract(&mut self, other: &Self) {
-        for (a, b) in self.x.iter_mut().zip(&other.x) {
+        for (a, b) in self.0.iter_mut().zip(&other.0) {
             *a -= b;
         }
-        for (a, b) in self.y.iter_mut().zip(&other.y) {
-            *a -= b;
+    }
+}
+
+/// Where an unbalance acts: a port for each pair with the angle on the rotor, along it and across.
+#[derive(Debug, Clone)]
+pub(crate) struct UnbalancePort(Vec<V2>);
+
+impl UnbalancePort {
+    /// What it has of each pair.
+    pub(crate) fn of_each(&self) -> &[V2] {
+        &self.0
+    }
+
+    /// What the pairs move along the direction of the spin and across it.
+    pub(crate) fn of(&self, q: &[V2]) -> V2 {
+        let each = self.0.iter().zip(q);
+        each.fold(V2::zeros(), |sum, (u, q)| {
+            sum + V2::new(u.dot(q), u.perp(q))
+        })
+    }
+
+    /// `out += u·a`, turned by the angle.
+    #[inline]
+    pub(crate) fn push(&self, out: &mut [V2], a: V2) {
+        for (o, u) in out.iter_mut().zip(&self.0) {
+            *o += rotate(a, *u);
         }
     }
 }
@@ -119,16 +202,17 @@ impl Port {
 /// The body.
 #[derive(Debug, Clone)]
 pub(crate) struct LinearBody {
-    pub(crate) n: usize,
+    /// Number of pairs.
+    pub(crate) pairs: usize,
     rotor: Rotor,
-    pub(crate) stiffness: Sparse,
-    pub(crate) damping: Sparse,
+    pub(crate) stiffness: Coupling,
+    pub(crate) damping: Coupling,
     /// Per unit of spin.
-    pub(crate) gyroscopic: Sparse,
+    pub(crate) gyroscopic: Coupling,
     /// Force of gravity on the coordinates.
-    pub(crate) gravity: Vec<f64>,
-    /// Unbalance: columns that its acceleration per eccentricity is multiplied by.
-    pub(crate) unbalance: Option<Port>,
+    pub(crate) gravity: Vec<V2>,
+    /// Unbalance: what its acceleration per eccentricity is multiplied by.
+    pub(crate) unbalance: Option<UnbalancePort>,
     pub(crate) magnets: Vec<Port>,
     pub(crate) loads: Vec<Port>,
     pub(crate) probes: Vec<Port>,
@@ -153,27 +237,17 @@ fn rings_of(plane: &MachinePlane) -> Vec<RingParams> {
     }
 }
 
-/// Adds what a spring (or damper) of port S gives, SᵀkS.
-fn add_at_port(dense: &mut [f64], n: usize, port: &Port, k: V2) {
-    for row in 0..n {
-        for column in 0..n {
-            dense[row * n + column] +=
-                k.x * port.x[row] * port.x[column] + k.y * port.y[row] * port.y[column];
-        }
-    }
-}
-
-/// A place on the rotor of a body of n coordinates.
-fn on_rotor(rotor: &Rotor, n: usize, position_m: f64) -> Port {
+/// A place on the rotor of a body of so many pairs.
+fn on_rotor(rotor: &Rotor, pairs: usize, position_m: f64) -> Port {
     let rigid = rotor.rigid();
     let per_mass = 1.0 / rigid.mass_kg.sqrt();
-    let per_inertia = 1.0 / rigid.transverse_inertia_kg_m2.sqrt();
-    let mut port = Port::zero(n);
-    (port.x[0], port.y[1]) = (per_mass, per_mass);
-    (port.x[2], port.y[3]) = (position_m * per_inertia, position_m * per_inertia);
-    for (i, mode) in rotor.bending().iter().enumerate() {
-        let phi = per_mass * mode.displacement(position_m);
-        (port.x[4 + 2 * i], port.y[5 + 2 * i]) = (phi, phi);
+    let mut port = Port::zero(pairs);
+    port.0[0] = per_mass;
+    if rigid.tilts() {
+        port.0[1] = position_m / rigid.transverse_inertia_kg_m2.sqrt();
+    }
+    for (s, mode) in port.0.iter_mut().skip(2).zip(rotor.bending()) {
+        *s = per_mass * mode.displacement(position_m);
     }
     port
 }
@@ -189,47 +263,41 @@ impl LinearBody {
         params.validate()?;
         let rigid = params.rotor.rigid();
         let bending = params.rotor.bending();
-        let rotor = 4 + 2 * bending.len();
-        let n = rotor
+        let rotor = if rigid.tilts() { 2 } else { 1 } + bending.len();
+        let pairs = rotor
             + params
                 .planes
                 .iter()
-                .map(|p| 2 * rings_of(p).len())
+                .map(|p| rings_of(p).len())
                 .sum::<usize>();
         let per_mass = 1.0 / rigid.mass_kg.sqrt();
         let per_inertia = 1.0 / rigid.transverse_inertia_kg_m2.sqrt();
-        let at = |position_m: f64| on_rotor(&params.rotor, n, position_m);
+        let at = |position_m: f64| on_rotor(&params.rotor, pairs, position_m);
 
-        let (mut stiffness, mut damping, mut gyroscopic) =
-            (vec![0.0; n * n], vec![0.0; n * n], vec![0.0; n * n]);
+        let mut stiffness = Coupling::default();
+        let (mut damping, mut gyroscopic) = (Coupling::default(), Coupling::default());
         for (i, mode) in bending.iter().enumerate() {
-            for row in [4 + 2 * i, 5 + 2 * i] {
-                stiffness[row * n + row] += mode.frequency_rad_s * mode.frequency_rad_s;
-                damping[row * n + row] += 2.0 * mode.damping_ratio * mode.frequency_rad_s;
-            }
+            let (pair, rate) = ((2 + i, 2 + i), mode.frequency_rad_s);
+            stiffness.add_along(pair, V2::repeat(rate * rate));
+            damping.add_along(pair, V2::repeat(2.0 * mode.damping_ratio * rate));
         }
-        // Coordinates of slopes in pairs (x, y): the tilt, then the bending modes; before them those of the centre.
+        // Pairs of slopes: the tilt, then the bending modes; before them that of the centre.
         let scale = |i: usize| if i == 1 { per_inertia } else { per_mass };
         let (slopes, motions) = (1 + bending.len(), 2 + bending.len());
         for i in 0..slopes {
-            for j in 0..slopes {
+            for j in (0..slopes).filter(|_| rigid.tilts()) {
                 let g = params.rotor.polar_kg_m2(i, j) * scale(i + 1) * scale(j + 1);
-                let (row, column) = (2 + 2 * i, 2 + 2 * j);
-                gyroscopic[row * n + column + 1] += g;
-                gyroscopic[(row + 1) * n + column] -= g;
+                gyroscopic.add_across((1 + i, 1 + j), V2::new(g, -g));
             }
         }
         for (at, value) in params.rotor.damping_n_s_m().iter().enumerate() {
             let (i, j) = (at / motions, at % motions);
-            let d = value * scale(i) * scale(j);
-            let (row, column) = (2 * i, 2 * j);
-            damping[row * n + column] += d;
-            damping[(row + 1) * n + column + 1] += d;
+            damping.add_along((i, j), V2::repeat(value * scale(i) * scale(j)));
         }
         for support in &params.supports {
             let port = at(support.position_m);
-            add_at_port(&mut stiffness, n, &port, support.stiffness_n_m);
-            add_at_port(&mut damping, n, &port, support.damping_n_s_m);
+            stiffness.add_at_port(&port, support.stiffness_n_m);
+            damping.add_at_port(&port, support.damping_n_s_m);
         }
 
         let mut contacts = Vec::new();
@@ -241,10 +309,8 @@ impl LinearBody {
             let mut mounted = rings_of(plane)
                 .into_iter()
                 .map(|ring| {
-                    let mut port = Port::zero(n);
-                    let free = 1.0 / ring.mass_kg.sqrt();
-                    (port.x[next], port.y[next + 1]) = (free, free);
-                    next += 2;
+                    let port = Port::of_pair(pairs, next, 1.0 / ring.mass_kg.sqrt());
+                    next += 1;
                     (ring, port)
                 })
                 .collect::<Vec<_>>()
@@ -255,8 +321,8 @@ impl LinearBody {
                 if let Some((_, below)) = mounted.peek() {
                     stretch.subtract(below);
                 }
-                add_at_port(&mut stiffness, n, &stretch, ring.stiffness_n_m);
-                add_at_port(&mut damping, n, &stretch, ring.damping_n_s_m);
+                stiffness.add_at_port(&stretch, ring.stiffness_n_m);
+                damping.add_at_port(&stretch, ring.damping_n_s_m);
                 match inner.is_none() {
                     true => inner = Some(port),
                     false => outer = Some(port),
@@ -269,31 +335,24 @@ impl LinearBody {
                 let (depth_m, grip_n_m) =
                     (plane.contact.clearance_m, plane.contact.stiffness_n_m());
                 let damper_n_s_m = plane.contact.law.by_rate_n_s_m(depth_m);
-                add_at_port(&mut stiffness, n, &contact, V2::repeat(grip_n_m));
-                add_at_port(&mut damping, n, &contact, V2::repeat(damper_n_s_m));
+                stiffness.add_at_port(&contact, V2::repeat(grip_n_m));
+                damping.add_at_port(&contact, V2::repeat(damper_n_s_m));
             }
             contacts.push(contact);
             rings.push(inner);
             outer_rings.push(outer);
         }
-        let pair = |i: usize, scale: f64| {
-            let mut port = Port::zero(n);
-            (port.x[i], port.y[i + 1]) = (scale, scale);
-            port
-        };
-
-        let mut gravity = vec![0.0; n];
-        let mut weight = Port::zero(n);
-        (weight.x[0], weight.y[1]) = (rigid.mass_kg.sqrt(), rigid.mass_kg.sqrt());
-        weight.push(&mut gravity, params.gravity_m_s2);
+        let pair = |i: usize, s: f64| Port::of_pair(pairs, i, s);
+        let mut gravity = vec![V2::zeros(); pairs];
+        gravity[0] = rigid.mass_kg.sqrt() * params.gravity_m_s2;
 
         let ports = |places: &mut dyn Iterator<Item = f64>| places.map(at).collect::<Vec<_>>();
         let mut body = Self {
-            n,
+            pairs,
             rotor: params.rotor.clone(),
-            stiffness: Sparse::from_dense(n, &stiffness),
-            damping: Sparse::from_dense(n, &damping),
-            gyroscopic: Sparse::from_dense(n, &gyroscopic),
+            stiffness: stiffness.tidied(),
+            damping: damping.tidied(),
+            gyroscopic: gyroscopic.tidied(),
             gravity,
             unbalance: None,
             magnets: ports(&mut params.magnets.iter().map(|m| m.position_m)),
@@ -304,9 +363,12 @@ impl LinearBody {
             rings,
             outer_rings,
             centre: pair(0, per_mass),
-            tilt: pair(2, per_inertia),
+            tilt: match rigid.tilts() {
+                true => pair(1, per_inertia),
+                false => Port::zero(pairs),
+            },
             bending: (bending.iter().enumerate())
-                .map(|(i, mode)| (pair(4 + 2 * i, per_mass), mode.frequency_rad_s))
+                .map(|(i, mode)| (pair(2 + i, per_mass), mode.frequency_rad_s))
                 .collect(),
         };
         for unbalance in &params.unbalances {
@@ -325,30 +387,30 @@ impl LinearBody {
         if unbalance.moment_kg_m <= 0.0 {
             return;
         }
-        let all = (self.unbalance).get_or_insert_with(|| Port::zero(self.n));
+        let all =
+            (self.unbalance).get_or_insert_with(|| UnbalancePort(vec![V2::zeros(); self.pairs]));
         let (sin, cos) = unbalance.angle_rad.sin_cos();
-        let (along, across) = (unbalance.moment_kg_m * cos, unbalance.moment_kg_m * sin);
-        let port = on_rotor(&self.rotor, self.n, unbalance.position_m);
-        for i in 0..self.n {
-            all.x[i] += along * port.x[i] + across * port.y[i];
-            all.y[i] += along * port.y[i] - across * port.x[i];
+        let moment = unbalance.moment_kg_m * V2::new(cos, sin);
+        let port = on_rotor(&self.rotor, self.pairs, unbalance.position_m);
+        for (u, s) in all.0.iter_mut().zip(&port.0) {
+            *u += *s * moment;
         }
     }
 
     /// A of ż = A·z for z = (ω·q, q̇) without forces at a spin \[rad/s\], ω a rate that makes all entries of one size.
     pub(crate) fn generator(&self, rate_rad_s: f64, spin_rad_s: f64) -> DMatrix<f64> {
-        let n = self.n;
+        let n = 2 * self.pairs;
         let mut a = DMatrix::zeros(2 * n, 2 * n);
         for i in 0..n {
             a[(i, n + i)] = rate_rad_s;
         }
-        for (row, column, k) in &self.stiffness.0 {
-            a[(n + row, *column)] -= k / rate_rad_s;
+        for (row, column, k) in self.stiffness.entries() {
+            a[(n + row, column)] -= k / rate_rad_s;
         }
-        for (row, column, d) in &self.damping.0 {
+        for (row, column, d) in self.damping.entries() {
             a[(n + row, n + column)] -= d;
         }
-        for (row, column, g) in &self.gyroscopic.0 {
+        for (row, column, g) in self.gyroscopic.entries() {
             a[(n + row, n + column)] -= spin_rad_s * g;
         }
         a
@@ -356,6 +418,6 @@ impl LinearBody {
 
     /// Rate of the fastest undamped motion, by a bound \[rad/s\].
     pub(crate) fn undamped_rate_rad_s(&self) -> f64 {
-        self.stiffness.norm(self.n).sqrt()
+        self.stiffness.norm(self.pairs).sqrt()
     }
 }

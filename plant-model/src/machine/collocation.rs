@@ -13,7 +13,8 @@ mod tables;
 use self::tables::Tables;
 use super::holding::Holding;
 use super::poles::MagnetLaw;
-use super::series::{MachineSeries, Step};
+use super::rows::{AnyRows, of_rows};
+use super::series::{Grip, MachineSeries, Step};
 use super::system::{MachineState, MachineSystem};
 use crate::V2;
 use crate::mode::Phase;
@@ -57,7 +58,7 @@ struct Touch {
 #[derive(Debug, Clone)]
 struct Instant {
     y: MachineState,
-    acceleration: Vec<f64>,
+    acceleration: Vec<V2>,
     spin_rate: f64,
     race_rates: Vec<f64>,
     magnet_rates: Vec<V2>,
@@ -87,7 +88,7 @@ pub(crate) struct Collocation {
     tables: Tables,
     instants: Vec<Instant>,
     holding: Holding,
-    before: Vec<f64>,
+    before: Vec<V2>,
     magnets_before: Vec<V2>,
     races_before: Vec<f64>,
     /// How often the equations have been evaluated.
@@ -96,14 +97,14 @@ pub(crate) struct Collocation {
 
 impl Collocation {
     pub(crate) fn new(system: &MachineSystem) -> Self {
-        let (n, planes, magnets) = (
-            system.body.n,
+        let (pairs, planes, magnets) = (
+            system.body.pairs,
             system.planes.len(),
             system.body.magnets.len(),
         );
         let instant = Instant {
             y: MachineState::default(),
-            acceleration: vec![0.0; n],
+            acceleration: vec![V2::zeros(); pairs],
             spin_rate: 0.0,
             race_rates: vec![0.0; planes],
             magnet_rates: vec![V2::zeros(); magnets],
@@ -115,8 +116,8 @@ impl Collocation {
         Self {
             tables: Tables::new(),
             instants: vec![instant; POINTS],
-            holding: Holding::new(n),
-            before: vec![0.0; n],
+            holding: Holding::new(pairs),
+            before: vec![V2::zeros(); pairs],
             magnets_before: vec![V2::zeros(); magnets],
             races_before: vec![0.0; planes],
             evaluations: 0,
@@ -206,7 +207,7 @@ impl Collocation {
         self.evaluate(step, i);
         let now = &self.instants[i];
         let off = now.acceleration.iter().zip(&self.before);
-        let moved: f64 = off.map(|(a, b)| (a - b).powi(2)).sum();
+        let moved: f64 = off.map(|(a, b)| (a - b).norm_squared()).sum();
         let magnets = now.magnet_rates.iter().zip(&self.magnets_before);
         let magnet = (magnets.zip(&step.system.magnets))
             .map(|((a, b), law)| law.per_state_n() * (a - b).norm())
@@ -228,8 +229,8 @@ impl Collocation {
         let inner = || self.instants[1..END].iter().zip(weights);
         let mut square = 0.0;
         for (c, a) in end.acceleration.iter().enumerate() {
-            let through: f64 = inner().map(|(at, w)| w * at.acceleration[c]).sum();
-            square += (a - through).powi(2);
+            let through = inner().fold(V2::zeros(), |sum, (at, w)| sum + *w * at.acceleration[c]);
+            square += (a - through).norm_squared();
         }
         let spin: f64 = inner().map(|(at, w)| w * at.spin_rate).sum();
         let mut magnets = 0.0;
@@ -286,12 +287,12 @@ impl Collocation {
     /// Puts the solution where the series has its own.
     pub(crate) fn write(&self, step: &Step<'_>, y: &MachineState, out: &mut MachineSeries) {
         let (system, h) = (step.system, step.step_s);
-        (out.step_s, out.order) = (h, ORDER);
-        out.position.row_mut(0).copy_from_slice(&y.position);
-        out.velocity.row_mut(0).copy_from_slice(&y.velocity);
+        let MachineSeries { rows, parts } = out;
+        (parts.step_s, parts.order) = (h, ORDER);
+        let mut velocity = y.velocity.clone();
+        of_rows!(&mut *rows, rows => rows.put(0, &y.position, &velocity));
         for k in 0..ORDER {
-            let velocity = out.velocity.row_mut(k + 1);
-            velocity.fill(0.0);
+            velocity.fill(V2::zeros());
             if k < GAUSS {
                 for (instant, c) in self.instants[1..END].iter().zip(&self.tables.inner[k]) {
                     let c = h * c * INVERSE[k + 1];
@@ -300,13 +301,10 @@ impl Collocation {
                     }
                 }
             }
-            let next = h * INVERSE[k + 1];
-            let (rows, before) = (&mut out.position, &out.velocity);
-            for (q, v) in rows.row_mut(k + 1).iter_mut().zip(before.row(k)) {
-                *q = next * v;
-            }
+            of_rows!(&mut *rows, rows => rows.put(k + 1, &[], &velocity));
         }
-        self.integrals(&mut out.spin, y.spin_rad_s, h, |at| at.spin_rate);
+        of_rows!(&mut *rows, rows => rows.integrate((0, ORDER), h));
+        self.integrals(&mut parts.spin, y.spin_rad_s, h, |at| at.spin_rate);
         for (m, law) in system.magnets.iter().enumerate() {
             for axis in [0, 1] {
                 let mut one = Scalar::default();
@@ -314,49 +312,55 @@ impl Collocation {
                 self.integrals(&mut one, y.magnets[m][axis], h, rate);
                 match law {
                     MagnetLaw::Held => {}
-                    MagnetLaw::Lag(_) => put(&mut out.magnets[m], axis, &one),
+                    MagnetLaw::Lag(_) => put(&mut parts.magnets[m], axis, &one),
                     MagnetLaw::SecondOrder(..) => {
-                        put(&mut out.magnets[m], axis, &one);
+                        put(&mut parts.magnets[m], axis, &one);
                         let rate = |at: &Instant| at.slope_rates[m][axis];
                         self.integrals(&mut one, y.magnet_slopes[m][axis], h, rate);
-                        put(&mut out.currents[m], axis, &one);
+                        put(&mut parts.currents[m], axis, &one);
                     }
                     MagnetLaw::Poles(_) => {
-                        put(&mut out.currents[m], axis, &one);
+                        put(&mut parts.currents[m], axis, &one);
                         self.through(&mut one, |at| at.magnets_n[m][axis]);
-                        put(&mut out.magnets[m], axis, &one);
+                        put(&mut parts.magnets[m], axis, &one);
                     }
                 }
             }
         }
         if system.body.unbalance.is_some() {
-            out.unbalance.0[..=ORDER].fill(V2::zeros());
+            parts.unbalance.0[..=ORDER].fill(V2::zeros());
             for (k, row) in self.tables.all.iter().enumerate() {
                 let all = self.instants.iter().zip(row);
-                out.unbalance.0[k] = all.fold(V2::zeros(), |sum, (at, c)| sum + *c * at.unbalance);
+                parts.unbalance.0[k] =
+                    all.fold(V2::zeros(), |sum, (at, c)| sum + *c * at.unbalance);
             }
         }
-        for (p, plane) in out.planes.iter_mut().enumerate() {
-            let port = &system.body.contacts[p];
-            for k in 0..=ORDER {
-                plane.gap.0[k] = port.of(out.position.row(k));
-            }
+        for (p, plane) in parts.planes.iter_mut().enumerate() {
+            of_rows!(&*rows, rows => for k in 0..=ORDER {
+                plane.gap.0[k] = rows.gap(p, k);
+            });
             plane.gap.0[0] -= system.planes[p].centre_m;
             self.integrals(&mut plane.race, y.races_rad_s[p], h, |at| at.race_rates[p]);
             if step.phases[p] == Phase::Inside {
                 continue;
             }
-            for k in 0..=ORDER {
-                plane.gap_rate.0[k] = port.of(out.velocity.row(k));
-            }
+            of_rows!(&*rows, rows => for k in 0..=ORDER {
+                plane.gap_rate.0[k] = rows.gap_rate(p, k);
+            });
+            let per_m = |at: &Instant| 1.0 / at.touches[p].distance_m;
+            plane.grip = Grip::read_at_points(system, p);
             self.through(&mut plane.distance, |at| at.touches[p].distance_m);
-            self.through(&mut plane.normal_speed, |at| at.touches[p].normal_m_s);
             self.through(&mut plane.force, |at| at.touches[p].force_n);
             self.through(&mut plane.lift, |at| at.touches[p].lift);
-            self.through(&mut plane.whirl_speed, |at| at.touches[p].whirl_m_s);
-            self.through(&mut plane.slip, |at| at.touches[p].slip_m_s);
-            self.through(&mut plane.sliding, |at| at.touches[p].sliding_n);
-            self.through(&mut plane.rolling, |at| at.touches[p].rolling_n);
+            self.through(&mut plane.normal_n_m, |at| {
+                per_m(at) * at.touches[p].force_n
+            });
+            self.through(&mut plane.sliding_n_m, |at| {
+                per_m(at) * at.touches[p].sliding_n
+            });
+            self.through(&mut plane.rolling_n_m, |at| {
+                per_m(at) * at.touches[p].rolling_n
+            });
         }
     }
 
@@ -392,7 +396,7 @@ impl Instant {
     fn is_finite(&self) -> bool {
         let magnets = self.magnet_rates.iter().chain(&self.slope_rates);
         let magnets = magnets.flat_map(|rate| [rate.x, rate.y]);
-        let rates = (self.acceleration.iter().copied())
+        let rates = (self.acceleration.iter().flatten().copied())
             .chain(self.race_rates.iter().copied())
             .chain(magnets);
         self.spin_rate.is_finite() && rates.into_iter().all(f64::is_finite)

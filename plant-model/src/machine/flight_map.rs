@@ -61,7 +61,7 @@ impl FlightMap {
         y: &mut MachineState,
         inputs: &MachineInputs,
         dt_s: f64,
-        path: &mut [f64],
+        path: &mut [V2],
     ) -> Option<StepFlows> {
         let turns = system.inverse_inertia > 0.0 && system.drive_torque_n_m != 0.0;
         if turns {
@@ -96,11 +96,11 @@ impl FlightMap {
             *out = dot(&self.end[row * d..(row + 1) * d], &self.z);
         }
         let per = 1.0 / self.rate;
-        for (i, path) in path.iter_mut().enumerate().take(n) {
-            let q = per * self.out[i];
+        for (i, path) in path.iter_mut().enumerate() {
+            let pair = |at: usize| V2::new(self.out[at + 2 * i], self.out[at + 2 * i + 1]);
+            let q = per * pair(0);
             *path = q - y.position[i];
-            y.position[i] = q;
-            y.velocity[i] = self.out[n + i];
+            (y.position[i], y.velocity[i]) = (q, pair(n));
         }
         let mut lagging = self.layout.magnets;
         for (force_n, law) in y.magnets.iter_mut().zip(&system.magnets) {
@@ -175,11 +175,11 @@ impl FlightMap {
             loads,
             one,
         } = self.layout;
-        for i in 0..n {
-            self.z[i] = self.rate * y.position[i];
-            self.z[n + i] = y.velocity[i];
-        }
         let put = |z: &mut [f64], at: usize, v: V2| (z[at], z[at + 1]) = (v.x, v.y);
+        for (i, (q, v)) in y.position.iter().zip(&y.velocity).enumerate() {
+            put(&mut self.z, 2 * i, self.rate * q);
+            put(&mut self.z, n + 2 * i, *v);
+        }
         let mut lagging = magnets;
         for (m, law) in system.magnets.iter().enumerate() {
             if law.lag().is_some() {
@@ -216,38 +216,42 @@ impl FlightMap {
         a.view_mut((0, 0), (2 * n, 2 * n))
             .copy_from(&body.generator(rate, spin));
         for (i, force) in body.gravity.iter().enumerate() {
-            a[(n + i, one)] = *force;
+            for axis in [0, 1] {
+                a[(n + 2 * i + axis, one)] = force[axis];
+            }
         }
-        let mut column = vec![0.0; n];
-        let mut pushes =
-            |a: &mut DMatrix<f64>, at: usize, port: &super::body::Port, factor: f64| {
-                for (axis, unit) in [V2::x(), V2::y()].into_iter().enumerate() {
-                    column.fill(0.0);
-                    port.push(&mut column, factor * unit);
-                    for row in 0..n {
-                        a[(n + row, at + axis)] = column[row];
-                    }
+        let mut column = vec![V2::zeros(); body.pairs];
+        let mut pushes = |a: &mut DMatrix<f64>, at: usize, push: &dyn Fn(&mut [V2], V2)| {
+            for (axis, unit) in [V2::x(), V2::y()].into_iter().enumerate() {
+                column.fill(V2::zeros());
+                push(&mut column, unit);
+                for (row, value) in column.iter().flatten().enumerate() {
+                    a[(n + row, at + axis)] = *value;
                 }
-            };
+            }
+        };
         let mut lagging = magnets;
         for (m, law) in system.magnets.iter().enumerate() {
             match law.lag() {
                 Some(lag) => {
-                    pushes(&mut a, lagging, &body.magnets[m], 1.0);
+                    pushes(&mut a, lagging, &|out, f| body.magnets[m].push(out, f));
                     for axis in [0, 1] {
                         a[(lagging + axis, lagging + axis)] = -lag;
                         a[(lagging + axis, commands + 2 * m + axis)] = lag;
                     }
                     lagging += 2;
                 }
-                None => pushes(&mut a, commands + 2 * m, &body.magnets[m], 1.0),
+                None => pushes(&mut a, commands + 2 * m, &|out, f| {
+                    body.magnets[m].push(out, f);
+                }),
             }
         }
         for (l, port) in body.loads.iter().enumerate() {
-            pushes(&mut a, loads + 2 * l, port, 1.0);
+            pushes(&mut a, loads + 2 * l, &|out, f| port.push(out, f));
         }
         if let Some(unbalance) = &body.unbalance {
-            pushes(&mut a, direction, unbalance, spin * spin);
+            let square = spin * spin;
+            pushes(&mut a, direction, &|out, f| unbalance.push(out, square * f));
             a[(direction, direction + 1)] = -spin;
             a[(direction + 1, direction)] = spin;
         }
@@ -256,7 +260,7 @@ impl FlightMap {
 
     fn make(&mut self, system: &MachineSystem) {
         let body = &system.body;
-        let n = body.n;
+        let n = 2 * body.pairs;
         let lagging = system.magnets.iter().filter_map(MagnetLaw::lag).count();
         let magnets = 2 * n;
         let direction = magnets + 2 * lagging;
@@ -281,11 +285,10 @@ impl FlightMap {
         // Σ_k |S·A^k/k!|: on θ from 0 to 1 no power of it is larger.
         let mut ports = DMatrix::zeros(2 * body.contacts.len(), d);
         for (p, port) in body.contacts.iter().enumerate() {
-            for i in 0..n {
-                let mut unit = vec![0.0; n];
-                unit[i] = 1.0 / self.rate;
-                let at = port.of(&unit);
-                (ports[(2 * p, i)], ports[(2 * p + 1, i)]) = (at.x, at.y);
+            for (i, s) in port.of_each().iter().enumerate() {
+                for axis in [0, 1] {
+                    ports[(2 * p + axis, 2 * i + axis)] = s / self.rate;
+                }
             }
         }
         let mut reach = ports.map(f64::abs);
@@ -314,13 +317,12 @@ impl FlightMap {
             ..
         } = self.layout;
         let mut powers = [(); 3].map(|()| DMatrix::zeros(d, d));
+        for (row, column, value) in body.damping.entries() {
+            powers[0][(n + row, n + column)] += value;
+        }
         for i in 0..n {
-            let (mut x, mut column) = (vec![0.0; n], vec![0.0; n]);
-            x[i] = 1.0;
-            body.damping.add_product(&mut column, 1.0, &x);
-            for row in 0..n {
-                powers[0][(n + row, n + i)] = column[row];
-            }
+            let mut x = vec![V2::zeros(); body.pairs];
+            x[i / 2][i % 2] = 1.0;
             let mut lagging = magnets;
             for (port, law) in body.magnets.iter().zip(&system.magnets) {
                 if law.lag().is_some() {

@@ -63,59 +63,92 @@ impl Guard {
         }
     }
 
-    /// Fills `out` with it over a step up to θ; says whether there is anything to ask.
-    pub(crate) fn fill(
+    /// It over a step of a plane up to θ, in `out` where it is not there already; `None` where it cannot fall.
+    pub(crate) fn over<'a>(
         self,
-        out: &mut Scalar,
-        (plane, data, phase): (&PlaneSeries, &PlaneData, Phase),
+        out: &'a mut Scalar,
+        (plane, spin): (&'a PlaneSeries, &Scalar),
+        (data, phase): (&PlaneData, Phase),
         (theta, order): (f64, usize),
-    ) -> bool {
+    ) -> Option<&'a Scalar> {
         let (slide, whirl) = match phase {
             Phase::Contact(slide, whirl) => (slide, whirl),
             _ => (Slide::Rolling, Whirl::Ignored),
         };
-        // a·x + b·y, and there is something to ask.
-        let mut ask = |x: (f64, &Scalar), y: (f64, &Scalar)| {
-            out.combine(x, y, order);
-            true
+        // Room to an edge of a cone, per distance as friction is.
+        let room = |out: &mut Scalar, mu: f64, sign: f64, friction_n_m: &Scalar| {
+            out.combine((mu, &plane.normal_n_m), (sign, friction_n_m), order);
         };
-        let (force, none) = (&plane.force, (0.0, &plane.force));
         match self {
             Self::Gap => {
-                let reach = plane.gap.0[1..=order]
-                    .iter()
-                    .rev()
-                    .fold(crate::V2::zeros(), |sum, c| (sum + c.abs()) * theta);
-                let start = plane.gap.0[0].abs();
-                if start.x + reach.x + start.y + reach.y < data.clearance_m {
-                    return false;
+                let start = plane.gap.0[0].abs().sum();
+                if start + plane.gap.reach(theta, order) < data.clearance_m {
+                    return None;
                 }
                 let per = 1.0 / data.clearance_m;
                 for k in 0..=order {
                     out.0[k] = -per * plane.gap.dot_coefficient(&plane.gap, k);
                 }
                 out.0[0] += data.clearance_m;
-                true
             }
             Self::Beyond => {
-                ask((1.0, &plane.distance), none);
+                out.0[..=order].copy_from_slice(&plane.distance.0[..=order]);
                 out.0[0] -= data.clearance_m;
-                true
             }
-            Self::NoForce => ask((-1.0, plane.lift(data)), none),
-            Self::Normal => ask((1.0, plane.lift(data)), none),
+            Self::NoForce => {
+                let lift = plane.lift(data);
+                out.combine((-1.0, lift), (0.0, lift), order);
+            }
+            Self::Normal => return Some(plane.lift(data)),
             Self::Slide if slide == Slide::Rolling => {
-                ask((data.sliding, force), (-1.0, &plane.sliding))
+                room(out, data.sliding, -1.0, &plane.sliding_n_m);
             }
-            Self::SlideLow => ask((data.sliding, force), (1.0, &plane.sliding)),
+            Self::SlideLow => room(out, data.sliding, 1.0, &plane.sliding_n_m),
             // Without friction the direction of slip changes nothing.
-            Self::Slide if data.sliding == 0.0 => false,
-            Self::Slide => ask((slide.sign(), &plane.slip), none),
-            Self::Whirl if whirl == Whirl::Still => {
-                ask((data.rolling, force), (-1.0, &plane.rolling))
+            Self::Slide if data.sliding == 0.0 => return None,
+            Self::Slide => {
+                if plane.slips_on((data, spin), slide.sign(), (theta, order)) {
+                    return None;
+                }
+                plane.whirl_of(out, order);
+                plane.add_surface(out, (data, spin), order);
+                out.0[..=order].iter_mut().for_each(|c| *c *= slide.sign());
             }
-            Self::WhirlLow => ask((data.rolling, force), (1.0, &plane.rolling)),
-            Self::Whirl => ask((whirl.sign(), &plane.whirl_speed), none),
+            Self::Whirl if whirl == Whirl::Still => {
+                room(out, data.rolling, -1.0, &plane.rolling_n_m);
+            }
+            Self::WhirlLow => room(out, data.rolling, 1.0, &plane.rolling_n_m),
+            Self::Whirl => {
+                plane.whirl_of(out, order);
+                out.0[..=order].iter_mut().for_each(|c| *c *= whirl.sign());
+            }
         }
+        Some(out)
+    }
+}
+
+impl PlaneSeries {
+    /// Whether the sliding speed keeps its sign up to θ, by how far its parts can move.
+    fn slips_on(
+        &self,
+        (data, spin): (&PlaneData, &Scalar),
+        sign: f64,
+        (theta, order): (f64, usize),
+    ) -> bool {
+        let (gap, rate) = (self.gap.0[0], self.gap_rate.0[0]);
+        let surface = data.radius_m * spin.0[0] - data.race_radius_m() * self.race.0[0];
+        let start = sign * (gap.perp(&rate) + surface * self.distance.0[0]);
+        let (far, fast) = (
+            self.gap.reach(theta, order),
+            self.gap_rate.reach(theta, order),
+        );
+        let mut moved = gap.abs().sum() * fast + (rate.abs().sum() + fast) * far;
+        moved += surface.abs() * far;
+        if self.grip.turns {
+            let spun = data.radius_m * spin.reach(theta, order)
+                + data.race_radius_m() * self.race.reach(theta, order);
+            moved += spun * (self.distance.0[0] + far);
+        }
+        start > moved
     }
 }

@@ -12,8 +12,8 @@ pub(crate) struct Held {
     pub(crate) channel: Channel,
     /// Along t̂, by which the speed is told and the force acts.
     pub(crate) tangent: V2,
-    /// Accelerations of the coordinates, of the spin and of the plane's race.
-    pub(crate) accelerations: Vec<f64>,
+    /// Accelerations of the pairs, of the spin and of the plane's race.
+    pub(crate) accelerations: Vec<V2>,
     pub(crate) spin: f64,
     pub(crate) race: f64,
 }
@@ -28,12 +28,12 @@ pub(crate) struct Holding {
 }
 
 impl Holding {
-    pub(crate) fn new(coordinates: usize) -> Self {
+    pub(crate) fn new(pairs: usize) -> Self {
         let held = Held {
             plane: 0,
             channel: Channel::Sliding,
             tangent: V2::zeros(),
-            accelerations: vec![0.0; coordinates],
+            accelerations: vec![V2::zeros(); pairs],
             spin: 0.0,
             race: 0.0,
         };
@@ -56,7 +56,7 @@ impl Holding {
         for (plane, channel) in channels.take(MAX_HELD) {
             let held = &mut self.held[self.count];
             (held.plane, held.channel, held.tangent) = (plane, channel, perp(normal(plane)));
-            held.accelerations.fill(0.0);
+            held.accelerations.fill(V2::zeros());
             system.body.contacts[plane].push(&mut held.accelerations, held.tangent);
             (held.spin, held.race) = system.turned_by(plane, channel);
             if let Some(unbalance) = &system.body.unbalance {
@@ -68,13 +68,19 @@ impl Holding {
             return;
         }
         let held = &self.held[..self.count];
-        self.give = system.inverse_mobility(held.iter().map(|h| (h.plane, h.channel)), |a, b| {
+        let mobility = |a: usize, b: usize| {
             let (a, b) = (&held[a], &held[b]);
             let race = if a.plane == b.plane { b.race } else { 0.0 };
             a.tangent
                 .dot(&system.body.contacts[a.plane].of(&b.accelerations))
                 + system.surface_of(a.plane, a.channel, b.spin, race)
-        });
+        };
+        if self.count == 1 {
+            self.give[(0, 0)] = 1.0 / mobility(0, 0);
+            return;
+        }
+        let channels = held.iter().map(|h| (h.plane, h.channel));
+        self.give = system.inverse_mobility(channels, mobility);
     }
 
     pub(crate) fn held(&self) -> &[Held] {

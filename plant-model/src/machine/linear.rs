@@ -3,6 +3,7 @@
 
 use super::body::{LinearBody, Port};
 use super::params::{MachineError, MachineParams};
+use crate::V2;
 use nalgebra::{Complex, DMatrix, DVector, Schur};
 
 /// Which way a mode goes round.
@@ -138,7 +139,7 @@ impl LinearMachine {
     /// Critical speeds, slowest first: K·q = Ω²·(1 − jG)·q, of which a rotor that turns into a disc has no forward one. `None`
     /// as of [`Self::modes`].
     pub fn critical_speeds(&self) -> Option<Vec<CriticalSpeed>> {
-        let n = self.body.n;
+        let n = 2 * self.body.pairs;
         // 1 − jG as a real matrix on real and imaginary parts, K likewise; Ω² = 1/μ − s for the eigenvalues μ of
         // (K + s·B)⁻¹·B, which there are where B or K is singular, too.
         let mut b = DMatrix::identity(2 * n, 2 * n);
@@ -184,7 +185,7 @@ impl LinearMachine {
 
     /// The generator at a spin without its damping.
     fn undamped(&self, spin_rad_s: f64) -> DMatrix<C> {
-        let n = self.body.n;
+        let n = 2 * self.body.pairs;
         let mut a = self.body.generator(self.rate_rad_s, spin_rad_s);
         for (row, column, d) in self.body.damping.entries() {
             a[(n + row, n + column)] += d;
@@ -199,8 +200,9 @@ impl LinearMachine {
         let inverse = self
             .dynamic_stiffness(frequency_rad_s, spin_rad_s)
             .try_inverse()?;
-        let rows = DMatrix::from_fn(2 * ports.len(), self.body.n, |row, i| {
-            C::new(ports[row / 2].column(i)[row % 2], 0.0)
+        let rows = DMatrix::from_fn(2 * ports.len(), 2 * self.body.pairs, |row, i| {
+            let s = ports[row / 2].of_each()[i / 2];
+            C::new(if row % 2 == i % 2 { s } else { 0.0 }, 0.0)
         });
         Some(&rows * inverse * rows.transpose())
     }
@@ -214,10 +216,14 @@ impl LinearMachine {
             return Some(ports().map(|_| 0.0).collect());
         };
         // Ω²·(U_x·cos σ + U_y·sin σ) = Re(Ω²·(U_x − j·U_y)·e^jΩt).
-        let force = DVector::from_fn(body.n, |i, _| {
-            let along = unbalance.column(i);
-            C::new(along.x, -along.y) * (spin_rad_s * spin_rad_s)
-        });
+        let mut force = DVector::zeros(2 * body.pairs);
+        for (axis, factor) in [(V2::x(), C::new(1.0, 0.0)), (V2::y(), C::new(0.0, -1.0))] {
+            let mut pushed = vec![V2::zeros(); body.pairs];
+            unbalance.push(&mut pushed, axis);
+            for (f, x) in force.iter_mut().zip(pushed.iter().flatten()) {
+                *f += factor * (spin_rad_s * spin_rad_s * x);
+            }
+        }
         let motion = self
             .dynamic_stiffness(spin_rad_s, spin_rad_s)
             .lu()
@@ -231,7 +237,11 @@ impl LinearMachine {
 
     fn dynamic_stiffness(&self, frequency_rad_s: f64, spin_rad_s: f64) -> DMatrix<C> {
         let (body, omega) = (&self.body, frequency_rad_s);
-        let mut a = DMatrix::from_diagonal_element(body.n, body.n, C::new(-omega * omega, 0.0));
+        let mut a = DMatrix::from_diagonal_element(
+            2 * body.pairs,
+            2 * body.pairs,
+            C::new(-omega * omega, 0.0),
+        );
         for (row, column, k) in body.stiffness.entries() {
             a[(row, column)] += C::new(k, 0.0);
         }
@@ -275,7 +285,7 @@ impl LinearMachine {
         let Some(vector) = self.vector(a, value) else {
             return vec![C::new(0.0, 0.0); self.body.probes.len()];
         };
-        let motion = vector_of(&vector, self.body.n);
+        let motion = vector_of(&vector, 2 * self.body.pairs);
         let turning = |sign: f64| {
             let probes = self.body.probes.iter();
             probes
@@ -307,7 +317,7 @@ impl LinearMachine {
         let ports = self.body.at_planes.iter().chain(&self.body.contacts);
         let (mut forward, mut backward) = (0.0, 0.0);
         for port in ports {
-            let [ahead, back] = senses(port, vector_of(&vector, self.body.n));
+            let [ahead, back] = senses(port, vector_of(&vector, 2 * self.body.pairs));
             forward = f64::max(forward, ahead);
             backward = f64::max(backward, back);
         }
@@ -320,7 +330,7 @@ impl LinearMachine {
 
     /// The eigenvector, from inverse iteration.
     fn vector(&self, a: &DMatrix<C>, value: C) -> Option<DVector<C>> {
-        let (n, rate) = (self.body.n, self.rate_rad_s);
+        let (n, rate) = (2 * self.body.pairs, self.rate_rad_s);
         let near = value + C::new(1e-9, 1e-9) * rate.min(1e3 * value.norm());
         let shifted = a - DMatrix::from_diagonal_element(2 * n, 2 * n, near);
         // No mode is orthogonal to this by construction.
@@ -393,7 +403,12 @@ const SHIFT: f64 = 1e-8;
 
 /// The part of a motion that goes forward (sign 1) or backward (−1), x = Re(X·e^jωt) and y likewise: (X ± jY)/2.
 fn circular(port: &Port, motion: &[C], sign: f64) -> C {
-    let part = |of: fn(&C) -> f64| motion.iter().map(of).collect::<Vec<f64>>();
+    let part = |of: fn(&C) -> f64| {
+        let pairs = motion.chunks_exact(2);
+        pairs
+            .map(|z| V2::new(of(&z[0]), of(&z[1])))
+            .collect::<Vec<V2>>()
+    };
     let (re, im) = (port.of(&part(|z| z.re)), port.of(&part(|z| z.im)));
     0.5 * (C::new(re.x, im.x) + sign * C::new(-im.y, re.y))
 }

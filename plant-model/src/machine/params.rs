@@ -34,7 +34,7 @@ pub const MAX_MAGNETS: usize = 4;
 pub struct RigidRotor {
     /// Mass \[kg\], > 0.
     pub mass_kg: f64,
-    /// Transverse moment of inertia I_t about the centre of mass \[kg m²\], > 0.
+    /// Transverse moment of inertia I_t about the centre of mass \[kg m²\], > 0; infinite for a rotor that does not tilt.
     pub transverse_inertia_kg_m2: f64,
     /// Polar moment of inertia I_p \[kg m²\], ≥ 0 and at most 2·I_t.
     pub polar_inertia_kg_m2: f64,
@@ -231,6 +231,22 @@ pub struct MachineStart {
     pub spin_rad_s: f64,
     /// Angle σ of the spin at t = 0 \[rad\].
     pub spin_phase_rad: f64,
+}
+
+impl RigidRotor {
+    /// A point mass: a rotor that does not tilt.
+    pub fn point(mass_kg: f64) -> Self {
+        Self {
+            mass_kg,
+            transverse_inertia_kg_m2: f64::INFINITY,
+            polar_inertia_kg_m2: 0.0,
+        }
+    }
+
+    /// Whether it tilts.
+    pub fn tilts(&self) -> bool {
+        self.transverse_inertia_kg_m2.is_finite()
+    }
 }
 
 impl MachineParams {

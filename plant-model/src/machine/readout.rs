@@ -2,10 +2,13 @@
 
 use super::params::{MAX_MAGNETS, MAX_PLANES, Rotor};
 use super::poles::MagnetLaw;
-use super::series::MachineSeries;
+use super::rows::{AnyRows, Rows, of_rows};
+use super::series::{MachineSeries, Parts};
+use super::system::PlaneData;
 use super::system::{MachineInputs, MachineState, MachineSystem};
 use crate::V2;
 use crate::energy::Flows;
+use crate::integrate::contact_step::turn_rad;
 use crate::integrate::series_readout::highest;
 use crate::mode::{Mode, Phase, Slide, Whirl};
 use crate::params::ContactLaw;
@@ -144,7 +147,7 @@ impl MachineSystem {
 
     /// Kinetic and elastic energy; contact springs of planes that touch included \[J\].
     pub(crate) fn stored_j(&self, y: &MachineState, phases: &[Phase]) -> f64 {
-        let kinetic: f64 = y.velocity.iter().map(|v| v * v).sum();
+        let kinetic: f64 = y.velocity.iter().map(V2::norm_squared).sum();
         let mut stored =
             0.5 * (kinetic + self.body.stiffness.quadratic(&y.position)) + self.turning_j(y);
         for (p, phase) in phases.iter().enumerate() {
@@ -168,10 +171,11 @@ impl MachineSystem {
     }
 }
 
-/// Energy through each door over a step up to θ.
+/// Energy through each door over a step up to θ, and largest values at the nodes of its sums.
 pub(crate) struct StepFlows {
     pub(crate) machine: Flows,
     pub(crate) planes: [PlaneFlows; MAX_PLANES],
+    pub(crate) tops: [Peaks; MAX_PLANES],
 }
 
 impl StepFlows {
@@ -180,6 +184,7 @@ impl StepFlows {
         Self {
             machine,
             planes: [PlaneFlows::default(); MAX_PLANES],
+            tops: [Peaks::default(); MAX_PLANES],
         }
     }
 }
@@ -188,8 +193,12 @@ impl StepFlows {
 #[derive(Clone, Copy)]
 pub(crate) struct Held<'a> {
     pub(crate) inputs: &'a MachineInputs,
-    pub(crate) path: &'a [f64],
+    pub(crate) path: &'a [V2],
 }
+
+/// Share of a largest value below which values at the nodes say that a step has none larger: between two of eight nodes over less
+/// than half a vibration it rises by less than a twentieth.
+const NEAR_TOP: f64 = 0.9;
 
 impl MachineSeries {
     /// Books a step from `y` to `end`, with work of what is held as force times path.
@@ -197,158 +206,218 @@ impl MachineSeries {
         &self,
         system: &MachineSystem,
         phases: &[Phase],
-        theta: f64,
+        (theta, backward): (f64, f64),
         held: Held<'_>,
-        scratch: &mut [f64],
     ) -> StepFlows {
-        if self.order <= 12 {
-            self.flows_by(
-                system,
-                phases,
-                theta,
-                held,
-                (&Nodes::stretched(&SIX, theta), scratch),
-            )
-        } else {
-            self.flows_by(
-                system,
-                phases,
-                theta,
-                held,
-                (&Nodes::stretched(&EIGHT, theta), scratch),
-            )
-        }
+        let about = (system, phases, backward);
+        of_rows!(&self.rows, rows => match self.parts.order <= 12 {
+            true => self.parts.flows_by(rows, about, theta, held, &Nodes::stretched(&SIX, theta)),
+            false => self.parts.flows_by(rows, about, theta, held, &Nodes::stretched(&EIGHT, theta)),
+        })
     }
+}
 
-    fn flows_by<const N: usize>(
+impl Parts {
+    fn flows_by<const P: usize, const N: usize>(
         &self,
-        system: &MachineSystem,
-        phases: &[Phase],
+        rows: &Rows<P>,
+        (system, phases, backward): (&MachineSystem, &[Phase], f64),
         theta: f64,
         held: Held<'_>,
-        (nodes, scratch): (&Nodes<N>, &mut [f64]),
+        nodes: &Nodes<N>,
     ) -> StepFlows {
         let (h, order, body) = (self.step_s, self.order, &system.body);
         let Held { inputs, path } = held;
         let (control, external) = system.held_work_j(inputs, path);
-        let mut machine = Flows {
+        let mut flows = StepFlows::of_machine(Flows {
             control,
             external,
             ..Flows::default()
-        };
-        let mut planes = [PlaneFlows::default(); MAX_PLANES];
+        });
         let lags = !system.magnets.iter().all(MagnetLaw::is_held);
         let damped = !body.damping.is_zero();
-        if damped || lags || body.unbalance.is_some() {
-            let mut powers = [Flows::default(); N];
-            for (power, at) in powers.iter_mut().zip(nodes.theta) {
-                self.velocity.at(at, order, scratch);
-                if damped {
-                    power.rotor_damping = body.damping.quadratic(scratch);
-                }
-                for (m, port) in body.magnets.iter().enumerate() {
-                    if !system.magnets[m].is_held() {
-                        power.control += self.magnets[m].at(at, order).dot(&port.of(scratch));
-                    }
-                }
-                if let Some(unbalance) = &body.unbalance {
-                    power.unbalance = self.unbalance.at(at, order).dot(&unbalance.of(scratch));
-                }
+        let touches = |phase: &Phase| matches!(phase, Phase::Contact(..));
+        let moves = damped || lags || body.unbalance.is_some() || phases.iter().any(touches);
+        let velocities = match moves {
+            true => rows.velocities_at(&nodes.theta, order),
+            false => [[V2::zeros(); P]; N],
+        };
+        let velocity = |j: usize| &velocities[j];
+        let machine = &mut flows.machine;
+        if damped {
+            machine.rotor_damping = h * nodes.integral(|j| rows.damping_w(velocity(j)));
+        }
+        for (m, series) in self.magnets.iter().enumerate() {
+            if !system.magnets[m].is_held() {
+                let force_n = series.at_all(&nodes.theta, order);
+                let power_w = |j: usize| force_n[j].dot(&rows.magnet_of(m, velocity(j)));
+                machine.control += h * nodes.integral(power_w);
             }
-            machine.rotor_damping = h * nodes.integral(|j| powers[j].rotor_damping);
-            machine.control += h * nodes.integral(|j| powers[j].control);
-            machine.unbalance = h * nodes.integral(|j| powers[j].unbalance);
+        }
+        if body.unbalance.is_some() {
+            let force = self.unbalance.at_all(&nodes.theta, order);
+            let power_w = |j: usize| force[j].dot(&rows.unbalance_of(velocity(j)));
+            machine.unbalance = h * nodes.integral(power_w);
         }
         let free = system.inverse_inertia > 0.0;
         if free && system.drive_torque_n_m != 0.0 {
             machine.drive = system.drive_torque_n_m * h * self.spin.integral(theta, order);
         }
+        let spin = match free {
+            true => self.spin.at_all(&nodes.theta, order),
+            false => [self.spin.0[0]; N],
+        };
         for (p, phase) in phases.iter().enumerate() {
             let (data, series) = (&system.planes[p], &self.planes[p]);
-            let plane = &mut planes[p];
-            match (&data.race, phase) {
-                (None, _) => {}
-                (Some(race), Phase::Contact(..)) => {
-                    let spin = series.race.at_all(&nodes.theta, order);
-                    plane.race_drag = h * nodes.integral(|j| race.drag_w(spin[j]));
-                    if let Some(drag) = &data.load_drag {
-                        let load = series.force.at_all(&nodes.theta, order);
-                        plane.race_drag +=
-                            h * nodes.integral(|j| drag.per_load_m(spin[j]) * load[j] * spin[j]);
-                    }
-                }
-                (Some(race), _) => {
+            let Phase::Contact(slide, whirl) = phase else {
+                if let Some(race) = &data.race {
                     let before = series.race.0[0];
                     let after = race.coasted_rad_s(before, theta * h);
-                    plane.race_drag = race.coasting_loss_j(before, after);
+                    flows.planes[p].race_drag = race.coasting_loss_j(before, after);
+                    flows.machine.stator_damping += flows.planes[p].race_drag;
+                }
+                continue;
+            };
+            let rate: [V2; N] = std::array::from_fn(|j| rows.contact_of(p, velocity(j)));
+            let gap = series.gap.at_all(&nodes.theta, order);
+            let force = series.force.at_all(&nodes.theta, order);
+            let race = match data.race {
+                Some(_) => series.race.at_all(&nodes.theta, order),
+                None => [0.0; N],
+            };
+            let distance = gap.map(|u| u.norm());
+            let per_m = distance.map(|rho| 1.0 / rho);
+            let inwards: [f64; N] = std::array::from_fn(|j| gap[j].dot(&rate[j]) * per_m[j]);
+            let along: [f64; N] = std::array::from_fn(|j| gap[j].perp(&rate[j]) * per_m[j]);
+            let surface = |j: usize| data.radius_m * spin[j] - data.race_radius_m() * race[j];
+            // In proportion to the normal force, or from what it is per distance.
+            let part = |share: f64, of: &Scalar| match share {
+                0.0 => {
+                    let per_distance = of.at_all(&nodes.theta, order);
+                    std::array::from_fn(|j| per_distance[j] * distance[j])
+                }
+                _ => force.map(|n| share * n),
+            };
+            let sliding: [f64; N] = match *slide == Slide::Rolling || data.sliding > 0.0 {
+                true => part(series.grip.sliding, &series.sliding_n_m),
+                false => [0.0; N],
+            };
+            let plane = &mut flows.planes[p];
+            plane.normal_impulse_n_s = h * series.force.integral(theta, order);
+            plane.contact_damping = match &data.law {
+                ContactLaw::Linear(law) => {
+                    law.damping_n_s_m * h * nodes.integral(|j| inwards[j] * inwards[j])
+                }
+                law @ ContactLaw::HuntCrossley(_) => {
+                    let depth_m = |j: usize| distance[j] - data.clearance_m;
+                    let damper_n = |j: usize| law.at(depth_m(j), inwards[j]).damper_n;
+                    h * nodes.integral(|j| damper_n(j) * inwards[j])
+                }
+            };
+            if *slide != Slide::Rolling {
+                let power_w = |j: usize| sliding[j] * (along[j] + surface(j));
+                plane.sliding_friction = -h * nodes.integral(power_w);
+            }
+            if !matches!(whirl, Whirl::Still | Whirl::Ignored) {
+                let rolling: [f64; N] = part(series.grip.rolling, &series.rolling_n_m);
+                plane.rolling_friction = -h * nodes.integral(|j| rolling[j] * along[j]);
+            }
+            if let Some(race_of) = &data.race {
+                plane.race_drag = h * nodes.integral(|j| race_of.drag_w(race[j]));
+                if let Some(drag) = &data.load_drag {
+                    let load_w = |j: usize| drag.per_load_m(race[j]) * force[j] * race[j];
+                    plane.race_drag += h * nodes.integral(load_w);
                 }
             }
-            if let Phase::Contact(slide, whirl) = phase {
-                plane.normal_impulse_n_s = h * series.force.integral(theta, order);
-                if !free {
-                    machine.drive -=
-                        data.radius_m * h * self.spin.0[0] * series.sliding.integral(theta, order);
-                }
-                let speed = series.normal_speed.at_all(&nodes.theta, order);
-                plane.contact_damping = match &data.law {
-                    ContactLaw::Linear(law) => {
-                        law.damping_n_s_m * h * nodes.integral(|j| speed[j] * speed[j])
-                    }
-                    law @ ContactLaw::HuntCrossley(_) => {
-                        let distance = series.distance.at_all(&nodes.theta, order);
-                        let damper_n =
-                            |j: usize| law.at(distance[j] - data.clearance_m, speed[j]).damper_n;
-                        h * nodes.integral(|j| damper_n(j) * speed[j])
-                    }
-                };
-                if *slide != Slide::Rolling {
-                    let (force, speed) = (
-                        series.sliding.at_all(&nodes.theta, order),
-                        series.slip.at_all(&nodes.theta, order),
-                    );
-                    plane.sliding_friction = -h * nodes.integral(|j| force[j] * speed[j]);
-                }
-                if !matches!(whirl, Whirl::Still | Whirl::Ignored) {
-                    let (force, speed) = (
-                        series.rolling.at_all(&nodes.theta, order),
-                        series.whirl_speed.at_all(&nodes.theta, order),
-                    );
-                    plane.rolling_friction = -h * nodes.integral(|j| force[j] * speed[j]);
-                }
+            let machine = &mut flows.machine;
+            if !free {
+                let torque_n_m = data.radius_m * nodes.integral(|j| sliding[j]);
+                machine.drive -= h * self.spin.0[0] * torque_n_m;
             }
             machine.stator_damping += plane.race_drag;
             machine.contact_damping += plane.contact_damping;
             machine.sliding_friction += plane.sliding_friction;
             machine.rolling_friction += plane.rolling_friction;
             machine.normal_impulse_n_s += plane.normal_impulse_n_s;
+            let top = &mut flows.tops[p];
+            for j in 0..N {
+                top.normal_n = top.normal_n.max(force[j]);
+                top.penetration_m = top.penetration_m.max(distance[j] - data.clearance_m);
+                top.sliding_n = top.sliding_n.max(sliding[j].abs());
+                top.backward_m_s = top.backward_m_s.max(backward * along[j]);
+            }
         }
-        StepFlows { machine, planes }
+        flows
     }
 
-    /// Largest values in a plane up to θ.
+    /// Largest values in a plane up to θ, as far as they may be larger than those so far; `tops` are those at the nodes.
     pub(crate) fn peaks(
         &self,
-        system: &MachineSystem,
-        plane: usize,
+        (plane, data): (usize, &PlaneData),
         (theta, backward): (f64, f64),
+        end: &ContactMotion,
+        (tops, so_far): (&Peaks, &Peaks),
     ) -> Peaks {
-        let (series, data, order) = (&self.planes[plane], &system.planes[plane], self.order);
-        let top = |s, sign| {
-            highest(
-                (s, sign),
-                (theta, Scalar::with_slope(s, theta, order)),
-                order,
-            )
-            .1
+        let (series, order) = (&self.planes[plane], self.order);
+        let top = |of: &dyn Fn(f64) -> (f64, f64), (top, ends): (f64, [f64; 2]), most: f64| {
+            let near = top.max(ends[0]).max(ends[1]);
+            match near < NEAR_TOP * most {
+                true => near,
+                false => highest(of, of(0.0), (theta, of(theta))).1,
+            }
         };
-        let normal_n = top(&series.force, 1.0);
+        let signed = |sign: f64, (value, slope): (f64, f64)| (sign * value, sign * slope);
+        let force = |at: f64| series.force.with_slope(at, order);
+        let depth = |at: f64| {
+            let (distance_m, slope) = series.distance.with_slope(at, order);
+            (distance_m - data.clearance_m, slope)
+        };
+        let whirl = |at: f64| {
+            let (u, w) = (
+                series.gap.with_slope(at, order),
+                series.gap_rate.with_slope(at, order),
+            );
+            let distance_m = u.0.norm();
+            let speed_m_s = u.0.perp(&w.0) / distance_m;
+            let turned = speed_m_s * u.0.dot(&u.1) / (distance_m * distance_m);
+            let slope = (u.1.perp(&w.0) + u.0.perp(&w.1)) / distance_m - turned;
+            signed(backward, (speed_m_s, slope))
+        };
+        let sliding = |at: f64| {
+            let (force, slope) = series.sliding_n_m.with_slope(at, order);
+            let (distance, grown) = series.distance.with_slope(at, order);
+            (force * distance, slope * distance + force * grown)
+        };
+        let ends_n = [series.force.0[0], series.force.at(theta, order)];
+        let normal_n = top(&force, (tops.normal_n, ends_n), so_far.normal_n);
+        let sliding_n = match series.grip.sliding {
+            0.0 => [1.0, -1.0]
+                .map(|sign| {
+                    let ends_n = [sliding(0.0), sliding(theta)].map(|end| sign * end.0);
+                    let of = |at: f64| signed(sign, sliding(at));
+                    top(&of, (tops.sliding_n, ends_n), so_far.sliding_n)
+                })
+                .into_iter()
+                .fold(0.0, f64::max),
+            share => share.abs() * normal_n,
+        };
+        let ends_m = [series.distance.0[0] - data.clearance_m, end.penetration_m];
+        let start_m_s = series.gap.0[0].perp(&series.gap_rate.0[0]) / series.distance.0[0];
+        let ends_m_s = [start_m_s, end.whirl_m_s].map(|speed_m_s| backward * speed_m_s);
         Peaks {
             normal_n,
-            penetration_m: top(&series.distance, 1.0) - data.clearance_m,
-            sliding_n: (top(&series.sliding, 1.0).max(top(&series.sliding, -1.0)))
-                .min(data.sliding * normal_n.max(0.0)),
-            backward_m_s: top(&series.whirl_speed, backward),
+            penetration_m: top(&depth, (tops.penetration_m, ends_m), so_far.penetration_m),
+            sliding_n: sliding_n.min(data.sliding * normal_n.max(0.0)),
+            backward_m_s: top(&whirl, (tops.backward_m_s, ends_m_s), so_far.backward_m_s),
         }
+    }
+
+    /// By how much the contact point of a plane turns over a step up to its end \[rad\].
+    pub(crate) fn turn_rad(&self, plane: usize, end: &ContactMotion, step_s: f64) -> f64 {
+        let series = &self.planes[plane];
+        let (gap, square) = (series.gap.0[0], series.distance.0[0] * series.distance.0[0]);
+        let start = (gap, gap.perp(&series.gap_rate.0[0]) / square);
+        turn_rad(start, (end.normal, end.whirl_m_s / end.distance_m), step_s)
     }
 }
 

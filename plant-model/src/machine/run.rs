@@ -14,7 +14,6 @@ use super::step::{Stepper, Task};
 use super::system::{MachineInputs, MachineState, MachineSystem};
 use crate::V2;
 use crate::energy::Flows;
-use crate::integrate::contact_step::turn_rad;
 use crate::integrate::driver::{ON_WALL, SPARE};
 use crate::integrate::progress::Progress;
 use crate::integrate::{Method, Options, PlantError};
@@ -35,7 +34,7 @@ pub struct Machine {
     holding: Holding,
     inputs: MachineInputs,
     /// Forces that are held over a call, on the coordinates.
-    forces: Vec<f64>,
+    forces: Vec<V2>,
     /// Room for modes that are tried.
     trial: Vec<Phase>,
     fallback: Vec<Phase>,
@@ -52,8 +51,7 @@ pub struct Machine {
     work: Work,
     options: Options,
     backward: f64,
-    path: Vec<f64>,
-    scratch: Vec<f64>,
+    path: Vec<V2>,
     suppressed: Vec<u8>,
     just_left: Vec<bool>,
     /// Planes in which it started on the wall, and along it if it moved.
@@ -87,11 +85,11 @@ impl Machine {
             ..options
         };
         let y = system.start(params, start)?;
-        let (n, planes) = (system.body.n, system.planes.len());
+        let (pairs, planes) = (system.body.pairs, system.planes.len());
         let mut machine = Self {
             stepper: Stepper::new(&system, options.rtol, options.method),
             map: FlightMap::default(),
-            holding: Holding::new(n),
+            holding: Holding::new(pairs),
             inputs: MachineInputs {
                 commands_n: vec![V2::zeros(); system.caps_n.len()],
                 loads_n: vec![V2::zeros(); system.body.loads.len()],
@@ -113,8 +111,7 @@ impl Machine {
             work: Work::default(),
             options,
             backward: if y.spin_rad_s < 0.0 { 1.0 } else { -1.0 },
-            path: vec![0.0; n],
-            scratch: vec![0.0; n],
+            path: vec![V2::zeros(); pairs],
             suppressed: vec![0; planes],
             just_left: vec![false; planes],
             rests: vec![false; planes],
@@ -270,7 +267,7 @@ impl Machine {
             *kept = std::mem::take(suppressed);
         }
         // Another plane may leave its wall with this one, up to rounding.
-        if reach.theta * self.stepper.series.step_s > moment_s {
+        if reach.theta * self.stepper.series.parts.step_s > moment_s {
             self.just_left.fill(false);
         }
         let Some((p, guard)) = reach.event else {
@@ -281,10 +278,10 @@ impl Machine {
         // As the normal force dies the friction cones close with it: that is one event, lift-off.
         let guard = match (phase, guard) {
             (Phase::Contact(..), guard) if guard != Guard::Normal => {
-                let force = self.stepper.series.planes[p]
+                let force = self.stepper.series.parts.planes[p]
                     .lift(&self.system.planes[p])
-                    .with_slope(reach.theta, self.stepper.series.order);
-                let rate = force.1 / self.stepper.series.step_s;
+                    .with_slope(reach.theta, self.stepper.series.parts.order);
+                let rate = force.1 / self.stepper.series.parts.step_s;
                 if force.0 < -rate * moment_s {
                     Guard::Normal
                 } else {
@@ -330,7 +327,6 @@ impl Machine {
     fn book(&mut self, theta: f64) {
         let series = &self.stepper.series;
         self.path.copy_from_slice(&self.y.position);
-        let starts = self.turns();
         series.at((&self.system, &self.phases), theta, &mut self.y);
         for (path, q) in self.path.iter_mut().zip(&self.y.position) {
             *path = q - *path;
@@ -339,30 +335,21 @@ impl Machine {
             inputs: &self.inputs,
             path: &self.path,
         };
-        let flows = series.flows(&self.system, &self.phases, theta, held, &mut self.scratch);
+        let (end, phases) = ((theta, self.backward), &self.phases);
+        let flows = series.flows(&self.system, phases, end, held);
         self.flows.add_scaled(1.0, &flows.machine);
-        let ends = self.turns();
-        let step_s = theta * series.step_s;
+        let step_s = theta * series.parts.step_s;
         for (p, phase) in self.phases.iter().enumerate() {
             self.plane_flows[p].add(&flows.planes[p]);
             if matches!(phase, Phase::Contact(..)) && theta > 0.0 {
-                let peaks = series.peaks(&self.system, p, (theta, self.backward));
-                let turn = turn_rad(starts[p], ends[p], step_s);
-                self.meters[p].contact_step(&peaks, step_s, turn, self.system.planes[p].radius_m);
+                let motion = self.system.motion(p, &self.y);
+                let (data, meters) = (&self.system.planes[p], &mut self.meters[p]);
+                let tops = (&flows.tops[p], &meters.peaks(data.radius_m));
+                let peaks = series.parts.peaks((p, data), end, &motion, tops);
+                let turn_rad = series.parts.turn_rad(p, &motion, step_s);
+                meters.contact_step(&peaks, step_s, turn_rad, data.radius_m);
             }
         }
-    }
-
-    /// Contact normals and how fast they turn.
-    fn turns(&self) -> [(V2, f64); MAX_PLANES] {
-        let mut turns = [(V2::x(), 0.0); MAX_PLANES];
-        for (p, turn) in turns.iter_mut().enumerate().take(self.phases.len()) {
-            if matches!(self.phases[p], Phase::Contact(..)) {
-                let motion = self.contact_motion(p);
-                *turn = (motion.normal, motion.whirl_m_s / motion.distance_m);
-            }
-        }
-        turns
     }
 
     /// From the start on the wall, and no farther from it since than rounding: under a push of ½·a·t² = ½·v·t.

@@ -2,10 +2,10 @@
 
 use super::collocation::{Collocation, ERROR_POWER, Scales};
 use super::guards::Guard;
-use super::series::{MachineSeries, Step};
+use super::series::{MachineSeries, Parts, Step};
 use super::system::{MachineState, MachineSystem};
 use crate::V2;
-use crate::integrate::enough::{Enough, LOWEST_ORDER, highest_order, trusted_theta};
+use crate::integrate::enough::{Enough, highest_order, trusted_theta};
 use crate::integrate::first_fall::{Fall, first_fall};
 use crate::integrate::{Method, PlantError};
 use crate::mode::Phase;
@@ -19,7 +19,7 @@ pub(crate) struct Task<'a> {
     pub(crate) span: (f64, f64),
     pub(crate) phases: &'a [Phase],
     /// Forces that are held, on the coordinates.
-    pub(crate) forces: &'a [f64],
+    pub(crate) forces: &'a [V2],
     /// Commands of magnets that lag.
     pub(crate) commands_n: &'a [V2],
     /// Guards that are not asked, by plane.
@@ -98,7 +98,7 @@ impl Stepper {
 
     /// As those of one plane, `integrate/scales.rs`, with the energy norm of the coordinates for speeds.
     fn weights(&mut self, y: &MachineState) -> Weights {
-        let size = y.velocity.iter().map(|v| v * v).sum::<f64>().sqrt();
+        let size = y.velocity.iter().map(V2::norm_squared).sum::<f64>().sqrt();
         let now = size * self.mobility.sqrt();
         self.fastest_m_s = self.fastest_m_s.max(now);
         let floor = 1e-3
@@ -140,7 +140,7 @@ impl Stepper {
                 trusted?
             }
         };
-        let reference = self.series.step_s;
+        let reference = self.series.parts.step_s;
         let mut whole = trusted * reference >= remaining;
         let mut theta = if whole {
             remaining / reference
@@ -150,25 +150,31 @@ impl Stepper {
         if !(theta > 0.0 && t_s + theta * reference > t_s) {
             return Err(PlantError::StepTooSmall { t_s });
         }
-        let order = self.series.order;
+        let order = self.series.parts.order;
         let mut event = None;
         for (p, phase) in task.phases.iter().enumerate() {
             for guard in Guard::of(*phase) {
-                let about = (&self.series.planes[p], &system.planes[p], *phase);
-                if task.suppressed[p] & guard.bit() != 0
-                    || !guard.fill(&mut self.guard, about, (theta, order))
-                {
+                if task.suppressed[p] & guard.bit() != 0 {
                     continue;
                 }
-                if *guard == Guard::Gap && task.just_left[p] {
-                    // Whatever rounding says: the contact force has just fallen to zero.
-                    for c in &mut self.guard.0[..2] {
-                        *c = c.max(0.0);
-                    }
-                }
+                let (series, data) = (&self.series.parts, &system.planes[p]);
+                let plane = (&series.planes[p], &series.spin);
+                let left = *guard == Guard::Gap && task.just_left[p];
+                let out = &mut self.guard;
+                let Some(over) = guard.over(out, plane, (data, *phase), (theta, order)) else {
+                    continue;
+                };
                 let rising = matches!(guard, Guard::Normal | Guard::NoForce | Guard::Beyond);
-                let rounding = guard.rounding(&system.planes[p]);
-                let (stop, by) = match first_fall(&self.guard, theta, order, (rising, rounding)) {
+                let how = (rising, guard.rounding(data));
+                let fall = if left {
+                    // Whatever rounding says: the contact force has just fallen to zero.
+                    let mut over = *over;
+                    over.0[..2].iter_mut().for_each(|c| *c = c.max(0.0));
+                    first_fall(&over, theta, order, how)
+                } else {
+                    first_fall(over, theta, order, how)
+                };
+                let (stop, by) = match fall {
                     Fall::Never => continue,
                     Fall::At(stop) => (stop, Some((p, *guard))),
                     Fall::ClearUntil(stop) => (stop, None),
@@ -200,23 +206,28 @@ impl Stepper {
         let remaining = t_end_s - t_s;
         let highest = self.highest_order;
         let touching = task.touches();
-        let square =
-            |series: &MachineSeries, k: usize| square(series, system, task.phases, (k, &weights));
+        let square = |series: &Parts, k: usize, rows| {
+            square(series, rows, (system, task.phases), (k, &weights))
+        };
         let mut reference = self.references_s[usize::from(touching)].min(remaining);
         loop {
             let mut enough = Enough::new(remaining / reference);
-            self.series
-                .fill(&task.step(system, reference), y, highest, |series, k| {
-                    k >= LOWEST_ORDER - 1 && enough.with(square(series, k))
-                });
-            let order = self.series.order;
+            self.series.fill(
+                &task.step(system, reference),
+                y,
+                highest,
+                &mut |series, k, rows| enough.with(square(series, k, rows)),
+            );
+            let order = self.series.parts.order;
             work.evaluations += order as u64 + 1;
             let kept = &mut self.references_s[usize::from(touching)];
             if order < highest {
                 *kept = kept.max(remaining);
                 return Ok(f64::INFINITY);
             }
-            let trusted = trusted_theta(order, |k| square(&self.series, k));
+            let trusted = trusted_theta(order, |k| {
+                square(&self.series.parts, k, self.series.squares(k))
+            });
             if trusted > 1e-2 {
                 *kept = (trusted * reference).min(1e3 * reference);
                 return Ok(trusted);
@@ -298,24 +309,26 @@ impl Task<'_> {
 
 /// Σ (coefficient k / scale)².
 fn square(
-    series: &MachineSeries,
-    system: &MachineSystem,
-    phases: &[Phase],
+    series: &Parts,
+    (positions, velocities): (f64, f64),
+    (system, phases): (&MachineSystem, &[Phase]),
     (k, weights): (usize, &Weights),
 ) -> f64 {
-    let mut sum = series.position.square(k) * weights.position * weights.position
-        + series.velocity.square(k) * weights.velocity * weights.velocity;
+    let mut sum = positions * weights.position * weights.position
+        + velocities * weights.velocity * weights.velocity;
     for (plane, phase) in series.planes.iter().zip(phases) {
         // Beyond the wall nothing but the guards knows the distance, whose series ends where the rotor would pass the
         // middle however straight it flies.
         let gap = match phase {
-            Phase::Inside => 0.0,
+            Phase::Inside => continue,
             Phase::Beyond => plane.distance.0[k] * plane.distance.0[k],
             Phase::Contact(..) => plane.gap.0[k].norm_squared(),
         };
         sum += gap * weights.gap * weights.gap;
         // Of a race that is touched; another one has no coefficients.
-        sum += (plane.race.0[k] * weights.race).powi(2);
+        if plane.grip.turns && *phase != Phase::Beyond {
+            sum += (plane.race.0[k] * weights.race).powi(2);
+        }
     }
     if system.inverse_inertia > 0.0 {
         sum += (series.spin.0[k] * weights.spin).powi(2);

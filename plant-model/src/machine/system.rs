@@ -89,8 +89,9 @@ pub struct MachineInputs {
 /// What changes in time.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct MachineState {
-    pub(crate) position: Vec<f64>,
-    pub(crate) velocity: Vec<f64>,
+    /// Of the pairs.
+    pub(crate) position: Vec<V2>,
+    pub(crate) velocity: Vec<V2>,
     pub(crate) spin_rad_s: f64,
     pub(crate) phase_rad: f64,
     pub(crate) races_rad_s: Vec<f64>,
@@ -110,15 +111,10 @@ impl MachineState {
     }
 
     pub(crate) fn is_finite(&self) -> bool {
-        let numbers = self
-            .position
-            .iter()
-            .chain(&self.velocity)
-            .chain(&self.races_rad_s)
-            .chain(self.magnets.iter().chain(&self.magnet_slopes).flatten());
-        self.spin_rad_s.is_finite()
-            && self.phase_rad.is_finite()
-            && numbers.copied().all(f64::is_finite)
+        let motions = self.position.iter().chain(&self.velocity);
+        let vectors = motions.chain(&self.magnets).chain(&self.magnet_slopes);
+        let mut numbers = vectors.flatten().chain(&self.races_rad_s);
+        self.spin_rad_s.is_finite() && self.phase_rad.is_finite() && numbers.all(|x| x.is_finite())
     }
 }
 
@@ -225,12 +221,10 @@ impl MachineSystem {
         let rigid = params.rotor.rigid();
         let (m, i) = (rigid.mass_kg.sqrt(), rigid.transverse_inertia_kg_m2.sqrt());
         let coordinates = |centre: V2, tilt: V2| {
-            let mut q = vec![0.0; self.body.n];
-            for (q, x) in q
-                .iter_mut()
-                .zip([m * centre.x, m * centre.y, i * tilt.x, i * tilt.y])
-            {
-                *q = x;
+            let mut q = vec![V2::zeros(); self.body.pairs];
+            q[0] = m * centre;
+            if rigid.tilts() {
+                q[1] = i * tilt;
             }
             q
         };
@@ -282,6 +276,11 @@ impl MachineSystem {
             }
             Channel::Rolling => (0.0, 0.0),
         }
+    }
+
+    /// Whether the speed of a plane's surfaces changes in contact.
+    pub(crate) fn turns(&self, plane: usize) -> bool {
+        self.inverse_inertia > 0.0 || self.planes[plane].race.is_some()
     }
 
     /// Acceleration of a plane's race under sliding friction and load \[rad/s²\]; 0 for a bushing.
@@ -377,13 +376,13 @@ impl MachineSystem {
     }
 
     /// Work of what is held along the coordinates' way: of magnets that do not lag, and of loads and gravity \[J\].
-    pub(crate) fn held_work_j(&self, inputs: &MachineInputs, path: &[f64]) -> (f64, f64) {
+    pub(crate) fn held_work_j(&self, inputs: &MachineInputs, path: &[V2]) -> (f64, f64) {
         let (mut control, mut external) = (0.0, 0.0);
         for (port, load_n) in self.body.loads.iter().zip(&inputs.loads_n) {
             external += load_n.dot(&port.of(path));
         }
         for (force, way) in self.body.gravity.iter().zip(path) {
-            external += force * way;
+            external += force.dot(way);
         }
         let magnets = self.body.magnets.iter().zip(&self.magnets);
         for ((port, law), command_n) in magnets.zip(&inputs.commands_n) {

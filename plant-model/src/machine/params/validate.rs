@@ -52,12 +52,12 @@ impl RigidRotor {
     fn validate(&self) -> Result<(), MachineError> {
         let (transverse, polar) = (self.transverse_inertia_kg_m2, self.polar_inertia_kg_m2);
         check(self.mass_kg > 0.0, "rotor.mass_kg", self.mass_kg, POSITIVE)?;
-        check(
-            transverse > 0.0,
-            "rotor.transverse_inertia_kg_m2",
-            transverse,
-            POSITIVE,
-        )?;
+        let field = "rotor.transverse_inertia_kg_m2";
+        if !self.tilts() && transverse > 0.0 {
+            let rule = "0 for a rotor that does not tilt";
+            return check(polar == 0.0, "rotor.polar_inertia_kg_m2", polar, rule);
+        }
+        check(transverse > 0.0, field, transverse, POSITIVE)?;
         let rule =
             "from 0 to twice transverse_inertia_kg_m2: no body has more, a thin disc has just that";
         check(
@@ -76,6 +76,11 @@ impl Rotor {
     /// The first that is out of range, by name.
     pub fn validate(&self) -> Result<(), MachineError> {
         self.rigid().validate()?;
+        if !matches!(self, Self::Rigid(_)) {
+            let field = "rotor.transverse_inertia_kg_m2";
+            let rule = "a finite number for a rotor that bends";
+            check(true, field, self.rigid().transverse_inertia_kg_m2, rule)?;
+        }
         for (i, mode) in self.bending().iter().enumerate() {
             let field = |name: &str| format!("rotor.bending[{i}].{name}");
             check(

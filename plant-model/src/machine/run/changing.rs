@@ -15,6 +15,7 @@ impl Machine {
     pub fn change(&mut self, change: &MachineChange) -> Result<(), MachineError> {
         self.system.change(change)?;
         self.map.forget();
+        self.stepper.series.renew(&self.system.body);
         for p in 0..self.phases.len() {
             let phase = self.phases[p];
             if matches!(phase, Phase::Contact(..)) {

@@ -34,7 +34,7 @@ impl Machine {
             step_s: self.system.moment_s,
         };
         if (self.phases.iter()).any(|phase| matches!(phase, Phase::Contact(..))) {
-            (self.stepper.series).fill(&step, &self.y, ORDER, |_, _| false);
+            (self.stepper.series).fill(&step, &self.y, ORDER, &mut |_, _, _| false);
         }
         let body = &self.system.body;
         let of_ring = |ring: &Option<Port>| {
@@ -43,7 +43,7 @@ impl Machine {
         let mut planes = [None; MAX_PLANES];
         for (p, phase) in self.phases.iter().enumerate() {
             let motion = self.system.motion(p, &self.y);
-            let series = &self.stepper.series.planes[p];
+            let series = &self.stepper.series.parts.planes[p];
             let touching = matches!(phase, Phase::Contact(..));
             let force = |x: f64| if touching { x } else { 0.0 };
             planes[p] = Some(PlaneSnapshot {
@@ -53,8 +53,8 @@ impl Machine {
                 mode: phase.mode(),
                 penetration_m: motion.penetration_m,
                 normal_force_n: force(series.force.0[0]).max(0.0),
-                sliding_force_n: force(series.sliding.0[0]),
-                rolling_force_n: force(series.rolling.0[0]),
+                sliding_force_n: force(series.sliding_n_m.0[0] * motion.distance_m),
+                rolling_force_n: force(series.rolling_n_m.0[0] * motion.distance_m),
                 whirl_speed_m_s: motion.whirl_m_s,
                 sliding_speed_m_s: motion.sliding_m_s,
                 race_spin_rad_s: self.y.races_rad_s[p],

@@ -196,38 +196,38 @@ impl Machine {
             commands_n: &self.inputs.commands_n,
             step_s: self.system.moment_s,
         };
-        self.stepper
-            .series
-            .fill(&step, &self.y, ORDER, |_, _| false);
+        let series = &mut self.stepper.series;
+        series.fill(&step, &self.y, ORDER, &mut |_, _, _| false);
         for (p, choice) in choices.iter().enumerate() {
             let (Some(choice), Phase::Contact(slide, whirl)) =
                 (choice, self.trial.get(p).copied().unwrap_or(Phase::Inside))
             else {
                 continue;
             };
-            let (series, data) = (&self.stepper.series.planes[p], &self.system.planes[p]);
-            let normal_n = series.force.at(1.0, ORDER);
-            let (whirl_m_s, slip_m_s) = (series.whirl_speed.0[0], series.slip.0[0]);
-            let surfaces_m_s = whirl_m_s.abs() + (slip_m_s - whirl_m_s).abs();
-            let pushed_m_s = self.system.moment_s * self.system.contact(p).mobility() * normal_n;
-            let still_m_s = MOVED * surfaces_m_s + PUSHED * pushed_m_s;
-            let stays = |speed: &Scalar| (speed.at(1.0, ORDER) - speed.0[0]).abs() <= still_m_s;
+            let (series, data) = (&self.stepper.series.parts.planes[p], &self.system.planes[p]);
+            let (normal_n_m, distance_m) = (series.normal_n_m.at(1.0, ORDER), series.distance.0[0]);
+            let mut along = Scalar::default();
+            series.whirl_of(&mut along, ORDER);
+            let mut slip = along;
+            series.add_surface(&mut slip, (data, &self.stepper.series.parts.spin), ORDER);
+            let surfaces = along.0[0].abs() + (slip.0[0] - along.0[0]).abs();
+            let mobility = self.system.contact(p).mobility();
+            let pushed = self.system.moment_s * mobility * normal_n_m * distance_m * distance_m;
+            let still = MOVED * surfaces + PUSHED * pushed;
+            let stays = |speed: &Scalar| (speed.at(1.0, ORDER) - speed.0[0]).abs() <= still;
             let slides = match slide {
                 Slide::Rolling => {
-                    series.sliding.at(1.0, ORDER).abs() <= data.sliding * normal_n
-                        && stays(&series.slip)
+                    series.sliding_n_m.at(1.0, ORDER).abs() <= data.sliding * normal_n_m
+                        && stays(&slip)
                 }
-                _ => choice.slide_count == 1 || slide.sign() * series.slip.at(1.0, ORDER) >= 0.0,
+                _ => choice.slide_count == 1 || slide.sign() * slip.at(1.0, ORDER) >= 0.0,
             };
             let whirls = match whirl {
                 Whirl::Still => {
-                    series.rolling.at(1.0, ORDER).abs() <= data.rolling * normal_n
-                        && stays(&series.whirl_speed)
+                    series.rolling_n_m.at(1.0, ORDER).abs() <= data.rolling * normal_n_m
+                        && stays(&along)
                 }
-                _ => {
-                    choice.whirl_count == 1
-                        || whirl.sign() * series.whirl_speed.at(1.0, ORDER) >= 0.0
-                }
+                _ => choice.whirl_count == 1 || whirl.sign() * along.at(1.0, ORDER) >= 0.0,
             };
             if !(slides && whirls) {
                 return false;
