@@ -15,34 +15,37 @@ pub(crate) fn highest_order(rtol: f64) -> usize {
     }
 }
 
-/// θ up to which a series can be trusted, by the weighed squares of its two highest coefficients: they say how far the rest
-/// can be left out. Where the step was far too long they have lost their digits, or overflowed.
+/// θ up to which a series can be trusted, by the weighed squares of its highest coefficients, so many of them: they say how far the
+/// rest can be left out. Where the step was far too long they have lost their digits, or overflowed.
 #[inline]
-pub(crate) fn trusted_theta(order: usize, square: impl Fn(usize) -> f64) -> f64 {
+pub(crate) fn trusted_theta(order: usize, last: usize, square: impl Fn(usize) -> f64) -> f64 {
     let reach = |k: usize| square(k).powf(-0.5 / k as f64);
-    let (a, b) = (reach(order), reach(order - 1));
-    0.9 * if a < b || a.is_nan() { a } else { b }
+    let least = |a: f64, b: f64| if a < b || a.is_nan() { a } else { b };
+    0.9 * (order + 1 - last..order).fold(reach(order), |so_far, k| least(so_far, reach(k)))
 }
 
-/// Whether the series reaches to the end of the span, asked from order to order: its last two terms there are
+/// Whether the series reaches to the end of the span, asked from order to order: its last terms there, so many of them, are
 /// small, by a margin as to the distance.
 pub(crate) struct Enough {
     /// Square of the end's θ over the margin, and its power for the next order.
     square: f64,
     power: f64,
-    before: bool,
+    /// Terms in a row that are small, and how many have to be.
+    small: usize,
+    last: usize,
 }
 
 impl Enough {
     /// Terms that go on falling so leave one tolerance beyond the lowest order, less beyond a higher one.
     const MARGIN: f64 = 0.8;
 
-    pub(crate) fn new(end_theta: f64) -> Self {
+    pub(crate) fn new(end_theta: f64, last: usize) -> Self {
         let square = (end_theta / Self::MARGIN).powi(2);
         Self {
             square,
             power: square.powi(LOWEST_ORDER as i32 - 1),
-            before: false,
+            small: 0,
+            last,
         }
     }
 
@@ -51,6 +54,7 @@ impl Enough {
     pub(crate) fn with(&mut self, coefficients: f64) -> bool {
         let small = coefficients * self.power <= 1.0;
         self.power *= self.square;
-        std::mem::replace(&mut self.before, small) && small
+        self.small = if small { self.small + 1 } else { 0 };
+        self.small >= self.last
     }
 }

@@ -51,7 +51,7 @@ impl<S: Stator> SeriesStepper<S> {
         let mut reference = self.step_s.min(remaining);
         work.steps += 1;
         let (order, trusted) = loop {
-            let mut enough = Enough::new(remaining / reference);
+            let mut enough = Enough::new(remaining / reference, 2);
             let (start, span) = ((t_s, y), (reference, highest));
             system.contact_series(&mut self.series, start, task, span, |series, k| {
                 k >= LOWEST_ORDER - 1 && enough.with(square(series, k))
@@ -62,7 +62,7 @@ impl<S: Stator> SeriesStepper<S> {
                 self.step_s = self.step_s.max(remaining);
                 break (order, f64::INFINITY);
             }
-            let trusted = trusted_theta(order, |k| square(&self.series, k));
+            let trusted = trusted_theta(order, 2, |k| square(&self.series, k));
             if trusted > 1e-2 {
                 self.step_s = (trusted * reference).min(1e3 * reference);
                 break (order, trusted);

@@ -75,12 +75,8 @@ impl Holding {
                 .dot(&system.body.contacts[a.plane].of(&b.accelerations))
                 + system.surface_of(a.plane, a.channel, b.spin, race)
         };
-        if self.count == 1 {
-            self.give[(0, 0)] = 1.0 / mobility(0, 0);
-            return;
-        }
         let channels = held.iter().map(|h| (h.plane, h.channel));
-        self.give = system.inverse_mobility(channels, mobility);
+        system.inverse_mobility(&mut self.give, channels, mobility);
     }
 
     pub(crate) fn held(&self) -> &[Held] {

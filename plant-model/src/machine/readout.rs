@@ -359,13 +359,15 @@ impl Parts {
         (tops, so_far): (&Peaks, &Peaks),
     ) -> Peaks {
         let (series, order) = (&self.planes[plane], self.order);
-        let top = |of: &dyn Fn(f64) -> (f64, f64), (top, ends): (f64, [f64; 2]), most: f64| {
+        // Largest at nodes and ends, a bound, and the largest so far.
+        let top = |of: &dyn Fn(f64) -> (f64, f64), (top, ends): (f64, [f64; 2]), bound, most| {
             let near = top.max(ends[0]).max(ends[1]);
-            match near < NEAR_TOP * most {
+            match near < NEAR_TOP * most || bound <= most {
                 true => near,
                 false => highest(of, of(0.0), (theta, of(theta))).1,
             }
         };
+        let bound = |of: &Scalar| of.0[0].abs() + of.reach(theta, order);
         let signed = |sign: f64, (value, slope): (f64, f64)| (sign * value, sign * slope);
         let force = |at: f64| series.force.with_slope(at, order);
         let depth = |at: f64| {
@@ -389,26 +391,46 @@ impl Parts {
             (force * distance, slope * distance + force * grown)
         };
         let ends_n = [series.force.0[0], series.force.at(theta, order)];
-        let normal_n = top(&force, (tops.normal_n, ends_n), so_far.normal_n);
+        let most_n = (bound(&series.force), so_far.normal_n);
+        let normal_n = top(&force, (tops.normal_n, ends_n), most_n.0, most_n.1);
         let sliding_n = match series.grip.sliding {
             0.0 => [1.0, -1.0]
                 .map(|sign| {
                     let ends_n = [sliding(0.0), sliding(theta)].map(|end| sign * end.0);
                     let of = |at: f64| signed(sign, sliding(at));
-                    top(&of, (tops.sliding_n, ends_n), so_far.sliding_n)
+                    let most_n = bound(&series.sliding_n_m) * bound(&series.distance);
+                    top(&of, (tops.sliding_n, ends_n), most_n, so_far.sliding_n)
                 })
                 .into_iter()
                 .fold(0.0, f64::max),
             share => share.abs() * normal_n,
         };
         let ends_m = [series.distance.0[0] - data.clearance_m, end.penetration_m];
+        let most_m = bound(&series.distance) - data.clearance_m;
+        // Where the sliding speed is held, the whirl is as fast as the surfaces are.
+        let rolls = series.grip.holds && series.grip.sliding == 0.0 && !series.grip.turns;
+        let most_m_s = if rolls {
+            so_far.backward_m_s
+        } else {
+            f64::INFINITY
+        };
         let start_m_s = series.gap.0[0].perp(&series.gap_rate.0[0]) / series.distance.0[0];
         let ends_m_s = [start_m_s, end.whirl_m_s].map(|speed_m_s| backward * speed_m_s);
         Peaks {
             normal_n,
-            penetration_m: top(&depth, (tops.penetration_m, ends_m), so_far.penetration_m),
+            penetration_m: top(
+                &depth,
+                (tops.penetration_m, ends_m),
+                most_m,
+                so_far.penetration_m,
+            ),
             sliding_n: sliding_n.min(data.sliding * normal_n.max(0.0)),
-            backward_m_s: top(&whirl, (tops.backward_m_s, ends_m_s), so_far.backward_m_s),
+            backward_m_s: top(
+                &whirl,
+                (tops.backward_m_s, ends_m_s),
+                most_m_s,
+                so_far.backward_m_s,
+            ),
         }
     }
 

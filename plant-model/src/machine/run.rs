@@ -176,6 +176,7 @@ impl Machine {
                 self.t_s = t_end_s;
                 self.just_left.fill(false);
                 self.progress.whole_sample();
+                self.note_stored();
                 return self.check_state();
             }
         }
@@ -195,6 +196,7 @@ impl Machine {
             }
             self.tell(before, on_change);
         }
+        self.note_stored();
         Ok(())
     }
 
@@ -415,9 +417,13 @@ impl Machine {
                 return Err(PlantError::Diverged { t_s, radius_m });
             }
         }
+        Ok(())
+    }
+
+    /// Notes what is stored at the end of a call.
+    fn note_stored(&mut self) {
         let stored = self.system.stored_j(&self.y, &self.phases) - self.spare_j;
         self.stored_peak_j = self.stored_peak_j.max(stored.abs());
-        Ok(())
     }
 
     /// Mode of each plane.

@@ -308,15 +308,17 @@ impl MachineSystem {
     }
 
     /// Forces that channels have to give per unit of their speeds' rates, from their mobility. Where channels hold the same
-    /// motion, as planes at one place do, many forces would: they share as their coefficients of friction are.
+    /// motion, as planes at one place do, many forces would: they share as their coefficients of friction are. Of `give` the first
+    /// rows and columns are written.
     pub(crate) fn inverse_mobility(
         &self,
+        give: &mut SMatrix<f64, MAX_HELD, MAX_HELD>,
         channels: impl Iterator<Item = (usize, Channel)>,
         mobility: impl Fn(usize, usize) -> f64,
-    ) -> SMatrix<f64, MAX_HELD, MAX_HELD> {
+    ) {
         let mut share = [1.0_f64; MAX_HELD];
         let mut count = 0;
-        for (p, channel) in channels {
+        for (p, channel) in channels.take(MAX_HELD) {
             let mu = match channel {
                 Channel::Sliding => self.planes[p].sliding,
                 Channel::Rolling => self.planes[p].rolling,
@@ -324,13 +326,27 @@ impl MachineSystem {
             share[count] = mu.max(f64::MIN_POSITIVE).sqrt();
             count += 1;
         }
+        // Of one and of two the inverse is written out.
+        if count == 1 {
+            give[(0, 0)] = 1.0 / mobility(0, 0);
+            return;
+        }
+        if count == 2 {
+            let [a, b, c, d] = [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(i, j)| mobility(i, j));
+            let (determinant, largest) = (a * d - b * c, a.abs().max(d.abs()));
+            if determinant.abs() > SINGULAR * largest * largest {
+                (give[(0, 0)], give[(0, 1)]) = (d / determinant, -b / determinant);
+                (give[(1, 0)], give[(1, 1)]) = (-c / determinant, a / determinant);
+                return;
+            }
+        }
         let mut scaled = SMatrix::<f64, MAX_HELD, MAX_HELD>::zeros();
         for row in 0..count {
             for column in 0..count {
                 scaled[(row, column)] = share[row] * mobility(row, column) * share[column];
             }
         }
-        let mut give = inverse(&scaled, count).unwrap_or_else(|| {
+        *give = inverse(&scaled, count).unwrap_or_else(|| {
             let largest = scaled.amax();
             scaled
                 .pseudo_inverse(SINGULAR * largest)
@@ -341,7 +357,6 @@ impl MachineSystem {
                 give[(row, column)] *= share[row] * share[column];
             }
         }
-        give
     }
 
     /// Force of a magnet that is not held \[N\].
