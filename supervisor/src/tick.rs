@@ -150,6 +150,9 @@ impl<S: Scalar> State<S> {
             unsettled: quiet && tilting.is_some_and(|tilting| tilting.unsettled),
             whirl_only: !coeffs.acts_in_flight || sample.status.contains(Status::SET_DOWN),
             harmless: false,
+            laid_down: !self.phase.is_engaged()
+                && self.readiness.is_pressed()
+                && self.classifier.is_continuous(),
         };
         if self.phase != Phase::Levitated || contact.unavoidable || contact.touching {
             speed = Speed::new(motion.velocity);
@@ -214,7 +217,11 @@ impl<S: Scalar> State<S> {
                 refusal => refusal.is_wrong(),
             };
         if !phase.is_engaged() {
-            self.readiness = Readiness::default();
+            let outwards = match contact.touching {
+                true => Some(levitation.dot(contact.normal)),
+                false => self.classifier.is_continuous().then_some(S::ZERO),
+            };
+            self.readiness.watch(outwards, coeffs);
         } else if tilting.is_some() {
             self.trust.acts();
         }
@@ -332,6 +339,7 @@ impl<S: Scalar> State<S> {
             && !sample.status.contains(Status::SHADOW)
             && !self.reconfigured
             && !self.classifier.is_continuous()
+            && self.readiness.is_at_rest()
     }
 
     /// Most ticks: a rotor at ease is left to its levitation. To the bit what the rest of the tick comes to.

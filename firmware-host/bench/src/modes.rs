@@ -266,6 +266,7 @@ fn held(scene: &MachineScene, range: Range) -> MachineParams {
                 position_m: scene.machine.magnets[magnet].position_m,
                 stiffness_n_m: V2::repeat(gains.proportional_n_m),
                 damping_n_s_m: V2::repeat(gains.derivative_n_s_m),
+                ..Support::default()
             }));
     }
     params

@@ -47,11 +47,12 @@ impl Coupling {
 
     /// Adds what a spring (or damper) of port S gives, SᵀkS.
     fn add_at_port(&mut self, port: &Port, k: V2) {
-        for (row, a) in port.0.iter().enumerate() {
-            for (column, b) in port.0.iter().enumerate() {
-                self.add_along((row, column), a * b * k);
-            }
-        }
+        port.each_two(|at, s| self.add_along(at, s * k));
+    }
+
+    /// The same with (xy, yx).
+    fn add_across_at_port(&mut self, port: &Port, k: V2) {
+        port.each_two(|at, s| self.add_across(at, s * k));
     }
 
     /// `out += factor · A·x`.
@@ -155,6 +156,15 @@ impl Port {
         &self.0
     }
 
+    /// Calls for each row and column of SᵀS.
+    fn each_two(&self, mut call: impl FnMut((usize, usize), f64)) {
+        for (row, a) in self.0.iter().enumerate() {
+            for (column, b) in self.0.iter().enumerate() {
+                call((row, column), a * b);
+            }
+        }
+    }
+
     /// Mobility of the port \[1/kg\].
     pub(crate) fn mobility(&self) -> f64 {
         self.mobility_with(self)
@@ -206,6 +216,8 @@ pub(crate) struct LinearBody {
     pub(crate) pairs: usize,
     rotor: Rotor,
     pub(crate) stiffness: Coupling,
+    /// The part of the stiffness in which nothing is stored: what of it goes round.
+    pub(crate) swirl: Coupling,
     pub(crate) damping: Coupling,
     /// Per unit of spin.
     pub(crate) gyroscopic: Coupling,
@@ -274,7 +286,7 @@ impl LinearBody {
         let per_inertia = 1.0 / rigid.transverse_inertia_kg_m2.sqrt();
         let at = |position_m: f64| on_rotor(&params.rotor, pairs, position_m);
 
-        let mut stiffness = Coupling::default();
+        let (mut stiffness, mut swirl) = (Coupling::default(), Coupling::default());
         let (mut damping, mut gyroscopic) = (Coupling::default(), Coupling::default());
         for (i, mode) in bending.iter().enumerate() {
             let (pair, rate) = ((2 + i, 2 + i), mode.frequency_rad_s);
@@ -298,6 +310,10 @@ impl LinearBody {
             let port = at(support.position_m);
             stiffness.add_at_port(&port, support.stiffness_n_m);
             damping.add_at_port(&port, support.damping_n_s_m);
+            stiffness.add_across_at_port(&port, support.cross_stiffness_n_m);
+            damping.add_across_at_port(&port, support.cross_damping_n_s_m);
+            let k = support.cross_stiffness_n_m;
+            swirl.add_across_at_port(&port, 0.5 * V2::new(k.x - k.y, k.y - k.x));
         }
 
         let mut contacts = Vec::new();
@@ -351,6 +367,7 @@ impl LinearBody {
             pairs,
             rotor: params.rotor.clone(),
             stiffness: stiffness.tidied(),
+            swirl: swirl.tidied(),
             damping: damping.tidied(),
             gyroscopic: gyroscopic.tidied(),
             gravity,

@@ -41,9 +41,9 @@ pub(crate) struct FlightMap {
     end: Vec<f64>,
     /// Bound of each plane's way, x and y.
     reach: Vec<f64>,
-    /// Quadratic forms of the work: rotor damping, magnets that lag, unbalance; the upper triangle row by row, with what
+    /// Quadratic forms of the work: rotor damping, magnets that lag, unbalance, stiffness that goes round; the upper triangle row by row, with what
     /// stands below added to it. Empty where there is none.
-    works: [Vec<f64>; 3],
+    works: [Vec<f64>; 4],
     /// Σ z·zᵀ over the samples flown, likewise: the forms are asked for by those who read the audit, not in every sample.
     moments: Vec<f64>,
     /// What they made of the samples under earlier maps.
@@ -152,7 +152,8 @@ impl FlightMap {
     /// Work of rotor damping, lagging magnets and unbalance over all samples flown so far.
     pub(crate) fn works(&self) -> Flows {
         let work = |form: &Vec<f64>| dot(form, &self.moments);
-        let [rotor_damping, control, unbalance] = [0, 1, 2].map(|w| work(&self.works[w]));
+        let [rotor_damping, control, unbalance, external] =
+            [0, 1, 2, 3].map(|w| work(&self.works[w]));
         let mut all = self.booked;
         all.add_scaled(
             1.0,
@@ -160,6 +161,7 @@ impl FlightMap {
                 control,
                 unbalance,
                 rotor_damping,
+                external,
                 ..Flows::default()
             },
         );
@@ -308,7 +310,7 @@ impl FlightMap {
     }
 
     /// ∫ z(θ)ᵀ·M·z(θ) dt as a form of z(0), for the power zᵀ·M·z through each door.
-    fn make_works(&self, system: &MachineSystem, a: &DMatrix<f64>) -> [Vec<f64>; 3] {
+    fn make_works(&self, system: &MachineSystem, a: &DMatrix<f64>) -> [Vec<f64>; 4] {
         let (body, d) = (&system.body, a.nrows());
         let Layout {
             n,
@@ -316,9 +318,12 @@ impl FlightMap {
             direction,
             ..
         } = self.layout;
-        let mut powers = [(); 3].map(|()| DMatrix::zeros(d, d));
+        let mut powers = [(); 4].map(|()| DMatrix::zeros(d, d));
         for (row, column, value) in body.damping.entries() {
             powers[0][(n + row, n + column)] += value;
+        }
+        for (row, column, value) in body.swirl.entries() {
+            powers[3][(n + row, column)] -= value / self.rate;
         }
         for i in 0..n {
             let mut x = vec![V2::zeros(); body.pairs];
@@ -345,7 +350,7 @@ impl FlightMap {
         let nodes = Nodes::stretched(&EIGHT, 1.0 / parts);
         let within = nodes.theta.map(|theta| (a * theta).exp());
         let mut from = DMatrix::identity(d, d);
-        let mut works = [(); 3].map(|()| DMatrix::zeros(d, d));
+        let mut works = [(); 4].map(|()| DMatrix::zeros(d, d));
         for _ in 0..parts as usize {
             for (j, inner) in within.iter().enumerate() {
                 let at = inner * &from;

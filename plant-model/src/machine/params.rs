@@ -90,8 +90,13 @@ pub enum Rotor {
     },
 }
 
-/// A spring with a damper from the rotor to ground, along x and y. A magnet's negative stiffness is one.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// A spring with a damper from the rotor to ground, along x and y. A magnet's negative stiffness is one, and a seal:
+///
+/// ```text
+/// f_x = −k_xx·x − k_xy·y − d_xx·ẋ − d_xy·ẏ
+/// f_y = −k_yx·x − k_yy·y − d_yx·ẋ − d_yy·ẏ
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Support {
     /// Where \[m\].
     pub position_m: f64,
@@ -99,6 +104,10 @@ pub struct Support {
     pub stiffness_n_m: V2,
     /// Damping \[N s/m\], ≥ 0.
     pub damping_n_s_m: V2,
+    /// k_xy and k_yx \[N/m\], either sign. What turns with the spin drives forward whirl: k_xy > 0 and k_yx < 0 at Ω > 0.
+    pub cross_stiffness_n_m: V2,
+    /// d_xy and d_yx \[N s/m\], such that no motion gains by damping.
+    pub cross_damping_n_s_m: V2,
 }
 
 /// An unbalance.
@@ -259,7 +268,7 @@ impl MachineParams {
                 linear.supports.push(Support {
                     position_m: magnet.position_m,
                     stiffness_n_m: V2::repeat(stiffness_n_m),
-                    damping_n_s_m: V2::zeros(),
+                    ..Support::default()
                 });
             }
             magnet.poles = None;

@@ -237,7 +237,8 @@ impl Parts {
         let lags = !system.magnets.iter().all(MagnetLaw::is_held);
         let damped = !body.damping.is_zero();
         let touches = |phase: &Phase| matches!(phase, Phase::Contact(..));
-        let moves = damped || lags || body.unbalance.is_some() || phases.iter().any(touches);
+        let pushed = lags || body.unbalance.is_some() || !body.swirl.is_zero();
+        let moves = damped || pushed || phases.iter().any(touches);
         let velocities = match moves {
             true => rows.velocities_at(&nodes.theta, order),
             false => [[V2::zeros(); P]; N],
@@ -246,6 +247,9 @@ impl Parts {
         let machine = &mut flows.machine;
         if damped {
             machine.rotor_damping = h * nodes.integral(|j| rows.damping_w(velocity(j)));
+        }
+        if let Some(power_w) = rows.swirl_w((&nodes.theta, order), &velocities) {
+            machine.external += h * nodes.integral(|j| power_w[j]);
         }
         for (m, series) in self.magnets.iter().enumerate() {
             if !system.magnets[m].is_held() {

@@ -93,6 +93,7 @@ pub(super) struct Rows<const P: usize> {
     velocity: [[V2; P]; LENGTH],
     /// On the same axis, and across.
     stiffness: [Matrix<P>; 2],
+    swirl: Matrix<P>,
     damping: [Matrix<P>; 2],
     gyroscopic: Matrix<P>,
     magnets: [[f64; P]; MAX_MAGNETS],
@@ -162,6 +163,7 @@ impl<const P: usize> Rows<P> {
             position: [[V2::zeros(); P]; LENGTH],
             velocity: [[V2::zeros(); P]; LENGTH],
             stiffness: [along(&body.stiffness), across(&body.stiffness)],
+            swirl: across(&body.swirl),
             damping: [along(&body.damping), across(&body.damping)],
             gyroscopic: across(&body.gyroscopic),
             magnets: [[0.0; P]; MAX_MAGNETS],
@@ -325,6 +327,25 @@ impl<const P: usize> Rows<P> {
             sum -= velocity[i].component_mul(&force[i]);
         }
         sum.x + sum.y
+    }
+
+    /// What stiffness that goes round gives at several θ: power at each node, or nothing.
+    #[inline(always)]
+    pub(super) fn swirl_w<const N: usize>(
+        &self,
+        (theta, order): (&[f64; N], usize),
+        velocities: &[[V2; P]; N],
+    ) -> Option<[f64; N]> {
+        if self.swirl.kind == Kind::Zero {
+            return None;
+        }
+        let positions = self.values(&self.position, theta, order);
+        Some(std::array::from_fn(|j| {
+            let mut force = [V2::zeros(); P];
+            self.swirl
+                .subtract(&mut force, &positions[j], self.n(), crossed);
+            (0..self.n()).map(|i| velocities[j][i].dot(&force[i])).sum()
+        }))
     }
 
     /// Velocity of a plane's contact, of a magnet and of the unbalance at one velocity of all.

@@ -12,6 +12,7 @@ mod poles;
 mod reference;
 mod refusals;
 mod rotor;
+mod seals;
 mod shaft;
 mod silently_wrong;
 mod starts;

@@ -186,7 +186,7 @@ impl Spec {
                     machine.supports.push(Support {
                         position_m,
                         stiffness_n_m: V2::repeat(-magnet.negative_stiffness_n_m),
-                        damping_n_s_m: V2::zeros(),
+                        ..Support::default()
                     });
                 }
             }

@@ -116,10 +116,13 @@ fn support(origin: &Origin, written: &SupportTable) -> Support {
     let residual_m_n = origin.residual_m_n(written.position_m);
     // What pulls outwards is no spring in series with one.
     let share = stiffness_n_m.map(|k| 1.0 / (1.0 + k.max(0.0) * residual_m_n));
+    let both = share.x * share.y;
     Support {
         position_m: origin.centred_m(written.position_m),
         stiffness_n_m: stiffness_n_m.component_mul(&share),
         damping_n_s_m: damping_n_s_m.component_mul(&share).component_mul(&share),
+        cross_stiffness_n_m: both * V2::from(written.cross_stiffness_n_m),
+        cross_damping_n_s_m: both * V2::from(written.cross_damping_n_s_m),
     }
 }
 

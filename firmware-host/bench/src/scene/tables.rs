@@ -371,6 +371,8 @@ key_tables! {
         position_m: f64 [required], "m", Finite, "along the axis, from the centre of mass", "z";
         stiffness_n_m: PerAxis [= PerAxis::Both(0.0)], "N/m", Finite, "of the spring; may be negative", "k";
         damping_n_s_m: PerAxis [= PerAxis::Both(0.0)], "N s/m", NotNegative, "of the damper", "d", "c";
+        cross_stiffness_n_m: Pair [= Pair::default()], "N/m", Finite, "[k_xy, k_yx] of a seal: f_x = −k_xy·y, f_y = −k_yx·x; at a positive spin [k, −k] drives forward whirl", "kxy", "cross_coupling";
+        cross_damping_n_s_m: Pair [= Pair::default()], "N s/m", Finite, "[d_xy, d_yx], likewise; the mean of the two no larger than √(d_xx·d_yy)", "dxy";
     }
 
     UnbalanceTable {

@@ -317,7 +317,35 @@ impl MachineParams {
                 check(true, format!("supports[{i}].stiffness_n_m"), k, FINITE)?;
                 let field = format!("supports[{i}].damping_n_s_m");
                 check(d >= 0.0, field, d, NOT_NEGATIVE)?;
+                let (k, d) = (
+                    support.cross_stiffness_n_m[axis],
+                    support.cross_damping_n_s_m[axis],
+                );
+                check(
+                    true,
+                    format!("supports[{i}].cross_stiffness_n_m"),
+                    k,
+                    FINITE,
+                )?;
+                check(
+                    true,
+                    format!("supports[{i}].cross_damping_n_s_m"),
+                    d,
+                    FINITE,
+                )?;
             }
+            // What d_xy and d_yx have in common gives power, unless the dampers take as much.
+            let (d, common) = (
+                support.damping_n_s_m,
+                support.cross_damping_n_s_m.sum() / 2.0,
+            );
+            let rule = "two numbers whose mean is, by its size, at most √(d_xx·d_yy)";
+            check(
+                common * common <= d.x * d.y,
+                format!("supports[{i}].cross_damping_n_s_m"),
+                common,
+                rule,
+            )?;
         }
         for (i, unbalance) in self.unbalances.iter().enumerate() {
             unbalance.validate(&self.rotor, &format!("unbalances[{i}]"))?;

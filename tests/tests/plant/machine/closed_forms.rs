@@ -26,7 +26,7 @@ pub(super) fn conical(ratio: f64, spin: f64) -> (MachineParams, f64, f64) {
         .map(|position_m| Support {
             position_m,
             stiffness_n_m: V2::repeat(STIFFNESS_N_M),
-            damping_n_s_m: V2::repeat(0.0),
+            ..Support::default()
         })
         .to_vec();
     let half = 0.5 * spin * ratio;

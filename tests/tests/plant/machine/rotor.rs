@@ -37,6 +37,7 @@ pub(super) fn support(position_m: f64) -> Support {
         position_m,
         stiffness_n_m: V2::repeat(2e5),
         damping_n_s_m: V2::repeat(100.0),
+        ..Support::default()
     }
 }
 

@@ -140,7 +140,7 @@ fn on(shaft: &ReducedRotor, places_m: &[f64], stiffness_n_m: f64) -> MachinePara
         .map(|z| Support {
             position_m: shaft.centred_m(*z),
             stiffness_n_m: V2::repeat(stiffness_n_m),
-            damping_n_s_m: V2::repeat(0.0),
+            ..Support::default()
         })
         .collect();
     for plane in &mut params.planes {

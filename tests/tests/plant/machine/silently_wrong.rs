@@ -42,6 +42,7 @@ fn case(bending_modes: usize, stiffness_n_m: f64) -> (MachineParams, Reference) 
         position_m,
         stiffness_n_m: V2::repeat(2e5),
         damping_n_s_m: V2::repeat(100.0),
+        ..Support::default()
     };
     let supports = vec![support(-0.15), support(0.12)];
     let planes = [
