@@ -80,24 +80,12 @@ impl<S: Scalar> Readiness<S> {
         outward * self.shortfall.within(S::from_f32(RESTS_WITHIN))
     }
 
-    /// Takes in what a controller that has the bearing asks for, outwards on the wall and nothing off it, while there is a wall to speak
-    /// of: whether it presses the rotor there by itself.
-    #[inline]
-    pub(crate) fn watch(&mut self, outwards: Option<S>, coeffs: &Coeffs<S>) {
-        let shortfall = match outwards {
-            Some(outwards) => self.shortfall + (outwards - self.shortfall) * coeffs.blend_step,
-            None => S::ZERO,
-        };
-        *self = Self {
-            shortfall,
-            mark: S::ZERO,
-        };
-    }
-
-    /// Whether there is nothing to take in, and nothing left of it.
-    #[inline]
-    pub(crate) fn is_at_rest(&self) -> bool {
-        self.shortfall == S::ZERO
+    /// Takes in what a controller that has the bearing asks for, outwards on the wall and nothing off it, of a rotor that touches most
+    /// of the time: whether it presses it there by itself.
+    #[cold]
+    pub(crate) fn watch(&mut self, outwards: S, coeffs: &Coeffs<S>) {
+        self.shortfall = self.shortfall + (outwards - self.shortfall) * coeffs.blend_step;
+        self.mark = S::ZERO;
     }
 
     /// Whether it does, of a rotor that is not held.

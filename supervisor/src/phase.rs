@@ -39,8 +39,6 @@ pub(crate) struct Judged {
     pub(crate) whirl_only: bool,
     /// What comes, or is there, is so slow that it can be left to a levitation controller that has force to spare.
     pub(crate) harmless: bool,
-    /// It lies on the wall, and the levitation controller itself presses it there.
-    pub(crate) laid_down: bool,
 }
 
 /// A mode with the memory that belongs to it.
@@ -221,8 +219,7 @@ impl<S: Scalar> Phase<S> {
         let rides = contact.touching
             && judged.touches_on
             && matches!(class, Class::Bounce | Class::ForwardRub { .. });
-        let laid_down = judged.laid_down && class != Class::BackwardWhirl;
-        let left_alone = laid_down || !evident && (judged.harmless || rides);
+        let left_alone = !evident && (judged.harmless || rides);
         if self == Self::Levitated && (left_alone || (!evident && !judged.trusted)) {
             return self;
         }

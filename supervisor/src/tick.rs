@@ -150,9 +150,6 @@ impl<S: Scalar> State<S> {
             unsettled: quiet && tilting.is_some_and(|tilting| tilting.unsettled),
             whirl_only: !coeffs.acts_in_flight || sample.status.contains(Status::SET_DOWN),
             harmless: false,
-            laid_down: !self.phase.is_engaged()
-                && self.readiness.is_pressed()
-                && self.classifier.is_continuous(),
         };
         if self.phase != Phase::Levitated || contact.unavoidable || contact.touching {
             speed = Speed::new(motion.velocity);
@@ -166,7 +163,13 @@ impl<S: Scalar> State<S> {
                 // What is no number is no force to spare.
                 judged.harmless = asks < envelope.cap * S::from_f32(SPARES_BELOW);
             }
-            if !contact.touching {
+            if contact.touching {
+                let keeps_out = self.phase == Phase::Levitated && judged.touches_on;
+                if keeps_out && self.readiness.is_pressed() {
+                    // It lies where the controller wants it.
+                    (judged.harmless, judged.unsettled) = (true, false);
+                }
+            } else {
                 ahead = Impact::ahead(&motion, contact.radius, &speed);
                 let beyond = (speed.value() - margin).max(S::ZERO);
                 let share = S::from_f32(CALM_SHARE);
@@ -217,11 +220,15 @@ impl<S: Scalar> State<S> {
                 refusal => refusal.is_wrong(),
             };
         if !phase.is_engaged() {
-            let outwards = match contact.touching {
-                true => Some(levitation.dot(contact.normal)),
-                false => self.classifier.is_continuous().then_some(S::ZERO),
-            };
-            self.readiness.watch(outwards, coeffs);
+            if judged.touches_on {
+                let outwards = match contact.touching {
+                    true => levitation.dot(contact.normal),
+                    false => S::ZERO,
+                };
+                self.readiness.watch(outwards, coeffs);
+            } else {
+                self.readiness = Readiness::default();
+            }
         } else if tilting.is_some() {
             self.trust.acts();
         }
@@ -339,7 +346,6 @@ impl<S: Scalar> State<S> {
             && !sample.status.contains(Status::SHADOW)
             && !self.reconfigured
             && !self.classifier.is_continuous()
-            && self.readiness.is_at_rest()
     }
 
     /// Most ticks: a rotor at ease is left to its levitation. To the bit what the rest of the tick comes to.

@@ -15,7 +15,7 @@ use supervisor::{Config, Mode, Sample, Status};
 
 /// Of the moves: of the first three hundred the one whose rarest way between modes is the most frequent; the
 /// ignored test below finds it.
-const SEED: u64 = 293;
+const SEED: u64 = 305;
 /// Ticks of a supervisor before the next one.
 const PIECE_TICKS: usize = 4000;
 
@@ -380,8 +380,8 @@ mod tests {
 
     #[test]
     #[ignore = "a search, for when the ways of the stream have changed"]
-    fn the_seed_is_the_best_of_three_hundred() {
-        let best = (1..=300).max_by_key(|seed| (rarest(*seed), std::cmp::Reverse(*seed)));
+    fn the_seed_is_the_best_of_four_hundred() {
+        let best = (1..=400).max_by_key(|seed| (rarest(*seed), std::cmp::Reverse(*seed)));
         assert_eq!(Some(SEED), best, "{:?}", best.map(rarest));
     }
 }
