@@ -28,6 +28,8 @@ pub struct MachineError {
 pub const MAX_PLANES: usize = 4;
 /// Most magnets.
 pub const MAX_MAGNETS: usize = 4;
+/// Most motions in a direction: translation, tilt, bending modes and rings together.
+pub const MAX_MOTIONS: usize = 64;
 
 /// A rigid rotor with four lateral degrees of freedom. Positions along the axis count from its centre of mass.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -6,7 +6,7 @@
 )]
 
 use super::body::{Coupling, LinearBody, Port};
-use super::params::{MAX_MAGNETS, MAX_PLANES};
+use super::params::{MAX_MAGNETS, MAX_MOTIONS, MAX_PLANES};
 use super::series::{PlaneSeries, State};
 use crate::V2;
 use crate::series::{INVERSE, LENGTH, Series};
@@ -14,8 +14,6 @@ use crate::vector::rotate;
 
 /// Most pairs over which loops have a length of their own; beyond, they run over those that there are.
 const UNROLLED: usize = 8;
-/// Most pairs of all: translation, tilt, bending modes and rings.
-pub(crate) const MAX_PAIRS: usize = 64;
 
 /// What acts on the coordinates at one order, apart from what they do to each other.
 #[derive(Clone, Copy)]
@@ -31,7 +29,8 @@ pub(super) struct Pushes<'a> {
 /// A matrix over the pairs, with what of it is zero.
 #[derive(Debug, Clone)]
 struct Matrix<const P: usize> {
-    entries: [[V2; P]; P],
+    /// P rows; on the heap, as those of many pairs are large.
+    entries: Vec<[V2; P]>,
     kind: Kind,
 }
 
@@ -45,7 +44,7 @@ enum Kind {
 impl<const P: usize> Matrix<P> {
     fn of<'a>(entries: impl Iterator<Item = &'a (usize, usize, V2)>) -> Self {
         let mut matrix = Self {
-            entries: [[V2::zeros(); P]; P],
+            entries: vec![[V2::zeros(); P]; P],
             kind: Kind::Zero,
         };
         for (row, column, a) in entries {
@@ -61,17 +60,20 @@ impl<const P: usize> Matrix<P> {
     /// `out −= A·x` over n pairs, with what `turn` makes of a pair of x.
     #[inline(always)]
     fn subtract(&self, out: &mut [V2; P], x: &[V2; P], n: usize, turn: impl Fn(V2) -> V2) {
+        let Some(entries) = self.entries.first_chunk::<P>() else {
+            return;
+        };
         match self.kind {
             Kind::Zero => {}
             Kind::Diagonal => {
                 for i in 0..n {
-                    out[i] -= self.entries[i][i].component_mul(&turn(x[i]));
+                    out[i] -= entries[i][i].component_mul(&turn(x[i]));
                 }
             }
             Kind::Full => {
                 for i in 0..n {
                     for j in 0..n {
-                        out[i] -= self.entries[i][j].component_mul(&turn(x[j]));
+                        out[i] -= entries[i][j].component_mul(&turn(x[j]));
                     }
                 }
             }
@@ -108,7 +110,7 @@ pub(super) enum AnyRows {
     Two(Box<Rows<2>>),
     Four(Box<Rows<4>>),
     Eight(Box<Rows<UNROLLED>>),
-    Many(Box<Rows<MAX_PAIRS>>),
+    Many(Box<Rows<MAX_MOTIONS>>),
 }
 
 /// The same call of whichever it is.

@@ -1,8 +1,8 @@
 //! Ranges of a machine's values, and what contradicts each other.
 
 use super::{
-    MAX_MAGNETS, MAX_PLANES, MachineError, MachineParams, MachinePlane, MachineStart, Poles,
-    RigidRotor, Rotor, Unbalance,
+    MAX_MAGNETS, MAX_MOTIONS, MAX_PLANES, MachineError, MachineParams, MachinePlane, MachineStart,
+    Poles, RigidRotor, Rotor, Unbalance,
 };
 use crate::params::{ContactLaw, SlidingFriction, SpinParams, StatorParams};
 use nalgebra::DMatrix;
@@ -406,7 +406,19 @@ impl MachineParams {
             place("planes", i, plane.position_m)?;
             plane.validate(i)?;
         }
-        Ok(())
+        let rings = self.planes.iter().map(|plane| match plane.stator {
+            StatorParams::Rigid | StatorParams::RigidEllipse(_) => 0,
+            StatorParams::OneMass(_) => 1,
+            StatorParams::TwoMass { .. } => 2,
+        });
+        let motions = 2 + self.rotor.bending().len() + rings.sum::<usize>();
+        let rule = "at most 64 motions, of translation, tilt, bending modes and rings together: keep fewer modes";
+        check(
+            motions <= MAX_MOTIONS,
+            "rotor.bending",
+            motions as f64,
+            rule,
+        )
     }
 }
 

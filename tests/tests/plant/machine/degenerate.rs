@@ -226,6 +226,69 @@ fn a_rotor_without_tilt_is_a_point_mass() {
     }
 }
 
+/// One that does not tilt is a point mass with one pair of coordinates, and has no others.
+#[test]
+fn a_rotor_that_does_not_tilt_is_a_point_mass() {
+    let options = |method| Options { method, ..OPTIONS };
+    for (stator, _) in stators() {
+        for free in [false, true] {
+            let spin = match free {
+                true => SpinParams::Free {
+                    inertia_kg_m2: 0.05,
+                    drive_torque_n_m: 1.0,
+                },
+                false => SpinParams::Held,
+            };
+            let mut params = machine();
+            params.rotor = Rotor::Rigid(RigidRotor::point(10.0));
+            params.supports = vec![Support {
+                position_m: 0.7,
+                stiffness_n_m: V2::repeat(4e5),
+                damping_n_s_m: V2::repeat(200.0),
+                ..Support::default()
+            }];
+            params.spin = spin;
+            params.planes = vec![plane(-0.3, 1.0)];
+            params.planes[0].stator = stator;
+            let mut one = point();
+            (one.spin, one.stator) = (spin, stator);
+            let start = MachineStart {
+                centre_velocity_m_s: V2::new(0.3, 0.0),
+                spin_rad_s: 400.0,
+                ..MachineStart::default()
+            };
+            for (method, worst) in [(Method::Series, 1e-10), (Method::Explicit, 1e-9)] {
+                let mut rotor = Machine::new(&params, &start, options(method)).unwrap();
+                let mut mass = build(
+                    &one,
+                    &point_start(V2::new(0.3, 0.0)),
+                    options(Method::Series),
+                )
+                .unwrap();
+                for i in 1..=100 {
+                    let t = 2e-4 * f64::from(i);
+                    (rotor.advance(t, &MachineInputs::default(), &mut |_, _| {})).unwrap();
+                    mass.advance(t, &Inputs::default(), &mut |_| {}).unwrap();
+                }
+                let (now, then) = (rotor.snapshot(), mass.snapshot());
+                let off = now.planes().next().unwrap().rotor.position - then.position_m;
+                assert!(
+                    off.norm() < worst * CLEARANCE_M,
+                    "{stator:?}: {:e}",
+                    off.norm()
+                );
+                assert!((now.spin_rad_s - then.spin_rad_s).abs() < 400.0 * worst);
+                assert_eq!(rotor.meters()[0].impacts, mass.meters().impacts);
+                let (a, b) = (rotor.audit(), mass.audit());
+                let off_j = a.flows.sliding_friction - b.flows.sliding_friction;
+                assert!(off_j.abs() < worst * b.turnover_j());
+                assert!(a.residual() < worst, "{stator:?}: {:e}", a.residual());
+                assert_eq!(rotor.axis().tilt, plant_model::Body::default());
+            }
+        }
+    }
+}
+
 /// Friction that falls with speed, which is left to the second method.
 #[test]
 fn friction_that_falls_with_speed_is_that_of_a_point_mass() {

@@ -27,6 +27,24 @@ fn values_out_of_range_are_named() {
             drive_torque_n_m: 0.0,
         };
     });
+    refused("rotor.polar_inertia_kg_m2", |p| {
+        p.rotor = rigid(f64::INFINITY, 0.1);
+    });
+    for transverse in [0.2, f64::INFINITY] {
+        let many = transverse == 0.2;
+        let field = match many {
+            true => "rotor.bending",
+            false => "rotor.transverse_inertia_kg_m2",
+        };
+        refused(field, |p| {
+            p.rotor = Rotor::Modal {
+                rigid: *rigid(transverse, 0.0).rigid(),
+                bending: bending(if many { 63 } else { 1 }, 2500.0),
+                polar_coupling_kg_m2: vec![],
+                damping_n_s_m: vec![],
+            };
+        });
+    }
     refused("planes", |p| p.planes.clear());
     refused("planes", |p| p.planes = vec![plane(0.0, 1.0); 5]);
     refused("planes[1].contact.clearance_m", |p| {
