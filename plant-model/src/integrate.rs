@@ -120,6 +120,27 @@ impl Default for Options {
     }
 }
 
+/// What moves fastest in a rotor.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Fastest {
+    /// What it is.
+    pub what: &'static str,
+    /// Its plane, unless it is the rotor with its supports.
+    pub plane: Option<usize>,
+    /// Its rate \[1/s\].
+    pub rate_s: f64,
+}
+
+impl std::fmt::Display for Fastest {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "the {}", self.what)?;
+        if let Some(plane) = self.plane {
+            write!(f, " of plane {plane}")?;
+        }
+        write!(f, ", with a rate of {:.1e} /s,", self.rate_s)
+    }
+}
+
 /// Why a run cannot be trusted any further.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum PlantError {
@@ -137,13 +158,16 @@ pub enum PlantError {
     },
     /// Too many steps, between two samples or in all.
     #[error(
-        "at t = {t_s:e} s: {steps} steps are not enough; something moves too fast for this scene"
+        "at t = {t_s:e} s: {steps} steps are not enough; {} too fast for this scene",
+        fastest.map_or("something moves".to_owned(), |f| format!("{f} is"))
     )]
     WorkLimit {
         /// When \[s\].
         t_s: f64,
         /// The limit.
         steps: u64,
+        /// What moves fastest, of a whole rotor.
+        fastest: Option<Fastest>,
     },
     /// The rotor has left everything that the model describes.
     #[error(

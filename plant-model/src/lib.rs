@@ -95,7 +95,7 @@ mod system;
 mod tangent;
 mod vector;
 
-pub use integrate::{Method, Options, PlantError};
+pub use integrate::{Fastest, Method, Options, PlantError};
 pub use mode::Mode;
 pub use params::Change;
 pub use part::Body;

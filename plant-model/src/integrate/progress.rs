@@ -37,7 +37,11 @@ impl Progress {
             (self.steps, options.steps),
         ] {
             if done > limit {
-                return Err(PlantError::WorkLimit { t_s, steps: limit });
+                return Err(PlantError::WorkLimit {
+                    t_s,
+                    steps: limit,
+                    fastest: None,
+                });
             }
         }
         Ok(())

@@ -433,6 +433,11 @@ impl LinearBody {
         a
     }
 
+    /// Rate of the fastest decay, by a bound \[1/s\].
+    pub(crate) fn damping_rate_s(&self) -> f64 {
+        self.damping.norm(self.pairs)
+    }
+
     /// Rate of the fastest undamped motion, by a bound \[rad/s\].
     pub(crate) fn undamped_rate_rad_s(&self) -> f64 {
         self.stiffness.norm(self.pairs).sqrt()

@@ -139,6 +139,9 @@ impl LinearMachine {
     /// Critical speeds, slowest first: K·q = Ω²·(1 − jG)·q, of which a rotor that turns into a disc has no forward one. `None`
     /// as of [`Self::modes`].
     pub fn critical_speeds(&self) -> Option<Vec<CriticalSpeed>> {
+        if self.body.stiffness.is_zero() {
+            return Some(Vec::new());
+        }
         let n = 2 * self.body.pairs;
         // 1 − jG as a real matrix on real and imaginary parts, K likewise; Ω² = 1/μ − s for the eigenvalues μ of
         // (K + s·B)⁻¹·B, which there are where B or K is singular, too.

@@ -182,7 +182,8 @@ impl Machine {
         }
         self.progress.begin_sample();
         while self.t_s < t_end_s {
-            self.progress.begin_step(&self.options, self.t_s)?;
+            let begun = self.progress.begin_step(&self.options, self.t_s);
+            begun.map_err(|error| self.system.naming_fastest(error))?;
             let free = self.phases.iter().all(|phase| *phase == Phase::Inside);
             let before: [Mode; MAX_PLANES] = self.modes();
             let t_before = self.t_s;

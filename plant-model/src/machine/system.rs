@@ -8,6 +8,7 @@ use super::params::{
 use super::poles::MagnetLaw;
 use crate::V2;
 use crate::contact::NO_DENT;
+use crate::integrate::{Fastest, PlantError};
 use crate::mode::{Phase, Slide, Whirl};
 use crate::params::{ContactLaw, SlidingFriction, SpinParams};
 use crate::part::Body;
@@ -378,6 +379,45 @@ impl MachineSystem {
     /// Rate of a plane's contact spring on the mobility there \[rad/s\].
     pub(crate) fn undamped_contact_rate_rad_s(&self, plane: usize) -> f64 {
         (self.planes[plane].stiffness_n_m * self.contact(plane).mobility()).sqrt()
+    }
+
+    /// A limit of work with what moves fastest.
+    #[cold]
+    pub(crate) fn naming_fastest(&self, error: PlantError) -> PlantError {
+        let PlantError::WorkLimit { t_s, steps, .. } = error else {
+            return error;
+        };
+        let body = &self.body;
+        let mut fastest = Fastest {
+            what: "rotor on its supports, or a ring on its mounting,",
+            plane: None,
+            rate_s: body.undamped_rate_rad_s().max(body.damping_rate_s()),
+        };
+        let mut compare = |what, plane, rate_s: f64| {
+            if rate_s > fastest.rate_s {
+                let plane = Some(plane);
+                fastest = Fastest {
+                    what,
+                    plane,
+                    rate_s,
+                };
+            }
+        };
+        for (p, data) in self.planes.iter().enumerate() {
+            let mobility = self.contact(p).mobility();
+            let [spring, damper] = match body.rings[p].is_some() {
+                true => ["ring on the contact spring", "ring on the contact damper"],
+                false => ["contact spring", "contact damper"],
+            };
+            compare(spring, p, self.undamped_contact_rate_rad_s(p));
+            let by_rate_n_s_m = data.law.by_rate_n_s_m(data.clearance_m);
+            compare(damper, p, by_rate_n_s_m * mobility);
+        }
+        PlantError::WorkLimit {
+            t_s,
+            steps,
+            fastest: Some(fastest),
+        }
     }
 
     /// The largest of them with their dampers \[rad/s\].

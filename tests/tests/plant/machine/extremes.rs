@@ -219,3 +219,30 @@ fn walls_of_very_different_stiffness() {
         assert!(residual < 1e-9, "{i}: {residual:e} of the energy");
     }
 }
+
+/// A ring next to nothing on a stiff wall takes more steps than there are: the run ends, and says what is too fast.
+#[test]
+fn a_ring_of_a_microgram_is_named() {
+    let mut params = dropped();
+    for plane in &mut params.planes {
+        plane.stator = StatorParams::OneMass(RingParams {
+            mass_kg: 1e-9,
+            stiffness_n_m: V2::repeat(1e7),
+            damping_n_s_m: V2::repeat(1e3),
+        });
+    }
+    let start = struck(400.0);
+    let options = Options {
+        steps_per_sample: 20_000,
+        ..Options::default()
+    };
+    let mut machine = Machine::new(&params, &start, options).unwrap();
+    let nothing = MachineInputs::default();
+    let ended = (1..=2000).find_map(|i| {
+        let t = 5e-5 * f64::from(i);
+        machine.advance(t, &nothing, &mut |_, _| {}).err()
+    });
+    let ended = ended.expect("it takes more steps than that").to_string();
+    assert!(ended.contains("ring on"), "{ended}");
+    assert!(ended.contains("too fast for this scene"), "{ended}");
+}

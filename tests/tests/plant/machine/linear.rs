@@ -109,6 +109,23 @@ fn critical_speeds_are_those_of_the_closed_forms() {
 }
 
 /// A Jeffcott rotor: U·Ω²/|k − m·Ω² + jΩd| below, at and above its critical speed, which is √(k/m).
+/// A free rotor that turns into a disc has a tilt without stiffness and, at its critical speed, without inertia: there is none.
+#[test]
+fn a_free_disc_has_no_critical_speed() {
+    for transverse in [0.01, 0.03, 0.2] {
+        for ratio in [0.0, 0.5, 1.0, 2.0] {
+            let mut params = machine();
+            params.rotor = rigid(transverse, ratio * transverse);
+            params.supports.clear();
+            assert_eq!(
+                linear(&params).critical_speeds(),
+                Some(vec![]),
+                "{transverse}, {ratio}"
+            );
+        }
+    }
+}
+
 #[test]
 fn unbalance_response_is_that_of_a_jeffcott_rotor() {
     let params = machine();
