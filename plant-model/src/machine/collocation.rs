@@ -12,9 +12,10 @@ mod tables;
 
 use self::tables::Tables;
 use super::holding::Holding;
+use super::plane_series::Grip;
 use super::poles::MagnetLaw;
 use super::rows::{AnyRows, of_rows};
-use super::series::{Grip, MachineSeries, Step};
+use super::series::{MachineSeries, Step};
 use super::system::{MachineState, MachineSystem};
 use crate::V2;
 use crate::mode::Phase;

@@ -1,6 +1,6 @@
 //! What ends a mode of a plane, as polynomials over a step.
 
-use super::series::PlaneSeries;
+use super::plane_series::PlaneSeries;
 use super::system::PlaneData;
 use crate::integrate::driver::ON_WALL;
 use crate::mode::{Phase, Slide, Whirl};

@@ -1,6 +1,6 @@
 //! One order of a plane's series, written out for each order: sums whose length the compiler knows have no loop and no remainder.
 
-use super::series::PlaneSeries;
+use super::plane_series::PlaneSeries;
 use crate::V2;
 use crate::series::{LENGTH, MAX_ORDER};
 use crate::vector::perp;

@@ -7,7 +7,7 @@
 
 use super::body::{Coupling, LinearBody, Port};
 use super::params::{MAX_MAGNETS, MAX_MOTIONS, MAX_PLANES};
-use super::series::{PlaneSeries, State};
+use super::plane_series::{PlaneSeries, State};
 use crate::V2;
 use crate::series::{INVERSE, LENGTH, Series};
 use crate::vector::rotate;

@@ -163,7 +163,7 @@ fn calls_need_little_stack() {
         ("self-test", 1400),
         ("rotor-init", 3044),
         ("rotor-reconfigure", 2356),
-        ("rotor-tick", 1304),
+        ("rotor-tick", 1312),
         ("archive-init", 128),
         ("archive-take", 232),
         ("archive-section", 4544),
