@@ -100,7 +100,8 @@ fn traced_ticks_have_as_many_instructions_as_counted() {
     }
     assert!(output.status.success(), "{error}");
     let report = parsed(&output.stdout);
-    assert!(report["cases"].as_u64().unwrap() > 1000);
+    // All ticks up to the dearest one of the stream: where that stands is up to its seed.
+    assert!(report["cases"].as_u64().unwrap() > 100);
     let claims = report["claims"].as_array().unwrap();
     assert_eq!(claims[0]["measured"], 1.0, "{report}");
     let width = claims[1]["measured"].as_f64().unwrap();
