@@ -304,7 +304,7 @@ impl Collocation {
             }
             of_rows!(&mut *rows, rows => rows.put(k + 1, &[], &velocity));
         }
-        of_rows!(&mut *rows, rows => rows.integrate((0, ORDER), h));
+        of_rows!(&mut *rows, rows => rows.integrate(ORDER, h));
         self.integrals(&mut parts.spin, y.spin_rad_s, h, |at| at.spin_rate);
         for (m, law) in system.magnets.iter().enumerate() {
             for axis in [0, 1] {
@@ -349,7 +349,7 @@ impl Collocation {
                 plane.gap_rate.0[k] = rows.gap_rate(p, k);
             });
             let per_m = |at: &Instant| 1.0 / at.touches[p].distance_m;
-            plane.grip = Grip::read_at_points(system, p);
+            plane.grip = Grip::none(system, p);
             self.through(&mut plane.distance, |at| at.touches[p].distance_m);
             self.through(&mut plane.force, |at| at.touches[p].force_n);
             self.through(&mut plane.lift, |at| at.touches[p].lift);

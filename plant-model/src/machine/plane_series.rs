@@ -27,8 +27,8 @@ pub(crate) struct Grip {
 }
 
 impl Grip {
-    /// Of a plane whose friction is not taken from the order at hand.
-    pub(crate) fn read_at_points(system: &MachineSystem, plane: usize) -> Self {
+    /// Of a plane without friction in proportion to the normal force, and none that holds.
+    pub(crate) fn none(system: &MachineSystem, plane: usize) -> Self {
         Self {
             turns: system.turns(plane),
             ..Self::default()

@@ -146,6 +146,14 @@ fn push<const P: usize>(out: &mut [V2; P], port: &[f64; P], n: usize, f: V2) {
     }
 }
 
+/// The same of an unbalance.
+#[inline(always)]
+fn turn<const P: usize>(out: &mut [V2; P], port: &[V2; P], n: usize, acceleration: V2) {
+    for i in 0..n {
+        out[i] += rotate(acceleration, port[i]);
+    }
+}
+
 #[inline(always)]
 fn read<const P: usize>(row: &[V2; P], port: &[f64; P], n: usize) -> V2 {
     let mut sum = row[0] * port[0];
@@ -187,7 +195,7 @@ impl<const P: usize> Rows<P> {
 
     /// How far loops over the pairs go.
     #[inline(always)]
-    pub(super) fn n(&self) -> usize {
+    fn n(&self) -> usize {
         if P <= UNROLLED { P } else { self.pairs }
     }
 
@@ -249,9 +257,7 @@ impl<const P: usize> Rows<P> {
             }
         }
         if let Some(unbalance) = &self.unbalance {
-            for i in 0..n {
-                a[i] += rotate(pushes.unbalance, unbalance[i]);
-            }
+            turn(&mut a, unbalance, n, pushes.unbalance);
         }
         let v = &mut self.velocity[k + 1];
         for i in 0..n {
@@ -270,9 +276,7 @@ impl<const P: usize> Rows<P> {
         let n = self.n();
         push(&mut self.velocity[k], &self.contacts[plane], n, force);
         if let Some(unbalance) = &self.unbalance {
-            for (v, u) in self.velocity[k].iter_mut().zip(unbalance).take(n) {
-                *v += rotate(acceleration, *u);
-            }
+            turn(&mut self.velocity[k], unbalance, n, acceleration);
         }
     }
 
@@ -403,9 +407,9 @@ impl<const P: usize> Rows<P> {
         sums
     }
 
-    /// Positions as integrals of velocities, from coefficients `from` on up to an order.
-    pub(super) fn integrate(&mut self, (from, order): (usize, usize), step_s: f64) {
-        for k in from..order {
+    /// Positions as integrals of velocities, up to an order.
+    pub(super) fn integrate(&mut self, order: usize, step_s: f64) {
+        for k in 0..order {
             self.extend_positions(k, step_s * INVERSE[k + 1]);
         }
     }

@@ -88,10 +88,7 @@ impl PlaneSeries {
                     - soon.by_rate_n_s_m * rate_m_s;
             }
         }
-        self.grip = Grip {
-            turns: system.turns(plane),
-            ..Grip::default()
-        };
+        self.grip = Grip::none(system, plane);
         let Phase::Contact(slide, whirl) = step.phases[plane] else {
             return;
         };
@@ -103,7 +100,7 @@ impl PlaneSeries {
             sliding: -slide.sign() * mu,
             rolling: -whirl.sign() * data.rolling,
             holds: slide == Slide::Rolling || whirl == Whirl::Still,
-            turns: system.turns(plane),
+            ..self.grip
         };
     }
 

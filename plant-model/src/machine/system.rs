@@ -314,19 +314,10 @@ impl MachineSystem {
     pub(crate) fn inverse_mobility(
         &self,
         give: &mut SMatrix<f64, MAX_HELD, MAX_HELD>,
-        channels: impl Iterator<Item = (usize, Channel)>,
+        channels: impl ExactSizeIterator<Item = (usize, Channel)>,
         mobility: impl Fn(usize, usize) -> f64,
     ) {
-        let mut share = [1.0_f64; MAX_HELD];
-        let mut count = 0;
-        for (p, channel) in channels.take(MAX_HELD) {
-            let mu = match channel {
-                Channel::Sliding => self.planes[p].sliding,
-                Channel::Rolling => self.planes[p].rolling,
-            };
-            share[count] = mu.max(f64::MIN_POSITIVE).sqrt();
-            count += 1;
-        }
+        let count = channels.len();
         // Of one and of two the inverse is written out.
         if count == 1 {
             give[(0, 0)] = 1.0 / mobility(0, 0);
@@ -340,6 +331,14 @@ impl MachineSystem {
                 (give[(1, 0)], give[(1, 1)]) = (-c / determinant, a / determinant);
                 return;
             }
+        }
+        let mut share = [1.0_f64; MAX_HELD];
+        for (share, (p, channel)) in share.iter_mut().zip(channels) {
+            let mu = match channel {
+                Channel::Sliding => self.planes[p].sliding,
+                Channel::Rolling => self.planes[p].rolling,
+            };
+            *share = mu.max(f64::MIN_POSITIVE).sqrt();
         }
         let mut scaled = SMatrix::<f64, MAX_HELD, MAX_HELD>::zeros();
         for row in 0..count {
@@ -381,6 +380,12 @@ impl MachineSystem {
         (self.planes[plane].stiffness_n_m * self.contact(plane).mobility()).sqrt()
     }
 
+    /// Rate of a plane's contact damper on the mobility there \[1/s\].
+    fn contact_decay_rate_s(&self, plane: usize) -> f64 {
+        let data = &self.planes[plane];
+        data.law.by_rate_n_s_m(data.clearance_m) * self.contact(plane).mobility()
+    }
+
     /// A limit of work with what moves fastest.
     #[cold]
     pub(crate) fn naming_fastest(&self, error: PlantError) -> PlantError {
@@ -403,15 +408,13 @@ impl MachineSystem {
                 };
             }
         };
-        for (p, data) in self.planes.iter().enumerate() {
-            let mobility = self.contact(p).mobility();
+        for p in 0..self.planes.len() {
             let [spring, damper] = match body.rings[p].is_some() {
                 true => ["ring on the contact spring", "ring on the contact damper"],
                 false => ["contact spring", "contact damper"],
             };
             compare(spring, p, self.undamped_contact_rate_rad_s(p));
-            let by_rate_n_s_m = data.law.by_rate_n_s_m(data.clearance_m);
-            compare(damper, p, by_rate_n_s_m * mobility);
+            compare(damper, p, self.contact_decay_rate_s(p));
         }
         PlantError::WorkLimit {
             t_s,
@@ -422,11 +425,8 @@ impl MachineSystem {
 
     /// The largest of them with their dampers \[rad/s\].
     pub(crate) fn contact_rate_rad_s(&self) -> f64 {
-        let rates = (0..self.planes.len()).map(|p| {
-            let data = &self.planes[p];
-            let damping = data.law.by_rate_n_s_m(data.clearance_m) * self.contact(p).mobility();
-            self.undamped_contact_rate_rad_s(p) + damping
-        });
+        let rates = (0..self.planes.len())
+            .map(|p| self.undamped_contact_rate_rad_s(p) + self.contact_decay_rate_s(p));
         rates.fold(0.0, f64::max)
     }
 
