@@ -23,9 +23,6 @@ pub(crate) struct Normal {
     /// Positive while contact lasts. The force itself where its zero is a simple one, else a function
     /// that has a simple zero where the force ends.
     pub(crate) guard: f64,
-    /// ∂/∂A and ∂/∂B of the guard.
-    pub(crate) guard_by_depth: f64,
-    pub(crate) guard_by_rate: f64,
 }
 
 impl LinearContact {
@@ -53,8 +50,6 @@ impl LinearContact {
             by_depth_n_m: self.stiffness_n_m,
             by_rate_n_s_m: self.damping_n_s_m,
             guard: force_n,
-            guard_by_depth: self.stiffness_n_m,
-            guard_by_rate: self.damping_n_s_m,
         }
     }
 }
@@ -116,32 +111,6 @@ impl ContactLaw {
             Self::HuntCrossley(law) => law.damping_s_m * law.spring_n(depth_m),
         }
     }
-
-    /// What rounding may leave of the guard and of the force where they are zero, for a distance of the
-    /// centres and a speed that are known to a few `ulps`.
-    pub(crate) fn round_off(
-        &self,
-        (penetration_m, normal_speed_m_s): (f64, f64),
-        (distance_m, speed_m_s): (f64, f64),
-        ulps: f64,
-    ) -> (f64, f64) {
-        match self {
-            Self::Linear(law) => {
-                let force_n =
-                    ulps * (law.stiffness_n_m * distance_m + law.damping_n_s_m * speed_m_s);
-                (force_n, force_n)
-            }
-            Self::HuntCrossley(law) => {
-                // The slope of the force is zero at A = 0: taken where rounding may have put A.
-                let (depth_m, rate_m_s) = (ulps * distance_m, ulps * speed_m_s);
-                let now = law.at(penetration_m.abs() + depth_m, normal_speed_m_s);
-                (
-                    now.guard_by_depth.abs() * depth_m + now.guard_by_rate * rate_m_s,
-                    now.by_depth_n_m.abs() * depth_m + now.by_rate_n_s_m * rate_m_s,
-                )
-            }
-        }
-    }
 }
 
 impl ContactParams {
@@ -150,16 +119,6 @@ impl ContactParams {
         match &self.law {
             ContactLaw::Linear(law) => law.stiffness_n_m,
             ContactLaw::HuntCrossley(law) => law.stiffness_n_m(self.clearance_m),
-        }
-    }
-
-    /// Whether a contact that ends at a penetration leaves a dent, which only the damper can.
-    pub(crate) fn leaves_dent(&self, penetration_m: f64) -> bool {
-        match &self.law {
-            ContactLaw::Linear(law) => law.damping_n_s_m > 0.0 && penetration_m > 0.0,
-            ContactLaw::HuntCrossley(law) => {
-                law.damping_s_m > 0.0 && penetration_m > NO_DENT * self.clearance_m
-            }
         }
     }
 }

@@ -1,96 +1,31 @@
-//! How time passes: flight and contact by power series, an explicit and a stiff method beside them, and
-//! the events between modes.
+//! By which method, how accurately and with how much work a run is integrated, and why it may end.
 
-pub(crate) mod contact_series;
-pub(crate) mod contact_step;
-mod crossings;
-pub(crate) mod dop853;
-pub(crate) mod driver;
 pub(crate) mod enough;
 pub(crate) mod first_fall;
-pub(crate) mod flight;
-pub(crate) mod flight_map;
-mod frame;
-mod lu;
-mod pair;
 pub(crate) mod progress;
-pub(crate) mod radau;
-mod radau_tableau;
-mod scales;
-pub(crate) mod series_readout;
-pub(crate) mod series_step;
-pub(crate) mod transitions;
 
-use crate::params::ContactLaw;
-
-/// λ·v from which the stiff method is taken with Hunt and Crossley's law. Measured on impacts sampled at
-/// 20 kHz the explicit pair is two to five times faster up to here; at 3e6 it runs out of steps.
-const OVERDAMPED_IMPACT: f64 = 1e4;
+use crate::params::{ParamError, check};
 
 /// How contact is integrated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Method {
-    /// [`Method::Series`], or [`Method::Stiff`] where the contact is so overdamped that stability and
-    /// not the tolerance would set the steps of the series. [`Method::Explicit`] or [`Method::Stiff`]
-    /// with a contact law that has no power series.
+    /// [`Method::Series`]; [`Method::Collocation`] with what has no power series, and where a contact is so overdamped that stability
+    /// and not the tolerance would set the steps of the series.
     #[default]
     Auto,
     /// Power series of the order that the tolerance asks for.
     Series,
-    /// The explicit pair of order 8(5,3).
-    Explicit,
-    /// L-stable collocation of order 9 in a frame that turns with the contact point.
-    Stiff,
+    /// Implicit collocation in eight points.
+    Collocation,
 }
 
 impl Method {
-    /// What [`Method::Auto`] comes to; the others stay.
-    ///
-    /// The linear law goes by its damping ratio ζ = d_c/(2√(k_c·m)) and the rate d_c/m at which the
-    /// damper stops the rotor.
-    /// The series must take about one step for every eight of the damper's time constants. Measured
-    /// at 20 samples a millisecond on rigid and elastic stators the two are equally fast at ten time
-    /// constants a sample (at forty below 1e-10), and the stiff method a hundred times faster at
-    /// ζ = 100 and k_c = 1e10 N/m. Where contact springs back it has no such advantage.
-    ///
-    /// Hunt and Crossley's law goes by λ·v with v the speed at the start: the rotor creeps out at 1/λ, over
-    /// about (n + 1)·λ·v of the damper's time constants. A rotor that touches at the start slides, rolls or rests there
-    /// for long, where the explicit pair has to follow a contact that does not move: in whirl it takes some
-    /// three hundred times as many steps.
-    pub(crate) fn resolved(
-        self,
-        law: &ContactLaw,
-        (speed_m_s, touching): (f64, bool),
-        mobility: f64,
-        rtol: f64,
-    ) -> Self {
-        if self != Self::Auto {
-            return self;
-        }
-        let worth = match law {
-            ContactLaw::Linear(law) => {
-                let rate_s = law.damping_n_s_m * mobility;
-                let ratio = 0.5 * rate_s / (law.stiffness_n_m * mobility).sqrt();
-                ratio > 2.0 && rate_s > if rtol < 1e-10 { 1e6 } else { 2.5e5 }
-            }
-            ContactLaw::HuntCrossley(law) => {
-                touching || law.damping_s_m * speed_m_s > OVERDAMPED_IMPACT
-            }
-        };
-        match (worth, law) {
-            (true, _) => Self::Stiff,
-            (false, ContactLaw::Linear(_)) => Self::Series,
-            (false, ContactLaw::HuntCrossley(_)) => Self::Explicit,
-        }
-    }
-
     /// Name as in scene files.
     pub fn name(self) -> &'static str {
         match self {
             Self::Auto => "auto",
             Self::Series => "series",
-            Self::Explicit => "explicit",
-            Self::Stiff => "stiff",
+            Self::Collocation => "collocation",
         }
     }
 }
@@ -117,6 +52,17 @@ impl Default for Options {
             steps_per_sample: 200_000,
             steps: 50_000_000,
         }
+    }
+}
+
+impl Options {
+    /// Checks the tolerance against its range.
+    ///
+    /// # Errors
+    /// A tolerance out of range.
+    pub fn validate(&self) -> Result<(), ParamError> {
+        let (rtol, range) = (self.rtol, "a number from 1e-14 to 0.01");
+        check((1e-14..=1e-2).contains(&rtol), "run.rtol", rtol, range)
     }
 }
 

@@ -6,9 +6,9 @@
 //!
 //! ```text
 //! params ─► build ─► Plant::advance(t_end, Inputs) ─► Snapshot, Meters, Audit
-//!                      flight:  power series, exact; wall crossing on the exact solution
-//!                      contact: power series too, guards of the mode as polynomials; an explicit
-//!                               pair for checks, Radau IIA for overdamped contact
+//!                      flight:  power series, or one matrix a sample
+//!                      contact: power series too, guards of the mode as polynomials; implicit collocation for checks, for
+//!                               overdamped contact and for what has no series
 //! ```
 //!
 //! A rotor of 10 kg in a rigid wall, pushed to it with 50 mm/s:
@@ -63,11 +63,10 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! [`machine`] is the same for a rotor that tilts, bends and touches in several planes.
+//! [`machine`] is a rotor that tilts, bends and touches in several planes; [`Plant`] is the one that does none of it.
 //!
 //! Files, each importing only from those above it: `vector`, `bisection`, `params`, `contact`, `friction`, `mode`, `energy`,
-//! `part`, `series`, `quadrature`, `ellipse`, `stator`, `spin`, `plane`, `magnet`, `system`, `tangent`, `readout`, `integrate`, `plant`,
-//! `machine`, `analysis`.
+//! `series`, `quadrature`, `ellipse`, `race`, `readout`, `integrate`, `machine`, `plant`, `analysis`.
 
 #![forbid(unsafe_code)]
 #![warn(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
@@ -80,26 +79,18 @@ pub mod energy;
 mod friction;
 mod integrate;
 pub mod machine;
-mod magnet;
 mod mode;
 pub mod params;
-mod part;
-mod plane;
 pub mod plant;
 mod quadrature;
+mod race;
 pub mod readout;
 mod series;
-mod spin;
-mod stator;
-mod system;
-mod tangent;
 mod vector;
 
 pub use integrate::{Fastest, Method, Options, PlantError};
 pub use mode::Mode;
 pub use params::Change;
-pub use part::Body;
-pub use plant::{BuildError, Plant, build, build_for_changes};
+pub use plant::{BuildError, Inputs, Plant, build};
 pub use readout::{HARD_IMPACT_M_S, Meters, Snapshot, Work};
-pub use system::Inputs;
-pub use vector::V2;
+pub use vector::{Body, V2};

@@ -77,6 +77,7 @@ mod holding;
 pub mod linear;
 mod orders;
 pub mod params;
+mod peaks;
 mod plane_series;
 pub mod point_mass;
 mod poles;

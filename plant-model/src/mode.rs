@@ -1,9 +1,10 @@
 //! Modes of motion: inside one mode the equations are smooth, between modes they jump.
 
 /// What the rotor does at an instant, as a reader sees it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash)]
 pub enum Mode {
     /// No contact.
+    #[default]
     Flight,
     /// Contact, sliding speed v_rel > 0: friction drives the rotor clockwise.
     SlipPositive,

@@ -215,8 +215,7 @@ pub struct Start {
 /// Parameters that take other values from an instant on; `None` stays as it is.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Change {
-    /// New eccentricity ε_r \[m\], ≥ 0: a lost blade. A plant that spins freely and starts balanced must be
-    /// built by [`crate::build_for_changes`].
+    /// New eccentricity ε_r \[m\], ≥ 0: a lost blade.
     pub eccentricity_m: Option<f64>,
     /// New coefficient of sliding friction, the same at every speed, ≥ 0.
     pub friction_coefficient: Option<f64>,
@@ -245,11 +244,20 @@ impl Change {
     }
 }
 
+/// A drive torque while the speed is held.
+pub(crate) fn not_while_held(torque_n_m: f64) -> ParamError {
+    ParamError {
+        field: "spin.drive_torque_n_m",
+        value: torque_n_m,
+        expected: "nothing while the speed is held",
+    }
+}
+
 const POSITIVE: &str = "a finite number greater than 0";
 const NOT_NEGATIVE: &str = "a finite number, 0 or greater";
 const FINITE: &str = "a finite number";
 
-fn check(
+pub(crate) fn check(
     ok: bool,
     field: &'static str,
     value: f64,

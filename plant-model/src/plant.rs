@@ -1,19 +1,18 @@
-//! The plant as its users see it: built once from [`PlantParams`], carried from sample to sample.
+//! A rotor of one point mass in one plane, as its users see it: built once from [`PlantParams`], carried from sample to sample.
+//!
+//! It is a [`Machine`] with one pair of coordinates; what stands here turns its data and its readings into those of one plane.
 
-use crate::ellipse::Ellipse;
+use crate::V2;
 use crate::energy::Audit;
-use crate::integrate::driver::Run;
 use crate::integrate::{Method, Options, PlantError};
-use crate::magnet::{Amplifier, Direct, Lagged};
+use crate::machine::params::{
+    MachineChange, MachineMagnet, MachineParams, MachinePlane, MachineStart, RigidRotor, Rotor,
+    Support, Unbalance,
+};
+use crate::machine::{Machine, MachineInputs, MachineSnapshot};
 use crate::mode::Mode;
-use crate::params::{Change, ParamError, PlantParams, SpinParams, Start, StatorParams};
-use crate::part::{Body, Part};
-use crate::plane::race::Race;
-use crate::plane::{Bore, Plane, Raceway};
+use crate::params::{Change, ParamError, PlantParams, Start, not_while_held};
 use crate::readout::{Meters, Snapshot, Work};
-use crate::spin::{Free, Held, Phased, Spin};
-use crate::stator::{OneMass, Rigid, Stator, TwoMass};
-use crate::system::{Inputs, State, StateOf, System};
 
 /// Why a plant could not be built.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
@@ -23,269 +22,229 @@ pub enum BuildError {
     Param(#[from] ParamError),
     /// The power series is asked for with a contact that has none.
     #[error(
-        "run.method = series: Hunt and Crossley's contact has no power series at the touch, and a \
-         bearing out of round none at all; take auto, explicit or stiff"
+        "run.method = series: Hunt and Crossley's contact and a bearing out of round have no power series; take auto or collocation"
     )]
     NoSeries,
 }
 
+/// What acts on the plant from outside, held until the next call.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Inputs {
+    /// Commanded magnet force \[N\]; limited to the magnet's cap, ignored without a magnet.
+    pub command_n: V2,
+    /// External force on the rotor, weight included \[N\].
+    pub external_n: V2,
+}
+
 /// A plant that is being run. Deterministic: the same calls give the same bits.
-pub trait Plant: Send {
+#[derive(Debug, Clone)]
+pub struct Plant {
+    machine: Machine,
+    inputs: MachineInputs,
+    mass_kg: f64,
+    eccentricity_m: f64,
+}
+
+/// Builds the plant of `params`.
+///
+/// # Errors
+/// [`BuildError::Param`] for the first value out of range, [`BuildError::NoSeries`].
+pub fn build(params: &PlantParams, start: &Start, options: Options) -> Result<Plant, BuildError> {
+    params.validate()?;
+    start.validate()?;
+    options.validate()?;
+    if options.method == Method::Series && !params.has_series() {
+        return Err(BuildError::NoSeries);
+    }
+    let start = MachineStart {
+        centre_m: start.position_m,
+        centre_velocity_m_s: start.velocity_m_s,
+        spin_rad_s: start.spin_rad_s,
+        spin_phase_rad: start.spin_phase_rad,
+        ..MachineStart::default()
+    };
+    let machine = Machine::new(&params.machine(), &start, options)
+        // Every value has been seen above, under the name that it has there.
+        .map_err(|error| ParamError {
+            field: "rotor",
+            value: error.value,
+            expected: error.expected,
+        })?;
+    let magnets = usize::from(params.magnet.is_some());
+    Ok(Plant {
+        machine,
+        inputs: MachineInputs {
+            commands_n: vec![V2::zeros(); magnets],
+            loads_n: vec![V2::zeros()],
+        },
+        mass_kg: params.rotor.mass_kg,
+        eccentricity_m: params.rotor.eccentricity_m,
+    })
+}
+
+impl crate::params::RotorParams {
+    fn unbalance(&self, eccentricity_m: f64) -> Unbalance {
+        Unbalance {
+            position_m: 0.0,
+            moment_kg_m: self.mass_kg * eccentricity_m,
+            angle_rad: 0.0,
+        }
+    }
+}
+
+impl PlantParams {
+    /// The same as a rotor that does not tilt, with everything in one plane.
+    pub fn machine(&self) -> MachineParams {
+        let rotor = &self.rotor;
+        MachineParams {
+            rotor: Rotor::Rigid(RigidRotor::point(rotor.mass_kg)),
+            supports: vec![Support {
+                stiffness_n_m: V2::repeat(rotor.stiffness_n_m),
+                damping_n_s_m: V2::repeat(rotor.damping_n_s_m),
+                ..Support::default()
+            }],
+            spin: self.spin,
+            unbalances: match rotor.eccentricity_m > 0.0 {
+                true => vec![rotor.unbalance(rotor.eccentricity_m)],
+                false => vec![],
+            },
+            magnets: (self.magnet.iter())
+                .map(|magnet| MachineMagnet {
+                    position_m: 0.0,
+                    force_max_n: magnet.force_max_n,
+                    lag_s: magnet.lag_s,
+                    lag_damping_ratio: None,
+                    poles: None,
+                })
+                .collect(),
+            loads_m: vec![0.0],
+            probes_m: vec![0.0],
+            gravity_m_s2: V2::zeros(),
+            planes: vec![MachinePlane {
+                position_m: 0.0,
+                centre_m: V2::zeros(),
+                radius_m: rotor.contact_radius_m,
+                contact: self.contact,
+                friction: self.friction,
+                stator: self.stator,
+                race: self.race,
+                load_drag: None,
+                heat: None,
+            }],
+        }
+    }
+}
+
+impl Plant {
     /// Carries the plant to `t_end_s` with `inputs` held. `on_change` is called right after each
     /// change of mode with what can be read off there.
     ///
     /// # Errors
     /// [`PlantError`]: the run cannot be trusted any further and must end.
-    fn advance(
-        &mut self,
-        t_end_s: f64,
-        inputs: &Inputs,
-        on_change: &mut dyn FnMut(&Snapshot),
-    ) -> Result<(), PlantError>;
-    /// Gives parameters other values from now on. Position, speeds and stored energy stay: none of these
-    /// parameters has a share in the stored energy, and what they do from here on is booked as before.
-    ///
-    /// # Errors
-    /// A value that is out of range, or that this plant has no part for. Then nothing has changed.
-    fn change(&mut self, change: &Change) -> Result<(), ParamError>;
-    /// What can be read off now.
-    fn snapshot(&self) -> Snapshot;
-    /// Mode now.
-    fn mode(&self) -> Mode;
-    /// Extremes and sums so far.
-    fn meters(&self) -> Meters;
-    /// The energy audit so far.
-    fn audit(&self) -> Audit;
-    /// Work done so far.
-    fn work(&self) -> Work;
-    /// Method that integrates contact; never [`Method::Auto`].
-    fn method(&self) -> Method;
-    /// Number of scalar states that this plant integrates in contact.
-    fn states(&self) -> usize;
-}
-
-impl<S: Stator, W: Spin, M: Amplifier, B: Bore, R: Raceway> Plant for Run<S, W, M, B, R> {
-    fn advance(
+    pub fn advance(
         &mut self,
         t_end_s: f64,
         inputs: &Inputs,
         on_change: &mut dyn FnMut(&Snapshot),
     ) -> Result<(), PlantError> {
-        Run::advance(self, t_end_s, inputs, on_change)
-    }
-    fn change(&mut self, change: &Change) -> Result<(), ParamError> {
-        Run::change(self, change)
-    }
-    fn snapshot(&self) -> Snapshot {
-        Run::snapshot(self)
-    }
-    fn mode(&self) -> Mode {
-        Run::mode(self)
-    }
-    fn meters(&self) -> Meters {
-        self.meters
-    }
-    fn audit(&self) -> Audit {
-        Run::audit(self)
-    }
-    fn work(&self) -> Work {
-        Run::work(self)
-    }
-    fn method(&self) -> Method {
-        Run::method(self)
-    }
-    fn states(&self) -> usize {
-        <StateOf<S, W, M, R> as Part>::STATES
-    }
-}
-
-/// Builds the plant that has exactly the parts of `params`: the one place that turns data into the
-/// right combination of types.
-///
-/// # Errors
-/// [`BuildError::Param`] for the first value out of range, [`BuildError::NoSeries`].
-pub fn build(
-    params: &PlantParams,
-    start: &Start,
-    options: Options,
-) -> Result<Box<dyn Plant>, BuildError> {
-    checked(params, start, options)?;
-    let phased = params.rotor.eccentricity_m > 0.0;
-    Ok(Parts {
-        params,
-        start,
-        options,
-        phased,
-    }
-    .with_stator())
-}
-
-/// [`build`] with a rotor whose angle is followed from the start, so that an unbalance may come later.
-///
-/// # Errors
-/// As [`build`].
-pub fn build_for_changes(
-    params: &PlantParams,
-    start: &Start,
-    options: Options,
-) -> Result<Box<dyn Plant>, BuildError> {
-    checked(params, start, options)?;
-    let phased = true;
-    Ok(Parts {
-        params,
-        start,
-        options,
-        phased,
-    }
-    .with_stator())
-}
-
-fn checked(params: &PlantParams, start: &Start, options: Options) -> Result<(), BuildError> {
-    params.validate()?;
-    start.validate()?;
-    if !(options.rtol >= 1e-14 && options.rtol <= 1e-2) {
-        return Err(BuildError::Param(ParamError {
-            field: "run.rtol",
-            value: options.rtol,
-            expected: "a number from 1e-14 to 0.01",
-        }));
-    }
-    if options.method == Method::Series && !params.has_series() {
-        return Err(BuildError::NoSeries);
-    }
-    Ok(())
-}
-
-/// What a plant is composed of, as data; each step turns one part into its type.
-#[derive(Clone, Copy)]
-struct Parts<'a> {
-    params: &'a PlantParams,
-    start: &'a Start,
-    options: Options,
-    /// Whether the angle of the rotor is followed also without an unbalance.
-    phased: bool,
-}
-
-impl Parts<'_> {
-    fn with_stator(self) -> Box<dyn Plant> {
-        match &self.params.stator {
-            StatorParams::Rigid => self.round(Rigid),
-            // A ball bearing out of round is refused: no race to ask for.
-            StatorParams::RigidEllipse(ellipse) => {
-                let clearance_m = self.params.contact.clearance_m;
-                self.with_spin(Rigid, Ellipse::new(ellipse, clearance_m))
+        self.inputs.commands_n.fill(inputs.command_n);
+        self.inputs.loads_n.fill(inputs.external_n);
+        let mut on_change = |_plane: usize, now: &MachineSnapshot| {
+            if let Some(now) = Snapshot::of(now) {
+                on_change(&now);
             }
-            StatorParams::OneMass(ring) => self.round(OneMass(*ring)),
-            StatorParams::TwoMass { inner, outer } => {
-                let (inner, outer) = (*inner, *outer);
-                self.round(TwoMass { inner, outer })
-            }
-        }
-    }
-
-    fn round<S: Stator>(self, stator: S) -> Box<dyn Plant> {
-        let Some(race) = &self.params.race else {
-            return self.with_spin(stator, ());
         };
-        let race = Race::new(self.params.bore_radius_m(), race);
-        self.with_amplifier(stator, self.phased_spin(), self.plane((), race))
+        self.machine.advance(t_end_s, &self.inputs, &mut on_change)
     }
 
-    fn phased_spin(self) -> Phased {
-        match self.params.spin {
-            SpinParams::Held => Phased {
-                inverse_inertia: 0.0,
-                drive_torque_n_m: 0.0,
-            },
-            SpinParams::Free {
-                inertia_kg_m2,
-                drive_torque_n_m,
-            } => Phased {
-                inverse_inertia: 1.0 / inertia_kg_m2,
-                drive_torque_n_m,
-            },
-        }
-    }
-
-    fn with_spin<S: Stator, B: Bore>(self, stator: S, bore: B) -> Box<dyn Plant> {
-        let plane = self.plane(bore, ());
-        match self.params.spin {
-            SpinParams::Held => {
-                let held = Held {
-                    spin_rad_s: self.start.spin_rad_s,
-                    phase_rad: self.start.spin_phase_rad,
-                };
-                self.with_amplifier(stator, held, plane)
+    /// Gives parameters other values from now on. Position, speeds and stored energy stay: none of these
+    /// parameters has a share in the stored energy, and what they do from here on is booked as before.
+    ///
+    /// # Errors
+    /// A value that is out of range, or that this plant has no part for. Then nothing has changed.
+    pub fn change(&mut self, change: &Change) -> Result<(), ParamError> {
+        change.validate()?;
+        let unbalance = change.eccentricity_m.map(|eccentricity_m| {
+            // What is there stays, with the difference added at its angle or against it.
+            let more_m = eccentricity_m - self.eccentricity_m;
+            Unbalance {
+                position_m: 0.0,
+                moment_kg_m: self.mass_kg * more_m.abs(),
+                angle_rad: if more_m < 0.0 {
+                    std::f64::consts::PI
+                } else {
+                    0.0
+                },
             }
-            SpinParams::Free { .. } if self.phased => {
-                self.with_amplifier(stator, self.phased_spin(), plane)
-            }
-            SpinParams::Free {
-                inertia_kg_m2,
-                drive_torque_n_m,
-            } => {
-                let free = Free {
-                    inertia_kg_m2,
-                    drive_torque_n_m,
-                };
-                self.with_amplifier(stator, free, plane)
-            }
-        }
+        });
+        let changed = self.machine.change(&MachineChange {
+            unbalance,
+            friction_coefficient: change.friction_coefficient,
+            drive_torque_n_m: change.drive_torque_n_m,
+        });
+        changed.map_err(|error| not_while_held(error.value))?;
+        self.eccentricity_m = change.eccentricity_m.unwrap_or(self.eccentricity_m);
+        Ok(())
     }
 
-    fn plane<B, R>(&self, bore: B, race: R) -> Plane<B, R> {
-        Plane {
-            radius_m: self.params.rotor.contact_radius_m,
-            contact: self.params.contact,
-            friction: self.params.friction,
-            bore,
-            race,
-        }
+    /// What can be read off now.
+    pub fn snapshot(&mut self) -> Snapshot {
+        let now = self.machine.snapshot();
+        Snapshot::of(&now).unwrap_or_default()
     }
 
-    fn with_amplifier<S: Stator, W: Spin, B: Bore, R: Raceway>(
-        self,
-        stator: S,
-        spin: W,
-        plane: Plane<B, R>,
-    ) -> Box<dyn Plant> {
-        match self.params.magnet {
-            Some(magnet) if magnet.lag_s > 0.0 => {
-                let lagged = Lagged {
-                    lag_s: magnet.lag_s,
-                };
-                self.compose(stator, spin, plane, lagged)
-            }
-            _ => self.compose(stator, spin, plane, Direct),
-        }
+    /// Mode now.
+    pub fn mode(&self) -> Mode {
+        self.machine.mode(0).unwrap_or_default()
     }
 
-    fn compose<S: Stator, W: Spin, M: Amplifier, B: Bore, R: Raceway>(
-        self,
-        stator: S,
-        spin: W,
-        plane: Plane<B, R>,
-        amplifier: M,
-    ) -> Box<dyn Plant> {
-        let Self { params, start, .. } = self;
-        let system = System {
-            rotor: params.rotor,
-            plane,
-            stator,
-            spin,
-            amplifier,
-        };
-        let state = State {
-            rotor: Body {
-                position: start.position_m,
-                velocity: start.velocity_m_s,
-            },
-            stator: S::State::default(),
-            spin: spin.start(start.spin_rad_s, start.spin_phase_rad),
-            race: plane.race.start(),
-            force: M::State::default(),
-        };
-        let force_max_n = params.magnet.map_or(0.0, |m| m.force_max_n);
-        Box::new(Run::new(system, state, force_max_n, self.options))
+    /// Extremes and sums so far.
+    pub fn meters(&self) -> Meters {
+        self.machine.meters().first().copied().unwrap_or_default()
+    }
+
+    /// The energy audit so far.
+    pub fn audit(&self) -> Audit {
+        self.machine.audit()
+    }
+
+    /// Work done so far.
+    pub fn work(&self) -> Work {
+        self.machine.work()
+    }
+
+    /// Method that integrates contact; never [`Method::Auto`].
+    pub fn method(&self) -> Method {
+        self.machine.method()
+    }
+
+    /// Number of scalar states that this plant integrates in contact.
+    pub fn states(&self) -> usize {
+        self.machine.states()
+    }
+}
+
+impl Snapshot {
+    /// Of the one plane of a machine.
+    fn of(now: &MachineSnapshot) -> Option<Self> {
+        let plane = now.planes().next()?;
+        Some(Self {
+            t_s: now.t_s,
+            position_m: plane.rotor.position,
+            velocity_m_s: plane.rotor.velocity,
+            inner_ring: plane.ring,
+            outer_ring: plane.outer_ring,
+            spin_rad_s: now.spin_rad_s,
+            race_spin_rad_s: plane.race_spin_rad_s,
+            mode: plane.mode,
+            penetration_m: plane.penetration_m,
+            normal_force_n: plane.normal_force_n,
+            sliding_force_n: plane.sliding_force_n,
+            rolling_force_n: plane.rolling_force_n,
+            contact_tangential_speed_m_s: plane.whirl_speed_m_s,
+            sliding_speed_m_s: plane.sliding_speed_m_s,
+            delivered_n: now.delivered_n().next().unwrap_or_default(),
+            whirl_angle_rad: plane.whirl_angle_rad,
+        })
     }
 }

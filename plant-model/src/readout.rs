@@ -2,11 +2,10 @@
 
 use crate::V2;
 use crate::mode::Mode;
-use crate::part::Body;
-use crate::system::Touch;
+use crate::vector::Body;
 
 /// What can be read off at an instant, SI units.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Snapshot {
     /// Time \[s\].
     pub t_s: f64,
@@ -81,46 +80,6 @@ pub(crate) struct Peaks {
     pub(crate) backward_m_s: f64,
 }
 
-impl Peaks {
-    /// From what is known at both ends of a step, and the sliding force inside it for a place θ and the normal force
-    /// there.
-    pub(crate) fn between(
-        [start, end]: &[Touch; 2],
-        step_s: f64,
-        backward: f64,
-        sliding_n: impl FnOnce(f64, f64) -> f64,
-    ) -> Self {
-        let (top, normal_n) = maximum_over_step(
-            (start.normal_n, start.normal_rate_n_s),
-            (end.normal_n, end.normal_rate_n_s),
-            step_s,
-        );
-        // Where slip ends inside the step the friction at its end belongs to no mode: no more than
-        // the cone holds.
-        let at = |touch: &Touch| touch.sliding_n.abs().min(touch.cone_n.max(0.0));
-        let mut sliding = at(start).max(at(end));
-        if top > 0.0 && top < 1.0 {
-            sliding = sliding.max(sliding_n(top, normal_n).abs());
-        }
-        let (_, penetration_m) = maximum_over_step(
-            (start.penetration_m, start.normal_speed_m_s),
-            (end.penetration_m, end.normal_speed_m_s),
-            step_s,
-        );
-        let whirl = |touch: &Touch| {
-            let (speed, rate) = (touch.whirl_speed_m_s, touch.whirl_acceleration);
-            (backward * speed, backward * rate)
-        };
-        let (_, backward_m_s) = maximum_over_step(whirl(start), whirl(end), step_s);
-        Self {
-            normal_n,
-            penetration_m,
-            sliding_n: sliding,
-            backward_m_s,
-        }
-    }
-}
-
 impl Meters {
     /// Largest values of the steps so far, on a rotor of this radius.
     pub(crate) fn peaks(&self, radius_m: f64) -> Peaks {
@@ -150,43 +109,14 @@ impl Meters {
     }
 }
 
-/// Maximum of a smooth quantity over a step from its value and rate at both ends, and where, as a share of the step:
-/// where it rises and then falls, the top of the cubic through them.
-fn maximum_over_step((f0, rate0): (f64, f64), (f1, rate1): (f64, f64), step_s: f64) -> (f64, f64) {
-    let ends = if f0 > f1 { (0.0, f0) } else { (1.0, f1) };
-    if !(rate0 > 0.0 && rate1 < 0.0) {
-        return ends;
-    }
-    let (d0, d1) = (rate0 * step_s, rate1 * step_s);
-    let a = 2.0 * (f0 - f1) + d0 + d1;
-    let b = 3.0 * (f1 - f0) - 2.0 * d0 - d1;
-    // 3a·x² + 2b·x + d0 = 0; the root with falling slope, in the form that does not cancel.
-    let root = (b * b - 3.0 * a * d0).max(0.0).sqrt();
-    let x = if b <= 0.0 {
-        d0 / (root - b)
-    } else {
-        -(b + root) / (3.0 * a)
-    };
-    if x > 0.0 && x < 1.0 {
-        (x, f0 + x * (d0 + x * (b + x * a)))
-    } else {
-        ends
-    }
-}
-
-/// How much work the contact integrator did.
+/// How much work integration did, flight between samples by one matrix apart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Work {
-    /// Accepted steps.
+    /// Steps.
     pub steps: u64,
-    /// Rejected steps.
-    pub rejected: u64,
-    /// Evaluations of the right-hand side. A series counts as many as it has coefficients, a Jacobian
-    /// as one.
+    /// Evaluations of the equations. A series counts as many as it has coefficients.
     pub evaluations: u64,
-    /// Jacobians taken.
-    pub jacobians: u64,
-    /// Factorisations of the stiff method's matrices, once for each step size tried.
+    /// Factorisations of collocation's matrices.
     pub factorisations: u64,
     /// Events found.
     pub events: u64,

@@ -20,9 +20,6 @@ pub(crate) const INVERSE: [f64; LENGTH + 1] = {
     table
 };
 
-/// Largest product of step and fastest rate; twenty terms leave 1/21! = 2e-20, below round-off.
-pub(crate) const MAX_PHASE: f64 = 1.0;
-
 /// Σ a_i·b_{n−i} from `first` to n. Two sums side by side: one alone would wait for each addition to finish before it began the next.
 #[inline(always)]
 fn convolve<A, B, T>(
@@ -109,15 +106,6 @@ impl Series {
         sum.x + sum.y
     }
 
-    /// Coefficient k of a × b.
-    #[inline]
-    pub(crate) fn cross_coefficient(&self, other: &Self, k: usize) -> f64 {
-        let sum = convolve(&self.0, &other.0, (0, k), |a, b| {
-            V2::new(a.x * b.y, a.y * b.x)
-        });
-        sum.x - sum.y
-    }
-
     /// Coefficient k of the product with a scalar series.
     #[inline]
     pub(crate) fn times_coefficient(&self, other: &Scalar, k: usize) -> V2 {
@@ -149,12 +137,6 @@ impl Scalar {
     #[inline]
     pub(crate) fn product_coefficient(&self, other: &Self, k: usize) -> f64 {
         convolve(&self.0, &other.0, (0, k), |a, b| a * b)
-    }
-
-    /// The same without the term that holds the other series' coefficient k.
-    #[inline]
-    pub(crate) fn product_coefficient_below(&self, other: &Self, k: usize) -> f64 {
-        convolve(&self.0, &other.0, (1, k), |a, b| a * b)
     }
 
     /// Values at several θ.
@@ -202,17 +184,4 @@ impl Scalar {
         }
         sum
     }
-}
-
-/// Number of terms after which the remainder of a series with the given phase (fastest rate × step,
-/// at most [`MAX_PHASE`]) is below round-off.
-pub(crate) fn order_for(phase: f64) -> usize {
-    let mut term = 1.0;
-    for (k, inverse) in INVERSE.iter().enumerate().take(MAX_ORDER).skip(1) {
-        term *= phase * inverse;
-        if term < 1e-18 {
-            return k.max(3);
-        }
-    }
-    MAX_ORDER
 }

@@ -27,7 +27,7 @@ REFERENCES = {
 FINEST = "diffsol tsit45"
 TARGET = 1e-7  # error / clearance at which times are compared
 LEVELS = (1e-3, 1e-5, 1e-7, 1e-9)
-SERIES, STIFF, AUTO = "project, series", "project, stiff", "project, auto"
+SERIES, COLLOCATION, AUTO = "project, series", "project, collocation", "project, auto"
 # Claim: on B1 the series reaches TARGET this many times as fast as the faster solver of each peer.
 CLAIMS = (("ivp", 2), ("CVODE", 10), ("SciPy", 100))
 PLOTTED = ("B1", "B2", "B3c")
@@ -211,15 +211,15 @@ def count(found):
 
 def evaluations(results):
     rows = []
-    for problem in (p for p in results.problems if results.of(p, STIFF)):
+    for problem in (p for p in results.problems if p.startswith("B3")):
         for level in LEVELS:
-            own = [results.best(problem, level, [s], "evaluations") for s in (SERIES, STIFF)]
+            own = [results.best(problem, level, [s], "evaluations") for s in (SERIES, COLLOCATION)]
             peer = results.best(problem, level, peers(results), "evaluations")
             name = f"{peer['solver']}: " if peer else ""
             rows.append([problem, clearances(level), *map(count, own), name + count(peer)])
             least = min((o["evaluations"] for o in own if o), default=None)
             rows[-1].append(f"{peer['evaluations'] / least:.2f}" if peer and least else "–")
-    header = ["problem", "error", "project, series", "project, stiff", "best peer"]
+    header = ["problem", "error", "project, series", "project, collocation", "best peer"]
     return table([*header, "peer / project"], rows)
 
 
@@ -320,8 +320,7 @@ def machine():
 # Colour, marker, dashes; all on white, told apart without colour too.
 STYLES = {
     "project, series": ("#08306b", "circle", ""),
-    "project, explicit": ("#4292c6", "square", ""),
-    "project, stiff": ("#008080", "diamond", ""),
+    "project, collocation": ("#008080", "diamond", ""),
     "ivp DOP853": ("#d62728", "triangle", ""),
     "CVODE Adams": ("#e08214", "square", "6 3"),
     "CVODE BDF": ("#8c510a", "circle", "6 3"),

@@ -37,7 +37,7 @@ use crate::scene::policy_kind::PolicyKind;
 use crate::scene::spec::Spec;
 use crate::scene::suggest::{Decided, Nominal};
 use plant_model::params::{PlantParams, Start};
-use plant_model::{BuildError, Method, Options, Plant, V2, build, build_for_changes};
+use plant_model::{BuildError, Method, Options, Plant, V2, build};
 use std::path::Path;
 
 /// A scene that can be run: every value checked.
@@ -133,13 +133,11 @@ impl Scene {
         Spec::parse(name, text)?.resolve()
     }
 
-    /// A scene's plant at its start, with what its changes need.
+    /// A scene's plant at its start.
     ///
     /// # Errors
     /// [`BuildError`] for the first value out of range.
-    pub fn build(&self, options: Options) -> Result<Box<dyn Plant>, BuildError> {
-        let unbalances = (self.changes.iter()).any(|c| c.change.eccentricity_m.is_some());
-        let build = if unbalances { build_for_changes } else { build };
+    pub fn build(&self, options: Options) -> Result<Plant, BuildError> {
         build(&self.plant, &self.start, options)
     }
 

@@ -26,7 +26,7 @@ pub(crate) struct Plant {
 }
 
 struct State {
-    plane: Box<dyn Plane>,
+    plane: Plane,
     /// Why it cannot be trusted any further.
     broken: Option<PlantError>,
 }

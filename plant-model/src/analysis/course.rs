@@ -2,9 +2,8 @@
 
 use super::whirl::{WhirlMeter, WhirlReading};
 use crate::mode::Mode;
-use crate::plant::Plant;
+use crate::plant::{Inputs, Plant};
 use crate::readout::Snapshot;
-use crate::system::Inputs;
 use crate::{PlantError, V2};
 use std::f64::consts::TAU;
 
@@ -85,7 +84,7 @@ pub struct Course {
 ///
 /// # Errors
 /// [`PlantError`] of the run.
-pub fn follow(plant: &mut dyn Plant, watch: &Watch) -> Result<Course, PlantError> {
+pub fn follow(plant: &mut Plant, watch: &Watch) -> Result<Course, PlantError> {
     let mut course = Course::default();
     let mut meter = WhirlMeter::new(watch.window_s);
     let mut open: Option<f64> = None;

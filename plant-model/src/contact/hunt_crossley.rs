@@ -56,8 +56,6 @@ impl HuntCrossley {
             by_depth_n_m: self.exponent * k * bracket,
             by_rate_n_s_m: spring_n * self.damping_s_m,
             guard: sign * penetration_m * bracket,
-            guard_by_depth: sign * bracket,
-            guard_by_rate: sign * penetration_m * self.damping_s_m,
         }
     }
 
@@ -328,8 +326,6 @@ mod tests {
                     let near = |x: f64, y: f64| (x - y).abs() <= 1e-8 * y.abs();
                     assert!(near(slope(|x| x.force_n, [da, 0.0], da), now.by_depth_n_m));
                     assert!(near(slope(|x| x.force_n, [0.0, db], db), now.by_rate_n_s_m));
-                    assert!(near(slope(|x| x.guard, [da, 0.0], da), now.guard_by_depth));
-                    assert!(near(slope(|x| x.guard, [0.0, db], db), now.guard_by_rate));
                     let holds = a > 0.0 && 1.0 + 1.5 * b > 0.0;
                     assert_eq!(now.guard > 0.0, holds);
                     assert!(a < 0.0 || (now.force_n > 0.0) == holds);

@@ -5,7 +5,7 @@ use super::{Options, PlantError};
 /// Events without time in between from which on modes are taken to follow each other in a circle, and those that are too many.
 const CIRCLE: u32 = 4;
 const MOST_AT_ONCE: u32 = 50;
-/// Steps in a row that a machine may take without getting farther than a moment each: time that creeps is time that stands still.
+/// Steps in a row that a machine may take without getting on: time that creeps is time that stands still.
 const MOST_CREEPING: u32 = 1000;
 
 /// Events at one instant, steps in this sample and steps of the run so far.
@@ -62,7 +62,7 @@ impl Progress {
         Ok(())
     }
 
-    /// The same step, whether time has got no farther in it than a moment.
+    /// The same step, whether time has got on in it.
     pub(crate) fn creeps(&mut self, t_s: f64, creeps: bool) -> Result<(), PlantError> {
         self.creeping = if creeps { self.creeping + 1 } else { 0 };
         if self.creeping > MOST_CREEPING {

@@ -212,8 +212,9 @@ impl UnbalancePort {
 /// The body.
 #[derive(Debug, Clone)]
 pub(crate) struct LinearBody {
-    /// Number of pairs.
+    /// Number of pairs, and how many of them are the rotor's: the first ones.
     pub(crate) pairs: usize,
+    pub(crate) rotor_pairs: usize,
     rotor: Rotor,
     pub(crate) stiffness: Coupling,
     /// The part of the stiffness in which nothing is stored: what of it goes round.
@@ -365,6 +366,7 @@ impl LinearBody {
         let ports = |places: &mut dyn Iterator<Item = f64>| places.map(at).collect::<Vec<_>>();
         let mut body = Self {
             pairs,
+            rotor_pairs: rotor,
             rotor: params.rotor.clone(),
             stiffness: stiffness.tidied(),
             swirl: swirl.tidied(),

@@ -1,7 +1,7 @@
 //! A second way through a step of a machine, to hold the series against: collocation in Gauss's eight points.
 //!
 //! Accelerations are a polynomial of degree 7 in θ = time / step that meets the equations of motion at the points, found by
-//! iteration; speeds and positions are its integrals. Nothing here knows a recurrence: forces are those of an instant, held
+//! iteration, with the walls' forces at all points [together](walls); speeds and positions are its integrals. Nothing here knows a recurrence: forces are those of an instant, held
 //! speeds are held there, and what laws say may be anything smooth, as friction that falls with speed. How well the polynomial meets
 //! the equations where it does not have to, at the end of the step, says how good it is.
 //!
@@ -9,6 +9,7 @@
 
 mod equations;
 mod tables;
+mod walls;
 
 use self::tables::Tables;
 use super::holding::Holding;
@@ -48,11 +49,18 @@ struct Touch {
     force_n: f64,
     /// What is positive while contact lasts.
     lift: f64,
+    penetration_m: f64,
     whirl_m_s: f64,
     slip_m_s: f64,
     sliding_n: f64,
     rolling_n: f64,
     normal: V2,
+    /// Of the contact law.
+    by_depth_n_m: f64,
+    by_rate_n_s_m: f64,
+    /// Friction over the normal force, where it is in proportion to it.
+    sliding_share: f64,
+    rolling_share: f64,
 }
 
 /// An instant: state, its rates, and what the planes say.
@@ -68,6 +76,14 @@ struct Instant {
     magnets_n: Vec<V2>,
     unbalance: V2,
     touches: Vec<Touch>,
+}
+
+/// Rates of what is not a coordinate.
+#[derive(Debug, Clone)]
+struct Others {
+    spin: f64,
+    magnets: Vec<V2>,
+    races: Vec<f64>,
 }
 
 /// Scales against which errors of speed, spin and magnets are weighed.
@@ -89,11 +105,12 @@ pub(crate) struct Collocation {
     tables: Tables,
     instants: Vec<Instant>,
     holding: Holding,
-    before: Vec<V2>,
-    magnets_before: Vec<V2>,
-    races_before: Vec<f64>,
-    /// How often the equations have been evaluated.
+    /// Accelerations at the points that an iteration started from, and the other rates there.
+    before: Vec<Vec<V2>>,
+    others_before: Vec<Others>,
+    /// How often the equations have been evaluated, and the walls' matrix factorised.
     pub(crate) evaluations: u64,
+    pub(crate) factorisations: u64,
 }
 
 impl Collocation {
@@ -118,10 +135,17 @@ impl Collocation {
             tables: Tables::new(),
             instants: vec![instant; POINTS],
             holding: Holding::new(pairs),
-            before: vec![V2::zeros(); pairs],
-            magnets_before: vec![V2::zeros(); magnets],
-            races_before: vec![0.0; planes],
+            before: vec![vec![V2::zeros(); pairs]; POINTS],
+            others_before: vec![
+                Others {
+                    spin: 0.0,
+                    magnets: vec![V2::zeros(); magnets],
+                    races: vec![0.0; planes],
+                };
+                POINTS
+            ],
             evaluations: 0,
+            factorisations: 0,
         }
     }
 
@@ -138,12 +162,16 @@ impl Collocation {
         let mut last = f64::INFINITY;
         let mut settled = false;
         for iteration in 0..ITERATIONS {
-            let mut change: f64 = 0.0;
-            // Each point sees what those before it have just come to.
             for i in 1..END {
                 self.place(step, y, i);
-                change = change.max(self.renew(step, i, scales));
             }
+            for i in 1..END {
+                self.renew(step, i);
+            }
+            self.answer(step);
+            let change = (1..END)
+                .map(|i| self.change(step, i, scales))
+                .fold(0.0, f64::max);
             settled = change <= scales.rounding.max(1e-2);
             if settled || (iteration > 3 && change > 0.5 * last) {
                 break;
@@ -197,29 +225,32 @@ impl Collocation {
         self.instants[i].y = y;
     }
 
-    /// Evaluates a point again; by how much its rates have changed.
-    fn renew(&mut self, step: &Step<'_>, i: usize, scales: &Scales) -> f64 {
-        self.before.copy_from_slice(&self.instants[i].acceleration);
-        let spin = self.instants[i].spin_rate;
-        self.magnets_before
-            .copy_from_slice(&self.instants[i].magnet_rates);
-        self.races_before
-            .copy_from_slice(&self.instants[i].race_rates);
+    /// Evaluates a point again, and keeps what was there.
+    fn renew(&mut self, step: &Step<'_>, i: usize) {
+        let (instant, others) = (&self.instants[i], &mut self.others_before[i]);
+        self.before[i].copy_from_slice(&instant.acceleration);
+        others.spin = instant.spin_rate;
+        others.magnets.copy_from_slice(&instant.magnet_rates);
+        others.races.copy_from_slice(&instant.race_rates);
         self.evaluate(step, i);
-        let now = &self.instants[i];
-        let off = now.acceleration.iter().zip(&self.before);
+    }
+
+    /// By how much the rates of a point have changed, in units of the scales.
+    fn change(&self, step: &Step<'_>, i: usize, scales: &Scales) -> f64 {
+        let (now, others) = (&self.instants[i], &self.others_before[i]);
+        let off = now.acceleration.iter().zip(&self.before[i]);
         let moved: f64 = off.map(|(a, b)| (a - b).norm_squared()).sum();
-        let magnets = now.magnet_rates.iter().zip(&self.magnets_before);
+        let magnets = now.magnet_rates.iter().zip(&others.magnets);
         let magnet = (magnets.zip(&step.system.magnets))
             .map(|((a, b), law)| law.per_state_n() * (a - b).norm())
             .fold(0.0, f64::max);
-        let races = now.race_rates.iter().zip(&self.races_before);
+        let races = now.race_rates.iter().zip(&others.races);
         let race = (races.zip(&step.system.planes))
             .map(|((a, b), data)| data.race_radius_m() * (a - b).abs())
             .fold(0.0, f64::max);
         step.step_s
             * (moved.sqrt() * scales.velocity)
-                .max((now.spin_rate - spin).abs() * scales.spin)
+                .max((now.spin_rate - others.spin).abs() * scales.spin)
                 .max(magnet * scales.force)
                 .max(race * scales.speed)
     }
@@ -275,11 +306,13 @@ impl Collocation {
                 ((value(end) - through).abs() - ROUNDING * size).max(0.0)
             };
             let stiffness_n_m = step.system.planes[p].stiffness_n_m;
-            let (grip_n, per_n) = (stiffness_n_m * end.distance_m, scales.gap / stiffness_n_m);
+            let grip_n = stiffness_n_m * end.distance_m;
+            // What the contact makes of errors of distance and of speed that are within the tolerance.
+            let per_n = 1.0 / (stiffness_n_m / scales.gap + end.by_rate_n_s_m / scales.speed);
             worst = (worst.max(off(grip_n, &|t| t.force_n) * per_n))
                 .max(off(grip_n, &|t| t.sliding_n) * per_n)
                 .max(off(grip_n, &|t| t.rolling_n) * per_n)
-                .max(off(end.distance_m, &|t| t.distance_m) * scales.gap)
+                .max(off(end.distance_m, &|t| t.penetration_m) * scales.gap)
                 .max(off(end.whirl_m_s.abs(), &|t| t.whirl_m_s) * scales.speed);
         }
         worst
@@ -349,6 +382,17 @@ impl Collocation {
                 plane.gap_rate.0[k] = rows.gap_rate(p, k);
             });
             let per_m = |at: &Instant| 1.0 / at.touches[p].distance_m;
+            if system.planes[p].bore.is_some() {
+                // From the centre of curvature, which moves.
+                for axis in [0, 1] {
+                    let mut one = Scalar::default();
+                    self.through(&mut one, |at| {
+                        at.touches[p].distance_m * at.touches[p].normal[axis]
+                    });
+                    put(&mut plane.gap, axis, &one);
+                }
+                self.through(&mut plane.depth, |at| at.touches[p].penetration_m);
+            }
             plane.grip = Grip::none(system, p);
             self.through(&mut plane.distance, |at| at.touches[p].distance_m);
             self.through(&mut plane.force, |at| at.touches[p].force_n);

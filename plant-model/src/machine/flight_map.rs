@@ -14,6 +14,8 @@ use nalgebra::DMatrix;
 
 /// Samples of the same length at the same spin from which on a map pays: it costs as much as hundreds of them.
 const REPEATS: u32 = 256;
+/// Ways in which work is done that the map books.
+const DOORS: usize = 5;
 /// Step lengths count as the same up to this share of themselves: it is the clock that rounds.
 const SAME: f64 = 1e-9;
 
@@ -41,9 +43,9 @@ pub(crate) struct FlightMap {
     end: Vec<f64>,
     /// Bound of each plane's way, x and y.
     reach: Vec<f64>,
-    /// Quadratic forms of the work: rotor damping, magnets that lag, unbalance, stiffness that goes round; the upper triangle row by row, with what
-    /// stands below added to it. Empty where there is none.
-    works: [Vec<f64>; 4],
+    /// Quadratic forms of the work: rotor damping, magnets that lag, unbalance, stiffness that goes round, dampers of rings; the upper
+    /// triangle row by row, with what stands below added to it. Empty where there is none.
+    works: [Vec<f64>; DOORS],
     /// Σ z·zᵀ over the samples flown, likewise: the forms are asked for by those who read the audit, not in every sample.
     moments: Vec<f64>,
     /// What they made of the samples under earlier maps.
@@ -86,7 +88,7 @@ impl FlightMap {
             let along = |row: usize| dot(&self.reach[row * d..(row + 1) * d], &self.size);
             let centre = system.planes[p].centre_m.abs();
             let (x, y) = (along(2 * p) + centre.x, along(2 * p + 1) + centre.y);
-            let clearance = system.planes[p].clearance_m;
+            let clearance = system.planes[p].nearest_m();
             if x * x + y * y >= clearance * clearance {
                 return None;
             }
@@ -152,8 +154,8 @@ impl FlightMap {
     /// Work of rotor damping, lagging magnets and unbalance over all samples flown so far.
     pub(crate) fn works(&self) -> Flows {
         let work = |form: &Vec<f64>| dot(form, &self.moments);
-        let [rotor_damping, control, unbalance, external] =
-            [0, 1, 2, 3].map(|w| work(&self.works[w]));
+        let [rotor_damping, control, unbalance, external, stator_damping] =
+            [0, 1, 2, 3, 4].map(|w| work(&self.works[w]));
         let mut all = self.booked;
         all.add_scaled(
             1.0,
@@ -161,6 +163,7 @@ impl FlightMap {
                 control,
                 unbalance,
                 rotor_damping,
+                stator_damping,
                 external,
                 ..Flows::default()
             },
@@ -310,7 +313,7 @@ impl FlightMap {
     }
 
     /// ∫ z(θ)ᵀ·M·z(θ) dt as a form of z(0), for the power zᵀ·M·z through each door.
-    fn make_works(&self, system: &MachineSystem, a: &DMatrix<f64>) -> [Vec<f64>; 4] {
+    fn make_works(&self, system: &MachineSystem, a: &DMatrix<f64>) -> [Vec<f64>; DOORS] {
         let (body, d) = (&system.body, a.nrows());
         let Layout {
             n,
@@ -318,9 +321,11 @@ impl FlightMap {
             direction,
             ..
         } = self.layout;
-        let mut powers = [(); 4].map(|()| DMatrix::zeros(d, d));
+        let mut powers = [(); DOORS].map(|()| DMatrix::zeros(d, d));
         for (row, column, value) in body.damping.entries() {
-            powers[0][(n + row, n + column)] += value;
+            // Of the rotor, or of a ring.
+            let door = if row < 2 * body.rotor_pairs { 0 } else { 4 };
+            powers[door][(n + row, n + column)] += value;
         }
         for (row, column, value) in body.swirl.entries() {
             powers[3][(n + row, column)] -= value / self.rate;
@@ -350,7 +355,7 @@ impl FlightMap {
         let nodes = Nodes::stretched(&EIGHT, 1.0 / parts);
         let within = nodes.theta.map(|theta| (a * theta).exp());
         let mut from = DMatrix::identity(d, d);
-        let mut works = [(); 4].map(|()| DMatrix::zeros(d, d));
+        let mut works = [(); DOORS].map(|()| DMatrix::zeros(d, d));
         for _ in 0..parts as usize {
             for (j, inner) in within.iter().enumerate() {
                 let at = inner * &from;

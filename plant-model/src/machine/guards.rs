@@ -1,8 +1,7 @@
 //! What ends a mode of a plane, as polynomials over a step.
 
 use super::plane_series::PlaneSeries;
-use super::system::PlaneData;
-use crate::integrate::driver::ON_WALL;
+use super::system::{ON_WALL, PlaneData};
 use crate::mode::{Phase, Slide, Whirl};
 use crate::series::Scalar;
 
@@ -82,15 +81,24 @@ impl Guard {
         match self {
             Self::Gap => {
                 let start = plane.gap.0[0].abs().sum();
-                if start + plane.gap.reach(theta, order) < data.clearance_m {
+                if start + plane.gap.reach(theta, order) < data.nearest_m() {
                     return None;
                 }
                 let per = 1.0 / data.clearance_m;
+                let squeezed = data.bore.map(|bore| {
+                    let mut gap = plane.gap;
+                    for c in &mut gap.0[..=order] {
+                        *c = bore.to_circle(*c, data.clearance_m);
+                    }
+                    gap
+                });
+                let gap = squeezed.as_ref().unwrap_or(&plane.gap);
                 for k in 0..=order {
-                    out.0[k] = -per * plane.gap.dot_coefficient(&plane.gap, k);
+                    out.0[k] = -per * gap.dot_coefficient(gap, k);
                 }
                 out.0[0] += data.clearance_m;
             }
+            Self::Beyond if data.bore.is_some() => return Some(&plane.depth),
             Self::Beyond => {
                 out.0[..=order].copy_from_slice(&plane.distance.0[..=order]);
                 out.0[0] -= data.clearance_m;

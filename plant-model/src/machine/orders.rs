@@ -5,10 +5,10 @@ use crate::V2;
 use crate::series::{LENGTH, MAX_ORDER};
 use crate::vector::perp;
 
-/// What an order needs beside the series: the clearance, step over k + 1 and its inverse.
+/// What an order needs beside the series: ρ on the wall, step over k + 1 and its inverse.
 #[derive(Clone, Copy)]
 pub(super) struct Order {
-    pub(super) clearance_m: f64,
+    pub(super) wall_m: f64,
     pub(super) next: f64,
     pub(super) per_next: f64,
 }
@@ -73,7 +73,7 @@ fn extend<const K: usize, const HOLDS: bool>(plane: &mut PlaneSeries, order: Ord
     distance[K + 1] = rho;
     let mut force_n = plane.by_rate_n_s_m * (rho * order.per_next);
     force_n += match K {
-        0 => plane.by_depth_n_m * (distance[0] - order.clearance_m) + plane.offset_n,
+        0 => plane.by_depth_n_m * (distance[0] - order.wall_m) + plane.offset_n,
         _ => plane.by_depth_n_m * distance[K],
     };
     plane.force.0[K] = force_n;
@@ -101,7 +101,7 @@ fn extend<const K: usize, const HOLDS: bool>(plane: &mut PlaneSeries, order: Ord
             pull += held[i] * gap[K - i];
         }
         plane.reaction += perp(pull);
-        if grip.turns && grip.sliding == 0.0 {
+        if grip.turns && grip.rolls {
             let sliding = &plane.sliding_n_m.0;
             plane.torque_n = (0..K).map(|i| sliding[i] * distance[K - i]).sum();
         }

@@ -10,7 +10,9 @@ pub use change::MachineChange;
 pub(super) use validate::check;
 
 use crate::V2;
-use crate::params::{ContactParams, FrictionParams, RaceParams, SpinParams, StatorParams};
+use crate::params::{
+    ContactParams, FrictionParams, ParamError, RaceParams, SpinParams, StatorParams,
+};
 
 /// A value that is out of range, or that contradicts another.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -22,6 +24,16 @@ pub struct MachineError {
     pub value: f64,
     /// The range or the rule that was expected.
     pub expected: &'static str,
+}
+
+impl From<ParamError> for MachineError {
+    fn from(error: ParamError) -> Self {
+        Self {
+            field: error.field.into(),
+            value: error.value,
+            expected: error.expected,
+        }
+    }
 }
 
 /// Most planes of a machine.
@@ -194,7 +206,7 @@ pub struct MachinePlane {
     pub contact: ContactParams,
     /// Friction.
     pub friction: FrictionParams,
-    /// What the bore is mounted on; round only.
+    /// What the bore is mounted on, or that it is out of round.
     pub stator: StatorParams,
     /// Race of a ball bearing; none for a bushing.
     pub race: Option<RaceParams>,

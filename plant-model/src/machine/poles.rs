@@ -68,6 +68,15 @@ impl MagnetLaw {
         }
     }
 
+    /// Number of scalar states.
+    pub(crate) fn states(&self) -> usize {
+        match self {
+            Self::Held => 0,
+            Self::Lag(_) | Self::Poles(_) => 2,
+            Self::SecondOrder(..) => 4,
+        }
+    }
+
     /// Whether its force is the command.
     pub(crate) fn is_held(&self) -> bool {
         matches!(self, Self::Held)

@@ -4,18 +4,15 @@ use super::params::{MAX_MAGNETS, MAX_PLANES, Rotor};
 use super::poles::MagnetLaw;
 use super::rows::{AnyRows, Rows, of_rows};
 use super::series::{MachineSeries, Parts};
-use super::system::PlaneData;
-use super::system::{MachineInputs, MachineState, MachineSystem};
+use super::system::{MachineInputs, MachineState, MachineSystem, Place};
 use crate::V2;
 use crate::energy::Flows;
-use crate::integrate::contact_step::turn_rad;
-use crate::integrate::series_readout::highest;
 use crate::mode::{Mode, Phase, Slide, Whirl};
 use crate::params::ContactLaw;
-use crate::part::Body;
 use crate::quadrature::{EIGHT, Nodes, SIX};
 use crate::readout::Peaks;
 use crate::series::Scalar;
+use crate::vector::Body;
 
 /// What can be read off one plane at an instant, SI units.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -126,17 +123,17 @@ impl MachineSystem {
         let data = &self.planes[plane];
         let u = self.body.contacts[plane].of(&y.position) - data.centre_m;
         let w = self.body.contacts[plane].of(&y.velocity);
-        let distance_m = u.norm();
-        let normal = if distance_m > 0.0 {
-            u / distance_m
-        } else {
-            V2::x()
-        };
+        let Place {
+            distance_m,
+            normal,
+            penetration_m,
+            ..
+        } = data.place(u);
         let whirl_m_s = normal.perp(&w);
         let surface = data.radius_m * y.spin_rad_s - data.race_radius_m() * y.races_rad_s[plane];
         ContactMotion {
             distance_m,
-            penetration_m: distance_m - data.clearance_m,
+            penetration_m,
             normal,
             normal_m_s: normal.dot(&w),
             whirl_m_s,
@@ -196,17 +193,13 @@ pub(crate) struct Held<'a> {
     pub(crate) path: &'a [V2],
 }
 
-/// Share of a largest value below which values at the nodes say that a step has none larger: between two of eight nodes over less
-/// than half a vibration it rises by less than a twentieth.
-const NEAR_TOP: f64 = 0.9;
-
 impl MachineSeries {
     /// Books a step from `y` to `end`, with work of what is held as force times path.
     pub(crate) fn flows(
         &self,
         system: &MachineSystem,
         phases: &[Phase],
-        (theta, backward): (f64, f64),
+        (theta, backward): (f64, &[f64]),
         held: Held<'_>,
     ) -> StepFlows {
         let about = (system, phases, backward);
@@ -221,7 +214,7 @@ impl Parts {
     fn flows_by<const P: usize, const N: usize>(
         &self,
         rows: &Rows<P>,
-        (system, phases, backward): (&MachineSystem, &[Phase], f64),
+        (system, phases, backward): (&MachineSystem, &[Phase], &[f64]),
         theta: f64,
         held: Held<'_>,
         nodes: &Nodes<N>,
@@ -246,7 +239,9 @@ impl Parts {
         let velocity = |j: usize| &velocities[j];
         let machine = &mut flows.machine;
         if damped {
-            machine.rotor_damping = h * nodes.integral(|j| rows.damping_w(velocity(j)));
+            let power_w: [_; N] = std::array::from_fn(|j| rows.damping_w(velocity(j)));
+            machine.rotor_damping = h * nodes.integral(|j| power_w[j][0]);
+            machine.stator_damping = h * nodes.integral(|j| power_w[j][1]);
         }
         if let Some(power_w) = rows.swirl_w((&nodes.theta, order), &velocities) {
             machine.external += h * nodes.integral(|j| power_w[j]);
@@ -290,6 +285,10 @@ impl Parts {
                 None => [0.0; N],
             };
             let distance = gap.map(|u| u.norm());
+            let depth_m = match &data.bore {
+                None => distance.map(|rho| rho - data.clearance_m),
+                Some(_) => series.depth.at_all(&nodes.theta, order),
+            };
             let per_m = distance.map(|rho| 1.0 / rho);
             let inwards: [f64; N] = std::array::from_fn(|j| gap[j].dot(&rate[j]) * per_m[j]);
             let along: [f64; N] = std::array::from_fn(|j| gap[j].perp(&rate[j]) * per_m[j]);
@@ -313,8 +312,7 @@ impl Parts {
                     law.damping_n_s_m * h * nodes.integral(|j| inwards[j] * inwards[j])
                 }
                 law @ ContactLaw::HuntCrossley(_) => {
-                    let depth_m = |j: usize| distance[j] - data.clearance_m;
-                    let damper_n = |j: usize| law.at(depth_m(j), inwards[j]).damper_n;
+                    let damper_n = |j: usize| law.at(depth_m[j], inwards[j]).damper_n;
                     h * nodes.integral(|j| damper_n(j) * inwards[j])
                 }
             };
@@ -343,107 +341,15 @@ impl Parts {
             machine.sliding_friction += plane.sliding_friction;
             machine.rolling_friction += plane.rolling_friction;
             machine.normal_impulse_n_s += plane.normal_impulse_n_s;
-            let top = &mut flows.tops[p];
+            let (top, backward) = (&mut flows.tops[p], backward[p]);
             for j in 0..N {
                 top.normal_n = top.normal_n.max(force[j]);
-                top.penetration_m = top.penetration_m.max(distance[j] - data.clearance_m);
+                top.penetration_m = top.penetration_m.max(depth_m[j]);
                 top.sliding_n = top.sliding_n.max(sliding[j].abs());
                 top.backward_m_s = top.backward_m_s.max(backward * along[j]);
             }
         }
         flows
-    }
-
-    /// Largest values in a plane up to θ, as far as they may be larger than those so far; `tops` are those at the nodes.
-    pub(crate) fn peaks(
-        &self,
-        (plane, data): (usize, &PlaneData),
-        (theta, backward): (f64, f64),
-        end: &ContactMotion,
-        (tops, so_far): (&Peaks, &Peaks),
-    ) -> Peaks {
-        let (series, order) = (&self.planes[plane], self.order);
-        // Largest at nodes and ends, a bound, and the largest so far.
-        let top = |of: &dyn Fn(f64) -> (f64, f64), (top, ends): (f64, [f64; 2]), bound, most| {
-            let near = top.max(ends[0]).max(ends[1]);
-            match near < NEAR_TOP * most || bound <= most {
-                true => near,
-                false => highest(of, of(0.0), (theta, of(theta))).1,
-            }
-        };
-        let bound = |of: &Scalar| of.0[0].abs() + of.reach(theta, order);
-        let signed = |sign: f64, (value, slope): (f64, f64)| (sign * value, sign * slope);
-        let force = |at: f64| series.force.with_slope(at, order);
-        let depth = |at: f64| {
-            let (distance_m, slope) = series.distance.with_slope(at, order);
-            (distance_m - data.clearance_m, slope)
-        };
-        let whirl = |at: f64| {
-            let (u, w) = (
-                series.gap.with_slope(at, order),
-                series.gap_rate.with_slope(at, order),
-            );
-            let distance_m = u.0.norm();
-            let speed_m_s = u.0.perp(&w.0) / distance_m;
-            let turned = speed_m_s * u.0.dot(&u.1) / (distance_m * distance_m);
-            let slope = (u.1.perp(&w.0) + u.0.perp(&w.1)) / distance_m - turned;
-            signed(backward, (speed_m_s, slope))
-        };
-        let sliding = |at: f64| {
-            let (force, slope) = series.sliding_n_m.with_slope(at, order);
-            let (distance, grown) = series.distance.with_slope(at, order);
-            (force * distance, slope * distance + force * grown)
-        };
-        let ends_n = [series.force.0[0], series.force.at(theta, order)];
-        let most_n = (bound(&series.force), so_far.normal_n);
-        let normal_n = top(&force, (tops.normal_n, ends_n), most_n.0, most_n.1);
-        let sliding_n = match series.grip.sliding {
-            0.0 => [1.0, -1.0]
-                .map(|sign| {
-                    let ends_n = [sliding(0.0), sliding(theta)].map(|end| sign * end.0);
-                    let of = |at: f64| signed(sign, sliding(at));
-                    let most_n = bound(&series.sliding_n_m) * bound(&series.distance);
-                    top(&of, (tops.sliding_n, ends_n), most_n, so_far.sliding_n)
-                })
-                .into_iter()
-                .fold(0.0, f64::max),
-            share => share.abs() * normal_n,
-        };
-        let ends_m = [series.distance.0[0] - data.clearance_m, end.penetration_m];
-        let most_m = bound(&series.distance) - data.clearance_m;
-        // Where the sliding speed is held, the whirl is as fast as the surfaces are.
-        let rolls = series.grip.holds && series.grip.sliding == 0.0 && !series.grip.turns;
-        let most_m_s = if rolls {
-            so_far.backward_m_s
-        } else {
-            f64::INFINITY
-        };
-        let start_m_s = series.gap.0[0].perp(&series.gap_rate.0[0]) / series.distance.0[0];
-        let ends_m_s = [start_m_s, end.whirl_m_s].map(|speed_m_s| backward * speed_m_s);
-        Peaks {
-            normal_n,
-            penetration_m: top(
-                &depth,
-                (tops.penetration_m, ends_m),
-                most_m,
-                so_far.penetration_m,
-            ),
-            sliding_n: sliding_n.min(data.sliding * normal_n.max(0.0)),
-            backward_m_s: top(
-                &whirl,
-                (tops.backward_m_s, ends_m_s),
-                most_m_s,
-                so_far.backward_m_s,
-            ),
-        }
-    }
-
-    /// By how much the contact point of a plane turns over a step up to its end \[rad\].
-    pub(crate) fn turn_rad(&self, plane: usize, end: &ContactMotion, step_s: f64) -> f64 {
-        let series = &self.planes[plane];
-        let (gap, square) = (series.gap.0[0], series.distance.0[0] * series.distance.0[0]);
-        let start = (gap, gap.perp(&series.gap_rate.0[0]) / square);
-        turn_rad(start, (end.normal, end.whirl_m_s / end.distance_m), step_s)
     }
 }
 

@@ -91,6 +91,7 @@ fn crossed(x: V2) -> V2 {
 #[derive(Debug, Clone)]
 pub(super) struct Rows<const P: usize> {
     pairs: usize,
+    rotor_pairs: usize,
     position: [[V2; P]; LENGTH],
     velocity: [[V2; P]; LENGTH],
     /// On the same axis, and across.
@@ -170,6 +171,7 @@ impl<const P: usize> Rows<P> {
         let port = |port: &Port| padded(port.of_each(), 0.0);
         let mut rows = Box::new(Self {
             pairs: body.pairs,
+            rotor_pairs: body.rotor_pairs,
             position: [[V2::zeros(); P]; LENGTH],
             velocity: [[V2::zeros(); P]; LENGTH],
             stiffness: [along(&body.stiffness), across(&body.stiffness)],
@@ -321,18 +323,18 @@ impl<const P: usize> Rows<P> {
         }
     }
 
-    /// Σ v·D·v at one velocity.
+    /// Σ v·D·v at one velocity, of the rotor and of the rings, which share no damper.
     #[inline(always)]
-    pub(super) fn damping_w(&self, velocity: &[V2; P]) -> f64 {
+    pub(super) fn damping_w(&self, velocity: &[V2; P]) -> [f64; 2] {
         let n = self.n();
         let mut force = [V2::zeros(); P];
         self.damping[0].subtract(&mut force, velocity, n, |x| x);
         self.damping[1].subtract(&mut force, velocity, n, crossed);
-        let mut sum = V2::zeros();
+        let mut sums = [0.0; 2];
         for i in 0..n {
-            sum -= velocity[i].component_mul(&force[i]);
+            sums[usize::from(i >= self.rotor_pairs)] -= velocity[i].dot(&force[i]);
         }
-        sum.x + sum.y
+        sums
     }
 
     /// What stiffness that goes round gives at several θ: power at each node, or nothing.

@@ -11,10 +11,9 @@ use super::holding::Holding;
 use super::params::{MAX_PLANES, MachineError, MachineParams, MachineStart};
 use super::readout::{Held, MachineSnapshot, PlaneFlows};
 use super::step::{Stepper, Task};
-use super::system::{MachineInputs, MachineState, MachineSystem};
+use super::system::{MachineInputs, MachineState, MachineSystem, ON_WALL};
 use crate::V2;
 use crate::energy::Flows;
-use crate::integrate::driver::{ON_WALL, SPARE};
 use crate::integrate::progress::Progress;
 use crate::integrate::{Method, Options, PlantError};
 use crate::mode::{Mode, Phase};
@@ -22,6 +21,13 @@ use crate::readout::{HARD_IMPACT_M_S, Meters, Work};
 use settle::AtZero;
 use warming::Warming;
 pub use warming::Warmth;
+
+/// Share of the spin's energy at the start that is not counted as turned over. The rest of it is for rounding: of a rotor
+/// that levitates nothing else moves.
+const SPARE: f64 = 1.0 - 1e-4;
+
+/// Share of a moment that a step has to get on by. Friction that falls within a thousandth of a moment is followed.
+const CREEPING: f64 = 1e-3;
 
 /// A rotor that may touch in several planes, being run. Deterministic: the same calls give the same bits.
 #[derive(Debug, Clone)]
@@ -50,7 +56,10 @@ pub struct Machine {
     meters: Vec<Meters>,
     work: Work,
     options: Options,
-    backward: f64,
+    /// Whether flight goes by series and the flight map.
+    flies: bool,
+    /// Sign of backward whirl in each plane.
+    backward: Vec<f64>,
     path: Vec<V2>,
     suppressed: Vec<u8>,
     just_left: Vec<bool>,
@@ -61,8 +70,8 @@ pub struct Machine {
 }
 
 impl Machine {
-    /// Puts a machine together. [`Method::Auto`] is [`Method::Series`], or [`Method::Explicit`], collocation, where something has no
-    /// series ([`MachineParams::method`]); there is no stiff method.
+    /// Puts a machine together. [`Method::Auto`] is [`Method::Series`], or [`Method::Collocation`] where something has no
+    /// series ([`MachineParams::method`]).
     ///
     /// # Errors
     /// The first value that is out of range.
@@ -72,22 +81,21 @@ impl Machine {
         options: Options,
     ) -> Result<Self, MachineError> {
         let system = MachineSystem::new(params)?;
-        if !(options.rtol >= 1e-14 && options.rtol <= 1e-2) {
-            let (field, value) = ("run.rtol".into(), options.rtol);
-            return Err(MachineError {
-                field,
-                value,
-                expected: "a number from 1e-14 to 0.01",
-            });
-        }
-        let options = Options {
-            method: params.method(options.method)?,
-            ..options
+        options.validate().map_err(MachineError::from)?;
+        let flies = options.method != Method::Collocation && params.flies();
+        let method = match params.method(options.method)? {
+            Method::Series
+                if options.method == Method::Auto && system.is_overdamped(options.rtol) =>
+            {
+                Method::Collocation
+            }
+            method => method,
         };
+        let options = Options { method, ..options };
         let y = system.start(params, start)?;
         let (pairs, planes) = (system.body.pairs, system.planes.len());
         let mut machine = Self {
-            stepper: Stepper::new(&system, options.rtol, options.method),
+            stepper: Stepper::new(&system, options.rtol, (method, flies)),
             map: FlightMap::default(),
             holding: Holding::new(pairs),
             inputs: MachineInputs {
@@ -110,7 +118,8 @@ impl Machine {
             meters: vec![Meters::default(); planes],
             work: Work::default(),
             options,
-            backward: if y.spin_rad_s < 0.0 { 1.0 } else { -1.0 },
+            flies,
+            backward: (0..planes).map(|p| system.backward(p, &y)).collect(),
             path: vec![V2::zeros(); pairs],
             suppressed: vec![0; planes],
             just_left: vec![false; planes],
@@ -163,8 +172,10 @@ impl Machine {
         let before = self.modes();
         self.warm();
         self.tell(before, on_change);
-        let flies = self.options.method == Method::Series;
-        if flies && self.t_s < t_end_s && self.phases.iter().all(|phase| *phase == Phase::Inside) {
+        if self.flies
+            && self.t_s < t_end_s
+            && self.phases.iter().all(|phase| *phase == Phase::Inside)
+        {
             let dt_s = t_end_s - self.t_s;
             let (map, y) = (&mut self.map, &mut self.y);
             let flown = map.fly(&self.system, y, &self.inputs, dt_s, &mut self.path);
@@ -190,7 +201,8 @@ impl Machine {
             self.step(t_end_s)?;
             self.check_state()?;
             self.progress.count(self.t_s, self.t_s > t_before)?;
-            let creeps = self.t_s - t_before <= self.system.moment_s && self.t_s < t_end_s;
+            let creeps =
+                self.t_s - t_before <= CREEPING * self.system.moment_s && self.t_s < t_end_s;
             self.progress.creeps(self.t_s, creeps)?;
             if free && self.modes() == before && !creeps {
                 self.progress.was_free();
@@ -338,8 +350,8 @@ impl Machine {
             inputs: &self.inputs,
             path: &self.path,
         };
-        let (end, phases) = ((theta, self.backward), &self.phases);
-        let flows = series.flows(&self.system, phases, end, held);
+        let phases = &self.phases;
+        let flows = series.flows(&self.system, phases, (theta, &self.backward), held);
         self.flows.add_scaled(1.0, &flows.machine);
         let step_s = theta * series.parts.step_s;
         for (p, phase) in self.phases.iter().enumerate() {
@@ -348,6 +360,7 @@ impl Machine {
                 let motion = self.system.motion(p, &self.y);
                 let (data, meters) = (&self.system.planes[p], &mut self.meters[p]);
                 let tops = (&flows.tops[p], &meters.peaks(data.radius_m));
+                let end = (theta, self.backward[p]);
                 let peaks = series.parts.peaks((p, data), end, &motion, tops);
                 let turn_rad = series.parts.turn_rad(p, &motion, step_s);
                 meters.contact_step(&peaks, step_s, turn_rad, data.radius_m);
@@ -447,7 +460,7 @@ impl Machine {
         self.work
     }
 
-    /// How it is integrated: [`Method::Series`], or [`Method::Explicit`] for collocation in points.
+    /// How it is integrated; never [`Method::Auto`].
     pub fn method(&self) -> Method {
         self.options.method
     }

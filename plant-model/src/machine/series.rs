@@ -17,7 +17,7 @@ use super::system::{Channel, MachineState, MachineSystem, PlaneData, holding_cha
 use crate::V2;
 use crate::integrate::enough::LOWEST_ORDER;
 use crate::mode::{Phase, Slide, Whirl};
-use crate::params::ContactLaw;
+use crate::params::{ContactLaw, SlidingFriction};
 use crate::series::{INVERSE, Scalar, Series};
 use crate::vector::perp;
 
@@ -65,13 +65,20 @@ impl PlaneSeries {
         self.gap.0[0] = system.body.contacts[plane].of(&y.position) - data.centre_m;
         self.gap_rate.0[0] = system.body.contacts[plane].of(&y.velocity);
         self.race.0[0] = y.races_rad_s[plane];
-        self.distance.0[0] = self.gap.0[0].norm();
-        self.per_m = 1.0 / self.distance.0[0];
         self.state = match step.phases[plane] {
             Phase::Inside => State::Inside,
             Phase::Beyond => State::Beyond,
             Phase::Contact(..) => State::Touched,
         };
+        self.wall_m = data.clearance_m;
+        if data.bore.is_some() && self.state != State::Inside {
+            // For a moment's look: on the circle of curvature.
+            let place = data.place(self.gap.0[0]);
+            self.gap.0[0] = place.from_centre_m;
+            self.wall_m = place.distance_m - place.penetration_m;
+        }
+        self.distance.0[0] = self.gap.0[0].norm();
+        self.per_m = 1.0 / self.distance.0[0];
         match &data.law {
             ContactLaw::Linear(law) => {
                 (self.by_depth_n_m, self.by_rate_n_s_m) = (law.stiffness_n_m, law.damping_n_s_m);
@@ -80,7 +87,7 @@ impl PlaneSeries {
             law @ ContactLaw::HuntCrossley(_) => {
                 // For a moment's look: at the touch itself there are no slopes.
                 let rate_m_s = self.per_m * self.gap.0[0].dot(&self.gap_rate.0[0]);
-                let depth_m = self.distance.0[0] - data.clearance_m;
+                let depth_m = self.distance.0[0] - self.wall_m;
                 let soon = law.at(depth_m + rate_m_s.abs() * step.step_s, rate_m_s);
                 (self.by_depth_n_m, self.by_rate_n_s_m) = (soon.by_depth_n_m, soon.by_rate_n_s_m);
                 self.offset_n = law.normal_force_n(depth_m, rate_m_s)
@@ -90,16 +97,30 @@ impl PlaneSeries {
         }
         self.grip = Grip::none(system, plane);
         let Phase::Contact(slide, whirl) = step.phases[plane] else {
+            self.falling = None;
             return;
         };
-        let along_m_s = self.gap.0[0].perp(&self.gap_rate.0[0]) / self.distance.0[0]
-            + system.surface_of(plane, Channel::Sliding, y.spin_rad_s, self.race.0[0]);
-        // Friction that falls with speed is not integrated by series: a moment's look has it as it is now.
-        let mu = data.friction.coefficient(slide.sign() * along_m_s);
+        let sign = slide.sign();
+        let mut sliding = -sign * data.sliding;
+        if let SlidingFriction::Falling {
+            at_rest,
+            at_speed,
+            speed_scale_m_s,
+        } = data.friction
+            && slide != Slide::Rolling
+        {
+            let falling = self.falling.get_or_insert_default();
+            (falling.sign, falling.at_speed) = (sign, at_speed);
+            (falling.fall, falling.per_speed_s_m) = (at_rest - at_speed, 1.0 / speed_scale_m_s);
+            sliding = 0.0;
+        } else {
+            self.falling = None;
+        }
         self.grip = Grip {
-            sliding: -slide.sign() * mu,
+            sliding,
             rolling: -whirl.sign() * data.rolling,
             holds: slide == Slide::Rolling || whirl == Whirl::Still,
+            rolls: slide == Slide::Rolling,
             ..self.grip
         };
     }
@@ -224,11 +245,18 @@ impl Parts {
                 continue;
             }
             let order = Order {
-                clearance_m: data.clearance_m,
+                wall_m: plane.wall_m,
                 next: step.step_s * INVERSE[k + 1],
                 per_next: (k + 1) as f64 / step.step_s,
             };
             extend_touched(plane, k, order);
+            if plane.falling.is_some() {
+                let surface =
+                    data.radius_m * self.spin.0[k] - data.race_radius_m() * plane.race.0[k];
+                let moves = k == 0 || plane.grip.turns;
+                let whirl = whirl_coefficient(plane, k);
+                plane.extend_falling(k, whirl, if moves { surface } else { 0.0 });
+            }
         }
     }
 

@@ -53,15 +53,23 @@ struct Weights {
 /// another sequence of modes.
 const LAST: usize = 3;
 
+/// Tolerance of a step of flight over that of contact: it is linear and costs little, and may last for long. None is smaller than
+/// rounding.
+const FLIGHT: f64 = 1e-7;
+const ROUNDING: f64 = 1e-16;
+
 /// Steps a machine; remembers the last steps as the next ones' references.
 #[derive(Debug, Clone)]
 pub(crate) struct Stepper {
     pub(crate) series: MachineSeries,
+    /// Whether flight goes by series whatever the method.
+    flies: bool,
     /// The second method, where it is asked for.
     collocation: Option<Box<Collocation>>,
     guard: Scalar,
-    rtol: f64,
-    highest_order: usize,
+    /// Tolerances and highest orders in flight and in contact.
+    rtol: [f64; 2],
+    highest_order: [usize; 2],
     /// References in flight and in contact \[s\].
     references_s: [f64; 2],
     fastest_m_s: f64,
@@ -74,7 +82,7 @@ pub(crate) struct Stepper {
 }
 
 impl Stepper {
-    pub(crate) fn new(system: &MachineSystem, rtol: f64, method: Method) -> Self {
+    pub(crate) fn new(system: &MachineSystem, rtol: f64, (method, flies): (Method, bool)) -> Self {
         let planes = 0..system.planes.len();
         let least =
             |of: &dyn Fn(usize) -> f64| planes.clone().map(of).fold(f64::INFINITY, f64::min);
@@ -82,10 +90,12 @@ impl Stepper {
         let rate = system.contact_rate_rad_s();
         Self {
             series: MachineSeries::new(&system.body),
-            collocation: (method == Method::Explicit).then(|| Box::new(Collocation::new(system))),
+            flies,
+            collocation: (method == Method::Collocation)
+                .then(|| Box::new(Collocation::new(system))),
             guard: Scalar::default(),
-            rtol,
-            highest_order: highest_order(rtol),
+            rtol: [(FLIGHT * rtol).max(ROUNDING), rtol],
+            highest_order: [FLIGHT * rtol, rtol].map(highest_order),
             references_s: [1.0 / rate; 2],
             fastest_m_s: 0.0,
             mobility: most(&|p| system.contact(p).mobility()),
@@ -97,7 +107,7 @@ impl Stepper {
     }
 
     /// As those of one plane, `integrate/scales.rs`, with the energy norm of the coordinates for speeds.
-    fn weights(&mut self, y: &MachineState) -> Weights {
+    fn weights(&mut self, y: &MachineState, rtol: f64) -> Weights {
         let size = y.velocity.iter().map(V2::norm_squared).sum::<f64>().sqrt();
         let now = size * self.mobility.sqrt();
         self.fastest_m_s = self.fastest_m_s.max(now);
@@ -106,7 +116,7 @@ impl Stepper {
                 .fastest_m_s
                 .max(1e-3 * self.clearance_m * self.contact_rate);
         let speed = now.max(floor);
-        let per = |x: f64| 1.0 / (self.rtol * x);
+        let per = |x: f64| 1.0 / (rtol * x);
         let race_rad_s = y
             .races_rad_s
             .iter()
@@ -132,7 +142,8 @@ impl Stepper {
         let (t_s, t_end_s) = task.span;
         work.steps += 1;
         let remaining = t_end_s - t_s;
-        let trusted = match self.collocation.take() {
+        let flies = self.flies && !task.touches();
+        let trusted = match self.collocation.take_if(|_| !flies) {
             None => self.by_series(system, y, task, work)?,
             Some(mut collocation) => {
                 let trusted = self.by_collocation(&mut collocation, (system, y), task, work);
@@ -202,10 +213,10 @@ impl Stepper {
         work: &mut Work,
     ) -> Result<f64, PlantError> {
         let (t_s, t_end_s) = task.span;
-        let weights = self.weights(y);
-        let remaining = t_end_s - t_s;
-        let highest = self.highest_order;
         let touching = task.touches();
+        let weights = self.weights(y, self.rtol[usize::from(touching)]);
+        let remaining = t_end_s - t_s;
+        let highest = self.highest_order[usize::from(touching)];
         let square = |series: &Parts, k: usize, rows| {
             square(series, rows, (system, task.phases), (k, &weights))
         };
@@ -248,8 +259,9 @@ impl Stepper {
         work: &mut Work,
     ) -> Result<f64, PlantError> {
         let (t_s, t_end_s) = task.span;
-        let weights = self.weights(y);
-        let rounding = 100.0 * f64::EPSILON / self.rtol;
+        let [_, rtol] = self.rtol;
+        let weights = self.weights(y, rtol);
+        let rounding = 100.0 * f64::EPSILON / rtol;
         let scales = Scales {
             velocity: weights.velocity,
             spin: match system.inverse_inertia > 0.0 {
@@ -269,6 +281,7 @@ impl Stepper {
             let step = task.step(system, step_s);
             let error = collocation.solve(&step, y, &scales);
             work.evaluations += std::mem::take(&mut collocation.evaluations);
+            work.factorisations += std::mem::take(&mut collocation.factorisations);
             let pace = 0.9 * error.max(1e-30).powf(-1.0 / ERROR_POWER);
             if error <= rounding.max(1.0) {
                 collocation.write(&step, y, &mut self.series);

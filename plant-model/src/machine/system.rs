@@ -8,15 +8,20 @@ use super::params::{
 use super::poles::MagnetLaw;
 use crate::V2;
 use crate::contact::NO_DENT;
+use crate::ellipse::Ellipse;
 use crate::integrate::{Fastest, PlantError};
 use crate::mode::{Phase, Slide, Whirl};
-use crate::params::{ContactLaw, SlidingFriction, SpinParams};
-use crate::part::Body;
-use crate::plane::race::Race;
+use crate::params::{ContactLaw, SlidingFriction, SpinParams, StatorParams};
+use crate::race::Race;
+use crate::vector::Body;
 use nalgebra::SMatrix;
 
 /// Most speeds that friction may hold at once: sliding and rolling in each plane.
 pub(crate) const MAX_HELD: usize = 2 * MAX_PLANES;
+
+/// A start is on the wall within this share of the clearance, and moves along it within this share of its speed: sine,
+/// cosine, a product and the length leave up to 2.5ε. The [guard](super::guards) of the wall knows it as well.
+pub(crate) const ON_WALL: f64 = 4.0 * f64::EPSILON;
 
 /// A way in which friction acts in a plane.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -49,6 +54,8 @@ pub(crate) struct PlaneData {
     /// Now, and when cold.
     pub(crate) clearance_m: f64,
     pub(crate) cold_m: f64,
+    /// Of a bore that is out of round.
+    pub(crate) bore: Option<Ellipse>,
     pub(crate) heat: Option<BearingHeat>,
     pub(crate) law: ContactLaw,
     /// Of the contact; where it grows with the depth, at that of one clearance.
@@ -61,7 +68,51 @@ pub(crate) struct PlaneData {
     pub(crate) load_drag: Option<LoadDrag>,
 }
 
+/// Where the rotor is against a wall.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Place {
+    /// From the centre of the bore, out of round from that of curvature at the nearest point, and how long \[m\].
+    pub(crate) from_centre_m: V2,
+    pub(crate) distance_m: f64,
+    /// Outward.
+    pub(crate) normal: V2,
+    /// A; negative inside the clearance.
+    pub(crate) penetration_m: f64,
+}
+
 impl PlaneData {
+    /// Where `u` from the centre of the bore is.
+    #[inline]
+    pub(crate) fn place(&self, u: V2) -> Place {
+        if let Some(bore) = &self.bore {
+            let closest = bore.closest_point(u);
+            let distance_m = closest.radius_m + closest.depth_m;
+            return Place {
+                from_centre_m: distance_m * closest.normal,
+                distance_m,
+                normal: closest.normal,
+                penetration_m: closest.depth_m,
+            };
+        }
+        let distance_m = u.norm();
+        Place {
+            from_centre_m: u,
+            distance_m,
+            // Concentric: every direction is as good; contact needs a clearance, so none is felt.
+            normal: if distance_m > 0.0 {
+                u / distance_m
+            } else {
+                V2::x()
+            },
+            penetration_m: distance_m - self.clearance_m,
+        }
+    }
+
+    /// The wall nearest to the middle \[m\].
+    pub(crate) fn nearest_m(&self) -> f64 {
+        (self.bore).map_or(self.clearance_m, |bore| bore.nearest_m())
+    }
+
     /// Radius at which the race turns; 0 for a bushing.
     #[inline]
     pub(crate) fn race_radius_m(&self) -> f64 {
@@ -182,6 +233,12 @@ impl MachineSystem {
                 heat.clearance_m(plane.contact.clearance_m, heat.start_rise_k)
             }),
             cold_m: plane.contact.clearance_m,
+            bore: match &plane.stator {
+                StatorParams::RigidEllipse(bore) => {
+                    Some(Ellipse::new(bore, plane.contact.clearance_m))
+                }
+                _ => None,
+            },
             heat: plane.heat,
             law: plane.contact.law,
             stiffness_n_m: plane.contact.stiffness_n_m(),
@@ -386,6 +443,25 @@ impl MachineSystem {
         data.law.by_rate_n_s_m(data.clearance_m) * self.contact(plane).mobility()
     }
 
+    /// Whether stability and not the tolerance would set the steps of the series: a contact damper so strong that it stops the rotor
+    /// many times within the time in which the spring gives way.
+    pub(crate) fn is_overdamped(&self, rtol: f64) -> bool {
+        let fast_s = if rtol < 1e-10 { 1e6 } else { 2.5e5 };
+        (0..self.planes.len()).any(|p| {
+            let rate_s = self.contact_decay_rate_s(p);
+            rate_s > fast_s && rate_s > 4.0 * self.undamped_contact_rate_rad_s(p)
+        })
+    }
+
+    /// Sign of backward whirl in a plane. Without spin friction drives against the way in which the surfaces slide on each other.
+    pub(crate) fn backward(&self, plane: usize, y: &MachineState) -> f64 {
+        let sense = match y.spin_rad_s == 0.0 {
+            true => -self.planes[plane].race_radius_m() * y.races_rad_s[plane],
+            false => y.spin_rad_s,
+        };
+        if sense >= 0.0 { -1.0 } else { 1.0 }
+    }
+
     /// A limit of work with what moves fastest.
     #[cold]
     pub(crate) fn naming_fastest(&self, error: PlantError) -> PlantError {
@@ -394,7 +470,7 @@ impl MachineSystem {
         };
         let body = &self.body;
         let mut fastest = Fastest {
-            what: "rotor on its supports, or a ring on its mounting,",
+            what: "rotor on its supports, or a ring on its mounting",
             plane: None,
             rate_s: body.undamped_rate_rad_s().max(body.damping_rate_s()),
         };

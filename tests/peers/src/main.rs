@@ -26,8 +26,8 @@ type Run = fn(&Problem, f64) -> Result<Ending, String>;
 const SERIES: (&str, Run) = ("project, series", |p, r| project::run(p, Method::Series, r));
 const SOLVERS: [(&str, Run); 7] = [
     SERIES,
-    ("project, explicit", |p, r| {
-        project::run(p, Method::Explicit, r)
+    ("project, collocation", |p, r| {
+        project::run(p, Method::Collocation, r)
     }),
     ("ivp DOP853", ivp_peer::dop853),
     ("CVODE Adams", |p, r| cvode_peer::run(p, Family::Adams, r)),
@@ -39,8 +39,6 @@ const SOLVERS: [(&str, Run); 7] = [
 ];
 /// What a user gets who names no method; timed, but it is one of the others.
 const AUTO: (&str, Run) = ("project, auto", |p, r| project::run(p, Method::Auto, r));
-/// Only for the stiff problems.
-const STIFF: (&str, Run) = ("project, stiff", |p, r| project::run(p, Method::Stiff, r));
 
 /// Most repetitions, and the time after which a solver is not repeated further, for each problem and
 /// tolerance.
@@ -176,7 +174,7 @@ impl Sweep<'_> {
                 return by(project::run_under(
                     &near,
                     self.forces_n,
-                    Method::Explicit,
+                    Method::Collocation,
                     1e-10,
                 ));
             }
@@ -261,12 +259,11 @@ impl Sweep<'_> {
 }
 
 fn times(for_rigid: Patience, for_elastic: Patience) {
-    let rigid: Vec<_> = SOLVERS.into_iter().chain([AUTO]).collect();
-    measure("B1", &Problem::bouncing(1e8), &rigid, for_rigid);
-    measure("B2", &Problem::bouncing(1e10), &rigid, for_rigid);
-    let elastic: Vec<_> = rigid.into_iter().chain([STIFF]).collect();
+    let solvers: Vec<_> = SOLVERS.into_iter().chain([AUTO]).collect();
+    measure("B1", &Problem::bouncing(1e8), &solvers, for_rigid);
+    measure("B2", &Problem::bouncing(1e10), &solvers, for_rigid);
     for (name, m_s, d_c) in [("B3a", 1.0, 2e4), ("B3b", 1.0, 2e6), ("B3c", 0.1, 2e6)] {
-        measure(name, &Problem::in_stator(m_s, d_c), &elastic, for_elastic);
+        measure(name, &Problem::in_stator(m_s, d_c), &solvers, for_elastic);
     }
 }
 

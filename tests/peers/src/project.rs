@@ -83,7 +83,6 @@ pub fn run_under(
         y: position.y,
         changes,
         evaluations: work.evaluations,
-        // One for each Jacobian, but where a step was tried again from the same one.
         factorisations: work.factorisations,
     })
 }

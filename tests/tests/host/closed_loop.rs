@@ -260,7 +260,7 @@ fn a_load_within_the_cap_is_handed_back() {
     }
 }
 
-/// A rotor that bounces on Hertz's wall for six seconds without loss errs in every impact: at the default tolerance that is
+/// A rotor that bounces on Hertz's wall for six seconds without loss errs in every impact: at a crude tolerance that is
 /// refused, and a finer one helps, as the error says.
 #[test]
 fn a_run_that_is_refused_can_be_trusted_at_a_finer_tolerance() {
@@ -279,12 +279,12 @@ fn a_run_that_is_refused_can_be_trusted_at_a_finer_tolerance() {
         scene.rtol = rtol;
         run(&scene, PolicyKind::Passive, Keep::Verdict, &mut |_| {})
     };
-    match at(1e-9) {
+    match at(1e-3) {
         Err(RunError::Energy {
             residual, limit, ..
-        }) => assert!(residual > limit && limit < 1.1e-6),
+        }) => assert!(residual > limit),
         other => panic!("{other:?}"),
     }
-    let (verdict, _) = at(1e-10).unwrap();
+    let (verdict, _) = at(1e-9).unwrap();
     assert!(verdict.energy_residual < 1e-6 && verdict.impacts > 700);
 }

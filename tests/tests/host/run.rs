@@ -223,7 +223,7 @@ fn a_scene_may_have_a_nonlinear_contact() {
     let error = String::from_utf8_lossy(&refused.stderr).into_owned();
     assert_eq!(refused.status.code(), Some(2), "{error}");
     assert!(error.contains("run.method"), "{error}");
-    assert!(error.contains("auto, explicit or stiff"), "{error}");
+    assert!(error.contains("auto or collocation"), "{error}");
 }
 
 /// A bearing out of round runs under every policy, verifies itself by the other method, and its report shows
@@ -240,7 +240,7 @@ fn a_bearing_may_be_out_of_round() {
     let text = fs::read(out.join("verdict.json")).unwrap();
     let verdict: Value = serde_json::from_slice(&text).unwrap();
     let supervisor = &verdict["policies"]["supervisor"];
-    assert_eq!(supervisor["method"], "explicit");
+    assert_eq!(supervisor["method"], "collocation");
     assert_ne!(supervisor["outcome"], "whirl");
     assert!(supervisor["impacts"].as_u64().unwrap() > 0);
     let report = fs::read_to_string(out.join("report.html")).unwrap();

@@ -30,7 +30,7 @@ fn sweep_file(folder: &Path, lines: &str) -> PathBuf {
 /// Independent draws of friction, and of a word.
 const DRAWS: &str = "design = \"monte_carlo\"\nruns = 70\nseed = 7\n\
     [[vary]]\nkey = \"friction.coefficient\"\nuniform = [0.05, 0.3]\n\
-    [[vary]]\nkey = \"run.method\"\nvalues = [\"series\", \"explicit\"]\n";
+    [[vary]]\nkey = \"run.method\"\nvalues = [\"series\", \"collocation\"]\n";
 
 fn sweep_command(sweep: &Path, out: &Path, more: &[&str]) -> Command {
     let mut command = host();

@@ -55,15 +55,13 @@ fn the_estimate_is_of_the_size_of_the_error() {
             trace.rows.last().unwrap().plant.position_m
         };
         let clearance_m = scene.plant.contact.clearance_m;
-        let (series, explicit) = (end(Method::Series), end(Method::Explicit));
+        let (series, explicit) = (end(Method::Series), end(Method::Collocation));
         let uncertainty = (series - explicit).norm() / clearance_m;
         for (method, rtol) in [
             (Method::Series, 1e-4),
             (Method::Series, 1e-6),
-            (Method::Explicit, 1e-4),
-            (Method::Explicit, 1e-6),
-            (Method::Stiff, 1e-4),
-            (Method::Stiff, 1e-6),
+            (Method::Collocation, 1e-4),
+            (Method::Collocation, 1e-6),
         ] {
             let (_, trace, v) = verified(&with(&scene, method, rtol), kind);
             let end = trace.rows.last().unwrap().plant.position_m;
@@ -148,11 +146,18 @@ fn the_estimate_sees_what_is_held_over_parts() {
 #[test]
 fn a_check_has_an_end() {
     let folder = TempDir::new().unwrap();
-    let path = edited(
-        folder.path(),
-        "impact_at_40_hz",
-        &[("stiffness_n_m = 1e8", "stiffness_n_m = 1e13")],
-    );
+    let path = folder.path().join("stiff.toml");
+    let text = r#"
+        title = "a shaft too stiff to follow without a matrix"
+        run = { duration_s = 1.0, sample_rate_hz = 1000, policies = ["passive"] }
+        rotor = { mass_kg = 10.0, stiffness_n_m = 1e12, contact_radius_m = 0.1 }
+        spin = { frequency_hz = 0.0 }
+        start = { velocity_m_s = [0.02, 0.05] }
+        contact = { clearance_m = 2e-4, stiffness_n_m = 1e8 }
+        friction = { coefficient = 0.0 }
+        verdict = { whirl_speed_m_s = 1.0 }
+    "#;
+    fs::write(&path, text).unwrap();
     let result = run_scene(
         &path,
         &folder.path().join("out"),
@@ -216,7 +221,7 @@ fn checks_change_nothing_else() {
     let table = String::from_utf8(result.stdout).unwrap();
     assert!(result.status.success(), "{:?}", result.stderr);
     // Names may be broken between their words.
-    for words in ["estimated", "series 1e-11", "explicit 1e-13"] {
+    for words in ["estimated", "series 1e-11", "collocation"] {
         assert!(table.contains(words), "{words} is missing in\n{table}");
     }
 
@@ -237,7 +242,7 @@ fn checks_change_nothing_else() {
         assert!(estimate <= v["largest_difference_clearances"].as_f64().unwrap());
         assert!(v["differs_from_s"].is_null() || v["differs_from_s"].is_number());
         assert_eq!(v["checks"][0]["method"], "series");
-        assert_eq!(v["checks"][1]["method"], "explicit");
+        assert_eq!(v["checks"][1]["method"], "collocation");
         let trace = format!("trace_{policy}.parquet");
         assert_eq!(
             fs::read(plain.join(&trace)).unwrap(),
@@ -255,14 +260,14 @@ fn checks_change_nothing_else() {
 #[test]
 fn a_contradicted_outcome_is_said_and_ends_with_exit_code_1() {
     let name = "established_whirl_two_mass_stator";
-    let mut crude = with(&scene(name), Method::Explicit, 1e-2);
+    let mut crude = with(&scene(name), Method::Collocation, 1e-2);
     crude.sample_rate_hz = 500.0;
     let exact = with(&crude, Method::Series, 1e-12);
     let peak = |scene| ridden(scene, PolicyKind::Passive).0.peak_backward_speed_m_s;
     let (a, b) = (peak(&crude), peak(&exact));
     assert!((a - b).abs() > 1e-7, "{a} {b}");
     let limit = format!(
-        "rtol = 1e-2\nmethod = \"explicit\"\n\n[verdict]\nwhirl_speed_m_s = {}\n\n[rotor]",
+        "rtol = 1e-2\nmethod = \"collocation\"\n\n[verdict]\nwhirl_speed_m_s = {}\n\n[rotor]",
         f64::midpoint(a, b)
     );
     let folder = TempDir::new().unwrap();
@@ -302,10 +307,13 @@ fn the_method_that_ran_is_named() {
     let out = folder.path().join("out");
     let result = run_scene(&scene, &out, &[]);
     assert!(result.status.success());
-    assert!(String::from_utf8_lossy(&result.stdout).contains("stiff"));
-    assert_eq!(verdict(&out)["policies"]["passive"]["method"], "stiff");
+    assert!(String::from_utf8_lossy(&result.stdout).contains("collocation"));
+    assert_eq!(
+        verdict(&out)["policies"]["passive"]["method"],
+        "collocation"
+    );
     let report = fs::read_to_string(out.join("report.html")).unwrap();
-    assert!(report.contains("<td>stiff</td>"));
+    assert!(report.contains("<td>collocation</td>"));
 }
 
 #[test]
@@ -316,7 +324,7 @@ fn a_misspelt_name_is_answered_with_the_right_one() {
         ("mass_kg = ", "mass = ", Some("`mass_kg`")),
         ("mass_kg = ", "mass_kq = ", Some("`mass_kg`")),
         ("[contact]", "[contract]", Some("`contact`")),
-        ("seed = 1", "method = \"explict\"", Some("`explicit`")),
+        ("seed = 1", "method = \"colocation\"", Some("`collocation`")),
         ("\"radial\"", "\"raidal\"", Some("`radial`")),
         (
             "[sensor]",

@@ -60,7 +60,7 @@ fn input(sample: u32) -> Inputs {
 }
 
 /// Touches once, so that rings and spin move, and flies on; each sample in one go or cut in two.
-fn fly(params: &PlantParams, cut: bool) -> Box<dyn Plant> {
+fn fly(params: &PlantParams, cut: bool) -> Plant {
     let start = Start {
         position_m: V2::new(1.5e-4, 0.2e-4),
         velocity_m_s: V2::new(0.2, 0.02),
@@ -89,7 +89,7 @@ fn fly(params: &PlantParams, cut: bool) -> Box<dyn Plant> {
 #[test]
 fn samples_flown_whole_or_cut_are_the_same_flight() {
     for params in plants() {
-        let (whole, cut) = (fly(&params, false), fly(&params, true));
+        let (mut whole, mut cut) = (fly(&params, false), fly(&params, true));
         assert_eq!(whole.meters().impacts, cut.meters().impacts);
         assert!(whole.meters().impacts >= 1);
         let (a, b) = (whole.snapshot(), cut.snapshot());
@@ -174,7 +174,7 @@ fn a_touch_within_a_whole_sample_is_not_jumped_over() {
     };
     let mut plant = build(&params, &start, Options::default()).unwrap();
     let mut t = 0.0;
-    let mut sample = |plant: &mut Box<dyn Plant>, force_n: f64| {
+    let mut sample = |plant: &mut Plant, force_n: f64| {
         t += sample_s;
         let inputs = Inputs {
             command_n: V2::zeros(),
@@ -196,7 +196,7 @@ fn a_touch_within_a_whole_sample_is_not_jumped_over() {
     let cut = {
         let mut plant = build(&params, &start, Options::default()).unwrap();
         let mut t = 0.0;
-        let mut part = |plant: &mut Box<dyn Plant>, force_n: f64| {
+        let mut part = |plant: &mut Plant, force_n: f64| {
             for share in [0.21, 0.33, 0.46] {
                 t += share * sample_s;
                 let inputs = Inputs {

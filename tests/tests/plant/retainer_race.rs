@@ -4,7 +4,7 @@ use plant_model::params::*;
 use plant_model::{BuildError, Inputs, Method, Mode, Options, Plant, Snapshot, V2, build};
 use system_tests::plants::{footnote_4, onset_rig};
 
-const METHODS: [Method; 3] = [Method::Series, Method::Explicit, Method::Stiff];
+const METHODS: [Method; 2] = [Method::Series, Method::Collocation];
 const LOAD_N: f64 = 500.0;
 const MU: f64 = 0.1;
 const INERTIA_KG_M2: f64 = 2e-3;
@@ -59,13 +59,21 @@ fn normal_n(params: &PlantParams) -> f64 {
     LOAD_N - params.rotor.stiffness_n_m * resting(params, 0.0).position_m.x
 }
 
-fn carry(plant: &mut dyn Plant, t_s: f64) -> Snapshot {
+fn carry(plant: &mut Plant, t_s: f64) -> Snapshot {
     let inputs = Inputs {
         external_n: V2::new(LOAD_N, 0.0),
         ..Inputs::default()
     };
     plant.advance(t_s, &inputs, &mut |_| {}).unwrap();
     plant.snapshot()
+}
+
+/// What is left of an audit by rounding: collocation's forces are sums over the walls at eight points.
+fn rounding(method: Method) -> f64 {
+    match method {
+        Method::Collocation => 4e-12,
+        _ => 1e-13,
+    }
 }
 
 fn near(found: f64, expected: f64, share: f64, what: &str) {
@@ -79,11 +87,9 @@ fn near(found: f64, expected: f64, share: f64, what: &str) {
 fn friction_spins_the_race_up_until_it_rolls() {
     for (method, spin, inverse_j) in [
         (Method::Series, SpinParams::Held, 0.0),
-        (Method::Explicit, SpinParams::Held, 0.0),
-        (Method::Stiff, SpinParams::Held, 0.0),
+        (Method::Collocation, SpinParams::Held, 0.0),
         (Method::Series, FREE, 20.0),
-        (Method::Explicit, FREE, 20.0),
-        (Method::Stiff, FREE, 20.0),
+        (Method::Collocation, FREE, 20.0),
     ] {
         let params = pressed(spin, race(INERTIA_KG_M2, 0.0));
         let (r, bore) = (params.rotor.contact_radius_m, params.bore_radius_m());
@@ -96,7 +102,7 @@ fn friction_spins_the_race_up_until_it_rolls() {
         let rolls_s = r * spin_rad_s / (r * loss + bore * gain);
         for share in [0.2, 0.5, 0.9] {
             let t_s = share * rolls_s;
-            let now = carry(plant.as_mut(), t_s);
+            let now = carry(&mut plant, t_s);
             assert_eq!(now.mode, Mode::Seated, "{method:?}");
             near(now.race_spin_rad_s, gain * t_s, 1e-9, "race");
             near(now.spin_rad_s, spin_rad_s - loss * t_s, 1e-9, "rotor");
@@ -108,7 +114,7 @@ fn friction_spins_the_race_up_until_it_rolls() {
                 "slip",
             );
         }
-        let now = carry(plant.as_mut(), 3.0 * rolls_s);
+        let now = carry(&mut plant, 3.0 * rolls_s);
         assert_eq!(now.mode, Mode::Seated);
         near(now.race_spin_rad_s, gain * rolls_s, 1e-9, "rolling race");
         near(
@@ -123,7 +129,11 @@ fn friction_spins_the_race_up_until_it_rolls() {
         let slipped_j = 0.5 * friction_n * r * spin_rad_s * rolls_s;
         let audit = plant.audit();
         near(audit.flows.sliding_friction, slipped_j, 1e-9, "heat");
-        assert!(audit.residual() < 1e-13, "{:e}", audit.residual());
+        assert!(
+            audit.residual() < rounding(method),
+            "{:e}",
+            audit.residual()
+        );
     }
 }
 
@@ -141,17 +151,17 @@ fn a_drag_is_overcome_by_slip_or_by_rolling() {
             let limit = bore * friction_n / drag_n_m_s;
             assert_eq!(limit * bore > surface, rolls);
             let t_s = 0.02;
-            let now = carry(plant.as_mut(), t_s);
+            let now = carry(&mut plant, t_s);
             let grown = -(-drag_n_m_s * t_s / INERTIA_KG_M2).exp_m1();
             near(now.race_spin_rad_s, limit * grown, 1e-9, "creeping up");
-            let now = carry(plant.as_mut(), 2.0);
+            let now = carry(&mut plant, 2.0);
             if rolls {
                 near(now.race_spin_rad_s, surface / bore, 1e-12, "rolling");
                 let drag_n = -drag_n_m_s * now.race_spin_rad_s / bore;
                 near(now.sliding_force_n, drag_n, 1e-12, "friction");
                 let power_w = drag_n_m_s * now.race_spin_rad_s.powi(2);
                 let before = plant.audit().flows;
-                carry(plant.as_mut(), 2.5);
+                carry(&mut plant, 2.5);
                 let flows = plant.audit().flows;
                 let lost = flows.stator_damping - before.stator_damping;
                 near(lost, 0.5 * power_w, 1e-9, "lost in the bearing");
@@ -162,7 +172,7 @@ fn a_drag_is_overcome_by_slip_or_by_rolling() {
                 near(now.sliding_force_n, -friction_n, 1e-9, "friction");
             }
             let residual = plant.audit().residual();
-            assert!(residual < 1e-13, "{method:?}: {residual:e}");
+            assert!(residual < rounding(method), "{method:?}: {residual:e}");
         }
     }
 }
@@ -222,7 +232,7 @@ fn violent(race: Option<RaceParams>, eccentricity_m: f64, spin: SpinParams) -> P
     params
 }
 
-fn hit(params: &PlantParams, options: Options, end_s: f64) -> (Vec<Snapshot>, Box<dyn Plant>) {
+fn hit(params: &PlantParams, options: Options, end_s: f64) -> (Vec<Snapshot>, Plant) {
     let start = Start {
         position_m: V2::new(params.contact.clearance_m, 0.0),
         velocity_m_s: V2::new(0.4, 0.0),
@@ -287,12 +297,10 @@ fn methods_agree_on_every_mode() {
     for mode in [Mode::Flight, Mode::SlipPositive, Mode::Roll] {
         assert!(runs[0].iter().any(|s| s.mode == mode), "{mode:?}");
     }
-    for (other, bound) in [(&runs[1], 1e-7), (&runs[2], 1e-7)] {
-        let apart = farthest(&runs[0], other) / 2e-4;
-        assert!(apart < bound, "{apart:e}");
-        let end = |run: &[Snapshot]| run[run.len() - 1].race_spin_rad_s;
-        near(end(other), end(&runs[0]), 1e-7, "race");
-    }
+    let apart = farthest(&runs[0], &runs[1]) / 2e-4;
+    assert!(apart < 1e-7, "{apart:e}");
+    let end = |run: &[Snapshot]| run[run.len() - 1].race_spin_rad_s;
+    near(end(&runs[1]), end(&runs[0]), 1e-7, "race");
 }
 
 /// Sliding friction is one force on two surfaces: without drag and drive J·Ω/R + J_i·Ω_i/R_i stays.

@@ -119,18 +119,16 @@ fn without_spin_a_rotor_at_rest_begins_to_slip_and_to_whirl_at_once() {
             assert_eq!(modes[..2], [Mode::Seated, slip], "{friction}, {rolling}");
             assert_eq!(modes.last(), Some(&Mode::Seated), "{friction}, {rolling}");
             assert!(!modes.contains(&Mode::Roll), "{friction}, {rolling}");
-            for method in [Method::Explicit, Method::Stiff] {
-                assert_eq!(changes(method), modes, "{method:?}, {friction}, {rolling}");
-            }
+            assert_eq!(changes(Method::Collocation), modes, "{friction}, {rolling}");
         }
     }
 }
 
-/// A rotor that rests off the wall may be carried on for as long as one likes: nothing moves too fast.
+/// A rotor that swings off the wall may be carried on for as long as one likes: nothing moves too fast.
 #[test]
-fn a_long_rest_is_no_work_limit() {
+fn a_long_flight_is_no_work_limit() {
     let start = Start {
-        position_m: V2::zeros(),
+        position_m: V2::new(1e-5, 0.0),
         velocity_m_s: V2::zeros(),
         spin_rad_s: 200.0,
         spin_phase_rad: 0.0,

@@ -38,7 +38,7 @@ fn errors_follow_the_tolerance_and_no_run_is_wrong() {
         assert_eq!(reference["confirmed"], true);
         assert_eq!(
             reference["methods"],
-            serde_json::json!(["series", "explicit"])
+            serde_json::json!(["series", "collocation"])
         );
         assert_eq!(reference["same_modes"], true);
         assert!(reference["uncertainty"].as_f64().unwrap() < 1e-9);

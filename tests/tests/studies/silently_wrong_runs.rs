@@ -50,8 +50,10 @@ fn sweep(params: &PlantParams, forced: bool, starts: u32, tolerances: &[f64]) ->
     // The method that `auto` takes, and another one to confirm it. Out of round, where there is no series, a coarser
     // tolerance does (the stiff method confirms the same, in a hundred times the time).
     let ((taken, finest), (other, finer)) = match params.stator {
-        StatorParams::RigidEllipse(_) => ((Method::Explicit, 1e-11), (Method::Explicit, 1e-9)),
-        _ => ((Method::Series, 1e-13), (Method::Explicit, 1e-10)),
+        StatorParams::RigidEllipse(_) => {
+            ((Method::Collocation, 1e-11), (Method::Collocation, 1e-9))
+        }
+        _ => ((Method::Series, 1e-13), (Method::Collocation, 1e-10)),
     };
     let agree = |a: &Ending, b: &Ending| {
         a.changes == b.changes && (a.position_m - b.position_m).norm() < 0.5 * clearance_m

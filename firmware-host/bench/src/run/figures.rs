@@ -149,7 +149,7 @@ figures! {
     /// How warm the bearing is, of a plane that has `retainer.heat`.
     #[serde(skip_serializing_if = "Option::is_none")]
     bearing: Option<BearingFigures> = |run| run.bearing;
-    /// Method that integrated contact: `series`, `explicit` or `stiff`.
+    /// Method that integrated contact: `series` or `collocation`.
     method: &'static str = |run| run.method.name()
         => "method", "", 1.0, Fixed(0), Full;
 }

@@ -72,7 +72,7 @@ pub(crate) trait Rig {
 /// One plane.
 pub(crate) struct OnePlane<'a> {
     scene: &'a Scene,
-    plant: Box<dyn Plant>,
+    plant: Plant,
     push_n: V2,
 }
 

@@ -23,7 +23,6 @@ use crate::scene::resolve::OfMachine;
 use crate::scene::rotor::{self, Origin};
 use crate::scene::spec::Spec;
 use crate::scene::tables::{PlaneTable, SceneTables, TiltTable};
-use crate::scene::values::MethodName;
 use plant_model::V2;
 use plant_model::machine::params::{
     MachineChange, MachineMagnet, MachineParams, MachinePlane, MachineStart, Rotor, Support,
@@ -387,10 +386,6 @@ fn check_together(tables: &SceneTables, text: &SceneText) -> Result<(), SceneErr
             let message = "does not go with [levitation.tilt], which holds the whole rotor";
             return error(&key, message, "remove one of them");
         }
-    }
-    if tables.run.method == MethodName::Stiff {
-        let message = "is of a point mass in one plane";
-        return error("run.method", message, "take auto, series or explicit");
     }
     Ok(())
 }

@@ -202,7 +202,7 @@ fn check_method(spec: &PlaneSpec, plant: &PlantParams) -> Result<(), SceneError>
     }
     let with = hardening_key(&spec.contact).unwrap_or("retainer.ellipticity");
     let message = format!("series does not go with {with}");
-    let help = "take auto, explicit or stiff: this contact has no power series at the touch";
+    let help = "take auto or collocation: this contact has no power series at the touch";
     Err((spec.text).error_at_key("run.method", message, Some(help.to_owned())))
 }
 

@@ -72,10 +72,8 @@ words! {
         Auto = "auto",
         /// Power series.
         Series = "series",
-        /// Runge–Kutta pair.
-        Explicit = "explicit",
-        /// Radau.
-        Stiff = "stiff",
+        /// Implicit, in eight points.
+        Collocation = "collocation",
     }
 }
 
@@ -84,8 +82,7 @@ impl From<MethodName> for Method {
         match name {
             MethodName::Auto => Self::Auto,
             MethodName::Series => Self::Series,
-            MethodName::Explicit => Self::Explicit,
-            MethodName::Stiff => Self::Stiff,
+            MethodName::Collocation => Self::Collocation,
         }
     }
 }

@@ -28,8 +28,7 @@ fn panel<'a>(found: &Accuracy, reference: &'a Reference) -> LogPanel<'a> {
     };
     let methods = [
         ("series", "series", plot::TOUCHING),
-        ("explicit", "explicit pair 8(5,3)", plot::FREE),
-        ("stiff", "stiff, Radau IIA", plot::LIMIT),
+        ("collocation", "collocation", plot::FREE),
     ];
     LogPanel {
         title: &reference.problem,

@@ -1,7 +1,7 @@
 //! Runs that end without an error and are wrong all the same: one scene without control, from many
 //! start speeds.
 
-use crate::accuracy::{AccuracyError, Ending, TIGHTEST, apart, reference_methods, run};
+use crate::accuracy::{AccuracyError, Ending, apart, references, run};
 use firmware_bench::scene::Scene;
 use rayon::prelude::{IntoParallelIterator, ParallelIterator};
 use serde::Serialize;
@@ -16,7 +16,7 @@ pub const TOLERANCES: [f64; 5] = [1e-4, 1e-6, 1e-8, 1e-10, 1e-12];
 const WRONG_CLEARANCES: f64 = 0.5;
 /// Relative change of the start speed that a reference must survive …
 const NUDGE: f64 = 1e-12;
-/// … and tolerance of the explicit pair that must confirm it.
+/// … and tolerance of collocation that must confirm it.
 const CONFIRM_AT: f64 = 1e-8;
 
 /// What came of all starts at one tolerance.
@@ -107,9 +107,9 @@ fn from_start(scene: &Scene, factor: f64) -> Start {
     let moved = at(factor);
     let agree =
         |a: &Ending, b: &Ending| a.modes == b.modes && apart(scene, a, b) <= WRONG_CLEARANCES;
-    let [one, other] = reference_methods(scene);
-    let reference = run(&moved, one, TIGHTEST).ok()?;
-    let slower = run(&at(factor * (1.0 - NUDGE)), one, TIGHTEST).ok()?;
+    let [(one, tightest), (other, _)] = references(scene);
+    let reference = run(&moved, one, tightest).ok()?;
+    let slower = run(&at(factor * (1.0 - NUDGE)), one, tightest).ok()?;
     let faster = run(&at(factor * (1.0 + NUDGE)), other, CONFIRM_AT).ok()?;
     if !(agree(&reference, &slower) && agree(&reference, &faster)) {
         return None;

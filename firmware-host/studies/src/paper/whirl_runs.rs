@@ -35,7 +35,7 @@ pub(super) fn at_the_wall(params: &PlantParams, impact_m_s: f64, spin_hz: f64) -
     }
 }
 
-fn carry(plant: &mut dyn Plant, t_s: f64) -> Result<(), PaperError> {
+fn carry(plant: &mut Plant, t_s: f64) -> Result<(), PaperError> {
     Ok(plant.advance(t_s, &Inputs::default(), &mut |_| {})?)
 }
 
@@ -50,7 +50,7 @@ pub(super) fn fastest_hz(
     let mut meter = WhirlMeter::new(WINDOW_S);
     let samples = (duration_s / SAMPLE_S).round() as u32;
     for i in 1..=samples {
-        carry(plant.as_mut(), f64::from(i) * SAMPLE_S)?;
+        carry(&mut plant, f64::from(i) * SAMPLE_S)?;
         let now = plant.snapshot();
         meter.push(now.t_s, now.whirl_angle_rad, now.mode.in_contact(), 1.0);
     }
@@ -90,9 +90,9 @@ pub(super) fn settled(
         ..at_the_wall(params, 0.0, spin_hz)
     };
     let mut plant = build(&held, &start, Options::default())?;
-    carry(plant.as_mut(), 0.9 * duration_s)?;
+    carry(&mut plant, 0.9 * duration_s)?;
     let before = plant.snapshot().whirl_angle_rad;
-    carry(plant.as_mut(), duration_s)?;
+    carry(&mut plant, duration_s)?;
     let now = plant.snapshot();
     Ok(Settled {
         whirl_hz: (before - now.whirl_angle_rad) / TAU / (0.1 * duration_s),

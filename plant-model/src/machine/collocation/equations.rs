@@ -47,9 +47,11 @@ impl Collocation {
             let motion = system.motion(p, y);
             touch.distance_m = motion.distance_m;
             touch.normal = motion.normal;
+            touch.penetration_m = motion.penetration_m;
             touch.normal_m_s = motion.normal_m_s;
             let normal = data.law.at(motion.penetration_m, motion.normal_m_s);
             (touch.force_n, touch.lift) = (normal.force_n, normal.guard);
+            (touch.by_depth_n_m, touch.by_rate_n_s_m) = (normal.by_depth_n_m, normal.by_rate_n_s_m);
             let Phase::Contact(slide, whirl) = *phase else {
                 continue;
             };
@@ -58,10 +60,12 @@ impl Collocation {
             if slide != Slide::Rolling {
                 let sign = slide.sign();
                 let mu = data.friction.coefficient(sign * motion.sliding_m_s);
-                touch.sliding_n = -sign * mu * touch.force_n;
+                touch.sliding_share = -sign * mu;
+                touch.sliding_n = touch.sliding_share * touch.force_n;
             }
             if !matches!(whirl, Whirl::Still | Whirl::Ignored) {
-                touch.rolling_n = -whirl.sign() * data.rolling * touch.force_n;
+                touch.rolling_share = -whirl.sign() * data.rolling;
+                touch.rolling_n = touch.rolling_share * touch.force_n;
             }
             torque += data.radius_m * touch.sliding_n;
             let grip = touch.sliding_n + touch.rolling_n;

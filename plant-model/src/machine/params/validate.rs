@@ -236,12 +236,26 @@ impl MachinePlane {
         match &self.stator {
             StatorParams::Rigid => {}
             StatorParams::RigidEllipse(bore) => {
+                let (e, range) = (bore.ellipticity, "a number from 0 to 0.2");
                 check(
-                    false,
+                    (0.0..=0.2).contains(&e),
                     field("stator.ellipticity"),
-                    bore.ellipticity,
-                    "a round bore",
+                    e,
+                    range,
                 )?;
+                check(
+                    true,
+                    field("stator.long_axis_rad"),
+                    bore.long_axis_rad,
+                    FINITE,
+                )?;
+                // A race would turn the ellipse with it.
+                let race = self.race.map_or(0.0, |race| race.inertia_kg_m2);
+                let rule = "no race: it would turn the ellipse with it";
+                check(self.race.is_none(), field("race.inertia_kg_m2"), race, rule)?;
+                let expands = self.heat.map_or(0.0, |heat| heat.expansion_m_k);
+                let rule = "0 in a bore that is out of round";
+                check(expands == 0.0, field("heat.expansion_m_k"), expands, rule)?;
             }
             StatorParams::OneMass(ring) => ring.validate_as(&field, "stator.inner")?,
             StatorParams::TwoMass { inner, outer } => {

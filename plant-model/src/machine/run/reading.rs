@@ -5,10 +5,11 @@ use crate::V2;
 use crate::energy::Audit;
 use crate::machine::body::Port;
 use crate::machine::params::{MAX_MAGNETS, MAX_PLANES};
+use crate::machine::poles::MagnetLaw;
 use crate::machine::readout::{AxisMotion, ContactMotion, MachineSnapshot, PlaneSnapshot};
 use crate::machine::series::Step;
 use crate::mode::Phase;
-use crate::part::Body;
+use crate::vector::Body;
 
 impl Machine {
     pub(crate) fn contact_motion(&self, plane: usize) -> ContactMotion {
@@ -74,6 +75,16 @@ impl Machine {
         }
     }
 
+    /// Number of scalar states that are integrated in contact.
+    pub fn states(&self) -> usize {
+        let system = &self.system;
+        let free = system.inverse_inertia > 0.0;
+        let spin = usize::from(free) + usize::from(free && system.body.unbalance.is_some());
+        let races = system.planes.iter().flat_map(|plane| plane.race).count();
+        let magnets = system.magnets.iter().map(MagnetLaw::states);
+        4 * system.body.pairs + spin + races + magnets.sum::<usize>()
+    }
+
     /// The rotor's axis now.
     pub fn axis(&self) -> AxisMotion {
         let body = &self.system.body;
@@ -109,7 +120,7 @@ impl Machine {
         })
     }
 
-    /// The energy audit of the machine so far. Dampers of rings are booked with the rotor's.
+    /// The energy audit of the machine so far.
     pub fn audit(&self) -> Audit {
         let mut flows = self.flows;
         flows.add_scaled(1.0, &self.map.works());

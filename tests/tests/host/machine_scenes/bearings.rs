@@ -155,7 +155,7 @@ fn an_overdamped_amplifier_is_one_of_first_order() {
         (figures.method, trace)
     };
     let (first, second) = (of(&quiet), of(&slow));
-    assert_eq!((first.0, second.0), ("series", "explicit"));
+    assert_eq!((first.0, second.0), ("series", "collocation"));
     let ends = |trace: &firmware_bench::run::trace::Trace| {
         let row = trace.rows.iter().rev().find(|row| row.plant.t_s < 0.019);
         row.map(|row| row.plant.position_m).unwrap()

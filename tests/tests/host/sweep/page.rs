@@ -18,7 +18,7 @@ fn the_page_says_what_the_summary_says() {
     let lines = format!(
         "scene = {:?}\npolicies = [\"levitation\", \"supervisor\"]\ndesign = \"monte_carlo\"\nruns = 70\n\
          [[vary]]\nkey = \"start.velocity_m_s[0]\"\nuniform = [0.1, 0.38]\n\
-         [[vary]]\nkey = \"run.method\"\nvalues = [\"series\", \"explicit\"]\n",
+         [[vary]]\nkey = \"run.method\"\nvalues = [\"series\", \"collocation\"]\n",
         scene_path("impact_at_40_hz").display().to_string()
     );
     let file = folder.path().join("impacts.toml");
@@ -83,7 +83,7 @@ fn maps_are_of_the_keys_that_are_asked_for() {
         }
     }
     // Over two ranges the runs one by one, over words how many of them are lost.
-    assert!(page.contains("<th scope=\"row\">explicit</th>"));
+    assert!(page.contains("<th scope=\"row\">collocation</th>"));
     assert!(
         page.contains(
             "Share of runs lost under supervisor over friction.coefficient and run.method"

@@ -60,7 +60,7 @@ fn bad_sweeps_are_refused_with_file_key_and_expectation() {
             "give policies",
         ),
         (
-            "\"explicit\"]",
+            "\"collocation\"]",
             "\"exact\"]",
             "vary[1].values",
             "run.method",

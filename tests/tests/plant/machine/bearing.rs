@@ -83,7 +83,7 @@ fn drag_by_load_brakes_a_race_as_its_closed_form_says() {
         (plane.race, plane.load_drag) = (Some(RACE), Some(drag));
     }
     let mut machine = Machine::new(&params, &start, OPTIONS).unwrap();
-    assert_eq!(machine.method(), Method::Explicit);
+    assert_eq!(machine.method(), Method::Collocation);
     let t_s = 0.8;
     machine
         .advance(t_s, &MachineInputs::default(), &mut |_, _| {})
@@ -156,7 +156,7 @@ fn a_race_runs_out_in_one_long_call() {
         });
     }
     let options = Options {
-        method: Method::Explicit,
+        method: Method::Collocation,
         ..OPTIONS
     };
     let mut machine = Machine::new(&params, &start, options).unwrap();
@@ -218,7 +218,7 @@ fn losses_warm_a_bearing() {
 #[test]
 fn a_clearance_follows_its_heat() {
     for expansion_m_k in [2e-5, -2e-5] {
-        for method in [Method::Series, Method::Explicit] {
+        for method in [Method::Series, Method::Collocation] {
             let heat = BearingHeat {
                 conductance_w_k: 3.0,
                 expansion_m_k,
@@ -268,7 +268,7 @@ fn an_amplifier_of_second_order_answers_a_step() {
             poles: None,
         }];
         let mut machine = Machine::new(&params, &MachineStart::default(), OPTIONS).unwrap();
-        assert_eq!(machine.method(), Method::Explicit);
+        assert_eq!(machine.method(), Method::Collocation);
         let inputs = MachineInputs {
             commands_n: vec![V2::new(80.0, -40.0)],
             loads_n: vec![],
@@ -344,7 +344,7 @@ fn drag_of_any_strength_is_under_control() {
         let [loose, tight, other] = [
             (1e-6, Method::Series),
             (1e-10, Method::Series),
-            (1e-10, Method::Explicit),
+            (1e-10, Method::Collocation),
         ]
         .map(|(rtol, method)| run(rate, 0.5, rtol, method));
         assert!(

@@ -77,7 +77,7 @@ fn a_blade_is_lost_while_the_spin_falls() {
         spin_phase_rad: phase,
         ..MachineStart::default()
     };
-    for method in [Method::Series, Method::Explicit] {
+    for method in [Method::Series, Method::Collocation] {
         let options = Options { method, ..OPTIONS };
         let mut rotor = Machine::new(&params, &start, options).unwrap();
         advance(&mut rotor, lost_s);

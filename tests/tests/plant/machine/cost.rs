@@ -92,10 +92,10 @@ fn cost_over_degrees_of_freedom() {
         let poles = rotor(modes, true);
         let row = [
             cost_us(&plain, (0.01, true), Method::Series, Mode::Flight),
-            cost_us(&plain, (0.01, true), Method::Explicit, Mode::Flight),
+            cost_us(&plain, (0.01, true), Method::Collocation, Mode::Flight),
             cost_us(&poles, (0.01, true), Method::Auto, Mode::Flight),
             cost_us(&plain, (0.3, false), Method::Series, Mode::Roll),
-            cost_us(&plain, (0.3, false), Method::Explicit, Mode::Roll),
+            cost_us(&plain, (0.3, false), Method::Collocation, Mode::Roll),
         ];
         let cells: Vec<String> = row
             .iter()

@@ -218,7 +218,7 @@ fn a_rotor_without_tilt_is_a_point_mass() {
                 lag_s,
             });
             // The second method goes the same way.
-            for (method, worst) in [(Method::Series, 1e-10), (Method::Explicit, 1e-9)] {
+            for (method, worst) in [(Method::Series, 1e-10), (Method::Collocation, 1e-9)] {
                 let what = format!("{}, {stator:?}, case {case:04b}", method.name());
                 alike(&params, &one, (method, worst), &what);
             }
@@ -257,7 +257,7 @@ fn a_rotor_that_does_not_tilt_is_a_point_mass() {
                 spin_rad_s: 400.0,
                 ..MachineStart::default()
             };
-            for (method, worst) in [(Method::Series, 1e-10), (Method::Explicit, 1e-9)] {
+            for (method, worst) in [(Method::Series, 1e-10), (Method::Collocation, 1e-9)] {
                 let mut rotor = Machine::new(&params, &start, options(method)).unwrap();
                 let mut mass = build(
                     &one,
@@ -318,11 +318,9 @@ fn friction_that_falls_with_speed_is_that_of_a_point_mass() {
             lag_s: 2e-4,
         });
         let what = format!("falling friction, {stator:?}");
-        alike(&params, &one, (Method::Explicit, 1e-8), &what);
-        let auto = Machine::new(&params, &MachineStart::default(), Options::default()).unwrap();
-        assert_eq!(auto.method(), Method::Explicit);
-        let refused = Machine::new(&params, &MachineStart::default(), OPTIONS).unwrap_err();
-        assert_eq!(refused.field, "planes[0].friction.coefficient_at_speed");
+        for (method, worst) in [(Method::Series, 1e-10), (Method::Collocation, 1e-8)] {
+            alike(&params, &one, (method, worst), &what);
+        }
     }
 }
 
@@ -356,7 +354,7 @@ fn a_contact_that_hardens_is_that_of_a_point_mass() {
                 force_max_n: 300.0,
                 lag_s: 0.0,
             });
-            alike(&params, &one, (Method::Explicit, 1e-7), &what);
+            alike(&params, &one, (Method::Collocation, 1e-7), &what);
             let refused = Machine::new(&params, &MachineStart::default(), OPTIONS).unwrap_err();
             assert_eq!(refused.field, "planes[0].contact.stiffness_n_mn");
         }

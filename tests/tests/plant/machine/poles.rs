@@ -88,7 +88,7 @@ fn the_force_is_that_of_the_poles_where_the_rotor_is() {
         ..MachineStart::default()
     };
     let mut machine = Machine::new(&with(Some(POLES)), &start, options(Method::Auto)).unwrap();
-    assert_eq!(machine.method(), Method::Explicit);
+    assert_eq!(machine.method(), Method::Collocation);
     let commands_n = vec![V2::new(10.0, -22.0), V2::new(-CAP_N, 0.0)];
     let inputs = MachineInputs {
         commands_n: commands_n.clone(),

@@ -59,7 +59,7 @@ fn values_out_of_range_are_named() {
     });
     refused("planes[0].stator.ellipticity", |p| {
         p.planes[0].stator = StatorParams::RigidEllipse(EllipseParams {
-            ellipticity: 0.1,
+            ellipticity: 0.3,
             long_axis_rad: 0.0,
         });
     });

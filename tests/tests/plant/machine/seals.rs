@@ -77,7 +77,7 @@ fn a_run_grows_as_the_closed_form_and_energy_closes() {
         spin_rad_s: 400.0,
         ..MachineStart::default()
     };
-    for method in [Method::Series, Method::Explicit] {
+    for method in [Method::Series, Method::Collocation] {
         let options = Options {
             rtol: 1e-11,
             method,
@@ -123,7 +123,7 @@ fn energy_closes_where_a_sealed_rotor_bounces() {
             spin_rad_s: 400.0,
             ..MachineStart::default()
         };
-        for method in [Method::Series, Method::Explicit] {
+        for method in [Method::Series, Method::Collocation] {
             let options = Options {
                 method,
                 ..Options::default()

@@ -104,7 +104,7 @@ fn case(bending_modes: usize, stiffness_n_m: f64) -> (MachineParams, Reference) 
     (params, reference)
 }
 
-const METHODS: [Method; 2] = [Method::Series, Method::Explicit];
+const METHODS: [Method; 2] = [Method::Series, Method::Collocation];
 const TOLERANCES: [f64; 4] = [1e-6, 1e-8, 1e-10, 1e-12];
 
 /// Largest error over rtol, clearances, of runs of `duration_s` from `starts` speeds. A run that passes through other modes

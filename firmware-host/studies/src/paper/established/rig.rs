@@ -51,7 +51,7 @@ pub(in crate::paper) fn run(
     watch: &Watch,
 ) -> Result<(Course, Meters), PaperError> {
     let mut plant = build(params, start, Options::default())?;
-    let course = follow(&mut *plant, watch)?;
+    let course = follow(&mut plant, watch)?;
     Ok((course, plant.meters()))
 }
 

@@ -48,7 +48,7 @@ pub(super) fn run(
         free_s: 0.03,
         pulse: None,
     };
-    let course = follow(plant.as_mut(), &watch)?;
+    let course = follow(&mut plant, &watch)?;
     let whirl = course.longest_contact();
     let inside = |t_s: f64| whirl.is_some_and(|c| c.from_s <= t_s && t_s <= c.to_s);
     let lasts = whirl.is_some_and(|c| c.to_s > end_s - 1e-9);

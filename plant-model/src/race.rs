@@ -1,9 +1,7 @@
 //! A retainer ball bearing: the race that the rotor touches has a spin of its own,
 //! J_i·Ω̇_i = −R_i·s − b·Ω_i, eq. (2.37).
 
-use super::Raceway;
 use crate::params::RaceParams;
-use crate::spin::{Single, SpinState};
 
 /// The race, without its spin.
 #[derive(Debug, Clone, Copy)]
@@ -41,12 +39,6 @@ impl Race {
         -(self.radius_m * sliding_n + self.drag_n_m_s * spin_rad_s) / self.inertia_kg_m2
     }
 
-    /// What the drag adds to the sliding acceleration: the surface falls back \[m/s²\].
-    #[inline]
-    pub(crate) fn falling_back_m_s2(&self, spin_rad_s: f64) -> f64 {
-        self.radius_m * self.drag_n_m_s / self.inertia_kg_m2 * spin_rad_s
-    }
-
     /// R_i²/J_i: how easily the surface gives way \[1/kg\].
     #[inline]
     pub(crate) fn mobility(&self) -> f64 {
@@ -69,34 +61,5 @@ impl Race {
     #[inline]
     pub(crate) fn coasting_loss_j(&self, from_rad_s: f64, to_rad_s: f64) -> f64 {
         0.5 * self.inertia_kg_m2 * (from_rad_s - to_rad_s) * (from_rad_s + to_rad_s)
-    }
-}
-
-impl Raceway for Race {
-    /// Ω_i.
-    type State = SpinState;
-    const TURNS: bool = true;
-    fn start(&self) -> SpinState {
-        Single(self.start_spin_rad_s)
-    }
-    #[inline]
-    fn race(&self) -> Option<&Race> {
-        Some(self)
-    }
-    #[inline]
-    fn spin_rad_s(state: &SpinState) -> f64 {
-        state.0
-    }
-    #[inline]
-    fn set_spin_rad_s(state: &mut SpinState, spin_rad_s: f64) {
-        state.0 = spin_rad_s;
-    }
-    #[inline]
-    fn rates(&self, state: &SpinState, sliding_n: f64) -> SpinState {
-        Single(self.acceleration(state.0, sliding_n))
-    }
-    #[inline]
-    fn coast(&self, state: &SpinState, dt_s: f64) -> SpinState {
-        Single(self.coasted_rad_s(state.0, dt_s))
     }
 }
