@@ -16,7 +16,7 @@ use crate::V2;
 use crate::energy::Flows;
 use crate::integrate::progress::Progress;
 use crate::integrate::{Method, Options, PlantError};
-use crate::mode::{Mode, Phase};
+use crate::mode::{Mode, Phase, Slide, Whirl};
 use crate::readout::{HARD_IMPACT_M_S, Meters, Work};
 use settle::AtZero;
 use warming::Warming;
@@ -28,6 +28,9 @@ const SPARE: f64 = 1.0 - 1e-4;
 
 /// Share of a moment that a step has to get on by. Friction that falls within a thousandth of a moment is followed.
 const CREEPING: f64 = 1e-3;
+
+/// Share of the normal force by which friction at the edge of its cone may be off by rounding.
+const AT_EDGE: f64 = 1e-10;
 
 /// A rotor that may touch in several planes, being run. Deterministic: the same calls give the same bits.
 #[derive(Debug, Clone)]
@@ -84,9 +87,7 @@ impl Machine {
         options.validate().map_err(MachineError::from)?;
         let flies = options.method != Method::Collocation && params.flies();
         let method = match params.method(options.method)? {
-            Method::Series
-                if options.method == Method::Auto && system.is_overdamped(options.rtol) =>
-            {
+            Method::Series if options.method == Method::Auto && system.is_overdamped() => {
                 Method::Collocation
             }
             method => method,
@@ -305,6 +306,10 @@ impl Machine {
             }
             (_, guard) => guard,
         };
+        if !stood_still && self.options.method == Method::Collocation && self.holds_on(p, guard) {
+            self.zero_speeds(None);
+            return Ok(());
+        }
         match guard {
             Guard::Gap if self.never_left(p) => self.touch_down(p),
             Guard::Gap => self.impact(p),
@@ -336,6 +341,27 @@ impl Machine {
             }
         }
         Ok(())
+    }
+
+    /// Whether friction that holds a speed is still inside its cone where a guard says that it has come to the edge. Between its
+    /// points a polynomial is off by the tolerance; the forces of the instant decide.
+    fn holds_on(&mut self, p: usize, guard: Guard) -> bool {
+        let Phase::Contact(slide, whirl) = self.phases[p] else {
+            return false;
+        };
+        let (rolls, still) = (slide == Slide::Rolling, whirl == Whirl::Still);
+        self.look();
+        let (plane, data) = (&self.stepper.series.parts.planes[p], &self.system.planes[p]);
+        let normal_n_m = plane.normal_n_m.0[0];
+        let (sliding, rolling) = (plane.sliding_n_m.0[0], plane.rolling_n_m.0[0]);
+        let room = match guard {
+            Guard::Slide if rolls => data.sliding * normal_n_m - sliding,
+            Guard::SlideLow => data.sliding * normal_n_m + sliding,
+            Guard::Whirl if still => data.rolling * normal_n_m - rolling,
+            Guard::WhirlLow => data.rolling * normal_n_m + rolling,
+            _ => return false,
+        };
+        room > AT_EDGE * normal_n_m
     }
 
     /// Takes the step over up to θ: energies, largest values, state.

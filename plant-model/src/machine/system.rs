@@ -445,11 +445,11 @@ impl MachineSystem {
 
     /// Whether stability and not the tolerance would set the steps of the series: a contact damper so strong that it stops the rotor
     /// many times within the time in which the spring gives way.
-    pub(crate) fn is_overdamped(&self, rtol: f64) -> bool {
-        let fast_s = if rtol < 1e-10 { 1e6 } else { 2.5e5 };
+    pub(crate) fn is_overdamped(&self) -> bool {
+        const FAST_S: f64 = 1e6;
         (0..self.planes.len()).any(|p| {
             let rate_s = self.contact_decay_rate_s(p);
-            rate_s > fast_s && rate_s > 4.0 * self.undamped_contact_rate_rad_s(p)
+            rate_s > FAST_S && rate_s > 4.0 * self.undamped_contact_rate_rad_s(p)
         })
     }
 

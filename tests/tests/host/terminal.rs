@@ -28,6 +28,8 @@ fn commands(folder: &Path) -> Vec<Vec<String>> {
             "run",
             &scene,
             "--verify",
+            "--set",
+            "run.duration_s=0.1",
             "--no-trace",
             "--out",
             &here("run"),

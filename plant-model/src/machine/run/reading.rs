@@ -24,8 +24,8 @@ impl Machine {
         normals
     }
 
-    /// What can be read off now.
-    pub fn snapshot(&mut self) -> MachineSnapshot {
+    /// Puts the forces of this instant into the series.
+    pub(super) fn look(&mut self) {
         const ORDER: usize = 1;
         let step = Step {
             system: &self.system,
@@ -34,8 +34,13 @@ impl Machine {
             commands_n: &self.inputs.commands_n,
             step_s: self.system.moment_s,
         };
+        (self.stepper.series).fill(&step, &self.y, ORDER, &mut |_, _, _| false);
+    }
+
+    /// What can be read off now.
+    pub fn snapshot(&mut self) -> MachineSnapshot {
         if (self.phases.iter()).any(|phase| matches!(phase, Phase::Contact(..))) {
-            (self.stepper.series).fill(&step, &self.y, ORDER, &mut |_, _, _| false);
+            self.look();
         }
         let body = &self.system.body;
         let of_ring = |ring: &Option<Port>| {

@@ -180,7 +180,7 @@ fn contradictions_are_refused_with_line_key_and_rule() {
     let series = oval.replace("[run]", "[run]\nmethod = \"series\"");
     let message = refused(&series);
     assert!(
-        message.contains("plane[1].retainer.ellipticity"),
+        message.contains("run.method: series does not go with retainer.ellipticity"),
         "{message}"
     );
     let many: String = (0..4)
