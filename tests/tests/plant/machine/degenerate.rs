@@ -1,4 +1,4 @@
-//! Where a rotor in two planes is a point mass, it runs as the point mass does, whatever the planes are made of.
+//! Where a rotor in two planes is a point mass, it runs as one with a single pair in one plane does, whatever they are made of.
 
 use super::rotor::*;
 use plant_model::machine::params::*;
@@ -289,7 +289,37 @@ fn a_rotor_that_does_not_tilt_is_a_point_mass() {
     }
 }
 
-/// Friction that falls with speed, which is left to the second method.
+/// Bores out of round at both ends.
+#[test]
+fn bores_out_of_round_are_that_of_a_point_mass() {
+    let bore = StatorParams::RigidEllipse(EllipseParams {
+        ellipticity: 0.05,
+        long_axis_rad: 0.4,
+    });
+    let (mut params, mut one) = (machine(), point());
+    params.loads_m = vec![0.0];
+    let magnet = |position_m: f64| MachineMagnet {
+        position_m,
+        force_max_n: 150.0,
+        lag_s: 2e-4,
+        lag_damping_ratio: None,
+        poles: None,
+    };
+    params.magnets = vec![magnet(-0.1), magnet(0.1)];
+    one.magnet = Some(MagnetParams {
+        force_max_n: 300.0,
+        lag_s: 2e-4,
+    });
+    for plane in &mut params.planes {
+        plane.stator = bore;
+    }
+    one.stator = bore;
+    alike(&params, &one, (Method::Collocation, 1e-8), "out of round");
+    let refused = Machine::new(&params, &MachineStart::default(), OPTIONS).unwrap_err();
+    assert_eq!(refused.field, "planes[0].stator.ellipticity");
+}
+
+/// Friction that falls with speed, by both methods.
 #[test]
 fn friction_that_falls_with_speed_is_that_of_a_point_mass() {
     let falling = SlidingFriction::Falling {
