@@ -29,6 +29,9 @@ const SPARE: f64 = 1.0 - 1e-4;
 /// Share of a moment that a step has to get on by. Friction that falls within a thousandth of a moment is followed.
 const CREEPING: f64 = 1e-3;
 
+/// For how many moments a guard is not asked.
+const MUTED: f64 = 100.0;
+
 /// Share of the normal force by which friction at the edge of its cone may be off by rounding.
 const AT_EDGE: f64 = 1e-10;
 
@@ -65,6 +68,8 @@ pub struct Machine {
     backward: Vec<f64>,
     path: Vec<V2>,
     suppressed: Vec<u8>,
+    /// For how long at least a guard is not asked \[s\].
+    at_edge_s: f64,
     just_left: Vec<bool>,
     /// Planes in which it started on the wall, and along it if it moved.
     rests: Vec<bool>,
@@ -123,6 +128,7 @@ impl Machine {
             backward: (0..planes).map(|p| system.backward(p, &y)).collect(),
             path: vec![V2::zeros(); pairs],
             suppressed: vec![0; planes],
+            at_edge_s: 0.0,
             just_left: vec![false; planes],
             rests: vec![false; planes],
             left_at_s: vec![f64::NEG_INFINITY; planes],
@@ -198,12 +204,11 @@ impl Machine {
             begun.map_err(|error| self.system.naming_fastest(error))?;
             let free = self.phases.iter().all(|phase| *phase == Phase::Inside);
             let before: [Mode; MAX_PLANES] = self.modes();
-            let t_before = self.t_s;
+            let (t_before, moment_s) = (self.t_s, self.system.moment_s(&self.y));
             self.step(t_end_s)?;
             self.check_state()?;
             self.progress.count(self.t_s, self.t_s > t_before)?;
-            let creeps =
-                self.t_s - t_before <= CREEPING * self.system.moment_s && self.t_s < t_end_s;
+            let creeps = self.t_s - t_before <= CREEPING * moment_s && self.t_s < t_end_s;
             self.progress.creeps(self.t_s, creeps)?;
             if free && self.modes() == before && !creeps {
                 self.progress.was_free();
@@ -259,11 +264,13 @@ impl Machine {
     }
 
     fn step(&mut self, t_end_s: f64) -> Result<(), PlantError> {
-        let moment_s = self.system.moment_s;
-        let t_end_s = match self.suppressed.iter().all(|s| *s == 0) {
-            true => t_end_s,
-            false => t_end_s.min(self.t_s + 100.0 * moment_s),
+        let moment_s = self.system.moment_s(&self.y);
+        let muted = self.suppressed.iter().any(|s| *s != 0);
+        let t_end_s = match muted {
+            false => t_end_s,
+            true => t_end_s.min(self.t_s + (MUTED * moment_s).max(self.at_edge_s)),
         };
+        self.at_edge_s = 0.0;
         let task = Task {
             span: (self.t_s, t_end_s),
             phases: &self.phases,
@@ -330,6 +337,17 @@ impl Machine {
                 self.settle(p, at_zero);
                 if self.phases[p] == phase && stood_still {
                     self.suppressed[p] = before[p] | guard.bit();
+                }
+                // A speed that begins at zero, from the edge of its cone, has the sign of rounding at first. The damper, which makes
+                // a moment shorter, has no part in it.
+                for (begins, guard) in [
+                    (at_zero.only_slide.is_some(), Guard::Slide),
+                    (at_zero.only_whirl.is_some(), Guard::Whirl),
+                ] {
+                    if begins {
+                        self.suppressed[p] |= guard.bit();
+                        self.at_edge_s = MUTED * 1e-6 / self.system.undamped_contact_rate_rad_s(p);
+                    }
                 }
                 if self.progress.is_circle() {
                     for (kept, phase) in self.suppressed.iter_mut().zip(&self.phases) {
@@ -413,7 +431,7 @@ impl Machine {
     /// moment.
     fn touch_down(&mut self, p: usize) {
         self.zero_speeds(None);
-        if self.t_s - self.left_at_s[p] <= self.system.moment_s {
+        if self.t_s - self.left_at_s[p] <= self.system.moment_s(&self.y) {
             self.suppressed[p] = Guard::Normal.bit();
         }
         self.settle(p, AtZero::default());

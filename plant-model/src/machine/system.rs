@@ -219,8 +219,8 @@ pub(crate) struct MachineSystem {
     pub(crate) drive_torque_n_m: f64,
     pub(crate) magnets: Vec<MagnetLaw>,
     pub(crate) caps_n: Vec<f64>,
-    /// A time that nothing in contact notices.
-    pub(crate) moment_s: f64,
+    /// Largest rate of a contact with its damper as it is at the touch \[1/s\].
+    contact_rate_s: f64,
 }
 
 impl MachineSystem {
@@ -264,9 +264,9 @@ impl MachineSystem {
             drive_torque_n_m,
             magnets: params.magnets.iter().map(MagnetLaw::new).collect(),
             caps_n: params.magnets.iter().map(|m| m.force_max_n).collect(),
-            moment_s: 0.0,
+            contact_rate_s: 0.0,
         };
-        system.moment_s = 1e-6 / system.contact_rate_rad_s();
+        system.contact_rate_s = system.contact_rate_rad_s();
         Ok(system)
     }
 
@@ -499,11 +499,28 @@ impl MachineSystem {
         }
     }
 
-    /// The largest of them with their dampers \[rad/s\].
+    /// Rate of a plane's contact with its damper at a depth \[rad/s\].
+    fn contact_rate_at(&self, plane: usize, depth_m: f64) -> f64 {
+        let damper_n_s_m = self.planes[plane].law.by_rate_n_s_m(depth_m);
+        self.undamped_contact_rate_rad_s(plane) + damper_n_s_m * self.contact(plane).mobility()
+    }
+
+    /// The largest of them at the touch \[rad/s\].
     pub(crate) fn contact_rate_rad_s(&self) -> f64 {
-        let rates = (0..self.planes.len())
-            .map(|p| self.undamped_contact_rate_rad_s(p) + self.contact_decay_rate_s(p));
+        let rates = (0..self.planes.len()).map(|p| self.contact_rate_at(p, 0.0));
         rates.fold(0.0, f64::max)
+    }
+
+    /// A time that nothing in contact notices, where the rotor is.
+    pub(crate) fn moment_s(&self, y: &MachineState) -> f64 {
+        let mut rate = self.contact_rate_s;
+        for (p, data) in self.planes.iter().enumerate() {
+            if let ContactLaw::HuntCrossley(_) = data.law {
+                let depth_m = self.motion(p, y).penetration_m.max(0.0);
+                rate = rate.max(self.contact_rate_at(p, depth_m));
+            }
+        }
+        1e-6 / rate
     }
 
     /// Work of what is held along the coordinates' way: of magnets that do not lag, and of loads and gravity \[J\].

@@ -32,7 +32,7 @@ impl Machine {
             phases: &self.phases,
             forces: &self.forces,
             commands_n: &self.inputs.commands_n,
-            step_s: self.system.moment_s,
+            step_s: self.system.moment_s(&self.y),
         };
         (self.stepper.series).fill(&step, &self.y, ORDER, &mut |_, _, _| false);
     }

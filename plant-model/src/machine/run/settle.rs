@@ -189,12 +189,13 @@ impl Machine {
     /// them say what the third is.
     fn is_consistent(&mut self, choices: &[Option<Choices>]) -> bool {
         const ORDER: usize = 3;
+        let moment_s = self.system.moment_s(&self.y);
         let step = Step {
             system: &self.system,
             phases: &self.trial,
             forces: &self.forces,
             commands_n: &self.inputs.commands_n,
-            step_s: self.system.moment_s,
+            step_s: moment_s,
         };
         let series = &mut self.stepper.series;
         series.fill(&step, &self.y, ORDER, &mut |_, _, _| false);
@@ -212,7 +213,7 @@ impl Machine {
             series.add_surface(&mut slip, (data, &self.stepper.series.parts.spin), ORDER);
             let surfaces = along.0[0].abs() + (slip.0[0] - along.0[0]).abs();
             let mobility = self.system.contact(p).mobility();
-            let pushed = self.system.moment_s * mobility * normal_n_m * distance_m * distance_m;
+            let pushed = moment_s * mobility * normal_n_m * distance_m * distance_m;
             let still = MOVED * surfaces + PUSHED * pushed;
             let stays = |speed: &Scalar| (speed.at(1.0, ORDER) - speed.0[0]).abs() <= still;
             let slides = match slide {
