@@ -32,6 +32,9 @@ const CREEPING: f64 = 1e-3;
 /// For how many moments a guard is not asked.
 const MUTED: f64 = 100.0;
 
+/// Share of its cone from which on friction counts as holding something.
+const GRIPPED: f64 = 0.01;
+
 /// Share of the normal force by which friction at the edge of its cone may be off by rounding.
 const AT_EDGE: f64 = 1e-10;
 
@@ -313,6 +316,7 @@ impl Machine {
             }
             (_, guard) => guard,
         };
+        let gripped = self.gripped(p);
         if !stood_still && self.options.method == Method::Collocation && self.holds_on(p, guard) {
             self.zero_speeds(None);
             return Ok(());
@@ -339,12 +343,13 @@ impl Machine {
                     self.suppressed[p] = before[p] | guard.bit();
                 }
                 // A speed that begins at zero, from the edge of its cone, has the sign of rounding at first. The damper, which makes
-                // a moment shorter, has no part in it.
+                // a moment shorter, has no part in it. Where it held nothing, as in a straight impact, no speed
+                // begins, and at a jump the sign is plain.
                 for (begins, guard) in [
                     (at_zero.only_slide.is_some(), Guard::Slide),
                     (at_zero.only_whirl.is_some(), Guard::Whirl),
                 ] {
-                    if begins {
+                    if begins && !stood_still && gripped {
                         self.suppressed[p] |= guard.bit();
                         self.at_edge_s = MUTED * 1e-6 / self.system.undamped_contact_rate_rad_s(p);
                     }
@@ -359,6 +364,15 @@ impl Machine {
             }
         }
         Ok(())
+    }
+
+    /// Whether friction had something to hold where the last step began, and not rounding alone.
+    fn gripped(&self, p: usize) -> bool {
+        let (data, plane) = (&self.system.planes[p], &self.stepper.series.parts.planes[p]);
+        let grips = |mu: f64, friction_n_m: f64| {
+            friction_n_m.abs() > GRIPPED * mu * plane.normal_n_m.0[0].abs()
+        };
+        grips(data.sliding, plane.sliding_n_m.0[0]) || grips(data.rolling, plane.rolling_n_m.0[0])
     }
 
     /// Whether friction that holds a speed is still inside its cone where a guard says that it has come to the edge. Between its
