@@ -28,31 +28,23 @@ pub mod vectors;
 use crate::cli::error::say;
 use firmware_bench::scene::Scene;
 use firmware_bench::scene::diagnostic::SceneError;
-use firmware_bench::scene::machine::AnyScene;
 use firmware_bench::scene::spec::Spec;
 use std::path::Path;
 
-/// A scene of one plane, with its warnings said.
+/// A scene, with its warnings said.
 pub(crate) fn load(path: &Path) -> Result<Scene, SceneError> {
-    let scene = Scene::load(path)?;
-    warn(&scene.warnings);
-    Ok(scene)
-}
-
-/// Any scene, with its warnings said.
-pub(crate) fn load_any(path: &Path) -> Result<AnyScene, SceneError> {
     load_changed(path, |_| Ok(()))
 }
 
-/// Any scene with changes to what the file says, with its warnings said.
+/// A scene with changes to what the file says, with its warnings said.
 pub(crate) fn load_changed(
     path: &Path,
     change: impl FnOnce(&mut Spec) -> Result<(), SceneError>,
-) -> Result<AnyScene, SceneError> {
+) -> Result<Scene, SceneError> {
     let mut spec = Spec::load(path)?;
     change(&mut spec)?;
-    let scene = AnyScene::resolve(&spec)?;
-    warn(scene.warnings());
+    let scene = spec.resolve()?;
+    warn(&scene.warnings);
     Ok(scene)
 }
 

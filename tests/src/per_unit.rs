@@ -93,9 +93,9 @@ pub fn record(
             if !wanted(&plant, &case) {
                 continue;
             }
-            case.scene.levitation = Some(tuned);
+            case.scene.planes[0].levitation = Some(tuned);
             case.scene.duration_s = case.scene.duration_s.min(longest_s);
-            let config = case.scene.supervisor.expect("plants have one");
+            let config = case.scene.planes[0].supervisor.expect("plants have one");
             let (supervisor, tape) = recording(&config).expect("valid");
             let policy = supervised(&case.scene, supervisor).expect("complete");
             // For the stream a run is good up to where it cannot be trusted any further.

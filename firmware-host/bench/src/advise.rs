@@ -15,7 +15,7 @@ use serde::Serialize;
 use supervisor::{Config, ConfigError, PARAMETERS};
 
 pub use crate::crossover::{Crossover, SmallSignals};
-pub use crate::scene::machine::role::{LEAST_PERCENT, ModeAtRisk, Role};
+pub use crate::scene::role::{LEAST_PERCENT, ModeAtRisk, Role};
 pub use listing::{Language, listing, short, table};
 pub use noise::Noise;
 pub use rotor::{MOST_TURN_RAD, RotorAdvice};

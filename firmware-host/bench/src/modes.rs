@@ -1,7 +1,7 @@
 //! A whole rotor as a linear system: modes over the spin and their shapes, critical speeds, response to the unbalance, whirl that
 //! friction can hold, coupling of the planes.
 
-use crate::scene::machine::MachineScene;
+use crate::scene::Scene;
 use plant_model::V2;
 use plant_model::machine::linear::{LinearMachine, MachineMode, Walls};
 use plant_model::machine::params::{MachineError, MachineParams, Support};
@@ -94,7 +94,7 @@ impl Coupling {
     ///
     /// # Errors
     /// The first value that is out of range.
-    pub fn new(scene: &MachineScene) -> Result<Self, MachineError> {
+    pub fn new(scene: &Scene) -> Result<Self, MachineError> {
         Ok(Self::of(
             scene,
             &LinearMachine::new(&scene.machine, Walls::Off)?,
@@ -102,7 +102,7 @@ impl Coupling {
     }
 
     /// Neither supports nor walls have a share in it.
-    fn of(scene: &MachineScene, machine: &LinearMachine) -> Self {
+    fn of(scene: &Scene, machine: &LinearMachine) -> Self {
         let mobility = machine.mobility();
         let names = scene.planes.iter().map(|plane| plane.name.clone());
         Self {
@@ -162,7 +162,7 @@ impl Analysis {
     ///
     /// # Errors
     /// [`AnalysisError`].
-    pub fn new(scene: &MachineScene, range: Range) -> Result<Self, AnalysisError> {
+    pub fn new(scene: &Scene, range: Range) -> Result<Self, AnalysisError> {
         let none = || AnalysisError::NoEigenvalues;
         let params = held(scene, range);
         let walls = match range.contact {
@@ -224,7 +224,7 @@ impl Analysis {
         };
         growing.retain(|rate| *rate > GROWS_1_S);
         Ok(Self {
-            scene: scene.common().title.clone(),
+            scene: scene.title.clone(),
             range,
             coupling: Coupling::of(scene, &machine),
             modes,
@@ -255,11 +255,11 @@ impl Analysis {
 const GROWS_1_S: f64 = 1e-3;
 
 /// The machine, with the gains of its planes' controllers as supports where that is asked for.
-fn held(scene: &MachineScene, range: Range) -> MachineParams {
+fn held(scene: &Scene, range: Range) -> MachineParams {
     let mut params = scene.machine.linear_magnets();
     if range.levitated {
-        let magnets = (scene.planes.iter())
-            .filter_map(|plane| Some((plane.magnet?, plane.scene.levitation?)));
+        let magnets =
+            (scene.planes.iter()).filter_map(|plane| Some((plane.magnet?, plane.levitation?)));
         params
             .supports
             .extend(magnets.map(|(magnet, gains)| Support {

@@ -13,7 +13,7 @@ mod headline;
 pub mod html_page;
 pub mod lines;
 pub mod listing;
-pub mod machine;
+mod machine;
 pub mod markup;
 mod panels;
 pub mod plot;
@@ -39,18 +39,27 @@ use self::table::supervisor_first;
 use self::track::Track;
 pub use crate::report::plot::PlotError;
 use crate::report::plot::text::figures;
-use crate::report::summary::{Disturbed, Fact, SceneSummary};
+use crate::report::summary::{Disturbed, Fact, SceneSummary, summary};
 use crate::run::figures::Figures;
 use crate::run::outcome::Outcome;
 use crate::run::verdict::{PolicyRun, Results, far_into_the_wall};
+use crate::scene::Scene;
 
 /// Complete HTML document on the results of one scene, policies side by side, the supervisor first.
 /// Deterministic: the same input gives the same bytes.
 ///
 /// # Errors
 /// [`PlotError`] if the drawing backend refuses.
-pub fn html(scene: &SceneSummary, results: &Results) -> Result<String, PlotError> {
-    let runs = supervisor_first(&results.runs);
+pub fn html(scene: &Scene, results: &Results) -> Result<String, PlotError> {
+    match scene.planes.len() == 1 && !scene.has_axis() {
+        true => html_of_a_plane(&summary(scene, 0), results),
+        false => machine::html(scene, results),
+    }
+}
+
+fn html_of_a_plane(scene: &SceneSummary, results: &Results) -> Result<String, PlotError> {
+    let all = results.planes.first().map_or(&[][..], Vec::as_slice);
+    let runs = supervisor_first(all);
     let concluded: Vec<_> = runs.iter().map(|run| Concluded::of(run)).collect();
     let mut document = Document::begun(&Head {
         title: scene.title.clone(),
@@ -62,7 +71,7 @@ pub fn html(scene: &SceneSummary, results: &Results) -> Result<String, PlotError
     });
     let page = &mut document.page;
     push_table(page, "Verdicts", &runs);
-    push_far(page, &results.runs, scene.clearance_m);
+    push_far(page, all, scene.clearance_m);
     verification::push_table(page, &runs);
     happenings::push_tables(page, &runs, None);
     let tracks: Vec<Track> = (runs.iter()).map(|run| Track::of_run(scene, run)).collect();
@@ -212,17 +221,17 @@ mod tests {
     use super::fixture::{run, scene};
     use super::*;
     use crate::run::verdict::FailedRun;
-    use crate::scene::Scene;
 
     fn results(runs: &[PolicyRun]) -> Results {
         Results {
             runs: runs.to_vec(),
-            failed: Vec::new(),
+            planes: vec![runs.to_vec()],
+            ..Results::default()
         }
     }
 
     fn page(scene: &SceneSummary, runs: &[PolicyRun]) -> String {
-        let page = html(scene, &results(runs)).unwrap();
+        let page = html_of_a_plane(scene, &results(runs)).unwrap();
         let (drawn, data) = page.split_once("<script").unwrap();
         for word in ["NaN", "\"inf", " inf"] {
             assert!(!drawn.contains(word), "{word}");
@@ -248,7 +257,7 @@ mod tests {
         assert!(page.contains("Close-up: 0 to"));
         // Seven panels of the whole run and five close-ups for each.
         assert_eq!(page.matches("<svg").count(), 24);
-        assert_eq!(page, html(&scene(), &results(&runs)).unwrap());
+        assert_eq!(page, html_of_a_plane(&scene(), &results(&runs)).unwrap());
     }
 
     #[test]
@@ -256,13 +265,13 @@ mod tests {
         let mut unchecked = run("radial", Outcome::Decayed, &[(0.0, false), (0.1, false)]);
         unchecked.verification = Some(Err("no <check>".to_owned()));
         let results = Results {
-            runs: vec![unchecked],
             failed: vec![FailedRun {
                 name: "passive".to_owned(),
                 error: "lost".to_owned(),
             }],
+            ..results(&[unchecked])
         };
-        let page = html(&scene(), &results).unwrap();
+        let page = html_of_a_plane(&scene(), &results).unwrap();
         for error in ["Warning: lost", "Warning: no &lt;check&gt;"] {
             assert!(page.contains(error), "{error}");
         }

@@ -1,6 +1,7 @@
-//! A scene: the plant, its instruments and controllers, what happens to it, and what is asked.
+//! A scene: a rotor, its bearing planes with their instruments and controllers, what happens to it, and what is asked.
 
 mod arrays;
+mod bearing;
 mod biquads;
 mod devices;
 pub mod diagnostic;
@@ -10,24 +11,29 @@ pub(crate) mod guess;
 pub mod keys;
 mod limits;
 mod lint;
-pub mod machine;
 pub mod nominal;
 mod own_controller;
+mod plane;
 mod plane_spec;
 mod plant;
+mod poles;
 pub mod policy_kind;
+mod refused;
 mod resolve;
+pub mod role;
 mod rotor;
 pub mod schema;
 pub mod spec;
+mod start;
 mod state_space;
 pub mod suggest;
+mod supervised;
 pub mod tables;
 pub(crate) mod values;
 
 use crate::device::actuator::{AmplifierParams, Outage};
 use crate::device::levitation::{LevitationParams, SetDown};
-use crate::device::loads::{BaseMotion, Disturbance, Loads, TimedChange};
+use crate::device::loads::{BaseMotion, Disturbance, TimedChange};
 use crate::device::sensor::{SensorParams, SpinSensorParams};
 use crate::device::sensor_fault::{Fault, Samples};
 use crate::device::whole_levitation::WholeLevitationParams;
@@ -36,9 +42,11 @@ use crate::scene::nominal::{NominalKeys, Override};
 use crate::scene::policy_kind::PolicyKind;
 use crate::scene::spec::Spec;
 use crate::scene::suggest::{Decided, Nominal};
-use plant_model::params::{PlantParams, Start};
-use plant_model::{BuildError, Method, Options, Plant, V2, build};
+use plant_model::machine::params::{MachineParams, MachineStart, Rotor};
+use plant_model::params::{MagnetParams, PlantParams, RotorParams};
+use plant_model::{Method, V2};
 use std::path::Path;
+use supervisor::Shaft;
 
 /// A scene that can be run: every value checked.
 #[derive(Debug, Clone, PartialEq)]
@@ -47,29 +55,22 @@ pub struct Scene {
     pub title: String,
     /// What is shown and why.
     pub story: String,
-    /// The plant.
-    pub plant: PlantParams,
-    /// Where it starts.
-    pub start: Start,
-    /// Weight of the rotor \[N\].
-    pub weight_n: V2,
-    /// Force that the firmware adds to whatever a policy asks for: minus the weight, where it is fed forward \[N\].
-    pub feed_forward_n: V2,
+    /// The machine; sensor i is the probe of plane i. Its places for loads are those of [`Self::loads`].
+    pub machine: MachineParams,
+    /// Where it starts, as seen from the line of the magnets.
+    pub start: MachineStart,
+    /// Eccentricity of the centre of mass at the start, which is among the machine's unbalances \[m\].
+    pub eccentricity_m: f64,
+    /// Its planes, one at least.
+    pub planes: Vec<PlaneScene>,
     /// Forces that come and go.
     pub disturbances: Vec<Disturbance>,
-    /// Motions of the housing; only for a rigid stator.
+    /// Motions of the housing; only for rigid stators.
     pub base_motions: Vec<BaseMotion>,
     /// Parameters that change, in order of time.
     pub changes: Vec<TimedChange>,
-    /// Set-downs and lift-offs, in order of time.
-    pub set_downs: Vec<SetDown>,
     /// Whether the samples say that the rotor levitated up to the start.
     pub levitated_before: bool,
-    /// The centre of the retainer bearing as seen from the centre of magnets and sensors \[m\]. The plant
-    /// keeps the retainer bearing at its origin, so a levitated rotor stands at minus this.
-    pub centre_offset_m: V2,
-    /// Severity that the retainer bearing may bear in all, where the scene says it.
-    pub severity_allowed: Option<f64>,
     /// End of the run \[s\].
     pub duration_s: f64,
     /// Control rate \[Hz\].
@@ -78,24 +79,47 @@ pub struct Scene {
     pub rtol: f64,
     /// How contact is integrated.
     pub method: Method,
-    /// Seed of the sensor noise.
-    pub seed: u64,
     /// Policies to run.
     pub policies: Vec<PolicyKind>,
-    /// The amplifier, beside what the plant has of it.
+    /// What is known of the spin.
+    pub spin_sensor: SpinSensorParams,
+    /// The levitation controller, where one holds the whole rotor; else each plane has its own.
+    pub levitation: Option<WholeLevitationParams>,
+    /// The rotor as its supervisor is told it, where that is another than it is.
+    pub told: Option<Shaft>,
+    /// What is allowed and yet unlikely to be meant, with file and line.
+    pub warnings: Vec<String>,
+}
+
+/// A plane of a scene: its instruments and controllers, and what is judged there.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlaneScene {
+    /// Its name; that of an only plane may be empty.
+    pub name: String,
+    /// Whether it is a seal or a bushing: no controller knows of it.
+    pub seal: bool,
+    /// Which magnet of the machine is its own.
+    pub magnet: Option<usize>,
+    /// Weight that its magnet carries \[N\].
+    pub weight_n: V2,
+    /// Force that the firmware adds to whatever a policy asks for: minus the weight, where it is fed forward \[N\].
+    pub feed_forward_n: V2,
+    /// Severity that the retainer bearing may bear in all, where the scene says it.
+    pub severity_allowed: Option<f64>,
+    /// Seed of the sensor noise.
+    pub seed: u64,
+    /// The amplifier, beside what the machine has of it.
     pub amplifier: AmplifierParams,
     /// Its outages.
     pub outages: Vec<Outage>,
+    /// Set-downs and lift-offs, in order of time.
+    pub set_downs: Vec<SetDown>,
     /// The position sensor.
     pub sensor: SensorParams,
     /// Its faults.
     pub faults: Vec<Fault>,
-    /// What is known of the spin.
-    pub spin_sensor: SpinSensorParams,
     /// The levitation controller; needed by the policies that use one.
     pub levitation: Option<LevitationParams>,
-    /// The controller of the user's in its place.
-    pub controller: Option<WholeLevitationParams>,
     /// `radial` pushes beyond this share of the clearance.
     pub radial_band: f64,
     /// `damping` sets so much force against speed \[N s/m\].
@@ -112,8 +136,35 @@ pub struct Scene {
     pub overrides: Vec<Override>,
     /// Backward contact speed above which a run is whirl \[m/s\].
     pub whirl_speed_m_s: f64,
-    /// What is allowed and yet unlikely to be meant, with file and line.
-    pub warnings: Vec<String>,
+}
+
+impl PlaneScene {
+    /// Its name as it stands in names of files.
+    pub fn name_in_files(&self) -> String {
+        in_file_names(&self.name)
+    }
+
+    /// Where the levitation controller is to hold the rotor at a time, as seen from the centre of the magnets \[m\].
+    pub fn reference_m(&self, t_s: f64) -> V2 {
+        (self.set_downs.iter())
+            .filter(|s| s.start_s <= t_s)
+            .fold(V2::zeros(), |from_m, s| s.reference_m(from_m, t_s))
+    }
+
+    /// Whether the supervisor is told at a time that the rotor is set down.
+    pub fn set_down_announced(&self, t_s: f64) -> bool {
+        let mut begun = self.set_downs.iter().filter(|s| s.start_s <= t_s);
+        begun.next_back().is_some_and(|s| s.announced)
+    }
+}
+
+/// A plane's name as it stands in names of files.
+pub(crate) fn in_file_names(name: &str) -> String {
+    let plain = |c: char| match c.is_alphanumeric() {
+        true => c,
+        false => '_',
+    };
+    name.to_lowercase().chars().map(plain).collect()
 }
 
 impl Scene {
@@ -133,34 +184,63 @@ impl Scene {
         Spec::parse(name, text)?.resolve()
     }
 
-    /// A scene's plant at its start.
-    ///
-    /// # Errors
-    /// [`BuildError`] for the first value out of range.
-    pub fn build(&self, options: Options) -> Result<Plant, BuildError> {
-        build(&self.plant, &self.start, options)
+    /// A plane alone: its wall, its magnet, and as rotor a point mass that moves as an impact there moves the machine's. That is
+    /// what its controllers are designed for; what runs is the machine.
+    pub fn plant(&self, plane: usize) -> PlantParams {
+        let (wall, own) = (&self.machine.planes[plane], &self.planes[plane]);
+        let magnet = own.magnet.map(|magnet| &self.machine.magnets[magnet]);
+        let linear = self.machine.linear_magnets();
+        let point = linear.point_mass(wall.position_m);
+        PlantParams {
+            rotor: RotorParams {
+                mass_kg: point.mass_kg,
+                stiffness_n_m: point.stiffness_n_m,
+                damping_n_s_m: point.damping_n_s_m,
+                eccentricity_m: self.eccentricity_m,
+                contact_radius_m: wall.radius_m,
+            },
+            spin: self.machine.spin,
+            stator: wall.stator,
+            contact: wall.contact,
+            friction: wall.friction,
+            magnet: magnet.map(|m| MagnetParams {
+                force_max_n: m.force_max_n,
+                // Of second order, its mean delay.
+                lag_s: m.lag_s * m.lag_damping_ratio.map_or(1.0, |ratio| 2.0 * ratio),
+            }),
+            race: wall.race,
+        }
     }
 
-    /// Position as seen from the centre of magnets and sensors \[m\].
-    pub fn from_magnets_m(&self, position_m: V2) -> V2 {
-        position_m + self.centre_offset_m
+    /// The machine with a place for each of the [loads](Self::loads).
+    pub(crate) fn machine_with_loads(&self) -> MachineParams {
+        MachineParams {
+            loads_m: self.loads().map(|load| load.position_m).collect(),
+            ..self.machine.clone()
+        }
     }
 
-    /// External force on the rotor: weight, loads, and what shaft and magnets do about their own centre more than about that
-    /// of the plant. Between two [edges](Self::edges) nothing begins or ends.
-    pub fn external(&self) -> Loads {
-        Loads::new(self.constant_n(), self.loads().collect())
+    /// Clearance of a plane \[m\].
+    pub fn clearance_m(&self, plane: usize) -> f64 {
+        self.machine.planes[plane].contact.clearance_m
     }
 
-    /// What of it never changes \[N\].
-    pub fn constant_n(&self) -> V2 {
-        self.weight_n - self.plant.rotor.stiffness_n_m * self.centre_offset_m
+    /// What the magnet of a plane can give \[N\]; 0 without one.
+    pub fn force_max_n(&self, plane: usize) -> f64 {
+        let magnet = self.planes[plane].magnet;
+        magnet.map_or(0.0, |magnet| self.machine.magnets[magnet].force_max_n)
+    }
+
+    /// Whether the rotor's axis does more than its only plane shows: it tilts or bends.
+    pub fn has_axis(&self) -> bool {
+        !matches!(&self.machine.rotor, Rotor::Rigid(rigid) if !rigid.tilts())
     }
 
     /// Times at which something sets in or ends \[s\], in order.
     pub fn edges(&self) -> Vec<f64> {
         let loads = self.loads().flat_map(|d| [d.start_s, d.end_s()]);
-        let outages = (self.outages.iter()).flat_map(|o| [o.start_s, o.end_s()]);
+        let outages = self.planes.iter().flat_map(|plane| &plane.outages);
+        let outages = outages.flat_map(|o| [o.start_s, o.end_s()]);
         let changes = self.changes.iter().map(|c| c.at_s);
         let mut edges: Vec<f64> = loads.chain(outages).chain(changes).collect();
         edges.sort_by(f64::total_cmp);
@@ -168,36 +248,23 @@ impl Scene {
         edges
     }
 
-    /// When the last thing that happens to the rotor is over \[s\]: the end of the last load, and of
-    /// outages and faults that end within the run (others count from their start), or the last change. What no sample
+    /// When the last thing that happens to the rotor is over \[s\], as a plane sees it: the end of the last load, and of
+    /// outages and faults there that end within the run (others count from their start), or the last change. What no sample
     /// sees of the sensor, and a change after the last sample's period, has not happened.
-    pub fn clock_starts_s(&self) -> f64 {
+    pub fn clock_starts_s(&self, plane: usize) -> f64 {
         let within = |start_s: f64, end_s: f64| match end_s < self.duration_s {
             true => end_s,
             false => start_s,
         };
-        let samples = self.samples();
-        let faults = self.faults.iter().filter(|f| f.is_seen(samples));
+        let (samples, own) = (self.samples(), &self.planes[plane]);
+        let faults = own.faults.iter().filter(|f| f.is_seen(samples));
         let changes = (self.changes.iter()).filter(|c| c.at_s < samples.end_s());
         (self.loads().map(|d| d.end_s()))
-            .chain(self.outages.iter().map(|o| within(o.start_s, o.end_s())))
+            .chain(own.outages.iter().map(|o| within(o.start_s, o.end_s())))
             .chain(faults.map(|f| within(f.start_s, f.end_s())))
             .chain(changes.map(|c| c.at_s))
-            .chain(self.set_downs.iter().map(|s| within(s.start_s, s.end_s())))
+            .chain(own.set_downs.iter().map(|s| within(s.start_s, s.end_s())))
             .fold(0.0, f64::max)
-    }
-
-    /// Where the levitation controller is to hold the rotor at a time, as seen from the centre of the magnets \[m\].
-    pub fn reference_m(&self, t_s: f64) -> V2 {
-        (self.set_downs.iter())
-            .filter(|s| s.start_s <= t_s)
-            .fold(V2::zeros(), |from_m, s| s.reference_m(from_m, t_s))
-    }
-
-    /// Whether the supervisor is told at a time that the rotor is set down.
-    pub fn set_down_announced(&self, t_s: f64) -> bool {
-        let mut begun = self.set_downs.iter().filter(|s| s.start_s <= t_s);
-        begun.next_back().is_some_and(|s| s.announced)
     }
 
     /// Control samples of a run.
@@ -210,9 +277,10 @@ impl Scene {
         self.samples().count() as f64 / self.sample_rate_hz
     }
 
-    /// Disturbances, and base motions as the forces that the rotor feels.
+    /// Disturbances, and base motions as the forces that the rotor feels at its centre of mass; its bending modes do not feel
+    /// them.
     pub fn loads(&self) -> impl Iterator<Item = Disturbance> {
-        let mass_kg = self.plant.rotor.mass_kg;
+        let mass_kg = self.machine.rotor.rigid().mass_kg;
         let inertial = self.base_motions.iter().map(move |b| b.on_mass(mass_kg));
         self.disturbances.iter().copied().chain(inertial)
     }

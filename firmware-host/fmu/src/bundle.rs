@@ -92,7 +92,7 @@ impl Archive {
 
 /// The page that the archive has for people.
 fn page(unit: &Unit) -> String {
-    let common = unit.scene().common();
+    let common = unit.scene();
     let escaped = |text: &str| text.replace('&', "&amp;").replace('<', "&lt;");
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{title}</title></head>\n<body>\n\

@@ -7,7 +7,7 @@ use crate::quantities::{POLICY, policy, policy_number};
 use crate::rows::{Of, Rows};
 use crate::variable::{Kind, Role, Value, Variable};
 use firmware_bench::run::closed_loop::stepwise::{Driver, Stepwise};
-use firmware_bench::scene::machine::AnyScene;
+use firmware_bench::scene::Scene;
 use firmware_bench::scene::policy_kind::PolicyKind;
 use firmware_bench::scene::spec::Spec;
 
@@ -16,8 +16,8 @@ const POLICY_NAME: &str = "policy";
 const SUPERVISOR: &str = "supervisor.";
 
 /// The policy that runs unless another is set: the supervisor where the scene has it, else the scene's last.
-fn own_policy(scene: &AnyScene) -> PolicyKind {
-    let policies = &scene.common().policies;
+fn own_policy(scene: &Scene) -> PolicyKind {
+    let policies = &scene.policies;
     let supervised = policies.contains(&PolicyKind::Supervisor);
     match (supervised, policies.last()) {
         (false, Some(last)) => *last,
@@ -26,33 +26,25 @@ fn own_policy(scene: &AnyScene) -> PolicyKind {
 }
 
 /// Its variables but the time.
-pub(crate) fn variables(spec: &Spec, scene: &AnyScene) -> Vec<Variable> {
+pub(crate) fn variables(spec: &Spec, scene: &Scene) -> Vec<Variable> {
     let kind = Kind::Enumeration(&POLICY);
     let about = format!("{}: one of the scene's", POLICY.about);
     let mut all = vec![Variable {
         start: Value::Int64(policy_number(own_policy(scene))),
         ..Variable::signal(Role::Fixed, POLICY_NAME.to_owned(), &about, "", kind)
     }];
-    all.extend(parameters::of_scene(spec, scene));
-    if let AnyScene::Plane(scene) = scene
-        && let Some(config) = &scene.supervisor
+    all.extend(parameters::of_scene(spec));
+    if let [only] = &scene.planes[..]
+        && let Some(config) = &only.supervisor
     {
         all.extend(parameters::of_supervisor(config, SUPERVISOR));
     }
-    let planes = match scene {
-        AnyScene::Plane(_) => 1,
-        AnyScene::Machine(scene) => scene.planes.len(),
-    };
-    all.extend(Rows::new(Of::ClosedLoop).variables(planes));
+    all.extend(Rows::new(Of::ClosedLoop).variables(scene.planes.len()));
     all
 }
 
 /// The loop at its first sample.
-pub(crate) fn start(
-    spec: &Spec,
-    scene: &AnyScene,
-    set: &[Set<'_>],
-) -> Result<Box<dyn Model>, String> {
+pub(crate) fn start(spec: &Spec, scene: &Scene, set: &[Set<'_>]) -> Result<Box<dyn Model>, String> {
     let is_policy = |s: &&Set<'_>| s.name == POLICY_NAME;
     let asked = set.iter().find(is_policy);
     let kind = match asked.map(|s| s.value) {
@@ -63,7 +55,7 @@ pub(crate) fn start(
     };
     let of_scene: Vec<Set<'_>> = set.iter().filter(|s| !is_policy(s)).copied().collect();
     let scene = parameters::scene(spec, &of_scene)?;
-    let policies = &scene.common().policies;
+    let policies = &scene.policies;
     if !policies.contains(&kind) {
         let names: Vec<&str> = policies.iter().map(|kind| kind.name()).collect();
         let (asked, names) = (kind.name(), names.join(", "));

@@ -17,7 +17,7 @@ pub(crate) fn description(unit: &Unit, version: Version, token: &str) -> String 
     units(&mut xml, &numbered);
     types(&mut xml, &numbered, version);
     xml += "  <LogCategories>\n    <Category name=\"logStatusError\" description=\"why a call has failed\"/>\n  </LogCategories>\n";
-    let common = unit.scene().common();
+    let common = unit.scene();
     let (stop_s, period_s) = (common.simulated_s(), unit.period_s());
     put(
         &mut xml,
@@ -52,7 +52,7 @@ fn fits_32_bits(variable: &Variable) -> bool {
 
 fn head(xml: &mut String, unit: &Unit, version: Version, token: &str) {
     let which = unit.which();
-    let common = unit.scene().common();
+    let common = unit.scene();
     let (token_name, number) = match version {
         Version::Fmi3 => ("instantiationToken", "3.0"),
         Version::Fmi2 => ("guid", "2.0"),

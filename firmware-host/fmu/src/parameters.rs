@@ -2,8 +2,8 @@
 
 use crate::model::Set;
 use crate::variable::{Kind, Role, Value, Variable};
-use firmware_bench::scene::machine::AnyScene;
-use firmware_bench::scene::spec::Spec;
+use firmware_bench::scene::Scene;
+use firmware_bench::scene::spec::{NumberAt, Spec};
 use plant_model::Change;
 use supervisor::{Config, PARAMETERS};
 
@@ -11,11 +11,14 @@ use supervisor::{Config, PARAMETERS};
 const NONE: [&str; 2] = ["run.duration_s", "run.sample_rate_hz"];
 
 /// Numbers of a scene as parameters.
-pub(crate) fn of_scene(spec: &Spec, scene: &AnyScene) -> Vec<Variable> {
-    let one_plane = matches!(scene, AnyScene::Plane(_));
-    let numbers = spec.numbers().into_iter();
+pub(crate) fn of_scene(spec: &Spec) -> Vec<Variable> {
+    let numbers = spec.numbers();
+    // What is changed is the friction of all planes.
+    let own_friction = |number: &NumberAt| number.path.ends_with("].friction.coefficient");
+    let own_friction = numbers.iter().any(own_friction);
+    let numbers = numbers.into_iter();
     let numbers = numbers.filter(|number| !NONE.contains(&number.path.as_str()));
-    let parameter = |number: firmware_bench::scene::spec::NumberAt| {
+    let parameter = |number: NumberAt| {
         let whole = number.value.as_integer().map(Value::Int64);
         let start = match number.key.kind {
             firmware_bench::scene::keys::Kind::Whole => whole?,
@@ -24,7 +27,8 @@ pub(crate) fn of_scene(spec: &Spec, scene: &AnyScene) -> Vec<Variable> {
                 Value::Float64(float.or(number.value.as_integer().map(|x| x as f64))?)
             }
         };
-        let tunable = one_plane && change(&number.path, 0.0).is_some();
+        let tunable = change(&number.path, 0.0)
+            .is_some_and(|change| change.friction_coefficient.is_none() || !own_friction);
         Some(Variable {
             about: plain(number.key.help),
             unit: number.key.unit,
@@ -58,7 +62,7 @@ pub(crate) fn of_supervisor(config: &Config, prefix: &str) -> Vec<Variable> {
 }
 
 /// The scene with parameters as they are set.
-pub(crate) fn scene(spec: &Spec, set: &[Set<'_>]) -> Result<AnyScene, String> {
+pub(crate) fn scene(spec: &Spec, set: &[Set<'_>]) -> Result<Scene, String> {
     let mut spec = spec.clone().without_warnings();
     let value = |value: Value| match value {
         Value::Int64(x) => toml::Value::Integer(x),
@@ -66,7 +70,7 @@ pub(crate) fn scene(spec: &Spec, set: &[Set<'_>]) -> Result<AnyScene, String> {
     };
     let all: Vec<(&str, toml::Value)> = set.iter().map(|s| (s.name, value(s.value))).collect();
     spec.set_all(&all).map_err(|error| error.to_string())?;
-    AnyScene::resolve(&spec).map_err(|error| error.to_string())
+    spec.resolve().map_err(|error| error.to_string())
 }
 
 /// What a tunable parameter changes of a plant; `None` of another.

@@ -7,21 +7,18 @@ use crate::rows::{Of, Rows};
 use crate::variable::{Kind, Role, Value, Variable};
 use firmware_bench::run::closed_loop::RunError;
 use firmware_bench::run::closed_loop::stepwise::{Driver, Stepwise};
-use firmware_bench::scene::machine::AnyScene;
+use firmware_bench::scene::Scene;
 use firmware_bench::scene::spec::Spec;
 use plant_model::V2;
 
 /// Planes whose magnet can be commanded.
-fn magnets(scene: &AnyScene) -> Vec<bool> {
-    match scene {
-        AnyScene::Plane(scene) => vec![scene.plant.magnet.is_some()],
-        AnyScene::Machine(scene) => scene.planes.iter().map(|p| p.magnet.is_some()).collect(),
-    }
+fn magnets(scene: &Scene) -> Vec<bool> {
+    scene.planes.iter().map(|p| p.magnet.is_some()).collect()
 }
 
 /// Its variables but the time: parameters, inputs, outputs.
-pub(crate) fn variables(spec: &Spec, scene: &AnyScene) -> Vec<Variable> {
-    let mut all = parameters::of_scene(spec, scene);
+pub(crate) fn variables(spec: &Spec, scene: &Scene) -> Vec<Variable> {
+    let mut all = parameters::of_scene(spec);
     let magnets = magnets(scene);
     let planes = magnets.len();
     let mut input = |name: String, about: &str| {
@@ -38,11 +35,10 @@ pub(crate) fn variables(spec: &Spec, scene: &AnyScene) -> Vec<Variable> {
             );
         }
     }
-    if matches!(scene, AnyScene::Plane(_)) {
-        for axis in ["x", "y"] {
-            let about = "force on the rotor beside the scene's loads, held over the step";
-            input(format!("load_{axis}_n"), about);
-        }
+    for axis in ["x", "y"] {
+        let about =
+            "force on the rotor's centre of mass beside the scene's loads, held over the step";
+        input(format!("load_{axis}_n"), about);
     }
     all.extend(Rows::new(Of::Plant).variables(planes));
     all

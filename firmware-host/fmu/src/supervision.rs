@@ -6,28 +6,19 @@ use crate::quantities::{of_plane, split_plane};
 use crate::said::SAID;
 use crate::variable::{Kind, Output, Role, Value, Variable};
 use firmware_bench::run::trace::Said;
-use firmware_bench::scene::machine::AnyScene;
+use firmware_bench::scene::Scene;
 use supervisor::{Command, Config, IntegratorHint, PARAMETERS, Rotor, Sample, Status, Supervisor};
 
 /// Configurations of the planes that have one, with the plane's number in the scene; none where the scene has no supervisor.
-fn configs(scene: &AnyScene) -> Vec<(usize, Config)> {
-    match scene {
-        AnyScene::Plane(scene) => scene
-            .supervisor
-            .map(|config| (0, config))
-            .into_iter()
-            .collect(),
-        AnyScene::Machine(scene) => {
-            let planes = scene.planes.iter().enumerate();
-            planes
-                .filter_map(|(i, plane)| Some((i, plane.scene.supervisor?)))
-                .collect()
-        }
-    }
+fn configs(scene: &Scene) -> Vec<(usize, Config)> {
+    let planes = scene.planes.iter().enumerate();
+    planes
+        .filter_map(|(i, plane)| Some((i, plane.supervisor?)))
+        .collect()
 }
 
 /// Whether a scene has one.
-pub(crate) fn is_in(scene: &AnyScene) -> bool {
+pub(crate) fn is_in(scene: &Scene) -> bool {
     !configs(scene).is_empty()
 }
 
@@ -84,7 +75,7 @@ const OUTPUTS: &[Output<Command>] = &[
 ];
 
 /// Its variables but the time.
-pub(crate) fn variables(scene: &AnyScene) -> Vec<Variable> {
+pub(crate) fn variables(scene: &Scene) -> Vec<Variable> {
     let configs = configs(scene);
     let planes = configs.len();
     let mut all = Vec::new();
@@ -112,7 +103,7 @@ pub(crate) fn variables(scene: &AnyScene) -> Vec<Variable> {
 }
 
 /// The supervisor before its first sample.
-pub(crate) fn start(scene: &AnyScene, set: &[Set<'_>]) -> Result<Box<dyn Model>, String> {
+pub(crate) fn start(scene: &Scene, set: &[Set<'_>]) -> Result<Box<dyn Model>, String> {
     let mut configs = configs(scene);
     let only = configs.len() == 1;
     for s in set {
@@ -128,9 +119,9 @@ pub(crate) fn start(scene: &AnyScene, set: &[Set<'_>]) -> Result<Box<dyn Model>,
     let configs: Vec<Config> = configs.into_iter().map(|(_, config)| config).collect();
     let commands = vec![Command::default(); configs.len()];
     // As the closed loop has it: one for the whole rotor where the scene has that.
-    let of_rotor = match (scene, configs.as_slice()) {
-        (AnyScene::Machine(machine), [first, second]) if machine.supervisor().is_some() => {
-            let shaft = machine
+    let of_rotor = match configs.as_slice() {
+        [first, second] if scene.supervisor().is_some() => {
+            let shaft = scene
                 .shaft()
                 .ok_or("the rotor cannot be told to a supervisor")?;
             let rotor = Rotor::as_told(&shaft, &[*first, *second]);

@@ -3,7 +3,7 @@
 use crate::model::{Model, Set};
 use crate::variable::{Kind, Role, Variable};
 use crate::{closed_loop, plant, supervision};
-use firmware_bench::scene::machine::AnyScene;
+use firmware_bench::scene::Scene;
 use firmware_bench::scene::spec::Spec;
 
 /// Which version of the interface.
@@ -54,7 +54,7 @@ impl Which {
 pub struct Unit {
     which: Which,
     spec: Spec,
-    scene: AnyScene,
+    scene: Scene,
 }
 
 impl Unit {
@@ -66,7 +66,7 @@ impl Unit {
         which: Which,
         spec: Spec,
     ) -> Result<Option<Self>, firmware_bench::scene::diagnostic::SceneError> {
-        let scene = AnyScene::resolve(&spec)?;
+        let scene = spec.resolve()?;
         let there = which != Which::Supervisor || supervision::is_in(&scene);
         Ok(there.then_some(Self { which, spec, scene }))
     }
@@ -77,13 +77,13 @@ impl Unit {
     }
 
     /// What it is of.
-    pub fn scene(&self) -> &AnyScene {
+    pub fn scene(&self) -> &Scene {
         &self.scene
     }
 
     /// From one control sample to the next \[s\].
     pub fn period_s(&self) -> f64 {
-        1.0 / self.scene.common().sample_rate_hz
+        1.0 / self.scene.sample_rate_hz
     }
 
     /// Whether one step may be several control samples long: not where each needs inputs of its own.

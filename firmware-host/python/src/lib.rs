@@ -1,7 +1,7 @@
 //! The bench as a Python module: plant, supervisor, closed loops, flight records. What users import is the package `ambwhirl`
 //! around it, whose stubs say what there is.
 //!
-//! Rooms, each importing only from those above it: `values`, `errors`, `table`, `scene`, `controller`, `run`, `plant`, `machine`,
+//! Rooms, each importing only from those above it: `values`, `errors`, `table`, `scene`, `controller`, `run`, `plant`,
 //! `config`, `supervise`, `record`.
 
 #![forbid(unsafe_code)]
@@ -10,7 +10,6 @@
 mod config;
 mod controller;
 mod errors;
-mod machine;
 mod plant;
 mod record;
 mod run;
@@ -28,8 +27,6 @@ mod _ambwhirl {
     use crate::controller::{Sample, Setup};
     #[pymodule_export]
     use crate::errors::{ConfigError, ControllerError, RecordError, RunError, SceneError};
-    #[pymodule_export]
-    use crate::machine::Machine;
     #[pymodule_export]
     use crate::plant::Plant;
     #[pymodule_export]

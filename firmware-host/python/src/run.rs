@@ -5,15 +5,13 @@ use crate::errors::{of_run, of_scene};
 use crate::scene::Scene;
 use crate::table::columns;
 use crate::values::python;
-use firmware_bench::run::closed_loop::{
-    MachineRecorders, PlaneEnded, Rigour, RunError, record, record_machine,
-};
+use firmware_bench::run::closed_loop::{PlaneEnded, Recorders, Rigour, RunError, record};
 use firmware_bench::run::figures::Figures;
 use firmware_bench::run::supervision::{Supervision, SupervisionCount};
 use firmware_bench::run::trace::{AxisRow, Recorder, TraceRow};
 use firmware_bench::run::trace_columns::Columns;
 use firmware_bench::run::trace_table::TraceTable;
-use firmware_bench::scene::machine::{AnyScene, MachineScene};
+use firmware_bench::scene::Scene as Resolved;
 use firmware_bench::scene::policy_kind::PolicyKind;
 use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::{Bound, PyAny, PyAnyMethods, PyErr, PyResult, Python, pyfunction};
@@ -44,26 +42,28 @@ impl Recorder for Listener {
     }
 }
 
-/// What a run came to.
-struct Ran {
+/// What one plane came to.
+struct PlaneRan {
     figures: Figures,
     supervision: Option<Supervision>,
     record: Option<Vec<u8>>,
     trace: Option<TraceTable<TraceRow>>,
-    /// Of a whole rotor: its planes by name, and its axis.
-    planes: Vec<(String, Ran)>,
+}
+
+/// What a run came to: its planes by name, and its axis.
+struct Ran {
+    figures: Figures,
+    planes: Vec<(String, PlaneRan)>,
     axis: Option<TraceTable<AxisRow>>,
 }
 
-impl Ran {
-    fn of_plane((figures, read_out): PlaneEnded, listener: Listener) -> Self {
+impl PlaneRan {
+    fn new((figures, read_out): PlaneEnded, listener: Listener) -> Self {
         Self {
             figures,
             supervision: listener.supervision.ended(read_out.as_ref()),
             record: read_out.and_then(|read_out| read_out.flight_record),
             trace: listener.table,
-            planes: Vec::new(),
-            axis: None,
         }
     }
 
@@ -73,49 +73,54 @@ impl Ran {
         dict.set_item("supervision", python(py, &self.supervision)?)?;
         dict.set_item("record", self.record.map(|bytes| PyBytes::new(py, &bytes)))?;
         dict.set_item("trace", self.trace.map(|t| columns(py, t)).transpose()?)?;
-        dict.set_item("axis", self.axis.map(|t| columns(py, t)).transpose()?)?;
+        dict.set_item("axis", py.None())?;
+        dict.set_item("planes", PyDict::new(py))?;
+        Ok(dict)
+    }
+}
+
+impl Ran {
+    /// The figures of the whole; what only a plane has is there of an only one.
+    fn into_python(self, py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
         let planes = PyDict::new(py);
-        for (name, ran) in self.planes {
-            planes.set_item(name, ran.into_python(py)?)?;
+        let dict = PyDict::new(py);
+        for key in ["supervision", "record", "trace"] {
+            dict.set_item(key, py.None())?;
         }
+        let only = self.planes.len() == 1;
+        for (name, ran) in self.planes {
+            let plane = ran.into_python(py)?;
+            if only {
+                dict.update(plane.as_mapping())?;
+            }
+            planes.set_item(name, plane)?;
+        }
+        dict.set_item("figures", python(py, &self.figures)?)?;
+        dict.set_item("axis", self.axis.map(|t| columns(py, t)).transpose()?)?;
         dict.set_item("planes", planes)?;
         Ok(dict)
     }
 }
 
-fn run(scene: &AnyScene, kind: PolicyKind, trace: bool) -> Result<Ran, RunError> {
-    match scene {
-        AnyScene::Plane(scene) => {
-            let mut listener = Listener::new(trace);
-            let rigour = Rigour::default();
-            let ended = record(scene, kind, &mut listener, rigour, &mut |_| {})?;
-            Ok(Ran::of_plane(ended, listener))
-        }
-        AnyScene::Machine(scene) => run_machine(scene, kind, trace),
-    }
-}
-
-fn run_machine(scene: &MachineScene, kind: PolicyKind, trace: bool) -> Result<Ran, RunError> {
+fn run(scene: &Resolved, kind: PolicyKind, trace: bool) -> Result<Ran, RunError> {
     let mut listeners: Vec<Listener> = scene.planes.iter().map(|_| Listener::new(trace)).collect();
     let modes = scene.machine.rotor.bending().len();
-    let mut axis = trace.then(|| TraceTable::new(Columns::of_axis(modes)));
-    let recorders = MachineRecorders {
+    let axis = || TraceTable::new(Columns::of_axis(modes));
+    let mut axis = (trace && scene.has_axis()).then(axis);
+    let recorders = Recorders {
         planes: (listeners.iter_mut())
             .map(|listener| listener as &mut dyn Recorder)
             .collect(),
         axis: axis.as_mut().map(|axis| axis as &mut dyn Recorder<AxisRow>),
     };
-    let ended = record_machine(scene, kind, recorders, Rigour::default(), &mut |_| {})?;
+    let ended = record(scene, kind, recorders, Rigour::default(), &mut |_| {})?;
     let figures: Vec<Figures> = ended.iter().map(|(figures, _)| figures.clone()).collect();
     let policy = kind.name();
     let planes = scene.planes.iter().zip(ended.into_iter().zip(listeners));
     Ok(Ran {
         figures: Figures::of_machine(&figures).ok_or(RunError::Incomplete { policy })?,
-        supervision: None,
-        record: None,
-        trace: None,
         planes: planes
-            .map(|(plane, (ended, listener))| (plane.name.clone(), Ran::of_plane(ended, listener)))
+            .map(|(plane, (ended, listener))| (plane.name.clone(), PlaneRan::new(ended, listener)))
             .collect(),
         axis,
     })
@@ -147,18 +152,14 @@ pub(crate) fn run_policies<'py>(
         (spec.levitated_by(caller)).map_err(|error| of_scene(py, &error))?;
         from = Some(raised);
     }
-    let scene = AnyScene::resolve(&spec).map_err(|error| of_scene(py, &error))?;
-    for warning in scene.warnings() {
+    let scene = spec.resolve().map_err(|error| of_scene(py, &error))?;
+    for warning in &scene.warnings {
         let text = CString::new(warning.replace('\0', " "))?;
         // Of the line that calls `run_scene`.
         PyErr::warn(py, &py.get_type::<PyUserWarning>(), &text, 2)?;
     }
-    let policies = match &scene {
-        AnyScene::Plane(scene) => &scene.policies,
-        AnyScene::Machine(scene) => &scene.common().policies,
-    };
     let runs = PyDict::new(py);
-    for kind in policies {
+    for kind in &scene.policies {
         // Others may use Python meanwhile; a controller is attached to it for each of its samples.
         let ran = py.detach(|| run(&scene, *kind, trace));
         let ran = ran.map_err(|error| raised(py, from.as_ref(), &error))?;

@@ -2,8 +2,8 @@
 
 use crate::errors::of_scene;
 use crate::values::{of_toml, toml_value};
+use firmware_bench::scene::Scene as Resolved;
 use firmware_bench::scene::diagnostic::SceneError;
-use firmware_bench::scene::machine::AnyScene;
 use firmware_bench::scene::policy_kind::PolicyKind;
 use firmware_bench::scene::spec::Spec;
 use pyo3::exceptions::PyTypeError;
@@ -20,16 +20,16 @@ pub(crate) struct Scene {
 
 impl Scene {
     /// With every value checked.
-    pub(crate) fn resolved(&self, py: Python<'_>) -> PyResult<AnyScene> {
-        AnyScene::resolve(&self.spec).map_err(|error| of_scene(py, &error))
+    pub(crate) fn resolved(&self, py: Python<'_>) -> PyResult<Resolved> {
+        self.spec.resolve().map_err(|error| of_scene(py, &error))
     }
 
     /// With every value checked, for its plant alone: what no policy needs may lack.
-    pub(crate) fn plant(&self, py: Python<'_>) -> PyResult<AnyScene> {
+    pub(crate) fn plant(&self, py: Python<'_>) -> PyResult<Resolved> {
         let mut spec = self.spec.clone();
         let passive = vec![PolicyKind::Passive.name()];
         (spec.set("run.policies", passive))
-            .and_then(|()| AnyScene::resolve(&spec))
+            .and_then(|()| spec.resolve())
             .map_err(|error| of_scene(py, &error))
     }
 
@@ -89,7 +89,7 @@ impl Scene {
     }
 
     fn check(&self, py: Python<'_>) -> PyResult<Vec<String>> {
-        Ok(self.resolved(py)?.warnings().to_vec())
+        Ok(self.resolved(py)?.warnings)
     }
 
     fn __repr__(&self) -> String {

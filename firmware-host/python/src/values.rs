@@ -50,28 +50,17 @@ pub(crate) fn pair(name: &str, given: &Bound<'_, PyAny>) -> PyResult<[f64; 2]> {
     }
 }
 
-/// The same of finite numbers.
-pub(crate) fn vector(name: &str, given: &Bound<'_, PyAny>) -> PyResult<V2> {
-    let [x, y] = pair(name, given)?;
-    finite(name, &[x, y])?;
-    Ok(V2::new(x, y))
-}
-
-/// An argument with rows of x and y, finite; so many where that is said.
-pub(crate) fn vectors(
-    name: &str,
-    given: &Bound<'_, PyAny>,
-    rows: Option<usize>,
-) -> PyResult<Vec<V2>> {
+/// An argument with so many rows of x and y, finite.
+pub(crate) fn vectors(name: &str, given: &Bound<'_, PyAny>, rows: usize) -> PyResult<Vec<V2>> {
     let (numbers, shape) = array(name, given)?;
     let fits = match (&shape[..], rows) {
-        ([n, 2], Some(rows)) => *n == rows,
-        ([_, 2], None) => true,
-        ([0], Some(0)) => true,
+        ([n, 2], rows) => *n == rows,
+        ([0], 0) => true,
+        // One row may come as it is.
+        ([2], 1) => true,
         _ => false,
     };
     if !fits {
-        let rows = rows.map_or("n".to_owned(), |rows| rows.to_string());
         return Err(wrong_shape(
             name,
             &shape,
@@ -81,6 +70,24 @@ pub(crate) fn vectors(
     finite(name, &numbers)?;
     let (pairs, _) = numbers.as_chunks::<2>();
     Ok(pairs.iter().map(|[x, y]| V2::new(*x, *y)).collect())
+}
+
+/// Blocks of so many rows of vectors: of one row, the rows themselves do as well.
+pub(crate) fn stacks(name: &str, given: &Bound<'_, PyAny>, rows: usize) -> PyResult<Vec<Vec<V2>>> {
+    let (numbers, shape) = array(name, given)?;
+    let blocks = match shape[..] {
+        [n, own, 2] if own == rows => n,
+        [n, 2] if rows == 1 => n,
+        _ => {
+            let expected = format!("(n, {rows}, 2): x and y of each, step by step");
+            return Err(wrong_shape(name, &shape, &expected));
+        }
+    };
+    finite(name, &numbers)?;
+    let (pairs, _) = numbers.as_chunks::<2>();
+    let row = |block: usize| pairs[block * rows..(block + 1) * rows].iter();
+    let vectors = |block: usize| row(block).map(|[x, y]| V2::new(*x, *y)).collect();
+    Ok((0..blocks).map(vectors).collect())
 }
 
 /// Whether all of an argument's numbers are finite.

@@ -1,14 +1,13 @@
 //! `advise`: what can be known of a bearing before the supervisor goes in, and a suggested configuration.
 
 use crate::cli::error::{CommandError, pretty, print, say};
-use crate::cli::load_any;
+use crate::cli::load;
 use crate::cli::screen::tell;
 use firmware_bench::advise::{self, Advice, Language, OutOfRange, RotorAdvice};
 use firmware_bench::modes::Coupling;
 use firmware_bench::report::campbell;
-use firmware_bench::scene::Scene;
-use firmware_bench::scene::machine::{AnyScene, MachineScene};
 use firmware_bench::scene::suggest::Nominal;
+use firmware_bench::scene::{PlaneScene, Scene};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use supervisor::Config;
@@ -227,19 +226,25 @@ pub fn execute(args: &AdviseArgs) -> Result<(), CommandError> {
         return Err(refused("runout_m", &is, "a finite number, 0 or greater"));
     }
     let advice = match &args.scene {
-        Some(path) => match load_any(path)? {
-            AnyScene::Plane(_) if args.plane.is_some() => {
-                return Err(CommandError::Numbers {
-                    message: format!("--plane: {} has one plane without a name", path.display()),
-                    help: "leave the option out".to_owned(),
-                });
+        Some(path) => {
+            let scene = load(path)?;
+            match &scene.planes[..] {
+                [only] if only.name.is_empty() && args.plane.is_some() => {
+                    return Err(CommandError::Numbers {
+                        message: format!(
+                            "--plane: {} has one plane without a name",
+                            path.display()
+                        ),
+                        help: "leave the option out".to_owned(),
+                    });
+                }
+                [only] if !scene.has_axis() => of_plane(args, path, only, &scene.title)?,
+                _ => match of_machine(args, path, &scene)? {
+                    Some(advice) => advice,
+                    None => return Ok(()),
+                },
             }
-            AnyScene::Plane(scene) => of_scene(args, path, &scene, &scene.title)?,
-            AnyScene::Machine(scene) => match of_machine(args, path, &scene)? {
-                Some(advice) => advice,
-                None => return Ok(()),
-            },
-        },
+        }
         None => {
             let nominal = told(args, args.numbers.nominal()?.nominal()?);
             if nominal.runout_m.is_some() && nominal.spin_hz.is_none() {
@@ -291,13 +296,13 @@ fn told(args: &AdviseArgs, nominal: Nominal) -> Nominal {
     }
 }
 
-fn of_scene(
+fn of_plane(
     args: &AdviseArgs,
     path: &Path,
-    scene: &Scene,
+    plane: &PlaneScene,
     title: &str,
 ) -> Result<Advice, CommandError> {
-    if scene.plant.magnet.is_none() {
+    if plane.magnet.is_none() {
         return Err(CommandError::Numbers {
             message: format!("{} has no magnet", path.display()),
             help: "add [magnet]: without one there is nothing to configure".to_owned(),
@@ -305,11 +310,11 @@ fn of_scene(
     }
     Advice::of_plane(
         title,
-        &told(args, scene.nominal),
-        &scene.decided,
-        &scene.overrides,
+        &told(args, plane.nominal),
+        &plane.decided,
+        &plane.overrides,
     )
-    .map_err(|e| out_of_range(&e, |field| scene.nominal_keys.key(field).to_owned()))
+    .map_err(|e| out_of_range(&e, |field| plane.nominal_keys.key(field).to_owned()))
 }
 
 /// Advice for all planes of a rotor.
@@ -325,7 +330,7 @@ struct MachineAdvice<'a> {
 fn of_machine(
     args: &AdviseArgs,
     path: &Path,
-    scene: &MachineScene,
+    scene: &Scene,
 ) -> Result<Option<Advice>, CommandError> {
     let names = || {
         let names: Vec<&str> = scene.planes.iter().map(|p| p.name.as_str()).collect();
@@ -335,18 +340,18 @@ fn of_machine(
         message,
         help: names(),
     };
-    let title = &scene.common().title;
+    let title = &scene.title;
     if let Some(name) = &args.plane {
         let plane = (scene.planes.iter().find(|plane| plane.name == *name))
             .ok_or_else(|| refused(format!("--plane: there is no plane \"{name}\"")))?;
-        return of_scene(args, path, &plane.scene, &format!("{title}: {name}")).map(Some);
+        return of_plane(args, path, plane, &format!("{title}: {name}")).map(Some);
     }
     if args.format.is_some() {
         return Err(refused("--format is of one plane: give --plane".to_owned()));
     }
     let with_magnet = scene.planes.iter().filter(|plane| plane.magnet.is_some());
     let all: Vec<Advice> = with_magnet
-        .map(|plane| of_scene(args, path, &plane.scene, &plane.name))
+        .map(|plane| of_plane(args, path, plane, &plane.name))
         .collect::<Result<_, _>>()?;
     let coupling =
         Coupling::new(scene).map_err(|e| CommandError::other("reading the machine", e))?;

@@ -1,7 +1,7 @@
 //! `fmu SCENE.toml`: plant, supervisor and closed loop of a scene as co-simulation units.
 
 use crate::cli::error::{CommandError, print, say};
-use crate::cli::load_any;
+use crate::cli::load;
 use crate::cli::output::{Staging, probe};
 use clap::ValueEnum;
 use firmware_bench::scene::spec::Spec;
@@ -44,7 +44,7 @@ const LIBRARY: &str = "libfirmware_fmu.so";
 /// [`CommandError`], with nothing written.
 pub fn execute(args: &FmuArgs) -> Result<(), CommandError> {
     // What it warns of is said once, not for each unit.
-    load_any(&args.scene)?;
+    load(&args.scene)?;
     let own = Path::new("runs").join(args.scene.file_stem().unwrap_or(args.scene.as_os_str()));
     let out = args.out.clone().unwrap_or(own);
     probe(&out)?;

@@ -6,7 +6,7 @@ mod text;
 use self::ask::Number;
 use crate::cli::error::{CommandError, pretty, print};
 use crate::cli::output::OutputError;
-use crate::cli::{load_any, warn};
+use crate::cli::{load, warn};
 use firmware_bench::device::levitation::LevitationParams;
 use firmware_bench::scene::Scene;
 use firmware_bench::scene::schema::json_schema;
@@ -212,7 +212,7 @@ pub fn execute(args: &InitArgs) -> Result<(), CommandError> {
         )?;
     }
     create(file, &scene)?;
-    load_any(file)?;
+    load(file)?;
     print(&format!(
         "{} is written; run it: firmware-host run {}\nwhat its bearing can do: firmware-host advise {}\n",
         file.display(),

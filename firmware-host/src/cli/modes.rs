@@ -2,11 +2,11 @@
 //! its planes feel each other.
 
 use crate::cli::error::{CommandError, pretty, print};
-use crate::cli::load_any;
+use crate::cli::load;
 use crate::cli::screen::tell;
 use firmware_bench::modes::{Analysis, Range};
 use firmware_bench::report::campbell;
-use firmware_bench::scene::machine::{AnyScene, MachineScene, PlaneScene};
+use firmware_bench::scene::{PlaneScene, Scene};
 use std::path::PathBuf;
 
 /// Arguments of `modes`.
@@ -44,14 +44,12 @@ pub fn execute(args: &ModesArgs) -> Result<(), CommandError> {
         message,
         help: help.to_owned(),
     };
-    let scene = match load_any(&args.scene)? {
-        AnyScene::Machine(scene) => scene,
-        AnyScene::Plane(_) => {
-            let message = format!("{} has a point mass in one plane", args.scene.display());
-            let help = "modes is about whole rotors: describe the bearing planes by [[plane]]";
-            return Err(numbers(message, help));
-        }
-    };
+    let scene = load(&args.scene)?;
+    if !scene.has_axis() {
+        let message = format!("{} has a point mass in one plane", args.scene.display());
+        let help = "give the rotor its inertias, or a [[shaft]]: a point has no modes to find";
+        return Err(numbers(message, help));
+    }
     let to_hz = args.to_hz.unwrap_or_else(|| default_hz(&scene));
     if !(to_hz > 0.0 && to_hz <= 1e5) {
         let message = format!("--to-hz is {to_hz}");
@@ -69,7 +67,7 @@ pub fn execute(args: &ModesArgs) -> Result<(), CommandError> {
         let help = "that controller is no spring at each magnet; leave the option out";
         return Err(numbers(message, help));
     }
-    let gains = |plane: &PlaneScene| plane.magnet.is_some() && plane.scene.levitation.is_some();
+    let gains = |plane: &PlaneScene| plane.magnet.is_some() && plane.levitation.is_some();
     if args.levitated && !scene.planes.iter().any(gains) {
         let message = format!(
             "--levitated: {} has no magnet with [levitation]",
@@ -96,7 +94,7 @@ pub fn execute(args: &ModesArgs) -> Result<(), CommandError> {
     tell(&campbell::text(&scene, &analysis))
 }
 
-fn default_hz(scene: &MachineScene) -> f64 {
+fn default_hz(scene: &Scene) -> f64 {
     let spin_hz = scene.start.spin_rad_s.abs() / std::f64::consts::TAU;
     (1.5 * spin_hz).max(100.0)
 }

@@ -1,26 +1,23 @@
 //! `run SCENE.toml`: every policy of the scene, one table, traces and a report.
 
-mod machine;
-
 use crate::cli::error::{CommandError, Contradiction, pretty, print};
 use crate::cli::load_changed;
 use crate::cli::output::{self, OutputError, Staging};
 use crate::cli::progress::{LateProgress, Threads};
 use crate::cli::screen::tell;
-use firmware_bench::report::summary::summary;
 use firmware_bench::report::{self, table};
 use firmware_bench::run::closed_loop::RunError;
-use firmware_bench::run::recording::recorded;
+use firmware_bench::run::recording::{TraceFiles, recorded};
 use firmware_bench::run::trace_columns::Columns;
-use firmware_bench::run::verdict::{FailedRun, PolicyRun, Results};
+use firmware_bench::run::verdict::{FailedRun, MachineRun, PolicyRun, Results};
 use firmware_bench::run::verify::{self, Check};
-use firmware_bench::scene::Scene;
-use firmware_bench::scene::machine::AnyScene;
 use firmware_bench::scene::policy_kind::PolicyKind;
 use firmware_bench::scene::spec::Setting;
+use firmware_bench::scene::{PlaneScene, Scene};
 use firmware_bench::sweep::plan::digest;
 use firmware_studies::campaign::Progress;
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
+use std::fs::File;
 use std::path::{Path, PathBuf};
 
 /// Arguments of `run`.
@@ -103,10 +100,7 @@ pub fn execute(args: &RunArgs) -> Result<(), CommandError> {
     // Before any work: a folder that cannot be written to is the user's to know at once.
     output::probe(&out)?;
     let staging = Staging::for_folder(&out)?;
-    let ran = match &scene {
-        AnyScene::Plane(scene) => run_plane(scene, args, &staging)?,
-        AnyScene::Machine(scene) => machine::run(scene, args, &staging)?,
-    };
+    let ran = ran(&scene, args, &staging)?;
     let out = staging.publish_over(of_a_policy)?;
     if args.json && !args.quiet {
         print(&ran.verdicts)?;
@@ -134,25 +128,24 @@ struct Ran {
     contradictions: Vec<Contradiction>,
 }
 
-fn run_plane(scene: &Scene, args: &RunArgs, staging: &Staging) -> Result<Ran, CommandError> {
+fn ran(scene: &Scene, args: &RunArgs, staging: &Staging) -> Result<Ran, CommandError> {
     let results = run_all(scene, args, staging)?;
-    let verdicts = pretty(&table::json(scene, &results), VERDICT)? + "\n";
+    let verdicts = pretty(&table::json(scene, &results), "formatting verdict.json")? + "\n";
     staging.write("verdict.json", &verdicts)?;
-    write_records(staging, &results.runs, record_name)?;
-    let html = report::html(&summary(scene), &results).map_err(undrawn)?;
+    let mut contradicted = Vec::new();
+    for (plane, runs) in scene.planes.iter().zip(&results.planes) {
+        write_records(staging, runs, plane)?;
+        contradicted.extend(contradictions(runs, plane));
+    }
+    let html = report::html(scene, &results)
+        .map_err(|error| CommandError::other("drawing the report", error))?;
     staging.write("report.html", html)?;
     Ok(Ran {
         table: table::text(scene, &results),
         verdicts,
         untrusted: results.untrusted().into_iter().map(str::to_owned).collect(),
-        contradictions: contradictions(&results.runs),
+        contradictions: contradicted,
     })
-}
-
-const VERDICT: &str = "formatting verdict.json";
-
-fn undrawn(error: report::PlotError) -> CommandError {
-    CommandError::other("drawing the report", error)
 }
 
 /// Whether a file is a run's of one policy: an earlier one may have had policies that this one has not, and what they
@@ -172,21 +165,24 @@ fn of_a_policy(file: &str) -> bool {
     PolicyKind::ALL.iter().any(|kind| of(kind.name()))
 }
 
-fn trace_name(policy: &str) -> String {
-    format!("trace_{policy}.parquet")
-}
-
-fn record_name(policy: &str) -> String {
-    format!("record_{policy}.bin")
+/// A policy, and the plane where that has a name, as they stand in names of files.
+fn in_files(policy: &str, plane: &PlaneScene) -> String {
+    match plane.name_in_files().as_str() {
+        "" => policy.to_owned(),
+        plane => format!("{policy}_{plane}"),
+    }
 }
 
 /// Checks that end with another outcome than their run.
-fn contradictions(runs: &[PolicyRun]) -> Vec<Contradiction> {
+fn contradictions(runs: &[PolicyRun], plane: &PlaneScene) -> Vec<Contradiction> {
     let of_run = |run: &PolicyRun| {
         let checks = run.checked().into_iter().flat_map(|v| &v.checks);
         let other = checks.filter(|c| c.outcome != run.verdict.figures.outcome);
         let contradiction = |c: &Check| Contradiction {
-            policy: run.name.clone(),
+            policy: match plane.name.as_str() {
+                "" => run.name.clone(),
+                plane => format!("{}, {plane}", run.name),
+            },
             outcome: run.verdict.figures.outcome.name(),
             method: c.method,
             rtol: c.rtol,
@@ -202,23 +198,23 @@ fn default_folder(scene: &Path) -> PathBuf {
 }
 
 /// What comes of each policy, in the scene's order whatever finishes first: a run, or why there is none.
-type Outcomes<T> = Vec<Result<T, RunError>>;
+type Outcomes = Vec<Result<MachineRun, RunError>>;
 
 /// Runs every policy; where none can be trusted there is nothing to keep, and the first error says it.
-fn each_policy<T: Send>(
+fn each_policy(
     scene: &Scene,
     args: &RunArgs,
     checks: usize,
-    one: impl Fn(PolicyKind, &mut dyn FnMut(u64)) -> Result<Result<T, RunError>, OutputError> + Sync,
-) -> Result<Outcomes<T>, CommandError> {
+    one: impl Fn(PolicyKind, &mut dyn FnMut(u64)) -> Result<Result<MachineRun, RunError>, OutputError>
+    + Sync,
+) -> Result<Outcomes, CommandError> {
     let ticks = (scene.duration_s * scene.sample_rate_hz).round() as u64;
     let all = ticks * ((1 + checks) * scene.policies.len()) as u64;
     let progress = LateProgress::new(all, "ticks");
     let one = |kind: &PolicyKind| one(*kind, &mut |ticks| progress.add(ticks));
     let all = args.threads.pool()?.install(|| {
         let all: Vec<_> = scene.policies.par_iter().map(one).collect();
-        all.into_iter()
-            .collect::<Result<Outcomes<T>, OutputError>>()
+        all.into_iter().collect::<Result<Outcomes, OutputError>>()
     });
     progress.finish();
     let mut all = all?;
@@ -233,15 +229,8 @@ fn each_policy<T: Send>(
     Ok(all)
 }
 
-fn is_of_the_scene<T>(outcome: &Result<T, RunError>) -> bool {
+fn is_of_the_scene(outcome: &Result<MachineRun, RunError>) -> bool {
     matches!(outcome, Err(RunError::Controller { reason, .. }) if reason.help().is_some())
-}
-
-fn failed(kind: PolicyKind, error: &RunError) -> FailedRun {
-    FailedRun {
-        name: kind.name().to_owned(),
-        error: error.to_string(),
-    }
 }
 
 /// Every policy of the scene; traces are written meanwhile.
@@ -251,18 +240,15 @@ fn run_all(scene: &Scene, args: &RunArgs, staging: &Staging) -> Result<Results, 
         false => Vec::new(),
     };
     let all = each_policy(scene, args, checks.len(), |kind, on_tick| {
-        let name = trace_name(kind.name());
-        let mut file = match args.no_trace {
+        let names = Names::new(scene, kind.name());
+        let mut files = match args.no_trace {
             true => None,
-            false => {
-                let about = args.about(scene, kind.name(), None);
-                Some(staging.trace(&name, Columns::of_plane().about(about))?)
-            }
+            false => Some(names.begin(scene, (args, kind.name()), staging)?),
         };
-        let ran = recorded(scene, kind, &checks, file.as_mut(), on_tick);
-        match (&ran, file) {
-            (Ok(_), Some(file)) => staging.end_trace(&name, file)?,
-            (Err(_), Some(_)) => staging.discard(&name)?,
+        let ran = recorded(scene, kind, &checks, files.as_mut(), on_tick);
+        match (&ran, files) {
+            (Ok(_), Some(files)) => names.end(files, staging)?,
+            (Err(_), Some(_)) => names.discard(staging)?,
             _ => {}
         }
         Ok(ran)
@@ -270,23 +256,83 @@ fn run_all(scene: &Scene, args: &RunArgs, staging: &Staging) -> Result<Results, 
     let mut results = Results::default();
     for (kind, ran) in scene.policies.iter().zip(all) {
         match ran {
-            Ok(run) => results.runs.push(run),
-            Err(error) => results.failed.push(failed(*kind, &error)),
+            Ok(run) => results.push(run),
+            Err(error) => results.failed.push(FailedRun {
+                name: kind.name().to_owned(),
+                error: error.to_string(),
+            }),
         }
     }
     Ok(results)
+}
+
+/// Names of the trace files of a policy.
+struct Names {
+    planes: Vec<String>,
+    axis: Option<String>,
+}
+
+impl Names {
+    fn new(scene: &Scene, policy: &str) -> Self {
+        Self {
+            planes: (scene.planes.iter())
+                .map(|plane| format!("trace_{}.parquet", in_files(policy, plane)))
+                .collect(),
+            axis: (scene.has_axis()).then(|| format!("axis_{policy}.parquet")),
+        }
+    }
+
+    fn begin(
+        &self,
+        scene: &Scene,
+        (args, policy): (&RunArgs, &str),
+        staging: &Staging,
+    ) -> Result<TraceFiles<File>, OutputError> {
+        let planes = self.planes.iter().zip(&scene.planes).map(|(name, plane)| {
+            let named = Some(plane.name.as_str()).filter(|name| !name.is_empty());
+            let columns = Columns::of_plane().about(args.about(scene, policy, named));
+            staging.trace(name, columns)
+        });
+        let modes = scene.machine.rotor.bending().len();
+        let axis = self.axis.as_ref().map(|name| {
+            let columns = Columns::of_axis(modes).about(args.about(scene, policy, None));
+            staging.trace(name, columns)
+        });
+        Ok(TraceFiles {
+            planes: planes.collect::<Result<_, _>>()?,
+            axis: axis.transpose()?,
+        })
+    }
+
+    fn end(&self, files: TraceFiles<File>, staging: &Staging) -> Result<(), OutputError> {
+        for (name, file) in self.planes.iter().zip(files.planes) {
+            staging.end_trace(name, file)?;
+        }
+        match (&self.axis, files.axis) {
+            (Some(name), Some(file)) => staging.end_trace(name, file),
+            _ => Ok(()),
+        }
+    }
+
+    fn discard(&self, staging: &Staging) -> Result<(), OutputError> {
+        for name in self.planes.iter().chain(&self.axis) {
+            staging.discard(name)?;
+        }
+        Ok(())
+    }
 }
 
 /// Frozen flight records, each under the name that its policy has.
 fn write_records(
     staging: &Staging,
     runs: &[PolicyRun],
-    name: impl Fn(&str) -> String,
+    plane: &PlaneScene,
 ) -> Result<(), CommandError> {
     for run in runs {
         let read_out = run.trace.read_out.as_ref();
         if let Some(record) = read_out.and_then(|read_out| read_out.flight_record.as_ref()) {
-            staging.write(&name(&run.name), record)?;
+            let name = format!("record_{}.bin", in_files(&run.name, plane));
+            staging.write(&name, record)?;
         }
     }
     Ok(())

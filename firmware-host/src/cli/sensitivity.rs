@@ -7,7 +7,7 @@ use crate::cli::screen::tell;
 use firmware_bench::report::lines::{Cell, lined, right};
 use firmware_bench::report::table::shown;
 use firmware_bench::run::figures::{Figure, Figures, Place};
-use firmware_bench::scene::Scene;
+use firmware_bench::scene::{PlaneScene, Scene};
 use firmware_bench::scene::policy_kind::PolicyKind;
 use firmware_studies::campaign::Progress;
 use firmware_studies::sensitivity::{Row, misjudged, told_right};
@@ -47,10 +47,11 @@ fn width(text: &str) -> Result<f64, String> {
 /// [`CommandError`] for a scene that has nothing to supervise.
 pub fn execute(args: &SensitivityArgs) -> Result<(), CommandError> {
     let scene = load(&args.scene)?;
+    let of_planes = |has: fn(&PlaneScene) -> bool| scene.planes.iter().any(has);
     for (there, table) in [
-        (scene.plant.magnet.is_some(), "[magnet]"),
+        (of_planes(|plane| plane.magnet.is_some()), "[magnet]"),
         (
-            scene.levitation.is_some() || scene.controller.is_some(),
+            scene.levitation.is_some() || of_planes(|plane| plane.levitation.is_some()),
             "[levitation]",
         ),
     ] {
@@ -78,7 +79,7 @@ fn rows(scene: &Scene, args: &SensitivityArgs) -> Result<Vec<Row>, CommandError>
         message: format!("{}: the supervisor derives {e}", args.scene.display()),
         help: e.parameter().text.to_owned(),
     })?;
-    let wrong = misjudged(args.width, args.draws, scene.seed);
+    let wrong = misjudged(args.width, args.draws, scene.planes[0].seed);
     let progress = LateProgress::new(wrong.len() as u64, "runs");
     let one = |misjudged| {
         let row = Row::of_misjudged(misjudged, scene);

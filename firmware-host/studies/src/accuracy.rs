@@ -3,10 +3,13 @@
 pub mod study;
 pub mod wrong_runs;
 
-use firmware_bench::device::loads;
+use firmware_bench::device::loads::{self, Disturbance, TimedChange};
 use firmware_bench::scene::Scene;
-use plant_model::{BuildError, Inputs, Method, Mode, Options, PlantError, V2, Work};
+use plant_model::machine::params::{MachineChange, MachineError, MachineParams, Unbalance};
+use plant_model::machine::{Machine, MachineInputs};
+use plant_model::{Method, Mode, Options, PlantError, V2, Work};
 use serde::Serialize;
+use std::f64::consts::PI;
 use std::time::{Duration, Instant};
 
 /// Tolerances that are tried.
@@ -26,8 +29,8 @@ pub struct Row {
     pub method: &'static str,
     /// Tolerance of a contact step.
     pub rtol: f64,
-    /// Distance of the end position from the reference, in clearances; `None` where the reference is
-    /// not confirmed.
+    /// Distance of the end position from the reference, in clearances, of the plane that has the largest; `None` where the
+    /// reference is not confirmed.
     pub error: Option<f64>,
     /// Best wall-clock time \[s\].
     pub seconds: f64,
@@ -81,9 +84,9 @@ pub const CONFIRMED_CLEARANCES: f64 = 1e-3;
 /// Why there is no answer.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum AccuracyError {
-    /// The plant's parameters are out of range.
+    /// The machine's parameters are out of range.
     #[error(transparent)]
-    Build(#[from] BuildError),
+    Machine(#[from] MachineError),
     /// A run cannot be trusted any further.
     #[error("{method}, rtol {rtol:e}: {reason}")]
     Plant {
@@ -98,27 +101,31 @@ pub enum AccuracyError {
 
 /// Where a run ends and how it came there.
 pub(crate) struct Ending {
-    pub(crate) position_m: V2,
-    pub(crate) modes: Vec<Mode>,
+    /// Of each plane.
+    pub(crate) positions_m: Vec<V2>,
+    /// Each with its plane.
+    pub(crate) modes: Vec<(usize, Mode)>,
     pub(crate) method: Method,
     work: Work,
 }
 
-/// Distance of two ends in clearances.
+/// Distance of two ends in clearances, of the plane that has the largest.
 pub(crate) fn apart(scene: &Scene, a: &Ending, b: &Ending) -> f64 {
-    (a.position_m - b.position_m).norm() / scene.plant.contact.clearance_m
+    let ends = a.positions_m.iter().zip(&b.positions_m).enumerate();
+    ends.map(|(plane, (a, b))| (a - b).norm() / scene.clearance_m(plane))
+        .fold(0.0, f64::max)
 }
 
 /// What a scene is held against: two methods of little in common at the tightest tolerance; what has no power series, by collocation
 /// at two tolerances.
 pub(crate) fn references(scene: &Scene) -> [(Method, f64); 2] {
-    match scene.plant.has_series() {
-        true => [(Method::Series, TIGHTEST), (Method::Collocation, TIGHTEST)],
-        false => [TIGHTEST, 10.0 * TIGHTEST].map(|rtol| (Method::Collocation, rtol)),
+    match scene.machine.method(Method::Series) {
+        Ok(_) => [(Method::Series, TIGHTEST), (Method::Collocation, TIGHTEST)],
+        Err(_) => [TIGHTEST, 10.0 * TIGHTEST].map(|rtol| (Method::Collocation, rtol)),
     }
 }
 
-/// Runs the scene's plant without control under every method and tolerance.
+/// Runs the scene's machine without control under every method and tolerance.
 ///
 /// # Errors
 /// [`AccuracyError`].
@@ -183,8 +190,17 @@ pub(crate) fn run(scene: &Scene, method: Method, rtol: f64) -> Result<Ending, Ac
         steps_per_sample: Options::default().steps,
         ..Options::default()
     };
-    let external = scene.external();
-    let mut plant = scene.build(options)?;
+    let loads: Vec<Disturbance> = scene.loads().collect();
+    let params = MachineParams {
+        loads_m: loads.iter().map(|load| load.position_m).collect(),
+        ..scene.machine.clone()
+    };
+    let mut machine = Machine::new(&params, &scene.start, options)?;
+    let mut inputs = MachineInputs {
+        commands_n: vec![V2::zeros(); params.magnets.len()],
+        loads_n: vec![V2::zeros(); loads.len()],
+    };
+    let mut eccentricity_m = scene.eccentricity_m;
     let mut edges = scene.edges();
     edges.retain(|t| *t > 0.0 && *t < scene.duration_s);
     edges.push(scene.duration_s);
@@ -192,23 +208,23 @@ pub(crate) fn run(scene: &Scene, method: Method, rtol: f64) -> Result<Ending, Ac
     let (mut from, mut modes) = (0.0, Vec::new());
     for to in edges {
         while let Some(due) = changes.next_if(|c| c.at_s <= from) {
-            plant.change(&due.change).map_err(BuildError::Param)?;
+            change(&mut machine, due, (scene, &mut eccentricity_m))?;
         }
-        let parts = external.parts(from, to);
+        let parts = loads.iter().filter_map(|load| load.parts(from, to)).max();
         for [begin, middle, end] in loads::cuts((from, to), parts.unwrap_or(1)) {
-            let [first_n, second_n] = external.halves_n(begin, end);
-            let holds = match parts {
-                Some(_) => &[(middle, first_n), (end, second_n)][..],
-                None => &[(end, first_n)],
+            let halves = match parts {
+                Some(_) => &[middle, end][..],
+                None => &[end],
             };
-            for (until_s, external_n) in holds {
-                let inputs = Inputs {
-                    command_n: V2::zeros(),
-                    external_n: *external_n,
-                };
-                let advanced = plant.advance(*until_s, &inputs, &mut |s| modes.push(s.mode));
+            for (half, until_s) in halves.iter().enumerate() {
+                for (held_n, load) in inputs.loads_n.iter_mut().zip(&loads) {
+                    *held_n = load.halves_n(begin, end)[half];
+                }
+                let advanced = machine.advance(*until_s, &inputs, &mut |plane, now| {
+                    modes.extend(now.planes().nth(plane).map(|now| (plane, now.mode)));
+                });
                 advanced.map_err(|reason| AccuracyError::Plant {
-                    method: plant.method().name(),
+                    method: machine.method().name(),
                     rtol,
                     reason,
                 })?;
@@ -217,9 +233,36 @@ pub(crate) fn run(scene: &Scene, method: Method, rtol: f64) -> Result<Ending, Ac
         from = to;
     }
     Ok(Ending {
-        position_m: plant.snapshot().position_m,
+        positions_m: (machine.snapshot().planes())
+            .map(|plane| plane.rotor.position)
+            .collect(),
         modes,
-        method: plant.method(),
-        work: plant.work(),
+        method: machine.method(),
+        work: machine.work(),
+    })
+}
+
+/// Makes a change. Of an eccentricity \[m\] what is there stays, with the difference added at its angle or against it.
+fn change(
+    machine: &mut Machine,
+    due: &TimedChange,
+    (scene, eccentricity_m): (&Scene, &mut f64),
+) -> Result<(), MachineError> {
+    machine.change(&MachineChange {
+        unbalance: due.unbalance,
+        friction_coefficient: due.change.friction_coefficient,
+        drive_torque_n_m: due.change.drive_torque_n_m,
+    })?;
+    let Some(new_m) = due.change.eccentricity_m else {
+        return Ok(());
+    };
+    let more_m = new_m - std::mem::replace(eccentricity_m, new_m);
+    machine.change(&MachineChange {
+        unbalance: Some(Unbalance {
+            position_m: 0.0,
+            moment_kg_m: scene.machine.rotor.rigid().mass_kg * more_m.abs(),
+            angle_rad: if more_m < 0.0 { PI } else { 0.0 },
+        }),
+        ..MachineChange::default()
     })
 }

@@ -3,15 +3,14 @@
 
 pub mod study;
 
-use firmware_bench::device::sensor::SpinSensorParams;
-use firmware_bench::run::closed_loop::{Keep, run};
+use firmware_bench::run::closed_loop::{Recorders, Rigour, record};
 use firmware_bench::run::figures::Figures;
-use firmware_bench::run::supervision::Supervision;
-use firmware_bench::scene::Scene;
-use firmware_bench::scene::nominal::Override;
-use firmware_bench::scene::nominal::replaced;
+use firmware_bench::run::supervision::SupervisionCount;
+use firmware_bench::run::trace::Recorder;
+use firmware_bench::scene::nominal::{Override, replaced};
 use firmware_bench::scene::policy_kind::PolicyKind;
 use firmware_bench::scene::suggest::{Nominal, suggested};
+use firmware_bench::scene::{PlaneScene, Scene};
 use rand_chacha::ChaCha8Rng;
 use rand_core::{Rng, SeedableRng};
 use serde::Serialize;
@@ -168,42 +167,50 @@ impl Misjudged {
     /// # Errors
     /// The parameter that the supervisor would refuse.
     pub fn told(&self, scene: &Scene) -> Result<Option<Scene>, ConfigError> {
-        let right = configured(&scene.nominal, &scene.overrides)?;
-        let mut told = Told {
-            nominal: scene.nominal,
-            spin_gain: scene.spin_sensor.gain,
-        };
-        let mut overrides = scene.overrides.clone();
-        for (place, by) in &self.off {
-            let datum = &DATA[*place];
-            (datum.put_off)(&mut told, *by);
-            for (index, value) in &mut overrides {
-                if datum.parameter == Some(PARAMETERS[*index].name) {
-                    *value = match datum.usual {
-                        Factor(_) => *value * *by as f32,
-                        Ticks(_) => (*value + *by as f32).max(0.0),
-                    };
+        let right = told_right(scene)?;
+        let mut wrong = right.clone();
+        let spin = scene.spin_sensor;
+        for plane in wrong.planes.iter_mut().filter(is_supervised) {
+            let mut told = Told {
+                nominal: plane.nominal,
+                spin_gain: spin.gain,
+            };
+            let mut overrides = plane.overrides.clone();
+            for (place, by) in &self.off {
+                let datum = &DATA[*place];
+                (datum.put_off)(&mut told, *by);
+                for (index, value) in &mut overrides {
+                    if datum.parameter == Some(PARAMETERS[*index].name) {
+                        *value = match datum.usual {
+                            Factor(_) => *value * *by as f32,
+                            Ticks(_) => (*value + *by as f32).max(0.0),
+                        };
+                    }
                 }
             }
+            plane.supervisor = Some(configured(plane, &told.nominal, &overrides)?);
+            wrong.spin_sensor.gain = told.spin_gain;
         }
-        let config = configured(&told.nominal, &overrides)?;
-        let spin = scene.spin_sensor;
-        let other_spin = spin.valid && told.spin_gain != spin.gain;
-        let other = config != right || other_spin;
-        Ok(other.then(|| Scene {
-            supervisor: Some(config),
-            spin_sensor: SpinSensorParams {
-                gain: told.spin_gain,
-                ..spin
-            },
-            ..scene.clone()
-        }))
+        let other_spin = spin.valid && wrong.spin_sensor.gain != spin.gain;
+        let other = (wrong.planes.iter().zip(&right.planes))
+            .any(|(wrong, right)| wrong.supervisor != right.supervisor);
+        Ok((other || other_spin).then_some(wrong))
     }
 }
 
-/// What the supervisor is configured with when it is told this.
-fn configured(nominal: &Nominal, overrides: &[Override]) -> Result<Config, ConfigError> {
-    let config = replaced(&suggested(nominal).config, overrides);
+fn is_supervised(plane: &&mut PlaneScene) -> bool {
+    plane.magnet.is_some()
+}
+
+/// What the supervisor of a plane is configured with when it is told this, beside what the rotor decides.
+fn configured(
+    plane: &PlaneScene,
+    nominal: &Nominal,
+    overrides: &[Override],
+) -> Result<Config, ConfigError> {
+    let decided = plane.decided.iter().map(|of| (of.index, of.value));
+    let settled: Vec<Override> = decided.chain(overrides.iter().copied()).collect();
+    let config = replaced(&suggested(nominal).config, &settled);
     config.validate()?;
     Ok(config)
 }
@@ -213,10 +220,11 @@ fn configured(nominal: &Nominal, overrides: &[Override]) -> Result<Config, Confi
 /// # Errors
 /// The parameter that the supervisor would refuse.
 pub fn told_right(scene: &Scene) -> Result<Scene, ConfigError> {
-    Ok(Scene {
-        supervisor: Some(configured(&scene.nominal, &scene.overrides)?),
-        ..scene.clone()
-    })
+    let mut scene = scene.clone();
+    for plane in scene.planes.iter_mut().filter(is_supervised) {
+        plane.supervisor = Some(configured(plane, &plane.nominal, &plane.overrides)?);
+    }
+    Ok(scene)
 }
 
 /// What came of a run.
@@ -224,7 +232,7 @@ pub fn told_right(scene: &Scene) -> Result<Scene, ConfigError> {
 pub struct Row {
     /// What the supervisor was told, or that there was none.
     pub told: String,
-    /// Times that it took over.
+    /// Times that it took over, of all planes together.
     pub engagements: u64,
     /// What was measured; `None` where there is no run that can be trusted.
     #[serde(flatten)]
@@ -236,10 +244,20 @@ pub struct Row {
 impl Row {
     /// Runs a scene.
     pub fn of(told: &str, scene: &Scene, kind: PolicyKind) -> Self {
-        let (engagements, metrics, error) = match run(scene, kind, Keep::Trace, &mut |_| {}) {
-            Ok((figures, trace)) => {
-                let engagements = Supervision::of(&trace).map_or(0, |s| s.engagements);
-                (engagements, Some(figures), None)
+        let mut counts = vec![SupervisionCount::default(); scene.planes.len()];
+        let recorders = Recorders {
+            planes: (counts.iter_mut())
+                .map(|count| count as &mut dyn Recorder)
+                .collect(),
+            axis: None,
+        };
+        let ran = record(scene, kind, recorders, Rigour::default(), &mut |_| {});
+        let (engagements, metrics, error) = match ran {
+            Ok(ended) => {
+                let planes: Vec<Figures> = ended.into_iter().map(|(figures, _)| figures).collect();
+                let counted = counts.iter().filter_map(|count| count.ended(None));
+                let engagements = counted.map(|supervision| supervision.engagements).sum();
+                (engagements, Figures::of_machine(&planes), None)
             }
             Err(error) => (0, None, Some(error.to_string())),
         };

@@ -31,7 +31,10 @@ impl MachineParams {
     pub fn point_mass(&self, position_m: f64) -> PointMass {
         let rigid = self.rotor.rigid();
         let mut point = PointMass {
-            mass_kg: 1.0 / rigid.mobility(position_m, position_m),
+            mass_kg: match rigid.tilts() {
+                true => 1.0 / rigid.mobility(position_m, position_m),
+                false => rigid.mass_kg,
+            },
             stiffness_n_m: 0.0,
             damping_n_s_m: 0.0,
         };

@@ -139,7 +139,7 @@ fn closed_forms_of_a_known_plant() {
 #[test]
 fn a_shaft_gives_a_threshold() {
     let scene = scene("impact_at_40_hz");
-    let a = advice(&scene.nominal);
+    let a = advice(&scene.planes[0].nominal);
     assert!((a.limits.passive_threshold_m_s.unwrap() - 0.0579).abs() < 5e-5);
     assert!((a.impact.passive_m_s.unwrap() - 0.082).abs() < 5e-4);
     assert_eq!(

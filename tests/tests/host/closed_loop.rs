@@ -1,7 +1,7 @@
 //! Plant, instruments, controllers and supervisor together.
 
 use firmware_bench::device::levitation::LevitationParams;
-use firmware_bench::device::loads::{Disturbance, Shape};
+use firmware_bench::device::loads::Disturbance;
 use firmware_bench::run::closed_loop::{Keep, RunError, run};
 use firmware_bench::run::figures::Figures;
 use firmware_bench::run::outcome::Outcome;
@@ -20,8 +20,8 @@ fn a_mirrored_scene_has_the_mirrored_run() {
     let scene = scene("impact_at_40_hz");
     let mirror = |v: V2| V2::new(-v.x, v.y);
     let mut mirrored = scene.clone();
-    mirrored.start.position_m = mirror(scene.start.position_m);
-    mirrored.start.velocity_m_s = mirror(scene.start.velocity_m_s);
+    mirrored.start.centre_m = mirror(scene.start.centre_m);
+    mirrored.start.centre_velocity_m_s = mirror(scene.start.centre_velocity_m_s);
     mirrored.start.spin_rad_s = -scene.start.spin_rad_s;
     for policy in PolicyKind::ALL {
         let (a, left) = run(&scene, policy, Keep::Trace, &mut |_| {}).unwrap();
@@ -49,8 +49,8 @@ fn without_contact_the_supervisor_changes_nothing() {
     let mut scene = scene("overload_then_release");
     scene.disturbances.clear();
     // A converter's step would turn a rounding difference into a whole count.
-    scene.sensor.quantum_m = 0.0;
-    scene.start.position_m = V2::new(3e-5, -2e-5);
+    scene.planes[0].sensor.quantum_m = 0.0;
+    scene.start.centre_m = V2::new(3e-5, -2e-5);
     let (_, alone) = run(&scene, PolicyKind::Levitation, Keep::Trace, &mut |_| {}).unwrap();
     let (_, supervised) = run(&scene, PolicyKind::Supervisor, Keep::Trace, &mut |_| {}).unwrap();
     for (a, b) in alone.rows.iter().zip(&supervised.rows) {
@@ -119,8 +119,8 @@ fn scenes_end_as_their_stories_say() {
 fn a_drifting_rotor_has_not_settled() {
     let mut scene = scene("overload_then_release");
     scene.disturbances.clear();
-    scene.plant.rotor.stiffness_n_m = 0.0;
-    scene.start.velocity_m_s = V2::new(0.02, 0.0);
+    scene.machine.supports.clear();
+    scene.start.centre_velocity_m_s = V2::new(0.02, 0.0);
     let mut after = |duration_s: f64| {
         scene.duration_s = duration_s;
         verdict(&scene, PolicyKind::Passive)
@@ -150,19 +150,18 @@ fn a_load_that_stays_pins_the_rotor() {
 #[test]
 fn a_carried_weight_is_not_dropped_at_hand_over() {
     let mut scene = scene("overload_then_release");
-    scene.weight_n = V2::new(0.0, -98.1);
-    scene.levitation = scene.levitation.map(|l| LevitationParams {
-        integral_n_m_s: 2e7,
-        ..l
-    });
+    scene.machine.gravity_m_s2 = V2::new(0.0, -9.81);
+    if let Some(levitation) = &mut scene.planes[0].levitation {
+        levitation.integral_n_m_s = 2e7;
+    }
     scene.duration_s = 0.4;
     for (push_n, seed) in [(3000.0, 1), (5000.0, 2), (7000.0, 3)] {
-        scene.seed = seed;
+        scene.planes[0].seed = seed;
         scene.disturbances = vec![Disturbance {
             start_s: 0.2,
             duration_s: 1e-3,
             force_n: V2::new(0.6 * push_n, 0.8 * push_n),
-            shape: Shape::Constant,
+            ..Disturbance::default()
         }];
         let alone = verdict(&scene, PolicyKind::Levitation);
         let supervised = verdict(&scene, PolicyKind::Supervisor);
@@ -219,8 +218,8 @@ fn a_known_power_loss_is_told_at_its_first_and_last_sample() {
         .replace("start_s = 0.02\n", "start_s = 0.0\n");
     let outage = format!("[[outage]]\nstart_s = {start_s}\nduration_s = {start_s}\nknown = true\n");
     let mut scene = Scene::parse("power_loss.toml", &(text + &outage)).unwrap();
-    let c = scene.plant.contact.clearance_m;
-    scene.start.position_m = V2::new(0.87 * c, 0.5 * c);
+    let c = scene.clearance_m(0);
+    scene.start.centre_m = V2::new(0.87 * c, 0.5 * c);
     scene.levitated_before = true;
     let (_, trace) = run(&scene, PolicyKind::Supervisor, Keep::Trace, &mut |_| {}).unwrap();
     let modes: Vec<_> = (trace.rows.iter())
@@ -239,7 +238,7 @@ fn a_known_power_loss_is_told_at_its_first_and_last_sample() {
 fn a_load_within_the_cap_is_handed_back() {
     let mut scene = scene("overload_then_release");
     scene.duration_s = 1.0;
-    scene.levitation = Some(LevitationParams {
+    scene.planes[0].levitation = Some(LevitationParams {
         proportional_n_m: 3e6,
         integral_n_m_s: 3e8,
         derivative_n_s_m: 2.5e3,

@@ -14,7 +14,8 @@ fn the_scene_with_everything_runs() {
     let (_, rest) = page.split_once("```toml\n").unwrap();
     let (text, _) = rest.split_once("```").unwrap();
     let scene = Scene::parse("scenes.md", text).unwrap();
-    assert!(!scene.outages.is_empty() && scene.amplifier.slew_n_s.is_some());
+    let plane = &scene.planes[0];
+    assert!(!plane.outages.is_empty() && plane.amplifier.slew_n_s.is_some());
     for policy in &scene.policies {
         if let Err(error) = run(&scene, *policy, Keep::Verdict, &mut |_| {}) {
             panic!("{}: {error}", policy.name());

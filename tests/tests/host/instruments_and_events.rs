@@ -21,9 +21,9 @@ use system_tests::scene;
 fn free_rotor() -> Scene {
     let mut scene = scene("overload_then_release");
     scene.disturbances.clear();
-    scene.plant.rotor.stiffness_n_m = 0.0;
-    scene.plant.contact.clearance_m = 1.0;
-    scene.sensor = Default::default();
+    scene.machine.supports.clear();
+    scene.machine.planes[0].contact.clearance_m = 1.0;
+    scene.planes[0].sensor = Default::default();
     scene
 }
 

@@ -1,7 +1,7 @@
 //! What a run is said to have come to, at the edges of its definitions.
 
 use firmware_bench::device::axis::Axis;
-use firmware_bench::device::loads::{Disturbance, Shape, TimedChange};
+use firmware_bench::device::loads::{Disturbance, TimedChange};
 use firmware_bench::device::sensor_fault::{Fault, FaultKind};
 use firmware_bench::run::closed_loop::{Keep, run};
 use firmware_bench::run::figures::Figures;
@@ -21,11 +21,11 @@ fn verdict(scene: &Scene, policy: PolicyKind) -> Figures {
 fn a_rotor_in_unbroken_contact_rubs() {
     let mut scene = scene("overload_then_release");
     scene.disturbances.clear();
-    scene.plant.friction.sliding = SlidingFriction::Constant { coefficient: 0.0 };
-    scene.whirl_speed_m_s = 1.0;
+    scene.machine.planes[0].friction.sliding = SlidingFriction::Constant { coefficient: 0.0 };
+    scene.planes[0].whirl_speed_m_s = 1.0;
     // In balance: (m·v²/r + |k|·r)/k_c deep.
-    scene.start.position_m = V2::new(2.0204e-4, 0.0);
-    scene.start.velocity_m_s = V2::new(0.0, 0.2);
+    scene.start.centre_m = V2::new(2.0204e-4, 0.0);
+    scene.start.centre_velocity_m_s = V2::new(0.0, 0.2);
     let mut after = |duration_s: f64| {
         scene.duration_s = duration_s;
         verdict(&scene, PolicyKind::Passive)
@@ -42,10 +42,7 @@ fn a_rotor_in_unbroken_contact_rubs() {
 fn a_rotor_on_its_way_out_has_not_recovered() {
     let mut scene = scene("overload_then_release");
     scene.disturbances.clear();
-    scene.weight_n = V2::zeros();
-    scene.feed_forward_n = V2::zeros();
-    scene.plant.rotor.stiffness_n_m = -2e5;
-    scene.start.position_m = V2::new(1e-5, 0.0);
+    scene.start.centre_m = V2::new(1e-5, 0.0);
     scene.duration_s = 0.024;
     for kind in [PolicyKind::Passive, PolicyKind::Levitation] {
         let figures = verdict(&scene, kind);
@@ -67,7 +64,7 @@ fn a_rotor_on_its_way_out_has_not_recovered() {
 #[test]
 fn what_no_sample_sees_does_not_move_the_clock() {
     let mut scene = scene("overload_then_release");
-    let clock_s = scene.clock_starts_s();
+    let clock_s = scene.clock_starts_s(0);
     let fault = |start_s: f64, duration_s: f64| Fault {
         start_s,
         duration_s,
@@ -82,11 +79,11 @@ fn what_no_sample_sees_does_not_move_the_clock() {
         (0.199_96, 1.0, false),
         (0.199_95, 1.0, true),
     ] {
-        scene.faults = vec![fault(start_s, duration_s)];
-        let moved = scene.clock_starts_s() != clock_s;
+        scene.planes[0].faults = vec![fault(start_s, duration_s)];
+        let moved = scene.clock_starts_s(0) != clock_s;
         assert_eq!(moved, seen, "{start_s} s for {duration_s} s");
     }
-    scene.faults.clear();
+    scene.planes[0].faults.clear();
     // 400.4 samples are 400: the rest is not run.
     scene.duration_s = 0.200_02;
     for (at_s, runs) in [(0.19, true), (0.200_01, false)] {
@@ -99,7 +96,7 @@ fn what_no_sample_sees_does_not_move_the_clock() {
             change,
             unbalance: None,
         }];
-        assert_eq!(scene.clock_starts_s() == at_s, runs, "{at_s}");
+        assert_eq!(scene.clock_starts_s(0) == at_s, runs, "{at_s}");
     }
 }
 
@@ -107,14 +104,14 @@ fn what_no_sample_sees_does_not_move_the_clock() {
 #[test]
 fn round_off_of_sample_times_is_no_time() {
     let mut scene = scene("overload_then_release");
-    scene.plant.rotor.stiffness_n_m = 0.0;
+    scene.machine.supports.clear();
     for i in 1..=100 {
         let start_s = 1e-3 * f64::from(i);
         scene.disturbances = vec![Disturbance {
             start_s,
             duration_s: 7e-4,
             force_n: V2::new(1e-6, 0.0),
-            shape: Shape::Constant,
+            ..Disturbance::default()
         }];
         scene.duration_s = start_s + 8e-3;
         let verdict = verdict(&scene, PolicyKind::Passive);

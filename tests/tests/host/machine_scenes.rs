@@ -8,11 +8,10 @@ mod modes;
 mod refusals;
 mod seals;
 
-use firmware_bench::run::closed_loop::{Keep, MachineRecorders, Rigour, record_machine, run};
+use firmware_bench::run::closed_loop::{Keep, Recorders, Rigour, record, run};
 use firmware_bench::run::figures::Figures;
 use firmware_bench::run::trace::{Recorder, Trace};
 use firmware_bench::scene::Scene;
-use firmware_bench::scene::machine::{AnyScene, MachineScene};
 use firmware_bench::scene::policy_kind::PolicyKind;
 use serde_json::Value;
 use std::fs;
@@ -102,18 +101,18 @@ fn as_machine() -> String {
         )
 }
 
-fn machine(text: &str) -> MachineScene {
-    MachineScene::parse("test", text).unwrap_or_else(|e| panic!("{e}"))
+fn machine(text: &str) -> Scene {
+    Scene::parse("test", text).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// Figures and rows of each plane.
-fn planes(scene: &MachineScene, kind: PolicyKind) -> Vec<(Figures, Trace)> {
+fn planes(scene: &Scene, kind: PolicyKind) -> Vec<(Figures, Trace)> {
     let mut traces = vec![Trace::default(); scene.planes.len()];
-    let recorders = MachineRecorders {
+    let recorders = Recorders {
         planes: traces.iter_mut().map(|t| t as &mut dyn Recorder).collect(),
         axis: None,
     };
-    let ended = record_machine(scene, kind, recorders, Rigour::default(), &mut |_| {}).unwrap();
+    let ended = record(scene, kind, recorders, Rigour::default(), &mut |_| {}).unwrap();
     ended
         .into_iter()
         .map(|(figures, _)| figures)
@@ -142,10 +141,10 @@ fn the_only_plane_of_a_rotor_is_a_scene_of_one_plane() {
         Scene::parse("test", ONE_PLANE).unwrap(),
         machine(&as_machine()),
     );
-    let nominal = whole.planes[0].scene.nominal;
-    assert_eq!(nominal.mass_kg, one.nominal.mass_kg);
-    assert_eq!(nominal.load_n, one.nominal.load_n);
-    assert_eq!(whole.planes[0].scene.supervisor, one.supervisor);
+    let [of_whole, of_one] = [&whole, &one].map(|scene| &scene.planes[0]);
+    assert_eq!(of_whole.nominal.mass_kg, of_one.nominal.mass_kg);
+    assert_eq!(of_whole.nominal.load_n, of_one.nominal.load_n);
+    assert_eq!(of_whole.supervisor, of_one.supervisor);
     for kind in [
         PolicyKind::Passive,
         PolicyKind::Levitation,
@@ -213,7 +212,7 @@ start_position_m = [0.0, 0.0]
 fn ends_at_the_centres_of_percussion_do_not_feel_each_other() {
     let scene = machine(TWO_PLANES);
     // 1/(1/m + a²/I_t), with a² = 0.04.
-    let mass_kg = scene.planes[0].scene.plant.rotor.mass_kg;
+    let mass_kg = scene.plant(0).rotor.mass_kg;
     assert!((mass_kg - 6.0).abs() < 1e-12, "{mass_kg}");
     let ended = planes(&scene, PolicyKind::Passive);
     assert!(ended[0].0.impacts > 3 && ended[1].0.impacts == 0);
@@ -325,9 +324,9 @@ fn what_is_written_and_printed_has_every_plane() {
 #[test]
 fn the_scenes_of_machines_run_and_are_confirmed() {
     for name in machine_scene_names() {
-        let scene = AnyScene::load(&machine_scene_path(&name)).unwrap();
-        assert!(matches!(scene, AnyScene::Machine(_)), "{name}");
-        assert_eq!(scene.warnings(), [""; 0], "{name}");
+        let scene = Scene::load(&machine_scene_path(&name)).unwrap();
+        assert!(scene.planes.len() > 1, "{name}");
+        assert_eq!(scene.warnings, [""; 0], "{name}");
         let folder = TempDir::new().unwrap();
         let result = run_scene(
             &machine_scene_path(&name),
@@ -345,21 +344,17 @@ fn the_scenes_of_machines_run_and_are_confirmed() {
 fn one_machine_is_seen_in_three_ways() {
     let path = |name: &str| root().join(format!("firmware-host/scenes/one_machine/{name}.toml"));
     let load = |name: &str| {
-        let scene = AnyScene::load(&path(name)).unwrap();
-        assert_eq!(scene.warnings(), [""; 0], "{name}");
+        let scene = Scene::load(&path(name)).unwrap();
+        assert_eq!(scene.warnings, [""; 0], "{name}");
         scene
     };
-    let AnyScene::Plane(point) = load("point_mass") else {
-        panic!("a scene of one plane");
-    };
-    let [rigid, flexible] = ["rigid", "flexible"].map(|name| match load(name) {
-        AnyScene::Machine(scene) => scene,
-        AnyScene::Plane(_) => panic!("{name} is of one plane"),
-    });
+    let [point, rigid, flexible] = ["point_mass", "rigid", "flexible"].map(load);
+    let planes_of = [&point, &rigid, &flexible].map(|scene| scene.planes.len());
+    assert_eq!(planes_of, [1, 2, 2]);
     // The point mass is what an impact at the coupling finds of the rigid rotor.
-    let mass_kg = rigid.planes[1].scene.plant.rotor.mass_kg;
+    let mass_kg = rigid.plant(1).rotor.mass_kg;
     assert!(
-        (point.plant.rotor.mass_kg / mass_kg - 1.0).abs() < 1e-3,
+        (point.plant(0).rotor.mass_kg / mass_kg - 1.0).abs() < 1e-3,
         "{mass_kg}"
     );
     for kind in [PolicyKind::Levitation, PolicyKind::Supervisor] {

@@ -5,10 +5,9 @@ mod mistakes;
 
 use firmware_bench::device::external::{Caller, Make, Question, Setup, Step};
 use firmware_bench::device::levitation::{Levitation, LevitationParams};
-use firmware_bench::run::closed_loop::{Keep, MachineRecorders, Rigour, record_machine, run};
+use firmware_bench::run::closed_loop::{Keep, Recorders, Rigour, record, run};
 use firmware_bench::run::trace::{Recorder, Trace};
 use firmware_bench::scene::Scene;
-use firmware_bench::scene::machine::AnyScene;
 use firmware_bench::scene::policy_kind::PolicyKind;
 use firmware_bench::scene::spec::Spec;
 use nalgebra::DMatrix;
@@ -151,7 +150,7 @@ impl Step for Gains {
 #[test]
 fn a_controller_of_the_callers_stands_in_the_place_of_gains() {
     let expected = Scene::parse("gains.toml", &with(GAINS)).unwrap();
-    let gains = expected.levitation.unwrap();
+    let gains = expected.planes[0].levitation.unwrap();
     let of_caller = |table: &str| {
         let mut spec = Spec::parse("own.toml", &with(table)).unwrap();
         spec.levitated_by(Caller::new("gains", ByGains(gains)))
@@ -301,15 +300,13 @@ const PLAIN: &str = "[levitation]\nproportional_n_m = 4e5\nderivative_n_s_m = 90
 
 fn traces(folder: &Path, text: &str, kind: PolicyKind) -> Vec<Trace> {
     let path = written(folder, "rotor.toml", text);
-    let AnyScene::Machine(scene) = AnyScene::load(&path).unwrap_or_else(|e| panic!("{e}")) else {
-        panic!("a whole rotor");
-    };
+    let scene = Scene::load(&path).unwrap_or_else(|e| panic!("{e}"));
     let mut traces = vec![Trace::default(); scene.planes.len()];
-    let recorders = MachineRecorders {
+    let recorders = Recorders {
         planes: traces.iter_mut().map(|t| t as &mut dyn Recorder).collect(),
         axis: None,
     };
-    record_machine(&scene, kind, recorders, Rigour::default(), &mut |_| {}).unwrap();
+    record(&scene, kind, recorders, Rigour::default(), &mut |_| {}).unwrap();
     traces
 }
 
@@ -353,7 +350,7 @@ fn sections_hold_a_whole_rotor_as_gains_of_its_planes_do() {
     }
     let refused = |text: &str, says: &str| {
         let path = written(folder.path(), "rotor.toml", text);
-        let error = AnyScene::load(&path).expect_err("taken").to_string();
+        let error = Scene::load(&path).expect_err("taken").to_string();
         assert!(error.contains(says), "{error}");
     };
     let alone = filters.replace(&format!("{scenes}feed_forward_weight = true\n"), "");

@@ -190,10 +190,10 @@ fn a_value_that_is_set_counts() {
     spec.set("magnet.delay_samples", 2.0).unwrap();
     spec.set("supervisor.hold_share", 0.6).unwrap();
     let scene = spec.resolve().unwrap();
-    assert_eq!(scene.plant.rotor.mass_kg, 11.5);
-    assert_eq!(scene.start.velocity_m_s.x, 0.25);
-    assert_eq!(scene.amplifier.delay_samples, 2);
-    assert_eq!(scene.supervisor.unwrap().hold_share, 0.6);
+    assert_eq!(scene.machine.rotor.rigid().mass_kg, 11.5);
+    assert_eq!(scene.start.centre_velocity_m_s.x, 0.25);
+    assert_eq!(scene.planes[0].amplifier.delay_samples, 2);
+    assert_eq!(scene.planes[0].supervisor.unwrap().hold_share, 0.6);
 
     spec.set("rotor.mass_kg", -1.0).unwrap();
     let refused = spec.resolve().unwrap_err().to_string();

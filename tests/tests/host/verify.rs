@@ -1,10 +1,9 @@
 //! `run --verify`: a run's own estimate of its global error, and hints for people on the way.
 
-use firmware_bench::run::closed_loop::{Keep, Rigour, record, run};
+use firmware_bench::run::closed_loop::{Keep, Recorders, Rigour, record, run};
 use firmware_bench::run::figures::Figures;
-use firmware_bench::run::recording::recorded;
-use firmware_bench::run::trace::{Recorder, Trace, TraceRow};
-use firmware_bench::run::trace_file::TraceFile;
+use firmware_bench::run::recording::{TraceFiles, recorded};
+use firmware_bench::run::trace::{Recorder, Trace};
 use firmware_bench::run::verify::{Track, Verification, check, check_scenes, verification};
 use firmware_bench::scene::Scene;
 use firmware_bench::scene::policy_kind::PolicyKind;
@@ -24,8 +23,9 @@ fn verified(scene: &Scene, kind: PolicyKind) -> (Figures, Trace, Verification) {
     let mut track = Track::default();
     trace.rows.iter().for_each(|row| track.row(row));
     let scenes = check_scenes(scene).unwrap();
-    let checks = scenes.map(|scene| check(&scene, kind, &track, &mut |_| {}).unwrap());
-    let verification = verification(&figures, &track, checks.into());
+    let tracks = [track];
+    let checks = scenes.map(|scene| check(&scene, kind, &tracks, &mut |_| {}).unwrap().remove(0));
+    let verification = verification(&figures, &tracks[0], checks.into());
     (figures, trace, verification)
 }
 
@@ -54,7 +54,7 @@ fn the_estimate_is_of_the_size_of_the_error() {
             let (_, trace) = ridden(&with(&scene, method, 1e-13), kind);
             trace.rows.last().unwrap().plant.position_m
         };
-        let clearance_m = scene.plant.contact.clearance_m;
+        let clearance_m = scene.clearance_m(0);
         let (series, explicit) = (end(Method::Series), end(Method::Collocation));
         let uncertainty = (series - explicit).norm() / clearance_m;
         for (method, rtol) in [
@@ -120,11 +120,15 @@ fn the_estimate_sees_what_is_held_over_parts() {
             ..Rigour::default()
         };
         let mut fine = Trace::default();
-        record(&scene, kind, &mut fine, rigour, &mut |_| {}).unwrap();
+        let recorders = Recorders {
+            planes: vec![&mut fine],
+            axis: None,
+        };
+        record(&scene, kind, recorders, rigour, &mut |_| {}).unwrap();
         let apart_m = (trace.rows.iter().zip(&fine.rows))
             .map(|(a, b)| (a.plant.position_m - b.plant.position_m).norm())
             .fold(0.0, f64::max);
-        let error = apart_m / scene.plant.contact.clearance_m;
+        let error = apart_m / scene.clearance_m(0);
         let estimate = v.largest_difference_clearances;
         println!("error {error:.1e}, estimate {estimate:.1e}");
         (error, estimate)
@@ -173,19 +177,17 @@ fn a_check_has_an_end() {
 #[test]
 fn a_failed_check_leaves_the_run() {
     let scene = scene("impact_at_40_hz");
-    let broken = Scene {
-        supervisor: None,
-        ..scene.clone()
-    };
+    let mut broken = scene.clone();
+    broken.planes[0].supervisor = None;
     let kind = PolicyKind::Supervisor;
-    let no_file = None::<&mut TraceFile<fs::File, TraceRow>>;
+    let no_file = None::<&mut TraceFiles<fs::File>>;
     let run = recorded(&scene, kind, &[broken], no_file, &mut |_| {}).unwrap();
-    let error = run.verification.unwrap().unwrap_err();
+    let error = run.whole.verification.unwrap().unwrap_err();
     assert!(
         error.contains("checked by") && error.contains("policy supervisor"),
         "{error}"
     );
-    assert_eq!(run.verdict.figures, ridden(&scene, kind).0);
+    assert_eq!(run.whole.verdict.figures, ridden(&scene, kind).0);
 }
 
 fn verdict(out: &Path) -> Value {
@@ -235,6 +237,8 @@ fn checks_change_nothing_else() {
         }
         let figures = b["policies"][policy].as_object_mut().unwrap();
         let v = figures.remove("verification").expect("asked for");
+        let plane = figures["planes"][0].as_object_mut().unwrap();
+        assert_eq!(plane.remove("verification").as_ref(), Some(&v));
         assert_eq!(v["same_outcome"], true);
         assert_eq!(v["threshold_clearances"], 1e-3);
         assert!(v["same_modes"].is_boolean() && v["mode_changes"].is_number());

@@ -7,6 +7,7 @@ use firmware_bench::scene::Scene;
 use firmware_studies::machines::plants::{PlantCase, plants};
 use firmware_studies::machines::tuned_gains::stored;
 use firmware_studies::overloads::contenders::{Contender, Task};
+use plant_model::machine::params::Unbalance;
 use plant_model::params::SpinParams;
 use std::f64::consts::TAU;
 use supervisor::{Command, Events, Mode, Sample, Status, Supervisor};
@@ -63,8 +64,13 @@ fn unbalanced(plant: &str, eccentricity_m: f64) -> Scene {
         .unwrap()
         .scene;
     scene.duration_s = 0.12;
-    scene.plant.rotor.eccentricity_m = eccentricity_m;
-    scene.plant.spin = SpinParams::Held;
+    scene.eccentricity_m = eccentricity_m;
+    scene.machine.unbalances = vec![Unbalance {
+        position_m: 0.0,
+        moment_kg_m: scene.machine.rotor.rigid().mass_kg * eccentricity_m,
+        angle_rad: 0.0,
+    }];
+    scene.machine.spin = SpinParams::Held;
     scene.levitated_before = true;
     scene
 }
@@ -90,9 +96,9 @@ fn unbalance_that_no_force_holds_is_recognised_and_not_driven() {
         let scene = unbalanced(plant, eccentricity_m);
         let found = stored(plant, RATE_HZ).unwrap();
         let run = |policy, name| run_policy(&scene, (policy, name), Keep::Verdict, &mut |_| {});
-        let (supervisor, tape) = recording(&scene.supervisor.unwrap()).unwrap();
+        let (supervisor, tape) = recording(&scene.planes[0].supervisor.unwrap()).unwrap();
         let mut with_levitation = scene.clone();
-        with_levitation.levitation = Some(found.tuned);
+        with_levitation.planes[0].levitation = Some(found.tuned);
         let supervised = supervised(&with_levitation, supervisor).unwrap();
         let (own, _) = run(supervised, "supervisor").unwrap();
         let alone = Contender::Tuned

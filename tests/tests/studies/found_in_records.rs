@@ -6,13 +6,13 @@ use firmware_bench::run::clairvoyant::restitution;
 use firmware_bench::run::closed_loop::{Keep, run};
 use firmware_bench::run::trace::Trace;
 use firmware_bench::scene::Scene;
-use firmware_bench::scene::machine::AnyScene;
 use firmware_bench::scene::policy_kind::PolicyKind;
 use firmware_studies::campaign::{Extent, run_all};
 use firmware_studies::found_in_records::{Share, contacts, study};
 use firmware_studies::paired::events::Point as Event;
 use firmware_studies::paired::plan::Class;
 use firmware_studies::paired::sensors::Sensors;
+use plant_model::machine::params::Unbalance;
 
 const SEED: u64 = 20_261_201;
 const MACHINES: u64 = 40;
@@ -42,7 +42,7 @@ fn compare(event: Event, scene: &Scene, trace: &Trace, last: u32, found: &Findin
             share.count((estimate.value - truth).abs() <= off);
         }
     };
-    let plant = &scene.plant;
+    let plant = scene.plant(0);
     let (mu, clearance_m) = (
         plant.friction.sliding.coefficient(0.0),
         plant.contact.clearance_m,
@@ -56,7 +56,7 @@ fn compare(event: Event, scene: &Scene, trace: &Trace, last: u32, found: &Findin
     near(
         &mut counts.restitution,
         told.restitution,
-        restitution(&scene.plant),
+        restitution(&plant),
         0.1,
     );
     near(
@@ -83,11 +83,15 @@ fn compare(event: Event, scene: &Scene, trace: &Trace, last: u32, found: &Findin
 
 /// Every other machine has an unbalance that takes a twentieth of its force.
 fn unbalance(scene: &mut Scene, number: u64) {
-    let rotor = &mut scene.plant.rotor;
-    let force_n = scene.plant.magnet.map_or(0.0, |magnet| magnet.force_max_n);
+    let mass_kg = scene.machine.rotor.rigid().mass_kg;
     let share = if number % 2 == 1 { 0.05 } else { 0.0 };
-    let eccentricity_m = share * force_n / (rotor.mass_kg * scene.start.spin_rad_s.powi(2));
-    rotor.eccentricity_m = eccentricity_m.min(0.05 * scene.plant.contact.clearance_m);
+    let eccentricity_m = share * scene.force_max_n(0) / (mass_kg * scene.start.spin_rad_s.powi(2));
+    scene.eccentricity_m = eccentricity_m.min(0.05 * scene.clearance_m(0));
+    scene.machine.unbalances = vec![Unbalance {
+        position_m: 0.0,
+        moment_kg_m: mass_kg * scene.eccentricity_m,
+        angle_rad: 0.0,
+    }];
 }
 
 #[test]
@@ -106,9 +110,7 @@ fn what_is_found_in_records_is_what_the_plant_did() {
     }
     let all = run_all(&jobs, &(), |(event, number)| {
         let class = Class::of_point_masses(*event, Sensors::AsConfigured);
-        let (AnyScene::Plane(mut scene), _) = class.scene(SEED, *number).unwrap() else {
-            unreachable!("a point mass")
-        };
+        let (mut scene, _) = class.scene(SEED, *number).unwrap();
         unbalance(&mut scene, *number);
         let ran = run(&scene, PolicyKind::Supervisor, Keep::Trace, &mut |_| {});
         let (_, trace) = ran.ok()?;

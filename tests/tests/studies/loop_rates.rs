@@ -71,10 +71,10 @@ impl Supervise for InSlowerTask {
 /// Hardest impact with the supervisor in a task that is so many times slower than its loop of 20 kHz [m/s].
 fn in_slower_task(name: &str, times: u32) -> f64 {
     let [slow, quick] = [2e4 / f64::from(times), 2e4].map(|rate_hz| plant(name, rate_hz).scene);
-    let config = slow.supervisor.expect("the catalogue's have one");
+    let config = slow.planes[0].supervisor.expect("the catalogue's have one");
     let make = |scene: &Scene| {
         let mut scene = scene.clone();
-        scene.levitation = stored(name, 2e4).map(|found| found.tuned);
+        scene.planes[0].levitation = stored(name, 2e4).map(|found| found.tuned);
         supervised(&scene, Box::new(InSlowerTask::new(&config, times)))
     };
     recoverable_m_s(&quick, "slower task", &make).expect("a run that can be trusted")

@@ -10,7 +10,8 @@ use firmware_studies::overloads::catalogue::cases;
 use firmware_studies::overloads::contenders::{Contender, clairvoyant, levitation};
 use firmware_studies::overloads::impact::recoverable_m_s;
 use firmware_studies::overloads::tune::{IDLE_NOISE, SENSITIVITY, shape};
-use plant_model::{Options, V2};
+use plant_model::params::Start;
+use plant_model::{Options, V2, build};
 use serde_json::Value;
 use std::collections::BTreeSet;
 use system_tests::browser::Browser;
@@ -180,11 +181,12 @@ fn kept_loops_are_what_was_asked_for() {
     for rate in RATES_HZ {
         for plant in plants(rate).unwrap() {
             let found = stored(&plant.name, rate).unwrap();
-            let sampled = SampledPlant::new(&plant.scene.plant, rate, 1);
+            let of_plane = plant.scene.plant(0);
+            let sampled = SampledPlant::new(&of_plane, rate, 1);
             let (own, noise) = shape(&plant.scene, &sampled, &found.tuned).unwrap();
             assert!(own.peak_sensitivity < SENSITIVITY && noise < IDLE_NOISE);
             assert!(shape(&plant.scene, &sampled, &found.stiff).is_some());
-            let stiffness = plant.scene.plant.rotor.stiffness_n_m.abs();
+            let stiffness = of_plane.rotor.stiffness_n_m.abs();
             assert!(found.stiff.proportional_n_m >= 9.999 * stiffness);
             if rate != RATES_HZ[1] || !plant.name.starts_with("P2") {
                 continue;
@@ -210,7 +212,7 @@ fn kept_loops_are_what_was_asked_for() {
 /// mass is L = (K_p + K_d·s)/(m·s²).
 #[test]
 fn sampled_loop_approaches_the_continuous_one() {
-    let mut plant = plants(20_000.0).unwrap().remove(4).scene.plant;
+    let mut plant = plants(20_000.0).unwrap().remove(4).scene.plant(0);
     (plant.rotor.stiffness_n_m, plant.rotor.damping_n_s_m) = (0.0, 0.0);
     if let Some(magnet) = &mut plant.magnet {
         magnet.lag_s = 0.0;
@@ -248,9 +250,9 @@ fn a_history_can_do_what_the_reference_does() {
         .unwrap();
     let law = clairvoyant(stored("P2", 20_000.0).unwrap().impact_law, &plant.scene);
     let mut scene = plant.scene;
-    scene.start.velocity_m_s = V2::new(0.8, 0.0);
+    scene.start.centre_velocity_m_s = V2::new(0.8, 0.0);
     scene.duration_s = 0.15;
-    let cap_n = scene.plant.magnet.unwrap().force_max_n;
+    let cap_n = scene.force_max_n(0);
     let run = |policy| {
         let (verdict, trace) =
             run_policy(&scene, (policy, "test"), Keep::Trace, &mut |_| {}).unwrap();
@@ -284,7 +286,14 @@ fn a_history_stays_within_the_cap() {
     let law = clairvoyant(stored("P2", 20_000.0).unwrap().impact_law, &scene);
     let wanted_n = vec![V2::new(3e3, -4e3), V2::new(30.0, 40.0)];
     let history = History::new(wanted_n, 1e-3, law, 1000.0);
-    let mut now = scene.build(Options::default()).unwrap().snapshot();
+    let start = Start {
+        position_m: V2::zeros(),
+        velocity_m_s: V2::zeros(),
+        spin_rad_s: 0.0,
+        spin_phase_rad: 0.0,
+    };
+    let plant = build(&scene.plant(0), &start, Options::default());
+    let mut now = plant.unwrap().snapshot();
     assert!((history.force_n(&now) - V2::new(600.0, -800.0)).norm() < 1e-9);
     // One rounding short of the next piece.
     now.t_s = 1e-3 * (1.0 - 1e-15);

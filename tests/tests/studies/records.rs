@@ -1,9 +1,8 @@
 //! Records of random events, in closed loops with faults: written down, read and replayed.
 
 use firmware_bench::record::file::RecordFile;
-use firmware_bench::run::closed_loop::{Keep, MachineRecorders, Rigour, record_machine, run};
+use firmware_bench::run::closed_loop::{Keep, Recorders, Rigour, record, run};
 use firmware_bench::run::trace::{Recorder, TraceRow};
-use firmware_bench::scene::machine::AnyScene;
 use firmware_bench::scene::policy_kind::PolicyKind;
 use firmware_studies::campaign::run_all;
 use firmware_studies::machines::rotors::RotorCase;
@@ -61,9 +60,7 @@ fn records_of_closed_loops_replay_to_the_bit() {
         jobs.extend(harm::claimed().into_iter().map(|class| (class, number)));
     }
     let ran = run_all(&jobs, &(), |(class, number)| {
-        let (AnyScene::Plane(scene), _) = class.scene(20_261_126, *number).unwrap() else {
-            unreachable!("a point mass")
-        };
+        let (scene, _) = class.scene(20_261_126, *number).unwrap();
         let ran = run(&scene, PolicyKind::Supervisor, Keep::Trace, &mut |_| {});
         let (recovered, read_out) = match ran {
             Ok((figures, trace)) => (Some(figures.recovered), trace.read_out),
@@ -86,7 +83,7 @@ fn records_of_closed_loops_replay_to_the_bit() {
     );
 }
 
-/// Nobody who wants rows.
+/// Nobody who wants rows; a supervisor is read out where somebody listens.
 struct Nobody;
 
 impl Recorder for Nobody {
@@ -106,22 +103,20 @@ fn records_of_rotors_replay_to_the_bit() {
             unreachable!("a rotor")
         };
         let rotor = RotorCase::new(20_261_126, kind, *number);
-        let (AnyScene::Machine(mut scene), _) = class.scene(20_261_126, *number).unwrap() else {
-            unreachable!("a rotor")
-        };
+        let (mut scene, _) = class.scene(20_261_126, *number).unwrap();
         // Told, so that what is kept apart is replayed as well.
         for plane in &mut scene.planes {
-            if let (Some(config), Some(hz)) = (&mut plane.scene.supervisor, rotor.bending_hz()) {
+            if let (Some(config), Some(hz)) = (&mut plane.supervisor, rotor.bending_hz()) {
                 config.bending_first_hz = hz as f32;
             }
         }
         let (mut first, mut second) = (Nobody, Nobody);
-        let recorders = MachineRecorders {
+        let recorders = Recorders {
             planes: vec![&mut first, &mut second],
             axis: None,
         };
         let rigour = Rigour::default();
-        let ran = record_machine(
+        let ran = record(
             &scene,
             PolicyKind::Supervisor,
             recorders,

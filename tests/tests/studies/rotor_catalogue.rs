@@ -2,9 +2,9 @@
 //! it is called.
 
 use firmware_bench::device::whole_levitation::WholeLevitationParams;
-use firmware_bench::run::closed_loop::{MachineRecorders, Rigour, record_machine};
+use firmware_bench::run::closed_loop::{Recorders, Rigour, record};
 use firmware_bench::run::figures::Figures;
-use firmware_bench::scene::machine::MachineScene;
+use firmware_bench::scene::Scene;
 use firmware_bench::scene::policy_kind::PolicyKind;
 use firmware_studies::campaign::Extent;
 use firmware_studies::whole_rotors::{Blow, Hardest, Incident, RotorPlant, catalogue};
@@ -58,18 +58,18 @@ fn robust_loops_are_on_the_same_plants() {
             plant.name.to_lowercase()
         );
         let text = std::fs::read_to_string(root().join(file)).unwrap();
-        let mut robust = MachineScene::parse("robust", &text).unwrap();
+        let mut robust = Scene::parse("robust", &text).unwrap();
         let Some(WholeLevitationParams::StateSpace(own)) = robust.levitation.take() else {
             panic!("{}: no state space", plant.name);
         };
         assert_eq!(own.d.shape(), (4, 4));
         assert_eq!(robust.machine, plant.scene.machine);
         assert_eq!(robust.start, plant.scene.start);
+        assert_eq!(robust.duration_s, plant.scene.duration_s);
         for (robust, own) in robust.planes.iter().zip(&plant.scene.planes) {
-            assert_eq!(robust.scene.sensor, own.scene.sensor);
-            assert_eq!(robust.scene.amplifier, own.scene.amplifier);
-            assert_eq!(robust.scene.supervisor, own.scene.supervisor);
-            assert_eq!(robust.scene.duration_s, own.scene.duration_s);
+            assert_eq!(robust.sensor, own.sensor);
+            assert_eq!(robust.amplifier, own.amplifier);
+            assert_eq!(robust.supervisor, own.supervisor);
         }
     }
 }
@@ -131,7 +131,7 @@ fn what_happens_is_what_it_is_called() {
     };
     for plant in RotorPlant::all().unwrap() {
         let name = plant.name;
-        let at_plane = |scene: &MachineScene, plane: usize| {
+        let at_plane = |scene: &Scene, plane: usize| {
             let (start, z) = (&scene.start, scene.machine.planes[plane].position_m);
             (
                 start.centre_m + z * start.tilt_rad,
@@ -144,7 +144,7 @@ fn what_happens_is_what_it_is_called() {
         ] {
             let scene = incident.scene(&plant, hardest, of).unwrap();
             let [(a, at_a), (b, at_b)] = [0, 1].map(|plane| at_plane(&scene, plane));
-            let c = scene.planes[0].scene.plant.contact.clearance_m;
+            let c = scene.clearance_m(0);
             assert!(a.norm().max(b.norm()) > c, "{name} {incident:?}");
             assert!(
                 a.perp(&at_a) * scene.start.spin_rad_s < 0.0,
@@ -154,11 +154,11 @@ fn what_happens_is_what_it_is_called() {
             assert_eq!(at_a.dot(&at_b) < 0.0, opposite, "{name} {incident:?}");
         }
         let scene = Incident::PowerGone(10).scene(&plant, hardest, of).unwrap();
-        let carried: V2 = scene.planes.iter().map(|p| p.scene.feed_forward_n).sum();
+        let carried: V2 = scene.planes.iter().map(|p| p.feed_forward_n).sum();
         let weight = scene.machine.rotor.rigid().mass_kg * scene.machine.gravity_m_s2;
         assert!((carried + weight).norm() < 1e-9 * weight.norm(), "{name}");
         let moment: V2 = (scene.planes.iter().zip(&scene.machine.magnets))
-            .map(|(p, m)| m.position_m * p.scene.feed_forward_n)
+            .map(|(p, m)| m.position_m * p.feed_forward_n)
             .sum();
         assert!(moment.norm() < 1e-9 * weight.norm(), "{name}");
         let scene = Incident::SpinDown.scene(&plant, hardest, of).unwrap();
@@ -179,24 +179,20 @@ fn blades_are_lost(plant: &RotorPlant, hardest: Hardest) {
     ] {
         let scene = scene(incident);
         assert!(scene.machine.unbalances.is_empty(), "{name}");
-        for plane in &scene.planes {
-            assert_eq!(plane.scene.changes.len(), changes, "{name}");
-            let lost: Vec<_> = (plane.scene.changes.iter())
-                .filter_map(|c| c.unbalance)
-                .collect();
-            let force_n = lost[0].moment_kg_m * scene.start.spin_rad_s.powi(2);
-            let wanted_n = 0.5 * scene.machine.magnets[0].force_max_n;
-            assert!((force_n / wanted_n - 1.0).abs() < 1e-12, "{name}");
-            assert_eq!(lost[0].position_m, scene.machine.planes[0].position_m);
-            let sum = (lost.iter()).fold(V2::zeros(), |sum, u| {
-                sum + u.moment_kg_m * V2::new(u.angle_rad.cos(), u.angle_rad.sin())
-            });
-            let left = sum.norm() / lost[0].moment_kg_m;
-            assert!(
-                (left - f64::from(changes == 1)).abs() < 1e-12,
-                "{name} {left}"
-            );
-        }
+        assert_eq!(scene.changes.len(), changes, "{name}");
+        let lost: Vec<_> = scene.changes.iter().filter_map(|c| c.unbalance).collect();
+        let force_n = lost[0].moment_kg_m * scene.start.spin_rad_s.powi(2);
+        let wanted_n = 0.5 * scene.machine.magnets[0].force_max_n;
+        assert!((force_n / wanted_n - 1.0).abs() < 1e-12, "{name}");
+        assert_eq!(lost[0].position_m, scene.machine.planes[0].position_m);
+        let sum = (lost.iter()).fold(V2::zeros(), |sum, u| {
+            sum + u.moment_kg_m * V2::new(u.angle_rad.cos(), u.angle_rad.sin())
+        });
+        let left = sum.norm() / lost[0].moment_kg_m;
+        assert!(
+            (left - f64::from(changes == 1)).abs() < 1e-12,
+            "{name} {left}"
+        );
     }
     let scene = scene(Incident::BladeLostSpinDown(40));
     let ended = levitated(&scene);
@@ -227,13 +223,9 @@ fn seals_are_touched(plant: &RotorPlant, hardest: Hardest) {
 }
 
 /// Figures of the planes under levitation alone.
-fn levitated(scene: &MachineScene) -> Vec<Figures> {
-    let recorders = MachineRecorders {
-        planes: Vec::new(),
-        axis: None,
-    };
-    let kind = PolicyKind::Levitation;
-    let ended = record_machine(scene, kind, recorders, Rigour::default(), &mut |_| {}).unwrap();
+fn levitated(scene: &Scene) -> Vec<Figures> {
+    let (nobody, rigour) = (Recorders::default(), Rigour::default());
+    let ended = record(scene, PolicyKind::Levitation, nobody, rigour, &mut |_| {}).unwrap();
     ended.into_iter().map(|(figures, _)| figures).collect()
 }
 

@@ -141,7 +141,7 @@ fn what_the_scene_sets_itself_is_told_wrong_too() {
             let misjudged = all.iter().find(|m| m.text == name).unwrap();
             misjudged
                 .told(&scene)
-                .map(|told| told.map(|scene| scene.supervisor.unwrap()))
+                .map(|told| told.map(|scene| scene.planes[0].supervisor.unwrap()))
         }
     };
     let plain = told("");

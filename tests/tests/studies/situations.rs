@@ -41,12 +41,12 @@ fn situations_are_in_their_modes() {
 
 /// Mode of the supervisor at the instant of a situation, under other noise.
 fn mode_in(situation: &Situation, tuned: LevitationParams, seed: u64) -> Option<Mode> {
-    let scene = Scene {
+    let mut scene = Scene {
         duration_s: situation.at_s + 1.0 / situation.scene.sample_rate_hz,
-        levitation: Some(tuned),
-        seed,
         ..situation.scene.clone()
     };
+    scene.planes[0].levitation = Some(tuned);
+    scene.planes[0].seed = seed;
     let (_, trace) = run(&scene, PolicyKind::Supervisor, Keep::Trace, &mut |_| {}).unwrap();
     let mut rows = trace.rows.iter().rev();
     rows.find(|row| row.plant.t_s <= situation.at_s)?

@@ -16,7 +16,7 @@ fn the_delivered_force_is_aimed_against_the_whirl_and_never_outwards() {
     for rate_hz in RATES_HZ {
         for plant in plants(rate_hz).unwrap() {
             let found = stored(&plant.name, rate_hz).unwrap();
-            let cap_n = plant.scene.plant.magnet.unwrap().force_max_n;
+            let cap_n = plant.scene.force_max_n(0);
             let mut inwards_rad = Vec::new();
             for case in cases(&plant, found.tuned) {
                 if case.group != "whirl" {
@@ -51,7 +51,13 @@ fn the_delivered_force_is_aimed_against_the_whirl_and_never_outwards() {
             let place = format!("{} at {rate_hz} Hz", plant.name);
             let count = inwards_rad.len();
             assert!(count > 50, "{place}: {count}");
-            let tilt_rad = plant.scene.plant.friction.sliding.coefficient(0.0).atan();
+            let tilt_rad = plant
+                .scene
+                .plant(0)
+                .friction
+                .sliding
+                .coefficient(0.0)
+                .atan();
             let [low, middle] = [count / 20, count / 2].map(|i| inwards_rad[i]);
             println!("{place}: {count}, {low:.3} {middle:.3} of {tilt_rad:.3}");
             assert!(low > 0.0, "{place}: {low}");

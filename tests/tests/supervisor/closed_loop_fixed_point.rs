@@ -13,11 +13,13 @@ use system_tests::per_unit::Behind;
 type Make = fn(&Scene) -> Option<Box<dyn Supervise>>;
 
 fn single(scene: &Scene) -> Option<Box<dyn Supervise>> {
-    Some(Box::new(Supervisor::<512>::new(&scene.supervisor?).ok()?))
+    let config = scene.planes[0].supervisor?;
+    Some(Box::new(Supervisor::<512>::new(&config).ok()?))
 }
 
 fn of<S: Scalar + 'static>(scene: &Scene) -> Option<Box<dyn Supervise>> {
-    Some(Box::new(Behind::<S>::new(&scene.supervisor?).ok()?))
+    let config = scene.planes[0].supervisor?;
+    Some(Box::new(Behind::<S>::new(&config).ok()?))
 }
 
 /// By the search of the catalogue, in steps of 5 %.
@@ -30,7 +32,7 @@ fn recoverable_m_s_finely(scene: &Scene, make: Make) -> f64 {
     let mut scene = scene.clone();
     let (mut speed, mut last) = (FIRST_M_S, 0.0);
     loop {
-        scene.start.velocity_m_s = V2::new(speed, 0.0);
+        scene.start.centre_velocity_m_s = V2::new(speed, 0.0);
         let policy = supervised(&scene, make(&scene).unwrap()).unwrap();
         let run = run_policy(&scene, (policy, "supervised"), Keep::Decision, &mut |_| {});
         if !run.unwrap().0.recovered {
@@ -48,7 +50,7 @@ fn fixed_point_recovers_from_the_same_impacts() {
     for rate_hz in [10_000.0, 20_000.0] {
         for plant in plants(rate_hz).unwrap() {
             let mut scene = plant.scene.clone();
-            scene.levitation = stored(&plant.name, rate_hz).map(|found| found.tuned);
+            scene.planes[0].levitation = stored(&plant.name, rate_hz).map(|found| found.tuned);
             let name = format!("{} at {rate_hz} Hz", plant.name);
             let [float, fixed] = [single, of::<Q>].map(|make| by_the_catalogue_m_s(&scene, make));
             assert!(

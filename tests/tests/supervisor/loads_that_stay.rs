@@ -1,15 +1,17 @@
 //! Overloads after which a load stays that the levitation controller carries: the supervisor gives the bearing back.
 
-use firmware_bench::device::loads::{Disturbance, Shape};
+use firmware_bench::device::loads::Disturbance;
 use firmware_bench::run::closed_loop::{Keep, run_policy};
 use firmware_bench::run::supervision::Supervision;
 use firmware_bench::scene::Scene;
+use firmware_bench::scene::suggest::suggested;
 use firmware_studies::machines::drawn::Machine;
 use firmware_studies::machines::plants::plants;
 use firmware_studies::machines::tuned_gains::stored;
 use firmware_studies::overloads::case::Sizes;
 use firmware_studies::overloads::contenders::{Contender, Task};
 use plant_model::V2;
+use plant_model::machine::params::Unbalance;
 use supervisor::Mode;
 
 /// On machines that nothing was tuned on: a load of a third to two thirds of the cap comes and stays, alone or with a
@@ -40,11 +42,11 @@ fn what_levitation_carries_it_is_given() {
                     start_s: 0.0,
                     duration_s: 1.0,
                     force_n: share * sizes.force_n * V2::new(0.8, 0.6),
-                    shape: Shape::Constant,
+                    ..Disturbance::default()
                 }],
                 ..base.clone()
             };
-            scene.start.velocity_m_s = V2::new(0.0, landing * sizes.impact_m_s);
+            scene.start.centre_velocity_m_s = V2::new(0.0, landing * sizes.impact_m_s);
             let run = |contender: Contender| {
                 let acting = contender.controller(Task::Impact, &found, &scene).unwrap();
                 run_policy(&scene, (acting, contender.name()), Keep::Trace, &mut |_| {}).unwrap()
@@ -77,12 +79,13 @@ fn magnets_that_pull_with_the_whole_cap_are_overcome() {
     assert_eq!(plant.name, "P2");
     for pull in [0.9, 0.97, 1.1] {
         let mut scene = plant.scene.clone();
-        let cap_n_m = 1000.0 / scene.plant.contact.clearance_m;
-        scene.plant.rotor.stiffness_n_m = -pull * cap_n_m;
-        scene.nominal.stiffness_n_m = -pull * cap_n_m;
+        let cap_n_m = 1000.0 / scene.clearance_m(0);
+        let own = &mut scene.planes[0];
+        scene.machine.supports[0].stiffness_n_m = V2::repeat(-pull * cap_n_m);
+        own.nominal.stiffness_n_m = -pull * cap_n_m;
+        own.supervisor = Some(suggested(&own.nominal).config);
         scene.duration_s = 0.5;
-        scene.start.velocity_m_s = V2::new(0.02, 0.0);
-        scene.supervisor = Some(firmware_bench::scene::suggest::suggested(&scene.nominal).config);
+        scene.start.centre_velocity_m_s = V2::new(0.02, 0.0);
         let mut found = stored("P2", 20_000.0).unwrap();
         found.tuned.proportional_n_m = 2.0 * pull * cap_n_m;
         found.tuned.derivative_n_s_m = 2.0 * (10.0 * pull * cap_n_m).sqrt();
@@ -108,8 +111,13 @@ fn a_coarse_converter_is_no_stuck_sensor() {
             let found = stored(&plant.name, rate_hz).unwrap();
             let mut scene = plant.scene.clone();
             scene.duration_s = 1.0;
-            scene.sensor.quantum_m = 1e-6;
-            scene.plant.rotor.eccentricity_m = 1e-5;
+            scene.planes[0].sensor.quantum_m = 1e-6;
+            scene.eccentricity_m = 1e-5;
+            scene.machine.unbalances = vec![Unbalance {
+                position_m: 0.0,
+                moment_kg_m: scene.machine.rotor.rigid().mass_kg * scene.eccentricity_m,
+                angle_rad: 0.0,
+            }];
             let acting = Contender::Supervisor
                 .controller(Task::Impact, &found, &scene)
                 .unwrap();

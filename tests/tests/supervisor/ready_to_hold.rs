@@ -34,10 +34,10 @@ fn a_rising_load_is_not_handed_over_again_and_again() {
     for plant in plants(20_000.0).unwrap() {
         let sizes = Sizes::of(&plant.scene).unwrap();
         for share in [0.2, 0.3, 0.5, 0.7, 0.9] {
-            let scene = Scene {
+            let mut scene = Scene {
                 duration_s: 0.2,
-                levitation: stored(&plant.name, 20_000.0).map(|found| found.tuned),
                 disturbances: vec![Disturbance {
+                    position_m: 0.0,
                     start_s: 0.0,
                     duration_s: 0.4,
                     force_n: share * sizes.force_n * V2::new(0.8, 0.6),
@@ -45,7 +45,8 @@ fn a_rising_load_is_not_handed_over_again_and_again() {
                 }],
                 ..plant.scene.clone()
             };
-            let supervisor = Supervisor::new(&scene.supervisor.unwrap()).unwrap();
+            scene.planes[0].levitation = stored(&plant.name, 20_000.0).map(|found| found.tuned);
+            let supervisor = Supervisor::new(&scene.planes[0].supervisor.unwrap()).unwrap();
             let policy = supervised(&scene, Box::new(BeforeNothing(supervisor))).unwrap();
             let run = (policy, "supervisor");
             let (_, trace) = run_policy(&scene, run, Keep::Trace, &mut |_| {}).unwrap();

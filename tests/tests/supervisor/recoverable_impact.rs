@@ -12,7 +12,7 @@ use system_tests::{golden, scene};
 /// The impact scene with the spin held, as a rig on its motor.
 fn rig() -> Scene {
     let mut scene = scene("impact_at_40_hz");
-    scene.plant.spin = SpinParams::Held;
+    scene.machine.spin = SpinParams::Held;
     scene
 }
 
@@ -21,7 +21,7 @@ fn highest_speed_m_s(scene: &Scene, policy: PolicyKind) -> f64 {
     let mut scene = scene.clone();
     let (mut speed, mut last) = (0.005, 0.0);
     while speed < 2.0 {
-        scene.start.velocity_m_s = V2::new(speed, 0.0);
+        scene.start.centre_velocity_m_s = V2::new(speed, 0.0);
         let (verdict, _) = run(&scene, policy, Keep::Verdict, &mut |_| {}).unwrap();
         if verdict.outcome == Outcome::Whirl {
             return last;
@@ -36,8 +36,8 @@ fn highest_speed_m_s(scene: &Scene, policy: PolicyKind) -> f64 {
 #[test]
 fn policies_rank_as_promised() {
     let rig = rig();
-    let natural = rig.plant.natural_frequency_rad_s().unwrap();
-    assert!((rig.whirl_speed_m_s / (3.0 * natural * 2e-4) - 1.0).abs() < 1e-3);
+    let natural = rig.plant(0).natural_frequency_rad_s().unwrap();
+    assert!((rig.planes[0].whirl_speed_m_s / (3.0 * natural * 2e-4) - 1.0).abs() < 1e-3);
     let of = |policy| highest_speed_m_s(&rig, policy);
     let passive = of(PolicyKind::Passive);
     let radial = of(PolicyKind::Radial);
@@ -48,7 +48,7 @@ fn policies_rank_as_promised() {
     for k_p in ["3e5", "1e6", "3e6", "1e7"] {
         for k_d in ["1000", "3000", "7000", "15000", "30000"] {
             let mut tuned = rig.clone();
-            tuned.levitation = Some(LevitationParams {
+            tuned.planes[0].levitation = Some(LevitationParams {
                 proportional_n_m: k_p.parse().unwrap(),
                 integral_n_m_s: 0.0,
                 derivative_n_s_m: k_d.parse().unwrap(),

@@ -1,11 +1,10 @@
 //! A levitation controller that hardly asks for anything in the middle gets the bearing all the same.
 
 use firmware_bench::device::levitation::LevitationParams;
-use firmware_bench::device::loads::{Disturbance, Shape};
+use firmware_bench::device::loads::Disturbance;
 use firmware_bench::run::closed_loop::{Keep, run_policy};
 use firmware_bench::run::controller::controller;
 use firmware_bench::run::trace::TraceRow;
-use firmware_bench::scene::Scene;
 use firmware_bench::scene::policy_kind::PolicyKind;
 use firmware_studies::machines::plants::plants;
 use plant_model::V2;
@@ -22,27 +21,24 @@ fn noise_in_the_middle_does_not_hold_the_hand_over_up() {
         }
         for seed in 0..5 {
             // Beyond what shaft and magnet stop before the wall.
-            let rotor = &plant.scene.plant.rotor;
-            let blow_n = 1e3 * rotor.mass_kg * 2.0 * plant.scene.nominal.force_speed_m_s();
-            let damper = LevitationParams {
+            let mut scene = plant.scene.clone();
+            let mass_kg = scene.machine.rotor.rigid().mass_kg;
+            let blow_n = 1e3 * mass_kg * 2.0 * scene.planes[0].nominal.force_speed_m_s();
+            scene.duration_s = 0.25;
+            scene.planes[0].seed = seed;
+            scene.planes[0].levitation = Some(LevitationParams {
                 proportional_n_m: 0.0,
                 integral_n_m_s: 0.0,
                 derivative_n_s_m: 500.0,
                 derivative_filter_s: 2e-4,
-            };
-            let scene = Scene {
-                seed,
-                duration_s: 0.25,
-                levitation: Some(damper),
-                disturbances: vec![Disturbance {
-                    start_s: 0.1,
-                    duration_s: 0.001,
-                    force_n: V2::new(blow_n, 0.0),
-                    shape: Shape::Constant,
-                }],
-                ..plant.scene.clone()
-            };
-            let policy = controller(PolicyKind::Supervisor, &scene).unwrap();
+            });
+            scene.disturbances = vec![Disturbance {
+                start_s: 0.1,
+                duration_s: 0.001,
+                force_n: V2::new(blow_n, 0.0),
+                ..Disturbance::default()
+            }];
+            let policy = controller(PolicyKind::Supervisor, &scene, 0).unwrap();
             let acting = (policy, "supervisor");
             let (_, trace) = run_policy(&scene, acting, Keep::Trace, &mut |_| {}).unwrap();
             let modes = trace.rows.iter().filter_map(TraceRow::supervisor_mode);

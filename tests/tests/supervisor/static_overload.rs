@@ -52,7 +52,7 @@ fn a_load_just_below_the_cap_is_lifted_off_and_kept_away() {
         let share = own.contact_impulse_n_s / alone.contact_impulse_n_s;
         assert!(share < 0.01, "{plant}: {share}");
         // Where the restoring force and its half more, (5.10d), are in balance with the load: away from the wall.
-        let clearance_m = loaded.0.scene.plant.contact.clearance_m;
+        let clearance_m = loaded.0.scene.clearance_m(0);
         for row in trace
             .rows
             .iter()
@@ -74,9 +74,9 @@ fn what_the_cap_cannot_lift_is_held_with_all_of_it() {
         let rows = || (trace.rows.iter()).filter(|row| row.plant.t_s > 0.5 && row.plant.t_s < 1.0);
         let pressing_n =
             rows().map(|row| row.plant.normal_force_n).sum::<f64>() / rows().count() as f64;
-        let scene = &loaded.0.scene;
-        let cap_n = scene.plant.magnet.unwrap().force_max_n;
-        let pull_n = -scene.plant.rotor.stiffness_n_m * scene.plant.contact.clearance_m;
+        let of_plane = loaded.0.scene.plant(0);
+        let cap_n = of_plane.magnet.unwrap().force_max_n;
+        let pull_n = -of_plane.rotor.stiffness_n_m * of_plane.contact.clearance_m;
         let held = (1.5 * cap_n + pull_n - pressing_n) / cap_n;
         assert!((0.995..1.002).contains(&held), "{plant}: {held}");
     }

@@ -25,7 +25,7 @@ fn scenes_give_the_supervisor_what_they_always_gave() {
     let mut text = String::new();
     for path in files() {
         let scene = Scene::load(&path).unwrap();
-        let Some(config) = scene.supervisor else {
+        let Some(config) = scene.planes[0].supervisor else {
             continue;
         };
         let name = path.file_stem().unwrap().to_string_lossy();

@@ -1,7 +1,7 @@
 //! A load that turns with the rotor, and a rotor that lies still: what the observer must not take for something
 //! else.
 
-use firmware_bench::device::loads::{Disturbance, Shape, TimedChange};
+use firmware_bench::device::loads::{Disturbance, TimedChange};
 use firmware_bench::run::closed_loop::{Keep, run};
 use firmware_bench::run::figures::Figures;
 use firmware_bench::run::outcome::Outcome;
@@ -105,7 +105,7 @@ fn a_load_that_stands_still_is_seen_as_soon() {
             start_s: 0.02,
             duration_s: 0.05,
             force_n: V2::new(1.3 * CAP_N, 0.75 * CAP_N),
-            shape: Shape::Constant,
+            ..Disturbance::default()
         }];
         let engaged_s = |known: bool| {
             let mut scene = scene.clone();
@@ -131,11 +131,14 @@ fn a_push_on_a_rotor_at_rest_is_no_speed() {
             start_s,
             duration_s,
             force_n: V2::new(caps * CAP_N, 0.0),
-            shape: Shape::Constant,
+            ..Disturbance::default()
         };
         scene.disturbances = vec![load(0.01, 0.05, 1.5), load(0.06, 0.44, 0.55)];
-        scene.sensor.noise_rms_m = 3e-6;
-        let config = scene.supervisor.as_mut().expect("this scene has one");
+        scene.planes[0].sensor.noise_rms_m = 3e-6;
+        let config = scene.planes[0]
+            .supervisor
+            .as_mut()
+            .expect("this scene has one");
         config.observer_pole_contact = pole;
         config.observer_pole_flight = pole;
         config.sensor_step_m = 3e-6;

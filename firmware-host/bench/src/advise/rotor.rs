@@ -2,8 +2,8 @@
 
 use crate::report::lines::{width, wrapped};
 use crate::report::plot::text::figures;
-use crate::scene::machine::MachineScene;
-use crate::scene::machine::role::{ModeAtRisk, Role};
+use crate::scene::Scene;
+use crate::scene::role::{ModeAtRisk, Role};
 use serde::Serialize;
 use std::f64::consts::TAU;
 use std::fmt::Write;
@@ -33,7 +33,7 @@ pub struct RotorAdvice {
 
 impl RotorAdvice {
     /// With these configurations of its planes; `None` of a rotor that has no supervisor for both.
-    pub fn new(scene: &MachineScene, configs: &[Config]) -> Option<Self> {
+    pub fn new(scene: &Scene, configs: &[Config]) -> Option<Self> {
         let shaft = scene.shaft()?;
         let [first, second] = configs else {
             return None;

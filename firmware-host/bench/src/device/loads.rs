@@ -63,8 +63,10 @@ impl Shape {
 }
 
 /// A force on the rotor for a while.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Disturbance {
+    /// Where along the axis, from the centre of mass \[m\].
+    pub position_m: f64,
     /// Beginning \[s\].
     pub start_s: f64,
     /// Duration \[s\].
@@ -94,6 +96,28 @@ impl Disturbance {
     pub fn end_s(&self) -> f64 {
         self.start_s + self.duration_s
     }
+
+    fn acts(&self, at_s: f64) -> bool {
+        self.start_s <= at_s && at_s < self.end_s()
+    }
+
+    /// What to hold over the two halves of a part in which no load begins or ends \[N\].
+    pub fn halves_n(&self, from_s: f64, to_s: f64) -> [V2; 2] {
+        match self.acts(from_s) {
+            true => (self.shape)
+                .halves((self.start_s, self.duration_s), (from_s, to_s))
+                .map(|share| share * self.force_n),
+            false => [V2::zeros(); 2],
+        }
+    }
+
+    /// Parts over which the force from one time to another is to be held; `None` where it does not vary.
+    pub fn parts(&self, from_s: f64, to_s: f64) -> Option<u32> {
+        match self.acts(from_s) {
+            true => self.shape.parts(self.duration_s, to_s - from_s),
+            false => None,
+        }
+    }
 }
 
 impl BaseMotion {
@@ -105,6 +129,7 @@ impl BaseMotion {
     /// The inertial force that a mass feels.
     pub fn on_mass(&self, mass_kg: f64) -> Disturbance {
         Disturbance {
+            position_m: 0.0,
             start_s: self.start_s,
             duration_s: self.duration_s,
             force_n: -mass_kg * self.acceleration_m_s2,
@@ -122,39 +147,6 @@ pub struct TimedChange {
     pub change: Change,
     /// Of a whole rotor an unbalance that comes on top of what there is.
     pub unbalance: Option<Unbalance>,
-}
-
-/// What acts at one place.
-#[derive(Debug, Clone)]
-pub struct Loads {
-    constant_n: V2,
-    all: Vec<Disturbance>,
-}
-
-impl Loads {
-    /// A force that is always there, and what comes and goes.
-    pub fn new(constant_n: V2, all: Vec<Disturbance>) -> Self {
-        Self { constant_n, all }
-    }
-
-    fn acting(&self, at_s: f64) -> impl Iterator<Item = &Disturbance> {
-        (self.all.iter()).filter(move |d| d.start_s <= at_s && at_s < d.end_s())
-    }
-
-    /// What to hold over the two halves of a part in which no load begins or ends \[N\].
-    pub fn halves_n(&self, from_s: f64, to_s: f64) -> [V2; 2] {
-        (self.acting(from_s)).fold([self.constant_n; 2], |[a, b], d| {
-            let [first, second] = (d.shape).halves((d.start_s, d.duration_s), (from_s, to_s));
-            [a + first * d.force_n, b + second * d.force_n]
-        })
-    }
-
-    /// Parts over which the forces from one time to another are to be held; `None` where none varies.
-    pub fn parts(&self, from_s: f64, to_s: f64) -> Option<u32> {
-        self.acting(from_s)
-            .filter_map(|d| d.shape.parts(d.duration_s, to_s - from_s))
-            .max()
-    }
 }
 
 /// Beginning, middle and end of each of the parts into which a stretch is cut; the last end is that of the stretch to the bit.

@@ -7,13 +7,13 @@ use super::plot::PlotError;
 use super::plot::chart::{Axis, Chart, Curve, Mark};
 use super::plot::text::figures;
 use crate::modes::{Analysis, Coupling, HeldWhirl};
-use crate::scene::machine::MachineScene;
+use crate::scene::Scene;
 use plant_model::machine::linear::Direction;
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::fmt::Write as _;
 
 /// Tables of it: modes at standstill, at the spin nearest to that of the scene and at the highest, critical speeds, coupling.
-pub fn text(scene: &MachineScene, analysis: &Analysis) -> String {
+pub fn text(scene: &Scene, analysis: &Analysis) -> String {
     let mut text = format!("{}\n", analysis.scene);
     let last = (analysis.range.points - 1) as f64;
     let nearest = (scene.start.spin_rad_s.abs() / TAU / analysis.range.to_hz * last).round();
@@ -106,10 +106,10 @@ pub fn coupling(coupling: &Coupling) -> String {
 ///
 /// # Errors
 /// [`PlotError`] if the drawing backend refuses.
-pub fn html(scene: &MachineScene, analysis: &Analysis) -> Result<String, PlotError> {
+pub fn html(scene: &Scene, analysis: &Analysis) -> Result<String, PlotError> {
     let mut page = HtmlPage::begun(&Head {
         title: analysis.scene.clone(),
-        story: scene.common().story.clone(),
+        story: scene.story.clone(),
         ..Head::default()
     });
     for (heading, plot) in [
@@ -168,7 +168,7 @@ fn diagram(analysis: &Analysis) -> Chart {
 }
 
 /// The slowest shapes, along the place that moves most.
-fn shapes(scene: &MachineScene, analysis: &Analysis) -> Chart {
+fn shapes(scene: &Scene, analysis: &Analysis) -> Chart {
     const SHOWN: usize = 6;
     let places = &analysis.shape_positions_m;
     let curves = analysis.mode_shapes.iter().take(SHOWN).enumerate();

@@ -16,8 +16,8 @@ use crate::report::plot::PlotError;
 use crate::report::plot::chart::{Axis, Chart, Curve};
 use crate::report::plot::text::figures;
 use crate::run::overview::AxisTrack;
-use crate::run::verdict::{MachineResults, PolicyRun};
-use crate::scene::machine::{MachineScene, PlaneScene};
+use crate::run::verdict::{PolicyRun, Results};
+use crate::scene::Scene;
 use plant_model::machine::params::MachineParams;
 use plant_model::params::SpinParams;
 use std::f64::consts::TAU;
@@ -32,13 +32,14 @@ struct Tracks {
 ///
 /// # Errors
 /// [`PlotError`] if the drawing backend refuses.
-pub fn html(scene: &MachineScene, results: &MachineResults) -> Result<String, PlotError> {
-    let common = scene.common();
-    let summaries: Vec<SceneSummary> = scene.planes.iter().map(of_plane).collect();
+pub(super) fn html(scene: &Scene, results: &Results) -> Result<String, PlotError> {
+    let summaries: Vec<SceneSummary> = (0..scene.planes.len())
+        .map(|i| of_plane(scene, i))
+        .collect();
     // What happens to sensors and magnets a seal does not know.
     let bearing = (scene.planes.iter().zip(&summaries)).find(|(plane, _)| !plane.seal);
     let told = bearing.map_or(&summaries[0], |(_, summary)| summary);
-    let whole = &results.whole.runs;
+    let whole = &results.runs;
     let concluded: Vec<Concluded<'_>> = (whole.iter().enumerate())
         .map(|(i, run)| {
             let planes = results.planes.iter().filter_map(move |runs| runs.get(i));
@@ -48,12 +49,12 @@ pub fn html(scene: &MachineScene, results: &MachineResults) -> Result<String, Pl
     let mut order: Vec<usize> = (0..whole.len()).collect();
     order.sort_by_key(|i| !concluded[*i].is_supervised());
     let mut document = Document::begun(&Head {
-        title: common.title.clone(),
+        title: scene.title.clone(),
         headline: headline(&concluded),
-        story: common.story.clone(),
+        story: scene.story.clone(),
         facts: facts(scene),
         points: disturbances_told(&told.disturbances),
-        warnings: warnings(&scene.warnings, &results.whole),
+        warnings: warnings(&scene.warnings, results),
     });
     push_table(
         &mut document.page,
@@ -103,9 +104,9 @@ pub fn html(scene: &MachineScene, results: &MachineResults) -> Result<String, Pl
 }
 
 /// A plane in words; of a seal nothing that instruments and firmware have.
-fn of_plane(plane: &PlaneScene) -> SceneSummary {
-    let mut summary = summary(&plane.scene);
-    if plane.seal {
+fn of_plane(scene: &Scene, plane: usize) -> SceneSummary {
+    let mut summary = summary(scene, plane);
+    if scene.planes[plane].seal {
         let foreign = ["Control rate", "Sensor noise"];
         summary.facts.retain(|(name, _)| !foreign.contains(name));
     }
@@ -138,7 +139,7 @@ impl Tracks {
     fn push_ends(
         &self,
         document: &mut Document,
-        scene: &MachineScene,
+        scene: &Scene,
         times: &Times,
     ) -> Result<(), PlotError> {
         for policy in 0..self.policies {
@@ -163,7 +164,7 @@ impl Tracks {
     fn push_axes(
         &self,
         document: &mut Document,
-        scene: &MachineScene,
+        scene: &Scene,
         times: &Times,
     ) -> Result<(), PlotError> {
         let axes: Vec<Shown<'_>> = (0..self.policies).map(|at| self.shown(at)).collect();
@@ -186,8 +187,8 @@ impl Tracks {
     }
 }
 
-fn facts(scene: &MachineScene) -> Vec<Fact> {
-    let (machine, common) = (&scene.machine, scene.common());
+fn facts(scene: &Scene) -> Vec<Fact> {
+    let machine = &scene.machine;
     let rigid = machine.rotor.rigid();
     let held = match machine.spin {
         SpinParams::Held => ", held",
@@ -201,7 +202,7 @@ fn facts(scene: &MachineScene) -> Vec<Fact> {
             "Spin",
             format!("{} Hz{held}", figures(scene.start.spin_rad_s / TAU)),
         ),
-        ("Duration", figures(1e3 * common.duration_s) + " ms"),
+        ("Duration", figures(1e3 * scene.duration_s) + " ms"),
     ];
     let rates: Vec<String> = (machine.rotor.bending().iter())
         .map(|mode| figures(mode.frequency_rad_s / TAU))

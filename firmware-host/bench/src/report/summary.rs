@@ -5,10 +5,11 @@ use crate::device::axis::Axis;
 use crate::device::loads::{Shape, TimedChange};
 use crate::device::sensor_fault::{Fault, FaultKind};
 use crate::report::plot::text::figures;
-use crate::scene::Scene;
 use crate::scene::nominal::named;
+use crate::scene::{PlaneScene, Scene};
 use plant_model::V2;
-use plant_model::params::{ContactLaw, SlidingFriction, SpinParams, StatorParams};
+use plant_model::machine::params::MachinePlane;
+use plant_model::params::{ContactLaw, PlantParams, SlidingFriction, SpinParams, StatorParams};
 use std::f64::consts::TAU;
 
 /// Something that happens to the rotor, its magnet or its sensor.
@@ -47,64 +48,79 @@ pub struct SceneSummary {
     pub duration_s: f64,
 }
 
-/// What a report needs to know of a scene.
-pub fn summary(scene: &Scene) -> SceneSummary {
+/// A plane of a scene, with what a report needs of it.
+struct At<'a> {
+    scene: &'a Scene,
+    own: &'a PlaneScene,
+    wall: &'a MachinePlane,
+    /// The plane alone.
+    plant: PlantParams,
+}
+
+/// What a report needs to know of a plane of a scene.
+pub fn summary(scene: &Scene, plane: usize) -> SceneSummary {
+    let at = &At {
+        scene,
+        own: &scene.planes[plane],
+        wall: &scene.machine.planes[plane],
+        plant: scene.plant(plane),
+    };
     SceneSummary {
         title: scene.title.clone(),
         story: scene.story.clone(),
-        clearance_m: scene.plant.contact.clearance_m,
-        out_of_round: match scene.plant.stator {
+        clearance_m: at.plant.contact.clearance_m,
+        out_of_round: match at.plant.stator {
             StatorParams::RigidEllipse(e) => Some((e.ellipticity, e.long_axis_rad)),
             _ => None,
         },
-        force_max_n: scene.plant.magnet.map(|m| m.force_max_n),
-        whirl_speed_m_s: scene.whirl_speed_m_s,
-        facts: facts(scene),
+        force_max_n: at.plant.magnet.map(|m| m.force_max_n),
+        whirl_speed_m_s: at.own.whirl_speed_m_s,
+        facts: facts(at),
         warnings: scene.warnings.clone(),
-        disturbances: disturbances(scene),
+        disturbances: disturbances(at),
         duration_s: scene.duration_s,
     }
 }
 
 /// What was simulated, beside what the summary has in numbers.
-fn facts(scene: &Scene) -> Vec<Fact> {
-    let (rotor, spin_hz) = (&scene.plant.rotor, scene.start.spin_rad_s / TAU);
-    let held = match scene.plant.spin {
+fn facts(at: &At<'_>) -> Vec<Fact> {
+    let (rotor, spin_hz) = (&at.plant.rotor, at.scene.start.spin_rad_s / TAU);
+    let held = match at.plant.spin {
         SpinParams::Held => ", held",
         SpinParams::Free { .. } => "",
     };
-    let friction = match scene.plant.friction.sliding {
+    let friction = match at.plant.friction.sliding {
         SlidingFriction::Constant { coefficient } => figures(coefficient),
         SlidingFriction::Falling {
             at_rest, at_speed, ..
         } => format!("{} falling to {}", figures(at_rest), figures(at_speed)),
     };
-    let weight_n = scene.weight_n.norm();
+    let weight_n = at.own.weight_n.norm();
     let mut facts = vec![
         ("Mass", figures(rotor.mass_kg) + " kg"),
         ("Stiffness", figures(rotor.stiffness_n_m) + " N/m"),
         ("Spin", format!("{} Hz{held}", figures(spin_hz))),
         ("Friction", friction),
     ];
-    facts.extend(contact(scene));
-    facts.extend(amplifier(scene));
+    facts.extend(contact(at));
+    facts.extend(amplifier(at));
     facts.extend([
         (
             "Control rate",
-            figures(1e-3 * scene.sample_rate_hz) + " kHz",
+            figures(1e-3 * at.scene.sample_rate_hz) + " kHz",
         ),
         (
             "Sensor noise",
             format!(
                 "{} µm, seed {}",
-                figures(1e6 * scene.sensor.noise_rms_m),
-                scene.seed
+                figures(1e6 * at.own.sensor.noise_rms_m),
+                at.own.seed
             ),
         ),
     ]);
-    facts.extend(sensor(scene));
+    facts.extend(sensor(at));
     if weight_n > 0.0 {
-        let fed = if scene.feed_forward_n == V2::zeros() {
+        let fed = if at.own.feed_forward_n == V2::zeros() {
             ""
         } else {
             ", fed forward"
@@ -114,7 +130,7 @@ fn facts(scene: &Scene) -> Vec<Fact> {
     if rotor.eccentricity_m > 0.0 {
         facts.push(("Eccentricity", figures(1e6 * rotor.eccentricity_m) + " µm"));
     }
-    let offset_m = scene.centre_offset_m.norm();
+    let offset_m = at.wall.centre_m.norm();
     if offset_m > 0.0 {
         let offset = figures(1e6 * offset_m);
         facts.push((
@@ -122,8 +138,8 @@ fn facts(scene: &Scene) -> Vec<Fact> {
             format!("{offset} µm off the sensors' centre"),
         ));
     }
-    if !scene.overrides.is_empty() {
-        let told: Vec<String> = named(&scene.overrides)
+    if !at.own.overrides.is_empty() {
+        let told: Vec<String> = named(&at.own.overrides)
             .map(|(name, value)| format!("{name} {value}"))
             .collect();
         facts.push(("Set in [supervisor]", told.join(", ")));
@@ -139,8 +155,8 @@ fn facts(scene: &Scene) -> Vec<Fact> {
 pub(super) type Fact = (&'static str, String);
 
 /// Wall, friction that a rolling rotor has, race and bore; what is not there has no row.
-fn contact(scene: &Scene) -> Vec<Fact> {
-    let plant = &scene.plant;
+fn contact(at: &At<'_>) -> Vec<Fact> {
+    let plant = &at.plant;
     let mut facts = Vec::new();
     let damping = match &plant.contact.law {
         ContactLaw::Linear(law) => {
@@ -156,7 +172,7 @@ fn contact(scene: &Scene) -> Vec<Fact> {
         }
     };
     // Of a linear contact restitution says it all; of the other it goes with a speed.
-    match (scene.nominal.restitution, plant.contact.law.linear()) {
+    match (at.own.nominal.restitution, plant.contact.law.linear()) {
         (Some(e), Some(_)) => facts.push(("Restitution", figures(e))),
         _ if damping.0 > 0.0 => {
             let damping = format!("{} {}", figures(damping.0), damping.1);
@@ -189,11 +205,11 @@ fn contact(scene: &Scene) -> Vec<Fact> {
 }
 
 /// What the amplifier has beside the cap, and how late it is.
-fn amplifier(scene: &Scene) -> Vec<Fact> {
-    let Some(magnet) = &scene.plant.magnet else {
+fn amplifier(at: &At<'_>) -> Vec<Fact> {
+    let Some(magnet) = &at.plant.magnet else {
         return Vec::new();
     };
-    let (amplifier, mut facts) = (&scene.amplifier, Vec::new());
+    let (amplifier, mut facts) = (&at.own.amplifier, Vec::new());
     if let Some(cap_n) = amplifier.axis_force_max_n {
         facts.push(("Cap of each axis", figures(cap_n) + " N"));
     }
@@ -208,40 +224,40 @@ fn amplifier(scene: &Scene) -> Vec<Fact> {
         _ => format!("{count} samples"),
     };
     facts.push(("Delay of the magnet", samples(amplifier.delay_samples)));
-    if scene.sensor.delay_samples > 0 {
-        let delay = samples(scene.sensor.delay_samples);
+    if at.own.sensor.delay_samples > 0 {
+        let delay = samples(at.own.sensor.delay_samples);
         facts.push(("Delay of the sensor", delay));
     }
     facts
 }
 
-fn sensor(scene: &Scene) -> Vec<Fact> {
+fn sensor(at: &At<'_>) -> Vec<Fact> {
     let mut facts = Vec::new();
-    if scene.sensor.quantum_m > 0.0 {
-        let step = figures(1e6 * scene.sensor.quantum_m) + " µm";
+    if at.own.sensor.quantum_m > 0.0 {
+        let step = figures(1e6 * at.own.sensor.quantum_m) + " µm";
         facts.push(("Step of the converter", step));
     }
-    if let Some(range_m) = scene.sensor.range_m {
+    if let Some(range_m) = at.own.sensor.range_m {
         facts.push(("Sensor range", format!("±{} mm", figures(1e3 * range_m))));
     }
     facts
 }
 
 /// Loads, outages, faults and changes, in order of time.
-fn disturbances(scene: &Scene) -> Vec<Disturbed> {
+fn disturbances(at: &At<'_>) -> Vec<Disturbed> {
     let vector = |v: V2| format!("[{}, {}]", figures(v.x), figures(v.y));
     let disturbed = |what: String, from_s: f64, to_s: f64| Disturbed {
         what,
         from_s,
         // What goes on for ever goes on to the end.
-        to_s: to_s.min(scene.duration_s),
+        to_s: to_s.min(at.scene.duration_s),
     };
     let mut all = Vec::new();
-    for d in &scene.disturbances {
+    for d in &at.scene.disturbances {
         let what = format!("force {} N{}", vector(d.force_n), course(&d.shape));
         all.push(disturbed(what, d.start_s, d.end_s()));
     }
-    for b in &scene.base_motions {
+    for b in &at.scene.base_motions {
         let what = format!(
             "base motion {} m/s²{}",
             vector(b.acceleration_m_s2),
@@ -249,16 +265,16 @@ fn disturbances(scene: &Scene) -> Vec<Disturbed> {
         );
         all.push(disturbed(what, b.start_s, b.start_s + b.duration_s));
     }
-    for o in &scene.outages {
+    for o in &at.own.outages {
         all.push(disturbed(outage(o), o.start_s, o.end_s()));
     }
-    for f in &scene.faults {
+    for f in &at.own.faults {
         all.push(disturbed(fault(f), f.start_s, f.end_s()));
     }
-    for c in &scene.changes {
+    for c in &at.scene.changes {
         all.push(disturbed(change(c), c.at_s, c.at_s));
     }
-    for s in &scene.set_downs {
+    for s in &at.own.set_downs {
         let known = if s.announced { "" } else { "not " };
         let to = vector(1e6 * s.to_m);
         let what = format!("reference to {to} µm, {known}announced");
@@ -348,7 +364,7 @@ mod tests {
     use super::*;
 
     fn said(scene: &str) -> (String, Vec<String>) {
-        let summary = summary(&Scene::parse("test", scene).unwrap());
+        let summary = summary(&Scene::parse("test", scene).unwrap(), 0);
         let facts: Vec<String> = (summary.facts.iter())
             .map(|(name, value)| format!("{name} {value}"))
             .collect();

@@ -5,11 +5,10 @@ use crate::report::plot::text::figures;
 use crate::report::tone::Tone;
 use crate::run::figures::{BearingFigures, Digits, Figure, Figures, Timing, Value};
 use crate::run::supervision::{Account, Supervision};
-use crate::run::verdict::{MachineResults, PolicyRun, Results, far_into_the_wall};
+use crate::run::verdict::{PolicyRun, Results, far_into_the_wall};
 use crate::run::verify::{Check, Verification};
-use crate::scene::Scene;
-use crate::scene::machine::MachineScene;
 use crate::scene::nominal::named;
+use crate::scene::{PlaneScene, Scene};
 use serde_json::json;
 use std::fmt::Write as _;
 
@@ -156,30 +155,25 @@ fn rounded(x: f64) -> f64 {
     }
 }
 
-/// The table: one row a figure, one column a policy, the supervisor's first.
+/// The tables: one row a figure, one column a policy, the supervisor's first; of several planes as a whole, and plane by plane.
 pub fn text(scene: &Scene, results: &Results) -> String {
-    let runs = &results.runs;
-    let note = far_into_the_wall(runs, scene.plant.contact.clearance_m);
-    let notes = notes(note.as_deref(), results);
-    let table = table("policy", &supervisor_first(runs));
-    format!("{}\n{table}{notes}", scene.title)
-}
-
-/// The tables of a whole rotor: as a whole, and plane by plane.
-pub fn machine_text(scene: &MachineScene, results: &MachineResults) -> String {
+    let mut text = format!("{}\n", scene.title);
     let of = |name: &str, runs: &[PolicyRun]| table(name, &supervisor_first(runs));
-    let mut text = format!(
-        "{}\n{}",
-        scene.common().title,
-        of("machine", &results.whole.runs)
-    );
-    for (plane, runs) in scene.planes.iter().zip(&results.planes) {
-        let _ = write!(text, "\n\n{}", of(&plane.name, runs));
-        if let Some(note) = far_into_the_wall(runs, plane.scene.plant.contact.clearance_m) {
+    if results.planes.len() == 1 {
+        let _ = write!(text, "{}", of("policy", &results.planes[0]));
+    } else {
+        let _ = write!(text, "{}", of("machine", &results.runs));
+    }
+    for (i, runs) in results.planes.iter().enumerate() {
+        if results.planes.len() > 1 {
+            let _ = write!(text, "\n\n{}", of(&scene.planes[i].name, runs));
+        }
+        if let Some(note) = far_into_the_wall(runs, scene.clearance_m(i)) {
             let _ = write!(text, "\n{note}");
         }
     }
-    text + &notes(None, &results.whole)
+    let notes = results.untrusted().into_iter();
+    text + &notes.map(|note| format!("\n{note}")).collect::<String>()
 }
 
 /// Runs in the order in which they are shown.
@@ -187,12 +181,6 @@ pub(super) fn supervisor_first(runs: &[PolicyRun]) -> Vec<&PolicyRun> {
     let mut runs: Vec<&PolicyRun> = runs.iter().collect();
     runs.sort_by_key(|run| run.supervision.is_none());
     runs
-}
-
-fn notes(note: Option<&str>, results: &Results) -> String {
-    (note.into_iter().chain(results.untrusted()))
-        .map(|note| format!("\n{note}"))
-        .collect()
 }
 
 fn table(of: &str, runs: &[&PolicyRun]) -> Lines {
@@ -279,8 +267,8 @@ fn run_json(run: &PolicyRun) -> serde_json::Value {
     figures
 }
 
-fn told_of_plant(scene: &Scene) -> serde_json::Map<String, serde_json::Value> {
-    named(&scene.overrides)
+fn told_of_plane(plane: &PlaneScene) -> serde_json::Map<String, serde_json::Value> {
+    named(&plane.overrides)
         .map(|(name, value)| (name.to_owned(), value.into()))
         .collect()
 }
@@ -298,32 +286,18 @@ fn by_policy(
         .collect()
 }
 
-/// The verdicts under stable keys: `policies.<name>.<figure>`.
+/// The verdicts under stable keys: `policies.<name>.<figure>`, and under `policies.<name>.planes` figures of each plane.
 pub fn json(scene: &Scene, results: &Results) -> serde_json::Value {
-    let far = far_into_the_wall(&results.runs, scene.plant.contact.clearance_m);
-    let warnings: Vec<_> = scene.warnings.iter().cloned().chain(far).collect();
-    json!({
-        "scene": scene.title,
-        "duration_s": scene.simulated_s(),
-        "sample_rate_hz": scene.sample_rate_hz,
-        "seed": scene.seed,
-        "rtol": scene.rtol,
-        "whirl_speed_m_s": scene.whirl_speed_m_s,
-        "warnings": warnings,
-        "supervisor_told": told_of_plant(scene),
-        "policies": by_policy(results, |_, run| run_json(run)),
-    })
-}
-
-/// The same of a whole rotor, with `policies.<name>.planes`: figures of each plane under its name.
-pub fn machine_json(scene: &MachineScene, results: &MachineResults) -> serde_json::Value {
     let planes = || scene.planes.iter().zip(&results.planes);
-    let far = planes().filter_map(|(plane, runs)| {
-        let note = far_into_the_wall(runs, plane.scene.plant.contact.clearance_m)?;
-        Some(format!("{}: {note}", plane.name))
+    let far = planes().enumerate().filter_map(|(i, (plane, runs))| {
+        let note = far_into_the_wall(runs, scene.clearance_m(i))?;
+        Some(match plane.name.as_str() {
+            "" => note,
+            name => format!("{name}: {note}"),
+        })
     });
     let warnings: Vec<_> = scene.warnings.iter().cloned().chain(far).collect();
-    let policies = by_policy(&results.whole, |i, whole| {
+    let policies = by_policy(results, |i, whole| {
         let mut figures = run_json(whole);
         let of_plane = planes().filter_map(|(plane, runs)| {
             let mut figures = run_json(runs.get(i)?);
@@ -340,17 +314,16 @@ pub fn machine_json(scene: &MachineScene, results: &MachineResults) -> serde_jso
     let of_planes = scene.planes.iter().map(|plane| {
         json!({
             "name": plane.name,
-            "whirl_speed_m_s": plane.scene.whirl_speed_m_s,
-            "supervisor_told": told_of_plant(&plane.scene),
+            "whirl_speed_m_s": plane.whirl_speed_m_s,
+            "supervisor_told": told_of_plane(plane),
         })
     });
-    let common = scene.common();
     json!({
-        "scene": common.title,
-        "duration_s": common.simulated_s(),
-        "sample_rate_hz": common.sample_rate_hz,
-        "seed": common.seed,
-        "rtol": common.rtol,
+        "scene": scene.title,
+        "duration_s": scene.simulated_s(),
+        "sample_rate_hz": scene.sample_rate_hz,
+        "seed": scene.planes.first().map(|plane| plane.seed),
+        "rtol": scene.rtol,
         "warnings": warnings,
         "planes": of_planes.collect::<Vec<_>>(),
         "policies": policies,

@@ -50,6 +50,11 @@ pub fn scene_of_event(
         spec.set(&setting.path, setting.value.clone())?;
     }
     let mut scene = spec.resolve()?;
+    if scene.planes.len() > 1 {
+        let message = "there are several, and a record tells of one".to_owned();
+        let help = "give a scene of this plane alone".to_owned();
+        return Err(spec.text.error_at_key("plane", message, Some(help)));
+    }
     let since = |sequence: u32| {
         let ticks = sequence.wrapping_sub(findings.first).cast_signed();
         (f64::from(ticks) - launch.tick as f64) / scene.sample_rate_hz
@@ -64,6 +69,7 @@ pub fn scene_of_event(
     scene.disturbances.clear();
     if load_n.norm() > 0.0 && end_s > at(from) {
         scene.disturbances.push(Disturbance {
+            position_m: 0.0,
             start_s: at(from),
             duration_s: end_s - at(from),
             force_n: load_n,
@@ -72,9 +78,11 @@ pub fn scene_of_event(
     }
     scene.base_motions.clear();
     scene.changes.clear();
-    scene.outages.clear();
-    scene.faults.clear();
-    scene.set_downs.clear();
+    for plane in &mut scene.planes {
+        plane.outages.clear();
+        plane.faults.clear();
+        plane.set_downs.clear();
+    }
     scene.duration_s = duration_s;
     scene.title = format!("The event once more, on: {}", scene.title);
     Ok(scene)

@@ -8,26 +8,21 @@ pub mod stepwise;
 use self::bench::Bench;
 use self::station::Station;
 use crate::device::external::ControllerError;
-use crate::device::loads::Loads;
-use crate::run::controller::{Controller, Referred, controller, controller_of_plane};
+use crate::run::controller::{Controller, Referred, controller_beside};
 use crate::run::figures::Figures;
-use crate::run::rig::{ChangeError, OnePlane, WholeRotor};
+use crate::run::rig::Rig;
 use crate::run::trace::{AxisRow, ReadOut, Recorder, Trace};
 use crate::run::whole_clairvoyant::WholeReference;
 use crate::scene::Scene;
-use crate::scene::machine::MachineScene;
 use crate::scene::policy_kind::PolicyKind;
 use plant_model::machine::params::MachineError;
-use plant_model::params::StatorParams;
-use plant_model::{BuildError, Options, PlantError, V2};
+use plant_model::{Options, PlantError};
+use std::cell::Cell;
 
 /// Why a run has no result.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum RunError {
-    /// The plant's parameters are out of range.
-    #[error(transparent)]
-    Build(#[from] BuildError),
-    /// A machine's parameters are out of range.
+    /// The machine's parameters are out of range.
     #[error(transparent)]
     Machine(#[from] MachineError),
     /// The simulation cannot be trusted any further.
@@ -69,24 +64,12 @@ pub enum RunError {
         /// Why the check has no result.
         reason: Box<RunError>,
     },
-    /// Rings would feel a base motion too, and the model has no such force.
-    #[error("base motion needs a rigid stator")]
-    BaseMotionOnRings,
     /// The scene lacks something that the policy needs.
     #[error("policy {policy} needs more than the scene gives")]
     Incomplete {
         /// The policy.
         policy: &'static str,
     },
-}
-
-impl From<ChangeError> for RunError {
-    fn from(error: ChangeError) -> Self {
-        match error {
-            ChangeError::OnePlane(error) => Self::Build(error.into()),
-            ChangeError::Machine(error) => Self::Machine(error),
-        }
-    }
 }
 
 impl RunError {
@@ -122,6 +105,15 @@ impl Keep {
     fn rows(self) -> bool {
         matches!(self, Self::Trace | Self::TraceToDecision)
     }
+    fn recorders(self, first: &mut Trace) -> Recorders<'_> {
+        Recorders {
+            planes: match self.rows() {
+                true => vec![first],
+                false => Vec::new(),
+            },
+            axis: None,
+        }
+    }
     fn to_decision(self) -> bool {
         matches!(self, Self::Decision | Self::TraceToDecision)
     }
@@ -146,7 +138,7 @@ impl Default for Rigour {
 }
 
 /// Runs one policy to the end of the scene. `on_tick` is called now and then with the number of ticks
-/// done since its last call.
+/// done since its last call. What comes back are the figures of the machine and the trace of its first plane.
 ///
 /// # Errors
 /// [`RunError`]; there is no half-trusted result.
@@ -156,98 +148,89 @@ pub fn run(
     keep: Keep,
     on_tick: &mut dyn FnMut(u64),
 ) -> Result<(Figures, Trace), RunError> {
-    let policy = kind.name();
-    let acting = controller(kind, scene).ok_or(RunError::Incomplete { policy })?;
-    run_policy(scene, (acting, policy), keep, on_tick)
+    let task = Task::keeping(keep, kind.name());
+    let mut trace = Trace::default();
+    let bench = bench_of_policy(scene, kind, keep.recorders(&mut trace), task)?;
+    let ended = bench.ride(task, on_tick)?;
+    of_machine(ended, trace, task)
 }
 
-/// Runs a controller that has been set up, under the name of a policy.
+/// Runs a controller that has been set up for the only plane of a scene, under the name of a policy.
 ///
 /// # Errors
-/// As [`run`].
+/// As [`run`]; [`RunError::Incomplete`] of a scene with more planes.
 pub fn run_policy(
     scene: &Scene,
-    acting: (Box<dyn Controller>, &'static str),
+    (controller, policy): (Box<dyn Controller>, &'static str),
     keep: Keep,
     on_tick: &mut dyn FnMut(u64),
 ) -> Result<(Figures, Trace), RunError> {
+    let task = Task::keeping(keep, policy);
     let mut trace = Trace::default();
-    let recorder: Option<&mut dyn Recorder> = match keep.rows() {
-        true => Some(&mut trace),
-        false => None,
-    };
-    let (controller, policy) = acting;
-    let task = Task {
-        policy,
-        to_decision: keep.to_decision(),
-        rigour: Rigour::default(),
-    };
-    let (figures, read_out) = ride_one(scene, controller, recorder, task, on_tick)?;
-    trace.read_out = read_out;
+    let only = Cell::new(Some(controller));
+    let mut bench = bench(scene, (&|_| only.take(), keep.recorders(&mut trace)), task)?;
+    bench.levitated_by(scene.levitation.as_ref(), policy)?;
+    let ended = bench.ride(task, on_tick)?;
+    of_machine(ended, trace, task)
+}
+
+fn of_machine(
+    mut ended: Vec<PlaneEnded>,
+    mut trace: Trace,
+    task: Task,
+) -> Result<(Figures, Trace), RunError> {
+    let policy = task.policy;
+    trace.read_out = ended.first_mut().and_then(|(_, read_out)| read_out.take());
+    let planes: Vec<Figures> = ended.into_iter().map(|(figures, _)| figures).collect();
+    let figures = Figures::of_machine(&planes).ok_or(RunError::Incomplete { policy })?;
     Ok((figures, trace))
 }
 
-/// Runs one policy to the end of the scene, its rows given to a recorder as they come.
-///
-/// # Errors
-/// As [`run`].
-pub fn record(
-    scene: &Scene,
-    kind: PolicyKind,
-    recorder: &mut dyn Recorder,
-    rigour: Rigour,
-    on_tick: &mut dyn FnMut(u64),
-) -> Result<(Figures, Option<ReadOut>), RunError> {
-    let policy = kind.name();
-    let acting = controller(kind, scene).ok_or(RunError::Incomplete { policy })?;
-    let task = Task::to_the_end(policy, rigour);
-    ride_one(scene, acting, Some(recorder), task, on_tick)
-}
-
-/// Who is given the rows of a machine's run.
-pub struct MachineRecorders<'a> {
-    /// Of each plane, in their order.
+/// Who is given the rows of a run.
+#[derive(Default)]
+pub struct Recorders<'a> {
+    /// Of each plane, in their order; of others no rows are asked for.
     pub planes: Vec<&'a mut dyn Recorder>,
     /// Of the rotor's axis, at control samples.
     pub axis: Option<&'a mut dyn Recorder<AxisRow>>,
 }
 
-/// What one plane of a machine came to, and what its supervisor leaves behind.
+/// What one plane came to, and where its rows are recorded what its supervisor leaves behind.
 pub type PlaneEnded = (Figures, Option<ReadOut>);
 
-/// Runs one policy on a whole rotor to the end of its scene, a controller for each plane; rows go to the recorders as they
-/// come. What comes back is of each plane.
+/// Runs one policy to the end of the scene, its rows given to recorders as they come. What comes back is of each plane.
 ///
 /// # Errors
 /// As [`run`].
-pub fn record_machine<'a>(
-    scene: &'a MachineScene,
+pub fn record<'a>(
+    scene: &'a Scene,
     kind: PolicyKind,
-    recorders: MachineRecorders<'a>,
+    recorders: Recorders<'a>,
     rigour: Rigour,
     on_tick: &mut dyn FnMut(u64),
 ) -> Result<Vec<PlaneEnded>, RunError> {
-    let task = Task::to_the_end(kind.name(), rigour);
-    bench_of_machine(scene, kind, recorders, task)?.ride(task, on_tick)
+    let task = Task {
+        rigour,
+        ..Task::keeping(Keep::Trace, kind.name())
+    };
+    bench_of_policy(scene, kind, recorders, task)?.ride(task, on_tick)
 }
 
-fn bench_of_machine<'a>(
-    scene: &'a MachineScene,
+fn bench_of_policy<'a>(
+    scene: &'a Scene,
     kind: PolicyKind,
-    recorders: MachineRecorders<'a>,
+    recorders: Recorders<'a>,
     task: Task,
 ) -> Result<Bench<'a>, RunError> {
-    let policy = task.policy;
     let supervisor = match kind {
         PolicyKind::Supervisor => scene.supervisor(),
         _ => None,
     };
-    let whole = (scene.levitation.is_some(), supervisor.is_some());
-    let controller = |plane: &Scene| controller_of_plane(kind, plane, whole);
-    let mut bench = machine_bench(scene, (&controller, recorders.planes), task)?;
-    bench.levitated_by(scene.levitation.as_ref(), policy)?;
+    let whole = supervisor.is_some();
+    let controller = |plane: usize| controller_beside(kind, (scene, plane), whole);
+    let mut bench = bench(scene, (&controller, recorders), task)?;
+    bench.levitated_by(scene.levitation.as_ref(), task.policy)?;
     bench.supervisor = supervisor.zip(scene.supervised());
-    bench.axis = recorders.axis;
     Ok(bench)
 }
 
@@ -255,51 +238,46 @@ fn bench_of_machine<'a>(
 ///
 /// # Errors
 /// As [`run`].
-pub fn refer_machine(
-    scene: &MachineScene,
+pub fn refer(
+    scene: &Scene,
     reference: &WholeReference,
     keep: Keep,
 ) -> Result<Vec<Figures>, RunError> {
-    let task = Task {
-        policy: "clairvoyant",
-        to_decision: keep.to_decision(),
-        rigour: Rigour::default(),
-    };
-    let controller = |_: &Scene| -> Option<Box<dyn Controller>> { Some(Box::new(Referred)) };
-    let mut bench = machine_bench(scene, (&controller, Vec::new()), task)?;
+    let task = Task::keeping(keep, "clairvoyant");
+    let controller = |_: usize| -> Option<Box<dyn Controller>> { Some(Box::new(Referred)) };
+    let mut bench = bench(scene, (&controller, Recorders::default()), task)?;
     bench.reference = Some(reference);
     let ended = bench.ride(task, &mut |_| {})?;
     Ok(ended.into_iter().map(|(figures, _)| figures).collect())
 }
 
 /// Sets up the controller of a plane; `None` where the plane lacks something.
-type ControllerOf<'f> = &'f dyn Fn(&Scene) -> Option<Box<dyn Controller>>;
+type ControllerOf<'f> = &'f dyn Fn(usize) -> Option<Box<dyn Controller>>;
 
-/// A whole rotor in the loop, nobody holding it as a whole.
-fn machine_bench<'a>(
-    scene: &'a MachineScene,
-    (controller_of, recorders): (ControllerOf<'_>, Vec<&'a mut dyn Recorder>),
+/// A scene in the loop, nobody holding it as a whole.
+fn bench<'a>(
+    scene: &'a Scene,
+    (controller_of, recorders): (ControllerOf<'_>, Recorders<'a>),
     task: Task,
 ) -> Result<Bench<'a>, RunError> {
-    let common = scene.common();
-    let rig = WholeRotor::new(scene, options(common, task.rigour))?;
-    let mut recorders = recorders.into_iter();
+    let options = Options {
+        rtol: scene.rtol,
+        method: scene.method,
+        steps: task.rigour.steps,
+        ..Options::default()
+    };
+    let rig = Rig::new(scene, options)?;
+    let mut of_planes = recorders.planes.into_iter();
     let mut stations = Vec::new();
-    for plane in &scene.planes {
-        let controller = controller_of(&plane.scene).ok_or(RunError::Incomplete {
+    for plane in 0..scene.planes.len() {
+        let controller = controller_of(plane).ok_or(RunError::Incomplete {
             policy: task.policy,
         })?;
-        let mut station = Station::new(&plane.scene, controller, recorders.next());
-        station.seal = plane.seal;
-        stations.push(station);
+        stations.push(Station::new(scene, plane, controller, of_planes.next()));
     }
-    let loads = (scene.loads.iter()).map(|load| Loads::new(V2::zeros(), vec![*load]));
-    Ok(Bench::new(
-        common,
-        Box::new(rig),
-        stations,
-        (loads.collect(), scene.edges()),
-    ))
+    let mut bench = Bench::new(scene, rig, stations);
+    bench.axis = recorders.axis;
+    Ok(bench)
 }
 
 /// A run as it is asked for.
@@ -311,55 +289,11 @@ struct Task {
 }
 
 impl Task {
-    fn to_the_end(policy: &'static str, rigour: Rigour) -> Self {
+    fn keeping(keep: Keep, policy: &'static str) -> Self {
         Self {
             policy,
-            to_decision: false,
-            rigour,
+            to_decision: keep.to_decision(),
+            rigour: Rigour::default(),
         }
     }
-}
-
-fn options(scene: &Scene, rigour: Rigour) -> Options {
-    Options {
-        rtol: scene.rtol,
-        method: scene.method,
-        steps: rigour.steps,
-        ..Options::default()
-    }
-}
-
-fn ride_one<'a>(
-    scene: &'a Scene,
-    controller: Box<dyn Controller>,
-    recorder: Option<&'a mut dyn Recorder>,
-    task: Task,
-    on_tick: &mut dyn FnMut(u64),
-) -> Result<PlaneEnded, RunError> {
-    let bench = bench_of_one(scene, controller, recorder, task)?;
-    let ended = bench.ride(task, on_tick)?.pop();
-    ended.ok_or(RunError::Incomplete {
-        policy: task.policy,
-    })
-}
-
-fn bench_of_one<'a>(
-    scene: &'a Scene,
-    controller: Box<dyn Controller>,
-    recorder: Option<&'a mut dyn Recorder>,
-    task: Task,
-) -> Result<Bench<'a>, RunError> {
-    let rigid = matches!(
-        scene.plant.stator,
-        StatorParams::Rigid | StatorParams::RigidEllipse(_)
-    );
-    if !scene.base_motions.is_empty() && !rigid {
-        return Err(RunError::BaseMotionOnRings);
-    }
-    let rig = OnePlane::new(scene, options(scene, task.rigour))?;
-    let stations = vec![Station::new(scene, controller, recorder)];
-    let loads = (vec![scene.external()], scene.edges());
-    let mut bench = Bench::new(scene, Box::new(rig), stations, loads);
-    bench.levitated_by(scene.controller.as_ref(), task.policy)?;
-    Ok(bench)
 }

@@ -81,54 +81,57 @@ impl Seen {
     }
 }
 
-/// The controller of a policy, set up for a scene; `None` where the scene lacks what it needs (which [`Scene::load`] refuses).
-pub fn controller(kind: PolicyKind, scene: &Scene) -> Option<Box<dyn Controller>> {
-    match scene.controller {
-        Some(_) => controller_over(kind, scene, (Some(Passing), true)),
-        None => controller_over(kind, scene, (own_levitation(scene), true)),
-    }
+/// The controller of a policy, set up for a plane of a scene; `None` where the scene lacks what it needs (which
+/// [`Scene::load`] refuses).
+pub fn controller(kind: PolicyKind, scene: &Scene, plane: usize) -> Option<Box<dyn Controller>> {
+    controller_beside(kind, (scene, plane), false)
 }
 
-/// As [`controller`], of a plane of a rotor, which as a whole may be levitated and may be supervised.
-pub(crate) fn controller_of_plane(
+/// The same; of a rotor that is supervised as a whole without a supervisor of its own.
+pub(crate) fn controller_beside(
     kind: PolicyKind,
-    scene: &Scene,
-    (levitated, supervised): (bool, bool),
+    (scene, plane): (&Scene, usize),
+    supervised: bool,
 ) -> Option<Box<dyn Controller>> {
-    if scene.plant.magnet.is_none() {
+    let at = (scene, plane);
+    if scene.planes[plane].magnet.is_none() {
         return Some(Box::new(Passive));
     }
-    match levitated {
-        true => controller_over(kind, scene, (Some(Passing), !supervised)),
-        false => controller_over(kind, scene, (own_levitation(scene), !supervised)),
+    match scene.levitation {
+        Some(_) => controller_over(kind, at, (Some(Passing), !supervised)),
+        None => controller_over(kind, at, (own_levitation(scene, plane), !supervised)),
     }
 }
 
 /// The controller of a policy over whoever levitates, where somebody does; `own`: with a supervisor of its own.
 fn controller_over<L: Levitate + Controller + 'static>(
     kind: PolicyKind,
-    scene: &Scene,
+    (scene, plane): (&Scene, usize),
     (levitation, own): (Option<L>, bool),
 ) -> Option<Box<dyn Controller>> {
-    let force_max_n = cap_n(scene);
+    let (plane, force_max_n, clearance_m) = (
+        &scene.planes[plane],
+        scene.force_max_n(plane),
+        scene.clearance_m(plane),
+    );
     Some(match kind {
         PolicyKind::Passive => Box::new(Passive),
         PolicyKind::Radial => Box::new(Radial {
-            band_m: scene.radial_band * scene.plant.contact.clearance_m,
+            band_m: plane.radial_band * clearance_m,
             force_n: force_max_n,
         }),
         PolicyKind::Damping => {
-            let filter_s = scene.levitation.map_or(0.0, |l| l.derivative_filter_s);
+            let filter_s = plane.levitation.map_or(0.0, |l| l.derivative_filter_s);
             Box::new(Damping {
                 velocity: VelocityFilter::new(filter_s, 1.0 / scene.sample_rate_hz),
-                coefficient_n_s_m: scene.damping_n_s_m,
+                coefficient_n_s_m: plane.damping_n_s_m,
                 force_max_n,
             })
         }
         PolicyKind::Levitation => Box::new(levitation?),
         PolicyKind::Supervisor => {
             let supervisor: Option<Box<dyn Supervise>> = match own {
-                true => Some(Box::new(Supervisor::new(&scene.supervisor?).ok()?)),
+                true => Some(Box::new(Supervisor::new(&plane.supervisor?).ok()?)),
                 false => None,
             };
             Box::new(Supervised::new(supervisor, Box::new(levitation?)))
@@ -136,11 +139,11 @@ fn controller_over<L: Levitate + Controller + 'static>(
     })
 }
 
-/// A supervisor of the caller's in front of the scene's levitation controller; `None` where the scene has no controller.
+/// A supervisor of the caller's in front of the levitation controller of the first plane; `None` where it has none.
 pub fn supervised(scene: &Scene, supervisor: Box<dyn Supervise>) -> Option<Box<dyn Controller>> {
-    let levitation: Box<dyn Levitate> = match scene.controller {
+    let levitation: Box<dyn Levitate> = match scene.levitation {
         Some(_) => Box::new(Passing),
-        None => Box::new(own_levitation(scene)?),
+        None => Box::new(own_levitation(scene, 0)?),
     };
     Some(Box::new(Supervised::new(Some(supervisor), levitation)))
 }
@@ -186,14 +189,14 @@ impl Controller for Referred {
     }
 }
 
-/// The scene's levitation controller by gains, where it has one.
-fn own_levitation(scene: &Scene) -> Option<Levitation> {
-    let period_s = 1.0 / scene.sample_rate_hz;
-    Some(Levitation::new(scene.levitation?, period_s, cap_n(scene)))
-}
-
-fn cap_n(scene: &Scene) -> f64 {
-    scene.plant.magnet.map_or(0.0, |m| m.force_max_n)
+/// The levitation controller of a plane by gains, where it has one.
+fn own_levitation(scene: &Scene, plane: usize) -> Option<Levitation> {
+    let (period_s, force_max_n) = (1.0 / scene.sample_rate_hz, scene.force_max_n(plane));
+    Some(Levitation::new(
+        scene.planes[plane].levitation?,
+        period_s,
+        force_max_n,
+    ))
 }
 
 /// No force.

@@ -5,7 +5,6 @@ use crate::run::columns::{Cell, Column, InColumns, below, columns_of, in_columns
 use crate::run::judge::Judge;
 use crate::run::outcome::Outcome;
 use crate::run::rig::Rig;
-use crate::scene::Scene;
 use plant_model::{Meters, Method, Snapshot};
 use serde::Serialize;
 use std::f64::consts::TAU;
@@ -198,17 +197,12 @@ pub(crate) struct Ended<'a> {
 
 impl<'a> Ended<'a> {
     /// A plane of a rig at its end, `last` of it.
-    pub(crate) fn new(
-        scene: &Scene,
-        judge: &'a Judge,
-        rig: &dyn Rig,
-        (plane, last): (usize, &Snapshot),
-    ) -> Self {
+    pub(crate) fn new(judge: &'a Judge, rig: &Rig<'_>, (plane, last): (usize, &Snapshot)) -> Self {
         let meters = rig.meters(plane);
         let backward_m_s = meters.peak_backward_speed_m_s;
         Self {
-            outcome: judge.outcome(scene, last, backward_m_s),
-            free_at_end: judge.at_end(scene, last).recovered(),
+            outcome: judge.outcome(last, backward_m_s),
+            free_at_end: judge.at_end(last).recovered(),
             meters,
             normal_impulse_n_s: rig.normal_impulse_n_s(plane),
             energy_residual: rig.audit().residual(),
@@ -227,7 +221,10 @@ impl<'a> Ended<'a> {
 impl Figures {
     /// Of a machine, from those of its planes; `None` without one. How it ended is how the worst ended.
     pub fn of_machine(planes: &[Self]) -> Option<Self> {
-        let first = planes.first()?;
+        let first = match planes {
+            [only] => return Some(only.clone()),
+            planes => planes.first()?,
+        };
         let sum = |of: fn(&Self) -> f64| planes.iter().map(of).sum::<f64>();
         let count = |of: fn(&Self) -> u64| planes.iter().map(of).sum::<u64>();
         let most = |of: fn(&Self) -> f64| planes.iter().map(of).fold(f64::NEG_INFINITY, f64::max);

@@ -1,10 +1,12 @@
 //! Watches a run and says what it came to.
 
+use crate::device::loads::Disturbance;
 use crate::device::sensor_fault::{ROUND_OFF_PERIODS, seen_until_s};
 use crate::run::outcome::Outcome;
 use crate::run::swings::Swings;
 use crate::scene::Scene;
 use plant_model::analysis::whirl::WhirlMeter;
+use plant_model::params::PlantParams;
 use plant_model::{Meters, Snapshot, V2};
 use std::f64::consts::TAU;
 
@@ -26,6 +28,10 @@ const REST_SPEED: f64 = 1e-3;
 pub(crate) struct Judge {
     middle_m: f64,
     whirl_speed_m_s: f64,
+    /// The plane alone.
+    plant: PlantParams,
+    /// What acts on the rotor and when.
+    loads: Vec<Disturbance>,
     /// Where the retainer bearing is as seen from the middle.
     centre_offset_m: V2,
     clock_starts_s: f64,
@@ -48,12 +54,14 @@ pub(crate) struct Judge {
 }
 
 impl Judge {
-    pub(crate) fn new(scene: &Scene) -> Self {
+    pub(crate) fn new(scene: &Scene, plane: usize) -> Self {
         Self {
-            whirl_speed_m_s: scene.whirl_speed_m_s,
-            centre_offset_m: scene.centre_offset_m,
-            middle_m: MIDDLE * scene.plant.contact.clearance_m,
-            clock_starts_s: scene.clock_starts_s(),
+            whirl_speed_m_s: scene.planes[plane].whirl_speed_m_s,
+            centre_offset_m: scene.machine.planes[plane].centre_m,
+            middle_m: MIDDLE * scene.clearance_m(plane),
+            clock_starts_s: scene.clock_starts_s(plane),
+            plant: scene.plant(plane),
+            loads: scene.loads().collect(),
             period_s: 1.0 / scene.sample_rate_hz,
             whirl: WhirlMeter::new(WHIRL_WINDOW_S),
             in_middle_since_s: None,
@@ -165,25 +173,21 @@ impl Judge {
     }
 
     /// How the run ended, from its last snapshot and the largest backward speed in contact.
-    pub(crate) fn outcome(
-        &self,
-        scene: &Scene,
-        last: &Snapshot,
-        peak_backward_m_s: f64,
-    ) -> Outcome {
-        match peak_backward_m_s > scene.whirl_speed_m_s {
+    pub(crate) fn outcome(&self, last: &Snapshot, peak_backward_m_s: f64) -> Outcome {
+        match peak_backward_m_s > self.whirl_speed_m_s {
             true => Outcome::Whirl,
-            false => self.at_end(scene, last),
+            false => self.at_end(last),
         }
     }
 
     /// The same without a look at whirl, which a strong magnet stops even beyond the scene's limit.
-    pub(crate) fn at_end(&self, scene: &Scene, last: &Snapshot) -> Outcome {
-        let natural = scene.plant.natural_frequency_rad_s();
+    pub(crate) fn at_end(&self, last: &Snapshot) -> Outcome {
+        let plant = &self.plant;
+        let natural = plant.natural_frequency_rad_s();
         // A rotor whose distance grows as if it were to touch soon is free, and not back.
         let free = |outcome: Outcome| {
             let half_period_s = natural.map_or(0.0, |natural| 0.5 * TAU / natural);
-            let clearance_m = scene.plant.contact.clearance_m;
+            let clearance_m = plant.contact.clearance_m;
             match self.swings.grow(STAY_S.max(half_period_s), clearance_m) {
                 true => Outcome::Diverging,
                 false => outcome,
@@ -202,17 +206,14 @@ impl Judge {
         let settled_s = match natural {
             Some(natural) => TAU / natural,
             None if speed * STAY_S < STANDS_STILL * self.middle_m => 0.0,
-            None => 4.0 * scene.plant.contact.clearance_m / speed,
+            None => 4.0 * plant.contact.clearance_m / speed,
         };
         let settled_s = settled_s.max(STAY_S);
         if last.t_s - last_contact_s >= settled_s {
             return free(Outcome::Decayed);
         }
-        let plant = &scene.plant;
         let rest = REST_SPEED * plant.contact.clearance_m * plant.contact_rate_rad_s();
-        let loaded = scene
-            .loads()
-            .any(|d| d.start_s < last.t_s && last.t_s <= d.end_s());
+        let loaded = (self.loads.iter()).any(|d| d.start_s < last.t_s && last.t_s <= d.end_s());
         match (last.mode.in_contact(), loaded) {
             (true, true) => Outcome::Pinned,
             (true, false) if last.velocity_m_s.norm() < rest => Outcome::Resting,

@@ -1,16 +1,15 @@
 //! A policy's run as `run` wants it: its rows written while it goes on, and kept as far as a report needs them.
 
 use crate::device::whole_levitation::WholeLevitationParams;
-use crate::run::closed_loop::{MachineRecorders, Rigour, RunError, record, record_machine};
+use crate::run::closed_loop::{Recorders, Rigour, RunError, record};
 use crate::run::figures::Figures;
 use crate::run::overview::{AxisTrack, Overview};
 use crate::run::supervision::{Happenings, SupervisionCount};
 use crate::run::trace::{AxisRow, Recorder, Trace, TraceRow};
 use crate::run::trace_file::TraceFile;
 use crate::run::verdict::{MachineRun, PolicyRun, Verdict};
-use crate::run::verify::{Check, Track, Verification, check, check_machine, verification, worst};
+use crate::run::verify::{Check, Track, Verification, check, verification, worst};
 use crate::scene::Scene;
-use crate::scene::machine::MachineScene;
 use crate::scene::policy_kind::PolicyKind;
 use std::io::Write;
 use std::time::{Duration, Instant};
@@ -60,48 +59,12 @@ impl<'a, W: Write + Send> Recording<'a, W> {
     }
 }
 
-/// Runs a policy of a scene, and then once more for each of `checks`; its trace goes to `file` where there is one. A check that
-/// cannot be trusted leaves the run as it is.
-///
-/// # Errors
-/// [`RunError`] of the run.
-pub fn recorded<W: Write + Send>(
-    scene: &Scene,
-    kind: PolicyKind,
-    checks: &[Scene],
-    file: Option<&mut TraceFile<W, TraceRow>>,
-    on_tick: &mut dyn FnMut(u64),
-) -> Result<PolicyRun, RunError> {
-    warm_up(scene, kind);
-    let mut recording = Recording::new(file, !checks.is_empty());
-    let started = Instant::now();
-    let (figures, read_out) = record(scene, kind, &mut recording, Rigour::default(), on_tick)?;
-    let elapsed = started.elapsed().saturating_sub(recording.writing());
-    let verification = recording.track.map(|track| {
-        let all: Result<Vec<Check>, RunError> = (checks.iter())
-            .map(|scene| check(scene, kind, &track, on_tick))
-            .collect();
-        all.map(|all| verification(&figures, &track, all))
-            .map_err(|error| error.to_string())
-    });
-    let mut trace = recording.overview.into_trace();
-    trace.read_out = read_out;
-    Ok(PolicyRun {
-        name: kind.name().to_owned(),
-        verdict: Verdict::new(figures, scene, elapsed),
-        verification,
-        supervision: recording.supervision.ended(trace.read_out.as_ref()),
-        happenings: recording.happenings,
-        trace,
-    })
-}
-
-/// Trace files of a machine's run.
-pub struct MachineFiles<W: Write + Send> {
+/// Trace files of a run.
+pub struct TraceFiles<W: Write + Send> {
     /// Of each plane.
     pub planes: Vec<TraceFile<W, TraceRow>>,
-    /// Of the rotor's axis.
-    pub axis: TraceFile<W, AxisRow>,
+    /// Of the rotor's axis, where it has one.
+    pub axis: Option<TraceFile<W, AxisRow>>,
 }
 
 /// Listens to the axis.
@@ -119,35 +82,41 @@ impl<W: Write + Send> Recorder<AxisRow> for AxisRecording<'_, W> {
     }
 }
 
-/// Runs a policy on a whole rotor, and then once more by `check`, where it is to be checked.
+/// Runs a policy of a scene, and then once more for each of `checks`; its rows go to files where there are any. A check that
+/// cannot be trusted leaves the run as it is.
 ///
 /// # Errors
 /// [`RunError`] of the run.
-pub fn recorded_machine<W: Write + Send>(
-    scene: &MachineScene,
+pub fn recorded<W: Write + Send>(
+    scene: &Scene,
     kind: PolicyKind,
-    checks: Option<&[MachineScene]>,
-    files: Option<&mut MachineFiles<W>>,
+    checks: &[Scene],
+    files: Option<&mut TraceFiles<W>>,
     on_tick: &mut dyn FnMut(u64),
 ) -> Result<MachineRun, RunError> {
+    warm_up(scene, kind);
+    let checked = !checks.is_empty();
     let (planes, axis) = match files {
-        Some(files) => (Some(&mut files.planes), Some(&mut files.axis)),
+        Some(files) => (Some(&mut files.planes), files.axis.as_mut()),
         None => (None, None),
     };
     let mut files = planes.into_iter().flatten();
     let mut recordings: Vec<Recording<'_, W>> = (scene.planes.iter())
-        .map(|_| Recording::new(files.next(), checks.is_some()))
+        .map(|_| Recording::new(files.next(), checked))
         .collect();
     let track = AxisTrack::default();
     let mut axis = AxisRecording { file: axis, track };
     let started = Instant::now();
-    let recorders = MachineRecorders {
+    let recorders = Recorders {
         planes: (recordings.iter_mut())
             .map(|recording| recording as &mut dyn Recorder)
             .collect(),
-        axis: Some(&mut axis),
+        axis: match scene.has_axis() {
+            true => Some(&mut axis),
+            false => None,
+        },
     };
-    let ended = record_machine(scene, kind, recorders, Rigour::default(), on_tick)?;
+    let ended = record(scene, kind, recorders, Rigour::default(), on_tick)?;
     let writing: Duration = recordings.iter().map(Recording::writing).sum();
     let writing = writing
         + axis
@@ -159,9 +128,9 @@ pub fn recorded_machine<W: Write + Send>(
         .filter_map(|recording| recording.track.take())
         .collect();
     // By check, and then by plane.
-    let checks = checks.map(|scenes| -> Result<Vec<Vec<Check>>, String> {
-        let each = scenes.iter();
-        let checked = each.map(|scene| check_machine(scene, kind, &tracks, on_tick));
+    let checks = checked.then(|| -> Result<Vec<Vec<Check>>, String> {
+        let each = checks.iter();
+        let checked = each.map(|scene| check(scene, kind, &tracks, on_tick));
         checked
             .collect::<Result<_, _>>()
             .map_err(|error| error.to_string())
@@ -180,7 +149,7 @@ pub fn recorded_machine<W: Write + Send>(
         trace.read_out = read_out;
         runs.push(PolicyRun {
             name: kind.name().to_owned(),
-            verdict: Verdict::new(figures, scene.common(), elapsed),
+            verdict: Verdict::new(figures, scene, elapsed),
             verification,
             supervision: recording.supervision.ended(trace.read_out.as_ref()),
             happenings: recording.happenings,
@@ -192,13 +161,16 @@ pub fn recorded_machine<W: Write + Send>(
     let checked: Vec<&Verification> = runs.iter().filter_map(PolicyRun::checked).collect();
     let whole = PolicyRun {
         name: policy.to_owned(),
-        verdict: Verdict::new(figures, scene.common(), elapsed),
+        verdict: Verdict::new(figures, scene, elapsed),
         verification: match checks {
             Some(Ok(_)) => Some(Ok(worst(&checked))),
             Some(Err(error)) => Some(Err(error)),
             None => None,
         },
-        supervision: None,
+        supervision: match &runs[..] {
+            [only] => only.supervision.clone(),
+            _ => None,
+        },
         happenings: Happenings::default(),
         trace: Trace::default(),
     };
@@ -212,7 +184,7 @@ pub fn recorded_machine<W: Write + Send>(
 /// Whatever comes of it comes again.
 fn warm_up(scene: &Scene, kind: PolicyKind) {
     // A process of the user's is not started for nothing.
-    if matches!(scene.controller, Some(WholeLevitationParams::External(_))) {
+    if matches!(scene.levitation, Some(WholeLevitationParams::External(_))) {
         return;
     }
     let duration_s = scene.duration_s.min(WARM_UP_S);
@@ -220,6 +192,6 @@ fn warm_up(scene: &Scene, kind: PolicyKind) {
         duration_s,
         ..scene.clone()
     };
-    let (mut unheard, rigour) = (Overview::default(), Rigour::default());
-    let _again = record(&brief, kind, &mut unheard, rigour, &mut |_| {});
+    let (unheard, rigour) = (Recorders::default(), Rigour::default());
+    let _again = record(&brief, kind, unheard, rigour, &mut |_| {});
 }

@@ -35,7 +35,7 @@ impl Verdict {
     }
 }
 
-/// One policy's run.
+/// One policy's run, as one plane saw it or as a whole.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PolicyRun {
     /// Name of the policy, e.g. `supervisor`.
@@ -59,38 +59,15 @@ impl PolicyRun {
     }
 }
 
-/// One policy's run of a whole rotor.
+/// One policy's run of a scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MachineRun {
     /// What it came to as a whole; its rows are those of the planes.
     pub whole: PolicyRun,
     /// Its planes, each under the name of the policy.
     pub planes: Vec<PolicyRun>,
-    /// The rotor's axis over time.
+    /// The rotor's axis over time; empty of a rotor that is a point.
     pub axis: AxisTrack,
-}
-
-/// What came of a scene of a whole rotor.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct MachineResults {
-    /// The policies' runs as a whole.
-    pub whole: Results,
-    /// Of each plane, the runs in the order of the whole.
-    pub planes: Vec<Vec<PolicyRun>>,
-    /// The axis of each run.
-    pub axes: Vec<AxisTrack>,
-}
-
-impl MachineResults {
-    /// With one more run.
-    pub fn push(&mut self, run: MachineRun) {
-        self.planes.resize_with(run.planes.len(), Vec::new);
-        for (runs, plane) in self.planes.iter_mut().zip(run.planes) {
-            runs.push(plane);
-        }
-        self.whole.runs.push(run.whole);
-        self.axes.push(run.axis);
-    }
 }
 
 /// A policy whose run cannot be trusted.
@@ -105,13 +82,27 @@ pub struct FailedRun {
 /// What came of a scene, policy by policy.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Results {
-    /// Runs, in the scene's order.
+    /// Runs as a whole, in the scene's order.
     pub runs: Vec<PolicyRun>,
+    /// Of each plane, the runs in that order.
+    pub planes: Vec<Vec<PolicyRun>>,
+    /// The axis of each run.
+    pub axes: Vec<AxisTrack>,
     /// The others, in the scene's order.
     pub failed: Vec<FailedRun>,
 }
 
 impl Results {
+    /// With one more run.
+    pub fn push(&mut self, run: MachineRun) {
+        self.planes.resize_with(run.planes.len(), Vec::new);
+        for (runs, plane) in self.planes.iter_mut().zip(run.planes) {
+            runs.push(plane);
+        }
+        self.runs.push(run.whole);
+        self.axes.push(run.axis);
+    }
+
     /// Why what cannot be trusted cannot: runs, and runs whose checks cannot. Each names its policy.
     pub fn untrusted(&self) -> Vec<&str> {
         let checks = self.runs.iter().filter_map(|run| run.verification.as_ref());

@@ -1,14 +1,13 @@
 //! A run's own estimate of its global error: the closed loop once more at a tighter tolerance, and
 //! once more by another method.
 
-use crate::run::closed_loop::{MachineRecorders, Rigour, RunError, record, record_machine};
+use crate::run::closed_loop::{Recorders, Rigour, RunError, record};
 use crate::run::figures::Figures;
 use crate::run::outcome::Outcome;
 use crate::run::trace::{Recorder, TraceRow};
 use crate::scene::Scene;
-use crate::scene::machine::MachineScene;
 use crate::scene::policy_kind::PolicyKind;
-use plant_model::{Method, Mode, Options, V2};
+use plant_model::{Method, Mode, V2};
 use serde::Serialize;
 
 /// Number of checks of a run.
@@ -71,26 +70,21 @@ pub struct Verification {
     pub checks: Vec<Check>,
 }
 
-/// Scenes that check a scene: its own method at a tighter tolerance, and an independent method.
+/// Scenes that check a scene: its own method at a tighter tolerance, and the other one. What has no series leaves no other, and
+/// is looked at a third time by the same, as tightly as it can.
 ///
 /// # Errors
-/// [`RunError::Build`].
+/// [`RunError::Machine`].
 pub fn check_scenes(scene: &Scene) -> Result<[Scene; CHECKS], RunError> {
-    let options = Options {
-        rtol: scene.rtol,
-        method: scene.method,
-        ..Options::default()
+    let own = scene.machine.method(scene.method)?;
+    let other = match scene.machine.method(Method::Series) {
+        Ok(Method::Series) if own == Method::Collocation => Method::Series,
+        Ok(_) | Err(_) => Method::Collocation,
     };
-    let own = scene.build(options)?.method();
     let check = |method: Method, rtol: f64| Scene {
         method,
         rtol: rtol.max(TIGHTEST).min(scene.rtol),
         ..scene.clone()
-    };
-    // What has no power series is looked at a third time by collocation, as tightly as it can.
-    let other = match (own, scene.plant.has_series()) {
-        (Method::Collocation, true) => Method::Series,
-        _ => Method::Collocation,
     };
     Ok([check(own, scene.rtol * TIGHTER), check(other, TIGHTEST)])
 }
@@ -185,69 +179,29 @@ fn untrusted(scene: &Scene) -> impl Fn(RunError) -> RunError {
     }
 }
 
-/// Runs a policy of one of [`check_scenes`] and holds it against the run itself.
+/// Runs a policy of one of [`check_scenes`] and holds each of its planes against the run itself.
 ///
 /// # Errors
 /// [`RunError::Check`].
 pub fn check(
     scene: &Scene,
     kind: PolicyKind,
-    run: &Track,
-    on_tick: &mut dyn FnMut(u64),
-) -> Result<Check, RunError> {
-    let mut comparison = Comparison::new(run, scene.plant.contact.clearance_m);
-    let ended = record(scene, kind, &mut comparison, rigour(scene), on_tick);
-    let (figures, _) = ended.map_err(untrusted(scene))?;
-    Ok(comparison.ended(&figures, scene.rtol))
-}
-
-/// The scenes that check one of a whole rotor: its own method at a tighter tolerance, and the other one. What has no series
-/// leaves no other, and is looked at a third time by the same, as tightly as it can.
-///
-/// # Errors
-/// [`RunError::Machine`].
-pub fn check_machine_scenes(scene: &MachineScene) -> Result<[MachineScene; CHECKS], RunError> {
-    let common = scene.common();
-    let own = (scene.machine.method(common.method)).map_err(RunError::Machine)?;
-    let other = match scene.machine.method(Method::Series) {
-        Ok(Method::Series) if own == Method::Collocation => Method::Series,
-        Ok(_) | Err(_) => Method::Collocation,
-    };
-    let check = |method: Method, rtol: f64| {
-        let mut checking = scene.clone();
-        for plane in &mut checking.planes {
-            plane.scene.rtol = rtol.max(TIGHTEST).min(common.rtol);
-            plane.scene.method = method;
-        }
-        checking
-    };
-    Ok([check(own, common.rtol * TIGHTER), check(other, TIGHTEST)])
-}
-
-/// Runs a policy of one of [`check_machine_scenes`] and holds each of its planes against the run itself.
-///
-/// # Errors
-/// [`RunError::Check`].
-pub fn check_machine(
-    scene: &MachineScene,
-    kind: PolicyKind,
     tracks: &[Track],
     on_tick: &mut dyn FnMut(u64),
 ) -> Result<Vec<Check>, RunError> {
-    let common = scene.common();
-    let mut comparisons: Vec<Comparison> = (scene.planes.iter().zip(tracks))
-        .map(|(plane, run)| Comparison::new(run, plane.scene.plant.contact.clearance_m))
+    let mut comparisons: Vec<Comparison> = (tracks.iter().enumerate())
+        .map(|(plane, run)| Comparison::new(run, scene.clearance_m(plane)))
         .collect();
-    let recorders = MachineRecorders {
+    let recorders = Recorders {
         planes: (comparisons.iter_mut())
             .map(|c| c as &mut dyn Recorder)
             .collect(),
         axis: None,
     };
-    let ended = record_machine(scene, kind, recorders, rigour(common), on_tick);
-    let ended = ended.map_err(untrusted(common))?;
+    let ended = record(scene, kind, recorders, rigour(scene), on_tick);
+    let ended = ended.map_err(untrusted(scene))?;
     Ok((comparisons.into_iter().zip(&ended))
-        .map(|(comparison, (figures, _))| comparison.ended(figures, common.rtol))
+        .map(|(comparison, (figures, _))| comparison.ended(figures, scene.rtol))
         .collect())
 }
 

@@ -12,7 +12,7 @@
 
 use crate::device::levitation::{LevitationParams, TrueLevitation};
 use crate::run::clairvoyant::{Clairvoyant, ClairvoyantLaw, largest_share, restitution, rotated};
-use crate::scene::machine::{MachineScene, PlaneScene};
+use crate::scene::{PlaneScene, Scene};
 use plant_model::{Snapshot, V2};
 
 /// The free weights of the reference.
@@ -62,7 +62,7 @@ struct OfPlane {
 
 impl WholeClairvoyant {
     /// The law on the rotor of a scene; `None` unless that has two planes with a magnet each.
-    fn new(law: WholeClairvoyantLaw, scene: &MachineScene) -> Option<Self> {
+    fn new(law: WholeClairvoyantLaw, scene: &Scene) -> Option<Self> {
         let [first, second] = scene.supervised_planes()?;
         let rigid = scene.machine.rotor.rigid();
         let planes = scene.supervised()?;
@@ -76,8 +76,8 @@ impl WholeClairvoyant {
         let of = |plane: usize, own: &PlaneScene| {
             let magnet = scene.machine.magnets.get(own.magnet?)?;
             let moves = |z_m: f64| rigid.mobility(z_m, magnet.position_m);
-            let plant = &own.scene.plant;
-            let rate_hz = own.scene.sample_rate_hz;
+            let plant = &scene.plant(planes[plane]);
+            let rate_hz = scene.sample_rate_hz;
             Some(OfPlane {
                 law: Clairvoyant::new(law.plane, plant, restitution(plant), rate_hz),
                 position_m: at(plane)?,
@@ -122,7 +122,7 @@ impl WholeClairvoyant {
 
 impl WholeReference {
     /// A law with weights on the rotor of a scene; `None` unless that has two planes with a magnet each.
-    pub fn law(law: WholeClairvoyantLaw, scene: &MachineScene) -> Option<Self> {
+    pub fn law(law: WholeClairvoyantLaw, scene: &Scene) -> Option<Self> {
         Some(Self {
             planes: scene.supervised()?,
             by: By::Law(WholeClairvoyant::new(law, scene)?),
@@ -130,19 +130,16 @@ impl WholeReference {
     }
 
     /// A PD of each plane; `None` unless there are two with a magnet each.
-    pub fn loops(gains: [LevitationParams; 2], scene: &MachineScene) -> Option<Self> {
-        let [first, second] = scene.supervised_planes()?;
-        let of = |params, plane: &PlaneScene| {
-            Some(TrueLevitation {
-                params,
-                force_max_n: plane.scene.plant.magnet?.force_max_n,
-                centre_m: -plane.scene.centre_offset_m,
-            })
+    pub fn loops(gains: [LevitationParams; 2], scene: &Scene) -> Option<Self> {
+        let of = |params, plane: usize| TrueLevitation {
+            params,
+            force_max_n: scene.force_max_n(plane),
+            centre_m: -scene.machine.planes[plane].centre_m,
         };
-        let [for_first, for_second] = gains;
+        let ([first, second], [for_first, for_second]) = (scene.supervised()?, gains);
         Some(Self {
-            planes: scene.supervised()?,
-            by: By::Loops([of(for_first, first)?, of(for_second, second)?]),
+            planes: [first, second],
+            by: By::Loops([of(for_first, first), of(for_second, second)]),
         })
     }
 
@@ -164,7 +161,7 @@ impl WholeReference {
 mod tests {
     use super::*;
     use crate::report::fixture;
-    use crate::run::closed_loop::{Keep, refer_machine};
+    use crate::run::closed_loop::{Keep, refer};
 
     const P6: &str = include_str!("../../scenes/rotors/p6.toml");
 
@@ -184,7 +181,7 @@ mod tests {
     /// What one plane wants the other does not feel, where all that its magnet does there is taken off.
     #[test]
     fn planes_can_be_decoupled() {
-        let scene = MachineScene::parse("p6.toml", P6).unwrap();
+        let scene = Scene::parse("p6.toml", P6).unwrap();
         let moves = |forces: [V2; 2], plane: usize| {
             let rigid = scene.machine.rotor.rigid();
             let z = scene.machine.planes[plane].position_m;
@@ -213,17 +210,16 @@ mod tests {
 
     #[test]
     fn brings_a_struck_rotor_back() {
-        let mut scene = MachineScene::parse("p6.toml", P6).unwrap();
+        let mut scene = Scene::parse("p6.toml", P6).unwrap();
         scene.start.tilt_rate_rad_s = V2::new(3.0, 0.0);
-        let run =
-            |reference: &WholeReference, keep| refer_machine(&scene, reference, keep).unwrap();
+        let run = |reference: &WholeReference, keep| refer(&scene, reference, keep).unwrap();
         let reference = WholeReference::law(law(0.0), &scene).unwrap();
         let full = run(&reference, Keep::Verdict);
         assert!(full.iter().all(|f| f.recovered) && full.iter().any(|f| f.impacts > 0));
         // It may end as soon as it is decided.
         let decided = run(&reference, Keep::Decision);
         assert_eq!(decided[0].impacts, full[0].impacts);
-        let gains = scene.planes[0].scene.levitation.unwrap();
+        let gains = scene.planes[0].levitation.unwrap();
         let loops = WholeReference::loops([gains; 2], &scene).unwrap();
         assert!(run(&loops, Keep::Verdict).iter().all(|f| f.recovered));
     }

@@ -31,6 +31,8 @@ pub(crate) fn events(spec: &PlaneSpec) -> Result<Events, SceneError> {
     let disturbances = each("disturbance", &written.disturbance, |path, d| {
         reader.starts(path, "start_s", d.start_s)?;
         Ok(Disturbance {
+            // Until the rotor is known.
+            position_m: 0.0,
             start_s: d.start_s,
             duration_s: d.duration_s,
             force_n: d.force_n.into(),
@@ -315,22 +317,13 @@ impl Reader<'_> {
             let help = "give spin.inertia_kg_m2, or remove the torque";
             return Err(self.error(&key, message, help));
         }
-        let of_one_plane = self.spec.text.plane.is_none();
-        if c.unbalance.is_some() && of_one_plane {
-            let key = format!("{path}.unbalance");
-            let message = "is of a whole rotor, and this scene has a point mass in one plane";
-            return Err(self.error(&key, message, "give eccentricity_m"));
-        }
         let change = Change {
             eccentricity_m: c.eccentricity_m,
             friction_coefficient: c.friction_coefficient,
             drive_torque_n_m: c.drive_torque_n_m,
         };
         if change == Change::default() && c.unbalance.is_none() {
-            let help = match of_one_plane {
-                true => "give eccentricity_m, friction_coefficient or drive_torque_n_m",
-                false => "give unbalance, eccentricity_m, friction_coefficient or drive_torque_n_m",
-            };
+            let help = "give eccentricity_m, unbalance, friction_coefficient or drive_torque_n_m";
             return Err(self.error(path, "changes nothing", help));
         }
         Ok(TimedChange {

@@ -8,6 +8,12 @@ use crate::scene::tables::{ContactTable, FrictionTable, PlaneTable, SceneTables,
 /// One plane, with every table that it cannot do without.
 #[derive(Debug, Clone)]
 pub(crate) struct PlaneSpec {
+    /// Which of the planes it is.
+    pub(crate) index: usize,
+    /// Its name.
+    pub(crate) name: String,
+    /// Where along the axis, as the scene counts; the centre of mass where it does not say.
+    pub(crate) position_m: Option<f64>,
     /// Speaks of the plane.
     pub(crate) text: SceneText,
     /// The scene's tables, the plane's own in their place.
@@ -22,94 +28,17 @@ pub(crate) struct PlaneSpec {
 }
 
 impl Spec {
-    /// Whether it describes a whole rotor.
-    pub fn has_planes(&self) -> bool {
-        !self.tables.plane.is_empty()
-    }
-
-    /// The plane of a scene that has one.
-    pub(crate) fn only_plane(&self) -> Result<PlaneSpec, SceneError> {
-        let (tables, text) = (&self.tables, &self.text);
-        if self.has_planes() {
-            let message = "makes this a scene of a whole rotor, which does not go here".to_owned();
-            let help = "run, modes and advise take such a scene; what else there is needs one of a single plane";
-            return Err(text.error_at_key("plane", message, Some(help.to_owned())));
-        }
-        let (rotor, start) = (&tables.rotor, &tables.start);
-        let load = (tables.disturbance.iter()).position(|d| d.position_m.is_some());
-        let of_several = [
-            (
-                "rotor.transverse_inertia_kg_m2",
-                rotor.transverse_inertia_kg_m2.is_some(),
-            ),
-            (
-                "rotor.polar_inertia_kg_m2",
-                rotor.polar_inertia_kg_m2.is_some(),
-            ),
-            ("rotor.bending", !rotor.bending.is_empty()),
-            (
-                "rotor.polar_coupling_kg_m2",
-                !rotor.polar_coupling_kg_m2.0.is_empty(),
-            ),
-            ("start.tilt_rad", start.tilt_rad.is_some()),
-            ("start.tilt_rate_rad_s", start.tilt_rate_rad_s.is_some()),
-            ("shaft", !tables.shaft.is_empty()),
-            ("disc", !tables.disc.is_empty()),
-            ("rotor.bending_to_hz", rotor.bending_to_hz.is_some()),
-            (
-                "rotor.bending_damping_ratio",
-                rotor.bending_damping_ratio.is_some(),
-            ),
-            ("rotor.elements", rotor.elements.is_some()),
-            ("rotor.matrices_file", rotor.matrices_file.is_some()),
-            ("support", !tables.support.is_empty()),
-            ("unbalance", !tables.unbalance.is_empty()),
-            (
-                "magnet.position_m",
-                tables
-                    .magnet
-                    .as_ref()
-                    .is_some_and(|m| m.position_m.is_some()),
-            ),
-            (
-                "magnet.poles",
-                (tables.magnet.as_ref()).is_some_and(|m| m.poles.is_some()),
-            ),
-            (
-                "magnet.lag_damping_ratio",
-                (tables.magnet.as_ref()).is_some_and(|m| m.lag_damping_ratio.is_some()),
-            ),
-            (
-                "race.load_drag_m",
-                (tables.race.as_ref()).is_some_and(|race| race.load_drag_m.is_some()),
-            ),
-            ("retainer.heat", tables.retainer.heat.is_some()),
-            ("sensor.position_m", tables.sensor.position_m.is_some()),
-            (
-                "levitation.tilt",
-                tables.levitation.as_ref().is_some_and(|l| l.tilt.is_some()),
-            ),
-        ];
-        let of_load = load.map_or_else(String::new, |i| format!("disturbance[{i}].position_m"));
-        let message = "is of a whole rotor, and this scene has a point mass in one plane";
-        let help = "describe the bearing planes by [[plane]], or remove it";
-        text.none_given(&of_several, message, help)?;
-        text.none_given(&[(of_load.as_str(), load.is_some())], message, help)?;
-        PlaneSpec::new(text.clone(), tables.clone(), self.caller.clone(), false)
-    }
-
-    /// The planes of a whole rotor.
+    /// Its planes; without a `[[plane]]` there is one, at the centre of mass, of which the scene's own tables speak.
     pub(crate) fn planes(&self) -> Result<Vec<PlaneSpec>, SceneError> {
+        if self.tables.plane.is_empty() {
+            let tables = self.tables.clone();
+            return Ok(vec![PlaneSpec::new(self, self.text.clone(), tables, None)?]);
+        }
         let planes = self.tables.plane.iter().enumerate();
         planes
             .map(|(i, plane)| {
                 let tables = with_own(self.tables.clone(), plane);
-                PlaneSpec::new(
-                    self.text.of_plane(i),
-                    tables,
-                    self.caller.clone(),
-                    plane.seal,
-                )
+                PlaneSpec::new(self, self.text.of_plane(i), tables, Some(plane))
             })
             .collect()
     }
@@ -153,10 +82,10 @@ fn with_own(mut tables: SceneTables, plane: &PlaneTable) -> SceneTables {
 
 impl PlaneSpec {
     fn new(
+        spec: &Spec,
         text: SceneText,
         tables: SceneTables,
-        caller: Option<Caller>,
-        seal: bool,
+        own: Option<&PlaneTable>,
     ) -> Result<Self, SceneError> {
         let missing = |key: &str, give: &str| {
             let (key, help) = match text.plane {
@@ -180,10 +109,13 @@ impl PlaneSpec {
                 let give = "give the rotor's radius in the retainer bearing in m";
                 missing(radius_key, give)
             })?,
-            seal,
+            index: text.plane.unwrap_or(0),
+            name: own.map_or_else(String::new, |plane| plane.name.clone()),
+            position_m: own.map(|plane| plane.position_m),
+            seal: own.is_some_and(|plane| plane.seal),
+            caller: spec.caller.clone(),
             text,
             tables,
-            caller,
         })
     }
 }

@@ -12,14 +12,8 @@ use plant_model::params::{
 };
 use std::f64::consts::TAU;
 
-/// The plant that a scene file describes, checked.
-pub(crate) fn plant(spec: &PlaneSpec) -> Result<PlantParams, SceneError> {
-    let rotor = rotor(spec)?;
-    plant_of(spec, rotor)
-}
-
-/// The plant with a rotor that is known otherwise.
-pub(crate) fn plant_of(spec: &PlaneSpec, rotor: RotorParams) -> Result<PlantParams, SceneError> {
+/// The plant of a plane with a rotor that is known, checked.
+pub(crate) fn plant(spec: &PlaneSpec, rotor: RotorParams) -> Result<PlantParams, SceneError> {
     let (file, text) = (&spec.tables, &spec.text);
     let magnet = file.magnet.as_ref();
     let mut plant = PlantParams {
@@ -297,46 +291,6 @@ fn restore(
         }
     }
     Ok(())
-}
-
-/// A point mass on its shaft and in its magnet's field.
-fn rotor(spec: &PlaneSpec) -> Result<RotorParams, SceneError> {
-    let (file, text) = (&spec.tables.rotor, &spec.text);
-    let magnet = spec.tables.magnet.as_ref();
-    let negative_n_m = magnet.map_or(0.0, |m| m.negative_stiffness_n_m);
-    let mass_kg = (file.mass_kg)
-        .ok_or_else(|| text.missing_at("rotor.mass_kg", "give a number in kg".to_owned()))?;
-    let shaft_n_m = text
-        .either(
-            Given::new("rotor.stiffness_n_m", file.stiffness_n_m),
-            Given::new(
-                "rotor.natural_frequency_hz",
-                file.natural_frequency_hz
-                    .map(|f| mass_kg * (f * TAU).powi(2)),
-            ),
-        )?
-        .unwrap_or(0.0);
-    if file.damping_ratio.is_some() && shaft_n_m <= 0.0 {
-        let message = "has no meaning without shaft stiffness".to_owned();
-        let help = Some("give rotor.damping_n_s_m instead".to_owned());
-        return Err(text.error_at_key("rotor.damping_ratio", message, help));
-    }
-    let by_ratio = file
-        .damping_ratio
-        .map(|ratio| 2.0 * ratio * (mass_kg * shaft_n_m).sqrt());
-    let damping_n_s_m = text
-        .either(
-            Given::new("rotor.damping_n_s_m", file.damping_n_s_m),
-            Given::new("rotor.damping_ratio", by_ratio),
-        )?
-        .unwrap_or(0.0);
-    Ok(RotorParams {
-        mass_kg,
-        stiffness_n_m: shaft_n_m - negative_n_m,
-        damping_n_s_m,
-        eccentricity_m: file.eccentricity_m,
-        contact_radius_m: spec.contact_radius_m,
-    })
 }
 
 fn ring(file: &RingTable) -> RingParams {

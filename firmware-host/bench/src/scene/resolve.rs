@@ -1,25 +1,28 @@
 //! From what the user wrote to a scene that can be run.
 
+use crate::device::levitation::LevitationParams;
+use crate::device::loads::Disturbance;
+use crate::device::modal_levitation::{ModalLevitationParams, Station, TiltParams, Weights};
 use crate::device::sensor::SpinSensorParams;
-use crate::scene::Scene;
+use crate::device::whole_levitation::WholeLevitationParams;
+use crate::scene::bearing;
 use crate::scene::devices::centre_offset_m;
 use crate::scene::diagnostic::{SceneError, SceneText};
-use crate::scene::events::events;
-use crate::scene::guess;
-use crate::scene::limits::{damping_n_s_m, whirl_speed_m_s};
-use crate::scene::lint::{Told, slips, unseen, warnings};
-use crate::scene::nominal::{NominalKeys, config, nominal, overrides};
+use crate::scene::lint::slips;
 use crate::scene::own_controller::own_controller;
+use crate::scene::plane::OfMachine;
 use crate::scene::plane_spec::PlaneSpec;
-use crate::scene::plant::{hardening_key, plant, plant_of, refused};
-use crate::scene::policy_kind::PolicyKind;
+use crate::scene::poles::poles;
+use crate::scene::refused::refused;
+use crate::scene::rotor::{self, Origin};
 use crate::scene::spec::Spec;
-use crate::scene::tables::SceneTables;
-use crate::scene::values::MethodName;
+use crate::scene::start::start;
+use crate::scene::tables::{PlaneTable, SceneTables, TiltTable};
+use crate::scene::{Scene, in_file_names};
 use plant_model::V2;
-use plant_model::machine::point_mass::PointMass;
-use plant_model::params::{ContactLaw, PlantParams, RotorParams, Start};
-use std::f64::consts::TAU;
+use plant_model::machine::params::{
+    MachineChange, MachineMagnet, MachineParams, MachinePlane, Rotor, Support,
+};
 
 /// Rows of traces that a run may keep, of all its policies: some 0.3 KB each.
 const MOST_ROWS: f64 = 1e7;
@@ -30,180 +33,178 @@ impl Spec {
     /// # Errors
     /// [`SceneError`] with file, line and key, and with slips beside it that may be the reason.
     pub fn resolve(&self) -> Result<Scene, SceneError> {
-        let plane = self.only_plane()?;
-        let resolved = || {
-            self.check_ranges()?;
-            plane.resolve(None)
-        };
-        resolved().map_err(|error| error.beside(&slips(&plane)))
+        let planes = self.planes()?;
+        let resolved = self.resolve_with(&planes);
+        let doubts = planes.first().map(slips).unwrap_or_default();
+        resolved.map_err(|error| error.beside(&doubts))
     }
-}
 
-/// What a plane is to the rotor that it shares with others.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct OfMachine {
-    /// The rotor as an impact in this plane finds it.
-    pub(crate) point: PointMass,
-    /// Mass whose weight its magnet carries \[kg\].
-    pub(crate) carried_kg: f64,
-    /// What the shaft gives way there beside its modes \[m/N\].
-    pub(crate) residual_m_n: f64,
-    pub(crate) retainer_plane_ratio: f64,
-    pub(crate) magnet_plane_ratio: f64,
-    /// Force at a plane without a magnet that moves it as all magnets elsewhere do together \[N\]; 0 where it has one, or
-    /// nobody has.
-    pub(crate) others_n: f64,
-    /// Whether it is levitated by a controller of its own.
-    pub(crate) levitated_alone: bool,
-}
-
-impl PlaneSpec {
-    /// A scene of this plane alone; `of` a rotor that it shares, the design model that controllers of the plane have of it.
-    pub(crate) fn resolve(&self, of: Option<&OfMachine>) -> Result<Scene, SceneError> {
-        let (written, text) = (&self.tables, &self.text);
-        let plant = match of {
-            None => plant(self)?,
-            Some(of) => {
-                let point = RotorParams {
-                    mass_kg: of.point.mass_kg,
-                    stiffness_n_m: of.point.stiffness_n_m,
-                    damping_n_s_m: of.point.damping_n_s_m,
-                    eccentricity_m: 0.0,
-                    contact_radius_m: self.contact_radius_m,
-                };
-                let mut plant = plant_of(self, point)?;
-                give_way(&mut plant, of.residual_m_n);
-                plant
+    fn resolve_with(&self, planes: &[PlaneSpec]) -> Result<Scene, SceneError> {
+        let (tables, text) = (&self.tables, &self.text);
+        self.check_ranges()?;
+        check_title_and_length(tables, text)?;
+        check_together(tables, text)?;
+        let (mut machine, origin) = rotor::machine(tables, planes, text)?;
+        for plane in planes {
+            let place = |own: Option<f64>| {
+                own.or(plane.position_m)
+                    .map_or(0.0, |z| origin.centred_m(z))
+            };
+            machine.probes_m.push(place(plane.tables.sensor.position_m));
+            if let Some(magnet) = &plane.tables.magnet {
+                let position_m = place(magnet.position_m);
+                machine.magnets.push(MachineMagnet {
+                    position_m,
+                    force_max_n: magnet.force_max_n,
+                    lag_s: magnet.lag_s,
+                    lag_damping_ratio: magnet.lag_damping_ratio,
+                    poles: poles(magnet, &plane.text)?,
+                });
+                if magnet.negative_stiffness_n_m > 0.0 {
+                    machine.supports.push(Support {
+                        position_m,
+                        stiffness_n_m: V2::repeat(-magnet.negative_stiffness_n_m),
+                        ..Support::default()
+                    });
+                }
             }
-        };
-        let mut start = Start {
-            position_m: written.start.position_m.into(),
-            velocity_m_s: written.start.velocity_m_s.into(),
-            spin_rad_s: written.spin.frequency_hz * TAU,
-            spin_phase_rad: written.start.spin_phase_rad,
-        };
-        start.validate().map_err(|error| refused(&error, text))?;
-        check_method(self, &plant)?;
-        check_title_and_length(written, text)?;
-        if let Some(m) = &written.magnet
-            && m.delay_samples + m.delay_jitter_samples > 7
-        {
-            let message = format!(
-                "makes {} samples with magnet.delay_samples, expected at most 7",
-                m.delay_samples + m.delay_jitter_samples
-            );
-            let help = Some("shorten one of them".to_owned());
-            return Err(text.error_at_key("magnet.delay_jitter_samples", message, help));
         }
-        // Where others have the magnets, policies are theirs.
-        let others_n = of.map_or(0.0, |of| of.others_n);
-        let policies = policies(self, others_n > 0.0)?;
-        let events = events(self)?;
-        let centre_offset_m = centre_offset_m(self)?;
-        start.position_m -= centre_offset_m;
-        let whirl_speed_m_s = whirl_speed_m_s(self, &plant, others_n)?;
-        let damps = policies.contains(&PolicyKind::Damping) && others_n == 0.0;
-        let damping_n_s_m = damping_n_s_m(self, &plant, damps)?;
-        let weight_n = match of {
-            None => plant.rotor.mass_kg,
-            Some(of) => of.carried_kg,
-        } * V2::from(written.rotor.gravity_m_s2);
-        let mut nominal = nominal(&plant, self);
-        if let Some(of) = of {
-            nominal.load_n = weight_n.norm();
-            nominal.retainer_plane_ratio = of.retainer_plane_ratio;
-            nominal.magnet_plane_ratio = of.magnet_plane_ratio;
+        // What the firmware has to do with.
+        let known: Vec<PlaneSpec> = planes.iter().filter(|p| !p.seal).cloned().collect();
+        let levitation = match own_controller(tables, text, &known)? {
+            Some(own) => Some(own),
+            None => modal_levitation(planes, &machine, text)?.map(WholeLevitationParams::Modal),
+        };
+        // What controllers are designed for.
+        let linear = machine.linear_magnets();
+        let weights = Weights::new(&positions(&machine.magnets));
+        let mut magnet = 0;
+        let mut all = Vec::new();
+        for plane in planes {
+            let own = plane.tables.magnet.is_some().then_some(magnet);
+            magnet += usize::from(own.is_some());
+            let rigid = machine.rotor.rigid();
+            let position_m = plane.position_m.map_or(0.0, |z| origin.centred_m(z));
+            let lever = |place_m: f64| rigid.lever(place_m, position_m);
+            let of = OfMachine {
+                point: linear.point_mass(position_m),
+                carried_kg: match own {
+                    Some(m) => weights.translation[m] * rigid.mass_kg,
+                    // Without a magnet an only plane carries all.
+                    None if planes.len() == 1 => rigid.mass_kg,
+                    None => 0.0,
+                },
+                residual_m_n: plane.position_m.map_or(0.0, |z| origin.residual_m_n(z)),
+                magnet: own,
+                retainer_plane_ratio: 1.0 / lever(machine.probes_m[plane.index]),
+                magnet_plane_ratio: own.map_or(1.0, |m| lever(machine.magnets[m].position_m)),
+                others_n: match own {
+                    Some(_) => 0.0,
+                    None => (machine.magnets.iter())
+                        .map(|m| (lever(m.position_m) * m.force_max_n).abs())
+                        .sum(),
+                },
+                // What a plane's loop is worth where other magnets pull too no plane can say.
+                levitated_alone: levitation.is_none() && machine.magnets.len() < 2,
+            };
+            let resolved = plane.resolve(&of)?;
+            machine.planes.push(MachinePlane {
+                position_m,
+                centre_m: centre_offset_m(plane)?,
+                radius_m: plane.contact_radius_m,
+                contact: resolved.plant.contact,
+                friction: resolved.plant.friction,
+                stator: resolved.plant.stator,
+                race: resolved.plant.race,
+                load_drag: bearing::load_drag(&plane.tables),
+                heat: bearing::heat(&plane.tables),
+            });
+            all.push(resolved);
         }
-        let nominal_keys = NominalKeys::new(&nominal, self);
-        let overrides = overrides(self)?;
-        let supervised = policies.contains(&PolicyKind::Supervisor) && others_n == 0.0;
-        let supervisor = supervised
-            .then(|| config(&nominal, &nominal_keys, &overrides, text))
-            .transpose()?;
-        let told = Told {
-            nominal: &nominal,
-            overrides: &overrides,
-            config: supervisor.as_ref(),
-            levitated_alone: of.is_none_or(|of| of.levitated_alone),
+        let start = start(tables, text, &machine)?;
+        let mut warnings: Vec<String> = Vec::new();
+        for warning in all.iter().flat_map(|plane| &plane.warnings) {
+            if !warnings.contains(warning) {
+                warnings.push(warning.clone());
+            }
+        }
+        let Some(first) = all.first() else {
+            return Err(text.missing_at("plane", "give one bearing plane at least".to_owned()));
         };
-        let warnings = match text.warns {
-            true => [warnings(self, &plant, told), unseen(self)].concat(),
-            false => Vec::new(),
-        };
-        let (run, spin_sensor) = (&written.run, &written.spin_sensor);
-        let levitation = written.levitation.as_ref();
-        let controller = match of {
-            // That of several planes is the machine's.
-            Some(_) => None,
-            None => own_controller(written, text, std::slice::from_ref(self))?,
-        };
-        Ok(Scene {
-            title: written.title.clone(),
-            story: written.story.trim().to_owned(),
-            plant,
-            start,
-            weight_n,
-            feed_forward_n: match written.feeds_weight_forward() {
-                true => -weight_n,
-                false => V2::zeros(),
-            },
-            disturbances: events.disturbances,
-            base_motions: events.base_motions,
-            changes: events.changes,
-            set_downs: events.set_downs,
-            levitated_before: written.start.levitated_before,
-            centre_offset_m,
-            severity_allowed: written.retainer.severity_allowed,
+        let mut changes = first.changes.clone();
+        for change in &mut changes {
+            change.unbalance = change.unbalance.map(|u| origin.centred(u));
+        }
+        let run = &tables.run;
+        let mut scene = Scene {
+            title: tables.title.clone(),
+            story: tables.story.trim().to_owned(),
+            disturbances: self.disturbances(&first.disturbances, &origin),
+            base_motions: first.base_motions.clone(),
+            changes,
+            levitated_before: tables.start.levitated_before,
             duration_s: run.duration_s,
             sample_rate_hz: run.sample_rate_hz,
             rtol: run.rtol,
             method: run.method.into(),
-            seed: run.seed,
-            policies,
-            amplifier: written.magnet.as_ref().map(Into::into).unwrap_or_default(),
-            outages: events.outages,
-            sensor: (&written.sensor).into(),
-            faults: events.faults,
+            policies: first.policies.clone(),
             spin_sensor: SpinSensorParams {
-                valid: spin_sensor.valid,
-                gain: match spin_sensor.reversed {
-                    true => -spin_sensor.gain,
-                    false => spin_sensor.gain,
+                valid: tables.spin_sensor.valid,
+                gain: match tables.spin_sensor.reversed {
+                    true => -tables.spin_sensor.gain,
+                    false => tables.spin_sensor.gain,
                 },
             },
-            levitation: levitation.map(Into::into),
-            controller,
-            radial_band: written.radial.band,
-            damping_n_s_m,
-            supervisor,
-            nominal,
-            nominal_keys,
-            decided: Vec::new(),
-            overrides,
-            whirl_speed_m_s,
+            machine,
+            start,
+            planes: all.into_iter().map(|resolved| resolved.plane).collect(),
+            levitation,
+            eccentricity_m: tables.rotor.eccentricity_m,
+            told: None,
             warnings,
-        })
+        };
+        (scene.machine_with_loads().validate())
+            .and_then(|()| scene.machine.method(tables.run.method.into()).map(drop))
+            .and_then(|()| start.validate())
+            .map_err(|error| refused(&error, self, &scene.planes))?;
+        self.check_places_of_changes(&scene.machine.rotor, &origin)?;
+        scene.decide(text);
+        match scene.refused_by_supervisor() {
+            Some((plane, error)) => {
+                let message = format!("leaves no supervisor for the rotor: {error}");
+                let help = Some("or run without the policy supervisor".to_owned());
+                let key = format!("plane[{plane}].position_m");
+                Err(text.error_at_key(&key, message, help))
+            }
+            None => Ok(scene),
+        }
     }
-}
 
-/// A contact in series with a spring: what the shaft bends there in modes that are not kept.
-fn give_way(plant: &mut PlantParams, residual_m_n: f64) {
-    if let ContactLaw::Linear(law) = &mut plant.contact.law {
-        let share = 1.0 / (1.0 + law.stiffness_n_m * residual_m_n);
-        law.stiffness_n_m *= share;
-        // Of slow motions the damper sees that share of the way, and its force counts by it once more.
-        law.damping_n_s_m *= share * share;
+    /// Unbalances that come later have to be on the rotor as well.
+    fn check_places_of_changes(&self, rotor: &Rotor, origin: &Origin) -> Result<(), SceneError> {
+        for (i, change) in self.tables.change.iter().enumerate() {
+            let change = MachineChange {
+                unbalance: (change.unbalance.as_ref()).map(|u| origin.centred(u.into())),
+                ..MachineChange::default()
+            };
+            change.validate(rotor).map_err(|error| {
+                let key = format!("change[{i}].{}", error.field);
+                self.text.refused(&key, error.value, error.expected)
+            })?;
+        }
+        Ok(())
     }
-}
 
-fn check_method(spec: &PlaneSpec, plant: &PlantParams) -> Result<(), SceneError> {
-    if spec.tables.run.method != MethodName::Series || plant.has_series() {
-        return Ok(());
+    /// Disturbances where they act.
+    fn disturbances(&self, all: &[Disturbance], origin: &Origin) -> Vec<Disturbance> {
+        let places = self.tables.disturbance.iter().map(|d| d.position_m);
+        (all.iter().zip(places))
+            .map(|(disturbance, place)| Disturbance {
+                position_m: place.map_or(0.0, |z| origin.centred_m(z)),
+                ..*disturbance
+            })
+            .collect()
     }
-    let with = hardening_key(&spec.contact).unwrap_or("retainer.ellipticity");
-    let message = format!("series does not go with {with}");
-    let help = "take auto or collocation: this contact has no power series at the touch";
-    Err((spec.text).error_at_key("run.method", message, Some(help.to_owned())))
 }
 
 fn check_title_and_length(written: &SceneTables, text: &SceneText) -> Result<(), SceneError> {
@@ -226,39 +227,118 @@ fn check_title_and_length(written: &SceneTables, text: &SceneText) -> Result<(),
     Ok(())
 }
 
-fn policies(spec: &PlaneSpec, of_others: bool) -> Result<Vec<PolicyKind>, SceneError> {
-    let known = PolicyKind::ALL.map(PolicyKind::name);
-    let names = known.join(", ");
-    let refused = |message: String, help: String| {
-        (spec.text).error_at_key("run.policies", message, Some(help))
+fn positions(magnets: &[MachineMagnet]) -> Vec<f64> {
+    magnets.iter().map(|m| m.position_m).collect()
+}
+
+/// What a machine does not have, and names that are needed to tell its planes apart.
+fn check_together(tables: &SceneTables, text: &SceneText) -> Result<(), SceneError> {
+    let error = |key: &str, message: &str, help: &str| {
+        Err(text.error_at_key(key, message.to_owned(), Some(help.to_owned())))
     };
-    let mut policies = Vec::new();
-    for name in &spec.tables.run.policies.0 {
-        let kind = PolicyKind::from_name(name).ok_or_else(|| {
-            let help = guess::before(format!("policies are {names}"), name, known);
-            refused(format!("there is no policy \"{name}\""), help)
-        })?;
-        let (message, help) = if policies.contains(&kind) {
-            ("is named twice", "name each policy once")
-        } else if of_others {
-            policies.push(kind);
-            continue;
-        } else if kind != PolicyKind::Passive && spec.tables.magnet.is_none() {
-            ("needs a magnet", "add a [magnet], or run only \"passive\"")
-        } else if kind.levitates() && !spec.tables.levitates() {
-            (
-                "needs a levitation controller",
-                "add [levitation] with its gains, or a controller of your own: [state_space], [biquads] or [controller]",
-            )
-        } else {
-            policies.push(kind);
-            continue;
-        };
-        return Err(refused(format!("\"{name}\" {message}"), help.to_owned()));
+    for (i, plane) in tables.plane.iter().enumerate() {
+        let key = format!("plane[{i}].name");
+        if plane.name.trim().is_empty() || plane.name.chars().any(char::is_control) {
+            let message = "expected a name in one line, without control characters";
+            return error(&key, message, "as \"coupling end\"");
+        }
+        let alike = |other: &PlaneTable| in_file_names(&other.name) == in_file_names(&plane.name);
+        if let Some(j) = tables.plane[..i].iter().position(alike) {
+            let message = format!("is that of plane[{j}], or makes the same name of a file");
+            return error(&key, &message, "give each plane a name of its own");
+        }
+        let own = plane.levitation.as_ref();
+        if own.is_some_and(|l| l.tilt.is_some()) {
+            let key = format!("plane[{i}].levitation.tilt");
+            let message = "is of the whole rotor, and not of one plane";
+            return error(&key, message, "give it as [levitation.tilt]");
+        }
+        if plane.seal {
+            let key = |table: &str| format!("plane[{i}].{table}");
+            let of_a_bearing = [
+                (key("magnet"), plane.magnet.is_some()),
+                (key("sensor"), plane.sensor.is_some()),
+                (key("levitation"), plane.levitation.is_some()),
+                (key("biquads"), plane.biquads.is_some()),
+                (key("supervisor"), plane.supervisor.is_some()),
+                (key("outage"), !plane.outage.is_empty()),
+                (key("fault"), !plane.fault.is_empty()),
+                (key("start_position_m"), plane.start_position_m.is_some()),
+                (
+                    key("start_velocity_m_s"),
+                    plane.start_velocity_m_s.is_some(),
+                ),
+            ];
+            let given = of_a_bearing
+                .each_ref()
+                .map(|(key, given)| (key.as_str(), *given));
+            let message = "is of a bearing, and this plane is a seal";
+            text.none_given(&given, message, "remove it, or seal = true")?;
+        }
+        let gains_or_filters = [
+            ("levitation", own.is_some()),
+            ("biquads", plane.biquads.is_some()),
+        ];
+        for whole in tables.own_of_the_whole() {
+            if let Some((key, _)) = gains_or_filters.iter().find(|(_, given)| *given) {
+                let key = format!("plane[{i}].{key}");
+                let message = format!("does not go with [{whole}], which holds the whole rotor");
+                return error(&key, &message, "remove one of them");
+            }
+        }
+        let by_mode = tables.levitation.as_ref().is_some_and(|l| l.tilt.is_some());
+        if by_mode && own.is_some() {
+            let key = format!("plane[{i}].levitation");
+            let message = "does not go with [levitation.tilt], which holds the whole rotor";
+            return error(&key, message, "remove one of them");
+        }
     }
-    if policies.is_empty() {
-        let help = format!("name at least one of {names}");
-        return Err(refused("is empty".to_owned(), help));
+    Ok(())
+}
+
+/// The controller of the whole rotor, where the scene has one.
+fn modal_levitation(
+    planes: &[PlaneSpec],
+    machine: &MachineParams,
+    text: &SceneText,
+) -> Result<Option<ModalLevitationParams>, SceneError> {
+    let with_sensor = || (planes.iter().zip(&machine.probes_m)).filter(|(plane, _)| !plane.seal);
+    let Some((levitation, tilt)) = (with_sensor().next())
+        .and_then(|(plane, _)| plane.tables.levitation.as_ref())
+        .and_then(|l| Some((l, l.tilt.as_ref()?)))
+    else {
+        return Ok(None);
+    };
+    let apart = |places: &[f64]| places.iter().any(|z| *z != places[0]);
+    let sensors_m: Vec<f64> = with_sensor().map(|(_, sensor_m)| *sensor_m).collect();
+    let magnets_m = positions(&machine.magnets);
+    for (places, what) in [(&sensors_m, "sensors"), (&magnets_m, "magnets")] {
+        if places.len() < 2 || !apart(places) {
+            let message = format!("needs {what} at two places at least to tell and turn a tilt");
+            let help = "give planes of different position_m a sensor and a magnet each".to_owned();
+            return Err(text.error_at_key("levitation.tilt", message, Some(help)));
+        }
     }
-    Ok(policies)
+    let mut magnets = machine.magnets.iter();
+    Ok(Some(ModalLevitationParams {
+        translation: LevitationParams::from(levitation),
+        tilt: tilt_params(tilt, machine.rotor.rigid().polar_inertia_kg_m2),
+        stations: with_sensor()
+            .map(|(plane, sensor_m)| Station {
+                sensor_m: *sensor_m,
+                magnet: (plane.tables.magnet.as_ref())
+                    .and_then(|_| magnets.next())
+                    .map(|m| (m.position_m, m.force_max_n)),
+            })
+            .collect(),
+    }))
+}
+
+fn tilt_params(tilt: &TiltTable, polar_inertia_kg_m2: f64) -> TiltParams {
+    TiltParams {
+        proportional_n_m_rad: tilt.proportional_n_m_rad,
+        integral_n_m_rad_s: tilt.integral_n_m_rad_s,
+        derivative_n_m_s_rad: tilt.derivative_n_m_s_rad,
+        cross_kg_m2: tilt.cross_feedback * polar_inertia_kg_m2,
+    }
 }

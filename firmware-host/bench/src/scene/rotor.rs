@@ -1,7 +1,8 @@
 //! The rotor of a machine, and what acts on it apart from its planes.
 
 use crate::scene::arrays::Arrays;
-use crate::scene::diagnostic::{SceneError, SceneText};
+use crate::scene::diagnostic::{Given, SceneError, SceneText};
+use crate::scene::plane_spec::PlaneSpec;
 use crate::scene::plant::spin;
 use crate::scene::tables::{BendingTable, SceneTables, SupportTable, UnbalanceTable};
 use plant_model::V2;
@@ -56,31 +57,23 @@ impl Origin {
 /// A machine without planes, magnets and loads, and where positions count from.
 pub(crate) fn machine(
     tables: &SceneTables,
+    planes: &[PlaneSpec],
     text: &SceneText,
 ) -> Result<(MachineParams, Origin), SceneError> {
     let written = &tables.rotor;
-    let of_a_point = [
-        ("rotor.stiffness_n_m", written.stiffness_n_m.is_some()),
-        (
-            "rotor.natural_frequency_hz",
-            written.natural_frequency_hz.is_some(),
-        ),
-        ("rotor.damping_n_s_m", written.damping_n_s_m.is_some()),
-        ("rotor.damping_ratio", written.damping_ratio.is_some()),
-    ];
-    let help = "give a [[support]] with position_m, stiffness_n_m and damping_n_s_m";
-    text.none_given(
-        &of_a_point,
-        "is of a point mass; a whole rotor stands on supports",
-        help,
-    )?;
     let (rotor, origin) = if let Some(file) = &written.matrices_file {
         given(by_matrices(file, tables, text)?)
     } else if tables.shaft.is_empty() {
-        (by_numbers(tables, text)?, Origin::Centre)
+        (by_numbers(tables, planes, text)?, Origin::Centre)
     } else {
         given(of_a_shaft(tables, text)?)
     };
+    if let Origin::Given(_) = origin
+        && tables.plane.is_empty()
+    {
+        let help = "say by [[plane]] with position_m where along the shaft the bearing is";
+        return Err(text.missing_at("plane", help.to_owned()));
+    }
     let moment_kg_m = rotor.rigid().mass_kg * written.eccentricity_m;
     let eccentric = (moment_kg_m > 0.0).then_some(Unbalance {
         position_m: 0.0,
@@ -88,11 +81,14 @@ pub(crate) fn machine(
         angle_rad: 0.0,
     });
     let unbalances = tables.unbalance.iter().map(|u| origin.centred(u.into()));
+    let supports = tables
+        .support
+        .iter()
+        .map(|written| support(&origin, written));
+    let own = of_the_centre(rotor.rigid().mass_kg, tables, text)?;
     let machine = MachineParams {
+        supports: supports.chain(own).collect(),
         rotor,
-        supports: (tables.support.iter())
-            .map(|written| support(&origin, written))
-            .collect(),
         spin: spin(tables, text)?,
         unbalances: unbalances.chain(eccentric).collect(),
         magnets: Vec::new(),
@@ -106,6 +102,38 @@ pub(crate) fn machine(
 
 fn given(rotor: ReducedRotor) -> (Rotor, Origin) {
     (rotor.rotor.clone(), Origin::Given(rotor))
+}
+
+/// What holds the centre of mass itself: the elastic shaft of a rotor that is one mass.
+fn of_the_centre(
+    mass_kg: f64,
+    tables: &SceneTables,
+    text: &SceneText,
+) -> Result<Option<Support>, SceneError> {
+    let file = &tables.rotor;
+    let by_frequency = (file.natural_frequency_hz).map(|f| mass_kg * (f * TAU).powi(2));
+    let stiffness_n_m = text.either(
+        Given::new("rotor.stiffness_n_m", file.stiffness_n_m),
+        Given::new("rotor.natural_frequency_hz", by_frequency),
+    )?;
+    let shaft_n_m = stiffness_n_m.unwrap_or(0.0);
+    if file.damping_ratio.is_some() && shaft_n_m <= 0.0 {
+        let message = "has no meaning without shaft stiffness".to_owned();
+        let help = Some("give rotor.damping_n_s_m instead".to_owned());
+        return Err(text.error_at_key("rotor.damping_ratio", message, help));
+    }
+    let by_ratio = (file.damping_ratio).map(|ratio| 2.0 * ratio * (mass_kg * shaft_n_m).sqrt());
+    let damping_n_s_m = text.either(
+        Given::new("rotor.damping_n_s_m", file.damping_n_s_m),
+        Given::new("rotor.damping_ratio", by_ratio),
+    )?;
+    Ok(
+        (stiffness_n_m.is_some() || damping_n_s_m.is_some()).then(|| Support {
+            stiffness_n_m: V2::repeat(shaft_n_m),
+            damping_n_s_m: V2::repeat(damping_n_s_m.unwrap_or(0.0)),
+            ..Support::default()
+        }),
+    )
 }
 
 /// A support, in series with what the rotor gives way there beside its modes. Spring and damper share
@@ -137,7 +165,11 @@ impl From<&UnbalanceTable> for Unbalance {
 }
 
 /// A rotor by mass, inertias and modes.
-fn by_numbers(tables: &SceneTables, text: &SceneText) -> Result<Rotor, SceneError> {
+fn by_numbers(
+    tables: &SceneTables,
+    planes: &[PlaneSpec],
+    text: &SceneText,
+) -> Result<Rotor, SceneError> {
     let written = &tables.rotor;
     let of_a_shaft = [
         ("disc", !tables.disc.is_empty()),
@@ -156,12 +188,16 @@ fn by_numbers(tables: &SceneTables, text: &SceneText) -> Result<Rotor, SceneErro
     let needed = |key: &str, value: Option<f64>, give: &str| {
         value.ok_or_else(|| text.missing_at(&format!("rotor.{key}"), give.to_owned()))
     };
+    let mass_kg = needed(
+        "mass_kg",
+        written.mass_kg,
+        "give a number in kg, or [[shaft]]",
+    )?;
+    if is_a_point(tables, planes) {
+        return Ok(Rotor::Rigid(RigidRotor::point(mass_kg)));
+    }
     let rigid = RigidRotor {
-        mass_kg: needed(
-            "mass_kg",
-            written.mass_kg,
-            "give a number in kg, or [[shaft]]",
-        )?,
+        mass_kg,
         transverse_inertia_kg_m2: needed(
             "transverse_inertia_kg_m2",
             written.transverse_inertia_kg_m2,
@@ -184,6 +220,18 @@ fn by_numbers(tables: &SceneTables, text: &SceneText) -> Result<Rotor, SceneErro
             damping_n_s_m: Vec::new(),
         },
     })
+}
+
+/// Whether nothing is said of a tilt: a mass in one plane, in which everything stands.
+fn is_a_point(tables: &SceneTables, planes: &[PlaneSpec]) -> bool {
+    let (written, start) = (&tables.rotor, &tables.start);
+    let tilts = written.transverse_inertia_kg_m2.is_some()
+        || written.polar_inertia_kg_m2.is_some()
+        || !written.bending.is_empty()
+        || start.tilt_rad.is_some()
+        || start.tilt_rate_rad_s.is_some();
+    let places = places(tables);
+    !tilts && planes.len() < 2 && places.iter().all(|(_, z)| *z == 0.0)
 }
 
 /// Keys of a rotor by numbers.

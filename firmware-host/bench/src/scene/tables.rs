@@ -28,8 +28,8 @@ key_tables! {
         spin: SpinTable [required], "", ANY, "how it turns";
         start: StartTable [= StartTable::default()], "", ANY, "where the rotor starts", "initial";
         stator: StatorTable [= StatorTable::default()], "", ANY, "rings of the stator; none: rigid", "housing";
-        contact: Option<ContactTable> [or "that of each plane"], "", ANY, "the contact, linear or with a stiffness that grows with depth; required without `[[plane]]`", "wall";
-        friction: Option<FrictionTable> [or "that of each plane"], "", ANY, "friction, constant unless it falls with sliding speed; required without `[[plane]]`";
+        contact: Option<ContactTable> [or "that of each plane"], "", ANY, "the contact, linear or with a stiffness that grows with depth", "wall";
+        friction: Option<FrictionTable> [or "that of each plane"], "", ANY, "friction, constant unless it falls with sliding speed";
         retainer: RetainerTable [= RetainerTable::default()], "", ANY, "the retainer bearing", "touchdown", "backup_bearing", "auxiliary_bearing", "catcher";
         race: Option<RaceTable> [or "a bushing"], "", ANY, "the race that the rotor touches, of a [ball bearing](../theory/model.md#retainer-bearing). Its bore is `rotor.contact_radius_m` + `contact.clearance_m`", "ball_bearing";
         magnet: Option<MagnetTable> [or "no magnet"], "", ANY, "the magnet with its amplifier", "actuator", "amplifier", "amb", "bearing";
@@ -47,13 +47,13 @@ key_tables! {
         outage: Vec<OutageTable> [= Vec::new()], "", ANY, "the amplifier does not deliver what it should for a while", "power_loss", "failure";
         fault: Vec<FaultTable> [= Vec::new()], "", ANY, "of the position sensor, at samples from the start to before the end; see [faults](#faults)", "sensor_fault";
         set_down: Vec<SetDownTable> [= Vec::new()], "", ANY, "the reference of `levitation` goes to another place and stays there: the rotor is set down, or lifted again", "landing", "reference", "lift_off";
-        unbalance: Vec<UnbalanceTable> [= Vec::new()], "", ANY, "a residual unbalance; with `[[plane]]` only", "imbalance";
+        unbalance: Vec<UnbalanceTable> [= Vec::new()], "", ANY, "a residual unbalance", "imbalance";
         change: Vec<ChangeTable> [= Vec::new()], "", ANY, "parameters of the plant that take other values from a time on; see [changes](#changes)";
         verdict: VerdictTable [= VerdictTable::default()], "", ANY, "how the end is judged", "outcome";
-        plane: Vec<PlaneTable> [= Vec::new()], "", ANY, "a bearing plane of a [whole rotor](#several-planes), at most four; none: a point mass in one plane", "bearing_plane", "station";
-        shaft: Vec<ShaftTable> [= Vec::new()], "", ANY, "a section of the [shaft](#shafts), from left to right; with `[[plane]]` only. Every `position_m` then counts from its left end", "section", "beam";
+        plane: Vec<PlaneTable> [= Vec::new()], "", ANY, "a bearing plane of [the rotor](#several-planes), at most four; none: one at the centre of mass, with the scene's tables", "bearing_plane", "station";
+        shaft: Vec<ShaftTable> [= Vec::new()], "", ANY, "a section of the [shaft](#shafts), from left to right; every `position_m` then counts from its left end", "section", "beam";
         disc: Vec<DiscTable> [= Vec::new()], "", ANY, "a rigid disc on the shaft", "disk", "wheel", "impeller";
-        support: Vec<SupportTable> [= Vec::new()], "", ANY, "a spring with a damper from the rotor to ground; with `[[plane]]` only", "spring", "seal";
+        support: Vec<SupportTable> [= Vec::new()], "", ANY, "a spring with a damper from the rotor to ground", "spring", "seal";
     }
 
     RunTable {
@@ -67,20 +67,20 @@ key_tables! {
 
     RotorTable {
         mass_kg: Option<f64> [or "that of `[[shaft]]` and `[[disc]]`"], "kg", Positive, "m_r; required without `[[shaft]]`", "m", "weight";
-        stiffness_n_m: Option<f64> [or "0"], "N/m", Finite, "shaft stiffness; excludes `natural_frequency_hz`", "k", "shaft_stiffness";
+        stiffness_n_m: Option<f64> [or "0"], "N/m", Finite, "between the centre of mass and ground, that of the shaft; excludes `natural_frequency_hz`", "k", "shaft_stiffness";
         natural_frequency_hz: Option<f64> [or "–"], "Hz", Within(0.0, 1e6), "gives m_r·(2πf)² as shaft stiffness", "f0", "omega0", "eigenfrequency";
         damping_n_s_m: Option<f64> [or "0"], "N s/m", NotNegative, "d_r; excludes `damping_ratio`", "d", "c";
         damping_ratio: Option<f64> [or "–"], "1", Within(0.0, 100.0), "gives 2·ratio·√(m_r·k), k the *shaft* stiffness; refused without a positive one", "zeta", "xi";
         eccentricity_m: f64 [= 0.0], "m", NotNegative, "ε_r, the unbalance", "unbalance", "imbalance", "e";
-        contact_radius_m: Option<f64> [or "that of each plane"], "m", Positive, "R_r; required without `[[plane]]`", "radius", "r", "diameter";
+        contact_radius_m: Option<f64> [or "that of each plane"], "m", Positive, "R_r", "radius", "r", "diameter";
         gravity_m_s2: Pair [= Pair::default()], "m/s²", Within(-1e4, 1e4), "weight = m_r times this", "g";
-        transverse_inertia_kg_m2: Option<f64> [or "–"], "kg m²", Positive, "I_t about the centre of mass; with `[[plane]]`, and required there", "i_t", "it";
-        polar_inertia_kg_m2: Option<f64> [or "–"], "kg m²", NotNegative, "I_p, at most twice I_t; with `[[plane]]`, and required there", "i_p", "ip";
+        transverse_inertia_kg_m2: Option<f64> [or "–"], "kg m²", Positive, "I_t about the centre of mass; needed in several planes, absent in one: a point mass", "i_t", "it";
+        polar_inertia_kg_m2: Option<f64> [or "–"], "kg m²", NotNegative, "I_p, at most twice I_t; goes with I_t", "i_p", "ip";
         bending_to_hz: Option<f64> [or "3000"], "Hz", NotNegative, "of a `[[shaft]]` or a `matrices_file` the bending modes up to here are kept, of the others their static compliance; 0: rigid";
         bending_damping_ratio: Option<f64> [or "0"], "1", Within(0.0, 100.0), "of the modes of a `[[shaft]]` or a `matrices_file`";
         elements: Option<u32> [or "16"], "", Within(1.0, 200.0), "of a `[[shaft]]`, at least so many";
         matrices_file: Option<String> [or "–"], "", ANY, "a [file](#rotor-by-matrices) with the matrices of the free rotor in the place of mass, inertias and `[[shaft]]`; every `position_m` then counts as its places do", "npz";
-        bending: Vec<BendingTable> [= Vec::new()], "", ANY, "a bending mode of the free shaft; with `[[plane]]` only", "mode", "flexible";
+        bending: Vec<BendingTable> [= Vec::new()], "", ANY, "a bending mode of the free shaft", "mode", "flexible";
         polar_coupling_kg_m2: Numbers [= Numbers::default()], "kg m²", Finite, "∫ I_p′·φ_i′·φ_j′ dz of the slopes of tilt and bending modes, row by row, its first number left to I_p; none: bending modes are not turned by the spin";
     }
 
@@ -101,8 +101,8 @@ key_tables! {
     StartTable [Default] {
         position_m: Pair [= Pair::default()], "m", Finite, "as seen from the magnets; may lie in the wall", "x", "displacement";
         velocity_m_s: Pair [= Pair::default()], "m/s", Finite, "velocity of the rotor's centre", "v", "speed";
-        tilt_rad: Option<Pair> [or "0"], "rad", Finite, "slope of the axis, dx/dz and dy/dz; with `[[plane]]` only", "tilt", "angle_rad";
-        tilt_rate_rad_s: Option<Pair> [or "0"], "rad/s", Finite, "its rate; with `[[plane]]` only", "tilt_rate";
+        tilt_rad: Option<Pair> [or "0"], "rad", Finite, "slope of the axis, dx/dz and dy/dz", "tilt", "angle_rad";
+        tilt_rate_rad_s: Option<Pair> [or "0"], "rad/s", Finite, "its rate", "tilt_rate";
         spin_phase_rad: f64 [= 0.0], "rad", Finite, "σ at t = 0, the angle of the unbalance", "angle", "phase";
         levitated_before: bool [= false], "", ANY, "whether the rotor levitated up to t = 0, which every sample then says (`LEVITATED_BEFORE`): for a scene that begins with what happens";
     }
@@ -152,7 +152,7 @@ key_tables! {
         ellipticity: f64 [= 0.0], "1", Within(0.0, 0.2), "ε of a bearing [out of round](../theory/model.md#out-of-round): semi-axes c·(1 ± ε); only for a rigid stator without a race", "ovality";
         long_axis_deg: Option<f64> [or "0"], "°", Finite, "direction of the longer axis, counter-clockwise from x; needs `ellipticity`";
         severity_allowed: Option<f64> [or "that of its ledger, else `supervisor.severity_limit`"], "1", Within(1e-3, 1e8), "severity that it may bear in all, by which [`review`](review.md#landings-that-are-left) says how many landings are left", "allowance";
-        heat: Option<HeatTable> [or "stays as it is"], "", ANY, "what its losses do to the bearing; with `[[plane]]` only", "thermal", "temperature";
+        heat: Option<HeatTable> [or "stays as it is"], "", ANY, "what its losses do to the bearing", "thermal", "temperature";
     }
 
     /// One mass that all losses of a bearing warm.
@@ -167,21 +167,21 @@ key_tables! {
         inertia_kg_m2: f64 [required], "kg m²", Positive, "J_i", "j";
         drag_n_m_s: f64 [= 0.0], "N m s", NotNegative, "b, viscous drag of the bearing", "b";
         start_frequency_hz: f64 [= 0.0], "Hz", Finite, "Ω_i/2π at the start", "frequency", "speed", "rpm";
-        load_drag_m: Option<f64> [or "none"], "m", NotNegative, "κ: the moment against the race's spin for a newton of load, the bearing's coefficient of friction times half its bore; with `[[plane]]` only", "kappa";
+        load_drag_m: Option<f64> [or "none"], "m", NotNegative, "κ: the moment against the race's spin for a newton of load, the bearing's coefficient of friction times half its bore", "kappa";
         load_drag_from_hz: f64 [= 1.0], "Hz", Positive, "spin from which on that drag has its size";
     }
 
     MagnetTable {
         force_max_n: f64 [required "give the force cap in N"], "N", Positive, "cap on the length of the force vector", "force", "max_force", "cap", "f_max";
         lag_s: f64 [= 0.0], "s", NotNegative, "amplifier lag τ", "tau", "time_constant", "bandwidth";
-        lag_damping_ratio: Option<f64> [or "first order"], "1", PositiveUpTo(100.0), "ζ of an amplifier of second order, τ²·f̈ + 2ζτ·ḟ + f = command; with `[[plane]]` only, and needs `lag_s`", "order";
+        lag_damping_ratio: Option<f64> [or "first order"], "1", PositiveUpTo(100.0), "ζ of an amplifier of second order, τ²·f̈ + 2ζτ·ḟ + f = command, and needs `lag_s`", "order";
         negative_stiffness_n_m: f64 [= 0.0], "N/m", Because(0.0, 1e12, "that it is negative is in the name"), "subtracted from the shaft stiffness, also under `passive`", "k_s", "stiffness", "ks";
         axis_force_max_n: Option<f64> [or "none"], "N", Positive, "cap on each component, after the cap on the vector; the supervisor is told";
         slew_n_s: Option<f64> [or "none"], "N/s", Positive, "fastest change of each component, before the lag: the voltage limit", "slew_rate", "rate";
         delay_samples: u32 [= 1], "samples", Within(1.0, 7.0), "from a position to the effect of the command computed from it", "delay", "latency";
         delay_jitter_samples: u32 [= 0], "samples", Within(0.0, 6.0), "so many samples more each command may be late, by chance from `run.seed`; one that comes after a newer one is dropped. Together with `delay_samples` at most 7; the supervisor is not told", "jitter";
-        position_m: Option<f64> [or "that of its plane"], "m", Finite, "along the axis, from the centre of mass; with `[[plane]]` only", "z";
-        poles: Option<PolesTable> [or "a force that does not depend on the place"], "", ANY, "the magnet [as it is](#poles), attracting poles with currents; with `[[plane]]` only, and needs `lag_s`", "coils";
+        position_m: Option<f64> [or "that of its plane"], "m", Finite, "along the axis, from the centre of mass", "z";
+        poles: Option<PolesTable> [or "a force that does not depend on the place"], "", ANY, "the magnet [as it is](#poles), attracting poles with currents, and needs `lag_s`", "coils";
         force_measured: bool [= false], "", ANY, "whether the supervisor is given the force that the magnet delivers at the sample, less what is fed forward (`APPLIED_VALID`)";
     }
 
@@ -205,7 +205,7 @@ key_tables! {
         swapped: bool [= false], "", ANY, "x reads y and y reads x";
         runout_m: f64 [= 0.0], "m", Within(0.0, 1.0), "amplitude of what the target adds to the reading once a turn; `advise` says what it comes to", "run_out";
         runout_phase_rad: f64 [= 0.0], "rad", Within(-1e6, 1e6), "its angle at t = 0";
-        position_m: Option<f64> [or "that of its plane"], "m", Finite, "along the axis, from the centre of mass; with `[[plane]]` only", "z";
+        position_m: Option<f64> [or "that of its plane"], "m", Finite, "along the axis, from the centre of mass", "z";
     }
 
     SpinSensorTable [Default] {
@@ -219,7 +219,7 @@ key_tables! {
         integral_n_m_s: f64 [= 0.0], "N/(m s)", Within(0.0, 1e15), "K_i", "ki", "k_i", "i";
         derivative_n_s_m: f64 [required], "N s/m", Within(0.0, 1e9), "K_d", "kd", "k_d", "d", "damping";
         derivative_filter_s: f64 [= 0.0], "s", Within(0.0, 1.0), "filter of the derivative; 0: plain difference", "filter", "tau_d";
-        tilt: Option<TiltTable> [or "each plane by itself"], "", ANY, "levitation by mode: the gains above are then of the translation, of all magnets together, these of the tilt; with `[[plane]]` only", "conical";
+        tilt: Option<TiltTable> [or "each plane by itself"], "", ANY, "levitation by mode: the gains above are then of the translation, of all magnets together, these of the tilt", "conical";
         feed_forward_weight: bool [= false], "", ANY, "the firmware adds minus the weight to what any policy commands, `passive` included; the amplifier's limits hold for the sum", "feed_forward", "gravity_compensation";
     }
 
@@ -271,7 +271,7 @@ key_tables! {
         start_s: f64 [required], "s", START_S, "must lie before the end of the run", "t", "time", "at_s";
         duration_s: f64 [required], "s", DURATION_S, "how long it acts", "length";
         force_n: Pair [required], "N", Within(-1e9, 1e9), "force on the rotor; the amplitude where it varies", "f", "amplitude";
-        position_m: Option<f64> [or "the centre of mass"], "m", Finite, "where along the axis; with `[[plane]]` only", "z";
+        position_m: Option<f64> [or "the centre of mass"], "m", Finite, "where along the axis", "z";
         shape: ShapeName [= ShapeName::Constant], "", ANY, "[course](#loads) over the interval", "form", "kind";
         frequency_hz: Option<f64> [or "–"], "Hz", Elsewhere("0 to the control rate"), "with `sine` only", "f";
         phase_rad: Option<f64> [or "0"], "rad", Within(-1e6, 1e6), "at the start; with `sine` only";
@@ -321,7 +321,7 @@ key_tables! {
         eccentricity_m: Option<f64> [or "as it was"], "m", Within(0.0, 1.0), "new ε_r", "unbalance", "imbalance";
         friction_coefficient: Option<f64> [or "as it was"], "1", Within(0.0, 10.0), "new μ, the same at every speed", "mu", "friction";
         drive_torque_n_m: Option<f64> [or "as it was"], "N m", Within(-1e9, 1e9), "new t_d; needs `spin.inertia_kg_m2`", "torque";
-        unbalance: Option<UnbalanceTable> [or "as it was"], "", ANY, "comes on top of the unbalances that there are: a lost blade; with `[[plane]]` only", "blade", "imbalance_added";
+        unbalance: Option<UnbalanceTable> [or "as it was"], "", ANY, "comes on top of the unbalances that there are: a lost blade", "blade", "imbalance_added";
     }
 
     VerdictTable [Default] {

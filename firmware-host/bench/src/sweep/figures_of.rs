@@ -1,25 +1,22 @@
 //! A run's figures as cells of a row.
 
-use crate::run::closed_loop::{
-    Keep, MachineRecorders, PlaneEnded, Rigour, RunError, record, record_machine, run,
-};
+use crate::run::closed_loop::{PlaneEnded, Recorders, Rigour, RunError, record};
 use crate::run::columns::{Cell, Column, InColumns};
 use crate::run::figures::Figures;
 use crate::run::supervision::{Supervision, SupervisionCount};
 use crate::run::trace::Recorder;
-use crate::scene::machine::{AnyScene, in_file_names};
 use crate::scene::policy_kind::PolicyKind;
+use crate::scene::{PlaneScene, Scene};
 
-/// Columns of all figures of a scene: those that `run` prints, but for what a run took, which is never twice the same. Of a
-/// whole rotor those of each plane follow, with the plane's name before a point.
-pub fn columns(scene: &AnyScene) -> Vec<Column> {
+/// Columns of all figures of a scene: those that `run` prints, but for what a run took, which is never twice the same. Of
+/// several planes those of each follow, with the plane's name before a point.
+pub fn columns(scene: &Scene) -> Vec<Column> {
     let mut columns = Vec::new();
     Figures::columns("", &mut columns);
-    match scene {
-        AnyScene::Plane(_) => Supervision::columns("", &mut columns),
-        AnyScene::Machine(scene) => {
-            for plane in &scene.planes {
-                let name = in_file_names(&plane.name);
+    match &scene.planes[..] {
+        [_] => Supervision::columns("", &mut columns),
+        planes => {
+            for name in planes.iter().map(PlaneScene::name_in_files) {
                 Figures::columns(&name, &mut columns);
                 Supervision::columns(&name, &mut columns);
             }
@@ -32,40 +29,28 @@ pub fn columns(scene: &AnyScene) -> Vec<Column> {
 ///
 /// # Errors
 /// [`RunError`] of a run that cannot be trusted.
-pub fn cells(scene: &AnyScene, kind: PolicyKind) -> Result<Vec<Cell>, RunError> {
+pub fn cells(scene: &Scene, kind: PolicyKind) -> Result<Vec<Cell>, RunError> {
     let mut cells = Vec::new();
     // Nobody listens where no supervisor speaks.
-    let supervised = kind == PolicyKind::Supervisor;
-    match scene {
-        AnyScene::Plane(scene) if !supervised => {
-            let (figures, _) = run(scene, kind, Keep::Verdict, &mut |_| {})?;
-            Figures::cells(Some(&figures), &mut cells);
-            Supervision::cells(None, &mut cells);
-        }
-        AnyScene::Plane(scene) => {
-            let mut count = SupervisionCount::default();
-            let ended = record(scene, kind, &mut count, Rigour::default(), &mut |_| {})?;
-            plane_cells(&ended, Some(&count), &mut cells);
-        }
-        AnyScene::Machine(scene) => {
-            let mut counts = match supervised {
-                true => vec![SupervisionCount::default(); scene.planes.len()],
-                false => Vec::new(),
-            };
-            let recorders = MachineRecorders {
-                planes: counts
-                    .iter_mut()
-                    .map(|count| count as &mut dyn Recorder)
-                    .collect(),
-                axis: None,
-            };
-            let ended = record_machine(scene, kind, recorders, Rigour::default(), &mut |_| {})?;
-            let figures: Vec<Figures> = ended.iter().map(|(figures, _)| figures.clone()).collect();
-            Figures::cells(Figures::of_machine(&figures).as_ref(), &mut cells);
-            for (i, ended) in ended.iter().enumerate() {
-                plane_cells(ended, counts.get(i), &mut cells);
-            }
-        }
+    let mut counts = match kind == PolicyKind::Supervisor {
+        true => vec![SupervisionCount::default(); scene.planes.len()],
+        false => Vec::new(),
+    };
+    let recorders = Recorders {
+        planes: (counts.iter_mut())
+            .map(|count| count as &mut dyn Recorder)
+            .collect(),
+        axis: None,
+    };
+    let ended = record(scene, kind, recorders, Rigour::default(), &mut |_| {})?;
+    if let [only] = &ended[..] {
+        plane_cells(only, counts.first(), &mut cells);
+        return Ok(cells);
+    }
+    let figures: Vec<Figures> = ended.iter().map(|(figures, _)| figures.clone()).collect();
+    Figures::cells(Figures::of_machine(&figures).as_ref(), &mut cells);
+    for (i, ended) in ended.iter().enumerate() {
+        plane_cells(ended, counts.get(i), &mut cells);
     }
     Ok(cells)
 }

@@ -1,10 +1,10 @@
 //! A sweep that can be run: any of its runs by number.
 
 use crate::run::columns::{Cell, Column, Kind};
+use crate::scene::Scene;
 use crate::scene::diagnostic::SceneError;
 use crate::scene::guess;
 use crate::scene::keys::number;
-use crate::scene::machine::AnyScene;
 use crate::scene::policy_kind::PolicyKind;
 use crate::scene::spec::{Spec, names_a_file};
 use crate::sweep::error::SweepError;
@@ -29,7 +29,7 @@ pub struct Plan {
     /// The scene as written, with the sweep's policies.
     spec: Spec,
     /// The same, resolved.
-    scene: AnyScene,
+    scene: Scene,
     policies: Vec<PolicyKind>,
     columns: Arc<[Column]>,
     /// Digests of the files that results hang on, by their names.
@@ -69,11 +69,8 @@ impl Plan {
         for (i, variation) in file.variations.iter().enumerate() {
             check(&file, &spec, i, variation)?;
         }
-        let scene = AnyScene::resolve(&spec)?;
-        let policies = match &scene {
-            AnyScene::Plane(scene) => scene.policies.clone(),
-            AnyScene::Machine(scene) => scene.common().policies.clone(),
-        };
+        let scene = spec.resolve()?;
+        let policies = scene.policies.clone();
         let columns = all_columns(&file, &scene);
         let plan = Self {
             inputs: inputs(&file, &spec)?,
@@ -116,15 +113,12 @@ impl Plan {
 
     /// Title of the scene.
     pub fn title(&self) -> &str {
-        match &self.scene {
-            AnyScene::Plane(scene) => &scene.title,
-            AnyScene::Machine(scene) => &scene.common().title,
-        }
+        &self.scene.title
     }
 
     /// What the scene warns of.
     pub fn warnings(&self) -> &[String] {
-        self.scene.warnings()
+        &self.scene.warnings
     }
 
     /// The policies, in the order of a run's rows.
@@ -210,7 +204,7 @@ impl Plan {
     /// Runs a run under each policy, and adds its rows to others.
     pub fn run(&self, run: u64, rows: &mut Rows) {
         let drawn = self.drawn(run);
-        let scene = self.spec(&drawn).and_then(|spec| AnyScene::resolve(&spec));
+        let scene = self.spec(&drawn).and_then(|spec| spec.resolve());
         let scene = scene.map_err(|error| in_one_line(&error));
         for kind in &self.policies {
             let mut row = vec![
@@ -289,7 +283,7 @@ fn check(
     Ok(())
 }
 
-fn all_columns(file: &SweepFile, scene: &AnyScene) -> Vec<Column> {
+fn all_columns(file: &SweepFile, scene: &Scene) -> Vec<Column> {
     let column = |name: &str, kind| Column {
         name: name.to_owned(),
         kind,

@@ -83,44 +83,14 @@ def decoded(bytes: bytes) -> dict[str, Any]: ...
 
 @final
 class Plant:
-    """A point mass in one plane, from the start of a scene. Positions count from the centre of the retainer bearing. Weight and
-    shaft act; loads, sensors and amplifier delay of the scene are a closed loop's."""
+    """The rotor of a scene from its start. Positions count from the line of the magnets; arrays have a row for each magnet,
+    load or plane, and a single row may be given as (x, y). Weight and supports act; loads, sensors and amplifier delay of the
+    scene are a closed loop's."""
 
     def __new__(cls, scene: Scene) -> Plant: ...
     @property
     def period_s(self) -> float:
         """The control period of the scene."""
-    @property
-    def t_s(self) -> float: ...
-    @property
-    def mode(self) -> str: ...
-    @property
-    def position_m(self) -> NDArray[np.float64]: ...
-    @property
-    def velocity_m_s(self) -> NDArray[np.float64]: ...
-    @property
-    def energy_residual(self) -> float:
-        """Energy from nowhere over energy turned over."""
-    def advance(self, to_s: float, command_n: ArrayLike | None = None, external_n: ArrayLike | None = None) -> list[tuple[float, str]]:
-        """Carries it to a time under forces that are held; changes of mode come back. A command is limited to the magnet's cap;
-        an external force comes on top of the weight."""
-    def step(self, command_n: ArrayLike | None = None, external_n: ArrayLike | None = None) -> NDArray[np.float64]:
-        """To the end of the control period; the position there."""
-    def steps(self, commands_n: ArrayLike, external_n: ArrayLike | None = None) -> NDArray[np.float64]:
-        """A control period for each row of commands; the positions at their ends, in rows."""
-    def read(self) -> dict[str, Any]:
-        """Everything that can be read off now."""
-    def meters(self) -> dict[str, Any]:
-        """Extremes and sums so far."""
-
-@final
-class Machine:
-    """A whole rotor in several planes, from the start of a scene. Positions count from the line of the magnets. A row for each
-    magnet, load or plane."""
-
-    def __new__(cls, scene: Scene) -> Machine: ...
-    @property
-    def period_s(self) -> float: ...
     @property
     def planes(self) -> list[str]:
         """Names of the planes."""
@@ -128,7 +98,7 @@ class Machine:
     def magnets(self) -> int: ...
     @property
     def loads(self) -> int:
-        """Places at which loads of the scene act."""
+        """Places at which loads act: the centre of mass, then those of the scene's disturbances."""
     @property
     def t_s(self) -> float: ...
     @property
@@ -143,13 +113,23 @@ class Machine:
     @property
     def velocity_m_s(self) -> NDArray[np.float64]: ...
     @property
+    def delivered_n(self) -> NDArray[np.float64]:
+        """Forces that the magnets deliver."""
+    @property
     def normal_force_n(self) -> list[float]: ...
     @property
-    def energy_residual(self) -> float: ...
+    def energy_residual(self) -> float:
+        """Energy from nowhere over energy turned over."""
     def advance(self, to_s: float, commands_n: ArrayLike | None = None, loads_n: ArrayLike | None = None) -> list[tuple[float, str, str]]:
-        """Carries it to a time under forces that are held; changes of mode come back, with the plane."""
+        """Carries it to a time under forces that are held; changes of mode come back, with the plane. Commands are limited to
+        the magnets' caps; loads come on top of the weight."""
     def step(self, commands_n: ArrayLike | None = None, loads_n: ArrayLike | None = None) -> NDArray[np.float64]:
         """To the end of the control period; the positions at the sensors there."""
+    def steps(self, commands_n: ArrayLike, loads_n: ArrayLike | None = None) -> NDArray[np.float64]:
+        """A control period for each block of commands, shape (n, magnets, 2) or of one magnet (n, 2); the positions in the
+        planes at their ends, shape (n, planes, 2)."""
+    def read(self) -> list[dict[str, Any]]:
+        """Everything that can be read off each plane now."""
     def meters(self) -> list[dict[str, Any]]:
         """Extremes and sums of each plane so far."""
 

@@ -24,13 +24,13 @@ class Run:
     supervision: dict[str, Any] | None = None
     """What the supervisor did, where one ran."""
     trace: Table | None = None
-    """A row for each control sample and change of mode, in the columns of the trace files; none of a whole rotor, whose planes have it."""
+    """A row for each control sample and change of mode, in the columns of the trace files; of several planes each has its own."""
     record: bytes | None = None
     """The flight record, where the supervisor froze one."""
     planes: dict[str, Run] = field(default_factory=dict)
     """Of a whole rotor: a Run for each plane, by its name."""
     axis: Table | None = None
-    """Of a whole rotor: its axis at each control sample."""
+    """Of a rotor that tilts: its axis at each control sample."""
 
     def __repr__(self) -> str:
         return f"<ambwhirl.Run {self.policy}: {self.figures['outcome']}>"

@@ -6,9 +6,8 @@ use firmware_bench::record::identify::Findings;
 use firmware_bench::record::story::Event;
 use firmware_bench::run::again::scene_of_event;
 use firmware_bench::run::recording::recorded;
-use firmware_bench::run::verdict::{FailedRun, PolicyRun, Results};
+use firmware_bench::run::verdict::{FailedRun, Results};
 use firmware_bench::scene::Scene;
-use firmware_bench::scene::machine::AnyScene;
 use firmware_bench::scene::policy_kind::PolicyKind;
 use firmware_bench::scene::spec::{Setting, Spec};
 use std::fs::File;
@@ -67,20 +66,16 @@ pub(super) fn allowances(
     let mut spec = Spec::load(path)?;
     let set = (settings.iter()).map(|setting| (setting.path.as_str(), setting.value.clone()));
     spec.set_all(&set.collect::<Vec<_>>())?;
-    let scene = AnyScene::resolve(&spec)?;
-    let of = |scene: &Scene| scene.severity_allowed.map(|allowed| allowed as f32);
-    Ok(match &scene {
-        AnyScene::Plane(scene) => vec![of(scene)],
-        // A seal has no ledger.
-        AnyScene::Machine(scene) => (scene.planes.iter().filter(|plane| !plane.seal))
-            .map(|plane| of(&plane.scene))
-            .collect(),
-    })
+    let scene = spec.resolve()?;
+    // A seal has no ledger.
+    Ok((scene.planes.iter().filter(|plane| !plane.seal))
+        .map(|plane| plane.severity_allowed.map(|allowed| allowed as f32))
+        .collect())
 }
 
 /// Names of parameters of which record and scene have values more than a hundredth apart.
 fn differing(record: &PlaneRecord, scene: &Scene) -> Vec<&'static str> {
-    let (Some(told), Some(derived)) = (record.config, scene.supervisor) else {
+    let (Some(told), Some(derived)) = (record.config, scene.planes[0].supervisor) else {
         return Vec::new();
     };
     let values = told.values().into_iter().zip(derived.values());
@@ -95,7 +90,12 @@ fn differing(record: &PlaneRecord, scene: &Scene) -> Vec<&'static str> {
 fn keep(results: &mut Results, name: &str, scene: &Scene, kind: PolicyKind) {
     let name = name.to_owned();
     match recorded::<File>(scene, kind, &[], None, &mut |_| {}) {
-        Ok(run) => results.runs.push(PolicyRun { name, ..run }),
+        Ok(mut run) => {
+            for run in run.planes.iter_mut().chain([&mut run.whole]) {
+                run.name.clone_from(&name);
+            }
+            results.push(run);
+        }
         Err(error) => results.failed.push(FailedRun {
             name,
             error: error.to_string(),

@@ -95,8 +95,8 @@ pub(super) fn tracks(events: &[Examined<'_>]) -> Vec<Track> {
         let ticks = Ticks::of(of.event.records[0]);
         let begins = ticks.tick_of(findings.first) as f64 + findings.launch.tick as f64;
         let begins_ms = 1e3 * begins / again.scene.sample_rate_hz;
-        let scene = summary(&again.scene);
-        for run in &again.results.runs {
+        let scene = summary(&again.scene, 0);
+        for run in again.results.planes.iter().flatten() {
             let run = PolicyRun {
                 name: format!("simulated: {}", run.name),
                 ..run.clone()

@@ -52,13 +52,16 @@ enum Run {
 
 /// Whether starts differ at all: a scene that starts at rest has one only.
 pub fn applies_to(scene: &Scene) -> bool {
-    scene.start.velocity_m_s.norm() > 0.0
+    let start = &scene.start;
+    [start.centre_velocity_m_s, start.tilt_rate_rad_s]
+        .iter()
+        .any(|v| v.norm() > 0.0)
 }
 
 /// Runs all starts in parallel; `on_start` is called after each. The rows do not depend on the threads.
 ///
 /// # Errors
-/// [`AccuracyError::Build`].
+/// [`AccuracyError::Machine`].
 pub fn sweep(scene: &Scene, on_start: &(dyn Fn() + Sync)) -> Result<Vec<WrongRow>, AccuracyError> {
     let starts: Vec<Start> = (0..STARTS)
         .into_par_iter()
@@ -91,7 +94,6 @@ fn resolved(scene: &Scene, rtol: f64) -> Result<&'static str, AccuracyError> {
         duration_s: f64::MIN_POSITIVE,
         disturbances: Vec::new(),
         base_motions: Vec::new(),
-        outages: Vec::new(),
         changes: Vec::new(),
         ..scene.clone()
     };
@@ -101,7 +103,8 @@ fn resolved(scene: &Scene, rtol: f64) -> Result<&'static str, AccuracyError> {
 fn from_start(scene: &Scene, factor: f64) -> Start {
     let at = |factor: f64| {
         let mut moved = scene.clone();
-        moved.start.velocity_m_s *= factor;
+        moved.start.centre_velocity_m_s *= factor;
+        moved.start.tilt_rate_rad_s *= factor;
         moved
     };
     let moved = at(factor);

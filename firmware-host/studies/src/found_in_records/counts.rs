@@ -163,7 +163,7 @@ pub fn contacts(scene: &Scene, trace: &Trace, last: u32, found: &Findings) -> Co
 /// Compares friction, where it is the same throughout, and restitution as well.
 pub fn compare(scene: &Scene, trace: &Trace, last: u32, found: &Findings) -> Counts {
     let mut counts = contacts(scene, trace, last, found);
-    let plant = &scene.plant;
+    let plant = scene.plant(0);
     let mut changed = (scene.changes.iter())
         .filter_map(|change| Some((change.at_s, change.change.friction_coefficient?)));
     let mu = match changed.next_back() {
@@ -175,6 +175,6 @@ pub fn compare(scene: &Scene, trace: &Trace, last: u32, found: &Findings) -> Cou
     if let Some(mu) = mu {
         (counts.friction).of_estimate(told.friction_coefficient, mu, 0.1 * mu);
     }
-    (counts.restitution).of_estimate(told.restitution, restitution(&scene.plant), 0.1);
+    (counts.restitution).of_estimate(told.restitution, restitution(&plant), 0.1);
     counts
 }

@@ -264,20 +264,21 @@ impl Machine {
     /// policy that runs on it. `None` without a controller.
     pub fn gains(&self) -> Option<TunedGains> {
         Some(TunedGains {
-            tuned: self.scene.levitation?,
+            tuned: self.scene.planes[0].levitation?,
             ..stored("P2", 20_000.0)?
         })
     }
 
     /// The same with a levitation controller that carries loads: at least 0.78 of the cap at the wall, and an integrator.
     pub fn gains_with_integrator(&self) -> Option<TunedGains> {
-        let pull_n_m = -self.scene.plant.rotor.stiffness_n_m;
+        let rotor = self.scene.plant(0).rotor;
+        let pull_n_m = -rotor.stiffness_n_m;
         let carried_n_m = 0.3 * self.force_n() / self.clearance_m();
         let overcome_n_m = pull_n_m.max(carried_n_m);
         Some(TunedGains {
             tuned: LevitationParams {
                 integral_n_m_s: 26.0 * overcome_n_m,
-                ..rule_of_thumb(self.scene.plant.rotor.mass_kg, pull_n_m, overcome_n_m)
+                ..rule_of_thumb(rotor.mass_kg, pull_n_m, overcome_n_m)
             },
             ..self.gains()?
         })
@@ -285,23 +286,23 @@ impl Machine {
 
     /// From a sample to the middle of its force, in units of √(m·c/F).
     pub fn lateness(&self) -> f64 {
-        let lag_s = self.scene.plant.magnet.map_or(0.0, |m| m.lag_s);
+        let lag_s = self.scene.plant(0).magnet.map_or(0.0, |m| m.lag_s);
         (lag_s + 1.5 / self.scene.sample_rate_hz) / self.unit_s()
     }
 
     /// Clearance \[m\].
     pub fn clearance_m(&self) -> f64 {
-        self.scene.plant.contact.clearance_m
+        self.scene.clearance_m(0)
     }
 
     /// Cap \[N\].
     pub fn force_n(&self) -> f64 {
-        self.scene.plant.magnet.map_or(0.0, |m| m.force_max_n)
+        self.scene.force_max_n(0)
     }
 
     /// √(F·c/m) \[m/s\].
     pub fn unit_m_s(&self) -> f64 {
-        self.scene.nominal.force_speed_m_s()
+        self.scene.planes[0].nominal.force_speed_m_s()
     }
 
     /// √(m·c/F) \[s\].

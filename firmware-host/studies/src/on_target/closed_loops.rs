@@ -35,7 +35,7 @@ fn scenes() -> Result<Vec<Scene>, CatalogueError> {
             for case in cases(&plant, found.tuned) {
                 let mut scene = case.scene;
                 scene.duration_s = scene.duration_s.min(LONGEST_S);
-                scene.levitation = Some(found.tuned);
+                scene.planes[0].levitation = Some(found.tuned);
                 groups.entry(case.group).or_default().push(scene);
             }
         }
@@ -69,7 +69,9 @@ pub fn closed_loops(number: Number, ticks: usize) -> Result<(Vec<Piece>, usize),
     let (mut left, mut left_out) = (ticks, 0);
     let chosen: Vec<Scene> = (scenes()?.into_iter())
         .filter(|scene| {
-            let fits = scene.supervisor.is_none_or(|config| number.fits(&config));
+            let fits = scene.planes[0]
+                .supervisor
+                .is_none_or(|config| number.fits(&config));
             left_out += usize::from(!fits);
             fits
         })
@@ -89,7 +91,7 @@ pub fn closed_loops(number: Number, ticks: usize) -> Result<(Vec<Piece>, usize),
 /// A scene, recorded. A run that could not be trusted to its end is recorded up to there: for the supervisor its
 /// samples are as good as any.
 fn recorded(number: Number, scene: &Scene) -> Option<Piece> {
-    let config = scene.supervisor?;
+    let config = scene.planes[0].supervisor?;
     let tape = Tape::default();
     let policy = supervised(scene, number.recorder(&config, &tape)?)?;
     let _ended = run_policy(scene, (policy, "supervisor"), Keep::Verdict, &mut |_| {});

@@ -51,7 +51,7 @@ fn scenes() -> Result<Vec<(String, Scene, Config)>, TargetError> {
             let case = cases.iter().find(|c| c.name == *name);
             let mut scene = case.ok_or_else(|| none(name))?.scene.clone();
             scene.duration_s = LASTS_S;
-            let config = scene.supervisor.ok_or_else(|| none(name))?;
+            let config = scene.planes[0].supervisor.ok_or_else(|| none(name))?;
             Ok(((*name).to_owned(), scene, config))
         })
         .collect()

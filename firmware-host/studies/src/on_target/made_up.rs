@@ -38,7 +38,7 @@ pub(super) fn made_up_by(
 ) -> Result<(Vec<Piece>, usize), CatalogueError> {
     let mut configs: Vec<Config> = Vec::new();
     for rate_hz in RATES_HZ {
-        configs.extend(plants(rate_hz)?.iter().filter_map(|p| p.scene.supervisor));
+        configs.extend((plants(rate_hz)?.iter()).filter_map(|p| p.scene.planes[0].supervisor));
     }
     // Of one that does not fit no variation is tried.
     let before = configs.len();

@@ -5,11 +5,11 @@
 
 use super::contenders::Contender;
 use super::takeover::arrest_of;
-use firmware_bench::device::loads::{Disturbance, Shape};
+use firmware_bench::device::loads::Disturbance;
 use firmware_bench::run::clairvoyant::restitution;
 use firmware_bench::scene::Scene;
 use plant_model::V2;
-use plant_model::params::Start;
+use plant_model::machine::params::MachineStart;
 
 /// A scene of the catalogue.
 #[derive(Debug, Clone)]
@@ -38,10 +38,11 @@ pub struct Sizes {
 impl Sizes {
     /// `None` without a magnet or without friction.
     pub fn of(scene: &Scene) -> Option<Self> {
-        let force_n = scene.plant.magnet?.force_max_n;
-        let limit_m_s = arrest_of(scene)?.limit_m_s;
-        let e = restitution(&scene.plant);
-        let mu = scene.plant.friction.sliding.coefficient(0.0);
+        let plant = scene.plant(0);
+        let force_n = plant.magnet?.force_max_n;
+        let limit_m_s = arrest_of(scene, 0)?.limit_m_s;
+        let e = restitution(&plant);
+        let mu = plant.friction.sliding.coefficient(0.0);
         Some(Self {
             force_n,
             limit_m_s,
@@ -51,11 +52,14 @@ impl Sizes {
 }
 
 /// The start of a scene aimed at the wall at an angle to its normal; positive: along the spin.
-pub(super) fn aimed(scene: &Scene, speed_m_s: f64, angle_deg: f64) -> Start {
-    let c = scene.plant.contact.clearance_m;
-    Start {
-        position_m: V2::new(0.0, -0.99 * c * angle_deg.to_radians().sin()),
-        velocity_m_s: V2::new(speed_m_s, 0.0),
+pub(super) fn aimed(scene: &Scene, speed_m_s: f64, angle_deg: f64) -> MachineStart {
+    let off_m = V2::new(
+        0.0,
+        -0.99 * scene.clearance_m(0) * angle_deg.to_radians().sin(),
+    );
+    MachineStart {
+        centre_m: scene.machine.planes[0].centre_m + off_m,
+        centre_velocity_m_s: V2::new(speed_m_s, 0.0),
         ..scene.start
     }
 }
@@ -67,6 +71,22 @@ pub(super) fn load(sizes: Sizes, share: f64, start_s: f64, duration_s: f64) -> D
         start_s,
         duration_s,
         force_n: share * sizes.force_n * direction,
-        shape: Shape::Constant,
+        ..Disturbance::default()
     }
+}
+
+/// The scene with another seed of its first plane's noise; noise of others goes with it, and stays one of its own.
+pub(super) fn seeded(scene: &Scene, seed: u64) -> Scene {
+    let mut scene = scene.clone();
+    let by = seed.wrapping_sub(scene.planes[0].seed);
+    for plane in &mut scene.planes {
+        plane.seed = plane.seed.wrapping_add(by);
+    }
+    scene
+}
+
+/// The scene with the retainer bearing of its only plane off the centre of magnets and sensors, and the rotor off with it.
+pub(super) fn off_centre(scene: &mut Scene, by_m: V2) {
+    scene.machine.planes[0].centre_m += by_m;
+    scene.start.centre_m += by_m;
 }

@@ -1,6 +1,6 @@
 //! The scenes of the catalogue, on one plant.
 
-use super::case::{Case, Sizes, aimed, load};
+use super::case::{Case, Sizes, aimed, load, off_centre};
 use super::contenders::Contender;
 use super::situations::{Situation, situations};
 use super::takeover::let_whirl;
@@ -10,7 +10,8 @@ use firmware_bench::device::axis::Axis;
 use firmware_bench::device::levitation::LevitationParams;
 use firmware_bench::device::loads::{BaseMotion, Disturbance, Shape, TimedChange};
 use firmware_bench::scene::Scene;
-use plant_model::params::{EllipseParams, RaceParams, SpinParams, Start, StatorParams};
+use plant_model::machine::params::MachineStart;
+use plant_model::params::{EllipseParams, RaceParams, SpinParams, StatorParams};
 use plant_model::{Change, V2};
 use std::f64::consts::TAU;
 
@@ -50,8 +51,12 @@ impl Collector<'_> {
     }
 
     /// The start of an impact at a share of the reference speed.
-    fn impact(&self, share: f64, angle_deg: f64) -> Start {
+    fn impact(&self, share: f64, angle_deg: f64) -> MachineStart {
         aimed(self.base, share * self.sizes.impact_m_s, angle_deg)
+    }
+
+    fn mass_kg(&self) -> f64 {
+        self.base.machine.rotor.rigid().mass_kg
     }
 
     fn load(&self, share: f64, start_s: f64, duration_s: f64) -> Disturbance {
@@ -140,7 +145,7 @@ impl Collector<'_> {
         ] {
             let spin = hz * TAU;
             let force_n = share * self.sizes.force_n;
-            let eccentricity = force_n / (self.base.plant.rotor.mass_kg * spin * spin);
+            let eccentricity = force_n / (self.mass_kg() * spin * spin);
             let change = |at_s, e| TimedChange {
                 at_s,
                 change: Change {
@@ -158,7 +163,7 @@ impl Collector<'_> {
             let name = format!("blade lost at {hz} Hz, {share} × cap {how_long}");
             self.add("blade loss", name, BEGIN_S + 0.1, |s| {
                 s.start.spin_rad_s = spin;
-                s.plant.spin = SpinParams::Held;
+                s.machine.spin = SpinParams::Held;
                 s.changes = changes;
             });
         }
@@ -175,9 +180,9 @@ impl Collector<'_> {
             };
             let name = format!("no power for {ms:.0} ms");
             self.add("power loss", name, outage.end_s(), |s| {
-                s.outages = vec![outage];
+                s.planes[0].outages = vec![outage];
                 // The rotor does not stand in the very middle when the power goes.
-                s.start.velocity_m_s = V2::new(1e-3, 2e-3);
+                s.start.centre_velocity_m_s = V2::new(1e-3, 2e-3);
             });
         }
     }
@@ -196,18 +201,18 @@ impl Collector<'_> {
                 let name = format!("{letter} axis lost for 20 ms while in {}", situation.name);
                 self.add("axis lost", name, outage.end_s(), |s| {
                     s.start = situation.scene.start;
-                    s.whirl_speed_m_s = situation.scene.whirl_speed_m_s;
                     s.disturbances = situation.scene.disturbances.clone();
-                    s.outages = vec![outage];
+                    s.planes[0].whirl_speed_m_s = situation.scene.planes[0].whirl_speed_m_s;
+                    s.planes[0].outages = vec![outage];
                 });
             }
         }
     }
 
     fn starts(&mut self) {
-        let c = self.base.plant.contact.clearance_m;
+        let c = self.base.clearance_m(0);
         self.add("start", "from rest on the bearing", 0.0, |s| {
-            s.start.position_m = V2::new(0.0, -c);
+            s.start.centre_m = s.machine.planes[0].centre_m + V2::new(0.0, -c);
         });
     }
 
@@ -245,18 +250,18 @@ impl Collector<'_> {
         });
         // A drive that turns the machine round, through a standstill, under one burst after the other.
         let (hz, lasts_s) = (40.0, 0.2);
-        let inertia_kg_m2 = 1e-3 * self.base.plant.rotor.mass_kg;
+        let inertia_kg_m2 = 1e-3 * self.mass_kg();
         let bursts = self.bursts();
         self.add("speeds", "bursts while the spin reverses", lasts_s, |s| {
             s.start.spin_rad_s = hz * TAU;
-            s.plant.spin = SpinParams::Free {
+            s.machine.spin = SpinParams::Free {
                 inertia_kg_m2,
                 drive_torque_n_m: -2.0 * hz * TAU / lasts_s * inertia_kg_m2,
             };
             s.disturbances = bursts;
         });
         let race = RaceParams {
-            inertia_kg_m2: 1e-3 * self.base.plant.rotor.mass_kg / 10.0,
+            inertia_kg_m2: 1e-3 * self.mass_kg() / 10.0,
             drag_n_m_s: 0.0,
             start_spin_rad_s: 0.0,
         };
@@ -266,13 +271,13 @@ impl Collector<'_> {
             0.0,
             |s| {
                 s.start = start;
-                s.plant.race = Some(race);
+                s.machine.planes[0].race = Some(race);
             },
         );
     }
 
     fn offsets(&mut self) {
-        let c = self.base.plant.contact.clearance_m;
+        let c = self.base.clearance_m(0);
         for share in [0.1, 0.2] {
             let start = self.impact(1.0, 30.0);
             let name = format!(
@@ -281,7 +286,7 @@ impl Collector<'_> {
             );
             self.add("offset", name, 0.0, |s| {
                 s.start = start;
-                s.centre_offset_m = share * c * V2::new(0.6, 0.8);
+                off_centre(s, share * c * V2::new(0.6, 0.8));
             });
         }
     }
@@ -293,7 +298,7 @@ impl Collector<'_> {
             let name = format!("impact, bearing {percent:.0} % out of round, untold");
             self.add("out of round", name, 0.0, |s| {
                 s.start = start;
-                s.plant.stator = StatorParams::RigidEllipse(EllipseParams {
+                s.machine.planes[0].stator = StatorParams::RigidEllipse(EllipseParams {
                     ellipticity,
                     // No axis, and not where the impact is aimed.
                     long_axis_rad: 70_f64.to_radians(),

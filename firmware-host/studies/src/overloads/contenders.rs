@@ -80,13 +80,11 @@ impl Contender {
         scene: &Scene,
     ) -> Option<Box<dyn Controller>> {
         match self {
-            Self::Passive => controller(PolicyKind::Passive, scene),
-            Self::Radial => controller(PolicyKind::Radial, scene),
+            Self::Passive => controller(PolicyKind::Passive, scene, 0),
+            Self::Radial => controller(PolicyKind::Radial, scene, 0),
             Self::Damping => {
-                let scene = Scene {
-                    damping_n_s_m: full_at_lift_off_n_s_m(&scene.plant),
-                    ..scene.clone()
-                };
+                let mut scene = scene.clone();
+                scene.planes[0].damping_n_s_m = full_at_lift_off_n_s_m(&scene.plant(0));
                 with_loop(PolicyKind::Damping, found.tuned, &scene)
             }
             Self::Stiff => levitation(found.stiff, scene),
@@ -114,8 +112,8 @@ impl Contender {
         let loops = [found.tuned, found.stiff].map(|params| {
             Box::new(TrueLevitation {
                 params,
-                force_max_n: scene.plant.magnet.map_or(0.0, |m| m.force_max_n),
-                centre_m: -scene.centre_offset_m,
+                force_max_n: scene.force_max_n(0),
+                centre_m: -scene.machine.planes[0].centre_m,
             }) as Box<dyn Controller>
         });
         laws.into_iter().chain(loops).collect()
@@ -124,8 +122,8 @@ impl Contender {
 
 /// The reference with given weights.
 pub fn clairvoyant(law: ClairvoyantLaw, scene: &Scene) -> Clairvoyant {
-    let restitution = restitution(&scene.plant);
-    Clairvoyant::new(law, &scene.plant, restitution, scene.sample_rate_hz)
+    let plant = scene.plant(0);
+    Clairvoyant::new(law, &plant, restitution(&plant), scene.sample_rate_hz)
 }
 
 /// The damping that spends the whole cap at the lift-off speed √(F·c/m) \[N s/m\].
@@ -140,11 +138,9 @@ fn with_loop(
     params: LevitationParams,
     scene: &Scene,
 ) -> Option<Box<dyn Controller>> {
-    let scene = Scene {
-        levitation: Some(params),
-        ..scene.clone()
-    };
-    controller(kind, &scene)
+    let mut scene = scene.clone();
+    scene.planes[0].levitation = Some(params);
+    controller(kind, &scene, 0)
 }
 
 /// The levitation controller alone.

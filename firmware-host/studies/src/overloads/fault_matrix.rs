@@ -95,7 +95,7 @@ const DRIVES: [(&str, Delivers, Axis); 6] = [
 /// The matrix on a plant; the supervisor against levitation alone.
 pub fn cases(plant: &PlantCase, situations: &[Situation]) -> Vec<Case> {
     let period_s = 1.0 / plant.rate_hz;
-    let clearance_m = plant.scene.plant.contact.clearance_m;
+    let clearance_m = plant.scene.clearance_m(0);
     let mut cases = Vec::new();
     for situation in situations.iter().filter(|s| s.mode != Mode::Pinned) {
         let start_s = situation.at_s;
@@ -116,7 +116,7 @@ pub fn cases(plant: &PlantCase, situations: &[Situation]) -> Vec<Case> {
                 &format!("sensor {name}"),
                 duration_s,
                 &|scene| {
-                    scene.faults = vec![Fault {
+                    scene.planes[0].faults = vec![Fault {
                         start_s,
                         duration_s,
                         kind,
@@ -130,8 +130,9 @@ pub fn cases(plant: &PlantCase, situations: &[Situation]) -> Vec<Case> {
             for (name, delivers, axis) in DRIVES {
                 let name = format!("drive {name}{suffix}");
                 add(DRIVE_FAULTS, &name, LASTS_S, &|scene| {
-                    scene.amplifier.force_measured = measured;
-                    scene.outages = vec![Outage {
+                    let plane = &mut scene.planes[0];
+                    plane.amplifier.force_measured = measured;
+                    plane.outages = vec![Outage {
                         start_s,
                         duration_s: LASTS_S,
                         delivers,

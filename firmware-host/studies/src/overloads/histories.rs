@@ -282,14 +282,14 @@ pub fn compare(on_done: &dyn Fn(u64)) -> Result<Vec<HistoryRow>, CatalogueError>
         let plant = all.iter().find(|p| p.name == name).ok_or_else(missing)?;
         let found = stored(name, RATE_HZ).ok_or_else(missing)?;
         let scene = &plant.scene;
-        let arrest = arrest_of(scene).ok_or_else(missing)?;
+        let arrest = arrest_of(scene, 0).ok_or_else(missing)?;
         let from_m_s = TIMED_SHARE * arrest.limit_m_s;
         let window_s = 2.0 * arrest.time_s(from_m_s, ARRESTED);
         let impact = Impact {
             scene,
             angle_deg,
             law: clairvoyant(found.impact_law, scene),
-            cap_n: scene.plant.magnet.map_or(0.0, |m| m.force_max_n),
+            cap_n: scene.force_max_n(0),
             held: (window_s * RATE_HZ / PIECES as f64).round().max(1.0) as usize,
         };
         let failed = |reason| CatalogueError::Run {

@@ -45,7 +45,7 @@ pub fn recoverable_from(
     let mut last = 0.0;
     loop {
         let speed = FIRST_M_S * STEP.powi(step);
-        scene.start.velocity_m_s = V2::new(speed, 0.0);
+        scene.start.centre_velocity_m_s = V2::new(speed, 0.0);
         let policy = make(&scene).ok_or(RunError::Incomplete { policy: name })?;
         let (verdict, _) = run_policy(&scene, (policy, name), Keep::Decision, &mut |_| {})?;
         if !verdict.recovered || speed > LAST_M_S {

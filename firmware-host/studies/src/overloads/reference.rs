@@ -109,7 +109,7 @@ pub fn impact_law(scene: &Scene, from_m_s: f64) -> Result<ClairvoyantLaw, RunErr
         let mut scene = scene.clone();
         let (mut speed, mut last) = (from_m_s, 0.0);
         loop {
-            scene.start.velocity_m_s = V2::new(speed, 0.0);
+            scene.start.centre_velocity_m_s = V2::new(speed, 0.0);
             let policy = Box::new(clairvoyant(law, &scene));
             let (verdict, _) =
                 run_policy(&scene, (policy, "clairvoyant"), Keep::Decision, &mut |_| {})?;
@@ -132,7 +132,7 @@ pub fn search_from_m_s(known_m_s: f64) -> f64 {
 /// # Errors
 /// [`RunError`] of a run that cannot be trusted.
 pub fn whirl_law(scene: &Scene) -> Result<Option<ClairvoyantLaw>, RunError> {
-    let Some(arrest) = arrest_of(scene) else {
+    let Some(arrest) = arrest_of(scene, 0) else {
         return Ok(None);
     };
     let score = |law: ClairvoyantLaw| {

@@ -1,6 +1,6 @@
 //! Runs of the catalogue and what they measured.
 
-use super::case::Case;
+use super::case::{Case, seeded};
 use super::contenders::Contender;
 use crate::machines::tuned_gains::TunedGains;
 use firmware_bench::run::closed_loop::{Keep, run, run_policy};
@@ -65,10 +65,7 @@ pub fn run_case(
     (contender, seed): (Contender, u64),
     found: &TunedGains,
 ) -> ResultRow {
-    let scene = Scene {
-        seed,
-        ..case.scene.clone()
-    };
+    let scene = seeded(&case.scene, seed);
     let run = |policy| match run_policy(
         &scene,
         (policy, contender.name()),
@@ -99,11 +96,7 @@ pub fn run_case(
 
 /// Runs a user's own scene under one of its policies.
 pub fn run_own(scene: &Scene, kind: PolicyKind, seed: u64) -> ResultRow {
-    let seeded = Scene {
-        seed,
-        ..scene.clone()
-    };
-    let outcome = run(&seeded, kind, Keep::Verdict, &mut |_| {});
+    let outcome = run(&seeded(scene, seed), kind, Keep::Verdict, &mut |_| {});
     let (metrics, error) = match outcome {
         Ok((figures, _)) => (Some(figures), None),
         Err(error) => (None, Some(error.to_string())),

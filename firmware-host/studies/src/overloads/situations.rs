@@ -1,7 +1,7 @@
 //! Scenes in which the supervisor is in a known mode at a known instant. When that is differs from plant to plant by
 //! more than a mode lasts, so it is not written down but found, by watching a supervisor to which nothing else happens.
 
-use super::case::{Sizes, aimed, load};
+use super::case::{Sizes, aimed, load, seeded};
 use super::takeover::let_whirl;
 use firmware_bench::device::levitation::LevitationParams;
 use firmware_bench::run::closed_loop::{Keep, run};
@@ -45,8 +45,7 @@ pub fn situations(base: &Scene, sizes: Sizes, tuned: LevitationParams) -> Vec<Si
         let_whirl(scene, share * sizes.limit_m_s);
     };
     // Of a load at the wall, by the shaft [caps].
-    let plant = &base.plant;
-    let carried = plant.rotor.stiffness_n_m * plant.contact.clearance_m / sizes.force_n;
+    let carried = base.plant(0).rotor.stiffness_n_m * base.clearance_m(0) / sizes.force_n;
     let overload = |share: f64, scene: &mut Scene| {
         scene.disturbances = vec![load(sizes, 3.0 * share + carried, 0.0, WATCHED_S)];
     };
@@ -80,12 +79,9 @@ pub fn situations(base: &Scene, sizes: Sizes, tuned: LevitationParams) -> Vec<Si
 fn middle_of_longest(mode: Mode, scene: &Scene, tuned: LevitationParams) -> Option<f64> {
     let mut there: Vec<bool> = Vec::new();
     for seed in SEEDS {
-        let watched = Scene {
-            duration_s: WATCHED_S,
-            levitation: Some(tuned),
-            seed,
-            ..scene.clone()
-        };
+        let mut watched = seeded(scene, seed);
+        watched.duration_s = WATCHED_S;
+        watched.planes[0].levitation = Some(tuned);
         let (_, trace) = run(&watched, PolicyKind::Supervisor, Keep::Trace, &mut |_| {}).ok()?;
         let at_samples = trace.rows.iter().filter(|row| !row.mode_change);
         let now = at_samples.map(|row| row.supervisor_mode() == Some(mode));

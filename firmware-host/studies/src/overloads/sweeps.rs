@@ -1,5 +1,6 @@
 //! The two sweeps: the hardest impact recovered from, and the fastest whirl arrested at take-over.
 
+use super::case::{off_centre, seeded};
 use super::contenders::{Contender, Task};
 use super::impact::recoverable_m_s;
 use super::takeover::{ARRESTED, arrest_of, take_over};
@@ -72,10 +73,7 @@ pub fn sweep(
     found: &TunedGains,
     (contender, seed): (Contender, u64),
 ) -> Result<SweepPoint, RunError> {
-    let scene = Scene {
-        seed,
-        ..case.scene.clone()
-    };
+    let scene = seeded(&case.scene, seed);
     let make = |task: Task| move |s: &Scene| contender.controller(task, found, s);
     let mut impact_m_s = recoverable_m_s(&scene, contender.name(), &make(Task::Impact))?;
     if contender == Contender::Clairvoyant {
@@ -85,7 +83,7 @@ pub fn sweep(
     }
     let offset_impact_m_s = if matches!(contender, Contender::Tuned | Contender::Supervisor) {
         let mut off = scene.clone();
-        off.centre_offset_m = 0.1 * off.plant.contact.clearance_m * V2::new(0.6, 0.8);
+        off_centre(&mut off, 0.1 * scene.clearance_m(0) * V2::new(0.6, 0.8));
         Some(recoverable_m_s(
             &off,
             contender.name(),
@@ -95,7 +93,7 @@ pub fn sweep(
         None
     };
     let (mut whirl_share, mut arrest_s) = (0.0, None);
-    if let Some(arrest) = arrest_of(&scene) {
+    if let Some(arrest) = arrest_of(&scene, 0) {
         let run = |share: f64| {
             let policy = make(Task::Whirl)(&scene).ok_or(RunError::Incomplete {
                 policy: contender.name(),
@@ -124,7 +122,7 @@ pub fn row(case: &PlantCase, contender: Contender, points: &[SweepPoint]) -> Swe
         all.sort_by(f64::total_cmp);
         all
     };
-    let closed_form_s = arrest_of(&case.scene).map_or(f64::NAN, |arrest| {
+    let closed_form_s = arrest_of(&case.scene, 0).map_or(f64::NAN, |arrest| {
         let from = TIMED_SHARE * arrest.limit_m_s;
         arrest.time_s(from, ARRESTED)
     });

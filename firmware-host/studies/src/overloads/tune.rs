@@ -18,24 +18,34 @@ pub const SENSITIVITY: f64 = 3.0;
 /// Largest root mean square force by sensor noise, as a share of the cap.
 pub const IDLE_NOISE: f64 = 0.05;
 
-/// Shape of a loop on a scene's plant, `None` where it is unstable; the second value is the idle noise
+/// Shape of a loop on the plant of a scene with one plane, `None` where it is unstable; the second value is the idle noise
 /// force as a share of the cap.
 pub fn shape(
     scene: &Scene,
     sampled: &SampledPlant,
     params: &LevitationParams,
 ) -> Option<(LoopShape, f64)> {
+    shape_in((scene, 0), sampled, params)
+}
+
+/// The same in a plane.
+pub(crate) fn shape_in(
+    (scene, plane): (&Scene, usize),
+    sampled: &SampledPlant,
+    params: &LevitationParams,
+) -> Option<(LoopShape, f64)> {
     let shape = sampled.close(params)?;
-    let quantum = scene.sensor.quantum_m;
-    let noise_m = (scene.sensor.noise_rms_m.powi(2) + quantum * quantum / 12.0).sqrt();
-    let cap = scene.plant.magnet.map_or(f64::INFINITY, |m| m.force_max_n);
+    let sensor = &scene.planes[plane].sensor;
+    let quantum = sensor.quantum_m;
+    let noise_m = (sensor.noise_rms_m.powi(2) + quantum * quantum / 12.0).sqrt();
+    let cap = (scene.plant(plane).magnet).map_or(f64::INFINITY, |m| m.force_max_n);
     Some((shape, shape.noise_gain_n_m * noise_m / cap))
 }
 
 /// Loops that are tried: K_p = m·ω² from 2 Hz, as good as no spring, to 430 Hz, K_d = 2ζ·m·ω, a derivative filter of
 /// some samples.
 fn candidates(scene: &Scene) -> Vec<LevitationParams> {
-    let (mass, period_s) = (scene.plant.rotor.mass_kg, 1.0 / scene.sample_rate_hz);
+    let (mass, period_s) = (scene.plant(0).rotor.mass_kg, 1.0 / scene.sample_rate_hz);
     let mut all = Vec::new();
     for i in -9..16 {
         let omega = TAU * 15.0 * 1.25_f64.powi(i);
@@ -56,7 +66,7 @@ fn candidates(scene: &Scene) -> Vec<LevitationParams> {
 /// A PD loop that a commissioning engineer would accept: the one whose stiffness is nearest to this, of equals the one with
 /// the lowest peak sensitivity. `None` where none of those that are tried is acceptable on this plant.
 pub fn acceptable_near(scene: &Scene, proportional_n_m: f64) -> Option<LevitationParams> {
-    let sampled = SampledPlant::new(&scene.plant, scene.sample_rate_hz, 1);
+    let sampled = SampledPlant::new(&scene.plant(0), scene.sample_rate_hz, 1);
     let off = |params: &LevitationParams| (params.proportional_n_m / proportional_n_m).ln().abs();
     let accepted = accepted(scene, &sampled, candidates(scene)).into_iter();
     let best = accepted.min_by(|(a, peak_a), (b, peak_b)| {
@@ -85,7 +95,7 @@ fn accepted(
 /// # Errors
 /// [`RunError`] of a run that cannot be trusted.
 pub fn tuned(scene: &Scene) -> Result<Option<LevitationParams>, RunError> {
-    let sampled = SampledPlant::new(&scene.plant, scene.sample_rate_hz, 1);
+    let sampled = SampledPlant::new(&scene.plant(0), scene.sample_rate_hz, 1);
     let accepted = |all| accepted(scene, &sampled, all);
     let rated = |all: Vec<(LevitationParams, f64)>| {
         (all.par_iter())
@@ -119,9 +129,10 @@ pub fn tuned(scene: &Scene) -> Result<Option<LevitationParams>, RunError> {
 /// The ordinary loop: K_p ten times the stiffness of shaft and magnets, whichever sign, and among the
 /// dampings and filters the one with the lowest peak sensitivity.
 pub fn stiff(scene: &Scene) -> Option<LevitationParams> {
-    let sampled = SampledPlant::new(&scene.plant, scene.sample_rate_hz, 1);
-    let (mass, period_s) = (scene.plant.rotor.mass_kg, 1.0 / scene.sample_rate_hz);
-    let proportional_n_m = 10.0 * scene.plant.rotor.stiffness_n_m.abs();
+    let plant = scene.plant(0);
+    let sampled = SampledPlant::new(&plant, scene.sample_rate_hz, 1);
+    let (mass, period_s) = (plant.rotor.mass_kg, 1.0 / scene.sample_rate_hz);
+    let proportional_n_m = 10.0 * plant.rotor.stiffness_n_m.abs();
     let omega = (proportional_n_m / mass).sqrt();
     let mut best: Option<(f64, LevitationParams)> = None;
     for damping_ratio in [0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.85, 1.0, 1.2, 1.4] {

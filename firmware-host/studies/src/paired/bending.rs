@@ -3,8 +3,8 @@
 use super::pair::{Engaged, HOLDS_S, NoPair, Outcome, Pair, Tried, run_rotor};
 use super::row::{COLUMNS, ClassName, Row, values};
 use crate::campaign::{Block, Chapter, Claim, Extent, Progress, Report, StudyError, run_all};
+use firmware_bench::scene::Scene;
 use firmware_bench::scene::diagnostic::SceneError;
-use firmware_bench::scene::machine::MachineScene;
 use firmware_bench::scene::policy_kind::PolicyKind;
 
 /// The rotor.
@@ -104,15 +104,15 @@ impl Case {
         text
     }
 
-    fn scene(&self, configured: Option<f64>) -> Result<MachineScene, SceneError> {
-        MachineScene::parse("P5 that bends", &self.text(configured))
+    fn scene(&self, configured: Option<f64>) -> Result<Scene, SceneError> {
+        Scene::parse("P5 that bends", &self.text(configured))
     }
 
     /// Whether levitation alone recovers, and holds the rotor long after.
     fn is_held(&self) -> bool {
         let duration = format!("duration_s = {HOLDS_S}");
         let text = self.text(None).replacen("duration_s = 0.5", &duration, 1);
-        MachineScene::parse("P5 that bends", &text).is_ok_and(|scene| {
+        Scene::parse("P5 that bends", &text).is_ok_and(|scene| {
             run_rotor(&scene, PolicyKind::Levitation).is_ok_and(|outcome| outcome.recovered)
         })
     }

@@ -2,7 +2,7 @@
 
 use super::row::RIGHT;
 use crate::machines::draw::Draw;
-use firmware_bench::scene::Scene;
+use firmware_bench::scene::{PlaneScene, Scene};
 use supervisor::Config;
 
 /// A configuration, right or with a mistake.
@@ -10,8 +10,10 @@ use supervisor::Config;
 pub struct Configured {
     /// Name in tables.
     pub name: &'static str,
-    /// Makes the mistake in the scene of a plane.
-    make: fn(&mut Scene, &mut Draw),
+    /// Makes the mistake in the configuration of a plane.
+    make: fn(&mut Config, &mut Draw),
+    /// Makes it in what a scene tells all planes.
+    make_for_all: fn(&mut Scene),
 }
 
 impl PartialEq for Configured {
@@ -21,9 +23,16 @@ impl PartialEq for Configured {
 }
 
 impl Configured {
-    /// Makes the mistake in the scene of a plane.
-    pub fn apply(&self, scene: &mut Scene, draw: &mut Draw) {
-        (self.make)(scene, draw);
+    /// Makes the mistake in a plane.
+    pub fn apply(&self, plane: &mut PlaneScene, draw: &mut Draw) {
+        if let Some(config) = &mut plane.supervisor {
+            (self.make)(config, draw);
+        }
+    }
+
+    /// Makes the mistake in what is no plane's own.
+    pub fn apply_to_all(&self, scene: &mut Scene) {
+        (self.make_for_all)(scene);
     }
 }
 
@@ -31,22 +40,22 @@ impl Configured {
 pub const AS_IT_IS: Configured = Configured {
     name: RIGHT,
     make: |_, _| {},
+    make_for_all: |_| {},
 };
 
 /// Mass, friction, stiffness, lag, clearance and restitution off by up to 30, 50, 30, 50, 5 and 20 %.
 pub const MANY_WRONG: Configured = Configured {
     name: "many parameters wrong",
-    make: |scene, draw| {
-        if let Some(config) = &mut scene.supervisor {
-            let mut wrong = |x: &mut f32, by: f64| *x *= draw.decades(1.0 / by, by) as f32;
-            wrong(&mut config.mass_kg, 1.3);
-            wrong(&mut config.friction_coefficient, 1.5);
-            wrong(&mut config.stiffness_n_m, 1.3);
-            wrong(&mut config.amplifier_lag_s, 1.5);
-            wrong(&mut config.clearance_m, 1.05);
-            config.restitution = (config.restitution * draw.between(0.8, 1.2) as f32).min(0.95);
-        }
+    make: |config, draw| {
+        let mut wrong = |x: &mut f32, by: f64| *x *= draw.decades(1.0 / by, by) as f32;
+        wrong(&mut config.mass_kg, 1.3);
+        wrong(&mut config.friction_coefficient, 1.5);
+        wrong(&mut config.stiffness_n_m, 1.3);
+        wrong(&mut config.amplifier_lag_s, 1.5);
+        wrong(&mut config.clearance_m, 1.05);
+        config.restitution = (config.restitution * draw.between(0.8, 1.2) as f32).min(0.95);
     },
+    ..AS_IT_IS
 };
 
 /// One thing wrong with the configuration of a scene.
@@ -56,16 +65,16 @@ macro_rules! one_wrong {
         pub const ONE_WRONG: &[Configured] = &[
             $(Configured {
                 name: $name,
-                make: |scene, _| {
+                make: |config, _| {
                     let change: fn(&mut Config) = $change;
-                    if let Some(config) = &mut scene.supervisor {
-                        change(config);
-                    }
+                    change(config);
                 },
+                ..AS_IT_IS
             },)*
             Configured {
                 name: "spin reversed",
-                make: |scene, _| scene.spin_sensor.gain *= -1.0,
+                make_for_all: |scene| scene.spin_sensor.gain *= -1.0,
+                ..AS_IT_IS
             },
         ];
     };

@@ -71,13 +71,14 @@ impl Drawn {
         match self {
             Self::PointMass(machine) => {
                 let scene = &machine.scene;
+                let plane = &scene.planes[0];
                 Measures {
-                    mass_kg: scene.plant.rotor.mass_kg,
+                    mass_kg: scene.machine.rotor.rigid().mass_kg,
                     clearance_m: machine.clearance_m(),
                     force_n: machine.force_n(),
                     spin_hz: scene.start.spin_rad_s / std::f64::consts::TAU,
-                    proportional_n_m: scene.levitation.map_or(0.0, |l| l.proportional_n_m),
-                    weighs: scene.weight_n.norm() > 0.0,
+                    proportional_n_m: plane.levitation.map_or(0.0, |l| l.proportional_n_m),
+                    weighs: plane.weight_n.norm() > 0.0,
                     whole: None,
                 }
             }

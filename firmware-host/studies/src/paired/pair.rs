@@ -1,12 +1,12 @@
 //! A scene under levitation alone, and with the supervisor in front of it.
 
-use firmware_bench::run::closed_loop::{MachineRecorders, Rigour, record, record_machine};
+use firmware_bench::run::closed_loop::{Recorders, Rigour, record};
 use firmware_bench::run::figures::Figures;
 use firmware_bench::run::outcome::Outcome as Ending;
 use firmware_bench::run::trace::{Recorder, TraceRow};
-use firmware_bench::scene::machine::{AnyScene, MachineScene};
+use firmware_bench::scene::Scene;
 use firmware_bench::scene::policy_kind::PolicyKind;
-use supervisor::{Events, Supervisor};
+use supervisor::Events;
 
 /// What a run is to end in to count as a recovery.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -182,84 +182,55 @@ pub fn remark(tried: &Tried) -> Option<String> {
     }
 }
 
-/// A whole rotor under a policy.
+/// A scene under a policy, to come free of the wall.
 ///
 /// # Errors
 /// Why the run cannot be trusted.
-pub fn run_rotor(scene: &MachineScene, kind: PolicyKind) -> Result<Outcome, String> {
-    let (planes, _) = planes_of(scene, kind)?;
-    Ok(Outcome::of(&planes, Goal::Free))
+pub fn run_rotor(scene: &Scene, kind: PolicyKind) -> Result<Outcome, String> {
+    run(scene, kind, Goal::Free).map(|(outcome, _)| outcome)
 }
 
-fn planes_of(scene: &MachineScene, kind: PolicyKind) -> Result<(Vec<Figures>, Engaged), String> {
-    let period_s = 1.0 / scene.common().sample_rate_hz;
+fn run(scene: &Scene, kind: PolicyKind, goal: Goal) -> Result<(Outcome, Engaged), String> {
     let counter = |_| Counter {
-        period_s,
+        period_s: 1.0 / scene.sample_rate_hz,
         ..Counter::default()
     };
     let mut counters: Vec<Counter> = scene.planes.iter().map(counter).collect();
-    let recorders = MachineRecorders {
+    let recorders = Recorders {
         planes: (counters.iter_mut())
             .map(|c| c as &mut dyn Recorder)
             .collect(),
         axis: None,
     };
-    let ended = record_machine(scene, kind, recorders, Rigour::default(), &mut |_| {})
+    let ended = record(scene, kind, recorders, Rigour::default(), &mut |_| {})
         .map_err(|error| error.to_string())?;
     let engaged = (counters.iter()).fold(Engaged::default(), |sum, c| sum.and(&c.counted));
-    Ok((
-        ended.into_iter().map(|(figures, _)| figures).collect(),
-        engaged,
-    ))
-}
-
-fn run(scene: &AnyScene, kind: PolicyKind, goal: Goal) -> Result<(Outcome, Engaged), NoPair> {
-    let untrusted = NoPair::Untrusted;
-    match scene {
-        AnyScene::Machine(scene) => {
-            let (planes, engaged) = planes_of(scene, kind).map_err(untrusted)?;
-            Ok((Outcome::of(&planes, goal), engaged))
-        }
-        AnyScene::Plane(scene) => {
-            let mut counter = Counter {
-                period_s: 1.0 / scene.sample_rate_hz,
-                ..Counter::default()
-            };
-            let rigour = Rigour::default();
-            let (figures, _) = record(scene, kind, &mut counter, rigour, &mut |_| {})
-                .map_err(|error| untrusted(error.to_string()))?;
-            Ok((Outcome::of(&[figures], goal), counter.counted))
-        }
-    }
+    let planes: Vec<Figures> = ended.into_iter().map(|(figures, _)| figures).collect();
+    Ok((Outcome::of(&planes, goal), engaged))
 }
 
 /// Why the supervisor refuses what it is configured with.
-fn refused(scene: &AnyScene) -> Option<String> {
-    match scene {
-        AnyScene::Plane(scene) => {
-            let made = Supervisor::<64>::new(&scene.supervisor?);
-            made.err().map(|error| error.to_string())
-        }
-        AnyScene::Machine(scene) => {
-            let [a, b] = scene.supervised_planes()?;
-            let errors = [a, b].map(|plane| plane.scene.supervisor?.validate().err());
-            let of_a_plane = errors.into_iter().flatten().next();
-            let whole = || (scene.supervisor().is_none()).then(|| "the whole rotor".to_owned());
-            of_a_plane.map(|error| error.to_string()).or_else(whole)
-        }
-    }
+fn refused(scene: &Scene) -> Option<String> {
+    let mut configs = scene.planes.iter().filter_map(|plane| plane.supervisor);
+    let of_a_plane = configs.find_map(|config| config.validate().err());
+    let whole = || {
+        let refused = scene.supervised().is_some() && scene.supervisor().is_none();
+        refused.then(|| "the whole rotor".to_owned())
+    };
+    of_a_plane.map(|error| error.to_string()).or_else(whole)
 }
 
 /// Runs a scene both ways.
 ///
 /// # Errors
 /// Why there is no pair.
-pub fn pair(scene: &AnyScene, goal: Goal) -> Tried {
+pub fn pair(scene: &Scene, goal: Goal) -> Tried {
     if let Some(why) = refused(scene) {
         return Err(NoPair::Refused(why));
     }
-    let (levitation, _) = run(scene, PolicyKind::Levitation, goal)?;
-    let (supervisor, engaged) = run(scene, PolicyKind::Supervisor, goal)?;
+    let run = |kind| run(scene, kind, goal).map_err(NoPair::Untrusted);
+    let (levitation, _) = run(PolicyKind::Levitation)?;
+    let (supervisor, engaged) = run(PolicyKind::Supervisor)?;
     Ok(Pair {
         levitation,
         supervisor,
@@ -267,19 +238,11 @@ pub fn pair(scene: &AnyScene, goal: Goal) -> Tried {
     })
 }
 
-/// A whole rotor's scene both ways.
-///
-/// # Errors
-/// Why there is no pair.
-pub fn pair_of_rotor(scene: MachineScene) -> Tried {
-    pair(&AnyScene::Machine(Box::new(scene)), Goal::Free)
-}
-
 /// So long levitation alone has to hold a rotor for it to count \[s\]: some loops drive a mode so slowly that they recover
 /// from an event first.
 pub const HOLDS_S: f64 = 3.0;
 
 /// Whether levitation alone has the rotor in the middle at the end of a scene, one of [`HOLDS_S`].
-pub fn is_held(scene: &AnyScene) -> bool {
-    run(scene, PolicyKind::Levitation, Goal::Free).is_ok_and(|(outcome, _)| outcome.recovered)
+pub fn is_held(scene: &Scene) -> bool {
+    run_rotor(scene, PolicyKind::Levitation).is_ok_and(|outcome| outcome.recovered)
 }

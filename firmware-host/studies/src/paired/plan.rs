@@ -9,7 +9,6 @@ use super::sensors::Sensors;
 use crate::campaign::{Progress, run_all};
 use crate::machines::draw::Draw;
 use firmware_bench::scene::Scene;
-use firmware_bench::scene::machine::AnyScene;
 use firmware_bench::scene::spec::Spec;
 
 /// A class: a place on every axis.
@@ -98,7 +97,7 @@ impl Class {
     ///
     /// # Errors
     /// Why there is none: a mistake of the draw.
-    pub fn scene(&self, seed: u64, number: u64) -> Result<(AnyScene, Goal), String> {
+    pub fn scene(&self, seed: u64, number: u64) -> Result<(Scene, Goal), String> {
         let machine = self.machine.machine(seed, number)?;
         let mut draw = Draw::new(seed ^ OF_EVENTS, number);
         let noise = draw.number();
@@ -107,16 +106,19 @@ impl Class {
             (Event::Point(event), Drawn::PointMass(machine)) => {
                 let mut scene = machine.scene.clone();
                 event.happen(machine, &mut draw, &mut scene);
-                (AnyScene::Plane(Box::new(scene)), Goal::Free)
+                (scene, Goal::Free)
             }
             (Event::Point(_), Drawn::Rotor(_)) => return Err("event of a point mass".to_owned()),
         };
-        let title = format!("{}, {}", self.name().text(false), machine.text());
-        for (plane, plane_number) in planes(&mut scene).into_iter().zip(0_u64..) {
-            plane.title.clone_from(&title);
-            plane.seed = noise.wrapping_add(plane_number << 32);
-            self.sensors.apply(&mut draw, plane);
-            self.configured.apply(plane, &mut draw);
+        scene.title = format!("{}, {}", self.name().text(false), machine.text());
+        self.configured.apply_to_all(&mut scene);
+        let with_magnet: Vec<usize> = (0..scene.planes.len())
+            .filter(|plane| !scene.planes[*plane].seal)
+            .collect();
+        for (plane, plane_number) in with_magnet.into_iter().zip(0_u64..) {
+            scene.planes[plane].seed = noise.wrapping_add(plane_number << 32);
+            self.sensors.apply(&mut draw, &mut scene, plane);
+            self.configured.apply(&mut scene.planes[plane], &mut draw);
         }
         Ok((scene, goal))
     }
@@ -125,19 +127,8 @@ impl Class {
 /// Sets the draw of what happens apart from that of the machine.
 const OF_EVENTS: u64 = 0x5eed;
 
-/// The planes that have a magnet.
-fn planes(scene: &mut AnyScene) -> Vec<&mut Scene> {
-    match scene {
-        AnyScene::Plane(scene) => vec![scene],
-        AnyScene::Machine(machine) => (machine.planes.iter_mut())
-            .filter(|plane| !plane.seal)
-            .map(|plane| &mut plane.scene)
-            .collect(),
-    }
-}
-
 /// The scene of a machine with an event that is written as keys.
-fn written(machine: &Drawn, event: Written, draw: &mut Draw) -> Result<(AnyScene, Goal), String> {
+fn written(machine: &Drawn, event: Written, draw: &mut Draw) -> Result<(Scene, Goal), String> {
     let measures = machine.measures();
     let keys = event.keys(&measures, draw);
     let error = |error: firmware_bench::scene::diagnostic::SceneError| error.to_string();
@@ -151,7 +142,7 @@ fn written(machine: &Drawn, event: Written, draw: &mut Draw) -> Result<(AnyScene
     for (key, value) in keys.set {
         spec.set(&key, value).map_err(error)?;
     }
-    Ok((AnyScene::resolve(&spec).map_err(error)?, keys.goal))
+    Ok((spec.resolve().map_err(error)?, keys.goal))
 }
 
 /// A pair of runs.
@@ -227,9 +218,7 @@ impl Plan {
             written(&machine, Written::Idle, &mut draw)
         };
         idle().is_ok_and(|(mut scene, _)| {
-            for plane in planes(&mut scene) {
-                plane.duration_s = HOLDS_S + BEGIN_S;
-            }
+            scene.duration_s = HOLDS_S + BEGIN_S;
             is_held(&scene)
         })
     }

@@ -7,6 +7,7 @@ use crate::overloads::takeover::{arrest_of, let_whirl};
 use firmware_bench::device::loads::{BaseMotion, Disturbance, Shape};
 use firmware_bench::scene::Scene;
 use plant_model::V2;
+use plant_model::machine::params::Unbalance;
 use plant_model::params::SpinParams;
 
 /// What is left to come back in \[s\].
@@ -84,14 +85,14 @@ impl Point {
                     start_s: 0.1,
                     duration_s: BEGIN_S,
                     force_n: load,
-                    shape: Shape::Constant,
+                    ..Disturbance::default()
                 });
                 let speed = unit * draw.between(0.3, 2.5);
                 scene.disturbances.push(push(machine, direction * speed));
             }
             Self::Shock => {
                 let duration_s = draw.decades(1.0, 8.0) * machine.unit_s();
-                let acceleration = machine.force_n() / machine.scene.plant.rotor.mass_kg;
+                let acceleration = machine.force_n() / mass_kg(&machine.scene);
                 scene.base_motions.push(BaseMotion {
                     start_s: BEGIN_S,
                     duration_s,
@@ -106,12 +107,12 @@ impl Point {
                     start_s: BEGIN_S,
                     duration_s,
                     force_n: direction * machine.force_n() * draw.between(0.8, 2.5),
-                    shape: Shape::Constant,
+                    ..Disturbance::default()
                 });
                 scene.duration_s += duration_s;
             }
             Self::Whirl => {
-                if let Some(arrest) = arrest_of(scene) {
+                if let Some(arrest) = arrest_of(scene, 0) {
                     let speed_m_s = arrest.limit_m_s * draw.between(0.3, 1.0);
                     let_whirl(scene, speed_m_s);
                 }
@@ -120,18 +121,24 @@ impl Point {
             Self::RunUp => {
                 // A mass centre that far off turns the rotor on its bearing through the whole of it.
                 let orbit = draw.between(0.3, 0.7);
-                scene.plant.rotor.eccentricity_m = orbit * 0.9 * machine.clearance_m();
-                let stiffness_n_m = scene.levitation.map_or(0.0, |l| l.proportional_n_m)
-                    + scene.plant.rotor.stiffness_n_m;
-                let critical = (stiffness_n_m / scene.plant.rotor.mass_kg).sqrt();
+                scene.eccentricity_m = orbit * 0.9 * machine.clearance_m();
+                scene.machine.unbalances = vec![Unbalance {
+                    position_m: 0.0,
+                    moment_kg_m: mass_kg(scene) * scene.eccentricity_m,
+                    angle_rad: 0.0,
+                }];
+                let levitation = scene.planes[0].levitation;
+                let stiffness_n_m = levitation.map_or(0.0, |l| l.proportional_n_m)
+                    + scene.plant(0).rotor.stiffness_n_m;
+                let critical = (stiffness_n_m / mass_kg(scene)).sqrt();
                 let end = 3.0 * critical * scene.start.spin_rad_s.signum();
                 scene.duration_s = 2.0;
-                let inertia_kg_m2 = match scene.plant.spin {
+                let inertia_kg_m2 = match scene.machine.spin {
                     SpinParams::Free { inertia_kg_m2, .. } => inertia_kg_m2,
                     _ => 1.0,
                 };
                 scene.start.spin_rad_s = 0.02 * end;
-                scene.plant.spin = SpinParams::Free {
+                scene.machine.spin = SpinParams::Free {
                     inertia_kg_m2,
                     drive_torque_n_m: inertia_kg_m2 * end / scene.duration_s,
                 };
@@ -146,7 +153,11 @@ fn push(machine: &Machine, change_m_s: V2) -> Disturbance {
     Disturbance {
         start_s: BEGIN_S,
         duration_s,
-        force_n: change_m_s * (machine.scene.plant.rotor.mass_kg / duration_s),
-        shape: Shape::Constant,
+        force_n: change_m_s * (mass_kg(&machine.scene) / duration_s),
+        ..Disturbance::default()
     }
+}
+
+fn mass_kg(scene: &Scene) -> f64 {
+    scene.machine.rotor.rigid().mass_kg
 }

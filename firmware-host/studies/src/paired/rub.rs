@@ -6,7 +6,7 @@ use crate::campaign::{
     Block, Chapter, Claim, Extent, Machines, Progress, Report, StudyError, run_all,
 };
 use crate::machines::unbalanced::{DRIVEN, Motion, RubCase, TURNS};
-use firmware_bench::scene::machine::AnyScene;
+use firmware_bench::scene::Scene;
 
 /// Nothing was tuned on the machines of this seed.
 const SEED: u64 = 20_261_129;
@@ -28,7 +28,7 @@ impl RubCase {
     /// Both pairs.
     pub fn pairs(&self) -> Rubs {
         let of = |driven| {
-            let scene = AnyScene::parse(&self.text(), &self.scene(driven));
+            let scene = Scene::parse(&self.text(), &self.scene(driven));
             pair(
                 &scene.map_err(|error| NoPair::Untrusted(error.to_string()))?,
                 Goal::Free,

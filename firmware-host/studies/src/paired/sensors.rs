@@ -76,40 +76,45 @@ impl Sensors {
         }
     }
 
-    /// Lets it be so.
-    pub fn apply(self, draw: &mut Draw, scene: &mut Scene) {
-        let c = scene.plant.contact.clearance_m;
+    /// Lets it be so in a plane.
+    pub fn apply(self, draw: &mut Draw, scene: &mut Scene, plane: usize) {
+        let faults = self.faults(draw, (scene, plane));
+        scene.planes[plane].faults.extend(faults);
+    }
+
+    fn faults(self, draw: &mut Draw, at: (&Scene, usize)) -> Vec<Fault> {
+        let (scene, plane) = at;
+        let c = scene.clearance_m(plane);
         let for_good = |kind, axis| Fault {
             start_s: 0.0,
             duration_s: scene.duration_s + 1.0,
             kind,
             axis,
         };
+        let mut faults = Vec::new();
         match self {
             Self::AsConfigured => {}
             Self::Noise(factor) => {
-                scene
-                    .faults
-                    .push(for_good(FaultKind::Noise(factor), Axis::Both));
+                faults.push(for_good(FaultKind::Noise(factor), Axis::Both));
             }
             Self::Runout(speed) => {
                 let speed = draw.between(0.5, 1.0) * speed;
                 let axis = draw.one_of(&[Axis::X, Axis::Y]);
-                runout(scene, (1.0, speed, draw.angle_rad()), axis);
+                runout(&mut faults, at, (1.0, speed, draw.angle_rad()), axis);
             }
             Self::EllipticRunout => {
                 let speed = draw.between(0.3, 2.0);
                 let phase = draw.angle_rad();
-                runout(scene, (1.0, speed, phase), Axis::X);
+                runout(&mut faults, at, (1.0, speed, phase), Axis::X);
                 let other = phase + draw.angle_rad();
                 let share = draw.between(0.2, 1.0);
-                runout(scene, (1.0, share * speed, other), Axis::Y);
+                runout(&mut faults, at, (1.0, share * speed, other), Axis::Y);
             }
             Self::Harmonic => {
                 let speed = draw.between(0.3, 1.5);
                 let times = draw.one_of(&[2.0, 3.0]);
                 let axis = draw.one_of(&[Axis::X, Axis::Y]);
-                runout(scene, (times, speed, draw.angle_rad()), axis);
+                runout(&mut faults, at, (times, speed, draw.angle_rad()), axis);
             }
             Self::Hum => {
                 let kind = FaultKind::Oscillation {
@@ -117,7 +122,7 @@ impl Sensors {
                     amplitude_m: 0.05 * c,
                 };
                 let axis = draw.one_of(&[Axis::X, Axis::Y, Axis::Both]);
-                scene.faults.push(for_good(kind, axis));
+                faults.push(for_good(kind, axis));
             }
             Self::Spikes => {
                 let kind = FaultKind::Spikes {
@@ -125,14 +130,12 @@ impl Sensors {
                     size_m: c * draw.decades(0.03, 1.0),
                 };
                 let axis = draw.one_of(&[Axis::X, Axis::Y, Axis::Both]);
-                scene.faults.push(for_good(kind, axis));
+                faults.push(for_good(kind, axis));
             }
             Self::Coarse => {
                 let step = draw.decades(0.01, 0.03);
                 let bits = (8.0 / step).log2().round() as u32;
-                scene
-                    .faults
-                    .push(for_good(FaultKind::Bits(bits), Axis::Both));
+                faults.push(for_good(FaultKind::Bits(bits), Axis::Both));
             }
             Self::FaultPair => {
                 for _ in 0..2 {
@@ -151,7 +154,7 @@ impl Sensors {
                         _ if kind.concerns_both() => Axis::Both,
                         axis => axis,
                     };
-                    scene.faults.push(Fault {
+                    faults.push(Fault {
                         start_s: BEGIN_S + draw.between(-0.02, 0.02),
                         duration_s: draw.decades(1e-3, 0.02),
                         kind,
@@ -159,21 +162,22 @@ impl Sensors {
                     });
                 }
             }
-            Self::Zero => fail(scene, draw, &[FaultKind::Zero]),
-            Self::Stuck => fail(scene, draw, &[FaultKind::Stuck]),
-            Self::ZeroAndStuck => fail(scene, draw, &[FaultKind::Zero, FaultKind::Stuck]),
+            Self::Zero => fail(&mut faults, draw, &[FaultKind::Zero]),
+            Self::Stuck => fail(&mut faults, draw, &[FaultKind::Stuck]),
+            Self::ZeroAndStuck => fail(&mut faults, draw, &[FaultKind::Zero, FaultKind::Stuck]),
         }
+        faults
     }
 }
 
 /// Lets coordinates fail around what happens, each in one way.
-fn fail(scene: &mut Scene, draw: &mut Draw, kinds: &[FaultKind]) {
+fn fail(faults: &mut Vec<Fault>, draw: &mut Draw, kinds: &[FaultKind]) {
     let mut axes = draw
         .one_of(&[[Axis::X, Axis::Y], [Axis::Y, Axis::X]])
         .into_iter();
     for kind in kinds {
         let duration_s = draw.between(2e-3, 0.02);
-        scene.faults.push(Fault {
+        faults.push(Fault {
             start_s: BEGIN_S - draw.between(0.0, 1.0) * duration_s,
             duration_s,
             kind: *kind,
@@ -188,14 +192,19 @@ const STEPS: usize = 16;
 const GROWS_S: f64 = 0.1;
 
 /// Runout that grows from nothing: harmonic, speed in √(F·c/m), phase \[rad\].
-fn runout(scene: &mut Scene, (times, speed, phase): (f64, f64, f64), axis: Axis) {
+fn runout(
+    faults: &mut Vec<Fault>,
+    (scene, plane): (&Scene, usize),
+    (times, speed, phase): (f64, f64, f64),
+    axis: Axis,
+) {
     let frequency_hz = (times * scene.start.spin_rad_s / TAU).abs();
-    let speed_m_s = speed * scene.nominal.force_speed_m_s();
-    let amplitude_m = (speed_m_s / (TAU * frequency_hz)).min(0.1 * scene.plant.contact.clearance_m);
+    let speed_m_s = speed * scene.planes[plane].nominal.force_speed_m_s();
+    let amplitude_m = (speed_m_s / (TAU * frequency_hz)).min(0.1 * scene.clearance_m(plane));
     // Steps of a whole number of periods, so that all are in phase.
     let periods = (GROWS_S / STEPS as f64 * frequency_hz).ceil().max(1.0);
     for step in 0..STEPS {
-        scene.faults.push(Fault {
+        faults.push(Fault {
             start_s: (phase / TAU + step as f64 * periods) / frequency_hz,
             duration_s: scene.duration_s + 1.0,
             kind: FaultKind::Oscillation {

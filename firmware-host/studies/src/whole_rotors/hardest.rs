@@ -3,7 +3,7 @@
 use super::plants::{Blow, Loop, RotorPlant};
 use crate::campaign::{Progress, run_all};
 use crate::overloads::impact::STEP;
-use crate::overloads::tune::{IDLE_NOISE, SENSITIVITY, shape};
+use crate::overloads::tune::{IDLE_NOISE, SENSITIVITY, shape_in};
 use crate::paired::pair::run_rotor;
 use firmware_bench::device::loop_shape::SampledPlant;
 use firmware_bench::scene::policy_kind::PolicyKind;
@@ -63,10 +63,10 @@ fn candidates(cross: &[Option<f64>]) -> Vec<Loop> {
 /// noise.
 fn is_fit(plant: &RotorPlant, by: &Loop) -> bool {
     let alone = plant.levitated_by(&Loop { cross: None, ..*by });
-    alone.scene.planes.iter().all(|plane| {
-        let scene = &plane.scene;
-        let sampled = SampledPlant::new(&scene.plant, scene.sample_rate_hz, 1);
-        let found = (scene.levitation).and_then(|gains| shape(scene, &sampled, &gains));
+    let scene = &alone.scene;
+    scene.planes.iter().enumerate().all(|(i, plane)| {
+        let sampled = SampledPlant::new(&scene.plant(i), scene.sample_rate_hz, 1);
+        let found = (plane.levitation).and_then(|gains| shape_in((scene, i), &sampled, &gains));
         found.is_some_and(|(loop_shape, noise)| {
             loop_shape.peak_sensitivity < SENSITIVITY && noise < IDLE_NOISE
         })

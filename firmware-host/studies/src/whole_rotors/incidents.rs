@@ -6,8 +6,8 @@ use firmware_bench::device::actuator::{Delivers, Outage};
 use firmware_bench::device::axis::Axis;
 use firmware_bench::device::loads::{BaseMotion, Shape, TimedChange};
 use firmware_bench::device::sensor_fault::{Fault, FaultKind};
+use firmware_bench::scene::Scene;
 use firmware_bench::scene::diagnostic::SceneError;
-use firmware_bench::scene::machine::MachineScene;
 use plant_model::analysis::arrest::circle_radius_m;
 use plant_model::machine::params::Unbalance;
 use plant_model::params::SpinParams;
@@ -148,7 +148,7 @@ impl Incident {
         plant: &RotorPlant,
         hardest: Hardest,
         (angle_rad, seed): (f64, u64),
-    ) -> Result<MachineScene, SceneError> {
+    ) -> Result<Scene, SceneError> {
         let struck = || plant.struck(Blow::End(0), BLOW * hardest.end_m_s, angle_rad, seed);
         // From rest, not in the very middle.
         let resting = || plant.struck(Blow::End(0), 1e-3, angle_rad, seed);
@@ -196,20 +196,18 @@ impl Incident {
             Self::Conical(percent) => whirling(resting(), share(percent), along, true),
             Self::Runout(percent) => {
                 let mut scene = struck();
-                for (plane, phase_rad) in scene.planes.iter_mut().zip([0.0, TAU / 2.0]) {
-                    let c = plane.scene.plant.contact.clearance_m;
-                    plane.scene.sensor.runout_m = share(percent) * c;
-                    plane.scene.sensor.runout_phase_rad = phase_rad;
+                for (plane, phase_rad) in [0.0, TAU / 2.0].into_iter().enumerate() {
+                    let runout_m = share(percent) * scene.clearance_m(plane);
+                    let sensor = &mut scene.planes[plane].sensor;
+                    (sensor.runout_m, sensor.runout_phase_rad) = (runout_m, phase_rad);
                 }
                 scene
             }
             Self::Misaligned(percent) => {
                 let mut scene = struck();
-                let planes = scene.planes.iter_mut().zip(&mut scene.machine.planes);
-                for ((plane, of_machine), sense) in planes.zip([1.0, -1.0]) {
-                    let c = plane.scene.plant.contact.clearance_m;
-                    let off_m = sense * share(percent) * c * V2::new(0.6, 0.8);
-                    (plane.scene.centre_offset_m, of_machine.centre_m) = (off_m, off_m);
+                for (plane, sense) in scene.machine.planes.iter_mut().zip([1.0, -1.0]) {
+                    let c = plane.contact.clearance_m;
+                    plane.centre_m = sense * share(percent) * c * V2::new(0.6, 0.8);
                 }
                 scene
             }
@@ -227,19 +225,17 @@ impl Incident {
 }
 
 /// Runs until some time after what ends last.
-fn until(scene: &mut MachineScene, end_s: f64) {
-    for plane in &mut scene.planes {
-        plane.scene.duration_s = end_s + AFTER_S;
-    }
+fn until(scene: &mut Scene, end_s: f64) {
+    scene.duration_s = end_s + AFTER_S;
 }
 
 /// Some magnets, or one axis of them, give nothing for a while, which firmware knows.
 fn without_force(
-    mut scene: MachineScene,
+    mut scene: Scene,
     (start_s, duration_s): (f64, f64),
     axis: Axis,
     planes: std::ops::Range<usize>,
-) -> MachineScene {
+) -> Scene {
     let outage = Outage {
         start_s,
         duration_s,
@@ -248,16 +244,16 @@ fn without_force(
         known: true,
     };
     for plane in scene.planes.iter_mut().take(planes.end).skip(planes.start) {
-        plane.scene.outages = vec![outage];
+        plane.outages = vec![outage];
     }
     until(&mut scene, start_s + duration_s);
     scene
 }
 
 /// The first sensor reads no number for a while.
-fn without_reading(mut scene: MachineScene, (start_s, duration_s): (f64, f64)) -> MachineScene {
+fn without_reading(mut scene: Scene, (start_s, duration_s): (f64, f64)) -> Scene {
     if let Some(first) = scene.planes.first_mut() {
-        first.scene.faults = vec![Fault {
+        first.faults = vec![Fault {
             start_s,
             duration_s,
             kind: FaultKind::Nan,
@@ -268,15 +264,8 @@ fn without_reading(mut scene: MachineScene, (start_s, duration_s): (f64, f64)) -
     scene
 }
 
-/// Parameters that change in a scene.
-fn changing(scene: &mut MachineScene, changes: &[TimedChange]) {
-    for plane in &mut scene.planes {
-        plane.scene.changes.extend(changes);
-    }
-}
-
 /// An unbalance at the first plane, of this moment and at this angle on the rotor.
-fn unbalance(scene: &MachineScene, moment_kg_m: f64, angle_rad: f64) -> Unbalance {
+fn unbalance(scene: &Scene, moment_kg_m: f64, angle_rad: f64) -> Unbalance {
     Unbalance {
         position_m: scene.machine.planes.first().map_or(0.0, |p| p.position_m),
         moment_kg_m,
@@ -285,9 +274,8 @@ fn unbalance(scene: &MachineScene, moment_kg_m: f64, angle_rad: f64) -> Unbalanc
 }
 
 /// An unbalance at the first plane whose orbit far above the criticals is this share of the clearance.
-fn unbalance_of_orbit(scene: &MachineScene, share: f64, angle_rad: f64) -> Unbalance {
-    let clearance_m =
-        (scene.planes.first()).map_or(0.0, |plane| plane.scene.plant.contact.clearance_m);
+fn unbalance_of_orbit(scene: &Scene, share: f64, angle_rad: f64) -> Unbalance {
+    let clearance_m = scene.clearance_m(0);
     let mut unbalance = unbalance(scene, 0.0, angle_rad);
     let z = unbalance.position_m;
     unbalance.moment_kg_m = share * clearance_m / scene.machine.rotor.rigid().mobility(z, z);
@@ -296,11 +284,7 @@ fn unbalance_of_orbit(scene: &MachineScene, share: f64, angle_rad: f64) -> Unbal
 
 /// An unbalance at the first plane from a time on, its force a share of the magnet's cap; for a while, after which the opposite
 /// comes on top, or for good.
-fn blade_lost(
-    mut scene: MachineScene,
-    (share, angle_rad): (f64, f64),
-    lasts_s: Option<f64>,
-) -> MachineScene {
+fn blade_lost(mut scene: Scene, (share, angle_rad): (f64, f64), lasts_s: Option<f64>) -> Scene {
     let force_n = share * scene.machine.magnets.first().map_or(0.0, |m| m.force_max_n);
     let moment_kg_m = force_n / scene.start.spin_rad_s.powi(2);
     until(&mut scene, BEGIN_S + lasts_s.unwrap_or(0.1));
@@ -311,24 +295,19 @@ fn blade_lost(
     };
     let mut changes = vec![at(BEGIN_S, angle_rad)];
     changes.extend(lasts_s.map(|lasts_s| at(BEGIN_S + lasts_s, angle_rad + PI)));
-    changing(&mut scene, &changes);
+    scene.changes.extend(changes);
     scene
 }
 
 /// The base moves.
-fn shaken(mut scene: MachineScene, motion: &BaseMotion) -> MachineScene {
-    let mass_kg = scene.machine.rotor.rigid().mass_kg;
-    scene.loads.push(motion.on_mass(mass_kg));
-    scene.machine.loads_m.push(0.0);
-    for plane in &mut scene.planes {
-        plane.scene.base_motions.push(*motion);
-    }
+fn shaken(mut scene: Scene, motion: &BaseMotion) -> Scene {
+    scene.base_motions.push(*motion);
     until(&mut scene, motion.end_s());
     scene
 }
 
 /// Lies across the axis in the earth's field, each magnet told to carry its share.
-fn with_weight(mut scene: MachineScene) -> MachineScene {
+fn with_weight(mut scene: Scene) -> Scene {
     let gravity_m_s2 = V2::new(0.0, -G_M_S2);
     scene.machine.gravity_m_s2 = gravity_m_s2;
     let mass_kg = scene.machine.rotor.rigid().mass_kg;
@@ -337,7 +316,7 @@ fn with_weight(mut scene: MachineScene) -> MachineScene {
         let apart_m = second_m - first_m;
         let carried = [second_m / apart_m, -first_m / apart_m];
         for (plane, share) in scene.planes.iter_mut().zip(carried) {
-            plane.scene.feed_forward_n = -mass_kg * share * gravity_m_s2;
+            plane.feed_forward_n = -mass_kg * share * gravity_m_s2;
         }
     }
     scene
@@ -345,11 +324,12 @@ fn with_weight(mut scene: MachineScene) -> MachineScene {
 
 /// Starts in backward whirl, at a share of the speed that the weaker plane's cap can stop; conical whirl is that of the plane
 /// that is farther out.
-fn whirling(mut scene: MachineScene, share: f64, along: V2, conical: bool) -> MachineScene {
-    let limits = scene.planes.iter().filter_map(|p| arrest_of(&p.scene));
+fn whirling(mut scene: Scene, share: f64, along: V2, conical: bool) -> Scene {
+    let planes = || 0..scene.planes.len();
+    let limits = planes().filter_map(|plane| arrest_of(&scene, plane));
     let speed_m_s = share * limits.fold(f64::INFINITY, |least, a| least.min(a.limit_m_s));
-    let radius_m = (scene.planes.iter())
-        .map(|p| circle_radius_m(&p.scene.plant, speed_m_s))
+    let radius_m = planes()
+        .map(|plane| circle_radius_m(&scene.plant(plane), speed_m_s))
         .fold(f64::INFINITY, f64::min);
     let backward = -scene.start.spin_rad_s.signum();
     let position_m = radius_m * along;
@@ -366,15 +346,14 @@ fn whirling(mut scene: MachineScene, share: f64, along: V2, conical: bool) -> Ma
         (start.tilt_rad, start.tilt_rate_rad_s) = (V2::zeros(), V2::zeros());
     }
     for plane in &mut scene.planes {
-        let lost = lost_beyond_m_s(speed_m_s);
-        plane.scene.whirl_speed_m_s = plane.scene.whirl_speed_m_s.max(lost);
-        plane.scene.levitated_before = true;
+        plane.whirl_speed_m_s = plane.whirl_speed_m_s.max(lost_beyond_m_s(speed_m_s));
     }
+    scene.levitated_before = true;
     scene
 }
 
 /// Free to spin, from the first speed of the run-down or its own; the torque \[N m\] that brakes it down.
-fn braked(scene: &mut MachineScene) -> f64 {
+fn braked(scene: &mut Scene) -> f64 {
     let (from_hz, to_hz) = SPIN_DOWN_HZ;
     let from = scene.start.spin_rad_s.abs().min(TAU * from_hz);
     let sense = scene.start.spin_rad_s.signum();
@@ -388,7 +367,7 @@ fn braked(scene: &mut MachineScene) -> f64 {
 }
 
 /// A drive brakes it.
-fn spinning_down(mut scene: MachineScene) -> MachineScene {
+fn spinning_down(mut scene: Scene) -> Scene {
     let torque_n_m = braked(&mut scene);
     if let SpinParams::Free {
         drive_torque_n_m, ..
@@ -398,17 +377,12 @@ fn spinning_down(mut scene: MachineScene) -> MachineScene {
     }
     let unbalance = unbalance_of_orbit(&scene, SPIN_DOWN_ORBIT, 0.0);
     scene.machine.unbalances.push(unbalance);
-    for plane in &mut scene.planes {
-        plane.scene.duration_s = SPIN_DOWN_S;
-    }
+    scene.duration_s = SPIN_DOWN_S;
     scene
 }
 
 /// Balanced at its speed; then a blade is lost, and a drive brakes it.
-fn blade_lost_and_spun_down(
-    mut scene: MachineScene,
-    (share, angle_rad): (f64, f64),
-) -> MachineScene {
+fn blade_lost_and_spun_down(mut scene: Scene, (share, angle_rad): (f64, f64)) -> Scene {
     let lost = TimedChange {
         at_s: BEGIN_S,
         change: Change {
@@ -417,9 +391,7 @@ fn blade_lost_and_spun_down(
         },
         unbalance: Some(unbalance_of_orbit(&scene, share, angle_rad)),
     };
-    changing(&mut scene, &[lost]);
-    for plane in &mut scene.planes {
-        plane.scene.duration_s = BEGIN_S + SPIN_DOWN_S;
-    }
+    scene.changes.push(lost);
+    scene.duration_s = BEGIN_S + SPIN_DOWN_S;
     scene
 }

@@ -1,11 +1,11 @@
 //! The plants of the catalogue that are whole rotors, from their scene files.
 
 use firmware_bench::device::levitation::LevitationParams;
-use firmware_bench::device::loads::{Disturbance, Shape};
+use firmware_bench::device::loads::Disturbance;
 use firmware_bench::device::modal_levitation::{ModalLevitationParams, Station, TiltParams};
 use firmware_bench::device::whole_levitation::WholeLevitationParams;
 use firmware_bench::scene::diagnostic::SceneError;
-use firmware_bench::scene::machine::{MachineScene, PlaneScene};
+use firmware_bench::scene::{PlaneScene, Scene};
 use plant_model::V2;
 use std::f64::consts::TAU;
 
@@ -15,7 +15,7 @@ pub struct RotorPlant {
     /// Name, `P5`.
     pub name: &'static str,
     /// What it is.
-    pub scene: MachineScene,
+    pub scene: Scene,
     /// Text of the scene, and of that with its robust loop.
     text: &'static str,
     robust: &'static str,
@@ -110,7 +110,7 @@ impl RotorPlant {
     /// [`SceneError`] if a file of the catalogue is not valid.
     pub fn all() -> Result<Vec<Self>, SceneError> {
         let of = |(name, text, robust): &(&'static str, &'static str, &'static str)| {
-            let scene = MachineScene::parse(&format!("rotors/{}.toml", name.to_lowercase()), text)?;
+            let scene = Scene::parse(&format!("rotors/{}.toml", name.to_lowercase()), text)?;
             Ok(Self {
                 name,
                 scene,
@@ -124,13 +124,13 @@ impl RotorPlant {
     /// The same with another levitation controller.
     pub fn levitated_by(&self, by: &Loop) -> Self {
         let mut with = self.clone();
-        let period_s = 1.0 / self.scene.common().sample_rate_hz;
+        let period_s = 1.0 / self.scene.sample_rate_hz;
         let Some(cross) = by.cross else {
             with.scene.levitation = None;
-            for plane in &mut with.scene.planes {
-                let rotor = &plane.scene.plant.rotor;
+            for (i, plane) in with.scene.planes.iter_mut().enumerate() {
+                let rotor = self.scene.plant(i).rotor;
                 let gains = by.gains(rotor.mass_kg, rotor.stiffness_n_m, period_s);
-                plane.scene.levitation = Some(gains);
+                plane.levitation = Some(gains);
             }
             return with;
         };
@@ -173,7 +173,7 @@ impl RotorPlant {
     pub fn robust(&self) -> Result<Self, SceneError> {
         let mut with = self.clone();
         let file = format!("rotors/{}_robust.toml", self.name.to_lowercase());
-        with.scene.levitation = MachineScene::parse(&file, self.robust)?.levitation;
+        with.scene.levitation = Scene::parse(&file, self.robust)?.levitation;
         Ok(with)
     }
 
@@ -197,11 +197,11 @@ impl RotorPlant {
             SEAL_STIFFNESS * plane.contact.stiffness_n_m(),
         );
         let file = format!("rotors/{}.toml", self.name.to_lowercase());
-        with.scene = MachineScene::parse(&file, &format!("{}\n{seal}", self.text))?;
+        with.scene = Scene::parse(&file, &format!("{}\n{seal}", self.text))?;
         // Whoever levitates it here.
         with.scene.levitation.clone_from(&self.scene.levitation);
         for (plane, own) in with.scene.planes.iter_mut().zip(&self.scene.planes) {
-            plane.scene.levitation = own.scene.levitation;
+            plane.levitation = own.levitation;
         }
         Ok(with)
     }
@@ -213,7 +213,7 @@ impl RotorPlant {
         end: Option<usize>,
         (share, duration_s): (f64, f64),
         (angle_rad, seed): (f64, u64),
-    ) -> MachineScene {
+    ) -> Scene {
         let mut scene = self.with_noise(seed);
         let machine = &scene.machine;
         let plane = end.and_then(|end| machine.planes.get(end));
@@ -223,27 +223,27 @@ impl RotorPlant {
             None => machine.magnets.iter().map(|m| m.force_max_n).sum(),
         };
         let (sin, cos) = angle_rad.sin_cos();
-        let load = Disturbance {
+        scene.disturbances.push(Disturbance {
+            position_m,
             start_s: 0.02,
             duration_s,
             force_n: share * cap_n * V2::new(cos, sin),
-            shape: Shape::Constant,
-        };
-        load_at(&mut scene, load, position_m);
+            ..Disturbance::default()
+        });
         scene
     }
 
     /// Nothing happens to it, with other noise.
-    fn with_noise(&self, seed: u64) -> MachineScene {
+    fn with_noise(&self, seed: u64) -> Scene {
         let mut scene = self.scene.clone();
         for plane in &mut scene.planes {
-            plane.scene.seed = plane.scene.seed.wrapping_add(seed);
+            plane.seed = plane.seed.wrapping_add(seed);
         }
         scene
     }
 
     /// After a blow that gives the plane that it moves most this speed, in this direction, with other noise.
-    pub fn struck(&self, blow: Blow, speed_m_s: f64, angle_rad: f64, seed: u64) -> MachineScene {
+    pub fn struck(&self, blow: Blow, speed_m_s: f64, angle_rad: f64, seed: u64) -> Scene {
         let mut scene = self.with_noise(seed);
         let machine = &scene.machine;
         let places: Vec<f64> = machine.planes.iter().map(|p| p.position_m).collect();
@@ -265,18 +265,7 @@ impl RotorPlant {
         let along = V2::new(cos, sin);
         scene.start.centre_velocity_m_s = centre * along;
         scene.start.tilt_rate_rad_s = tilt * along;
-        for plane in &mut scene.planes {
-            plane.scene.levitated_before = true;
-        }
+        scene.levitated_before = true;
         scene
-    }
-}
-
-/// Adds a load at a place.
-fn load_at(scene: &mut MachineScene, load: Disturbance, position_m: f64) {
-    scene.loads.push(load);
-    scene.machine.loads_m.push(position_m);
-    for plane in &mut scene.planes {
-        plane.scene.disturbances.push(load);
     }
 }

@@ -5,10 +5,10 @@ use super::hardest::{hardest_from_m_s, hardest_m_s};
 use super::plants::{Blow, RotorPlant};
 use crate::campaign::Progress;
 use crate::overloads::reference::{FINE, RANGES, START, law_of, search, search_from_m_s};
-use firmware_bench::run::closed_loop::{Keep, RunError, refer_machine};
+use firmware_bench::run::closed_loop::{Keep, RunError, refer};
 use firmware_bench::run::whole_clairvoyant::{WholeClairvoyantLaw, WholeReference};
+use firmware_bench::scene::Scene;
 use firmware_bench::scene::diagnostic::SceneError;
-use firmware_bench::scene::machine::MachineScene;
 use firmware_bench::scene::policy_kind::PolicyKind;
 use serde::{Deserialize, Serialize};
 use std::sync::LazyLock;
@@ -85,13 +85,13 @@ fn whole([a, b, c, d, e, lent]: [f64; 6]) -> WholeClairvoyantLaw {
 }
 
 /// Whether a law brings both planes back; not if its run cannot be trusted.
-fn recovers(scene: &MachineScene, law: WholeClairvoyantLaw, keep: Keep) -> bool {
+fn recovers(scene: &Scene, law: WholeClairvoyantLaw, keep: Keep) -> bool {
     let law = WholeReference::law(law, scene);
     law.is_some_and(|law| brings_back(scene, &law, keep))
 }
 
-fn brings_back(scene: &MachineScene, reference: &WholeReference, keep: Keep) -> bool {
-    let run = refer_machine(scene, reference, keep);
+fn brings_back(scene: &Scene, reference: &WholeReference, keep: Keep) -> bool {
+    let run = refer(scene, reference, keep);
     run.is_ok_and(|planes| planes.iter().all(|figures| figures.recovered))
 }
 
@@ -112,7 +112,7 @@ pub(super) fn hardest_of_reference_m_s(
     // That of the blow first: it mostly settles the matter.
     laws.sort_by_key(|row| row.blow != blow.name());
     let gains: Vec<_> = (plant.scene.planes.iter())
-        .filter_map(|plane| plane.scene.levitation)
+        .filter_map(|plane| plane.levitation)
         .collect();
     let gains = <[_; 2]>::try_from(gains).ok();
     Some(hardest_from_m_s(grid, |speed_m_s| {

@@ -161,8 +161,8 @@ fn the_scene_of_the_book_is_told_a_slower_pole() {
     let text = rest.split_once("```").unwrap().0;
     let set = |more: &str| {
         let text = text.replacen("hold_share = 0.7", more, 1);
-        let scene = Scene::parse("scenes.md", &text).unwrap();
-        Advice::new("test", &scene.nominal, &scene.overrides).unwrap()
+        let plane = Scene::parse("scenes.md", &text).unwrap().planes.remove(0);
+        Advice::new("test", &plane.nominal, &plane.overrides).unwrap()
     };
     let a = set("");
     let remedy = &warning(&a).unwrap().remedy;

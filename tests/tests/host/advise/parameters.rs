@@ -15,7 +15,8 @@ fn the_pasted_table_gives_the_same_configuration() {
     for name in scene_names() {
         let path = scene_path(&name);
         let scene = Scene::load(&path).unwrap();
-        if scene.supervisor.is_none() {
+        let plane = &scene.planes[0];
+        if plane.supervisor.is_none() {
             continue;
         }
         let output = advise(&[path.to_str().unwrap()]);
@@ -27,10 +28,10 @@ fn the_pasted_table_gives_the_same_configuration() {
         let (before, rest) = own.split_once("[supervisor]").unwrap_or((&own, ""));
         let after = rest.find("\n[").map_or("", |at| &rest[at..]);
         let with_table = Scene::parse(&name, &format!("{before}\n{after}\n{table}")).unwrap();
-        let config = suggested(&scene.nominal).config;
-        assert_eq!(with_table.supervisor.unwrap(), config, "{name}");
-        if scene.overrides.is_empty() {
-            assert_eq!(scene.supervisor.unwrap(), config, "{name}");
+        let config = suggested(&plane.nominal).config;
+        assert_eq!(with_table.planes[0].supervisor.unwrap(), config, "{name}");
+        if plane.overrides.is_empty() {
+            assert_eq!(plane.supervisor.unwrap(), config, "{name}");
         }
         pasted += 1;
     }
@@ -53,9 +54,10 @@ fn the_table_holds_every_bit() {
     let config = suggested(&n).config;
     let own = std::fs::read_to_string(scene_path("overload_then_release")).unwrap();
     let scene = Scene::parse("scene", &format!("{own}\n{}", a.supervisor_table)).unwrap();
-    assert_eq!(scene.supervisor.unwrap(), config);
+    let plane = &scene.planes[0];
+    assert_eq!(plane.supervisor.unwrap(), config);
     // Against a scene of its own the table says what that replaces.
-    let with_own = Advice::new("test", &scene.nominal, &scene.overrides).unwrap();
+    let with_own = Advice::new("test", &plane.nominal, &plane.overrides).unwrap();
     assert!(
         with_own
             .supervisor_table

@@ -1,7 +1,7 @@
 //! Advice for a supervisor of both planes: nutation, and bending modes under its force.
 
 use firmware_bench::advise::{Advice, RotorAdvice};
-use firmware_bench::scene::machine::MachineScene;
+use firmware_bench::scene::Scene;
 use serde_json::Value;
 use supervisor::Config;
 use system_tests::{host, root};
@@ -10,7 +10,7 @@ use system_tests::{host, root};
 fn of(plant: &str, at_magnets: f64) -> RotorAdvice {
     let path = root().join(format!("firmware-host/scenes/rotors/{plant}.toml"));
     let text = std::fs::read_to_string(path).unwrap();
-    let mut scene = MachineScene::parse(plant, &text).unwrap();
+    let mut scene = Scene::parse(plant, &text).unwrap();
     let magnets: Vec<f64> = scene.machine.magnets.iter().map(|m| m.position_m).collect();
     if let plant_model::machine::params::Rotor::Modal { bending, .. } = &mut scene.machine.rotor {
         for (z, displacement) in bending.iter_mut().flat_map(|mode| &mut mode.shape) {
@@ -19,11 +19,7 @@ fn of(plant: &str, at_magnets: f64) -> RotorAdvice {
             }
         }
     }
-    let configs: Vec<_> = scene
-        .planes
-        .iter()
-        .map(|p| p.scene.supervisor.unwrap())
-        .collect();
+    let configs: Vec<_> = scene.planes.iter().map(|p| p.supervisor.unwrap()).collect();
     RotorAdvice::new(&scene, &configs).unwrap()
 }
 
@@ -55,7 +51,7 @@ fn a_node_between_sensor_and_magnet_turns_the_sign() {
 }
 
 /// A rotor of the catalogue that bends so, and what its `[supervisor]` sets.
-fn bends(displacements: [f64; 7], hz: f64, set: &str) -> MachineScene {
+fn bends(displacements: [f64; 7], hz: f64, set: &str) -> Scene {
     let mode = format!(
         "[[rotor.bending]]\nfrequency_hz = {hz}\ndamping_ratio = 0.003\npositions_m = [-0.25, -0.23, -0.2, 0.0, 0.2, 0.23, 0.25]\ndisplacements = {displacements:?}\n\n[spin]"
     );
@@ -71,11 +67,11 @@ fn bends(displacements: [f64; 7], hz: f64, set: &str) -> MachineScene {
             "position_m = 0.2\nsensor = { position_m = 0.23 }\n",
             1,
         );
-    MachineScene::parse("bends", &format!("{text}\n[supervisor]\n{set}")).unwrap()
+    Scene::parse("bends", &format!("{text}\n[supervisor]\n{set}")).unwrap()
 }
 
-fn configs(scene: &MachineScene) -> [Config; 2] {
-    [0, 1].map(|plane| scene.planes[plane].scene.supervisor.unwrap())
+fn configs(scene: &Scene) -> [Config; 2] {
+    [0, 1].map(|plane| scene.planes[plane].supervisor.unwrap())
 }
 
 /// Sensors and magnets on the same side of every node, and with a node between them.
@@ -88,12 +84,7 @@ fn a_damped_mode_changes_nothing() {
     let scene = bends(ALIKE, 250.0, "");
     let [config, _] = configs(&scene);
     assert_eq!((config.bending_first_hz, config.acts_in_flight), (0.0, 1.0));
-    assert!(
-        scene
-            .planes
-            .iter()
-            .all(|plane| plane.scene.decided.is_empty())
-    );
+    assert!(scene.planes.iter().all(|plane| plane.decided.is_empty()));
     assert_eq!(scene.role(&configs(&scene)).name, "full");
     assert!(
         !scene.warnings.iter().any(|w| w.contains("flight")),
@@ -147,7 +138,7 @@ fn a_mode_that_is_driven_all_the_same_leaves_flight_to_levitation() {
     let advice = RotorAdvice::new(&scene, &both).unwrap();
     assert!(advice.text().contains("whirl only"), "{}", advice.text());
     assert!(advice.bending_over_clearance.unwrap() > 0.0);
-    let plane = &scene.planes[0].scene;
+    let plane = &scene.planes[0];
     let of_plane = Advice::of_plane("end", &plane.nominal, &plane.decided, &plane.overrides);
     let table = of_plane.unwrap().supervisor_table;
     assert!(table.contains("acts_in_flight = 0 "), "{table}");
@@ -161,9 +152,9 @@ fn a_mode_is_told_where_that_helps() {
     let text = std::fs::read_to_string(path).unwrap();
     let text = text.replacen("[spin]", bends, 1);
     let advised = |text: &str| {
-        let scene = MachineScene::parse("bends", text).unwrap();
+        let scene = Scene::parse("bends", text).unwrap();
         let configs: Vec<_> = (scene.planes.iter())
-            .map(|p| p.scene.supervisor.unwrap())
+            .map(|p| p.supervisor.unwrap())
             .collect();
         RotorAdvice::new(&scene, &configs).unwrap()
     };

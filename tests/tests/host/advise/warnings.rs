@@ -156,7 +156,8 @@ fn what_a_weight_that_is_fed_forward_leaves_is_a_cap() {
             );
         let text = format!("{text}\n[supervisor]\nforce_max_n = {force_max_n:?}\n");
         let scene = Scene::parse("scene", &text).unwrap();
-        let advice = Advice::new("test", &scene.nominal, &scene.overrides).unwrap();
+        let plane = &scene.planes[0];
+        let advice = Advice::new("test", &plane.nominal, &plane.overrides).unwrap();
         let load = advice.warnings.into_iter().find(|w| w.key == "load");
         (load.map(|w| w.remedy), scene.warnings)
     };

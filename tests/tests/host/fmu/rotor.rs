@@ -4,7 +4,7 @@ use super::{CHECKS, checked, text, units};
 use firmware_bench::run::closed_loop::stepwise::{Driver, Stepwise};
 use firmware_bench::run::controller::Seen;
 use firmware_bench::run::trace::Said;
-use firmware_bench::scene::machine::{AnyScene, MachineScene};
+use firmware_bench::scene::Scene;
 use firmware_bench::scene::policy_kind::PolicyKind;
 use plant_model::V2;
 use std::fmt::Write as _;
@@ -27,10 +27,10 @@ fn sample(seen: &Seen, levitation_n: [f32; 2]) -> Sample {
 }
 
 /// What firmware sees in both planes at each sample, and what the supervisor said to it.
-fn closed_loop(scene: &MachineScene) -> Vec<[(Seen, Said); 2]> {
-    let samples = (scene.common().duration_s * scene.common().sample_rate_hz).round() as usize;
+fn closed_loop(scene: &Scene) -> Vec<[(Seen, Said); 2]> {
+    let samples = (scene.duration_s * scene.sample_rate_hz).round() as usize;
     let driver = Driver::Policy(PolicyKind::Supervisor);
-    let mut stepwise = Stepwise::new(AnyScene::Machine(Box::new(scene.clone())), driver).unwrap();
+    let mut stepwise = Stepwise::new(scene.clone(), driver).unwrap();
     let mut all = Vec::new();
     for _ in 0..samples {
         all.push([0, 1].map(|plane| {
@@ -95,7 +95,7 @@ const COLUMNS: [&str; 16] = [
 fn the_supervisor_of_a_whole_rotor_is_the_native_one() {
     let Some(python) = python() else { return };
     let path = machine_scene_path("overload_of_a_flexible_rotor");
-    let scene = MachineScene::parse("rotor", &fs::read_to_string(&path).unwrap()).unwrap();
+    let scene = Scene::parse("rotor", &fs::read_to_string(&path).unwrap()).unwrap();
     let seen = closed_loop(&scene);
     let mut native = scene.supervisor().unwrap();
     let columns = [0, 1].map(|plane| COLUMNS.map(|name| format!("plane[{plane}].{name}")));

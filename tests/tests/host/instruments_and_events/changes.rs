@@ -4,8 +4,9 @@ use crate::instruments_and_events::{free_rotor, last, near, ridden, samples};
 use firmware_bench::device::loads::TimedChange;
 use firmware_bench::scene::Scene;
 use firmware_bench::scene::policy_kind::PolicyKind;
-use plant_model::params::{SpinParams, StatorParams};
-use plant_model::{Change, Method, V2};
+use plant_model::machine::params::Support;
+use plant_model::params::{SlidingFriction, SpinParams, Start, StatorParams};
+use plant_model::{Change, Method, Options, Plant, V2, build};
 use std::f64::consts::TAU;
 use system_tests::scene;
 
@@ -31,7 +32,7 @@ fn a_lost_blade_makes_a_synchronous_circle() {
     for free in [false, true] {
         let mut scene = free_rotor();
         if !free {
-            scene.plant.spin = SpinParams::Held;
+            scene.machine.spin = SpinParams::Held;
         }
         let (at_s, e, rate) = (0.010_013, 1e-4, TAU * 200.0);
         scene.start.spin_rad_s = rate;
@@ -61,8 +62,11 @@ fn a_lost_blade_makes_a_synchronous_circle() {
 fn a_lost_blade_settles_at_the_synchronous_amplitude() {
     let mut scene = free_rotor();
     let (natural, rate) = (TAU * 45.0, TAU * 200.0);
-    scene.plant.rotor.stiffness_n_m = 10.0 * natural * natural;
-    scene.plant.rotor.damping_n_s_m = 1000.0;
+    scene.machine.supports = vec![Support {
+        stiffness_n_m: V2::repeat(10.0 * natural * natural),
+        damping_n_s_m: V2::repeat(1000.0),
+        ..Support::default()
+    }];
     scene.duration_s = 0.6;
     scene.changes = at(0.1, unbalance(2e-5));
     let end = last(&ridden(&scene, PolicyKind::Passive).1)
@@ -83,7 +87,7 @@ fn a_friction_collapse_frees_the_spin() {
         scene.disturbances[0].start_s = 0.0;
         scene.disturbances[0].duration_s = 1.0;
         scene.duration_s = 0.1;
-        scene.sensor = Default::default();
+        scene.planes[0].sensor = Default::default();
         let change = Change {
             friction_coefficient: Some(0.0),
             ..Change::default()
@@ -113,16 +117,26 @@ fn a_drive_torque_sets_in() {
     near("spin", end, 100.0 + 200.0 * (0.1 - 0.030_003), 1e-12);
 }
 
+fn at_rest(scene: &Scene) -> Plant {
+    let start = Start {
+        position_m: V2::zeros(),
+        velocity_m_s: V2::zeros(),
+        spin_rad_s: 0.0,
+        spin_phase_rad: 0.0,
+    };
+    build(&scene.plant(0), &start, Options::default()).unwrap()
+}
+
 /// A change that the plant has no part for is refused, and changes nothing.
 #[test]
 fn changes_are_refused_where_nothing_can_change() {
     let mut scene = free_rotor();
-    let mut plant = scene.build(Default::default()).unwrap();
+    let mut plant = at_rest(&scene);
     let error = plant.change(&unbalance(-1e-5)).unwrap_err();
     assert_eq!(error.field, "rotor.eccentricity_m");
     plant.change(&unbalance(1e-5)).unwrap();
-    scene.plant.spin = SpinParams::Held;
-    let mut plant = scene.build(Default::default()).unwrap();
+    scene.machine.spin = SpinParams::Held;
+    let mut plant = at_rest(&scene);
     plant.change(&unbalance(1e-5)).unwrap();
     let torque = Change {
         drive_torque_n_m: Some(1.0),
@@ -138,12 +152,12 @@ fn changes_are_refused_where_nothing_can_change() {
 #[test]
 fn the_verdict_counts_impulse_and_hard_contacts() {
     let mut scene = free_rotor();
-    scene.plant.contact.clearance_m = 2e-4;
-    scene.plant.stator = StatorParams::Rigid;
-    scene.plant.friction.sliding =
-        plant_model::params::SlidingFriction::Constant { coefficient: 0.0 };
+    let wall = &mut scene.machine.planes[0];
+    wall.contact.clearance_m = 2e-4;
+    wall.stator = StatorParams::Rigid;
+    wall.friction.sliding = SlidingFriction::Constant { coefficient: 0.0 };
     let touch = |scene: &mut Scene, speed: f64| {
-        scene.start.velocity_m_s = V2::new(speed, 0.0);
+        scene.start.centre_velocity_m_s = V2::new(speed, 0.0);
         scene.duration_s = 2.5e-4 / speed;
         ridden(scene, PolicyKind::Passive).0
     };

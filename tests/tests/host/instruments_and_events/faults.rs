@@ -168,13 +168,13 @@ fn every_policy_survives_every_fault() {
     let mut scene = scene("overload_then_release");
     scene.duration_s = 0.05;
     for kind in kinds {
-        scene.faults = vec![Fault {
+        scene.planes[0].faults = vec![Fault {
             start_s: 0.022,
             duration_s: 0.004,
             kind,
             axis: Axis::Both,
         }];
-        scene.sensor.range_m = Some(5e-4);
+        scene.planes[0].sensor.range_m = Some(5e-4);
         for policy in PolicyKind::ALL {
             let (a, b) = (
                 crate::instruments_and_events::ridden(&scene, policy).1,

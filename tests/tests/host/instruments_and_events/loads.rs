@@ -6,6 +6,7 @@ use firmware_bench::run::closed_loop::{Keep, run};
 use firmware_bench::run::outcome::Outcome;
 use firmware_bench::scene::policy_kind::PolicyKind;
 use plant_model::V2;
+use plant_model::machine::params::Support;
 use std::f64::consts::{PI, TAU};
 use system_tests::scene;
 
@@ -16,6 +17,7 @@ fn a_half_sine_gives_its_momentum_and_its_way() {
     // Neither begins nor ends at a sample.
     let (start_s, duration_s, force_n) = (0.010_013, 0.011_007, 1500.0);
     scene.disturbances = vec![Disturbance {
+        position_m: 0.0,
         start_s,
         duration_s,
         force_n: V2::new(force_n, -0.5 * force_n),
@@ -40,6 +42,7 @@ fn a_sine_moves_a_free_rotor_by_its_closed_form() {
         let (force_n, rate) = (1000.0, TAU * frequency_hz);
         scene.duration_s = 0.02;
         scene.disturbances = vec![Disturbance {
+            position_m: 0.0,
             start_s: 0.0,
             duration_s: 1.0,
             force_n: V2::new(force_n, 0.0),
@@ -88,20 +91,22 @@ fn base_motion_leaves_a_free_rotor_behind() {
 fn a_levitated_rotor_rests_in_the_centre_of_the_magnets() {
     let mut scene = scene("overload_then_release");
     scene.disturbances.clear();
-    scene.sensor = Default::default();
+    scene.planes[0].sensor = Default::default();
     // A third of the clearance: not in the middle of the retainer bearing.
-    scene.centre_offset_m = V2::new(7e-5, -3e-5);
+    let offset_m = V2::new(7e-5, -3e-5);
+    scene.machine.planes[0].centre_m = offset_m;
+    scene.start.centre_m = offset_m;
     let (verdict, trace) = ridden(&scene, PolicyKind::Levitation);
     let end = last(&trace).plant.position_m;
-    assert!((end + scene.centre_offset_m).norm() < 1e-9, "{end}");
+    assert!((end + offset_m).norm() < 1e-9, "{end}");
     assert_eq!(verdict.outcome, Outcome::Recovered);
     // Without force it falls away from there, as e^(t·√(k/m)).
-    scene.start.position_m = V2::new(1e-6, 0.0) - scene.centre_offset_m;
+    scene.start.centre_m = V2::new(1e-6, 0.0);
     scene.duration_s = 0.02;
     let (_, trace) = ridden(&scene, PolicyKind::Passive);
     let row = samples(&trace)[200];
     let rate = (2e5f64 / 10.0).sqrt();
-    let away = row.plant.position_m + scene.centre_offset_m;
+    let away = row.plant.position_m + offset_m;
     near("fall", away.x, 1e-6 * (rate * row.plant.t_s).cosh(), 1e-9);
     near("as measured", row.measured_m.x, away.x, 1e-15);
 }
@@ -110,10 +115,14 @@ fn a_levitated_rotor_rests_in_the_centre_of_the_magnets() {
 #[test]
 fn the_shaft_acts_about_the_centre_of_the_magnets() {
     let mut scene = free_rotor();
-    scene.plant.rotor.stiffness_n_m = 1e5;
-    scene.plant.rotor.damping_n_s_m = 2e3;
-    scene.weight_n = V2::new(0.0, -98.1);
-    scene.centre_offset_m = V2::new(2e-5, 1e-5);
+    scene.machine.supports = vec![Support {
+        stiffness_n_m: V2::repeat(1e5),
+        damping_n_s_m: V2::repeat(2e3),
+        ..Support::default()
+    }];
+    scene.machine.gravity_m_s2 = V2::new(0.0, -9.81);
+    scene.machine.planes[0].centre_m = V2::new(2e-5, 1e-5);
+    scene.start.centre_m = V2::new(2e-5, 1e-5);
     scene.duration_s = 2.0;
     let end = last(&ridden(&scene, PolicyKind::Passive).1)
         .plant
@@ -127,11 +136,11 @@ fn the_shaft_acts_about_the_centre_of_the_magnets() {
 #[test]
 fn a_rotor_on_the_wall_is_not_recovered_in_the_middle() {
     let mut scene = scene("overload_then_release");
-    let clearance_m = scene.plant.contact.clearance_m;
+    let clearance_m = scene.clearance_m(0);
     scene.disturbances.clear();
-    scene.centre_offset_m = V2::new(0.8 * clearance_m, 0.0);
-    scene.weight_n = V2::new(-200.0, 0.0);
-    scene.start.position_m = V2::new(-0.99 * clearance_m, 0.0);
+    scene.machine.planes[0].centre_m = V2::new(0.8 * clearance_m, 0.0);
+    scene.machine.gravity_m_s2 = V2::new(-20.0, 0.0);
+    scene.start.centre_m = V2::new((0.8 - 0.99) * clearance_m, 0.0);
     for keep in [Keep::Verdict, Keep::Decision] {
         let (verdict, _) = run(&scene, PolicyKind::Passive, keep, &mut |_| {}).unwrap();
         assert!(verdict.contact_time_s > 0.9 * scene.duration_s);

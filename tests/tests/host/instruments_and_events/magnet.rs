@@ -17,22 +17,22 @@ use system_tests::scene;
 /// `radial` outside its band pushes with the whole cap all the time: a constant command.
 fn pushed(direction: V2) -> Scene {
     let mut scene = free_rotor();
-    scene.radial_band = 0.0;
+    scene.planes[0].radial_band = 0.0;
     scene.duration_s = 0.004;
     // Far away, so that the direction does not change.
-    scene.start.position_m = -0.9 * direction;
-    scene.plant.magnet.as_mut().unwrap().force_max_n = 1000.0;
+    scene.start.centre_m = -0.9 * direction;
+    scene.machine.magnets[0].force_max_n = 1000.0;
     scene
 }
 
 fn without_lag(scene: &mut Scene) {
-    scene.plant.magnet.as_mut().unwrap().lag_s = 0.0;
+    scene.machine.magnets[0].lag_s = 0.0;
 }
 
 #[test]
 fn each_axis_has_its_own_cap() {
     let mut scene = pushed(V2::new(0.8, 0.6));
-    scene.amplifier.axis_force_max_n = Some(700.0);
+    scene.planes[0].amplifier.axis_force_max_n = Some(700.0);
     without_lag(&mut scene);
     let end = last(&ridden(&scene, PolicyKind::Radial).1).plant;
     near("x", end.delivered_n.x, 700.0, 1e-12);
@@ -46,7 +46,7 @@ const BEHIND_S: f64 = 5e-5 / 4.0 / 6.0;
 #[test]
 fn a_slew_limit_makes_a_ramp() {
     let mut scene = pushed(V2::new(1.0, 0.0));
-    scene.amplifier.slew_n_s = Some(1e6);
+    scene.planes[0].amplifier.slew_n_s = Some(1e6);
     without_lag(&mut scene);
     let trace = ridden(&scene, PolicyKind::Radial).1;
     for row in samples(&trace) {
@@ -61,7 +61,7 @@ fn a_slew_limit_makes_a_ramp() {
     near("speed", last(&trace).plant.velocity_m_s.x, speed, 1e-12);
     // Behind the lag the ramp arrives τ later.
     let mut lagged = pushed(V2::new(1.0, 0.0));
-    lagged.amplifier.slew_n_s = Some(1e6);
+    lagged.planes[0].amplifier.slew_n_s = Some(1e6);
     let row = samples(&ridden(&lagged, PolicyKind::Radial).1)[20];
     let (since, lag) = (row.plant.t_s - 5e-5, 1.6e-4);
     let expected = 1e6 * (since - lag * (1.0 - (-since / lag).exp()));
@@ -79,7 +79,7 @@ fn an_outage_lets_the_force_decay() {
     ] {
         let mut scene = pushed(V2::new(0.8, 0.6));
         let (start_s, end_s) = (0.002_013, 0.003_027);
-        scene.outages = vec![Outage {
+        scene.planes[0].outages = vec![Outage {
             start_s,
             duration_s: end_s - start_s,
             delivers: Delivers::Nothing,
@@ -123,7 +123,7 @@ fn a_faulty_amplifier_turns_the_force() {
         let mut scene = pushed(V2::new(0.8, 0.6));
         without_lag(&mut scene);
         let start_s = 0.002_013;
-        scene.outages = vec![Outage {
+        scene.planes[0].outages = vec![Outage {
             start_s,
             duration_s: 1.0,
             delivers,
@@ -144,7 +144,7 @@ fn a_faulty_amplifier_turns_the_force() {
                 assert!((found - expected).abs() < 1.0, "{delivers:?}: {found}");
             }
         }
-        scene.amplifier.slew_n_s = Some(1e6);
+        scene.planes[0].amplifier.slew_n_s = Some(1e6);
         let rows = ridden(&scene, PolicyKind::Radial).1;
         let steps = rows.rows.array_windows();
         let fastest = steps.map(|[a, b]| {
@@ -177,8 +177,8 @@ fn a_dead_axis_is_dead_under_every_other_fault() {
     ] {
         let mut scene = pushed(V2::new(0.8, 0.6));
         without_lag(&mut scene);
-        scene.outages = outages;
-        scene.amplifier.slew_n_s = slew_n_s;
+        scene.planes[0].outages = outages;
+        scene.planes[0].amplifier.slew_n_s = slew_n_s;
         let trace = ridden(&scene, PolicyKind::Radial).1;
         assert!(samples(&trace).iter().all(|r| r.plant.delivered_n.x == 0.0));
         // What is meant for x.
@@ -192,8 +192,8 @@ fn a_dead_axis_is_dead_under_every_other_fault() {
 fn an_infinite_reading_does_not_take_what_is_fed_forward() {
     let mut scene = pushed(V2::new(1.0, 0.0));
     without_lag(&mut scene);
-    scene.feed_forward_n = V2::new(0.0, 98.1);
-    scene.faults = vec![Fault {
+    scene.planes[0].feed_forward_n = V2::new(0.0, 98.1);
+    scene.planes[0].faults = vec![Fault {
         start_s: 0.0,
         duration_s: 1.0,
         kind: FaultKind::Infinity,
@@ -208,7 +208,7 @@ fn an_infinite_reading_does_not_take_what_is_fed_forward() {
 fn commands_take_effect_after_their_delay() {
     for delay in 1..=7 {
         let mut scene = pushed(V2::new(1.0, 0.0));
-        scene.amplifier.delay_samples = delay;
+        scene.planes[0].amplifier.delay_samples = delay;
         without_lag(&mut scene);
         let trace = ridden(&scene, PolicyKind::Radial).1;
         let rows = samples(&trace);
@@ -236,8 +236,8 @@ fn commands_may_be_late_by_chance() {
     let mut scene = pushed(V2::new(1.0, 0.0));
     scene.duration_s = 0.1;
     (
-        scene.amplifier.delay_samples,
-        scene.amplifier.jitter_samples,
+        scene.planes[0].amplifier.delay_samples,
+        scene.planes[0].amplifier.jitter_samples,
     ) = (2, 3);
     let in_effect = |scene: &Scene| -> Vec<f64> {
         let counting: Box<dyn Controller> = Box::<Counting>::default();
@@ -260,9 +260,9 @@ fn commands_may_be_late_by_chance() {
     }
     assert!(seen[..3].iter().all(|count| *count > 100), "{seen:?}");
     assert_eq!(in_effect(&scene), first);
-    scene.seed += 1;
+    scene.planes[0].seed += 1;
     assert_ne!(in_effect(&scene), first);
-    scene.amplifier.jitter_samples = 0;
+    scene.planes[0].amplifier.jitter_samples = 0;
     let plain = in_effect(&scene);
     // The last row is that of the end, at which nothing takes effect any more.
     let ticks = plain[..plain.len() - 1].iter().enumerate();
@@ -289,14 +289,14 @@ fn a_known_outage_is_told() {
             .collect()
     };
     scene.duration_s = 0.04;
-    scene.outages = vec![outage(Axis::Both, false)];
+    scene.planes[0].outages = vec![outage(Axis::Both, false)];
     let unknown = modes(&scene);
-    scene.outages = vec![outage(Axis::Both, true)];
+    scene.planes[0].outages = vec![outage(Axis::Both, true)];
     let known = modes(&scene);
     assert!(unknown != known);
-    scene.outages = vec![outage(Axis::X, true), outage(Axis::Y, true)];
+    scene.planes[0].outages = vec![outage(Axis::X, true), outage(Axis::Y, true)];
     assert!(modes(&scene) == known, "one after the other");
-    scene.outages = vec![outage(Axis::X, true), outage(Axis::Y, false)];
+    scene.planes[0].outages = vec![outage(Axis::X, true), outage(Axis::Y, false)];
     let told = modes(&scene);
     assert!(told.iter().all(|(_, force_n)| force_n.x == 0.0));
     assert!(told.iter().any(|(_, force_n)| force_n.y != 0.0));
@@ -307,16 +307,16 @@ fn a_known_outage_is_told() {
 fn damping_brakes_and_does_not_centre() {
     let mut scene = free_rotor();
     without_lag(&mut scene);
-    scene.levitation = None;
-    scene.damping_n_s_m = 100.0;
-    scene.start.velocity_m_s = V2::new(0.3, 0.4);
-    scene.start.position_m = V2::new(1e-3, 0.0);
+    scene.planes[0].levitation = None;
+    scene.planes[0].damping_n_s_m = 100.0;
+    scene.start.centre_velocity_m_s = V2::new(0.3, 0.4);
+    scene.start.centre_m = V2::new(1e-3, 0.0);
     scene.duration_s = 0.2;
     let end = last(&ridden(&scene, PolicyKind::Damping).1).plant;
     // The first command is zero, the others come one sample late from a speed half a sample old.
     let left = (-(0.2f64 - 2e-4) / 0.1).exp();
     near("speed", end.velocity_m_s.norm(), 0.5 * left, 5e-3);
-    scene.damping_n_s_m = 1e6;
+    scene.planes[0].damping_n_s_m = 1e6;
     scene.duration_s = 2e-3;
     let end = last(&ridden(&scene, PolicyKind::Damping).1).plant;
     near(
@@ -333,9 +333,9 @@ fn damping_brakes_and_does_not_centre() {
 fn outages_begin_at_any_time_under_a_slew_limit() {
     let mut scene = pushed(V2::new(0.8, 0.6));
     scene.duration_s = 0.02;
-    scene.amplifier.slew_n_s = Some(2e6);
+    scene.planes[0].amplifier.slew_n_s = Some(2e6);
     for tenth_ms in 20..120 {
-        scene.outages = vec![Outage {
+        scene.planes[0].outages = vec![Outage {
             start_s: 1e-4 * f64::from(tenth_ms),
             duration_s: 3e-3,
             delivers: Delivers::Nothing,
@@ -345,7 +345,7 @@ fn outages_begin_at_any_time_under_a_slew_limit() {
         let rows = samples(&ridden(&scene, PolicyKind::Radial).1);
         let out = rows
             .iter()
-            .find(|row| row.plant.t_s > scene.outages[0].end_s() - 1e-4);
+            .find(|row| row.plant.t_s > scene.planes[0].outages[0].end_s() - 1e-4);
         // The field has decayed for eighteen time constants on the one axis, and stands on the other.
         let left_n = out.unwrap().plant.delivered_n;
         assert!(
@@ -379,11 +379,11 @@ impl Supervise for Listening {
 fn a_measured_force_is_told() {
     for measured in [false, true] {
         let mut scene = scene("shock_15_g_on_amb");
-        scene.amplifier.force_measured = measured;
-        scene.feed_forward_n = V2::new(0.0, 98.1);
+        scene.planes[0].amplifier.force_measured = measured;
+        scene.planes[0].feed_forward_n = V2::new(0.0, 98.1);
         let told = Told::default();
         let supervisor = Listening {
-            supervisor: Supervisor::new(&scene.supervisor.unwrap()).unwrap(),
+            supervisor: Supervisor::new(&scene.planes[0].supervisor.unwrap()).unwrap(),
             told: Rc::clone(&told),
         };
         let policy = supervised(&scene, Box::new(supervisor)).unwrap();
@@ -392,7 +392,7 @@ fn a_measured_force_is_told() {
         let told = told.borrow();
         let mut most = 0.0_f64;
         for (row, (valid, applied_n)) in samples(&trace).iter().zip(told.iter()) {
-            let expected = row.plant.delivered_n - scene.feed_forward_n;
+            let expected = row.plant.delivered_n - scene.planes[0].feed_forward_n;
             assert_eq!(*valid, measured);
             let expected = if measured { expected } else { V2::zeros() };
             assert_eq!(*applied_n, [expected.x as f32, expected.y as f32]);

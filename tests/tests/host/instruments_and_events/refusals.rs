@@ -327,9 +327,10 @@ coefficient_n_s_m = 1234.0
 ";
     let text = format!("{}\n{more}", base());
     let scene = Scene::parse("scene.toml", &text).unwrap_or_else(|e| panic!("{e}"));
-    assert_eq!(scene.centre_offset_m, V2::new(2e-5, 0.0));
+    assert_eq!(scene.machine.planes[0].centre_m, V2::new(2e-5, 0.0));
     // The file says where the rotor stands as seen from the magnets.
-    assert_eq!(scene.start.position_m, V2::new(-2e-5, 0.0));
+    assert_eq!(scene.start.centre_m, V2::zeros());
+    let plane = &scene.planes[0];
     assert_eq!(scene.base_motions[0].shape, Shape::HalfSine);
     let sine = Shape::Sine {
         frequency_hz: 30.0,
@@ -337,11 +338,11 @@ coefficient_n_s_m = 1234.0
     };
     assert_eq!(scene.disturbances[0].shape, sine);
     assert_eq!(
-        (scene.outages[0].axis, scene.outages[0].known),
+        (plane.outages[0].axis, plane.outages[0].known),
         (Axis::Y, true)
     );
     assert_eq!(
-        (scene.faults[0].axis, scene.faults[0].kind),
+        (plane.faults[0].axis, plane.faults[0].kind),
         (Axis::X, FaultKind::Gain(0.9))
     );
     assert_eq!(
@@ -351,17 +352,18 @@ coefficient_n_s_m = 1234.0
     );
     assert_eq!(scene.changes[1].at_s, 0.04);
     assert!(!scene.spin_sensor.valid && scene.spin_sensor.gain == -1.02);
-    assert_eq!(scene.damping_n_s_m, 1234.0);
-    let supervisor = scene.supervisor.unwrap();
+    assert_eq!(plane.damping_n_s_m, 1234.0);
+    let supervisor = plane.supervisor.unwrap();
     assert_eq!(supervisor.delay_samples, 2.0, "magnet and sensor");
     // The fault lasts to the end and counts from its start; the last change comes after it.
-    assert_eq!(scene.clock_starts_s(), 0.04);
+    assert_eq!(scene.clock_starts_s(0), 0.04);
 }
 
 /// The whole cap at lift-off speed, √(c·(F + k·c)/m).
 #[test]
 fn damping_has_a_default() {
     let scene = Scene::parse("scene.toml", &base()).unwrap();
+    let damping_n_s_m = scene.planes[0].damping_n_s_m;
     let speed = (2e-4f64 * (1000.0 - 2e5 * 2e-4) / 10.0).sqrt();
-    assert!((scene.damping_n_s_m - 1000.0 / speed).abs() < 1e-9 * scene.damping_n_s_m);
+    assert!((damping_n_s_m - 1000.0 / speed).abs() < 1e-9 * damping_n_s_m);
 }

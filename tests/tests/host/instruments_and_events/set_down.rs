@@ -22,7 +22,7 @@ fn set_down(start_s: f64, to_m: V2) -> SetDown {
 fn the_rotor_follows_its_reference() {
     let mut scene = free_rotor();
     let away_m = V2::new(0.0, -1e-4);
-    scene.set_downs = vec![set_down(0.02, away_m), set_down(0.2, V2::zeros())];
+    scene.planes[0].set_downs = vec![set_down(0.02, away_m), set_down(0.2, V2::zeros())];
     for (until_s, expected_m) in [(0.02, V2::zeros()), (0.15, away_m), (0.35, V2::zeros())] {
         scene.duration_s = until_s;
         let end_m = last(&ridden(&scene, PolicyKind::Levitation).1)
@@ -31,8 +31,8 @@ fn the_rotor_follows_its_reference() {
         let off_m = (end_m - expected_m).norm();
         assert!(off_m < 2e-6, "{until_s}: {end_m}");
     }
-    assert!((scene.reference_m(0.045) - 0.5 * away_m).norm() < 1e-12);
-    let told = [0.0, 0.02, 0.19, 0.3].map(|t_s| scene.set_down_announced(t_s));
+    assert!((scene.planes[0].reference_m(0.045) - 0.5 * away_m).norm() < 1e-12);
+    let told = [0.0, 0.02, 0.19, 0.3].map(|t_s| scene.planes[0].set_down_announced(t_s));
     assert_eq!(told, [false, true, true, false]);
 }
 
@@ -47,8 +47,8 @@ fn a_file_says_it_in_clearances() {
     spec.set("set_down", tables.clone()).unwrap();
     spec.set("start.levitated_before", true).unwrap();
     let scene = spec.resolve().unwrap();
-    assert!(scene.levitated_before && !scene.set_downs[0].announced);
-    assert!((scene.set_downs[0].to_m.y + 2.4e-4).abs() < 1e-12);
+    assert!(scene.levitated_before && !scene.planes[0].set_downs[0].announced);
+    assert!((scene.planes[0].set_downs[0].to_m.y + 2.4e-4).abs() < 1e-12);
     // Nobody levitates the rotor of this file.
     let mut without = Spec::load(&scene_path("benchmark_b1")).unwrap();
     without.set("set_down", tables).unwrap();

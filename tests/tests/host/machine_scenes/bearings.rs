@@ -2,7 +2,6 @@
 
 use super::{ONE_PLANE, as_machine, machine, planes};
 use firmware_bench::scene::Scene;
-use firmware_bench::scene::machine::MachineScene;
 use firmware_bench::scene::policy_kind::PolicyKind;
 use plant_model::contact::ball_bearing::BallBearing;
 use plant_model::params::ContactLaw;
@@ -21,7 +20,7 @@ fn with(contact: &str) -> String {
 
 fn law(text: &str) -> (f64, f64) {
     let scene = Scene::parse("test", text).unwrap_or_else(|e| panic!("{e}"));
-    match scene.plant.contact.law {
+    match scene.machine.planes[0].contact.law {
         ContactLaw::HuntCrossley(law) => (law.stiffness_n_mn, law.exponent),
         ContactLaw::Linear(_) => panic!("linear"),
     }
@@ -97,7 +96,7 @@ fn contradictions_are_named() {
         let told = message.contains(key) && message.contains(says);
         assert!(told, "{key}, {says}: {message}");
     }
-    // Of a whole rotor only, and not by series.
+    // With a plane and without, and not by series.
     for (from, to, key) in [
         (
             "lag_s = 1.6e-4",
@@ -115,30 +114,26 @@ fn contradictions_are_named() {
             "retainer.heat",
         ),
     ] {
-        let one = ONE_PLANE.replace(from, to);
-        let message = Scene::parse("scene.toml", &one).unwrap_err().to_string();
-        let told = message.contains(key) && message.contains("is of a whole rotor");
-        assert!(told, "{key}: {message}");
-        let whole = as_machine().replace(from, to);
-        machine(&whole);
-        let series = whole.replace("[run]", "[run]\nmethod = \"series\"");
-        let refused = MachineScene::parse("scene.toml", &series);
-        match key {
-            "retainer.heat" => assert!(refused.is_ok()),
-            "magnet.lag_damping_ratio" => {
-                let message = refused.unwrap_err().to_string();
-                assert!(message.contains("run.method"), "{message}");
-            }
-            key => {
-                let message = refused.unwrap_err().to_string();
-                assert!(message.contains(key), "{message}");
+        for text in [ONE_PLANE, &as_machine()] {
+            let text = text.replace(from, to);
+            machine(&text);
+            let series = text.replace("[run]", "[run]\nmethod = \"series\"");
+            let refused = Scene::parse("scene.toml", &series);
+            match key {
+                "retainer.heat" => assert!(refused.is_ok()),
+                "magnet.lag_damping_ratio" => {
+                    let message = refused.unwrap_err().to_string();
+                    assert!(message.contains("run.method"), "{message}");
+                }
+                key => {
+                    let message = refused.unwrap_err().to_string();
+                    assert!(message.contains(key), "{message}");
+                }
             }
         }
     }
     let whole = as_machine().replace("lag_s = 1.6e-4", "lag_damping_ratio = 0.7");
-    let message = MachineScene::parse("scene.toml", &whole)
-        .unwrap_err()
-        .to_string();
+    let message = Scene::parse("scene.toml", &whole).unwrap_err().to_string();
     assert!(message.contains("magnet.lag_damping_ratio"), "{message}");
 }
 

@@ -1,7 +1,7 @@
 //! Parameters of a whole rotor that change during a run.
 
 use super::{apart, machine, planes};
-use firmware_bench::scene::machine::MachineScene;
+use firmware_bench::scene::Scene;
 use firmware_bench::scene::policy_kind::PolicyKind;
 use plant_model::V2;
 
@@ -46,7 +46,7 @@ position_m = 0.3
 contact_radius_m = 0.03
 "#;
 
-fn braked(eccentric: &str, drive: &str, mu: &str, more: &str) -> MachineScene {
+fn braked(eccentric: &str, drive: &str, mu: &str, more: &str) -> Scene {
     let text = BRAKED
         .replace("ECCENTRIC", eccentric)
         .replace("DRIVE", drive);
@@ -113,7 +113,7 @@ fn a_blade_is_lost_at_its_time_and_place() {
             .replace("stiffness_n_m = 4e5\ndamping_n_s_m = 50.0", "");
         machine(&(text + change))
     };
-    let end = |scene: &MachineScene| {
+    let end = |scene: &Scene| {
         let ended = planes(scene, PolicyKind::Passive);
         let last = |plane: usize| *ended[plane].1.rows.last().unwrap();
         let [a, b] = [last(0).plant.position_m, last(1).plant.position_m];
@@ -132,7 +132,7 @@ fn a_blade_is_lost_at_its_time_and_place() {
     assert!(off < 1e-9, "{off:e}");
     // The clock of the verdict starts there.
     assert_eq!(scene.edges(), [lost_s]);
-    assert_eq!(scene.common().clock_starts_s(), lost_s);
+    assert_eq!(scene.clock_starts_s(0), lost_s);
 }
 
 /// Places of a rotor by its shaft count from its left end, those of changes as well.
@@ -150,7 +150,7 @@ fn places_count_as_the_scene_has_them() {
         + "[[shaft]]\nlength_m = 0.8\nouter_diameter_m = 0.05\n\
            [[change]]\nat_s = 0.01\nunbalance = { position_m = 0.6, moment_kg_m = 1e-5 }\n";
     let scene = machine(&by_shaft);
-    let changed = scene.common().changes[0].unbalance.unwrap();
+    let changed = scene.changes[0].unbalance.unwrap();
     assert!((changed.position_m - 0.2).abs() < 1e-12, "{changed:?}");
     planes(&scene, PolicyKind::Passive);
 }

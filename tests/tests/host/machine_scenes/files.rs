@@ -5,7 +5,6 @@ use super::{ONE_PLANE, apart, machine, planes};
 use firmware_bench::device::modal_levitation::Weights;
 use firmware_bench::run::closed_loop::{Keep, run};
 use firmware_bench::scene::Scene;
-use firmware_bench::scene::machine::AnyScene;
 use firmware_bench::scene::policy_kind::PolicyKind;
 use nalgebra::DMatrix;
 use npyz::WriterBuilder;
@@ -44,10 +43,10 @@ fn numbers(matrix: &DMatrix<f64>) -> String {
 }
 
 /// Writes a scene and loads it from there.
-fn load(folder: &TempDir, text: &str) -> Result<AnyScene, String> {
+fn load(folder: &TempDir, text: &str) -> Result<Scene, String> {
     let path: PathBuf = folder.path().join("scene.toml");
     fs::write(&path, text).unwrap();
-    AnyScene::load(&path).map_err(|error| error.to_string())
+    Scene::load(&path).map_err(|error| error.to_string())
 }
 
 /// Three masses on a shaft without mass, as matrices and as numbers.
@@ -108,9 +107,7 @@ fn a_rotor_by_matrices_is_the_rotor_that_they_say() {
             .replace("RIGHT", &right.to_string())
     };
     let by_file = at("matrices_file = \"rotor.npz\"", 0.1, 0.7);
-    let AnyScene::Machine(by_file) = load(&folder, &by_file).unwrap() else {
-        panic!("a whole rotor");
-    };
+    let by_file = load(&folder, &by_file).unwrap();
     // Mass 10 kg at 0.46 m; out of line it gives by (4/7)²/2 + 1/5 + (3/7)²/3 per kg, in the shape out/m of 10 kg.
     let mobility: f64 = 16.0 / 49.0 / 2.0 + 0.2 + 9.0 / 49.0 / 3.0;
     let size = (10.0 / mobility).sqrt();
@@ -123,7 +120,7 @@ fn a_rotor_by_matrices_is_the_rotor_that_they_say() {
     );
     let by_numbers = machine(&at(&by_numbers, -0.36, 0.24));
     let [by_file, by_numbers] =
-        [&*by_file, &by_numbers].map(|scene| planes(scene, PolicyKind::Passive));
+        [&by_file, &by_numbers].map(|scene| planes(scene, PolicyKind::Passive));
     let impacts = [0, 1].map(|plane| by_file[plane].0.impacts);
     assert!(impacts.iter().all(|impacts| *impacts > 3), "{impacts:?}");
     for (a, b) in by_file.iter().zip(&by_numbers) {
@@ -259,10 +256,8 @@ fn a_state_space_holds_a_whole_rotor_as_levitation_by_mode_does() {
         &by_mode[..start],
         &by_mode[end..]
     );
-    let AnyScene::Machine(own_scene) = load(&folder, &own).unwrap() else {
-        panic!("a whole rotor");
-    };
-    let [a, b] = [&machine(&by_mode), &*own_scene].map(|s| planes(s, PolicyKind::Levitation));
+    let own_scene = load(&folder, &own).unwrap();
+    let [a, b] = [&machine(&by_mode), &own_scene].map(|s| planes(s, PolicyKind::Levitation));
     for (a, b) in a.iter().zip(&b) {
         assert!(a.0.recovered);
         let off = apart(&a.1, &b.1);

@@ -2,7 +2,7 @@
 
 use super::{apart, machine, planes};
 use firmware_bench::run::trace::Trace;
-use firmware_bench::scene::machine::MachineScene;
+use firmware_bench::scene::Scene;
 use firmware_bench::scene::policy_kind::PolicyKind;
 
 /// A gyroscopic rotor in two magnetic bearings.
@@ -57,7 +57,7 @@ start_position_m = [-6e-5, 0.0]
 fn levitation_by_mode_holds_translation_and_tilt() {
     let swing = |cross: &str| {
         let scene = machine(&LEVITATED.replace("CROSS", cross));
-        let weights: Vec<f64> = (scene.planes.iter()).map(|p| p.scene.weight_n.y).collect();
+        let weights: Vec<f64> = (scene.planes.iter()).map(|p| p.weight_n.y).collect();
         assert!((weights.iter().sum::<f64>() + 20.0 * 9.81).abs() < 1e-9);
         assert!(
             (weights[0] * -0.2 + weights[1] * 0.25).abs() < 1e-9,
@@ -107,7 +107,7 @@ fn magnets_with_poles_levitate_as_their_linear_ones_near_the_middle() {
         assert!(off < 5e-3 && off > 1e-5, "{off:e} clearances");
     }
     let scene = machine(&poles);
-    let design = |scene: &MachineScene| scene.planes[0].scene.plant.rotor;
+    let design = |scene: &Scene| scene.plant(0).rotor;
     let (a, b) = (design(&scene), design(&machine(&linear)));
     assert!(
         (a.stiffness_n_m / b.stiffness_n_m - 1.0).abs() < 1e-12,
@@ -120,10 +120,10 @@ fn magnets_with_poles_levitate_as_their_linear_ones_near_the_middle() {
         ("resistance_ohm = 1.0", "needs magnet.poles.inductance_h"),
     ] {
         let text = poles.replace("air_gap_m = 5e-3", &format!("air_gap_m = 5e-3, {more}"));
-        let error = MachineScene::parse("test", &text).unwrap_err().to_string();
+        let error = Scene::parse("test", &text).unwrap_err().to_string();
         assert!(error.contains(says), "{error}");
     }
     let both = poles.replace("poles =", "negative_stiffness_n_m = 1e5\npoles =");
-    let error = MachineScene::parse("test", &both).unwrap_err().to_string();
+    let error = Scene::parse("test", &both).unwrap_err().to_string();
     assert!(error.contains("follows from magnet.poles"), "{error}");
 }

@@ -1,7 +1,7 @@
 //! Modes of scenes, and rotors that are described by their shaft.
 
 use super::{TWO_PLANES, machine};
-use firmware_bench::scene::machine::MachineScene;
+use firmware_bench::scene::Scene;
 use serde_json::Value;
 use std::fs;
 use std::process::Output;
@@ -199,7 +199,7 @@ fn a_shaft_is_the_rotor_that_it_weighs() {
     }
     let rigid = machine(&shaft().replace("bending_to_hz = 1000.0", "bending_to_hz = 0.0"));
     assert!(rigid.machine.rotor.bending().is_empty());
-    let start = |scene: &MachineScene| scene.start;
+    let start = |scene: &Scene| scene.start;
     assert_eq!(start(&rigid), start(&scene));
 }
 
@@ -232,13 +232,11 @@ fn what_is_no_shaft_is_refused_with_its_key() {
         ),
     ] {
         let text = shaft().replacen(from, to, 1);
-        let error = MachineScene::parse("scene.toml", &text)
-            .unwrap_err()
-            .to_string();
+        let error = Scene::parse("scene.toml", &text).unwrap_err().to_string();
         assert!(error.contains(key) && error.contains(says), "{error}");
     }
     let without = shaft().replace(SHAFT, "");
-    let error = MachineScene::parse("scene.toml", &without)
+    let error = Scene::parse("scene.toml", &without)
         .unwrap_err()
         .to_string();
     assert!(

@@ -4,7 +4,7 @@ use super::levitated::LEVITATED;
 use super::{machine, planes};
 use firmware_bench::run::figures::Figures;
 use firmware_bench::run::trace::Trace;
-use firmware_bench::scene::machine::MachineScene;
+use firmware_bench::scene::Scene;
 use firmware_bench::scene::policy_kind::PolicyKind;
 use serde_json::Value;
 use std::fs;
@@ -42,7 +42,7 @@ fn with_seal(text: &str, position_m: f64, clearance_m: f64) -> String {
 }
 
 /// Figures and rows of the bearings; no seal is touched.
-fn bearings(scene: &MachineScene, kind: PolicyKind) -> Vec<(Figures, Trace)> {
+fn bearings(scene: &Scene, kind: PolicyKind) -> Vec<(Figures, Trace)> {
     let all = planes(scene, kind).into_iter().zip(&scene.planes);
     all.filter(|((figures, _), plane)| {
         assert!(!plane.seal || figures.impacts == 0);
@@ -96,7 +96,7 @@ fn who_levitates_does_not_know_of_a_seal() {
 fn a_seal_that_is_touched_is_judged() {
     let scene = machine(&with_seal(&supervised(), 0.1, 1e-4));
     // From what the magnets do there: 1000 N at each end, and the force of an impact is no weaker in between.
-    let limits = scene.planes.iter().map(|plane| plane.scene.whirl_speed_m_s);
+    let limits = scene.planes.iter().map(|plane| plane.whirl_speed_m_s);
     assert!(limits.clone().all(|limit| (0.1..1.0).contains(&limit)));
     let touched = |kind| {
         let ended = planes(&scene, kind);

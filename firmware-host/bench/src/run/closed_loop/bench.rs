@@ -2,7 +2,7 @@
 
 use super::station::Station;
 use super::{PlaneEnded, RunError, TRUSTED, TRUSTED_TOLERANCES, Task};
-use crate::device::loads::{Loads, cuts};
+use crate::device::loads::{Disturbance, cuts};
 use crate::device::whole_levitation::{AtSample, WholeLevitation, WholeLevitationParams};
 use crate::run::controller::{Seen, written};
 use crate::run::figures::{Ended, Figures};
@@ -15,9 +15,8 @@ use supervisor::{IntegratorHint, Rotor, Stamp};
 
 /// A rig with its stations, sample by sample.
 pub(super) struct Bench<'a> {
-    /// What holds for all planes.
     scene: &'a Scene,
-    pub(super) rig: Box<dyn Rig + 'a>,
+    pub(super) rig: Rig<'a>,
     pub(super) stations: Vec<Station<'a>>,
     /// Who levitates the rotor as a whole.
     levitation: Option<WholeLevitation>,
@@ -27,7 +26,7 @@ pub(super) struct Bench<'a> {
     pub(super) supervisor: Option<(Rotor, [usize; 2])>,
     pub(super) axis: Option<&'a mut dyn Recorder<AxisRow>>,
     /// What acts at each place for loads.
-    loads: Vec<Loads>,
+    loads: Vec<Disturbance>,
     edges_s: Vec<f64>,
     /// The next of them.
     edge_s: f64,
@@ -46,14 +45,10 @@ pub(super) struct Bench<'a> {
 }
 
 impl<'a> Bench<'a> {
-    pub(super) fn new(
-        scene: &'a Scene,
-        rig: Box<dyn Rig + 'a>,
-        stations: Vec<Station<'a>>,
-        (loads, edges_s): (Vec<Loads>, Vec<f64>),
-    ) -> Self {
+    pub(super) fn new(scene: &'a Scene, rig: Rig<'a>, stations: Vec<Station<'a>>) -> Self {
+        let loads: Vec<Disturbance> = scene.loads().collect();
         let (planes, places) = (stations.len(), loads.len());
-        let known = stations.iter().filter(|s| !s.seal).count();
+        let known = stations.iter().filter(|s| !s.plane.seal).count();
         Self {
             scene,
             rig,
@@ -63,7 +58,7 @@ impl<'a> Bench<'a> {
             supervisor: None,
             axis: None,
             loads,
-            edges_s,
+            edges_s: scene.edges(),
             edge_s: f64::NEG_INFINITY,
             steady: true,
             changes_done: 0,
@@ -115,9 +110,9 @@ impl<'a> Bench<'a> {
         let mut ended = Vec::with_capacity(self.stations.len());
         for (plane, (station, last)) in self.stations.iter_mut().zip(&self.now).enumerate() {
             station.judge.sample(last);
-            station.measured_m = station.scene.from_magnets_m(last.position_m);
+            station.measured_m = last.position_m + station.wall.centre_m;
             station.record(last, false);
-            let run = Ended::new(station.scene, &station.judge, &*self.rig, (plane, last));
+            let run = Ended::new(&station.judge, &self.rig, (plane, last));
             let of_rotor = self.supervisor.as_mut().and_then(|(supervisor, planes)| {
                 let own = planes.iter().position(|of| *of == plane)?;
                 Some((supervisor, own))
@@ -175,7 +170,7 @@ impl<'a> Bench<'a> {
         self.seen.clear();
         for (plane, (station, now)) in self.stations.iter_mut().zip(&self.now).enumerate() {
             station.amplifier.begin(tick);
-            let sensed_m = self.rig.sensed_m(plane, now);
+            let sensed_m = self.rig.sensed_m(plane);
             self.seen.push(station.see(t, sensed_m, now));
         }
     }
@@ -257,14 +252,14 @@ impl<'a> Bench<'a> {
             spin_rad_s: self.seen.first().map_or(0.0, |seen| seen.spin_rad_s),
             hold,
         };
-        let known = |(_, station): &(&Seen, &Station)| !station.seal;
+        let known = |(_, station): &(&Seen, &Station)| !station.plane.seal;
         let readings = (self.seen.iter().zip(&self.stations)).filter(known);
         let readings = readings.map(|(seen, _)| seen.off_reference());
         levitation
             .forces_n(readings, at, &mut self.levitation_n)
             .map_err(RunError::of_controller(task.policy))?;
         let known = self.seen.iter_mut().zip(&self.stations);
-        let known = known.filter(|(_, station)| !station.seal);
+        let known = known.filter(|(_, station)| !station.plane.seal);
         for ((seen, _), force_n) in known.zip(&self.levitation_n) {
             seen.levitation_n = *force_n;
         }

@@ -6,15 +6,16 @@ use crate::device::sensor_fault::seen_until_s;
 use crate::run::controller::{Controller, Force, Seen};
 use crate::run::judge::Judge;
 use crate::run::trace::{Recorder, Said, TraceRow};
-use crate::scene::Scene;
+use crate::scene::{PlaneScene, Scene};
+use plant_model::machine::params::MachinePlane;
 use plant_model::{Snapshot, V2};
 use supervisor::{Events, Status};
 
 /// A bearing plane: what stands there, who drives its magnet, who watches.
 pub(super) struct Station<'a> {
-    pub(super) scene: &'a Scene,
-    /// Whether no controller knows of it.
-    pub(super) seal: bool,
+    scene: &'a Scene,
+    pub(super) plane: &'a PlaneScene,
+    pub(super) wall: &'a MachinePlane,
     sensor: Sensor,
     pub(super) controller: Box<dyn Controller>,
     pub(super) amplifier: Amplifier,
@@ -31,18 +32,20 @@ pub(super) struct Station<'a> {
 impl<'a> Station<'a> {
     pub(super) fn new(
         scene: &'a Scene,
+        plane: usize,
         controller: Box<dyn Controller>,
         recorder: Option<&'a mut dyn Recorder>,
     ) -> Self {
         let period_s = 1.0 / scene.sample_rate_hz;
-        let force_max_n = scene.plant.magnet.map_or(0.0, |m| m.force_max_n);
+        let (force_max_n, own) = (scene.force_max_n(plane), &scene.planes[plane]);
         Self {
             scene,
-            seal: false,
-            sensor: Sensor::new(scene.sensor, &scene.faults, period_s, scene.seed),
+            plane: own,
+            wall: &scene.machine.planes[plane],
+            sensor: Sensor::new(own.sensor, &own.faults, period_s, own.seed),
             controller,
-            amplifier: Amplifier::new(scene.amplifier, force_max_n, &scene.outages, scene.seed),
-            judge: Judge::new(scene),
+            amplifier: Amplifier::new(own.amplifier, force_max_n, &own.outages, own.seed),
+            judge: Judge::new(scene, plane),
             recorder,
             measured_m: V2::zeros(),
             said: None,
@@ -57,11 +60,11 @@ impl<'a> Station<'a> {
         let sampled_s = seen_until_s(t_s, 1.0 / self.scene.sample_rate_hz);
         Seen {
             reading,
-            reference_m: self.scene.reference_m(sampled_s),
+            reference_m: self.plane.reference_m(sampled_s),
             spin_rad_s: self.scene.spin_sensor.gain * now.spin_rad_s,
-            applied_n: if self.scene.amplifier.force_measured {
+            applied_n: if self.plane.amplifier.force_measured {
                 // What is fed forward the supervisor does not know of: with the weight it is nothing.
-                now.delivered_n - self.scene.feed_forward_n
+                now.delivered_n - self.plane.feed_forward_n
             } else {
                 V2::zeros()
             },
@@ -77,7 +80,7 @@ impl<'a> Station<'a> {
 
     /// Passes on the answer to a sample, whoever gives it.
     pub(super) fn command(&mut self, tick: u64, force: Force, now: &Snapshot) {
-        let with_weight = |force_n: V2| force_n + self.scene.feed_forward_n;
+        let with_weight = |force_n: V2| force_n + self.plane.feed_forward_n;
         match force {
             Force::Computed(force_n) => self.amplifier.command(tick, with_weight(force_n)),
             Force::AtOnce(force_n) => self.amplifier.command_at_once(with_weight(force_n)),
@@ -95,14 +98,14 @@ impl<'a> Station<'a> {
     fn status(&self, t_s: f64) -> Status {
         let mut status = Status::empty();
         status.set(Status::SPIN_VALID, self.scene.spin_sensor.valid);
-        let measured = self.scene.amplifier.force_measured;
+        let measured = self.plane.amplifier.force_measured;
         status.set(Status::APPLIED_VALID, measured);
         let [x_off, y_off] = self.amplifier.known_off(t_s);
         status.set(Status::BEARING_ON, !(x_off && y_off));
         status.set(Status::AXIS_X_LOST, x_off);
         status.set(Status::AXIS_Y_LOST, y_off);
         status.set(Status::LEVITATED_BEFORE, self.scene.levitated_before);
-        let set_down = self.scene.set_down_announced(t_s);
+        let set_down = self.plane.set_down_announced(t_s);
         status.set(Status::SET_DOWN, set_down);
         status
     }

@@ -1,10 +1,10 @@
 //! A scene's loop sample by sample, for a program that has a clock of its own.
 
 use super::bench::Bench;
-use super::{MachineRecorders, Rigour, RunError, Task, bench_of_machine, bench_of_one};
-use crate::run::controller::{Force, Seen, controller};
+use super::{Keep, Recorders, RunError, Task, bench_of_policy};
+use crate::run::controller::{Force, Seen};
 use crate::run::trace::TraceRow;
-use crate::scene::machine::AnyScene;
+use crate::scene::Scene;
 use crate::scene::policy_kind::PolicyKind;
 use plant_model::{Change, V2};
 use self_cell::self_cell;
@@ -21,7 +21,7 @@ pub enum Driver {
 
 self_cell!(
     struct Ride {
-        owner: AnyScene,
+        owner: Scene,
         #[not_covariant]
         dependent: Bench,
     }
@@ -46,14 +46,16 @@ impl Stepwise {
     ///
     /// # Errors
     /// [`RunError`] where the scene lacks what the policy needs, or cannot be built.
-    pub fn new(scene: AnyScene, driver: Driver) -> Result<Self, RunError> {
+    pub fn new(scene: Scene, driver: Driver) -> Result<Self, RunError> {
         let (kind, name) = match driver {
             Driver::Policy(kind) => (kind, kind.name()),
             Driver::Caller => (PolicyKind::Passive, "of the caller"),
         };
-        let task = Task::to_the_end(name, Rigour::default());
-        let planes = planes(&scene);
-        let ride = Ride::try_new(scene, |scene| bench(scene, kind, task))?;
+        let task = Task::keeping(Keep::Verdict, name);
+        let planes = scene.planes.len();
+        let ride = Ride::try_new(scene, |scene| {
+            bench_of_policy(scene, kind, Recorders::default(), task)
+        })?;
         let mut stepwise = Self {
             ride,
             driver,
@@ -68,18 +70,13 @@ impl Stepwise {
     }
 
     /// The scene.
-    pub fn scene(&self) -> &AnyScene {
+    pub fn scene(&self) -> &Scene {
         self.ride.borrow_owner()
     }
 
     /// How many planes it has.
     pub fn planes(&self) -> usize {
         self.commands_n.len()
-    }
-
-    /// Whether [`Self::push`] has a place to act on: in a scene of one plane.
-    pub fn takes_push(&self) -> bool {
-        matches!(self.scene(), AnyScene::Plane(_))
     }
 
     /// Time of the sample that it stands at \[s\].
@@ -108,7 +105,7 @@ impl Stepwise {
         }
     }
 
-    /// A force on the rotor beside the scene's loads, from now on \[N\]; only where it [`takes_push`](Self::takes_push).
+    /// A force on the centre of mass beside the scene's loads, from now on \[N\].
     pub fn push(&mut self, force_n: V2) {
         (self.ride).with_dependent_mut(|_, bench| bench.rig.push(force_n));
     }
@@ -176,29 +173,5 @@ impl Stepwise {
             planes.clone().map(touches).sum(),
             planes.map(mode).collect(),
         )
-    }
-}
-
-fn planes(scene: &AnyScene) -> usize {
-    match scene {
-        AnyScene::Plane(_) => 1,
-        AnyScene::Machine(scene) => scene.planes.len(),
-    }
-}
-
-fn bench(scene: &AnyScene, kind: PolicyKind, task: Task) -> Result<Bench<'_>, RunError> {
-    let policy = task.policy;
-    match scene {
-        AnyScene::Plane(scene) => {
-            let acting = controller(kind, scene).ok_or(RunError::Incomplete { policy })?;
-            bench_of_one(scene, acting, None, task)
-        }
-        AnyScene::Machine(scene) => {
-            let recorders = MachineRecorders {
-                planes: Vec::new(),
-                axis: None,
-            };
-            bench_of_machine(scene, kind, recorders, task)
-        }
     }
 }

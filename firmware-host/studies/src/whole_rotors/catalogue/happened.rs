@@ -2,7 +2,7 @@
 
 use super::tries;
 use crate::campaign::{Block, Chapter, Claim, Extent, Progress, run_all};
-use crate::paired::pair::{NoPair, Tried, pair_of_rotor, remark};
+use crate::paired::pair::{Goal, NoPair, Tried, pair, remark};
 use crate::paired::row::{COLUMNS, ClassName, Row as Sum};
 use crate::whole_rotors::incidents::{Hardest, Incident};
 use crate::whole_rotors::loops::Loops;
@@ -65,7 +65,7 @@ impl Happened {
         let ran = run_all(&cases, progress, |(_, plant, incident, of)| {
             let scene = incident.scene(plant, hardest, *of);
             let scene = scene.map_err(|error| NoPair::Untrusted(error.to_string()))?;
-            pair_of_rotor(scene)
+            pair(&scene, Goal::Free)
         });
         let sum = summed(ran.iter());
         let rows = cases.into_iter().zip(ran);

@@ -7,7 +7,7 @@ use plant_model::machine::params::{MachineParams, MachineStart};
 use std::f64::consts::TAU;
 
 /// The start: centre of mass and tilt, or what both planes say.
-pub(super) fn start(
+pub(crate) fn start(
     tables: &SceneTables,
     text: &SceneText,
     machine: &MachineParams,

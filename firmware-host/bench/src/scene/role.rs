@@ -1,8 +1,8 @@
 //! What the supervisor of a whole rotor does about a shaft that bends: modes that its force in flight would make grow are
 //! configured, and where that does not suffice it leaves flight to levitation.
 
-use super::MachineScene;
 use crate::crossover::SmallSignals;
+use crate::scene::Scene;
 use crate::scene::diagnostic::SceneText;
 use crate::scene::nominal::{Override, named, replaced};
 use crate::scene::suggest::{Decided, suggested};
@@ -92,7 +92,7 @@ fn configured(configs: &[Config; 2], [first, second]: [f64; 2]) -> [Config; 2] {
     })
 }
 
-impl MachineScene {
+impl Scene {
     /// Bending modes up to half the control rate, slowest first; none of a rotor that has no supervisor for both planes.
     fn bends(&self, config: &Config) -> Vec<Bends> {
         let Some(shaft) = self.shaft() else {
@@ -307,8 +307,8 @@ impl MachineScene {
         if self.machine.rotor.bending().is_empty() {
             return;
         }
-        let suggested = both.map(|plane| suggested(&self.planes[plane].scene.nominal));
-        let [first, second] = both.map(|plane| self.planes[plane].scene.overrides.as_slice());
+        let suggested = both.map(|plane| suggested(&self.planes[plane].nominal));
+        let [first, second] = both.map(|plane| self.planes[plane].overrides.as_slice());
         let configs = [
             replaced(&suggested[0].config, first),
             replaced(&suggested[1].config, second),
@@ -319,9 +319,9 @@ impl MachineScene {
         }
         let (decided, role) = self.decided(&configs, [first, second]);
         for (plane, (before, after)) in both.into_iter().zip(configs.iter().zip(&decided)) {
-            let scene = &mut self.planes[plane].scene;
+            let plane = &mut self.planes[plane];
             let values = before.values().into_iter().zip(after.values());
-            scene.decided = (values.enumerate())
+            plane.decided = (values.enumerate())
                 .filter(|(_, (before, after))| before != after)
                 .map(|(index, (_, value))| Decided {
                     index,
@@ -329,11 +329,11 @@ impl MachineScene {
                     reason: reason(PARAMETERS[index].name, &role),
                 })
                 .collect();
-            scene.supervisor = scene.supervisor.map(|_| *after);
+            plane.supervisor = plane.supervisor.map(|_| *after);
         }
         let runs = both
             .iter()
-            .all(|plane| self.planes[*plane].scene.supervisor.is_some());
+            .all(|plane| self.planes[*plane].supervisor.is_some());
         if !(text.warns && runs) {
             return;
         }

@@ -5,7 +5,7 @@ use plant_model::machine::params::{BearingHeat, LoadDrag};
 use std::f64::consts::TAU;
 
 /// Drag by load of the race.
-pub(super) fn load_drag(tables: &SceneTables) -> Option<LoadDrag> {
+pub(crate) fn load_drag(tables: &SceneTables) -> Option<LoadDrag> {
     let race = tables.race.as_ref()?;
     Some(LoadDrag {
         arm_m: race.load_drag_m?,
@@ -14,7 +14,7 @@ pub(super) fn load_drag(tables: &SceneTables) -> Option<LoadDrag> {
 }
 
 /// Heat of the bearing.
-pub(super) fn heat(tables: &SceneTables) -> Option<BearingHeat> {
+pub(crate) fn heat(tables: &SceneTables) -> Option<BearingHeat> {
     let heat = tables.retainer.heat.as_ref()?;
     Some(BearingHeat {
         capacity_j_k: heat.capacity_j_k,

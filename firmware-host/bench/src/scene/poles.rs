@@ -5,7 +5,7 @@ use crate::scene::tables::MagnetTable;
 use plant_model::machine::params::{Coil, Poles};
 
 /// Poles of a magnet, where it has them.
-pub(super) fn poles(magnet: &MagnetTable, text: &SceneText) -> Result<Option<Poles>, SceneError> {
+pub(crate) fn poles(magnet: &MagnetTable, text: &SceneText) -> Result<Option<Poles>, SceneError> {
     let Some(written) = &magnet.poles else {
         return Ok(None);
     };

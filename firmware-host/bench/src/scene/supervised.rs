@@ -1,9 +1,9 @@
 //! The supervisor of a whole rotor: of the two planes that have a magnet each, however many others there are.
 
-use super::{MachineScene, PlaneScene};
+use crate::scene::{PlaneScene, Scene};
 use supervisor::{Place, Rotor, Shaft, ShaftError};
 
-impl MachineScene {
+impl Scene {
     /// The planes of its supervisor: those that have a magnet, where they are two.
     pub fn supervised(&self) -> Option<[usize; 2]> {
         let planes = self.planes.iter().enumerate();
@@ -40,7 +40,7 @@ impl MachineScene {
     /// The supervisor of the whole rotor, where there is one for it.
     pub fn supervisor(&self) -> Option<Rotor> {
         let [first, second] = self.supervised_planes()?;
-        let configs = [first.scene.supervisor?, second.scene.supervisor?];
+        let configs = [first.supervisor?, second.supervisor?];
         let made = match &self.told {
             Some(told) => Rotor::new(told, &configs),
             None => Rotor::as_told(&self.shaft()?, &configs),
@@ -52,7 +52,7 @@ impl MachineScene {
     pub(super) fn refused_by_supervisor(&self) -> Option<(usize, ShaftError)> {
         let shaft = self.shaft()?;
         let [first, second] = self.supervised_planes()?;
-        let configs = [first.scene.supervisor?, second.scene.supervisor?];
+        let configs = [first.supervisor?, second.supervisor?];
         let error = Rotor::<4>::as_told(&shaft, &configs).err()?;
         Some((self.supervised()?[1], error))
     }

@@ -1,13 +1,13 @@
-//! What a machine refuses, at the key that it comes from.
+//! What the machine of a scene refuses, at the key that it comes from.
 
-use super::PlaneScene;
+use crate::scene::PlaneScene;
 use crate::scene::diagnostic::SceneError;
 use crate::scene::plant::hardening_key;
 use crate::scene::spec::Spec;
 use plant_model::machine::params::MachineError;
 
 /// The error of a value by its name in [`plant_model::machine::params::MachineParams`].
-pub(super) fn refused(error: &MachineError, spec: &Spec, planes: &[PlaneScene]) -> SceneError {
+pub(crate) fn refused(error: &MachineError, spec: &Spec, planes: &[PlaneScene]) -> SceneError {
     let (tables, text) = (&spec.tables, &spec.text);
     let (list, rest) = error.field.split_once('[').unwrap_or((&error.field, ""));
     let (index, field) = match rest.split_once("].") {
@@ -70,6 +70,9 @@ pub(super) fn refused(error: &MachineError, spec: &Spec, planes: &[PlaneScene]) 
         ("loads", _) => at(&format!("disturbance[{index}].position_m")),
         ("rotor.bending", "frequency_rad_s") => at(&format!("rotor.bending[{index}].frequency_hz")),
         ("rotor.bending", "shape") => at(&format!("rotor.bending[{index}].positions_m")),
+        ("start.centre_m", _) => at("start.position_m"),
+        ("start.centre_velocity_m_s", _) => at("start.velocity_m_s"),
+        ("start.spin_rad_s", _) => at("spin.frequency_hz"),
         ("gravity_m_s2", _) => at("rotor.gravity_m_s2"),
         _ => at(&error.field),
     }
