@@ -93,10 +93,13 @@ impl Plant {
             ..Options::default()
         };
         let mut params = scene.machine.clone();
-        // The centre of mass, then where the scene has its own.
-        params.loads_m = std::iter::once(0.0)
-            .chain(scene.disturbances.iter().map(|load| load.position_m))
-            .collect();
+        // The centre of mass, then where else the scene has loads: as a closed loop has them, to the last bit.
+        params.loads_m = vec![0.0];
+        for load in &scene.disturbances {
+            if !params.loads_m.contains(&load.position_m) {
+                params.loads_m.push(load.position_m);
+            }
+        }
         let rotor = Machine::new(&params, &scene.start, options);
         Ok(Self {
             of: Mutex::new(State {

@@ -406,6 +406,8 @@ impl Collocation {
             self.through(&mut plane.rolling_n_m, |at| {
                 per_m(at) * at.touches[p].rolling_n
             });
+            self.through(&mut plane.sliding_n, |at| at.touches[p].sliding_n);
+            self.through(&mut plane.rolling_n, |at| at.touches[p].rolling_n);
         }
     }
 

@@ -5,12 +5,13 @@
 //! fastest rate, so that all entries of A are of one size.
 
 use super::poles::MagnetLaw;
-use super::readout::StepFlows;
+use super::readout::PlaneFlows;
 use super::system::{MachineInputs, MachineState, MachineSystem};
 use crate::V2;
 use crate::energy::Flows;
 use crate::quadrature::{EIGHT, Nodes};
 use nalgebra::DMatrix;
+use std::cmp::Ordering;
 
 /// Samples of the same length at the same spin from which on a map pays: it costs as much as hundreds of them.
 const REPEATS: u32 = 256;
@@ -40,63 +41,69 @@ pub(crate) struct FlightMap {
     layout: Layout,
     rate: f64,
     /// End of the coordinates, rates and delivered forces; rows of z.
-    end: Vec<f64>,
+    end: Vec<Block>,
     /// Bound of each plane's way, x and y.
-    reach: Vec<f64>,
-    /// Quadratic forms of the work: rotor damping, magnets that lag, unbalance, stiffness that goes round, dampers of rings; the upper
-    /// triangle row by row, with what stands below added to it. Empty where there is none.
-    works: [Vec<f64>; DOORS],
+    reach: Vec<Block>,
+    /// Quadratic forms of the work: rotor damping, magnets that lag, unbalance, stiffness that goes round, dampers of rings, in
+    /// tiles. Empty where there is none.
+    works: [Vec<Tile>; DOORS],
     /// Σ z·zᵀ over the samples flown, likewise: the forms are asked for by those who read the audit, not in every sample.
-    moments: Vec<f64>,
+    moments: Vec<Tile>,
     /// What they made of the samples under earlier maps.
     booked: Flows,
-    z: Vec<f64>,
-    size: Vec<f64>,
+    /// In blocks, the last filled up with zeros.
+    z: Vec<Block>,
+    size: Vec<Block>,
     out: Vec<f64>,
 }
 
+/// So many numbers are worked on side by side.
+const LANES: usize = 4;
+type Block = [f64; LANES];
+/// A square of a form.
+type Tile = [Block; LANES];
+
 impl FlightMap {
-    /// Carries a machine off all walls over a whole sample, if there is a map for it and the rotor stays clear; says so.
+    /// Carries a machine off all walls over a whole sample, if there is a map for it and the rotor stays clear, and books the work
+    /// of what is held and of the races; says whether it did.
     pub(crate) fn fly(
         &mut self,
         system: &MachineSystem,
         y: &mut MachineState,
-        inputs: &MachineInputs,
-        dt_s: f64,
+        (inputs, dt_s): (&MachineInputs, f64),
         path: &mut [V2],
-    ) -> Option<StepFlows> {
+        (flows, plane_flows): (&mut Flows, &mut [PlaneFlows]),
+    ) -> bool {
         let turns = system.inverse_inertia > 0.0 && system.drive_torque_n_m != 0.0;
         if turns {
-            return None;
+            return false;
         }
         let same = (dt_s - self.dt_s).abs() <= SAME * dt_s && y.spin_rad_s == self.spin_rad_s;
         if !same {
             self.forget();
             (self.dt_s, self.spin_rad_s) = (dt_s, y.spin_rad_s);
-            return None;
+            return false;
         }
         if !self.made {
             self.repeats += 1;
             if self.repeats < REPEATS {
-                return None;
+                return false;
             }
             self.make(system);
         }
         self.read(system, y, inputs);
-        let (d, planes) = (self.z.len(), system.planes.len());
-        for p in 0..planes {
-            let along = |row: usize| dot(&self.reach[row * d..(row + 1) * d], &self.size);
-            let centre = system.planes[p].centre_m.abs();
+        for (p, plane) in system.planes.iter().enumerate() {
+            let blocks = self.size.len();
+            let along = |row: usize| dot(&self.reach[row * blocks..][..blocks], &self.size);
+            let centre = plane.centre_m.abs();
             let (x, y) = (along(2 * p) + centre.x, along(2 * p + 1) + centre.y);
-            let clearance = system.planes[p].nearest_m();
+            let clearance = plane.nearest_m();
             if x * x + y * y >= clearance * clearance {
-                return None;
+                return false;
             }
         }
         let n = self.layout.n;
-        for (row, out) in self.out.iter_mut().enumerate() {
-            *out = dot(&self.end[row * d..(row + 1) * d], &self.z);
-        }
+        rows(&self.end, &self.z, &mut self.out);
         let per = 1.0 / self.rate;
         for (i, path) in path.iter_mut().enumerate() {
             let pair = |at: usize| V2::new(self.out[at + 2 * i], self.out[at + 2 * i + 1]);
@@ -113,22 +120,19 @@ impl FlightMap {
         }
         let (control, external) = system.held_work_j(inputs, path);
         self.add_moments();
-        let machine = Flows {
-            control,
-            external,
-            ..Flows::default()
-        };
+        flows.control += control;
+        flows.external += external;
         y.phase_rad += y.spin_rad_s * dt_s;
-        let mut flows = StepFlows::of_machine(machine);
         for (p, plane) in system.planes.iter().enumerate() {
             if let Some(race) = &plane.race {
                 let before = y.races_rad_s[p];
                 y.races_rad_s[p] = race.coasted_rad_s(before, dt_s);
-                flows.planes[p].race_drag = race.coasting_loss_j(before, y.races_rad_s[p]);
-                flows.machine.stator_damping += flows.planes[p].race_drag;
+                let lost_j = race.coasting_loss_j(before, y.races_rad_s[p]);
+                plane_flows[p].race_drag += lost_j;
+                flows.stator_damping += lost_j;
             }
         }
-        Some(flows)
+        true
     }
 
     /// To be made anew: the machine is another from now on.
@@ -139,13 +143,11 @@ impl FlightMap {
     }
 
     fn add_moments(&mut self) {
-        let mut rest = self.moments.as_mut_slice();
-        for (i, z) in self.z.iter().enumerate() {
-            let (row, after) = rest.split_at_mut(self.z.len() - i);
-            rest = after;
-            if *z != 0.0 {
-                for (sum, other) in row.iter_mut().zip(&self.z[i..]) {
-                    *sum += z * other;
+        let mut tiles = self.moments.iter_mut();
+        for (i, of_rows) in self.z.iter().enumerate() {
+            for (of_columns, tile) in self.z[i..].iter().zip(&mut tiles) {
+                for (row, z) in tile.iter_mut().zip(of_rows) {
+                    *row = std::array::from_fn(|lane| row[lane] + z * of_columns[lane]);
                 }
             }
         }
@@ -153,7 +155,7 @@ impl FlightMap {
 
     /// Work of rotor damping, lagging magnets and unbalance over all samples flown so far.
     pub(crate) fn works(&self) -> Flows {
-        let work = |form: &Vec<f64>| dot(form, &self.moments);
+        let work = |form: &Vec<Tile>| dot(form.as_flattened(), self.moments.as_flattened());
         let [rotor_damping, control, unbalance, external, stator_damping] =
             [0, 1, 2, 3, 4].map(|w| work(&self.works[w]));
         let mut all = self.booked;
@@ -180,7 +182,11 @@ impl FlightMap {
             loads,
             one,
         } = self.layout;
-        let put = |z: &mut [f64], at: usize, v: V2| (z[at], z[at + 1]) = (v.x, v.y);
+        // All parts begin at even places.
+        let put = |z: &mut [Block], at: usize, v: V2| {
+            let block = &mut z[at / LANES];
+            (block[at % LANES], block[at % LANES + 1]) = (v.x, v.y);
+        };
         for (i, (q, v)) in y.position.iter().zip(&y.velocity).enumerate() {
             put(&mut self.z, 2 * i, self.rate * q);
             put(&mut self.z, n + 2 * i, *v);
@@ -200,9 +206,9 @@ impl FlightMap {
         for (l, load_n) in inputs.loads_n.iter().enumerate() {
             put(&mut self.z, loads + 2 * l, *load_n);
         }
-        self.z[one] = 1.0;
-        for (size, z) in self.size.iter_mut().zip(&self.z) {
-            *size = z.abs();
+        self.z[one / LANES][one % LANES] = 1.0;
+        for (sizes, four) in self.size.iter_mut().zip(&self.z) {
+            *sizes = four.map(f64::abs);
         }
     }
 
@@ -282,7 +288,8 @@ impl FlightMap {
         };
         self.rate = body.undamped_rate_rad_s().max(1.0 / self.dt_s);
         let d = one + 1;
-        (self.z, self.size, self.out) = (vec![0.0; d], vec![0.0; d], vec![0.0; direction]);
+        let zeros = vec![[0.0; LANES]; d.div_ceil(LANES)];
+        (self.z, self.size, self.out) = (zeros.clone(), zeros, vec![0.0; direction]);
         let a = self.generator(system) * self.dt_s;
         let end = a.exp();
         self.end = by_rows(&end, direction);
@@ -308,12 +315,13 @@ impl FlightMap {
         }
         self.reach = by_rows(&reach, reach.nrows());
         self.works = self.make_works(system, &a);
-        self.moments = vec![0.0; d * (d + 1) / 2];
+        let blocks = self.z.len();
+        self.moments = vec![[[0.0; LANES]; LANES]; blocks * (blocks + 1) / 2];
         self.made = true;
     }
 
     /// ∫ z(θ)ᵀ·M·z(θ) dt as a form of z(0), for the power zᵀ·M·z through each door.
-    fn make_works(&self, system: &MachineSystem, a: &DMatrix<f64>) -> [Vec<f64>; DOORS] {
+    fn make_works(&self, system: &MachineSystem, a: &DMatrix<f64>) -> [Vec<Tile>; DOORS] {
         let (body, d) = (&system.body, a.nrows());
         let Layout {
             n,
@@ -369,40 +377,68 @@ impl FlightMap {
             from = &part * from;
         }
         works.map(|work| match work.amax() > 0.0 {
-            true => (0..d)
-                .flat_map(|i| (i..d).map(move |j| (i, j)))
-                .map(|(i, j)| match i == j {
-                    true => work[(i, i)],
-                    false => work[(i, j)] + work[(j, i)],
-                })
-                .collect(),
+            true => by_tiles(&work),
             false => vec![],
         })
     }
 }
 
-/// The first rows of a matrix, one after the other.
-fn by_rows(a: &DMatrix<f64>, rows: usize) -> Vec<f64> {
-    (a.row_iter().take(rows))
-        .flat_map(|row| row.iter().copied().collect::<Vec<_>>())
+/// The tiles of a form from its diagonal on, row by row, with what stands below the diagonal added to what stands above.
+fn by_tiles(form: &DMatrix<f64>) -> Vec<Tile> {
+    let d = form.nrows();
+    let value = |i: usize, j: usize| match i.cmp(&j) {
+        _ if i >= d || j >= d => 0.0,
+        Ordering::Less => form[(i, j)] + form[(j, i)],
+        Ordering::Equal => form[(i, i)],
+        Ordering::Greater => 0.0,
+    };
+    let block = |i: usize, at: usize| std::array::from_fn(|lane| value(i, LANES * at + lane));
+    let blocks = d.div_ceil(LANES);
+    (0..blocks)
+        .flat_map(|row| (row..blocks).map(move |column| (row, column)))
+        .map(|(row, column)| std::array::from_fn(|lane| block(LANES * row + lane, column)))
         .collect()
 }
 
-#[inline]
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    // Four sums side by side: one alone would wait for each addition to finish before it began the next.
-    let mut sums = [0.0; 4];
-    let (front, other) = (a.chunks_exact(4), b.chunks_exact(4));
-    let rest: f64 = front
-        .remainder()
-        .iter()
-        .zip(other.remainder())
-        .map(|(a, b)| a * b)
-        .sum();
-    for (a, b) in front.zip(other) {
-        for (sum, (a, b)) in sums.iter_mut().zip(a.iter().zip(b)) {
-            *sum += a * b;
+/// The first rows of a matrix, one after the other, each filled up to whole blocks.
+fn by_rows(a: &DMatrix<f64>, rows: usize) -> Vec<Block> {
+    let value = |i: usize, j: usize| if j < a.ncols() { a[(i, j)] } else { 0.0 };
+    (0..rows)
+        .flat_map(|i| (0..a.ncols().div_ceil(LANES)).map(move |block| (i, block)))
+        .map(|(i, block)| std::array::from_fn(|lane| value(i, LANES * block + lane)))
+        .collect()
+}
+
+/// Rows of a matrix times a vector; of a few blocks, as one plane has them, without a loop along the row.
+fn rows(matrix: &[Block], z: &[Block], out: &mut [f64]) {
+    match z.len() {
+        2 => rows_of::<2>(matrix, z, out),
+        3 => rows_of::<3>(matrix, z, out),
+        4 => rows_of::<4>(matrix, z, out),
+        blocks => {
+            for (out, row) in out.iter_mut().zip(matrix.chunks_exact(blocks)) {
+                *out = dot(row, z);
+            }
         }
     }
-    (sums[0] + sums[1]) + (sums[2] + sums[3]) + rest
+}
+
+/// The same of a number of blocks that the compiler knows.
+fn rows_of<const BLOCKS: usize>(matrix: &[Block], z: &[Block], out: &mut [f64]) {
+    if let Some(z) = z.first_chunk::<BLOCKS>() {
+        let (rows, _) = matrix.as_chunks::<BLOCKS>();
+        for (out, row) in out.iter_mut().zip(rows) {
+            *out = dot(row, z);
+        }
+    }
+}
+
+#[inline(always)]
+fn dot(a: &[Block], b: &[Block]) -> f64 {
+    // Sums side by side: one alone would wait for each addition to finish before it began the next.
+    let mut sums = [0.0; LANES];
+    for (a, b) in a.iter().zip(b) {
+        sums = std::array::from_fn(|lane| sums[lane] + a[lane] * b[lane]);
+    }
+    (sums[0] + sums[1]) + (sums[2] + sums[3])
 }

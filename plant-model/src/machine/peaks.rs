@@ -43,29 +43,27 @@ impl Parts {
             let slope = (u.1.perp(&w.0) + u.0.perp(&w.1)) / distance_m - turned;
             signed(backward, (speed_m_s, slope))
         };
-        let sliding = |at: f64| {
-            let (force, slope) = series.sliding_n_m.with_slope(at, order);
-            let (distance, grown) = series.distance.with_slope(at, order);
-            (force * distance, slope * distance + force * grown)
-        };
         let ends_n = [series.force.0[0], series.force.at(theta, order)];
         let most_n = (bound(&series.force), so_far.normal_n);
         let normal_n = top(&force, theta, (tops.normal_n, ends_n), most_n);
         let sliding_n = match series.grip.sliding {
-            0.0 => [1.0, -1.0]
-                .map(|sign| {
-                    let ends_n = [sliding(0.0), sliding(theta)].map(|end| sign * end.0);
-                    let of = |at: f64| signed(sign, sliding(at));
-                    let most_n = bound(&series.sliding_n_m) * bound(&series.distance);
-                    top(
-                        &of,
-                        theta,
-                        (tops.sliding_n, ends_n),
-                        (most_n, so_far.sliding_n),
-                    )
-                })
-                .into_iter()
-                .fold(0.0, f64::max),
+            0.0 => {
+                let sliding = &series.sliding_n;
+                let most_n = bound(sliding);
+                [1.0, -1.0]
+                    .map(|sign| {
+                        let ends_n = [sliding.0[0], sliding.at(theta, order)].map(|end| sign * end);
+                        let of = |at: f64| signed(sign, sliding.with_slope(at, order));
+                        top(
+                            &of,
+                            theta,
+                            (tops.sliding_n, ends_n),
+                            (most_n, so_far.sliding_n),
+                        )
+                    })
+                    .into_iter()
+                    .fold(0.0, f64::max)
+            }
             share => share.abs() * normal_n,
         };
         let (start_m, most_m) = match &data.bore {

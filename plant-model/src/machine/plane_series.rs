@@ -74,6 +74,9 @@ pub(crate) struct PlaneSeries {
     pub(crate) sliding_n_m: Scalar,
     pub(crate) rolling_n_m: Scalar,
     pub(super) held_n_m: Scalar,
+    /// The same as forces, where the grip has them not in proportion to f_n.
+    pub(crate) sliding_n: Scalar,
+    pub(crate) rolling_n: Scalar,
     /// Ω_i.
     pub(crate) race: Scalar,
     /// Where friction falls with speed; the grip has no sliding part then.
@@ -114,6 +117,22 @@ impl PlaneSeries {
         self.sliding_n_m.0[k] = f.share.product_coefficient(&self.normal_n_m, k);
         self.torque_n = f.share.product_coefficient(&self.force, k);
         self.reaction += perp(self.gap.times_coefficient(&self.sliding_n_m, k));
+    }
+
+    /// Friction that is not in proportion to the normal force, once all orders are there. By the coefficients of the product: these
+    /// fall where those of its parts do not, for a force per distance has a pole where the distance is none.
+    pub(super) fn finish(&mut self, order: usize, (slides, whirls): (bool, bool)) {
+        let product = |into: &mut Scalar, per_distance: &Scalar| {
+            for (k, force) in into.0[..=order].iter_mut().enumerate() {
+                *force = per_distance.product_coefficient(&self.distance, k);
+            }
+        };
+        if slides && self.grip.sliding == 0.0 {
+            product(&mut self.sliding_n, &self.sliding_n_m);
+        }
+        if whirls && self.grip.rolling == 0.0 {
+            product(&mut self.rolling_n, &self.rolling_n_m);
+        }
     }
 
     /// What is positive while contact lasts.

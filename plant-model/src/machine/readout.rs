@@ -293,16 +293,13 @@ impl Parts {
             let inwards: [f64; N] = std::array::from_fn(|j| gap[j].dot(&rate[j]) * per_m[j]);
             let along: [f64; N] = std::array::from_fn(|j| gap[j].perp(&rate[j]) * per_m[j]);
             let surface = |j: usize| data.radius_m * spin[j] - data.race_radius_m() * race[j];
-            // In proportion to the normal force, or from what it is per distance.
+            // In proportion to the normal force, or for itself.
             let part = |share: f64, of: &Scalar| match share {
-                0.0 => {
-                    let per_distance = of.at_all(&nodes.theta, order);
-                    std::array::from_fn(|j| per_distance[j] * distance[j])
-                }
+                0.0 => of.at_all(&nodes.theta, order),
                 _ => force.map(|n| share * n),
             };
             let sliding: [f64; N] = match *slide == Slide::Rolling || data.sliding > 0.0 {
-                true => part(series.grip.sliding, &series.sliding_n_m),
+                true => part(series.grip.sliding, &series.sliding_n),
                 false => [0.0; N],
             };
             let plane = &mut flows.planes[p];
@@ -321,7 +318,7 @@ impl Parts {
                 plane.sliding_friction = -h * nodes.integral(power_w);
             }
             if !matches!(whirl, Whirl::Still | Whirl::Ignored) {
-                let rolling: [f64; N] = part(series.grip.rolling, &series.rolling_n_m);
+                let rolling: [f64; N] = part(series.grip.rolling, &series.rolling_n);
                 plane.rolling_friction = -h * nodes.integral(|j| rolling[j] * along[j]);
             }
             if let Some(race_of) = &data.race {

@@ -174,8 +174,8 @@ impl Machine {
         {
             return Err(PlantError::InputCount { t_s });
         }
-        let mut forces = inputs.commands_n.iter().chain(&inputs.loads_n);
-        if !(t_end_s.is_finite() && forces.all(|f| f.x.is_finite() && f.y.is_finite())) {
+        let finite = |all: &[V2]| all.iter().all(|f| f.x.is_finite() && f.y.is_finite());
+        if !(t_end_s.is_finite() && finite(&inputs.commands_n) && finite(&inputs.loads_n)) {
             return Err(PlantError::NotFinite { t_s });
         }
         self.take(inputs);
@@ -187,13 +187,9 @@ impl Machine {
             && self.phases.iter().all(|phase| *phase == Phase::Inside)
         {
             let dt_s = t_end_s - self.t_s;
-            let (map, y) = (&mut self.map, &mut self.y);
-            let flown = map.fly(&self.system, y, &self.inputs, dt_s, &mut self.path);
-            if let Some(flows) = flown {
-                self.flows.add_scaled(1.0, &flows.machine);
-                for (sum, plane) in self.plane_flows.iter_mut().zip(&flows.planes) {
-                    sum.add(plane);
-                }
+            let flows = (&mut self.flows, &mut self.plane_flows[..]);
+            let held = (&self.inputs, dt_s);
+            if (self.map).fly(&self.system, &mut self.y, held, &mut self.path, flows) {
                 self.t_s = t_end_s;
                 self.just_left.fill(false);
                 self.progress.whole_sample();

@@ -406,6 +406,13 @@ impl MachineSeries {
             rows.put(0, &y.position, &y.velocity);
             parts.fill(rows, step, highest, enough);
         });
+        for (p, plane) in parts.planes.iter_mut().enumerate() {
+            if let Phase::Contact(slide, whirl) = step.phases[p] {
+                let slides = slide == Slide::Rolling || step.system.planes[p].sliding > 0.0;
+                let whirls = !matches!(whirl, Whirl::Still | Whirl::Ignored);
+                plane.finish(parts.order, (slides, whirls));
+            }
+        }
     }
 
     /// State at θ.

@@ -163,10 +163,19 @@ impl MachineState {
     }
 
     pub(crate) fn is_finite(&self) -> bool {
-        let motions = self.position.iter().chain(&self.velocity);
-        let vectors = motions.chain(&self.magnets).chain(&self.magnet_slopes);
-        let mut numbers = vectors.flatten().chain(&self.races_rad_s);
-        self.spin_rad_s.is_finite() && self.phase_rad.is_finite() && numbers.all(|x| x.is_finite())
+        // What is finite is zero times zero, and what is not is no number: one sum for all.
+        let vectors = [
+            &self.position,
+            &self.velocity,
+            &self.magnets,
+            &self.magnet_slopes,
+        ];
+        let of = |sum: f64, v: &V2| sum + 0.0 * v.x + 0.0 * v.y;
+        let sum = vectors
+            .iter()
+            .fold(0.0, |sum, all| all.iter().fold(sum, of));
+        let races: f64 = self.races_rad_s.iter().map(|spin| 0.0 * spin).sum();
+        sum + races + 0.0 * (self.spin_rad_s + self.phase_rad) == 0.0
     }
 }
 

@@ -13,7 +13,9 @@ pub(crate) struct Rig<'a> {
     scene: &'a Scene,
     machine: Machine,
     inputs: MachineInputs,
-    /// Beside the loads of the scene, at the centre of mass \[N\].
+    /// Which of the machine's places for loads that of the scene's are.
+    places: Vec<usize>,
+    /// Beside the loads of the scene, at the centre of mass, the first place \[N\].
     push_n: V2,
     /// Eccentricity of the centre of mass now, one of the unbalances \[m\].
     eccentricity_m: f64,
@@ -21,10 +23,19 @@ pub(crate) struct Rig<'a> {
 
 impl<'a> Rig<'a> {
     pub(crate) fn new(scene: &'a Scene, options: Options) -> Result<Self, MachineError> {
-        let mut params = scene.machine_with_loads();
-        // Of the push.
-        params.loads_m.push(0.0);
+        let mut params = scene.machine.clone();
+        // The first is that of the push, also where none comes: with a place less the last bits were others.
+        params.loads_m = vec![0.0];
+        let mut place = |position_m: f64| {
+            let known = params.loads_m.iter().position(|z| *z == position_m);
+            known.unwrap_or_else(|| {
+                params.loads_m.push(position_m);
+                params.loads_m.len() - 1
+            })
+        };
+        let places = scene.loads().map(|load| place(load.position_m)).collect();
         Ok(Self {
+            places,
             machine: Machine::new(&params, &scene.start, options)?,
             inputs: MachineInputs {
                 commands_n: vec![V2::zeros(); params.magnets.len()],
@@ -50,9 +61,10 @@ impl<'a> Rig<'a> {
                 self.inputs.commands_n[magnet] = *command_n;
             }
         }
-        if let Some((push_n, held_n)) = self.inputs.loads_n.split_last_mut() {
-            *push_n = self.push_n;
-            held_n.copy_from_slice(loads_n);
+        self.inputs.loads_n.fill(V2::zeros());
+        self.inputs.loads_n[0] = self.push_n;
+        for (place, load_n) in self.places.iter().zip(loads_n) {
+            self.inputs.loads_n[*place] += load_n;
         }
         let scene = self.scene;
         (self.machine).advance(to_s, &self.inputs, &mut |plane, now| {

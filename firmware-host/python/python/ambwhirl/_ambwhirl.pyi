@@ -98,7 +98,7 @@ class Plant:
     def magnets(self) -> int: ...
     @property
     def loads(self) -> int:
-        """Places at which loads act: the centre of mass, then those of the scene's disturbances."""
+        """Places at which loads act: the centre of mass, then where else disturbances of the scene do."""
     @property
     def t_s(self) -> float: ...
     @property
