@@ -258,15 +258,28 @@ const GROWS_1_S: f64 = 1e-3;
 fn held(scene: &Scene, range: Range) -> MachineParams {
     let mut params = scene.machine.linear_magnets();
     if range.levitated {
-        let magnets =
-            (scene.planes.iter()).filter_map(|plane| Some((plane.magnet?, plane.levitation?)));
+        let held = (scene.planes.iter())
+            .filter_map(|plane| Some((plane.magnet?, plane.levitation?, plane.axes_rad)));
         params
             .supports
-            .extend(magnets.map(|(magnet, gains)| Support {
-                position_m: scene.machine.magnets[magnet].position_m,
-                stiffness_n_m: V2::repeat(gains.proportional_n_m),
-                damping_n_s_m: V2::repeat(gains.derivative_n_s_m),
-                ..Support::default()
+            .extend(held.map(|(magnet, gains, [sensor_rad, magnet_rad])| {
+                // A force along other axes than those along which is read pushes across as well.
+                let (across, along) = (magnet_rad - sensor_rad).sin_cos();
+                let of = |gain: f64| {
+                    (
+                        V2::repeat(gain * along),
+                        V2::new(-gain * across, gain * across),
+                    )
+                };
+                let (stiffness_n_m, cross_stiffness_n_m) = of(gains.proportional_n_m);
+                let (damping_n_s_m, cross_damping_n_s_m) = of(gains.derivative_n_s_m);
+                Support {
+                    position_m: scene.machine.magnets[magnet].position_m,
+                    stiffness_n_m,
+                    damping_n_s_m,
+                    cross_stiffness_n_m,
+                    cross_damping_n_s_m,
+                }
             }));
     }
     params

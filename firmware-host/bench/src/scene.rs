@@ -102,7 +102,8 @@ pub struct PlaneScene {
     pub magnet: Option<usize>,
     /// Weight that its magnet carries \[N\].
     pub weight_n: V2,
-    /// Force that the firmware adds to whatever a policy asks for: minus the weight, where it is fed forward \[N\].
+    /// Force that the firmware adds to whatever a policy asks for: minus the weight, where it is fed forward \[N\]; along the
+    /// magnet's axes.
     pub feed_forward_n: V2,
     /// Severity that the retainer bearing may bear in all, where the scene says it.
     pub severity_allowed: Option<f64>,
@@ -116,6 +117,8 @@ pub struct PlaneScene {
     pub set_downs: Vec<SetDown>,
     /// The position sensor.
     pub sensor: SensorParams,
+    /// Angles of the x axes of sensor and magnet from that of the scene \[rad\].
+    pub axes_rad: [f64; 2],
     /// Its faults.
     pub faults: Vec<Fault>,
     /// The levitation controller; needed by the policies that use one.

@@ -1,6 +1,7 @@
 //! What scenes can ask of instruments and amplifier, and what can happen during a run: each against a
 //! closed form or an exact expectation.
 
+mod axes;
 mod changes;
 mod faults;
 mod loads;

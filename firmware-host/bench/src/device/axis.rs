@@ -1,6 +1,7 @@
 //! Axes of the bearing.
 
 use crate::words::words;
+use nalgebra::Rotation2;
 use plant_model::V2;
 
 words! {
@@ -36,5 +37,26 @@ impl Axis {
             }
         }
         v
+    }
+}
+
+/// Axes that are turned from those of the scene.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Turned(Option<Rotation2<f64>>);
+
+impl Turned {
+    /// By an angle \[rad\]. By none, every vector keeps its bits.
+    pub fn by(angle_rad: f64) -> Self {
+        Self((angle_rad != 0.0).then(|| Rotation2::new(angle_rad)))
+    }
+
+    /// What is along the axes of the scene, along these.
+    pub fn seen(self, v: V2) -> V2 {
+        self.0.map_or(v, |axes| axes.inverse() * v)
+    }
+
+    /// What is along these axes, along those of the scene.
+    pub fn meant(self, v: V2) -> V2 {
+        self.0.map_or(v, |axes| axes * v)
     }
 }

@@ -9,7 +9,7 @@ use supervisor::{Command, Events, Limits, Report};
 pub struct TraceRow {
     /// The plant as it was.
     pub plant: Snapshot,
-    /// Position as the sensor last reported it \[m\].
+    /// Position as the sensor last reported it, along the axes of the scene \[m\].
     pub measured_m: V2,
     /// Force commanded by the policy, in effect at this instant \[N\].
     pub commanded_n: V2,

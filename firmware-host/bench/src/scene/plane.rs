@@ -1,5 +1,6 @@
 //! From what the user wrote of a plane to a plane of a scene, every value checked.
 
+use crate::device::axis::Turned;
 use crate::device::loads::{BaseMotion, Disturbance, TimedChange};
 use crate::scene::PlaneScene;
 use crate::scene::diagnostic::SceneError;
@@ -72,6 +73,13 @@ impl PlaneSpec {
             let help = Some("shorten one of them".to_owned());
             return Err(text.error_at_key("magnet.delay_jitter_samples", message, help));
         }
+        let magnet_deg = written.magnet.as_ref().map_or(0.0, |m| m.axes_deg);
+        if magnet_deg != 0.0 && written.magnet.as_ref().is_some_and(|m| m.poles.is_some()) {
+            let message = "does not go with magnet.poles, which stand along x and y".to_owned();
+            let help = Some("turn loads, weight and the sensor's axes the other way".to_owned());
+            return Err(text.error_at_key("magnet.axes_deg", message, help));
+        }
+        let axes_rad = [written.sensor.axes_deg, magnet_deg].map(f64::to_radians);
         // Where others have the magnets, policies are theirs.
         let policies = policies(self, of.others_n > 0.0)?;
         let events = events(self)?;
@@ -104,7 +112,7 @@ impl PlaneSpec {
             magnet: of.magnet,
             weight_n,
             feed_forward_n: match written.feeds_weight_forward() {
-                true => -weight_n,
+                true => -Turned::by(axes_rad[1]).seen(weight_n),
                 false => V2::zeros(),
             },
             severity_allowed: written.retainer.severity_allowed,
@@ -115,6 +123,7 @@ impl PlaneSpec {
             outages: events.outages,
             set_downs: events.set_downs,
             sensor: (&written.sensor).into(),
+            axes_rad,
             faults: events.faults,
             levitation: written.levitation.as_ref().map(Into::into),
             radial_band: written.radial.band,

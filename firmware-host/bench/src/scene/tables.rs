@@ -181,6 +181,7 @@ key_tables! {
         delay_samples: u32 [= 1], "samples", Within(1.0, 7.0), "from a position to the effect of the command computed from it", "delay", "latency";
         delay_jitter_samples: u32 [= 0], "samples", Within(0.0, 6.0), "so many samples more each command may be late, by chance from `run.seed`; one that comes after a newer one is dropped. Together with `delay_samples` at most 7; the supervisor is not told", "jitter";
         position_m: Option<f64> [or "that of its plane"], "m", Finite, "along the axis, from the centre of mass", "z";
+        axes_deg: f64 [= 0.0], "°", Within(-180.0, 180.0), "angle of the magnet's x axis from that of the scene: what the firmware commands, and caps and outages of an axis, are along its axes; not with `poles`", "angle", "rotation";
         poles: Option<PolesTable> [or "a force that does not depend on the place"], "", ANY, "the magnet [as it is](#poles), attracting poles with currents, and needs `lag_s`", "coils";
         force_measured: bool [= false], "", ANY, "whether the supervisor is given the force that the magnet delivers at the sample, less what is fed forward (`APPLIED_VALID`)";
     }
@@ -206,6 +207,7 @@ key_tables! {
         runout_m: f64 [= 0.0], "m", Within(0.0, 1.0), "amplitude of what the target adds to the reading once a turn; `advise` says what it comes to", "run_out";
         runout_phase_rad: f64 [= 0.0], "rad", Within(-1e6, 1e6), "its angle at t = 0";
         position_m: Option<f64> [or "that of its plane"], "m", Finite, "along the axis, from the centre of mass", "z";
+        axes_deg: f64 [= 0.0], "°", Within(-180.0, 180.0), "angle of the sensor's x axis from that of the scene: what the firmware reads is along its axes", "angle", "rotation";
     }
 
     SpinSensorTable [Default] {

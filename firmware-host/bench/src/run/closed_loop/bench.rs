@@ -324,7 +324,7 @@ impl<'a> Bench<'a> {
     /// What the amplifiers deliver over the halves of a stretch.
     fn deliver(&mut self, from_s: f64, to_s: f64) {
         for (i, station) in self.stations.iter_mut().enumerate() {
-            let halves_n = station.amplifier.deliver(from_s, to_s);
+            let halves_n = station.deliver(from_s, to_s);
             [self.commands_n[0][i], self.commands_n[1][i]] = halves_n;
         }
     }

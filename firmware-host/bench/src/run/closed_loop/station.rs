@@ -1,6 +1,7 @@
 //! A bearing plane in the loop.
 
 use crate::device::actuator::Amplifier;
+use crate::device::axis::Turned;
 use crate::device::sensor::Sensor;
 use crate::device::sensor_fault::seen_until_s;
 use crate::run::controller::{Controller, Force, Seen};
@@ -19,6 +20,8 @@ pub(super) struct Station<'a> {
     sensor: Sensor,
     pub(super) controller: Box<dyn Controller>,
     pub(super) amplifier: Amplifier,
+    /// Axes of sensor and magnet.
+    axes: [Turned; 2],
     pub(super) judge: Judge,
     pub(super) recorder: Option<&'a mut dyn Recorder>,
     /// The last reading of the position \[m\].
@@ -45,6 +48,7 @@ impl<'a> Station<'a> {
             sensor: Sensor::new(own.sensor, &own.faults, period_s, own.seed),
             controller,
             amplifier: Amplifier::new(own.amplifier, force_max_n, &own.outages, own.seed),
+            axes: own.axes_rad.map(Turned::by),
             judge: Judge::new(scene, plane),
             recorder,
             measured_m: V2::zeros(),
@@ -55,16 +59,18 @@ impl<'a> Station<'a> {
 
     /// What firmware knows at a tick.
     pub(super) fn see(&mut self, t_s: f64, sensed_m: V2, now: &Snapshot) -> Seen {
+        let [of_sensor, of_magnet] = self.axes;
+        let sensed_m = of_sensor.seen(sensed_m);
         let reading = (self.sensor).read(t_s, sensed_m, now.spin_rad_s);
-        self.measured_m = reading.position_m;
+        self.measured_m = of_sensor.meant(reading.position_m);
         let sampled_s = seen_until_s(t_s, 1.0 / self.scene.sample_rate_hz);
         Seen {
             reading,
-            reference_m: self.plane.reference_m(sampled_s),
+            reference_m: of_sensor.seen(self.plane.reference_m(sampled_s)),
             spin_rad_s: self.scene.spin_sensor.gain * now.spin_rad_s,
             applied_n: if self.plane.amplifier.force_measured {
                 // What is fed forward the supervisor does not know of: with the weight it is nothing.
-                now.delivered_n - self.plane.feed_forward_n
+                of_magnet.seen(now.delivered_n) - self.plane.feed_forward_n
             } else {
                 V2::zeros()
             },
@@ -83,7 +89,11 @@ impl<'a> Station<'a> {
         let with_weight = |force_n: V2| force_n + self.plane.feed_forward_n;
         match force {
             Force::Computed(force_n) => self.amplifier.command(tick, with_weight(force_n)),
-            Force::AtOnce(force_n) => self.amplifier.command_at_once(with_weight(force_n)),
+            // Of who sees the truth, and sees it along the axes of the scene.
+            Force::AtOnce(force_n) => {
+                let force_n = self.axes[1].seen(force_n);
+                self.amplifier.command_at_once(with_weight(force_n));
+            }
         }
         self.judge.sample(now);
         self.said = self.controller.said();
@@ -92,6 +102,12 @@ impl<'a> Station<'a> {
         if let Some(said) = &mut self.said {
             self.events = std::mem::take(&mut said.events);
         }
+    }
+
+    /// What the amplifier delivers over the halves of a stretch, along the axes of the scene \[N\].
+    pub(super) fn deliver(&mut self, from_s: f64, to_s: f64) -> [V2; 2] {
+        let halves_n = self.amplifier.deliver(from_s, to_s);
+        halves_n.map(|force_n| self.axes[1].meant(force_n))
     }
 
     /// What the firmware knows to be valid and ready at a time.
@@ -133,7 +149,7 @@ impl<'a> Station<'a> {
         TraceRow {
             plant: *plant,
             measured_m: self.measured_m,
-            commanded_n: self.amplifier.in_effect_n(),
+            commanded_n: self.axes[1].meant(self.amplifier.in_effect_n()),
             supervisor: self.said,
             mode_change,
         }
