@@ -49,6 +49,7 @@
 //!     supports: vec![],
 //!     spin: SpinParams::Free { inertia_kg_m2: 0.06, drive_torque_n_m: 0.0 },
 //!     unbalances: vec![],
+//!     eccentricity_m: 0.0,
 //!     magnets: vec![],
 //!     loads_m: vec![],
 //!     probes_m: vec![0.15],

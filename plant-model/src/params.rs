@@ -212,47 +212,6 @@ pub struct Start {
     pub spin_phase_rad: f64,
 }
 
-/// Parameters that take other values from an instant on; `None` stays as it is.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Change {
-    /// New eccentricity ε_r \[m\], ≥ 0: a lost blade.
-    pub eccentricity_m: Option<f64>,
-    /// New coefficient of sliding friction, the same at every speed, ≥ 0.
-    pub friction_coefficient: Option<f64>,
-    /// New drive torque \[N m\]; needs a free spin.
-    pub drive_torque_n_m: Option<f64>,
-}
-
-impl Change {
-    /// Checks every value against its range.
-    ///
-    /// # Errors
-    /// The first field that is out of range.
-    pub fn validate(&self) -> Result<(), ParamError> {
-        not_negative(
-            "rotor.eccentricity_m",
-            self.eccentricity_m.unwrap_or_default(),
-        )?;
-        not_negative(
-            "friction.coefficient",
-            self.friction_coefficient.unwrap_or_default(),
-        )?;
-        finite(
-            "spin.drive_torque_n_m",
-            self.drive_torque_n_m.unwrap_or_default(),
-        )
-    }
-}
-
-/// A drive torque while the speed is held.
-pub(crate) fn not_while_held(torque_n_m: f64) -> ParamError {
-    ParamError {
-        field: "spin.drive_torque_n_m",
-        value: torque_n_m,
-        expected: "nothing while the speed is held",
-    }
-}
-
 const POSITIVE: &str = "a finite number greater than 0";
 const NOT_NEGATIVE: &str = "a finite number, 0 or greater";
 const FINITE: &str = "a finite number";

@@ -6,12 +6,12 @@ use crate::V2;
 use crate::energy::Audit;
 use crate::integrate::{Method, Options, PlantError};
 use crate::machine::params::{
-    MachineChange, MachineMagnet, MachineParams, MachinePlane, MachineStart, RigidRotor, Rotor,
-    Support, Unbalance,
+    Change, MachineError, MachineMagnet, MachineParams, MachinePlane, MachineStart, RigidRotor,
+    Rotor, Support,
 };
 use crate::machine::{Machine, MachineInputs, MachineSnapshot};
 use crate::mode::Mode;
-use crate::params::{Change, ParamError, PlantParams, Start, not_while_held};
+use crate::params::{ParamError, PlantParams, Start};
 use crate::readout::{Meters, Snapshot, Work};
 
 /// Why a plant could not be built.
@@ -41,8 +41,6 @@ pub struct Inputs {
 pub struct Plant {
     machine: Machine,
     inputs: MachineInputs,
-    mass_kg: f64,
-    eccentricity_m: f64,
 }
 
 /// Builds the plant of `params`.
@@ -77,19 +75,7 @@ pub fn build(params: &PlantParams, start: &Start, options: Options) -> Result<Pl
             commands_n: vec![V2::zeros(); magnets],
             loads_n: vec![V2::zeros()],
         },
-        mass_kg: params.rotor.mass_kg,
-        eccentricity_m: params.rotor.eccentricity_m,
     })
-}
-
-impl crate::params::RotorParams {
-    fn unbalance(&self, eccentricity_m: f64) -> Unbalance {
-        Unbalance {
-            position_m: 0.0,
-            moment_kg_m: self.mass_kg * eccentricity_m,
-            angle_rad: 0.0,
-        }
-    }
 }
 
 impl PlantParams {
@@ -104,10 +90,8 @@ impl PlantParams {
                 ..Support::default()
             }],
             spin: self.spin,
-            unbalances: match rotor.eccentricity_m > 0.0 {
-                true => vec![rotor.unbalance(rotor.eccentricity_m)],
-                false => vec![],
-            },
+            unbalances: Vec::new(),
+            eccentricity_m: rotor.eccentricity_m,
             magnets: (self.magnet.iter())
                 .map(|magnet| MachineMagnet {
                     position_m: 0.0,
@@ -162,29 +146,8 @@ impl Plant {
     ///
     /// # Errors
     /// A value that is out of range, or that this plant has no part for. Then nothing has changed.
-    pub fn change(&mut self, change: &Change) -> Result<(), ParamError> {
-        change.validate()?;
-        let unbalance = change.eccentricity_m.map(|eccentricity_m| {
-            // What is there stays, with the difference added at its angle or against it.
-            let more_m = eccentricity_m - self.eccentricity_m;
-            Unbalance {
-                position_m: 0.0,
-                moment_kg_m: self.mass_kg * more_m.abs(),
-                angle_rad: if more_m < 0.0 {
-                    std::f64::consts::PI
-                } else {
-                    0.0
-                },
-            }
-        });
-        let changed = self.machine.change(&MachineChange {
-            unbalance,
-            friction_coefficient: change.friction_coefficient,
-            drive_torque_n_m: change.drive_torque_n_m,
-        });
-        changed.map_err(|error| not_while_held(error.value))?;
-        self.eccentricity_m = change.eccentricity_m.unwrap_or(self.eccentricity_m);
-        Ok(())
+    pub fn change(&mut self, change: &Change) -> Result<(), MachineError> {
+        self.machine.change(change)
     }
 
     /// What can be read off now.

@@ -59,8 +59,6 @@ pub struct Scene {
     pub machine: MachineParams,
     /// Where it starts, as seen from the line of the magnets.
     pub start: MachineStart,
-    /// Eccentricity of the centre of mass at the start, which is among the machine's unbalances \[m\].
-    pub eccentricity_m: f64,
     /// Its planes, one at least.
     pub planes: Vec<PlaneScene>,
     /// Forces that come and go.
@@ -199,7 +197,7 @@ impl Scene {
                 mass_kg: point.mass_kg,
                 stiffness_n_m: point.stiffness_n_m,
                 damping_n_s_m: point.damping_n_s_m,
-                eccentricity_m: self.eccentricity_m,
+                eccentricity_m: self.machine.eccentricity_m,
                 contact_radius_m: wall.radius_m,
             },
             spin: self.machine.spin,

@@ -3,13 +3,12 @@
 pub mod study;
 pub mod wrong_runs;
 
-use firmware_bench::device::loads::{self, Disturbance, TimedChange};
+use firmware_bench::device::loads::{self, Disturbance};
 use firmware_bench::scene::Scene;
-use plant_model::machine::params::{MachineChange, MachineError, MachineParams, Unbalance};
+use plant_model::machine::params::{MachineError, MachineParams};
 use plant_model::machine::{Machine, MachineInputs};
 use plant_model::{Method, Mode, Options, PlantError, V2, Work};
 use serde::Serialize;
-use std::f64::consts::PI;
 use std::time::{Duration, Instant};
 
 /// Tolerances that are tried.
@@ -200,7 +199,6 @@ pub(crate) fn run(scene: &Scene, method: Method, rtol: f64) -> Result<Ending, Ac
         commands_n: vec![V2::zeros(); params.magnets.len()],
         loads_n: vec![V2::zeros(); loads.len()],
     };
-    let mut eccentricity_m = scene.eccentricity_m;
     let mut edges = scene.edges();
     edges.retain(|t| *t > 0.0 && *t < scene.duration_s);
     edges.push(scene.duration_s);
@@ -208,7 +206,7 @@ pub(crate) fn run(scene: &Scene, method: Method, rtol: f64) -> Result<Ending, Ac
     let (mut from, mut modes) = (0.0, Vec::new());
     for to in edges {
         while let Some(due) = changes.next_if(|c| c.at_s <= from) {
-            change(&mut machine, due, (scene, &mut eccentricity_m))?;
+            machine.change(&due.change)?;
         }
         let parts = loads.iter().filter_map(|load| load.parts(from, to)).max();
         for [begin, middle, end] in loads::cuts((from, to), parts.unwrap_or(1)) {
@@ -239,30 +237,5 @@ pub(crate) fn run(scene: &Scene, method: Method, rtol: f64) -> Result<Ending, Ac
         modes,
         method: machine.method(),
         work: machine.work(),
-    })
-}
-
-/// Makes a change. Of an eccentricity \[m\] what is there stays, with the difference added at its angle or against it.
-fn change(
-    machine: &mut Machine,
-    due: &TimedChange,
-    (scene, eccentricity_m): (&Scene, &mut f64),
-) -> Result<(), MachineError> {
-    machine.change(&MachineChange {
-        unbalance: due.unbalance,
-        friction_coefficient: due.change.friction_coefficient,
-        drive_torque_n_m: due.change.drive_torque_n_m,
-    })?;
-    let Some(new_m) = due.change.eccentricity_m else {
-        return Ok(());
-    };
-    let more_m = new_m - std::mem::replace(eccentricity_m, new_m);
-    machine.change(&MachineChange {
-        unbalance: Some(Unbalance {
-            position_m: 0.0,
-            moment_kg_m: scene.machine.rotor.rigid().mass_kg * more_m.abs(),
-            angle_rad: if more_m < 0.0 { PI } else { 0.0 },
-        }),
-        ..MachineChange::default()
     })
 }

@@ -13,6 +13,7 @@ use crate::V2;
 use crate::params::{RingParams, StatorParams};
 use crate::vector::rotate;
 use nalgebra::DMatrix;
+use std::f64::consts::PI;
 
 /// A square matrix over the pairs by its entries that are not zero: what x does to x and y to y, and what each does to the other.
 #[derive(Debug, Clone, Default)]
@@ -216,6 +217,7 @@ pub(crate) struct LinearBody {
     pub(crate) pairs: usize,
     pub(crate) rotor_pairs: usize,
     rotor: Rotor,
+    eccentricity_m: f64,
     pub(crate) stiffness: Coupling,
     /// The part of the stiffness in which nothing is stored: what of it goes round.
     pub(crate) swirl: Coupling,
@@ -365,6 +367,7 @@ impl LinearBody {
 
         let ports = |places: &mut dyn Iterator<Item = f64>| places.map(at).collect::<Vec<_>>();
         let mut body = Self {
+            eccentricity_m: 0.0,
             pairs,
             rotor_pairs: rotor,
             rotor: params.rotor.clone(),
@@ -393,6 +396,7 @@ impl LinearBody {
         for unbalance in &params.unbalances {
             body.add_unbalance(unbalance);
         }
+        body.move_centre(params.eccentricity_m);
         Ok(body)
     }
 
@@ -414,6 +418,17 @@ impl LinearBody {
         for (u, s) in all.0.iter_mut().zip(&port.0) {
             *u += *s * moment;
         }
+    }
+
+    /// Puts the centre of mass elsewhere; other unbalances stay as they are.
+    pub(crate) fn move_centre(&mut self, eccentricity_m: f64) {
+        let more_m = eccentricity_m - self.eccentricity_m;
+        self.eccentricity_m = eccentricity_m;
+        self.add_unbalance(&Unbalance {
+            position_m: 0.0,
+            moment_kg_m: self.rotor.rigid().mass_kg * more_m.abs(),
+            angle_rad: if more_m < 0.0 { PI } else { 0.0 },
+        });
     }
 
     /// A of ż = A·z for z = (ω·q, q̇) without forces at a spin \[rad/s\], ω a rate that makes all entries of one size.

@@ -6,7 +6,7 @@ mod method;
 mod validate;
 
 pub use bearing::{BearingHeat, LoadDrag};
-pub use change::MachineChange;
+pub use change::Change;
 pub(super) use validate::check;
 
 use crate::V2;
@@ -227,6 +227,8 @@ pub struct MachineParams {
     pub spin: SpinParams,
     /// Unbalances.
     pub unbalances: Vec<Unbalance>,
+    /// Eccentricity of the centre of mass, at the angle of the spin \[m\]; one more unbalance.
+    pub eccentricity_m: f64,
     /// Magnets, at most [`MAX_MAGNETS`].
     pub magnets: Vec<MachineMagnet>,
     /// Where forces from outside act \[m\].

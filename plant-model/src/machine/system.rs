@@ -2,8 +2,7 @@
 
 use super::body::{LinearBody, Port};
 use super::params::{
-    BearingHeat, LoadDrag, MAX_PLANES, MachineChange, MachineError, MachineParams, MachineStart,
-    check,
+    BearingHeat, Change, LoadDrag, MAX_PLANES, MachineError, MachineParams, MachineStart, check,
 };
 use super::poles::MagnetLaw;
 use crate::V2;
@@ -311,7 +310,7 @@ impl MachineSystem {
     }
 
     /// Takes other values over.
-    pub(crate) fn change(&mut self, change: &MachineChange) -> Result<(), MachineError> {
+    pub(crate) fn change(&mut self, change: &Change) -> Result<(), MachineError> {
         change.validate(self.body.rotor())?;
         if let Some(torque) = change.drive_torque_n_m {
             let rule = "nothing while the speed is held";
@@ -321,6 +320,9 @@ impl MachineSystem {
         }
         if let Some(unbalance) = &change.unbalance {
             self.body.add_unbalance(unbalance);
+        }
+        if let Some(eccentricity_m) = change.eccentricity_m {
+            self.body.move_centre(eccentricity_m);
         }
         if let Some(coefficient) = change.friction_coefficient {
             for plane in &mut self.planes {

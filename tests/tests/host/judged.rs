@@ -91,11 +91,7 @@ fn what_no_sample_sees_does_not_move_the_clock() {
             eccentricity_m: Some(1e-6),
             ..Change::default()
         };
-        scene.changes = vec![TimedChange {
-            at_s,
-            change,
-            unbalance: None,
-        }];
+        scene.changes = vec![TimedChange { at_s, change }];
         assert_eq!(scene.clock_starts_s(0) == at_s, runs, "{at_s}");
     }
 }

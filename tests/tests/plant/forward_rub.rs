@@ -7,7 +7,6 @@ use firmware_bench::scene::Scene;
 use firmware_studies::machines::plants::{PlantCase, plants};
 use firmware_studies::machines::tuned_gains::stored;
 use firmware_studies::overloads::contenders::{Contender, Task};
-use plant_model::machine::params::Unbalance;
 use plant_model::params::SpinParams;
 use std::f64::consts::TAU;
 use supervisor::{Command, Events, Mode, Sample, Status, Supervisor};
@@ -64,12 +63,7 @@ fn unbalanced(plant: &str, eccentricity_m: f64) -> Scene {
         .unwrap()
         .scene;
     scene.duration_s = 0.12;
-    scene.eccentricity_m = eccentricity_m;
-    scene.machine.unbalances = vec![Unbalance {
-        position_m: 0.0,
-        moment_kg_m: scene.machine.rotor.rigid().mass_kg * eccentricity_m,
-        angle_rad: 0.0,
-    }];
+    scene.machine.eccentricity_m = eccentricity_m;
     scene.machine.spin = SpinParams::Held;
     scene.levitated_before = true;
     scene

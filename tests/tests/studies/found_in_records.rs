@@ -12,7 +12,6 @@ use firmware_studies::found_in_records::{Share, contacts, study};
 use firmware_studies::paired::events::Point as Event;
 use firmware_studies::paired::plan::Class;
 use firmware_studies::paired::sensors::Sensors;
-use plant_model::machine::params::Unbalance;
 
 const SEED: u64 = 20_261_201;
 const MACHINES: u64 = 40;
@@ -86,12 +85,7 @@ fn unbalance(scene: &mut Scene, number: u64) {
     let mass_kg = scene.machine.rotor.rigid().mass_kg;
     let share = if number % 2 == 1 { 0.05 } else { 0.0 };
     let eccentricity_m = share * scene.force_max_n(0) / (mass_kg * scene.start.spin_rad_s.powi(2));
-    scene.eccentricity_m = eccentricity_m.min(0.05 * scene.clearance_m(0));
-    scene.machine.unbalances = vec![Unbalance {
-        position_m: 0.0,
-        moment_kg_m: mass_kg * scene.eccentricity_m,
-        angle_rad: 0.0,
-    }];
+    scene.machine.eccentricity_m = eccentricity_m.min(0.05 * scene.clearance_m(0));
 }
 
 #[test]

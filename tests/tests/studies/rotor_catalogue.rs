@@ -180,7 +180,11 @@ fn blades_are_lost(plant: &RotorPlant, hardest: Hardest) {
         let scene = scene(incident);
         assert!(scene.machine.unbalances.is_empty(), "{name}");
         assert_eq!(scene.changes.len(), changes, "{name}");
-        let lost: Vec<_> = scene.changes.iter().filter_map(|c| c.unbalance).collect();
+        let lost: Vec<_> = scene
+            .changes
+            .iter()
+            .filter_map(|c| c.change.unbalance)
+            .collect();
         let force_n = lost[0].moment_kg_m * scene.start.spin_rad_s.powi(2);
         let wanted_n = 0.5 * scene.machine.magnets[0].force_max_n;
         assert!((force_n / wanted_n - 1.0).abs() < 1e-12, "{name}");

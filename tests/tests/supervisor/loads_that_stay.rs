@@ -11,7 +11,6 @@ use firmware_studies::machines::tuned_gains::stored;
 use firmware_studies::overloads::case::Sizes;
 use firmware_studies::overloads::contenders::{Contender, Task};
 use plant_model::V2;
-use plant_model::machine::params::Unbalance;
 use supervisor::Mode;
 
 /// On machines that nothing was tuned on: a load of a third to two thirds of the cap comes and stays, alone or with a
@@ -112,12 +111,7 @@ fn a_coarse_converter_is_no_stuck_sensor() {
             let mut scene = plant.scene.clone();
             scene.duration_s = 1.0;
             scene.planes[0].sensor.quantum_m = 1e-6;
-            scene.eccentricity_m = 1e-5;
-            scene.machine.unbalances = vec![Unbalance {
-                position_m: 0.0,
-                moment_kg_m: scene.machine.rotor.rigid().mass_kg * scene.eccentricity_m,
-                angle_rad: 0.0,
-            }];
+            scene.machine.eccentricity_m = 1e-5;
             let acting = Contender::Supervisor
                 .controller(Task::Impact, &found, &scene)
                 .unwrap();

@@ -47,7 +47,6 @@ fn blade_lost(spin_hz: f64, caps: f64, rate_hz: u32) -> Scene {
     scene.changes = vec![TimedChange {
         at_s: LOST_AT_S,
         change,
-        unbalance: None,
     }];
     scene
 }

@@ -1,7 +1,6 @@
 //! What acts on the rotor from outside and comes and goes: forces, the motion of the base,
 //! and parameters that change.
 
-use plant_model::machine::params::Unbalance;
 use plant_model::{Change, V2};
 use std::f64::consts::{PI, TAU};
 
@@ -145,8 +144,6 @@ pub struct TimedChange {
     pub at_s: f64,
     /// What.
     pub change: Change,
-    /// Of a whole rotor an unbalance that comes on top of what there is.
-    pub unbalance: Option<Unbalance>,
 }
 
 /// Beginning, middle and end of each of the parts into which a stretch is cut; the last end is that of the stretch to the bit.

@@ -352,7 +352,7 @@ fn change(c: &TimedChange) -> String {
         (c.change.eccentricity_m).map(|m| format!("eccentricity {} µm", figures(1e6 * m))),
         (c.change.friction_coefficient).map(|mu| format!("friction {}", figures(mu))),
         (c.change.drive_torque_n_m).map(|t| format!("drive torque {} N m", figures(t))),
-        (c.unbalance.as_ref())
+        (c.change.unbalance.as_ref())
             .map(|u| format!("{} g mm of unbalance more", figures(1e6 * u.moment_kg_m))),
     ];
     let values: Vec<String> = values.into_iter().flatten().collect();

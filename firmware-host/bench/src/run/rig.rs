@@ -3,10 +3,9 @@
 use crate::run::trace::AxisRow;
 use crate::scene::Scene;
 use plant_model::energy::Audit;
-use plant_model::machine::params::{MachineChange, MachineError, Unbalance};
+use plant_model::machine::params::MachineError;
 use plant_model::machine::{Machine, MachineInputs, MachineSnapshot, Warmth};
 use plant_model::{Change, Meters, Method, Options, PlantError, Snapshot, V2};
-use std::f64::consts::PI;
 
 /// A machine whose planes are seen each from the centre of its retainer bearing.
 pub(crate) struct Rig<'a> {
@@ -17,8 +16,6 @@ pub(crate) struct Rig<'a> {
     places: Vec<usize>,
     /// Beside the loads of the scene, at the centre of mass, the first place \[N\].
     push_n: V2,
-    /// Eccentricity of the centre of mass now, one of the unbalances \[m\].
-    eccentricity_m: f64,
 }
 
 impl<'a> Rig<'a> {
@@ -42,7 +39,6 @@ impl<'a> Rig<'a> {
                 loads_n: vec![V2::zeros(); params.loads_m.len()],
             },
             push_n: V2::zeros(),
-            eccentricity_m: scene.eccentricity_m,
             scene,
         })
     }
@@ -91,33 +87,9 @@ impl<'a> Rig<'a> {
         self.push_n = force_n;
     }
 
-    /// Parameters that are others from now on, and an unbalance that comes on top of what there is.
-    pub(crate) fn change(
-        &mut self,
-        change: &Change,
-        unbalance: Option<Unbalance>,
-    ) -> Result<(), MachineError> {
-        let eccentric = change.eccentricity_m.map(|eccentricity_m| {
-            let more_m = eccentricity_m - self.eccentricity_m;
-            self.eccentricity_m = eccentricity_m;
-            Unbalance {
-                position_m: 0.0,
-                moment_kg_m: self.scene.machine.rotor.rigid().mass_kg * more_m.abs(),
-                angle_rad: if more_m < 0.0 { PI } else { 0.0 },
-            }
-        });
-        self.machine.change(&MachineChange {
-            unbalance,
-            friction_coefficient: change.friction_coefficient,
-            drive_torque_n_m: change.drive_torque_n_m,
-        })?;
-        if eccentric.is_some() {
-            self.machine.change(&MachineChange {
-                unbalance: eccentric,
-                ..MachineChange::default()
-            })?;
-        }
-        Ok(())
+    /// Parameters that are others from now on.
+    pub(crate) fn change(&mut self, change: &Change) -> Result<(), MachineError> {
+        self.machine.change(change)
     }
 
     pub(crate) fn meters(&self, plane: usize) -> Meters {

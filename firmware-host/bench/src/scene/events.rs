@@ -318,19 +318,19 @@ impl Reader<'_> {
             return Err(self.error(&key, message, help));
         }
         let change = Change {
+            // Its place counts as the scene has it until the rotor is known.
+            unbalance: c.unbalance.as_ref().map(Unbalance::from),
             eccentricity_m: c.eccentricity_m,
             friction_coefficient: c.friction_coefficient,
             drive_torque_n_m: c.drive_torque_n_m,
         };
-        if change == Change::default() && c.unbalance.is_none() {
+        if change == Change::default() {
             let help = "give eccentricity_m, unbalance, friction_coefficient or drive_torque_n_m";
             return Err(self.error(path, "changes nothing", help));
         }
         Ok(TimedChange {
             at_s: c.at_s,
             change,
-            // Its place counts as the scene has it until the rotor is known.
-            unbalance: c.unbalance.as_ref().map(Unbalance::from),
         })
     }
 }

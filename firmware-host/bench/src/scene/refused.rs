@@ -66,7 +66,6 @@ pub(crate) fn refused(error: &MachineError, spec: &Spec, planes: &[PlaneScene]) 
         ("unbalances", key) if index < tables.unbalance.len() => {
             at(&format!("unbalance[{index}].{key}"))
         }
-        ("unbalances", _) => at("rotor.eccentricity_m"),
         ("loads", _) => at(&format!("disturbance[{index}].position_m")),
         ("rotor.bending", "frequency_rad_s") => at(&format!("rotor.bending[{index}].frequency_hz")),
         ("rotor.bending", "shape") => at(&format!("rotor.bending[{index}].positions_m")),

@@ -21,7 +21,7 @@ use crate::scene::tables::{PlaneTable, SceneTables, TiltTable};
 use crate::scene::{Scene, in_file_names};
 use plant_model::V2;
 use plant_model::machine::params::{
-    MachineChange, MachineMagnet, MachineParams, MachinePlane, Rotor, Support,
+    Change, MachineMagnet, MachineParams, MachinePlane, Rotor, Support,
 };
 
 /// Rows of traces that a run may keep, of all its policies: some 0.3 KB each.
@@ -133,7 +133,7 @@ impl Spec {
         };
         let mut changes = first.changes.clone();
         for change in &mut changes {
-            change.unbalance = change.unbalance.map(|u| origin.centred(u));
+            change.change.unbalance = change.change.unbalance.map(|u| origin.centred(u));
         }
         let run = &tables.run;
         let mut scene = Scene {
@@ -159,7 +159,6 @@ impl Spec {
             start,
             planes: all.into_iter().map(|resolved| resolved.plane).collect(),
             levitation,
-            eccentricity_m: tables.rotor.eccentricity_m,
             told: None,
             warnings,
         };
@@ -183,9 +182,9 @@ impl Spec {
     /// Unbalances that come later have to be on the rotor as well.
     fn check_places_of_changes(&self, rotor: &Rotor, origin: &Origin) -> Result<(), SceneError> {
         for (i, change) in self.tables.change.iter().enumerate() {
-            let change = MachineChange {
+            let change = Change {
                 unbalance: (change.unbalance.as_ref()).map(|u| origin.centred(u.into())),
-                ..MachineChange::default()
+                ..Change::default()
             };
             change.validate(rotor).map_err(|error| {
                 let key = format!("change[{i}].{}", error.field);

@@ -74,12 +74,6 @@ pub(crate) fn machine(
         let help = "say by [[plane]] with position_m where along the shaft the bearing is";
         return Err(text.missing_at("plane", help.to_owned()));
     }
-    let moment_kg_m = rotor.rigid().mass_kg * written.eccentricity_m;
-    let eccentric = (moment_kg_m > 0.0).then_some(Unbalance {
-        position_m: 0.0,
-        moment_kg_m,
-        angle_rad: 0.0,
-    });
     let unbalances = tables.unbalance.iter().map(|u| origin.centred(u.into()));
     let supports = tables
         .support
@@ -90,7 +84,8 @@ pub(crate) fn machine(
         supports: supports.chain(own).collect(),
         rotor,
         spin: spin(tables, text)?,
-        unbalances: unbalances.chain(eccentric).collect(),
+        unbalances: unbalances.collect(),
+        eccentricity_m: written.eccentricity_m,
         magnets: Vec::new(),
         loads_m: Vec::new(),
         probes_m: Vec::new(),

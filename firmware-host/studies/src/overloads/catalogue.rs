@@ -152,7 +152,6 @@ impl Collector<'_> {
                     eccentricity_m: Some(e),
                     ..Change::default()
                 },
-                unbalance: None,
             };
             let mut changes = vec![change(BEGIN_S, eccentricity)];
             changes.extend(lasts_s.map(|lasts_s| change(BEGIN_S + lasts_s, 0.0)));
@@ -316,7 +315,6 @@ fn friction_from(at_s: f64, coefficient: f64) -> TimedChange {
             friction_coefficient: Some(coefficient),
             ..Change::default()
         },
-        unbalance: None,
     }
 }
 

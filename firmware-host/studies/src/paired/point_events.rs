@@ -7,7 +7,6 @@ use crate::overloads::takeover::{arrest_of, let_whirl};
 use firmware_bench::device::loads::{BaseMotion, Disturbance, Shape};
 use firmware_bench::scene::Scene;
 use plant_model::V2;
-use plant_model::machine::params::Unbalance;
 use plant_model::params::SpinParams;
 
 /// What is left to come back in \[s\].
@@ -121,12 +120,7 @@ impl Point {
             Self::RunUp => {
                 // A mass centre that far off turns the rotor on its bearing through the whole of it.
                 let orbit = draw.between(0.3, 0.7);
-                scene.eccentricity_m = orbit * 0.9 * machine.clearance_m();
-                scene.machine.unbalances = vec![Unbalance {
-                    position_m: 0.0,
-                    moment_kg_m: mass_kg(scene) * scene.eccentricity_m,
-                    angle_rad: 0.0,
-                }];
+                scene.machine.eccentricity_m = orbit * 0.9 * machine.clearance_m();
                 let levitation = scene.planes[0].levitation;
                 let stiffness_n_m = levitation.map_or(0.0, |l| l.proportional_n_m)
                     + scene.plant(0).rotor.stiffness_n_m;

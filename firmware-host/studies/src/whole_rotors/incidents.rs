@@ -290,8 +290,10 @@ fn blade_lost(mut scene: Scene, (share, angle_rad): (f64, f64), lasts_s: Option<
     until(&mut scene, BEGIN_S + lasts_s.unwrap_or(0.1));
     let at = |at_s: f64, angle_rad: f64| TimedChange {
         at_s,
-        change: Change::default(),
-        unbalance: Some(unbalance(&scene, moment_kg_m, angle_rad)),
+        change: Change {
+            unbalance: Some(unbalance(&scene, moment_kg_m, angle_rad)),
+            ..Change::default()
+        },
     };
     let mut changes = vec![at(BEGIN_S, angle_rad)];
     changes.extend(lasts_s.map(|lasts_s| at(BEGIN_S + lasts_s, angle_rad + PI)));
@@ -387,9 +389,9 @@ fn blade_lost_and_spun_down(mut scene: Scene, (share, angle_rad): (f64, f64)) ->
         at_s: BEGIN_S,
         change: Change {
             drive_torque_n_m: Some(braked(&mut scene)),
+            unbalance: Some(unbalance_of_orbit(&scene, share, angle_rad)),
             ..Change::default()
         },
-        unbalance: Some(unbalance_of_orbit(&scene, share, angle_rad)),
     };
     scene.changes.push(lost);
     scene.duration_s = BEGIN_S + SPIN_DOWN_S;

@@ -361,6 +361,13 @@ impl MachineParams {
                 rule,
             )?;
         }
+        let field = "rotor.eccentricity_m";
+        check(
+            self.eccentricity_m >= 0.0,
+            field,
+            self.eccentricity_m,
+            NOT_NEGATIVE,
+        )?;
         for (i, unbalance) in self.unbalances.iter().enumerate() {
             unbalance.validate(&self.rotor, &format!("unbalances[{i}]"))?;
         }

@@ -3,7 +3,7 @@
 use super::Machine;
 use super::settle::AtZero;
 use crate::machine::guards::Guard;
-use crate::machine::params::{MachineChange, MachineError};
+use crate::machine::params::{Change, MachineError};
 use crate::mode::Phase;
 
 impl Machine {
@@ -12,7 +12,7 @@ impl Machine {
     ///
     /// # Errors
     /// The first value that is out of range, and a torque while the speed is held; then nothing has changed.
-    pub fn change(&mut self, change: &MachineChange) -> Result<(), MachineError> {
+    pub fn change(&mut self, change: &Change) -> Result<(), MachineError> {
         self.system.change(change)?;
         self.map.forget();
         self.stepper.series.renew(&self.system.body);

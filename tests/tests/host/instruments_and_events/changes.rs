@@ -11,11 +11,7 @@ use std::f64::consts::TAU;
 use system_tests::scene;
 
 fn at(at_s: f64, change: Change) -> Vec<TimedChange> {
-    vec![TimedChange {
-        at_s,
-        change,
-        unbalance: None,
-    }]
+    vec![TimedChange { at_s, change }]
 }
 
 fn unbalance(eccentricity_m: f64) -> Change {

@@ -150,7 +150,7 @@ fn places_count_as_the_scene_has_them() {
         + "[[shaft]]\nlength_m = 0.8\nouter_diameter_m = 0.05\n\
            [[change]]\nat_s = 0.01\nunbalance = { position_m = 0.6, moment_kg_m = 1e-5 }\n";
     let scene = machine(&by_shaft);
-    let changed = scene.changes[0].unbalance.unwrap();
+    let changed = scene.changes[0].change.unbalance.unwrap();
     assert!((changed.position_m - 0.2).abs() < 1e-12, "{changed:?}");
     planes(&scene, PolicyKind::Passive);
 }

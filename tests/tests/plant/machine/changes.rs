@@ -19,14 +19,14 @@ fn advance(rotor: &mut Machine, to_s: f64) {
     rotor.advance(to_s, &inputs, &mut |_, _| {}).unwrap();
 }
 
-fn adds(position_m: f64, moment_kg_m: f64, angle_rad: f64) -> MachineChange {
-    MachineChange {
+fn adds(position_m: f64, moment_kg_m: f64, angle_rad: f64) -> Change {
+    Change {
         unbalance: Some(Unbalance {
             position_m,
             moment_kg_m,
             angle_rad,
         }),
-        ..MachineChange::default()
+        ..Change::default()
     }
 }
 
@@ -129,7 +129,8 @@ fn a_change_at_the_start_is_a_rotor_that_was_so() {
         spin_rad_s: 300.0,
         ..MachineStart::default()
     };
-    let change = MachineChange {
+    let change = Change {
+        eccentricity_m: None,
         unbalance: Some(later),
         friction_coefficient: Some(0.1),
         drive_torque_n_m: Some(-20.0),
@@ -229,9 +230,9 @@ fn friction_changes_under_the_rotor() {
     };
     for (mu, from_s) in [(0.3_f64, 0.0), (0.1, 2.0)] {
         if from_s > 0.0 {
-            let change = MachineChange {
+            let change = Change {
                 friction_coefficient: Some(mu),
-                ..MachineChange::default()
+                ..Change::default()
             };
             rotor.change(&change).unwrap();
         }
@@ -262,13 +263,13 @@ fn changes_that_cannot_be_are_refused() {
     };
     let mut rotor = Machine::new(&params, &start, OPTIONS).unwrap();
     let before = rotor.clone();
-    let with_torque = |change: MachineChange| MachineChange {
+    let with_torque = |change: Change| Change {
         drive_torque_n_m: Some(1.0),
         ..change
     };
-    let friction = MachineChange {
+    let friction = Change {
         friction_coefficient: Some(-0.1),
-        ..MachineChange::default()
+        ..Change::default()
     };
     for (change, field) in [
         (adds(0.3, 1e-5, 0.0), "unbalance.position_m"),

@@ -55,6 +55,7 @@ pub(super) fn machine() -> MachineParams {
         rotor: rigid(0.2, 0.05),
         supports: vec![support(-0.15), support(0.15)],
         spin: SpinParams::Held,
+        eccentricity_m: 0.0,
         unbalances: vec![Unbalance {
             position_m: 0.0,
             moment_kg_m: 10.0 * 1e-5,

@@ -90,6 +90,7 @@ fn case(bending_modes: usize, stiffness_n_m: f64) -> (MachineParams, Reference) 
         },
         supports,
         spin: SpinParams::Held,
+        eccentricity_m: 0.0,
         unbalances: vec![Unbalance {
             position_m: unbalance.0,
             moment_kg_m: unbalance.1,

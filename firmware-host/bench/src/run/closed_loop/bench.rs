@@ -294,7 +294,7 @@ impl<'a> Bench<'a> {
         while let Some(due) = self.scene.changes.get(self.changes_done)
             && due.at_s <= t_s
         {
-            self.rig.change(&due.change, due.unbalance)?;
+            self.rig.change(&due.change)?;
             self.changes_done += 1;
         }
         Ok(())

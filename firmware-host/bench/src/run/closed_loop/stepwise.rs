@@ -115,7 +115,7 @@ impl Stepwise {
     /// # Errors
     /// [`RunError`] for values out of range, and for a change that the plant is not built for.
     pub fn change(&mut self, change: &Change) -> Result<(), RunError> {
-        Ok((self.ride).with_dependent_mut(|_, bench| bench.rig.change(change, None))?)
+        Ok((self.ride).with_dependent_mut(|_, bench| bench.rig.change(change))?)
     }
 
     /// To the next control sample. Returns whether something began on the way: a touch, another mode of a supervisor.
