@@ -43,7 +43,7 @@ enum Command {
     Review(review::ReviewArgs),
     /// Print every key of scene files, as a JSON Schema for editors or as a table.
     Schema(schema::SchemaArgs),
-    /// Natural frequencies of a whole rotor over its spin, critical speeds, response to its unbalance, coupling of its planes.
+    /// Natural frequencies of a rotor over its spin, critical speeds, response to its unbalance, coupling of its planes.
     Modes(modes::ModesArgs),
     /// Run one of the studies and hold its claims against what was measured; `study list` names them.
     Study(study::StudyArgs),

@@ -104,7 +104,7 @@ impl Coupling {
     /// Neither supports nor walls have a share in it.
     fn of(scene: &Scene, machine: &LinearMachine) -> Self {
         let mobility = machine.mobility();
-        let names = scene.planes.iter().map(|plane| plane.name.clone());
+        let names = scene.planes.iter().map(|plane| plane.shown().to_owned());
         Self {
             planes: names.collect(),
             effective_mass_kg: (0..mobility.len()).map(|p| 1.0 / mobility[p][p]).collect(),
@@ -198,7 +198,7 @@ impl Analysis {
         };
         let shapes = LinearMachine::new(&along_the_axis, walls)?.shapes(spin_rad_s);
         let shapes = (shapes.ok_or_else(none)?.into_iter()).filter(|(mode, _)| turns(mode));
-        let name = |plane: &usize| scene.planes[*plane].name.clone();
+        let name = |plane: &usize| scene.planes[*plane].shown().to_owned();
         let held_whirl = machine.whirl_ranges(spin_rad_s).map(|ranges| {
             (ranges.into_iter())
                 .map(|range| HeldWhirl {

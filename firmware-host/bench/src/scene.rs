@@ -140,6 +140,14 @@ pub struct PlaneScene {
 }
 
 impl PlaneScene {
+    /// What a person reads for it.
+    pub fn shown(&self) -> &str {
+        match self.name.as_str() {
+            "" => "the plane",
+            name => name,
+        }
+    }
+
     /// Its name as it stands in names of files.
     pub fn name_in_files(&self) -> String {
         in_file_names(&self.name)
@@ -211,6 +219,11 @@ impl Scene {
             }),
             race: wall.race,
         }
+    }
+
+    /// Whether the rotor takes a force on its centre of mass: its bending modes have shapes there.
+    pub fn takes_push(&self) -> bool {
+        self.machine.rotor.reaches(0.0)
     }
 
     /// The machine with a place for each of the [loads](Self::loads).

@@ -116,10 +116,7 @@ mod tests {
     fn help_loses_its_markdown_alone() {
         let link = "k_h of [Hunt's (2.1)](../a.md#b), which `exponent` needs (n)";
         assert_eq!(plain(link), "k_h of Hunt's (2.1), which exponent needs (n)");
-        let pair = "one for each axis, [x, y], with `[[plane]]` only";
-        assert_eq!(
-            plain(pair),
-            "one for each axis, [x, y], with [[plane]] only"
-        );
+        let pair = "one for each axis, [x, y], of a `[[plane]]`";
+        assert_eq!(plain(pair), "one for each axis, [x, y], of a [[plane]]");
     }
 }

@@ -35,7 +35,7 @@ pub(crate) fn variables(spec: &Spec, scene: &Scene) -> Vec<Variable> {
             );
         }
     }
-    for axis in ["x", "y"] {
+    for axis in ["x", "y"].into_iter().filter(|_| scene.takes_push()) {
         let about =
             "force on the rotor's centre of mass beside the scene's loads, held over the step";
         input(format!("load_{axis}_n"), about);

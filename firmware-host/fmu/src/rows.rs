@@ -107,6 +107,14 @@ impl Rows {
     /// Their values.
     pub(crate) fn values(&self, stepwise: &Stepwise, into: &mut Vec<Value>) {
         for (row, seen) in (0..stepwise.planes()).filter_map(|plane| stepwise.at(plane)) {
+            let row = match self.of {
+                // As a controller in its place has it: along the sensor's axes.
+                Of::Plant => TraceRow {
+                    measured_m: seen.reading.position_m,
+                    ..row
+                },
+                Of::ClosedLoop => row,
+            };
             let column = |c: &Number<TraceRow>| Value::Float64((c.value)(&row));
             into.extend(self.columns.iter().map(column));
             into.push(Value::Int64(contact_number(row.plant.mode)));

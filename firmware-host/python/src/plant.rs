@@ -94,7 +94,11 @@ impl Plant {
         };
         let mut params = scene.machine.clone();
         // The centre of mass, then where else the scene has loads: as a closed loop has them, to the last bit.
-        params.loads_m = vec![0.0];
+        params.loads_m = if scene.takes_push() {
+            vec![0.0]
+        } else {
+            Vec::new()
+        };
         for load in &scene.disturbances {
             if !params.loads_m.contains(&load.position_m) {
                 params.loads_m.push(load.position_m);

@@ -50,7 +50,7 @@ pub struct AdviseArgs {
     /// Amplitude of the runout of the reading on one axis, as measured at slow roll; also beside a scene.
     #[arg(long, allow_hyphen_values = true, value_name = "NUMBER")]
     pub runout_m: Option<f64>,
-    /// Of a whole rotor, the plane of this name alone.
+    /// Of several planes, the one of this name alone.
     #[arg(long, value_name = "NAME", requires = "scene")]
     pub plane: Option<String>,
     #[command(flatten)]
@@ -238,7 +238,9 @@ pub fn execute(args: &AdviseArgs) -> Result<(), CommandError> {
                         help: "leave the option out".to_owned(),
                     });
                 }
-                [only] if !scene.has_axis() => of_plane(args, path, only, &scene.title)?,
+                [only] if args.plane.is_none() && (args.format.is_some() || !scene.has_axis()) => {
+                    of_plane(args, path, only, &scene.title)?
+                }
                 _ => match of_machine(args, path, &scene)? {
                     Some(advice) => advice,
                     None => return Ok(()),
@@ -351,7 +353,7 @@ fn of_machine(
     }
     let with_magnet = scene.planes.iter().filter(|plane| plane.magnet.is_some());
     let all: Vec<Advice> = with_magnet
-        .map(|plane| of_plane(args, path, plane, &plane.name))
+        .map(|plane| of_plane(args, path, plane, plane.shown()))
         .collect::<Result<_, _>>()?;
     let coupling =
         Coupling::new(scene).map_err(|e| CommandError::other("reading the machine", e))?;

@@ -1,4 +1,4 @@
-//! `modes SCENE.toml`: natural frequencies of a whole rotor over its spin, critical speeds, response to the unbalance, and how
+//! `modes SCENE.toml`: natural frequencies of a rotor over its spin, critical speeds, response to the unbalance, and how
 //! its planes feel each other.
 
 use crate::cli::error::{CommandError, pretty, print};
@@ -12,7 +12,7 @@ use std::path::PathBuf;
 /// Arguments of `modes`.
 #[derive(Debug, Clone, clap::Args)]
 pub struct ModesArgs {
-    /// Scene file of a whole rotor, e.g. firmware-host/scenes/machines/drop_of_both_ends.toml.
+    /// Scene file of a rotor that tilts or bends, e.g. firmware-host/scenes/machines/drop_of_both_ends.toml.
     pub scene: PathBuf,
     /// Highest spin in Hz [default: one and a half times that of the scene, 100 Hz at least].
     #[arg(long)]
@@ -49,6 +49,14 @@ pub fn execute(args: &ModesArgs) -> Result<(), CommandError> {
         let message = format!("{} has a point mass in one plane", args.scene.display());
         let help = "give the rotor its inertias, or a [[shaft]]: a point has no modes to find";
         return Err(numbers(message, help));
+    }
+    let against = |plane: &PlaneScene| (plane.axes_rad[1] - plane.axes_rad[0]).cos() <= 0.0;
+    if args.levitated && scene.planes.iter().any(against) {
+        let message = format!(
+            "{}: sensor and magnet are turned by a right angle or more against each other",
+            args.scene.display()
+        );
+        return Err(numbers(message, "leave --levitated out, or mend axes_deg"));
     }
     let to_hz = args.to_hz.unwrap_or_else(|| default_hz(&scene));
     if !(to_hz > 0.0 && to_hz <= 1e5) {

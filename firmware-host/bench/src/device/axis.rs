@@ -55,6 +55,17 @@ impl Turned {
         self.0.map_or(v, |axes| axes.inverse() * v)
     }
 
+    /// As [`Self::meant`], in single precision.
+    pub fn meant_f32(self, v: [f32; 2]) -> [f32; 2] {
+        match self.0 {
+            None => v,
+            Some(axes) => {
+                let v = axes * V2::from(v.map(f64::from));
+                [v.x as f32, v.y as f32]
+            }
+        }
+    }
+
     /// What is along these axes, along those of the scene.
     pub fn meant(self, v: V2) -> V2 {
         self.0.map_or(v, |axes| axes * v)

@@ -185,7 +185,7 @@ fn shapes(scene: &Scene, analysis: &Analysis) -> Chart {
             .iter()
             .zip(&scene.machine.planes)
             .map(|(plane, at)| Curve {
-                name: plane.name.clone(),
+                name: plane.shown().to_owned(),
                 points: vec![(at.position_m, 0.0)],
                 mark: Mark::Name,
                 colour: 8,

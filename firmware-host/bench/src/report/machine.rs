@@ -62,14 +62,18 @@ pub(super) fn html(scene: &Scene, results: &Results) -> Result<String, PlotError
         &in_order(whole, &order),
     );
     for ((plane, summary), runs) in scene.planes.iter().zip(&summaries).zip(&results.planes) {
-        let heading = format!("Plane: {}", plane.name);
+        let heading = format!("Plane: {}", plane.shown());
         document.page.section(&heading, |page| {
             page.facts(&summary.facts);
             let runs_in_order = in_order(runs, &order);
-            push_table(page, &format!("Verdicts: {}", plane.name), &runs_in_order);
+            push_table(
+                page,
+                &format!("Verdicts: {}", plane.shown()),
+                &runs_in_order,
+            );
             push_far(page, runs, summary.clearance_m);
             verification::push_table(page, &runs_in_order);
-            happenings::push_tables(page, &runs_in_order, Some(&plane.name));
+            happenings::push_tables(page, &runs_in_order, Some(plane.shown()));
         });
     }
     let axes = (order.iter()).filter_map(|i| Some((whole.get(*i)?, results.axes.get(*i)?)));
@@ -98,7 +102,12 @@ pub(super) fn html(scene: &Scene, results: &Results) -> Result<String, PlotError
     }
     for (i, plane) in scene.planes.iter().enumerate() {
         let shown = tracks.of_plane(i);
-        push_sections(&mut document, &shown, &times, &format!("{}: ", plane.name))?;
+        push_sections(
+            &mut document,
+            &shown,
+            &times,
+            &format!("{}: ", plane.shown()),
+        )?;
     }
     Ok(document.ended(&tracks.all, &times))
 }
@@ -145,7 +154,7 @@ impl Tracks {
         for policy in 0..self.policies {
             let ends: Vec<Shown<'_>> = (scene.planes.iter().enumerate())
                 .map(|(i, plane)| Shown {
-                    name: &plane.name,
+                    name: plane.shown(),
                     ..self.shown(self.policies * (1 + i) + policy)
                 })
                 .collect();
@@ -215,7 +224,7 @@ fn facts(scene: &Scene) -> Vec<Fact> {
             let what = if plane.seal { " (seal)" } else { "" };
             format!(
                 "{}{what} at {} mm",
-                plane.name,
+                plane.shown(),
                 figures(1e3 * at.position_m)
             )
         })

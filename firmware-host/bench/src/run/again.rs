@@ -50,10 +50,17 @@ pub fn scene_of_event(
         spec.set(&setting.path, setting.value.clone())?;
     }
     let mut scene = spec.resolve()?;
-    if scene.planes.len() > 1 {
-        let message = "there are several, and a record tells of one".to_owned();
-        let help = "give a scene of this plane alone".to_owned();
+    if !spec.tables.plane.is_empty() {
+        let message = "a record tells of one plane, and of a point mass in it".to_owned();
+        let help = "give a scene of this plane alone, without [[plane]]".to_owned();
         return Err(spec.text.error_at_key("plane", message, Some(help)));
+    }
+    if scene.planes[0].axes_rad != [0.0; 2] {
+        let message = "a record is along the axes of the instruments".to_owned();
+        let help = "turn the scene instead, and leave axes_deg at 0".to_owned();
+        return Err(spec
+            .text
+            .error_at_key("sensor.axes_deg", message, Some(help)));
     }
     let since = |sequence: u32| {
         let ticks = sequence.wrapping_sub(findings.first).cast_signed();

@@ -14,7 +14,9 @@ pub(crate) struct Rig<'a> {
     inputs: MachineInputs,
     /// Which of the machine's places for loads that of the scene's are.
     places: Vec<usize>,
-    /// Beside the loads of the scene, at the centre of mass, the first place \[N\].
+    /// Whether the first is the centre of mass, for a push …
+    pushed: bool,
+    /// … beside the loads of the scene \[N\].
     push_n: V2,
 }
 
@@ -22,7 +24,8 @@ impl<'a> Rig<'a> {
     pub(crate) fn new(scene: &'a Scene, options: Options) -> Result<Self, MachineError> {
         let mut params = scene.machine.clone();
         // The first is that of the push, also where none comes: with a place less the last bits were others.
-        params.loads_m = vec![0.0];
+        let pushed = scene.takes_push();
+        params.loads_m = if pushed { vec![0.0] } else { Vec::new() };
         let mut place = |position_m: f64| {
             let known = params.loads_m.iter().position(|z| *z == position_m);
             known.unwrap_or_else(|| {
@@ -33,6 +36,7 @@ impl<'a> Rig<'a> {
         let places = scene.loads().map(|load| place(load.position_m)).collect();
         Ok(Self {
             places,
+            pushed,
             machine: Machine::new(&params, &scene.start, options)?,
             inputs: MachineInputs {
                 commands_n: vec![V2::zeros(); params.magnets.len()],
@@ -58,7 +62,9 @@ impl<'a> Rig<'a> {
             }
         }
         self.inputs.loads_n.fill(V2::zeros());
-        self.inputs.loads_n[0] = self.push_n;
+        if let (true, Some(at_centre_n)) = (self.pushed, self.inputs.loads_n.first_mut()) {
+            *at_centre_n = self.push_n;
+        }
         for (place, load_n) in self.places.iter().zip(loads_n) {
             self.inputs.loads_n[*place] += load_n;
         }
@@ -82,7 +88,7 @@ impl<'a> Rig<'a> {
         probe.map_or_else(V2::zeros, |probe| probe.position)
     }
 
-    /// Has a force act on the centre of mass beside the loads, from now on \[N\].
+    /// Has a force act on the centre of mass beside the loads, from now on \[N\], where that [takes](Scene::takes_push) one.
     pub(crate) fn push(&mut self, force_n: V2) {
         self.push_n = force_n;
     }

@@ -186,6 +186,11 @@ pub(crate) fn slips(spec: &PlaneSpec) -> Vec<String> {
         let message = format!("is {g:.0} times that of the earth; accelerations are in m/s²");
         warnings.push(warning("rotor.gravity_m_s2", message));
     }
+    let magnet_deg = file.magnet.as_ref().map_or(0.0, |m| m.axes_deg);
+    if (magnet_deg - file.sensor.axes_deg).to_radians().cos() <= 0.0 {
+        let what = "is a right angle or more from that of the magnet: the controller pushes away from the middle";
+        warnings.push(warning("sensor.axes_deg", what.to_owned()));
+    }
     let gain = V2::from(file.sensor.gain);
     if gain.iter().any(|gain| *gain <= 0.0) {
         let what = match gain.iter().any(|gain| *gain == 0.0) {

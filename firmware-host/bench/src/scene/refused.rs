@@ -20,10 +20,12 @@ pub(crate) fn refused(error: &MachineError, spec: &Spec, planes: &[PlaneScene]) 
     // Where it has no place of its own, that of its plane is meant.
     let place = |plane: usize, own: Option<f64>, table: &str| match own {
         Some(_) => of_plane(plane, &format!("{table}.position_m")),
+        None if tables.plane.is_empty() => at("rotor.bending"),
         None => at(&format!("plane[{plane}].position_m")),
     };
     match (list, field) {
         ("planes", "") | ("magnets", "") => at("plane"),
+        ("planes", "position_m") if tables.plane.is_empty() => at("rotor.bending"),
         ("planes", "position_m") => at(&format!("plane[{index}].position_m")),
         ("planes", "radius_m") => of_plane(index, "rotor.contact_radius_m"),
         ("planes", "centre_m") => of_plane(index, "retainer.centre_offset_m"),
@@ -62,7 +64,9 @@ pub(crate) fn refused(error: &MachineError, spec: &Spec, planes: &[PlaneScene]) 
             }
         }
         ("supports", key) if index < tables.support.len() => at(&format!("support[{index}].{key}")),
-        ("supports", _) => at("plane"),
+        // That of the centre, or of a magnet.
+        ("supports", _) if tables.rotor.stiffness_n_m.is_some() => at("rotor.stiffness_n_m"),
+        ("supports", _) => of_plane(0, "magnet.negative_stiffness_n_m"),
         ("unbalances", key) if index < tables.unbalance.len() => {
             at(&format!("unbalance[{index}].{key}"))
         }

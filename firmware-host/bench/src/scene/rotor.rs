@@ -188,15 +188,15 @@ fn by_numbers(
         written.mass_kg,
         "give a number in kg, or [[shaft]]",
     )?;
-    if is_a_point(tables, planes) {
+    let Some(why) = tilts(tables, planes) else {
         return Ok(Rotor::Rigid(RigidRotor::point(mass_kg)));
-    }
+    };
     let rigid = RigidRotor {
         mass_kg,
         transverse_inertia_kg_m2: needed(
             "transverse_inertia_kg_m2",
             written.transverse_inertia_kg_m2,
-            "give I_t about the centre of mass in kg m²",
+            &format!("{why} is of a rotor that tilts: give I_t about the centre of mass in kg m²"),
         )?,
         polar_inertia_kg_m2: needed(
             "polar_inertia_kg_m2",
@@ -217,16 +217,30 @@ fn by_numbers(
     })
 }
 
-/// Whether nothing is said of a tilt: a mass in one plane, in which everything stands.
-fn is_a_point(tables: &SceneTables, planes: &[PlaneSpec]) -> bool {
+/// The key that makes the rotor more than a mass in one plane, in which everything stands.
+fn tilts(tables: &SceneTables, planes: &[PlaneSpec]) -> Option<String> {
     let (written, start) = (&tables.rotor, &tables.start);
-    let tilts = written.transverse_inertia_kg_m2.is_some()
-        || written.polar_inertia_kg_m2.is_some()
-        || !written.bending.is_empty()
-        || start.tilt_rad.is_some()
-        || start.tilt_rate_rad_s.is_some();
-    let places = places(tables);
-    !tilts && planes.len() < 2 && places.iter().all(|(_, z)| *z == 0.0)
+    let said = [
+        (
+            "rotor.transverse_inertia_kg_m2",
+            written.transverse_inertia_kg_m2.is_some(),
+        ),
+        (
+            "rotor.polar_inertia_kg_m2",
+            written.polar_inertia_kg_m2.is_some(),
+        ),
+        ("rotor.bending", !written.bending.is_empty()),
+        (
+            "rotor.polar_coupling_kg_m2",
+            !written.polar_coupling_kg_m2.0.is_empty(),
+        ),
+        ("start.tilt_rad", start.tilt_rad.is_some()),
+        ("start.tilt_rate_rad_s", start.tilt_rate_rad_s.is_some()),
+        ("plane", planes.len() > 1),
+    ];
+    let said = said.into_iter().find(|(_, said)| *said);
+    let off_centre = || places(tables).into_iter().find(|(_, z)| *z != 0.0);
+    (said.map(|(key, _)| key.to_owned())).or_else(|| off_centre().map(|(key, _)| key))
 }
 
 /// Keys of a rotor by numbers.

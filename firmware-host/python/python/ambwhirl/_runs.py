@@ -28,7 +28,7 @@ class Run:
     record: bytes | None = None
     """The flight record, where the supervisor froze one."""
     planes: dict[str, Run] = field(default_factory=dict)
-    """Of a whole rotor: a Run for each plane, by its name."""
+    """A Run for each plane, by its name; that of an only plane may be empty."""
     axis: Table | None = None
     """Of a rotor that tilts: its axis at each control sample."""
 

@@ -28,6 +28,7 @@ impl Change {
         let eccentricity_m = self.eccentricity_m.unwrap_or_default();
         let field = "rotor.eccentricity_m";
         check(eccentricity_m >= 0.0, field, eccentricity_m, NOT_NEGATIVE)?;
+        rotor.has_centre(eccentricity_m)?;
         let friction = self.friction_coefficient.unwrap_or_default();
         let field = "friction.coefficient";
         check(friction >= 0.0, field, friction, NOT_NEGATIVE)?;

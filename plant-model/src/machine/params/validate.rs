@@ -136,11 +136,23 @@ impl Rotor {
     }
 
     /// Whether a place lies on the rotor, as far as its shapes say.
-    fn reaches(&self, position_m: f64) -> bool {
+    pub fn reaches(&self, position_m: f64) -> bool {
         self.bending().iter().all(|mode| {
             let ends = (mode.shape.first(), mode.shape.last());
             matches!(ends, (Some(a), Some(b)) if (a.0..=b.0).contains(&position_m))
         })
+    }
+
+    /// Refuses an eccentricity of a rotor whose shapes do not say how its centre of mass moves.
+    pub(super) fn has_centre(&self, eccentricity_m: f64) -> Result<(), MachineError> {
+        let field = "rotor.eccentricity_m";
+        let rule = "0, for no bending mode has its shape at the centre of mass";
+        check(
+            eccentricity_m == 0.0 || self.reaches(0.0),
+            field,
+            eccentricity_m,
+            rule,
+        )
     }
 
     /// Refuses a place that does not.
@@ -368,6 +380,7 @@ impl MachineParams {
             self.eccentricity_m,
             NOT_NEGATIVE,
         )?;
+        self.rotor.has_centre(self.eccentricity_m)?;
         for (i, unbalance) in self.unbalances.iter().enumerate() {
             unbalance.validate(&self.rotor, &format!("unbalances[{i}]"))?;
         }

@@ -2,7 +2,7 @@
 
 use crate::device::actuator::Amplifier;
 use crate::device::axis::Turned;
-use crate::device::sensor::Sensor;
+use crate::device::sensor::{Sensor, SensorParams};
 use crate::device::sensor_fault::seen_until_s;
 use crate::run::controller::{Controller, Force, Seen};
 use crate::run::judge::Judge;
@@ -41,11 +41,16 @@ impl<'a> Station<'a> {
     ) -> Self {
         let period_s = 1.0 / scene.sample_rate_hz;
         let (force_max_n, own) = (scene.force_max_n(plane), &scene.planes[plane]);
+        // What the target adds is on the rotor, and turns with it.
+        let sensor = SensorParams {
+            runout_phase_rad: own.sensor.runout_phase_rad - own.axes_rad[0],
+            ..own.sensor
+        };
         Self {
             scene,
             plane: own,
             wall: &scene.machine.planes[plane],
-            sensor: Sensor::new(own.sensor, &own.faults, period_s, own.seed),
+            sensor: Sensor::new(sensor, &own.faults, period_s, own.seed),
             controller,
             amplifier: Amplifier::new(own.amplifier, force_max_n, &own.outages, own.seed),
             axes: own.axes_rad.map(Turned::by),
@@ -137,10 +142,10 @@ impl<'a> Station<'a> {
 
     /// The row of the last control sample, with what happened at it.
     pub(super) fn sampled(&self, plant: &Snapshot) -> TraceRow {
-        let events = self.events;
+        let (events, row) = (self.events, self.row(plant, false));
         TraceRow {
-            supervisor: self.said.map(|said| Said { events, ..said }),
-            ..self.row(plant, false)
+            supervisor: row.supervisor.map(|said| Said { events, ..said }),
+            ..row
         }
     }
 
@@ -150,7 +155,10 @@ impl<'a> Station<'a> {
             plant: *plant,
             measured_m: self.measured_m,
             commanded_n: self.axes[1].meant(self.amplifier.in_effect_n()),
-            supervisor: self.said,
+            supervisor: self.said.map(|said| Said {
+                levitation_n: self.axes[1].meant_f32(said.levitation_n),
+                ..said
+            }),
             mode_change,
         }
     }

@@ -105,7 +105,7 @@ impl Stepwise {
         }
     }
 
-    /// A force on the centre of mass beside the scene's loads, from now on \[N\].
+    /// A force on the centre of mass beside the scene's loads, from now on \[N\]; where it [takes](Scene::takes_push) one.
     pub fn push(&mut self, force_n: V2) {
         (self.ride).with_dependent_mut(|_, bench| bench.rig.push(force_n));
     }
