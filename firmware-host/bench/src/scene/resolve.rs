@@ -179,15 +179,17 @@ impl Spec {
         }
     }
 
-    /// Unbalances that come later have to be on the rotor as well.
+    /// Unbalances that come later have to be on the rotor as well, and a centre of mass.
     fn check_places_of_changes(&self, rotor: &Rotor, origin: &Origin) -> Result<(), SceneError> {
         for (i, change) in self.tables.change.iter().enumerate() {
             let change = Change {
                 unbalance: (change.unbalance.as_ref()).map(|u| origin.centred(u.into())),
+                eccentricity_m: change.eccentricity_m,
                 ..Change::default()
             };
             change.validate(rotor).map_err(|error| {
-                let key = format!("change[{i}].{}", error.field);
+                let field = error.field.trim_start_matches("rotor.");
+                let key = format!("change[{i}].{field}");
                 self.text.refused(&key, error.value, error.expected)
             })?;
         }
