@@ -226,8 +226,24 @@ impl Scene {
         self.machine.rotor.reaches(0.0)
     }
 
+    /// Places at which a run has loads, each once: first the centre of mass where that [takes a push](Self::takes_push), also
+    /// without a load there, for with a place less the last bits are others.
+    pub fn load_places_m(&self) -> Vec<f64> {
+        let mut places_m = if self.takes_push() {
+            vec![0.0]
+        } else {
+            Vec::new()
+        };
+        for load in self.loads() {
+            if !places_m.contains(&load.position_m) {
+                places_m.push(load.position_m);
+            }
+        }
+        places_m
+    }
+
     /// The machine with a place for each of the [loads](Self::loads).
-    pub(crate) fn machine_with_loads(&self) -> MachineParams {
+    pub fn machine_with_loads(&self) -> MachineParams {
         MachineParams {
             loads_m: self.loads().map(|load| load.position_m).collect(),
             ..self.machine.clone()

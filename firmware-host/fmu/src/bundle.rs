@@ -92,14 +92,14 @@ impl Archive {
 
 /// The page that the archive has for people.
 fn page(unit: &Unit) -> String {
-    let common = unit.scene();
+    let scene = unit.scene();
     let escaped = |text: &str| text.replace('&', "&amp;").replace('<', "&lt;");
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{title}</title></head>\n<body>\n\
          <h1>{title}: {name}</h1>\n<p>{about}. One step is {whole} of {period:?} s; time counts from the start of the \
          simulation. Parameters are the keys of the scene in <code>resources/scene.toml</code>.</p>\n\
          <p>{story}</p>\n</body></html>\n",
-        title = escaped(&common.title),
+        title = escaped(&scene.title),
         name = unit.which().name(),
         about = unit.which().about(),
         whole = match unit.takes_several_samples() {
@@ -107,6 +107,6 @@ fn page(unit: &Unit) -> String {
             false => "one control period",
         },
         period = unit.period_s(),
-        story = escaped(common.story.trim()),
+        story = escaped(scene.story.trim()),
     )
 }

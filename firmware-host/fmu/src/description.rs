@@ -17,8 +17,8 @@ pub(crate) fn description(unit: &Unit, version: Version, token: &str) -> String 
     units(&mut xml, &numbered);
     types(&mut xml, &numbered, version);
     xml += "  <LogCategories>\n    <Category name=\"logStatusError\" description=\"why a call has failed\"/>\n  </LogCategories>\n";
-    let common = unit.scene();
-    let (stop_s, period_s) = (common.simulated_s(), unit.period_s());
+    let scene = unit.scene();
+    let (stop_s, period_s) = (scene.simulated_s(), unit.period_s());
     put(
         &mut xml,
         format_args!(
@@ -52,12 +52,12 @@ fn fits_32_bits(variable: &Variable) -> bool {
 
 fn head(xml: &mut String, unit: &Unit, version: Version, token: &str) {
     let which = unit.which();
-    let common = unit.scene();
+    let scene = unit.scene();
     let (token_name, number) = match version {
         Version::Fmi3 => ("instantiationToken", "3.0"),
         Version::Fmi2 => ("guid", "2.0"),
     };
-    let title = escaped(&common.title);
+    let title = escaped(&scene.title);
     put(
         xml,
         format_args!(

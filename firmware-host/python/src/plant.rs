@@ -4,6 +4,7 @@ use crate::errors::RunError;
 use crate::scene::Scene;
 use crate::values::{pair_array, stacks, vectors};
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods};
+use plant_model::machine::params::MachineParams;
 use plant_model::machine::{Machine, MachineInputs, PlaneSnapshot};
 use plant_model::{Meters, Options, PlantError, V2};
 use pyo3::exceptions::PyValueError;
@@ -92,18 +93,11 @@ impl Plant {
             method: scene.method,
             ..Options::default()
         };
-        let mut params = scene.machine.clone();
-        // The centre of mass, then where else the scene has loads: as a closed loop has them, to the last bit.
-        params.loads_m = if scene.takes_push() {
-            vec![0.0]
-        } else {
-            Vec::new()
+        // As a closed loop has them, to the last bit.
+        let params = MachineParams {
+            loads_m: scene.load_places_m(),
+            ..scene.machine.clone()
         };
-        for load in &scene.disturbances {
-            if !params.loads_m.contains(&load.position_m) {
-                params.loads_m.push(load.position_m);
-            }
-        }
         let rotor = Machine::new(&params, &scene.start, options);
         Ok(Self {
             of: Mutex::new(State {

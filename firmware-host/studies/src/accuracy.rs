@@ -5,7 +5,7 @@ pub mod wrong_runs;
 
 use firmware_bench::device::loads::{self, Disturbance};
 use firmware_bench::scene::Scene;
-use plant_model::machine::params::{MachineError, MachineParams};
+use plant_model::machine::params::MachineError;
 use plant_model::machine::{Machine, MachineInputs};
 use plant_model::{Method, Mode, Options, PlantError, V2, Work};
 use serde::Serialize;
@@ -190,10 +190,7 @@ pub(crate) fn run(scene: &Scene, method: Method, rtol: f64) -> Result<Ending, Ac
         ..Options::default()
     };
     let loads: Vec<Disturbance> = scene.loads().collect();
-    let params = MachineParams {
-        loads_m: loads.iter().map(|load| load.position_m).collect(),
-        ..scene.machine.clone()
-    };
+    let params = scene.machine_with_loads();
     let mut machine = Machine::new(&params, &scene.start, options)?;
     let mut inputs = MachineInputs {
         commands_n: vec![V2::zeros(); params.magnets.len()],

@@ -6,7 +6,6 @@ pub mod study;
 use firmware_bench::run::closed_loop::{Recorders, Rigour, record};
 use firmware_bench::run::figures::Figures;
 use firmware_bench::run::supervision::SupervisionCount;
-use firmware_bench::run::trace::Recorder;
 use firmware_bench::scene::nominal::{Override, replaced};
 use firmware_bench::scene::policy_kind::PolicyKind;
 use firmware_bench::scene::suggest::{Nominal, suggested};
@@ -245,12 +244,7 @@ impl Row {
     /// Runs a scene.
     pub fn of(told: &str, scene: &Scene, kind: PolicyKind) -> Self {
         let mut counts = vec![SupervisionCount::default(); scene.planes.len()];
-        let recorders = Recorders {
-            planes: (counts.iter_mut())
-                .map(|count| count as &mut dyn Recorder)
-                .collect(),
-            axis: None,
-        };
+        let recorders = Recorders::of_planes(&mut counts);
         let ran = record(scene, kind, recorders, Rigour::default(), &mut |_| {});
         let (engagements, metrics, error) = match ran {
             Ok(ended) => {

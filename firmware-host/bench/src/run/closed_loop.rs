@@ -195,6 +195,17 @@ pub struct Recorders<'a> {
     pub axis: Option<&'a mut dyn Recorder<AxisRow>>,
 }
 
+impl<'a> Recorders<'a> {
+    /// Of planes alone, one each.
+    pub fn of_planes<R: Recorder>(all: &'a mut [R]) -> Self {
+        let planes = all.iter_mut().map(|one| one as &mut dyn Recorder);
+        Self {
+            planes: planes.collect(),
+            axis: None,
+        }
+    }
+}
+
 /// What one plane came to, and where its rows are recorded what its supervisor leaves behind.
 pub type PlaneEnded = (Figures, Option<ReadOut>);
 

@@ -1,9 +1,10 @@
 //! What a closed loop moves: a rotor in its planes.
 
+use crate::device::loads::Disturbance;
 use crate::run::trace::AxisRow;
 use crate::scene::Scene;
 use plant_model::energy::Audit;
-use plant_model::machine::params::MachineError;
+use plant_model::machine::params::{MachineError, MachineParams};
 use plant_model::machine::{Machine, MachineInputs, MachineSnapshot, Warmth};
 use plant_model::{Change, Meters, Method, Options, PlantError, Snapshot, V2};
 
@@ -22,18 +23,16 @@ pub(crate) struct Rig<'a> {
 
 impl<'a> Rig<'a> {
     pub(crate) fn new(scene: &'a Scene, options: Options) -> Result<Self, MachineError> {
-        let mut params = scene.machine.clone();
-        // The first is that of the push, also where none comes: with a place less the last bits were others.
-        let pushed = scene.takes_push();
-        params.loads_m = if pushed { vec![0.0] } else { Vec::new() };
-        let mut place = |position_m: f64| {
-            let known = params.loads_m.iter().position(|z| *z == position_m);
-            known.unwrap_or_else(|| {
-                params.loads_m.push(position_m);
-                params.loads_m.len() - 1
-            })
+        let params = MachineParams {
+            loads_m: scene.load_places_m(),
+            ..scene.machine.clone()
         };
-        let places = scene.loads().map(|load| place(load.position_m)).collect();
+        let place = |load: Disturbance| {
+            let at = params.loads_m.iter().position(|z| *z == load.position_m);
+            at.unwrap_or_default()
+        };
+        let places = scene.loads().map(place).collect();
+        let pushed = scene.takes_push();
         Ok(Self {
             places,
             pushed,

@@ -192,12 +192,7 @@ pub fn check(
     let mut comparisons: Vec<Comparison> = (tracks.iter().enumerate())
         .map(|(plane, run)| Comparison::new(run, scene.clearance_m(plane)))
         .collect();
-    let recorders = Recorders {
-        planes: (comparisons.iter_mut())
-            .map(|c| c as &mut dyn Recorder)
-            .collect(),
-        axis: None,
-    };
+    let recorders = Recorders::of_planes(&mut comparisons);
     let ended = record(scene, kind, recorders, rigour(scene), on_tick);
     let ended = ended.map_err(untrusted(scene))?;
     Ok((comparisons.into_iter().zip(&ended))

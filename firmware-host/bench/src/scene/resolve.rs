@@ -46,10 +46,7 @@ impl Spec {
         check_together(tables, text)?;
         let (mut machine, origin) = rotor::machine(tables, planes, text)?;
         for plane in planes {
-            let place = |own: Option<f64>| {
-                own.or(plane.position_m)
-                    .map_or(0.0, |z| origin.centred_m(z))
-            };
+            let place = |own: Option<f64>| origin.place_m(own.or(plane.position_m));
             machine.probes_m.push(place(plane.tables.sensor.position_m));
             if let Some(magnet) = &plane.tables.magnet {
                 let position_m = place(magnet.position_m);
@@ -84,7 +81,7 @@ impl Spec {
             let own = plane.tables.magnet.is_some().then_some(magnet);
             magnet += usize::from(own.is_some());
             let rigid = machine.rotor.rigid();
-            let position_m = plane.position_m.map_or(0.0, |z| origin.centred_m(z));
+            let position_m = origin.place_m(plane.position_m);
             let lever = |place_m: f64| rigid.lever(place_m, position_m);
             let of = OfMachine {
                 point: linear.point_mass(position_m),
@@ -201,7 +198,7 @@ impl Spec {
         let places = self.tables.disturbance.iter().map(|d| d.position_m);
         (all.iter().zip(places))
             .map(|(disturbance, place)| Disturbance {
-                position_m: place.map_or(0.0, |z| origin.centred_m(z)),
+                position_m: origin.place_m(place),
                 ..*disturbance
             })
             .collect()

@@ -37,6 +37,11 @@ impl Origin {
         }
     }
 
+    /// The same; the centre of mass where none is given.
+    pub(crate) fn place_m(&self, position_m: Option<f64>) -> f64 {
+        position_m.map_or(0.0, |z| self.centred_m(z))
+    }
+
     /// An unbalance at a place of the scene.
     pub(crate) fn centred(&self, unbalance: Unbalance) -> Unbalance {
         Unbalance {
@@ -219,26 +224,15 @@ fn by_numbers(
 
 /// The key that makes the rotor more than a mass in one plane, in which everything stands.
 fn tilts(tables: &SceneTables, planes: &[PlaneSpec]) -> Option<String> {
-    let (written, start) = (&tables.rotor, &tables.start);
-    let said = [
-        (
-            "rotor.transverse_inertia_kg_m2",
-            written.transverse_inertia_kg_m2.is_some(),
-        ),
-        (
-            "rotor.polar_inertia_kg_m2",
-            written.polar_inertia_kg_m2.is_some(),
-        ),
-        ("rotor.bending", !written.bending.is_empty()),
-        (
-            "rotor.polar_coupling_kg_m2",
-            !written.polar_coupling_kg_m2.0.is_empty(),
-        ),
+    let start = &tables.start;
+    // A mass has a point, too.
+    let of_more = of_numbers(tables).into_iter().skip(1);
+    let mut said = of_more.chain([
         ("start.tilt_rad", start.tilt_rad.is_some()),
         ("start.tilt_rate_rad_s", start.tilt_rate_rad_s.is_some()),
         ("plane", planes.len() > 1),
-    ];
-    let said = said.into_iter().find(|(_, said)| *said);
+    ]);
+    let said = said.find(|(_, said)| *said);
     let off_centre = || places(tables).into_iter().find(|(_, z)| *z != 0.0);
     (said.map(|(key, _)| key.to_owned())).or_else(|| off_centre().map(|(key, _)| key))
 }

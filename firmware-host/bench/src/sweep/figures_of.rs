@@ -4,7 +4,6 @@ use crate::run::closed_loop::{PlaneEnded, Recorders, Rigour, RunError, record};
 use crate::run::columns::{Cell, Column, InColumns};
 use crate::run::figures::Figures;
 use crate::run::supervision::{Supervision, SupervisionCount};
-use crate::run::trace::Recorder;
 use crate::scene::policy_kind::PolicyKind;
 use crate::scene::{PlaneScene, Scene};
 
@@ -36,12 +35,7 @@ pub fn cells(scene: &Scene, kind: PolicyKind) -> Result<Vec<Cell>, RunError> {
         true => vec![SupervisionCount::default(); scene.planes.len()],
         false => Vec::new(),
     };
-    let recorders = Recorders {
-        planes: (counts.iter_mut())
-            .map(|count| count as &mut dyn Recorder)
-            .collect(),
-        axis: None,
-    };
+    let recorders = Recorders::of_planes(&mut counts);
     let ended = record(scene, kind, recorders, Rigour::default(), &mut |_| {})?;
     if let [only] = &ended[..] {
         plane_cells(only, counts.first(), &mut cells);

@@ -196,12 +196,7 @@ fn run(scene: &Scene, kind: PolicyKind, goal: Goal) -> Result<(Outcome, Engaged)
         ..Counter::default()
     };
     let mut counters: Vec<Counter> = scene.planes.iter().map(counter).collect();
-    let recorders = Recorders {
-        planes: (counters.iter_mut())
-            .map(|c| c as &mut dyn Recorder)
-            .collect(),
-        axis: None,
-    };
+    let recorders = Recorders::of_planes(&mut counters);
     let ended = record(scene, kind, recorders, Rigour::default(), &mut |_| {})
         .map_err(|error| error.to_string())?;
     let engaged = (counters.iter()).fold(Engaged::default(), |sum, c| sum.and(&c.counted));

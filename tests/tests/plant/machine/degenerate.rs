@@ -194,15 +194,8 @@ fn a_rotor_without_tilt_is_a_point_mass() {
             } else {
                 SpinParams::Held
             };
-            let mut params = machine();
-            let magnet = |position_m: f64| MachineMagnet {
-                position_m,
-                force_max_n: 150.0,
-                lag_s,
-                lag_damping_ratio: None,
-                poles: None,
-            };
-            params.magnets = vec![magnet(-0.1), magnet(0.1)];
+            let (mut params, mut one) = (machine(), point());
+            magnets(&mut params, &mut one, lag_s);
             params.loads_m = vec![0.0];
             params.spin = spin;
             for plane in &mut params.planes {
@@ -210,13 +203,8 @@ fn a_rotor_without_tilt_is_a_point_mass() {
                 plane.race = raced.then(|| race(0.5));
                 plane.friction.rolling_coefficient = rolling;
             }
-            let mut one = point();
             (one.spin, one.stator, one.race) = (spin, stator, raced.then(|| race(1.0)));
             one.friction.rolling_coefficient = rolling;
-            one.magnet = Some(MagnetParams {
-                force_max_n: 300.0,
-                lag_s,
-            });
             // The second method goes the same way.
             for (method, worst) in [(Method::Series, 1e-10), (Method::Collocation, 1e-9)] {
                 let what = format!("{}, {stator:?}, case {case:04b}", method.name());
@@ -289,6 +277,22 @@ fn a_rotor_that_does_not_tilt_is_a_point_mass() {
     }
 }
 
+/// A magnet at each end, and one of both together.
+fn magnets(params: &mut MachineParams, one: &mut PlantParams, lag_s: f64) {
+    let magnet = |position_m: f64| MachineMagnet {
+        position_m,
+        force_max_n: 150.0,
+        lag_s,
+        lag_damping_ratio: None,
+        poles: None,
+    };
+    params.magnets = vec![magnet(-0.1), magnet(0.1)];
+    one.magnet = Some(MagnetParams {
+        force_max_n: 300.0,
+        lag_s,
+    });
+}
+
 /// Bores out of round at both ends.
 #[test]
 fn bores_out_of_round_are_that_of_a_point_mass() {
@@ -298,18 +302,7 @@ fn bores_out_of_round_are_that_of_a_point_mass() {
     });
     let (mut params, mut one) = (machine(), point());
     params.loads_m = vec![0.0];
-    let magnet = |position_m: f64| MachineMagnet {
-        position_m,
-        force_max_n: 150.0,
-        lag_s: 2e-4,
-        lag_damping_ratio: None,
-        poles: None,
-    };
-    params.magnets = vec![magnet(-0.1), magnet(0.1)];
-    one.magnet = Some(MagnetParams {
-        force_max_n: 300.0,
-        lag_s: 2e-4,
-    });
+    magnets(&mut params, &mut one, 2e-4);
     for plane in &mut params.planes {
         plane.stator = bore;
     }
@@ -329,24 +322,13 @@ fn friction_that_falls_with_speed_is_that_of_a_point_mass() {
     };
     for (stator, halves) in stators() {
         let (mut params, mut one) = (machine(), point());
-        let magnet = |position_m: f64| MachineMagnet {
-            position_m,
-            force_max_n: 150.0,
-            lag_s: 2e-4,
-            lag_damping_ratio: None,
-            poles: None,
-        };
-        params.magnets = vec![magnet(-0.1), magnet(0.1)];
+        magnets(&mut params, &mut one, 2e-4);
         params.loads_m = vec![0.0];
         for plane in &mut params.planes {
             plane.stator = halves;
             plane.friction.sliding = falling;
         }
         (one.stator, one.friction.sliding) = (stator, falling);
-        one.magnet = Some(MagnetParams {
-            force_max_n: 300.0,
-            lag_s: 2e-4,
-        });
         let what = format!("falling friction, {stator:?}");
         for (method, worst) in [(Method::Series, 1e-10), (Method::Collocation, 1e-8)] {
             alike(&params, &one, (method, worst), &what);
@@ -372,18 +354,7 @@ fn a_contact_that_hardens_is_that_of_a_point_mass() {
             }
             (one.stator, one.contact.law) = (stator, law(1.0).into());
             let what = format!("Hertz, λ = {damping_s_m}, {stator:?}");
-            let magnet = |position_m: f64| MachineMagnet {
-                position_m,
-                force_max_n: 150.0,
-                lag_s: 0.0,
-                lag_damping_ratio: None,
-                poles: None,
-            };
-            params.magnets = vec![magnet(-0.1), magnet(0.1)];
-            one.magnet = Some(MagnetParams {
-                force_max_n: 300.0,
-                lag_s: 0.0,
-            });
+            magnets(&mut params, &mut one, 0.0);
             alike(&params, &one, (Method::Collocation, 1e-7), &what);
             let refused = Machine::new(&params, &MachineStart::default(), OPTIONS).unwrap_err();
             assert_eq!(refused.field, "planes[0].contact.stiffness_n_mn");
