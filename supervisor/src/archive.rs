@@ -1,11 +1,11 @@
 //! Records of several events, in memory of the background's: it copies what has frozen and gives it back at once, so that the
 //! recorder waits for the next event while nobody has written the last one down yet. The tick knows nothing of it.
 
-use crate::record::Record;
-use crate::rotor::RotorReader;
-use crate::scalar::Scalar;
-use crate::split::Reader;
-use crate::tape::Tape;
+use crate::number::scalar::Scalar;
+use crate::record::buffer::RecordBuffer;
+use crate::record::sections::Record;
+use crate::rotor::two_planes::RotorReader;
+use crate::supervisor::Reader;
 use core::marker::PhantomData;
 
 /// Room for the record of an event of one plane: the record, and of a rotor its shaft. It consists of words alone, and with all
@@ -14,7 +14,7 @@ use core::marker::PhantomData;
 // An array of places is one of places in C, whose alignment this is.
 #[repr(align(8))]
 pub struct ArchivePlace<const RECORD: usize = 512> {
-    tape: Tape<RECORD>,
+    buffer: RecordBuffer<RECORD>,
     of_rotor: bool,
     shaft: [f32; 9],
 }
@@ -24,7 +24,7 @@ impl<const RECORD: usize> ArchivePlace<RECORD> {
     #[inline(always)]
     pub const fn new() -> Self {
         Self {
-            tape: Tape::blank(),
+            buffer: RecordBuffer::blank(),
             of_rotor: false,
             shaft: [0.0; 9],
         }
@@ -57,14 +57,14 @@ impl Order {
         }
     }
 
-    /// Copies a tape that has frozen to the next place.
+    /// Copies a buffer that has frozen to the next place.
     fn copy<const RECORD: usize>(
         &mut self,
         places: &mut [ArchivePlace<RECORD>],
-        tape: &Tape<RECORD>,
+        buffer: &RecordBuffer<RECORD>,
         shaft: Option<[f32; 9]>,
     ) -> bool {
-        if places.is_empty() || !tape.is_frozen() {
+        if places.is_empty() || !buffer.is_frozen() {
             return false;
         }
         if self.count >= places.len() {
@@ -80,7 +80,7 @@ impl Order {
             free - places.len()
         };
         if let Some(place) = places.get_mut(free) {
-            place.tape.become_copy_of(tape);
+            place.buffer.become_copy_of(buffer);
             place.of_rotor = shaft.is_some();
             place.shaft = shaft.unwrap_or_default();
             self.count += 1;
@@ -97,7 +97,7 @@ impl Order {
             return None;
         }
         let kept = places.get(self.oldest)?;
-        let mut record = Record::new(&kept.tape)?;
+        let mut record = Record::new(&kept.buffer)?;
         record.shaft = kept.of_rotor.then_some(kept.shaft);
         let dropped = record.dropped();
         *dropped = dropped.saturating_add(self.gone);
@@ -161,13 +161,13 @@ impl<S: Scalar, const RECORD: usize, const EVENTS: usize> Archive<S, RECORD, EVE
     /// Copies a frozen record, if there is one, and gives it back: the next tick waits for an engagement again. Whether there was
     /// one.
     pub fn take(&mut self, reader: &mut Reader<'_, S, RECORD>) -> bool {
-        let took = self.copy(&reader.shared().tape, None);
+        let took = self.copy(&reader.shared().buffer, None);
         reader.rearm();
         took
     }
 
-    fn copy(&mut self, tape: &Tape<RECORD>, shaft: Option<[f32; 9]>) -> bool {
-        self.order.copy(&mut self.places, tape, shaft)
+    fn copy(&mut self, buffer: &RecordBuffer<RECORD>, shaft: Option<[f32; 9]>) -> bool {
+        self.order.copy(&mut self.places, buffer, shaft)
     }
 
     /// How many records are kept.
@@ -213,8 +213,8 @@ impl<const RECORD: usize, const EVENTS: usize> RotorArchive<RECORD, EVENTS> {
             return false;
         };
         let planes = self.planes.iter_mut().zip(reader.tapes());
-        let took = planes.fold(true, |all, (archive, tape)| {
-            archive.copy(tape, Some(shaft)) && all
+        let took = planes.fold(true, |all, (archive, buffer)| {
+            archive.copy(buffer, Some(shaft)) && all
         });
         reader.rearm();
         took
@@ -256,7 +256,7 @@ impl<'a, const RECORD: usize> ArchiveIn<'a, RECORD> {
 
     /// As [`Archive::take`].
     pub fn take(&mut self, reader: &mut Reader<'_, f32, RECORD>) -> bool {
-        let took = (self.order).copy(self.places, &reader.shared().tape, None);
+        let took = (self.order).copy(self.places, &reader.shared().buffer, None);
         reader.rearm();
         took
     }
@@ -267,8 +267,8 @@ impl<'a, const RECORD: usize> ArchiveIn<'a, RECORD> {
             return false;
         };
         let planes = planes.into_iter().zip(reader.tapes());
-        let took = planes.fold(true, |all, (archive, tape)| {
-            (archive.order).copy(archive.places, tape, Some(shaft)) && all
+        let took = planes.fold(true, |all, (archive, buffer)| {
+            (archive.order).copy(archive.places, buffer, Some(shaft)) && all
         });
         reader.rearm();
         took

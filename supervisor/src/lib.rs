@@ -47,95 +47,105 @@
 //!                                                                                 └─► recorder
 //! ```
 //!
-//! Files, each importing only from those above it: `parts`, `cells`, `words`, `scalar`, `product`, `q`, `math`, `vec2`, `signal`, `config`, `bending`, `coeffs`,
-//! `spin`, `unbalance`, `innovation`, `reading`, `stuck`, `guard`, `actuator_monitor`, `estimate`, `beside`, `detect`, `impact`, `classify`, `phase`, `trust`, `law`, `limit`, `handover`, `tally`, `severity`,
-//! `tick`, `entry`, `track`, `events`, `latest`, `tape`, `recorder`, `record`, `ledger`, `per_unit`, `supervisor`, `split`, `shaft`, `bearing`, `coupling`, `rotor`, `archive`, `self_test`, `watch`, `log_format`.
+//! Files, each importing only from those above it: `number/words`, `number/scalar`, `number/product`, `number/q`, `number/vec2`, `border/parts`, `border/signal`, `border/config`, `border/shaft`, `border/bearing`, `border/modes`, `border/coeffs`, `sense/reading`, `sense/innovation`, `sense/stuck`, `sense/guard`, `estimate/unbalance`, `estimate/bending`, `estimate/monitor`, `estimate/observer`, `estimate/neighbour`, `decide/detect`, `decide/classify`, `decide/phase`, `decide/trust`, `act/law`, `act/limit`, `act/handover`, `account/tally`, `account/severity`, `tick`, `record/entry`, `record/publish`, `record/buffer`, `record/recorder`, `record/sections`, `record/ledger`, `per_unit`, `supervisor`, `rotor/coupling`, `rotor/two_planes`, `archive`, `self_test`, `watch`, `log_format`.
 
 // Unconditional: under `cfg(test)` std's own methods would silently replace micromath's.
 #![no_std]
 #![forbid(unsafe_code)]
 #![warn(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-mod actuator_monitor;
+mod number {
+    pub(crate) mod product;
+    pub(crate) mod q;
+    pub(crate) mod scalar;
+    pub(crate) mod vec2;
+    pub(crate) mod words;
+}
+mod border {
+    pub(crate) mod bearing;
+    pub(crate) mod coeffs;
+    pub(crate) mod config;
+    pub(crate) mod modes;
+    pub(crate) mod parts;
+    pub(crate) mod shaft;
+    pub(crate) mod signal;
+}
+mod sense {
+    pub(crate) mod guard;
+    pub(crate) mod innovation;
+    pub(crate) mod reading;
+    pub(crate) mod stuck;
+}
+mod estimate {
+    pub(crate) mod bending;
+    pub(crate) mod monitor;
+    pub(crate) mod neighbour;
+    pub(crate) mod observer;
+    pub(crate) mod unbalance;
+}
+mod decide {
+    pub(crate) mod classify;
+    pub(crate) mod detect;
+    pub(crate) mod phase;
+    pub(crate) mod trust;
+}
+mod act {
+    pub(crate) mod handover;
+    pub(crate) mod law;
+    pub(crate) mod limit;
+}
+mod account {
+    pub(crate) mod severity;
+    pub(crate) mod tally;
+}
+mod tick;
+mod record {
+    pub(crate) mod buffer;
+    pub(crate) mod entry;
+    pub(crate) mod ledger;
+    pub(crate) mod publish;
+    pub(crate) mod recorder;
+    pub(crate) mod sections;
+}
+mod per_unit;
+mod supervisor;
+mod rotor {
+    pub(crate) mod coupling;
+    pub(crate) mod two_planes;
+}
 mod archive;
-mod bearing;
-mod bending;
-mod beside;
-mod cells;
-mod classify;
-mod coeffs;
-mod config;
-mod coupling;
-mod detect;
-mod entry;
-mod estimate;
-mod events;
-mod guard;
-mod handover;
-mod impact;
-mod innovation;
-mod latest;
-mod law;
-mod ledger;
-mod limit;
 #[cfg(feature = "defmt")]
 mod log_format;
-mod math;
-mod parts;
-mod per_unit;
-mod phase;
-mod product;
-mod q;
-mod reading;
-mod record;
-mod recorder;
-mod rotor;
-mod scalar;
 mod self_test;
-mod severity;
-mod shaft;
-mod signal;
-mod spin;
-mod split;
-mod stuck;
-mod supervisor;
-mod tally;
-mod tape;
-mod tick;
-mod track;
-mod trust;
-mod unbalance;
-mod vec2;
 mod watch;
-mod words;
 
 pub use archive::{Archive, ArchiveIn, ArchivePlace, RotorArchive};
-pub use bearing::Bearing;
-pub use coeffs::Scaling;
-pub use config::{
+pub use border::bearing::Bearing;
+pub use border::coeffs::Scaling;
+pub use border::config::{
     Config, ConfigError, Contradiction, CoreError, DefaultRule, Group, NotRepresentable,
     PARAMETERS, Parameter, RULES, Rule,
 };
-pub use entry::{ENTRY_WORDS, Entry};
-pub use events::QueuedEvent;
-pub use ledger::{LEDGER_BYTES, LEDGER_VERSION, Ledger, LedgerError};
-pub use per_unit::{Core, Prepared};
-pub use q::{AccumulatorQ, Q};
-pub use record::{
-    Head, MOST_WORDS, NO_STATE, Part, RECORD_VERSION, Record, SECTION_BYTES, SUPERVISOR_VERSION,
-    Section, Stamp, Summary, crc_of,
-};
-pub use rotor::{Machine, Rotor, RotorCommand, RotorReader, RotorTicker};
-pub use scalar::{Accumulator, Number, Scalar};
-pub use self_test::SelfTest;
-pub use shaft::{Place, Shaft, ShaftError};
-pub use signal::{
+pub use border::shaft::{PlanePositions, Shaft, ShaftError};
+pub use border::signal::{
     Command, CoreCommand, CoreSample, Events, IntegratorHint, Limits, Mode, RejectReason, Report,
     Sample, Status,
 };
-pub use split::{CoreTicker, Published, Reader, Ticker};
+pub use number::q::{AccumulatorQ, Q};
+pub use number::scalar::{Accumulator, Number, Scalar};
+pub use per_unit::{Core, Prepared};
+pub use record::entry::{ENTRY_WORDS, Entry};
+pub use record::entry::{STRETCH_WORDS, STRETCHES, Stretch};
+pub use record::ledger::{LEDGER_BYTES, LEDGER_VERSION, Ledger, LedgerError};
+pub use record::publish::QueuedEvent;
+pub use record::sections::{
+    Head, MOST_WORDS, NO_STATE, Part, RECORD_VERSION, Record, SECTION_BYTES, SUPERVISOR_VERSION,
+    Section, Stamp, Summary, crc_of,
+};
+pub use rotor::two_planes::{RotorCommand, RotorCore, RotorReader, RotorSupervisor, RotorTicker};
+pub use self_test::SelfTest;
 pub use supervisor::Supervisor;
-pub use track::{STRETCH_WORDS, STRETCHES, Stretch};
+pub use supervisor::{CoreTicker, Published, Reader, Ticker};
 pub use watch::CommandWatchdog;
 
 /// The example of the crate's README runs with those of the documentation.

@@ -1,7 +1,7 @@
 //! How sets of bits and errors are logged with defmt: by names. Everything else derives it.
 
-use crate::config::{ConfigError, Parameter};
-use crate::signal::{Events, Limits, Status};
+use crate::border::config::{ConfigError, Parameter};
+use crate::border::signal::{Events, Limits, Status};
 use defmt::{Format, Formatter, write};
 
 macro_rules! by_names {
@@ -32,7 +32,7 @@ impl Format for ConfigError {
             ..
         } = self.parameter();
         if let (Some(broken), Some(rule)) = (self.contradiction, self.rule()) {
-            let other = crate::config::PARAMETERS
+            let other = crate::border::config::PARAMETERS
                 .get(rule.other)
                 .map_or("", |other| other.name);
             write!(

@@ -1,16 +1,16 @@
 //! The supervisor per unit: coefficients, what is remembered, and the recorder beside it.
 
-use crate::beside::{Beside, End};
-use crate::coeffs::{Coeffs, Scaling};
-use crate::config::{Config, CoreError, NotRepresentable};
-use crate::events::QueuedEvent;
-use crate::record::Record;
-use crate::recorder::{Recorder, Seen, Shared};
-use crate::scalar::Scalar;
-use crate::signal::{CoreCommand, CoreSample, Events, Mode, Report};
-use crate::tally::{Tally, Units};
+use crate::account::tally::{Tally, Units};
+use crate::border::coeffs::{Coeffs, Scaling};
+use crate::border::config::{Config, CoreError, NotRepresentable};
+use crate::border::signal::{CoreCommand, CoreSample, Events, Mode, Report};
+use crate::estimate::neighbour::{Neighbour, PlaneState};
+use crate::number::scalar::Scalar;
+use crate::number::words::Words;
+use crate::record::publish::QueuedEvent;
+use crate::record::recorder::{Recorder, Seen, Shared};
+use crate::record::sections::Record;
 use crate::tick::State;
-use crate::words::Words;
 
 /// Supervisor of one bearing plane in clearances and force caps, for a number `S`, with a flight record of
 /// `RECORD` ticks (a power of two). [`Config::scaling`] says what the units are.
@@ -89,9 +89,9 @@ impl<S: Scalar> Plane<S> {
         &mut self,
         shared: &Shared<N>,
         sample: &CoreSample<S>,
-        beside: &impl Beside<S>,
+        beside: &impl Neighbour<S>,
     ) -> (CoreCommand<S>, Seen) {
-        self.recorder.told(&shared.tape, sample);
+        self.recorder.told(&shared.buffer, sample);
         let command = self.state.tick(sample, beside, &self.coeffs);
         let seen = (self.recorder).push(shared, sample, &self.state, &command);
         (command, seen)
@@ -99,9 +99,9 @@ impl<S: Scalar> Plane<S> {
 
     /// What the other plane of a rotor is told.
     #[inline]
-    pub(crate) fn end(&self) -> End<S> {
+    pub(crate) fn plane_state(&self) -> PlaneState<S> {
         let observer = &self.state.observer;
-        End {
+        PlaneState {
             velocity: observer.known_velocity(),
             force: *observer.delivered(),
             unbalance: observer.unbalance(),
@@ -130,7 +130,7 @@ impl<S: Scalar> Plane<S> {
 
     /// Keeps what is remembered: a replay begins here.
     pub(crate) fn keep<const N: usize>(&mut self, shared: &Shared<N>) {
-        (self.recorder).keep(&shared.tape, &mut self.state, &self.coeffs);
+        (self.recorder).keep(&shared.buffer, &mut self.state, &self.coeffs);
     }
 
     /// Whether no event is being recorded, and none waits to be read.
@@ -142,7 +142,7 @@ impl<S: Scalar> Plane<S> {
     /// Whether the background has given a frozen record back.
     #[inline]
     pub(crate) fn is_back<const N: usize>(&self, shared: &Shared<N>) -> bool {
-        self.recorder.is_back(&shared.tape)
+        self.recorder.is_back(&shared.buffer)
     }
 
     /// For a test in its place: nothing remembered, other coefficients, and no recorder. Gives those back that it had.
@@ -156,13 +156,14 @@ impl<S: Scalar> Plane<S> {
     pub(crate) fn end_test<const N: usize>(&mut self, shared: &Shared<N>, coeffs: Coeffs<S>) {
         self.coeffs = coeffs;
         self.state = State::default();
-        self.recorder.restart(&shared.tape);
+        self.recorder.restart(&shared.buffer);
     }
 
     /// Waits for the next engagement.
     pub(crate) fn rearm<const N: usize>(&mut self, shared: &Shared<N>) {
-        self.recorder.rearm(&shared.tape);
-        self.recorder.part(&mut self.state.severity.fastest);
+        self.recorder.rearm(&shared.buffer);
+        self.recorder
+            .start_new_event(&mut self.state.severity.fastest);
     }
 
     /// The units of samples and commands.
@@ -240,7 +241,7 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
 
     /// Goes on from these words.
     pub(crate) fn resume(&mut self, words: &[u32]) {
-        self.plane.state = State::take(&mut words.iter().copied());
+        self.plane.state = State::decode(&mut words.iter().copied());
     }
 
     /// Takes another configuration over, to hold from the next tick on. What is known of the rotor stays,
@@ -278,7 +279,7 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
 
     /// The frozen flight record, if there is one.
     pub fn record(&self) -> Option<Record<'_, S, RECORD>> {
-        Record::new(&self.shared.tape)
+        Record::new(&self.shared.buffer)
     }
 
     /// Discards a frozen record and waits for the next engagement.

@@ -4,16 +4,16 @@
 //! It runs in the place of the supervisor that it is asked of, by the very tick that firmware calls: what drives the magnet is
 //! what was tested, and flash holds it once.
 
-use crate::config::Config;
-use crate::parts::ALL;
+use crate::border::config::Config;
+use crate::border::parts::ALL;
+use crate::border::shaft::{PlanePositions, Shaft};
+use crate::border::signal::{Command, CoreCommand, CoreSample, Events, Sample, Status};
+use crate::number::scalar::Scalar;
+use crate::number::vec2::Vec2;
 use crate::per_unit::{Core, Prepared};
-use crate::rotor::{Rotor, RotorTicker};
-use crate::scalar::Scalar;
-use crate::shaft::{Place, Shaft};
-use crate::signal::{Command, CoreCommand, CoreSample, Events, Sample, Status};
-use crate::split::{CoreTicker, Ticker};
+use crate::rotor::two_planes::{RotorSupervisor, RotorTicker};
 use crate::supervisor::Supervisor;
-use crate::vec2::Vec2;
+use crate::supervisor::{CoreTicker, Ticker};
 
 /// What the test went through.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -31,7 +31,7 @@ pub struct SelfTest {
 
 /// Hash of what a [`Supervisor`] commands, and a [`Ticker`].
 const IN_NEWTONS: [u32; 2] = [0x3DC8_8487, 0xB0EF_3D67];
-/// Of what a [`Rotor`] commands for its first plane and its second.
+/// Of what a [`RotorSupervisor`] commands for its first plane and its second.
 const OF_ROTOR: [u32; 2] = [0xF5A3_49E9, 0x99CD_40A3];
 
 /// The example with some damping, caps of the axes and a quick budget.
@@ -59,8 +59,8 @@ const SHAFT: Shaft = Shaft {
     places: [end_at(-0.2), end_at(0.2)],
 };
 
-const fn end_at(place_m: f32) -> Place {
-    Place {
+const fn end_at(place_m: f32) -> PlanePositions {
+    PlanePositions {
         retainer_m: place_m,
         sensor_m: place_m,
         magnet_m: 0.8 * place_m,
@@ -69,7 +69,7 @@ const fn end_at(place_m: f32) -> Place {
 
 /// What the rotor of the test does.
 #[derive(Clone, Copy)]
-enum Story {
+enum Scenario {
     /// Flies on.
     Flight,
     /// Slides round the clearance.
@@ -94,15 +94,15 @@ const MEASURED: Status = if ALL {
 };
 
 /// For so many ticks, with this status. A force that is measured is that of a drive which inverts x.
-const STORIES: [(u32, Story, Status); 8] = [
-    (40, Story::Centre, AS_USUAL),
-    (60, Story::Flight, AS_USUAL),
-    (80, Story::Whirl, AS_USUAL),
-    (60, Story::Whirl, MEASURED),
-    (60, Story::Rest, AS_USUAL),
-    (30, Story::Nonsense, AS_USUAL),
-    (20, Story::Flight, AS_USUAL.union(Status::SHADOW)),
-    (160, Story::Centre, AS_USUAL),
+const STORIES: [(u32, Scenario, Status); 8] = [
+    (40, Scenario::Centre, AS_USUAL),
+    (60, Scenario::Flight, AS_USUAL),
+    (80, Scenario::Whirl, AS_USUAL),
+    (60, Scenario::Whirl, MEASURED),
+    (60, Scenario::Rest, AS_USUAL),
+    (30, Scenario::Nonsense, AS_USUAL),
+    (20, Scenario::Flight, AS_USUAL.union(Status::SHADOW)),
+    (160, Scenario::Centre, AS_USUAL),
 ];
 
 impl SelfTest {
@@ -126,17 +126,17 @@ impl SelfTest {
         for (ticks, story, status) in STORIES {
             for _ in 0..ticks {
                 position = match story {
-                    Story::Flight if position.exceeds(S::from_f32(1.01)) => {
+                    Scenario::Flight if position.exceeds(S::from_f32(1.01)) => {
                         position * S::from_f32(0.97)
                     }
-                    Story::Flight => position + step,
-                    Story::Whirl => {
+                    Scenario::Flight => position + step,
+                    Scenario::Whirl => {
                         let onto = S::from_f32(1.01) * position.inverse_length();
                         position.rotated(turn) * onto
                     }
-                    Story::Rest => Vec2::new(S::ZERO, S::from_f32(-1.005)),
-                    Story::Nonsense => Vec2::new(S::from_f32(5.0), S::ZERO),
-                    Story::Centre => position * S::from_f32(0.98),
+                    Scenario::Rest => Vec2::new(S::ZERO, S::from_f32(-1.005)),
+                    Scenario::Nonsense => Vec2::new(S::from_f32(5.0), S::ZERO),
+                    Scenario::Centre => position * S::from_f32(0.98),
                 };
                 noise = noise.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
                 let ripple = S::count(noise >> 24) * S::from_f32(1e-5);
@@ -269,7 +269,7 @@ impl<const RECORD: usize> Ticker<'_, RECORD> {
     }
 }
 
-impl<const RECORD: usize> Rotor<RECORD> {
+impl<const RECORD: usize> RotorSupervisor<RECORD> {
     /// As [`Core::self_test`], by [`Self::tick`]: both planes, and what they know of each other.
     pub fn self_test(&mut self) -> SelfTest {
         let kept = self.ticking().begin_test(&SHAFT, &CONFIG);
@@ -282,7 +282,7 @@ impl<const RECORD: usize> Rotor<RECORD> {
 }
 
 impl<const RECORD: usize> RotorTicker<'_, RECORD> {
-    /// As [`Rotor::self_test`], by [`Self::tick`], which publishes the modes of the test meanwhile.
+    /// As [`RotorSupervisor::self_test`], by [`Self::tick`], which publishes the modes of the test meanwhile.
     pub fn self_test(&mut self) -> SelfTest {
         let kept = self.begin_test(&SHAFT, &CONFIG);
         let result = SelfTest::run(OF_ROTOR, |sample| {

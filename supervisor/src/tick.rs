@@ -1,28 +1,28 @@
 //! The tick, per unit: its body reads as the list of files.
 
-use crate::beside::Beside;
-use crate::cells::Cells;
-use crate::classify::Classifier;
-use crate::coeffs::Coeffs;
-use crate::detect::Detector;
-use crate::estimate::{Contact, Observer};
-use crate::guard::Guard;
-use crate::handover::Readiness;
-use crate::impact::{Impact, Speed};
-use crate::law::View;
-use crate::limit::{Budget, ForceEnvelope};
-use crate::phase::{Judged, Phase};
-use crate::reading::{Actuator, Reading, SampleFlags};
-use crate::scalar::Scalar;
-use crate::severity::{Evidence, Severity};
-use crate::signal::{
+use crate::account::severity::{Evidence, Severity};
+use crate::act::handover::Readiness;
+use crate::act::law::View;
+use crate::act::limit::{Budget, ForceEnvelope};
+use crate::act::{handover, limit};
+use crate::border::coeffs::Coeffs;
+use crate::border::signal::{
     CoreCommand, CoreSample, Events, IntegratorHint, Limits, Mode, RejectReason, Status,
 };
-use crate::spin::Spin;
-use crate::trust::Trust;
-use crate::vec2::Vec2;
-use crate::words::{Words as _, words_of_fields};
-use crate::{handover, limit};
+use crate::decide::classify::Classifier;
+use crate::decide::detect::Detector;
+use crate::decide::detect::{Impact, Speed};
+use crate::decide::phase::{Phase, TrustVerdict};
+use crate::decide::trust::Trust;
+use crate::estimate::neighbour::Neighbour;
+use crate::estimate::observer::{Contact, Observer};
+use crate::number::scalar::Scalar;
+use crate::number::vec2::Vec2;
+use crate::number::words::Cells;
+use crate::number::words::{Words as _, words_of_fields};
+use crate::sense::guard::Guard;
+use crate::sense::reading::Spin;
+use crate::sense::reading::{Actuator, Reading, SampleFlags};
 
 /// Contact can be avoided for good where this share of the work that force and shaft can do is enough: with a half some
 /// rotors come into the middle one swing of their shaft later.
@@ -75,14 +75,14 @@ impl<S: Scalar> State<S> {
     pub(crate) fn tick(
         &mut self,
         sample: &CoreSample<S>,
-        beside: &impl Beside<S>,
+        beside: &impl Neighbour<S>,
         coeffs: &Coeffs<S>,
     ) -> CoreCommand<S> {
-        let tilting = beside.tilting();
+        let coupling = beside.coupling();
         let pinned = matches!(self.phase, Phase::Pinned { .. });
         let wall = self.detector.wall(pinned);
-        if let Some(tilting) = tilting {
-            let gained = tilting.gained(coeffs.tick);
+        if let Some(coupling) = coupling {
+            let gained = coupling.gained(coeffs.tick);
             self.observer.push(gained, wall, coeffs);
         }
         // An axis that does not track its command is as good as lost.
@@ -102,7 +102,7 @@ impl<S: Scalar> State<S> {
         let (position, actuator) = (reading.position(), reading.actuator());
         let touch = self.detector.sample(position, coeffs);
         let wall = self.detector.wall(pinned);
-        let acting = (actuator, tilting.map(|tilting| tilting.unbalance));
+        let acting = (actuator, coupling.map(|coupling| coupling.unbalance));
         let (motion, off_axis) = (self.observer).advance(position, spin, wall, acting, coeffs);
         let envelope = ForceEnvelope::new(&self.budget, actuator.axes, coeffs);
         if self.levitates_as_usual(sample, flags, wall)
@@ -116,16 +116,16 @@ impl<S: Scalar> State<S> {
             (&motion, off_axis),
             touch,
             (envelope.cap, margin),
-            tilting,
+            coupling,
             coeffs,
         );
-        let made_up = || match wall {
-            Contact::Impact => self.observer.made_up(contact.normal, coeffs),
+        let blind_speed = || match wall {
+            Contact::Impact => self.observer.blind_speed(contact.normal, coeffs),
             _ => S::ZERO,
         };
         let seen = position.is_some();
         let rubs = self.classifier.rubs();
-        let class = (self.classifier).classify(&contact, (seen, made_up), spin, coeffs);
+        let class = (self.classifier).classify(&contact, (seen, blind_speed), spin, coeffs);
 
         // A rotor that levitates, and will, needs none of what follows.
         let (mut speed, mut ahead, mut calm) = (Speed::default(), None, false);
@@ -133,7 +133,7 @@ impl<S: Scalar> State<S> {
         let square = self.observer.velocity().length_squared();
         let flies = wall == Contact::None;
         let quiet = self.guard.innovation.is_quiet(coeffs);
-        let mut judged = Judged {
+        let mut verdict = TrustVerdict {
             quiet,
             hands_back: (self.trust).tick(
                 (square, flies),
@@ -146,8 +146,8 @@ impl<S: Scalar> State<S> {
             has_turned: self.classifier.has_turned(),
             trusted: quiet
                 && self.trust.is_granted()
-                && tilting.is_none_or(|tilting| tilting.is_in_time(coeffs)),
-            unsettled: quiet && tilting.is_some_and(|tilting| tilting.unsettled),
+                && coupling.is_none_or(|coupling| coupling.is_in_time(coeffs)),
+            unsettled: quiet && coupling.is_some_and(|coupling| coupling.unsettled),
             whirl_only: !coeffs.acts_in_flight || sample.status.contains(Status::SET_DOWN),
             harmless: false,
         };
@@ -161,30 +161,35 @@ impl<S: Scalar> State<S> {
             if slow {
                 let asks = -Vec2::from_array(sample.levitation).dot(contact.normal);
                 // What is no number is no force to spare.
-                judged.harmless = asks < envelope.cap * S::from_f32(SPARES_BELOW);
+                verdict.harmless = asks < envelope.cap * S::from_f32(SPARES_BELOW);
             }
             if contact.touching {
-                let keeps_out = self.phase == Phase::Levitated && judged.touches_on;
+                let keeps_out = self.phase == Phase::Levitated && verdict.touches_on;
                 if keeps_out && self.readiness.is_pressed() {
                     // It lies where the controller wants it.
-                    (judged.harmless, judged.unsettled) = (true, false);
+                    (verdict.harmless, verdict.unsettled) = (true, false);
                 }
             } else {
                 ahead = Impact::ahead(&motion, contact.radius, &speed);
                 let beyond = (speed.value() - margin).max(S::ZERO);
                 let share = S::from_f32(CALM_SHARE);
-                calm = flies && contact.stops(beyond, envelope.cap, share, coeffs);
-                if let Some(tilting) = tilting
+                calm = flies && contact.can_stop_before_wall(beyond, envelope.cap, share, coeffs);
+                if let Some(coupling) = coupling
                     && flies
                     && !calm
                 {
-                    calm = contact.curls(&motion, tilting, (margin, envelope.cap, share), coeffs);
+                    calm = contact.nutation_avoids_contact(
+                        &motion,
+                        coupling,
+                        (margin, envelope.cap, share),
+                        coeffs,
+                    );
                 }
             }
         }
         let waited = self.phase.has_waited(coeffs);
         let ready = self.readiness.ready() || (waited && !self.readiness.comes_nearer());
-        let patience = (calm, ready, judged);
+        let patience = (calm, ready, verdict);
         let (phase, events) = (self.phase).next(&contact, patience, class, flags, coeffs);
         self.phase = phase;
         let mode = phase.mode();
@@ -198,10 +203,10 @@ impl<S: Scalar> State<S> {
         let last = if shadow { self.own } else { self.force };
         // Under impacts and in whirl nobody asks what the levitation controller wants.
         let holds = mode == Mode::Pinned || !contact.touching;
-        let has_a_say =
+        let uses_levitation =
             holds || matches!(mode, Mode::Levitated | Mode::HandedBack | Mode::SensorFault);
         let command = Vec2::from_array(sample.levitation);
-        let (levitation, levitation_limits) = if has_a_say {
+        let (levitation, levitation_limits) = if uses_levitation {
             // What it makes of a coordinate that is none takes no room from the other.
             let command = if mode == Mode::SensorFault {
                 flags.sensed(command, Vec2::ZERO)
@@ -216,11 +221,11 @@ impl<S: Scalar> State<S> {
         // A doubt counts as much as the model that it is by.
         let wrong = flags.contains(SampleFlags::ON)
             && match assessment.refusal {
-                RejectReason::Doubted => judged.trusted,
+                RejectReason::Doubted => verdict.trusted,
                 refusal => refusal.is_wrong(),
             };
         if !phase.is_engaged() {
-            if judged.touches_on {
+            if verdict.touches_on {
                 let outwards = match contact.touching {
                     true => levitation.dot(contact.normal),
                     false => S::ZERO,
@@ -229,7 +234,7 @@ impl<S: Scalar> State<S> {
             } else {
                 self.readiness = Readiness::default();
             }
-        } else if tilting.is_some() {
+        } else if coupling.is_some() {
             self.trust.acts();
         }
         let (target, bound) = if wrong && matches!(mode, Mode::Levitated | Mode::Handover) {
@@ -238,8 +243,8 @@ impl<S: Scalar> State<S> {
             (levitation, levitation_limits)
         } else {
             // Laid down here alone: in most ticks nobody wants a force, and all of it stays in registers.
-            let mut acted_on = match tilting {
-                Some(tilting) if !contact.touching => tilting.ahead(&motion, coeffs),
+            let mut acted_on = match coupling {
+                Some(coupling) if !contact.touching => coupling.ahead(&motion, coeffs),
                 _ => motion,
             };
             if calm && matches!(phase, Phase::Approach { .. }) {
@@ -452,8 +457,8 @@ impl<S: Scalar> State<S> {
 
     /// Lays all of it down. Once, for who keeps it and for who writes down a new one.
     #[inline(never)]
-    pub(crate) fn lay_all<const WORDS: usize>(&self, cells: &Cells<WORDS>) {
-        self.lay(cells.all(), 0);
+    pub(crate) fn write_all<const WORDS: usize>(&self, cells: &Cells<WORDS>) {
+        self.write_cells(cells.all(), 0);
     }
 
     /// The severity in words of the whole.
@@ -475,7 +480,7 @@ impl<S: Scalar> State<S> {
             + phase.word_count()
             + trust.word_count()
             + budget.word_count();
-        Severity::take(&mut words.skip(before as usize))
+        Severity::decode(&mut words.skip(before as usize))
     }
 
     /// Where the axis is by the estimate, and whether it touches.

@@ -1,6 +1,6 @@
 //! Between command and actuator: a command that is not renewed in time expires.
 
-use crate::scalar::Scalar;
+use crate::number::scalar::Scalar;
 
 /// Holds the last command for the actuator's own loop, and lets it expire: a supervisor that is no longer
 /// called must not leave its last force on the magnet.

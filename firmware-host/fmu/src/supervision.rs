@@ -7,7 +7,9 @@ use crate::said::SAID;
 use crate::variable::{Kind, Output, Role, Value, Variable};
 use firmware_bench::run::trace::Said;
 use firmware_bench::scene::Scene;
-use supervisor::{Command, Config, IntegratorHint, PARAMETERS, Rotor, Sample, Status, Supervisor};
+use supervisor::{
+    Command, Config, IntegratorHint, PARAMETERS, RotorSupervisor, Sample, Status, Supervisor,
+};
 
 /// Configurations of the planes that have one, with the plane's number in the scene; none where the scene has no supervisor.
 fn configs(scene: &Scene) -> Vec<(usize, Config)> {
@@ -124,7 +126,7 @@ pub(crate) fn start(scene: &Scene, set: &[Set<'_>]) -> Result<Box<dyn Model>, St
             let shaft = scene
                 .shaft()
                 .ok_or("the rotor cannot be told to a supervisor")?;
-            let rotor = Rotor::as_told(&shaft, &[*first, *second]);
+            let rotor = RotorSupervisor::from_planes(&shaft, &[*first, *second]);
             Some(rotor.map_err(|error| error.to_string())?)
         }
         _ => None,
@@ -145,7 +147,7 @@ pub(crate) fn start(scene: &Scene, set: &[Set<'_>]) -> Result<Box<dyn Model>, St
 
 enum Supervisors {
     Planes(Vec<Supervisor>),
-    Rotor(Box<Rotor>),
+    Rotor(Box<RotorSupervisor>),
 }
 
 struct Supervision {

@@ -2,8 +2,8 @@
 
 use crate::wire::{self, CommandBits, Hash, SampleBits};
 use supervisor::{
-    Command, Config, Core, CoreCommand, CoreSample, Mode, Place, Prepared, Q, Rotor, RotorCommand,
-    Sample, Shaft, Stamp, Supervisor,
+    Command, Config, Core, CoreCommand, CoreSample, Mode, PlanePositions, Prepared, Q,
+    RotorCommand, RotorSupervisor, Sample, Shaft, Stamp, Supervisor,
 };
 
 /// Ticks of the flight record in floats. Host and image must agree: the tick at which a record freezes is part of
@@ -18,7 +18,7 @@ pub type Float = Supervisor<RECORD>;
 pub type Fixed = Core<Q, SHORT_RECORD>;
 
 /// Floats in SI, of a rotor in two bearing planes.
-pub type Pair = Rotor<RECORD>;
+pub type Pair = RotorSupervisor<RECORD>;
 
 /// What can be ticked, and its ticks counted.
 pub trait Ticked: Sized {
@@ -179,7 +179,7 @@ fn fitting(config: &Config) -> Config {
 /// A gyroscopic rotor whose impacts at either end move the mass of this configuration.
 pub fn shaft(config: &Config) -> Shaft {
     let (mass_kg, arm_m) = (2.0 * config.mass_kg, 0.2);
-    let end = |place_m: f32| Place {
+    let end = |place_m: f32| PlanePositions {
         retainer_m: place_m,
         sensor_m: place_m,
         magnet_m: 0.8 * place_m,

@@ -5,7 +5,7 @@ use crate::code::Code;
 use crate::halves;
 use crate::pointer::{Argument, Place};
 use crate::structs::{CBearing, CShaft};
-use supervisor::{Bearing, Config, Machine, PARAMETERS};
+use supervisor::{Bearing, Config, PARAMETERS, RotorCore};
 
 /// Where the values of so many planes go.
 ///
@@ -70,7 +70,7 @@ pub unsafe extern "C" fn amb_config_for_rotor(
         let shaft = shaft.into();
         let configs = Config::for_rotor(&shaft, &bearings.map(Bearing::from));
         let (_, configs) =
-            Machine::new(&shaft, &configs).map_err(|error| halves::code_of_shaft(&error))?;
+            RotorCore::new(&shaft, &configs).map_err(|error| halves::code_of_shaft(&error))?;
         place.put(configs.map(|config| config.values()));
         Ok(())
     });

@@ -9,7 +9,7 @@ use core::cell::UnsafeCell;
 use core::mem::MaybeUninit;
 use core::sync::atomic::{AtomicUsize, Ordering};
 use supervisor::{
-    Config, ConfigError, Machine, Published, Reader, RotorReader, RotorTicker, Shaft, ShaftError,
+    Config, ConfigError, Published, Reader, RotorCore, RotorReader, RotorTicker, Shaft, ShaftError,
     Supervisor, Ticker,
 };
 
@@ -36,7 +36,7 @@ pub type RotorStorage = Halves<Rotor>;
 #[derive(Debug)]
 #[repr(C)]
 pub struct Rotor {
-    machine: Machine,
+    machine: RotorCore,
     planes: [Supervisor<RECORD>; 2],
 }
 
@@ -275,11 +275,11 @@ fn put_rotor(
     shaft: &Shaft,
     configs: &[Config; 2],
 ) -> Result<(), ShaftError> {
-    let (machine, [first, second]) = Machine::new(shaft, configs)?;
+    let (machine, [first, second]) = RotorCore::new(shaft, configs)?;
     let place = place.as_mut_ptr();
     // SAFETY: fields of the place, which is writable and used by nobody else; what is uninitialised is not read.
     let (machine_place, planes) = unsafe {
-        let machine = &mut *(&raw mut (*place).machine).cast::<MaybeUninit<Machine>>();
+        let machine = &mut *(&raw mut (*place).machine).cast::<MaybeUninit<RotorCore>>();
         type Planes = [MaybeUninit<Supervisor<RECORD>>; 2];
         let planes = &mut *(&raw mut (*place).planes).cast::<Planes>();
         (machine, planes)

@@ -5,8 +5,8 @@ use crate::layout::{Layout, defined};
 use core::ffi::c_char;
 use core::mem::offset_of;
 use supervisor::{
-    Bearing, Command, Mode, Place, QueuedEvent, Report, RotorCommand, SECTION_BYTES, Sample, Shaft,
-    Stamp, Status,
+    Bearing, Command, Mode, PlanePositions, QueuedEvent, Report, RotorCommand, SECTION_BYTES,
+    Sample, Shaft, Stamp, Status,
 };
 
 /// A struct with the offset of each field, checked at compile time.
@@ -363,7 +363,7 @@ impl From<CBearing> for Bearing {
 impl From<CShaft> for Shaft {
     fn from(c: CShaft) -> Self {
         let [retainer, sensor, magnet] = [c.retainer_m, c.sensor_m, c.magnet_m];
-        let place = |retainer_m, sensor_m, magnet_m| Place {
+        let place = |retainer_m, sensor_m, magnet_m| PlanePositions {
             retainer_m,
             sensor_m,
             magnet_m,

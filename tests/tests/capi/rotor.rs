@@ -4,10 +4,10 @@ use crate::firmware::said_by;
 use crate::library::{Target, beside, built, capi, good, host_program, said_with_rig};
 use crate::rig::Rig;
 use std::process::Command;
-use supervisor::{Config, Place, Rotor, Shaft};
+use supervisor::{Config, PlanePositions, RotorSupervisor, Shaft};
 
 pub(crate) fn shaft() -> Shaft {
-    let place = |retainer_m, sensor_m, magnet_m| Place {
+    let place = |retainer_m, sensor_m, magnet_m| PlanePositions {
         retainer_m,
         sensor_m,
         magnet_m,
@@ -23,7 +23,7 @@ pub(crate) fn shaft() -> Shaft {
 /// The last line of `pair.c`.
 fn pair_of_rust() -> String {
     let config = Config::from_values(Rig::VALUES);
-    let mut rotor = Rotor::<512>::new(&shaft(), &[config; 2]).unwrap();
+    let mut rotor = RotorSupervisor::<512>::new(&shaft(), &[config; 2]).unwrap();
     let mut ends = [Rig::new(), Rig::new()];
     let (mut told, mut asked) = (0, 0);
     while ends[0].tick < Rig::TICKS {

@@ -13,7 +13,8 @@ use std::fs;
 use std::path::Path;
 use std::process::Output;
 use supervisor::{
-    Config, Core, Events, NO_STATE, Prepared, Q, Record, Rotor, Scalar, Stamp, Status, Supervisor,
+    Config, Core, Events, NO_STATE, Prepared, Q, Record, RotorSupervisor, Scalar, Stamp, Status,
+    Supervisor,
 };
 use system_tests::rig::{config, sample};
 use system_tests::storm::{AnyBits, Chance, Storm};
@@ -38,7 +39,7 @@ fn landings() -> [Vec<u8>; 3] {
     let mut plane = Supervisor::<64>::new(&config()).unwrap();
     let prepared = Prepared::<Q>::new(&config()).unwrap();
     let mut core = Core::<Q, 64>::new(&prepared);
-    let mut rotor = Rotor::<64>::new(&shaft(&config()), &[config(); 2]).unwrap();
+    let mut rotor = RotorSupervisor::<64>::new(&shaft(&config()), &[config(); 2]).unwrap();
     let scaling = config().scaling();
     for i in 0..900 {
         let at = sample(i, way(i));

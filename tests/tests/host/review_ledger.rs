@@ -5,7 +5,7 @@ use firmware_image::under_test::shaft;
 use serde_json::Value;
 use std::path::PathBuf;
 use std::process::Output;
-use supervisor::{LEDGER_BYTES, Ledger, Record, Rotor, Stamp, Supervisor};
+use supervisor::{LEDGER_BYTES, Ledger, Record, RotorSupervisor, Stamp, Supervisor};
 use system_tests::rig::{LANDING_TICKS, config, landing, sample};
 use system_tests::{host, scene_path};
 use tempfile::TempDir;
@@ -179,7 +179,7 @@ fn what_is_left_is_what_the_rule_says() {
 #[test]
 fn a_rotor_has_two_ledgers() {
     let files = Files::new();
-    let mut rotor = Rotor::<64>::new(&shaft(&config()), &[config(); 2]).unwrap();
+    let mut rotor = RotorSupervisor::<64>::new(&shaft(&config()), &[config(); 2]).unwrap();
     for i in 0..LANDING_TICKS {
         rotor.tick(&[sample(i, landing(i)), sample(i, [1e-6 * (i % 3) as f32; 2])]);
     }

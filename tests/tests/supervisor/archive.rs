@@ -4,8 +4,8 @@ use firmware_bench::record::file::RecordFile;
 use firmware_bench::record::replay::replay;
 use firmware_image::under_test::shaft;
 use supervisor::{
-    Archive, ArchiveIn, ArchivePlace, Core, Prepared, Q, Record, Rotor, RotorArchive, Scalar,
-    Stamp, Supervisor,
+    Archive, ArchiveIn, ArchivePlace, Core, Prepared, Q, Record, RotorArchive, RotorSupervisor,
+    Scalar, Stamp, Supervisor,
 };
 use system_tests::per_unit::in_numbers;
 use system_tests::rig::{LANDING_TICKS as LANDING, config, landing, sample};
@@ -96,7 +96,7 @@ fn the_oldest_goes_first_and_is_counted() {
 /// Requirement: SR-40
 #[test]
 fn of_a_rotor_both_planes_are_kept() {
-    let mut rotor = Rotor::<RECORD>::new(&shaft(&config()), &[config(); 2]).unwrap();
+    let mut rotor = RotorSupervisor::<RECORD>::new(&shaft(&config()), &[config(); 2]).unwrap();
     let (mut ticker, mut reader) = rotor.split();
     let mut archive = RotorArchive::<RECORD, 2>::new();
     let mut at_once = Vec::new();
@@ -128,7 +128,7 @@ fn of_a_rotor_both_planes_are_kept() {
 /// Requirement: SR-40
 #[test]
 fn borrowed_places_keep_the_same() {
-    let mut rotor = Rotor::<RECORD>::new(&shaft(&config()), &[config(); 2]).unwrap();
+    let mut rotor = RotorSupervisor::<RECORD>::new(&shaft(&config()), &[config(); 2]).unwrap();
     let mut other = rotor.clone();
     let ((mut ticker, mut reader), (mut also, mut reads)) = (rotor.split(), other.split());
     let mut archive = RotorArchive::<RECORD, 2>::new();

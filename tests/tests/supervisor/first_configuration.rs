@@ -3,8 +3,8 @@
 use proptest::prelude::*;
 use std::hint::black_box;
 use supervisor::{
-    Bearing, Config, ConfigError, DefaultRule, PARAMETERS, Place, Rotor, Sample, Shaft, ShaftError,
-    Supervisor,
+    Bearing, Config, ConfigError, DefaultRule, PARAMETERS, PlanePositions, RotorSupervisor, Sample,
+    Shaft, ShaftError, Supervisor,
 };
 use system_tests::bearing::bearing;
 
@@ -181,7 +181,7 @@ proptest! {
         b in any_bearing(),
     ) {
         let ends = [b, Bearing { friction_coefficient: 0.3, sensor_noise_m: 0.5 * b.sensor_noise_m, ..b }];
-        let end = |retainer_m: f32| Place { retainer_m, sensor_m: 0.95 * retainer_m, magnet_m: 0.9 * retainer_m };
+        let end = |retainer_m: f32| PlanePositions { retainer_m, sensor_m: 0.95 * retainer_m, magnet_m: 0.9 * retainer_m };
         let shaft = Shaft {
             mass_kg,
             transverse_inertia_kg_m2: 0.05 * mass_kg,
@@ -189,7 +189,7 @@ proptest! {
             places: [end(-share), end(1.0 - share)],
         };
         let configs = Config::for_rotor(&shaft, &ends);
-        let made = Rotor::<16>::new(&shaft, &configs).map(drop);
+        let made = RotorSupervisor::<16>::new(&shaft, &configs).map(drop);
         let contradicts = |error: &ConfigError| error.contradiction.is_some();
         match made {
             Err(ShaftError::Plane(_, error)) if contradicts(&error) => {}

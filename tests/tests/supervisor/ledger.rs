@@ -2,8 +2,8 @@
 
 use firmware_image::under_test::shaft;
 use supervisor::{
-    Config, Core, LEDGER_BYTES, Ledger, LedgerError, Prepared, Q, Rotor, Summary, Supervisor,
-    crc_of,
+    Config, Core, LEDGER_BYTES, Ledger, LedgerError, Prepared, Q, RotorSupervisor, Summary,
+    Supervisor, crc_of,
 };
 use system_tests::per_unit::in_numbers;
 use system_tests::rig::{config, landing, sample};
@@ -83,7 +83,7 @@ fn landings_without_a_record_are_in_the_ledger() {
 fn every_kind_of_record_can_be_added() {
     let mut core = Core::<Q, 64>::new(&Prepared::new(&config()).unwrap());
     let scaling = config().scaling();
-    let mut rotor = Rotor::<64>::new(&shaft(&config()), &[config(); 2]).unwrap();
+    let mut rotor = RotorSupervisor::<64>::new(&shaft(&config()), &[config(); 2]).unwrap();
     for i in 0..LANDING {
         let at = sample(i, landing(i));
         core.tick(&in_numbers(&scaling.sample(&at)));

@@ -2,8 +2,8 @@
 
 use proptest::prelude::*;
 use supervisor::{
-    Config, Core, Events, Place, Prepared, Q, Rotor, Sample, Scalar, Shaft, Stamp, Status,
-    Supervisor,
+    Config, Core, Events, PlanePositions, Prepared, Q, RotorSupervisor, Sample, Scalar, Shaft,
+    Stamp, Status, Supervisor,
 };
 
 /// A unit of Q.
@@ -83,7 +83,7 @@ proptest! {
 #[test]
 fn self_test_knows_its_answers() {
     let config = Config::example();
-    let end = |retainer_m: f32| Place {
+    let end = |retainer_m: f32| PlanePositions {
         retainer_m,
         sensor_m: 0.9 * retainer_m,
         magnet_m: 0.8 * retainer_m,
@@ -95,7 +95,7 @@ fn self_test_knows_its_answers() {
         places: [end(-0.2), end(0.3)],
     };
     let mut supervisor = Supervisor::<64>::new(&config).unwrap();
-    let mut rotor = Rotor::<64>::new(&shaft, &[config; 2]).unwrap();
+    let mut rotor = RotorSupervisor::<64>::new(&shaft, &[config; 2]).unwrap();
     let tests = [
         ("f32", core_of::<f32>(&config).self_test()),
         ("f64", core_of::<f64>(&config).self_test()),

@@ -2,7 +2,8 @@
 
 use firmware_image::under_test::{half_a_turn, shaft};
 use supervisor::{
-    Config, Events, Mode, Place, Rotor, RotorCommand, Sample, Shaft, ShaftError, Status, Supervisor,
+    Config, Events, Mode, PlanePositions, RotorCommand, RotorSupervisor, Sample, Shaft, ShaftError,
+    Status, Supervisor,
 };
 use system_tests::rig::{RADIUS_M, WHIRL_STEP, check, config, on_circle, sample};
 
@@ -30,7 +31,7 @@ fn led(tick: u32, from: u32) -> [f32; 2] {
 
 /// Ticks of both ends, each led from a tick on; `None`: it stays in the middle.
 fn run(
-    rotor: &mut Rotor<RECORD>,
+    rotor: &mut RotorSupervisor<RECORD>,
     ticks: std::ops::Range<u32>,
     from: [Option<u32>; 2],
 ) -> Vec<RotorCommand> {
@@ -45,8 +46,8 @@ fn run(
         .collect()
 }
 
-fn rotor(config: &Config) -> Rotor<RECORD> {
-    Rotor::new(&shaft(config), &[*config; 2]).unwrap()
+fn rotor(config: &Config) -> RotorSupervisor<RECORD> {
+    RotorSupervisor::new(&shaft(config), &[*config; 2]).unwrap()
 }
 
 fn engaged_at(commands: &[RotorCommand], end: usize) -> Option<usize> {
@@ -301,7 +302,7 @@ fn arbitrary_bits_give_forces_within_the_caps() {
     for extent in 0..60 {
         let spread = |bits: u32| 10_f32.powi(bits as i32 % 9 - 4);
         let transverse = spread(next());
-        let mut end = |sign: f32| Place {
+        let mut end = |sign: f32| PlanePositions {
             retainer_m: sign * spread(next()),
             sensor_m: sign * spread(next()),
             magnet_m: sign * spread(next()),
@@ -313,7 +314,7 @@ fn arbitrary_bits_give_forces_within_the_caps() {
             places: [end(-1.0), end(1.0)],
         };
         // One whose ends throw each other about is refused.
-        let Ok(mut rotor) = Rotor::<RECORD>::as_told(&shaft, &[config; 2]) else {
+        let Ok(mut rotor) = RotorSupervisor::<RECORD>::from_planes(&shaft, &[config; 2]) else {
             continue;
         };
         ran += 1;
@@ -350,7 +351,8 @@ fn arbitrary_bits_give_forces_within_the_caps() {
 fn a_shaft_that_no_body_has_is_refused() {
     let good = shaft(&config());
     let [first, second] = good.places;
-    let refused = |shaft: Shaft| Rotor::<RECORD>::new(&shaft, &[config(); 2]).unwrap_err();
+    let refused =
+        |shaft: Shaft| RotorSupervisor::<RECORD>::new(&shaft, &[config(); 2]).unwrap_err();
     for mass_kg in [0.0, -1.0, f32::NAN, f32::INFINITY] {
         assert_eq!(refused(Shaft { mass_kg, ..good }), ShaftError::Inertia);
     }
@@ -366,7 +368,7 @@ fn a_shaft_that_no_body_has_is_refused() {
         [first, first],
         [
             first,
-            Place {
+            PlanePositions {
                 sensor_m: f32::NAN,
                 ..second
             },
@@ -375,7 +377,7 @@ fn a_shaft_that_no_body_has_is_refused() {
         assert_eq!(refused(Shaft { places, ..good }), ShaftError::Places);
     }
     // A magnet so far beyond the centre of percussion that it pushes the bearing the other way.
-    let beyond = Place {
+    let beyond = PlanePositions {
         magnet_m: -10.0 * second.magnet_m,
         ..second
     };

@@ -5,8 +5,8 @@ use firmware_bench::record::replay::replay;
 use firmware_image::under_test::shaft;
 use std::sync::atomic::{AtomicBool, Ordering};
 use supervisor::{
-    Command, Config, Core, Events, Prepared, Q, QueuedEvent, Reader, Record, Rotor, Scalar, Stamp,
-    Status, Supervisor,
+    Command, Config, Core, Events, Prepared, Q, QueuedEvent, Reader, Record, RotorSupervisor,
+    Scalar, Stamp, Status, Supervisor,
 };
 use system_tests::per_unit::in_numbers;
 use system_tests::rig::{LANDING_TICKS as LANDING, config, landing as way, sample};
@@ -172,7 +172,7 @@ fn nothing_is_torn_where_both_run_at_once() {
 /// Requirement: SR-31
 #[test]
 fn halves_of_a_rotor_do_what_the_whole_does() {
-    let mut whole = Rotor::<RECORD>::new(&shaft(&config()), &[config(); 2]).unwrap();
+    let mut whole = RotorSupervisor::<RECORD>::new(&shaft(&config()), &[config(); 2]).unwrap();
     let mut parted = whole.clone();
     let (mut ticker, mut reader) = parted.split();
     let mut files = (Vec::new(), Vec::new());

@@ -3,7 +3,8 @@
 
 use firmware_image::under_test::shaft;
 use supervisor::{
-    Core, Events, Limits, Mode, Prepared, Q, RejectReason, Rotor, Sample, Status, Supervisor,
+    Core, Events, Limits, Mode, Prepared, Q, RejectReason, RotorSupervisor, Sample, Status,
+    Supervisor,
 };
 use system_tests::bench::Bench;
 use system_tests::rig::{RADIUS_M, config, on_circle, sample};
@@ -144,7 +145,7 @@ fn a_rotor_that_swings_on_in_flight_is_given_up_at_once() {
     };
     let mut plane = Bench::new(&config());
     let alone = longest(&mut |i| plane.tick(swinging(i)).mode);
-    let mut rotor = Rotor::<64>::new(&shaft(&config()), &[config(); 2]).unwrap();
+    let mut rotor = RotorSupervisor::<64>::new(&shaft(&config()), &[config(); 2]).unwrap();
     let of_rotor = longest(&mut |i| rotor.tick(&[sample(i, swinging(i)); 2]).planes[0].mode);
     assert!(
         of_rotor > WINDOW_TICKS && of_rotor <= 2 * WINDOW_TICKS,
@@ -314,7 +315,7 @@ fn a_rotor_that_was_acted_on_is_not_left_before_it_has_settled() {
     let (off, on) = (touched + 20, touched + 20 + 4 * WINDOW_TICKS);
     let (again, ended) = (on + 20, on + 26);
     let modes = |rubs: bool| {
-        let mut rotor = Rotor::<64>::new(&shaft(&config()), &[config(); 2]).unwrap();
+        let mut rotor = RotorSupervisor::<64>::new(&shaft(&config()), &[config(); 2]).unwrap();
         let mut alone = Supervisor::<64>::new(&config()).unwrap();
         let mut seen = Vec::new();
         for i in 0..ended {

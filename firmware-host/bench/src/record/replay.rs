@@ -3,7 +3,8 @@
 use crate::record::file::PlaneRecord;
 use serde::Serialize;
 use supervisor::{
-    Core, CoreCommand, Entry, Events, Number, Prepared, Q, Rotor, SUPERVISOR_VERSION, Scalar,
+    Core, CoreCommand, Entry, Events, Number, Prepared, Q, RotorSupervisor, SUPERVISOR_VERSION,
+    Scalar,
 };
 
 /// What came of it.
@@ -139,7 +140,7 @@ fn of_rotor(records: [&PlaneRecord; 2]) -> Result<Replay, NoReplay> {
         (Some(shaft), Some(first), Some(second)) => (shaft, first, second),
         _ => return Err(NoReplay::Missing),
     };
-    let mut rotor = Rotor::<4>::resumed(&shaft, &[first, second], states)
+    let mut rotor = RotorSupervisor::<4>::resumed(&shaft, &[first, second], states)
         .map_err(|_| NoReplay::Configuration)?;
     let mut replay = Replay::new();
     for (at_a, at_b) in ticks(a).zip(ticks(b)) {

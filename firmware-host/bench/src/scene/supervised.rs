@@ -1,7 +1,7 @@
 //! The supervisor of a whole rotor: of the two planes that have a magnet each, however many others there are.
 
 use crate::scene::{PlaneScene, Scene};
-use supervisor::{Place, Rotor, Shaft, ShaftError};
+use supervisor::{PlanePositions, RotorSupervisor, Shaft, ShaftError};
 
 impl Scene {
     /// The planes of its supervisor: those that have a magnet, where they are two.
@@ -21,7 +21,7 @@ impl Scene {
     pub fn shaft(&self) -> Option<Shaft> {
         let place = |plane: usize| {
             let magnet = self.machine.magnets.get(self.planes[plane].magnet?)?;
-            Some(Place {
+            Some(PlanePositions {
                 retainer_m: self.machine.planes[plane].position_m as f32,
                 sensor_m: self.machine.probes_m[plane] as f32,
                 magnet_m: magnet.position_m as f32,
@@ -38,12 +38,12 @@ impl Scene {
     }
 
     /// The supervisor of the whole rotor, where there is one for it.
-    pub fn supervisor(&self) -> Option<Rotor> {
+    pub fn supervisor(&self) -> Option<RotorSupervisor> {
         let [first, second] = self.supervised_planes()?;
         let configs = [first.supervisor?, second.supervisor?];
         let made = match &self.told {
-            Some(told) => Rotor::new(told, &configs),
-            None => Rotor::as_told(&self.shaft()?, &configs),
+            Some(told) => RotorSupervisor::new(told, &configs),
+            None => RotorSupervisor::from_planes(&self.shaft()?, &configs),
         };
         made.ok()
     }
@@ -53,7 +53,7 @@ impl Scene {
         let shaft = self.shaft()?;
         let [first, second] = self.supervised_planes()?;
         let configs = [first.supervisor?, second.supervisor?];
-        let error = Rotor::<4>::as_told(&shaft, &configs).err()?;
+        let error = RotorSupervisor::<4>::from_planes(&shaft, &configs).err()?;
         Some((self.supervised()?[1], error))
     }
 }

@@ -11,7 +11,7 @@ use crate::run::trace::{AxisRow, ReadOut, Recorder};
 use crate::run::whole_clairvoyant::WholeReference;
 use crate::scene::Scene;
 use plant_model::{PlantError, Snapshot, V2};
-use supervisor::{IntegratorHint, Rotor, Stamp};
+use supervisor::{IntegratorHint, RotorSupervisor, Stamp};
 
 /// A rig with its stations, sample by sample.
 pub(super) struct Bench<'a> {
@@ -23,7 +23,7 @@ pub(super) struct Bench<'a> {
     /// Who sees its true state.
     pub(super) reference: Option<&'a WholeReference>,
     /// Who supervises it as a whole, and which planes it has.
-    pub(super) supervisor: Option<(Rotor, [usize; 2])>,
+    pub(super) supervisor: Option<(RotorSupervisor, [usize; 2])>,
     pub(super) axis: Option<&'a mut dyn Recorder<AxisRow>>,
     /// What acts at each place for loads.
     loads: Vec<Disturbance>,

@@ -1,0 +1,457 @@
+//! Both ends of one rotor: a supervisor for each, which know of each other what two ends of a rigid body do.
+
+use crate::border::coeffs::Coeffs;
+use crate::border::config::Config;
+use crate::border::shaft::{Shaft, ShaftError};
+use crate::border::signal::{Command, CoreCommand, CoreSample, Events, Sample};
+use crate::number::words::Cells;
+use crate::number::words::Words;
+use crate::per_unit::{Plane, Prepared};
+use crate::record::buffer::RecordBuffer;
+use crate::record::publish::QueuedEvent;
+use crate::record::recorder::Shared;
+use crate::record::sections::Record;
+use crate::rotor::coupling::{Coupling, spin};
+use crate::supervisor::{Published, Reader};
+use crate::supervisor::{Supervisor, in_newtons};
+
+/// What both planes commanded at a tick.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct RotorCommand {
+    /// Each plane its own.
+    pub planes: [Command; 2],
+    /// For each plane, whether the other one has engaged since the records were read: hold back what would disturb now
+    /// (excitation, a set-down, a reconfiguration).
+    pub other_engaged: [bool; 2],
+    /// One plane has asked for the machine to be run down. Stays until [`RotorSupervisor::new`].
+    pub coast_down: bool,
+}
+
+/// Supervisor of a rotor in two radial bearings, with flight records of `RECORD` ticks (a power of two) for each.
+///
+/// ```
+/// use supervisor::{Config, PlanePositions, RotorSupervisor, Sample, Shaft, Status};
+///
+/// let end = |retainer_m: f32| PlanePositions { retainer_m, sensor_m: 0.9 * retainer_m, magnet_m: 0.8 * retainer_m };
+/// let shaft = Shaft {
+///     mass_kg: 20.0,
+///     transverse_inertia_kg_m2: 0.8,
+///     polar_inertia_kg_m2: 0.3,
+///     places: [end(-0.2), end(0.25)],
+/// };
+/// let mut rotor = RotorSupervisor::<512>::new(&shaft, &[Config::example(); 2])?;
+/// let sample = Sample {
+///     status: Status::SPIN_VALID | Status::BEARING_ON,
+///     position_m: [1e-5, -2e-5],
+///     spin_rad_s: 1000.0,
+///     levitation_n: [-12.5, 25.0],
+///     ..Sample::default()
+/// };
+/// let commands = rotor.tick(&[sample; 2]);
+/// assert_eq!(commands.planes[1].force_n, [-12.5, 25.0]); // transparent while levitated
+/// # Ok::<(), supervisor::ShaftError>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct RotorSupervisor<const RECORD: usize = 512> {
+    machine: RotorCore,
+    planes: [Supervisor<RECORD>; 2],
+}
+
+/// The shaft when the states of both planes were kept.
+type KeptShaft = Cells<9>;
+
+/// A rotor without its planes, for memory that is made piece by piece: whoever has no stack for a whole [`RotorSupervisor`] makes this and
+/// two supervisors in their places, and joins them.
+#[derive(Debug, Clone)]
+pub struct RotorCore {
+    state: MachineState,
+    kept_shaft: KeptShaft,
+}
+
+/// What is of the machine and not of a plane.
+#[derive(Debug, Clone)]
+struct MachineState {
+    shaft: Shaft,
+    couplings: [Coupling; 2],
+    /// Planes that have engaged since the records were read.
+    engaged: [bool; 2],
+    coast_down: bool,
+}
+
+/// What a test has to give back.
+pub(crate) struct SavedState {
+    machine: MachineState,
+    coeffs: [Coeffs<f32>; 2],
+}
+
+/// The half of a [`RotorSupervisor`] that ticks: for the control interrupt, or whatever owns the bearings.
+#[derive(Debug)]
+pub struct RotorTicker<'a, const RECORD: usize = 512> {
+    machine: &'a mut MachineState,
+    planes: [&'a mut Plane<f32>; 2],
+    shared: [&'a Shared<RECORD>; 2],
+    kept_shaft: &'a KeptShaft,
+}
+
+/// The half of a [`RotorSupervisor`] that reads; as a [`Reader`], of both planes. A plane is 0 or 1, and anything else the second.
+#[derive(Debug)]
+pub struct RotorReader<'a, const RECORD: usize = 512> {
+    planes: [Reader<'a, f32, RECORD>; 2],
+    kept_shaft: &'a KeptShaft,
+}
+
+impl<const RECORD: usize> RotorSupervisor<RECORD> {
+    /// A supervisor that starts levitated. In each plane's configuration, mass and ratios are those that follow from the
+    /// shaft; stiffness is that of the plane, as for one that stands alone.
+    ///
+    /// # Errors
+    /// [`ShaftError`].
+    pub fn new(shaft: &Shaft, [first, second]: &[Config; 2]) -> Result<Self, ShaftError> {
+        Self::from_planes(shaft, &[shaft.plane(0, first), shaft.plane(1, second)])
+    }
+
+    /// The same with masses and ratios as the configurations say.
+    ///
+    /// # Errors
+    /// [`ShaftError`].
+    pub fn from_planes(shaft: &Shaft, configs: &[Config; 2]) -> Result<Self, ShaftError> {
+        let machine = RotorCore::from_planes(shaft, configs)?;
+        let [first, second] = configs;
+        Ok(Self {
+            machine,
+            planes: [
+                Supervisor::from_valid(first, [0, 2]),
+                Supervisor::from_valid(second, [1, 2]),
+            ],
+        })
+    }
+
+    /// Takes another shaft and other configurations over, as [`Self::new`] does, to hold from the next tick on.
+    ///
+    /// # Errors
+    /// [`ShaftError`]; then nothing has changed.
+    pub fn reconfigure(
+        &mut self,
+        shaft: &Shaft,
+        [first, second]: &[Config; 2],
+    ) -> Result<(), ShaftError> {
+        self.ticking().reconfigured(shaft, [first, second])
+    }
+
+    #[inline]
+    pub(crate) fn ticking(&mut self) -> RotorTicker<'_, RECORD> {
+        let [first, second] = &mut self.planes;
+        self.machine.ticking([first, second])
+    }
+
+    /// Two halves for two priorities, as [`Supervisor::split`].
+    pub fn split(&mut self) -> (RotorTicker<'_, RECORD>, RotorReader<'_, RECORD>) {
+        let [first, second] = &mut self.planes;
+        self.machine.join([first, second])
+    }
+
+    /// One tick of both, in the control interrupt. Both samples carry the number of one counter.
+    // One copy, whoever calls it: the self-test does, too.
+    #[inline(never)]
+    pub fn tick(&mut self, samples: &[Sample; 2]) -> RotorCommand {
+        self.ticking().ticked(samples)
+    }
+
+    /// The same per unit of each plane, without what the whole machine is told: what a record is replayed with.
+    pub fn tick_per_unit(&mut self, samples: &[CoreSample<f32>; 2]) -> [CoreCommand<f32>; 2] {
+        self.ticking().per_unit(samples)
+    }
+
+    /// One that goes on from what another one remembered, as the records of both planes hold it; see [`crate::Core::resumed`].
+    ///
+    /// # Errors
+    /// [`ShaftError`].
+    pub fn resumed(
+        shaft: &Shaft,
+        configs: &[Config; 2],
+        [first, second]: [&[u32]; 2],
+    ) -> Result<Self, ShaftError> {
+        let mut rotor = Self::from_planes(shaft, configs)?;
+        for (plane, words) in rotor.planes.iter_mut().zip([first, second]) {
+            plane.core.resume(words);
+        }
+        Ok(rotor)
+    }
+
+    /// The records of one event, in the background: where they have frozen, which both planes do at once, `write` gets
+    /// them with the number of the plane, 0 or 1, and both wait for the next engagement.
+    ///
+    /// The tick has to be kept out meanwhile; a [`RotorReader`] reads with ticks between.
+    pub fn collect(&mut self, mut write: impl FnMut(usize, &Record<'_, f32, RECORD>)) {
+        let mut any = false;
+        for end in [0, 1] {
+            if let Some(record) = self.record(end) {
+                write(end, &record);
+                any = true;
+            }
+        }
+        if any {
+            self.rearm();
+        }
+    }
+
+    /// The frozen record of a plane, 0 or 1 (anything else is the second), if there is one.
+    pub fn record(&self, end: usize) -> Option<Record<'_, f32, RECORD>> {
+        let planes = self.planes.each_ref().map(|plane| &plane.core.shared);
+        record_of(planes, &self.machine.kept_shaft, end)
+    }
+
+    /// Discards frozen records; both planes wait for the next engagement.
+    pub fn rearm(&mut self) {
+        self.ticking().rearm();
+    }
+
+    /// Supervisor of a plane, for its report and events; 0 or 1, and for anything else the second. Its ticks, configuration and
+    /// record are the rotor's: they go with those of the other plane.
+    pub fn plane(&mut self, end: usize) -> &mut Supervisor<RECORD> {
+        let [first, second] = &mut self.planes;
+        if end == 0 { first } else { second }
+    }
+}
+
+impl RotorCore {
+    /// Of this shaft; and the configurations of its planes, with the masses and ratios that follow from it.
+    ///
+    /// # Errors
+    /// [`ShaftError`].
+    pub fn new(
+        shaft: &Shaft,
+        [first, second]: &[Config; 2],
+    ) -> Result<(Self, [Config; 2]), ShaftError> {
+        let configs = [shaft.plane(0, first), shaft.plane(1, second)];
+        Ok((Self::from_planes(shaft, &configs)?, configs))
+    }
+
+    fn from_planes(shaft: &Shaft, configs: &[Config; 2]) -> Result<Self, ShaftError> {
+        Ok(Self {
+            state: MachineState {
+                couplings: Coupling::of_checked(shaft, configs)?,
+                shaft: *shaft,
+                engaged: [false; 2],
+                coast_down: false,
+            },
+            kept_shaft: Cells::of(shaft.values().map(f32::to_bits)),
+        })
+    }
+
+    #[inline]
+    fn ticking<'a, const RECORD: usize>(
+        &'a mut self,
+        [first, second]: [&'a mut Supervisor<RECORD>; 2],
+    ) -> RotorTicker<'a, RECORD> {
+        let (first, second) = (&mut first.core, &mut second.core);
+        RotorTicker {
+            machine: &mut self.state,
+            planes: [&mut first.plane, &mut second.plane],
+            shared: [&first.shared, &second.shared],
+            kept_shaft: &self.kept_shaft,
+        }
+    }
+
+    /// The halves of a rotor of these planes, made by [`Supervisor::of_rotor`]; as [`RotorSupervisor::split`].
+    pub fn join<'a, const RECORD: usize>(
+        &'a mut self,
+        planes: [&'a mut Supervisor<RECORD>; 2],
+    ) -> (RotorTicker<'a, RECORD>, RotorReader<'a, RECORD>) {
+        let ticker = self.ticking(planes);
+        ticker.publish(true);
+        let reader = RotorReader {
+            planes: ticker.shared.map(Reader::new),
+            kept_shaft: ticker.kept_shaft,
+        };
+        (ticker, reader)
+    }
+}
+
+/// The record of a plane, once both have frozen.
+fn record_of<'a, const RECORD: usize>(
+    [first, second]: [&'a Shared<RECORD>; 2],
+    kept_shaft: &KeptShaft,
+    end: usize,
+) -> Option<Record<'a, f32, RECORD>> {
+    let [first, second] = [Record::new(&first.buffer)?, Record::new(&second.buffer)?];
+    let mut record = if end == 0 { first } else { second };
+    record.shaft = Some(Words::decode(&mut kept_shaft.words()));
+    Some(record)
+}
+
+impl<const RECORD: usize> RotorTicker<'_, RECORD> {
+    /// As [`RotorSupervisor::tick`]; the reader sees what has come of it from then on.
+    // One copy, whoever calls it: the self-test does, too.
+    #[inline(never)]
+    pub fn tick(&mut self, samples: &[Sample; 2]) -> RotorCommand {
+        let command = self.ticked(samples);
+        self.publish(false);
+        command
+    }
+
+    /// As [`RotorSupervisor::reconfigure`]: between two ticks.
+    ///
+    /// # Errors
+    /// [`ShaftError`]; then nothing has changed.
+    pub fn reconfigure(&mut self, shaft: &Shaft, configs: &[Config; 2]) -> Result<(), ShaftError> {
+        let [first, second] = configs;
+        self.reconfigured(shaft, [first, second])?;
+        self.publish(true);
+        Ok(())
+    }
+
+    fn reconfigured(
+        &mut self,
+        shaft: &Shaft,
+        [first, second]: [&Config; 2],
+    ) -> Result<(), ShaftError> {
+        let configs = [shaft.plane(0, first), shaft.plane(1, second)];
+        self.machine.couplings = Coupling::of_checked(shaft, &configs)?;
+        self.machine.shaft = *shaft;
+        for (plane, config) in self.planes.iter_mut().zip(&configs) {
+            // Checked above.
+            let (prepared, _) = Prepared::from_valid(config);
+            plane.reconfigure(&prepared);
+        }
+        Ok(())
+    }
+
+    /// For a test in its place, see [`Plane::begin_test`]: another shaft and both planes alike.
+    pub(crate) fn begin_test(&mut self, shaft: &Shaft, config: &Config) -> SavedState {
+        let configs = [shaft.plane(0, config), shaft.plane(1, config)];
+        let kept = self.machine.clone();
+        if let Ok(couplings) = Coupling::of_checked(shaft, &configs) {
+            self.machine.couplings = couplings;
+        }
+        let [first, second] = &mut self.planes;
+        let [to_first, to_second] = configs.map(|config| Prepared::from_valid(&config).0);
+        SavedState {
+            machine: kept,
+            coeffs: [first.begin_test(&to_first), second.begin_test(&to_second)],
+        }
+    }
+
+    /// After it, as new.
+    pub(crate) fn end_test(&mut self, kept: SavedState) {
+        *self.machine = MachineState {
+            engaged: [false; 2],
+            coast_down: false,
+            ..kept.machine
+        };
+        let planes = self.planes.iter_mut().zip(self.shared);
+        (planes.zip(kept.coeffs))
+            .for_each(|((plane, shared), coeffs)| plane.end_test(shared, coeffs));
+    }
+
+    pub(crate) fn publish(&self, with_units: bool) {
+        let pairs = self.planes.iter().zip(self.shared);
+        pairs.for_each(|(plane, shared)| plane.publish(shared, with_units));
+    }
+
+    fn rearm(&mut self) {
+        let pairs = self.planes.iter_mut().zip(self.shared);
+        pairs.for_each(|(plane, shared)| plane.rearm(shared));
+        self.machine.engaged = [false; 2];
+    }
+
+    #[inline]
+    fn ticked(&mut self, samples: &[Sample; 2]) -> RotorCommand {
+        let [at_first, at_second] = samples;
+        let [first, second] = &self.planes;
+        let per_unit = [
+            first.scaling().sample(at_first),
+            second.scaling().sample(at_second),
+        ];
+        let [to_first, to_second] = self.per_unit(&per_unit);
+        let [first, second] = &self.planes;
+        let planes = [
+            in_newtons(first.scaling(), at_first, &per_unit[0], &to_first),
+            in_newtons(second.scaling(), at_second, &per_unit[1], &to_second),
+        ];
+        let machine = &mut *self.machine;
+        for ((engaged, plane), command) in machine.engaged.iter_mut().zip(&self.planes).zip(&planes)
+        {
+            let engages = command.mode.is_engaged();
+            // Over, and nothing was worth a record.
+            let leaves_nothing = !engages && plane.is_armed();
+            *engaged = (*engaged || engages) && !leaves_nothing;
+            machine.coast_down |= command.events.contains(Events::COAST_DOWN);
+        }
+        let [first, second] = machine.engaged;
+        RotorCommand {
+            planes,
+            other_engaged: [second, first],
+            coast_down: machine.coast_down,
+        }
+    }
+
+    #[inline]
+    fn per_unit(&mut self, samples: &[CoreSample<f32>; 2]) -> [CoreCommand<f32>; 2] {
+        // Both are given back, one after the other.
+        let mut pairs = self.planes.iter().zip(self.shared);
+        if pairs.all(|(plane, shared)| plane.is_back(shared)) {
+            self.rearm();
+        }
+        let [first, second] = &mut self.planes;
+        let [at_first, at_second] = samples;
+        let [to_first, to_second] = &self.machine.couplings;
+        // As they are before either tick.
+        let ends = [first.plane_state(), second.plane_state()];
+        let beside_first = to_first.coupling(&ends, &ends[1], spin(at_first));
+        let beside_second = to_second.coupling(&ends, &ends[0], spin(at_second));
+        let [of_first, of_second] = self.shared;
+        let (to_first, first) = first.tick_beside(of_first, at_first, &beside_first);
+        let (to_second, second) = second.tick_beside(of_second, at_second, &beside_second);
+        // One event of one machine: both planes record it, over the same ticks.
+        let (mut commands, seen) = ([to_first, to_second], first.or(second));
+        let planes = self.planes.iter_mut().zip(self.shared);
+        for (((plane, shared), command), sample) in planes.zip(&mut commands).zip(samples) {
+            command.events |= plane.advance(shared, seen, sample, command.mode);
+        }
+        // Both or none: a replay needs what both remembered before the same tick.
+        if self.planes.iter().all(|plane| plane.may_keep()) {
+            let planes = self.planes.iter_mut().zip(self.shared);
+            planes.for_each(|(plane, shared)| plane.keep(shared));
+            self.machine
+                .shaft
+                .values()
+                .write_cells(self.kept_shaft.all(), 0);
+        }
+        commands
+    }
+}
+
+impl<'a, const RECORD: usize> RotorReader<'a, RECORD> {
+    fn plane(&mut self, end: usize) -> &mut Reader<'a, f32, RECORD> {
+        let [first, second] = &mut self.planes;
+        if end == 0 { first } else { second }
+    }
+
+    /// Next event of a plane, oldest first; as [`Reader::next_event`].
+    pub fn next_event(&mut self, end: usize) -> Option<QueuedEvent> {
+        self.plane(end).next_event()
+    }
+
+    /// The frozen record of a plane, once both have frozen, which they do at the same tick. It stays as it is until
+    /// [`Self::rearm`].
+    pub fn record(&self, end: usize) -> Option<Record<'_, f32, RECORD>> {
+        let planes = self.planes.each_ref().map(Reader::shared);
+        record_of(planes, self.kept_shaft, end)
+    }
+
+    pub(crate) fn tapes(&self) -> [&'a RecordBuffer<RECORD>; 2] {
+        self.planes.each_ref().map(|plane| &plane.shared().buffer)
+    }
+
+    /// Gives frozen records back; with the next tick both planes wait for an engagement again. Without any nothing happens.
+    pub fn rearm(&mut self) {
+        self.planes.iter_mut().for_each(Reader::rearm);
+    }
+
+    /// For other tasks that want to know how a plane stands.
+    pub fn published(&self, end: usize) -> Published<'a, f32, RECORD> {
+        let [first, second] = &self.planes;
+        if end == 0 { first } else { second }.published()
+    }
+}
