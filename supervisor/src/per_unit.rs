@@ -118,8 +118,8 @@ impl<S: Scalar> Plane<S> {
         sample: &CoreSample<S>,
         mode: Mode,
     ) -> Events {
-        let by = (&self.state.severity, &self.coeffs);
-        (self.recorder).advance(shared, seen, (sample, mode), by)
+        let severity = &self.state.severity;
+        (self.recorder).advance(shared, seen, sample, mode, severity, &self.coeffs)
     }
 
     /// Whether the recorder wants what is remembered, and the tick was one that has time for it.

@@ -74,6 +74,10 @@ pub(crate) struct Evidence<'a, S: Scalar> {
     /// The next impact in flight.
     pub(crate) ahead: Option<&'a Impact<S>>,
     pub(crate) spin: Spin,
+    /// Force that acts \[caps\].
+    pub(crate) acting: Vec2<S>,
+    /// Of the axis, now: it is the axis that touches.
+    pub(crate) velocity: Vec2<S>,
     pub(crate) coeffs: &'a Coeffs<S>,
 }
 
@@ -93,16 +97,14 @@ impl<S: Scalar> Severity<S> {
         self.before = velocity;
     }
 
-    /// `force` is the one that acts \[caps\], `velocity` that of the axis: it is the axis that touches.
     #[inline]
     pub(crate) fn assess(
         &mut self,
         mode: Mode,
         evidence: &Evidence<'_, S>,
         flags: SampleFlags,
-        (force, velocity): (Vec2<S>, Vec2<S>),
     ) -> SeverityAssessment<S> {
-        let before = core::mem::replace(&mut self.before, velocity);
+        let before = core::mem::replace(&mut self.before, evidence.velocity);
         if !flags.contains(SampleFlags::ON) {
             self.coast_down = false;
         }
@@ -120,7 +122,7 @@ impl<S: Scalar> Severity<S> {
             }
             _ => {
                 self.engaged = true;
-                self.engaged(evidence, flags, (force, before))
+                self.engaged(evidence, flags, before)
             }
         }
     }
@@ -140,7 +142,7 @@ impl<S: Scalar> Severity<S> {
         &mut self,
         evidence: &Evidence<'_, S>,
         flags: SampleFlags,
-        (force, before): (Vec2<S>, Vec2<S>),
+        before: Vec2<S>,
     ) -> SeverityAssessment<S> {
         let mut result = SeverityAssessment::default();
         let (contact, coeffs) = (evidence.contact, evidence.coeffs);
@@ -152,7 +154,7 @@ impl<S: Scalar> Severity<S> {
         };
         let coming = if contact.touching {
             if flags.contains(SampleFlags::USED) {
-                self.contact(before, backward, contact, force, coeffs);
+                self.contact(before, backward, contact, evidence.acting, coeffs);
             }
             let outward = contact.radial_speed.max(S::ZERO);
             sum_of_impacts(backward, outward, coeffs.bounce_gain)

@@ -17,7 +17,8 @@ use crate::sense::reading::SampleFlags;
 #[inline(never)]
 pub(crate) fn faded<S: Scalar>(
     bouncing: bool,
-    (last, levitation): (Vec2<S>, Vec2<S>),
+    last: Vec2<S>,
+    levitation: Vec2<S>,
     flags: SampleFlags,
     envelope: ForceEnvelope<S>,
     coeffs: &Coeffs<S>,
@@ -106,7 +107,8 @@ impl<S: Scalar> Readiness<S> {
         &mut self,
         own: Vec2<S>,
         levitation: Vec2<S>,
-        (outward, radius): (Vec2<S>, S),
+        outward: Vec2<S>,
+        radius: S,
         coeffs: &Coeffs<S>,
     ) {
         let share = (radius * S::from_f32(1.0 / COUNTS_FROM)).min(S::ONE);

@@ -4,7 +4,7 @@ use crate::border::coeffs::Coeffs;
 use crate::decide::detect::ContactEstimate;
 use crate::number::scalar::Scalar;
 use crate::number::words::{Words, words_of_fields};
-use crate::sense::reading::Spin;
+use crate::sense::reading::Rotation;
 
 /// Kind of motion on the retainer bearing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -117,13 +117,14 @@ impl<S: Scalar> Classifier<S> {
     }
 
     /// `seen`: by a sample of this tick; `blind_speed`: speed outwards that the observer has from being blind for the wall's
-    /// force; `rate` is the spin \[1/t₀\].
+    /// force.
     #[inline]
     pub(crate) fn classify(
         &mut self,
         contact: &ContactEstimate<S>,
-        (seen, blind_speed): (bool, impl FnOnce() -> S),
-        (spin, rate): (Spin, S),
+        seen: bool,
+        blind_speed: impl FnOnce() -> S,
+        rotation: Rotation<S>,
         coeffs: &Coeffs<S>,
     ) -> Class {
         let now = if contact.touching {
@@ -170,14 +171,15 @@ impl<S: Scalar> Classifier<S> {
             };
         }
         // With unknown spin every whirl counts as backward: friction will make it so.
-        if spin.backward(along) >= S::ZERO {
+        if rotation.sense.backward(along) >= S::ZERO {
             let most = S::from_f32(EVIDENT_TURN * 2.0);
             self.turned = (turned + along.abs() * contact.per_radius * coeffs.tick).min(most);
             return Class::BackwardWhirl;
         }
         // By the radius that there is: a soft wall gives way. What began stays until it slows or turns.
         let orbit = along * contact.per_radius;
-        let at_its_rate = (orbit - rate).abs() <= rate.abs() * S::from_f32(RUB_RATE_SHARE);
+        let at_its_rate =
+            (orbit - rotation.rate).abs() <= rotation.rate.abs() * S::from_f32(RUB_RATE_SHARE);
         self.is.rubbing = before || (contact.touching && at_its_rate);
         if self.is.rubbing {
             Class::ForwardRub { begins: !before }

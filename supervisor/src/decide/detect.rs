@@ -34,6 +34,21 @@ pub(crate) struct ContactEstimate<S> {
     pub(crate) unavoidable: bool,
 }
 
+/// What a tick changed about touching.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Touch {
+    pub(crate) began: bool,
+    pub(crate) ended: bool,
+}
+
+/// Whether a rotor can be stopped: with which share of which force \[caps\], and which outward speed does not count.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct StopTest<S> {
+    pub(crate) force: S,
+    pub(crate) share: S,
+    pub(crate) margin: S,
+}
+
 /// Ticks for which the observer stays quick from the last tick in contact on: its velocity must get
 /// over the impact.
 const RECOVERY_TICKS: u8 = 3;
@@ -84,7 +99,7 @@ impl Detector {
         &mut self,
         position: Option<Vec2<S>>,
         coeffs: &Coeffs<S>,
-    ) -> (bool, bool) {
+    ) -> Touch {
         let before = self.touching;
         if let Some(position) = position {
             let radius = if before {
@@ -99,7 +114,10 @@ impl Detector {
         } else {
             self.recovery = self.recovery.saturating_sub(1);
         }
-        (self.touching && !before, before && !self.touching)
+        Touch {
+            began: self.touching && !before,
+            ended: before && !self.touching,
+        }
     }
 
     /// Nothing is coming.
@@ -108,13 +126,14 @@ impl Detector {
         self.alarmed = 0;
     }
 
-    /// `cap` is what the force–time budget leaves \[caps\], `margin` an outward speed that does not count.
+    /// `beside`: how far the axis is beside what moves; `test`: with what the budget leaves of the cap.
     #[inline]
     pub(crate) fn contact_estimate<S: Scalar>(
         &mut self,
-        (motion, beside): (&Motion<S>, S),
-        (touched, left): (bool, bool),
-        (cap, margin): (S, S),
+        motion: &Motion<S>,
+        beside: S,
+        touch: Touch,
+        test: StopTest<S>,
         coupling: Option<&RotorCoupling<S>>,
         coeffs: &Coeffs<S>,
     ) -> ContactEstimate<S> {
@@ -129,22 +148,20 @@ impl Detector {
             tangential_speed: motion.velocity.dot(normal.perp()),
             load: motion.load_step.dot(normal) * coeffs.per_tick,
             touching: self.touching,
-            touched,
-            left,
+            touched: touch.began,
+            left: touch.ended,
             unavoidable: false,
         };
         if let Some(coupling) = coupling {
             // The observer is told of it and takes it for no load.
             contact.load = contact.load + coupling.known.dot(normal);
         }
-        let outward = contact.radial_speed - margin;
-        let mut alarm =
-            outward > S::ZERO && !contact.can_stop_before_wall(outward, cap, S::ONE, coeffs);
+        let outward = contact.radial_speed - test.margin;
+        let mut alarm = outward > S::ZERO && !contact.can_stop_before_wall(outward, test, coeffs);
         if let Some(coupling) = coupling
             && alarm
         {
-            alarm =
-                !contact.nutation_avoids_contact(motion, coupling, (margin, cap, S::ONE), coeffs);
+            alarm = !contact.nutation_avoids_contact(motion, coupling, test, coeffs);
         }
         self.alarmed = if alarm {
             self.alarmed.saturating_add(1)
@@ -167,7 +184,7 @@ impl<S: Scalar> ContactEstimate<S> {
         &self,
         motion: &Motion<S>,
         coupling: &RotorCoupling<S>,
-        (margin, force, share): (S, S, S),
+        test: StopTest<S>,
         coeffs: &Coeffs<S>,
     ) -> bool {
         let Some((centre, velocity, distance)) = coupling.centre(motion) else {
@@ -179,23 +196,22 @@ impl<S: Scalar> ContactEstimate<S> {
             reach: self.reach - distance,
             ..*self
         };
-        let outward = (velocity.dot(normal) - margin).max(S::ZERO);
-        about.reach > about.radius && about.can_stop_before_wall(outward, force, share, coeffs)
+        let outward = (velocity.dot(normal) - test.margin).max(S::ZERO);
+        about.reach > about.radius && about.can_stop_before_wall(outward, test, coeffs)
     }
 
-    /// Whether a share of what this force inwards has over load and magnets' pull, from when it can act, stops a rotor of
+    /// Whether a share of what the force inwards has over load and magnets' pull, from when it can act, stops a rotor of
     /// this speed before the wall, or before where the pull is stronger: v² against twice the work up to there, the shaft's
     /// with it.
     pub(crate) fn can_stop_before_wall(
         &self,
         speed: S,
-        force: S,
-        share: S,
+        test: StopTest<S>,
         coeffs: &Coeffs<S>,
     ) -> bool {
-        let mut left = force - self.load.max(S::ZERO);
+        let mut left = test.force - self.load.max(S::ZERO);
         if self.radius < S::from_f32(LOAD_COUNTS_BEYOND) {
-            left = left.max(S::from_f32(0.25) * force);
+            left = left.max(S::from_f32(0.25) * test.force);
         }
         let pulls = coeffs.stiffness < S::ZERO;
         let reach = if pulls {
@@ -209,7 +225,7 @@ impl<S: Scalar> ContactEstimate<S> {
             return false;
         }
         let spring = coeffs.stiffness * room * (reach + self.radius);
-        speed * speed <= ((left + left) * path + spring) * share
+        speed * speed <= ((left + left) * path + spring) * test.share
     }
 }
 

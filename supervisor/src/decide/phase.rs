@@ -18,9 +18,13 @@ use crate::sense::reading::SampleFlags;
 /// Of the whirl limit: a whirl that levitation is left to, where it keeps the rotor.
 const DANGEROUS: f32 = 0.5;
 
-/// What [`crate::decide::trust`] says.
+/// What the next phase depends on beside the contact and its class.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct TrustVerdict {
+pub(crate) struct Verdict {
+    /// Contact can be avoided.
+    pub(crate) calm: bool,
+    /// The levitation controller would do so.
+    pub(crate) ready: bool,
     /// The noise leaves a speed to be seen.
     pub(crate) quiet: bool,
     /// The reading may be acted on.
@@ -125,13 +129,12 @@ impl<S: Scalar> Phase<S> {
         !matches!(self, Self::Levitated | Self::HandedBack { .. })
     }
 
-    /// The phase of this tick, and what changed. `calm`: contact can be avoided; `ready`: the levitation
-    /// controller would do so.
+    /// The phase of this tick, and what changed.
     #[inline]
     pub(crate) fn next(
         self,
         contact: &ContactEstimate<S>,
-        (calm, ready, verdict): (bool, bool, TrustVerdict),
+        verdict: &Verdict,
         class: Class,
         flags: SampleFlags,
         coeffs: &Coeffs<S>,
@@ -139,7 +142,7 @@ impl<S: Scalar> Phase<S> {
         let next = match verdict.hands_back {
             _ if !flags.contains(SampleFlags::ON) => Self::Levitated,
             Some(left) => Self::HandedBack { left },
-            None => self.follow(contact, (calm, ready, verdict), class, flags, coeffs),
+            None => self.follow(contact, verdict, class, flags, coeffs),
         };
         let mut events = Events::empty();
         if contact.touched {
@@ -180,7 +183,7 @@ impl<S: Scalar> Phase<S> {
     fn follow(
         self,
         contact: &ContactEstimate<S>,
-        (calm, ready, verdict): (bool, bool, TrustVerdict),
+        verdict: &Verdict,
         class: Class,
         flags: SampleFlags,
         coeffs: &Coeffs<S>,
@@ -212,7 +215,7 @@ impl<S: Scalar> Phase<S> {
             _ => false,
         };
         if verdict.whirl_only {
-            return self.follow_whirl_alone(contact, verdict, class, coeffs);
+            return self.follow_whirl_alone(contact, *verdict, class, coeffs);
         }
         let evident = contact.touching && (verdict.unsettled || (verdict.quiet && goes_round));
         // What a load that turns takes round on the wall would only be thrown about.
@@ -242,11 +245,11 @@ impl<S: Scalar> Phase<S> {
             Self::Levitated => self,
             // Nothing has happened but in a reading that is not believed any more.
             Self::Approach { .. } if !verdict.trusted => Self::Levitated,
-            Self::Approach { calm_ticks } => match after_calm(calm_ticks, calm, ready, coeffs) {
+            Self::Approach { calm_ticks } => match after_calm(calm_ticks, verdict, coeffs) {
                 Some(calm_ticks) => Self::Approach { calm_ticks },
                 None => Self::Handover { weight: S::ZERO },
             },
-            Self::Bounce { calm_ticks } => match after_calm(calm_ticks, calm, ready, coeffs) {
+            Self::Bounce { calm_ticks } => match after_calm(calm_ticks, verdict, coeffs) {
                 Some(calm_ticks) => Self::Bounce { calm_ticks },
                 None => Self::Handover { weight: S::ZERO },
             },
@@ -265,7 +268,7 @@ impl<S: Scalar> Phase<S> {
     fn follow_whirl_alone(
         self,
         contact: &ContactEstimate<S>,
-        verdict: TrustVerdict,
+        verdict: Verdict,
         class: Class,
         coeffs: &Coeffs<S>,
     ) -> Self {
@@ -298,17 +301,12 @@ impl<S: Scalar> Phase<S> {
 }
 
 /// Calm ticks so far, or `None` once they are enough and the controller is ready.
-fn after_calm<S: Scalar>(
-    calm_ticks: u32,
-    calm: bool,
-    ready: bool,
-    coeffs: &Coeffs<S>,
-) -> Option<u32> {
-    if !calm {
+fn after_calm<S: Scalar>(calm_ticks: u32, verdict: &Verdict, coeffs: &Coeffs<S>) -> Option<u32> {
+    if !verdict.calm {
         Some(0)
     } else if calm_ticks < coeffs.dwell_ticks {
         Some(calm_ticks + 1)
-    } else if ready {
+    } else if verdict.ready {
         None
     } else if calm_ticks < coeffs.dwell_ticks + coeffs.patience_ticks {
         Some(calm_ticks + 1)

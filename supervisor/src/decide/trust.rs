@@ -41,6 +41,19 @@ const LEFT_AFTER: u16 = 2048;
 const HANDED_BACK_WINDOWS: u32 = 8;
 const MOST_DOUBLED: u8 = 7;
 
+/// What the judge sees of a tick.
+#[derive(Clone, Copy)]
+pub(crate) struct Seen<S> {
+    pub(crate) speed_square: S,
+    /// The wall is away.
+    pub(crate) flies: bool,
+    pub(crate) phase: Phase<S>,
+    /// Forward, as unbalance drives it.
+    pub(crate) rubs: bool,
+    pub(crate) spin: S,
+    pub(crate) status: Status,
+}
+
 /// What the judge remembers.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Trust<S> {
@@ -174,18 +187,12 @@ impl<S: Scalar> Trust<S> {
         self.disturbance.unsettled = true;
     }
 
-    /// A tick in a phase, with the square of the speed and whether the wall is away; `rubs`: forward, as unbalance drives it,
-    /// at this spin. Whether the bearing has to be handed back, and for how many ticks.
+    /// A tick. Whether the bearing has to be handed back, and for how many ticks.
     #[inline]
-    pub(crate) fn tick(
-        &mut self,
-        (square, flies): (S, bool),
-        (phase, rubs, spin): (Phase<S>, bool, S),
-        status: Status,
-        coeffs: &Coeffs<S>,
-    ) -> Option<u32> {
-        self.peak = self.peak.max(square);
-        if phase.is_engaged() {
+    pub(crate) fn tick(&mut self, seen: &Seen<S>, coeffs: &Coeffs<S>) -> Option<u32> {
+        self.peak = self.peak.max(seen.speed_square);
+        let flies = seen.flies;
+        if seen.phase.is_engaged() {
             let tries = if self.rubs_on() { TRIED } else { 1 };
             self.disturbance.windows = self.disturbance.windows.max(tries);
         } else if !flies {
@@ -197,19 +204,19 @@ impl<S: Scalar> Trust<S> {
                 self.ticks_left = left;
                 None
             }
-            None => self.window((phase, rubs, spin.abs()), status, coeffs),
+            None => {
+                // A copy, so that the usual one stays in registers.
+                let seen = *seen;
+                self.window(&seen, coeffs)
+            }
         }
     }
 
     /// The end of a window.
     #[inline(never)]
-    fn window(
-        &mut self,
-        (phase, rubs, spin): (Phase<S>, bool, S),
-        status: Status,
-        coeffs: &Coeffs<S>,
-    ) -> Option<u32> {
-        if status.contains(Status::LEVITATED_BEFORE) {
+    fn window(&mut self, seen: &Seen<S>, coeffs: &Coeffs<S>) -> Option<u32> {
+        let (phase, rubs) = (seen.phase, seen.rubs);
+        if seen.status.contains(Status::LEVITATED_BEFORE) {
             self.levitated_before();
         }
         self.ticks_left = coeffs.window_ticks;
@@ -229,6 +236,7 @@ impl<S: Scalar> Trust<S> {
         }
         let touched = core::mem::take(&mut self.disturbance.touched);
         if rubs && phase == Phase::Levitated {
+            let spin = seen.spin.abs();
             // As when it began: a rub in a run-up is not tried to be broken.
             if (spin - self.before).abs() <= spin * S::from_f32(SAME_SPIN) {
                 self.disturbance.windows = disturbed.saturating_add(1).min(RUBS_ON);

@@ -86,7 +86,8 @@ impl<S: Scalar> ActuatorMonitor<S> {
     pub(crate) fn watch(
         &mut self,
         now: Vec2<S>,
-        (before, due): (Vec2<S>, Vec2<S>),
+        before: Vec2<S>,
+        due: Vec2<S>,
         actuator: &Actuator<S>,
         coeffs: &Coeffs<S>,
     ) {

@@ -12,8 +12,7 @@ use crate::number::scalar::Scalar;
 use crate::number::vec2::Vec2;
 use crate::number::words::words_of_fields;
 use crate::sense::innovation::Expected;
-use crate::sense::reading::Spin;
-use crate::sense::reading::{Actuator, SampleFlags};
+use crate::sense::reading::{Actuator, Rotation, SampleFlags, Spin};
 
 /// Estimated motion, per unit.
 #[derive(Debug, Clone, Copy, Default)]
@@ -94,19 +93,24 @@ impl<S: Scalar> Observer<S> {
     pub(crate) fn advance(
         &mut self,
         sample: Option<Vec2<S>>,
-        (spin, rate): (Spin, S),
+        rotation: Rotation<S>,
         wall: Contact,
-        (actuator, tilted): (Actuator<S>, Option<Vec2<S>>),
+        actuator: Actuator<S>,
+        tilted: Option<Vec2<S>>,
         coeffs: &Coeffs<S>,
     ) -> (Motion<S>, S) {
         let mean = self.deliver(actuator, coeffs);
-        let turn = Turn::new((spin, rate), S::ONE, coeffs);
+        let turn = Turn::new(rotation, S::ONE, coeffs);
         let turning = self.unbalance.carry(turn.as_ref());
         if let Some(position) = sample
             && !self.started
         {
             self.started = true;
-            let spin = if self.has_run { Spin::Unknown } else { spin };
+            let spin = if self.has_run {
+                Spin::Unknown
+            } else {
+                rotation.sense
+            };
             self.motion = Motion::found_at(position, spin, coeffs);
             return (self.motion, S::ZERO);
         }
@@ -184,7 +188,8 @@ impl<S: Scalar> Observer<S> {
         &mut self,
         missed: u32,
         command: Vec2<S>,
-        (sample, spin): (Option<Vec2<S>>, (Spin, S)),
+        sample: Option<Vec2<S>>,
+        rotation: Rotation<S>,
         coeffs: &Coeffs<S>,
     ) {
         for _ in 0..missed {
@@ -194,7 +199,7 @@ impl<S: Scalar> Observer<S> {
         self.bending.forget();
         let ticks = S::count(missed);
         self.unbalance
-            .carry(Turn::new(spin, ticks, coeffs).as_ref());
+            .carry(Turn::new(rotation, ticks, coeffs).as_ref());
         let m = &mut self.motion;
         m.position = m.position + m.velocity * (coeffs.tick * ticks);
         if let Some(position) = sample {
@@ -217,7 +222,7 @@ impl<S: Scalar> Observer<S> {
             _ if !AXIS_MONITOR => {}
             _ if !actuator.axes.contains(SampleFlags::ON) => self.monitor.switched_off(),
             None => self.monitor.unseen(),
-            Some(now) => self.monitor.watch(now, (before, due), &actuator, coeffs),
+            Some(now) => self.monitor.watch(now, before, due, &actuator, coeffs),
         }
         if let Some(now) = measured {
             self.delivered = now;

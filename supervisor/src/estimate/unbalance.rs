@@ -10,7 +10,7 @@ use crate::border::parts::UNBALANCE;
 use crate::number::scalar::Scalar;
 use crate::number::vec2::Vec2;
 use crate::number::words::words_of_fields;
-use crate::sense::reading::Spin;
+use crate::sense::reading::{Rotation, Spin};
 
 /// Slowest spin \[1/t₀\]. Slower, a load that turns is a load: the cap has to stop the rotor against it before it
 /// has gone round.
@@ -40,13 +40,14 @@ impl<S: Scalar> Turn<S> {
     /// In so many ticks. `None` where the spin is unknown, slow, or so quick that the observer sees too little of what
     /// turns; or where it is more than a radian, up to which the series are good.
     #[inline]
-    pub(crate) fn new((spin, rate): (Spin, S), ticks: S, coeffs: &Coeffs<S>) -> Option<Self> {
+    pub(crate) fn new(rotation: Rotation<S>, ticks: S, coeffs: &Coeffs<S>) -> Option<Self> {
+        let rate = rotation.rate;
         let of_one = rate * coeffs.tick;
         let (angle, half_behind) = (of_one * ticks, of_one * coeffs.flight_lag);
         let seen = half_behind.abs() <= S::from_f32(MOST_LAG) && angle.abs() <= S::ONE;
         let rate = rate.abs();
         let usable = UNBALANCE && seen && rate >= S::from_f32(SLOWEST);
-        if !usable || spin == Spin::Unknown {
+        if !usable || rotation.sense == Spin::Unknown {
             return None;
         }
         Some(Self {

@@ -3,8 +3,9 @@
 //! The slow track of a record: extremes over stretches of ticks that grow with the time since the event began, so that few
 //! words reach from its first milliseconds to seconds.
 
-use crate::border::signal::{CoreCommand, CoreSample, Events, Mode, Status};
+use crate::border::signal::{CoreCommand, CoreSample, Events, Status};
 use crate::number::scalar::Scalar;
+use crate::number::vec2::Vec2;
 use crate::number::words::{Cells, Words as _};
 
 /// One tick, 48 bytes: all that it depends on but for what was before, and what came of it. Numbers are those of the core, per
@@ -238,16 +239,19 @@ impl<S: Scalar> TrackProgress<S> {
         self.done >= STRETCHES
     }
 
-    /// A tick, with the squares of radius and force.
+    /// A tick, with where the axis is.
     #[inline]
     pub(crate) fn push(
         &mut self,
         track: &Track,
         sequence: u32,
-        [radius, force]: [S; 2],
-        severity: S,
-        (mode, events, touching): (Mode, Events, bool),
+        command: &CoreCommand<S>,
+        position: Vec2<S>,
+        touching: bool,
     ) {
+        let own = Vec2::from_array(command.own);
+        let (radius, force) = (position.length_squared(), own.length_squared());
+        let (mode, events) = (command.mode, command.events);
         let touched = events.contains(Events::TOUCHED);
         let now = &mut self.now;
         now.ticks += 1;
@@ -256,7 +260,7 @@ impl<S: Scalar> TrackProgress<S> {
         now.modes |= 1 << (mode as u8 & 7);
         self.radius = self.radius.max(radius);
         self.force = self.force.max(force);
-        self.severity = self.severity.max(severity);
+        self.severity = self.severity.max(command.severity);
         let ticks = FIRST_TICKS << (self.done / DOUBLES_AFTER).min(STRETCHES / DOUBLES_AFTER - 1);
         if now.ticks >= ticks {
             self.end(track, sequence);

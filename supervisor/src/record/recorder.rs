@@ -7,7 +7,6 @@ use crate::border::coeffs::Coeffs;
 use crate::border::config::Config;
 use crate::border::signal::{CoreCommand, CoreSample, Events, Mode, Status};
 use crate::number::scalar::Scalar;
-use crate::number::vec2::Vec2;
 use crate::number::words::Words as _;
 use crate::record::buffer::{CONFIG_WORDS, FrozenHeader, RecordBuffer};
 use crate::record::entry;
@@ -242,11 +241,8 @@ impl<S: Scalar> Recorder<S> {
         let begins = seen.triggers && self.progress == Progress::Armed;
         if begins || matches!(self.progress, Progress::Triggered(_)) {
             let (position, touching) = state.whereabouts();
-            let own = Vec2::from_array(command.own);
-            let squares = [position.length_squared(), own.length_squared()];
-            let happened = (command.mode, command.events, touching);
             let track = &shared.buffer.track;
-            (self.track).push(track, sample.sequence, squares, command.severity, happened);
+            (self.track).push(track, sample.sequence, command, position, touching);
         }
         seen
     }
@@ -255,7 +251,7 @@ impl<S: Scalar> Recorder<S> {
     #[inline(never)]
     fn happened(&mut self, queue: &EventQueue, sequence: u32, mode: Mode, events: Events) -> Seen {
         if self.progress != Progress::Paused {
-            self.queue(queue, (sequence, mode), events);
+            self.queue(queue, sequence, mode, events);
         }
         let engaged = mode.is_engaged();
         let touched = engaged && events.intersects(WORTH_IT);
@@ -279,8 +275,10 @@ impl<S: Scalar> Recorder<S> {
         &mut self,
         shared: &Shared<N>,
         seen: Seen,
-        (sample, mode): (&CoreSample<S>, Mode),
-        (severity, coeffs): (&Severity<S>, &Coeffs<S>),
+        sample: &CoreSample<S>,
+        mode: Mode,
+        severity: &Severity<S>,
+        coeffs: &Coeffs<S>,
     ) -> Events {
         match self.progress {
             Progress::Armed if seen.triggers => {
@@ -297,8 +295,7 @@ impl<S: Scalar> Recorder<S> {
                 if over && !self.worth_it {
                     self.discard(&shared.buffer, left);
                 } else if over && left <= 1 {
-                    let last = (sample.sequence, sample.status, mode);
-                    return self.freeze(shared, last, severity, coeffs);
+                    return self.freeze(shared, sample, mode, severity, coeffs);
                 }
             }
             Progress::Armed | Progress::Frozen | Progress::Paused => {}
@@ -310,10 +307,12 @@ impl<S: Scalar> Recorder<S> {
     fn freeze<const N: usize>(
         &mut self,
         shared: &Shared<N>,
-        (sequence, status, mode): (u32, Status, Mode),
+        sample: &CoreSample<S>,
+        mode: Mode,
         severity: &Severity<S>,
         coeffs: &Coeffs<S>,
     ) -> Events {
+        let (sequence, status) = (sample.sequence, sample.status);
         let buffer = &shared.buffer;
         self.track.finish(&buffer.track, sequence);
         let (ticks, since) = self.lengths::<N>();
@@ -340,7 +339,7 @@ impl<S: Scalar> Recorder<S> {
         closed.words().write_cells(buffer.closed.all(), 0);
         buffer.freeze();
         self.progress = Progress::Frozen;
-        self.queue(&shared.events, (sequence, mode), Events::RECORD_FROZEN);
+        self.queue(&shared.events, sequence, mode, Events::RECORD_FROZEN);
         Events::RECORD_FROZEN
     }
 
@@ -374,7 +373,7 @@ impl<S: Scalar> Recorder<S> {
         self.dropped = core::mem::take(&mut self.dropping);
     }
 
-    fn queue(&mut self, queue: &EventQueue, (sequence, mode): (u32, Mode), mut events: Events) {
+    fn queue(&mut self, queue: &EventQueue, sequence: u32, mode: Mode, mut events: Events) {
         if self.lost {
             events |= Events::QUEUE_FULL;
         }

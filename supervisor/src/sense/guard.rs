@@ -13,7 +13,7 @@ use crate::number::scalar::Scalar;
 use crate::number::vec2::Vec2;
 use crate::number::words::words_of_fields;
 use crate::sense::innovation::{Expected, Innovation};
-use crate::sense::reading::Spin;
+use crate::sense::reading::Rotation;
 use crate::sense::reading::{Reading, SampleAssessment, SampleFlags};
 use crate::sense::stuck::StuckDetector;
 
@@ -31,6 +31,13 @@ const MOST_APPLIED: f32 = 2.0;
 
 /// [`Guard::age`] where there is no good sample to compare with.
 const NEVER: u16 = u16::MAX;
+
+/// Velocity of the last tick.
+pub(crate) struct LastVelocity<S> {
+    pub(crate) velocity: Vec2<S>,
+    /// Estimated without knowing the force of a contact.
+    pub(crate) in_contact: bool,
+}
 
 /// Memory of the guard.
 #[derive(Debug, Clone, Copy)]
@@ -100,13 +107,14 @@ impl<S: Scalar> Default for Guard<S> {
 }
 
 impl<S: Scalar> Guard<S> {
-    /// `estimated`: velocity of the last tick, and whether it was made without knowing the contact force.
+    /// `estimated`: what the observer knew at the last tick.
     #[inline]
     pub(crate) fn judge(
         &mut self,
-        (sample, status): (&CoreSample<S>, Status),
+        sample: &CoreSample<S>,
+        status: Status,
         expected: Expected<S>,
-        estimated: impl FnOnce() -> (Vec2<S>, bool),
+        estimated: impl FnOnce() -> LastVelocity<S>,
         coeffs: &Coeffs<S>,
     ) -> Reading<S> {
         let mut assessment = match self.as_usual(sample, status, expected, coeffs) {
@@ -136,7 +144,7 @@ impl<S: Scalar> Guard<S> {
             assessment,
             sample: Vec2::from_array(sample.position),
             measured,
-            spin: Spin::from_sample(sample),
+            rotation: Rotation::from_sample(sample),
         }
     }
 
@@ -181,7 +189,7 @@ impl<S: Scalar> Guard<S> {
         position: Vec2<S>,
         status: Status,
         expected: Expected<S>,
-        (velocity, in_contact): (Vec2<S>, bool),
+        last: LastVelocity<S>,
         coeffs: &Coeffs<S>,
     ) -> SampleAssessment {
         if core::mem::take(&mut self.stuck_is_old) {
@@ -208,12 +216,12 @@ impl<S: Scalar> Guard<S> {
         // A bearing that is off is not known to deliver what the model moves by.
         let trusted = if self.faulty || anew || !flags.contains(SampleFlags::ON) {
             Vec2::ZERO
-        } else if in_contact {
+        } else if last.in_contact {
             // The most that the model accelerates by while the wall holds against it.
             let most = S::ONE + coeffs.stiffness.abs() * S::from_f32(1.5);
-            velocity.map(|speed| speed.beyond(coeffs.blind_time * most))
+            (last.velocity).map(|speed| speed.beyond(coeffs.blind_time * most))
         } else {
-            velocity
+            last.velocity
         };
         let (refusal, bad) = if repeated {
             (RejectReason::Dropout, SampleFlags::BOTH_BAD)
@@ -222,7 +230,7 @@ impl<S: Scalar> Guard<S> {
             self.refusal(position, trusted, expected, coeffs)
         };
         if !self.faulty {
-            events |= self.count((refusal, bad), position, coeffs);
+            events |= self.count(refusal, bad, position, coeffs);
         }
         if flags.contains(SampleFlags::LATE) {
             self.late_ticks = self.late_ticks.saturating_add(1);
@@ -237,7 +245,7 @@ impl<S: Scalar> Guard<S> {
                 self.refused.bad |= bad;
             }
             if bad != SampleFlags::BOTH_BAD {
-                fits = self.judge_other(position, bad, (1 + missed, anew), coeffs);
+                fits = self.judge_other(position, bad, 1 + missed, anew, coeffs);
             } else if self.faulty {
                 self.refused.apart = 0;
             }

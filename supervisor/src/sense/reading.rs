@@ -16,20 +16,31 @@ pub(crate) enum Spin {
     Clockwise,
 }
 
-impl Spin {
-    /// What a sample says of it.
-    #[inline]
-    pub(crate) fn from_sample<S: Scalar>(sample: &CoreSample<S>) -> Self {
-        let known = sample.status.contains(Status::SPIN_VALID) && sample.spin.is_finite();
-        if known && sample.spin > S::ZERO {
-            Self::Counterclockwise
-        } else if known && sample.spin < S::ZERO {
-            Self::Clockwise
-        } else {
-            Self::Unknown
-        }
-    }
+/// The spin as a sample says it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Rotation<S> {
+    pub(crate) sense: Spin,
+    /// Counter-clockwise \[1/t₀\]; anything where the sense is unknown.
+    pub(crate) rate: S,
+}
 
+impl<S: Scalar> Rotation<S> {
+    #[inline]
+    pub(crate) fn from_sample(sample: &CoreSample<S>) -> Self {
+        let rate = sample.spin;
+        let known = sample.status.contains(Status::SPIN_VALID) && rate.is_finite();
+        let sense = if known && rate > S::ZERO {
+            Spin::Counterclockwise
+        } else if known && rate < S::ZERO {
+            Spin::Clockwise
+        } else {
+            Spin::Unknown
+        };
+        Self { sense, rate }
+    }
+}
+
+impl Spin {
     /// A counter-clockwise speed counted against the spin; with unknown spin every whirl counts, for
     /// friction will drive it.
     #[inline]
@@ -191,7 +202,7 @@ pub(crate) struct Reading<S> {
     pub(crate) assessment: SampleAssessment,
     pub(crate) sample: Vec2<S>,
     pub(crate) measured: Vec2<S>,
-    pub(crate) spin: Spin,
+    pub(crate) rotation: Rotation<S>,
 }
 
 impl<S: Scalar> Reading<S> {

@@ -48,7 +48,8 @@ impl<S: Scalar> Guard<S> {
         &mut self,
         position: Vec2<S>,
         bad: SampleFlags,
-        (ticks, anew): (u32, bool),
+        ticks: u32,
+        anew: bool,
         coeffs: &Coeffs<S>,
     ) -> bool {
         let refused = &mut self.refused;
@@ -74,7 +75,8 @@ impl<S: Scalar> Guard<S> {
     /// make a fault. Where nothing is known of the rotor, the first does.
     pub(super) fn count(
         &mut self,
-        (refusal, bad): (RejectReason, SampleFlags),
+        refusal: RejectReason,
+        bad: SampleFlags,
         position: Vec2<S>,
         coeffs: &Coeffs<S>,
     ) -> Events {
