@@ -363,22 +363,22 @@ fn an_axis_is_lost_and_tried_again_after_its_time_to_the_tick() {
         };
         let mut supervisor = Supervisor::<64>::new(&with).unwrap();
         let obeys_until = 100;
-        let events: Vec<Events> = (0..obeys_until + 200)
+        let commands: Vec<_> = (0..obeys_until + 200)
             .map(|i| {
                 let applied_n = if i < obeys_until { 500.0 } else { -500.0 };
-                let command = supervisor.tick(&Sample {
+                supervisor.tick(&Sample {
                     levitation_n: [500.0, 0.0],
                     applied_n: [applied_n, 0.0],
                     ..in_the_middle(i)
-                });
-                command.events
+                })
             })
             .collect();
-        let first = |event| events.iter().position(|e| e.contains(event)).unwrap();
+        let first = |event| (commands.iter().position(|c| c.events.contains(event))).unwrap();
         let (lost, back) = (first(Events::AXIS_LOST), first(Events::AXIS_BACK));
         // Nothing from the tick after the last of them on.
         let ticks = fault_ticks.min(15);
         assert_eq!(lost, (obeys_until + ticks) as usize, "{fault_ticks}");
         assert_eq!(back - lost, 8 * ticks as usize, "{fault_ticks}");
+        assert!(commands[lost..back].iter().all(|c| c.force_n[0] == 0.0));
     }
 }

@@ -8,8 +8,7 @@ use firmware_studies::machines::plants::plants;
 use firmware_studies::machines::tuned_gains::stored;
 use firmware_studies::overloads::case::Sizes;
 use plant_model::V2;
-use supervisor::{Command, Events, Mode, Sample, Status, Supervisor};
-use system_tests::rig::{config, sample};
+use supervisor::{Command, Events, Sample, Supervisor};
 
 /// In front of a controller that asks for nothing.
 #[derive(Debug)]
@@ -65,33 +64,4 @@ fn a_rising_load_is_not_handed_over_again_and_again() {
         }
     }
     assert!((25..45).contains(&all), "{all}");
-}
-
-/// A rotor that the supervisor holds against a load is not given to a controller that asks for no force, and is given to one
-/// that asks for as much.
-/// Requirement: SR-26
-#[test]
-fn what_is_held_is_handed_over_when_the_controller_asks_for_as_much() {
-    const LOAD_N: f32 = 300.0;
-    let mut supervisor = Supervisor::<64>::new(&config()).unwrap();
-    let mut modes = |ticks: std::ops::Range<u32>, asked_n: f32| {
-        let modes = ticks.map(|i| {
-            // Towards the wall with 0.4 m/s, back to a third of the way, and held there.
-            let (out, back) = (2e-5 * i.min(8) as f32, 2e-6 * i.clamp(8, 58) as f32);
-            let noise = 1e-7 * (i % 3) as f32;
-            let mut now = sample(i, [out - back + 1.6e-5 + noise, noise]);
-            now.status |= Status::APPLIED_VALID;
-            (now.levitation_n, now.applied_n) = ([-asked_n, 0.0], [-LOAD_N, 0.0]);
-            supervisor.tick(&now).mode
-        });
-        modes.collect::<Vec<_>>()
-    };
-    let unasked = modes(0..600, 0.0);
-    assert!(
-        unasked[8..].iter().all(|m| *m == Mode::Approach),
-        "{unasked:?}"
-    );
-    let asked = modes(600..800, LOAD_N);
-    assert!(asked.contains(&Mode::Handover), "{asked:?}");
-    assert_eq!(asked.last(), Some(&Mode::Levitated));
 }

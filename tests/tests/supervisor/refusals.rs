@@ -354,7 +354,7 @@ fn a_dropout_may_or_may_not_use_up_a_number() {
 #[test]
 fn samples_refused_for_long_leave_an_estimate_that_comes_back() {
     let with = Config {
-        // A pull of nine tenths of the cap at the wall: what the model has runs away twofold in a millisecond.
+        // A pull of nine tenths of the cap at the wall: the model runs away twofold in each millisecond.
         stiffness_n_m: -0.9 * 1000.0 / 2e-4,
         fault_ticks: 10_000.0,
         ..config()

@@ -424,7 +424,11 @@ fn a_push_by_the_other_magnet_is_known_before_it_is_seen() {
     let configs = [with(500.0), with(2000.0)];
     let mut rotor = RotorSupervisor::<RECORD>::new(&shaft, &configs).unwrap();
     let mut alone = Supervisor::<RECORD>::new(&shaft.plane(0, &configs[0])).unwrap();
-    let per_kg = [0.05_f32, 0.25].map(|x| 1.0 / 20.0 + x * 0.25 / 2.0);
+    // Acceleration of each end per force at the second.
+    let magnet_m = shaft.places[1].magnet_m;
+    let per_kg = shaft.places.map(|place| {
+        1.0 / shaft.mass_kg + place.retainer_m * magnet_m / shaft.transverse_inertia_kg_m2
+    });
     // The first end drifts outwards, the second is braked from a tick on.
     let (mut position_m, mut speed_m_s) = ([6e-5_f32, 1e-4], [0.02_f32, -0.06]);
     let pushed_at = 60;

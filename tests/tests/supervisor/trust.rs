@@ -405,7 +405,7 @@ fn an_engagement_without_contact_does_not_spend_the_record() {
     );
 }
 
-/// Of samples that are off and do not agree with each other two in a row are refused; the third is believed.
+/// Of samples that are off and do not agree with each other two in a row are refused, and the third is believed.
 /// Requirement: SR-16
 #[test]
 fn no_more_than_two_samples_in_a_row_are_doubted() {
