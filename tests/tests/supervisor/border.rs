@@ -443,3 +443,33 @@ fn an_estimate_beyond_all_squares_comes_back() {
     assert!(speeds.iter().all(|v| v.is_finite()), "{report:?}");
     assert!(report.severity_index.is_finite(), "{report:?}");
 }
+
+/// The slew limit holds on the axis that is left; the force of the one that is lost is gone at once.
+/// Requirements: SR-03, SR-04
+#[test]
+fn a_lost_axis_is_cut_at_once_and_the_other_goes_on_slowly() {
+    // 5 N a tick.
+    let with = Config {
+        force_slew_n_s: 1e5,
+        ..config()
+    };
+    let mut supervisor = Supervisor::<64>::new(&with).unwrap();
+    let mut tick = |i: u32, lost: Status, levitation_n: [f32; 2]| {
+        let now = sample(i, [1e-7 * i as f32, 0.0]);
+        let status = now.status | lost;
+        let command = supervisor.tick(&Sample {
+            levitation_n,
+            status,
+            ..now
+        });
+        command.force_n
+    };
+    for i in 0..100 {
+        tick(i, Status::empty(), [180.0, -240.0]);
+    }
+    for i in 1..=10_u32 {
+        let [x, y] = tick(99 + i, Status::AXIS_X_LOST, [180.0, 0.0]);
+        assert_eq!(x, 0.0);
+        assert!((y + 240.0 - 5.0 * i as f32).abs() < 1e-2, "{y}");
+    }
+}

@@ -350,3 +350,35 @@ fn in_shadow_nothing_is_taken_from_the_levitation_controller() {
         bench.deliver([-x, y]);
     }
 }
+
+/// An axis that does not obey is lost after `fault_ticks` ticks of it, fifteen at most, and gets nothing for eight times as
+/// long, to the tick.
+/// Requirement: SR-22
+#[test]
+fn an_axis_is_lost_and_tried_again_after_its_time_to_the_tick() {
+    for fault_ticks in [2, 5, 15, 40] {
+        let with = Config {
+            fault_ticks: fault_ticks as f32,
+            ..config()
+        };
+        let mut supervisor = Supervisor::<64>::new(&with).unwrap();
+        let obeys_until = 100;
+        let commands: Vec<_> = (0..obeys_until + 200)
+            .map(|i| {
+                let applied_n = if i < obeys_until { 500.0 } else { -500.0 };
+                supervisor.tick(&Sample {
+                    levitation_n: [500.0, 0.0],
+                    applied_n: [applied_n, 0.0],
+                    ..in_the_middle(i)
+                })
+            })
+            .collect();
+        let first = |event| (commands.iter().position(|c| c.events.contains(event))).unwrap();
+        let (lost, back) = (first(Events::AXIS_LOST), first(Events::AXIS_BACK));
+        // Nothing from the tick after the last of them on.
+        let ticks = fault_ticks.min(15);
+        assert_eq!(lost, (obeys_until + ticks) as usize, "{fault_ticks}");
+        assert_eq!(back - lost, 8 * ticks as usize, "{fault_ticks}");
+        assert!(commands[lost..back].iter().all(|c| c.force_n[0] == 0.0));
+    }
+}

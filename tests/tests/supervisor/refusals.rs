@@ -348,3 +348,33 @@ fn a_dropout_may_or_may_not_use_up_a_number() {
         assert!(!command.events.contains(Events::SEQUENCE));
     }
 }
+
+/// However far the model runs away while samples are refused, which a pull of the magnets makes it do, the supervisor follows
+/// the rotor again as soon as samples are good.
+#[test]
+fn samples_refused_for_long_leave_an_estimate_that_comes_back() {
+    let with = Config {
+        // A pull of nine tenths of the cap at the wall: the model runs away twofold in each millisecond.
+        stiffness_n_m: -0.9 * 1000.0 / 2e-4,
+        fault_ticks: 10_000.0,
+        ..config()
+    };
+    let run = |refused: u32| {
+        let mut bench = Bench::new(&with);
+        for i in 0..100 {
+            bench.tick([2e-5, 1e-7 * (i % 3) as f32]);
+        }
+        for _ in 0..refused {
+            bench.tick([f32::NAN; 2]);
+        }
+        let whirl = (0..200).map(|i| bench.tick(on_circle(RADIUS_M, WHIRL_STEP * i as f32)));
+        let last = whirl.last().unwrap();
+        assert_eq!(last.mode, Mode::BackwardWhirl, "{refused}");
+        last.force_n
+    };
+    let [with, without] = [run(9000), run(0)];
+    assert!(
+        length([with[0] - without[0], with[1] - without[1]]) < 10.0,
+        "{with:?} {without:?}"
+    );
+}

@@ -396,3 +396,63 @@ fn a_shaft_that_no_body_has_is_refused() {
     assert_eq!(format!("{rotor:?}"), format!("{before:?}"));
     assert!(rotor.reconfigure(&good, &[config(); 2]).is_ok());
 }
+
+/// What the magnet at one end does to the other is known there before it is seen: a push towards the wall that its own cap
+/// cannot hold engages the supervisor within two ticks. A plane that stands alone takes as long as its slow observer.
+#[test]
+fn a_push_by_the_other_magnet_is_known_before_it_is_seen() {
+    // Both planes on one side of the centre of mass; forces that act at once.
+    let at = |place_m: f32| PlanePositions {
+        retainer_m: place_m,
+        sensor_m: place_m,
+        magnet_m: place_m,
+    };
+    let shaft = Shaft {
+        mass_kg: 20.0,
+        transverse_inertia_kg_m2: 2.0,
+        polar_inertia_kg_m2: 0.0,
+        places: [at(0.05), at(0.25)],
+    };
+    let with = |force_max_n: f32| Config {
+        force_max_n,
+        axis_force_max_n: force_max_n,
+        amplifier_lag_s: 0.0,
+        delay_samples: 0.0,
+        observer_pole_flight: 0.9,
+        ..free()
+    };
+    let configs = [with(500.0), with(2000.0)];
+    let mut rotor = RotorSupervisor::<RECORD>::new(&shaft, &configs).unwrap();
+    let mut alone = Supervisor::<RECORD>::new(&shaft.plane(0, &configs[0])).unwrap();
+    // Acceleration of each end per force at the second.
+    let magnet_m = shaft.places[1].magnet_m;
+    let per_kg = shaft.places.map(|place| {
+        1.0 / shaft.mass_kg + place.retainer_m * magnet_m / shaft.transverse_inertia_kg_m2
+    });
+    // The first end drifts outwards, the second is braked from a tick on.
+    let (mut position_m, mut speed_m_s) = ([6e-5_f32, 1e-4], [0.02_f32, -0.06]);
+    let pushed_at = 60;
+    let mut engaged = [None; 2];
+    for i in 0..pushed_at + 20 {
+        let mut samples = position_m.map(|x| sample(i, [x, 1e-7 * (i % 3) as f32]));
+        if i >= pushed_at {
+            samples[1].levitation_n = [1500.0, 0.0];
+        }
+        let commands = rotor.tick(&samples).planes;
+        assert_eq!(commands[1].mode, Mode::Levitated, "tick {i}");
+        let modes = [commands[0].mode, alone.tick(&samples[0]).mode];
+        for (engaged, mode) in engaged.iter_mut().zip(modes) {
+            *engaged = engaged.or(mode.is_engaged().then_some(i));
+        }
+        for (end, per_kg) in per_kg.into_iter().enumerate() {
+            let gained = per_kg * commands[1].force_n[0] * configs[0].sample_period_s;
+            position_m[end] += (speed_m_s[end] + 0.5 * gained) * configs[0].sample_period_s;
+            speed_m_s[end] += gained;
+        }
+    }
+    let [Some(known), Some(seen)] = engaged else {
+        panic!("{engaged:?}");
+    };
+    assert!((pushed_at + 1..=pushed_at + 2).contains(&known), "{known}");
+    assert!(seen > known + 5, "{known} {seen}");
+}

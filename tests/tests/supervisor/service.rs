@@ -265,3 +265,28 @@ fn commands_expire() {
     watch.renew([-2.0, f32::INFINITY]);
     assert_eq!(watch.force(), [-2.0, 0.0]);
 }
+
+/// Events that nobody takes out: the first sixteen wait, in order and untouched, later ones are lost, and the first one for
+/// which there is room again says so.
+#[test]
+fn a_full_queue_of_events_keeps_the_first_and_tells_of_the_loss() {
+    let mut supervisor = Supervisor::<64>::new(&config()).unwrap();
+    let late = |i: u32| {
+        let mut now = sample(i, [1e-7 * (i % 3) as f32, 2e-7 * (i % 5) as f32]);
+        now.status |= Status::LATE;
+        now
+    };
+    for i in 0..40 {
+        assert_eq!(supervisor.tick(&late(i)).events, Events::LATE);
+    }
+    let told = |supervisor: &mut Supervisor<64>| {
+        let events = std::iter::from_fn(|| supervisor.next_event());
+        events.map(|e| (e.sequence, e.events)).collect::<Vec<_>>()
+    };
+    let first: Vec<_> = (0..16).map(|i| (i, Events::LATE)).collect();
+    assert_eq!(told(&mut supervisor), first);
+    supervisor.tick(&late(40));
+    supervisor.tick(&late(41));
+    let next = [(40, Events::LATE | Events::QUEUE_FULL), (41, Events::LATE)];
+    assert_eq!(told(&mut supervisor), next);
+}

@@ -262,3 +262,55 @@ fn a_limit_that_is_lowered_below_the_index_asks() {
     assert_eq!(with_limit(1e6), 0);
     assert_eq!(with_limit(0.5 * index), 1);
 }
+
+/// The request to coast down comes with the first tick in which whirl beyond the limit has lasted longer than was configured.
+/// Requirement: SR-27
+#[test]
+fn the_request_to_coast_down_comes_after_its_time_to_the_tick() {
+    for ticks in [0, 1, 20, 100] {
+        let with = Config {
+            // Half a tick more, out of the way of rounding.
+            coast_down_s: (ticks as f32 + 0.5) * config().sample_period_s,
+            ..config()
+        };
+        let mut supervisor = Supervisor::new(&with).unwrap();
+        let commands = whirl_by(1.2 * WHIRL_STEP, &mut supervisor, 0..300, Status::empty());
+        let asks = |c: &Command| c.events.contains(Events::COAST_DOWN);
+        let asked = commands.iter().position(asks).unwrap();
+        let beyond = |c: &&Command| c.limits.contains(Limits::BEYOND_WHIRL_LIMIT);
+        assert_eq!(commands[..=asked].iter().filter(beyond).count(), ticks + 1);
+    }
+}
+
+/// The speed that an impact leaves is known from two samples off the wall, however slow the observer is in flight: the next
+/// impact is weighed with it.
+#[test]
+fn the_speed_after_an_impact_is_known_from_two_samples() {
+    let with = Config {
+        observer_pole_flight: 0.95,
+        observer_pole_contact: 0.3,
+        stiffness_n_m: 0.0,
+        ..config()
+    };
+    let mut supervisor = Supervisor::<64>::new(&with).unwrap();
+    let mut index_after = |ticks: std::ops::Range<u32>| {
+        for i in ticks {
+            // To the wall with 0.3 m/s, back and across to the other with 0.21 m/s; nothing pushes.
+            let to_wall_m = 1.5e-5 * 14_u32.saturating_sub(i) as f32;
+            let from_wall_m = 1.05e-5 * i.saturating_sub(14) as f32;
+            let mut now = sample(
+                i,
+                [2.01e-4 - to_wall_m - from_wall_m, 1e-7 * (i % 2) as f32],
+            );
+            now.status |= Status::APPLIED_VALID;
+            supervisor.tick(&now);
+        }
+        let report = supervisor.report();
+        (report.impacts, report.severity_index)
+    };
+    let (first, second) = (index_after(0..50), index_after(50..53));
+    assert_eq!((first.0, second.0), (1, 2));
+    let by_hand = (0.21 / whirl_limit_m_s(&with, 1000.0)).powi(2);
+    let index = f64::from(second.1 - first.1);
+    assert!((index / by_hand - 1.0).abs() < 0.1, "{index} {by_hand}");
+}

@@ -404,3 +404,21 @@ fn an_engagement_without_contact_does_not_spend_the_record() {
         "a quarter of the record lies before the touch"
     );
 }
+
+/// Of samples that are off and do not agree with each other two in a row are refused, and the third is believed.
+/// Requirement: SR-16
+#[test]
+fn no_more_than_two_samples_in_a_row_are_doubted() {
+    let mut bench = Bench::new(&config());
+    let mut chance = Chance::new(17);
+    let mut refused = |off: f32| {
+        let at = [
+            off * C_M + noise(&mut chance, 5e-7),
+            noise(&mut chance, 5e-7),
+        ];
+        let command = bench.tick(at);
+        command.limits.contains(Limits::SAMPLE_REFUSED)
+    };
+    assert!((0..200).all(|_| !refused(0.0)));
+    assert_eq!([0.1, 0.25, 0.45].map(refused), [true, true, false]);
+}
