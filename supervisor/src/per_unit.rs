@@ -202,6 +202,21 @@ impl<S: Scalar> Plane<S> {
         let units = with_units.then(|| Units::of(&self.coeffs));
         shared.latest.put(&self.tally(), units.as_ref());
     }
+
+    /// After a tick: the mode at once, all else when it is its turn. A tick with an event has enough to do: it is the next one
+    /// that publishes what came of it.
+    #[inline]
+    pub(crate) fn publish_in_turn<const N: usize>(
+        &mut self,
+        shared: &Shared<N>,
+        mode: Mode,
+        events: Events,
+    ) {
+        shared.latest.put_mode(mode);
+        if self.recorder.is_published_now(events) {
+            self.publish(shared, false);
+        }
+    }
 }
 
 impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {

@@ -146,7 +146,7 @@ impl<S: Scalar, const RECORD: usize> CoreTicker<'_, S, RECORD> {
     #[inline]
     fn ticked(&mut self, sample: &CoreSample<S>) -> CoreCommand<S> {
         let command = self.plane.tick(self.shared, sample);
-        self.plane.publish(self.shared, false);
+        (self.plane).publish_in_turn(self.shared, command.mode, command.events);
         command
     }
 
@@ -258,6 +258,14 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
 }
 
 impl<const RECORD: usize> Supervisor<RECORD> {
+    /// The half that ticks, for what is read by nobody else meanwhile: what is counted, and the C interface.
+    #[doc(hidden)]
+    #[inline]
+    pub fn ticker(&mut self) -> Ticker<'_, RECORD> {
+        let Core { plane, shared } = &mut self.core;
+        Ticker(CoreTicker { plane, shared })
+    }
+
     /// Two halves for two priorities: one ticks, the other takes events and records away. No lock is needed between them, and
     /// their borrow keeps everybody else out.
     ///

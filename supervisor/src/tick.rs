@@ -373,7 +373,7 @@ impl<S: Scalar> State<S> {
     ) -> Acted {
         let (sample, flags, coeffs) = (given.sample, given.flags(), given.coeffs);
         let mode = self.phase.mode();
-        let shadow = sample.status.contains(Status::SHADOW);
+        let shadow = flags.contains(SampleFlags::SHADOW);
         if flags.has_lost() {
             // Such an axis has no force to start from; one that does not track may have.
             let known = flags.known(sample.status);
@@ -567,7 +567,6 @@ impl<S: Scalar> State<S> {
         self.phase == Phase::Levitated
             && given.flags() & SampleFlags::AT_EASE.1 == SampleFlags::AT_EASE.0
             && wall == Contact::None
-            && !given.sample.status.contains(Status::SHADOW)
             && !self.reconfigured
             && !self.classifier.is_continuous()
     }

@@ -108,7 +108,8 @@ macro_rules! asked {
 
 impl Ticked for Float {
     const RAM_BYTES: usize = size_of::<Self>() - Core::<f32, RECORD>::RECORDER_BYTES;
-    const TICK: fn(&mut Self, &Self::Sample) -> Self::Command = Self::tick;
+    const TICK: fn(&mut Self, &Self::Sample) -> Self::Command =
+        |supervisor, sample| supervisor.ticker().tick(sample);
     type Sample = Sample;
     type Command = Command;
 

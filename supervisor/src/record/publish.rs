@@ -5,7 +5,7 @@
 use crate::account::tally::{Tally, Units};
 use crate::border::signal::{Events, Mode, Report};
 use crate::number::scalar::Scalar;
-use crate::number::words::{Cells, Words as _};
+use crate::number::words::{Cells, Words as _, set};
 use core::sync::atomic::{AtomicU32, Ordering, fence};
 
 /// An event with its tick, for the background task.
@@ -147,6 +147,12 @@ impl Latest {
             (tally, Units::<S>::decode(&mut this.units.words()))
         })?;
         Some(tally.report(&units))
+    }
+
+    /// The mode alone, of a tick that publishes nothing else.
+    #[inline]
+    pub(crate) fn put_mode(&self, mode: Mode) {
+        set(self.tally.all(), 0, mode as u32);
     }
 
     /// Is one word: whole at any time.

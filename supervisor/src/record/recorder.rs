@@ -14,6 +14,10 @@ use crate::record::publish::{EventQueue, Latest, QueuedEvent};
 use crate::tick::State;
 use core::sync::atomic::{AtomicU32, Ordering};
 
+/// All that has happened is published every so many ticks: half as many after a restart in the second plane of a rotor, so
+/// that both are never due at once.
+const PUBLISHED_EVERY: u8 = 8;
+
 /// What makes an engagement worth a record: one without must not spend the record of one with it.
 const WORTH_IT: Events = Events::TOUCHED.union(Events::SENSOR_FAULT);
 
@@ -80,6 +84,8 @@ pub(crate) struct Recorder<S: Scalar> {
     config: [f32; CONFIG_WORDS],
     stale: bool,
     track: entry::TrackProgress<S>,
+    /// Ticks since all was published.
+    unpublished: u8,
 }
 
 /// What both sides use.
@@ -148,6 +154,7 @@ impl<S: Scalar> Recorder<S> {
             config: config.values(),
             stale: true,
             track: entry::TrackProgress::new(),
+            unpublished: PUBLISHED_EVERY / 2 * plane[0],
         }
     }
 
@@ -189,6 +196,21 @@ impl<S: Scalar> Recorder<S> {
         }
     }
 
+    /// Whether it is the turn of all that has happened, after a tick with these events.
+    #[inline]
+    pub(crate) fn is_published_now(&mut self, events: Events) -> bool {
+        self.unpublished += 1;
+        if !events.is_empty() && self.unpublished < 2 * PUBLISHED_EVERY {
+            self.unpublished = self.unpublished.max(PUBLISHED_EVERY);
+            return false;
+        }
+        let due = self.unpublished >= PUBLISHED_EVERY;
+        if due {
+            self.unpublished = 0;
+        }
+        due
+    }
+
     /// Whether ticks are written down.
     #[inline]
     fn writes(&self) -> bool {
@@ -218,7 +240,19 @@ impl<S: Scalar> Recorder<S> {
         state: &State<S>,
         command: &CoreCommand<S>,
     ) -> Seen {
-        let seen = if command.events.is_empty() {
+        if self.writes() {
+            if let Some(place) = shared.buffer.entry(self.written) {
+                entry::write_command(command, place);
+            }
+            self.written = self.written.wrapping_add(1);
+            self.due = self.due.wrapping_sub(1);
+        }
+        let quiet = command.events.is_empty();
+        if quiet && self.progress == Progress::Armed {
+            // Most ticks.
+            return Seen::default();
+        }
+        let seen = if quiet {
             Seen {
                 engaged: command.mode.is_engaged(),
                 ..Seen::default()
@@ -231,13 +265,6 @@ impl<S: Scalar> Recorder<S> {
                 command.events,
             )
         };
-        if self.writes() {
-            if let Some(place) = shared.buffer.entry(self.written) {
-                entry::write_command(command, place);
-            }
-            self.written = self.written.wrapping_add(1);
-            self.due = self.due.wrapping_sub(1);
-        }
         let begins = seen.triggers && self.progress == Progress::Armed;
         if begins || matches!(self.progress, Progress::Triggered(_)) {
             let (position, touching) = state.whereabouts();

@@ -286,7 +286,10 @@ impl<const RECORD: usize> RotorTicker<'_, RECORD> {
     #[inline(never)]
     pub fn tick(&mut self, samples: &[Sample; 2]) -> RotorCommand {
         let command = self.ticked(samples);
-        self.publish(false);
+        let planes = self.planes.iter_mut().zip(self.shared);
+        for ((plane, shared), to) in planes.zip(&command.planes) {
+            plane.publish_in_turn(shared, to.mode, to.events);
+        }
         command
     }
 

@@ -273,7 +273,7 @@ impl<S: Scalar> Guard<S> {
         if !(before - lost).is_empty() {
             events |= Events::AXIS_BACK;
         }
-        let kept = SampleFlags::USED | SampleFlags::ON | SampleFlags::LOST;
+        let kept = SampleFlags::USED | SampleFlags::ON | SampleFlags::LOST | SampleFlags::SHADOW;
         self.usual = (status - Status::LATE).bits() as u8;
         self.usual_flags = if flags.contains(SampleFlags::USED) && !self.faulty && !self.jumped {
             flags & kept

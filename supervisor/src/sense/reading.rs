@@ -81,7 +81,9 @@ bitflags::bitflags! {
         /// The last command came too late.
         const LATE = Status::LATE.bits() as u16;
         /// The applied force is measured and believed.
-        const MEASURED = 1 << 6;
+        const MEASURED = 1 << 11;
+        /// The supervisor only watches.
+        const SHADOW = Status::SHADOW.bits() as u16;
         /// The observer has to start anew.
         const ANEW = 1 << 7;
         /// Ticks were missed.
@@ -92,7 +94,7 @@ bitflags::bitflags! {
         const BOTH_BAD = Self::X_BAD.bits() | Self::Y_BAD.bits();
         const LOST = Self::X_LOST.bits() | Self::Y_LOST.bits();
         /// What a status says.
-        const SAID = Self::ON.bits() | Self::LOST.bits() | Self::LATE.bits();
+        const SAID = Self::ON.bits() | Self::SHADOW.bits() | Self::LOST.bits() | Self::LATE.bits();
         /// What the observer has to be told before the tick.
         const UNUSUAL = Self::FAULTY.bits() | Self::ANEW.bits() | Self::LATE.bits() | Self::MISSED.bits();
     }
@@ -111,7 +113,13 @@ impl SampleFlags {
     /// What the flags of a sample are of which nothing is to be said, among those that say something.
     pub(crate) const AT_EASE: (Self, Self) = {
         let usual = Self::USED.union(Self::ON);
-        (usual, usual.union(Self::UNUSUAL).union(Self::LOST))
+        (
+            usual,
+            usual
+                .union(Self::UNUSUAL)
+                .union(Self::LOST)
+                .union(Self::SHADOW),
+        )
     };
 
     /// What the status says.
