@@ -140,7 +140,6 @@ pub(crate) struct Coeffs<S: Scalar> {
     pub(crate) friction: S,
     pub(crate) tilt: S,
     /// e.
-    pub(crate) restitution: S,
     /// Backward speed that all impacts to come will add, per normal speed of the next one:
     /// μ(1 + e)(1 + e + e² + …) = μ(1 + e)/(1 − e).
     pub(crate) bounce_gain: S,
@@ -406,7 +405,6 @@ impl<S: Scalar> Coeffs<S> {
             horizon: s("horizon", horizon),
             friction: s("friction", mu),
             tilt: s("friction", f32::JUST_BELOW_ONE / sqrt(1.0 + mu * mu)),
-            restitution: s("restitution", e),
             bounce_gain: s("bounce gain", mu * (1.0 + e) / (1.0 - e)),
             // Critically damped fading-memory filters of second and first order.
             flight_gains: [
