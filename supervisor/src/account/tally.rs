@@ -83,8 +83,8 @@ impl<S: Scalar> Units<S> {
             force_n: scaling.force_n,
             severity_limit: coeffs.severity_limit,
             per_whirl_limit: coeffs.per_whirl_limit,
-            continuous: coeffs.continuous.unwrap_or_default(),
-            budgeted: coeffs.continuous.is_some(),
+            continuous: coeffs.budget.continuous.unwrap_or_default(),
+            budgeted: coeffs.budget.continuous.is_some(),
         }
     }
 }

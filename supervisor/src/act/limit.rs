@@ -276,7 +276,7 @@ impl<S: Scalar> Budget<S> {
     /// Cap now \[caps\].
     #[inline]
     pub(crate) fn cap(&self, coeffs: &Coeffs<S>) -> S {
-        match coeffs.continuous {
+        match coeffs.budget.continuous {
             Some(continuous) if THERMAL_BUDGET => derated(self.state.value(), continuous),
             _ => S::ONE,
         }
@@ -285,9 +285,9 @@ impl<S: Scalar> Budget<S> {
     /// Some ticks, few against the thermal time, with this force \[caps\].
     #[inline]
     pub(crate) fn spend(&mut self, ticks: S, force: Vec2<S>, coeffs: &Coeffs<S>) {
-        if THERMAL_BUDGET && coeffs.continuous.is_some() {
+        if THERMAL_BUDGET && coeffs.budget.continuous.is_some() {
             let way = force.length_squared() - self.state.value();
-            self.state.add(way * ticks, coeffs.thermal_rate);
+            self.state.add(way * ticks, coeffs.budget.thermal_rate);
         }
     }
 

@@ -109,6 +109,48 @@ impl Config {
 /// Rate of a slow sum.
 pub(crate) type RateOf<S> = <<S as Scalar>::Accumulator as Accumulator<S>>::Rate;
 
+/// What samples are judged by.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct GuardCoeffs<S> {
+    /// Largest plausible radius.
+    pub(crate) position_limit: S,
+    pub(crate) fault_ticks: u16,
+    /// Farthest plausible way in a tick.
+    pub(crate) way_per_tick: S,
+    /// Three steps of the sensor, or the shortest way there is, as a sum of speeds over ticks.
+    pub(crate) sensor_speeds: S,
+    /// Mean distance of a sample from where it was expected, of the noise that was told; and up to which of it the speed is
+    /// known well enough to tell an approach by.
+    pub(crate) configured_noise: S,
+    pub(crate) quiet_noise: S,
+    /// How far off a sample may be that is not doubted, whatever the noise.
+    pub(crate) never_doubted: S,
+}
+
+/// What the observer follows samples by.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct ObserverCoeffs<S> {
+    /// Observer gains (position by position, velocity and load step by difference quotient) in flight.
+    pub(crate) flight_gains: [S; 3],
+    /// Half of how far its load is behind \[ticks\]: three poles ρ with ρ/(1 − ρ) each, and the tick itself.
+    pub(crate) flight_lag: S,
+    /// Gains in contact, where there is no load.
+    pub(crate) contact_gains: [S; 2],
+    /// Weight of the force at the beginning of a tick in its mean, where both ends are measured.
+    pub(crate) applied_weight: S,
+    /// Being blind for the contact force, the observer makes up a speed of so much times the acceleration of all others.
+    pub(crate) blind_time: S,
+}
+
+/// What the force–time budget goes by.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct BudgetCoeffs<S: Scalar> {
+    /// Continuous force \[caps\], where there is a force–time budget.
+    pub(crate) continuous: Option<S>,
+    /// Share of its way that the thermal state goes in a tick.
+    pub(crate) thermal_rate: RateOf<S>,
+}
+
 /// Immutable coefficients of the tick.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Coeffs<S: Scalar> {
@@ -146,18 +188,10 @@ pub(crate) struct Coeffs<S: Scalar> {
     /// By how much the rotor swings on a wall that gives way until a force has come, as cosine and sine, and how fast \[1/t₀\];
     /// nothing where an impact is half over by then.
     pub(crate) contact_ahead: Option<[S; 3]>,
-    /// Observer gains (position by position, velocity and load step by difference quotient) in flight.
-    pub(crate) flight_gains: [S; 3],
-    /// Half of how far its load is behind \[ticks\]: three poles ρ with ρ/(1 − ρ) each, and the tick itself.
-    pub(crate) flight_lag: S,
-    /// Gains in contact, where there is no load.
-    pub(crate) contact_gains: [S; 2],
     /// Touching begins above this radius …
     pub(crate) touch_radius: S,
     /// … and ends below this one.
     pub(crate) leave_radius: S,
-    /// Largest plausible radius.
-    pub(crate) position_limit: S,
     /// Filter step of the contact share, 1/ticks of the whirl time.
     pub(crate) contact_share_step: S,
     /// Share of the cap that holds a rotor which has just come to rest on the wall.
@@ -176,43 +210,27 @@ pub(crate) struct Coeffs<S: Scalar> {
     pub(crate) blend_step: S,
     /// Force lost per tick of a fault of the sensor \[caps\].
     pub(crate) fault_step: S,
-    pub(crate) fault_ticks: u16,
     /// Cap of each axis \[caps\], at most 1.
     pub(crate) axis_cap: S,
     /// A hair less than the longest change of the command in a tick \[caps\], so that rounding keeps it.
     pub(crate) slew_step: S,
-    /// Continuous force \[caps\], where there is a force–time budget.
-    pub(crate) continuous: Option<S>,
-    /// Share of its way that the thermal state goes in a tick.
-    pub(crate) thermal_rate: RateOf<S>,
-    /// Weight of the force at the beginning of a tick in its mean, where both ends are measured.
-    pub(crate) applied_weight: S,
     /// 1 over the highest backward speed that the cap arrests.
     pub(crate) per_whirl_limit: S,
     pub(crate) coast_down_ticks: u32,
     pub(crate) severity_limit: f32,
     /// Share of the severity limit per square of speed.
     pub(crate) index_rate: RateOf<S>,
-    /// Farthest plausible way in a tick.
-    pub(crate) way_per_tick: S,
-    /// Three steps of the sensor, or the shortest way there is, as a sum of speeds over ticks.
-    pub(crate) sensor_speeds: S,
-    /// Mean distance of a sample from where it was expected, of the noise that was told; and up to which of it the speed is
-    /// known well enough to tell an approach by.
-    pub(crate) configured_noise: S,
-    pub(crate) quiet_noise: S,
-    /// How far off a sample may be that is not doubted, whatever the noise.
-    pub(crate) never_doubted: S,
     /// Ticks of a window of [`crate::decide::trust`], less one.
     pub(crate) window_ticks: u16,
     /// Bending modes that were told and can be kept apart.
     pub(crate) bending: Option<Modes<S>>,
     /// Whether it acts from the approach on, and not on evident backward whirl alone.
     pub(crate) acts_in_flight: bool,
-    /// Being blind for the contact force, the observer makes up a speed of so much times the acceleration of all others.
-    pub(crate) blind_time: S,
     /// Square of a speed that is no approach.
     pub(crate) ease_square: S,
+    pub(crate) guard: GuardCoeffs<S>,
+    pub(crate) observer: ObserverCoeffs<S>,
+    pub(crate) budget: BudgetCoeffs<S>,
 }
 
 /// Shortest way \[clearances\] that the estimate is sure of: a rotor at rest before a sensor without noise may seem to go round
@@ -310,6 +328,91 @@ fn ease_square(pull: f32, horizon: f32) -> f32 {
     0.9 * speed * speed
 }
 
+impl<S: Scalar> GuardCoeffs<S> {
+    /// `h`: a tick \[t₀\].
+    fn new(config: &Config, h: f32, taken: &mut Taken) -> Self {
+        let (t, c) = (config.sample_period_s, config.clearance_m);
+        let pole = config.observer_pole_flight;
+        let free = 1.0 - pole;
+        let sensor_steps = 3.0 * config.sensor_step_m * config.retainer_plane_ratio / c;
+        // Mean length of the difference of two samples, each against where this observer expected it, per noise of a coordinate:
+        // by the filter (1 − z⁻¹)⁴/(1 − ρ·z⁻¹)³ to within 8 %.
+        let twice = 2.0 / (1.0 + pole);
+        let per_noise = 1.77 * twice * twice * twice;
+        let configured_noise = per_noise * sensor_steps / 3.0;
+        let speed_noise = sqrt(
+            free * free * free * (13.0 + 50.0 * pole + 49.0 * pole * pole) / 2.0 / (1.0 + pole),
+        ) / (1.0 + pole)
+            / (1.0 + pole);
+        let quiet_noise = max(
+            per_noise * QUIET_SPEED * h / speed_noise,
+            2.5 * configured_noise,
+        );
+        let mut s = |name, x| taken.of::<S>(name, x);
+        Self {
+            position_limit: s("position limit", config.position_limit),
+            fault_ticks: config.fault_ticks as u16,
+            way_per_tick: s("largest speed", config.speed_max_m_s * t / c),
+            sensor_speeds: s("sensor step", max(sensor_steps, LEAST_WAY) / h),
+            configured_noise: s("sensor step", min(configured_noise, 0.5)),
+            quiet_noise: s("sensor step", quiet_noise),
+            never_doubted: s("tick", max(0.5 * SHOCK * h * h, LEAST_DOUBTED)),
+        }
+    }
+}
+
+impl<S: Scalar> ObserverCoeffs<S> {
+    /// `h`: a tick \[t₀\].
+    fn new(config: &Config, h: f32, taken: &mut Taken) -> Self {
+        let (pole, touch_pole) = (config.observer_pole_flight, config.observer_pole_contact);
+        let (free, touch_free) = (1.0 - pole, 1.0 - touch_pole);
+        let mut s = |name, x| taken.of::<S>(name, x);
+        Self {
+            // Critically damped fading-memory filters of second and first order.
+            flight_gains: [
+                s("observer gain", 1.0 - pole * pole * pole),
+                s("observer gain", 1.5 * free * free * (1.0 + pole)),
+                s("observer gain", free * free * free),
+            ],
+            flight_lag: s("observer lag", 1.5 * pole / free + 0.5),
+            contact_gains: [
+                s("observer gain", 1.0 - touch_pole * touch_pole),
+                s("observer gain", touch_free * touch_free),
+            ],
+            applied_weight: s(
+                "lag",
+                applied_weight(config.amplifier_lag_s / config.sample_period_s),
+            ),
+            blind_time: s("observer", h * (1.0 + touch_pole) / touch_free),
+        }
+    }
+}
+
+impl<S: Scalar> BudgetCoeffs<S> {
+    fn new(config: &Config, taken: &mut Taken) -> Self {
+        // From the cap on there is no budget.
+        let continuous = min(config.continuous_force_n / config.force_max_n, 1.0);
+        // Not so fast that the ticks of a gap together overshoot. Without a budget any will do.
+        let rate = if continuous < 1.0 {
+            min(config.sample_period_s / config.thermal_time_s, 0.25)
+        } else {
+            1.0
+        };
+        let thermal_rate = taken.rate::<S>("thermal time", rate);
+        // What the fall of the cap is divided by has to be more than some last places.
+        if continuous < 1.0 {
+            let _: S = taken.of(
+                "continuous force",
+                1.0 / (64.0 * FALL * continuous * continuous),
+            );
+        }
+        Self {
+            continuous: (continuous < 1.0).then_some(taken.of("continuous force", continuous)),
+            thermal_rate,
+        }
+    }
+}
+
 impl<S: Scalar> Coeffs<S> {
     /// From a valid configuration, with the first coefficient that `S` cannot hold. `f32` holds all.
     pub(crate) fn new(config: &Config) -> (Self, Option<NotRepresentable>) {
@@ -325,14 +428,6 @@ impl<S: Scalar> Coeffs<S> {
         let delay_ticks = delay as f32 + 0.5;
         let horizon = (delay_ticks + lag) * h;
         let (mu, e) = (config.friction_coefficient, config.restitution);
-        let (pole, free) = (
-            config.observer_pole_flight,
-            1.0 - config.observer_pole_flight,
-        );
-        let (touch_pole, touch_free) = (
-            config.observer_pole_contact,
-            1.0 - config.observer_pole_contact,
-        );
         // Acceleration at the retainer bearing by one cap is 1 by the choice of units.
         let stiffness = config.stiffness_n_m * c / (config.magnet_plane_ratio * f);
         let damping = config.damping_n_s_m * unit_s / config.mass_kg;
@@ -346,40 +441,15 @@ impl<S: Scalar> Coeffs<S> {
         );
         // Divided by in every severity.
         let whirl_limit = max(whirl_limit_m_s(config) / scaling.speed_m_s(), 1e-6);
-        let sensor_steps = 3.0 * config.sensor_step_m * config.retainer_plane_ratio / c;
-        // Mean length of the difference of two samples, each against where this observer expected it, per noise of a coordinate:
-        // by the filter (1 − z⁻¹)⁴/(1 − ρ·z⁻¹)³ to within 8 %.
-        let twice = 2.0 / (1.0 + pole);
-        let per_noise = 1.77 * twice * twice * twice;
-        let configured_noise = per_noise * sensor_steps / 3.0;
-        let speed_noise = sqrt(
-            free * free * free * (13.0 + 50.0 * pole + 49.0 * pole * pole) / 2.0 / (1.0 + pole),
-        ) / (1.0 + pole)
-            / (1.0 + pole);
-        let quiet_noise = max(
-            per_noise * QUIET_SPEED * h / speed_noise,
-            2.5 * configured_noise,
-        );
-        // From the cap on there is no budget.
-        let continuous = min(config.continuous_force_n / f, 1.0);
-        let square = continuous * continuous;
         let mut taken = Taken { lost: None };
-        // Not so fast that the ticks of a gap together overshoot. Without a budget any will do.
-        let thermal_rate = if continuous < 1.0 {
-            min(t / config.thermal_time_s, 0.25)
-        } else {
-            1.0
-        };
-        let thermal_rate = taken.rate::<S>("thermal time", thermal_rate);
+        let budget = BudgetCoeffs::new(config, &mut taken);
         let index_rate = 1.0 / whirl_limit / whirl_limit / config.severity_limit;
         let index_rate = taken.rate::<S>("severity limit", index_rate);
         // More than twice the cap binds nothing; less than what has an inverse would bind for ever.
         let slew_step = min(config.force_slew_n_s * t / f, 4.0);
         let _: S = taken.of("slew limit", 1.0 / slew_step);
-        // What the fall of the cap is divided by has to be more than some last places.
-        if continuous < 1.0 {
-            let _: S = taken.of("continuous force", 1.0 / (64.0 * FALL * square));
-        }
+        let guard = GuardCoeffs::new(config, h, &mut taken);
+        let observer = ObserverCoeffs::new(config, h, &mut taken);
         let mut s = |name, x| taken.of::<S>(name, x);
         let contact_rate = sqrt(config.contact_stiffness_n_m * c / (config.magnet_plane_ratio * f));
         let turn = contact_rate * horizon;
@@ -406,20 +476,8 @@ impl<S: Scalar> Coeffs<S> {
             friction: s("friction", mu),
             tilt: s("friction", f32::JUST_BELOW_ONE / sqrt(1.0 + mu * mu)),
             bounce_gain: s("bounce gain", mu * (1.0 + e) / (1.0 - e)),
-            // Critically damped fading-memory filters of second and first order.
-            flight_gains: [
-                s("observer gain", 1.0 - pole * pole * pole),
-                s("observer gain", 1.5 * free * free * (1.0 + pole)),
-                s("observer gain", free * free * free),
-            ],
-            flight_lag: s("observer lag", 1.5 * pole / free + 0.5),
-            contact_gains: [
-                s("observer gain", 1.0 - touch_pole * touch_pole),
-                s("observer gain", touch_free * touch_free),
-            ],
             touch_radius: s("contact band", 1.0 - config.contact_band),
             leave_radius: s("contact band", 1.0 - 1.5 * config.contact_band),
-            position_limit: s("position limit", config.position_limit),
             contact_share_step: s("whirl time", per_tick(config.whirl_time_s, t)),
             hold_share: s("hold share", config.hold_share),
             damper: s("damper", damper),
@@ -433,25 +491,18 @@ impl<S: Scalar> Coeffs<S> {
             patience_ticks: (PATIENCE / h) as u32,
             blend_step: s("hand-over blend", per_tick(config.handover_blend_s, t)),
             fault_step: s("fault blend", per_tick(config.fault_blend_s, t)),
-            fault_ticks: config.fault_ticks as u16,
             axis_cap: s("axis cap", min(config.axis_force_max_n / f, 1.0)),
             slew_step: s("slew limit", slew_step) * S::JUST_BELOW_ONE,
-            continuous: (continuous < 1.0).then_some(s("continuous force", continuous)),
-            thermal_rate,
-            applied_weight: s("lag", applied_weight(lag)),
+            budget,
+            guard,
+            observer,
             per_whirl_limit: s("whirl limit", 1.0 / whirl_limit),
             coast_down_ticks: (config.coast_down_s / t) as u32,
             severity_limit: config.severity_limit,
             index_rate,
-            way_per_tick: s("largest speed", config.speed_max_m_s * t / c),
-            sensor_speeds: s("sensor step", max(sensor_steps, LEAST_WAY) / h),
-            configured_noise: s("sensor step", min(configured_noise, 0.5)),
-            quiet_noise: s("sensor step", quiet_noise),
-            never_doubted: s("tick", max(0.5 * SHOCK * h * h, LEAST_DOUBTED)),
             window_ticks: min(max(WINDOW / h, LEAST_WINDOW), 60000.0) as u16,
             bending: Modes::new(config),
             acts_in_flight: config.acts_in_flight >= 0.5,
-            blind_time: s("observer", h * (1.0 + touch_pole) / touch_free),
             ease_square: s("speed", ease_square(pull, horizon)),
         };
         (coeffs, taken.lost)

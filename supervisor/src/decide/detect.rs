@@ -169,7 +169,7 @@ impl Detector {
             0
         };
         // Twice the lag of the load is what the observer takes to settle.
-        let settling = coeffs.flight_lag + coeffs.flight_lag;
+        let settling = coeffs.observer.flight_lag + coeffs.observer.flight_lag;
         let near = outward * (settling * (coeffs.tick * S::from_f32(NEAR)));
         let urgent = near > contact.reach - contact.radius;
         contact.unavoidable = alarm && (urgent || S::count(u32::from(self.alarmed)) > settling);

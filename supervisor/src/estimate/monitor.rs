@@ -108,7 +108,7 @@ impl<S: Scalar> ActuatorMonitor<S> {
             return;
         }
         let progress = S::from_f32(PROGRESS) * coeffs.tick;
-        let most = coeffs.fault_ticks.min(MOST_TICKS) as i8;
+        let most = coeffs.guard.fault_ticks.min(MOST_TICKS) as i8;
         // Power that is gone, or comes back: a drive that gives next to nothing takes nothing away.
         let powerless = now.x.abs() <= S::from_f32(LITTLE) && now.y.abs() <= S::from_f32(LITTLE);
         let [x, y] = &mut self.off;

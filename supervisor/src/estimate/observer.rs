@@ -130,7 +130,7 @@ impl<S: Scalar> Observer<S> {
             let error = position - m.position - bent;
             let error_speed = error * coeffs.per_tick;
             if wall == Contact::None {
-                let [on_position, on_velocity, on_load] = coeffs.flight_gains;
+                let [on_position, on_velocity, on_load] = coeffs.observer.flight_gains;
                 m.position = m.position + error * on_position;
                 m.velocity = m.velocity + error_speed * on_velocity;
                 m.load_step = m.load_step + error_speed * on_load;
@@ -143,7 +143,7 @@ impl<S: Scalar> Observer<S> {
                 m.position = position;
                 m.velocity = m.velocity + error_speed;
             } else {
-                let [on_position, on_velocity] = coeffs.contact_gains;
+                let [on_position, on_velocity] = coeffs.observer.contact_gains;
                 m.position = m.position + error * on_position;
                 m.velocity = m.velocity + error_speed * on_velocity;
             }
@@ -203,7 +203,7 @@ impl<S: Scalar> Observer<S> {
         let m = &mut self.motion;
         m.position = m.position + m.velocity * (coeffs.tick * ticks);
         if let Some(position) = sample {
-            let [_, on_velocity, _] = coeffs.flight_gains;
+            let [_, on_velocity, _] = coeffs.observer.flight_gains;
             let error = position - m.position - m.velocity * coeffs.tick;
             let gain = (on_velocity * coeffs.per_tick).div(ticks + S::ONE);
             m.velocity = m.velocity + error * gain;
@@ -226,7 +226,7 @@ impl<S: Scalar> Observer<S> {
         }
         if let Some(now) = measured {
             self.delivered = now;
-            return now + (before - now) * coeffs.applied_weight;
+            return now + (before - now) * coeffs.observer.applied_weight;
         }
         let (modelled, mean) = lagging(actuator.carried(before), due, coeffs);
         self.delivered = modelled;
@@ -310,7 +310,7 @@ impl<S: Scalar> Observer<S> {
     #[inline]
     pub(crate) fn blind_speed(&self, normal: Vec2<S>, coeffs: &Coeffs<S>) -> S {
         let gained = self.delivered - self.motion.position * coeffs.stiffness;
-        gained.dot(normal) * coeffs.blind_time
+        gained.dot(normal) * coeffs.observer.blind_time
     }
 
     /// Starts anew at the next sample: without samples the model runs away.

@@ -43,7 +43,7 @@ impl<S: Scalar> Turn<S> {
     pub(crate) fn new(rotation: Rotation<S>, ticks: S, coeffs: &Coeffs<S>) -> Option<Self> {
         let rate = rotation.rate;
         let of_one = rate * coeffs.tick;
-        let (angle, half_behind) = (of_one * ticks, of_one * coeffs.flight_lag);
+        let (angle, half_behind) = (of_one * ticks, of_one * coeffs.observer.flight_lag);
         let seen = half_behind.abs() <= S::from_f32(MOST_LAG) && angle.abs() <= S::ONE;
         let rate = rate.abs();
         let usable = UNBALANCE && seen && rate >= S::from_f32(SLOWEST);

@@ -166,8 +166,8 @@ impl<S: Scalar> Guard<S> {
             && step.x != S::ZERO
             && step.y != S::ZERO
             // Written so that NaN is unusual.
-            && !step.exceeds(coeffs.way_per_tick)
-            && !position.exceeds(coeffs.position_limit);
+            && !step.exceeds(coeffs.guard.way_per_tick)
+            && !position.exceeds(coeffs.guard.position_limit);
         if !usual {
             return None;
         }
@@ -219,7 +219,7 @@ impl<S: Scalar> Guard<S> {
         } else if last.in_contact {
             // The most that the model accelerates by while the wall holds against it.
             let most = S::ONE + coeffs.stiffness.abs() * S::from_f32(1.5);
-            (last.velocity).map(|speed| speed.beyond(coeffs.blind_time * most))
+            (last.velocity).map(|speed| speed.beyond(coeffs.observer.blind_time * most))
         } else {
             last.velocity
         };
@@ -320,8 +320,8 @@ impl<S: Scalar> Guard<S> {
         coeffs: &Coeffs<S>,
     ) -> (RejectReason, SampleFlags) {
         // What is no number exceeds everything.
-        if position.exceeds(coeffs.position_limit) {
-            let bad = bad_coordinates(position, coeffs.position_limit);
+        if position.exceeds(coeffs.guard.position_limit) {
+            let bad = bad_coordinates(position, coeffs.guard.position_limit);
             return if position.is_finite() {
                 (RejectReason::Range, bad)
             } else {
@@ -376,7 +376,7 @@ impl<S: Scalar> Guard<S> {
 
 /// The longest way that is plausible in so many ticks.
 fn way_in<S: Scalar>(ticks: u32, coeffs: &Coeffs<S>) -> S {
-    coeffs.way_per_tick * S::count(ticks) + coeffs.sensor_speeds * coeffs.tick
+    coeffs.guard.way_per_tick * S::count(ticks) + coeffs.guard.sensor_speeds * coeffs.tick
 }
 
 /// Which coordinates are no numbers or out of range; both where that is so of the radius alone.

@@ -51,7 +51,7 @@ impl<S: Scalar> Innovation<S> {
     /// be expected has nothing to be compared with.
     #[inline]
     pub(crate) fn fits(&self, off: Vec2<S>, coeffs: &Coeffs<S>) -> bool {
-        let most = (self.level * S::from_f32(DOUBTED_FROM)).max(coeffs.never_doubted);
+        let most = (self.level * S::from_f32(DOUBTED_FROM)).max(coeffs.guard.never_doubted);
         off.about_length() <= most || !self.known || (off - self.last).about_length() <= most
     }
 
@@ -71,7 +71,7 @@ impl<S: Scalar> Innovation<S> {
             self.level
         };
         self.level = (self.level + (counts - self.level) * S::from_f32(LEARNT))
-            .clamp(coeffs.configured_noise, S::from_f32(MOST_LEVEL));
+            .clamp(coeffs.guard.configured_noise, S::from_f32(MOST_LEVEL));
     }
 
     /// Samples in a row up to the last one that were doubted.
@@ -93,13 +93,13 @@ impl<S: Scalar> Innovation<S> {
 
     /// How much farther than was told noise may take a sample.
     pub(crate) fn untold(&self, coeffs: &Coeffs<S>) -> S {
-        (self.level - coeffs.configured_noise).max(S::ZERO) * S::from_f32(DOUBTED_FROM)
+        (self.level - coeffs.guard.configured_noise).max(S::ZERO) * S::from_f32(DOUBTED_FROM)
     }
 
     /// Whether the noise leaves a speed by which an approach can be told.
     #[inline]
     pub(crate) fn is_quiet(&self, coeffs: &Coeffs<S>) -> bool {
-        self.level <= coeffs.quiet_noise
+        self.level <= coeffs.guard.quiet_noise
     }
 
     /// After a change of the unit of length.

@@ -68,7 +68,7 @@ impl<S: Scalar> StuckDetector<S> {
             return Standstill::default();
         }
         let twice = (self.step + self.step) * coeffs.per_tick;
-        let most = coeffs.sensor_speeds.max(twice);
+        let most = coeffs.guard.sensor_speeds.max(twice);
         let samples =
             (x.watch(position.x, velocity.x, most)).max(y.watch(position.y, velocity.y, most));
         Standstill {

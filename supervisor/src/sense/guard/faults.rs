@@ -100,7 +100,7 @@ impl<S: Scalar> Guard<S> {
         };
         // Readings that are the last ones by chance may be many in a row, of x here and of y there.
         refused.all += u16::from(refusal != RejectReason::Stuck);
-        if !sure && refused.all < coeffs.fault_ticks && self.age != NEVER {
+        if !sure && refused.all < coeffs.guard.fault_ticks && self.age != NEVER {
             return Events::empty();
         }
         self.age = NEVER;
@@ -129,7 +129,7 @@ impl<S: Scalar> Guard<S> {
             return Events::empty();
         }
         recovery.samples = recovery.samples.saturating_add(1);
-        if recovery.samples < coeffs.fault_ticks {
+        if recovery.samples < coeffs.guard.fault_ticks {
             return Events::empty();
         }
         self.refused.bad = bad;
