@@ -35,7 +35,8 @@ pub const FILES: [(&str, Maker); 5] = [
 /// Of reading it, and where there is no place in it for what is to be written.
 pub fn now_and_wanted(file: &str, maker: Maker) -> Result<[String; 2], Box<dyn Error>> {
     let now = std::fs::read_to_string(root().join(file)).map_err(|e| format!("{file}: {e}"))?;
-    let wanted = maker(&now).ok_or_else(|| format!("{file}: there is no place for the parameters"))?;
+    let wanted =
+        maker(&now).ok_or_else(|| format!("{file}: there is no place for the parameters"))?;
     Ok([now, wanted])
 }
 
@@ -80,7 +81,10 @@ fn between(text: &str, start: &str, end: &str, new: &str) -> Option<String> {
 fn header(now: &str) -> Option<String> {
     let line = |(index, p): (usize, &Parameter)| {
         let (name, unit, text) = (p.name.to_uppercase(), p.unit, p.text);
-        format!("#define AMB_P_{name} {index} /**< {unit}, {}: {text} */\n", range(p))
+        format!(
+            "#define AMB_P_{name} {index} /**< {unit}, {}: {text} */\n",
+            range(p)
+        )
     };
     let lines: String = PARAMETERS.iter().enumerate().map(line).collect();
     let text = between(now, "#define AMB_P_", "/** How many there are. */", &lines)?;
@@ -101,9 +105,15 @@ fn tables(now: &str) -> Option<String> {
             DefaultRule::Derived(rule) => rule.to_owned(),
             DefaultRule::Constant(value, reason) => format!("{}: {reason}", number(value)),
         };
-        let old = now.lines().find(|l| l.starts_with(&format!("| `{}` | ", p.name)));
+        let old = now
+            .lines()
+            .find(|l| l.starts_with(&format!("| `{}` | ", p.name)));
         let choice = old.and_then(|row| row.trim_end_matches(" |").rsplit(" | ").next());
-        format!("{start}{default} | {} | {} |\n", p.text, choice.unwrap_or("–"))
+        format!(
+            "{start}{default} | {} | {} |\n",
+            p.text,
+            choice.unwrap_or("–")
+        )
     };
     let groups = [Group::Machine, Group::Drive, Group::Sensor, Group::Tuning];
     groups.iter().try_fold(now.to_owned(), |text, group| {

@@ -171,7 +171,10 @@ fn calls_need_little_stack() {
         ("archive-section", 4544),
     ] {
         let needed = bytes(call);
-        assert!((9 * said_bytes..=11 * said_bytes).contains(&(10 * needed)), "{call}: {said}");
+        assert!(
+            (9 * said_bytes..=11 * said_bytes).contains(&(10 * needed)),
+            "{call}: {said}"
+        );
     }
 }
 

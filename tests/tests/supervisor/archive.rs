@@ -7,9 +7,9 @@ use supervisor::{
     Archive, ArchiveIn, ArchivePlace, Core, Prepared, Q, Record, RotorArchive, RotorSupervisor,
     Scalar, Stamp, Supervisor,
 };
+use system_tests::parameters;
 use system_tests::per_unit::in_numbers;
 use system_tests::rig::{LANDING_TICKS as LANDING, config, landing, sample};
-use system_tests::parameters;
 
 const RECORD: usize = 64;
 
