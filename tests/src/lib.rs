@@ -5,6 +5,7 @@ pub mod bench;
 pub mod browser;
 pub mod cost;
 pub mod golden;
+pub mod parameters;
 pub mod per_unit;
 pub mod plants;
 pub mod recording;

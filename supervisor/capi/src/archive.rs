@@ -37,8 +37,10 @@ const _: () = {
         defined("AMB_ARCHIVE_PLACE_BYTES"),
     );
     assert!(size_of::<ArchiveStorage>() <= bytes && bytes <= size_of::<ArchiveStorage>() + 64);
-    // An array of them is one of places.
-    assert!(size_of::<Shelf>() == place && place.is_multiple_of(ALIGN));
+    assert!(
+        size_of::<Shelf>() == place && place.is_multiple_of(ALIGN),
+        "an array of shelves is one of places: `cargo run --release -p system-tests --bin parameters -- --write` writes their size"
+    );
     assert!(align_of::<ArchiveStorage>() <= ALIGN && align_of::<Shelf>() <= ALIGN);
 };
 

@@ -66,7 +66,10 @@ const fn number(text: &[u8], mut i: usize) -> usize {
 
 const _: () = {
     assert!(defined("AMB_ABI") == crate::version::ABI as usize);
-    assert!(defined("AMB_PARAMETERS") == supervisor::PARAMETERS.len());
+    assert!(
+        defined("AMB_PARAMETERS") == supervisor::PARAMETERS.len(),
+        "run `cargo run --release -p system-tests --bin parameters -- --write`: the header has other parameters"
+    );
     assert!(defined("AMB_RECORD_VERSION") == supervisor::RECORD_VERSION as usize);
     assert!(defined("AMB_SECTION_BYTES") == supervisor::SECTION_BYTES);
     assert!(defined("AMB_LEDGER_VERSION") == supervisor::LEDGER_VERSION as usize);

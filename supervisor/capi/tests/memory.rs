@@ -4,7 +4,7 @@
 
 use core::mem::MaybeUninit;
 use std::ptr::{null, null_mut};
-use supervisor::{LEDGER_BYTES, PARAMETERS, Status};
+use supervisor::{Config, LEDGER_BYTES, PARAMETERS, Status};
 use supervisor_capi::archive::{
     amb_archive_count, amb_archive_discard, amb_archive_init, amb_archive_section,
     amb_archive_take, amb_archive_take_rotor,
@@ -55,10 +55,22 @@ impl Archived {
     }
 }
 
-const VALUES: [f32; PARAMETERS.len()] = [
-    50e-6, 10.0, 0.0, 0.0, 2e-4, 1000.0, 0.0, 1.0, 0.15, 0.7, 0.5, 0.2, 0.02, 4.0, 2e-3, 0.8, 1e-3,
-    2e-3, 1e-3, 10.0, 1000.0, 1e7, 400.0, 5.0, 2e8, 5e-3, 20.0, 1.0, 1.0, 2.0, 1e-8, 0.0, 0.0, 1.0,
-];
+const VALUES: [f32; PARAMETERS.len()] = Config {
+    stiffness_n_m: 0.0,
+    amplifier_lag_s: 0.0,
+    observer_pole_flight: 0.5,
+    observer_pole_contact: 0.2,
+    position_limit: 4.0,
+    whirl_time_s: 2e-3,
+    handover_dwell_s: 1e-3,
+    fault_blend_s: 1e-3,
+    fault_ticks: 10.0,
+    contact_stiffness_n_m: 2e8,
+    speed_max_m_s: 2.0,
+    sensor_step_m: 1e-8,
+    ..Config::example()
+}
+.values();
 
 /// Onto the wall, a while there, and back.
 fn way_m(tick: usize) -> f32 {

@@ -107,32 +107,18 @@ impl Config {
             sample_period_s,
             mass_kg,
             stiffness_n_m,
-            damping_n_s_m: 0.0,
             clearance_m,
             force_max_n,
             amplifier_lag_s,
-            delay_samples: 1.0,
             friction_coefficient,
-            restitution: 0.7,
             observer_pole_flight: quickest_pole(flight, noise_square, Order::Second),
             observer_pole_contact: quickest_pole(contact, noise_square, Order::First),
             contact_band: at_least(4.0 * (noise_m / clearance_m), 0.01),
-            position_limit: 20.0,
             whirl_time_s: between(core::f32::consts::TAU / contact_rate_rad_s, 1e-3, 0.1),
-            hold_share: 0.8,
-            handover_dwell_s: 5e-4,
-            handover_blend_s: 2e-3,
-            fault_blend_s: 2e-2,
-            fault_ticks: 5.0,
             axis_force_max_n: force_max_n,
             force_slew_n_s: between(1e3 * force_max_n / sample_period_s, 1.0, 1e12),
             continuous_force_n: force_max_n,
-            thermal_time_s: 5.0,
             contact_stiffness_n_m,
-            coast_down_s: 5e-3,
-            severity_limit: 20.0,
-            retainer_plane_ratio: 1.0,
-            magnet_plane_ratio: 1.0,
             speed_max_m_s: between(1.5 * (clearance_m * contact_rate_rad_s), 2.0, 1000.0),
             // A sensor without noise and steps is not a thing that gets stuck; what is no noise stays what it is, to be refused.
             sensor_step_m: if sensor_noise_m >= 0.0 {
@@ -140,9 +126,7 @@ impl Config {
             } else {
                 sensor_noise_m
             },
-            bending_first_hz: 0.0,
-            bending_second_hz: 0.0,
-            acts_in_flight: 1.0,
+            ..Self::CONSTANTS
         }
     }
 

@@ -138,9 +138,10 @@ impl core::fmt::Display for ConfigError {
         }
         // In its range, and yet refused: for want of a part.
         if self.value >= *low && self.value <= *high {
-            return f.write_str(match self.index {
-                CONTINUOUS_FORCE => "at least force_max_n: the feature thermal-budget is left out",
-                _ => "0: the feature bending is left out",
+            return f.write_str(if self.index == At::continuous_force_n as usize {
+                "at least force_max_n: the feature thermal-budget is left out"
+            } else {
+                "0: the feature bending is left out"
             });
         }
         write!(f, "{} to {}", Written(*low), Written(*high))?;
@@ -222,6 +223,15 @@ macro_rules! default_text {
     };
 }
 
+macro_rules! default_value {
+    ([= $value:literal, $reason:literal]) => {
+        $value
+    };
+    ($other:tt) => {
+        f32::NAN
+    };
+}
+
 macro_rules! parameters {
     ($($name:ident, $group:ident, $unit:literal, $low:literal ..= $high:literal, $default:tt, $text:literal;)*) => {
         /// Everything the supervisor must be told about its bearing, SI units; [`Config::for_bearing`] makes it of nine numbers.
@@ -249,7 +259,7 @@ macro_rules! parameters {
         /// Places in the table.
         #[expect(non_camel_case_types, reason = "names of fields")]
         #[derive(Clone, Copy)]
-        #[expect(dead_code, reason = "not all are part of a rule")]
+        #[expect(dead_code, reason = "not all are part of a rule, or refused for more than their range")]
         enum At {
             $($name),*
         }
@@ -257,6 +267,9 @@ macro_rules! parameters {
         const RANGES: [[f32; 2]; PARAMETERS.len()] = [$([$low, $high]),*];
 
         impl Config {
+            /// What is the same for every bearing. All else is no number, which [`Config::validate`] refuses.
+            pub(crate) const CONSTANTS: Self = Self { $($name: default_value!($default)),* };
+
             /// Values in the order of [`PARAMETERS`].
             pub const fn values(&self) -> [f32; PARAMETERS.len()] {
                 [$(self.$name),*]
@@ -341,21 +354,17 @@ parameters! {
         "1: the supervisor acts from the approach on; 0: levitation keeps the rotor in the air, and the supervisor acts on evident backward whirl alone, for shafts whose bending its force would drive.";
 }
 
-/// Its place in the table.
-const CONTINUOUS_FORCE: usize = 22;
-
-/// The first of two.
-const BENDING_FIRST: usize = 31;
-
-const _: () = assert!(
-    matches!(
-        PARAMETERS[CONTINUOUS_FORCE].name.as_bytes(),
-        b"continuous_force_n"
-    ) && matches!(
-        PARAMETERS[BENDING_FIRST].name.as_bytes(),
-        b"bending_first_hz"
-    )
-);
+// From the first one on that came after the first records of this version.
+const _: () = {
+    let mut index = At::bending_first_hz as usize;
+    while index < PARAMETERS.len() {
+        assert!(
+            matches!(PARAMETERS[index].default, DefaultRule::Constant(..)),
+            "a parameter that came later needs a constant default, as which older records are read, or a new RECORD_VERSION"
+        );
+        index += 1;
+    }
+};
 
 /// Least ticks per t₀ = √(m·c/F): with fewer the rotor crosses half the clearance before a force has answered.
 const LEAST_TICKS: f32 = 3.5;
@@ -418,37 +427,21 @@ impl Config {
             sample_period_s: 50e-6,
             mass_kg: 10.0,
             stiffness_n_m: -2e5,
-            damping_n_s_m: 0.0,
             clearance_m: 2e-4,
             force_max_n: 1000.0,
             amplifier_lag_s: 1.6e-4,
-            delay_samples: 1.0,
             friction_coefficient: 0.15,
-            restitution: 0.7,
             observer_pole_flight: 0.69,
             observer_pole_contact: 0.5,
             contact_band: 0.02,
-            position_limit: 20.0,
             whirl_time_s: 1e-3,
-            hold_share: 0.8,
-            handover_dwell_s: 5e-4,
-            handover_blend_s: 2e-3,
-            fault_blend_s: 2e-2,
-            fault_ticks: 5.0,
             axis_force_max_n: 1000.0, // no cap of the axes
             force_slew_n_s: 1e7,
             continuous_force_n: if THERMAL_BUDGET { 400.0 } else { 1000.0 },
-            thermal_time_s: 5.0,
             contact_stiffness_n_m: 1e9,
-            coast_down_s: 5e-3,
-            severity_limit: 20.0,
-            retainer_plane_ratio: 1.0,
-            magnet_plane_ratio: 1.0,
             speed_max_m_s: 3.0,
             sensor_step_m: 1e-6,
-            bending_first_hz: 0.0,
-            bending_second_hz: 0.0,
-            acts_in_flight: 1.0,
+            ..Self::CONSTANTS
         }
     }
 
@@ -465,15 +458,16 @@ impl Config {
         }
         if !THERMAL_BUDGET && self.continuous_force_n < self.force_max_n {
             let value = self.continuous_force_n;
-            return Err(ConfigError::of_range(CONTINUOUS_FORCE, value));
+            let index = At::continuous_force_n as usize;
+            return Err(ConfigError::of_range(index, value));
         }
         if !BENDING {
-            for (i, value) in [self.bending_first_hz, self.bending_second_hz]
-                .into_iter()
-                .enumerate()
-            {
+            for (at, value) in [
+                (At::bending_first_hz, self.bending_first_hz),
+                (At::bending_second_hz, self.bending_second_hz),
+            ] {
                 if value != 0.0 {
-                    return Err(ConfigError::of_range(BENDING_FIRST + i, value));
+                    return Err(ConfigError::of_range(at as usize, value));
                 }
             }
         }

@@ -1,5 +1,5 @@
-//! Any bits as a configuration: refused with a reason, or a supervisor that works. First the 31 parameters, then
-//! which of them keep a plausible value instead, so that the search does not have to find 31 ranges at once.
+//! Any bits as a configuration: refused with a reason, or a supervisor that works. First which of
+//! the parameters do not keep a plausible value, so that the search does not have to find all ranges at once, then these.
 
 #![no_main]
 
@@ -43,7 +43,7 @@ fn in_numbers<S: Scalar>(config: &Config, holds_all: bool) {
 fuzz_target!(|data: &[u8]| {
     let mut bytes = Bytes::new(data);
     let mut values = plausible().values();
-    let replaced = bytes.u32();
+    let replaced = u64::from(bytes.u32()) << 32 | u64::from(bytes.u32());
     for (i, value) in values.iter_mut().enumerate() {
         if replaced & (1 << i) != 0 {
             *value = f32::from_bits(bytes.u32());

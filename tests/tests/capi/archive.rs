@@ -4,11 +4,11 @@ use crate::firmware::said_by;
 use crate::library::{Target, beside, said_with_rig};
 use crate::rig::Rig;
 use std::fmt::Write;
-use supervisor::{Archive, Config, Stamp, Supervisor};
+use supervisor::{Archive, Stamp, Supervisor};
 
 /// What `archive.c` says.
 fn said_in_rust() -> String {
-    let mut supervisor = Supervisor::<512>::new(&Config::from_values(Rig::VALUES)).unwrap();
+    let mut supervisor = Supervisor::<512>::new(&Rig::config()).unwrap();
     let (mut ticker, mut reader) = supervisor.split();
     let (mut rig, mut archive) = (Rig::new(), Box::new(Archive::<f32, 512, 2>::new()));
     let mut taken = 0;

@@ -10,6 +10,7 @@ use supervisor_capi::code::{CODES, FIRST_PARAMETER};
 use supervisor_capi::layout::HEADER;
 use supervisor_capi::structs::LAYOUTS;
 use supervisor_capi::{Code, RECORD};
+use system_tests::parameters;
 
 const MODES: [(&str, Mode); 8] = [
     ("LEVITATED", Mode::Levitated),
@@ -103,7 +104,7 @@ fn modes_have_the_names_of_the_supervisor() {
     }
 }
 
-/// Lines of the header that say what the tables say. On a change, what is printed is what to paste.
+/// Lines of the header that say what the tables say. What is printed of a code is what to paste; parameters have a command.
 #[test]
 fn tables_are_the_same() {
     let mut wanted = Vec::new();
@@ -126,20 +127,13 @@ fn tables_are_the_same() {
             "1" => String::new(),
             unit => format!(" {unit}"),
         };
-        let range = said
-            .strip_prefix(&format!("{} is outside ", parameter.name))
-            .and_then(|rest| rest.strip_suffix(&unit))
-            .unwrap_or_else(|| panic!("{said}"));
-        let (low, high) = range.split_once(" to ").unwrap();
-        assert_eq!(low.parse(), Ok(parameter.low), "{said}");
-        assert_eq!(high.parse(), Ok(parameter.high), "{said}");
-        wanted.push(format!(
-            "#define AMB_P_{} {index} /**< {}, {range}: {} */",
-            parameter.name.to_uppercase(),
-            parameter.unit,
-            parameter.text
-        ));
+        let range = parameters::range(parameter);
+        let [low, high] = [parameter.low, parameter.high].map(Ok);
+        let (first, last) = range.split_once(" to ").unwrap();
+        assert_eq!((first.parse(), last.parse()), (low, high), "{range}");
+        assert_eq!(said, format!("{} is outside {range}{unit}", parameter.name));
     }
+    parameters::check(parameters::HEADER);
     let missing: Vec<_> = (wanted.iter())
         .filter(|line| !HEADER.lines().any(|l| l == **line))
         .collect();

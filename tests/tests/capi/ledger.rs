@@ -4,11 +4,11 @@ use crate::firmware::said_by;
 use crate::library::{Target, beside, said_with_rig};
 use crate::rig::Rig;
 use std::fmt::Write;
-use supervisor::{Config, Ledger, Supervisor};
+use supervisor::{Ledger, Supervisor};
 
 /// What `ledger.c` says.
 fn said_in_rust() -> String {
-    let mut supervisor = Supervisor::<512>::new(&Config::from_values(Rig::VALUES)).unwrap();
+    let mut supervisor = Supervisor::<512>::new(&Rig::config()).unwrap();
     let (mut rig, mut ledger, mut writes) = (Rig::new(), Ledger::new(7, 20.0), 0);
     while rig.tick < Rig::TICKS {
         if let Some(config) = rig.reconfigures() {

@@ -77,8 +77,10 @@ static void making(void) {
     }
     EXPECT(amb_init(&plane, size, rig_config, AMB_PARAMETERS), AMB_OK, "done");
     /* One that is there survives a refused configuration. */
-    EXPECT(amb_init(&plane, size, values, AMB_PARAMETERS), AMB_ERROR_PARAMETER(AMB_PARAMETERS - 1),
-           "acts_in_flight is outside 0 to 1");
+    memcpy(values, rig_config, sizeof rig_config);
+    values[AMB_P_MASS_KG] = -1.0f;
+    EXPECT(amb_init(&plane, size, values, AMB_PARAMETERS), AMB_ERROR_PARAMETER(AMB_P_MASS_KG),
+           "mass_kg is outside 1e-4 to 1e6 kg");
     EXPECT(amb_mode(&plane, &i), AMB_OK, "done");
 }
 

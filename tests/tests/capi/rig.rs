@@ -1,7 +1,7 @@
 //! The rotor of the example (`supervisor/capi/examples/rig.c`) in Rust: the same integers, and floats
 //! only where they are exact.
 
-use supervisor::{Command, Config, Events, Sample, Status};
+use supervisor::{Command, Config, Events, PARAMETERS, Sample, Status};
 
 pub(crate) struct Rig {
     pub(crate) tick: u32,
@@ -24,12 +24,19 @@ const ACCELERATION: i32 = 17;
 impl Rig {
     pub(crate) const TICKS: u32 = 4400;
 
-    /// Its configuration at start, in the order of the table.
-    #[rustfmt::skip]
-    pub(crate) const VALUES: [f32; 34] = [
-        50e-6, 10.0, 0.0, 0.0, 2e-4, 1000.0, 0.0, 1.0, 0.15, 0.7, 0.5, 0.2, 0.02, 4.0, 2e-3, 0.8,
-        1e-3, 2e-3, 1e-3, 10.0, 1000.0, 1e7, 400.0, 5.0, 2e8, 5e-3, 20.0, 1.0, 1.0, 2.0, 1e-8, 0.0, 0.0, 1.0,
-    ];
+    /// Its configuration at start, as the example has it; what that leaves out is 0.
+    pub(crate) fn config() -> Config {
+        let source = include_str!("../../../supervisor/capi/examples/rig.c");
+        let mut values = PARAMETERS.iter().map(|parameter| {
+            let element = format!("[AMB_P_{}] = ", parameter.name.to_uppercase());
+            let told = source.split_once(&element);
+            told.map_or(0.0, |(_, rest)| {
+                let (value, _) = rest.split_once("f,").unwrap();
+                value.parse().unwrap()
+            })
+        });
+        Config::from_values([(); PARAMETERS.len()].map(|()| values.next().unwrap()))
+    }
 
     pub(crate) fn new() -> Self {
         Self {
@@ -49,7 +56,7 @@ impl Rig {
         (self.tick == 2600).then_some(Config {
             force_max_n: 900.0,
             handover_dwell_s: 5e-4,
-            ..Config::from_values(Self::VALUES)
+            ..Self::config()
         })
     }
 

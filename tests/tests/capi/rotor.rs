@@ -4,7 +4,7 @@ use crate::firmware::said_by;
 use crate::library::{Target, beside, built, capi, good, host_program, said_with_rig};
 use crate::rig::Rig;
 use std::process::Command;
-use supervisor::{Config, PlanePositions, RotorSupervisor, Shaft};
+use supervisor::{PlanePositions, RotorSupervisor, Shaft};
 
 pub(crate) fn shaft() -> Shaft {
     let place = |retainer_m, sensor_m, magnet_m| PlanePositions {
@@ -22,7 +22,7 @@ pub(crate) fn shaft() -> Shaft {
 
 /// The last line of `pair.c`.
 fn pair_of_rust() -> String {
-    let config = Config::from_values(Rig::VALUES);
+    let config = Rig::config();
     let mut rotor = RotorSupervisor::<512>::new(&shaft(), &[config; 2]).unwrap();
     let mut ends = [Rig::new(), Rig::new()];
     let (mut told, mut asked) = (0, 0);

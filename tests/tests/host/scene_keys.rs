@@ -23,7 +23,7 @@ fn the_page_and_the_schema_are_as_printed() {
     let schema = std::fs::read_to_string(root().join("firmware-host/scene.schema.json")).unwrap();
     assert!(
         schema == printed(&[]),
-        "firmware-host/scene.schema.json: write what `schema` prints into it"
+        "firmware-host/scene.schema.json: write what `schema` prints into it, or `cargo run --release -p system-tests --bin parameters -- --write`"
     );
 }
 

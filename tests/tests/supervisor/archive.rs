@@ -7,9 +7,9 @@ use supervisor::{
     Archive, ArchiveIn, ArchivePlace, Core, Prepared, Q, Record, RotorArchive, RotorSupervisor,
     Scalar, Stamp, Supervisor,
 };
+use system_tests::parameters;
 use system_tests::per_unit::in_numbers;
 use system_tests::rig::{LANDING_TICKS as LANDING, config, landing, sample};
-use system_tests::root;
 
 const RECORD: usize = 64;
 
@@ -167,19 +167,5 @@ fn borrowed_places_keep_the_same() {
 /// As the page on records has it.
 #[test]
 fn an_event_takes_as_much_as_the_page_says() {
-    const fn per_event<const N: usize>() -> usize {
-        size_of::<Archive<f32, N, 3>>() - size_of::<Archive<f32, N, 2>>()
-    }
-    let sizes = [
-        (64, per_event::<64>()),
-        (128, per_event::<128>()),
-        (256, per_event::<256>()),
-        (512, per_event::<512>()),
-        (1024, per_event::<1024>()),
-    ];
-    let page = std::fs::read_to_string(root().join("docs/src/supervisor/records.md")).unwrap();
-    for (entries, bytes) in sizes {
-        let row = format!("| {entries} | {} {:03} |", bytes / 1000, bytes % 1000);
-        assert!(page.contains(&row), "{row}");
-    }
+    parameters::check(parameters::RECORDS);
 }
