@@ -272,11 +272,11 @@ impl<const RECORD: usize> Ticker<'_, RECORD> {
 impl<const RECORD: usize> RotorSupervisor<RECORD> {
     /// As [`Core::self_test`], by [`Self::tick`]: both planes, and what they know of each other.
     pub fn self_test(&mut self) -> SelfTest {
-        let kept = self.ticking().begin_test(&SHAFT, &CONFIG);
+        let kept = self.ticker().begin_test(&SHAFT, &CONFIG);
         let result = SelfTest::run(OF_ROTOR, |sample| {
             self.tick(&at_both_ends(sample)).planes.map(answer)
         });
-        self.ticking().end_test(kept);
+        self.ticker().end_test(kept);
         result
     }
 }

@@ -248,6 +248,14 @@ impl<S: Scalar, const RECORD: usize> Published<'_, S, RECORD> {
 }
 
 impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
+    /// The half that ticks, by itself: for what counts its instructions.
+    #[doc(hidden)]
+    #[inline]
+    pub fn ticker(&mut self) -> CoreTicker<'_, S, RECORD> {
+        let Self { plane, shared } = self;
+        CoreTicker { plane, shared }
+    }
+
     /// Two halves for two priorities: one ticks, the other takes events and records away. No lock is needed between them, and
     /// their borrow keeps everybody else out.
     pub fn split(&mut self) -> (CoreTicker<'_, S, RECORD>, Reader<'_, S, RECORD>) {
@@ -258,12 +266,11 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
 }
 
 impl<const RECORD: usize> Supervisor<RECORD> {
-    /// The half that ticks, for what is read by nobody else meanwhile: what is counted, and the C interface.
+    /// The half that ticks, by itself: for what counts its instructions.
     #[doc(hidden)]
     #[inline]
     pub fn ticker(&mut self) -> Ticker<'_, RECORD> {
-        let Core { plane, shared } = &mut self.core;
-        Ticker(CoreTicker { plane, shared })
+        Ticker(self.core.ticker())
     }
 
     /// Two halves for two priorities: one ticks, the other takes events and records away. No lock is needed between them, and

@@ -394,15 +394,7 @@ impl<S: Scalar> State<S> {
         };
         let wrong = given.is_wrong(decided.trusted);
         if !self.phase.is_engaged() {
-            if decided.touches_on {
-                let outwards = match contact.touching {
-                    true => levitation.dot(contact.normal),
-                    false => S::ZERO,
-                };
-                self.readiness.watch(outwards, coeffs);
-            } else {
-                self.readiness = Readiness::default();
-            }
+            self.watch_controller(contact, decided.touches_on, levitation, coeffs);
         } else if given.coupling.is_some() {
             self.trust.acts();
         }
@@ -439,18 +431,44 @@ impl<S: Scalar> State<S> {
             path.calm || (!contact.touching && command.dot(contact.normal) > S::ZERO)
         });
         if shadow {
-            let (levitation, _) = limit::levitation(command, envelope);
-            (self.force, _) = limit::slewed(levitation, self.force, coeffs);
+            self.only_watch(command, envelope, coeffs);
             if on {
                 integrator = IntegratorHint::Run;
             }
-            self.observer.monitor.switched_off();
         } else {
             self.force = own;
         }
         Acted {
             limits: bound | slew,
             integrator,
+        }
+    }
+
+    /// In shadow the levitation command goes through, within the limits.
+    #[inline(always)]
+    fn only_watch(&mut self, command: Vec2<S>, envelope: ForceEnvelope<S>, coeffs: &Coeffs<S>) {
+        let (levitation, _) = limit::levitation(command, envelope);
+        (self.force, _) = limit::slewed(levitation, self.force, coeffs);
+        self.observer.monitor.switched_off();
+    }
+
+    /// Whether a controller that has the bearing presses the rotor onto the wall by itself.
+    #[inline(always)]
+    fn watch_controller(
+        &mut self,
+        contact: &ContactEstimate<S>,
+        touches_on: bool,
+        levitation: Vec2<S>,
+        coeffs: &Coeffs<S>,
+    ) {
+        if touches_on {
+            let outwards = match contact.touching {
+                true => levitation.dot(contact.normal),
+                false => S::ZERO,
+            };
+            self.readiness.watch(outwards, coeffs);
+        } else {
+            self.readiness = Readiness::default();
         }
     }
 

@@ -61,7 +61,7 @@ pub trait UnderTest: Ticked {
 macro_rules! served {
     () => {
         fn self_test(&mut self) -> bool {
-            Self::self_test(self).passed
+            Self::ticker(self).self_test().passed
         }
         fn background(&mut self) {
             while Self::next_event(self).is_some() {}
@@ -138,7 +138,8 @@ impl UnderTest for Float {
 /// half a turn about the centre.
 impl Ticked for Pair {
     const RAM_BYTES: usize = size_of::<Self>() - 2 * Core::<f32, RECORD>::RECORDER_BYTES;
-    const TICK: fn(&mut Self, &Self::Sample) -> Self::Command = Self::tick;
+    const TICK: fn(&mut Self, &Self::Sample) -> Self::Command =
+        |rotor, samples| rotor.ticker().tick(samples);
     type Sample = [Sample; 2];
     type Command = RotorCommand;
 
@@ -154,7 +155,7 @@ impl Ticked for Pair {
         first.mode
     }
     fn self_test(&mut self) -> bool {
-        Self::self_test(self).passed
+        Self::ticker(self).self_test().passed
     }
     fn background(&mut self) {
         for end in [0, 1] {
@@ -207,7 +208,8 @@ pub fn half_a_turn(sample: &Sample) -> Sample {
 
 impl Ticked for Fixed {
     const RAM_BYTES: usize = size_of::<Self>() - Self::RECORDER_BYTES;
-    const TICK: fn(&mut Self, &Self::Sample) -> Self::Command = Self::tick;
+    const TICK: fn(&mut Self, &Self::Sample) -> Self::Command =
+        |core, sample| core.ticker().tick(sample);
     type Sample = CoreSample<Q>;
     type Command = CoreCommand<Q>;
 

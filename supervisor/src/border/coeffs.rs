@@ -328,6 +328,28 @@ fn ease_square(pull: f32, horizon: f32) -> f32 {
     0.9 * speed * speed
 }
 
+/// Force per speed of the damping law, and per way of the restoring one.
+fn gains(pull: f32, h: f32, horizon: f32) -> (f32, f32) {
+    // A full force stops the speed of a full force within twice the reaction time, but that speed is
+    // no smaller a share of the lift-off speed than this: below, noise would be all it damps.
+    let damper = 1.0 / max(2.0 * (horizon + h), FULL_FORCE_FROM);
+    let restoring = min(
+        pull + max(damper / horizon - pull, 0.0) / 3.0,
+        max(NEARLY_ALL, 1.5 * pull),
+    );
+    (damper, restoring)
+}
+
+/// Cosine and sine of the swing on a wall that gives way until a force has come, and its rate; `None` where the wall is too hard
+/// for a force to come in time.
+fn contact_ahead(config: &Config, horizon: f32) -> Option<[f32; 3]> {
+    let force_n = config.magnet_plane_ratio * config.force_max_n;
+    let rate = sqrt(config.contact_stiffness_n_m * config.clearance_m / force_n);
+    let turn = rate * horizon;
+    let Vec2 { x, y } = Vec2::<f32>::at_angle(turn);
+    (rate < SOFT_CONTACT && turn < MOST_CONTACT_TURN).then_some([x, y, rate])
+}
+
 impl<S: Scalar> GuardCoeffs<S> {
     /// `h`: a tick \[t₀\].
     fn new(config: &Config, h: f32, taken: &mut Taken) -> Self {
@@ -432,13 +454,7 @@ impl<S: Scalar> Coeffs<S> {
         let stiffness = config.stiffness_n_m * c / (config.magnet_plane_ratio * f);
         let damping = config.damping_n_s_m * unit_s / config.mass_kg;
         let pull = max(-stiffness, 0.0);
-        // A full force stops the speed of a full force within twice the reaction time, but that speed is
-        // no smaller a share of the lift-off speed than this: below, noise would be all it damps.
-        let damper = 1.0 / max(2.0 * (horizon + h), FULL_FORCE_FROM);
-        let restoring = min(
-            pull + max(damper / horizon - pull, 0.0) / 3.0,
-            max(NEARLY_ALL, 1.5 * pull),
-        );
+        let (damper, restoring) = gains(pull, h, horizon);
         // Divided by in every severity.
         let whirl_limit = max(whirl_limit_m_s(config) / scaling.speed_m_s(), 1e-6);
         let mut taken = Taken { lost: None };
@@ -451,15 +467,9 @@ impl<S: Scalar> Coeffs<S> {
         let guard = GuardCoeffs::new(config, h, &mut taken);
         let observer = ObserverCoeffs::new(config, h, &mut taken);
         let mut s = |name, x| taken.of::<S>(name, x);
-        let contact_rate = sqrt(config.contact_stiffness_n_m * c / (config.magnet_plane_ratio * f));
-        let turn = contact_rate * horizon;
-        let soft = contact_rate < SOFT_CONTACT && turn < MOST_CONTACT_TURN;
-        let contact_ahead = soft.then(|| {
-            let Vec2 { x, y } = Vec2::<f32>::at_angle(turn);
-            [x, y, contact_rate].map(|x| s("contact stiffness", x))
-        });
         let coeffs = Self {
-            contact_ahead,
+            contact_ahead: contact_ahead(config, horizon)
+                .map(|swing| swing.map(|x| s("contact stiffness", x))),
             scaling,
             tick: s("tick", h),
             per_tick: s("ticks per unit of time", 1.0 / h),

@@ -45,6 +45,18 @@ pub(crate) struct Verdict {
     pub(crate) harmless: bool,
 }
 
+impl Verdict {
+    /// Where what the reading usually does is too fast, a contact that goes on all the time still says what it is.
+    #[inline(always)]
+    fn is_evident(&self, class: Class) -> bool {
+        match class {
+            Class::BackwardWhirl => self.has_turned,
+            Class::ForwardRub { .. } => self.rubs_on,
+            _ => false,
+        }
+    }
+}
+
 /// A mode with the memory that belongs to it.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) enum Phase<S> {
@@ -208,16 +220,11 @@ impl<S: Scalar> Phase<S> {
             };
             return Self::SensorFault { bouncing };
         }
-        // Where what the reading usually does is too fast, a contact that goes on all the time still says what it is.
-        let goes_round = match class {
-            Class::BackwardWhirl => verdict.has_turned,
-            Class::ForwardRub { .. } => verdict.rubs_on,
-            _ => false,
-        };
         if verdict.whirl_only {
             return self.follow_whirl_alone(contact, *verdict, class, coeffs);
         }
-        let evident = contact.touching && (verdict.unsettled || (verdict.quiet && goes_round));
+        let evident =
+            contact.touching && (verdict.unsettled || (verdict.quiet && verdict.is_evident(class)));
         // What a load that turns takes round on the wall would only be thrown about.
         let rides = contact.touching
             && verdict.touches_on

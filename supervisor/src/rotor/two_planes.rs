@@ -135,11 +135,13 @@ impl<const RECORD: usize> RotorSupervisor<RECORD> {
         shaft: &Shaft,
         [first, second]: &[Config; 2],
     ) -> Result<(), ShaftError> {
-        self.ticking().reconfigured(shaft, [first, second])
+        self.ticker().reconfigured(shaft, [first, second])
     }
 
+    /// The half that ticks, by itself: for what counts its instructions.
+    #[doc(hidden)]
     #[inline]
-    pub(crate) fn ticking(&mut self) -> RotorTicker<'_, RECORD> {
+    pub fn ticker(&mut self) -> RotorTicker<'_, RECORD> {
         let [first, second] = &mut self.planes;
         self.machine.ticking([first, second])
     }
@@ -154,12 +156,12 @@ impl<const RECORD: usize> RotorSupervisor<RECORD> {
     // One copy, whoever calls it: the self-test does, too.
     #[inline(never)]
     pub fn tick(&mut self, samples: &[Sample; 2]) -> RotorCommand {
-        self.ticking().ticked(samples)
+        self.ticker().ticked(samples)
     }
 
     /// The same per unit of each plane, without what the whole machine is told: what a record is replayed with.
     pub fn tick_per_unit(&mut self, samples: &[CoreSample<f32>; 2]) -> [CoreCommand<f32>; 2] {
-        self.ticking().per_unit(samples)
+        self.ticker().per_unit(samples)
     }
 
     /// One that goes on from what another one remembered, as the records of both planes hold it; see [`crate::Core::resumed`].
@@ -203,7 +205,7 @@ impl<const RECORD: usize> RotorSupervisor<RECORD> {
 
     /// Discards frozen records; both planes wait for the next engagement.
     pub fn rearm(&mut self) {
-        self.ticking().rearm();
+        self.ticker().rearm();
     }
 
     /// Supervisor of a plane, for its report and events; 0 or 1, and for anything else the second. Its ticks, configuration and

@@ -39,6 +39,18 @@ pub(crate) struct LastVelocity<S> {
     pub(crate) in_contact: bool,
 }
 
+impl<S: Scalar> LastVelocity<S> {
+    /// What of it is beyond the most that the model accelerates by while the wall holds against it.
+    #[inline(always)]
+    fn certain(&self, coeffs: &Coeffs<S>) -> Vec2<S> {
+        if !self.in_contact {
+            return self.velocity;
+        }
+        let most = S::ONE + coeffs.stiffness.abs() * S::from_f32(1.5);
+        (self.velocity).map(|speed| speed.beyond(coeffs.observer.blind_time * most))
+    }
+}
+
 /// Memory of the guard.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Guard<S> {
@@ -214,14 +226,11 @@ impl<S: Scalar> Guard<S> {
         }
 
         // A bearing that is off is not known to deliver what the model moves by.
-        let trusted = if self.faulty || anew || !flags.contains(SampleFlags::ON) {
-            Vec2::ZERO
-        } else if last.in_contact {
-            // The most that the model accelerates by while the wall holds against it.
-            let most = S::ONE + coeffs.stiffness.abs() * S::from_f32(1.5);
-            (last.velocity).map(|speed| speed.beyond(coeffs.observer.blind_time * most))
+        let known = !self.faulty && !anew && flags.contains(SampleFlags::ON);
+        let trusted = if known {
+            last.certain(coeffs)
         } else {
-            last.velocity
+            Vec2::ZERO
         };
         let (refusal, bad) = if repeated {
             (RejectReason::Dropout, SampleFlags::BOTH_BAD)
@@ -236,19 +245,9 @@ impl<S: Scalar> Guard<S> {
             self.late_ticks = self.late_ticks.saturating_add(1);
             events |= Events::LATE;
         }
-        let mut fits = true;
+        let fits = self.other_fits(refusal, bad, position, 1 + missed, anew, coeffs);
         if refusal == RejectReason::None {
             flags |= SampleFlags::USED;
-            self.refused.apart = 0;
-        } else {
-            if refusal != RejectReason::Doubted {
-                self.refused.bad |= bad;
-            }
-            if bad != SampleFlags::BOTH_BAD {
-                fits = self.judge_other(position, bad, 1 + missed, anew, coeffs);
-            } else if self.faulty {
-                self.refused.apart = 0;
-            }
         }
         if self.faulty {
             // Nobody knows where the rotor is: a sample has to fit to the one before it.
@@ -265,14 +264,46 @@ impl<S: Scalar> Guard<S> {
                 flags |= SampleFlags::BOTH_BAD;
             }
         }
-        let lost = flags & SampleFlags::LOST;
-        let before = core::mem::replace(&mut self.lost, lost);
-        if !(lost - before).is_empty() {
-            events |= Events::AXIS_LOST;
+        events |= self.axes(flags & SampleFlags::LOST);
+        self.expect_the_same(status, flags);
+        SampleAssessment {
+            events,
+            flags,
+            refusal,
+            missed: missed as u8,
         }
-        if !(before - lost).is_empty() {
-            events |= Events::AXIS_BACK;
+    }
+
+    /// Whether the coordinate beside one that is bad fits; true where there is none.
+    #[inline(always)]
+    fn other_fits(
+        &mut self,
+        refusal: RejectReason,
+        bad: SampleFlags,
+        position: Vec2<S>,
+        ticks: u32,
+        anew: bool,
+        coeffs: &Coeffs<S>,
+    ) -> bool {
+        if refusal == RejectReason::None {
+            self.refused.apart = 0;
+            return true;
         }
+        if refusal != RejectReason::Doubted {
+            self.refused.bad |= bad;
+        }
+        if bad != SampleFlags::BOTH_BAD {
+            return self.judge_other(position, bad, ticks, anew, coeffs);
+        }
+        if self.faulty {
+            self.refused.apart = 0;
+        }
+        true
+    }
+
+    /// Remembers what the next sample has to be like to be a usual one.
+    #[inline(always)]
+    fn expect_the_same(&mut self, status: Status, flags: SampleFlags) {
         let kept = SampleFlags::USED | SampleFlags::ON | SampleFlags::LOST | SampleFlags::SHADOW;
         self.usual = (status - Status::LATE).bits() as u8;
         self.usual_flags = if flags.contains(SampleFlags::USED) && !self.faulty && !self.jumped {
@@ -280,12 +311,20 @@ impl<S: Scalar> Guard<S> {
         } else {
             SampleFlags::empty()
         };
-        SampleAssessment {
-            events,
-            flags,
-            refusal,
-            missed: missed as u8,
+    }
+
+    /// Takes in which axes are lost.
+    #[inline(always)]
+    fn axes(&mut self, lost: SampleFlags) -> Events {
+        let before = core::mem::replace(&mut self.lost, lost);
+        let mut events = Events::empty();
+        if !(lost - before).is_empty() {
+            events |= Events::AXIS_LOST;
         }
+        if !(before - lost).is_empty() {
+            events |= Events::AXIS_BACK;
+        }
+        events
     }
 
     /// Whether the number is that of no new sample, and how many ticks were missed.

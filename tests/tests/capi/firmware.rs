@@ -155,8 +155,8 @@ fn calls_need_little_stack() {
             .find_map(|l| l.strip_prefix(name)?.strip_prefix(' '));
         line.unwrap().trim().parse().unwrap()
     };
-    // What the page says, within a tenth.
-    for (call, said_bytes) in [
+    // What the page says, and no more than a tenth less of it.
+    for (call, most) in [
         ("config-for-bearing", 932),
         ("config-for-rotor", 2500),
         ("init", 1820),
@@ -171,10 +171,7 @@ fn calls_need_little_stack() {
         ("archive-section", 4544),
     ] {
         let needed = bytes(call);
-        assert!(
-            (9 * said_bytes..=11 * said_bytes).contains(&(10 * needed)),
-            "{call}: {said}"
-        );
+        assert!(needed <= most && 10 * needed >= 9 * most, "{call}: {said}");
     }
 }
 
