@@ -227,7 +227,7 @@ impl<'a, S: Scalar, const RECORD: usize> Reader<'a, S, RECORD> {
     }
 }
 
-/// What the last tick has published: for any number of tasks of any priority.
+/// What the ticks have published: for any number of tasks of any priority.
 #[derive(Debug, Clone, Copy)]
 pub struct Published<'a, S: Scalar = f32, const RECORD: usize = 512> {
     shared: &'a Shared<RECORD>,
@@ -240,7 +240,8 @@ impl<S: Scalar, const RECORD: usize> Published<'_, S, RECORD> {
         self.shared.latest.mode()
     }
 
-    /// What had happened until its last tick, all of the same one. `None` where ticks came in between eight times, which takes
+    /// What had happened until one of its last eight ticks, or sixteen where many have events, all of the same one; an event is in
+    /// it from the tick after it on. `None` where ticks came in between eight times, which takes
     /// some hundred instructions of this call each; and, asked from what has interrupted a tick, always.
     pub fn report(&self) -> Option<Report> {
         self.shared.latest.report::<S>()

@@ -714,7 +714,8 @@ amb_code amb_mode(const amb_supervisor *supervisor, uint32_t *mode);
 const char *amb_mode_name(uint32_t mode);
 
 /**
- * What had happened from amb_init() to the last tick, all of it of the same tick. From anywhere, at any time.
+ * What had happened from amb_init() to one of the last eight ticks, or sixteen where many have events, all of it of the same
+ * tick; an event is in it from the tick after it on. From anywhere, at any time.
  * @param supervisor made by amb_init().
  * @param[out] report untouched after an error.
  * @return AMB_OK, or an error of supervisor or result. AMB_ERROR_BUSY where ticks came in between eight times in a row, and
@@ -792,7 +793,7 @@ amb_code amb_rotor_reconfigure(amb_rotor *rotor, const amb_shaft *shaft, const f
 amb_code amb_rotor_tick(amb_rotor *rotor, const amb_sample *samples, amb_rotor_command *command);
 
 /**
- * What had happened to a plane from amb_rotor_init() to the last tick, as amb_report_now(). From anywhere, at any time.
+ * What had happened to a plane from amb_rotor_init() to one of the last ticks, as amb_report_now(). From anywhere, at any time.
  * @param rotor made by amb_rotor_init().
  * @param plane 0 or 1; anything else is AMB_ERROR_PLANE.
  * @param[out] report untouched after an error.
