@@ -32,7 +32,7 @@ pub struct SelfTest {
 /// Hash of what a [`Supervisor`] commands, and a [`Ticker`].
 const IN_NEWTONS: [u32; 2] = [0x3DC8_8487, 0xB0EF_3D67];
 /// Of what a [`RotorSupervisor`] commands for its first plane and its second.
-const OF_ROTOR: [u32; 2] = [0xF5A3_49E9, 0x0173_F458];
+const OF_ROTOR: [u32; 2] = [0xF5A3_49E9, 0x99CD_40A3];
 
 /// The example with some damping, caps of the axes and a quick budget.
 const CONFIG: Config = Config {

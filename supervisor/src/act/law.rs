@@ -134,13 +134,14 @@ impl<S: Scalar> View<'_, S> {
     }
 
     /// Against what the impacts to come will add up to, by its gradient in the velocity at the place where
-    /// a force that is decided now will act, or at the next impact if that comes before.
+    /// a force that is decided now will act. If the next impact comes before that, it is the flight after
+    /// it, with the velocity that the impact will leave.
     #[inline]
     fn before(&self, impact: &Impact<S>) -> Vec2<S> {
         let coeffs = self.coeffs;
         let gain = self.bounce_gain();
         let sense = self.spin.sense_of_backward(impact.along);
-        let (normal_speed, backward) = (impact.normal_speed, impact.along * sense);
+        let (mut normal_speed, mut backward) = (impact.normal_speed, impact.along * sense);
         // What a force that acts already, and after that the cap, against the speed leaves of it until the impact.
         let speed = self.speed.value();
         let way = impact.time * speed;
@@ -155,10 +156,29 @@ impl<S: Scalar> View<'_, S> {
         if urgency <= S::ZERO {
             return Vec2::ZERO;
         }
-        let acts_at = self.position + self.velocity * coeffs.horizon.min(time);
+        let (mut position, mut velocity) = (self.position, self.velocity);
+        let mut act_after = coeffs.horizon;
+        if time < act_after {
+            let n = impact.normal;
+            let lost = (S::ONE + coeffs.restitution) * normal_speed;
+            let friction = self.by_friction(coeffs.friction * lost);
+            velocity = velocity - n * lost + n.perp() * (friction * sense);
+            normal_speed = coeffs.restitution * normal_speed;
+            backward = backward + friction;
+            position = n;
+            // A chord from wall to wall lasts 2·v_n/v².
+            let (square, twice) = (velocity.length_squared(), normal_speed + normal_speed);
+            let left = act_after - time;
+            act_after = if left * square <= twice {
+                left
+            } else {
+                twice.div(square)
+            };
+        }
+        let acts_at = position + velocity * act_after;
         // Gradient of S, times v_n: v_b = r × v about the centre, v_n = √(v² − v_b²).
         let arm = sense * (normal_speed - gain * backward);
-        let gradient = acts_at.perp() * arm + self.velocity * gain;
+        let gradient = acts_at.perp() * arm + velocity * gain;
         gradient * -(gradient.inverse_length() * urgency)
     }
 

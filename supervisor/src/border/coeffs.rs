@@ -182,6 +182,7 @@ pub(crate) struct Coeffs<S: Scalar> {
     pub(crate) friction: S,
     pub(crate) tilt: S,
     /// e.
+    pub(crate) restitution: S,
     /// Backward speed that all impacts to come will add, per normal speed of the next one:
     /// μ(1 + e)(1 + e + e² + …) = μ(1 + e)/(1 − e).
     pub(crate) bounce_gain: S,
@@ -485,6 +486,7 @@ impl<S: Scalar> Coeffs<S> {
             horizon: s("horizon", horizon),
             friction: s("friction", mu),
             tilt: s("friction", f32::JUST_BELOW_ONE / sqrt(1.0 + mu * mu)),
+            restitution: s("restitution", e),
             bounce_gain: s("bounce gain", mu * (1.0 + e) / (1.0 - e)),
             touch_radius: s("contact band", 1.0 - config.contact_band),
             leave_radius: s("contact band", 1.0 - 1.5 * config.contact_band),

@@ -257,6 +257,7 @@ impl<S: Scalar> Speed<S> {
 pub(crate) struct Impact<S> {
     /// Until then.
     pub(crate) time: S,
+    pub(crate) normal: Vec2<S>,
     /// Normal and counter-clockwise tangential speed there.
     pub(crate) normal_speed: S,
     pub(crate) along: S,
@@ -276,6 +277,7 @@ impl<S: Scalar> Impact<S> {
         let chord = cosine - along;
         Some(Self {
             time: chord * speed.inverse,
+            normal: motion.position + heading * chord,
             normal_speed: speed.value() * cosine,
             along: motion.position.perp().dot(motion.velocity),
         })
