@@ -12,8 +12,7 @@ use crate::number::scalar::Scalar;
 use crate::number::vec2::Vec2;
 use crate::per_unit::{Core, Prepared};
 use crate::rotor::two_planes::{RotorSupervisor, RotorTicker};
-use crate::supervisor::Supervisor;
-use crate::supervisor::{CoreTicker, Ticker};
+use crate::supervisor::{CoreTicker, Supervisor, Ticker};
 
 /// What the test went through.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

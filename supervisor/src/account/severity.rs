@@ -4,13 +4,11 @@
 use crate::account::tally::{MOST_INDEX, Tally};
 use crate::border::coeffs::Coeffs;
 use crate::border::signal::{Events, Limits, Mode};
-use crate::decide::detect::ContactEstimate;
-use crate::decide::detect::{Impact, sum_of_impacts};
+use crate::decide::detect::{ContactEstimate, Impact, sum_of_impacts};
 use crate::number::scalar::{Accumulator, Scalar};
 use crate::number::vec2::Vec2;
 use crate::number::words::words_of_fields;
-use crate::sense::reading::SampleFlags;
-use crate::sense::reading::Spin;
+use crate::sense::reading::{SampleFlags, Spin};
 
 /// Largest severity that is reported.
 const MOST_SEVERITY: f32 = 1e6;
@@ -37,7 +35,7 @@ pub(crate) struct Severity<S: Scalar> {
     before: Vec2<S>,
 }
 
-words_of_fields!(Severity<S> { landings, nuisances, impacts, contact_ticks, fastest,    index, engaged, landed, beyond_ticks, coast_down, index_told, before });
+words_of_fields!(Severity<S> { landings, nuisances, impacts, contact_ticks, fastest, index, engaged, landed, beyond_ticks, coast_down, index_told, before });
 
 /// Fastest normal speed before an impact, and backward in contact.
 #[derive(Debug, Clone, Copy, Default)]

@@ -8,8 +8,7 @@
 use crate::border::config::{Config, NotRepresentable};
 use crate::border::modes::Modes;
 use crate::border::signal::{Command, CoreCommand, CoreSample, Sample};
-use crate::number::scalar::{Accumulator, Scalar};
-use crate::number::scalar::{exp_neg, max, min, sqrt};
+use crate::number::scalar::{Accumulator, Scalar, exp_neg, max, min, sqrt};
 use crate::number::vec2::Vec2;
 
 /// Smallest share of the lift-off speed from which the damping law spends the whole cap.

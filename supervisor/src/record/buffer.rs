@@ -3,10 +3,8 @@
 
 use crate::border::modes::MODES;
 use crate::border::signal::Mode;
-use crate::number::words::Cells;
-use crate::number::words::Words as _;
-use crate::record::entry::ENTRY_WORDS;
-use crate::record::entry::Track;
+use crate::number::words::{Cells, Words as _};
+use crate::record::entry::{ENTRY_WORDS, Track};
 use core::sync::atomic::{AtomicU32, Ordering};
 
 /// Words of what a core of 32-bit numbers remembers. One of `f64` keeps no samples, and of its state what there is room for.

@@ -9,11 +9,9 @@ use crate::account::tally::Units;
 use crate::border::config::{Config, PARAMETERS};
 use crate::border::parts::LEFT_OUT;
 use crate::number::scalar::{Number, Scalar};
-use crate::number::words::Cells;
-use crate::number::words::{Words, crc_of_word};
+use crate::number::words::{Cells, Words, crc_of_word};
 use crate::record::buffer::{FrozenHeader, RecordBuffer, STATE_WORDS};
-use crate::record::entry::STRETCH_WORDS;
-use crate::record::entry::{ENTRY_WORDS, Entry};
+use crate::record::entry::{ENTRY_WORDS, Entry, STRETCH_WORDS};
 use crate::tick::State;
 use core::marker::PhantomData;
 

@@ -4,16 +4,14 @@ use crate::border::coeffs::Coeffs;
 use crate::border::config::Config;
 use crate::border::shaft::{Shaft, ShaftError};
 use crate::border::signal::{Command, CoreCommand, CoreSample, Events, Sample};
-use crate::number::words::Cells;
-use crate::number::words::Words;
+use crate::number::words::{Cells, Words};
 use crate::per_unit::{Plane, Prepared};
 use crate::record::buffer::RecordBuffer;
 use crate::record::publish::QueuedEvent;
 use crate::record::recorder::Shared;
 use crate::record::sections::Record;
 use crate::rotor::coupling::{Coupling, spin};
-use crate::supervisor::{Published, Reader};
-use crate::supervisor::{Supervisor, in_newtons};
+use crate::supervisor::{Published, Reader, Supervisor, in_newtons};
 
 /// What both planes commanded at a tick.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

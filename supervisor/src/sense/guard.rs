@@ -13,8 +13,7 @@ use crate::number::scalar::Scalar;
 use crate::number::vec2::Vec2;
 use crate::number::words::words_of_fields;
 use crate::sense::innovation::{Expected, Innovation};
-use crate::sense::reading::Rotation;
-use crate::sense::reading::{Reading, SampleAssessment, SampleFlags};
+use crate::sense::reading::{Reading, Rotation, SampleAssessment, SampleFlags};
 use crate::sense::stuck::StuckDetector;
 
 /// Missed ticks over which the observer's model is carried: bounds the time of a tick.
