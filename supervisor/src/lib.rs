@@ -47,7 +47,14 @@
 //!                                                                                 └─► recorder
 //! ```
 //!
-//! Files, each importing only from those above it: `number/words`, `number/scalar`, `number/product`, `number/q`, `number/vec2`, `border/parts`, `border/signal`, `border/config`, `border/shaft`, `border/bearing`, `border/modes`, `border/coeffs`, `sense/reading`, `sense/innovation`, `sense/stuck`, `sense/guard`, `estimate/unbalance`, `estimate/bending`, `estimate/monitor`, `estimate/observer`, `estimate/neighbour`, `decide/detect`, `decide/classify`, `decide/phase`, `decide/trust`, `act/law`, `act/limit`, `act/handover`, `account/tally`, `account/severity`, `tick`, `record/entry`, `record/publish`, `record/buffer`, `record/recorder`, `record/sections`, `record/ledger`, `per_unit`, `supervisor`, `rotor/coupling`, `rotor/two_planes`, `archive`, `self_test`, `watch`, `log_format`.
+//! Files, each importing only from those above it: `number/words`, `number/scalar`, `number/product`, `number/q`,
+//! `number/vec2`, `border/parts`, `border/signal`, `border/config`, `border/shaft`, `border/bearing`,
+//! `border/modes`, `border/coeffs`, `sense/reading`, `sense/innovation`, `sense/stuck`, `sense/guard`,
+//! `estimate/unbalance`, `estimate/bending`, `estimate/monitor`, `estimate/observer`, `estimate/neighbour`,
+//! `decide/detect`, `decide/classify`, `decide/phase`, `decide/trust`, `act/law`, `act/limit`, `act/handover`,
+//! `account/tally`, `account/severity`, `tick`, `record/entry`, `record/publish`, `record/buffer`,
+//! `record/recorder`, `record/sections`, `record/ledger`, `per_unit`, `supervisor`, `rotor/coupling`,
+//! `rotor/two_planes`, `archive`, `self_test`, `watch`, `log_format`.
 
 // Unconditional: under `cfg(test)` std's own methods would silently replace micromath's.
 #![no_std]

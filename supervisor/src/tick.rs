@@ -247,8 +247,13 @@ impl<S: Scalar> State<S> {
         let mut verdict = self.verdict(given, wall, rubs);
         verdict.calm = path.calm;
         if self.needs_decision(contact) {
-            (verdict.harmless, verdict.unsettled) =
-                self.is_harmless(given, estimated, contact, envelope, &verdict);
+            let keeps_out = self.phase == Phase::Levitated && verdict.touches_on;
+            if contact.touching && keeps_out && self.readiness.is_pressed() {
+                // It lies where the controller wants it.
+                (verdict.harmless, verdict.unsettled) = (true, false);
+            } else {
+                verdict.harmless = self.is_harmless(given, estimated, contact, envelope);
+            }
         }
         let waited = self.phase.has_waited(coeffs);
         verdict.ready = self.readiness.ready() || (waited && !self.readiness.comes_nearer());
@@ -293,7 +298,7 @@ impl<S: Scalar> State<S> {
         }
     }
 
-    /// Whether what comes, or is there, is harmless, and else the supervisor's affair.
+    /// Whether what comes, or is there, is so slow that a controller with force to spare can have it.
     #[inline(always)]
     fn is_harmless(
         &self,
@@ -301,13 +306,7 @@ impl<S: Scalar> State<S> {
         estimated: &Estimated<S>,
         contact: &ContactEstimate<S>,
         envelope: ForceEnvelope<S>,
-        verdict: &Verdict,
-    ) -> (bool, bool) {
-        let keeps_out = self.phase == Phase::Levitated && verdict.touches_on;
-        if contact.touching && keeps_out && self.readiness.is_pressed() {
-            // It lies where the controller wants it.
-            return (true, false);
-        }
+    ) -> bool {
         let slow = if contact.touching {
             self.classifier.is_slow()
         } else {
@@ -315,8 +314,7 @@ impl<S: Scalar> State<S> {
         };
         let asks = -Vec2::from_array(given.sample.levitation).dot(contact.normal);
         // What is no number is no force to spare.
-        let harmless = slow && asks < envelope.cap * S::from_f32(SPARES_BELOW);
-        (harmless, verdict.unsettled)
+        slow && asks < envelope.cap * S::from_f32(SPARES_BELOW)
     }
 
     /// A rotor that levitates, and will, needs none.
