@@ -6,7 +6,6 @@ pub mod closed_loop;
 pub mod columns;
 pub mod controller;
 pub mod figures;
-pub mod history;
 mod judge;
 pub mod outcome;
 pub mod overview;

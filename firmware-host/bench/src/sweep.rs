@@ -3,21 +3,18 @@
 //! A run is its number: values and seed follow from it and from the sweep file alone, so that any part of a sweep may be run
 //! anywhere, in any order, and gives the same rows.
 //!
-//! Files, each importing only from those above it: `error`, `permutation`, `sobol`, `saltelli`, `morris`, `design`, `values`,
-//! `size`, `file`, `table`, `figures_of`, `plan`, `store`, `sample`, `influence`, `indices`, `map`, `summary`, `page`, `worst`.
+//! Files, each importing only from those above it: `error`, `permutation`, `sobol`, `design`, `values`,
+//! `size`, `file`, `table`, `figures_of`, `plan`, `store`, `sample`, `influence`, `map`, `summary`, `page`, `worst`.
 
 pub mod design;
 pub mod error;
 pub mod figures_of;
 pub mod file;
-pub mod indices;
 pub mod influence;
 pub mod map;
-pub mod morris;
 pub mod page;
 pub mod permutation;
 pub mod plan;
-pub mod saltelli;
 mod sample;
 mod size;
 pub mod sobol;

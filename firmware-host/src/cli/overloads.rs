@@ -6,9 +6,7 @@ use crate::cli::load;
 use crate::cli::output::{self, Staging};
 use crate::cli::progress::{LateProgress, Threads};
 use crate::cli::screen::tell;
-use firmware_bench::report::lines::lined;
-use firmware_studies::campaign::{Extent, Progress, html};
-use firmware_studies::overloads::histories::{CASES, Way, compare};
+use firmware_studies::campaign::{Extent, html};
 use firmware_studies::overloads::page;
 use firmware_studies::overloads::plan::{Catalogue, CatalogueError, Plan, search};
 use firmware_studies::whole_rotors::reference::search_laws;
@@ -38,10 +36,6 @@ pub struct OverloadsArgs {
     /// found_rotors.json in the folder.
     #[arg(long, requires = "search")]
     pub rotors: bool,
-    /// Instead of the catalogue: search force histories that were laid down beforehand against the reference,
-    /// and write them to histories.json in the folder; takes minutes.
-    #[arg(long, conflicts_with_all = ["json", "quick", "scene", "search"])]
-    pub histories: bool,
     /// How many threads it may use.
     #[command(flatten)]
     pub threads: Threads,
@@ -58,9 +52,6 @@ pub fn execute(args: &OverloadsArgs) -> Result<(), CommandError> {
     output::probe(&args.out)?;
     if args.search {
         return search_anew(args);
-    }
-    if args.histories {
-        return against_histories(args);
     }
     let extent = Extent::new(args.quick);
     let plan = Plan::new(extent, own).map_err(failed)?;
@@ -122,45 +113,6 @@ fn search_anew(args: &OverloadsArgs) -> Result<(), CommandError> {
     staging.write(name, format!("{json}\n"))?;
     let out = staging.publish()?;
     print(&format!("found: {}\n", out.join(name).display()))
-}
-
-fn against_histories(args: &OverloadsArgs) -> Result<(), CommandError> {
-    let progress = LateProgress::new((CASES.len() * Way::ALL.len()) as u64, "the searches");
-    let rows = args
-        .threads
-        .pool()?
-        .install(|| compare(&|done| progress.add(done)))
-        .map_err(failed)?;
-    progress.finish();
-    let json = serde_json::to_string(&rows)
-        .map_err(|e| CommandError::other("formatting histories.json", e))?;
-    let staging = Staging::for_folder(&args.out)?;
-    staging.write("histories.json", format!("{json}\n"))?;
-    let out = staging.publish()?;
-    let mut table = lined([
-        "impact",
-        "clairvoyant",
-        "from nothing",
-        "from clairvoyant",
-        "on top",
-        "best/clairvoyant",
-        "runs",
-    ]);
-    for row in &rows {
-        let mut cells = vec![
-            format!("{}, {:+.0}°", row.plant, row.angle_deg),
-            format!("{:.3}", row.clairvoyant_m_s),
-        ];
-        cells.extend((row.searched.iter()).map(|s| format!("{:.3}", s.impact_m_s)));
-        cells.push(format!("{:.3}", row.best_over_clairvoyant()));
-        cells.push((row.searched.iter().map(|s| s.runs).sum::<u64>()).to_string());
-        table.add_row(cells);
-    }
-    let path = out.join("histories.json");
-    tell(&format!(
-        "{table}\nspeeds in m/s; histories: {}\n",
-        path.display()
-    ))
 }
 
 fn failed(error: CatalogueError) -> CommandError {

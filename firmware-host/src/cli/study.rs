@@ -7,11 +7,12 @@ use crate::cli::progress::{LateProgress, Threads};
 use crate::cli::screen::tell;
 use firmware_studies::STUDIES;
 use firmware_studies::campaign::{
-    Claim, Extent, Machines, Report, Study, StudyError, html, markdown,
+    Claim, Extent, Machines, Report, Study, StudyError, digest, html,
 };
 use firmware_studies::on_target::measure::TargetError;
 use serde::Serialize;
-use std::path::PathBuf;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 /// Arguments of `study`.
@@ -32,9 +33,9 @@ pub struct StudyArgs {
     /// Print claims, classes, number of cases and seconds as JSON instead of the table.
     #[arg(long)]
     pub json: bool,
-    /// Print the page of the documentation, in Markdown, instead of the table.
-    #[arg(long, conflicts_with = "json")]
-    pub page: bool,
+    /// Page of the documentation, in Markdown, that gets what is claimed and the first rows of the tables between its marks.
+    #[arg(long, value_name = "FILE")]
+    pub page: Option<PathBuf>,
     /// Folder for the page as NAME.html; without it nothing is written.
     #[arg(long, value_name = "FOLDER")]
     pub out: Option<PathBuf>,
@@ -91,10 +92,13 @@ fn list(json: bool) -> Result<(), CommandError> {
 }
 
 fn run(study: &Study, args: &StudyArgs) -> Result<(), CommandError> {
-    // What cannot be written is told before anything takes its time.
+    // What cannot be written is named before anything takes its time.
     if let Some(out) = &args.out {
         output::probe(out)?;
     }
+    let marked = (args.page.as_ref())
+        .map(|page| MarkedPage::open(page, study.name))
+        .transpose()?;
     let (bar, begun) = (LateProgress::default(), Instant::now());
     let (extent, machines) = (Extent::new(args.quick), machines_of(study, args)?);
     let report = (args.threads.pool()?)
@@ -106,16 +110,17 @@ fn run(study: &Study, args: &StudyArgs) -> Result<(), CommandError> {
     bar.finish();
     let seconds = begun.elapsed().as_secs_f64();
     let quick = if args.quick { " --quick" } else { "" };
-    let page = report.page(&format!("study {}{quick} --page", study.name));
+    let page = report.page(&format!("study {}{quick}", study.name));
     if let Some(out) = &args.out {
         let html = html(&page).map_err(|e| CommandError::other("drawing the page", e))?;
         let staging = Staging::for_folder(out)?;
         staging.write(&format!("{}.html", study.name), html)?;
         staging.publish()?;
     }
-    if args.page {
-        print(&markdown(&page))?;
-    } else if args.json {
+    if let Some(marked) = marked {
+        marked.write(&digest(&page))?;
+    }
+    if args.json {
         let measured = Measured {
             study: study.name,
             quick: args.quick,
@@ -130,6 +135,53 @@ fn run(study: &Study, args: &StudyArgs) -> Result<(), CommandError> {
         tell(&format!("{text}; {} cases, {seconds:.1} s\n", report.cases))?;
     }
     strictly(args.strict, &report)
+}
+
+/// A page of the documentation, part of which a study writes: what stands between the marks.
+struct MarkedPage<'a> {
+    path: &'a Path,
+    before: String,
+    after: String,
+}
+
+impl<'a> MarkedPage<'a> {
+    /// The first mark begins so, with the study's name behind it; the second one is whole.
+    const MARKS: [&'static str; 2] = ["<!-- study ", "<!-- end -->"];
+
+    fn open(path: &'a Path, study: &str) -> Result<Self, CommandError> {
+        let text = std::fs::read_to_string(path)
+            .map_err(|e| CommandError::other("reading the page", e))?;
+        let [begin, end] = Self::MARKS;
+        let begin = format!("{begin}{study}: ");
+        let parts = text.split_once(&begin).and_then(|(before, rest)| {
+            let (mark, rest) = rest.split_once('\n')?;
+            let (_, after) = rest.split_once(end)?;
+            Some((format!("{before}{begin}{mark}\n"), format!("{end}{after}")))
+        });
+        let Some((before, after)) = parts else {
+            return Err(CommandError::Numbers {
+                message: format!("{}: no place for the study {study}", path.display()),
+                help: format!("a line begins with `{begin}`, a later one is `{end}`"),
+            });
+        };
+        Ok(Self {
+            path,
+            before,
+            after,
+        })
+    }
+
+    /// The page is replaced as a whole or not at all.
+    fn write(&self, text: &str) -> Result<(), CommandError> {
+        let failed = |e: std::io::Error| CommandError::other("writing the page", e);
+        let folder = self.path.parent().filter(|p| *p != Path::new(""));
+        let mut file =
+            tempfile::NamedTempFile::new_in(folder.unwrap_or(Path::new("."))).map_err(failed)?;
+        let Self { before, after, .. } = self;
+        write!(file, "{before}\n{text}\n{after}").map_err(failed)?;
+        file.persist(self.path).map_err(|e| failed(e.error))?;
+        Ok(())
+    }
 }
 
 /// Machines that are asked for, of a study that has such.

@@ -9,7 +9,6 @@ use crate::cli::progress::{RunProgress, Threads};
 use crate::cli::screen::tell;
 use crate::cli::warn;
 use firmware_bench::sweep::error::SweepError;
-use firmware_bench::sweep::indices::Indices;
 use firmware_bench::sweep::page::{self, PAGE};
 use firmware_bench::sweep::plan::{Plan, digest};
 use firmware_bench::sweep::store::{Program, Store};
@@ -68,9 +67,6 @@ struct Done {
     #[serde(skip_serializing_if = "Option::is_none")]
     page: Option<PathBuf>,
     worst: Vec<PathBuf>,
-    /// Of a design that is made for them.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    indices: Option<Indices>,
 }
 
 /// Runs what is missing of a sweep, and says what came of it.
@@ -113,7 +109,6 @@ pub fn execute(args: &SweepArgs) -> Result<(), CommandError> {
         summary: None,
         page: None,
         worst: Vec::new(),
-        indices: None,
     };
     if !store.is_done(&plan) {
         let there = (0..plan.chunks()).filter(|chunk| store.has(&plan, *chunk));
@@ -131,7 +126,7 @@ pub fn execute(args: &SweepArgs) -> Result<(), CommandError> {
     store.write("summary.json", text.as_bytes())?;
     let text = page::html(&summary).map_err(|e| CommandError::other("drawing the page", e))?;
     store.write(PAGE, text.as_bytes())?;
-    (done.page, done.indices) = (Some(store.path(PAGE)), summary.indices.clone());
+    done.page = Some(store.path(PAGE));
     (done.runs, done.failed) = (plan.runs(), summary.failed);
     (done.results, done.summary) = (Some(store.results()), Some(store.path("summary.json")));
     done.worst = (summary.worst.iter())

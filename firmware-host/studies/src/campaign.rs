@@ -46,7 +46,7 @@ mod markdown;
 pub use self::chapter::{Block, Chapter, Drawing, Figure, Page, Table};
 pub use self::claim::{CLAIM_COLUMNS, Claim, Side};
 pub use self::html::html;
-pub use self::markdown::{block as markdown_block, markdown};
+pub use self::markdown::digest;
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 
 /// How much is run.

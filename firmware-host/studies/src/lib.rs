@@ -70,12 +70,6 @@ pub const STUDIES: &[Study] = &[
         drawn: None,
     },
     Study {
-        name: "cycles",
-        about: "what a tick takes in cycles, by a model of each processor and a trace of every instruction",
-        run: on_target::cycles::study,
-        drawn: None,
-    },
-    Study {
         name: "found-in-records",
         about: "impacts, friction, restitution and outcome as found in flight records of the catalogue, against the plant",
         run: found_in_records::study,

@@ -7,7 +7,6 @@ pub mod budgets;
 pub mod closed_loops;
 pub mod counts;
 pub mod coverage;
-pub mod cycles;
 pub mod emulator;
 pub mod images;
 pub mod link;

@@ -3,9 +3,7 @@
 pub mod case;
 pub mod catalogue;
 pub mod contenders;
-pub mod cross_entropy;
 pub mod fault_matrix;
-pub mod histories;
 pub mod impact;
 pub mod page;
 pub mod plan;

@@ -186,9 +186,9 @@ fn pages_work_in_a_browser() {
     let size = fs::metadata(&run).unwrap().len();
     assert!(size < 3_000_000, "the page has {size} bytes");
 
-    // Maps of both kinds, and indices.
+    // Maps of both kinds, and influences.
     let lines = format!(
-        "scene = {:?}\npolicies = [\"levitation\", \"supervisor\"]\ndesign = \"saltelli\"\nsamples = 24\n\
+        "scene = {:?}\npolicies = [\"levitation\", \"supervisor\"]\ndesign = \"sobol\"\nruns = 96\n\
          maps = [[\"start.velocity_m_s[0]\", \"friction.coefficient\"], [\"magnet.delay_samples\", \"friction.coefficient\"]]\n\
          [[vary]]\nkey = \"start.velocity_m_s[0]\"\nuniform = [0.1, 0.5]\n\
          [[vary]]\nkey = \"friction.coefficient\"\nuniform = [0.05, 0.2]\n\

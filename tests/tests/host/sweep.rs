@@ -1,6 +1,5 @@
 //! `sweep`: the same bytes however it is stopped, split and spread over threads, and rows that say what `run` says.
 
-mod indices;
 mod page;
 mod refusals;
 mod rows;

@@ -2,16 +2,12 @@
 //! searches are what they say.
 
 use firmware_bench::device::loop_shape::SampledPlant;
-use firmware_bench::run::closed_loop::{Keep, run_policy};
-use firmware_bench::run::history::History;
 use firmware_studies::machines::plants::{RATES_HZ, plants};
 use firmware_studies::machines::tuned_gains::stored;
 use firmware_studies::overloads::catalogue::cases;
-use firmware_studies::overloads::contenders::{Contender, clairvoyant, levitation};
+use firmware_studies::overloads::contenders::{Contender, levitation};
 use firmware_studies::overloads::impact::recoverable_m_s;
 use firmware_studies::overloads::tune::{IDLE_NOISE, SENSITIVITY, shape};
-use plant_model::params::Start;
-use plant_model::{Options, V2, build};
 use serde_json::Value;
 use std::collections::BTreeSet;
 use system_tests::browser::Browser;
@@ -238,66 +234,6 @@ fn sampled_loop_approaches_the_continuous_one() {
         ..params
     };
     assert_eq!(fast.close(&outwards), None);
-}
-
-/// The run being known, what the reference asks for is a force history: laid down beforehand it gives the same
-/// run, and nothing on top of the law is the law. Cut off in the middle of the impact, the law goes
-/// on from there. So a search over histories can do what the reference does, and more.
-#[test]
-fn a_history_can_do_what_the_reference_does() {
-    let plant = (plants(20_000.0).unwrap().into_iter())
-        .find(|p| p.name == "P2")
-        .unwrap();
-    let law = clairvoyant(stored("P2", 20_000.0).unwrap().impact_law, &plant.scene);
-    let mut scene = plant.scene;
-    scene.start.centre_velocity_m_s = V2::new(0.8, 0.0);
-    scene.duration_s = 0.15;
-    let cap_n = scene.force_max_n(0);
-    let run = |policy| {
-        let (verdict, trace) =
-            run_policy(&scene, (policy, "test"), Keep::Trace, &mut |_| {}).unwrap();
-        let samples = (trace.rows.into_iter()).filter(|row| !row.mode_change);
-        let rows: Vec<(V2, V2)> = samples
-            .map(|row| (row.plant.position_m, row.commanded_n))
-            .collect();
-        (verdict.recovered, rows)
-    };
-    let (recovered, of_law) = run(Box::new(law.clone()));
-    assert!(recovered);
-    let follows = |history, what: &str| {
-        let (recovered, rows) = run(Box::new(history));
-        let apart_m = (rows.iter().zip(&of_law)).map(|((a, _), (b, _))| (a - b).norm());
-        // A force at the cap is cut once more, at its last bit.
-        assert!(recovered && apart_m.fold(0.0, f64::max) < 1e-12, "{what}");
-    };
-    for samples in [300, 60] {
-        let forces_n: Vec<V2> = of_law.iter().map(|(_, f)| *f).take(samples).collect();
-        let laid = History::new(forces_n, 5e-5, law.clone(), cap_n);
-        follows(laid, &format!("{samples} samples"));
-    }
-    let nothing = History::new(vec![V2::zeros(); 50], 1.5e-4, law, cap_n).on_top();
-    follows(nothing, "nothing on top");
-}
-
-/// No history asks for more than the cap has, whatever is laid down.
-#[test]
-fn a_history_stays_within_the_cap() {
-    let scene = plants(20_000.0).unwrap().remove(4).scene;
-    let law = clairvoyant(stored("P2", 20_000.0).unwrap().impact_law, &scene);
-    let wanted_n = vec![V2::new(3e3, -4e3), V2::new(30.0, 40.0)];
-    let history = History::new(wanted_n, 1e-3, law, 1000.0);
-    let start = Start {
-        position_m: V2::zeros(),
-        velocity_m_s: V2::zeros(),
-        spin_rad_s: 0.0,
-        spin_phase_rad: 0.0,
-    };
-    let plant = build(&scene.plant(0), &start, Options::default());
-    let mut now = plant.unwrap().snapshot();
-    assert!((history.force_n(&now) - V2::new(600.0, -800.0)).norm() < 1e-9);
-    // One rounding short of the next piece.
-    now.t_s = 1e-3 * (1.0 - 1e-15);
-    assert_eq!(history.force_n(&now), V2::new(30.0, 40.0));
 }
 
 /// Names are unique on a plant, and everybody takes part in what is not a fault.

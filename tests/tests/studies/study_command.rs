@@ -1,6 +1,7 @@
 //! `study`: every study by its name, its claims for programs, its part of a page.
 
 use firmware_studies::STUDIES;
+use firmware_studies::campaign::Study;
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::fs;
@@ -79,35 +80,44 @@ fn claims_for_programs() {
     );
 }
 
-/// The page has the claims and what repeats it.
+/// A study writes between its marks, and nothing else of the page changes.
 #[test]
 fn the_page_of_a_study() {
-    let page = said(&study(&["accuracy", "--quick", "--page"]).stdout);
-    assert!(page.starts_with("# Error against run time\n"), "{page}");
-    assert!(page.contains("Written by `cargo run --release -- study accuracy --quick --page`"));
-    assert!(
-        page.contains("\n## Claims\n") && page.contains("| claim | bound | measured | holds |")
-    );
-    let both = study(&["accuracy", "--quick", "--page", "--json"]);
-    assert_eq!(both.status.code(), Some(2));
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("page.md");
+    let write = |study_name: &str| {
+        let text = format!(
+            "# Title\n\nBy hand.\n\n<!-- study {study_name}: by command -->\nof before\n<!-- end -->\n\nMore.\n"
+        );
+        fs::write(&path, text).unwrap();
+        study(&["accuracy", "--quick", "--page", path.to_str().unwrap()])
+    };
+    let output = write("accuracy");
+    assert!(output.status.success(), "{output:?}");
+    let page = fs::read_to_string(&path).unwrap();
+    let marked = "# Title\n\nBy hand.\n\n<!-- study accuracy: by command -->\n\n## Claims\n";
+    assert!(page.starts_with(marked), "{page}");
+    assert!(page.ends_with("\n<!-- end -->\n\nMore.\n") && !page.contains("of before"));
+    assert!(page.contains("| claim | bound | measured | holds |"));
+
+    let refused = write("harm");
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(said(&refused.stderr).contains("<!-- study accuracy: "));
+    assert!(fs::read_to_string(&path).unwrap().contains("of before"));
 }
 
-/// Every study has a page in the documentation, written by a full run of it, and the table of contents has that.
+/// Every study has a page in the documentation, written by it, and the table of contents has that.
 #[test]
 fn every_study_has_a_page() {
     let docs = root().join("docs/src");
     let contents = fs::read_to_string(docs.join("SUMMARY.md")).unwrap();
-    for study in STUDIES {
-        let name = format!("measured/{}.md", study.name);
-        let page = fs::read_to_string(docs.join(&name)).unwrap_or_default();
-        let by = format!(
-            "Written by `cargo run --release -- study {} --page`.",
-            study.name
+    for Study { name, .. } in STUDIES {
+        let file = format!("measured/{name}.md");
+        let page = fs::read_to_string(docs.join(&file)).unwrap_or_default();
+        let mark = format!(
+            "<!-- study {name}: written by `cargo run --release -- study {name} --page docs/src/{file}` -->\n\n## Claims\n"
         );
-        assert!(
-            page.contains(&by) && page.contains("\n## Claims\n"),
-            "{name}"
-        );
-        assert!(contents.contains(&format!("({name})")), "{name}");
+        assert!(page.contains(&mark), "{file}");
+        assert!(contents.contains(&format!("({file})")), "{file}");
     }
 }

@@ -1,8 +1,6 @@
 //! Designs: where in the unit cube of what varies each run lies.
 
-use crate::sweep::morris;
 use crate::sweep::permutation::{Permutation, mixed};
-use crate::sweep::saltelli;
 use crate::sweep::sobol::coordinate;
 use crate::words::words;
 use rand_chacha::ChaCha8Rng;
@@ -19,10 +17,6 @@ words! {
         Sobol = "sobol",
         /// Independent draws.
         MonteCarlo = "monte_carlo",
-        /// For Sobol indices of first and total order.
-        Saltelli = "saltelli",
-        /// For elementary effects.
-        Morris = "morris",
     }
 }
 
@@ -57,9 +51,6 @@ enum Scheme {
     LatinHypercube(Vec<Permutation>),
     Sobol,
     MonteCarlo,
-    Saltelli,
-    /// Levels of each key.
-    Morris(u64),
 }
 
 /// A run's place and seed.
@@ -114,57 +105,15 @@ impl Points {
         }
     }
 
-    /// So many samples of Saltelli's design, a block of runs each.
-    pub fn saltelli(samples: u64, keys: usize, seed: u64) -> Self {
-        Self {
-            keys,
-            runs: samples.saturating_mul(saltelli::block_runs(keys)),
-            seed,
-            scheme: Scheme::Saltelli,
-        }
-    }
-
-    /// So many trajectories of Morris's design through so many levels a key, an even number.
-    pub fn morris(trajectories: u64, levels: u64, keys: usize, seed: u64) -> Self {
-        Self {
-            keys,
-            runs: trajectories.saturating_mul(morris::trajectory_runs(keys)),
-            seed,
-            scheme: Scheme::Morris(levels),
-        }
-    }
-
     /// How many there are.
     pub fn runs(&self) -> u64 {
         self.runs
-    }
-
-    /// Whether a run is one of those whose keys are drawn independently of each other and of other runs.
-    pub fn is_independent(&self, run: u64) -> bool {
-        match self.scheme {
-            Scheme::Saltelli => saltelli::is_independent(run, self.keys),
-            Scheme::Morris(_) => false,
-            _ => true,
-        }
     }
 
     /// A run, from 0.
     pub fn at(&self, run: u64) -> Point {
         let keys = self.keys;
         let shares = match &self.scheme {
-            Scheme::Saltelli => {
-                let (shares, of) = saltelli::point(run, keys, self.seed);
-                let seed = seed(&mut self.stream(of));
-                return Point { shares, seed };
-            }
-            Scheme::Morris(levels) => {
-                let size = morris::trajectory_runs(keys);
-                let mut stream = self.stream(run / size);
-                // One seed a trajectory: what is random within runs moves nothing.
-                let seed = seed(&mut stream);
-                let shares = morris::point(run % size, keys, *levels, &mut stream);
-                return Point { shares, seed };
-            }
             Scheme::Grid { levels, repeats } => combination(run / repeats, levels),
             Scheme::Sobol => (0..keys)
                 .map(|key| coordinate(run, key, self.seed))
@@ -309,26 +258,5 @@ mod tests {
         assert_eq!(all, once.map(|at| [at, at]).concat());
         // The same place, another seed.
         assert_ne!(points.at(0).seed, points.at(1).seed);
-    }
-
-    /// Runs of a block, or of a trajectory, have one seed; B, which is another draw, has its own.
-    #[test]
-    fn what_is_random_within_runs_does_not_part_those_that_are_compared() {
-        let seeds = |points: &Points| (0..12).map(|run| points.at(run).seed).collect::<Vec<_>>();
-        let saltelli = Points::saltelli(3, 2, 1);
-        assert_eq!(saltelli.runs(), 12);
-        let of = seeds(&saltelli);
-        assert!(of[0] == of[1] && of[1] == of[2] && of[3] != of[0] && of[4] != of[0]);
-        let alone: Vec<u64> = (0..8).filter(|run| saltelli.is_independent(*run)).collect();
-        assert_eq!(alone, [0, 3, 4, 7]);
-        let morris = Points::morris(4, 4, 2, 1);
-        let of = seeds(&morris);
-        assert!(morris.runs() == 12 && of[0] == of[2] && of[3] == of[5] && of[0] != of[3]);
-        for run in 0..12 {
-            for points in [&saltelli, &morris] {
-                let shares = points.at(run).shares;
-                assert!(shares.len() == 2 && shares.iter().all(|x| *x > 0.0 && *x < 1.0));
-            }
-        }
     }
 }

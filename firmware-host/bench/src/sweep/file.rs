@@ -22,9 +22,6 @@ struct Written {
     design: Design,
     runs: Option<u64>,
     repeats: Option<u64>,
-    samples: Option<u64>,
-    trajectories: Option<u64>,
-    levels: Option<u64>,
     #[serde(default)]
     seed: u64,
     policies: Option<Vec<String>>,
@@ -137,9 +134,7 @@ fn missing(message: &str) -> Option<String> {
     let (_, name) = message.split_once("missing field `")?;
     let give = match name.trim_end_matches('`') {
         "scene" => "give the scene that is varied: scene = \"…\", by its path from this file",
-        "design" => {
-            "give design = \"grid\", \"latin_hypercube\", \"sobol\", \"monte_carlo\", \"saltelli\" or \"morris\""
-        }
+        "design" => "give design = \"grid\", \"latin_hypercube\", \"sobol\" or \"monte_carlo\"",
         "key" => "give the key of the scene that varies: key = \"friction.coefficient\"",
         "from" | "to" | "count" => "give { from = 1.0, to = 2.0, count = 11 }",
         "mean" | "standard_deviation" | "low" | "high" => {
@@ -180,9 +175,6 @@ fn sizes(written: &Written) -> Sizes {
     Sizes {
         runs: written.runs,
         repeats: written.repeats,
-        samples: written.samples,
-        trajectories: written.trajectories,
-        levels: written.levels,
     }
 }
 

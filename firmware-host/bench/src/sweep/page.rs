@@ -3,7 +3,7 @@
 mod deciding;
 mod maps;
 
-use self::deciding::{decided_by_indices, decided_by_ranks};
+use self::deciding::decided;
 use self::maps::map;
 use crate::report::html_page::{Head, HtmlPage};
 use crate::report::listing::Listing;
@@ -71,10 +71,7 @@ pub fn html(summary: &Summary) -> Result<String, PlotError> {
             page.figures(of_pair);
         }
     });
-    page.section("What decides", |page| match &summary.indices {
-        Some(of) => decided_by_indices(page, summary, of),
-        None => decided_by_ranks(page, summary),
-    });
+    page.section("What decides", |page| decided(page, summary));
     page.section("Worst runs", |page| {
         page.note(&Markup::text(match summary.worst.is_empty() {
             true => "None is kept.",

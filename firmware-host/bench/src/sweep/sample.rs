@@ -124,15 +124,12 @@ impl Sample {
         }
     }
 
-    /// Places of runs whose keys are drawn independently and that a policy has figures of.
-    pub(super) fn independent(&self, plan: &Plan, policy: usize) -> Vec<usize> {
+    /// Places of runs that a policy has an outcome of.
+    pub(super) fn with_outcome(&self, policy: usize) -> Vec<usize> {
         let outcomes = self.outcomes.get(policy).map_or(&[][..], Vec::as_slice);
-        let places = self.runs.iter().zip(outcomes).enumerate();
+        let places = outcomes.iter().enumerate();
         places
-            .filter(|(_, (run, outcome))| {
-                plan.file.points.is_independent(**run) && outcome.is_some()
-            })
-            .map(|(place, _)| place)
+            .filter_map(|(place, outcome)| outcome.is_some().then_some(place))
             .collect()
     }
 }

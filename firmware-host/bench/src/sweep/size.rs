@@ -5,31 +5,19 @@ use crate::sweep::design::{Design, MOST_RUNS, Points};
 use crate::sweep::sobol::{SOBOL_DIMENSIONS, SOBOL_POINTS};
 use crate::sweep::values::Variation;
 
-/// Most trajectories of Morris's design: their results are kept in memory.
-const MOST_TRAJECTORIES: u64 = 1 << 13;
-/// Levels of a key in Morris's design, unless said otherwise, and at most.
-const LEVELS: u64 = 4;
-const MOST_LEVELS: u64 = 1000;
-
 /// Keys of a sweep file that say how large its design is.
 pub(super) struct Sizes {
     pub(super) runs: Option<u64>,
     pub(super) repeats: Option<u64>,
-    pub(super) samples: Option<u64>,
-    pub(super) trajectories: Option<u64>,
-    pub(super) levels: Option<u64>,
 }
 
 impl Sizes {
     /// A key, what it is, and the designs that it goes with.
-    fn given(&self) -> [(&'static str, Option<u64>, &'static [Design]); 5] {
-        use Design::{Grid, LatinHypercube, MonteCarlo, Morris, Saltelli, Sobol};
+    fn given(&self) -> [(&'static str, Option<u64>, &'static [Design]); 2] {
+        use Design::{Grid, LatinHypercube, MonteCarlo, Sobol};
         [
             ("runs", self.runs, &[LatinHypercube, Sobol, MonteCarlo]),
             ("repeats", self.repeats, &[Grid]),
-            ("samples", self.samples, &[Saltelli]),
-            ("trajectories", self.trajectories, &[Morris]),
-            ("levels", self.levels, &[Morris]),
         ]
     }
 }
@@ -42,10 +30,6 @@ fn instead(design: Design) -> &'static str {
         }
         Design::LatinHypercube | Design::Sobol | Design::MonteCarlo => {
             "remove it, and give runs = 1000"
-        }
-        Design::Saltelli => "remove it, and give samples = 256: each is a run a key, and two more",
-        Design::Morris => {
-            "remove it, and give trajectories = 20: each is a run a key, and one more"
         }
     }
 }
@@ -79,12 +63,7 @@ pub(super) fn points(
     let within = |key: &str, given: Option<u64>, most: u64, why: &str| match given {
         None => {
             let message = format!("{key} is missing");
-            let usual = match design {
-                Design::Saltelli => 256,
-                Design::Morris => 20,
-                _ => 1000,
-            };
-            let help = format!("give {key} = {usual}");
+            let help = format!("give {key} = 1000");
             Err(text.error_at(0..0, message, Some(help)))
         }
         Some(given) if (1..=most).contains(&given) => Ok(given),
@@ -102,21 +81,10 @@ pub(super) fn points(
             Err(refused(
                 "vary",
                 message,
-                "take latin_hypercube, monte_carlo or morris",
+                "take latin_hypercube or monte_carlo",
             ))
         }
         false => Ok(()),
-    };
-    let some_key = || match keys {
-        0 => {
-            let message = format!("is {}, and no key varies", design.name());
-            Err(refused(
-                "design",
-                message,
-                "give [[vary]] tables, or take another design",
-            ))
-        }
-        _ => Ok(()),
     };
     let points = match design {
         Design::Grid => return grid(sizes, seed, variations, text),
@@ -131,24 +99,6 @@ pub(super) fn points(
             let runs = within("runs", sizes.runs, SOBOL_POINTS, more)?;
             dimensions(keys)?;
             Points::sobol(runs, keys, seed)
-        }
-        Design::Saltelli => {
-            let samples = within("samples", sizes.samples, SOBOL_POINTS, "")?;
-            some_key()?;
-            // A and B.
-            dimensions(2 * keys)?;
-            Points::saltelli(samples, keys, seed)
-        }
-        Design::Morris => {
-            let trajectories = within("trajectories", sizes.trajectories, MOST_TRAJECTORIES, "")?;
-            some_key()?;
-            let levels = within("levels", sizes.levels.or(Some(LEVELS)), MOST_LEVELS, "")?;
-            if levels % 2 != 0 {
-                let message = format!("is {levels}, expected an even number");
-                let help = "half of the levels is how far a key moves: give 4, 6 or 8";
-                return Err(refused("levels", message, help));
-            }
-            Points::morris(trajectories, levels, keys, seed)
         }
     };
     match points.runs() {

@@ -4,7 +4,6 @@ use crate::run::columns::Kind;
 use crate::run::figures::{Figures, Place};
 use crate::sweep::design::Design;
 use crate::sweep::error::SweepError;
-use crate::sweep::indices::{CameTo, Indices};
 use crate::sweep::influence::Influence;
 use crate::sweep::map::{OutcomeMap, maps};
 use crate::sweep::plan::Plan;
@@ -39,11 +38,8 @@ pub struct Summary {
     pub worst_policy: String,
     /// The figure that they are of.
     pub worst_by: String,
-    /// Influence of each key, the largest first: of ranks, in runs whose keys are drawn independently.
+    /// Influence of each key, the largest first: of ranks.
     pub influences: Vec<KeyInfluence>,
-    /// Indices of a design that is made for them.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub indices: Option<Indices>,
     /// Outcomes over pairs of keys. Programs have the results.
     #[serde(skip)]
     pub maps: Vec<OutcomeMap>,
@@ -144,7 +140,7 @@ impl Summary {
         let reader = RowsReader::open(file, plan.columns()).map_err(refused)?;
         let sampled = Sampled::new(plan.runs());
         let mut tallies: Vec<Tally> = plan.policies().iter().map(|_| Tally::default()).collect();
-        let (mut sample, mut came_to) = (Sample::new(plan), CameTo::new(plan));
+        let mut sample = Sample::new(plan);
         let (mut worst, mut errors) = (Vec::new(), Vec::new());
         for group in reader.groups() {
             let rows = group.map_err(refused)?;
@@ -170,15 +166,14 @@ impl Summary {
                 }
                 tally.add(&row, kept);
                 if plan.is_worst_policy(policy) {
-                    came_to.add(plan, &row, run);
                     rank(&mut worst, plan, &row, run);
                 }
             }
         }
         let independent = plan.file.design == Design::MonteCarlo;
-        let (influences, indices) = (influences(plan, &sample), came_to.indices(plan));
+        let influences = influences(plan, &sample);
         let pairs = match plan.file.maps.is_empty() {
-            true => strongest(plan, &influences, indices.as_ref()),
+            true => strongest(plan, &influences),
             false => plan.file.maps.clone(),
         };
         for (place, run) in worst.iter_mut().enumerate() {
@@ -199,7 +194,6 @@ impl Summary {
             worst_by: plan.file.worst.by.clone(),
             maps: maps(plan, &sample, &pairs),
             influences,
-            indices,
             worst,
         })
     }
@@ -229,7 +223,7 @@ fn rank(worst: &mut Vec<WorstRun>, plan: &Plan, row: &Row<'_>, run: u64) {
 /// The largest first.
 fn influences(plan: &Plan, sample: &Sample) -> Vec<KeyInfluence> {
     let policy = (0..plan.policies().len()).find(|at| plan.is_worst_policy(*at));
-    let places = sample.independent(plan, policy.unwrap_or_default());
+    let places = sample.with_outcome(policy.unwrap_or_default());
     let outcomes = policy.and_then(|at| sample.outcomes.get(at));
     let is_lost = |i: &usize| {
         let outcome = outcomes.and_then(|of| of.get(*i)).copied().flatten();
@@ -259,17 +253,11 @@ fn influences(plan: &Plan, sample: &Sample) -> Vec<KeyInfluence> {
 }
 
 /// The two keys of most influence, the stronger to the right; none where fewer vary.
-fn strongest(
-    plan: &Plan,
-    influences: &[KeyInfluence],
-    indices: Option<&Indices>,
-) -> Vec<[usize; 2]> {
-    let ranked: Vec<&str> = match indices {
-        Some(indices) => indices.keys.iter().map(|of| of.key.as_str()).collect(),
-        None => influences.iter().map(|of| of.key.as_str()).collect(),
-    };
-    let place = |key: &&str| plan.file.variations.iter().position(|of| of.key == **key);
-    let places: Vec<usize> = ranked.iter().filter_map(place).collect();
+fn strongest(plan: &Plan, influences: &[KeyInfluence]) -> Vec<[usize; 2]> {
+    let variations = &plan.file.variations;
+    let places: Vec<usize> = (influences.iter())
+        .filter_map(|of| variations.iter().position(|varied| varied.key == of.key))
+        .collect();
     match places[..] {
         [x, y, ..] => vec![[x, y]],
         _ => Vec::new(),

@@ -2,13 +2,11 @@
 
 use super::Done;
 use firmware_bench::report::lines::{Cell, lined, right};
-use firmware_bench::report::plot::text::figures;
 use firmware_bench::report::table::shown_as;
 use firmware_bench::report::tone::Tone;
 use firmware_bench::run::figures::Figures;
 use firmware_bench::run::outcome::Outcome;
 use firmware_bench::scene::policy_kind::PolicyKind;
-use firmware_bench::sweep::indices::{Index, Indices};
 use firmware_bench::sweep::influence::Influence;
 use firmware_bench::sweep::page::PAGE;
 use firmware_bench::sweep::plan::Plan;
@@ -50,14 +48,8 @@ pub(super) fn all(plan: &Plan, summary: &Summary, done: &Done) -> String {
     for policy in policies {
         let _ = write!(text, "\n{}", of_policy(policy));
     }
-    match &summary.indices {
-        Some(of) => {
-            let _ = write!(text, "\n{}", indices(summary, of));
-        }
-        None if summary.influences.is_empty() => {}
-        None => {
-            let _ = write!(text, "\n{}", influences(summary));
-        }
+    if !summary.influences.is_empty() {
+        let _ = write!(text, "\n{}", influences(summary));
     }
     if !summary.worst.is_empty() {
         let _ = writeln!(
@@ -169,49 +161,4 @@ fn influences(summary: &Summary) -> String {
         "influence under {}: share of the variance of ranks (first-order index), and Spearman's correlation\n{table}\n",
         summary.worst_policy
     )
-}
-
-fn indices(summary: &Summary, indices: &Indices) -> String {
-    let mut about = "";
-    let mut headings = [""; 2];
-    let mut rows = Vec::new();
-    for of in &indices.keys {
-        let mut cells = vec![Cell::new(format!("  {}", of.key))];
-        for index in [of.lost, of.figure] {
-            let numbers = index.map(|index| match index {
-                Index::Sobol(of) => {
-                    about = "Sobol indices, and half of their intervals of 95 %";
-                    headings = ["first order", "total order"];
-                    [
-                        (of.first_order, Some(of.first_order_error)),
-                        (of.total_order, Some(of.total_order_error)),
-                    ]
-                }
-                Index::Morris(of) => {
-                    about = "elementary effects: mean magnitude, half of its interval of 95 %, and standard deviation";
-                    headings = ["magnitude", "deviation"];
-                    [
-                        (of.mean_magnitude, Some(of.mean_magnitude_error)),
-                        (of.standard_deviation, None),
-                    ]
-                }
-            });
-            let text = |(value, error): (f64, Option<f64>)| match error {
-                Some(error) => format!("{} ± {}", figures(value), figures(error)),
-                None => figures(value),
-            };
-            let texts = numbers.map_or(["–", "–"].map(str::to_owned), |of| of.map(text));
-            cells.extend(texts.map(right));
-        }
-        rows.push(cells);
-    }
-    let mut header = vec![Cell::new("  key")];
-    for of in ["loss", &summary.worst_by] {
-        header.extend(headings.map(|heading| right(format!("{of}: {heading}"))));
-    }
-    let mut table = lined(header);
-    for row in rows {
-        table.add_row(row);
-    }
-    format!("{about}, under {}\n{table}\n", summary.worst_policy)
 }

@@ -100,7 +100,7 @@ pub struct Chapter {
     pub title: String,
     /// What is in it, in order.
     pub blocks: Vec<Block>,
-    /// Whether it is shown as its heading until somebody opens it, and left out of Markdown.
+    /// Whether it is shown as its heading until somebody opens it, and left out of the documentation.
     pub folded: bool,
 }
 
@@ -113,6 +113,14 @@ impl Chapter {
             folded: false,
         }
     }
+
+    /// One that is shown as its heading until somebody opens it.
+    pub fn folded(title: impl Into<String>, blocks: Vec<Block>) -> Self {
+        Self {
+            folded: true,
+            ..Self::new(title, blocks)
+        }
+    }
 }
 
 /// A document.
@@ -120,7 +128,7 @@ impl Chapter {
 pub struct Page {
     /// Its title.
     pub title: String,
-    /// The conclusion in a sentence or two, above everything on the HTML page; Markdown begins with the claims.
+    /// The conclusion in a sentence or two, above everything.
     pub headline: String,
     /// What comes before the chapters.
     pub lead: Vec<Block>,

@@ -225,13 +225,10 @@ pub fn study(extent: Extent, progress: &dyn Progress) -> Result<Report, StudyErr
                     ),
                 ],
             ),
-            Chapter {
-                folded: true,
-                ..Chapter::new(
-                    "Impacts that were not found",
-                    vec![Block::table(MISSED, missed)],
-                )
-            },
+            Chapter::folded(
+                "Impacts that were not found",
+                vec![Block::table(MISSED, missed)],
+            ),
             Chapter::new("Outcomes that differ", vec![differences]),
         ],
     })

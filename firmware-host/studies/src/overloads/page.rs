@@ -44,10 +44,8 @@ pub fn report(catalogue: &Catalogue, extent: Extent) -> Report {
         against_alone(&catalogue.against_levitation),
     ));
     chapters.extend(
-        (by_scene(catalogue.results.iter()).into_iter()).map(|(name, rows)| Chapter {
-            folded: true,
-            ..Chapter::new(name, vec![scene(&rows)])
-        }),
+        (by_scene(catalogue.results.iter()).into_iter())
+            .map(|(name, rows)| Chapter::folded(name, vec![scene(&rows)])),
     );
     Report {
         classes: Vec::new(),

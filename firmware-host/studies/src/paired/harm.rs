@@ -82,7 +82,7 @@ pub fn drawn(of: Machines, extent: Extent, progress: &dyn Progress) -> Result<Re
         claims: claims(&cases),
         cases: cases.len() as u64,
         classes: values(&rows),
-        chapters: vec![worse(&rows), Chapter::new("By class", blocks)],
+        chapters: vec![worse(&rows), Chapter::folded("By class", blocks)],
     })
 }
 

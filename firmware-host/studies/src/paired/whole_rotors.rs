@@ -96,7 +96,7 @@ pub fn drawn(of: Machines, extent: Extent, progress: &dyn Progress) -> Result<Re
         }
         let remarks = all.iter().filter_map(|case| case.remark(plan.seed));
         let blocks = vec![table(&rows(&all)), Block::List(remarks.collect())];
-        chapters.push(Chapter::new(kind.name(), blocks));
+        chapters.push(Chapter::folded(kind.name(), blocks));
     }
     chapters.push(not_held(&cases));
     Ok(Report {

@@ -1,4 +1,4 @@
-//! Bars side by side for each of several things, with the interval that each value lies in.
+//! Shares as bars, one below the other.
 
 use crate::report::plot::chart::{FONT, WIDTH, colour};
 use crate::report::plot::text::{escape, figures, hex};
@@ -7,112 +7,62 @@ use std::fmt::Write as _;
 
 // CSS pixels.
 const MARGIN: f64 = 10.0;
-/// Room for a name above its bars.
+/// Room for a name above its bar.
 const NAME: f64 = 24.0;
 const BAR: f64 = 13.0;
 const BELOW: f64 = 12.0;
 /// Room for a value behind its bar.
 const VALUE: f64 = 64.0;
 
-/// A value with half the width of the interval around it.
-pub type Measured = (f64, f64);
-
-/// What has bars.
+/// A bar from 0 to the right.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Thing {
-    /// Its name.
+pub struct Bar {
+    /// What has the share.
     pub name: String,
-    /// Its value of each series.
-    pub values: Vec<Option<Measured>>,
+    /// The share, up to 1; below 0 there is no bar, only its number.
+    pub share: Option<f64>,
 }
 
-/// Bars from 0 to the right.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Bars {
-    /// What a screen reader says.
-    pub label: String,
-    /// What each colour is.
-    pub series: Vec<String>,
-    /// From top to bottom.
-    pub things: Vec<Thing>,
-    /// The right end is this at least.
-    pub least_range: f64,
-}
-
-/// Draws them; below 0 there is no bar, only its number.
-pub fn bars(plot: &Bars) -> String {
-    let values = || {
-        (plot
-            .things
-            .iter()
-            .flat_map(|thing| thing.values.iter().flatten()))
-        .filter(|of| of.0.is_finite())
-    };
-    let range = values()
-        .map(|(value, error)| value + error)
-        .fold(plot.least_range, f64::max);
+/// Draws bars from top to bottom; `label` is what a screen reader says.
+pub fn bars(label: &str, bars: &[Bar]) -> String {
     let room = f64::from(WIDTH) - 2.0 * MARGIN - VALUE;
-    let x = |value: f64| MARGIN + room * (value / range).clamp(0.0, 1.0);
-    let thing = NAME + BAR * plot.series.len() as f64 + BELOW;
-    let height = MARGIN + thing * plot.things.len() as f64;
+    let x = |share: f64| MARGIN + room * share.clamp(0.0, 1.0);
+    let step = NAME + BAR + BELOW;
+    let height = MARGIN + step * bars.len() as f64;
     let mut svg = format!(
         "<svg role=\"img\" aria-label=\"{}\" viewBox=\"0 0 {WIDTH} {height}\">\n",
-        escape(&plot.label)
+        escape(label)
     );
-    let [ink, grid] = [INK, GRID].map(hex);
+    let [ink, grid, fill] = [hex(INK), hex(GRID), hex(colour(0))];
     for quarter in 0..=4 {
-        let at = x(range * f64::from(quarter) / 4.0);
+        let at = x(f64::from(quarter) / 4.0);
         let _ = writeln!(svg, "<path d=\"M{at:.1} 0V{height}\" stroke=\"{grid}\"/>");
     }
-    for (place, Thing { name, values: all }) in plot.things.iter().enumerate() {
-        let top = MARGIN + thing * place as f64;
-        let baseline = top + NAME - 7.0;
+    for (place, Bar { name, share }) in bars.iter().enumerate() {
+        let y = MARGIN + step * place as f64 + NAME;
         let _ = writeln!(
             svg,
-            "<text x=\"{MARGIN}\" y=\"{baseline}\" font-size=\"{FONT}\" fill=\"{ink}\">{}</text>",
+            "<text x=\"{MARGIN}\" y=\"{}\" font-size=\"{FONT}\" fill=\"{ink}\">{}</text>",
+            y - 7.0,
             escape(name)
         );
-        for (series, of) in all.iter().enumerate() {
-            let Some((value, error)) = of.filter(|(value, _)| value.is_finite()) else {
-                continue;
-            };
-            let y = top + NAME + BAR * series as f64;
-            let (end, fill) = (x(value), hex(colour(series)));
-            let (wide, middle) = (end - MARGIN, y + BAR / 2.0);
-            let _ = writeln!(
-                svg,
-                "<path d=\"M{MARGIN} {y}h{wide:.1}v{}h-{wide:.1}z\" fill=\"{fill}\"/>",
-                BAR - 2.0
-            );
-            let mut behind = end;
-            if error > 0.0 {
-                let [from, to] = [value - error, value + error].map(x);
-                behind = behind.max(to);
-                let _ = writeln!(
-                    svg,
-                    "<path d=\"M{from:.1} {middle:.1}H{to:.1}M{from:.1} {:.1}v6M{to:.1} {:.1}v6\" stroke=\"{ink}\" fill=\"none\"/>",
-                    middle - 3.0,
-                    middle - 3.0
-                );
-            }
-            let _ = writeln!(
-                svg,
-                "<text x=\"{:.1}\" y=\"{:.1}\" font-size=\"12\" fill=\"{ink}\">{}</text>",
-                behind + 6.0,
-                middle + 3.5,
-                figures(value)
-            );
-        }
-    }
-    svg.push_str("</svg><ul class=\"legend\">");
-    for (i, name) in plot.series.iter().enumerate() {
-        let (colour, name) = (hex(colour(i)), escape(name));
-        let _ = write!(
+        let Some(share) = share.filter(|share| share.is_finite()) else {
+            continue;
+        };
+        let (wide, high) = (x(share) - MARGIN, BAR - 2.0);
+        let _ = writeln!(
             svg,
-            "<li><span data-sign=\"■\" style=\"color:{colour}\"></span> {name}</li>"
+            "<path d=\"M{MARGIN} {y}h{wide:.1}v{high}h-{wide:.1}z\" fill=\"{fill}\"/>"
+        );
+        let _ = writeln!(
+            svg,
+            "<text x=\"{:.1}\" y=\"{:.1}\" font-size=\"12\" fill=\"{ink}\">{}</text>",
+            x(share) + 6.0,
+            y + BAR / 2.0 + 3.5,
+            figures(share)
         );
     }
-    svg + "</ul>"
+    svg + "</svg>"
 }
 
 #[cfg(test)]
@@ -120,28 +70,26 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_value_has_its_bar_and_none_leaves_the_figure() {
-        let svg = bars(&Bars {
-            label: "<label>".to_owned(),
-            series: vec!["a".to_owned(), "b".to_owned()],
-            things: [
-                ("<key>", [Some((0.5, 0.1)), Some((-0.1, 0.2))]),
-                ("none", [None, Some((f64::NAN, 0.0))]),
-                ("large", [Some((4.0, 0.0)), Some((0.0, 0.0))]),
-            ]
-            .map(|(name, values)| Thing {
+    fn every_share_has_its_bar_and_none_leaves_the_figure() {
+        let all = [
+            ("<key>", Some(0.5)),
+            ("none", None),
+            ("nothing", Some(f64::NAN)),
+            ("negative", Some(-0.1)),
+            ("large", Some(1.5)),
+        ];
+        let svg = bars(
+            "<label>",
+            &all.map(|(name, share)| Bar {
                 name: name.to_owned(),
-                values: values.to_vec(),
-            })
-            .to_vec(),
-            least_range: 1.0,
-        });
+                share,
+            }),
+        );
         assert!(!svg.contains("NaN") && svg.contains("&lt;key&gt;") && !svg.contains("<key>"));
-        assert_eq!(svg.matches("z\" fill").count(), 4);
-        assert_eq!(svg.matches("v6M").count(), 2);
-        // The largest fills the room, a half of a fourth an eighth of it.
+        assert_eq!(svg.matches("z\" fill").count(), 3);
+        // The largest fills the room.
         let room = f64::from(WIDTH) - 2.0 * MARGIN - VALUE;
-        for wide in [room, room / 8.0] {
+        for wide in [room, room / 2.0, 0.0] {
             assert!(svg.contains(&format!("h{wide:.1}v")), "{wide}");
         }
     }
