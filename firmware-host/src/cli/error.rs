@@ -56,7 +56,7 @@ pub enum CommandError {
     /// What was measured on the targets is not what it should be.
     #[error("{}", .0.join("\n"))]
     #[diagnostic(help(
-        "results were printed; docs/src/supervisor/targets.md says when a budget may be raised"
+        "results were printed; docs/src/measured/target.md says when a budget may be raised"
     ))]
     Targets(Vec<String>),
     /// Claims of a study that do not hold.

@@ -62,8 +62,8 @@ fn promises_of_a_quick_run() {
         assert_eq!(holds, p["holds"].as_bool().unwrap(), "{p}");
     }
     // Every key is in the page that explains them; results have those of a verdict.
-    let pages = ["overloads-explained", "results"].map(|page| {
-        let path = system_tests::root().join(format!("docs/src/host/{page}.md"));
+    let pages = ["measured/overloads", "host/results"].map(|page| {
+        let path = system_tests::root().join(format!("docs/src/{page}.md"));
         std::fs::read_to_string(path).unwrap()
     });
     for (of, list) in root.as_object().unwrap() {

@@ -27,7 +27,7 @@ pub fn report(catalogue: &Catalogue, extent: Extent) -> Report {
         "10 and 20 kHz, twenty seeds",
     );
     let story = format!(
-        "Every scene under every policy. {how}, 1 µm of sensor noise. Plants P1 to P4 are `firmware-host/scenes/plants`; who takes part and how the scenes are sized is said in `docs/src/host/overloads-explained.md`, and why some claims do not hold."
+        "Every scene under every policy. {how}, 1 µm of sensor noise. Plants P1 to P4 are `firmware-host/scenes/plants`; who takes part and how the scenes are sized is said in `docs/src/measured/overloads.md`, and why some claims do not hold."
     );
     let mut chapters = vec![Chapter::new("What was run", vec![Block::text(story)])];
     chapters.extend(own_scenes(catalogue));
@@ -226,7 +226,7 @@ pub fn in_brief(catalogue: &Catalogue) -> Vec<Chapter> {
             "Largest contact force over levitation alone, by groups with a median above 1.1 or recoveries lost beyond chance",
             vec![
                 Block::table(GROUP_COLUMNS, harmed.into_iter().map(Group::cells)),
-                Block::text("why: docs/src/host/overloads-explained.md"),
+                Block::text("why: docs/src/measured/overloads.md"),
             ],
         ));
     }
