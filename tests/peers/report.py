@@ -27,7 +27,7 @@ REFERENCES = {
 FINEST = "diffsol tsit45"
 TARGET = 1e-7  # error / clearance at which times are compared
 LEVELS = (1e-3, 1e-5, 1e-7, 1e-9)
-SERIES, COLLOCATION, AUTO = "project, series", "project, collocation", "project, auto"
+SERIES, AUTO = "project, series", "project, auto"
 # Claim: on B1 the series reaches TARGET this many times as fast as the faster solver of each peer.
 CLAIMS = (("ivp", 2), ("CVODE", 10), ("SciPy", 100))
 PLOTTED = ("B1", "B2", "B3c")
@@ -151,16 +151,6 @@ def worst_factor(results):
     return max(r["error"] / r["rtol"] for r in results.of(None, AUTO) if r["rtol"] > 1e-12)
 
 
-def cost_of_digits(results):
-    """How much longer a run at 1e-12 takes than at 1e-6."""
-    parts = []
-    for problem in results.problems:
-        loose, tight = (results.at(problem, AUTO, rtol) for rtol in (1e-6, 1e-12))
-        if loose and tight:
-            parts.append(f"{short(tight['seconds'] / loose['seconds'])} on {problem}")
-    return ", ".join(parts)
-
-
 def losses(results):
     """Where a peer reaches an error sooner than the method that a user gets."""
     rows = []
@@ -170,19 +160,16 @@ def losses(results):
             own = results.best(problem, level, [AUTO], "seconds")
             if not peer or (own and own["seconds"] <= peer["seconds"]):
                 continue
-            best = results.best(problem, level, filter(is_project, results.solvers), "seconds")
             cells = [
-                f"{f['how']}{seconds(f['seconds'])}" if f else "not reached" for f in (peer, own, best)
+                f"{f['how']}{seconds(f['seconds'])}" if f else "not reached" for f in (peer, own)
             ]
             cells[0] = f"{peer['solver']}, {cells[0]}"
-            if best:
-                cells[2] = f"{best['solver'].removeprefix('project, ')}, {cells[2]}"
             ratio = f"{own['seconds'] / peer['seconds']:.1f}" if own else "–"
             rows.append([problem, clearances(level), *cells, ratio])
     if not rows:
         return "None of the peers that took part."
-    header = ["problem", "error", "fastest peer", "project (`auto`)", "project's best method"]
-    return table([*header, "peer faster by"], rows)
+    header = ["problem", "error", "fastest peer", "project (`auto`)", "peer faster by"]
+    return table(header, rows)
 
 
 def time_table(results):
@@ -197,49 +184,38 @@ def time_table(results):
                 row.append("fails")
             else:
                 ratio = short(found["seconds"] / base["seconds"])
-                row.append(f"{found['how']}{ratio} ({found['how']}{seconds(found['seconds'])})")
+                value = seconds(found["seconds"]) if solver == SERIES else ratio
+                row.append(found["how"] + value)
         rows.append(row)
     return table(["solver", *results.problems], rows)
 
 
-def count(found):
-    if not found:
-        return "–"
-    matrices = round(found["factorisations"])
-    return f"{found['how']}{round(found['evaluations'])}" + (f" + {matrices} LU" if matrices else "")
-
-
-def evaluations(results):
-    rows = []
-    for problem in (p for p in results.problems if p.startswith("B3")):
-        for level in LEVELS:
-            own = [results.best(problem, level, [s], "evaluations") for s in (SERIES, COLLOCATION)]
-            peer = results.best(problem, level, peers(results), "evaluations")
-            name = f"{peer['solver']}: " if peer else ""
-            rows.append([problem, clearances(level), *map(count, own), name + count(peer)])
-            least = min((o["evaluations"] for o in own if o), default=None)
-            rows[-1].append(f"{peer['evaluations'] / least:.2f}" if peer and least else "–")
-    header = ["problem", "error", "project, series", "project, collocation", "best peer"]
-    return table([*header, "peer / project"], rows)
-
-
 def wrong_runs(results):
+    """On the problems themselves, by solver and tolerance."""
     tolerances = sorted({s["rtol"] for s in results.sweeps}, reverse=True)
     rows = []
-    for family, starts in results.left_out.items():
-        here = [s for s in results.sweeps if s["sweep"] == family]
+    for problem in results.problems:
+        here = [s for s in results.sweeps if s["sweep"] == problem]
         for solver in results.solvers:
             by_rtol = {s["rtol"]: s for s in here if s["solver"] == solver}
             if not by_rtol:
                 continue
-            row = [family, len(starts), solver, next(iter(by_rtol.values()))["runs"]]
+            row = [problem, solver]
             for rtol in tolerances:
                 s = by_rtol.get(rtol)
                 failed = f", {s['failed']} failed" if s and s["failed"] else ""
                 other = f" ({s['other_changes']})" if s and s["other_changes"] else ""
                 row.append(f"{s['wrong']}{other}{failed}" if s else "not run")
             rows.append(row)
-    return table(["problem", "left out", "solver", "runs", *map(power, tolerances)], rows)
+    return table(["problem", "solver", *map(power, tolerances)], rows)
+
+
+def variants(results):
+    """Silently wrong runs of the series on variants of the problems, over all tolerances."""
+    found = [s for s in results.sweeps if s["sweep"] not in results.problems]
+    found = [s for s in found if s["solver"] == SERIES]
+    wrong, runs = (sum(s[key] for s in found) for key in ("wrong", "runs"))
+    return f"{wrong} of {runs} runs are wrong, over all tolerances"
 
 
 def verdicts(results):
@@ -270,18 +246,6 @@ def b3c_uncertainty(results):
     return clearances(series["error"]) if series else "(series fails)"
 
 
-def mode_changes(results):
-    parts = (f"{p} {results.at(p, SERIES, 1e-12)['changes']}" for p in results.problems)
-    return ", ".join(parts)
-
-
-def said_of_work(field):
-    """What the project itself says about a count."""
-    with open("../../plant-model/src/readout.rs") as source:
-        found = re.search(rf"((?: *///[^\n]*\n)+) *pub {field}: u64", source.read())
-    return " ".join(found[1].replace("///", "").split()) if found else "see `Work`"
-
-
 # ------------------------------------------------------------------------------------ the machine
 
 
@@ -308,7 +272,6 @@ def machine():
         "cpu": found_in("/proc/cpuinfo", r"^model name\s*:(.*)$"),
         "cores": os.cpu_count(),
         "load": " and ".join(content("out/load").split()),
-        "minutes": f"{int(content('out/seconds')) / 60:.0f}",
         "compilers": f"{first_line('rustc', '--version')}; {first_line('cc', '--version')}",
         "libraries": f"SUNDIALS {sundials}, ivp {lock('ivp')}, diffsol {lock('diffsol')}, "
         f"{python.replace(' scipy', ', scipy').replace(' numpy', ', numpy')}, Python {platform.python_version()}",
@@ -421,15 +384,13 @@ def plot(results, problem):
 def page(results, claims):
     values = {
         "worst_factor": short(worst_factor(results)),
-        "cost_of_digits": cost_of_digits(results),
         "losses": losses(results),
         "target": clearances(TARGET),
         "times": time_table(results),
-        "evaluations": evaluations(results),
-        "said_of_evaluations": said_of_work("evaluations"),
         "wrong_runs": wrong_runs(results),
         "b3c_uncertainty": b3c_uncertainty(results),
-        "mode_changes": mode_changes(results),
+        "left_out": str(sum(map(len, results.left_out.values()))),
+        "variants": variants(results),
         "verdicts": table(
             ["claim", "measured", "met"], [[c, m, "yes" if met else "**no**"] for c, m, met in claims]
         ),
@@ -438,7 +399,11 @@ def page(results, claims):
 
     def value(match):
         name, *argument = match[1].split()
-        return choice(results, *argument) if name == "choice" else values[name]
+        if name == "choice":
+            return choice(results, *argument)
+        if name == "changes":
+            return str(results.at(*argument, SERIES, 1e-12)["changes"])
+        return values[name]
 
     return re.sub(r"\{\{(.*?)\}\}", value, content("page.md"))
 

@@ -375,7 +375,7 @@ pub fn violations(costs: &[Cost]) -> Vec<String> {
     violations
 }
 
-/// The table of all combinations in Markdown.
+/// A table of combinations in Markdown.
 pub fn table(costs: &[Cost]) -> String {
     let mut table = String::from(
         "| stator | spin | unbalance | magnet | states | flight sample | series, slip | roll |\n\
@@ -394,6 +394,14 @@ pub fn table(costs: &[Cost]) -> String {
         table.push('\n');
     }
     table
+}
+
+/// What stands in the documentation: nothing, each level of one part alone, everything.
+pub fn excerpt(costs: &[Cost]) -> Vec<Cost> {
+    let alone = |parts: Parts| parts.0.iter().filter(|level| **level > 0).count() <= 1;
+    (costs.iter().copied())
+        .filter(|c| alone(c.parts) || c.parts == Parts::ALL)
+        .collect()
 }
 
 /// What is compared with `tests/golden/cost_of_parts.txt`: nothing, one part at a time, everything.
