@@ -15,10 +15,10 @@ fn printed(args: &[&str]) -> String {
 
 #[test]
 fn the_page_and_the_schema_are_as_printed() {
-    let page = std::fs::read_to_string(root().join("docs/src/host/scenes.md")).unwrap();
+    let page = std::fs::read_to_string(root().join("docs/src/host/keys.md")).unwrap();
     assert!(
         page.contains(&printed(&["--table"])),
-        "docs/src/host/scenes.md: put what `schema --table` prints under Keys"
+        "docs/src/host/keys.md: put what `schema --table` prints under Tables"
     );
     let schema = std::fs::read_to_string(root().join("firmware-host/scene.schema.json")).unwrap();
     assert!(

@@ -135,12 +135,35 @@ fn plain(markdown: &str) -> String {
     text + rest
 }
 
-/// The table of the page about scenes, in Markdown.
+/// Head of a table in Markdown.
+const HEAD: &str = "| Key | Type or unit, range | Default | Meaning |\n|---|---|---|---|\n";
+
+/// The page about keys, in Markdown: a heading and a table for each table of a scene, with those below it among its rows.
 pub fn markdown_table() -> String {
-    let mut text =
-        String::from("| Key | Type, unit | Default | Range | Meaning |\n|---|---|---|---|---|\n");
+    let is_table = |key: &&Key| {
+        matches!(
+            key.kind,
+            Kind::Table(_) | Kind::Tables(_) | Kind::Parameters
+        )
+    };
+    let mut text = format!("### Above all tables\n\n{HEAD}");
     let mut told = Vec::new();
-    rows(KEYS, "", &mut told, &mut text);
+    for key in KEYS.iter().filter(|key| !is_table(key)) {
+        row(key, key.name, key.help, &mut text);
+    }
+    for key in KEYS.iter().filter(is_table) {
+        let need = match key.absent {
+            Absent::Required(_) => "Required".to_owned(),
+            Absent::Means(absent) => format!("Optional, else {absent}"),
+            Absent::Default(_) => "Optional".to_owned(),
+        };
+        let heading = heading(key, key.name);
+        let _ = write!(text, "\n### `{heading}`\n\n{need}: {}.\n", key.help);
+        if !key.below().is_empty() {
+            let _ = write!(text, "\n{HEAD}");
+            rows_below(key, key.name.to_owned(), &mut told, &mut text);
+        }
+    }
     text
 }
 
@@ -152,7 +175,7 @@ fn rows(
     text: &mut String,
 ) {
     for key in keys {
-        let mut path = joined(table, key.name);
+        let path = joined(table, key.name);
         let (below, mut help) = (key.below(), key.help.to_owned());
         let as_before = told
             .iter()
@@ -160,20 +183,47 @@ fn rows(
         if let Some((_, path)) = as_before {
             let _ = write!(help, "; keys as of `[{path}]`");
         }
-        let heading = match key.kind {
-            Kind::Table(_) | Kind::Parameters => format!("[{path}]"),
-            Kind::Tables(_) => format!("[[{path}]]"),
-            _ => path.clone(),
-        };
-        let cells = [kind(key), default(key), range(key)];
-        let _ = writeln!(text, "| `{heading}` | {} | {help} |", cells.join(" | "));
+        row(key, &path, &help, text);
         if as_before.is_none() && !below.is_empty() {
-            told.push((below, path.clone()));
-            if matches!(key.kind, Kind::Tables(_)) {
-                path += "[]";
-            }
-            rows(below, &path, told, text);
+            rows_below(key, path, told, text);
         }
+    }
+}
+
+/// Rows of the keys below this one, which have no others yet.
+fn rows_below(
+    key: &'static Key,
+    mut path: String,
+    told: &mut Vec<(&'static [Key], String)>,
+    text: &mut String,
+) {
+    told.push((key.below(), path.clone()));
+    if matches!(key.kind, Kind::Tables(_)) {
+        path += "[]";
+    }
+    rows(key.below(), &path, told, text);
+}
+
+fn row(key: &Key, path: &str, help: &str, text: &mut String) {
+    let heading = heading(key, path);
+    let (value, default) = (value(key), default(key));
+    let _ = writeln!(text, "| `{heading}` | {value} | {default} | {help} |");
+}
+
+/// A key as it is written in a scene.
+fn heading(key: &Key, path: &str) -> String {
+    match key.kind {
+        Kind::Table(_) | Kind::Parameters => format!("[{path}]"),
+        Kind::Tables(_) => format!("[[{path}]]"),
+        _ => path.to_owned(),
+    }
+}
+
+/// Type or unit, and the range where there is one.
+fn value(key: &Key) -> String {
+    match range(&key.range) {
+        none if none.is_empty() => kind(key),
+        range => format!("{}, {range}", kind(key)),
     }
 }
 
@@ -185,7 +235,10 @@ fn kind(key: &Key) -> String {
         Kind::Whole => unit.to_owned(),
         Kind::Truth => "true/false".to_owned(),
         Kind::Text => "text".to_owned(),
-        Kind::Word(_) => "name".to_owned(),
+        Kind::Word(words) => {
+            let words: Vec<String> = words.iter().map(|word| format!("`{word}`")).collect();
+            words.join(", ")
+        }
         Kind::Policies => "list of names".to_owned(),
         Kind::Pair => format!("[x, y], {unit}"),
         Kind::PerAxis => format!("{unit} or [x, y]"),
@@ -196,11 +249,10 @@ fn kind(key: &Key) -> String {
 }
 
 fn default(key: &Key) -> String {
-    match (key.absent, key.kind) {
-        (Absent::Required(_), _) => NO_DEFAULT.to_owned(),
-        (Absent::Means(text), _) => text.to_owned(),
-        (Absent::Default(_), Kind::Table(_)) => "as its keys".to_owned(),
-        (Absent::Default(value), _) => value().map_or_else(String::new, |value| written(&value)),
+    match key.absent {
+        Absent::Required(_) => NO_DEFAULT.to_owned(),
+        Absent::Means(text) => text.to_owned(),
+        Absent::Default(value) => value().map_or_else(String::new, |value| written(&value)),
     }
 }
 
@@ -211,7 +263,6 @@ fn written(value: &toml::Value) -> String {
         toml::Value::String(word) => format!("`{word}`"),
         toml::Value::Boolean(truth) => truth.to_string(),
         toml::Value::Array(all) if all.is_empty() => "none".to_owned(),
-        toml::Value::Table(all) if all.is_empty() => "suggested".to_owned(),
         toml::Value::Array(all) => {
             let all: Vec<String> = all.iter().map(written).collect();
             format!("[{}]", all.join(", "))
@@ -220,20 +271,16 @@ fn written(value: &toml::Value) -> String {
     }
 }
 
-fn range(key: &Key) -> String {
-    match (key.kind, key.range) {
-        (Kind::Word(words), _) => {
-            let words: Vec<String> = words.iter().map(|word| format!("`{word}`")).collect();
-            words.join(", ")
-        }
-        (_, Range::Finite) => "finite".to_owned(),
-        (_, Range::Positive) => "> 0".to_owned(),
-        (_, Range::NotNegative) => "≥ 0".to_owned(),
-        (_, Range::PositiveUpTo(high)) => format!("> 0, ≤ {}", short(high)),
-        (_, Range::Within(low, high) | Range::Because(low, high, _)) => match low == -high {
+fn range(range: &Range) -> String {
+    match *range {
+        Range::Finite => String::new(),
+        Range::Positive => "> 0".to_owned(),
+        Range::NotNegative => "≥ 0".to_owned(),
+        Range::PositiveUpTo(high) => format!("> 0, ≤ {}", short(high)),
+        Range::Within(low, high) | Range::Because(low, high, _) => match low == -high {
             true => format!("±{}", short(high)),
             false => format!("{} to {}", short(low), short(high)),
         },
-        (_, Range::Elsewhere(text)) => text.to_owned(),
+        Range::Elsewhere(text) => text.to_owned(),
     }
 }

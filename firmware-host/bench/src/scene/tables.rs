@@ -31,70 +31,70 @@ key_tables! {
         contact: Option<ContactTable> [or "that of each plane"], "", ANY, "the contact, linear or with a stiffness that grows with depth", "wall";
         friction: Option<FrictionTable> [or "that of each plane"], "", ANY, "friction, constant unless it falls with sliding speed";
         retainer: RetainerTable [= RetainerTable::default()], "", ANY, "the retainer bearing", "touchdown", "backup_bearing", "auxiliary_bearing", "catcher";
-        race: Option<RaceTable> [or "a bushing"], "", ANY, "the race that the rotor touches, of a [ball bearing](../theory/model.md#retainer-bearing). Its bore is `rotor.contact_radius_m` + `contact.clearance_m`", "ball_bearing";
+        race: Option<RaceTable> [or "a bushing"], "", ANY, "the race that the rotor touches, of a [ball bearing](../theory/model.md#retainer-bearing), with the bore radius `rotor.contact_radius_m` + `contact.clearance_m`", "ball_bearing";
         magnet: Option<MagnetTable> [or "no magnet"], "", ANY, "the magnet with its amplifier", "actuator", "amplifier", "amb", "bearing";
         sensor: SensorTable [= SensorTable::default()], "", ANY, "the position sensor", "probe";
         spin_sensor: SpinSensorTable [= SpinSensorTable::default()], "", ANY, "what is known of the spin", "tacho", "encoder";
         levitation: Option<LevitationTable> [or "no controller"], "", ANY, "the levitation controller of the firmware", "pid", "pd";
-        state_space: Option<StateSpaceTable> [or "`levitation`"], "", ANY, "a [controller of one's own](#state-space) in the place of `levitation`, of all planes together", "lqg", "h_infinity", "mu_synthesis";
-        biquads: Option<BiquadsTable> [or "`levitation`"], "", ANY, "[filters of one's own](#biquads) in the place of `levitation`: a chain of second-order sections on each axis", "sos", "filter", "sections";
-        controller: Option<ControllerTable> [or "`levitation`"], "", ANY, "a [program of one's own](controllers.md) in the place of `levitation`, of all planes together: Python or a shared library", "external", "plugin", "python", "library", "fmu";
+        state_space: Option<StateSpaceTable> [or "`levitation`"], "", ANY, "a [state space](controllers.md#state-space) instead of `[levitation]`, over all planes", "lqg", "h_infinity", "mu_synthesis";
+        biquads: Option<BiquadsTable> [or "`levitation`"], "", ANY, "[second-order sections](controllers.md#biquads) on each axis instead of `[levitation]`", "sos", "filter", "sections";
+        controller: Option<ControllerTable> [or "`levitation`"], "", ANY, "a [program](controllers.md), in Python or a shared library, instead of `[levitation]`, over all planes", "external", "plugin", "python", "library", "fmu";
         radial: RadialTable [= RadialTable::default()], "", ANY, "the policy `radial`";
         damping: DampingTable [= DampingTable::default()], "", ANY, "the policy `damping`";
-        supervisor: toml::Table [= toml::Table::new()], "", ANY, "replaces single suggested parameters, of [this table](../supervisor/linking.md#parameters)", "config";
+        supervisor: toml::Table [= toml::Table::new()], "", ANY, "replaces single [suggested parameters](../supervisor/linking.md#parameters)", "config";
         disturbance: Vec<DisturbanceTable> [= Vec::new()], "", ANY, "a force on the rotor for a while; they add", "load", "force", "impulse";
-        base_motion: Vec<BaseMotionTable> [= Vec::new()], "", ANY, "acceleration of the housing for a while; only of a rigid stator", "shock", "base", "earthquake";
+        base_motion: Vec<BaseMotionTable> [= Vec::new()], "", ANY, "acceleration of the housing for a while; only with a rigid stator", "shock", "base", "earthquake";
         outage: Vec<OutageTable> [= Vec::new()], "", ANY, "the amplifier does not deliver what it should for a while", "power_loss", "failure";
-        fault: Vec<FaultTable> [= Vec::new()], "", ANY, "of the position sensor, at samples from the start to before the end; see [faults](#faults)", "sensor_fault";
-        set_down: Vec<SetDownTable> [= Vec::new()], "", ANY, "the reference of `levitation` goes to another place and stays there: the rotor is set down, or lifted again", "landing", "reference", "lift_off";
+        fault: Vec<FaultTable> [= Vec::new()], "", ANY, "of the position sensor, at samples from the start to before the end", "sensor_fault";
+        set_down: Vec<SetDownTable> [= Vec::new()], "", ANY, "the reference of `[levitation]` moves to another place and stays: the rotor is set down, or lifted again", "landing", "reference", "lift_off";
         unbalance: Vec<UnbalanceTable> [= Vec::new()], "", ANY, "a residual unbalance", "imbalance";
-        change: Vec<ChangeTable> [= Vec::new()], "", ANY, "parameters of the plant that take other values from a time on; see [changes](#changes)";
+        change: Vec<ChangeTable> [= Vec::new()], "", ANY, "parameters of the plant that take other values from a time on; see [changes](scenes.md#changes)";
         verdict: VerdictTable [= VerdictTable::default()], "", ANY, "how the end is judged", "outcome";
-        plane: Vec<PlaneTable> [= Vec::new()], "", ANY, "a bearing plane of [the rotor](#several-planes), at most four; none: one at the centre of mass, with the scene's tables", "bearing_plane", "station";
-        shaft: Vec<ShaftTable> [= Vec::new()], "", ANY, "a section of the [shaft](#shafts), from left to right; every `position_m` then counts from its left end", "section", "beam";
+        plane: Vec<PlaneTable> [= Vec::new()], "", ANY, "a bearing plane of [the rotor](scenes.md#several-planes), at most four; none: one at the centre of mass, with the scene's tables", "bearing_plane", "station";
+        shaft: Vec<ShaftTable> [= Vec::new()], "", ANY, "a section of the [shaft](scenes.md#shafts), from left to right; every `position_m` then counts from its left end", "section", "beam";
         disc: Vec<DiscTable> [= Vec::new()], "", ANY, "a rigid disc on the shaft", "disk", "wheel", "impeller";
         support: Vec<SupportTable> [= Vec::new()], "", ANY, "a spring with a damper from the rotor to ground", "spring", "seal";
     }
 
     RunTable {
-        duration_s: f64 [required "give a number of seconds, as 0.2"], "s", Within(1e-9, 1e5), "in whole samples, to the nearest, one at least; at most 10 million samples of all policies together, which keep some 0.3 KB of memory each", "time", "t_end", "length";
-        sample_rate_hz: f64 [required "give the control rate in Hz, as 20000"], "Hz", Within(1.0, 1e6), "control rate; a warning outside 10 to 50 kHz with the policy `supervisor`", "control_rate", "rate", "fs", "sampling", "period", "dt";
-        policies: PolicyNames [required], "", Elsewhere("at least one, each once"), "see [policies](#policies)", "controllers", "policy";
+        duration_s: f64 [required "give a number of seconds, as 0.2"], "s", Within(1e-9, 1e5), "rounded to whole samples, at least one; at most 10 million samples over all policies, at some 0.3 KB of memory each", "time", "t_end", "length";
+        sample_rate_hz: f64 [required "give the control rate in Hz, as 20000"], "Hz", Within(1.0, 1e6), "control rate", "control_rate", "rate", "fs", "sampling", "period", "dt";
+        policies: PolicyNames [required], "", Elsewhere("at least one, each once"), "see [policies](scenes.md#policies)", "controllers", "policy";
         rtol: f64 [= 1e-9], "1", Within(1e-14, 1e-2), "tolerance of a contact step", "tolerance", "tol", "accuracy";
-        method: MethodName [= MethodName::Auto], "", ANY, "how contact is integrated; see [methods](../theory/integration.md#choosing-a-method)", "solver", "integrator";
+        method: MethodName [= MethodName::Auto], "", ANY, "[how contact is integrated](../theory/integration.md#choosing-a-method)", "solver", "integrator";
         seed: u64 [= 0], "", NotNegative, "seed of the sensor noise, the same for every policy";
     }
 
     RotorTable {
         mass_kg: Option<f64> [or "that of `[[shaft]]` and `[[disc]]`"], "kg", Positive, "m_r; required without `[[shaft]]`", "m", "weight";
-        stiffness_n_m: Option<f64> [or "0"], "N/m", Finite, "between the centre of mass and ground, that of the shaft; excludes `natural_frequency_hz`", "k", "shaft_stiffness";
+        stiffness_n_m: Option<f64> [or "0"], "N/m", Finite, "of the shaft, between centre of mass and ground; excludes `natural_frequency_hz`", "k", "shaft_stiffness";
         natural_frequency_hz: Option<f64> [or "–"], "Hz", Within(0.0, 1e6), "gives m_r·(2πf)² as shaft stiffness", "f0", "omega0", "eigenfrequency";
         damping_n_s_m: Option<f64> [or "0"], "N s/m", NotNegative, "d_r; excludes `damping_ratio`", "d", "c";
-        damping_ratio: Option<f64> [or "–"], "1", Within(0.0, 100.0), "gives 2·ratio·√(m_r·k), k the *shaft* stiffness; refused without a positive one", "zeta", "xi";
+        damping_ratio: Option<f64> [or "–"], "1", Within(0.0, 100.0), "gives 2·ratio·√(m_r·k), k the *shaft* stiffness, which must be positive", "zeta", "xi";
         eccentricity_m: f64 [= 0.0], "m", NotNegative, "ε_r, the unbalance", "unbalance", "imbalance", "e";
         contact_radius_m: Option<f64> [or "that of each plane"], "m", Positive, "R_r", "radius", "r", "diameter";
         gravity_m_s2: Pair [= Pair::default()], "m/s²", Within(-1e4, 1e4), "weight = m_r times this", "g";
-        transverse_inertia_kg_m2: Option<f64> [or "–"], "kg m²", Positive, "I_t about the centre of mass; needed in several planes, absent in one: a point mass", "i_t", "it";
+        transverse_inertia_kg_m2: Option<f64> [or "–"], "kg m²", Positive, "I_t about the centre of mass; required in several planes; one plane without it: a point mass", "i_t", "it";
         polar_inertia_kg_m2: Option<f64> [or "–"], "kg m²", NotNegative, "I_p, at most twice I_t; goes with I_t", "i_p", "ip";
-        bending_to_hz: Option<f64> [or "3000"], "Hz", NotNegative, "of a `[[shaft]]` or a `matrices_file` the bending modes up to here are kept, of the others their static compliance; 0: rigid";
-        bending_damping_ratio: Option<f64> [or "0"], "1", Within(0.0, 100.0), "of the modes of a `[[shaft]]` or a `matrices_file`";
-        elements: Option<u32> [or "16"], "", Within(1.0, 200.0), "of a `[[shaft]]`, at least so many";
-        matrices_file: Option<String> [or "–"], "", ANY, "a [file](#rotor-by-matrices) with the matrices of the free rotor in the place of mass, inertias and `[[shaft]]`; every `position_m` then counts as its places do", "npz";
+        bending_to_hz: Option<f64> [or "3000"], "Hz", NotNegative, "of `[[shaft]]` or `matrices_file`: bending modes up to here are kept, of the others the static compliance; 0: rigid";
+        bending_damping_ratio: Option<f64> [or "0"], "1", Within(0.0, 100.0), "of these modes";
+        elements: Option<u32> [or "16"], "", Within(1.0, 200.0), "of a `[[shaft]]`, at least";
+        matrices_file: Option<String> [or "–"], "", ANY, "[matrices of the free rotor](scenes.md#rotor-by-matrices) instead of mass, inertias and `[[shaft]]`; every `position_m` then counts as its places do", "npz";
         bending: Vec<BendingTable> [= Vec::new()], "", ANY, "a bending mode of the free shaft", "mode", "flexible";
-        polar_coupling_kg_m2: Numbers [= Numbers::default()], "kg m²", Finite, "∫ I_p′·φ_i′·φ_j′ dz of the slopes of tilt and bending modes, row by row, its first number left to I_p; none: bending modes are not turned by the spin";
+        polar_coupling_kg_m2: Numbers [= Numbers::default()], "kg m²", Finite, "∫ I_p′·φ_i′·φ_j′ dz of the slopes of tilt and bending modes, row by row; the first number is left to I_p; none: no gyroscopic effect on bending";
     }
 
     /// A bending mode of the free shaft at standstill.
     BendingTable {
         frequency_hz: f64 [required], "Hz", PositiveUpTo(1e6), "natural frequency", "f", "frequency";
         damping_ratio: f64 [= 0.0], "1", Within(0.0, 100.0), "share of critical damping", "zeta", "xi";
-        positions_m: Numbers [required], "m", Finite, "places along the axis, rising; every plane, magnet, sensor and load lies between the first and the last", "z", "places_m";
-        displacements: Numbers [required], "1", Finite, "displacement at each place, for a modal mass that is the rotor's mass; straight in between", "shape", "phi";
+        positions_m: Numbers [required], "m", Finite, "places along the axis, rising; they enclose every plane, magnet, sensor and load", "z", "places_m";
+        displacements: Numbers [required], "1", Finite, "displacement at each place, linear in between; the modal mass is the rotor's mass", "shape", "phi";
     }
 
     SpinTable {
         frequency_hz: f64 [required "give turns a second in Hz, as 200.0"], "Hz", Finite, "Ω/2π at the start; negative: clockwise", "rpm", "speed", "omega", "rotation", "spin";
-        inertia_kg_m2: Option<f64> [or "held spin"], "kg m²", Positive, "J_r; absent: the drive holds the speed", "j", "polar_inertia", "moment_of_inertia";
+        inertia_kg_m2: Option<f64> [or "held spin"], "kg m²", Positive, "J_r; without it the drive holds the speed", "j", "polar_inertia", "moment_of_inertia";
         drive_torque_n_m: Option<f64> [or "0"], "N m", Finite, "t_d; needs `inertia_kg_m2`", "torque", "t_d";
     }
 
@@ -104,12 +104,12 @@ key_tables! {
         tilt_rad: Option<Pair> [or "0"], "rad", Finite, "slope of the axis, dx/dz and dy/dz", "tilt", "angle_rad";
         tilt_rate_rad_s: Option<Pair> [or "0"], "rad/s", Finite, "its rate", "tilt_rate";
         spin_phase_rad: f64 [= 0.0], "rad", Finite, "σ at t = 0, the angle of the unbalance", "angle", "phase";
-        levitated_before: bool [= false], "", ANY, "whether the rotor levitated up to t = 0, which every sample then says (`LEVITATED_BEFORE`): for a scene that begins with what happens";
+        levitated_before: bool [= false], "", ANY, "the rotor levitated up to t = 0: every sample has the status `LEVITATED_BEFORE`; for scenes that begin with the event";
     }
 
     StatorTable [Default] {
         inner: Option<RingTable> [or "rigid"], "", ANY, "the ring that the rotor touches", "ring", "mass";
-        outer: Option<RingTable> [or "ground"], "", ANY, "the ring that the inner one stands on, which it needs";
+        outer: Option<RingTable> [or "ground"], "", ANY, "the ring that the inner one stands on; needs `[stator.inner]`";
     }
 
     /// One ring with its mounting.
@@ -123,14 +123,14 @@ key_tables! {
         clearance_m: f64 [required "give the radial clearance in m, as 2e-4"], "m", Positive, "radial clearance c", "gap", "air_gap", "radial_clearance", "delta";
         stiffness_n_m: Option<f64> [or "–"], "N/m", Positive, "k_c of the linear contact; this or `stiffness_n_mn`", "k", "k_c";
         damping_n_s_m: Option<f64> [or "0"], "N s/m", NotNegative, "d_c; excludes `restitution`", "d", "d_c";
-        balls: Option<BallsTable> [or "–"], "", ANY, "a [ball bearing](../theory/model.md#balls) in the place of a stiffness: it gives k_h, with n = 1.5", "ball_bearing";
-        deflections_m: Option<Numbers> [or "–"], "m", Positive, "a measured curve in the place of a stiffness: k_h·δⁿ is fitted to it; needs `forces_n`", "curve";
+        balls: Option<BallsTable> [or "–"], "", ANY, "a [ball bearing](../theory/model.md#balls) instead of a stiffness: gives k_h, with n = 1.5", "ball_bearing";
+        deflections_m: Option<Numbers> [or "–"], "m", Positive, "a measured curve instead of a stiffness: k_h·δⁿ is fitted to it; needs `forces_n`", "curve";
         forces_n: Option<Numbers> [or "–"], "N", Positive, "its forces";
-        stiffness_n_mn: Option<f64> [or "–"], "N/mⁿ", Positive, "k_h of [Hunt and Crossley's contact](../theory/model.md#hunt-and-crossleys-law), which `exponent`, `damping_s_m` and `restitution_speed_m_s` need", "k_h", "hertz";
+        stiffness_n_mn: Option<f64> [or "–"], "N/mⁿ", Positive, "k_h of [Hunt and Crossley's contact](../theory/model.md#hunt-and-crossleys-law); required by `exponent`, `damping_s_m` and `restitution_speed_m_s`", "k_h", "hertz";
         exponent: Option<f64> [or "1.5"], "1", Within(1.0, 3.0), "n", "n";
         damping_s_m: Option<f64> [or "0"], "s/m", NotNegative, "λ; excludes `restitution`", "lambda";
         restitution: Option<f64> [or "–"], "1", PositiveUpTo(1.0), "e; gives d_c by [(2.12)](../theory/model.md#restitution-and-contact-damping) with the reduced mass", "e", "cor";
-        restitution_speed_m_s: Option<f64> [or "–"], "m/s", Within(1e-9, 1e6), "impact speed that `restitution` belongs to, by (2.34); required with it for Hunt and Crossley's contact";
+        restitution_speed_m_s: Option<f64> [or "–"], "m/s", Within(1e-9, 1e6), "impact speed that `restitution` belongs to (2.34); required with it in Hunt and Crossley's contact";
     }
 
     /// What a ball bearing's stiffness follows from.
@@ -148,10 +148,10 @@ key_tables! {
     }
 
     RetainerTable [Default] {
-        centre_offset_m: Pair [= Pair::default()], "m", Elsewhere("shorter than the clearance"), "centre of the retainer bearing as seen from the centre of magnets and sensors; see [centres](#centres)", "misalignment";
-        ellipticity: f64 [= 0.0], "1", Within(0.0, 0.2), "ε of a bearing [out of round](../theory/model.md#out-of-round): semi-axes c·(1 ± ε); only for a rigid stator without a race", "ovality";
+        centre_offset_m: Pair [= Pair::default()], "m", Elsewhere("shorter than the clearance"), "its centre as seen from that of magnets and sensors; see [centres](scenes.md#centres)", "misalignment";
+        ellipticity: f64 [= 0.0], "1", Within(0.0, 0.2), "ε of a bearing [out of round](../theory/model.md#out-of-round), with semi-axes c·(1 ± ε); only with a rigid stator and no race", "ovality";
         long_axis_deg: Option<f64> [or "0"], "°", Finite, "direction of the longer axis, counter-clockwise from x; needs `ellipticity`";
-        severity_allowed: Option<f64> [or "that of its ledger, else `supervisor.severity_limit`"], "1", Within(1e-3, 1e8), "severity that it may bear in all, by which [`review`](review.md#landings-that-are-left) says how many landings are left", "allowance";
+        severity_allowed: Option<f64> [or "that of its ledger, else `supervisor.severity_limit`"], "1", Within(1e-3, 1e8), "severity that it may bear in all, from which [`review`](review.md#landings-that-are-left) counts the landings that are left", "allowance";
         heat: Option<HeatTable> [or "stays as it is"], "", ANY, "what its losses do to the bearing", "thermal", "temperature";
     }
 
@@ -159,7 +159,7 @@ key_tables! {
     HeatTable {
         capacity_j_k: f64 [required], "J/K", Positive, "heat capacity C", "c";
         conductance_w_k: f64 [= 0.0], "W/K", NotNegative, "G to the surroundings", "g";
-        expansion_m_k: f64 [= 0.0], "m/K", Within(-1e-4, 1e-4), "growth of the radial clearance with the rise of temperature; negative: it closes", "growth";
+        expansion_m_k: f64 [= 0.0], "m/K", Within(-1e-4, 1e-4), "growth of the radial clearance per kelvin; negative: it closes", "growth";
         start_rise_k: f64 [= 0.0], "K", Within(-1e3, 1e4), "rise over the surroundings at the start";
     }
 
@@ -167,23 +167,23 @@ key_tables! {
         inertia_kg_m2: f64 [required], "kg m²", Positive, "J_i", "j";
         drag_n_m_s: f64 [= 0.0], "N m s", NotNegative, "b, viscous drag of the bearing", "b";
         start_frequency_hz: f64 [= 0.0], "Hz", Finite, "Ω_i/2π at the start", "frequency", "speed", "rpm";
-        load_drag_m: Option<f64> [or "none"], "m", NotNegative, "κ: the moment against the race's spin for a newton of load, the bearing's coefficient of friction times half its bore", "kappa";
-        load_drag_from_hz: f64 [= 1.0], "Hz", Positive, "spin from which on that drag has its size";
+        load_drag_m: Option<f64> [or "none"], "m", NotNegative, "κ: moment against the race's spin per newton of load, = the bearing's coefficient of friction times half its bore", "kappa";
+        load_drag_from_hz: f64 [= 1.0], "Hz", Positive, "spin from which that drag has its full size";
     }
 
     MagnetTable {
         force_max_n: f64 [required "give the force cap in N"], "N", Positive, "cap on the length of the force vector", "force", "max_force", "cap", "f_max";
         lag_s: f64 [= 0.0], "s", NotNegative, "amplifier lag τ", "tau", "time_constant", "bandwidth";
-        lag_damping_ratio: Option<f64> [or "first order"], "1", PositiveUpTo(100.0), "ζ of an amplifier of second order, τ²·f̈ + 2ζτ·ḟ + f = command, and needs `lag_s`", "order";
+        lag_damping_ratio: Option<f64> [or "first order"], "1", PositiveUpTo(100.0), "ζ of a second-order amplifier, τ²·f̈ + 2ζτ·ḟ + f = command; needs `lag_s`", "order";
         negative_stiffness_n_m: f64 [= 0.0], "N/m", Because(0.0, 1e12, "that it is negative is in the name"), "subtracted from the shaft stiffness, also under `passive`", "k_s", "stiffness", "ks";
-        axis_force_max_n: Option<f64> [or "none"], "N", Positive, "cap on each component, after the cap on the vector; the supervisor is told";
+        axis_force_max_n: Option<f64> [or "none"], "N", Positive, "cap on each component, after the cap on the vector; the supervisor knows it";
         slew_n_s: Option<f64> [or "none"], "N/s", Positive, "fastest change of each component, before the lag: the voltage limit", "slew_rate", "rate";
         delay_samples: u32 [= 1], "samples", Within(1.0, 7.0), "from a position to the effect of the command computed from it", "delay", "latency";
-        delay_jitter_samples: u32 [= 0], "samples", Within(0.0, 6.0), "so many samples more each command may be late, by chance from `run.seed`; one that comes after a newer one is dropped. Together with `delay_samples` at most 7; the supervisor is not told", "jitter";
+        delay_jitter_samples: u32 [= 0], "samples", Within(0.0, 6.0), "largest random extra delay of a command, from `run.seed`; a command overtaken by a newer one is dropped. With `delay_samples` at most 7; the supervisor does not know it", "jitter";
         position_m: Option<f64> [or "that of its plane"], "m", Finite, "along the axis, from the centre of mass", "z";
-        axes_deg: f64 [= 0.0], "°", Within(-180.0, 180.0), "angle of the magnet's x axis from that of the scene: what the firmware commands, and caps and outages of an axis, are along its axes; not with `poles`", "angle", "rotation";
-        poles: Option<PolesTable> [or "a force that does not depend on the place"], "", ANY, "the magnet [as it is](#poles), attracting poles with currents, and needs `lag_s`", "coils";
-        force_measured: bool [= false], "", ANY, "whether the supervisor is given the force that the magnet delivers at the sample, less what is fed forward (`APPLIED_VALID`)";
+        axes_deg: f64 [= 0.0], "°", Within(-180.0, 180.0), "angle of the magnet's x axis from the scene's: commands, axis caps and outages are along its axes; not with `poles`", "angle", "rotation";
+        poles: Option<PolesTable> [or "a force that does not depend on the place"], "", ANY, "[attracting poles with currents](scenes.md#poles); needs `lag_s`", "coils";
+        force_measured: bool [= false], "", ANY, "the supervisor gets the force that the magnet delivers at the sample, less what is fed forward (`APPLIED_VALID`)";
     }
 
     /// Two poles that face each other on each axis, and the drive of their currents.
@@ -204,10 +204,10 @@ key_tables! {
         range_m: Option<f64> [or "none"], "m", Within(1e-9, 1.0), "largest reading to either side; clipped there", "limit";
         delay_samples: u32 [= 0], "samples", Within(0.0, 7.0), "age of the position that is read; with the policy `supervisor` at most 7 together with `magnet.delay_samples`", "delay", "latency";
         swapped: bool [= false], "", ANY, "x reads y and y reads x";
-        runout_m: f64 [= 0.0], "m", Within(0.0, 1.0), "amplitude of what the target adds to the reading once a turn; `advise` says what it comes to", "run_out";
+        runout_m: f64 [= 0.0], "m", Within(0.0, 1.0), "amplitude of what the target adds to the reading once a turn", "run_out";
         runout_phase_rad: f64 [= 0.0], "rad", Within(-1e6, 1e6), "its angle at t = 0";
         position_m: Option<f64> [or "that of its plane"], "m", Finite, "along the axis, from the centre of mass", "z";
-        axes_deg: f64 [= 0.0], "°", Within(-180.0, 180.0), "angle of the sensor's x axis from that of the scene: what the firmware reads is along its axes", "angle", "rotation";
+        axes_deg: f64 [= 0.0], "°", Within(-180.0, 180.0), "angle of the sensor's x axis from the scene's: the firmware reads along its axes", "angle", "rotation";
     }
 
     SpinSensorTable [Default] {
@@ -221,8 +221,8 @@ key_tables! {
         integral_n_m_s: f64 [= 0.0], "N/(m s)", Within(0.0, 1e15), "K_i", "ki", "k_i", "i";
         derivative_n_s_m: f64 [required], "N s/m", Within(0.0, 1e9), "K_d", "kd", "k_d", "d", "damping";
         derivative_filter_s: f64 [= 0.0], "s", Within(0.0, 1.0), "filter of the derivative; 0: plain difference", "filter", "tau_d";
-        tilt: Option<TiltTable> [or "each plane by itself"], "", ANY, "levitation by mode: the gains above are then of the translation, of all magnets together, these of the tilt", "conical";
-        feed_forward_weight: bool [= false], "", ANY, "the firmware adds minus the weight to what any policy commands, `passive` included; the amplifier's limits hold for the sum", "feed_forward", "gravity_compensation";
+        tilt: Option<TiltTable> [or "each plane by itself"], "", ANY, "levitation by mode: the gains above then act on the translation, through all magnets together, these on the tilt", "conical";
+        feed_forward_weight: bool [= false], "", ANY, "the firmware adds minus the weight to the command of every policy, `passive` too; the amplifier limits the sum", "feed_forward", "gravity_compensation";
     }
 
     /// Gains of the tilt.
@@ -230,7 +230,7 @@ key_tables! {
         proportional_n_m_rad: f64 [required], "N m/rad", Within(0.0, 1e12), "moment per slope", "kp";
         integral_n_m_rad_s: f64 [= 0.0], "N m/(rad s)", Within(0.0, 1e15), "moment per slope and time", "ki";
         derivative_n_m_s_rad: f64 [required], "N m s/rad", Within(0.0, 1e9), "moment per rate of slope", "kd";
-        cross_feedback: f64 [= 0.0], "1", Within(-2.0, 2.0), "share of the gyroscopic moment I_p·Ω times rate of slope that is set against it, by the reported spin", "gyroscopic";
+        cross_feedback: f64 [= 0.0], "1", Within(-2.0, 2.0), "share of the gyroscopic moment I_p·Ω times rate of slope that is compensated, by the reported spin", "gyroscopic";
     }
 
     /// x ← A·x + B·y, f = C·x + D·y from the readings y of all planes, x and y of one after the other, to the forces f of all
@@ -249,15 +249,15 @@ key_tables! {
         gain_n_m: f64 [= 1.0], "N/m", Finite, "f = −`gain_n_m`·H(z)·y on each axis, from the plane's reading to its magnet", "gain", "k";
         sections: Numbers [= Numbers::default()], "1", Finite, "H(z), six numbers a section: b0, b1, b2, a0, a1, a2, as SciPy orders them; none: 1", "sos";
         sections_y: Numbers [= Numbers::default()], "1", Finite, "of y; none: as of x", "sos_y";
-        file: Option<String> [or "–"], "", ANY, "in the place of `sections`, an `.npz` file with an array `sos`, sections × 6, and where y has others `sos_y`", "npz";
+        file: Option<String> [or "–"], "", ANY, "an `.npz` file instead of `sections`, with an array `sos`, sections × 6, and `sos_y` where y differs", "npz";
         feed_forward_weight: bool [= false], "", ANY, "as of `levitation`";
     }
 
     ControllerTable [Default] {
         python: Option<String> [or "–"], "", ANY, "a file of Python with `make(scene)`; this or `library`", "script", "module";
         library: Option<String> [or "–"], "", ANY, "a shared library with the functions of `amb_controller.h`", "shared_library", "so", "dll";
-        parameters: Numbers [= Numbers::default()], "1", Finite, "numbers that it is given, as its gains", "gains", "arguments";
-        timeout_s: f64 [= 10.0], "s", Within(0.01, 3600.0), "it has so long for each answer, the start included; after that the run ends", "timeout";
+        parameters: Numbers [= Numbers::default()], "1", Finite, "numbers for the program, such as gains", "gains", "arguments";
+        timeout_s: f64 [= 10.0], "s", Within(0.01, 3600.0), "longest wait for each answer, the start included; then the run ends", "timeout";
         feed_forward_weight: bool [= false], "", ANY, "as of `levitation`";
     }
 
@@ -274,7 +274,7 @@ key_tables! {
         duration_s: f64 [required], "s", DURATION_S, "how long it acts", "length";
         force_n: Pair [required], "N", Within(-1e9, 1e9), "force on the rotor; the amplitude where it varies", "f", "amplitude";
         position_m: Option<f64> [or "the centre of mass"], "m", Finite, "where along the axis", "z";
-        shape: ShapeName [= ShapeName::Constant], "", ANY, "[course](#loads) over the interval", "form", "kind";
+        shape: ShapeName [= ShapeName::Constant], "", ANY, "[course](scenes.md#loads) over the interval", "form", "kind";
         frequency_hz: Option<f64> [or "–"], "Hz", Elsewhere("0 to the control rate"), "with `sine` only", "f";
         phase_rad: Option<f64> [or "0"], "rad", Within(-1e6, 1e6), "at the start; with `sine` only";
     }
@@ -283,7 +283,7 @@ key_tables! {
         start_s: f64 [required], "s", START_S, "must lie before the end of the run", "t", "time", "at_s";
         duration_s: f64 [required], "s", DURATION_S, "how long it acts", "length";
         acceleration_m_s2: Pair [required], "m/s²", Within(-1e7, 1e7), "of the housing; the amplitude where it varies", "a", "amplitude";
-        shape: ShapeName [= ShapeName::Constant], "", ANY, "[course](#loads) over the interval", "form", "kind";
+        shape: ShapeName [= ShapeName::Constant], "", ANY, "[course](scenes.md#loads) over the interval", "form", "kind";
         frequency_hz: Option<f64> [or "–"], "Hz", Elsewhere("0 to the control rate"), "with `sine` only", "f";
         phase_rad: Option<f64> [or "0"], "rad", Within(-1e6, 1e6), "at the start; with `sine` only";
     }
@@ -291,22 +291,22 @@ key_tables! {
     OutageTable {
         start_s: f64 [required], "s", START_S, "must lie before the end of the run", "t", "time", "at_s";
         duration_s: f64 [required], "s", DURATION_S, "how long it lasts", "length";
-        delivers: Delivers [= Delivers::Nothing], "", ANY, "no force, the force with the other sign, or along x what is meant for y and the other way round (both axes only)", "kind";
+        delivers: Delivers [= Delivers::Nothing], "", ANY, "no force, the opposite force, or x and y exchanged (both axes only)", "kind";
         axis: Axis [= Axis::Both], "", ANY, "which axis fails";
-        known: bool [= false], "", ANY, "whether the firmware knows: while known outages cover both axes the supervisor is told that the bearing is off, and of each axis that it is lost. Only of an amplifier that delivers nothing";
+        known: bool [= false], "", ANY, "the firmware knows: the supervisor is given each lost axis, and that the bearing is off while both are lost; only with `nothing`";
     }
 
     SetDownTable {
         start_s: f64 [required], "s", START_S, "must lie before the end of the run", "t", "time", "at_s";
-        duration_s: f64 [required], "s", DURATION_S, "in which the reference goes there, evenly", "length";
-        to: Pair [required "give [x, y] in clearances, as [0.0, -1.2]"], "1", Within(-100.0, 100.0), "where it goes, in clearances, as seen from the magnets; beyond 1 the rotor is pressed on its retainer bearing", "reference", "target";
-        announced: bool [= false], "", ANY, "whether the supervisor is told (`SET_DOWN`), from `start_s` until another one starts";
+        duration_s: f64 [required], "s", DURATION_S, "time in which the reference moves there, evenly", "length";
+        to: Pair [required "give [x, y] in clearances, as [0.0, -1.2]"], "1", Within(-100.0, 100.0), "new reference in clearances, as seen from the magnets; beyond 1 it presses the rotor on its retainer bearing", "reference", "target";
+        announced: bool [= false], "", ANY, "the supervisor gets the status `SET_DOWN`, from `start_s` until another one starts";
     }
 
     FaultTable {
         start_s: f64 [required], "s", START_S, "must lie before the end of the run", "t", "time", "at_s";
         duration_s: f64 [required], "s", DURATION_S, "how long it lasts", "length";
-        kind: FaultName [required], "", ANY, "what goes wrong with the position sensor; it says which of the keys below belong to it", "type";
+        kind: FaultName [required], "", ANY, "see [kinds of fault](#kinds-of-fault), with the keys of each", "type";
         axis: Option<Axis> [or "`both`"], "", ANY, "not for kinds that concern the pair";
         value_m: Option<f64> [or "–"], "m", Within(-1.0, 1.0), "of an `offset`", "offset";
         factor: Option<f64> [or "–"], "1", Elsewhere("`gain`: ±100, `noise`: 0 to 1e6"), "of a `gain` or of `noise`", "gain";
@@ -323,11 +323,11 @@ key_tables! {
         eccentricity_m: Option<f64> [or "as it was"], "m", Within(0.0, 1.0), "new ε_r", "unbalance", "imbalance";
         friction_coefficient: Option<f64> [or "as it was"], "1", Within(0.0, 10.0), "new μ, the same at every speed", "mu", "friction";
         drive_torque_n_m: Option<f64> [or "as it was"], "N m", Within(-1e9, 1e9), "new t_d; needs `spin.inertia_kg_m2`", "torque";
-        unbalance: Option<UnbalanceTable> [or "as it was"], "", ANY, "comes on top of the unbalances that there are: a lost blade", "blade", "imbalance_added";
+        unbalance: Option<UnbalanceTable> [or "as it was"], "", ANY, "added to the unbalances that there are: a lost blade", "blade", "imbalance_added";
     }
 
     VerdictTable [Default] {
-        whirl_speed_m_s: Option<f64> [or "see [outcomes](#outcomes)"], "m/s", Within(1e-9, 1e6), "limit of whirl: the backward contact speed above which a run counts as whirl", "limit";
+        whirl_speed_m_s: Option<f64> [or "see [outcomes](results.md#outcomes)"], "m/s", Within(1e-9, 1e6), "backward contact speed above which a run counts as whirl", "limit";
     }
 
     /// A bearing plane of a whole rotor. What it does not give of its own is the scene's.
@@ -335,7 +335,7 @@ key_tables! {
         name: String [required "give a name in one line, as \"coupling end\""], "", Elsewhere("one line; no two alike"), "heads its figures", "title", "label";
         position_m: f64 [required], "m", Finite, "of the retainer bearing along the axis, from the centre of mass", "z", "place";
         contact_radius_m: Option<f64> [or "the scene's"], "m", Positive, "R_r", "radius", "r";
-        seal: bool [= false], "", ANY, "a [seal](#seals) or a bushing: the rotor may touch it, and it has neither magnet nor sensor nor a controller, whatever the scene's tables say", "bushing", "passive", "no_magnet";
+        seal: bool [= false], "", ANY, "a [seal](scenes.md#seals) or a bushing: no magnet, sensor or controller, whatever the scene's tables say", "bushing", "passive", "no_magnet";
         start_position_m: Option<Pair> [or "by `start`"], "m", Finite, "where the rotor starts in this plane, as seen from the magnets; of two planes, both or none";
         start_velocity_m_s: Option<Pair> [or "by `start`"], "m/s", Finite, "its velocity there; with `start_position_m`, or both planes alone";
         stator: Option<StatorTable> [or "the scene's"], "", ANY, "rings of the stator";

@@ -103,7 +103,7 @@ fn slips_are_warned_of() {
             "change[0].at_s",
         ),
     ];
-    let page = fs::read_to_string(root().join("docs/src/host/scenes.md")).unwrap();
+    let page = fs::read_to_string(root().join("docs/src/host/keys.md")).unwrap();
     let (_, listed) = page.split_once("\n## Warnings\n").unwrap();
     let listed = listed.split("\n## ").next().unwrap();
     for (from, to, key) in slips {
