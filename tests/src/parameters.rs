@@ -11,7 +11,7 @@ use supervisor::{Archive, ArchivePlace, DefaultRule, Group, PARAMETERS, Paramete
 /// The C header.
 pub const HEADER: &str = "supervisor/capi/include/amb_supervisor.h";
 /// The page with the tables of parameters.
-pub const TABLES: &str = "docs/src/supervisor/linking.md";
+pub const TABLES: &str = "docs/src/supervisor/parameters.md";
 /// The page that says how large a record is, which has the parameters in it.
 pub const RECORDS: &str = "docs/src/supervisor/records.md";
 /// The JSON Schema of scenes.
@@ -117,7 +117,7 @@ fn tables(now: &str) -> Option<String> {
     };
     let groups = [Group::Machine, Group::Drive, Group::Sensor, Group::Tuning];
     groups.iter().try_fold(now.to_owned(), |text, group| {
-        let at = text.find(&format!("\n### {group:?}\n"))?;
+        let at = text.find(&format!("\n## {group:?}\n"))?;
         let (before, section) = text.split_at(at);
         let of_group = PARAMETERS.iter().filter(|p| p.group == *group);
         let rows: String = of_group.map(row).collect();

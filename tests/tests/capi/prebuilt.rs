@@ -144,17 +144,13 @@ fn it_is_used_without_rust_and_has_the_same_bytes_from_elsewhere() {
     same_bytes_from_elsewhere(folder.path(), &out, &host);
 }
 
-/// The example of the page, in a folder that has the library.
+/// The example in Python, in a folder that has the library.
 fn python(folder: &Path, host: &str) {
     let Some(mut python) = tool("python3") else {
         return;
     };
-    let page = std::fs::read_to_string(root().join("docs/src/supervisor/c.md")).unwrap();
-    let script = page
-        .split("```python\n")
-        .nth(1)
-        .and_then(|rest| rest.split("```").next());
-    let script = script.unwrap().replace("x86_64-unknown-linux-gnu", host);
+    let script = std::fs::read_to_string(capi().join("examples/ctypes_tick.py")).unwrap();
+    let script = script.replace("x86_64-unknown-linux-gnu", host);
     let said = good(
         &python
             .arg("-c")

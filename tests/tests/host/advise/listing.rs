@@ -87,7 +87,7 @@ fn a_listing_for_rust_is_the_suggested_configuration() {
             "{name} = {value}"
         );
     }
-    let page = std::fs::read_to_string(root().join("docs/src/supervisor/linking.md")).unwrap();
+    let page = std::fs::read_to_string(root().join("docs/src/supervisor/parameters.md")).unwrap();
     assert_eq!(first_configuration(&page), Config::example());
 }
 
