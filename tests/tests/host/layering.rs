@@ -154,6 +154,21 @@ fn files_import_only_upwards() {
     check("firmware-host/fmu");
 }
 
+/// The page that says how the supervisor works draws the stages of a tick as its crate does.
+#[test]
+fn the_page_draws_the_stages_of_the_crate() {
+    let stages = |path: &str| {
+        let text = std::fs::read_to_string(system_tests::root().join(path)).unwrap();
+        let mut lines = text.lines().map(|l| l.trim_start_matches("//! "));
+        let line = lines.find(|l| l.starts_with("Sample ─► "));
+        line.expect("stages of a tick").to_owned()
+    };
+    assert_eq!(
+        stages("docs/src/supervisor/how-it-works.md"),
+        stages("supervisor/src/lib.rs")
+    );
+}
+
 /// Neighbours in a folder that import each other, directly or through others: one circle, if there is any. A folder
 /// counts as one with all that is in it, and with the file that has its name.
 fn circle(krate: &str) -> Option<Vec<String>> {
