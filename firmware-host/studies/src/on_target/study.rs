@@ -160,7 +160,7 @@ pub fn chapters(report: &Report) -> Vec<Chapter> {
     );
     vec![
         Chapter::new("A tick", vec![Block::text(story), ticks(report)]),
-        Chapter::new("By the mode after the tick", vec![by_mode(report)]),
+        Chapter::folded("By the mode after the tick", vec![by_mode(report)]),
         Chapter::new("Two planes in one tick", vec![two_planes(report)]),
     ]
 }

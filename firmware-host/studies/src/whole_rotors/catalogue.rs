@@ -88,10 +88,10 @@ pub fn study(extent: Extent, progress: &dyn Progress) -> Result<Report, StudyErr
                 Block::table(["plant", "levitation", "frequency [Hz]", "damping ratio", "filter [samples]", "score [m/s]"], found),
             ],
         ));
-        chapters.push(Chapter::new(
-            "A shaft that is told wrong",
+        chapters.push(Chapter::folded(
+            "A shaft that is configured wrong",
             vec![
-                Block::text("Hardest blow over that of a supervisor that is told right, the least of four directions."),
+                Block::text("Hardest blow over that of a supervisor that is configured right, the least of four directions."),
                 Block::table(["plant", "what", "hardest blow"], wrong),
             ],
         ));

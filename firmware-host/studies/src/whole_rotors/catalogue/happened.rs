@@ -106,7 +106,7 @@ impl Happened {
         });
         let mut columns = COLUMNS;
         columns[0] = "plant and levitation";
-        Chapter::new(
+        Chapter::folded(
             "What else happens",
             vec![
                 Block::text(
