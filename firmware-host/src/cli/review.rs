@@ -6,19 +6,18 @@ mod page;
 mod planes;
 mod tables;
 mod told;
-mod version_2;
 
 use crate::cli::error::{CommandError, pretty, print};
 use crate::cli::screen::tell;
 use again::Again;
 use firmware_bench::record::Contact;
-use firmware_bench::record::file::{RecordFile, begins};
+use firmware_bench::record::file::RecordFile;
 use firmware_bench::record::identify::{Findings, Identified};
 use firmware_bench::record::remaining::{Remaining, ledgers};
 use firmware_bench::record::replay::Replay;
 use firmware_bench::record::shapes::Shapes;
 use firmware_bench::record::story::{Event, Told};
-use firmware_bench::record::ticks::{Ticks, Units};
+use firmware_bench::record::ticks::Ticks;
 use firmware_bench::report::table;
 use firmware_bench::scene::spec::Setting;
 use serde::Serialize;
@@ -30,22 +29,8 @@ use told::told;
 /// Arguments of `review`.
 #[derive(Debug, Clone, clap::Args)]
 pub struct ReviewArgs {
-    /// The sections of one or more records, one after the other, as firmware has written them; or the entries of one of
-    /// version 2.
+    /// The sections of one or more records, one after the other, as firmware has written them.
     pub file: PathBuf,
-    /// Of version 2: checksum that the firmware gave with the record, e.g. 0x1d9a40c2; eight hexadecimal digits may stand
-    /// without 0x.
-    #[arg(long, allow_negative_numbers = true, value_name = "NUMBER")]
-    pub crc: Option<String>,
-    /// Of version 2: clearance of the retainer bearing, for positions in µm.
-    #[arg(long, allow_negative_numbers = true, value_name = "NUMBER")]
-    pub clearance_m: Option<f64>,
-    /// Of version 2: force cap, for forces in N.
-    #[arg(long, allow_negative_numbers = true, value_name = "NUMBER")]
-    pub force_max_n: Option<f64>,
-    /// Of version 2: control rate, for times in ms.
-    #[arg(long, allow_negative_numbers = true, value_name = "NUMBER")]
-    pub sample_rate_hz: Option<f64>,
     /// Ledger of the retainer bearing as firmware has written it, of each plane one after the other: how many landings it may
     /// still bear.
     #[arg(long, value_name = "FILE")]
@@ -80,36 +65,12 @@ pub struct ReviewArgs {
 /// # Errors
 /// [`CommandError`].
 pub fn execute(args: &ReviewArgs) -> Result<(), CommandError> {
-    let units = version_2::units(args)?;
-    let expected = args.crc.as_deref().map(version_2::checksums).transpose()?;
     let name = args.file.display();
     let bytes = std::fs::read(&args.file).map_err(|e| CommandError::Numbers {
         message: format!("{name}: {e}"),
         help: "give the file that the record was written to".to_owned(),
     })?;
-    // Damaged at its very beginning it is still no record of version 2, which has no words like these.
-    let sections = RecordFile::of(&bytes);
-    if begins(&bytes) || !sections.records.is_empty() {
-        if units != Units::default() || expected.is_some() {
-            return Err(CommandError::Numbers {
-                message: format!(
-                    "{name} is a record of version 3, which has its own checksums and units"
-                ),
-                help: "leave --crc, --clearance-m, --force-max-n and --sample-rate-hz out"
-                    .to_owned(),
-            });
-        }
-        return of_sections(args, &sections);
-    }
-    if args.ledger.is_some() || args.allowance.is_some() {
-        return Err(CommandError::Numbers {
-            message: format!(
-                "{name} is no record of version 3, and says nothing of a bearing's landings"
-            ),
-            help: "leave --ledger and --allowance out".to_owned(),
-        });
-    }
-    version_2::show(args, &bytes, units, expected.as_deref())
+    of_sections(args, &RecordFile::of(&bytes))
 }
 
 /// An event for programs.

@@ -13,8 +13,6 @@ mod layering;
 mod licences;
 mod machine_scenes;
 mod own_controllers;
-mod record_of_fewer_parameters;
-mod record_version_2;
 mod release;
 mod report_page;
 mod requirements;

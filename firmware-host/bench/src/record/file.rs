@@ -1,9 +1,9 @@
-//! The sections of a record file of version 3. What is damaged is left out and named; what is given back was written so.
+//! The sections of a record file. What is damaged is left out and named; what is given back was written so.
 
 use std::collections::BTreeMap;
 use supervisor::{
-    Config, DefaultRule, ENTRY_WORDS, Entry, Head, MOST_WORDS, NO_STATE, Number, PARAMETERS, Part,
-    Q, RECORD_VERSION, STRETCH_WORDS, Scalar, Shaft, Stretch, Summary, crc_of,
+    Config, ENTRY_WORDS, Entry, Head, MOST_WORDS, NO_STATE, Number, Part, Q, RECORD_VERSION,
+    STRETCH_WORDS, Scalar, Shaft, Stretch, Summary, crc_of,
 };
 
 /// Words of a section before those of its part, and with the checksum.
@@ -27,9 +27,7 @@ pub enum Damage {
         count: usize,
     },
     /// Written by another version of the format.
-    #[error(
-        "a record of version {0} is in it; this program reads version {RECORD_VERSION}, and version 2, which has no head"
-    )]
+    #[error("a record of version {0} is in it; this program reads version {RECORD_VERSION}")]
     Version(u32),
     /// Sections whose record has no head in this file.
     #[error("{0} sections are of a record whose head is not in it")]
@@ -92,12 +90,6 @@ struct Section {
     index: u32,
     words: Vec<u32>,
     bytes: usize,
-}
-
-/// Whether these bytes begin as a record of version 3 does. Those of version 2 begin with a sequence number, which is this one
-/// once in 2³² ticks.
-pub fn begins(bytes: &[u8]) -> bool {
-    bytes.starts_with(&(Part::Head as u32).to_le_bytes())
 }
 
 impl PlaneRecord {
@@ -234,7 +226,9 @@ fn plane_record(head: Head, parts: &Parts, damage: &mut Vec<Damage>) -> PlaneRec
         })
     };
     let summary = one(Part::Summary).map(|words| Summary::from_words(words));
-    let config = one(Part::Config).and_then(|words| config(&floats(words)));
+    let config = one(Part::Config)
+        .and_then(|words| floats(words).try_into().ok())
+        .map(Config::from_values);
     let shaft = one(Part::Shaft)
         .and_then(|words| <[f32; 9]>::try_from(floats(words)).ok())
         .map(Shaft::from_values);
@@ -273,17 +267,6 @@ fn plane_record(head: Head, parts: &Parts, damage: &mut Vec<Damage>) -> PlaneRec
         state: whole.then_some(state),
         entries,
     }
-}
-
-/// Of a version that has fewer parameters: those that came later have the value with which nothing is otherwise.
-fn config(values: &[f32]) -> Option<Config> {
-    let later = PARAMETERS.get(values.len()..)?;
-    let of_later = later.iter().map(|parameter| match parameter.default {
-        DefaultRule::Constant(value, _) => Some(value),
-        _ => None,
-    });
-    let all: Option<Vec<f32>> = values.iter().copied().map(Some).chain(of_later).collect();
-    Some(Config::from_values(all?.try_into().ok()?))
 }
 
 /// Words by so many, each with its number.

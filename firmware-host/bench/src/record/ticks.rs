@@ -1,20 +1,9 @@
-//! The ticks of a flight record for a person: what happened in them, of any version.
+//! The ticks of a flight record for a person: what happened in them.
 
 use crate::record::file::PlaneRecord;
 use firmware_image::wire::mode_of;
 use serde::Serialize;
-use std::ops::RangeInclusive;
-use supervisor::{Entry, Events, Limits, Mode, crc_of};
-
-/// Units of version 2: 1/4096 of the clearance and of the cap.
-pub const PER_UNIT: f64 = 4096.0;
-/// Bytes of an entry of version 2.
-pub const ENTRY_BYTES: usize = 16;
-
-/// What froze a record of version 2 at the end of its first quarter.
-const TRIGGERS: Events = Events::ENGAGED
-    .union(Events::TOUCHED)
-    .union(Events::SENSOR_FAULT);
+use supervisor::{Entry, Events, Limits, Mode};
 
 /// What the units of a record are in SI, as far as they are known.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -25,22 +14,6 @@ pub struct Units {
     pub force_max_n: Option<f64>,
     /// Ticks a second \[Hz\].
     pub sample_rate_hz: Option<f64>,
-}
-
-/// Why bytes are no flight record of version 2.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-pub enum NotARecord {
-    /// The length is that of no number of entries.
-    #[error("{0} bytes are no whole number of entries of {ENTRY_BYTES} bytes, or none")]
-    Length(usize),
-    /// A field that no supervisor writes.
-    #[error("entry {entry} (byte {}) has mode {mode}; there are modes 0 to 7", entry * ENTRY_BYTES)]
-    Mode {
-        /// Number of the entry, from 0.
-        entry: usize,
-        /// What is in its place of the mode.
-        mode: u8,
-    },
 }
 
 /// A tick of the record, with what is known of the units applied.
@@ -99,23 +72,8 @@ pub struct Ticks {
     pub stretches: Vec<Stretch>,
 }
 
-/// A flight record of version 2, which is its entries and nothing else.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct FlightRecord {
-    /// Checksum of all entries, to compare with the one that the firmware gave.
-    pub crc: u32,
-    /// Whether it has the length of a record, a power of two, what froze it stands where it does in a whole one from oldest to
-    /// newest, at the end of the first quarter, and the last entry is later than the first.
-    pub whole: bool,
-    /// Entries that were never written, before the first that was.
-    pub empty: usize,
-    /// What is in it.
-    #[serde(flatten)]
-    pub of: Ticks,
-}
-
-/// An entry of any version.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+/// An entry, its numbers as numbers.
+#[derive(Debug, Clone, Copy, PartialEq)]
 struct Brief {
     sequence: u32,
     position: [f64; 2],
@@ -123,68 +81,6 @@ struct Brief {
     mode: u8,
     limits: u8,
     events: u16,
-}
-
-/// Entries of version 2, little-endian, oldest first.
-fn entries(bytes: &[u8]) -> Result<Vec<Brief>, NotARecord> {
-    let (entries, rest) = bytes.as_chunks::<ENTRY_BYTES>();
-    if entries.is_empty() || !rest.is_empty() {
-        return Err(NotARecord::Length(bytes.len()));
-    }
-    let entry = |(number, b): (usize, &[u8; ENTRY_BYTES])| {
-        let pair = |at: usize| {
-            let of = |at| i16::from_le_bytes([b[at], b[at + 1]]);
-            per_unit([of(at), of(at + 2)])
-        };
-        let mode = b[12];
-        if mode_of(mode).is_none() {
-            let entry = number;
-            return Err(NotARecord::Mode { entry, mode });
-        }
-        Ok(Brief {
-            sequence: u32::from_le_bytes([b[0], b[1], b[2], b[3]]),
-            position: pair(4),
-            force: pair(8),
-            mode,
-            limits: b[13],
-            events: u16::from_le_bytes([b[14], b[15]]),
-        })
-    };
-    entries.iter().enumerate().map(entry).collect()
-}
-
-fn per_unit(v: [i16; 2]) -> [f64; 2] {
-    v.map(|x| f64::from(x) / PER_UNIT)
-}
-
-impl FlightRecord {
-    /// What the bytes of a record of version 2 say. Times are counted from the last engagement in them, or from the first
-    /// entry.
-    ///
-    /// # Errors
-    /// [`NotARecord`].
-    pub fn of(bytes: &[u8], units: Units) -> Result<Self, NotARecord> {
-        let entries = entries(bytes)?;
-        let empty = entries
-            .iter()
-            .take_while(|entry| **entry == Brief::default())
-            .count();
-        let written = &entries[empty..];
-        let triggers = |entry: &Brief| entry.events & TRIGGERS.bits() as u16 != 0;
-        let trigger = (entries.len() / 4).checked_sub(1);
-        let a_length = entries.len().is_power_of_two();
-        // A ring that was written down from elsewhere ends before it begins.
-        let in_order = match written {
-            [first, .., last] => last.sequence.wrapping_sub(first.sequence).cast_signed() >= 0,
-            _ => true,
-        };
-        Ok(Self {
-            crc: crc_of(bytes),
-            whole: a_length && trigger.is_some_and(|at| triggers(&entries[at])) && in_order,
-            empty,
-            of: Ticks::new(written, units),
-        })
-    }
 }
 
 impl PlaneRecord {
@@ -200,7 +96,7 @@ impl PlaneRecord {
 }
 
 impl Ticks {
-    /// Those of a record of version 3 that are whole, in SI where its configuration is.
+    /// Those of a record that are whole, in SI where its configuration is.
     pub fn of(record: &PlaneRecord) -> Self {
         let number = |bits: u32| record.number(bits);
         let brief = |entry: &Entry| Brief {
@@ -289,6 +185,3 @@ fn stretches(ticks: &[Tick]) -> Vec<Stretch> {
         })
         .collect()
 }
-
-/// What a unit of a record may be in SI.
-pub const ANY_UNIT: RangeInclusive<f64> = 1e-9..=1e9;

@@ -1,7 +1,7 @@
 //! Ticks and the slow track of a record as tables and as CSV.
 
 use firmware_bench::record::file::PlaneRecord;
-use firmware_bench::record::ticks::{PER_UNIT, Tick, Ticks, Units, mode_name};
+use firmware_bench::record::ticks::{Tick, Ticks, Units, mode_name};
 use firmware_bench::report::lines::{Cell, Lines, lined, right};
 use std::fmt::Write;
 
@@ -86,9 +86,9 @@ fn time(ticks: i64, units: Units) -> String {
     }
 }
 
-/// Digits behind the point of what is recorded in steps of this unit's 1/[`PER_UNIT`]: none that is finer than a step.
+/// Digits behind the point that tell some 4096 steps of this unit apart.
 fn digits(unit: f64) -> usize {
-    (PER_UNIT / unit).log10().floor().max(0.0) as usize
+    (4096.0 / unit).log10().floor().max(0.0) as usize
 }
 
 fn time_unit(units: Units) -> &'static str {
