@@ -18,6 +18,7 @@ mod plane_spec;
 mod plant;
 mod poles;
 pub mod policy_kind;
+pub(crate) mod read;
 mod refused;
 mod resolve;
 pub mod role;

@@ -3,7 +3,7 @@
 //! A run is its number: values and seed follow from it and from the sweep file alone, so that any part of a sweep may be run
 //! anywhere, in any order, and gives the same rows.
 //!
-//! Files, each importing only from those above it: `error`, `permutation`, `sobol`, `design`, `values`,
+//! Files, each importing only from those above it: `error`, `permutation`, `sobol`, `design`, `tables`, `values`,
 //! `size`, `file`, `table`, `figures_of`, `plan`, `store`, `sample`, `influence`, `map`, `summary`, `page`, `worst`.
 
 pub mod design;
@@ -21,5 +21,6 @@ pub mod sobol;
 pub mod store;
 pub mod summary;
 pub mod table;
+mod tables;
 pub mod values;
 pub mod worst;

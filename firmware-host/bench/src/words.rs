@@ -4,7 +4,7 @@
 macro_rules! words {
     ($(#[$doc:meta])* $visibility:vis enum $name:ident { $($(#[$about:meta])* $variant:ident = $word:literal,)* }) => {
         $(#[$doc])*
-        #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
         $visibility enum $name {
             $($(#[$about])* #[serde(rename = $word)] $variant,)*
         }
@@ -12,6 +12,10 @@ macro_rules! words {
         impl $name {
             /// The words, in the order of the variants.
             pub(crate) const WORDS: &[&str] = &[$($word),*];
+
+            /// The variants, in the same order.
+            #[allow(dead_code, reason = "not every enumeration is looked up by its words")]
+            pub(crate) const ALL: &[Self] = &[$(Self::$variant),*];
         }
     };
 }

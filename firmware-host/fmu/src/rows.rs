@@ -36,7 +36,7 @@ const SEEN: &[Output<Seen>] = &[
     (
         "spin_reported_rad_s",
         "rad/s",
-        "spin as the firmware is told it",
+        "spin as the firmware measures it",
         Kind::Float64,
         |seen| Value::Float64(seen.spin_rad_s),
     ),

@@ -125,7 +125,7 @@ pub(crate) fn start(scene: &Scene, set: &[Set<'_>]) -> Result<Box<dyn Model>, St
         [first, second] if scene.supervisor().is_some() => {
             let shaft = scene
                 .shaft()
-                .ok_or("the rotor cannot be told to a supervisor")?;
+                .ok_or("a supervisor cannot be configured for the rotor")?;
             let rotor = RotorSupervisor::from_planes(&shaft, &[*first, *second]);
             Some(rotor.map_err(|error| error.to_string())?)
         }

@@ -22,7 +22,7 @@ pub struct SensitivityArgs {
     /// Errors so many times as wide as usual: the exponent of factors, a factor of ticks.
     #[arg(long, default_value_t = 1.0, allow_negative_numbers = true, value_name = "NUMBER", value_parser = width)]
     pub width: f64,
-    /// How often all data are told wrong at once, each somewhere between its two errors.
+    /// How often all data are wrong at once, each somewhere between its two errors.
     #[arg(long, default_value_t = 8, allow_negative_numbers = true, value_name = "NUMBER", value_parser = clap::value_parser!(u32).range(0..=1000))]
     pub draws: u32,
     /// Print JSON instead of the table.
@@ -101,7 +101,7 @@ fn rows(scene: &Scene, args: &SensitivityArgs) -> Result<Vec<Row>, CommandError>
 
 fn text(scene: &Scene, rows: &[Row]) -> String {
     let columns = || (Figures::ALL.iter()).filter(|figure| figure.place == Place::Everywhere);
-    let mut header = vec![Cell::new("the supervisor is told"), right("engaged")];
+    let mut header = vec![Cell::new("configured"), right("engaged")];
     header.extend(columns().map(Figure::title).map(right));
     let mut table = lined(header);
     // Levitation alone is the first of the rows.

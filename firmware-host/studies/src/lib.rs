@@ -65,7 +65,7 @@ pub const STUDIES: &[Study] = &[
     },
     Study {
         name: "bending",
-        about: "what it is worth to tell the supervisor of a bending mode, and what it costs to tell it wrong",
+        about: "what it is worth to configure a bending mode, and what a wrong one costs",
         run: paired::bending::study,
         drawn: None,
     },
@@ -113,7 +113,7 @@ pub const STUDIES: &[Study] = &[
     },
     Study {
         name: "sensitivity",
-        about: "what it costs when the supervisor is told wrong data of its machine",
+        about: "what it costs when the supervisor is configured with wrong data of its machine",
         run: sensitivity::study::study,
         drawn: None,
     },

@@ -292,7 +292,7 @@ typedef int32_t amb_code;
 #define AMB_EVENT_FORWARD_RUB 0x8000u    /**< forward rub at the spin's rate was recognised */
 #define AMB_EVENT_RECORD_FROZEN 0x10000u /**< there is a record to be read */
 #define AMB_EVENT_QUEUE_FULL 0x20000u    /**< an event before this one was lost; only in the queue */
-#define AMB_EVENT_HANDED_BACK 0x40000u   /**< an engagement came no farther: the levitation controller has the bearing */
+#define AMB_EVENT_HANDED_BACK 0x40000u   /**< an engagement made no progress: the levitation controller has the bearing */
 /** @} */
 
 /** @name Why a sample was refused @{ */
@@ -469,7 +469,7 @@ typedef struct amb_report {
     float thermal_state;          /**< force-time budget: above 1 the cap is lowered */
     float force_cap_n;            /**< force cap now [N] */
     uint32_t nuisance_engagements; /**< engagements without a touch */
-    uint32_t handed_back;         /**< times that the bearing was handed back, as an engagement came no farther */
+    uint32_t handed_back;         /**< times that the bearing was handed back, as an engagement made no progress */
 } amb_report;
 
 /** Version of the format of a ledger. */

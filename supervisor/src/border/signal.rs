@@ -118,7 +118,7 @@ bitflags::bitflags! {
         const RECORD_FROZEN = 1 << 16;
         /// An event was lost because the background did not drain the queue. Only in the queue.
         const QUEUE_FULL = 1 << 17;
-        /// The supervisor came no farther and gave the bearing back to the levitation controller.
+        /// The supervisor made no progress and gave the bearing back to the levitation controller.
         const HANDED_BACK = 1 << 18;
     }
 }
@@ -199,7 +199,7 @@ pub enum Mode {
     Handover = 5,
     /// No trustworthy position: force blended to zero; if one coordinate is good, levitation command along it.
     SensorFault = 6,
-    /// The supervisor has given up for a while, as it came no farther: the levitation command goes through as in `Levitated`,
+    /// The supervisor has given up for a while, as it made no progress: the levitation command goes through as in `Levitated`,
     /// whatever the rotor does.
     HandedBack = 7,
 }
@@ -328,7 +328,7 @@ pub struct Report {
     pub landings: u32,
     /// Engagements without a touch.
     pub nuisance_engagements: u32,
-    /// Times that the bearing was handed back because an engagement came no farther.
+    /// Times that the bearing was handed back because an engagement made no progress.
     pub handed_back: u32,
     /// Touches in them.
     pub impacts: u32,

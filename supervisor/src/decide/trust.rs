@@ -1,4 +1,4 @@
-//! The judge of the model: what the rotor seems to do all the time is no approach, and an engagement that comes no farther
+//! The judge of the model: what the rotor seems to do all the time is no approach, and an engagement that makes no progress
 //! is given up.
 //!
 //! Time is looked at in windows of [`Coeffs::window_ticks`]. A window that ends levitated says how fast the reading usually

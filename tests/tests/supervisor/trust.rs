@@ -1,5 +1,5 @@
 //! The judge of the model: doubt about single samples, what the reading usually does, and the way out of an engagement
-//! that comes no farther.
+//! that makes no progress.
 
 use firmware_image::under_test::shaft;
 use supervisor::{

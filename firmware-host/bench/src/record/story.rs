@@ -60,7 +60,7 @@ impl Verdict {
             }
             Self::Look => "Look at the machine before it runs on.",
             Self::Inspect => {
-                "The retainer bearing has had its share: inspect it before the machine runs on."
+                "The retainer bearing has borne what it is allowed: inspect it before the machine runs on."
             }
         }
     }
@@ -225,12 +225,12 @@ impl Told {
         let end = match self.outcome {
             "levitated" => "the levitation controller has the bearing again".to_owned(),
             "coast down" => "the supervisor asked for coasting down".to_owned(),
-            "handed back" => "the supervisor came no farther and gave the bearing back".to_owned(),
+            "handed back" => "the supervisor made no progress and gave the bearing back".to_owned(),
             "bearing off" => "the bearing was switched off".to_owned(),
             mode => format!("it was not over when the record was full ({mode})"),
         };
         format!(
-            "{touches}{impacts}; {whirl}; {end}. Severity {:.2}, in all {:.2} of {:.0} that ask for coasting down.",
+            "{touches}{impacts}; {whirl}; {end}. Severity {:.2}; with earlier events {:.2} of the {:.0} at which coasting down is asked for.",
             self.severity, self.severity_index, self.severity_limit
         )
     }

@@ -16,7 +16,7 @@ pub struct Supervision {
     pub engaged_s: f64,
     /// The longest without a break \[s\].
     pub longest_engagement_s: f64,
-    /// Times that it gave the bearing back to the levitation controller, as it came no farther.
+    /// Times that it gave the bearing back to the levitation controller, as it made no progress.
     pub handed_back: u64,
     /// Sensor faults.
     pub sensor_faults: u64,

@@ -1,8 +1,7 @@
 //! Errors for people: which file, which line, which key, what was expected.
 
-use crate::scene::guess;
-use crate::scene::keys::{Absent, joined, short, walk};
-use crate::scene::tables::KEYS;
+use crate::scene::keys::{Key, row, short};
+use crate::scene::read::Refusal;
 use miette::{Diagnostic, NamedSource, SourceSpan};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -151,15 +150,9 @@ impl SceneText {
         }
     }
 
-    /// An error of the TOML reader: its message in the words of the file, with the key of the line.
+    /// An error of the TOML reader: its message with the key of the line.
     pub(crate) fn error_in_toml(&self, range: std::ops::Range<usize>, message: &str) -> SceneError {
-        if message.starts_with("missing field ")
-            && let Ok(values) = toml::from_str(&self.text)
-            && let Some(error) = self.missing(&values)
-        {
-            return error;
-        }
-        let mut message = in_words(message);
+        let mut message = message.to_owned();
         let start = range.start.min(self.text.len());
         let line_start = self.text[..start].rfind('\n').map_or(0, |i| i + 1);
         let line = self.text[line_start..].lines().next().unwrap_or_default();
@@ -169,25 +162,7 @@ impl SceneText {
                 message = format!("{}: {message}", key.trim());
             }
             help = written_otherwise(value);
-            // Most lists of numbers are pairs.
-            if message.ends_with("a list in square brackets") {
-                help = match key.trim() {
-                    "policies" => None,
-                    "positions_m"
-                    | "displacements"
-                    | "polar_coupling_kg_m2"
-                    | "a"
-                    | "b"
-                    | "c"
-                    | "d"
-                    | "sections"
-                    | "sections_y"
-                    | "parameters" => Some("give numbers, [a, b, …]".to_owned()),
-                    _ => Some("give x and y, [x, y]".to_owned()),
-                };
-            }
         }
-        let help = guess::from_message(&message).or(help);
         self.error_at(range, message, help)
     }
 
@@ -208,28 +183,22 @@ impl SceneText {
         self.error_at_key(key, message, None).to_string()
     }
 
-    /// An error of a value that was put at a path of these values.
-    pub(crate) fn error_of_value(
-        &self,
-        path: &str,
-        message: &str,
-        values: &toml::Table,
-    ) -> SceneError {
-        (self
-            .missing(values)
-            .filter(|_| message.starts_with("missing field ")))
-        .unwrap_or_else(|| self.error_at_key(path, in_words(message), None))
-    }
-
-    /// The first key that a table cannot do without and has not, with what to give. The place is that of the table.
-    fn missing(&self, values: &toml::Table) -> Option<SceneError> {
-        let mut all = walk(KEYS, "", values).into_iter();
-        all.find_map(|(path, keys, table)| {
-            let lacks = keys.iter().find(|key| {
-                matches!(key.absent, Absent::Required(_)) && !table.contains_key(key.name)
-            })?;
-            Some(self.missing_at(&joined(&path, lacks.name), lacks.what_to_give()))
-        })
+    /// An error of a value that could not be read.
+    pub(crate) fn error_of(&self, refusal: Refusal, keys: &'static [Key]) -> SceneError {
+        let key = row(keys, &refusal.path);
+        if refusal.missing {
+            return self.missing_at(
+                &refusal.path,
+                key.map_or_else(String::new, Key::what_to_give),
+            );
+        }
+        let is_value = |key: &&Key| key.below().is_empty();
+        let to_give = || key.filter(is_value).map(Key::what_to_give);
+        self.error_at_key(
+            &refusal.path,
+            refusal.message,
+            refusal.help.or_else(to_give),
+        )
     }
 
     /// An error of a key that is not there, at its table.
@@ -288,27 +257,6 @@ fn written_otherwise(value: &str) -> Option<String> {
     let number = value.trim_end_matches(|c: char| c.is_alphabetic() || "/²³%·° ".contains(c));
     let plain = number.parse::<f64>().is_ok() && number != value;
     plain.then(|| format!("write the number alone: {number}; the key says the unit"))
-}
-
-/// What serde says of a value, in the words of scene files.
-pub(crate) fn in_words(message: &str) -> String {
-    const WORDS: &[(&str, &str)] = &[
-        ("expected f64", "expected a number"),
-        ("expected u64", "expected a whole number, 0 or greater"),
-        ("expected u32", "expected a whole number, 0 or greater"),
-        (
-            "invalid type: map, expected a sequence",
-            "is one table where there may be several: write its name in double brackets, [[…]]",
-        ),
-        ("expected a string", "expected a text in quotes"),
-        ("expected a sequence", "expected a list in square brackets"),
-        ("integer `", "the number `"),
-        ("floating point `", "the number `"),
-        ("` as i128", "`, which is too far from 0"),
-    ];
-    (WORDS.iter()).fold(message.to_owned(), |message, (code, words)| {
-        message.replace(code, words)
-    })
 }
 
 /// A key that may be given, with its value as another key means it.

@@ -6,13 +6,13 @@ use crate::device::levitation::SetDown;
 use crate::device::loads::{BaseMotion, Disturbance, Shape, TimedChange};
 use crate::device::sensor_fault::{Fault, FaultKind};
 use crate::scene::diagnostic::SceneError;
+use crate::scene::keys::KeyType as _;
 use crate::scene::keys::{Absent, Range};
 use crate::scene::plane_spec::PlaneSpec;
 use crate::scene::tables::{ChangeTable, FaultTable, OutageTable, SetDownTable};
 use crate::scene::values::{FaultName, ShapeName};
 use plant_model::machine::params::Unbalance;
 use plant_model::{Change, V2};
-use toml::Table;
 
 /// Everything that happens.
 pub(crate) struct Events {
@@ -115,7 +115,7 @@ impl Reader<'_> {
             return Err(self.error(&format!("{path}.axis"), message, "remove it"));
         }
         if o.delivers != Delivers::Nothing && o.known {
-            let message = "has nobody to be told to: the supervisor is told of lost axes alone";
+            let message = "can be reported to nobody: the supervisor knows of lost axes alone";
             let help = "remove it, or let the outage deliver nothing";
             return Err(self.error(&format!("{path}.known"), message, help));
         }
@@ -261,13 +261,18 @@ impl Reader<'_> {
                 (kind, &["frequency_hz", "amplitude_m"])
             }
         };
-        let given = Table::try_from(f).unwrap_or_default();
+        let given = f.write();
+        let is_given = |name: &str| {
+            given
+                .as_ref()
+                .is_some_and(|table| table.get(name).is_some())
+        };
         let foreign = FaultTable::KEYS.iter().find(|row| {
             let belongs = match row.name {
                 "axis" => !kind.concerns_both(),
                 name => keys.contains(&name),
             };
-            matches!(row.absent, Absent::Means(_)) && given.contains_key(row.name) && !belongs
+            matches!(row.absent, Absent::Means(_)) && is_given(row.name) && !belongs
         });
         if let Some(row) = foreign {
             let message = "has no meaning for a fault of this kind";

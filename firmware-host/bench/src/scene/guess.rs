@@ -78,24 +78,3 @@ pub(crate) fn before<'a>(
 ) -> String {
     word(found, known).map_or(help.clone(), |guess| format!("{guess} {help}"))
 }
-
-/// What serde says of an unknown name lists the known ones, all in backticks.
-pub(crate) fn from_message(message: &str) -> Option<String> {
-    let (_, names) = message.split_once("unknown ")?;
-    let is_key = names.starts_with("field");
-    let mut names = names.split('`').skip(1).step_by(2);
-    let found = names.next()?;
-    let known: Vec<&str> = names.collect();
-    match table_of(&known, KEYS).filter(|_| is_key) {
-        Some(here) => key(found, here),
-        None => word(found, known),
-    }
-}
-
-/// The table that has these keys.
-fn table_of(names: &[&str], keys: &'static [Key]) -> Option<&'static [Key]> {
-    if keys.iter().map(|key| key.name).eq(names.iter().copied()) {
-        return Some(keys);
-    }
-    keys.iter().find_map(|key| table_of(names, key.below()))
-}

@@ -1,7 +1,7 @@
 //! What is known of a key of scene files: one row a key, from which structs, checks, help, documentation and schema come.
 
 use crate::scene::policy_kind::PolicyKind;
-use serde::Deserialize;
+use crate::scene::read::Refusal;
 use supervisor::PARAMETERS;
 use toml::{Table, Value};
 
@@ -201,6 +201,17 @@ pub(crate) fn joined(table: &str, name: &str) -> String {
     }
 }
 
+/// The row of the key at a path, as `rotor.mass_kg` or `disturbance[0].force_n[1]`.
+pub(crate) fn row(keys: &'static [Key], path: &str) -> Option<&'static Key> {
+    let (step, rest) = path.split_once('.').unwrap_or((path, ""));
+    let name = step.split('[').next().unwrap_or(step);
+    let key = keys.iter().find(|key| key.name == name)?;
+    match rest {
+        "" => Some(key),
+        rest => row(key.below(), rest),
+    }
+}
+
 /// Every table of a document with its path and the keys that it may have, each before those below it.
 pub(crate) fn walk<'v>(
     keys: &'static [Key],
@@ -240,36 +251,15 @@ pub(crate) fn parameter(name: &str) -> Option<usize> {
 }
 
 /// A type that values of keys have.
-pub(crate) trait KeyType: Clone + for<'de> Deserialize<'de> {
+pub(crate) trait KeyType: Clone {
     /// How it is written.
     const KIND: Kind;
-}
 
-macro_rules! key_types {
-    ($($type:ty => $kind:expr;)*) => {
-        $(impl KeyType for $type { const KIND: Kind = $kind; })*
-    };
-}
-pub(crate) use key_types;
+    /// From a value of a file.
+    fn read(value: &Value) -> Result<Self, Refusal>;
 
-key_types! {
-    f64 => Kind::Number;
-    u32 => Kind::Whole;
-    u64 => Kind::Whole;
-    bool => Kind::Truth;
-    String => Kind::Text;
-    Table => Kind::Parameters;
-}
-
-impl<T: KeyType> KeyType for Option<T> {
-    const KIND: Kind = T::KIND;
-}
-
-impl<T: KeyType> KeyType for Vec<T> {
-    const KIND: Kind = match T::KIND {
-        Kind::Table(keys) => Kind::Tables(keys),
-        kind => kind,
-    };
+    /// As a value of a file; `None` where it is absent, or where a file cannot have it.
+    fn write(&self) -> Option<Value>;
 }
 
 /// Structs from rows. A row is
@@ -280,7 +270,7 @@ macro_rules! key_tables {
         $($key:ident: $type:ty [$($absent:tt)*], $unit:literal, $range:expr, $help:literal $(, $aka:literal)*;)*
     })*) => {$(
         $(#[$doc])*
-        #[derive(Debug, Clone, serde::Serialize)]
+        #[derive(Debug, Clone)]
         pub(crate) struct $table {
             $(pub(crate) $key: $type,)*
         }
@@ -299,24 +289,21 @@ macro_rules! key_tables {
 
         impl KeyType for $table {
             const KIND: Kind = Kind::Table(Self::KEYS);
-        }
 
-        // What is written first, so that an absent key is told from one that has the default's value.
-        impl<'de> serde::Deserialize<'de> for $table {
-            fn deserialize<D: serde::Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
-                #[derive(serde::Deserialize)]
-                #[serde(deny_unknown_fields, expecting = "a table with keys")]
-                struct Written {
-                    $($key: Option<$type>,)*
-                }
-                let written = Written::deserialize(from)?;
-                let missing = serde::de::Error::missing_field;
+            fn read(value: &toml::Value) -> Result<Self, Refusal> {
+                let table = read::table(value, Self::KEYS)?;
                 Ok(Self {
-                    $($key: match written.$key.or_else(|| absent!(value [$($absent)*])) {
+                    $($key: match read::value(table, stringify!($key))?.or_else(|| absent!(value [$($absent)*])) {
                         Some(value) => value,
-                        None => return Err(missing(stringify!($key))),
+                        None => return Err(read::missing(stringify!($key))),
                     },)*
                 })
+            }
+
+            fn write(&self) -> Option<toml::Value> {
+                let values = [$((stringify!($key), self.$key.write()),)*];
+                let written = values.into_iter().filter_map(|(name, value)| Some((name.to_owned(), value?)));
+                Some(toml::Value::Table(written.collect()))
             }
         }
 
@@ -349,7 +336,7 @@ macro_rules! absent {
     (row [= $value:expr] $type:ty) => {
         Absent::Default(|| {
             let value: $type = $value;
-            toml::Value::try_from(value).ok()
+            KeyType::write(&value)
         })
     };
     (row [or $text:literal] $type:ty) => {

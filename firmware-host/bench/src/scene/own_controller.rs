@@ -61,7 +61,8 @@ impl Spec {
             ..written.unwrap_or_default()
         });
         self.caller = Some(caller);
-        self.put(tables)
+        self.put(tables);
+        Ok(())
     }
 }
 

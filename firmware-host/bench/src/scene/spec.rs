@@ -3,9 +3,8 @@
 use crate::device::external::Caller;
 use crate::scene::diagnostic::{SceneError, SceneText};
 use crate::scene::guess;
-use crate::scene::keys::{Key, Kind, joined, number, parameter, walk};
+use crate::scene::keys::{Key, KeyType as _, Kind, joined, number, parameter, walk};
 use crate::scene::tables::{KEYS, SceneTables};
-use serde::Deserialize;
 use std::path::Path;
 use toml::{Table, Value};
 
@@ -96,10 +95,12 @@ impl Spec {
     }
 
     fn new(text: SceneText) -> Result<Self, SceneError> {
-        let tables: SceneTables = toml::from_str(&text.text)
+        let values: Table = toml::from_str(&text.text)
             .map_err(|error| text.error_in_toml(error.span().unwrap_or(0..0), error.message()))?;
+        let tables = SceneTables::read(&Value::Table(values))
+            .map_err(|refusal| text.error_of(refusal, KEYS))?;
         Ok(Self {
-            values: values_of(&tables, &text)?,
+            values: values_of(&tables),
             text,
             tables,
             caller: None,
@@ -150,24 +151,17 @@ impl Spec {
                 }
             }
         }
-        let tables = SceneTables::deserialize(values.clone()).map_err(|error| {
-            let alone = |(path, value): &(&str, Value)| self.clone().set(path, value.clone()).err();
-            let path = all.last().map_or("", |(path, _)| path);
-            match all.len() {
-                0 | 1 => self.text.error_of_value(path, error.message(), &values),
-                _ => (all.iter().find_map(alone))
-                    .unwrap_or_else(|| self.text.error_of_value(path, error.message(), &values)),
-            }
-        })?;
-        self.put(tables)
+        let tables = SceneTables::read(&Value::Table(values))
+            .map_err(|refusal| self.text.error_of(refusal, KEYS))?;
+        self.put(tables);
+        Ok(())
     }
 
     /// Puts other tables in the place of all.
-    pub(crate) fn put(&mut self, tables: SceneTables) -> Result<(), SceneError> {
+    pub(crate) fn put(&mut self, tables: SceneTables) {
         // With the defaults of what is new.
-        self.values = values_of(&tables, &self.text)?;
+        self.values = values_of(&tables);
         self.tables = tables;
-        Ok(())
     }
 
     /// Files that the scene names, each as it is written at a key that ends with `file`: relative to the scene's folder.
@@ -262,12 +256,11 @@ pub fn names_a_file(path: &str) -> bool {
 }
 
 /// The values with all defaults.
-fn values_of(tables: &SceneTables, text: &SceneText) -> Result<Table, SceneError> {
-    // One thing can be read and not be written: TOML's whole numbers have a sign.
-    Table::try_from(tables).map_err(|_| {
-        let help = format!("give a whole number from 0 to {}", i64::MAX);
-        text.error_at_key("run.seed", "is too far from 0".to_owned(), Some(help))
-    })
+fn values_of(tables: &SceneTables) -> Table {
+    match tables.write() {
+        Some(Value::Table(values)) => values,
+        _ => Table::new(),
+    }
 }
 
 /// Names and numbers of a path: `change[1].at_s` is `change`, `1`, `at_s`.

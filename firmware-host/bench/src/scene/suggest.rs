@@ -285,7 +285,7 @@ impl Nominal {
                 None => (None, by_rule),
                 Some(limit) if limit < LEAST_LIMIT => (
                     Some("range_m"),
-                    "the least there is: 0.95 of the sensor's range is less, its rail is not told from a position",
+                    "the least there is: 0.95 of the sensor's range is less, and its rail looks like a position",
                 ),
                 Some(_) => (
                     Some("range_m"),

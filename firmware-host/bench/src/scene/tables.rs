@@ -6,6 +6,7 @@ use crate::scene::keys::Range::{
     Because, Elsewhere, Finite, NotNegative, Positive, PositiveUpTo, Within,
 };
 use crate::scene::keys::{Absent, Key, KeyType, Kind, Range, absent, empty, key_tables};
+use crate::scene::read::{self, Refusal};
 use crate::scene::values::{FaultName, MethodName, Numbers, Pair, PerAxis, PolicyNames, ShapeName};
 
 /// No number, or any.

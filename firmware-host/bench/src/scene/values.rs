@@ -2,24 +2,27 @@
 
 use crate::device::actuator::Delivers;
 use crate::device::axis::Axis;
-use crate::scene::keys::{KeyType, Kind, key_types};
+use crate::scene::keys::{KeyType, Kind};
+use crate::scene::read::{self, Refusal};
 use crate::words::words;
 use plant_model::{Method, V2};
-use serde::{Deserialize, Serialize};
+use toml::Value;
 
 /// Two numbers [x, y]; fewer or more are refused.
-#[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
-#[serde(try_from = "Vec<f64>")]
+#[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Pair(pub(crate) [f64; 2]);
 
-impl TryFrom<Vec<f64>> for Pair {
-    type Error = String;
+impl KeyType for Pair {
+    const KIND: Kind = Kind::Pair;
 
-    fn try_from(numbers: Vec<f64>) -> Result<Self, String> {
-        let found = numbers.len();
-        <[f64; 2]>::try_from(numbers)
-            .map(Self)
-            .map_err(|_| format!("{found} numbers, expected two: [x, y]"))
+    fn read(value: &Value) -> Result<Self, Refusal> {
+        let numbers = read::each(value)?;
+        let both = numbers.try_into().map(Self);
+        both.map_err(|_| Refusal::expected(value, "two numbers: [x, y]"))
+    }
+
+    fn write(&self) -> Option<Value> {
+        self.0.to_vec().write()
     }
 }
 
@@ -37,13 +40,29 @@ impl From<Pair> for V2 {
 }
 
 /// One number for both axes, or one for each.
-#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
-#[serde(untagged, expecting = "a number, or two numbers [x, y]")]
+#[derive(Debug, Clone, Copy)]
 pub(crate) enum PerAxis {
     /// One number for both axes.
     Both(f64),
     /// One for x, one for y.
     Each(Pair),
+}
+
+impl KeyType for PerAxis {
+    const KIND: Kind = Kind::PerAxis;
+
+    fn read(value: &Value) -> Result<Self, Refusal> {
+        let both = f64::read(value).map(Self::Both);
+        (both.or_else(|_| Pair::read(value).map(Self::Each)))
+            .map_err(|_| Refusal::expected(value, "a number, or two numbers [x, y]"))
+    }
+
+    fn write(&self) -> Option<Value> {
+        match self {
+            Self::Both(x) => x.write(),
+            Self::Each(pair) => pair.write(),
+        }
+    }
 }
 
 impl From<PerAxis> for V2 {
@@ -56,14 +75,33 @@ impl From<PerAxis> for V2 {
 }
 
 /// Any number of numbers.
-#[derive(Debug, Clone, Default, Serialize, Deserialize)]
-#[serde(transparent)]
+#[derive(Debug, Clone, Default)]
 pub(crate) struct Numbers(pub(crate) Vec<f64>);
 
 /// Names of policies, not yet known to be such.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(transparent)]
+#[derive(Debug, Clone)]
 pub(crate) struct PolicyNames(pub(crate) Vec<String>);
+
+/// Lists, of which [`KeyType::KIND`] says more than that.
+macro_rules! lists {
+    ($($type:ident => $kind:ident;)*) => {
+        $(impl KeyType for $type {
+            const KIND: Kind = Kind::$kind;
+
+            fn read(value: &Value) -> Result<Self, Refusal> {
+                read::each(value).map(Self)
+            }
+
+            fn write(&self) -> Option<Value> {
+                self.0.write()
+            }
+        })*
+    };
+}
+lists! {
+    Numbers => Numbers;
+    PolicyNames => Policies;
+}
 
 words! {
     /// How contact is integrated.
@@ -135,14 +173,20 @@ words! {
     }
 }
 
-key_types! {
-    Pair => Kind::Pair;
-    PerAxis => Kind::PerAxis;
-    Numbers => Kind::Numbers;
-    PolicyNames => Kind::Policies;
-    MethodName => Kind::Word(Self::WORDS);
-    ShapeName => Kind::Word(Self::WORDS);
-    FaultName => Kind::Word(Self::WORDS);
-    Axis => Kind::Word(Self::WORDS);
-    Delivers => Kind::Word(Self::WORDS);
+/// Enumerations that are written as words.
+macro_rules! written_as_words {
+    ($($type:ident)*) => {
+        $(impl KeyType for $type {
+            const KIND: Kind = Kind::Word(Self::WORDS);
+
+            fn read(value: &Value) -> Result<Self, Refusal> {
+                read::word(value, Self::WORDS).map(|place| Self::ALL[place])
+            }
+
+            fn write(&self) -> Option<Value> {
+                Some(Value::String(Self::WORDS[*self as usize].to_owned()))
+            }
+        })*
+    };
 }
+written_as_words! { MethodName ShapeName FaultName Axis Delivers }

@@ -1,43 +1,19 @@
 //! Sweep files.
 
-use crate::scene::diagnostic::{SceneError, SceneText, in_words};
+use crate::scene::diagnostic::{SceneError, SceneText};
 use crate::scene::guess;
+use crate::scene::keys::KeyType as _;
 use crate::scene::policy_kind::PolicyKind;
 use crate::sweep::design::{Design, Points};
 use crate::sweep::error::SweepError;
 use crate::sweep::size::{Sizes, points};
-use crate::sweep::values::{Variation, VaryTable};
-use serde::Deserialize;
+use crate::sweep::tables::SweepTables;
+use crate::sweep::values::Variation;
 use std::path::{Path, PathBuf};
-use toml::{Spanned, Table};
+use toml::{Table, Value};
 
 /// Keys that say what is shown of results, and not what they are.
 const OF_THE_SUMMARY: [&str; 4] = ["worst", "worst_by", "worst_policy", "maps"];
-
-/// A sweep file as written.
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Written {
-    scene: PathBuf,
-    design: Design,
-    runs: Option<u64>,
-    repeats: Option<u64>,
-    #[serde(default)]
-    seed: u64,
-    policies: Option<Vec<String>>,
-    #[serde(default = "three")]
-    worst: u32,
-    worst_by: Option<String>,
-    worst_policy: Option<String>,
-    #[serde(default)]
-    maps: Vec<[String; 2]>,
-    #[serde(default)]
-    vary: Vec<Spanned<VaryTable>>,
-}
-
-fn three() -> u32 {
-    3
-}
 
 /// Which runs are kept as scene files.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -91,12 +67,10 @@ impl SweepFile {
     }
 
     fn of(text: SceneText) -> Result<Self, SceneError> {
-        let written: Written = toml::from_str(&text.text).map_err(|error| {
-            let message = in_words(error.message());
-            let help = guess::from_message(&message).or_else(|| missing(&message));
-            text.error_at(error.span().unwrap_or(0..0), message, help)
-        })?;
-        let mut settings: Table = toml::from_str(&text.text).unwrap_or_default();
+        let mut settings: Table = toml::from_str(&text.text)
+            .map_err(|error| text.error_in_toml(error.span().unwrap_or(0..0), error.message()))?;
+        let written = SweepTables::read(&Value::Table(settings.clone()))
+            .map_err(|refusal| text.error_of(refusal, SweepTables::KEYS))?;
         for key in OF_THE_SUMMARY {
             settings.remove(key);
         }
@@ -129,39 +103,20 @@ impl SweepFile {
     }
 }
 
-/// What to give where a key is missing.
-fn missing(message: &str) -> Option<String> {
-    let (_, name) = message.split_once("missing field `")?;
-    let give = match name.trim_end_matches('`') {
-        "scene" => "give the scene that is varied: scene = \"…\", by its path from this file",
-        "design" => "give design = \"grid\", \"latin_hypercube\", \"sobol\" or \"monte_carlo\"",
-        "key" => "give the key of the scene that varies: key = \"friction.coefficient\"",
-        "from" | "to" | "count" => "give { from = 1.0, to = 2.0, count = 11 }",
-        "mean" | "standard_deviation" | "low" | "high" => {
-            "give { mean = 1.0, standard_deviation = 0.1, low = 0.8, high = 1.2 }"
-        }
-        _ => return None,
-    };
-    Some(give.to_owned())
-}
-
-fn variations(written: &Written, text: &SceneText) -> Result<Vec<Variation>, SceneError> {
+fn variations(written: &SweepTables, text: &SceneText) -> Result<Vec<Variation>, SceneError> {
     let mut variations: Vec<Variation> = Vec::new();
     for (i, table) in written.vary.iter().enumerate() {
         let path = format!("vary[{i}]");
-        let key = &table.get_ref().key;
+        let key = &table.key;
         if let Some(j) = variations.iter().position(|other| other.key == *key) {
             let message = format!("{key} varies in vary[{j}] already");
             let help = "give each key one table".to_owned();
             return Err(text.error_at_key(&format!("{path}.key"), message, Some(help)));
         }
-        let (values, name) = table
-            .get_ref()
-            .read()
-            .map_err(|(at, message, help)| match at {
-                Some(at) => text.error_at_key(&format!("{path}.{at}"), message, Some(help)),
-                None => text.error_at(table.span(), format!("{path}: {key} {message}"), Some(help)),
-            })?;
+        let (values, name) = table.checked().map_err(|(at, message, help)| match at {
+            Some(at) => text.error_at_key(&format!("{path}.{at}"), message, Some(help)),
+            None => text.error_at_key(&path, format!("{key} {message}"), Some(help)),
+        })?;
         variations.push(Variation {
             key: key.clone(),
             values,
@@ -171,7 +126,7 @@ fn variations(written: &Written, text: &SceneText) -> Result<Vec<Variation>, Sce
     Ok(variations)
 }
 
-fn sizes(written: &Written) -> Sizes {
+fn sizes(written: &SweepTables) -> Sizes {
     Sizes {
         runs: written.runs,
         repeats: written.repeats,
@@ -179,7 +134,7 @@ fn sizes(written: &Written) -> Sizes {
 }
 
 fn maps(
-    written: &Written,
+    written: &SweepTables,
     variations: &[Variation],
     text: &SceneText,
 ) -> Result<Vec<[usize; 2]>, SceneError> {
@@ -195,18 +150,26 @@ fn maps(
             )
         })
     };
-    let pair = |(i, [x, y]): (usize, &[String; 2])| match x == y {
-        true => {
+    let pair = |(i, keys): (usize, &Vec<String>)| match &keys[..] {
+        [x, y] if x != y => Ok([place(i, x)?, place(i, y)?]),
+        [x, y] if x == y => {
             let message = format!("maps[{i}]: is {x} twice");
             let help = "give two keys that vary".to_owned();
             Err(text.error_at_key("maps", message, Some(help)))
         }
-        false => Ok([place(i, x)?, place(i, y)?]),
+        keys => {
+            let message = format!("maps[{i}]: has {} keys, expected two", keys.len());
+            let help = "give pairs of keys that vary, [[\"a.key\", \"another.key\"]]".to_owned();
+            Err(text.error_at_key("maps", message, Some(help)))
+        }
     };
     written.maps.iter().enumerate().map(pair).collect()
 }
 
-fn policies(written: &Written, text: &SceneText) -> Result<Option<Vec<PolicyKind>>, SceneError> {
+fn policies(
+    written: &SweepTables,
+    text: &SceneText,
+) -> Result<Option<Vec<PolicyKind>>, SceneError> {
     let known = PolicyKind::ALL.map(PolicyKind::name);
     let refused =
         |message: String, help: String| text.error_at_key("policies", message, Some(help));
@@ -214,7 +177,7 @@ fn policies(written: &Written, text: &SceneText) -> Result<Option<Vec<PolicyKind
         return Ok(None);
     };
     let mut policies = Vec::new();
-    for name in names {
+    for name in &names.0 {
         let help = || guess::before(format!("policies are {}", known.join(", ")), name, known);
         let kind = PolicyKind::from_name(name)
             .ok_or_else(|| refused(format!("there is no policy \"{name}\""), help()))?;

@@ -3,42 +3,12 @@
 use crate::run::columns::{Cell, Kind};
 use crate::scene::keys::{number, short};
 use crate::scene::values::Pair;
-use serde::Deserialize;
+use crate::sweep::tables::{AnyValues, NormalTable, SpacedTable, VaryTable};
 use statrs::distribution::{ContinuousCDF as _, Normal};
 use toml::Value;
 
 /// Most values of a list.
 const MOST_LEVELS: u32 = 100_000;
-
-/// A key of scenes, and what it varies over, as a sweep file has it: exactly one of the others.
-#[derive(Debug, Clone, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct VaryTable {
-    pub(crate) key: String,
-    values: Option<Vec<Value>>,
-    linspace: Option<SpacedTable>,
-    logspace: Option<SpacedTable>,
-    uniform: Option<Pair>,
-    log_uniform: Option<Pair>,
-    normal: Option<NormalTable>,
-}
-
-#[derive(Debug, Clone, Copy, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct SpacedTable {
-    from: f64,
-    to: f64,
-    count: u32,
-}
-
-#[derive(Debug, Clone, Copy, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct NormalTable {
-    mean: f64,
-    standard_deviation: f64,
-    low: f64,
-    high: f64,
-}
 
 /// What a key varies over.
 #[derive(Debug, Clone, PartialEq)]
@@ -91,7 +61,7 @@ const KINDS: &str = "values, linspace, logspace, uniform, log_uniform or normal"
 
 impl VaryTable {
     /// What it says, checked, with the key that says it.
-    pub(crate) fn read(&self) -> Result<(Values, &'static str), Wrong> {
+    pub(crate) fn checked(&self) -> Result<(Values, &'static str), Wrong> {
         let given = [
             ("values", self.values.is_some()),
             ("linspace", self.linspace.is_some()),
@@ -113,14 +83,14 @@ impl VaryTable {
             return Err((Some(other), message, format!("give one of {KINDS}")));
         }
         let wrong = |message: &str, help: &str| (Some(name), message.to_owned(), help.to_owned());
-        let values = if let Some(values) = &self.values {
+        let values = if let Some(AnyValues(values)) = &self.values {
             if values.is_empty() {
                 return Err(wrong("is empty", "give at least one value, [1.0, 2.0]"));
             }
             Values::Listed(values.clone())
-        } else if let Some(spaced) = self.linspace.or(self.logspace) {
+        } else if let Some(spaced) = self.linspace.as_ref().or(self.logspace.as_ref()) {
             let logarithmic = self.logspace.is_some();
-            let SpacedTable { from, to, count } = spaced;
+            let SpacedTable { from, to, count } = *spaced;
             if !(2..=MOST_LEVELS).contains(&count) || !from.is_finite() || !to.is_finite() {
                 let message = format!("is from {} to {} in {count}", short(from), short(to));
                 let help = format!("give two finite numbers, and a count from 2 to {MOST_LEVELS}");
@@ -145,7 +115,7 @@ impl VaryTable {
                 ));
             }
             Values::LogUniform { low, high }
-        } else if let Some(of) = self.normal {
+        } else if let Some(of) = &self.normal {
             check_limits(of.low, of.high)
                 .map_err(|message| wrong(&message, "give low and high, low the less"))?;
             let Some([below, above]) = of.shares() else {
@@ -166,7 +136,7 @@ impl VaryTable {
                 standard_deviation,
                 low,
                 high,
-            } = of;
+            } = *of;
             Values::Normal {
                 mean,
                 standard_deviation,
@@ -196,7 +166,7 @@ fn check_limits(low: f64, high: f64) -> Result<(), String> {
 }
 
 impl SpacedTable {
-    fn levels(self, logarithmic: bool) -> Vec<Value> {
+    fn levels(&self, logarithmic: bool) -> Vec<Value> {
         let last = self.count - 1;
         let level = |i: u32| {
             let share = f64::from(i) / f64::from(last);
@@ -214,7 +184,7 @@ impl SpacedTable {
 
 impl NormalTable {
     /// Shares of the distribution below its limits.
-    fn shares(self) -> Option<[f64; 2]> {
+    fn shares(&self) -> Option<[f64; 2]> {
         let normal = Normal::new(self.mean, self.standard_deviation).ok()?;
         Some([normal.cdf(self.low), normal.cdf(self.high)])
     }
@@ -326,11 +296,11 @@ fn in_toml(value: &Value) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::keys::KeyType as _;
 
     fn read(text: &str) -> Result<(Values, &'static str), Wrong> {
-        toml::from_str::<VaryTable>(&format!("key = \"a\"\n{text}"))
-            .unwrap()
-            .read()
+        let table = toml::from_str(&format!("key = \"a\"\n{text}")).unwrap();
+        VaryTable::read(&Value::Table(table)).unwrap().checked()
     }
 
     fn numbers(values: &Values, shares: &[f64]) -> Vec<f64> {

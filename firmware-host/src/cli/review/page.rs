@@ -52,7 +52,7 @@ pub(super) fn head(
     let told: Vec<String> = (events.iter().enumerate())
         .map(|(i, of)| {
             let told = of.event.told().map_or_else(
-                || "No verdict: what came of the event is not whole in the file.".to_owned(),
+                || "No verdict: the outcome of the event is not whole in the file.".to_owned(),
                 |told| told.paragraph(used(of_event(bearings, i, events))),
             );
             match many {

@@ -76,7 +76,7 @@ fn of_planes(of: &Examined<'_>) -> Vec<(String, Lines)> {
 fn differing(names: &[&str]) -> Option<String> {
     (!names.is_empty()).then(|| {
         format!(
-            "By the scene the supervisor would be told otherwise than it was on the machine: {}.",
+            "The scene configures the supervisor otherwise than it was on the machine: {}.",
             names.join(", ")
         )
     })
@@ -101,7 +101,7 @@ pub(super) fn told(of: &Examined<'_>, asked: bool, bearings: &[Remaining]) -> St
             let _ = writeln!(out, "{} {verdict}\n", told.sentences());
         }
         None => {
-            out += "What came of the event is not whole in this file, or not there of all planes: no verdict.\n\n";
+            out += "The outcome of the event is not whole in this file, or not there for all planes: no verdict.\n\n";
         }
     }
     for told in of_bearings(bearings) {

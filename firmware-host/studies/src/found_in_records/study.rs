@@ -221,7 +221,7 @@ pub fn study(extent: Extent, progress: &dyn Progress) -> Result<Report, StudyErr
                     )),
                     Block::table(COLUMNS, rows),
                     Block::text(
-                        "Impacts are looked for where a flight under a constant load and a known force ends. Where the sensor lies, reads nothing or is late, the record has the rotor elsewhere; where a drive does not do as it is told, another force acts; a blade that is lost or a shock changes the load while the rotor flies, so that the flight is extended to the wall some ticks too early or too late.",
+                        "Impacts are looked for where a flight under a constant load and a known force ends. Where the sensor lies, reads nothing or is late, the record has the rotor elsewhere; where a drive does not obey, another force acts; a blade that is lost or a shock changes the load while the rotor flies, so that the flight is extended to the wall some ticks too early or too late.",
                     ),
                 ],
             ),

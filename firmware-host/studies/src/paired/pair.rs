@@ -67,7 +67,7 @@ pub struct Engaged {
     pub longest_s: f64,
     /// Times that it took over.
     pub engagements: u64,
-    /// Times that it gave the bearing back because it came no farther.
+    /// Times that it gave the bearing back because it made no progress.
     pub handed_back: u64,
 }
 

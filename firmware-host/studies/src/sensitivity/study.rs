@@ -28,7 +28,7 @@ pub struct ToldWrong {
     pub lost_to_levitation: Vec<String>,
     /// Of those that the supervisor recovers from when it is told right.
     pub lost_to_right: usize,
-    /// Largest contact force over that of the supervisor told right, the 95th percentile.
+    /// Largest contact force over that of the one configured right, the 95th percentile.
     pub force_95: f64,
 }
 
@@ -202,7 +202,7 @@ fn chapter(outcome: &Outcome, width: f64, runs: usize) -> Chapter {
         ]
     });
     let story = format!(
-        "{runs} runs for each row, one seed. Levitation alone recovers from {}, the supervisor that is told right from {}. Lost are runs that levitation alone, or the supervisor told right, recovers from and the supervisor told wrong does not; force is the 95th percentile of the largest contact force over that of the supervisor told right.",
+        "{runs} runs for each row, one seed. Levitation alone recovers from {}, the supervisor configured right from {}. Lost are runs that levitation alone, or the supervisor configured right, recovers from and the one configured wrong does not; force is the 95th percentile of the largest contact force over that of the one configured right.",
         outcome.alone, outcome.right
     );
     Chapter::new(
@@ -211,11 +211,11 @@ fn chapter(outcome: &Outcome, width: f64, runs: usize) -> Chapter {
             Block::text(story),
             Block::table(
                 [
-                    "told",
+                    "configured",
                     "recovered",
                     "refused",
                     "lost to levitation",
-                    "lost to told right",
+                    "lost to configured right",
                     "force",
                 ],
                 rows,

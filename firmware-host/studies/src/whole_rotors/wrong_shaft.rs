@@ -60,7 +60,7 @@ pub(super) fn told_wrong(
             .zip(right)
             .map(|(wrong, [_, own])| wrong / own);
         (
-            format!("{name} told {by} of what it is"),
+            format!("{name} configured as {by} of what it is"),
             over.fold(f64::INFINITY, f64::min),
         )
     };

@@ -186,7 +186,7 @@ fn bad_keys_are_named() {
                 "[[outage]]\nstart_s = 0.0\nduration_s = 0.01\ndelivers = \"inverted\"\nknown = true",
             ),
             "outage[0].known",
-            "nobody to be told",
+            "reported to nobody",
         ),
         (motion, fault("kind = \"broken\""), "kind", "oscillation"),
         (

@@ -1,0 +1,228 @@
+//! Values of scene files from the tree that TOML is read into, and back. What is refused names its place below the table that it
+//! is read from.
+
+use crate::scene::guess;
+use crate::scene::keys::{Key, KeyType, Kind, joined, short};
+use toml::{Table, Value};
+
+/// Why a value cannot be read.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Refusal {
+    /// Where it is, below what was read; empty for that itself.
+    pub(crate) path: String,
+    /// Behind the path.
+    pub(crate) message: String,
+    /// What to do.
+    pub(crate) help: Option<String>,
+    /// Whether it is a key that is not there.
+    pub(crate) missing: bool,
+}
+
+impl Refusal {
+    fn new(message: impl Into<String>) -> Self {
+        Self {
+            path: String::new(),
+            message: message.into(),
+            help: None,
+            missing: false,
+        }
+    }
+
+    /// Of another kind of value than this.
+    pub(crate) fn expected(value: &Value, expected: &str) -> Self {
+        Self::new(format!("is {}, expected {expected}", described(value)))
+    }
+
+    /// The same, below a key or a number in brackets.
+    fn below(mut self, step: &str) -> Self {
+        self.path = match self.path.starts_with('[') {
+            true => format!("{step}{}", self.path),
+            false if self.path.is_empty() => step.to_owned(),
+            false => joined(step, &self.path),
+        };
+        self
+    }
+}
+
+/// What a value is, for an error.
+fn described(value: &Value) -> String {
+    match value {
+        Value::String(text) => format!("the text \"{text}\""),
+        Value::Integer(i) => format!("the number {i}"),
+        Value::Float(x) => format!("the number {}", short(*x)),
+        Value::Boolean(truth) => truth.to_string(),
+        Value::Datetime(date) => format!("the date {date}"),
+        Value::Array(all) => match all.len() {
+            1 => "a list of one value".to_owned(),
+            n => format!("a list of {n} values"),
+        },
+        Value::Table(_) => "a table".to_owned(),
+    }
+}
+
+/// A table that has no other keys than these.
+pub(crate) fn table<'v>(value: &'v Value, keys: &'static [Key]) -> Result<&'v Table, Refusal> {
+    let Value::Table(table) = value else {
+        return Err(Refusal::expected(value, "a table with keys"));
+    };
+    let is_known = |name: &str| keys.iter().any(|key| key.name == name);
+    match table.keys().find(|name| !is_known(name)) {
+        None => Ok(table),
+        Some(name) => {
+            let known: Vec<String> = keys.iter().map(|key| format!("`{}`", key.name)).collect();
+            Err(Refusal {
+                help: guess::key(name, keys),
+                ..Refusal::new(format!("unknown key, expected one of {}", known.join(", ")))
+            }
+            .below(name))
+        }
+    }
+}
+
+/// The value of a key, `None` where it is absent.
+pub(crate) fn value<T: KeyType>(table: &Table, key: &str) -> Result<Option<T>, Refusal> {
+    let read = table.get(key).map(T::read).transpose();
+    read.map_err(|refusal| refusal.below(key))
+}
+
+/// That a key is not there, which its table cannot do without.
+pub(crate) fn missing(key: &str) -> Refusal {
+    Refusal {
+        missing: true,
+        ..Refusal::new("is missing")
+    }
+    .below(key)
+}
+
+/// The number of a word among these.
+pub(crate) fn word(value: &Value, words: &[&str]) -> Result<usize, Refusal> {
+    let quoted: Vec<String> = words.iter().map(|word| format!("`{word}`")).collect();
+    let expected = format!("one of {}", quoted.join(", "));
+    let Value::String(text) = value else {
+        return Err(Refusal::expected(value, &expected));
+    };
+    let found = words.iter().position(|word| word == text);
+    found.ok_or_else(|| Refusal {
+        help: guess::word(text, words.iter().copied()),
+        ..Refusal::new(format!("is \"{text}\", expected {expected}"))
+    })
+}
+
+fn list(value: &Value) -> Result<&[Value], Refusal> {
+    match value {
+        Value::Array(all) => Ok(all),
+        _ => Err(Refusal::expected(value, "a list in square brackets")),
+    }
+}
+
+/// Every value of a list.
+pub(crate) fn each<T: KeyType>(value: &Value) -> Result<Vec<T>, Refusal> {
+    let one = |(i, value)| T::read(value).map_err(|of: Refusal| of.below(&format!("[{i}]")));
+    list(value)?.iter().enumerate().map(one).collect()
+}
+
+impl KeyType for f64 {
+    const KIND: Kind = Kind::Number;
+
+    fn read(value: &Value) -> Result<Self, Refusal> {
+        match value {
+            Value::Float(x) => Ok(*x),
+            Value::Integer(i) => Ok(*i as Self),
+            _ => Err(Refusal::expected(value, "a number")),
+        }
+    }
+
+    fn write(&self) -> Option<Value> {
+        Some(Value::Float(*self))
+    }
+}
+
+macro_rules! whole_numbers {
+    ($($type:ty)*) => {$(
+        impl KeyType for $type {
+            const KIND: Kind = Kind::Whole;
+
+            fn read(value: &Value) -> Result<Self, Refusal> {
+                let whole = value.as_integer().and_then(|i| Self::try_from(i).ok());
+                let expected = "a whole number, 0 or greater";
+                whole.ok_or_else(|| Refusal::expected(value, expected))
+            }
+
+            fn write(&self) -> Option<Value> {
+                i64::try_from(*self).ok().map(Value::Integer)
+            }
+        }
+    )*};
+}
+whole_numbers!(u32 u64);
+
+impl KeyType for bool {
+    const KIND: Kind = Kind::Truth;
+
+    fn read(value: &Value) -> Result<Self, Refusal> {
+        (value.as_bool()).ok_or_else(|| Refusal::expected(value, "true or false"))
+    }
+
+    fn write(&self) -> Option<Value> {
+        Some(Value::Boolean(*self))
+    }
+}
+
+impl KeyType for String {
+    const KIND: Kind = Kind::Text;
+
+    fn read(value: &Value) -> Result<Self, Refusal> {
+        let text = value.as_str().map(str::to_owned);
+        text.ok_or_else(|| Refusal::expected(value, "a text in quotes"))
+    }
+
+    fn write(&self) -> Option<Value> {
+        Some(Value::String(self.clone()))
+    }
+}
+
+impl KeyType for Table {
+    const KIND: Kind = Kind::Parameters;
+
+    fn read(value: &Value) -> Result<Self, Refusal> {
+        let table = value.as_table().cloned();
+        table.ok_or_else(|| Refusal::expected(value, "a table with keys"))
+    }
+
+    fn write(&self) -> Option<Value> {
+        Some(Value::Table(self.clone()))
+    }
+}
+
+impl<T: KeyType> KeyType for Option<T> {
+    const KIND: Kind = T::KIND;
+
+    fn read(value: &Value) -> Result<Self, Refusal> {
+        T::read(value).map(Some)
+    }
+
+    fn write(&self) -> Option<Value> {
+        self.as_ref().and_then(T::write)
+    }
+}
+
+impl<T: KeyType> KeyType for Vec<T> {
+    const KIND: Kind = match T::KIND {
+        Kind::Table(keys) => Kind::Tables(keys),
+        kind => kind,
+    };
+
+    fn read(value: &Value) -> Result<Self, Refusal> {
+        match (T::KIND, value) {
+            (Kind::Table(_), Value::Table(_)) => Err(Refusal::new(
+                "is one table where there may be several: write its name in double brackets, [[…]]",
+            )),
+            _ => each(value),
+        }
+    }
+
+    fn write(&self) -> Option<Value> {
+        let all: Option<Vec<Value>> = self.iter().map(T::write).collect();
+        all.map(Value::Array)
+    }
+}
