@@ -70,7 +70,16 @@ pub fn execute(args: &ReviewArgs) -> Result<(), CommandError> {
         message: format!("{name}: {e}"),
         help: "give the file that the record was written to".to_owned(),
     })?;
-    of_sections(args, &RecordFile::of(&bytes))
+    let file = RecordFile::of(&bytes);
+    if file.records.is_empty() {
+        let damage: Vec<String> = file.damage.iter().map(ToString::to_string).collect();
+        return Err(CommandError::Numbers {
+            message: format!("{name}: {}", damage.join("; ")),
+            help: "write the sections of a frozen record one after the other, and nothing else"
+                .to_owned(),
+        });
+    }
+    of_sections(args, &file)
 }
 
 /// An event for programs.

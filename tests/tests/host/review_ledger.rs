@@ -251,7 +251,7 @@ fn a_ledger_that_is_none_gives_an_error_and_no_figure() {
         refused(&["--allowance", allowance], "expected a severity above 0");
     }
     files.put("landing.bin", &[1; 64]);
-    refused(&["--allowance", "5"], "is no record of version 3");
+    refused(&["--allowance", "5"], "no section of a flight record");
 }
 
 /// What a bearing may bear: the command line before the scene, that before the ledger, and that before the configuration.

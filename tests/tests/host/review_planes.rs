@@ -62,8 +62,8 @@ fn the_page_of_a_rotor_has_what_is_printed() {
     assert!(shown.status.success(), "{text}");
     let page = fs::read_to_string(here("page/report.html")).unwrap();
 
-    let planes = rows_of(&text, "outcome");
-    assert_eq!(planes[0], ["outcome", "plane 0", "plane 1"]);
+    let planes = rows_of(&text, "figure");
+    assert_eq!(planes[0], ["figure", "plane 0", "plane 1"]);
     let names: Vec<&str> = planes.iter().map(|row| &row[0][..]).collect();
     for row in [
         "touches",

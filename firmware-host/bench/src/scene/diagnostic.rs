@@ -152,7 +152,10 @@ impl SceneText {
 
     /// An error of the TOML reader: its message with the key of the line.
     pub(crate) fn error_in_toml(&self, range: std::ops::Range<usize>, message: &str) -> SceneError {
-        let mut message = message.to_owned();
+        let mut message = match message.ends_with("expected any valid TOML value") {
+            true => format!("is too far from 0, expected at most {}", i64::MAX),
+            false => message.to_owned(),
+        };
         let start = range.start.min(self.text.len());
         let line_start = self.text[..start].rfind('\n').map_or(0, |i| i + 1);
         let line = self.text[line_start..].lines().next().unwrap_or_default();

@@ -1,7 +1,6 @@
 //! What is known of a key of scene files: one row a key, from which structs, checks, help, documentation and schema come.
 
 use crate::scene::policy_kind::PolicyKind;
-use crate::scene::read::Refusal;
 use supervisor::PARAMETERS;
 use toml::{Table, Value};
 
@@ -250,18 +249,6 @@ pub(crate) fn parameter(name: &str) -> Option<usize> {
     PARAMETERS.iter().position(|p| p.name == name)
 }
 
-/// A type that values of keys have.
-pub(crate) trait KeyType: Clone {
-    /// How it is written.
-    const KIND: Kind;
-
-    /// From a value of a file.
-    fn read(value: &Value) -> Result<Self, Refusal>;
-
-    /// As a value of a file; `None` where it is absent, or where a file cannot have it.
-    fn write(&self) -> Option<Value>;
-}
-
 /// Structs from rows. A row is
 /// `name: type [what holds where it is absent], unit, range, help, other words …;`
 /// and what holds is `required`, `required "what to give"`, `= value`, or, of an `Option`, `or "what that means"`.
@@ -291,7 +278,7 @@ macro_rules! key_tables {
             const KIND: Kind = Kind::Table(Self::KEYS);
 
             fn read(value: &toml::Value) -> Result<Self, Refusal> {
-                let table = read::table(value, Self::KEYS)?;
+                let table = read::table(value)?;
                 Ok(Self {
                     $($key: match read::value(table, stringify!($key))?.or_else(|| absent!(value [$($absent)*])) {
                         Some(value) => value,

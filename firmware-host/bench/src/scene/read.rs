@@ -2,8 +2,20 @@
 //! is read from.
 
 use crate::scene::guess;
-use crate::scene::keys::{Key, KeyType, Kind, joined, short};
+use crate::scene::keys::{Key, Kind, joined, short};
 use toml::{Table, Value};
+
+/// A type that values of keys have.
+pub(crate) trait KeyType: Clone {
+    /// How it is written.
+    const KIND: Kind;
+
+    /// From a value of a file.
+    fn read(value: &Value) -> Result<Self, Refusal>;
+
+    /// As a value of a file; `None` where it is absent, or where a file cannot have it.
+    fn write(&self) -> Option<Value>;
+}
 
 /// Why a value cannot be read.
 #[derive(Debug, Clone, PartialEq)]
@@ -60,23 +72,44 @@ fn described(value: &Value) -> String {
     }
 }
 
-/// A table that has no other keys than these.
-pub(crate) fn table<'v>(value: &'v Value, keys: &'static [Key]) -> Result<&'v Table, Refusal> {
-    let Value::Table(table) = value else {
-        return Err(Refusal::expected(value, "a table with keys"));
-    };
-    let is_known = |name: &str| keys.iter().any(|key| key.name == name);
-    match table.keys().find(|name| !is_known(name)) {
-        None => Ok(table),
-        Some(name) => {
+/// That a table and those below it have no other keys than these.
+pub(crate) fn only_known(table: &Table, keys: &'static [Key]) -> Result<(), Refusal> {
+    for (name, value) in table {
+        let Some(key) = keys.iter().find(|key| key.name == name) else {
             let known: Vec<String> = keys.iter().map(|key| format!("`{}`", key.name)).collect();
-            Err(Refusal {
+            let unknown = format!("unknown key, expected one of {}", known.join(", "));
+            return Err(Refusal {
                 help: guess::key(name, keys),
-                ..Refusal::new(format!("unknown key, expected one of {}", known.join(", ")))
+                ..Refusal::new(unknown)
             }
-            .below(name))
+            .below(name));
+        };
+        let below = |refusal: Refusal| refusal.below(name);
+        match (key.kind, value) {
+            (Kind::Table(keys), Value::Table(table)) => only_known(table, keys).map_err(below)?,
+            (Kind::Tables(keys), Value::Array(all)) => {
+                for (i, value) in all.iter().enumerate() {
+                    let Value::Table(table) = value else { continue };
+                    only_known(table, keys)
+                        .map_err(|refusal| refusal.below(&format!("[{i}]")))
+                        .map_err(below)?;
+                }
+            }
+            _ => {}
         }
     }
+    Ok(())
+}
+
+/// The table that a value is.
+pub(crate) fn table(value: &Value) -> Result<&Table, Refusal> {
+    (value.as_table()).ok_or_else(|| Refusal::expected(value, "a table with keys"))
+}
+
+/// The tables of a file, once all names are known.
+pub(crate) fn file<T: KeyType>(values: Table, keys: &'static [Key]) -> Result<T, Refusal> {
+    only_known(&values, keys)?;
+    T::read(&Value::Table(values))
 }
 
 /// The value of a key, `None` where it is absent.
@@ -185,8 +218,7 @@ impl KeyType for Table {
     const KIND: Kind = Kind::Parameters;
 
     fn read(value: &Value) -> Result<Self, Refusal> {
-        let table = value.as_table().cloned();
-        table.ok_or_else(|| Refusal::expected(value, "a table with keys"))
+        table(value).cloned()
     }
 
     fn write(&self) -> Option<Value> {

@@ -3,7 +3,8 @@
 use crate::device::external::Caller;
 use crate::scene::diagnostic::{SceneError, SceneText};
 use crate::scene::guess;
-use crate::scene::keys::{Key, KeyType as _, Kind, joined, number, parameter, walk};
+use crate::scene::keys::{Key, Kind, joined, number, parameter, walk};
+use crate::scene::read::{self, KeyType as _};
 use crate::scene::tables::{KEYS, SceneTables};
 use std::path::Path;
 use toml::{Table, Value};
@@ -97,8 +98,8 @@ impl Spec {
     fn new(text: SceneText) -> Result<Self, SceneError> {
         let values: Table = toml::from_str(&text.text)
             .map_err(|error| text.error_in_toml(error.span().unwrap_or(0..0), error.message()))?;
-        let tables = SceneTables::read(&Value::Table(values))
-            .map_err(|refusal| text.error_of(refusal, KEYS))?;
+        let tables: SceneTables =
+            read::file(values, KEYS).map_err(|refusal| text.error_of(refusal, KEYS))?;
         Ok(Self {
             values: values_of(&tables),
             text,
@@ -151,8 +152,8 @@ impl Spec {
                 }
             }
         }
-        let tables = SceneTables::read(&Value::Table(values))
-            .map_err(|refusal| self.text.error_of(refusal, KEYS))?;
+        let tables: SceneTables =
+            read::file(values, KEYS).map_err(|refusal| self.text.error_of(refusal, KEYS))?;
         self.put(tables);
         Ok(())
     }

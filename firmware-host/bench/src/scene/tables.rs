@@ -5,8 +5,8 @@ use crate::device::axis::Axis;
 use crate::scene::keys::Range::{
     Because, Elsewhere, Finite, NotNegative, Positive, PositiveUpTo, Within,
 };
-use crate::scene::keys::{Absent, Key, KeyType, Kind, Range, absent, empty, key_tables};
-use crate::scene::read::{self, Refusal};
+use crate::scene::keys::{Absent, Key, Kind, Range, absent, empty, key_tables};
+use crate::scene::read::{self, KeyType, Refusal};
 use crate::scene::values::{FaultName, MethodName, Numbers, Pair, PerAxis, PolicyNames, ShapeName};
 
 /// No number, or any.

@@ -2,8 +2,8 @@
 
 use crate::device::actuator::Delivers;
 use crate::device::axis::Axis;
-use crate::scene::keys::{KeyType, Kind};
-use crate::scene::read::{self, Refusal};
+use crate::scene::keys::Kind;
+use crate::scene::read::{self, KeyType, Refusal};
 use crate::words::words;
 use plant_model::{Method, V2};
 use toml::Value;

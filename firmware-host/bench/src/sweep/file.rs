@@ -2,15 +2,15 @@
 
 use crate::scene::diagnostic::{SceneError, SceneText};
 use crate::scene::guess;
-use crate::scene::keys::KeyType as _;
 use crate::scene::policy_kind::PolicyKind;
+use crate::scene::read;
 use crate::sweep::design::{Design, Points};
 use crate::sweep::error::SweepError;
 use crate::sweep::size::{Sizes, points};
 use crate::sweep::tables::SweepTables;
 use crate::sweep::values::Variation;
 use std::path::{Path, PathBuf};
-use toml::{Table, Value};
+use toml::Table;
 
 /// Keys that say what is shown of results, and not what they are.
 const OF_THE_SUMMARY: [&str; 4] = ["worst", "worst_by", "worst_policy", "maps"];
@@ -69,7 +69,7 @@ impl SweepFile {
     fn of(text: SceneText) -> Result<Self, SceneError> {
         let mut settings: Table = toml::from_str(&text.text)
             .map_err(|error| text.error_in_toml(error.span().unwrap_or(0..0), error.message()))?;
-        let written = SweepTables::read(&Value::Table(settings.clone()))
+        let written: SweepTables = read::file(settings.clone(), SweepTables::KEYS)
             .map_err(|refusal| text.error_of(refusal, SweepTables::KEYS))?;
         for key in OF_THE_SUMMARY {
             settings.remove(key);

@@ -1,7 +1,7 @@
 //! The keys of sweep files: every row is a key. What values mean is decided where they are used.
 
-use crate::scene::keys::{Absent, Key, KeyType, Kind, Range, absent, empty, key_tables};
-use crate::scene::read::{self, Refusal};
+use crate::scene::keys::{Absent, Key, Kind, Range, absent, empty, key_tables};
+use crate::scene::read::{self, KeyType, Refusal};
 use crate::scene::values::{Pair, PolicyNames};
 use crate::sweep::design::Design;
 use toml::Value;

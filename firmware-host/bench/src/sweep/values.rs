@@ -296,7 +296,7 @@ fn in_toml(value: &Value) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::keys::KeyType as _;
+    use crate::scene::read::KeyType as _;
 
     fn read(text: &str) -> Result<(Values, &'static str), Wrong> {
         let table = toml::from_str(&format!("key = \"a\"\n{text}")).unwrap();

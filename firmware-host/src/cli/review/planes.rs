@@ -41,7 +41,7 @@ pub(super) fn figures_of_planes(event: &Event<'_>) -> Option<Lines> {
     if event.records[0].head.planes < 2 {
         return None;
     }
-    let mut header = vec![Cell::new("outcome")];
+    let mut header = vec![Cell::new("figure")];
     header.extend((event.records.iter()).map(|r| right(format!("plane {}", r.head.plane))));
     let mut table = lined(header);
     let told: Vec<Option<Told>> = event.records.iter().map(|record| record.told()).collect();

@@ -152,7 +152,7 @@ fn bad_keys_are_named() {
             "[levitation]",
             "[spin_sensor]\nvalid = 1\n[levitation]".into(),
             "valid",
-            "bool",
+            "true or false",
         ),
         (
             motion,

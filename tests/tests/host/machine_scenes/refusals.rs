@@ -69,7 +69,7 @@ const CASES: &[(&str, &str, &str, &str)] = &[
         "contact_radius_m = 0.03",
         "contact_radius_m = 0.03\ncolour = 3",
         "colour",
-        "unknown field",
+        "unknown key",
     ),
     (
         "contact_radius_m = 0.03",

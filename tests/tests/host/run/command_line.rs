@@ -11,10 +11,6 @@ fn negative_numbers_reach_their_option() {
     let scene = path.to_str().unwrap();
     for (args, said) in [
         (
-            vec!["review", "R.bin", "--clearance-m", "-1"],
-            "--clearance-m is -1, expected",
-        ),
-        (
             vec!["review", "R.bin", "--force-max-n", "-1e3"],
             "--force-max-n is -1000, expected",
         ),
