@@ -89,7 +89,7 @@ impl ContactLaw {
 
     /// Energy in the contact spring \[J\].
     #[inline]
-    pub fn stored_j(&self, penetration_m: f64) -> f64 {
+    pub(crate) fn stored_j(&self, penetration_m: f64) -> f64 {
         match self {
             Self::Linear(law) => law.stored_j(penetration_m),
             Self::HuntCrossley(law) => law.stored_j(penetration_m),

@@ -92,5 +92,5 @@ pub use integrate::{Fastest, Method, Options, PlantError};
 pub use machine::params::Change;
 pub use mode::Mode;
 pub use plant::{BuildError, Inputs, Plant, build};
-pub use readout::{HARD_IMPACT_M_S, Meters, Snapshot, Work};
+pub use readout::{Meters, Snapshot, Work};
 pub use vector::{Body, V2};

@@ -43,7 +43,7 @@ pub struct Snapshot {
 }
 
 /// Normal speed above which a touch counts as a hard one \[m/s\].
-pub const HARD_IMPACT_M_S: f64 = 0.02;
+pub(crate) const HARD_IMPACT_M_S: f64 = 0.02;
 
 /// Extremes and sums over a run, taken at every step and not only at samples.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

@@ -142,7 +142,7 @@ pub use number::q::{AccumulatorQ, Q};
 pub use number::scalar::{Accumulator, Number, Scalar};
 pub use per_unit::{Core, Prepared};
 pub use record::entry::{ENTRY_WORDS, Entry};
-pub use record::entry::{STRETCH_WORDS, STRETCHES, Stretch};
+pub use record::entry::{STRETCH_WORDS, Stretch};
 pub use record::ledger::{LEDGER_BYTES, LEDGER_VERSION, Ledger, LedgerError};
 pub use record::publish::QueuedEvent;
 pub use record::sections::{

@@ -15,10 +15,10 @@ use serde::Serialize;
 use supervisor::{Config, ConfigError, PARAMETERS};
 
 pub use crate::crossover::{Crossover, SmallSignals};
-pub use crate::scene::role::{LEAST_PERCENT, ModeAtRisk, Role};
+pub use crate::scene::role::{ModeAtRisk, Role};
 pub use listing::{Language, listing, short, table};
 pub use noise::Noise;
-pub use rotor::{MOST_TURN_RAD, RotorAdvice};
+pub use rotor::RotorAdvice;
 pub use show::text;
 pub use warnings::Warning;
 
@@ -26,10 +26,10 @@ pub use warnings::Warning;
 const TYPICAL_SPEEDS_M_S: [f64; 3] = [0.1, 0.3, 1.0];
 
 /// Share of v_lim from which the arrest time is told: at v_lim itself it is without end.
-pub const ARREST_SHARE: f64 = 0.85;
+pub(crate) const ARREST_SHARE: f64 = 0.85;
 
 /// Lag beyond which even a tangential force is worth less than half of itself.
-pub const USEFUL_LAG_DEG: f64 = 75.0;
+pub(crate) const USEFUL_LAG_DEG: f64 = 75.0;
 
 /// A runout that is faster than this share of √(F·c/m) is what the reading usually does, and hides an approach.
 pub const RUNOUT_SPEED_SHARE: f64 = 0.4;

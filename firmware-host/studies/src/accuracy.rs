@@ -78,7 +78,7 @@ impl Reference {
 }
 
 /// References farther apart than this confirm nothing.
-pub const CONFIRMED_CLEARANCES: f64 = 1e-3;
+pub(crate) const CONFIRMED_CLEARANCES: f64 = 1e-3;
 
 /// Why there is no answer.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

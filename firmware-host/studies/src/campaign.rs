@@ -65,7 +65,7 @@ impl Extent {
     }
 
     /// One of two values.
-    pub fn pick<T>(self, quick: T, full: T) -> T {
+    pub(crate) fn pick<T>(self, quick: T, full: T) -> T {
         match self {
             Self::Quick => quick,
             Self::Full => full,
@@ -113,7 +113,7 @@ pub struct Study {
 }
 
 /// Runs a study on machines drawn at random.
-pub type OnMachines = fn(Machines, Extent, &dyn Progress) -> Result<Report, StudyError>;
+pub(crate) type OnMachines = fn(Machines, Extent, &dyn Progress) -> Result<Report, StudyError>;
 
 /// What came out of a study.
 #[derive(Debug, Clone)]

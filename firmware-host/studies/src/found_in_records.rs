@@ -5,5 +5,5 @@
 mod counts;
 mod study;
 
-pub use self::counts::{Counts, IMPACT_M_S, Missed, OFF_TICKS, Share, compare, contacts};
+pub use self::counts::{Counts, Missed, Share, compare, contacts};
 pub use self::study::study;

@@ -80,7 +80,7 @@ pub struct SteadyWhirl {
 
 /// How rotor and ring meet along the tangent.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Surface {
+pub(crate) enum Surface {
     /// Friction at its limit, whatever the sliding speed.
     Sliding,
     /// No sliding: the contact point follows a surface speed that is held.
@@ -151,7 +151,7 @@ impl SteadyWhirl {
     }
 
     /// α_r + α_s \[m/N\]: how far rotor and ring part under a unit of force between them.
-    pub fn receptance_m_n(&self, omega_rad_s: f64) -> C {
+    pub(crate) fn receptance_m_n(&self, omega_rad_s: f64) -> C {
         let w = omega_rad_s;
         let own = |o: &Oscillator| o.mounting(w) - o.inertia(w);
         // From the outside in: each ring's mounting in series with what carries it.

@@ -20,12 +20,12 @@ use super::course::Course;
 use super::whirl::WhirlReading;
 
 /// Phase 6 lasts while the whirl frequency is within this share of its maximum.
-pub const NEAR_MAXIMUM: f64 = 0.05;
+pub(crate) const NEAR_MAXIMUM: f64 = 0.05;
 /// Phase 8 begins when the deceleration has fallen to this share of the steepest.
 pub const SLOW: f64 = 0.1;
 /// Stretch over which the deceleration is taken \[s\]: longer than the swing of the stator after
 /// rolling sets in, shorter than the phase.
-pub const DECELERATION_OVER_S: f64 = 5e-3;
+pub(crate) const DECELERATION_OVER_S: f64 = 5e-3;
 
 /// Short names of the nine, in order.
 pub const NAMES: [&str; 9] = [

@@ -75,7 +75,7 @@ impl HuntCrossley {
 
     /// Largest penetration \[m\] of an impact at a speed without damping:
     /// ((n + 1)·m·v²/(2·k_h))^(1/(n + 1)).
-    pub fn undamped_depth_m(&self, speed_m_s: f64, contact_mass_kg: f64) -> f64 {
+    pub(crate) fn undamped_depth_m(&self, speed_m_s: f64, contact_mass_kg: f64) -> f64 {
         self.depth_of(0.5 * speed_m_s * speed_m_s, contact_mass_kg)
     }
 
@@ -187,19 +187,6 @@ pub fn stiffness_for_depth_of(
         .stiffness_n_mn
 }
 
-/// k_h \[N/mⁿ\] that gives an undamped impact at a speed the largest force of a linear contact of
-/// stiffness k_c: v·√(k_c·m).
-pub fn stiffness_for_peak_force_of(
-    linear_n_m: f64,
-    exponent: f64,
-    (speed_m_s, contact_mass_kg): (f64, f64),
-) -> f64 {
-    let force_n = speed_m_s * (contact_mass_kg * linear_n_m).sqrt();
-    undamped(exponent)
-        .with_peak_force(force_n, speed_m_s, contact_mass_kg)
-        .stiffness_n_mn
-}
-
 fn undamped(exponent: f64) -> HuntCrossley {
     HuntCrossley {
         stiffness_n_mn: 1.0,
@@ -276,10 +263,6 @@ mod tests {
             let k = stiffness_for_depth_of(k_c, n, (v, m));
             let depth = v * (m / k_c).sqrt();
             assert!((k / ((n + 1.0) * m * v * v / 2.0 / depth.powf(n + 1.0)) - 1.0).abs() < 1e-12);
-            let k = stiffness_for_peak_force_of(k_c, n, (v, m));
-            let force = v * (m * k_c).sqrt();
-            let closed = force.powf(n + 1.0) / ((n + 1.0) * m * v * v / 2.0).powf(n);
-            assert!((k / closed - 1.0).abs() < 1e-12);
             let law = HuntCrossley {
                 damping_s_m: 2.0,
                 ..undamped(n)

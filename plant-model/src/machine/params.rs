@@ -37,11 +37,11 @@ impl From<ParamError> for MachineError {
 }
 
 /// Most planes of a machine.
-pub const MAX_PLANES: usize = 4;
+pub(crate) const MAX_PLANES: usize = 4;
 /// Most magnets.
-pub const MAX_MAGNETS: usize = 4;
+pub(crate) const MAX_MAGNETS: usize = 4;
 /// Most motions in a direction: translation, tilt, bending modes and rings together.
-pub const MAX_MOTIONS: usize = 64;
+pub(crate) const MAX_MOTIONS: usize = 64;
 
 /// A rigid rotor with four lateral degrees of freedom. Positions along the axis count from its centre of mass.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -130,7 +130,7 @@ pub(crate) fn write_command<S: Scalar>(command: &CoreCommand<S>, entry: &Cells<E
 }
 
 /// Stretches of a track …
-pub const STRETCHES: usize = 64;
+pub(crate) const STRETCHES: usize = 64;
 /// … of so many ticks at first …
 const FIRST_TICKS: u16 = 32;
 /// … which double each time that so many have passed: 65 280 ticks in all.

@@ -288,3 +288,53 @@ fn unsafe_code_stays_at_the_border() {
     }
     assert!(read > 100, "{read} files");
 }
+
+/// Names of functions, constants and statics that the code of a crate makes public.
+fn public_names(text: &str) -> impl Iterator<Item = &str> {
+    let after = |line: &'_ str| -> Option<usize> {
+        let rest = line.trim_start().strip_prefix("pub ")?;
+        let kinds = ["const fn ", "unsafe fn ", "fn ", "const ", "static "];
+        let kind = kinds.into_iter().find(|kind| rest.starts_with(kind))?;
+        Some(line.len() - rest.len() + kind.len())
+    };
+    (text.lines()).filter_map(move |line| {
+        let name = &line[after(line)?..];
+        let end = name.find(|c: char| !c.is_alphanumeric() && c != '_');
+        Some(&name[..end.unwrap_or(name.len())])
+    })
+}
+
+/// What no other crate names is no crate's business: functions and constants are public where somebody outside calls them.
+#[test]
+fn what_nobody_else_names_is_private() {
+    let root = system_tests::root();
+    let words = |text: &str| -> BTreeSet<String> {
+        let all = text.split(|c: char| !c.is_alphanumeric() && c != '_');
+        all.map(str::to_owned).collect()
+    };
+    let folders = ["supervisor", "plant-model", "firmware-host", "tests"];
+    let files: Vec<(PathBuf, String)> = folders
+        .into_iter()
+        .flat_map(|folder| files_below(&root.join(folder)))
+        .map(|path| (path.clone(), std::fs::read_to_string(path).unwrap()))
+        .collect();
+    let said: Vec<BTreeSet<String>> = files.iter().map(|(_, text)| words(text)).collect();
+    let mut unused = Vec::new();
+    for krate in [
+        "supervisor/src",
+        "plant-model/src",
+        "firmware-host/bench/src",
+        "firmware-host/studies/src",
+    ] {
+        let own = root.join(krate);
+        let outside: BTreeSet<&str> = (files.iter().zip(&said))
+            .filter(|((path, _), _)| !path.starts_with(&own))
+            .flat_map(|(_, words)| words.iter().map(String::as_str))
+            .collect();
+        for (path, text) in files.iter().filter(|(path, _)| path.starts_with(&own)) {
+            let names = public_names(text).filter(|name| !outside.contains(name));
+            unused.extend(names.map(|name| format!("{}: {name}", path.display())));
+        }
+    }
+    assert!(unused.is_empty(), "make these private: {unused:#?}");
+}

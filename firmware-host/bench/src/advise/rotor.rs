@@ -11,7 +11,7 @@ use supervisor::Config;
 
 /// A turn of the nutation by the time a force acts beyond which the supervisor leaves the rotor to levitation, but for
 /// backward whirl \[rad\].
-pub const MOST_TURN_RAD: f64 = 1.25;
+pub(crate) const MOST_TURN_RAD: f64 = 1.25;
 
 /// Of a rotor with a supervisor; keys are stable.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -56,7 +56,7 @@ impl Turned {
     }
 
     /// As [`Self::meant`], in single precision.
-    pub fn meant_f32(self, v: [f32; 2]) -> [f32; 2] {
+    pub(crate) fn meant_f32(self, v: [f32; 2]) -> [f32; 2] {
         match self.0 {
             None => v,
             Some(axes) => {

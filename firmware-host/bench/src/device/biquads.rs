@@ -51,7 +51,7 @@ impl Biquad {
 
 /// Controllers of planes.
 #[derive(Debug, Clone)]
-pub struct Biquads {
+pub(crate) struct Biquads {
     /// None where there is no magnet.
     planes: Vec<Option<Plane>>,
 }
@@ -66,7 +66,7 @@ struct Plane {
 
 impl Biquads {
     /// Controllers at rest, one for each plane that has a magnet.
-    pub fn new(params: &[Option<BiquadsParams>]) -> Self {
+    pub(crate) fn new(params: &[Option<BiquadsParams>]) -> Self {
         let chain = |sections: &Vec<Section>| {
             let sections = sections.iter();
             sections
@@ -91,7 +91,7 @@ impl Biquads {
 
     /// Forces of the planes \[N\] for what their sensors measure \[m\], each within its cap; a reading that is no number
     /// counts as the last.
-    pub fn forces_n(&mut self, measured_m: impl Iterator<Item = V2>, forces_n: &mut [V2]) {
+    pub(crate) fn forces_n(&mut self, measured_m: impl Iterator<Item = V2>, forces_n: &mut [V2]) {
         for ((plane, measured_m), force_n) in self.planes.iter_mut().zip(measured_m).zip(forces_n) {
             *force_n = match plane {
                 Some(plane) => plane.force_n(measured_m),

@@ -11,7 +11,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 pub use firmware_controller::frame::{Question, Setup};
-pub use process::{SERVE, serve_libraries_by};
+pub use process::serve_libraries_by;
 
 /// In what a controller is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -47,7 +47,7 @@ impl SetDown {
 
 /// Velocity from positions by differences, smoothed.
 #[derive(Debug, Clone)]
-pub struct VelocityFilter {
+pub(crate) struct VelocityFilter {
     period_s: f64,
     filter_s: f64,
     last_m: Option<V2>,
@@ -56,7 +56,7 @@ pub struct VelocityFilter {
 
 impl VelocityFilter {
     /// A filter at rest; a time constant of 0 takes the plain difference.
-    pub fn new(filter_s: f64, period_s: f64) -> Self {
+    pub(crate) fn new(filter_s: f64, period_s: f64) -> Self {
         Self {
             period_s,
             filter_s,
@@ -66,7 +66,7 @@ impl VelocityFilter {
     }
 
     /// Velocity \[m/s\] after a position.
-    pub fn velocity_m_s(&mut self, measured_m: V2) -> V2 {
+    pub(crate) fn velocity_m_s(&mut self, measured_m: V2) -> V2 {
         let difference = (measured_m - self.last_m.unwrap_or(measured_m)) / self.period_s;
         self.last_m = Some(measured_m);
         let share = self.period_s / (self.period_s + self.filter_s);
@@ -76,7 +76,7 @@ impl VelocityFilter {
 
     /// A measured position, with the last one where a component is no number: one that got in would never
     /// get out of the filter again.
-    pub fn usable_m(&self, measured_m: V2) -> V2 {
+    pub(crate) fn usable_m(&self, measured_m: V2) -> V2 {
         let last = self.last_m.unwrap_or_default();
         measured_m.zip_map(&last, |new, old| if new.is_finite() { new } else { old })
     }

@@ -126,7 +126,7 @@ impl BaseMotion {
     }
 
     /// The inertial force that a mass feels.
-    pub fn on_mass(&self, mass_kg: f64) -> Disturbance {
+    pub(crate) fn on_mass(&self, mass_kg: f64) -> Disturbance {
         Disturbance {
             position_m: 0.0,
             start_s: self.start_s,

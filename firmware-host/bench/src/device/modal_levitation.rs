@@ -95,7 +95,7 @@ impl Mode {
 
 /// The controller.
 #[derive(Debug, Clone)]
-pub struct ModalLevitation {
+pub(crate) struct ModalLevitation {
     period_s: f64,
     cross_kg_m2: f64,
     stations: Vec<Station>,
@@ -109,7 +109,7 @@ pub struct ModalLevitation {
 
 impl ModalLevitation {
     /// A controller at rest.
-    pub fn new(params: &ModalLevitationParams, period_s: f64) -> Self {
+    pub(crate) fn new(params: &ModalLevitationParams, period_s: f64) -> Self {
         let (translation, tilt) = (params.translation, &params.tilt);
         let of = |places: Vec<f64>| Weights::new(&places);
         let stations = params.stations.iter();
@@ -135,7 +135,7 @@ impl ModalLevitation {
 
     /// Forces of the stations \[N\] for what their sensors measure \[m\], each within its cap; a reading that is no number
     /// counts as the last. Integrators stand while one is at its cap, or where a hint says so.
-    pub fn forces_n(
+    pub(crate) fn forces_n(
         &mut self,
         measured_m: impl Iterator<Item = V2>,
         spin_rad_s: f64,

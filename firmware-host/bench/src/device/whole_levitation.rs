@@ -38,7 +38,7 @@ impl WholeLevitationParams {
 
 /// The controller.
 #[derive(Debug)]
-pub enum WholeLevitation {
+pub(crate) enum WholeLevitation {
     /// By rigid mode.
     Modal(ModalLevitation),
     /// The user's matrices.
@@ -51,7 +51,7 @@ pub enum WholeLevitation {
 
 /// What holds for a sample, whatever the sensor.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct AtSample {
+pub(crate) struct AtSample {
     /// Time \[s\].
     pub t_s: f64,
     /// Spin as reported \[rad/s\].
@@ -65,7 +65,10 @@ impl WholeLevitation {
     ///
     /// # Errors
     /// [`ControllerError`] of a program that does not start.
-    pub fn new(params: &WholeLevitationParams, period_s: f64) -> Result<Self, ControllerError> {
+    pub(crate) fn new(
+        params: &WholeLevitationParams,
+        period_s: f64,
+    ) -> Result<Self, ControllerError> {
         Ok(match params {
             WholeLevitationParams::Modal(params) => {
                 Self::Modal(ModalLevitation::new(params, period_s))
@@ -83,7 +86,7 @@ impl WholeLevitation {
     ///
     /// # Errors
     /// [`ControllerError`] of a program.
-    pub fn forces_n(
+    pub(crate) fn forces_n(
         &mut self,
         readings: impl Iterator<Item = Reading>,
         at: AtSample,
@@ -108,7 +111,7 @@ impl WholeLevitation {
     ///
     /// # Errors
     /// [`ControllerError`] of a program that does not end.
-    pub fn close(self) -> Result<(), ControllerError> {
+    pub(crate) fn close(self) -> Result<(), ControllerError> {
         match self {
             Self::External(own) => own.close(),
             Self::Modal(_) | Self::StateSpace(_) | Self::Biquads(_) => Ok(()),

@@ -119,7 +119,7 @@ pub fn lined<C: Into<Cell>>(header: impl IntoIterator<Item = C>) -> Lines {
 }
 
 /// A table without headings.
-pub fn unlined() -> Lines {
+pub(crate) fn unlined() -> Lines {
     lined([""; 0])
 }
 

@@ -50,7 +50,7 @@ impl Listing {
     }
 
     /// What a terminal has as a table.
-    pub fn of_lines(caption: impl Into<String>, lines: &Lines) -> Self {
+    pub(crate) fn of_lines(caption: impl Into<String>, lines: &Lines) -> Self {
         let columns = (0..lines.headings().count()).map(|i| match lines.is_of_figures(i) {
             true => Column::Numbers,
             false => Column::Words,

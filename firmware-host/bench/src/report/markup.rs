@@ -20,7 +20,7 @@ impl Markup {
     }
 
     /// A text, and what it is in smaller letters below.
-    pub fn with_unit(text: &str, unit: &str) -> Self {
+    pub(crate) fn with_unit(text: &str, unit: &str) -> Self {
         match unit {
             "" => Self::text(text),
             unit => Self(format!("{} <small>{}</small>", escape(text), escape(unit))),
@@ -61,7 +61,7 @@ impl Markup {
     }
 
     /// The text for readers of HTML.
-    pub fn as_html(&self) -> &str {
+    pub(crate) fn as_html(&self) -> &str {
         &self.0
     }
 }

@@ -50,7 +50,7 @@ impl Kind {
 }
 
 /// What is written in columns: one, or several of what has parts.
-pub trait InColumns {
+pub(crate) trait InColumns {
     /// Its columns, under a name.
     fn columns(name: &str, into: &mut Vec<Column>);
     /// The cells of one, or empty ones.

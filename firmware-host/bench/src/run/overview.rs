@@ -21,13 +21,13 @@ const SHOWN: [fn(&TraceRow) -> f64; 8] = [
 
 /// A run as far as a report needs it.
 #[derive(Debug, Default)]
-pub struct Overview {
+pub(crate) struct Overview {
     trace: Trace,
 }
 
 impl Overview {
     /// What is left of the run, in time order.
-    pub fn into_trace(self) -> Trace {
+    pub(crate) fn into_trace(self) -> Trace {
         self.trace
     }
 

@@ -1,7 +1,7 @@
 //! What is recorded of a run: a row at every control sample and at every change of mode.
 
 use plant_model::machine::AxisMotion;
-use plant_model::{Body, Mode, Snapshot, V2};
+use plant_model::{Body, Snapshot, V2};
 use supervisor::{Command, Events, Limits, Report};
 
 /// One row, SI units.
@@ -92,24 +92,5 @@ impl TraceRow {
     /// Mode of the supervisor, where one runs.
     pub fn supervisor_mode(&self) -> Option<supervisor::Mode> {
         self.supervisor.map(|said| said.mode)
-    }
-}
-
-impl Trace {
-    /// Stretches of one plant mode: (mode, from \[s\], to \[s\]).
-    pub fn mode_bands(&self) -> Vec<(Mode, f64, f64)> {
-        let mut bands: Vec<(Mode, f64, f64)> = Vec::new();
-        for row in &self.rows {
-            let (mode, t) = (row.plant.mode, row.plant.t_s);
-            match bands.last_mut() {
-                Some(last) if last.0 == mode => last.2 = t,
-                Some(last) => {
-                    last.2 = t;
-                    bands.push((mode, t, t));
-                }
-                None => bands.push((mode, t, t)),
-            }
-        }
-        bands
     }
 }

@@ -114,7 +114,7 @@ impl Results {
 }
 
 /// Which runs went so far into the wall that their figures from there on say nothing of a machine.
-pub fn far_into_the_wall(runs: &[PolicyRun], clearance_m: f64) -> Option<String> {
+pub(crate) fn far_into_the_wall(runs: &[PolicyRun], clearance_m: f64) -> Option<String> {
     let is_far = |run: &&PolicyRun| run.verdict.figures.peak_penetration_m > clearance_m;
     let names: Vec<&str> = (runs.iter().filter(is_far))
         .map(|run| run.name.as_str())

@@ -13,7 +13,7 @@ use serde::Serialize;
 /// Number of checks of a run.
 pub const CHECKS: usize = 2;
 /// Distance above which runs count as different, in clearances.
-pub const THRESHOLD_CLEARANCES: f64 = 1e-3;
+pub(crate) const THRESHOLD_CLEARANCES: f64 = 1e-3;
 /// The check by the run's own method is so much tighter than the run.
 const TIGHTER: f64 = 1e-2;
 /// Tolerance of the check by another method, whose error at a given tolerance may be far larger than

@@ -106,7 +106,7 @@ impl Range {
     }
 
     /// Whether the smallest bound is itself outside.
-    pub fn is_open(&self) -> bool {
+    pub(crate) fn is_open(&self) -> bool {
         matches!(self, Self::Positive | Self::PositiveUpTo(_))
     }
 

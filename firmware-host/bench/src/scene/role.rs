@@ -11,7 +11,7 @@ use std::f64::consts::TAU;
 use supervisor::{Config, PARAMETERS};
 
 /// Damping of a mode with that of the force \[%\] below which the supervisor leaves flight to levitation.
-pub const LEAST_PERCENT: f64 = -0.5;
+pub(crate) const LEAST_PERCENT: f64 = -0.5;
 
 /// Bending beyond the line of the sensors, over the clearance, from which the rigid map from sensors to retainer bearings misleads
 /// a force that drives bending.
@@ -117,7 +117,7 @@ impl Scene {
     }
 
     /// Its bending modes below half the control rate under the force of a supervisor with these configurations, slowest first.
-    pub fn modes_at_risk(&self, configs: &[Config; 2]) -> Vec<ModeAtRisk> {
+    pub(crate) fn modes_at_risk(&self, configs: &[Config; 2]) -> Vec<ModeAtRisk> {
         let mass_kg = self.machine.rotor.rigid().mass_kg;
         let signals = configs.each_ref().map(SmallSignals::new);
         let modes = self.bends(&configs[0]).into_iter();
@@ -153,7 +153,7 @@ impl Scene {
     }
 
     /// The least of that, with its frequency; none where nothing bends below half the control rate.
-    pub fn least_damping(&self, configs: &[Config; 2]) -> Option<[f64; 2]> {
+    pub(crate) fn least_damping(&self, configs: &[Config; 2]) -> Option<[f64; 2]> {
         self.damping(configs).first().copied()
     }
 

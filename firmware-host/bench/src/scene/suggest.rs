@@ -9,7 +9,7 @@ use serde::Serialize;
 use supervisor::{Bearing, Config, DefaultRule, PARAMETERS};
 
 /// Control rates that the supervisor is made for \[Hz\].
-pub const SUPERVISED_RATES_HZ: std::ops::RangeInclusive<f64> = 1e4..=5e4;
+pub(crate) const SUPERVISED_RATES_HZ: std::ops::RangeInclusive<f64> = 1e4..=5e4;
 
 /// The suggested limit of positions lies at this share of the sensor's range, clear of the rail by more than its noise, …
 pub(crate) const RAIL_SHARE: f64 = 0.95;
@@ -75,7 +75,7 @@ pub struct Nominal {
 impl Nominal {
     /// Contact band that an offset of the retainer bearing needs \[clearances\], to see a touch on the side that is nearest
     /// to the sensors' centre; `None` where it has none.
-    pub fn contact_band_needed(&self) -> Option<f64> {
+    pub(crate) fn contact_band_needed(&self) -> Option<f64> {
         let needed = (3.0 * self.sensor_noise_m() + self.centre_offset_m) / self.clearance_m;
         (self.centre_offset_m != 0.0).then_some(needed)
     }
@@ -86,7 +86,7 @@ impl Nominal {
     }
 
     /// Force that the actuator has in every direction \[N\].
-    pub fn force_everywhere_n(&self) -> f64 {
+    pub(crate) fn force_everywhere_n(&self) -> f64 {
         (self.axis_force_max_n).map_or(self.force_max_n, |axis| axis.min(self.force_max_n))
     }
 
@@ -320,7 +320,7 @@ impl Nominal {
 
 /// Noise of the speed that the observer makes of the sensor's (root mean square), in flight and in
 /// contact \[m/s\].
-pub fn speed_noise_m_s(n: &Nominal, config: &Config) -> [f64; 2] {
+pub(crate) fn speed_noise_m_s(n: &Nominal, config: &Config) -> [f64; 2] {
     let per_gain = n.sensor_noise_m() / n.period_s();
     [
         per_gain * second_order_noise(f64::from(config.observer_pole_flight)),

@@ -13,7 +13,7 @@ impl Scene {
     }
 
     /// Those planes.
-    pub fn supervised_planes(&self) -> Option<[&PlaneScene; 2]> {
+    pub(crate) fn supervised_planes(&self) -> Option<[&PlaneScene; 2]> {
         Some(self.supervised()?.map(|plane| &self.planes[plane]))
     }
 

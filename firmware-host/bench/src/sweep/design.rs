@@ -28,7 +28,7 @@ impl Design {
 }
 
 /// Most runs of a sweep: so many strata a key still have numbers between them.
-pub const MOST_RUNS: u64 = 100_000_000;
+pub(crate) const MOST_RUNS: u64 = 100_000_000;
 
 /// The runs of a sweep by their numbers.
 #[derive(Debug, Clone, PartialEq)]
@@ -75,7 +75,7 @@ impl Points {
     }
 
     /// One run from each of as many strata of each key as there are runs.
-    pub fn latin_hypercube(runs: u64, keys: usize, seed: u64) -> Self {
+    pub(crate) fn latin_hypercube(runs: u64, keys: usize, seed: u64) -> Self {
         let strata = |key: usize| Permutation::new(runs, mixed(seed) ^ mixed(key as u64));
         Self {
             keys,

@@ -7,7 +7,7 @@ const LEAST_HALF_BITS: u32 = 4;
 /// A seeded permutation: a Feistel network over the next power of four, 256 at least, followed until it falls below n. It keeps nothing, so
 /// that n may be as large as it likes.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Permutation {
+pub(crate) struct Permutation {
     n: u64,
     half_bits: u32,
     keys: [u64; ROUNDS],
@@ -15,7 +15,7 @@ pub struct Permutation {
 
 impl Permutation {
     /// Of n numbers, at most 2⁶²; a permutation of its own for each seed, as far as there are so many.
-    pub fn new(n: u64, seed: u64) -> Self {
+    pub(crate) fn new(n: u64, seed: u64) -> Self {
         let bits = u64::BITS - n.saturating_sub(1).leading_zeros();
         let mut keys = [0; ROUNDS];
         for (round, key) in keys.iter_mut().enumerate() {
@@ -29,7 +29,7 @@ impl Permutation {
     }
 
     /// Where `i` < n goes.
-    pub fn at(&self, i: u64) -> u64 {
+    pub(crate) fn at(&self, i: u64) -> u64 {
         let mut x = i;
         loop {
             x = self.network(x);

@@ -154,7 +154,7 @@ impl Plan {
     }
 
     /// Runs of every chunk but the last.
-    pub fn chunk_runs(&self) -> u64 {
+    pub(crate) fn chunk_runs(&self) -> u64 {
         (self.runs() / CHUNK_RUNS).clamp(1, CHUNK_RUNS)
     }
 

@@ -3,9 +3,9 @@
 use crate::sweep::permutation::mixed;
 
 /// Points that it has.
-pub const SOBOL_POINTS: u64 = 1 << 16;
+pub(crate) const SOBOL_POINTS: u64 = 1 << 16;
 /// Dimensions that it has.
-pub const SOBOL_DIMENSIONS: usize = 256;
+pub(crate) const SOBOL_DIMENSIONS: usize = 256;
 
 /// A coordinate of a point, within 0 and 1 and neither.
 pub(crate) fn coordinate(point: u64, dimension: usize, seed: u64) -> f64 {

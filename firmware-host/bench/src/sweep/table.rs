@@ -144,14 +144,14 @@ impl Rows {
 }
 
 /// A file that is being written.
-pub struct RowsFile<W: Write + Send>(SerializedFileWriter<W>);
+pub(crate) struct RowsFile<W: Write + Send>(SerializedFileWriter<W>);
 
 impl<W: Write + Send> RowsFile<W> {
     /// Begins it.
     ///
     /// # Errors
     /// What the file system or the format refuses.
-    pub fn new(sink: W, columns: &[Column]) -> Result<Self, ParquetError> {
+    pub(crate) fn new(sink: W, columns: &[Column]) -> Result<Self, ParquetError> {
         let fields = columns.iter().map(field).collect::<Result<Vec<_>, _>>()?;
         let schema = Type::group_type_builder("sweep")
             .with_fields(fields)
@@ -174,7 +174,7 @@ impl<W: Write + Send> RowsFile<W> {
     ///
     /// # Errors
     /// What the file system or the format refuses.
-    pub fn group(&mut self, rows: &Rows) -> Result<(), ParquetError> {
+    pub(crate) fn group(&mut self, rows: &Rows) -> Result<(), ParquetError> {
         let mut group = self.0.next_row_group()?;
         for cells in &rows.cells {
             let Some(mut column) = group.next_column()? else {
@@ -197,7 +197,7 @@ impl<W: Write + Send> RowsFile<W> {
     ///
     /// # Errors
     /// What the file system or the format refuses.
-    pub fn end(self) -> Result<(), ParquetError> {
+    pub(crate) fn end(self) -> Result<(), ParquetError> {
         self.0.close().map(drop)
     }
 }
@@ -229,7 +229,7 @@ fn put<T: DataType, C>(
 }
 
 /// A file that is read.
-pub struct RowsReader {
+pub(crate) struct RowsReader {
     file: SerializedFileReader<File>,
     columns: Arc<[Column]>,
 }
@@ -239,7 +239,7 @@ impl RowsReader {
     ///
     /// # Errors
     /// What the file system says, or what is no such file.
-    pub fn open(file: File, columns: Arc<[Column]>) -> Result<Self, ParquetError> {
+    pub(crate) fn open(file: File, columns: Arc<[Column]>) -> Result<Self, ParquetError> {
         let file = SerializedFileReader::new(file)?;
         let schema = file.metadata().file_metadata().schema_descr();
         let names = schema.columns().iter().map(|c| c.name());
@@ -250,7 +250,7 @@ impl RowsReader {
     }
 
     /// How many rows it has.
-    pub fn len(&self) -> u64 {
+    pub(crate) fn len(&self) -> u64 {
         self.file
             .metadata()
             .file_metadata()
@@ -258,13 +258,8 @@ impl RowsReader {
             .unsigned_abs()
     }
 
-    /// Whether it has none.
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
-    }
-
     /// Its groups, each read when it is asked for.
-    pub fn groups(&self) -> impl Iterator<Item = Result<Rows, ParquetError>> + '_ {
+    pub(crate) fn groups(&self) -> impl Iterator<Item = Result<Rows, ParquetError>> + '_ {
         (0..self.file.num_row_groups()).map(|group| self.group(group))
     }
 

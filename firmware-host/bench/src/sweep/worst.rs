@@ -25,7 +25,7 @@ pub fn keep(plan: &Plan, store: &Store, summary: &Summary) -> Result<(), SweepEr
 ///
 /// # Errors
 /// [`SweepError`] where the scene cannot be read any more.
-pub fn scene_of(plan: &Plan, run: u64) -> Result<String, SweepError> {
+pub(crate) fn scene_of(plan: &Plan, run: u64) -> Result<String, SweepError> {
     let path = &plan.file.scene;
     let refused = |reason: String| SweepError::Read {
         what: "scene",

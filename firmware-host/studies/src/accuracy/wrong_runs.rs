@@ -51,7 +51,7 @@ enum Run {
 }
 
 /// Whether starts differ at all: a scene that starts at rest has one only.
-pub fn applies_to(scene: &Scene) -> bool {
+pub(crate) fn applies_to(scene: &Scene) -> bool {
     let start = &scene.start;
     [start.centre_velocity_m_s, start.tilt_rate_rad_s]
         .iter()

@@ -8,9 +8,9 @@ use plant_model::Mode;
 use std::ops::AddAssign;
 
 /// Normal speed from which an impact is to be found \[m/s\], and by how much its time may be off \[ticks\].
-pub const IMPACT_M_S: f64 = 0.005;
+pub(crate) const IMPACT_M_S: f64 = 0.005;
 /// See [`IMPACT_M_S`].
-pub const OFF_TICKS: f64 = 2.0;
+pub(crate) const OFF_TICKS: f64 = 2.0;
 
 /// Of how many things how many are right.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

@@ -32,7 +32,7 @@ impl Draw {
     }
 
     /// One of them.
-    pub fn one_of<T: Copy>(&mut self, of: &[T]) -> T {
+    pub(crate) fn one_of<T: Copy>(&mut self, of: &[T]) -> T {
         of[(self.share() * of.len() as f64) as usize]
     }
 

@@ -142,7 +142,7 @@ impl Machine {
     ///
     /// # Errors
     /// As [`Self::drawn`].
-    pub fn resilient(seed: u64, number: u64) -> Result<Self, SceneError> {
+    pub(crate) fn resilient(seed: u64, number: u64) -> Result<Self, SceneError> {
         let caps = Draw::new(!seed, number).decades(5.0, 30.0);
         Self::mounted(seed, number, Some(caps))
     }

@@ -31,7 +31,7 @@ impl Motion {
 /// Turns before something drives the rotor on to the wall.
 const BEFORE: f64 = 40.0;
 /// Turns for which it does.
-pub const DRIVEN: f64 = 15.0;
+pub(crate) const DRIVEN: f64 = 15.0;
 /// Turns after it.
 pub const TURNS: f64 = 150.0;
 
@@ -135,7 +135,7 @@ impl RubCase {
     }
 
     /// Time of a turn \[s\].
-    pub fn turn_s(&self) -> f64 {
+    pub(crate) fn turn_s(&self) -> f64 {
         TAU / self.spin_rad_s
     }
 

@@ -118,7 +118,7 @@ struct File {
 
 /// The budgets of all targets.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Budgets {
+pub(crate) struct Budgets {
     path: PathBuf,
     file: File,
 }
@@ -183,7 +183,7 @@ impl Budgets {
     ///
     /// # Errors
     /// [`BudgetError`].
-    pub fn load(path: &Path) -> Result<Self, BudgetError> {
+    pub(crate) fn load(path: &Path) -> Result<Self, BudgetError> {
         let text = std::fs::read_to_string(path).map_err(|reason| BudgetError::Read {
             path: path.to_owned(),
             reason,
@@ -206,7 +206,7 @@ impl Budgets {
     ///
     /// # Errors
     /// [`BudgetError::None`].
-    pub fn judge(
+    pub(crate) fn judge(
         &self,
         name: &'static str,
         number: &'static str,

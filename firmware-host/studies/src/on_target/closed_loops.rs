@@ -65,7 +65,10 @@ fn ticks_of(scene: &Scene) -> usize {
 ///
 /// # Errors
 /// [`CatalogueError`] if the catalogue is not valid.
-pub fn closed_loops(number: Number, ticks: usize) -> Result<(Vec<Piece>, usize), CatalogueError> {
+pub(crate) fn closed_loops(
+    number: Number,
+    ticks: usize,
+) -> Result<(Vec<Piece>, usize), CatalogueError> {
     let (mut left, mut left_out) = (ticks, 0);
     let chosen: Vec<Scene> = (scenes()?.into_iter())
         .filter(|scene| {

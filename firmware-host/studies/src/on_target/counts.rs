@@ -50,7 +50,7 @@ pub struct Counts {
 }
 
 /// Instructions and mode of each tick, of the image's file.
-pub fn ticks_of(bytes: &[u8]) -> impl Iterator<Item = (u32, u8)> {
+pub(crate) fn ticks_of(bytes: &[u8]) -> impl Iterator<Item = (u32, u8)> {
     let (words, _) = bytes.as_chunks::<4>();
     words.iter().map(|[low, middle, high, mode]| {
         let instructions = u32::from_le_bytes([*low, *middle, *high, 0]);
@@ -59,7 +59,7 @@ pub fn ticks_of(bytes: &[u8]) -> impl Iterator<Item = (u32, u8)> {
 }
 
 /// Reads the image's file; `None` if it is not one.
-pub fn counts_of(bytes: &[u8]) -> Option<Counts> {
+pub(crate) fn counts_of(bytes: &[u8]) -> Option<Counts> {
     if !bytes.len().is_multiple_of(4) {
         return None;
     }

@@ -107,21 +107,13 @@ impl Coverage {
     }
 
     /// Ticks that ended in a mode.
-    pub fn of_mode(&self, mode: Mode) -> u64 {
+    pub(crate) fn of_mode(&self, mode: Mode) -> u64 {
         self.ticks.iter().map(|row| row[mode as usize]).sum()
     }
 
     /// Ticks from one mode to another.
-    pub fn of_way(&self, from: Mode, to: Mode) -> u64 {
+    pub(crate) fn of_way(&self, from: Mode, to: Mode) -> u64 {
         self.ticks[from as usize][to as usize]
-    }
-
-    /// Modes that have no tick.
-    pub fn missing_modes(&self) -> Vec<Mode> {
-        MODES
-            .into_iter()
-            .filter(|m| self.of_mode(*m) == 0)
-            .collect()
     }
 
     /// Ways of [`ways`] that have no tick.

@@ -4,7 +4,7 @@ use super::machines::Machine;
 use std::collections::BTreeMap;
 use std::io::{self, Read};
 use std::path::Path;
-use std::process::{Child, ChildStderr, ChildStdin, ChildStdout, Command, Stdio};
+use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 use std::time::{Duration, Instant};
 
 /// The emulator.
@@ -69,7 +69,7 @@ pub enum Time {
 
 /// An emulator that runs; stopped when it is dropped.
 #[derive(Debug)]
-pub struct Running {
+pub(crate) struct Running {
     child: Child,
 }
 
@@ -86,7 +86,7 @@ impl Running {
     ///
     /// # Errors
     /// [`EmulatorError::Missing`], [`EmulatorError::Start`].
-    pub fn start(
+    pub(crate) fn start(
         machine: &Machine,
         image: &Path,
         folder: &Path,
@@ -100,7 +100,7 @@ impl Running {
     ///
     /// # Errors
     /// [`EmulatorError::Missing`], [`EmulatorError::Start`].
-    pub fn start_with(
+    pub(crate) fn start_with(
         machine: &Machine,
         image: &Path,
         folder: &Path,
@@ -134,17 +134,12 @@ impl Running {
     }
 
     /// The console of an emulator that was started with a piped input, once.
-    pub fn console(&mut self) -> Option<(ChildStdin, ChildStdout)> {
+    pub(crate) fn console(&mut self) -> Option<(ChildStdin, ChildStdout)> {
         self.child.stdin.take().zip(self.child.stdout.take())
     }
 
-    /// What it logs and says, once; [`wait`](Self::wait) then has none of it.
-    pub fn log(&mut self) -> Option<ChildStderr> {
-        self.child.stderr.take()
-    }
-
     /// Waits for the end. `None` after the limit.
-    pub fn wait(&mut self, limit: Duration) -> Option<Ended> {
+    pub(crate) fn wait(&mut self, limit: Duration) -> Option<Ended> {
         let until = Instant::now() + limit;
         let status = loop {
             match self.child.try_wait() {

@@ -89,7 +89,7 @@ impl Line {
 
 /// An emulated processor that supervises.
 #[derive(Debug)]
-pub struct Board {
+pub(crate) struct Board {
     line: Line,
     /// Why the loop broke, if it did: a tick cannot fail.
     broken: Option<LinkError>,
@@ -101,7 +101,7 @@ impl Board {
     ///
     /// # Errors
     /// [`LinkError`].
-    pub fn start(machine: &Machine, image: &Path, folder: &Path) -> Result<Self, LinkError> {
+    pub(crate) fn start(machine: &Machine, image: &Path, folder: &Path) -> Result<Self, LinkError> {
         let mut running = Running::start(machine, image, folder, Time::Free, Stdio::piped())?;
         let no_console = || io::Error::from(io::ErrorKind::NotConnected);
         let (input, output) = running.console().ok_or_else(no_console)?;
@@ -116,7 +116,7 @@ impl Board {
     ///
     /// # Errors
     /// [`LinkError`]; of a configuration that is refused too.
-    pub fn configure(&mut self, config: &Config) -> Result<(), LinkError> {
+    pub(crate) fn configure(&mut self, config: &Config) -> Result<(), LinkError> {
         let mut bytes = [0; CONFIG_BYTES];
         put_config(config, &mut bytes);
         match self.line.answer(CONFIGURE, &bytes)? {
@@ -134,7 +134,7 @@ impl Board {
     }
 
     /// Why the loop broke, if it did.
-    pub fn take_broken(&mut self) -> Option<LinkError> {
+    pub(crate) fn take_broken(&mut self) -> Option<LinkError> {
         self.broken.take()
     }
 
@@ -142,7 +142,7 @@ impl Board {
     ///
     /// # Errors
     /// [`LinkError`].
-    pub fn quit(mut self) -> Result<(), LinkError> {
+    pub(crate) fn quit(mut self) -> Result<(), LinkError> {
         self.line.input.write_all(&[QUIT])?;
         match self.running.wait(PATIENCE) {
             Some(ended) if ended.well => Ok(()),
@@ -154,13 +154,13 @@ impl Board {
 
 /// The supervisor on a board, as a policy has it.
 #[derive(Debug)]
-pub struct Emulated {
+pub(crate) struct Emulated {
     board: Rc<RefCell<Board>>,
 }
 
 impl Emulated {
     /// The new supervisor of a processor that has just been configured.
-    pub fn new(board: Rc<RefCell<Board>>) -> Self {
+    pub(crate) fn new(board: Rc<RefCell<Board>>) -> Self {
         Self { board }
     }
 }

@@ -85,7 +85,10 @@ fn ran(scene: &Scene, supervisor: Box<dyn Supervise>) -> Result<Ran, RunError> {
 ///
 /// # Errors
 /// [`TargetError`].
-pub fn in_the_loop(project: &Project, machine: &Machine) -> Result<Vec<LoopRow>, TargetError> {
+pub(crate) fn in_the_loop(
+    project: &Project,
+    machine: &Machine,
+) -> Result<Vec<LoopRow>, TargetError> {
     let folder = TempDir::with_prefix("supervisor-loop-")?;
     let image = project.image(machine, "in-the-loop");
     let board = Board::start(machine, &image, folder.path())?;

@@ -23,7 +23,7 @@ const PIECE_TICKS: usize = 4000;
 ///
 /// # Errors
 /// [`CatalogueError`] if the catalogue is not valid.
-pub fn made_up(number: Number, ticks: usize) -> Result<(Vec<Piece>, usize), CatalogueError> {
+pub(crate) fn made_up(number: Number, ticks: usize) -> Result<(Vec<Piece>, usize), CatalogueError> {
     made_up_by(SEED, number, ticks)
 }
 

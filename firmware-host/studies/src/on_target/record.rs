@@ -23,7 +23,7 @@ pub struct Length {
 
 impl Length {
     /// The long one.
-    pub const FULL: Self = Self::of(1_000_000);
+    pub(crate) const FULL: Self = Self::of(1_000_000);
     /// The short one; its instructions are counted.
     pub const QUICK: Self = Self::of(100_000);
 

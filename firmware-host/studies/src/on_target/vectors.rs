@@ -6,7 +6,7 @@ use std::io::{self, BufWriter, Write};
 use supervisor::PARAMETERS;
 
 /// Columns of a tick: first what the supervisor is told; from `force_x` on what it has to command.
-pub const TICK_COLUMNS: [&str; 19] = [
+pub(crate) const TICK_COLUMNS: [&str; 19] = [
     "piece",
     "sequence",
     "status",

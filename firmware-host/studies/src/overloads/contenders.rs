@@ -103,7 +103,7 @@ impl Contender {
 
     /// What competes for it on a scene of the catalogue, where the best counts. Only the reference has more than one: both
     /// of its laws, and the loops of the baselines with the true state, since a law made for impacts need not levitate best.
-    pub fn candidates(self, found: &TunedGains, scene: &Scene) -> Vec<Box<dyn Controller>> {
+    pub(crate) fn candidates(self, found: &TunedGains, scene: &Scene) -> Vec<Box<dyn Controller>> {
         if self != Self::Clairvoyant {
             return (self.controller(Task::Impact, found, scene).into_iter()).collect();
         }

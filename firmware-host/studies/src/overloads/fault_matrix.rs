@@ -13,7 +13,7 @@ use supervisor::Mode;
 /// Group of the sensor's faults …
 pub const SENSOR_FAULTS: &str = "sensor faults";
 /// … and of the drive's.
-pub const DRIVE_FAULTS: &str = "drive faults";
+pub(crate) const DRIVE_FAULTS: &str = "drive faults";
 
 /// Faults last so long, but for dropouts \[s\].
 const LASTS_S: f64 = 0.01;

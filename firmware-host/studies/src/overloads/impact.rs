@@ -30,7 +30,7 @@ pub fn recoverable_m_s(
 ///
 /// # Errors
 /// As [`recoverable_m_s`].
-pub fn recoverable_from(
+pub(crate) fn recoverable_from(
     scene: &Scene,
     name: &'static str,
     make: &dyn Fn(&Scene) -> Option<Box<dyn Controller>>,

@@ -9,7 +9,7 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 
 /// Promises about the sweeps.
-pub fn of_sweeps(rows: &[SweepRow]) -> Vec<Claim> {
+pub(crate) fn of_sweeps(rows: &[SweepRow]) -> Vec<Claim> {
     let mut promises = Vec::new();
     for row in rows
         .iter()
@@ -153,7 +153,7 @@ pub fn against_levitation(rows: &[ResultRow], alone: &str) -> Vec<Harm> {
 }
 
 /// Promises about the catalogue, compared with levitation alone.
-pub fn of_results(rows: &[ResultRow], harms: &[Harm]) -> Vec<Claim> {
+pub(crate) fn of_results(rows: &[ResultRow], harms: &[Harm]) -> Vec<Claim> {
     let worst = |value: &dyn Fn(&Harm) -> f64| harms.iter().map(value).fold(0.0, f64::max);
     let medians = force_ratios(harms);
     let mut promises = vec![

@@ -104,7 +104,7 @@ fn search_law(
 ///
 /// # Errors
 /// [`RunError`] of a run that cannot be trusted.
-pub fn impact_law(scene: &Scene, from_m_s: f64) -> Result<ClairvoyantLaw, RunError> {
+pub(crate) fn impact_law(scene: &Scene, from_m_s: f64) -> Result<ClairvoyantLaw, RunError> {
     search_law(&|law| {
         let mut scene = scene.clone();
         let (mut speed, mut last) = (from_m_s, 0.0);
@@ -123,7 +123,7 @@ pub fn impact_law(scene: &Scene, from_m_s: f64) -> Result<ClairvoyantLaw, RunErr
 }
 
 /// A speed from which the search may start: some steps of the grid below one that is known.
-pub fn search_from_m_s(known_m_s: f64) -> f64 {
+pub(crate) fn search_from_m_s(known_m_s: f64) -> f64 {
     (known_m_s / STEP.powi(5)).max(FIRST_M_S)
 }
 
@@ -131,7 +131,7 @@ pub fn search_from_m_s(known_m_s: f64) -> f64 {
 ///
 /// # Errors
 /// [`RunError`] of a run that cannot be trusted.
-pub fn whirl_law(scene: &Scene) -> Result<Option<ClairvoyantLaw>, RunError> {
+pub(crate) fn whirl_law(scene: &Scene) -> Result<Option<ClairvoyantLaw>, RunError> {
     let Some(arrest) = arrest_of(scene, 0) else {
         return Ok(None);
     };

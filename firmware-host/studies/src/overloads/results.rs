@@ -36,7 +36,7 @@ pub struct ResultRow {
 
 impl ResultRow {
     /// Whether it is a run of a scene of the user's own.
-    pub fn is_own(&self) -> bool {
+    pub(crate) fn is_own(&self) -> bool {
         self.group == OWN
     }
 
@@ -59,7 +59,7 @@ fn better(one: &Option<Figures>, other: &Option<Figures>) -> bool {
 }
 
 /// Runs a case under a policy. A run that cannot be trusted is a row with its error.
-pub fn run_case(
+pub(crate) fn run_case(
     case: &Case,
     (plant, rate_hz): (&str, f64),
     (contender, seed): (Contender, u64),
@@ -95,7 +95,7 @@ pub fn run_case(
 }
 
 /// Runs a user's own scene under one of its policies.
-pub fn run_own(scene: &Scene, kind: PolicyKind, seed: u64) -> ResultRow {
+pub(crate) fn run_own(scene: &Scene, kind: PolicyKind, seed: u64) -> ResultRow {
     let outcome = run(&seeded(scene, seed), kind, Keep::Verdict, &mut |_| {});
     let (metrics, error) = match outcome {
         Ok((figures, _)) => (Some(figures), None),

@@ -42,7 +42,7 @@ pub fn median(sorted: &[f64]) -> f64 {
 }
 
 /// The middle one of values in any order; NaN of none.
-pub fn median_of(values: impl Iterator<Item = f64>) -> f64 {
+pub(crate) fn median_of(values: impl Iterator<Item = f64>) -> f64 {
     let mut all: Vec<f64> = values.collect();
     all.sort_by(f64::total_cmp);
     median(&all)
@@ -53,7 +53,7 @@ const WHIRL_STEP: f64 = 0.01;
 const FIRST_WHIRL: f64 = 0.30;
 const LAST_WHIRL: f64 = 1.10;
 /// Speed at which the time is taken.
-pub const TIMED_SHARE: f64 = 0.85;
+pub(crate) const TIMED_SHARE: f64 = 0.85;
 
 /// What one seed gives.
 #[derive(Debug, Clone, Copy, PartialEq)]

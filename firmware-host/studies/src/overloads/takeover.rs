@@ -10,7 +10,7 @@ use plant_model::machine::params::MachineStart;
 
 /// Whirl counts as arrested when the backward angular momentum about the centre has fallen to this share of the
 /// start's.
-pub const ARRESTED: f64 = 0.25;
+pub(crate) const ARRESTED: f64 = 0.25;
 
 /// What came of a take-over.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -39,7 +39,7 @@ pub(crate) fn lost_beyond_m_s(speed_m_s: f64) -> f64 {
 }
 
 /// Lets a scene begin [`whirling`]. Its limit of whirl gives way where the start is beyond it.
-pub fn let_whirl(scene: &mut Scene, speed_m_s: f64) {
+pub(crate) fn let_whirl(scene: &mut Scene, speed_m_s: f64) {
     scene.start = whirling(scene, speed_m_s);
     scene.levitated_before = true;
     let limit_m_s = &mut scene.planes[0].whirl_speed_m_s;
@@ -47,7 +47,7 @@ pub fn let_whirl(scene: &mut Scene, speed_m_s: f64) {
 }
 
 /// What the whole cap of a plane's magnet can stop; `None` without a magnet or without friction.
-pub fn arrest_of(scene: &Scene, plane: usize) -> Option<Arrest> {
+pub(crate) fn arrest_of(scene: &Scene, plane: usize) -> Option<Arrest> {
     let plant = scene.plant(plane);
     Arrest::new(&plant, plant.magnet?.force_max_n)
 }

@@ -31,13 +31,13 @@ impl Configured {
     }
 
     /// Makes the mistake in what is no plane's own.
-    pub fn apply_to_all(&self, scene: &mut Scene) {
+    pub(crate) fn apply_to_all(&self, scene: &mut Scene) {
         (self.make_for_all)(scene);
     }
 }
 
 /// As the machine is.
-pub const AS_IT_IS: Configured = Configured {
+pub(crate) const AS_IT_IS: Configured = Configured {
     name: RIGHT,
     make: |_, _| {},
     make_for_all: |_| {},

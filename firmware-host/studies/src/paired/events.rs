@@ -1,7 +1,8 @@
 //! What happens.
 
 pub use super::point_events::Point;
-pub use super::written_events::{BEGIN_S, Written};
+pub(crate) use super::written_events::BEGIN_S;
+pub use super::written_events::Written;
 
 /// An event.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -23,7 +24,7 @@ impl Event {
 }
 
 /// What any machine meets beside blows and loads: starts, set-downs, unbalance, long loads, power that dips.
-pub const OF_ANY_MACHINE: [Written; 15] = [
+pub(crate) const OF_ANY_MACHINE: [Written; 15] = [
     Written::Restart,
     Written::RestartThenBlow,
     set_down(false, true),
@@ -46,7 +47,7 @@ const fn set_down(spins: bool, announced: bool) -> Written {
 }
 
 /// Blows at and loads on a rotor, power that fails, and nothing.
-pub const OF_ROTORS: [Written; 10] = [
+pub(crate) const OF_ROTORS: [Written; 10] = [
     Written::CentreBlow(70),
     Written::CentreBlow(130),
     Written::ConicalBlow(70),

@@ -133,27 +133,27 @@ impl Pair {
     }
 
     /// Whether only the supervisor does.
-    pub fn is_gained(&self) -> bool {
+    pub(crate) fn is_gained(&self) -> bool {
         self.supervisor.recovered && !self.levitation.recovered
     }
 
     /// Whether the rotor touches with the supervisor only.
-    pub fn newly_touches(&self) -> bool {
+    pub(crate) fn newly_touches(&self) -> bool {
         self.supervisor.touched() && !self.levitation.touched()
     }
 
     /// Whether the rotor is struck on and on with the supervisor alone: twice the touches, and ten more.
-    pub fn is_struck_on(&self) -> bool {
+    pub(crate) fn is_struck_on(&self) -> bool {
         self.supervisor.touches > 2 * self.levitation.touches + 10
     }
 
     /// Whether both recover and levitation alone touches.
-    pub fn is_comparable(&self) -> bool {
+    pub(crate) fn is_comparable(&self) -> bool {
         self.both_recover() && self.levitation.touched()
     }
 
     /// Whether both recover.
-    pub fn both_recover(&self) -> bool {
+    pub(crate) fn both_recover(&self) -> bool {
         self.levitation.recovered && self.supervisor.recovered
     }
 }
@@ -186,7 +186,7 @@ pub fn remark(tried: &Tried) -> Option<String> {
 ///
 /// # Errors
 /// Why the run cannot be trusted.
-pub fn run_rotor(scene: &Scene, kind: PolicyKind) -> Result<Outcome, String> {
+pub(crate) fn run_rotor(scene: &Scene, kind: PolicyKind) -> Result<Outcome, String> {
     run(scene, kind, Goal::Free).map(|(outcome, _)| outcome)
 }
 
@@ -235,7 +235,7 @@ pub fn pair(scene: &Scene, goal: Goal) -> Tried {
 
 /// So long levitation alone has to hold a rotor for it to count \[s\]: some loops drive a mode so slowly that they recover
 /// from an event first.
-pub const HOLDS_S: f64 = 3.0;
+pub(crate) const HOLDS_S: f64 = 3.0;
 
 /// Whether levitation alone has the rotor in the middle at the end of a scene, one of [`HOLDS_S`].
 pub fn is_held(scene: &Scene) -> bool {

@@ -89,7 +89,7 @@ impl Class {
     }
 
     /// Whether sensors and configuration are as they should be.
-    pub fn is_sound(&self) -> bool {
+    pub(crate) fn is_sound(&self) -> bool {
         self.sensors == Sensors::AsConfigured && self.configured == AS_IT_IS
     }
 
@@ -225,7 +225,7 @@ impl Plan {
 }
 
 /// The row of some cases, under a name.
-pub fn row_of<'a>(class: ClassName, cases: impl Iterator<Item = &'a Case>) -> Row {
+pub(crate) fn row_of<'a>(class: ClassName, cases: impl Iterator<Item = &'a Case>) -> Row {
     Row::new(class, cases.map(|case| (case.number, &case.tried)))
 }
 

@@ -145,12 +145,12 @@ impl Row {
     }
 
     /// Touches with the supervisor over those of levitation alone, summed where both recover.
-    pub fn touch_ratio(&self) -> f64 {
+    pub(crate) fn touch_ratio(&self) -> f64 {
         self.touches[1] as f64 / self.touches[0] as f64
     }
 
     /// Recoveries over levitation's.
-    pub fn recovery_ratio(&self) -> f64 {
+    pub(crate) fn recovery_ratio(&self) -> f64 {
         self.supervisor as f64 / self.levitation as f64
     }
 
@@ -285,7 +285,7 @@ impl ClassName {
 }
 
 /// Name of sensors that are what the supervisor is configured for.
-pub const AS_CONFIGURED: &str = "as configured";
+pub(crate) const AS_CONFIGURED: &str = "as configured";
 /// Name of a configuration without a mistake.
 pub const RIGHT: &str = "right";
 

@@ -52,7 +52,7 @@ impl RubCase {
     }
 
     /// Free after 50 turns in contact at most.
-    pub fn is_broken(&self, of: &Outcome) -> bool {
+    pub(crate) fn is_broken(&self, of: &Outcome) -> bool {
         of.recovered && self.turns(of) <= IN_TIME
     }
 

@@ -56,7 +56,7 @@ impl Sensors {
     ];
 
     /// Coordinates that fail around what happens.
-    pub const FAILING: [Self; 3] = [Self::Zero, Self::Stuck, Self::ZeroAndStuck];
+    pub(crate) const FAILING: [Self; 3] = [Self::Zero, Self::Stuck, Self::ZeroAndStuck];
 
     /// Name in tables.
     pub fn name(self) -> String {

@@ -7,7 +7,7 @@ use std::fmt::Write;
 use toml::Value;
 
 /// When it happens: by then the rotor levitates, and what turns with the spin has been there for long \[s\].
-pub const BEGIN_S: f64 = 0.25;
+pub(crate) const BEGIN_S: f64 = 0.25;
 
 /// What an event is measured by.
 #[derive(Debug, Clone, Copy)]

@@ -208,7 +208,7 @@ impl RotorPlant {
 
     /// Under a load of so many caps (in the middle: of all caps together) for so long \[s\], in this direction, with other
     /// noise.
-    pub fn overloaded(
+    pub(crate) fn overloaded(
         &self,
         end: Option<usize>,
         (share, duration_s): (f64, f64),

@@ -23,7 +23,7 @@ pub fn serve_libraries_by(program: PathBuf) {
 }
 
 /// The command of [`serve_libraries_by`]'s program.
-pub const SERVE: &str = "serve-controller";
+pub(crate) const SERVE: &str = "serve-controller";
 
 fn server() -> Option<PathBuf> {
     let known = SERVER.get().cloned();

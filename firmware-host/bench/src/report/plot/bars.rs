@@ -16,7 +16,7 @@ const VALUE: f64 = 64.0;
 
 /// A bar from 0 to the right.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Bar {
+pub(crate) struct Bar {
     /// What has the share.
     pub name: String,
     /// The share, up to 1; below 0 there is no bar, only its number.
@@ -24,7 +24,7 @@ pub struct Bar {
 }
 
 /// Draws bars from top to bottom; `label` is what a screen reader says.
-pub fn bars(label: &str, bars: &[Bar]) -> String {
+pub(crate) fn bars(label: &str, bars: &[Bar]) -> String {
     let room = f64::from(WIDTH) - 2.0 * MARGIN - VALUE;
     let x = |share: f64| MARGIN + room * share.clamp(0.0, 1.0);
     let step = NAME + BAR + BELOW;

@@ -177,7 +177,7 @@ pub fn chart(plot: &Chart) -> Result<String, PlotError> {
 }
 
 /// Draws a map.
-pub fn heat_map(plot: &HeatMap) -> Result<String, PlotError> {
+pub(crate) fn heat_map(plot: &HeatMap) -> Result<String, PlotError> {
     let picture = svg(&plot.label, |area| {
         // Cells are laid out evenly; a logarithmic axis says what their places mean, names stand in their middles.
         let [columns, rows] = &plot.names;
