@@ -1,0 +1,31 @@
+//! The plant: against closed forms, against itself by other methods and an independent code, stiff and extreme.
+
+mod bearing;
+mod changes;
+mod closed_forms;
+mod contact_law;
+mod contact_law_extremes;
+mod cost;
+mod degenerate;
+mod elliptic_bearing;
+mod extreme;
+mod flight_between_samples;
+mod linear;
+mod matrices;
+mod peaks;
+mod poles;
+mod properties;
+mod refusals;
+mod retainer_race;
+mod rotor_closed_forms;
+mod rotor_extremes;
+mod seals;
+mod shaft;
+mod silently_wrong;
+mod standstill;
+mod starts;
+mod starts_on_the_wall;
+mod stiff;
+mod stiff_benchmark_work;
+mod support;
+mod whirl_ranges;
