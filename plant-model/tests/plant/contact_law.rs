@@ -1,366 +1,168 @@
-//! Hunt and Crossley's contact law against the closed forms of its impacts, and one method against another.
+//! Hunt and Crossley's contact beyond a single impact, and at its extremes: an answer or a named error, no hang, and no wrong
+//! answer.
 
-use crate::support::bouncing::{bouncing, bouncing_start};
-use crate::support::plants::footnote_4;
-use plant_model::contact::hunt_crossley::{damping_for_restitution, restitution_of};
-use plant_model::params::*;
-use plant_model::{BuildError, Inputs, Method, Mode, Options, Plant, Snapshot, V2, build};
-
-const MASS_KG: f64 = 10.0;
-const CLEARANCE_M: f64 = 2e-4;
-const PAIRS: [Method; 1] = [Method::Collocation];
-
-/// A free mass in a rigid stator.
-fn free_mass(law: HuntCrossley, friction: f64) -> PlantParams {
-    PlantParams {
-        rotor: RotorParams {
-            mass_kg: MASS_KG,
-            stiffness_n_m: 0.0,
-            damping_n_s_m: 0.0,
-            eccentricity_m: 0.0,
-            contact_radius_m: 0.1,
-        },
-        spin: SpinParams::Held,
-        stator: StatorParams::Rigid,
-        contact: ContactParams {
-            clearance_m: CLEARANCE_M,
-            law: law.into(),
-        },
-        friction: FrictionParams {
-            sliding: SlidingFriction::Constant {
-                coefficient: friction,
-            },
-            rolling_coefficient: 0.0,
-        },
-        magnet: None,
-        race: None,
-    }
-}
-
-fn start(position_m: V2, velocity_m_s: V2, spin_rad_s: f64) -> Start {
-    Start {
-        position_m,
-        velocity_m_s,
-        spin_rad_s,
-        spin_phase_rad: 0.0,
-    }
-}
-
-/// k_h such that an impact at 0.2 m/s is 1e-5 m deep without damping.
-fn law(exponent: f64, damping_s_m: f64) -> HuntCrossley {
-    HuntCrossley {
-        stiffness_n_mn: 1.0,
-        exponent,
-        damping_s_m: 0.0,
-    }
-    .with_depth(1e-5, 0.2, MASS_KG)
-    .damped(damping_s_m)
-}
-
-trait Damped {
-    fn damped(self, damping_s_m: f64) -> Self;
-}
-
-impl Damped for HuntCrossley {
-    fn damped(self, damping_s_m: f64) -> Self {
-        Self {
-            damping_s_m,
-            ..self
-        }
-    }
-}
-
-fn options(method: Method, rtol: f64) -> Options {
-    Options {
-        rtol,
-        method,
-        ..Options::default()
-    }
-}
-
-/// Runs until the first contact is over: how long it took, and its end.
-fn impact(plant: &mut Plant, sample_s: f64) -> (f64, Snapshot) {
-    let (mut touch, mut leave) = (None, None);
-    for i in 1..200_000 {
-        plant
-            .advance(
-                f64::from(i) * sample_s,
-                &Inputs::default(),
-                &mut |s| match s.mode {
-                    Mode::Flight => leave = leave.or(Some(*s)),
-                    _ => touch = touch.or(Some(s.t_s)),
-                },
-            )
-            .unwrap();
-        if let (Some(touch), Some(leave)) = (touch, leave) {
-            return (leave.t_s - touch, leave);
-        }
-    }
-    panic!("no impact");
-}
-
-/// Peak penetration, contact time, restitution and energy of head-on impacts.
-#[test]
-fn impacts_are_those_of_the_closed_forms() {
-    let speed = 0.2;
-    for method in PAIRS {
-        for n in [1.0, 1.25, 1.5, 2.0, 3.0] {
-            for p in [0.0, 0.01, 0.5, 5.0] {
-                let law = law(n, p / speed);
-                let from = start(V2::new(1.9e-4, 0.0), V2::new(speed, 0.0), 0.0);
-                let mut plant = build(&free_mass(law, 0.0), &from, options(method, 1e-12)).unwrap();
-                let duration = law.undamped_contact_s(speed, MASS_KG);
-                let (took, end) = impact(&mut plant, 2.0 * duration);
-                let name = format!("{method:?} n = {n} λv = {p}");
-                let e = -end.velocity_m_s.x / speed;
-                assert!(
-                    (e / restitution_of(p) - 1.0).abs() < 1e-9,
-                    "{name}: e = {e}, {}",
-                    restitution_of(p)
-                );
-                if p == 0.0 {
-                    assert!(
-                        (took / duration - 1.0).abs() < 1e-8,
-                        "{name}: {took} {duration}"
-                    );
-                }
-                let meters = plant.meters();
-                let depth = law.depth_m(speed, MASS_KG);
-                assert!(
-                    (meters.peak_penetration_m / depth - 1.0).abs() < 2e-3,
-                    "{name}"
-                );
-                let force = law.peak_force_n(speed, MASS_KG);
-                assert!(
-                    (meters.peak_contact_force_n / force - 1.0).abs() < 2e-2,
-                    "{name}"
-                );
-                let audit = plant.audit();
-                let lost = 0.5 * MASS_KG * speed * speed * (1.0 - e * e);
-                assert!(audit.residual() < 1e-10, "{name}: {}", audit.residual());
-                assert!(
-                    (audit.flows.contact_damping - lost).abs() < 1e-9 * audit.turnover_j(),
-                    "{name}"
-                );
-                let impulse = MASS_KG * speed * (1.0 + e);
-                let booked = audit.flows.normal_impulse_n_s;
-                assert!((booked / impulse - 1.0).abs() < 1e-9, "{name}: impulse");
-            }
-        }
-    }
-}
-
-/// The deepest point met exactly: where the rotor stands still.
-#[test]
-fn the_peak_penetration_is_the_closed_one() {
-    for (n, p) in [(1.5, 0.0), (1.5, 0.7), (2.5, 0.2)] {
-        let (law, speed) = (law(n, p / 0.2), 0.2);
-        let from = start(V2::new(CLEARANCE_M, 0.0), V2::new(speed, 0.0), 0.0);
-        let mut plant = build(&free_mass(law, 0.0), &from, options(Method::Auto, 1e-12)).unwrap();
-        assert_eq!(plant.method(), Method::Collocation);
-        let whole = law.undamped_contact_s(speed, MASS_KG);
-        let mut deepest = 0.0_f64;
-        for i in 1..40_000 {
-            let t = whole * f64::from(i) / 40_000.0;
-            plant.advance(t, &Inputs::default(), &mut |_| {}).unwrap();
-            deepest = deepest.max(plant.snapshot().penetration_m);
-        }
-        let exact = law.depth_m(speed, MASS_KG);
-        assert!(
-            (deepest / exact - 1.0).abs() < 1e-8,
-            "n = {n}: {deepest} {exact}"
-        );
-    }
-}
-
-/// Hard contact, sliding all along: v_t changes by μ·(1 + e)·v_r.
-#[test]
-fn a_sliding_impact_turns_by_friction_times_the_normal_impulse() {
-    let (speed, mu) = (0.2, 0.15);
-    for method in PAIRS {
-        for e in [1.0, 0.7, 0.2] {
-            let lambda = damping_for_restitution(e, speed).unwrap();
-            // Hard: 1e-9 m deep.
-            let law = law(1.5, 0.0)
-                .with_depth(1e-9, speed, MASS_KG)
-                .damped(lambda);
-            let from = start(V2::new(1.9e-4, 0.0), V2::new(speed, 0.0), 100.0);
-            let mut plant = build(&free_mass(law, mu), &from, options(method, 1e-11)).unwrap();
-            plant
-                .advance(1e-4, &Inputs::default(), &mut |_| {})
-                .unwrap();
-            let end = plant.snapshot();
-            assert_eq!(end.mode, Mode::Flight);
-            let exact = -mu * (1.0 + e) * speed;
-            // Curvature: of the order of depth over clearance.
-            assert!(
-                (end.velocity_m_s.y / exact - 1.0).abs() < 2e-5,
-                "{} {exact}",
-                end.velocity_m_s.y
-            );
-            assert!((end.velocity_m_s.x / (-e * speed) - 1.0).abs() < 2e-5);
-        }
-    }
-}
-
-/// A restitution is met in a stator of rings as well, with the reduced mass.
-#[test]
-fn a_ring_takes_its_share() {
-    let (speed, e) = (0.2, 0.6);
-    let lambda = damping_for_restitution(e, speed).unwrap();
-    let mut params = free_mass(law(1.5, lambda), 0.0);
-    params.stator = StatorParams::OneMass(RingParams {
-        mass_kg: 5.0,
-        stiffness_n_m: V2::zeros(),
-        damping_n_s_m: V2::zeros(),
-    });
-    for method in PAIRS {
-        let from = start(V2::new(1.9e-4, 0.0), V2::new(speed, 0.0), 0.0);
-        let mut plant = build(&params, &from, options(method, 1e-11)).unwrap();
-        let (_, end) = impact(&mut plant, 1e-3);
-        let apart = end.inner_ring.velocity.x - end.velocity_m_s.x;
-        assert!((apart / (e * speed) - 1.0).abs() < 1e-8, "{apart}");
-    }
-}
-
-fn hardening(mut params: PlantParams, speed_m_s: f64, restitution: f64) -> PlantParams {
-    let m = params.contact_mass_kg();
-    let force_n = speed_m_s * (params.contact.stiffness_n_m() * m).sqrt();
-    let law = HuntCrossley {
-        stiffness_n_mn: 1.0,
-        exponent: 1.5,
-        damping_s_m: damping_for_restitution(restitution, speed_m_s).unwrap(),
-    };
-    params.contact.law = law.with_peak_force(force_n, speed_m_s, m).into();
-    params
-}
-
-/// Explicit pair and stiff method end at the same place through the same modes; the books close.
-#[test]
-fn explicit_and_stiff_agree() {
-    let mut runs: Vec<(&str, PlantParams, Start, f64, f64)> = vec![
-        (
-            "bouncing",
-            hardening(bouncing(1e8), 0.3, 0.75),
-            bouncing_start(),
-            0.1,
-            2e-6,
-        ),
-        (
-            "footnote 4",
-            hardening(footnote_4(), 0.4, 0.8),
-            start(V2::new(2e-4, 0.0), V2::new(0.4, 0.0), 250.0),
-            0.02,
-            1e-6,
-        ),
-    ];
-    let mut loose = runs[1].1;
-    loose.friction.sliding = SlidingFriction::Falling {
-        at_rest: 0.3,
-        at_speed: 0.1,
-        speed_scale_m_s: 3.0,
-    };
-    loose.rotor.eccentricity_m = 1e-5;
-    runs.push(("falling friction, unbalance", loose, runs[1].2, 0.02, 1e-6));
-    for (name, params, from, duration_s, near) in runs {
-        let run = |method, rtol| {
-            let mut plant = build(&params, &from, options(method, rtol)).unwrap();
-            let mut modes = Vec::new();
-            for i in 1..=20 {
-                let t = duration_s * f64::from(i) / 20.0;
-                plant
-                    .advance(t, &Inputs::default(), &mut |s| modes.push(s.mode))
-                    .unwrap();
-            }
-            let residual = plant.audit().residual();
-            println!(
-                "{name} {method:?} {rtol:e}: residual {residual:e} {:?}",
-                plant.work()
-            );
-            assert!(residual < 10.0 * rtol, "{name} {method:?}: {residual:e}");
-            (plant.snapshot().position_m, modes)
-        };
-        let (a, b) = (
-            run(Method::Collocation, 1e-12),
-            run(Method::Collocation, 1e-10),
-        );
-        assert_eq!(a.1, b.1, "{name}");
-        let apart = (a.0 - b.0).norm() / params.contact.clearance_m;
-        assert!(apart < near, "{name}: {apart:e}");
-        for (method, rtol) in [(Method::Collocation, 1e-6), (Method::Collocation, 1e-9)] {
-            run(method, rtol);
-        }
-    }
-}
+use crate::support::*;
+use plant_model::contact::hunt_crossley::damping_for_restitution;
 
 /// n = 1 and λ = 0 is the linear law.
 #[test]
 fn exponent_one_is_the_linear_law() {
-    let mut params = bouncing(1e8);
-    params.contact.law = LinearContact {
-        stiffness_n_m: 1e8,
-        damping_n_s_m: 0.0,
-    }
-    .into();
-    let end = |params: &PlantParams| {
-        let mut plant = build(
-            params,
-            &bouncing_start(),
-            options(Method::Collocation, 1e-12),
-        )
-        .unwrap();
-        plant
-            .advance(0.02, &Inputs::default(), &mut |_| {})
-            .unwrap();
+    let end = |law: ContactLaw| {
+        let mut params = bouncing(1e8);
+        params.contact.law = law;
+        let of = options(Method::Collocation, 1e-12);
+        let mut plant = build(&params, &bouncing_start(), of).unwrap();
+        run_to(&mut plant, 0.02);
         plant.snapshot().position_m
     };
-    let linear = end(&params);
-    params.contact.law = HuntCrossley {
-        stiffness_n_mn: 1e8,
-        exponent: 1.0,
-        damping_s_m: 0.0,
-    }
-    .into();
-    let apart = (end(&params) - linear).norm() / params.contact.clearance_m;
-    assert!(apart < 1e-8, "{apart:e}");
+    let hardens = hardening(1e8, 1.0, 0.0);
+    let linear = linear(1e8, 1.0);
+    close("end", end(hardens.into()), end(linear.into()), 1e-8 * 3e-4);
 }
 
+fn plant_of(law: HuntCrossley) -> PlantParams {
+    let mut params = bouncing(1e8);
+    params.contact.law = law.into();
+    params.friction.rolling_coefficient = 0.02;
+    params
+}
+
+const NO: [f64; 2] = [0.0; 2];
+const PUSH: [f64; 2] = [2000.0, 0.0];
+const PULL: [f64; 2] = [-9000.0, 0.0];
+const WEIGHT: [f64; 2] = [0.0, -98.1];
+
+/// Position and velocity at the start \[m, m/s\], force before and after the middle \[N\].
+const CASES: [(&str, [[f64; 2]; 4]); 9] = [
+    ("head-on", [NO, [0.3, 0.0], NO, NO]),
+    ("in the wall", [[3.2e-4, 0.0], NO, NO, NO]),
+    ("in it, inwards", [[3.2e-4, 0.0], [-0.2, 0.0], NO, NO]),
+    ("in it, outwards", [[3.2e-4, 0.0], [0.2, 0.1], NO, NO]),
+    ("on it, along it", [[3e-4, 0.0], [0.0, 0.5], NO, NO]),
+    ("grazing", [[0.0, 2.999e-4], [0.06, 0.0], NO, NO]),
+    ("dropped", [[2.5e-4, 0.0], NO, PUSH, PUSH]),
+    ("lying, then pulled off", [[3e-4, 0.0], NO, PUSH, PULL]),
+    ("under its weight", [[0.0, -3e-4], NO, WEIGHT, WEIGHT]),
+];
+
 #[test]
-fn what_does_not_fit_is_refused_by_name() {
-    let at = start(V2::zeros(), V2::zeros(), 0.0);
-    let params = free_mass(law(1.5, 0.0), 0.1);
-    let refused = build(&params, &at, options(Method::Series, 1e-9))
-        .err()
-        .unwrap();
-    assert_eq!(refused, BuildError::NoSeries);
-    assert!(refused.to_string().contains("collocation"));
-    for (law, field) in [
-        (
-            HuntCrossley {
-                stiffness_n_mn: 0.0,
-                ..law(1.5, 0.0)
-            },
-            "contact.stiffness_n_mn",
-        ),
-        (
-            HuntCrossley {
-                exponent: 0.9,
-                ..law(1.5, 0.0)
-            },
-            "contact.exponent",
-        ),
-        (
-            HuntCrossley {
-                exponent: f64::NAN,
-                ..law(1.5, 0.0)
-            },
-            "contact.exponent",
-        ),
-        (law(1.5, -1.0), "contact.damping_s_m"),
-    ] {
-        match build(&free_mass(law, 0.1), &at, Options::default()) {
-            Err(BuildError::Param(e)) => assert_eq!(e.field, field),
-            _ => panic!("{field} was taken"),
+fn extremes_end_with_an_answer_or_a_named_error() {
+    let (mut runs, mut errors) = (0, 0);
+    for ((name, case), n) in each(&CASES, &[1.0, 1.5, 3.0]) {
+        for (depth_m, damping_s_m) in each(&[1e-6, 1e-5, 1e-3], &[0.0, 1.0, 1e5]) {
+            let [at, v, before, after] = case.map(V2::from);
+            let from = start(at, v, 400.0);
+            let options = Options {
+                steps_per_sample: 5_000,
+                steps: 20_000,
+                ..Options::default()
+            };
+            let params = plant_of(hertz(n, depth_m, 0.3, damping_s_m));
+            let mut plant = build(&params, &from, options).unwrap();
+            let mut run = || -> Result<(), PlantError> {
+                for i in 1..=20 {
+                    let push = load(if i > 10 { after } else { before });
+                    plant.advance(1e-3 * f64::from(i), &push, &mut |_| {})?;
+                }
+                Ok(())
+            };
+            let ended = run();
+            let what = format!("{name} n = {n} {depth_m:e} λ = {damping_s_m:e}");
+            runs += 1;
+            let residual = plant.audit().residual();
+            // Beyond 1000·rtol the host refuses a run.
+            if ended.is_err() || residual > 1e-6 {
+                errors += 1;
+                println!("{what}: {ended:?}, residual {residual:e}");
+            }
         }
     }
+    // The hardest of them vibrate too fast for the steps allowed here.
+    assert!(errors * 10 <= runs, "{errors} of {runs}");
+}
+
+/// Pulled off faster than the wall relaxes the force ends with a dent, and the energy of the dent is lost.
+#[test]
+fn a_wall_does_not_pull() {
+    let law = hardening(1e11, 1.5, 50.0);
+    let mut params = plant_of(law);
+    params.rotor.eccentricity_m = 0.0;
+    params.friction.sliding = constant(0.0);
+    let from = start(V2::new(3e-4 + 1e-5, 0.0), V2::zeros(), 400.0);
+    let mut run = build(&params, &from, Options::default()).unwrap();
+    let mut left = None;
+    run.advance(1e-3, &load(V2::new(-5e4, 0.0)), &mut |s| {
+        if s.mode == Mode::Flight {
+            left = left.or(Some(*s));
+        }
+    })
+    .unwrap();
+    let left = left.unwrap();
+    // Where 1 + λB = 0, still dented.
+    assert!((left.velocity_m_s.x * 50.0 + 1.0).abs() < 1e-9, "{left:?}");
+    assert!(left.penetration_m > 1e-6, "{left:?}");
+    closes("pulled", run.audit().residual(), 1e-10);
+}
+
+/// A rotor dropped on the wall bounces ever lower until it lies there with the force that holds it.
+#[test]
+fn bouncing_comes_to_rest_at_the_static_depth() {
+    let law = hardening(1e11, 1.5, damping_for_restitution(0.3, 0.1).unwrap());
+    let mut params = plant_of(law);
+    (params.rotor.eccentricity_m, params.rotor.stiffness_n_m) = (0.0, 0.0);
+    let from = start(V2::new(2.9e-4, 0.0), V2::zeros(), 0.0);
+    let mut run = build(&params, &from, Options::default()).unwrap();
+    let push = load(V2::new(3000.0, 0.0));
+    run.advance(0.5, &push, &mut |_| {}).unwrap();
+    let now = run.snapshot();
+    assert!(now.mode.in_contact());
+    near("N", now.normal_force_n, 3000.0, 1e-4);
+    let dent = (3000.0_f64 / 1e11).powf(2.0 / 3.0);
+    near("dent", now.penetration_m, dent, 1e-4);
+}
+
+/// 100 starts against a reference that survives a change of method: none ends elsewhere.
+#[test]
+fn no_run_is_silently_wrong() {
+    const TOLERANCES: [f64; 4] = [1e-4, 1e-6, 1e-8, 1e-10];
+    let speed = 0.3;
+    let damping_s_m = damping_for_restitution(0.75, speed).unwrap();
+    let depth_m = speed * (10.0_f64 / 1e8).sqrt();
+    let mut params = plant_of(hertz(1.5, depth_m, speed, damping_s_m));
+    params.friction.rolling_coefficient = 0.0;
+    let run = |speed_m_s: f64, method: Method, rtol: f64| {
+        let from = Start {
+            velocity_m_s: V2::new(speed_m_s, 0.0),
+            ..bouncing_start()
+        };
+        let mut plant = build(&params, &from, options(method, rtol)).unwrap();
+        let mut modes = Vec::new();
+        let mut on_change = |s: &Snapshot| modes.push(s.mode);
+        plant
+            .advance(0.1, &load(V2::zeros()), &mut on_change)
+            .unwrap();
+        (plant.snapshot().position_m, modes)
+    };
+    let agree = |a: &(V2, Vec<Mode>), b: &(V2, Vec<Mode>)| {
+        a.1 == b.1 && (a.0 - b.0).norm() < 0.5 * params.contact.clearance_m
+    };
+    let (mut wrong, mut left_out, mut changes) = ([0_u32; 4], 0, 0);
+    for i in 0..100 {
+        let speed = 0.05 + 0.399 * f64::from(i) / 99.0;
+        let reference = run(speed, Method::Collocation, 1e-13);
+        let second = run(speed * (1.0 + 1e-12), Method::Collocation, 1e-10);
+        if !agree(&reference, &second) {
+            left_out += 1;
+            continue;
+        }
+        changes += reference.1.len();
+        for (wrong, rtol) in wrong.iter_mut().zip(TOLERANCES) {
+            *wrong += u32::from(!agree(&reference, &run(speed, Method::Auto, rtol)));
+        }
+    }
+    println!("wrong {wrong:?} at {TOLERANCES:?}, {left_out} left out, {changes} changes of mode");
+    // At 1e-6 one run misses a hop before it rolls, and ends 1e-5 clearances off.
+    assert!(wrong[0] <= 2 && wrong[1] <= 1, "{wrong:?}");
+    assert!(wrong[2..].iter().all(|w| *w == 0), "{wrong:?}");
+    assert!(left_out <= 2, "{left_out} left out");
 }

@@ -1,20 +1,15 @@
 //! Flight from sample to sample goes by a map once the step length recurs; cut at other times it goes by
 //! the series. Both must be the same flight.
 
-use crate::support::plants::footnote_4;
-use plant_model::params::*;
-use plant_model::{Inputs, Options, Plant, V2, build};
+use crate::support::*;
 
 const PERIOD_S: f64 = 5e-5;
-const SAMPLES: u32 = 400;
 
 /// Every part that flies: no, one and two rings (the rings at different stiffness by axis, after a push),
 /// lag and none, damping and none, drive torque.
-fn plants() -> Vec<PlantParams> {
-    let StatorParams::TwoMass { inner, outer } = footnote_4().stator else {
-        panic!("footnote 4 has two rings");
-    };
-    let ring = RingParams {
+fn point_masses() -> Vec<MachineParams> {
+    let [inner, outer] = two_rings();
+    let inner = RingParams {
         stiffness_n_m: V2::new(8.9e8, 6.0e8),
         damping_n_s_m: V2::new(300.0, 500.0),
         ..inner
@@ -23,138 +18,149 @@ fn plants() -> Vec<PlantParams> {
         damping_n_s_m: V2::new(200.0, 100.0),
         ..outer
     };
-    let stators = [
-        StatorParams::Rigid,
-        StatorParams::OneMass(ring),
-        StatorParams::TwoMass { inner: ring, outer },
-    ];
     let mut all = Vec::new();
-    for stator in stators {
-        for lag_s in [0.0, 2e-4] {
-            for stiffness_n_m in [9.1e5, -2e5] {
-                let mut params = footnote_4();
-                params.stator = stator;
-                params.rotor.stiffness_n_m = stiffness_n_m;
-                params.rotor.damping_n_s_m = if lag_s > 0.0 { 20.5 } else { 0.0 };
-                params.spin = SpinParams::Free {
-                    inertia_kg_m2: 0.05,
-                    drive_torque_n_m: 3.0,
-                };
-                params.magnet = Some(MagnetParams {
-                    force_max_n: 500.0,
-                    lag_s,
-                });
-                all.push(params);
-            }
-        }
+    for case in 0..12 {
+        let mut params = footnote_4();
+        params.stator = stators(inner, outer)[case % 3];
+        let lag_s = if case < 6 { 0.0 } else { 2e-4 };
+        params.rotor.stiffness_n_m = if case % 2 == 0 { 9.1e5 } else { -2e5 };
+        params.rotor.damping_n_s_m = if lag_s > 0.0 { 20.5 } else { 0.0 };
+        params.spin = free_spin(0.05, 3.0);
+        params.magnet = Some(magnet_of(500.0, lag_s));
+        all.push(params.machine());
     }
     all
 }
 
-fn input(sample: u32) -> Inputs {
-    let phase = f64::from(sample);
-    Inputs {
-        command_n: V2::new(300.0 * (0.3 * phase).sin(), 200.0 * (0.11 * phase).cos()),
-        external_n: V2::new(0.0, -20.0),
+/// Four bending modes that are coupled by their slopes and by a damper somewhere along the shaft, a ring, a race, magnets with and
+/// without lag, a load and weight.
+fn whole_rotor() -> MachineParams {
+    let mut params = machine();
+    params.rotor = modal(&rigid(0.2, 0.3), bending(4, 1900.0));
+    if let Rotor::Modal {
+        polar_coupling_kg_m2: coupling,
+        damping_n_s_m,
+        ..
+    } = &mut params.rotor
+    {
+        *coupling = vec![0.0; 25];
+        (coupling[1], coupling[5], coupling[6]) = (0.2, 0.2, 0.5);
+        let moved = [1.0, 0.05, 0.7, -0.4, 0.2, 0.1];
+        let both = moved.iter().flat_map(|a| moved.map(|b| 40.0 * (a * b)));
+        *damping_n_s_m = both.collect();
     }
+    params.planes[1].stator = StatorParams::OneMass(RingParams {
+        mass_kg: 2.0,
+        stiffness_n_m: V2::new(2e7, 3e7),
+        damping_n_s_m: V2::new(3000.0, 500.0),
+    });
+    params.planes[0].race = Some(race(1e-5, 1e-5, 300.0));
+    params.magnets = vec![magnet(-0.12, 500.0, 2e-4), magnet(0.14, 500.0, 0.0)];
+    params.loads_m = vec![0.2];
+    params.gravity_m_s2 = V2::new(0.0, -1.0);
+    params
 }
 
-/// Touches once, so that rings and spin move, and flies on; each sample in one go or cut in two.
-fn fly(params: &PlantParams, cut: bool) -> Plant {
-    let start = Start {
-        position_m: V2::new(1.5e-4, 0.2e-4),
-        velocity_m_s: V2::new(0.2, 0.02),
-        spin_rad_s: 100.0,
-        spin_phase_rad: 0.0,
-    };
+/// Each sample in one go or cut in two.
+fn fly(
+    params: &MachineParams,
+    from: &MachineStart,
+    (samples, force_n): (u32, f64),
+    cut: bool,
+) -> Machine {
     // Contact must not blur what is compared here.
-    let options = Options {
-        rtol: 1e-12,
-        ..Options::default()
-    };
-    let mut plant = build(params, &start, options).unwrap();
-    for sample in 0..SAMPLES {
-        let [from, to] = [sample, sample + 1].map(|n| f64::from(n) * PERIOD_S);
-        let mut advance = |t: f64| plant.advance(t, &input(sample), &mut |_| {}).unwrap();
+    let mut rotor = rotor(params, from, series());
+    for sample in 0..samples {
+        let phase = f64::from(sample);
+        let command = force_n * V2::new((0.3 * phase).sin(), 0.7 * (0.11 * phase).cos());
+        let inputs = MachineInputs {
+            commands_n: (params.magnets.iter())
+                .map(|m| command * (1.0 - m.position_m))
+                .collect(),
+            loads_n: vec![V2::new(0.0, -0.1 * force_n)],
+        };
+        let [begin, end] = [sample, sample + 1].map(|n| f64::from(n) * PERIOD_S);
+        let mut advance = |t: f64| rotor.advance(t, &inputs, &mut |_, _| {}).unwrap();
         if cut {
             // Nowhere twice the same.
             let share = 0.3 + 0.4 * (0.618 * f64::from(sample)).fract();
-            advance(from + share * (to - from));
+            advance(begin + share * (end - begin));
         }
-        advance(to);
+        advance(end);
     }
-    plant
+    rotor
 }
 
+/// `most` is the most that they may be apart, of what is usual.
+fn same_flight(whole: &mut Machine, cut: &mut Machine, most: f64, what: &str) {
+    let (a, b) = (whole.snapshot(), cut.snapshot());
+    for (a, b) in a.planes().zip(b.planes()) {
+        close(what, a.rotor.position, b.rotor.position, most * 1e-4);
+        close(what, a.rotor.velocity, b.rotor.velocity, most * 0.1);
+        for (a, b) in [(a.ring, b.ring), (a.outer_ring, b.outer_ring)] {
+            close(what, a.position, b.position, most * 1e-5);
+            close(what, a.velocity, b.velocity, most * 0.1);
+        }
+        assert!((a.race_spin_rad_s - b.race_spin_rad_s).abs() < 1e-9);
+    }
+    for (a, b) in a.delivered_n().zip(b.delivered_n()) {
+        close(what, a, b, most * 300.0);
+    }
+    assert!((a.spin_rad_s - b.spin_rad_s).abs() < 1e-7);
+    let [a, b] = [whole.audit(), cut.audit()];
+    closes(what, a.residual().max(b.residual()), 0.01 * most);
+    let (a, b) = (a.flows, b.flows);
+    for (name, a, b) in [
+        ("control", a.control, b.control),
+        ("external", a.external, b.external),
+        ("unbalance", a.unbalance, b.unbalance),
+        ("rotor damping", a.rotor_damping, b.rotor_damping),
+        ("stator damping", a.stator_damping, b.stator_damping),
+        ("drive", a.drive, b.drive),
+    ] {
+        assert!(
+            (a - b).abs() < most * (a.abs() + 1e-3),
+            "{what}, {name}: {a} and {b}"
+        );
+    }
+}
+
+/// Point masses touch once, so that rings and spin move, and fly on.
 #[test]
 fn samples_flown_whole_or_cut_are_the_same_flight() {
-    for params in plants() {
-        let (mut whole, mut cut) = (fly(&params, false), fly(&params, true));
-        assert_eq!(whole.meters().impacts, cut.meters().impacts);
-        assert!(whole.meters().impacts >= 1);
-        let (a, b) = (whole.snapshot(), cut.snapshot());
-        let pairs = [
-            (a.position_m, b.position_m, 1e-4),
-            (a.velocity_m_s, b.velocity_m_s, 0.1),
-            (a.inner_ring.position, b.inner_ring.position, 1e-5),
-            (a.inner_ring.velocity, b.inner_ring.velocity, 0.1),
-            (a.outer_ring.position, b.outer_ring.position, 1e-5),
-            (a.delivered_n, b.delivered_n, 300.0),
-        ];
-        for (i, (a, b, size)) in pairs.into_iter().enumerate() {
-            let apart = (a - b).norm() / size;
-            assert!(apart < 1e-9, "{i}: {apart:e} for {params:?}");
-        }
-        assert!((a.spin_rad_s - b.spin_rad_s).abs() < 1e-7);
-        for plant in [&whole, &cut] {
-            let residual = plant.audit().residual();
-            assert!(residual < 1e-11, "{residual:e} for {params:?}");
-        }
-        let [a, b] = [&whole, &cut].map(|plant| plant.audit().flows);
-        let works = [
-            ("control", a.control, b.control),
-            ("rotor damping", a.rotor_damping, b.rotor_damping),
-            ("stator damping", a.stator_damping, b.stator_damping),
-            ("drive", a.drive, b.drive),
-        ];
-        for (name, a, b) in works {
-            assert!(
-                (a - b).abs() < 1e-9 * (a.abs() + 1e-3),
-                "{name}: {a} and {b}"
-            );
-        }
-    }
-}
-
-/// A clock that has run for long rounds coarsely. A map made then has the length of one rounded sample,
-/// and must not add that rounding up.
-#[test]
-fn a_late_start_does_not_let_the_flight_drift() {
-    let mut params = footnote_4();
-    params.stator = StatorParams::Rigid;
-    params.spin = SpinParams::Held;
-    let (begin_s, samples) = (500.0, 200_000);
-    let start = Start {
-        position_m: V2::new(1e-4, 0.0),
-        velocity_m_s: V2::new(0.0, 0.01),
-        spin_rad_s: 0.0,
-        spin_phase_rad: 0.0,
+    let touching = MachineStart {
+        centre_m: V2::new(1.5e-4, 0.2e-4),
+        centre_velocity_m_s: V2::new(0.2, 0.02),
+        spin_rad_s: 100.0,
+        ..MachineStart::default()
     };
-    let omega = (params.rotor.stiffness_n_m / params.rotor.mass_kg).sqrt();
-    params.rotor.damping_n_s_m = 0.0;
-    let mut plant = build(&params, &start, Options::default()).unwrap();
-    plant
-        .advance(begin_s, &Inputs::default(), &mut |_| {})
-        .unwrap();
-    for sample in 1..=samples {
-        let t = begin_s + f64::from(sample) * PERIOD_S;
-        plant.advance(t, &Inputs::default(), &mut |_| {}).unwrap();
+    for params in point_masses() {
+        let [mut whole, mut cut] =
+            [false, true].map(|cut| fly(&params, &touching, (400, 300.0), cut));
+        assert_eq!(whole.meters()[0].impacts, cut.meters()[0].impacts);
+        assert!(whole.meters()[0].impacts >= 1);
+        same_flight(&mut whole, &mut cut, 1e-9, &format!("{params:?}"));
     }
-    let t = begin_s + f64::from(samples) * PERIOD_S;
-    let exact =
-        start.position_m * (omega * t).cos() + start.velocity_m_s / omega * (omega * t).sin();
-    let off = (plant.snapshot().position_m - exact).norm() / 1e-4;
-    assert!(off < 1e-8, "{off:e}");
+    let flying = MachineStart {
+        centre_m: V2::new(2e-5, 1e-5),
+        tilt_rate_rad_s: V2::new(0.02, 0.01),
+        spin_rad_s: 700.0,
+        ..MachineStart::default()
+    };
+    let params = whole_rotor();
+    let [mut whole, mut cut] = [false, true].map(|cut| fly(&params, &flying, (2000, 10.0), cut));
+    assert!(whole.work().evaluations < cut.work().evaluations / 5);
+    let of = whole.audit().flows;
+    for work_j in [
+        of.control,
+        of.external,
+        of.unbalance,
+        of.rotor_damping,
+        of.stator_damping,
+    ] {
+        assert!(work_j != 0.0, "{of:?}");
+    }
+    same_flight(&mut whole, &mut cut, 1e-11, "whole rotor");
 }
 
 /// Whole samples are flown by the map only where nothing can reach the wall within: here the path leaves
@@ -166,53 +172,27 @@ fn a_touch_within_a_whole_sample_is_not_jumped_over() {
     params.rotor.damping_n_s_m = 0.0;
     let omega = (params.rotor.stiffness_n_m / params.rotor.mass_kg).sqrt();
     let sample_s = 0.5 * std::f64::consts::PI / omega;
-    let start = Start {
-        position_m: V2::new(1e-6, 0.0),
-        velocity_m_s: V2::zeros(),
-        spin_rad_s: 0.0,
-        spin_phase_rad: 0.0,
-    };
-    let mut plant = build(&params, &start, Options::default()).unwrap();
-    let mut t = 0.0;
-    let mut sample = |plant: &mut Plant, force_n: f64| {
-        t += sample_s;
-        let inputs = Inputs {
-            command_n: V2::zeros(),
-            external_n: V2::new(force_n, 0.0),
-        };
-        plant.advance(t, &inputs, &mut |_| {}).unwrap();
-    };
-    for _ in 0..40 {
-        sample(&mut plant, 0.0);
-    }
-    assert_eq!(plant.meters().impacts, 0);
+    let from = start(V2::new(1e-6, 0.0), V2::zeros(), 0.0);
     // A quarter period about an equilibrium e takes (x, v/ω) to (e + v/ω, e − x). Two of them lead to
     // (0.7, 0.8) clearances; the third one's path swings out to 1.06 and ends at 0.8.
     let reach_n = params.rotor.stiffness_n_m * params.contact.clearance_m;
-    for force in [-0.05, 0.75, 0.0] {
-        sample(&mut plant, force * reach_n);
-    }
-    assert_eq!(plant.meters().impacts, 1);
-    let cut = {
-        let mut plant = build(&params, &start, Options::default()).unwrap();
+    for shares in [&[1.0][..], &[0.21, 0.33, 0.46]] {
+        let mut plant = build(&params, &from, Options::default()).unwrap();
         let mut t = 0.0;
-        let mut part = |plant: &mut Plant, force_n: f64| {
-            for share in [0.21, 0.33, 0.46] {
+        let mut sample = |plant: &mut Plant, force_n: f64| {
+            for share in shares {
                 t += share * sample_s;
-                let inputs = Inputs {
-                    command_n: V2::zeros(),
-                    external_n: V2::new(force_n, 0.0),
-                };
+                let inputs = load(V2::new(force_n, 0.0));
                 plant.advance(t, &inputs, &mut |_| {}).unwrap();
             }
         };
         for _ in 0..40 {
-            part(&mut plant, 0.0);
+            sample(&mut plant, 0.0);
         }
+        assert_eq!(plant.meters().impacts, 0);
         for force in [-0.05, 0.75, 0.0] {
-            part(&mut plant, force * reach_n);
+            sample(&mut plant, force * reach_n);
         }
-        plant.meters()
-    };
-    assert_eq!(plant.meters().impacts, cut.impacts);
+        assert_eq!(plant.meters().impacts, 1);
+    }
 }

@@ -1,7 +1,7 @@
 //! Rotors by matrices in coordinates of their own.
 
+use crate::support::*;
 use nalgebra::DMatrix;
-use plant_model::machine::params::*;
 use plant_model::machine::reduced::{ReducedRotor, RotorMatrices};
 use std::f64::consts::TAU;
 

@@ -1,59 +1,27 @@
 //! Largest values of a run, which takes few steps, against those of the same run cut into samples of half a microsecond.
 
-use crate::support::bouncing::{bouncing, bouncing_start};
-use crate::support::plants::onset_rig;
-use plant_model::contact::damping_for_restitution;
-use plant_model::params::*;
-use plant_model::{Inputs, Meters, Method, Options, V2, build};
+use crate::support::*;
 
-const STIFFNESS_N_M: f64 = 1e8;
-const CLEARANCE_M: f64 = 2e-4;
 const LOAD_N: V2 = V2::new(0.0, -1000.0);
 const END_S: f64 = 8e-3;
 
-fn linear(restitution: f64) -> ContactLaw {
-    LinearContact {
-        stiffness_n_m: STIFFNESS_N_M,
-        damping_n_s_m: damping_for_restitution(restitution, STIFFNESS_N_M, 10.0).unwrap(),
-    }
-    .into()
-}
-
 fn laws() -> [(&'static str, ContactLaw); 3] {
-    let hertz = HuntCrossley {
-        stiffness_n_mn: 1e10,
-        exponent: 1.5,
-        damping_s_m: 1.0,
-    };
+    let hertz = hardening(1e10, 1.5, 1.0);
     [
-        ("linear", linear(0.7)),
-        ("overdamped", linear(1e-3)),
+        ("linear", linear(1e8, 0.7).into()),
+        ("overdamped", linear(1e8, 1e-3).into()),
         ("Hertz", hertz.into()),
     ]
 }
 
-/// A free mass that a load presses on the wall, let go 53 degrees beside the bottom: it swings like a pendulum, and bounces on
-/// the contact as it does.
-fn swinging(law: ContactLaw, friction: f64, inertia_kg_m2: Option<f64>) -> (PlantParams, Start) {
-    let mut params = onset_rig();
-    params.rotor.stiffness_n_m = 0.0;
-    params.contact.law = law;
-    params.friction.sliding = SlidingFriction::Constant {
-        coefficient: friction,
-    };
-    if let Some(inertia_kg_m2) = inertia_kg_m2 {
-        params.spin = SpinParams::Free {
-            inertia_kg_m2,
-            drive_torque_n_m: 0.0,
-        };
-    }
-    let start = Start {
-        position_m: V2::new(-0.8, -0.6) * 1.03 * CLEARANCE_M,
-        velocity_m_s: V2::zeros(),
-        spin_rad_s: 0.0,
-        spin_phase_rad: 0.0,
-    };
-    (params, start)
+/// A mass on a damper that a load presses on the wall, let go 53 degrees beside the bottom: it swings like a pendulum, and bounces
+/// on the contact as it does.
+fn swinging(law: ContactLaw, friction: f64, spin: SpinParams) -> (PlantParams, Start) {
+    let mut params = free_mass(law, friction);
+    params.rotor.damping_n_s_m = onset_rig().rotor.damping_n_s_m;
+    params.spin = spin;
+    let from = V2::new(-0.8, -0.6) * 1.03 * CLEARANCE_M;
+    (params, start(from, V2::zeros(), 0.0))
 }
 
 fn meters(
@@ -61,19 +29,10 @@ fn meters(
     (method, rtol): (Method, f64),
     samples: u32,
 ) -> Meters {
-    let options = Options {
-        method,
-        rtol,
-        ..Options::default()
-    };
-    let mut plant = build(params, start, options).unwrap();
-    let inputs = Inputs {
-        external_n: LOAD_N,
-        ..Inputs::default()
-    };
+    let mut plant = build(params, start, options(method, rtol)).unwrap();
     for i in 1..=samples {
         let t = END_S * f64::from(i) / f64::from(samples);
-        plant.advance(t, &inputs, &mut |_| {}).unwrap();
+        plant.advance(t, &load(LOAD_N), &mut |_| {}).unwrap();
     }
     plant.meters()
 }
@@ -111,10 +70,8 @@ fn hold(
             let held = error.abs() < 2.0 * rtol + 1e-12;
             assert!(held, "{name}, {rtol:e}: {error:e}");
         }
-        assert!(
-            collocation.abs() < most,
-            "{name}, {rtol:e}: {collocation:e}"
-        );
+        let held = collocation.abs() < most;
+        assert!(held, "{name}, {rtol:e}: {collocation:e}");
     }
 }
 
@@ -122,7 +79,8 @@ fn hold(
 #[test]
 fn the_fastest_whirl_is_found_within_the_step() {
     for (name, law) in laws() {
-        for case in [swinging(law, 0.0, None), swinging(law, 0.3, Some(0.02))] {
+        for (friction, spin) in [(0.0, SpinParams::Held), (0.3, free_spin(0.02, 0.0))] {
+            let case = swinging(law, friction, spin);
             let bounds = [(1e-4, 1e-3), (1e-6, 1e-4), (1e-9, 2e-6), (1e-12, 2e-8)];
             hold(name, &case, bounds, |m| m.peak_backward_speed_m_s);
         }
@@ -135,16 +93,14 @@ fn the_fastest_whirl_is_found_within_the_step() {
 fn the_largest_friction_torque_is_one_that_occurs() {
     for (name, law) in laws() {
         for (friction, inertia_kg_m2) in [(0.3, 0.02), (0.3, 0.01), (0.15, 0.04)] {
-            let case = swinging(law, friction, Some(inertia_kg_m2));
+            let case = swinging(law, friction, free_spin(inertia_kg_m2, 0.0));
             let bounds = [(1e-4, 2e-2), (1e-6, 5e-4), (1e-9, 2e-5), (1e-12, 5e-8)];
             hold(name, &case, bounds, |m| m.peak_friction_torque_n_m);
             // Friction that does not hold is none: no more than the cone at the largest force.
             let all = meters(&case, (Method::Auto, 1e-9), 1);
             let cone_n_m = friction * all.peak_contact_force_n * case.0.rotor.contact_radius_m;
-            assert!(
-                all.peak_friction_torque_n_m <= cone_n_m * (1.0 + 1e-9),
-                "{name}"
-            );
+            let within = all.peak_friction_torque_n_m <= cone_n_m * (1.0 + 1e-9);
+            assert!(within, "{name}");
         }
     }
 }
@@ -176,18 +132,13 @@ fn peaks_of_bounces_are_read_within_the_tolerance() {
             ]
         };
         let exact = peaks(Method::Series, 1e-13);
-        for (method, worst) in [Method::Series, Method::Collocation]
-            .into_iter()
-            .zip(&mut worst)
-        {
+        for (method, worst) in METHODS.into_iter().zip(&mut worst) {
             for ((worst, found), exact) in worst.iter_mut().zip(peaks(method, 1e-6)).zip(exact) {
                 *worst = worst.max((found / exact - 1.0).abs());
             }
         }
     }
     println!("{worst:?}");
-    assert!(
-        worst.iter().flatten().all(|error| *error < 1e-6),
-        "{worst:?}"
-    );
+    let held = worst.iter().flatten().all(|error| *error < 1e-6);
+    assert!(held, "{worst:?}");
 }

@@ -1,13 +1,10 @@
 //! Ranges of whirl that friction can hold, against Black's condition of one plane and against like planes written out.
 
-use crate::support::rotor::*;
+use crate::support::*;
 use nalgebra::Complex;
-use plant_model::V2;
 use plant_model::analysis::black::SteadyWhirl;
 use plant_model::machine::linear::{LinearMachine, Walls};
-use plant_model::machine::params::*;
 use plant_model::machine::whirl_ranges::WhirlRange;
-use plant_model::params::*;
 use std::f64::consts::PI;
 
 type C = Complex<f64>;
@@ -21,25 +18,10 @@ fn ranges(params: &MachineParams, spin_rad_s: f64) -> Vec<WhirlRange> {
 fn one_plane_is_blacks_condition() {
     let mut params = machine();
     params.planes = vec![plane(0.0, 1.0)];
-    params.planes[0].stator = StatorParams::OneMass(RingParams {
-        mass_kg: 3.0,
-        stiffness_n_m: V2::repeat(2e7),
-        damping_n_s_m: V2::repeat(800.0),
-    });
+    params.planes[0].stator = StatorParams::OneMass(ring(3.0, 2e7, 800.0));
     let point = PlantParams {
-        rotor: RotorParams {
-            mass_kg: 10.0,
-            stiffness_n_m: 4e5,
-            damping_n_s_m: 200.0,
-            eccentricity_m: 0.0,
-            contact_radius_m: 2.5e-3,
-        },
-        spin: SpinParams::Held,
         stator: params.planes[0].stator,
-        contact: params.planes[0].contact,
-        friction: params.planes[0].friction,
-        magnet: None,
-        race: None,
+        ..bouncing(1e8)
     };
     let mut whirl = SteadyWhirl::from_params(&point).unwrap();
     whirl.tangential_compliance_m_n = whirl.normal_compliance_m_n;
@@ -48,12 +30,10 @@ fn one_plane_is_blacks_condition() {
     let mut ends = 0;
     for range in &found {
         let [from, to] = range.rates_rad_s;
-        for end in [from, to]
-            .into_iter()
-            .filter(|end| (end / fastest - 1.0).abs() > 1e-9)
-        {
+        let is_end = |rate: &f64| (rate / fastest - 1.0).abs() > 1e-9;
+        for end in [from, to].into_iter().filter(is_end) {
             let needed = whirl.friction_needed(end).unwrap_or(f64::NAN).abs();
-            assert!((needed / 0.3 - 1.0).abs() < 1e-6, "{needed} at {end}");
+            near("needed", needed, 0.3, 1e-6);
             ends += 1;
         }
         for share in [0.1, 0.5, 0.9] {
@@ -63,17 +43,12 @@ fn one_plane_is_blacks_condition() {
     }
     assert!(ends >= 3, "{found:?}");
     // And outside none that holds.
-    let inside = |rate: f64| {
-        found
-            .iter()
-            .any(|range| (range.rates_rad_s[0]..=range.rates_rad_s[1]).contains(&rate))
-    };
     for i in 1..500 {
         let rate = fastest * f64::from(i) / 500.0;
-        let holds = whirl
-            .friction_needed(rate)
-            .is_some_and(|mu| mu.abs() <= 0.3);
-        assert_eq!(holds, inside(rate), "at {rate}");
+        let needed = whirl.friction_needed(rate);
+        let holds = needed.is_some_and(|mu| mu.abs() <= 0.3);
+        let has = |range: &WhirlRange| range.rates_rad_s[0] <= rate && rate <= range.rates_rad_s[1];
+        assert_eq!(holds, found.iter().any(has), "at {rate}");
     }
 }
 
@@ -116,10 +91,8 @@ fn like_planes_whirl_as_a_cylinder_and_as_a_cone() {
         let slowest = both[0];
         let (cylinder, cone) = (first(false), first(true));
         let expected = cylinder.min(cone);
-        assert!(
-            slowest.rates_rad_s[0] < expected * (1.0 + 2e-5),
-            "{slowest:?}, {expected}"
-        );
+        let rate = slowest.rates_rad_s[0];
+        assert!(rate < expected * (1.0 + 2e-5), "{rate}, {expected}");
         for range in &both {
             for (rate, phase) in range.rates_rad_s.into_iter().zip(range.phases_rad) {
                 if phase.abs() < 1e-3 || PI - phase.abs() < 1e-3 {
@@ -134,7 +107,6 @@ fn like_planes_whirl_as_a_cylinder_and_as_a_cone() {
         if spin > 0.0 {
             assert!(cone < 0.9 * cylinder, "{cone} {cylinder}");
         }
-        println!("{spin}: {cylinder} {cone} {found:?}");
     }
 }
 

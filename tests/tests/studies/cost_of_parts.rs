@@ -43,16 +43,6 @@ fn a_part_that_is_missing_costs_nothing() {
     }
 }
 
-#[test]
-fn a_part_that_is_missing_has_no_state() {
-    for parts in Parts::every() {
-        let [stator, spin, unbalance, magnet] = parts.0.map(usize::from);
-        // The angle of the rotor is followed only where an unbalance turns at a free speed.
-        let expected = 4 + 4 * stator + spin * (1 + unbalance) + 2 * (magnet / 2);
-        assert_eq!(parts.states(), expected, "{:?}", parts.names());
-    }
-}
-
 /// The check finds a part that costs although it is missing.
 #[test]
 fn a_planted_cost_is_found() {

@@ -1,42 +1,36 @@
 //! An independent code for two planes: SI coordinates instead of modal ones, a step far below anything that moves, an
 //! extrapolated midpoint rule of order eight, events by halving.
 
+use super::runs::direction;
+use plant_model::machine::params::MachineParams;
+use plant_model::params::SlidingFriction;
 use plant_model::{Mode, V2};
 
-/// A plane: place, centre of the bore, clearance, k_c, d_c, μ, radius of the rotor.
-#[derive(Clone, Copy)]
-pub(crate) struct Plane {
-    pub(crate) z: f64,
-    pub(crate) centre: V2,
-    pub(crate) clearance: f64,
-    pub(crate) stiffness: f64,
-    pub(crate) damping: f64,
-    pub(crate) friction: f64,
-    pub(crate) radius: f64,
-}
-
-/// The rotor as the reference has it: SI coordinates, no matrices.
+/// A rotor with two planes of linear contact in rigid bores, with friction that is the same at every speed, and one unbalance.
 pub(crate) struct Reference {
-    pub(crate) mass_kg: f64,
-    pub(crate) transverse: f64,
-    pub(crate) polar: f64,
+    params: MachineParams,
     pub(crate) spin: f64,
-    /// Place and moment.
-    pub(crate) unbalance: (f64, f64),
-    pub(crate) gravity: V2,
-    /// Place, stiffness, damping.
-    pub(crate) supports: Vec<(f64, f64, f64)>,
-    pub(crate) planes: [Plane; 2],
-    pub(crate) modes: Vec<Bending>,
 }
 
-/// A bending mode: natural frequency, damping ratio, shape.
-pub(crate) type Bending = (f64, f64, Vec<(f64, f64)>);
+/// Translation, tilt and up to four bending modes.
+const N: usize = 6;
 
-/// Plane coordinates, two a degree of freedom.
-pub(crate) const N: usize = 12;
-/// Positions, then velocities.
-pub(crate) type State = [f64; 2 * N];
+/// Positions and velocities.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct State {
+    pub(crate) at: [V2; N],
+    pub(crate) rate: [V2; N],
+}
+
+impl State {
+    /// self + h·other
+    fn plus(&self, h: f64, other: &Self) -> Self {
+        Self {
+            at: std::array::from_fn(|i| self.at[i] + h * other.at[i]),
+            rate: std::array::from_fn(|i| self.rate[i] + h * other.rate[i]),
+        }
+    }
+}
 
 #[derive(Clone, Copy, PartialEq, Debug)]
 enum Touch {
@@ -57,7 +51,19 @@ impl Touch {
     }
 }
 
-fn at(shape: &[(f64, f64)], z: f64) -> f64 {
+/// A plane at an instant.
+#[derive(Clone, Copy, Default)]
+struct Contact {
+    tangent: V2,
+    depth: f64,
+    normal: f64,
+    along: f64,
+    slip: f64,
+    /// What the turning of the tangent adds to the acceleration along it.
+    curve: f64,
+}
+
+fn shape_at(shape: &[(f64, f64)], z: f64) -> f64 {
     let mut i = 1;
     while i + 1 < shape.len() && shape[i].0 < z {
         i += 1;
@@ -67,194 +73,208 @@ fn at(shape: &[(f64, f64)], z: f64) -> f64 {
 }
 
 impl Reference {
-    fn weights(&self, z: f64) -> [f64; N / 2] {
-        let mut w = [0.0; N / 2];
-        (w[0], w[1]) = (1.0, z);
-        for (i, m) in self.modes.iter().enumerate() {
-            w[2 + i] = at(&m.2, z);
+    pub(crate) fn of(params: &MachineParams, spin: f64) -> Self {
+        Self {
+            params: params.clone(),
+            spin,
         }
-        w
     }
-    fn point(&self, y: &[f64], z: f64) -> V2 {
-        let w = self.weights(z);
-        let mut p = V2::zeros();
-        for i in 0..2 + self.modes.len() {
-            p += w[i] * V2::new(y[2 * i], y[2 * i + 1]);
+
+    fn place(&self, p: usize) -> f64 {
+        self.params.planes[p].position_m
+    }
+
+    fn friction(&self, p: usize) -> f64 {
+        match self.params.planes[p].friction.sliding {
+            SlidingFriction::Constant { coefficient } => coefficient,
+            SlidingFriction::Falling { .. } => panic!("it falls"),
         }
-        p
     }
+
+    fn weights(&self, z: f64) -> [f64; N] {
+        let mut weights = [1.0, z, 0.0, 0.0, 0.0, 0.0];
+        for (weight, mode) in weights[2..].iter_mut().zip(self.params.rotor.bending()) {
+            *weight = shape_at(&mode.shape, z);
+        }
+        weights
+    }
+
+    fn point(&self, y: &[V2; N], z: f64) -> V2 {
+        self.weights(z).iter().zip(y).map(|(w, y)| *w * y).sum()
+    }
+
     fn inertia(&self, i: usize) -> f64 {
-        if i == 1 {
-            self.transverse
-        } else {
-            self.mass_kg
+        let rigid = self.params.rotor.rigid();
+        match i {
+            1 => rigid.transverse_inertia_kg_m2,
+            _ => rigid.mass_kg,
         }
     }
+
     fn mobility(&self, a: f64, b: f64) -> f64 {
-        let (wa, wb) = (self.weights(a), self.weights(b));
-        (0..2 + self.modes.len())
-            .map(|i| wa[i] * wb[i] / self.inertia(i))
-            .sum()
+        let (a, b) = (self.weights(a), self.weights(b));
+        (0..N).map(|i| a[i] * b[i] / self.inertia(i)).sum()
     }
-    /// Rates, normal forces, friction, sliding speeds.
-    fn rates(
-        &self,
-        t: f64,
-        y: &State,
-        touch: &[Touch; 2],
-    ) -> (State, [f64; 2], [f64; 2], [f64; 2]) {
-        let dof = 2 + self.modes.len();
-        let mut q = [V2::zeros(); N / 2]; // generalised forces
-        let push = |q: &mut [V2; N / 2], z: f64, f: V2| {
-            let w = self.weights(z);
-            for i in 0..dof {
-                q[i] += w[i] * f;
-            }
-        };
-        let (pos, vel) = y.split_at(N);
-        for (z, k, d) in &self.supports {
-            push(
-                &mut q,
-                *z,
-                -*k * self.point(pos, *z) - *d * self.point(vel, *z),
-            );
+
+    /// Generalised forces of all that does not touch.
+    fn without_contact(&self, t: f64, y: &State) -> [V2; N] {
+        let mut forces = [V2::zeros(); N];
+        for support in &self.params.supports {
+            let [at, rate] = [&y.at, &y.rate].map(|y| self.point(y, support.position_m));
+            let spring = support.stiffness_n_m.component_mul(&at);
+            let damper = support.damping_n_s_m.component_mul(&rate);
+            self.push(&mut forces, support.position_m, -spring - damper);
         }
-        q[0] += self.mass_kg * self.gravity;
-        let a = self.spin * t;
-        push(
-            &mut q,
-            self.unbalance.0,
-            self.unbalance.1 * self.spin * self.spin * V2::new(a.cos(), a.sin()),
-        );
-        q[1] += V2::new(
-            -self.polar * self.spin * vel[3],
-            self.polar * self.spin * vel[2],
-        );
-        for (i, m) in self.modes.iter().enumerate() {
-            let j = 2 + i;
-            q[j] -= self.mass_kg
-                * (m.0 * m.0 * V2::new(pos[2 * j], pos[2 * j + 1])
-                    + 2.0 * m.1 * m.0 * V2::new(vel[2 * j], vel[2 * j + 1]));
+        let (unbalance, rigid) = (self.params.unbalances[0], self.params.rotor.rigid());
+        let turned = direction(self.spin * t + unbalance.angle_rad);
+        let turning = unbalance.moment_kg_m * self.spin * self.spin * turned;
+        self.push(&mut forces, unbalance.position_m, turning);
+        forces[0] += rigid.mass_kg * self.params.gravity_m_s2;
+        let gyroscopic = rigid.polar_inertia_kg_m2 * self.spin;
+        forces[1] += gyroscopic * V2::new(-y.rate[1].y, y.rate[1].x);
+        for (i, mode) in self.params.rotor.bending().iter().enumerate() {
+            let (w, j) = (mode.frequency_rad_s, 2 + i);
+            let damper = 2.0 * mode.damping_ratio * w * y.rate[j];
+            forces[j] -= rigid.mass_kg * (w * w * y.at[j] + damper);
         }
-        let mut forces = [0.0; 2];
-        let mut slips = [0.0; 2];
-        let mut tang = [V2::zeros(); 2];
-        let mut curve = [0.0; 2];
-        let mut s = [0.0; 2];
-        for p in 0..2 {
-            let Plane {
-                z,
-                centre,
-                clearance: c,
-                stiffness: k,
-                damping: d,
-                friction: mu,
-                radius,
-            } = self.planes[p];
-            let u = self.point(pos, z) - centre;
-            let w = self.point(vel, z);
-            let rho = u.norm();
-            let n = u / rho;
-            tang[p] = V2::new(-n.y, n.x);
-            forces[p] = k * (rho - c) + d * n.dot(&w);
-            let vw = tang[p].dot(&w);
-            slips[p] = vw + radius * self.spin;
-            curve[p] = -vw * n.dot(&w) / rho;
+        forces
+    }
+
+    fn push(&self, forces: &mut [V2; N], z: f64, force: V2) {
+        for (sum, weight) in forces.iter_mut().zip(self.weights(z)) {
+            *sum += weight * force;
+        }
+    }
+
+    fn rates(&self, t: f64, y: &State, touch: &[Touch; 2]) -> (State, [Contact; 2]) {
+        let mut forces = self.without_contact(t, y);
+        let mut contacts = [Contact::default(); 2];
+        for (p, contact) in contacts.iter_mut().enumerate() {
+            let plane = &self.params.planes[p];
+            let (z, law) = (plane.position_m, plane.contact.law.linear().unwrap());
+            let u = self.point(&y.at, z) - plane.centre_m;
+            let w = self.point(&y.rate, z);
+            let n = u / u.norm();
+            let tangent = V2::new(-n.y, n.x);
+            let depth = u.norm() - plane.contact.clearance_m;
+            let normal = law.stiffness_n_m * depth + law.damping_n_s_m * n.dot(&w);
+            let whirl = tangent.dot(&w);
+            *contact = Contact {
+                tangent,
+                depth,
+                normal,
+                along: 0.0,
+                slip: whirl + plane.radius_m * self.spin,
+                curve: -whirl * n.dot(&w) / u.norm(),
+            };
             if matches!(touch[p], Touch::Slip(_) | Touch::Roll) {
-                push(&mut q, z, -forces[p] * n);
+                self.push(&mut forces, z, -normal * n);
             }
             if let Touch::Slip(sign) = touch[p] {
-                s[p] = -sign * mu * forces[p];
-                push(&mut q, z, s[p] * tang[p]);
+                contact.along = -sign * self.friction(p) * normal;
+                self.push(&mut forces, z, contact.along * tangent);
             }
         }
-        let rolls: Vec<usize> = (0..2).filter(|p| touch[*p] == Touch::Roll).collect();
-        if !rolls.is_empty() {
-            let wrong = |p: usize| {
-                let w = self.weights(self.planes[p].z);
-                let mut a = V2::zeros();
-                for i in 0..dof {
-                    a += w[i] / self.inertia(i) * q[i];
-                }
-                tang[p].dot(&a) + curve[p]
-            };
-            let g = |a: usize, b: usize| {
-                tang[a].dot(&tang[b]) * self.mobility(self.planes[a].z, self.planes[b].z)
-            };
-            if rolls.len() == 1 {
-                let p = rolls[0];
-                s[p] = -wrong(p) / g(p, p);
-            } else {
-                let (a, b, d) = (g(0, 0), g(0, 1), g(1, 1));
-                let det = a * d - b * b;
-                let (x, y) = (-wrong(0), -wrong(1));
-                s = [(x * d - b * y) / det, (a * y - b * x) / det];
-            }
-            for p in rolls {
-                push(&mut q, self.planes[p].z, s[p] * tang[p]);
-            }
-        }
-        let mut out = [0.0; 2 * N];
-        out[..N].copy_from_slice(vel);
-        for i in 0..dof {
-            out[N + 2 * i] = q[i].x / self.inertia(i);
-            out[N + 2 * i + 1] = q[i].y / self.inertia(i);
-        }
-        (out, forces, s, slips)
+        self.hold(&mut forces, &mut contacts, touch);
+        let accelerations = std::array::from_fn(|i| forces[i] / self.inertia(i));
+        let rates = State {
+            at: y.rate,
+            rate: accelerations,
+        };
+        (rates, contacts)
     }
+
+    /// Friction where a plane rolls: such that the speed along the wall stays.
+    fn hold(&self, forces: &mut [V2; N], contacts: &mut [Contact; 2], touch: &[Touch; 2]) {
+        let missing = [0, 1].map(|p| {
+            let weights = self.weights(self.place(p));
+            let a: V2 = (0..N)
+                .map(|i| weights[i] / self.inertia(i) * forces[i])
+                .sum();
+            -contacts[p].tangent.dot(&a) - contacts[p].curve
+        });
+        let mobility = |a: usize, b: usize| {
+            let turned = contacts[a].tangent.dot(&contacts[b].tangent);
+            turned * self.mobility(self.place(a), self.place(b))
+        };
+        let (a, b, d) = (mobility(0, 0), mobility(0, 1), mobility(1, 1));
+        let [x, y] = missing;
+        let along = match touch.map(|touch| touch == Touch::Roll) {
+            [true, true] => [
+                (x * d - b * y) / (a * d - b * b),
+                (a * y - b * x) / (a * d - b * b),
+            ],
+            [true, false] => [x / a, 0.0],
+            [false, true] => [0.0, y / d],
+            [false, false] => return,
+        };
+        for p in (0..2).filter(|p| touch[*p] == Touch::Roll) {
+            contacts[p].along = along[p];
+            self.push(forces, self.place(p), along[p] * contacts[p].tangent);
+        }
+    }
+
     /// Modified midpoint rule extrapolated: order eight.
     fn step(&self, t: f64, y: &State, h: f64, touch: &[Touch; 2]) -> State {
         const PARTS: [usize; 4] = [2, 4, 6, 8];
-        let mut table = [[0.0; 2 * N]; 4];
+        let mut table = [State::default(); 4];
         for (row, parts) in PARTS.iter().enumerate() {
             let dt = h / *parts as f64;
-            let (mut a, mut b) = (*y, *y);
-            let r = self.rates(t, y, touch).0;
-            for i in 0..2 * N {
-                b[i] += dt * r[i];
-            }
+            let mut a = *y;
+            let mut b = y.plus(dt, &self.rates(t, y, touch).0);
             for part in 1..*parts {
-                let r = self.rates(t + part as f64 * dt, &b, touch).0;
-                for i in 0..2 * N {
-                    let next = a[i] + 2.0 * dt * r[i];
-                    a[i] = b[i];
-                    b[i] = next;
-                }
+                let rates = self.rates(t + part as f64 * dt, &b, touch).0;
+                (a, b) = (b, a.plus(2.0 * dt, &rates));
             }
-            let r = self.rates(t + h, &b, touch).0;
-            for i in 0..2 * N {
-                table[row][i] = 0.5 * (a[i] + b[i] + dt * r[i]);
-            }
+            let last = b.plus(dt, &self.rates(t + h, &b, touch).0);
+            table[row] = a.plus(1.0, &last).plus(-0.5, &a.plus(1.0, &last));
             for back in (0..row).rev() {
                 let ratio = (*parts as f64 / PARTS[back] as f64).powi(2);
-                let (front, rest) = table.split_at_mut(back + 1);
-                for (a, b) in front[back].iter_mut().zip(&rest[0]) {
-                    *a = b + (b - *a) / (ratio - 1.0);
-                }
+                let (fine, coarse) = (table[back + 1], table[back]);
+                table[back] = fine.plus(1.0 / (ratio - 1.0), &fine.plus(-1.0, &coarse));
             }
         }
         table[0]
     }
+
     /// Least guard of each plane: below zero where its mode has ended.
     fn guard(&self, t: f64, y: &State, touch: &[Touch; 2]) -> [f64; 2] {
-        let (_, f, s, slip) = self.rates(t, y, touch);
-        core::array::from_fn(|p| {
-            let Plane {
-                z,
-                centre,
-                clearance: c,
-                friction: mu,
-                ..
-            } = self.planes[p];
-            let depth = (self.point(&y[..N], z) - centre).norm() - c;
+        let (_, contacts) = self.rates(t, y, touch);
+        std::array::from_fn(|p| {
+            let (at, c) = (&contacts[p], self.params.planes[p].contact.clearance_m);
             match touch[p] {
-                Touch::Off => -depth / c,
-                Touch::Beyond => (depth / c).min(-f[p]),
-                Touch::Slip(sign) => (f[p] / 1e4).min(sign * slip[p]),
-                Touch::Roll => (f[p] / 1e4).min((mu * f[p] - s[p].abs()) / 1e4),
+                Touch::Off => -at.depth / c,
+                Touch::Beyond => (at.depth / c).min(-at.normal),
+                Touch::Slip(sign) => (at.normal / 1e4).min(sign * at.slip),
+                Touch::Roll => at.normal.min(self.friction(p) * at.normal - at.along.abs()) / 1e4,
             }
         })
     }
+
+    /// What follows where the guard of a plane is below zero.
+    fn next(&self, t: f64, y: &State, touch: &[Touch; 2], p: usize) -> Touch {
+        let at = self.rates(t, y, touch).1[p];
+        match touch[p] {
+            Touch::Off => Touch::Slip(at.slip.signum()),
+            Touch::Beyond if at.depth < 0.0 => Touch::Off,
+            Touch::Beyond => Touch::Slip(at.slip.signum()),
+            Touch::Slip(_) | Touch::Roll if at.normal < 0.0 => match at.depth > 0.0 {
+                true => Touch::Beyond,
+                false => Touch::Off,
+            },
+            Touch::Slip(sign) => {
+                let mut rolling = *touch;
+                rolling[p] = Touch::Roll;
+                let rolls = self.rates(t, y, &rolling).1[p];
+                match rolls.along.abs() <= self.friction(p) * rolls.normal {
+                    true => Touch::Roll,
+                    false => Touch::Slip(-sign),
+                }
+            }
+            Touch::Roll => Touch::Slip(-at.along.signum()),
+        }
+    }
+
     /// Modes of both planes after each event, and where the rotor is at the end.
     pub(crate) fn run(&self, start: State, end: f64, h: f64) -> (Vec<[Mode; 2]>, [V2; 2]) {
         let (mut t, mut y, mut touch) = (0.0, start, [Touch::Off; 2]);
@@ -270,10 +290,9 @@ impl Reference {
             let (mut low, mut high) = (0.0, h);
             for _ in 0..45 {
                 let middle = 0.5 * (low + high);
-                if over(&self.step(t, &y, middle, &touch), t + middle) {
-                    high = middle;
-                } else {
-                    low = middle;
+                match over(&self.step(t, &y, middle, &touch), t + middle) {
+                    true => high = middle,
+                    false => low = middle,
                 }
             }
             y = self.step(t, &y, high, &touch);
@@ -284,45 +303,14 @@ impl Reference {
                 let Some(p) = (0..2).find(|p| guards[*p] < 0.0) else {
                     break;
                 };
-                let (_, f, s, slip) = self.rates(t, &y, &touch);
-                let Plane {
-                    z,
-                    centre,
-                    clearance: c,
-                    friction: mu,
-                    ..
-                } = self.planes[p];
-                let depth = (self.point(&y[..N], z) - centre).norm() - c;
                 let before = touch[p].mode();
-                touch[p] = match touch[p] {
-                    Touch::Off => Touch::Slip(slip[p].signum()),
-                    Touch::Beyond if depth < 0.0 => Touch::Off,
-                    Touch::Beyond => Touch::Slip(slip[p].signum()),
-                    Touch::Slip(_) | Touch::Roll if f[p] < 0.0 => {
-                        if depth > 0.0 {
-                            Touch::Beyond
-                        } else {
-                            Touch::Off
-                        }
-                    }
-                    Touch::Slip(sign) => {
-                        let mut rolling = touch;
-                        rolling[p] = Touch::Roll;
-                        let (_, f, s, _) = self.rates(t, &y, &rolling);
-                        if s[p].abs() <= mu * f[p] {
-                            Touch::Roll
-                        } else {
-                            Touch::Slip(-sign)
-                        }
-                    }
-                    Touch::Roll => Touch::Slip(-s[p].signum()),
-                };
+                touch[p] = self.next(t, &y, &touch, p);
                 if touch[p].mode() != before {
                     changes.push((t, touch.map(Touch::mode)));
                 }
             }
         }
-        let ends = [0, 1].map(|p| self.point(&y[..N], self.planes[p].z));
+        let ends = [0, 1].map(|p| self.point(&y.at, self.place(p)));
         (settled(&changes), ends)
     }
 }

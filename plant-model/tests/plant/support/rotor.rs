@@ -1,29 +1,26 @@
-//! A rotor of 10 kg between two planes, and the point mass that it is in cylindrical motion.
+//! A rotor of 10 kg between two planes. In cylindrical motion it is the point mass of [`bouncing`].
 
+use super::bouncing::bouncing;
+use super::plants::spring;
 use plant_model::V2;
 use plant_model::machine::params::*;
 use plant_model::params::*;
 
-pub(crate) const CLEARANCE_M: f64 = 3e-4;
+pub(crate) const PLAY_M: f64 = 3e-4;
 
-/// A plane with a share of the contact's stiffness and damping.
+/// A plane with a share of the stiffness and damping of the contact of [`bouncing`].
 pub(crate) fn plane(position_m: f64, share: f64) -> MachinePlane {
-    let law = LinearContact {
-        stiffness_n_m: share * 1e8,
-        damping_n_s_m: share * 0.1 * 1e9_f64.sqrt(),
-    };
+    let whole = bouncing(1e8);
+    let law = spring(share * 1e8, share * 0.1 * 1e9_f64.sqrt());
     MachinePlane {
         position_m,
         centre_m: V2::zeros(),
-        radius_m: 2.5e-3,
+        radius_m: whole.rotor.contact_radius_m,
         contact: ContactParams {
-            clearance_m: CLEARANCE_M,
             law: law.into(),
+            ..whole.contact
         },
-        friction: FrictionParams {
-            sliding: SlidingFriction::Constant { coefficient: 0.3 },
-            rolling_coefficient: 0.0,
-        },
+        friction: whole.friction,
         stator: StatorParams::Rigid,
         race: None,
         load_drag: None,
@@ -33,11 +30,23 @@ pub(crate) fn plane(position_m: f64, share: f64) -> MachinePlane {
 
 /// Half of the shaft's stiffness and damping.
 pub(crate) fn support(position_m: f64) -> Support {
+    held(position_m, 2e5, 100.0)
+}
+
+/// The same along x and y.
+pub(crate) fn held(position_m: f64, stiffness_n_m: f64, damping_n_s_m: f64) -> Support {
     Support {
         position_m,
-        stiffness_n_m: V2::repeat(2e5),
-        damping_n_s_m: V2::repeat(100.0),
+        stiffness_n_m: V2::repeat(stiffness_n_m),
+        damping_n_s_m: V2::repeat(damping_n_s_m),
         ..Support::default()
+    }
+}
+
+/// Supports of the same stiffness without damping.
+pub(crate) fn undamped(params: &mut MachineParams, stiffness_n_m: f64) {
+    for support in &mut params.supports {
+        *support = held(support.position_m, stiffness_n_m, 0.0);
     }
 }
 
@@ -69,25 +78,23 @@ pub(crate) fn machine() -> MachineParams {
     }
 }
 
-/// The point mass that this rotor is without tilt.
-pub(crate) fn point() -> PlantParams {
-    let whole = plane(0.0, 1.0);
-    PlantParams {
-        rotor: RotorParams {
-            mass_kg: 10.0,
-            stiffness_n_m: 4e5,
-            damping_n_s_m: 200.0,
-            eccentricity_m: 1e-5,
-            contact_radius_m: whole.radius_m,
-        },
-        spin: SpinParams::Held,
-        stator: StatorParams::Rigid,
-        contact: whole.contact,
-        friction: whole.friction,
-        magnet: None,
-        race: None,
-    }
+/// A balanced rotor on two undamped springs, with Ω·I_p/(2·I_t) and the root beside it in its conical frequencies.
+pub(crate) fn conical(ratio: f64, spin: f64) -> (MachineParams, f64, f64) {
+    let mut params = machine();
+    params.rotor = rigid(TRANSVERSE, ratio * TRANSVERSE);
+    params.unbalances.clear();
+    params.supports = [-ARM_M, ARM_M]
+        .map(|z| held(z, STIFFNESS_N_M, 0.0))
+        .to_vec();
+    let half = 0.5 * spin * ratio;
+    let root = (half * half + 2.0 * STIFFNESS_N_M * ARM_M * ARM_M / TRANSVERSE).sqrt();
+    (params, half, root)
 }
+
+/// Of [`conical`].
+pub(crate) const TRANSVERSE: f64 = 0.2;
+pub(crate) const ARM_M: f64 = 0.2;
+pub(crate) const STIFFNESS_N_M: f64 = 1e6;
 
 /// Bending modes with as many nodes as those of a free beam of half a metre.
 pub(crate) fn bending(count: usize, first_rad_s: f64) -> Vec<BendingMode> {
@@ -103,4 +110,50 @@ pub(crate) fn bending(count: usize, first_rad_s: f64) -> Vec<BendingMode> {
             shape: shape((i + 2) as f64),
         })
         .collect()
+}
+
+/// A rotor with bending modes alone beside its rigid ones.
+pub(crate) fn modal(rigid: &Rotor, bending: Vec<BendingMode>) -> Rotor {
+    Rotor::Modal {
+        rigid: *rigid.rigid(),
+        bending,
+        polar_coupling_kg_m2: vec![],
+        damping_n_s_m: vec![],
+    }
+}
+
+pub(crate) fn magnet(position_m: f64, force_max_n: f64, lag_s: f64) -> MachineMagnet {
+    MachineMagnet {
+        position_m,
+        force_max_n,
+        lag_s,
+        lag_damping_ratio: None,
+        poles: None,
+    }
+}
+
+/// From the middle, with so much speed of the centre, tilt rate and spin.
+pub(crate) fn moving(
+    velocity_m_s: [f64; 2],
+    tilt_rate_rad_s: [f64; 2],
+    spin_rad_s: f64,
+) -> MachineStart {
+    MachineStart {
+        centre_velocity_m_s: velocity_m_s.into(),
+        tilt_rate_rad_s: tilt_rate_rad_s.into(),
+        spin_rad_s,
+        ..MachineStart::default()
+    }
+}
+
+pub(crate) fn spinning(spin_rad_s: f64) -> MachineStart {
+    moving([0.0; 2], [0.0; 2], spin_rad_s)
+}
+
+/// At rest, apart from its spin.
+pub(crate) fn placed(centre_m: V2, spin_rad_s: f64) -> MachineStart {
+    MachineStart {
+        centre_m,
+        ..spinning(spin_rad_s)
+    }
 }
