@@ -45,7 +45,9 @@ fn unpacked(here: &Path) -> Vec<(PathBuf, PathBuf)> {
     let packed = pack.output().unwrap();
     good(&packed);
     let said = String::from_utf8_lossy(&packed.stderr);
-    assert!(!said.contains("warning"), "{said}");
+    // The plant's tests stay with its sources.
+    let complaints = said.replace("warning: ignoring test `plant`", "");
+    assert!(!complaints.contains("warning"), "{said}");
     CRATES
         .map(|(folder, name)| {
             let name = format!("{name}-{}", env!("CARGO_PKG_VERSION"));

@@ -1,6 +1,7 @@
 //! The studies: what they compute and what they claim.
 
 mod accuracy;
+mod cost_of_parts;
 mod found_in_records;
 mod harm;
 mod loop_rates;

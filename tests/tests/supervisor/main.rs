@@ -13,6 +13,7 @@ mod faults;
 mod first_configuration;
 mod first_sample;
 mod fixed_point;
+mod forward_rub;
 mod ledger;
 mod little_known;
 mod loads_that_stay;

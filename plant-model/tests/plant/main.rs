@@ -1,0 +1,29 @@
+//! The plant: against closed forms, against itself by other methods and an independent code, stiff and extreme.
+
+mod bearing;
+mod changes;
+mod contact_law;
+mod cost;
+mod degenerate;
+mod elliptic_bearing;
+mod extreme;
+mod flight;
+mod flight_between_samples;
+mod impacts;
+mod linear;
+mod matrices;
+mod peaks;
+mod poles;
+mod properties;
+mod refusals;
+mod retainer_race;
+mod rotor_extremes;
+mod seals;
+mod shaft;
+mod silently_wrong;
+mod standstill;
+mod starts;
+mod stiff_benchmark_work;
+mod support;
+mod whirl;
+mod whirl_ranges;
