@@ -69,6 +69,7 @@
 //! `series`, `quadrature`, `ellipse`, `race`, `readout`, `integrate`, `machine`, `plant`, `analysis`.
 
 #![forbid(unsafe_code)]
+#![warn(missing_docs)]
 #![warn(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 pub mod analysis;

@@ -59,6 +59,7 @@
 // Unconditional: under `cfg(test)` std's own methods would silently replace micromath's.
 #![no_std]
 #![forbid(unsafe_code)]
+#![warn(missing_docs)]
 #![warn(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod number {

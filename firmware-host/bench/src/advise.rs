@@ -173,11 +173,8 @@ pub struct Vibration {
 /// A parameter of the suggested configuration.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Parameter {
-    /// Name.
     pub name: &'static str,
-    /// Value.
     pub value: f32,
-    /// Unit.
     pub unit: &'static str,
     /// How it was chosen.
     pub reason: String,

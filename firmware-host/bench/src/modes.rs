@@ -127,7 +127,6 @@ pub struct Analysis {
     pub modes: Vec<ModeAtSpin>,
     /// Critical speeds, slowest first, also above the range.
     pub critical_speeds: Vec<CriticalSpeed>,
-    /// Response to the unbalance.
     pub unbalance_response: Vec<Response>,
     /// Rates at which unstable motions grow at the highest spin \[1/s\].
     pub growth_1_s: Vec<f64>,

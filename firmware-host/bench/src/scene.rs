@@ -110,7 +110,6 @@ pub struct PlaneScene {
     pub seed: u64,
     /// The amplifier, beside what the machine has of it.
     pub amplifier: AmplifierParams,
-    /// Its outages.
     pub outages: Vec<Outage>,
     /// Set-downs and lift-offs, in order of time.
     pub set_downs: Vec<SetDown>,
@@ -118,7 +117,6 @@ pub struct PlaneScene {
     pub sensor: SensorParams,
     /// Angles of the x axes of sensor and magnet from that of the scene \[rad\].
     pub axes_rad: [f64; 2],
-    /// Its faults.
     pub faults: Vec<Fault>,
     /// The levitation controller; needed by the policies that use one.
     pub levitation: Option<LevitationParams>,

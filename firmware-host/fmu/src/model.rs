@@ -30,7 +30,6 @@ pub trait Model {
 /// A parameter as the importer leaves it.
 #[derive(Debug, Clone, Copy)]
 pub struct Set<'a> {
-    /// Its name.
     pub name: &'a str,
     /// Its value, another than at the start.
     pub value: Value,

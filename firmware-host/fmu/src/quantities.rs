@@ -45,7 +45,6 @@ pub(crate) fn contact_number(mode: Mode) -> i64 {
     }
 }
 
-/// Number of a policy.
 pub(crate) fn policy_number(kind: PolicyKind) -> i64 {
     match kind {
         PolicyKind::Passive => 0,

@@ -13,7 +13,6 @@ use firmware_bench::run::trace_columns::{Columns, Number};
 pub(crate) enum Of {
     /// The plant and its instruments.
     Plant,
-    /// The closed loop.
     ClosedLoop,
 }
 

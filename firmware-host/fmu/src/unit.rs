@@ -9,9 +9,7 @@ use firmware_bench::scene::spec::Spec;
 /// Which version of the interface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Version {
-    /// 3.0.
     Fmi3,
-    /// 2.0.
     Fmi2,
 }
 
@@ -20,9 +18,7 @@ pub enum Version {
 pub enum Which {
     /// The plant with its instruments.
     Plant,
-    /// The supervisor.
     Supervisor,
-    /// The closed loop.
     ClosedLoop,
 }
 
@@ -71,7 +67,6 @@ impl Unit {
         Ok(there.then_some(Self { which, spec, scene }))
     }
 
-    /// Which it is.
     pub fn which(&self) -> Which {
         self.which
     }

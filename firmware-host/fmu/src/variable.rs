@@ -3,7 +3,6 @@
 /// A type of whole numbers with names.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Enumeration {
-    /// Its name.
     pub name: &'static str,
     /// What it is of.
     pub about: &'static str,
@@ -97,7 +96,6 @@ impl Kind {
 /// Who sets a variable, and when.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Role {
-    /// The time.
     Time,
     /// The importer, before the first step.
     Fixed,

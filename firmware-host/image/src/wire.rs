@@ -12,17 +12,13 @@ use supervisor::{
     QueuedEvent, Report, Sample, Status,
 };
 
-/// Bytes of a sample.
 pub const SAMPLE_BYTES: usize = 36;
-/// Bytes of a command.
 pub const COMMAND_BYTES: usize = 30;
 /// Bytes of a tick in a stream.
 pub const TICK_BYTES: usize = SAMPLE_BYTES + COMMAND_BYTES;
 /// Bytes of a configuration.
 pub const CONFIG_BYTES: usize = 4 * PARAMETERS.len();
-/// Bytes of a [`Header`].
 pub const HEADER_BYTES: usize = 8;
-/// Bytes of a [`Segment`].
 pub const SEGMENT_BYTES: usize = CONFIG_BYTES + 4;
 /// First bytes of a stream; the last of them is the version of the layout.
 const MAGIC: [u8; 4] = *b"AWS\x01";
@@ -95,7 +91,6 @@ pub type SampleBits = CoreSample<u32>;
 /// A command of numbers by their bits.
 pub type CommandBits = CoreCommand<u32>;
 
-/// The bits of a sample.
 pub fn sample_bits(sample: &Sample) -> SampleBits {
     let Sample {
         sequence,
@@ -127,7 +122,6 @@ pub fn sample_of_bits(bits: &SampleBits) -> Sample {
     }
 }
 
-/// The bits of a command.
 pub fn command_bits(command: &Command) -> CommandBits {
     let Command {
         force_n,

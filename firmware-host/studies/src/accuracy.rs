@@ -37,7 +37,6 @@ pub struct Row {
     pub evaluations: u64,
     /// Accepted contact steps.
     pub steps: u64,
-    /// Changes of mode.
     pub mode_changes: u64,
 }
 

@@ -16,6 +16,7 @@
 //! `structs`, `pointer`, `storage`, `halves`, `calls`, `rotor`, `watch`, `bearing`, `ledger`, `archive`.
 
 #![cfg_attr(target_os = "none", no_std)]
+#![warn(missing_docs)]
 #![deny(clippy::undocumented_unsafe_blocks, unsafe_op_in_unsafe_fn)]
 #![warn(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 

@@ -8,9 +8,7 @@ words! {
     /// One axis, or both.
     #[derive(Default)]
     pub enum Axis {
-        /// x.
         X = "x",
-        /// y.
         Y = "y",
         /// Both.
         #[default]

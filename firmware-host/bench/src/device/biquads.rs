@@ -12,9 +12,7 @@ use plant_model::V2;
 /// A section with a0 = 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Section {
-    /// b0, b1, b2.
     pub b: [f64; 3],
-    /// a1, a2.
     pub a: [f64; 2],
 }
 

@@ -42,7 +42,6 @@ pub struct ModalLevitationParams {
 /// moment 1; the least squares of both. What they make of readings is position of the centre of mass and slope.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Weights {
-    /// Of the translation.
     pub translation: Vec<f64>,
     /// Of the tilt \[1/m\].
     pub tilt: Vec<f64>,

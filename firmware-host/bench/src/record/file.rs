@@ -37,7 +37,6 @@ pub enum Damage {
     Missing {
         /// Plane of the record.
         plane: u32,
-        /// What.
         what: &'static str,
         /// How many.
         missing: usize,

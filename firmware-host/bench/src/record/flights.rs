@@ -29,7 +29,6 @@ pub(super) struct State {
 /// Flights as fitted.
 pub(super) struct Fit<'m> {
     motion: &'m Motion,
-    /// The flights.
     pub(super) flights: Vec<Flight>,
     paths: Vec<Path>,
     loads: usize,

@@ -13,7 +13,6 @@ use supervisor::Events;
 /// the contact leaves out, as found on machines whose values are known.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Estimate {
-    /// The value.
     pub value: f64,
     /// Lower and upper end of the interval.
     pub low: f64,
@@ -24,7 +23,6 @@ pub struct Estimate {
 /// What can be told; `None` of what the record does not show closely enough.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct Identified {
-    /// Coefficient of friction.
     pub friction_coefficient: Option<Estimate>,
     /// Restitution of a radial impact.
     pub restitution: Option<Estimate>,

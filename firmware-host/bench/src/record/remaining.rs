@@ -20,7 +20,6 @@ pub enum LedgersError {
     /// One of them is not whole, or none.
     #[error("plane {plane}: {error}")]
     Ledger {
-        /// Which.
         plane: usize,
         /// What is wrong.
         error: LedgerError,
@@ -77,9 +76,7 @@ pub struct Remaining {
     pub has_this_event: Option<bool>,
     /// Landings that it may still bear: such as this event, …
     pub left_like_this: Option<u32>,
-    /// … as the mean of all, …
     pub left_like_the_mean: Option<u32>,
-    /// … and as the worst.
     pub left_like_the_worst: Option<u32>,
 }
 

@@ -13,7 +13,6 @@ pub struct Told {
     /// `levitated` where the levitation controller has the bearing again, else what the supervisor was doing when the record
     /// froze; `coast down` where it asked for that, `bearing off` where the bearing was switched off.
     pub outcome: &'static str,
-    /// Touches.
     pub touches: u32,
     /// Time in contact \[s\].
     pub contact_s: f64,
@@ -51,7 +50,6 @@ pub enum Verdict {
 }
 
 impl Verdict {
-    /// In a sentence.
     pub fn sentence(self) -> &'static str {
         match self {
             Self::RunOn => "Nothing speaks against running on.",
@@ -69,7 +67,6 @@ impl Verdict {
 /// An event: the record of one plane, or those of both planes of a rotor.
 #[derive(Debug)]
 pub struct Event<'a> {
-    /// Its records.
     pub records: Vec<&'a PlaneRecord>,
     /// What its ticks come to once more.
     pub replay: Result<Replay, NoReplay>,

@@ -44,7 +44,6 @@ pub struct Tick {
 /// Ticks in one mode without a break.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Stretch {
-    /// The mode.
     pub mode: &'static str,
     /// First tick since the engagement.
     pub from_tick: i64,

@@ -18,7 +18,6 @@ pub struct Drawn {
     pub id: Option<String>,
     /// What is to be seen.
     pub caption: Markup,
-    /// The drawing.
     pub drawing: String,
     /// Its numbers.
     pub data: Listing,

@@ -196,7 +196,6 @@ impl HtmlPage {
         self.part(heading, [&opened, "</details>\n"], write)
     }
 
-    /// A paragraph.
     pub fn paragraph(&mut self, text: &Markup) {
         self.classed("story", text);
     }

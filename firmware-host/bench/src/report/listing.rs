@@ -10,7 +10,6 @@ use crate::report::plot::text::escape;
 pub enum Column {
     /// Mostly numbers, which stand to the right.
     Numbers,
-    /// Words.
     Words,
     /// Texts that need room.
     LongTexts,

@@ -9,7 +9,6 @@ use crate::run::outcome::Outcome;
 pub struct Markup(String);
 
 impl Markup {
-    /// A text as it is.
     pub fn text(text: impl AsRef<str>) -> Self {
         Self(escape(text.as_ref()))
     }

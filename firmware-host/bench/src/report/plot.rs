@@ -98,7 +98,6 @@ pub(crate) struct TimePlot<'a> {
 /// An ellipse about the centre.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Wall {
-    /// Semi-axes.
     pub(crate) semi_axes: [f64; 2],
     /// Direction of the first \[rad\].
     pub(crate) tilt_rad: f64,

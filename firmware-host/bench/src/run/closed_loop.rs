@@ -66,10 +66,7 @@ pub enum RunError {
     },
     /// The scene lacks something that the policy needs.
     #[error("policy {policy} needs more than the scene gives")]
-    Incomplete {
-        /// The policy.
-        policy: &'static str,
-    },
+    Incomplete { policy: &'static str },
 }
 
 impl RunError {

@@ -5,13 +5,11 @@ use crate::run::outcome::Outcome;
 /// What a column holds; any cell of it may be empty.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
-    /// Numbers.
     Number,
     /// Whole numbers.
     Whole,
     /// Truth values.
     Truth,
-    /// Texts.
     Text,
 }
 
@@ -27,13 +25,11 @@ pub struct Column {
 /// A cell of a column of its kind.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Cell {
-    /// A number.
     Number(Option<f64>),
     /// A whole number.
     Whole(Option<i64>),
     /// A truth value.
     Truth(Option<bool>),
-    /// A text.
     Text(Option<String>),
 }
 

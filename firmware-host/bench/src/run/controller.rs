@@ -265,7 +265,6 @@ impl Controller for TrueLevitation {
 
 /// Who supervises: the product as it is linked here, or wherever else it runs.
 pub trait Supervise: core::fmt::Debug {
-    /// One tick.
     fn tick(&mut self, sample: &Sample) -> Command;
 
     /// What it leaves behind; `None` where it cannot be asked.

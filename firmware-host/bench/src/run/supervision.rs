@@ -18,7 +18,6 @@ pub struct Supervision {
     pub longest_engagement_s: f64,
     /// Times that it gave the bearing back to the levitation controller, as it made no progress.
     pub handed_back: u64,
-    /// Sensor faults.
     pub sensor_faults: u64,
     /// Highest severity that it expected, a share of what the cap can stop.
     pub expected_severity_max: f64,

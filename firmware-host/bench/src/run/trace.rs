@@ -59,7 +59,6 @@ pub struct ReadOut {
 /// A run, in time order.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Trace {
-    /// The rows.
     pub rows: Vec<TraceRow>,
     /// What the supervisor leaves behind, where one runs that can be asked.
     pub read_out: Option<ReadOut>,

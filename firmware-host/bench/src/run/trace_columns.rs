@@ -29,7 +29,6 @@ pub struct Columns<R: 'static> {
 }
 
 impl Columns<TraceRow> {
-    /// Of a plane.
     pub fn of_plane() -> Self {
         let numbers = NUMBERS.iter().copied();
         Self {

@@ -17,7 +17,6 @@ pub struct TraceTable<R: 'static> {
     columns: Columns<R>,
     /// Numbers, SI units.
     pub numbers: Vec<Vec<f64>>,
-    /// Names.
     pub names: Vec<NameColumn>,
     /// Truth values.
     pub flags: Vec<Vec<bool>>,
@@ -28,7 +27,6 @@ pub struct TraceTable<R: 'static> {
 pub struct Headings {
     /// Of numbers, with their units.
     pub numbers: Vec<String>,
-    /// Of names.
     pub names: Vec<&'static str>,
     /// Of truth values.
     pub flags: Vec<&'static str>,

@@ -37,7 +37,6 @@ pub struct Check {
     pub rtol: f64,
     /// How it ended.
     pub outcome: Outcome,
-    /// Changes of mode.
     pub mode_changes: u64,
     /// Whether the modes follow each other as in the run.
     pub same_modes: bool,
@@ -66,7 +65,6 @@ pub struct Verification {
     pub threshold_clearances: f64,
     /// First control sample at which a check is farther away \[s\]; `None`: they agree to the end.
     pub differs_from_s: Option<f64>,
-    /// The checks.
     pub checks: Vec<Check>,
 }
 

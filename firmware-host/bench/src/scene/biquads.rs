@@ -8,7 +8,6 @@ use crate::scene::tables::BiquadsTable;
 
 /// Numbers of a section.
 const COLUMNS: usize = 6;
-/// Most sections.
 const MOST_SECTIONS: usize = 100;
 
 /// The filters of each plane that has a magnet.

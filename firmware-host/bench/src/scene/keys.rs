@@ -26,13 +26,11 @@ pub struct Key {
 /// How a value is written.
 #[derive(Debug, Clone, Copy)]
 pub enum Kind {
-    /// A number.
     Number,
     /// A whole number, 0 or greater.
     Whole,
     /// true or false.
     Truth,
-    /// Text.
     Text,
     /// One of these words.
     Word(&'static [&'static str]),

@@ -10,7 +10,6 @@ use crate::scene::tables::{ContactTable, FrictionTable, PlaneTable, SceneTables,
 pub(crate) struct PlaneSpec {
     /// Which of the planes it is.
     pub(crate) index: usize,
-    /// Its name.
     pub(crate) name: String,
     /// Where along the axis, as the scene counts; the centre of mass where it does not say.
     pub(crate) position_m: Option<f64>,

@@ -32,7 +32,6 @@ pub struct ModeAtRisk {
     pub told_damping_ratio: Option<f64>,
     /// Displacement at the sensor of each plane, over the rigid rotor's …
     pub at_sensors: Vec<f64>,
-    /// … and at its magnet.
     pub at_magnets: Vec<f64>,
 }
 

@@ -27,7 +27,6 @@ pub struct Spec {
 pub struct Setting {
     /// The path of the key, as [`Spec::set`] has it.
     pub path: String,
-    /// The value.
     pub value: Value,
     text: String,
 }
@@ -37,7 +36,6 @@ pub struct Setting {
 pub struct NumberAt {
     /// Its path, as [`Spec::set`] has it.
     pub path: String,
-    /// The key that it is of.
     pub key: &'static Key,
     /// The number, whole or not.
     pub value: Value,

@@ -6,7 +6,6 @@ use crate::scene::diagnostic::{SceneError, SceneText};
 use crate::scene::tables::SceneTables;
 use nalgebra::DMatrix;
 
-/// Most states.
 const MOST_STATES: usize = 500;
 
 /// The controller of `[state_space]` for stations with a cap each, where they have a magnet.

@@ -161,7 +161,6 @@ pub struct Suggested {
 pub struct Decided {
     /// Place of the parameter in [`PARAMETERS`].
     pub index: usize,
-    /// The value.
     pub value: f32,
     /// Why, one line.
     pub reason: String,
@@ -334,7 +333,6 @@ fn second_order_noise(p: f64) -> f64 {
     ((1.0 - p).powi(3) / (1.0 + p).powi(5) * (13.0 + 50.0 * p + 49.0 * p * p) / 2.0).sqrt()
 }
 
-/// … and of first order.
 fn first_order_noise(p: f64) -> f64 {
     (2.0 * ((1.0 - p) / (1.0 + p)).powi(3)).sqrt()
 }

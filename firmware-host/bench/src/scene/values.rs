@@ -142,9 +142,7 @@ words! {
     pub(crate) enum FaultName {
         /// Not a number.
         Nan = "nan",
-        /// Infinity.
         Infinity = "infinity",
-        /// Zero.
         Zero = "zero",
         /// Upper end of the range.
         Rail = "rail",

@@ -18,7 +18,6 @@ pub enum SweepError {
     Read {
         /// Which file.
         what: &'static str,
-        /// Its path.
         path: PathBuf,
         /// What the system said.
         reason: String,
@@ -29,7 +28,6 @@ pub enum SweepError {
     #[error("{}: {what}", folder.display())]
     #[diagnostic(help("{help}"))]
     Other {
-        /// The folder.
         folder: PathBuf,
         /// What is another.
         what: String,

@@ -18,7 +18,6 @@ const MOST_DOTS: usize = 500;
 /// An axis of a map.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MapAxis {
-    /// The key.
     pub key: String,
     /// What of it is where.
     pub places: Places,
@@ -54,7 +53,6 @@ pub struct Counted {
 /// Outcomes of a policy over two keys.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OutcomeMap {
-    /// The policy.
     pub policy: &'static str,
     /// To the right.
     pub x: MapAxis,

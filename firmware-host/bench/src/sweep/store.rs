@@ -26,7 +26,6 @@ pub const RESULTS: &str = "results.parquet";
 /// A program, as one that gives the same results is known.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Program {
-    /// Its version.
     pub version: String,
     /// Digest of the program file.
     pub sha256: String,

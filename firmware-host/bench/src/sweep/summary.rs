@@ -70,7 +70,6 @@ pub struct PolicySummary {
 /// Quantiles of a figure, in SI units.
 #[derive(Debug, Clone, Serialize)]
 pub struct Quantiles {
-    /// Its key.
     pub key: &'static str,
     /// Runs that have it.
     pub runs: u64,

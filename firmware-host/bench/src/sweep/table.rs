@@ -17,13 +17,11 @@ use std::sync::Arc;
 /// Cells of a column.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Cells {
-    /// Of numbers.
     Number(Vec<Option<f64>>),
     /// Of whole numbers.
     Whole(Vec<Option<i64>>),
     /// Of truth values.
     Truth(Vec<Option<bool>>),
-    /// Of texts.
     Text(Vec<Option<String>>),
 }
 

@@ -329,7 +329,6 @@ pub(crate) mod backup {
     use board_machine::{KEPT_WORDS, Kept};
     use stm32_metapac::{PWR, TAMP};
 
-    /// 24 of the 32.
     pub(crate) struct Registers;
 
     /// After the clocks: they can be written to from here on. A reset of the core leaves them and this as they are.

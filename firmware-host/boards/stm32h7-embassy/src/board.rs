@@ -278,7 +278,6 @@ pub(crate) mod backup {
     use board_machine::{KEPT_WORDS, Kept};
     use pac::{PWR, RCC, RTC};
 
-    /// 24 of the 32.
     pub(crate) struct Registers;
 
     /// They can be written to from here on.

@@ -31,7 +31,6 @@ const PERIODS: u32 = 2048;
 #[cfg(small_board)]
 const INSTRUCTIONS: u32 = 125;
 
-/// Turns of [`turns`].
 static TURNS: AtomicU32 = AtomicU32::new(1);
 
 /// What is counted: a tick, or what takes the place of one and commands nothing.

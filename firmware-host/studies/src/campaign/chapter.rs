@@ -56,7 +56,6 @@ pub struct Figure {
     pub file: &'static str,
     /// What is to be seen.
     pub caption: String,
-    /// The drawing.
     pub drawing: Drawing,
 }
 
@@ -126,7 +125,6 @@ impl Chapter {
 /// A document.
 #[derive(Debug, Clone)]
 pub struct Page {
-    /// Its title.
     pub title: String,
     /// The conclusion in a sentence or two, above everything.
     pub headline: String,

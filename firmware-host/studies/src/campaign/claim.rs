@@ -19,7 +19,6 @@ pub enum Side {
 pub struct Claim {
     /// What is claimed, of what.
     pub name: String,
-    /// The bound.
     pub bound: f64,
     /// On which side of it the measurement has to be.
     pub side: Side,

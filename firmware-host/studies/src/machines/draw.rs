@@ -16,7 +16,6 @@ impl Draw {
         Self(stream)
     }
 
-    /// In [0, 1).
     pub fn share(&mut self) -> f64 {
         f64::from(self.0.next_u32()) / 2_f64.powi(32)
     }

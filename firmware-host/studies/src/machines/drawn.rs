@@ -13,7 +13,6 @@ use std::f64::consts::TAU;
 pub struct Machine {
     /// Its number in the draw.
     pub number: u64,
-    /// As a scene.
     pub scene: Scene,
     /// As a scene file.
     pub toml: String,

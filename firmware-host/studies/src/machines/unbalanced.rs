@@ -15,7 +15,6 @@ pub enum Motion {
 }
 
 impl Motion {
-    /// All.
     pub const ALL: [Self; 3] = [Self::OnePlane, Self::Cylindrical, Self::Conical];
 
     /// In words.

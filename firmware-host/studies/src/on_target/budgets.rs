@@ -39,7 +39,6 @@ pub enum BudgetError {
         path: PathBuf,
         /// Processor.
         name: &'static str,
-        /// Numbers.
         number: &'static str,
     },
 }
@@ -126,7 +125,6 @@ pub(crate) struct Budgets {
 /// A figure against its budget.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct Verdict {
-    /// Figure.
     pub figure: &'static str,
     /// What was measured.
     pub measured: u64,

@@ -6,7 +6,6 @@ use serde::Serialize;
 /// Least, middle and most of some counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct Spread {
-    /// Ticks.
     pub ticks: usize,
     /// Least instructions of a tick.
     pub min_instructions: u32,
@@ -32,7 +31,6 @@ impl Spread {
 /// The same for the ticks that ended in a mode.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct OfMode {
-    /// The mode.
     pub mode: &'static str,
     /// Its ticks.
     #[serde(flatten)]

@@ -26,19 +26,14 @@ pub enum EmulatorError {
     #[error("{image} on {machine} did not end within {} s", limit.as_secs())]
     #[diagnostic(help("a fault that the image does not see hangs; or the host is very slow"))]
     Late {
-        /// Image.
         image: String,
-        /// Machine.
         machine: &'static str,
-        /// Limit.
         limit: Duration,
     },
     /// The image says that it failed.
     #[error("{image} on {machine} failed: {said}")]
     Failed {
-        /// Image.
         image: String,
-        /// Machine.
         machine: &'static str,
         /// What it and the emulator said.
         said: String,
@@ -46,9 +41,7 @@ pub enum EmulatorError {
     /// The image did not say what it should.
     #[error("{image} on {machine} did not print {name}")]
     Silent {
-        /// Image.
         image: &'static str,
-        /// Machine.
         machine: &'static str,
         /// What is missing.
         name: &'static str,

@@ -30,7 +30,6 @@ pub enum ImageError {
     /// Something else does not build.
     #[error("the images for {target} do not build:\n{output}")]
     Build {
-        /// Target.
         target: &'static str,
         /// What cargo said.
         output: String,

@@ -65,7 +65,6 @@ impl Stream {
         })
     }
 
-    /// Ticks in all.
     pub fn ticks(&self) -> usize {
         self.pieces.iter().map(|p| p.ticks.len()).sum()
     }

@@ -82,7 +82,6 @@ impl Replayed {
 /// Figures of the long stream.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct LongStream {
-    /// Ticks.
     pub ticks: usize,
     /// Most instructions of a tick.
     pub worst_instructions: u32,
@@ -143,7 +142,6 @@ pub struct StreamRow {
     pub pieces: usize,
     /// Configurations that were passed over because they do not fit the numbers.
     pub left_out: usize,
-    /// Ticks.
     pub ticks: u64,
     /// Hash over the host's commands.
     pub hash: String,
@@ -162,7 +160,6 @@ pub struct StreamRow {
 /// Ticks of a mode.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ModeTicks {
-    /// The mode.
     pub mode: &'static str,
     /// Ticks that ended in it.
     pub ticks: u64,

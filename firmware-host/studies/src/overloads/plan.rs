@@ -37,16 +37,11 @@ pub enum CatalogueError {
     Scene(#[from] SceneError),
     /// Two scenes could not be told apart.
     #[error("the title \"{title}\" is that of another scene")]
-    Title {
-        /// Title.
-        title: String,
-    },
+    Title { title: String },
     /// A run of a sweep cannot be trusted.
     #[error("{plant}, {policy}: {reason}")]
     Run {
-        /// Plant.
         plant: String,
-        /// Policy.
         policy: &'static str,
         /// Why.
         reason: RunError,
@@ -54,7 +49,6 @@ pub enum CatalogueError {
     /// Nothing is kept for a plant.
     #[error("no gains are kept for {plant} at {rate_hz} Hz: search them with --search")]
     NotFound {
-        /// Plant.
         plant: String,
         /// Control rate \[Hz\].
         rate_hz: f64,
@@ -67,7 +61,6 @@ pub struct Catalogue {
     /// What the supervisor promises.
     #[serde(serialize_with = "with_at_least")]
     pub promises: Vec<Claim>,
-    /// Sweeps.
     pub sweeps: Vec<SweepRow>,
     /// Every scene against levitation alone.
     pub against_levitation: Vec<Harm>,

@@ -118,7 +118,6 @@ pub struct Harm {
     pub recovered_alone: usize,
     /// … and the supervisor.
     pub recovered: usize,
-    /// Seeds.
     pub seeds: usize,
 }
 

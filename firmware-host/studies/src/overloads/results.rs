@@ -17,13 +17,10 @@ const OWN: &str = "own scenes";
 pub struct ResultRow {
     /// Kind of overload.
     pub group: &'static str,
-    /// Scene.
     pub scene: String,
-    /// Plant.
     pub plant: String,
     /// Control rate \[Hz\].
     pub rate_hz: f64,
-    /// Policy.
     pub policy: &'static str,
     /// Seed of the sensor noise.
     pub seed: u64,

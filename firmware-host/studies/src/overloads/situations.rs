@@ -14,7 +14,6 @@ use supervisor::Mode;
 pub struct Situation {
     /// Name of the mode, as in names of scenes.
     pub name: &'static str,
-    /// The mode.
     pub mode: Mode,
     /// What leads there; nothing else happens in it.
     pub scene: Scene,

@@ -14,11 +14,9 @@ use serde::Serialize;
 /// One policy on one plant over its seeds.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SweepRow {
-    /// Plant.
     pub plant: String,
     /// Control rate \[Hz\].
     pub rate_hz: f64,
-    /// Policy.
     pub policy: &'static str,
     /// Hardest radial impact recovered from \[m/s\], one a seed, in order of size.
     pub impact_m_s: Vec<f64>,

@@ -29,7 +29,6 @@ pub fn claimed() -> Vec<Class> {
     [all.classes(), wrong.classes()].concat()
 }
 
-/// All classes.
 pub fn classes() -> Vec<Class> {
     use Point::{Eccentric, Impact, Marginal, Overload, Shock, Whirl};
     let conical = Written::Rub { conical: true };

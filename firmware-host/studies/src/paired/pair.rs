@@ -120,7 +120,6 @@ impl Recorder for Counter {
 pub struct Pair {
     /// Levitation alone.
     pub levitation: Outcome,
-    /// With the supervisor.
     pub supervisor: Outcome,
     /// What it did.
     pub engaged: Engaged,

@@ -148,7 +148,6 @@ fn written(machine: &Drawn, event: Written, draw: &mut Draw) -> Result<(Scene, G
 /// A pair of runs.
 #[derive(Debug, Clone)]
 pub struct Case {
-    /// Its class.
     pub class: Class,
     /// Number of its machine.
     pub number: u64,
@@ -175,7 +174,6 @@ pub struct Plan {
     pub seed: u64,
     /// Machines of each class.
     pub machines: u64,
-    /// Which classes.
     pub classes: Vec<Class>,
 }
 

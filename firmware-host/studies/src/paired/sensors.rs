@@ -11,7 +11,6 @@ use std::f64::consts::TAU;
 /// Kinds of sensors.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Sensors {
-    /// As configured.
     AsConfigured,
     /// So many times the noise.
     Noise(f64),

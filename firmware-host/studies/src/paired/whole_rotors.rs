@@ -29,7 +29,6 @@ pub fn claimed() -> Vec<Class> {
     Axes::new(&CLAIMED, written(&OF_ROTORS)).classes()
 }
 
-/// All classes.
 pub fn classes() -> Vec<Class> {
     let blow = [Written::OneEndBlow(130), Written::LoadAtOneEnd(160)];
     let declared = [

@@ -66,7 +66,6 @@ pub enum Written {
     CentreBlow(u32),
     /// Of both ends against each other.
     ConicalBlow(u32),
-    /// Of one end.
     OneEndBlow(u32),
     /// A load in the middle for 20 ms, in percent of a magnet's cap.
     LoadInTheMiddle(u32),

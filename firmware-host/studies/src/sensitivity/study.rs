@@ -20,7 +20,6 @@ const LESS_FORCE: &str = "force cap × 0.8";
 pub struct ToldWrong {
     /// What is told wrong.
     pub text: String,
-    /// Recovered.
     pub recovered: usize,
     /// Told so, the supervisor would not have started.
     pub refused: usize,
@@ -85,7 +84,6 @@ pub struct Outcome {
     pub right: usize,
     /// Told wrong.
     pub told: Vec<ToldWrong>,
-    /// Runs.
     pub runs: u64,
 }
 

@@ -74,12 +74,10 @@ pub enum Incident {
 pub struct Hardest {
     /// At the first end.
     pub end_m_s: f64,
-    /// At the centre.
     pub centre_m_s: f64,
 }
 
 impl Incident {
-    /// All.
     pub const ALL: [Self; 31] = [
         Self::MagnetLost(20),
         Self::MagnetLost(100),

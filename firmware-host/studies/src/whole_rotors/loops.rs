@@ -7,7 +7,6 @@ use firmware_bench::scene::diagnostic::SceneError;
 
 /// The file's loop.
 pub(super) const OWN: &str = "each plane its own";
-/// The one by mode.
 pub(super) const BY_MODE: &str = "by mode";
 /// The stored one.
 pub(super) const ROBUST: &str = "robust";

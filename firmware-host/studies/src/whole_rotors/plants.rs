@@ -64,7 +64,6 @@ pub enum Blow {
 }
 
 impl Blow {
-    /// All.
     pub const ALL: [Self; 4] = [Self::Centre, Self::End(0), Self::End(1), Self::Conical];
 
     /// In words.
@@ -83,7 +82,6 @@ impl Blow {
 pub struct Loop {
     /// Natural frequency \[Hz\].
     pub frequency_hz: f64,
-    /// Damping ratio.
     pub damping_ratio: f64,
     /// Time constant of the derivative's filter \[samples\].
     pub filter: f64,

@@ -137,7 +137,6 @@ pub(super) fn after_an_approach(at_s: f64, unit_s: f64) -> [f64; 2] {
     [0.45 * (1.0 - (TAU * share).cos()), 0.0]
 }
 
-/// At the wall.
 pub(super) fn on_the_wall(_: f64, _: f64) -> [f64; 2] {
     [1.01, 0.0]
 }

@@ -27,7 +27,6 @@ pub struct Axis {
 }
 
 impl Axis {
-    /// A linear one.
     pub fn linear(name: &str, range: (f64, f64)) -> Self {
         let (name, log) = (name.to_owned(), false);
         Self { name, range, log }
@@ -54,7 +53,6 @@ impl Axis {
 /// How a curve is drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Mark {
-    /// A line.
     Line,
     /// A dashed line: closed forms and limits.
     Dashed,
@@ -80,7 +78,6 @@ pub struct Curve {
 }
 
 impl Curve {
-    /// A line.
     pub fn line(name: String, points: Vec<(f64, f64)>, colour: usize) -> Self {
         Self {
             name,

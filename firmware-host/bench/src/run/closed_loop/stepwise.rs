@@ -13,7 +13,6 @@ use supervisor::Mode;
 /// Who commands the magnets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Driver {
-    /// A policy.
     Policy(PolicyKind),
     /// Whoever calls, by [`Stepwise::command`].
     Caller,
@@ -69,7 +68,6 @@ impl Stepwise {
         Ok(stepwise)
     }
 
-    /// The scene.
     pub fn scene(&self) -> &Scene {
         self.ride.borrow_owner()
     }
