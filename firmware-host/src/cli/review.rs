@@ -105,7 +105,7 @@ struct Reviewed {
     /// The event once more on a scene's machine, as `run` has it.
     simulated: Option<serde_json::Value>,
     /// Parameters of the supervisor that the scene gives other values than the record has.
-    told_otherwise: Vec<&'static str>,
+    configured_otherwise: Vec<&'static str>,
     /// Ticks of each plane.
     planes: Vec<Ticks>,
 }
@@ -164,7 +164,7 @@ fn reviewed(of: &Examined<'_>) -> Reviewed {
         contacts: findings.map_or_else(Vec::new, |f| f.contacts.clone()),
         contacts_from: findings.map(|f| f.first),
         simulated: again.map(|again| table::json(&again.scene, &again.results)),
-        told_otherwise: again.map_or_else(Vec::new, |again| again.differing.clone()),
+        configured_otherwise: again.map_or_else(Vec::new, |again| again.differing.clone()),
         planes: event.records.iter().map(|r| Ticks::of(r)).collect(),
     }
 }

@@ -10,7 +10,7 @@ use firmware_bench::run::figures::{Figure, Figures, Place};
 use firmware_bench::scene::policy_kind::PolicyKind;
 use firmware_bench::scene::{PlaneScene, Scene};
 use firmware_studies::campaign::Progress;
-use firmware_studies::sensitivity::{Row, misjudged, told_right};
+use firmware_studies::sensitivity::{Row, configured_right, misjudged};
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 use std::path::PathBuf;
 
@@ -41,7 +41,7 @@ fn width(text: &str) -> Result<f64, String> {
     }
 }
 
-/// Runs the scene with levitation alone, with the supervisor, and with the supervisor told wrong.
+/// Runs the scene with levitation alone, with the supervisor, and with the supervisor configured wrong.
 ///
 /// # Errors
 /// [`CommandError`] for a scene that has nothing to supervise.
@@ -75,7 +75,7 @@ pub fn execute(args: &SensitivityArgs) -> Result<(), CommandError> {
 }
 
 fn rows(scene: &Scene, args: &SensitivityArgs) -> Result<Vec<Row>, CommandError> {
-    let told = told_right(scene).map_err(|e| CommandError::Numbers {
+    let configured = configured_right(scene).map_err(|e| CommandError::Numbers {
         message: format!("{}: the supervisor derives {e}", args.scene.display()),
         help: e.parameter().text.to_owned(),
     })?;
@@ -89,7 +89,7 @@ fn rows(scene: &Scene, args: &SensitivityArgs) -> Result<Vec<Row>, CommandError>
     let rows = args.threads.pool()?.install(|| {
         let mut rows = vec![
             Row::of("levitation alone", scene, PolicyKind::Levitation),
-            Row::of("right", &told, PolicyKind::Supervisor),
+            Row::of("right", &configured, PolicyKind::Supervisor),
         ];
         let wrong: Vec<Option<Row>> = wrong.par_iter().map(one).collect();
         rows.extend(wrong.into_iter().flatten());
@@ -110,7 +110,7 @@ fn text(scene: &Scene, rows: &[Row]) -> String {
         std::mem::swap(alone, supervisor);
     }
     for row in shown_rows {
-        let mut cells = vec![Cell::new(&row.told)];
+        let mut cells = vec![Cell::new(&row.configured)];
         match (&row.metrics, &row.error) {
             (Some(figures), _) => {
                 cells.push(right(row.engagements));

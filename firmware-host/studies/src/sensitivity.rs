@@ -1,5 +1,5 @@
 //! How well the supervisor has to know its machine: a scene run again and again, each time with something of the
-//! machine told wrong.
+//! machine configured wrong.
 
 pub mod study;
 
@@ -18,16 +18,16 @@ use supervisor::{Config, ConfigError, PARAMETERS};
 /// How far a datum usually is off, either way.
 #[derive(Debug, Clone, Copy)]
 enum Usual {
-    /// It is told this many times too large, or too small.
+    /// It is assumed this many times too large, or too small.
     Factor(f64),
-    /// It is told so many ticks too long, or too short.
+    /// It is assumed so many ticks too long, or too short.
     Ticks(f64),
 }
 
 use Usual::{Factor, Ticks};
 
-/// What firmware is told of the machine.
-struct Told {
+/// What firmware assumes of the machine.
+struct AssumedMachine {
     nominal: Nominal,
     spin_gain: f64,
 }
@@ -39,14 +39,14 @@ struct Datum {
     parameter: Option<&'static str>,
     usual: Usual,
     /// Puts it off by a factor, or by ticks.
-    put_off: fn(&mut Told, f64),
+    put_off: fn(&mut AssumedMachine, f64),
 }
 
 const fn datum(
     name: &'static str,
     parameter: &'static str,
     usual: Usual,
-    put_off: fn(&mut Told, f64),
+    put_off: fn(&mut AssumedMachine, f64),
 ) -> Datum {
     Datum {
         name,
@@ -58,71 +58,76 @@ const fn datum(
 
 /// The data that somebody has to measure or look up, and how well they commonly are known.
 const DATA: &[Datum] = &[
-    datum("mass", "mass_kg", Factor(1.25), |told, by| {
-        told.nominal.mass_kg *= by;
+    datum("mass", "mass_kg", Factor(1.25), |assumed, by| {
+        assumed.nominal.mass_kg *= by;
     }),
-    datum("stiffness", "stiffness_n_m", Factor(1.4), |told, by| {
-        told.nominal.stiffness_n_m *= by;
+    datum("stiffness", "stiffness_n_m", Factor(1.4), |assumed, by| {
+        assumed.nominal.stiffness_n_m *= by;
     }),
-    datum("clearance", "clearance_m", Factor(1.1), |told, by| {
-        told.nominal.clearance_m *= by;
+    datum("clearance", "clearance_m", Factor(1.1), |assumed, by| {
+        assumed.nominal.clearance_m *= by;
     }),
-    datum("force cap", "force_max_n", Factor(1.25), |told, by| {
-        told.nominal.force_max_n *= by;
+    datum("force cap", "force_max_n", Factor(1.25), |assumed, by| {
+        assumed.nominal.force_max_n *= by;
     }),
     datum(
         "amplifier lag",
         "amplifier_lag_s",
         Factor(2.0),
-        |told, by| {
-            told.nominal.lag_s *= by;
+        |assumed, by| {
+            assumed.nominal.lag_s *= by;
         },
     ),
-    datum("delay", "delay_samples", Ticks(1.0), |told, by| {
-        let ticks = f64::from(told.nominal.delay_samples) + by;
-        told.nominal.delay_samples = ticks as u32;
+    datum("delay", "delay_samples", Ticks(1.0), |assumed, by| {
+        let ticks = f64::from(assumed.nominal.delay_samples) + by;
+        assumed.nominal.delay_samples = ticks as u32;
     }),
     datum(
         "friction",
         "friction_coefficient",
         Factor(2.0),
-        |told, by| {
-            told.nominal.friction_coefficient *= by;
+        |assumed, by| {
+            assumed.nominal.friction_coefficient *= by;
         },
     ),
-    datum("restitution", "restitution", Factor(1.25), |told, by| {
-        let restitution = suggested(&told.nominal).config.restitution;
-        told.nominal.restitution = Some(f64::from(restitution) * by);
+    datum("restitution", "restitution", Factor(1.25), |assumed, by| {
+        let restitution = suggested(&assumed.nominal).config.restitution;
+        assumed.nominal.restitution = Some(f64::from(restitution) * by);
     }),
     datum(
         "contact stiffness",
         "contact_stiffness_n_m",
         Factor(10.0),
-        |told, by| told.nominal.contact_stiffness_n_m *= by,
+        |assumed, by| assumed.nominal.contact_stiffness_n_m *= by,
     ),
-    datum("sensor noise", "sensor_step_m", Factor(3.0), |told, by| {
-        told.nominal.noise_rms_m *= by;
-        told.nominal.quantum_m *= by;
-    }),
+    datum(
+        "sensor noise",
+        "sensor_step_m",
+        Factor(3.0),
+        |assumed, by| {
+            assumed.nominal.noise_rms_m *= by;
+            assumed.nominal.quantum_m *= by;
+        },
+    ),
     Datum {
         name: "spin",
         // It comes with every sample.
         parameter: None,
         usual: Factor(1.03),
-        put_off: |told, by| told.spin_gain *= by,
+        put_off: |assumed, by| assumed.spin_gain *= by,
     },
 ];
 
-/// Data told wrong together, and in words.
+/// Data configured wrong together, and in words.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Misjudged {
-    /// What is told wrong.
+    /// What is configured wrong.
     pub text: String,
     /// Places in [`DATA`], and by what each is off.
     off: Vec<(usize, f64)>,
 }
 
-/// What there is to be told wrong: each datum alone, too large and too small, and `draws` times all of them at once,
+/// What there is to be configured wrong: each datum alone, too large and too small, and `draws` times all of them at once,
 /// drawn between the two. `width` is the exponent of the factors and a factor of the ticks.
 pub fn misjudged(width: f64, draws: u32, seed: u64) -> Vec<Misjudged> {
     let at = |datum: &Datum, share: f64| match datum.usual {
@@ -161,23 +166,23 @@ fn digits(x: f64) -> String {
 }
 
 impl Misjudged {
-    /// The scene with the supervisor told so; `None` where that makes no difference.
+    /// The scene with the supervisor configured so; `None` where that makes no difference.
     ///
     /// # Errors
     /// The parameter that the supervisor would refuse.
-    pub fn told(&self, scene: &Scene) -> Result<Option<Scene>, ConfigError> {
-        let right = told_right(scene)?;
+    pub fn applied_to(&self, scene: &Scene) -> Result<Option<Scene>, ConfigError> {
+        let right = configured_right(scene)?;
         let mut wrong = right.clone();
         let spin = scene.spin_sensor;
         for plane in wrong.planes.iter_mut().filter(is_supervised) {
-            let mut told = Told {
+            let mut assumed = AssumedMachine {
                 nominal: plane.nominal,
                 spin_gain: spin.gain,
             };
             let mut overrides = plane.overrides.clone();
             for (place, by) in &self.off {
                 let datum = &DATA[*place];
-                (datum.put_off)(&mut told, *by);
+                (datum.put_off)(&mut assumed, *by);
                 for (index, value) in &mut overrides {
                     if datum.parameter == Some(PARAMETERS[*index].name) {
                         *value = match datum.usual {
@@ -187,8 +192,8 @@ impl Misjudged {
                     }
                 }
             }
-            plane.supervisor = Some(configured(plane, &told.nominal, &overrides)?);
-            wrong.spin_sensor.gain = told.spin_gain;
+            plane.supervisor = Some(configured(plane, &assumed.nominal, &overrides)?);
+            wrong.spin_sensor.gain = assumed.spin_gain;
         }
         let other_spin = spin.valid && wrong.spin_sensor.gain != spin.gain;
         let other = (wrong.planes.iter().zip(&right.planes))
@@ -201,7 +206,7 @@ fn is_supervised(plane: &&mut PlaneScene) -> bool {
     plane.magnet.is_some()
 }
 
-/// What the supervisor of a plane is configured with when it is told this, beside what the rotor decides.
+/// What the supervisor of a plane is configured with when it assumes this, beside what the rotor decides.
 fn configured(
     plane: &PlaneScene,
     nominal: &Nominal,
@@ -214,11 +219,11 @@ fn configured(
     Ok(config)
 }
 
-/// The scene with the supervisor told what is, whether or not the scene runs it.
+/// The scene with the supervisor configured with what is, whether or not the scene runs it.
 ///
 /// # Errors
 /// The parameter that the supervisor would refuse.
-pub fn told_right(scene: &Scene) -> Result<Scene, ConfigError> {
+pub fn configured_right(scene: &Scene) -> Result<Scene, ConfigError> {
     let mut scene = scene.clone();
     for plane in scene.planes.iter_mut().filter(is_supervised) {
         plane.supervisor = Some(configured(plane, &plane.nominal, &plane.overrides)?);
@@ -229,8 +234,8 @@ pub fn told_right(scene: &Scene) -> Result<Scene, ConfigError> {
 /// What came of a run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Row {
-    /// What the supervisor was told, or that there was none.
-    pub told: String,
+    /// What it was configured with, or that there was none.
+    pub configured: String,
     /// Times that it took over, of all planes together.
     pub engagements: u64,
     /// What was measured; `None` where there is no run that can be trusted.
@@ -242,7 +247,7 @@ pub struct Row {
 
 impl Row {
     /// Runs a scene.
-    pub fn of(told: &str, scene: &Scene, kind: PolicyKind) -> Self {
+    pub fn of(configured: &str, scene: &Scene, kind: PolicyKind) -> Self {
         let mut counts = vec![SupervisionCount::default(); scene.planes.len()];
         let recorders = Recorders::of_planes(&mut counts);
         let ran = record(scene, kind, recorders, Rigour::default(), &mut |_| {});
@@ -256,21 +261,21 @@ impl Row {
             Err(error) => (0, None, Some(error.to_string())),
         };
         Self {
-            told: told.to_owned(),
+            configured: configured.to_owned(),
             engagements,
             metrics,
             error,
         }
     }
 
-    /// Runs a scene with something told wrong; `None` where that makes no difference. What the supervisor would refuse
+    /// Runs a scene with something configured wrong; `None` where that makes no difference. What the supervisor would refuse
     /// is a row that says so.
     pub fn of_misjudged(misjudged: &Misjudged, scene: &Scene) -> Option<Self> {
-        match misjudged.told(scene) {
+        match misjudged.applied_to(scene) {
             Ok(Some(wrong)) => Some(Self::of(&misjudged.text, &wrong, PolicyKind::Supervisor)),
             Ok(None) => None,
             Err(refused) => Some(Self {
-                told: misjudged.text.clone(),
+                configured: misjudged.text.clone(),
                 engagements: 0,
                 metrics: None,
                 error: Some(format!("refused: {refused}")),

@@ -57,7 +57,7 @@ fn an_event_is_found_out_and_simulated() {
     let friction = number(&over_mass[1]) / number(&over_mass[0]);
     // The spin is counter-clockwise: friction drives the rotor clockwise.
     assert!((friction + 0.15).abs() < 0.01, "{friction}");
-    assert_eq!(told["told_otherwise"], serde_json::json!([]));
+    assert_eq!(told["configured_otherwise"], serde_json::json!([]));
     let policies = &told["simulated"]["policies"];
     let again = &policies["supervisor"];
     assert_eq!(again["outcome"], "recovered");

@@ -1,27 +1,30 @@
-//! How well the supervisor has to know its machine: with its data told wrong as data commonly are.
+//! How well the supervisor has to know its machine: with its data configured wrong as data commonly are.
 
 use firmware_bench::scene::Scene;
 use firmware_studies::machines::drawn::Machine;
 use firmware_studies::overloads::contenders::Contender;
 use firmware_studies::overloads::results::ResultRow;
 use firmware_studies::sensitivity::misjudged;
-use firmware_studies::sensitivity::study::{Outcome, of_the_catalogue, told_wrong};
+use firmware_studies::sensitivity::study::{Outcome, configured_wrong, of_the_catalogue};
 use firmware_studies::trials::Trial;
 use rayon::prelude::*;
 use serde_json::Value;
 use system_tests::{host, scene_path};
 
-/// A bearing of the catalogue, all its scenes: whatever is told wrong by as much as is usual, the supervisor recovers
-/// from what levitation alone recovers from, and from nearly all that it recovers from when told right. The one
-/// exception is no error of judgement: told less force than there is, it uses less.
+/// A bearing of the catalogue, all its scenes: whatever is configured wrong by as much as is usual, the supervisor recovers
+/// from what levitation alone recovers from, and from nearly all that it recovers from when configured right. The one
+/// exception is no error of judgement: with less force than there is, it uses less.
 #[test]
-fn told_wrong_it_loses_next_to_nothing() {
+fn configured_wrong_it_loses_next_to_nothing() {
     let trials = of_the_catalogue("P2").unwrap();
     let Outcome {
-        alone, right, told, ..
-    } = told_wrong(&trials, (1.0, 0), &()).unwrap();
+        alone,
+        right,
+        wrong,
+        ..
+    } = configured_wrong(&trials, (1.0, 0), &()).unwrap();
     assert!(right > alone, "{right} {alone}");
-    for t in told {
+    for t in wrong {
         let less_force = t.text == "force cap × 0.8";
         let few = if less_force { 5 } else { 1 };
         assert!(t.lost_to_right <= few, "{}: {}", t.text, t.lost_to_right);
@@ -49,11 +52,12 @@ fn rows(more: &[&str]) -> Vec<Value> {
     json["rows"].as_array().unwrap().clone()
 }
 
-fn row<'a>(rows: &'a [Value], told: &str) -> &'a Value {
-    (rows.iter().find(|row| row["told"] == told)).unwrap_or_else(|| panic!("{told}: {rows:#?}"))
+fn row<'a>(rows: &'a [Value], configured: &str) -> &'a Value {
+    (rows.iter().find(|row| row["configured"] == configured))
+        .unwrap_or_else(|| panic!("{configured}: {rows:#?}"))
 }
 
-/// A sensor told seven times as noisy as it is makes the observer slow and the contact band a fifth of the clearance. A rotor
+/// A sensor assumed to be seven times as noisy as it is makes the observer slow and the contact band a fifth of the clearance. A rotor
 /// that turns round in that band, in flight, is no rotor at rest, which would be pushed with the whole cap.
 #[test]
 fn a_rotor_that_turns_round_near_the_wall_does_not_rest() {
@@ -68,10 +72,10 @@ fn a_rotor_that_turns_round_near_the_wall_does_not_rest() {
         let rows: Vec<(ResultRow, ResultRow)> = (trials.par_iter())
             .map(|trial| {
                 let scene = &trial.case.scene;
-                let told = noisy.told(scene).unwrap().unwrap();
+                let wrong = noisy.applied_to(scene).unwrap().unwrap();
                 (
                     trial.run(Contender::Tuned),
-                    trial.with(told).run(Contender::Supervisor),
+                    trial.with(wrong).run(Contender::Supervisor),
                 )
             })
             .collect();
@@ -99,7 +103,7 @@ fn the_command_tells_every_datum_wrong() {
     );
     let verdicts: Value = serde_json::from_slice(&run.stdout).unwrap();
     let rows = rows(&["--draws", "3"]);
-    for (told, policy) in [("levitation alone", "levitation"), ("right", "supervisor")] {
+    for (configured, policy) in [("levitation alone", "levitation"), ("right", "supervisor")] {
         for figure in [
             "outcome",
             "impacts",
@@ -107,16 +111,20 @@ fn the_command_tells_every_datum_wrong() {
             "relevitation_time_s",
         ] {
             let (of_row, of_run) = (
-                &row(&rows, told)[figure],
+                &row(&rows, configured)[figure],
                 &verdicts["policies"][policy][figure],
             );
-            assert_eq!(of_row, of_run, "{told} {figure}");
-            assert!(!of_row.is_null(), "{told} {figure}");
+            assert_eq!(of_row, of_run, "{configured} {figure}");
+            assert!(!of_row.is_null(), "{configured} {figure}");
         }
     }
     // Eleven data, too small and too large.
     assert_eq!(rows.len(), 2 + 22 + 3);
-    let impulse = |told: &str| row(&rows, told)["contact_impulse_n_s"].as_f64().unwrap();
+    let impulse = |configured: &str| {
+        row(&rows, configured)["contact_impulse_n_s"]
+            .as_f64()
+            .unwrap()
+    };
     assert!(impulse("force cap × 0.8") > impulse("right"));
     assert!(impulse("force cap × 1.25") < impulse("right"));
     assert_eq!(rows, self::rows(&["--draws", "3", "--threads", "1"]));
@@ -125,12 +133,12 @@ fn the_command_tells_every_datum_wrong() {
     row(&wide, "delay +2 ticks");
 }
 
-/// What the scene itself sets in `[supervisor]` is told wrong, too; what makes no difference has no row; what would be
+/// What the scene itself sets in `[supervisor]` is configured wrong, too; what makes no difference has no row; what would be
 /// refused says so.
 #[test]
-fn what_the_scene_sets_itself_is_told_wrong_too() {
+fn what_the_scene_sets_itself_is_configured_wrong_too() {
     let text = std::fs::read_to_string(scene_path("overload_then_release")).unwrap();
-    let told = |more: &str| {
+    let assumed = |more: &str| {
         let scene = Scene::parse(
             "test",
             &format!("{text}\n[spin_sensor]\nvalid = false\n{more}"),
@@ -140,18 +148,18 @@ fn what_the_scene_sets_itself_is_told_wrong_too() {
         move |name: &str| {
             let misjudged = all.iter().find(|m| m.text == name).unwrap();
             misjudged
-                .told(&scene)
-                .map(|told| told.map(|scene| scene.planes[0].supervisor.unwrap()))
+                .applied_to(&scene)
+                .map(|scene| scene.map(|scene| scene.planes[0].supervisor.unwrap()))
         }
     };
-    let plain = told("");
+    let plain = assumed("");
     let mass = plain("mass × 1.25").unwrap().unwrap().mass_kg;
-    let own = told("[supervisor]\nmass_kg = 4.0\n");
+    let own = assumed("[supervisor]\nmass_kg = 4.0\n");
     assert_eq!(own("mass × 1.25").unwrap().unwrap().mass_kg, 5.0);
     assert!((mass - 5.0).abs() > 0.1, "{mass}");
     // Nobody looks at a spin that is not valid.
     assert_eq!(plain("spin × 1.03"), Ok(None));
-    let band = told("[supervisor]\nfriction_coefficient = 1.5\n");
+    let band = assumed("[supervisor]\nfriction_coefficient = 1.5\n");
     assert!(band("friction × 0.5").unwrap().is_some());
     assert_eq!(
         band("friction × 2").unwrap_err().parameter().name,
@@ -161,7 +169,7 @@ fn what_the_scene_sets_itself_is_told_wrong_too() {
 
 /// Without magnet or levitation controller there is nothing to supervise; a width has its bounds.
 #[test]
-fn what_cannot_be_told_wrong_is_refused() {
+fn what_cannot_be_configured_wrong_is_refused() {
     for (args, expected) in [
         (vec!["established_whirl_two_mass_stator"], "no [magnet]"),
         (

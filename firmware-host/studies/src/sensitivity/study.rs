@@ -1,6 +1,6 @@
-//! The catalogue's scenes and unseen machines with each datum of the machine told wrong.
+//! The catalogue's scenes and unseen machines with each datum of the machine configured wrong.
 
-use super::{misjudged, told_right};
+use super::{configured_right, misjudged};
 use crate::campaign::{Block, Chapter, Claim, Extent, Progress, Report, StudyError, run_all};
 use crate::machines::drawn::Machine;
 use crate::machines::plants::plants;
@@ -10,36 +10,36 @@ use crate::overloads::results::ResultRow;
 use crate::trials::Trial;
 
 const RATE_HZ: f64 = 20_000.0;
-/// Of the draws in which all data are told wrong at once.
+/// Of the draws in which all data are configured wrong at once.
 const SEED: u64 = 1;
-/// Told less force than there is, the supervisor uses less: no error of judgement.
+/// AssumedMachine less force than there is, the supervisor uses less: no error of judgement.
 const LESS_FORCE: &str = "force cap × 0.8";
 
-/// What came of the trials with something told wrong.
+/// What came of the trials with something configured wrong.
 #[derive(Debug, Clone)]
-pub struct ToldWrong {
-    /// What is told wrong.
+pub struct ConfiguredWrong {
+    /// What is configured wrong.
     pub text: String,
     pub recovered: usize,
-    /// Told so, the supervisor would not have started.
+    /// AssumedMachine so, the supervisor would not have started.
     pub refused: usize,
     /// Of those that levitation alone recovers from.
     pub lost_to_levitation: Vec<String>,
-    /// Of those that the supervisor recovers from when it is told right.
+    /// Of those that the supervisor recovers from when it is configured right.
     pub lost_to_right: usize,
     /// Largest contact force over that of the one configured right, the 95th percentile.
     pub force_95: f64,
 }
 
-impl ToldWrong {
-    /// From the runs told wrong (none where refused), with levitation alone, and told right.
+impl ConfiguredWrong {
+    /// From the runs configured wrong (none where refused), with levitation alone, and configured right.
     fn new(
         text: &str,
         wrong: &[Option<ResultRow>],
         alone: &[ResultRow],
         right: &[ResultRow],
     ) -> Self {
-        let mut told = Self {
+        let mut row = Self {
             text: text.to_owned(),
             recovered: 0,
             refused: 0,
@@ -50,23 +50,23 @@ impl ToldWrong {
         let mut forces = Vec::new();
         for ((wrong, alone), right) in wrong.iter().zip(alone).zip(right) {
             let Some(wrong) = wrong else {
-                told.refused += 1;
+                row.refused += 1;
                 continue;
             };
-            told.recovered += usize::from(wrong.recovered());
-            told.lost_to_right += usize::from(right.recovered() && !wrong.recovered());
+            row.recovered += usize::from(wrong.recovered());
+            row.lost_to_right += usize::from(right.recovered() && !wrong.recovered());
             if alone.recovered() && !wrong.recovered() {
                 let name = format!("{}: {}", wrong.plant, wrong.scene);
-                told.lost_to_levitation.push(name);
+                row.lost_to_levitation.push(name);
             }
             forces.push(force_n(wrong) / force_n(right));
         }
         forces.retain(|ratio| ratio.is_finite());
         forces.sort_by(f64::total_cmp);
         if let Some(force) = forces.get(forces.len() * 95 / 100) {
-            told.force_95 = *force;
+            row.force_95 = *force;
         }
-        told
+        row
     }
 }
 
@@ -75,53 +75,55 @@ fn force_n(row: &ResultRow) -> f64 {
     (row.metrics.as_ref()).map_or(f64::NAN, |m| m.peak_contact_force_n)
 }
 
-/// What came of trials told wrong in every way of a width.
+/// What came of trials configured wrong in every way of a width.
 #[derive(Debug, Clone)]
 pub struct Outcome {
     /// Recovered with levitation alone.
     pub alone: usize,
-    /// Recovered with the supervisor told right.
+    /// Recovered with the supervisor configured right.
     pub right: usize,
-    /// Told wrong.
-    pub told: Vec<ToldWrong>,
+    /// AssumedMachine wrong.
+    pub wrong: Vec<ConfiguredWrong>,
     pub runs: u64,
 }
 
-/// Trials with levitation alone, told right, and with each datum put off by errors of a width, and all of them `draws`
+/// Trials with levitation alone, configured right, and with each datum put off by errors of a width, and all of them `draws`
 /// times.
 ///
 /// # Errors
 /// A trial that has nothing to supervise.
-pub fn told_wrong(
+pub fn configured_wrong(
     trials: &[Trial],
     (width, draws): (f64, u32),
     progress: &dyn Progress,
 ) -> Result<Outcome, StudyError> {
     let right = (trials.iter())
-        .map(|trial| Ok(trial.with(told_right(&trial.case.scene).map_err(|e| e.to_string())?)))
+        .map(
+            |trial| Ok(trial.with(configured_right(&trial.case.scene).map_err(|e| e.to_string())?)),
+        )
         .collect::<Result<Vec<Trial>, String>>()?;
     let alone = run_all(trials, progress, |trial| trial.run(Contender::Tuned));
     let right = run_all(&right, progress, |trial| trial.run(Contender::Supervisor));
     let mut runs = 2 * trials.len();
-    let told = (misjudged(width, draws, SEED).iter())
+    let wrong = (misjudged(width, draws, SEED).iter())
         .map(|misjudged| {
             let pairs: Vec<(&Trial, &ResultRow)> = trials.iter().zip(&right).collect();
             let wrong = run_all(&pairs, progress, |(trial, right)| {
-                match misjudged.told(&trial.case.scene) {
+                match misjudged.applied_to(&trial.case.scene) {
                     Ok(Some(wrong)) => Some(trial.with(wrong).run(Contender::Supervisor)),
                     Ok(None) => Some((*right).clone()),
                     Err(_) => None,
                 }
             });
             runs += wrong.len();
-            ToldWrong::new(&misjudged.text, &wrong, &alone, &right)
+            ConfiguredWrong::new(&misjudged.text, &wrong, &alone, &right)
         })
         .collect();
     let recovered = |rows: &[ResultRow]| rows.iter().filter(|row| row.recovered()).count();
     Ok(Outcome {
         alone: recovered(&alone),
         right: recovered(&right),
-        told,
+        wrong,
         runs: runs as u64,
     })
 }
@@ -154,7 +156,7 @@ fn of_unseen_machines(count: u64) -> Result<Vec<Trial>, StudyError> {
 /// Every plant of the catalogue and unseen machines, errors as usual and twice as wide; quick: P2 with the usual ones.
 ///
 /// # Errors
-/// See [`told_wrong`].
+/// See [`configured_wrong`].
 pub fn study(extent: Extent, progress: &dyn Progress) -> Result<Report, StudyError> {
     let trials = match extent {
         Extent::Quick => of_the_catalogue("P2")?,
@@ -163,12 +165,12 @@ pub fn study(extent: Extent, progress: &dyn Progress) -> Result<Report, StudyErr
     let widths: &[f64] = extent.pick(&[1.0], &[1.0, 2.0]);
     let (mut claims, mut chapters, mut cases) = (Vec::new(), Vec::new(), 0);
     for width in widths {
-        let outcome = told_wrong(&trials, (*width, extent.pick(0, 8)), progress)?;
+        let outcome = configured_wrong(&trials, (*width, extent.pick(0, 8)), progress)?;
         cases += outcome.runs;
         if *width == 1.0 {
             claims.extend(
                 outcome
-                    .told
+                    .wrong
                     .iter()
                     .filter(|t| t.text != LESS_FORCE)
                     .map(|t| {
@@ -189,7 +191,7 @@ pub fn study(extent: Extent, progress: &dyn Progress) -> Result<Report, StudyErr
 }
 
 fn chapter(outcome: &Outcome, width: f64, runs: usize) -> Chapter {
-    let rows = outcome.told.iter().map(|t| {
+    let rows = outcome.wrong.iter().map(|t| {
         [
             t.text.clone(),
             t.recovered.to_string(),

@@ -11,7 +11,7 @@ use self::struck::Struck;
 use super::incidents::Hardest;
 use super::loops::{OWN, loops};
 use super::plants::{Blow, RotorPlant};
-use super::wrong_shaft::told_wrong;
+use super::wrong_shaft::configured_wrong;
 use crate::campaign::{Block, Chapter, Claim, Extent, Progress, Report, StudyError};
 use firmware_bench::scene::policy_kind::PolicyKind;
 
@@ -31,7 +31,7 @@ fn median(mut values: Vec<f64>) -> f64 {
 /// Who is compared: levitation alone, and the supervisor in front of it.
 const KINDS: [PolicyKind; 2] = [PolicyKind::Levitation, PolicyKind::Supervisor];
 
-/// The plants of the catalogue under all of it; in a quick run without the searches and what is told wrong.
+/// The plants of the catalogue under all of it; in a quick run without the searches and what is configured wrong.
 ///
 /// # Errors
 /// A plant that is no valid scene.
@@ -71,7 +71,7 @@ pub fn study(extent: Extent, progress: &dyn Progress) -> Result<Report, StudyErr
         claims.extend(claims_of(&of, name));
         cases += of.pairs + of.untrusted;
         if extent == Extent::Full {
-            for (what, over) in told_wrong(plant, own, progress) {
+            for (what, over) in configured_wrong(plant, own, progress) {
                 cases += Blow::ALL.len() as u64;
                 wrong.push([name.to_owned(), what, format!("{over:.2}")]);
             }

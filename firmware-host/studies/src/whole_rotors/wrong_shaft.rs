@@ -12,7 +12,7 @@ const TRIED: (f64, u64) = (0.4, 1);
 /// Makes a datum of a shaft wrong by a factor.
 type Change = fn(&mut Shaft, f32);
 
-/// What may be told wrong of a shaft, and by how much.
+/// What may be configured wrong of a shaft, and by how much.
 const WRONG: [(&str, f64, Change); 7] = [
     ("transverse inertia", 1.2, |s, by| {
         s.transverse_inertia_kg_m2 *= by;
@@ -37,8 +37,8 @@ const WRONG: [(&str, f64, Change); 7] = [
     }),
 ];
 
-/// Hardest blows told wrong over those told right: the least of all directions.
-pub(super) fn told_wrong(
+/// Hardest blows configured wrong over those configured right: the least of all directions.
+pub(super) fn configured_wrong(
     plant: &RotorPlant,
     right: &[[f64; 2]],
     progress: &dyn Progress,
