@@ -1,14 +1,13 @@
 //! The paper's two rotors as plant parameters, and where each constant comes from.
 
-use super::PaperError;
+use super::data::*;
 use plant_model::V2;
 use plant_model::analysis::impact::ImpactError;
 use plant_model::contact::damping_for_restitution;
 use plant_model::params::{
-    ContactParams, FrictionParams, LinearContact, PlantParams, RingParams, RotorParams,
-    SlidingFriction, SpinParams, StatorParams,
+    ContactParams, FrictionParams, LinearContact, RingParams, RotorParams, SlidingFriction,
+    SpinParams, StatorParams,
 };
-use std::f64::consts::TAU;
 
 /// What the paper leaves out of footnote 4.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -51,6 +50,16 @@ pub(super) fn ring(mass_kg: f64, stiffness_n_m: f64, damping_n_s_m: f64) -> Ring
         stiffness_n_m: V2::repeat(stiffness_n_m),
         damping_n_s_m: V2::repeat(damping_n_s_m),
     }
+}
+
+/// [`footnote_4`] with another contact stiffness \[N/m\], of the same damping ratio.
+pub(super) fn footnote_4_at(contact_stiffness_n_m: f64) -> PlantParams {
+    let share = contact_stiffness_n_m / USED.contact_stiffness_n_m;
+    footnote_4_with(&LeftOut {
+        contact_stiffness_n_m,
+        contact_damping_n_s_m: USED.contact_damping_n_s_m * share.sqrt(),
+        ..USED
+    })
 }
 
 /// [`footnote_4`] with another choice of what the paper leaves out.
@@ -143,7 +152,7 @@ impl OnsetRig {
     ///
     /// # Errors
     /// A restitution outside (0, 1].
-    pub fn params(&self) -> Result<PlantParams, PaperError> {
+    pub fn params(&self) -> Result<PlantParams> {
         let mass_kg = Self::MASS_KG;
         let natural_rad_s = TAU * self.natural_hz;
         let k_c = self.contact_stiffness_n_m;
