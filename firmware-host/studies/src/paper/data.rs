@@ -76,7 +76,7 @@ pub(super) fn level((from, to): (f64, f64), height: f64) -> Vec<(f64, f64)> {
     vec![(from, height), (to, height)]
 }
 
-/// Curves and what they are worth saying of: the highest of their finite points.
+/// The highest of the finite points of some curves.
 pub(super) fn highest(curves: &[Curve]) -> f64 {
     let values = curves.iter().flat_map(|c| &c.points).map(|p| p.1);
     values.filter(|y| y.is_finite()).fold(0.0, f64::max)

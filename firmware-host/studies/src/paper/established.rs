@@ -108,22 +108,18 @@ fn spin_down_rows(runs: &SpinDowns, search: &Search) -> Result<Vec<Row>> {
         _ => "hangs on k_c and J (Pareto table)",
     };
     Ok(rows! {
-        "Plateau of the maximum whirl frequency (166 Hz)", "Hz", SIMULATED, 660.0 => fast.whirl_hz, Assumed,
-            "{plateau}";
+        "Plateau of the maximum whirl frequency (166 Hz)", "Hz", SIMULATED, 660.0 => fast.whirl_hz, Assumed, "{plateau}";
         "The same, anisotropic stator", "Hz", "Results, simulation; footnote 4", 660.0 => anisotropic.whirl_hz, Assumed,
             "the paper does not say which calculations had it; outer ring then {:.3} mm", 1e3 * anisotropic.displacement_m[2];
         "Rise of the maximum from 80 to 166 Hz", "%", "Fig. 7", Silent => 100.0 * (fast.whirl_hz / middle.whirl_hz - 1.0), Assumed,
             "paper: not exceeded at higher speed; constant μ";
         "Maximum whirl frequency from 40 Hz (measured)", "Hz", TEST, 530.0 => slow.whirl_hz, Assumed,
             "the paper's own model exceeds its tests too: 660 Hz as maximum";
-        "Standstill from 40 Hz", "s", TEST, 0.012 => slow.standstill_s, Assumed,
-            "90 % of the speed to 2 Hz";
+        "Standstill from 40 Hz", "s", TEST, 0.012 => slow.standstill_s, Assumed, "90 % of the speed to 2 Hz";
         "Spin at the maximum, from 40 Hz", "Hz", TEST, 2.0 => slow.spin_at_middle_hz, Assumed,
             "middle of the window of 1 ms, in which the spin falls fast; {:.1} Hz at its end, where slip ends", slow.spin_at_end_hz;
-        "Outer ring, from 40 Hz", "mm", TEST, AtMost(0.05) => 1e3 * slow.displacement_m[2], Assumed,
-            "paper: order of magnitude; a bound in its fit";
-        "Outer ring, from 166 Hz", "mm", SIMULATED, AtMost(0.05) => 1e3 * fast.displacement_m[2], Assumed,
-            "the paper's fit kept it within the measured value";
+        "Outer ring, from 40 Hz", "mm", TEST, AtMost(0.05) => 1e3 * slow.displacement_m[2], Assumed, "paper: order of magnitude; a bound in its fit";
+        "Outer ring, from 166 Hz", "mm", SIMULATED, AtMost(0.05) => 1e3 * fast.displacement_m[2], Assumed, "the paper's fit kept it within the measured value";
         "Rotor, from 40 Hz: displacement over clearance", "", TEST, AtLeast(1.0) => slow.displacement_m[0] / footnote_4().contact.clearance_m, Assumed,
             "paper: considerably larger than 1";
         "Peak normal force, from 40 Hz", "kN", "Results; Conclusions", Silent => 1e-3 * slow.force_n, Assumed, "{FATAL}";
@@ -153,10 +149,8 @@ fn fast_rows(law: &Law, [slow_m_s, fast_m_s]: [f64; 2]) -> Vec<Row> {
     const SOURCE: &str = "Results, test at 166 Hz";
     let [falling_slow_m_s, falling_fast_m_s] = law.critical_m_s;
     rows! {
-        "166 Hz: μ_∞ of the falling friction", "", SOURCE, Silent => law.at_speed, Fitted,
-            "fitted to the time to standstill alone";
-        "166 Hz: standstill", "s", SOURCE, PAPER_STANDSTILL_S => law.fast_standstill_s, Fitted,
-            "90 % of the speed to 2 Hz; μ_∞ = {:.4} chosen for it", law.at_speed;
+        "166 Hz: μ_∞ of the falling friction", "", SOURCE, Silent => law.at_speed, Fitted, "fitted to the time to standstill alone";
+        "166 Hz: standstill", "s", SOURCE, PAPER_STANDSTILL_S => law.fast_standstill_s, Fitted, "90 % of the speed to 2 Hz; μ_∞ = {:.4} chosen for it", law.at_speed;
         "166 Hz: whirl frequency (median, 90 % to 10 % of the spin)", "Hz", SOURCE, 400.0 => law.median_hz, Predicted,
             "μ_∞ was fitted to the time only; v_0 assumed";
         "166 Hz: maximum whirl frequency", "Hz", SOURCE, 400.0 => law.largest_hz, Assumed,
@@ -165,8 +159,7 @@ fn fast_rows(law: &Law, [slow_m_s, fast_m_s]: [f64; 2]) -> Vec<Row> {
             "miss: with a law of speed alone the whirl is steady; intervals need μ that changes in time (melting)";
         "Excitation for whirl, 166 against 40 Hz, falling μ", "", SOURCE, AtLeast(1.0) => falling_fast_m_s / falling_slow_m_s, Assumed,
             "radial impact {falling_fast_m_s:.2} against {falling_slow_m_s:.2} m/s; paper: considerably higher; hangs on v_0";
-        "The same, constant μ", "", SOURCE, Silent => fast_m_s / slow_m_s, Assumed,
-            "{fast_m_s:.3} against {slow_m_s:.3} m/s: spin alone does not matter";
+        "The same, constant μ", "", SOURCE, Silent => fast_m_s / slow_m_s, Assumed, "{fast_m_s:.3} against {slow_m_s:.3} m/s: spin alone does not matter";
     }
 }
 

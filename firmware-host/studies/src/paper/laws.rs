@@ -9,6 +9,8 @@ use plant_model::contact::hunt_crossley::damping_for_restitution;
 use plant_model::contact::restitution_of;
 use plant_model::params::{ContactLaw, HuntCrossley, LinearContact};
 
+/// Restitution of the linear contact against onset; near what the chapter on onset fits.
+const RESTITUTION: f64 = 0.7;
 /// Hertz's exponent.
 const EXPONENT: f64 = 1.5;
 
@@ -60,21 +62,16 @@ fn matched_at_force(params: &PlantParams, normal_force_n: f64) -> Result<HuntCro
 
 /// Computes the chapter. A quick run leaves onset with two configurations and whirl with fewer runs.
 pub(super) fn chapter(extent: Extent) -> Result<Chapter> {
-    let (onset, whirl) = rayon::join(|| onset::compare(extent), || whirl::Whirl::run(extent));
-    let (onset, whirl) = (onset?, whirl?);
-    let impact = impact::Impacts::run(extent)?;
-    let mut rows = onset.rows;
-    rows.extend(impact.rows());
-    rows.extend(whirl.rows()?);
-    Ok(Chapter {
-        title: "Contact laws",
-        story: vec![
-            "Footnote 2: the linear law (2.8) could be replaced by a nonlinear one. Here it is Hunt and Crossley's with Hertz's exponent, f_n = k_h·A^1.5·(1 + λB), beside the linear one with the same restitution and depth at one impact speed. The paper has no number for it: paper values in the rows are those of its tests and calculations with whatever law they had.".to_owned(),
-            "What differs: the force starts and ends without a step, no dent is left after a free impact, and restitution is a matter of speed, 1 − e ≈ (2/3)·λ·v. A linear contact loses the same share at every bounce, this one ever less: a series of impacts that shrinks brings more friction impulse in all, so whirl begins at a lower impact speed although the first impact is the same. With λ fitted to the first configuration of Fig. 3 instead, the others are predicted worse than by the linear law: the inclined impacts too low, the damped shaft far too high. These tests speak against losses that vanish at low speed.".to_owned(),
-            "What does not: a steady whirl needs nothing of the law but f_n, so Black's frequencies stay. Only the force that goes with a frequency changes, by the penetration: N·|u|/N_hard = c + (N/k_h)^(2/3). For every frequency that a contact without deformation has, this has a solution, since the penetration grows more slowly than the force; a soft linear contact (k_c = 3e8 N/m) needs a pull there and has none. Whether whirl is stable there is another matter; the table of held spin says what runs do.".to_owned(),
+    let mut chapter = Chapter::new(
+        "Contact laws",
+        [
+            "Footnote 2: the linear law (2.8) could be replaced by a nonlinear one. Here it is Hunt and Crossley's with Hertz's exponent, f_n = k_h·A^1.5·(1 + λB), beside the linear one with the same restitution and depth at one impact speed. The paper has no number for it: paper values in the rows are those of its tests and calculations with whatever law they had.",
+            "What differs: the force starts and ends without a step, no dent is left after a free impact, and restitution is a matter of speed, 1 − e ≈ (2/3)·λ·v. A linear contact loses the same share at every bounce, this one ever less: a series of impacts that shrinks brings more friction impulse in all, so whirl begins at a lower impact speed although the first impact is the same. With λ fitted to the first configuration of Fig. 3 instead, the others are predicted worse than by the linear law: the inclined impacts too low, the damped shaft far too high. These tests speak against losses that vanish at low speed.",
+            "What does not: a steady whirl needs nothing of the law but f_n, so Black's frequencies stay. Only the force that goes with a frequency changes, by the penetration: N·|u|/N_hard = c + (N/k_h)^(2/3). For every frequency that a contact without deformation has, this has a solution, since the penetration grows more slowly than the force; a soft linear contact (k_c = 3e8 N/m) needs a pull there and has none. Whether whirl is stable there is another matter; the table of held spin says what runs do.",
         ],
-        rows,
-        tables: vec![onset.table, whirl.spin_down(), whirl.held_spin()],
-        figures: impact.figures(),
-    })
+    );
+    onset::add(&mut chapter, extent)?;
+    impact::add(&mut chapter, extent)?;
+    whirl::add(&mut chapter, extent)?;
+    Ok(chapter)
 }

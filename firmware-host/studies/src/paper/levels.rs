@@ -115,12 +115,10 @@ fn rows(all: &[Fastest]) -> Result<Vec<Row>> {
             "run, 1 ms mean, in which rolling friction already brakes; closed form {undriven_40:.0} Hz";
         "Rigid stator, k_c = 1e9 N/m, from 40 Hz", "Hz", SOURCE, AtLeast(MEASURED_40_HZ) => slow.rigid_hz, Assumed,
             "paper: rigid in no way adequate. Capped by √((k + k_c)/m) = {:.0} Hz", cap_hz(&two);
-        "Rigid stator, k_c = 1e9 N/m, from 166 Hz", "Hz", SOURCE, AtLeast(MEASURED_166_HZ) => fast.rigid_hz, Assumed,
-            "still under the cap";
+        "Rigid stator, k_c = 1e9 N/m, from 166 Hz", "Hz", SOURCE, AtLeast(MEASURED_166_HZ) => fast.rigid_hz, Assumed, "still under the cap";
         "Stator of one mass, from 40 Hz", "Hz", SOURCE, AtLeast(MEASURED_40_HZ) => slow.one_hz, Assumed,
             "inner ring on ground. Paper: better, still much too high; here {:+.1} % over two masses", 100.0 * (slow.one_hz / slow.two_hz - 1.0);
-        "Stator of two masses, from 40 Hz", "Hz", SOURCE, 660.0 => slow.two_hz, Assumed,
-            "paper: about 660 Hz as computed maximum, adequate. k_c = 1e9 N/m";
+        "Stator of two masses, from 40 Hz", "Hz", SOURCE, 660.0 => slow.two_hz, Assumed, "paper: about 660 Hz as computed maximum, adequate. k_c = 1e9 N/m";
         "Stator of two masses, from 166 Hz over from 40 Hz", "", "Fig. 7", 1.0 => fast.two_hz / slow.two_hz, Assumed,
             "paper: a plateau that higher speeds do not exceed";
         "Upper whirl limit of the stator of one mass", "Hz", "Results, on Black's theory", Silent => limit.map(|c| c.frequency_hz()), Predicted,

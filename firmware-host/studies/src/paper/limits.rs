@@ -95,16 +95,13 @@ fn rows(hard: &SteadyWhirl, at_1e9: &Tried) -> Result<Vec<Row>> {
             "nothing but footnote 4 in it: neither k_c nor d_c, J_r, R_r, spin. Above the paper's computed maximum; why, the paper does not let us see";
         "First coupled natural frequency, joined rigidly", "Hz", "Footnote 5", 660.0 => rigid_hz, Predicted,
             "misses: with these constants the maximum is not this frequency; damping lets friction drive only to the limit below it";
-        "First coupled natural frequency, joined by k_c = 1e9 N/m", "Hz", "Footnote 5", 660.0 => joined_hz, Assumed,
-            "misses too";
-        "Plateau: fastest whirl from 166 Hz", "Hz", "Fig. 7, simulation", 660.0 => fast_hz, Assumed,
-            "k_c = 1e9 N/m; {over:+.2} % from the limit";
+        "First coupled natural frequency, joined by k_c = 1e9 N/m", "Hz", "Footnote 5", 660.0 => joined_hz, Assumed, "misses too";
+        "Plateau: fastest whirl from 166 Hz", "Hz", "Fig. 7, simulation", 660.0 => fast_hz, Assumed, "k_c = 1e9 N/m; {over:+.2} % from the limit";
         "Fastest whirl at 40 Hz", "Hz", "Results, test at 40 Hz", 530.0 => slow_hz, Assumed,
             "k_c = 1e9 N/m; measured. The spin is used up before the limit is reached";
         "Whirl frequency at which whirl begins", "Hz", "Results, test at 40 Hz", AtMost(55.0) => onset.frequency_hz(), Predicted,
             "the lowest root is a lower bound: friction drives above it";
-        "Least μ − μ_r that keeps any sliding whirl", "", "Footnote 4", Silent => least, Predicted,
-            "at {least_hz:.0} Hz; footnote 4 has 0.125";
+        "Least μ − μ_r that keeps any sliding whirl", "", "Footnote 4", Silent => least, Predicted, "at {least_hz:.0} Hz; footnote 4 has 0.125";
         "Driving friction with which the limit is 400 Hz", "", "Results, test at 166 Hz", Silent => hard.friction_needed(400.0 * TAU), Predicted,
             "what melting must leave of μ − μ_r for the measured 400 Hz";
     })

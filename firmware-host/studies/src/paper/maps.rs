@@ -41,6 +41,7 @@ macro_rules! varied {
             set: $set,
             measured: &$measured,
         };)*
+        const ALL: &[Varied] = &[$($constant),*];
     };
 }
 
@@ -121,17 +122,9 @@ pub(super) fn chapter(extent: Extent) -> Result<Chapter> {
             "Balanced, in a rigid concentric stator, everything is symmetric about the centre, and from bounce to bounce only the normal and the tangential speed count. The outcome then changes once over the impact speed: the limit is sharp, as the paper reports. Unbalance breaks the symmetry: its phase at the touch counts, whirl and no whirl alternate in a fringe above the lowest speed that whirls, and that lowest speed falls.",
         ],
     );
-    for varied in [
-        FRICTION,
-        DAMPING,
-        NATURAL,
-        RESTITUTION,
-        CLEARANCE,
-        INCLINATION,
-    ] {
-        chapter
-            .figures
-            .push(curves(&rig, varied, extent.pick(21, 81))?);
+    for varied in ALL {
+        let curves = curves(&rig, *varied, extent.pick(21, 81))?;
+        chapter.figures.push(curves);
     }
     let (columns, rows) = extent.pick((16, 10), (60, 40));
     let map = |file, x, y| map(&rig, file, [x, y], Grid { columns, rows });
@@ -211,34 +204,19 @@ fn map(rig: &Case, file: &'static str, [x, y]: [Varied; 2], grid: Grid) -> Resul
 
 /// How v_r,crit goes with each parameter: the exponent of a power law about the rig.
 fn sensitivities(case: &Case) -> Result<Vec<Row>> {
+    const FIG_4: &str = "Fig. 4";
     let rig = &case.rig;
-    let at = [
-        (FRICTION, rig.friction, "", "falls"),
-        (DAMPING, 100.0 * rig.damping_ratio, " %", "rises"),
-        (DAMPING, 3.5, " %", "rises"),
-        (
-            NATURAL,
-            rig.natural_hz,
-            " Hz",
-            "rises with the shaft's stiffness",
-        ),
-        (RESTITUTION, rig.restitution, "", "counts, without a sense"),
-        (
-            CLEARANCE,
-            1e3 * rig.clearance_m,
-            " mm",
-            "recommends more of it",
-        ),
-    ];
-    let mut rows = Vec::new();
-    for (varied, value, unit, text) in at {
+    let exponent = |varied: Varied, value: f64| -> Result<f64> {
         let of = |share: f64| case.with(varied, share * value).critical_m_s();
-        let exponent = (of(1.05)? / of(0.95)?).ln() / (1.05_f64 / 0.95).ln();
-        let (name, value) = (varied.name, figures(value));
-        rows.extend(rows! {
-            "Exponent of v_r,crit in {name} at {value}{unit}", "", "Fig. 4", Silent => exponent, Predicted,
-                "text: {text}; no number";
-        });
-    }
-    Ok(rows)
+        Ok((of(1.05)? / of(0.95)?).ln() / (1.05_f64 / 0.95).ln())
+    };
+    let restitution = figures(rig.restitution);
+    Ok(rows! {
+        "Exponent of v_r,crit in μ at 0.125", "", FIG_4, Silent => exponent(FRICTION, rig.friction)?, Predicted, "text: falls; no number";
+        "Exponent of v_r,crit in damping ratio at 0.3 %", "", FIG_4, Silent => exponent(DAMPING, 100.0 * rig.damping_ratio)?, Predicted, "text: rises; no number";
+        "Exponent of v_r,crit in damping ratio at 3.5 %", "", FIG_4, Silent => exponent(DAMPING, 3.5)?, Predicted, "text: rises; no number";
+        "Exponent of v_r,crit in eigenfrequency at 45 Hz", "", FIG_4, Silent => exponent(NATURAL, rig.natural_hz)?, Predicted, "text: rises with the shaft's stiffness; no number";
+        "Exponent of v_r,crit in restitution at {restitution}", "", FIG_4, Silent => exponent(RESTITUTION, rig.restitution)?, Predicted, "text: counts, without a sense; no number";
+        "Exponent of v_r,crit in clearance at 0.2 mm", "", FIG_4, Silent => exponent(CLEARANCE, 1e3 * rig.clearance_m)?, Predicted, "text: recommends more of it; no number";
+    })
 }

@@ -151,22 +151,18 @@ fn rows(run: &Record, limit: Option<Circle>) -> Result<Vec<Row>> {
     let above = force.spectrum.power_share(|hz| hz.abs() > DIVIDE_HZ);
     let rigid_hz = fastest_hz(&mounted(false), SPIN_HZ, 0.1)?;
     Ok(rows! {
-        "Stiffness of the oval mode", "N/m", "not in the paper", Silent => OVAL_N_M, Fitted,
-            "fitted to the 400 Hz alone";
+        "Stiffness of the oval mode", "N/m", "not in the paper", Silent => OVAL_N_M, Fitted, "fitted to the 400 Hz alone";
         "Slow motion of the rotor", "Hz", SOURCE, 50.0 => slow_hz.abs(), Predicted,
             "{}; free vibration of rotor and ring together from the impact. Resolution {:.0} Hz", sense(slow_hz), run.rotor.spectrum.resolution_hz;
-        "Fast whirl of the rotor", "Hz", SOURCE, 400.0 => fast_hz.abs(), Fitted,
-            "{}; by the oval mode's stiffness", sense(fast_hz);
+        "Fast whirl of the rotor", "Hz", SOURCE, 400.0 => fast_hz.abs(), Fitted, "{}; by the oval mode's stiffness", sense(fast_hz);
         "Upper whirl limit by Black's condition", "Hz", SOURCE, 400.0 => limit.map(|c| c.frequency_hz()), Fitted,
             "growth rate of small disturbances {growth:.0} 1/s: {stability}";
         "Largest displacement of the rotor", "mm", SOURCE, AtLeast(1.0) => 1e3 * run.rotor_peak_m, Assumed,
             "paper: more than 1 mm; hangs on the impact, here 0.8 m/s";
-        "Largest displacement of the ring", "mm", SOURCE, AtLeast(1.0) => 1e3 * run.ring_peak_m, Assumed,
-            "paper: more than 1 mm; no bending of rods in the model";
+        "Largest displacement of the ring", "mm", SOURCE, AtLeast(1.0) => 1e3 * run.ring_peak_m, Assumed, "paper: more than 1 mm; no bending of rods in the model";
         "Share of the contact force's power above 150 Hz", "", SOURCE, Silent => above, Assumed,
             "paper: the fast motion governs force and torque, and alone the deceleration";
-        "Force amplitude, fast over slow", "", SOURCE, AtLeast(1.0) => force.fast.amplitude / force.slow.amplitude, Assumed,
-            "paper: fast dominates";
+        "Force amplitude, fast over slow", "", SOURCE, AtLeast(1.0) => force.fast.amplitude / force.slow.amplitude, Assumed, "paper: fast dominates";
         "Fastest whirl with the ring as one rigid mass", "Hz", "Results, on Black's theory", 400.0 => rigid_hz, Assumed,
             "misses, as it must: without the oval mode nothing holds the whirl but k_c";
     })

@@ -38,14 +38,8 @@ pub(super) struct Fit {
 /// predicted.
 pub(super) fn configurations(fit: &Fit) -> [Configuration; 5] {
     let disc = OnsetRig::solid_disc(fit.restitution);
-    let damped = OnsetRig {
-        damping_ratio: 0.035,
-        ..disc
-    };
-    let seals = OnsetRig {
-        friction: fit.seal_friction,
-        ..disc
-    };
+    let damped = disc.with(|rig| rig.damping_ratio = 0.035);
+    let seals = disc.with(|rig| rig.friction = fit.seal_friction);
     let of = |name, rig, inclination_deg: f64, measured_m_s, kind| Configuration {
         name,
         rig,
@@ -87,8 +81,9 @@ fn fitted(
 ) -> Result<f64> {
     let above = |constant: f64| Ok(critical_m_s(&rig(constant).params()?, 0.0)? > measured_m_s);
     if !above(low)? || above(high)? {
-        let what = format!("{measured_m_s} is not met between {low} and {high}");
-        return Err(PaperError::Missing(what));
+        return missing(format!(
+            "{measured_m_s} is not met between {low} and {high}"
+        ));
     }
     let (low, high) = halved((low, high), |high| 1e-5 * high, above)?;
     Ok(0.5 * (low + high))
@@ -96,19 +91,18 @@ fn fitted(
 
 /// Fits the restitution on the first configuration at a contact stiffness.
 fn fit_restitution(contact_stiffness_n_m: f64) -> Result<f64> {
-    fitted((0.5, 0.9), 0.093, |restitution| OnsetRig {
-        contact_stiffness_n_m,
-        ..OnsetRig::solid_disc(restitution)
+    fitted((0.5, 0.9), 0.093, |restitution| {
+        OnsetRig::solid_disc(restitution)
+            .with(|rig| rig.contact_stiffness_n_m = contact_stiffness_n_m)
     })
 }
 
 /// Fits restitution and friction of the seals, each on its own configuration.
 pub(super) fn fit() -> Result<Fit> {
     let restitution = fit_restitution(OnsetRig::solid_disc(1.0).contact_stiffness_n_m)?;
-    let seal_friction = fitted((0.15, 0.9), 0.043, |friction| OnsetRig {
-        friction,
-        ..OnsetRig::solid_disc(restitution)
-    })?;
+    let disc = OnsetRig::solid_disc(restitution);
+    let with = |friction| disc.with(|rig| rig.friction = friction);
+    let seal_friction = fitted((0.15, 0.9), 0.043, with)?;
     Ok(Fit {
         restitution,
         seal_friction,
@@ -137,32 +131,25 @@ fn grows(params: &PlantParams, speed: f64, threshold_m_s: f64) -> Result<bool> {
             return Ok(true);
         }
     }
-    Err(PaperError::Missing("whirl neither grew nor died".into()))
+    missing("whirl neither grew nor died")
 }
 
 /// v_t,crit \[m/s\]: by its closed form, and simulated, bisected between 0.99 and 1.01 of that.
-struct Threshold {
-    closed_m_s: f64,
-    simulated_m_s: f64,
+fn thresholds_m_s(rig: &OnsetRig) -> Result<[f64; 2]> {
+    let params = rig.params()?;
+    let closed = critical_tangential_speed_m_s(&params);
+    let closed = closed.or_missing("no critical tangential speed")?;
+    let below = |speed: f64| Ok(!grows(&params, speed, closed)?);
+    let (low, high) = (0.99 * closed, 1.01 * closed);
+    if !below(low)? || below(high)? {
+        return missing("threshold farther than 1 % from its closed form");
+    }
+    let (_, simulated) = halved((low, high), |high| 1e-6 * high, below)?;
+    Ok([closed, simulated])
 }
 
-impl Threshold {
-    fn of(rig: &OnsetRig) -> Result<Self> {
-        let params = rig.params()?;
-        let closed_m_s = critical_tangential_speed_m_s(&params);
-        let closed_m_s = closed_m_s.or_missing("no critical tangential speed")?;
-        let below = |speed: f64| Ok(!grows(&params, speed, closed_m_s)?);
-        let (low, high) = (0.99 * closed_m_s, 1.01 * closed_m_s);
-        if !below(low)? || below(high)? {
-            let what = "threshold farther than 1 % from its closed form";
-            return Err(PaperError::Missing(what.into()));
-        }
-        Ok(Self {
-            closed_m_s,
-            simulated_m_s: halved((low, high), |high| 1e-6 * high, below)?.1,
-        })
-    }
-}
+/// How far above v_r,crit impacts are counted.
+const SHARES: [f64; 6] = [1.0, 1.02, 1.05, 1.1, 1.2, 1.5];
 
 /// A configuration with its critical speed \[m/s\] by μ as it is, 25 % lower and 25 % higher as in Fig. 3.
 struct Solved {
@@ -170,20 +157,28 @@ struct Solved {
     value_m_s: f64,
     slippery_m_s: f64,
     rough_m_s: f64,
+    /// Impacts until the backward speed passes v_t,crit, for each of [`SHARES`].
+    impacts: [Option<u32>; 6],
 }
 
 impl Solved {
     fn new(of: &Configuration) -> Result<Self> {
         let with = |share: f64| {
-            let friction = share * of.rig.friction;
-            let rig = OnsetRig { friction, ..of.rig };
+            let rig = of.rig.with(|rig| rig.friction *= share);
             critical_m_s(&rig.params()?, of.inclination_rad)
         };
+        let (value_m_s, params) = (with(1.0)?, of.rig.params()?);
+        let mut impacts = [None; 6];
+        for (count, share) in impacts.iter_mut().zip(SHARES) {
+            let impact = impact(share * value_m_s, of.inclination_rad);
+            *count = run_impact(&params, &impact, &Criterion::default())?.impacts_to_threshold;
+        }
         Ok(Self {
             of: *of,
-            value_m_s: with(1.0)?,
+            value_m_s,
             slippery_m_s: with(0.75)?,
             rough_m_s: with(1.25)?,
+            impacts,
         })
     }
 }
@@ -202,22 +197,18 @@ pub(super) fn chapter(extent: Extent) -> Result<Chapter> {
     let five = configurations(&fit);
     let all = each(&five, Solved::new)?;
     let speeds: Vec<f64> = all.iter().map(|solved| solved.value_m_s).collect();
-    let counts = each(&all, impacts)?;
     let mut rows = threshold_rows(&five)?;
     rows.extend(rows! {
-        "Restitution e", "", "not in the paper", Silent => fit.restitution, Fitted,
-            "fitted on the solid disc at 0.3 % alone";
-        "μ of the seal elements", "", "Results, onset phase", Silent => fit.seal_friction, Fitted,
-            "fitted on the seal elements alone; the paper says very high";
+        "Restitution e", "", "not in the paper", Silent => fit.restitution, Fitted, "fitted on the solid disc at 0.3 % alone";
+        "μ of the seal elements", "", "Results, onset phase", Silent => fit.seal_friction, Fitted, "fitted on the seal elements alone; the paper says very high";
     });
     for solved in &all {
         rows.extend(critical_row(solved)?);
     }
     rows.extend(rows! {
-        "rms log error of the three predictions", "", RESULTS, Silent => rms_log_error(&five, &speeds), Predicted,
-            "3.5 %, 30° and 50°";
+        "rms log error of the three predictions", "", RESULTS, Silent => rms_log_error(&five, &speeds), Predicted, "3.5 %, 30° and 50°";
     });
-    rows.extend(impact_rows(&counts));
+    rows.extend(impact_rows(&all));
     Ok(Chapter {
         title: "Onset",
         story: vec![
@@ -226,7 +217,7 @@ pub(super) fn chapter(extent: Extent) -> Result<Chapter> {
             "Whirl is a backward tangential speed in contact of 2 v_t,crit. Not whirl is a free vibration whose ellipse can no longer reach the wall. The search goes upwards in steps of 0.5 % to the first whirl and bisects that change to 1e-5.".to_owned(),
         ],
         rows,
-        tables: vec![impact_table(&all, &counts), variants::table(&fit, extent)?],
+        tables: vec![impact_table(&all), variants::table(&fit, extent)?],
         figures: vec![figure(&all)],
     })
 }
@@ -240,8 +231,7 @@ fn threshold_rows(five: &[Configuration; 5]) -> Result<Vec<Row>> {
         (five[4], Assumed),
     ] {
         let name = configuration.name;
-        let threshold = Threshold::of(&configuration.rig)?;
-        let (closed, simulated) = (threshold.closed_m_s, threshold.simulated_m_s);
+        let [closed, simulated] = thresholds_m_s(&configuration.rig)?;
         rows.extend(rows! {
             "v_t,crit, {name}", "m/s", "Modelling, onset phase", Silent => closed, kind,
                 "closed form; simulated {simulated:.5} ({:+.3} %)", 100.0 * (simulated / closed - 1.0);
@@ -258,38 +248,29 @@ fn threshold_rows(five: &[Configuration; 5]) -> Result<Vec<Row>> {
 }
 
 fn critical_row(solved: &Solved) -> Result<Vec<Row>> {
-    let Configuration {
-        name,
-        rig,
-        measured_m_s,
-        kind,
-        ..
-    } = solved.of;
+    let of = &solved.of;
+    let (name, kind, measured_m_s) = (of.name, of.kind, of.measured_m_s);
     let (rough, slippery) = (solved.rough_m_s, solved.slippery_m_s);
     let inside = match (rough..=slippery).contains(&measured_m_s) {
         true => "inside",
         false => "outside",
     };
     let mut remedy = String::new();
-    if rig.damping_ratio > 0.01 {
-        let ratio = 100.0 * damping_that_meets(&solved.of)?;
+    if of.rig.damping_ratio > 0.01 {
+        let ratio = 100.0 * damping_that_meets(of)?;
         remedy = format!(
             "; too high, {ratio:.1} % would meet it: modal damping is taken as linear and the same in every direction"
         );
     }
     Ok(rows! {
-        "v_r,crit, {name}", "m/s", RESULTS, measured_m_s => solved.value_m_s, kind,
-            "μ ± 25 %: {rough:.3} to {slippery:.3}, measured {inside}{remedy}";
+        "v_r,crit, {name}", "m/s", RESULTS, measured_m_s => solved.value_m_s, kind, "μ ± 25 %: {rough:.3} to {slippery:.3}, measured {inside}{remedy}";
     })
 }
 
 /// The damping ratio at which the model gives the speed measured.
 fn damping_that_meets(configuration: &Configuration) -> Result<f64> {
     let below = |damping_ratio: f64| {
-        let rig = OnsetRig {
-            damping_ratio,
-            ..configuration.rig
-        };
+        let rig = (configuration.rig).with(|rig| rig.damping_ratio = damping_ratio);
         let critical_m_s = critical_m_s(&rig.params()?, configuration.inclination_rad)?;
         Ok(critical_m_s < configuration.measured_m_s)
     };
@@ -297,24 +278,9 @@ fn damping_that_meets(configuration: &Configuration) -> Result<f64> {
     Ok(halved(ends, |high| 1e-4 * high, below)?.1)
 }
 
-/// How far above v_r,crit impacts are counted.
-const SHARES: [f64; 6] = [1.0, 1.02, 1.05, 1.1, 1.2, 1.5];
-/// Impacts until the backward speed passes v_t,crit, for each of [`SHARES`].
-type Counts = [Option<u32>; 6];
-
-fn impacts(solved: &Solved) -> Result<Counts> {
-    let params = solved.of.rig.params()?;
-    let mut counts = Counts::default();
-    for (count, share) in counts.iter_mut().zip(SHARES) {
-        let impact = impact(share * solved.value_m_s, solved.of.inclination_rad);
-        *count = run_impact(&params, &impact, &Criterion::default())?.impacts_to_threshold;
-    }
-    Ok(counts)
-}
-
-fn impact_rows(counts: &[Counts]) -> Vec<Row> {
+fn impact_rows(all: &[Solved]) -> Vec<Row> {
     const SOURCE: &str = "Results, onset phase";
-    let at = |share: usize| counts.iter().filter_map(move |c| c[share]);
+    let at = |share: usize| all.iter().filter_map(move |s| s.impacts[share]);
     let most = |share: usize| at(share).max().map(f64::from);
     let fewest = |share: usize| at(share).min().map_or("–".to_owned(), |n| n.to_string());
     rows! {
@@ -325,18 +291,18 @@ fn impact_rows(counts: &[Counts]) -> Vec<Row> {
     }
 }
 
-fn impact_table(all: &[Solved], counts: &[Counts]) -> Table {
+fn impact_table(all: &[Solved]) -> Table {
     let cell = |count: Option<u32>| count.map_or("–".to_owned(), |n| n.to_string());
     table! {
         "Impacts until the backward speed passes v_t,crit, the first included";
-        for (solved, counts) in all.iter().zip(counts);
+        for solved in all;
         "Configuration" => "{}", solved.of.name;
-        "1 v_r,crit" => "{}", cell(counts[0]);
-        "1.02 v_r,crit" => "{}", cell(counts[1]);
-        "1.05 v_r,crit" => "{}", cell(counts[2]);
-        "1.1 v_r,crit" => "{}", cell(counts[3]);
-        "1.2 v_r,crit" => "{}", cell(counts[4]);
-        "1.5 v_r,crit" => "{}", cell(counts[5]);
+        "1 v_r,crit" => "{}", cell(solved.impacts[0]);
+        "1.02 v_r,crit" => "{}", cell(solved.impacts[1]);
+        "1.05 v_r,crit" => "{}", cell(solved.impacts[2]);
+        "1.1 v_r,crit" => "{}", cell(solved.impacts[3]);
+        "1.2 v_r,crit" => "{}", cell(solved.impacts[4]);
+        "1.5 v_r,crit" => "{}", cell(solved.impacts[5]);
     }
 }
 

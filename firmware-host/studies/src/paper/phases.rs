@@ -130,10 +130,8 @@ fn rows(whirl: &Whirl, shortest_s: f64, longest_s: f64) -> Result<Vec<Row>> {
     };
     let decay = amplitude_m(bounds[9] - 0.03) / amplitude_m(bounds[8]);
     Ok(rows! {
-        "Phases found, in order", "", SOURCE, 9.0 => (bounds.len() - 1) as f64, Predicted,
-            "criteria in the table";
-        "Whirl frequency at the start of continuous contact", "Hz", SOURCE, 55.0 => from_hz(bounds[4]), Predicted,
-            "first full window of 1 ms";
+        "Phases found, in order", "", SOURCE, 9.0 => (bounds.len() - 1) as f64, Predicted, "criteria in the table";
+        "Whirl frequency at the start of continuous contact", "Hz", SOURCE, 55.0 => from_hz(bounds[4]), Predicted, "first full window of 1 ms";
         "Excitation to maximum", "s", SOURCE, 0.1 => to_maximum_s(course)?, Assumed,
             "hangs on the excitation: {shortest_s:.3} s at 1500 N, {longest_s:.3} s at the smallest that whirls";
         "Whirl turns within 5 % of the maximum", "", SOURCE, Between(3.0, 4.0) => turns, Assumed,
@@ -142,10 +140,8 @@ fn rows(whirl: &Whirl, shortest_s: f64, longest_s: f64) -> Result<Vec<Row>> {
             "paper: a short series; the inner ring springs back, so that some come in pairs";
         "Whirl frequency where phase 8 begins", "Hz", SOURCE, Silent => from_hz(bounds[7]), Assumed,
             "paper: considerably lower, still rather high; {lowest_hz:.0} Hz where contact is lost";
-        "Duration of phase 8", "s", SOURCE, Silent => bounds[8] - bounds[7], Assumed,
-            "paper: a short time; here only μ_r and damping slow the whirl once it rolls";
-        "Amplitude at the end of phase 9 over its start", "", SOURCE, Silent => decay, Predicted,
-            "paper: decreasing";
+        "Duration of phase 8", "s", SOURCE, Silent => bounds[8] - bounds[7], Assumed, "paper: a short time; here only μ_r and damping slow the whirl once it rolls";
+        "Amplitude at the end of phase 9 over its start", "", SOURCE, Silent => decay, Predicted, "paper: decreasing";
     })
 }
 

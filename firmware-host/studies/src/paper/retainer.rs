@@ -5,7 +5,6 @@ mod figures;
 mod onset;
 mod runs;
 
-use self::onset::Onset;
 use self::runs::{Tried, sustained_hz, sustaining_drag_n_m_s, with_race};
 use super::data::*;
 use super::rotors::footnote_4_at;
@@ -41,26 +40,22 @@ fn races(extent: Extent) -> Result<Vec<Tried>> {
 
 /// Computes the chapter. Both extents give the same rows; a quick run has fewer races.
 pub(super) fn chapter(extent: Extent) -> Result<Chapter> {
-    let (all, (drags, onset)) = rayon::join(
-        || races(extent),
-        || rayon::join(|| Drags::run(extent), || Onset::run(extent)),
-    );
-    let (all, drags, onset) = (all?, drags?, onset?);
-    let mut rows = whirl_rows(&all)?;
-    rows.extend(onset.rows());
-    rows.extend(without_shaft()?);
-    rows.extend(drags.rows()?);
-    Ok(Chapter {
-        title: "Retainer bearing",
-        story: vec![
-            "The paper recommends ball bearings as retainer bearings, to lower the friction between rotor and stator, and gives no number. Here the ring's surface is a race with an inertia J_i and a viscous drag b: J_i·dΩ_i/dt = −R_i·s − b·Ω_i. Rotor and stator of footnote 4 with k_c = 1e9 N/m, J_r = 0.05 kg m², R_r = 0.1 m; start at the wall with 0.4 m/s outwards, 40 Hz, no drive; race at rest. Constants of races are assumed; balls, cage, preload and load-dependent friction are not modelled.".to_owned(),
-            "What it does: friction takes slip away from the race's side, and what has turned the race cannot drive the whirl. An impulse I gives κ·I/m to the whirl (κ = 1 − μ_r/μ) and takes I·(R²/J_r + R_i²/J_i + κ/m) off the slip, so sliding takes the whirl to v = κ·ΩR/(κ + m·(R²/J_r + R_i²/J_i)) at most, whatever the impact. Then the rotor rolls on the race, friction holds only what the drag asks for, and rolling friction and shaft damping end the whirl.".to_owned(),
-            "What it does not: a race hardly raises the impact that starts a whirl, unless it is so light that this bound lies near v_t,crit; a race as heavy as the rotor lets the whirl come near the stator's limit, as a bushing does; without shaft stiffness nothing lifts the rotor off and it rolls on; and with a drive that holds the spin, a drag above the torque that μ·N gives at v_t,crit keeps a rolling whirl alive for good.".to_owned(),
+    let mut chapter = Chapter::new(
+        "Retainer bearing",
+        [
+            "The paper recommends ball bearings as retainer bearings, to lower the friction between rotor and stator, and gives no number. Here the ring's surface is a race with an inertia J_i and a viscous drag b: J_i·dΩ_i/dt = −R_i·s − b·Ω_i. Rotor and stator of footnote 4 with k_c = 1e9 N/m, J_r = 0.05 kg m², R_r = 0.1 m; start at the wall with 0.4 m/s outwards, 40 Hz, no drive; race at rest. Constants of races are assumed; balls, cage, preload and load-dependent friction are not modelled.",
+            "What it does: friction takes slip away from the race's side, and what has turned the race cannot drive the whirl. An impulse I gives κ·I/m to the whirl (κ = 1 − μ_r/μ) and takes I·(R²/J_r + R_i²/J_i + κ/m) off the slip, so sliding takes the whirl to v = κ·ΩR/(κ + m·(R²/J_r + R_i²/J_i)) at most, whatever the impact. Then the rotor rolls on the race, friction holds only what the drag asks for, and rolling friction and shaft damping end the whirl.",
+            "What it does not: a race hardly raises the impact that starts a whirl, unless it is so light that this bound lies near v_t,crit; a race as heavy as the rotor lets the whirl come near the stator's limit, as a bushing does; without shaft stiffness nothing lifts the rotor off and it rolls on; and with a drive that holds the spin, a drag above the torque that μ·N gives at v_t,crit keeps a rolling whirl alive for good.",
         ],
-        rows,
-        tables: vec![race_table(&all), drags.table(), onset.table()],
-        figures: figures::all(&all),
-    })
+    );
+    let all = races(extent)?;
+    chapter.rows = whirl_rows(&all)?;
+    chapter.tables.push(race_table(&all));
+    chapter.figures = figures::all(&all);
+    onset::add(&mut chapter, extent)?;
+    chapter.rows.extend(without_shaft()?);
+    add_drags(&mut chapter, extent)?;
+    Ok(chapter)
 }
 
 fn whirl_rows(all: &[Tried]) -> Result<Vec<Row>> {
@@ -76,24 +71,19 @@ fn whirl_rows(all: &[Tried]) -> Result<Vec<Row>> {
     let bound_hz = light.bound_hz();
     Ok(rows! {
         "Fastest whirl in a bushing", "Hz", SOURCE, Silent => bushing.fastest_hz, Assumed, "the stator's limit";
-        "Race of 1e-3 kg m² over bushing: fastest whirl", "", SOURCE, Silent => fastest(light), Assumed,
-            "paper: ball bearings seem a good way; no number";
-        "Race of 1e-3 kg m² over bushing: largest normal force in whirl", "", SOURCE, Silent => force(light), Assumed,
-            "the impact itself is the same";
+        "Race of 1e-3 kg m² over bushing: fastest whirl", "", SOURCE, Silent => fastest(light), Assumed, "paper: ball bearings seem a good way; no number";
+        "Race of 1e-3 kg m² over bushing: largest normal force in whirl", "", SOURCE, Silent => force(light), Assumed, "the impact itself is the same";
         "Race of 1e-3 kg m²: fastest whirl over the bound κ·ΩR/(κ + m·(R²/J_r + R_i²/J_i))", "", SOURCE, Silent => light.fastest_hz.map(|hz| hz / bound_hz), Assumed,
             "bound {bound_hz:.0} Hz; shaft, damping and the motion of the stator are left out of it";
         "Race of 1e-2 kg m² over bushing: fastest whirl", "", SOURCE, Silent => fastest(middle), Assumed,
             "the bound, {:.0} Hz, is above the stator's limit; slip ends before the whirl gets there", middle.bound_hz();
         "Race of 1e-2 kg m² over bushing: largest normal force in whirl", "", SOURCE, Silent => force(middle), Assumed, "";
-        "Race of 1e-1 kg m² over bushing: fastest whirl", "", SOURCE, Silent => fastest(heavy), Assumed,
-            "twice the rotor's inertia: hardly helps";
-        "Bushing: until the rotor lifts off for good", "ms", SOURCE, Silent => bushing.dies_ms, Assumed,
-            "the whirl takes the whole spin of a rotor without drive";
+        "Race of 1e-1 kg m² over bushing: fastest whirl", "", SOURCE, Silent => fastest(heavy), Assumed, "twice the rotor's inertia: hardly helps";
+        "Bushing: until the rotor lifts off for good", "ms", SOURCE, Silent => bushing.dies_ms, Assumed, "the whirl takes the whole spin of a rotor without drive";
         "Race of 1e-3 kg m²: until sliding ends", "ms", SOURCE, Silent => light.slip_ends_ms, Assumed, "";
         "Race of 1e-3 kg m²: until the whirl dies", "ms", SOURCE, Silent => light.dies_ms, Assumed,
             "rolling, braked by μ_r and shaft damping, at a fraction of the force";
-        "Race of 1e-3 kg m²: spin left to the rotor when the whirl dies", "%", SOURCE, Silent => spin_left(light), Assumed,
-            "bushing: {:.0} %", spin_left(bushing);
+        "Race of 1e-3 kg m²: spin left to the rotor when the whirl dies", "%", SOURCE, Silent => spin_left(light), Assumed, "bushing: {:.0} %", spin_left(bushing);
     })
 }
 
@@ -121,60 +111,43 @@ fn without_shaft() -> Result<Vec<Row>> {
     params.rotor.stiffness_n_m = 0.0;
     let light = Tried::run(&params, 0.5)?;
     Ok(rows! {
-        "No shaft stiffness, race of 1e-3 kg m²: fastest whirl", "Hz", SOURCE, Silent => light.fastest_hz, Assumed,
-            "as with a shaft: the bound does not know it";
+        "No shaft stiffness, race of 1e-3 kg m²: fastest whirl", "Hz", SOURCE, Silent => light.fastest_hz, Assumed, "as with a shaft: the bound does not know it";
         "No shaft stiffness, race of 1e-3 kg m²: whirl left after 0.5 s", "Hz", SOURCE, Silent => light.last_hz, Assumed,
             "not over: rolling friction brakes as 1/t only, and nothing lifts the rotor off";
     })
 }
 
-/// The light race with drag, spin held: which drag keeps the whirl alive.
-struct Drags {
-    /// The least that does, by its closed form \[N m s\].
-    least_n_m_s: f64,
-    runs: Vec<Tried>,
-}
-
-impl Drags {
-    fn run(extent: Extent) -> Result<Self> {
-        let held = PlantParams {
-            spin: SpinParams::Held,
-            ..rotor()
-        };
-        let with = |drag| with_race(&held, Some(LIGHT_KG_M2), drag);
-        let least_n_m_s = sustaining_drag_n_m_s(&with(0.0)).or_missing("no threshold")?;
-        let mut all = vec![0.0, 0.8 * least_n_m_s, 1.25 * least_n_m_s, 1e-2];
-        if extent == Extent::Full {
-            all.extend([2e-3, 5e-3, 2e-2, 5e-2]);
-            all.sort_by(f64::total_cmp);
-        }
-        let runs = each(&all, |drag| Tried::run(&with(*drag), 0.8))?;
-        Ok(Self { least_n_m_s, runs })
+/// Adds the light race with drag, spin held: which drag keeps the whirl alive.
+fn add_drags(chapter: &mut Chapter, extent: Extent) -> Result<()> {
+    let mut held = rotor();
+    held.spin = SpinParams::Held;
+    let with = |drag| with_race(&held, Some(LIGHT_KG_M2), drag);
+    let least = sustaining_drag_n_m_s(&with(0.0)).or_missing("no threshold")?;
+    let mut drags = vec![0.0, 0.8 * least, 1.25 * least, 1e-2];
+    if extent == Extent::Full {
+        drags.extend([2e-3, 5e-3, 2e-2, 5e-2]);
+        drags.sort_by(f64::total_cmp);
     }
-
-    fn rows(&self) -> Result<Vec<Row>> {
-        let lasting = (self.runs.iter().find(|t| t.drag_n_m_s == 1e-2)).or_missing("no drag")?;
-        let (least, bore_m) = (self.least_n_m_s, lasting.params.bore_radius_m());
-        let closed_hz = sustained_hz(&lasting.params).unwrap_or(f64::NAN);
-        Ok(rows! {
-            "Held spin: drag torque at 40 Hz above which rolling whirl lives on", "N m", SOURCE, Silent => least * SPIN_HZ * TAU, Assumed,
-                "closed form, b = {least:.2e} N m s; runs at 0.8 and 1.25 times that: table. Bore of {:.0} mm", 2e3 * bore_m;
-            "Held spin, race of 1e-3 kg m² with b = 1e-2 N m s: whirl that lives on", "Hz", SOURCE, Silent => lasting.last_hz, Assumed,
-                "closed form on a rigid stator {closed_hz:.1} Hz; a bushing stays at the stator's limit";
-        })
-    }
-
-    fn table(&self) -> Table {
-        let dies = |ms: Option<f64>| ms.map_or("lives on".to_owned(), |ms| format!("{ms:.0}"));
-        table! {
-            "Race of 1e-3 kg m² with drag, spin held at 40 Hz, 0.4 m/s at the wall (a bushing whirls on at the stator's limit)";
-            for t in &self.runs;
-            "b [N m s]" => "{:.2e}", t.drag_n_m_s;
-            "Fastest whirl [Hz]" => "{}", or_dash(t.fastest_hz, 0);
-            "Force in whirl [kN]" => "{:.2}", t.force_kn;
-            "Whirl dies [ms]" => "{}", dies(t.dies_ms);
-            "Whirl after 0.8 s [Hz]" => "{}", or_dash(t.last_hz, 1);
-            "closed form, rigid stator [Hz]" => "{}", or_dash(sustained_hz(&t.params), 1);
-        }
-    }
+    let all = each(&drags, |drag| Tried::run(&with(*drag), 0.8))?;
+    let lasting = all.iter().zip(&drags).find(|(_, drag)| **drag == 1e-2);
+    let (lasting, _) = lasting.or_missing("no drag")?;
+    let closed_hz = sustained_hz(&lasting.params).unwrap_or(f64::NAN);
+    chapter.rows.extend(rows! {
+        "Held spin: drag torque at 40 Hz above which rolling whirl lives on", "N m", SOURCE, Silent => least * SPIN_HZ * TAU, Assumed,
+            "closed form, b = {least:.2e} N m s; runs at 0.8 and 1.25 times that: table. Bore of {:.0} mm", 2e3 * lasting.params.bore_radius_m();
+        "Held spin, race of 1e-3 kg m² with b = 1e-2 N m s: whirl that lives on", "Hz", SOURCE, Silent => lasting.last_hz, Assumed,
+            "closed form on a rigid stator {closed_hz:.1} Hz; a bushing stays at the stator's limit";
+    });
+    let dies = |ms: Option<f64>| ms.map_or("lives on".to_owned(), |ms| format!("{ms:.0}"));
+    chapter.tables.push(table! {
+        "Race of 1e-3 kg m² with drag, spin held at 40 Hz, 0.4 m/s at the wall (a bushing whirls on at the stator's limit)";
+        for (drag, t) in drags.iter().zip(&all);
+        "b [N m s]" => "{drag:.2e}";
+        "Fastest whirl [Hz]" => "{}", or_dash(t.fastest_hz, 0);
+        "Force in whirl [kN]" => "{:.2}", t.force_kn;
+        "Whirl dies [ms]" => "{}", dies(t.dies_ms);
+        "Whirl after 0.8 s [Hz]" => "{}", or_dash(t.last_hz, 1);
+        "closed form, rigid stator [Hz]" => "{}", or_dash(sustained_hz(&t.params), 1);
+    });
+    Ok(())
 }

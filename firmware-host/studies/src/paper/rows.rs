@@ -70,16 +70,6 @@ impl Paper {
     }
 }
 
-impl Kind {
-    fn word(self) -> &'static str {
-        match self {
-            Self::Fitted => "fitted",
-            Self::Predicted => "predicted",
-            Self::Assumed => "assumed",
-        }
-    }
-}
-
 /// Headings of [`Row::cells`].
 pub(super) const COLUMNS: [&str; 8] = [
     "Quantity",
@@ -102,7 +92,7 @@ impl Row {
             self.computed_words(),
             self.unit.to_owned(),
             self.deviation_words(),
-            self.kind.word().to_owned(),
+            format!("{:?}", self.kind).to_lowercase(),
             self.note.clone(),
         ]
     }

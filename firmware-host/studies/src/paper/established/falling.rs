@@ -117,26 +117,27 @@ impl Law {
     }
 }
 
-/// Lowest radial impact at the wall that ends in whirl, at 40 and at 166 Hz \[m/s\].
+/// Lowest radial impact at the wall that ends in whirl, at 40 and at 166 Hz \[m/s\]: searched upwards in steps of 8 %, the
+/// first step that whirls then halved to 0.3 %.
 fn critical_m_s(params: &PlantParams) -> Result<[f64; 2]> {
-    Ok([
-        critical_at_m_s(params, SLOW_HZ)?,
-        critical_at_m_s(params, FAST_HZ)?,
-    ])
-}
-
-/// Searched upwards in steps of 8 %, the first step that whirls then halved to 0.3 %.
-fn critical_at_m_s(params: &PlantParams, spin_hz: f64) -> Result<f64> {
     let watch = Watch {
         sample_s: COARSE_S,
         ..watch(0.5)
     };
-    let free = |speed_m_s: f64| {
-        let start = at_the_wall(params, speed_m_s, spin_hz);
-        Ok(!Run::of(params, &start, &watch)?.whirls())
+    let at = |spin_hz: f64| {
+        let free = |speed_m_s: f64| {
+            let start = at_the_wall(params, speed_m_s, spin_hz);
+            Ok(!Run::of(params, &start, &watch)?.whirls())
+        };
+        let ends = (0.05, 0.05 * 1.08);
+        first_above(
+            ends,
+            (|v| 1.08 * v, 10.0),
+            |high| 0.003 / 1.003 * high,
+            free,
+        )
     };
-    let up: (fn(f64) -> f64, f64) = (|v| 1.08 * v, 10.0);
-    first_above((0.05, 0.05 * 1.08), up, |high| 0.003 / 1.003 * high, free)
+    Ok([at(SLOW_HZ)?, at(FAST_HZ)?])
 }
 
 /// The friction laws.

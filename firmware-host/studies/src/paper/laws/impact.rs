@@ -1,16 +1,16 @@
 //! One impact by both laws: force over penetration, and restitution over speed.
 
-use super::onset::RESTITUTION;
-use super::{damping_and_rate, linear_of, matched_at_impact, with_law};
+use super::{RESTITUTION, damping_and_rate, linear_of, matched_at_impact, with_law};
 use crate::paper::data::*;
 use crate::paper::rotors::OnsetRig;
 use crate::paper::runs::at_the_wall;
 use plant_model::contact::restitution_of;
-use plant_model::params::{HuntCrossley, SlidingFriction};
+use plant_model::params::SlidingFriction;
 use plant_model::{Inputs, Meters, Options, build};
 
 /// Impact speed, about v_r,crit of the solid disc \[m/s\].
 const SPEED_M_S: f64 = 0.09;
+const SOURCE: &str = "footnote 2";
 
 /// What an impact leaves behind.
 struct Loop {
@@ -38,79 +38,47 @@ fn impact(params: &PlantParams, longest_s: f64, samples: u32) -> Result<Loop> {
     Ok(Loop { points, meters })
 }
 
-/// The impact by both laws.
-pub(super) struct Impacts {
-    params: PlantParams,
-    linear: Loop,
-    hardening: Loop,
-    law: HuntCrossley,
-    /// Of the linear law.
-    restitution: f64,
-    /// d_c \[N s/m\].
-    damping_n_s_m: f64,
-}
-
-impl Impacts {
-    pub(super) fn run(extent: Extent) -> Result<Self> {
-        let params = OnsetRig::solid_disc(RESTITUTION).params()?;
-        let law = matched_at_impact(&params, SPEED_M_S)?;
-        let longest_s = 2.0 * law.undamped_contact_s(SPEED_M_S, params.contact_mass_kg());
-        let of = |params: &PlantParams| impact(params, longest_s, extent.pick(300, 1500));
-        Ok(Self {
-            linear: of(&params)?,
-            hardening: of(&with_law(&params, law))?,
-            law,
-            restitution: restitution_of(damping_and_rate(&params)?.0),
-            damping_n_s_m: linear_of(&params)?.damping_n_s_m,
-            params,
-        })
-    }
-
-    pub(super) fn rows(&self) -> Vec<Row> {
-        const SOURCE: &str = "footnote 2";
-        let (a, b, e) = (self.linear.meters, self.hardening.meters, self.restitution);
-        let step_kn = 1e-3 * self.damping_n_s_m * SPEED_M_S;
-        let closed_n = self
-            .law
-            .peak_force_n(SPEED_M_S, self.params.contact_mass_kg());
-        rows! {
-            "Force at the touch, 0.09 m/s", "kN", SOURCE, Silent => 0.0, Assumed,
-                "linear: a step to d_c·v = {step_kn:.3} kN";
-            "Largest force of the impact", "kN", SOURCE, Silent => 1e-3 * b.peak_contact_force_n, Assumed,
-                "linear: {:.3} kN; closed form, without the shaft, {:.3} kN", 1e-3 * a.peak_contact_force_n, 1e-3 * closed_n;
-            "Largest penetration of the impact", "µm", SOURCE, Silent => 1e6 * b.peak_penetration_m, Assumed,
-                "linear: {:.3} µm; matched to it, but for the force of the shaft", 1e6 * a.peak_penetration_m;
-            "Duration of the impact", "ms", SOURCE, Silent => 1e3 * b.contact_time_s, Assumed,
-                "linear: {:.3} ms, with a dent left", 1e3 * a.contact_time_s;
-            "Restitution at a tenth of the speed", "", SOURCE, Silent => self.law.restitution(0.1 * SPEED_M_S), Assumed,
-                "linear: {e:.3} at every speed; both the same at 0.09 m/s";
+/// Adds rows and figures of the impact.
+pub(super) fn add(chapter: &mut Chapter, extent: Extent) -> Result<()> {
+    let params = OnsetRig::solid_disc(RESTITUTION).params()?;
+    let mass_kg = params.contact_mass_kg();
+    let law = matched_at_impact(&params, SPEED_M_S)?;
+    let longest_s = 2.0 * law.undamped_contact_s(SPEED_M_S, mass_kg);
+    let of = |params: &PlantParams| impact(params, longest_s, extent.pick(300, 1500));
+    let (linear, hardening) = (of(&params)?, of(&with_law(&params, law))?);
+    let (a, b) = (linear.meters, hardening.meters);
+    let e = restitution_of(damping_and_rate(&params)?.0);
+    let step_kn = 1e-3 * linear_of(&params)?.damping_n_s_m * SPEED_M_S;
+    let closed_kn = 1e-3 * law.peak_force_n(SPEED_M_S, mass_kg);
+    chapter.rows.extend(rows! {
+        "Force at the touch, 0.09 m/s", "kN", SOURCE, Silent => 0.0, Assumed, "linear: a step to d_c·v = {step_kn:.3} kN";
+        "Largest force of the impact", "kN", SOURCE, Silent => 1e-3 * b.peak_contact_force_n, Assumed,
+            "linear: {:.3} kN; closed form, without the shaft, {closed_kn:.3} kN", 1e-3 * a.peak_contact_force_n;
+        "Largest penetration of the impact", "µm", SOURCE, Silent => 1e6 * b.peak_penetration_m, Assumed,
+            "linear: {:.3} µm; matched to it, but for the force of the shaft", 1e6 * a.peak_penetration_m;
+        "Duration of the impact", "ms", SOURCE, Silent => 1e3 * b.contact_time_s, Assumed, "linear: {:.3} ms, with a dent left", 1e3 * a.contact_time_s;
+        "Restitution at a tenth of the speed", "", SOURCE, Silent => law.restitution(0.1 * SPEED_M_S), Assumed,
+            "linear: {e:.3} at every speed; both the same at 0.09 m/s";
+    });
+    let far = 1.1e6 * a.peak_penetration_m.max(b.peak_penetration_m);
+    let top = 1.1e-3 * a.peak_contact_force_n.max(b.peak_contact_force_n);
+    let speeds = (0..=60).map(|i| 1e-3 * 10_f64.powf(0.05 * f64::from(i)));
+    chapter.figures.push(chart! {
+        "laws-loop", "Force over penetration by contact law",
+        "Force over penetration in an impact at {SPEED_M_S} m/s, same restitution and depth. The linear one starts with a step and leaves a dent; what either loop encloses is lost.";
+        Axis::linear("Penetration [µm]", (0.0, far)), Axis::linear("Normal force [kN]", (0.0, top));
+        curves! {
+            "linear", Line, 0 => linear.points;
+            "Hunt and Crossley", Line, 1 => hardening.points;
         }
-    }
-
-    pub(super) fn figures(&self) -> Vec<Figure> {
-        let (a, b) = (&self.linear, &self.hardening);
-        let largest = |of: fn(&Meters) -> f64| of(&a.meters).max(of(&b.meters));
-        let far = 1.1e6 * largest(|m| m.peak_penetration_m);
-        let top = 1.1e-3 * largest(|m| m.peak_contact_force_n);
-        let speeds = (0..=60).map(|i| 1e-3 * 10_f64.powf(0.05 * f64::from(i)));
-        vec![
-            chart! {
-                "laws-loop", "Force over penetration by contact law",
-                "Force over penetration in an impact at {SPEED_M_S} m/s, same restitution and depth. The linear one starts with a step and leaves a dent; what either loop encloses is lost.";
-                Axis::linear("Penetration [µm]", (0.0, far)), Axis::linear("Normal force [kN]", (0.0, top));
-                curves! {
-                    "linear", Line, 0 => a.points.clone();
-                    "Hunt and Crossley", Line, 1 => b.points.clone();
-                }
-            },
-            chart! {
-                "laws-restitution", "Restitution over impact speed by contact law", "Restitution over impact speed, closed forms.";
-                Axis::log("Impact speed [m/s]", (1e-3, 1.0)), Axis::linear("Restitution", (0.0, 1.0));
-                curves! {
-                    "linear", Line, 0 => level((1e-3, 1.0), self.restitution);
-                    "Hunt and Crossley", Line, 1 => speeds.map(|v| (v, self.law.restitution(v))).collect();
-                }
-            },
-        ]
-    }
+    });
+    chapter.figures.push(chart! {
+        "laws-restitution", "Restitution over impact speed by contact law", "Restitution over impact speed, closed forms.";
+        Axis::log("Impact speed [m/s]", (1e-3, 1.0)), Axis::linear("Restitution", (0.0, 1.0));
+        curves! {
+            "linear", Line, 0 => level((1e-3, 1.0), e);
+            "Hunt and Crossley", Line, 1 => speeds.map(|v| (v, law.restitution(v))).collect();
+        }
+    });
+    Ok(())
 }

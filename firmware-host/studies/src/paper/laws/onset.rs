@@ -1,14 +1,12 @@
 //! Onset: the lowest radial impact that ends in whirl.
 
-use super::{matched_at_impact, with_law};
+use super::{RESTITUTION, matched_at_impact, with_law};
 use crate::paper::data::*;
 use crate::paper::onset::{Configuration, Fit, configurations, critical_m_s, impact};
 use plant_model::analysis::impact::{Criterion, Outcome, run_impact};
 use plant_model::contact::hunt_crossley::damping_for_restitution;
 use plant_model::params::HuntCrossley;
 
-/// Restitution of the linear contact; near what the chapter on onset fits.
-pub(super) const RESTITUTION: f64 = 0.7;
 const SOURCE: &str = "Results, onset phase; Fig. 3";
 
 /// Configurations of the chapter on onset in the order of this one; a quick run has the first two.
@@ -73,40 +71,33 @@ fn fit(solid: &Configuration) -> Result<f64> {
     Ok(0.5 * (low + high))
 }
 
-/// What this part of the chapter shows.
-pub(super) struct Onset {
-    pub(super) rows: Vec<Row>,
-    pub(super) table: Table,
-}
-
-/// Rows and table of the critical speeds.
-pub(super) fn compare(extent: Extent) -> Result<Onset> {
+/// Adds rows and table of the critical speeds.
+pub(super) fn add(chapter: &mut Chapter, extent: Extent) -> Result<()> {
     let used = used(extent);
     let restitution = fit(&used[0])?;
     let law = law_of(&used[0], restitution)?;
     let all = each(&used, |of| Critical::new(of, law))?;
-    let mut rows = Vec::new();
     for c in &all {
         let (name, linear_m_s) = (c.of.name, c.linear_m_s);
-        rows.extend(rows! {
+        chapter.rows.extend(rows! {
             "v_r,crit, {name}, Hunt and Crossley", "m/s", SOURCE, c.of.measured_m_s => c.hardening_m_s, Assumed,
                 "e = {RESTITUTION} and depth as the linear law at its own v_r,crit, {linear_m_s:.4} m/s; {:+.1} % from it", 100.0 * (c.hardening_m_s / linear_m_s - 1.0);
         });
     }
     for (i, c) in all.iter().enumerate() {
         let (name, kind) = (c.of.name, if i == 0 { Fitted } else { Predicted });
-        rows.extend(rows! {
+        chapter.rows.extend(rows! {
             "v_r,crit, {name}, Hunt and Crossley fitted", "m/s", SOURCE, c.of.measured_m_s => c.fitted_m_s, kind,
                 "λ = {:.2} s/m chosen for the first configuration: e = {restitution:.3} at {} m/s", law.damping_s_m, used[0].measured_m_s;
         });
     }
-    let table = table! {
+    chapter.tables.push(table! {
         "Lowest radial impact that ends in whirl; k_c = 1e8 N/m, linear e = {RESTITUTION}";
         for c in &all;
         "Configuration" => "{}", c.of.name;
         "Linear [m/s]" => "{:.4}", c.linear_m_s;
         "Hunt and Crossley [m/s]" => "{:.4}", c.hardening_m_s;
         "its e there" => "{:.3}", c.restitution;
-    };
-    Ok(Onset { rows, table })
+    });
+    Ok(())
 }

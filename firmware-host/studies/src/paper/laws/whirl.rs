@@ -34,117 +34,99 @@ struct Held {
     force_n: Option<f64>,
 }
 
-/// A spin-down with a contact law.
-struct Down {
-    name: &'static str,
-    run: Violence,
-}
-
-/// The runs: of the linear law, and of the nonlinear one matched at the impact, at the plateau; held spin also with a
+/// Adds the runs: of the linear law, and of the nonlinear one matched at the impact, at the plateau; held spin also with a
 /// soft contact.
-pub(super) struct Whirl {
-    limit: Circle,
-    held: Vec<Held>,
-    downs: Vec<Down>,
+pub(super) fn add(chapter: &mut Chapter, extent: Extent) -> Result<()> {
+    let linear = footnote_4_at(STIFFNESS_N_M);
+    let soft = footnote_4_at(SOFT_N_M);
+    let mut black = SteadyWhirl::from_params(&linear).or_missing("no isotropic stator")?;
+    black.normal_compliance_m_n = 0.0;
+    let limit = black.upper_limit(5000.0).or_missing("no upper limit")?;
+    let limit_hz = limit.frequency_hz();
+    let steady_n = settled(&linear)?.normal_force_n;
+    let laws = [
+        ("linear, k_c = 1e9 N/m", linear, None),
+        (
+            "matched at the impact",
+            linear,
+            Some(matched_at_impact(&linear, IMPACT_M_S)?),
+        ),
+        (
+            "matched at the plateau",
+            linear,
+            Some(matched_at_force(&linear, steady_n)?),
+        ),
+        ("linear, k_c = 3e8 N/m", soft, None),
+        (
+            "matched to it at the impact",
+            soft,
+            Some(matched_at_impact(&soft, IMPACT_M_S)?),
+        ),
+    ];
+    let held = each(&laws, |(name, params, law)| {
+        let params = law.map_or(*params, |law| with_law(params, law));
+        let force_n = law.map(|law| steady_force_n(&limit, params.contact.clearance_m, &law));
+        Ok(Held {
+            name,
+            params,
+            end: settled(&params)?,
+            force_n: force_n.transpose()?,
+        })
+    })?;
+    let spins_hz: &[f64] = match extent {
+        Extent::Quick => &[40.0, 166.0],
+        Extent::Full => &[40.0, 80.0, 166.0],
+    };
+    let of_law = |held| spins_hz.iter().map(move |hz| (held, *hz));
+    let cases: Vec<(&Held, f64)> = held[..3].iter().flat_map(of_law).collect();
+    let downs = each(&cases, |(of, hz)| violence(&of.params, *hz, 0.4))?;
+    let of_law = |law: usize| {
+        [
+            downs[law * spins_hz.len()],
+            downs[(law + 1) * spins_hz.len() - 1],
+        ]
+    };
+    chapter
+        .rows
+        .extend(rows(&held, of_law(0), of_law(1), limit_hz));
+    chapter.tables.push(table! {
+        "Spin-down of footnote 4 from 0.4 m/s by contact law (Hertz's exponent, λ matched as well)";
+        for ((of, _), run) in cases.iter().zip(&downs);
+        "Law" => "{}", of.name;
+        "From [Hz]" => "{:.0}", run.spin_hz;
+        "Fastest whirl [Hz]" => "{:.1}", run.whirl_hz;
+        "Peak force [kN]" => "{:.1}", 1e-3 * run.force_n;
+        "Outer ring [mm]" => "{:.4}", 1e3 * run.displacement_m[2];
+        "Standstill [ms]" => "{:.2}", 1e3 * run.standstill_s;
+    });
+    chapter.tables.push(table! {
+        "Whirl at a held spin of {HELD_SPIN_HZ} Hz after 0.3 s; Black's limit {limit_hz:.2} Hz";
+        for of in &held;
+        "Law" => "{}", of.name;
+        "Whirl [Hz]" => "{:.2}", of.end.whirl_hz;
+        "" => "{}", of.end.state();
+        "N [kN]" => "{:.2}", 1e-3 * of.end.normal_force_n;
+        "N closed form [kN]" => "{}", or_dash(of.force_n.map(|n| 1e-3 * n), 2);
+    });
+    Ok(())
 }
 
-impl Whirl {
-    pub(super) fn run(extent: Extent) -> Result<Self> {
-        let linear = footnote_4_at(STIFFNESS_N_M);
-        let soft = footnote_4_at(SOFT_N_M);
-        let mut black = SteadyWhirl::from_params(&linear).or_missing("no isotropic stator")?;
-        black.normal_compliance_m_n = 0.0;
-        let limit = black.upper_limit(5000.0).or_missing("no upper limit")?;
-        let steady_n = settled(&linear)?.normal_force_n;
-        let at_impact = |params| matched_at_impact(params, IMPACT_M_S);
-        let laws = [
-            ("linear, k_c = 1e9 N/m", linear, None),
-            ("matched at the impact", linear, Some(at_impact(&linear)?)),
-            (
-                "matched at the plateau",
-                linear,
-                Some(matched_at_force(&linear, steady_n)?),
-            ),
-            ("linear, k_c = 3e8 N/m", soft, None),
-            ("matched to it at the impact", soft, Some(at_impact(&soft)?)),
-        ];
-        let held = each(&laws, |(name, params, law)| {
-            let params = law.map_or(*params, |law| with_law(params, law));
-            let clearance_m = params.contact.clearance_m;
-            Ok(Held {
-                name,
-                params,
-                end: settled(&params)?,
-                force_n: (law.map(|law| steady_force_n(&limit, clearance_m, &law))).transpose()?,
-            })
-        })?;
-        let spins_hz: &[f64] = match extent {
-            Extent::Quick => &[40.0, 166.0],
-            Extent::Full => &[40.0, 80.0, 166.0],
-        };
-        let cases: Vec<(&Held, f64)> = (held[..3].iter())
-            .flat_map(|of| spins_hz.iter().map(move |hz| (of, *hz)))
-            .collect();
-        let downs = each(&cases, |(of, hz)| {
-            let (name, run) = (of.name, violence(&of.params, *hz, 0.4)?);
-            Ok(Down { name, run })
-        })?;
-        Ok(Self { limit, held, downs })
-    }
-
-    /// The spin-down of the linear law, or of the one matched at the impact.
-    fn down(&self, linear: bool, spin_hz: f64) -> Result<Violence> {
-        let name = self.held[usize::from(!linear)].name;
-        let found = (self.downs.iter()).find(|of| of.name == name && of.run.spin_hz == spin_hz);
-        Ok(found.or_missing("no spin-down")?.run)
-    }
-
-    pub(super) fn rows(&self) -> Result<Vec<Row>> {
-        const BLACK: &str = "Results, on Black's theory";
-        const TEST: &str = "Results, test at 40 Hz";
-        let (plain_slow, plain) = (self.down(true, 40.0)?, self.down(true, 166.0)?);
-        let (slow, fast) = (self.down(false, 40.0)?, self.down(false, 166.0)?);
-        let (linear, matched) = (&self.held[0].end, &self.held[1].end);
-        let closed_kn = 1e-3 * self.held[1].force_n.unwrap_or(f64::NAN);
-        Ok(rows! {
-            "Whirl at held spin, Hunt and Crossley", "Hz", BLACK, Silent => matched.whirl_hz, Predicted,
-                "matched at the impact; Black's limit {:.1} Hz, in which only f_n matters; linear {:.1} Hz", self.limit.frequency_hz(), linear.whirl_hz;
-            "Its normal force", "kN", BLACK, Silent => 1e-3 * matched.normal_force_n, Predicted,
-                "closed form {closed_kn:.3} kN; linear {:.3} kN. Matched at the impact the contact gives way less under such a force", 1e-3 * linear.normal_force_n;
-            "Plateau: fastest whirl from 166 Hz, Hunt and Crossley", "Hz", "figure 7, simulation", 660.0 => fast.whirl_hz, Assumed,
-                "matched at the impact of {IMPACT_M_S} m/s; linear {:.1} Hz", plain.whirl_hz;
-            "Fastest whirl from 40 Hz, Hunt and Crossley", "Hz", TEST, 530.0 => slow.whirl_hz, Assumed,
-                "the same; linear {:.1} Hz", plain_slow.whirl_hz;
-            "Outer ring from 166 Hz, Hunt and Crossley", "mm", TEST, 0.05 => 1e3 * fast.displacement_m[2], Assumed,
-                "linear {:.4} mm", 1e3 * plain.displacement_m[2];
-            "Peak force from 166 Hz, Hunt and Crossley", "kN", "footnote 2", Silent => 1e-3 * fast.force_n, Assumed,
-                "linear {:.1} kN", 1e-3 * plain.force_n;
-        })
-    }
-
-    pub(super) fn spin_down(&self) -> Table {
-        table! {
-            "Spin-down of footnote 4 from 0.4 m/s by contact law (Hertz's exponent, λ matched as well)";
-            for of in &self.downs;
-            "Law" => "{}", of.name;
-            "From [Hz]" => "{:.0}", of.run.spin_hz;
-            "Fastest whirl [Hz]" => "{:.1}", of.run.whirl_hz;
-            "Peak force [kN]" => "{:.1}", 1e-3 * of.run.force_n;
-            "Outer ring [mm]" => "{:.4}", 1e3 * of.run.displacement_m[2];
-            "Standstill [ms]" => "{:.2}", 1e3 * of.run.standstill_s;
-        }
-    }
-
-    pub(super) fn held_spin(&self) -> Table {
-        let limit_hz = self.limit.frequency_hz();
-        table! {
-            "Whirl at a held spin of {HELD_SPIN_HZ} Hz after 0.3 s; Black's limit {limit_hz:.2} Hz";
-            for of in &self.held;
-            "Law" => "{}", of.name;
-            "Whirl [Hz]" => "{:.2}", of.end.whirl_hz;
-            "" => "{}", of.end.state();
-            "N [kN]" => "{:.2}", 1e-3 * of.end.normal_force_n;
-            "N closed form [kN]" => "{}", or_dash(of.force_n.map(|n| 1e-3 * n), 2);
-        }
+/// Of the law matched at the impact, beside the linear one; spin-downs from 40 Hz and from 166 Hz.
+fn rows(held: &[Held], linear: [Violence; 2], matched: [Violence; 2], limit_hz: f64) -> Vec<Row> {
+    const BLACK: &str = "Results, on Black's theory";
+    const TEST: &str = "Results, test at 40 Hz";
+    let ([plain_slow, plain], [slow, fast]) = (linear, matched);
+    let (plain_end, end) = (&held[0].end, &held[1].end);
+    let closed_kn = 1e-3 * held[1].force_n.unwrap_or(f64::NAN);
+    rows! {
+        "Whirl at held spin, Hunt and Crossley", "Hz", BLACK, Silent => end.whirl_hz, Predicted,
+            "matched at the impact; Black's limit {limit_hz:.1} Hz, in which only f_n matters; linear {:.1} Hz", plain_end.whirl_hz;
+        "Its normal force", "kN", BLACK, Silent => 1e-3 * end.normal_force_n, Predicted,
+            "closed form {closed_kn:.3} kN; linear {:.3} kN. Matched at the impact the contact gives way less under such a force", 1e-3 * plain_end.normal_force_n;
+        "Plateau: fastest whirl from 166 Hz, Hunt and Crossley", "Hz", "figure 7, simulation", 660.0 => fast.whirl_hz, Assumed,
+            "matched at the impact of {IMPACT_M_S} m/s; linear {:.1} Hz", plain.whirl_hz;
+        "Fastest whirl from 40 Hz, Hunt and Crossley", "Hz", TEST, 530.0 => slow.whirl_hz, Assumed, "the same; linear {:.1} Hz", plain_slow.whirl_hz;
+        "Outer ring from 166 Hz, Hunt and Crossley", "mm", TEST, 0.05 => 1e3 * fast.displacement_m[2], Assumed, "linear {:.4} mm", 1e3 * plain.displacement_m[2];
+        "Peak force from 166 Hz, Hunt and Crossley", "kN", "footnote 2", Silent => 1e-3 * fast.force_n, Assumed, "linear {:.1} kN", 1e-3 * plain.force_n;
     }
 }

@@ -21,68 +21,40 @@ struct Critical {
     speed_m_s: Option<f64>,
 }
 
-pub(super) struct Onset {
-    criticals: Vec<Critical>,
-    /// Lightest race that lets an impact of [`IMPACT_M_S`] end in whirl \[kg m²\], by runs on the rig, by runs on a rigid
-    /// wall, and by the bound at twice v_t,crit.
-    lightest_kg_m2: f64,
-    lightest_hard_kg_m2: f64,
-    closed_kg_m2: f64,
-}
-
-impl Onset {
-    pub(super) fn run(extent: Extent) -> Result<Self> {
-        let rig = OnsetRig::solid_disc(RESTITUTION);
-        let hard = OnsetRig {
-            contact_stiffness_n_m: HARD_N_M,
-            ..rig
-        };
-        let (rig, hard) = (rig.params()?, hard.params()?);
-        let threshold_m_s = critical_tangential_speed_m_s(&rig).or_missing("no threshold")?;
-        let (criticals, lightest) = rayon::join(
-            || criticals(extent, &rig),
-            || each(&[rig, hard], lightest_that_whirls),
-        );
-        let lightest = lightest?;
-        Ok(Self {
-            criticals: criticals?,
-            lightest_kg_m2: lightest[0],
-            lightest_hard_kg_m2: lightest[1],
-            closed_kg_m2: inertia_for(&rig, 2.0 * threshold_m_s).unwrap_or(f64::NAN),
-        })
-    }
-
-    /// The critical impact with a race, or a bushing \[m/s\].
-    fn critical_m_s(&self, inertia_kg_m2: Option<f64>) -> Option<f64> {
-        let mut all = self.criticals.iter();
-        all.find(|c| c.inertia_kg_m2 == inertia_kg_m2)?.speed_m_s
-    }
-
-    pub(super) fn rows(&self) -> Vec<Row> {
-        let (closed, hard) = (self.closed_kg_m2, self.lightest_hard_kg_m2);
-        let race = self
-            .critical_m_s(Some(LIGHT_KG_M2))
-            .zip(self.critical_m_s(None));
-        rows! {
-            "Onset rig: lightest race that whirls after 0.2 m/s", "kg m²", SOURCE, Silent => self.lightest_kg_m2, Assumed,
-                "held spin of 40 Hz, twice v_t,crit; the bound gives {closed:.2e} kg m². The contact is soft: friction acts further out than c";
-            "The same with k_c = 1e11 N/m", "kg m²", SOURCE, Silent => hard, Assumed,
-                "{:+.1} % from the bound", 100.0 * (hard / closed - 1.0);
-            "Onset rig, race of 1e-3 kg m² over bushing: critical radial impact", "", SOURCE, Silent => race.map(|(race, bushing)| race / bushing), Assumed,
-                "friction is the same as long as it slips: a race that is not very light does not keep whirl from starting";
-        }
-    }
-
-    pub(super) fn table(&self) -> Table {
-        let named =
-            |inertia: Option<f64>| inertia.map_or("bushing".to_owned(), |i| format!("{i:.1e}"));
-        table! {
-            "Onset rig at a held spin of 40 Hz: lowest radial impact that ends in whirl (–: none up to twice what one impact needs)";
-            for c in &self.criticals;
-            "J_i [kg m²]" => "{}", named(c.inertia_kg_m2);
-            "Critical impact [m/s]" => "{}", or_dash(c.speed_m_s, 4);
-        }
-    }
+/// Adds the rows and the table.
+pub(super) fn add(chapter: &mut Chapter, extent: Extent) -> Result<()> {
+    let rig = OnsetRig::solid_disc(RESTITUTION);
+    let hard = rig.with(|rig| rig.contact_stiffness_n_m = HARD_N_M);
+    let (rig, hard) = (rig.params()?, hard.params()?);
+    let threshold_m_s = critical_tangential_speed_m_s(&rig).or_missing("no threshold")?;
+    let closed = inertia_for(&rig, 2.0 * threshold_m_s).or_missing("no race for v_t,crit")?;
+    let (criticals, lightest) = rayon::join(
+        || criticals(extent, &rig),
+        || each(&[rig, hard], lightest_that_whirls),
+    );
+    let (criticals, lightest) = (criticals?, lightest?);
+    let critical_m_s = |inertia: Option<f64>| {
+        let found = criticals.iter().find(|c| c.inertia_kg_m2 == inertia);
+        found.and_then(|c| c.speed_m_s)
+    };
+    let ratio = (critical_m_s(Some(LIGHT_KG_M2)).zip(critical_m_s(None)))
+        .map(|(race, bushing)| race / bushing);
+    let hard = lightest[1];
+    chapter.rows.extend(rows! {
+        "Onset rig: lightest race that whirls after 0.2 m/s", "kg m²", SOURCE, Silent => lightest[0], Assumed,
+            "held spin of 40 Hz, twice v_t,crit; the bound gives {closed:.2e} kg m². The contact is soft: friction acts further out than c";
+        "The same with k_c = 1e11 N/m", "kg m²", SOURCE, Silent => hard, Assumed, "{:+.1} % from the bound", 100.0 * (hard / closed - 1.0);
+        "Onset rig, race of 1e-3 kg m² over bushing: critical radial impact", "", SOURCE, Silent => ratio, Assumed,
+            "friction is the same as long as it slips: a race that is not very light does not keep whirl from starting";
+    });
+    let named = |inertia: Option<f64>| inertia.map_or("bushing".to_owned(), |i| format!("{i:.1e}"));
+    chapter.tables.push(table! {
+        "Onset rig at a held spin of 40 Hz: lowest radial impact that ends in whirl (–: none up to twice what one impact needs)";
+        for c in &criticals;
+        "J_i [kg m²]" => "{}", named(c.inertia_kg_m2);
+        "Critical impact [m/s]" => "{}", or_dash(c.speed_m_s, 4);
+    });
+    Ok(())
 }
 
 fn criticals(extent: Extent, rig: &PlantParams) -> Result<Vec<Critical>> {

@@ -28,7 +28,6 @@ pub(super) fn with_race(
 pub(super) struct Tried {
     /// Of the race \[kg m²\]; `None` for a bushing.
     pub(super) inertia_kg_m2: Option<f64>,
-    pub(super) drag_n_m_s: f64,
     pub(super) params: PlantParams,
     pub(super) course: Course,
     /// Fastest whirl as a mean over 1 ms \[Hz\].
@@ -67,7 +66,6 @@ impl Tried {
         let last = course.at(dies_s.unwrap_or(f64::INFINITY));
         Ok(Self {
             inertia_kg_m2: params.race.map(|race| race.inertia_kg_m2),
-            drag_n_m_s: params.race.map_or(0.0, |race| race.drag_n_m_s),
             params: *params,
             fastest_hz: course.fastest().map(|r| r.backward_hz),
             force_kn: 1e-3 * force_n,
