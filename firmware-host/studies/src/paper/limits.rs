@@ -35,6 +35,7 @@ impl Tried {
     fn of(stiffness_n_m: f64) -> Result<Self> {
         let params = footnote_4_at(stiffness_n_m);
         let whirl = whirl(stiffness_n_m)?;
+        let from = |spin_hz: f64| fastest_hz(&params, spin_hz, 0.1);
         let mut soft = whirl.clone();
         soft.tangential_compliance_m_n = soft.normal_compliance_m_n;
         let limit = whirl.upper_limit(HIGHEST_HZ);
@@ -43,10 +44,7 @@ impl Tried {
         Ok(Self {
             stiffness_n_m,
             held: settled(&params)?,
-            fastest_hz: [
-                fastest_hz(&params, 40.0, 0.1)?,
-                fastest_hz(&params, 166.0, 0.1)?,
-            ],
+            fastest_hz: [from(40.0)?, from(166.0)?],
             target: limit.or_else(stable),
             limit_hz: limit.map(|c| c.frequency_hz()),
             soft_limit_hz: soft.upper_limit(HIGHEST_HZ).map(|c| c.frequency_hz()),

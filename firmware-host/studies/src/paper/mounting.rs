@@ -9,7 +9,7 @@ use super::rotors::{footnote_4_at, ring};
 use super::runs::{Run, at_the_wall, fastest_hz, watch};
 use plant_model::V2;
 use plant_model::analysis::black::{Circle, SteadyWhirl};
-use plant_model::analysis::course::{Sample, Watch};
+use plant_model::analysis::course::Sample;
 use plant_model::params::{RingParams, StatorParams};
 
 /// The ring \[kg\] and its natural frequency on the mounting \[Hz\]: the paper's.
@@ -89,11 +89,7 @@ struct Record {
 }
 
 fn record(params: &PlantParams) -> Result<Record> {
-    let watch = Watch {
-        sample_s: SAMPLE_S,
-        free_s: f64::INFINITY,
-        ..watch(1.0)
-    };
+    let watch = watch(SAMPLE_S, 1.0, f64::INFINITY);
     let start = at_the_wall(params, IMPACT_M_S, SPIN_HZ);
     let samples = Run::of(params, &start, &watch)?.course.samples;
     let over = |s: &Sample| s.t_s >= FIRST_S && s.spin_hz < LAST_SPIN_HZ;

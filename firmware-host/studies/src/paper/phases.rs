@@ -6,7 +6,7 @@ use super::data::*;
 use super::rotors::footnote_4;
 use super::runs::{Run, watch};
 use plant_model::V2;
-use plant_model::analysis::course::{Course, Pulse, Sample, Watch};
+use plant_model::analysis::course::{Course, Pulse, Sample};
 use plant_model::analysis::phases::{self, Bounds, NAMES};
 use plant_model::params::Start;
 
@@ -28,12 +28,9 @@ struct Whirl {
 }
 
 impl Whirl {
-    fn of(run: Run) -> Result<Self> {
-        let bounds = phases::find(&run.course).or_missing("not all nine phases")?;
-        Ok(Self {
-            course: run.course,
-            bounds,
-        })
+    fn of(Run { course, .. }: Run) -> Result<Self> {
+        let bounds = phases::find(&course).or_missing("not all nine phases")?;
+        Ok(Self { course, bounds })
     }
 
     /// Samples from one time to before another \[s\].
@@ -61,11 +58,8 @@ fn excited(force_n: f64) -> Result<Run> {
         from_s: 0.05,
         until_m: 0.9 * params.contact.clearance_m,
     };
-    let watch = Watch {
-        free_s: 0.12,
-        pulse: Some(pulse),
-        ..watch(0.8)
-    };
+    let mut watch = watch(SAMPLE_S, 0.8, 0.12);
+    watch.pulse = Some(pulse);
     Run::of(&params, &start, &watch)
 }
 

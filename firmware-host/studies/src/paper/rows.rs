@@ -32,9 +32,11 @@ pub struct Rows<'a> {
 
 /// The rows of all chapters under `rows`; numbers are finite or null.
 pub fn json(chapters: &[Chapter]) -> Rows<'_> {
-    let of = |chapter: &'static str, row| JsonRow::of(chapter, row);
-    let rows = (chapters.iter())
-        .flat_map(|chapter| chapter.rows.iter().map(move |row| of(chapter.title, row)))
+    let all = chapters
+        .iter()
+        .flat_map(|c| c.rows.iter().map(move |row| (c.title, row)));
+    let rows = all
+        .map(|(chapter, row)| JsonRow::of(chapter, row))
         .collect();
     Rows { rows }
 }

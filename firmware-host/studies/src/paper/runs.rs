@@ -18,13 +18,14 @@ pub(super) fn at_the_wall(params: &PlantParams, impact_m_s: f64, spin_hz: f64) -
     }
 }
 
-/// How a run without excitation is followed: for so long, or until the rotor has been free for 0.1 s.
-pub(super) fn watch(end_s: f64) -> Watch {
+/// How a run without excitation is followed: read so often \[s\], for so long \[s\], or until the rotor has been free for
+/// some time \[s\].
+pub(super) fn watch(sample_s: f64, end_s: f64, free_s: f64) -> Watch {
     Watch {
-        sample_s: 20e-6,
+        sample_s,
         window_s: 1e-3,
         end_s,
-        free_s: 0.1,
+        free_s,
         pulse: None,
     }
 }
@@ -47,7 +48,7 @@ impl Run {
     /// From [`IMPACT_M_S`] at the wall.
     fn from_impact(params: &PlantParams, spin_hz: f64, end_s: f64) -> Result<Self> {
         let start = at_the_wall(params, IMPACT_M_S, spin_hz);
-        Self::of(params, &start, &watch(end_s))
+        Self::of(params, &start, &watch(20e-6, end_s, 0.1))
     }
 
     /// Whether it ends in whirl: a contact of more than 0.1 s.

@@ -69,13 +69,12 @@ pub(super) fn sentences(chapters: &[Chapter]) -> Vec<String> {
         (!of.is_empty()).then(|| sentence(kind, &of))
     });
     let constants = rows(chapters, |row| {
-        row.kind == Kind::Fitted && row.paper == Paper::Silent && row.computed.is_some()
+        row.kind == Kind::Fitted && row.paper == Paper::Silent
     });
-    let named = constants.iter().map(|row| {
-        let words = format!("{} = {} {}", row.item, row.computed_words(), row.unit);
-        words.trim_end().to_owned()
-    });
-    let named = named.collect::<Vec<_>>().join(", ");
+    let words = |row: &&Row| format!("{} = {} {}", row.item, row.computed_words(), row.unit);
+    let named: Vec<String> = constants.iter().map(words).collect();
+    let named: Vec<&str> = named.iter().map(|words| words.trim_end()).collect();
+    let named = named.join(", ");
     let fitted = (!named.is_empty()).then(|| format!("Constants fitted: {named}."));
     [all].into_iter().chain(by_kind).chain(fitted).collect()
 }
@@ -85,11 +84,10 @@ fn sentence(kind: Kind, of: &[&Row]) -> String {
         (of.iter()).partition(|row| matches!(row.paper, Paper::Value(_)));
     let mut parts = Vec::new();
     if !values.is_empty() {
-        let mut off: Vec<f64> = values.iter().filter_map(|r| r.deviation()).collect();
-        off.iter_mut().for_each(|d| *d = d.abs());
+        let off = values.iter().filter_map(|row| row.deviation());
+        let mut off: Vec<f64> = off.map(f64::abs).collect();
         off.sort_by(f64::total_cmp);
-        let (low, high) = (off.get((off.len() - 1) / 2), off.get(off.len() / 2));
-        let median = (low.zip(high)).map_or(f64::NAN, |(low, high)| 50.0 * (low + high));
+        let median = 50.0 * (off[(off.len() - 1) / 2] + off[off.len() / 2]);
         parts.push(format!(
             "{} of {} values within {:.0} %, median deviation {median:.1} %",
             met(&values),

@@ -3,7 +3,7 @@
 use crate::paper::data::*;
 use crate::paper::rotors::footnote_4;
 use crate::paper::runs::{IMPACT_M_S, Run, at_the_wall, watch};
-use plant_model::analysis::course::{Course, Watch};
+use plant_model::analysis::course::Course;
 use plant_model::params::SlidingFriction;
 
 /// Speed scales of the friction law that are tried \[m/s\]; the third is the one used.
@@ -52,12 +52,7 @@ pub(super) struct Law {
 fn whirl(params: &PlantParams, spin_hz: f64, sample_s: f64) -> Result<Run> {
     let mut start = at_the_wall(params, IMPACT_M_S, spin_hz);
     start.velocity_m_s.y = -0.4;
-    let watch = Watch {
-        sample_s,
-        free_s: 0.03,
-        ..watch(3.0)
-    };
-    Run::of(params, &start, &watch)
+    Run::of(params, &start, &watch(sample_s, 3.0, 0.03))
 }
 
 impl Law {
@@ -120,10 +115,7 @@ impl Law {
 /// Lowest radial impact at the wall that ends in whirl, at 40 and at 166 Hz \[m/s\]: searched upwards in steps of 8 %, the
 /// first step that whirls then halved to 0.3 %.
 fn critical_m_s(params: &PlantParams) -> Result<[f64; 2]> {
-    let watch = Watch {
-        sample_s: COARSE_S,
-        ..watch(0.5)
-    };
+    let watch = watch(COARSE_S, 0.5, 0.1);
     let at = |spin_hz: f64| {
         let free = |speed_m_s: f64| {
             let start = at_the_wall(params, speed_m_s, spin_hz);

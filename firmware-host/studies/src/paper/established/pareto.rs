@@ -65,13 +65,9 @@ impl Candidate {
     /// Which of the four it meets: plateau within 5 %, ring within the bound, standstill within 25 %,
     /// a plateau at all.
     fn met(&self) -> [bool; 4] {
-        let [plateau, ring, standstill, rise] = self.misses();
-        [
-            plateau <= 0.05,
-            ring <= 0.0,
-            standstill <= 0.25,
-            rise <= 0.0,
-        ]
+        const MOST: [f64; 4] = [0.05, 0.0, 0.25, 0.0];
+        let misses = self.misses();
+        [0, 1, 2, 3].map(|i| misses[i] <= MOST[i])
     }
 
     fn dominates(&self, other: &Self) -> bool {

@@ -4,7 +4,7 @@ use super::{IMPACT_M_S, SPIN_HZ};
 use crate::paper::data::*;
 use crate::paper::runs::{Run, at_the_wall, watch};
 use plant_model::Mode;
-use plant_model::analysis::course::{Course, Watch};
+use plant_model::analysis::course::Course;
 use plant_model::analysis::onset::critical_tangential_speed_m_s;
 use plant_model::params::{RaceParams, SpinParams};
 
@@ -50,11 +50,7 @@ impl Tried {
     /// From the wall with a radial speed, ended once the rotor has been free for 30 ms.
     pub(super) fn run(params: &PlantParams, end_s: f64) -> Result<Self> {
         let start = at_the_wall(params, IMPACT_M_S, SPIN_HZ);
-        let watch = Watch {
-            free_s: 0.03,
-            ..watch(end_s)
-        };
-        let course = Run::of(params, &start, &watch)?.course;
+        let course = Run::of(params, &start, &watch(20e-6, end_s, 0.03))?.course;
         let whirl = course.longest_contact();
         let inside = |t_s: f64| whirl.is_some_and(|c| c.from_s <= t_s && t_s <= c.to_s);
         let lasts = whirl.is_some_and(|c| c.to_s > end_s - 1e-9);
