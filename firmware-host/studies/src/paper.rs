@@ -2,28 +2,28 @@
 //! speak to, each as a row of paper, computed value and deviation, with its source and whether it was
 //! fitted, predicted or assumed. Rows that miss stay in, with the reason.
 //!
-//! One file a chapter; a chapter computes, and says nothing about how it is shown.
+//! One file a chapter. A chapter runs its cases and lists what came out as data (`data`): rows, tables and
+//! charts, a line each. How they are compared, claimed and shown is the same for all (`rows`, `summary`, `page`).
 
-pub mod established;
+mod data;
+mod established;
 mod laws;
 mod levels;
 mod limits;
-pub mod maps;
+mod maps;
 mod mounting;
-pub mod onset;
+mod onset;
 mod page;
-pub mod phases;
+mod phases;
 mod retainer;
 pub mod rotors;
 mod rows;
+mod runs;
 mod summary;
-mod whirl_runs;
 
 pub use self::page::{chapters, page, study};
 pub use self::rows::{json, text};
-use crate::campaign::Extent;
-pub use crate::campaign::{Drawing, Figure, Table};
-pub use firmware_bench::report::plot::chart::{Axis, Chart, Curve, HeatMap, Mark};
+use crate::campaign::{Extent, Figure, Table};
 use plant_model::{BuildError, PlantError};
 use serde::Serialize;
 
@@ -39,11 +39,13 @@ pub enum Kind {
     Assumed,
 }
 
-/// In which sense the paper gives a number.
+/// What the paper has of a quantity.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Stated {
+pub enum Paper {
+    /// No number.
+    Silent,
     /// A value.
-    Value,
+    Value(f64),
     /// "No more than", "under".
     AtMost(f64),
     /// "More than", "still too high".
@@ -52,73 +54,61 @@ pub enum Stated {
     Between(f64, f64),
 }
 
+impl From<f64> for Paper {
+    fn from(value: f64) -> Self {
+        Self::Value(value)
+    }
+}
+
+impl Paper {
+    /// Its value or bound; a range has no one number.
+    pub fn number(self) -> Option<f64> {
+        match self {
+            Self::Value(v) | Self::AtMost(v) | Self::AtLeast(v) => Some(v),
+            Self::Silent | Self::Between(..) => None,
+        }
+    }
+}
+
 /// One number of the paper beside what the model gives.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Row {
     /// What it is.
-    pub quantity: String,
+    pub item: String,
     /// Its unit; empty for a pure number.
     pub unit: &'static str,
     /// Where the paper has it: section, figure, footnote or equation.
     pub source: &'static str,
-    /// The paper's value; `None` where it gives none.
-    pub paper: Option<f64>,
-    /// What the model gives; `None` where it gives none (the note says why).
+    /// What the paper has.
+    pub paper: Paper,
+    /// What the model gives, finite; `None` where it gives none (the note says why).
     pub computed: Option<f64>,
-    /// computed/paper − 1, where both are there.
-    pub deviation: Option<f64>,
     /// How it came about.
     pub kind: Kind,
     /// What must be said beside it: an interval, a condition, the reason of a miss.
     pub note: String,
-    /// In which sense the paper gives it.
-    pub stated: Stated,
 }
 
 /// A row farther than this from a value of the paper misses it: the paper's own numbers are "about".
 pub const MISS: f64 = 0.1;
 
 impl Row {
-    /// A row with its deviation. A value that is no number counts as none.
-    pub fn new(
-        (quantity, unit): (impl Into<String>, &'static str),
-        source: &'static str,
-        (paper, computed): (Option<f64>, Option<f64>),
-        kind: Kind,
-        note: impl Into<String>,
-    ) -> Self {
-        let computed = computed.filter(|value| value.is_finite());
-        let deviation = paper
-            .zip(computed)
-            .filter(|(paper, _)| *paper != 0.0)
-            .map(|(paper, computed)| computed / paper - 1.0);
-        Self {
-            quantity: quantity.into(),
-            unit,
-            source,
-            paper,
-            computed,
-            deviation,
-            kind,
-            note: note.into(),
-            stated: Stated::Value,
-        }
-    }
-
-    /// The same row, where the paper gives a bound or a range.
-    #[must_use]
-    pub fn stated(self, stated: Stated) -> Self {
-        Self { stated, ..self }
+    /// computed/paper − 1, where both are there.
+    pub fn deviation(&self) -> Option<f64> {
+        let paper = self.paper.number().filter(|paper| *paper != 0.0);
+        (paper.zip(self.computed)).map(|(paper, computed)| computed / paper - 1.0)
     }
 
     /// Whether the paper is met: its bound or range, or its value to [`MISS`]. `None` where there is
     /// nothing to compare.
     pub fn holds(&self) -> Option<bool> {
-        match self.stated {
-            Stated::Value => self.deviation.map(|d| d.abs() <= MISS),
-            Stated::AtMost(high) => self.computed.map(|v| v <= high),
-            Stated::AtLeast(low) => self.computed.map(|v| v >= low),
-            Stated::Between(low, high) => self.computed.map(|v| (low..=high).contains(&v)),
+        let computed = self.computed?;
+        match self.paper {
+            Paper::Silent => None,
+            Paper::Value(_) => self.deviation().map(|d| d.abs() <= MISS),
+            Paper::AtMost(high) => Some(computed <= high),
+            Paper::AtLeast(low) => Some(computed >= low),
+            Paper::Between(low, high) => Some((low..=high).contains(&computed)),
         }
     }
 }
@@ -136,6 +126,19 @@ pub struct Chapter {
     pub tables: Vec<Table>,
     /// Drawings.
     pub figures: Vec<Figure>,
+}
+
+impl Chapter {
+    /// One that has no more than its story yet.
+    fn new<S: Into<String>>(title: &'static str, story: impl IntoIterator<Item = S>) -> Self {
+        Self {
+            title,
+            story: story.into_iter().map(Into::into).collect(),
+            rows: Vec::new(),
+            tables: Vec::new(),
+            figures: Vec::new(),
+        }
+    }
 }
 
 /// Why a chapter has no result.

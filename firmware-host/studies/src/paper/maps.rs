@@ -1,19 +1,13 @@
 //! Chapter "Stability maps" (Fig. 4 and beyond): the critical impact speed over every parameter, over
 //! pairs of them, and the outcome over impact speed, with and without unbalance.
 
-mod fringe;
 mod outcomes;
 
+use super::data::*;
 use super::onset::fit;
 use super::rotors::OnsetRig;
-use super::{
-    Axis, Chapter, Chart, Curve, Drawing, Extent, Figure, HeatMap, Kind, Mark, PaperError, Row,
-};
 use firmware_bench::report::plot::text::figures;
 use plant_model::analysis::impact::{Criterion, Search, critical_speed_m_s};
-use rayon::prelude::{IntoParallelIterator, ParallelIterator};
-
-const FIG_4: &str = "Fig. 4";
 
 /// Without unbalance the outcome changes once over the speed (rows of this chapter), so coarse steps
 /// find the same change.
@@ -23,301 +17,206 @@ const SEARCH: Search = Search {
 };
 
 /// A parameter that is varied.
-#[derive(Debug, Clone, Copy)]
+#[derive(Clone, Copy)]
 struct Varied {
     file: &'static str,
     name: &'static str,
     axis: &'static str,
     /// As shown on the axis.
     range: (f64, f64),
-    /// Sets it, from what the axis shows; the second is the inclination \[rad\].
-    set: fn(&mut OnsetRig, &mut f64, f64),
-    /// Points of the paper's measurements on the curves: (shown, speed).
+    /// Sets it to what the axis shows.
+    set: fn(&mut Case, f64),
+    /// The paper's measurements on the curves: shown, speed \[m/s\].
     measured: &'static [(f64, f64)],
 }
 
-const FRICTION: Varied = Varied {
-    file: "maps_friction",
-    name: "μ",
-    axis: "coefficient of friction μ",
-    range: (0.05, 0.6),
-    set: |rig, _, v| rig.friction = v,
-    measured: &[(0.125, 0.093)],
-};
-const DAMPING: Varied = Varied {
-    file: "maps_damping",
-    name: "damping ratio",
-    axis: "damping ratio [%]",
-    range: (0.0, 10.0),
-    set: |rig, _, v| rig.damping_ratio = 0.01 * v,
-    measured: &[(0.3, 0.093), (3.5, 0.137)],
-};
-const NATURAL: Varied = Varied {
-    file: "maps_eigenfrequency",
-    name: "eigenfrequency",
-    axis: "eigenfrequency [Hz]",
-    range: (10.0, 150.0),
-    set: |rig, _, v| rig.natural_hz = v,
-    measured: &[(45.0, 0.093)],
-};
-const RESTITUTION: Varied = Varied {
-    file: "maps_restitution",
-    name: "restitution",
-    axis: "restitution e",
-    range: (0.1, 0.95),
-    set: |rig, _, v| rig.restitution = v,
-    measured: &[],
-};
-const CLEARANCE: Varied = Varied {
-    file: "maps_clearance",
-    name: "clearance",
-    axis: "clearance c [mm]",
-    range: (0.05, 1.0),
-    set: |rig, _, v| rig.clearance_m = 1e-3 * v,
-    measured: &[(0.2, 0.093)],
-};
-const INCLINATION: Varied = Varied {
-    file: "maps_inclination",
-    name: "inclination",
-    axis: "inclination into the whirl direction [°]",
-    range: (-20.0, 85.0),
-    set: |_, inclination, v| *inclination = v.to_radians(),
-    measured: &[(0.0, 0.093), (30.0, 0.064), (50.0, 0.056)],
-};
+/// The parameters. A line: constant, short name of its figure, name, axis, range, what it sets, measurements.
+macro_rules! varied {
+    ($($constant:ident: $file:literal, $name:literal, $axis:literal, $range:expr, $set:expr, $measured:expr;)*) => {
+        $(const $constant: Varied = Varied {
+            file: $file,
+            name: $name,
+            axis: $axis,
+            range: $range,
+            set: $set,
+            measured: &$measured,
+        };)*
+        const ALL: &[Varied] = &[$($constant),*];
+    };
+}
 
-/// v_r,crit of the rig with some parameters set; not a number where nothing whirls.
-fn critical_m_s(rig: &OnsetRig, set: &[(Varied, f64)]) -> Result<f64, PaperError> {
-    let (mut rig, mut inclination_rad) = (*rig, 0.0);
-    for (varied, value) in set {
-        (varied.set)(&mut rig, &mut inclination_rad, *value);
+varied! {
+    FRICTION: "maps_friction", "μ", "coefficient of friction μ", (0.05, 0.6), |c, v| c.rig.friction = v, [(0.125, 0.093)];
+    DAMPING: "maps_damping", "damping ratio", "damping ratio [%]", (0.0, 10.0), |c, v| c.rig.damping_ratio = 0.01 * v, [(0.3, 0.093), (3.5, 0.137)];
+    NATURAL: "maps_eigenfrequency", "eigenfrequency", "eigenfrequency [Hz]", (10.0, 150.0), |c, v| c.rig.natural_hz = v, [(45.0, 0.093)];
+    RESTITUTION: "maps_restitution", "restitution", "restitution e", (0.1, 0.95), |c, v| c.rig.restitution = v, [];
+    CLEARANCE: "maps_clearance", "clearance", "clearance c [mm]", (0.05, 1.0), |c, v| c.rig.clearance_m = 1e-3 * v, [(0.2, 0.093)];
+    INCLINATION: "maps_inclination", "inclination", "inclination into the whirl direction [°]", (-20.0, 85.0), |c, v| c.inclination_rad = v.to_radians(), [(0.0, 0.093), (30.0, 0.064), (50.0, 0.056)];
+}
+
+impl Varied {
+    fn axis(&self) -> Axis {
+        Axis::linear(self.axis, self.range)
     }
-    let at = (inclination_rad, OnsetRig::SPIN_RAD_S);
-    let found = critical_speed_m_s(&rig.params()?, at, &SEARCH, &Criterion::default())?;
-    Ok(found.unwrap_or(f64::NAN))
+}
+
+/// A rig with the inclination of its impact.
+#[derive(Clone, Copy)]
+struct Case {
+    rig: OnsetRig,
+    inclination_rad: f64,
+}
+
+impl Case {
+    fn with(mut self, varied: Varied, value: f64) -> Self {
+        (varied.set)(&mut self, value);
+        self
+    }
+
+    /// v_r,crit \[m/s\]; not a number where nothing whirls.
+    fn critical_m_s(&self) -> Result<f64> {
+        let at = (self.inclination_rad, OnsetRig::SPIN_RAD_S);
+        let params = self.rig.params()?;
+        let found = critical_speed_m_s(&params, at, &SEARCH, &Criterion::default())?;
+        Ok(found.unwrap_or(f64::NAN))
+    }
 }
 
 fn linear((from, to): (f64, f64), share: f64) -> f64 {
     from + share * (to - from)
 }
 
+/// Columns and rows of a grid.
+#[derive(Clone, Copy)]
+struct Grid {
+    columns: u32,
+    rows: u32,
+}
+
+impl Grid {
+    /// The middle of a cell as a share of its axis, which has so many.
+    fn middle(i: u32, of: u32) -> f64 {
+        (f64::from(i) + 0.5) / f64::from(of)
+    }
+
+    /// What is in each cell, from its place along both axes as shares, rows from the bottom, side by side.
+    fn cells<T: Send>(self, cell: impl Fn(f64, f64) -> Result<T> + Sync) -> Result<Vec<Vec<T>>> {
+        let rows: Vec<u32> = (0..self.rows).collect();
+        each(&rows, |j| {
+            let along = |i| cell(Self::middle(i, self.columns), Self::middle(*j, self.rows));
+            (0..self.columns).map(along).collect()
+        })
+    }
+}
+
 /// The chapter.
-///
-/// # Errors
-/// [`PaperError`].
-pub fn chapter(extent: Extent) -> Result<Chapter, PaperError> {
-    let rig = OnsetRig::solid_disc(fit()?.restitution);
-    let points = if extent == Extent::Full { 81 } else { 21 };
-    let cells = if extent == Extent::Full {
-        (60, 40)
-    } else {
-        (16, 10)
+pub(super) fn chapter(extent: Extent) -> Result<Chapter> {
+    let rig = Case {
+        rig: OnsetRig::solid_disc(fit()?.restitution),
+        inclination_rad: 0.0,
     };
-    let all = [
-        FRICTION,
-        DAMPING,
-        NATURAL,
-        RESTITUTION,
-        CLEARANCE,
-        INCLINATION,
-    ];
-    let mut drawn = Vec::new();
-    for varied in all {
-        drawn.push(curves(&rig, varied, points)?);
+    let mut chapter = Chapter::new(
+        "Stability maps",
+        [
+            "The critical impact speed as a function of the rotor is a stability map for the excitation that the rotor bears. The rig is that of the chapter Onset with its fitted restitution; what a figure does not vary stays at μ = 0.125, 0.3 %, 45 Hz, 0.2 mm, radial.",
+            "Balanced, in a rigid concentric stator, everything is symmetric about the centre, and from bounce to bounce only the normal and the tangential speed count. The outcome then changes once over the impact speed: the limit is sharp, as the paper reports. Unbalance breaks the symmetry: its phase at the touch counts, whirl and no whirl alternate in a fringe above the lowest speed that whirls, and that lowest speed falls.",
+        ],
+    );
+    for varied in ALL {
+        let curves = curves(&rig, *varied, extent.pick(21, 81))?;
+        chapter.figures.push(curves);
     }
-    for (file, x, y) in [
-        ("maps_friction_damping", FRICTION, DAMPING),
-        ("maps_inclination_restitution", INCLINATION, RESTITUTION),
-        ("maps_eigenfrequency_clearance", NATURAL, CLEARANCE),
-    ] {
-        drawn.push(map(&rig, file, (x, y), cells)?);
-    }
-    let mut rows = sensitivities(&rig)?;
-    let (outcome_figures, row) = outcomes::balanced(&rig, extent)?;
-    drawn.extend(outcome_figures);
-    rows.push(row);
-    let fringe = fringe::unbalanced(&rig, extent)?;
-    drawn.extend(fringe.figures);
-    rows.push(fringe.row);
-    Ok(Chapter {
-        title: "Stability maps",
-        story: story(),
-        rows,
-        tables: vec![fringe.table],
-        figures: drawn,
-    })
+    let (columns, rows) = extent.pick((16, 10), (60, 40));
+    let map = |file, x, y| map(&rig, file, [x, y], Grid { columns, rows });
+    chapter.figures.extend([
+        map("maps_friction_damping", FRICTION, DAMPING)?,
+        map("maps_inclination_restitution", INCLINATION, RESTITUTION)?,
+        map("maps_eigenfrequency_clearance", NATURAL, CLEARANCE)?,
+    ]);
+    chapter.rows = sensitivities(&rig)?;
+    outcomes::balanced(&mut chapter, &rig, extent)?;
+    outcomes::unbalanced(&mut chapter, &rig.rig, extent)?;
+    Ok(chapter)
 }
 
-fn story() -> Vec<String> {
-    [
-        "The critical impact speed as a function of the rotor is a stability map for the excitation that the \
-         rotor bears. The rig is that of the chapter Onset with its fitted restitution; what a figure does not \
-         vary stays at μ = 0.125, 0.3 %, 45 Hz, 0.2 mm, radial.",
-        "Balanced, in a rigid concentric stator, everything is symmetric about the centre, and from bounce to \
-         bounce only the normal and the tangential speed count. The outcome then changes once over the impact \
-         speed: the limit is sharp, as the paper reports. Unbalance breaks the symmetry: its phase at the touch \
-         counts, whirl and no whirl alternate in a fringe above the lowest speed that whirls, and that lowest \
-         speed falls.",
-    ]
-    .map(str::to_owned)
-    .to_vec()
-}
-
-fn curves(rig: &OnsetRig, varied: Varied, points: usize) -> Result<Figure, PaperError> {
-    // What the other line has otherwise.
-    let (other, light, heavy, names) = if varied.file == DAMPING.file {
-        (FRICTION, 0.125, 0.3, ["μ = 0.125", "μ = 0.3"])
-    } else {
-        (
-            DAMPING,
-            0.3,
-            3.5,
-            ["damping ratio 0.3 %", "damping ratio 3.5 %"],
-        )
-    };
-    let line = |value: f64| -> Result<Vec<(f64, f64)>, PaperError> {
-        (0..points)
-            .into_par_iter()
-            .map(|i| {
-                let x = linear(varied.range, i as f64 / (points - 1) as f64);
-                Ok((x, critical_m_s(rig, &[(varied, x), (other, value)])?))
-            })
-            .collect()
-    };
-    let lines = [line(light)?, line(heavy)?];
-    let top = (lines.iter().flatten().map(|p| p.1))
-        .filter(|v| v.is_finite())
-        .fold(0.0, f64::max);
-    let mut curves: Vec<Curve> = (lines.into_iter().zip(names).enumerate())
-        .map(|(colour, (points, name))| Curve {
-            name: name.to_owned(),
-            points,
-            mark: Mark::Line,
-            colour,
-        })
+/// v_r,crit over a parameter, for the rig and for one with more of another.
+fn curves(rig: &Case, varied: Varied, points: u32) -> Result<Figure> {
+    let shares: Vec<f64> = (0..points)
+        .map(|i| f64::from(i) / f64::from(points - 1))
         .collect();
+    let line = |other: Varied, value: f64| {
+        each(&shares, |share| {
+            let x = linear(varied.range, *share);
+            Ok((x, rig.with(varied, x).with(other, value).critical_m_s()?))
+        })
+    };
+    let mut curves: Vec<Curve> = match varied.file == DAMPING.file {
+        true => curves! {
+            "μ = 0.125", Line, 0 => line(FRICTION, 0.125)?;
+            "μ = 0.3", Line, 1 => line(FRICTION, 0.3)?;
+        },
+        false => curves! {
+            "damping ratio 0.3 %", Line, 0 => line(DAMPING, 0.3)?;
+            "damping ratio 3.5 %", Line, 1 => line(DAMPING, 3.5)?;
+        },
+    };
+    let top = 1.05 * highest(&curves);
     if !varied.measured.is_empty() {
-        curves.push(Curve {
-            name: "measured (paper)".to_owned(),
-            points: varied.measured.to_vec(),
-            mark: Mark::Crosses,
-            colour: 3,
-        });
+        curves.extend(curves! { "measured (paper)", Crosses, 3 => varied.measured.to_vec(); });
     }
-    Ok(Figure {
-        file: varied.file,
-        caption: format!("Critical impact speed over {}.", varied.name),
-        drawing: Drawing::Chart(Chart {
-            label: format!("Critical impact speed over {}", varied.name),
-            x: axis(&varied),
-            y: Axis {
-                name: "v_r,crit [m/s]".to_owned(),
-                range: (0.0, 1.05 * top),
-                log: false,
-            },
-            curves,
-        }),
+    let name = varied.name;
+    Ok(chart! {
+        varied.file, "Critical impact speed over {name}", "Critical impact speed over {name}.";
+        varied.axis(), Axis::linear("v_r,crit [m/s]", (0.0, top));
+        curves
     })
 }
 
-fn axis(varied: &Varied) -> Axis {
-    Axis {
-        name: varied.axis.to_owned(),
-        range: varied.range,
-        log: false,
-    }
-}
-
-fn map(
-    rig: &OnsetRig,
-    file: &'static str,
-    (x, y): (Varied, Varied),
-    (columns, rows): (usize, usize),
-) -> Result<Figure, PaperError> {
-    let middle =
-        |varied: &Varied, i: usize, n: usize| linear(varied.range, (i as f64 + 0.5) / n as f64);
-    let cells: Vec<Vec<f64>> = (0..rows)
-        .into_par_iter()
-        .map(|j| {
-            (0..columns)
-                .map(|i| {
-                    let set = [(x, middle(&x, i, columns)), (y, middle(&y, j, rows))];
-                    critical_m_s(rig, &set)
-                })
-                .collect()
-        })
-        .collect::<Result<_, _>>()?;
+/// v_r,crit over two parameters.
+fn map(rig: &Case, file: &'static str, [x, y]: [Varied; 2], grid: Grid) -> Result<Figure> {
+    let cells = grid.cells(|across, up| {
+        let set = rig
+            .with(x, linear(x.range, across))
+            .with(y, linear(y.range, up));
+        set.critical_m_s()
+    })?;
     // A few cells with the highest speeds would take all the colours.
-    let mut all: Vec<f64> = (cells.iter().flatten().copied())
-        .filter(|v| v.is_finite())
-        .collect();
+    let mut all: Vec<f64> = cells.iter().flatten().copied().collect();
+    all.retain(|v| v.is_finite());
     all.sort_by(f64::total_cmp);
-    let at = |share: f64| {
-        all.get((share * (all.len() as f64 - 1.0)) as usize)
-            .copied()
-    };
-    let (Some(low), Some(high)) = (at(0.0), at(0.95)) else {
-        return Err(PaperError::Missing(format!("{file}: nothing whirls")));
-    };
+    let place = (0.95 * (all.len() as f64 - 1.0)) as usize;
+    let (low, high) =
+        (all.first().zip(all.get(place))).or_missing(format!("{file}: nothing whirls"))?;
+    let label = format!("Critical impact speed over {} and {}", x.name, y.name);
     Ok(Figure {
         file,
-        caption: format!(
-            "Critical impact speed over {} and {}; darker bears more. The highest twentieth has one colour.",
-            x.name, y.name
-        ),
+        caption: format!("{label}; darker bears more. The highest twentieth has one colour."),
         drawing: Drawing::Map(HeatMap {
-            label: format!("Critical impact speed over {} and {}", x.name, y.name),
-            x: axis(&x),
-            y: axis(&y),
+            label,
+            x: x.axis(),
+            y: y.axis(),
             names: Default::default(),
+            scale: (*low, *high, "v_r,crit [m/s]".to_owned()),
             cells,
-            scale: (low, high, "v_r,crit [m/s]".to_owned()),
         }),
     })
 }
 
 /// How v_r,crit goes with each parameter: the exponent of a power law about the rig.
-fn sensitivities(rig: &OnsetRig) -> Result<Vec<Row>, PaperError> {
-    let at = [
-        (FRICTION, rig.friction, "", "text: falls"),
-        (DAMPING, 100.0 * rig.damping_ratio, " %", "text: rises"),
-        (DAMPING, 3.5, " %", "text: rises"),
-        (
-            NATURAL,
-            rig.natural_hz,
-            " Hz",
-            "text: rises with the shaft's stiffness",
-        ),
-        (
-            RESTITUTION,
-            rig.restitution,
-            "",
-            "text: counts, without a sense",
-        ),
-        (
-            CLEARANCE,
-            1e3 * rig.clearance_m,
-            " mm",
-            "text: recommends more of it",
-        ),
-    ];
-    at.into_iter()
-        .map(|(varied, value, unit, text)| {
-            let of = |share: f64| critical_m_s(rig, &[(varied, share * value)]);
-            let exponent = (of(1.05)? / of(0.95)?).ln() / (1.05_f64 / 0.95).ln();
-            Ok(Row::new(
-                (
-                    format!(
-                        "Exponent of v_r,crit in {} at {}{unit}",
-                        varied.name,
-                        figures(value)
-                    ),
-                    "",
-                ),
-                FIG_4,
-                (None, Some(exponent)),
-                Kind::Predicted,
-                format!("{text}; no number"),
-            ))
-        })
-        .collect()
+fn sensitivities(case: &Case) -> Result<Vec<Row>> {
+    const FIG_4: &str = "Fig. 4";
+    let rig = &case.rig;
+    let exponent = |varied: Varied, value: f64| -> Result<f64> {
+        let of = |share: f64| case.with(varied, share * value).critical_m_s();
+        Ok((of(1.05)? / of(0.95)?).ln() / (1.05_f64 / 0.95).ln())
+    };
+    let restitution = figures(rig.restitution);
+    Ok(rows! {
+        "Exponent of v_r,crit in μ at 0.125", "", FIG_4, Silent => exponent(FRICTION, rig.friction)?, Predicted, "text: falls; no number";
+        "Exponent of v_r,crit in damping ratio at 0.3 %", "", FIG_4, Silent => exponent(DAMPING, 100.0 * rig.damping_ratio)?, Predicted, "text: rises; no number";
+        "Exponent of v_r,crit in damping ratio at 3.5 %", "", FIG_4, Silent => exponent(DAMPING, 3.5)?, Predicted, "text: rises; no number";
+        "Exponent of v_r,crit in eigenfrequency at 45 Hz", "", FIG_4, Silent => exponent(NATURAL, rig.natural_hz)?, Predicted, "text: rises with the shaft's stiffness; no number";
+        "Exponent of v_r,crit in restitution at {restitution}", "", FIG_4, Silent => exponent(RESTITUTION, rig.restitution)?, Predicted, "text: counts, without a sense; no number";
+        "Exponent of v_r,crit in clearance at 0.2 mm", "", FIG_4, Silent => exponent(CLEARANCE, 1e3 * rig.clearance_m)?, Predicted, "text: recommends more of it; no number";
+    })
 }

@@ -2,16 +2,15 @@
 
 mod spectrum;
 
-use self::spectrum::Spectrum;
-use super::whirl_runs::{at_the_wall, fastest_hz, footnote_4, ring};
-use super::{
-    Axis, Chapter, Chart, Curve, Drawing, Extent, Figure, Kind, Mark, PaperError, Row, Stated,
-    Table,
-};
-use plant_model::analysis::black::SteadyWhirl;
-use plant_model::params::{PlantParams, StatorParams};
-use plant_model::{Inputs, Options, V2, build};
-use std::f64::consts::TAU;
+use self::spectrum::{Line, Spectrum};
+use super::data::*;
+use super::limits::{drives, force_kn};
+use super::rotors::{footnote_4_at, ring};
+use super::runs::{Run, at_the_wall, fastest_hz, watch};
+use plant_model::V2;
+use plant_model::analysis::black::{Circle, SteadyWhirl};
+use plant_model::analysis::course::Sample;
+use plant_model::params::{RingParams, StatorParams};
 
 /// The ring \[kg\] and its natural frequency on the mounting \[Hz\]: the paper's.
 const RING_KG: f64 = 10.0;
@@ -35,299 +34,192 @@ const FIRST_S: f64 = 0.02;
 const DIVIDE_HZ: f64 = 150.0;
 const SOURCE: &str = "Results, test with a compliant stator";
 
-fn mounted() -> PlantParams {
-    let mounting_rate = TAU * MOUNTING_HZ;
+/// A ring with the damping ratio of this chapter, that of its reduced mass.
+fn damped(mass_kg: f64, reduced_kg: f64, stiffness_n_m: f64) -> RingParams {
+    let damping_n_s_m = 2.0 * DAMPING_RATIO * (stiffness_n_m * reduced_kg).sqrt();
+    ring(mass_kg, stiffness_n_m, damping_n_s_m)
+}
+
+/// The rotor in the ring on its mounting: with its oval mode, or as one rigid mass.
+fn mounted(oval: bool) -> PlantParams {
     let rest_kg = RING_KG - MOVING_KG;
-    let reduced_kg = MOVING_KG * rest_kg / RING_KG;
-    let stator = StatorParams::TwoMass {
-        inner: ring(
-            MOVING_KG,
-            OVAL_N_M,
-            2.0 * DAMPING_RATIO * (OVAL_N_M * reduced_kg).sqrt(),
-        ),
-        outer: ring(
-            rest_kg,
-            RING_KG * mounting_rate * mounting_rate,
-            2.0 * DAMPING_RATIO * RING_KG * mounting_rate,
-        ),
+    let mounting_n_m = RING_KG * (TAU * MOUNTING_HZ).powi(2);
+    let stator = match oval {
+        true => StatorParams::TwoMass {
+            inner: damped(MOVING_KG, MOVING_KG * rest_kg / RING_KG, OVAL_N_M),
+            outer: damped(rest_kg, RING_KG, mounting_n_m),
+        },
+        false => StatorParams::OneMass(damped(RING_KG, RING_KG, mounting_n_m)),
     };
     PlantParams {
         stator,
-        ..footnote_4(CONTACT_N_M)
+        ..footnote_4_at(CONTACT_N_M)
     }
 }
 
-/// The same ring as one rigid mass on its mounting.
-fn rigid_ring() -> PlantParams {
-    let rate = TAU * MOUNTING_HZ;
-    PlantParams {
-        stator: StatorParams::OneMass(ring(
-            RING_KG,
-            RING_KG * rate * rate,
-            2.0 * DAMPING_RATIO * RING_KG * rate,
-        )),
-        ..footnote_4(CONTACT_N_M)
+/// A motion of the record: its spectrum with the highest lines of the slow and of the fast motion.
+struct Motion {
+    spectrum: Spectrum,
+    slow: Line,
+    fast: Line,
+}
+
+impl Motion {
+    fn of(record: &[Sample], vector: impl Fn(&Sample) -> V2) -> Self {
+        let samples: Vec<V2> = record.iter().map(vector).collect();
+        let spectrum = Spectrum::of(&samples, SAMPLE_S);
+        Self {
+            slow: spectrum.highest(|hz| hz.abs() < DIVIDE_HZ),
+            fast: spectrum.highest(|hz| hz.abs() > DIVIDE_HZ),
+            spectrum,
+        }
     }
 }
 
-/// What a run leaves for the spectra, sampled while the spin lasts.
-#[derive(Debug, Default)]
+/// What a run leaves while the spin lasts.
 struct Record {
-    rotor_m: Vec<V2>,
-    ring_m: Vec<V2>,
-    force_n: Vec<V2>,
+    rotor: Motion,
+    ring: Motion,
+    force: Motion,
     rotor_peak_m: f64,
     ring_peak_m: f64,
     end_s: f64,
-    /// Time in contact as a share of the record.
+    /// Time in contact as a share of what the spectra are of.
     contact_share: f64,
 }
 
-fn record(params: &PlantParams) -> Result<Record, PaperError> {
+fn record(params: &PlantParams) -> Result<Record> {
+    let watch = watch(SAMPLE_S, 1.0, f64::INFINITY);
     let start = at_the_wall(params, IMPACT_M_S, SPIN_HZ);
-    let mut plant = build(params, &start, Options::default())?;
-    let mut record = Record::default();
-    let mut touching = 0_u32;
-    for i in 1..=20_000 {
-        let t = f64::from(i) * SAMPLE_S;
-        plant.advance(t, &Inputs::default(), &mut |_| {})?;
-        let now = plant.snapshot();
-        let ring_m = now.inner_ring.position;
-        record.rotor_peak_m = record.rotor_peak_m.max(now.position_m.norm());
-        record.ring_peak_m = record.ring_peak_m.max(ring_m.norm());
-        if t < FIRST_S {
-            continue;
-        }
-        if now.spin_rad_s < LAST_SPIN_HZ * TAU {
-            record.end_s = t;
-            record.contact_share = f64::from(touching) / record.force_n.len() as f64;
-            return Ok(record);
-        }
-        let apart = now.position_m - ring_m;
-        record.rotor_m.push(now.position_m);
-        record.ring_m.push(ring_m);
-        record
-            .force_n
-            .push(now.normal_force_n * apart / apart.norm());
-        touching += u32::from(now.mode.in_contact());
-    }
-    Err(PaperError::Missing(
-        "the rotor on the mounting did not stop".to_owned(),
-    ))
+    let samples = Run::of(params, &start, &watch)?.course.samples;
+    let over = |s: &Sample| s.t_s >= FIRST_S && s.spin_hz < LAST_SPIN_HZ;
+    let end = samples.iter().position(over);
+    let end = end.or_missing("the rotor on the mounting did not stop")?;
+    let first = samples.partition_point(|s| s.t_s < FIRST_S);
+    let record = &samples[first..end];
+    let peak_m = |of: fn(&Sample) -> V2| {
+        let sizes = samples[..=end].iter().map(|s| of(s).norm());
+        sizes.fold(0.0, f64::max)
+    };
+    let touching = record.iter().filter(|s| s.mode.in_contact()).count();
+    Ok(Record {
+        rotor: Motion::of(record, |s| s.position_m),
+        ring: Motion::of(record, |s| s.inner_ring_m),
+        force: Motion::of(record, |s| {
+            let apart = s.position_m - s.inner_ring_m;
+            s.normal_force_n * apart / apart.norm()
+        }),
+        rotor_peak_m: peak_m(|s| s.position_m),
+        ring_peak_m: peak_m(|s| s.inner_ring_m),
+        end_s: samples[end].t_s,
+        contact_share: touching as f64 / record.len() as f64,
+    })
 }
 
 /// Computes the chapter; both extents are the same.
-pub(super) fn chapter(_: Extent) -> Result<Chapter, PaperError> {
-    let params = mounted();
-    let run = record(&params)?;
-    let [rotor, ring, force] =
-        [&run.rotor_m, &run.ring_m, &run.force_n].map(|s| Spectrum::of(s, SAMPLE_S));
-    let slow = rotor.highest(|hz| hz.abs() < DIVIDE_HZ);
-    let fast = rotor.highest(|hz| hz.abs() > DIVIDE_HZ);
-    let ring_slow = ring.highest(|hz| hz.abs() < DIVIDE_HZ);
-    let ring_fast = ring.highest(|hz| hz.abs() > DIVIDE_HZ);
-    let force_slow = force.highest(|hz| hz.abs() < DIVIDE_HZ);
-    let force_fast = force.highest(|hz| hz.abs() > DIVIDE_HZ);
-    let force_share = force.power_share(|hz| hz.abs() > DIVIDE_HZ);
-    let one_mass = rigid_ring();
-    let one_mass_hz = fastest_hz(&one_mass, SPIN_HZ, 0.1)?;
-    let system = |params| {
-        SteadyWhirl::from_params(params)
-            .ok_or_else(|| PaperError::Missing("the mounting is not isotropic".to_owned()))
-    };
-    let (two_mass, one_mass) = (system(&params)?, system(&one_mass)?);
-    let limit =
-        (two_mass.sliding(DIVIDE_HZ, 5000.0).into_iter()).find(|c| c.attracts && c.exists());
-    let rows = vec![
-        Row::new(
-            ("Stiffness of the oval mode", "N/m"),
-            "not in the paper",
-            (None, Some(OVAL_N_M)),
-            Kind::Fitted,
-            "fitted to the 400 Hz alone",
-        ),
-        Row::new(
-            ("Slow motion of the rotor", "Hz"),
-            SOURCE,
-            (Some(50.0), Some(slow.frequency_hz.abs())),
-            Kind::Predicted,
-            format!(
-                "{}; free vibration of rotor and ring together from the impact. Resolution {:.0} Hz",
-                sense(slow.frequency_hz),
-                rotor.resolution_hz
-            ),
-        ),
-        Row::new(
-            ("Fast whirl of the rotor", "Hz"),
-            SOURCE,
-            (Some(400.0), Some(fast.frequency_hz.abs())),
-            Kind::Fitted,
-            format!("{}; by the oval mode's stiffness", sense(fast.frequency_hz)),
-        ),
-        Row::new(
-            ("Upper whirl limit by Black's condition", "Hz"),
-            SOURCE,
-            (Some(400.0), limit.map(|c| c.frequency_hz())),
-            Kind::Fitted,
-            format!(
-                "growth rate of small disturbances {:.0} 1/s: {}",
-                limit.map_or(f64::NAN, |c| c.growth_rate_s),
-                if limit.is_some_and(|c| c.growth_rate_s < 0.0) {
-                    "stable"
-                } else {
-                    "unstable, the whirl wanders about it"
-                }
-            ),
-        ),
-        Row::new(
-            ("Largest displacement of the rotor", "mm"),
-            SOURCE,
-            (Some(1.0), Some(1e3 * run.rotor_peak_m)),
-            Kind::Assumed,
-            "paper: more than 1 mm; hangs on the impact, here 0.8 m/s",
-        )
-        .stated(Stated::AtLeast(1.0)),
-        Row::new(
-            ("Largest displacement of the ring", "mm"),
-            SOURCE,
-            (Some(1.0), Some(1e3 * run.ring_peak_m)),
-            Kind::Assumed,
-            "paper: more than 1 mm; no bending of rods in the model",
-        )
-        .stated(Stated::AtLeast(1.0)),
-        Row::new(
-            ("Share of the contact force's power above 150 Hz", ""),
-            SOURCE,
-            (None, Some(force_share)),
-            Kind::Assumed,
-            "paper: the fast motion governs force and torque, and alone the deceleration",
-        ),
-        Row::new(
-            ("Force amplitude, fast over slow", ""),
-            SOURCE,
-            (None, Some(force_fast.amplitude / force_slow.amplitude)),
-            Kind::Assumed,
-            "paper: fast dominates",
-        )
-        .stated(Stated::AtLeast(1.0)),
-        Row::new(
-            ("Fastest whirl with the ring as one rigid mass", "Hz"),
-            "Results, on Black's theory",
-            (Some(400.0), Some(one_mass_hz)),
-            Kind::Assumed,
-            "misses, as it must: without the oval mode nothing holds the whirl but k_c",
-        ),
-    ];
-    let peak_row = |name: &str, unit: f64, slow: spectrum::Peak, fast: spectrum::Peak| {
-        let cell = |peak: spectrum::Peak| {
-            format!(
-                "{:.3} at {:+.0} Hz",
-                unit * peak.amplitude,
-                peak.frequency_hz
-            )
-        };
-        vec![name.to_owned(), cell(slow), cell(fast)]
-    };
+pub(super) fn chapter(_: Extent) -> Result<Chapter> {
+    let run = record(&mounted(true))?;
+    let [oval, rigid] = [true, false].map(|oval| SteadyWhirl::from_params(&mounted(oval)));
+    let (oval, rigid) = (oval.zip(rigid)).or_missing("the mounting is not isotropic")?;
+    let above = oval.sliding(DIVIDE_HZ, 5000.0).into_iter();
+    let limit = above.into_iter().find(|c| c.attracts && c.exists());
     Ok(Chapter {
         title: "Stator on a compliant mounting",
         story: vec![
             format!("The rotor of footnote 4 in a ring of {RING_KG} kg on a mounting of {MOUNTING_HZ} Hz (the paper's), whose second (oval) mode is a mass of {MOVING_KG} kg on {OVAL_N_M:e} N/m (chosen for 400 Hz), both modes with a damping ratio of {DAMPING_RATIO} (assumed). Impact {IMPACT_M_S} m/s, spin {SPIN_HZ} Hz, no drive; spectra from {:.0} ms to {:.0} ms, where the spin has fallen to {LAST_SPIN_HZ} Hz; in contact for {:.0} % of that time.", 1e3 * FIRST_S, 1e3 * run.end_s, 100.0 * run.contact_share),
             "Rotor and ring swing together on mounting and shaft, wide and slow, and the rotor whirls in the ring at the same time, small and fast. Whirl accelerates as m·ω²: the fast motion carries the force and brakes the spin. A soft mounting does not bring the whirl down to the frequency of the ring on it.".to_owned(),
         ],
-        rows,
-        tables: vec![
-            Table {
-                caption: "Highest lines of the full spectra (Hann window); negative frequencies are backward".to_owned(),
-                columns: ["", "Below 150 Hz", "Above 150 Hz"].map(str::to_owned).to_vec(),
-                rows: vec![
-                    peak_row("Rotor [mm]", 1e3, slow, fast),
-                    peak_row("Ring [mm]", 1e3, ring_slow, ring_fast),
-                    peak_row("Normal force [kN]", 1e-3, force_slow, force_fast),
-                ],
-            },
-            steady(&two_mass, &one_mass),
-        ],
-        figures: vec![figure(&rotor, &force)],
+        rows: rows(&run, limit)?,
+        tables: vec![peaks(&run), steady(&oval, &rigid)],
+        figures: vec![figure(&run)],
     })
 }
 
-fn sense(frequency_hz: f64) -> &'static str {
-    if frequency_hz < 0.0 {
-        "backward"
-    } else {
-        "forward"
+fn rows(run: &Record, limit: Option<Circle>) -> Result<Vec<Row>> {
+    let (slow_hz, fast_hz) = (run.rotor.slow.frequency_hz, run.rotor.fast.frequency_hz);
+    let sense = |hz: f64| if hz < 0.0 { "backward" } else { "forward" };
+    let growth = limit.map_or(f64::NAN, |circle| circle.growth_rate_s);
+    let stability = match growth < 0.0 {
+        true => "stable",
+        false => "unstable, the whirl wanders about it",
+    };
+    let force = &run.force;
+    let above = force.spectrum.power_share(|hz| hz.abs() > DIVIDE_HZ);
+    let rigid_hz = fastest_hz(&mounted(false), SPIN_HZ, 0.1)?;
+    Ok(rows! {
+        "Stiffness of the oval mode", "N/m", "not in the paper", Silent => OVAL_N_M, Fitted, "fitted to the 400 Hz alone";
+        "Slow motion of the rotor", "Hz", SOURCE, 50.0 => slow_hz.abs(), Predicted,
+            "{}; free vibration of rotor and ring together from the impact. Resolution {:.0} Hz", sense(slow_hz), run.rotor.spectrum.resolution_hz;
+        "Fast whirl of the rotor", "Hz", SOURCE, 400.0 => fast_hz.abs(), Fitted, "{}; by the oval mode's stiffness", sense(fast_hz);
+        "Upper whirl limit by Black's condition", "Hz", SOURCE, 400.0 => limit.map(|c| c.frequency_hz()), Fitted,
+            "growth rate of small disturbances {growth:.0} 1/s: {stability}";
+        "Largest displacement of the rotor", "mm", SOURCE, AtLeast(1.0) => 1e3 * run.rotor_peak_m, Assumed,
+            "paper: more than 1 mm; hangs on the impact, here 0.8 m/s";
+        "Largest displacement of the ring", "mm", SOURCE, AtLeast(1.0) => 1e3 * run.ring_peak_m, Assumed, "paper: more than 1 mm; no bending of rods in the model";
+        "Share of the contact force's power above 150 Hz", "", SOURCE, Silent => above, Assumed,
+            "paper: the fast motion governs force and torque, and alone the deceleration";
+        "Force amplitude, fast over slow", "", SOURCE, AtLeast(1.0) => force.fast.amplitude / force.slow.amplitude, Assumed, "paper: fast dominates";
+        "Fastest whirl with the ring as one rigid mass", "Hz", "Results, on Black's theory", 400.0 => rigid_hz, Assumed,
+            "misses, as it must: without the oval mode nothing holds the whirl but k_c";
+    })
+}
+
+fn peaks(run: &Record) -> Table {
+    let cell = |line: Line, unit: f64| {
+        let (size, hz) = (unit * line.amplitude, line.frequency_hz);
+        format!("{size:.3} at {hz:+.0} Hz")
+    };
+    let motions = [
+        ("Rotor [mm]", &run.rotor, 1e3),
+        ("Ring [mm]", &run.ring, 1e3),
+        ("Normal force [kN]", &run.force, 1e-3),
+    ];
+    table! {
+        "Highest lines of the full spectra (Hann window); negative frequencies are backward";
+        for (name, motion, unit) in motions;
+        "" => "{name}";
+        "Below 150 Hz" => "{}", cell(motion.slow, unit);
+        "Above 150 Hz" => "{}", cell(motion.fast, unit);
     }
 }
 
 /// Steady sliding whirl in both models of the ring.
-fn steady(two: &SteadyWhirl, one: &SteadyWhirl) -> Table {
-    let mut rows = Vec::new();
-    for (name, whirl) in [("with oval mode", two), ("one mass", one)] {
-        for circle in whirl.sliding(1.0, 5000.0) {
-            rows.push(vec![
-                name.to_owned(),
-                format!("{:.1}", circle.frequency_hz()),
-                if circle.exists() {
-                    format!("{:.4}", circle.normal_force_n / 1e3)
-                } else {
-                    "needs a pull".to_owned()
-                },
-                if circle.attracts { "below" } else { "above" }.to_owned(),
-                if circle.exists() {
-                    format!("{:+.1}", circle.growth_rate_s)
-                } else {
-                    "–".to_owned()
-                },
-            ]);
-        }
-    }
-    Table {
-        caption: "Steady sliding whirl, k_c = 1e9 N/m".to_owned(),
-        columns: [
-            "Ring",
-            "Whirl [Hz]",
-            "N [kN]",
-            "Friction drives",
-            "Growth rate [1/s]",
-        ]
-        .map(str::to_owned)
-        .to_vec(),
-        rows,
+fn steady(oval: &SteadyWhirl, rigid: &SteadyWhirl) -> Table {
+    let circles = [("with oval mode", oval), ("one mass", rigid)]
+        .into_iter()
+        .flat_map(|(name, whirl)| {
+            whirl
+                .sliding(1.0, 5000.0)
+                .into_iter()
+                .map(move |c| (name, c))
+        });
+    table! {
+        "Steady sliding whirl, k_c = 1e9 N/m";
+        for (name, circle) in circles;
+        "Ring" => "{name}";
+        "Whirl [Hz]" => "{:.1}", circle.frequency_hz();
+        "N [kN]" => "{}", force_kn(&circle).map_or("needs a pull".to_owned(), |kn| format!("{kn:.4}"));
+        "Friction drives" => "{}", drives(&circle);
+        "Growth rate [1/s]" => "{}", if circle.exists() { format!("{:+.1}", circle.growth_rate_s) } else { or_dash(None, 1) };
     }
 }
 
-fn figure(rotor: &Spectrum, force: &Spectrum) -> Figure {
-    let curve = |name: &str, spectrum: &Spectrum, colour| {
-        let shown = || spectrum.lines.iter().filter(|(hz, _)| hz.abs() <= 800.0);
-        let highest = shown().map(|line| line.1).fold(f64::MIN_POSITIVE, f64::max);
-        Curve {
-            name: format!("{name}, over its highest line"),
-            points: shown()
-                .map(|(hz, amplitude)| (*hz, amplitude / highest))
-                .collect(),
-            mark: Mark::Line,
-            colour,
-        }
+fn figure(run: &Record) -> Figure {
+    let over_highest = |motion: &Motion| -> Vec<(f64, f64)> {
+        let shown = |hz: f64| hz.abs() <= 800.0;
+        let highest = motion.spectrum.highest(shown).amplitude;
+        let lines = motion.spectrum.lines.iter();
+        (lines.filter(|line| shown(line.frequency_hz)))
+            .map(|line| (line.frequency_hz, line.amplitude / highest))
+            .collect()
     };
-    Figure {
-        file: "mounting-spectrum",
-        caption: "Full spectrum of x + iy while the spin lasts: the slow motion is large in the displacement, the fast backward whirl in the force.".to_owned(),
-        drawing: Drawing::Chart(Chart {
-            label: "Full spectrum of rotor displacement and contact force".to_owned(),
-            x: Axis {
-                name: "Frequency, backward negative [Hz]".to_owned(),
-                range: (-800.0, 800.0),
-                log: false,
-            },
-            y: Axis {
-                name: "Amplitude over the highest".to_owned(),
-                range: (0.0, 1.05),
-                log: false,
-            },
-            curves: vec![
-                curve("rotor displacement", rotor, 0),
-                curve("contact force", force, 1),
-            ],
-        }),
+    chart! {
+        "mounting-spectrum", "Full spectrum of rotor displacement and contact force",
+        "Full spectrum of x + iy while the spin lasts: the slow motion is large in the displacement, the fast backward whirl in the force.";
+        Axis::linear("Frequency, backward negative [Hz]", (-800.0, 800.0)), Axis::linear("Amplitude over the highest", (0.0, 1.05));
+        curves! {
+            "rotor displacement, over its highest line", Line, 0 => over_highest(&run.rotor);
+            "contact force, over its highest line", Line, 1 => over_highest(&run.force);
+        }
     }
 }

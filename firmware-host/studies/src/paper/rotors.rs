@@ -1,14 +1,13 @@
 //! The paper's two rotors as plant parameters, and where each constant comes from.
 
-use super::PaperError;
+use super::data::*;
 use plant_model::V2;
 use plant_model::analysis::impact::ImpactError;
 use plant_model::contact::damping_for_restitution;
 use plant_model::params::{
-    ContactParams, FrictionParams, LinearContact, PlantParams, RingParams, RotorParams,
-    SlidingFriction, SpinParams, StatorParams,
+    ContactParams, FrictionParams, LinearContact, RingParams, RotorParams, SlidingFriction,
+    SpinParams, StatorParams,
 };
-use std::f64::consts::TAU;
 
 /// What the paper leaves out of footnote 4.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -53,6 +52,28 @@ pub(super) fn ring(mass_kg: f64, stiffness_n_m: f64, damping_n_s_m: f64) -> Ring
     }
 }
 
+/// A linear contact.
+fn contact(clearance_m: f64, stiffness_n_m: f64, damping_n_s_m: f64) -> ContactParams {
+    let law = LinearContact {
+        stiffness_n_m,
+        damping_n_s_m,
+    };
+    ContactParams {
+        clearance_m,
+        law: law.into(),
+    }
+}
+
+/// [`footnote_4`] with another contact stiffness \[N/m\], of the same damping ratio.
+pub(super) fn footnote_4_at(contact_stiffness_n_m: f64) -> PlantParams {
+    let share = contact_stiffness_n_m / USED.contact_stiffness_n_m;
+    footnote_4_with(&LeftOut {
+        contact_stiffness_n_m,
+        contact_damping_n_s_m: USED.contact_damping_n_s_m * share.sqrt(),
+        ..USED
+    })
+}
+
 /// [`footnote_4`] with another choice of what the paper leaves out.
 pub fn footnote_4_with(left_out: &LeftOut) -> PlantParams {
     PlantParams {
@@ -71,14 +92,11 @@ pub fn footnote_4_with(left_out: &LeftOut) -> PlantParams {
             inner: ring(10.0, 8.9e8, 28_300.0),
             outer: ring(10.0, 3.6e9, 18_970.0),
         },
-        contact: ContactParams {
-            clearance_m: 2e-4,
-            law: LinearContact {
-                stiffness_n_m: left_out.contact_stiffness_n_m,
-                damping_n_s_m: left_out.contact_damping_n_s_m,
-            }
-            .into(),
-        },
+        contact: contact(
+            2e-4,
+            left_out.contact_stiffness_n_m,
+            left_out.contact_damping_n_s_m,
+        ),
         friction: FrictionParams {
             sliding: SlidingFriction::Constant { coefficient: 0.15 },
             rolling_coefficient: 0.025,
@@ -123,8 +141,6 @@ pub struct OnsetRig {
 impl OnsetRig {
     /// Spin \[rad/s\].
     pub const SPIN_RAD_S: f64 = 40.0 * TAU;
-    /// Mass \[kg\].
-    pub const MASS_KG: f64 = 10.0;
 
     /// The solid disc without the damping appliance.
     pub fn solid_disc(restitution: f64) -> Self {
@@ -143,39 +159,30 @@ impl OnsetRig {
     ///
     /// # Errors
     /// A restitution outside (0, 1].
-    pub fn params(&self) -> Result<PlantParams, PaperError> {
-        let mass_kg = Self::MASS_KG;
+    pub fn params(&self) -> Result<PlantParams> {
+        let (mass_kg, k_c) = (10.0, self.contact_stiffness_n_m);
         let natural_rad_s = TAU * self.natural_hz;
-        let k_c = self.contact_stiffness_n_m;
         let damping_n_s_m = damping_for_restitution(self.restitution, k_c, mass_kg)
-            .ok_or_else(|| PaperError::Missing(format!("no restitution: {}", self.restitution)))?;
-        Ok(PlantParams {
-            rotor: RotorParams {
-                mass_kg,
-                stiffness_n_m: mass_kg * natural_rad_s * natural_rad_s,
-                damping_n_s_m: 2.0 * self.damping_ratio * mass_kg * natural_rad_s,
-                eccentricity_m: self.eccentricity_m,
-                contact_radius_m: 0.1,
-            },
-            spin: SpinParams::Held,
-            stator: StatorParams::Rigid,
-            contact: ContactParams {
-                clearance_m: self.clearance_m,
-                law: LinearContact {
-                    stiffness_n_m: k_c,
-                    damping_n_s_m,
-                }
-                .into(),
-            },
-            friction: FrictionParams {
-                sliding: SlidingFriction::Constant {
-                    coefficient: self.friction,
-                },
-                rolling_coefficient: 0.0,
-            },
-            magnet: None,
-            race: None,
-        })
+            .or_missing(format!("no restitution: {}", self.restitution))?;
+        let mut params = footnote_4();
+        params.rotor.mass_kg = mass_kg;
+        params.rotor.stiffness_n_m = mass_kg * natural_rad_s * natural_rad_s;
+        params.rotor.damping_n_s_m = 2.0 * self.damping_ratio * mass_kg * natural_rad_s;
+        params.rotor.eccentricity_m = self.eccentricity_m;
+        params.spin = SpinParams::Held;
+        params.stator = StatorParams::Rigid;
+        params.contact = contact(self.clearance_m, k_c, damping_n_s_m);
+        params.friction.sliding = SlidingFriction::Constant {
+            coefficient: self.friction,
+        };
+        params.friction.rolling_coefficient = 0.0;
+        Ok(params)
+    }
+
+    /// With a change.
+    pub(super) fn with(mut self, change: impl Fn(&mut Self)) -> Self {
+        change(&mut self);
+        self
     }
 }
 

@@ -1,7 +1,7 @@
-//! The rows of all chapters: as JSON for programs, as tables for the terminal, and how a row is worded.
+//! The rows of all chapters: how one is worded, as JSON for programs, as tables for the terminal.
 
-use super::summary::{Summary, all};
-use super::{Chapter, Kind, Row, Stated};
+use super::summary::sentences;
+use super::{Chapter, Kind, Paper, Row};
 use firmware_bench::report::lines::{Cell, lined, right};
 use firmware_bench::report::plot::text::figures;
 use firmware_bench::report::tone::Tone;
@@ -32,46 +32,86 @@ pub struct Rows<'a> {
 
 /// The rows of all chapters under `rows`; numbers are finite or null.
 pub fn json(chapters: &[Chapter]) -> Rows<'_> {
-    let rows = all(chapters)
-        .map(|(chapter, row)| JsonRow {
-            item: &row.quantity,
-            source: row.source,
-            paper: row.paper,
-            computed: row.computed,
-            unit: row.unit,
-            kind: row.kind,
-            deviation: row.deviation,
-            claim: (row.stated != Stated::Value).then(|| paper(row)),
-            holds: row.holds(),
-            chapter: chapter.title,
-            note: &row.note,
-        })
+    let all = chapters
+        .iter()
+        .flat_map(|c| c.rows.iter().map(move |row| (c.title, row)));
+    let rows = all
+        .map(|(chapter, row)| JsonRow::of(chapter, row))
         .collect();
     Rows { rows }
 }
 
-/// What the paper has.
-pub(super) fn paper(row: &Row) -> String {
-    match row.stated {
-        Stated::Value => row.paper.map_or("–".to_owned(), figures),
-        Stated::AtMost(high) => format!("≤ {}", figures(high)),
-        Stated::AtLeast(low) => format!("≥ {}", figures(low)),
-        Stated::Between(low, high) => format!("{} to {}", figures(low), figures(high)),
+impl<'a> JsonRow<'a> {
+    fn of(chapter: &'a str, row: &'a Row) -> Self {
+        let plain = matches!(row.paper, Paper::Value(_) | Paper::Silent);
+        Self {
+            item: &row.item,
+            source: row.source,
+            paper: row.paper.number(),
+            computed: row.computed,
+            unit: row.unit,
+            kind: row.kind,
+            deviation: row.deviation(),
+            claim: (!plain).then(|| row.paper.words()),
+            holds: row.holds(),
+            chapter,
+            note: &row.note,
+        }
     }
 }
 
-/// What the model gives.
-pub(super) fn computed(row: &Row) -> String {
-    row.computed.map_or("–".to_owned(), figures)
+impl Paper {
+    fn words(self) -> String {
+        match self {
+            Self::Silent => "–".to_owned(),
+            Self::Value(value) => figures(value),
+            Self::AtMost(high) => format!("≤ {}", figures(high)),
+            Self::AtLeast(low) => format!("≥ {}", figures(low)),
+            Self::Between(low, high) => format!("{} to {}", figures(low), figures(high)),
+        }
+    }
 }
 
-/// The deviation; bounds and ranges hold or do not.
-pub(super) fn deviation(row: &Row) -> String {
-    match (row.stated, row.holds()) {
-        (Stated::Value, _) => row.deviation.map_or("–".to_owned(), percent),
-        (_, Some(true)) => "holds".to_owned(),
-        (_, Some(false)) => "fails".to_owned(),
-        (_, None) => "–".to_owned(),
+/// Headings of [`Row::cells`].
+pub(super) const COLUMNS: [&str; 8] = [
+    "Quantity",
+    "Source",
+    "Paper",
+    "Computed",
+    "Unit",
+    "Deviation",
+    "Kind",
+    "Note",
+];
+
+impl Row {
+    /// As it is read.
+    pub(super) fn cells(&self) -> [String; 8] {
+        [
+            self.item.clone(),
+            self.source.to_owned(),
+            self.paper.words(),
+            self.computed_words(),
+            self.unit.to_owned(),
+            self.deviation_words(),
+            format!("{:?}", self.kind).to_lowercase(),
+            self.note.clone(),
+        ]
+    }
+
+    /// What the model gives, as it is read.
+    pub(super) fn computed_words(&self) -> String {
+        self.computed.map_or("–".to_owned(), figures)
+    }
+
+    /// The deviation from a value; bounds and ranges hold or do not.
+    fn deviation_words(&self) -> String {
+        match (self.paper, self.holds()) {
+            (Paper::Value(_), _) => self.deviation().map_or("–".to_owned(), percent),
+            (_, Some(true)) => "holds".to_owned(),
+            (_, Some(false)) => "fails".to_owned(),
+            (_, None) => "–".to_owned(),
+        }
     }
 }
 
@@ -83,15 +123,6 @@ fn percent(share: f64) -> String {
         return "0.0 %".to_owned();
     }
     text.replace('-', "\u{2212}")
-}
-
-/// How it came about, in a word.
-pub(super) fn kind(kind: Kind) -> &'static str {
-    match kind {
-        Kind::Fitted => "fitted",
-        Kind::Predicted => "predicted",
-        Kind::Assumed => "assumed",
-    }
 }
 
 /// One table a chapter, and the summary.
@@ -107,19 +138,17 @@ pub fn text(chapters: &[Chapter]) -> String {
             Cell::new("kind"),
         ]);
         for row in &chapter.rows {
+            let [item, _, paper, computed, unit, deviation, kind, _] = row.cells();
             table.add_row([
-                Cell::new(&row.quantity),
-                right(paper(row)),
-                right(computed(row)),
-                Cell::new(row.unit),
-                right(deviation(row)).toned(row.holds().map(Tone::of_claim)),
-                Cell::new(kind(row.kind)),
+                Cell::new(item),
+                right(paper),
+                right(computed),
+                Cell::new(unit),
+                right(deviation).toned(row.holds().map(Tone::of_claim)),
+                Cell::new(kind),
             ]);
         }
         out += &format!("{}\n{table}\n\n", chapter.title);
     }
-    for sentence in Summary::of(chapters).sentences() {
-        out += &format!("{sentence}\n");
-    }
-    out
+    out + &sentences(chapters).join("\n") + "\n"
 }

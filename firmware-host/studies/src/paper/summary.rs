@@ -1,121 +1,93 @@
 //! What comes of all rows together: how good the predictions are, what was fitted, what misses.
 
-use super::{Chapter, Kind, MISS, Row, Stated};
-use firmware_bench::report::plot::text::figures;
+use super::{Chapter, Kind, MISS, Paper, Row};
 
-/// Every row with its chapter.
-pub(super) fn all(chapters: &[Chapter]) -> impl Iterator<Item = (&Chapter, &Row)> {
-    (chapters.iter()).flat_map(|chapter| chapter.rows.iter().map(move |row| (chapter, row)))
-}
+/// Kinds in the order in which they are summed up.
+const KINDS: [Kind; 3] = [Kind::Predicted, Kind::Assumed, Kind::Fitted];
 
-/// The rows, sorted.
-pub(super) struct Summary<'a> {
-    /// Rows of the paper with a value, bound or range, by kind: predicted, assumed, fitted.
-    compared: [Vec<&'a Row>; 3],
-    /// Constants that were fitted: fitted rows without a counterpart in the paper.
-    constants: Vec<&'a Row>,
-    /// Rows that miss, with their chapters.
-    pub(super) misses: Vec<(&'a Chapter, &'a Row)>,
-    chapters: usize,
-    rows: usize,
-}
-
-/// Kinds in the order of [`Summary::compared`], with their meaning.
-const KINDS: [(Kind, &str); 3] = [
-    (Kind::Predicted, "predicted (nothing was chosen for them)"),
-    (
-        Kind::Assumed,
-        "assumed (they hang on a constant that the paper leaves out and that was not fitted to them)",
-    ),
-    (
-        Kind::Fitted,
-        "fitted (a constant was chosen so that they fit)",
-    ),
-];
-
-impl<'a> Summary<'a> {
-    /// Of all chapters.
-    pub(super) fn of(chapters: &'a [Chapter]) -> Self {
-        let compared = KINDS.map(|(kind, _)| {
-            (all(chapters).map(|(_, row)| row))
-                .filter(|row| row.kind == kind && row.holds().is_some())
-                .collect()
-        });
-        let constant =
-            |row: &&Row| row.kind == Kind::Fitted && row.paper.is_none() && row.computed.is_some();
-        Self {
-            compared,
-            constants: (all(chapters).map(|(_, row)| row))
-                .filter(constant)
-                .collect(),
-            misses: (all(chapters))
-                .filter(|(_, row)| row.holds() == Some(false))
-                .collect(),
-            chapters: chapters.len(),
-            rows: all(chapters).count(),
-        }
-    }
-
-    fn compared(&self) -> usize {
-        self.compared.iter().map(Vec::len).sum()
-    }
-
-    /// What comes of it, in a sentence.
-    pub(super) fn conclusion(&self) -> String {
-        let compared = self.compared();
-        let misses = self.misses.len();
-        let predicted = &self.compared[0];
-        let met = |rows: &[&Row]| rows.iter().filter(|r| r.holds() == Some(true)).count();
-        format!(
-            "The model meets {} of the {compared} numbers, bounds and ranges that the paper gives; {} of the {} for which nothing was \
-             chosen. {}",
-            compared - misses,
-            met(predicted),
-            predicted.len(),
-            match misses {
-                0 => "None misses.".to_owned(),
-                1 => "The one that misses is listed with the reason.".to_owned(),
-                _ => format!("The {misses} that miss are listed with the reasons."),
+impl Kind {
+    fn meaning(self) -> &'static str {
+        match self {
+            Self::Predicted => "predicted (nothing was chosen for them)",
+            Self::Assumed => {
+                "assumed (they hang on a constant that the paper leaves out and that was not fitted to them)"
             }
-        )
-    }
-
-    /// The summary in sentences.
-    pub(super) fn sentences(&self) -> Vec<String> {
-        let compared = self.compared();
-        let mut out = vec![format!(
-            "{} rows in {} chapters; the paper has a number for {compared} of them. A value is met within {:.0} %, \
-             a bound or range where it holds: {} are met, {} miss.",
-            self.rows,
-            self.chapters,
-            100.0 * MISS,
-            compared - self.misses.len(),
-            self.misses.len()
-        )];
-        out.extend(
-            (KINDS.iter().zip(&self.compared))
-                .filter(|(_, rows)| !rows.is_empty())
-                .map(|((_, meaning), rows)| sentence(meaning, rows)),
-        );
-        if !self.constants.is_empty() {
-            out.push(format!("Constants fitted: {}.", list(&self.constants)));
+            Self::Fitted => "fitted (a constant was chosen so that they fit)",
         }
-        out
     }
 }
 
-fn sentence(meaning: &str, rows: &[&Row]) -> String {
-    let (values, claims): (Vec<&Row>, Vec<&Row>) =
-        (rows.iter().copied()).partition(|row| row.stated == Stated::Value);
-    let met = |rows: &[&Row]| rows.iter().filter(|r| r.holds() == Some(true)).count();
+/// The rows wanted, of all chapters.
+fn rows(chapters: &[Chapter], wanted: impl Fn(&Row) -> bool) -> Vec<&Row> {
+    let all = chapters.iter().flat_map(|chapter| &chapter.rows);
+    all.filter(|row| wanted(row)).collect()
+}
+
+/// Rows of a kind that the paper has a value, bound or range for.
+fn compared(chapters: &[Chapter], kind: Kind) -> Vec<&Row> {
+    rows(chapters, |row| row.kind == kind && row.holds().is_some())
+}
+
+fn met(rows: &[&Row]) -> usize {
+    rows.iter().filter(|row| row.holds() == Some(true)).count()
+}
+
+/// What comes of it, in a sentence.
+pub(super) fn conclusion(chapters: &[Chapter]) -> String {
+    let compared_with = rows(chapters, |row| row.holds().is_some());
+    let predicted = compared(chapters, Kind::Predicted);
+    let misses = match compared_with.len() - met(&compared_with) {
+        0 => "None misses.".to_owned(),
+        1 => "The one that misses is listed with the reason.".to_owned(),
+        misses => format!("The {misses} that miss are listed with the reasons."),
+    };
+    format!(
+        "The model meets {} of the {} numbers, bounds and ranges that the paper gives; {} of the {} for which nothing was \
+         chosen. {misses}",
+        met(&compared_with),
+        compared_with.len(),
+        met(&predicted),
+        predicted.len(),
+    )
+}
+
+/// The summary in sentences.
+pub(super) fn sentences(chapters: &[Chapter]) -> Vec<String> {
+    let compared_with = rows(chapters, |row| row.holds().is_some());
+    let all = format!(
+        "{} rows in {} chapters; the paper has a number for {} of them. A value is met within {:.0} %, \
+         a bound or range where it holds: {} are met, {} miss.",
+        rows(chapters, |_| true).len(),
+        chapters.len(),
+        compared_with.len(),
+        100.0 * MISS,
+        met(&compared_with),
+        compared_with.len() - met(&compared_with),
+    );
+    let by_kind = KINDS.into_iter().filter_map(|kind| {
+        let of = compared(chapters, kind);
+        (!of.is_empty()).then(|| sentence(kind, &of))
+    });
+    let constants = rows(chapters, |row| {
+        row.kind == Kind::Fitted && row.paper == Paper::Silent
+    });
+    let words = |row: &&Row| format!("{} = {} {}", row.item, row.computed_words(), row.unit);
+    let named: Vec<String> = constants.iter().map(words).collect();
+    let named: Vec<&str> = named.iter().map(|words| words.trim_end()).collect();
+    let named = named.join(", ");
+    let fitted = (!named.is_empty()).then(|| format!("Constants fitted: {named}."));
+    [all].into_iter().chain(by_kind).chain(fitted).collect()
+}
+
+fn sentence(kind: Kind, of: &[&Row]) -> String {
+    let (values, bounds): (Vec<&Row>, Vec<&Row>) =
+        (of.iter()).partition(|row| matches!(row.paper, Paper::Value(_)));
     let mut parts = Vec::new();
     if !values.is_empty() {
-        let mut off: Vec<f64> = (values.iter().filter_map(|r| r.deviation))
-            .map(f64::abs)
-            .collect();
+        let off = values.iter().filter_map(|row| row.deviation());
+        let mut off: Vec<f64> = off.map(f64::abs).collect();
         off.sort_by(f64::total_cmp);
-        let (low, high) = (off.get((off.len() - 1) / 2), off.get(off.len() / 2));
-        let median = (low.zip(high)).map_or(f64::NAN, |(low, high)| 50.0 * (low + high));
+        let median = 50.0 * (off[(off.len() - 1) / 2] + off[off.len() / 2]);
         parts.push(format!(
             "{} of {} values within {:.0} %, median deviation {median:.1} %",
             met(&values),
@@ -123,22 +95,9 @@ fn sentence(meaning: &str, rows: &[&Row]) -> String {
             100.0 * MISS
         ));
     }
-    if !claims.is_empty() {
-        parts.push(format!(
-            "{} of {} bounds and ranges hold",
-            met(&claims),
-            claims.len()
-        ));
+    if !bounds.is_empty() {
+        let (held, all) = (met(&bounds), bounds.len());
+        parts.push(format!("{held} of {all} bounds and ranges hold"));
     }
-    format!("{} {meaning}: {}.", rows.len(), parts.join("; "))
-}
-
-fn list(rows: &[&Row]) -> String {
-    let word = |row: &&Row| {
-        let value = row.computed.map_or("–".to_owned(), figures);
-        format!("{} = {value} {}", row.quantity, row.unit)
-            .trim_end()
-            .to_owned()
-    };
-    rows.iter().map(word).collect::<Vec<_>>().join(", ")
+    format!("{} {}: {}.", of.len(), kind.meaning(), parts.join("; "))
 }

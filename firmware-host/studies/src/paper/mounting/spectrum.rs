@@ -8,15 +8,15 @@ use std::f64::consts::TAU;
 /// Amplitudes of rotating components.
 #[derive(Debug)]
 pub(super) struct Spectrum {
-    /// (frequency \[Hz\], amplitude), by frequency; backward negative.
-    pub(super) lines: Vec<(f64, f64)>,
+    /// In order of frequency.
+    pub(super) lines: Vec<Line>,
     /// Half width of a line \[Hz\]: two over the length of the record, by the window.
     pub(super) resolution_hz: f64,
 }
 
 /// A line of a spectrum.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Peak {
+pub(super) struct Line {
     /// Backward negative.
     pub(super) frequency_hz: f64,
     /// Of the circle.
@@ -39,48 +39,38 @@ impl Spectrum {
             *out = Complex::new(moved.x, moved.y);
         }
         FftPlanner::new().plan_fft_forward(size).process(&mut data);
+        data.rotate_left(size / 2);
         let step_hz = 1.0 / (size as f64 * sample_s);
-        let mut lines: Vec<(f64, f64)> = (data.iter().enumerate())
-            .map(|(i, value)| {
-                let place = if 2 * i < size {
-                    i as f64
-                } else {
-                    i as f64 - size as f64
-                };
-                (place * step_hz, value.norm() / weights)
-            })
-            .collect();
-        lines.rotate_left(size / 2);
+        let line = |(i, value): (usize, &Complex<f64>)| Line {
+            frequency_hz: (i as f64 - (size / 2) as f64) * step_hz,
+            amplitude: value.norm() / weights,
+        };
         Self {
-            lines,
+            lines: data.iter().enumerate().map(line).collect(),
             resolution_hz: 2.0 / (n as f64 * sample_s),
         }
     }
 
-    /// The highest line among those wanted.
-    pub(super) fn highest(&self, wanted: impl Fn(f64) -> bool) -> Peak {
-        let none = Peak {
+    /// The highest line among those wanted by their frequency \[Hz\].
+    pub(super) fn highest(&self, wanted: impl Fn(f64) -> bool) -> Line {
+        let none = Line {
             frequency_hz: f64::NAN,
             amplitude: 0.0,
         };
-        (self.lines.iter().filter(|(hz, _)| wanted(*hz))).fold(none, |best, (hz, amplitude)| {
-            if *amplitude > best.amplitude {
-                Peak {
-                    frequency_hz: *hz,
-                    amplitude: *amplitude,
-                }
-            } else {
-                best
-            }
+        let lines = self.lines.iter().filter(|line| wanted(line.frequency_hz));
+        lines.fold(none, |best, line| {
+            let higher = line.amplitude > best.amplitude;
+            if higher { *line } else { best }
         })
     }
 
-    /// Power of the lines wanted as a share of all.
+    /// Power of the lines wanted by their frequency \[Hz\] as a share of all.
     pub(super) fn power_share(&self, wanted: impl Fn(f64) -> bool) -> f64 {
-        let power = |lines: &mut dyn Iterator<Item = &(f64, f64)>| -> f64 {
-            lines.map(|(_, amplitude)| amplitude * amplitude).sum()
+        let power = |wanted: &dyn Fn(f64) -> bool| -> f64 {
+            let lines = self.lines.iter().filter(|line| wanted(line.frequency_hz));
+            lines.map(|line| line.amplitude * line.amplitude).sum()
         };
-        power(&mut self.lines.iter().filter(|(hz, _)| wanted(*hz))) / power(&mut self.lines.iter())
+        power(&wanted) / power(&|_| true)
     }
 }
 

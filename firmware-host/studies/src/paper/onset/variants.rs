@@ -2,104 +2,91 @@
 //! made otherwise.
 
 use super::{Configuration, Fit, configurations, fit_restitution, rms_log_error};
-use crate::paper::rotors::OnsetRig;
-use crate::paper::{Extent, PaperError, Table};
-use plant_model::Options;
+use crate::paper::data::*;
 use plant_model::analysis::impact::{Criterion, Search, critical_speed_m_s};
-use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
-use std::f64::consts::TAU;
 
-/// One choice made otherwise.
+/// The choices.
 struct Variant {
-    name: String,
-    criterion: Criterion,
-    search: Search,
+    name: &'static str,
+    /// Times v_t,crit that counts as whirl.
+    multiple: f64,
     spin_hz: f64,
-    /// Contact stiffness, with the restitution fitted anew.
-    contact_stiffness_n_m: Option<f64>,
+    rtol: f64,
+    /// Upwards in the search, as a share of the speed.
+    step: f64,
+    /// Contact stiffness \[N/m\], with the restitution fitted anew where it is another.
+    stiffness_n_m: f64,
 }
 
-fn variants(extent: Extent) -> Vec<Variant> {
-    let base = |name: String| Variant {
+fn variants() -> Vec<Variant> {
+    let of = |name, multiple, spin_hz, rtol, step, stiffness_n_m| Variant {
         name,
-        criterion: Criterion::default(),
-        search: Search::default(),
-        spin_hz: OnsetRig::SPIN_RAD_S / TAU,
-        contact_stiffness_n_m: None,
+        multiple,
+        spin_hz,
+        rtol,
+        step,
+        stiffness_n_m,
     };
-    let mut all = vec![base("as in the rows".to_owned())];
-    for whirl_multiple in [1.2, 3.0] {
-        let mut variant = base(format!("whirl at {whirl_multiple} v_t,crit"));
-        variant.criterion.whirl_multiple = whirl_multiple;
-        all.push(variant);
-    }
-    for spin_hz in [15.0, 166.0, -40.0] {
-        all.push(Variant {
-            spin_hz,
-            ..base(format!("spin {spin_hz} Hz"))
-        });
-    }
-    let mut variant = base("rtol 1e-12".to_owned());
-    variant.criterion.options = Options {
-        rtol: 1e-12,
-        ..Options::default()
-    };
-    all.push(variant);
-    if extent == Extent::Full {
-        let mut variant = base("upwards in steps of 0.05 %".to_owned());
-        variant.search.step = 5e-4;
-        all.push(variant);
-    }
-    for (stiffness, name) in [(3e7, "3e7"), (1e9, "1e9"), (1e10, "1e10")] {
-        all.push(Variant {
-            contact_stiffness_n_m: Some(stiffness),
-            ..base(format!("k_c = {name} N/m, e fitted anew"))
-        });
-    }
-    all
+    vec![
+        of("as in the rows", 2.0, 40.0, 1e-9, 5e-3, 1e8),
+        of("whirl at 1.2 v_t,crit", 1.2, 40.0, 1e-9, 5e-3, 1e8),
+        of("whirl at 3 v_t,crit", 3.0, 40.0, 1e-9, 5e-3, 1e8),
+        of("spin 15 Hz", 2.0, 15.0, 1e-9, 5e-3, 1e8),
+        of("spin 166 Hz", 2.0, 166.0, 1e-9, 5e-3, 1e8),
+        of("spin -40 Hz", 2.0, -40.0, 1e-9, 5e-3, 1e8),
+        of("rtol 1e-12", 2.0, 40.0, 1e-12, 5e-3, 1e8),
+        of("upwards in steps of 0.05 %", 2.0, 40.0, 1e-9, 5e-4, 1e8),
+        of("k_c = 3e7 N/m, e fitted anew", 2.0, 40.0, 1e-9, 5e-3, 3e7),
+        of("k_c = 1e9 N/m, e fitted anew", 2.0, 40.0, 1e-9, 5e-3, 1e9),
+        of("k_c = 1e10 N/m, e fitted anew", 2.0, 40.0, 1e-9, 5e-3, 1e10),
+    ]
 }
 
-/// The table of variants.
-pub(super) fn table(fit: &Fit, extent: Extent) -> Result<Table, PaperError> {
+impl Variant {
+    /// The critical speeds of the configurations \[m/s\], after the restitution.
+    fn solve(&self, fit: &Fit, five: &[Configuration; 5]) -> Result<(f64, Vec<f64>)> {
+        let search = Search {
+            step: self.step,
+            ..Search::default()
+        };
+        let mut criterion = Criterion {
+            whirl_multiple: self.multiple,
+            ..Criterion::default()
+        };
+        criterion.options.rtol = self.rtol;
+        let restitution = match self.stiffness_n_m == five[0].rig.contact_stiffness_n_m {
+            true => fit.restitution,
+            false => fit_restitution(self.stiffness_n_m)?,
+        };
+        let critical = |configuration: &Configuration| {
+            let mut rig = configuration.rig;
+            rig.restitution = restitution;
+            rig.contact_stiffness_n_m = self.stiffness_n_m;
+            let at = (configuration.inclination_rad, TAU * self.spin_hz);
+            critical_speed_m_s(&rig.params()?, at, &search, &criterion)?
+                .or_missing("no impact speed that ends in whirl")
+        };
+        let speeds = five.iter().map(critical).collect::<Result<_>>()?;
+        Ok((restitution, speeds))
+    }
+}
+
+/// The table of variants; the finest search is left out of a quick run.
+pub(super) fn table(fit: &Fit, extent: Extent) -> Result<Table> {
     let five = configurations(fit);
-    let rows = (variants(extent).par_iter())
-        .map(|variant| {
-            let restitution = match variant.contact_stiffness_n_m {
-                Some(k_c) => fit_restitution(k_c)?,
-                None => fit.restitution,
-            };
-            let critical: Vec<f64> = (five.iter())
-                .map(|configuration| critical(variant, configuration, restitution))
-                .collect::<Result<_, _>>()?;
-            let mut cells = vec![variant.name.clone(), format!("{restitution:.3}")];
-            cells.extend(critical.iter().map(|v| format!("{v:.4}")));
-            cells.push(format!("{:.3}", rms_log_error(&five, &critical)));
-            Ok(cells)
-        })
-        .collect::<Result<_, PaperError>>()?;
-    let mut columns = vec!["Variant".to_owned(), "e".to_owned()];
-    columns.extend(five.iter().map(|c| format!("{} [m/s]", c.name)));
-    columns.push("rms log error of the predictions".to_owned());
-    Ok(Table {
-        caption: "v_r,crit with one choice made otherwise; the μ of the seals stays".to_owned(),
-        columns,
-        rows,
+    let mut all = variants();
+    all.retain(|v| extent == Extent::Full || v.step >= 5e-3);
+    let solved = each(&all, |variant| variant.solve(fit, &five))?;
+    Ok(table! {
+        "v_r,crit with one choice made otherwise; the μ of the seals stays";
+        for (variant, (restitution, speeds)) in all.iter().zip(&solved);
+        "Variant" => "{}", variant.name;
+        "e" => "{restitution:.3}";
+        "solid disc, 0.3 % [m/s]" => "{:.4}", speeds[0];
+        "solid disc, 3.5 % [m/s]" => "{:.4}", speeds[1];
+        "inclined 30° [m/s]" => "{:.4}", speeds[2];
+        "inclined 50° [m/s]" => "{:.4}", speeds[3];
+        "seal elements [m/s]" => "{:.4}", speeds[4];
+        "rms log error of the predictions" => "{:.3}", rms_log_error(&five, speeds);
     })
-}
-
-fn critical(
-    variant: &Variant,
-    configuration: &Configuration,
-    restitution: f64,
-) -> Result<f64, PaperError> {
-    let mut rig = OnsetRig {
-        restitution,
-        ..configuration.rig
-    };
-    if let Some(k_c) = variant.contact_stiffness_n_m {
-        rig.contact_stiffness_n_m = k_c;
-    }
-    let at = (configuration.inclination_rad, TAU * variant.spin_hz);
-    critical_speed_m_s(&rig.params()?, at, &variant.search, &variant.criterion)?
-        .ok_or_else(|| PaperError::Missing("no impact speed that ends in whirl".to_owned()))
 }
