@@ -1,12 +1,13 @@
-//! A configuration from nine numbers: valid for all that a bearing may be, refused by name for all that it may not.
+//! A configuration: from nine numbers, valid for all that a bearing may be; refused by name for all that it may not.
 
 use proptest::prelude::*;
 use std::hint::black_box;
 use supervisor::{
-    Bearing, Config, ConfigError, DefaultRule, PARAMETERS, PlanePositions, RotorSupervisor, Sample,
-    Shaft, ShaftError, Supervisor,
+    Bearing, Config, ConfigError, DefaultRule, Events, PARAMETERS, PlanePositions, RULES,
+    RotorSupervisor, Sample, Shaft, ShaftError, Supervisor,
 };
-use system_tests::bearing::bearing;
+use test_support::bearing::bearing;
+use test_support::rig::{config, sample, shaft};
 
 const EXAMPLE: Bearing = Bearing {
     sample_period_s: 50e-6,
@@ -244,4 +245,152 @@ fn the_table_has_the_defaults() {
             DefaultRule::Derived(rule) => assert!(a != b && !rule.is_empty(), "{}", p.name),
         }
     }
+}
+
+/// Every parameter is refused just outside its range and for NaN, and named.
+/// Requirement: SR-28
+#[test]
+fn config_errors_name_field_value_and_range() {
+    for (i, p) in PARAMETERS.iter().enumerate() {
+        let below = p.low - p.low.abs().max(1e-3);
+        for wrong in [f32::NAN, f32::INFINITY, below, p.high * 2.0 + 1.0] {
+            let mut values = config().values();
+            values[i] = wrong;
+            let error = Config::from_values(values).validate().unwrap_err();
+            assert_eq!(error.parameter().name, p.name);
+            let text = error.to_string();
+            // Both ends, as a person would write them.
+            let (_, range) = text.split_once("expected ").unwrap();
+            let words: Vec<&str> = range.split(' ').collect();
+            assert_eq!(
+                (words[0].parse(), words[2].parse()),
+                (Ok(p.low), Ok(p.high))
+            );
+            assert!(words[0].len().max(words[2].len()) <= 6, "{text}");
+            assert!(text.starts_with(p.name), "{text}");
+        }
+        for edge in [p.low, p.high] {
+            let mut values = config().values();
+            values[i] = edge;
+            // In its range, and refused at most beside another.
+            let refused = Config::from_values(values).validate().err();
+            assert!(
+                refused.is_none_or(|error| error.contradiction.is_some()),
+                "{} at {edge}",
+                p.name
+            );
+        }
+    }
+}
+
+/// A slip of a power of ten, in its own range, is refused by both names.
+/// Requirement: SR-28
+#[test]
+fn a_slip_that_contradicts_another_value_names_both() {
+    // Its poles are slow.
+    let noisy = Config {
+        force_slew_n_s: 5e5,
+        ..Config::for_bearing(&Bearing {
+            sensor_noise_m: 2.5e-6,
+            ..EXAMPLE
+        })
+    };
+    assert_eq!(noisy.validate(), Ok(()));
+    let slips = [
+        ("sample_period_s", 10.0, "force_max_n"),
+        ("observer_pole_flight", 0.1, "sensor_step_m"),
+        ("observer_pole_contact", 0.1, "sensor_step_m"),
+        ("sensor_step_m", 10.0, "observer_pole_flight"),
+        ("axis_force_max_n", 0.1, "force_max_n"),
+        ("force_slew_n_s", 0.1, "force_max_n"),
+        ("contact_band", 0.1, "sensor_step_m"),
+    ];
+    for (name, factor, other) in slips {
+        let mut values = noisy.values();
+        let index = PARAMETERS.iter().position(|p| p.name == name).unwrap();
+        values[index] *= factor;
+        let error = Config::from_values(values).validate().unwrap_err();
+        let text = error.to_string();
+        assert!(
+            text.contains(name) && text.contains(other),
+            "{name}: {text}"
+        );
+        let rule = error.rule().unwrap();
+        let both = [rule.index, rule.other].map(|i| PARAMETERS[i].name);
+        assert!(both.contains(&name) && both.contains(&other), "{text}");
+        // What the text says is left is left.
+        values[rule.index] = error.contradiction.unwrap().limit;
+        let left = Config::from_values(values).validate().err();
+        assert!(
+            left.and_then(|e| e.contradiction)
+                .is_none_or(|c| c.rule > error.contradiction.unwrap().rule),
+            "{text}"
+        );
+    }
+    assert_eq!(RULES.len(), 6);
+}
+
+/// A parameter out of range changes nothing.
+/// Requirement: SR-28
+#[test]
+fn a_refused_configuration_leaves_everything_as_it_is() {
+    let mut supervisor = Supervisor::<64>::new(&config()).unwrap();
+    let wrong = Config {
+        mass_kg: -1.0,
+        ..config()
+    };
+    let error = supervisor.reconfigure(&wrong).unwrap_err();
+    assert_eq!(error.parameter().name, "mass_kg");
+    let command = supervisor.tick(&sample(0, [1e-6, 2e-6]));
+    assert_eq!(command.events, Events::empty());
+}
+
+/// Requirement: SR-28
+#[test]
+fn a_shaft_that_no_body_has_is_refused() {
+    let good = shaft(&config());
+    let [first, second] = good.places;
+    let refused = |shaft: Shaft| RotorSupervisor::<16>::new(&shaft, &[config(); 2]).unwrap_err();
+    for mass_kg in [0.0, -1.0, f32::NAN, f32::INFINITY] {
+        assert_eq!(refused(Shaft { mass_kg, ..good }), ShaftError::Inertia);
+    }
+    for share in [-0.1, 2.1, f32::NAN] {
+        let polar_inertia_kg_m2 = share * good.transverse_inertia_kg_m2;
+        let wrong = Shaft {
+            polar_inertia_kg_m2,
+            ..good
+        };
+        assert_eq!(refused(wrong), ShaftError::Inertia);
+    }
+    for places in [
+        [first, first],
+        [
+            first,
+            PlanePositions {
+                sensor_m: f32::NAN,
+                ..second
+            },
+        ],
+    ] {
+        assert_eq!(refused(Shaft { places, ..good }), ShaftError::Places);
+    }
+    // A magnet so far beyond the centre of percussion that it pushes the bearing the other way.
+    let beyond = PlanePositions {
+        magnet_m: -10.0 * second.magnet_m,
+        ..second
+    };
+    let places = [first, beyond];
+    let error = refused(Shaft { places, ..good });
+    assert!(matches!(error, ShaftError::Plane(1, _)), "{error}");
+    assert!(error.to_string().contains("magnet_plane_ratio"), "{error}");
+    // What is refused changes nothing.
+    let mut rotor = RotorSupervisor::<16>::new(&good, &[config(); 2]).unwrap();
+    let before = rotor.clone();
+    assert!(
+        rotor
+            .reconfigure(&Shaft { places, ..good }, &[config(); 2])
+            .is_err()
+    );
+    assert_eq!(format!("{rotor:?}"), format!("{before:?}"));
+    assert!(rotor.reconfigure(&good, &[config(); 2]).is_ok());
 }

@@ -1,17 +1,12 @@
-//! The judge of the model: doubt about single samples, what the reading usually does, and the way out of an engagement
-//! that comes no farther.
+//! The judge of the model: what the reading usually does, and the way out of an engagement that comes no farther.
 
-use firmware_image::under_test::shaft;
-use supervisor::{
-    Core, Events, Limits, Mode, Prepared, Q, RejectReason, RotorSupervisor, Sample, Status,
-    Supervisor,
-};
-use system_tests::bench::Bench;
-use system_tests::rig::{RADIUS_M, config, on_circle, sample};
-use system_tests::storm::{AnyBits, Chance, Storm};
+use supervisor::{Core, Events, Mode, Prepared, Q, RotorSupervisor, Sample, Status, Supervisor};
+use test_support::bench::Bench;
+use test_support::rig::{RADIUS_M, config, on_circle, sample, shaft};
+use test_support::storm::{AnyBits, Chance, Storm};
 
 /// Clearance of the rig \[m\], and √(m·c/F) \[ticks\].
-const C_M: f32 = 2e-4;
+pub(super) const C_M: f32 = 2e-4;
 const UNIT_TICKS: f32 = 1.414e-3 / 50e-6;
 /// A window: 6·t₀, and the tick at its end.
 const WINDOW_TICKS: u32 = (6.0 * UNIT_TICKS) as u32 + 1;
@@ -19,7 +14,7 @@ const WINDOW_TICKS: u32 = (6.0 * UNIT_TICKS) as u32 + 1;
 const MOST_TICKS: u32 = 2049 * WINDOW_TICKS;
 
 /// Noise of a coordinate, triangular, of this standard deviation.
-fn noise(chance: &mut Chance, rms: f32) -> f32 {
+pub(super) fn noise(chance: &mut Chance, rms: f32) -> f32 {
     (chance.share() + chance.share() - 1.0) * rms * 6_f32.sqrt()
 }
 
@@ -154,90 +149,6 @@ fn a_rotor_that_swings_on_in_flight_is_given_up_at_once() {
     assert!(alone > 3 * WINDOW_TICKS, "{alone}");
 }
 
-/// A single sample that is off moves nothing, in either direction and of any size; what the second shows as well is so.
-/// Requirement: SR-16
-#[test]
-fn one_sample_that_is_off_is_refused_and_two_are_not() {
-    for size in [0.1, 0.3, 0.9] {
-        let mut bench = Bench::new(&config());
-        let mut chance = Chance::new(5);
-        let mut tick = |bench: &mut Bench, off: f32| {
-            let at = [
-                off * C_M + noise(&mut chance, 5e-7),
-                noise(&mut chance, 5e-7),
-            ];
-            bench.tick(at)
-        };
-        for _ in 0..200 {
-            assert!(
-                !tick(&mut bench, 0.0)
-                    .limits
-                    .contains(Limits::SAMPLE_REFUSED)
-            );
-        }
-        for _ in 0..50 {
-            let command = tick(&mut bench, size);
-            assert!(command.limits.contains(Limits::SAMPLE_REFUSED), "{size}");
-            assert_eq!(bench.supervisor.report().refusal, RejectReason::Doubted);
-            assert_eq!(command.mode, Mode::Levitated, "{size}");
-            for _ in 0..20 {
-                assert_eq!(tick(&mut bench, 0.0).mode, Mode::Levitated, "{size}");
-            }
-        }
-        if size < 0.5 {
-            tick(&mut bench, size);
-            let second = tick(&mut bench, size);
-            assert!(!second.limits.contains(Limits::SAMPLE_REFUSED), "{size}");
-        }
-        assert_eq!(bench.supervisor.report().landings, 0);
-    }
-}
-
-/// After a doubted sample a coordinate that a coarse converter merely repeats is not stuck.
-/// Requirement: SR-16
-#[test]
-fn what_a_coarse_converter_repeats_beside_a_doubted_sample_is_not_stuck() {
-    let mut bench = Bench::new(&config());
-    let mut chance = Chance::new(3);
-    let mut doubted = 0;
-    for i in 0..400 {
-        let off = if i >= 200 && i % 20 == 0 { 0.3 } else { 0.0 };
-        let repeated = 2e-6 * (i / 3 % 2) as f32;
-        let command = bench.tick([off * C_M + noise(&mut chance, 5e-7), repeated]);
-        assert_eq!(command.mode, Mode::Levitated, "{i}");
-        let refused = command.limits.contains(Limits::SAMPLE_REFUSED);
-        assert_eq!(refused, off > 0.0, "{i}");
-        doubted += u32::from(bench.supervisor.report().refusal == RejectReason::Doubted);
-    }
-    assert_eq!(doubted, 10);
-}
-
-/// The command that a levitation controller makes of a doubted sample does not go through.
-/// Requirement: SR-16
-#[test]
-fn the_controllers_answer_to_a_doubted_sample_does_not_go_through() {
-    let mut supervisor = Supervisor::<64>::new(&config()).unwrap();
-    let mut chance = Chance::new(9);
-    let mut of = |i: u32, off: f32, levitation_n: [f32; 2]| {
-        let at = [
-            off * C_M + noise(&mut chance, 5e-7),
-            noise(&mut chance, 5e-7),
-        ];
-        let mut sample = sample(i, at);
-        sample.levitation_n = levitation_n;
-        supervisor.tick(&sample).force_n
-    };
-    for i in 0..100 {
-        assert_eq!(of(i, 0.0, [7.0, -3.0]), [7.0, -3.0]);
-    }
-    let held = of(100, 0.2, [-900.0, 0.0]);
-    assert!(
-        (held[0] - 7.0).abs() < 1e-3 && (held[1] + 3.0).abs() < 1e-3,
-        "{held:?}"
-    );
-    assert_eq!(of(101, 0.0, [8.0, -3.0]), [8.0, -3.0]);
-}
-
 /// Runout that is there for two windows is the usual: the supervisor is not noticed, not even where the reading goes round
 /// with three times the lift-off speed.
 /// Requirement: SR-10
@@ -350,75 +261,4 @@ fn a_rotor_that_was_acted_on_is_not_left_before_it_has_settled() {
     for modes in [&rubbed_before, &undisturbed] {
         assert!(!engages(modes, 2, 3 * WINDOW_TICKS..ended), "alone");
     }
-}
-
-/// An engagement without a touch leaves the record to one with it, and is counted apart.
-/// Requirement: SR-30
-#[test]
-fn an_engagement_without_contact_does_not_spend_the_record() {
-    let mut bench = Bench::new(&config());
-    let mut chance = Chance::new(13);
-    let mut at = |r: f32| [r * C_M + noise(&mut chance, 2e-7), noise(&mut chance, 2e-7)];
-    for _ in 0..400 {
-        bench.tick(at(0.0));
-    }
-    // Towards the wall, and back before it.
-    let mut engaged = 0;
-    for i in 0..30 {
-        engaged += u32::from(
-            bench
-                .tick(at(0.03 * i as f32))
-                .events
-                .contains(Events::ENGAGED),
-        );
-    }
-    for i in (0..30).rev() {
-        bench.tick(at(0.03 * i as f32));
-    }
-    assert_eq!(engaged, 1);
-    let mut ticks = 0;
-    while bench.supervisor.mode() != Mode::Levitated {
-        bench.tick(at(0.0));
-        ticks += 1;
-        assert!(ticks < 2000);
-    }
-    for _ in 0..2000 {
-        bench.tick(at(0.0));
-    }
-    let report = bench.supervisor.report();
-    assert_eq!((report.nuisance_engagements, report.landings), (1, 0));
-    assert!(bench.supervisor.record().is_none());
-    for i in 0..60 {
-        bench.tick(at((0.05 * i as f32).min(1.03)));
-    }
-    for _ in 0..2000 {
-        bench.tick(at(0.0));
-    }
-    let report = bench.supervisor.report();
-    assert_eq!((report.nuisance_engagements, report.landings), (1, 1));
-    let record = bench.supervisor.record().expect("this one is worth it");
-    let engaged = (record.entries()).position(|e| e.events & Events::ENGAGED.bits() as u16 != 0);
-    assert_eq!(
-        engaged,
-        Some(15),
-        "a quarter of the record lies before the touch"
-    );
-}
-
-/// Of samples that are off and do not agree with each other two in a row are refused, and the third is believed.
-/// Requirement: SR-16
-#[test]
-fn no_more_than_two_samples_in_a_row_are_doubted() {
-    let mut bench = Bench::new(&config());
-    let mut chance = Chance::new(17);
-    let mut refused = |off: f32| {
-        let at = [
-            off * C_M + noise(&mut chance, 5e-7),
-            noise(&mut chance, 5e-7),
-        ];
-        let command = bench.tick(at);
-        command.limits.contains(Limits::SAMPLE_REFUSED)
-    };
-    assert!((0..200).all(|_| !refused(0.0)));
-    assert_eq!([0.1, 0.25, 0.45].map(refused), [true, true, false]);
 }

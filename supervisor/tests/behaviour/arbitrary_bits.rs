@@ -2,10 +2,12 @@
 //! finite, within every limit, in every mode and in every number.
 
 use supervisor::{
-    Config, Core, CoreCommand, CoreSample, Events, Mode, Prepared, Q, Report, Sample, Scaling,
-    Supervisor,
+    Config, Core, CoreCommand, CoreSample, Events, Mode, PlanePositions, Prepared, Q, Report,
+    RotorSupervisor, Sample, Scaling, Shaft, Status, Supervisor,
 };
-use system_tests::storm::{AnyBits, Bounds, Chance, Storm, any_config};
+use test_support::bounds::Bounds;
+use test_support::rig::{check as within_caps, config};
+use test_support::storm::{AnyBits, Chance, Storm, any_config};
 
 /// Ticks of one supervisor.
 const TICKS_PER_CONFIG: u64 = 20_000;
@@ -204,4 +206,91 @@ fn the_supervisor_in_newtons_keeps_every_limit_for_long() {
 #[ignore = "takes some minutes"]
 fn fixed_point_keeps_every_limit_for_long() {
     keeps_every_limit::<Core<Q, 64>>(MANY_TICKS);
+}
+
+/// Whatever bits come in, and whatever shaft a data sheet may hold: finite and within the caps.
+/// Requirements: SR-01, SR-02
+#[test]
+fn a_rotor_of_any_shaft_keeps_every_limit() {
+    let mut chance = Chance::new(1);
+    let mut next = move || chance.bits() as u32;
+    let config = config();
+    let mut ran = 0;
+    for extent in 0..60 {
+        let spread = |bits: u32| 10_f32.powi(bits as i32 % 9 - 4);
+        let transverse = spread(next());
+        let mut end = |sign: f32| PlanePositions {
+            retainer_m: sign * spread(next()),
+            sensor_m: sign * spread(next()),
+            magnet_m: sign * spread(next()),
+        };
+        let shaft = Shaft {
+            mass_kg: 20.0,
+            transverse_inertia_kg_m2: transverse,
+            polar_inertia_kg_m2: 1.9 * transverse,
+            places: [end(-1.0), end(1.0)],
+        };
+        // One whose ends throw each other about is refused.
+        let Ok(mut rotor) = RotorSupervisor::<64>::from_planes(&shaft, &[config; 2]) else {
+            continue;
+        };
+        ran += 1;
+        let mut last = [[0.0; 2]; 2];
+        for i in 0..5000_u32 {
+            let mut any = || {
+                let bits = next();
+                // Half of them near what is usual.
+                match bits & 1 {
+                    0 => f32::from_bits(bits),
+                    _ => (bits >> 8) as f32 * 1e-11 - 1e-4,
+                }
+            };
+            let samples = [(); 2].map(|()| Sample {
+                sequence: i,
+                status: Status::SPIN_VALID | Status::BEARING_ON | Status::LEVITATED_BEFORE,
+                position_m: [any(), any()],
+                spin_rad_s: any() * 1e7,
+                levitation_n: [any(), any()],
+                ..Sample::default()
+            });
+            let commands = rotor.tick(&samples).planes;
+            for ((last, command), sample) in last.iter_mut().zip(&commands).zip(&samples) {
+                *last = within_caps(command, *last, sample.status, &config)
+                    .unwrap_or_else(|e| panic!("shaft {extent}, tick {i}: {e}"));
+            }
+        }
+    }
+    assert!(ran >= 10, "{ran}");
+}
+
+/// Mirrored samples give mirrored commands, to the bit.
+#[test]
+fn mirrored_samples_give_mirrored_commands() {
+    for seed in 0..100 {
+        let prepared = Prepared::<f32>::new(&config()).unwrap();
+        let (mut left, mut right) = (Core::<_, 16>::new(&prepared), Core::<_, 16>::new(&prepared));
+        let mut storm = Storm::new(seed);
+        for i in 0..2000 {
+            let here = storm.next_sample::<f32>();
+            // Without spin and without whirl there is no direction to mirror.
+            let known = here.status.contains(Status::SPIN_VALID) && here.spin.is_finite();
+            if !known || here.spin == 0.0 {
+                continue;
+            }
+            let there = CoreSample {
+                position: [-here.position[0], here.position[1]],
+                levitation: [-here.levitation[0], here.levitation[1]],
+                applied: [-here.applied[0], here.applied[1]],
+                spin: -here.spin,
+                ..here
+            };
+            let (a, b) = (left.tick(&here), right.tick(&there));
+            assert_eq!(a.mode, b.mode, "tick {i} of seed {seed}");
+            assert_eq!(
+                [-a.force[0], a.force[1]],
+                b.force,
+                "tick {i} of seed {seed}"
+            );
+        }
+    }
 }
