@@ -2,11 +2,11 @@
 //! finite, within every limit, in every mode and in every number.
 
 use supervisor::{
-    Config, Core, CoreCommand, CoreSample, Events, Mode, PlanePositions, Prepared, Q, Report,
-    RotorSupervisor, Sample, Scaling, Shaft, Status, Supervisor,
+    Command, Config, Core, CoreCommand, CoreSample, Events, Mode, PlanePositions, Prepared, Q,
+    Report, RotorSupervisor, Sample, Scaling, Shaft, Status, Supervisor,
 };
 use test_support::bounds::Bounds;
-use test_support::rig::{check as within_caps, config};
+use test_support::rig::config;
 use test_support::storm::{AnyBits, Chance, Storm, any_config};
 
 /// Ticks of one supervisor.
@@ -64,6 +64,30 @@ struct InNewtons {
     scaling: Scaling,
 }
 
+fn in_si(scaling: &Scaling, sample: &CoreSample<f32>) -> Sample {
+    let newtons = |v: [f32; 2]| v.map(|x| x * scaling.force_n);
+    Sample {
+        sequence: sample.sequence,
+        status: sample.status,
+        position_m: sample.position.map(|x| x / scaling.position_per_m),
+        spin_rad_s: sample.spin / scaling.time_s,
+        levitation_n: newtons(sample.levitation),
+        applied_n: newtons(sample.applied),
+    }
+}
+
+fn per_unit(scaling: &Scaling, command: &Command) -> CoreCommand<f32> {
+    CoreCommand {
+        force: command.force_n.map(|x| x / scaling.force_n),
+        own: command.own_n.map(|x| x / scaling.force_n),
+        mode: command.mode,
+        limits: command.limits,
+        events: command.events,
+        integrator: command.integrator,
+        severity: command.severity,
+    }
+}
+
 impl Driven for InNewtons {
     type Number = f32;
 
@@ -81,25 +105,8 @@ impl Driven for InNewtons {
         Bounds::in_newtons(config)
     }
     fn tick(&mut self, sample: &CoreSample<f32>) -> CoreCommand<f32> {
-        let s = &self.scaling;
-        let newtons = |v: [f32; 2]| v.map(|x| x * s.force_n);
-        let command = self.supervisor.tick(&Sample {
-            sequence: sample.sequence,
-            status: sample.status,
-            position_m: sample.position.map(|x| x / s.position_per_m),
-            spin_rad_s: sample.spin / s.time_s,
-            levitation_n: newtons(sample.levitation),
-            applied_n: newtons(sample.applied),
-        });
-        CoreCommand {
-            force: command.force_n.map(|x| x / s.force_n),
-            own: command.own_n.map(|x| x / s.force_n),
-            mode: command.mode,
-            limits: command.limits,
-            events: command.events,
-            integrator: command.integrator,
-            severity: command.severity,
-        }
+        let command = self.supervisor.tick(&in_si(&self.scaling, sample));
+        per_unit(&self.scaling, &command)
     }
     fn report(&self) -> Report {
         self.supervisor.report()
@@ -208,21 +215,20 @@ fn fixed_point_keeps_every_limit_for_long() {
     keeps_every_limit::<Core<Q, 64>>(MANY_TICKS);
 }
 
-/// Whatever bits come in, and whatever shaft a data sheet may hold: finite and within the caps.
-/// Requirements: SR-01, SR-02
+/// Whatever shaft a data sheet may hold.
+/// Requirements: SR-01, SR-02, SR-03
 #[test]
 fn a_rotor_of_any_shaft_keeps_every_limit() {
     let mut chance = Chance::new(1);
-    let mut next = move || chance.bits() as u32;
-    let config = config();
+    let (config, scaling) = (config(), config().scaling());
     let mut ran = 0;
     for extent in 0..60 {
-        let spread = |bits: u32| 10_f32.powi(bits as i32 % 9 - 4);
-        let transverse = spread(next());
+        let mut spread = || 10_f32.powi((chance.bits() >> 33) as i32 % 9 - 4);
+        let transverse = spread();
         let mut end = |sign: f32| PlanePositions {
-            retainer_m: sign * spread(next()),
-            sensor_m: sign * spread(next()),
-            magnet_m: sign * spread(next()),
+            retainer_m: sign * spread(),
+            sensor_m: sign * spread(),
+            magnet_m: sign * spread(),
         };
         let shaft = Shaft {
             mass_kg: 20.0,
@@ -235,28 +241,15 @@ fn a_rotor_of_any_shaft_keeps_every_limit() {
             continue;
         };
         ran += 1;
-        let mut last = [[0.0; 2]; 2];
-        for i in 0..5000_u32 {
-            let mut any = || {
-                let bits = next();
-                // Half of them near what is usual.
-                match bits & 1 {
-                    0 => f32::from_bits(bits),
-                    _ => (bits >> 8) as f32 * 1e-11 - 1e-4,
-                }
-            };
-            let samples = [(); 2].map(|()| Sample {
-                sequence: i,
-                status: Status::SPIN_VALID | Status::BEARING_ON | Status::LEVITATED_BEFORE,
-                position_m: [any(), any()],
-                spin_rad_s: any() * 1e7,
-                levitation_n: [any(), any()],
-                ..Sample::default()
-            });
-            let commands = rotor.tick(&samples).planes;
-            for ((last, command), sample) in last.iter_mut().zip(&commands).zip(&samples) {
-                *last = within_caps(command, *last, sample.status, &config)
-                    .unwrap_or_else(|e| panic!("shaft {extent}, tick {i}: {e}"));
+        let mut storms = [2 * extent, 2 * extent + 1].map(Storm::new);
+        let mut bounds = [Bounds::in_newtons(&config); 2];
+        for i in 0..5000 {
+            let samples = storms.each_mut().map(Storm::next_sample::<f32>);
+            let commands = rotor.tick(&samples.map(|sample| in_si(&scaling, &sample)));
+            for ((bounds, command), sample) in bounds.iter_mut().zip(commands.planes).zip(&samples)
+            {
+                let checked = bounds.check(&per_unit(&scaling, &command), sample.status);
+                checked.unwrap_or_else(|broken| panic!("shaft {extent}, tick {i}: {broken}"));
             }
         }
     }

@@ -76,73 +76,50 @@ fn the_oldest_goes_first_and_is_counted() {
     assert_eq!(dropped, wanted);
 }
 
-/// Both planes of an event stay together.
+/// Both planes of an event stay together, in an archive's own places and in those that it borrows; without one nothing is kept.
 /// Requirement: SR-40
 #[test]
 fn of_a_rotor_both_planes_are_kept() {
     let mut rotor = RotorSupervisor::<RECORD>::new(&shaft(&config()), &[config(); 2]).unwrap();
+    let (mut other, mut third) = (rotor.clone(), rotor.clone());
     let (mut ticker, mut reader) = rotor.split();
-    let mut archive = RotorArchive::<RECORD, 2>::new();
-    let mut at_once = Vec::new();
-    for i in 0..3 * LANDING {
-        ticker.tick(&[sample(i, landing(i)), sample(i, [1e-6 * (i % 3) as f32; 2])]);
-        let both = [0, 1].map(|end| reader.record(end).map(|record| written(&record)));
-        assert_eq!(archive.take(&mut reader), both[0].is_some());
-        at_once.extend(both[0].is_some().then_some(both));
-    }
-    assert_eq!((at_once.len(), archive.count()), (3, 2));
-    for (at_once, dropped) in at_once[1..].iter().zip([1, 0]) {
-        for end in [0, 1] {
-            let record = archive.oldest(end).unwrap();
-            assert_eq!(head(&record).dropped, dropped);
-            let is_the_same = Some(written(&record)) == at_once[end];
-            assert_eq!(
-                is_the_same,
-                dropped == 0,
-                "but for the count of those that are gone"
-            );
-        }
-        archive.discard();
-    }
-    assert_eq!(archive.count(), 0);
-}
-
-/// Places that are borrowed keep what those of an archive keep, of a plane and of a rotor; without one nothing is kept.
-/// Requirement: SR-40
-#[test]
-fn borrowed_places_keep_the_same() {
-    let mut rotor = RotorSupervisor::<RECORD>::new(&shaft(&config()), &[config(); 2]).unwrap();
-    let mut other = rotor.clone();
-    let ((mut ticker, mut reader), (mut also, mut reads)) = (rotor.split(), other.split());
+    let ((mut also, mut reads), (mut too, mut reads_none)) = (other.split(), third.split());
     let mut archive = RotorArchive::<RECORD, 2>::new();
     let mut places = [const { [const { ArchivePlace::<RECORD>::new() }; 2] }; 2];
     let [first, second] = &mut places;
     let mut borrowed = [ArchiveIn::new(first), ArchiveIn::new(second)];
+    let mut none = [ArchiveIn::<RECORD>::new(&mut []), ArchiveIn::new(&mut [])];
+    let mut at_once = Vec::new();
     for i in 0..3 * LANDING {
         let samples = [sample(i, landing(i)), sample(i, [1e-6 * (i % 3) as f32; 2])];
-        assert_eq!(ticker.tick(&samples), also.tick(&samples));
-        let took = archive.take(&mut reader);
+        let command = ticker.tick(&samples);
+        assert_eq!([also.tick(&samples), too.tick(&samples)], [command; 2]);
+        let both = [0, 1].map(|end| reader.record(end).map(|record| written(&record)));
+        let took = both[0].is_some();
+        assert_eq!(archive.take(&mut reader), took);
         assert_eq!(ArchiveIn::take_rotor(borrowed.each_mut(), &mut reads), took);
+        assert!(!ArchiveIn::take_rotor(none.each_mut(), &mut reads_none));
+        at_once.extend(took.then_some(both));
     }
-    assert_eq!(archive.count(), 2);
-    while archive.count() > 0 {
+    assert_eq!(at_once.len(), 3);
+    for (left, dropped) in [(2, 1), (1, 0)] {
+        assert_eq!(archive.count(), left);
         for (end, borrowed) in borrowed.iter_mut().enumerate() {
-            assert_eq!(borrowed.count(), archive.count());
-            let record = borrowed.oldest().map(|record| written(&record));
-            assert_eq!(record, archive.oldest(end).map(|record| written(&record)));
+            assert_eq!(borrowed.count(), left);
+            let record = archive.oldest(end).unwrap();
+            assert_eq!(head(&record).dropped, dropped);
+            // But for the count of those that are gone.
+            let is_the_same = Some(written(&record)) == at_once[3 - left][end];
+            assert_eq!(is_the_same, dropped == 0);
+            let same = borrowed.oldest().map(|record| written(&record));
+            assert_eq!(same, Some(written(&record)));
             borrowed.discard();
         }
         archive.discard();
     }
-    assert!(borrowed.iter().all(|archive| archive.oldest().is_none()));
-
-    let mut supervisor = Supervisor::<RECORD>::new(&config()).unwrap();
-    let (mut ticker, mut reader) = supervisor.split();
-    let mut none = ArchiveIn::<RECORD>::new(&mut []);
-    for i in 0..LANDING {
-        ticker.tick(&sample(i, landing(i)));
-        assert!(!none.take(&mut reader) && none.count() == 0);
+    assert_eq!(archive.count(), 0);
+    for archive in borrowed.iter_mut().chain(&mut none) {
+        archive.discard();
+        assert!(archive.count() == 0 && archive.oldest().is_none());
     }
-    none.discard();
-    assert!(none.oldest().is_none() && reader.record().is_none());
 }

@@ -18,17 +18,21 @@ pub(super) fn noise(chance: &mut Chance, rms: f32) -> f32 {
     (chance.share() + chance.share() - 1.0) * rms * 6_f32.sqrt()
 }
 
+/// Ticks of the longest engagement.
+fn longest(modes: impl Iterator<Item = Mode>) -> u32 {
+    let mut running = 0;
+    let engaged = modes.map(|mode| {
+        running = if mode.is_engaged() { running + 1 } else { 0 };
+        running
+    });
+    engaged.max().unwrap_or_default()
+}
+
 /// The longest engagement of a stream of any bits.
 fn longest_in_a_storm<S: AnyBits>(seed: u64, ticks: u32) -> u32 {
     let mut core = Core::<S, 64>::new(&Prepared::new(&config()).unwrap());
     let mut storm = Storm::new(seed);
-    let (mut longest, mut running) = (0, 0);
-    for _ in 0..ticks {
-        let mode = core.tick(&storm.next_sample::<S>()).mode;
-        running = if mode.is_engaged() { running + 1 } else { 0 };
-        longest = longest.max(running);
-    }
-    longest
+    longest((0..ticks).map(|_| core.tick(&storm.next_sample::<S>()).mode))
 }
 
 /// Requirement: SR-11
@@ -45,77 +49,59 @@ fn no_engagement_of_any_bits_lasts_beyond_its_bound() {
     }
 }
 
-/// A stream that is made to keep the supervisor busy, by what it says: what is engaged is kept engaged.
-fn longest_kept(position: impl Fn(u32, Mode) -> [f32; 2], ticks: u32) -> (u32, u32) {
-    let mut bench = Bench::new(&config());
-    let mut mode = Mode::Levitated;
-    let (mut longest, mut running, mut handed_back) = (0, 0, 0);
-    for i in 0..ticks {
-        // Whose controller has no force to spare.
-        bench.sequence += 1;
-        let [x, y] = position(i, mode);
-        let command = bench.supervisor.tick(&Sample {
-            levitation_n: [-900.0 * x.signum(), 0.0],
-            ..sample(bench.sequence, [x, y])
-        });
-        mode = command.mode;
-        running = if mode.is_engaged() { running + 1 } else { 0 };
-        longest = longest.max(running);
-        handed_back += u32::from(command.events.contains(Events::HANDED_BACK));
-    }
-    assert_eq!(bench.supervisor.report().handed_back, handed_back);
-    (longest, handed_back)
-}
-
 /// A rotor that lies on the bearing for good is held for long, and not for ever: the bound is reached, to a window or two.
 /// Requirement: SR-11
 #[test]
 fn what_rests_is_held_to_the_bound() {
-    let lying = |i: u32, _| [1.01 * C_M, 1e-8 * (i % 2) as f32];
-    let (longest, handed_back) = longest_kept(lying, 3 * MOST_TICKS);
+    let mut supervisor = Supervisor::<64>::new(&config()).unwrap();
+    let mut handed_back = 0;
+    let longest = longest((0..3 * MOST_TICKS).map(|i| {
+        let command = supervisor.tick(&Sample {
+            // Of a controller that has no force to spare.
+            levitation_n: [-900.0, 0.0],
+            ..sample(i, [1.01 * C_M, 1e-8 * (i % 2) as f32])
+        });
+        handed_back += u32::from(command.events.contains(Events::HANDED_BACK));
+        command.mode
+    }));
     assert!(
         longest <= MOST_TICKS && longest > MOST_TICKS - 3 * WINDOW_TICKS,
         "{longest} of {MOST_TICKS}"
     );
     assert!(handed_back >= 2);
+    assert_eq!(supervisor.report().handed_back, handed_back);
 }
 
-/// Position of a rotor that bounces from wall to wall at this speed [lift-off speeds], whatever is done.
-fn bouncing(i: u32, speed: f32) -> [f32; 2] {
-    let way = i as f32 * speed / UNIT_TICKS;
-    let from_wall = (way % 4.0 - 2.0).abs() - 1.0;
-    [1.03 * C_M * from_wall, 1e-7 * (i % 7) as f32]
-}
-
-/// One that bounces on without losing speed is given up after four windows and a part of one, and the pauses double.
+/// One that bounces from wall to wall without losing speed, whatever is done, is given up after four windows and a part of one, and
+/// the pauses double.
 /// Requirement: SR-11
 #[test]
 fn bouncing_on_is_given_up_and_pauses_double() {
     let mut bench = Bench::new(&config());
-    let mut pauses = Vec::new();
-    let (mut running, mut longest, mut pause) = (0, 0, 0);
-    for i in 0..200 * WINDOW_TICKS {
-        let mode = bench.tick(bouncing(i, 0.8)).mode;
-        if mode.is_engaged() {
-            running += 1;
-            longest = longest.max(running);
-            if pause > 0 {
-                pauses.push(std::mem::take(&mut pause));
-            }
-        } else {
-            running = 0;
-            pause += u32::from(mode == Mode::HandedBack);
-        }
-    }
+    let ticks = (0..200 * WINDOW_TICKS).map(|i| {
+        let way = 0.8 * i as f32 / UNIT_TICKS;
+        let from_wall = (way % 4.0 - 2.0).abs() - 1.0;
+        bench
+            .tick([1.03 * C_M * from_wall, 1e-7 * (i % 7) as f32])
+            .mode
+    });
+    let modes: Vec<Mode> = ticks.collect();
+    let longest = longest(modes.iter().copied());
     assert!(longest <= 5 * WINDOW_TICKS, "{longest}");
-    let windows: Vec<f32> = pauses
-        .iter()
-        .map(|p| *p as f32 / WINDOW_TICKS as f32)
+    let stretches = modes.chunk_by(|a, b| a.is_engaged() == b.is_engaged());
+    let pauses: Vec<usize> = stretches
+        .map(|modes| modes.iter().filter(|m| **m == Mode::HandedBack).count())
+        .filter(|ticks| *ticks > 0)
         .collect();
-    assert!(windows.len() >= 4, "{windows:?}");
-    for (n, pause) in windows.iter().enumerate() {
+    // The last is cut by the end.
+    let [pauses @ .., _] = &pauses[..] else {
+        panic!("no pause");
+    };
+    assert!(pauses.len() >= 4, "{pauses:?}");
+    for (n, pause) in pauses.iter().enumerate() {
+        let windows = *pause as f32 / WINDOW_TICKS as f32;
         let expected = 8.0 * 2_f32.powi(n as i32);
-        assert!((pause / expected - 1.0).abs() < 0.05, "{windows:?}");
+        assert!((windows / expected - 1.0).abs() < 0.05, "{pauses:?}");
     }
 }
 
@@ -127,21 +113,21 @@ fn a_rotor_that_swings_on_in_flight_is_given_up_at_once() {
         let angle = 1.6 * i.saturating_sub(3 * WINDOW_TICKS) as f32 / UNIT_TICKS;
         [0.75 * C_M * angle.sin(), 1e-7 * (i % 7) as f32]
     };
-    let longest = |modes: &mut dyn FnMut(u32) -> Mode| {
-        let (mut longest, mut running, mut given_up) = (0, 0, 0);
-        for i in 0..40 * WINDOW_TICKS {
-            let mode = modes(i);
-            running = if mode.is_engaged() { running + 1 } else { 0 };
-            longest = longest.max(running);
-            given_up += u32::from(mode == Mode::HandedBack);
-        }
-        assert!(given_up > 0);
-        longest
-    };
+    let mut given_up = [0; 2];
+    let ticks = 0..40 * WINDOW_TICKS;
     let mut plane = Bench::new(&config());
-    let alone = longest(&mut |i| plane.tick(swinging(i)).mode);
+    let alone = longest(ticks.clone().map(|i| {
+        let mode = plane.tick(swinging(i)).mode;
+        given_up[0] += u32::from(mode == Mode::HandedBack);
+        mode
+    }));
     let mut rotor = RotorSupervisor::<64>::new(&shaft(&config()), &[config(); 2]).unwrap();
-    let of_rotor = longest(&mut |i| rotor.tick(&[sample(i, swinging(i)); 2]).planes[0].mode);
+    let of_rotor = longest(ticks.map(|i| {
+        let mode = rotor.tick(&[sample(i, swinging(i)); 2]).planes[0].mode;
+        given_up[1] += u32::from(mode == Mode::HandedBack);
+        mode
+    }));
+    assert!(given_up.iter().all(|ticks| *ticks > 0));
     assert!(
         of_rotor > WINDOW_TICKS && of_rotor <= 2 * WINDOW_TICKS,
         "{of_rotor}"
