@@ -12,7 +12,7 @@ pub mod slurm;
 pub mod target;
 pub mod terminal;
 
-pub use test_support::{bearing, bench, rig, storm};
+pub use test_support::{bearing, rig, storm};
 
 use firmware_bench::scene::Scene;
 use std::path::{Path, PathBuf};

@@ -11,7 +11,7 @@ use firmware_studies::overloads::catalogue::cases;
 use supervisor::{
     Command, Config, Core, CoreCommand, CoreError, CoreSample, Prepared, Sample, Scalar, Scaling,
 };
-pub use test_support::in_numbers;
+use test_support::in_numbers;
 
 /// A core of any number that is told SI and answers SI, as firmware without floating point would around it.
 #[derive(Debug)]

@@ -24,8 +24,8 @@ fn share() -> impl Strategy<Value = f32> {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 2000, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// In the middle a levitation command within every limit goes through bit for bit, signed zeros included, and nothing is said to
-    /// bind: where it may change at will, and where the magnet binds in every way.
+    /// In the middle a levitation command within every limit goes through bit for bit, signed zeros included, and nothing is said
+    /// to bind: where it may change at will, and where the magnet binds in every way.
     /// Requirement: SR-06
     #[test]
     fn levitation_within_the_limits_is_transparent(

@@ -189,8 +189,8 @@ fn a_request_to_coast_down_is_of_the_machine() {
     }
 }
 
-/// Half a turn about the centre turns every command by half a turn, to the bit: so both ends of the pair that images count do what is
-/// dearest for one at the same tick.
+/// Half a turn about the centre turns every command by half a turn, to the bit: so both ends of the pair that images count do
+/// what is dearest for one at the same tick.
 #[test]
 fn half_a_turn_turns_the_commands() {
     let mut rotor = rotor(&config());

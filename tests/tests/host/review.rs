@@ -12,8 +12,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Output;
 use supervisor::{
-    Config, Core, Events, NO_STATE, Prepared, Q, RotorSupervisor, Scalar, Stamp, Status,
-    Supervisor,
+    Config, Core, Events, NO_STATE, Prepared, Q, RotorSupervisor, Scalar, Stamp, Status, Supervisor,
 };
 use system_tests::rig::{config, landing, sample, shaft};
 use system_tests::storm::{AnyBits, Chance, Storm};

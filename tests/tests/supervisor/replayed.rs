@@ -6,8 +6,8 @@ use supervisor::{
     Archive, Command, Core, Events, Prepared, Q, RotorArchive, RotorSupervisor, Supervisor,
 };
 use system_tests::parameters;
-use system_tests::per_unit::in_numbers;
 use system_tests::rig::{LANDING_TICKS as LANDING, config, landing, sample, shaft};
+use test_support::in_numbers;
 use test_support::records::{taken, written};
 
 const RECORD: usize = 64;
