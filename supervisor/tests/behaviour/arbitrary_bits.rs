@@ -260,7 +260,8 @@ fn a_rotor_of_any_shaft_keeps_every_limit() {
 #[test]
 fn mirrored_samples_give_mirrored_commands() {
     for seed in 0..100 {
-        let prepared = Prepared::<f32>::new(&config()).unwrap();
+        let config = any_config(&mut Chance::new(seed));
+        let prepared = Prepared::<f32>::new(&config).unwrap();
         let (mut left, mut right) = (Core::<_, 16>::new(&prepared), Core::<_, 16>::new(&prepared));
         let mut storm = Storm::new(seed);
         for i in 0..2000 {
