@@ -1,7 +1,5 @@
 //! What several tests share: plants, scenes, golden tables.
 
-pub mod bearing;
-pub mod bench;
 pub mod browser;
 pub mod cost;
 pub mod golden;
@@ -10,11 +8,11 @@ pub mod per_unit;
 pub mod plants;
 pub mod recording;
 pub mod requirements;
-pub mod rig;
 pub mod slurm;
-pub mod storm;
 pub mod target;
 pub mod terminal;
+
+pub use test_support::{bearing, rig, storm};
 
 use firmware_bench::scene::Scene;
 use std::path::{Path, PathBuf};

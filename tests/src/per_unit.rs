@@ -11,6 +11,7 @@ use firmware_studies::overloads::catalogue::cases;
 use supervisor::{
     Command, Config, Core, CoreCommand, CoreError, CoreSample, Prepared, Sample, Scalar, Scaling,
 };
+use test_support::in_numbers;
 
 /// A core of any number that is told SI and answers SI, as firmware without floating point would around it.
 #[derive(Debug)]
@@ -36,18 +37,6 @@ impl<S: Scalar> Supervise for Behind<S> {
     fn tick(&mut self, sample: &Sample) -> Command {
         let command = (self.core).tick(&in_numbers(&self.scaling.sample(sample)));
         self.scaling.command(&command)
-    }
-}
-
-/// The same sample in other numbers, each the nearest.
-pub fn in_numbers<S: Scalar>(sample: &CoreSample<f32>) -> CoreSample<S> {
-    CoreSample {
-        sequence: sample.sequence,
-        status: sample.status,
-        position: sample.position.map(S::from_f32),
-        spin: S::from_f32(sample.spin),
-        levitation: sample.levitation.map(S::from_f32),
-        applied: sample.applied.map(S::from_f32),
     }
 }
 

@@ -10,8 +10,9 @@ use std::path::{Path, PathBuf};
 /// What stands before and behind the table of tests in the page.
 const TABLE: [&str; 2] = ["<!-- from the tests -->\n", "<!-- to here -->"];
 /// Folders with tests, and what a test's name begins with there.
-const FOLDERS: [(&str, &str); 2] = [
+const FOLDERS: [(&str, &str); 3] = [
     ("tests/tests", ""),
+    ("supervisor/tests", ""),
     ("supervisor/capi/tests", "supervisor-capi::"),
 ];
 /// What a line with names of requirements begins with.

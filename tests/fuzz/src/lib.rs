@@ -1,7 +1,7 @@
 //! What the fuzz targets share.
 
 // The tests' own bench, which needs nothing but the supervisor.
-#[path = "../../src/rig.rs"]
+#[path = "../../support/src/rig.rs"]
 pub mod rig;
 
 pub mod record;

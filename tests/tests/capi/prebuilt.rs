@@ -179,6 +179,7 @@ fn same_bytes_from_elsewhere(folder: &Path, out: &Path, target: &str) {
         "firmware-host",
         "tests/Cargo.toml",
         "tests/src",
+        "tests/support",
     ] {
         let mut copy = Command::new("cp");
         copy.arg("-r")

@@ -7,32 +7,18 @@ use firmware_bench::record::identify::Estimate;
 use firmware_bench::record::replay::replay;
 use firmware_bench::record::story::Event;
 use firmware_bench::run::controller as bench;
-use firmware_image::under_test::shaft;
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
 use std::process::Output;
 use supervisor::{
-    Config, Core, Events, NO_STATE, Prepared, Q, Record, RotorSupervisor, Scalar, Stamp, Status,
-    Supervisor,
+    Config, Core, Events, NO_STATE, Prepared, Q, RotorSupervisor, Scalar, Stamp, Status, Supervisor,
 };
-use system_tests::rig::{config, sample};
+use system_tests::rig::{config, landing, sample, shaft};
 use system_tests::storm::{AnyBits, Chance, Storm};
 use system_tests::{host, run_scene, scene_path};
 use tempfile::TempDir;
-
-/// A record without a stamp.
-fn written<S: Scalar, const N: usize>(record: &Record<'_, S, N>) -> Vec<u8> {
-    bench::written(record, &Stamp::default())
-}
-
-/// Towards the wall, some ticks on it, and back \[m\].
-fn way(tick: u32) -> [f32; 2] {
-    let out = (3e-5 * tick.saturating_sub(99) as f32).min(2.02e-4);
-    let back = (2e-6 * tick.saturating_sub(150) as f32).min(out);
-    let noise = 4e-7 * (tick % 3) as f32;
-    [out - back + noise, noise]
-}
+use test_support::records::written;
 
 /// A landing of one plane, of a core without floating point, and of a rotor.
 fn landings() -> [Vec<u8>; 3] {
@@ -42,9 +28,9 @@ fn landings() -> [Vec<u8>; 3] {
     let mut rotor = RotorSupervisor::<64>::new(&shaft(&config()), &[config(); 2]).unwrap();
     let scaling = config().scaling();
     for i in 0..900 {
-        let at = sample(i, way(i));
+        let at = sample(i, landing(i));
         plane.tick(&at);
-        core.tick(&system_tests::per_unit::in_numbers(&scaling.sample(&at)));
+        core.tick(&test_support::in_numbers(&scaling.sample(&at)));
         rotor.tick(&[at, sample(i, [1e-6 * (i % 3) as f32; 2])]);
     }
     let both = [0, 1].map(|end| written(&rotor.record(end).unwrap()));
@@ -156,37 +142,12 @@ fn records_of_arbitrary_samples_replay_to_the_bit() {
     assert!(records.iter().all(|n| *n > 100), "{records:?}");
 }
 
-/// Those that began while another waited are counted, and told in the next record.
-#[test]
-fn what_is_in_no_record_is_counted() {
-    let mut plane = Supervisor::<64>::new(&config()).unwrap();
-    let mut head = |from: u32, to: u32| {
-        for i in from..to {
-            plane.tick(&sample(i, way(i % 900)));
-        }
-        let bytes = written(&plane.record().unwrap());
-        // It does not change while it waits.
-        plane.reconfigure(&config()).unwrap();
-        assert_eq!(written(&plane.record().unwrap()), bytes);
-        RecordFile::of(&bytes).records[0].head
-    };
-    let first = head(0, 2700);
-    assert_eq!((first.dropped, first.closed_at < 900), (0, true));
-    plane.rearm();
-    for i in 2700..3600 {
-        plane.tick(&sample(i, way(i % 900)));
-    }
-    let second = RecordFile::of(&written(&plane.record().unwrap())).records[0].clone();
-    assert_eq!(second.head.dropped, 2);
-    assert_eq!(second.summary.unwrap().touches, 1);
-}
-
 /// Whatever ends an event is said, and no verdict is given that it does not bear.
 #[test]
 fn a_bearing_that_is_switched_off_is_no_recovery() {
     let mut plane = Supervisor::<64>::new(&config()).unwrap();
     for i in 0..400 {
-        let mut at = sample(i, way(i.min(140)));
+        let mut at = sample(i, landing(i.min(140)));
         if i > 200 {
             at.status -= Status::BEARING_ON;
         }
@@ -218,7 +179,7 @@ fn a_replay_ends_where_the_configuration_changes() {
             };
             plane.reconfigure(&other).unwrap();
         }
-        plane.tick(&sample(i, way(i)));
+        plane.tick(&sample(i, landing(i)));
     }
     let file = RecordFile::of(&written(&plane.record().unwrap()));
     let [record] = &file.records[..] else {
@@ -302,7 +263,7 @@ fn a_person_and_a_program_read_what_happened() {
 fn a_stamp_comes_back() {
     let mut plane = Supervisor::<64>::new(&config()).unwrap();
     for i in 0..900 {
-        plane.tick(&sample(i, way(i)));
+        plane.tick(&sample(i, landing(i)));
     }
     let record = plane.record().unwrap();
     let stamp = Stamp {

@@ -1,12 +1,11 @@
 //! `review --ledger`: how many landings a retainer bearing may still bear, and what is said of a ledger that is none.
 
 use firmware_bench::run::controller as bench;
-use firmware_image::under_test::shaft;
 use serde_json::Value;
 use std::path::PathBuf;
 use std::process::Output;
 use supervisor::{LEDGER_BYTES, Ledger, Record, RotorSupervisor, Stamp, Supervisor};
-use system_tests::rig::{LANDING_TICKS, config, landing, sample};
+use system_tests::rig::{LANDING_TICKS, config, landing, sample, shaft};
 use system_tests::{host, scene_path};
 use tempfile::TempDir;
 

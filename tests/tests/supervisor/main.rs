@@ -1,34 +1,15 @@
-//! The supervisor: what it promises, what it is told wrong, what it costs a rotor.
+//! The supervisor where it needs more than itself: in closed loops with the plant, against studies, and read by the host. What it
+//! does at its border alone is in its own crate, `supervisor/tests`.
 
 mod aim_in_whirl;
-mod arbitrary_bits;
-mod archive;
-mod border;
 mod closed_loop_fixed_point;
-mod comes_back;
-mod contradictions;
-mod derating;
-mod drive;
-mod faults;
-mod first_configuration;
-mod first_sample;
 mod fixed_point;
 mod forward_rub;
-mod ledger;
-mod little_known;
 mod loads_that_stay;
-mod numbers;
-mod promises;
 mod ready_to_hold;
-mod recorded;
 mod recoverable_impact;
-mod refusals;
-mod rotor;
-mod service;
-mod severity;
+mod replayed;
 mod soft_controller;
-mod split;
 mod static_overload;
 mod suggested_config;
-mod trust;
 mod unbalance;

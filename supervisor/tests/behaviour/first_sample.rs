@@ -1,7 +1,8 @@
-//! What the supervisor makes of a single sample: of a rotor that it is switched on into, and after a gap.
+//! What the supervisor makes of its first samples, of a rotor that it is switched on into.
 
-use supervisor::{Command, Events, Mode, Status, Supervisor};
-use system_tests::rig::{RADIUS_M, config, length, sample};
+use supervisor::{Command, Status, Supervisor};
+use test_support::bench::{Bench, WHIRL_STEP};
+use test_support::rig::{RADIUS_M, config, length, on_circle, sample};
 
 /// Command to the very first sample, at a radius on the x axis \[clearances\].
 fn first(radius: f32, status: Status) -> Command {
@@ -52,24 +53,30 @@ fn a_guess_is_not_reported() {
     assert_eq!(supervisor.report().backward_speed_max_m_s, 0.0);
 }
 
-/// Only the very first sample is taken so: after missed ticks a rotor that a load presses into the wall is held on.
+/// The first velocity is a difference between two samples that follow each other, whatever was missed or refused before.
 #[test]
-fn a_gap_makes_no_whirl_of_a_load() {
-    let mut supervisor = Supervisor::<64>::new(&config()).unwrap();
-    let mut events_after = Events::empty();
-    for i in 0..400 {
-        let jitter_m = 1e-8 * (i % 7) as f32;
-        // A gap of six ticks at 200.
-        let sequence = if i < 200 { i } else { i + 6 };
-        let command = supervisor.tick(&sample(sequence, [RADIUS_M + jitter_m, jitter_m]));
-        if i == 199 {
-            assert_eq!(command.mode, Mode::Pinned);
-        }
-        if i >= 200 {
-            events_after |= command.events;
-            let [x, y] = command.force_n;
-            assert!(x < -300.0 && y.abs() < 300.0, "{i}: {command:?}");
+fn the_first_velocity_is_of_two_samples_in_a_row() {
+    let true_m_s = f64::from(RADIUS_M * WHIRL_STEP) / 50e-6;
+    for missed in 0..5 {
+        for refused in 0..3 {
+            let mut bench = Bench::new(&config());
+            let mut angle = 0.3;
+            bench.tick(on_circle(RADIUS_M, angle));
+            for i in 0..40 {
+                angle += WHIRL_STEP;
+                if i < refused {
+                    bench.tick([f32::NAN; 2]);
+                } else if i < refused + missed {
+                    bench.sequence += 1;
+                } else {
+                    bench.tick(on_circle(RADIUS_M, angle));
+                }
+            }
+            let most = f64::from(bench.supervisor.report().backward_speed_max_m_s);
+            assert!(
+                (0.95..1.1).contains(&(most / true_m_s)),
+                "{missed}, {refused}: {most}"
+            );
         }
     }
-    assert!(events_after.contains(Events::SEQUENCE) && !events_after.contains(Events::WHIRL));
 }

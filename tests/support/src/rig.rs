@@ -1,6 +1,6 @@
 //! A supervisor on the bench: a configuration, samples, and what its border promises.
 
-use supervisor::{Command, Config, Sample, Status, Supervisor};
+use supervisor::{Command, Config, PlanePositions, Sample, Shaft, Status, Supervisor};
 
 /// An AMB rotor: 10 kg, 0.2 mm, 1000 N, 20 kHz; neither caps of the axes nor slew limit nor budget.
 pub fn config() -> Config {
@@ -14,6 +14,23 @@ pub fn config() -> Config {
         severity_limit: 1e6,
         speed_max_m_s: 2.0,
         ..Config::example()
+    }
+}
+
+/// A gyroscopic rotor whose impacts at either end move the mass of this configuration.
+pub fn shaft(config: &Config) -> Shaft {
+    let (mass_kg, arm_m) = (2.0 * config.mass_kg, 0.2);
+    let end = |place_m: f32| PlanePositions {
+        retainer_m: place_m,
+        sensor_m: place_m,
+        magnet_m: 0.8 * place_m,
+    };
+    let transverse = mass_kg * arm_m * arm_m;
+    Shaft {
+        mass_kg,
+        transverse_inertia_kg_m2: transverse,
+        polar_inertia_kg_m2: 0.8 * transverse,
+        places: [end(-arm_m), end(arm_m)],
     }
 }
 

@@ -1,7 +1,7 @@
 //! The force–time budget: the cap that it leaves, and what the supervisor makes of less.
 
 use supervisor::{Command, Config, Events, Limits, Sample, Status, Supervisor};
-use system_tests::rig::{config, length, sample};
+use test_support::rig::{config, length, sample, whirl};
 
 /// The cap falls when the closed form says so, by the curve that is documented, to the force at which
 /// state and cap agree, and comes back by the same curve.
@@ -65,8 +65,8 @@ fn the_cap_follows_the_thermal_state() {
 }
 
 /// Ticks that were missed are charged with the force that acts: what is measured, or nothing while the bearing is off, or
-/// else the last command.
-/// Requirement: SR-05
+/// else the last command. A bearing that is off is not heated by what the controller asks for.
+/// Requirements: SR-05, SR-08
 #[test]
 fn missed_ticks_are_charged_with_what_acts() {
     let charged = |status: Status| {
@@ -180,4 +180,14 @@ fn a_warm_magnet_takes_over_earlier() {
         assert!((radius - expected).abs() < 0.03, "{radius}, {expected}");
     }
     assert!(radii[0].1 > 0.99 && radii[1].1 < 0.5);
+}
+
+/// A continuous force of at least the cap is no budget.
+/// Requirement: SR-05
+#[test]
+fn without_a_budget_the_cap_never_falls() {
+    let mut supervisor = Supervisor::new(&config()).unwrap();
+    let commands = whirl(&mut supervisor, 0..5000, Status::empty());
+    assert!(commands.iter().all(|c| !c.limits.contains(Limits::DERATED)));
+    assert_eq!(supervisor.report().force_cap_n, 1000.0);
 }

@@ -2,7 +2,7 @@
 //! every field of every sample has arbitrary bits.
 
 use crate::rig;
-use supervisor::{Config, CoreCommand, CoreSample, PARAMETERS, Scalar, Status};
+use supervisor::{Config, CoreSample, PARAMETERS, Scalar, Status};
 
 /// A fast random stream (xorshift), the same for the same seed.
 #[derive(Debug, Clone)]
@@ -68,16 +68,18 @@ pub fn consistent(config: Config) -> Config {
 }
 
 /// A valid configuration: a bearing like the one on the bench, or, once in three, any value in the range of its
-/// parameter; all of its magnitudes are as likely.
+/// parameter; all of its magnitudes are as likely, and so is, once in eight, either end.
 pub fn any_config(chance: &mut Chance) -> Config {
     if chance.once_in(3) {
         let mut values = PARAMETERS.iter().map(|p| {
             let low = p.low.max(p.high * 1e-9);
             let value = low * (p.high / low).powf(chance.share());
             // Stiffness has either sign, and what may be nothing sometimes is.
-            match chance.bits() % 4 {
-                0 if p.low < 0.0 => -value,
-                0 if p.low == 0.0 => 0.0,
+            match chance.bits() % 8 {
+                0 => p.low,
+                1 => p.high,
+                2 | 3 if p.low < 0.0 => -value,
+                2 | 3 if p.low == 0.0 => 0.0,
                 _ => value.clamp(p.low, p.high),
             }
         });
@@ -221,9 +223,24 @@ pub trait AnyBits: Scalar {
     fn exact(self) -> f64;
 }
 
+/// What is odd among the numbers of floating point, once in sixteen.
+fn odd(bits: u64) -> Option<f64> {
+    const ODD: [f64; 8] = [
+        f64::NAN,
+        f64::INFINITY,
+        f64::NEG_INFINITY,
+        f32::MAX as f64,
+        f32::MIN_POSITIVE as f64,
+        1e-40,
+        0.0,
+        -0.0,
+    ];
+    (bits >> 60 == 0).then_some(ODD[(bits >> 57) as usize % ODD.len()])
+}
+
 impl AnyBits for f32 {
     fn from_any_bits(bits: u64) -> Self {
-        Self::from_bits(bits as u32)
+        odd(bits).map_or(Self::from_bits(bits as u32), |x| x as Self)
     }
     const LAST_PLACE: f64 = f32::EPSILON as f64;
     const TOO_LONG: f64 = Self::LAST_PLACE;
@@ -234,7 +251,7 @@ impl AnyBits for f32 {
 
 impl AnyBits for f64 {
     fn from_any_bits(bits: u64) -> Self {
-        Self::from_bits(bits)
+        odd(bits).unwrap_or(Self::from_bits(bits))
     }
     const LAST_PLACE: f64 = f64::EPSILON;
     const TOO_LONG: f64 = Self::LAST_PLACE;
@@ -325,115 +342,5 @@ impl Storm {
             }
         }
         sample
-    }
-}
-
-/// What holds for every command \[caps\], by the configuration.
-#[derive(Debug, Clone, Copy)]
-pub struct Bounds {
-    force_max_n: f32,
-    axis_cap: f64,
-    slew_step: f64,
-    /// By how much rounding may exceed the caps, and by how much the slew limit.
-    beyond: f64,
-    rounding: f64,
-    /// Up to here it is nothing: what a conversion from other units cannot tell from it.
-    nothing: f64,
-    /// By how much a cut to other caps may have rounded; for one tick.
-    cut: f64,
-    /// Last force and last force of its own.
-    last: [[f64; 2]; 2],
-}
-
-impl Bounds {
-    /// For a core of this configuration; as it has them, in the nearest number, to a unit in the last place of 1.
-    pub fn new<S: AnyBits>(config: &Config) -> Self {
-        let cap = config.force_max_n;
-        let slew = config.force_slew_n_s * config.sample_period_s / cap;
-        Self {
-            force_max_n: cap,
-            axis_cap: S::from_f32((config.axis_force_max_n / cap).min(1.0)).exact(),
-            slew_step: S::from_f32(slew.min(4.0)).exact(),
-            beyond: S::TOO_LONG,
-            rounding: S::LAST_PLACE,
-            nothing: 0.0,
-            cut: 0.0,
-            last: [[0.0; 2]; 2],
-        }
-    }
-
-    /// For a supervisor of this configuration, in newtons: the conversion there and back rounds, too.
-    pub fn in_newtons(config: &Config) -> Self {
-        Self {
-            beyond: 4.0 * f32::LAST_PLACE,
-            rounding: 4.0 * f32::LAST_PLACE,
-            nothing: f64::from(f32::MIN_POSITIVE) / f64::from(config.force_max_n),
-            ..Self::new::<f32>(config)
-        }
-    }
-
-    /// What holds from a change of the configuration on: a force that is beyond a cap then is cut to it at once.
-    pub fn reconfigured(self, new: Self) -> Self {
-        let unit = f64::from(self.force_max_n / new.force_max_n);
-        let far = unit > 500.0 || self.last.iter().any(|[x, y]| x.hypot(*y) * unit > 10.0);
-        let cut = |last: [f64; 2]| {
-            let [x, y] = last.map(|x| x * unit);
-            let within_disc = 1.0 / x.hypot(y).max(1.0);
-            let largest = x.abs().max(y.abs()) * within_disc;
-            let within_box = within_disc * (new.axis_cap / largest).min(1.0);
-            [x * within_box, y * within_box]
-        };
-        Self {
-            last: self.last.map(cut),
-            // What is very far beyond a cap need not keep its direction, and fixed point holds no larger ratio.
-            cut: if far { 2.0 } else { 32.0 * new.rounding },
-            ..new
-        }
-    }
-
-    /// Finite; within the cap, the caps of the axes and the slew limit; and nothing on an axis that is lost.
-    ///
-    /// # Errors
-    /// What is broken.
-    pub fn check<S: AnyBits>(
-        &mut self,
-        command: &CoreCommand<S>,
-        status: Status,
-    ) -> Result<(), String> {
-        let lost = [Status::AXIS_X_LOST, Status::AXIS_Y_LOST].map(|axis| status.contains(axis));
-        let cut = std::mem::take(&mut self.cut);
-        if !command.severity.is_finite() || command.severity < S::ZERO {
-            return Err(format!("severity: {command:?}"));
-        }
-        if !status.contains(Status::SHADOW) {
-            if command.own != command.force {
-                return Err(format!("two forces without a shadow: {command:?}"));
-            }
-            // What it would have done ends where it acts: it goes on from what was done.
-            self.last[1] = self.last[0];
-        }
-        for (force, last) in [command.force, command.own].into_iter().zip(&mut self.last) {
-            let say = |what: &str| Err(format!("{what}: {command:?} after {last:?}, {status:?}"));
-            let ([x, y], [u, v]) = (force.map(S::exact), *last);
-            if !(x.is_finite() && y.is_finite()) {
-                return say("not finite");
-            }
-            if x.hypot(y) > 1.0 + self.beyond {
-                return say("beyond the cap");
-            }
-            if x.abs().max(y.abs()) > self.axis_cap + self.beyond {
-                return say("beyond the cap of an axis");
-            }
-            if (lost[0] && x.abs() > self.nothing) || (lost[1] && y.abs() > self.nothing) {
-                return say("force on a lost axis");
-            }
-            let on = |axis: usize, change: f64| if lost[axis] { 0.0 } else { change };
-            let change = on(0, x - u).hypot(on(1, y - v));
-            if change > self.slew_step + self.rounding + cut {
-                return say("faster than the slew limit");
-            }
-            *last = [x, y];
-        }
-        Ok(())
     }
 }

@@ -3,7 +3,7 @@
 use supervisor::Bearing;
 
 /// The numbers in the order of the fields.
-pub fn bearing(numbers: [f32; 9]) -> Bearing {
+pub const fn bearing(numbers: [f32; 9]) -> Bearing {
     let [
         period,
         mass,

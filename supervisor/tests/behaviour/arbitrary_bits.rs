@@ -2,10 +2,12 @@
 //! finite, within every limit, in every mode and in every number.
 
 use supervisor::{
-    Config, Core, CoreCommand, CoreSample, Events, Mode, Prepared, Q, Report, Sample, Scaling,
-    Supervisor,
+    Command, Config, Core, CoreCommand, CoreSample, Events, Mode, PlanePositions, Prepared, Q,
+    Report, RotorSupervisor, Sample, Scaling, Shaft, Status, Supervisor,
 };
-use system_tests::storm::{AnyBits, Bounds, Chance, Storm, any_config};
+use test_support::bounds::Bounds;
+use test_support::rig::config;
+use test_support::storm::{AnyBits, Chance, Storm, any_config};
 
 /// Ticks of one supervisor.
 const TICKS_PER_CONFIG: u64 = 20_000;
@@ -62,6 +64,30 @@ struct InNewtons {
     scaling: Scaling,
 }
 
+fn in_si(scaling: &Scaling, sample: &CoreSample<f32>) -> Sample {
+    let newtons = |v: [f32; 2]| v.map(|x| x * scaling.force_n);
+    Sample {
+        sequence: sample.sequence,
+        status: sample.status,
+        position_m: sample.position.map(|x| x / scaling.position_per_m),
+        spin_rad_s: sample.spin / scaling.time_s,
+        levitation_n: newtons(sample.levitation),
+        applied_n: newtons(sample.applied),
+    }
+}
+
+fn per_unit(scaling: &Scaling, command: &Command) -> CoreCommand<f32> {
+    CoreCommand {
+        force: command.force_n.map(|x| x / scaling.force_n),
+        own: command.own_n.map(|x| x / scaling.force_n),
+        mode: command.mode,
+        limits: command.limits,
+        events: command.events,
+        integrator: command.integrator,
+        severity: command.severity,
+    }
+}
+
 impl Driven for InNewtons {
     type Number = f32;
 
@@ -79,25 +105,8 @@ impl Driven for InNewtons {
         Bounds::in_newtons(config)
     }
     fn tick(&mut self, sample: &CoreSample<f32>) -> CoreCommand<f32> {
-        let s = &self.scaling;
-        let newtons = |v: [f32; 2]| v.map(|x| x * s.force_n);
-        let command = self.supervisor.tick(&Sample {
-            sequence: sample.sequence,
-            status: sample.status,
-            position_m: sample.position.map(|x| x / s.position_per_m),
-            spin_rad_s: sample.spin / s.time_s,
-            levitation_n: newtons(sample.levitation),
-            applied_n: newtons(sample.applied),
-        });
-        CoreCommand {
-            force: command.force_n.map(|x| x / s.force_n),
-            own: command.own_n.map(|x| x / s.force_n),
-            mode: command.mode,
-            limits: command.limits,
-            events: command.events,
-            integrator: command.integrator,
-            severity: command.severity,
-        }
+        let command = self.supervisor.tick(&in_si(&self.scaling, sample));
+        per_unit(&self.scaling, &command)
     }
     fn report(&self) -> Report {
         self.supervisor.report()
@@ -204,4 +213,78 @@ fn the_supervisor_in_newtons_keeps_every_limit_for_long() {
 #[ignore = "takes some minutes"]
 fn fixed_point_keeps_every_limit_for_long() {
     keeps_every_limit::<Core<Q, 64>>(MANY_TICKS);
+}
+
+/// Whatever shaft a data sheet may hold.
+/// Requirements: SR-01, SR-02, SR-03
+#[test]
+fn a_rotor_of_any_shaft_keeps_every_limit() {
+    let mut chance = Chance::new(1);
+    let (config, scaling) = (config(), config().scaling());
+    let mut ran = 0;
+    for extent in 0..60 {
+        let mut spread = || 10_f32.powi((chance.bits() >> 33) as i32 % 9 - 4);
+        let transverse = spread();
+        let mut end = |sign: f32| PlanePositions {
+            retainer_m: sign * spread(),
+            sensor_m: sign * spread(),
+            magnet_m: sign * spread(),
+        };
+        let shaft = Shaft {
+            mass_kg: 20.0,
+            transverse_inertia_kg_m2: transverse,
+            polar_inertia_kg_m2: 1.9 * transverse,
+            places: [end(-1.0), end(1.0)],
+        };
+        // One whose ends throw each other about is refused.
+        let Ok(mut rotor) = RotorSupervisor::<64>::from_planes(&shaft, &[config; 2]) else {
+            continue;
+        };
+        ran += 1;
+        let mut storms = [2 * extent, 2 * extent + 1].map(Storm::new);
+        let mut bounds = [Bounds::in_newtons(&config); 2];
+        for i in 0..5000 {
+            let samples = storms.each_mut().map(Storm::next_sample::<f32>);
+            let commands = rotor.tick(&samples.map(|sample| in_si(&scaling, &sample)));
+            for ((bounds, command), sample) in bounds.iter_mut().zip(commands.planes).zip(&samples)
+            {
+                let checked = bounds.check(&per_unit(&scaling, &command), sample.status);
+                checked.unwrap_or_else(|broken| panic!("shaft {extent}, tick {i}: {broken}"));
+            }
+        }
+    }
+    assert!(ran >= 10, "{ran}");
+}
+
+/// Mirrored samples give mirrored commands, to the bit.
+#[test]
+fn mirrored_samples_give_mirrored_commands() {
+    for seed in 0..100 {
+        let config = any_config(&mut Chance::new(seed));
+        let prepared = Prepared::<f32>::new(&config).unwrap();
+        let (mut left, mut right) = (Core::<_, 16>::new(&prepared), Core::<_, 16>::new(&prepared));
+        let mut storm = Storm::new(seed);
+        for i in 0..2000 {
+            let here = storm.next_sample::<f32>();
+            // Without spin and without whirl there is no direction to mirror.
+            let known = here.status.contains(Status::SPIN_VALID) && here.spin.is_finite();
+            if !known || here.spin == 0.0 {
+                continue;
+            }
+            let there = CoreSample {
+                position: [-here.position[0], here.position[1]],
+                levitation: [-here.levitation[0], here.levitation[1]],
+                applied: [-here.applied[0], here.applied[1]],
+                spin: -here.spin,
+                ..here
+            };
+            let (a, b) = (left.tick(&here), right.tick(&there));
+            assert_eq!(a.mode, b.mode, "tick {i} of seed {seed}");
+            assert_eq!(
+                [-a.force[0], a.force[1]],
+                b.force,
+                "tick {i} of seed {seed}"
+            );
+        }
+    }
 }

@@ -1,7 +1,7 @@
 //! How bad it was and will be: the whirl limit, severity, landings, and the request to coast down.
 
-use supervisor::{Command, Config, Events, Limits, Mode, Sample, Status, Supervisor};
-use system_tests::rig::{RADIUS_M, WHIRL_STEP, config, on_circle, sample, whirl, whirl_by};
+use supervisor::{Command, Config, Events, Limits, Mode, Status, Supervisor};
+use test_support::rig::{RADIUS_M, WHIRL_STEP, config, on_circle, sample, whirl, whirl_by};
 
 /// Root of d/dt v = 0 by bisection on forces in double precision: μ·N = d·v + F·cos, N = m·v²/r − k·r − F·sin.
 fn whirl_limit_m_s(config: &Config, force_n: f64) -> f64 {
@@ -161,6 +161,19 @@ fn the_index_grows_by_friction_in_whirl() {
     assert!((index / by_hand - 1.0).abs() < 0.06, "{index} {by_hand}");
 }
 
+/// How often coasting down is asked for.
+fn asked(commands: &[Command]) -> usize {
+    let asks = |c: &&Command| c.events.contains(Events::COAST_DOWN);
+    commands.iter().filter(asks).count()
+}
+
+/// A tick of a whirl in which the bearing is off.
+fn switched_off(step: f32, supervisor: &mut Supervisor<64>, tick: u32) {
+    let mut off = sample(tick, on_circle(RADIUS_M, step * tick as f32));
+    off.status = Status::SPIN_VALID;
+    supervisor.tick(&off);
+}
+
 /// Whirl beyond the limit is named in each tick and asks for coasting down once, after its time; whirl
 /// below it is not and does not. Switched off and on, it may ask again.
 /// Requirement: SR-27
@@ -170,35 +183,17 @@ fn whirl_beyond_the_limit_asks_once_to_coast_down() {
     for (share, beyond) in [(0.93, false), (1.08, true)] {
         let mut supervisor = Supervisor::<64>::new(&config()).unwrap();
         let step = share * limit * 50e-6 / RADIUS_M;
-        let mut sequence = 0;
-        let mut run = |status: Status, ticks: u32| {
-            let mut asked = Vec::new();
-            for _ in 0..ticks {
-                sequence += 1;
-                let s = Sample {
-                    status,
-                    ..sample(sequence, on_circle(RADIUS_M, step * sequence as f32))
-                };
-                let command = supervisor.tick(&s);
-                if command.events.contains(Events::COAST_DOWN) {
-                    asked.push(sequence);
-                }
-                if sequence > 100 && status.contains(Status::BEARING_ON) {
-                    let named = command.limits.contains(Limits::BEYOND_WHIRL_LIMIT);
-                    assert_eq!(named, beyond, "{share}");
-                }
-            }
-            asked
-        };
-        let on = Status::SPIN_VALID | Status::BEARING_ON | Status::LEVITATED_BEFORE;
-        let asked = run(on, 1000);
-        assert_eq!(asked.len(), usize::from(beyond));
-        if beyond {
-            // 5 ms are 100 ticks.
-            assert!((101..=110).contains(&asked[0]), "{asked:?}");
+        let before = whirl_by(step, &mut supervisor, 0..1000, Status::empty());
+        switched_off(step, &mut supervisor, 1000);
+        let after = whirl_by(step, &mut supervisor, 1001..1300, Status::empty());
+        assert_eq!(
+            [&before, &after].map(|c| asked(c)),
+            [usize::from(beyond); 2]
+        );
+        for command in before[100..].iter().chain(&after) {
+            let named = command.limits.contains(Limits::BEYOND_WHIRL_LIMIT);
+            assert_eq!(named, beyond, "{share}");
         }
-        run(Status::SPIN_VALID, 10);
-        assert_eq!(run(on, 300).len(), usize::from(beyond));
     }
 }
 
@@ -230,10 +225,6 @@ fn a_severity_index_beyond_its_limit_asks_once_to_coast_down() {
 /// above it.
 #[test]
 fn a_limit_that_is_lowered_below_the_index_asks() {
-    let asked = |commands: &[Command]| {
-        let asks = |c: &&Command| c.events.contains(Events::COAST_DOWN);
-        commands.iter().filter(asks).count()
-    };
     let mut supervisor = Supervisor::<64>::new(&config()).unwrap();
     // Slower than what the cap arrests, which asks for nothing itself.
     let slow = 0.5 * WHIRL_STEP;
@@ -249,9 +240,7 @@ fn a_limit_that_is_lowered_below_the_index_asks() {
             ..config()
         };
         supervisor.reconfigure(&with).unwrap();
-        let mut off = sample(next, on_circle(RADIUS_M, slow * next as f32));
-        off.status = Status::SPIN_VALID;
-        supervisor.tick(&off);
+        switched_off(slow, &mut supervisor, next);
         let ticks = next + 1..next + 50;
         let commands = whirl_by(slow, &mut supervisor, ticks, Status::empty());
         next += 50;

@@ -1,14 +1,18 @@
-//! What the flight record keeps of an engagement.
+//! What the flight record keeps, and of which engagements.
 
-use super::promises::{new, sample};
-use supervisor::{Entry, Events, Mode, Stamp, crc_of};
+use super::trust::{C_M, noise};
+use supervisor::{Entry, Events, Mode, Stamp, Supervisor, crc_of};
+use test_support::bench::Bench;
+use test_support::records::{head, written};
+use test_support::rig::{LANDING_TICKS as LANDING, config, landing, sample};
+use test_support::storm::Chance;
 
 /// The record holds the ticks around the engagement, oldest first, and freezes once the levitation controller has the bearing
 /// again; its sections are under a checksum that any other implementation of CRC-32 gives.
 /// Requirement: SR-30
 #[test]
 fn recorder_freezes_around_the_engagement() {
-    let mut supervisor = new();
+    let mut supervisor = Supervisor::<64>::new(&config()).unwrap();
     let (mut frozen_at, mut levitated_at) = (None, None);
     for i in 0..900_u32 {
         let out = (3e-5 * i.saturating_sub(99) as f32).min(2.02e-4);
@@ -84,4 +88,80 @@ fn bitwise_crc(bytes: &[u8]) -> u32 {
         }
     }
     !crc
+}
+
+/// An engagement without a touch leaves the record to one with it, and is counted apart.
+/// Requirement: SR-30
+#[test]
+fn an_engagement_without_contact_does_not_spend_the_record() {
+    let mut bench = Bench::new(&config());
+    let mut chance = Chance::new(13);
+    let mut at = |r: f32| [r * C_M + noise(&mut chance, 2e-7), noise(&mut chance, 2e-7)];
+    for _ in 0..400 {
+        bench.tick(at(0.0));
+    }
+    // Towards the wall, and back before it.
+    let mut engaged = 0;
+    for i in 0..30 {
+        engaged += u32::from(
+            bench
+                .tick(at(0.03 * i as f32))
+                .events
+                .contains(Events::ENGAGED),
+        );
+    }
+    for i in (0..30).rev() {
+        bench.tick(at(0.03 * i as f32));
+    }
+    assert_eq!(engaged, 1);
+    let mut ticks = 0;
+    while bench.supervisor.mode() != Mode::Levitated {
+        bench.tick(at(0.0));
+        ticks += 1;
+        assert!(ticks < 2000);
+    }
+    for _ in 0..2000 {
+        bench.tick(at(0.0));
+    }
+    let report = bench.supervisor.report();
+    assert_eq!((report.nuisance_engagements, report.landings), (1, 0));
+    assert!(bench.supervisor.record().is_none());
+    for i in 0..60 {
+        bench.tick(at((0.05 * i as f32).min(1.03)));
+    }
+    for _ in 0..2000 {
+        bench.tick(at(0.0));
+    }
+    let report = bench.supervisor.report();
+    assert_eq!((report.nuisance_engagements, report.landings), (1, 1));
+    let record = bench.supervisor.record().expect("this one is worth it");
+    let engaged = (record.entries()).position(|e| e.events & Events::ENGAGED.bits() as u16 != 0);
+    assert_eq!(
+        engaged,
+        Some(15),
+        "a quarter of the record lies before the touch"
+    );
+}
+
+/// A record that nobody takes away does not change and holds up no tick; the events that come meanwhile are counted, and told in
+/// the next one.
+#[test]
+fn what_is_in_no_record_is_counted() {
+    let mut plane = Supervisor::<64>::new(&config()).unwrap();
+    for i in 0..3 * LANDING {
+        plane.tick(&sample(i, landing(i)));
+    }
+    let first = head(&plane.record().unwrap());
+    assert_eq!(first.dropped, 0);
+    assert!(first.closed_at < LANDING);
+    let bytes = written(&plane.record().unwrap());
+    plane.reconfigure(&config()).unwrap();
+    assert_eq!(written(&plane.record().unwrap()), bytes);
+    plane.rearm();
+    for i in 3 * LANDING..4 * LANDING {
+        plane.tick(&sample(i, landing(i)));
+    }
+    let second = plane.record().unwrap();
+    assert_eq!(head(&second).dropped, 2);
+    assert_eq!(second.summary().touches, 1);
 }

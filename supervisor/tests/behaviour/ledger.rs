@@ -1,14 +1,11 @@
 //! The ledger of landings: what it adds up, what it says is left, and what it makes of bytes that are none of its own.
 
-use firmware_image::under_test::shaft;
 use supervisor::{
-    Config, Core, LEDGER_BYTES, Ledger, LedgerError, Prepared, Q, RotorSupervisor, Summary,
-    Supervisor, crc_of,
+    Core, LEDGER_BYTES, Ledger, LedgerError, Prepared, Q, RotorSupervisor, Summary, Supervisor,
+    crc_of,
 };
-use system_tests::per_unit::in_numbers;
-use system_tests::rig::{config, landing, sample};
-
-const LANDING: u32 = system_tests::rig::LANDING_TICKS;
+use test_support::in_numbers;
+use test_support::rig::{LANDING_TICKS as LANDING, config, landing, sample, shaft};
 
 /// Totals since the supervisor was made, as the record of an event has them.
 fn totals(landings: u32, severity_index: f32) -> Summary {
@@ -281,23 +278,4 @@ fn two_copies_outlive_a_cut() {
     assert_eq!(Ledger::newer([&new, &another]), Err(LedgerError::Bearings));
     let blank = [0xFF; LEDGER_BYTES];
     assert_eq!(Ledger::newer([&blank, &blank]), Err(LedgerError::Blank));
-}
-
-/// What is left at boot may be the supervisor's own limit: it asks for coasting down when the bearing's share is used up.
-#[test]
-fn what_is_left_can_be_the_limit_of_the_index() {
-    let mut ledger = Ledger::new(7, 20.0);
-    ledger.add(&totals(9, 19.9999), 0);
-    let left = Config {
-        severity_limit: ledger.severity_left().max(1e-3),
-        ..config()
-    };
-    let asks = [config(), left].map(|config| {
-        let mut supervisor = Supervisor::<64>::new(&config).unwrap();
-        for i in 0..LANDING {
-            supervisor.tick(&sample(i, landing(i)));
-        }
-        supervisor.report().coast_down
-    });
-    assert_eq!(asks, [false, true]);
 }

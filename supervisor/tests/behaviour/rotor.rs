@@ -1,11 +1,10 @@
 //! Both ends of one rotor: who is told what, and records that belong together.
 
-use firmware_image::under_test::{half_a_turn, shaft};
 use supervisor::{
-    Config, Events, Mode, PlanePositions, RotorCommand, RotorSupervisor, Sample, Shaft, ShaftError,
-    Status, Supervisor,
+    Config, Events, Mode, PlanePositions, RotorCommand, RotorSupervisor, Sample, Shaft, Status,
+    Supervisor,
 };
-use system_tests::rig::{RADIUS_M, WHIRL_STEP, check, config, on_circle, sample};
+use test_support::rig::{RADIUS_M, WHIRL_STEP, config, on_circle, sample, shaft};
 
 /// Ticks to the wall, and of whirl on it.
 const OUT: u32 = 40;
@@ -190,17 +189,23 @@ fn a_request_to_coast_down_is_of_the_machine() {
     }
 }
 
-/// The two ends of the counted pair: half a turn about the centre turns every command by half a turn, to the bit. So
-/// both do what is dearest for one at the same tick.
+/// Half a turn about the centre turns every command by half a turn, to the bit: so both ends of the pair that images count do
+/// what is dearest for one at the same tick.
 #[test]
 fn half_a_turn_turns_the_commands() {
     let mut rotor = rotor(&config());
     for i in 0..400 {
+        let levitation_n = led(i, 25).map(|x| -2e6 * x);
         let sample = Sample {
-            levitation_n: led(i, 25).map(|x| -2e6 * x),
+            levitation_n,
             ..sample(i, led(i, 20))
         };
-        let [first, second] = rotor.tick(&[sample, half_a_turn(&sample)]).planes;
+        let turned = Sample {
+            position_m: sample.position_m.map(|x| -x),
+            levitation_n: levitation_n.map(|x| -x),
+            ..sample
+        };
+        let [first, second] = rotor.tick(&[sample, turned]).planes;
         assert_eq!(first.force_n, second.force_n.map(|x| -x), "tick {i}");
         assert_eq!(
             (first.mode, first.events, first.limits, first.severity),
@@ -284,117 +289,6 @@ fn without_spin_there_is_no_nutation() {
             assert_eq!(*command, alone.tick(sample));
         }
     });
-}
-
-/// Whatever bits come in, and whatever shaft a data sheet may hold: finite and within the caps.
-/// Requirements: SR-01, SR-02
-#[test]
-fn arbitrary_bits_give_forces_within_the_caps() {
-    let mut state = 0x9E37_79B9_7F4A_7C15_u64;
-    let mut next = move || {
-        state ^= state << 13;
-        state ^= state >> 7;
-        state ^= state << 17;
-        (state >> 32) as u32
-    };
-    let config = config();
-    let mut ran = 0;
-    for extent in 0..60 {
-        let spread = |bits: u32| 10_f32.powi(bits as i32 % 9 - 4);
-        let transverse = spread(next());
-        let mut end = |sign: f32| PlanePositions {
-            retainer_m: sign * spread(next()),
-            sensor_m: sign * spread(next()),
-            magnet_m: sign * spread(next()),
-        };
-        let shaft = Shaft {
-            mass_kg: 20.0,
-            transverse_inertia_kg_m2: transverse,
-            polar_inertia_kg_m2: 1.9 * transverse,
-            places: [end(-1.0), end(1.0)],
-        };
-        // One whose ends throw each other about is refused.
-        let Ok(mut rotor) = RotorSupervisor::<RECORD>::from_planes(&shaft, &[config; 2]) else {
-            continue;
-        };
-        ran += 1;
-        let mut last = [[0.0; 2]; 2];
-        for i in 0..5000_u32 {
-            let mut any = || {
-                let bits = next();
-                // Half of them near what is usual.
-                match bits & 1 {
-                    0 => f32::from_bits(bits),
-                    _ => (bits >> 8) as f32 * 1e-11 - 1e-4,
-                }
-            };
-            let samples = [(); 2].map(|()| Sample {
-                sequence: i,
-                status: Status::SPIN_VALID | Status::BEARING_ON | Status::LEVITATED_BEFORE,
-                position_m: [any(), any()],
-                spin_rad_s: any() * 1e7,
-                levitation_n: [any(), any()],
-                ..Sample::default()
-            });
-            let commands = rotor.tick(&samples).planes;
-            for ((last, command), sample) in last.iter_mut().zip(&commands).zip(&samples) {
-                *last = check(command, *last, sample.status, &config)
-                    .unwrap_or_else(|e| panic!("shaft {extent}, tick {i}: {e}"));
-            }
-        }
-    }
-    assert!(ran >= 10, "{ran}");
-}
-
-/// Requirement: SR-28
-#[test]
-fn a_shaft_that_no_body_has_is_refused() {
-    let good = shaft(&config());
-    let [first, second] = good.places;
-    let refused =
-        |shaft: Shaft| RotorSupervisor::<RECORD>::new(&shaft, &[config(); 2]).unwrap_err();
-    for mass_kg in [0.0, -1.0, f32::NAN, f32::INFINITY] {
-        assert_eq!(refused(Shaft { mass_kg, ..good }), ShaftError::Inertia);
-    }
-    for share in [-0.1, 2.1, f32::NAN] {
-        let polar_inertia_kg_m2 = share * good.transverse_inertia_kg_m2;
-        let wrong = Shaft {
-            polar_inertia_kg_m2,
-            ..good
-        };
-        assert_eq!(refused(wrong), ShaftError::Inertia);
-    }
-    for places in [
-        [first, first],
-        [
-            first,
-            PlanePositions {
-                sensor_m: f32::NAN,
-                ..second
-            },
-        ],
-    ] {
-        assert_eq!(refused(Shaft { places, ..good }), ShaftError::Places);
-    }
-    // A magnet so far beyond the centre of percussion that it pushes the bearing the other way.
-    let beyond = PlanePositions {
-        magnet_m: -10.0 * second.magnet_m,
-        ..second
-    };
-    let places = [first, beyond];
-    let error = refused(Shaft { places, ..good });
-    assert!(matches!(error, ShaftError::Plane(1, _)), "{error}");
-    assert!(error.to_string().contains("magnet_plane_ratio"), "{error}");
-    // What is refused changes nothing.
-    let mut rotor = rotor(&config());
-    let before = rotor.clone();
-    assert!(
-        rotor
-            .reconfigure(&Shaft { places, ..good }, &[config(); 2])
-            .is_err()
-    );
-    assert_eq!(format!("{rotor:?}"), format!("{before:?}"));
-    assert!(rotor.reconfigure(&good, &[config(); 2]).is_ok());
 }
 
 /// What the magnet at one end does to the other is known there before it is seen: a push towards the wall that its own cap

@@ -1,10 +1,9 @@
 //! The supervisor's numbers: fixed point against f64, and the self-test's known answers.
 
 use proptest::prelude::*;
-use supervisor::{
-    Config, Core, Events, PlanePositions, Prepared, Q, RotorSupervisor, Sample, Scalar, Shaft,
-    Stamp, Status, Supervisor,
-};
+use supervisor::{Config, Core, Events, Prepared, Q, RotorSupervisor, Scalar, Supervisor};
+use test_support::records::written;
+use test_support::rig::{LANDING_TICKS, config, landing, sample, shaft};
 
 /// A unit of Q.
 const LAST: f64 = 1.0 / 4_194_304.0;
@@ -83,19 +82,8 @@ proptest! {
 #[test]
 fn self_test_knows_its_answers() {
     let config = Config::example();
-    let end = |retainer_m: f32| PlanePositions {
-        retainer_m,
-        sensor_m: 0.9 * retainer_m,
-        magnet_m: 0.8 * retainer_m,
-    };
-    let shaft = Shaft {
-        mass_kg: 20.0,
-        transverse_inertia_kg_m2: 1.2,
-        polar_inertia_kg_m2: 0.3,
-        places: [end(-0.2), end(0.3)],
-    };
     let mut supervisor = Supervisor::<64>::new(&config).unwrap();
-    let mut rotor = RotorSupervisor::<64>::new(&shaft, &[config; 2]).unwrap();
+    let mut rotor = RotorSupervisor::<64>::new(&shaft(&config), &[config; 2]).unwrap();
     let tests = [
         ("f32", core_of::<f32>(&config).self_test()),
         ("f64", core_of::<f64>(&config).self_test()),
@@ -121,32 +109,13 @@ fn core_of<S: Scalar>(config: &Config) -> Core<S, 64> {
     Core::new(&Prepared::new(config).unwrap())
 }
 
-/// Ticks until all is over.
-const THROW: u32 = 2000;
-
-/// A rotor that is thrown onto its bearing and comes back to the middle.
-fn thrown(sequence: u32) -> Sample {
-    let radius_m = match sequence {
-        0..10 => 2.2e-5 * sequence as f32,
-        10..60 => 2.2e-4 - 4e-6 * (sequence - 10) as f32,
-        _ => 2e-5 + 1e-7 * (sequence % 3) as f32,
-    };
-    Sample {
-        sequence,
-        status: Status::SPIN_VALID | Status::BEARING_ON | Status::LEVITATED_BEFORE,
-        position_m: [radius_m, -2e-5 + 1e-7 * (sequence % 5) as f32],
-        spin_rad_s: 1000.0,
-        ..Sample::default()
-    }
-}
-
 /// After the self-test a supervisor is as new, whatever it had gone through; and nothing of the test is in its queue or its record.
 #[test]
 fn self_test_leaves_a_new_supervisor() {
-    let new = || Supervisor::<64>::new(&Config::example()).unwrap();
-    let (mut used, mut untouched) = (new(), new());
-    for sequence in 0..THROW {
-        used.tick(&thrown(sequence));
+    let mut untouched = Supervisor::<64>::new(&config()).unwrap();
+    let mut used = untouched.clone();
+    for i in 0..LANDING_TICKS {
+        used.tick(&sample(i, landing(i)));
     }
     assert!(used.record().is_some() && used.report().landings > 0);
     while used.next_event().is_some() {}
@@ -154,19 +123,13 @@ fn self_test_leaves_a_new_supervisor() {
     assert_eq!(used.next_event(), None);
     assert!(used.record().is_none());
     assert_eq!(used.report(), untouched.report());
-    for sequence in 0..THROW {
-        let sample = thrown(sequence);
-        assert_eq!(used.tick(&sample), untouched.tick(&sample), "{sequence}");
+    for i in 0..LANDING_TICKS {
+        let sample = sample(i, landing(i));
+        assert_eq!(used.tick(&sample), untouched.tick(&sample), "{i}");
     }
     assert_eq!(used.report(), untouched.report());
-    let sections = |s: &Supervisor<64>| -> Vec<Vec<u8>> {
-        let record = s.record().unwrap();
-        let sections = (0..).map_while(|i| record.section(i, &Stamp::default()));
-        sections
-            .map(|mut section| section.seal().to_vec())
-            .collect()
-    };
-    assert_eq!(sections(&used), sections(&untouched));
+    let [used, untouched] = [used, untouched].map(|s| s.record().map(|record| written(&record)));
+    assert!(used.is_some() && used == untouched);
 }
 
 /// A record has room for what a core of either number remembers.

@@ -1,24 +1,15 @@
-//! A configuration from nine numbers: valid for all that a bearing may be, refused by name for all that it may not.
+//! A configuration: from nine numbers, valid for all that a bearing may be; refused by name for all that it may not.
 
 use proptest::prelude::*;
 use std::hint::black_box;
 use supervisor::{
-    Bearing, Config, ConfigError, DefaultRule, PARAMETERS, PlanePositions, RotorSupervisor, Sample,
-    Shaft, ShaftError, Supervisor,
+    Bearing, Config, ConfigError, DefaultRule, Events, PARAMETERS, PlanePositions, RULES,
+    RotorSupervisor, Sample, Shaft, ShaftError, Supervisor,
 };
-use system_tests::bearing::bearing;
+use test_support::bearing::bearing;
+use test_support::rig::{config, sample, shaft};
 
-const EXAMPLE: Bearing = Bearing {
-    sample_period_s: 50e-6,
-    mass_kg: 10.0,
-    stiffness_n_m: -2e5,
-    clearance_m: 2e-4,
-    force_max_n: 1000.0,
-    amplifier_lag_s: 1.6e-4,
-    friction_coefficient: 0.15,
-    contact_stiffness_n_m: 1e9,
-    sensor_noise_m: 1e-6,
-};
+const EXAMPLE: Bearing = bearing([50e-6, 10.0, -2e5, 2e-4, 1000.0, 1.6e-4, 0.15, 1e9, 1e-6]);
 
 /// The parameters that the numbers are given under, and the noise at the end.
 const NAMES: [&str; 9] = [
@@ -32,20 +23,6 @@ const NAMES: [&str; 9] = [
     "contact_stiffness_n_m",
     "sensor_step_m",
 ];
-
-fn numbers(b: &Bearing) -> [f32; 9] {
-    [
-        b.sample_period_s,
-        b.mass_kg,
-        b.stiffness_n_m,
-        b.clearance_m,
-        b.force_max_n,
-        b.amplifier_lag_s,
-        b.friction_coefficient,
-        b.contact_stiffness_n_m,
-        b.sensor_noise_m,
-    ]
-}
 
 fn range(name: &str) -> [f32; 2] {
     let row = PARAMETERS.iter().find(|p| p.name == name).unwrap();
@@ -65,20 +42,19 @@ fn within([low, high]: [f32; 2], share: f32) -> f32 {
     }
 }
 
-/// Numbers in their ranges.
-fn any_bearing() -> impl Strategy<Value = Bearing> {
+/// Numbers of a bearing in their ranges.
+fn any_numbers() -> impl Strategy<Value = [f32; 9]> {
     prop::array::uniform9(0.0..=1.0_f32).prop_map(|shares| {
         let mut numbers = [0.0; 9];
         for ((number, name), share) in numbers.iter_mut().zip(NAMES).zip(shares) {
             *number = within(range(name), share);
         }
-        let mut bearing = bearing(numbers);
-        let most_m = (0.07 * bearing.clearance_m).min(1e-3);
-        bearing.sensor_noise_m = match shares[8] {
+        let most_m = (0.07 * bearing(numbers).clearance_m).min(1e-3);
+        numbers[8] = match shares[8] {
             ..0.1 => 0.0,
             share => within([1e-10, most_m], share),
         };
-        bearing
+        numbers
     })
 }
 
@@ -99,13 +75,14 @@ proptest! {
 
     /// Valid but for contradictions, and what a supervisor can be made of; the nine numbers are in it as they are, and known rules hold.
     #[test]
-    fn nine_numbers_in_their_ranges_give_a_valid_configuration(b in any_bearing()) {
+    fn nine_numbers_in_their_ranges_give_a_valid_configuration(numbers in any_numbers()) {
+        let b = bearing(numbers);
         let config = Config::for_bearing(&b);
         let refused = config.validate().err();
         prop_assert!(refused.is_none_or(|error| error.contradiction.is_some()), "{:?}", b);
         for ((p, value), name) in PARAMETERS.iter().zip(config.values()).filter(|(p, _)| p.default == DefaultRule::Given).zip(NAMES) {
             prop_assert_eq!(p.name, name);
-            let given = numbers(&b)[NAMES.iter().position(|n| *n == name).unwrap()];
+            let given = numbers[NAMES.iter().position(|n| *n == name).unwrap()];
             prop_assert_eq!(value.to_bits(), given.to_bits());
         }
         if refused.is_none() {
@@ -123,7 +100,8 @@ proptest! {
 
     /// The quickest poles in hundredths with which the speed is quiet enough, by the formulas in double precision.
     #[test]
-    fn poles_are_the_quickest_that_are_quiet(b in any_bearing()) {
+    fn poles_are_the_quickest_that_are_quiet(numbers in any_numbers()) {
+        let b = bearing(numbers);
         let config = Config::for_bearing(&b);
         let force_speed = (f64::from(b.force_max_n) * f64::from(b.clearance_m) / f64::from(b.mass_kg)).sqrt();
         let noise = f64::from(b.sensor_noise_m) / f64::from(b.sample_period_s) / force_speed;
@@ -142,11 +120,10 @@ proptest! {
     /// Whatever the bits: what is refused is refused by the name of the first number that is outside its range.
     #[test]
     fn any_bits_are_accepted_or_refused_by_their_name(
-        good in any_bearing(),
+        mut numbers in any_numbers(),
         bits in prop::array::uniform9(any::<u32>()),
         taken in prop::array::uniform9(prop::bool::weighted(0.2)),
     ) {
-        let mut numbers = numbers(&good);
         for ((number, bits), taken) in numbers.iter_mut().zip(bits).zip(taken) {
             if taken {
                 *number = f32::from_bits(bits);
@@ -178,8 +155,9 @@ proptest! {
     fn planes_of_a_rotor_follow_from_its_shaft(
         share in 0.1..0.9_f32,
         mass_kg in 0.1..1e3_f32,
-        b in any_bearing(),
+        numbers in any_numbers(),
     ) {
+        let b = bearing(numbers);
         let ends = [b, Bearing { friction_coefficient: 0.3, sensor_noise_m: 0.5 * b.sensor_noise_m, ..b }];
         let end = |retainer_m: f32| PlanePositions { retainer_m, sensor_m: 0.95 * retainer_m, magnet_m: 0.9 * retainer_m };
         let shaft = Shaft {
@@ -244,4 +222,152 @@ fn the_table_has_the_defaults() {
             DefaultRule::Derived(rule) => assert!(a != b && !rule.is_empty(), "{}", p.name),
         }
     }
+}
+
+/// Every parameter is refused just outside its range and for NaN, and named.
+/// Requirement: SR-28
+#[test]
+fn config_errors_name_field_value_and_range() {
+    for (i, p) in PARAMETERS.iter().enumerate() {
+        let below = p.low - p.low.abs().max(1e-3);
+        for wrong in [f32::NAN, f32::INFINITY, below, p.high * 2.0 + 1.0] {
+            let mut values = config().values();
+            values[i] = wrong;
+            let error = Config::from_values(values).validate().unwrap_err();
+            assert_eq!(error.parameter().name, p.name);
+            let text = error.to_string();
+            // Both ends, as a person would write them.
+            let (_, range) = text.split_once("expected ").unwrap();
+            let words: Vec<&str> = range.split(' ').collect();
+            assert_eq!(
+                (words[0].parse(), words[2].parse()),
+                (Ok(p.low), Ok(p.high))
+            );
+            assert!(words[0].len().max(words[2].len()) <= 6, "{text}");
+            assert!(text.starts_with(p.name), "{text}");
+        }
+        for edge in [p.low, p.high] {
+            let mut values = config().values();
+            values[i] = edge;
+            // In its range, and refused at most beside another.
+            let refused = Config::from_values(values).validate().err();
+            assert!(
+                refused.is_none_or(|error| error.contradiction.is_some()),
+                "{} at {edge}",
+                p.name
+            );
+        }
+    }
+}
+
+/// A slip of a power of ten, in its own range, is refused by both names.
+/// Requirement: SR-28
+#[test]
+fn a_slip_that_contradicts_another_value_names_both() {
+    // Its poles are slow.
+    let noisy = Config {
+        force_slew_n_s: 5e5,
+        ..Config::for_bearing(&Bearing {
+            sensor_noise_m: 2.5e-6,
+            ..EXAMPLE
+        })
+    };
+    assert_eq!(noisy.validate(), Ok(()));
+    let slips = [
+        ("sample_period_s", 10.0, "force_max_n"),
+        ("observer_pole_flight", 0.1, "sensor_step_m"),
+        ("observer_pole_contact", 0.1, "sensor_step_m"),
+        ("sensor_step_m", 10.0, "observer_pole_flight"),
+        ("axis_force_max_n", 0.1, "force_max_n"),
+        ("force_slew_n_s", 0.1, "force_max_n"),
+        ("contact_band", 0.1, "sensor_step_m"),
+    ];
+    for (name, factor, other) in slips {
+        let mut values = noisy.values();
+        let index = PARAMETERS.iter().position(|p| p.name == name).unwrap();
+        values[index] *= factor;
+        let error = Config::from_values(values).validate().unwrap_err();
+        let text = error.to_string();
+        assert!(
+            text.contains(name) && text.contains(other),
+            "{name}: {text}"
+        );
+        let rule = error.rule().unwrap();
+        let both = [rule.index, rule.other].map(|i| PARAMETERS[i].name);
+        assert!(both.contains(&name) && both.contains(&other), "{text}");
+        // What the text says is left is left.
+        values[rule.index] = error.contradiction.unwrap().limit;
+        let left = Config::from_values(values).validate().err();
+        assert!(
+            left.and_then(|e| e.contradiction)
+                .is_none_or(|c| c.rule > error.contradiction.unwrap().rule),
+            "{text}"
+        );
+    }
+    assert_eq!(RULES.len(), 6);
+}
+
+/// A parameter out of range changes nothing.
+/// Requirement: SR-28
+#[test]
+fn a_refused_configuration_leaves_everything_as_it_is() {
+    let mut supervisor = Supervisor::<64>::new(&config()).unwrap();
+    let wrong = Config {
+        mass_kg: -1.0,
+        ..config()
+    };
+    let error = supervisor.reconfigure(&wrong).unwrap_err();
+    assert_eq!(error.parameter().name, "mass_kg");
+    let command = supervisor.tick(&sample(0, [1e-6, 2e-6]));
+    assert_eq!(command.events, Events::empty());
+}
+
+/// Requirement: SR-28
+#[test]
+fn a_shaft_that_no_body_has_is_refused() {
+    let good = shaft(&config());
+    let [first, second] = good.places;
+    let refused = |shaft: Shaft| RotorSupervisor::<16>::new(&shaft, &[config(); 2]).unwrap_err();
+    for mass_kg in [0.0, -1.0, f32::NAN, f32::INFINITY] {
+        assert_eq!(refused(Shaft { mass_kg, ..good }), ShaftError::Inertia);
+    }
+    for share in [-0.1, 2.1, f32::NAN] {
+        let polar_inertia_kg_m2 = share * good.transverse_inertia_kg_m2;
+        let wrong = Shaft {
+            polar_inertia_kg_m2,
+            ..good
+        };
+        assert_eq!(refused(wrong), ShaftError::Inertia);
+    }
+    for places in [
+        [first, first],
+        [
+            first,
+            PlanePositions {
+                sensor_m: f32::NAN,
+                ..second
+            },
+        ],
+    ] {
+        assert_eq!(refused(Shaft { places, ..good }), ShaftError::Places);
+    }
+    // A magnet so far beyond the centre of percussion that it pushes the bearing the other way.
+    let beyond = PlanePositions {
+        magnet_m: -10.0 * second.magnet_m,
+        ..second
+    };
+    let places = [first, beyond];
+    let error = refused(Shaft { places, ..good });
+    assert!(matches!(error, ShaftError::Plane(1, _)), "{error}");
+    assert!(error.to_string().contains("magnet_plane_ratio"), "{error}");
+    // What is refused changes nothing.
+    let mut rotor = RotorSupervisor::<16>::new(&good, &[config(); 2]).unwrap();
+    let before = rotor.clone();
+    assert!(
+        rotor
+            .reconfigure(&Shaft { places, ..good }, &[config(); 2])
+            .is_err()
+    );
+    assert_eq!(format!("{rotor:?}"), format!("{before:?}"));
+    assert!(rotor.reconfigure(&good, &[config(); 2]).is_ok());
 }

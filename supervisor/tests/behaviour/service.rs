@@ -1,18 +1,10 @@
 //! What firmware needs around the tick: live reconfiguration, shadow, late commands, counters, expiry.
 
 use supervisor::{
-    CommandWatchdog, Config, Core, CoreSample, Events, IntegratorHint, Limits, Mode, Prepared,
-    RejectReason, Sample, Status, Supervisor,
+    CommandWatchdog, Config, Core, Events, IntegratorHint, Mode, Prepared, Sample, Status,
+    Supervisor,
 };
-use system_tests::rig::{config, length, on_circle, sample, whirl};
-
-fn with_larger_cap() -> Config {
-    Config {
-        force_max_n: 1500.0,
-        axis_force_max_n: 1500.0,
-        ..config()
-    }
-}
+use test_support::rig::{config, length, on_circle, sample, whirl};
 
 /// What is known of the rotor survives a change of every unit: there and back again, a tick in between, and the
 /// supervisor engages at the same tick as without.
@@ -60,7 +52,12 @@ fn reconfiguration_in_a_whirl_goes_on_braking() {
         .last()
         .unwrap();
     assert_eq!(before.mode, Mode::BackwardWhirl);
-    supervisor.reconfigure(&with_larger_cap()).unwrap();
+    let with_larger_cap = Config {
+        force_max_n: 1500.0,
+        axis_force_max_n: 1500.0,
+        ..config()
+    };
+    supervisor.reconfigure(&with_larger_cap).unwrap();
     let after = whirl(&mut supervisor, 400..410, Status::empty());
     assert!(after[0].events.contains(Events::RECONFIGURED));
     for command in after {
@@ -70,21 +67,6 @@ fn reconfiguration_in_a_whirl_goes_on_braking() {
             "{command:?}"
         );
     }
-}
-
-/// A parameter out of range changes nothing.
-/// Requirement: SR-28
-#[test]
-fn a_refused_configuration_leaves_everything_as_it_is() {
-    let mut supervisor = Supervisor::<64>::new(&config()).unwrap();
-    let wrong = Config {
-        mass_kg: -1.0,
-        ..config()
-    };
-    let error = supervisor.reconfigure(&wrong).unwrap_err();
-    assert_eq!(error.parameter().name, "mass_kg");
-    let command = supervisor.tick(&sample(0, [1e-6, 2e-6]));
-    assert_eq!(command.events, Events::empty());
 }
 
 /// In shadow the machine sees its levitation controller, bit for bit; what the supervisor would have done is
@@ -145,79 +127,6 @@ fn in_shadow_of_a_bearing_that_is_off_the_integrator_holds() {
     }
 }
 
-/// A command that came a tick late is taken to have left its tick to the one before: the same estimate, and
-/// with it the same force, as if that had been commanded.
-/// Requirement: SR-20
-#[test]
-fn a_late_command_leaves_its_tick_to_the_one_before() {
-    let levitation = |i: u32| [10.0 * (i % 7) as f32, -20.0 * (i % 5) as f32];
-    let (mut told, mut commanded) = (
-        Supervisor::<64>::new(&config()).unwrap(),
-        Supervisor::<64>::new(&config()).unwrap(),
-    );
-    let mut untold = told.clone();
-    let mut differs = false;
-    for i in 0..400_u32 {
-        let mut s = sample(
-            i,
-            on_circle(1.5e-4 + 1.4e-6 * i.min(40) as f32, 0.1 * i as f32),
-        );
-        // In shadow the commands are the levitation controller's.
-        s.status |= Status::SHADOW;
-        s.levitation_n = levitation(i);
-        let late = i % 10 == 9;
-        let without = untold.tick(&s);
-        let as_if = Sample {
-            levitation_n: levitation(if i % 10 == 8 { i - 1 } else { i }),
-            ..s
-        };
-        let b = commanded.tick(&as_if);
-        if late {
-            s.status |= Status::LATE;
-        }
-        let a = told.tick(&s);
-        assert_eq!(a.events.contains(Events::LATE), late);
-        assert_eq!(a.own_n, b.own_n, "tick {i}");
-        assert_eq!(a.mode, b.mode);
-        differs |= a.own_n != without.own_n;
-    }
-    assert!(differs, "being told changes something");
-    assert_eq!(told.report().late_ticks, 40);
-}
-
-/// Missed and repeated ticks are counted.
-/// Requirement: SR-20
-#[test]
-fn missed_and_repeated_ticks_are_counted() {
-    let mut supervisor = Supervisor::<64>::new(&config()).unwrap();
-    for sequence in [0, 1, 2, 5, 5, 6, 17, 18] {
-        supervisor.tick(&sample(
-            sequence,
-            [1e-7 * sequence as f32, -2e-7 * sequence as f32],
-        ));
-    }
-    let report = supervisor.report();
-    assert_eq!((report.missed_ticks, report.repeated_ticks), (2 + 10, 1));
-}
-
-/// A coordinate that toggles by the step of its converter is no stuck sensor, whatever its pattern: every
-/// return to the value before the last is a change, too.
-#[test]
-fn a_toggling_coordinate_is_not_stuck() {
-    for pattern in [[0, 1, 1, 2], [0, 1, 1, 1], [1, 1, 2, 0], [0, 1, 0, 1]] {
-        let mut supervisor = Supervisor::<64>::new(&config()).unwrap();
-        for i in 0..3000_u32 {
-            let step = |k: u32| 1e-6 * pattern[(k % 4) as usize] as f32;
-            let command = supervisor.tick(&sample(i, [step(i), step(i / 2 + 1)]));
-            assert!(
-                !command.limits.contains(Limits::SAMPLE_REFUSED),
-                "{pattern:?} tick {i}"
-            );
-            assert_eq!(supervisor.report().refusal, RejectReason::None);
-        }
-    }
-}
-
 /// The core per unit does what the supervisor in SI does.
 #[test]
 fn the_core_is_the_supervisor_per_unit() {
@@ -225,25 +134,10 @@ fn the_core_is_the_supervisor_per_unit() {
     let mut core = Core::<f32, 64>::new(&Prepared::new(&config()).unwrap());
     let scaling = config().scaling();
     for i in 0..600_u32 {
-        let s = sample(
-            i,
-            on_circle(1.5e-4 + 1.4e-6 * i.min(40) as f32, 0.1 * i as f32),
-        );
-        let command = supervisor.tick(&s);
-        let own = core.tick(&CoreSample {
-            sequence: s.sequence,
-            status: s.status,
-            position: s.position_m.map(|x| x * scaling.position_per_m),
-            spin: s.spin_rad_s * scaling.time_s,
-            ..CoreSample::default()
-        });
-        assert_eq!(
-            (command.mode, command.limits, command.events),
-            (own.mode, own.limits, own.events)
-        );
-        for (si, unit) in command.force_n.iter().zip(own.force) {
-            assert!((si - unit * scaling.force_n).abs() <= 1e-4);
-        }
+        let at = on_circle(1.5e-4 + 1.4e-6 * i.min(40) as f32, 0.1 * i as f32);
+        let s = sample(i, at);
+        let own = core.tick(&scaling.sample(&s));
+        assert_eq!(supervisor.tick(&s), scaling.command(&own), "tick {i}");
     }
 }
 
@@ -289,4 +183,44 @@ fn a_full_queue_of_events_keeps_the_first_and_tells_of_the_loss() {
     supervisor.tick(&late(41));
     let next = [(40, Events::LATE | Events::QUEUE_FULL), (41, Events::LATE)];
     assert_eq!(told(&mut supervisor), next);
+}
+
+/// A command that came a tick late is taken to have left its tick to the one before: the same estimate, and
+/// with it the same force, as if that had been commanded.
+/// Requirement: SR-20
+#[test]
+fn a_late_command_leaves_its_tick_to_the_one_before() {
+    let levitation = |i: u32| [10.0 * (i % 7) as f32, -20.0 * (i % 5) as f32];
+    let (mut told, mut commanded) = (
+        Supervisor::<64>::new(&config()).unwrap(),
+        Supervisor::<64>::new(&config()).unwrap(),
+    );
+    let mut untold = told.clone();
+    let mut differs = false;
+    for i in 0..400_u32 {
+        let mut s = sample(
+            i,
+            on_circle(1.5e-4 + 1.4e-6 * i.min(40) as f32, 0.1 * i as f32),
+        );
+        // In shadow the commands are the levitation controller's.
+        s.status |= Status::SHADOW;
+        s.levitation_n = levitation(i);
+        let late = i % 10 == 9;
+        let without = untold.tick(&s);
+        let as_if = Sample {
+            levitation_n: levitation(if i % 10 == 8 { i - 1 } else { i }),
+            ..s
+        };
+        let b = commanded.tick(&as_if);
+        if late {
+            s.status |= Status::LATE;
+        }
+        let a = told.tick(&s);
+        assert_eq!(a.events.contains(Events::LATE), late);
+        assert_eq!(a.own_n, b.own_n, "tick {i}");
+        assert_eq!(a.mode, b.mode);
+        differs |= a.own_n != without.own_n;
+    }
+    assert!(differs, "being told changes something");
+    assert_eq!(told.report().late_ticks, 40);
 }

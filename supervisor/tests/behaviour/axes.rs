@@ -1,0 +1,105 @@
+//! The slew limit, and axes that the status says are lost.
+
+use supervisor::{Config, Events, Limits, Mode, Sample, Status, Supervisor};
+use test_support::rig::{WHIRL_STEP, check, config, length, sample, whirl};
+
+/// On a lost axis nothing is commanded, the other brakes with the sign that takes power from the whirl
+/// and with nearly all that one axis can take; losing and regaining are events, once each.
+/// Requirement: SR-04
+#[test]
+fn a_lost_axis_leaves_the_best_of_the_other() {
+    for (lost, axis) in [(Status::AXIS_X_LOST, 1), (Status::AXIS_Y_LOST, 0)] {
+        let with = Config {
+            amplifier_lag_s: 0.0,
+            delay_samples: 0.0,
+            ..config()
+        };
+        let mut supervisor = Supervisor::new(&with).unwrap();
+        whirl(&mut supervisor, 0..200, Status::empty());
+        let commands = whirl(&mut supervisor, 200..829, lost);
+        let mut power = 0.0;
+        let mut last_n = [0.0; 2];
+        for (i, command) in (200_u32..).zip(&commands) {
+            assert_eq!(command.mode, Mode::BackwardWhirl);
+            assert_eq!(command.events.contains(Events::AXIS_LOST), i == 200);
+            last_n = match i {
+                200 => command.force_n,
+                _ => check(command, last_n, lost, &with).unwrap(),
+            };
+            // Braking value of the force where it acts, half a tick later: against b̂ + μ·n̂.
+            let angle = WHIRL_STEP * (i as f32 + 0.5);
+            let (n, b) = ([angle.cos(), -angle.sin()], [-angle.sin(), -angle.cos()]);
+            let value = -(command.force_n[axis] * (b[axis] + 0.15 * n[axis]));
+            assert!(value > -30.0, "{i}: drives with {} N", -value);
+            power += value;
+        }
+        // The sign alone would give 2/π of the force, a plain projection one half.
+        let share = power / commands.len() as f32 / (1000.0 * (1.0_f32 + 0.0225).sqrt());
+        assert!(share > 0.59 && share < 0.64, "{share}");
+        let back = whirl(&mut supervisor, 829..840, Status::empty());
+        let events: Vec<bool> = (back.iter())
+            .map(|c| c.events.contains(Events::AXIS_BACK))
+            .collect();
+        assert!(events[0] && !events[1..].contains(&true));
+        assert!(back.iter().any(|c| c.force_n[1 - axis].abs() > 500.0));
+    }
+}
+
+/// With both axes lost there is no force, and the mode still says what the rotor does.
+/// Requirement: SR-04
+#[test]
+fn without_axes_the_mode_stays_meaningful() {
+    let mut supervisor = Supervisor::new(&config()).unwrap();
+    let lost = Status::AXIS_X_LOST | Status::AXIS_Y_LOST;
+    let commands = whirl(&mut supervisor, 0..400, lost);
+    assert!(commands.iter().all(|c| c.force_n == [0.0; 2]));
+    assert_eq!(commands[399].mode, Mode::BackwardWhirl);
+    assert!(commands[399].limits.contains(Limits::AXIS_CAP));
+    // Levitated, a command on what is left goes through.
+    let mut supervisor = Supervisor::<64>::new(&config()).unwrap();
+    let mut s = sample(0, [0.0; 2]);
+    (s.levitation_n, s.status) = ([3.0, -4.0], s.status | Status::AXIS_X_LOST);
+    let command = supervisor.tick(&s);
+    assert_eq!(command.force_n, [0.0, -4.0]);
+    assert_eq!(
+        command.limits,
+        Limits::AXIS_CAP | Limits::LEVITATION_CLAMPED
+    );
+}
+
+/// A slow command arrives after the time that its slew limit gives, exactly. On the axis that is left then the limit holds; the
+/// force of the one that is lost is gone at once.
+/// Requirements: SR-03, SR-04
+#[test]
+fn a_lost_axis_is_cut_at_once_and_the_other_goes_on_slowly() {
+    // 5 N a tick; 300 N are 60 ticks away.
+    let with = Config {
+        force_slew_n_s: 1e5,
+        ..config()
+    };
+    let mut supervisor = Supervisor::<64>::new(&with).unwrap();
+    let mut tick = |i: u32, lost: Status, levitation_n: [f32; 2]| {
+        let now = sample(i, [1e-7 * i as f32, 0.0]);
+        let status = now.status | lost;
+        supervisor.tick(&Sample {
+            levitation_n,
+            status,
+            ..now
+        })
+    };
+    for i in 1..=100_u32 {
+        let command = tick(i, Status::empty(), [180.0, -240.0]);
+        let way = (5.0 * f64::from(i)).min(300.0);
+        let off = length(command.force_n) - way;
+        assert!(off.abs() < 1e-3, "{i}: {command:?}");
+        let arrived = command.force_n == [180.0, -240.0];
+        assert!(arrived == (i > 60) || i == 60, "{i}: {command:?}");
+        assert_eq!(command.limits.contains(Limits::SLEW), !arrived);
+        assert_eq!(command.mode, Mode::Levitated);
+    }
+    for i in 1..=10_u32 {
+        let [x, y] = tick(100 + i, Status::AXIS_X_LOST, [180.0, 0.0]).force_n;
+        assert_eq!(x, 0.0);
+        assert!((y + 240.0 - 5.0 * i as f32).abs() < 1e-2, "{y}");
+    }
+}
