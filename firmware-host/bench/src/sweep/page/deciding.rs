@@ -18,12 +18,10 @@ pub(super) fn decided(page: &mut HtmlPage, summary: &Summary) {
         "Share of the variance of ranks that goes away when a key is known, as from groups of runs with close values: a \
          first-order index. What keys do only together it does not show.",
     ));
-    let of: [(&str, fn(&KeyInfluence) -> Influence); 2] = [
-        ("loss", |key| key.lost),
-        (&summary.worst_by, |key| key.figure),
-    ];
+    let on_loss: fn(&KeyInfluence) -> Influence = |key| key.lost;
+    let on_figure: fn(&KeyInfluence) -> Influence = |key| key.figure;
     let mut drawn = Vec::new();
-    for (name, influence) in of {
+    for (name, influence) in [("loss", on_loss), (&summary.worst_by, on_figure)] {
         let keys = summary.influences.iter();
         let keys: Vec<(&str, Influence)> =
             keys.map(|key| (key.key.as_str(), influence(key))).collect();
@@ -46,7 +44,7 @@ pub(super) fn decided(page: &mut HtmlPage, summary: &Summary) {
             [vec![key.to_owned()], numbers.to_vec()].concat()
         };
         let headings = ["key", "share of the variance", "Spearman's correlation"];
-        let listing = Listing::of_texts(&label, &headings, keys.into_iter().map(row));
+        let listing = Listing::of_texts(&label, headings, keys.into_iter().map(row));
         drawn.push(Drawn::new(&label, bars(&label, &shares), listing));
     }
     page.figures(&drawn);
