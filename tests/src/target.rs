@@ -38,6 +38,9 @@ pub fn skipped(why: &str) {
 /// Levels of optimisation beside the 3 of the profile `fw`.
 pub const OTHER_LEVELS: [&str; 3] = ["2", "s", "z"];
 
+/// For builds of which only is asked whether they link: without debug information, which takes half of the time.
+pub const WITHOUT_DEBUG: [&str; 2] = ["--config", "profile.fw.debug=false"];
+
 /// Makes a build in the profile `fw` one that optimises these two crates at another level, in a folder of its own under
 /// `target-fw`. What they use stays at 3, so that it is compiled once for all levels: nearly all of it is generic or
 /// inline, and so compiled with the crate that uses it.
@@ -50,6 +53,7 @@ pub fn at_level(cargo: &mut Command, level: &str, crates: [&str; 2]) {
     // What is shared, with the builds at level 3, too; only what is finished goes to the other folder.
     cargo.env("CARGO_BUILD_BUILD_DIR", "target-fw");
     cargo.args(["--target-dir", &format!("target-fw/{level}")]);
+    cargo.args(WITHOUT_DEBUG);
     for name in crates {
         let setting = format!("profile.fw.package.{name}.opt-level={value}");
         cargo.args(["--config", &setting]);
@@ -61,8 +65,20 @@ pub fn at_level(cargo: &mut Command, level: &str, crates: [&str; 2]) {
 /// # Panics
 /// As [`target`].
 pub fn build_images(target: &str, more: &[&str]) -> Option<Output> {
+    build_some(target, ["--bins".to_owned()], more)
+}
+
+/// Builds some images; the rest as for [`build_images`].
+///
+/// # Panics
+/// As [`target`].
+pub fn build_some(
+    target: &str,
+    bins: impl IntoIterator<Item = String>,
+    more: &[&str],
+) -> Option<Output> {
     let mut cargo = build(&[target]);
-    cargo.args(["--bins", "--target-dir", "target-fw"]);
+    cargo.args(bins).args(["--target-dir", "target-fw"]);
     cargo.args(more);
     output(cargo, &[target])
 }

@@ -169,7 +169,7 @@ fn agree(
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 2000, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 500, failure_persistence: None, ..ProptestConfig::default() })]
 
     /// x → −x with Ω → −Ω is the same motion seen in a mirror, to the bit without an unbalance (whose
     /// angle passes through sine and cosine).

@@ -50,7 +50,7 @@ fn said(compiler: &str, standard: &str, text: &str, library: &Path) -> Option<St
 /// A scene as it comes, and one that knows and sets more: a range, steps, a cap of the axes, a slew limit, a contact that hardens.
 #[test]
 fn an_advised_configuration_is_c_and_cpp() {
-    let Some(library) = built(Target::Host, "") else {
+    let Some(library) = built(Target::Host) else {
         return;
     };
     let folder = TempDir::new().unwrap();

@@ -163,7 +163,7 @@ fn layout_check() -> String {
 
 /// Compiles a text as a language, without a program.
 fn compiles(mut compiler: Command, arguments: &[&str], source: &str, extension: &str) {
-    let library = built(Target::Host, "").unwrap();
+    let library = built(Target::Host).unwrap();
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("check").with_extension(extension);
     std::fs::write(&file, source).unwrap();
@@ -221,7 +221,7 @@ fn names_carry_the_version() {
         .lines()
         .filter_map(|l| l.strip_prefix("#define amb_")?.split(' ').next())
         .collect();
-    let Some(library) = built(Target::CortexM4F, "") else {
+    let Some(library) = built(Target::CortexM4F) else {
         return;
     };
     let Some(mut nm) = tool("arm-none-eabi-nm") else {

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use system_tests::root;
-use system_tests::target::at_level;
+use system_tests::target::{WITHOUT_DEBUG, at_level};
 
 /// Where a static library can be used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -77,19 +77,41 @@ pub(crate) fn capi() -> PathBuf {
     root().join("supervisor/capi")
 }
 
-/// Folder with the library for a target and its version, freshly built; `None` where the target is
-/// not installed (in CI: a failure).
-pub(crate) fn built(target: Target, features: &str) -> Option<PathBuf> {
-    // Libraries with and without features would overwrite each other.
-    let target_dir = if features.is_empty() {
-        "target-fw".to_owned()
-    } else {
-        format!("target-fw/{features}")
+/// Folder with the library for a target and its version, freshly built, the one that is handed out; `None` where the target
+/// is not installed (in CI: a failure).
+pub(crate) fn built(target: Target) -> Option<PathBuf> {
+    let triple = match target.triple() {
+        Some(triple) => triple.to_owned(),
+        None => {
+            let rustc = Command::new("rustc")
+                .args(["--print", "host-tuple"])
+                .output();
+            good(&rustc.unwrap()).trim().to_owned()
+        }
     };
+    let mut script = Command::new(capi().join("prebuilt/library"));
+    script.arg(&triple);
+    finished(script)?;
+    Some(root().join("target-fw/prebuilt").join(triple).join("fw"))
+}
+
+/// The same with features, in a folder of its own. What it uses is shared with the images.
+pub(crate) fn built_with(target: Target, features: &str) -> Option<PathBuf> {
+    let target_dir = format!("target-fw/{features}");
     let mut cargo = build(target);
+    cargo.env("CARGO_BUILD_BUILD_DIR", "target-fw");
     cargo.args(["--target-dir", &target_dir, "--features", features]);
+    cargo.args(WITHOUT_DEBUG);
     finished(cargo)?;
-    Some(folder(&target_dir, target))
+    Some(with_version(folder(&target_dir, target), target))
+}
+
+/// A library's folder, with its version: the build writes that where builds share what is compiled.
+fn with_version(built: PathBuf, target: Target) -> PathBuf {
+    let version = "amb_supervisor_abi.h";
+    let shared = folder("target-fw", target).join(version);
+    std::fs::copy(shared, built.join(version)).unwrap();
+    built
 }
 
 /// The same at a level of optimisation other than 3.
@@ -98,14 +120,7 @@ pub(crate) fn built_at(target: Target, level: &str) -> Option<PathBuf> {
     at_level(&mut cargo, level, ["supervisor", "supervisor-capi"]);
     finished(cargo)?;
     let built = folder(&format!("target-fw/{level}"), target);
-    // The build writes it where the levels share what is compiled.
-    let version = "amb_supervisor_abi.h";
-    std::fs::copy(
-        folder("target-fw", target).join(version),
-        built.join(version),
-    )
-    .unwrap();
-    Some(built)
+    Some(with_version(built, target))
 }
 
 fn build(target: Target) -> Command {
@@ -162,7 +177,7 @@ pub(crate) fn host_program(sources: &[PathBuf], library: &Path, program: &Path) 
 
 /// What a program says that a C file beside these tests and the rig make on the host; `None` where a tool is missing.
 pub(crate) fn said_with_rig(source: &str) -> Option<String> {
-    let library = built(Target::Host, "")?;
+    let library = built(Target::Host)?;
     let folder = tempfile::tempdir().unwrap();
     let program = folder.path().join("program");
     let sources = [beside(source), capi().join("examples/rig.c")];

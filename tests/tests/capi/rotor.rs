@@ -70,7 +70,7 @@ fn a_rotor_in_firmware_does_what_it_does_in_rust() {
 /// the supervisor leaves fewer touches.
 #[test]
 fn a_model_of_someone_elses_is_driven() {
-    let Some(library) = built(Target::Host, "") else {
+    let Some(library) = built(Target::Host) else {
         return;
     };
     let folder = tempfile::tempdir().unwrap();

@@ -5,7 +5,7 @@ use std::process::Command;
 
 #[test]
 fn the_block_is_the_library() {
-    let Some(library) = built(Target::Host, "") else {
+    let Some(library) = built(Target::Host) else {
         return;
     };
     let folder = tempfile::tempdir().unwrap();

@@ -11,7 +11,7 @@ struct Attempt {
 /// Compiles and links a program with a header that speaks `header`, where the library's version file
 /// says `library`. The library itself speaks the version of this source.
 fn attempt(header: u32, library: u32) -> Option<Attempt> {
-    let built = built(Target::Host, "")?;
+    let built = built(Target::Host)?;
     let folder = tempfile::tempdir().unwrap();
     let text = supervisor_capi::layout::HEADER;
     let version = format!("#define AMB_ABI {}\n", supervisor_capi::ABI);
@@ -76,7 +76,7 @@ fn another_version_does_not_link() {
 #[test]
 fn the_version_is_beside_the_library() {
     for target in [Target::Host, Target::CortexM4F] {
-        let Some(library) = built(target, "") else {
+        let Some(library) = built(target) else {
             return;
         };
         let text = std::fs::read_to_string(library.join("amb_supervisor_abi.h")).unwrap();

@@ -52,11 +52,11 @@ fn check(ran: &[Ran], planes: usize) -> (usize, usize, usize) {
     (records, told, right)
 }
 
-/// A thousand of one plane: every kind of event with every kind of sensors, at the rates that machines have.
+/// Hundreds of one plane: every kind of event with every kind of sensors, at the rates that machines have.
 #[test]
 fn records_of_closed_loops_replay_to_the_bit() {
     let mut jobs = Vec::new();
-    for number in 0..20 {
+    for number in 0..5 {
         jobs.extend(harm::claimed().into_iter().map(|class| (class, number)));
     }
     let ran = run_all(&jobs, &(), |(class, number)| {
@@ -75,10 +75,10 @@ fn records_of_closed_loops_replay_to_the_bit() {
         }
     });
     let (records, told, right) = check(&ran, 1);
-    assert!(records >= 1000, "{records} records of {}", ran.len());
-    // Sensors that lie, in pairs too, are among them: nine of some 790 are told to levitate and do not come in.
+    assert!(records >= 250, "{records} records of {}", ran.len());
+    // Sensors that lie, in pairs too, are among them: of four times as many nine of some 790 are told to levitate and do not come in.
     assert!(
-        told >= 500 && 1000 * right >= 985 * told,
+        told >= 125 && 1000 * right >= 985 * told,
         "{right} of {told} outcomes are those of the plant"
     );
 }

@@ -1,4 +1,6 @@
 //! Runs that end without an error and are wrong all the same: there must be none from 1e-6 on.
+//!
+//! Every eighth of the starts that the page of results tells of; all of them with `ALL_STARTS=1` in the environment.
 
 use plant_model::params::{EllipseParams, PlantParams, RingParams, StatorParams};
 use plant_model::{Inputs, Method, Mode, Options, V2, build};
@@ -43,9 +45,14 @@ fn run(params: &PlantParams, speed_m_s: f64, forced: bool, method: Method, rtol:
     }
 }
 
-/// Numbers of wrong runs (another sequence of modes, or half a clearance off) for each tolerance, and
-/// of starts left out because the reference itself does not survive a change of method.
-fn sweep(params: &PlantParams, forced: bool, starts: u32, tolerances: &[f64]) -> (Vec<u32>, u32) {
+/// Numbers of wrong runs (another sequence of modes, or half a clearance off) for each tolerance, of starts left out because
+/// the reference itself does not survive a change of method, and of starts.
+fn sweep(
+    params: &PlantParams,
+    forced: bool,
+    starts: u32,
+    tolerances: &[f64],
+) -> (Vec<u32>, u32, u32) {
     let clearance_m = params.contact.clearance_m;
     // The method that `auto` takes, and another one to confirm it. Out of round, where there is no series, a coarser
     // tolerance does (the stiff method confirms the same, in a hundred times the time).
@@ -60,7 +67,14 @@ fn sweep(params: &PlantParams, forced: bool, starts: u32, tolerances: &[f64]) ->
     };
     let mut wrong = vec![0; tolerances.len()];
     let mut left_out = 0;
-    for i in 0..starts {
+    let every = if std::env::var_os("ALL_STARTS").is_some() {
+        1
+    } else {
+        8
+    };
+    let mut tried = 0;
+    for i in (0..starts).step_by(every) {
+        tried += 1;
         let speed = 0.05 + 0.399 * f64::from(i) / f64::from(starts - 1);
         let reference = run(params, speed, forced, taken, finest);
         let second = run(params, speed * (1.0 + 1e-12), forced, other, finer);
@@ -75,7 +89,7 @@ fn sweep(params: &PlantParams, forced: bool, starts: u32, tolerances: &[f64]) ->
             ));
         }
     }
-    (wrong, left_out)
+    (wrong, left_out, tried)
 }
 
 const TOLERANCES: [f64; 5] = [1e-4, 1e-6, 1e-8, 1e-10, 1e-12];
@@ -99,11 +113,11 @@ fn none_wrong_at(
     (params, forced): (&PlantParams, bool),
     starts: u32,
 ) {
-    let (wrong, left_out) = sweep(params, forced, starts, tolerances);
+    let (wrong, left_out, starts) = sweep(params, forced, starts, tolerances);
     println!("{name}: wrong {wrong:?} of {starts} at {tolerances:?}, {left_out} left out");
-    // The coarsest tolerance is reported; from 1e-6 on there is none.
+    // The coarsest tolerance is reported, two of 400 at most; from 1e-6 on there is none.
     assert!(
-        wrong[0] <= 2,
+        200 * wrong[0] <= starts,
         "{name}: {} wrong at {}",
         wrong[0],
         tolerances[0]

@@ -128,9 +128,16 @@ fn count<S: Scalar>(wanted: impl Fn(&str) -> bool) -> Count {
     sum
 }
 
+/// One test: the streams are recorded once.
+#[test]
+fn f32_and_fixed_point_command_what_f64_does() {
+    f32_commands_what_f64_does();
+    fixed_point_commands_what_f64_does();
+    fixed_point_commands_what_f64_does_under_sensor_faults();
+}
+
 /// The yardstick: what 24 bits make of it. A fifth of what is allowed, at the most after a hand-over that was apart in a fault,
 /// and a hand-over or two among all the faults.
-#[test]
 fn f32_commands_what_f64_does() {
     let sound = count::<f32>(|group| group != SENSOR_FAULTS);
     assert_eq!(sound.wrong_streams, 0, "{sound:?}");
@@ -150,7 +157,6 @@ fn f32_commands_what_f64_does() {
 
 /// With sound sensors: the same modes, and forces within 1 % of the cap, but in less than one stream of a hundred and
 /// one tick of a thousand, where a hand-over or a rest begins at another tick and what follows from it differs.
-#[test]
 fn fixed_point_commands_what_f64_does() {
     let sound = count::<Q>(|group| group != SENSOR_FAULTS);
     assert!(sound.streams > 1000 && sound.ticks > 2_400_000, "{sound:?}");
@@ -164,7 +170,6 @@ fn fixed_point_commands_what_f64_does() {
 
 /// Under sensor faults noise more often decides at the edge: the same commands but for hand-overs in less than one
 /// stream of fifty and one tick of a thousand, and for one tick of 500 000 in which two cases of the law meet.
-#[test]
 fn fixed_point_commands_what_f64_does_under_sensor_faults() {
     let faulty = count::<Q>(|group| group == SENSOR_FAULTS);
     assert!(

@@ -9,6 +9,7 @@ fn parsed(stdout: &[u8]) -> Value {
 }
 
 /// Every tick of the short streams, which have every mode and every way between modes.
+/// And the same ticks cost the same instructions, run for run.
 /// Requirements: SR-34, SR-36
 #[test]
 fn every_processor_gives_the_bits_of_the_host_within_its_budgets() {
@@ -68,21 +69,10 @@ fn every_processor_gives_the_bits_of_the_host_within_its_budgets() {
             "all are counted: {t}"
         );
     }
-}
-
-/// The same ticks cost the same instructions, run for run.
-#[test]
-fn instructions_are_the_same_every_time() {
-    let count = || {
-        let output = target(&["--quick", "--json", "--only", "M4F"])?;
-        let report = parsed(&output.stdout);
-        Some(report["targets"].clone())
-    };
-    let Some(first) = count() else {
-        return;
-    };
-    assert_eq!(first.as_array().unwrap().len(), 1);
-    assert_eq!(Some(first), count());
+    let again = target(&["--quick", "--json", "--only", "M4F"]).unwrap();
+    let again = parsed(&again.stdout);
+    let first = targets.iter().find(|t| t["name"] == "M4F").unwrap();
+    assert_eq!(again["targets"], Value::Array(vec![first.clone()]));
 }
 
 /// Without the emulator the command says what to install.

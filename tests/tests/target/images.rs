@@ -4,7 +4,9 @@ use object::{Object, ObjectSymbol};
 use std::path::Path;
 use std::process::Output;
 use system_tests::root;
-use system_tests::target::{OTHER_LEVELS, PANIC_FREE, build_images, build_panic_free};
+use system_tests::target::{
+    OTHER_LEVELS, PANIC_FREE, WITHOUT_DEBUG, build_images, build_panic_free, build_some,
+};
 
 const TARGETS: [&str; 3] = [
     "thumbv7em-none-eabihf",
@@ -75,15 +77,22 @@ fn assert_no_panic_in(image: &Path) {
 
 const PLANTED: [&str; 3] = ["--features", "planted-panic", "--keep-going"];
 
-/// The check finds a panic that is put in, in every image for every target.
+/// The check finds a panic that is put in, in every image, and for every target in one that starts and one that does not.
 /// Requirement: SR-32
 #[test]
 fn a_planted_panic_fails_to_link() {
-    for target in TARGETS {
-        let Some(output) = build_images(target, &PLANTED) else {
+    let some: [&[&str]; 3] = [
+        &IMAGES,
+        &["panic-free", "count"],
+        &["panic-free-q", "replay-q"],
+    ];
+    for (target, images) in TARGETS.into_iter().zip(some) {
+        let bins = images.iter().map(|image| format!("--bin={image}"));
+        let more = [&PLANTED[..], &WITHOUT_DEBUG].concat();
+        let Some(output) = build_some(target, bins, &more) else {
             return;
         };
-        assert_none_links(&output, &IMAGES, target);
+        assert_none_links(&output, images, target);
     }
 }
 

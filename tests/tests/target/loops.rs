@@ -46,7 +46,7 @@ type Log = Vec<(String, String)>;
 /// What an image has logged, by what its file says of its log.
 fn logged(image: &Path, bytes: &[u8]) -> Log {
     let mut decoder = Command::new("cargo")
-        .args(["run", "--quiet", "--release", "--locked", "--manifest-path"])
+        .args(["run", "--quiet", "--locked", "--manifest-path"])
         .arg(root().join("tests/log/Cargo.toml"))
         .arg("--target-dir")
         .arg(root().join("target/log"))

@@ -292,3 +292,23 @@ pub fn search(progress: &dyn Progress) -> Result<Vec<Row>, CatalogueError> {
     }
     Ok(rows)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// One plant with some of its cases, in pools of one and of two threads.
+    #[test]
+    fn threads_change_nothing() {
+        let mut plan = Plan::new(Extent::Quick, Vec::new()).unwrap();
+        plan.places.truncate(1);
+        let cases = std::mem::take(&mut plan.places[0].cases);
+        plan.places[0].cases = cases.into_iter().step_by(12).collect();
+        let [alone, together] = [1, 2].map(|threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+            let catalogue = pool.unwrap().install(|| plan.run(&())).unwrap();
+            serde_json::to_string(&catalogue).unwrap()
+        });
+        assert!(alone == together && alone.len() > 10_000, "{alone}");
+    }
+}
