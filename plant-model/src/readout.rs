@@ -50,7 +50,7 @@ pub(crate) const HARD_IMPACT_M_S: f64 = 0.02;
 pub struct Meters {
     /// Number of touches.
     pub impacts: u64,
-    /// Touches with a normal speed above [`HARD_IMPACT_M_S`].
+    /// Touches with a normal speed above `HARD_IMPACT_M_S`.
     pub hard_impacts: u64,
     /// Time in contact \[s\].
     pub contact_time_s: f64,

@@ -91,7 +91,7 @@ pub struct Limits {
     pub whirl_limit_text: &'static str,
     /// Whirl frequency at v_lim, on its circle \[Hz\].
     pub whirl_limit_hz: Option<f64>,
-    /// Time to stop the whirl from [`ARREST_SHARE`] of v_lim \[s\].
+    /// Time to stop the whirl from `ARREST_SHARE` of v_lim \[s\].
     pub arrest_time_s: Option<f64>,
 }
 

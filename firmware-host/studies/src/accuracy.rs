@@ -52,7 +52,7 @@ pub struct Reference {
     pub uncertainty: f64,
     /// Whether both went through the same modes in the same order.
     pub same_modes: bool,
-    /// Whether they do, and end closer to each other than [`CONFIRMED_CLEARANCES`].
+    /// Whether they do, and end closer to each other than `CONFIRMED_CLEARANCES`.
     pub confirmed: bool,
     /// Evaluations of both in contact: what runs of this problem cost.
     pub evaluations: u64,

@@ -9,7 +9,7 @@
 //! | 3 | first impact | the first touch |
 //! | 4 | series of impacts | the first lift-off |
 //! | 5 | whirl accelerates | the touch of the longest contact |
-//! | 6 | largest whirl frequency | the whirl frequency within [`NEAR_MAXIMUM`] of its largest value |
+//! | 6 | largest whirl frequency | the whirl frequency within `NEAR_MAXIMUM` of its largest value |
 //! | 7 | whirl decelerates rapidly | the same, left |
 //! | 8 | whirl at lower frequency | the deceleration fallen to [`SLOW`] of its steepest in phase 7 |
 //! | 9 | free vibration that decays | the lift-off that ends the longest contact |

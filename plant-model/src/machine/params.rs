@@ -229,7 +229,7 @@ pub struct MachineParams {
     pub unbalances: Vec<Unbalance>,
     /// Eccentricity of the centre of mass, at the angle of the spin \[m\]; one more unbalance.
     pub eccentricity_m: f64,
-    /// Magnets, at most [`MAX_MAGNETS`].
+    /// Magnets, at most `MAX_MAGNETS`.
     pub magnets: Vec<MachineMagnet>,
     /// Where forces from outside act \[m\].
     pub loads_m: Vec<f64>,
@@ -237,7 +237,7 @@ pub struct MachineParams {
     pub probes_m: Vec<f64>,
     /// Acceleration that acts on every mass of the rotor \[m/s²\].
     pub gravity_m_s2: V2,
-    /// Planes of contact, at most [`MAX_PLANES`].
+    /// Planes of contact, at most `MAX_PLANES`.
     pub planes: Vec<MachinePlane>,
 }
 

@@ -20,7 +20,7 @@ pub struct RotorAdvice {
     pub nutation_hz: f64,
     /// By how much that turns from a sample to its force, the later plane's \[rad\].
     pub nutation_turn_rad: f64,
-    /// The spin at which that is [`MOST_TURN_RAD`] \[Hz\]; none of a rotor without polar inertia.
+    /// The spin at which that is `MOST_TURN_RAD` \[Hz\]; none of a rotor without polar inertia.
     pub spin_of_most_turn_hz: Option<f64>,
     /// Bending modes below half the control rate, in the order of their frequencies.
     pub modes: Vec<ModeAtRisk>,

@@ -85,7 +85,7 @@ impl Points {
         }
     }
 
-    /// So many points of a Sobol sequence, at most [`SOBOL_POINTS`](crate::sweep::sobol::SOBOL_POINTS).
+    /// So many points of a Sobol sequence, at most `SOBOL_POINTS`.
     pub fn sobol(runs: u64, keys: usize, seed: u64) -> Self {
         Self {
             keys,

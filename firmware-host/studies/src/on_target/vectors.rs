@@ -55,7 +55,7 @@ impl Stream {
         to.flush()
     }
 
-    /// Writes its ticks, a row of [`TICK_COLUMNS`] each.
+    /// Writes its ticks, a row of `TICK_COLUMNS` each.
     ///
     /// # Errors
     /// Of writing.

@@ -17,7 +17,7 @@ pub(crate) const ARRESTED: f64 = 0.25;
 pub struct TakeOver {
     /// Back in the middle in the end.
     pub recovered: bool,
-    /// When the backward angular momentum fell to [`ARRESTED`] of the start's \[s\]; `None` if never.
+    /// When the backward angular momentum fell to `ARRESTED` of the start's \[s\]; `None` if never.
     pub arrested_s: Option<f64>,
 }
 

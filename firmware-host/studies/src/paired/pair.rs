@@ -236,7 +236,7 @@ pub fn pair(scene: &Scene, goal: Goal) -> Tried {
 /// from an event first.
 pub(crate) const HOLDS_S: f64 = 3.0;
 
-/// Whether levitation alone has the rotor in the middle at the end of a scene, one of [`HOLDS_S`].
+/// Whether levitation alone has the rotor in the middle at the end of a scene, one of `HOLDS_S`.
 pub fn is_held(scene: &Scene) -> bool {
     run_rotor(scene, PolicyKind::Levitation).is_ok_and(|outcome| outcome.recovered)
 }
