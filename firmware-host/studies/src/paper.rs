@@ -90,7 +90,7 @@ pub struct Row {
 }
 
 /// A row farther than this from a value of the paper misses it: the paper's own numbers are "about".
-pub const MISS: f64 = 0.1;
+pub(crate) const MISS: f64 = 0.1;
 
 impl Row {
     /// computed/paper − 1, where both are there.

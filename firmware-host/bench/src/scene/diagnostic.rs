@@ -1,7 +1,8 @@
 //! Errors for people: which file, which line, which key, what was expected.
 
+use crate::scene::guess;
 use crate::scene::keys::{Key, row, short};
-use crate::scene::read::Refusal;
+use crate::scene::read::{Refusal, Slip};
 use miette::{Diagnostic, NamedSource, SourceSpan};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -189,19 +190,23 @@ impl SceneText {
     /// An error of a value that could not be read.
     pub(crate) fn error_of(&self, refusal: Refusal, keys: &'static [Key]) -> SceneError {
         let key = row(keys, &refusal.path);
-        if refusal.missing {
-            return self.missing_at(
-                &refusal.path,
-                key.map_or_else(String::new, Key::what_to_give),
-            );
-        }
         let is_value = |key: &&Key| key.below().is_empty();
         let to_give = || key.filter(is_value).map(Key::what_to_give);
-        self.error_at_key(
-            &refusal.path,
-            refusal.message,
-            refusal.help.or_else(to_give),
-        )
+        let help = match refusal.slip {
+            Slip::Missing => {
+                let to_give = key.map_or_else(String::new, Key::what_to_give);
+                return self.missing_at(&refusal.path, to_give);
+            }
+            Slip::Value => to_give(),
+            Slip::Key(known) => {
+                let name = refusal.path.rsplit('.').next();
+                guess::key(name.unwrap_or(&refusal.path), known.0)
+            }
+            Slip::Word { found, known } => {
+                guess::word(&found, known.iter().copied()).or_else(to_give)
+            }
+        };
+        self.error_at_key(&refusal.path, refusal.message, help)
     }
 
     /// An error of a key that is not there, at its table.

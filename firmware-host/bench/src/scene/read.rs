@@ -1,7 +1,6 @@
 //! Values of scene files from the tree that TOML is read into, and back. What is refused names its place below the table that it
 //! is read from.
 
-use crate::scene::guess;
 use crate::scene::keys::{Key, Kind, joined, short};
 use toml::{Table, Value};
 
@@ -24,10 +23,36 @@ pub(crate) struct Refusal {
     pub(crate) path: String,
     /// Behind the path.
     pub(crate) message: String,
-    /// What to do.
-    pub(crate) help: Option<String>,
-    /// Whether it is a key that is not there.
-    pub(crate) missing: bool,
+    /// What may have been meant.
+    pub(crate) slip: Slip,
+}
+
+/// A slip that a guess can be made of.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Slip {
+    /// A value that is of another kind.
+    Value,
+    /// A key that is not there.
+    Missing,
+    /// A key that these are not.
+    Key(KnownKeys),
+    /// A word that these are not.
+    Word {
+        /// As it is written.
+        found: String,
+        /// Words that may be written.
+        known: &'static [&'static str],
+    },
+}
+
+/// The keys of a table; all such are alike.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct KnownKeys(pub(crate) &'static [Key]);
+
+impl PartialEq for KnownKeys {
+    fn eq(&self, other: &Self) -> bool {
+        std::ptr::eq(self.0, other.0)
+    }
 }
 
 impl Refusal {
@@ -35,8 +60,7 @@ impl Refusal {
         Self {
             path: String::new(),
             message: message.into(),
-            help: None,
-            missing: false,
+            slip: Slip::Value,
         }
     }
 
@@ -79,7 +103,7 @@ pub(crate) fn only_known(table: &Table, keys: &'static [Key]) -> Result<(), Refu
             let known: Vec<String> = keys.iter().map(|key| format!("`{}`", key.name)).collect();
             let unknown = format!("unknown key, expected one of {}", known.join(", "));
             return Err(Refusal {
-                help: guess::key(name, keys),
+                slip: Slip::Key(KnownKeys(keys)),
                 ..Refusal::new(unknown)
             }
             .below(name));
@@ -121,14 +145,14 @@ pub(crate) fn value<T: KeyType>(table: &Table, key: &str) -> Result<Option<T>, R
 /// That a key is not there, which its table cannot do without.
 pub(crate) fn missing(key: &str) -> Refusal {
     Refusal {
-        missing: true,
+        slip: Slip::Missing,
         ..Refusal::new("is missing")
     }
     .below(key)
 }
 
 /// The number of a word among these.
-pub(crate) fn word(value: &Value, words: &[&str]) -> Result<usize, Refusal> {
+pub(crate) fn word(value: &Value, words: &'static [&'static str]) -> Result<usize, Refusal> {
     let quoted: Vec<String> = words.iter().map(|word| format!("`{word}`")).collect();
     let expected = format!("one of {}", quoted.join(", "));
     let Value::String(text) = value else {
@@ -136,7 +160,10 @@ pub(crate) fn word(value: &Value, words: &[&str]) -> Result<usize, Refusal> {
     };
     let found = words.iter().position(|word| word == text);
     found.ok_or_else(|| Refusal {
-        help: guess::word(text, words.iter().copied()),
+        slip: Slip::Word {
+            found: text.clone(),
+            known: words,
+        },
         ..Refusal::new(format!("is \"{text}\", expected {expected}"))
     })
 }

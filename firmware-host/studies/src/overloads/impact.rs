@@ -8,7 +8,7 @@ use plant_model::V2;
 /// Speeds grow by this factor.
 pub const STEP: f64 = 1.05;
 /// First speed \[m/s\].
-pub const FIRST_M_S: f64 = 0.05;
+pub(crate) const FIRST_M_S: f64 = 0.05;
 /// A policy that passes this speed is not searched further \[m/s\].
 const LAST_M_S: f64 = 5.0;
 

@@ -75,7 +75,7 @@ pub(super) fn footnote_4_at(contact_stiffness_n_m: f64) -> PlantParams {
 }
 
 /// [`footnote_4`] with another choice of what the paper leaves out.
-pub fn footnote_4_with(left_out: &LeftOut) -> PlantParams {
+pub(crate) fn footnote_4_with(left_out: &LeftOut) -> PlantParams {
     PlantParams {
         rotor: RotorParams {
             mass_kg: 10.0,
@@ -140,7 +140,7 @@ pub struct OnsetRig {
 
 impl OnsetRig {
     /// Spin \[rad/s\].
-    pub const SPIN_RAD_S: f64 = 40.0 * TAU;
+    pub(crate) const SPIN_RAD_S: f64 = 40.0 * TAU;
 
     /// The solid disc without the damping appliance.
     pub fn solid_disc(restitution: f64) -> Self {

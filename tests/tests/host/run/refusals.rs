@@ -172,7 +172,7 @@ fn bad_scenes_are_refused_with_file_line_key_and_expectation() {
             "force_n = [1300.0, 750.0]",
             "force_n = 1500.0",
             "force_n",
-            "give x and y",
+            "give two numbers in N, [x, y]",
         ),
         (
             "negative_stiffness_n_m = 2e5",
