@@ -63,7 +63,6 @@ macro_rules! kept {
 }
 
 /// What the paper has no bound for, or a wider one: earlier runs, closed forms, what a constant was fitted to.
-#[test]
 fn rows_keep_to_what_they_were() {
     kept! {
         ONSET, "Restitution e", 0.65, 0.75;
@@ -117,7 +116,6 @@ fn rows_keep_to_what_they_were() {
 }
 
 /// The simulated v_t,crit is in the note, with how far it is off.
-#[test]
 fn closed_form_of_the_threshold_is_met() {
     let rows = chapter(ONSET).rows.iter();
     let thresholds: Vec<_> = rows.filter(|r| r.item.starts_with("v_t,crit,")).collect();
@@ -134,7 +132,6 @@ fn closed_form_of_the_threshold_is_met() {
 
 /// Neither the multiple that counts as whirl nor spin, tolerance or finer steps change v_r,crit in its
 /// printed digits.
-#[test]
 fn choices_of_the_onset_do_not_matter() {
     let variants = &table(ONSET, "v_r,crit with one choice").rows;
     let (stiff, same): (Vec<_>, Vec<_>) = variants.iter().partition(|row| row[0].contains("k_c"));
@@ -147,7 +144,6 @@ fn choices_of_the_onset_do_not_matter() {
     }
 }
 
-#[test]
 fn robustness_goes_the_way_the_paper_says() {
     for (file, rises) in [
         ("maps_friction", false),
@@ -201,7 +197,6 @@ fn fringe_does_not_come_from_the_tolerance() {
     assert!(differing <= 2, "{differing}");
 }
 
-#[test]
 fn whirl_rises_to_a_plateau() {
     let of = |file, curve: usize| &curves(ESTABLISHED, file)[curve].points[..];
     let [isotropic, anisotropic] = [0, 1].map(|curve| of("established_whirl", curve));
@@ -231,7 +226,6 @@ fn whirl_rises_to_a_plateau() {
     assert!(sets.iter().any(|row| row[8] == "used"));
 }
 
-#[test]
 fn nine_phases_in_order() {
     let phases = &table(PHASES, "The phases").rows;
     let from = |i: usize| number(&phases[i][2]);
@@ -265,7 +259,6 @@ fn nine_phases_in_order() {
 
 /// Held spin meets the closed forms, and spin-down never passes the limit of the equations; against a contact that is
 /// as soft along the tangent it seems to overshoot.
-#[test]
 fn runs_meet_the_limits() {
     let held = &table(LIMITS, "Run to steady state").rows;
     assert_eq!(held.len(), 5);
@@ -291,7 +284,6 @@ fn runs_meet_the_limits() {
 }
 
 /// Drag that keeps a rolling whirl alive, from closed form, between two runs.
-#[test]
 fn drag_keeps_a_whirl_alive() {
     let drags = &table(RETAINER, "Race of 1e-3 kg m² with drag").rows;
     assert_ne!(drags[1][3], "lives on");
@@ -305,4 +297,17 @@ fn drag_keeps_a_whirl_alive() {
     // A bushing and five races; every figure has its curves.
     assert_eq!(table(RETAINER, "Footnote 4 from 40 Hz").rows.len(), 6);
     assert_eq!(chapter(RETAINER).figures.len(), 4);
+}
+
+/// A quick run serves all of them: it takes half a minute.
+#[test]
+fn a_quick_run_keeps_to_all_of_this() {
+    rows_keep_to_what_they_were();
+    closed_form_of_the_threshold_is_met();
+    choices_of_the_onset_do_not_matter();
+    robustness_goes_the_way_the_paper_says();
+    whirl_rises_to_a_plateau();
+    nine_phases_in_order();
+    runs_meet_the_limits();
+    drag_keeps_a_whirl_alive();
 }
