@@ -200,7 +200,7 @@ impl SceneText {
             Slip::Value => to_give(),
             Slip::Key(known) => {
                 let name = refusal.path.rsplit('.').next();
-                guess::key(name.unwrap_or(&refusal.path), known.0)
+                guess::key(name.unwrap_or(&refusal.path), known)
             }
             Slip::Word { found, known } => {
                 guess::word(&found, known.iter().copied()).or_else(to_give)

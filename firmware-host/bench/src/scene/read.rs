@@ -17,7 +17,7 @@ pub(crate) trait KeyType: Clone {
 }
 
 /// Why a value cannot be read.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub(crate) struct Refusal {
     /// Where it is, below what was read; empty for that itself.
     pub(crate) path: String,
@@ -28,14 +28,14 @@ pub(crate) struct Refusal {
 }
 
 /// A slip that a guess can be made of.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub(crate) enum Slip {
     /// A value that is of another kind.
     Value,
     /// A key that is not there.
     Missing,
     /// A key that these are not.
-    Key(KnownKeys),
+    Key(&'static [Key]),
     /// A word that these are not.
     Word {
         /// As it is written.
@@ -43,16 +43,6 @@ pub(crate) enum Slip {
         /// Words that may be written.
         known: &'static [&'static str],
     },
-}
-
-/// The keys of a table; all such are alike.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct KnownKeys(pub(crate) &'static [Key]);
-
-impl PartialEq for KnownKeys {
-    fn eq(&self, other: &Self) -> bool {
-        std::ptr::eq(self.0, other.0)
-    }
 }
 
 impl Refusal {
@@ -103,7 +93,7 @@ pub(crate) fn only_known(table: &Table, keys: &'static [Key]) -> Result<(), Refu
             let known: Vec<String> = keys.iter().map(|key| format!("`{}`", key.name)).collect();
             let unknown = format!("unknown key, expected one of {}", known.join(", "));
             return Err(Refusal {
-                slip: Slip::Key(KnownKeys(keys)),
+                slip: Slip::Key(keys),
                 ..Refusal::new(unknown)
             }
             .below(name));
