@@ -143,10 +143,12 @@ pub(crate) fn missing(key: &str) -> Refusal {
 
 /// The number of a word among these.
 pub(crate) fn word(value: &Value, words: &'static [&'static str]) -> Result<usize, Refusal> {
-    let quoted: Vec<String> = words.iter().map(|word| format!("`{word}`")).collect();
-    let expected = format!("one of {}", quoted.join(", "));
+    let expected = || {
+        let quoted: Vec<String> = words.iter().map(|word| format!("`{word}`")).collect();
+        format!("one of {}", quoted.join(", "))
+    };
     let Value::String(text) = value else {
-        return Err(Refusal::expected(value, &expected));
+        return Err(Refusal::expected(value, &expected()));
     };
     let found = words.iter().position(|word| word == text);
     found.ok_or_else(|| Refusal {
@@ -154,7 +156,7 @@ pub(crate) fn word(value: &Value, words: &'static [&'static str]) -> Result<usiz
             found: text.clone(),
             known: words,
         },
-        ..Refusal::new(format!("is \"{text}\", expected {expected}"))
+        ..Refusal::new(format!("is \"{text}\", expected {}", expected()))
     })
 }
 

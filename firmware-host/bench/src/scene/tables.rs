@@ -10,7 +10,7 @@ use crate::scene::read::{self, KeyType, Refusal};
 use crate::scene::values::{FaultName, MethodName, Numbers, Pair, PerAxis, PolicyNames, ShapeName};
 
 /// No number, or any.
-const ANY: Range = Elsewhere("");
+pub(crate) const ANY: Range = Elsewhere("");
 /// Times at which something begins \[s\].
 const START_S: Range = Within(0.0, 1e5);
 /// How long it lasts \[s\].

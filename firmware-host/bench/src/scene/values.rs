@@ -187,4 +187,5 @@ macro_rules! written_as_words {
         })*
     };
 }
+pub(crate) use written_as_words;
 written_as_words! { MethodName ShapeName FaultName Axis Delivers }

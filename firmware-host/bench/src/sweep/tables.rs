@@ -1,13 +1,11 @@
 //! The keys of sweep files: every row is a key. What values mean is decided where they are used.
 
-use crate::scene::keys::{Absent, Key, Kind, Range, absent, empty, key_tables};
+use crate::scene::keys::{Absent, Key, Kind, absent, empty, key_tables};
 use crate::scene::read::{self, KeyType, Refusal};
-use crate::scene::values::{Pair, PolicyNames};
+use crate::scene::tables::ANY;
+use crate::scene::values::{Pair, PolicyNames, written_as_words};
 use crate::sweep::design::Design;
 use toml::Value;
-
-/// What is allowed is said where it is checked.
-const ANY: Range = Range::Elsewhere("");
 
 key_tables! {
     /// A sweep file as written.
@@ -26,17 +24,7 @@ key_tables! {
     }
 }
 
-impl KeyType for Design {
-    const KIND: Kind = Kind::Word(Self::WORDS);
-
-    fn read(value: &Value) -> Result<Self, Refusal> {
-        read::word(value, Self::WORDS).map(|place| Self::ALL[place])
-    }
-
-    fn write(&self) -> Option<Value> {
-        Some(Value::String(self.name().to_owned()))
-    }
-}
+written_as_words! { Design }
 
 /// Values of any kind.
 #[derive(Debug, Clone)]
