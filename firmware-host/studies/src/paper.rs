@@ -99,7 +99,7 @@ impl Row {
         (paper.zip(self.computed)).map(|(paper, computed)| computed / paper - 1.0)
     }
 
-    /// Whether the paper is met: its bound or range, or its value to [`MISS`]. `None` where there is
+    /// Whether the paper is met: its bound or range, or its value to `MISS`. `None` where there is
     /// nothing to compare.
     pub fn holds(&self) -> Option<bool> {
         let computed = self.computed?;
