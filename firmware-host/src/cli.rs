@@ -3,6 +3,7 @@
 pub mod accuracy;
 pub mod advise;
 mod chapters;
+pub mod commission;
 pub mod completions;
 pub mod error;
 pub mod export;

@@ -2,8 +2,9 @@
 
 use clap::{CommandFactory, Parser, Subcommand};
 use firmware_host::cli::{
-    accuracy, advise, completions, error, export, fmu, harm, init, modes, overloads, paper, review,
-    run, schema, screen, sensitivity, serve_controller, study, sweep, target, vectors,
+    accuracy, advise, commission, completions, error, export, fmu, harm, init, modes, overloads,
+    paper, review, run, schema, screen, sensitivity, serve_controller, study, sweep, target,
+    vectors,
 };
 use std::process::ExitCode;
 
@@ -35,6 +36,8 @@ enum Command {
     Harm(harm::HarmArgs),
     /// Limits of a bearing in closed form, a suggested configuration of the supervisor, and what is weak.
     Advise(Box<advise::AdviseArgs>),
+    /// Find the numbers of a machine in the log of a commissioning run, and compare them with what is configured.
+    Commission(commission::CommissionArgs),
     /// Run a scene again and again with the supervisor told something wrong of its machine.
     Sensitivity(sensitivity::SensitivityArgs),
     /// Compute every number and figure of the paper; write a page with tables and plots.
@@ -72,6 +75,7 @@ fn main() -> ExitCode {
         Command::Overloads(args) => overloads::execute(args),
         Command::Harm(args) => harm::execute(args),
         Command::Advise(args) => advise::execute(args),
+        Command::Commission(args) => commission::execute(args),
         Command::Sensitivity(args) => sensitivity::execute(args),
         Command::Paper(args) => paper::execute(args),
         Command::Review(args) => review::execute(args),

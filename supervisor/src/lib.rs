@@ -48,12 +48,12 @@
 //! ```
 //!
 //! Files, each importing only from those above it: `number/words`, `number/scalar`, `number/product`, `number/q`,
-//! `number/vec2`, `border/parts`, `border/signal`, `border/config`, `border/shaft`, `border/bearing`,
+//! `number/vec2`, `border/parts`, `border/finding`, `border/signal`, `border/config`, `border/shaft`, `border/bearing`,
 //! `border/modes`, `border/coeffs`, `sense/reading`, `sense/innovation`, `sense/stuck`, `sense/guard`,
 //! `estimate/unbalance`, `estimate/bending`, `estimate/monitor`, `estimate/observer`, `estimate/neighbour`,
 //! `decide/detect`, `decide/classify`, `decide/phase`, `decide/trust`, `act/law`, `act/limit`, `act/handover`,
 //! `account/tally`, `account/severity`, `tick`, `record/entry`, `record/publish`, `record/buffer`,
-//! `record/recorder`, `record/sections`, `record/ledger`, `per_unit`, `supervisor`, `rotor/coupling`,
+//! `record/recorder`, `record/sections`, `record/ledger`, `per_unit`, `check`, `supervisor`, `rotor/coupling`,
 //! `rotor/two_planes`, `archive`, `self_test`, `watch`, `log_format`.
 
 // Unconditional: under `cfg(test)` std's own methods would silently replace micromath's.
@@ -73,6 +73,7 @@ mod border {
     pub(crate) mod bearing;
     pub(crate) mod coeffs;
     pub(crate) mod config;
+    pub(crate) mod finding;
     pub(crate) mod modes;
     pub(crate) mod parts;
     pub(crate) mod shaft;
@@ -115,6 +116,7 @@ mod record {
     pub(crate) mod recorder;
     pub(crate) mod sections;
 }
+mod check;
 mod per_unit;
 mod supervisor;
 mod rotor {
@@ -134,6 +136,7 @@ pub use border::config::{
     Config, ConfigError, Contradiction, CoreError, DefaultRule, Group, NotRepresentable,
     PARAMETERS, Parameter, RULES, Rule,
 };
+pub use border::finding::{Checked, Finding};
 pub use border::shaft::{PlanePositions, Shaft, ShaftError};
 pub use border::signal::{
     Command, CoreCommand, CoreSample, Events, IntegratorHint, Limits, Mode, RejectReason, Report,

@@ -6,6 +6,7 @@ use crate::border::config::{Config, CoreError, NotRepresentable};
 use crate::border::signal::{CoreCommand, CoreSample, Events, Mode, Report};
 use crate::estimate::neighbour::{Neighbour, PlaneState};
 use crate::number::scalar::Scalar;
+use crate::number::vec2::Vec2;
 use crate::number::words::Words;
 use crate::record::publish::QueuedEvent;
 use crate::record::recorder::{Recorder, Seen, Shared};
@@ -173,6 +174,18 @@ impl<S: Scalar> Plane<S> {
     }
 
     #[inline]
+    pub(crate) fn coeffs(&self) -> &Coeffs<S> {
+        &self.coeffs
+    }
+
+    /// Whether the levitation controller has the bearing, and what the commands since make of the rotor's acceleration.
+    #[inline]
+    pub(crate) fn levitates(&self) -> (bool, Vec2<S>) {
+        let state = &self.state;
+        (!state.phase.is_engaged(), *state.observer.delivered())
+    }
+
+    #[inline]
     fn tally(&self) -> Tally<S> {
         let State {
             guard,
@@ -289,7 +302,8 @@ impl<S: Scalar, const RECORD: usize> Core<S, RECORD> {
     /// What has happened since the supervisor was made, in SI.
     pub fn report(&self) -> Report {
         let plane = &self.plane;
-        plane.tally().report(&Units::of(&plane.coeffs))
+        let checked = self.shared.checked.get();
+        plane.tally().report(&Units::of(&plane.coeffs), checked)
     }
 
     /// The frozen flight record, if there is one.

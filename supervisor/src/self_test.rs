@@ -8,6 +8,7 @@ use crate::border::config::Config;
 use crate::border::parts::ALL;
 use crate::border::shaft::{PlanePositions, Shaft};
 use crate::border::signal::{Command, CoreCommand, CoreSample, Events, Sample, Status};
+use crate::check::Check;
 use crate::number::scalar::Scalar;
 use crate::number::vec2::Vec2;
 use crate::per_unit::{Core, Prepared};
@@ -247,9 +248,11 @@ impl<const RECORD: usize> Supervisor<RECORD> {
     /// As [`Core::self_test`], by [`Self::tick`].
     pub fn self_test(&mut self) -> SelfTest {
         let kept = self.core.plane.begin_test(&prepared());
+        let check = core::mem::replace(&mut self.check, Check::off());
         let result = SelfTest::run(IN_NEWTONS, |sample| {
             [self.tick(&in_metres(sample))].map(answer)
         });
+        self.check = check;
         self.core.plane.end_test(&self.core.shared, kept);
         result
     }
@@ -258,12 +261,15 @@ impl<const RECORD: usize> Supervisor<RECORD> {
 impl<const RECORD: usize> Ticker<'_, RECORD> {
     /// As [`Core::self_test`], by [`Self::tick`], which publishes the modes of the test meanwhile.
     pub fn self_test(&mut self) -> SelfTest {
-        let kept = self.0.plane.begin_test(&prepared());
+        let kept = self.core.plane.begin_test(&prepared());
+        let check = core::mem::replace(self.check, Check::off());
         let result = SelfTest::run(IN_NEWTONS, |sample| {
             [self.tick(&in_metres(sample))].map(answer)
         });
-        self.0.plane.end_test(self.0.shared, kept);
-        self.0.plane.publish(self.0.shared, true);
+        *self.check = check;
+        let CoreTicker { plane, shared } = &mut self.core;
+        plane.end_test(shared, kept);
+        plane.publish(shared, true);
         result
     }
 }

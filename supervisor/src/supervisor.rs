@@ -4,7 +4,9 @@
 
 use crate::border::coeffs::Scaling;
 use crate::border::config::{Config, ConfigError};
+use crate::border::finding::CheckedCell;
 use crate::border::signal::{Command, CoreCommand, CoreSample, Mode, Report, Sample, Status};
+use crate::check::{Check, Seen};
 use crate::number::scalar::Scalar;
 use crate::per_unit::{Core, Plane, Prepared};
 use crate::record::publish::QueuedEvent;
@@ -16,6 +18,7 @@ use core::marker::PhantomData;
 #[derive(Debug, Clone)]
 pub struct Supervisor<const RECORD: usize = 512> {
     pub(crate) core: Core<f32, RECORD>,
+    pub(crate) check: Check,
 }
 
 impl<const RECORD: usize> Supervisor<RECORD> {
@@ -42,9 +45,12 @@ impl<const RECORD: usize> Supervisor<RECORD> {
     pub(crate) fn from_valid(config: &Config, plane: [u8; 2]) -> Self {
         // Whatever is in range `f32` holds.
         let (prepared, _) = Prepared::from_valid(config);
-        Self {
+        let new = Self {
             core: Core::of_plane(&prepared, plane),
-        }
+            check: Check::new(config),
+        };
+        new.check.begin(&new.core.shared.checked);
+        new
     }
 
     /// Takes another configuration over, to hold from the next tick on; see [`Core::reconfigure`]. It
@@ -57,6 +63,8 @@ impl<const RECORD: usize> Supervisor<RECORD> {
         config.validate()?;
         let (prepared, _) = Prepared::from_valid(config);
         self.core.reconfigure(&prepared);
+        self.check = Check::new(config);
+        self.check.begin(&self.core.shared.checked);
         Ok(())
     }
 
@@ -64,10 +72,21 @@ impl<const RECORD: usize> Supervisor<RECORD> {
     // One copy, whoever calls it: the self-test does, too.
     #[inline(never)]
     pub fn tick(&mut self, sample: &Sample) -> Command {
-        let per_unit = self.core.scaling().sample(sample);
         let core = &mut self.core;
+        let mut per_unit = core.scaling().sample(sample);
+        per_unit.status = self.check.admitted(per_unit.status);
         let command = core.plane.tick(&core.shared, &per_unit);
+        if !self.check.is_over() {
+            watch(&mut self.check, &core.shared.checked, &core.plane, sample);
+        }
         in_newtons(self.core.scaling(), sample, &per_unit, &command)
+    }
+
+    /// What firmware adds to the force that it asks for next \[N\], so that the configuration is held against the machine: a sine of
+    /// 3.5 % of the cap for some seconds of levitation, and nothing before and after; see [`Config::check_first`].
+    pub fn stimulus_n(&self) -> [f32; 2] {
+        let force_n = self.core.scaling().force_n;
+        self.check.stimulus().map(|force| force * force_n)
     }
 
     /// What the supervisor is doing.
@@ -96,6 +115,16 @@ impl<const RECORD: usize> Supervisor<RECORD> {
     }
 }
 
+/// The check looks at a tick of a plane that stands alone: from outside of the tick, and with units of its own, so that a tick that
+/// is not looked at keeps its numbers in registers.
+#[cold]
+#[inline(never)]
+fn watch(check: &mut Check, cell: &CheckedCell, plane: &Plane<f32>, sample: &Sample) {
+    let per_unit = plane.scaling().sample(sample);
+    let seen = Seen::new(&per_unit, plane.levitates(), plane.coeffs());
+    check.watch(cell, &seen);
+}
+
 /// The command for a sample in SI.
 #[inline]
 pub(crate) fn in_newtons(
@@ -120,7 +149,7 @@ pub(crate) fn in_newtons(
         }
     };
     as_asked(&mut newtons.force_n, command.force);
-    if sample.status.contains(Status::SHADOW) {
+    if per_unit.status.contains(Status::SHADOW) {
         as_asked(&mut newtons.own_n, command.own);
     } else {
         newtons.own_n = newtons.force_n;
@@ -159,16 +188,30 @@ impl<S: Scalar, const RECORD: usize> CoreTicker<'_, S, RECORD> {
 
 /// The half of a [`Supervisor`] that ticks: for the control interrupt, or whatever owns the bearing.
 #[derive(Debug)]
-pub struct Ticker<'a, const RECORD: usize = 512>(pub(crate) CoreTicker<'a, f32, RECORD>);
+pub struct Ticker<'a, const RECORD: usize = 512> {
+    pub(crate) core: CoreTicker<'a, f32, RECORD>,
+    pub(crate) check: &'a mut Check,
+}
 
 impl<const RECORD: usize> Ticker<'_, RECORD> {
     /// As [`Supervisor::tick`]; the reader sees what has come of it from then on.
     // One copy, whoever calls it: the self-test does, too.
     #[inline(never)]
     pub fn tick(&mut self, sample: &Sample) -> Command {
-        let per_unit = self.0.plane.scaling().sample(sample);
-        let command = self.0.ticked(&per_unit);
-        in_newtons(self.0.plane.scaling(), sample, &per_unit, &command)
+        let Self { core, check } = self;
+        let mut per_unit = core.plane.scaling().sample(sample);
+        per_unit.status = check.admitted(per_unit.status);
+        let command = core.ticked(&per_unit);
+        if !check.is_over() {
+            watch(check, &core.shared.checked, core.plane, sample);
+        }
+        in_newtons(core.plane.scaling(), sample, &per_unit, &command)
+    }
+
+    /// As [`Supervisor::stimulus_n`].
+    pub fn stimulus_n(&self) -> [f32; 2] {
+        let force_n = self.core.plane.scaling().force_n;
+        self.check.stimulus().map(|force| force * force_n)
     }
 
     /// As [`Supervisor::reconfigure`]: between two ticks.
@@ -178,7 +221,9 @@ impl<const RECORD: usize> Ticker<'_, RECORD> {
     pub fn reconfigure(&mut self, config: &Config) -> Result<(), ConfigError> {
         config.validate()?;
         let (prepared, _) = Prepared::from_valid(config);
-        self.0.reconfigure(&prepared);
+        self.core.reconfigure(&prepared);
+        *self.check = Check::new(config);
+        self.check.begin(&self.core.shared.checked);
         Ok(())
     }
 }
@@ -244,7 +289,7 @@ impl<S: Scalar, const RECORD: usize> Published<'_, S, RECORD> {
     /// it from the tick after it on. `None` where ticks came in between eight times, which takes
     /// some hundred instructions of this call each; and, asked from what has interrupted a tick, always.
     pub fn report(&self) -> Option<Report> {
-        self.shared.latest.report::<S>()
+        self.shared.latest.report::<S>(self.shared.checked.get())
     }
 }
 
@@ -271,7 +316,9 @@ impl<const RECORD: usize> Supervisor<RECORD> {
     #[doc(hidden)]
     #[inline]
     pub fn ticker(&mut self) -> Ticker<'_, RECORD> {
-        Ticker(self.core.ticker())
+        let Self { core, check } = self;
+        let core = core.ticker();
+        Ticker { core, check }
     }
 
     /// Two halves for two priorities: one ticks, the other takes events and records away. No lock is needed between them, and
@@ -295,7 +342,8 @@ impl<const RECORD: usize> Supervisor<RECORD> {
     /// # Ok::<(), supervisor::ConfigError>(())
     /// ```
     pub fn split(&mut self) -> (Ticker<'_, RECORD>, Reader<'_, f32, RECORD>) {
-        let (ticker, reader) = self.core.split();
-        (Ticker(ticker), reader)
+        let Self { core, check } = self;
+        let (core, reader) = core.split();
+        (Ticker { core, check }, reader)
     }
 }

@@ -33,13 +33,14 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Rooms, each importing only from those above it: `words`, `bisection`, `crossover`, `device`, `scene`, `record`, `run`, `modes`, `report`, `advise`, `sweep`.
+//! Rooms, each importing only from those above it: `words`, `bisection`, `crossover`, `device`, `scene`, `commission`, `record`, `run`, `modes`, `report`, `advise`, `sweep`.
 
 #![forbid(unsafe_code)]
 #![warn(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 pub mod advise;
 mod bisection;
+pub mod commission;
 mod crossover;
 pub mod device;
 pub mod modes;

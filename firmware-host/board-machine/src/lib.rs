@@ -47,6 +47,8 @@ pub const CONFIG: Config = Config {
     position_limit: 0.95 * SENSOR_RANGE_M / BEARING.clearance_m,
     // What the magnets pull at most along one axis, where force is still proportional to current.
     axis_force_max_n: Magnets::FORCE_MAX_N,
+    // It is simulated: nothing is there to confirm.
+    check_first: 0.0,
     ..Config::for_bearing(&BEARING)
 };
 

@@ -355,6 +355,7 @@ pub fn add_report(hash: &mut Hash, report: &Report) {
         late_ticks,
         refusal,
         fault,
+        checked,
     } = *report;
     for counter in [
         landings,
@@ -378,7 +379,13 @@ pub fn add_report(hash: &mut Hash, report: &Report) {
     ] {
         hash.add(&number.to_bits().to_le_bytes());
     }
-    hash.add(&[u8::from(coast_down), refusal as u8, fault as u8]);
+    hash.add(&[
+        u8::from(coast_down),
+        refusal as u8,
+        fault as u8,
+        checked.finding as u8,
+    ]);
+    hash.add(&checked.value.to_bits().to_le_bytes());
 }
 
 /// Takes an event of the queue into a hash.

@@ -165,6 +165,12 @@ impl Supervisor {
         self.of.rearm();
     }
 
+    /// What to add to the force of the next tick, so that the machine confirms its configuration.
+    #[getter]
+    fn stimulus_n<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
+        pair_array(py, wide(self.of.stimulus_n())).into_any()
+    }
+
     /// What has happened since it was made.
     fn report<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let of = self.of.report();
@@ -196,6 +202,8 @@ impl Supervisor {
         dict.set_item("coast_down", of.coast_down)?;
         dict.set_item("refusal", format!("{:?}", of.refusal))?;
         dict.set_item("fault", format!("{:?}", of.fault))?;
+        dict.set_item("finding", of.checked.finding.name())?;
+        dict.set_item("finding_value", f64::from(of.checked.value))?;
         Ok(dict)
     }
 }

@@ -33,7 +33,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Rooms, each importing only from those above it: `campaign`, `machines`, `accuracy`, `paper`, `overloads`, `found_in_records`, `paired`,
+//! Rooms, each importing only from those above it: `campaign`, `machines`, `accuracy`, `paper`, `overloads`, `found_in_records`, `paired`, `commissioning`,
 //! `trials`, `unseen_machines`, `whole_rotors`, `loop_rates`, `sensitivity`, `on_target`.
 
 #![forbid(unsafe_code)]
@@ -41,6 +41,7 @@
 
 pub mod accuracy;
 pub mod campaign;
+pub mod commissioning;
 pub mod found_in_records;
 pub mod loop_rates;
 pub mod machines;
@@ -68,6 +69,12 @@ pub const STUDIES: &[Study] = &[
         about: "what it is worth to configure a bending mode, and what a wrong one costs",
         run: paired::bending::study,
         drawn: None,
+    },
+    Study {
+        name: "commissioning",
+        about: "mistakes of who links the supervisor, found on levitated machines before it acts",
+        run: commissioning::study,
+        drawn: Some(commissioning::drawn),
     },
     Study {
         name: "found-in-records",

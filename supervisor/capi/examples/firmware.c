@@ -36,6 +36,7 @@ static amb_code configure(float values[AMB_PARAMETERS]) {
     values[AMB_P_FORCE_SLEW_N_S] = 1e7f; /* slew limit and budget of the drive */
     values[AMB_P_CONTINUOUS_FORCE_N] = 400.0f;
     values[AMB_P_SENSOR_STEP_M] = 1e-8f;
+    values[AMB_P_CHECK_FIRST] = 0.0f; /* a rig of integers confirms nothing; a machine would */
     return AMB_OK;
 }
 

@@ -42,7 +42,10 @@ static amb_code configuration(SimStruct *S, float values[AMB_PARAMETERS]) {
         const amb_bearing bearing = {(float)numbers[0], (float)numbers[1], (float)numbers[2],
                                      (float)numbers[3], (float)numbers[4], (float)numbers[5],
                                      (float)numbers[6], (float)numbers[7], (float)numbers[8]};
-        return amb_config_for_bearing(&bearing, values, AMB_PARAMETERS);
+        const amb_code code = amb_config_for_bearing(&bearing, values, AMB_PARAMETERS);
+        /* A simulated machine has the numbers that it was made of. */
+        values[AMB_P_CHECK_FIRST] = 0.0f;
+        return code;
     }
     return AMB_ERROR_VALUES_COUNT;
 }

@@ -155,6 +155,8 @@ static int run(const char *who, int supervised, double blow_n_s) {
     memset(&m, 0, sizeof m);
     bearings[0] = bearings[1] = bearing;
     code = amb_config_for_rotor(&shaft, bearings, values, 2 * AMB_PARAMETERS);
+    /* A model has the numbers that it was made of; a machine would confirm them first. */
+    values[AMB_P_CHECK_FIRST] = values[AMB_PARAMETERS + AMB_P_CHECK_FIRST] = 0.0f;
     if (code == AMB_OK) code = amb_rotor_init(&rotor, sizeof rotor, &shaft, values, 2 * AMB_PARAMETERS);
     if (code != AMB_OK) {
         fprintf(stderr, "supervisor: %s\n", amb_error_text(code));

@@ -16,13 +16,17 @@
  * if (code == AMB_OK) code = amb_init(&plane, sizeof plane, config, AMB_PARAMETERS);
  * if (code != AMB_OK) stop(amb_error_text(code));
  *
+ * float stimulus_n[2] = {0.0f, 0.0f};
+ * amb_stimulus(&plane, stimulus_n);
+ * sample.levitation_n[0] = levitation_n[0] + stimulus_n[0];
+ * sample.levitation_n[1] = levitation_n[1] + stimulus_n[1];
  * amb_command command;
  * amb_tick(&plane, &sample, &command);
  * amplifiers_set(command.force_n);
  * @endcode
  *
- * A static supervisor is zero at start; the text of a code names the parameter that is outside its range; the last three lines
- * are those of the control interrupt.
+ * A static supervisor is zero at start; the text of a code names the parameter that is outside its range; all from the stimulus on
+ * is of the control interrupt.
  *
  * Units are in the names: _m, _n (newton), _s, _rad_s, _m_s, _n_m (N/m), _hz. x right, y up, angles and
  * spin counter-clockwise positive.
@@ -33,7 +37,7 @@
  *
  * Calls on a supervisor come from three sides, none of which holds another up, in whatever order they interrupt each other:
  *
- * - the tick's: amb_tick, amb_reconfigure, amb_self_test, and those of a rotor. One call at a time.
+ * - the tick's: amb_tick, amb_stimulus, amb_reconfigure, amb_self_test, and those of a rotor. One call at a time.
  * - one reader's, of any lower priority or on another processor: amb_next_event, amb_record_section, amb_rearm, and those of a
  *   rotor; amb_ledger_take_in and amb_ledger_take_in_plane, and all calls of an archive. One call at a time.
  * - everybody's, with a pointer to const: amb_mode, amb_report_now, amb_rotor_report_now. Any number of calls at a time.
@@ -49,7 +53,7 @@
 #include <stdint.h>
 
 /** Version of the interface that this header describes. */
-#define AMB_ABI 5
+#define AMB_ABI 6
 
 /* Written beside the library when that is built; give its folder to the compiler with -I. */
 #include "amb_supervisor_abi.h"
@@ -69,6 +73,7 @@
 #define amb_self_test AMB_JOIN(amb_self_test, AMB_ABI)
 #define amb_reconfigure AMB_JOIN(amb_reconfigure, AMB_ABI)
 #define amb_tick AMB_JOIN(amb_tick, AMB_ABI)
+#define amb_stimulus AMB_JOIN(amb_stimulus, AMB_ABI)
 #define amb_mode AMB_JOIN(amb_mode, AMB_ABI)
 #define amb_mode_name AMB_JOIN(amb_mode_name, AMB_ABI)
 #define amb_report_now AMB_JOIN(amb_report_now, AMB_ABI)
@@ -79,6 +84,7 @@
 #define amb_rotor_self_test AMB_JOIN(amb_rotor_self_test, AMB_ABI)
 #define amb_rotor_reconfigure AMB_JOIN(amb_rotor_reconfigure, AMB_ABI)
 #define amb_rotor_tick AMB_JOIN(amb_rotor_tick, AMB_ABI)
+#define amb_rotor_stimulus AMB_JOIN(amb_rotor_stimulus, AMB_ABI)
 #define amb_rotor_report_now AMB_JOIN(amb_rotor_report_now, AMB_ABI)
 #define amb_rotor_next_event AMB_JOIN(amb_rotor_next_event, AMB_ABI)
 #define amb_rotor_record_section AMB_JOIN(amb_rotor_record_section, AMB_ABI)
@@ -229,8 +235,9 @@ typedef int32_t amb_code;
 #define AMB_P_BENDING_FIRST_HZ 31 /**< Hz, 0 to 1e5: Natural frequency of a bending mode that the force would drive, the lower end of what is likely; 0 where there is none. */
 #define AMB_P_BENDING_SECOND_HZ 32 /**< Hz, 0 to 1e5: The same of a second mode; 0 where there is none. */
 #define AMB_P_ACTS_IN_FLIGHT 33 /**< 1, 0 to 1: 1: the supervisor acts from the approach on; 0: levitation keeps the rotor in the air, and the supervisor acts on evident backward whirl alone, for shafts whose bending its force would drive. */
+#define AMB_P_CHECK_FIRST 34 /**< 1, 0 to 1: 1: the supervisor only watches, as with `SHADOW`, until the machine has confirmed its configuration by levitating with the stimulus; 0: it acts unchecked, for firmware that knows better. */
 /** How many there are. */
-#define AMB_PARAMETERS 34
+#define AMB_PARAMETERS 35
 /** @} */
 
 /** @name Status bits of a sample @{ */
@@ -293,6 +300,24 @@ typedef int32_t amb_code;
 #define AMB_EVENT_RECORD_FROZEN 0x10000u /**< there is a record to be read */
 #define AMB_EVENT_QUEUE_FULL 0x20000u    /**< an event before this one was lost; only in the queue */
 #define AMB_EVENT_HANDED_BACK 0x40000u   /**< an engagement made no progress: the levitation controller has the bearing */
+/** @} */
+
+/** @name What the check of the configuration has come to, see amb_stimulus(); from 3 on the machine contradicts @{ */
+#define AMB_FINDING_UNCHECKED 0u      /**< nobody has asked for a check: AMB_P_CHECK_FIRST is 0 */
+#define AMB_FINDING_NOT_YET 1u        /**< not enough has been seen, or no stimulus came through */
+#define AMB_FINDING_PASSED 2u         /**< nothing contradicts: the supervisor may act */
+#define AMB_FINDING_AXES_SWAPPED 3u   /**< x and y of sensor or force are exchanged */
+#define AMB_FINDING_AXIS_INVERTED 4u  /**< one axis of sensor or force is inverted */
+#define AMB_FINDING_FORCE_INVERTED 5u /**< force and position have opposite signs */
+#define AMB_FINDING_AXES_TURNED 6u    /**< the axes of force and sensor are turned against each other, by the value in rad */
+#define AMB_FINDING_AXES_SKEWED 7u    /**< axes not at right angles, or gains that differ; their cosine, or ratio */
+#define AMB_FINDING_GAIN 8u           /**< the rotor is moved the value times as much as configured: mass, unit or gain, period, ratio of planes */
+#define AMB_FINDING_DELAY 9u          /**< the force comes the value in ticks later than configured: delay or lag */
+#define AMB_FINDING_NO_ANSWER 10u     /**< the rotor does not answer to the force; share of its motion that is not explained */
+#define AMB_FINDING_SPIN_REVERSED 11u /**< the orbit of the unbalance goes round against the spin, which is not believed any more */
+#define AMB_FINDING_SPIN_UNIT 12u     /**< the orbit goes round at the spin times 2 pi / 60: revolutions a minute for rad/s */
+#define AMB_FINDING_CLEARANCE 13u     /**< a rotor at rest without force lies at the value, in clearances, from the centre */
+#define AMB_FINDING_POSITION 14u      /**< levitated, the rotor is read at the value, in clearances, and more from the centre */
 /** @} */
 
 /** @name Why a sample was refused @{ */
@@ -358,7 +383,7 @@ typedef struct amb_shaft {
 } amb_shaft;
 
 /** Bytes of an amb_archive_place. */
-#define AMB_ARCHIVE_PLACE_BYTES 27088
+#define AMB_ARCHIVE_PLACE_BYTES 27096
 
 /** Room for the record of one event of one plane. Opaque and aligned as an amb_supervisor. */
 typedef union amb_archive_place {
@@ -431,7 +456,7 @@ typedef struct amb_event {
 } amb_event;
 
 /** Version of the format of a flight record. */
-#define AMB_RECORD_VERSION 3
+#define AMB_RECORD_VERSION 4
 /** Most ticks of a record, a quarter of them from before the supervisor engaged. */
 #define AMB_RECORD_ENTRIES 512
 
@@ -470,6 +495,8 @@ typedef struct amb_report {
     float force_cap_n;            /**< force cap now [N] */
     uint32_t nuisance_engagements; /**< engagements without a touch */
     uint32_t handed_back;         /**< times that the bearing was handed back, as an engagement made no progress */
+    uint32_t finding;             /**< AMB_FINDING_: what the check of the configuration has come to */
+    float finding_value;          /**< by how much, as AMB_FINDING_ says, to three digits */
 } amb_report;
 
 /** Version of the format of a ledger. */
@@ -511,7 +538,7 @@ typedef struct amb_parameter {
 #define AMB_SIZEOF_EVENT 12
 #define AMB_SIZEOF_STAMP 16
 #define AMB_SIZEOF_SECTION 740
-#define AMB_SIZEOF_REPORT 68
+#define AMB_SIZEOF_REPORT 76
 #define AMB_SIZEOF_LEDGER 48
 /** @} */
 
@@ -586,6 +613,8 @@ AMB_ASSERT(report_thermal_state, offsetof(amb_report, thermal_state) == 52);
 AMB_ASSERT(report_force_cap_n, offsetof(amb_report, force_cap_n) == 56);
 AMB_ASSERT(report_nuisance_engagements, offsetof(amb_report, nuisance_engagements) == 60);
 AMB_ASSERT(report_handed_back, offsetof(amb_report, handed_back) == 64);
+AMB_ASSERT(report_finding, offsetof(amb_report, finding) == 68);
+AMB_ASSERT(report_finding_value, offsetof(amb_report, finding_value) == 72);
 AMB_ASSERT(ledger_size, sizeof(amb_ledger) == AMB_SIZEOF_LEDGER);
 AMB_ASSERT(ledger_bearing, offsetof(amb_ledger, bearing) == 0);
 AMB_ASSERT(ledger_updates, offsetof(amb_ledger, updates) == 4);
@@ -699,6 +728,16 @@ amb_code amb_reconfigure(amb_supervisor *supervisor, const float *values, size_t
 amb_code amb_tick(amb_supervisor *supervisor, const amb_sample *sample, amb_command *command);
 
 /**
+ * What to add to the force that the levitation controller asks for at the next tick, so that the machine confirms its configuration:
+ * a sine of 5 % of the cap for some seconds, along one axis after the other, and zero before and after. Until AMB_FINDING_PASSED
+ * the supervisor only watches, as with AMB_STATUS_SHADOW, unless AMB_P_CHECK_FIRST is 0. One of the tick's calls, between two ticks.
+ * @param supervisor made by amb_init().
+ * @param[out] stimulus_n two floats, x and y [N]; untouched after an error.
+ * @return AMB_OK, or an error of supervisor or result.
+ */
+amb_code amb_stimulus(amb_supervisor *supervisor, float *stimulus_n);
+
+/**
  * What the supervisor was doing after its last tick. From anywhere, at any time.
  * @param supervisor made by amb_init().
  * @param[out] mode AMB_MODE_; untouched after an error.
@@ -791,6 +830,14 @@ amb_code amb_rotor_reconfigure(amb_rotor *rotor, const amb_shaft *shaft, const f
  * @return AMB_OK, or an error of rotor, sample or command.
  */
 amb_code amb_rotor_tick(amb_rotor *rotor, const amb_sample *samples, amb_rotor_command *command);
+
+/**
+ * As amb_stimulus(), of one plane after the other; the rotor acts once both have passed.
+ * @param rotor made by amb_rotor_init().
+ * @param[out] stimulus_n four floats, x and y of plane 0 and of plane 1 [N]; untouched after an error.
+ * @return AMB_OK, or an error of rotor or result.
+ */
+amb_code amb_rotor_stimulus(amb_rotor *rotor, float *stimulus_n);
 
 /**
  * What had happened to a plane from amb_rotor_init() to one of the last ticks, as amb_report_now(). From anywhere, at any time.

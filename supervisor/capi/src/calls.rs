@@ -12,7 +12,7 @@ use supervisor::{Config, PARAMETERS, Section, Stamp};
 /// Ending of the names; [`version::ABI`] as text.
 macro_rules! ending {
     () => {
-        "_abi5"
+        "_abi6"
     };
 }
 
@@ -217,6 +217,24 @@ pub unsafe extern "C" fn amb_tick(
     if done.is_err() {
         place.put(CCommand::NO_FORCE);
     }
+    Code::from_result(done)
+}
+
+/// What to add to the force of the next tick.
+///
+/// # Safety
+/// `supervisor` as for [`amb_tick`]; `stimulus_n` is null, misaligned, or points to two floats.
+// SAFETY: a name of its own, see `amb_abi_version`.
+#[unsafe(export_name = concat!("amb_stimulus", ending!()))]
+pub unsafe extern "C" fn amb_stimulus(supervisor: *mut Storage, stimulus_n: *mut f32) -> Code {
+    // SAFETY: the caller's promise; an array is aligned as its elements.
+    let place = unsafe { Place::new(Argument::Result, stimulus_n.cast::<[f32; 2]>()) };
+    let done = place.and_then(|place| {
+        // SAFETY: the caller's promise.
+        let mut lease = unsafe { halves::ticker(supervisor) }?;
+        place.put(lease.content().stimulus_n());
+        Ok(())
+    });
     Code::from_result(done)
 }
 

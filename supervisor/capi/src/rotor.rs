@@ -110,6 +110,27 @@ pub unsafe extern "C" fn amb_rotor_tick(
     Code::from_result(done)
 }
 
+/// What to add to the forces of the next tick.
+///
+/// # Safety
+/// `rotor` as for [`amb_rotor_tick`]; `stimulus_n` is null, misaligned, or points to four floats.
+// SAFETY: a name of its own, see `amb_rotor_init`.
+#[unsafe(export_name = concat!("amb_rotor_stimulus", ending!()))]
+pub unsafe extern "C" fn amb_rotor_stimulus(
+    rotor: *mut RotorStorage,
+    stimulus_n: *mut f32,
+) -> Code {
+    // SAFETY: the caller's promise; an array is aligned as its elements.
+    let place = unsafe { Place::new(Argument::Result, stimulus_n.cast::<[[f32; 2]; 2]>()) };
+    let done = place.and_then(|place| {
+        // SAFETY: the caller's promise.
+        let mut lease = unsafe { halves::ticker(rotor) }?;
+        place.put(lease.content().stimulus_n());
+        Ok(())
+    });
+    Code::from_result(done)
+}
+
 /// A plane that there is.
 pub(crate) fn plane(number: u32) -> Result<usize, Code> {
     match number {

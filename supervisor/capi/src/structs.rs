@@ -168,7 +168,7 @@ impl From<CStamp> for Stamp {
 
 c_struct! {
     /// What has happened since the supervisor was made: [`Report`].
-    CReport = "amb_report", 68 {
+    CReport = "amb_report", 76 {
         /// Engagements in which the rotor touched.
         landings: u32 = 0,
         /// Touches in them.
@@ -203,6 +203,10 @@ c_struct! {
         nuisance_engagements: u32 = 60,
         /// Times that the bearing was handed back.
         handed_back: u32 = 64,
+        /// What the check has come to: [`supervisor::Finding`].
+        finding: u32 = 68,
+        /// By how much, as the finding says.
+        finding_value: f32 = 72,
     }
 }
 
@@ -447,6 +451,8 @@ impl From<Report> for CReport {
             force_cap_n: report.force_cap_n,
             nuisance_engagements: report.nuisance_engagements,
             handed_back: report.handed_back,
+            finding: report.checked.finding as u32,
+            finding_value: report.checked.value,
         }
     }
 }

@@ -3,6 +3,7 @@
 
 use crate::act::limit::derated;
 use crate::border::coeffs::Coeffs;
+use crate::border::finding::Checked;
 use crate::border::signal::{Mode, RejectReason, Report};
 use crate::number::scalar::Scalar;
 use crate::number::words::words_of_fields;
@@ -91,7 +92,7 @@ impl<S: Scalar> Units<S> {
 
 impl<S: Scalar> Tally<S> {
     /// In SI.
-    pub(crate) fn report(&self, units: &Units<S>) -> Report {
+    pub(crate) fn report(&self, units: &Units<S>, checked: Checked) -> Report {
         let [length_m, time_s] = units.speed;
         let speed_m_s = length_m / time_s;
         let (mut thermal_state, mut cap) = (0.0, S::ONE);
@@ -119,6 +120,7 @@ impl<S: Scalar> Tally<S> {
             late_ticks: self.late_ticks,
             refusal: self.refusal,
             fault: self.fault,
+            checked,
         }
     }
 }

@@ -1,6 +1,6 @@
 //! The parameters: one table gives the struct, its check, its documentation and its test cases.
 
-use crate::border::parts::{BENDING, THERMAL_BUDGET};
+use crate::border::parts::{BENDING, CHECK, THERMAL_BUDGET};
 use crate::number::scalar::{Order, gain_square, sqrt};
 
 /// One row of the table.
@@ -138,10 +138,10 @@ impl core::fmt::Display for ConfigError {
         }
         // In its range, and yet refused: for want of a part.
         if self.value >= *low && self.value <= *high {
-            return f.write_str(if self.index == At::continuous_force_n as usize {
-                "at least force_max_n: the feature thermal-budget is left out"
-            } else {
-                "0: the feature bending is left out"
+            return f.write_str(match self.index {
+                At::CONTINUOUS => "at least force_max_n: the feature thermal-budget is left out",
+                At::CHECKED => "0: the feature check is left out",
+                _ => "0: the feature bending is left out",
             });
         }
         write!(f, "{} to {}", Written(*low), Written(*high))?;
@@ -264,6 +264,11 @@ macro_rules! parameters {
             $($name),*
         }
 
+        impl At {
+            const CONTINUOUS: usize = Self::continuous_force_n as usize;
+            const CHECKED: usize = Self::check_first as usize;
+        }
+
         const RANGES: [[f32; 2]; PARAMETERS.len()] = [$([$low, $high]),*];
 
         impl Config {
@@ -352,19 +357,9 @@ parameters! {
         "The same of a second mode; 0 where there is none.";
     acts_in_flight, Tuning, "1", 0.0 ..= 1.0, [= 1.0, "the rotor is rigid, or the force damps its bending"],
         "1: the supervisor acts from the approach on; 0: levitation keeps the rotor in the air, and the supervisor acts on evident backward whirl alone, for shafts whose bending its force would drive.";
+    check_first, Tuning, "1", 0.0 ..= 1.0, [= 1.0, "no number is trusted that the machine has not confirmed"],
+        "1: the supervisor only watches, as with `SHADOW`, until the machine has confirmed its configuration by levitating with the stimulus; 0: it acts unchecked, for firmware that knows better.";
 }
-
-// From the first one on that came after the first records of this version.
-const _: () = {
-    let mut index = At::bending_first_hz as usize;
-    while index < PARAMETERS.len() {
-        assert!(
-            matches!(PARAMETERS[index].default, DefaultRule::Constant(..)),
-            "a parameter that came later needs a constant default, as which older records are read, or a new RECORD_VERSION"
-        );
-        index += 1;
-    }
-};
 
 /// Least ticks per t₀ = √(m·c/F): with fewer the rotor crosses half the clearance before a force has answered.
 const LEAST_TICKS: f32 = 3.5;
@@ -441,6 +436,7 @@ impl Config {
             contact_stiffness_n_m: 1e9,
             speed_max_m_s: 3.0,
             sensor_step_m: 1e-6,
+            check_first: 0.0, // no machine is there to ask
             ..Self::CONSTANTS
         }
     }
@@ -449,7 +445,7 @@ impl Config {
     ///
     /// # Errors
     /// The first value outside its range, or else the first that contradicts another; NaN is outside every range. Where the feature `thermal-budget` is left out, a continuous
-    /// force below the cap is as well, and without `bending` every natural frequency but 0.
+    /// force below the cap is as well, without `bending` every natural frequency but 0, and without `check` a check.
     pub fn validate(&self) -> Result<(), ConfigError> {
         for (index, ([low, high], value)) in RANGES.into_iter().zip(self.values()).enumerate() {
             if !(value >= low && value <= high) {
@@ -470,6 +466,12 @@ impl Config {
                     return Err(ConfigError::of_range(at as usize, value));
                 }
             }
+        }
+        if !CHECK && self.check_first != 0.0 {
+            return Err(ConfigError::of_range(
+                At::check_first as usize,
+                self.check_first,
+            ));
         }
         self.check_together()
     }

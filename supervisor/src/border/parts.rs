@@ -11,7 +11,11 @@ pub(crate) const THERMAL_BUDGET: bool = cfg!(feature = "thermal-budget");
 /// Bending modes may be told, so that the force does not drive them. Without it a configuration that tells one is refused.
 pub(crate) const BENDING: bool = cfg!(feature = "bending");
 
-/// Nothing is left out.
+/// The machine is held against its configuration before the supervisor acts. Without it a configuration that asks for that is
+/// refused.
+pub(crate) const CHECK: bool = cfg!(feature = "check");
+
+/// Nothing of what a tick does is left out.
 pub(crate) const ALL: bool = UNBALANCE && AXIS_MONITOR && THERMAL_BUDGET && BENDING;
 
 /// What is left out, a bit each.

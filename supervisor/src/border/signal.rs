@@ -1,5 +1,6 @@
 //! What crosses the border at every tick: [`Sample`] in, [`Command`] out.
 
+use crate::border::finding::Checked;
 use crate::number::words::Words;
 
 /// What the firmware knows at one sampling instant. Any bit pattern is allowed.
@@ -358,4 +359,6 @@ pub struct Report {
     pub refusal: RejectReason,
     /// Why the last sensor fault began.
     pub fault: RejectReason,
+    /// What the check of the configuration has come to.
+    pub checked: Checked,
 }

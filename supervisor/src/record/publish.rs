@@ -3,6 +3,7 @@
 //! What the last tick left to be seen by everybody, whatever their priority: a sequence lock of plain loads and stores.
 
 use crate::account::tally::{Tally, Units};
+use crate::border::finding::Checked;
 use crate::border::signal::{Events, Mode, Report};
 use crate::number::scalar::Scalar;
 use crate::number::words::{Cells, Words as _, set};
@@ -141,12 +142,12 @@ impl Latest {
         None
     }
 
-    pub(crate) fn report<S: Scalar>(&self) -> Option<Report> {
+    pub(crate) fn report<S: Scalar>(&self, checked: Checked) -> Option<Report> {
         let (tally, units) = self.get(|this| {
             let tally = Tally::<S>::decode(&mut this.tally.words());
             (tally, Units::<S>::decode(&mut this.units.words()))
         })?;
-        Some(tally.report(&units))
+        Some(tally.report(&units, checked))
     }
 
     /// The mode alone, of a tick that publishes nothing else.

@@ -5,6 +5,7 @@ use crate::account::severity::{Fastest, Severity};
 use crate::account::tally::Units;
 use crate::border::coeffs::Coeffs;
 use crate::border::config::Config;
+use crate::border::finding::CheckedCell;
 use crate::border::signal::{CoreCommand, CoreSample, Events, Mode, Status};
 use crate::number::scalar::Scalar;
 use crate::number::words::Words as _;
@@ -95,6 +96,7 @@ pub(crate) struct Shared<const N: usize> {
     pub(crate) latest: Latest,
     pub(crate) buffer: RecordBuffer<N>,
     pub(crate) events: EventQueue,
+    pub(crate) checked: CheckedCell,
 }
 
 impl<const N: usize> Shared<N> {
@@ -104,6 +106,7 @@ impl<const N: usize> Shared<N> {
             latest: Latest::new(),
             buffer: RecordBuffer::new(),
             events: EventQueue::new(),
+            checked: CheckedCell::new(),
         }
     }
 }

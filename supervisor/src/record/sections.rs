@@ -7,6 +7,7 @@
 use crate::account::severity::{Fastest, Severity};
 use crate::account::tally::Units;
 use crate::border::config::{Config, PARAMETERS};
+use crate::border::finding::Checked;
 use crate::border::parts::LEFT_OUT;
 use crate::number::scalar::{Number, Scalar};
 use crate::number::words::{Cells, Words, crc_of_word};
@@ -16,7 +17,7 @@ use crate::tick::State;
 use core::marker::PhantomData;
 
 /// Version of what is written.
-pub const RECORD_VERSION: u16 = 3;
+pub const RECORD_VERSION: u16 = 4;
 /// Most words that a section has between its head and its checksum.
 pub const MOST_WORDS: usize = 180;
 /// Most bytes of a section.
@@ -248,7 +249,9 @@ impl<'a, S: Scalar, const N: usize> Record<'a, S, N> {
         ]
         .map(|(severity, units)| {
             let units = Units::decode(&mut units.words());
-            severity.tally(Fastest::default()).report(&units)
+            severity
+                .tally(Fastest::default())
+                .report(&units, Checked::default())
         });
         Summary {
             mode: closed.mode as u32,

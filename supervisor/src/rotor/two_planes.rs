@@ -4,6 +4,7 @@ use crate::border::coeffs::Coeffs;
 use crate::border::config::Config;
 use crate::border::shaft::{Shaft, ShaftError};
 use crate::border::signal::{Command, CoreCommand, CoreSample, Events, Sample};
+use crate::check::{Check, Seen};
 use crate::number::words::{Cells, Words};
 use crate::per_unit::{Plane, Prepared};
 use crate::record::buffer::RecordBuffer;
@@ -74,12 +75,16 @@ struct MachineState {
     /// Planes that have engaged since the records were read.
     engaged: [bool; 2],
     coast_down: bool,
+    /// Which plane the check looks at, and how often it had come to an end there before.
+    second_checked: bool,
+    attempts: u8,
 }
 
 /// What a test has to give back.
 pub(crate) struct SavedState {
     machine: MachineState,
     coeffs: [Coeffs<f32>; 2],
+    checks: [Check; 2],
 }
 
 /// The half of a [`RotorSupervisor`] that ticks: for the control interrupt, or whatever owns the bearings.
@@ -87,6 +92,7 @@ pub(crate) struct SavedState {
 pub struct RotorTicker<'a, const RECORD: usize = 512> {
     machine: &'a mut MachineState,
     planes: [&'a mut Plane<f32>; 2],
+    checks: [&'a mut Check; 2],
     shared: [&'a Shared<RECORD>; 2],
     kept_shaft: &'a KeptShaft,
 }
@@ -148,6 +154,11 @@ impl<const RECORD: usize> RotorSupervisor<RECORD> {
     pub fn split(&mut self) -> (RotorTicker<'_, RECORD>, RotorReader<'_, RECORD>) {
         let [first, second] = &mut self.planes;
         self.machine.join([first, second])
+    }
+
+    /// As [`RotorTicker::stimulus_n`].
+    pub fn stimulus_n(&mut self) -> [[f32; 2]; 2] {
+        self.ticker().stimulus_n()
     }
 
     /// One tick of both, in the control interrupt. Both samples carry the number of one counter.
@@ -234,6 +245,8 @@ impl RotorCore {
                 shaft: *shaft,
                 engaged: [false; 2],
                 coast_down: false,
+                second_checked: false,
+                attempts: 0,
             },
             kept_shaft: Cells::of(shaft.values().map(f32::to_bits)),
         })
@@ -244,10 +257,15 @@ impl RotorCore {
         &'a mut self,
         [first, second]: [&'a mut Supervisor<RECORD>; 2],
     ) -> RotorTicker<'a, RECORD> {
-        let (first, second) = (&mut first.core, &mut second.core);
+        let Supervisor { core: first, check } = first;
+        let Supervisor {
+            core: second,
+            check: other,
+        } = second;
         RotorTicker {
             machine: &mut self.state,
             planes: [&mut first.plane, &mut second.plane],
+            checks: [check, other],
             shared: [&first.shared, &second.shared],
             kept_shaft: &self.kept_shaft,
         }
@@ -317,6 +335,10 @@ impl<const RECORD: usize> RotorTicker<'_, RECORD> {
             let (prepared, _) = Prepared::from_valid(config);
             plane.reconfigure(&prepared);
         }
+        for ((check, shared), config) in self.checks.iter_mut().zip(self.shared).zip(&configs) {
+            **check = Check::new(config);
+            check.begin(&shared.checked);
+        }
         Ok(())
     }
 
@@ -329,9 +351,11 @@ impl<const RECORD: usize> RotorTicker<'_, RECORD> {
         }
         let [first, second] = &mut self.planes;
         let [to_first, to_second] = configs.map(|config| Prepared::from_valid(&config).0);
+        let [check, other] = &mut self.checks;
         SavedState {
             machine: kept,
             coeffs: [first.begin_test(&to_first), second.begin_test(&to_second)],
+            checks: [check, other].map(|check| core::mem::replace(*check, Check::off())),
         }
     }
 
@@ -345,6 +369,7 @@ impl<const RECORD: usize> RotorTicker<'_, RECORD> {
         let planes = self.planes.iter_mut().zip(self.shared);
         (planes.zip(kept.coeffs))
             .for_each(|((plane, shared), coeffs)| plane.end_test(shared, coeffs));
+        (self.checks.iter_mut().zip(kept.checks)).for_each(|(check, kept)| **check = kept);
     }
 
     pub(crate) fn publish(&self, with_units: bool) {
@@ -362,11 +387,20 @@ impl<const RECORD: usize> RotorTicker<'_, RECORD> {
     fn ticked(&mut self, samples: &[Sample; 2]) -> RotorCommand {
         let [at_first, at_second] = samples;
         let [first, second] = &self.planes;
-        let per_unit = [
+        let mut per_unit = [
             first.scaling().sample(at_first),
             second.scaling().sample(at_second),
         ];
+        // One plane that contradicts, and neither acts.
+        let [check, other] = &self.checks;
+        let watching = if check.is_open() { other } else { check };
+        for sample in &mut per_unit {
+            sample.status = watching.admitted(sample.status);
+        }
         let [to_first, to_second] = self.per_unit(&per_unit);
+        if !self.checks.iter().all(|check| check.is_over()) {
+            self.watch(samples);
+        }
         let [first, second] = &self.planes;
         let planes = [
             in_newtons(first.scaling(), at_first, &per_unit[0], &to_first),
@@ -387,6 +421,53 @@ impl<const RECORD: usize> RotorTicker<'_, RECORD> {
             other_engaged: [second, first],
             coast_down: machine.coast_down,
         }
+    }
+
+    /// The check looks at a tick of one plane, until it has come to an end there, and then of the other.
+    #[cold]
+    #[inline(never)]
+    fn watch(&mut self, [at_first, at_second]: &[Sample; 2]) {
+        let [check, other] = &mut self.checks;
+        let [first, second] = &self.planes;
+        let ends = [first.plane_state(), second.plane_state()];
+        let MachineState {
+            couplings: [to_first, to_second],
+            second_checked,
+            attempts,
+            ..
+        } = &mut *self.machine;
+        let [of_first, of_second] = self.shared;
+        let seen = |plane: &Plane<f32>, sample: &Sample, coupling: &Coupling, beside| {
+            let (coeffs, per_unit) = (plane.coeffs(), plane.scaling().sample(sample));
+            let around = coupling.coupling(&ends, beside, spin(&per_unit));
+            let (levitated, by_force) = plane.levitates();
+            let acceleration = by_force + around.gained(coeffs.tick) * coeffs.per_tick;
+            Seen::new(&per_unit, (levitated, acceleration), coeffs)
+        };
+        let (looked_at, waits) = if *second_checked {
+            let seen = seen(second, at_second, to_second, &ends[0]);
+            other.watch(&of_second.checked, &seen);
+            (other, check)
+        } else {
+            let seen = seen(first, at_first, to_first, &ends[1]);
+            check.watch(&of_first.checked, &seen);
+            (check, other)
+        };
+        if looked_at.is_over() || looked_at.attempts() != *attempts {
+            looked_at.pause();
+            *second_checked = !*second_checked;
+            *attempts = waits.attempts();
+        }
+    }
+
+    /// What firmware adds to the forces that it asks for next \[N\]; as [`crate::Supervisor::stimulus_n`], of one plane after the other.
+    pub fn stimulus_n(&self) -> [[f32; 2]; 2] {
+        let [check, other] = &self.checks;
+        let [first, second] = &self.planes;
+        let newtons = |check: &Check, plane: &Plane<f32>| {
+            (check.stimulus()).map(|force| force * plane.scaling().force_n)
+        };
+        [newtons(check, first), newtons(other, second)]
     }
 
     #[inline]

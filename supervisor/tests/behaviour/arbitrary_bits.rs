@@ -106,6 +106,12 @@ impl Driven for InNewtons {
     }
     fn tick(&mut self, sample: &CoreSample<f32>) -> CoreCommand<f32> {
         let command = self.supervisor.tick(&in_si(&self.scaling, sample));
+        let stimulus_n = self.supervisor.stimulus_n();
+        let most_n = 0.051 * self.scaling.force_n;
+        assert!(
+            stimulus_n.iter().all(|n| n.abs() <= most_n),
+            "{stimulus_n:?}"
+        );
         per_unit(&self.scaling, &command)
     }
     fn report(&self) -> Report {

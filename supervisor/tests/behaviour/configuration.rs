@@ -181,12 +181,13 @@ proptest! {
     }
 }
 
-/// The example of the crate is a configuration from nine numbers with what the drive says of itself.
+/// The example of the crate is a configuration from nine numbers with what the drive says of itself, of which no machine is asked.
 #[test]
 fn the_example_follows_from_nine_numbers() {
     let config = Config {
         force_slew_n_s: 1e7,
         continuous_force_n: 400.0,
+        check_first: 0.0,
         ..Config::for_bearing(&EXAMPLE)
     };
     assert_eq!(config, Config::example());

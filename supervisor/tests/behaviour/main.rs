@@ -9,6 +9,7 @@ mod arbitrary_bits;
 mod archive;
 mod axes;
 mod border;
+mod check;
 mod configuration;
 mod coordinate_left;
 mod derating;

@@ -16,6 +16,8 @@ pub struct Bounds {
     nothing: f64,
     /// By how much a cut to other caps may have rounded; for one tick.
     cut: f64,
+    /// Until the machine has confirmed its configuration all is in a shadow.
+    checked_first: bool,
     /// Last force and last force of its own.
     last: [[f64; 2]; 2],
 }
@@ -33,6 +35,7 @@ impl Bounds {
             rounding: S::LAST_PLACE,
             nothing: 0.0,
             cut: 0.0,
+            checked_first: false,
             last: [[0.0; 2]; 2],
         }
     }
@@ -43,6 +46,7 @@ impl Bounds {
             beyond: 4.0 * f32::LAST_PLACE,
             rounding: 4.0 * f32::LAST_PLACE,
             nothing: f64::from(f32::MIN_POSITIVE) / f64::from(config.force_max_n),
+            checked_first: config.check_first >= 0.5,
             ..Self::new::<f32>(config)
         }
     }
@@ -80,7 +84,7 @@ impl Bounds {
         if !command.severity.is_finite() || command.severity < S::ZERO {
             return Err(format!("severity: {command:?}"));
         }
-        if !status.contains(Status::SHADOW) {
+        if !(status.contains(Status::SHADOW) || self.checked_first) {
             if command.own != command.force {
                 return Err(format!("two forces without a shadow: {command:?}"));
             }

@@ -4,7 +4,7 @@ use crate::library::{STRICT, Target, built, good, includes, tool};
 use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::process::Command;
-use supervisor::{Events, IntegratorHint, Limits, Mode, PARAMETERS, RejectReason, Status};
+use supervisor::{Events, Finding, IntegratorHint, Limits, Mode, PARAMETERS, RejectReason, Status};
 use supervisor_capi::calls::mode_name;
 use supervisor_capi::code::{CODES, FIRST_PARAMETER};
 use supervisor_capi::layout::HEADER;
@@ -31,6 +31,24 @@ const REFUSALS: [(&str, RejectReason); 7] = [
     ("DROPOUT", RejectReason::Dropout),
     ("STUCK", RejectReason::Stuck),
     ("DOUBTED", RejectReason::Doubted),
+];
+
+const FINDINGS: [(&str, Finding); 15] = [
+    ("UNCHECKED", Finding::Unchecked),
+    ("NOT_YET", Finding::NotYet),
+    ("PASSED", Finding::Passed),
+    ("AXES_SWAPPED", Finding::AxesSwapped),
+    ("AXIS_INVERTED", Finding::AxisInverted),
+    ("FORCE_INVERTED", Finding::ForceInverted),
+    ("AXES_TURNED", Finding::AxesTurned),
+    ("AXES_SKEWED", Finding::AxesSkewed),
+    ("GAIN", Finding::Gain),
+    ("DELAY", Finding::Delay),
+    ("NO_ANSWER", Finding::NoAnswer),
+    ("SPIN_REVERSED", Finding::SpinReversed),
+    ("SPIN_UNIT", Finding::SpinUnit),
+    ("CLEARANCE", Finding::Clearance),
+    ("POSITION", Finding::Position),
 ];
 
 const HINTS: [(&str, IntegratorHint); 2] =
@@ -83,6 +101,7 @@ fn numbers_are_the_same() {
     same("EVENT_", all.iter_names().map(|(n, b)| bits((n, b.bits()))));
     same("MODE_", MODES.iter().map(|(n, m)| (*n, *m as i64)));
     same("REFUSAL_", REFUSALS.iter().map(|(n, r)| (*n, *r as i64)));
+    same("FINDING_", FINDINGS.iter().map(|(n, f)| (*n, *f as i64)));
     same("INTEGRATOR_", HINTS.iter().map(|(n, h)| (*n, *h as i64)));
     let errors = CODES.iter().filter_map(|row| {
         let name = row.name.strip_prefix("ERROR_")?;

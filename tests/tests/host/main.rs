@@ -2,6 +2,7 @@
 
 mod advise;
 mod closed_loop;
+mod commission;
 mod docs_book;
 mod docs_examples;
 mod export;

@@ -115,7 +115,7 @@ fn the_example_firmware_records_a_landing() {
         let [.., (_, record), (_, report)] = log.as_slice() else {
             panic!("{log:?}")
         };
-        assert!(record.starts_with("record of version 3, "), "{record}");
+        assert!(record.starts_with("record of version 4, "), "{record}");
         assert!(
             report.starts_with(
                 "Report { landings: 1, nuisance_engagements: 0, handed_back: 0, impacts: 1, "
@@ -142,7 +142,7 @@ fn the_example_firmware_tells_that_it_is_late() {
         };
         let logged = |event: &str| log.iter().any(|(_, text)| text.contains(event));
         assert!(logged("ENGAGED") && !logged("LIFTED_OFF"), "{log:?}");
-        assert!(record.starts_with("record of version 3, "), "{record}");
+        assert!(record.starts_with("record of version 4, "), "{record}");
         assert!(report.starts_with("Report { landings: 1, "), "{report}");
         let (_, late) = report.split_once("late_ticks: ").unwrap();
         let late: u32 = late.split(',').next().unwrap().parse().unwrap();

@@ -3,6 +3,9 @@
 use super::{Advice, Parameter};
 use supervisor::{Config, DefaultRule, PARAMETERS};
 
+/// What a simulated machine needs less than a real one.
+const CHECK: &str = "check_first";
+
 /// Where a configuration is written down.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Language {
@@ -30,9 +33,9 @@ pub fn table(parameters: &[Parameter]) -> String {
 
 /// The configuration that holds, with what the scene sets itself.
 pub fn listing(parameters: &[Parameter], language: Language) -> String {
-    let lines = parameters.iter().map(Line::in_use);
+    let lines = parameters.iter().map(Line::in_firmware);
     match language {
-        Language::Toml => toml(lines),
+        Language::Toml => toml(parameters.iter().map(Line::in_use)),
         Language::Rust => {
             let fields: String = lines.map(|line| line.rust_field()).collect();
             format!("static CONFIG: supervisor::Config = supervisor::Config {{\n{fields}}};\n")
@@ -71,7 +74,7 @@ pub fn short(advice: &Advice, language: Language) -> Option<String> {
     };
     let given = given.chain([noise]);
     let otherwise: Vec<Line> = rows()
-        .map(|((row, _), value)| (Line::in_use(row), value))
+        .map(|((row, _), value)| (Line::in_firmware(row), value))
         .filter(|(line, value)| line.value != *value)
         .map(|(line, _)| line)
         .collect();
@@ -124,6 +127,24 @@ struct Line {
 }
 
 impl Line {
+    /// What holds on a machine, which has yet to confirm what it is said to be.
+    fn in_firmware(p: &Parameter) -> Self {
+        let rule = (PARAMETERS.iter().find(|rule| rule.name == p.name)).map(|rule| rule.default);
+        match rule {
+            Some(DefaultRule::Constant(value, why))
+                if p.name == CHECK && p.replaced_by.is_none() =>
+            {
+                let remark = why.to_owned();
+                Self {
+                    value,
+                    remark,
+                    ..Self::in_use(p)
+                }
+            }
+            _ => Self::in_use(p),
+        }
+    }
+
     /// What holds, suggested or set.
     fn in_use(p: &Parameter) -> Self {
         let (value, remark) = match p.replaced_by {

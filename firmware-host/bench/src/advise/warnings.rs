@@ -35,6 +35,7 @@ pub(super) fn of(advice: &Advice, config: &Config) -> Vec<Warning> {
         near_a_limit(config),
         centre_offset(advice, config),
         runout(advice),
+        unchecked(advice),
     ];
     checks.into_iter().flatten().collect()
 }
@@ -45,6 +46,16 @@ fn warning(key: &'static str, text: String, remedy: impl Into<String>) -> Option
         text,
         remedy: remedy.into(),
     })
+}
+
+fn unchecked(advice: &Advice) -> Option<Warning> {
+    let set = advice.parameters.iter().find(|p| p.name == "check_first")?;
+    set.replaced_by.filter(|first| *first < 0.5)?;
+    let text = "check_first = 0: the supervisor acts on numbers that the machine has not confirmed; an axis that is exchanged, a \
+                force in amperes or a clearance that is a diameter shows when the rotor falls";
+    let remedy =
+        "leave check_first out of firmware's configuration, or check its numbers in another way";
+    warning("unchecked", text.to_owned(), remedy)
 }
 
 fn cap_below_load(advice: &Advice) -> Option<Warning> {

@@ -140,6 +140,7 @@ mod tests {
                 whirl_limit_m_s: 0.0,
                 severity_index: 2.469,
                 coast_down: false,
+                checked: "unchecked",
                 flight_record_crc: None,
             }),
         });

@@ -101,6 +101,9 @@ const SUPERVISION_FIGURES: &[Row<Supervision>] = &[
             word.to_owned()
         })
     }),
+    ("configuration checked", |s| {
+        told(s, |account| account.checked.to_owned())
+    }),
 ];
 
 fn told(s: &Supervision, word: fn(&Account) -> String) -> String {

@@ -20,6 +20,9 @@ pub trait Controller: core::fmt::Debug {
         None
     }
 
+    /// What the supervisor of a whole rotor wants added to the force that [`Self::ask`] has \[N\].
+    fn stimulated(&mut self, _stimulus_n: [f32; 2]) {}
+
     /// The answer.
     fn answered(&mut self, _command: Command) {}
 
@@ -267,6 +270,11 @@ impl Controller for TrueLevitation {
 pub trait Supervise: core::fmt::Debug {
     fn tick(&mut self, sample: &Sample) -> Command;
 
+    /// What it wants added to the force that the levitation controller asks for next \[N\], to check its configuration.
+    fn stimulus_n(&self) -> [f32; 2] {
+        [0.0; 2]
+    }
+
     /// What it leaves behind; `None` where it cannot be asked.
     fn read_out(&self) -> Option<ReadOut> {
         None
@@ -276,6 +284,10 @@ pub trait Supervise: core::fmt::Debug {
 impl Supervise for Supervisor {
     fn tick(&mut self, sample: &Sample) -> Command {
         Supervisor::tick(self, sample)
+    }
+
+    fn stimulus_n(&self) -> [f32; 2] {
+        Supervisor::stimulus_n(self)
     }
 
     fn read_out(&self) -> Option<ReadOut> {
@@ -307,6 +319,8 @@ struct Supervised {
     levitation: Box<dyn Levitate>,
     /// What that asked for at the last sample \[N\].
     levitation_n: [f32; 2],
+    /// What of it the supervisor had asked for \[N\].
+    stimulus_n: [f32; 2],
     /// What it told the controller's integrator.
     hint: IntegratorHint,
     said: Option<Said>,
@@ -319,6 +333,7 @@ impl Supervised {
             command: None,
             levitation,
             levitation_n: [0.0; 2],
+            stimulus_n: [0.0; 2],
             hint: IntegratorHint::Run,
             said: None,
         }
@@ -326,9 +341,18 @@ impl Supervised {
 }
 
 impl Controller for Supervised {
+    fn stimulated(&mut self, stimulus_n: [f32; 2]) {
+        self.stimulus_n = stimulus_n;
+    }
+
     fn ask(&mut self, seen: &Seen) -> Option<Sample> {
         let single = |v: V2| [v.x as f32, v.y as f32];
-        self.levitation_n = single(self.levitation.levitation_n(seen, self.hint));
+        let [x, y] = single(self.levitation.levitation_n(seen, self.hint));
+        if let Some(supervisor) = &self.supervisor {
+            self.stimulus_n = supervisor.stimulus_n();
+        }
+        let [more_x, more_y] = self.stimulus_n;
+        self.levitation_n = [x + more_x, y + more_y];
         Some(Sample {
             sequence: seen.reading.sequence,
             status: seen.status,
@@ -352,7 +376,10 @@ impl Controller for Supervised {
             return Force::Computed(V2::zeros());
         };
         self.hint = command.integrator;
-        self.said = Some(Said::new(&command, self.levitation_n));
+        self.said = Some(Said {
+            stimulus_n: self.stimulus_n,
+            ..Said::new(&command, self.levitation_n)
+        });
         let [x, y] = command.force_n;
         Force::Computed(V2::new(f64::from(x), f64::from(y)))
     }

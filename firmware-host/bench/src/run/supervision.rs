@@ -43,6 +43,8 @@ pub struct Account {
     pub severity_index: f64,
     /// Whether it asks for coasting down at the end.
     pub coast_down: bool,
+    /// What the check of its configuration came to.
+    pub checked: &'static str,
     /// Checksum of all bytes of the flight record, where one was frozen.
     pub flight_record_crc: Option<u32>,
 }
@@ -59,6 +61,7 @@ in_columns!(Account {
     whirl_limit_m_s,
     severity_index,
     coast_down,
+    checked,
     flight_record_crc
 });
 
@@ -141,6 +144,7 @@ impl Account {
             whirl_limit_m_s: widened(report.whirl_limit_m_s),
             severity_index: widened(report.severity_index),
             coast_down: report.coast_down,
+            checked: report.checked.finding.name(),
             flight_record_crc: read_out.flight_record.as_deref().map(supervisor::crc_of),
         }
     }
@@ -241,6 +245,7 @@ mod tests {
                 events,
                 severity: 0.25 * tick as f32,
                 levitation_n: [0.0; 2],
+                stimulus_n: [0.0; 2],
             }),
             ..fixture::row(tick as f64, false)
         }

@@ -30,8 +30,10 @@ pub struct Said {
     pub events: Events,
     /// Severity of what is coming, as a share of what the cap can stop.
     pub severity: f32,
-    /// Force that the levitation controller asked for \[N\].
+    /// Force that the levitation controller asked for, with the stimulus \[N\].
     pub levitation_n: [f32; 2],
+    /// What of it the supervisor had asked for, to check its configuration \[N\].
+    pub stimulus_n: [f32; 2],
 }
 
 impl Said {
@@ -43,6 +45,7 @@ impl Said {
             events: command.events,
             severity: command.severity,
             levitation_n,
+            stimulus_n: [0.0; 2],
         }
     }
 }

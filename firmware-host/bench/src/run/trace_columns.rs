@@ -268,6 +268,18 @@ const NUMBERS: &[Plain<TraceRow>] = &[
         |r| said(r, |s| s.levitation_n[1]),
     ),
     (
+        "stimulus_x_n",
+        "N",
+        "what of it the supervisor asks for, to check its configuration",
+        |r| said(r, |s| s.stimulus_n[0]),
+    ),
+    (
+        "stimulus_y_n",
+        "N",
+        "what of it the supervisor asks for, to check its configuration",
+        |r| said(r, |s| s.stimulus_n[1]),
+    ),
+    (
         "supervisor_severity",
         "1",
         "severity of what is coming, as a share of what the cap can stop",

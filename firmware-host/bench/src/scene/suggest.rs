@@ -235,6 +235,8 @@ pub fn suggested(n: &Nominal) -> Suggested {
         magnet_plane_ratio: n.magnet_plane_ratio as f32,
         speed_max_m_s: in_contact.speed_max_m_s,
         sensor_step_m: stepped.sensor_step_m,
+        // A machine that is simulated has the numbers that it was made of.
+        check_first: 0.0,
         ..own
     };
     let reasons = PARAMETERS.iter().map(|p| n.reason(p)).collect();
@@ -304,6 +306,10 @@ impl Nominal {
                 (Some(name), "as an impact moves them")
             }
             "restitution" => (Some(name), by_rule),
+            "check_first" => (
+                None,
+                "a simulated machine has the numbers that it was made of; firmware begins with 1",
+            ),
             _ => match parameter.default {
                 DefaultRule::Given => (Some(name), by_rule),
                 DefaultRule::Constant(..) | DefaultRule::Derived(_) => (None, by_rule),

@@ -106,14 +106,14 @@ class Plant:
     @property
     def modes(self) -> list[str]: ...
     @property
-    def sensed_m(self) -> NDArray[np.float64]:
+    def sensed_m(self) -> FloatArray:
         """Where the rotor is at the sensors."""
     @property
-    def position_m(self) -> NDArray[np.float64]: ...
+    def position_m(self) -> FloatArray: ...
     @property
-    def velocity_m_s(self) -> NDArray[np.float64]: ...
+    def velocity_m_s(self) -> FloatArray: ...
     @property
-    def delivered_n(self) -> NDArray[np.float64]:
+    def delivered_n(self) -> FloatArray:
         """Forces that the magnets deliver."""
     @property
     def normal_force_n(self) -> list[float]: ...
@@ -123,9 +123,9 @@ class Plant:
     def advance(self, to_s: float, commands_n: ArrayLike | None = None, loads_n: ArrayLike | None = None) -> list[tuple[float, str, str]]:
         """Carries it to a time under forces that are held; changes of mode come back, with the plane. Commands are limited to
         the magnets' caps; loads come on top of the weight."""
-    def step(self, commands_n: ArrayLike | None = None, loads_n: ArrayLike | None = None) -> NDArray[np.float64]:
+    def step(self, commands_n: ArrayLike | None = None, loads_n: ArrayLike | None = None) -> FloatArray:
         """To the end of the control period; the positions at the sensors there."""
-    def steps(self, commands_n: ArrayLike, loads_n: ArrayLike | None = None) -> NDArray[np.float64]:
+    def steps(self, commands_n: ArrayLike, loads_n: ArrayLike | None = None) -> FloatArray:
         """A control period for each block of commands, shape (n, magnets, 2) or of one magnet (n, 2); the positions in the
         planes at their ends, shape (n, planes, 2)."""
     def read(self) -> list[dict[str, Any]]:
@@ -171,9 +171,9 @@ class Command:
     """What to do until the next tick."""
 
     @property
-    def force_n(self) -> NDArray[np.float64]: ...
+    def force_n(self) -> FloatArray: ...
     @property
-    def own_n(self) -> NDArray[np.float64]:
+    def own_n(self) -> FloatArray:
         """What the supervisor would command, which differs under shadow."""
     @property
     def mode(self) -> str: ...
@@ -222,5 +222,8 @@ class Supervisor:
         """The flight record as firmware would write it, where one is frozen."""
     def rearm(self) -> None:
         """Discards a frozen record."""
+    @property
+    def stimulus_n(self) -> FloatArray:
+        """What to add to the force of the next tick, so that the machine confirms its configuration."""
     def report(self) -> dict[str, Any]:
         """What has happened since it was made."""

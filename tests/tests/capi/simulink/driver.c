@@ -49,8 +49,10 @@ int main(void) {
     if (S.error != NULL) return printf("%s\n", S.error), 1;
     if (S.inputs != INPUTS || S.outputs != OUTPUTS || S.period_s != (real_T)50e-6f) return printf("ports or period\n"), 1;
     if (amb_config_for_bearing((const amb_bearing *)&(amb_bearing){50e-6f, 10.0f, 0.0f, 2e-4f, 1000.0f, 1e-4f, 0.15f, 2e8f, 1e-8f},
-                               values, AMB_PARAMETERS) != AMB_OK ||
-        amb_init(&directly, sizeof directly, values, AMB_PARAMETERS) != AMB_OK)
+                               values, AMB_PARAMETERS) != AMB_OK)
+        return printf("nine numbers\n"), 1;
+    values[AMB_P_CHECK_FIRST] = 0.0f;
+    if (amb_init(&directly, sizeof directly, values, AMB_PARAMETERS) != AMB_OK)
         return printf("the library itself\n"), 1;
     for (int i = 0; i < AMB_PARAMETERS; i++) wide[i] = values[i];
     begin(&all, &configured);

@@ -229,6 +229,9 @@ impl<'a> Bench<'a> {
         let Ok([first, second]) = self.stations.get_disjoint_mut(*planes) else {
             return;
         };
+        let [to_first, to_second] = supervisor.stimulus_n();
+        first.controller.stimulated(to_first);
+        second.controller.stimulated(to_second);
         let asked = (
             first.controller.ask(&self.seen[planes[0]]),
             second.controller.ask(&self.seen[planes[1]]),

@@ -157,6 +157,7 @@ impl<'a> Station<'a> {
             commanded_n: self.axes[1].meant(self.amplifier.in_effect_n()),
             supervisor: self.said.map(|said| Said {
                 levitation_n: self.axes[1].meant_f32(said.levitation_n),
+                stimulus_n: self.axes[1].meant_f32(said.stimulus_n),
                 ..said
             }),
             mode_change,

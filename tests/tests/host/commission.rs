@@ -1,0 +1,170 @@
+//! `commission`: the numbers of a machine from the trace of a run in which its supervisor checked them.
+
+use serde_json::Value;
+use std::f64::consts::TAU;
+use std::fmt::Write as _;
+use std::fs;
+use std::path::{Path, PathBuf};
+use system_tests::{host, run_scene, scene_path};
+use tempfile::TempDir;
+
+/// The trace of the shipped scene, in a folder that goes with it.
+fn trace() -> (TempDir, PathBuf) {
+    let folder = TempDir::new().unwrap();
+    let output = run_scene(&scene_path("commissioning"), folder.path(), &[]);
+    assert!(output.status.success(), "{output:?}");
+    let table = String::from_utf8(output.stdout).unwrap();
+    let checked = table
+        .lines()
+        .find(|line| line.contains("configuration checked"));
+    assert!(
+        checked.is_some_and(|line| line.contains("passed")),
+        "{table}"
+    );
+    let trace = folder.path().join("trace_supervisor.parquet");
+    (folder, trace)
+}
+
+fn commission(arguments: &[&Path]) -> (Option<i32>, String, String) {
+    let output = host().arg("commission").args(arguments).output().unwrap();
+    let text = |bytes| String::from_utf8(bytes).unwrap();
+    (
+        output.status.code(),
+        text(output.stdout),
+        text(output.stderr),
+    )
+}
+
+fn found(json: &Value, name: &str) -> [f64; 3] {
+    let all = json["parameters"].as_array().unwrap();
+    let one = all.iter().find(|one| one["name"] == name).unwrap();
+    ["value", "low", "high"].map(|key| one[key].as_f64().unwrap())
+}
+
+#[test]
+fn numbers_of_the_machine_are_found_with_intervals_that_hold() {
+    let (folder, trace) = trace();
+    let scene = scene_path("commissioning");
+    let json = Path::new("--json");
+    let (code, said, _) = commission(&[&trace, Path::new("--machine"), &scene, json]);
+    assert_eq!(code, Some(0));
+    let parsed: Value = serde_json::from_str(&said).unwrap();
+    for (name, is, within) in [
+        ("mass_kg", 12.0, 0.05),
+        ("time_to_force_s", 1.5e-4, 0.1),
+        ("sensor_noise_m", 1e-6, 0.1),
+    ] {
+        let [value, low, high] = found(&parsed, name);
+        assert!((value / is - 1.0).abs() < within, "{name}: {value}");
+        assert!(low <= is && is <= high, "{name}: {low} to {high}");
+    }
+    assert_eq!(found(&parsed, "spin_sense")[0], 1.0);
+    assert!(found(&parsed, "axes_turned_rad")[0].abs() < 0.02);
+    assert_eq!(
+        parsed["contradictions"].as_array().unwrap().len(),
+        0,
+        "{said}"
+    );
+
+    // As CSV the same, and a wrong mass is a contradiction.
+    let csv = folder.path().join("trace_supervisor.csv");
+    let export = [
+        "export".as_ref(),
+        "--to".as_ref(),
+        "csv".as_ref(),
+        trace.as_os_str(),
+    ];
+    let written = host().args(export).output().unwrap();
+    assert!(written.status.success(), "{written:?}");
+    let text = fs::read_to_string(&scene).unwrap();
+    let wrong = folder.path().join("wrong.toml");
+    fs::write(
+        &wrong,
+        text.replace("check_first = 1", "check_first = 1\nmass_kg = 24.0"),
+    )
+    .unwrap();
+    let (code, again, err) = commission(&[&csv, Path::new("--machine"), &wrong, json]);
+    assert_eq!(code, Some(0), "{err}");
+    let again: Value = serde_json::from_str(&again).unwrap();
+    let [value, ..] = found(&again, "mass_kg");
+    assert!((value / found(&parsed, "mass_kg")[0] - 1.0).abs() < 1e-3);
+    assert_eq!(again["contradictions"][0]["name"], "mass_kg");
+
+    for (format, line) in [
+        ("rust", "    mass_kg: 1."),
+        ("c", "config[AMB_P_MASS_KG] = 1."),
+        ("toml", "mass_kg = 1."),
+    ] {
+        let (code, said, _) = commission(&[&trace, Path::new("--format"), Path::new(format)]);
+        assert!(code == Some(0) && said.contains(line), "{said}");
+    }
+    let (code, said, _) = commission(&[&trace]);
+    assert!(code == Some(0) && said.contains("--walk"), "{said}");
+}
+
+/// A walk that goes round gives clearance and centre, one that does not is refused.
+#[test]
+fn a_walk_gives_clearance_and_centre() {
+    let (folder, trace) = trace();
+    let walk = |turns: f64| {
+        let mut csv = "t_s,measured_x_m,measured_y_m\n".to_owned();
+        for tick in 0..20_000 {
+            let angle = turns * TAU * f64::from(tick) / 20_000.0;
+            let ripple = 1e-6 * (7.3 * f64::from(tick)).sin();
+            let [x, y] = [angle.cos(), angle.sin()].map(|at| (2e-4 + ripple) * at);
+            writeln!(csv, "{},{},{}", 5e-5 * f64::from(tick), x + 2e-5, y - 1e-5).unwrap();
+        }
+        let path = folder.path().join(format!("walk_{turns}.csv"));
+        fs::write(&path, csv).unwrap();
+        path
+    };
+    let (code, said, _) =
+        commission(&[&trace, Path::new("--walk"), &walk(1.0), Path::new("--json")]);
+    assert_eq!(code, Some(0));
+    let parsed: Value = serde_json::from_str(&said).unwrap();
+    for (name, is) in [
+        ("clearance_m", 2e-4),
+        ("retainer_centre_x_m", 2e-5),
+        ("retainer_centre_y_m", -1e-5),
+    ] {
+        let [value, ..] = found(&parsed, name);
+        assert!((value - is).abs() < 0.02 * 2e-4, "{name}: {value}");
+    }
+    let (code, _, said) = commission(&[&trace, Path::new("--walk"), &walk(0.3)]);
+    assert!(code == Some(2) && said.contains("sectors"), "{said}");
+}
+
+#[test]
+fn what_is_no_log_is_refused_by_name() {
+    let folder = TempDir::new().unwrap();
+    let write = |name: &str, text: &str| {
+        let path = folder.path().join(name);
+        fs::write(&path, text).unwrap();
+        path
+    };
+    let names =
+        "t_s,measured_x_m,measured_y_m,commanded_x_n,commanded_y_n,stimulus_x_n,stimulus_y_n\n";
+    let still: String = (0..400)
+        .map(|tick| format!("{},0,0,0,0,0,0\n", 5e-5 * f64::from(tick)))
+        .collect();
+    let uneven = still.replace("0.01,", "0.0107,");
+    let cases = [
+        (
+            write("no_stimulus.csv", "t_s,measured_x_m\n0,0\n1,0\n"),
+            "no column",
+        ),
+        (write("still.csv", &format!("{names}{still}")), "windows"),
+        (write("uneven.csv", &format!("{names}{uneven}")), "evenly"),
+        (
+            write("words.csv", &format!("{names}0,0,0,x,0,0,0\n")),
+            "line 2: commanded_x_n is \"x\"",
+        ),
+        (folder.path().join("none.parquet"), "none.parquet"),
+        (write("no.parquet", "nothing"), "no.parquet"),
+    ];
+    for (path, says) in cases {
+        let (code, out, said) = commission(&[&path]);
+        assert!(code == Some(2) && out.is_empty(), "{said}");
+        assert!(said.replace('\n', " ").contains(says), "{says}: {said}");
+    }
+}
