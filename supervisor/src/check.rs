@@ -29,13 +29,16 @@ const BESIDE: [f32; MOST_ROUNDS as usize] = [1.0, 1.13, 0.89, 1.06];
 /// Length of a window \[s\], and \[t₀\].
 const LEAST_S: f32 = 0.2;
 const LEAST_TIME: f32 = 63.0;
-/// The stimulus goes with the cube of so many times the window, up to its length: so slowly that a force which is told in amperes
-/// does not throw the rotor before it is seen to move too far, by so much more than so many times what it does of itself
-/// \[clearances\]. Then the stimulus is a quarter from there on, so many times at most.
+/// The stimulus goes with the cube of so many times the window, up to its length; in a window before the others with the eighth power
+/// of the time, so slowly that a force which is told in amperes does not throw the rotor before it is seen to move too far: by so much
+/// more than so many times what it does of itself \[clearances\]. Then the stimulus is a quarter from there on, so many times at most.
 const STEEP: f32 = 1.5;
 const TOO_FAR: f32 = 0.2;
+const FIRST_TOO_FAR: f32 = 0.1;
 const MORE: f32 = 1.5;
 const MOST_SOFTER: u8 = 5;
+/// A gain that nobody types: it is not the stimulus that moves the rotor.
+const MOST_BELIEVED: f32 = 3000.0;
 /// Attempts that may contradict: then the rotor is left in peace until it is configured anew.
 const MOST_REFUSED: u8 = 3;
 /// Two over the mean of the square of the window where the stimulus has its own.
@@ -90,6 +93,8 @@ const DONE: u8 = 7;
 const REST: u8 = 8;
 const LISTEN: u8 = 9;
 const HALTED: u8 = 10;
+/// As the first line of all.
+const PROBE: u8 = 12;
 
 /// What a tick was, per unit.
 pub(crate) struct Seen {
@@ -286,7 +291,7 @@ impl Progress {
     }
 
     fn stimulus(&self) -> [f32; 2] {
-        if self.stage >= SPIN || self.left == 0 || self.outside > 0 {
+        if !self.excites() || self.left == 0 || self.outside > 0 {
             return [0.0; 2];
         }
         let force = self.amplitude() * self.phase.x;
@@ -295,6 +300,12 @@ impl Progress {
         } else {
             [0.0, force]
         }
+    }
+
+    /// Whether the window is one of the stimulus.
+    #[inline]
+    fn excites(&self) -> bool {
+        self.stage < SPIN || self.stage == PROBE
     }
 
     /// Length of the stimulus in the middle of a window \[caps\].
@@ -306,6 +317,11 @@ impl Progress {
     /// And now.
     #[inline]
     fn amplitude(&self) -> f32 {
+        if self.stage == PROBE {
+            let part = 1.0 - f32::from(self.left) / f32::from(self.length);
+            let fourth = part * part * part * part;
+            return self.full() * fourth * fourth;
+        }
         let part = min(STEEP * self.window(), 1.0);
         self.full() * part * part * part
     }
@@ -349,14 +365,11 @@ impl Progress {
         if position.exceeds(OUTSIDE) || !position.is_finite() {
             // Without a stimulus from here on.
             self.outside = self.outside.saturating_add(1);
-        } else if self.stage < SPIN && away.exceeds(TOO_FAR + MORE * self.usual) {
-            if self.softer < MOST_SOFTER {
-                self.softer += 1;
-                self.left = 0;
-                return;
+        } else if self.excites() && away.exceeds(self.too_far()) {
+            if let Some(checked) = self.thrown(away, seen) {
+                self.conclude(checked, cell);
             }
-            let checked = self.thrown(away, seen);
-            return self.conclude(checked, cell);
+            return;
         } else {
             self.take(position, spin, seen);
         }
@@ -373,14 +386,41 @@ impl Progress {
         cell.put(checked);
     }
 
-    /// The rotor goes too far for what it is moved by.
+    /// How far the rotor may go from where the window began.
+    #[inline]
+    fn too_far(&self) -> f32 {
+        let far = if self.stage == PROBE {
+            FIRST_TOO_FAR
+        } else {
+            TOO_FAR
+        };
+        far + MORE * self.usual
+    }
+
+    /// The rotor goes too far: the stimulus is less from here on.
     #[cold]
     #[inline(never)]
-    fn thrown(&mut self, away: Vec2<f32>, seen: &Seen) -> Checked {
+    fn thrown(&mut self, away: Vec2<f32>, seen: &Seen) -> Option<Checked> {
         let omega = self.turn / seen.tick;
         let by = max(self.amplitude(), LEAST_PIVOT);
         let gain = root(away.length_squared()) * omega * omega / by;
-        self.failed(Finding::Gain, gain)
+        if gain > MOST_BELIEVED {
+            self.restart();
+            return None;
+        }
+        if self.softer >= MOST_SOFTER {
+            return Some(self.failed(Finding::Gain, gain));
+        }
+        if self.stage == PROBE {
+            self.stage = 0;
+            while self.softer < MOST_SOFTER && self.full() > by {
+                self.softer += 1;
+            }
+        } else {
+            self.softer += 1;
+        }
+        self.left = 0;
+        None
     }
 
     /// What follows from a finding. Without its spin the supervisor works against the whirl that it sees.
@@ -491,6 +531,10 @@ impl Progress {
             REST => self.rested(),
             LISTEN => {
                 self.usual = root(self.sums[1].x);
+                self.stage = PROBE;
+                None
+            }
+            PROBE => {
                 self.stage = 0;
                 None
             }

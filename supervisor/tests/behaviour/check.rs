@@ -153,8 +153,8 @@ fn tick(
 fn a_machine_that_is_as_configured_passes_and_is_left_alone() {
     let (mut supervisor, finding, ticks) = levitate(&asked(), &RIGHT);
     assert_eq!(finding, Finding::Passed);
-    // One window without stimulus, eight with it and three of the orbit, 0.2 s each.
-    assert!((47_000..50_000).contains(&ticks), "{ticks}");
+    // One window without stimulus, nine with it and three of the orbit, 0.2 s each.
+    assert!((51_000..54_000).contains(&ticks), "{ticks}");
     assert_eq!(supervisor.stimulus_n(), [0.0; 2]);
     let sample = |sequence: u32, x_m: f32| Sample {
         sequence,
@@ -467,5 +467,5 @@ fn a_rotor_acts_once_both_planes_have_passed() {
         sequence += 1;
     }
     assert_eq!(seconds, [true; 2]);
-    assert!((94_000..100_000).contains(&sequence), "{sequence}");
+    assert!((102_000..108_000).contains(&sequence), "{sequence}");
 }
