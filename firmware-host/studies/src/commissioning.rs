@@ -20,10 +20,10 @@ use supervisor::{Checked, Command, Config, Finding, Sample, Supervisor};
 
 /// Nothing was tuned on the machines of this seed.
 const SEED: u64 = 20_261_128;
-/// Windows of the check, and of the stimulus alone [s, t₀].
+/// Windows of the check, and of the stimulus alone \[s, t₀\].
 const WINDOWS: f64 = 22.0;
 const WINDOW: (f64, f64) = (0.2, 63.0);
-/// What a machine takes to come to its place [s].
+/// What a machine takes to come to its place \[s\].
 const BEFORE_S: f64 = 0.1;
 /// Sets the draw of what is beside a machine apart from that of the machine.
 const OF_ROTORS: u64 = 0xc0de;
