@@ -50,7 +50,7 @@ const MOST_ROUNDS: u8 = 4;
 const KNOWN: f32 = 0.04;
 const SURE: f32 = 2.5;
 /// Unexplained share of the motion from which on the rotor does not answer, where this share of the stimulus came through.
-const UNEXPLAINED: f32 = 0.8;
+const UNEXPLAINED: f32 = 0.95;
 const CAME_THROUGH: f32 = 0.25;
 /// Limits of what is right: the gain and its inverse, the tangent of the angle, the cosine between axes, the ratio of their gains.
 const MOST_GAIN: f32 = 1.33;

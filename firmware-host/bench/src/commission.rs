@@ -142,7 +142,7 @@ impl Commissioned {
         for found in &self.parameters {
             let own = configured.iter().find(|(name, _)| *name == found.name);
             if let Some((name, value)) = own
-                && !(found.low..=found.high).contains(value)
+                && (*value < found.low || *value > found.high)
             {
                 self.contradictions.push(Contradiction {
                     name,
@@ -395,8 +395,8 @@ impl Fit {
             alone.map(|line| own_cost(line, values)).sum()
         };
         let mass = fit.mass();
-        let wide = mass.high - mass.low > 2.0 * WIDEST * mass.value;
-        if wide || of_lines(&fit.values) > UNEXPLAINED * of_lines(&[0.0; 6]) {
+        let narrow = mass.high - mass.low <= 2.0 * WIDEST * mass.value;
+        if !narrow || of_lines(&fit.values) > UNEXPLAINED * of_lines(&[0.0; 6]) {
             return Err(LogError::new(
                 "the motion at the lines of the stimulus is not one that its force explains well enough: noise, a hum or a load hides it",
                 "record it with a larger stimulus, for longer, or at another spin",

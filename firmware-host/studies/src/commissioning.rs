@@ -418,20 +418,24 @@ impl Recorder for Logged {
     }
 }
 
-/// Numbers that are identified, what they are, and how far off one may be as a share of that or of 10 % of a period.
+/// Numbers that are identified, and how far off one may be as a share: of what it is, and of a stiffness of the cap over the clearance.
 const IDENTIFIED: [(&str, f64); 3] = [
     ("mass_kg", 0.03),
     ("stiffness_n_m", 0.1),
     ("time_to_force_s", 0.1),
 ];
 
+/// A number that is found, what it is, and what an error is a share of.
+type Identified = (Found, f64, f64);
+
 /// Of each of these what a log says and what it is; nothing of a log that is not long enough.
-fn identified(seed: u64, number: u64) -> Result<Option<[(Found, f64); 3]>, String> {
+fn identified(seed: u64, number: u64) -> Result<Option<[Identified; 3]>, String> {
     let sensors = SENSORS[number as usize % SENSORS.len()];
     let (mut scene, _) = scene(seed, number, sensors)?;
     let config = scene.planes[0].supervisor.as_mut().ok_or("no supervisor")?;
     config.check_first = 1.0;
     let truth = [config.mass_kg, config.stiffness_n_m, config.amplifier_lag_s].map(f64::from);
+    let stiffness_n_m = f64::from(config.force_max_n / config.clearance_m);
     let mut rows = [Logged::default()];
     let recorders = Recorders::of_planes(&mut rows);
     record(
@@ -461,9 +465,9 @@ fn identified(seed: u64, number: u64) -> Result<Option<[(Found, f64); 3]>, Strin
         return Err("a number is missing".to_owned());
     };
     Ok(Some([
-        (mass, truth[0]),
-        (stiffness, truth[1]),
-        (late, truth[2]),
+        (mass, truth[0], truth[0]),
+        (stiffness, truth[1], stiffness_n_m),
+        (late, truth[2], truth[2]),
     ]))
 }
 
@@ -471,7 +475,7 @@ fn identified(seed: u64, number: u64) -> Result<Option<[(Found, f64); 3]>, Strin
 fn identification(seed: u64, machines: u64, progress: &dyn Progress) -> Vec<[String; 6]> {
     let numbers: Vec<u64> = (0..machines).collect();
     let all = run_all(&numbers, progress, |number| identified(seed, *number));
-    let all: Vec<[(Found, f64); 3]> = all
+    let all: Vec<[Identified; 3]> = all
         .into_iter()
         .filter_map(|one| one.ok().flatten())
         .collect();
@@ -479,10 +483,10 @@ fn identification(seed: u64, machines: u64, progress: &dyn Progress) -> Vec<[Str
     for (place, (name, wanted)) in IDENTIFIED.into_iter().enumerate() {
         let of = || all.iter().map(|one| &one[place]);
         let held = of()
-            .filter(|(found, is)| (found.low..=found.high).contains(is))
+            .filter(|(found, is, _)| (found.low..=found.high).contains(is))
             .count();
         let mut off: Vec<f64> = of()
-            .map(|(found, is)| (found.value - is).abs() / is.abs().max(1e-12))
+            .map(|(found, is, of)| (found.value - is).abs() / of)
             .collect();
         off.sort_by(f64::total_cmp);
         let at = |share: f64| {
@@ -735,7 +739,7 @@ pub fn drawn(of: Machines, extent: Extent, progress: &dyn Progress) -> Result<Re
         "touched",
     ];
     let story = format!(
-        "{right} machines of seed {seed} with nothing wrong and {wrong} with each mistake, levitated for eighteen windows: masses of 0.5 to 300 kg, 10 to 50 kHz, gravity or none, an unbalance of 0.2 to 5 % of the clearance, and one in six with each of: sensors as configured, runout of one axis, elliptic runout, runout at twice or three times the spin, hum, three times the noise. Positions, forces and spin pass through the mistake on their way to the supervisor and back; levitation is right. A configuration that is refused counts as found."
+        "{right} machines of seed {seed} with nothing wrong and {wrong} with each mistake, levitated for {WINDOWS} windows: masses of 0.5 to 300 kg, 10 to 50 kHz, gravity or none, an unbalance of 0.2 to 5 % of the clearance, and one in six with each of: sensors as configured, runout of one axis, elliptic runout, runout at twice or three times the spin, hum, three times the noise. Positions, forces and spin pass through the mistake on their way to the supervisor and back; levitation is right. A configuration that is refused counts as found."
     );
     Ok(Report {
         title: "Commissioning".to_owned(),
@@ -751,7 +755,7 @@ pub fn drawn(of: Machines, extent: Extent, progress: &dyn Progress) -> Result<Re
                 "What logs tell",
                 vec![
                     Block::text(
-                        "Numbers that `commission` finds in the logs of the same machines with nothing wrong: intervals that hold, errors as shares of what is, and the share of machines within 3 % of the mass, 10 % of the stiffness and 10 % of the lag. A stiffness near nothing has no share.",
+                        "Numbers that `commission` finds in the logs of the same machines with nothing wrong: intervals that hold, errors as shares of what is, of a stiffness of the cap over the clearance, and the share of machines within 3 %, 10 % and 10 % of that.",
                     ),
                     Block::table(
                         [

@@ -147,6 +147,15 @@ fn what_is_no_log_is_refused_by_name() {
     let still: String = (0..400)
         .map(|tick| format!("{},0,0,0,0,0,0\n", 5e-5 * f64::from(tick)))
         .collect();
+    let moved = |x: &str| -> String {
+        let row = |tick: u32| {
+            let stimulus = 40.0
+                * (0.05 * f64::from(tick % 300)).sin()
+                * f64::from(u32::from(tick % 300 < 290));
+            format!("{},{x},0,0,0,{stimulus},0\n", 5e-5 * f64::from(tick))
+        };
+        (0..3_000).map(row).collect()
+    };
     let uneven = still.replace("0.01,", "0.0107,");
     let cases = [
         (
@@ -158,6 +167,14 @@ fn what_is_no_log_is_refused_by_name() {
         (
             write("words.csv", &format!("{names}0,0,0,x,0,0,0\n")),
             "line 2: commanded_x_n is \"x\"",
+        ),
+        (
+            write("stuck.csv", &format!("{names}{}", moved("0"))),
+            "does not answer",
+        ),
+        (
+            write("far.csv", &format!("{names}{}", moved("1e300"))),
+            "does not answer",
         ),
         (folder.path().join("none.parquet"), "none.parquet"),
         (write("no.parquet", "nothing"), "no.parquet"),

@@ -71,6 +71,14 @@ impl Columns {
             true => Self::of_csv(path)?,
             false => Self::of_parquet(path)?,
         };
+        for (name, values) in &columns.0 {
+            if let Some(row) = values.iter().position(|value| !value.is_finite()) {
+                return Err(LogError::new(
+                    format!("{name} is no number in row {}", row + 1),
+                    "give the log of a run in which a supervisor asked for its stimulus",
+                ));
+            }
+        }
         if let Some(between) = columns.0.remove(BETWEEN) {
             for values in columns.0.values_mut() {
                 let kept = values
