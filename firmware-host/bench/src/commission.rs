@@ -288,20 +288,31 @@ fn quiet(log: &Log, windows: &[Window]) -> Window {
     longest.map_or(0..0, |(a, b)| a..b)
 }
 
+/// A signal off its mean, under the square of Hann's window.
+fn through(values: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    let length = values.len() as f64;
+    let mean = [0, 1].map(|axis| values.iter().map(|v| v[axis]).sum::<f64>() / length);
+    let weighed = values.iter().enumerate().map(|(place, [x, y])| {
+        let weight = hann(place as f64 / length).powi(2);
+        [weight * (x - mean[0]), weight * (y - mean[1])]
+    });
+    weighed.collect()
+}
+
 fn lines(log: &Log, windows: &[Window]) -> Vec<Line> {
     let mut lines = Vec::new();
     for (number, window) in windows.iter().enumerate() {
         let length = window.len() as f64;
-        let project = |values: &[[f64; 2]], omega: f64| {
-            let values = &values[window.clone()];
-            let mean = [0, 1].map(|axis| values.iter().map(|v| v[axis]).sum::<f64>() / length);
+        // Once for all lines: what is left of the mean, seen through the window.
+        let [position, command, stimulus] = [&log.position_m, &log.command_n, &log.stimulus_n]
+            .map(|all| through(&all[window.clone()]));
+        let project = |weighed: &[[f64; 2]], omega: f64| {
             let mut sums = [Complex64::default(); 2];
             let turn = Complex64::from_polar(1.0, -omega * log.period_s);
             let mut phase = Complex64::new(1.0, 0.0);
-            for (place, value) in values.iter().enumerate() {
-                let weighed = phase * hann(place as f64 / length).powi(2);
-                for axis in 0..2 {
-                    sums[axis] += weighed * (value[axis] - mean[axis]);
+            for value in weighed {
+                for (sum, value) in sums.iter_mut().zip(value) {
+                    *sum += phase * value;
                 }
                 phase *= turn;
             }
@@ -310,7 +321,7 @@ fn lines(log: &Log, windows: &[Window]) -> Vec<Line> {
         // Every other bin: neighbours tell the same.
         let step = 2.0 * TAU / (length * log.period_s);
         let strength = |omega: f64| {
-            let [x, y] = project(&log.stimulus_n, omega);
+            let [x, y] = project(&stimulus, omega);
             x.norm_sqr() + y.norm_sqr()
         };
         let bins: Vec<(f64, f64)> = (4..(length as usize / 8).min(200))
@@ -328,9 +339,8 @@ fn lines(log: &Log, windows: &[Window]) -> Vec<Line> {
                     window: number,
                     weight,
                     omega,
-                    position: project(&log.position_m, omega),
-                    command: (project(&log.command_n, omega))
-                        .map(|u| u * held(omega * log.period_s)),
+                    position: project(&position, omega),
+                    command: (project(&command, omega)).map(|u| u * held(omega * log.period_s)),
                 });
             }
         }
@@ -407,10 +417,7 @@ impl Fit {
 
     fn of(lines: &[Line], period_s: f64) -> Result<Self, LogError> {
         let cost = |values: &[f64; 6]| -> f64 {
-            let of = |line: &Line| -> f64 {
-                let [x, y] = residuals(line, values);
-                line.weight * (x.norm_sqr() + y.norm_sqr())
-            };
+            let of = |line: &Line| line.weight * own_cost(line, values);
             lines.iter().map(of).sum()
         };
         // For every delay what is linear; then the delay that is best.
@@ -532,12 +539,11 @@ impl Fit {
                 (yx - xy).atan2(xx + yy)
             }),
         );
-        let length = |a: f64, b: f64| a.hypot(b);
-        found.parameters.push(
-            self.found("gain_of_y_over_x", "1", move |[xx, xy, yx, yy, ..]| {
-                length(*xy, *yy) / length(*xx, *yx)
-            }),
-        );
+        found
+            .parameters
+            .push(self.found("gain_of_y_over_x", "1", |[xx, xy, yx, yy, ..]| {
+                xy.hypot(*yy) / xx.hypot(*yx)
+            }));
         let handed = |[xx, xy, yx, yy, ..]: &[f64; 6]| (xx * yy - xy * yx).signum();
         found
             .parameters

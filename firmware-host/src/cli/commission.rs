@@ -1,5 +1,6 @@
 //! `commission LOG`: the numbers of a machine from a recorded run in which its supervisor checked them.
 
+use crate::cli::advise::Format;
 use crate::cli::error::{CommandError, pretty, print};
 use crate::cli::load;
 use crate::cli::screen::tell;
@@ -30,17 +31,6 @@ pub struct CommissionArgs {
     /// Print JSON instead of the tables.
     #[arg(long)]
     pub json: bool,
-}
-
-/// Where a configuration is written down.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-pub enum Format {
-    /// The table of a scene.
-    Toml,
-    /// Fields of the struct of a firmware in Rust.
-    Rust,
-    /// Elements of the array of a firmware in C or C++.
-    C,
 }
 
 /// Runs the command.

@@ -3,10 +3,7 @@
 use supervisor::{
     Command, Config, Finding, PlanePositions, RotorSupervisor, Sample, Shaft, Status, Supervisor,
 };
-
-fn length([x, y]: [f32; 2]) -> f32 {
-    x.hypot(y)
-}
+use test_support::rig::length;
 
 const TICK_S: f64 = 50e-6;
 const PARTS: u32 = 4;
