@@ -76,6 +76,7 @@ mod flight_map;
 mod guards;
 mod holding;
 pub mod linear;
+pub mod linear_plant;
 mod orders;
 pub mod params;
 mod peaks;

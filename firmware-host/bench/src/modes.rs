@@ -1,10 +1,12 @@
 //! A whole rotor as a linear system: modes over the spin and their shapes, critical speeds, response to the unbalance, whirl that
-//! friction can hold, coupling of the planes.
+//! friction can hold, coupling of the planes; levitated, also stability, sensitivity and margins of the loop.
 
 use crate::scene::Scene;
-use plant_model::V2;
-use plant_model::machine::linear::{LinearMachine, MachineMode, Walls};
-use plant_model::machine::params::{MachineError, MachineParams, Support};
+use crate::scene::linear_loop::{
+    self, LinearLoop, LoopMode, NoLoop, Sensitivity, SpeedMargin, speed_margins,
+};
+use plant_model::machine::linear::{C, LinearMachine, MachineMode, Walls};
+use plant_model::machine::params::{MachineError, MachineParams};
 use serde::Serialize;
 use std::f64::consts::TAU;
 
@@ -15,10 +17,20 @@ pub struct Range {
     pub to_hz: f64,
     /// At how many spins from 0.
     pub points: usize,
-    /// Whether contact springs and dampers of all planes hold the rotor.
-    pub contact: bool,
-    /// Whether the gains of the levitation controllers do, at the magnets.
-    pub levitated: bool,
+    /// What holds the rotor beside its supports.
+    pub held: Held,
+}
+
+/// What holds a rotor beside its supports and the stiffness of its magnets.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Held {
+    /// Nothing.
+    Free,
+    /// Contact springs and dampers of all planes.
+    Contact,
+    /// The levitation controller, as sampled.
+    Levitated,
 }
 
 /// A mode at a spin.
@@ -113,6 +125,30 @@ impl Coupling {
     }
 }
 
+/// Sensitivity over frequency.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SensitivityCourse {
+    /// Up to half the rate of the loop.
+    pub frequencies_hz: Vec<f64>,
+    /// Of each axis, in the order of the peaks.
+    pub axes_db: Vec<Vec<f64>>,
+}
+
+/// The loop of a levitated rotor at the spin of the scene.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct LoopAnalysis {
+    /// Whether no motion grows.
+    pub stable: bool,
+    /// Modes that turn or swing, those of the controller among them, slowest first.
+    pub loop_modes: Vec<LoopMode>,
+    /// Peak of the sensitivity of each axis; empty of a loop that is not stable.
+    pub sensitivity: Vec<Sensitivity>,
+    /// Its course, of a loop that is stable.
+    pub sensitivity_course: Option<SensitivityCourse>,
+    /// The critical speeds of the range, with what API 617 says of them.
+    pub speed_margins: Vec<SpeedMargin>,
+}
+
 /// A rotor as a linear system.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Analysis {
@@ -123,20 +159,23 @@ pub struct Analysis {
     /// Coupling of the planes.
     #[serde(flatten)]
     pub coupling: Coupling,
+    /// The loop, of a levitated rotor.
+    #[serde(flatten)]
+    pub levitation: Option<LoopAnalysis>,
     /// Modes that turn or swing, spin by spin, slowest first.
     pub modes: Vec<ModeAtSpin>,
-    /// Critical speeds, slowest first, also above the range.
+    /// Critical speeds, slowest first: without damping and also above the range; of a levitated rotor those within it.
     pub critical_speeds: Vec<CriticalSpeed>,
     pub unbalance_response: Vec<Response>,
     /// Rates at which unstable motions grow at the highest spin \[1/s\].
     pub growth_1_s: Vec<f64>,
-    /// Spin of the scene \[rad/s\], at which shapes and whirl are told.
+    /// Spin of the scene \[rad/s\], at which shapes, whirl and the loop are told.
     pub spin_rad_s: f64,
     /// Places of the shapes, from the centre of mass \[m\].
     pub shape_positions_m: Vec<f64>,
     /// Shapes of the modes that turn or swing, slowest first.
     pub mode_shapes: Vec<ModeShape>,
-    /// Whirl that friction can hold; null where mountings differ along x and y, or walls are closed.
+    /// Whirl that friction can hold, without levitation; null where mountings differ along x and y, or walls are closed.
     pub held_whirl: Option<Vec<HeldWhirl>>,
 }
 
@@ -149,11 +188,115 @@ pub enum AnalysisError {
     /// A value is out of range.
     #[error(transparent)]
     Machine(#[from] MachineError),
-    /// The search for eigenvalues does not end.
-    #[error(
-        "its rates lie too far apart to find its modes; keep fewer of them (rotor.bending_to_hz), or make supports softer"
-    )]
-    NoEigenvalues,
+    /// Of the loop, or of the search for eigenvalues.
+    #[error(transparent)]
+    Loop(#[from] NoLoop),
+}
+
+/// What is told of a rotor, however it is held.
+struct Found {
+    /// At each spin of the range.
+    modes: Vec<Vec<MachineMode>>,
+    critical_speeds: Vec<CriticalSpeed>,
+    /// In each plane and at each sensor, at each spin.
+    responses_m: Vec<Option<[Vec<f64>; 2]>>,
+    shapes: Vec<(MachineMode, Vec<C>)>,
+    levitation: Option<LoopAnalysis>,
+}
+
+impl Found {
+    /// Of a rotor that the controller does not hold.
+    fn without_levitation(
+        scene: &Scene,
+        (machine, along_the_axis): (&LinearMachine, &LinearMachine),
+        spins: &[f64],
+    ) -> Option<Self> {
+        let planes = scene.planes.len();
+        let response = |spin: &f64| {
+            let all = machine.unbalance_response_m(*spin)?;
+            let (of_planes, of_sensors) = all.split_at(planes);
+            Some([of_planes.to_vec(), of_sensors.to_vec()])
+        };
+        let critical_speeds = machine.critical_speeds()?.into_iter();
+        Some(Self {
+            modes: (spins.iter())
+                .map(|spin| machine.modes(*spin))
+                .collect::<Option<_>>()?,
+            critical_speeds: critical_speeds
+                .map(|speed| CriticalSpeed {
+                    spin_rad_s: speed.spin_rad_s,
+                    whirl: speed.direction.name(),
+                })
+                .collect(),
+            responses_m: spins.iter().map(response).collect(),
+            shapes: along_the_axis.shapes(scene.start.spin_rad_s)?,
+            levitation: None,
+        })
+    }
+
+    /// Of a rotor under its controller.
+    fn levitated(scene: &Scene, places_m: &[f64], spins: &[f64]) -> Result<Self, NoLoop> {
+        let mut modes = Vec::with_capacity(spins.len());
+        let mut responses_m = Vec::with_capacity(spins.len());
+        for spin in spins {
+            let closed = LinearLoop::new(scene, *spin)?;
+            modes.push(closed.modes()?);
+            responses_m.push(closed.unbalance_response_m(*spin));
+        }
+        let closed = LinearLoop::new(scene, scene.start.spin_rad_s)?;
+        let at_spin = closed.modes()?;
+        let stable = linear_loop::is_stable(&at_spin);
+        let margins = speed_margins(scene, spins, &modes)?;
+        let mut shapes = Vec::new();
+        for mode in &at_spin {
+            if let Some(shape) = closed.shape(mode, &scene.machine, places_m)? {
+                shapes.push((*mode, shape));
+            }
+        }
+        Ok(Self {
+            modes,
+            critical_speeds: (margins.iter())
+                .map(|margin| CriticalSpeed {
+                    spin_rad_s: margin.spin_rad_s,
+                    whirl: margin.whirl,
+                })
+                .collect(),
+            responses_m,
+            shapes,
+            levitation: Some(LoopAnalysis {
+                stable,
+                loop_modes: linear_loop::told(&at_spin),
+                sensitivity: match stable {
+                    true => closed.sensitivity_peaks(&at_spin),
+                    false => Vec::new(),
+                },
+                sensitivity_course: stable.then(|| course(scene, &closed)),
+                speed_margins: margins,
+            }),
+        })
+    }
+}
+
+/// Frequencies of a course, evenly by their logarithm over four decades up to half the rate.
+const COURSE: u32 = 320;
+
+fn course(scene: &Scene, closed: &LinearLoop) -> SensitivityCourse {
+    let share = |i: u32| f64::from(i) / f64::from(COURSE) - 1.0;
+    let frequencies_hz: Vec<f64> = (0..=COURSE)
+        .map(|i| 0.5 * scene.sample_rate_hz * 10_f64.powf(4.0 * share(i)))
+        .collect();
+    let all = closed.sensitivities(&frequencies_hz);
+    let axes = all.first().map_or(0, Vec::len);
+    let of = |axis: usize| all.iter().map(|at| 20.0 * at[axis].log10()).collect();
+    SensitivityCourse {
+        axes_db: (0..axes).map(of).collect(),
+        frequencies_hz,
+    }
+}
+
+fn turns(mode: &MachineMode) -> bool {
+    let size = mode.frequency_rad_s.hypot(mode.growth_s);
+    mode.frequency_rad_s > STANDS * size.max(1.0)
 }
 
 impl Analysis {
@@ -162,41 +305,33 @@ impl Analysis {
     /// # Errors
     /// [`AnalysisError`].
     pub fn new(scene: &Scene, range: Range) -> Result<Self, AnalysisError> {
-        let none = || AnalysisError::NoEigenvalues;
-        let params = held(scene, range);
-        let walls = match range.contact {
-            true => Walls::Closed,
-            false => Walls::Off,
+        let params = scene.machine.linear_magnets();
+        let walls = match range.held {
+            Held::Contact => Walls::Closed,
+            Held::Free | Held::Levitated => Walls::Off,
         };
         let machine = LinearMachine::new(&params, walls)?;
         let last = (range.points - 1) as f64;
         let spins: Vec<f64> = (0..range.points)
             .map(|i| TAU * range.to_hz * i as f64 / last)
             .collect();
-        let turns = |mode: &MachineMode| {
-            let size = mode.frequency_rad_s.hypot(mode.growth_s);
-            mode.frequency_rad_s > STANDS * size.max(1.0)
-        };
-        let (mut modes, mut growing) = (Vec::new(), Vec::new());
-        for spin_rad_s in &spins {
-            let at_spin = machine.modes(*spin_rad_s).ok_or_else(none)?;
-            // The last is the highest.
-            growing = at_spin.iter().map(|mode| mode.growth_s).collect();
-            modes.extend(at_spin.into_iter().filter(turns).map(|mode| ModeAtSpin {
-                spin_rad_s: *spin_rad_s,
-                frequency_hz: mode.frequency_rad_s / TAU,
-                whirl: mode.direction.name(),
-                damping_ratio: mode.damping_ratio,
-            }));
-        }
         let spin_rad_s = scene.start.spin_rad_s;
         let shape_positions_m = places(&params);
         let along_the_axis = MachineParams {
             probes_m: shape_positions_m.clone(),
-            ..params.clone()
+            ..params
         };
-        let shapes = LinearMachine::new(&along_the_axis, walls)?.shapes(spin_rad_s);
-        let shapes = (shapes.ok_or_else(none)?.into_iter()).filter(|(mode, _)| turns(mode));
+        let found = match range.held {
+            Held::Levitated => Found::levitated(scene, &shape_positions_m, &spins)?,
+            Held::Free | Held::Contact => {
+                let along_the_axis = LinearMachine::new(&along_the_axis, walls)?;
+                Found::without_levitation(scene, (&machine, &along_the_axis), &spins)
+                    .ok_or(NoLoop::NoEigenvalues)?
+            }
+        };
+        let at_highest = found.modes.last().into_iter().flatten();
+        let mut growth_1_s: Vec<f64> = at_highest.map(|mode| mode.growth_s).collect();
+        growth_1_s.retain(|rate| *rate > linear_loop::GROWS_1_S);
         let name = |plane: &usize| scene.planes[*plane].shown().to_owned();
         let held_whirl = machine.whirl_ranges(spin_rad_s).map(|ranges| {
             (ranges.into_iter())
@@ -207,34 +342,40 @@ impl Analysis {
                 })
                 .collect()
         });
-        let critical_speeds = machine.critical_speeds().ok_or_else(none)?;
-        let planes = scene.planes.len();
-        let response = |spin_rad_s: f64| {
-            let all = machine.unbalance_response_m(spin_rad_s);
-            let part = |sensors: bool| {
-                let (of_planes, of_sensors) = all.as_ref()?.split_at(planes);
-                Some(if sensors { of_sensors } else { of_planes }.to_vec())
-            };
-            Response {
-                spin_rad_s,
-                planes_m: part(false),
-                sensors_m: part(true),
-            }
+        let shown = match range.held {
+            Held::Levitated => linear_loop::swings,
+            Held::Free | Held::Contact => turns,
         };
-        growing.retain(|rate| *rate > GROWS_1_S);
+        let modes = spins.iter().zip(found.modes).flat_map(|(spin, modes)| {
+            modes.into_iter().filter(shown).map(|mode| ModeAtSpin {
+                spin_rad_s: *spin,
+                frequency_hz: mode.frequency_rad_s / TAU,
+                whirl: mode.direction.name(),
+                damping_ratio: mode.damping_ratio,
+            })
+        });
+        let shapes = found.shapes.iter().filter(|(mode, _)| shown(mode));
         Ok(Self {
             scene: scene.title.clone(),
             range,
             coupling: Coupling::of(scene, &machine),
-            modes,
-            critical_speeds: (critical_speeds.into_iter())
-                .map(|speed| CriticalSpeed {
-                    spin_rad_s: speed.spin_rad_s,
-                    whirl: speed.direction.name(),
+            levitation: found.levitation,
+            modes: modes.collect(),
+            critical_speeds: found.critical_speeds,
+            unbalance_response: (spins.iter().zip(found.responses_m))
+                .map(|(spin, response)| {
+                    let [planes_m, sensors_m] = match response {
+                        Some(both) => both.map(Some),
+                        None => [None, None],
+                    };
+                    Response {
+                        spin_rad_s: *spin,
+                        planes_m,
+                        sensors_m,
+                    }
                 })
                 .collect(),
-            unbalance_response: spins.iter().map(|spin| response(*spin)).collect(),
-            growth_1_s: growing,
+            growth_1_s,
             spin_rad_s,
             shape_positions_m,
             mode_shapes: shapes
@@ -248,40 +389,6 @@ impl Analysis {
             held_whirl,
         })
     }
-}
-
-/// Faster than this a motion grows, and not by rounding alone \[1/s\].
-const GROWS_1_S: f64 = 1e-3;
-
-/// The machine, with the gains of its planes' controllers as supports where that is asked for.
-fn held(scene: &Scene, range: Range) -> MachineParams {
-    let mut params = scene.machine.linear_magnets();
-    if range.levitated {
-        let held = (scene.planes.iter())
-            .filter_map(|plane| Some((plane.magnet?, plane.levitation?, plane.axes_rad)));
-        params
-            .supports
-            .extend(held.map(|(magnet, gains, [sensor_rad, magnet_rad])| {
-                // A force along other axes than those along which is read pushes across as well.
-                let (across, along) = (magnet_rad - sensor_rad).sin_cos();
-                let of = |gain: f64| {
-                    (
-                        V2::repeat(gain * along),
-                        V2::new(-gain * across, gain * across),
-                    )
-                };
-                let (stiffness_n_m, cross_stiffness_n_m) = of(gains.proportional_n_m);
-                let (damping_n_s_m, cross_damping_n_s_m) = of(gains.derivative_n_s_m);
-                Support {
-                    position_m: scene.machine.magnets[magnet].position_m,
-                    stiffness_n_m,
-                    damping_n_s_m,
-                    cross_stiffness_n_m,
-                    cross_damping_n_s_m,
-                }
-            }));
-    }
-    params
 }
 
 /// All places at which something acts or is read, or a shape is told, from left to right.

@@ -10,6 +10,7 @@ mod external;
 pub(crate) mod guess;
 pub mod keys;
 mod limits;
+pub mod linear_loop;
 mod lint;
 pub mod nominal;
 mod own_controller;

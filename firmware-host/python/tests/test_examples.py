@@ -2,6 +2,7 @@
 
 import ast
 import json
+import math
 import os
 import re
 import subprocess
@@ -9,7 +10,9 @@ import sys
 from pathlib import Path
 
 import ambwhirl
+import numpy
 import pytest
+import scipy.io
 from conftest import ROOT
 
 HERE = Path(__file__).parent
@@ -27,6 +30,40 @@ def test_what_measures_runs():
     path = HERE.parent / "examples" / "measure.py"
     done = subprocess.run([sys.executable, path, "0.01"], capture_output=True, text=True)
     assert done.returncode == 0 and len(re.findall(r"^ *\d+\.\d µs  ", done.stdout, re.MULTILINE)) == 6, done
+
+
+def test_a_loop_is_designed_on_an_exported_plant(host, scenes, tmp_path):
+    """Out to python-control and back: the poles of the design are those of the host's loop, and the rotor is held."""
+    scene = scenes / "one_machine" / "flexible.toml"
+    for kind in ["npz", "mat"]:
+        host("export", scene, "--plant", "--to", kind, "--out", tmp_path)
+    plant = numpy.load(tmp_path / "flexible_plant.npz")
+    names = json.loads(plant["names.json"])
+    assert names["inputs_n"] == names["outputs_m"] == ["far end x", "far end y", "coupling end x", "coupling end y"]
+    other = scipy.io.loadmat(tmp_path / "flexible_plant.mat")
+    assert all((other[name] == plant[name]).all() for name in ["A", "B", "C", "D", "Ad", "Bd", "Cd", "Dd"])
+    assert [name.item() for name in other["states"][:, 0]] == names["states"]
+
+    path = HERE.parent / "examples" / "design_loop.py"
+    done = subprocess.run(
+        [sys.executable, path, tmp_path / "flexible_plant.npz", tmp_path / "controller.npz"], capture_output=True, text=True
+    )
+    assert done.returncode == 0, done.stderr
+    design = json.loads(done.stdout)
+    gains = scene.read_text()
+    before, after = gains.split("[levitation]")
+    own = tmp_path / "own.toml"
+    own.write_text(before + '[state_space]\nfile = "controller.npz"\n' + after[after.index("\n[[plane]]") :])
+    found = json.loads(host("modes", own, "--levitated", "--points", 2, "--json"))
+    assert found["stable"] and design["growth_1_s"] < 0
+    poles = [complex(*rate) for rate in design["rates_1_s"]]
+    assert len(found["loop_modes"]) > 15
+    for mode in found["loop_modes"]:
+        rate = complex(mode["growth_1_s"], 2 * math.pi * mode["frequency_hz"])
+        assert min(abs(rate - pole) for pole in poles) < 1e-6 * abs(rate)
+    assert all(axis["zone"] == "A" for axis in found["sensitivity"])
+    told = json.loads(host("run", own, "--json", "--out", tmp_path / "run"))
+    assert all(policy["free_at_end"] for policy in told["policies"].values()), told
 
 
 @pytest.fixture

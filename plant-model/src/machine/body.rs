@@ -12,7 +12,7 @@ use super::params::{MachineError, MachineParams, MachinePlane, Rotor, Unbalance}
 use crate::V2;
 use crate::params::{RingParams, StatorParams};
 use crate::vector::rotate;
-use nalgebra::DMatrix;
+use nalgebra::{Complex, DMatrix};
 use std::f64::consts::PI;
 
 /// A square matrix over the pairs by its entries that are not zero: what x does to x and y to y, and what each does to the other.
@@ -429,6 +429,24 @@ impl LinearBody {
             moment_kg_m: self.rotor.rigid().mass_kg * more_m.abs(),
             angle_rad: if more_m < 0.0 { PI } else { 0.0 },
         });
+    }
+
+    /// Force of the unbalance on each coordinate over Ω²·e^(jΩt): Ω²·(U_x·cos σ + U_y·sin σ) = Re(Ω²·(U_x − j·U_y)·e^jΩt).
+    pub(crate) fn unbalance_forces(&self) -> Vec<Complex<f64>> {
+        let mut force = vec![Complex::new(0.0, 0.0); 2 * self.pairs];
+        for (axis, factor) in [
+            (V2::x(), Complex::new(1.0, 0.0)),
+            (V2::y(), Complex::new(0.0, -1.0)),
+        ] {
+            let mut pushed = vec![V2::zeros(); self.pairs];
+            if let Some(unbalance) = &self.unbalance {
+                unbalance.push(&mut pushed, axis);
+            }
+            for (f, x) in force.iter_mut().zip(pushed.iter().flatten()) {
+                *f += factor * *x;
+            }
+        }
+        force
     }
 
     /// A of ż = A·z for z = (ω·q, q̇) without forces at a spin \[rad/s\], ω a rate that makes all entries of one size.

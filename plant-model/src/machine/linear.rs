@@ -3,7 +3,6 @@
 
 use super::body::{LinearBody, Port};
 use super::params::{MachineError, MachineParams};
-use crate::V2;
 use nalgebra::{Complex, DMatrix, DVector, Schur};
 
 /// Which way a mode goes round.
@@ -18,6 +17,20 @@ pub enum Direction {
 }
 
 impl Direction {
+    /// Of motions X, Y in x = Re(X·e^jωt) and y likewise, ω > 0, at some places: by where it moves most.
+    pub fn of(motions: impl Iterator<Item = [C; 2]>) -> Self {
+        let (mut forward, mut backward) = (0.0, 0.0);
+        for motion in motions {
+            forward = f64::max(forward, circular(motion, 1.0).norm());
+            backward = f64::max(backward, circular(motion, -1.0).norm());
+        }
+        match (forward - backward) / forward.max(backward) {
+            d if d > TOLD_APART => Self::Forward,
+            d if d < -TOLD_APART => Self::Backward,
+            _ => Self::Planar,
+        }
+    }
+
     /// The word for it.
     pub fn name(self) -> &'static str {
         match self {
@@ -78,7 +91,8 @@ pub(super) struct Wall {
     pub(super) driving_friction: f64,
 }
 
-pub(super) type C = Complex<f64>;
+/// A complex number.
+pub type C = Complex<f64>;
 
 /// Share of the larger amplitude by which forward and backward must differ to be told apart.
 const TOLD_APART: f64 = 1e-6;
@@ -115,24 +129,12 @@ impl LinearMachine {
         let a = self.body.generator(self.rate_rad_s, spin_rad_s);
         let values = eigenvalues(&a)?;
         let complex = a.map(|x| C::new(x, 0.0));
-        let mut modes: Vec<MachineMode> = (values.iter())
-            // Of two that are conjugate the one that turns forward in time; real ones as they are.
-            .filter(|value| value.im >= 0.0)
-            .map(|value| MachineMode {
-                frequency_rad_s: value.im,
-                growth_s: value.re,
-                damping_ratio: match value.norm() {
-                    size if value.re.abs() > ROUNDING * size => -value.re / size,
-                    _ => 0.0,
-                },
-                direction: match value.im {
-                    0.0 => Direction::Planar,
-                    _ => self.direction(&complex, *value),
-                },
-            })
-            .collect();
-        modes.sort_by(|a, b| a.frequency_rad_s.total_cmp(&b.frequency_rad_s));
-        part_mixtures(&mut modes, self.rate_rad_s);
+        let turning = values.iter().filter(|value| value.im >= 0.0);
+        let modes = turning.map(|value| match value.im {
+            0.0 => (*value, Direction::Planar),
+            _ => (*value, self.direction(&complex, *value)),
+        });
+        let modes = modes_of(modes, self.rate_rad_s);
         Some(modes)
     }
 
@@ -215,18 +217,11 @@ impl LinearMachine {
     pub fn unbalance_response_m(&self, spin_rad_s: f64) -> Option<Vec<f64>> {
         let body = &self.body;
         let ports = || body.at_planes.iter().chain(&body.probes);
-        let Some(unbalance) = &body.unbalance else {
+        if body.unbalance.is_none() {
             return Some(ports().map(|_| 0.0).collect());
-        };
-        // Ω²·(U_x·cos σ + U_y·sin σ) = Re(Ω²·(U_x − j·U_y)·e^jΩt).
-        let mut force = DVector::zeros(2 * body.pairs);
-        for (axis, factor) in [(V2::x(), C::new(1.0, 0.0)), (V2::y(), C::new(0.0, -1.0))] {
-            let mut pushed = vec![V2::zeros(); body.pairs];
-            unbalance.push(&mut pushed, axis);
-            for (f, x) in force.iter_mut().zip(pushed.iter().flatten()) {
-                *f += factor * (spin_rad_s * spin_rad_s * x);
-            }
         }
+        let square = spin_rad_s * spin_rad_s;
+        let force = DVector::from_vec(body.unbalance_forces()) * C::new(square, 0.0);
         let motion = self
             .dynamic_stiffness(spin_rad_s, spin_rad_s)
             .lu()
@@ -289,27 +284,9 @@ impl LinearMachine {
             return vec![C::new(0.0, 0.0); self.body.probes.len()];
         };
         let motion = vector_of(&vector, 2 * self.body.pairs);
-        let turning = |sign: f64| {
-            let probes = self.body.probes.iter();
-            probes
-                .map(move |port| circular(port, motion, sign))
-                .collect::<Vec<C>>()
-        };
-        let size = |shape: &[C]| shape.iter().map(|z| z.norm()).fold(0.0, f64::max);
-        let [ahead, back] = [1.0, -1.0].map(turning);
-        let shape = if size(&ahead) >= size(&back) {
-            ahead
-        } else {
-            back
-        };
-        let largest = shape
-            .iter()
-            .copied()
-            .max_by(|a, b| a.norm().total_cmp(&b.norm()));
-        match largest.filter(|z| z.norm() > 0.0) {
-            Some(largest) => shape.into_iter().map(|z| z / largest).collect(),
-            None => shape,
-        }
+        let probes = self.body.probes.iter();
+        let motions: Vec<[C; 2]> = probes.map(|port| motion_at(port, motion)).collect();
+        shape_of(&motions)
     }
 
     /// Which way the eigenvector goes round.
@@ -318,36 +295,74 @@ impl LinearMachine {
             return Direction::Planar;
         };
         let ports = self.body.at_planes.iter().chain(&self.body.contacts);
-        let (mut forward, mut backward) = (0.0, 0.0);
-        for port in ports {
-            let [ahead, back] = senses(port, vector_of(&vector, 2 * self.body.pairs));
-            forward = f64::max(forward, ahead);
-            backward = f64::max(backward, back);
-        }
-        match (forward - backward) / forward.max(backward) {
-            d if d > TOLD_APART => Direction::Forward,
-            d if d < -TOLD_APART => Direction::Backward,
-            _ => Direction::Planar,
-        }
+        let moved = vector_of(&vector, 2 * self.body.pairs);
+        Direction::of(ports.map(|port| motion_at(port, moved)))
     }
 
-    /// The eigenvector, from inverse iteration.
     fn vector(&self, a: &DMatrix<C>, value: C) -> Option<DVector<C>> {
-        let (n, rate) = (2 * self.body.pairs, self.rate_rad_s);
-        let near = value + C::new(1e-9, 1e-9) * rate.min(1e3 * value.norm());
-        let shifted = a - DMatrix::from_diagonal_element(2 * n, 2 * n, near);
-        // No mode is orthogonal to this by construction.
-        let mut vector = DVector::from_fn(2 * n, |i, _| {
-            C::new(1.0 + 0.37 * (i as f64).sin(), 0.41 * (i as f64).cos())
-        });
-        let factors = shifted.lu();
-        for _ in 0..3 {
-            let next = factors.solve(&vector)?;
-            let size = next.norm();
-            vector = next / C::new(size, 0.0);
-        }
-        Some(vector)
+        eigenvector(a, value, self.rate_rad_s.min(1e3 * value.norm()))
     }
+}
+
+/// Shape of motions X, Y in x = Re(X·e^jωt) and y likewise: each as a complex number x ± j·y of the larger sense of all, largest 1.
+pub fn shape_of(motions: &[[C; 2]]) -> Vec<C> {
+    let turning = |sign: f64| {
+        let motions = motions.iter();
+        motions
+            .map(move |motion| circular(*motion, sign))
+            .collect::<Vec<C>>()
+    };
+    let size = |shape: &[C]| shape.iter().map(|z| z.norm()).fold(0.0, f64::max);
+    let [ahead, back] = [1.0, -1.0].map(turning);
+    let shape = if size(&ahead) >= size(&back) {
+        ahead
+    } else {
+        back
+    };
+    let largest = shape
+        .iter()
+        .copied()
+        .max_by(|a, b| a.norm().total_cmp(&b.norm()));
+    match largest.filter(|z| z.norm() > 0.0) {
+        Some(largest) => shape.into_iter().map(|z| z / largest).collect(),
+        None => shape,
+    }
+}
+
+/// Modes of eigenvalues that turn forward in time or do not turn, slowest first. Of those whose rates differ by a small share of
+/// the one given, two that follow each other are one mixture.
+pub fn modes_of(values: impl Iterator<Item = (C, Direction)>, rate_rad_s: f64) -> Vec<MachineMode> {
+    let mut modes: Vec<MachineMode> = values
+        .map(|(value, direction)| MachineMode {
+            frequency_rad_s: value.im,
+            growth_s: value.re,
+            damping_ratio: match value.norm() {
+                size if value.re.abs() > ROUNDING * size => -value.re / size,
+                _ => 0.0,
+            },
+            direction,
+        })
+        .collect();
+    modes.sort_by(|a, b| a.frequency_rad_s.total_cmp(&b.frequency_rad_s));
+    part_mixtures(&mut modes, rate_rad_s);
+    modes
+}
+
+/// The eigenvector of an eigenvalue, from inverse iteration a little beside it: `beside` is the size by which eigenvalues differ.
+pub fn eigenvector(a: &DMatrix<C>, value: C, beside: f64) -> Option<DVector<C>> {
+    let n = a.nrows();
+    let near = value + C::new(1e-9, 1e-9) * beside;
+    // No mode is orthogonal to this by construction.
+    let mut vector = DVector::from_fn(n, |i, _| {
+        C::new(1.0 + 0.37 * (i as f64).sin(), 0.41 * (i as f64).cos())
+    });
+    let factors = (a - DMatrix::from_diagonal_element(n, n, near)).lu();
+    for _ in 0..3 {
+        let next = factors.solve(&vector)?;
+        let size = next.norm();
+        vector = next / C::new(size, 0.0);
+    }
+    Some(vector)
 }
 
 /// The positions of an eigenvector.
@@ -359,7 +374,7 @@ fn vector_of(vector: &DVector<C>, n: usize) -> &[C] {
 ///
 /// The iteration has no exceptional shifts and may go round in circles, as it does with two like pairs. Seen from other axes the
 /// same matrix ends; only then is less than rounding asked of it.
-fn eigenvalues(a: &DMatrix<f64>) -> Option<DVector<C>> {
+pub fn eigenvalues(a: &DMatrix<f64>) -> Option<DVector<C>> {
     const SWEEPS: usize = 100;
     const TURNS: usize = 4;
     let most = SWEEPS * a.nrows();
@@ -405,25 +420,20 @@ fn reflect(a: &mut DMatrix<f64>, turn: usize) {
 const SHIFT: f64 = 1e-8;
 
 /// The part of a motion that goes forward (sign 1) or backward (−1), x = Re(X·e^jωt) and y likewise: (X ± jY)/2.
-fn circular(port: &Port, motion: &[C], sign: f64) -> C {
-    let part = |of: fn(&C) -> f64| {
-        let pairs = motion.chunks_exact(2);
-        pairs
-            .map(|z| V2::new(of(&z[0]), of(&z[1])))
-            .collect::<Vec<V2>>()
-    };
-    let (re, im) = (port.of(&part(|z| z.re)), port.of(&part(|z| z.im)));
-    0.5 * (C::new(re.x, im.x) + sign * C::new(-im.y, re.y))
+fn circular([x, y]: [C; 2], sign: f64) -> C {
+    0.5 * (x + sign * C::i() * y)
 }
 
-/// Amplitudes of the two.
-fn senses(port: &Port, motion: &[C]) -> [f64; 2] {
-    [1.0, -1.0].map(|sign| circular(port, motion, sign).norm())
+/// Motion at a place.
+fn motion_at(port: &Port, motion: &[C]) -> [C; 2] {
+    let pairs = || port.of_each().iter().zip(motion.chunks_exact(2));
+    [0, 1].map(|axis| pairs().map(|(s, z)| *s * z[axis]).sum())
 }
 
 /// The larger half axis of the ellipse that a place runs through.
 fn largest(port: &Port, motion: &[C]) -> f64 {
-    senses(port, motion).iter().sum()
+    let motion = motion_at(port, motion);
+    circular(motion, 1.0).norm() + circular(motion, -1.0).norm()
 }
 
 /// Of two modes that are alike any mixture is one as well: one counts as forward, one as backward.

@@ -12,6 +12,7 @@ mod instruments_and_events;
 mod judged;
 mod layering;
 mod licences;
+mod linear_loop;
 mod machine_scenes;
 mod own_controllers;
 mod release;

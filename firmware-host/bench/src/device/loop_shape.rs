@@ -30,10 +30,6 @@ pub struct LoopShape {
     pub noise_gain_n_m: f64,
 }
 
-/// Above this peak sensitivity a loop is badly damped. ISO 14839-3 has machines up to 3 as new and calls those beyond 4 unfit for
-/// long operation.
-pub(crate) const BADLY_DAMPED: f64 = 4.0;
-
 /// Frequencies between zero and half the sampling rate at which the loop is evaluated.
 const FREQUENCIES: usize = 2000;
 

@@ -6,7 +6,7 @@ use super::lines::{Cell, lined, right};
 use super::plot::PlotError;
 use super::plot::chart::{Axis, Chart, Curve, Mark};
 use super::plot::text::figures;
-use crate::modes::{Analysis, Coupling, HeldWhirl};
+use crate::modes::{Analysis, Coupling, HeldWhirl, LoopAnalysis, ModeAtSpin, SensitivityCourse};
 use crate::scene::Scene;
 use plant_model::machine::linear::Direction;
 use std::f64::consts::{FRAC_PI_2, TAU};
@@ -15,6 +15,9 @@ use std::fmt::Write as _;
 /// Tables of it: modes at standstill, at the spin nearest to that of the scene and at the highest, critical speeds, coupling.
 pub fn text(scene: &Scene, analysis: &Analysis) -> String {
     let mut text = format!("{}\n", analysis.scene);
+    if let Some(levitation) = &analysis.levitation {
+        let _ = write!(text, "{}\n\n", of_the_loop(analysis, levitation));
+    }
     let last = (analysis.range.points - 1) as f64;
     let nearest = (scene.start.spin_rad_s.abs() / TAU / analysis.range.to_hz * last).round();
     let mut shown = vec![0.0, nearest.min(last), last];
@@ -36,12 +39,15 @@ pub fn text(scene: &Scene, analysis: &Analysis) -> String {
         }
     }
     let _ = write!(text, "{table}\n\n");
-    let mut table = lined(["critical speed [Hz]", "whirl"]);
-    for speed in &analysis.critical_speeds {
-        let spin_hz = figures(speed.spin_rad_s / TAU);
-        table.add_row([right(spin_hz), Cell::new(speed.whirl)]);
+    if analysis.levitation.is_none() {
+        let mut table = lined(["critical speed [Hz]", "whirl"]);
+        for speed in &analysis.critical_speeds {
+            let spin_hz = figures(speed.spin_rad_s / TAU);
+            table.add_row([right(spin_hz), Cell::new(speed.whirl)]);
+        }
+        let _ = write!(text, "{table}\n\n");
     }
-    let _ = write!(text, "{table}\n\n{}", coupling(&analysis.coupling));
+    text += &coupling(&analysis.coupling);
     if let Some(ranges) = &analysis.held_whirl {
         let _ = write!(text, "\n\n{}", held_whirl(analysis, ranges));
     }
@@ -54,6 +60,58 @@ pub fn text(scene: &Scene, analysis: &Analysis) -> String {
         );
     }
     text + "\n"
+}
+
+/// Whether the loop is stable, its modes, its sensitivity, and how far its critical speeds are from the spin.
+fn of_the_loop(analysis: &Analysis, levitation: &LoopAnalysis) -> String {
+    let spin_hz = figures(analysis.spin_rad_s.abs() / TAU);
+    let mut text = match levitation.stable {
+        true => format!("The loop is stable at {spin_hz} Hz.\n"),
+        false => format!("The loop is NOT stable at {spin_hz} Hz: a motion grows.\n"),
+    };
+    let mut table = lined(["loop mode [Hz]", "whirl", "damping ratio", "growth [1/s]"]);
+    for mode in &levitation.loop_modes {
+        table.add_row([
+            right(figures(mode.frequency_hz)),
+            Cell::new(mode.whirl),
+            right(figures(mode.damping_ratio)),
+            right(figures(mode.growth_1_s)),
+        ]);
+    }
+    let _ = write!(text, "{table}");
+    if !levitation.sensitivity.is_empty() {
+        let mut table = lined(["sensitivity", "peak", "[dB]", "at [Hz]", "zone"]);
+        for axis in &levitation.sensitivity {
+            table.add_row([
+                Cell::new(&axis.axis),
+                right(figures(axis.peak)),
+                right(format!("{:.1}", axis.peak_db)),
+                right(figures(axis.frequency_hz)),
+                Cell::new(axis.zone.name()),
+            ]);
+        }
+        let _ = write!(text, "\n\n{table}\nZones of ISO 14839-3.");
+    }
+    if !levitation.speed_margins.is_empty() {
+        let mut table = lined([
+            "critical speed [Hz]",
+            "whirl",
+            "amplification",
+            "separation [%]",
+            "asked [%]",
+        ]);
+        for margin in &levitation.speed_margins {
+            table.add_row([
+                right(figures(margin.spin_rad_s / TAU)),
+                Cell::new(margin.whirl),
+                right(figures(margin.amplification)),
+                right(format!("{:.1}", 100.0 * margin.separation)),
+                right(format!("{:.1}", 100.0 * margin.separation_asked)),
+            ]);
+        }
+        let _ = write!(text, "\n\n{table}\nAsked by API 617.");
+    }
+    text
 }
 
 /// Whirl that friction can hold.
@@ -120,20 +178,28 @@ pub fn html(scene: &Scene, analysis: &Analysis) -> Result<String, PlotError> {
         let drawn = Drawn::of_chart(&plot)?;
         page.section(heading, |page| page.figures(&[drawn]));
     }
+    if let Some(levitation) = &analysis.levitation
+        && let Some(course) = &levitation.sensitivity_course
+    {
+        let drawn = Drawn::of_chart(&sensitivity(levitation, course))?;
+        page.section("Sensitivity", |page| page.figures(&[drawn]));
+    }
     page.section("Tables", |page| page.lines(&text(scene, analysis)));
     Ok(page.ended())
 }
 
 fn diagram(analysis: &Analysis) -> Chart {
     let to_hz = analysis.range.to_hz;
-    let highest = (analysis.modes.iter())
+    // What hardly swings, as much of a controller, would press the rest together.
+    let shown = |m: &&ModeAtSpin| analysis.levitation.is_none() || m.damping_ratio < 0.5;
+    let highest = (analysis.modes.iter().filter(shown))
         .map(|m| m.frequency_hz)
         .fold(to_hz, f64::max);
     let of = |direction: Direction, colour: usize| {
         let modes = analysis
             .modes
             .iter()
-            .filter(|mode| mode.whirl == direction.name());
+            .filter(|mode| mode.whirl == direction.name() && shown(mode));
         Curve {
             name: direction.name().to_owned(),
             points: modes
@@ -163,6 +229,29 @@ fn diagram(analysis: &Analysis) -> Chart {
         label: "Natural frequencies over the spin".to_owned(),
         x: Axis::linear("spin / Hz", (0.0, to_hz)),
         y: Axis::linear("frequency / Hz", (0.0, 1.05 * highest)),
+        curves,
+    }
+}
+
+fn sensitivity(levitation: &LoopAnalysis, course: &SensitivityCourse) -> Chart {
+    let axes = levitation.sensitivity.iter().zip(&course.axes_db);
+    let curves: Vec<Curve> = axes
+        .enumerate()
+        .map(|(i, (axis, sizes_db))| {
+            let points = course.frequencies_hz.iter().zip(sizes_db);
+            let points = points.map(|(hz, db)| (*hz, *db)).collect();
+            Curve::line(axis.axis.clone(), points, i)
+        })
+        .collect();
+    let highest = (levitation.sensitivity.iter())
+        .map(|axis| axis.peak_db)
+        .fold(15.0, f64::max);
+    let ends = (course.frequencies_hz.first()).zip(course.frequencies_hz.last());
+    let ends = ends.map_or((1.0, 10.0), |(first, last)| (*first, *last));
+    Chart {
+        label: "Sensitivity of each axis, the others closed".to_owned(),
+        x: Axis::log("frequency / Hz", ends),
+        y: Axis::linear("|S| / dB", (-40.0, highest + 2.0)),
         curves,
     }
 }

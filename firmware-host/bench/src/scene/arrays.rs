@@ -1,12 +1,13 @@
-//! Matrices from files of NumPy, as a scene names them.
+//! Matrices from files of NumPy, as a scene names them, and to such files.
 
 use crate::scene::diagnostic::{SceneError, SceneText};
 use nalgebra::DMatrix;
-use npyz::{NpyFile, Order};
+use npyz::{NpyFile, Order, WriterBuilder as _};
 use std::collections::BTreeMap;
 use std::fs::File;
-use std::io::BufReader;
-use zip::ZipArchive;
+use std::io::{self, BufReader, Cursor, Write as _};
+use zip::write::SimpleFileOptions;
+use zip::{ZipArchive, ZipWriter};
 
 /// Most numbers of an array.
 const MOST_NUMBERS: u64 = 4_000_000;
@@ -84,6 +85,29 @@ impl<'a> Arrays<'a> {
             (self.text).error_at_key(self.key, message, Some(help))
         })
     }
+}
+
+/// An `.npz` file with these arrays, and with texts under their names.
+pub(crate) fn npz<'n, 'a>(
+    arrays: impl Iterator<Item = (&'n str, &'a DMatrix<f64>)>,
+    texts: &[(&str, &str)],
+) -> io::Result<Vec<u8>> {
+    let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
+    for (name, array) in arrays {
+        archive.start_file(format!("{name}.npy"), SimpleFileOptions::default())?;
+        let shape = [array.nrows() as u64, array.ncols() as u64];
+        let options = npyz::WriteOptions::new().default_dtype().shape(&shape);
+        let mut rows = options.order(Order::C).writer(&mut archive).begin_nd()?;
+        for row in array.row_iter() {
+            rows.extend(row.iter().copied())?;
+        }
+        rows.finish()?;
+    }
+    for (name, text) in texts {
+        archive.start_file(*name, SimpleFileOptions::default())?;
+        archive.write_all(text.as_bytes())?;
+    }
+    Ok(archive.finish()?.into_inner())
 }
 
 fn matrix<R: std::io::Read>(array: NpyFile<R>) -> Result<DMatrix<f64>, String> {

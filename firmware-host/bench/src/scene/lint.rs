@@ -1,15 +1,16 @@
 //! What a scene may say and hardly means: a slip of a unit, a table pasted from another machine.
 
-use crate::device::levitation::LevitationParams;
-use crate::device::loop_shape::{BADLY_DAMPED, SampledPlant};
 use crate::device::sensor_fault::Samples;
+use crate::scene::Scene;
 use crate::scene::diagnostic::SceneText;
+use crate::scene::linear_loop::{LinearLoop, NoLoop, Zone, is_stable};
 use crate::scene::nominal::Override;
 use crate::scene::plane_spec::PlaneSpec;
 use crate::scene::suggest::{Nominal, SUPERVISED_RATES_HZ, suggested};
-use crate::scene::tables::SceneTables;
+use crate::scene::tables::{PlaneTable, SceneTables};
 use plant_model::V2;
 use plant_model::params::PlantParams;
+use std::f64::consts::TAU;
 use supervisor::{Config, PARAMETERS};
 
 /// A start farther from the centre than this, or one that would press the rotor deeper into the wall \[clearances\].
@@ -44,8 +45,6 @@ pub(crate) struct Told<'a> {
     pub(crate) overrides: &'a [Override],
     /// What comes of both where a supervisor runs.
     pub(crate) config: Option<&'a Config>,
-    /// Whether the levitation loop is the plane's own.
-    pub(crate) levitated_alone: bool,
 }
 
 /// Warnings with file and line.
@@ -91,9 +90,6 @@ pub(crate) fn warnings(spec: &PlaneSpec, plant: &PlantParams, told: Told<'_>) ->
         );
         warnings.push(warning(key, message));
     }
-    if told.levitated_alone {
-        warnings.extend(of_the_loop(spec, plant));
-    }
     if !told.overrides.is_empty() {
         warnings.extend(of_another_machine(
             text,
@@ -121,31 +117,63 @@ pub(crate) fn warnings(spec: &PlaneSpec, plant: &PlantParams, told: Told<'_>) ->
     warnings
 }
 
-/// A levitation loop that holds nothing, is not stable or is badly damped: as sampled, delayed and lagged, without the cap.
-fn of_the_loop(spec: &PlaneSpec, plant: &PlantParams) -> Option<String> {
-    let (file, text) = (&spec.tables, &spec.text);
-    let levitation: LevitationParams = file.levitation.as_ref()?.into();
-    let delay = file.magnet.as_ref()?.delay_samples + file.sensor.delay_samples;
-    let stiffness = plant.rotor.stiffness_n_m;
-    let gain = levitation.proportional_n_m;
-    if gain + stiffness <= 0.0 {
-        let message = format!(
-            "is {gain:e}, below the stiffness of {:e} N/m with which shaft and magnets pull: nothing holds the rotor in the middle",
-            -stiffness
-        );
-        return Some(text.warning("levitation.proportional_n_m", message));
-    }
-    let sampled = SampledPlant::new(plant, file.run.sample_rate_hz, delay as usize);
-    let message = match sampled.close(&levitation) {
-        None => "makes a loop that is not stable with this rotor, lag, delay and rate: levitation alone does not hold it"
-            .to_owned(),
-        Some(shape) if shape.peak_sensitivity > BADLY_DAMPED => format!(
-            "makes a badly damped loop: its peak sensitivity is {:.1}; ISO 14839-3 has new machines below 3",
-            shape.peak_sensitivity
-        ),
-        Some(_) => return None,
+/// A levitation loop that is not stable or is badly damped at the spin of the start.
+pub(crate) fn of_the_loop(scene: &Scene, tables: &SceneTables, text: &SceneText) -> Option<String> {
+    let message = match judged(scene, scene.start.spin_rad_s) {
+        Ok(judged) => judged?,
+        // A machine that is out of range is refused elsewhere.
+        Err(NoLoop::NoController | NoLoop::External | NoLoop::Machine(_)) => return None,
+        Err(error @ NoLoop::NoEigenvalues) => format!("cannot be judged: {error}"),
     };
-    Some(text.warning("levitation", message))
+    let of_plane = || {
+        let own = |i: usize, plane: &PlaneTable| {
+            let tables = [
+                ("levitation", plane.levitation.is_some()),
+                ("biquads", plane.biquads.is_some()),
+            ];
+            let given = tables.into_iter().find(|(_, given)| *given)?;
+            Some(format!("plane[{i}].{}", given.0))
+        };
+        let mut planes = tables.plane.iter().enumerate();
+        planes.find_map(|(i, plane)| own(i, plane))
+    };
+    let whole = tables.own_of_the_whole().next().map(str::to_owned);
+    let of_scene = [
+        ("levitation", tables.levitation.is_some()),
+        ("biquads", tables.biquads.is_some()),
+    ];
+    let of_scene = of_scene.into_iter().find(|(_, given)| *given);
+    let key = (whole.or_else(of_plane)).or_else(|| Some(of_scene?.0.to_owned()))?;
+    Some(text.warning(&key, message))
+}
+
+/// What is wrong with the loop, where something is.
+fn judged(scene: &Scene, spin_rad_s: f64) -> Result<Option<String>, NoLoop> {
+    let closed = LinearLoop::new(scene, spin_rad_s)?;
+    let modes = closed.modes()?;
+    if is_stable(&modes) {
+        let peaks = closed.sensitivity_peaks(&modes);
+        let worst = (peaks.into_iter()).max_by(|a, b| a.peak.total_cmp(&b.peak));
+        return Ok(worst.filter(|worst| worst.zone >= Zone::C).map(|worst| {
+            format!(
+                "makes a badly damped loop: the sensitivity of {} peaks with {:.1} at {:.1} Hz, zone {} of ISO 14839-3, which has new machines below 3",
+                worst.axis, worst.peak, worst.frequency_hz, worst.zone.name()
+            )
+        }));
+    }
+    let fastest = (modes.iter()).max_by(|a, b| a.growth_s.total_cmp(&b.growth_s));
+    Ok(fastest.map(|mode| match mode.frequency_rad_s > 0.0 {
+        true => format!(
+            "makes a loop that is not stable: a {} mode of {:.4} Hz grows by {:.3} 1/s; see it with modes --levitated",
+            mode.direction.name(),
+            mode.frequency_rad_s / TAU,
+            mode.growth_s
+        ),
+        false => format!(
+            "does not hold the rotor in the middle: it runs away by {:.3} 1/s, as where gains are below the stiffness with which magnets pull",
+            mode.growth_s
+        ),
+    }))
 }
 
 /// Values that one look at them makes doubtful: also of a scene that is refused, for that may be why.

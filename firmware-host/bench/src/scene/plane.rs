@@ -33,8 +33,6 @@ pub(crate) struct OfMachine {
     /// Force at a plane without a magnet that moves it as all magnets elsewhere do together \[N\]; 0 where it has one, or
     /// nobody has.
     pub(crate) others_n: f64,
-    /// Whether it is levitated by a controller of its own.
-    pub(crate) levitated_alone: bool,
 }
 
 /// A plane, and what it says of the scene, in which all planes agree.
@@ -100,7 +98,6 @@ impl PlaneSpec {
             nominal: &nominal,
             overrides: &overrides,
             config: supervisor.as_ref(),
-            levitated_alone: of.levitated_alone,
         };
         let warnings = match text.warns {
             true => [warnings(self, &plant, told), unseen(self)].concat(),

@@ -8,7 +8,7 @@ use crate::device::whole_levitation::WholeLevitationParams;
 use crate::scene::bearing;
 use crate::scene::devices::centre_offset_m;
 use crate::scene::diagnostic::{SceneError, SceneText};
-use crate::scene::lint::slips;
+use crate::scene::lint::{of_the_loop, slips};
 use crate::scene::own_controller::own_controller;
 use crate::scene::plane::OfMachine;
 use crate::scene::plane_spec::PlaneSpec;
@@ -101,8 +101,6 @@ impl Spec {
                         .map(|m| (lever(m.position_m) * m.force_max_n).abs())
                         .sum(),
                 },
-                // What a plane's loop is worth where other magnets pull too no plane can say.
-                levitated_alone: levitation.is_none() && machine.magnets.len() < 2,
             };
             let resolved = plane.resolve(&of)?;
             machine.planes.push(MachinePlane {
@@ -165,6 +163,10 @@ impl Spec {
             .map_err(|error| refused(&error, self, &scene.planes))?;
         self.check_places_of_changes(&scene.machine.rotor, &origin)?;
         scene.decide(text);
+        if text.warns {
+            let doubt = of_the_loop(&scene, tables, text);
+            scene.warnings.extend(doubt);
+        }
         match scene.refused_by_supervisor() {
             Some((plane, error)) => {
                 let message = format!("leaves no supervisor for the rotor: {error}");

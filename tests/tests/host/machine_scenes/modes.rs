@@ -162,7 +162,58 @@ fn the_command_says_what_it_cannot_do() {
         assert!(table.contains(words), "{table}");
     }
     let page = fs::read_to_string(page).unwrap();
-    assert!(page.contains("Campbell diagram") && page.matches("<svg").count() == 3);
+    assert!(page.contains("Campbell diagram") && page.matches("<svg").count() == 4);
+}
+
+/// A rotor that the gains hold and one that lags too far behind: said by the command, in numbers and on its own.
+#[test]
+fn a_loop_is_judged() {
+    let rigid = scene_path("one_machine/rigid");
+    let found = json(&[rigid.to_str().unwrap(), "--levitated", "--points", "2"]);
+    assert_eq!(found["stable"], true);
+    assert_eq!(found["range"]["held"], "levitated");
+    for axis in found["sensitivity"].as_array().unwrap() {
+        let number = |key: &str| axis[key].as_f64().unwrap();
+        assert!((number("peak_db") - 20.0 * number("peak").log10()).abs() < 1e-9);
+        assert_eq!(axis["zone"] == "A", number("peak") < 3.0, "{axis}");
+    }
+    let folder = TempDir::new().unwrap();
+    let path = folder.path().join("late.toml");
+    let late = fs::read_to_string(&rigid)
+        .unwrap()
+        .replace("lag_s = 1.6e-4", "lag_s = 1.6e-2");
+    fs::write(&path, late).unwrap();
+    let name = path.to_str().unwrap();
+    let found = json(&[name, "--levitated", "--points", "2"]);
+    assert_eq!(found["stable"], false);
+    let growing = |mode: &Value| mode["growth_1_s"].as_f64().unwrap() > 1.0;
+    assert!(found["loop_modes"].as_array().unwrap().iter().any(growing));
+    for command in [
+        &["modes"][..],
+        &["run", "--quiet", "--out", "out"],
+        &["advise"],
+    ] {
+        let output = host()
+            .current_dir(folder.path())
+            .args(command)
+            .arg(name)
+            .output()
+            .unwrap();
+        let errors = String::from_utf8_lossy(&output.stderr);
+        assert!(
+            errors.contains("makes a loop that is not stable"),
+            "{errors}"
+        );
+    }
+    // A point mass has a loop, and no other modes; a program has no equations.
+    let one = scene_path("shock_15_g_on_amb");
+    let found = json(&[one.to_str().unwrap(), "--levitated"]);
+    assert_eq!(found["sensitivity"][0]["axis"], "x");
+    let program = scene_path("controllers/pid_in_python");
+    let output = modes(&[program.to_str().unwrap(), "--levitated"]);
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{errors}");
+    assert!(errors.contains("whose equations are not known"), "{errors}");
 }
 
 /// A uniform shaft between two planes.

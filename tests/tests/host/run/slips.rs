@@ -68,7 +68,7 @@ fn slips_are_warned_of() {
         (
             "proportional_n_m = 5e5",
             "proportional_n_m = 2e5",
-            "levitation.proportional_n_m",
+            "levitation",
         ),
         (
             "sample_rate_hz = 20000",
