@@ -33,10 +33,10 @@ struct NumberArgs {
     /// Control rate.
     #[arg(long, allow_hyphen_values = true, value_name = "NUMBER")]
     sample_rate_hz: Option<f64>,
-    /// Mass of the rotor that this bearing plane carries.
+    /// Mass of the rotor that this bearing plane carries; with --bearings-m that of the whole rotor.
     #[arg(long, allow_hyphen_values = true, value_name = "NUMBER")]
     mass_kg: Option<f64>,
-    /// Shaft stiffness less the magnets' negative stiffness, e.g. -2e5.
+    /// Shaft stiffness less the magnets' negative stiffness, e.g. -2e5; with --bearings-m that of each magnet alone.
     #[arg(long, allow_hyphen_values = true, value_name = "NUMBER")]
     stiffness_n_m: Option<f64>,
     /// Radial clearance of the retainer bearing.
@@ -45,7 +45,7 @@ struct NumberArgs {
     /// Stiffness of the contact with the retainer bearing.
     #[arg(long, allow_hyphen_values = true, value_name = "NUMBER")]
     contact_stiffness_n_m: Option<f64>,
-    /// Force cap, as the length of the vector.
+    /// Force cap of a magnet, as the length of the vector.
     #[arg(long, allow_hyphen_values = true, value_name = "NUMBER")]
     force_max_n: Option<f64>,
     /// Time constant of the amplifier with the magnet.
@@ -66,6 +66,50 @@ struct NumberArgs {
     /// Static load on this plane, such as the weight of a horizontal rotor [default: 0].
     #[arg(long, allow_hyphen_values = true, value_name = "NUMBER")]
     load_n: Option<f64>,
+    /// A whole rotor in two bearings: where they are along the axis, from the centre of mass, as -0.2,0.25. With its inertias or
+    /// its length.
+    #[arg(
+        long,
+        allow_hyphen_values = true,
+        value_delimiter = ',',
+        num_args = 1,
+        value_name = "A,B"
+    )]
+    bearings_m: Option<Vec<f64>>,
+    /// Transverse moment of inertia about the centre of mass, with --bearings-m.
+    #[arg(
+        long,
+        allow_hyphen_values = true,
+        value_name = "NUMBER",
+        requires = "bearings_m"
+    )]
+    #[arg(requires = "polar_inertia_kg_m2")]
+    transverse_inertia_kg_m2: Option<f64>,
+    /// Polar moment of inertia, with --bearings-m.
+    #[arg(
+        long,
+        allow_hyphen_values = true,
+        requires = "transverse_inertia_kg_m2",
+        value_name = "NUMBER"
+    )]
+    polar_inertia_kg_m2: Option<f64>,
+    /// Length, in the place of inertias those of a cylinder of this mass and of the contact radius.
+    #[arg(
+        long,
+        allow_hyphen_values = true,
+        value_name = "NUMBER",
+        requires = "bearings_m"
+    )]
+    #[arg(conflicts_with = "polar_inertia_kg_m2")]
+    length_m: Option<f64>,
+}
+
+/// What two bearings need beside the numbers of one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Bearings {
+    positions_m: [f64; 2],
+    transverse_inertia_kg_m2: f64,
+    polar_inertia_kg_m2: f64,
 }
 
 /// A machine.
@@ -83,6 +127,7 @@ struct Machine {
     load_n: f64,
     spin_hz: Option<f64>,
     contact_radius_m: Option<f64>,
+    bearings: Option<Bearings>,
 }
 
 /// A spring that would carry this share of the cap at the wall is stiff enough for a rotor that nothing pulls.
@@ -122,6 +167,12 @@ const SPIN: Number = Number { option: "--spin-hz", question: "spin in Hz", range
 #[rustfmt::skip]
 const RADIUS: Number = Number { option: "--contact-radius-m", question: "radius where it touches, in m", range: POSITIVE };
 #[rustfmt::skip]
+const TRANSVERSE: Number = Number { option: "--transverse-inertia-kg-m2", question: "transverse moment of inertia in kg m²", range: POSITIVE };
+#[rustfmt::skip]
+const POLAR: Number = Number { option: "--polar-inertia-kg-m2", question: "polar moment of inertia in kg m²", range: NOT_NEGATIVE };
+#[rustfmt::skip]
+const LENGTH: Number = Number { option: "--length-m", question: "length in m", range: POSITIVE };
+#[rustfmt::skip]
 const LOAD: Number = Number { option: "--load-n", question: "static load in N", range: NOT_NEGATIVE };
 
 impl NumberArgs {
@@ -143,13 +194,16 @@ impl NumberArgs {
             (SPIN, self.spin_hz),
             (RADIUS, self.contact_radius_m),
             (LOAD, self.load_n),
+            (TRANSVERSE, self.transverse_inertia_kg_m2),
+            (POLAR, self.polar_inertia_kg_m2),
+            (LENGTH, self.length_m),
         ];
         for (number, value) in given {
             value.map_or(Ok(()), |value| number.check(value))?;
         }
         let mut needed =
             |number: Number, value: Option<f64>| value.map_or_else(|| ask(&number), Ok);
-        Ok(Machine {
+        let machine = Machine {
             sample_rate_hz: needed(SAMPLE_RATE, self.sample_rate_hz)?,
             mass_kg: needed(MASS, self.mass_kg)?,
             stiffness_n_m: needed(STIFFNESS, self.stiffness_n_m)?,
@@ -162,7 +216,61 @@ impl NumberArgs {
             load_n: self.load_n.unwrap_or(0.0),
             spin_hz: self.spin_hz,
             contact_radius_m: self.contact_radius_m,
+            bearings: None,
+        };
+        Ok(Machine {
+            bearings: self.bearings(&machine)?,
+            ..machine
         })
+    }
+
+    /// The two bearings, where they are given.
+    fn bearings(&self, machine: &Machine) -> Result<Option<Bearings>, CommandError> {
+        let refused = |message: String, help: &str| {
+            Err(CommandError::Numbers {
+                message,
+                help: help.to_owned(),
+            })
+        };
+        let Some(places) = &self.bearings_m else {
+            return Ok(None);
+        };
+        let positions_m = match places[..] {
+            [a, b] if a < 0.0 && b > 0.0 && a.is_finite() && b.is_finite() => [a, b],
+            _ => {
+                let message = "--bearings-m is not of two places on both sides".to_owned();
+                let help = "give two from the centre of mass, the first negative, as -0.2,0.25";
+                return refused(message, help);
+            }
+        };
+        if machine.stiffness_n_m > 0.0 {
+            let message = format!("--stiffness-n-m is {}", machine.stiffness_n_m);
+            let help = "with --bearings-m it is that of each magnet, 0 or negative";
+            return refused(message, help);
+        }
+        let cylinder = |length_m: f64| {
+            let square = machine
+                .contact_radius_m
+                .unwrap_or(text::CONTACT_RADIUS_M)
+                .powi(2);
+            let mass_kg = machine.mass_kg;
+            let transverse = mass_kg * (3.0 * square + length_m * length_m) / 12.0;
+            [transverse, 0.5 * mass_kg * square]
+        };
+        let given = self.transverse_inertia_kg_m2.zip(self.polar_inertia_kg_m2);
+        let inertias = given.map(|(transverse, polar)| [transverse, polar]);
+        let Some([transverse_inertia_kg_m2, polar_inertia_kg_m2]) =
+            inertias.or_else(|| self.length_m.map(cylinder))
+        else {
+            let message = "--bearings-m without inertias".to_owned();
+            let help = "give --transverse-inertia-kg-m2 and --polar-inertia-kg-m2, or --length-m";
+            return refused(message, help);
+        };
+        Ok(Some(Bearings {
+            positions_m,
+            transverse_inertia_kg_m2,
+            polar_inertia_kg_m2,
+        }))
     }
 
     /// Options that are needed and not given.
@@ -232,10 +340,11 @@ fn create(path: &Path, content: &str) -> Result<(), CommandError> {
 
 /// The scene, with a levitation controller that holds the rotor.
 fn scene_text(machine: &Machine, name: &str) -> Result<String, CommandError> {
-    let bare = Scene::parse(name, &text::scene(machine, None))?;
+    let bare = Scene::parse(name, &text::scene(machine, &[]))?;
     let pull_n_m = (-machine.stiffness_n_m).max(0.0);
     let carried_n_m = CARRIED_SHARE * machine.force_max_n / machine.clearance_m;
-    let aim = rule_of_thumb(machine.mass_kg, pull_n_m, pull_n_m.max(carried_n_m));
+    let mass_kg = bare.plant(0).rotor.mass_kg;
+    let aim = rule_of_thumb(mass_kg, pull_n_m, pull_n_m.max(carried_n_m));
     let levitation = acceptable_near(&bare, aim.proportional_n_m).ok_or_else(|| CommandError::Numbers {
         message: "no levitation controller of proportional and derivative gain holds this rotor well (peak sensitivity below 3, \
                   noise below 5 % of the cap)"
@@ -244,12 +353,12 @@ fn scene_text(machine: &Machine, name: &str) -> Result<String, CommandError> {
                the sensor is too noisy for so small a one"
             .to_owned(),
     })?;
-    let rounded = LevitationParams {
-        proportional_n_m: rounded(levitation.proportional_n_m),
-        derivative_n_s_m: rounded(levitation.derivative_n_s_m),
-        ..levitation
-    };
-    Ok(text::scene(machine, Some(&rounded)))
+    let rounded = levitation.iter().map(|gains| LevitationParams {
+        proportional_n_m: rounded(gains.proportional_n_m),
+        derivative_n_s_m: rounded(gains.derivative_n_s_m),
+        ..*gains
+    });
+    Ok(text::scene(machine, &rounded.collect::<Vec<_>>()))
 }
 
 /// To three digits: it is made up, and should not look as if it were not.

@@ -20,6 +20,60 @@ fn init(file: &Path, numbers: &str) -> Output {
     init.stdin(Stdio::null()).output().expect("the host starts")
 }
 
+/// A rotor of 30 kg in two bearings at unlike distances.
+const ROTOR: &str = "--sample-rate-hz 20000 --mass-kg 30 --stiffness-n-m -3e5 --clearance-m 2e-4 \
+    --contact-stiffness-n-m 3e8 --force-max-n 900 --lag-s 1.6e-4 --friction 0.15 --noise-rms-m 1e-6 --spin-hz 150 \
+    --contact-radius-m 0.05 --load-n 294 --bearings-m -0.2,0.3";
+
+/// By its inertias or as a cylinder: its loop is in zone A, and the supervisor brings it back.
+#[test]
+fn a_rotor_in_two_bearings_is_levitated() {
+    let folder = TempDir::new().unwrap();
+    for (name, inertias) in [
+        ("cylinder", "--length-m 0.8"),
+        (
+            "disc",
+            "--transverse-inertia-kg-m2 1.2 --polar-inertia-kg-m2 0.9",
+        ),
+    ] {
+        let file = folder.path().join(format!("{name}.toml"));
+        let written = init(&file, &format!("{ROTOR} {inertias}"));
+        let error = String::from_utf8_lossy(&written.stderr).into_owned();
+        assert!(
+            written.status.success() && error.is_empty(),
+            "{name}: {error}"
+        );
+        let judged = host()
+            .args(["modes", "--levitated", "--points", "2", "--json"])
+            .arg(&file)
+            .output()
+            .unwrap();
+        let judged: Value = serde_json::from_slice(&judged.stdout).unwrap();
+        assert_eq!(judged["stable"], true);
+        let sensitivity = judged["sensitivity"].as_array().unwrap();
+        assert!(sensitivity.len() == 4 && sensitivity.iter().all(|axis| axis["zone"] == "A"));
+        let ran = run_scene(&file, &folder.path().join("out"), &["--json", "--no-trace"]);
+        let verdict: Value = serde_json::from_slice(&ran.stdout).unwrap();
+        let supervisor = &verdict["policies"]["supervisor"];
+        assert_eq!(supervisor["outcome"], "recovered", "{verdict}");
+        assert!(supervisor["impacts"].as_u64().unwrap() > 0);
+    }
+    for (more, says) in [
+        ("", "without inertias"),
+        ("--length-m -1", "--length-m is -1"),
+        ("--bearings-m 0.1,0.3 --length-m 1", "both sides"),
+    ] {
+        let numbers = match more.contains("bearings") {
+            true => ROTOR.replace(" --bearings-m -0.2,0.3", "") + " ",
+            false => format!("{ROTOR} "),
+        };
+        let refused = init(&folder.path().join("none.toml"), &(numbers + more));
+        let error = String::from_utf8_lossy(&refused.stderr).into_owned();
+        assert_eq!(refused.status.code(), Some(2), "{error}");
+        assert!(error.contains(says), "{error}");
+    }
+}
+
 #[test]
 fn a_scene_from_nine_numbers_runs_and_is_levitated() {
     let folder = TempDir::new().unwrap();

@@ -8,13 +8,13 @@ pub(super) const SCHEMA: &str = "scene.schema.json";
 
 /// What is assumed where it is not given.
 const SPIN_HZ: f64 = 200.0;
-const CONTACT_RADIUS_M: f64 = 0.05;
+pub(super) const CONTACT_RADIUS_M: f64 = 0.05;
 
 /// √(m·c/F) of a machine for which the overload of the scene lasts 50 ms \[s\].
 const QUICK_S: f64 = 2e-3;
 
-/// A scene in which an overload presses the rotor to the wall; without controller no force at all.
-pub(super) fn scene(machine: &Machine, levitation: Option<&LevitationParams>) -> String {
+/// A scene in which an overload presses the rotor to the wall; without a controller for each plane no force at all.
+pub(super) fn scene(machine: &Machine, levitation: &[LevitationParams]) -> String {
     let Machine {
         sample_rate_hz,
         mass_kg,
@@ -28,6 +28,7 @@ pub(super) fn scene(machine: &Machine, levitation: Option<&LevitationParams>) ->
         load_n,
         spin_hz,
         contact_radius_m,
+        bearings,
     } = *machine;
     let assumed = |given: Option<f64>| {
         if given.is_some() {
@@ -36,27 +37,65 @@ pub(super) fn scene(machine: &Machine, levitation: Option<&LevitationParams>) ->
             "   # assumed: put in your own"
         }
     };
-    let slow = ((mass_kg * clearance_m / force_max_n).sqrt() / QUICK_S)
+    let carried_kg = if bearings.is_some() {
+        0.5 * mass_kg
+    } else {
+        mass_kg
+    };
+    let slow = ((carried_kg * clearance_m / force_max_n).sqrt() / QUICK_S)
         .ceil()
         .clamp(1.0, 1e3);
     let policies = match levitation {
-        Some(_) => r#"["passive", "levitation", "supervisor"]"#,
-        None => r#"["passive"]"#,
+        [] => r#"["passive"]"#,
+        _ => r#"["passive", "levitation", "supervisor"]"#,
     };
-    let levitation = levitation.map_or_else(String::new, |of| {
+    let gains = |of: &LevitationParams| {
         format!(
-            r#"
-[levitation]                    # made up: proportional and derivative, with a peak sensitivity below 3; put in your own
-proportional_n_m = {}
-derivative_n_s_m = {}
-derivative_filter_s = {}
-feed_forward_weight = {}
-"#,
+            "proportional_n_m = {}\nderivative_n_s_m = {}\nderivative_filter_s = {}\nfeed_forward_weight = {}\n",
             number(of.proportional_n_m),
             number(of.derivative_n_s_m),
             number(of.derivative_filter_s),
             load_n > 0.0,
         )
+    };
+    const MADE_UP: &str =
+        "# made up: proportional and derivative, with a peak sensitivity below 3; put in your own";
+    let of_scene = match levitation {
+        [only] => format!(
+            "\n[levitation]                    {MADE_UP}\n{}",
+            gains(only)
+        ),
+        _ => String::new(),
+    };
+    let inertias = bearings.map_or_else(
+        || {
+            format!(
+                "stiffness_n_m = {}               # of the shaft alone\n",
+                number(stiffness_n_m.max(0.0))
+            )
+        },
+        |of| {
+            format!(
+                "transverse_inertia_kg_m2 = {}\npolar_inertia_kg_m2 = {}\n",
+                number(of.transverse_inertia_kg_m2),
+                number(of.polar_inertia_kg_m2)
+            )
+        },
+    );
+    let planes: String = (bearings.into_iter())
+        .flat_map(|of| ["A", "B"].into_iter().zip(of.positions_m).enumerate())
+        .map(|(i, (name, place))| {
+            let own = levitation.get(i).map_or_else(String::new, |of| {
+                format!("[plane.levitation]              {MADE_UP}\n{}", gains(of))
+            });
+            format!(
+                "\n[[plane]]\nname = \"{name}\"\nposition_m = {}             # magnet, sensor and retainer bearing; each may have its own\n{own}",
+                number(place)
+            )
+        })
+        .collect();
+    let at_first = bearings.map_or_else(String::new, |of| {
+        format!("position_m = {}\n", number(of.positions_m[0]))
     });
     format!(
         r#"#:schema ./{SCHEMA}
@@ -75,8 +114,7 @@ policies = {policies}
 
 [rotor]
 mass_kg = {mass}
-stiffness_n_m = {shaft}               # of the shaft alone
-contact_radius_m = {radius}{radius_assumed}
+{inertias}contact_radius_m = {radius}{radius_assumed}
 gravity_m_s2 = [0.0, {gravity}]        # vertical rotor: none
 
 [spin]
@@ -98,16 +136,15 @@ negative_stiffness_n_m = {negative}
 
 [sensor]
 noise_rms_m = {noise}
-{levitation}
+{of_scene}{planes}
 [[disturbance]]
 start_s = {start}
 duration_s = {lasts}
 force_n = [{overload}, 0.0]     # what else may happen: shocks, outages, sensor faults
-"#,
+{at_first}"#,
         duration = number(0.2 * slow),
         rate = number(sample_rate_hz),
         mass = number(mass_kg),
-        shaft = number(stiffness_n_m.max(0.0)),
         radius = number(contact_radius_m.unwrap_or(CONTACT_RADIUS_M)),
         radius_assumed = assumed(contact_radius_m),
         gravity = number(-load_n / mass_kg),

@@ -10,6 +10,7 @@ use firmware_bench::device::levitation::LevitationParams;
 use firmware_bench::device::loop_shape::{LoopShape, SampledPlant};
 use firmware_bench::run::closed_loop::RunError;
 use firmware_bench::scene::Scene;
+use firmware_bench::scene::linear_loop::{LinearLoop, is_stable};
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 use std::f64::consts::TAU;
 
@@ -42,19 +43,19 @@ pub(crate) fn shape_in(
     Some((shape, shape.noise_gain_n_m * noise_m / cap))
 }
 
-/// Loops that are tried: K_p = m·ω² from 2 Hz, as good as no spring, to 430 Hz, K_d = 2ζ·m·ω, a derivative filter of
+/// Loops that are tried on a mass: K_p = m·ω² from 2 Hz, as good as no spring, to 430 Hz, K_d = 2ζ·m·ω, a derivative filter of
 /// some samples.
-fn candidates(scene: &Scene) -> Vec<LevitationParams> {
-    let (mass, period_s) = (scene.plant(0).rotor.mass_kg, 1.0 / scene.sample_rate_hz);
+fn candidates(mass_kg: f64, sample_rate_hz: f64) -> Vec<LevitationParams> {
+    let period_s = 1.0 / sample_rate_hz;
     let mut all = Vec::new();
     for i in -9..16 {
         let omega = TAU * 15.0 * 1.25_f64.powi(i);
         for damping_ratio in [0.3, 0.5, 0.7, 1.0, 1.4, 2.0, 2.8, 4.0, 5.6, 8.0] {
             for filter in [0.0, 0.5, 1.0, 2.0, 4.0, 8.0] {
                 all.push(LevitationParams {
-                    proportional_n_m: mass * omega * omega,
+                    proportional_n_m: mass_kg * omega * omega,
                     integral_n_m_s: 0.0,
-                    derivative_n_s_m: 2.0 * damping_ratio * mass * omega,
+                    derivative_n_s_m: 2.0 * damping_ratio * mass_kg * omega,
                     derivative_filter_s: filter * period_s,
                 });
             }
@@ -63,16 +64,60 @@ fn candidates(scene: &Scene) -> Vec<LevitationParams> {
     all
 }
 
-/// A PD loop that a commissioning engineer would accept: the one whose stiffness is nearest to this, of equals the one with
-/// the lowest peak sensitivity. `None` where none of those that are tried is acceptable on this plant.
-pub fn acceptable_near(scene: &Scene, proportional_n_m: f64) -> Option<LevitationParams> {
-    let sampled = SampledPlant::new(&scene.plant(0), scene.sample_rate_hz, 1);
-    let off = |params: &LevitationParams| (params.proportional_n_m / proportional_n_m).ln().abs();
-    let accepted = accepted(scene, &sampled, candidates(scene)).into_iter();
-    let best = accepted.min_by(|(a, peak_a), (b, peak_b)| {
-        off(a).total_cmp(&off(b)).then(peak_a.total_cmp(peak_b))
-    });
-    best.map(|(params, _)| params)
+/// PD loops of all planes that a commissioning engineer would accept, each plane alone and the whole at standstill and at its
+/// spin: those whose stiffness in the first plane is nearest to this, of equals those with the lowest peak sensitivity there.
+/// `None` where none of those that are tried is acceptable.
+pub fn acceptable_near(scene: &Scene, proportional_n_m: f64) -> Option<Vec<LevitationParams>> {
+    let planes: Vec<(SampledPlant, Vec<LevitationParams>)> = (0..scene.planes.len())
+        .map(|plane| {
+            let plant = scene.plant(plane);
+            let tried = candidates(plant.rotor.mass_kg, scene.sample_rate_hz);
+            (SampledPlant::new(&plant, scene.sample_rate_hz, 1), tried)
+        })
+        .collect();
+    let tried = planes.first().map_or(0, |(_, tried)| tried.len());
+    // Of the same frequency, damping and filter in all planes.
+    let mut accepted: Vec<(f64, f64, Vec<LevitationParams>)> = (0..tried)
+        .filter_map(|i| {
+            let mut peaks = Vec::new();
+            for (plane, (sampled, tried)) in planes.iter().enumerate() {
+                let (loop_shape, noise) = shape_in((scene, plane), sampled, &tried[i])?;
+                is_fit(&loop_shape, noise).then_some(())?;
+                peaks.push(loop_shape.peak_sensitivity);
+            }
+            let gains: Vec<LevitationParams> = planes.iter().map(|(_, all)| all[i]).collect();
+            let first = gains.first()?.proportional_n_m;
+            let off = (first / proportional_n_m).ln().abs();
+            Some((off, *peaks.first()?, gains))
+        })
+        .collect();
+    accepted.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
+    let mut by_nearness = accepted.into_iter().map(|(_, _, gains)| gains);
+    by_nearness.find(|gains| {
+        let mut held = scene.clone();
+        for (plane, gains) in held.planes.iter_mut().zip(gains) {
+            plane.levitation = Some(*gains);
+        }
+        [0.0, scene.start.spin_rad_s]
+            .iter()
+            .all(|spin| is_calm(&held, *spin))
+    })
+}
+
+fn is_fit(loop_shape: &LoopShape, noise: f64) -> bool {
+    loop_shape.peak_sensitivity < SENSITIVITY && noise < IDLE_NOISE
+}
+
+/// Whether the loop of the whole is stable and keeps to the limit of the sensitivity.
+fn is_calm(scene: &Scene, spin_rad_s: f64) -> bool {
+    let judged = || {
+        let closed = LinearLoop::new(scene, spin_rad_s).ok()?;
+        let modes = closed.modes().ok()?;
+        is_stable(&modes).then_some(())?;
+        let peaks = closed.sensitivity_peaks(&modes);
+        Some(peaks.iter().all(|axis| axis.peak < SENSITIVITY))
+    };
+    judged().unwrap_or(false)
 }
 
 /// Those that keep to the limits, with their peak sensitivities.
@@ -84,8 +129,7 @@ fn accepted(
     (all.into_iter())
         .filter_map(|params| {
             let (loop_shape, noise) = shape(scene, sampled, &params)?;
-            let fits = loop_shape.peak_sensitivity < SENSITIVITY && noise < IDLE_NOISE;
-            fits.then_some((params, loop_shape.peak_sensitivity))
+            is_fit(&loop_shape, noise).then_some((params, loop_shape.peak_sensitivity))
         })
         .collect()
 }
@@ -113,7 +157,8 @@ pub fn tuned(scene: &Scene) -> Result<Option<LevitationParams>, RunError> {
                 .unwrap_or(std::cmp::Ordering::Equal)
         })
     };
-    let pd = rated(accepted(candidates(scene)))?;
+    let mass_kg = scene.plant(0).rotor.mass_kg;
+    let pd = rated(accepted(candidates(mass_kg, scene.sample_rate_hz)))?;
     let Some(first) = best(&pd) else {
         return Ok(None);
     };
