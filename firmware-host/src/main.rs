@@ -2,9 +2,9 @@
 
 use clap::{CommandFactory, Parser, Subcommand};
 use firmware_host::cli::{
-    accuracy, advise, commission, completions, error, export, fmu, harm, init, modes, overloads,
-    paper, review, run, schema, screen, sensitivity, serve_controller, study, sweep, target,
-    vectors,
+    accuracy, advise, commission, completions, error, export, fmu, harm, init, modes, output,
+    overloads, paper, review, run, schema, screen, sensitivity, serve_controller, study, sweep,
+    target, vectors,
 };
 use std::process::ExitCode;
 
@@ -24,7 +24,7 @@ enum Command {
     Run(run::RunArgs),
     /// Run a scene again and again with keys that vary by a design, into one file with a row a run.
     Sweep(sweep::SweepArgs),
-    /// Write a trace as CSV, or as MCAP for Foxglove.
+    /// Write a trace as CSV, or as MCAP for Foxglove; or the plant of a scene as matrices.
     Export(export::ExportArgs),
     /// Write plant, supervisor and closed loop of a scene as co-simulation units (FMI), for other simulation tools.
     Fmu(fmu::FmuArgs),
@@ -65,6 +65,7 @@ fn main() -> ExitCode {
     let cli = Cli::parse();
     serve_controller::by_this_program();
     screen::prepare();
+    output::clean_up_on_interrupt();
     let result = match &cli.command {
         Command::Init(args) => init::execute(args),
         Command::Run(args) => run::execute(args),

@@ -5,6 +5,7 @@ use firmware_bench::run::trace_file::{self, TraceFile};
 use std::ffi::OsString;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 use tempfile::TempDir;
 
 /// A folder that is filled in its final place, or beside it where that is not there yet, and whose files are moved there
@@ -13,6 +14,44 @@ use tempfile::TempDir;
 pub struct Staging {
     final_place: PathBuf,
     folder: TempDir,
+    _begun: Begun,
+}
+
+/// Folders that are being filled.
+static FILLED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
+/// One of them.
+#[derive(Debug)]
+struct Begun(PathBuf);
+
+impl Begun {
+    fn new(folder: &Path) -> Self {
+        filled(|all| all.push(folder.to_owned()));
+        Self(folder.to_owned())
+    }
+}
+
+impl Drop for Begun {
+    fn drop(&mut self) {
+        filled(|all| all.retain(|folder| *folder != self.0));
+    }
+}
+
+fn filled(change: impl FnOnce(&mut Vec<PathBuf>)) {
+    change(&mut FILLED.lock().unwrap_or_else(PoisonError::into_inner));
+}
+
+/// From now on Ctrl-C removes what was begun before it ends the program, with the exit code that shells give for that.
+pub fn clean_up_on_interrupt() {
+    // Where there can be no handler, Ctrl-C ends the program as it always does.
+    let _set = ctrlc::set_handler(|| {
+        filled(|all| {
+            for folder in all.drain(..) {
+                let _gone = std::fs::remove_dir_all(folder);
+            }
+            std::process::exit(130);
+        });
+    });
 }
 
 /// Why results could not be written.
@@ -100,6 +139,7 @@ impl Staging {
         let folder = prepare().map_err(OutputError::at(final_place))?;
         Ok(Self {
             final_place: final_place.to_owned(),
+            _begun: Begun::new(folder.path()),
             folder,
         })
     }

@@ -228,7 +228,7 @@ impl LinearPlant {
     /// a mode from those that look the same at samples. `None` of a state without positions.
     pub fn turning_rad_s(&self, state: &[C]) -> Option<f64> {
         let n = self.positions;
-        let size: f64 = state[..n].iter().map(|q| q.norm_sqr()).sum();
+        let size: f64 = state[..n].iter().map(C::norm_sqr).sum();
         let along: C = (0..n).map(|i| state[i].conj() * state[n + i]).sum();
         (size > 0.0).then(|| self.rate_rad_s * along.im / size)
     }

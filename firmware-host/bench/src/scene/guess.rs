@@ -6,6 +6,9 @@ use crate::scene::tables::KEYS;
 /// The key that a word comes close to, of the table that it was found in or else of another, as a question.
 pub(crate) fn key(found: &str, here: &'static [Key]) -> Option<String> {
     let word = found.to_lowercase();
+    if OF_CURRENTS.iter().any(|start| word.starts_with(start)) {
+        return Some(BY_CURRENT.to_owned());
+    }
     let asks = |key: &Key, name: String| match key.unit {
         "" | "1" => format!("did you mean `{name}`?"),
         // The name says it where it is the word's beginning.
@@ -27,6 +30,11 @@ pub(crate) fn key(found: &str, here: &'static [Key]) -> Option<String> {
         .or_else(|| self::word(found, here.iter().map(|key| key.name)))
         .or_else(elsewhere)
 }
+
+/// How magnets are told in newtons per ampere and amperes, and what to do with that.
+const OF_CURRENTS: &[&str] = &["ki_", "k_i", "ks_", "k_s", "current", "i_max", "imax"];
+const BY_CURRENT: &str = "magnets are told by force: force_max_n is k_i times the largest current, negative_stiffness_n_m is k_s; \
+                          or give [magnet.poles] with currents and air gap";
 
 /// The first key below a table that means this, with its path.
 fn foreign(word: &str, keys: &'static [Key], path: &str) -> Option<(String, &'static Key)> {

@@ -1,13 +1,14 @@
 //! What the machine of a scene refuses, at the key that it comes from.
 
-use crate::scene::PlaneScene;
+use crate::scene::Scene;
 use crate::scene::diagnostic::SceneError;
 use crate::scene::plant::hardening_key;
 use crate::scene::spec::Spec;
 use plant_model::machine::params::MachineError;
 
 /// The error of a value by its name in [`plant_model::machine::params::MachineParams`].
-pub(crate) fn refused(error: &MachineError, spec: &Spec, planes: &[PlaneScene]) -> SceneError {
+pub(crate) fn refused(error: &MachineError, spec: &Spec, scene: &Scene) -> SceneError {
+    let planes = &scene.planes;
     let (tables, text) = (&spec.tables, &spec.text);
     let (list, rest) = error.field.split_once('[').unwrap_or((&error.field, ""));
     let (index, field) = match rest.split_once("].") {
@@ -29,6 +30,14 @@ pub(crate) fn refused(error: &MachineError, spec: &Spec, planes: &[PlaneScene]) 
         ("planes", "position_m") => at(&format!("plane[{index}].position_m")),
         ("planes", "radius_m") => of_plane(index, "rotor.contact_radius_m"),
         ("planes", "centre_m") => of_plane(index, "retainer.centre_offset_m"),
+        ("spin.inertia_kg_m2", _) => {
+            let polar = scene.machine.rotor.rigid().polar_inertia_kg_m2;
+            let message = format!(
+                "is {:e}, expected {}: {polar:.4e} kg m² or more",
+                error.value, error.expected
+            );
+            text.error_at_key("spin.inertia_kg_m2", message, None)
+        }
         ("run.method", _) => {
             let message = format!("expected {}", error.expected);
             text.error_at_key("run.method", message, None)

@@ -160,7 +160,7 @@ impl Spec {
         (scene.machine_with_loads().validate())
             .and_then(|()| scene.machine.method(tables.run.method.into()).map(drop))
             .and_then(|()| start.validate())
-            .map_err(|error| refused(&error, self, &scene.planes))?;
+            .map_err(|error| refused(&error, self, &scene))?;
         self.check_places_of_changes(&scene.machine.rotor, &origin)?;
         scene.decide(text);
         if text.warns {

@@ -96,6 +96,11 @@ impl Spec {
     fn new(text: SceneText) -> Result<Self, SceneError> {
         let values: Table = toml::from_str(&text.text)
             .map_err(|error| text.error_in_toml(error.span().unwrap_or(0..0), error.message()))?;
+        if values.contains_key("vary") && values.contains_key("scene") {
+            let message = "is of a sweep, and this is to be a scene".to_owned();
+            let help = "run a sweep with `firmware-host sweep`".to_owned();
+            return Err(text.error_at_key("vary", message, Some(help)));
+        }
         let tables: SceneTables =
             read::file(values, KEYS).map_err(|refusal| text.error_of(refusal, KEYS))?;
         Ok(Self {

@@ -69,6 +69,11 @@ impl SweepFile {
     fn of(text: SceneText) -> Result<Self, SceneError> {
         let mut settings: Table = toml::from_str(&text.text)
             .map_err(|error| text.error_in_toml(error.span().unwrap_or(0..0), error.message()))?;
+        if settings.contains_key("rotor") && settings.contains_key("run") {
+            let message = "is of a scene, and this is to be a sweep of one".to_owned();
+            let help = "run a scene with `firmware-host run`".to_owned();
+            return Err(text.error_at_key("run", message, Some(help)));
+        }
         let written: SweepTables = read::file(settings.clone(), SweepTables::KEYS)
             .map_err(|refusal| text.error_of(refusal, SweepTables::KEYS))?;
         for key in OF_THE_SUMMARY {

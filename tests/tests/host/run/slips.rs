@@ -2,7 +2,7 @@
 
 use super::short_scene;
 use std::fs;
-use system_tests::{root, run_scene};
+use system_tests::{host, root, run_scene, scene_path};
 use tempfile::TempDir;
 
 /// What is allowed and hardly meant is run, and said with its line.
@@ -209,4 +209,77 @@ fn slips_are_warned_of() {
     ] {
         assert_eq!(warned(from, to), "", "{to}");
     }
+}
+
+/// A sweep is no scene and a scene no sweep; magnets that are told by currents, and an inertia that is too small, get numbers.
+#[test]
+fn what_was_meant_is_said() {
+    let folder = TempDir::new().unwrap();
+    let rigid = scene_path("one_machine/rigid");
+    let changed = |name: &str, from: &str, to: &str| {
+        let path = folder.path().join(name);
+        let text = fs::read_to_string(&rigid).unwrap();
+        assert!(text.contains(from));
+        fs::write(&path, text.replace(from, to)).unwrap();
+        path
+    };
+    let currents = changed("currents.toml", "force_max_n = 600.0", "ki_n_a = 80.0");
+    let light = changed("light.toml", "[spin]\n", "[spin]\ninertia_kg_m2 = 1e-9\n");
+    for (command, file, says) in [
+        ("run", &scene_path("sweeps/impact"), "firmware-host sweep"),
+        ("sweep", &rigid, "firmware-host run"),
+        (
+            "run",
+            &currents,
+            "force_max_n is k_i times the largest current",
+        ),
+        ("run", &light, "4.4735e-2 kg m² or more"),
+    ] {
+        let output = host()
+            .current_dir(folder.path())
+            .args([command, file.to_str().unwrap()])
+            .output()
+            .unwrap();
+        let error = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{error}");
+        let words: Vec<&str> = error.split_whitespace().collect();
+        assert!(words.join(" ").contains(says), "{error}");
+    }
+}
+
+/// Ctrl-C leaves nothing behind.
+#[cfg(unix)]
+#[test]
+fn what_was_begun_is_removed_on_interrupt() {
+    use std::time::{Duration, Instant};
+    let folder = TempDir::new().unwrap();
+    let scene = scene_path("overload_then_release");
+    let mut run = host();
+    let mut run = run
+        .current_dir(folder.path())
+        .args([
+            "run",
+            scene.to_str().unwrap(),
+            "--set",
+            "run.duration_s=50.0",
+            "--out",
+            "out",
+        ])
+        .stdout(std::process::Stdio::null())
+        .stderr(std::process::Stdio::null())
+        .spawn()
+        .unwrap();
+    let begun = || fs::read_dir(folder.path()).unwrap().count() > 0;
+    let waited = Instant::now();
+    while !begun() && waited.elapsed() < Duration::from_secs(60) {
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    assert!(begun());
+    let killed = std::process::Command::new("kill")
+        .args(["-INT", &run.id().to_string()])
+        .status()
+        .unwrap();
+    assert!(killed.success());
+    assert_eq!(run.wait().unwrap().code(), Some(130));
+    assert!(!begun());
 }
