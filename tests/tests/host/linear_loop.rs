@@ -150,18 +150,39 @@ fn what_is_called_stable_decays() {
     assert!(counts.iter().all(|count| *count > 15), "{counts:?}");
 }
 
-/// The sensitivity is what a sine on a reading makes of the reading.
-#[test]
-fn sensitivity_is_that_of_a_sine_on_a_reading() {
-    let quiet = std::fs::read_to_string(scene_path("one_machine/flexible")).unwrap();
-    let quiet = quiet
-        .split("[[disturbance]]")
+/// A flexible rotor in two magnets, without noise, weight or loads, its readings a sample old.
+fn quiet() -> String {
+    let text = std::fs::read_to_string(scene_path("one_machine/flexible")).unwrap();
+    text.split("[[disturbance]]")
         .next()
         .unwrap()
         .replace("noise_rms_m = 1e-6", "delay_samples = 1")
         .replace("feed_forward_weight = true", "")
         .replace("gravity_m_s2 = [0.0, -9.81]", "")
-        .replace("duration_s = 0.3", "duration_s = 0.6");
+        .replace("duration_s = 0.3", "duration_s = 0.6")
+}
+
+/// The response to the unbalance is that of a run.
+#[test]
+fn an_unbalance_moves_the_rotor_so_far() {
+    let text = quiet() + "[[unbalance]]\nposition_m = 0.3\nmoment_kg_m = 1e-4\n";
+    let scene = Scene::parse("unbalanced.toml", &text).unwrap();
+    let spin_rad_s = scene.start.spin_rad_s;
+    let closed = LinearLoop::new(&scene, spin_rad_s).unwrap();
+    let [planes_m, _] = closed.unbalance_response_m(spin_rad_s).unwrap();
+    let (_, trace) = run(&scene, PolicyKind::Levitation, Keep::Trace, &mut |_| {}).unwrap();
+    let found_m = farthest(&trace.rows, 0.8, 1.0);
+    assert!(found_m > 1e-6 && found_m < 0.5 * CLEARANCE_M, "{found_m}");
+    assert!(
+        (found_m / planes_m[0] - 1.0).abs() < 0.005,
+        "{found_m} {planes_m:?}"
+    );
+}
+
+/// The sensitivity is what a sine on a reading makes of the reading.
+#[test]
+fn sensitivity_is_that_of_a_sine_on_a_reading() {
+    let quiet = quiet();
     let scene = Scene::parse("quiet.toml", &quiet).unwrap();
     let closed = LinearLoop::new(&scene, scene.start.spin_rad_s).unwrap();
     let modes = closed.modes().unwrap();
