@@ -7,9 +7,10 @@ use crate::cli::progress::{LateProgress, Threads};
 use crate::cli::screen::tell;
 use firmware_studies::STUDIES;
 use firmware_studies::campaign::{
-    Claim, Extent, Machines, Report, Study, StudyError, digest, html,
+    Claim, Extent, Machines, OnRecord, Report, Study, StudyError, digest, html,
 };
 use firmware_studies::on_target::measure::TargetError;
+use firmware_studies::validation::RecordError;
 use serde::Serialize;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -30,6 +31,9 @@ pub struct StudyArgs {
     /// Seed of their draw.
     #[arg(long, value_name = "NUMBER")]
     pub seed: Option<u64>,
+    /// Record in CSV, of a study that compares with a measured one.
+    #[arg(long, value_name = "FILE")]
+    pub record: Option<PathBuf>,
     /// Print claims, classes, number of cases and seconds as JSON instead of the table.
     #[arg(long)]
     pub json: bool,
@@ -101,9 +105,11 @@ fn run(study: &Study, args: &StudyArgs) -> Result<(), CommandError> {
         .transpose()?;
     let (bar, begun) = (LateProgress::default(), Instant::now());
     let (extent, machines) = (Extent::new(args.quick), machines_of(study, args)?);
+    let recorded = recorded(study, args)?;
     let report = (args.threads.pool()?)
-        .install(|| match (study.drawn, machines) {
-            (Some(drawn), Some(machines)) => drawn(machines, extent, &bar),
+        .install(|| match (study.drawn, machines, recorded) {
+            (Some(drawn), Some(machines), _) => drawn(machines, extent, &bar),
+            (_, _, Some((on_record, file))) => on_record(file, extent, &bar),
             _ => (study.run)(extent, &bar),
         })
         .map_err(|error| failed(study.name, error))?;
@@ -204,6 +210,25 @@ fn machines_of(study: &Study, args: &StudyArgs) -> Result<Option<Machines>, Comm
     Ok(Some(machines))
 }
 
+/// A record that is given, of a study that compares with one.
+fn recorded<'a>(
+    study: &Study,
+    args: &'a StudyArgs,
+) -> Result<Option<(OnRecord, &'a Path)>, CommandError> {
+    let Some(file) = &args.record else {
+        return Ok(None);
+    };
+    let on_record = study.on_record.ok_or_else(|| {
+        let with = STUDIES.iter().filter(|study| study.on_record.is_some());
+        let names: Vec<&str> = with.map(|study| study.name).collect();
+        CommandError::Numbers {
+            message: format!("{} does not compare with a measured record", study.name),
+            help: format!("--record is of {}", names.join(", ")),
+        }
+    })?;
+    Ok(Some((on_record, file)))
+}
+
 fn strictly(strict: bool, report: &Report) -> Result<(), CommandError> {
     let broken: Vec<String> = (report.claims.iter())
         .filter(|claim| strict && !claim.holds)
@@ -217,8 +242,15 @@ fn strictly(strict: bool, report: &Report) -> Result<(), CommandError> {
 }
 
 fn failed(name: &'static str, error: StudyError) -> CommandError {
-    match error.downcast::<TargetError>() {
-        Ok(target) => CommandError::Target(*target),
+    let error = match error.downcast::<TargetError>() {
+        Ok(target) => return CommandError::Target(*target),
+        Err(other) => other,
+    };
+    match error.downcast::<RecordError>() {
+        Ok(record) => CommandError::Numbers {
+            message: record.message,
+            help: record.help,
+        },
         Err(other) => CommandError::other(name, other),
     }
 }

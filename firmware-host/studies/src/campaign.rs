@@ -31,6 +31,7 @@
 //!     about: "whether the damping ratio of a restitution has that restitution",
 //!     run: there_and_back,
 //!     drawn: None,
+//!     on_record: None,
 //! };
 //! let report = (study.run)(Extent::Quick, &()).unwrap();
 //! assert!(report.claims[0].holds && report.cases == 3);
@@ -48,6 +49,7 @@ pub use self::claim::{CLAIM_COLUMNS, Claim, Side};
 pub use self::html::html;
 pub use self::markdown::digest;
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
+use std::path::Path;
 
 /// How much is run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -110,10 +112,15 @@ pub struct Study {
     pub run: fn(Extent, &dyn Progress) -> Result<Report, StudyError>,
     /// The same on other machines, where they are drawn at random.
     pub drawn: Option<OnMachines>,
+    /// The same on a record that was measured, where it compares with one; [`Self::run`] then says what it needs.
+    pub on_record: Option<OnRecord>,
 }
 
 /// Runs a study on machines drawn at random.
 pub(crate) type OnMachines = fn(Machines, Extent, &dyn Progress) -> Result<Report, StudyError>;
+
+/// Runs a study on the record in a file.
+pub type OnRecord = fn(&Path, Extent, &dyn Progress) -> Result<Report, StudyError>;
 
 /// What came out of a study.
 #[derive(Debug, Clone)]

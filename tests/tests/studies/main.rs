@@ -17,3 +17,4 @@ mod silently_wrong_runs;
 mod situations;
 mod study_command;
 mod unseen_machines;
+mod validation;
