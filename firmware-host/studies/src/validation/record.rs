@@ -90,8 +90,9 @@ impl Record {
         let period_s = (last[0] - begin_s) / (rows.len() - 1) as f64;
         for (sample, (line, row)) in rows.iter().enumerate() {
             let off_s = row[0] - begin_s - sample as f64 * period_s;
-            // What is no number is not near, too.
-            if !(off_s.abs() <= UNEVEN * period_s) {
+            // One row has no period: what is no number is not even.
+            let is_even = off_s.abs() <= UNEVEN * period_s;
+            if !is_even {
                 let message = format!("line {line}: time_s is {}, not one sample on", row[0]);
                 let help = "give samples at an even rate, in order and without gaps";
                 return Err(RecordError::new(message, help));
