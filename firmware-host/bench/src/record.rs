@@ -11,5 +11,6 @@ pub mod replay;
 pub mod shapes;
 pub mod story;
 pub mod ticks;
+pub mod unknown;
 
 pub use contacts::{Contact, Impulse};

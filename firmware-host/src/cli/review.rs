@@ -18,6 +18,7 @@ use firmware_bench::record::replay::Replay;
 use firmware_bench::record::shapes::Shapes;
 use firmware_bench::record::story::{Event, Told};
 use firmware_bench::record::ticks::Ticks;
+use firmware_bench::record::unknown::Unknown;
 use firmware_bench::report::table;
 use firmware_bench::scene::spec::Setting;
 use serde::Serialize;
@@ -107,7 +108,16 @@ struct Reviewed {
     /// Parameters of the supervisor that the scene gives other values than the record has.
     configured_otherwise: Vec<&'static str>,
     /// Ticks of each plane.
-    planes: Vec<Ticks>,
+    planes: Vec<Plane>,
+}
+
+/// A plane for programs.
+#[derive(Serialize)]
+struct Plane {
+    #[serde(flatten)]
+    ticks: Ticks,
+    /// Where the position is unknown, and why.
+    unknown: Vec<Unknown>,
 }
 
 /// A file for programs: its first event, and the others.
@@ -165,7 +175,12 @@ fn reviewed(of: &Examined<'_>) -> Reviewed {
         contacts_from: findings.map(|f| f.first),
         simulated: again.map(|again| table::json(&again.scene, &again.results)),
         configured_otherwise: again.map_or_else(Vec::new, |again| again.differing.clone()),
-        planes: event.records.iter().map(|r| Ticks::of(r)).collect(),
+        planes: (event.records.iter().zip(&event.unknown))
+            .map(|(record, unknown)| Plane {
+                ticks: Ticks::of(record),
+                unknown: unknown.clone(),
+            })
+            .collect(),
     }
 }
 
@@ -260,9 +275,10 @@ fn of_sections(args: &ReviewArgs, file: &RecordFile) -> Result<(), CommandError>
         }
         print(&out)?;
     } else {
-        let texts: Vec<String> = (events.iter().enumerate())
-            .map(|(i, of)| told(of, args.scene.is_some(), of_event(&bearings, i, &events)))
-            .collect();
+        let damaged = told::damaged(&damage).map(|said| said + "\n");
+        let told = (events.iter().enumerate())
+            .map(|(i, of)| told(of, args.scene.is_some(), of_event(&bearings, i, &events)));
+        let texts: Vec<String> = damaged.into_iter().chain(told).collect();
         tell(&texts.join("\n"))?;
     }
     match error {

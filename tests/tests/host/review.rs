@@ -1,6 +1,7 @@
 //! `review`: from the memory of a supervisor to what a person reads, of files that are whole and of those that are not.
 
 mod damage;
+mod lies;
 
 use firmware_bench::record::file::{PlaneRecord, RecordFile};
 use firmware_bench::record::identify::Estimate;
@@ -57,7 +58,7 @@ fn what_was_written_is_read_and_replays() {
         let told = event.told().unwrap();
         assert_eq!(
             (told.outcome, told.touches, told.landings),
-            ("levitated", 1, 1)
+            ("levitated", Some(1), 1)
         );
         // A tick that was told something else is found.
         let mut wrong = file.clone();

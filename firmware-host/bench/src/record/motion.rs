@@ -4,7 +4,7 @@ use crate::record::file::PlaneRecord;
 use nalgebra::Matrix3;
 use plant_model::V2;
 use std::f64::consts::TAU;
-use supervisor::{Config, Entry, Events, Limits, Status};
+use supervisor::{Config, Entry, Events, Status};
 
 /// A tick.
 #[derive(Debug, Clone, Copy)]
@@ -46,24 +46,25 @@ impl Motion {
     /// `late`: so many ticks later than forces positions are sampled; counts where forces are measured.
     pub(super) fn of(record: &PlaneRecord, late: usize) -> Option<Self> {
         let config = record.config.filter(|c| c.validate().is_ok())?;
-        let entries: Vec<&Entry> = record.entries.values().collect();
+        let (numbers, entries): (Vec<usize>, Vec<&Entry>) = record.entries.iter().unzip();
         let follows = |pair: &[&Entry]| pair[1].sequence == pair[0].sequence.wrapping_add(1);
         let broken = entries.windows(2).rposition(|pair| !follows(pair));
-        let entries = &entries[broken.map_or(0, |i| i + 1)..];
+        let from = broken.map_or(0, |i| i + 1);
+        let (numbers, entries) = (&numbers[from..], &entries[from..]);
+        let unbelieved = record.unbelieved();
         let first = entries.first()?.sequence;
         let period_s = f64::from(config.sample_period_s);
         let spin_unit = f64::from(config.scaling().time_s);
         let delivered = delivered(record, entries, &config, late);
         let mut angle_rad = 0.0;
         let mut instants = Vec::with_capacity(entries.len());
-        for (entry, force_n) in entries.iter().zip(delivered) {
+        for ((number, entry), force_n) in numbers.iter().zip(entries).zip(delivered) {
             let [x, y] = entry.position.map(|bits| record.number(bits));
             let spin_rad_s = record.number(entry.spin) / spin_unit;
-            let refused = entry.limits & Limits::SAMPLE_REFUSED.bits() as u8 != 0;
             let position_m = f64::from(config.clearance_m) * V2::new(x, y);
             instants.push(Instant {
                 position_m,
-                good: !refused && position_m.iter().all(|x| x.is_finite()),
+                good: !unbelieved.contains(number) && position_m.iter().all(|x| x.is_finite()),
                 force_n,
                 spin_rad_s,
                 angle_rad,

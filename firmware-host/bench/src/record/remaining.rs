@@ -72,6 +72,8 @@ pub struct Remaining {
     pub worst_severity: Option<f64>,
     /// Fastest normal speed before an impact \[m/s\], from the ledger.
     pub hardest_impact_m_s: Option<f64>,
+    /// Whether all of this event was seen: what happened while the position was unknown is in no count.
+    pub seen: bool,
     /// Whether the last record in the ledger is this one.
     pub has_this_event: Option<bool>,
     /// Landings that it may still bear: such as this event, …
@@ -84,8 +86,9 @@ impl Remaining {
     /// Of each plane of an event, as far as it is known; `ledgers`: none, or one for each plane of the machine; `allowed`: of each
     /// plane another severity that its bearing may bear in all than the ledger, or the configuration, has.
     pub fn of(event: &Event<'_>, ledgers: &[Ledger], allowed: &[Option<f32>]) -> Vec<Self> {
-        let records = event.records.iter();
-        let all = records.filter_map(|record| {
+        let records = event.records.iter().zip(&event.unknown);
+        let all = records.filter_map(|(record, unknown)| {
+            let seen = !unknown.iter().any(|stretch| stretch.serious);
             let plane = record.head.plane;
             let kept = ledgers.get(plane as usize).copied();
             let summary = record.summary;
@@ -113,9 +116,11 @@ impl Remaining {
                 severity_allowed: ledger.severity_allowed.into(),
                 worst_severity: kept.map(|kept| kept.worst_severity.into()),
                 hardest_impact_m_s: kept.map(|kept| kept.hardest_impact_m_s.into()),
+                seen,
                 has_this_event: kept
                     .map(|kept| kept.updates > 0 && kept.closed_at == record.head.closed_at),
-                left_like_this: summary.and_then(|s| ledger.landings_left(s.severity)),
+                left_like_this: (summary.filter(|_| seen))
+                    .and_then(|s| ledger.landings_left(s.severity)),
                 left_like_the_mean: ledger.landings_left(mean),
                 left_like_the_worst: kept.and_then(|_| ledger.landings_left(ledger.worst_severity)),
             })
@@ -163,6 +168,9 @@ impl Remaining {
             .collect();
         if !left.is_empty() {
             text += &format!(" Room for landings: {}.", left.join(", "));
+        }
+        if !self.seen {
+            text += " What happened while the position was unknown is not in these figures.";
         }
         text
     }

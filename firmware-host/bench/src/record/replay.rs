@@ -1,10 +1,11 @@
 //! The ticks of a record once more, by the supervisor of this build.
 
 use crate::record::file::PlaneRecord;
+use crate::record::unknown::Refusals;
 use serde::Serialize;
 use supervisor::{
-    Core, CoreCommand, Entry, Events, Number, Prepared, Q, RotorSupervisor, SUPERVISOR_VERSION,
-    Scalar,
+    Core, CoreCommand, Entry, Events, Number, Prepared, Q, RejectReason, Report, RotorSupervisor,
+    SUPERVISOR_VERSION, Scalar,
 };
 
 /// What came of it.
@@ -54,6 +55,11 @@ pub enum NoReplay {
 /// # Errors
 /// [`NoReplay`].
 pub fn replay(records: &[&PlaneRecord]) -> Result<Replay, NoReplay> {
+    Ok(with_refusals(records)?.0)
+}
+
+/// The same, and why readings were refused in each of these records.
+pub(super) fn with_refusals(records: &[&PlaneRecord]) -> Result<(Replay, Vec<Refusals>), NoReplay> {
     let (Some(first), other) = (records.first(), records.get(1)) else {
         return Err(NoReplay::Missing);
     };
@@ -66,14 +72,14 @@ pub fn replay(records: &[&PlaneRecord]) -> Result<Replay, NoReplay> {
     }
 }
 
-/// Ticks from the state on, without a break.
-fn ticks(record: &PlaneRecord) -> impl Iterator<Item = &Entry> {
+/// Ticks from the state on, without a break, with their numbers.
+fn ticks(record: &PlaneRecord) -> impl Iterator<Item = (usize, &Entry)> {
     let from = record.head.state_at as usize;
-    let these = (from..).map_while(|i| record.entries.get(&i));
+    let these = (from..).map_while(|i| Some((i, record.entries.get(&i)?)));
     // A configuration that comes later is not in the record.
-    these.enumerate().map_while(|(i, entry)| {
+    these.map_while(move |(i, entry)| {
         let changed = u32::from(entry.events) & Events::RECONFIGURED.bits() != 0;
-        (i == 0 || !changed).then_some(entry)
+        (i == from || !changed).then_some((i, entry))
     })
 }
 
@@ -114,19 +120,31 @@ fn check<S: Scalar>(record: &PlaneRecord) -> Result<&[u32], NoReplay> {
     Ok(state)
 }
 
-fn of_one<S: Scalar>(record: &PlaneRecord) -> Result<Replay, NoReplay> {
+/// Why the reading of this tick was refused, or why the fault began that it is a part of.
+fn refusal(report: &Report) -> RejectReason {
+    match report.refusal {
+        RejectReason::None => report.fault,
+        reason => reason,
+    }
+}
+
+fn of_one<S: Scalar>(record: &PlaneRecord) -> Result<(Replay, Vec<Refusals>), NoReplay> {
     let state = check::<S>(record)?;
     let config = record.config.ok_or(NoReplay::Missing)?;
     let prepared = Prepared::new(&config).map_err(|_| NoReplay::Configuration)?;
     let mut core = Core::<S, 4>::resumed(&prepared, state);
-    let mut replay = Replay::new();
-    for entry in ticks(record) {
+    let (mut replay, mut refusals) = (Replay::new(), Refusals::new());
+    let unbelieved = record.unbelieved();
+    for (number, entry) in ticks(record) {
         replay.compare(entry, &core.tick(&entry.sample()));
+        if replay.differing == 0 && unbelieved.contains(&number) {
+            refusals.insert(number, refusal(&core.report()));
+        }
     }
-    Ok(replay)
+    Ok((replay, vec![refusals]))
 }
 
-fn of_rotor(records: [&PlaneRecord; 2]) -> Result<Replay, NoReplay> {
+fn of_rotor(records: [&PlaneRecord; 2]) -> Result<(Replay, Vec<Refusals>), NoReplay> {
     let [a, b] = records;
     let same = |a: &PlaneRecord, b: &PlaneRecord| {
         let of = |r: &PlaneRecord| (r.head.closed_at, r.head.ticks, r.head.state_at);
@@ -142,11 +160,18 @@ fn of_rotor(records: [&PlaneRecord; 2]) -> Result<Replay, NoReplay> {
     };
     let mut rotor = RotorSupervisor::<4>::resumed(&shaft, &[first, second], states)
         .map_err(|_| NoReplay::Configuration)?;
-    let mut replay = Replay::new();
-    for (at_a, at_b) in ticks(a).zip(ticks(b)) {
+    let (mut replay, mut refusals) = (Replay::new(), vec![Refusals::new(); 2]);
+    let unbelieved = records.map(PlaneRecord::unbelieved);
+    for ((number, at_a), (_, at_b)) in ticks(a).zip(ticks(b)) {
         let [to_a, to_b] = rotor.tick_per_unit(&[at_a.sample(), at_b.sample()]);
         replay.compare(at_a, &to_a);
         replay.compare(at_b, &to_b);
+        for end in 0..2 {
+            if replay.differing == 0 && unbelieved[end].contains(&number) {
+                let report = rotor.plane(end).report();
+                refusals[end].insert(number, refusal(&report));
+            }
+        }
     }
-    Ok(replay)
+    Ok((replay, refusals))
 }

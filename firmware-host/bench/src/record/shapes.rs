@@ -53,7 +53,7 @@ impl Sums {
 
 impl Shapes {
     /// Of an event with the records of two planes, whose configurations are whole; `None` where no two neighbouring ticks of a bounce
-    /// or whirl are recorded of both.
+    /// or whirl are recorded of both, with readings that were believed.
     pub fn of(records: &[&PlaneRecord]) -> Option<Self> {
         let [first, second] = records else {
             return None;
@@ -68,7 +68,8 @@ impl Shapes {
         let positions_m = |sequence: u32| {
             let (a, b) = (first.get(&sequence)?, second.get(&sequence)?);
             let [p, q] = [a.position_m?, b.position_m?];
-            (whirls(a.mode) || whirls(b.mode)).then_some((p, q))
+            let seen = a.believed && b.believed && (whirls(a.mode) || whirls(b.mode));
+            seen.then_some((p, q))
         };
         let (mut together, mut opposed, mut pairs) = (Sums::default(), Sums::default(), 0);
         for sequence in first.keys() {

@@ -25,9 +25,11 @@ pub struct Tick {
     pub tick: i64,
     /// Time since the engagement \[s\].
     pub time_s: Option<f64>,
-    /// Position in clearances, at the retainer bearing.
+    /// Whether the supervisor believed the reading.
+    pub believed: bool,
+    /// Reading of the position in clearances, at the retainer bearing.
     pub position: [f64; 2],
-    /// Position \[m\].
+    /// The same \[m\].
     pub position_m: Option<[f64; 2]>,
     /// Commanded force in caps.
     pub force: [f64; 2],
@@ -49,8 +51,8 @@ pub struct Stretch {
     pub from_tick: i64,
     /// How many ticks.
     pub ticks: usize,
-    /// Largest distance from the centre \[clearances\].
-    pub largest_radius: f64,
+    /// Largest distance from the centre \[clearances\], of the readings that were believed.
+    pub largest_radius: Option<f64>,
     /// Largest force \[caps\].
     pub largest_force: f64,
 }
@@ -75,6 +77,8 @@ pub struct Ticks {
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Brief {
     sequence: u32,
+    tick: i64,
+    believed: bool,
     position: [f64; 2],
     force: [f64; 2],
     mode: u8,
@@ -92,29 +96,101 @@ impl PlaneRecord {
             sample_rate_hz: config.map(|c| 1.0 / f64::from(c.sample_period_s)),
         }
     }
+
+    /// Number of each entry, and ticks since the last engagement. A call without a new sample takes a tick, too; whether sequence numbers count
+    /// it or not, as the supervisor has it.
+    pub(super) fn times(&self) -> Vec<(usize, i64)> {
+        let (mut at, mut repeats, mut last) = (0, 0, None);
+        let counted = self.entries.iter().map(|(number, entry)| {
+            if let Some((before, sequence)) = last.replace((*number, entry.sequence)) {
+                let ahead = since(sequence, entry.sequence);
+                // Calls that are missing in the file took a tick each, too.
+                let calls = (number - before) as i64;
+                at += calls.max(ahead - repeats);
+                repeats = if ahead <= 0 { repeats + calls } else { 0 };
+            }
+            (*number, entry, at)
+        });
+        let counted: Vec<_> = counted.collect();
+        let engaged = |entry: &Entry| u32::from(entry.events) & Events::ENGAGED.bits() != 0;
+        let zero = counted
+            .iter()
+            .rfind(|(_, entry, _)| engaged(entry))
+            .or(counted.first());
+        let zero = zero.map_or(0, |(.., at)| *at);
+        counted
+            .iter()
+            .map(|(number, _, at)| (*number, at - zero))
+            .collect()
+    }
+
+    /// Ticks since the last engagement of a sequence number: of the first call with it, where the record has one. Of a record without
+    /// ticks they are counted from the slow track's first.
+    pub fn tick_of(&self, sequence: u32) -> i64 {
+        let mut near = None;
+        for ((_, at), entry) in self.times().iter().zip(self.entries.values()) {
+            match since(entry.sequence, sequence) {
+                0 => return *at,
+                ahead @ 1.. => near = Some(at + ahead),
+                behind => near = near.or(Some(at + behind)),
+            }
+        }
+        near.unwrap_or_else(|| {
+            let begins = self.track.first().map(|stretch| {
+                let others = u32::from(stretch.ticks.saturating_sub(1));
+                stretch.sequence.wrapping_sub(others)
+            });
+            begins.map_or(0, |begins| since(begins, sequence))
+        })
+    }
+
+    /// The stretches of the slow track, each with its first tick and the first after it.
+    pub fn stretches(&self) -> impl Iterator<Item = (&supervisor::Stretch, [i64; 2])> {
+        let engaged = |number: &usize| {
+            let levitated = [Mode::Levitated, Mode::HandedBack].map(|mode| mode as u8);
+            !levitated.contains(&self.entries[number].mode)
+        };
+        let times = self.times();
+        let mut end = times
+            .iter()
+            .find(|(number, _)| engaged(number))
+            .map(|(_, at)| *at);
+        self.track.iter().map(move |stretch| {
+            let ticks = i64::from(stretch.ticks);
+            let told = self.tick_of(stretch.sequence) + 1;
+            // Calls without a new sample have the number of the last one.
+            let to = end.map_or(told, |end| told.max(end + ticks));
+            end = Some(to);
+            (stretch, [to - ticks, to])
+        })
+    }
+}
+
+/// Ticks from a sequence number to another.
+fn since(start: u32, sequence: u32) -> i64 {
+    // Sequence numbers may wrap: what is before the start is negative.
+    i64::from(sequence.wrapping_sub(start).cast_signed())
 }
 
 impl Ticks {
     /// Those of a record that are whole, in SI where its configuration is.
     pub fn of(record: &PlaneRecord) -> Self {
         let number = |bits: u32| record.number(bits);
-        let brief = |entry: &Entry| Brief {
+        let unbelieved = record.unbelieved();
+        let brief = |((at, entry), (_, tick)): ((&usize, &Entry), (usize, i64))| Brief {
             sequence: entry.sequence,
+            tick,
+            believed: !unbelieved.contains(at),
             position: entry.position.map(number),
             force: entry.force.map(number),
             mode: entry.mode,
             limits: entry.limits,
             events: entry.events,
         };
-        let entries: Vec<Brief> = record.entries.values().map(brief).collect();
-        Self::new(&entries, record.units())
-    }
-
-    fn new(entries: &[Brief], units: Units) -> Self {
-        let engaged = |entry: &&Brief| entry.events & Events::ENGAGED.bits() as u16 != 0;
-        let start = entries.iter().rev().find(engaged).or(entries.first());
-        let start = start.map_or(0, |entry| entry.sequence);
-        let ticks: Vec<Tick> = entries.iter().map(|e| tick(e, start, units)).collect();
+        let entries = record.entries.iter().zip(record.times());
+        let entries: Vec<Brief> = entries.map(brief).collect();
+        let units = record.units();
+        let ticks: Vec<Tick> = entries.iter().map(|e| tick(e, units)).collect();
         let gap = |pair: &[Brief]| {
             let step = pair[1].sequence.wrapping_sub(pair[0].sequence);
             // A number that is older than the one before is no gap.
@@ -130,12 +206,6 @@ impl Ticks {
         }
     }
 
-    /// Ticks since the engagement of a sequence number.
-    pub fn tick_of(&self, sequence: u32) -> i64 {
-        let zero = (self.ticks.first()).map_or(0, |t| t.sequence.wrapping_sub(t.tick as u32));
-        i64::from(sequence.wrapping_sub(zero).cast_signed())
-    }
-
     /// Ticks that a person wants to see: in which something happened or the mode changed.
     pub fn turning_points(&self) -> impl Iterator<Item = &Tick> {
         let before = std::iter::once(None).chain(self.ticks.iter().map(Some));
@@ -149,16 +219,16 @@ impl Ticks {
     }
 }
 
-fn tick(entry: &Brief, start: u32, units: Units) -> Tick {
+fn tick(entry: &Brief, units: Units) -> Tick {
     let (position, force) = (entry.position, entry.force);
-    // Sequence numbers may wrap: what is before the start is negative.
-    let tick = i64::from(entry.sequence.wrapping_sub(start).cast_signed());
+    let tick = entry.tick;
     let limits = Limits::from_bits_truncate(entry.limits.into());
     let events = Events::from_bits_truncate(entry.events.into());
     Tick {
         sequence: entry.sequence,
         tick,
         time_s: units.sample_rate_hz.map(|rate| tick as f64 / rate),
+        believed: entry.believed,
         position,
         position_m: units.clearance_m.map(|c| position.map(|x| x * c)),
         force,
@@ -170,17 +240,18 @@ fn tick(entry: &Brief, start: u32, units: Units) -> Tick {
 }
 
 fn stretches(ticks: &[Tick]) -> Vec<Stretch> {
-    let most = |vectors: &mut dyn Iterator<Item = [f64; 2]>| {
-        vectors.map(|[x, y]| x.hypot(y)).fold(0.0, f64::max)
-    };
+    let length = |[x, y]: [f64; 2]| x.hypot(y);
     ticks
         .chunk_by(|a, b| a.mode == b.mode)
-        .map(|same| Stretch {
-            mode: same[0].mode,
-            from_tick: same[0].tick,
-            ticks: same.len(),
-            largest_radius: most(&mut same.iter().map(|t| t.position)),
-            largest_force: most(&mut same.iter().map(|t| t.force)),
+        .map(|same| {
+            let seen = same.iter().filter(|t| t.believed);
+            Stretch {
+                mode: same[0].mode,
+                from_tick: same[0].tick,
+                ticks: same.len(),
+                largest_radius: seen.map(|t| length(t.position)).reduce(f64::max),
+                largest_force: same.iter().map(|t| length(t.force)).fold(0.0, f64::max),
+            }
         })
         .collect()
 }

@@ -58,6 +58,10 @@ impl HtmlPage {
             html,
             heading: String::new(),
         };
+        // Before anything is concluded.
+        for warning in &head.warnings {
+            page.warning(&format!("Warning: {warning}"));
+        }
         if !head.headline.is_empty() {
             page.classed("headline", &Markup::text(&head.headline));
         }
@@ -65,9 +69,6 @@ impl HtmlPage {
         page.facts(&head.facts);
         let points: Vec<Markup> = head.points.iter().map(Markup::text).collect();
         page.points(&points);
-        for warning in &head.warnings {
-            page.warning(&format!("Warning: {warning}"));
-        }
         page.push("</header>\n<main>\n");
         page
     }

@@ -3,28 +3,28 @@
 use super::plot::thin::{Band, Interval};
 use super::track::{SUPERVISOR_MODES, Track, TrackUnits};
 use crate::record::file::PlaneRecord;
-use crate::record::ticks::Ticks;
+use crate::record::unknown::{has_mode, is_unseen};
 use supervisor::Stretch;
 
 impl Track {
-    /// Of each stretch of ticks the largest radius, force and severity, and the share of it in contact; `ticks` are those of the
-    /// record's fast window, from which times are counted. `None` where the record has no stretch.
-    pub fn of_stretches(name: &str, record: &PlaneRecord, ticks: &Ticks) -> Option<Self> {
+    /// Of each stretch of ticks the largest radius, force and severity, and the share of it in contact, where a reading carried
+    /// them. `None` where the record has no stretch.
+    pub fn of_stretches(name: &str, record: &PlaneRecord) -> Option<Self> {
         let units = record.units();
         let (names, [ms, mm, newtons]) = TrackUnits::of(units);
         let mut track = Self::new(name, names);
         let mut columns = [(); 4].map(|()| Vec::new());
-        for stretch in &record.track {
+        for (stretch, [from, end]) in record.stretches() {
             let number = |bits: u32| record.number(bits);
             let count = f64::from(stretch.ticks.max(1));
+            // What cannot be drawn is left out.
+            let seen = |value: f64| if is_unseen(stretch) { f64::NAN } else { value };
             let values = [
-                mm * number(stretch.radius_square).sqrt(),
+                seen(mm * number(stretch.radius_square).sqrt()),
                 newtons * number(stretch.force_square).sqrt(),
-                number(stretch.severity),
-                100.0 * f64::from(stretch.contact_ticks) / count,
+                seen(number(stretch.severity)),
+                seen(100.0 * f64::from(stretch.contact_ticks) / count),
             ];
-            let end = ticks.tick_of(stretch.sequence) + 1;
-            let from = end - i64::from(stretch.ticks);
             let span = Interval {
                 lo: ms * from as f64,
                 hi: ms * end as f64,
@@ -60,8 +60,8 @@ impl Track {
 
 /// The mode of a stretch that has one: where it has several, none says when which was.
 fn only_mode(stretch: &Stretch) -> Option<usize> {
-    let mut there = (SUPERVISOR_MODES.iter().enumerate())
-        .filter(|(_, (mode, _))| stretch.modes & 1 << *mode as u16 != 0);
+    let mut there =
+        (SUPERVISOR_MODES.iter().enumerate()).filter(|(_, (mode, _))| has_mode(stretch, *mode));
     let (class, _) = there.next()?;
     there.next().is_none().then_some(class)
 }

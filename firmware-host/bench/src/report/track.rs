@@ -188,8 +188,10 @@ impl Track {
         let mut all: Vec<&Tick> = ticks.ticks.iter().collect();
         all.sort_by_key(|tick| tick.tick);
         let t: Vec<f64> = all.iter().map(|tick| ms * tick.tick as f64).collect();
+        // A reading that was not believed is nowhere: what cannot be drawn is left out.
         let position = |of: fn([f64; 2]) -> f64| {
-            let values = all.iter().map(|tick| mm * of(tick.position));
+            let seen = |tick: &&Tick| if tick.believed { mm } else { f64::NAN };
+            let values = all.iter().map(|tick| seen(tick) * of(tick.position));
             values.collect::<Vec<_>>()
         };
         let commanded = |of: fn([f64; 2]) -> f64| {

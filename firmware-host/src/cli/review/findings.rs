@@ -1,7 +1,7 @@
 //! What is found out from an event, for a person.
 
+use firmware_bench::record::file::PlaneRecord;
 use firmware_bench::record::identify::{Estimate, Findings, Identified};
-use firmware_bench::record::ticks::Ticks;
 use firmware_bench::report::lines::{Cell, Lines, lined, right};
 use firmware_bench::report::table::or_dash;
 
@@ -37,7 +37,7 @@ fn whole(x: f64, digits: usize) -> String {
 /// Contacts, and what they tell of the machine, with captions.
 pub(super) fn tables(
     findings: &Findings,
-    ticks: &Ticks,
+    record: &PlaneRecord,
     period_s: f64,
 ) -> [(&'static str, Lines); 2] {
     let mut contacts = lined([
@@ -47,7 +47,7 @@ pub(super) fn tables(
         "restitution",
         "friction/normal impulse",
     ]);
-    let offset = ticks.tick_of(findings.first) as f64;
+    let offset = record.tick_of(findings.first) as f64;
     for contact in &findings.contacts {
         let ms = |tick: f64| format!("{:.3}", 1e3 * period_s * (tick + offset));
         let impulse = contact.impulse.as_ref();

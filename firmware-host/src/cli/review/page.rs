@@ -2,7 +2,7 @@
 
 use crate::cli::error::CommandError;
 use crate::cli::output::{self, Staging};
-use crate::cli::review::told::of_bearings;
+use crate::cli::review::told::{damaged, differs, of_bearings};
 use crate::cli::review::{Examined, of_event, used};
 use firmware_bench::record::file::PlaneRecord;
 use firmware_bench::record::remaining::Remaining;
@@ -61,19 +61,14 @@ pub(super) fn head(
             }
         })
         .collect();
-    let differs = events.iter().filter_map(|of| {
-        let replay = of.event.replay.as_ref().ok()?;
-        let text = format!(
-            "replayed, {} of {} ticks are not as they are recorded",
-            replay.differing, replay.ticks
-        );
-        (replay.differing > 0).then_some(text)
-    });
+    let before = damaged(damage).into_iter();
     Head {
         title: format!("Flight record {name}"),
         headline: told.join(" "),
         story: of_bearings(bearings).join("\n\n"),
-        warnings: damage.iter().cloned().chain(differs).collect(),
+        warnings: before
+            .chain(events.iter().filter_map(|of| differs(&of.event)))
+            .collect(),
         ..Head::default()
     }
 }
@@ -87,13 +82,13 @@ pub(super) fn tracks(events: &[Examined<'_>]) -> Vec<Track> {
             let ticks = Ticks::of(record);
             tracks.push(Track::of_ticks(&name, &ticks, record.units()));
             let slow = format!("{name}: slow track");
-            tracks.extend(Track::of_stretches(&slow, record, &ticks));
+            tracks.extend(Track::of_stretches(&slow, record));
         }
         let (Some(again), Some(findings)) = (&of.again, &of.findings) else {
             continue;
         };
-        let ticks = Ticks::of(of.event.records[0]);
-        let begins = ticks.tick_of(findings.first) as f64 + findings.launch.tick as f64;
+        let begins =
+            of.event.records[0].tick_of(findings.first) as f64 + findings.launch.tick as f64;
         let begins_ms = 1e3 * begins / again.scene.sample_rate_hz;
         let scene = summary(&again.scene, 0);
         for run in again.results.planes.iter().flatten() {

@@ -1,5 +1,6 @@
 //! Both planes of a rotor beside each other, for a person.
 
+use super::tables::NOT_KNOWN;
 use firmware_bench::record::shapes::Shapes;
 use firmware_bench::record::story::{Event, Told};
 use firmware_bench::report::lines::{Cell, Lines, lined, right};
@@ -8,24 +9,33 @@ use firmware_bench::report::plot::text::figures;
 /// Name and text of a figure.
 type Row = (&'static str, fn(&Told) -> String);
 
-const ROWS: [Row; 10] = [
+const ROWS: [Row; 11] = [
     ("outcome", |told| told.outcome.to_owned()),
-    ("touches", |told| told.touches.to_string()),
-    ("in contact [ms]", |told| figures(1e3 * told.contact_s)),
+    ("position unknown [ms]", |told| {
+        figures(1e3 * told.position_unknown_s)
+    }),
+    ("touches", |told| {
+        (told.touches).map_or(NOT_KNOWN.to_owned(), |n| n.to_string())
+    }),
+    ("in contact [ms]", |told| known(told.contact_s, 1e3)),
     ("hardest impact [m/s]", |told| {
-        figures(told.hardest_impact_m_s)
+        known(told.hardest_impact_m_s, 1.0)
     }),
     ("backward whirl recognised", |told| {
-        let word = if told.whirled { "yes" } else { "no" };
+        let word = match told.whirled {
+            Some(true) => "yes",
+            Some(false) => "no",
+            None => NOT_KNOWN,
+        };
         word.to_owned()
     }),
     ("fastest backward motion [Hz]", |told| {
-        figures(told.max_whirl_hz)
+        known(told.max_whirl_hz, 1.0)
     }),
     ("of what the force arrests [%]", |told| {
-        figures(100.0 * told.whirl_share)
+        known(told.whirl_share, 100.0)
     }),
-    ("severity of the event", |told| figures(told.severity)),
+    ("severity of the event", |told| known(told.severity, 1.0)),
     ("in all, of its limit", |told| {
         format!(
             "{} of {}",
@@ -36,6 +46,11 @@ const ROWS: [Row; 10] = [
     ("landings", |told| told.landings.to_string()),
 ];
 
+/// So many times a figure, where a reading carried it.
+fn known(value: Option<f64>, times: f64) -> String {
+    value.map_or(NOT_KNOWN.to_owned(), |value| figures(times * value))
+}
+
 /// What came of the event in each plane of a rotor; `None` for a record of one plane.
 pub(super) fn figures_of_planes(event: &Event<'_>) -> Option<Lines> {
     if event.records[0].head.planes < 2 {
@@ -44,7 +59,7 @@ pub(super) fn figures_of_planes(event: &Event<'_>) -> Option<Lines> {
     let mut header = vec![Cell::new("figure")];
     header.extend((event.records.iter()).map(|r| right(format!("plane {}", r.head.plane))));
     let mut table = lined(header);
-    let told: Vec<Option<Told>> = event.records.iter().map(|record| record.told()).collect();
+    let told = event.told_of_planes();
     for (name, text) in ROWS {
         let cells = told
             .iter()

@@ -2,11 +2,16 @@
 
 use firmware_bench::record::file::PlaneRecord;
 use firmware_bench::record::ticks::{Tick, Ticks, Units, mode_name};
+use firmware_bench::record::unknown::is_unseen;
 use firmware_bench::report::lines::{Cell, Lines, lined, right};
 use std::fmt::Write;
+use supervisor::Stretch;
+
+/// Where no reading carried a figure.
+pub(super) const NOT_KNOWN: &str = "not known";
 
 /// The slow track, neighbours of the same modes together.
-pub(super) fn track(record: &PlaneRecord, recorded: &Ticks, units: Units) -> Lines {
+pub(super) fn track(record: &PlaneRecord, units: Units) -> Lines {
     let mut table = lined([
         format!("from [{}]", time_unit(units)),
         format!("to [{}]", time_unit(units)),
@@ -17,11 +22,16 @@ pub(super) fn track(record: &PlaneRecord, recorded: &Ticks, units: Units) -> Lin
         format!("force [{}]", force(units).0),
         "severity".to_owned(),
     ]);
-    let since = |sequence: u32| recorded.tick_of(sequence);
-    for same in record.track.chunk_by(|a, b| a.modes == b.modes) {
+    let stretches: Vec<(&Stretch, [i64; 2])> = record.stretches().collect();
+    let alike = |(a, _): &(&Stretch, [i64; 2]), (b, _): &(&Stretch, [i64; 2])| {
+        a.modes == b.modes && is_unseen(a) == is_unseen(b)
+    };
+    for together in stretches.chunk_by(alike) {
+        let (from, to) = (together[0].1[0], together[together.len() - 1].1[1]);
+        let same: Vec<&Stretch> = together.iter().map(|(stretch, _)| *stretch).collect();
         let ticks: i64 = same.iter().map(|s| i64::from(s.ticks)).sum();
         let contact: i64 = same.iter().map(|s| i64::from(s.contact_ticks)).sum();
-        let most = |of: fn(&supervisor::Stretch) -> u32| {
+        let most = |of: fn(&Stretch) -> u32| {
             let all = same.iter().map(|s| record.number(of(s)));
             all.fold(0.0, f64::max)
         };
@@ -30,21 +40,25 @@ pub(super) fn track(record: &PlaneRecord, recorded: &Ticks, units: Units) -> Lin
             .filter_map(mode_name)
             .collect();
         let touches: u32 = same.iter().map(|s| u32::from(s.touches)).sum();
+        let seen = |text: String| {
+            right(if is_unseen(same[0]) {
+                NOT_KNOWN.to_owned()
+            } else {
+                text
+            })
+        };
         table.add_row([
-            right(time(
-                since(same[0].sequence) - i64::from(same[0].ticks) + 1,
-                units,
-            )),
-            right(time(since(same[same.len() - 1].sequence) + 1, units)),
+            right(time(from, units)),
+            right(time(to, units)),
             Cell::new(names.join(", ")),
-            right(touches.to_string()),
-            right(format!(
+            seen(touches.to_string()),
+            seen(format!(
                 "{:.0}",
                 100.0 * contact as f64 / ticks.max(1) as f64
             )),
-            right(scaled(most(|s| s.radius_square).sqrt(), length(units))),
+            seen(scaled(most(|s| s.radius_square).sqrt(), length(units))),
             right(scaled(most(|s| s.force_square).sqrt(), force(units))),
-            right(format!("{:.2}", most(|s| s.severity))),
+            seen(format!("{:.2}", most(|s| s.severity))),
         ]);
     }
     table
@@ -154,14 +168,17 @@ pub(super) fn tick_tables(record: &Ticks, units: Units) -> TickTables {
             Cell::new(s.mode),
             right(time(s.from_tick, units)),
             right(time(s.ticks as i64, units)),
-            right(scaled(s.largest_radius, length)),
+            right(
+                s.largest_radius
+                    .map_or(NOT_KNOWN.to_owned(), |r| scaled(r, length)),
+            ),
             right(scaled(s.largest_force, force)),
         ]);
     }
     let mut happened = lined([
         format!("at [{time_unit}]"),
         "mode".to_owned(),
-        format!("x, y [{}]", length.0),
+        format!("reading x, y [{}]", length.0),
         format!("force x, y [{}]", force.0),
         "bound by".to_owned(),
         "events".to_owned(),

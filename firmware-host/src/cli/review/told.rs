@@ -29,23 +29,38 @@ pub(super) fn of_bearings(bearings: &[Remaining]) -> Vec<String> {
     told.collect()
 }
 
-/// Whether this build does the same, and what the firmware says of the event.
-fn circumstances(event: &Event<'_>) -> Vec<String> {
-    let head = event.records[0].head;
-    let mut said = vec![match &event.replay {
-        Ok(Replay {
-            ticks,
-            differing: 0,
-            ..
-        }) => format!("Replayed: {ticks} ticks, all to the last bit as they are recorded."),
-        Ok(replay) => format!(
+/// What is wrong with the file, in a sentence; nothing of one that is whole.
+pub(super) fn damaged(damage: &[String]) -> Option<String> {
+    (!damage.is_empty()).then(|| {
+        let what = damage.join("; ");
+        format!("The file is damaged: {what}. What follows is of what is whole.")
+    })
+}
+
+/// Where this build does not do the same.
+pub(super) fn differs(event: &Event<'_>) -> Option<String> {
+    let replay = event.replay.as_ref().ok()?;
+    (replay.differing > 0).then(|| {
+        format!(
             "Replayed: {} of {} ticks are NOT as they are recorded, the first with sequence number {}.",
             replay.differing,
             replay.ticks,
             replay.first_difference.unwrap_or_default()
-        ),
-        Err(why) => format!("Not replayed: {why}."),
-    }];
+        )
+    })
+}
+
+/// Whether this build does the same, and what the firmware says of the event.
+fn circumstances(event: &Event<'_>) -> Vec<String> {
+    let head = event.records[0].head;
+    let replayed = match &event.replay {
+        Ok(Replay { differing: 1.., .. }) => None,
+        Ok(Replay { ticks, .. }) => Some(format!(
+            "Replayed: {ticks} ticks, all to the last bit as they are recorded."
+        )),
+        Err(why) => Some(format!("Not replayed: {why}.")),
+    };
+    let mut said: Vec<String> = replayed.into_iter().collect();
     if head.dropped > 0 {
         said.push(format!(
             "{} events before this one are in no record: they came while one waited to be read, or had to make room.",
@@ -94,6 +109,9 @@ fn tone(verdict: Verdict) -> Tone {
 pub(super) fn told(of: &Examined<'_>, asked: bool, bearings: &[Remaining]) -> String {
     let event = &of.event;
     let mut out = String::new();
+    if let Some(differs) = differs(event) {
+        let _ = writeln!(out, "{differs}\n");
+    }
     match event.told() {
         Some(told) => {
             let verdict = told.verdict(used(bearings));
@@ -122,11 +140,11 @@ pub(super) fn told(of: &Examined<'_>, asked: bool, bearings: &[Remaining]) -> St
         }
         out += &tick_tables(&ticks, units).text();
         if let (Some(findings), Some(rate)) = (&of.findings, units.sample_rate_hz) {
-            for (_, table) in findings::tables(findings, &ticks, 1.0 / rate) {
+            for (_, table) in findings::tables(findings, record, 1.0 / rate) {
                 let _ = writeln!(out, "\n{table}");
             }
         }
-        let _ = write!(out, "\n{TRACK}:\n\n{}\n", track(record, &ticks, units));
+        let _ = write!(out, "\n{TRACK}:\n\n{}\n", track(record, units));
     }
     if let Some(again) = &of.again {
         let _ = writeln!(out, "\n{}", table::text(&again.scene, &again.results));
@@ -165,10 +183,10 @@ pub(super) fn parts(events: &[Examined<'_>], asked: bool) -> RecordParts {
             let of_ticks = tick_tables(&ticks, units);
             let mut tables = vec![("Modes of the recorded ticks".to_owned(), of_ticks.modes)];
             if let (Some(findings), Some(rate)) = (&of.findings, units.sample_rate_hz) {
-                let found = findings::tables(findings, &ticks, 1.0 / rate);
+                let found = findings::tables(findings, record, 1.0 / rate);
                 tables.extend(found.map(|(caption, table)| (caption.to_owned(), table)));
             }
-            tables.push((TRACK.to_owned(), track(record, &ticks, units)));
+            tables.push((TRACK.to_owned(), track(record, units)));
             parts.below.push(RecordPart {
                 heading,
                 said: of_ticks.missing.into_iter().collect(),

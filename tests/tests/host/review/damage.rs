@@ -7,7 +7,7 @@ use supervisor::{Entry, Part, crc_of};
 use system_tests::storm::Chance;
 
 /// Sections of these bytes.
-fn sections(bytes: &[u8]) -> Vec<&[u8]> {
+pub(super) fn sections(bytes: &[u8]) -> Vec<&[u8]> {
     let mut sections = Vec::new();
     let mut rest = bytes;
     while !rest.is_empty() {
