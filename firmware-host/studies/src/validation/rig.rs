@@ -102,7 +102,7 @@ pub struct Touch {
 
 impl Touch {
     /// Restitution, friction and clearance of the thesis, with a linear stiffness.
-    pub const STIFF: Self = Self {
+    pub(super) const STIFF: Self = Self {
         stiffness_n_m: 2e8,
         restitution: 0.5,
         clearance_m: 2e-3,
@@ -119,7 +119,7 @@ impl Touch {
 
     /// As the thesis simulates it: Hertz's contact between shaft and bearing with the hysteresis of Lankarani and Nikravesh, whose
     /// damping is 3·(1 − e²)/4 over the speed of the impact.
-    pub fn of_the_thesis(impact_m_s: f64) -> Self {
+    pub(super) fn of_the_thesis(impact_m_s: f64) -> Self {
         let law = HuntCrossley {
             stiffness_n_mn: HERTZ_N_M15,
             exponent: 1.5,
@@ -212,7 +212,7 @@ impl Rig {
 
     /// The same without gyroscopic moment.
     #[must_use]
-    pub fn without_gyroscopics(mut self) -> Self {
+    pub(super) fn without_gyroscopics(mut self) -> Self {
         if let Some(rigid) = self.rigid() {
             rigid.polar_inertia_kg_m2 = 0.0;
         }
@@ -221,7 +221,7 @@ impl Rig {
 
     /// The same with the house: the bearing's ring on a frame, by the stiffness of two force transducers each way.
     #[must_use]
-    pub fn with_house(mut self) -> Self {
+    pub(super) fn with_house(mut self) -> Self {
         for plane in &mut self.scene.machine.planes {
             plane.stator = StatorParams::TwoMass {
                 inner: RingParams {
@@ -245,7 +245,7 @@ impl Rig {
     }
 
     /// Mass that an impact at the free end finds \[kg\].
-    pub fn impact_mass_kg(&self) -> f64 {
+    fn impact_mass_kg(&self) -> f64 {
         self.scene.machine.point_mass(self.free_end_m()).mass_kg
     }
 
