@@ -6,3 +6,6 @@ pub mod file;
 pub mod replay;
 #[path = "../../../firmware-host/bench/src/record/ticks.rs"]
 pub mod ticks;
+#[allow(dead_code, reason = "the replay needs a part of it")]
+#[path = "../../../firmware-host/bench/src/record/unknown.rs"]
+pub mod unknown;
