@@ -247,12 +247,7 @@ impl Found {
         let at_spin = closed.modes()?;
         let stable = linear_loop::is_stable(&at_spin);
         let margins = speed_margins(scene, spins, &modes)?;
-        let mut shapes = Vec::new();
-        for mode in &at_spin {
-            if let Some(shape) = closed.shape(mode, &scene.machine, places_m)? {
-                shapes.push((*mode, shape));
-            }
-        }
+        let shapes = closed.shapes(&at_spin, &scene.machine, places_m)?;
         Ok(Self {
             modes,
             critical_speeds: (margins.iter())

@@ -228,7 +228,7 @@ impl LinearMachine {
             .solve(&force)?;
         Some(
             ports()
-                .map(|port| largest(port, motion.as_slice()))
+                .map(|port| half_axis(motion_at(port, motion.as_slice())))
                 .collect(),
         )
     }
@@ -430,9 +430,8 @@ fn motion_at(port: &Port, motion: &[C]) -> [C; 2] {
     [0, 1].map(|axis| pairs().map(|(s, z)| *s * z[axis]).sum())
 }
 
-/// The larger half axis of the ellipse that a place runs through.
-fn largest(port: &Port, motion: &[C]) -> f64 {
-    let motion = motion_at(port, motion);
+/// The larger half axis of the ellipse of a motion X, Y in x = Re(X·e^jωt) and y likewise.
+pub fn half_axis(motion: [C; 2]) -> f64 {
     circular(motion, 1.0).norm() + circular(motion, -1.0).norm()
 }
 

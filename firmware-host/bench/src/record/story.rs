@@ -373,15 +373,10 @@ impl Told {
         };
         let closer = self.severity_index / self.severity_limit
             >= other.severity_index / other.severity_limit;
-        let (severity_index, severity_limit) = if closer {
-            (self.severity_index, self.severity_limit)
+        let (severity, severity_index, severity_limit) = if closer {
+            (self.severity, self.severity_index, self.severity_limit)
         } else {
-            (other.severity_index, other.severity_limit)
-        };
-        let severity = if closer {
-            self.severity
-        } else {
-            other.severity
+            (other.severity, other.severity_index, other.severity_limit)
         };
         // Of what is known of one plane alone, that.
         let most = |a: Option<f64>, b: Option<f64>| a.into_iter().chain(b).reduce(f64::max);

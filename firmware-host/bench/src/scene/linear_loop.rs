@@ -17,7 +17,7 @@ use crate::scene::{PlaneScene, Scene};
 use nalgebra::linalg::balancing::balance_parlett_reinsch;
 use nalgebra::{DMatrix, DVector, Rotation2};
 use plant_model::machine::linear::{
-    C, Direction, MachineMode, eigenvalues, eigenvector, modes_of, shape_of,
+    C, Direction, MachineMode, eigenvalues, eigenvector, half_axis, modes_of, shape_of,
 };
 use plant_model::machine::linear_plant::LinearPlant;
 use plant_model::machine::params::{MachineError, MachineParams};
@@ -302,27 +302,31 @@ impl LinearLoop {
         (unfolded, Direction::of(motions))
     }
 
-    /// Shape of a mode at places along the axis, from the centre of mass \[m\]: as of [`shape_of`]; `None` where it is not found.
+    /// Shapes of modes at places along the axis, from the centre of mass \[m\]: as of [`shape_of`]; without those that are not found.
     ///
     /// # Errors
     /// [`NoLoop::Machine`].
-    pub fn shape(
+    pub fn shapes(
         &self,
-        mode: &MachineMode,
+        modes: &[MachineMode],
         machine: &MachineParams,
         places_m: &[f64],
-    ) -> Result<Option<Vec<C>>, NoLoop> {
+    ) -> Result<Vec<(MachineMode, Vec<C>)>, NoLoop> {
         let along_the_axis = MachineParams {
             probes_m: places_m.to_vec(),
             ..machine.clone()
         };
         let rows = LinearPlant::new(&along_the_axis, 0.0)?.probes;
-        let value = (C::new(mode.growth_s, mode.frequency_rad_s) * self.period_s).exp();
-        let vector = eigenvector(&self.a.map(|x| C::new(x, 0.0)), value, value.norm());
-        Ok(vector.map(|vector| {
-            let state = self.machine_state(&vector);
-            shape_of(&motions(&rows, &state))
-        }))
+        let a = self.a.map(|x| C::new(x, 0.0));
+        let shape = |mode: &MachineMode| {
+            let value = (C::new(mode.growth_s, mode.frequency_rad_s) * self.period_s).exp();
+            let vector = eigenvector(&a, value, value.norm())?;
+            Some((
+                *mode,
+                shape_of(&motions(&rows, &self.machine_state(&vector))),
+            ))
+        };
+        Ok(modes.iter().filter_map(shape).collect())
     }
 
     /// Response to the unbalance at a spin that is that of the loop \[rad/s\], at samples: largest distance from the middle in each
@@ -346,13 +350,10 @@ impl LinearLoop {
         let closed = DMatrix::from_diagonal_element(size, size, z) - complex(&self.a);
         let answer = closed.lu().solve(&(complex(&self.b) * seen))?;
         let state = free + self.machine_state(&answer);
-        Some([&plant.planes, &self.sensors].map(|rows| {
-            let largest = |[x, y]: [C; 2]| {
-                let turning = |sign: f64| (0.5 * (x + sign * C::i() * y)).norm();
-                turning(1.0) + turning(-1.0)
-            };
-            motions(rows, &state).into_iter().map(largest).collect()
-        }))
+        Some(
+            [&plant.planes, &self.sensors]
+                .map(|rows| motions(rows, &state).into_iter().map(half_axis).collect()),
+        )
     }
 }
 
