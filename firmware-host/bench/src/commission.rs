@@ -9,6 +9,7 @@ pub mod log;
 pub mod walk;
 
 use crate::commission::log::Log;
+use crate::log_file::LogError;
 use nalgebra::{Complex, DMatrix, DVector};
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF as _, StudentsT};
@@ -54,25 +55,6 @@ pub struct Commissioned {
     pub parameters: Vec<Found>,
     pub not_found: Vec<Missing>,
     pub contradictions: Vec<Contradiction>,
-}
-
-/// Why a log tells nothing.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[error("{message}")]
-pub struct LogError {
-    /// What is wrong.
-    pub message: String,
-    /// What to do.
-    pub help: String,
-}
-
-impl LogError {
-    pub(crate) fn new(message: impl Into<String>, help: impl Into<String>) -> Self {
-        Self {
-            message: message.into(),
-            help: help.into(),
-        }
-    }
 }
 
 /// A line of the stimulus in a window: motion, commands, and where.

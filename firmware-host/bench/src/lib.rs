@@ -33,7 +33,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Rooms, each importing only from those above it: `words`, `bisection`, `crossover`, `device`, `scene`, `commission`, `record`, `run`, `modes`, `report`, `advise`, `sweep`.
+//! Rooms, each importing only from those above it: `words`, `bisection`, `crossover`, `log_file`, `device`, `scene`, `commission`, `record`, `run`, `modes`, `report`, `advise`, `sweep`.
 
 #![forbid(unsafe_code)]
 #![warn(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
@@ -43,6 +43,7 @@ mod bisection;
 pub mod commission;
 mod crossover;
 pub mod device;
+pub mod log_file;
 pub mod modes;
 pub mod record;
 pub mod report;

@@ -7,6 +7,7 @@ pub mod columns;
 pub mod controller;
 pub mod figures;
 mod judge;
+pub mod log_watch;
 pub mod outcome;
 pub mod overview;
 pub mod recording;

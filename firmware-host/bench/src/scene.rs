@@ -3,6 +3,7 @@
 mod arrays;
 mod bearing;
 mod biquads;
+mod course;
 mod devices;
 pub mod diagnostic;
 mod events;
@@ -312,6 +313,6 @@ impl Scene {
     pub fn loads(&self) -> impl Iterator<Item = Disturbance> {
         let mass_kg = self.machine.rotor.rigid().mass_kg;
         let inertial = self.base_motions.iter().map(move |b| b.on_mass(mass_kg));
-        self.disturbances.iter().copied().chain(inertial)
+        self.disturbances.iter().cloned().chain(inertial)
     }
 }

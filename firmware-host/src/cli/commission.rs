@@ -5,7 +5,8 @@ use crate::cli::error::{CommandError, pretty, print};
 use crate::cli::load;
 use crate::cli::screen::tell;
 use firmware_bench::commission::log::Log;
-use firmware_bench::commission::{Commissioned, Found, LogError};
+use firmware_bench::commission::{Commissioned, Found};
+use firmware_bench::log_file::{LogError, Renamed};
 use firmware_bench::report::lines::lined;
 use std::path::{Path, PathBuf};
 use supervisor::PARAMETERS;
@@ -13,9 +14,12 @@ use supervisor::PARAMETERS;
 /// Arguments of `commission`.
 #[derive(Debug, Clone, clap::Args)]
 pub struct CommissionArgs {
-    /// Log of one plane: Parquet, or CSV with names in its first line; t_s, measured_x_m, measured_y_m, commanded_x_n,
-    /// commanded_y_n, stimulus_x_n, stimulus_y_n and perhaps spin_rad_s, a row a tick. A trace of run is one.
+    /// Log of one plane, as CSV, Parquet, MAT or MCAP: t_s, measured_x_m, measured_y_m, commanded_x_n, commanded_y_n,
+    /// stimulus_x_n, stimulus_y_n and perhaps spin_rad_s, a row a tick. A trace of run is one.
     pub log: PathBuf,
+    /// A column of the log that has another name, and perhaps another unit, e.g. measured_x_m=x1_um*1e-6.
+    #[arg(long, value_name = "NAME=COLUMN[*FACTOR]")]
+    pub column: Vec<Renamed>,
     /// Log of a walk, the rotor slowly led along its retainer bearing all the way round: clearance and centre.
     #[arg(long, value_name = "LOG")]
     pub walk: Option<PathBuf>,
@@ -38,11 +42,11 @@ pub struct CommissionArgs {
 /// # Errors
 /// [`CommandError`].
 pub fn execute(args: &CommissionArgs) -> Result<(), CommandError> {
-    let log = Log::read(&args.log).map_err(|e| refused(&args.log, e))?;
+    let log = Log::read(&args.log, &args.column).map_err(|e| refused(&args.log, e))?;
     let mut commissioned = Commissioned::of(&log).map_err(|e| refused(&args.log, e))?;
     match &args.walk {
         Some(walk) => {
-            let positions_m = Log::positions(walk).map_err(|e| refused(walk, e))?;
+            let positions_m = Log::positions(walk, &args.column).map_err(|e| refused(walk, e))?;
             (commissioned.with_walk(&positions_m)).map_err(|e| refused(walk, e))?;
         }
         None => commissioned.without_walk(),

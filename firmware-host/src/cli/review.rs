@@ -10,6 +10,7 @@ mod told;
 use crate::cli::error::{CommandError, pretty, print};
 use crate::cli::screen::tell;
 use again::Again;
+use firmware_bench::log_file::{LogError, LogFile, Renamed};
 use firmware_bench::record::Contact;
 use firmware_bench::record::file::RecordFile;
 use firmware_bench::record::identify::{Findings, Identified};
@@ -20,7 +21,8 @@ use firmware_bench::record::story::{Event, Told};
 use firmware_bench::record::ticks::Ticks;
 use firmware_bench::record::unknown::Unknown;
 use firmware_bench::report::table;
-use firmware_bench::scene::spec::Setting;
+use firmware_bench::run::log_watch::{LogTold, WatchError, watch};
+use firmware_bench::scene::spec::{Setting, Spec};
 use serde::Serialize;
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -30,8 +32,13 @@ use told::told;
 /// Arguments of `review`.
 #[derive(Debug, Clone, clap::Args)]
 pub struct ReviewArgs {
-    /// The sections of one or more records, one after the other, as firmware has written them.
+    /// The sections of one or more records, one after the other, as firmware has written them. Or a log of a machine, as .csv,
+    /// .parquet, .mat or .mcap, which the supervisor of --scene watches: t_s, measured_x_m, measured_y_m, where there
+    /// commanded_x_n, commanded_y_n, delivered_x_n, delivered_y_n, spin_rad_s; of several planes PLANE.measured_x_m and so on.
     pub file: PathBuf,
+    /// A column of a log that has another name, and perhaps another unit, e.g. measured_x_m=x1_um*1e-6.
+    #[arg(long, value_name = "NAME=COLUMN[*FACTOR]", requires = "scene")]
+    pub column: Vec<Renamed>,
     /// Ledger of the retainer bearing as firmware has written it, of each plane one after the other: how many landings it may
     /// still bear.
     #[arg(long, value_name = "FILE")]
@@ -67,10 +74,32 @@ pub struct ReviewArgs {
 /// [`CommandError`].
 pub fn execute(args: &ReviewArgs) -> Result<(), CommandError> {
     let name = args.file.display();
-    let bytes = std::fs::read(&args.file).map_err(|e| CommandError::Numbers {
-        message: format!("{name}: {e}"),
-        help: "give the file that the record was written to".to_owned(),
-    })?;
+    let mut spec = args.scene.as_deref().map(Spec::load).transpose()?;
+    let (bytes, log) = match &mut spec {
+        Some(spec) if LogFile::is_at(&args.file) => {
+            let watched =
+                watch(spec, &args.file, &args.column).map_err(|e| not_watched(args, e))?;
+            (watched.records, Some(watched.told))
+        }
+        None if LogFile::is_at(&args.file) => {
+            return Err(CommandError::Numbers {
+                message: format!("{name}: a log, and no scene of its machine"),
+                help: "give the scene with --scene: clearance, mass and magnet are not in a log"
+                    .to_owned(),
+            });
+        }
+        _ => {
+            let read = std::fs::read(&args.file).map_err(|e| CommandError::Numbers {
+                message: format!("{name}: {e}"),
+                help: "give the file that the record was written to".to_owned(),
+            })?;
+            (read, None)
+        }
+    };
+    let asked = Asked { args, spec, log };
+    if bytes.is_empty() && asked.log.is_some() {
+        return of_sections(&asked, &RecordFile::default());
+    }
     let file = RecordFile::of(&bytes);
     if file.records.is_empty() {
         let damage: Vec<String> = file.damage.iter().map(ToString::to_string).collect();
@@ -80,7 +109,24 @@ pub fn execute(args: &ReviewArgs) -> Result<(), CommandError> {
                 .to_owned(),
         });
     }
-    of_sections(args, &file)
+    of_sections(&asked, &file)
+}
+
+fn not_watched(args: &ReviewArgs, error: WatchError) -> CommandError {
+    match error {
+        WatchError::Scene(error) => error.into(),
+        WatchError::Log(LogError { message, help }) => CommandError::Numbers {
+            message: format!("{}: {message}", args.file.display()),
+            help: format!("{help}: --column measured_x_m=NAME*FACTOR"),
+        },
+    }
+}
+
+/// What is asked: the arguments, the scene with what was set in it, and what a log tells of itself.
+struct Asked<'a> {
+    args: &'a ReviewArgs,
+    spec: Option<Spec>,
+    log: Option<LogTold>,
 }
 
 /// An event for programs.
@@ -122,8 +168,10 @@ struct Plane {
 
 /// A file for programs: its first event, and the others.
 #[derive(Serialize)]
-struct Review {
+struct Review<'a> {
     intact: bool,
+    /// Of a log what it is; null of a record.
+    log: Option<&'a LogTold>,
     format: u32,
     error: Option<String>,
     #[serde(flatten)]
@@ -136,21 +184,25 @@ struct Review {
 /// An event with what is found out from it.
 struct Examined<'a> {
     event: Event<'a>,
+    /// Whether the record is of a log, by this very build: what it would do is no finding.
+    of_log: bool,
     shapes: Option<Shapes>,
     findings: Option<Findings>,
     again: Option<Again>,
 }
 
-fn examined<'a>(args: &ReviewArgs, event: Event<'a>) -> Result<Examined<'a>, CommandError> {
+fn examined<'a>(asked: &Asked<'_>, event: Event<'a>) -> Result<Examined<'a>, CommandError> {
     let findings = event.findings();
-    let again = match (&args.scene, &findings) {
+    let scene = asked.args.scene.as_deref().zip(asked.spec.as_ref());
+    let again = match (scene, &findings) {
         (Some(scene), Some(findings)) => {
-            Some(again::simulate(scene, &args.set, (&event, findings))?)
+            Some(again::simulate(scene, &asked.args.set, (&event, findings))?)
         }
         _ => None,
     };
     Ok(Examined {
         shapes: Shapes::of(&event.records),
+        of_log: asked.log.is_some(),
         event,
         findings,
         again,
@@ -185,7 +237,8 @@ fn reviewed(of: &Examined<'_>) -> Reviewed {
 }
 
 /// Retainer bearings after the last event of a file.
-fn remaining(args: &ReviewArgs, events: &[Examined<'_>]) -> Result<Vec<Remaining>, CommandError> {
+fn remaining(asked: &Asked<'_>, events: &[Examined<'_>]) -> Result<Vec<Remaining>, CommandError> {
+    let args = asked.args;
     if let Some(allowed) = args.allowance
         && !(allowed > 0.0 && allowed.is_finite())
     {
@@ -221,26 +274,33 @@ fn remaining(args: &ReviewArgs, events: &[Examined<'_>]) -> Result<Vec<Remaining
         }
     };
     let planes = event.records[0].head.planes as usize;
-    let allowed = match (args.allowance, &args.scene) {
+    let allowed = match (args.allowance, &asked.spec) {
         (Some(allowed), _) => vec![Some(allowed); planes],
-        (None, Some(scene)) => again::allowances(scene, &args.set)?,
+        (None, Some(spec)) => again::allowances(spec, &args.set)?,
         (None, None) => Vec::new(),
     };
     Ok(Remaining::of(event, &kept, &allowed))
 }
 
 /// What is whole is shown; that something is not is an error all the same.
-fn of_sections(args: &ReviewArgs, file: &RecordFile) -> Result<(), CommandError> {
-    let events: Result<Vec<Examined<'_>>, CommandError> = (file.events().into_iter())
-        .map(|event| examined(args, event))
+fn of_sections(asked: &Asked<'_>, file: &RecordFile) -> Result<(), CommandError> {
+    let args = asked.args;
+    let mut of_file = file.events();
+    if let Some(last) = of_file.last_mut() {
+        let cut = asked.log.as_ref().and_then(|log| log.events.last());
+        last.log_ends = cut.is_some_and(|event| event.to_s.is_none());
+    }
+    let events: Result<Vec<Examined<'_>>, CommandError> = (of_file.into_iter())
+        .map(|event| examined(asked, event))
         .collect();
     let events = events?;
-    let bearings = remaining(args, &events)?;
+    let bearings = remaining(asked, &events)?;
     let damage: Vec<String> = file.damage.iter().map(ToString::to_string).collect();
     let error = (!file.is_intact()).then(|| damage.join("; "));
     if let Some(out) = &args.out {
         let name = args.file.display().to_string();
-        let head = page::head(&name, (&events, &bearings), &damage);
+        let log = asked.log.as_ref().map(LogTold::sentences);
+        let head = page::head(&name, (&events, &bearings), (&damage, log));
         let parts = told::parts(&events, args.scene.is_some());
         page::write(out, (&head, &parts), &page::tracks(&events))?;
     }
@@ -251,6 +311,7 @@ fn of_sections(args: &ReviewArgs, file: &RecordFile) -> Result<(), CommandError>
         let mut all = events.iter().map(reviewed);
         let review = Review {
             intact: file.is_intact(),
+            log: asked.log.as_ref(),
             format: 3,
             error: error.clone(),
             first: all.next(),
@@ -278,7 +339,8 @@ fn of_sections(args: &ReviewArgs, file: &RecordFile) -> Result<(), CommandError>
         let damaged = told::damaged(&damage).map(|said| said + "\n");
         let told = (events.iter().enumerate())
             .map(|(i, of)| told(of, args.scene.is_some(), of_event(&bearings, i, &events)));
-        let texts: Vec<String> = damaged.into_iter().chain(told).collect();
+        let log = asked.log.as_ref().map(|log| log.sentences() + "\n");
+        let texts: Vec<String> = log.into_iter().chain(damaged).chain(told).collect();
         tell(&texts.join("\n"))?;
     }
     match error {

@@ -155,6 +155,14 @@ fn every_command_works_or_is_known() {
         here("landing.bin"),
     )
     .unwrap();
+    let trace = "runs/overload_then_release/trace_supervisor";
+    run(&format!("export {trace}.parquet --to csv"), &[]);
+    let csv = std::fs::read_to_string(here(&format!("{trace}.csv"))).unwrap();
+    std::fs::write(
+        here("landing.csv"),
+        crate::review::logs::foreign(&csv, false),
+    )
+    .unwrap();
 
     let mut seen = BTreeSet::new();
     for file in files {

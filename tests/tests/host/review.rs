@@ -2,6 +2,7 @@
 
 mod damage;
 mod lies;
+pub(crate) mod logs;
 
 use firmware_bench::record::file::{PlaneRecord, RecordFile};
 use firmware_bench::record::identify::Estimate;

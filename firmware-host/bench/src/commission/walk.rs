@@ -1,6 +1,7 @@
 //! Clearance and centre of the retainer bearing, from a walk round it: the rotor slowly led along the wall.
 
-use crate::commission::{Commissioned, Found, LogError, Missing};
+use crate::commission::{Commissioned, Found, Missing};
+use crate::log_file::LogError;
 use nalgebra::{Matrix3, Vector3};
 use statrs::distribution::{ContinuousCDF as _, StudentsT};
 use std::f64::consts::TAU;

@@ -13,7 +13,7 @@ use supervisor::{Config, Entry, Events, Mode, Summary};
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Told {
     /// `levitated` where the levitation controller has the bearing again, else what the supervisor was doing when the record
-    /// froze; `coast down` where it asked for that, `bearing off` where the bearing was switched off.
+    /// froze; `coast down` where it asked for that, `bearing off` where the bearing was switched off, `log ends` where a log does.
     pub outcome: &'static str,
     /// Touches that were seen.
     pub touches: Option<u32>,
@@ -129,7 +129,12 @@ pub struct Event<'a> {
     pub replay: Result<Replay, NoReplay>,
     /// Where the position is unknown, of each record.
     pub unknown: Vec<Vec<Unknown>>,
+    /// Whether it is of a log that ends within it, as by a bearing that is off.
+    pub log_ends: bool,
 }
+
+/// The outcome of an event that its log cuts off.
+const LOG_ENDS: &str = "log ends";
 
 impl RecordFile {
     /// Events in the order of the file.
@@ -162,6 +167,7 @@ impl RecordFile {
                     unknown: unknown.collect(),
                     replay: replayed.map(|(replay, _)| replay),
                     records,
+                    log_ends: false,
                 }
             })
             .collect()
@@ -454,6 +460,7 @@ impl Told {
             "coast down" => "the supervisor asked for coasting down".to_owned(),
             "handed back" => "the supervisor made no progress and gave the bearing back".to_owned(),
             "bearing off" => "the bearing was switched off".to_owned(),
+            LOG_ENDS => "the log ends before it was over".to_owned(),
             mode => format!("it was not over when the record was full ({mode})"),
         };
         let least = self.least();
@@ -572,7 +579,14 @@ impl Event<'_> {
             return None;
         }
         let all: Option<Vec<Told>> = self.told_of_planes().into_iter().collect();
-        all?.into_iter().reduce(Told::with)
+        let told = all?.into_iter().reduce(Told::with)?;
+        Some(match self.log_ends && told.outcome == "bearing off" {
+            true => Told {
+                outcome: LOG_ENDS,
+                ..told
+            },
+            false => told,
+        })
     }
 
     /// What came of it in each plane that is there.

@@ -289,6 +289,7 @@ fn course(shape: &Shape) -> String {
         Shape::Constant => String::new(),
         Shape::HalfSine => ", half a sine".to_owned(),
         Shape::Sine { frequency_hz, .. } => format!(", sine of {} Hz", figures(*frequency_hz)),
+        Shape::Recorded(course) => format!(" times {}", course.file),
     }
 }
 

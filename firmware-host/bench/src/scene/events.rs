@@ -3,14 +3,15 @@
 use crate::device::actuator::{Delivers, Outage};
 use crate::device::axis::Axis;
 use crate::device::levitation::SetDown;
-use crate::device::loads::{BaseMotion, Disturbance, Shape, TimedChange};
+use crate::device::loads::{BaseMotion, Disturbance, TimedChange};
 use crate::device::sensor_fault::{Fault, FaultKind};
+use crate::scene::course::Reader;
 use crate::scene::diagnostic::SceneError;
 use crate::scene::keys::{Absent, Range};
 use crate::scene::plane_spec::PlaneSpec;
 use crate::scene::read::KeyType as _;
 use crate::scene::tables::{ChangeTable, FaultTable, OutageTable, SetDownTable};
-use crate::scene::values::{FaultName, ShapeName};
+use crate::scene::values::FaultName;
 use plant_model::machine::params::Unbalance;
 use plant_model::{Change, V2};
 
@@ -29,14 +30,14 @@ pub(crate) fn events(spec: &PlaneSpec) -> Result<Events, SceneError> {
     let reader = Reader { spec };
     let written = &spec.tables;
     let disturbances = each("disturbance", &written.disturbance, |path, d| {
-        reader.starts(path, "start_s", d.start_s)?;
+        let course = reader.course(path, &d.written())?;
         Ok(Disturbance {
             // Until the rotor is known.
             position_m: 0.0,
-            start_s: d.start_s,
-            duration_s: d.duration_s,
-            force_n: d.force_n.into(),
-            shape: reader.shape(path, d.shape, d.frequency_hz, d.phase_rad)?,
+            start_s: course.start_s,
+            duration_s: course.duration_s,
+            force_n: course.amplitude,
+            shape: course.shape,
         })
     })?;
     let base_motions = each("base_motion", &written.base_motion, |path, b| {
@@ -45,12 +46,12 @@ pub(crate) fn events(spec: &PlaneSpec) -> Result<Events, SceneError> {
             let help = "remove [stator], or act on the rotor by [[disturbance]]";
             return Err(reader.error(path, message, help));
         }
-        reader.starts(path, "start_s", b.start_s)?;
+        let course = reader.course(path, &b.written())?;
         Ok(BaseMotion {
-            start_s: b.start_s,
-            duration_s: b.duration_s,
-            acceleration_m_s2: b.acceleration_m_s2.into(),
-            shape: reader.shape(path, b.shape, b.frequency_hz, b.phase_rad)?,
+            start_s: course.start_s,
+            duration_s: course.duration_s,
+            acceleration_m_s2: course.amplitude,
+            shape: course.shape,
         })
     })?;
     let outages = each("outage", &written.outage, |path, o| reader.outage(path, o))?;
@@ -99,10 +100,6 @@ impl ChangeTable {
     }
 }
 
-struct Reader<'a> {
-    spec: &'a PlaneSpec,
-}
-
 impl Reader<'_> {
     fn outage(&self, path: &str, o: &OutageTable) -> Result<Outage, SceneError> {
         if self.spec.tables.magnet.is_none() {
@@ -142,72 +139,6 @@ impl Reader<'_> {
             to_m: self.spec.contact.clearance_m * V2::from(s.to),
             announced: s.announced,
         })
-    }
-
-    fn error(&self, key: &str, message: &str, help: &str) -> SceneError {
-        let (message, help) = (message.to_owned(), Some(help.to_owned()));
-        self.spec.text.error_at_key(key, message, help)
-    }
-
-    fn starts(&self, path: &str, key: &str, start_s: f64) -> Result<(), SceneError> {
-        let end_s = self.spec.tables.run.duration_s;
-        if start_s < end_s {
-            return Ok(());
-        }
-        let message = format!("is {start_s}, not before the end of the run at {end_s}");
-        let help = "start it earlier, or lengthen run.duration_s";
-        Err(self.error(&format!("{path}.{key}"), &message, help))
-    }
-
-    fn shape(
-        &self,
-        path: &str,
-        name: ShapeName,
-        frequency_hz: Option<f64>,
-        phase_rad: Option<f64>,
-    ) -> Result<Shape, SceneError> {
-        if name != ShapeName::Sine {
-            let given = [
-                ("frequency_hz", frequency_hz.is_some()),
-                ("phase_rad", phase_rad.is_some()),
-            ];
-            if let Some((key, _)) = given.iter().find(|(_, given)| *given) {
-                let key = format!("{path}.{key}");
-                let message = "has a meaning with shape = \"sine\" only";
-                return Err(self.error(&key, message, "remove it, or choose that shape"));
-            }
-        }
-        Ok(match name {
-            ShapeName::Constant => Shape::Constant,
-            ShapeName::HalfSine => Shape::HalfSine,
-            ShapeName::Sine => Shape::Sine {
-                // Faster ones are no load that a sampled loop could be asked about.
-                frequency_hz: self.needed(path, "frequency_hz", frequency_hz, self.rates_hz())?,
-                phase_rad: phase_rad.unwrap_or(0.0),
-            },
-        })
-    }
-
-    /// Rates that a sampled loop could be asked about \[Hz\].
-    fn rates_hz(&self) -> Range {
-        Range::Within(0.0, self.spec.tables.run.sample_rate_hz)
-    }
-
-    /// A key that this kind or shape cannot do without.
-    fn needed(
-        &self,
-        path: &str,
-        key: &str,
-        value: Option<f64>,
-        range: Range,
-    ) -> Result<f64, SceneError> {
-        let key = format!("{path}.{key}");
-        let expected = range.expected();
-        match value {
-            None => Err(self.error(&key, "is missing", &format!("give {expected}"))),
-            Some(value) if range.contains(value) => Ok(value),
-            Some(value) => Err((self.spec.text).refused(&key, value, &expected)),
-        }
     }
 
     fn fault(&self, path: &str, f: &FaultTable) -> Result<Fault, SceneError> {

@@ -201,7 +201,7 @@ impl Spec {
         (all.iter().zip(places))
             .map(|(disturbance, place)| Disturbance {
                 position_m: origin.place_m(place),
-                ..*disturbance
+                ..disturbance.clone()
             })
             .collect()
     }

@@ -39,6 +39,13 @@ impl Scene {
 
     /// The supervisor of the whole rotor, where there is one for it.
     pub fn supervisor(&self) -> Option<RotorSupervisor> {
+        self.supervisor_recording()
+    }
+
+    /// The same with so many ticks in a record.
+    pub(crate) fn supervisor_recording<const TICKS: usize>(
+        &self,
+    ) -> Option<RotorSupervisor<TICKS>> {
         let [first, second] = self.supervised_planes()?;
         let configs = [first.supervisor?, second.supervisor?];
         let made = match &self.told {

@@ -271,22 +271,30 @@ key_tables! {
     }
 
     DisturbanceTable {
-        start_s: f64 [required], "s", START_S, "must lie before the end of the run", "t", "time", "at_s";
-        duration_s: f64 [required], "s", DURATION_S, "how long it acts", "length";
-        force_n: Pair [required], "N", Within(-1e9, 1e9), "force on the rotor; the amplitude where it varies", "f", "amplitude";
+        start_s: Option<f64> [or "required; with `file` 0"], "s", START_S, "must lie before the end of the run; added to the times of a file", "t", "time", "at_s";
+        duration_s: Option<f64> [or "required; with `file` to its last time"], "s", DURATION_S, "how long it acts", "length";
+        force_n: Option<Pair> [or "required; with `file` [1, 1]"], "N", Within(-1e9, 1e9), "force on the rotor; the amplitude where it varies; multiplies the columns of a file", "f", "amplitude";
         position_m: Option<f64> [or "the centre of mass"], "m", Finite, "where along the axis", "z";
         shape: ShapeName [= ShapeName::Constant], "", ANY, "[course](scenes.md#loads) over the interval", "form", "kind";
         frequency_hz: Option<f64> [or "–"], "Hz", Elsewhere("0 to the control rate"), "with `sine` only", "f";
         phase_rad: Option<f64> [or "0"], "rad", Within(-1e6, 1e6), "at the start; with `sine` only";
+        file: Option<String> [or "–"], "", ANY, "a [recorded course](scenes.md#loads) instead of a shape: CSV, Parquet, MAT or MCAP, by its path from the scene file", "csv", "parquet", "path";
+        time_column: Option<String> [or "`t_s`"], "", ANY, "times of the file, in s", "t_column";
+        x_column: Option<String> [or "`force_x_n`"], "", ANY, "force along x in the file; of `x_column` and `y_column` one alone leaves the other axis without", "columns";
+        y_column: Option<String> [or "`force_y_n`"], "", ANY, "force along y in the file";
     }
 
     BaseMotionTable {
-        start_s: f64 [required], "s", START_S, "must lie before the end of the run", "t", "time", "at_s";
-        duration_s: f64 [required], "s", DURATION_S, "how long it acts", "length";
-        acceleration_m_s2: Pair [required], "m/s²", Within(-1e7, 1e7), "of the housing; the amplitude where it varies", "a", "amplitude";
+        start_s: Option<f64> [or "required; with `file` 0"], "s", START_S, "must lie before the end of the run; added to the times of a file", "t", "time", "at_s";
+        duration_s: Option<f64> [or "required; with `file` to its last time"], "s", DURATION_S, "how long it acts", "length";
+        acceleration_m_s2: Option<Pair> [or "required; with `file` [1, 1]"], "m/s²", Within(-1e7, 1e7), "of the housing; the amplitude where it varies; multiplies the columns of a file", "a", "amplitude";
         shape: ShapeName [= ShapeName::Constant], "", ANY, "[course](scenes.md#loads) over the interval", "form", "kind";
         frequency_hz: Option<f64> [or "–"], "Hz", Elsewhere("0 to the control rate"), "with `sine` only", "f";
         phase_rad: Option<f64> [or "0"], "rad", Within(-1e6, 1e6), "at the start; with `sine` only";
+        file: Option<String> [or "–"], "", ANY, "a [recorded course](scenes.md#loads) instead of a shape, as of a disturbance", "csv", "parquet", "path";
+        time_column: Option<String> [or "`t_s`"], "", ANY, "times of the file, in s", "t_column";
+        x_column: Option<String> [or "`acceleration_x_m_s2`"], "", ANY, "acceleration along x in the file", "columns";
+        y_column: Option<String> [or "`acceleration_y_m_s2`"], "", ANY, "acceleration along y in the file";
     }
 
     OutageTable {

@@ -24,12 +24,11 @@ pub(super) struct Again {
 
 /// Simulates the event with every policy, and where something is set with the supervisor on the scene so changed.
 pub(super) fn simulate(
-    path: &Path,
+    (path, spec): (&Path, &Spec),
     settings: &[Setting],
     (event, findings): (&Event<'_>, &Findings),
 ) -> Result<Again, CommandError> {
     let of = (event.records[0], findings);
-    let spec = Spec::load(path)?;
     let scene = scene_of_event(spec.clone(), of, &[])?;
     let differing = differing(of.0, &scene);
     if differing.contains(&"sample_period_s") {
@@ -46,7 +45,7 @@ pub(super) fn simulate(
         keep(&mut results, kind.name(), &scene, *kind);
     }
     if !settings.is_empty() {
-        let other = scene_of_event(spec, of, settings)?;
+        let other = scene_of_event(spec.clone(), of, settings)?;
         let said: Vec<String> = settings.iter().map(Setting::to_string).collect();
         let name = format!("supervisor, {}", said.join(", "));
         keep(&mut results, &name, &other, PolicyKind::Supervisor);
@@ -60,10 +59,10 @@ pub(super) fn simulate(
 
 /// What the scene has its retainer bearings bear in all, of each plane.
 pub(super) fn allowances(
-    path: &Path,
+    spec: &Spec,
     settings: &[Setting],
 ) -> Result<Vec<Option<f32>>, CommandError> {
-    let mut spec = Spec::load(path)?;
+    let mut spec = spec.clone();
     let set = (settings.iter()).map(|setting| (setting.path.as_str(), setting.value.clone()));
     spec.set_all(&set.collect::<Vec<_>>())?;
     let scene = spec.resolve()?;

@@ -42,12 +42,17 @@ pub(super) fn write_figures(folder: &Path, tracks: &[Track]) -> Result<(), Comma
     Ok(())
 }
 
-/// What stands above the figures of these events; `damage`: what is wrong with their file.
+/// What stands above the figures of these events; `damage`: what is wrong with their file, and what a log tells of itself.
 pub(super) fn head(
     name: &str,
     (events, bearings): (&[Examined<'_>], &[Remaining]),
-    damage: &[String],
+    (damage, log): (&[String], Option<String>),
 ) -> Head {
+    let what = if log.is_some() {
+        "Log"
+    } else {
+        "Flight record"
+    };
     let many = events.len() > 1;
     let told: Vec<String> = (events.iter().enumerate())
         .map(|(i, of)| {
@@ -63,9 +68,11 @@ pub(super) fn head(
         .collect();
     let before = damaged(damage).into_iter();
     Head {
-        title: format!("Flight record {name}"),
+        title: format!("{what} {name}"),
         headline: told.join(" "),
-        story: of_bearings(bearings).join("\n\n"),
+        story: (log.into_iter().chain(of_bearings(bearings)))
+            .collect::<Vec<_>>()
+            .join("\n\n"),
         warnings: before
             .chain(events.iter().filter_map(|of| differs(&of.event)))
             .collect(),

@@ -50,8 +50,12 @@ pub(super) fn differs(event: &Event<'_>) -> Option<String> {
     })
 }
 
-/// Whether this build does the same, and what the firmware says of the event.
-fn circumstances(event: &Event<'_>) -> Vec<String> {
+/// Whether this build does the same, and what the firmware says of the event; nothing where it was this build that watched.
+fn circumstances(of: &Examined<'_>) -> Vec<String> {
+    if of.of_log {
+        return Vec::new();
+    }
+    let event = &of.event;
     let head = event.records[0].head;
     let replayed = match &event.replay {
         Ok(Replay { differing: 1.., .. }) => None,
@@ -125,7 +129,7 @@ pub(super) fn told(of: &Examined<'_>, asked: bool, bearings: &[Remaining]) -> St
     for told in of_bearings(bearings) {
         let _ = writeln!(out, "{told}\n");
     }
-    for said in circumstances(event) {
+    for said in circumstances(of) {
         let _ = writeln!(out, "{said}");
     }
     for (_, table) in of_planes(of) {
@@ -168,7 +172,7 @@ pub(super) fn parts(events: &[Examined<'_>], asked: bool) -> RecordParts {
         };
         parts.above.push(RecordPart {
             heading: format!("{of_event}What came of it"),
-            said: circumstances(event),
+            said: circumstances(of),
             tables: of_planes(of),
             runs: Vec::new(),
         });

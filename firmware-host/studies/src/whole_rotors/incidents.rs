@@ -301,7 +301,7 @@ fn blade_lost(mut scene: Scene, (share, angle_rad): (f64, f64), lasts_s: Option<
 
 /// The base moves.
 fn shaken(mut scene: Scene, motion: &BaseMotion) -> Scene {
-    scene.base_motions.push(*motion);
+    scene.base_motions.push(motion.clone());
     until(&mut scene, motion.end_s());
     scene
 }

@@ -8,7 +8,7 @@ use firmware_bench::scene::policy_kind::PolicyKind;
 use plant_model::V2;
 use plant_model::machine::params::Support;
 use std::f64::consts::{PI, TAU};
-use system_tests::scene;
+use system_tests::{scene, scene_path};
 
 /// ∫ F·sin(πt/D) dt = 2FD/π, and what a double integral of it gives for the way.
 #[test]
@@ -146,5 +146,113 @@ fn a_rotor_on_the_wall_is_not_recovered_in_the_middle() {
         assert!(verdict.contact_time_s > 0.9 * scene.duration_s);
         assert!(!verdict.recovered, "{verdict:?}");
         assert_eq!(verdict.relevitation_time_s, None);
+    }
+}
+
+/// A rotor that a load from a file moves, against the exact way under a course of straight pieces; and a base that shakes.
+#[test]
+fn a_recorded_course_moves_a_free_rotor_exactly() {
+    let folder = tempfile::TempDir::new().unwrap();
+    // Rises to 300 N in 7 ms, falls to nothing in 5 ms, along y a constant; at no sample.
+    let course = "time,fy,fx\n0.001003,200,0\n0.008003,200,300\n0.013003,200,0\n";
+    std::fs::write(folder.path().join("force.csv"), course).unwrap();
+    let text = r#"
+title = "a force from a file"
+[run]
+duration_s = 0.03
+sample_rate_hz = 20000
+policies = ["passive"]
+[rotor]
+mass_kg = 10.0
+contact_radius_m = 0.05
+[spin]
+frequency_hz = 0.0
+[contact]
+clearance_m = 1.0
+stiffness_n_m = 1e8
+[friction]
+coefficient = 0.1
+[verdict]
+whirl_speed_m_s = 1.0
+"#;
+    let load = "[[disturbance]]\nfile = \"force.csv\"\ntime_column = \"time\"\nx_column = \"fx\"\n";
+    let run_of = |more: &str| {
+        let path = folder.path().join("scene.toml");
+        std::fs::write(&path, format!("{text}{more}")).unwrap();
+        let scene = firmware_bench::scene::Scene::load(&path).unwrap();
+        last(&ridden(&scene, PolicyKind::Passive).1).plant
+    };
+    let end = run_of(&format!("{load}y_column = \"fy\"\nforce_n = [1.0, -0.5]\n"));
+    let (rise, fall, rest) = (0.007, 0.005, 0.03 - 0.013003);
+    let speed = 0.5 * 300.0 * (rise + fall) / 10.0;
+    let after_rise = 30.0 * rise / 2.0;
+    let way = 30.0 * rise * rise / 6.0 + after_rise * fall + 30.0 * fall * fall / 3.0;
+    near("speed", end.velocity_m_s.x, speed, 1e-11);
+    near("way", end.position_m.x, way + speed * rest, 1e-9);
+    near("speed y", end.velocity_m_s.y, -100.0 * 0.012 / 10.0, 1e-11);
+    // One axis alone, later, and cut before its end: 2 ms of it at 200 N.
+    let late = load.replace("x_column = \"fx\"", "y_column = \"fy\"");
+    let end = run_of(&format!("{late}start_s = 0.01\nduration_s = 0.003003\n"));
+    assert_eq!(end.velocity_m_s.x, 0.0);
+    near("cut", end.velocity_m_s.y, 200.0 * 0.002 / 10.0, 1e-11);
+    let base = load.replace("[[disturbance]]", "[[base_motion]]");
+    let end = run_of(&base);
+    near("base", end.velocity_m_s.x, -10.0 * speed, 1e-11);
+}
+
+/// What of a file cannot be had is said with key, file and what there is.
+#[test]
+fn a_file_that_is_no_course_is_refused() {
+    let folder = tempfile::TempDir::new().unwrap();
+    let of = scene_path("overload_then_release");
+    let text = std::fs::read_to_string(of).unwrap();
+    // The last of its tables.
+    let begin = text.find("[[disturbance]]").unwrap();
+    let refused = |file: &str, keys: &str| {
+        std::fs::write(folder.path().join("f.csv"), file).unwrap();
+        let path = folder.path().join("scene.toml");
+        let scene = format!("{}[[disturbance]]\n{keys}\n", &text[..begin]);
+        std::fs::write(&path, scene).unwrap();
+        let error = firmware_bench::scene::Scene::load(&path).unwrap_err();
+        format!("{:?}", miette::Report::new(error))
+    };
+    let good = "t_s,force_x_n,force_y_n\n0,0,0\n1,1,1\n";
+    let cases = [
+        (
+            good,
+            "file = \"f.csv\"\nshape = \"sine\"",
+            "disturbance[0].shape",
+        ),
+        (good, "file = \"f.csv\"\nx_column = \"fx\"", "no column fx"),
+        (good, "file = \"g.csv\"", "g.csv"),
+        (
+            good,
+            "x_column = \"fx\"\nstart_s = 0\nduration_s = 1\nforce_n = [1, 1]",
+            "`file` only",
+        ),
+        (
+            good,
+            "start_s = 0\nduration_s = 1",
+            "disturbance[0].force_n: is missing",
+        ),
+        (
+            "t_s,force_x_n,force_y_n\n0,0,0\n0,1,1\n",
+            "file = \"f.csv\"",
+            "times that rise",
+        ),
+        (
+            "t_s,force_x_n,force_y_n\n0,0,0\n1,,1\n",
+            "file = \"f.csv\"",
+            "a number in each",
+        ),
+        (
+            "t_s,force_x_n,force_y_n\n0,0,0\n1,ten,1\n",
+            "file = \"f.csv\"",
+            "line 3",
+        ),
+    ];
+    for (file, keys, part) in cases {
+        let said = refused(file, keys).replace('\n', " ");
+        assert!(said.contains(part), "{part}: {said}");
     }
 }
