@@ -189,9 +189,8 @@ impl LogFile {
             .map_or(f64::NAN, |(b, a)| b - a);
         let period_s = all_s / last as f64;
         // Against the whole course: times are often rounded to fewer places than a period has.
-        let is_even = |w: &[f64]| {
-            (w[1] - w[0] - period_s).abs() <= UNEVEN * period_s + 2.0 * rounding(w[1])
-        };
+        let is_even =
+            |w: &[f64]| (w[1] - w[0] - period_s).abs() <= UNEVEN * period_s + 2.0 * rounding(w[1]);
         let uneven = times.windows(2).position(|w| !is_even(w));
         match uneven {
             None if period_s > 0.0 && period_s.is_finite() => Ok(period_s),

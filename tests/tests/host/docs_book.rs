@@ -1,5 +1,7 @@
 //! The documentation as a book: every page is in its table of contents, links lead somewhere, paragraphs stay short.
 
+use firmware_bench::scene::keys::Key;
+use firmware_bench::scene::tables::KEYS;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use system_tests::root;
@@ -132,4 +134,52 @@ fn paragraphs_are_short() {
         }
     }
     assert!(long.is_empty(), "{long:#?}");
+}
+
+/// What the page beside other tools says that a scene has, it has; and it has no key for what that page says is missing.
+#[test]
+fn what_the_comparison_says_of_scenes_is_so() {
+    let page = std::fs::read_to_string(root().join("docs/src/comparison.md")).unwrap();
+    let table = page
+        .split("\n## ")
+        .find(|part| part.starts_with("What a scene has"))
+        .unwrap();
+    let rows: Vec<&str> = table
+        .lines()
+        .filter(|line| line.starts_with("| "))
+        .collect();
+    let (missing, has) = rows.split_last().unwrap();
+    let mut all = Vec::new();
+    described("", KEYS, &mut all);
+    let mut named = 0;
+    for path in has.iter().flat_map(|row| row.split('`').skip(1).step_by(2)) {
+        assert!(all.iter().any(|(known, _)| known == path), "{path}");
+        named += 1;
+    }
+    assert!(named > 20 && missing.starts_with("| Not: |"), "{missing}");
+    for word in missing.split('|').nth(2).unwrap().split(',') {
+        let stem = word
+            .trim()
+            .trim_end_matches("ication")
+            .trim_end_matches(" motion");
+        for (path, help) in &all {
+            let found = format!("{path} {help}").to_lowercase();
+            let is_there = found
+                .split(|c: char| !c.is_alphabetic())
+                .any(|w| w.starts_with(stem));
+            assert!(!is_there, "{stem} in {path}: {help}");
+        }
+    }
+}
+
+/// Every key with its path, and what is said of it.
+fn described(above: &str, keys: &[Key], all: &mut Vec<(String, String)>) {
+    for key in keys {
+        let path = match above {
+            "" => key.name.to_owned(),
+            above => format!("{above}.{}", key.name),
+        };
+        described(&path, key.below(), all);
+        all.push((path, key.help.to_owned()));
+    }
 }
