@@ -5,7 +5,9 @@ use crate::errors::{of_run, of_scene};
 use crate::scene::Scene;
 use crate::table::columns;
 use crate::values::python;
-use firmware_bench::run::closed_loop::{PlaneEnded, Recorders, Rigour, RunError, record};
+use firmware_bench::run::closed_loop::{
+    PlaneEnded, Recorders, Rigour, RunError, fits_in_memory, record,
+};
 use firmware_bench::run::figures::Figures;
 use firmware_bench::run::supervision::{Supervision, SupervisionCount};
 use firmware_bench::run::trace::{AxisRow, Recorder, TraceRow};
@@ -103,6 +105,9 @@ impl Ran {
 }
 
 fn run(scene: &Resolved, kind: PolicyKind, trace: bool) -> Result<Ran, RunError> {
+    if trace {
+        fits_in_memory(scene, kind.name())?;
+    }
     let mut listeners: Vec<Listener> = scene.planes.iter().map(|_| Listener::new(trace)).collect();
     let modes = scene.machine.rotor.bending().len();
     let axis = || TraceTable::new(Columns::of_axis(modes));

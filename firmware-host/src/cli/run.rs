@@ -97,6 +97,17 @@ pub fn execute(args: &RunArgs) -> Result<(), CommandError> {
         .out
         .clone()
         .unwrap_or_else(|| default_folder(&args.scene));
+    let rows = scene.simulated_s() * scene.sample_rate_hz * scene.policies.len() as f64;
+    if rows > MOST_ROWS && !args.no_trace {
+        let gigabytes = BYTES_OF_ROW * rows * scene.planes.len() as f64 * 1e-9;
+        return Err(CommandError::Numbers {
+            message: format!(
+                "{}: traces of {rows:e} rows would have some {gigabytes:.0} GB",
+                args.scene.display()
+            ),
+            help: "give --no-trace: figures, report and flight records stay as they are".to_owned(),
+        });
+    }
     // Before any work: a folder that cannot be written to is the user's to know at once.
     output::probe(&out)?;
     let staging = Staging::for_folder(&out)?;
@@ -118,6 +129,10 @@ pub fn execute(args: &RunArgs) -> Result<(), CommandError> {
         false => Err(CommandError::Contradicted(ran.contradictions)),
     }
 }
+
+/// Most rows of all traces, and what one of them takes in a file, compressed.
+const MOST_ROWS: f64 = 1e8;
+const BYTES_OF_ROW: f64 = 115.0;
 
 /// What a scene came to, as it is told.
 struct Ran {

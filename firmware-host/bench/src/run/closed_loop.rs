@@ -64,6 +64,12 @@ pub enum RunError {
         /// Why the check has no result.
         reason: Box<RunError>,
     },
+    /// Rows are asked for, and there are too many of them.
+    #[error(
+        "policy {policy}: {samples} samples are too many to be kept in memory, at most {MOST_KEPT}; a shorter run.duration_s, or \
+         `run`, which writes them as it goes"
+    )]
+    TooLong { policy: &'static str, samples: u64 },
     /// The scene lacks something that the policy needs.
     #[error("policy {policy} needs more than the scene gives")]
     Incomplete { policy: &'static str },
@@ -84,6 +90,24 @@ impl RunError {
 /// help. Beyond a thousandth none is.
 const TRUSTED_TOLERANCES: f64 = 1e3;
 const TRUSTED: (f64, f64) = (1e-6, 1e-3);
+
+/// Steps of the plant for each sample that a run may take, where it is so long that [`Rigour::steps`] is fewer.
+const STEPS_PER_SAMPLE: u64 = 8;
+
+/// Most samples of which rows are kept in memory, some 0.3 KB each.
+const MOST_KEPT: u64 = 10_000_000;
+
+/// Refuses to keep the rows of a run that is too long for that.
+///
+/// # Errors
+/// [`RunError::TooLong`].
+pub fn fits_in_memory(scene: &Scene, policy: &'static str) -> Result<(), RunError> {
+    let samples = scene.samples().count();
+    match samples > MOST_KEPT {
+        true => Err(RunError::TooLong { policy, samples }),
+        false => Ok(()),
+    }
+}
 
 /// Whether a run keeps its rows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -145,6 +169,9 @@ pub fn run(
     keep: Keep,
     on_tick: &mut dyn FnMut(u64),
 ) -> Result<(Figures, Trace), RunError> {
+    if keep.rows() {
+        fits_in_memory(scene, kind.name())?;
+    }
     let task = Task::keeping(keep, kind.name());
     let mut trace = Trace::default();
     let bench = bench_of_policy(scene, kind, keep.recorders(&mut trace), task)?;
@@ -162,6 +189,9 @@ pub fn run_policy(
     keep: Keep,
     on_tick: &mut dyn FnMut(u64),
 ) -> Result<(Figures, Trace), RunError> {
+    if keep.rows() {
+        fits_in_memory(scene, policy)?;
+    }
     let task = Task::keeping(keep, policy);
     let mut trace = Trace::default();
     let only = Cell::new(Some(controller));
@@ -271,7 +301,8 @@ fn bench<'a>(
     let options = Options {
         rtol: scene.rtol,
         method: scene.method,
-        steps: task.rigour.steps,
+        // A long run takes a step for each sample at least.
+        steps: (task.rigour.steps).max(STEPS_PER_SAMPLE * scene.samples().count()),
         ..Options::default()
     };
     let rig = Rig::new(scene, options)?;

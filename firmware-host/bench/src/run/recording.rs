@@ -1,7 +1,7 @@
 //! A policy's run as `run` wants it: its rows written while it goes on, and kept as far as a report needs them.
 
 use crate::device::whole_levitation::WholeLevitationParams;
-use crate::run::closed_loop::{Recorders, Rigour, RunError, record};
+use crate::run::closed_loop::{Recorders, Rigour, RunError, fits_in_memory, record};
 use crate::run::figures::Figures;
 use crate::run::overview::{AxisTrack, Overview};
 use crate::run::supervision::{Happenings, SupervisionCount};
@@ -94,8 +94,11 @@ pub fn recorded<W: Write + Send>(
     files: Option<&mut TraceFiles<W>>,
     on_tick: &mut dyn FnMut(u64),
 ) -> Result<MachineRun, RunError> {
-    warm_up(scene, kind);
     let checked = !checks.is_empty();
+    if checked {
+        fits_in_memory(scene, kind.name())?;
+    }
+    warm_up(scene, kind);
     let (planes, axis) = match files {
         Some(files) => (Some(&mut files.planes), files.axis.as_mut()),
         None => (None, None),

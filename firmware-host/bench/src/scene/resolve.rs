@@ -24,8 +24,8 @@ use plant_model::machine::params::{
     Change, MachineMagnet, MachineParams, MachinePlane, Rotor, Support,
 };
 
-/// Rows of traces that a run may keep, of all its policies: some 0.3 KB each.
-const MOST_ROWS: f64 = 1e7;
+/// Control samples of all policies of a run: of two an hour at 100 kHz, a quarter of an hour or more of a processor.
+const MOST_SAMPLES: f64 = 1e9;
 
 impl Spec {
     /// The scene, every value checked: in its range, and against the others.
@@ -211,10 +211,10 @@ fn check_title_and_length(written: &SceneTables, text: &SceneText) -> Result<(),
     let (run, title) = (&written.run, &written.title);
     let ticks = run.duration_s * run.sample_rate_hz;
     let policies = run.policies.0.len();
-    if ticks * policies as f64 > MOST_ROWS {
+    if ticks * policies as f64 > MOST_SAMPLES {
         let help = "shorten run.duration_s, lower run.sample_rate_hz or run fewer policies";
         let message = format!(
-            "{ticks:e} control samples for each of {policies} policies: expected at most 10 million in all"
+            "{ticks:e} control samples for each of {policies} policies: expected at most a billion in all"
         );
         return Err(text.error_at_key("run.duration_s", message, Some(help.to_owned())));
     }

@@ -58,7 +58,7 @@ key_tables! {
     }
 
     RunTable {
-        duration_s: f64 [required "give a number of seconds, as 0.2"], "s", Within(1e-9, 1e5), "rounded to whole samples, at least one; at most 10 million samples over all policies, at some 0.3 KB of memory each", "time", "t_end", "length";
+        duration_s: f64 [required "give a number of seconds, as 0.2"], "s", Within(1e-9, 1e5), "rounded to whole samples, at least one; at most a billion over all policies, beyond 100 million with `--no-trace`, and 10 million where rows are kept in memory (`--verify`, Python)", "time", "t_end", "length";
         sample_rate_hz: f64 [required "give the control rate in Hz, as 20000"], "Hz", Within(1.0, 1e6), "control rate", "control_rate", "rate", "fs", "sampling", "period", "dt";
         policies: PolicyNames [required], "", Elsewhere("at least one, each once"), "see [policies](scenes.md#policies)", "controllers", "policy";
         rtol: f64 [= 1e-9], "1", Within(1e-14, 1e-2), "tolerance of a contact step", "tolerance", "tol", "accuracy";

@@ -166,7 +166,7 @@ fn bad_scenes_are_refused_with_file_line_key_and_expectation() {
             "duration_s = 0.03",
             "duration_s = 1e5",
             "run.duration_s",
-            "10 million",
+            "a billion",
         ),
         (
             "force_n = [1300.0, 750.0]",
