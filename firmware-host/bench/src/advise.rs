@@ -16,7 +16,7 @@ use supervisor::{Config, ConfigError, PARAMETERS};
 
 pub use crate::crossover::{Crossover, SmallSignals};
 pub use crate::scene::role::{ModeAtRisk, Role};
-pub use listing::{Language, listing, short, table};
+pub use listing::{Language, listing, rotor_in_c, short, table};
 pub use noise::Noise;
 pub use rotor::RotorAdvice;
 pub use show::text;

@@ -17,12 +17,12 @@ def scenes():
 
 @pytest.fixture(scope="session")
 def host():
-    """Runs `firmware-host` with these words; what it prints comes back. `cargo build --release` makes it."""
+    """Runs `firmware-host` with these words, in a folder; what it prints comes back. `cargo build --release` makes it."""
     program = Path(os.environ.get("FIRMWARE_HOST", ROOT / "target" / "release" / "firmware-host"))
     assert program.is_file(), f"{program} is missing: cargo build --release"
 
-    def run(*words, code=0):
-        done = subprocess.run([program, *map(str, words)], capture_output=True, text=True, cwd=ROOT)
+    def run(*words, code=0, cwd=ROOT):
+        done = subprocess.run([program, *map(str, words)], capture_output=True, text=True, cwd=cwd)
         assert done.returncode == code, done.stderr
         return done.stdout if code == 0 else done.stderr
 

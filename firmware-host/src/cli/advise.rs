@@ -3,7 +3,7 @@
 use crate::cli::error::{CommandError, pretty, print, say};
 use crate::cli::load;
 use crate::cli::screen::tell;
-use firmware_bench::advise::{self, Advice, Language, OutOfRange, RotorAdvice};
+use firmware_bench::advise::{self, Advice, Language, OutOfRange, RotorAdvice, Warning};
 use firmware_bench::modes::Coupling;
 use firmware_bench::report::campbell;
 use firmware_bench::scene::suggest::Nominal;
@@ -265,16 +265,20 @@ pub fn execute(args: &AdviseArgs) -> Result<(), CommandError> {
     let listing = args.format.map(|format| listing(args, &advice, format));
     match listing.transpose()? {
         Some(listing) => {
-            // The listing goes into a file; these are for whoever puts it there.
-            for w in &advice.warnings {
-                say(format_args!(
-                    "warning: {}: {}\n  do: {}",
-                    w.key, w.text, w.remedy
-                ));
-            }
+            say_warnings(&advice.warnings);
             print(&listing)
         }
         None => tell(&advise::text(&advice)),
+    }
+}
+
+/// A listing goes into a file; these are for whoever puts it there.
+fn say_warnings(warnings: &[Warning]) {
+    for w in warnings {
+        say(format_args!(
+            "warning: {}: {}\n  do: {}",
+            w.key, w.text, w.remedy
+        ));
     }
 }
 
@@ -348,13 +352,21 @@ fn of_machine(
             .ok_or_else(|| refused(format!("--plane: there is no plane \"{name}\"")))?;
         return of_plane(args, path, plane, &format!("{title}: {name}")).map(Some);
     }
-    if args.format.is_some() {
-        return Err(refused("--format is of one plane: give --plane".to_owned()));
+    let of_both = (scene.shaft()).filter(|_| matches!(args.format, Some(Format::C)) && !args.short);
+    if args.format.is_some() && of_both.is_none() {
+        let message = "--format is of one plane, or --format c of both of a rotor: give --plane";
+        return Err(refused(message.to_owned()));
     }
     let with_magnet = scene.planes.iter().filter(|plane| plane.magnet.is_some());
     let all: Vec<Advice> = with_magnet
         .map(|plane| of_plane(args, path, plane, plane.shown()))
         .collect::<Result<_, _>>()?;
+    if let (Some(shaft), [first, second]) = (of_both, &all[..]) {
+        all.iter().for_each(|plane| say_warnings(&plane.warnings));
+        let both = [first, second].map(|plane| (plane.title.as_str(), &plane.parameters[..]));
+        print(&advise::rotor_in_c(&shaft, both))?;
+        return Ok(None);
+    }
     let coupling =
         Coupling::new(scene).map_err(|e| CommandError::other("reading the machine", e))?;
     // As suggested, but for what the scene replaces.

@@ -5,13 +5,14 @@ mod text;
 
 use self::ask::Number;
 use crate::cli::error::{CommandError, pretty, print};
+use crate::cli::load;
 use crate::cli::output::OutputError;
-use crate::cli::{load, warn};
 use firmware_bench::device::levitation::LevitationParams;
 use firmware_bench::scene::Scene;
 use firmware_bench::scene::schema::json_schema;
 use firmware_studies::machines::drawn::rule_of_thumb;
 use firmware_studies::overloads::tune::acceptable_near;
+use std::f64::consts::PI;
 use std::fs::OpenOptions;
 use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
@@ -26,90 +27,112 @@ pub struct InitArgs {
     numbers: NumberArgs,
 }
 
-/// Numbers of the machine. What is needed and not given is asked for on a terminal.
-#[derive(Debug, Clone, clap::Args)]
-#[command(next_help_heading = "Numbers of the machine")]
-struct NumberArgs {
-    /// Control rate.
-    #[arg(long, allow_hyphen_values = true, value_name = "NUMBER")]
-    sample_rate_hz: Option<f64>,
-    /// Mass of the rotor that this bearing plane carries; with --bearings-m that of the whole rotor.
-    #[arg(long, allow_hyphen_values = true, value_name = "NUMBER")]
-    mass_kg: Option<f64>,
-    /// Shaft stiffness less the magnets' negative stiffness, e.g. -2e5; with --bearings-m that of each magnet alone.
-    #[arg(long, allow_hyphen_values = true, value_name = "NUMBER")]
-    stiffness_n_m: Option<f64>,
-    /// Radial clearance of the retainer bearing.
-    #[arg(long, allow_hyphen_values = true, value_name = "NUMBER")]
-    clearance_m: Option<f64>,
-    /// Stiffness of the contact with the retainer bearing.
-    #[arg(long, allow_hyphen_values = true, value_name = "NUMBER")]
-    contact_stiffness_n_m: Option<f64>,
-    /// Force cap of a magnet, as the length of the vector.
-    #[arg(long, allow_hyphen_values = true, value_name = "NUMBER")]
-    force_max_n: Option<f64>,
-    /// Time constant of the amplifier with the magnet.
-    #[arg(long, allow_hyphen_values = true, value_name = "NUMBER")]
-    lag_s: Option<f64>,
-    /// Coefficient of sliding friction, upper end of what is likely.
-    #[arg(long, allow_hyphen_values = true, value_name = "NUMBER")]
-    friction: Option<f64>,
-    /// Noise of the position, root mean square.
-    #[arg(long, allow_hyphen_values = true, value_name = "NUMBER")]
-    noise_rms_m: Option<f64>,
-    /// Spin of the rotor [assumed where not given: 200].
-    #[arg(long, allow_hyphen_values = true, value_name = "NUMBER")]
-    spin_hz: Option<f64>,
-    /// Radius of the rotor where it touches [assumed where not given: 0.05].
-    #[arg(long, allow_hyphen_values = true, value_name = "NUMBER")]
-    contact_radius_m: Option<f64>,
-    /// Static load on this plane, such as the weight of a horizontal rotor [default: 0].
-    #[arg(long, allow_hyphen_values = true, value_name = "NUMBER")]
-    load_n: Option<f64>,
-    /// A whole rotor in two bearings: where they are along the axis, from the centre of mass, as -0.2,0.25. With its inertias or
-    /// its length.
-    #[arg(
-        long,
-        allow_hyphen_values = true,
-        value_delimiter = ',',
-        num_args = 1,
-        value_name = "A,B"
-    )]
-    bearings_m: Option<Vec<f64>>,
-    /// Transverse moment of inertia about the centre of mass, with --bearings-m.
-    #[arg(
-        long,
-        allow_hyphen_values = true,
-        value_name = "NUMBER",
-        requires = "bearings_m"
-    )]
-    #[arg(requires = "polar_inertia_kg_m2")]
-    transverse_inertia_kg_m2: Option<f64>,
-    /// Polar moment of inertia, with --bearings-m.
-    #[arg(
-        long,
-        allow_hyphen_values = true,
-        requires = "transverse_inertia_kg_m2",
-        value_name = "NUMBER"
-    )]
-    polar_inertia_kg_m2: Option<f64>,
-    /// Length, in the place of inertias those of a cylinder of this mass and of the contact radius.
-    #[arg(
-        long,
-        allow_hyphen_values = true,
-        value_name = "NUMBER",
-        requires = "bearings_m"
-    )]
-    #[arg(conflicts_with = "polar_inertia_kg_m2")]
-    length_m: Option<f64>,
+/// A number, as an option and as a question.
+macro_rules! numbers {
+    ($(#[doc = $doc:literal] $(#[arg($($rule:tt)*)])* $name:ident: $range:expr;)*) => {
+        /// Numbers of the machine. What is needed and not given is asked for on a terminal.
+        #[derive(Debug, Clone, clap::Args)]
+        #[command(next_help_heading = "Numbers of the machine")]
+        struct NumberArgs {
+            $(#[doc = $doc]
+            #[arg(long, allow_hyphen_values = true, value_name = "NUMBER")]
+            $(#[arg($($rule)*)])*
+            $name: Option<f64>,)*
+            /// A whole rotor in two bearings: where they are along the axis, from the centre of mass, as -0.2,0.25. With its
+            /// inertias, its length, or length and diameter of its shaft.
+            #[arg(long, allow_hyphen_values = true, value_delimiter = ',', num_args = 1, value_name = "A,B")]
+            bearings_m: Option<Vec<f64>>,
+        }
+
+        /// What they may be, and how they are asked for.
+        struct Numbers { $($name: Number,)* }
+
+        const NUMBERS: Numbers = Numbers { $($name: Number {
+            name: stringify!($name),
+            question: $doc,
+            range: $range,
+        },)* };
+
+        impl NumberArgs {
+            /// Refuses a number that is out of its range.
+            fn check(&self) -> Result<(), CommandError> {
+                $(if let Some(value) = self.$name {
+                    NUMBERS.$name.check(value)?;
+                })*
+                Ok(())
+            }
+        }
+    };
+}
+
+numbers! {
+    /// Control rate in Hz, as 20000
+    sample_rate_hz: RATE;
+    /// Mass of the rotor that this bearing plane carries, in kg, as 10; with --bearings-m that of the whole rotor
+    mass_kg: POSITIVE;
+    /// Shaft stiffness less the magnets' negative stiffness, in N/m, as -2e5; with --bearings-m that of each magnet alone
+    stiffness_n_m: FINITE;
+    /// Negative stiffness k_s of a magnet in N/m, as 2e5, in the place of --stiffness-n-m
+    #[arg(conflicts_with = "stiffness_n_m")]
+    ks_n_m: NOT_NEGATIVE;
+    /// Radial clearance of the retainer bearing in m, as 2e-4
+    clearance_m: POSITIVE;
+    /// Stiffness of the contact with the retainer bearing in N/m, as 1e9
+    contact_stiffness_n_m: POSITIVE;
+    /// Force cap of a magnet in N, as the length of the vector, as 1000
+    force_max_n: POSITIVE;
+    /// Force per current k_i of a magnet in N/A, as 100, in the place of --force-max-n
+    #[arg(conflicts_with = "force_max_n", requires = "current_max_a")]
+    ki_n_a: POSITIVE;
+    /// Largest control current in A, with --ki-n-a
+    #[arg(requires = "ki_n_a")]
+    current_max_a: POSITIVE;
+    /// Time constant of the amplifier with the magnet in s, as 1.6e-4
+    lag_s: NOT_NEGATIVE;
+    /// Coefficient of sliding friction, upper end of what is likely, as 0.15
+    friction: NOT_NEGATIVE;
+    /// Noise of the position sensor (root mean square) in m, as 1e-6
+    noise_rms_m: NOT_NEGATIVE;
+    /// Spin of the rotor in Hz [assumed where not given: 200]
+    spin_hz: FINITE;
+    /// Radius of the rotor where it touches in m [assumed where not given: that of the shaft, or 0.05]
+    contact_radius_m: POSITIVE;
+    /// Static load on this plane in N, such as the weight of a horizontal rotor [default: 0]
+    load_n: NOT_NEGATIVE;
+    /// Transverse moment of inertia about the centre of mass in kg m², with --bearings-m
+    #[arg(requires = "bearings_m", requires = "polar_inertia_kg_m2")]
+    transverse_inertia_kg_m2: POSITIVE;
+    /// Polar moment of inertia in kg m², with --bearings-m
+    #[arg(requires = "transverse_inertia_kg_m2")]
+    polar_inertia_kg_m2: NOT_NEGATIVE;
+    /// Length in m, in the place of inertias those of a cylinder of this mass and of the contact radius
+    #[arg(requires = "bearings_m", conflicts_with = "polar_inertia_kg_m2")]
+    length_m: POSITIVE;
+    /// Diameter in m of a steel shaft of this length, which bends; the rest of the mass is a disc in its middle
+    #[arg(requires = "length_m")]
+    shaft_diameter_m: POSITIVE;
 }
 
 /// What two bearings need beside the numbers of one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Bearings {
     positions_m: [f64; 2],
-    transverse_inertia_kg_m2: f64,
-    polar_inertia_kg_m2: f64,
+    body: Body,
+}
+
+/// The rotor in them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Body {
+    Rigid {
+        transverse_inertia_kg_m2: f64,
+        polar_inertia_kg_m2: f64,
+    },
+    /// A shaft of one diameter with a disc in its middle.
+    Shaft {
+        length_m: f64,
+        diameter_m: f64,
+        disc_kg: f64,
+    },
 }
 
 /// A machine.
@@ -133,6 +156,9 @@ struct Machine {
 /// A spring that would carry this share of the cap at the wall is stiff enough for a rotor that nothing pulls.
 const CARRIED_SHARE: f64 = 0.3;
 
+/// What a scene assumes of a shaft.
+const STEEL_KG_M3: f64 = 7850.0;
+
 const POSITIVE: (fn(f64) -> bool, &str) = (
     |x| x > 0.0 && x.is_finite(),
     "a finite number greater than 0",
@@ -144,78 +170,42 @@ const NOT_NEGATIVE: (fn(f64) -> bool, &str) = (
 const FINITE: (fn(f64) -> bool, &str) = (f64::is_finite, "a finite number");
 const RATE: (fn(f64) -> bool, &str) = (|x| (1.0..=1e6).contains(&x), "a number from 1 to 1e6");
 
-#[rustfmt::skip]
-const SAMPLE_RATE: Number = Number { option: "--sample-rate-hz", question: "control rate in Hz, as 20000", range: RATE };
-#[rustfmt::skip]
-const MASS: Number = Number { option: "--mass-kg", question: "mass that this bearing plane carries, in kg, as 10", range: POSITIVE };
-#[rustfmt::skip]
-const STIFFNESS: Number = Number { option: "--stiffness-n-m", question: "shaft stiffness less the magnets' negative stiffness, in N/m, as -2e5", range: FINITE };
-#[rustfmt::skip]
-const CLEARANCE: Number = Number { option: "--clearance-m", question: "radial clearance of the retainer bearing in m, as 2e-4", range: POSITIVE };
-#[rustfmt::skip]
-const CONTACT_STIFFNESS: Number = Number { option: "--contact-stiffness-n-m", question: "stiffness of the contact in N/m, as 1e9", range: POSITIVE };
-#[rustfmt::skip]
-const FORCE: Number = Number { option: "--force-max-n", question: "force cap of the magnet in N, as 1000", range: POSITIVE };
-#[rustfmt::skip]
-const LAG: Number = Number { option: "--lag-s", question: "time constant of the amplifier with the magnet in s, as 1.6e-4", range: NOT_NEGATIVE };
-#[rustfmt::skip]
-const FRICTION: Number = Number { option: "--friction", question: "coefficient of sliding friction, as 0.15", range: NOT_NEGATIVE };
-#[rustfmt::skip]
-const NOISE: Number = Number { option: "--noise-rms-m", question: "noise of the position sensor (root mean square) in m, as 1e-6", range: NOT_NEGATIVE };
-#[rustfmt::skip]
-const SPIN: Number = Number { option: "--spin-hz", question: "spin in Hz", range: FINITE };
-#[rustfmt::skip]
-const RADIUS: Number = Number { option: "--contact-radius-m", question: "radius where it touches, in m", range: POSITIVE };
-#[rustfmt::skip]
-const TRANSVERSE: Number = Number { option: "--transverse-inertia-kg-m2", question: "transverse moment of inertia in kg m²", range: POSITIVE };
-#[rustfmt::skip]
-const POLAR: Number = Number { option: "--polar-inertia-kg-m2", question: "polar moment of inertia in kg m²", range: NOT_NEGATIVE };
-#[rustfmt::skip]
-const LENGTH: Number = Number { option: "--length-m", question: "length in m", range: POSITIVE };
-#[rustfmt::skip]
-const LOAD: Number = Number { option: "--load-n", question: "static load in N", range: NOT_NEGATIVE };
-
 impl NumberArgs {
     /// Every number, checked; `ask` is asked for those that are needed and not given.
     fn machine(
         &self,
         mut ask: impl FnMut(&Number) -> Result<f64, CommandError>,
     ) -> Result<Machine, CommandError> {
-        let given = [
-            (SAMPLE_RATE, self.sample_rate_hz),
-            (MASS, self.mass_kg),
-            (STIFFNESS, self.stiffness_n_m),
-            (CLEARANCE, self.clearance_m),
-            (CONTACT_STIFFNESS, self.contact_stiffness_n_m),
-            (FORCE, self.force_max_n),
-            (LAG, self.lag_s),
-            (FRICTION, self.friction),
-            (NOISE, self.noise_rms_m),
-            (SPIN, self.spin_hz),
-            (RADIUS, self.contact_radius_m),
-            (LOAD, self.load_n),
-            (TRANSVERSE, self.transverse_inertia_kg_m2),
-            (POLAR, self.polar_inertia_kg_m2),
-            (LENGTH, self.length_m),
-        ];
-        for (number, value) in given {
-            value.map_or(Ok(()), |value| number.check(value))?;
-        }
+        self.check()?;
         let mut needed =
-            |number: Number, value: Option<f64>| value.map_or_else(|| ask(&number), Ok);
+            |number: &Number, value: Option<f64>| value.map_or_else(|| ask(number), Ok);
+        let by_current = self.ki_n_a.zip(self.current_max_a);
         let machine = Machine {
-            sample_rate_hz: needed(SAMPLE_RATE, self.sample_rate_hz)?,
-            mass_kg: needed(MASS, self.mass_kg)?,
-            stiffness_n_m: needed(STIFFNESS, self.stiffness_n_m)?,
-            clearance_m: needed(CLEARANCE, self.clearance_m)?,
-            contact_stiffness_n_m: needed(CONTACT_STIFFNESS, self.contact_stiffness_n_m)?,
-            force_max_n: needed(FORCE, self.force_max_n)?,
-            lag_s: needed(LAG, self.lag_s)?,
-            friction: needed(FRICTION, self.friction)?,
-            noise_rms_m: needed(NOISE, self.noise_rms_m)?,
+            sample_rate_hz: needed(&NUMBERS.sample_rate_hz, self.sample_rate_hz)?,
+            mass_kg: needed(&NUMBERS.mass_kg, self.mass_kg)?,
+            stiffness_n_m: needed(
+                &NUMBERS.stiffness_n_m,
+                self.ks_n_m.map(|ks| -ks).or(self.stiffness_n_m),
+            )?,
+            clearance_m: needed(&NUMBERS.clearance_m, self.clearance_m)?,
+            contact_stiffness_n_m: needed(
+                &NUMBERS.contact_stiffness_n_m,
+                self.contact_stiffness_n_m,
+            )?,
+            force_max_n: needed(
+                &NUMBERS.force_max_n,
+                by_current
+                    .map(|(ki, current)| ki * current)
+                    .or(self.force_max_n),
+            )?,
+            lag_s: needed(&NUMBERS.lag_s, self.lag_s)?,
+            friction: needed(&NUMBERS.friction, self.friction)?,
+            noise_rms_m: needed(&NUMBERS.noise_rms_m, self.noise_rms_m)?,
             load_n: self.load_n.unwrap_or(0.0),
             spin_hz: self.spin_hz,
-            contact_radius_m: self.contact_radius_m,
+            contact_radius_m: self
+                .contact_radius_m
+                .or(self.shaft_diameter_m.map(|d| 0.5 * d)),
             bearings: None,
         };
         Ok(Machine {
@@ -248,37 +238,59 @@ impl NumberArgs {
             let help = "with --bearings-m it is that of each magnet, 0 or negative";
             return refused(message, help);
         }
-        let cylinder = |length_m: f64| {
-            let square = machine
-                .contact_radius_m
-                .unwrap_or(text::CONTACT_RADIUS_M)
-                .powi(2);
-            let mass_kg = machine.mass_kg;
-            let transverse = mass_kg * (3.0 * square + length_m * length_m) / 12.0;
-            [transverse, 0.5 * mass_kg * square]
-        };
         let given = self.transverse_inertia_kg_m2.zip(self.polar_inertia_kg_m2);
-        let inertias = given.map(|(transverse, polar)| [transverse, polar]);
-        let Some([transverse_inertia_kg_m2, polar_inertia_kg_m2]) =
-            inertias.or_else(|| self.length_m.map(cylinder))
-        else {
-            let message = "--bearings-m without inertias".to_owned();
-            let help = "give --transverse-inertia-kg-m2 and --polar-inertia-kg-m2, or --length-m";
-            return refused(message, help);
+        let body = match (given, self.length_m, self.shaft_diameter_m) {
+            (Some((transverse_inertia_kg_m2, polar_inertia_kg_m2)), _, _) => Body::Rigid {
+                transverse_inertia_kg_m2,
+                polar_inertia_kg_m2,
+            },
+            (None, Some(length_m), Some(diameter_m)) => {
+                let shaft_kg = STEEL_KG_M3 * 0.25 * PI * diameter_m.powi(2) * length_m;
+                if shaft_kg > machine.mass_kg
+                    || positions_m.iter().any(|z| z.abs() > 0.5 * length_m)
+                {
+                    let message = format!(
+                        "the shaft weighs {shaft_kg:.3} kg and ends {} m from its middle",
+                        0.5 * length_m
+                    );
+                    let help =
+                        "give --mass-kg of shaft and disc together, and bearings on the shaft";
+                    return refused(message, help);
+                }
+                Body::Shaft {
+                    length_m,
+                    diameter_m,
+                    disc_kg: machine.mass_kg - shaft_kg,
+                }
+            }
+            (None, Some(length_m), None) => {
+                let square = machine
+                    .contact_radius_m
+                    .unwrap_or(text::CONTACT_RADIUS_M)
+                    .powi(2);
+                Body::Rigid {
+                    transverse_inertia_kg_m2: machine.mass_kg
+                        * (3.0 * square + length_m * length_m)
+                        / 12.0,
+                    polar_inertia_kg_m2: 0.5 * machine.mass_kg * square,
+                }
+            }
+            (None, None, _) => {
+                let message = "--bearings-m without inertias".to_owned();
+                let help =
+                    "give --transverse-inertia-kg-m2 and --polar-inertia-kg-m2, or --length-m";
+                return refused(message, help);
+            }
         };
-        Ok(Some(Bearings {
-            positions_m,
-            transverse_inertia_kg_m2,
-            polar_inertia_kg_m2,
-        }))
+        Ok(Some(Bearings { positions_m, body }))
     }
 
     /// Options that are needed and not given.
-    fn missing(&self) -> Vec<&'static str> {
+    fn missing(&self) -> Vec<String> {
         let mut missing = Vec::new();
         // What is asked for, with any answer.
         let _asked = self.machine(|number| {
-            missing.push(number.option);
+            missing.push(number.option());
             Ok(1.0)
         });
         missing
@@ -311,7 +323,7 @@ pub fn execute(args: &InitArgs) -> Result<(), CommandError> {
     };
     let name = file.display().to_string();
     let scene = scene_text(&machine, &name)?;
-    warn(&Scene::parse(&name, &scene)?.warnings);
+    Scene::parse(&name, &scene)?;
     let schema = file.with_file_name(text::SCHEMA);
     if !schema.exists() {
         create(
@@ -349,19 +361,20 @@ fn scene_text(machine: &Machine, name: &str) -> Result<String, CommandError> {
         message: "no levitation controller of proportional and derivative gain holds this rotor well (peak sensitivity below 3, \
                   noise below 5 % of the cap)"
             .to_owned(),
-        help: "look at --stiffness-n-m, --lag-s, --sample-rate-hz and --noise-rms-m: it pulls too hard for so late a force, or \
-               the sensor is too noisy for so small a one"
+        help: "look at --stiffness-n-m, --lag-s, --sample-rate-hz and --noise-rms-m: it pulls too hard for so late a force, the \
+               sensor is too noisy for so small a one, or the shaft bends too easily; a scene without [levitation] takes a design of \
+               your own, see export --plant"
             .to_owned(),
     })?;
     let rounded = levitation.iter().map(|gains| LevitationParams {
-        proportional_n_m: rounded(gains.proportional_n_m),
-        derivative_n_s_m: rounded(gains.derivative_n_s_m),
+        proportional_n_m: rounded(gains.proportional_n_m, 2),
+        derivative_n_s_m: rounded(gains.derivative_n_s_m, 2),
         ..*gains
     });
     Ok(text::scene(machine, &rounded.collect::<Vec<_>>()))
 }
 
-/// To three digits: it is made up, and should not look as if it were not.
-fn rounded(x: f64) -> f64 {
-    format!("{x:.2e}").parse().unwrap_or(x)
+/// To so many decimals of its power of ten: it is made up, and should not look as if it were not.
+fn rounded(x: f64, decimals: usize) -> f64 {
+    format!("{x:.decimals$e}").parse().unwrap_or(x)
 }

@@ -106,3 +106,42 @@ fn an_advised_configuration_is_c_and_cpp() {
         }
     }
 }
+
+/// Of a rotor in two planes: the shaft, and both configurations as those of each plane alone.
+#[test]
+fn an_advised_rotor_is_c_and_cpp() {
+    let Some(library) = built(Target::Host) else {
+        return;
+    };
+    let scene = root().join("firmware-host/scenes/one_machine/flexible.toml");
+    let all = advised(&scene, "--format c");
+    let main = "
+int main(void) {
+    static amb_rotor rotor;
+    for (int i = 0; i < 2 * AMB_PARAMETERS; i++) printf(\"%.9g\\n\", (double)config[i]);
+    return amb_rotor_init(&rotor, sizeof rotor, &shaft, config, 2 * AMB_PARAMETERS) != AMB_OK;
+}
+";
+    let text = format!("#include <stdio.h>\n#include \"amb_supervisor.h\"\n{all}{main}");
+    for (compiler, standard) in [("cc", "-std=c99"), ("g++", "-std=c++17")] {
+        if compiler == "g++" && Command::new(compiler).arg("--version").output().is_err() {
+            eprintln!("not checked as C++: g++ is missing");
+            continue;
+        }
+        let Some(printed) = said(compiler, standard, &text, &library) else {
+            continue;
+        };
+        let advice: serde_json::Value = serde_json::from_str(&advised(&scene, "--json")).unwrap();
+        let mut values = printed.lines().map(|line| line.parse::<f32>().unwrap());
+        for plane in advice["planes"].as_array().unwrap() {
+            for p in plane["parameters"].as_array().unwrap() {
+                let of_plane = match p["name"].as_str() {
+                    Some("check_first") => Some(1.0),
+                    _ => p["replaced_by"].as_f64().or(p["value"].as_f64()),
+                };
+                assert_eq!(values.next(), of_plane.map(|v| v as f32), "{}", p["name"]);
+            }
+        }
+        assert_eq!(values.next(), None);
+    }
+}

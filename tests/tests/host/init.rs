@@ -22,10 +22,10 @@ fn init(file: &Path, numbers: &str) -> Output {
 
 /// A rotor of 30 kg in two bearings at unlike distances.
 const ROTOR: &str = "--sample-rate-hz 20000 --mass-kg 30 --stiffness-n-m -3e5 --clearance-m 2e-4 \
-    --contact-stiffness-n-m 3e8 --force-max-n 900 --lag-s 1.6e-4 --friction 0.15 --noise-rms-m 1e-6 --spin-hz 150 \
+    --contact-stiffness-n-m 3e8 --force-max-n 900 --lag-s 1e-4 --friction 0.15 --noise-rms-m 1e-6 --spin-hz 150 \
     --contact-radius-m 0.05 --load-n 294 --bearings-m -0.2,0.3";
 
-/// By its inertias or as a cylinder: its loop is in zone A, and the supervisor brings it back.
+/// By its inertias, as a cylinder or as a shaft that bends: its loop is in zone A, and the supervisor brings it back.
 #[test]
 fn a_rotor_in_two_bearings_is_levitated() {
     let folder = TempDir::new().unwrap();
@@ -35,14 +35,15 @@ fn a_rotor_in_two_bearings_is_levitated() {
             "disc",
             "--transverse-inertia-kg-m2 1.2 --polar-inertia-kg-m2 0.9",
         ),
+        ("shaft", "--length-m 0.8 --shaft-diameter-m 0.075"),
     ] {
         let file = folder.path().join(format!("{name}.toml"));
         let written = init(&file, &format!("{ROTOR} {inertias}"));
         let error = String::from_utf8_lossy(&written.stderr).into_owned();
-        assert!(
-            written.status.success() && error.is_empty(),
-            "{name}: {error}"
-        );
+        assert!(written.status.success(), "{name}: {error}");
+        // What a shaft bends by the supervisor is told of, once.
+        let expected = usize::from(name == "shaft");
+        assert_eq!(error.lines().count(), expected, "{name}: {error}");
         let judged = host()
             .args(["modes", "--levitated", "--points", "2", "--json"])
             .arg(&file)
@@ -50,6 +51,9 @@ fn a_rotor_in_two_bearings_is_levitated() {
             .unwrap();
         let judged: Value = serde_json::from_slice(&judged.stdout).unwrap();
         assert_eq!(judged["stable"], true);
+        let highest_hz = judged["loop_modes"].as_array().unwrap().iter();
+        let highest_hz = highest_hz.filter_map(|m| m["frequency_hz"].as_f64());
+        assert_eq!(highest_hz.fold(0.0, f64::max) > 300.0, name == "shaft");
         let sensitivity = judged["sensitivity"].as_array().unwrap();
         assert!(sensitivity.len() == 4 && sensitivity.iter().all(|axis| axis["zone"] == "A"));
         let ran = run_scene(&file, &folder.path().join("out"), &["--json", "--no-trace"]);
@@ -62,6 +66,11 @@ fn a_rotor_in_two_bearings_is_levitated() {
         ("", "without inertias"),
         ("--length-m -1", "--length-m is -1"),
         ("--bearings-m 0.1,0.3 --length-m 1", "both sides"),
+        (
+            "--length-m 0.5 --shaft-diameter-m 0.05",
+            "0.25 m from its middle",
+        ),
+        ("--length-m 0.8 --shaft-diameter-m 0.1", "weighs 49.3"),
     ] {
         let numbers = match more.contains("bearings") {
             true => ROTOR.replace(" --bearings-m -0.2,0.3", "") + " ",
@@ -72,6 +81,22 @@ fn a_rotor_in_two_bearings_is_levitated() {
         assert_eq!(refused.status.code(), Some(2), "{error}");
         assert!(error.contains(says), "{error}");
     }
+}
+
+/// ki, ks and the largest current are the force cap and the stiffness that follow from them.
+#[test]
+fn a_magnet_may_be_given_by_its_currents() {
+    let folder = TempDir::new().unwrap();
+    let [by_force, by_current] = ["force", "current"].map(|name| folder.path().join(name));
+    let currents = SMALL
+        .replace("--stiffness-n-m -2e5", "--ks-n-m 2e5")
+        .replace("--force-max-n 1000", "--ki-n-a 125 --current-max-a 8");
+    for (file, numbers) in [(&by_force, SMALL), (&by_current, &currents)] {
+        assert!(init(file, numbers).status.success());
+    }
+    let text = fs::read_to_string(by_force).unwrap();
+    assert!(text.contains("negative_stiffness_n_m = 200000.0\n"));
+    assert_eq!(fs::read_to_string(by_current).unwrap(), text);
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! The configuration as it is written in a scene or in firmware.
 
 use super::{Advice, Parameter};
-use supervisor::{Config, DefaultRule, PARAMETERS};
+use supervisor::{Config, DefaultRule, PARAMETERS, PlanePositions, Shaft};
 
 /// What a simulated machine needs less than a real one.
 const CHECK: &str = "check_first";
@@ -41,17 +41,52 @@ pub fn listing(parameters: &[Parameter], language: Language) -> String {
             format!("static CONFIG: supervisor::Config = supervisor::Config {{\n{fields}}};\n")
         }
         Language::C => {
-            // C++ knows no designated elements, so that their order is compared instead.
             let values: String = lines.map(|line| line.c_element(&line.c_index())).collect();
-            let places: Vec<String> = (parameters.iter().enumerate())
-                .map(|(i, p)| format!("{} == {i}", Line::in_use(p).c_index()))
-                .collect();
             format!(
-                "static const float config[AMB_PARAMETERS] = {{\n{values}}};\nAMB_ASSERT(config_in_order,\n           {});\n",
-                places.join(" &&\n           ")
+                "static const float config[AMB_PARAMETERS] = {{\n{values}}};\n{}",
+                order_in_c(parameters)
             )
         }
     }
+}
+
+/// C++ knows no designated elements, so that their order is compared instead.
+fn order_in_c(parameters: &[Parameter]) -> String {
+    let places: Vec<String> = (parameters.iter().enumerate())
+        .map(|(i, p)| format!("{} == {i}", Line::in_use(p).c_index()))
+        .collect();
+    format!(
+        "AMB_ASSERT(config_in_order,\n           {});\n",
+        places.join(" &&\n           ")
+    )
+}
+
+/// What `amb_rotor_init` takes: the shaft, and the configurations of both planes.
+pub fn rotor_in_c(shaft: &Shaft, planes: [(&str, &[Parameter]); 2]) -> String {
+    let pair = |of: fn(&PlanePositions) -> f32| {
+        let [a, b] = shaft.places.each_ref().map(|place| c_number(of(place)));
+        format!("{{{a}, {b}}}")
+    };
+    let values: String = (planes.iter().enumerate())
+        .map(|(i, (name, parameters))| {
+            let lines = parameters.iter().map(Line::in_firmware);
+            let values: String = lines.map(|line| line.c_element(&line.c_index())).collect();
+            format!("    /* plane {i}, {} */\n{values}", ascii(name))
+        })
+        .collect();
+    format!(
+        "static const amb_shaft shaft = {{\n    \
+         {}, {}, {}, /* kg; kg m^2: transverse, polar */\n    \
+         {}, {}, {}, /* m from the centre of mass: retainer bearings, sensors, magnets */\n}};\n\
+         static const float config[2 * AMB_PARAMETERS] = {{\n{values}}};\n{}",
+        c_number(shaft.mass_kg),
+        c_number(shaft.transverse_inertia_kg_m2),
+        c_number(shaft.polar_inertia_kg_m2),
+        pair(|place| place.retainer_m),
+        pair(|place| place.sensor_m),
+        pair(|place| place.magnet_m),
+        order_in_c(planes[0].1),
+    )
 }
 
 /// The nine numbers of the bearing, and what of the configuration that holds does not follow from them. There is none for a scene,
@@ -162,22 +197,13 @@ impl Line {
         }
     }
 
-    /// The number as Rust and C take it, to which one without a point is an integer.
-    fn number(&self) -> String {
-        let number = decimal(self.value);
-        match number.contains(['.', 'e']) {
-            true => number,
-            false => format!("{number}.0"),
-        }
-    }
-
     /// Unit and remark for the compilers, which are not all told what a file is encoded in.
     fn comment(&self) -> String {
         ascii(&format!("{}; {}", self.unit, self.remark))
     }
 
     fn rust_field(&self) -> String {
-        let field = format!("    {}: {},", self.name, self.number());
+        let field = format!("    {}: {},", self.name, with_point(self.value));
         format!("{field:<42}// {}\n", self.comment())
     }
 
@@ -188,13 +214,13 @@ impl Line {
 
     /// An element of a list in C, under its name.
     fn c_element(&self, name: &str) -> String {
-        let element = format!("    {}f,", self.number());
+        let element = format!("    {},", c_number(self.value));
         format!("{element:<22}/* {name}: {} */\n", self.comment())
     }
 
     /// An assignment in C.
     fn c_setting(&self) -> String {
-        let setting = format!("    config[{}] = {}f;", self.c_index(), self.number());
+        let setting = format!("    config[{}] = {};", self.c_index(), c_number(self.value));
         format!("{setting:<56}/* {} */\n", self.comment())
     }
 }
@@ -224,6 +250,19 @@ fn ascii(text: &str) -> String {
         }
     }
     written_text.replace("*/", "* /")
+}
+
+/// As Rust and C take it, to which one without a point is an integer.
+fn with_point(value: f32) -> String {
+    let number = decimal(value);
+    match number.contains(['.', 'e']) {
+        true => number,
+        false => format!("{number}.0"),
+    }
+}
+
+fn c_number(value: f32) -> String {
+    with_point(value) + "f"
 }
 
 /// The shortest decimals that give the same value again.

@@ -6,21 +6,25 @@ use std::io::{BufRead, Write};
 /// A number.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Number {
-    /// The option that gives it.
-    pub(super) option: &'static str,
-    /// What it is, its unit, and an example.
+    /// The option that gives it, as a field.
+    pub(super) name: &'static str,
+    /// What it is, its unit, and an example: the text of the option.
     pub(super) question: &'static str,
     /// Which it may be, and in words.
     pub(super) range: (fn(f64) -> bool, &'static str),
 }
 
 impl Number {
+    pub(super) fn option(&self) -> String {
+        format!("--{}", self.name.replace('_', "-"))
+    }
+
     pub(super) fn check(&self, value: f64) -> Result<(), CommandError> {
         let (may_be, expected) = self.range;
         match may_be(value) {
             true => Ok(()),
             false => Err(CommandError::Numbers {
-                message: format!("{} is {value}, expected {expected}", self.option),
+                message: format!("{} is {value}, expected {expected}", self.option()),
                 help: format!("give {expected}"),
             }),
         }
@@ -37,14 +41,14 @@ impl Number {
     ) -> Result<f64, CommandError> {
         let broken = |error: std::io::Error| CommandError::other("asking", error);
         loop {
-            write!(to, "{}: ", self.question)
+            write!(to, "{}: ", self.question.trim())
                 .and_then(|()| to.flush())
                 .map_err(broken)?;
             let mut line = String::new();
             if from.read_line(&mut line).map_err(broken)? == 0 {
                 return Err(CommandError::Numbers {
-                    message: format!("{} is missing", self.option),
-                    help: format!("give it as an option, or answer: {}", self.question),
+                    message: format!("{} is missing", self.option()),
+                    help: format!("give it as an option, or answer: {}", self.question.trim()),
                 });
             }
             let (may_be, expected) = self.range;
@@ -65,7 +69,7 @@ mod tests {
     fn it_asks_until_the_answer_is_a_number_in_range() {
         let range: (fn(f64) -> bool, _) = (|x| x > 0.0, "a number greater than 0");
         let mass = Number {
-            option: "--mass-kg",
+            name: "mass_kg",
             question: "mass in kg",
             range,
         };

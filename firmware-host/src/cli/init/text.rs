@@ -1,6 +1,6 @@
 //! The text of a scene.
 
-use super::Machine;
+use super::{Body, Machine, rounded};
 use firmware_bench::device::levitation::LevitationParams;
 
 /// The schema's file, beside the scene.
@@ -9,6 +9,9 @@ pub(super) const SCHEMA: &str = "scene.schema.json";
 /// What is assumed where it is not given.
 const SPIN_HZ: f64 = 200.0;
 pub(super) const CONTACT_RADIUS_M: f64 = 0.05;
+
+/// Of a disc of which only the mass is known, in those of its shaft.
+const DISC_DIAMETERS: f64 = 3.0;
 
 /// √(m·c/F) of a machine for which the overload of the scene lasts 50 ms \[s\].
 const QUICK_S: f64 = 2e-3;
@@ -67,21 +70,55 @@ pub(super) fn scene(machine: &Machine, levitation: &[LevitationParams]) -> Strin
         ),
         _ => String::new(),
     };
-    let inertias = bearings.map_or_else(
-        || {
+    let body = bearings.map(|of| of.body);
+    let (rotor, shaft, middle_m) = match body {
+        None => (
             format!(
-                "stiffness_n_m = {}               # of the shaft alone\n",
+                "mass_kg = {}\nstiffness_n_m = {}               # of the shaft alone\n",
+                number(mass_kg),
                 number(stiffness_n_m.max(0.0))
-            )
-        },
-        |of| {
+            ),
+            String::new(),
+            0.0,
+        ),
+        Some(Body::Rigid {
+            transverse_inertia_kg_m2,
+            polar_inertia_kg_m2,
+        }) => (
             format!(
-                "transverse_inertia_kg_m2 = {}\npolar_inertia_kg_m2 = {}\n",
-                number(of.transverse_inertia_kg_m2),
-                number(of.polar_inertia_kg_m2)
+                "mass_kg = {}\ntransverse_inertia_kg_m2 = {}\npolar_inertia_kg_m2 = {}\n",
+                number(mass_kg),
+                number(transverse_inertia_kg_m2),
+                number(polar_inertia_kg_m2)
+            ),
+            String::new(),
+            0.0,
+        ),
+        Some(Body::Shaft {
+            length_m,
+            diameter_m,
+            disc_kg,
+        }) => {
+            let polar = 0.5 * disc_kg * (0.5 * DISC_DIAMETERS * diameter_m).powi(2);
+            let disc = format!(
+                "\n[[disc]]\nposition_m = {}\nmass_kg = {}\ntransverse_inertia_kg_m2 = {}\npolar_inertia_kg_m2 = {}   # assumed, as the transverse one: put in your own\n",
+                number(0.5 * length_m),
+                number(rounded(disc_kg, 4)),
+                number(rounded(0.5 * polar, 4)),
+                number(rounded(polar, 4)),
+            );
+            (
+                "bending_damping_ratio = 0.002   # assumed\n".to_owned(),
+                format!(
+                    "\n[[shaft]]                       # from the left end, where places count from\nlength_m = {}\nouter_diameter_m = {}\n{}",
+                    number(length_m),
+                    number(diameter_m),
+                    if disc_kg > 0.0 { disc } else { String::new() }
+                ),
+                0.5 * length_m,
             )
-        },
-    );
+        }
+    };
     let planes: String = (bearings.into_iter())
         .flat_map(|of| ["A", "B"].into_iter().zip(of.positions_m).enumerate())
         .map(|(i, (name, place))| {
@@ -90,12 +127,12 @@ pub(super) fn scene(machine: &Machine, levitation: &[LevitationParams]) -> Strin
             });
             format!(
                 "\n[[plane]]\nname = \"{name}\"\nposition_m = {}             # magnet, sensor and retainer bearing; each may have its own\n{own}",
-                number(place)
+                number(middle_m + place)
             )
         })
         .collect();
     let at_first = bearings.map_or_else(String::new, |of| {
-        format!("position_m = {}\n", number(of.positions_m[0]))
+        format!("position_m = {}\n", number(middle_m + of.positions_m[0]))
     });
     format!(
         r#"#:schema ./{SCHEMA}
@@ -113,8 +150,7 @@ seed = 1                        # of the sensor noise
 policies = {policies}
 
 [rotor]
-mass_kg = {mass}
-{inertias}contact_radius_m = {radius}{radius_assumed}
+{rotor}contact_radius_m = {radius}{radius_assumed}
 gravity_m_s2 = [0.0, {gravity}]        # vertical rotor: none
 
 [spin]
@@ -136,7 +172,7 @@ negative_stiffness_n_m = {negative}
 
 [sensor]
 noise_rms_m = {noise}
-{of_scene}{planes}
+{shaft}{of_scene}{planes}
 [[disturbance]]
 start_s = {start}
 duration_s = {lasts}
@@ -144,7 +180,6 @@ force_n = [{overload}, 0.0]     # what else may happen: shocks, outages, sensor 
 {at_first}"#,
         duration = number(0.2 * slow),
         rate = number(sample_rate_hz),
-        mass = number(mass_kg),
         radius = number(contact_radius_m.unwrap_or(CONTACT_RADIUS_M)),
         radius_assumed = assumed(contact_radius_m),
         gravity = number(-load_n / mass_kg),

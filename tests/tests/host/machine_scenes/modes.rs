@@ -321,7 +321,11 @@ fn advice_is_for_every_plane_or_for_one() {
         text.contains("coupling end struck") && text.contains("\nfar end\n"),
         "{text}"
     );
-    for args in [&["--format", "c"][..], &["--plane", "nowhere"]] {
+    for args in [
+        &["--format", "rust"][..],
+        &["--format", "c", "--short"],
+        &["--plane", "nowhere"],
+    ] {
         let refused = advise(args);
         assert_eq!(refused.status.code(), Some(2));
         let errors = String::from_utf8_lossy(&refused.stderr).into_owned();
