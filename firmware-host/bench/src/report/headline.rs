@@ -83,14 +83,18 @@ fn sentence(all: &Figures) -> String {
     format!("the rotor {}{contact}{back}.", end(all.outcome))
 }
 
-/// How each of the others ends, those that end alike together, in their order.
+/// How each of the others ends with which contact impulse, those that end alike together, in their order.
 fn ends(runs: &[&PolicyRun]) -> String {
-    let mut alike: Vec<(Outcome, Vec<&str>)> = Vec::new();
+    let mut alike: Vec<(Outcome, Vec<String>)> = Vec::new();
     for run in runs {
-        let outcome = run.verdict.figures.outcome;
-        match alike.iter_mut().find(|(known, _)| *known == outcome) {
-            Some((_, names)) => names.push(&run.name),
-            None => alike.push((outcome, vec![&run.name])),
+        let of = &run.verdict.figures;
+        let name = match of.contact_impulse_n_s {
+            impulse if impulse > 0.0 => format!("{}: {} N s", run.name, figures(impulse)),
+            _ => run.name.clone(),
+        };
+        match alike.iter_mut().find(|(known, _)| *known == of.outcome) {
+            Some((_, names)) => names.push(name),
+            None => alike.push((of.outcome, vec![name])),
         }
     }
     let parts = alike
@@ -144,18 +148,19 @@ mod tests {
                 flight_record_crc: None,
             }),
         });
-        let others = [
+        let mut others = [
             run("passive", Outcome::Whirl, &[]),
             run("levitation", Outcome::Decayed, &[]),
             run("radial", Outcome::Whirl, &[]),
         ];
+        others[1].verdict.figures.contact_impulse_n_s = 31.2;
         let runs = std::iter::once(&supervised).chain(&others);
         let all: Vec<Concluded<'_>> = runs.map(Concluded::of).collect();
         assert_eq!(
             headline(&all),
             "With the supervisor the rotor is back in the middle after 1 impact with a contact impulse of 13.1 N s, \
              24.3 ms after the last event. Severity index 2.47; it does not ask for coasting down. Without it \
-             the rotor whirls backward (passive, radial), is free of the wall (levitation)."
+             the rotor whirls backward (passive, radial), is free of the wall (levitation: 31.2 N s)."
         );
         assert!(
             headline(&all[1..])

@@ -13,7 +13,7 @@ use crate::report::plot::text::figures;
 use crate::report::table::shown_as;
 use crate::run::figures::Figures;
 use crate::run::outcome::Outcome;
-use crate::sweep::summary::{PolicySummary, Summary};
+use crate::sweep::summary::{PairSummary, PolicySummary, Summary};
 
 /// Name of its file.
 pub const PAGE: &str = "report.html";
@@ -23,7 +23,10 @@ pub const PAGE: &str = "report.html";
 /// # Errors
 /// [`PlotError`] if the drawing backend refuses.
 pub fn html(summary: &Summary) -> Result<String, PlotError> {
-    let head: Vec<String> = summary.policies.iter().map(headline).collect();
+    let policies = summary.policies.iter().map(headline);
+    let head: Vec<String> = policies
+        .chain(summary.pairs.iter().map(PairSummary::sentence))
+        .collect();
     let mut warnings = summary.errors.clone();
     let more = summary.failed - summary.errors.len() as u64;
     if more > 0 {

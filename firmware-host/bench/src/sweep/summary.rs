@@ -2,6 +2,8 @@
 
 use crate::run::columns::Kind;
 use crate::run::figures::{Figures, Place};
+use crate::run::outcome::Outcome;
+use crate::scene::policy_kind::PolicyKind;
 use crate::sweep::design::Design;
 use crate::sweep::error::SweepError;
 use crate::sweep::influence::Influence;
@@ -34,6 +36,8 @@ pub struct Summary {
     pub sampled_runs: Option<u64>,
     /// Policy by policy.
     pub policies: Vec<PolicySummary>,
+    /// The supervisor against each other policy, run by run.
+    pub pairs: Vec<PairSummary>,
     /// The policy that influences and the worst runs are of.
     pub worst_policy: String,
     /// The figure that they are of.
@@ -65,6 +69,58 @@ pub struct PolicySummary {
     pub lost_at_most: Option<f64>,
     /// Quantiles of the main figures.
     pub figures: Vec<Quantiles>,
+}
+
+/// The supervisor against another policy on the same runs.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct PairSummary {
+    /// The other policy.
+    pub against: String,
+    /// Runs with figures of both.
+    pub runs: u64,
+    /// Runs that the other recovers and the supervisor does not.
+    pub lost: u64,
+    /// Runs that the supervisor recovers and the other does not.
+    pub gained: u64,
+    /// Contact impulse of all these runs under the supervisor over that under the other; null where that has none.
+    pub impulse_ratio: Option<f64>,
+    #[serde(skip)]
+    impulses_n_s: [f64; 2],
+}
+
+/// How a run ended under each policy; rows of a run stand together.
+#[derive(Default)]
+struct Ends {
+    run: Option<u64>,
+    /// Whether it recovered, and its contact impulse \[N s\].
+    of_policies: Vec<Option<(bool, f64)>>,
+}
+
+impl Ends {
+    /// Goes on to another run, and counts the one before.
+    fn begin(&mut self, run: Option<u64>, (own, pairs): (Option<usize>, &mut [PairSummary])) {
+        if self.run == run {
+            return;
+        }
+        self.run = run;
+        let ends = std::mem::take(&mut self.of_policies);
+        let Some(own) = own.filter(|own| *own < ends.len()) else {
+            return;
+        };
+        let others = (ends.iter().enumerate()).filter(|(at, _)| *at != own);
+        for (pair, (_, other)) in pairs.iter_mut().zip(others) {
+            let (Some(own), Some(other)) = (ends[own], other) else {
+                continue;
+            };
+            pair.runs += 1;
+            pair.lost += u64::from(other.0 && !own.0);
+            pair.gained += u64::from(own.0 && !other.0);
+            pair.impulses_n_s[0] += own.1;
+            pair.impulses_n_s[1] += other.1;
+            let [with, without] = pair.impulses_n_s;
+            pair.impulse_ratio = (without > 0.0).then(|| with / without);
+        }
+    }
 }
 
 /// Quantiles of a figure, in SI units.
@@ -141,6 +197,15 @@ impl Summary {
         let mut tallies: Vec<Tally> = plan.policies().iter().map(|_| Tally::default()).collect();
         let mut sample = Sample::new(plan);
         let (mut worst, mut errors) = (Vec::new(), Vec::new());
+        let own = (plan.policies().iter()).position(|kind| *kind == PolicyKind::Supervisor);
+        let mut pairs: Vec<PairSummary> = (plan.policies().iter().enumerate())
+            .filter(|(at, _)| own.is_some_and(|own| own != *at))
+            .map(|(_, kind)| PairSummary {
+                against: kind.name().to_owned(),
+                ..PairSummary::default()
+            })
+            .collect();
+        let mut ends = Ends::default();
         for group in reader.groups() {
             let rows = group.map_err(refused)?;
             for i in 0..rows.len() {
@@ -164,14 +229,20 @@ impl Summary {
                     continue;
                 }
                 tally.add(&row, kept);
+                ends.begin(Some(run), (own, &mut pairs));
+                ends.of_policies.resize(plan.policies().len(), None);
+                let recovered = row.outcome().is_some_and(Outcome::recovered);
+                let impulse = row.number("contact_impulse_n_s").unwrap_or_default();
+                ends.of_policies[policy] = Some((recovered, impulse));
                 if plan.is_worst_policy(policy) {
                     rank(&mut worst, plan, &row, run);
                 }
             }
         }
+        ends.begin(None, (own, &mut pairs));
         let independent = plan.file.design == Design::MonteCarlo;
         let influences = influences(plan, &sample);
-        let pairs = match plan.file.maps.is_empty() {
+        let shown = match plan.file.maps.is_empty() {
             true => strongest(plan, &influences),
             false => plan.file.maps.clone(),
         };
@@ -191,7 +262,8 @@ impl Summary {
                 .collect(),
             worst_policy: plan.worst_policy().to_owned(),
             worst_by: plan.file.worst.by.clone(),
-            maps: maps(plan, &sample, &pairs),
+            maps: maps(plan, &sample, &shown),
+            pairs,
             influences,
             worst,
         })
@@ -263,6 +335,20 @@ fn strongest(plan: &Plan, influences: &[KeyInfluence]) -> Vec<[usize; 2]> {
     }
 }
 
+impl PairSummary {
+    /// In words.
+    pub fn sentence(&self) -> String {
+        let ratio = self.impulse_ratio.map_or(String::new(), |ratio| {
+            format!("; contact impulse {ratio:.2} of its")
+        });
+        let (lost, gained, against) = (self.lost, self.gained, &self.against);
+        format!(
+            "The supervisor against {against}, run by run: {lost} lost, {gained} gained of {}{ratio}.",
+            self.runs
+        )
+    }
+}
+
 impl Tally {
     fn add(&mut self, row: &Row<'_>, kept: bool) {
         self.runs += 1;
@@ -318,5 +404,40 @@ impl Quantiles {
             q99: quantile(0.99)?,
             largest,
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The supervisor second of three policies, in four runs, of which one has no figures under it.
+    #[test]
+    fn pairs_are_counted_run_by_run() {
+        let against = |name: &str| PairSummary {
+            against: name.to_owned(),
+            ..PairSummary::default()
+        };
+        let mut pairs = [against("passive"), against("levitation")];
+        let mut ends = Ends::default();
+        let runs = [
+            [Some((false, 4.0)), Some((true, 1.0)), Some((true, 2.0))],
+            [Some((false, 2.0)), Some((false, 2.0)), Some((true, 0.0))],
+            [Some((true, 9.0)), None, Some((true, 9.0))],
+            [Some((true, 2.0)), Some((true, 1.0)), None],
+        ];
+        for (run, of) in (0..).zip(runs) {
+            ends.begin(Some(run), (Some(1), &mut pairs));
+            ends.of_policies = of.to_vec();
+        }
+        ends.begin(None, (Some(1), &mut pairs));
+        let counted = |p: &PairSummary| (p.runs, p.lost, p.gained, p.impulse_ratio);
+        assert_eq!(counted(&pairs[0]), (3, 0, 1, Some(4.0 / 8.0)));
+        assert_eq!(counted(&pairs[1]), (2, 1, 0, Some(3.0 / 2.0)));
+        assert!(
+            pairs[1]
+                .sentence()
+                .contains("levitation, run by run: 1 lost, 0 gained of 2")
+        );
     }
 }

@@ -48,6 +48,9 @@ pub(super) fn all(plan: &Plan, summary: &Summary, done: &Done) -> String {
     for policy in policies {
         let _ = write!(text, "\n{}", of_policy(policy));
     }
+    for pair in &summary.pairs {
+        let _ = writeln!(text, "\n{}", pair.sentence());
+    }
     if !summary.influences.is_empty() {
         let _ = write!(text, "\n{}", influences(summary));
     }

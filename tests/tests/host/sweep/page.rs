@@ -42,6 +42,14 @@ fn the_page_says_what_the_summary_says() {
     }
     assert!(summary["policies"][0]["lost"].as_u64() > Some(0));
     assert!(summary["policies"][1]["lost"] == 0 && page.contains("at most 4.29 %"));
+    // Where the supervisor loses nothing all that the other loses is gained.
+    let pair = &summary["pairs"][0];
+    assert!(pair["against"] == "levitation" && pair["runs"] == 70 && pair["lost"] == 0);
+    assert_eq!(pair["gained"], summary["policies"][0]["lost"]);
+    let ratio = pair["impulse_ratio"].as_f64().unwrap();
+    assert!(ratio < 1.0, "{ratio}");
+    let gained = &pair["gained"];
+    assert!(page.contains(&format!("run by run: 0 lost, {gained} gained of 70")));
     let worst = summary["worst"].as_array().unwrap();
     assert_eq!(worst.len(), 3);
     for run in worst {
