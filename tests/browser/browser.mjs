@@ -7,6 +7,7 @@ import { chromium } from "playwright-core";
 
 const AXE = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
 export const SIZES = [[390, 844], [1280, 800], [2560, 1440]];
+const ALL_SIZES = [[320, 640], [390, 844], [768, 1024], [1280, 800], [1920, 1080], [2560, 1440], [3840, 2160]];
 
 // A browser, and what opens a file in it and watches what it says and asks for.
 export async function launched(executablePath) {
@@ -45,6 +46,23 @@ export async function fits(page, what) {
     .filter((e) => e.getClientRects().length && !e.closest(".scroll, svg, .live") && e.getBoundingClientRect().right > innerWidth + 1)
     .map((e) => e.outerHTML.slice(0, 80)));
   assert.deepEqual(cut, [], `${what}: nothing is cut`);
+}
+
+// Nothing is beyond the edge, a figure is in the first screen, and figures use the width of a wide one.
+export async function everySize(page, what, wide = true) {
+  for (const [width, height] of ALL_SIZES) {
+    await page.setViewportSize({ width, height });
+    // What follows the size has been drawn anew.
+    await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(done)))));
+    const at = `${what}, ${width}x${height}`;
+    await fits(page, at);
+    const drawings = await page.locator("figure .live, figure svg").evaluateAll((all) => all
+      .map((e) => e.getBoundingClientRect()).filter((r) => r.height > 0).map(({ top, bottom, right }) => ({ top, bottom, right })));
+    const { top, bottom } = drawings[0];
+    if (width > 320) assert.ok(top > 0 && bottom > top + 100 && bottom <= height, `${at}: the first figure is from ${top} to ${bottom}`);
+    const right = Math.max(...drawings.map((drawing) => drawing.right));
+    if (wide && width > 1280) assert.ok(right > 0.7 * width, `${at}: figures end at ${right}`);
+  }
 }
 
 // In the dark only the colours are others. What is not to be seen is not looked at: thousands of lines of drawings would only

@@ -1,7 +1,7 @@
 // Pages of studies in a real browser: node chapters.mjs CHROMIUM PAGE.html...
 import assert from "node:assert/strict";
 import { basename } from "node:path";
-import { SIZES, accessible, fits, launched } from "./browser.mjs";
+import { SIZES, accessible, everySize, fits, launched } from "./browser.mjs";
 
 const [executablePath, ...files] = process.argv.slice(2);
 const ALL_SIZES = [[320, 640], ...SIZES, [3840, 2160]];
@@ -59,6 +59,10 @@ async function stands(file) {
   for (const size of ALL_SIZES) {
     const what = `${basename(file)}, ${size.join("x")}`;
     const { page, closed } = await opened(file, { size, scripted: false });
+    if (size === SIZES[0] && (await page.locator("figure").count())) {
+      await everySize(page, what, false);
+      await page.setViewportSize({ width: size[0], height: size[1] });
+    }
     await headed(page, what);
     await drawn(page, what);
     await page.locator(".part").evaluateAll((parts) => parts.slice(0, 1).forEach((part) => (part.open = true)));

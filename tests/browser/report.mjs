@@ -1,13 +1,13 @@
-// Pages of the host in a real browser: node report.mjs CHROMIUM RUN.html MACHINE.html RECORD.html SWEEP.html
+// Pages of the host in a real browser: node report.mjs CHROMIUM RUN.html MACHINE.html RECORD.html SWEEP.html MODES.html
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { pathToFileURL } from "node:url";
-import { SIZES, accessible, fits, launched } from "./browser.mjs";
+import { SIZES, accessible, everySize, fits, launched } from "./browser.mjs";
 
 // On an idle machine it takes less than one; here others may be at work.
 const OPENS_WITHIN_MS = 6000;
 
-const [executablePath, run, machine, record, sweep] = process.argv.slice(2);
+const [executablePath, run, machine, record, sweep, modes] = process.argv.slice(2);
 // A page that stands still is wanted from the smallest screen to the largest.
 const STILL_SIZES = [[320, 640], [1280, 800], [3840, 2160]];
 const { browser, opened } = await launched(executablePath);
@@ -41,6 +41,12 @@ const shownBy = (page) => page.evaluate(() => {
 });
 
 const same = (values) => Math.max(...values) - Math.min(...values) < 0.01;
+const view = (page) => page.locator('[data-do="time"]').evaluate((time) => [+time.min, +time.max]);
+const shows = async (page, stretch, what) => {
+  const shown = await view(page);
+  shown.forEach((t, i) => assert.ok(Math.abs(t - stretch[i]) < 1e-6, `${what ?? ""}: ${shown} in the place of ${stretch}`));
+};
+const dataOf = (page) => page.evaluate(() => JSON.parse(document.getElementById("report-data").textContent));
 const instant = async (page) => parseFloat(await page.textContent("#controls output"));
 
 async function allDrawn(page, what) {
@@ -57,7 +63,22 @@ async function allDrawn(page, what) {
   }
 }
 
+// The event has the width, and the whole is one step away.
+async function opensOnTheEvent(page, what) {
+  const { window, focus, tracks } = await dataOf(page);
+  const opened = await view(page);
+  await shows(page, focus, what);
+  const times = tracks.find((track) => track.events.length).events.map(([t]) => t).filter((t) => t >= focus[0] && t <= focus[1]);
+  const share = (times.at(-1) - times[0]) / (focus[1] - focus[0]);
+  assert.ok(share > 0.4, `${what}: the event has ${share} of the width`);
+  await page.click('[data-do="whole"]');
+  await shows(page, window, what);
+  await page.click('[data-do="back"]');
+  await shows(page, opened, what);
+}
+
 async function moves(page) {
+  const opened = await view(page);
   const before = await shownBy(page);
   const times = before.overTime.flatMap((is, i) => (is ? [i] : []));
   const first = page.locator("[data-panel] .u-over").first();
@@ -79,14 +100,10 @@ async function moves(page) {
   await page.mouse.up();
   const zoomed = await shownBy(page);
   for (const i of times) assert.notEqual(zoomed.drawn[i], before.drawn[i], `panel ${i} is zoomed`);
-  const [from, to] = await page.evaluate(() => {
-    const time = document.querySelector('[data-do="time"]');
-    return [+time.min, +time.max];
-  });
-  const [first_, last] = await page.evaluate(() => JSON.parse(document.getElementById("report-data").textContent).window);
-  assert.ok(Math.abs((to - from) / (last - first_) - 0.2) < 0.01, `${from} to ${to} of ${first_} to ${last}`);
+  const [from, to] = await view(page), size = opened[1] - opened[0];
+  assert.ok(Math.abs((to - from) / size - 0.2) < 0.01, `${from} to ${to} of ${opened}`);
   await page.mouse.dblclick(room.x + 0.5 * room.width, room.y + 20);
-  assert.equal(+(await page.getAttribute('[data-do="time"]', "max")), last);
+  await shows(page, opened);
 
   // An entry of the event list leads to its time, also when that is not in view.
   const entry = page.locator("[data-t] button").last();
@@ -100,15 +117,17 @@ async function moves(page) {
 
   // Keys alone: zoom, step, escape, play.
   await page.evaluate(() => document.activeElement.blur());
+  const close = await view(page);
   await page.keyboard.press("+");
-  const half = +(await page.getAttribute('[data-do="time"]', "max")) - +(await page.getAttribute('[data-do="time"]', "min"));
-  assert.ok(Math.abs(half / (last - first_) - 0.5) < 0.01, `+ shows ${half}`);
+  const [left, right] = await view(page);
+  assert.ok(Math.abs((right - left) / size - 0.5) < 0.01, `+ shows ${left} to ${right}`);
   const here = await instant(page);
   await page.keyboard.press("ArrowLeft");
   assert.ok((await instant(page)) < here);
   await page.keyboard.press("Escape");
-  assert.equal(+(await page.getAttribute('[data-do="time"]', "max")), last);
+  await shows(page, close);
   await page.keyboard.press("0");
+  await shows(page, (await dataOf(page)).window);
   await page.evaluate(() => document.activeElement.blur());
   const still = await instant(page);
   await page.keyboard.press("Space");
@@ -141,12 +160,13 @@ async function slowTrack(page) {
     .map((panel) => panel.querySelector("figcaption b").textContent));
   const slow = panels.flatMap((name, i) => (name.endsWith("slow track") ? [i] : []));
   assert.ok(slow.length >= 5, `${slow.length} panels of the slow track among ${panels}`);
-  const { tracks } = await page.evaluate(() => JSON.parse(document.getElementById("report-data").textContent));
+  const { tracks } = await dataOf(page);
   const end = ({ t: { step, differences } }) => step * differences.reduce((sum, d) => sum + d, 0);
   const of = (wanted) => end(tracks.find((track) => track.name.endsWith("slow track") === wanted));
   const late = 0.5 * (of(true) + of(false));
   assert.ok(of(true) > 2 * of(false), `${of(true)} ms after ${of(false)} ms`);
   // There the ticks have no value any more, and the slow track has.
+  await page.click('[data-do="whole"]');
   await page.evaluate((t) => {
     const time = document.querySelector('[data-do="time"]');
     time.value = t;
@@ -173,6 +193,7 @@ async function works(name, file) {
       await allDrawn(page, what);
       await fits(page, what);
       if (colorScheme === "light" && whole) {
+        await opensOnTheEvent(page, what);
         await moves(page);
         if (name === "record") await slowTrack(page);
         await accessible(page, what);
@@ -180,6 +201,9 @@ async function works(name, file) {
       await closed();
     }
   }
+  const resized = await opened(file, { size: SIZES[1] });
+  await everySize(resized.page, name);
+  await resized.closed();
   // Without script the figures stand still, on paper too.
   const { page, closed } = await opened(file, { size: SIZES[0], javaScriptEnabled: false });
   const figures = page.locator("figure svg");
@@ -197,13 +221,16 @@ async function works(name, file) {
 }
 
 // A page without a script: drawn, with the numbers of each drawing, and links to files that are there.
-async function stands(name, file) {
+async function stands(name, file, drawings, links) {
+  const resized = await opened(file, { size: SIZES[1], scripted: false });
+  await everySize(resized.page, name);
+  await resized.closed();
   for (const size of STILL_SIZES) {
     for (const colorScheme of ["light", "dark"]) {
       const what = `${name}, ${size.join("x")}, ${colorScheme}`;
       const { page, closed } = await opened(file, { size, colorScheme, scripted: false });
       const figures = page.locator("figure");
-      assert.ok((await figures.count()) >= 6, what);
+      assert.ok((await figures.count()) >= drawings, what);
       for (const figure of await figures.all()) {
         assert.ok(await figure.locator("svg").isVisible(), what);
         const wide = await figure.locator("svg").evaluate((drawing) => drawing.getBoundingClientRect().width);
@@ -218,7 +245,7 @@ async function stands(name, file) {
         const target = new URL(await link.getAttribute("href"), pathToFileURL(file));
         assert.ok(readFileSync(target, "utf8").includes("[start]"), `${what}: ${target}`);
       }
-      assert.equal(await page.locator("a").count(), 3, what);
+      assert.equal(await page.locator("a").count(), links, what);
       await closed();
     }
   }
@@ -239,7 +266,8 @@ try {
     assert.ok(took < OPENS_WITHIN_MS, `opened in ${took} ms`);
   }
   const began = performance.now();
-  await Promise.all([...Object.entries({ run, machine, record }).map(([name, file]) => works(name, file)), stands("sweep", sweep)]);
+  await Promise.all([...Object.entries({ run, machine, record }).map(([name, file]) => works(name, file)),
+    stands("sweep", sweep, 6, 3), stands("modes", modes, 3, 0)]);
   console.log(`everything else: ${(performance.now() - began).toFixed(0)} ms`);
 } finally {
   await browser.close();

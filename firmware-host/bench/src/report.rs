@@ -34,7 +34,7 @@ use self::headline::{Concluded, headline};
 use self::html_page::{Head, HtmlPage};
 use self::listing::Listing;
 use self::markup::Markup;
-use self::panels::{Shown, View};
+use self::panels::{PanelRow, Shown, View, first_seen};
 use self::table::supervisor_first;
 use self::track::Track;
 pub use crate::report::plot::PlotError;
@@ -61,25 +61,36 @@ fn html_of_a_plane(scene: &SceneSummary, results: &Results) -> Result<String, Pl
     let all = results.planes.first().map_or(&[][..], Vec::as_slice);
     let runs = supervisor_first(all);
     let concluded: Vec<_> = runs.iter().map(|run| Concluded::of(run)).collect();
-    let mut document = Document::begun(&Head {
+    let head = Head {
         title: scene.title.clone(),
         headline: headline(&concluded),
         story: scene.story.clone(),
         facts: facts(scene),
         points: disturbances_told(&scene.disturbances),
         warnings: warnings(&scene.warnings, results),
-    });
-    let page = &mut document.page;
-    push_table(page, "Verdicts", &runs);
-    push_far(page, all, scene.clearance_m);
-    verification::push_table(page, &runs);
-    happenings::push_tables(page, &runs, None);
+    };
+    let mut document = Document::begun(&head);
     let tracks: Vec<Track> = (runs.iter()).map(|run| Track::of_run(scene, run)).collect();
-    let times = times_of(scene, &tracks);
+    let (times, shown) = (times_of(scene, &tracks), shown(&tracks));
+    let rows = match tracks.is_empty() {
+        true => Vec::new(),
+        false => times.view(&shown).whole_run()?,
+    };
+    let (first, others) = first_seen(rows);
     if !tracks.is_empty() {
-        document.controls();
-        let shown = shown(&tracks);
-        push_sections(&mut document, &shown, &times, "")?;
+        document.first_section(&shown, &times, "", &first);
+    }
+    document.page.columns(|page| {
+        page.about(&head);
+        page.block(|page| {
+            push_table(page, "Verdicts", &runs);
+            push_far(page, all, scene.clearance_m);
+        });
+        page.block(|page| verification::push_table(page, &runs));
+        page.block(|page| happenings::push_tables(page, &runs, None));
+    });
+    if !tracks.is_empty() {
+        push_sections(&mut document, &shown, &times, ("", &others))?;
     }
     Ok(document.ended(&tracks, &times))
 }
@@ -179,33 +190,30 @@ fn push_far(page: &mut HtmlPage, runs: &[PolicyRun], clearance_m: f64) {
     }
 }
 
-/// Panels of the whole run and, for readers without script, of the close-up; `of` stands before the headings.
+/// Panels of the run and, for readers without script, of the close-up; `of` stands before the headings.
 fn push_sections(
     document: &mut Document,
     shown: &[Shown<'_>],
     times: &Times,
-    of: &str,
+    (of, rows): (&str, &[PanelRow]),
 ) -> Result<(), PlotError> {
     let text = "Panels of one row share their axes. A whirling run that would stretch them more than \
                 three times has axes of its own, marked <em class=\"own\">own scale</em>. The \
                 background is shaded while one of the things listed above goes on.";
-    let view = |window| View {
-        shown,
-        window,
-        shaded: &times.shaded,
-    };
-    let rows = view(times.window).whole_run()?;
-    document.section(shown, (&format!("{of}Whole run"), text), &rows, false);
+    document.section(shown, (&format!("{of}Over time"), text), rows, false);
     if let Some(window) = times.focus {
         let heading = format!(
             "{of}Close-up: {} to {} ms",
             figures(window.lo),
             figures(window.hi)
         );
-        let text = "From the start, or a little before the first event, to a little after the last \
-                    contact or change of mode of the runs that settle. The axes are shared within \
-                    this stretch.";
-        let rows = view(window).fast()?;
+        let text = "From a little before the first event to a little after the last contact or change \
+                    of mode of the runs that settle. The axes are shared within this stretch.";
+        let view = View {
+            window,
+            ..times.view(shown)
+        };
+        let rows = view.fast()?;
         document.section(shown, (&heading, text), &rows, true);
     }
     Ok(())
@@ -254,7 +262,7 @@ mod tests {
         assert!(page.contains("And a &quot;second&quot; one.</p>"));
         assert!(page.contains("<th scope=\"col\">&lt;script&gt;</th>"));
         assert!(page.contains("<span class=\"outcome bad\">whirl</span>"));
-        assert!(page.contains("Close-up: 0 to"));
+        assert!(page.contains("Close-up: 19.2 to"));
         // Seven panels of the whole run and five close-ups for each.
         assert_eq!(page.matches("<svg").count(), 24);
         assert_eq!(page, html_of_a_plane(&scene(), &results(&runs)).unwrap());

@@ -1,4 +1,4 @@
-//! The pages of `run`, `review` and `sweep` in a real browser: drawn, moved, read aloud, and without script.
+//! The pages of `run`, `review`, `sweep` and `modes` in a real browser: drawn, moved, read aloud, and without script.
 
 use firmware_bench::record::file::RecordFile;
 use serde_json::Value;
@@ -202,6 +202,11 @@ fn pages_work_in_a_browser() {
     assert!(swept.status.success(), "{swept:?}");
     let sweep = here("swept/report.html");
 
+    let modes = here("modes.html");
+    let scene = machine_scene_path("misaligned_bearings");
+    let printed = (host().arg("modes").arg(scene).arg("--html").arg(&modes)).output();
+    assert!(printed.unwrap().status.success());
+
     println!("{size} bytes");
-    browser.check("report.mjs", &[&run, &machine, &record, &sweep]);
+    browser.check("report.mjs", &[&run, &machine, &record, &sweep, &modes]);
 }

@@ -165,25 +165,27 @@ pub fn coupling(coupling: &Coupling) -> String {
 /// # Errors
 /// [`PlotError`] if the drawing backend refuses.
 pub fn html(scene: &Scene, analysis: &Analysis) -> Result<String, PlotError> {
-    let mut page = HtmlPage::begun(&Head {
+    let head = Head {
         title: analysis.scene.clone(),
         story: scene.story.clone(),
         ..Head::default()
-    });
-    for (heading, plot) in [
-        ("Campbell diagram", diagram(analysis)),
-        ("Response to the unbalance", responses(analysis)),
-        ("Mode shapes", shapes(scene, analysis)),
-    ] {
-        let drawn = Drawn::of_chart(&plot)?;
-        page.section(heading, |page| page.figures(&[drawn]));
-    }
+    };
+    let mut page = HtmlPage::begun(&head);
+    let mut plots = vec![
+        diagram(analysis),
+        responses(analysis),
+        shapes(scene, analysis),
+    ];
     if let Some(levitation) = &analysis.levitation
         && let Some(course) = &levitation.sensitivity_course
     {
-        let drawn = Drawn::of_chart(&sensitivity(levitation, course))?;
-        page.section("Sensitivity", |page| page.figures(&[drawn]));
+        plots.push(sensitivity(levitation, course));
     }
+    // Without unbalance there is no response to it.
+    plots.retain(|plot| plot.curves.iter().any(|curve| !curve.points.is_empty()));
+    let drawn: Vec<Drawn> = (plots.iter().map(Drawn::of_chart)).collect::<Result<_, _>>()?;
+    page.section("Modes", |page| page.figures(&drawn));
+    page.about(&head);
     page.section("Tables", |page| page.lines(&text(scene, analysis)));
     Ok(page.ended())
 }

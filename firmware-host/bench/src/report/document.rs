@@ -8,7 +8,7 @@ use sha2::{Digest, Sha256};
 use super::drawn::Drawn;
 use super::html_page::{Head, HtmlPage};
 use super::markup::Markup;
-use super::panels::{Key, PanelRow, Shown};
+use super::panels::{Key, PanelRow, Shown, View};
 use super::push;
 use super::track::{ROTOR_MODES, SUPERVISOR_MODES, Track};
 use crate::report::plot::text::{escape, hex};
@@ -47,6 +47,17 @@ pub(super) struct Times {
     pub(super) shaded: Vec<Interval>,
 }
 
+impl Times {
+    /// Those tracks over the whole time.
+    pub(super) fn view<'a>(&'a self, shown: &'a [Shown<'a>]) -> View<'a> {
+        View {
+            shown,
+            window: self.window,
+            shaded: &self.shaded,
+        }
+    }
+}
+
 /// A page that is being written.
 pub(super) struct Document {
     pub(super) page: HtmlPage,
@@ -65,8 +76,23 @@ impl Document {
         }
     }
 
-    /// The controls of the figures, from here on in sight.
-    pub(super) fn controls(&mut self) {
+    /// What is seen before anybody scrolls, then the controls of all figures, from there on in sight.
+    pub(super) fn first_section(
+        &mut self,
+        shown: &[Shown<'_>],
+        times: &Times,
+        of: &str,
+        rows: &[PanelRow],
+    ) {
+        let what = match times.focus {
+            Some(_) => "The event",
+            None => "The whole course",
+        };
+        let heading = match of {
+            "" => what.to_owned(),
+            of => format!("{what}: {of}"),
+        };
+        self.section(shown, (&heading, ""), rows, false);
         self.page.push(CONTROLS);
     }
 
@@ -83,6 +109,7 @@ impl Document {
             if !text.is_empty() {
                 page.note(&Markup::written(text));
             }
+            page.push("<div class=\"rows\">\n");
             for row in rows {
                 heading_of(page, row);
                 for cell in &row.cells {
@@ -113,9 +140,10 @@ impl Document {
                     };
                     page.figure(&panel, &drawn);
                 }
-                page.push("</div>\n");
+                page.push("</div></div>\n");
                 *groups += 1;
             }
+            page.push("</div>\n");
         };
         match still {
             true => self.page.still_section(heading, write),
@@ -149,7 +177,11 @@ impl Document {
 
 /// Heading and legend of a row of panels, up to where they begin.
 fn heading_of(page: &mut HtmlPage, row: &PanelRow) {
-    let mut html = format!("<div class=\"head\"><h3>{}</h3> ", row.heading);
+    let mut html = format!(
+        "<div class=\"row\" style=\"--panels:{}\">\n<div class=\"head\"><h3>{}</h3> ",
+        row.cells.len(),
+        row.heading
+    );
     for Key {
         name,
         colour,
@@ -166,9 +198,8 @@ fn heading_of(page: &mut HtmlPage, row: &PanelRow) {
     push(
         &mut html,
         format_args!(
-            "<span class=\"note\">{}</span></div>\n<div class=\"grid\" style=\"--panels:{}\">\n",
-            row.note,
-            row.cells.len()
+            "<span class=\"note\">{}</span></div>\n<div class=\"grid\">\n",
+            row.note
         ),
     );
     page.push(&html);

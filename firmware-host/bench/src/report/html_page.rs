@@ -21,7 +21,7 @@ pub struct Head {
     pub title: String,
     /// The conclusion, a sentence or two.
     pub headline: String,
-    /// Paragraphs below it, with an empty line between two.
+    /// Paragraphs below the first figure, with an empty line between two.
     pub story: String,
     /// What it is about, in figures.
     pub facts: Vec<Fact>,
@@ -65,12 +65,35 @@ impl HtmlPage {
         if !head.headline.is_empty() {
             page.classed("headline", &Markup::text(&head.headline));
         }
-        page.story(&head.story);
-        page.facts(&head.facts);
-        let points: Vec<Markup> = head.points.iter().map(Markup::text).collect();
-        page.points(&points);
         page.push("</header>\n<main>\n");
         page
+    }
+
+    /// What it is about. Below the first figure, which is to be seen before anybody scrolls.
+    pub(crate) fn about(&mut self, head: &Head) {
+        self.block(|page| {
+            page.story(&head.story);
+            page.facts(&head.facts);
+            let points: Vec<Markup> = head.points.iter().map(Markup::text).collect();
+            page.points(&points);
+        });
+    }
+
+    /// Parts that stand in columns where the screen is wide.
+    pub(crate) fn columns<T>(&mut self, write: impl FnOnce(&mut Self) -> T) -> T {
+        self.within("<div class=\"columns\">\n", "</div>\n", write)
+    }
+
+    /// A part of columns that stays whole.
+    pub(crate) fn block<T>(&mut self, write: impl FnOnce(&mut Self) -> T) -> T {
+        self.within("<div>\n", "</div>\n", write)
+    }
+
+    fn within<T>(&mut self, opened: &str, closed: &str, write: impl FnOnce(&mut Self) -> T) -> T {
+        self.push(opened);
+        let written = write(self);
+        self.push(closed);
+        written
     }
 
     /// HTML that is written out in this crate.
@@ -183,11 +206,8 @@ impl HtmlPage {
         [opened, closed]: [&str; 2],
         write: impl FnOnce(&mut Self) -> T,
     ) -> T {
-        self.push(opened);
         heading.clone_into(&mut self.heading);
-        let written = write(self);
-        self.push(closed);
-        written
+        self.within(opened, closed, write)
     }
 
     /// A part that is shown as its heading until somebody opens it.
@@ -290,14 +310,16 @@ mod tests {
     #[test]
     fn what_users_wrote_stays_text() {
         let bad = "<script>\"'&";
-        let mut page = HtmlPage::begun(&Head {
+        let head = Head {
             title: bad.to_owned(),
             headline: bad.to_owned(),
             story: bad.to_owned(),
             facts: vec![("Fact", bad.to_owned())],
             points: vec![bad.to_owned()],
             warnings: vec![bad.to_owned()],
-        });
+        };
+        let mut page = HtmlPage::begun(&head);
+        page.about(&head);
         let listing = Listing {
             caption: bad.to_owned(),
             headings: vec![Markup::with_unit(bad, bad), Markup::text(bad)],

@@ -4,7 +4,8 @@ use super::document::{Document, Times};
 use super::drawn::Drawn;
 use super::headline::{Concluded, headline};
 use super::html_page::Head;
-use super::panels::{PanelRow, Shown, View};
+use super::markup::Markup;
+use super::panels::{PanelRow, Shown};
 use super::quantities::{BENDING_ENERGY, SLOPE, bending};
 use super::summary::{Fact, SceneSummary, summary};
 use super::track::Track;
@@ -48,34 +49,15 @@ pub(super) fn html(scene: &Scene, results: &Results) -> Result<String, PlotError
         .collect();
     let mut order: Vec<usize> = (0..whole.len()).collect();
     order.sort_by_key(|i| !concluded[*i].is_supervised());
-    let mut document = Document::begun(&Head {
+    let head = Head {
         title: scene.title.clone(),
         headline: headline(&concluded),
         story: scene.story.clone(),
         facts: facts(scene),
         points: disturbances_told(&told.disturbances),
         warnings: warnings(&scene.warnings, results),
-    });
-    push_table(
-        &mut document.page,
-        "Machine: the worst of its planes, and their sums",
-        &in_order(whole, &order),
-    );
-    for ((plane, summary), runs) in scene.planes.iter().zip(&summaries).zip(&results.planes) {
-        let heading = format!("Plane: {}", plane.shown());
-        document.page.section(&heading, |page| {
-            page.facts(&summary.facts);
-            let runs_in_order = in_order(runs, &order);
-            push_table(
-                page,
-                &format!("Verdicts: {}", plane.shown()),
-                &runs_in_order,
-            );
-            push_far(page, runs, summary.clearance_m);
-            verification::push_table(page, &runs_in_order);
-            happenings::push_tables(page, &runs_in_order, Some(plane.shown()));
-        });
-    }
+    };
+    let mut document = Document::begun(&head);
     let axes = (order.iter()).filter_map(|i| Some((whole.get(*i)?, results.axes.get(*i)?)));
     let mut tracks = Tracks {
         all: (axes.clone())
@@ -90,24 +72,53 @@ pub(super) fn html(scene: &Scene, results: &Results) -> Result<String, PlotError
             .extend(runs.map(|run| Track::of_run(summary, run)));
     }
     let times = times_of(told, &tracks.all);
-    document.controls();
-    tracks.push_ends(&mut document, scene, &times)?;
-    tracks.push_axes(&mut document, scene, &times)?;
-    for (run, axis) in axes {
-        let drawn = Drawn::of_chart(&from_the_side(&scene.machine, axis))?;
-        let heading = format!("Axis from the side: {}", run.name);
-        document
-            .page
-            .section(&heading, |page| page.figures(&[drawn]));
+    for policy in 0..tracks.policies {
+        let name = &tracks.all[policy].name;
+        let ends = tracks.ends(scene, policy);
+        let rows = [times.view(&ends).orbits(false)?];
+        match policy {
+            0 => document.first_section(&ends, &times, name, &rows),
+            _ => document.section(
+                &ends,
+                (&format!("Planes side by side: {name}"), ""),
+                &rows,
+                false,
+            ),
+        }
     }
+    document.page.columns(|page| {
+        page.about(&head);
+        page.block(|page| {
+            let caption = "Machine: the worst of its planes, and their sums";
+            push_table(page, caption, &in_order(whole, &order));
+        });
+        for ((plane, summary), runs) in scene.planes.iter().zip(&summaries).zip(&results.planes) {
+            let name = plane.shown();
+            page.section(&format!("Plane: {name}"), |page| {
+                page.facts(&summary.facts);
+                let runs_in_order = in_order(runs, &order);
+                push_table(page, &format!("Verdicts: {name}"), &runs_in_order);
+                push_far(page, runs, summary.clearance_m);
+                verification::push_table(page, &runs_in_order);
+                happenings::push_tables(page, &runs_in_order, Some(name));
+            });
+        }
+    });
+    tracks.push_axes(&mut document, scene, &times)?;
+    let sides = axes.map(|(run, axis)| {
+        let drawn = Drawn::of_chart(&from_the_side(&scene.machine, axis))?;
+        let caption = Markup::written(format!("<b>{}</b>", Markup::text(&run.name).as_html()));
+        Ok(Drawn { caption, ..drawn })
+    });
+    let sides: Vec<Drawn> = sides.collect::<Result<_, PlotError>>()?;
+    (document.page).section("Axis from the side, at equal times", |page| {
+        page.figures(&sides);
+    });
     for (i, plane) in scene.planes.iter().enumerate() {
         let shown = tracks.of_plane(i);
-        push_sections(
-            &mut document,
-            &shown,
-            &times,
-            &format!("{}: ", plane.shown()),
-        )?;
+        let rows = times.view(&shown).whole_run()?;
+        let of = format!("{}: ", plane.shown());
+        push_sections(&mut document, &shown, &times, (&of, &rows))?;
     }
     Ok(document.ended(&tracks.all, &times))
 }
@@ -144,29 +155,14 @@ impl Tracks {
             .collect()
     }
 
-    /// Of each policy the orbits in all planes.
-    fn push_ends(
-        &self,
-        document: &mut Document,
-        scene: &Scene,
-        times: &Times,
-    ) -> Result<(), PlotError> {
-        for policy in 0..self.policies {
-            let ends: Vec<Shown<'_>> = (scene.planes.iter().enumerate())
-                .map(|(i, plane)| Shown {
-                    name: plane.shown(),
-                    ..self.shown(self.policies * (1 + i) + policy)
-                })
-                .collect();
-            let view = View {
-                shown: &ends,
-                window: times.window,
-                shaded: &times.shaded,
-            };
-            let heading = format!("Planes side by side: {}", self.all[policy].name);
-            document.section(&ends, (&heading, ""), &[view.orbits(false)?], false);
-        }
-        Ok(())
+    /// Of a policy the track of each plane, under the name of the plane.
+    fn ends<'a>(&'a self, scene: &'a Scene, policy: usize) -> Vec<Shown<'a>> {
+        (scene.planes.iter().enumerate())
+            .map(|(i, plane)| Shown {
+                name: plane.shown(),
+                ..self.shown(self.policies * (1 + i) + policy)
+            })
+            .collect()
     }
 
     /// Slope and bending over time, of all policies.
@@ -177,11 +173,7 @@ impl Tracks {
         times: &Times,
     ) -> Result<(), PlotError> {
         let axes: Vec<Shown<'_>> = (0..self.policies).map(|at| self.shown(at)).collect();
-        let view = View {
-            shown: &axes,
-            window: times.window,
-            shaded: &times.shaded,
-        };
+        let view = times.view(&axes);
         let modes = scene.machine.rotor.bending().len();
         let mut charts = vec![SLOPE];
         if modes > 0 {

@@ -18,6 +18,8 @@ use crate::report::plot::{
     orbit_plot, strip_plot, time_plot,
 };
 
+const ORBIT: &str = "Orbit";
+
 /// One panel of every track.
 pub(super) struct PanelRow {
     /// What is shown.
@@ -28,6 +30,11 @@ pub(super) struct PanelRow {
     pub(super) legend: Vec<Key>,
     /// In the order of the tracks, of those that have what is shown.
     pub(super) cells: Vec<PanelCell>,
+}
+
+/// The rows that are to be seen first, and the others.
+pub(super) fn first_seen(rows: Vec<PanelRow>) -> (Vec<PanelRow>, Vec<PanelRow>) {
+    (rows.into_iter()).partition(|row| [ORBIT, RADIUS.heading].contains(&row.heading))
 }
 
 /// One entry of a legend.
@@ -189,7 +196,7 @@ impl View<'_> {
             let (reach, unit) = (axis.widened(0.05).hi, shown.track.units.length);
             let quantity = format!("x and y / {unit}");
             let svg = orbit_plot(&OrbitPlot {
-                label: &self.label(shown, "Orbit", &quantity, ranges[i]),
+                label: &self.label(shown, ORBIT, &quantity, ranges[i]),
                 reach,
                 unit,
                 wall,
@@ -221,7 +228,7 @@ impl View<'_> {
         };
         legend.push(Key::new(wall, LIMIT));
         Ok(PanelRow {
-            heading: "Orbit",
+            heading: ORBIT,
             note: "Rotor against the centre of the inner ring. <span class=\"still\">Ring mark: start, dot: end.</span>\
                    <span class=\"moving\">Arrows: direction at equal times; dot: where it is at the time of all panels.</span>",
             legend,

@@ -6,7 +6,7 @@ use super::html_page::{Head, HtmlPage};
 use super::lines::Lines;
 use super::listing::Listing;
 use super::markup::Markup;
-use super::panels::View;
+use super::panels::{View, first_seen};
 use super::plot::{PlotError, alone};
 use super::table::supervisor_first;
 use super::track::Track;
@@ -43,11 +43,13 @@ fn push_parts(page: &mut HtmlPage, parts: &[RecordPart]) {
             for text in &part.said {
                 page.paragraph(&Markup::text(text));
             }
-            for (caption, lines) in &part.tables {
-                let listing = Listing::of_lines(caption, lines);
-                let low = listing.rows.len() > IN_SIGHT;
-                page.table(&Listing { low, ..listing });
-            }
+            page.columns(|page| {
+                for (caption, lines) in &part.tables {
+                    let listing = Listing::of_lines(caption, lines);
+                    let low = listing.rows.len() > IN_SIGHT;
+                    page.table(&Listing { low, ..listing });
+                }
+            });
             if !part.runs.is_empty() {
                 push_table(page, "Verdicts", &supervisor_first(&part.runs));
             }
@@ -67,10 +69,6 @@ pub fn record_html(
     tracks: &[Track],
 ) -> Result<String, PlotError> {
     let mut document = Document::begun(head);
-    push_parts(&mut document.page, &parts.above);
-    for track in tracks.iter().filter(|track| !track.events.is_empty()) {
-        happenings::push_of_track(&mut document.page, track);
-    }
     let window = window_of(tracks, None);
     // A slow track may go on for long after what was recorded tick by tick.
     let fast = window_of(tracks.iter().filter(|track| track.has_path()), None);
@@ -80,22 +78,35 @@ pub fn record_html(
         focus: fast,
         shaded: Vec::new(),
     };
-    if tracks.iter().any(|track| !track.t.is_empty()) {
-        document.controls();
-        let shown = shown(tracks);
-        let view = |window| View {
-            shown: &shown,
-            window,
-            shaded: &times.shaded,
-        };
+    let shown = shown(tracks);
+    let any = tracks.iter().any(|track| !track.t.is_empty());
+    let rows = match any {
+        true => times.view(&shown).whole_run()?,
+        false => Vec::new(),
+    };
+    let (first, others) = first_seen(rows);
+    if any {
+        document.first_section(&shown, &times, "", &first);
+    }
+    document.page.columns(|page| {
+        page.about(head);
+        push_parts(page, &parts.above);
+        for track in tracks.iter().filter(|track| !track.events.is_empty()) {
+            page.block(|page| happenings::push_of_track(page, track));
+        }
+    });
+    if any {
         let text = "Panels of one row share their axes. Times are counted from the last engagement in the record. A slow track \
                     goes on to the end of the event: it has the largest values of each stretch of ticks, and its mode where that \
                     did not change.";
-        let rows = view(times.window).whole_run()?;
-        document.section(&shown, ("What was recorded", text), &rows, false);
+        document.section(&shown, ("What was recorded", text), &others, false);
         if let Some(window) = times.focus {
             let text = "The stretch that was recorded tick by tick.";
-            let rows = view(window).fast()?;
+            let view = View {
+                window,
+                ..times.view(&shown)
+            };
+            let rows = view.fast()?;
             document.section(&shown, ("Close-up", text), &rows, true);
         }
     }

@@ -40,25 +40,14 @@ pub fn html(summary: &Summary) -> Result<String, PlotError> {
         ("Policies", summary.policies.len().to_string()),
         ("Keys that vary", summary.influences.len().to_string()),
     ];
-    let mut page = HtmlPage::begun(&Head {
+    let head = Head {
         title: format!("Sweep: {}", summary.scene),
         headline: head.join(" "),
         facts,
         warnings,
         ..Head::default()
-    });
-    page.section("Outcomes", |page| {
-        page.table(&outcomes(summary));
-        page.note(&Markup::text(bound(summary)));
-        if let Some(sampled) = summary.sampled_runs {
-            page.note(&Markup::text(format!(
-                "Quantiles, influences and maps below are of {sampled} runs drawn at random."
-            )));
-        }
-        for policy in &summary.policies {
-            page.table(&quantiles(policy));
-        }
-    });
+    };
+    let mut page = HtmlPage::begun(&head);
     let maps = (summary.maps.iter().map(map)).collect::<Result<Vec<_>, _>>()?;
     page.section("Where runs are lost", |page| {
         let text = match maps.is_empty() {
@@ -68,11 +57,25 @@ pub fn html(summary: &Summary) -> Result<String, PlotError> {
                  one, with crosses where the rotor is lost; of many the share that is lost, white where there is no run."
             }
         };
+        page.figures(&maps);
         page.note(&Markup::text(text));
-        // Policies side by side.
-        for of_pair in maps.chunks(summary.policies.len().max(1)) {
-            page.figures(of_pair);
-        }
+    });
+    page.about(&head);
+    page.section("Outcomes", |page| {
+        page.columns(|page| {
+            page.block(|page| {
+                page.table(&outcomes(summary));
+                page.note(&Markup::text(bound(summary)));
+                if let Some(sampled) = summary.sampled_runs {
+                    page.note(&Markup::text(format!(
+                        "Quantiles, influences and maps are of {sampled} runs drawn at random."
+                    )));
+                }
+            });
+            for policy in &summary.policies {
+                page.table(&quantiles(policy));
+            }
+        });
     });
     page.section("What decides", |page| decided(page, summary));
     page.section("Worst runs", |page| {

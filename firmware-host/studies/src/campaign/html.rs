@@ -17,11 +17,17 @@ pub fn html(page: &Page) -> Result<String, PlotError> {
         headline: page.headline.clone(),
         ..Head::default()
     });
-    let open = page.chapters.iter().filter(|chapter| !chapter.folded);
-    html.contents(open.map(|chapter| &chapter.title[..]));
-    html.section("Summary", |html| push_blocks(html, &page.lead, 0))?;
+    let open = || (page.chapters.iter().zip(1..)).filter(|(chapter, _)| !chapter.folded);
+    // The first figure is to be seen before anybody scrolls; its chapter goes without it.
+    let first = open().find_map(|(chapter, number)| Some((number, first_figure(&chapter.blocks)?)));
+    if let Some((number, figure)) = first {
+        html.figures(&[drawn(figure, &format!("{number}.1"))?]);
+    }
+    let shown = first.map(|(_, figure)| figure);
+    html.contents(open().map(|(chapter, _)| &chapter.title[..]));
+    html.section("Summary", |html| push_blocks(html, &page.lead, 0, shown))?;
     for (chapter, number) in page.chapters.iter().zip(1..) {
-        let write = |html: &mut HtmlPage| push_blocks(html, &chapter.blocks, number);
+        let write = |html: &mut HtmlPage| push_blocks(html, &chapter.blocks, number, shown);
         match chapter.folded {
             true => html.folded(&chapter.title, write),
             false => html.chapter(number, &chapter.title, write),
@@ -30,7 +36,20 @@ pub fn html(page: &Page) -> Result<String, PlotError> {
     Ok(html.ended())
 }
 
-fn push_blocks(html: &mut HtmlPage, blocks: &[Block], chapter: usize) -> Result<(), PlotError> {
+fn first_figure(blocks: &[Block]) -> Option<&Figure> {
+    blocks.iter().find_map(|block| match block {
+        Block::Figures(figures) => figures.first(),
+        _ => None,
+    })
+}
+
+/// All but the figure that is shown already.
+fn push_blocks(
+    html: &mut HtmlPage,
+    blocks: &[Block],
+    chapter: usize,
+    shown: Option<&Figure>,
+) -> Result<(), PlotError> {
     for block in blocks {
         match block {
             Block::Paragraph(text) => html.paragraph(&Markup::prose(text)),
@@ -40,6 +59,7 @@ fn push_blocks(html: &mut HtmlPage, blocks: &[Block], chapter: usize) -> Result<
             Block::Table(table, marked) => html.table(&listing(table, marked)),
             Block::Figures(figures) => {
                 let drawn: Result<Vec<Drawn>, PlotError> = (figures.iter().zip(1..))
+                    .filter(|(figure, _)| !shown.is_some_and(|shown| std::ptr::eq(shown, *figure)))
                     .map(|(figure, number)| drawn(figure, &format!("{chapter}.{number}")))
                     .collect();
                 html.figures(&drawn?);

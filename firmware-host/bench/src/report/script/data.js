@@ -14,8 +14,10 @@ for (const track of report.tracks) {
 }
 
 const [first, last] = report.window;
-const view = { from: first, to: last, past: [] };
-let instant = report.focus ? report.focus[0] : first;
+// Opens on the event; back leads to the whole.
+const [from, to] = report.focus ?? report.window;
+const view = { from, to, past: [] };
+let instant = from;
 
 // Events of all tracks, each instant once.
 const events = [];
