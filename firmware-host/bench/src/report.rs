@@ -52,15 +52,27 @@ use crate::scene::Scene;
 /// [`PlotError`] if the drawing backend refuses.
 pub fn html(scene: &Scene, results: &Results) -> Result<String, PlotError> {
     match scene.planes.len() == 1 && !scene.has_axis() {
-        true => html_of_a_plane(&summary(scene, 0), results),
+        true => html_of_a_plane(&summary(scene, 0), results, limits(scene).next().flatten()),
         false => machine::html(scene, results),
     }
 }
 
-fn html_of_a_plane(scene: &SceneSummary, results: &Results) -> Result<String, PlotError> {
+/// The severity index at which the supervisor of each plane asks for coasting down.
+fn limits(scene: &Scene) -> impl Iterator<Item = Option<f32>> {
+    let planes = scene.planes.iter();
+    planes.map(|plane| Some(plane.supervisor.as_ref()?.severity_limit))
+}
+
+fn html_of_a_plane(
+    scene: &SceneSummary,
+    results: &Results,
+    limit: Option<f32>,
+) -> Result<String, PlotError> {
     let all = results.planes.first().map_or(&[][..], Vec::as_slice);
     let runs = supervisor_first(all);
-    let concluded: Vec<_> = runs.iter().map(|run| Concluded::of(run)).collect();
+    let concluded: Vec<_> = (runs.iter())
+        .map(|run| Concluded::of(run, std::iter::once((*run, limit))))
+        .collect();
     let head = Head {
         title: scene.title.clone(),
         headline: headline(&concluded),
@@ -239,7 +251,7 @@ mod tests {
     }
 
     fn page(scene: &SceneSummary, runs: &[PolicyRun]) -> String {
-        let page = html_of_a_plane(scene, &results(runs)).unwrap();
+        let page = html_of_a_plane(scene, &results(runs), None).unwrap();
         let (drawn, data) = page.split_once("<script").unwrap();
         for word in ["NaN", "\"inf", " inf"] {
             assert!(!drawn.contains(word), "{word}");
@@ -265,7 +277,10 @@ mod tests {
         assert!(page.contains("Close-up: 19.2 to"));
         // Seven panels of the whole run and five close-ups for each.
         assert_eq!(page.matches("<svg").count(), 24);
-        assert_eq!(page, html_of_a_plane(&scene(), &results(&runs)).unwrap());
+        assert_eq!(
+            page,
+            html_of_a_plane(&scene(), &results(&runs), None).unwrap()
+        );
     }
 
     #[test]
@@ -279,7 +294,7 @@ mod tests {
             }],
             ..results(&[unchecked])
         };
-        let page = html_of_a_plane(&scene(), &results).unwrap();
+        let page = html_of_a_plane(&scene(), &results, None).unwrap();
         for error in ["Warning: lost", "Warning: no &lt;check&gt;"] {
             assert!(page.contains(error), "{error}");
         }

@@ -6,7 +6,7 @@ use crate::variable::{Kind, Output, Role, Value, Variable};
 use firmware_bench::run::closed_loop::stepwise::Stepwise;
 use firmware_bench::run::controller::Seen;
 use firmware_bench::run::trace::{Said, TraceRow};
-use firmware_bench::run::trace_columns::{Columns, Number};
+use firmware_bench::run::trace_columns::{CODE, Columns, Number};
 
 /// Which of the columns an output is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -53,7 +53,9 @@ const SEEN: &[Output<Seen>] = &[
 
 fn is_for(of: Of, name: &str) -> bool {
     let of_loop = name.starts_with("levitation_") || name.starts_with("supervisor_");
-    name != "t_s" && (of == Of::ClosedLoop || !of_loop)
+    // A unit has enumerations and bits.
+    let coded = name.ends_with(CODE);
+    name != "t_s" && !coded && (of == Of::ClosedLoop || !of_loop)
 }
 
 /// Outputs of all planes.

@@ -88,7 +88,7 @@ fn what_is_left_is_what_the_rule_says() {
         "{text}"
     );
     assert!(
-        text.contains("since the supervisor was made: 1 landing,"),
+        text.contains("since the supervisor was made: 1 landing has used"),
         "{text}"
     );
     assert!(text.contains("Nothing speaks against running on"), "{text}");
@@ -130,7 +130,8 @@ fn what_is_left_is_what_the_rule_says() {
     assert!((like("left_like_this") - left / severity).abs() <= 1.0);
     assert!(
         text.contains(&format!(
-            "Retainer bearing 7: 21 landings, severity {:.2} of 40",
+            "Retainer bearing 7: 21 landings have used {:.0} % of what it is allowed (severity {:.2} of 40",
+            (9.0 + severity) / 0.4,
             9.0 + severity
         )),
         "{text}"
@@ -169,7 +170,7 @@ fn what_is_left_is_what_the_rule_says() {
         (&0.into(), &false.into())
     );
     assert!(
-        text.contains("Retainer bearing 8: 0 landings, severity 0.00 of 20 (0 %)"),
+        text.contains("Retainer bearing 8: 0 landings have used 0 % of what it is allowed (severity 0.00 of 20"),
         "{text}"
     );
 }
@@ -280,5 +281,5 @@ fn the_allowance_is_the_first_that_is_given() {
     let all = [&set[..], &["--allowance", "5"]].concat();
     assert_eq!(allowed(&all), 5.0);
     let (_, text) = files.told(&both);
-    assert!(text.contains(" of 3 ("), "{text}");
+    assert!(text.contains("(severity 0.00 of 3,"), "{text}");
 }

@@ -1,6 +1,6 @@
 //! How many landings a retainer bearing may still bear, by its ledger or, without one, by what the record itself has counted.
 
-use crate::record::story::Event;
+use crate::record::story::{Event, percent};
 use serde::Serialize;
 use supervisor::{LEDGER_BYTES, Ledger, LedgerError};
 
@@ -139,24 +139,24 @@ impl Remaining {
     /// In two sentences.
     pub fn told(&self) -> String {
         let landings = match self.landings {
-            1 => "1 landing".to_owned(),
-            n => format!("{n} landings"),
+            1 => "1 landing has".to_owned(),
+            n => format!("{n} landings have"),
         };
         let sum = format!(
-            "{landings}, severity {:.2} of {:.0} ({:.0} %)",
+            "{landings} used {} of what it is allowed (severity {:.2} of {:.0}",
+            percent(self.used()),
             self.severity_sum,
-            self.severity_allowed,
-            100.0 * self.used()
+            self.severity_allowed
         );
         let mut text = match (self.bearing, self.worst_severity, self.hardest_impact_m_s) {
             (Some(bearing), Some(worst), Some(hardest)) => format!(
-                "Retainer bearing {bearing}: {sum}, the worst {worst:.2}, hardest impact {hardest:.2} m/s; {}.",
+                "Retainer bearing {bearing}: {sum}, the worst {worst:.2}), hardest impact {hardest:.2} m/s; {}.",
                 match self.has_this_event {
                     Some(true) => "this event is the last one in it",
                     _ => "its last event is another one than this",
                 }
             ),
-            _ => format!("Retainer bearing, since the supervisor was made: {sum}."),
+            _ => format!("Retainer bearing, since the supervisor was made: {sum})."),
         };
         let kinds = [
             (self.left_like_the_worst, "the worst"),

@@ -516,15 +516,28 @@ impl Told {
     /// What is counted of it.
     fn counted(&self) -> String {
         let least = self.least();
-        let severity = match self.severity {
-            Some(severity) => format!("Severity {least}{severity:.2}"),
-            None => "Severity not known".to_owned(),
+        let (sum, limit) = (self.severity_index, self.severity_limit);
+        let used = match self.severity {
+            Some(severity) => format!("It used {least}{}", percent(severity / limit)),
+            None => "It used an unknown share".to_owned(),
         };
         format!(
-            "{severity}; with earlier events {least}{:.2} of the {:.0} at which coasting down is asked for",
-            self.severity_index, self.severity_limit
+            "{used} of what the retainer bearing is allowed before coasting down is asked for; with earlier events \
+             {least}{} (severity {sum:.2} of {limit:.0})",
+            percent(sum / limit)
         )
     }
+}
+
+/// A share in percent, to two figures.
+pub(crate) fn percent(share: f64) -> String {
+    let percent = 100.0 * share;
+    let decimals = match percent.abs() {
+        9.95.. | 0.0 => 0,
+        0.995.. => 1,
+        _ => 2,
+    };
+    format!("{percent:.decimals$} %")
 }
 
 /// With a capital at its beginning.

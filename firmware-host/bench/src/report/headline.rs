@@ -1,6 +1,7 @@
 //! The conclusion of a page in a sentence or two, before any number.
 
 use super::plot::text::figures;
+use crate::record::story::percent;
 use crate::run::figures::Figures;
 use crate::run::outcome::Outcome;
 use crate::run::supervision::Supervision;
@@ -9,23 +10,19 @@ use crate::run::verdict::PolicyRun;
 /// A run as far as its conclusion goes.
 pub(super) struct Concluded<'a> {
     run: &'a PolicyRun,
-    /// What its supervisor did, of a rotor in each plane; empty where none ran.
-    supervised: Vec<&'a Supervision>,
+    /// What its supervisor did, of a rotor in each plane, with the severity index that asks for coasting down; empty where
+    /// none ran.
+    supervised: Vec<(&'a Supervision, Option<f32>)>,
 }
 
 impl<'a> Concluded<'a> {
-    /// A run in one plane.
-    pub(super) fn of(run: &'a PolicyRun) -> Self {
-        let supervised = run.supervision.iter().collect();
-        Self { run, supervised }
-    }
-
-    /// A run of a rotor, with what each of its planes came to.
-    pub(super) fn of_planes(
+    /// A run, with what each of its planes came to, and the severity limit of its supervisor.
+    pub(super) fn of(
         run: &'a PolicyRun,
-        planes: impl Iterator<Item = &'a PolicyRun>,
+        planes: impl Iterator<Item = (&'a PolicyRun, Option<f32>)>,
     ) -> Self {
-        let supervised = planes.filter_map(|plane| plane.supervision.as_ref());
+        let supervised =
+            planes.filter_map(|(plane, limit)| Some((plane.supervision.as_ref()?, limit)));
         Self {
             run,
             supervised: supervised.collect(),
@@ -52,15 +49,23 @@ pub(super) fn headline(runs: &[Concluded<'_>]) -> String {
     };
     let figures_of = &supervised.run.verdict.figures;
     let mut text = format!("With the supervisor {}", sentence(figures_of));
-    let accounts = (supervised.supervised.iter()).filter_map(|s| s.account.as_ref());
-    let landed: Vec<_> = accounts.filter(|account| account.landings > 0).collect();
+    let accounts =
+        (supervised.supervised.iter()).filter_map(|(s, limit)| Some((s.account.as_ref()?, *limit)));
+    let landed: Vec<_> = accounts
+        .filter(|(account, _)| account.landings > 0)
+        .collect();
+    let used =
+        (landed.iter()).filter_map(|(a, limit)| Some(a.severity_index / f64::from((*limit)?)));
     // Of planes the worst.
-    if let Some(severity) = (landed.iter().map(|a| a.severity_index)).reduce(f64::max) {
-        let coast_down = match landed.iter().any(|account| account.coast_down) {
+    if let Some(used) = used.reduce(f64::max) {
+        let coast_down = match landed.iter().any(|(account, _)| account.coast_down) {
             true => "it asks for coasting down",
             false => "it does not ask for coasting down",
         };
-        text += &format!(" Severity index {}; {coast_down}.", figures(severity));
+        text += &format!(
+            " It has used {} of what the retainer bearing is allowed; {coast_down}.",
+            percent(used)
+        );
     }
     if !others.is_empty() {
         text += &format!(" Without it {}.", ends(&others));
@@ -155,12 +160,14 @@ mod tests {
         ];
         others[1].verdict.figures.contact_impulse_n_s = 31.2;
         let runs = std::iter::once(&supervised).chain(&others);
-        let all: Vec<Concluded<'_>> = runs.map(Concluded::of).collect();
+        let limit = Some(20.0);
+        let alone = |run| Concluded::of(run, std::iter::once((run, limit)));
+        let all: Vec<Concluded<'_>> = runs.map(alone).collect();
         assert_eq!(
             headline(&all),
             "With the supervisor the rotor is back in the middle after 1 impact with a contact impulse of 13.1 N s, \
-             24.3 ms after the last event. Severity index 2.47; it does not ask for coasting down. Without it \
-             the rotor whirls backward (passive, radial), is free of the wall (levitation: 31.2 N s)."
+             24.3 ms after the last event. It has used 12 % of what the retainer bearing is allowed; it does not ask for \
+             coasting down. Without it the rotor whirls backward (passive, radial), is free of the wall (levitation: 31.2 N s)."
         );
         assert!(
             headline(&all[1..])
@@ -170,7 +177,8 @@ mod tests {
         // Of a rotor the planes have the supervisors.
         let whole = run("supervisor", Outcome::Recovered, &[]);
         let planes = [supervised.clone(), supervised];
-        let rotor = Concluded::of_planes(&whole, planes.iter());
-        assert!(headline(&[rotor]).contains("Severity index 2.47; it does not"));
+        let planes = planes.iter().zip([Some(10.0), limit]);
+        let rotor = Concluded::of(&whole, planes);
+        assert!(headline(&[rotor]).contains("It has used 25 % of what"));
     }
 }

@@ -10,8 +10,8 @@ use super::quantities::{BENDING_ENERGY, SLOPE, bending};
 use super::summary::{Fact, SceneSummary, summary};
 use super::track::Track;
 use super::{
-    disturbances_told, happenings, push_far, push_sections, push_table, times_of, verification,
-    warnings,
+    disturbances_told, happenings, limits, push_far, push_sections, push_table, times_of,
+    verification, warnings,
 };
 use crate::report::plot::PlotError;
 use crate::report::plot::chart::{Axis, Chart, Curve};
@@ -43,8 +43,11 @@ pub(super) fn html(scene: &Scene, results: &Results) -> Result<String, PlotError
     let whole = &results.runs;
     let concluded: Vec<Concluded<'_>> = (whole.iter().enumerate())
         .map(|(i, run)| {
-            let planes = results.planes.iter().filter_map(move |runs| runs.get(i));
-            Concluded::of_planes(run, planes)
+            let planes = results.planes.iter().zip(limits(scene));
+            Concluded::of(
+                run,
+                planes.filter_map(|(runs, limit)| Some((runs.get(i)?, limit))),
+            )
         })
         .collect();
     let mut order: Vec<usize> = (0..whole.len()).collect();

@@ -31,8 +31,9 @@ pub struct Columns<R: 'static> {
 impl Columns<TraceRow> {
     pub fn of_plane() -> Self {
         let numbers = NUMBERS.iter().copied();
+        let codes = CODES.iter().copied();
         Self {
-            numbers: numbers
+            numbers: (numbers.chain(codes))
                 .map(|(name, unit, about, value)| number(name, (unit, about), value))
                 .collect(),
             texts: TEXTS,
@@ -284,6 +285,37 @@ const NUMBERS: &[Plain<TraceRow>] = &[
         "1",
         "severity of what is coming, as a share of what the cap can stop",
         |r| said(r, |s| s.severity),
+    ),
+];
+
+/// Behind the name of a column of names: the same as a number, for programs that draw nothing but numbers.
+pub const CODE: &str = "_code";
+
+/// Names as numbers.
+const CODES: &[Plain<TraceRow>] = &[
+    ("mode_code", "1", "number of the mode", |r| {
+        f64::from(r.plant.mode as u8)
+    }),
+    (
+        "supervisor_mode_code",
+        "1",
+        "number of the supervisor's mode; -1 without one",
+        |r| {
+            r.supervisor_mode()
+                .map_or(-1.0, |mode| f64::from(mode as u8))
+        },
+    ),
+    (
+        "supervisor_limits_code",
+        "1",
+        "bits of what binds the command",
+        |r| r.supervisor.map_or(0.0, |s| s.limits.bits().into()),
+    ),
+    (
+        "supervisor_events_code",
+        "1",
+        "bits of what happened",
+        |r| r.supervisor.map_or(0.0, |s| s.events.bits().into()),
     ),
 ];
 

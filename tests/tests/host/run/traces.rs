@@ -11,9 +11,10 @@ use firmware_bench::scene::policy_kind::PolicyKind;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::record::{Field, Row, RowAccessor};
 use serde_json::Value;
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
-use system_tests::{run_scene, scene_path};
+use system_tests::{root, run_scene, scene_path};
 use tempfile::TempDir;
 
 /// A long run is written group by group, and every row is there, in its order.
@@ -304,6 +305,64 @@ fn levitation_is_in_the_trace() {
             "{name}"
         );
     }
+
+    // Numbers say what the words say, as the documentation has them; bits are there where names are.
+    let text = fs::read_to_string(root().join("docs/src/host/results.md")).unwrap();
+    let told = |column: &str| {
+        let line = text
+            .lines()
+            .find(|l| l.starts_with(&format!("| `{column}_code`")));
+        line.unwrap().to_owned()
+    };
+    use supervisor::Mode as S;
+    let modes = [
+        S::Levitated,
+        S::Approach,
+        S::Bounce,
+        S::BackwardWhirl,
+        S::Pinned,
+        S::Handover,
+        S::SensorFault,
+        S::HandedBack,
+    ];
+    let all: Vec<String> = modes
+        .iter()
+        .map(|mode| format!("{} `{}`", *mode as u8, mode.name()))
+        .collect();
+    assert!(told("supervisor_mode").contains(&all.join(", ")), "{all:?}");
+    for name in ["mode", "supervisor_mode"] {
+        let (line, numbers) = (
+            told(name),
+            column(&supervised, &format!("{name}_code"), number),
+        );
+        let words = column(&supervised, name, word);
+        assert!(words.iter().collect::<BTreeSet<_>>().len() > 1, "{name}");
+        for (number, word) in numbers.iter().zip(&words) {
+            assert!(
+                line.contains(&format!("{number} `{word}`")),
+                "{number}: {word}"
+            );
+        }
+    }
+    let nothing = |rows: &[Row], name: &str| -> Vec<bool> {
+        let bits = column(rows, &format!("{name}_code"), number);
+        let words = column(rows, name, word);
+        (bits.iter().zip(&words)).for_each(|(bits, word)| {
+            let names = word.split_whitespace().count();
+            assert_eq!(
+                (*bits as u32).count_ones() as usize,
+                names,
+                "{name}: {bits}, {word}"
+            );
+        });
+        bits.iter().map(|bits| *bits == 0.0).collect()
+    };
+    for name in ["supervisor_limits", "supervisor_events"] {
+        assert!(nothing(&supervised, name).contains(&false), "{name}");
+        assert!(!nothing(&alone, name).contains(&false), "{name}");
+    }
+    let without = column(&alone, "supervisor_mode_code", number);
+    assert!(without.iter().all(|code| *code == -1.0));
 }
 
 /// Traces and records of policies that a scene has no longer would be taken for its results.

@@ -157,5 +157,7 @@ function placeOrbit(panel) {
   ctx.beginPath();
   ctx.arc(...here, 4, 0, 2 * Math.PI);
   ctx.fill();
-  panel.value.textContent = `${short(x[at])}, ${short(y[at])}`;
+  // Always as long, or the panel would jump.
+  const decimals = Math.min(Math.max(3 - Math.ceil(Math.log10(panel.reach || 1)), 0), 9);
+  panel.value.textContent = [x, y].map((of) => of[at].toFixed(decimals).replace("-", "\u2212")).join(", ");
 }
