@@ -529,9 +529,12 @@ impl Told {
     }
 }
 
-/// A share in percent, to two figures.
+/// A share in percent, to two figures; a very small one by what it is under.
 pub(crate) fn percent(share: f64) -> String {
     let percent = 100.0 * share;
+    if percent > 0.0 && percent < 0.005 {
+        return "under 0.01 %".to_owned();
+    }
     let decimals = match percent.abs() {
         9.95.. | 0.0 => 0,
         0.995.. => 1,
