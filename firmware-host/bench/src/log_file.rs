@@ -271,14 +271,17 @@ fn reason(path: &Path) -> impl Fn(&dyn Display) -> String {
 /// Cells between commas, semicolons or tabs, whichever the first line has.
 fn of_csv(path: &Path) -> Result<Columns, String> {
     let refused = reason(path);
-    let text = std::fs::read(path).map_err(|e| refused(&e))?;
-    let head = text.split(|byte| *byte == b'\n').next().unwrap_or_default();
+    let bytes = std::fs::read(path).map_err(|e| refused(&e))?;
+    // As spreadsheets begin a file.
+    let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes);
+    let mut lines = text.split(|byte| *byte == b'\n');
+    let head = (lines.find(|line| !line.starts_with(b"#"))).unwrap_or_default();
     let between = [b';', b'\t'].into_iter().find(|mark| head.contains(mark));
     let mut reader = csv::ReaderBuilder::new()
         .delimiter(between.filter(|_| !head.contains(&b',')).unwrap_or(b','))
         .trim(csv::Trim::All)
         .comment(Some(b'#'))
-        .from_reader(text.as_slice());
+        .from_reader(text);
     let names = reader.headers().map_err(|e| refused(&e))?.clone();
     let mut columns = vec![Column::default(); names.len()];
     for cells in reader.records() {
@@ -474,7 +477,7 @@ mod tests {
 
     #[test]
     fn columns_are_found_by_name_or_renamed_with_their_unit() {
-        let text = "time;x um;\"y*2\";mode\n0.0;1;2;up\n0.1;;4;down\n0.2;5;6;up\n";
+        let text = "\u{feff}# of a machine, once\ntime;x um;\"y*2\";mode\n0.0;1;2;up\n0.1;;4;down\n0.2;5;6;up\n";
         let renamed = ["t_s=time", "x_m=x um*0.5", "y_m=y*2"];
         let log = read("log.csv", text, &renamed).unwrap();
         assert_eq!(log.column("t_s").unwrap(), [0.0, 0.1, 0.2]);
@@ -483,7 +486,7 @@ mod tests {
         assert_eq!(log.column("y_m").unwrap(), [2.0, 4.0, 6.0]);
         let error = log.column("mode").unwrap_err();
         assert!(
-            error.message.contains("line 2") && error.message.contains("up"),
+            error.message.contains("line 3") && error.message.contains("up"),
             "{error}"
         );
         let error = log.column("z").unwrap_err();
