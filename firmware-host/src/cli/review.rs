@@ -116,8 +116,11 @@ fn not_watched(args: &ReviewArgs, error: WatchError) -> CommandError {
     match error {
         WatchError::Scene(error) => error.into(),
         WatchError::Log(LogError { message, help }) => CommandError::Numbers {
+            help: match message.starts_with("no column") {
+                true => format!("{help}: --column measured_x_m=NAME*FACTOR"),
+                false => help,
+            },
             message: format!("{}: {message}", args.file.display()),
-            help: format!("{help}: --column measured_x_m=NAME*FACTOR"),
         },
     }
 }

@@ -303,8 +303,9 @@ fn what_is_written_and_printed_has_every_plane() {
     }
     let page = fs::read_to_string(out.join("report.html")).unwrap();
     for words in [
-        "Planes side by side: supervisor",
-        "Axis from the side: levitation",
+        "The event: supervisor",
+        "Planes side by side: levitation",
+        "Axis from the side",
         "Plane: the other",
         "<h3>Slope</h3>",
     ] {

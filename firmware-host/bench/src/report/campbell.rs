@@ -228,7 +228,7 @@ fn diagram(analysis: &Analysis) -> Chart {
     );
     curves.retain(|curve| !curve.points.is_empty());
     Chart {
-        label: "Natural frequencies over the spin".to_owned(),
+        label: "Campbell diagram: natural frequencies over the spin".to_owned(),
         x: Axis::linear("spin / Hz", (0.0, to_hz)),
         y: Axis::linear("frequency / Hz", (0.0, 1.05 * highest)),
         curves,

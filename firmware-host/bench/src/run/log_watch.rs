@@ -74,6 +74,15 @@ impl LogTold {
             " Largest radius read: {} of the clearance.",
             radii.join(" and ")
         );
+        if self
+            .largest_radius
+            .iter()
+            .flatten()
+            .any(|radius| *radius > BEYOND)
+        {
+            out += " No rotor goes so far: the unit of the readings is another, which --column measured_x_m=COLUMN*FACTOR turns \
+                    into m, or they do not count from the middle.";
+        }
         match &self.events[..] {
             [] => out += " The supervisor would not have engaged: there is no event in it.",
             events => {
@@ -173,6 +182,11 @@ impl Watcher {
     }
 }
 
+/// Rates that the supervisor takes \[Hz\].
+const LOOP_RATES_HZ: (f64, f64) = (100.0, 1e6);
+/// Nothing that touches a retainer bearing goes so far \[clearances\].
+const BEYOND: f64 = 3.0;
+
 /// Rates that are the same: times of a log are rounded.
 const SAME_RATE: f64 = 1e-3;
 
@@ -185,6 +199,12 @@ pub fn watch(spec: &mut Spec, path: &Path, renamed: &[Renamed]) -> Result<Watche
     log.without(BETWEEN);
     let (period_s, _) = log.ticks(TIME)?;
     let rate_hz = 1.0 / period_s;
+    if !(LOOP_RATES_HZ.0..=LOOP_RATES_HZ.1).contains(&rate_hz) {
+        let message =
+            format!("rows are {period_s:e} s apart by {TIME}: no control loop is so slow or fast");
+        let help = "turn its unit into s: --column t_s=t_s*1e-3, where it is ms";
+        return Err(LogError::new(message, help).into());
+    }
     let told_hz = spec
         .get("run.sample_rate_hz")?
         .and_then(toml::Value::as_float);

@@ -268,4 +268,25 @@ fn what_a_log_lacks_is_named() {
     for part in ["measured_x_m", "log.csv", "t_s, x", "--column"] {
         assert!(said.contains(part), "{part}: {said}");
     }
+    // In milliseconds and micrometres that nobody turned.
+    let rows: Vec<String> = (0..200)
+        .map(|i| format!("{},{i},0\n", 0.05 * f64::from(i)))
+        .collect();
+    fs::write(
+        &log,
+        format!("t_s,measured_x_m,measured_y_m\n{}", rows.concat()),
+    )
+    .unwrap();
+    let output = review(&log, &scene, &[]);
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(
+        output.status.code() == Some(2) && said.contains("t_s*1e-3"),
+        "{said}"
+    );
+    let output = review(&log, &scene, &["--column", "t_s=t_s*1e-3"]);
+    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(
+        output.status.success() && said.contains("No rotor goes so far"),
+        "{said}"
+    );
 }
