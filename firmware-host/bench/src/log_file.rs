@@ -167,12 +167,27 @@ impl LogFile {
         }
     }
 
-    /// The same of columns for x and y.
+    /// The same of one that has as many rows as another: vectors of a MAT file need not.
     ///
     /// # Errors
-    /// As [`Self::column`].
-    pub fn pair(&self, [x, y]: [&str; 2]) -> Result<Vec<[f64; 2]>, LogError> {
-        let rows = self.column(x)?.iter().zip(self.column(y)?);
+    /// As [`Self::column`], and where it has not.
+    pub fn beside(&self, other: &str, name: &str) -> Result<&[f64], LogError> {
+        let (rows, column) = (self.column(other)?.len(), self.column(name)?);
+        match column.len() == rows {
+            true => Ok(column),
+            false => Err(LogError::new(
+                format!("{name} has {} rows and {other} {rows}", column.len()),
+                "give columns of one log, a row a tick",
+            )),
+        }
+    }
+
+    /// Columns for x and y, with as many rows as another.
+    ///
+    /// # Errors
+    /// As [`Self::beside`].
+    pub fn pair(&self, other: &str, [x, y]: [&str; 2]) -> Result<Vec<[f64; 2]>, LogError> {
+        let rows = self.beside(other, x)?.iter().zip(self.beside(other, y)?);
         Ok(rows.map(|(x, y)| [*x, *y]).collect())
     }
 

@@ -31,11 +31,14 @@ impl Log {
     /// [`LogError`]: which column is missing, or which row is no number.
     pub fn read(path: &Path, renamed: &[Renamed]) -> Result<Self, LogError> {
         let log = ticks(path, renamed)?;
-        let spin_rad_s = log.has(SPIN).then(|| log.column(SPIN)).transpose()?;
+        let spin_rad_s = log
+            .has(SPIN)
+            .then(|| log.beside(POSITION[0], SPIN))
+            .transpose()?;
         Ok(Self {
-            position_m: whole(&log, POSITION)?,
-            command_n: whole(&log, COMMAND)?,
-            stimulus_n: whole(&log, STIMULUS)?,
+            position_m: whole(&log, POSITION[0], POSITION)?,
+            command_n: whole(&log, POSITION[0], COMMAND)?,
+            stimulus_n: whole(&log, POSITION[0], STIMULUS)?,
             spin_rad_s: spin_rad_s.map(<[f64]>::to_vec),
             period_s: log.period_s(TIME)?,
         })
@@ -46,7 +49,7 @@ impl Log {
     /// # Errors
     /// As [`Self::read`].
     pub fn positions(path: &Path, renamed: &[Renamed]) -> Result<Vec<[f64; 2]>, LogError> {
-        whole(&ticks(path, renamed)?, POSITION)
+        whole(&ticks(path, renamed)?, POSITION[0], POSITION)
     }
 }
 
@@ -56,9 +59,9 @@ fn ticks(path: &Path, renamed: &[Renamed]) -> Result<LogFile, LogError> {
     Ok(log)
 }
 
-/// A pair of columns without a gap.
-fn whole(log: &LogFile, names: [&str; 2]) -> Result<Vec<[f64; 2]>, LogError> {
-    let all = log.pair(names)?;
+/// A pair of columns without a gap, as long as another.
+fn whole(log: &LogFile, other: &str, names: [&str; 2]) -> Result<Vec<[f64; 2]>, LogError> {
+    let all = log.pair(other, names)?;
     let gap = all
         .iter()
         .position(|pair| !pair.iter().all(|x| x.is_finite()));

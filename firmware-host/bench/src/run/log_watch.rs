@@ -119,7 +119,7 @@ impl Rows {
         let named = |names: [&str; 2]| names.map(|name| format!("{prefix}{name}"));
         let pair = |names: [&str; 2]| {
             let [x, y] = named(names);
-            log.pair([&x, &y])
+            log.pair(TIME, [&x, &y])
         };
         let if_there = |names: [&str; 2]| {
             let there = named(names).iter().any(|name| log.has(name));
@@ -228,7 +228,7 @@ pub enum WatchError {
 fn watched(scene: &Scene, log: &LogFile) -> Result<Watched, LogError> {
     let (planes, rows) = rows(scene, log)?;
     let (period_s, ticks) = log.ticks(TIME)?;
-    let spin = log.has(SPIN).then(|| log.column(SPIN)).transpose()?;
+    let spin = log.has(SPIN).then(|| log.beside(TIME, SPIN)).transpose()?;
     let mut watcher = watcher(scene, &planes)?;
     let times = log.column(TIME)?;
     let mut records = Vec::new();

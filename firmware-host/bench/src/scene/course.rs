@@ -189,15 +189,14 @@ impl Reader<'_> {
             |LogError { message, help }| self.error(&key, &format!("{file}: {message}"), &help);
         let log = LogFile::read(&folder.join(file), &[])
             .map_err(|e| self.error(&key, &e.message, &e.help))?;
-        let times = log
-            .column(w.time_column.unwrap_or("t_s"))
-            .map_err(refused)?;
+        let time = w.time_column.unwrap_or("t_s");
+        let times = log.column(time).map_err(refused)?;
         let none = vec![0.0; times.len()];
         let [x, y] = match w.columns {
             [None, None] => w.usual.map(Some),
             named => named,
         }
-        .map(|name| name.map_or(Ok(none.as_slice()), |name| log.column(name)));
+        .map(|name| name.map_or(Ok(none.as_slice()), |name| log.beside(time, name)));
         let (x, y) = (x.map_err(refused)?, y.map_err(refused)?);
         let points = times.iter().zip(x).zip(y);
         let points: Vec<(f64, V2)> = points.map(|((t, x), y)| (*t, V2::new(*x, *y))).collect();

@@ -118,21 +118,28 @@ fn a_log_shows_the_event_that_the_record_has() {
     assert!(other["log"]["has_spin"] == false && other["log"]["has_force"] == true);
     if let Some(python) = python() {
         let mat = out.join("foreign.mat");
-        let convert = "import sys, pandas, scipy.io\n\
-                       d = pandas.read_csv(sys.argv[1], sep=';')\n\
-                       scipy.io.savemat(sys.argv[2], {c: d[c].to_numpy() for c in d}, do_compression=True)";
-        let done = Command::new(python)
-            .arg("-c")
-            .arg(convert)
-            .args([&written, &mat])
-            .output();
-        let done = done.unwrap();
-        assert!(
-            done.status.success(),
-            "{}",
-            String::from_utf8_lossy(&done.stderr)
-        );
+        let convert = |all: &str| {
+            let script = format!(
+                "import sys, pandas, scipy.io\n\
+                 d = pandas.read_csv(sys.argv[1], sep=';')\n\
+                 scipy.io.savemat(sys.argv[2], {{c: {all} for c in d}}, do_compression=True)"
+            );
+            let mut python = Command::new(&python);
+            let done = python.arg("-c").arg(script).args([&written, &mat]).output();
+            let done = done.unwrap();
+            let said = String::from_utf8_lossy(&done.stderr);
+            assert!(done.status.success(), "{said}");
+        };
+        convert("d[c].to_numpy()");
         assert_eq!(json(&mat, &scene, &columns)["summary"], other["summary"]);
+        // Vectors of a file need not be of one log.
+        convert("d[c].to_numpy()[3 * (c == 'fy'):]");
+        let refused = review(&mat, &scene, &columns);
+        let said = String::from_utf8_lossy(&refused.stderr);
+        assert!(
+            refused.status.code() == Some(2) && said.contains("rows and t_s"),
+            "{said}"
+        );
     }
 
     // Without forces, which is said; what is read as a touch stays one.
