@@ -82,6 +82,14 @@ pub struct LogFile {
     lacking: BTreeMap<String, String>,
 }
 
+/// Names of columns, each pair for x and y, as traces of this program have them.
+pub(crate) const TIME: &str = "t_s";
+pub(crate) const POSITION: [&str; 2] = ["measured_x_m", "measured_y_m"];
+pub(crate) const COMMAND: [&str; 2] = ["commanded_x_n", "commanded_y_n"];
+pub(crate) const SPIN: &str = "spin_rad_s";
+/// Rows that stand between two ticks there.
+const BETWEEN: &str = "mode_change";
+
 /// Largest deviation of a time from an even course, as a share of the period.
 const UNEVEN: f64 = 0.01;
 /// Largest part of a tick that a row may lie beside one.
@@ -121,6 +129,16 @@ impl LogFile {
                 }
             }
         }
+        Ok(log)
+    }
+
+    /// The same of ticks: without the rows that stand between two of them in traces of this program.
+    ///
+    /// # Errors
+    /// As [`Self::read`].
+    pub(crate) fn of_ticks(path: &Path, renamed: &[Renamed]) -> Result<Self, LogError> {
+        let mut log = Self::read(path, renamed)?;
+        log.without(BETWEEN);
         Ok(log)
     }
 
@@ -180,6 +198,19 @@ impl LogFile {
                 "give columns of one log, a row a tick",
             )),
         }
+    }
+
+    /// The same of a column that a log may lack.
+    ///
+    /// # Errors
+    /// As [`Self::beside`], of one that is there or was said to be.
+    pub(crate) fn beside_if_there(
+        &self,
+        other: &str,
+        name: &str,
+    ) -> Result<Option<&[f64]>, LogError> {
+        let there = self.has(name);
+        there.then(|| self.beside(other, name)).transpose()
     }
 
     /// Columns for x and y, with as many rows as another.
@@ -259,7 +290,7 @@ impl LogFile {
     }
 
     /// Leaves out rows in which a column is not zero.
-    pub fn without(&mut self, name: &str) {
+    fn without(&mut self, name: &str) {
         let Some(marks) = self.columns.remove(name) else {
             return;
         };

@@ -1,6 +1,6 @@
 //! A log of a run of commissioning: columns of one plane by name, a row a tick.
 
-use crate::log_file::{LogError, LogFile, Renamed};
+use crate::log_file::{COMMAND, LogError, LogFile, POSITION, Renamed, SPIN, TIME};
 use std::path::Path;
 
 /// A log, SI units.
@@ -15,14 +15,8 @@ pub struct Log {
     pub spin_rad_s: Option<Vec<f64>>,
 }
 
-/// Names of columns, each pair for x and y.
-const POSITION: [&str; 2] = ["measured_x_m", "measured_y_m"];
-const COMMAND: [&str; 2] = ["commanded_x_n", "commanded_y_n"];
+/// For x and y.
 const STIMULUS: [&str; 2] = ["stimulus_x_n", "stimulus_y_n"];
-const SPIN: &str = "spin_rad_s";
-const TIME: &str = "t_s";
-/// Rows that stand between two ticks, in traces of this program.
-const BETWEEN: &str = "mode_change";
 
 impl Log {
     /// Reads a log with these columns, or others that are renamed to them.
@@ -30,15 +24,12 @@ impl Log {
     /// # Errors
     /// [`LogError`]: which column is missing, or which row is no number.
     pub fn read(path: &Path, renamed: &[Renamed]) -> Result<Self, LogError> {
-        let log = ticks(path, renamed)?;
-        let spin_rad_s = log
-            .has(SPIN)
-            .then(|| log.beside(POSITION[0], SPIN))
-            .transpose()?;
+        let log = LogFile::of_ticks(path, renamed)?;
+        let spin_rad_s = log.beside_if_there(POSITION[0], SPIN)?;
         Ok(Self {
-            position_m: whole(&log, POSITION[0], POSITION)?,
-            command_n: whole(&log, POSITION[0], COMMAND)?,
-            stimulus_n: whole(&log, POSITION[0], STIMULUS)?,
+            position_m: whole(&log, POSITION)?,
+            command_n: whole(&log, COMMAND)?,
+            stimulus_n: whole(&log, STIMULUS)?,
             spin_rad_s: spin_rad_s.map(<[f64]>::to_vec),
             period_s: log.period_s(TIME)?,
         })
@@ -49,19 +40,13 @@ impl Log {
     /// # Errors
     /// As [`Self::read`].
     pub fn positions(path: &Path, renamed: &[Renamed]) -> Result<Vec<[f64; 2]>, LogError> {
-        whole(&ticks(path, renamed)?, POSITION[0], POSITION)
+        whole(&LogFile::of_ticks(path, renamed)?, POSITION)
     }
 }
 
-fn ticks(path: &Path, renamed: &[Renamed]) -> Result<LogFile, LogError> {
-    let mut log = LogFile::read(path, renamed)?;
-    log.without(BETWEEN);
-    Ok(log)
-}
-
-/// A pair of columns without a gap, as long as another.
-fn whole(log: &LogFile, other: &str, names: [&str; 2]) -> Result<Vec<[f64; 2]>, LogError> {
-    let all = log.pair(other, names)?;
+/// A pair of columns without a gap.
+fn whole(log: &LogFile, names: [&str; 2]) -> Result<Vec<[f64; 2]>, LogError> {
+    let all = log.pair(POSITION[0], names)?;
     let gap = all
         .iter()
         .position(|pair| !pair.iter().all(|x| x.is_finite()));

@@ -1,7 +1,7 @@
 //! A log of a machine, of whatever program, watched by the supervisor as if it had been there in shadow: what it would have seen
 //! is in flight records as firmware writes them.
 
-use crate::log_file::{LogError, LogFile, Renamed};
+use crate::log_file::{COMMAND, LogError, LogFile, POSITION, Renamed, SPIN, TIME};
 use crate::run::controller::written;
 use crate::scene::Scene;
 use crate::scene::diagnostic::SceneError;
@@ -10,14 +10,8 @@ use serde::Serialize;
 use std::path::Path;
 use supervisor::{Command, Record, RotorSupervisor, Sample, Stamp, Status, Supervisor};
 
-/// Names of columns, each pair for x and y. Of a scene with several planes the plane's name stands before them, with a dot.
-const MEASURED: [&str; 2] = ["measured_x_m", "measured_y_m"];
-const COMMANDED: [&str; 2] = ["commanded_x_n", "commanded_y_n"];
+/// For x and y. Of a scene with several planes the plane's name stands before all names of columns but time and spin, with a dot.
 const DELIVERED: [&str; 2] = ["delivered_x_n", "delivered_y_n"];
-const SPIN: &str = "spin_rad_s";
-const TIME: &str = "t_s";
-/// Rows between two ticks, in traces of this program.
-const BETWEEN: &str = "mode_change";
 
 /// Ticks of a record.
 const RECORD: usize = 512;
@@ -126,8 +120,8 @@ impl Rows {
             there.then(|| pair(names)).transpose()
         };
         Ok(Self {
-            position_m: pair(MEASURED)?,
-            command_n: if_there(COMMANDED)?,
+            position_m: pair(POSITION)?,
+            command_n: if_there(COMMAND)?,
             delivered_n: if_there(DELIVERED)?,
         })
     }
@@ -195,9 +189,8 @@ const SAME_RATE: f64 = 1e-3;
 /// # Errors
 /// [`WatchError`].
 pub fn watch(spec: &mut Spec, path: &Path, renamed: &[Renamed]) -> Result<Watched, WatchError> {
-    let mut log = LogFile::read(path, renamed)?;
-    log.without(BETWEEN);
-    let (period_s, _) = log.ticks(TIME)?;
+    let log = LogFile::of_ticks(path, renamed)?;
+    let (period_s, ticks) = log.ticks(TIME)?;
     let rate_hz = 1.0 / period_s;
     if !(LOOP_RATES_HZ.0..=LOOP_RATES_HZ.1).contains(&rate_hz) {
         let message =
@@ -211,7 +204,7 @@ pub fn watch(spec: &mut Spec, path: &Path, renamed: &[Renamed]) -> Result<Watche
     if told_hz.is_none_or(|told_hz| (told_hz / rate_hz - 1.0).abs() > SAME_RATE) {
         spec.set("run.sample_rate_hz", rate_hz)?;
     }
-    Ok(watched(&spec.resolve()?, &log)?)
+    Ok(watched(&spec.resolve()?, &log, (period_s, &ticks))?)
 }
 
 /// Why a log is not watched.
@@ -225,10 +218,14 @@ pub enum WatchError {
     Scene(#[from] SceneError),
 }
 
-fn watched(scene: &Scene, log: &LogFile) -> Result<Watched, LogError> {
+/// The same of a log whose rows stand at these ticks.
+fn watched(
+    scene: &Scene,
+    log: &LogFile,
+    (period_s, ticks): (f64, &[u32]),
+) -> Result<Watched, LogError> {
     let (planes, rows) = rows(scene, log)?;
-    let (period_s, ticks) = log.ticks(TIME)?;
-    let spin = log.has(SPIN).then(|| log.beside(TIME, SPIN)).transpose()?;
+    let spin = log.beside_if_there(TIME, SPIN)?;
     let mut watcher = watcher(scene, &planes)?;
     let times = log.column(TIME)?;
     let mut records = Vec::new();
@@ -321,7 +318,7 @@ fn rows(scene: &Scene, log: &LogFile) -> Result<(Vec<usize>, Vec<Rows>), LogErro
             .collect(),
     };
     let there = known.iter().filter(|(_, prefix)| {
-        MEASURED
+        POSITION
             .iter()
             .any(|name| log.has(&format!("{prefix}{name}")))
     });
@@ -334,7 +331,7 @@ fn rows(scene: &Scene, log: &LogFile) -> Result<(Vec<usize>, Vec<Rows>), LogErro
     };
     if found.is_empty() {
         // Names what is missing, and what is there.
-        log.column(&format!("{prefix}{}", MEASURED[0]))?;
+        log.column(&format!("{prefix}{}", POSITION[0]))?;
     }
     let rows: Result<Vec<Rows>, LogError> = found.iter().map(|(_, p)| Rows::of(log, p)).collect();
     Ok((found.iter().map(|(plane, _)| *plane).collect(), rows?))

@@ -15,7 +15,7 @@ use crate::scene::values::FaultName;
 use plant_model::machine::params::Unbalance;
 use plant_model::{Change, V2};
 
-/// Everything that happens.
+/// Everything that happens; loads with the first plane alone.
 pub(crate) struct Events {
     pub(crate) disturbances: Vec<Disturbance>,
     pub(crate) base_motions: Vec<BaseMotion>,
@@ -29,7 +29,12 @@ pub(crate) struct Events {
 pub(crate) fn events(spec: &PlaneSpec) -> Result<Events, SceneError> {
     let reader = Reader { spec };
     let written = &spec.tables;
-    let disturbances = each("disturbance", &written.disturbance, |path, d| {
+    // Loads are the scene's: with the first plane, so that files are read once.
+    let (loads, shakes): (&[_], &[_]) = match spec.index {
+        0 => (&written.disturbance, &written.base_motion),
+        _ => (&[], &[]),
+    };
+    let disturbances = each("disturbance", loads, |path, d| {
         let course = reader.course(path, &d.written())?;
         Ok(Disturbance {
             // Until the rotor is known.
@@ -40,12 +45,12 @@ pub(crate) fn events(spec: &PlaneSpec) -> Result<Events, SceneError> {
             shape: course.shape,
         })
     })?;
-    let base_motions = each("base_motion", &written.base_motion, |path, b| {
-        if written.stator.inner.is_some() {
-            let message = "needs a rigid stator: the rings of this one would feel it too";
-            let help = "remove [stator], or act on the rotor by [[disturbance]]";
-            return Err(reader.error(path, message, help));
-        }
+    if written.stator.inner.is_some() && !written.base_motion.is_empty() {
+        let message = "needs a rigid stator: the rings of this one would feel it too";
+        let help = "remove [stator], or act on the rotor by [[disturbance]]";
+        return Err(reader.error("base_motion[0]", message, help));
+    }
+    let base_motions = each("base_motion", shakes, |path, b| {
         let course = reader.course(path, &b.written())?;
         Ok(BaseMotion {
             start_s: course.start_s,
