@@ -45,3 +45,38 @@ pub(crate) fn bisect(ends: (f64, f64), below: impl Fn(f64) -> bool) -> f64 {
     let (low, high) = bracket(ends, below);
     0.5 * (low + high)
 }
+
+/// Highest value between two points (θ, value, slope): what rises at the first and falls at the second has one top in between.
+pub(crate) fn top_between(
+    of: &dyn Fn(f64) -> (f64, f64),
+    (from, start, start_slope): (f64, f64, f64),
+    (to, end, end_slope): (f64, f64, f64),
+) -> f64 {
+    let mut top = start.max(end);
+    if !(start_slope > 0.0 && end_slope < 0.0) {
+        return top;
+    }
+    // Regula falsi on the slope, with the Illinois rule. The value is flat at the top.
+    let (mut low, mut high) = ((from, start_slope), (to, end_slope));
+    let mut rose = None;
+    for _ in 0..6 {
+        let at = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
+        let (value, slope) = of(at);
+        top = top.max(value);
+        // No place between the two can be higher by more.
+        if slope.abs() * (high.0 - low.0) <= 1e-12 * top.abs() {
+            break;
+        }
+        let rises = slope > 0.0;
+        let again = rose == Some(rises);
+        if rises {
+            low = (at, slope);
+            high.1 *= if again { 0.5 } else { 1.0 };
+        } else {
+            high = (at, slope);
+            low.1 *= if again { 0.5 } else { 1.0 };
+        }
+        rose = Some(rises);
+    }
+    top
+}

@@ -63,10 +63,10 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! [`machine`] is a rotor that tilts, bends and touches in several planes; [`Plant`] is the one that does none of it.
+//! [`lanes`] runs many of the simplest ones at a time. [`machine`] is a rotor that tilts, bends and touches in several planes; [`Plant`] is the one that does none of it.
 //!
 //! Files, each importing only from those above it: `vector`, `bisection`, `params`, `contact`, `friction`, `mode`, `energy`,
-//! `series`, `quadrature`, `ellipse`, `race`, `readout`, `integrate`, `machine`, `plant`, `analysis`.
+//! `series`, `quadrature`, `ellipse`, `race`, `readout`, `integrate`, `lanes`, `machine`, `plant`, `analysis`.
 
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
@@ -79,6 +79,7 @@ mod ellipse;
 pub mod energy;
 mod friction;
 mod integrate;
+pub mod lanes;
 pub mod machine;
 mod mode;
 pub mod params;

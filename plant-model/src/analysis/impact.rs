@@ -17,15 +17,16 @@
 //! Without unbalance the whole is symmetric about the centre: from touch to touch only the normal and
 //! the tangential speed count, not where on the wall. With unbalance its phase comes in as well.
 
+mod many;
+
 use super::onset::critical_tangential_speed_m_s;
-use crate::bisection::try_bracket;
 use crate::contact::restitution_of;
 use crate::params::{ContactLaw, PlantParams, RingParams, SpinParams, Start, StatorParams};
 use crate::plant::build;
 use crate::vector::Body;
 use crate::vector::perp;
 use crate::{BuildError, Inputs, Options, PlantError, Snapshot, V2};
-use std::ops::ControlFlow;
+pub use many::{Tried, critical_speeds_m_s, run_impacts};
 
 /// An impact: the rotor at the wall, concentric stator at rest.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -85,12 +86,8 @@ pub enum Outcome {
 pub struct ImpactOutcome {
     /// What it ended in.
     pub outcome: Outcome,
-    /// Touches in all, the first included.
-    pub impacts: u32,
-    /// Touches until the backward speed first passed v_t,crit, that one included; `None` if it never did.
+    /// Touches until one at whose start or end the backward speed had passed v_t,crit, that one included; `None` if none had.
     pub impacts_to_threshold: Option<u32>,
-    /// When it was decided \[s\].
-    pub t_s: f64,
 }
 
 /// Why nothing can be said of an impact.
@@ -140,10 +137,8 @@ pub fn run_impact(
         }
         plant.advance(t_s, &Inputs::default(), &mut follow)?;
         let now = plant.snapshot();
-        if now.mode.in_contact() {
-            follow(&now);
-        }
         if plant.meters().peak_backward_speed_m_s >= criterion.whirl_multiple * threshold {
+            to_threshold = to_threshold.or(Some(impacts));
             break Outcome::Whirl;
         }
         if !now.mode.in_contact() && stays_free(params, &now, impact.spin_phase_rad) {
@@ -152,9 +147,7 @@ pub fn run_impact(
     };
     Ok(ImpactOutcome {
         outcome,
-        impacts,
         impacts_to_threshold: to_threshold,
-        t_s: f64::from(looks) * LOOK_S,
     })
 }
 
@@ -272,33 +265,91 @@ pub fn critical_speed_m_s(
     search: &Search,
     criterion: &Criterion,
 ) -> Result<Option<f64>, ImpactError> {
-    let whirls = |speed_m_s: f64| {
-        let impact = Impact {
-            speed_m_s,
+    let mut hunt = Hunt::new(params, (inclination_rad, spin_rad_s), search)?;
+    loop {
+        match hunt.next() {
+            Next::Found(speed_m_s) => return Ok(speed_m_s),
+            Next::Try(impact) => {
+                let after = run_impact(params, &impact, criterion)?;
+                hunt.answer(after.outcome == Outcome::Whirl);
+            }
+        }
+    }
+}
+
+/// A search on its way: which impact is to be tried next.
+#[derive(Debug, Clone)]
+struct Hunt {
+    search: Search,
+    inclination_rad: f64,
+    spin_rad_s: f64,
+    /// Largest speed that did not whirl, and smallest that did.
+    low: f64,
+    high: Option<f64>,
+    to: f64,
+    trial: f64,
+}
+
+/// What a search wants.
+enum Next {
+    Try(Impact),
+    Found(Option<f64>),
+}
+
+impl Hunt {
+    fn new(
+        params: &PlantParams,
+        (inclination_rad, spin_rad_s): (f64, f64),
+        search: &Search,
+    ) -> Result<Self, ImpactError> {
+        let (low, to) = search_range(params, inclination_rad)?;
+        Ok(Self {
+            search: *search,
             inclination_rad,
             spin_rad_s,
-            spin_phase_rad: 0.0,
+            low,
+            high: None,
+            to,
+            trial: low,
+        })
+    }
+
+    fn next(&mut self) -> Next {
+        let Self { low, search, .. } = *self;
+        self.trial = match self.high {
+            None => low * (1.0 + search.step),
+            Some(high) => 0.5 * (low + high),
         };
-        run_impact(params, &impact, criterion).map(|a| a.outcome == Outcome::Whirl)
-    };
-    let (from, to) = search_range(params, inclination_rad)?;
-    let mut low = from;
-    let climb = loop {
-        let high = low * (1.0 + search.step);
-        if high > to {
-            break ControlFlow::Continue(());
+        let over = match self.high {
+            None => self.trial > self.to,
+            Some(high) => {
+                high - low <= search.tolerance * high || !(low < self.trial && self.trial < high)
+            }
+        };
+        if over {
+            return Next::Found(self.high);
         }
-        if whirls(high)? {
-            break ControlFlow::Break(high);
+        Next::Try(self.impact())
+    }
+
+    /// The impact that is tried.
+    fn impact(&self) -> Impact {
+        Impact {
+            speed_m_s: self.trial,
+            inclination_rad: self.inclination_rad,
+            spin_rad_s: self.spin_rad_s,
+            spin_phase_rad: 0.0,
         }
-        low = high;
-    };
-    let ControlFlow::Break(high) = climb else {
-        return Ok(None);
-    };
-    let narrow = |low: f64, high: f64| high - low <= search.tolerance * high;
-    let (_, critical) = try_bracket((low, high), narrow, |speed| whirls(speed).map(|w| !w))?;
-    Ok(Some(critical))
+    }
+
+    /// Takes in whether the impact that was tried whirls.
+    fn answer(&mut self, whirls: bool) {
+        if whirls {
+            self.high = Some(self.trial);
+        } else {
+            self.low = self.trial;
+        }
+    }
 }
 
 /// From half the speed that suffices if nothing is lost between bounces to twice that which suffices

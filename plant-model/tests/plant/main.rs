@@ -10,6 +10,7 @@ mod extreme;
 mod flight;
 mod flight_between_samples;
 mod impacts;
+mod lanes;
 mod linear;
 mod matrices;
 mod peaks;
