@@ -136,7 +136,7 @@ fn plain(markdown: &str) -> String {
 }
 
 /// Head of a table in Markdown.
-const HEAD: &str = "| Key | Type or unit, range | Default | Meaning |\n|---|---|---|---|\n";
+const HEAD: &str = "| Key | Value | Default | Meaning |\n|---|---|---|---|\n";
 
 /// The page about keys, in Markdown: a heading and a table for each table of a scene, with those below it among its rows.
 pub fn markdown_table() -> String {

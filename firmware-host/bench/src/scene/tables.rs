@@ -271,7 +271,7 @@ key_tables! {
     }
 
     DisturbanceTable {
-        start_s: Option<f64> [or "required; with `file` 0"], "s", START_S, "must lie before the end of the run; added to the times of a file", "t", "time", "at_s";
+        start_s: Option<f64> [or "required; with `file` 0"], "s", START_S, "before the end of the run; added to the times of a file", "t", "time", "at_s";
         duration_s: Option<f64> [or "required; with `file` to its last time"], "s", DURATION_S, "how long it acts", "length";
         force_n: Option<Pair> [or "required; with `file` [1, 1]"], "N", Within(-1e9, 1e9), "force on the rotor; the amplitude where it varies; multiplies the columns of a file", "f", "amplitude";
         position_m: Option<f64> [or "the centre of mass"], "m", Finite, "where along the axis", "z";
@@ -285,7 +285,7 @@ key_tables! {
     }
 
     BaseMotionTable {
-        start_s: Option<f64> [or "required; with `file` 0"], "s", START_S, "must lie before the end of the run; added to the times of a file", "t", "time", "at_s";
+        start_s: Option<f64> [or "required; with `file` 0"], "s", START_S, "before the end of the run; added to the times of a file", "t", "time", "at_s";
         duration_s: Option<f64> [or "required; with `file` to its last time"], "s", DURATION_S, "how long it acts", "length";
         acceleration_m_s2: Option<Pair> [or "required; with `file` [1, 1]"], "m/s²", Within(-1e7, 1e7), "of the housing; the amplitude where it varies; multiplies the columns of a file", "a", "amplitude";
         shape: ShapeName [= ShapeName::Constant], "", ANY, "[course](scenes.md#loads) over the interval", "form", "kind";
@@ -298,7 +298,7 @@ key_tables! {
     }
 
     OutageTable {
-        start_s: f64 [required], "s", START_S, "must lie before the end of the run", "t", "time", "at_s";
+        start_s: f64 [required], "s", START_S, "before the end of the run", "t", "time", "at_s";
         duration_s: f64 [required], "s", DURATION_S, "how long it lasts", "length";
         delivers: Delivers [= Delivers::Nothing], "", ANY, "no force, the opposite force, or x and y exchanged (both axes only)", "kind";
         axis: Axis [= Axis::Both], "", ANY, "which axis fails";
@@ -306,14 +306,14 @@ key_tables! {
     }
 
     SetDownTable {
-        start_s: f64 [required], "s", START_S, "must lie before the end of the run", "t", "time", "at_s";
+        start_s: f64 [required], "s", START_S, "before the end of the run", "t", "time", "at_s";
         duration_s: f64 [required], "s", DURATION_S, "time in which the reference moves there, evenly", "length";
         to: Pair [required "give [x, y] in clearances, as [0.0, -1.2]"], "1", Within(-100.0, 100.0), "new reference in clearances, as seen from the magnets; beyond 1 it presses the rotor on its retainer bearing", "reference", "target";
         announced: bool [= false], "", ANY, "the supervisor gets the status `SET_DOWN`, from `start_s` until another one starts";
     }
 
     FaultTable {
-        start_s: f64 [required], "s", START_S, "must lie before the end of the run", "t", "time", "at_s";
+        start_s: f64 [required], "s", START_S, "before the end of the run", "t", "time", "at_s";
         duration_s: f64 [required], "s", DURATION_S, "how long it lasts", "length";
         kind: FaultName [required], "", ANY, "see [kinds of fault](#kinds-of-fault), with the keys of each", "type";
         axis: Option<Axis> [or "`both`"], "", ANY, "not for kinds that concern the pair";
@@ -328,7 +328,7 @@ key_tables! {
     }
 
     ChangeTable {
-        at_s: f64 [required], "s", Within(0.0, 1e5), "must lie before the end of the run", "t", "time", "start";
+        at_s: f64 [required], "s", Within(0.0, 1e5), "before the end of the run", "t", "time", "start";
         eccentricity_m: Option<f64> [or "as it was"], "m", Within(0.0, 1.0), "new ε_r", "unbalance", "imbalance";
         friction_coefficient: Option<f64> [or "as it was"], "1", Within(0.0, 10.0), "new μ, the same at every speed", "mu", "friction";
         drive_torque_n_m: Option<f64> [or "as it was"], "N m", Within(-1e9, 1e9), "new t_d; needs `spin.inertia_kg_m2`", "torque";
