@@ -19,7 +19,7 @@ struct Cli {
 #[derive(Debug, Subcommand)]
 enum Command {
     /// Write a commented scene of a machine from its numbers, to run and to change.
-    Init(init::InitArgs),
+    Init(Box<init::InitArgs>),
     /// Run a scene under each of its policies; print a table, write traces and a report.
     Run(run::RunArgs),
     /// Run a scene again and again with keys that vary by a design, into one file with a row a run.

@@ -1,9 +1,11 @@
 //! `init FILE`: a scene of a machine from its numbers.
 
 mod ask;
+mod shaft;
 mod text;
 
 use self::ask::Number;
+use self::shaft::{Disc, Shaft};
 use crate::cli::error::{CommandError, pretty, print};
 use crate::cli::load;
 use crate::cli::output::OutputError;
@@ -12,7 +14,6 @@ use firmware_bench::scene::Scene;
 use firmware_bench::scene::schema::json_schema;
 use firmware_studies::machines::drawn::rule_of_thumb;
 use firmware_studies::overloads::tune::acceptable_near;
-use std::f64::consts::PI;
 use std::fs::OpenOptions;
 use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
@@ -39,9 +40,15 @@ macro_rules! numbers {
             $(#[arg($($rule)*)])*
             $name: Option<f64>,)*
             /// A whole rotor in two bearings: where they are along the axis, from the centre of mass, as -0.2,0.25. With its
-            /// inertias, its length, or length and diameter of its shaft.
+            /// inertias, its length, or length and diameter of its shaft. With --shaft-file from its left end, as 0.1,0.6.
             #[arg(long, allow_hyphen_values = true, value_delimiter = ',', num_args = 1, value_name = "A,B")]
             bearings_m: Option<Vec<f64>>,
+            /// A shaft that bends, from CSV: a row a section from left to right, with the columns length_m, outer_diameter_m,
+            /// and, where they are not 0 or of steel, inner_diameter_m, density_kg_m3, youngs_modulus_n_m2, poisson_ratio.
+            /// A disc in the middle of a section: disc_mass_kg, disc_transverse_inertia_kg_m2, disc_polar_inertia_kg_m2.
+            #[arg(long, value_name = "FILE", requires = "bearings_m",
+                conflicts_with_all = ["mass_kg", "length_m", "transverse_inertia_kg_m2"])]
+            shaft_file: Option<PathBuf>,
         }
 
         /// What they may be, and how they are asked for.
@@ -99,6 +106,9 @@ numbers! {
     contact_radius_m: POSITIVE;
     /// Static load on this plane in N, such as the weight of a horizontal rotor [default: 0]
     load_n: NOT_NEGATIVE;
+    /// Gravity across the axis in m/s², as 9.81 of a horizontal rotor, in the place of --load-n
+    #[arg(conflicts_with = "load_n")]
+    gravity_m_s2: NOT_NEGATIVE;
     /// Transverse moment of inertia about the centre of mass in kg m², with --bearings-m
     #[arg(requires = "bearings_m", requires = "polar_inertia_kg_m2")]
     transverse_inertia_kg_m2: POSITIVE;
@@ -114,29 +124,35 @@ numbers! {
 }
 
 /// What two bearings need beside the numbers of one.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 struct Bearings {
+    /// As the scene counts them: from the centre of mass, or from the left end of a shaft.
     positions_m: [f64; 2],
     body: Body,
 }
 
 /// The rotor in them.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 enum Body {
     Rigid {
         transverse_inertia_kg_m2: f64,
         polar_inertia_kg_m2: f64,
     },
-    /// A shaft of one diameter with a disc in its middle.
-    Shaft {
-        length_m: f64,
-        diameter_m: f64,
-        disc_kg: f64,
-    },
+    Shaft(Shaft),
+}
+
+impl Bearings {
+    /// Radius of the shaft in one of them, where there is one.
+    fn radius_m(&self, bearing: usize) -> Option<f64> {
+        match &self.body {
+            Body::Rigid { .. } => None,
+            Body::Shaft(shaft) => shaft.radius_at_m(*self.positions_m.get(bearing)?),
+        }
+    }
 }
 
 /// A machine.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 struct Machine {
     sample_rate_hz: f64,
     mass_kg: f64,
@@ -156,8 +172,8 @@ struct Machine {
 /// A spring that would carry this share of the cap at the wall is stiff enough for a rotor that nothing pulls.
 const CARRIED_SHARE: f64 = 0.3;
 
-/// What a scene assumes of a shaft.
-const STEEL_KG_M3: f64 = 7850.0;
+/// Of a disc of which only the mass is known, in those of its shaft.
+const DISC_DIAMETERS: f64 = 3.0;
 
 const POSITIVE: (fn(f64) -> bool, &str) = (
     |x| x > 0.0 && x.is_finite(),
@@ -177,12 +193,16 @@ impl NumberArgs {
         mut ask: impl FnMut(&Number) -> Result<f64, CommandError>,
     ) -> Result<Machine, CommandError> {
         self.check()?;
+        let shaft = self.shaft_file.as_deref().map(Shaft::read).transpose()?;
         let mut needed =
             |number: &Number, value: Option<f64>| value.map_or_else(|| ask(number), Ok);
         let by_current = self.ki_n_a.zip(self.current_max_a);
         let machine = Machine {
             sample_rate_hz: needed(&NUMBERS.sample_rate_hz, self.sample_rate_hz)?,
-            mass_kg: needed(&NUMBERS.mass_kg, self.mass_kg)?,
+            mass_kg: needed(
+                &NUMBERS.mass_kg,
+                shaft.as_ref().map(Shaft::mass_kg).or(self.mass_kg),
+            )?,
             stiffness_n_m: needed(
                 &NUMBERS.stiffness_n_m,
                 self.ks_n_m.map(|ks| -ks).or(self.stiffness_n_m),
@@ -203,19 +223,26 @@ impl NumberArgs {
             noise_rms_m: needed(&NUMBERS.noise_rms_m, self.noise_rms_m)?,
             load_n: self.load_n.unwrap_or(0.0),
             spin_hz: self.spin_hz,
-            contact_radius_m: self
-                .contact_radius_m
-                .or(self.shaft_diameter_m.map(|d| 0.5 * d)),
+            contact_radius_m: self.contact_radius_m,
             bearings: None,
         };
+        let bearings = self.bearings(&machine, shaft)?;
+        let by_gravity = self.gravity_m_s2.map(|g| g * machine.mass_kg);
+        let radius_m = bearings.as_ref().and_then(|of| of.radius_m(0));
         Ok(Machine {
-            bearings: self.bearings(&machine)?,
+            load_n: by_gravity.unwrap_or(machine.load_n),
+            contact_radius_m: machine.contact_radius_m.or(radius_m),
+            bearings,
             ..machine
         })
     }
 
     /// The two bearings, where they are given.
-    fn bearings(&self, machine: &Machine) -> Result<Option<Bearings>, CommandError> {
+    fn bearings(
+        &self,
+        machine: &Machine,
+        shaft: Option<Shaft>,
+    ) -> Result<Option<Bearings>, CommandError> {
         let refused = |message: String, help: &str| {
             Err(CommandError::Numbers {
                 message,
@@ -225,8 +252,18 @@ impl NumberArgs {
         let Some(places) = &self.bearings_m else {
             return Ok(None);
         };
-        let positions_m = match places[..] {
-            [a, b] if a < 0.0 && b > 0.0 && a.is_finite() && b.is_finite() => [a, b],
+        let positions_m = match (&places[..], &shaft) {
+            (&[a, b], Some(shaft)) if 0.0 <= a && a < b && b <= shaft.length_m() => [a, b],
+            (_, Some(shaft)) => {
+                let message = format!(
+                    "--bearings-m is not of two places on the shaft of {} m",
+                    shaft.length_m()
+                );
+                let help =
+                    "give two from the left end of the shaft, the first nearer to it, as 0.1,0.6";
+                return refused(message, help);
+            }
+            (&[a, b], None) if a < 0.0 && b > 0.0 && a.is_finite() && b.is_finite() => [a, b],
             _ => {
                 let message = "--bearings-m is not of two places on both sides".to_owned();
                 let help = "give two from the centre of mass, the first negative, as -0.2,0.25";
@@ -238,6 +275,10 @@ impl NumberArgs {
             let help = "with --bearings-m it is that of each magnet, 0 or negative";
             return refused(message, help);
         }
+        if let Some(shaft) = shaft {
+            let body = Body::Shaft(shaft);
+            return Ok(Some(Bearings { positions_m, body }));
+        }
         let given = self.transverse_inertia_kg_m2.zip(self.polar_inertia_kg_m2);
         let body = match (given, self.length_m, self.shaft_diameter_m) {
             (Some((transverse_inertia_kg_m2, polar_inertia_kg_m2)), _, _) => Body::Rigid {
@@ -245,7 +286,8 @@ impl NumberArgs {
                 polar_inertia_kg_m2,
             },
             (None, Some(length_m), Some(diameter_m)) => {
-                let shaft_kg = STEEL_KG_M3 * 0.25 * PI * diameter_m.powi(2) * length_m;
+                let mut shaft = Shaft::uniform(length_m, diameter_m);
+                let shaft_kg = shaft.mass_kg();
                 if shaft_kg > machine.mass_kg
                     || positions_m.iter().any(|z| z.abs() > 0.5 * length_m)
                 {
@@ -257,11 +299,21 @@ impl NumberArgs {
                         "give --mass-kg of shaft and disc together, and bearings on the shaft";
                     return refused(message, help);
                 }
-                Body::Shaft {
-                    length_m,
-                    diameter_m,
-                    disc_kg: machine.mass_kg - shaft_kg,
+                let mass_kg = machine.mass_kg - shaft_kg;
+                if mass_kg > 0.0 {
+                    let polar = 0.5 * mass_kg * (0.5 * DISC_DIAMETERS * diameter_m).powi(2);
+                    shaft.discs.push(Disc {
+                        position_m: 0.5 * length_m,
+                        mass_kg: rounded(mass_kg, 4),
+                        transverse_inertia_kg_m2: rounded(0.5 * polar, 4),
+                        polar_inertia_kg_m2: rounded(polar, 4),
+                        assumed: true,
+                    });
                 }
+                return Ok(Some(Bearings {
+                    positions_m: positions_m.map(|z| 0.5 * length_m + z),
+                    body: Body::Shaft(shaft),
+                }));
             }
             (None, Some(length_m), None) => {
                 let square = machine

@@ -33,7 +33,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Rooms, each importing only from those above it: `campaign`, `machines`, `accuracy`, `paper`, `overloads`, `found_in_records`, `paired`, `commissioning`,
+//! Rooms, each importing only from those above it: `campaign`, `machines`, `accuracy`, `drops`, `paper`, `overloads`, `found_in_records`, `paired`, `commissioning`,
 //! `trials`, `unseen_machines`, `whole_rotors`, `loop_rates`, `sensitivity`, `on_target`, `validation`.
 
 #![forbid(unsafe_code)]
@@ -42,6 +42,7 @@
 pub mod accuracy;
 pub mod campaign;
 pub mod commissioning;
+pub mod drops;
 pub mod found_in_records;
 pub mod loop_rates;
 pub mod machines;
@@ -78,6 +79,13 @@ pub const STUDIES: &[Study] = &[
         about: "mistakes of who links the supervisor, found on levitated machines before it acts",
         run: commissioning::study,
         drawn: Some(commissioning::drawn),
+        on_record: None,
+    },
+    Study {
+        name: "drops",
+        about: "drops on new, worn and softly mounted ball bearings: how many whirl, beside what others measured",
+        run: drops::study,
+        drawn: Some(drops::drawn),
         on_record: None,
     },
     Study {

@@ -8,6 +8,7 @@ mod docs_examples;
 mod export;
 mod fmu;
 mod init;
+mod init_shaft;
 mod instruments_and_events;
 mod judged;
 mod layering;

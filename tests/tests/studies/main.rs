@@ -2,6 +2,7 @@
 
 mod accuracy;
 mod cost_of_parts;
+mod drops;
 mod found_in_records;
 mod harm;
 mod loop_rates;

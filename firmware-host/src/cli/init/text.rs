@@ -1,6 +1,7 @@
 //! The text of a scene.
 
-use super::{Body, Machine, rounded};
+use super::shaft::Shaft;
+use super::{Body, Machine};
 use firmware_bench::device::levitation::LevitationParams;
 
 /// The schema's file, beside the scene.
@@ -9,9 +10,6 @@ pub(super) const SCHEMA: &str = "scene.schema.json";
 /// What is assumed where it is not given.
 const SPIN_HZ: f64 = 200.0;
 pub(super) const CONTACT_RADIUS_M: f64 = 0.05;
-
-/// Of a disc of which only the mass is known, in those of its shaft.
-const DISC_DIAMETERS: f64 = 3.0;
 
 /// √(m·c/F) of a machine for which the overload of the scene lasts 50 ms \[s\].
 const QUICK_S: f64 = 2e-3;
@@ -31,7 +29,7 @@ pub(super) fn scene(machine: &Machine, levitation: &[LevitationParams]) -> Strin
         load_n,
         spin_hz,
         contact_radius_m,
-        bearings,
+        ref bearings,
     } = *machine;
     let assumed = |given: Option<f64>| {
         if given.is_some() {
@@ -70,8 +68,8 @@ pub(super) fn scene(machine: &Machine, levitation: &[LevitationParams]) -> Strin
         ),
         _ => String::new(),
     };
-    let body = bearings.map(|of| of.body);
-    let (rotor, shaft, middle_m) = match body {
+    let bearings = bearings.as_ref();
+    let (rotor, shaft) = match bearings.map(|of| &of.body) {
         None => (
             format!(
                 "mass_kg = {}\nstiffness_n_m = {}               # of the shaft alone\n",
@@ -79,7 +77,6 @@ pub(super) fn scene(machine: &Machine, levitation: &[LevitationParams]) -> Strin
                 number(stiffness_n_m.max(0.0))
             ),
             String::new(),
-            0.0,
         ),
         Some(Body::Rigid {
             transverse_inertia_kg_m2,
@@ -88,51 +85,37 @@ pub(super) fn scene(machine: &Machine, levitation: &[LevitationParams]) -> Strin
             format!(
                 "mass_kg = {}\ntransverse_inertia_kg_m2 = {}\npolar_inertia_kg_m2 = {}\n",
                 number(mass_kg),
-                number(transverse_inertia_kg_m2),
-                number(polar_inertia_kg_m2)
+                number(*transverse_inertia_kg_m2),
+                number(*polar_inertia_kg_m2)
             ),
             String::new(),
-            0.0,
         ),
-        Some(Body::Shaft {
-            length_m,
-            diameter_m,
-            disc_kg,
-        }) => {
-            let polar = 0.5 * disc_kg * (0.5 * DISC_DIAMETERS * diameter_m).powi(2);
-            let disc = format!(
-                "\n[[disc]]\nposition_m = {}\nmass_kg = {}\ntransverse_inertia_kg_m2 = {}\npolar_inertia_kg_m2 = {}   # assumed, as the transverse one: put in your own\n",
-                number(0.5 * length_m),
-                number(rounded(disc_kg, 4)),
-                number(rounded(0.5 * polar, 4)),
-                number(rounded(polar, 4)),
-            );
-            (
-                "bending_damping_ratio = 0.002   # assumed\n".to_owned(),
-                format!(
-                    "\n[[shaft]]                       # from the left end, where places count from\nlength_m = {}\nouter_diameter_m = {}\n{}",
-                    number(length_m),
-                    number(diameter_m),
-                    if disc_kg > 0.0 { disc } else { String::new() }
-                ),
-                0.5 * length_m,
-            )
-        }
+        Some(Body::Shaft(shaft)) => (
+            "bending_damping_ratio = 0.002   # assumed\n".to_owned(),
+            tables(shaft),
+        ),
     };
-    let planes: String = (bearings.into_iter())
-        .flat_map(|of| ["A", "B"].into_iter().zip(of.positions_m).enumerate())
-        .map(|(i, (name, place))| {
-            let own = levitation.get(i).map_or_else(String::new, |of| {
-                format!("[plane.levitation]              {MADE_UP}\n{}", gains(of))
-            });
-            format!(
-                "\n[[plane]]\nname = \"{name}\"\nposition_m = {}             # magnet, sensor and retainer bearing; each may have its own\n{own}",
-                number(middle_m + place)
-            )
-        })
-        .collect();
+    let mut planes = String::new();
+    for (i, name) in ["A", "B"].into_iter().enumerate() {
+        let Some(of) = bearings else { break };
+        let own = levitation.get(i).map_or_else(String::new, |of| {
+            format!("[plane.levitation]              {MADE_UP}\n{}", gains(of))
+        });
+        // The scene's is that of the first one, or given.
+        let radius_m = of
+            .radius_m(i)
+            .filter(|_| contact_radius_m == of.radius_m(0));
+        let radius = radius_m.filter(|own| contact_radius_m != Some(*own));
+        let radius = radius.map_or_else(String::new, |own| {
+            format!("contact_radius_m = {}\n", number(own))
+        });
+        planes += &format!(
+            "\n[[plane]]\nname = \"{name}\"\nposition_m = {}             # magnet, sensor and retainer bearing; each may have its own\n{radius}{own}",
+            number(of.positions_m[i])
+        );
+    }
     let at_first = bearings.map_or_else(String::new, |of| {
-        format!("position_m = {}\n", number(middle_m + of.positions_m[0]))
+        format!("position_m = {}\n", number(of.positions_m[0]))
     });
     format!(
         r#"#:schema ./{SCHEMA}
@@ -196,6 +179,39 @@ force_n = [{overload}, 0.0]     # what else may happen: shocks, outages, sensor 
         lasts = number(0.05 * slow),
         overload = number(1.5 * force_max_n),
     )
+}
+
+/// Tables of a shaft with its discs.
+fn tables(shaft: &Shaft) -> String {
+    let mut tables = String::new();
+    for (i, section) in shaft.sections.iter().enumerate() {
+        let note = match i {
+            0 => "                       # from the left end, where places count from",
+            _ => "",
+        };
+        tables += &format!(
+            "\n[[shaft]]{note}\nlength_m = {}\nouter_diameter_m = {}\n",
+            number(section.length_m),
+            number(section.outer_diameter_m)
+        );
+        for (key, value) in &section.others {
+            tables += &format!("{key} = {}\n", number(*value));
+        }
+    }
+    for disc in &shaft.discs {
+        let note = match disc.assumed {
+            true => "   # assumed, as the transverse one: put in your own",
+            false => "",
+        };
+        tables += &format!(
+            "\n[[disc]]\nposition_m = {}\nmass_kg = {}\ntransverse_inertia_kg_m2 = {}\npolar_inertia_kg_m2 = {}{note}\n",
+            number(disc.position_m),
+            number(disc.mass_kg),
+            number(disc.transverse_inertia_kg_m2),
+            number(disc.polar_inertia_kg_m2),
+        );
+    }
+    tables
 }
 
 /// A float as TOML has it, short, and none that is minus zero.
