@@ -444,14 +444,21 @@ fn flight(accuracy: &Accuracy, rows: &mut Rows, group: &mut Group) {
         let radius = u.dot(u).sqrt();
         let inward = -(u.dot(w) * radius.recip());
         let until = (radius - c.clearance) * 2.0 * inward.recip();
+        // By then it has not gone far, so that it cannot be at another wall.
+        let pulled = c.stiffness * radius + pushed;
+        let gone = (inward + pulled * until) * until;
+        let deepest = radius - gone;
+        let nearest = c.clearance * 0.8;
         // What slows its way inward: the whirl, by its angular momentum, the shaft's damping, the unbalance. The shaft helps.
         let momentum = u.perp(w).abs() + radius * c.unbalance * until;
-        let per = c.clearance.recip();
+        let per = nearest.recip();
         let slowed = momentum * momentum * per * per * per + pushed;
         let slows = slowed * until;
         let returns = c.contact_damping * slowed;
         for i in 0..WIDTH {
             let clear = inward.0[i] > 0.0
+                && until.0[i] < time.0[i]
+                && deepest.0[i] > nearest.0[i]
                 && slows.0[i] < 0.5 * inward.0[i]
                 && returns.0[i] < 0.5 * c.contact_stiffness.0[i] * inward.0[i];
             lingers[i] = group.beyond[i] && !clear;

@@ -206,7 +206,10 @@ impl<T> Slot<T> {
         if self.events > MOST_EVENTS {
             return Some(Ending::GaveUp);
         }
-        (self.t_s >= self.launch.until_s).then_some(Ending::Time)
+        (self.t_s >= self.launch.until_s).then(|| {
+            let free = self.launch.until_free && self.kind == Kind::Flight && self.stays_free();
+            if free { Ending::Free } else { Ending::Time }
+        })
     }
 
     /// Friction that holds the sliding speed at zero, and the largest that there is, per mass \[m/s²\].

@@ -7,7 +7,8 @@ use super::data::*;
 use super::onset::fit;
 use super::rotors::OnsetRig;
 use firmware_bench::report::plot::text::figures;
-use plant_model::analysis::impact::{Criterion, Search, critical_speed_m_s};
+use plant_model::analysis::impact::{Criterion, Search, critical_speeds_m_s};
+use rayon::prelude::{ParallelIterator, ParallelSlice};
 
 /// Without unbalance the outcome changes once over the speed (rows of this chapter), so coarse steps
 /// find the same change.
@@ -73,13 +74,30 @@ impl Case {
         self
     }
 
-    /// v_r,crit \[m/s\]; not a number where nothing whirls.
-    fn critical_m_s(&self) -> Result<f64> {
-        let at = (self.inclination_rad, OnsetRig::SPIN_RAD_S);
-        let params = self.rig.params()?;
-        let found = critical_speed_m_s(&params, at, &SEARCH, &Criterion::default())?;
-        Ok(found.unwrap_or(f64::NAN))
+    /// v_r,crit \[m/s\] of one.
+    fn critical_m_s(self) -> Result<f64> {
+        critical_m_s(&[self]).map(|speeds| speeds[0])
     }
+}
+
+/// Cases that one thread takes, several at a time.
+const CHUNK: usize = 100;
+
+/// v_r,crit \[m/s\] of each; not a number where nothing whirls.
+fn critical_m_s(cases: &[Case]) -> Result<Vec<f64>> {
+    let chunks = cases.par_chunks(CHUNK).map(|chunk| {
+        let of = |case: &Case| {
+            let at = (case.inclination_rad, OnsetRig::SPIN_RAD_S);
+            Ok((case.rig.params()?, at))
+        };
+        let cases = chunk.iter().map(of).collect::<Result<Vec<_>>>()?;
+        let (found, _) = critical_speeds_m_s(&cases, &SEARCH, &Criterion::default());
+        found
+            .into_iter()
+            .map(|speed| Ok(speed?.unwrap_or(f64::NAN)))
+            .collect()
+    });
+    Ok(chunks.collect::<Result<Vec<Vec<f64>>>>()?.concat())
 }
 
 fn linear((from, to): (f64, f64), share: f64) -> f64 {
@@ -99,13 +117,19 @@ impl Grid {
         (f64::from(i) + 0.5) / f64::from(of)
     }
 
-    /// What is in each cell, from its place along both axes as shares, rows from the bottom, side by side.
-    fn cells<T: Send>(self, cell: impl Fn(f64, f64) -> Result<T> + Sync) -> Result<Vec<Vec<T>>> {
-        let rows: Vec<u32> = (0..self.rows).collect();
-        each(&rows, |j| {
-            let along = |i| cell(Self::middle(i, self.columns), Self::middle(*j, self.rows));
-            (0..self.columns).map(along).collect()
-        })
+    /// Places of the cells along both axes as shares, rows from the bottom, one after the other.
+    fn places(self) -> Vec<(f64, f64)> {
+        let row = |j| (0..self.columns).map(move |i| (i, j));
+        let of = |(i, j)| (Self::middle(i, self.columns), Self::middle(j, self.rows));
+        (0..self.rows).flat_map(row).map(of).collect()
+    }
+
+    /// What is in the cells, row by row.
+    fn rows<T: Clone>(self, cells: &[T]) -> Vec<Vec<T>> {
+        cells
+            .chunks(self.columns as usize)
+            .map(<[T]>::to_vec)
+            .collect()
     }
 }
 
@@ -144,11 +168,14 @@ fn curves(rig: &Case, varied: Varied, points: u32) -> Result<Figure> {
     let shares: Vec<f64> = (0..points)
         .map(|i| f64::from(i) / f64::from(points - 1))
         .collect();
-    let line = |other: Varied, value: f64| {
-        each(&shares, |share| {
-            let x = linear(varied.range, *share);
-            Ok((x, rig.with(varied, x).with(other, value).critical_m_s()?))
-        })
+    let line = |other: Varied, value: f64| -> Result<Vec<(f64, f64)>> {
+        let along: Vec<f64> = shares
+            .iter()
+            .map(|share| linear(varied.range, *share))
+            .collect();
+        let case = |x: &f64| rig.with(varied, *x).with(other, value);
+        let speeds = critical_m_s(&along.iter().map(case).collect::<Vec<_>>())?;
+        Ok(along.into_iter().zip(speeds).collect())
     };
     let mut curves: Vec<Curve> = match varied.file == DAMPING.file {
         true => curves! {
@@ -174,12 +201,12 @@ fn curves(rig: &Case, varied: Varied, points: u32) -> Result<Figure> {
 
 /// v_r,crit over two parameters.
 fn map(rig: &Case, file: &'static str, [x, y]: [Varied; 2], grid: Grid) -> Result<Figure> {
-    let cells = grid.cells(|across, up| {
-        let set = rig
-            .with(x, linear(x.range, across))
-            .with(y, linear(y.range, up));
-        set.critical_m_s()
-    })?;
+    let case = |(across, up): (f64, f64)| {
+        rig.with(x, linear(x.range, across))
+            .with(y, linear(y.range, up))
+    };
+    let cases: Vec<Case> = grid.places().into_iter().map(case).collect();
+    let cells = grid.rows(&critical_m_s(&cases)?);
     // A few cells with the highest speeds would take all the colours.
     let mut all: Vec<f64> = cells.iter().flatten().copied().collect();
     all.retain(|v| v.is_finite());

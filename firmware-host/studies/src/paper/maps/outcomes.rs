@@ -1,11 +1,12 @@
 //! Outcome over impact speed and one more parameter: sharp for the balanced rotor, with unbalance not monotone over the
 //! impact speed.
 
-use super::{Case, FRICTION, Grid, INCLINATION, Varied, linear};
+use super::{CHUNK, Case, FRICTION, Grid, INCLINATION, Varied, linear};
 use crate::paper::data::*;
 use crate::paper::onset::impact;
 use crate::paper::rotors::OnsetRig;
-use plant_model::analysis::impact::{Criterion, Impact, ImpactOutcome, Outcome, run_impact};
+use plant_model::analysis::impact::{Criterion, Impact, ImpactOutcome, Outcome, run_impacts};
+use rayon::prelude::{ParallelIterator, ParallelSlice};
 
 const SOURCE: &str = "Results, onset phase";
 
@@ -26,10 +27,23 @@ impl Outcomes {
         grid: Grid,
         case: impl Fn(f64, f64) -> (OnsetRig, Impact) + Sync + Send,
     ) -> Result<Self> {
-        let runs = grid.cells(|across, up| {
-            let (rig, impact) = case(linear(speeds_m_s, across), up);
-            Ok(run_impact(&rig.params()?, &impact, &Criterion::default())?)
-        })?;
+        let of = |(across, up): &(f64, f64)| {
+            let (rig, impact) = case(linear(speeds_m_s, *across), *up);
+            Ok((rig.params()?, impact))
+        };
+        let chunks = grid.places();
+        let chunks = chunks.par_chunks(CHUNK).map(|chunk| {
+            let cases = chunk.iter().map(of).collect::<Result<Vec<_>>>()?;
+            let runs = run_impacts(&cases, &Criterion::default());
+            Ok(runs
+                .into_iter()
+                .collect::<std::result::Result<Vec<_>, _>>()?)
+        });
+        let runs = grid.rows(
+            &chunks
+                .collect::<Result<Vec<Vec<ImpactOutcome>>>>()?
+                .concat(),
+        );
         let undecided = |run: &&ImpactOutcome| run.outcome == Outcome::Undecided;
         let shade = |run: &ImpactOutcome| match run.outcome {
             Outcome::Whirl => run.impacts_to_threshold.map_or(f64::NAN, f64::from),
