@@ -113,21 +113,24 @@ fn impacts_end_alike() {
 /// A rotor that lifts off deep in the wall is past the middle before twice the time that its depth takes.
 #[test]
 fn the_other_wall_is_seen() {
-    let deep = |i: u32| {
-        let impact = Impact {
-            speed_m_s: 1.0 + 0.02 * f64::from(i),
-            inclination_rad: -0.345,
-            spin_rad_s: 250.0,
-            spin_phase_rad: 0.0,
-        };
-        (rig((0.125, 0.003, 45.0, 0.102, 2e-4, 0.0)), impact)
+    let params = rig((0.125, 0.003, 45.0, 0.102, 2e-4, 0.0));
+    let start = |i: u32| Start {
+        position_m: V2::new(2e-4, 0.0),
+        velocity_m_s: V2::new(0.94, 0.34) * (1.0 + 0.1 * f64::from(i)),
+        spin_rad_s: 250.0,
+        spin_phase_rad: 0.0,
     };
-    let cases: Vec<_> = (0..200).map(deep).collect();
-    let criterion = Criterion::default();
-    for ((params, impact), by_lanes) in cases.iter().zip(run_impacts(&cases, &criterion)) {
-        let alone = run_impact(params, impact, &criterion).unwrap();
-        assert_eq!(by_lanes.unwrap(), alone, "{impact:?}");
-    }
+    let lane = LaneParams::of(&params).unwrap();
+    let launches = (0..60).map(|i| (Launch::new(lane, &start(i), 0.01).unwrap(), i));
+    run(1e-9, launches, |i, ended| {
+        let mut plant = build(&params, &start(i), Options::default()).unwrap();
+        let mut changes = 0;
+        (plant.advance(0.01, &Inputs::default(), &mut |_| changes += 1)).unwrap();
+        assert_eq!(ended.events, changes, "{:?}", start(i));
+        let apart = (plant.snapshot().position_m - ended.position_m).norm() / 2e-4;
+        assert!(apart < 1e-7, "{apart:e} from {:?}", start(i));
+        None
+    });
 }
 
 #[test]
