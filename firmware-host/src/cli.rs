@@ -10,6 +10,7 @@ pub mod export;
 pub mod fmu;
 pub mod harm;
 pub mod init;
+pub mod map;
 pub mod modes;
 pub mod output;
 pub mod overloads;

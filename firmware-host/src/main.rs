@@ -2,7 +2,7 @@
 
 use clap::{CommandFactory, Parser, Subcommand};
 use firmware_host::cli::{
-    accuracy, advise, commission, completions, error, export, fmu, harm, init, modes, output,
+    accuracy, advise, commission, completions, error, export, fmu, harm, init, map, modes, output,
     overloads, paper, review, run, schema, screen, sensitivity, serve_controller, study, sweep,
     target, vectors,
 };
@@ -24,6 +24,8 @@ enum Command {
     Run(run::RunArgs),
     /// Run a scene again and again with keys that vary by a design, into one file with a row a run.
     Sweep(sweep::SweepArgs),
+    /// Which impact a rotor bears without help, over two of its keys: a picture and a file.
+    Map(map::MapArgs),
     /// Write a trace as CSV, or as MCAP for Foxglove; or the plant of a scene as matrices.
     Export(export::ExportArgs),
     /// Write plant, supervisor and closed loop of a scene as co-simulation units (FMI), for other simulation tools.
@@ -70,6 +72,7 @@ fn main() -> ExitCode {
         Command::Init(args) => init::execute(args),
         Command::Run(args) => run::execute(args),
         Command::Sweep(args) => sweep::execute(args),
+        Command::Map(args) => map::execute(args),
         Command::Export(args) => export::execute(args),
         Command::Fmu(args) => fmu::execute(args),
         Command::Accuracy(args) => accuracy::execute(args),

@@ -99,7 +99,7 @@ impl Launch {
 
     /// The same until it is decided: by a backward speed in contact that is whirl, or when the rotor can never touch again.
     /// Impacts are counted up to a threshold \[m/s\].
-    pub fn until_decided(self, threshold_m_s: f64, whirl_m_s: f64) -> Self {
+    pub(crate) fn until_decided(self, threshold_m_s: f64, whirl_m_s: f64) -> Self {
         Self {
             threshold_m_s,
             whirl_m_s,

@@ -15,6 +15,7 @@ mod layering;
 mod licences;
 mod linear_loop;
 mod machine_scenes;
+mod map;
 mod own_controllers;
 mod release;
 mod report_page;

@@ -141,6 +141,18 @@ impl Rows {
     }
 }
 
+/// Rows as the bytes of a Parquet file.
+///
+/// # Errors
+/// What the format refuses.
+pub fn written(rows: &Rows) -> Result<Vec<u8>, ParquetError> {
+    let mut bytes = Vec::new();
+    let mut file = RowsFile::new(&mut bytes, &rows.columns)?;
+    file.group(rows)?;
+    file.end()?;
+    Ok(bytes)
+}
+
 /// A file that is being written.
 pub(crate) struct RowsFile<W: Write + Send>(SerializedFileWriter<W>);
 

@@ -1,0 +1,172 @@
+//! `map SCENE.toml --x KEY=FROM..TO --y KEY=FROM..TO`: which impact a rotor bears, over two of its keys.
+
+use crate::cli::error::{CommandError, pretty, print};
+use crate::cli::output::Staging;
+use crate::cli::progress::{LateProgress, Threads};
+use crate::cli::screen::tell;
+use firmware_bench::run::columns::{Cell, Column, Kind};
+use firmware_bench::scene::spec::{Setting, Spec};
+use firmware_bench::sweep::table::{Rows, written};
+use firmware_studies::campaign::html;
+use firmware_studies::map::{MOST_CELLS, Map, MapError, MapPlan, Varied};
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// Arguments of `map`.
+#[derive(Debug, Clone, clap::Args)]
+pub struct MapArgs {
+    /// Scene file of a point mass in one plane, e.g. firmware-host/scenes/impact_at_40_hz.toml.
+    pub scene: PathBuf,
+    /// Key along the horizontal axis with its range, as friction.coefficient=0.05..0.6; impact.inclination_deg is that of the impact.
+    #[arg(long, value_name = "KEY=FROM..TO")]
+    pub x: Varied,
+    /// The same along the vertical axis.
+    #[arg(long, value_name = "KEY=FROM..TO")]
+    pub y: Varied,
+    /// What the map shows: v_crit is the lowest speed of an impact, left to itself, that ends in backward whirl.
+    #[arg(long, value_name = "WHAT", default_value = "v_crit", value_parser = ["v_crit"])]
+    pub of: String,
+    /// Cells along both axes.
+    #[arg(long, value_name = "COLUMNSxROWS", default_value = "100x100", value_parser = cells)]
+    pub cells: Cells,
+    /// Hold the spin, as in the paper's maps; ten times as fast.
+    #[arg(long)]
+    pub held_spin: bool,
+    /// Put a value in the place of the scene's, as contact.restitution=0.8; any number of times.
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub set: Vec<Setting>,
+    /// Folder for map.parquet and map.html [default: runs/, the name of the scene file and _map].
+    #[arg(long)]
+    pub out: Option<PathBuf>,
+    /// Print what was done as JSON.
+    #[arg(long)]
+    pub json: bool,
+    /// How many threads it may use.
+    #[command(flatten)]
+    pub threads: Threads,
+}
+
+/// Columns and rows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Cells([usize; 2]);
+
+fn cells(text: &str) -> Result<Cells, String> {
+    let both = text.split_once('x').and_then(|(columns, rows)| {
+        Some([columns.parse::<usize>().ok()?, rows.parse::<usize>().ok()?])
+    });
+    let all = |[columns, rows]: [usize; 2]| columns.checked_mul(rows);
+    both.filter(|both| all(*both).is_some_and(|all| (1..=MOST_CELLS).contains(&all)))
+        .map(Cells)
+        .ok_or_else(|| format!("expected columns and rows, as 200x200, {MOST_CELLS} cells at most"))
+}
+
+/// What was done, for programs.
+#[derive(Debug, Serialize)]
+struct Done {
+    cells: usize,
+    seconds: f64,
+    /// Impacts that were run, and those of them side by side.
+    runs: u64,
+    lanes: u64,
+    /// Of so many cells that were run one by one, too: those that came to the same speed.
+    checked: usize,
+    equal_to_scalar: usize,
+    lowest_m_s: Option<f64>,
+    highest_m_s: Option<f64>,
+    results: PathBuf,
+    page: PathBuf,
+}
+
+/// Runs the map and writes it.
+///
+/// # Errors
+/// [`CommandError`]; nothing is left behind then.
+pub fn execute(args: &MapArgs) -> Result<(), CommandError> {
+    let started = Instant::now();
+    let mut spec = Spec::load(&args.scene)?;
+    let set = (args.set.iter()).map(|setting| (setting.path.as_str(), setting.value.clone()));
+    spec.set_all(&set.collect::<Vec<_>>())?;
+    let out = args.out.clone().unwrap_or_else(|| {
+        let name = args.scene.file_stem().unwrap_or(args.scene.as_os_str());
+        Path::new("runs").join(format!("{}_map", name.to_string_lossy()))
+    });
+    let staging = Staging::for_folder(&out)?;
+    let plan = MapPlan {
+        x: args.x.clone(),
+        y: args.y.clone(),
+        cells: args.cells.0,
+        held_spin: args.held_spin,
+    };
+    let bar = LateProgress::default();
+    let map = (args.threads.pool()?.install(|| plan.run(&spec, &bar))).map_err(refused)?;
+    bar.finish();
+    let file = args.scene.file_name().unwrap_or(args.scene.as_os_str());
+    let page = html(&map.page(&file.to_string_lossy()))
+        .map_err(|e| CommandError::other("drawing map.html", e))?;
+    staging.write("map.html", &page)?;
+    let rows = written(&rows(&map)).map_err(|e| CommandError::other("writing map.parquet", e))?;
+    staging.write("map.parquet", &rows)?;
+    let folder = staging.publish()?;
+    let range = map.range_m_s();
+    let done = Done {
+        cells: map.cells.len(),
+        seconds: started.elapsed().as_secs_f64(),
+        runs: map.tried.impacts,
+        lanes: map.tried.by_lanes,
+        checked: map.checked[0],
+        equal_to_scalar: map.checked[1],
+        lowest_m_s: range.map(|(low, _)| low),
+        highest_m_s: range.map(|(_, high)| high),
+        results: folder.join("map.parquet"),
+        page: folder.join("map.html"),
+    };
+    if args.json {
+        return print(&(pretty(&done, "formatting what was done")? + "\n"));
+    }
+    let bears = match range {
+        Some((low, high)) => format!("bears impacts of {low:.4} to {high:.4} m/s"),
+        None => "is driven into backward whirl by no impact".to_owned(),
+    };
+    tell(&format!(
+        "{}: the rotor {bears}.\n{} cells, {} impacts, {} of them side by side, in {:.1} s; {} of {} cells run one by one came to the same speed.\npage: {}\n",
+        args.scene.display(),
+        done.cells,
+        done.runs,
+        done.lanes,
+        done.seconds,
+        done.equal_to_scalar,
+        done.checked,
+        done.page.display()
+    ))
+}
+
+fn refused(error: MapError) -> CommandError {
+    match error {
+        MapError::Scene(error) => error.into(),
+        MapError::NotOfOnePlane(_) => CommandError::Numbers {
+            message: error.to_string(),
+            help: "give a scene without [[plane]], inertias and [[shaft]]".to_owned(),
+        },
+        MapError::Run { .. } => CommandError::other("running the map", error),
+    }
+}
+
+/// A row a cell.
+fn rows(map: &Map) -> Rows {
+    let (x, y) = (&map.plan.x.key, &map.plan.y.key);
+    let names = [x.clone(), y.clone(), "v_crit_m_s".to_owned()];
+    let columns = names.map(|name| Column {
+        name,
+        kind: Kind::Number,
+    });
+    let mut rows = Rows::new(columns.into());
+    for cell in &map.cells {
+        rows.push(
+            [Some(cell.x), Some(cell.y), cell.critical_m_s]
+                .map(Cell::Number)
+                .to_vec(),
+        );
+    }
+    rows
+}

@@ -1,0 +1,120 @@
+//! `map`: the critical impact speed over two keys of a scene.
+
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+use system_tests::{host, scene_path};
+use tempfile::TempDir;
+
+const X: &str = "friction.coefficient=0.05..0.6";
+const Y: &str = "contact.restitution=0.1..0.9";
+
+/// Exit code, what it printed, and what it said.
+fn map(arguments: &[&str], out: &Path) -> (Option<i32>, String, String) {
+    let output = (host().arg("map").args(arguments))
+        .args(["--json", "--out"])
+        .arg(out)
+        .output()
+        .unwrap();
+    let text = |bytes| String::from_utf8(bytes).unwrap();
+    (
+        output.status.code(),
+        text(output.stdout),
+        text(output.stderr),
+    )
+}
+
+#[test]
+fn a_map_is_the_same_by_lanes_and_one_by_one_whatever_the_threads() {
+    let folder = TempDir::new().unwrap();
+    let scene = scene_path("impact_at_40_hz");
+    let scene = scene.to_str().unwrap();
+    let run =
+        |threads: &str, name: &str| {
+            let out = folder.path().join(name);
+            let arguments = [
+                scene,
+                "--x",
+                X,
+                "--y",
+                Y,
+                "--cells",
+                "24x20",
+                "--held-spin",
+                "--threads",
+                threads,
+            ];
+            let (code, said, error) = map(&arguments, &out);
+            assert_eq!(code, Some(0), "{error}");
+            let page = fs::read_to_string(out.join("map.html")).unwrap();
+            assert!(page.contains(
+                "Critical impact speed over friction.coefficient and contact.restitution"
+            ));
+            let done: Value = serde_json::from_str(&said).unwrap();
+            (done, fs::read(out.join("map.parquet")).unwrap())
+        };
+    let (done, alone) = run("1", "one");
+    assert_eq!(done["cells"], 480);
+    assert_eq!(done["lanes"], done["runs"]);
+    assert!(done["checked"].as_u64().unwrap() >= 80);
+    assert_eq!(done["equal_to_scalar"], done["checked"]);
+    // Most friction and the springiest wall bear least: less than a tenth of what the least friction and the deadest wall bear.
+    let speed = |key: &str| done[key].as_f64().unwrap();
+    assert!(10.0 * speed("lowest_m_s") < speed("highest_m_s"));
+    assert_eq!(run("2", "two").1, alone);
+}
+
+#[test]
+fn free_spin_goes_one_by_one() {
+    let folder = TempDir::new().unwrap();
+    let scene = scene_path("impact_at_40_hz");
+    let inclination = "impact.inclination_deg=-20..80";
+    let arguments = [
+        scene.to_str().unwrap(),
+        "--x",
+        X,
+        "--y",
+        inclination,
+        "--cells",
+        "3x2",
+    ];
+    let (code, said, error) = map(&arguments, &folder.path().join("map"));
+    assert_eq!(code, Some(0), "{error}");
+    let done: Value = serde_json::from_str(&said).unwrap();
+    assert_eq!(done["lanes"], 0);
+    assert!(done["runs"].as_u64().unwrap() > 50);
+}
+
+#[test]
+fn what_is_no_map_is_refused_and_leaves_nothing() {
+    let folder = TempDir::new().unwrap();
+    let point = scene_path("impact_at_40_hz");
+    let two = scene_path("machines/drop_of_both_ends");
+    let (point, two) = (point.to_str().unwrap(), two.to_str().unwrap());
+    for (scene, x, y, names) in [
+        (point, "friction.coef=0.1..0.2", Y, "friction.coef"),
+        (point, "friction.coefficient=0.6..0.1", Y, "FROM below TO"),
+        (point, "friction.coefficient=0.6", Y, "KEY=FROM..TO"),
+        (point, "friction.coefficient=-1..0.2", Y, "0 or greater"),
+        (
+            two,
+            "run.duration_s=0.1..0.2",
+            "spin.frequency_hz=10..20",
+            "one plane",
+        ),
+    ] {
+        let out = folder.path().join("map");
+        let (code, said, error) = map(&[scene, "--x", x, "--y", y, "--cells", "2x2"], &out);
+        assert_eq!(code, Some(2), "{error}");
+        assert!(said.is_empty() && error.contains(names), "{error}");
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+    }
+    for cells in ["0x5", "5", "2000x2000", "99999999999999999999x2"] {
+        let (code, _, error) = map(
+            &[point, "--x", X, "--y", Y, "--cells", cells],
+            &folder.path().join("map"),
+        );
+        assert_eq!(code, Some(2));
+        assert!(error.contains("200x200"), "{error}");
+    }
+}
