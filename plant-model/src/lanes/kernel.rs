@@ -88,7 +88,7 @@ constants! {
     friction,
     /// Ω·R \[m/s\].
     surface,
-    /// ε·Ω² \[m/s²\], and Ω \[rad/s\].
+    /// ε·Ω² \[m/s²\], and Ω \[rad/s\] where that is not zero.
     unbalance,
     spin,
 }
@@ -312,10 +312,8 @@ fn limit(group: &mut Group, trusted: Lanes, order: usize) -> Lanes {
     let mut theta = trusted;
     if group.unbalanced {
         let turn = group.constants.spin.abs() * group.reference;
-        let most = turn.map(|turn| largest_turn(order) / turn);
-        // A balanced run may be beside one that is not.
-        let turns = Lanes::all(0.0).less(group.constants.unbalance);
-        theta = theta.min(most.or(turns, theta));
+        // Of a balanced run beside one that is not: infinite.
+        theta = theta.min(turn.map(|turn| largest_turn(order) / turn));
     }
     let far = Lanes::all(1e-2).less(theta);
     let kept = theta.min(Lanes::all(1e3)) * group.reference;

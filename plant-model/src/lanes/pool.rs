@@ -50,6 +50,7 @@ impl<T> Slot<T> {
         let m = p.mass_kg;
         let (stiffness, contact_stiffness) = (p.stiffness_n_m / m, p.contact_stiffness_n_m / m);
         let spin = start.spin_rad_s;
+        let unbalance = p.eccentricity_m * spin * spin;
         let constants = Constants {
             stiffness,
             natural: stiffness.sqrt(),
@@ -60,12 +61,13 @@ impl<T> Slot<T> {
             clearance: p.clearance_m,
             friction: p.friction,
             surface: spin * p.radius_m,
-            unbalance: p.eccentricity_m * spin * spin,
-            spin,
+            unbalance,
+            // Of a balanced rotor nothing turns, also beside one that is not.
+            spin: if unbalance > 0.0 { spin } else { 0.0 },
         };
         let (sin, cos) = start.spin_phase_rad.sin_cos();
         let (c, t_end) = (&constants, launch.until_s);
-        let slow = c.natural + c.damping + if c.unbalance > 0.0 { spin.abs() } else { 0.0 };
+        let slow = c.natural + c.damping + c.spin.abs();
         let fast = c.contact_rate + c.contact_damping;
         let contact = 3.0 / (fast + slow);
         let references = [(1.0 / slow).min(t_end), contact, contact, contact];
@@ -102,7 +104,11 @@ impl<T> Slot<T> {
 
     /// Sign of backward whirl.
     fn backward(&self) -> f64 {
-        if self.constants.spin < 0.0 { 1.0 } else { -1.0 }
+        if self.launch.start.spin_rad_s < 0.0 {
+            1.0
+        } else {
+            -1.0
+        }
     }
 
     /// Speed of the whirl, backward \[m/s\].
@@ -279,8 +285,6 @@ pub(super) struct Pool<T> {
     slots: Vec<Slot<T>>,
     rows: Box<Rows>,
     group: Box<Group>,
-    /// Of lane steps, those that had a run.
-    occupied: (u64, u64),
 }
 
 impl<T> Pool<T> {
@@ -312,7 +316,6 @@ impl<T> Pool<T> {
                 theta: Lanes::default(),
                 event: [None; WIDTH],
             }),
-            occupied: (0, 0),
         }
     }
 
@@ -384,9 +387,9 @@ impl<T> Pool<T> {
             group.direction.y.0[lane] = slot.direction.y;
             group.sign.0[lane] = slot.sign;
             group.beyond[lane] = slot.beyond;
-            group.reference.0[lane] = slot.references[touching];
             group.fastest.0[lane] = slot.fastest;
             let left = slot.launch.until_s - slot.t_s;
+            group.reference.0[lane] = slot.references[touching].min(left);
             group.most.0[lane] = if slot.fresh {
                 left.min(3.3 / slot.constants.contact_rate)
             } else {
@@ -398,8 +401,6 @@ impl<T> Pool<T> {
             rows: &mut self.rows,
             group,
         });
-        self.occupied.0 += places.len() as u64;
-        self.occupied.1 += WIDTH as u64;
         for (lane, place) in places.iter().enumerate() {
             let slot = &mut slots[*place];
             let before_m_s = slot.backward_m_s();
