@@ -63,7 +63,10 @@ def test_the_page_runs_from_its_top_to_its_end(ross, host, tmp_path, monkeypatch
         elif language == "toml":
             assert "runs = 500" in block
             (tmp_path / "drops.toml").write_text(block.replace("runs = 500", "runs = 8"))
+        elif language == "csv":
+            (tmp_path / "steps.csv").write_text(block)
         else:
+            assert language == "sh"
             for line in block.replace("\\\n", " ").splitlines():
                 words = shlex.split(line.removeprefix("cargo run --release -- "))
                 if words[0] == "python3":
