@@ -5,6 +5,12 @@ use crate::series::MAX_ORDER;
 /// Below this order the last two terms say too little about the rest.
 pub(crate) const LOWEST_ORDER: usize = 6;
 
+/// Tolerance of a step of flight from that of contact: it is linear and costs little, and may last for long. None is smaller
+/// than rounding.
+pub(crate) fn flight_rtol(rtol: f64) -> f64 {
+    (1e-7 * rtol).max(1e-16)
+}
+
 /// The largest order that pays at a tolerance. Measured on bouncing into rolling: between these orders the time to a given
 /// error is flat, below and above it rises.
 pub(crate) fn highest_order(rtol: f64) -> usize {

@@ -241,14 +241,14 @@ fn at(c: &[Lanes; LENGTH], order: usize, theta: Lanes) -> Lanes {
     sum
 }
 
-/// Σ |c_k|·θ^k from a power on.
+/// How far it can get from its start up to θ: Σ |c_k|·θ^k.
 #[inline(always)]
-fn reach(c: &[Lanes; LENGTH], (from, order): (usize, usize), theta: Lanes) -> Lanes {
+fn reach(c: &[Lanes; LENGTH], order: usize, theta: Lanes) -> Lanes {
     let mut sum = c[order].abs();
-    for c in c[from..order].iter().rev() {
+    for c in c[1..order].iter().rev() {
         sum = sum * theta + c.abs();
     }
-    if from == 0 { sum } else { sum * theta }
+    sum * theta
 }
 
 /// The direction of the unbalance, as long as it is wanted.
@@ -373,15 +373,12 @@ fn beyond(accuracy: &Accuracy, rows: &mut Rows, group: &mut Group) {
     }
     let rate = c.contact_damping * h.recip();
     let top = order - 1;
+    rows.room = rows.distance;
+    rows.room[0] = start - c.clearance;
     for k in 0..=top {
-        rows.guard[k] = rows.distance[k];
-        if k == 0 {
-            rows.guard[0] = start - c.clearance;
-        }
         rows.force[k] =
-            -(c.contact_stiffness * rows.guard[k] + rate * rows.distance[k + 1] * (k + 1) as f64);
+            -(c.contact_stiffness * rows.room[k] + rate * rows.distance[k + 1] * (k + 1) as f64);
     }
-    rows.room = rows.guard;
     let weights = weights(group, c.contact_rate, rtol);
     // Its distance has a pole where the rotor would pass the middle.
     let mut least = trusted(rows, order, weights);
@@ -426,7 +423,7 @@ fn flight(accuracy: &Accuracy, rows: &mut Rows, group: &mut Group) {
     let weights = weights(group, c.natural, rtol);
     let end = limit(group, trusted(rows, order, weights), order);
 
-    // In flight speed grows by the unbalance alone, so that everything has a bound (module `roots`).
+    // In flight speed grows by the unbalance alone, so that everything has a bound.
     let time = end * h;
     let (u, w) = (group.position, group.velocity);
     let energy = w.dot(w) + c.stiffness * u.dot(u);
@@ -603,7 +600,7 @@ fn contact<const ROLLS: bool>(accuracy: &Accuracy, rows: &mut Rows, group: &mut 
     let mut theta = limit(group, trusted(rows, order, weights), order);
     let mut event = [None; WIDTH];
 
-    let asked = rows.force[0].less(reach(&rows.force, (1, top), theta));
+    let asked = rows.force[0].less(reach(&rows.force, top, theta));
     if any(asked) {
         let fall = first_fall(&rows.force, (top, theta), &mut rows.guard);
         theta = fall.take((theta, asked), &mut event, Event::LiftOff);
@@ -614,17 +611,15 @@ fn contact<const ROLLS: bool>(accuracy: &Accuracy, rows: &mut Rows, group: &mut 
             for k in 0..=top {
                 rows.room[k] = c.friction * rows.normal[k] + rows.friction[k] * sign;
             }
-            let asked = rows.room[0].less(reach(&rows.room, (1, top), theta));
+            let asked = rows.room[0].less(reach(&rows.room, top, theta));
             if any(asked) {
                 let fall = first_fall(&rows.room, (top, theta), &mut rows.guard);
                 theta = fall.take((theta, asked), &mut event, Event::Slips(slips));
             }
         }
     } else {
-        let fast = w0.x.abs()
-            + w0.y.abs()
-            + reach(&rows.wx, (1, order), theta)
-            + reach(&rows.wy, (1, order), theta);
+        let fast =
+            w0.x.abs() + w0.y.abs() + reach(&rows.wx, order, theta) + reach(&rows.wy, order, theta);
         // Without friction the direction of slip changes nothing.
         let mut asked = c.surface.abs().less(fast);
         for i in 0..WIDTH {

@@ -5,7 +5,7 @@ use super::number::{Lanes, WIDTH};
 use super::{Ended, Ending, Launch};
 use crate::V2;
 use crate::bisection::top_between;
-use crate::integrate::enough::highest_order;
+use crate::integrate::enough::{flight_rtol, highest_order};
 use crate::vector::perp;
 use pulp::Arch;
 
@@ -289,8 +289,7 @@ pub(super) struct Pool<T> {
 
 impl<T> Pool<T> {
     pub(super) fn new(arch: Arch, rtol: f64) -> Self {
-        // As the scalar integrator: flight is linear and costs little.
-        let flight = (1e-7 * rtol).max(1e-16);
+        let flight = flight_rtol(rtol);
         let accuracy = Accuracy {
             rtol: [flight, rtol],
             order: [highest_order(flight), highest_order(rtol)],
@@ -373,7 +372,7 @@ impl<T> Pool<T> {
         let (group, slots) = (&mut *self.group, &mut self.slots);
         group.kind = slots[*first].kind;
         group.unbalanced = false;
-        let touching = group.kind as usize;
+        let mode = group.kind as usize;
         for lane in 0..WIDTH {
             // Lanes to spare do what the first one does.
             let slot = &slots[*places.get(lane).unwrap_or(first)];
@@ -389,7 +388,7 @@ impl<T> Pool<T> {
             group.beyond[lane] = slot.beyond;
             group.fastest.0[lane] = slot.fastest;
             let left = slot.launch.until_s - slot.t_s;
-            group.reference.0[lane] = slot.references[touching].min(left);
+            group.reference.0[lane] = slot.references[mode].min(left);
             group.most.0[lane] = if slot.fresh {
                 left.min(3.3 / slot.constants.contact_rate)
             } else {
@@ -404,13 +403,13 @@ impl<T> Pool<T> {
         for (lane, place) in places.iter().enumerate() {
             let slot = &mut slots[*place];
             let before_m_s = slot.backward_m_s();
-            slot.references[touching] = group.reference.0[lane];
+            slot.references[mode] = group.reference.0[lane];
             slot.fastest = group.fastest.0[lane];
             slot.steps += 1;
             let dt_s = group.step.0[lane];
             let left = slot.launch.until_s - slot.t_s;
             // Nothing that is not finite gets on.
-            let moves = dt_s > 1e-9 * slot.references[touching];
+            let moves = dt_s > 1e-9 * slot.references[mode];
             slot.stuck = if moves { 0 } else { slot.stuck + 1 };
             if slot.stuck > MOST_STUCK || slot.steps > MOST_STEPS {
                 endings.push((*place, Ending::GaveUp));

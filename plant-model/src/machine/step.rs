@@ -5,7 +5,7 @@ use super::guards::Guard;
 use super::series::{MachineSeries, Parts, Step};
 use super::system::{MachineState, MachineSystem};
 use crate::V2;
-use crate::integrate::enough::{Enough, highest_order, trusted_theta};
+use crate::integrate::enough::{Enough, flight_rtol, highest_order, trusted_theta};
 use crate::integrate::first_fall::{Fall, first_fall};
 use crate::integrate::{Method, PlantError};
 use crate::mode::Phase;
@@ -53,11 +53,6 @@ struct Weights {
 /// another sequence of modes.
 const LAST: usize = 3;
 
-/// Tolerance of a step of flight over that of contact: it is linear and costs little, and may last for long. None is smaller than
-/// rounding.
-const FLIGHT: f64 = 1e-7;
-const ROUNDING: f64 = 1e-16;
-
 /// Steps a machine; remembers the last steps as the next ones' references.
 #[derive(Debug, Clone)]
 pub(crate) struct Stepper {
@@ -94,8 +89,8 @@ impl Stepper {
             collocation: (method == Method::Collocation)
                 .then(|| Box::new(Collocation::new(system))),
             guard: Scalar::default(),
-            rtol: [(FLIGHT * rtol).max(ROUNDING), rtol],
-            highest_order: [FLIGHT * rtol, rtol].map(highest_order),
+            rtol: [flight_rtol(rtol), rtol],
+            highest_order: [flight_rtol(rtol), rtol].map(highest_order),
             references_s: [1.0 / rate; 2],
             fastest_m_s: 0.0,
             mobility: most(&|p| system.contact(p).mobility()),
