@@ -118,6 +118,8 @@ pub(super) struct Group {
     /// Length of the step \[s\], 0 where the reference was far too long; and its end on the series.
     pub(super) step: Lanes,
     pub(super) theta: Lanes,
+    /// In a step of slip the whirl is never faster than this \[m/s\].
+    pub(super) whirl: Lanes,
     pub(super) event: [Option<Event>; WIDTH],
 }
 
@@ -638,8 +640,33 @@ fn contact<const ROLLS: bool>(accuracy: &Accuracy, rows: &mut Rows, group: &mut 
             theta = fall.take((theta, asked), &mut event, Event::Stops);
         }
     }
+    if !ROLLS {
+        group.whirl = fastest_whirl(rows, group, (order, theta));
+    }
     finish(rows, group, (order, theta), h);
     group.event = event;
+}
+
+/// Bound of the whirl's speed up to θ \[m/s\]: by the tangent at the start, and by how far the tangent turns.
+#[inline(always)]
+fn fastest_whirl(rows: &Rows, group: &Group, (order, theta): (usize, Lanes)) -> Lanes {
+    let (u, w) = (group.position, group.velocity);
+    let per = rows.distance[0].recip();
+    let tangent = Pair {
+        x: -(u.y * per),
+        y: u.x * per,
+    };
+    let (mut gone, mut faster) = (Lanes::all(0.0), Lanes::all(0.0));
+    for k in (1..=order).rev() {
+        let along = |x: Lanes, y: Lanes| (tangent.x * x + tangent.y * y).abs();
+        gone = gone * theta + along(rows.ux[k], rows.uy[k]);
+        faster = faster * theta + along(rows.wx[k], rows.wy[k]);
+    }
+    let speed =
+        w.x.abs() + w.y.abs() + reach(&rows.wx, order, theta) + reach(&rows.wy, order, theta);
+    // In contact the rotor is no nearer to the middle than the wall is.
+    let turned = gone * theta * group.constants.clearance.recip();
+    tangent.dot(w).abs() + faster * theta + turned * speed
 }
 
 impl Fall {

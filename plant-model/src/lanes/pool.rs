@@ -116,18 +116,17 @@ impl<T> Slot<T> {
         self.backward() * self.position.perp(&self.velocity) / self.position.norm()
     }
 
-    /// Whether it whirled in a step of contact that ended here. Of a speed between the ends it is asked where it may be more.
+    /// Whether it whirled in a step of contact that ended here. Between the ends it is looked for where a bound lets it be there;
+    /// where the surfaces roll, the speed of both is held.
     fn whirled(
         &self,
-        before_m_s: f64,
+        (before_m_s, bound_m_s): (f64, f64),
         (rows, lane): (&Rows, usize),
         (order, theta): (usize, f64),
     ) -> bool {
-        /// Between the ends of a step the speed is not higher than at both by more than this.
-        const NEAR_TOP: f64 = 0.9;
         let most_m_s = before_m_s.max(self.backward_m_s());
         let whirl_m_s = self.launch.whirl_m_s;
-        if most_m_s >= whirl_m_s || most_m_s < NEAR_TOP * whirl_m_s {
+        if most_m_s >= whirl_m_s || self.kind != Kind::Slip || bound_m_s < whirl_m_s {
             return most_m_s >= whirl_m_s;
         }
         let backward = self.backward();
@@ -313,6 +312,7 @@ impl<T> Pool<T> {
                 fastest: Lanes::default(),
                 step: Lanes::default(),
                 theta: Lanes::default(),
+                whirl: Lanes::default(),
                 event: [None; WIDTH],
             }),
         }
@@ -428,7 +428,7 @@ impl<T> Pool<T> {
             };
             let whirled = slot.kind.touches()
                 && slot.whirled(
-                    before_m_s,
+                    (before_m_s, group.whirl.0[lane]),
                     (&self.rows, lane),
                     (self.accuracy.order[1], group.theta.0[lane]),
                 );

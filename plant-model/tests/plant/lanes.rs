@@ -307,3 +307,36 @@ proptest! {
         }
     }
 }
+
+/// Whirl that comes and goes within one long step: the unbalance turns through its own direction.
+#[test]
+fn whirl_between_the_ends_of_a_step_is_seen() {
+    let (mass_kg, clearance_m) = (700.0, 1e-2);
+    let mut params = rig((0.2, 0.01, 40.0, 0.5, clearance_m, 1.6e-3));
+    params.rotor.mass_kg = mass_kg;
+    params.rotor.stiffness_n_m = 1.0;
+    params.rotor.damping_n_s_m = 1.0;
+    params.rotor.contact_radius_m = 1.0;
+    params.friction = friction(0.7);
+    params.contact.law = spring(5e7, 1.17 * (5e7 * mass_kg).sqrt()).into();
+    let impact = Impact {
+        speed_m_s: critical_tangential_speed_m_s(&params).unwrap(),
+        inclination_rad: 0.0,
+        spin_rad_s: -1160.0,
+        spin_phase_rad: 0.3,
+    };
+    for rtol in [1e-2, 1e-3, 1e-5, 1e-9, 1e-12] {
+        let options = Options {
+            rtol,
+            ..Options::default()
+        };
+        let criterion = Criterion {
+            limit_s: 0.05,
+            options,
+            ..Criterion::default()
+        };
+        let by_lanes = run_impacts(&[(params, impact)], &criterion)[0].unwrap();
+        assert_eq!(by_lanes.outcome, Outcome::Whirl, "{rtol:e}");
+        assert_eq!(by_lanes, run_impact(&params, &impact, &criterion).unwrap());
+    }
+}
