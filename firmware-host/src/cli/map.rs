@@ -8,7 +8,7 @@ use firmware_bench::run::columns::{Cell, Column, Kind};
 use firmware_bench::scene::spec::{Setting, Spec};
 use firmware_bench::sweep::table::{Rows, written};
 use firmware_studies::campaign::html;
-use firmware_studies::map::{MOST_CELLS, Map, MapError, MapPlan, Varied};
+use firmware_studies::map::{MOST_CELLS, Map, MapError, MapPlan, PERCENTILES, Spread, Varied};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -24,9 +24,17 @@ pub struct MapArgs {
     /// The same along the vertical axis.
     #[arg(long, value_name = "KEY=FROM..TO")]
     pub y: Varied,
-    /// What the map shows: v_crit is the lowest speed of an impact, left to itself, that ends in backward whirl.
-    #[arg(long, value_name = "WHAT", default_value = "v_crit", value_parser = ["v_crit"])]
-    pub of: String,
+    /// What the map shows: v_crit is the lowest speed of an impact, left to itself, that ends in backward whirl; p5, p50 and p95 are
+    /// percentiles of it, with --spread [default: v_crit, or p5 with --spread].
+    #[arg(long, value_name = "WHAT", value_parser = ["v_crit", "p5", "p50", "p95"])]
+    pub of: Option<String>,
+    /// A key that is known within limits only, as contact.stiffness_n_m=1e8..4e8, every value between them as likely; any number of
+    /// times.
+    #[arg(long, value_name = "KEY=FROM..TO")]
+    pub spread: Vec<Varied>,
+    /// Draws of each cell with --spread.
+    #[arg(long, value_name = "NUMBER", default_value_t = 64, value_parser = clap::value_parser!(u32).range(20..=10_000))]
+    pub draws: u32,
     /// Cells along both axes.
     #[arg(long, value_name = "COLUMNSxROWS", default_value = "100x100", value_parser = cells)]
     pub cells: Cells,
@@ -91,11 +99,13 @@ pub fn execute(args: &MapArgs) -> Result<(), CommandError> {
         let name = args.scene.file_stem().unwrap_or(args.scene.as_os_str());
         Path::new("runs").join(format!("{}_map", name.to_string_lossy()))
     });
+    let spread = spread(args)?;
     let staging = Staging::for_folder(&out)?;
     let plan = MapPlan {
         x: args.x.clone(),
         y: args.y.clone(),
         cells: args.cells.0,
+        spread,
         held_spin: args.held_spin,
     };
     let bar = LateProgress::default();
@@ -124,13 +134,10 @@ pub fn execute(args: &MapArgs) -> Result<(), CommandError> {
     if args.json {
         return print(&(pretty(&done, "formatting what was done")? + "\n"));
     }
-    let bears = match range {
-        Some((low, high)) => format!("bears impacts of {low:.4} to {high:.4} m/s"),
-        None => "is driven into backward whirl by no impact".to_owned(),
-    };
     tell(&format!(
-        "{}: the rotor {bears}.\n{} cells, {} impacts, {} of them side by side, in {:.1} s; {} of {} cells run one by one came to the same speed.\npage: {}\n",
+        "{}: {}\n{} cells, {} impacts, {} of them side by side, in {:.1} s; {} of {} critical speeds found one by one were the same.\npage: {}\n",
         args.scene.display(),
+        map.headline(),
         done.cells,
         done.runs,
         done.lanes,
@@ -141,9 +148,62 @@ pub fn execute(args: &MapArgs) -> Result<(), CommandError> {
     ))
 }
 
+/// What is known within limits only.
+fn spread(args: &MapArgs) -> Result<Option<Spread>, CommandError> {
+    /// Keys at most.
+    const MOST_KEYS: usize = 32;
+    let refused = |message: String, help: &str| {
+        let help = help.to_owned();
+        Err(CommandError::Numbers { message, help })
+    };
+    let percentile = args.of.as_deref().and_then(|of| of.strip_prefix('p'));
+    let shown = percentile.and_then(|of| PERCENTILES.iter().position(|p| p.to_string() == of));
+    if args.spread.is_empty() {
+        return match shown {
+            None => Ok(None),
+            Some(_) => refused(
+                "--of is a percentile, and nothing is spread".to_owned(),
+                "say what is known within limits only, as --spread contact.stiffness_n_m=1e8..4e8",
+            ),
+        };
+    }
+    if args.of.is_some() && shown.is_none() {
+        return refused(
+            "--of v_crit is of a rotor that is known, and --spread of one that is not".to_owned(),
+            "give p5, p50 or p95",
+        );
+    }
+    let draws = args.draws as usize;
+    let [columns, rows] = args.cells.0;
+    if columns * rows > MOST_CELLS / draws {
+        return refused(
+            format!(
+                "{columns} x {rows} cells are {} critical speeds with {draws} draws each",
+                columns * rows * draws
+            ),
+            &format!("give fewer --cells or --draws, {MOST_CELLS} critical speeds at most"),
+        );
+    }
+    if args.spread.len() > MOST_KEYS {
+        return refused(
+            format!("{} keys are spread", args.spread.len()),
+            &format!("give {MOST_KEYS} at most"),
+        );
+    }
+    Ok(Some(Spread {
+        keys: args.spread.clone(),
+        draws,
+        shown: shown.unwrap_or(0),
+    }))
+}
+
 fn refused(error: MapError) -> CommandError {
     match error {
         MapError::Scene(error) => error.into(),
+        MapError::Twice(_) => CommandError::Numbers {
+            message: error.to_string(),
+            help: "give it once, along x, along y or as a spread".to_owned(),
+        },
         MapError::NotOfOnePlane(_) => CommandError::Numbers {
             message: error.to_string(),
             help: "give a scene without [[plane]], inertias and [[shaft]]".to_owned(),
@@ -154,18 +214,19 @@ fn refused(error: MapError) -> CommandError {
 
 /// A row a cell.
 fn rows(map: &Map) -> Rows {
-    let (x, y) = (&map.plan.x.key, &map.plan.y.key);
-    let names = [x.clone(), y.clone(), "v_crit_m_s".to_owned()];
-    let columns = names.map(|name| Column {
+    let keys = [map.plan.x.key.clone(), map.plan.y.key.clone()];
+    let columns = (keys.into_iter().chain(map.plan.columns())).map(|name| Column {
         name,
         kind: Kind::Number,
     });
-    let mut rows = Rows::new(columns.into());
+    let mut rows = Rows::new(columns.collect());
     for cell in &map.cells {
+        let place = [Some(cell.x), Some(cell.y)].into_iter();
         rows.push(
-            [Some(cell.x), Some(cell.y), cell.critical_m_s]
+            place
+                .chain(cell.critical_m_s.iter().copied())
                 .map(Cell::Number)
-                .to_vec(),
+                .collect(),
         );
     }
     rows

@@ -1,9 +1,10 @@
-//! The critical impact speed of a scene's rotor over two of its keys.
+//! The critical impact speed of a scene's rotor over two of its keys; percentiles of it where others are known within limits only.
 
 use crate::campaign::{Block, Chapter, Drawing, Figure, Page, Progress};
 use firmware_bench::report::plot::chart::{Axis, HeatMap};
 use firmware_bench::scene::diagnostic::SceneError;
 use firmware_bench::scene::spec::Spec;
+use firmware_bench::sweep::design::Points;
 use plant_model::analysis::impact::{
     Criterion, ImpactError, Search, Tried, critical_speed_m_s, critical_speeds_m_s,
 };
@@ -15,12 +16,14 @@ const SEARCH: Search = Search {
     step: 0.03,
     tolerance: 1e-4,
 };
-/// Cells that one thread takes together.
+/// Searches that one thread takes together.
 const CHUNK: usize = 200;
-/// Cells that are run one by one, too.
+/// Searches that are run one by one, too.
 const CHECKED: usize = 100;
-/// Cells at most.
+/// Cells at most, each as often as it is drawn.
 pub const MOST_CELLS: usize = 1_000_000;
+/// Percentiles of a map with a spread: of a hundred machines so many bear less.
+pub const PERCENTILES: [usize; 3] = [5, 50, 95];
 
 /// The inclination of the impact into the direction of backward whirl \[°\], which is no key of a scene.
 const INCLINATION: &str = "impact.inclination_deg";
@@ -52,10 +55,20 @@ impl std::str::FromStr for Varied {
 }
 
 impl Varied {
-    /// The middle of a cell.
-    fn middle(&self, cell: usize, of: usize) -> f64 {
-        self.from + (self.to - self.from) * (cell as f64 + 0.5) / of as f64
+    /// What lies so far along the range, from 0 to 1.
+    fn at(&self, share: f64) -> f64 {
+        self.from + (self.to - self.from) * share
     }
+}
+
+/// Keys that are known within limits only, every value between them as likely.
+#[derive(Debug, Clone)]
+pub struct Spread {
+    pub keys: Vec<Varied>,
+    /// Draws of each cell; all cells have the same, points of a Sobol sequence.
+    pub draws: usize,
+    /// Which of [`PERCENTILES`] the picture shows.
+    pub shown: usize,
 }
 
 /// What a map is of.
@@ -65,18 +78,19 @@ pub struct MapPlan {
     pub y: Varied,
     /// Cells along x and along y.
     pub cells: [usize; 2],
+    pub spread: Option<Spread>,
     /// The spin is held at its start, whatever the scene says.
     pub held_spin: bool,
 }
 
 /// A cell.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct MapCell {
     pub x: f64,
     pub y: f64,
-    /// Lowest impact speed that ends in backward whirl \[m/s\]; none where nothing up to twice what a single impact needs does, or
-    /// no speed is critical.
-    pub critical_m_s: Option<f64>,
+    /// Lowest impact speed that ends in backward whirl, or its [`PERCENTILES`] \[m/s\]; none where nothing up to twice what a single
+    /// impact needs does, or no speed is critical.
+    pub critical_m_s: Vec<Option<f64>>,
 }
 
 /// A map that has been run.
@@ -86,7 +100,7 @@ pub struct Map {
     /// Rows from the bottom, cells from left to right.
     pub cells: Vec<MapCell>,
     pub tried: Tried,
-    /// Cells that were run one by one, too, and those of them that came to the same speed.
+    /// Searches that were run one by one, too, and those of them that came to the same speed.
     pub checked: [usize; 2],
 }
 
@@ -96,6 +110,9 @@ pub enum MapError {
     /// A cell is no scene.
     #[error(transparent)]
     Scene(#[from] SceneError),
+    /// A key is given two values.
+    #[error("{0} varies twice")]
+    Twice(String),
     /// The scene is of more than a point mass in one plane.
     #[error("a map is of a point mass in one plane, and this scene has {0}")]
     NotOfOnePlane(&'static str),
@@ -107,20 +124,38 @@ pub enum MapError {
 type Case = (PlantParams, (f64, f64));
 
 impl MapPlan {
+    /// Columns of critical speeds.
+    pub fn columns(&self) -> Vec<String> {
+        match &self.spread {
+            None => vec!["v_crit_m_s".to_owned()],
+            Some(_) => PERCENTILES.map(|p| format!("v_crit_p{p}_m_s")).into(),
+        }
+    }
+
     /// Runs all cells, on the threads of the pool that it is called in.
     ///
     /// # Errors
     /// [`MapError`] of the first cell that has one.
     pub fn run(self, spec: &Spec, progress: &dyn Progress) -> Result<Map, MapError> {
-        let [columns, rows] = self.cells;
-        let places: Vec<(f64, f64)> = (0..rows)
-            .flat_map(|j| (0..columns).map(move |i| (i, j)))
-            .map(|(i, j)| (self.x.middle(i, columns), self.y.middle(j, rows)))
+        let keys: Vec<&Varied> = [&self.x, &self.y]
+            .into_iter()
+            .chain(self.spread_keys())
             .collect();
-        progress.begin(places.len() as u64, "cells");
+        for (i, varied) in keys.iter().enumerate() {
+            if keys[..i].iter().any(|other| other.key == varied.key) {
+                return Err(MapError::Twice(varied.key.clone()));
+            }
+        }
+        let places = self.places();
+        let draws = self.draws();
+        progress.begin((places.len() * draws.len()) as u64, "critical speeds");
         let quiet = spec.clone().without_warnings();
-        let cases = (places.par_iter())
-            .map(|place| self.case(&quiet, *place))
+        let drawn: Vec<_> = places
+            .iter()
+            .flat_map(|place| draws.iter().map(|draw| (*place, draw)))
+            .collect();
+        let cases = (drawn.par_iter())
+            .map(|((x, y), draw)| self.case(&quiet, &[&[*x, *y], draw.as_slice()].concat()))
             .collect::<Result<Vec<Case>, MapError>>()?;
         let criterion = Criterion::default();
         let chunks = cases.par_chunks(CHUNK).map(|chunk| {
@@ -130,39 +165,83 @@ impl MapPlan {
         });
         let chunks: Vec<_> = chunks.collect();
         let mut tried = Tried::default();
-        let mut cells = Vec::with_capacity(places.len());
+        let mut speeds = Vec::with_capacity(cases.len());
         let found = chunks.into_iter().flat_map(|(found, of_chunk)| {
             tried.impacts += of_chunk.impacts;
             tried.by_lanes += of_chunk.by_lanes;
             found
         });
-        for ((x, y), found) in places.into_iter().zip(found) {
-            let critical_m_s = critical(found).map_err(|reason| MapError::Run { x, y, reason })?;
-            cells.push(MapCell { x, y, critical_m_s });
+        for (((x, y), _), found) in drawn.iter().zip(found) {
+            let (x, y) = (*x, *y);
+            speeds.push(critical(found).map_err(|reason| MapError::Run { x, y, reason })?);
         }
-        let step = cells.len().div_ceil(CHECKED);
-        let sample: Vec<usize> = (0..cells.len()).step_by(step).collect();
+        let step = cases.len().div_ceil(CHECKED);
+        let sample: Vec<usize> = (0..cases.len()).step_by(step).collect();
         let alike = sample.par_iter().filter(|i| {
             let (params, at) = &cases[**i];
-            let alone = critical(critical_speed_m_s(params, *at, &SEARCH, &criterion));
-            alone == Ok(cells[**i].critical_m_s)
+            critical(critical_speed_m_s(params, *at, &SEARCH, &criterion)) == Ok(speeds[**i])
         });
         let checked = [sample.len(), alike.count()];
+        let of_cells = places.iter().zip(speeds.chunks(draws.len()));
+        let cells = of_cells.map(|(&(x, y), speeds)| MapCell {
+            x,
+            y,
+            critical_m_s: if self.spread.is_some() {
+                percentiles(speeds)
+            } else {
+                speeds.to_vec()
+            },
+        });
         Ok(Map {
+            cells: cells.collect(),
             plan: self,
-            cells,
             tried,
             checked,
         })
     }
 
-    fn case(&self, spec: &Spec, (x, y): (f64, f64)) -> Result<Case, MapError> {
+    fn spread_keys(&self) -> &[Varied] {
+        self.spread.as_ref().map_or(&[], |spread| &spread.keys)
+    }
+
+    /// Middles of the cells, rows from the bottom.
+    fn places(&self) -> Vec<(f64, f64)> {
+        let middle = |varied: &Varied, cell, of| varied.at((cell as f64 + 0.5) / of as f64);
+        let [columns, rows] = self.cells;
+        (0..rows)
+            .flat_map(|j| (0..columns).map(move |i| (i, j)))
+            .map(|(i, j)| (middle(&self.x, i, columns), middle(&self.y, j, rows)))
+            .collect()
+    }
+
+    /// Values of the keys that are spread; one draw of nothing where none is.
+    fn draws(&self) -> Vec<Vec<f64>> {
+        let keys = self.spread_keys();
+        let points = Points::sobol(
+            self.spread.as_ref().map_or(1, |s| s.draws as u64),
+            keys.len(),
+            0,
+        );
+        (0..points.runs())
+            .map(|run| {
+                let shares = points.at(run).shares;
+                keys.iter()
+                    .zip(shares)
+                    .map(|(key, share)| key.at(share))
+                    .collect()
+            })
+            .collect()
+    }
+
+    /// The rotor with these values along x, along y, and of what is spread.
+    fn case(&self, spec: &Spec, values: &[f64]) -> Result<Case, MapError> {
         let mut spec = spec.clone();
         let mut inclination_deg = 0.0;
-        for (varied, value) in [(&self.x, x), (&self.y, y)] {
+        let keys = [&self.x, &self.y].into_iter().chain(self.spread_keys());
+        for (varied, value) in keys.zip(values) {
             match varied.key.as_str() {
-                INCLINATION => inclination_deg = value,
-                key => spec.set(key, value)?,
+                INCLINATION => inclination_deg = *value,
+                key => spec.set(key, *value)?,
             }
         }
         let scene = spec.resolve()?;
@@ -193,14 +272,61 @@ fn critical(found: Result<Option<f64>, ImpactError>) -> Result<Option<f64>, Impa
     }
 }
 
+/// Of speeds drawn; a rotor that nothing drives into whirl bears more than any other.
+fn percentiles(speeds: &[Option<f64>]) -> Vec<Option<f64>> {
+    let mut ascending: Vec<f64> = speeds
+        .iter()
+        .map(|speed| speed.unwrap_or(f64::INFINITY))
+        .collect();
+    ascending.sort_by(f64::total_cmp);
+    let of = |percentile: usize| {
+        let rank = (percentile * ascending.len()).div_ceil(100).max(1);
+        ascending
+            .get(rank - 1)
+            .copied()
+            .filter(|speed| speed.is_finite())
+    };
+    PERCENTILES.map(of).into()
+}
+
 impl Map {
-    /// Lowest and highest critical speed \[m/s\].
+    /// What the picture shows of a cell.
+    fn shown_m_s(&self, cell: &MapCell) -> Option<f64> {
+        let column = self.plan.spread.as_ref().map_or(0, |spread| spread.shown);
+        cell.critical_m_s.get(column).copied().flatten()
+    }
+
+    /// Lowest and highest critical speed that the picture shows \[m/s\].
     pub fn range_m_s(&self) -> Option<(f64, f64)> {
-        let speeds = self.cells.iter().filter_map(|cell| cell.critical_m_s);
+        let speeds = self.cells.iter().filter_map(|cell| self.shown_m_s(cell));
         speeds.fold(None, |range, v| {
             let (low, high) = range.unwrap_or((v, v));
             Some((f64::min(low, v), f64::max(high, v)))
         })
+    }
+
+    /// What the rotor bears, in a sentence.
+    pub fn headline(&self) -> String {
+        match (self.range_m_s(), self.percentile()) {
+            (Some((low, high)), None) => {
+                format!("The rotor bears impacts of {low:.4} to {high:.4} m/s.")
+            }
+            (Some((low, high)), Some(p)) => {
+                format!("All but {p} of 100 such rotors bear impacts of {low:.4} to {high:.4} m/s.")
+            }
+            (None, None) => "No impact ends in backward whirl.".to_owned(),
+            (None, Some(p)) => format!(
+                "Of 100 such rotors fewer than {p} can be driven into backward whirl by an impact."
+            ),
+        }
+    }
+
+    /// The percentile that the picture shows.
+    fn percentile(&self) -> Option<usize> {
+        self.plan
+            .spread
+            .as_ref()
+            .map(|spread| PERCENTILES[spread.shown])
     }
 
     /// The map as a page.
@@ -208,19 +334,24 @@ impl Map {
         let plan = &self.plan;
         let (low, high) = self.range_m_s().unwrap_or((0.0, 1.0));
         // A few cells with the highest speeds would take all the colours.
-        let mut all: Vec<f64> = self.cells.iter().filter_map(|c| c.critical_m_s).collect();
+        let mut all: Vec<f64> = self
+            .cells
+            .iter()
+            .filter_map(|c| self.shown_m_s(c))
+            .collect();
         all.sort_by(f64::total_cmp);
         let top = all.get((0.95 * all.len() as f64) as usize).copied();
         let axis = |varied: &Varied| Axis::linear(&varied.key, (varied.from, varied.to));
         let rows = self.cells.chunks(plan.cells[0]);
         let cells = rows.map(|row| {
-            let speed = |cell: &MapCell| cell.critical_m_s.unwrap_or(f64::NAN);
+            let speed = |cell: &MapCell| self.shown_m_s(cell).unwrap_or(f64::NAN);
             row.iter().map(speed).collect()
         });
-        let label = format!(
-            "Critical impact speed over {} and {}",
-            plan.x.key, plan.y.key
-        );
+        let label = match self.percentile() {
+            None => "Critical impact speed".to_owned(),
+            Some(percentile) => format!("Percentile {percentile} of the critical impact speed"),
+        };
+        let label = format!("{label} over {} and {}", plan.x.key, plan.y.key);
         let figure = Figure {
             file: "map",
             caption: format!(
@@ -239,10 +370,6 @@ impl Map {
                 cells: cells.collect(),
             }),
         };
-        let headline = match self.range_m_s() {
-            Some((low, high)) => format!("The rotor bears impacts of {low:.4} to {high:.4} m/s."),
-            None => "No impact ends in backward whirl.".to_owned(),
-        };
         let of = format!(
             "The lowest impact speed, left to itself, that ends in backward whirl: steps of 3 % upwards, then halving to 1e-4. {} cells of {scene}, {} impacts.",
             self.cells.len(),
@@ -250,9 +377,24 @@ impl Map {
         );
         Page {
             title: label,
-            headline,
-            lead: vec![Block::text(of)],
+            headline: self.headline(),
+            lead: [Some(of), self.spread_said()]
+                .into_iter()
+                .flatten()
+                .map(Block::text)
+                .collect(),
             chapters: vec![Chapter::new("Map", vec![Block::Figures(vec![figure])])],
         }
+    }
+
+    /// What is known within limits only.
+    fn spread_said(&self) -> Option<String> {
+        let spread = self.plan.spread.as_ref()?;
+        let range = |key: &Varied| format!("{} from {} to {}", key.key, key.from, key.to);
+        Some(format!(
+            "Each cell is drawn {} times, with {}, every value as likely.",
+            spread.draws,
+            spread.keys.iter().map(range).collect::<Vec<_>>().join(", ")
+        ))
     }
 }

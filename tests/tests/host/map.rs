@@ -85,6 +85,38 @@ fn free_spin_goes_one_by_one() {
     assert!(done["runs"].as_u64().unwrap() > 50);
 }
 
+/// Of one key that is spread, percentiles are the speeds at these shares of its range: more friction bears less.
+#[test]
+fn percentiles_are_those_of_what_is_spread() {
+    let folder = TempDir::new().unwrap();
+    let scene = scene_path("impact_at_40_hz");
+    let out = folder.path().join("map");
+    // One cell, its middle at the scene's own numbers.
+    let cell = |more: &[&str]| {
+        let x = ["--x", "contact.stiffness_n_m=0.9e8..1.1e8"];
+        let y = ["--y", "contact.restitution=0.6..0.8"];
+        let fixed = [scene.to_str().unwrap(), "--held-spin", "--cells", "1x1"];
+        let (code, said, error) = map(&[&fixed[..], &x, &y, more].concat(), &out);
+        assert_eq!(code, Some(0), "{error}");
+        fs::remove_dir_all(&out).unwrap();
+        let done: Value = serde_json::from_str(&said).unwrap();
+        assert_eq!(done["equal_to_scalar"], done["checked"]);
+        (done["lowest_m_s"].as_f64().unwrap(), done["runs"].clone())
+    };
+    let mut of_all = None;
+    for (of, coefficient) in [("p5", "0.385"), ("p50", "0.25"), ("p95", "0.115")] {
+        let (known, _) = cell(&["--set", &format!("friction.coefficient={coefficient}")]);
+        let spread = ["--spread", "friction.coefficient=0.1..0.4"];
+        let (drawn, runs) = cell(&[&spread[..], &["--draws", "100", "--of", of]].concat());
+        assert!(
+            (drawn / known - 1.0).abs() < 0.03,
+            "{of}: {drawn} for {known}"
+        );
+        // The same draws, whatever is shown of them.
+        assert_eq!(*of_all.get_or_insert(runs.clone()), runs);
+    }
+}
+
 #[test]
 fn what_is_no_map_is_refused_and_leaves_nothing() {
     let folder = TempDir::new().unwrap();
@@ -96,6 +128,7 @@ fn what_is_no_map_is_refused_and_leaves_nothing() {
         (point, "friction.coefficient=0.6..0.1", Y, "FROM below TO"),
         (point, "friction.coefficient=0.6", Y, "KEY=FROM..TO"),
         (point, "friction.coefficient=-1..0.2", Y, "0 or greater"),
+        (point, X, X, "varies twice"),
         (
             two,
             "run.duration_s=0.1..0.2",
@@ -109,6 +142,25 @@ fn what_is_no_map_is_refused_and_leaves_nothing() {
         assert!(said.is_empty() && error.contains(names), "{error}");
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
     }
+    let spread = ["--spread", "rotor.mass_kg=8..12"];
+    for (more, names) in [
+        (&["--of", "p5"][..], "--spread"),
+        (&[spread[0], spread[1], "--of", "v_crit"], "p5, p50 or p95"),
+        (
+            &[spread[0], "friction.coefficient=0.1..0.2"],
+            "varies twice",
+        ),
+        (
+            &[spread[0], spread[1], "--cells", "200x200"],
+            "fewer --cells",
+        ),
+    ] {
+        let out = folder.path().join("map");
+        let (code, _, error) = map(&[&[point, "--x", X, "--y", Y], more].concat(), &out);
+        assert_eq!(code, Some(2), "{error}");
+        assert!(error.contains(names), "{error}");
+    }
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
     for cells in ["0x5", "5", "2000x2000", "99999999999999999999x2"] {
         let (code, _, error) = map(
             &[point, "--x", X, "--y", Y, "--cells", cells],
