@@ -66,7 +66,7 @@
 //! [`lanes`] runs many of the simplest ones at a time. [`machine`] is a rotor that tilts, bends and touches in several planes; [`Plant`] is the one that does none of it.
 //!
 //! Files, each importing only from those above it: `vector`, `bisection`, `params`, `contact`, `friction`, `mode`, `energy`,
-//! `series`, `quadrature`, `ellipse`, `race`, `readout`, `integrate`, `lanes`, `machine`, `plant`, `analysis`.
+//! `series`, `quadrature`, `ellipse`, `free_flight`, `race`, `readout`, `integrate`, `lanes`, `machine`, `plant`, `analysis`.
 
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
@@ -77,6 +77,7 @@ mod bisection;
 pub mod contact;
 mod ellipse;
 pub mod energy;
+mod free_flight;
 mod friction;
 mod integrate;
 pub mod lanes;

@@ -33,7 +33,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Rooms, each importing only from those above it: `campaign`, `map`, `machines`, `accuracy`, `drops`, `paper`, `overloads`, `found_in_records`, `paired`, `commissioning`,
+//! Rooms, each importing only from those above it: `campaign`, `impacts`, `map`, `machines`, `accuracy`, `drops`, `paper`, `overloads`, `found_in_records`, `paired`, `commissioning`,
 //! `trials`, `unseen_machines`, `whole_rotors`, `loop_rates`, `sensitivity`, `on_target`, `validation`.
 
 #![forbid(unsafe_code)]
@@ -44,6 +44,7 @@ pub mod campaign;
 pub mod commissioning;
 pub mod drops;
 pub mod found_in_records;
+mod impacts;
 pub mod loop_rates;
 pub mod machines;
 pub mod map;

@@ -1,23 +1,20 @@
 //! The critical impact speed of a scene's rotor over two of its keys; percentiles of it where others are known within limits only.
 
 use crate::campaign::{Block, Chapter, Drawing, Figure, Page, Progress};
+use crate::impacts::critical_speeds_m_s;
 use firmware_bench::report::plot::chart::{Axis, HeatMap};
 use firmware_bench::scene::diagnostic::SceneError;
 use firmware_bench::scene::spec::Spec;
 use firmware_bench::sweep::design::Points;
-use plant_model::analysis::impact::{
-    Criterion, ImpactError, Search, Tried, critical_speed_m_s, critical_speeds_m_s,
-};
+use plant_model::analysis::impact::{Criterion, ImpactError, Search, Tried, critical_speed_m_s};
 use plant_model::params::{PlantParams, SpinParams};
-use rayon::prelude::{IntoParallelRefIterator, ParallelIterator, ParallelSlice};
+use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 
 /// Steps of the search upwards, and width of its last bracket.
 const SEARCH: Search = Search {
     step: 0.03,
     tolerance: 1e-4,
 };
-/// Searches that one thread takes together.
-const CHUNK: usize = 200;
 /// Searches that are run one by one, too.
 const CHECKED: usize = 100;
 /// Cells at most, each as often as it is drawn.
@@ -158,19 +155,9 @@ impl MapPlan {
             .map(|((x, y), draw)| self.case(&quiet, &[&[*x, *y], draw.as_slice()].concat()))
             .collect::<Result<Vec<Case>, MapError>>()?;
         let criterion = Criterion::default();
-        let chunks = cases.par_chunks(CHUNK).map(|chunk| {
-            let done = critical_speeds_m_s(chunk, &SEARCH, &criterion);
-            progress.add(chunk.len() as u64);
-            done
-        });
-        let chunks: Vec<_> = chunks.collect();
-        let mut tried = Tried::default();
+        let (found, tried) =
+            critical_speeds_m_s(&cases, &SEARCH, &criterion, |n| progress.add(n as u64));
         let mut speeds = Vec::with_capacity(cases.len());
-        let found = chunks.into_iter().flat_map(|(found, of_chunk)| {
-            tried.impacts += of_chunk.impacts;
-            tried.by_lanes += of_chunk.by_lanes;
-            found
-        });
         for (((x, y), _), found) in drawn.iter().zip(found) {
             let (x, y) = (*x, *y);
             speeds.push(critical(found).map_err(|reason| MapError::Run { x, y, reason })?);

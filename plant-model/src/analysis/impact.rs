@@ -5,14 +5,10 @@
 //! [`super::onset`]. Above v_t,crit itself friction gains on damping as long as contact lasts, but the
 //! rotor may still leave the wall; a multiple leaves no doubt, and which one hardly moves the result.
 //!
-//! *Free*: the rotor can never touch again. In flight the shaft turns it on a shrinking ellipse,
-//! r(t) = e^(−δt)·(**A**·cos ω_d·t + **B**·sin ω_d·t) with **A** = **r**, **B** = (**v** + δ·**r**)/ω_d,
-//! so r ≤ a with the larger semi-axis a² = (S + √(S² − 4P²))/2, S = A² + B², P = |**A** × **B**|. a < c
-//! settles it; no run has to wait for vibrations to decay. An unbalance at held spin adds the circle
-//! **p**, ε·Ω²·e^(iσ)/(ω0² − Ω² + 2iδΩ); the ellipse is then that of **r** − **p**, and a + p < c settles it.
-//! c is the nearest wall, c·(1 − ε) out of round. Rings swing on after the touch and may come to meet the rotor: their
+//! *Free*: the rotor can never touch again: the ellipse and the circle that it is on in flight (`free_flight`) end before the
+//! nearest wall, c·(1 − ε) out of round, so that no run has to wait for vibrations to decay. Rings swing on after the touch and may come to meet the rotor: their
 //! energy E only falls, so the inner one never goes farther than s = √(2E·Σ 1/k), the sum over the mountings between it
-//! and the ground, and a + p + s < c settles it. A ring that moves or is displaced without a spring may be anywhere.
+//! and the ground; that much is added. A ring that moves or is displaced without a spring may be anywhere.
 //!
 //! Without unbalance the whole is symmetric about the centre: from touch to touch only the normal and
 //! the tangential speed count, not where on the wall. With unbalance its phase comes in as well.
@@ -21,10 +17,10 @@ mod many;
 
 use super::onset::critical_tangential_speed_m_s;
 use crate::contact::restitution_of;
+use crate::free_flight::FreeFlight;
 use crate::params::{ContactLaw, PlantParams, RingParams, SpinParams, Start, StatorParams};
 use crate::plant::build;
 use crate::vector::Body;
-use crate::vector::perp;
 use crate::{BuildError, Inputs, Options, PlantError, Snapshot, V2};
 pub use many::{Tried, critical_speeds_m_s, run_impacts};
 
@@ -167,30 +163,25 @@ fn start_of(params: &PlantParams, impact: &Impact) -> Start {
 /// that nothing holds.
 fn stays_free(params: &PlantParams, now: &Snapshot, spin_phase_rad: f64) -> bool {
     let rotor = &params.rotor;
-    let decay = 0.5 * rotor.damping_n_s_m / rotor.mass_kg;
-    let natural_square = rotor.stiffness_n_m / rotor.mass_kg;
-    let damped_square = natural_square - decay * decay;
-    let unbalanced = rotor.eccentricity_m > 0.0;
-    if damped_square <= 0.0 || unbalanced && params.spin != SpinParams::Held {
+    if rotor.eccentricity_m > 0.0 && params.spin != SpinParams::Held {
         return false;
     }
-    let (circle, circle_rate) = if unbalanced {
-        let spin = now.spin_rad_s;
-        let (re, im) = (natural_square - spin * spin, 2.0 * decay * spin);
-        let size = rotor.eccentricity_m * spin * spin / re.hypot(im);
-        let (sin, cos) = (spin_phase_rad + spin * now.t_s - im.atan2(re)).sin_cos();
-        let direction = V2::new(cos, sin);
-        (size * direction, size * spin * perp(direction))
-    } else {
-        (V2::zeros(), V2::zeros())
+    let spin = now.spin_rad_s;
+    let flight = FreeFlight {
+        stiffness: rotor.stiffness_n_m / rotor.mass_kg,
+        damping: rotor.damping_n_s_m / rotor.mass_kg,
+        spin,
+        unbalance: rotor.eccentricity_m * spin * spin,
     };
-    let a = now.position_m - circle;
-    let b = (now.velocity_m_s - circle_rate + decay * a) / damped_square.sqrt();
-    let sum = a.norm_squared() + b.norm_squared();
-    let product = a.perp(&b);
-    let root = (sum * sum - 4.0 * product * product).max(0.0).sqrt();
-    let reach_m = (0.5 * (sum + root)).sqrt() + circle.norm();
-    reach_m + ring_reach_m(&params.stator, now) < nearest_wall_m(params)
+    let body = Body {
+        position: now.position_m,
+        velocity: now.velocity_m_s,
+    };
+    let (sin, cos) = (spin_phase_rad + spin * now.t_s).sin_cos();
+    let farthest_m = flight.farthest_m(&body, V2::new(cos, sin));
+    farthest_m.is_some_and(|farthest_m| {
+        farthest_m + ring_reach_m(&params.stator, now) < nearest_wall_m(params)
+    })
 }
 
 /// How near to the middle the wall of a stator at rest comes \[m\].

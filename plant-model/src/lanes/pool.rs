@@ -5,8 +5,9 @@ use super::number::{Lanes, WIDTH};
 use super::{Ended, Ending, Launch};
 use crate::V2;
 use crate::bisection::top_between;
+use crate::free_flight::FreeFlight;
 use crate::integrate::enough::{flight_rtol, highest_order};
-use crate::vector::perp;
+use crate::vector::{Body, perp};
 use pulp::Arch;
 
 /// Runs on their way at once: as many in every mode as a step takes, and then some.
@@ -235,30 +236,20 @@ impl<T> Slot<T> {
         )
     }
 
-    /// Whether the rotor can never touch again: see [`crate::analysis::impact`].
+    /// Whether the rotor can never touch again.
     fn stays_free(&self) -> bool {
         let c = &self.constants;
-        let decay = 0.5 * c.damping;
-        let damped_square = c.stiffness - decay * decay;
-        if damped_square <= 0.0 {
-            return false;
-        }
-        let (circle, circle_rate) = if c.unbalance > 0.0 {
-            // ε·Ω²·e^(iσ)/(ω0² − Ω² + 2iδΩ).
-            let (re, im) = (c.stiffness - c.spin * c.spin, c.damping * c.spin);
-            let scale = c.unbalance / (re * re + im * im);
-            let d = self.direction;
-            let circle = scale * V2::new(d.x * re + d.y * im, d.y * re - d.x * im);
-            (circle, c.spin * perp(circle))
-        } else {
-            (V2::zeros(), V2::zeros())
+        let flight = FreeFlight {
+            stiffness: c.stiffness,
+            damping: c.damping,
+            spin: c.spin,
+            unbalance: c.unbalance,
         };
-        let a = self.position - circle;
-        let b = (self.velocity - circle_rate + decay * a) / damped_square.sqrt();
-        let sum = a.norm_squared() + b.norm_squared();
-        let product = a.perp(&b);
-        let root = (sum * sum - 4.0 * product * product).max(0.0).sqrt();
-        (0.5 * (sum + root)).sqrt() + circle.norm() < c.clearance
+        let now = Body {
+            position: self.position,
+            velocity: self.velocity,
+        };
+        (flight.farthest_m(&now, self.direction)).is_some_and(|farthest| farthest < c.clearance)
     }
 
     fn ended(self, ending: Ending) -> (T, Ended) {

@@ -6,9 +6,9 @@ mod outcomes;
 use super::data::*;
 use super::onset::fit;
 use super::rotors::OnsetRig;
+use crate::impacts::critical_speeds_m_s;
 use firmware_bench::report::plot::text::figures;
-use plant_model::analysis::impact::{Criterion, Search, critical_speeds_m_s};
-use rayon::prelude::{ParallelIterator, ParallelSlice};
+use plant_model::analysis::impact::{Criterion, Search};
 
 /// Without unbalance the outcome changes once over the speed (rows of this chapter), so coarse steps
 /// find the same change.
@@ -80,24 +80,16 @@ impl Case {
     }
 }
 
-/// Cases that one thread takes, several at a time.
-const CHUNK: usize = 100;
-
 /// v_r,crit \[m/s\] of each; not a number where nothing whirls.
 fn critical_m_s(cases: &[Case]) -> Result<Vec<f64>> {
-    let chunks = cases.par_chunks(CHUNK).map(|chunk| {
-        let of = |case: &Case| {
-            let at = (case.inclination_rad, OnsetRig::SPIN_RAD_S);
-            Ok((case.rig.params()?, at))
-        };
-        let cases = chunk.iter().map(of).collect::<Result<Vec<_>>>()?;
-        let (found, _) = critical_speeds_m_s(&cases, &SEARCH, &Criterion::default());
-        found
-            .into_iter()
-            .map(|speed| Ok(speed?.unwrap_or(f64::NAN)))
-            .collect()
-    });
-    Ok(chunks.collect::<Result<Vec<Vec<f64>>>>()?.concat())
+    let of = |case: &Case| {
+        let at = (case.inclination_rad, OnsetRig::SPIN_RAD_S);
+        Ok((case.rig.params()?, at))
+    };
+    let cases = cases.iter().map(of).collect::<Result<Vec<_>>>()?;
+    let (found, _) = critical_speeds_m_s(&cases, &SEARCH, &Criterion::default(), |_| ());
+    let speed = |found: std::result::Result<Option<f64>, _>| Ok(found?.unwrap_or(f64::NAN));
+    found.into_iter().map(speed).collect()
 }
 
 fn linear((from, to): (f64, f64), share: f64) -> f64 {

@@ -5,7 +5,9 @@ mod variants;
 
 use super::data::*;
 use super::rotors::OnsetRig;
-use plant_model::analysis::impact::{Criterion, Impact, Search, critical_speed_m_s, run_impact};
+use plant_model::analysis::impact::{
+    Criterion, Impact, ImpactError, Search, critical_speeds_m_s, run_impacts,
+};
 use plant_model::analysis::onset::critical_tangential_speed_m_s;
 use plant_model::params::Start;
 use plant_model::{Inputs, Options, V2, build};
@@ -68,9 +70,22 @@ pub(super) fn impact(speed_m_s: f64, inclination_rad: f64) -> Impact {
 
 /// Critical impact speed \[m/s\] of a plant at an inclination.
 pub(super) fn critical_m_s(params: &PlantParams, inclination_rad: f64) -> Result<f64> {
-    let at = (inclination_rad, OnsetRig::SPIN_RAD_S);
-    critical_speed_m_s(params, at, &Search::default(), &Criterion::default())?
-        .or_missing("no impact speed that ends in whirl")
+    let case = (*params, (inclination_rad, OnsetRig::SPIN_RAD_S));
+    let speeds_m_s = critical_speeds(&[case], &Search::default(), &Criterion::default())?;
+    Ok(speeds_m_s[0])
+}
+
+/// Critical impact speeds \[m/s\] of plants, each with its inclination and its spin.
+fn critical_speeds(
+    cases: &[(PlantParams, (f64, f64))],
+    search: &Search,
+    criterion: &Criterion,
+) -> Result<Vec<f64>> {
+    let (found, _) = critical_speeds_m_s(cases, search, criterion);
+    let speed = |found: std::result::Result<Option<f64>, ImpactError>| {
+        found?.or_missing("no impact speed that ends in whirl")
+    };
+    found.into_iter().map(speed).collect()
 }
 
 /// A constant between two others with which the critical speed of a radial impact, which falls with it, is as measured.
@@ -163,21 +178,21 @@ struct Solved {
 
 impl Solved {
     fn new(of: &Configuration) -> Result<Self> {
-        let with = |share: f64| {
-            let rig = of.rig.with(|rig| rig.friction *= share);
-            critical_m_s(&rig.params()?, of.inclination_rad)
-        };
-        let (value_m_s, params) = (with(1.0)?, of.rig.params()?);
+        let at = (of.inclination_rad, OnsetRig::SPIN_RAD_S);
+        let with = |share: f64| of.rig.with(|rig| rig.friction *= share).params();
+        let cases = [(with(1.0)?, at), (with(0.75)?, at), (with(1.25)?, at)];
+        let speeds_m_s = critical_speeds(&cases, &Search::default(), &Criterion::default())?;
+        let value_m_s = speeds_m_s[0];
+        let after = SHARES.map(|share| (cases[0].0, impact(share * value_m_s, of.inclination_rad)));
         let mut impacts = [None; 6];
-        for (count, share) in impacts.iter_mut().zip(SHARES) {
-            let impact = impact(share * value_m_s, of.inclination_rad);
-            *count = run_impact(&params, &impact, &Criterion::default())?.impacts_to_threshold;
+        for (count, after) in (impacts.iter_mut()).zip(run_impacts(&after, &Criterion::default())) {
+            *count = after?.impacts_to_threshold;
         }
         Ok(Self {
             of: *of,
             value_m_s,
-            slippery_m_s: with(0.75)?,
-            rough_m_s: with(1.25)?,
+            slippery_m_s: speeds_m_s[1],
+            rough_m_s: speeds_m_s[2],
             impacts,
         })
     }

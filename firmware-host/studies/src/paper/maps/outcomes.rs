@@ -1,12 +1,12 @@
 //! Outcome over impact speed and one more parameter: sharp for the balanced rotor, with unbalance not monotone over the
 //! impact speed.
 
-use super::{CHUNK, Case, FRICTION, Grid, INCLINATION, Varied, linear};
+use super::{Case, FRICTION, Grid, INCLINATION, Varied, linear};
+use crate::impacts::run_impacts;
 use crate::paper::data::*;
 use crate::paper::onset::impact;
 use crate::paper::rotors::OnsetRig;
-use plant_model::analysis::impact::{Criterion, Impact, ImpactOutcome, Outcome, run_impacts};
-use rayon::prelude::{ParallelIterator, ParallelSlice};
+use plant_model::analysis::impact::{Criterion, Impact, ImpactOutcome, Outcome};
 
 const SOURCE: &str = "Results, onset phase";
 
@@ -31,19 +31,8 @@ impl Outcomes {
             let (rig, impact) = case(linear(speeds_m_s, *across), *up);
             Ok((rig.params()?, impact))
         };
-        let chunks = grid.places();
-        let chunks = chunks.par_chunks(CHUNK).map(|chunk| {
-            let cases = chunk.iter().map(of).collect::<Result<Vec<_>>>()?;
-            let runs = run_impacts(&cases, &Criterion::default());
-            Ok(runs
-                .into_iter()
-                .collect::<std::result::Result<Vec<_>, _>>()?)
-        });
-        let runs = grid.rows(
-            &chunks
-                .collect::<Result<Vec<Vec<ImpactOutcome>>>>()?
-                .concat(),
-        );
+        let cases = grid.places().iter().map(of).collect::<Result<Vec<_>>>()?;
+        let runs = grid.rows(&run_impacts(&cases, &Criterion::default())?);
         let undecided = |run: &&ImpactOutcome| run.outcome == Outcome::Undecided;
         let shade = |run: &ImpactOutcome| match run.outcome {
             Outcome::Whirl => run.impacts_to_threshold.map_or(f64::NAN, f64::from),

@@ -1,9 +1,9 @@
 //! What the choices of this chapter do to its numbers: the same five configurations with each choice
 //! made otherwise.
 
-use super::{Configuration, Fit, configurations, fit_restitution, rms_log_error};
+use super::{Configuration, Fit, configurations, critical_speeds, fit_restitution, rms_log_error};
 use crate::paper::data::*;
-use plant_model::analysis::impact::{Criterion, Search, critical_speed_m_s};
+use plant_model::analysis::impact::{Criterion, Search};
 
 /// The choices.
 struct Variant {
@@ -58,16 +58,15 @@ impl Variant {
             true => fit.restitution,
             false => fit_restitution(self.stiffness_n_m)?,
         };
-        let critical = |configuration: &Configuration| {
+        let case = |configuration: &Configuration| {
             let mut rig = configuration.rig;
             rig.restitution = restitution;
             rig.contact_stiffness_n_m = self.stiffness_n_m;
             let at = (configuration.inclination_rad, TAU * self.spin_hz);
-            critical_speed_m_s(&rig.params()?, at, &search, &criterion)?
-                .or_missing("no impact speed that ends in whirl")
+            Ok((rig.params()?, at))
         };
-        let speeds = five.iter().map(critical).collect::<Result<_>>()?;
-        Ok((restitution, speeds))
+        let cases = five.iter().map(case).collect::<Result<Vec<_>>>()?;
+        Ok((restitution, critical_speeds(&cases, &search, &criterion)?))
     }
 }
 

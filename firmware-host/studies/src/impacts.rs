@@ -1,0 +1,42 @@
+//! Impacts and critical speeds on all threads: each takes a share of them, several at a time.
+
+use plant_model::analysis::impact::{
+    self, Criterion, Impact, ImpactError, ImpactOutcome, Search, Tried,
+};
+use plant_model::params::PlantParams;
+use rayon::prelude::{ParallelIterator, ParallelSlice};
+
+/// What one thread takes together.
+const CHUNK: usize = 100;
+
+/// [`impact::run_impacts`].
+pub(crate) fn run_impacts(
+    cases: &[(PlantParams, Impact)],
+    criterion: &Criterion,
+) -> Result<Vec<ImpactOutcome>, ImpactError> {
+    let chunks = cases.par_chunks(CHUNK);
+    let chunks: Vec<_> = (chunks.map(|chunk| impact::run_impacts(chunk, criterion))).collect();
+    chunks.into_iter().flatten().collect()
+}
+
+/// [`impact::critical_speeds_m_s`]; `done` is told of how many after each share.
+pub(crate) fn critical_speeds_m_s(
+    cases: &[(PlantParams, (f64, f64))],
+    search: &Search,
+    criterion: &Criterion,
+    done: impl Fn(usize) + Sync,
+) -> (Vec<Result<Option<f64>, ImpactError>>, Tried) {
+    let chunks = cases.par_chunks(CHUNK).map(|chunk| {
+        let found = impact::critical_speeds_m_s(chunk, search, criterion);
+        done(chunk.len());
+        found
+    });
+    let chunks: Vec<_> = chunks.collect();
+    let mut tried = Tried::default();
+    let found = chunks.into_iter().flat_map(|(found, of_chunk)| {
+        tried.impacts += of_chunk.impacts;
+        tried.by_lanes += of_chunk.by_lanes;
+        found
+    });
+    (found.collect(), tried)
+}
