@@ -22,13 +22,15 @@ pub(crate) struct FreeFlight {
 }
 
 impl FreeFlight {
-    /// How far it gets at most from now on, with the unbalance in this direction \[m\]; `None` without a shaft, or one that is
-    /// overdamped.
+    /// How far it gets at most from now on, with the unbalance in this direction \[m\]; `None` without a shaft, and where an
+    /// unbalance turns in one that is overdamped.
     pub(crate) fn farthest_m(&self, now: &Body, direction: V2) -> Option<f64> {
         let decay = 0.5 * self.damping;
         let damped_square = self.stiffness - decay * decay;
         if damped_square <= 0.0 {
-            return None;
+            // It creeps back, and gets no farther than damping alone would let it.
+            let creeps = self.unbalance == 0.0 && self.stiffness >= 0.0 && self.damping > 0.0;
+            return creeps.then(|| now.position.norm() + now.velocity.norm() / self.damping);
         }
         let (circle, circle_rate) = if self.unbalance > 0.0 {
             let (re, im) = (

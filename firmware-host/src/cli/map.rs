@@ -9,6 +9,7 @@ use firmware_bench::scene::spec::{Setting, Spec};
 use firmware_bench::sweep::table::{Rows, written};
 use firmware_studies::campaign::html;
 use firmware_studies::map::{MOST_CELLS, Map, MapError, MapPlan, PERCENTILES, Spread, Varied};
+
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -77,6 +78,10 @@ struct Done {
     /// Impacts that were run, and those of them side by side.
     runs: u64,
     lanes: u64,
+    /// Those that were not decided in the time they had, and count as borne.
+    undecided: u64,
+    /// What of the scene is not in an impact that is left to itself.
+    left_out: Vec<&'static str>,
     /// Of so many cells that were run one by one, too: those that came to the same speed.
     checked: usize,
     equal_to_scalar: usize,
@@ -124,6 +129,8 @@ pub fn execute(args: &MapArgs) -> Result<(), CommandError> {
         seconds: started.elapsed().as_secs_f64(),
         runs: map.tried.impacts,
         lanes: map.tried.by_lanes,
+        undecided: map.tried.undecided,
+        left_out: map.left_out.clone(),
         checked: map.checked[0],
         equal_to_scalar: map.checked[1],
         lowest_m_s: range.map(|(low, _)| low),
@@ -137,7 +144,11 @@ pub fn execute(args: &MapArgs) -> Result<(), CommandError> {
     tell(&format!(
         "{}: {}\n{} cells, {} impacts, {} of them side by side, in {:.1} s; {} of {} critical speeds found one by one were the same.\npage: {}\n",
         args.scene.display(),
-        map.headline(),
+        [Some(map.headline()), map.doubts()]
+            .into_iter()
+            .flatten()
+            .collect::<Vec<_>>()
+            .join("\n"),
         done.cells,
         done.runs,
         done.lanes,
@@ -203,6 +214,14 @@ fn refused(error: MapError) -> CommandError {
         MapError::Twice(_) => CommandError::Numbers {
             message: error.to_string(),
             help: "give it once, along x, along y or as a spread".to_owned(),
+        },
+        MapError::Idle(_) => CommandError::Numbers {
+            message: error.to_string(),
+            help: "vary what shaft, spin, wall, friction and unbalance are".to_owned(),
+        },
+        MapError::Inclination => CommandError::Numbers {
+            message: error.to_string(),
+            help: "keep impact.inclination_deg between".to_owned(),
         },
         MapError::NotOfOnePlane(_) => CommandError::Numbers {
             message: error.to_string(),

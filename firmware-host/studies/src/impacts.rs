@@ -1,7 +1,7 @@
 //! Impacts and critical speeds on all threads: each takes a share of them, several at a time.
 
 use plant_model::analysis::impact::{
-    self, Criterion, Impact, ImpactError, ImpactOutcome, Search, Tried,
+    self, Aim, Criterion, Impact, ImpactError, ImpactOutcome, Search, Tried,
 };
 use plant_model::params::PlantParams;
 use rayon::prelude::{ParallelIterator, ParallelSlice};
@@ -21,7 +21,7 @@ pub(crate) fn run_impacts(
 
 /// [`impact::critical_speeds_m_s`]; `done` is told of how many after each share.
 pub(crate) fn critical_speeds_m_s(
-    cases: &[(PlantParams, (f64, f64))],
+    cases: &[(PlantParams, Aim)],
     search: &Search,
     criterion: &Criterion,
     done: impl Fn(usize) + Sync,
@@ -36,6 +36,7 @@ pub(crate) fn critical_speeds_m_s(
     let found = chunks.into_iter().flat_map(|(found, of_chunk)| {
         tried.impacts += of_chunk.impacts;
         tried.by_lanes += of_chunk.by_lanes;
+        tried.undecided += of_chunk.undecided;
         found
     });
     (found.collect(), tried)

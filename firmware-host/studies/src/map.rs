@@ -6,7 +6,10 @@ use firmware_bench::report::plot::chart::{Axis, HeatMap};
 use firmware_bench::scene::diagnostic::SceneError;
 use firmware_bench::scene::spec::Spec;
 use firmware_bench::sweep::design::Points;
-use plant_model::analysis::impact::{Criterion, ImpactError, Search, Tried, critical_speed_m_s};
+use plant_model::V2;
+use plant_model::analysis::impact::{
+    Aim, Criterion, ImpactError, Search, Tried, critical_speed_m_s,
+};
 use plant_model::params::{PlantParams, SpinParams};
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 
@@ -97,6 +100,8 @@ pub struct Map {
     /// Rows from the bottom, cells from left to right.
     pub cells: Vec<MapCell>,
     pub tried: Tried,
+    /// What of the scene is not in an impact that is left to itself.
+    pub left_out: Vec<&'static str>,
     /// Searches that were run one by one, too, and those of them that came to the same speed.
     pub checked: [usize; 2],
 }
@@ -110,6 +115,12 @@ pub enum MapError {
     /// A key is given two values.
     #[error("{0} varies twice")]
     Twice(String),
+    /// An impact does not come from inside.
+    #[error("impact.inclination_deg lies between -90 and 90")]
+    Inclination,
+    /// A key changes nothing.
+    #[error("{0} changes nothing of an impact that is left to itself")]
+    Idle(String),
     /// The scene is of more than a point mass in one plane.
     #[error("a map is of a point mass in one plane, and this scene has {0}")]
     NotOfOnePlane(&'static str),
@@ -118,7 +129,7 @@ pub enum MapError {
     Run { x: f64, y: f64, reason: ImpactError },
 }
 
-type Case = (PlantParams, (f64, f64));
+type Case = (PlantParams, Aim);
 
 impl MapPlan {
     /// Columns of critical speeds.
@@ -134,19 +145,20 @@ impl MapPlan {
     /// # Errors
     /// [`MapError`] of the first cell that has one.
     pub fn run(self, spec: &Spec, progress: &dyn Progress) -> Result<Map, MapError> {
-        let keys: Vec<&Varied> = [&self.x, &self.y]
-            .into_iter()
-            .chain(self.spread_keys())
-            .collect();
+        let keys: Vec<&Varied> = self.keys().collect();
         for (i, varied) in keys.iter().enumerate() {
             if keys[..i].iter().any(|other| other.key == varied.key) {
                 return Err(MapError::Twice(varied.key.clone()));
             }
         }
+        let quiet = spec.clone().without_warnings();
+        if let Some(varied) = self.idle(&quiet)? {
+            return Err(MapError::Idle(varied.key.clone()));
+        }
+        let left_out = left_out(&quiet)?;
         let places = self.places();
         let draws = self.draws();
         progress.begin((places.len() * draws.len()) as u64, "critical speeds");
-        let quiet = spec.clone().without_warnings();
         let drawn: Vec<_> = places
             .iter()
             .flat_map(|place| draws.iter().map(|draw| (*place, draw)))
@@ -160,7 +172,10 @@ impl MapPlan {
         let mut speeds = Vec::with_capacity(cases.len());
         for (((x, y), _), found) in drawn.iter().zip(found) {
             let (x, y) = (*x, *y);
-            speeds.push(critical(found).map_err(|reason| MapError::Run { x, y, reason })?);
+            speeds.push(critical(found).map_err(|reason| match reason {
+                ImpactError::Inclination => MapError::Inclination,
+                reason => MapError::Run { x, y, reason },
+            })?);
         }
         let step = cases.len().div_ceil(CHECKED);
         let sample: Vec<usize> = (0..cases.len()).step_by(step).collect();
@@ -184,11 +199,17 @@ impl MapPlan {
             plan: self,
             tried,
             checked,
+            left_out,
         })
     }
 
     fn spread_keys(&self) -> &[Varied] {
         self.spread.as_ref().map_or(&[], |spread| &spread.keys)
+    }
+
+    /// Of everything that varies: along x, along y, and what is spread.
+    fn keys(&self) -> impl Iterator<Item = &Varied> {
+        [&self.x, &self.y].into_iter().chain(self.spread_keys())
     }
 
     /// Middles of the cells, rows from the bottom.
@@ -224,8 +245,7 @@ impl MapPlan {
     fn case(&self, spec: &Spec, values: &[f64]) -> Result<Case, MapError> {
         let mut spec = spec.clone();
         let mut inclination_deg = 0.0;
-        let keys = [&self.x, &self.y].into_iter().chain(self.spread_keys());
-        for (varied, value) in keys.zip(values) {
+        for (varied, value) in self.keys().zip(values) {
             match varied.key.as_str() {
                 INCLINATION => inclination_deg = *value,
                 key => spec.set(key, *value)?,
@@ -244,17 +264,70 @@ impl MapPlan {
         if self.held_spin {
             params.spin = SpinParams::Held;
         }
-        Ok((
-            params,
-            (inclination_deg.to_radians(), scene.start.spin_rad_s),
-        ))
+        let aim = Aim {
+            inclination_rad: inclination_deg.to_radians(),
+            spin_rad_s: scene.start.spin_rad_s,
+            spin_phase_rad: scene.start.spin_phase_rad,
+        };
+        Ok((params, aim))
+    }
+
+    /// A key that changes nothing of an impact that is left to itself: cells along it would say what is not so.
+    fn idle(&self, spec: &Spec) -> Result<Option<&Varied>, MapError> {
+        let keys: Vec<&Varied> = self.keys().collect();
+        for (i, varied) in keys.iter().enumerate() {
+            // The ends themselves need make no scene.
+            let case = |share: f64| {
+                let shares = keys
+                    .iter()
+                    .enumerate()
+                    .map(|(j, _)| if i == j { share } else { 0.5 });
+                let values: Vec<f64> = keys
+                    .iter()
+                    .zip(shares)
+                    .map(|(key, share)| key.at(share))
+                    .collect();
+                self.case(spec, &values)
+            };
+            if case(0.3)? == case(0.7)? {
+                return Ok(Some(varied));
+            }
+        }
+        Ok(None)
     }
 }
 
-/// A rotor that no speed drives into whirl has no critical one.
+/// What of a scene is not in an impact that is left to itself.
+fn left_out(spec: &Spec) -> Result<Vec<&'static str>, SceneError> {
+    let scene = spec.resolve()?;
+    let mut centres = scene.machine.planes.iter().map(|plane| plane.centre_m);
+    let all = [
+        (
+            "weight",
+            scene
+                .planes
+                .iter()
+                .any(|plane| plane.weight_n != V2::zeros()),
+        ),
+        ("loads", scene.loads().next().is_some()),
+        ("changes in the run", !scene.changes.is_empty()),
+        (
+            "the offset of the retainer",
+            centres.any(|centre_m| centre_m != V2::zeros()),
+        ),
+    ];
+    Ok(all
+        .into_iter()
+        .filter(|(_, is_there)| *is_there)
+        .map(|(what, _)| what)
+        .collect())
+}
+
+/// A rotor that nothing drives into whirl has no critical speed; of one that is driven from any speed it is zero.
 fn critical(found: Result<Option<f64>, ImpactError>) -> Result<Option<f64>, ImpactError> {
     match found {
-        Err(ImpactError::NoThreshold) => Ok(None),
+        Err(ImpactError::NoFriction) => Ok(None),
+        Err(ImpactError::NotHeld) => Ok(Some(0.0)),
         found => found,
     }
 }
@@ -301,7 +374,10 @@ impl Map {
             (Some((low, high)), Some(p)) => {
                 format!("All but {p} of 100 such rotors bear impacts of {low:.4} to {high:.4} m/s.")
             }
-            (None, None) => "No impact ends in backward whirl.".to_owned(),
+            (None, None) => {
+                "No impact of up to twice the speed that needs no bounce ends in backward whirl."
+                    .to_owned()
+            }
             (None, Some(p)) => format!(
                 "Of 100 such rotors fewer than {p} can be driven into backward whirl by an impact."
             ),
@@ -342,7 +418,7 @@ impl Map {
         let figure = Figure {
             file: "map",
             caption: format!(
-                "{label}; darker bears more. The highest twentieth has one colour; white: no impact ends in whirl."
+                "{label}; darker bears more. The highest twentieth has one colour; white: no impact of up to twice the speed that needs no bounce ends in whirl."
             ),
             drawing: Drawing::Map(HeatMap {
                 label: label.clone(),
@@ -365,13 +441,28 @@ impl Map {
         Page {
             title: label,
             headline: self.headline(),
-            lead: [Some(of), self.spread_said()]
+            lead: [Some(of), self.spread_said(), self.doubts()]
                 .into_iter()
                 .flatten()
                 .map(Block::text)
                 .collect(),
             chapters: vec![Chapter::new("Map", vec![Block::Figures(vec![figure])])],
         }
+    }
+
+    /// What is not in it, and what is not certain.
+    pub fn doubts(&self) -> Option<String> {
+        let left_out = (!self.left_out.is_empty()).then(|| {
+            format!("Left out: {}. The rotor meets a wall around its middle with no force but those of shaft, wall and unbalance.", self.left_out.join(", "))
+        });
+        let undecided = (self.tried.undecided > 0).then(|| {
+            format!(
+                "{} impacts were not decided in the time they had and count as borne.",
+                self.tried.undecided
+            )
+        });
+        let all: Vec<String> = [left_out, undecided].into_iter().flatten().collect();
+        (!all.is_empty()).then(|| all.join(" "))
     }
 
     /// What is known within limits only.

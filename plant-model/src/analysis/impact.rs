@@ -3,7 +3,8 @@
 //!
 //! *Whirl*: the backward tangential speed in contact reaches a multiple of v_t,crit of
 //! [`super::onset`]. Above v_t,crit itself friction gains on damping as long as contact lasts, but the
-//! rotor may still leave the wall; a multiple leaves no doubt, and which one hardly moves the result.
+//! rotor may still leave the wall; a multiple leaves no doubt, and which one hardly moves the result. Where the surfaces
+//! roll below the multiple, it is whirl if v_t,crit is still passed, in contact, when the time is over.
 //!
 //! *Free*: the rotor can never touch again: the ellipse and the circle that it is on in flight (`free_flight`) end before the
 //! nearest wall, c·(1 − ε) out of round, so that no run has to wait for vibrations to decay. Rings swing on after the touch and may come to meet the rotor: their
@@ -15,13 +16,15 @@
 
 mod many;
 
-use super::onset::critical_tangential_speed_m_s;
+use super::onset::{critical_tangential_speed_m_s, driving_coefficient};
 use crate::contact::restitution_of;
 use crate::free_flight::FreeFlight;
 use crate::params::{ContactLaw, PlantParams, RingParams, SpinParams, Start, StatorParams};
 use crate::plant::build;
 use crate::vector::Body;
 use crate::{BuildError, Inputs, Options, PlantError, Snapshot, V2};
+use std::f64::consts::{FRAC_PI_2, TAU};
+
 pub use many::{Tried, critical_speeds_m_s, run_impacts};
 
 /// An impact: the rotor at the wall, concentric stator at rest.
@@ -37,6 +40,28 @@ pub struct Impact {
     pub spin_phase_rad: f64,
 }
 
+/// An impact whose speed is looked for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Aim {
+    /// As of [`Impact`], between −π/2 and π/2.
+    pub inclination_rad: f64,
+    /// As of [`Impact`].
+    pub spin_rad_s: f64,
+    /// As of [`Impact`].
+    pub spin_phase_rad: f64,
+}
+
+impl Aim {
+    fn at(self, speed_m_s: f64) -> Impact {
+        Impact {
+            speed_m_s,
+            inclination_rad: self.inclination_rad,
+            spin_rad_s: self.spin_rad_s,
+            spin_phase_rad: self.spin_phase_rad,
+        }
+    }
+}
+
 impl Impact {
     /// Sign of v_w in backward whirl.
     fn backward(&self) -> f64 {
@@ -49,20 +74,39 @@ impl Impact {
 pub struct Criterion {
     /// Whirl is a backward tangential speed in contact of so many times v_t,crit.
     pub whirl_multiple: f64,
-    /// Time after which a run is given up as [`Outcome::Undecided`] \[s\].
+    /// Time after which a run is given up as [`Outcome::Undecided`] \[s\] …
     pub limit_s: f64,
+    /// … or after so many periods of the shaft where they last longer, up to 300 s.
+    pub limit_periods: f64,
     /// Accuracy.
     pub options: Options,
 }
 
+/// Longest time that a run is given for periods that hardly end.
+const LONGEST_S: f64 = 300.0;
+
 impl Default for Criterion {
-    /// Twice v_t,crit, 3 s, the tolerance of [`Options`].
+    /// Twice v_t,crit, 3 s or 30 periods, the tolerance of [`Options`].
     fn default() -> Self {
         Self {
             whirl_multiple: 2.0,
             limit_s: 3.0,
+            limit_periods: 30.0,
             options: Options::default(),
         }
+    }
+}
+
+impl Criterion {
+    fn limit_s(&self, params: &PlantParams) -> f64 {
+        let natural_rad_s = (params.rotor.stiffness_n_m / params.rotor.mass_kg).sqrt();
+        // Without a shaft there is no period; it has the time as it is.
+        let periods_s = if natural_rad_s > 0.0 {
+            (self.limit_periods * TAU / natural_rad_s).min(LONGEST_S)
+        } else {
+            0.0
+        };
+        self.limit_s.max(periods_s)
     }
 }
 
@@ -89,9 +133,15 @@ pub struct ImpactOutcome {
 /// Why nothing can be said of an impact.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum ImpactError {
-    /// No tangential speed is critical: friction drives nothing, or the stiffness is negative.
-    #[error("the rotor has no critical tangential speed")]
-    NoThreshold,
+    /// Friction drives nothing: no impact ends in whirl.
+    #[error("friction drives nothing")]
+    NoFriction,
+    /// The stiffness is negative, so that friction drives the rotor from any speed.
+    #[error("the rotor's stiffness is negative: friction drives it from any speed")]
+    NotHeld,
+    /// It does not come from inside.
+    #[error("the inclination of an impact lies between -90 and 90 degrees")]
+    Inclination,
     /// A run that cannot be trusted.
     #[error(transparent)]
     Plant(#[from] PlantError),
@@ -112,7 +162,8 @@ pub fn run_impact(
     impact: &Impact,
     criterion: &Criterion,
 ) -> Result<ImpactOutcome, ImpactError> {
-    let threshold = critical_tangential_speed_m_s(params).ok_or(ImpactError::NoThreshold)?;
+    let threshold = threshold_m_s(params)?;
+    let limit_s = criterion.limit_s(params);
     let backward = impact.backward();
     let start = start_of(params, impact);
     let mut plant = build(params, &start, criterion.options)?;
@@ -128,8 +179,13 @@ pub fn run_impact(
     let outcome = loop {
         looks += 1;
         let t_s = f64::from(looks) * LOOK_S;
-        if t_s > criterion.limit_s {
-            break Outcome::Undecided;
+        if t_s > limit_s {
+            let now = plant.snapshot();
+            let passed = backward * now.contact_tangential_speed_m_s >= threshold;
+            break match now.mode.in_contact() && passed {
+                true => Outcome::Whirl,
+                false => Outcome::Undecided,
+            };
         }
         plant.advance(t_s, &Inputs::default(), &mut follow)?;
         let now = plant.snapshot();
@@ -144,6 +200,14 @@ pub fn run_impact(
     Ok(ImpactOutcome {
         outcome,
         impacts_to_threshold: to_threshold,
+    })
+}
+
+/// v_t,crit \[m/s\].
+fn threshold_m_s(params: &PlantParams) -> Result<f64, ImpactError> {
+    critical_tangential_speed_m_s(params).ok_or(match driving_coefficient(params) > 0.0 {
+        true => ImpactError::NotHeld,
+        false => ImpactError::NoFriction,
     })
 }
 
@@ -241,22 +305,23 @@ impl Default for Search {
     }
 }
 
-/// Critical impact speed \[m/s\] at an inclination: the lowest speed that ends in whirl. Upwards until
+/// Critical impact speed \[m/s\]: the lowest that ends in whirl. Upwards until
 /// the first whirl, then bisection of that change: above it the outcome need not be monotone.
 ///
 /// The search begins at half of what all bounces together need if nothing is lost between them,
 /// v_t,crit/(K·cos θ + sin θ) with K = μ·(1 + e)/(1 − e), and ends at twice what a single impact needs,
-/// K = μ·(1 + e); `None` if nothing whirled up to there.
+/// K = μ·(1 + e); `None` if nothing whirled up to there. Where unbalance makes whirl of less, it begins below that; 0 if even a
+/// thousandth ends in whirl.
 ///
 /// # Errors
 /// [`ImpactError`].
 pub fn critical_speed_m_s(
     params: &PlantParams,
-    (inclination_rad, spin_rad_s): (f64, f64),
+    aim: Aim,
     search: &Search,
     criterion: &Criterion,
 ) -> Result<Option<f64>, ImpactError> {
-    let mut hunt = Hunt::new(params, (inclination_rad, spin_rad_s), search)?;
+    let mut hunt = Hunt::new(params, aim, search)?;
     loop {
         match hunt.next() {
             Next::Found(speed_m_s) => return Ok(speed_m_s),
@@ -272,11 +337,13 @@ pub fn critical_speed_m_s(
 #[derive(Debug, Clone)]
 struct Hunt {
     search: Search,
-    inclination_rad: f64,
-    spin_rad_s: f64,
-    /// Largest speed that did not whirl, and smallest that did.
+    aim: Aim,
+    /// Largest speed that did not whirl, and smallest that did after one that did not.
     low: f64,
     high: Option<f64>,
+    /// Every trial whirled so far.
+    descends: bool,
+    least: f64,
     to: f64,
     trial: f64,
 }
@@ -288,18 +355,15 @@ enum Next {
 }
 
 impl Hunt {
-    fn new(
-        params: &PlantParams,
-        (inclination_rad, spin_rad_s): (f64, f64),
-        search: &Search,
-    ) -> Result<Self, ImpactError> {
-        let (low, to) = search_range(params, inclination_rad)?;
+    fn new(params: &PlantParams, aim: Aim, search: &Search) -> Result<Self, ImpactError> {
+        let (low, to) = search_range(params, aim.inclination_rad)?;
         Ok(Self {
             search: *search,
-            inclination_rad,
-            spin_rad_s,
+            aim,
             low,
             high: None,
+            descends: true,
+            least: 1e-3 * low,
             to,
             trial: low,
         })
@@ -307,6 +371,9 @@ impl Hunt {
 
     fn next(&mut self) -> Next {
         let Self { low, search, .. } = *self;
+        if low < self.least {
+            return Next::Found(Some(0.0));
+        }
         self.trial = match self.high {
             None => low * (1.0 + search.step),
             Some(high) => 0.5 * (low + high),
@@ -325,20 +392,18 @@ impl Hunt {
 
     /// The impact that is tried.
     fn impact(&self) -> Impact {
-        Impact {
-            speed_m_s: self.trial,
-            inclination_rad: self.inclination_rad,
-            spin_rad_s: self.spin_rad_s,
-            spin_phase_rad: 0.0,
-        }
+        self.aim.at(self.trial)
     }
 
     /// Takes in whether the impact that was tried whirls.
     fn answer(&mut self, whirls: bool) {
-        if whirls {
-            self.high = Some(self.trial);
-        } else {
+        if !whirls {
             self.low = self.trial;
+            self.descends = false;
+        } else if self.descends {
+            self.low *= 0.5;
+        } else {
+            self.high = Some(self.trial);
         }
     }
 }
@@ -346,9 +411,11 @@ impl Hunt {
 /// From half the speed that suffices if nothing is lost between bounces to twice that which suffices
 /// in one impact.
 fn search_range(params: &PlantParams, inclination_rad: f64) -> Result<(f64, f64), ImpactError> {
-    let threshold = critical_tangential_speed_m_s(params).ok_or(ImpactError::NoThreshold)?;
-    let friction = &params.friction;
-    let mu = friction.sliding.coefficient(0.0) - friction.rolling_coefficient;
+    let threshold = threshold_m_s(params)?;
+    if inclination_rad.is_nan() || inclination_rad.abs() >= FRAC_PI_2 {
+        return Err(ImpactError::Inclination);
+    }
+    let mu = driving_coefficient(params);
     let e = match &params.contact.law {
         ContactLaw::Linear(law) => {
             let critical = 2.0 * (law.stiffness_n_m * params.contact_mass_kg()).sqrt();

@@ -4,14 +4,12 @@ use crate::params::PlantParams;
 
 /// Critical tangential speed v_t,crit \[m/s\] of sliding whirl on a rigid stator, above which friction
 /// μ·(m·v²/c − k·c) outweighs damping d·v: v = a + √(a² + k·c²/m) with a = c·d/(2μm). With a shaft that is
-/// c·ω0·(D/μ + √(1 + (D/μ)²)), D = d/(2·m·ω0). μ is the coefficient that drives the whirl: at rest,
-/// less the rolling coefficient.
+/// c·ω0·(D/μ + √(1 + (D/μ)²)), D = d/(2·m·ω0). μ is the coefficient at rest less the rolling coefficient.
 ///
 /// `None` for a negative stiffness, which presses the rotor onto the wall even at rest, and where
 /// friction drives nothing.
 pub fn critical_tangential_speed_m_s(params: &PlantParams) -> Option<f64> {
-    let friction = &params.friction;
-    let mu = friction.sliding.coefficient(0.0) - friction.rolling_coefficient;
+    let mu = driving_coefficient(params);
     let (c, rotor) = (params.contact.clearance_m, &params.rotor);
     if mu <= 0.0 || rotor.stiffness_n_m < 0.0 {
         return None;
@@ -19,6 +17,11 @@ pub fn critical_tangential_speed_m_s(params: &PlantParams) -> Option<f64> {
     let damped = c * rotor.damping_n_s_m / (2.0 * mu * rotor.mass_kg);
     let shaft = c * c * rotor.stiffness_n_m / rotor.mass_kg;
     Some(damped + (damped * damped + shaft).sqrt())
+}
+
+/// The coefficient that drives the whirl: at rest, less the rolling coefficient.
+pub(crate) fn driving_coefficient(params: &PlantParams) -> f64 {
+    params.friction.sliding.coefficient(0.0) - params.friction.rolling_coefficient
 }
 
 /// Speed below which an inward force F can break a whirling contact on a rigid wall \[m/s\]:

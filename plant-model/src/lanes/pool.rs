@@ -213,8 +213,13 @@ impl<T> Slot<T> {
             return Some(Ending::GaveUp);
         }
         (self.t_s >= self.launch.until_s).then(|| {
-            let free = self.launch.until_free && self.kind == Kind::Flight && self.stays_free();
-            if free { Ending::Free } else { Ending::Time }
+            if self.launch.until_free && self.kind == Kind::Flight && self.stays_free() {
+                Ending::Free
+            } else if self.kind.touches() && self.backward_m_s() >= self.launch.threshold_m_s {
+                Ending::Whirl
+            } else {
+                Ending::Time
+            }
         })
     }
 

@@ -2,7 +2,7 @@
 
 use crate::support::*;
 use plant_model::analysis::impact::{
-    Criterion, Impact, Outcome, Search, critical_speed_m_s, critical_speeds_m_s, run_impact,
+    Aim, Criterion, Impact, Outcome, Search, critical_speed_m_s, critical_speeds_m_s, run_impact,
     run_impacts,
 };
 use plant_model::analysis::onset::critical_tangential_speed_m_s;
@@ -135,7 +135,14 @@ fn the_other_wall_is_seen() {
 
 #[test]
 fn critical_speeds_are_the_same() {
-    let of = |of_rig: Rig, inclination_rad: f64| (rig(of_rig), (inclination_rad, 250.0));
+    let of = |of_rig: Rig, inclination_rad: f64| {
+        let aim = Aim {
+            inclination_rad,
+            spin_rad_s: 250.0,
+            spin_phase_rad: 0.2,
+        };
+        (rig(of_rig), aim)
+    };
     let mut cases: Vec<_> = draw(&(rigs(0.0), -0.3..1.4_f64), 40)
         .into_iter()
         .map(|(of_rig, inclination_rad)| of(of_rig, inclination_rad))
@@ -153,8 +160,8 @@ fn critical_speeds_are_the_same() {
     let criterion = Criterion::default();
     let (found, tried) = critical_speeds_m_s(&cases, &search, &criterion);
     assert!(tried.by_lanes < tried.impacts && tried.by_lanes > tried.impacts * 9 / 10);
-    for ((params, at), by_lanes) in cases.iter().zip(found) {
-        let alone = critical_speed_m_s(params, *at, &search, &criterion);
+    for ((params, aim), by_lanes) in cases.iter().zip(found) {
+        let alone = critical_speed_m_s(params, *aim, &search, &criterion);
         assert_eq!(by_lanes, alone, "{params:?}");
     }
 }
@@ -298,7 +305,7 @@ proptest! {
             spin_phase_rad: 0.3,
         };
         let options = Options { rtol: 10_f64.powf(rtol), steps: 20_000, ..Options::default() };
-        let criterion = Criterion { limit_s: 0.05, options, ..Criterion::default() };
+        let criterion = Criterion { limit_s: 0.05, limit_periods: 0.0, options, ..Criterion::default() };
         let cases = [(params, impact)];
         let by_lanes = run_impacts(&cases, &criterion);
         let alone = run_impact(&cases[0].0, &impact, &criterion);
@@ -332,6 +339,7 @@ fn whirl_between_the_ends_of_a_step_is_seen() {
         };
         let criterion = Criterion {
             limit_s: 0.05,
+            limit_periods: 0.0,
             options,
             ..Criterion::default()
         };

@@ -85,6 +85,20 @@ fn free_spin_goes_one_by_one() {
     assert!(done["runs"].as_u64().unwrap() > 50);
 }
 
+/// Negative stiffness drives the rotor from any speed, which is not the same as from none; what the map leaves out it names.
+#[test]
+fn a_rotor_that_nothing_holds_bears_nothing() {
+    let folder = TempDir::new().unwrap();
+    let scene = scene_path("overload_then_release");
+    let arguments = [scene.to_str().unwrap(), "--held-spin", "--cells", "2x2"];
+    let out = folder.path().join("map");
+    let (code, said, error) = map(&[&arguments[..], &["--x", X, "--y", Y]].concat(), &out);
+    assert_eq!(code, Some(0), "{error}");
+    let done: Value = serde_json::from_str(&said).unwrap();
+    assert_eq!(done["highest_m_s"], 0.0);
+    assert_eq!(done["left_out"], serde_json::json!(["loads"]));
+}
+
 /// Of one key that is spread, percentiles are the speeds at these shares of its range: more friction bears less.
 #[test]
 fn percentiles_are_those_of_what_is_spread() {
@@ -129,6 +143,8 @@ fn what_is_no_map_is_refused_and_leaves_nothing() {
         (point, "friction.coefficient=0.6", Y, "KEY=FROM..TO"),
         (point, "friction.coefficient=-1..0.2", Y, "0 or greater"),
         (point, X, X, "varies twice"),
+        (point, X, "rotor.gravity_m_s2[1]=-10..-5", "changes nothing"),
+        (point, X, "impact.inclination_deg=100..110", "-90 and 90"),
         (
             two,
             "run.duration_s=0.1..0.2",

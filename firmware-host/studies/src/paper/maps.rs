@@ -4,7 +4,7 @@
 mod outcomes;
 
 use super::data::*;
-use super::onset::fit;
+use super::onset::{aim, fit};
 use super::rotors::OnsetRig;
 use crate::impacts::critical_speeds_m_s;
 use firmware_bench::report::plot::text::figures;
@@ -82,10 +82,7 @@ impl Case {
 
 /// v_r,crit \[m/s\] of each; not a number where nothing whirls.
 fn critical_m_s(cases: &[Case]) -> Result<Vec<f64>> {
-    let of = |case: &Case| {
-        let at = (case.inclination_rad, OnsetRig::SPIN_RAD_S);
-        Ok((case.rig.params()?, at))
-    };
+    let of = |case: &Case| Ok((case.rig.params()?, aim(case.inclination_rad)));
     let cases = cases.iter().map(of).collect::<Result<Vec<_>>>()?;
     let (found, _) = critical_speeds_m_s(&cases, &SEARCH, &Criterion::default(), |_| ());
     let speed = |found: std::result::Result<Option<f64>, _>| Ok(found?.unwrap_or(f64::NAN));

@@ -6,7 +6,7 @@ mod variants;
 use super::data::*;
 use super::rotors::OnsetRig;
 use plant_model::analysis::impact::{
-    Criterion, Impact, ImpactError, Search, critical_speeds_m_s, run_impacts,
+    Aim, Criterion, Impact, ImpactError, Search, critical_speeds_m_s, run_impacts,
 };
 use plant_model::analysis::onset::critical_tangential_speed_m_s;
 use plant_model::params::Start;
@@ -58,6 +58,15 @@ pub(super) fn configurations(fit: &Fit) -> [Configuration; 5] {
     ]
 }
 
+/// An impact at the spin of the rig, whose speed is looked for.
+pub(super) fn aim(inclination_rad: f64) -> Aim {
+    Aim {
+        inclination_rad,
+        spin_rad_s: OnsetRig::SPIN_RAD_S,
+        spin_phase_rad: 0.0,
+    }
+}
+
 /// An impact at the spin of the rig.
 pub(super) fn impact(speed_m_s: f64, inclination_rad: f64) -> Impact {
     Impact {
@@ -70,14 +79,17 @@ pub(super) fn impact(speed_m_s: f64, inclination_rad: f64) -> Impact {
 
 /// Critical impact speed \[m/s\] of a plant at an inclination.
 pub(super) fn critical_m_s(params: &PlantParams, inclination_rad: f64) -> Result<f64> {
-    let case = (*params, (inclination_rad, OnsetRig::SPIN_RAD_S));
-    let speeds_m_s = critical_speeds(&[case], &Search::default(), &Criterion::default())?;
+    let speeds_m_s = critical_speeds(
+        &[(*params, aim(inclination_rad))],
+        &Search::default(),
+        &Criterion::default(),
+    )?;
     Ok(speeds_m_s[0])
 }
 
-/// Critical impact speeds \[m/s\] of plants, each with its inclination and its spin.
+/// Critical impact speeds \[m/s\] of plants.
 fn critical_speeds(
-    cases: &[(PlantParams, (f64, f64))],
+    cases: &[(PlantParams, Aim)],
     search: &Search,
     criterion: &Criterion,
 ) -> Result<Vec<f64>> {
@@ -178,9 +190,9 @@ struct Solved {
 
 impl Solved {
     fn new(of: &Configuration) -> Result<Self> {
-        let at = (of.inclination_rad, OnsetRig::SPIN_RAD_S);
+        let aim = aim(of.inclination_rad);
         let with = |share: f64| of.rig.with(|rig| rig.friction *= share).params();
-        let cases = [(with(1.0)?, at), (with(0.75)?, at), (with(1.25)?, at)];
+        let cases = [(with(1.0)?, aim), (with(0.75)?, aim), (with(1.25)?, aim)];
         let speeds_m_s = critical_speeds(&cases, &Search::default(), &Criterion::default())?;
         let value_m_s = speeds_m_s[0];
         let after = SHARES.map(|share| (cases[0].0, impact(share * value_m_s, of.inclination_rad)));

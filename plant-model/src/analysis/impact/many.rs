@@ -1,7 +1,7 @@
 //! Impacts by lanes: several at a time where they know all that is in a rotor, one by one elsewhere. Both ways end in the same.
 
 use super::{
-    Criterion, Hunt, Impact, ImpactError, ImpactOutcome, Next, Outcome, Search, run_impact,
+    Aim, Criterion, Hunt, Impact, ImpactError, ImpactOutcome, Next, Outcome, Search, run_impact,
     start_of,
 };
 use crate::Method;
@@ -16,6 +16,15 @@ pub struct Tried {
     pub impacts: u64,
     /// By lanes.
     pub by_lanes: u64,
+    /// Those that were taken for no whirl, since their time was over before they were decided.
+    pub undecided: u64,
+}
+
+impl Tried {
+    fn add(&mut self, outcome: Outcome) {
+        self.impacts += 1;
+        self.undecided += u64::from(outcome == Outcome::Undecided);
+    }
 }
 
 /// [`run_impact`] of each, on this thread: in their order.
@@ -46,12 +55,12 @@ pub fn run_impacts(
     outcomes.into_iter().flatten().collect()
 }
 
-/// [`super::critical_speed_m_s`] of each rotor with its inclination and its spin \[rad/s\], on this thread: in their order.
+/// [`super::critical_speed_m_s`] of each, on this thread: in their order.
 ///
 /// # Errors
 /// [`ImpactError`] of each.
 pub fn critical_speeds_m_s(
-    cases: &[(PlantParams, (f64, f64))],
+    cases: &[(PlantParams, Aim)],
     search: &Search,
     criterion: &Criterion,
 ) -> (Vec<Result<Option<f64>, ImpactError>>, Tried) {
@@ -74,7 +83,6 @@ pub fn critical_speeds_m_s(
         first.into_iter(),
         |(i, mut hunt), ended| {
             let params = &cases[i].0;
-            tried.impacts += 1;
             let outcome = match outcome(&ended) {
                 Some(outcome) => {
                     tried.by_lanes += 1;
@@ -83,6 +91,7 @@ pub fn critical_speeds_m_s(
                 None => run_impact(params, &hunt.impact(), criterion),
             };
             let begun = outcome.and_then(|outcome| {
+                tried.add(outcome.outcome);
                 hunt.answer(outcome.outcome == Outcome::Whirl);
                 begin(params, hunt, criterion, &mut tried)
             });
@@ -118,8 +127,8 @@ fn begin(
         if let Some(launch) = launch(params, &impact, criterion) {
             return Ok(Begun::Launch(Box::new((launch, hunt))));
         }
-        tried.impacts += 1;
         let after = run_impact(params, &impact, criterion)?;
+        tried.add(after.outcome);
         hunt.answer(after.outcome == Outcome::Whirl);
     }
 }
@@ -130,7 +139,7 @@ fn launch(params: &PlantParams, impact: &Impact, criterion: &Criterion) -> Optio
     let options = criterion.options.validate().is_ok();
     let threshold_m_s = critical_tangential_speed_m_s(params).filter(|_| known && options)?;
     let start = start_of(params, impact);
-    let launch = Launch::new(LaneParams::of(params)?, &start, criterion.limit_s)?;
+    let launch = Launch::new(LaneParams::of(params)?, &start, criterion.limit_s(params))?;
     Some(launch.until_decided(threshold_m_s, criterion.whirl_multiple * threshold_m_s))
 }
 

@@ -31,6 +31,91 @@ fn rig(restitution: f64) -> PlantParams {
     }
 }
 
+fn radial(spin_rad_s: f64) -> Aim {
+    Aim {
+        inclination_rad: 0.0,
+        spin_rad_s,
+        spin_phase_rad: 0.0,
+    }
+}
+
+/// An unbalance makes whirl of impacts far slower than those that a balanced rotor needs: the search goes down to them.
+#[test]
+fn unbalance_is_searched_for_below_what_bounces_need() {
+    let mut params = rig(0.7);
+    let search = Search {
+        step: 0.02,
+        tolerance: 1e-4,
+    };
+    let critical = |params: &PlantParams| {
+        critical_speed_m_s(params, radial(250.0), &search, &Criterion::default()).unwrap()
+    };
+    let balanced = critical(&params).unwrap();
+    params.rotor.eccentricity_m = 2e-5;
+    let speed_m_s = critical(&params).unwrap();
+    assert!(speed_m_s < 0.1 * balanced, "{speed_m_s} and {balanced}");
+    let outcome = |speed_m_s: f64| {
+        let impact = radial(250.0).at(speed_m_s);
+        let after = run_impact(&params, &impact, &Criterion::default()).unwrap();
+        after.outcome
+    };
+    assert_eq!(outcome(speed_m_s), Outcome::Whirl);
+    assert_ne!(outcome(0.9995 * speed_m_s), Outcome::Whirl);
+    // One that is driven along the wall by its unbalance alone bears nothing.
+    params.rotor.eccentricity_m = 5e-5;
+    assert_eq!(critical(&params), Some(0.0));
+}
+
+/// Rolling below twice v_t,crit holds the rotor at the wall: that is whirl, too.
+#[test]
+fn rolling_just_above_the_threshold_is_whirl() {
+    let mut params = rig(0.5);
+    params.contact.law = LinearContact {
+        stiffness_n_m: 1e8,
+        damping_n_s_m: damping_for_restitution(0.5, 1e8, 10.0).unwrap(),
+    }
+    .into();
+    let threshold_m_s = critical_tangential_speed_m_s(&params).unwrap();
+    params.rotor.contact_radius_m = 1.3 * threshold_m_s / 250.0;
+    let outcome = |speed_m_s: f64| {
+        let impact = radial(250.0).at(speed_m_s);
+        [
+            run_impact(&params, &impact, &Criterion::default()).unwrap(),
+            run_impacts(&[(params, impact)], &Criterion::default())[0].unwrap(),
+        ]
+        .map(|after| after.outcome)
+    };
+    assert_eq!(outcome(10.0 * threshold_m_s), [Outcome::Whirl; 2]);
+    assert!(!outcome(0.5 * threshold_m_s).contains(&Outcome::Whirl));
+    // Slower than the threshold it cannot stay there.
+    params.rotor.contact_radius_m = 0.9 * threshold_m_s / 250.0;
+    let impact = radial(250.0).at(10.0 * threshold_m_s);
+    let after = run_impact(&params, &impact, &Criterion::default()).unwrap();
+    assert_ne!(after.outcome, Outcome::Whirl);
+}
+
+#[test]
+fn what_has_no_critical_speed_says_why() {
+    let critical = |params: &PlantParams, inclination_rad: f64| {
+        let aim = Aim {
+            inclination_rad,
+            ..radial(250.0)
+        };
+        critical_speed_m_s(params, aim, &Search::default(), &Criterion::default())
+    };
+    let mut params = rig(0.7);
+    for inclination_rad in [1.6, -1.6, f64::NAN] {
+        assert_eq!(
+            critical(&params, inclination_rad),
+            Err(ImpactError::Inclination)
+        );
+    }
+    params.rotor.stiffness_n_m = -1.0;
+    assert_eq!(critical(&params, 0.0), Err(ImpactError::NotHeld));
+    params.friction.sliding = SlidingFriction::Constant { coefficient: 0.0 };
+    assert_eq!(critical(&params, 0.0), Err(ImpactError::NoFriction));
+}
+
 /// Hard contact, nothing lost between bounces: the sum over all bounces, v_t,crit/K.
 #[test]
 fn undamped_hard_impacts_sum_up() {
@@ -41,7 +126,7 @@ fn undamped_hard_impacts_sum_up() {
         tolerance: 1e-4,
     };
     for spin in [250.0, -250.0] {
-        let v = critical_speed_m_s(&params, (0.0, spin), &search, &Criterion::default())
+        let v = critical_speed_m_s(&params, radial(spin), &search, &Criterion::default())
             .unwrap()
             .unwrap();
         let sum = threshold / (0.125 * 1.7 / 0.3);

@@ -1,9 +1,11 @@
 //! What the choices of this chapter do to its numbers: the same five configurations with each choice
 //! made otherwise.
 
-use super::{Configuration, Fit, configurations, critical_speeds, fit_restitution, rms_log_error};
+use super::{
+    Configuration, Fit, aim, configurations, critical_speeds, fit_restitution, rms_log_error,
+};
 use crate::paper::data::*;
-use plant_model::analysis::impact::{Criterion, Search};
+use plant_model::analysis::impact::{Aim, Criterion, Search};
 
 /// The choices.
 struct Variant {
@@ -62,8 +64,11 @@ impl Variant {
             let mut rig = configuration.rig;
             rig.restitution = restitution;
             rig.contact_stiffness_n_m = self.stiffness_n_m;
-            let at = (configuration.inclination_rad, TAU * self.spin_hz);
-            Ok((rig.params()?, at))
+            let aim = Aim {
+                spin_rad_s: TAU * self.spin_hz,
+                ..aim(configuration.inclination_rad)
+            };
+            Ok((rig.params()?, aim))
         };
         let cases = five.iter().map(case).collect::<Result<Vec<_>>>()?;
         Ok((restitution, critical_speeds(&cases, &search, &criterion)?))

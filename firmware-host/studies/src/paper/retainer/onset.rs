@@ -3,7 +3,7 @@
 use super::runs::{inertia_for, with_race};
 use super::{LIGHT_KG_M2, SOURCE};
 use crate::paper::data::*;
-use crate::paper::onset::impact;
+use crate::paper::onset::{aim, impact};
 use crate::paper::rotors::OnsetRig;
 use plant_model::analysis::impact::{Criterion, Outcome, Search, critical_speed_m_s, run_impact};
 use plant_model::analysis::onset::critical_tangential_speed_m_s;
@@ -69,12 +69,11 @@ fn criticals(extent: Extent, rig: &PlantParams) -> Result<Vec<Critical>> {
         step: 0.02,
         tolerance: 1e-4,
     };
-    let at = (0.0, OnsetRig::SPIN_RAD_S);
     each(&all, |inertia_kg_m2| {
         let params = with_race(rig, *inertia_kg_m2, 0.0);
         Ok(Critical {
             inertia_kg_m2: *inertia_kg_m2,
-            speed_m_s: critical_speed_m_s(&params, at, &search, &Criterion::default())?,
+            speed_m_s: critical_speed_m_s(&params, aim(0.0), &search, &Criterion::default())?,
         })
     })
 }
