@@ -28,6 +28,19 @@ SURFACE = SPIN * RADIUS
 ARMED = 1e-12
 FALLING, RISING = hy.event_direction.negative, hy.event_direction.positive
 
+# Parameters of a batch in each mode, factors of: contact, friction, the force that rolling needs, softening of the distance; gap,
+# force and 1 in the first event; force, sliding speed and needed force in the second; force, needed force and 1 in the third.
+# All events fall.
+FACTORS = {
+    FLIGHT: (0, 0, 0, 1, -1, 0, ARMED * CLEARANCE**2, 0, 0, 0, 0, 0, 1),
+    BEYOND: (0, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 0, 1),
+    ROLL: (1, 0, 1, 0, 0, 1, 0, MU, 0, -1, MU, 1, 0),
+    SLIP_POSITIVE: (1, -MU, 0, 0, 0, 1, 0, 0, 1, 0, 0, 0, 1),
+    SLIP_NEGATIVE: (1, MU, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 1),
+    # Nothing is left to do: flight without an end.
+    IDLE: (0, 0, 0, 1, 0, 0, 1, 0, 0, 0, 0, 0, 1),
+}
+
 
 class Equations:
     """Expressions of the state in contact with the wall."""
@@ -155,19 +168,6 @@ class Batch(Modes):
     time: the integrator's and an offset, which is a parameter too.
     """
 
-    # Of each mode the factors of: contact, friction, force that rolling needs, softening of the distance; of the gap, the
-    # force and 1 in the first event; of force, sliding speed and needed force in the second; of the latter two and 1 in the
-    # third. All events fall.
-    FACTORS = {
-        FLIGHT: (0, 0, 0, 1, -1, 0, ARMED * CLEARANCE**2, 0, 0, 0, 0, 0, 1),
-        BEYOND: (0, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 0, 1),
-        ROLL: (1, 0, 1, 0, 0, 1, 0, MU, 0, -1, MU, 1, 0),
-        SLIP_POSITIVE: (1, -MU, 0, 0, 0, 1, 0, 0, 1, 0, 0, 0, 1),
-        SLIP_NEGATIVE: (1, MU, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 1),
-        # Nothing is left to do: flight without an end.
-        IDLE: (0, 0, 0, 1, 0, 0, 1, 0, 0, 0, 0, 0, 1),
-    }
-
     def __init__(self, k_c, tol, size):
         super().__init__(k_c)
         self.size = size
@@ -181,9 +181,7 @@ class Batch(Modes):
             f[6] * e.force + f[7] * e.needed + f[8],
             T_END - now,
         ]
-        terminal = [
-            hy.t_event_batch(g, direction=FALLING, callback=self.callback(i)) for i, g in enumerate(events)
-        ]
+        terminal = [hy.t_event_batch(g, direction=FALLING, callback=self.callback(i)) for i, g in enumerate(events)]
         self.integrator = hy.taylor_adaptive_batch(
             e.system(contact * e.force, friction * e.force + rolling * e.needed),
             np.zeros((4, size)),
@@ -195,7 +193,7 @@ class Batch(Modes):
     def set(self, integrator, lane, mode, state):
         self.modes[lane] = mode
         integrator.state[:, lane] = state
-        integrator.pars[1:, lane] = self.FACTORS[mode]
+        integrator.pars[1:, lane] = FACTORS[mode]
         # An event of another mode is another one.
         integrator.reset_cooldowns(lane)
 

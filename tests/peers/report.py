@@ -231,17 +231,19 @@ def many_rows(results):
                 return to(runs, TARGET) if rtol is None else runs[0]
 
             best = min(map(of, BATCHES), key=lambda r: r["seconds"])
-            label = f"{clearances(TARGET)} reached" if rtol is None else power(rtol)
-            yield problem, label, of(SERIES), of(LANES), of("heyoka"), best
+            yield problem, rtol, of(SERIES), of(LANES), of("heyoka"), best
 
 
 def many_table(results):
     rows = []
-    for problem, label, series, lanes, alone, best in many_rows(results):
+    for problem, rtol, series, lanes, alone, best in many_rows(results):
         times = [f"{r.get('how', '')}{short(1e3 * r['seconds'])}" for r in (series, lanes, alone, best)]
         ratio = f"{lanes['seconds'] / best['seconds']:.2f}"
         with_python = f"{lanes['seconds'] / best['seconds_with_python']:.2f}"
-        errors = ["", ""] if "reached" in label else [clearances(r["error"]) for r in (lanes, best)]
+        if rtol:
+            label, *errors = power(rtol), *(clearances(r["error"]) for r in (lanes, best))
+        else:
+            label, errors = f"to {clearances(TARGET)}", ["", ""]
         rows.append([problem, label, *times, f"{ratio} ({with_python})", *errors])
     header = ["problem", "`rtol`", "project, one by one", "**lanes**"]
     header += ["heyoka, one by one", "heyoka, best batch", "lanes / batch", "error, lanes", "error, heyoka"]
@@ -259,11 +261,12 @@ def many_agree(results, solvers, alone):
 
 
 def many_claims(results):
-    rows = list(many_rows(results))
     spread = lambda ratios: f"{short(min(ratios))} to {short(max(ratios))}"
-    of_batch = [r[3]["seconds"] / r[5]["seconds"] for r in rows]
-    with_python = [r[3]["seconds"] / r[5]["seconds_with_python"] for r in rows]
-    of_series = [r[3]["seconds"] / r[2]["seconds"] for r in rows]
+    *_, series, lanes, _, best = zip(*many_rows(results))
+    of_batch, with_python, of_series = (
+        [a["seconds"] / b[key] for a, b in zip(lanes, others)]
+        for others, key in ((best, "seconds"), (best, "seconds_with_python"), (series, "seconds"))
+    )
     claim = f"B1 and B2, a run by lanes: at most {OF_BATCH} of the time in heyoka's best batch"
     measured = f"{spread(of_batch)}; {spread(with_python)} with what Python does for heyoka"
     yield claim, measured, max(of_batch) <= OF_BATCH
