@@ -260,6 +260,17 @@ def many_agree(results, solvers, alone):
     return f"{others} of {sum(len(d) for d, _ in found)} runs, {clearances(worst)}"
 
 
+def lanes_off(results, rtol):
+    """Errors by lanes at the start speed of the single runs, against their references."""
+    at = round((0.3 - 0.05) / 1e-3)
+    found = []
+    for problem in ("B1", "B2"):
+        end = results.many(problem, LANES, float(rtol))[0]["ends"][at]
+        error = math.dist(end[:2], REFERENCES[problem]) / CLEARANCE
+        found.append(f"{clearances(error)} on {problem}")
+    return " and ".join(found)
+
+
 def many_claims(results):
     spread = lambda ratios: f"{short(min(ratios))} to {short(max(ratios))}"
     *_, series, lanes, _, best = zip(*many_rows(results))
@@ -488,6 +499,8 @@ def page(results, claims):
         name, *argument = match[1].split()
         if name == "choice":
             return choice(results, *argument)
+        if name == "lanes_off":
+            return lanes_off(results, *argument)
         if name == "changes":
             return str(results.at(*argument, SERIES, 1e-12)["changes"])
         return values[name]
