@@ -10,6 +10,7 @@ import math
 import os
 import platform
 import re
+import statistics
 import subprocess
 import sys
 
@@ -25,11 +26,15 @@ REFERENCES = {
 }
 # B3c is too fast for 128-bit arithmetic: this solver's finest run.
 FINEST = "diffsol tsit45"
+COSTS = ("seconds", "seconds_with_python", "evaluations", "factorisations")
 TARGET = 1e-7  # error / clearance at which times are compared
 LEVELS = (1e-3, 1e-5, 1e-7, 1e-9)
 SERIES, AUTO = "project, series", "project, auto"
 # Claim: on B1 the series reaches TARGET this many times as fast as the faster solver of each peer.
 CLAIMS = (("ivp", 2), ("CVODE", 10), ("SciPy", 100))
+LANES, BATCHES = "project, lanes", ("heyoka, batch of 4", "heyoka, batch of 8")
+# Claims: a run by lanes takes at most this of one in heyoka's best batch, and so much of one alone.
+OF_BATCH, OF_SERIES = 0.5, 1 / 1.8
 PLOTTED = ("B1", "B2", "B3c")
 NO_BREAK = "\u00a0"  # between number and unit, where a narrow column must not break
 
@@ -73,10 +78,47 @@ def read(paths):
             yield from map(json.loads, lines)
 
 
+def to(runs, target):
+    """What it takes to reach an error: log-log between the two tolerances where it is first
+    reached. `how` tells whether that is only a bound: "<" if the loosest tolerance is already
+    better, ">" if the tightest is not good enough. None for a solver that never succeeds."""
+    before = None
+    for run in sorted(runs, key=lambda r: -r["rtol"]):
+        if run["error"] <= target:
+            if before is None:
+                return run | {"how": "<"}
+            share = math.log(before["error"] / target)
+            share /= math.log(before["error"] / max(run["error"], 1e-16))
+            between = {
+                key: before[key] * (run[key] / before[key]) ** share if before[key] else run[key]
+                for key in COSTS
+                if key in run
+            }
+            return run | between | {"how": ""}
+        before = run
+    return before and before | {"how": ">"}
+
+
+def apart(ends, others):
+    """Distances of the ends of two batches in clearances, and in how many runs the changes of mode differ."""
+    pairs = list(zip(ends, others, strict=True))
+    distances = [math.dist(a[:2], b[:2]) / CLEARANCE for a, b in pairs]
+    return distances, sum(a[2] != b[2] for a, b in pairs)
+
+
 class Results:
     def __init__(self, records):
         self.runs = [r for r in records if "problem" in r]
         self.sweeps = [r for r in records if "sweep" in r]
+        self.batches = [r for r in records if "batch" in r]
+        starts = {r["references"]: r["starts"] for r in records if "references" in r}
+        for batch in self.batches:
+            # Of each start that has one.
+            references = {f"{speed:.6f}": end for speed, *end in starts[batch["batch"]]}
+            known = [references.get(f"{0.05 + 1e-3 * i:.6f}") for i in range(len(batch["ends"]))]
+            pairs = [(e, k) for e, k in zip(batch["ends"], known, strict=True) if k]
+            distances, batch["other_changes"] = apart(*zip(*pairs))
+            batch["error"] = statistics.median(distances)
         self.left_out = {r["references"]: r["left_out"] for r in records if "references" in r}
         self.problems = list(dict.fromkeys(r["problem"] for r in self.runs))
         self.solvers = [s for s in dict.fromkeys(r["solver"] for r in self.runs) if s != AUTO]
@@ -98,27 +140,16 @@ class Results:
             if problem in (None, r["problem"]) and r["solver"] == solver and "x" in r
         ]
 
+    def many(self, problem, solver, rtol=None):
+        """Batches of a solver, at one tolerance or all."""
+        found = [r for r in self.batches if (r["batch"], r["solver"]) == (problem, solver)]
+        return [r for r in found if rtol in (None, r["rtol"])]
+
     def at(self, problem, solver, rtol):
         return next((r for r in self.of(problem, solver) if r["rtol"] == rtol), None)
 
     def to(self, problem, solver, target):
-        """What it takes to reach an error: log-log between the two tolerances where it is first
-        reached. `how` tells whether that is only a bound: "<" if the loosest tolerance is already
-        better, ">" if the tightest is not good enough. None for a solver that never succeeds."""
-        before = None
-        for run in sorted(self.of(problem, solver), key=lambda r: -r["rtol"]):
-            if run["error"] <= target:
-                if before is None:
-                    return run | {"how": "<"}
-                share = math.log(before["error"] / target)
-                share /= math.log(before["error"] / max(run["error"], 1e-16))
-                between = {
-                    key: before[key] * (run[key] / before[key]) ** share if before[key] else run[key]
-                    for key in ("seconds", "evaluations", "factorisations")
-                }
-                return run | between | {"how": ""}
-            before = run
-        return before and before | {"how": ">"}
+        return to(self.of(problem, solver), target)
 
     def best(self, problem, target, solvers, key):
         """The solver that reaches an error with least, or None."""
@@ -190,6 +221,70 @@ def time_table(results):
     return table(["solver", *results.problems], rows)
 
 
+def many_rows(results):
+    """Of each problem at each tolerance, and to an error: each solver, and heyoka's best batch."""
+    for problem in dict.fromkeys(r["batch"] for r in results.batches):
+        for rtol in (*sorted({r["rtol"] for r in results.batches}, reverse=True), None):
+
+            def of(solver, problem=problem, rtol=rtol):
+                runs = results.many(problem, solver, rtol)
+                return to(runs, TARGET) if rtol is None else runs[0]
+
+            best = min(map(of, BATCHES), key=lambda r: r["seconds"])
+            yield problem, rtol, of(SERIES), of(LANES), of("heyoka"), best
+
+
+def many_table(results):
+    rows = []
+    for problem, rtol, series, lanes, alone, best in many_rows(results):
+        times = [f"{r.get('how', '')}{short(1e3 * r['seconds'])}" for r in (series, lanes, alone, best)]
+        ratio = f"{lanes['seconds'] / best['seconds']:.2f}"
+        with_python = f"{lanes['seconds'] / best['seconds_with_python']:.2f}"
+        if rtol:
+            label, *errors = power(rtol), *(clearances(r["error"]) for r in (lanes, best))
+        else:
+            label, errors = f"to {clearances(TARGET)}", ["", ""]
+        rows.append([problem, label, *times, f"{ratio} ({with_python})", *errors])
+    header = ["problem", "`rtol`", "project, one by one", "**lanes**"]
+    header += ["heyoka, one by one", "heyoka, best batch", "lanes / batch", "error, lanes", "error, heyoka"]
+    return table(header, rows)
+
+
+def many_agree(results, solvers, alone):
+    """How far runs at once and runs one by one end apart."""
+    batches = [r for r in results.batches if r["solver"] in solvers]
+    found = [
+        apart(r["ends"], results.many(r["batch"], alone, r["rtol"])[0]["ends"]) for r in batches
+    ]
+    worst, others = max(max(d) for d, _ in found), sum(n for _, n in found)
+    return f"{others} of {sum(len(d) for d, _ in found)} runs, {clearances(worst)}"
+
+
+def lanes_off(results, rtol):
+    """Errors by lanes at the start speed of the single runs, against their references."""
+    at = round((0.3 - 0.05) / 1e-3)
+    found = []
+    for problem in ("B1", "B2"):
+        end = results.many(problem, LANES, float(rtol))[0]["ends"][at]
+        error = math.dist(end[:2], REFERENCES[problem]) / CLEARANCE
+        found.append(f"{clearances(error)} on {problem}")
+    return " and ".join(found)
+
+
+def many_claims(results):
+    spread = lambda ratios: f"{short(min(ratios))} to {short(max(ratios))}"
+    *_, series, lanes, _, best = zip(*many_rows(results))
+    of_batch, with_python, of_series = (
+        [a["seconds"] / b[key] for a, b in zip(lanes, others)]
+        for others, key in ((best, "seconds"), (best, "seconds_with_python"), (series, "seconds"))
+    )
+    claim = f"B1 and B2, a run by lanes: at most {OF_BATCH} of the time in heyoka's best batch"
+    measured = f"{spread(of_batch)}; {spread(with_python)} with what Python does for heyoka"
+    yield claim, measured, max(of_batch) <= OF_BATCH
+    claim = f"B1 and B2, a run by lanes: at least {short(1 / OF_SERIES)} times as fast as alone"
+    yield claim, f"{spread([1 / r for r in of_series])} times", max(of_series) <= OF_SERIES
+
+
 def wrong_runs(results):
     """On the problems themselves, by solver and tolerance."""
     tolerances = sorted({s["rtol"] for s in results.sweeps}, reverse=True)
@@ -238,7 +333,7 @@ def verdicts(results):
     wrong, failed, runs = (sum(s[key] for s in tight) for key in ("wrong", "failed", "runs"))
     claim = "no silently wrong run of the project's series at 1e-6 and below"
     found.append((claim, f"{wrong} of {runs}, {failed} failed with an error", wrong == 0))
-    return found
+    return [*found, *many_claims(results)]
 
 
 def b3c_uncertainty(results):
@@ -388,6 +483,9 @@ def page(results, claims):
         "target": clearances(TARGET),
         "times": time_table(results),
         "wrong_runs": wrong_runs(results),
+        "many": many_table(results),
+        "lanes_agree": many_agree(results, [LANES], SERIES),
+        "batches_agree": many_agree(results, BATCHES, "heyoka"),
         "b3c_uncertainty": b3c_uncertainty(results),
         "left_out": str(sum(map(len, results.left_out.values()))),
         "variants": variants(results),
@@ -401,6 +499,8 @@ def page(results, claims):
         name, *argument = match[1].split()
         if name == "choice":
             return choice(results, *argument)
+        if name == "lanes_off":
+            return lanes_off(results, *argument)
         if name == "changes":
             return str(results.at(*argument, SERIES, 1e-12)["changes"])
         return values[name]
@@ -416,6 +516,7 @@ def main():
             "machine": machine(),
             "runs": results.runs,
             "sweeps": results.sweeps,
+            "batches": [{k: v for k, v in b.items() if k != "ends"} for b in results.batches],
             "left_out": results.left_out,
             "claims": [dict(zip(("claim", "measured", "met"), c)) for c in claims],
         }
