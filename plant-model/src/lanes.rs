@@ -4,11 +4,18 @@
 //! the vector registers of the machine. It knows held spin, unbalance, linear contact and constant friction in a rigid, round
 //! bore ([`LaneParams::of`]); and what it cannot decide for certain it gives up ([`Ending::GaveUp`]), for the integrator that
 //! knows everything. The same bits on every machine, however many runs there are and in whatever order.
+//!
+//! Files, each importing only from those above it: `number`, `roots`, `group`, `step`, `flight`, `contact`, `kernel`, `slot`, `pool`.
 
+mod contact;
+mod flight;
+mod group;
 mod kernel;
 mod number;
 mod pool;
 mod roots;
+mod slot;
+mod step;
 
 use crate::V2;
 use crate::params::{ContactLaw, PlantParams, SlidingFriction, SpinParams, Start, StatorParams};
