@@ -38,13 +38,13 @@ export async function launched(executablePath) {
   return { browser, opened };
 }
 
-export async function fits(page, what) {
+export async function fits(page, what, apart = ".live") {
   const [wide, room] = await page.evaluate(() => [document.documentElement.scrollWidth, innerWidth]);
   assert.ok(wide <= room, `${what}: ${wide} px in ${room} px`);
   // What is wider than its room must be in a part that scrolls.
-  const cut = await page.evaluate(() => [...document.querySelectorAll("body *")]
-    .filter((e) => e.getClientRects().length && !e.closest(".scroll, svg, .live") && e.getBoundingClientRect().right > innerWidth + 1)
-    .map((e) => e.outerHTML.slice(0, 80)));
+  const cut = await page.evaluate((apart) => [...document.querySelectorAll("body *")]
+    .filter((e) => !e.closest(`.scroll, svg, .live, ${apart}`) && e.getClientRects().length && e.getBoundingClientRect().right > innerWidth + 1)
+    .map((e) => e.outerHTML.slice(0, 80)), apart);
   assert.deepEqual(cut, [], `${what}: nothing is cut`);
 }
 

@@ -5,6 +5,8 @@ import { SIZES, accessible, everySize, fits, launched } from "./browser.mjs";
 
 const [executablePath, ...files] = process.argv.slice(2);
 const ALL_SIZES = [[320, 640], ...SIZES, [3840, 2160]];
+// Parts are all alike: what is in those that are shut would be laid out element by element to be measured.
+const FOLDED = ".part:not([open]) > :not(summary)";
 const { browser, opened } = await launched(executablePath);
 
 // The conclusion comes before everything else, and the contents lead to every chapter.
@@ -19,17 +21,23 @@ async function headed(page, what) {
   assert.deepEqual(links, chapters, what);
 }
 
-// Every figure is in sight, large enough to be read, with its numbers.
-async function drawn(page, what) {
-  for (const figure of await page.locator("figure").all()) {
-    const drawing = figure.locator("svg");
-    const { width } = await drawing.boundingBox();
-    assert.ok(width > 240, `${what}: ${width} px`);
-    assert.ok(await drawing.getAttribute("aria-label"), what);
-    await figure.locator("summary").click();
-    assert.ok(await figure.locator("table").isVisible(), what);
-    assert.ok((await figure.locator("tbody td").count()) >= 3, what);
-  }
+// Every figure is in sight, large enough to be read, with its numbers, which a click opens: of all in one size, of the first in
+// the others, where a script opens the rest at once.
+async function drawn(page, what, all) {
+  const summaries = await page.locator("figure summary").all();
+  for (const summary of all ? summaries : summaries.slice(0, 1)) await summary.click();
+  const seen = await page.locator("figure").evaluateAll((figures, all) => figures.map((figure, i) => {
+    const drawing = figure.querySelector("svg"), data = figure.querySelector("details"), table = figure.querySelector("table");
+    if (!all && i) data.open = true;
+    return { open: data.open, label: drawing.getAttribute("aria-label"), table: table.checkVisibility(),
+      cells: figure.querySelectorAll("tbody td").length, width: drawing.checkVisibility() ? drawing.getBoundingClientRect().width : 0 };
+  }), all);
+  seen.forEach(({ open, width, label, table, cells }, i) => {
+    const at = `${what}, figure ${i}`;
+    assert.ok(width > 240, `${at}: ${width} px`);
+    assert.ok(label && open && table, at);
+    assert.ok(cells >= 3, at);
+  });
 }
 
 // By keys alone: a chapter by its link, a folded part by its summary.
@@ -45,12 +53,13 @@ async function keys(page, what) {
   assert.ok(await folded.evaluate((part) => part.open), `${what}: a key opens it`);
 }
 
-// Of thousands of lines of drawings, which are one picture each for who cannot see them, and of hundreds of folded parts, which
-// are all alike, the first is enough.
+// Of thousands of lines of drawings, which are one picture each for who cannot see them, of their tables, and of hundreds of folded
+// parts, which are all alike, the first is enough.
 async function lightened(page) {
   await page.evaluate(() => {
     document.querySelectorAll("svg").forEach((drawing, i) => i && drawing.replaceChildren());
     document.querySelectorAll(".part").forEach((part, i) => i && part.remove());
+    document.querySelectorAll(".data").forEach((data, i) => (data.open = !i));
   });
   return page;
 }
@@ -64,9 +73,9 @@ async function stands(file) {
       await page.setViewportSize({ width: size[0], height: size[1] });
     }
     await headed(page, what);
-    await drawn(page, what);
+    await drawn(page, what, size === SIZES[1]);
     await page.locator(".part").evaluateAll((parts) => parts.slice(0, 1).forEach((part) => (part.open = true)));
-    await fits(page, what);
+    await fits(page, what, FOLDED);
     if (size === SIZES[0]) await accessible(await lightened(page), what);
     if (size === SIZES[1]) {
       await keys(page, what);
@@ -83,7 +92,7 @@ async function stands(file) {
     assert.ok(await figure.locator("svg").isVisible());
     assert.ok(!(await figure.locator(".data").isVisible()));
   }
-  await fits(page, `${basename(file)} on paper`);
+  await fits(page, `${basename(file)} on paper`, FOLDED);
   await closed();
 }
 

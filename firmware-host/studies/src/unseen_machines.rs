@@ -13,10 +13,7 @@ const LATENESS: [Range<f64>; 3] = [0.0..0.4, 0.4..0.8, 0.8..10.0];
 ///
 /// # Errors
 /// A machine that is no valid scene: a mistake of the draw.
-pub fn by_lateness(
-    numbers: Range<u64>,
-    progress: &dyn Progress,
-) -> Result<[Compared; 3], SceneError> {
+fn by_lateness(numbers: Range<u64>, progress: &dyn Progress) -> Result<[Compared; 3], SceneError> {
     let machines = (numbers.map(Machine::unseen)).collect::<Result<Vec<Machine>, _>>()?;
     let of_each = run_all(&machines, progress, |machine| match machine.gains() {
         Some(gains) => Compared::on(&machine.plant(), &gains, &machine.text),
@@ -32,7 +29,7 @@ pub fn by_lateness(
 /// Two hundred machines, or a dozen.
 ///
 /// # Errors
-/// See [`by_lateness`].
+/// A machine that is no valid scene: a mistake of the draw.
 pub fn study(extent: Extent, progress: &dyn Progress) -> Result<Report, StudyError> {
     let classes = by_lateness(0..extent.pick(12, 200), progress)?;
     let name = |late: &Range<f64>| match late.end {

@@ -209,11 +209,6 @@ pub unsafe extern "C" fn amb_tick(
         place.put(lease.content().tick(&sample.into()).into());
         Ok(())
     });
-    #[cfg(feature = "planted-panic")]
-    {
-        let few = [1_u8, 2, 3];
-        core::hint::black_box(few[core::hint::black_box(2_usize)]);
-    }
     if done.is_err() {
         place.put(CCommand::NO_FORCE);
     }

@@ -54,3 +54,11 @@ mod trap {
         unsafe { amb_a_panic_can_be_reached() }
     }
 }
+
+/// A call that can panic: firmware that does without it links as ever, and firmware that makes it does not.
+#[cfg(feature = "planted-panic")]
+// SAFETY: a name of its own, which no other library has.
+#[unsafe(no_mangle)]
+pub extern "C" fn amb_planted_panic(index: u32) -> u8 {
+    [1, 2, 3][index as usize]
+}

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use system_tests::root;
-use system_tests::target::{WITHOUT_DEBUG, at_level};
+use system_tests::target::at_level;
 
 /// Where a static library can be used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -95,32 +95,19 @@ pub(crate) fn built(target: Target) -> Option<PathBuf> {
     Some(root().join("target-fw/prebuilt").join(triple).join("fw"))
 }
 
-/// The same with features, in a folder of its own. What it uses is shared with the images.
-pub(crate) fn built_with(target: Target, features: &str) -> Option<PathBuf> {
-    let target_dir = format!("target-fw/{features}");
-    let mut cargo = build(target);
-    cargo.env("CARGO_BUILD_BUILD_DIR", "target-fw");
-    cargo.args(["--target-dir", &target_dir, "--features", features]);
-    cargo.args(WITHOUT_DEBUG);
-    finished(cargo)?;
-    Some(with_version(folder(&target_dir, target), target))
-}
-
-/// A library's folder, with its version: the build writes that where builds share what is compiled.
-fn with_version(built: PathBuf, target: Target) -> PathBuf {
-    let version = "amb_supervisor_abi.h";
-    let shared = folder("target-fw", target).join(version);
-    std::fs::copy(shared, built.join(version)).unwrap();
-    built
-}
-
-/// The same at a level of optimisation other than 3.
+/// The same at a level of optimisation other than 3, with a call that can panic, which nobody has to make. What it uses is shared
+/// with the images.
 pub(crate) fn built_at(target: Target, level: &str) -> Option<PathBuf> {
     let mut cargo = build(target);
     at_level(&mut cargo, level, ["supervisor", "supervisor-capi"]);
+    cargo.args(["--features", "planted-panic"]);
     finished(cargo)?;
+    // The build writes the version where builds share what is compiled.
+    let version = "amb_supervisor_abi.h";
     let built = folder(&format!("target-fw/{level}"), target);
-    Some(with_version(built, target))
+    let shared = folder("target-fw", target).join(version);
+    std::fs::copy(shared, built.join(version)).unwrap();
+    Some(built)
 }
 
 fn build(target: Target) -> Command {

@@ -17,5 +17,4 @@ mod sensitivity;
 mod silently_wrong_runs;
 mod situations;
 mod study_command;
-mod unseen_machines;
 mod validation;

@@ -1,5 +1,6 @@
 //! `paper`: what its rows, tables and figures keep to, as a quick run gives them.
 
+use crate::paper_command::page_and_json_do_not_depend_on_threads;
 use firmware_bench::report::plot::chart::Curve;
 use firmware_studies::campaign::{Drawing, Extent, Table};
 use firmware_studies::paper::rotors::OnsetRig;
@@ -9,8 +10,12 @@ use plant_model::analysis::impact::{Criterion, Impact, Outcome, run_impact};
 use std::f64::consts::TAU;
 use std::sync::LazyLock;
 
-static CHAPTERS: LazyLock<Vec<Chapter>> =
-    LazyLock::new(|| chapters(Extent::Quick, &()).unwrap_or_else(|e| panic!("{e}")));
+/// On one thread.
+static CHAPTERS: LazyLock<Vec<Chapter>> = LazyLock::new(|| {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
+    let chapters = pool.unwrap().install(|| chapters(Extent::Quick, &()));
+    chapters.unwrap_or_else(|e| panic!("{e}"))
+});
 
 fn chapter(title: &str) -> &'static Chapter {
     (CHAPTERS.iter().find(|c| c.title == title)).unwrap_or_else(|| panic!("no chapter {title}"))
@@ -299,7 +304,7 @@ fn drag_keeps_a_whirl_alive() {
     assert_eq!(chapter(RETAINER).figures.len(), 4);
 }
 
-/// A quick run serves all of them: it takes half a minute.
+/// A quick run serves all of them, and another what the command makes of it: each takes half a minute.
 #[test]
 fn a_quick_run_keeps_to_all_of_this() {
     rows_keep_to_what_they_were();
@@ -310,4 +315,5 @@ fn a_quick_run_keeps_to_all_of_this() {
     nine_phases_in_order();
     runs_meet_the_limits();
     drag_keeps_a_whirl_alive();
+    page_and_json_do_not_depend_on_threads(&CHAPTERS);
 }

@@ -1,5 +1,7 @@
-//! `paper` as a person uses it: the page, the JSON, and that neither depends on the number of threads.
+//! `paper` as a person uses it: the text, the page, the JSON, and that none depends on the number of threads.
 
+use firmware_studies::campaign::html;
+use firmware_studies::paper::{self, Chapter};
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
@@ -9,7 +11,7 @@ use system_tests::host;
 use system_tests::terminal::{assert_fits, tables};
 use tempfile::TempDir;
 
-fn paper(out: &Path, more: &[&str]) -> Output {
+fn run(out: &Path, more: &[&str]) -> Output {
     (host().args(["paper", "--out"]).arg(out).args(more))
         .output()
         .expect("the host starts")
@@ -49,41 +51,37 @@ fn check_rows(json: &Value) {
     );
 }
 
-#[test]
-fn page_and_json_do_not_depend_on_threads() {
+/// What the command prints and writes on two threads is of the chapters that one has computed.
+pub(crate) fn page_and_json_do_not_depend_on_threads(chapters: &[Chapter]) {
     let folder = TempDir::new().unwrap();
-    let written = ["1", "2"].map(|threads| {
-        let out = folder.path().join(threads);
-        // Once as text for a person.
-        let json = (threads == "1").then_some("--json");
-        let mut args = vec!["--quick", "--threads", threads];
-        args.extend(json);
-        let result = paper(&out, &args);
-        let error = String::from_utf8_lossy(&result.stderr);
-        assert!(result.status.success(), "{error}");
-        let mut names: Vec<_> = (fs::read_dir(&out).unwrap())
-            .map(|e| e.unwrap().file_name())
-            .collect();
-        names.sort();
-        assert_eq!(names, ["paper.html", "paper.json"]);
-        let json = fs::read(out.join("paper.json")).unwrap();
-        if threads == "1" {
-            assert_eq!(json, result.stdout, "printed and written JSON are the same");
-        } else {
-            let text = String::from_utf8_lossy(&result.stdout);
-            assert_fits(&text, 80);
-            assert!(tables(&text) > 2, "{text}");
-        }
-        (json, fs::read_to_string(out.join("paper.html")).unwrap())
-    });
-    let [(json, page), (other_json, other_page)] = written;
-    assert!(json == other_json, "JSON differs between threads");
-    assert!(page == other_page, "the page differs between threads");
+    let out = folder.path().join("out");
+    let result = run(&out, &["--quick", "--threads", "2"]);
+    let error = String::from_utf8_lossy(&result.stderr);
+    assert!(result.status.success(), "{error}");
+    let mut names: Vec<_> = (fs::read_dir(&out).unwrap())
+        .map(|e| e.unwrap().file_name())
+        .collect();
+    names.sort();
+    assert_eq!(names, ["paper.html", "paper.json"]);
+    let json = fs::read(out.join("paper.json")).unwrap();
+    let page = fs::read_to_string(out.join("paper.html")).unwrap();
+    let other = serde_json::to_string_pretty(&paper::json(chapters)).unwrap();
+    assert!(
+        json == (other + "\n").as_bytes(),
+        "JSON differs between threads"
+    );
+    let other = html(&paper::page(chapters)).unwrap();
+    assert!(page == other, "the page differs between threads");
+    let said = String::from_utf8_lossy(&result.stdout);
+    assert_fits(&said, 80);
+    assert!(tables(&said) > 2, "{said}");
+    let (other, link) = (paper::text(chapters), out.join("paper.html"));
+    assert_eq!(said, format!("{other}\npage: {}\n", link.display()));
     if let Some(browser) = Browser::found() {
-        browser.check("chapters.mjs", &[&folder.path().join("1/paper.html")]);
+        browser.check("chapters.mjs", &[&out.join("paper.html")]);
     }
-    // Nothing but the two folders: no temporary name is left.
-    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
+    // Nothing but the folder: no temporary name is left.
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
 
     check_rows(&serde_json::from_slice(&json).unwrap());
     assert!(page.len() < 1_500_000, "{} bytes", page.len());
@@ -111,7 +109,7 @@ fn a_folder_that_cannot_be_written_is_refused_at_once() {
     let folder = TempDir::new().unwrap();
     let file = folder.path().join("file");
     fs::write(&file, "").unwrap();
-    let result = paper(&file, &["--quick"]);
+    let result = run(&file, &["--quick"]);
     assert_eq!(result.status.code(), Some(2));
     assert!(String::from_utf8_lossy(&result.stderr).contains("cannot write results"));
     assert!(result.stdout.is_empty());

@@ -76,20 +76,21 @@ impl Project {
             .current_dir(&self.root)
             .args(["build", "-p", "firmware-image"])
             .args(["--profile", "fw", "--target", target])
-            .args(["--target-dir", &build.folder()]);
-        match build {
-            Build::Usual => {
-                cargo.arg("--bins");
-            }
+            .args(["--target-dir", &build.folder()])
+            // What they use is compiled once for all that share it.
+            .env("CARGO_BUILD_BUILD_DIR", Build::Usual.folder());
+        let images: &[&str] = match build {
+            Build::Usual => &["--bins"],
             Build::For(processor) => {
                 cargo.env("RUSTFLAGS", format!("-C target-cpu={processor}"));
-                cargo.args(FLOATS.map(|image| format!("--bin={image}")));
+                &FLOATS
             }
             Build::Bare => {
                 cargo.arg("--no-default-features");
-                cargo.args(FLOATS.map(|image| format!("--bin={image}")));
+                &COUNTED
             }
-        }
+        };
+        cargo.args(images);
         let output = cargo.output().map_err(ImageError::NoCargo)?;
         if output.status.success() {
             return Ok(());
@@ -142,7 +143,15 @@ impl Project {
 }
 
 /// Images in floats that are measured.
-const FLOATS: [&str; 5] = ["panic-free", "replay", "count", "count-pair", "in-the-loop"];
+const FLOATS: [&str; 5] = [
+    "--bin=panic-free",
+    "--bin=count",
+    "--bin=count-pair",
+    "--bin=replay",
+    "--bin=in-the-loop",
+];
+/// Those of them that are not compared with the host.
+const COUNTED: [&str; 3] = ["--bin=panic-free", "--bin=count", "--bin=count-pair"];
 const MANIFEST: &str = "firmware-host/image/Cargo.toml";
 
 /// What the supervisor takes of the flash, with everything that it calls.
