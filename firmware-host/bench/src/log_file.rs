@@ -92,7 +92,7 @@ impl FromStr for Renamed {
 pub struct LogFile {
     columns: Columns,
     /// Names that were given to its columns.
-    given: Vec<String>,
+    given: Vec<Renamed>,
 }
 
 /// Names of columns, each pair for x and y, as traces of this program have them.
@@ -105,10 +105,10 @@ const BETWEEN: &str = "mode_change";
 
 /// Largest deviation of a time from an even course, as a share of the period.
 const UNEVEN: f64 = 0.01;
-/// Largest part of a tick that a row may lie beside one.
-const OFF_TICK: f64 = 0.25;
+/// Largest part of a tick that a row may lie beside one: by itself, and with the step of its time.
+const OFF_TICK: (f64, f64) = (0.25, 0.45);
 /// Largest step of times, as a share of the period, by which it shows whether a row is missing.
-const COARSE: f64 = 0.2;
+const COARSE: f64 = 0.26;
 /// Rates of control loops \[Hz\].
 const LOOP_RATES_HZ: (f64, f64) = (100.0, 1e6);
 
@@ -125,20 +125,21 @@ impl LogFile {
             "mcap" => of_mcap(path),
             _ => of_parquet(path),
         };
-        let columns = read.map_err(|reason| {
+        let mut columns = read.map_err(|reason| {
             let help = "give a log as .csv with names in its first line, .parquet, .mat of version 5 to 7, or .mcap with messages in JSON";
             LogError::new(reason, help)
         })?;
-        let (mut all, mut given) = (columns.clone(), Vec::new());
-        for to in renamed {
-            if given.contains(&to.name) {
+        // All of what the file has, before any is in another's place.
+        let mut found = Vec::new();
+        for (i, to) in renamed.iter().enumerate() {
+            if renamed[..i].iter().any(|other| other.name == to.name) {
                 let message = format!("--column {}={}: it has a column already", to.name, to.of);
                 return Err(LogError::new(message, "give each name one column"));
             }
-            all.insert(to.name.clone(), to.find(&columns)?);
-            given.push(to.name.clone());
+            found.push((to.name.clone(), to.find(&columns)?));
         }
-        let columns = all;
+        columns.extend(found);
+        let given = renamed.to_vec();
         Ok(Self { columns, given })
     }
 
@@ -147,10 +148,10 @@ impl LogFile {
     /// # Errors
     /// [`LogError`] with those that are looked for.
     pub(crate) fn expect(&self, known: &[String]) -> Result<(), LogError> {
-        match self.given.iter().find(|name| !known.contains(name)) {
+        match self.given.iter().find(|to| !known.contains(&to.name)) {
             None => Ok(()),
-            Some(name) => Err(LogError::new(
-                format!("--column {name}=...: {name} is no column that is looked for"),
+            Some(Renamed { name, of }) => Err(LogError::new(
+                format!("--column {name}={of}: {name} is no column that is looked for"),
                 format!("expected one of {}", known.join(", ")),
             )),
         }
@@ -303,7 +304,7 @@ impl LogFile {
         if even_s.is_none() && step.size > COARSE * period_s && (twice || !step.decimal) {
             return Err(coarse(time, step, period_s));
         }
-        let allowed = OFF_TICK + (step.size / period_s).min(COARSE);
+        let allowed = (OFF_TICK.0 + step.size / period_s).min(OFF_TICK.1);
         let mut number = 0.0;
         let mut ticks = vec![0];
         for (row, w) in times.windows(2).enumerate() {
@@ -362,6 +363,13 @@ fn usual(times: &[f64]) -> f64 {
 
 /// A period, where a control loop may have it.
 fn of_a_loop(time: &str, period_s: f64) -> Result<f64, LogError> {
+    if period_s <= 0.0 {
+        let message = format!("{time} does not rise from row to row");
+        return Err(LogError::new(
+            message,
+            "give every row its time, with all its digits",
+        ));
+    }
     let (slowest, fastest) = LOOP_RATES_HZ;
     match (slowest..=fastest).contains(&(1.0 / period_s)) {
         true => Ok(period_s),
@@ -456,7 +464,7 @@ mod tests {
         for (wrong, says) in [
             (&[0.0, 0.001, 0.002, 0.0035][..], "row 4 is not on a tick"),
             (&[0.0, 0.001, 0.0005], "goes back in row 3"),
-            (&[1.0, 1.0], "0e0 s apart"),
+            (&[1.0, 1.0], "does not rise"),
             (&[0.0, f64::NAN, 0.001], "no number in row 2"),
             (&[0.0, 1.0, 2.0], "no control loop"),
             (&[1.0], "too few rows, 1"),

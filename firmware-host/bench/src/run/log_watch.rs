@@ -240,7 +240,7 @@ fn watched(
     let no_length: usize = rows.iter().map(|rows| rows.no_length).sum();
     if no_length > 0 {
         left_out.push(format!(
-            "{no_length} readings of the position are beyond {LONGEST_M:e} m, no length of a machine, and count as unknown."
+            "Readings of the position beyond {LONGEST_M:e} m, no length of a machine, count as unknown: {no_length}."
         ));
     }
     let mut watcher = watcher(scene, &planes)?;

@@ -320,7 +320,7 @@ fn what_is_no_number_of_a_machine_is_said() {
     let (code, said) = of(&far, &[]);
     assert_eq!(code, Some(0), "{said}");
     for part in [
-        "2 readings",
+        "count as unknown: 2.",
         "0.0",
         "spin_rad_s has no number",
         "the scene's is taken",
