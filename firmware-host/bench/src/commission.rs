@@ -172,8 +172,9 @@ impl Commissioned {
             reason: reason.to_owned(),
         };
         let Some(spin) = &log.spin_rad_s else {
-            self.not_found
-                .push(missing("the log has no column spin_rad_s"));
+            self.not_found.push(missing(
+                "the log has no column spin_rad_s with a number in every row",
+            ));
             return;
         };
         let quiet = quiet(log, windows);

@@ -1,12 +1,10 @@
 //! Columns of numbers by name, from logs as other programs write them: CSV, Parquet, MAT and MCAP.
 
-use matfile::{MatFile, NumericData};
-use mcap::MessageStream;
-use parquet::file::reader::{FileReader as _, SerializedFileReader};
-use parquet::record::Field;
-use std::collections::BTreeMap;
-use std::fmt::Display;
-use std::fs::File;
+mod column;
+mod formats;
+
+use self::column::{Column, Step, Wrong};
+use self::formats::{Columns, of_csv, of_mat, of_mcap, of_parquet};
 use std::path::Path;
 use std::str::FromStr;
 
@@ -39,11 +37,34 @@ pub struct Renamed {
 }
 
 impl Renamed {
-    /// Name in the log, and what its numbers are multiplied by, where that is a number.
-    fn scaled(&self) -> Option<(&str, f64)> {
-        let (column, factor) = self.of.rsplit_once('*')?;
-        let factor = factor.trim().parse::<f64>().ok()?;
-        (factor.is_finite() && factor != 0.0).then_some((column.trim(), factor))
+    /// The name that it gives.
+    pub(crate) fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The column that it is of, in its unit.
+    fn find(&self, columns: &Columns) -> Result<Column, LogError> {
+        let refused = |message: String, help: String| {
+            let message = format!("--column {}={}: {message}", self.name, self.of);
+            LogError::new(message, help)
+        };
+        // A star may be part of a name.
+        let whole = columns.contains_key(&self.of);
+        let scaled = self.of.rsplit_once('*').filter(|_| !whole);
+        let (column, factor) = scaled.map_or((self.of.as_str(), "1"), |(column, factor)| {
+            (column.trim(), factor.trim())
+        });
+        let found = columns
+            .get(column)
+            .ok_or_else(|| refused(format!("no column {column}"), names(columns)))?;
+        let number = factor.parse().ok();
+        let number = number.filter(|x: &f64| x.is_finite() && *x != 0.0);
+        let number = number.ok_or_else(|| {
+            let help = "give what turns its unit into that of the name, as 1e-6 for µm";
+            let message = format!("the factor is {factor}, expected a finite number that is not 0");
+            refused(message, help.to_owned())
+        })?;
+        Ok(found.clone().times(number))
     }
 }
 
@@ -66,20 +87,12 @@ impl FromStr for Renamed {
     }
 }
 
-/// Numbers of a column; NaN where there is none.
-#[derive(Debug, Clone, Default, PartialEq)]
-struct Column {
-    values: Vec<f64>,
-    /// The first line with something that is no number.
-    wrong: Option<(u64, String)>,
-}
-
 /// A log, column by column.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LogFile {
-    columns: BTreeMap<String, Column>,
-    /// Names that are given to columns that it does not have.
-    lacking: BTreeMap<String, String>,
+    columns: Columns,
+    /// Names that were given to its columns.
+    given: Vec<Renamed>,
 }
 
 /// Names of columns, each pair for x and y, as traces of this program have them.
@@ -92,8 +105,12 @@ const BETWEEN: &str = "mode_change";
 
 /// Largest deviation of a time from an even course, as a share of the period.
 const UNEVEN: f64 = 0.01;
-/// Largest part of a tick that a row may lie beside one.
-const OFF_TICK: f64 = 0.25;
+/// Largest part of a tick that a row may lie beside one: by itself, and with the step of its time.
+const OFF_TICK: (f64, f64) = (0.25, 0.45);
+/// Largest step of times, as a share of the period, by which it shows whether a row is missing.
+const COARSE: f64 = 0.26;
+/// Rates of control loops \[Hz\].
+const LOOP_RATES_HZ: (f64, f64) = (100.0, 1e6);
 
 impl LogFile {
     /// Reads a file by its ending, `.csv`, `.mat`, `.mcap` or `.parquet`, with columns under other names.
@@ -108,28 +125,36 @@ impl LogFile {
             "mcap" => of_mcap(path),
             _ => of_parquet(path),
         };
-        let columns = read.map_err(|reason| {
+        let mut columns = read.map_err(|reason| {
             let help = "give a log as .csv with names in its first line, .parquet, .mat of version 5 to 7, or .mcap with messages in JSON";
             LogError::new(reason, help)
         })?;
-        let lacking = BTreeMap::new();
-        let mut log = Self { columns, lacking };
-        for to in renamed {
-            // A star may be part of a name.
-            let whole = log.columns.contains_key(&to.of);
-            let scaled = to.scaled().filter(|_| !whole);
-            let (column, factor) = scaled.unwrap_or((&to.of, 1.0));
-            match log.columns.get(column).cloned() {
-                Some(mut found) => {
-                    found.values.iter_mut().for_each(|x| *x *= factor);
-                    log.columns.insert(to.name.clone(), found);
-                }
-                None => {
-                    log.lacking.insert(to.name.clone(), column.to_owned());
-                }
+        // All of what the file has, before any is in another's place.
+        let mut found = Vec::new();
+        for (i, to) in renamed.iter().enumerate() {
+            if renamed[..i].iter().any(|other| other.name == to.name) {
+                let message = format!("--column {}={}: it has a column already", to.name, to.of);
+                return Err(LogError::new(message, "give each name one column"));
             }
+            found.push((to.name.clone(), to.find(&columns)?));
         }
-        Ok(log)
+        columns.extend(found);
+        let given = renamed.to_vec();
+        Ok(Self { columns, given })
+    }
+
+    /// Refuses a name that was given to a column and that nobody looks for.
+    ///
+    /// # Errors
+    /// [`LogError`] with those that are looked for.
+    pub(crate) fn expect(&self, known: &[String]) -> Result<(), LogError> {
+        match self.given.iter().find(|to| !known.contains(&to.name)) {
+            None => Ok(()),
+            Some(Renamed { name, of }) => Err(LogError::new(
+                format!("--column {name}={of}: {name} is no column that is looked for"),
+                format!("expected one of {}", known.join(", ")),
+            )),
+        }
     }
 
     /// The same of ticks: without the rows that stand between two of them in traces of this program.
@@ -151,23 +176,14 @@ impl LogFile {
     }
 
     fn raw(&self, name: &str) -> Result<&Column, LogError> {
-        self.columns.get(name).ok_or_else(|| {
-            let names: Vec<&str> = self.columns.keys().map(String::as_str).collect();
-            let help = match names.is_empty() {
-                true => "a log has a column of numbers under each name".to_owned(),
-                false => format!(
-                    "it has {}; where one of them is meant, name it",
-                    names.join(", ")
-                ),
-            };
-            let name = self.lacking.get(name).map_or(name, String::as_str);
-            LogError::new(format!("no column {name}"), help)
-        })
+        self.columns
+            .get(name)
+            .ok_or_else(|| LogError::new(format!("no column {name}"), names(&self.columns)))
     }
 
-    /// Whether there is a column of this name, or one was said to be.
+    /// Whether there is a column of this name.
     pub fn has(&self, name: &str) -> bool {
-        self.columns.contains_key(name) || self.lacking.contains_key(name)
+        self.columns.contains_key(name)
     }
 
     /// Numbers of a column, NaN where a row has none.
@@ -178,9 +194,13 @@ impl LogFile {
         let column = self.raw(name)?;
         match &column.wrong {
             None => Ok(&column.values),
-            Some((line, cell)) => Err(LogError::new(
+            Some(Wrong::Cell(line, cell)) => Err(LogError::new(
                 format!("line {line}: {name} is {cell:?}, expected a number"),
                 "leave a cell empty where there is no number",
+            )),
+            Some(Wrong::Complex) => Err(LogError::new(
+                format!("{name} is of complex numbers, expected real ones"),
+                "write its real and imaginary part as columns of their own",
             )),
         }
     }
@@ -203,7 +223,7 @@ impl LogFile {
     /// The same of a column that a log may lack.
     ///
     /// # Errors
-    /// As [`Self::beside`], of one that is there or was said to be.
+    /// As [`Self::beside`], of one that is there.
     pub(crate) fn beside_if_there(
         &self,
         other: &str,
@@ -222,29 +242,50 @@ impl LogFile {
         Ok(rows.map(|(x, y)| [*x, *y]).collect())
     }
 
+    /// Two times and more, none of them before another.
+    fn times(&self, time: &str) -> Result<(&[f64], Step), LogError> {
+        let times = self.column(time)?;
+        let refused = |message: String, help: &str| Err(LogError::new(message, help));
+        if times.len() < 2 {
+            let rows = times.len();
+            let message = format!("has too few rows, {rows}, expected two at least");
+            return refused(
+                message,
+                "log every tick, from before the event to behind it",
+            );
+        }
+        if let Some(row) = times.iter().position(|t| !t.is_finite()) {
+            let message = format!("{time} is no number in row {}", row + 1);
+            return refused(message, "give every row its time");
+        }
+        if let Some(row) = times.windows(2).position(|w| w[1] < w[0]) {
+            let message = format!("{time} goes back in row {}", row + 2);
+            return refused(
+                message,
+                "give the rows in the order in which they were logged",
+            );
+        }
+        Ok((times, self.raw(time)?.step()))
+    }
+
     /// Time from row to row, by a column of times.
     ///
     /// # Errors
     /// [`LogError`] where they do not go on evenly.
     pub fn period_s(&self, time: &str) -> Result<f64, LogError> {
-        let times = self.column(time)?;
-        let last = times.len().saturating_sub(1);
-        let all_s = times
-            .last()
-            .zip(times.first())
-            .map_or(f64::NAN, |(b, a)| b - a);
-        let period_s = all_s / last as f64;
+        let (times, step) = self.times(time)?;
+        let rows = (times.len() - 1) as f64;
+        let period_s = (times[times.len() - 1] - times[0]) / rows;
         // Against the whole course: times are often rounded to fewer places than a period has.
-        let is_even =
-            |w: &[f64]| (w[1] - w[0] - period_s).abs() <= UNEVEN * period_s + 2.0 * rounding(w[1]);
-        let uneven = times.windows(2).position(|w| !is_even(w));
-        match uneven {
-            None if period_s > 0.0 && period_s.is_finite() => Ok(period_s),
-            at => Err(LogError::new(
-                format!(
-                    "{time} does not go on evenly, from row {} on",
-                    at.unwrap_or(0) + 1
-                ),
+        let allowed_s = UNEVEN * period_s + step.size.min(COARSE * period_s);
+        let is_even = |w: &[f64]| (w[1] - w[0] - period_s).abs() <= allowed_s;
+        match times.windows(2).position(|w| !is_even(w)) {
+            None => of_a_loop(time, period_s),
+            Some(_) if step.size > COARSE * period_s && !step.decimal => {
+                Err(coarse(time, step, period_s))
+            }
+            Some(row) => Err(LogError::new(
+                format!("{time} does not go on evenly, from row {} on", row + 1),
                 "log every tick, with its time",
             )),
         }
@@ -255,30 +296,24 @@ impl LogFile {
     /// # Errors
     /// [`LogError`] where rows do not lie on ticks.
     pub fn ticks(&self, time: &str) -> Result<(f64, Vec<u32>), LogError> {
-        let times = self.column(time)?;
-        let mut apart: Vec<f64> = times.windows(2).map(|w| w[1] - w[0]).collect();
-        apart.sort_by(f64::total_cmp);
-        let usual_s = apart.get(apart.len() / 2).copied().unwrap_or(f64::NAN);
-        let first_s = times.first().copied().unwrap_or(f64::NAN);
+        let (times, step) = self.times(time)?;
         // What a period is off by adds up over a long log: from the whole of it where no row is missing.
-        let period_s = self.period_s(time).unwrap_or(usual_s);
-        if !(period_s > 0.0 && period_s.is_finite()) {
-            return Err(LogError::new(
-                format!("{time} does not rise from row to row"),
-                "give every row its time",
-            ));
+        let even_s = self.period_s(time).ok();
+        let period_s = of_a_loop(time, even_s.unwrap_or_else(|| usual(times)))?;
+        let twice = times.windows(2).any(|w| w[0] == w[1]);
+        if even_s.is_none() && step.size > COARSE * period_s && (twice || !step.decimal) {
+            return Err(coarse(time, step, period_s));
         }
+        let allowed = (OFF_TICK.0 + step.size / period_s).min(OFF_TICK.1);
         let mut number = 0.0;
-        let mut ticks = Vec::with_capacity(times.len());
-        for (row, t_s) in times.iter().enumerate() {
-            let before_s = if row == 0 { first_s } else { times[row - 1] };
-            let steps = (t_s - before_s) / period_s;
-            let off = (steps - steps.round()).abs();
-            if !(steps >= 0.0 && off <= OFF_TICK + rounding(*t_s) / period_s) {
+        let mut ticks = vec![0];
+        for (row, w) in times.windows(2).enumerate() {
+            let steps = (w[1] - w[0]) / period_s;
+            if (steps - steps.round()).abs() > allowed {
                 return Err(LogError::new(
                     format!(
                         "{time} in row {} is not on a tick of {period_s:.3e} s",
-                        row + 1
+                        row + 2
                     ),
                     "log every tick with its time; rows may be missing",
                 ));
@@ -286,7 +321,8 @@ impl LogFile {
             number += steps.round();
             ticks.push(number as u32);
         }
-        Ok((period_s, ticks))
+        let whole_s = times[times.len() - 1] - times[0];
+        Ok((whole_s / f64::max(number, 1.0), ticks))
     }
 
     /// Leaves out rows in which a column is not zero.
@@ -303,210 +339,55 @@ impl LogFile {
     }
 }
 
-/// What times of this size are known to in single precision, in which some loggers keep them.
-fn rounding(time_s: f64) -> f64 {
-    time_s.abs() * f64::from(f32::EPSILON)
-}
-
-type Columns = BTreeMap<String, Column>;
-
-fn reason(path: &Path) -> impl Fn(&dyn Display) -> String {
-    move |reason| format!("{}: {reason}", path.display())
-}
-
-/// Cells between commas, semicolons or tabs, whichever the first line has.
-fn of_csv(path: &Path) -> Result<Columns, String> {
-    let refused = reason(path);
-    let bytes = std::fs::read(path).map_err(|e| refused(&e))?;
-    // As spreadsheets begin a file.
-    let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes);
-    let mut lines = text.split(|byte| *byte == b'\n');
-    let head = (lines.find(|line| !line.starts_with(b"#"))).unwrap_or_default();
-    let between = [b';', b'\t'].into_iter().find(|mark| head.contains(mark));
-    let mut reader = csv::ReaderBuilder::new()
-        .delimiter(between.filter(|_| !head.contains(&b',')).unwrap_or(b','))
-        .trim(csv::Trim::All)
-        .comment(Some(b'#'))
-        .from_reader(text);
-    let names = reader.headers().map_err(|e| refused(&e))?.clone();
-    let mut columns = vec![Column::default(); names.len()];
-    for cells in reader.records() {
-        let cells = cells.map_err(|e| refused(&e))?;
-        let line = cells.position().map_or(0, csv::Position::line);
-        for (column, cell) in columns.iter_mut().zip(&cells) {
-            let value = match cell {
-                "" => f64::NAN,
-                "true" => 1.0,
-                "false" => 0.0,
-                cell => cell.parse().unwrap_or_else(|_| {
-                    column.wrong.get_or_insert((line, cell.to_owned()));
-                    f64::NAN
-                }),
-            };
-            column.values.push(value);
-        }
-    }
-    Ok(names.iter().map(str::to_owned).zip(columns).collect())
-}
-
-fn of_parquet(path: &Path) -> Result<Columns, String> {
-    let refused = reason(path);
-    let file = File::open(path).map_err(|e| refused(&e))?;
-    let reader = SerializedFileReader::new(file).map_err(|e| refused(&e))?;
-    let mut columns = Columns::new();
-    for row in reader.get_row_iter(None).map_err(|e| refused(&e))? {
-        for (name, field) in row.map_err(|e| refused(&e))?.get_column_iter() {
-            let value = match field {
-                Field::Double(x) => *x,
-                Field::Float(x) => f64::from(*x),
-                Field::Bool(x) => f64::from(*x),
-                Field::Int(x) => f64::from(*x),
-                Field::Long(x) => *x as f64,
-                Field::Null => f64::NAN,
-                _ => continue,
-            };
-            match columns.get_mut(name) {
-                Some(column) => column.values.push(value),
-                None => {
-                    let values = vec![value];
-                    columns.insert(
-                        name.clone(),
-                        Column {
-                            values,
-                            wrong: None,
-                        },
-                    );
-                }
-            }
-        }
-    }
-    Ok(columns)
-}
-
-/// Vectors by their names; of matrices each column, numbered from 1 on as MATLAB does.
-fn of_mat(path: &Path) -> Result<Columns, String> {
-    let refused = reason(path);
-    let file = File::open(path).map_err(|e| refused(&e))?;
-    let mat = MatFile::parse(file)
-        .map_err(|e| format!("{} (version 7.3 is another format)", refused(&e)))?;
-    let mut columns = Columns::new();
-    for array in mat.arrays() {
-        let values = doubles(array.data());
-        let rows = match array.size()[..] {
-            [1, n] | [n, 1] => n,
-            [rows, _] => rows,
-            _ => continue,
-        };
-        let several = values.len() > rows;
-        for (i, values) in values.chunks(rows.max(1)).enumerate() {
-            let name = match several {
-                true => format!("{}_{}", array.name(), i + 1),
-                false => array.name().to_owned(),
-            };
-            let values = values.to_vec();
-            columns.insert(
-                name,
-                Column {
-                    values,
-                    wrong: None,
-                },
-            );
-        }
-    }
-    Ok(columns)
-}
-
-fn doubles(data: &NumericData) -> Vec<f64> {
-    fn wide<T: Copy + Into<f64>>(all: &[T]) -> Vec<f64> {
-        all.iter().map(|x| (*x).into()).collect()
-    }
-    match data {
-        NumericData::Int8 { real, .. } => wide(real),
-        NumericData::UInt8 { real, .. } => wide(real),
-        NumericData::Int16 { real, .. } => wide(real),
-        NumericData::UInt16 { real, .. } => wide(real),
-        NumericData::Int32 { real, .. } => wide(real),
-        NumericData::UInt32 { real, .. } => wide(real),
-        NumericData::Int64 { real, .. } => real.iter().map(|x| *x as f64).collect(),
-        NumericData::UInt64 { real, .. } => real.iter().map(|x| *x as f64).collect(),
-        NumericData::Single { real, .. } => wide(real),
-        NumericData::Double { real, .. } => real.clone(),
+/// What is there, where something is not.
+fn names(columns: &Columns) -> String {
+    let names: Vec<&str> = columns.keys().map(String::as_str).collect();
+    match names.is_empty() {
+        true => "a log has a column of numbers under each name".to_owned(),
+        false => format!(
+            "it has {}; where one of them is meant, name it",
+            names.join(", ")
+        ),
     }
 }
 
-/// Time of a message where it has no column of its own.
-const LOG_TIME: &str = "log_time_s";
-
-/// Fields of messages in JSON, those below others behind a dot; before it the topic where there are several.
-fn of_mcap(path: &Path) -> Result<Columns, String> {
-    let refused = reason(path);
-    let bytes = std::fs::read(path).map_err(|e| refused(&e))?;
-    /// Columns in the order of fields, and how many messages were read.
-    type Topic = (Vec<(String, Column)>, usize);
-    let mut topics: BTreeMap<String, Topic> = BTreeMap::new();
-    for message in MessageStream::new(&bytes).map_err(|e| refused(&e))? {
-        let message = message.map_err(|e| refused(&e))?;
-        if message.channel.message_encoding != "json" {
-            continue;
-        }
-        let value = serde_json::from_slice(&message.data).map_err(|e| refused(&e))?;
-        let mut fields = vec![(LOG_TIME.to_owned(), 1e-9 * message.log_time as f64)];
-        numbers("", &value, &mut fields);
-        let topic = message.channel.topic.clone();
-        let (columns, rows) = topics.entry(topic).or_default();
-        for (place, (name, value)) in fields.into_iter().enumerate() {
-            // Messages of a topic have their fields in one order, mostly.
-            let at = match columns.get(place) {
-                Some((known, _)) if *known == name => place,
-                _ => {
-                    let known = columns.iter().position(|(known, _)| *known == name);
-                    known.unwrap_or_else(|| {
-                        columns.push((name, Column::default()));
-                        columns.len() - 1
-                    })
-                }
-            };
-            let values = &mut columns[at].1.values;
-            values.resize(*rows, f64::NAN);
-            values.push(value);
-        }
-        *rows += 1;
-    }
-    if topics.is_empty() {
-        return Err(refused(&"has no messages in JSON"));
-    }
-    let several = topics.len() > 1;
-    let named = topics.into_iter().flat_map(|(topic, (columns, rows))| {
-        columns.into_iter().map(move |(name, mut column)| {
-            column.values.resize(rows, f64::NAN);
-            match several {
-                true => (format!("{topic}.{name}"), column),
-                false => (name, column),
-            }
-        })
-    });
-    Ok(named.collect())
+/// The time that most rows are apart: a mean over these, so that rounding goes out of it.
+fn usual(times: &[f64]) -> f64 {
+    let mut apart: Vec<f64> = times.windows(2).map(|w| w[1] - w[0]).collect();
+    apart.sort_by(f64::total_cmp);
+    let middle = apart[apart.len() / 2];
+    let near = |x: &&f64| (0.7 * middle..=1.3 * middle).contains(*x);
+    let near: Vec<f64> = apart.iter().filter(near).copied().collect();
+    near.iter().sum::<f64>() / near.len() as f64
 }
 
-fn numbers(above: &str, value: &serde_json::Value, into: &mut Vec<(String, f64)>) {
-    use serde_json::Value;
-    let below = |name: &str| match above {
-        "" => name.to_owned(),
-        above => format!("{above}.{name}"),
-    };
-    match value {
-        Value::Object(fields) => fields
-            .iter()
-            .for_each(|(name, value)| numbers(&below(name), value, into)),
-        Value::Array(all) => (0..)
-            .zip(all)
-            .for_each(|(i, value): (u32, _)| numbers(&below(&i.to_string()), value, into)),
-        Value::Number(x) => into.push((above.to_owned(), x.as_f64().unwrap_or(f64::NAN))),
-        Value::Bool(x) => into.push((above.to_owned(), f64::from(*x))),
-        // As numbers that are not finite are written in JSON.
-        Value::Null => into.push((above.to_owned(), f64::NAN)),
-        Value::String(_) => {}
+/// A period, where a control loop may have it.
+fn of_a_loop(time: &str, period_s: f64) -> Result<f64, LogError> {
+    if period_s <= 0.0 {
+        let message = format!("{time} does not rise from row to row");
+        return Err(LogError::new(
+            message,
+            "give every row its time, with all its digits",
+        ));
     }
+    let (slowest, fastest) = LOOP_RATES_HZ;
+    match (slowest..=fastest).contains(&(1.0 / period_s)) {
+        true => Ok(period_s),
+        false => Err(LogError::new(
+            format!("rows are {period_s:e} s apart by {time}: no control loop is so slow or fast"),
+            "turn its unit into s: --column t_s=t_s*1e-3, where it is ms, 1e-6 for µs, 1e-9 for ns",
+        )),
+    }
+}
+
+fn coarse(time: &str, step: Step, period_s: f64) -> LogError {
+    LogError::new(
+        format!(
+            "{time} is known in steps of {:.1e} s where it is largest, and rows are {period_s:.1e} s apart: which are missing does not show",
+            step.size
+        ),
+        "write times with more digits, in double precision, or counted from the first row",
+    )
 }
 
 #[cfg(test)]
@@ -537,29 +418,110 @@ mod tests {
         );
         let error = log.column("z").unwrap_err();
         assert!(error.help.contains("x um"), "{}", error.help);
-        // A column that was named and is not there is missed where it is asked for.
-        let log = read("log.csv", text, &["t_s=zeit"]).unwrap();
-        assert!(log.has("t_s") && log.column("t_s").unwrap_err().message.contains("zeit"));
+        // Two that change places.
+        let swapped = ["x um=y*2", "y*2=x um"];
+        let log = read("log.csv", text, &swapped).unwrap();
+        assert_eq!(log.column("x um").unwrap()[0], 2.0);
+        assert_eq!(log.column("y*2").unwrap()[0], 1.0);
+    }
+
+    #[test]
+    fn a_name_without_a_column_or_a_factor_is_refused() {
+        let text = "t_s,x\n0,1\n1,2\n";
+        for (renamed, says) in [
+            ("t_s=nope", "no column nope"),
+            ("x=nope*1e-6", "no column nope"),
+            ("x=x*0", "the factor is 0"),
+            ("x=x*nan", "the factor is nan"),
+            ("x=x*1e400", "the factor is 1e400"),
+            ("x=x*mm", "the factor is mm"),
+        ] {
+            let error = read("log.csv", text, &[renamed]).unwrap_err();
+            let named = error.message.contains(renamed) && error.message.contains(says);
+            assert!(named, "{error}");
+        }
+        let error = read("log.csv", text, &["x=x", "x=t_s"]).unwrap_err();
+        assert!(error.message.contains("already"), "{error}");
+        let log = read("log.csv", text, &["foo=x"]).unwrap();
+        assert!(log.expect(&["foo".to_owned()]).is_ok());
+        let error = log.expect(&["t_s".to_owned()]).unwrap_err();
+        assert!(error.message.contains("foo") && error.help.contains("t_s"));
+    }
+
+    fn log(times: &[f64]) -> LogFile {
+        let rows: Vec<String> = times.iter().map(f64::to_string).collect();
+        read("log.csv", &format!("t_s\n{}\n", rows.join("\n")), &[]).unwrap()
     }
 
     #[test]
     fn rows_lie_on_ticks_and_may_be_missing() {
-        let log = |times: &[f64]| {
-            let rows: Vec<String> = times.iter().map(f64::to_string).collect();
-            read("log.csv", &format!("t_s\n{}\n", rows.join("\n")), &[]).unwrap()
-        };
-        let (period_s, ticks) = log(&[5.0, 5.1, 5.2, 5.4, 5.4, 5.5]).ticks("t_s").unwrap();
-        assert!((period_s - 0.1).abs() < 1e-9);
+        let (period_s, ticks) = log(&[5.0, 5.001, 5.002, 5.0041, 5.0041, 5.005])
+            .ticks("t_s")
+            .unwrap();
+        assert!((period_s - 0.001).abs() < 1e-9);
         assert_eq!(ticks, [0, 1, 2, 4, 4, 5]);
-        assert!(log(&[5.0, 5.1, 5.2, 5.4]).period_s("t_s").is_err());
-        for wrong in [
-            &[0.0, 0.1, 0.2, 0.35][..],
-            &[0.0, 0.1, 0.05],
-            &[1.0, 1.0],
-            &[1.0],
+        assert!(log(&[5.0, 5.001, 5.002, 5.004]).period_s("t_s").is_err());
+        for (wrong, says) in [
+            (&[0.0, 0.001, 0.002, 0.0035][..], "row 4 is not on a tick"),
+            (&[0.0, 0.001, 0.0005], "goes back in row 3"),
+            (&[1.0, 1.0], "does not rise"),
+            (&[0.0, f64::NAN, 0.001], "no number in row 2"),
+            (&[0.0, 1.0, 2.0], "no control loop"),
+            (&[1.0], "too few rows, 1"),
+            (&[], "too few rows, 0"),
         ] {
-            assert!(log(wrong).ticks("t_s").is_err(), "{wrong:?}");
+            let error = log(wrong).ticks("t_s").unwrap_err();
+            assert!(error.message.contains(says), "{says}: {error}");
+            let error = log(wrong).period_s("t_s").unwrap_err();
+            assert!(
+                says.contains("tick") || error.message.contains(says),
+                "{error}"
+            );
         }
+    }
+
+    /// Rows of 20 kHz from some time on, a tenth of them missing: to be told where the file holds times finely enough.
+    #[test]
+    fn rows_that_are_missing_show_at_any_time() {
+        let from = |first_s: f64| -> Vec<f64> {
+            (0..4000)
+                .filter(|i| i % 10 != 7)
+                .map(|i| first_s + 5e-5 * f64::from(i))
+                .collect()
+        };
+        for first_s in [0.0, 1e3, 1e6, 1.7e9] {
+            let log = log(&from(first_s));
+            assert!(log.period_s("t_s").is_err(), "{first_s}");
+            let (period_s, ticks) = log.ticks("t_s").unwrap();
+            assert!(
+                (period_s / 5e-5 - 1.0).abs() < 1e-3,
+                "{first_s}: {period_s}"
+            );
+            assert_eq!(ticks.last(), Some(&3999));
+        }
+        // Times of single precision, written out, and those of few digits.
+        let single = |first_s| -> Vec<f64> {
+            (from(first_s).iter())
+                .map(|t| f64::from(*t as f32))
+                .collect()
+        };
+        let (period_s, ticks) = log(&single(100.0)).ticks("t_s").unwrap();
+        assert!((period_s / 5e-5 - 1.0).abs() < 1e-4, "{period_s}");
+        assert_eq!(ticks.last(), Some(&3999));
+        let few = |first_s| -> Vec<f64> {
+            (from(first_s).iter())
+                .map(|t| (1e4 * t).round() / 1e4)
+                .collect()
+        };
+        for coarse in [single(1e3), few(1e3)] {
+            let error = log(&coarse).ticks("t_s").unwrap_err();
+            assert!(error.message.contains("is known in steps of"), "{error}");
+            assert!(log(&coarse).period_s("t_s").is_err());
+        }
+        // Counts, of a unit that is not s.
+        let text = "n\n0\n1\n2\n4\n5\n";
+        let log = read("log.csv", text, &["t_s=n*5e-5"]).unwrap();
+        assert_eq!(log.ticks("t_s").unwrap().1, [0, 1, 2, 4, 5]);
     }
 
     #[test]
@@ -572,6 +534,13 @@ mod tests {
             let error = read(name, text, &[]).unwrap_err();
             assert!(error.message.contains(name), "{error}");
         }
+        // Lengths of records that no file has.
+        let path = tempfile::tempdir().unwrap();
+        let path = path.path().join("far.mcap");
+        let bytes = [&b"\x89MCAP0\r\n"[..], &[0xff; 100]].concat();
+        std::fs::write(&path, bytes).unwrap();
+        let error = LogFile::read(&path, &[]).unwrap_err();
+        assert!(error.message.contains("far.mcap"), "{error}");
         assert!("a".parse::<Renamed>().is_err() && "=b".parse::<Renamed>().is_err());
     }
 }

@@ -172,6 +172,9 @@ struct Machine {
 /// A spring that would carry this share of the cap at the wall is stiff enough for a rotor that nothing pulls.
 const CARRIED_SHARE: f64 = 0.3;
 
+/// Rotors in two bearings are shorter.
+const LONGEST_M: f64 = 30.0;
+
 /// Of a disc of which only the mass is known, in those of its shaft.
 const DISC_DIAMETERS: f64 = 3.0;
 
@@ -252,6 +255,19 @@ impl NumberArgs {
         let Some(places) = &self.bearings_m else {
             return Ok(None);
         };
+        let length_m = shaft.as_ref().map(Shaft::length_m).or(self.length_m);
+        if let Some(length_m) = length_m.filter(|length_m| *length_m > LONGEST_M) {
+            let message = match &self.shaft_file {
+                Some(file) => format!(
+                    "--shaft-file {}: length_m adds up to {length_m} m",
+                    file.display()
+                ),
+                None => format!("--length-m is {length_m} m"),
+            };
+            let help =
+                "no rotor in two bearings is so long: is it in mm? give it in m, and diameters too";
+            return refused(message, help);
+        }
         let positions_m = match (&places[..], &shaft) {
             (&[a, b], Some(shaft)) if 0.0 <= a && a < b && b <= shaft.length_m() => [a, b],
             (_, Some(shaft)) => {
@@ -399,7 +415,11 @@ fn create(path: &Path, content: &str) -> Result<(), CommandError> {
         let mut file = OpenOptions::new().write(true).create_new(true).open(path)?;
         file.write_all(content.as_bytes())
     };
-    write().map_err(|reason| OutputError::at(path)(reason).into())
+    write().map_err(|reason| {
+        let mut error = OutputError::at(path)(reason);
+        error.option = None;
+        error.into()
+    })
 }
 
 /// The scene, with a levitation controller that holds the rotor.

@@ -62,6 +62,8 @@ pub struct OutputError {
     pub path: PathBuf,
     /// What the system said.
     pub reason: io::Error,
+    /// The option that would name another place; none where that is the argument.
+    pub option: Option<&'static str>,
 }
 
 /// The system's word without its number; what has no word of its own, whole.
@@ -75,11 +77,18 @@ fn said(reason: &io::Error) -> String {
 impl miette::Diagnostic for OutputError {
     fn help<'a>(&'a self) -> Option<Box<dyn std::fmt::Display + 'a>> {
         use io::ErrorKind::{FileTooLarge, QuotaExceeded, StorageFull};
+        let with = self.option.map(|option| format!(" with {option}"));
+        let with = with.unwrap_or_default();
         Some(Box::new(match self.reason.kind() {
             StorageFull | QuotaExceeded | FileTooLarge => {
-                "free some space there, or give a folder on another disk with --out; nothing was written"
+                format!(
+                    "free some space there, or give a folder on another disk{with}; nothing was written"
+                )
             }
-            _ => "give a folder that can be written to with --out",
+            _ if self.option.is_none() => {
+                "give a file in a folder that is there and can be written to".to_owned()
+            }
+            _ => format!("give a folder that can be written to{with}"),
         }))
     }
 }
@@ -90,6 +99,7 @@ impl OutputError {
         move |reason| Self {
             path: path.to_owned(),
             reason,
+            option: Some("--out"),
         }
     }
 }

@@ -88,6 +88,13 @@ pub fn execute(args: &ReviewArgs) -> Result<(), CommandError> {
                     .to_owned(),
             });
         }
+        _ if !args.column.is_empty() => {
+            return Err(CommandError::Numbers {
+                message: format!("{name}: --column is of a log, and this is none by its ending"),
+                help: "give a log as .csv, .parquet, .mat or .mcap, or leave --column out"
+                    .to_owned(),
+            });
+        }
         _ => {
             let read = std::fs::read(&args.file).map_err(|e| CommandError::Numbers {
                 message: format!("{name}: {e}"),

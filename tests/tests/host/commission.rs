@@ -5,7 +5,8 @@ use std::f64::consts::TAU;
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
-use system_tests::{host, run_scene, scene_path};
+use std::process::Command;
+use system_tests::{host, python, run_scene, scene_path};
 use tempfile::TempDir;
 
 /// The trace of the shipped scene, in a folder that goes with it.
@@ -156,7 +157,9 @@ fn what_is_no_log_is_refused_by_name() {
         };
         (0..3_000).map(row).collect()
     };
-    let uneven = still.replace("0.01,", "0.0107,");
+    let uneven = still.replace("0.01,", "0.01002,");
+    let back = still.replace("0.01,", "0.0107,");
+    let row = still.lines().next().unwrap();
     let cases = [
         (
             write("no_stimulus.csv", "t_s,measured_x_m\n0,0\n1,0\n"),
@@ -164,6 +167,15 @@ fn what_is_no_log_is_refused_by_name() {
         ),
         (write("still.csv", &format!("{names}{still}")), "windows"),
         (write("uneven.csv", &format!("{names}{uneven}")), "evenly"),
+        (
+            write("back.csv", &format!("{names}{back}")),
+            "goes back in row 202",
+        ),
+        (write("none.csv", names), "too few rows, 0"),
+        (
+            write("one.csv", &format!("{names}{row}\n")),
+            "too few rows, 1",
+        ),
         (
             write("words.csv", &format!("{names}0,0,0,x,0,0,0\n")),
             "line 2: commanded_x_n is \"x\"",
@@ -184,4 +196,53 @@ fn what_is_no_log_is_refused_by_name() {
         assert!(code == Some(2) && out.is_empty(), "{said}");
         assert!(said.replace('\n', " ").contains(says), "{says}: {said}");
     }
+    // Every mapping is used or refused.
+    let still = write("still.csv", &format!("{names}{still}"));
+    for mapping in ["t_s=nope", "foo=t_s", "measured_x_m=measured_x_m*0"] {
+        let (code, out, said) = commission(&[&still, Path::new("--column"), Path::new(mapping)]);
+        assert!(code == Some(2) && out.is_empty(), "{said}");
+        let name = mapping.split('=').next().unwrap();
+        assert!(said.contains("--column") && said.contains(name), "{said}");
+    }
+}
+
+/// Stamps of Parquet in nanoseconds, rows that are missing at a large time, and complex numbers.
+#[test]
+fn what_python_writes_is_read_as_it_is_meant_or_refused() {
+    let Some(python) = python() else { return };
+    let (folder, trace) = trace();
+    let script = "import sys, numpy as np, pandas as pd, scipy.io\n\
+        folder, log = sys.argv[1], pd.read_parquet(sys.argv[2])\n\
+        log = log[~log.mode_change].drop(columns='mode_change').select_dtypes('number')\n\
+        ns = log.assign(t_s=pd.to_datetime((log.t_s * 1e9).round().astype('int64')))\n\
+        ns.to_parquet(folder + '/ns.parquet')\n\
+        late = log.assign(t_s=log.t_s + 1000)\n\
+        late.to_csv(folder + '/late.csv', index=False)\n\
+        late.drop(late.index[7::10]).to_csv(folder + '/gaps.csv', index=False)\n\
+        columns = {c: log[c].to_numpy() for c in log}\n\
+        columns['measured_x_m'] = columns['measured_x_m'] + 1e-6j\n\
+        scipy.io.savemat(folder + '/complex.mat', columns)\n";
+    let mut python = Command::new(python);
+    let done = python.arg("-c").arg(script).arg(folder.path()).arg(&trace);
+    let done = done.output().unwrap();
+    assert!(done.status.success(), "{done:?}");
+    for (name, says) in [
+        ("ns.parquet", Some("no control loop")),
+        ("gaps.csv", Some("evenly")),
+        ("complex.mat", Some("measured_x_m is of complex numbers")),
+        ("late.csv", None),
+    ] {
+        let (code, out, said) = commission(&[&folder.path().join(name)]);
+        match says {
+            Some(says) => assert!(
+                code == Some(2) && said.contains(says),
+                "{name}: {said}{out}"
+            ),
+            None => assert!(code == Some(0) && out.contains("mass_kg"), "{name}: {said}"),
+        }
+    }
+    let scaled = [Path::new("--column"), Path::new("t_s=t_s*1e-9")];
+    let ns = folder.path().join("ns.parquet");
+    let (code, out, said) = commission(&[&ns, scaled[0], scaled[1]]);
+    assert!(code == Some(0) && out.contains("1.2"), "{said}{out}");
 }

@@ -186,5 +186,12 @@ fn what_is_missing_or_wrong_is_named_and_nothing_is_written() {
         assert_eq!(refused.status.code(), Some(2), "{error}");
         assert!(error.contains(said), "{said} is not in\n{error}");
     }
+    let refused = init(&folder.path().join("none/machine.toml"), SMALL);
+    let error = String::from_utf8_lossy(&refused.stderr);
+    assert!(
+        error.contains("give a file in a folder that is there"),
+        "{error}"
+    );
+    assert!(!error.contains("--out"), "{error}");
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
 }

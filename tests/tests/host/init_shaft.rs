@@ -303,6 +303,11 @@ fn a_file_that_is_no_shaft_is_refused_by_line_and_column() {
         (String::new(), on_it, "no column"),
         (many, on_it, "more than 200 sections"),
         (
+            "length_m,outer_diameter_m\n200,0.05\n300,0.05\n".to_owned(),
+            on_it,
+            "length_m adds up to 500 m",
+        ),
+        (
             good.clone(),
             "--bearings-m 0.1,0.9",
             "two places on the shaft of 0.8 m",

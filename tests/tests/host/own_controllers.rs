@@ -222,6 +222,21 @@ fn the_pid_by_matrices_and_by_sections_moves_the_rotor_alike() {
     }
 }
 
+/// Eigenvalues of numbers whose products are not finite would be sought without end.
+#[test]
+fn numbers_of_a_state_space_have_a_limit() {
+    let text = fs::read_to_string(scene_path("controllers/state_space")).unwrap();
+    let with = |x: &str| Scene::parse("own.toml", &text.replace("-5000.0", x));
+    assert!(with("-1e29").is_ok());
+    for beyond in ["1e31", "-1e300", "nan"] {
+        let error = format!(
+            "{:?}",
+            miette::Report::new(with(beyond).expect_err("taken"))
+        );
+        assert!(error.contains("state_space.a"), "{error}");
+    }
+}
+
 /// As NumPy saves sections, with a row each.
 fn save_sections(path: &Path, numbers: &[f64]) {
     let mut archive = zip::ZipWriter::new(fs::File::create(path).unwrap());

@@ -25,7 +25,17 @@ impl Log {
     /// [`LogError`]: which column is missing, or which row is no number.
     pub fn read(path: &Path, renamed: &[Renamed]) -> Result<Self, LogError> {
         let log = LogFile::of_ticks(path, renamed)?;
+        let known = [[TIME, SPIN], POSITION, COMMAND, STIMULUS];
+        log.expect(
+            &known
+                .concat()
+                .iter()
+                .map(|name| (*name).to_owned())
+                .collect::<Vec<_>>(),
+        )?;
         let spin_rad_s = log.beside_if_there(POSITION[0], SPIN)?;
+        // One without numbers is none.
+        let spin_rad_s = spin_rad_s.filter(|spin| spin.iter().all(|s| s.is_finite()));
         Ok(Self {
             position_m: whole(&log, POSITION)?,
             command_n: whole(&log, COMMAND)?,
@@ -35,12 +45,16 @@ impl Log {
         })
     }
 
-    /// Positions alone, of a walk round the retainer bearing.
+    /// Positions alone, of a walk round the retainer bearing; of what is renamed them alone.
     ///
     /// # Errors
     /// As [`Self::read`].
     pub fn positions(path: &Path, renamed: &[Renamed]) -> Result<Vec<[f64; 2]>, LogError> {
-        whole(&LogFile::of_ticks(path, renamed)?, POSITION)
+        let renamed: Vec<Renamed> = (renamed.iter())
+            .filter(|to| POSITION.contains(&to.name()))
+            .cloned()
+            .collect();
+        whole(&LogFile::of_ticks(path, &renamed)?, POSITION)
     }
 }
 

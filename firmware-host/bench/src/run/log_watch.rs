@@ -40,6 +40,8 @@ pub struct LogTold {
     pub has_force: bool,
     /// Whether the log has the spin, or it is the scene's.
     pub has_spin: bool,
+    /// What of its columns counts as if it was not there, in sentences.
+    pub left_out: Vec<String>,
     pub events: Vec<InLog>,
 }
 
@@ -61,13 +63,16 @@ impl LogTold {
                 "; it has no force, which counts as load, and no spin: the scene's is taken."
             }
         };
+        for sentence in &self.left_out {
+            out += &format!(" {sentence}");
+        }
         let radii: Vec<String> = (self.largest_radius.iter())
-            .map(|radius| radius.map_or("not known".to_owned(), |radius| format!("{radius:.2}")))
+            .map(|radius| match radius {
+                Some(radius) => format!("{radius:.2} of the clearance"),
+                None => "not known, for no position is a number".to_owned(),
+            })
             .collect();
-        out += &format!(
-            " Largest radius read: {} of the clearance.",
-            radii.join(" and ")
-        );
+        out += &format!(" Largest radius read: {}.", radii.join(" and "));
         if self
             .largest_radius
             .iter()
@@ -104,6 +109,8 @@ pub struct Watched {
 /// Rows of a plane.
 struct Rows {
     position_m: Vec<[f64; 2]>,
+    /// Readings that were left out: no length of a machine.
+    no_length: usize,
     command_n: Option<Vec<[f64; 2]>>,
     delivered_n: Option<Vec<[f64; 2]>>,
 }
@@ -119,8 +126,13 @@ impl Rows {
             let there = named(names).iter().any(|name| log.has(name));
             there.then(|| pair(names)).transpose()
         };
+        let mut position_m = pair(POSITION)?;
+        let readings = position_m.iter_mut().flatten();
+        let mut far: Vec<&mut f64> = readings.filter(|x| x.abs() > LONGEST_M).collect();
+        far.iter_mut().for_each(|x| **x = f64::NAN);
         Ok(Self {
-            position_m: pair(POSITION)?,
+            no_length: far.len(),
+            position_m,
             command_n: if_there(COMMAND)?,
             delivered_n: if_there(DELIVERED)?,
         })
@@ -176,8 +188,8 @@ impl Watcher {
     }
 }
 
-/// Rates that the supervisor takes \[Hz\].
-const LOOP_RATES_HZ: (f64, f64) = (100.0, 1e6);
+/// Readings beyond are no lengths of a machine \[m\], in whatever unit of them.
+const LONGEST_M: f64 = 1e6;
 /// Nothing that touches a retainer bearing goes so far \[clearances\].
 const BEYOND: f64 = 3.0;
 
@@ -192,12 +204,6 @@ pub fn watch(spec: &mut Spec, path: &Path, renamed: &[Renamed]) -> Result<Watche
     let log = LogFile::of_ticks(path, renamed)?;
     let (period_s, ticks) = log.ticks(TIME)?;
     let rate_hz = 1.0 / period_s;
-    if !(LOOP_RATES_HZ.0..=LOOP_RATES_HZ.1).contains(&rate_hz) {
-        let message =
-            format!("rows are {period_s:e} s apart by {TIME}: no control loop is so slow or fast");
-        let help = "turn its unit into s: --column t_s=t_s*1e-3, where it is ms";
-        return Err(LogError::new(message, help).into());
-    }
     let told_hz = spec
         .get("run.sample_rate_hz")?
         .and_then(toml::Value::as_float);
@@ -226,6 +232,17 @@ fn watched(
 ) -> Result<Watched, LogError> {
     let (planes, rows) = rows(scene, log)?;
     let spin = log.beside_if_there(TIME, SPIN)?;
+    let mut left_out = Vec::new();
+    if spin.is_some_and(|spin| !spin.iter().any(|s| s.is_finite())) {
+        left_out.push(format!("{SPIN} has no number in any row."));
+    }
+    let spin = spin.filter(|_| left_out.is_empty());
+    let no_length: usize = rows.iter().map(|rows| rows.no_length).sum();
+    if no_length > 0 {
+        left_out.push(format!(
+            "Readings of the position beyond {LONGEST_M:e} m, no length of a machine, count as unknown: {no_length}."
+        ));
+    }
     let mut watcher = watcher(scene, &planes)?;
     let times = log.column(TIME)?;
     let mut records = Vec::new();
@@ -289,6 +306,7 @@ fn watched(
             largest_radius: largest.collect(),
             has_force: (rows.iter()).all(|r| r.command_n.is_some() || r.delivered_n.is_some()),
             has_spin: spin.is_some(),
+            left_out,
             planes,
             events,
         },
@@ -317,6 +335,12 @@ fn rows(scene: &Scene, log: &LogFile) -> Result<(Vec<usize>, Vec<Rows>), LogErro
             .map(|(i, p)| (i, format!("{}.", p.name)))
             .collect(),
     };
+    let pairs = [POSITION, COMMAND, DELIVERED].concat();
+    let of_planes = known
+        .iter()
+        .flat_map(|(_, prefix)| pairs.iter().map(move |name| format!("{prefix}{name}")));
+    let common = [TIME, SPIN].map(str::to_owned);
+    log.expect(&common.into_iter().chain(of_planes).collect::<Vec<_>>())?;
     let there = known.iter().filter(|(_, prefix)| {
         POSITION
             .iter()

@@ -7,6 +7,8 @@ use crate::scene::tables::SceneTables;
 use nalgebra::DMatrix;
 
 const MOST_STATES: usize = 500;
+/// Products of such numbers are finite still; eigenvalues of a matrix in which they are not are sought without end.
+const LARGEST: f64 = 1e30;
 
 /// The controller of `[state_space]` for stations with a cap each, where they have a magnet.
 pub(crate) fn state_space(
@@ -101,11 +103,13 @@ pub(crate) fn state_space(
             let message = format!("{name} is {found} × {wide}, expected {rows} × {columns}");
             return Err(wrong(key, message));
         }
-        if matrix.iter().any(|x| !x.is_finite()) {
-            return Err(wrong(
-                key,
-                format!("{name} has a number that is not finite"),
-            ));
+        if let Some(x) = matrix.iter().find(|x| !x.is_finite() || x.abs() > LARGEST) {
+            let key = match &written.file {
+                Some(_) => "state_space.file".to_owned(),
+                None => format!("{key}.{}", name.to_lowercase()),
+            };
+            let message = format!("{name} has {x:e}, expected numbers from -1e30 to 1e30");
+            return Err(wrong(&key, message));
         }
     }
     Ok(Some(StateSpaceParams { a, b, c, d, caps_n }))

@@ -297,3 +297,47 @@ fn what_a_log_lacks_is_named() {
         "{said}"
     );
 }
+
+/// A reading that is no length, a plane without one, a spin without one, and a mapping that nobody uses.
+#[test]
+fn what_is_no_number_of_a_machine_is_said() {
+    let folder = TempDir::new().unwrap();
+    let log = folder.path().join("log.csv");
+    let scene = scene_path("overload_then_release");
+    let of = |x: &dyn Fn(i32) -> &'static str, more: &[&str]| {
+        let rows: String = (0..200)
+            .map(|i| format!("{:.6},{},{},\n", 1e3 + 5e-5 * f64::from(i), x(i), x(i)))
+            .collect();
+        let head = "t_s,measured_x_m,measured_y_m,spin_rad_s\n";
+        fs::write(&log, format!("{head}{rows}")).unwrap();
+        let output = review(&log, &scene, more);
+        let said = [&output.stdout[..], &output.stderr].concat();
+        let said = String::from_utf8(said).unwrap();
+        let words: Vec<&str> = said.split_whitespace().collect();
+        (output.status.code(), words.join(" "))
+    };
+    let far = |i| if i == 7 { "1e300" } else { "1e-5" };
+    let (code, said) = of(&far, &[]);
+    assert_eq!(code, Some(0), "{said}");
+    for part in [
+        "count as unknown: 2.",
+        "0.0",
+        "spin_rad_s has no number",
+        "the scene's is taken",
+    ] {
+        assert!(said.contains(part), "{part}: {said}");
+    }
+    assert!(!said.contains("00000000"), "{said}");
+    let (code, said) = of(&|_| "nan", &[]);
+    assert!(
+        code == Some(0) && said.contains("no position is a number"),
+        "{said}"
+    );
+    for mapping in ["foo=t_s", "stimulus_x_n=t_s", "t_s=nope"] {
+        let (code, said) = of(&|_| "0", &["--column", mapping]);
+        assert!(
+            code == Some(2) && said.contains("--column"),
+            "{mapping}: {said}"
+        );
+    }
+}
