@@ -508,6 +508,37 @@ def page(results, claims):
     return re.sub(r"\{\{(.*?)\}\}", value, content("page.md"))
 
 
+def beside_others(results):
+    """The paragraph of the comparison with other tools."""
+
+    def ratio(problem, solver):
+        found, base = (results.to(problem, s, TARGET) for s in (solver, SERIES))
+        reached = found and found["how"] != ">"
+        return found["seconds"] / base["seconds"] if reached else None
+
+    heyoka = [short(ratio(problem, "heyoka")) for problem in ("B1", "B2")]
+    others = [ratio(p, s) for p in ("B1", "B2") for s in peers(results) if s != "heyoka"]
+    others = [r for r in others if r]
+    *_, lanes, _, best = zip(*many_rows(results))
+    of_batch = [a["seconds"] / b["seconds"] for a, b in zip(lanes, best)]
+    page = f"theory/{PAGE}.md"
+    return (
+        f"To an error of {power(TARGET)} clearances on the two problems with a rigid wall, [heyoka](https://github.com/bluescarni/heyoka), "
+        f"which also computes Taylor series, needs {heyoka[0]} and [{heyoka[1]} times]({page}#where-the-project-is-slower) the project's time; "
+        f"the other solvers that get there need {short(min(others))} to {short(max(others))} times it ([table]({page})). "
+        f"Many runs at once, by lanes, take [{short(min(of_batch))} to {short(max(of_batch))}]({page}#many-runs-at-once) of the time of heyoka's batches."
+    )
+
+
+def put(path, words):
+    """Between the marks of a page."""
+    begin, end = "<!-- written by tests/peers/run -->", "<!-- end -->"
+    before, rest = content(path).split(begin)
+    _, after = rest.split(end)
+    with open(path, "w") as out:
+        out.write(f"{before}{begin}\n{words}\n{end}{after}")
+
+
 def main():
     results = Results(list(read(sys.argv[1:])))
     claims = verdicts(results)
@@ -527,6 +558,7 @@ def main():
             out.write(plot(results, problem))
     with open(f"{BOOK}{PAGE}.md", "w") as out:
         out.write(page(results, claims))
+    put("../../docs/src/comparison.md", beside_others(results))
     for claim, measured, met in claims:
         print(f"{'met    ' if met else 'NOT MET'}  {claim}: {measured}")
 
