@@ -22,7 +22,8 @@ pub(super) fn contact<const ROLLS: bool>(accuracy: &Accuracy, rows: &mut Rows, g
     let c = group.constants;
     let h = group.reference;
     let slides = c.friction * group.sign;
-    let rate = c.contact_damping * h.recip();
+    let per_h = h.recip();
+    let rate = c.contact_damping * per_h;
     let (u0, w0) = (group.position, group.velocity);
     let start = u0.dot(u0).sqrt();
     let per = start.recip();
@@ -45,6 +46,10 @@ pub(super) fn contact<const ROLLS: bool>(accuracy: &Accuracy, rows: &mut Rows, g
             below = below + normal * rows.distance[j];
             fx = fx + normal * rows.ux[j];
             fy = fy + normal * rows.uy[j];
+            if ROLLS {
+                fx = fx + rows.friction[i] * rows.uy[j];
+                fy = fy - rows.friction[i] * rows.ux[j];
+            }
         }
         let normal = (rows.force[k] - below) * per;
         rows.normal[k] = normal;
@@ -60,20 +65,15 @@ pub(super) fn contact<const ROLLS: bool>(accuracy: &Accuracy, rows: &mut Rows, g
         }
         if ROLLS {
             // What friction has to be follows from the sliding speed that is then zero: u × w + Ω·R·ρ.
-            let (mut tx, mut ty) = (Lanes::all(0.0), Lanes::all(0.0));
-            for i in 0..k {
-                let (friction, j) = (rows.friction[i], k - i);
-                tx = tx - friction * rows.uy[j];
-                ty = ty + friction * rows.ux[j];
+            let mut whirl = Lanes::all(0.0);
+            // Of u × w, w the derivative of u: places that are exchanged take their turn together.
+            for i in 1..=n / 2 {
+                let j = n + 1 - i;
+                whirl =
+                    whirl + (rows.ux[i] * rows.uy[j] - rows.uy[i] * rows.ux[j]) * (j - i) as f64;
             }
-            ax = ax + tx;
-            ay = ay + ty;
-            let mut whirl = c.surface * rows.distance[n];
-            for i in 1..=n {
-                let j = n - i;
-                whirl = whirl + (rows.ux[i] * rows.wy[j] - rows.uy[i] * rows.wx[j]);
-            }
-            let friction = -((whirl * next.recip() + (u0.x * ay - u0.y * ax)) * per_square);
+            let rate = (whirl * per_h + c.surface * rows.distance[n]) * (per_h * n as f64);
+            let friction = -((rate + (u0.x * ay - u0.y * ax)) * per_square);
             rows.friction[k] = friction;
             ax = ax - friction * u0.y;
             ay = ay + friction * u0.x;

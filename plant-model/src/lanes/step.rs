@@ -120,7 +120,7 @@ pub(super) fn finish(
 /// Coefficient n of ρ, from ρ² = u·u, each product of two but once.
 #[inline(always)]
 pub(super) fn extend_distance(rows: &mut Rows, n: usize, per: Lanes) {
-    let mut sum = rows.ux[0] * rows.ux[n] + rows.uy[0] * rows.uy[n];
+    let mut sum = Lanes::all(0.0);
     for i in 1..n.div_ceil(2) {
         let j = n - i;
         sum = sum
@@ -131,7 +131,8 @@ pub(super) fn extend_distance(rows: &mut Rows, n: usize, per: Lanes) {
         let (x, y, r) = (rows.ux[n / 2], rows.uy[n / 2], rows.distance[n / 2]);
         sum = sum + (x * x + y * y - r * r) * 0.5;
     }
-    rows.distance[n] = sum * per;
+    // What has just become known comes last: nothing before it has to wait.
+    rows.distance[n] = (sum + (rows.ux[0] * rows.ux[n] + rows.uy[0] * rows.uy[n])) * per;
 }
 
 impl Fall {
