@@ -144,16 +144,7 @@ impl Commissioned {
     }
 
     fn of_noise(&mut self, log: &Log) {
-        // Second differences of what moves smoothly are noise alone, with six times its square.
-        let square = |axis: usize| {
-            let x = &log.position_m;
-            let sum: f64 = x
-                .windows(3)
-                .map(|w| (w[0][axis] - 2.0 * w[1][axis] + w[2][axis]).powi(2))
-                .sum();
-            sum / (6.0 * (x.len() - 2) as f64)
-        };
-        let rms = (0.5 * (square(0) + square(1))).sqrt();
+        let rms = noise_m(&log.position_m);
         self.parameters.push(Found {
             name: "sensor_noise_m",
             unit: "m",
@@ -219,6 +210,14 @@ impl Commissioned {
             ),
         });
     }
+}
+
+/// Second differences of what moves smoothly are noise alone, with six times its square.
+fn noise_m(positions_m: &[[f64; 2]]) -> f64 {
+    let seconds = (positions_m.windows(3))
+        .flat_map(|w| [0, 1].map(|axis| w[0][axis] - 2.0 * w[1][axis] + w[2][axis]));
+    let rows = positions_m.len().saturating_sub(2).max(1) as f64;
+    (seconds.map(|d| d * d).sum::<f64>() / (12.0 * rows)).sqrt()
 }
 
 /// What a command makes that is held from one tick to the next, over one that is there at the tick alone.

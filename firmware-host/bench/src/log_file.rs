@@ -274,21 +274,7 @@ impl LogFile {
     /// [`LogError`] where they do not go on evenly.
     pub fn period_s(&self, time: &str) -> Result<f64, LogError> {
         let (times, step) = self.times(time)?;
-        let rows = (times.len() - 1) as f64;
-        let period_s = (times[times.len() - 1] - times[0]) / rows;
-        // Against the whole course: times are often rounded to fewer places than a period has.
-        let allowed_s = UNEVEN * period_s + step.size.min(COARSE * period_s);
-        let is_even = |w: &[f64]| (w[1] - w[0] - period_s).abs() <= allowed_s;
-        match times.windows(2).position(|w| !is_even(w)) {
-            None => of_a_loop(time, period_s),
-            Some(_) if step.size > COARSE * period_s && !step.decimal => {
-                Err(coarse(time, step, period_s))
-            }
-            Some(row) => Err(LogError::new(
-                format!("{time} does not go on evenly, from row {} on", row + 1),
-                "log every tick, with its time",
-            )),
-        }
+        even_period_s(time, times, step)
     }
 
     /// Time from tick to tick, and each row's number of ticks since the first: rows may be missing, or stand twice.
@@ -298,7 +284,7 @@ impl LogFile {
     pub fn ticks(&self, time: &str) -> Result<(f64, Vec<u32>), LogError> {
         let (times, step) = self.times(time)?;
         // What a period is off by adds up over a long log: from the whole of it where no row is missing.
-        let even_s = self.period_s(time).ok();
+        let even_s = even_period_s(time, times, step).ok();
         let period_s = of_a_loop(time, even_s.unwrap_or_else(|| usual(times)))?;
         let twice = times.windows(2).any(|w| w[0] == w[1]);
         if even_s.is_none() && step.size > COARSE * period_s && (twice || !step.decimal) {
@@ -348,6 +334,25 @@ fn names(columns: &Columns) -> String {
             "it has {}; where one of them is meant, name it",
             names.join(", ")
         ),
+    }
+}
+
+/// Time from row to row, where they go on evenly.
+fn even_period_s(time: &str, times: &[f64], step: Step) -> Result<f64, LogError> {
+    let rows = (times.len() - 1) as f64;
+    let period_s = (times[times.len() - 1] - times[0]) / rows;
+    // Against the whole course: times are often rounded to fewer places than a period has.
+    let allowed_s = UNEVEN * period_s + step.size.min(COARSE * period_s);
+    let is_even = |w: &[f64]| (w[1] - w[0] - period_s).abs() <= allowed_s;
+    match times.windows(2).position(|w| !is_even(w)) {
+        None => of_a_loop(time, period_s),
+        Some(_) if step.size > COARSE * period_s && !step.decimal => {
+            Err(coarse(time, step, period_s))
+        }
+        Some(row) => Err(LogError::new(
+            format!("{time} does not go on evenly, from row {} on", row + 1),
+            "log every tick, with its time",
+        )),
     }
 }
 

@@ -209,26 +209,17 @@ fn spread(args: &MapArgs) -> Result<Option<Spread>, CommandError> {
 }
 
 fn refused(error: MapError) -> CommandError {
-    match error {
-        MapError::Scene(error) => error.into(),
-        MapError::Twice(_) => CommandError::Numbers {
-            message: error.to_string(),
-            help: "give it once, along x, along y or as a spread".to_owned(),
-        },
-        MapError::Idle(_) => CommandError::Numbers {
-            message: error.to_string(),
-            help: "vary what shaft, spin, wall, friction and unbalance are".to_owned(),
-        },
-        MapError::Inclination => CommandError::Numbers {
-            message: error.to_string(),
-            help: "keep impact.inclination_deg between".to_owned(),
-        },
-        MapError::NotOfOnePlane(_) => CommandError::Numbers {
-            message: error.to_string(),
-            help: "give a scene without [[plane]], inertias and [[shaft]]".to_owned(),
-        },
-        MapError::Run { .. } => CommandError::other("running the map", error),
-    }
+    let message = error.to_string();
+    let help = match error {
+        MapError::Scene(error) => return error.into(),
+        MapError::Run { .. } => return CommandError::other("running the map", error),
+        MapError::Twice(_) => "give it once, along x, along y or as a spread",
+        MapError::Idle(_) => "vary what shaft, spin, wall, friction and unbalance are",
+        MapError::Inclination => "give a range within these limits",
+        MapError::NotOfOnePlane(_) => "give a scene without [[plane]], inertias and [[shaft]]",
+    };
+    let help = help.to_owned();
+    CommandError::Numbers { message, help }
 }
 
 /// A row a cell.

@@ -1,4 +1,4 @@
-//! Impacts and critical speeds on all threads: each takes a share of them, several at a time.
+//! Impacts and critical speeds on all threads: each takes a share of them, several at a time; and the cells of their maps.
 
 use plant_model::analysis::impact::{
     self, Aim, Criterion, Impact, ImpactError, ImpactOutcome, Search, Tried,
@@ -40,4 +40,30 @@ pub(crate) fn critical_speeds_m_s(
         found
     });
     (found.collect(), tried)
+}
+
+/// Columns and rows of a map.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Grid {
+    pub(crate) columns: usize,
+    pub(crate) rows: usize,
+}
+
+impl Grid {
+    /// The middle of a cell as a share of its axis, which has so many.
+    pub(crate) fn middle(i: usize, of: usize) -> f64 {
+        (i as f64 + 0.5) / of as f64
+    }
+
+    /// Places of the cells along both axes as shares, rows from the bottom, one after the other.
+    pub(crate) fn places(self) -> Vec<(f64, f64)> {
+        let row = |j| (0..self.columns).map(move |i| (i, j));
+        let of = |(i, j)| (Self::middle(i, self.columns), Self::middle(j, self.rows));
+        (0..self.rows).flat_map(row).map(of).collect()
+    }
+
+    /// What is in the cells, row by row.
+    pub(crate) fn rows<T: Clone>(self, cells: &[T]) -> Vec<Vec<T>> {
+        cells.chunks(self.columns).map(<[T]>::to_vec).collect()
+    }
 }

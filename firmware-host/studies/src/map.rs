@@ -1,7 +1,7 @@
 //! The critical impact speed of a scene's rotor over two of its keys; percentiles of it where others are known within limits only.
 
 use crate::campaign::{Block, Chapter, Drawing, Figure, Page, Progress};
-use crate::impacts::critical_speeds_m_s;
+use crate::impacts::{Grid, critical_speeds_m_s};
 use firmware_bench::report::plot::chart::{Axis, HeatMap};
 use firmware_bench::scene::diagnostic::SceneError;
 use firmware_bench::scene::spec::Spec;
@@ -214,12 +214,10 @@ impl MapPlan {
 
     /// Middles of the cells, rows from the bottom.
     fn places(&self) -> Vec<(f64, f64)> {
-        let middle = |varied: &Varied, cell, of| varied.at((cell as f64 + 0.5) / of as f64);
         let [columns, rows] = self.cells;
-        (0..rows)
-            .flat_map(|j| (0..columns).map(move |i| (i, j)))
-            .map(|(i, j)| (middle(&self.x, i, columns), middle(&self.y, j, rows)))
-            .collect()
+        let shares = Grid { columns, rows }.places();
+        let at = |(across, up)| (self.x.at(across), self.y.at(up));
+        shares.into_iter().map(at).collect()
     }
 
     /// Values of the keys that are spread; one draw of nothing where none is.

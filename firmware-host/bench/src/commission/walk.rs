@@ -1,6 +1,6 @@
 //! Clearance and centre of the retainer bearing, from a walk round it: the rotor slowly led along the wall.
 
-use crate::commission::{Commissioned, Found, Missing};
+use crate::commission::{Commissioned, Found, Missing, noise_m};
 use crate::log_file::LogError;
 use nalgebra::{Matrix3, Vector3};
 use statrs::distribution::{ContinuousCDF as _, StudentsT};
@@ -96,14 +96,6 @@ struct Rest {
     /// Squares of how its radii there are apart, of so many.
     scatter_m2: f64,
     rows: f64,
-}
-
-/// Second differences of what moves smoothly are noise alone, with six times its square.
-fn noise_m(positions_m: &[[f64; 2]]) -> f64 {
-    let seconds = (positions_m.windows(3))
-        .flat_map(|w| [0, 1].map(|axis| w[0][axis] - 2.0 * w[1][axis] + w[2][axis]));
-    let rows = positions_m.len().saturating_sub(2).max(1) as f64;
-    (seconds.map(|d| d * d).sum::<f64>() / (12.0 * rows)).sqrt()
 }
 
 /// Of the outline.

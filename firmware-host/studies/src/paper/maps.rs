@@ -6,7 +6,7 @@ mod outcomes;
 use super::data::*;
 use super::onset::{aim, fit};
 use super::rotors::OnsetRig;
-use crate::impacts::critical_speeds_m_s;
+use crate::impacts::{Grid, critical_speeds_m_s};
 use firmware_bench::report::plot::text::figures;
 use plant_model::analysis::impact::{Criterion, Search};
 
@@ -91,35 +91,6 @@ fn critical_m_s(cases: &[Case]) -> Result<Vec<f64>> {
 
 fn linear((from, to): (f64, f64), share: f64) -> f64 {
     from + share * (to - from)
-}
-
-/// Columns and rows of a grid.
-#[derive(Clone, Copy)]
-struct Grid {
-    columns: u32,
-    rows: u32,
-}
-
-impl Grid {
-    /// The middle of a cell as a share of its axis, which has so many.
-    fn middle(i: u32, of: u32) -> f64 {
-        (f64::from(i) + 0.5) / f64::from(of)
-    }
-
-    /// Places of the cells along both axes as shares, rows from the bottom, one after the other.
-    fn places(self) -> Vec<(f64, f64)> {
-        let row = |j| (0..self.columns).map(move |i| (i, j));
-        let of = |(i, j)| (Self::middle(i, self.columns), Self::middle(j, self.rows));
-        (0..self.rows).flat_map(row).map(of).collect()
-    }
-
-    /// What is in the cells, row by row.
-    fn rows<T: Clone>(self, cells: &[T]) -> Vec<Vec<T>> {
-        cells
-            .chunks(self.columns as usize)
-            .map(<[T]>::to_vec)
-            .collect()
-    }
 }
 
 /// The chapter.

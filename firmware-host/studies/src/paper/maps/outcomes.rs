@@ -1,8 +1,8 @@
 //! Outcome over impact speed and one more parameter: sharp for the balanced rotor, with unbalance not monotone over the
 //! impact speed.
 
-use super::{Case, FRICTION, Grid, INCLINATION, Varied, linear};
-use crate::impacts::run_impacts;
+use super::{Case, FRICTION, INCLINATION, Varied, linear};
+use crate::impacts::{Grid, run_impacts};
 use crate::paper::data::*;
 use crate::paper::onset::impact;
 use crate::paper::rotors::OnsetRig;
@@ -55,11 +55,7 @@ impl Outcomes {
 
     /// Impact speeds \[m/s\] with which some run whirls, or some does not.
     fn speeds_m_s(&self, whirls: bool) -> impl DoubleEndedIterator<Item = f64> {
-        let any = move |i: &u32| {
-            self.cells
-                .iter()
-                .any(|row| row[*i as usize].is_nan() != whirls)
-        };
+        let any = move |i: &usize| self.cells.iter().any(|row| row[*i].is_nan() != whirls);
         let speed_m_s = |i| linear(self.speeds_m_s, Grid::middle(i, self.grid.columns));
         (0..self.grid.columns).filter(any).map(speed_m_s)
     }
