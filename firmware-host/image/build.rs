@@ -3,12 +3,13 @@
 use std::path::Path;
 
 /// Images that start by themselves, with the map of their machine.
-const RUNNABLE: [&str; 7] = [
+const RUNNABLE: [&str; 8] = [
     "replay",
     "replay-q",
     "count",
     "count-q",
     "count-pair",
+    "count-half",
     "in-the-loop",
     "timer-interrupt",
 ];

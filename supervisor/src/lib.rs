@@ -153,7 +153,9 @@ pub use record::sections::{
     Head, MOST_WORDS, NO_STATE, Part, RECORD_VERSION, Record, SECTION_BYTES, SUPERVISOR_VERSION,
     Section, Stamp, Summary, crc_of,
 };
-pub use rotor::two_planes::{RotorCommand, RotorCore, RotorReader, RotorSupervisor, RotorTicker};
+pub use rotor::two_planes::{
+    HalfTick, RotorCommand, RotorCore, RotorReader, RotorSupervisor, RotorTicker,
+};
 pub use self_test::SelfTest;
 pub use supervisor::Supervisor;
 pub use supervisor::{CoreTicker, Published, Reader, Ticker};

@@ -76,6 +76,8 @@ pub struct Scene {
     pub duration_s: f64,
     /// Control rate \[Hz\].
     pub sample_rate_hz: f64,
+    /// Whether the supervisor of a rotor ticks one of its planes in a sample, and the other in the next.
+    pub planes_in_turn: bool,
     /// Tolerance of a contact step.
     pub rtol: f64,
     /// How contact is integrated.

@@ -2,7 +2,7 @@
 
 use crate::wire::{self, CommandBits, Hash, SampleBits};
 use supervisor::{
-    Command, Config, Core, CoreCommand, CoreSample, Mode, PlanePositions, Prepared, Q,
+    Command, Config, Core, CoreCommand, CoreSample, HalfTick, Mode, PlanePositions, Prepared, Q,
     RotorCommand, RotorSupervisor, Sample, Shaft, Stamp, Supervisor,
 };
 
@@ -19,6 +19,12 @@ pub type Fixed = Core<Q, SHORT_RECORD>;
 
 /// Floats in SI, of a rotor in two bearing planes.
 pub type Pair = RotorSupervisor<RECORD>;
+
+/// The same with a tick in two halves, of which the second is ticked here.
+pub struct SecondHalf {
+    rotor: Pair,
+    first: Option<HalfTick>,
+}
 
 /// What can be ticked, and its ticks counted.
 pub trait Ticked: Sized {
@@ -37,6 +43,8 @@ pub trait Ticked: Sized {
     fn self_test(&mut self) -> bool;
     /// The sample of these bits.
     fn sample(bits: &SampleBits) -> Self::Sample;
+    /// What comes before a tick and is no part of it.
+    fn prepare(&mut self, _sample: &Self::Sample) {}
     /// Mode after a tick.
     fn mode_of(command: &Self::Command) -> Mode;
     /// What the background of a firmware does between ticks: it drains the events, and a frozen record makes way for
@@ -162,6 +170,37 @@ impl Ticked for Pair {
             while self.plane(end).next_event().is_some() {}
         }
         self.collect(|_, _| ());
+    }
+}
+
+impl Ticked for SecondHalf {
+    const RAM_BYTES: usize = Pair::RAM_BYTES + size_of::<HalfTick>();
+    const TICK: fn(&mut Self, &Self::Sample) -> Self::Command =
+        |halves, [_, sample]| match &halves.first {
+            Some(first) => halves.rotor.ticker().tick_second(first, sample),
+            None => RotorCommand::default(),
+        };
+    type Sample = [Sample; 2];
+    type Command = RotorCommand;
+
+    fn new(config: &Config) -> Option<Self> {
+        let rotor = <Pair as Ticked>::new(config)?;
+        Some(Self { rotor, first: None })
+    }
+    fn sample(bits: &SampleBits) -> [Sample; 2] {
+        Pair::sample(bits)
+    }
+    fn prepare(&mut self, [sample, _]: &[Sample; 2]) {
+        self.first = Some(self.rotor.ticker().tick_first(sample));
+    }
+    fn mode_of(command: &RotorCommand) -> Mode {
+        Pair::mode_of(command)
+    }
+    fn self_test(&mut self) -> bool {
+        Ticked::self_test(&mut self.rotor)
+    }
+    fn background(&mut self) {
+        self.rotor.background();
     }
 }
 

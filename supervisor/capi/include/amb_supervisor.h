@@ -84,6 +84,8 @@
 #define amb_rotor_self_test AMB_JOIN(amb_rotor_self_test, AMB_ABI)
 #define amb_rotor_reconfigure AMB_JOIN(amb_rotor_reconfigure, AMB_ABI)
 #define amb_rotor_tick AMB_JOIN(amb_rotor_tick, AMB_ABI)
+#define amb_rotor_tick_first AMB_JOIN(amb_rotor_tick_first, AMB_ABI)
+#define amb_rotor_tick_second AMB_JOIN(amb_rotor_tick_second, AMB_ABI)
 #define amb_rotor_stimulus AMB_JOIN(amb_rotor_stimulus, AMB_ABI)
 #define amb_rotor_report_now AMB_JOIN(amb_rotor_report_now, AMB_ABI)
 #define amb_rotor_next_event AMB_JOIN(amb_rotor_next_event, AMB_ABI)
@@ -184,6 +186,7 @@ typedef int32_t amb_code;
 #define AMB_ERROR_PLACES_NULL (-52) /**< places is null */
 #define AMB_ERROR_PLACES_MISALIGNED (-53) /**< places are not aligned to AMB_SUPERVISOR_ALIGN bytes */
 #define AMB_ERROR_PLACES_COUNT (-54) /**< an archive has a place at least, and no more than there can be */
+#define AMB_ERROR_ROTOR_HALF (-55) /**< the first plane has not had its half of the tick */
 /** The parameter of this index is outside its range; in a rotor's second plane its index is AMB_PARAMETERS more. */
 #define AMB_ERROR_PARAMETER(index) (-1000 - (amb_code)(index))
 /**
@@ -830,6 +833,27 @@ amb_code amb_rotor_reconfigure(amb_rotor *rotor, const amb_shaft *shaft, const f
  * @return AMB_OK, or an error of rotor, sample or command.
  */
 amb_code amb_rotor_tick(amb_rotor *rotor, const amb_sample *samples, amb_rotor_command *command);
+
+/**
+ * The first half of a tick, of plane 0, for firmware that has no time for both planes in one period of its loop: this one in
+ * one period, amb_rotor_tick_second() in the next. Each plane's AMB_P_SAMPLE_PERIOD_S is then two periods. Called twice, the
+ * tick begins anew.
+ * @param rotor made by amb_rotor_init().
+ * @param sample of plane 0.
+ * @param[out] command what to do in plane 0, but for events of its record, which come with the second half. After an error as
+ * that of amb_tick().
+ * @return AMB_OK, or an error of rotor, sample or command.
+ */
+amb_code amb_rotor_tick_first(amb_rotor *rotor, const amb_sample *sample, amb_command *command);
+
+/**
+ * The second half, of plane 1. Both halves together do what amb_rotor_tick() does with the same samples.
+ * @param rotor made by amb_rotor_init(), with a first half.
+ * @param sample of plane 1, taken now, with the sequence number of the first half's.
+ * @param[out] command what the whole tick came to. After an error as that of amb_rotor_tick().
+ * @return AMB_OK, AMB_ERROR_ROTOR_HALF, or an error of rotor, sample or command.
+ */
+amb_code amb_rotor_tick_second(amb_rotor *rotor, const amb_sample *sample, amb_rotor_command *command);
 
 /**
  * As amb_stimulus(), of one plane after the other; the rotor acts once both have passed.

@@ -102,6 +102,7 @@ codes! {
     ERROR_PLACES_NULL = -52, "places is null";
     ERROR_PLACES_MISALIGNED = -53, "places are not aligned to AMB_SUPERVISOR_ALIGN bytes";
     ERROR_PLACES_COUNT = -54, "an archive has a place at least, and no more than there can be";
+    ERROR_ROTOR_HALF = -55, "the first plane has not had its half of the tick";
 }
 
 /// Code of the first parameter; the others follow downwards, and after them those of a rotor's second plane.

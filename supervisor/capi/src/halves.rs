@@ -9,8 +9,8 @@ use core::cell::UnsafeCell;
 use core::mem::MaybeUninit;
 use core::sync::atomic::{AtomicUsize, Ordering};
 use supervisor::{
-    Config, ConfigError, Published, Reader, RotorCore, RotorReader, RotorTicker, Shaft, ShaftError,
-    Supervisor, Ticker,
+    Config, ConfigError, HalfTick, Published, Reader, RotorCore, RotorReader, RotorTicker, Shaft,
+    ShaftError, Supervisor, Ticker,
 };
 
 /// Entries of the flight record.
@@ -75,8 +75,15 @@ impl Split for Supervisor<RECORD> {
     }
 }
 
+/// The half of a rotor that ticks, and what a first half of a tick has left for the second.
+#[derive(Debug)]
+pub struct RotorTicks {
+    pub(crate) ticker: RotorTicker<'static, RECORD>,
+    pub(crate) first: Option<HalfTick>,
+}
+
 impl Split for Rotor {
-    type Ticker = RotorTicker<'static, RECORD>;
+    type Ticker = RotorTicks;
     type Reader = RotorReader<'static, RECORD>;
     type Published = [Seen; 2];
     const BYTES: usize = defined("AMB_ROTOR_BYTES");
@@ -87,7 +94,11 @@ impl Split for Rotor {
         let [first, second] = &mut self.planes;
         let (ticker, reader) = self.machine.join([first, second]);
         let published = [0, 1].map(|end| reader.published(end));
-        (ticker, reader, published)
+        let ticks = RotorTicks {
+            ticker,
+            first: None,
+        };
+        (ticks, reader, published)
     }
 }
 
@@ -105,7 +116,7 @@ impl Content for Reader<'static, f32, RECORD> {
     const IN_USE: Code = Code::ERROR_BUSY;
 }
 
-impl Content for RotorTicker<'static, RECORD> {
+impl Content for RotorTicks {
     const READY: u32 = 0xA3B1_2070;
     const BUSY: u32 = 0xA3B1_20B5;
     const NOT_MADE: Code = Code::ERROR_ROTOR_NOT_INITIALISED;

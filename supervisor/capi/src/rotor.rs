@@ -6,6 +6,12 @@ use crate::halves::{self, RotorStorage};
 use crate::pointer::{Argument, Place};
 use crate::structs::{CCommand, CEvent, CReport, CRotorCommand, CSample, CSection, CShaft, CStamp};
 
+const NO_FORCES: CRotorCommand = CRotorCommand {
+    planes: [CCommand::NO_FORCE; 2],
+    other_engaged: [0; 2],
+    coast_down: 0,
+};
+
 /// Makes a supervisor of a rotor in storage of the caller's. After an error the storage is as it was.
 ///
 /// # Safety
@@ -47,7 +53,7 @@ pub unsafe extern "C" fn amb_rotor_init(
 pub unsafe extern "C" fn amb_rotor_self_test(rotor: *mut RotorStorage) -> Code {
     // SAFETY: the caller's promise.
     let lease = unsafe { halves::ticker(rotor) };
-    Code::of_test(lease.map(|mut lease| lease.content().self_test()))
+    Code::of_test(lease.map(|mut lease| lease.content().ticker.self_test()))
 }
 
 /// Another shaft and other configurations, from the next tick on. After an error nothing has changed.
@@ -69,7 +75,7 @@ pub unsafe extern "C" fn amb_rotor_reconfigure(
         let shaft = unsafe { Argument::Shaft.read(shaft) }?;
         // SAFETY: the caller's promise.
         let configs = unsafe { configurations(values, count) }?;
-        let done = lease.content().reconfigure(&shaft.into(), &configs);
+        let done = (lease.content().ticker).reconfigure(&shaft.into(), &configs);
         done.map_err(|error| halves::code_of_shaft(&error))
     });
     Code::from_result(done)
@@ -98,14 +104,80 @@ pub unsafe extern "C" fn amb_rotor_tick(
     let done = samples.and_then(|samples| {
         // SAFETY: the caller's promise.
         let mut lease = unsafe { halves::ticker(rotor) }?;
-        place.put(lease.content().tick(&samples.map(Into::into)).into());
+        place.put(
+            (lease.content().ticker)
+                .tick(&samples.map(Into::into))
+                .into(),
+        );
         Ok(())
     });
     if done.is_err() {
-        place.put(CRotorCommand {
-            planes: [CCommand::NO_FORCE; 2],
-            ..CRotorCommand::default()
-        });
+        place.put(NO_FORCES);
+    }
+    Code::from_result(done)
+}
+
+/// The first plane's half of a tick. An error gives a command of no force.
+///
+/// # Safety
+/// `rotor` as for [`amb_rotor_tick`]; `sample` and `command` are null, misaligned, or point to their structs.
+// SAFETY: a name of its own, see `amb_rotor_init`.
+#[unsafe(export_name = concat!("amb_rotor_tick_first", ending!()))]
+pub unsafe extern "C" fn amb_rotor_tick_first(
+    rotor: *mut RotorStorage,
+    sample: *const CSample,
+    command: *mut CCommand,
+) -> Code {
+    // SAFETY: the caller's promise.
+    let place = match unsafe { Place::new(Argument::Command, command) } {
+        Ok(place) => place,
+        Err(code) => return code,
+    };
+    // SAFETY: the caller's promise. Read before the command is written, see `amb_rotor_tick`.
+    let sample = unsafe { Argument::Sample.read(sample) };
+    let done = sample.and_then(|sample| {
+        // SAFETY: the caller's promise.
+        let mut lease = unsafe { halves::ticker(rotor) }?;
+        let ticks = lease.content();
+        let half = ticks.ticker.tick_first(&sample.into());
+        ticks.first = Some(half);
+        place.put(half.command.into());
+        Ok(())
+    });
+    if done.is_err() {
+        place.put(CCommand::NO_FORCE);
+    }
+    Code::from_result(done)
+}
+
+/// The second plane's half. An error gives commands of no force.
+///
+/// # Safety
+/// `rotor` as for [`amb_rotor_tick`]; `sample` and `command` are null, misaligned, or point to their structs.
+// SAFETY: a name of its own, see `amb_rotor_init`.
+#[unsafe(export_name = concat!("amb_rotor_tick_second", ending!()))]
+pub unsafe extern "C" fn amb_rotor_tick_second(
+    rotor: *mut RotorStorage,
+    sample: *const CSample,
+    command: *mut CRotorCommand,
+) -> Code {
+    // SAFETY: the caller's promise.
+    let place = match unsafe { Place::new(Argument::Command, command) } {
+        Ok(place) => place,
+        Err(code) => return code,
+    };
+    // SAFETY: the caller's promise. Read before the command is written, see `amb_rotor_tick`.
+    let sample = unsafe { Argument::Sample.read(sample) };
+    let done = sample.and_then(|sample| {
+        // SAFETY: the caller's promise.
+        let mut lease = unsafe { halves::ticker(rotor) }?;
+        let ticks = lease.content();
+        let first = ticks.first.take().ok_or(Code::ERROR_ROTOR_HALF)?;
+        place.put((ticks.ticker).tick_second(&first, &sample.into()).into());
+        Ok(())
+    });
+    if done.is_err() {
+        place.put(NO_FORCES);
     }
     Code::from_result(done)
 }
@@ -125,7 +197,7 @@ pub unsafe extern "C" fn amb_rotor_stimulus(
     let done = place.and_then(|place| {
         // SAFETY: the caller's promise.
         let mut lease = unsafe { halves::ticker(rotor) }?;
-        place.put(lease.content().stimulus_n());
+        place.put(lease.content().ticker.stimulus_n());
         Ok(())
     });
     Code::from_result(done)

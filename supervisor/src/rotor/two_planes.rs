@@ -3,13 +3,14 @@
 use crate::border::coeffs::Coeffs;
 use crate::border::config::Config;
 use crate::border::shaft::{Shaft, ShaftError};
-use crate::border::signal::{Command, CoreCommand, CoreSample, Events, Sample};
+use crate::border::signal::{Command, CoreCommand, CoreSample, Events, Sample, Status};
 use crate::check::{Check, Seen};
+use crate::estimate::neighbour::PlaneState;
 use crate::number::words::{Cells, Words};
 use crate::per_unit::{Plane, Prepared};
 use crate::record::buffer::RecordBuffer;
 use crate::record::publish::QueuedEvent;
-use crate::record::recorder::Shared;
+use crate::record::recorder::{self, Shared};
 use crate::record::sections::Record;
 use crate::rotor::coupling::{Coupling, spin};
 use crate::supervisor::{Published, Reader, Supervisor, in_newtons};
@@ -78,6 +79,29 @@ struct MachineState {
     /// Which plane the check looks at, and how often it had come to an end there before.
     second_checked: bool,
     attempts: u8,
+}
+
+/// A tick of which the first plane has had its half: what the second plane's needs of it, see [`RotorTicker::tick_first`].
+///
+/// A half whose other one never comes leaves the records of both planes a tick apart.
+#[derive(Debug, Clone, Copy)]
+#[must_use = "the second plane waits for its half"]
+pub struct HalfTick {
+    /// What the first plane commands, but for events of its record: those come with the second half.
+    pub command: Command,
+    per_unit: CoreSample<f32>,
+    /// As the sample had it: the check looks at ticks that it does not let through.
+    status: Status,
+    half: HalfPerUnit,
+}
+
+/// The same per unit.
+#[derive(Debug, Clone, Copy)]
+struct HalfPerUnit {
+    command: CoreCommand<f32>,
+    seen: recorder::Seen,
+    /// Both planes before it.
+    ends: [PlaneState<f32>; 2],
 }
 
 /// What a test has to give back.
@@ -166,6 +190,16 @@ impl<const RECORD: usize> RotorSupervisor<RECORD> {
     #[inline(never)]
     pub fn tick(&mut self, samples: &[Sample; 2]) -> RotorCommand {
         self.ticker().ticked(samples)
+    }
+
+    /// As [`RotorTicker::tick_first`].
+    pub fn tick_first(&mut self, sample: &Sample) -> HalfTick {
+        self.ticker().first_half(sample)
+    }
+
+    /// As [`RotorTicker::tick_second`].
+    pub fn tick_second(&mut self, half: &HalfTick, sample: &Sample) -> RotorCommand {
+        self.ticker().second_half(half, sample)
     }
 
     /// The same per unit of each plane, without what the whole machine is told: what a record is replayed with.
@@ -304,10 +338,7 @@ impl<const RECORD: usize> RotorTicker<'_, RECORD> {
     #[inline(never)]
     pub fn tick(&mut self, samples: &[Sample; 2]) -> RotorCommand {
         let command = self.ticked(samples);
-        let planes = self.planes.iter_mut().zip(self.shared);
-        for ((plane, shared), to) in planes.zip(&command.planes) {
-            plane.publish_in_turn(shared, to.mode, to.events);
-        }
+        self.publish_in_turn(&command);
         command
     }
 
@@ -383,28 +414,86 @@ impl<const RECORD: usize> RotorTicker<'_, RECORD> {
         self.machine.engaged = [false; 2];
     }
 
+    /// The first plane's half of a tick, for firmware that has no time for both in one period of its loop: this one in one
+    /// period, [`Self::tick_second`] in the next. Each plane's `sample_period_s` is then two periods.
+    ///
+    /// Command [`HalfTick::command`] at once. Both halves together are to the bit a [`Self::tick`] of the same samples.
+    // One copy, whoever calls it.
+    #[inline(never)]
+    pub fn tick_first(&mut self, sample: &Sample) -> HalfTick {
+        self.first_half(sample)
+    }
+
+    /// The second plane's half, with a sample of now that has the number of the first one's; what the tick came to as a whole.
+    #[inline(never)]
+    pub fn tick_second(&mut self, half: &HalfTick, sample: &Sample) -> RotorCommand {
+        let command = self.second_half(half, sample);
+        self.publish_in_turn(&command);
+        command
+    }
+
     #[inline]
-    fn ticked(&mut self, samples: &[Sample; 2]) -> RotorCommand {
-        let [at_first, at_second] = samples;
-        let [first, second] = &self.planes;
-        let mut per_unit = [
-            first.scaling().sample(at_first),
-            second.scaling().sample(at_second),
-        ];
-        // One plane that contradicts, and neither acts.
+    fn publish_in_turn(&mut self, command: &RotorCommand) {
+        let planes = self.planes.iter_mut().zip(self.shared);
+        for ((plane, shared), to) in planes.zip(&command.planes) {
+            plane.publish_in_turn(shared, to.mode, to.events);
+        }
+    }
+
+    #[inline]
+    fn ticked(&mut self, [at_first, at_second]: &[Sample; 2]) -> RotorCommand {
+        let half = self.first_half(at_first);
+        self.second_half(&half, at_second)
+    }
+
+    /// In the units of a plane, and with what the check lets through: one plane that contradicts, and neither acts.
+    #[inline]
+    fn admitted(&self, end: usize, sample: &Sample) -> CoreSample<f32> {
         let [check, other] = &self.checks;
         let watching = if check.is_open() { other } else { check };
-        for sample in &mut per_unit {
-            sample.status = watching.admitted(sample.status);
-        }
-        let [to_first, to_second] = self.per_unit(&per_unit);
-        if !self.checks.iter().all(|check| check.is_over()) {
-            self.watch(samples);
-        }
         let [first, second] = &self.planes;
+        let plane = if end == 0 { first } else { second };
+        let mut per_unit = plane.scaling().sample(sample);
+        per_unit.status = watching.admitted(per_unit.status);
+        per_unit
+    }
+
+    #[inline]
+    fn first_half(&mut self, sample: &Sample) -> HalfTick {
+        let per_unit = self.admitted(0, sample);
+        let half = self.first_per_unit(&per_unit);
+        let [first, _] = &self.planes;
+        HalfTick {
+            command: in_newtons(first.scaling(), sample, &per_unit, &half.command),
+            per_unit,
+            status: sample.status,
+            half,
+        }
+    }
+
+    #[inline]
+    fn second_half(&mut self, first_half: &HalfTick, sample: &Sample) -> RotorCommand {
+        let per_unit = self.admitted(1, sample);
+        let [to_first, to_second] =
+            self.second_per_unit(&first_half.half, [&first_half.per_unit, &per_unit]);
+        if !self.checks.iter().all(|check| check.is_over()) {
+            let of_first = CoreSample {
+                status: first_half.status,
+                ..first_half.per_unit
+            };
+            let of_second = CoreSample {
+                status: sample.status,
+                ..per_unit
+            };
+            self.watch([&of_first, &of_second]);
+        }
+        let [_, second] = &self.planes;
         let planes = [
-            in_newtons(first.scaling(), at_first, &per_unit[0], &to_first),
-            in_newtons(second.scaling(), at_second, &per_unit[1], &to_second),
+            Command {
+                events: to_first.events,
+                ..first_half.command
+            },
+            in_newtons(second.scaling(), sample, &per_unit, &to_second),
         ];
         let machine = &mut *self.machine;
         for ((engaged, plane), command) in machine.engaged.iter_mut().zip(&self.planes).zip(&planes)
@@ -426,7 +515,7 @@ impl<const RECORD: usize> RotorTicker<'_, RECORD> {
     /// The check looks at a tick of one plane, until it has come to an end there, and then of the other.
     #[cold]
     #[inline(never)]
-    fn watch(&mut self, [at_first, at_second]: &[Sample; 2]) {
+    fn watch(&mut self, [at_first, at_second]: [&CoreSample<f32>; 2]) {
         let [check, other] = &mut self.checks;
         let [first, second] = &self.planes;
         let ends = [first.plane_state(), second.plane_state()];
@@ -437,12 +526,12 @@ impl<const RECORD: usize> RotorTicker<'_, RECORD> {
             ..
         } = &mut *self.machine;
         let [of_first, of_second] = self.shared;
-        let seen = |plane: &Plane<f32>, sample: &Sample, coupling: &Coupling, beside| {
-            let (coeffs, per_unit) = (plane.coeffs(), plane.scaling().sample(sample));
-            let around = coupling.coupling(&ends, beside, spin(&per_unit));
+        let seen = |plane: &Plane<f32>, sample: &CoreSample<f32>, coupling: &Coupling, beside| {
+            let coeffs = plane.coeffs();
+            let around = coupling.coupling(&ends, beside, spin(sample));
             let (levitated, by_force) = plane.levitates();
             let acceleration = by_force + around.gained(coeffs.tick) * coeffs.per_tick;
-            Seen::new(&per_unit, (levitated, acceleration), coeffs)
+            Seen::new(sample, (levitated, acceleration), coeffs)
         };
         let (looked_at, waits) = if *second_checked {
             let seen = seen(second, at_second, to_second, &ends[0]);
@@ -471,24 +560,46 @@ impl<const RECORD: usize> RotorTicker<'_, RECORD> {
     }
 
     #[inline]
-    fn per_unit(&mut self, samples: &[CoreSample<f32>; 2]) -> [CoreCommand<f32>; 2] {
+    fn per_unit(&mut self, [at_first, at_second]: &[CoreSample<f32>; 2]) -> [CoreCommand<f32>; 2] {
+        let half = self.first_per_unit(at_first);
+        self.second_per_unit(&half, [at_first, at_second])
+    }
+
+    #[inline]
+    fn first_per_unit(&mut self, sample: &CoreSample<f32>) -> HalfPerUnit {
         // Both are given back, one after the other.
         let mut pairs = self.planes.iter().zip(self.shared);
         if pairs.all(|(plane, shared)| plane.is_back(shared)) {
             self.rearm();
         }
         let [first, second] = &mut self.planes;
-        let [at_first, at_second] = samples;
-        let [to_first, to_second] = &self.machine.couplings;
+        let [coupling, _] = &self.machine.couplings;
         // As they are before either tick.
         let ends = [first.plane_state(), second.plane_state()];
-        let beside_first = to_first.coupling(&ends, &ends[1], spin(at_first));
-        let beside_second = to_second.coupling(&ends, &ends[0], spin(at_second));
-        let [of_first, of_second] = self.shared;
-        let (to_first, first) = first.tick_beside(of_first, at_first, &beside_first);
-        let (to_second, second) = second.tick_beside(of_second, at_second, &beside_second);
+        let beside = coupling.coupling(&ends, &ends[1], spin(sample));
+        let [shared, _] = self.shared;
+        let (command, seen) = first.tick_beside(shared, sample, &beside);
+        HalfPerUnit {
+            command,
+            seen,
+            ends,
+        }
+    }
+
+    #[inline]
+    fn second_per_unit(
+        &mut self,
+        half: &HalfPerUnit,
+        samples: [&CoreSample<f32>; 2],
+    ) -> [CoreCommand<f32>; 2] {
+        let [_, second] = &mut self.planes;
+        let [_, coupling] = &self.machine.couplings;
+        let [_, sample] = samples;
+        let beside = coupling.coupling(&half.ends, &half.ends[0], spin(sample));
+        let [_, shared] = self.shared;
+        let (command, seen) = second.tick_beside(shared, sample, &beside);
         // One event of one machine: both planes record it, over the same ticks.
-        let (mut commands, seen) = ([to_first, to_second], first.or(second));
+        let (mut commands, seen) = ([half.command, command], half.seen.or(seen));
         let planes = self.planes.iter_mut().zip(self.shared);
         for (((plane, shared), command), sample) in planes.zip(&mut commands).zip(samples) {
             command.events |= plane.advance(shared, seen, sample, command.mode);

@@ -1,8 +1,8 @@
 //! Both ends of one rotor: who is told what, and records that belong together.
 
 use supervisor::{
-    Config, Events, Mode, PlanePositions, RotorCommand, RotorSupervisor, Sample, Shaft, Status,
-    Supervisor,
+    Command, Config, Events, Mode, PlanePositions, RotorCommand, RotorSupervisor, Sample, Shaft,
+    Stamp, Status, Supervisor,
 };
 use test_support::rig::{RADIUS_M, WHIRL_STEP, config, on_circle, sample, shaft};
 
@@ -52,6 +52,72 @@ fn rotor(config: &Config) -> RotorSupervisor<RECORD> {
 fn engaged_at(commands: &[RotorCommand], end: usize) -> Option<usize> {
     let engages = |c: &RotorCommand| c.planes[end].events.contains(Events::ENGAGED);
     commands.iter().position(engages)
+}
+
+/// Ticked in two halves a rotor commands, counts and records what it does in one tick of both planes; and the first plane's command
+/// is there at once.
+#[test]
+fn two_halves_are_a_tick() {
+    let record_of = |rotor: &RotorSupervisor<RECORD>, end: usize| -> Vec<u8> {
+        let record = rotor.record(end).expect("frozen");
+        let stamp = Stamp::default();
+        let sections = (0..).map_while(|i| record.section(i, &stamp));
+        sections.flat_map(|mut s| s.seal().to_vec()).collect()
+    };
+    let [mut whole, mut halves] = [(); 2].map(|()| rotor(&config()));
+    let (mut engaged, mut frozen) = (false, 0);
+    for i in 0..1200 {
+        // One end is led out at two times, the other in between, and both are unlike.
+        let noise = 1e-6 * (i % 3) as f32;
+        let at = |from: [u32; 2]| {
+            let from = from.into_iter().rev().find(|from| i >= *from);
+            from.map_or([0.0; 2], |from| led(i, from))
+        };
+        let ends = [at([20, 600]), at([300, 630])];
+        let mut samples = ends.map(|at| sample(i, at.map(|x| x + noise)));
+        samples[1].position_m[0] += 3e-6;
+        if i == 500 {
+            samples[1].position_m[1] = f32::NAN;
+        }
+        let command = whole.tick(&samples);
+        let half = halves.tick_first(&samples[0]);
+        let later = halves.tick_second(&half, &samples[1]);
+        assert_eq!(bits(&later), bits(&command), "tick {i}");
+        let at_once = Command {
+            events: command.planes[0].events - Events::RECORD_FROZEN,
+            ..command.planes[0]
+        };
+        assert_eq!(half.command, at_once, "tick {i}");
+        engaged |= command.planes[1].mode.is_engaged();
+        if whole.record(1).is_some() {
+            for end in [0, 1] {
+                assert_eq!(record_of(&halves, end), record_of(&whole, end), "tick {i}");
+            }
+            frozen += 1;
+            whole.rearm();
+            halves.rearm();
+        }
+    }
+    assert!(engaged && frozen > 1, "{engaged} {frozen}");
+    for end in [0, 1] {
+        let reports = [&mut whole, &mut halves].map(|rotor| rotor.plane(end).report());
+        assert_eq!(reports[0], reports[1]);
+        assert!(reports[0].landings > 0);
+    }
+}
+
+/// All of a command, so that even −0 is not 0.
+fn bits(command: &RotorCommand) -> String {
+    let of = |c: &Command| {
+        let forces = [c.force_n, c.own_n].map(|f| f.map(f32::to_bits));
+        (forces, c.severity.to_bits(), *c)
+    };
+    format!(
+        "{:?} {:?} {}",
+        command.planes.each_ref().map(of),
+        command.other_engaged,
+        command.coast_down
+    )
 }
 
 /// From the tick on at which one end engages the other's firmware is told, and its supervisor stays out of it.

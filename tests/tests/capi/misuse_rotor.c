@@ -115,6 +115,17 @@ static void ticking(void) {
     no_force("rotor misaligned", command);
     EXPECT(amb_rotor_tick(&zero, samples, command), AMB_ERROR_ROTOR_NOT_INITIALISED, NOT_MADE_TEXT);
     no_force("not initialised", command);
+    EXPECT(amb_rotor_tick_first(NULL, samples, command->planes), AMB_ERROR_ROTOR_NULL, NULL_TEXT);
+    EXPECT(amb_rotor_tick_second(NULL, samples, command), AMB_ERROR_ROTOR_NULL, NULL_TEXT);
+    no_force("half of none", command);
+    EXPECT(amb_rotor_tick_first(&rotor, NULL, command->planes), AMB_ERROR_SAMPLE_NULL, "sample is null");
+    EXPECT(amb_rotor_tick_first(&rotor, samples, NULL), AMB_ERROR_COMMAND_NULL, "command is null");
+    EXPECT(amb_rotor_tick_second(&rotor, NULL, command), AMB_ERROR_SAMPLE_NULL, "sample is null");
+    no_force("second half without a sample", command);
+    EXPECT(amb_rotor_tick_second(&rotor, samples, NULL), AMB_ERROR_COMMAND_NULL, "command is null");
+    EXPECT(amb_rotor_tick_second(&rotor, samples, command), AMB_ERROR_ROTOR_HALF,
+           "the first plane has not had its half of the tick");
+    no_force("second half first", command);
     EXPECT(amb_rotor_tick(&rotor, NULL, command), AMB_ERROR_SAMPLE_NULL, "sample is null");
     no_force("sample null", command);
     EXPECT(amb_rotor_tick(&rotor, OFF(samples), command), AMB_ERROR_SAMPLE_MISALIGNED,
@@ -128,6 +139,21 @@ static void ticking(void) {
     EXPECT(amb_rotor_tick(&rotor, samples, command), AMB_OK, "done");
     check(command->planes[1].force_n[1] == -12.5f && command->planes[1].mode == AMB_MODE_LEVITATED, "transparent");
     check(command->other_engaged[0] == 0 && command->other_engaged[1] == 0 && command->coast_down == 0, "calm");
+    {
+        /* In two halves: the first one twice begins anew, the second one comes once. */
+        amb_command first;
+        samples[0] = samples[1];
+        samples[0].levitation_n[0] = 7.5f;
+        samples[0].sequence = samples[1].sequence = 1;
+        EXPECT(amb_rotor_tick_first(&rotor, samples, &first), AMB_OK, "done");
+        EXPECT(amb_rotor_tick_first(&rotor, samples, &first), AMB_OK, "done");
+        check(first.force_n[0] == 7.5f && first.mode == AMB_MODE_LEVITATED, "first half is transparent");
+        EXPECT(amb_rotor_tick_second(&rotor, samples + 1, command), AMB_OK, "done");
+        check(command->planes[0].force_n[0] == 7.5f && command->planes[1].force_n[1] == -12.5f, "halves are transparent");
+        EXPECT(amb_rotor_tick_second(&rotor, samples + 1, command), AMB_ERROR_ROTOR_HALF,
+               "the first plane has not had its half of the tick");
+        no_force("second half twice", command);
+    }
     {
         /* A supervisor does not pass for a rotor, nor the other way round. */
         static amb_supervisor plane;

@@ -3,6 +3,7 @@
 mod bearings;
 mod changes;
 mod files;
+mod in_turn;
 mod levitated;
 mod modes;
 mod refusals;

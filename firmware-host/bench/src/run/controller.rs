@@ -7,7 +7,9 @@ use crate::run::trace::{ReadOut, Said};
 use crate::scene::Scene;
 use crate::scene::policy_kind::PolicyKind;
 use plant_model::{Snapshot, V2};
-use supervisor::{Command, IntegratorHint, Record, Sample, Scalar, Stamp, Status, Supervisor};
+use supervisor::{
+    Command, Events, IntegratorHint, Mode, Record, Sample, Scalar, Stamp, Status, Supervisor,
+};
 
 /// Who drives the magnet.
 pub trait Controller: core::fmt::Debug {
@@ -25,6 +27,10 @@ pub trait Controller: core::fmt::Debug {
 
     /// The answer.
     fn answered(&mut self, _command: Command) {}
+
+    /// None, for it was the other plane's turn: what [`Self::ask`] had goes through to a levitated rotor, and what was commanded is
+    /// held for any other.
+    fn waits(&mut self) {}
 
     /// Whether it passes on what a levitation controller of the whole rotor asks for.
     fn levitates(&self) -> bool {
@@ -313,8 +319,9 @@ pub fn written<S: Scalar, const N: usize>(record: &Record<'_, S, N>, stamp: &Sta
 struct Supervised {
     /// Its own; none where that of the whole rotor answers.
     supervisor: Option<Box<dyn Supervise>>,
-    /// The command of this sample, where it is there already.
+    /// The command of this sample, where it is there already, and that of the sample before.
     command: Option<Command>,
+    last: Command,
     /// What it passes through.
     levitation: Box<dyn Levitate>,
     /// What that asked for at the last sample \[N\].
@@ -331,6 +338,7 @@ impl Supervised {
         Self {
             supervisor,
             command: None,
+            last: Command::default(),
             levitation,
             levitation_n: [0.0; 2],
             stimulus_n: [0.0; 2],
@@ -367,6 +375,18 @@ impl Controller for Supervised {
         self.command = Some(command);
     }
 
+    fn waits(&mut self) {
+        let held = match self.last.mode {
+            Mode::Levitated => self.levitation_n,
+            _ => self.last.force_n,
+        };
+        self.command = Some(Command {
+            force_n: held,
+            events: Events::empty(),
+            ..self.last
+        });
+    }
+
     fn command(&mut self, seen: &Seen, _truth: &Snapshot) -> Force {
         let answered = self.command.take().or_else(|| {
             let sample = self.ask(seen)?;
@@ -375,6 +395,7 @@ impl Controller for Supervised {
         let Some(command) = answered else {
             return Force::Computed(V2::zeros());
         };
+        self.last = command;
         self.hint = command.integrator;
         self.said = Some(Said {
             stimulus_n: self.stimulus_n,

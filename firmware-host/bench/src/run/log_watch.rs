@@ -210,6 +210,8 @@ pub fn watch(spec: &mut Spec, path: &Path, renamed: &[Renamed]) -> Result<Watche
     if told_hz.is_none_or(|told_hz| (told_hz / rate_hz - 1.0).abs() > SAME_RATE) {
         spec.set("run.sample_rate_hz", rate_hz)?;
     }
+    // A row has readings of both planes.
+    spec.set("run.planes_in_turn", false)?;
     Ok(watched(&spec.resolve()?, &log, (period_s, &ticks))?)
 }
 

@@ -13,8 +13,10 @@ use supervisor::{Config, ConfigError, PARAMETERS};
 pub(crate) fn nominal(plant: &PlantParams, spec: &PlaneSpec) -> Nominal {
     let (file, contact) = (&spec.tables, &spec.contact);
     let magnet = file.magnet.as_ref();
+    let samples_a_tick = if file.run.planes_in_turn { 2 } else { 1 };
+    let delay_samples = magnet.map_or(1, |m| m.delay_samples) + file.sensor.delay_samples;
     Nominal {
-        sample_rate_hz: file.run.sample_rate_hz,
+        sample_rate_hz: file.run.sample_rate_hz / f64::from(samples_a_tick),
         mass_kg: plant.rotor.mass_kg,
         stiffness_n_m: plant.rotor.stiffness_n_m,
         damping_n_s_m: plant.rotor.damping_n_s_m,
@@ -29,7 +31,7 @@ pub(crate) fn nominal(plant: &PlantParams, spec: &PlaneSpec) -> Nominal {
         axis_force_max_n: magnet.and_then(|m| m.axis_force_max_n),
         slew_n_s: magnet.and_then(|m| m.slew_n_s),
         lag_s: plant.magnet.map_or(0.0, |m| m.lag_s),
-        delay_samples: magnet.map_or(1, |m| m.delay_samples) + file.sensor.delay_samples,
+        delay_samples: delay_samples.div_ceil(samples_a_tick),
         noise_rms_m: file.sensor.noise_rms_m,
         quantum_m: file.sensor.quantum_m,
         range_m: file.sensor.range_m,

@@ -140,6 +140,7 @@ impl Spec {
             levitated_before: tables.start.levitated_before,
             duration_s: run.duration_s,
             sample_rate_hz: run.sample_rate_hz,
+            planes_in_turn: run.planes_in_turn,
             rtol: run.rtol,
             method: run.method.into(),
             policies: first.policies.clone(),
@@ -166,6 +167,14 @@ impl Spec {
         if text.warns {
             let doubt = of_the_loop(&scene, tables, text);
             scene.warnings.extend(doubt);
+        }
+        if scene.planes_in_turn && scene.supervised().is_none() {
+            let message = "needs a rotor in two planes with a magnet each".to_owned();
+            return Err(text.error_at_key(
+                "run.planes_in_turn",
+                message,
+                Some("leave it out".to_owned()),
+            ));
         }
         match scene.refused_by_supervisor() {
             Some((plane, error)) => {

@@ -60,6 +60,7 @@ key_tables! {
     RunTable {
         duration_s: f64 [required "give a number of seconds, as 0.2"], "s", Within(1e-9, 1e5), "rounded to whole samples, at least one; at most a billion over all policies, beyond 100 million with `--no-trace`, and 10 million where rows are kept in memory (`--verify`, Python)", "time", "t_end", "length";
         sample_rate_hz: f64 [required "give the control rate in Hz, as 20000"], "Hz", Within(1.0, 1e6), "control rate", "control_rate", "rate", "fs", "sampling", "period", "dt";
+        planes_in_turn: bool [= false], "", ANY, "the supervisor of a rotor in two planes ticks one of them in a control sample and the other in the next, as [firmware without time for both](../supervisor/linking.md#two-bearing-planes) has it", "in_turn", "alternate";
         policies: PolicyNames [required], "", Elsewhere("at least one, each once"), "see [policies](scenes.md#policies)", "controllers", "policy";
         rtol: f64 [= 1e-9], "1", Within(1e-14, 1e-2), "tolerance of a contact step", "tolerance", "tol", "accuracy";
         method: MethodName [= MethodName::Auto], "", ANY, "[how contact is integrated](../theory/integration.md#choosing-a-method)", "solver", "integrator";

@@ -156,6 +156,7 @@ pub fn run<U: Ticked>() -> ! {
                     break;
                 };
                 let sample = U::sample(&wire::sample_of(sample));
+                supervisor.prepare(&sample);
                 let (_, empty) = between(nothing(), &mut supervisor, &sample);
                 let painted = stack::paint();
                 let (command, full) = between(tick(), &mut supervisor, &sample);

@@ -34,6 +34,8 @@ pub enum Class {
     Bent,
     /// As `Rigid`, with a seal between the bearings that is narrower than they are.
     Sealed,
+    /// Those of `Rigid`, whose supervisor ticks one plane in a control sample and the other in the next.
+    InTurn,
 }
 
 impl Class {
@@ -45,6 +47,7 @@ impl Class {
             Self::Flexible => "flexible",
             Self::Bent => "bent shaft",
             Self::Sealed => "with a seal",
+            Self::InTurn => "rigid, planes in turn",
         }
     }
 }
@@ -85,7 +88,10 @@ impl RotorCase {
     /// The rotor of a number.
     pub fn new(seed: u64, class: Class, number: u64) -> Self {
         // The first three kinds have the streams of a seed, others those of another one.
-        let kind = class as u64;
+        let kind = match class {
+            Class::InTurn => Class::Rigid as u64,
+            _ => class as u64,
+        };
         let mut draw = Draw::new(seed ^ ((kind / 3) << 32), 3 * number + kind % 3);
         let quick = class == Class::Gyroscopic;
         let mass_kg = draw.decades(2.0, 100.0);
@@ -232,6 +238,7 @@ title = "A rotor drawn at random"
 [run]
 duration_s = 1.0
 sample_rate_hz = {rate_hz}
+planes_in_turn = {}
 policies = ["levitation", "supervisor"]
 rtol = 1e-7
 seed = {}
@@ -273,6 +280,7 @@ magnet = {{ position_m = {b}, {magnet} }}
 sensor = {{ position_m = {sensor_b}, noise_rms_m = {noise_m} }}
 {seal}
 "#,
+            self.class == Class::InTurn,
             self.number,
             1.0 / rate_hz,
         )

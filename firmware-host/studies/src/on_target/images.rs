@@ -143,15 +143,21 @@ impl Project {
 }
 
 /// Images in floats that are measured.
-const FLOATS: [&str; 5] = [
+const FLOATS: [&str; 6] = [
     "--bin=panic-free",
     "--bin=count",
     "--bin=count-pair",
+    "--bin=count-half",
     "--bin=replay",
     "--bin=in-the-loop",
 ];
 /// Those of them that are not compared with the host.
-const COUNTED: [&str; 3] = ["--bin=panic-free", "--bin=count", "--bin=count-pair"];
+const COUNTED: [&str; 4] = [
+    "--bin=panic-free",
+    "--bin=count",
+    "--bin=count-pair",
+    "--bin=count-half",
+];
 const MANIFEST: &str = "firmware-host/image/Cargo.toml";
 
 /// What the supervisor takes of the flash, with everything that it calls.

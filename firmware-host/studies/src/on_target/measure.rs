@@ -1,7 +1,7 @@
 //! A target measured: replay, instructions, sizes.
 
 use super::budgets::BudgetError;
-use super::counts::{Counts, counts_of};
+use super::counts::{Counts, counts_of, ticks_of};
 use super::coverage::ways;
 use super::emulator::{self, EmulatorError, Time};
 use super::images::{ImageError, Project};
@@ -147,9 +147,18 @@ fn number(
     })
 }
 
+/// The dearer half of a tick in two, where the second half of each has been counted.
+fn worst_half(whole: &[u32], second: &[u32]) -> u32 {
+    let halves = whole.iter().zip(second);
+    let dearer = halves.map(|(whole, second)| whole.saturating_sub(*second).max(*second));
+    dearer.max().unwrap_or_default()
+}
+
 /// What an image that counts says.
 struct Counted {
     counts: Counts,
+    /// Of each tick.
+    instructions: Vec<u32>,
     stack_bytes: u64,
     ram_bytes: u64,
 }
@@ -172,6 +181,7 @@ fn count(
     })?;
     Ok(Counted {
         counts,
+        instructions: ticks_of(&bytes).map(|(count, _)| count).collect(),
         stack_bytes: number(&lines, ("count", machine), "stack_bytes")?,
         ram_bytes: number(&lines, ("count", machine), "ram_bytes")?,
     })
@@ -225,6 +235,7 @@ pub fn measure(
         counts,
         stack_bytes,
         ram_bytes,
+        ..
     } = count_in(&streams.counted, &image)?;
     let long_stream = if streams.row.ticks > counts.all.ticks as u64 {
         let counted = count_in(&streams.replayed, &image)?;
@@ -237,7 +248,10 @@ pub fn measure(
         None
     };
     let pair = match machine.number {
-        Number::Float => Some(count_in(&streams.counted, "count-pair")?),
+        Number::Float => Some((
+            count_in(&streams.counted, "count-pair")?,
+            count_in(&streams.counted, "count-half")?,
+        )),
         Number::Fixed => None,
     };
     let replayed = match machine.build {
@@ -256,9 +270,10 @@ pub fn measure(
         worst_instructions: counts.all.worst_instructions,
         modes: counts.modes,
         long_stream,
-        pair: pair.map(|pair| PairOfPlanes {
+        pair: pair.map(|(pair, half)| PairOfPlanes {
             median_instructions: pair.counts.all.median_instructions,
             worst_instructions: pair.counts.all.worst_instructions,
+            worst_half_instructions: worst_half(&pair.instructions, &half.instructions),
             ram_bytes: pair.ram_bytes,
             stack_bytes: pair.stack_bytes,
         }),

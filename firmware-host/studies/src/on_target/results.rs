@@ -96,6 +96,8 @@ pub struct PairOfPlanes {
     pub median_instructions: u32,
     /// Most instructions of a tick of both.
     pub worst_instructions: u32,
+    /// The same of either half of a tick in two halves.
+    pub worst_half_instructions: u32,
     /// Their state without recorders.
     pub ram_bytes: u64,
     /// Deepest stack of a tick of both, from its caller.

@@ -226,6 +226,7 @@ fn two_planes(report: &Report) -> Block {
             name(t),
             pair.median_instructions.to_string(),
             pair.worst_instructions.to_string(),
+            pair.worst_half_instructions.to_string(),
             pair.ram_bytes.to_string(),
             pair.stack_bytes.to_string(),
         ])
@@ -234,6 +235,7 @@ fn two_planes(report: &Report) -> Block {
         "target",
         "median",
         "worst",
+        "worst half",
         "RAM without recorders [B]",
         "stack [B]",
     ];

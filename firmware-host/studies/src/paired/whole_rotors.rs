@@ -19,6 +19,7 @@ const CLAIMED: [MachineClass; 3] = [
     Rotor(Kind::Flexible),
 ];
 const RIGID: &[MachineClass] = &[Rotor(Kind::Rigid)];
+const BESIDE: [MachineClass; 3] = [Rotor(Kind::Bent), Rotor(Kind::Sealed), Rotor(Kind::InTurn)];
 
 fn written(events: &[Written]) -> Vec<Event> {
     events.iter().copied().map(Event::Written).collect()
@@ -33,10 +34,7 @@ pub fn classes() -> Vec<Class> {
     let blow = [Written::OneEndBlow(130), Written::LoadAtOneEnd(160)];
     let declared = [
         Axes::new(RIGID, written(&OF_ANY_MACHINE)),
-        Axes::new(
-            &[Rotor(Kind::Bent), Rotor(Kind::Sealed)],
-            written(&OF_ROTORS),
-        ),
+        Axes::new(&BESIDE, written(&OF_ROTORS)),
         Axes {
             sensors: &Sensors::FAILING,
             ..Axes::new(RIGID, written(&blow))
@@ -84,10 +82,7 @@ pub fn drawn(of: Machines, extent: Extent, progress: &dyn Progress) -> Result<Re
         let held = cases.iter().filter(|case| case.held);
         held.filter(move |case| case.class.machine == kind)
     };
-    for kind in CLAIMED
-        .into_iter()
-        .chain([Rotor(Kind::Bent), Rotor(Kind::Sealed)])
-    {
+    for kind in CLAIMED.into_iter().chain(BESIDE) {
         let all: Vec<Case> = of_kind(kind).cloned().collect();
         if CLAIMED.contains(&kind) {
             let counted = all.iter().filter(|case| claimed.contains(&case.class));

@@ -11,7 +11,7 @@ use crate::run::trace::{AxisRow, ReadOut, Recorder};
 use crate::run::whole_clairvoyant::WholeReference;
 use crate::scene::Scene;
 use plant_model::{PlantError, Snapshot, V2};
-use supervisor::{IntegratorHint, RotorSupervisor, Stamp};
+use supervisor::{HalfTick, IntegratorHint, RotorSupervisor, Sample, Stamp};
 
 /// A rig with its stations, sample by sample.
 pub(super) struct Bench<'a> {
@@ -24,6 +24,8 @@ pub(super) struct Bench<'a> {
     pub(super) reference: Option<&'a WholeReference>,
     /// Who supervises it as a whole, and which planes it has.
     pub(super) supervisor: Option<(RotorSupervisor, [usize; 2])>,
+    /// Half a tick of it, where its planes take turns.
+    half: Option<HalfTick>,
     pub(super) axis: Option<&'a mut dyn Recorder<AxisRow>>,
     /// What acts at each place for loads.
     loads: Vec<Disturbance>,
@@ -56,6 +58,7 @@ impl<'a> Bench<'a> {
             levitation: None,
             reference: None,
             supervisor: None,
+            half: None,
             axis: None,
             loads,
             edges_s: scene.edges(),
@@ -236,10 +239,32 @@ impl<'a> Bench<'a> {
             first.controller.ask(&self.seen[planes[0]]),
             second.controller.ask(&self.seen[planes[1]]),
         );
-        if let (Some(at_first), Some(at_second)) = asked {
+        let (Some(at_first), Some(at_second)) = asked else {
+            return;
+        };
+        if !self.scene.planes_in_turn {
             let [to_first, to_second] = supervisor.tick(&[at_first, at_second]).planes;
             first.controller.answered(to_first);
             second.controller.answered(to_second);
+            return;
+        }
+        // A tick counts both halves.
+        let of_tick = |sample: Sample| Sample {
+            sequence: sample.sequence / 2,
+            ..sample
+        };
+        match self.half.take() {
+            Some(half) => {
+                let [_, to_second] = supervisor.tick_second(&half, &of_tick(at_second)).planes;
+                first.controller.waits();
+                second.controller.answered(to_second);
+            }
+            None => {
+                let half = supervisor.tick_first(&of_tick(at_first));
+                first.controller.answered(half.command);
+                second.controller.waits();
+                self.half = Some(half);
+            }
         }
     }
 
