@@ -28,3 +28,4 @@ mod severity;
 mod split;
 mod stuck;
 mod trust;
+mod waiting;

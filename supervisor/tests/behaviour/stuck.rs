@@ -48,6 +48,28 @@ fn a_stuck_sensor_is_a_fault_within_ten_ticks() {
     }
 }
 
+/// A coordinate that jumps, no farther than a rotor might, and stands still at once is stuck with its second sample; one that goes on
+/// from there is a rotor that was struck.
+/// Requirement: SR-15
+#[test]
+fn what_jumps_and_stands_still_is_stuck() {
+    for (still, axis) in [(true, 0), (true, 1), (false, 0), (false, 1)] {
+        let mut bench = Bench::new(&config());
+        let mut chance = Chance::new(7);
+        for _ in 0..400 {
+            bench.tick([0, 1].map(|_| noise(&mut chance, 4e-7)));
+        }
+        assert_eq!(bench.supervisor.mode(), Mode::Levitated);
+        for i in 0..2 {
+            let mut at = [0, 1].map(|_| noise(&mut chance, 4e-7));
+            at[axis] = 0.4 * C_M + if still { 0.0 } else { 2e-5 * i as f32 };
+            bench.tick(at);
+        }
+        let stuck = bench.supervisor.report().refusal == RejectReason::Stuck;
+        assert_eq!(stuck, still, "axis {axis}");
+    }
+}
+
 /// Electronics that die one channel after the other are a fault as soon as neither has changed for three samples.
 /// Requirement: SR-15
 #[test]
