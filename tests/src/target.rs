@@ -92,7 +92,7 @@ pub const PANIC_FREE: [&str; 2] = ["panic-free", "panic-free-q"];
 /// As [`target`].
 pub fn build_panic_free(targets: &[&str], level: &str, more: &[&str]) -> Option<Output> {
     let mut cargo = build(targets);
-    at_level(&mut cargo, level, ["supervisor", "firmware-image"]);
+    at_level(&mut cargo, level, ["amb-supervisor", "firmware-image"]);
     cargo.args(PANIC_FREE.map(|image| format!("--bin={image}")));
     cargo.args(more);
     output(cargo, targets)

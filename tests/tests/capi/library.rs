@@ -99,7 +99,7 @@ pub(crate) fn built(target: Target) -> Option<PathBuf> {
 /// with the images.
 pub(crate) fn built_at(target: Target, level: &str) -> Option<PathBuf> {
     let mut cargo = build(target);
-    at_level(&mut cargo, level, ["supervisor", "supervisor-capi"]);
+    at_level(&mut cargo, level, ["amb-supervisor", "supervisor-capi"]);
     cargo.args(["--features", "planted-panic"]);
     finished(cargo)?;
     // The build writes the version where builds share what is compiled.

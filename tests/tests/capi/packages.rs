@@ -8,7 +8,7 @@ use system_tests::root;
 
 /// Folder in the project and name of each crate that is packed.
 const CRATES: [(&str, &str); 9] = [
-    ("supervisor", "supervisor"),
+    ("supervisor", "amb-supervisor"),
     ("supervisor/capi", "supervisor-capi"),
     ("plant-model", "plant-model"),
     ("firmware-host", "firmware-host"),

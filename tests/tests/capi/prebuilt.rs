@@ -191,7 +191,7 @@ fn same_bytes_from_elsewhere(folder: &Path, out: &Path, target: &str) {
     let said = build(&sources, &again, target);
     // Compiled there, and not found where the first ones were.
     let compiled = format!(
-        "Compiling supervisor v{} ({}",
+        "Compiling amb-supervisor v{} ({}",
         env!("CARGO_PKG_VERSION"),
         sources.display()
     );
