@@ -54,7 +54,7 @@
 //! `decide/detect`, `decide/classify`, `decide/phase`, `decide/trust`, `act/law`, `act/limit`, `act/handover`,
 //! `account/tally`, `account/severity`, `tick`, `record/entry`, `record/publish`, `record/buffer`,
 //! `record/recorder`, `record/sections`, `record/ledger`, `per_unit`, `check`, `supervisor`, `rotor/coupling`,
-//! `rotor/two_planes`, `archive`, `self_test`, `watch`, `log_format`.
+//! `rotor/ticker`, `rotor/two_planes`, `archive`, `self_test`, `watch`, `log_format`.
 
 // Unconditional: under `cfg(test)` std's own methods would silently replace micromath's.
 #![no_std]
@@ -121,6 +121,7 @@ mod per_unit;
 mod supervisor;
 mod rotor {
     pub(crate) mod coupling;
+    pub(crate) mod ticker;
     pub(crate) mod two_planes;
 }
 mod archive;
@@ -153,9 +154,8 @@ pub use record::sections::{
     Head, MOST_WORDS, NO_STATE, Part, RECORD_VERSION, Record, SECTION_BYTES, SUPERVISOR_VERSION,
     Section, Stamp, Summary, crc_of,
 };
-pub use rotor::two_planes::{
-    HalfTick, RotorCommand, RotorCore, RotorReader, RotorSupervisor, RotorTicker,
-};
+pub use rotor::ticker::{HalfTick, RotorCommand, RotorTicker};
+pub use rotor::two_planes::{RotorCore, RotorReader, RotorSupervisor};
 pub use self_test::SelfTest;
 pub use supervisor::Supervisor;
 pub use supervisor::{CoreTicker, Published, Reader, Ticker};

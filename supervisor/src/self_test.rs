@@ -12,7 +12,8 @@ use crate::check::Check;
 use crate::number::scalar::Scalar;
 use crate::number::vec2::Vec2;
 use crate::per_unit::{Core, Prepared};
-use crate::rotor::two_planes::{RotorSupervisor, RotorTicker};
+use crate::rotor::ticker::RotorTicker;
+use crate::rotor::two_planes::RotorSupervisor;
 use crate::supervisor::{CoreTicker, Supervisor, Ticker};
 
 /// What the test went through.
