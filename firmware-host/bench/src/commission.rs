@@ -211,6 +211,7 @@ fn answers(
                 AnswerPoint {
                     frequency_hz: line.omega_rad_s / TAU,
                     read_m: read.norm(),
+                    // What is left is an acceleration over −ω².
                     fitted_m: (read + left).norm(),
                     left_m: left.norm(),
                 }

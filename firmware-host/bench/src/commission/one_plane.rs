@@ -1,4 +1,4 @@
-//! A rotor as a mass in one plane: −ω²·X + κ·X = G·U/(1 + jωτ), G by rows, κ stiffness over mass, τ the time from a command to its force.
+//! A rotor as a mass in one plane: ẍ + κ·x = G·f with τ·ḟ + f = u, G by rows, κ stiffness over mass, τ the time from a command to its force.
 
 use crate::commission::fit::{Fit, Model, Problem, UNEXPLAINED, hidden, unexplained, without_outliers};
 use crate::commission::spectrum::{Complex64, Line};
@@ -23,9 +23,9 @@ impl Model for OnePlane {
     fn residuals_m(&self, line: &Line, values: &[f64]) -> Vec<Complex64> {
         let [xx, xy, yx, yy, kappa, tau_s] = numbers(values);
         let square = line.omega_rad_s * line.omega_rad_s;
-        let late = Complex64::new(1.0, line.omega_rad_s * tau_s);
-        let [u, v] = line.command_n[0].map(|u| u / late);
-        let [x, y] = line.position_m[0].map(|x| x * (kappa - square));
+        let [u, v] = line.force_n(0, tau_s);
+        let (position, acceleration) = (line.position_m[0], line.acceleration_m_s2[0]);
+        let [x, y] = [0, 1].map(|axis| acceleration[axis] + position[axis] * kappa);
         vec![
             (x - u * xx - v * xy) / square,
             (y - u * yx - v * yy) / square,

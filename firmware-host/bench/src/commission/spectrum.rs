@@ -1,5 +1,8 @@
 //! Windows of a log in which a stimulus excites one axis of one plane, and the lines in them: what moves and what is commanded at the
 //! frequencies of the stimulus, and beside them.
+//!
+//! A window with its line is a smooth test function φ that is nothing at both ends, with its derivatives: ∫φ·ẍ is ∫φ̈·x, so that rates and
+//! accelerations follow from positions whatever the motion does within the window, a sine of another frequency among it.
 
 use crate::commission::log::Log;
 use nalgebra::Complex;
@@ -11,8 +14,11 @@ pub(super) type Complex64 = Complex<f64>;
 /// Shortest window \[ticks\], and its lines: as strong as this share of the strongest.
 pub(super) const LEAST_TICKS: usize = 200;
 const LEAST_SHARE: f64 = 0.3;
-/// Bins above a line at which there is no stimulus.
+/// Bins beside a line at which there is no stimulus.
 const BESIDE: [f64; 4] = [8.0, 10.0, 12.0, 14.0];
+/// Bins from the spin and its multiples within which a line is not used: the unbalance is no force that is commanded.
+const FROM_SPIN: f64 = 3.0;
+const HARMONICS: [f64; 3] = [1.0, 2.0, 3.0];
 
 /// Ticks without a break in which one axis of one plane is excited.
 #[derive(Debug, Clone, PartialEq)]
@@ -35,7 +41,21 @@ pub(super) struct Line {
     /// Mean spin in the window; 0 where it is not known.
     pub(super) spin_rad_s: f64,
     pub(super) position_m: Vec<[Complex64; 2]>,
+    /// Of what is sensed, its first and its second derivative.
+    pub(super) rate_m_s: Vec<[Complex64; 2]>,
+    pub(super) acceleration_m_s2: Vec<[Complex64; 2]>,
     pub(super) command_n: Vec<[Complex64; 2]>,
+    /// Commands through the slope of the window.
+    pub(super) command_slope_n_s: Vec<[Complex64; 2]>,
+}
+
+impl Line {
+    /// Force of a plane's magnet that follows its command with this lag: τ·ḟ + f = u through the window, the slope of which counts once.
+    pub(super) fn force_n(&self, plane: usize, tau_s: f64) -> [Complex64; 2] {
+        let late = Complex64::new(1.0, self.omega_rad_s * tau_s);
+        let (command, slope) = (&self.command_n[plane], &self.command_slope_n_s[plane]);
+        [0, 1].map(|axis| (command[axis] + slope[axis] * tau_s / late) / late)
+    }
 }
 
 /// Windows of all planes, in order of time.
@@ -87,15 +107,27 @@ fn held(turn_rad: f64) -> Complex64 {
     Complex64::from_polar(half.sin() / half, -half)
 }
 
-/// A signal off its mean, under the square of Hann's window.
-fn through(values: &[[f64; 2]]) -> Vec<[f64; 2]> {
+/// Names of the windows that a signal goes through: Hann's squared, its first and its second derivative by time.
+const SHAPES: usize = 3;
+
+/// A signal off its mean, through each shape of the window.
+fn through(values: &[[f64; 2]], period_s: f64) -> [Vec<[f64; 2]>; SHAPES] {
     let length = values.len() as f64;
     let mean = [0, 1].map(|axis| values.iter().map(|v| v[axis]).sum::<f64>() / length);
-    let weighed = values.iter().enumerate().map(|(place, [x, y])| {
-        let weight = hann(place as f64 / length).powi(2);
-        [weight * (x - mean[0]), weight * (y - mean[1])]
-    });
-    weighed.collect()
+    let turn_rad_s = TAU / (length * period_s);
+    let shaped = |shape: fn(f64, f64) -> f64| {
+        let weighed = values.iter().enumerate().map(|(place, [x, y])| {
+            let weight = shape(TAU * place as f64 / length, turn_rad_s);
+            [weight * (x - mean[0]), weight * (y - mean[1])]
+        });
+        weighed.collect()
+    };
+    // Of ¼·(1 − cos a)².
+    [
+        shaped(|a, _| 0.25 * (1.0 - a.cos()).powi(2)),
+        shaped(|a, turn| 0.5 * turn * (1.0 - a.cos()) * a.sin()),
+        shaped(|a, turn| 0.5 * turn * turn * (a.cos() - (2.0 * a).cos())),
+    ]
 }
 
 /// Amplitude of what has gone through a window, at a frequency.
@@ -120,59 +152,167 @@ pub(super) fn lines(logs: &[Log], windows: &[Window]) -> Vec<Line> {
         .collect()
 }
 
+/// Signals of all planes in a window.
+struct Shaped {
+    position: Vec<[Vec<[f64; 2]>; SHAPES]>,
+    command: Vec<[Vec<[f64; 2]>; SHAPES]>,
+    window: Window,
+    number: usize,
+    period_s: f64,
+    spin_rad_s: f64,
+}
+
+impl Shaped {
+    fn new(logs: &[Log], number: usize, window: &Window) -> Option<Self> {
+        let first = logs.first()?;
+        let period_s = first.period_s;
+        let ticks = || window.ticks.clone();
+        let all = |of: fn(&Log) -> &Vec<[f64; 2]>| {
+            let planes = logs.iter();
+            planes
+                .map(|log| through(&of(log)[ticks()], period_s))
+                .collect()
+        };
+        let spin = first.spin_rad_s.as_ref();
+        let sum = spin.map_or(0.0, |spin| spin[ticks()].iter().sum::<f64>());
+        Some(Self {
+            position: all(|log| &log.position_m),
+            command: all(|log| &log.command_n),
+            window: window.clone(),
+            number,
+            period_s,
+            spin_rad_s: sum / window.ticks.len() as f64,
+        })
+    }
+
+    /// Frequency of a bin, and of those that are apart so far.
+    fn bin_rad_s(&self) -> f64 {
+        TAU / (self.window.ticks.len() as f64 * self.period_s)
+    }
+
+    /// Whether an orbit that goes round with the rotor reaches into a line.
+    fn at_spin(&self, omega_rad_s: f64) -> bool {
+        let near = |times: f64| (omega_rad_s - times * self.spin_rad_s.abs()).abs();
+        let reach = FROM_SPIN * self.bin_rad_s();
+        self.spin_rad_s != 0.0 && HARMONICS.iter().any(|times| near(*times) < reach)
+    }
+
+    fn line(&self, omega_rad_s: f64, weight: f64) -> Line {
+        let turn_rad = omega_rad_s * self.period_s;
+        let at = |planes: &[[Vec<[f64; 2]>; SHAPES]], shape: usize| -> Vec<[Complex64; 2]> {
+            let planes = planes.iter();
+            planes.map(|of| amplitude(&of[shape], turn_rad)).collect()
+        };
+        let [position_m, slope, bend] = [0, 1, 2].map(|shape| at(&self.position, shape));
+        let turn = Complex64::new(0.0, omega_rad_s);
+        let pairs = |a: &[Complex64; 2], b: &[Complex64; 2], of: &dyn Fn(Complex64, Complex64) -> Complex64| {
+            [of(a[0], b[0]), of(a[1], b[1])]
+        };
+        // ∫φ·ẋ is −∫φ̇·x, with φ = w·e^(−jωt).
+        let rates = position_m.iter().zip(&slope);
+        let rate_m_s: Vec<[Complex64; 2]> = rates
+            .map(|(x, s)| pairs(x, s, &|x, s| turn * x - s))
+            .collect();
+        let bends = rate_m_s.iter().zip(&slope).zip(&bend);
+        let acceleration_m_s2 = bends
+            .map(|((v, s), b)| {
+                let without = pairs(v, s, &|v, s| turn * (v - s));
+                pairs(&without, b, &|a, b| a + b)
+            })
+            .collect();
+        let of_hold = held(turn_rad);
+        let command = |shape: usize| -> Vec<[Complex64; 2]> {
+            let planes = at(&self.command, shape).into_iter();
+            planes.map(|u| u.map(|u| u * of_hold)).collect()
+        };
+        Line {
+            window: self.number,
+            plane: self.window.plane,
+            axis: self.window.axis,
+            weight,
+            omega_rad_s,
+            spin_rad_s: self.spin_rad_s,
+            position_m,
+            rate_m_s,
+            acceleration_m_s2,
+            command_n: command(0),
+            command_slope_n_s: command(1),
+        }
+    }
+}
+
 fn of_window(logs: &[Log], number: usize, window: &Window) -> Vec<Line> {
-    let Some(first) = logs.first() else {
+    let Some(shaped) = Shaped::new(logs, number, window) else {
         return Vec::new();
     };
-    let period_s = first.period_s;
-    let length = window.ticks.len() as f64;
-    // Once for all lines: what is left of the mean, seen through the window.
-    let all = |of: fn(&Log) -> &Vec<[f64; 2]>| -> Vec<Vec<[f64; 2]>> {
-        let planes = logs.iter();
-        planes
-            .map(|log| through(&of(log)[window.ticks.clone()]))
-            .collect()
-    };
-    let (positions, commands) = (all(|log| &log.position_m), all(|log| &log.command_n));
-    let stimulus = through(&logs[window.plane].stimulus_n[window.ticks.clone()]);
-    let spin = first.spin_rad_s.as_ref();
-    let spin_rad_s = spin.map_or(0.0, |spin| {
-        spin[window.ticks.clone()].iter().sum::<f64>() / length
-    });
+    let period_s = shaped.period_s;
+    let stimulus = &logs[window.plane].stimulus_n[window.ticks.clone()];
+    let [stimulus, ..] = through(stimulus, period_s);
     // Every other bin: neighbours tell the same.
-    let step = 2.0 * TAU / (length * period_s);
+    let step = 2.0 * shaped.bin_rad_s();
     let strength = |omega: f64| {
         let [x, y] = amplitude(&stimulus, omega * period_s);
         x.norm_sqr() + y.norm_sqr()
     };
-    let bins: Vec<(f64, f64)> = (4..(length as usize / 8).min(200))
+    let bins: Vec<(f64, f64)> = (4..(window.ticks.len() / 8).min(200))
         .map(|bin| step * bin as f64)
         .map(|omega| (omega, strength(omega)))
         .collect();
     let strongest = bins.iter().fold(0.0_f64, |most, (_, s)| most.max(*s));
     let mut lines = Vec::new();
     for (omega, strength) in bins {
-        if strength < LEAST_SHARE * LEAST_SHARE * strongest || strongest == 0.0 {
+        let weak = strength < LEAST_SHARE * LEAST_SHARE * strongest || strongest == 0.0;
+        if weak || shaped.at_spin(omega) {
             continue;
         }
-        let beside = BESIDE.map(|bins| (omega + 0.5 * step * bins, -1.0 / BESIDE.len() as f64));
-        for (omega, weight) in std::iter::once((omega, 1.0)).chain(beside) {
-            let turn_rad = omega * period_s;
-            let at = |planes: &[Vec<[f64; 2]>]| -> Vec<[Complex64; 2]> {
-                planes.iter().map(|of| amplitude(of, turn_rad)).collect()
-            };
-            let command_n = at(&commands).into_iter();
-            lines.push(Line {
-                window: number,
-                plane: window.plane,
-                axis: window.axis,
-                weight,
-                omega_rad_s: omega,
-                spin_rad_s,
-                position_m: at(&positions),
-                command_n: command_n.map(|u| u.map(|u| u * held(turn_rad))).collect(),
-            });
-        }
+        let beside = BESIDE.map(|bins| omega + 0.5 * step * bins);
+        let beside: Vec<f64> = beside.into_iter().filter(|o| !shaped.at_spin(*o)).collect();
+        let weight = -1.0 / beside.len().max(1) as f64;
+        lines.push(shaped.line(omega, 1.0));
+        lines.extend(beside.into_iter().map(|omega| shaped.line(omega, weight)));
     }
     lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A decaying sine that is none of the window's lines: its derivatives come out as they are.
+    #[test]
+    fn derivatives_are_those_of_the_motion() {
+        let period_s = 5e-5;
+        let rows = 4_000;
+        let (rate, omega) = (-3.0, 411.0);
+        let motion = |t: f64| Complex64::new(rate, omega).scale(t).exp();
+        let log = |of: &dyn Fn(f64) -> Complex64| Log {
+            period_s,
+            position_m: (0..rows)
+                .map(|i| of(period_s * f64::from(i)))
+                .map(|z| [1e-5 * z.re, 1e-5 * z.im])
+                .collect(),
+            command_n: vec![[0.0; 2]; rows as usize],
+            stimulus_n: vec![[1.0, 0.0]; rows as usize],
+            ..Log::default()
+        };
+        let window = Window {
+            ticks: 0..rows as usize,
+            plane: 0,
+            axis: 0,
+        };
+        let of = |of: &dyn Fn(f64) -> Complex64| {
+            let logs = [log(of)];
+            Shaped::new(&logs, 0, &window).unwrap().line(440.0, 1.0)
+        };
+        let power = Complex64::new(rate, omega);
+        let whole = of(&motion);
+        let speeds = of(&|t| motion(t) * power);
+        let turned = of(&|t| motion(t) * power * power);
+        for axis in 0..2 {
+            let close = |a: Complex64, b: Complex64| (a - b).norm() < 1e-4 * b.norm();
+            assert!(close(whole.rate_m_s[0][axis], speeds.position_m[0][axis]));
+            let acceleration = whole.acceleration_m_s2[0][axis];
+            assert!(close(acceleration, turned.position_m[0][axis]));
+        }
+    }
 }

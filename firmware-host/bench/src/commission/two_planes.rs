@@ -1,7 +1,7 @@
 //! A rigid rotor in two planes, from a log of both: mass, inertias, and each plane's axes, stiffness and time to the force.
 //!
 //! Sensor i reads x_i = c + s_i·θ of the centre c and the slope θ. With a_j the place of magnet j, h_ij = 1 + s_i·a_j·m/I_t and z_j the
-//! rotor there, ẍ_i = Σ_j h_ij·(B_j·u_j/(1 + jωτ_j) − κ_j·z_j) + s_i·(I_p/I_t)·Ω·(−θ̇_y, θ̇_x): B_j force factor and axes over mass, κ_j
+//! rotor there, ẍ_i = Σ_j h_ij·(B_j·f_j − κ_j·z_j) + s_i·(I_p/I_t)·Ω·(−θ̇_y, θ̇_x), τ_j·ḟ_j + f_j = u_j: B_j force factor and axes over mass, κ_j
 //! stiffness over mass. Places are those of the scene. Of gains and places only products show.
 
 use crate::commission::fit::{Fit, Model, Problem, UNEXPLAINED, hidden, unexplained, without_outliers};
@@ -69,11 +69,14 @@ impl Model for Rigid {
         let (sin, cos) = v[TURNED_RAD].sin_cos();
         let back = |[x, y]: [Complex64; 2]| [x * cos + y * sin, y * cos - x * sin];
         let read = [line.position_m[0], back(line.position_m[1])];
-        let slope = [0, 1].map(|axis| (read[1][axis] - read[0][axis]) / (second - first));
+        let rates = [line.rate_m_s[0], back(line.rate_m_s[1])];
+        let felt = [line.acceleration_m_s2[0], back(line.acceleration_m_s2[1])];
+        let apart_m = second - first;
+        let slope = [0, 1].map(|axis| (read[1][axis] - read[0][axis]) / apart_m);
+        let tilts = [0, 1].map(|axis| (rates[1][axis] - rates[0][axis]) / apart_m);
         // What each magnet does to a unit mass.
         let pushes = [0, 1].map(|j| {
-            let late = Complex64::new(1.0, line.omega_rad_s * v[TAU_S[j]]);
-            let [ux, uy] = line.command_n[j].map(|u| u / late);
+            let [ux, uy] = line.force_n(j, v[TAU_S[j]]);
             let row = MATRICES[j];
             let kappa = v[STIFFNESS[j]];
             let there = [0, 1].map(|axis| read[0][axis] + slope[axis] * (magnets[j] - first));
@@ -82,16 +85,16 @@ impl Model for Rigid {
                 ux * v[row + 2] + uy * v[row + 3] - there[1] * kappa,
             ]
         });
-        let rate = Complex64::new(0.0, line.omega_rad_s) * (v[POLAR] * line.spin_rad_s);
-        let gyroscopic = [-slope[1] * rate, slope[0] * rate];
-        let square = line.omega_rad_s * line.omega_rad_s;
+        let spin_rad_s = v[POLAR] * line.spin_rad_s;
+        let gyroscopic = [-tilts[1] * spin_rad_s, tilts[0] * spin_rad_s];
+        let square = line.omega_rad_s.powi(2);
         let mut left = Vec::with_capacity(4);
         for (i, place) in [first, second].into_iter().enumerate() {
             for axis in 0..2 {
                 let pushed: Complex64 = (0..2)
                     .map(|j| pushes[j][axis] * (1.0 + place * magnets[j] * v[RATIO]))
                     .sum();
-                left.push(-read[i][axis] - (pushed + gyroscopic[axis] * place) / square);
+                left.push((felt[i][axis] - pushed - gyroscopic[axis] * place) / square);
             }
         }
         left
