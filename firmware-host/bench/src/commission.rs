@@ -10,6 +10,7 @@ mod fit;
 pub mod log;
 mod machine;
 mod one_plane;
+mod orbit;
 pub mod record;
 mod spectrum;
 pub mod two_planes;
@@ -23,6 +24,7 @@ use crate::commission::spectrum::{LEAST_TICKS, Line, Window, lines, quiet, windo
 use crate::commission::two_planes::TwoPlanes;
 use crate::log_file::LogError;
 use serde::Serialize;
+use statrs::distribution::{ContinuousCDF as _, StudentsT};
 use std::f64::consts::TAU;
 
 /// A number of the machine, between what it lies with 95 % probability, and what it rests on.
@@ -138,20 +140,28 @@ impl Commissioned {
         Ok(found)
     }
 
-    /// Compares with what is configured, of each the name and its value: what costs most comes first.
+    /// Compares with what is configured, of each the name and its value: what costs most comes first. Intervals are as much wider as
+    /// they have to be for all of what is right together to lie in its own with 95 % probability.
     pub fn compare(&mut self, configured: &[(String, f64)]) {
-        let mut ordered = Vec::new();
-        for found in &self.parameters {
+        let pairs = self.parameters.iter().filter_map(|found| {
             let own = configured.iter().find(|(name, _)| *name == found.name);
-            let Some((name, value)) = own.filter(|(_, v)| *v < found.low || *v > found.high) else {
+            own.map(|(_, value)| (found, *value))
+        });
+        let pairs: Vec<(&Found, f64)> = pairs.collect();
+        let wider = wider(pairs.len());
+        let mut ordered = Vec::new();
+        for (found, value) in pairs {
+            let below = found.value - wider * (found.value - found.low);
+            let above = found.value + wider * (found.high - found.value);
+            if (below..=above).contains(&value) {
                 continue;
-            };
-            let cost = Cost::of(name, *value, found.value);
+            }
+            let cost = Cost::of(&found.name, value, found.value);
             let nearest = value.clamp(found.low, found.high);
             let off = (value - nearest).abs() / nearest.abs().max(1e-12);
             let one = Contradiction {
-                name: name.clone(),
-                configured: *value,
+                name: found.name.clone(),
+                configured: value,
                 low: found.low,
                 high: found.high,
                 lost_share: cost.map(|cost| cost.lost),
@@ -173,6 +183,18 @@ impl Commissioned {
             self.miss(name, reason);
         }
     }
+}
+
+/// Degrees of freedom of a usual log.
+const DEGREES: f64 = 8.0;
+
+/// By how much an interval of one number in 95 % is wider for so many together.
+fn wider(numbers: usize) -> f64 {
+    let Ok(student) = StudentsT::new(0.0, 1.0, DEGREES) else {
+        return 1.0;
+    };
+    let of = |numbers: f64| student.inverse_cdf(1.0 - 0.025 / numbers);
+    of(numbers.max(1) as f64) / of(1.0)
 }
 
 /// Whether each plane is excited often enough.

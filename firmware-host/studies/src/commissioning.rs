@@ -493,6 +493,8 @@ pub fn drawn(of: Machines, extent: Extent, progress: &dyn Progress) -> Result<Re
     let of_rotor_logs = logs::of_rotors(seed, (wrong / 2).max(4), progress);
     let (of_rotors, odd_rotors) = rotors::rotors(seed, wrong / 2, progress);
     odd.extend(odd_rotors);
+    odd.extend(of_logs.odd);
+    odd.extend(of_rotor_logs.odd);
     let columns = [
         "mistake",
         "machines",
@@ -530,7 +532,7 @@ pub fn drawn(of: Machines, extent: Extent, progress: &dyn Progress) -> Result<Re
                             "95th percentile",
                             "within",
                         ],
-                        of_logs,
+                        of_logs.rows,
                     ),
                 ],
             ),

@@ -14,6 +14,9 @@ const DAMPED: (f64, f64, f64) = (1e-6, 0.2, 8.0);
 const OUTLIER: f64 = 3.0;
 pub(super) const UNEXPLAINED: f64 = 0.15;
 
+/// What the model is not, as a share of a number: sums for integrals, a force that is held.
+const MODELLED: f64 = 1e-3;
+
 /// How a rotor moves, by numbers.
 pub(super) trait Model {
     /// By how much each reading is off \[m\] what the forces explain.
@@ -253,14 +256,14 @@ impl Fit {
         let variance = (gradient.transpose() * &self.covariance * &gradient)[(0, 0)];
         let student = StudentsT::new(0.0, 1.0, self.degrees);
         let times = student.map_or(2.0, |t| t.inverse_cdf(0.975));
-        let spread = times * variance.max(0.0).sqrt();
+        let spread = (times * variance.max(0.0).sqrt()).hypot(MODELLED * value);
         Found {
             name: name.into(),
             unit,
             value,
             low: value - spread,
             high: value + spread,
-            from: format!("answer to the stimulus in {} windows", self.windows),
+            from: format!("stimulus in {} windows", self.windows),
         }
     }
 }

@@ -5,6 +5,7 @@
 //! accelerations follow from positions whatever the motion does within the window, a sine of another frequency among it.
 
 use crate::commission::log::Log;
+use crate::commission::orbit::{HARMONICS, without_orbit};
 use nalgebra::Complex;
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -16,9 +17,8 @@ pub(super) const LEAST_TICKS: usize = 200;
 const LEAST_SHARE: f64 = 0.3;
 /// Bins beside a line at which there is no stimulus.
 const BESIDE: [f64; 4] = [8.0, 10.0, 12.0, 14.0];
-/// Bins from the spin and its multiples within which a line is not used: the unbalance is no force that is commanded.
+/// Bins from the spin and its multiples within which a line is not used: what goes round is taken off, and some of the line with it.
 const FROM_SPIN: f64 = 3.0;
-const HARMONICS: [f64; 3] = [1.0, 2.0, 3.0];
 
 /// Ticks without a break in which one axis of one plane is excited.
 #[derive(Debug, Clone, PartialEq)]
@@ -167,14 +167,23 @@ impl Shaped {
         let first = logs.first()?;
         let period_s = first.period_s;
         let ticks = || window.ticks.clone();
-        let all = |of: fn(&Log) -> &Vec<[f64; 2]>| {
-            let planes = logs.iter();
-            planes
-                .map(|log| through(&of(log)[ticks()], period_s))
-                .collect()
-        };
+        let length = window.ticks.len();
+        let weights: Vec<f64> = (0..length)
+            .map(|place| hann(place as f64 / length as f64).powi(2))
+            .collect();
         let spin = first.spin_rad_s.as_ref();
-        let sum = spin.map_or(0.0, |spin| spin[ticks()].iter().sum::<f64>());
+        let mut sum = 0.0;
+        let angles_rad: Vec<f64> = ticks()
+            .map(|tick| {
+                sum += spin.map_or(0.0, |spin| spin[tick]);
+                sum * period_s
+            })
+            .collect();
+        let all = |of: fn(&Log) -> &Vec<[f64; 2]>| {
+            let own = |log| without_orbit(&of(log)[ticks()], &angles_rad, &weights);
+            let planes = logs.iter();
+            planes.map(|log| through(&own(log), period_s)).collect()
+        };
         Some(Self {
             position: all(|log| &log.position_m),
             command: all(|log| &log.command_n),

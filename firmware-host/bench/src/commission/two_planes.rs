@@ -140,7 +140,7 @@ pub(super) fn fitted(
 ) -> Result<Fitted, LogError> {
     let model = Rigid::new(of);
     let first = least(&model, lines, period_s)?;
-    let lines = without_outliers(&model, lines, &first, 4 * LEAST_WINDOWS / 2);
+    let lines = without_outliers(&model, lines, &first, 2 * LEAST_WINDOWS);
     let own = free(&lines, &[]);
     let problem = Problem {
         model: &model,

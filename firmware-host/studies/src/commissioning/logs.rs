@@ -91,13 +91,25 @@ fn identified(seed: u64, number: u64) -> Result<Option<[Identified; 3]>, String>
 }
 
 /// How far off what logs say is, by number, and whether their intervals hold.
-pub(super) fn identification(seed: u64, machines: u64, progress: &dyn Progress) -> Vec<[String; 6]> {
+pub(super) fn identification(seed: u64, machines: u64, progress: &dyn Progress) -> OfMachines {
     let numbers: Vec<u64> = (0..machines).collect();
     let all = run_all(&numbers, progress, |number| identified(seed, *number));
-    let all: Vec<[Identified; 3]> = all
-        .into_iter()
-        .filter_map(|one| one.ok().flatten())
-        .collect();
+    let (mut odd, mut told) = (Vec::new(), Vec::new());
+    for (number, one) in numbers.iter().zip(all) {
+        let sensors = SENSORS[*number as usize % SENSORS.len()].name();
+        match one {
+            Ok(Some(one)) => {
+                let wrong = one.iter().filter(|(f, is, _)| !(f.low..=f.high).contains(is));
+                odd.extend(wrong.map(|(f, is, _)| {
+                    format!("log of machine {number}, {sensors}: {} is {is:.4e}: {}", f.name, said(f))
+                }));
+                told.push(one);
+            }
+            Ok(None) => odd.push(format!("log of machine {number}, {sensors}: refused")),
+            Err(why) => odd.push(format!("log of machine {number}, {sensors}: {why}")),
+        }
+    }
+    let all = told;
     let mut rows = Vec::new();
     for (place, (name, wanted)) in IDENTIFIED.into_iter().enumerate() {
         let of = || all.iter().map(|one| &one[place]);
@@ -124,7 +136,17 @@ pub(super) fn identification(seed: u64, machines: u64, progress: &dyn Progress) 
             format!("{:.1} %", 100.0 * share(within)),
         ]);
     }
-    rows
+    OfMachines { rows, odd }
+}
+
+fn said(f: &Found) -> String {
+    format!("{:.4e}, {:.4e} to {:.4e}", f.value, f.low, f.high)
+}
+
+/// Numbers of machines in one plane as rows of a table, and what is not as it is.
+pub(super) struct OfMachines {
+    pub(super) rows: Vec<[String; 6]>,
+    pub(super) odd: Vec<String>,
 }
 
 
@@ -143,13 +165,14 @@ pub(super) const COLUMNS: [&str; 7] = [
 const CLASSES: [Class; 3] = [Class::Rigid, Class::Gyroscopic, Class::Flexible];
 const OF_UNBALANCE: u64 = 0xba1a;
 
-/// Numbers of a rotor, and how far off one may be as a share of its scale.
+/// Numbers of a rotor, and how far off one may be as a share of its scale; those that are most asked for first.
+const MOST_ASKED: usize = 4;
 const OF_ROTOR: [(&str, f64); 8] = [
     ("mass_kg", 0.03),
     ("transverse_inertia_kg_m2", 0.03),
     ("polar_inertia_kg_m2", 0.03),
-    ("force_factor_ratio", 0.03),
     ("A.magnet_stiffness_n_m", 0.1),
+    ("force_factor_ratio", 0.03),
     ("A.time_to_force_s", 0.1),
     ("centre_of_mass_m", 0.01),
     ("sensors_turned_rad", 0.03),
@@ -166,6 +189,7 @@ struct Told {
 pub(super) struct OfRotors {
     pub(super) rows: Vec<[String; 7]>,
     pub(super) story: String,
+    pub(super) odd: Vec<String>,
 }
 
 /// What the log of a rotor says; an error where it is refused.
@@ -174,8 +198,8 @@ fn of_rotor(seed: u64, class: Class, number: u64) -> Result<Vec<Told>, String> {
     let measures = case.measures();
     let mut draw = Draw::new(seed ^ OF_UNBALANCE, 3 * number + class as u64);
     let eccentricity_m = measures.clearance_m * draw.decades(2e-3, 0.03);
-    let text = format!("eccentricity_m = {eccentricity_m}\n[spin]");
-    let text = case.toml().replacen("[spin]", &text, 1);
+    let text = format!("eccentricity_m = {eccentricity_m}\npolar_inertia_kg_m2 =");
+    let text = case.toml().replacen("polar_inertia_kg_m2 =", &text, 1);
     let mut scene = Scene::parse(&case.text(), &text).map_err(|error| error.to_string())?;
     let mut longest_s = WINDOW.0;
     for config in scene.planes.iter_mut().filter_map(|p| p.supervisor.as_mut()) {
@@ -210,8 +234,8 @@ fn of_rotor(seed: u64, class: Class, number: u64) -> Result<Vec<Told>, String> {
         (measures.mass_kg, measures.mass_kg),
         (measures.transverse_kg_m2, measures.transverse_kg_m2),
         (case.polar_kg_m2(), case.polar_kg_m2()),
-        (1.0, 1.0),
         (-case.negative_n_m(), stiffness_n_m),
+        (1.0, 1.0),
         (late_s, late_s),
         (0.0, apart_m),
         (0.0, 1.0),
@@ -224,6 +248,34 @@ fn of_rotor(seed: u64, class: Class, number: u64) -> Result<Vec<Told>, String> {
     Ok(told.collect())
 }
 
+/// How far off a number is in all logs of a class.
+fn row(class: Class, place: usize, told: &[&Vec<Told>]) -> [String; 7] {
+    let (name, wanted) = OF_ROTOR[place];
+    let found: Vec<(&Told, &Found)> = (told.iter())
+        .filter_map(|all| Some((&all[place], all[place].found.as_ref()?)))
+        .collect();
+    let held = |(told, f): &&(&Told, &Found)| (f.low..=f.high).contains(&told.is);
+    let held = found.iter().filter(held).count();
+    let mut off: Vec<f64> = (found.iter())
+        .map(|(told, f)| (f.value - told.is).abs() / told.scale)
+        .collect();
+    off.sort_by(f64::total_cmp);
+    let at = |share: f64| off.get((share * off.len() as f64) as usize);
+    let percent = |share: f64| format!("{:.1} %", 100.0 * share);
+    let at = |share: f64| at(share).copied().map_or("–".to_owned(), percent);
+    let within = off.iter().filter(|off| **off <= wanted).count();
+    let share = |count: usize| percent(count as f64 / off.len().max(1) as f64);
+    [
+        format!("{}, {name}", class.name()),
+        off.len().to_string(),
+        share(held),
+        at(0.5),
+        at(0.95),
+        share(within),
+        percent(wanted),
+    ]
+}
+
 /// Rotors by class: how far off what their logs say is, and whether the intervals hold.
 pub(super) fn of_rotors(seed: u64, number: u64, progress: &dyn Progress) -> OfRotors {
     let jobs: Vec<(Class, u64)> = (CLASSES.into_iter())
@@ -232,40 +284,35 @@ pub(super) fn of_rotors(seed: u64, number: u64, progress: &dyn Progress) -> OfRo
     let all = run_all(&jobs, progress, |(class, number)| {
         of_rotor(seed, *class, *number)
     });
-    let (mut rows, mut refused) = (Vec::new(), Vec::new());
+    let (mut rows, mut refused, mut odd) = (Vec::new(), Vec::new(), Vec::new());
+    for ((class, number), told) in jobs.iter().zip(&all) {
+        let of = format!("log of a {} rotor {number}", class.name());
+        match told {
+            Ok(told) => odd.extend((told.iter()).filter_map(|Told { found, is, .. }| {
+                let f = found.as_ref()?;
+                let held = (f.low..=f.high).contains(is);
+                (!held).then(|| format!("{of}: {} is {is:.4e}: {}", f.name, said(f)))
+            })),
+            Err(why) => odd.push(format!("{of}: {why}")),
+        }
+    }
     for class in CLASSES {
-        let own = || jobs.iter().zip(&all).filter(move |((c, _), _)| *c == class);
-        let told: Vec<&Vec<Told>> = own().filter_map(|(_, t)| t.as_ref().ok()).collect();
-        let none = own().count() - told.len();
+        let own = jobs.iter().zip(&all).filter(|((c, _), _)| *c == class);
+        let none = own.filter(|(_, told)| told.is_err()).count();
         refused.push(format!("{none} {}", class.name()));
-        for (place, (name, wanted)) in OF_ROTOR.into_iter().enumerate() {
-            let found: Vec<(&Told, &Found)> = (told.iter())
-                .filter_map(|all| Some((&all[place], all[place].found.as_ref()?)))
-                .collect();
-            let held = |(told, f): &&(&Told, &Found)| (f.low..=f.high).contains(&told.is);
-            let held = found.iter().filter(held).count();
-            let mut off: Vec<f64> = (found.iter())
-                .map(|(told, f)| (f.value - told.is).abs() / told.scale)
-                .collect();
-            off.sort_by(f64::total_cmp);
-            let at = |share: f64| off.get((share * off.len() as f64) as usize);
-            let at = |share: f64| at(share).copied().unwrap_or(f64::NAN);
-            let within = off.iter().filter(|off| **off <= wanted).count();
-            let percent = |share: f64| format!("{:.1} %", 100.0 * share);
-            let share = |count: usize| percent(count as f64 / off.len().max(1) as f64);
-            rows.push([
-                format!("{}, {name}", class.name()),
-                off.len().to_string(),
-                share(held),
-                percent(at(0.5)),
-                percent(at(0.95)),
-                share(within),
-                percent(wanted),
-            ]);
+    }
+    // What counts most of all classes first.
+    for places in [0..MOST_ASKED, MOST_ASKED..OF_ROTOR.len()] {
+        for class in CLASSES {
+            let own = jobs.iter().zip(&all).filter(|((c, _), _)| *c == class);
+            let told: Vec<&Vec<Told>> = own.filter_map(|(_, t)| t.as_ref().ok()).collect();
+            let own = places.clone().map(|place| row(class, place, &told));
+            rows.extend(own);
         }
     }
     OfRotors {
         rows,
+        odd,
         story: format!(
             "{number} rotors of each class with an unbalance of 0.2 to 3 % of the clearance; errors as shares of what is, of the cap over the clearance, of the way between the bearings. Logs that are refused: {}.",
             refused.join(", ")
