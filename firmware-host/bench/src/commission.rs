@@ -179,7 +179,8 @@ impl Commissioned {
 
     fn of_contact(&mut self) {
         for name in OF_CONTACT {
-            let reason = "shows in contact alone: give the record of a touch-down for the first two";
+            let reason =
+                "shows in contact alone: give the record of a touch-down for the first two";
             self.miss(name, reason);
         }
     }

@@ -80,7 +80,10 @@ fn is_record(path: &Path) -> bool {
 /// What a record tells, compared with what it says that its supervisor was configured with.
 fn of_record(args: &CommissionArgs, path: &Path) -> Result<Commissioned, CommandError> {
     let no_log = |what: &str| {
-        let message = format!("{}: a flight record, and {what} is of a log", path.display());
+        let message = format!(
+            "{}: a flight record, and {what} is of a log",
+            path.display()
+        );
         wrong(message, "leave the option out, or give a log")
     };
     match (&args.walk, args.column.is_empty(), &args.machine) {
@@ -113,8 +116,8 @@ fn of_logs(args: &CommissionArgs, machine: Option<&Machine>) -> Result<Commissio
             ));
         }
         let places = of.two_planes()?;
-        let mut found = (Commissioned::of_rotor(&logs, &places))
-            .map_err(|e| refused(&args.logs[0], e))?;
+        let mut found =
+            (Commissioned::of_rotor(&logs, &places)).map_err(|e| refused(&args.logs[0], e))?;
         found.compare(&of.of_rotor(&places)?);
         return Ok(found);
     }

@@ -538,7 +538,10 @@ pub fn drawn(of: Machines, extent: Extent, progress: &dyn Progress) -> Result<Re
             ),
             Chapter::new(
                 "What logs of rotors in two planes tell",
-                vec![Block::text(of_rotor_logs.story), Block::table(logs::COLUMNS, of_rotor_logs.rows)],
+                vec![
+                    Block::text(of_rotor_logs.story),
+                    Block::table(logs::COLUMNS, of_rotor_logs.rows),
+                ],
             ),
             Chapter::new(
                 "Rotors in two bearings",

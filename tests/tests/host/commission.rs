@@ -258,8 +258,11 @@ fn both_ends() -> (TempDir, [PathBuf; 2], PathBuf) {
         .lines()
         .filter(|line| line.contains("configuration checked") && line.contains("passed"));
     assert_eq!(checked.count(), 2, "{table}");
-    let traces = ["far_end", "wheel_end"]
-        .map(|plane| folder.path().join(format!("trace_supervisor_{plane}.parquet")));
+    let traces = ["far_end", "wheel_end"].map(|plane| {
+        folder
+            .path()
+            .join(format!("trace_supervisor_{plane}.parquet"))
+    });
     (folder, traces, scene)
 }
 
@@ -286,7 +289,15 @@ fn a_rotor_in_two_planes_is_found() {
     let (folder, [far, wheel], scene) = both_ends();
     let (machine, json) = (Path::new("--machine"), Path::new("--json"));
     let page = folder.path().join("fits.html");
-    let asked = [&far, &wheel, machine, &scene, json, Path::new("--page"), &page];
+    let asked = [
+        &far,
+        &wheel,
+        machine,
+        &scene,
+        json,
+        Path::new("--page"),
+        &page,
+    ];
     let (code, said, err) = commission(&asked);
     assert_eq!(code, Some(0), "{err}");
     let parsed: Value = serde_json::from_str(&said).unwrap();
@@ -306,7 +317,11 @@ fn a_rotor_in_two_planes_is_found() {
         // A tenth of the cap over the clearance.
         assert!((value + 1e5).abs() < 0.1 * 4e6, "{plane}: {value}");
     }
-    assert_eq!(parsed["contradictions"].as_array().unwrap().len(), 0, "{said}");
+    assert_eq!(
+        parsed["contradictions"].as_array().unwrap().len(),
+        0,
+        "{said}"
+    );
     let html = fs::read_to_string(&page).unwrap();
     assert!(html.contains("<svg") && html.contains("transverse_inertia_kg_m2"));
     assert!(html.contains("far end, x") && !html.contains("<script"));
@@ -319,16 +334,33 @@ fn a_rotor_in_two_planes_is_found() {
     let parsed: Value = serde_json::from_str(&said).unwrap();
     let contradicted = parsed["contradictions"].as_array().unwrap();
     let lost = |of: &Value| of["lost_share"].as_f64();
-    assert!(contradicted.iter().any(|c| c["name"] == "mass_kg"), "{said}");
-    assert!(contradicted[0]["name"].as_str().unwrap().ends_with("force_factor"));
+    assert!(
+        contradicted.iter().any(|c| c["name"] == "mass_kg"),
+        "{said}"
+    );
+    assert!(
+        contradicted[0]["name"]
+            .as_str()
+            .unwrap()
+            .ends_with("force_factor")
+    );
     assert!(lost(&contradicted[0]) >= lost(&contradicted[contradicted.len() - 1]));
 
     let (code, out, said) = commission(&[&far, &wheel]);
-    assert!(code == Some(2) && out.is_empty() && said.contains("--machine"), "{said}");
+    assert!(
+        code == Some(2) && out.is_empty() && said.contains("--machine"),
+        "{said}"
+    );
     let (code, out, said) = commission(&[&wheel, &far, machine, &scene]);
-    assert!(code == Some(2) && out.is_empty(), "{said}");
+    assert!(
+        code == Some(2) && out.is_empty() && said.contains("order of the scene"),
+        "{said}"
+    );
     let (code, out, said) = commission(&[&far, &wheel, machine, &scene_path("commissioning")]);
-    assert!(code == Some(2) && out.is_empty() && said.contains("two planes"), "{said}");
+    assert!(
+        code == Some(2) && out.is_empty() && said.contains("two planes"),
+        "{said}"
+    );
 }
 
 #[test]
@@ -350,13 +382,15 @@ fn one_log_of_two_planes_tells_the_same() {
     ];
     let mut csv = "t_s,spin_rad_s".to_owned();
     for plane in ["far end", "wheel end"] {
-        own.iter().for_each(|name| csv += &format!(",{plane}.{name}"));
+        own.iter()
+            .for_each(|name| csv += &format!(",{plane}.{name}"));
     }
     csv += "\n";
     for (a, b) in first.iter().zip(&second) {
         csv += &format!("{},{}", a[at("t_s")], a[at("spin_rad_s")]);
         for row in [a, b] {
-            own.iter().for_each(|name| csv += &format!(",{}", row[at(name)]));
+            own.iter()
+                .for_each(|name| csv += &format!(",{}", row[at(name)]));
         }
         csv += "\n";
     }
@@ -365,9 +399,16 @@ fn one_log_of_two_planes_tells_the_same() {
     let (code, again, err) = commission(&[&both, machine, &scene, json]);
     assert_eq!(code, Some(0), "{err}");
     let again: Value = serde_json::from_str(&again).unwrap();
-    for name in ["mass_kg", "transverse_inertia_kg_m2", "wheel end.sensor_noise_m"] {
+    for name in [
+        "mass_kg",
+        "transverse_inertia_kg_m2",
+        "wheel end.sensor_noise_m",
+    ] {
         let [[one, ..], [other, ..]] = [found(&parsed, name), found(&again, name)];
-        assert!((one / other - 1.0).abs() < 1e-3, "{name}: {one} and {other}");
+        assert!(
+            (one / other - 1.0).abs() < 1e-3,
+            "{name}: {one} and {other}"
+        );
     }
 }
 
@@ -382,13 +423,26 @@ fn a_record_says_what_it_can_and_what_not() {
     let (code, said, err) = commission(&[&record, Path::new("--json")]);
     assert_eq!(code, Some(0), "{err}");
     let parsed: Value = serde_json::from_str(&said).unwrap();
-    let [value, low, high] = found(&parsed, "friction_coefficient");
-    assert!(low <= value && value <= high);
+    // As the scene has it.
+    let [value, low, high] = found(&parsed, "sensor_noise_m");
+    assert!(low <= 1e-6 && 1e-6 <= high, "{value}");
     let missing = parsed["not_found"].as_array().unwrap();
-    let mass = missing.iter().find(|m| m["name"] == "mass_kg").unwrap();
-    assert!(mass["reason"].as_str().unwrap().contains("no stimulus"));
-    for more in [["--machine".as_ref(), scene.as_path()], ["--walk".as_ref(), scene.as_path()]] {
+    for (name, why) in [
+        ("mass_kg", "no stimulus"),
+        ("friction_coefficient", "closely enough"),
+        ("spin_sense", "turns less"),
+    ] {
+        let one = missing.iter().find(|m| m["name"] == name).unwrap();
+        assert!(one["reason"].as_str().unwrap().contains(why), "{said}");
+    }
+    for more in [
+        ["--machine".as_ref(), scene.as_path()],
+        ["--walk".as_ref(), scene.as_path()],
+    ] {
         let (code, out, said) = commission(&[&record, more[0], more[1]]);
-        assert!(code == Some(2) && out.is_empty() && said.contains("flight record"), "{said}");
+        assert!(
+            code == Some(2) && out.is_empty() && said.contains("flight record"),
+            "{said}"
+        );
     }
 }

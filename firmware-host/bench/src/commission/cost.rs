@@ -58,15 +58,27 @@ const MEASURED: &[(&str, &[Told])] = &[
     ),
     (
         "time_to_force_s",
-        &[told(1.0, 0.0, 1.0), told(2.0, 0.0, 1.0), told(4.0, 10.0, 1.0)],
+        &[
+            told(1.0, 0.0, 1.0),
+            told(2.0, 0.0, 1.0),
+            told(4.0, 10.0, 1.0),
+        ],
     ),
     (
         "sensor_noise_m",
-        &[told(1.0, 0.0, 1.0), told(3.0, 0.0, 1.0), told(9.0, 3.0, 1.0)],
+        &[
+            told(1.0, 0.0, 1.0),
+            told(3.0, 0.0, 1.0),
+            told(9.0, 3.0, 1.0),
+        ],
     ),
     (
         "inertia_kg_m2",
-        &[told(0.8, 0.0, 1.0), told(1.0, 0.0, 1.0), told(1.25, 0.0, 1.0)],
+        &[
+            told(0.8, 0.0, 1.0),
+            told(1.0, 0.0, 1.0),
+            told(1.25, 0.0, 1.0),
+        ],
     ),
 ];
 
@@ -111,7 +123,10 @@ impl Cost {
             None => "not measured".to_owned(),
             Some(Self { lost, .. }) if lost >= 1.0 => "the rotor".to_owned(),
             Some(Self { lost, force }) if lost * BLOWS >= 0.5 => {
-                format!("{:.1} % of blows lost, contact force × {force:.2}", 100.0 * lost)
+                format!(
+                    "{:.1} % of blows lost, contact force × {force:.2}",
+                    100.0 * lost
+                )
             }
             Some(Self { force, .. }) => format!("no blow lost, contact force × {force:.2}"),
         }
@@ -153,7 +168,10 @@ mod tests {
         // On rows as they are, between them, beyond them, and of one-sided ones.
         let close = |name: &str, times: f64, lost: f64| {
             let cost = Cost::of(name, times, 1.0).unwrap();
-            assert!((cost.lost * BLOWS - lost).abs() < 1e-9, "{name} {times}: {cost:?}");
+            assert!(
+                (cost.lost * BLOWS - lost).abs() < 1e-9,
+                "{name} {times}: {cost:?}"
+            );
         };
         close("force_factor", 0.64, 28.0);
         close("force_factor", 1.0, 0.0);

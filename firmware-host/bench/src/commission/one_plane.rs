@@ -1,6 +1,8 @@
 //! A rotor as a mass in one plane: ẍ + κ·x = G·f with τ·ḟ + f = u, G by rows, κ stiffness over mass, τ the time from a command to its force.
 
-use crate::commission::fit::{Fit, Model, Problem, UNEXPLAINED, hidden, unexplained, without_outliers};
+use crate::commission::fit::{
+    Fit, Model, Problem, UNEXPLAINED, hidden, unexplained, without_outliers,
+};
 use crate::commission::spectrum::{Complex64, Line};
 use crate::commission::{Commissioned, Found, Missing};
 use crate::log_file::LogError;

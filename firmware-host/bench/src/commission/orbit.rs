@@ -72,7 +72,11 @@ mod tests {
         let rows = 4_000;
         let angles: Vec<f64> = (0..rows).map(|i| 0.03 * f64::from(i)).collect();
         let weights: Vec<f64> = (0..rows)
-            .map(|i| (std::f64::consts::PI * f64::from(i) / 4_000.0).sin().powi(4))
+            .map(|i| {
+                (std::f64::consts::PI * f64::from(i) / 4_000.0)
+                    .sin()
+                    .powi(4)
+            })
             .collect();
         let small = |i: usize| 1e-7 * (0.051 * i as f64).sin();
         let values: Vec<[f64; 2]> = (angles.iter().enumerate())
@@ -83,7 +87,10 @@ mod tests {
             .collect();
         let left = without_orbit(&values, &angles, &weights);
         for (i, [x, y]) in left.iter().enumerate() {
-            assert!((x - small(i)).abs() < 2e-9 && y.abs() < 1e-12, "{i}: {x} {y}");
+            assert!(
+                (x - small(i)).abs() < 2e-9 && y.abs() < 1e-12,
+                "{i}: {x} {y}"
+            );
         }
     }
 }

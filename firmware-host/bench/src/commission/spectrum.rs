@@ -214,7 +214,9 @@ impl Shaped {
         };
         let [position_m, slope, bend] = [0, 1, 2].map(|shape| at(&self.position, shape));
         let turn = Complex64::new(0.0, omega_rad_s);
-        let pairs = |a: &[Complex64; 2], b: &[Complex64; 2], of: &dyn Fn(Complex64, Complex64) -> Complex64| {
+        let pairs = |a: &[Complex64; 2],
+                     b: &[Complex64; 2],
+                     of: &dyn Fn(Complex64, Complex64) -> Complex64| {
             [of(a[0], b[0]), of(a[1], b[1])]
         };
         // ∫φ·ẋ is −∫φ̇·x, with φ = w·e^(−jωt).

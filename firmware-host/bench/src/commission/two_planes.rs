@@ -4,7 +4,9 @@
 //! rotor there, ẍ_i = Σ_j h_ij·(B_j·f_j − κ_j·z_j) + s_i·(I_p/I_t)·Ω·(−θ̇_y, θ̇_x), τ_j·ḟ_j + f_j = u_j: B_j force factor and axes over mass, κ_j
 //! stiffness over mass. Places are those of the scene. Of gains and places only products show.
 
-use crate::commission::fit::{Fit, Model, Problem, UNEXPLAINED, hidden, unexplained, without_outliers};
+use crate::commission::fit::{
+    Fit, Model, Problem, UNEXPLAINED, hidden, unexplained, without_outliers,
+};
 use crate::commission::one_plane::{MOST_DELAY, determinant, of_axes};
 use crate::commission::spectrum::{Complex64, Line};
 use crate::commission::{Commissioned, Found, Missing};
@@ -133,11 +135,7 @@ pub(super) struct Fitted {
 }
 
 /// The fit, without windows in which something else moves the rotor.
-pub(super) fn fitted(
-    lines: &[Line],
-    period_s: f64,
-    of: &TwoPlanes,
-) -> Result<Fitted, LogError> {
+pub(super) fn fitted(lines: &[Line], period_s: f64, of: &TwoPlanes) -> Result<Fitted, LogError> {
     let model = Rigid::new(of);
     let first = least(&model, lines, period_s)?;
     let lines = without_outliers(&model, lines, &first, 2 * LEAST_WINDOWS);
@@ -151,7 +149,7 @@ pub(super) fn fitted(
     if values[RATIO] <= 0.0 {
         return Err(LogError::new(
             "a force at one end tilts the rotor the wrong way, as if its transverse inertia were negative",
-            "check that each plane's columns are its own, and position_m of sensors and magnets in the scene",
+            "give the logs in the order of the scene's planes; check position_m of sensors and magnets in the scene",
         ));
     }
     let fit = problem.known(values, OF_FIT).ok_or_else(unclear)?;
@@ -160,7 +158,9 @@ pub(super) fn fitted(
         found.high - found.low <= 2.0 * WIDEST * found.value.abs()
     });
     if !narrow || unexplained(&model, &lines, &fit.values) > UNEXPLAINED {
-        return Err(hidden());
+        let LogError { message, help } = hidden();
+        let order = "give the logs in the order of the scene's planes";
+        return Err(LogError::new(message, format!("{order}; {help}")));
     }
     let wider = free(&lines, &[CENTRE_M, TURNED_RAD]);
     let wide = Problem {

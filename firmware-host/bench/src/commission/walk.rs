@@ -24,7 +24,10 @@ impl Commissioned {
     /// Where there is no walk.
     pub fn without_walk(&mut self) {
         for name in ["clearance_m", "retainer_centre_x_m", "retainer_centre_y_m"] {
-            self.miss(name, "shows at the wall alone: give the log of a walk with --walk");
+            self.miss(
+                name,
+                "shows at the wall alone: give the log of a walk with --walk",
+            );
         }
     }
 

@@ -61,7 +61,14 @@ fn short(x: f64) -> String {
 fn numbers(found: &Commissioned) -> Listing {
     let rows = found.parameters.iter().map(|f| {
         let [value, low, high] = [f.value, f.low, f.high].map(short);
-        vec![f.name.clone(), f.unit.to_owned(), value, low, high, f.from.clone()]
+        vec![
+            f.name.clone(),
+            f.unit.to_owned(),
+            value,
+            low,
+            high,
+            f.from.clone(),
+        ]
     });
     let headings = ["number", "unit", "value", "at least", "at most", "from"];
     Listing {
@@ -116,7 +123,7 @@ fn fit(answer: &Answer) -> Chart {
     Chart {
         label: format!("Motion along {}", answer.name),
         x: frequencies(answer),
-        y: Axis::log("amplitude / µm", amplitudes(&[&read, &fitted])),
+        y: Axis::linear("amplitude / µm", amplitudes(&[&read, &fitted])),
         curves: vec![read, fitted],
     }
 }
@@ -125,7 +132,9 @@ fn fit(answer: &Answer) -> Chart {
 fn rest(answer: &Answer) -> Chart {
     let rest = Curve {
         name: "left".to_owned(),
-        points: points(answer, |p| 100.0 * p.left_m / p.read_m.max(f64::MIN_POSITIVE)),
+        points: points(answer, |p| {
+            100.0 * p.left_m / p.read_m.max(f64::MIN_POSITIVE)
+        }),
         mark: Mark::Dots,
         colour: 2,
     };
@@ -145,17 +154,13 @@ fn points(answer: &Answer, of: fn(&AnswerPoint) -> f64) -> Vec<(f64, f64)> {
 
 fn frequencies(answer: &Answer) -> Axis {
     let of = |p: &AnswerPoint| p.frequency_hz;
-    let low = answer.points.iter().map(of).fold(f64::MAX, f64::min);
-    let high = answer.points.iter().map(of).fold(low, f64::max);
-    Axis::log("frequency / Hz", (0.9 * low, 1.1 * high))
+    let high = answer.points.iter().map(of).fold(1.0, f64::max);
+    Axis::linear("frequency / Hz", (0.0, 1.1 * high))
 }
 
+/// From nothing to beyond the largest.
 fn amplitudes(curves: &[&Curve]) -> (f64, f64) {
-    let values = || curves.iter().flat_map(|c| &c.points).map(|p| p.1);
-    let high = values().fold(0.0, f64::max);
-    let low = values().fold(high, f64::min).max(1e-4 * high);
-    match high > 0.0 {
-        true => (0.8 * low, 1.25 * high),
-        false => (0.1, 1.0),
-    }
+    let values = curves.iter().flat_map(|c| &c.points).map(|p| p.1);
+    let high = values.fold(0.0, f64::max);
+    (0.0, if high > 0.0 { 1.1 * high } else { 1.0 })
 }

@@ -41,8 +41,14 @@ impl Machine {
     pub(super) fn two_planes(&self) -> Result<TwoPlanes, CommandError> {
         let both = self.shaft().zip(self.scene.supervised());
         let (shaft, planes) = both.ok_or_else(|| {
-            let message = format!("{}: has no two planes with a magnet each", self.path.display());
-            wrong(message, "give one log with a scene of one plane, or a scene of two")
+            let message = format!(
+                "{}: has no two planes with a magnet each",
+                self.path.display()
+            );
+            wrong(
+                message,
+                "give one log with a scene of one plane, or a scene of two",
+            )
         })?;
         Ok(TwoPlanes {
             names: planes.map(|plane| self.scene.planes[plane].name.clone()),
@@ -81,9 +87,8 @@ impl Machine {
             ("sensors_turned_rad", 0.0),
             ("spin_sense", 1.0),
         ];
-        let mut known: Vec<(String, f64)> = named
-            .map(|(name, value)| (name.to_owned(), value))
-            .to_vec();
+        let mut known: Vec<(String, f64)> =
+            named.map(|(name, value)| (name.to_owned(), value)).to_vec();
         for (plane, name) in planes.into_iter().zip(&of.names) {
             known.extend(self.parameters(plane, &format!("{name}."))?);
             known.push((format!("{name}.force_factor"), 1.0));

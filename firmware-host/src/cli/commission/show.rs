@@ -9,11 +9,7 @@ use std::collections::BTreeSet;
 use supervisor::PARAMETERS;
 
 /// Numbers of a rotor that a scene and a shaft have, beside those of planes.
-const OF_ROTOR: [&str; 3] = [
-    "mass_kg",
-    "transverse_inertia_kg_m2",
-    "polar_inertia_kg_m2",
-];
+const OF_ROTOR: [&str; 3] = ["mass_kg", "transverse_inertia_kg_m2", "polar_inertia_kg_m2"];
 
 /// What is found of the configuration, as it is written there.
 pub(super) fn listing(found: &[Found], format: Format) -> String {
@@ -31,10 +27,10 @@ pub(super) fn listing(found: &[Found], format: Format) -> String {
             Format::Rust | Format::C => lines,
         };
     }
-    let (opened, comment) = match format {
-        Format::Toml => ("[rotor]\n", "# "),
-        Format::Rust => ("// Of the shaft.\n", "// "),
-        Format::C => ("/* Of the shaft. */\n", ""),
+    let opened = match format {
+        Format::Toml => "[rotor]\n",
+        Format::Rust => "// Of the shaft.\n",
+        Format::C => "/* Of the shaft. */\n",
     };
     let rotor = (found.iter()).filter(|f| OF_ROTOR.contains(&&*f.name));
     let mut out = opened.to_owned();
@@ -42,21 +38,23 @@ pub(super) fn listing(found: &[Found], format: Format) -> String {
         Format::C => format!("shaft.{} = {:.4e}f; /* {} */\n", f.name, f.value, remark(f)),
         _ => line(&f.name, f, format),
     }));
-    for plane in planes {
-        let own = |f: &&Found| f.name.rsplit_once('.').is_some_and(|(of, _)| of == plane);
-        out += &match format {
-            Format::C => format!("/* Plane {plane}. */\n"),
-            Format::Toml => format!("[[plane]]\nname = {plane:?}\n[plane.supervisor]\n"),
-            Format::Rust => format!("{comment}Plane {plane}.\n"),
+    // Masses and ratios of planes follow from the shaft.
+    for plane in planes
+        .into_iter()
+        .filter(|_| matches!(format, Format::Toml))
+    {
+        let name = format!("{plane}.magnet_stiffness_n_m");
+        let Some(f) = found.iter().find(|f| f.name == name) else {
+            continue;
         };
-        for f in found.iter().filter(own) {
-            let name = f.name.rsplit_once('.').map_or("", |(_, name)| name);
-            // Masses and ratios follow from the shaft.
-            let follows = ["mass_kg", "retainer_plane_ratio", "magnet_plane_ratio"];
-            if PARAMETERS.iter().any(|p| p.name == name) && !follows.contains(&name) {
-                out += &line(name, f, format);
-            }
-        }
+        let pull = Found {
+            value: -f.value,
+            low: -f.high,
+            high: -f.low,
+            ..f.clone()
+        };
+        out += &format!("[[plane]]\nname = {plane:?}\n[plane.magnet]\n");
+        out += &line("negative_stiffness_n_m", &pull, format);
     }
     out
 }
@@ -83,7 +81,14 @@ pub(super) fn tables(of: &Commissioned) -> Result<(), CommandError> {
     let columns = ["number", "unit", "value", "at least", "at most", "from"];
     let rows = of.parameters.iter().map(|f| {
         let [value, low, high] = [f.value, f.low, f.high].map(number);
-        vec![f.name.clone(), f.unit.to_owned(), value, low, high, f.from.clone()]
+        vec![
+            f.name.clone(),
+            f.unit.to_owned(),
+            value,
+            low,
+            high,
+            f.from.clone(),
+        ]
     });
     tell(&table(&columns, rows))?;
     if !of.contradictions.is_empty() {

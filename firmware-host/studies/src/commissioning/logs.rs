@@ -99,9 +99,15 @@ pub(super) fn identification(seed: u64, machines: u64, progress: &dyn Progress) 
         let sensors = SENSORS[*number as usize % SENSORS.len()].name();
         match one {
             Ok(Some(one)) => {
-                let wrong = one.iter().filter(|(f, is, _)| !(f.low..=f.high).contains(is));
+                let wrong = one
+                    .iter()
+                    .filter(|(f, is, _)| !(f.low..=f.high).contains(is));
                 odd.extend(wrong.map(|(f, is, _)| {
-                    format!("log of machine {number}, {sensors}: {} is {is:.4e}: {}", f.name, said(f))
+                    format!(
+                        "log of machine {number}, {sensors}: {} is {is:.4e}: {}",
+                        f.name,
+                        said(f)
+                    )
                 }));
                 told.push(one);
             }
@@ -148,7 +154,6 @@ pub(super) struct OfMachines {
     pub(super) rows: Vec<[String; 6]>,
     pub(super) odd: Vec<String>,
 }
-
 
 /// Columns of a table of numbers.
 pub(super) const COLUMNS: [&str; 7] = [
@@ -202,7 +207,11 @@ fn of_rotor(seed: u64, class: Class, number: u64) -> Result<Vec<Told>, String> {
     let text = case.toml().replacen("polar_inertia_kg_m2 =", &text, 1);
     let mut scene = Scene::parse(&case.text(), &text).map_err(|error| error.to_string())?;
     let mut longest_s = WINDOW.0;
-    for config in scene.planes.iter_mut().filter_map(|p| p.supervisor.as_mut()) {
+    for config in scene
+        .planes
+        .iter_mut()
+        .filter_map(|p| p.supervisor.as_mut())
+    {
         longest_s = longest_s.max(WINDOW.1 * f64::from(config.scaling().time_s));
         config.check_first = 1.0;
     }
@@ -228,7 +237,9 @@ fn of_rotor(seed: u64, class: Class, number: u64) -> Result<Vec<Told>, String> {
     };
     let found = Commissioned::of_rotor(&logs, &machine).map_err(|error| error.message)?;
     let apart_m = measures.ends_m[0] + measures.ends_m[1];
-    let late_s = scene.planes[0].supervisor.map_or(0.0, |c| c.amplifier_lag_s.into());
+    let late_s = scene.planes[0]
+        .supervisor
+        .map_or(0.0, |c| c.amplifier_lag_s.into());
     let stiffness_n_m = measures.force_n / measures.clearance_m;
     let truth = [
         (measures.mass_kg, measures.mass_kg),
@@ -240,11 +251,14 @@ fn of_rotor(seed: u64, class: Class, number: u64) -> Result<Vec<Told>, String> {
         (0.0, apart_m),
         (0.0, 1.0),
     ];
-    let told = OF_ROTOR.iter().zip(truth).map(|((name, _), (is, scale))| Told {
-        found: found.parameters.iter().find(|f| f.name == *name).cloned(),
-        is,
-        scale,
-    });
+    let told = OF_ROTOR
+        .iter()
+        .zip(truth)
+        .map(|((name, _), (is, scale))| Told {
+            found: found.parameters.iter().find(|f| f.name == *name).cloned(),
+            is,
+            scale,
+        });
     Ok(told.collect())
 }
 

@@ -71,7 +71,11 @@ const OF_ROTOR: [(&str, Option<Change>); 3] = [
 ];
 
 /// Rotors by class and mistake.
-pub(super) fn rotors(seed: u64, number: u64, progress: &dyn Progress) -> (Vec<[String; 6]>, Vec<String>) {
+pub(super) fn rotors(
+    seed: u64,
+    number: u64,
+    progress: &dyn Progress,
+) -> (Vec<[String; 6]>, Vec<String>) {
     let mut jobs = Vec::new();
     for class in CLASSES {
         for (mistake, _) in OF_ROTOR.iter().enumerate() {
@@ -126,4 +130,3 @@ pub(super) fn rotors(seed: u64, number: u64, progress: &dyn Progress) -> (Vec<[S
     }
     (rows, odd)
 }
-
