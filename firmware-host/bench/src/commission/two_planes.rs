@@ -109,7 +109,6 @@ impl Model for Rigid {
             POLAR => 1e-6,
             10 | 11 => 1e-3,
             12 | 13 => 1e-9,
-            CENTRE_M => 1e-7,
             _ => 1e-7,
         };
         (v[number].abs() * 1e-6).max(least)
