@@ -165,12 +165,12 @@ impl RotorCase {
     }
 
     /// Polar inertia \[kg m²\].
-    pub fn polar_kg_m2(&self) -> f64 {
+    pub(crate) fn polar_kg_m2(&self) -> f64 {
         self.polar_kg_m2
     }
 
     /// With what each magnet pulls the rotor out of the middle \[N/m\].
-    pub fn negative_n_m(&self) -> f64 {
+    pub(crate) fn negative_n_m(&self) -> f64 {
         self.negative_n_m
     }
 
