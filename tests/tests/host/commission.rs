@@ -289,7 +289,7 @@ fn a_rotor_in_two_planes_is_found() {
     let (folder, [far, wheel], scene) = both_ends();
     let (machine, json) = (Path::new("--machine"), Path::new("--json"));
     let page = folder.path().join("fits.html");
-    let asked = [
+    let asked: [&Path; 7] = [
         &far,
         &wheel,
         machine,
@@ -425,7 +425,7 @@ fn a_record_says_what_it_can_and_what_not() {
     let parsed: Value = serde_json::from_str(&said).unwrap();
     // As the scene has it.
     let [value, low, high] = found(&parsed, "sensor_noise_m");
-    assert!(low <= 1e-6 && 1e-6 <= high, "{value}");
+    assert!((low..=high).contains(&1e-6), "{value}");
     let missing = parsed["not_found"].as_array().unwrap();
     for (name, why) in [
         ("mass_kg", "no stimulus"),
@@ -436,8 +436,8 @@ fn a_record_says_what_it_can_and_what_not() {
         assert!(one["reason"].as_str().unwrap().contains(why), "{said}");
     }
     for more in [
-        ["--machine".as_ref(), scene.as_path()],
-        ["--walk".as_ref(), scene.as_path()],
+        [Path::new("--machine"), scene.as_path()],
+        [Path::new("--walk"), scene.as_path()],
     ] {
         let (code, out, said) = commission(&[&record, more[0], more[1]]);
         assert!(
