@@ -33,7 +33,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Rooms, each importing only from those above it: `words`, `bisection`, `crossover`, `log_file`, `device`, `scene`, `commission`, `record`, `run`, `modes`, `report`, `advise`, `sweep`.
+//! Rooms, each importing only from those above it: `words`, `bisection`, `crossover`, `log_file`, `device`, `scene`, `record`, `commission`, `run`, `modes`, `report`, `advise`, `sweep`.
 
 #![forbid(unsafe_code)]
 #![warn(clippy::unwrap_used, clippy::expect_used, clippy::panic)]

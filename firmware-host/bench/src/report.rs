@@ -3,6 +3,7 @@
 
 mod axes;
 pub mod campbell;
+pub mod commission;
 mod data;
 mod document;
 pub mod drawn;

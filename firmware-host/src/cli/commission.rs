@@ -1,32 +1,39 @@
 //! `commission LOG`: the numbers of a machine from a recorded run in which its supervisor checked them.
 
+mod configured;
+mod show;
+
 use crate::cli::advise::Format;
 use crate::cli::error::{CommandError, pretty, print};
-use crate::cli::load;
-use crate::cli::screen::tell;
+use crate::cli::output::OutputError;
+use configured::Machine;
+use firmware_bench::commission::Commissioned;
 use firmware_bench::commission::log::Log;
-use firmware_bench::commission::{Commissioned, Found};
-use firmware_bench::log_file::{LogError, Renamed};
-use firmware_bench::report::lines::lined;
+use firmware_bench::commission::record::OfRecord;
+use firmware_bench::log_file::{LogError, LogFile, Renamed};
+use firmware_bench::record::file::RecordFile;
+use firmware_bench::report::commission;
 use std::path::{Path, PathBuf};
-use supervisor::PARAMETERS;
 
 /// Arguments of `commission`.
 #[derive(Debug, Clone, clap::Args)]
 pub struct CommissionArgs {
     /// Log of one plane, as CSV, Parquet, MAT or MCAP: t_s, measured_x_m, measured_y_m, commanded_x_n, commanded_y_n,
-    /// stimulus_x_n, stimulus_y_n and perhaps spin_rad_s, a row a tick. A trace of run is one.
-    pub log: PathBuf,
+    /// stimulus_x_n, stimulus_y_n and perhaps spin_rad_s, a row a tick. A trace of run is one. Of a rotor in two planes two logs, or
+    /// one with PLANE.measured_x_m and so on. Or a flight record.
+    #[arg(required = true, num_args = 1..=2, value_name = "LOG")]
+    pub logs: Vec<PathBuf>,
     /// A column of the log that has another name, and perhaps another unit, e.g. measured_x_m=x1_um*1e-6.
     #[arg(long, value_name = "NAME=COLUMN[*FACTOR]")]
     pub column: Vec<Renamed>,
     /// Log of a walk, the rotor slowly led along its retainer bearing all the way round: clearance and centre.
     #[arg(long, value_name = "LOG")]
     pub walk: Option<PathBuf>,
-    /// Scene of the machine: what its supervisor is configured with is compared with what is found.
+    /// Scene of the machine: what its supervisor is configured with is compared with what is found. Of two planes it says what stands
+    /// where.
     #[arg(long, value_name = "SCENE")]
     pub machine: Option<PathBuf>,
-    /// Plane of that scene, from 0 on.
+    /// Plane of that scene, from 0 on, of a log of one.
     #[arg(long, default_value_t = 0, requires = "machine")]
     pub plane: usize,
     /// Print what is found of the configuration as it is written in firmware or a scene, in place of the tables.
@@ -35,6 +42,9 @@ pub struct CommissionArgs {
     /// Print JSON instead of the tables.
     #[arg(long)]
     pub json: bool,
+    /// Write a page with the fits, too.
+    #[arg(long, value_name = "FILE")]
+    pub page: Option<PathBuf>,
 }
 
 /// Runs the command.
@@ -42,24 +52,124 @@ pub struct CommissionArgs {
 /// # Errors
 /// [`CommandError`].
 pub fn execute(args: &CommissionArgs) -> Result<(), CommandError> {
-    let log = Log::read(&args.log, &args.column).map_err(|e| refused(&args.log, e))?;
-    let mut commissioned = Commissioned::of(&log).map_err(|e| refused(&args.log, e))?;
-    match &args.walk {
-        Some(walk) => {
-            let positions_m = Log::positions(walk, &args.column).map_err(|e| refused(walk, e))?;
-            (commissioned.with_walk(&positions_m)).map_err(|e| refused(walk, e))?;
-        }
-        None => commissioned.without_walk(),
-    }
-    if let Some(machine) = &args.machine {
-        commissioned.compare(&configured(machine, args.plane)?);
+    let machine = args.machine.as_deref().map(Machine::load).transpose()?;
+    let commissioned = match &args.logs[..] {
+        [record] if !LogFile::is_at(record) && is_record(record) => of_record(args, record)?,
+        _ => of_logs(args, machine.as_ref())?,
+    };
+    if let Some(path) = &args.page {
+        let name = args.logs[0].display().to_string();
+        let page = commission::html(&name, &commissioned)
+            .map_err(|e| CommandError::other("drawing the page", e))?;
+        std::fs::write(path, page).map_err(OutputError::at(path))?;
     }
     if args.json {
         return print(&(pretty(&commissioned, "formatting what was found")? + "\n"));
     }
     match args.format {
-        Some(format) => print(&listing(&commissioned.parameters, format)),
-        None => tables(&commissioned),
+        Some(format) => print(&show::listing(&commissioned.parameters, format)),
+        None => show::tables(&commissioned),
+    }
+}
+
+/// Whether there is a record at this path, by what is in it.
+fn is_record(path: &Path) -> bool {
+    std::fs::read(path).is_ok_and(|bytes| !RecordFile::of(&bytes).records.is_empty())
+}
+
+/// What a record tells, compared with what it says that its supervisor was configured with.
+fn of_record(args: &CommissionArgs, path: &Path) -> Result<Commissioned, CommandError> {
+    let no_log = |what: &str| {
+        let message = format!(
+            "{}: a flight record, and {what} is of a log",
+            path.display()
+        );
+        wrong(message, "leave the option out, or give a log")
+    };
+    match (&args.walk, args.column.is_empty(), &args.machine) {
+        (Some(_), ..) => return Err(no_log("--walk")),
+        (_, false, _) => return Err(no_log("--column")),
+        (.., Some(_)) => return Err(no_log("--machine")),
+        _ => {}
+    }
+    let bytes = std::fs::read(path).map_err(|e| {
+        let message = format!("{}: {e}", path.display());
+        wrong(message, "give the file that the record was written to")
+    })?;
+    let file = RecordFile::of(&bytes);
+    let of = OfRecord::new(&file).ok_or_else(|| {
+        let message = format!("{}: no event is in it", path.display());
+        wrong(message, "give the sections of a frozen record")
+    })?;
+    let mut found = of.found;
+    found.compare(&of.configured);
+    Ok(found)
+}
+
+fn of_logs(args: &CommissionArgs, machine: Option<&Machine>) -> Result<Commissioned, CommandError> {
+    if let Some(logs) = of_both_planes(args, machine)? {
+        let of = machine.ok_or_else(without_scene)?;
+        if args.walk.is_some() {
+            return Err(wrong(
+                "--walk is of one plane, and the log is of two".to_owned(),
+                "give the log of each plane by itself with its walk",
+            ));
+        }
+        let places = of.two_planes()?;
+        let mut found =
+            (Commissioned::of_rotor(&logs, &places)).map_err(|e| refused(&args.logs[0], e))?;
+        found.compare(&of.of_rotor(&places)?);
+        return Ok(found);
+    }
+    let path = &args.logs[0];
+    let log = Log::read(path, &args.column).map_err(|e| refused(path, e))?;
+    let mut found = Commissioned::of(&log).map_err(|e| refused(path, e))?;
+    match &args.walk {
+        Some(walk) => {
+            let positions_m = Log::positions(walk, &args.column).map_err(|e| refused(walk, e))?;
+            (found.with_walk(&positions_m)).map_err(|e| refused(walk, e))?;
+        }
+        None => found.without_walk(),
+    }
+    if let Some(machine) = machine {
+        found.compare(&machine.of_plane(args.plane)?);
+    }
+    Ok(found)
+}
+
+/// Logs of both planes, where there are two or one has both.
+fn of_both_planes(
+    args: &CommissionArgs,
+    machine: Option<&Machine>,
+) -> Result<Option<[Log; 2]>, CommandError> {
+    if let [first, second] = &args.logs[..] {
+        let read = |path: &Path| Log::read(path, &args.column).map_err(|e| refused(path, e));
+        let logs = [read(first)?, read(second)?];
+        let [a, b] = &logs;
+        a.goes_with(b).map_err(|e| refused(second, e))?;
+        return Ok(Some(logs));
+    }
+    let path = &args.logs[0];
+    match machine.filter(|machine| machine.has_two_planes()) {
+        Some(machine) => {
+            let names = machine.two_planes()?.names;
+            Log::of_planes(path, &args.column, &names).map_err(|e| refused(path, e))
+        }
+        None => Ok(None),
+    }
+}
+
+fn without_scene() -> CommandError {
+    wrong(
+        "two logs, and no scene of their machine".to_owned(),
+        "give the scene with --machine: what stands where along the rotor is not in a log",
+    )
+}
+
+fn wrong(message: String, help: &str) -> CommandError {
+    CommandError::Numbers {
+        message,
+        help: help.to_owned(),
     }
 }
 
@@ -68,91 +178,4 @@ fn refused(path: &Path, LogError { message, help }: LogError) -> CommandError {
         message: format!("{}: {message}", path.display()),
         help,
     }
-}
-
-/// What the supervisor of a plane is configured with, of what a log can tell.
-fn configured(machine: &Path, plane: usize) -> Result<Vec<(&'static str, f64)>, CommandError> {
-    let scene = load(machine)?;
-    let config = scene.planes.get(plane).and_then(|plane| plane.supervisor);
-    let config = config.ok_or_else(|| CommandError::Numbers {
-        message: format!("{}: plane {plane} has no supervisor", machine.display()),
-        help: "give a scene with a magnet in this plane".to_owned(),
-    })?;
-    let values = PARAMETERS.iter().zip(config.values());
-    let mut known: Vec<(&'static str, f64)> = values
-        .map(|(p, value)| (p.name, f64::from(value)))
-        .collect();
-    // Traces have the command in effect: what is left is the lag.
-    known.push(("time_to_force_s", f64::from(config.amplifier_lag_s)));
-    known.push(("axes_turned_rad", 0.0));
-    known.push(("axes_handedness", 1.0));
-    known.push(("spin_sense", 1.0));
-    Ok(known)
-}
-
-fn listing(found: &[Found], format: Format) -> String {
-    let of_config = found
-        .iter()
-        .filter(|f| PARAMETERS.iter().any(|p| p.name == f.name));
-    let lines = of_config.map(
-        |Found {
-             name,
-             unit,
-             value,
-             low,
-             high,
-             from,
-         }| {
-            let remark = format!("{unit}, {low:.4e} to {high:.4e}: {from}");
-            match format {
-                Format::Toml => format!("{name} = {value:.4e}  # {remark}\n"),
-                Format::Rust => format!("    {name}: {value:.4e}, // {remark}\n"),
-                Format::C => format!(
-                    "config[AMB_P_{}] = {value:.4e}f; /* {remark} */\n",
-                    name.to_uppercase()
-                ),
-            }
-        },
-    );
-    let lines: String = lines.collect();
-    match format {
-        Format::Toml => format!("[supervisor]\n{lines}"),
-        Format::Rust | Format::C => lines,
-    }
-}
-
-fn tables(of: &Commissioned) -> Result<(), CommandError> {
-    let number = |x: f64| format!("{x:.4e}");
-    let columns = ["number", "unit", "value", "at least", "at most", "from"];
-    let rows = of.parameters.iter().map(|f| {
-        let cells = [f.value, f.low, f.high].map(number);
-        let [value, low, high] = cells;
-        vec![
-            f.name.to_owned(),
-            f.unit.to_owned(),
-            value,
-            low,
-            high,
-            f.from.clone(),
-        ]
-    });
-    tell(&table(&columns, rows))?;
-    if !of.contradictions.is_empty() {
-        let columns = ["configured otherwise", "as", "at least", "at most"];
-        let rows = of.contradictions.iter().map(|c| {
-            let [configured, low, high] = [c.configured, c.low, c.high].map(number);
-            vec![c.name.to_owned(), configured, low, high]
-        });
-        tell(&table(&columns, rows))?;
-    }
-    let rows = (of.not_found.iter()).map(|m| vec![m.name.to_owned(), m.reason.clone()]);
-    tell(&table(&["not found", "why"], rows))
-}
-
-fn table(columns: &[&str], rows: impl Iterator<Item = Vec<String>>) -> String {
-    let mut lines = lined(columns);
-    for row in rows {
-        lines.add_row(row);
-    }
-    format!("{lines}\n")
 }

@@ -1,19 +1,17 @@
 //! Whether mistakes of who links the supervisor are found before it acts, and right configurations pass.
 
+mod logs;
+mod rotors;
+
 use crate::campaign::{
     Block, Chapter, Claim, Extent, Machines, Progress, Report, StudyError, run_all,
 };
 use crate::machines::draw::Draw;
 use crate::machines::drawn::Machine;
-use crate::machines::rotors::{Class, RotorCase};
 use crate::paired::sensors::Sensors;
-use firmware_bench::commission::log::Log;
-use firmware_bench::commission::{Commissioned, Found};
-use firmware_bench::run::closed_loop::{Keep, Recorders, Rigour, record, run_policy};
+use firmware_bench::run::closed_loop::{Keep, run_policy};
 use firmware_bench::run::controller::{Supervise, supervised};
-use firmware_bench::run::trace::{Recorder, TraceRow};
 use firmware_bench::scene::Scene;
-use firmware_bench::scene::policy_kind::PolicyKind;
 use std::cell::Cell;
 use std::rc::Rc;
 use supervisor::{Checked, Command, Config, Finding, Sample, Supervisor};
@@ -393,239 +391,6 @@ fn outcome(scene: &Scene, mistake: &Mistake) -> Result<(Outcome, bool), String> 
     }
 }
 
-/// The log of a machine with nothing wrong, as `commission` reads one.
-#[derive(Debug, Default)]
-struct Logged(Log);
-
-impl Recorder for Logged {
-    fn row(&mut self, row: &TraceRow) {
-        let Some(said) = row.supervisor.filter(|_| !row.mode_change) else {
-            return;
-        };
-        let Log {
-            position_m,
-            command_n,
-            stimulus_n,
-            spin_rad_s,
-            ..
-        } = &mut self.0;
-        position_m.push(row.measured_m.into());
-        command_n.push(row.commanded_n.into());
-        stimulus_n.push(said.stimulus_n.map(f64::from));
-        spin_rad_s
-            .get_or_insert_default()
-            .push(row.plant.spin_rad_s);
-    }
-}
-
-/// Numbers that are identified, and how far off one may be as a share: of what it is, and of a stiffness of the cap over the clearance.
-const IDENTIFIED: [(&str, f64); 3] = [
-    ("mass_kg", 0.03),
-    ("stiffness_n_m", 0.1),
-    ("time_to_force_s", 0.1),
-];
-
-/// A number that is found, what it is, and what an error is a share of.
-type Identified = (Found, f64, f64);
-
-/// Of each of these what a log says and what it is; nothing of a log that is not long enough.
-fn identified(seed: u64, number: u64) -> Result<Option<[Identified; 3]>, String> {
-    let sensors = SENSORS[number as usize % SENSORS.len()];
-    let (mut scene, _) = scene(seed, number, sensors)?;
-    let config = scene.planes[0].supervisor.as_mut().ok_or("no supervisor")?;
-    config.check_first = 1.0;
-    let truth = [config.mass_kg, config.stiffness_n_m, config.amplifier_lag_s].map(f64::from);
-    let stiffness_n_m = f64::from(config.force_max_n / config.clearance_m);
-    let mut rows = [Logged::default()];
-    let recorders = Recorders::of_planes(&mut rows);
-    record(
-        &scene,
-        PolicyKind::Supervisor,
-        recorders,
-        Rigour::default(),
-        &mut |_| {},
-    )
-    .map_err(|error| error.to_string())?;
-    let [Logged(log)] = rows;
-    let log = Log {
-        period_s: 1.0 / scene.sample_rate_hz,
-        ..log
-    };
-    let Ok(commissioned) = Commissioned::of(&log) else {
-        return Ok(None);
-    };
-    let found = IDENTIFIED.map(|(name, _)| {
-        commissioned
-            .parameters
-            .iter()
-            .find(|f| f.name == name)
-            .cloned()
-    });
-    let [Some(mass), Some(stiffness), Some(late)] = found else {
-        return Err("a number is missing".to_owned());
-    };
-    Ok(Some([
-        (mass, truth[0], truth[0]),
-        (stiffness, truth[1], stiffness_n_m),
-        (late, truth[2], truth[2]),
-    ]))
-}
-
-/// How far off what logs say is, by number, and whether their intervals hold.
-fn identification(seed: u64, machines: u64, progress: &dyn Progress) -> Vec<[String; 6]> {
-    let numbers: Vec<u64> = (0..machines).collect();
-    let all = run_all(&numbers, progress, |number| identified(seed, *number));
-    let all: Vec<[Identified; 3]> = all
-        .into_iter()
-        .filter_map(|one| one.ok().flatten())
-        .collect();
-    let mut rows = Vec::new();
-    for (place, (name, wanted)) in IDENTIFIED.into_iter().enumerate() {
-        let of = || all.iter().map(|one| &one[place]);
-        let held = of()
-            .filter(|(found, is, _)| (found.low..=found.high).contains(is))
-            .count();
-        let mut off: Vec<f64> = of()
-            .map(|(found, is, of)| (found.value - is).abs() / of)
-            .collect();
-        off.sort_by(f64::total_cmp);
-        let at = |share: f64| {
-            off.get((share * off.len() as f64) as usize)
-                .copied()
-                .unwrap_or(f64::NAN)
-        };
-        let within = off.iter().filter(|off| **off <= wanted).count();
-        let share = |count: usize| count as f64 / all.len().max(1) as f64;
-        rows.push([
-            name.to_owned(),
-            all.len().to_string(),
-            format!("{:.1} %", 100.0 * share(held)),
-            format!("{:.1} %", 100.0 * at(0.5)),
-            format!("{:.1} %", 100.0 * at(0.95)),
-            format!("{:.1} %", 100.0 * share(within)),
-        ]);
-    }
-    rows
-}
-
-/// Two planes that confirm their configuration: what each came to.
-fn rotor(
-    seed: u64,
-    class: Class,
-    number: u64,
-    change: Option<Change>,
-) -> Result<[Checked; 2], String> {
-    let case = RotorCase::new(seed, class, number);
-    let mut scene = Scene::parse(&case.text(), &case.toml()).map_err(|error| error.to_string())?;
-    let mut longest_s = WINDOW.0;
-    for plane in &mut scene.planes {
-        if let Some(config) = &mut plane.supervisor {
-            longest_s = longest_s.max(WINDOW.1 * f64::from(config.scaling().time_s));
-            config.check_first = 1.0;
-            if let Some(change) = change {
-                change(config);
-            }
-        }
-    }
-    scene.duration_s = BEFORE_S + 2.0 * WINDOWS * longest_s;
-    let mut rows = [Unread, Unread];
-    let recorders = Recorders::of_planes(&mut rows);
-    let ended = record(
-        &scene,
-        PolicyKind::Supervisor,
-        recorders,
-        Rigour::default(),
-        &mut |_| {},
-    );
-    let ended = ended.map_err(|error| error.to_string())?;
-    let mut checked = ended
-        .iter()
-        .filter_map(|(_, read_out)| Some(read_out.as_ref()?.report.checked));
-    match (checked.next(), checked.next()) {
-        (Some(first), Some(second)) => Ok([first, second]),
-        _ => Err("no supervisor of both planes".to_owned()),
-    }
-}
-
-/// Rows that nobody reads.
-#[derive(Debug)]
-struct Unread;
-
-impl Recorder for Unread {
-    fn row(&mut self, _row: &TraceRow) {}
-}
-
-const CLASSES: [Class; 5] = [
-    Class::Rigid,
-    Class::Gyroscopic,
-    Class::Flexible,
-    Class::Bent,
-    Class::Sealed,
-];
-/// Mistakes of a rotor: nothing, and some that the shaft does not correct.
-const OF_ROTOR: [(&str, Option<Change>); 3] = [
-    ("none", None),
-    ("period × 2", Some(|c| c.sample_period_s *= 2.0)),
-    ("delay + 3 samples", Some(|c| c.delay_samples += 3.0)),
-];
-
-/// Rotors by class and mistake.
-fn rotors(seed: u64, number: u64, progress: &dyn Progress) -> (Vec<[String; 6]>, Vec<String>) {
-    let mut jobs = Vec::new();
-    for class in CLASSES {
-        for (mistake, _) in OF_ROTOR.iter().enumerate() {
-            jobs.extend((0..number).map(|number| (class, mistake, number)));
-        }
-    }
-    let tried = run_all(&jobs, progress, |(class, mistake, number)| {
-        rotor(seed, *class, *number, OF_ROTOR[*mistake].1)
-    });
-    let (mut rows, mut odd) = (Vec::new(), Vec::new());
-    for class in CLASSES {
-        for (mistake, (name, _)) in OF_ROTOR.iter().enumerate() {
-            let own = || {
-                jobs.iter()
-                    .zip(&tried)
-                    .filter(move |((c, m, _), _)| *c == class && *m == mistake)
-            };
-            let count = |is: &dyn Fn(&[Checked; 2]) -> bool| {
-                own().filter(|(_, t)| t.as_ref().is_ok_and(is)).count()
-            };
-            let found = count(&|both| both.iter().any(|c| c.finding.is_contradiction()));
-            let passed = count(&|both| both.iter().all(|c| c.finding == Finding::Passed));
-            let no_run = own().filter(|(_, t)| t.is_err()).count();
-            let all = own().count();
-            let cells =
-                [all, found, passed, all - found - passed - no_run, no_run].map(|n| n.to_string());
-            let [all, found, passed, not_yet, no_run] = cells;
-            rows.push([
-                format!("{}, {name}", class.name()),
-                all,
-                found,
-                passed,
-                not_yet,
-                no_run,
-            ]);
-            odd.extend(
-                own()
-                    .filter(|(_, t)| {
-                        mistake == 0
-                            && !t
-                                .as_ref()
-                                .is_ok_and(|both| both.iter().all(|c| c.finding == Finding::Passed))
-                    })
-                    .map(|((_, _, number), t)| {
-                        format!(
-                            "{name}: {t:?}: {}",
-                            RotorCase::new(seed, class, *number).text()
-                        )
-                    }),
-            );
-        }
-    }
-    (rows, odd)
-}
-
 /// Every mistake on a hundred machines and none on a thousand, or on a few.
 ///
 /// # Errors
@@ -724,9 +489,12 @@ pub fn drawn(of: Machines, extent: Extent, progress: &dyn Progress) -> Result<Re
         0.0,
         touches as f64,
     ));
-    let of_logs = identification(seed, 5 * wrong, progress);
-    let (of_rotors, odd_rotors) = rotors(seed, wrong / 2, progress);
+    let of_logs = logs::identification(seed, 5 * wrong, progress);
+    let of_rotor_logs = logs::of_rotors(seed, (wrong / 2).max(4), progress);
+    let (of_rotors, odd_rotors) = rotors::rotors(seed, wrong / 2, progress);
     odd.extend(odd_rotors);
+    odd.extend(of_logs.odd);
+    odd.extend(of_rotor_logs.odd);
     let columns = [
         "mistake",
         "machines",
@@ -764,8 +532,15 @@ pub fn drawn(of: Machines, extent: Extent, progress: &dyn Progress) -> Result<Re
                             "95th percentile",
                             "within",
                         ],
-                        of_logs,
+                        of_logs.rows,
                     ),
+                ],
+            ),
+            Chapter::new(
+                "What logs of rotors in two planes tell",
+                vec![
+                    Block::text(of_rotor_logs.story),
+                    Block::table(logs::COLUMNS, of_rotor_logs.rows),
                 ],
             ),
             Chapter::new(

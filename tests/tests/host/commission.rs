@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use system_tests::{host, python, run_scene, scene_path};
+use system_tests::{host, machine_scene_path, python, run_scene, scene_path};
 use tempfile::TempDir;
 
 /// The trace of the shipped scene, in a folder that goes with it.
@@ -245,4 +245,204 @@ fn what_python_writes_is_read_as_it_is_meant_or_refused() {
     let ns = folder.path().join("ns.parquet");
     let (code, out, said) = commission(&[&ns, scaled[0], scaled[1]]);
     assert!(code == Some(0) && out.contains("1.2"), "{said}{out}");
+}
+
+/// Traces of both ends of a rotor, in a folder that goes with them, and their scene.
+fn both_ends() -> (TempDir, [PathBuf; 2], PathBuf) {
+    let folder = TempDir::new().unwrap();
+    let scene = machine_scene_path("commissioning_of_both_ends");
+    let output = run_scene(&scene, folder.path(), &[]);
+    assert!(output.status.success(), "{output:?}");
+    let table = String::from_utf8(output.stdout).unwrap();
+    let checked = table
+        .lines()
+        .filter(|line| line.contains("configuration checked") && line.contains("passed"));
+    assert_eq!(checked.count(), 2, "{table}");
+    let traces = ["far_end", "wheel_end"].map(|plane| {
+        folder
+            .path()
+            .join(format!("trace_supervisor_{plane}.parquet"))
+    });
+    (folder, traces, scene)
+}
+
+/// A trace as CSV: its columns, and its rows without those between ticks.
+fn as_csv(trace: &Path) -> (Vec<String>, Vec<Vec<String>>) {
+    let export = [
+        "export".as_ref(),
+        "--to".as_ref(),
+        "csv".as_ref(),
+        trace.as_os_str(),
+    ];
+    let written = host().args(export).output().unwrap();
+    assert!(written.status.success(), "{written:?}");
+    let text = fs::read_to_string(trace.with_extension("csv")).unwrap();
+    let cells = |line: &str| line.split(',').map(str::to_owned).collect::<Vec<_>>();
+    let mut lines = text.lines();
+    let names = cells(lines.next().unwrap());
+    (names, lines.map(cells).collect())
+}
+
+/// Mass and inertias of a rotor in two planes, from two logs and from one; what is told wrong is contradicted, what costs most first.
+#[test]
+fn a_rotor_in_two_planes_is_found() {
+    let (folder, [far, wheel], scene) = both_ends();
+    let (machine, json) = (Path::new("--machine"), Path::new("--json"));
+    let page = folder.path().join("fits.html");
+    let asked: [&Path; 7] = [
+        &far,
+        &wheel,
+        machine,
+        &scene,
+        json,
+        Path::new("--page"),
+        &page,
+    ];
+    let (code, said, err) = commission(&asked);
+    assert_eq!(code, Some(0), "{err}");
+    let parsed: Value = serde_json::from_str(&said).unwrap();
+    for (name, is) in [
+        ("mass_kg", 12.0),
+        ("transverse_inertia_kg_m2", 0.25),
+        ("polar_inertia_kg_m2", 0.2),
+        ("force_factor_ratio", 1.0),
+        ("far end.force_factor", 1.0),
+    ] {
+        let [value, low, high] = found(&parsed, name);
+        assert!((value / is - 1.0).abs() < 0.03, "{name}: {value}");
+        assert!(high - low < 0.06 * is, "{name}: {low} to {high}");
+    }
+    for plane in ["far end", "wheel end"] {
+        let [value, ..] = found(&parsed, &format!("{plane}.magnet_stiffness_n_m"));
+        // A tenth of the cap over the clearance.
+        assert!((value + 1e5).abs() < 0.1 * 4e6, "{plane}: {value}");
+    }
+    assert_eq!(
+        parsed["contradictions"].as_array().unwrap().len(),
+        0,
+        "{said}"
+    );
+    let html = fs::read_to_string(&page).unwrap();
+    assert!(html.contains("<svg") && html.contains("transverse_inertia_kg_m2"));
+    assert!(html.contains("far end, x") && !html.contains("<script"));
+
+    let text = fs::read_to_string(&scene).unwrap();
+    let wrong = folder.path().join("wrong.toml");
+    fs::write(&wrong, text.replace("mass_kg = 12.0", "mass_kg = 18.0")).unwrap();
+    let (code, said, err) = commission(&[&far, &wheel, machine, &wrong, json]);
+    assert_eq!(code, Some(0), "{err}");
+    let parsed: Value = serde_json::from_str(&said).unwrap();
+    let contradicted = parsed["contradictions"].as_array().unwrap();
+    let lost = |of: &Value| of["lost_share"].as_f64();
+    assert!(
+        contradicted.iter().any(|c| c["name"] == "mass_kg"),
+        "{said}"
+    );
+    assert!(
+        contradicted[0]["name"]
+            .as_str()
+            .unwrap()
+            .ends_with("force_factor")
+    );
+    assert!(lost(&contradicted[0]) >= lost(&contradicted[contradicted.len() - 1]));
+
+    let (code, out, said) = commission(&[&far, &wheel]);
+    assert!(
+        code == Some(2) && out.is_empty() && said.contains("--machine"),
+        "{said}"
+    );
+    let (code, out, said) = commission(&[&wheel, &far, machine, &scene]);
+    assert!(
+        code == Some(2) && out.is_empty() && said.contains("order of the scene"),
+        "{said}"
+    );
+    let (code, out, said) = commission(&[&far, &wheel, machine, &scene_path("commissioning")]);
+    assert!(
+        code == Some(2) && out.is_empty() && said.contains("two planes"),
+        "{said}"
+    );
+}
+
+#[test]
+fn one_log_of_two_planes_tells_the_same() {
+    let (folder, [far, wheel], scene) = both_ends();
+    let (machine, json) = (Path::new("--machine"), Path::new("--json"));
+    let (_, said, _) = commission(&[&far, &wheel, machine, &scene, json]);
+    let parsed: Value = serde_json::from_str(&said).unwrap();
+    let (names, first) = as_csv(&far);
+    let (_, second) = as_csv(&wheel);
+    let at = |name: &str| names.iter().position(|n| n == name).unwrap();
+    let own = [
+        "measured_x_m",
+        "measured_y_m",
+        "commanded_x_n",
+        "commanded_y_n",
+        "stimulus_x_n",
+        "stimulus_y_n",
+    ];
+    let mut csv = "t_s,spin_rad_s".to_owned();
+    for plane in ["far end", "wheel end"] {
+        own.iter()
+            .for_each(|name| csv += &format!(",{plane}.{name}"));
+    }
+    csv += "\n";
+    for (a, b) in first.iter().zip(&second) {
+        csv += &format!("{},{}", a[at("t_s")], a[at("spin_rad_s")]);
+        for row in [a, b] {
+            own.iter()
+                .for_each(|name| csv += &format!(",{}", row[at(name)]));
+        }
+        csv += "\n";
+    }
+    let both = folder.path().join("both.csv");
+    fs::write(&both, csv).unwrap();
+    let (code, again, err) = commission(&[&both, machine, &scene, json]);
+    assert_eq!(code, Some(0), "{err}");
+    let again: Value = serde_json::from_str(&again).unwrap();
+    for name in [
+        "mass_kg",
+        "transverse_inertia_kg_m2",
+        "wheel end.sensor_noise_m",
+    ] {
+        let [[one, ..], [other, ..]] = [found(&parsed, name), found(&again, name)];
+        assert!(
+            (one / other - 1.0).abs() < 1e-3,
+            "{name}: {one} and {other}"
+        );
+    }
+}
+
+/// A flight record tells of contact, and says what it cannot tell.
+#[test]
+fn a_record_says_what_it_can_and_what_not() {
+    let folder = TempDir::new().unwrap();
+    let out = folder.path().join("out");
+    let scene = scene_path("overload_then_release");
+    assert!(run_scene(&scene, &out, &["--no-trace"]).status.success());
+    let record = out.join("record_supervisor.bin");
+    let (code, said, err) = commission(&[&record, Path::new("--json")]);
+    assert_eq!(code, Some(0), "{err}");
+    let parsed: Value = serde_json::from_str(&said).unwrap();
+    // As the scene has it.
+    let [value, low, high] = found(&parsed, "sensor_noise_m");
+    assert!((low..=high).contains(&1e-6), "{value}");
+    let missing = parsed["not_found"].as_array().unwrap();
+    for (name, why) in [
+        ("mass_kg", "no stimulus"),
+        ("friction_coefficient", "closely enough"),
+        ("spin_sense", "turns less"),
+    ] {
+        let one = missing.iter().find(|m| m["name"] == name).unwrap();
+        assert!(one["reason"].as_str().unwrap().contains(why), "{said}");
+    }
+    for more in [
+        [Path::new("--machine"), scene.as_path()],
+        [Path::new("--walk"), scene.as_path()],
+    ] {
+        let (code, out, said) = commission(&[&record, more[0], more[1]]);
+        assert!(
+            code == Some(2) && out.is_empty() && said.contains("flight record"),
+            "{said}"
+        );
+    }
 }

@@ -1,6 +1,7 @@
 //! Clearance and centre of the retainer bearing, from a walk round it: the rotor slowly led along the wall.
 
-use crate::commission::{Commissioned, Found, Missing, noise_m};
+use crate::commission::machine::noise_m;
+use crate::commission::{Commissioned, Found};
 use crate::log_file::LogError;
 use nalgebra::{Matrix3, Vector3};
 use statrs::distribution::{ContinuousCDF as _, StudentsT};
@@ -23,10 +24,10 @@ impl Commissioned {
     /// Where there is no walk.
     pub fn without_walk(&mut self) {
         for name in ["clearance_m", "retainer_centre_x_m", "retainer_centre_y_m"] {
-            self.not_found.push(Missing {
+            self.miss(
                 name,
-                reason: "shows at the wall alone: give the log of a walk with --walk".to_owned(),
-            });
+                "shows at the wall alone: give the log of a walk with --walk",
+            );
         }
     }
 
@@ -77,7 +78,7 @@ impl Commissioned {
         ] {
             let spread = times * spread + ROUNDED * radius;
             self.parameters.push(Found {
-                name,
+                name: name.to_owned(),
                 unit: "m",
                 value,
                 low: value - spread,

@@ -170,6 +170,16 @@ impl RotorCase {
         }
     }
 
+    /// Polar inertia \[kg m²\].
+    pub(crate) fn polar_kg_m2(&self) -> f64 {
+        self.polar_kg_m2
+    }
+
+    /// With what each magnet pulls the rotor out of the middle \[N/m\].
+    pub(crate) fn negative_n_m(&self) -> f64 {
+        self.negative_n_m
+    }
+
     /// Natural frequency of the bending mode \[Hz\].
     pub fn bending_hz(&self) -> Option<f64> {
         self.bending.map(|(hz, ..)| hz)
