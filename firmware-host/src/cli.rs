@@ -14,7 +14,6 @@ pub mod map;
 pub mod modes;
 pub mod output;
 pub mod overloads;
-pub mod paper;
 mod progress;
 pub mod review;
 pub mod run;

@@ -3,8 +3,8 @@
 use clap::{CommandFactory, Parser, Subcommand};
 use firmware_host::cli::{
     accuracy, advise, commission, completions, error, export, fmu, harm, init, map, modes, output,
-    overloads, paper, review, run, schema, screen, sensitivity, serve_controller, study, sweep,
-    target, vectors,
+    overloads, review, run, schema, screen, sensitivity, serve_controller, study, sweep, target,
+    vectors,
 };
 use std::process::ExitCode;
 
@@ -42,8 +42,6 @@ enum Command {
     Commission(commission::CommissionArgs),
     /// Run a scene again and again with the supervisor told something wrong of its machine.
     Sensitivity(sensitivity::SensitivityArgs),
-    /// Compute every number and figure of the paper; write a page with tables and plots.
-    Paper(paper::PaperArgs),
     /// Say what happened in a flight record that a supervisor has frozen on its machine, and replay it.
     Review(review::ReviewArgs),
     /// Print every key of scene files, as a JSON Schema for editors or as a table.
@@ -81,7 +79,6 @@ fn main() -> ExitCode {
         Command::Advise(args) => advise::execute(args),
         Command::Commission(args) => commission::execute(args),
         Command::Sensitivity(args) => sensitivity::execute(args),
-        Command::Paper(args) => paper::execute(args),
         Command::Review(args) => review::execute(args),
         Command::Schema(args) => schema::execute(args),
         Command::Modes(args) => modes::execute(args),

@@ -2,15 +2,16 @@
 
 use crate::V2;
 
-/// A value outside its range. `field` is the dotted path a scene file uses.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+/// A value that is out of range, or that contradicts another.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{field} = {value}: expected {expected}")]
 pub struct ParamError {
-    /// Dotted path of the field, e.g. `rotor.mass_kg`.
-    pub field: &'static str,
+    /// Which one: of a point mass as a scene file has it, `contact.clearance_m`; of a machine with the index of its list,
+    /// `planes[1].contact.clearance_m`.
+    pub field: String,
     /// The value that was refused.
     pub value: f64,
-    /// The range that was expected.
+    /// The range or the rule that was expected.
     pub expected: &'static str,
 }
 
@@ -212,65 +213,24 @@ pub struct Start {
     pub spin_phase_rad: f64,
 }
 
-const POSITIVE: &str = "a finite number greater than 0";
-const NOT_NEGATIVE: &str = "a finite number, 0 or greater";
-const FINITE: &str = "a finite number";
+pub(crate) const POSITIVE: &str = "a finite number greater than 0";
+pub(crate) const NOT_NEGATIVE: &str = "a finite number, 0 or greater";
+pub(crate) const FINITE: &str = "a finite number";
 
 pub(crate) fn check(
     ok: bool,
-    field: &'static str,
+    field: impl Into<String>,
     value: f64,
     expected: &'static str,
 ) -> Result<(), ParamError> {
     if ok && value.is_finite() {
-        Ok(())
-    } else {
-        Err(ParamError {
-            field,
-            value,
-            expected,
-        })
+        return Ok(());
     }
-}
-
-fn positive(field: &'static str, value: f64) -> Result<(), ParamError> {
-    check(value > 0.0, field, value, POSITIVE)
-}
-
-fn not_negative(field: &'static str, value: f64) -> Result<(), ParamError> {
-    check(value >= 0.0, field, value, NOT_NEGATIVE)
-}
-
-fn finite(field: &'static str, value: f64) -> Result<(), ParamError> {
-    check(true, field, value, FINITE)
-}
-
-impl RingParams {
-    fn validate(&self, fields: [&'static str; 3]) -> Result<(), ParamError> {
-        positive(fields[0], self.mass_kg)?;
-        for axis in [0, 1] {
-            not_negative(fields[1], self.stiffness_n_m[axis])?;
-            not_negative(fields[2], self.damping_n_s_m[axis])?;
-        }
-        Ok(())
-    }
-}
-
-impl ContactLaw {
-    fn validate(&self) -> Result<(), ParamError> {
-        match self {
-            Self::Linear(law) => {
-                positive("contact.stiffness_n_m", law.stiffness_n_m)?;
-                not_negative("contact.damping_n_s_m", law.damping_n_s_m)
-            }
-            Self::HuntCrossley(law) => {
-                positive("contact.stiffness_n_mn", law.stiffness_n_mn)?;
-                let (n, range) = (law.exponent, "a number from 1 to 3");
-                check((1.0..=3.0).contains(&n), "contact.exponent", n, range)?;
-                not_negative("contact.damping_s_m", law.damping_s_m)
-            }
-        }
-    }
+    Err(ParamError {
+        field: field.into(),
+        value,
+        expected,
+    })
 }
 
 impl PlantParams {
@@ -278,88 +238,6 @@ impl PlantParams {
     pub fn has_series(&self) -> bool {
         let round = !matches!(self.stator, StatorParams::RigidEllipse(_));
         round && self.contact.law.linear().is_some()
-    }
-
-    /// Checks every field against its range.
-    ///
-    /// # Errors
-    /// The first field that is out of range.
-    pub fn validate(&self) -> Result<(), ParamError> {
-        positive("rotor.mass_kg", self.rotor.mass_kg)?;
-        finite("rotor.stiffness_n_m", self.rotor.stiffness_n_m)?;
-        not_negative("rotor.damping_n_s_m", self.rotor.damping_n_s_m)?;
-        not_negative("rotor.eccentricity_m", self.rotor.eccentricity_m)?;
-        positive("rotor.contact_radius_m", self.rotor.contact_radius_m)?;
-        if let SpinParams::Free {
-            inertia_kg_m2,
-            drive_torque_n_m,
-        } = self.spin
-        {
-            positive("spin.inertia_kg_m2", inertia_kg_m2)?;
-            finite("spin.drive_torque_n_m", drive_torque_n_m)?;
-        }
-        const INNER: [&str; 3] = [
-            "stator.inner.mass_kg",
-            "stator.inner.stiffness_n_m",
-            "stator.inner.damping_n_s_m",
-        ];
-        const OUTER: [&str; 3] = [
-            "stator.outer.mass_kg",
-            "stator.outer.stiffness_n_m",
-            "stator.outer.damping_n_s_m",
-        ];
-        match &self.stator {
-            StatorParams::Rigid => {}
-            StatorParams::RigidEllipse(ellipse) => {
-                let (e, range) = (ellipse.ellipticity, "a number from 0 to 0.2");
-                check((0.0..=0.2).contains(&e), "retainer.ellipticity", e, range)?;
-                finite("retainer.long_axis_deg", ellipse.long_axis_rad)?;
-                // A race would turn the ellipse with it.
-                let race = self.race.map_or(0.0, |r| r.inertia_kg_m2);
-                let round = "no race: it would turn the ellipse with it";
-                check(self.race.is_none(), "race.inertia_kg_m2", race, round)?;
-            }
-            StatorParams::OneMass(ring) => ring.validate(INNER)?,
-            StatorParams::TwoMass { inner, outer } => {
-                inner.validate(INNER)?;
-                outer.validate(OUTER)?;
-            }
-        }
-        positive("contact.clearance_m", self.contact.clearance_m)?;
-        self.contact.law.validate()?;
-        match self.friction.sliding {
-            SlidingFriction::Constant { coefficient } => {
-                not_negative("friction.coefficient", coefficient)?;
-            }
-            SlidingFriction::Falling {
-                at_rest,
-                at_speed,
-                speed_scale_m_s,
-            } => {
-                not_negative("friction.coefficient_at_speed", at_speed)?;
-                check(
-                    at_rest >= at_speed,
-                    "friction.coefficient",
-                    at_rest,
-                    "a finite number, at least friction.coefficient_at_speed",
-                )?;
-                positive("friction.speed_scale_m_s", speed_scale_m_s)?;
-            }
-        }
-        not_negative(
-            "friction.rolling_coefficient",
-            self.friction.rolling_coefficient,
-        )?;
-        if let Some(magnet) = &self.magnet {
-            positive("magnet.force_max_n", magnet.force_max_n)?;
-            not_negative("magnet.lag_s", magnet.lag_s)?;
-        }
-        if let Some(race) = &self.race {
-            positive("race.inertia_kg_m2", race.inertia_kg_m2)?;
-            not_negative("race.drag_n_m_s", race.drag_n_m_s)?;
-            finite("race.start_spin_rad_s", race.start_spin_rad_s)?;
-        }
-        Ok(())
     }
 
     /// Natural frequency of the shaft √(k/m) \[rad/s\]; `None` without a restoring stiffness.
@@ -399,10 +277,10 @@ impl Start {
     /// The first field that is not.
     pub fn validate(&self) -> Result<(), ParamError> {
         for axis in [0, 1] {
-            finite("start.position_m", self.position_m[axis])?;
-            finite("start.velocity_m_s", self.velocity_m_s[axis])?;
+            check(true, "start.position_m", self.position_m[axis], FINITE)?;
+            check(true, "start.velocity_m_s", self.velocity_m_s[axis], FINITE)?;
         }
-        finite("start.spin_rad_s", self.spin_rad_s)?;
-        finite("start.spin_phase_rad", self.spin_phase_rad)
+        check(true, "start.spin_rad_s", self.spin_rad_s, FINITE)?;
+        check(true, "start.spin_phase_rad", self.spin_phase_rad, FINITE)
     }
 }

@@ -6,8 +6,7 @@ use crate::V2;
 use crate::energy::Audit;
 use crate::integrate::{Method, Options, PlantError};
 use crate::machine::params::{
-    Change, MachineError, MachineMagnet, MachineParams, MachinePlane, MachineStart, RigidRotor,
-    Rotor, Support,
+    Change, MachineMagnet, MachineParams, MachinePlane, MachineStart, RigidRotor, Rotor, Support,
 };
 use crate::machine::{Machine, MachineInputs, MachineSnapshot};
 use crate::mode::Mode;
@@ -15,7 +14,7 @@ use crate::params::{ParamError, PlantParams, Start};
 use crate::readout::{Meters, Snapshot, Work};
 
 /// Why a plant could not be built.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum BuildError {
     /// A parameter is out of range.
     #[error(transparent)]
@@ -48,7 +47,6 @@ pub struct Plant {
 /// # Errors
 /// [`BuildError::Param`] for the first value out of range, [`BuildError::NoSeries`].
 pub fn build(params: &PlantParams, start: &Start, options: Options) -> Result<Plant, BuildError> {
-    params.validate()?;
     start.validate()?;
     options.validate()?;
     if options.method == Method::Series && !params.has_series() {
@@ -61,13 +59,7 @@ pub fn build(params: &PlantParams, start: &Start, options: Options) -> Result<Pl
         spin_phase_rad: start.spin_phase_rad,
         ..MachineStart::default()
     };
-    let machine = Machine::new(&params.machine(), &start, options)
-        // Every value has been seen above, under the name that it has there.
-        .map_err(|error| ParamError {
-            field: "rotor",
-            value: error.value,
-            expected: error.expected,
-        })?;
+    let machine = Machine::new(&params.machine(), &start, options).map_err(of_a_point_mass)?;
     let magnets = usize::from(params.magnet.is_some());
     Ok(Plant {
         machine,
@@ -78,7 +70,33 @@ pub fn build(params: &PlantParams, start: &Start, options: Options) -> Result<Pl
     })
 }
 
+/// A machine's value under the name that it has here.
+fn of_a_point_mass(error: ParamError) -> ParamError {
+    let mut field = error.field;
+    for (of_a_machine, own) in [
+        ("planes[0].radius_m", "rotor.contact_radius_m"),
+        ("planes[0].stator.ellipticity", "retainer.ellipticity"),
+        ("planes[0].stator.long_axis_rad", "retainer.long_axis_deg"),
+        ("planes[0].", ""),
+        ("supports[0].", "rotor."),
+        ("magnets[0].", "magnet."),
+    ] {
+        if let Some(rest) = field.strip_prefix(of_a_machine) {
+            field = format!("{own}{rest}");
+        }
+    }
+    ParamError { field, ..error }
+}
+
 impl PlantParams {
+    /// Checks every field against its range.
+    ///
+    /// # Errors
+    /// The first field that is out of range.
+    pub fn validate(&self) -> Result<(), ParamError> {
+        self.machine().validate().map_err(of_a_point_mass)
+    }
+
     /// The same as a rotor that does not tilt, with everything in one plane.
     pub fn machine(&self) -> MachineParams {
         let rotor = &self.rotor;
@@ -146,7 +164,7 @@ impl Plant {
     ///
     /// # Errors
     /// A value that is out of range, or that this plant has no part for. Then nothing has changed.
-    pub fn change(&mut self, change: &Change) -> Result<(), MachineError> {
+    pub fn change(&mut self, change: &Change) -> Result<(), ParamError> {
         self.machine.change(change)
     }
 

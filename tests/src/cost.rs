@@ -396,14 +396,6 @@ pub fn table(costs: &[Cost]) -> String {
     table
 }
 
-/// What stands in the documentation: nothing, each level of one part alone, everything.
-pub fn excerpt(costs: &[Cost]) -> Vec<Cost> {
-    let alone = |parts: Parts| parts.0.iter().filter(|level| **level > 0).count() <= 1;
-    (costs.iter().copied())
-        .filter(|c| alone(c.parts) || c.parts == Parts::ALL)
-        .collect()
-}
-
 /// What is compared with `tests/golden/cost_of_parts.txt`: nothing, one part at a time, everything.
 pub fn golden_rows(costs: &[Cost]) -> Vec<(String, f64)> {
     let chosen = [

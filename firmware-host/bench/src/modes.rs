@@ -6,7 +6,8 @@ use crate::scene::linear_loop::{
     self, LinearLoop, LoopMode, NoLoop, Sensitivity, SpeedMargin, speed_margins,
 };
 use plant_model::machine::linear::{C, LinearMachine, MachineMode, Walls};
-use plant_model::machine::params::{MachineError, MachineParams};
+use plant_model::machine::params::MachineParams;
+use plant_model::params::ParamError;
 use serde::Serialize;
 use std::f64::consts::TAU;
 
@@ -106,7 +107,7 @@ impl Coupling {
     ///
     /// # Errors
     /// The first value that is out of range.
-    pub fn new(scene: &Scene) -> Result<Self, MachineError> {
+    pub fn new(scene: &Scene) -> Result<Self, ParamError> {
         Ok(Self::of(
             scene,
             &LinearMachine::new(&scene.machine, Walls::Off)?,
@@ -187,7 +188,7 @@ const STANDS: f64 = 1e-6;
 pub enum AnalysisError {
     /// A value is out of range.
     #[error(transparent)]
-    Machine(#[from] MachineError),
+    Machine(#[from] ParamError),
     /// Of the loop, or of the search for eigenvalues.
     #[error(transparent)]
     Loop(#[from] NoLoop),

@@ -1,6 +1,4 @@
-//! `accuracy [SCENE]`: error against run time, and silently wrong runs, as tables, JSON and a plot.
-
-mod plot;
+//! `accuracy [SCENE]`: error against run time, and silently wrong runs, as tables, JSON and a page.
 
 use crate::cli::chapters;
 use crate::cli::error::{CommandError, pretty, print, say};
@@ -8,7 +6,10 @@ use crate::cli::load;
 use crate::cli::output::{self, Staging};
 use crate::cli::progress::{LateProgress, Threads};
 use crate::cli::screen::tell;
-use firmware_studies::accuracy::study::{WrongRuns, benchmarks, chapters as chapters_of, measure};
+use firmware_studies::accuracy::study::{
+    WrongRuns, benchmarks, chapters as chapters_of, measure, page,
+};
+use firmware_studies::campaign::html;
 use std::path::PathBuf;
 
 /// Arguments of `accuracy`.
@@ -26,7 +27,7 @@ pub struct AccuracyArgs {
     /// Print JSON instead of the tables.
     #[arg(long)]
     pub json: bool,
-    /// Folder for accuracy.json and the plot accuracy.svg; without it nothing is written.
+    /// Folder for accuracy.json and accuracy.html; without it nothing is written.
     #[arg(long)]
     pub out: Option<PathBuf>,
     /// How many threads the search for wrong runs may use.
@@ -89,9 +90,10 @@ pub fn execute(args: &AccuracyArgs) -> Result<(), CommandError> {
     let json = pretty(&found, "formatting accuracy.json")?;
     if let Some(out) = &args.out {
         let staging = Staging::for_folder(out)?;
-        let svg = plot::svg(&found)?;
+        let page =
+            html(&page(&found)).map_err(|e| CommandError::other("drawing accuracy.html", e))?;
         staging.write("accuracy.json", &json)?;
-        staging.write("accuracy.svg", svg)?;
+        staging.write("accuracy.html", page)?;
         staging.publish()?;
     }
     if args.json {

@@ -100,7 +100,7 @@ pub fn execute(args: &HarmArgs) -> Result<(), CommandError> {
     let value = serde_json::json!({
         "seed": args.seed,
         "machines": args.machines,
-        "classes": rows,
+        "rows": rows,
     });
     print(&(pretty(&value, "formatting the rows")? + "\n"))
 }

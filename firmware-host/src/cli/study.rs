@@ -34,7 +34,7 @@ pub struct StudyArgs {
     /// Record in CSV, of a study that compares with a measured one.
     #[arg(long, value_name = "FILE")]
     pub record: Option<PathBuf>,
-    /// Print claims, classes, number of cases and seconds as JSON instead of the table.
+    /// Print claims, the rows behind them, number of cases and seconds as JSON instead of the table.
     #[arg(long)]
     pub json: bool,
     /// Page of the documentation, in Markdown, that gets what is claimed and the first rows of the tables between its marks.
@@ -66,7 +66,7 @@ struct Measured<'a> {
     claims: &'a [Claim],
     cases: u64,
     #[serde(skip_serializing_if = "<[_]>::is_empty")]
-    classes: &'a [serde_json::Value],
+    rows: &'a [serde_json::Value],
     seconds: f64,
 }
 
@@ -132,7 +132,7 @@ fn run(study: &Study, args: &StudyArgs) -> Result<(), CommandError> {
             quick: args.quick,
             claims: &report.claims,
             cases: report.cases,
-            classes: &report.classes,
+            rows: &report.classes,
             seconds,
         };
         print(&(pretty(&measured, "formatting the claims")? + "\n"))?;

@@ -5,8 +5,8 @@ pub mod wrong_runs;
 
 use firmware_bench::device::loads::{self, Disturbance};
 use firmware_bench::scene::Scene;
-use plant_model::machine::params::MachineError;
 use plant_model::machine::{Machine, MachineInputs};
+use plant_model::params::ParamError;
 use plant_model::{Method, Mode, Options, PlantError, V2, Work};
 use serde::Serialize;
 use std::time::{Duration, Instant};
@@ -84,7 +84,7 @@ pub(crate) const CONFIRMED_CLEARANCES: f64 = 1e-3;
 pub enum AccuracyError {
     /// The machine's parameters are out of range.
     #[error(transparent)]
-    Machine(#[from] MachineError),
+    Machine(#[from] ParamError),
     /// A run cannot be trusted any further.
     #[error("{method}, rtol {rtol:e}: {reason}")]
     Plant {

@@ -131,7 +131,7 @@ pub struct Report {
     pub claims: Vec<Claim>,
     /// Runs or problems behind it.
     pub cases: u64,
-    /// Classes of pairs of runs, as programs read them; none of a study that has no such.
+    /// Rows behind the claims, of classes of runs or of quantities, as programs read them; a study may have none.
     pub classes: Vec<serde_json::Value>,
     /// What is shown beside the claims.
     pub chapters: Vec<Chapter>,

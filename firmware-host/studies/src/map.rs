@@ -414,7 +414,7 @@ impl Map {
         };
         let label = format!("{label} over {} and {}", plan.x.key, plan.y.key);
         let figure = Figure {
-            file: "map",
+            file: "map".into(),
             caption: format!(
                 "{label}; darker bears more. The highest twentieth has one colour; white: no impact of up to twice the speed that needs no bounce ends in whirl."
             ),

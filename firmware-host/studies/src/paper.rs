@@ -21,8 +21,7 @@ mod rows;
 mod runs;
 mod summary;
 
-pub use self::page::{chapters, page, study};
-pub use self::rows::{json, text};
+pub use self::page::{chapters, report, study};
 use crate::campaign::{Extent, Figure, Table};
 use plant_model::{BuildError, PlantError};
 use serde::Serialize;

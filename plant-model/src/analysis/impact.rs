@@ -131,7 +131,7 @@ pub struct ImpactOutcome {
 }
 
 /// Why nothing can be said of an impact.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ImpactError {
     /// Friction drives nothing: no impact ends in whirl.
     #[error("friction drives nothing")]

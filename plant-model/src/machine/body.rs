@@ -8,8 +8,9 @@
 //! their products. The first pairs are √m·(x, y) and √I_t·(φ, ψ), the slopes of the axis, unless it does not tilt; then one for each
 //! bending mode and each ring.
 
-use super::params::{MachineError, MachineParams, MachinePlane, Rotor, Unbalance};
+use super::params::{MachineParams, MachinePlane, Rotor, Unbalance};
 use crate::V2;
+use crate::params::ParamError;
 use crate::params::{RingParams, StatorParams};
 use crate::vector::rotate;
 use nalgebra::{Complex, DMatrix};
@@ -269,12 +270,12 @@ fn on_rotor(rotor: &Rotor, pairs: usize, position_m: f64) -> Port {
 
 impl LinearBody {
     /// Puts rotor, supports and rings of a machine together.
-    pub(crate) fn new(params: &MachineParams) -> Result<Self, MachineError> {
+    pub(crate) fn new(params: &MachineParams) -> Result<Self, ParamError> {
         Self::with_walls(params, false)
     }
 
     /// The same; where `closed`, with the contact springs and dampers of all planes as if the rotor never left its walls.
-    pub(crate) fn with_walls(params: &MachineParams, closed: bool) -> Result<Self, MachineError> {
+    pub(crate) fn with_walls(params: &MachineParams, closed: bool) -> Result<Self, ParamError> {
         params.validate()?;
         let rigid = params.rotor.rigid();
         let bending = params.rotor.bending();

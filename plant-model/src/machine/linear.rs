@@ -2,7 +2,8 @@
 //! planes feel each other.
 
 use super::body::{LinearBody, Port};
-use super::params::{MachineError, MachineParams};
+use super::params::MachineParams;
+use crate::params::ParamError;
 use nalgebra::{Complex, DMatrix, DVector, Schur};
 
 /// Which way a mode goes round.
@@ -106,7 +107,7 @@ impl LinearMachine {
     ///
     /// # Errors
     /// The first value that is out of range.
-    pub fn new(params: &MachineParams, state: Walls) -> Result<Self, MachineError> {
+    pub fn new(params: &MachineParams, state: Walls) -> Result<Self, ParamError> {
         let body = LinearBody::with_walls(params, state == Walls::Closed)?;
         let rate_rad_s = body.undamped_rate_rad_s().max(1.0);
         let walls = params.planes.iter().map(|plane| Wall {

@@ -6,7 +6,8 @@
 
 use super::body::{LinearBody, Port};
 use super::linear::C;
-use super::params::{MachineError, MachineMagnet, MachineParams};
+use super::params::{MachineMagnet, MachineParams};
+use crate::params::ParamError;
 use nalgebra::{DMatrix, DVector};
 
 /// The state space; positions are multiplied by a rate, which makes entries of one size.
@@ -104,7 +105,7 @@ impl LinearPlant {
     ///
     /// # Errors
     /// The first value that is out of range.
-    pub fn new(params: &MachineParams, spin_rad_s: f64) -> Result<Self, MachineError> {
+    pub fn new(params: &MachineParams, spin_rad_s: f64) -> Result<Self, ParamError> {
         let body = LinearBody::new(&params.linear_magnets())?;
         let rate_rad_s = body.undamped_rate_rad_s().max(1.0);
         let followers: Vec<Follower> = params.magnets.iter().map(Follower::new).collect();

@@ -7,34 +7,9 @@ mod validate;
 
 pub use bearing::{BearingHeat, LoadDrag};
 pub use change::Change;
-pub(super) use validate::check;
 
 use crate::V2;
-use crate::params::{
-    ContactParams, FrictionParams, ParamError, RaceParams, SpinParams, StatorParams,
-};
-
-/// A value that is out of range, or that contradicts another.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[error("{field} = {value}: expected {expected}")]
-pub struct MachineError {
-    /// Which one, with the index of its list: `planes[1].contact.clearance_m`.
-    pub field: String,
-    /// The value that was refused.
-    pub value: f64,
-    /// The range or the rule that was expected.
-    pub expected: &'static str,
-}
-
-impl From<ParamError> for MachineError {
-    fn from(error: ParamError) -> Self {
-        Self {
-            field: error.field.into(),
-            value: error.value,
-            expected: error.expected,
-        }
-    }
-}
+use crate::params::{ContactParams, FrictionParams, RaceParams, SpinParams, StatorParams};
 
 /// Most planes of a machine.
 pub(crate) const MAX_PLANES: usize = 4;

@@ -1,7 +1,8 @@
 //! A rotor by the matrices of its motion in one plane, reduced to its rigid motions and to bending modes.
 
 use super::params::shape_at;
-use super::params::{BendingMode, MachineError, RigidRotor, Rotor, check};
+use super::params::{BendingMode, RigidRotor, Rotor};
+use crate::params::{ParamError, check};
 use nalgebra::{Cholesky, DMatrix, DVector, SymmetricEigen};
 
 /// A free rotor, the same in every plane through its axis, by the matrices of one of them:
@@ -75,8 +76,8 @@ const STRAINS: f64 = 1e-8;
 /// How far a rigid motion may be from straight.
 const STRAIGHT: f64 = 1e-6;
 
-fn no_modes(mass_kg: f64) -> MachineError {
-    MachineError {
+fn no_modes(mass_kg: f64) -> ParamError {
+    ParamError {
         field: "mass".to_owned(),
         value: mass_kg,
         expected: "a positive definite matrix that a computer can tell from the stiffness",
@@ -84,7 +85,7 @@ fn no_modes(mass_kg: f64) -> MachineError {
 }
 
 impl RotorMatrices {
-    fn validate(&self) -> Result<(), MachineError> {
+    fn validate(&self) -> Result<(), ParamError> {
         let n = self.mass.nrows();
         check(n >= 2, "mass", n as f64, "two coordinates at least")?;
         let squares = [
@@ -142,7 +143,7 @@ impl RotorMatrices {
         nodes_m: &[f64],
         up_to_rad_s: f64,
         damping_ratio: f64,
-    ) -> Result<ReducedRotor, MachineError> {
+    ) -> Result<ReducedRotor, ParamError> {
         self.validate()?;
         let (first, last) = self.ends_m();
         for (i, z) in nodes_m.iter().enumerate() {
@@ -159,7 +160,7 @@ impl RotorMatrices {
     }
 
     /// The two slowest motions, mixed to a translation and a tilt.
-    fn rigid_motions(&self, modes: &[FreeMode]) -> Result<RigidMotions, MachineError> {
+    fn rigid_motions(&self, modes: &[FreeMode]) -> Result<RigidMotions, ParamError> {
         let slowest = DMatrix::from_columns(&[modes[0].1.clone(), modes[1].1.clone()]);
         let moved = &self.displacement * &slowest;
         let wanted = DMatrix::from_fn(self.places_m.len(), 2, |row, column| match column {
@@ -167,7 +168,7 @@ impl RotorMatrices {
             _ => self.places_m[row],
         });
         let rule = "the stiffness of the free rotor, without bearings: a translation and a tilt that strain nothing";
-        let crooked = || MachineError {
+        let crooked = || ParamError {
             field: "stiffness".to_owned(),
             value: modes[1].0.abs().sqrt(),
             expected: rule,
@@ -191,7 +192,7 @@ impl RotorMatrices {
     }
 
     /// Modes of the free rotor, slowest first; the rigid motions are among them.
-    pub(super) fn modes(&self) -> Result<Vec<FreeMode>, MachineError> {
+    pub(super) fn modes(&self) -> Result<Vec<FreeMode>, ParamError> {
         let failed = || no_modes(self.mass.trace());
         let root = Cholesky::new(self.mass.clone()).ok_or_else(failed)?;
         // L⁻¹·K·L⁻ᵀ has the squares of the rates.

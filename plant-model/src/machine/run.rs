@@ -8,7 +8,7 @@ mod warming;
 use super::flight_map::FlightMap;
 use super::guards::Guard;
 use super::holding::Holding;
-use super::params::{MAX_PLANES, MachineError, MachineParams, MachineStart};
+use super::params::{MAX_PLANES, MachineParams, MachineStart};
 use super::readout::{Held, MachineSnapshot, PlaneFlows};
 use super::step::{Stepper, Task};
 use super::system::{MachineInputs, MachineState, MachineSystem, ON_WALL};
@@ -17,6 +17,7 @@ use crate::energy::Flows;
 use crate::integrate::progress::Progress;
 use crate::integrate::{Method, Options, PlantError};
 use crate::mode::{Mode, Phase, Slide, Whirl};
+use crate::params::ParamError;
 use crate::readout::{HARD_IMPACT_M_S, Meters, Work};
 use settle::AtZero;
 use warming::Warming;
@@ -90,9 +91,9 @@ impl Machine {
         params: &MachineParams,
         start: &MachineStart,
         options: Options,
-    ) -> Result<Self, MachineError> {
+    ) -> Result<Self, ParamError> {
         let system = MachineSystem::new(params)?;
-        options.validate().map_err(MachineError::from)?;
+        options.validate()?;
         let flies = options.method != Method::Collocation && params.flies();
         let method = match params.method(options.method)? {
             Method::Series if options.method == Method::Auto && system.is_overdamped() => {

@@ -3,8 +3,8 @@
 //! Elements have shear, rotary inertia and gyroscopics, and Cowper's (1966) shear coefficient of round sections. Every place at
 //! which something acts or is read is a node.
 
-use super::params::{MachineError, check};
 use super::reduced::{ReducedRotor, RigidMotions, RotorMatrices};
+use crate::params::{ParamError, check};
 use crate::quadrature::lagrange;
 use nalgebra::{DMatrix, DVector};
 
@@ -147,7 +147,7 @@ impl Shaft {
         self.sections.iter().map(|section| section.length_m).sum()
     }
 
-    fn validate(&self, nodes_m: &[f64]) -> Result<(), MachineError> {
+    fn validate(&self, nodes_m: &[f64]) -> Result<(), ParamError> {
         const POSITIVE: &str = "a finite number greater than 0";
         const NOT_NEGATIVE: &str = "a finite number, 0 or greater";
         let count = self.sections.len();
@@ -233,7 +233,7 @@ impl Shaft {
         nodes_m: &[f64],
         up_to_rad_s: f64,
         damping_ratio: f64,
-    ) -> Result<ReducedRotor, MachineError> {
+    ) -> Result<ReducedRotor, ParamError> {
         self.validate(nodes_m)?;
         let nodes = self.nodes_m(nodes_m);
         let n = 2 * nodes.len();

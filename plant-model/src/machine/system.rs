@@ -1,16 +1,14 @@
 //! A machine's equations, apart from how they are integrated: what holds what, and how much it takes.
 
 use super::body::{LinearBody, Port};
-use super::params::{
-    BearingHeat, Change, LoadDrag, MAX_PLANES, MachineError, MachineParams, MachineStart, check,
-};
+use super::params::{BearingHeat, Change, LoadDrag, MAX_PLANES, MachineParams, MachineStart};
 use super::poles::MagnetLaw;
 use crate::V2;
 use crate::contact::NO_DENT;
 use crate::ellipse::Ellipse;
 use crate::integrate::{Fastest, PlantError};
 use crate::mode::{Phase, Slide, Whirl};
-use crate::params::{ContactLaw, SlidingFriction, SpinParams, StatorParams};
+use crate::params::{ContactLaw, ParamError, SlidingFriction, SpinParams, StatorParams, check};
 use crate::race::Race;
 use crate::vector::Body;
 use nalgebra::SMatrix;
@@ -232,7 +230,7 @@ pub(crate) struct MachineSystem {
 }
 
 impl MachineSystem {
-    pub(crate) fn new(params: &MachineParams) -> Result<Self, MachineError> {
+    pub(crate) fn new(params: &MachineParams) -> Result<Self, ParamError> {
         let body = LinearBody::new(params)?;
         let planes = params.planes.iter().map(|plane| PlaneData {
             centre_m: plane.centre_m,
@@ -282,7 +280,7 @@ impl MachineSystem {
         &self,
         params: &MachineParams,
         start: &MachineStart,
-    ) -> Result<MachineState, MachineError> {
+    ) -> Result<MachineState, ParamError> {
         start.validate()?;
         let rigid = params.rotor.rigid();
         let (m, i) = (rigid.mass_kg.sqrt(), rigid.transverse_inertia_kg_m2.sqrt());
@@ -310,7 +308,7 @@ impl MachineSystem {
     }
 
     /// Takes other values over.
-    pub(crate) fn change(&mut self, change: &Change) -> Result<(), MachineError> {
+    pub(crate) fn change(&mut self, change: &Change) -> Result<(), ParamError> {
         change.validate(self.body.rotor())?;
         if let Some(torque) = change.drive_torque_n_m {
             let rule = "nothing while the speed is held";

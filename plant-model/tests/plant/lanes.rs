@@ -309,7 +309,7 @@ proptest! {
         let cases = [(params, impact)];
         let by_lanes = run_impacts(&cases, &criterion);
         let alone = run_impact(&cases[0].0, &impact, &criterion);
-        if let (Ok(by_lanes), Ok(alone)) = (by_lanes[0], alone) {
+        if let (Ok(by_lanes), Ok(alone)) = (&by_lanes[0], alone) {
             prop_assert_eq!(by_lanes.outcome == Outcome::Whirl, alone.outcome == Outcome::Whirl);
         }
     }
@@ -343,7 +343,9 @@ fn whirl_between_the_ends_of_a_step_is_seen() {
             options,
             ..Criterion::default()
         };
-        let by_lanes = run_impacts(&[(params, impact)], &criterion)[0].unwrap();
+        let by_lanes = run_impacts(&[(params, impact)], &criterion)[0]
+            .clone()
+            .unwrap();
         assert_eq!(by_lanes.outcome, Outcome::Whirl, "{rtol:e}");
         assert_eq!(by_lanes, run_impact(&params, &impact, &criterion).unwrap());
     }

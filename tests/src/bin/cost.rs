@@ -1,8 +1,7 @@
-//! Instructions that each combination of parts costs: `cost` prints the table, `cost --write` also puts
-//! an excerpt into its page of the documentation and moves the golden bounds there.
+//! Instructions that each combination of parts costs: `cost` prints the table, `cost --write` also moves the golden bounds there.
 
 use std::error::Error;
-use system_tests::{cost, golden, root};
+use system_tests::{cost, golden};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let argument = std::env::args().nth(1);
@@ -25,25 +24,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         println!("{violation}");
     }
     if write {
-        write_page(&cost::table(&cost::excerpt(&costs)))?;
         let rows = cost::golden_rows(&costs);
         let rows: Vec<_> = rows.iter().map(|(name, n)| (name.as_str(), *n)).collect();
         golden::rewrite("cost_of_parts", &rows, 0.03)?;
     }
-    Ok(())
-}
-
-/// Replaces the table in the page, and the compiler's version above it.
-fn write_page(table: &str) -> Result<(), Box<dyn Error>> {
-    let path = root().join("docs/src/theory/cost-of-parts.md");
-    let page = std::fs::read_to_string(&path)?;
-    let toolchain = std::fs::read_to_string(root().join("rust-toolchain.toml"))?;
-    let version = toolchain.split('"').nth(1).unwrap_or("unknown");
-    let architecture = std::env::consts::ARCH;
-    let (begin, end) = ("<!-- counted -->\n", "<!-- to here -->");
-    let (before, rest) = page.split_once(begin).ok_or("no begin of the table")?;
-    let (_, after) = rest.split_once(end).ok_or("no end of the table")?;
-    let counted = format!("Counted with rustc {version} on {architecture}.\n\n{table}");
-    std::fs::write(&path, format!("{before}{begin}{counted}{end}{after}"))?;
     Ok(())
 }

@@ -33,7 +33,7 @@ const ONLY_PARSED: [(&str, &str); 21] = [
     ),
     ("harm", "minutes of machines"),
     ("overloads", "half a minute and more"),
-    ("paper", "half a minute and more"),
+    ("study paper", "half a minute and more"),
     ("target", "needs an emulator"),
     ("study rotor-catalogue", "the studies' tests run it"),
     ("study harm", "minutes"),

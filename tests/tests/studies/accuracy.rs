@@ -76,10 +76,11 @@ fn errors_follow_the_tolerance_and_no_run_is_wrong() {
         assert!(number("wrong") <= allowed, "{row}");
     }
     assert_eq!(printed["not_swept"].as_array().unwrap().len(), 0);
-    let plot = fs::read_to_string(out.join("accuracy.svg")).unwrap();
+    let plot = fs::read_to_string(out.join("accuracy.html")).unwrap();
+    assert_eq!(plot.matches("<svg").count(), references.len());
     for reference in references {
         let title = reference["problem"].as_str().unwrap();
-        assert!(plot.contains(title), "{title} is not in the plot");
+        assert!(plot.contains(title), "{title} is not in the page");
     }
     assert!(out.join("accuracy.json").exists());
 }

@@ -8,7 +8,6 @@ mod harm;
 mod loop_rates;
 mod overloads;
 mod paper;
-mod paper_command;
 mod paper_established_whirl;
 mod records;
 mod rotor_catalogue;

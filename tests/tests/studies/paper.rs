@@ -1,14 +1,15 @@
 //! `paper`: what its rows, tables and figures keep to, as a quick run gives them.
 
-use crate::paper_command::page_and_json_do_not_depend_on_threads;
 use firmware_bench::report::plot::chart::Curve;
-use firmware_studies::campaign::{Drawing, Extent, Table};
+use firmware_studies::campaign::{Drawing, Extent, Table, html};
 use firmware_studies::paper::rotors::OnsetRig;
-use firmware_studies::paper::{Chapter, chapters};
+use firmware_studies::paper::{CHAPTERS as ALL, Chapter, chapters, report};
 use plant_model::Options;
 use plant_model::analysis::impact::{Criterion, Impact, Outcome, run_impact};
+use std::collections::BTreeSet;
 use std::f64::consts::TAU;
 use std::sync::LazyLock;
+use system_tests::browser::Browser;
 
 /// On one thread.
 static CHAPTERS: LazyLock<Vec<Chapter>> = LazyLock::new(|| {
@@ -304,7 +305,70 @@ fn drag_keeps_a_whirl_alive() {
     assert_eq!(chapter(RETAINER).figures.len(), 4);
 }
 
-/// A quick run serves all of them, and another what the command makes of it: each takes half a minute.
+/// Promised keys, their types and the kinds.
+fn rows_are_for_programs(rows: &[serde_json::Value]) {
+    assert!(rows.len() > 60, "{}", rows.len());
+    let mut names = BTreeSet::new();
+    for row in rows {
+        for key in ["item", "source", "unit", "chapter", "note"] {
+            assert!(row[key].is_string(), "{key} of {row}");
+        }
+        for key in ["item", "source"] {
+            assert_ne!(row[key], "", "{row}");
+        }
+        for key in ["paper", "computed", "deviation"] {
+            let value = row.get(key).unwrap_or_else(|| panic!("no {key} in {row}"));
+            assert!(value.is_number() || value.is_null(), "{key} of {row}");
+        }
+        let kind = row["kind"].as_str().expect("a kind");
+        assert!(["fitted", "predicted", "assumed"].contains(&kind), "{kind}");
+        // A miss says why.
+        if row["holds"] == false {
+            assert_ne!(row["note"], "", "{row}");
+        }
+        names.insert((row["chapter"].to_string(), row["item"].to_string()));
+    }
+    assert_eq!(names.len(), rows.len(), "no two of a chapter are alike");
+}
+
+fn the_page_has_all_of_it() {
+    let report = report(&CHAPTERS);
+    rows_are_for_programs(&report.classes);
+    let page = html(&report.page("study paper --quick")).unwrap();
+    assert!(page.len() < 1_500_000, "{} bytes", page.len());
+    for word in [
+        "<nav",
+        "Rows that miss, and why",
+        "predicted (nothing was chosen for them)",
+        "<svg",
+    ] {
+        assert!(page.contains(word), "{word}");
+    }
+    for outside in ["<script", "src=", "@import", "url("] {
+        assert!(!page.contains(outside), "{outside}");
+    }
+    // Every link inside the page has a target, and no target is there twice.
+    for link in page.split("href=\"#").skip(1) {
+        let id = link.split('"').next().unwrap();
+        assert_eq!(page.matches(&format!("id=\"{id}\"")).count(), 1, "{id}");
+    }
+    if let Some(browser) = Browser::found() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("paper.html");
+        std::fs::write(&file, page).unwrap();
+        browser.check("chapters.mjs", &[&file]);
+    }
+}
+
+/// Of a chapter that spreads its own runs.
+fn threads_do_not_matter() {
+    let (_, compute) = (ALL.iter().find(|(name, _)| *name == "retainer bearing")).unwrap();
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build();
+    let on_two = pool.unwrap().install(|| compute(Extent::Quick)).unwrap();
+    assert_eq!(format!("{on_two:?}"), format!("{:?}", chapter(RETAINER)));
+}
+
+/// One quick run serves all of them.
 #[test]
 fn a_quick_run_keeps_to_all_of_this() {
     rows_keep_to_what_they_were();
@@ -315,5 +379,6 @@ fn a_quick_run_keeps_to_all_of_this() {
     nine_phases_in_order();
     runs_meet_the_limits();
     drag_keeps_a_whirl_alive();
-    page_and_json_do_not_depend_on_threads(&CHAPTERS);
+    the_page_has_all_of_it();
+    threads_do_not_matter();
 }

@@ -73,8 +73,15 @@ fn claims_for_programs() {
         .unwrap();
     assert!(said(&strict.stderr).contains(broken["name"].as_str().unwrap()));
 
-    let lenient = study(&["rub", "--quick", "--machines", "1"]);
+    let rows = study(&["rub", "--quick", "--machines", "1", "--json"]);
+    let json: Value = serde_json::from_slice(&rows.stdout).unwrap();
+    assert!(json["rows"][0]["pairs"].is_u64(), "{json}");
+
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().to_str().unwrap();
+    let lenient = study(&["rub", "--quick", "--machines", "1", "--out", out]);
     assert!(lenient.status.success());
+    assert!(folder.path().join("rub.html").is_file());
     let text = said(&lenient.stdout);
     assert_fits(&text, 80);
     let (_, last) = text.trim_end().rsplit_once('\n').unwrap();

@@ -5,7 +5,6 @@
 
 pub mod bars;
 pub mod chart;
-pub mod log_log;
 pub mod text;
 pub(crate) mod thin;
 
@@ -59,11 +58,11 @@ const INK: RGBColor = RGBColor(0x3b, 0x44, 0x4f);
 const GRID: RGBColor = RGBColor(0xe6, 0xe9, 0xed);
 const SHADE: RGBColor = RGBColor(0xff, 0xf1, 0xcc);
 /// Colour of limits: clearance, force cap, whirl limit.
-pub const LIMIT: RGBColor = RGBColor(0x8a, 0x1c, 0x1c);
+pub(crate) const LIMIT: RGBColor = RGBColor(0x8a, 0x1c, 0x1c);
 /// Colour of motion without contact.
-pub const FREE: RGBColor = RGBColor(0x4f, 0x77, 0xa3);
+pub(crate) const FREE: RGBColor = RGBColor(0x4f, 0x77, 0xa3);
 /// Colour of motion in contact.
-pub const TOUCHING: RGBColor = RGBColor(0xdd, 0x5a, 0x0b);
+pub(crate) const TOUCHING: RGBColor = RGBColor(0xdd, 0x5a, 0x0b);
 
 /// A line of a [`TimePlot`].
 pub(crate) struct Line {

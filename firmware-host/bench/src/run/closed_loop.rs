@@ -15,7 +15,7 @@ use crate::run::trace::{AxisRow, ReadOut, Recorder, Trace};
 use crate::run::whole_clairvoyant::WholeReference;
 use crate::scene::Scene;
 use crate::scene::policy_kind::PolicyKind;
-use plant_model::machine::params::MachineError;
+use plant_model::params::ParamError;
 use plant_model::{Options, PlantError};
 use std::cell::Cell;
 
@@ -24,7 +24,7 @@ use std::cell::Cell;
 pub enum RunError {
     /// The machine's parameters are out of range.
     #[error(transparent)]
-    Machine(#[from] MachineError),
+    Machine(#[from] ParamError),
     /// The simulation cannot be trusted any further.
     #[error("policy {policy}: {reason}")]
     Plant {

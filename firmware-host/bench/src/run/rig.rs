@@ -4,8 +4,9 @@ use crate::device::loads::Disturbance;
 use crate::run::trace::AxisRow;
 use crate::scene::Scene;
 use plant_model::energy::Audit;
-use plant_model::machine::params::{MachineError, MachineParams};
+use plant_model::machine::params::MachineParams;
 use plant_model::machine::{Machine, MachineInputs, MachineSnapshot, Warmth};
+use plant_model::params::ParamError;
 use plant_model::{Change, Meters, Method, Options, PlantError, Snapshot, V2};
 
 /// A machine whose planes are seen each from the centre of its retainer bearing.
@@ -22,7 +23,7 @@ pub(crate) struct Rig<'a> {
 }
 
 impl<'a> Rig<'a> {
-    pub(crate) fn new(scene: &'a Scene, options: Options) -> Result<Self, MachineError> {
+    pub(crate) fn new(scene: &'a Scene, options: Options) -> Result<Self, ParamError> {
         let params = MachineParams {
             loads_m: scene.load_places_m(),
             ..scene.machine.clone()
@@ -93,7 +94,7 @@ impl<'a> Rig<'a> {
     }
 
     /// Parameters that are others from now on.
-    pub(crate) fn change(&mut self, change: &Change) -> Result<(), MachineError> {
+    pub(crate) fn change(&mut self, change: &Change) -> Result<(), ParamError> {
         self.machine.change(change)
     }
 

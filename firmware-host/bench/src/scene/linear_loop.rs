@@ -20,7 +20,8 @@ use plant_model::machine::linear::{
     C, Direction, MachineMode, eigenvalues, eigenvector, half_axis, modes_of, shape_of,
 };
 use plant_model::machine::linear_plant::LinearPlant;
-use plant_model::machine::params::{MachineError, MachineParams};
+use plant_model::machine::params::MachineParams;
+use plant_model::params::ParamError;
 use serde::Serialize;
 use std::f64::consts::TAU;
 
@@ -34,7 +35,7 @@ pub use sensitivity::{Sensitivity, Zone};
 pub enum NoLoop {
     /// A value is out of range.
     #[error(transparent)]
-    Machine(#[from] MachineError),
+    Machine(#[from] ParamError),
     /// No plane has a magnet and a controller.
     #[error("no magnet has a levitation controller")]
     NoController,

@@ -62,7 +62,7 @@ pub(crate) fn spin(file: &SceneTables, text: &SceneText) -> Result<SpinParams, S
 
 /// What the plant refuses, at the key that it comes from.
 pub(crate) fn refused(error: &ParamError, text: &SceneText) -> SceneError {
-    let key = match error.field {
+    let key = match error.field.as_str() {
         "start.spin_rad_s" => "spin.frequency_hz",
         "race.start_spin_rad_s" => "race.start_frequency_hz",
         field => field,

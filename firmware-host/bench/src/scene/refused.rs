@@ -4,10 +4,10 @@ use crate::scene::Scene;
 use crate::scene::diagnostic::SceneError;
 use crate::scene::plant::hardening_key;
 use crate::scene::spec::Spec;
-use plant_model::machine::params::MachineError;
+use plant_model::params::ParamError;
 
 /// The error of a value by its name in [`plant_model::machine::params::MachineParams`].
-pub(crate) fn refused(error: &MachineError, spec: &Spec, scene: &Scene) -> SceneError {
+pub(crate) fn refused(error: &ParamError, spec: &Spec, scene: &Scene) -> SceneError {
     let planes = &scene.planes;
     let (tables, text) = (&spec.tables, &spec.text);
     let (list, rest) = error.field.split_once('[').unwrap_or((&error.field, ""));

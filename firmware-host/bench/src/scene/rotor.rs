@@ -7,10 +7,11 @@ use crate::scene::plant::spin;
 use crate::scene::tables::{BendingTable, SceneTables, SupportTable, UnbalanceTable};
 use plant_model::V2;
 use plant_model::machine::params::{
-    BendingMode, MachineError, MachineParams, RigidRotor, Rotor, Support, Unbalance,
+    BendingMode, MachineParams, RigidRotor, Rotor, Support, Unbalance,
 };
 use plant_model::machine::reduced::{ReducedRotor, RotorMatrices};
 use plant_model::machine::shaft::{Disc, Shaft, ShaftSection};
+use plant_model::params::ParamError;
 use std::f64::consts::TAU;
 
 /// Bending modes of a shaft are kept up to here, where the scene does not say \[Hz\].
@@ -280,7 +281,7 @@ impl Asked {
     }
 
     /// Key of the place that an error is about.
-    fn key(&self, error: &MachineError) -> Option<&str> {
+    fn key(&self, error: &ParamError) -> Option<&str> {
         let index = error.field.strip_prefix("nodes[")?;
         let index: usize = index.trim_end_matches(']').parse().ok()?;
         self.places.get(index).map(|(key, _)| key.as_str())

@@ -2,7 +2,10 @@
 
 use super::wrong_runs::{self, STARTS, WrongRow};
 use super::{AccuracyError, CONFIRMED_CLEARANCES, Reference, Row, sweep};
-use crate::campaign::{Block, Chapter, Claim, Extent, Progress, Report, StudyError};
+use crate::campaign::{
+    Block, Chapter, Claim, Drawing, Extent, Figure, Page, Progress, Report, StudyError,
+};
+use firmware_bench::report::plot::chart::{Axis, Chart, Curve};
 use firmware_bench::scene::Scene;
 use firmware_bench::scene::diagnostic::SceneError;
 use plant_model::Method;
@@ -156,19 +159,21 @@ pub fn study(extent: Extent, progress: &dyn Progress) -> Result<Report, StudyErr
     let found = measure(&scenes, when, progress)?;
     let mut chapters = chapters(&found);
     if let Some((_, problems)) = chapters.split_last_mut() {
-        problems
-            .iter_mut()
-            .for_each(|problem| problem.folded = true);
+        for problem in problems {
+            (problem.folded, problem.in_docs) = (true, false);
+        }
     }
     let runs_of_starts: u32 = found.wrong_runs.iter().map(|row| row.of).sum();
     Ok(Report {
         classes: Vec::new(),
-        title: "Error against run time".to_owned(),
+        title: TITLE.to_owned(),
         claims: claims(&found),
         cases: (found.rows.len() as u64) + u64::from(runs_of_starts),
         chapters,
     })
 }
+
+const TITLE: &str = "Error against run time";
 
 /// The documentation says 1.1, in two digits.
 const ERROR_OVER_RTOL: f64 = 1.15;
@@ -204,6 +209,22 @@ fn claims(found: &Accuracy) -> Vec<Claim> {
     claims
 }
 
+/// The chapters as a page.
+pub fn page(found: &Accuracy) -> Page {
+    let sure = found.references.iter().filter(|r| r.confirmed).count();
+    Page {
+        title: TITLE.to_owned(),
+        headline: format!(
+            "{sure} of {} problems have a reference that two methods agree on; {} of {} runs of them are silently wrong.",
+            found.references.len(),
+            found.wrong_runs.iter().map(|row| row.wrong).sum::<u32>(),
+            found.wrong_runs.iter().map(|row| row.of).sum::<u32>(),
+        ),
+        lead: Vec::new(),
+        chapters: chapters(found),
+    }
+}
+
 /// A chapter for each problem, and one of silently wrong runs.
 pub fn chapters(found: &Accuracy) -> Vec<Chapter> {
     let mut chapters: Vec<Chapter> = (found.references.iter())
@@ -212,8 +233,10 @@ pub fn chapters(found: &Accuracy) -> Vec<Chapter> {
                 .rows
                 .iter()
                 .filter(|row| row.problem == reference.problem);
+            let figure = reference.confirmed.then(|| figure(reference, rows.clone()));
             let blocks = vec![
                 Block::text(reference.in_words()),
+                Block::Figures(figure.into_iter().collect()),
                 Block::table(ERROR_COLUMNS, rows.map(error_cells)),
             ];
             Chapter::new(&reference.problem, blocks)
@@ -228,6 +251,39 @@ pub fn chapters(found: &Accuracy) -> Vec<Chapter> {
     let title = format!("Silently wrong runs, from {STARTS} start speeds each");
     chapters.push(Chapter::new(title, blocks));
     chapters
+}
+
+/// Times over errors, a curve a method.
+fn figure<'a>(reference: &Reference, rows: impl Iterator<Item = &'a Row> + Clone) -> Figure {
+    // Below the references' distance an error means nothing; it is drawn there.
+    let floor = reference.uncertainty.max(1e-15);
+    let points = |method: &str| {
+        let point = |row: &Row| Some((row.error?.max(floor), row.seconds));
+        let of_method = rows.clone().filter(|row| row.method == method);
+        of_method.filter_map(point).collect::<Vec<_>>()
+    };
+    let curves: Vec<Curve> = (0..)
+        .zip([Method::Series, Method::Collocation])
+        .map(|(colour, method)| {
+            Curve::line(method.name().to_owned(), points(method.name()), colour)
+        })
+        .collect();
+    let all = || curves.iter().flat_map(|curve| &curve.points);
+    let range = |values: &mut dyn Iterator<Item = f64>| {
+        let positive = values.filter(|v| *v > 0.0);
+        let (low, high) = positive.fold((1.0_f64, 1e-15_f64), |(a, b), v| (a.min(v), b.max(v)));
+        (0.5 * low, 2.0 * high)
+    };
+    Figure {
+        file: reference.problem.clone().into(),
+        caption: format!("{}: run time over error.", reference.problem),
+        drawing: Drawing::Chart(Chart {
+            label: format!("{}: run time over error", reference.problem),
+            x: Axis::log("error / clearance", range(&mut all().map(|p| p.0))),
+            y: Axis::log("time / s", range(&mut all().map(|p| p.1))),
+            curves: curves.clone(),
+        }),
+    }
 }
 
 const ERROR_COLUMNS: [&str; 7] = [

@@ -2,6 +2,7 @@
 
 use firmware_bench::report::listing::Column;
 use firmware_bench::report::plot::chart::{Chart, HeatMap};
+use std::borrow::Cow;
 
 /// A table.
 #[derive(Debug, Clone, PartialEq)]
@@ -53,7 +54,7 @@ pub enum Drawing {
 #[derive(Debug, Clone)]
 pub struct Figure {
     /// Short name, by which the page links to it; no two are alike.
-    pub file: &'static str,
+    pub file: Cow<'static, str>,
     /// What is to be seen.
     pub caption: String,
     pub drawing: Drawing,
@@ -99,8 +100,10 @@ pub struct Chapter {
     pub title: String,
     /// What is in it, in order.
     pub blocks: Vec<Block>,
-    /// Whether it is shown as its heading until somebody opens it, and left out of the documentation.
+    /// Whether it is shown as its heading until somebody opens it.
     pub folded: bool,
+    /// Whether the documentation has it too.
+    pub in_docs: bool,
 }
 
 impl Chapter {
@@ -110,13 +113,15 @@ impl Chapter {
             title: title.into(),
             blocks,
             folded: false,
+            in_docs: true,
         }
     }
 
-    /// One that is shown as its heading until somebody opens it.
+    /// One that is shown as its heading until somebody opens it, and left out of the documentation.
     pub fn folded(title: impl Into<String>, blocks: Vec<Block>) -> Self {
         Self {
             folded: true,
+            in_docs: false,
             ..Self::new(title, blocks)
         }
     }

@@ -82,6 +82,6 @@ fn drawn(figure: &Figure, number: &str) -> Result<Drawn, PlotError> {
         Drawing::Chart(plot) => Drawn::of_chart(plot)?,
         Drawing::Map(plot) => Drawn::of_map(plot)?,
     };
-    let id = format!("figure-{}", anchor(figure.file));
+    let id = format!("figure-{}", anchor(&figure.file));
     Ok(drawn.numbered(id, number, &figure.caption))
 }

@@ -9,10 +9,10 @@ const MOST_ROWS: usize = 12;
 const ROWS_OF_CUT: usize = 8;
 
 /// What the documentation has of a page: its chapters without title and lead, long tables cut to their first rows. Figures and
-/// folded chapters are in the HTML page alone. Deterministic.
+/// what is not for it are in the HTML page alone. Deterministic.
 pub fn digest(page: &Page) -> String {
     let mut parts = Vec::new();
-    for chapter in page.chapters.iter().filter(|chapter| !chapter.folded) {
+    for chapter in page.chapters.iter().filter(|chapter| chapter.in_docs) {
         parts.push(format!("## {}", plain(&chapter.title)));
         parts.extend(chapter.blocks.iter().filter_map(block));
     }

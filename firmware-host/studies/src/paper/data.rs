@@ -48,7 +48,7 @@ macro_rules! curves {
 macro_rules! chart {
     ($file:expr, $label:literal, $caption:literal; $x:expr, $y:expr; $curves:expr) => {
         Figure {
-            file: $file,
+            file: $file.into(),
             caption: format!($caption),
             drawing: Drawing::Chart(Chart {
                 label: format!($label),

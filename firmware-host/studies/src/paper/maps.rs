@@ -176,7 +176,7 @@ fn map(rig: &Case, file: &'static str, [x, y]: [Varied; 2], grid: Grid) -> Resul
         (all.first().zip(all.get(place))).or_missing(format!("{file}: nothing whirls"))?;
     let label = format!("Critical impact speed over {} and {}", x.name, y.name);
     Ok(Figure {
-        file,
+        file: file.into(),
         caption: format!("{label}; darker bears more. The highest twentieth has one colour."),
         drawing: Drawing::Map(HeatMap {
             label,

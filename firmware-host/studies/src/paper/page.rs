@@ -1,10 +1,10 @@
 //! The chapters as a page, and as a study: what the paper says of a number is the claim.
 
-use super::rows::COLUMNS;
-use super::summary::{conclusion, sentences};
+use super::rows::{COLUMNS, values};
+use super::summary::sentences;
 use super::{CHAPTERS, Chapter, ChapterError, MISS, Paper, Row};
 use crate::campaign::{
-    Block, Chapter as Shown, Claim, Extent, Page, Progress, Report, StudyError, Table,
+    Block, Chapter as Shown, Claim, Extent, Progress, Report, StudyError, Table,
 };
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 
@@ -28,20 +28,25 @@ pub fn chapters(extent: Extent, progress: &dyn Progress) -> Result<Vec<Chapter>,
 /// # Errors
 /// [`ChapterError`].
 pub fn study(extent: Extent, progress: &dyn Progress) -> Result<Report, StudyError> {
-    let chapters = chapters(extent, progress)?;
+    Ok(report(&chapters(extent, progress)?))
+}
+
+/// What the chapters come to, with the rows that miss before them.
+pub fn report(chapters: &[Chapter]) -> Report {
     let rows = chapters.iter().flat_map(|chapter| &chapter.rows);
-    Ok(Report {
-        classes: Vec::new(),
+    Report {
+        classes: values(chapters),
         cases: rows.clone().count() as u64,
         claims: rows.flat_map(claims).collect(),
         title: TITLE.to_owned(),
-        chapters: (chapters.iter())
+        chapters: ([summary(chapters)].into_iter())
+            .chain(chapters.iter().map(shown))
             .map(|chapter| Shown {
-                folded: true,
-                ..shown(chapter)
+                in_docs: false,
+                ..chapter
             })
             .collect(),
-    })
+    }
 }
 
 /// That a row meets what the paper has; a range has two sides.
@@ -76,8 +81,7 @@ const ABOUT: &str = "Numbers and figures of the paper \u{201c}Dry Friction Backw
      Theory, Experiments, Results, and Recommendations\u{201d}, computed from its equations (2.1) to (2.9). \
      Where the paper's figures are not legible as numbers, only what its text says is compared.";
 
-/// The page: a summary with the rows that miss, and every chapter.
-pub fn page(chapters: &[Chapter]) -> Page {
+fn summary(chapters: &[Chapter]) -> Shown {
     let misses = chapters.iter().flat_map(|chapter| {
         let missed = (chapter.rows.iter()).filter(|row| row.holds() == Some(false));
         missed.map(|row| with_chapter(chapter.title.to_owned(), row.cells()))
@@ -87,16 +91,11 @@ pub fn page(chapters: &[Chapter]) -> Page {
         columns: with_chapter("Chapter".to_owned(), COLUMNS.map(str::to_owned)),
         rows: misses.collect(),
     };
-    let mut lead = vec![Block::text(ABOUT), Block::List(sentences(chapters))];
+    let mut blocks = vec![Block::text(ABOUT), Block::List(sentences(chapters))];
     if !misses.rows.is_empty() {
-        lead.push(Block::Table(misses, Vec::new()));
+        blocks.push(Block::Table(misses, Vec::new()));
     }
-    Page {
-        title: TITLE.to_owned(),
-        headline: conclusion(chapters),
-        lead,
-        chapters: chapters.iter().map(shown).collect(),
-    }
+    Shown::new("How good the predictions are", blocks)
 }
 
 fn with_chapter(chapter: String, cells: [String; 8]) -> Vec<String> {

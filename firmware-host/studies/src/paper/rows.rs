@@ -1,10 +1,7 @@
-//! The rows of all chapters: how one is worded, as JSON for programs, as tables for the terminal.
+//! The rows of all chapters: how one is worded, and as JSON for programs.
 
-use super::summary::sentences;
 use super::{Chapter, Kind, Paper, Row};
-use firmware_bench::report::lines::{Cell, lined, right};
 use firmware_bench::report::plot::text::figures;
-use firmware_bench::report::tone::Tone;
 use serde::Serialize;
 
 /// A row as programs get it.
@@ -24,21 +21,11 @@ struct JsonRow<'a> {
     note: &'a str,
 }
 
-/// All rows.
-#[derive(Debug, Serialize)]
-pub struct Rows<'a> {
-    rows: Vec<JsonRow<'a>>,
-}
-
-/// The rows of all chapters under `rows`; numbers are finite or null.
-pub fn json(chapters: &[Chapter]) -> Rows<'_> {
-    let all = chapters
-        .iter()
-        .flat_map(|c| c.rows.iter().map(move |row| (c.title, row)));
-    let rows = all
-        .map(|(chapter, row)| JsonRow::of(chapter, row))
-        .collect();
-    Rows { rows }
+/// The rows of all chapters; numbers are finite or null.
+pub(super) fn values(chapters: &[Chapter]) -> Vec<serde_json::Value> {
+    let all = (chapters.iter()).flat_map(|c| c.rows.iter().map(move |row| (c.title, row)));
+    all.filter_map(|(chapter, row)| serde_json::to_value(JsonRow::of(chapter, row)).ok())
+        .collect()
 }
 
 impl<'a> JsonRow<'a> {
@@ -123,32 +110,4 @@ fn percent(share: f64) -> String {
         return "0.0 %".to_owned();
     }
     text.replace('-', "\u{2212}")
-}
-
-/// One table a chapter, and the summary.
-pub fn text(chapters: &[Chapter]) -> String {
-    let mut out = String::new();
-    for chapter in chapters {
-        let mut table = lined([
-            Cell::new("item"),
-            right("paper"),
-            right("computed"),
-            Cell::new("unit"),
-            right("deviation"),
-            Cell::new("kind"),
-        ]);
-        for row in &chapter.rows {
-            let [item, _, paper, computed, unit, deviation, kind, _] = row.cells();
-            table.add_row([
-                Cell::new(item),
-                right(paper),
-                right(computed),
-                Cell::new(unit),
-                right(deviation).toned(row.holds().map(Tone::of_claim)),
-                Cell::new(kind),
-            ]);
-        }
-        out += &format!("{}\n{table}\n\n", chapter.title);
-    }
-    out + &sentences(chapters).join("\n") + "\n"
 }

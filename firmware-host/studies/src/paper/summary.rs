@@ -32,25 +32,6 @@ fn met(rows: &[&Row]) -> usize {
     rows.iter().filter(|row| row.holds() == Some(true)).count()
 }
 
-/// What comes of it, in a sentence.
-pub(super) fn conclusion(chapters: &[Chapter]) -> String {
-    let compared_with = rows(chapters, |row| row.holds().is_some());
-    let predicted = compared(chapters, Kind::Predicted);
-    let misses = match compared_with.len() - met(&compared_with) {
-        0 => "None misses.".to_owned(),
-        1 => "The one that misses is listed with the reason.".to_owned(),
-        misses => format!("The {misses} that miss are listed with the reasons."),
-    };
-    format!(
-        "The model meets {} of the {} numbers, bounds and ranges that the paper gives; {} of the {} for which nothing was \
-         chosen. {misses}",
-        met(&compared_with),
-        compared_with.len(),
-        met(&predicted),
-        predicted.len(),
-    )
-}
-
 /// The summary in sentences.
 pub(super) fn sentences(chapters: &[Chapter]) -> Vec<String> {
     let compared_with = rows(chapters, |row| row.holds().is_some());

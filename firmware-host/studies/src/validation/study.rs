@@ -342,7 +342,7 @@ fn course(record: &Record, ran: &Ran) -> Block {
     ];
     let text = "Disc, record and plant; the wall is touched about 68 and 118 ms.";
     Block::Figures(vec![Figure {
-        file: "course",
+        file: "course".into(),
         caption: text.to_owned(),
         drawing: Drawing::Chart(Chart {
             label: text.to_owned(),

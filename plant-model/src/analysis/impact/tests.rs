@@ -81,7 +81,9 @@ fn rolling_just_above_the_threshold_is_whirl() {
         let impact = radial(250.0).at(speed_m_s);
         [
             run_impact(&params, &impact, &Criterion::default()).unwrap(),
-            run_impacts(&[(params, impact)], &Criterion::default())[0].unwrap(),
+            run_impacts(&[(params, impact)], &Criterion::default())[0]
+                .clone()
+                .unwrap(),
         ]
         .map(|after| after.outcome)
     };

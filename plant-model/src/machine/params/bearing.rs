@@ -1,7 +1,6 @@
 //! A retainer bearing as it is: drag by load, and heat.
 
-use super::MachineError;
-use super::validate::{FINITE, NOT_NEGATIVE, POSITIVE, check};
+use crate::params::{FINITE, NOT_NEGATIVE, POSITIVE, ParamError, check};
 
 /// Drag of a race by the load on it, beside the viscous one: the moment κ·f_n against its spin.
 ///
@@ -34,7 +33,7 @@ pub struct BearingHeat {
 }
 
 impl LoadDrag {
-    pub(super) fn validate(&self, field: impl Fn(&str) -> String) -> Result<(), MachineError> {
+    pub(super) fn validate(&self, field: impl Fn(&str) -> String) -> Result<(), ParamError> {
         let arm = self.arm_m;
         check(arm >= 0.0, field("load_drag.arm_m"), arm, NOT_NEGATIVE)?;
         let still = self.still_rad_s;
@@ -51,7 +50,7 @@ impl LoadDrag {
 const LEAST_CLEARANCE: f64 = 0.1;
 
 impl BearingHeat {
-    pub(super) fn validate(&self, field: impl Fn(&str) -> String) -> Result<(), MachineError> {
+    pub(super) fn validate(&self, field: impl Fn(&str) -> String) -> Result<(), ParamError> {
         let capacity = self.capacity_j_k;
         check(
             capacity > 0.0,

@@ -1,7 +1,7 @@
 //! What may change of a rotor during a run.
 
-use super::validate::{FINITE, NOT_NEGATIVE, check};
-use super::{MachineError, Rotor, Unbalance};
+use super::{Rotor, Unbalance};
+use crate::params::{FINITE, NOT_NEGATIVE, ParamError, check};
 
 /// Parameters that take other values from an instant on; `None` stays as it is.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -21,7 +21,7 @@ impl Change {
     ///
     /// # Errors
     /// The first that is out of range.
-    pub fn validate(&self, rotor: &Rotor) -> Result<(), MachineError> {
+    pub fn validate(&self, rotor: &Rotor) -> Result<(), ParamError> {
         if let Some(unbalance) = &self.unbalance {
             unbalance.validate(rotor, "unbalance")?;
         }

@@ -1,7 +1,8 @@
 //! By which method a machine is integrated.
 
-use super::{MachineError, MachineParams, MachinePlane};
+use super::{MachineParams, MachinePlane};
 use crate::integrate::Method;
+use crate::params::ParamError;
 use crate::params::StatorParams;
 
 impl MachinePlane {
@@ -31,9 +32,9 @@ impl MachineParams {
     ///
     /// # Errors
     /// A method that does not go with what is there, by what does not go.
-    pub fn method(&self, method: Method) -> Result<Method, MachineError> {
+    pub fn method(&self, method: Method) -> Result<Method, ParamError> {
         let refused = |field: String, value: f64, expected: &'static str| {
-            Err(MachineError {
+            Err(ParamError {
                 field,
                 value,
                 expected,

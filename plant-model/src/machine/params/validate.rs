@@ -1,38 +1,21 @@
 //! Ranges of a machine's values, and what contradicts each other.
 
 use super::{
-    MAX_MAGNETS, MAX_MOTIONS, MAX_PLANES, MachineError, MachineParams, MachinePlane, MachineStart,
-    Poles, RigidRotor, Rotor, Unbalance,
+    MAX_MAGNETS, MAX_MOTIONS, MAX_PLANES, MachineParams, MachinePlane, MachineStart, Poles,
+    RigidRotor, Rotor, Unbalance,
 };
-use crate::params::{ContactLaw, SlidingFriction, SpinParams, StatorParams};
+use crate::params::{
+    ContactLaw, FINITE, NOT_NEGATIVE, POSITIVE, ParamError, SlidingFriction, SpinParams,
+    StatorParams, check,
+};
 use nalgebra::DMatrix;
-
-pub(in crate::machine) fn check(
-    ok: bool,
-    field: impl Into<String>,
-    value: f64,
-    expected: &'static str,
-) -> Result<(), MachineError> {
-    if ok && value.is_finite() {
-        return Ok(());
-    }
-    Err(MachineError {
-        field: field.into(),
-        value,
-        expected,
-    })
-}
-
-pub(super) const POSITIVE: &str = "a finite number greater than 0";
-pub(super) const NOT_NEGATIVE: &str = "a finite number, 0 or greater";
-pub(super) const FINITE: &str = "a finite number";
 
 /// A symmetric matrix, row by row, or nothing.
 fn symmetric(
     field: &str,
     values: &[f64],
     (size, count): (usize, &'static str),
-) -> Result<(), MachineError> {
+) -> Result<(), ParamError> {
     let given = values.len();
     check(
         given == 0 || given == size * size,
@@ -49,7 +32,7 @@ fn symmetric(
 }
 
 impl RigidRotor {
-    fn validate(&self) -> Result<(), MachineError> {
+    fn validate(&self) -> Result<(), ParamError> {
         let (transverse, polar) = (self.transverse_inertia_kg_m2, self.polar_inertia_kg_m2);
         check(self.mass_kg > 0.0, "rotor.mass_kg", self.mass_kg, POSITIVE)?;
         let field = "rotor.transverse_inertia_kg_m2";
@@ -74,7 +57,7 @@ impl Rotor {
     ///
     /// # Errors
     /// The first that is out of range, by name.
-    pub fn validate(&self) -> Result<(), MachineError> {
+    pub fn validate(&self) -> Result<(), ParamError> {
         self.rigid().validate()?;
         if !matches!(self, Self::Rigid(_)) {
             let field = "rotor.transverse_inertia_kg_m2";
@@ -144,7 +127,7 @@ impl Rotor {
     }
 
     /// Refuses an eccentricity of a rotor whose shapes do not say how its centre of mass moves.
-    pub(super) fn has_centre(&self, eccentricity_m: f64) -> Result<(), MachineError> {
+    pub(super) fn has_centre(&self, eccentricity_m: f64) -> Result<(), ParamError> {
         let field = "rotor.eccentricity_m";
         let rule = "0, for no bending mode has its shape at the centre of mass";
         check(
@@ -156,14 +139,14 @@ impl Rotor {
     }
 
     /// Refuses a place that does not.
-    fn has(&self, field: String, position_m: f64) -> Result<(), MachineError> {
+    fn has(&self, field: String, position_m: f64) -> Result<(), ParamError> {
         let rule = "a place on the rotor: within the shape of every bending mode";
         check(self.reaches(position_m), field, position_m, rule)
     }
 }
 
 impl Unbalance {
-    pub(super) fn validate(&self, rotor: &Rotor, of: &str) -> Result<(), MachineError> {
+    pub(super) fn validate(&self, rotor: &Rotor, of: &str) -> Result<(), ParamError> {
         rotor.has(format!("{of}.position_m"), self.position_m)?;
         let (moment, field) = (self.moment_kg_m, format!("{of}.moment_kg_m"));
         check(moment >= 0.0, field, moment, NOT_NEGATIVE)?;
@@ -172,7 +155,7 @@ impl Unbalance {
 }
 
 impl Poles {
-    fn validate(&self, of: &str) -> Result<(), MachineError> {
+    fn validate(&self, of: &str) -> Result<(), ParamError> {
         let positive = |name: &str, x: f64| check(x > 0.0, format!("{of}.{name}"), x, POSITIVE);
         positive("bias_current_a", self.bias_current_a)?;
         let (most, bias) = (self.current_max_a, self.bias_current_a);
@@ -199,7 +182,7 @@ impl Poles {
 }
 
 impl MachinePlane {
-    fn validate(&self, i: usize) -> Result<(), MachineError> {
+    fn validate(&self, i: usize) -> Result<(), ParamError> {
         let field = |name: &str| format!("planes[{i}].{name}");
         let finite = |name, value| check(true, field(name), value, FINITE);
         let positive = |name, value: f64| check(value > 0.0, field(name), value, POSITIVE);
@@ -298,7 +281,7 @@ impl MachinePlane {
 }
 
 impl crate::params::RingParams {
-    fn validate_as(&self, field: &impl Fn(&str) -> String, ring: &str) -> Result<(), MachineError> {
+    fn validate_as(&self, field: &impl Fn(&str) -> String, ring: &str) -> Result<(), ParamError> {
         let name = |key: &str| field(&format!("{ring}.{key}"));
         check(self.mass_kg > 0.0, name("mass_kg"), self.mass_kg, POSITIVE)?;
         for axis in [0, 1] {
@@ -315,7 +298,7 @@ impl MachineParams {
     ///
     /// # Errors
     /// The first that is out of range, by name.
-    pub fn validate(&self) -> Result<(), MachineError> {
+    pub fn validate(&self) -> Result<(), ParamError> {
         self.rotor.validate()?;
         let polar = self.rotor.rigid().polar_inertia_kg_m2;
         if let SpinParams::Free {
@@ -461,7 +444,7 @@ impl MachineStart {
     ///
     /// # Errors
     /// The first that is not.
-    pub fn validate(&self) -> Result<(), MachineError> {
+    pub fn validate(&self) -> Result<(), ParamError> {
         let vectors = [
             ("start.centre_m", self.centre_m),
             ("start.centre_velocity_m_s", self.centre_velocity_m_s),

@@ -3,8 +3,9 @@
 use super::Machine;
 use super::settle::AtZero;
 use crate::machine::guards::Guard;
-use crate::machine::params::{Change, MachineError};
+use crate::machine::params::Change;
 use crate::mode::Phase;
+use crate::params::ParamError;
 
 impl Machine {
     /// Changes parameters from now on. Position, speeds and stored energy stay as they are: none of these parameters has a
@@ -12,7 +13,7 @@ impl Machine {
     ///
     /// # Errors
     /// The first value that is out of range, and a torque while the speed is held; then nothing has changed.
-    pub fn change(&mut self, change: &Change) -> Result<(), MachineError> {
+    pub fn change(&mut self, change: &Change) -> Result<(), ParamError> {
         self.system.change(change)?;
         self.map.forget();
         self.stepper.series.renew(&self.system.body);

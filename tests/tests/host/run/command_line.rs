@@ -31,7 +31,10 @@ fn negative_numbers_reach_their_option() {
             vec!["overloads", "--threads", "-1"],
             "-1 is not in 1..=1024",
         ),
-        (vec!["paper", "--threads", "-1"], "-1 is not in 1..=1024"),
+        (
+            vec!["study", "paper", "--threads", "-1"],
+            "-1 is not in 1..=1024",
+        ),
         (vec!["target", "--threads", "-1"], "-1 is not in 1..=1024"),
         (
             vec!["run", scene, "--threads", "--json"],

@@ -1,4 +1,4 @@
-//! The recipes for other people's tools that spread tasks: Snakemake runs its own, Dask's is read.
+//! The recipes for other people's tools: Snakemake runs its own, SALib reads results, Dask's is read.
 
 use super::{DRAWS, contents, succeeds, sweep, sweep_file};
 use crate::own_controllers::python;
@@ -51,6 +51,33 @@ fn snakemake_makes_the_bytes_of_one_machine() {
     let again = snakemake(&tool, folder.path(), (&file, &parts));
     let said = succeeds(&again) + &String::from_utf8_lossy(&again.stderr);
     assert!(said.contains("Nothing to be done"), "{said}");
+}
+
+/// As the page has it.
+#[test]
+fn salib_reads_the_results() {
+    let Some(python) = system_tests::python() else {
+        return;
+    };
+    let folder = TempDir::new().unwrap();
+    let draws = "design = \"monte_carlo\"\nruns = 200\n\
+        [[vary]]\nkey = \"start.velocity_m_s[0]\"\nuniform = [0.1, 0.5]\n\
+        [[vary]]\nkey = \"friction.coefficient\"\nuniform = [0.05, 0.2]\n";
+    let file = sweep_file(folder.path(), draws);
+    succeeds(&sweep(&file, &folder.path().join("runs/sweep"), &[]));
+
+    let page = std::fs::read_to_string(root().join("docs/src/host/sweep.md")).unwrap();
+    let (_, recipe) = page.split_once("```python\n").unwrap();
+    let (recipe, _) = recipe.split_once("```").unwrap();
+    // And of a figure that is known: all of it hangs on the first key.
+    let known = "s = rbd_fast.analyze(problem, x, x[:, 0] ** 2)['S1']\nassert y.std() > 0 and s[0] > 0.9 and s[1] < 0.2, s\n";
+    let ran = Command::new(python)
+        .args(["-c", &format!("{recipe}{known}")])
+        .current_dir(folder.path())
+        .output()
+        .unwrap();
+    let said = succeeds(&ran);
+    assert!(said.contains("delta") && said.contains("S1"), "{said}");
 }
 
 #[test]

@@ -72,7 +72,7 @@ impl Outcomes {
             scale: (1.0, 10.0, scale.to_owned()),
         };
         Figure {
-            file,
+            file: file.into(),
             caption,
             drawing: Drawing::Map(map),
         }
