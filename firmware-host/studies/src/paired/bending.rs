@@ -243,8 +243,8 @@ pub fn study(extent: Extent, progress: &dyn Progress) -> Result<Report, StudyErr
                 vec![Block::text(story), Block::List(not_held)],
             ),
             Chapter::new("What is configured", vec![Block::table(COLUMNS, rows)]),
-            Chapter::new("Not configured, by shape", vec![by_shape(0)]),
-            Chapter::new("Told as it is, by shape", vec![by_shape(1)]),
+            Chapter::folded("Not configured, by shape", vec![by_shape(0)]),
+            Chapter::folded("Configured as it is, by shape", vec![by_shape(1)]),
             Chapter::new(
                 "By frequency",
                 vec![Block::table(
