@@ -1,6 +1,7 @@
 //! Figures read off a run, and closed forms to hold them against.
 
 pub mod arrest;
+pub mod best_force;
 pub mod black;
 pub mod course;
 pub mod impact;

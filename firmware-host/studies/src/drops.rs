@@ -332,7 +332,7 @@ pub fn drawn(
         classes: Vec::new(),
         chapters: vec![
             Chapter::new("By bearing", vec![Block::table(columns, by_class)]),
-            Chapter::new(
+            Chapter::folded(
                 "By friction on the race",
                 vec![Block::table(
                     ["bearing", "below 0.3", "from 0.3 on"],

@@ -34,7 +34,7 @@
 //! ```
 //!
 //! Rooms, each importing only from those above it: `campaign`, `impacts`, `map`, `machines`, `accuracy`, `drops`, `paper`, `overloads`, `found_in_records`, `paired`, `commissioning`,
-//! `trials`, `unseen_machines`, `whole_rotors`, `loop_rates`, `sensitivity`, `on_target`, `validation`.
+//! `trials`, `unseen_machines`, `whole_rotors`, `loop_rates`, `optimum`, `sensitivity`, `on_target`, `validation`.
 
 #![forbid(unsafe_code)]
 #![warn(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
@@ -49,6 +49,7 @@ pub mod loop_rates;
 pub mod machines;
 pub mod map;
 pub mod on_target;
+pub mod optimum;
 pub mod overloads;
 pub mod paired;
 pub mod paper;
@@ -108,6 +109,13 @@ pub const STUDIES: &[Study] = &[
         name: "loop-rates",
         about: "what a slower call of the supervisor costs",
         run: loop_rates::study,
+        drawn: None,
+        on_record: None,
+    },
+    Study {
+        name: "optimum",
+        about: "the hardest impact that any force within the cap could take, and the supervisor's beside it",
+        run: optimum::study,
         drawn: None,
         on_record: None,
     },

@@ -6,6 +6,7 @@ mod drops;
 mod found_in_records;
 mod harm;
 mod loop_rates;
+mod optimum;
 mod overloads;
 mod paper;
 mod paper_established_whirl;

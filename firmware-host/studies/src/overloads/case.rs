@@ -76,7 +76,7 @@ pub(super) fn load(sizes: Sizes, share: f64, start_s: f64, duration_s: f64) -> D
 }
 
 /// The scene with another seed of its first plane's noise; noise of others goes with it, and stays one of its own.
-pub(super) fn seeded(scene: &Scene, seed: u64) -> Scene {
+pub(crate) fn seeded(scene: &Scene, seed: u64) -> Scene {
     let mut scene = scene.clone();
     let by = seed.wrapping_sub(scene.planes[0].seed);
     for plane in &mut scene.planes {

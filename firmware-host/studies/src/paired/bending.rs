@@ -245,7 +245,7 @@ pub fn study(extent: Extent, progress: &dyn Progress) -> Result<Report, StudyErr
             Chapter::new("What is configured", vec![Block::table(COLUMNS, rows)]),
             Chapter::folded("Not configured, by shape", vec![by_shape(0)]),
             Chapter::folded("Configured as it is, by shape", vec![by_shape(1)]),
-            Chapter::new(
+            Chapter::folded(
                 "By frequency",
                 vec![Block::table(
                     [
