@@ -153,6 +153,15 @@ static void ticking(void) {
         EXPECT(amb_rotor_tick_second(&rotor, samples + 1, command), AMB_ERROR_ROTOR_HALF,
                "the first plane has not had its half of the tick");
         no_force("second half twice", command);
+        /* What has happened by that is not of what follows. */
+        {
+            amb_event event;
+            int plane;
+            for (plane = 0; plane < 2; plane++) {
+                while (amb_rotor_next_event(&rotor, (uint32_t)plane, &event) == AMB_OK) {
+                }
+            }
+        }
     }
     {
         /* A supervisor does not pass for a rotor, nor the other way round. */

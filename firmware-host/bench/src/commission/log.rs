@@ -83,13 +83,15 @@ impl Log {
         let spin_rad_s = log.beside_if_there(&position, SPIN)?;
         // One without numbers is none.
         let spin_rad_s = spin_rad_s.filter(|spin| spin.iter().all(|s| s.is_finite()));
-        let period_s = log.period_s(TIME)?;
+        // A column that is missing says more than times that are odd.
+        let (position_m, command_n, stimulus_n) =
+            (pair(POSITION)?, pair(COMMAND)?, pair(STIMULUS)?);
         Ok(Self {
-            position_m: pair(POSITION)?,
-            command_n: pair(COMMAND)?,
-            stimulus_n: pair(STIMULUS)?,
+            position_m,
+            command_n,
+            stimulus_n,
             spin_rad_s: spin_rad_s.map(<[f64]>::to_vec),
-            period_s,
+            period_s: log.period_s(TIME)?,
             from_s: log.column(TIME)?[0],
         })
     }
