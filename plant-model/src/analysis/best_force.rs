@@ -112,9 +112,9 @@ impl RigidWall {
         for _ in 0..40 {
             let middle = 0.5 * (before + after);
             if out(middle) {
-                after = middle
+                after = middle;
             } else {
-                before = middle
+                before = middle;
             }
         }
         let (there, then) = (at(after).normalize(), velocity + force * after);

@@ -26,7 +26,7 @@ fn the_scene_with_everything_runs() {
 const BY_PYTHON: &str = "the Python package's own tests run the whole page";
 
 /// What takes long, or asks for what is not here: only whether words and options are known is tried.
-const ONLY_PARSED: [(&str, &str); 21] = [
+const ONLY_PARSED: [(&str, &str); 22] = [
     (
         "accuracy",
         "seconds of reference runs; the studies' tests run it",
