@@ -86,7 +86,7 @@ pub struct RigidWall {
 
 impl RigidWall {
     /// The fastest backward whirl that the cap stops \[lift-off speeds\].
-    pub fn fastest_whirl_stopped(&self) -> f64 {
+    fn fastest_whirl_stopped(&self) -> f64 {
         ((1.0 + self.friction * self.friction).sqrt() / self.friction).sqrt()
     }
 

@@ -2,9 +2,10 @@
 
 use crate::calls::{configurations, ending, see, take, write_section};
 use crate::code::Code;
-use crate::halves::{self, RotorStorage};
+use crate::halves::{self, RotorStorage, RotorTicks};
 use crate::pointer::{Argument, Place};
 use crate::structs::{CCommand, CEvent, CReport, CRotorCommand, CSample, CSection, CShaft, CStamp};
+use supervisor::Sample;
 
 const NO_FORCES: CRotorCommand = CRotorCommand {
     planes: [CCommand::NO_FORCE; 2],
@@ -129,37 +130,51 @@ pub unsafe extern "C" fn amb_rotor_tick_first(
     command: *mut CCommand,
 ) -> Code {
     // SAFETY: the caller's promise.
-    let place = match unsafe { Place::new(Argument::Command, command) } {
-        Ok(place) => place,
-        Err(code) => return code,
-    };
-    // SAFETY: the caller's promise. Read before the command is written, see `amb_rotor_tick`.
-    let sample = unsafe { Argument::Sample.read(sample) };
-    let done = sample.and_then(|sample| {
-        // SAFETY: the caller's promise.
-        let mut lease = unsafe { halves::ticker(rotor) }?;
-        let ticks = lease.content();
-        let half = ticks.ticker.tick_first(&sample.into());
-        ticks.first = Some(half);
-        place.put(half.command.into());
-        Ok(())
-    });
-    if done.is_err() {
-        place.put(CCommand::NO_FORCE);
+    unsafe {
+        half(
+            rotor,
+            sample,
+            command,
+            CCommand::NO_FORCE,
+            |ticks, sample| {
+                let first = ticks.ticker.tick_first(&sample);
+                ticks.first = Some(first);
+                Ok(first.command.into())
+            },
+        )
     }
-    Code::from_result(done)
 }
 
 /// The second plane's half. An error gives commands of no force.
 ///
 /// # Safety
-/// `rotor` as for [`amb_rotor_tick`]; `sample` and `command` are null, misaligned, or point to their structs.
+/// As for [`amb_rotor_tick_first`].
 // SAFETY: a name of its own, see `amb_rotor_init`.
 #[unsafe(export_name = concat!("amb_rotor_tick_second", ending!()))]
 pub unsafe extern "C" fn amb_rotor_tick_second(
     rotor: *mut RotorStorage,
     sample: *const CSample,
     command: *mut CRotorCommand,
+) -> Code {
+    // SAFETY: the caller's promise.
+    unsafe {
+        half(rotor, sample, command, NO_FORCES, |ticks, sample| {
+            let first = ticks.first.take().ok_or(Code::ERROR_ROTOR_HALF)?;
+            Ok(ticks.ticker.tick_second(&first, &sample).into())
+        })
+    }
+}
+
+/// Half a tick: what comes of a sample, or no force.
+///
+/// # Safety
+/// As for [`amb_rotor_tick_first`].
+unsafe fn half<C: Copy>(
+    rotor: *mut RotorStorage,
+    sample: *const CSample,
+    command: *mut C,
+    no_force: C,
+    tick: impl FnOnce(&mut RotorTicks, Sample) -> Result<C, Code>,
 ) -> Code {
     // SAFETY: the caller's promise.
     let place = match unsafe { Place::new(Argument::Command, command) } {
@@ -171,15 +186,14 @@ pub unsafe extern "C" fn amb_rotor_tick_second(
     let done = sample.and_then(|sample| {
         // SAFETY: the caller's promise.
         let mut lease = unsafe { halves::ticker(rotor) }?;
-        let ticks = lease.content();
-        let first = ticks.first.take().ok_or(Code::ERROR_ROTOR_HALF)?;
-        place.put((ticks.ticker).tick_second(&first, &sample.into()).into());
-        Ok(())
+        tick(lease.content(), sample.into())
     });
-    if done.is_err() {
-        place.put(NO_FORCES);
-    }
-    Code::from_result(done)
+    let (answer, code) = match done {
+        Ok(answer) => (answer, Code::OK),
+        Err(code) => (no_force, code),
+    };
+    place.put(answer);
+    code
 }
 
 /// What to add to the forces of the next tick.
