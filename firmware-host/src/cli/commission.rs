@@ -53,9 +53,13 @@ pub struct CommissionArgs {
 /// [`CommandError`].
 pub fn execute(args: &CommissionArgs) -> Result<(), CommandError> {
     let machine = args.machine.as_deref().map(Machine::load).transpose()?;
-    let commissioned = match &args.logs[..] {
-        [record] if !LogFile::is_at(record) && is_record(record) => of_record(args, record)?,
-        _ => of_logs(args, machine.as_ref())?,
+    let record = match &args.logs[..] {
+        [path] if !LogFile::is_at(path) => record_at(path),
+        _ => None,
+    };
+    let commissioned = match record {
+        Some(file) => of_record(args, &file)?,
+        None => of_logs(args, machine.as_ref())?,
     };
     if let Some(path) = &args.page {
         let name = args.logs[0].display().to_string();
@@ -72,13 +76,15 @@ pub fn execute(args: &CommissionArgs) -> Result<(), CommandError> {
     }
 }
 
-/// Whether there is a record at this path, by what is in it.
-fn is_record(path: &Path) -> bool {
-    std::fs::read(path).is_ok_and(|bytes| !RecordFile::of(&bytes).records.is_empty())
+/// The records at this path, if that is what is in it.
+fn record_at(path: &Path) -> Option<RecordFile> {
+    let file = RecordFile::of(&std::fs::read(path).ok()?);
+    (!file.records.is_empty()).then_some(file)
 }
 
 /// What a record tells, compared with what it says that its supervisor was configured with.
-fn of_record(args: &CommissionArgs, path: &Path) -> Result<Commissioned, CommandError> {
+fn of_record(args: &CommissionArgs, file: &RecordFile) -> Result<Commissioned, CommandError> {
+    let path = &args.logs[0];
     let no_log = |what: &str| {
         let message = format!(
             "{}: a flight record, and {what} is of a log",
@@ -92,12 +98,7 @@ fn of_record(args: &CommissionArgs, path: &Path) -> Result<Commissioned, Command
         (.., Some(_)) => return Err(no_log("--machine")),
         _ => {}
     }
-    let bytes = std::fs::read(path).map_err(|e| {
-        let message = format!("{}: {e}", path.display());
-        wrong(message, "give the file that the record was written to")
-    })?;
-    let file = RecordFile::of(&bytes);
-    let of = OfRecord::new(&file).ok_or_else(|| {
+    let of = OfRecord::new(file).ok_or_else(|| {
         let message = format!("{}: no event is in it", path.display());
         wrong(message, "give the sections of a frozen record")
     })?;

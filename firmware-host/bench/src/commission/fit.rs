@@ -91,6 +91,11 @@ impl<M: Model> Problem<'_, M> {
 
     /// One step to the least squares: all of the way where the model is linear in what is free.
     pub(super) fn stepped(&self, values: &[f64], damping: f64) -> Option<Vec<f64>> {
+        let next = self.step(values, damping)?;
+        next.iter().all(|x| x.is_finite()).then_some(next)
+    }
+
+    fn step(&self, values: &[f64], damping: f64) -> Option<Vec<f64>> {
         let all: Vec<&Line> = self.lines.iter().collect();
         let Share { normal, score } = self.share(&all, values);
         let step = solved(&normal, &score, damping)?;
@@ -98,21 +103,15 @@ impl<M: Model> Problem<'_, M> {
         for (place, i) in self.free.iter().enumerate() {
             next[*i] -= step[place];
         }
-        next.iter().all(|x| x.is_finite()).then_some(next)
+        Some(next)
     }
 
     /// The least squares from a start.
     pub(super) fn least(&self, start: Vec<f64>) -> Option<Vec<f64>> {
-        let all: Vec<&Line> = self.lines.iter().collect();
         let (mut values, mut cost) = (start.clone(), self.cost(&start));
         let (mut damping, quicker, slower) = DAMPED;
         for _ in 0..STEPS {
-            let Share { normal, score } = self.share(&all, &values);
-            let step = solved(&normal, &score, damping)?;
-            let mut next = values.clone();
-            for (place, i) in self.free.iter().enumerate() {
-                next[*i] -= step[place];
-            }
+            let next = self.step(&values, damping)?;
             let to = self.cost(&next);
             if to < cost {
                 let gained = (cost - to) / cost.abs().max(f64::MIN_POSITIVE);

@@ -58,8 +58,9 @@ fn short(x: f64) -> String {
     format!("{x:.4e}")
 }
 
-fn numbers(found: &Commissioned) -> Listing {
-    let rows = found.parameters.iter().map(|f| {
+/// Of each number name, unit, value, interval, and what it rests on.
+pub fn number_rows(found: &Commissioned) -> impl Iterator<Item = Vec<String>> {
+    found.parameters.iter().map(|f| {
         let [value, low, high] = [f.value, f.low, f.high].map(short);
         vec![
             f.name.clone(),
@@ -69,7 +70,23 @@ fn numbers(found: &Commissioned) -> Listing {
             high,
             f.from.clone(),
         ]
-    });
+    })
+}
+
+/// Of each number that is configured otherwise name, configured value, interval, and what it costs.
+pub fn difference_rows(found: &Commissioned) -> impl Iterator<Item = Vec<String>> {
+    found.contradictions.iter().map(|c| {
+        let [configured, low, high] = [c.configured, c.low, c.high].map(short);
+        vec![c.name.clone(), configured, low, high, c.costs.clone()]
+    })
+}
+
+/// What is not found, and why.
+pub fn missing_rows(found: &Commissioned) -> impl Iterator<Item = Vec<String>> {
+    (found.not_found.iter()).map(|m| vec![m.name.clone(), m.reason.clone()])
+}
+
+fn numbers(found: &Commissioned) -> Listing {
     let headings = ["number", "unit", "value", "at least", "at most", "from"];
     Listing {
         columns: vec![
@@ -80,15 +97,11 @@ fn numbers(found: &Commissioned) -> Listing {
             Column::Numbers,
             Column::Words,
         ],
-        ..Listing::of_texts("", headings, rows)
+        ..Listing::of_texts("", headings, number_rows(found))
     }
 }
 
 fn differences(found: &Commissioned) -> Listing {
-    let rows = found.contradictions.iter().map(|c| {
-        let [configured, low, high] = [c.configured, c.low, c.high].map(short);
-        vec![c.name.clone(), configured, low, high, c.costs.clone()]
-    });
     let headings = ["number", "configured", "at least", "at most", "costs"];
     Listing {
         columns: vec![
@@ -98,15 +111,18 @@ fn differences(found: &Commissioned) -> Listing {
             Column::Numbers,
             Column::Words,
         ],
-        ..Listing::of_texts("", headings, rows)
+        ..Listing::of_texts("", headings, difference_rows(found))
     }
 }
 
 fn missing(found: &Commissioned) -> Listing {
-    let rows = (found.not_found.iter()).map(|m| vec![m.name.clone(), m.reason.clone()]);
     Listing {
         columns: vec![Column::Words, Column::Words],
-        ..Listing::of_texts("", ["number", "why, and what would show it"], rows)
+        ..Listing::of_texts(
+            "",
+            ["number", "why, and what would show it"],
+            missing_rows(found),
+        )
     }
 }
 

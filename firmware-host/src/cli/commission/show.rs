@@ -4,6 +4,7 @@ use crate::cli::advise::Format;
 use crate::cli::error::CommandError;
 use crate::cli::screen::tell;
 use firmware_bench::commission::{Commissioned, Found};
+use firmware_bench::report::commission;
 use firmware_bench::report::lines::lined;
 use std::collections::BTreeSet;
 use supervisor::PARAMETERS;
@@ -77,30 +78,13 @@ fn line(name: &str, f: &Found, format: Format) -> String {
 
 /// Tables of what is found, what is configured otherwise, and what is not found.
 pub(super) fn tables(of: &Commissioned) -> Result<(), CommandError> {
-    let number = |x: f64| format!("{x:.4e}");
     let columns = ["number", "unit", "value", "at least", "at most", "from"];
-    let rows = of.parameters.iter().map(|f| {
-        let [value, low, high] = [f.value, f.low, f.high].map(number);
-        vec![
-            f.name.clone(),
-            f.unit.to_owned(),
-            value,
-            low,
-            high,
-            f.from.clone(),
-        ]
-    });
-    tell(&table(&columns, rows))?;
+    tell(&table(&columns, commission::number_rows(of)))?;
     if !of.contradictions.is_empty() {
         let columns = ["configured otherwise", "as", "at least", "at most", "costs"];
-        let rows = of.contradictions.iter().map(|c| {
-            let [configured, low, high] = [c.configured, c.low, c.high].map(number);
-            vec![c.name.clone(), configured, low, high, c.costs.clone()]
-        });
-        tell(&table(&columns, rows))?;
+        tell(&table(&columns, commission::difference_rows(of)))?;
     }
-    let rows = (of.not_found.iter()).map(|m| vec![m.name.clone(), m.reason.clone()]);
-    tell(&table(&["not found", "why"], rows))
+    tell(&table(&["not found", "why"], commission::missing_rows(of)))
 }
 
 fn table(columns: &[&str], rows: impl Iterator<Item = Vec<String>>) -> String {

@@ -1,6 +1,7 @@
 //! How far off the numbers are that `commission` finds in logs of machines with nothing wrong, and whether their intervals hold.
 
-use super::{BEFORE_S, SENSORS, WINDOW, WINDOWS, scene};
+use super::rotors::confirms;
+use super::{SENSORS, scene};
 use crate::campaign::{Progress, run_all};
 use crate::machines::draw::Draw;
 use crate::machines::rotors::{Class, RotorCase};
@@ -37,6 +38,16 @@ impl Recorder for Logged {
     }
 }
 
+/// The logs of a scene's planes.
+fn logged<const PLANES: usize>(scene: &Scene) -> Result<[Log; PLANES], String> {
+    let mut rows = [(); PLANES].map(|()| Logged::default());
+    let recorders = Recorders::of_planes(&mut rows);
+    let (kind, rigour) = (PolicyKind::Supervisor, Rigour::default());
+    record(scene, kind, recorders, rigour, &mut |_| {}).map_err(|error| error.to_string())?;
+    let period_s = 1.0 / scene.sample_rate_hz;
+    Ok(rows.map(|Logged(log)| Log { period_s, ..log }))
+}
+
 /// Numbers that are identified, and how far off one may be as a share: of what it is, and of a stiffness of the cap over the clearance.
 const IDENTIFIED: [(&str, f64); 3] = [
     ("mass_kg", 0.03),
@@ -55,21 +66,7 @@ fn identified(seed: u64, number: u64) -> Result<Option<[Identified; 3]>, String>
     config.check_first = 1.0;
     let truth = [config.mass_kg, config.stiffness_n_m, config.amplifier_lag_s].map(f64::from);
     let stiffness_n_m = f64::from(config.force_max_n / config.clearance_m);
-    let mut rows = [Logged::default()];
-    let recorders = Recorders::of_planes(&mut rows);
-    record(
-        &scene,
-        PolicyKind::Supervisor,
-        recorders,
-        Rigour::default(),
-        &mut |_| {},
-    )
-    .map_err(|error| error.to_string())?;
-    let [Logged(log)] = rows;
-    let log = Log {
-        period_s: 1.0 / scene.sample_rate_hz,
-        ..log
-    };
+    let [log] = logged(&scene)?;
     let Ok(commissioned) = Commissioned::of(&log) else {
         return Ok(None);
     };
@@ -206,28 +203,8 @@ fn of_rotor(seed: u64, class: Class, number: u64) -> Result<Vec<Told>, String> {
     let text = format!("eccentricity_m = {eccentricity_m}\npolar_inertia_kg_m2 =");
     let text = case.toml().replacen("polar_inertia_kg_m2 =", &text, 1);
     let mut scene = Scene::parse(&case.text(), &text).map_err(|error| error.to_string())?;
-    let mut longest_s = WINDOW.0;
-    for config in scene
-        .planes
-        .iter_mut()
-        .filter_map(|p| p.supervisor.as_mut())
-    {
-        longest_s = longest_s.max(WINDOW.1 * f64::from(config.scaling().time_s));
-        config.check_first = 1.0;
-    }
-    scene.duration_s = BEFORE_S + 2.0 * WINDOWS * longest_s;
-    let mut rows = [Logged::default(), Logged::default()];
-    let recorders = Recorders::of_planes(&mut rows);
-    record(
-        &scene,
-        PolicyKind::Supervisor,
-        recorders,
-        Rigour::default(),
-        &mut |_| {},
-    )
-    .map_err(|error| error.to_string())?;
-    let period_s = 1.0 / scene.sample_rate_hz;
-    let logs = rows.map(|Logged(log)| Log { period_s, ..log });
+    confirms(&mut scene, None);
+    let logs = logged(&scene)?;
     let shaft = scene.shaft().ok_or("no shaft")?;
     let names = ["A", "B"].map(str::to_owned);
     let machine = TwoPlanes {

@@ -9,15 +9,8 @@ use firmware_bench::scene::Scene;
 use firmware_bench::scene::policy_kind::PolicyKind;
 use supervisor::{Checked, Finding};
 
-/// Two planes that confirm their configuration: what each came to.
-fn rotor(
-    seed: u64,
-    class: Class,
-    number: u64,
-    change: Option<Change>,
-) -> Result<[Checked; 2], String> {
-    let case = RotorCase::new(seed, class, number);
-    let mut scene = Scene::parse(&case.text(), &case.toml()).map_err(|error| error.to_string())?;
+/// Lets the planes of a rotor confirm their configuration, with a mistake in it or without, for as long as that takes.
+pub(super) fn confirms(scene: &mut Scene, change: Option<Change>) {
     let mut longest_s = WINDOW.0;
     for plane in &mut scene.planes {
         if let Some(config) = &mut plane.supervisor {
@@ -29,6 +22,18 @@ fn rotor(
         }
     }
     scene.duration_s = BEFORE_S + 2.0 * WINDOWS * longest_s;
+}
+
+/// Two planes that confirm their configuration: what each came to.
+fn rotor(
+    seed: u64,
+    class: Class,
+    number: u64,
+    change: Option<Change>,
+) -> Result<[Checked; 2], String> {
+    let case = RotorCase::new(seed, class, number);
+    let mut scene = Scene::parse(&case.text(), &case.toml()).map_err(|error| error.to_string())?;
+    confirms(&mut scene, change);
     let mut rows = [Unread, Unread];
     let recorders = Recorders::of_planes(&mut rows);
     let ended = record(
