@@ -15,8 +15,7 @@ use firmware_bench::scene::policy_kind::PolicyKind;
 use firmware_bench::scene::spec::Setting;
 use firmware_bench::scene::{PlaneScene, Scene};
 use firmware_bench::sweep::plan::digest;
-use firmware_studies::campaign::Progress;
-use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
+use firmware_studies::campaign::{Progress, each};
 use std::fs::File;
 use std::path::{Path, PathBuf};
 
@@ -228,7 +227,7 @@ fn each_policy(
     let progress = LateProgress::new(all, "ticks");
     let one = |kind: &PolicyKind| one(*kind, &mut |ticks| progress.add(ticks));
     let all = args.threads.pool()?.install(|| {
-        let all: Vec<_> = scene.policies.par_iter().map(one).collect();
+        let all: Vec<_> = each(&scene.policies, one);
         all.into_iter().collect::<Result<Outcomes, OutputError>>()
     });
     progress.finish();

@@ -9,9 +9,8 @@ use firmware_bench::report::table::shown;
 use firmware_bench::run::figures::{Figure, Figures, Place};
 use firmware_bench::scene::policy_kind::PolicyKind;
 use firmware_bench::scene::{PlaneScene, Scene};
-use firmware_studies::campaign::Progress;
+use firmware_studies::campaign::{Progress, each};
 use firmware_studies::sensitivity::{Row, configured_right, misjudged};
-use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 use std::path::PathBuf;
 
 /// Arguments of `sensitivity`.
@@ -81,7 +80,7 @@ fn rows(scene: &Scene, args: &SensitivityArgs) -> Result<Vec<Row>, CommandError>
     })?;
     let wrong = misjudged(args.width, args.draws, scene.planes[0].seed);
     let progress = LateProgress::new(wrong.len() as u64, "runs");
-    let one = |misjudged| {
+    let one = |misjudged: &_| {
         let row = Row::of_misjudged(misjudged, scene);
         progress.add(1);
         row
@@ -91,7 +90,7 @@ fn rows(scene: &Scene, args: &SensitivityArgs) -> Result<Vec<Row>, CommandError>
             Row::of("levitation alone", scene, PolicyKind::Levitation),
             Row::of("right", &configured, PolicyKind::Supervisor),
         ];
-        let wrong: Vec<Option<Row>> = wrong.par_iter().map(one).collect();
+        let wrong: Vec<Option<Row>> = each(&wrong, one);
         rows.extend(wrong.into_iter().flatten());
         rows
     });

@@ -1,10 +1,10 @@
 //! Impacts and critical speeds on all threads: each takes a share of them, several at a time; and the cells of their maps.
 
+use crate::campaign::each;
 use plant_model::analysis::impact::{
     self, Aim, Criterion, Impact, ImpactError, ImpactOutcome, Search, Tried,
 };
 use plant_model::params::PlantParams;
-use rayon::prelude::{ParallelIterator, ParallelSlice};
 
 /// What one thread takes together.
 const CHUNK: usize = 100;
@@ -14,8 +14,8 @@ pub(crate) fn run_impacts(
     cases: &[(PlantParams, Impact)],
     criterion: &Criterion,
 ) -> Result<Vec<ImpactOutcome>, ImpactError> {
-    let chunks = cases.par_chunks(CHUNK);
-    let chunks: Vec<_> = (chunks.map(|chunk| impact::run_impacts(chunk, criterion))).collect();
+    let chunks: Vec<_> = cases.chunks(CHUNK).collect();
+    let chunks = each(&chunks, |chunk| impact::run_impacts(chunk, criterion));
     chunks.into_iter().flatten().collect()
 }
 
@@ -26,12 +26,12 @@ pub(crate) fn critical_speeds_m_s(
     criterion: &Criterion,
     done: impl Fn(usize) + Sync,
 ) -> (Vec<Result<Option<f64>, ImpactError>>, Tried) {
-    let chunks = cases.par_chunks(CHUNK).map(|chunk| {
+    let chunks: Vec<_> = cases.chunks(CHUNK).collect();
+    let chunks = each(&chunks, |chunk| {
         let found = impact::critical_speeds_m_s(chunk, search, criterion);
         done(chunk.len());
         found
     });
-    let chunks: Vec<_> = chunks.collect();
     let mut tried = Tried::default();
     let found = chunks.into_iter().flat_map(|(found, of_chunk)| {
         tried.impacts += of_chunk.impacts;

@@ -1,6 +1,6 @@
 //! The critical impact speed of a scene's rotor over two of its keys; percentiles of it where others are known within limits only.
 
-use crate::campaign::{Block, Chapter, Drawing, Figure, Page, Progress};
+use crate::campaign::{Block, Chapter, Drawing, Figure, Page, Progress, each};
 use crate::impacts::{Grid, critical_speeds_m_s};
 use firmware_bench::report::plot::chart::{Axis, HeatMap};
 use firmware_bench::scene::diagnostic::SceneError;
@@ -11,7 +11,6 @@ use plant_model::analysis::impact::{
     Aim, Criterion, ImpactError, Search, Tried, critical_speed_m_s,
 };
 use plant_model::params::{PlantParams, SpinParams};
-use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 
 /// Steps of the search upwards, and width of its last bracket.
 const SEARCH: Search = Search {
@@ -163,9 +162,10 @@ impl MapPlan {
             .iter()
             .flat_map(|place| draws.iter().map(|draw| (*place, draw)))
             .collect();
-        let cases = (drawn.par_iter())
-            .map(|((x, y), draw)| self.case(&quiet, &[&[*x, *y], draw.as_slice()].concat()))
-            .collect::<Result<Vec<Case>, MapError>>()?;
+        let cases = each(&drawn, |((x, y), draw)| {
+            self.case(&quiet, &[&[*x, *y], draw.as_slice()].concat())
+        });
+        let cases = cases.into_iter().collect::<Result<Vec<Case>, MapError>>()?;
         let criterion = Criterion::default();
         let (found, tried) =
             critical_speeds_m_s(&cases, &SEARCH, &criterion, |n| progress.add(n as u64));
@@ -179,11 +179,11 @@ impl MapPlan {
         }
         let step = cases.len().div_ceil(CHECKED);
         let sample: Vec<usize> = (0..cases.len()).step_by(step).collect();
-        let alike = sample.par_iter().filter(|i| {
-            let (params, at) = &cases[**i];
-            critical(critical_speed_m_s(params, *at, &SEARCH, &criterion)) == Ok(speeds[**i])
+        let alike = each(&sample, |i| {
+            let (params, at) = &cases[*i];
+            critical(critical_speed_m_s(params, *at, &SEARCH, &criterion)) == Ok(speeds[*i])
         });
-        let checked = [sample.len(), alike.count()];
+        let checked = [sample.len(), alike.iter().filter(|alike| **alike).count()];
         let of_cells = places.iter().zip(speeds.chunks(draws.len()));
         let cells = of_cells.map(|(&(x, y), speeds)| MapCell {
             x,

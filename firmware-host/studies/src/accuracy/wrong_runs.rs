@@ -2,8 +2,8 @@
 //! start speeds.
 
 use crate::accuracy::{AccuracyError, Ending, apart, references, run};
+use crate::campaign::each;
 use firmware_bench::scene::Scene;
-use rayon::prelude::{IntoParallelIterator, ParallelIterator};
 use serde::Serialize;
 
 /// Number of starts.
@@ -63,15 +63,13 @@ pub(crate) fn applies_to(scene: &Scene) -> bool {
 /// # Errors
 /// [`AccuracyError::Machine`].
 pub fn sweep(scene: &Scene, on_start: &(dyn Fn() + Sync)) -> Result<Vec<WrongRow>, AccuracyError> {
-    let starts: Vec<Start> = (0..STARTS)
-        .into_par_iter()
-        .map(|i| {
-            let share = f64::from(i) / f64::from(STARTS - 1);
-            let start = from_start(scene, FACTORS.0 + share * (FACTORS.1 - FACTORS.0));
-            on_start();
-            start
-        })
-        .collect();
+    let numbers: Vec<_> = (0..STARTS).collect();
+    let starts: Vec<Start> = each(&numbers, |i| {
+        let share = f64::from(*i) / f64::from(STARTS - 1);
+        let start = from_start(scene, FACTORS.0 + share * (FACTORS.1 - FACTORS.0));
+        on_start();
+        start
+    });
     let looked_at: Vec<_> = starts.iter().flatten().collect();
     let row = |(i, rtol): (usize, f64)| {
         let count = |what: Run| looked_at.iter().filter(|runs| runs[i] == what).count() as u32;

@@ -2,6 +2,7 @@
 
 use super::numbers::Number;
 use super::tape::{Piece, Tape};
+use crate::campaign::each;
 use crate::machines::plants::{RATES_HZ, plants};
 use crate::machines::tuned_gains::stored;
 use crate::overloads::catalogue::cases;
@@ -11,7 +12,6 @@ use firmware_bench::run::controller::supervised;
 use firmware_bench::scene::Scene;
 use rand_chacha::ChaCha8Rng;
 use rand_core::{Rng, SeedableRng};
-use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 use std::collections::BTreeMap;
 
 /// What comes later repeats itself: no more than this is recorded of a scene \[s\].
@@ -85,10 +85,8 @@ pub(crate) fn closed_loops(
         })
         .collect();
     // In the scenes' order, whatever finishes first.
-    let pieces = chosen
-        .par_iter()
-        .filter_map(|scene| recorded(number, scene));
-    Ok((pieces.collect(), left_out))
+    let pieces = each(&chosen, |scene| recorded(number, scene));
+    Ok((pieces.into_iter().flatten().collect(), left_out))
 }
 
 /// A scene, recorded. A run that could not be trusted to its end is recorded up to there: for the supervisor its

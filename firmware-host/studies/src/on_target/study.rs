@@ -10,8 +10,7 @@ use super::measure::{Streams, TargetError, measure};
 use super::numbers::Number;
 use super::record::Length;
 use super::results::{Report, TargetRow};
-use crate::campaign::{self, Block, Chapter, Claim, Extent, Progress, StudyError};
-use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
+use crate::campaign::{self, Block, Chapter, Claim, Extent, Progress, StudyError, each};
 use std::path::Path;
 
 /// What is to be run.
@@ -107,12 +106,12 @@ fn replay(
     let pairs: Vec<(&Machine, &Streams)> = (machines.iter())
         .filter_map(|m| Some((m, &work.iter().find(|(n, _)| *n == m.number)?.1)))
         .collect();
-    let rows = pairs.par_iter().map(|(m, s)| {
+    let rows = each(&pairs, |(m, s)| {
         let row = measure(project, m, s);
         progress.add(1);
         row
     });
-    report.targets = rows.collect::<Result<_, TargetError>>()?;
+    report.targets = rows.into_iter().collect::<Result<_, TargetError>>()?;
     Ok(())
 }
 

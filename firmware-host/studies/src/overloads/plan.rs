@@ -7,14 +7,13 @@ use super::promises::{Harm, against_levitation, of_results, of_sweeps};
 use super::results::{ResultRow, run_case, run_own};
 use super::sweeps::{SweepPoint, SweepRow, row, sweep};
 use super::{contenders, reference, tune};
-use crate::campaign::{Claim, Extent, Progress, Side};
+use crate::campaign::{Claim, Extent, Progress, Side, each};
 use crate::machines::plants::{PlantCase, RATES_HZ, plants};
 use crate::machines::tuned_gains::{Row, TunedGains, stored};
 use firmware_bench::run::closed_loop::RunError;
 use firmware_bench::scene::Scene;
 use firmware_bench::scene::diagnostic::SceneError;
 use firmware_bench::scene::policy_kind::PolicyKind;
-use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 use serde::{Serialize, Serializer};
 use std::collections::BTreeSet;
 
@@ -191,21 +190,19 @@ impl Plan {
     pub fn run(&self, progress: &dyn Progress) -> Result<Catalogue, CatalogueError> {
         let pieces = self.jobs().len() as u64 + SWEEP_WORTH * self.sweep_jobs().len() as u64;
         progress.begin(pieces, "the catalogue");
-        let results: Vec<ResultRow> = (self.jobs().par_iter())
-            .map(|job| {
-                let row = match job {
-                    Job::Case(Place { plant, found, .. }, case, contender, seed) => run_case(
-                        case,
-                        (&plant.name, plant.rate_hz),
-                        (*contender, *seed),
-                        found,
-                    ),
-                    Job::Own(scene, kind, seed) => run_own(scene, *kind, *seed),
-                };
-                progress.add(1);
-                row
-            })
-            .collect();
+        let results: Vec<ResultRow> = each(&self.jobs(), |job| {
+            let row = match job {
+                Job::Case(Place { plant, found, .. }, case, contender, seed) => run_case(
+                    case,
+                    (&plant.name, plant.rate_hz),
+                    (*contender, *seed),
+                    found,
+                ),
+                Job::Own(scene, kind, seed) => run_own(scene, *kind, *seed),
+            };
+            progress.add(1);
+            row
+        });
         let sweeps = self.sweeps(progress)?;
         // Own scenes come last, and no promise is about them.
         let (of_catalogue, own) = results.split_at(results.partition_point(|row| !row.is_own()));
@@ -222,8 +219,9 @@ impl Plan {
     }
 
     fn sweeps(&self, progress: &dyn Progress) -> Result<Vec<SweepRow>, CatalogueError> {
-        let points = (self.sweep_jobs().par_iter())
-            .map(|(Place { plant, found, .. }, contender, seed)| {
+        let points = each(
+            &self.sweep_jobs(),
+            |(Place { plant, found, .. }, contender, seed)| {
                 let point = sweep(plant, found, (*contender, *seed)).map_err(|reason| {
                     CatalogueError::Run {
                         plant: plant.name.clone(),
@@ -233,7 +231,10 @@ impl Plan {
                 });
                 progress.add(SWEEP_WORTH);
                 point
-            })
+            },
+        );
+        let points = points
+            .into_iter()
             .collect::<Result<Vec<SweepPoint>, CatalogueError>>()?;
         let mut rows = Vec::new();
         let mut rest = points.as_slice();

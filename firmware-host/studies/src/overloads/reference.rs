@@ -3,6 +3,7 @@
 use super::contenders::clairvoyant;
 use super::impact::{FIRST_M_S, STEP};
 use super::takeover::{arrest_of, take_over};
+use crate::campaign::each;
 use firmware_bench::run::clairvoyant::ClairvoyantLaw;
 use firmware_bench::run::closed_loop::{Keep, RunError, run_policy};
 use firmware_bench::scene::Scene;
@@ -10,7 +11,6 @@ use plant_model::V2;
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 use rand_distr::{Distribution, Uniform};
-use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 
 /// Weights tried at random, and then around the best.
 const AT_RANDOM: usize = 240;
@@ -72,9 +72,8 @@ pub(crate) fn search<const N: usize>(
         w
     };
     let rate = |all: &[[f64; N]]| {
-        (all.par_iter())
-            .map(|w| Ok((score(*w)?, *w)))
-            .collect::<Result<Vec<_>, RunError>>()
+        let rated = each(all, |w| Ok((score(*w)?, *w)));
+        rated.into_iter().collect::<Result<Vec<_>, RunError>>()
     };
     let best = |all: Vec<(f64, [f64; N])>, before: (f64, [f64; N])| {
         (all.into_iter()).fold(

@@ -6,12 +6,12 @@
 
 use super::contenders::levitation;
 use super::impact::{FIRST_M_S, recoverable_from};
+use crate::campaign::each;
 use firmware_bench::device::levitation::LevitationParams;
 use firmware_bench::device::loop_shape::{LoopShape, SampledPlant};
 use firmware_bench::run::closed_loop::RunError;
 use firmware_bench::scene::Scene;
 use firmware_bench::scene::linear_loop::{LinearLoop, is_stable};
-use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 use std::f64::consts::TAU;
 
 /// Largest peak sensitivity.
@@ -142,13 +142,12 @@ pub fn tuned(scene: &Scene) -> Result<Option<LevitationParams>, RunError> {
     let sampled = SampledPlant::new(&scene.plant(0), scene.sample_rate_hz, 1);
     let accepted = |all| accepted(scene, &sampled, all);
     let rated = |all: Vec<(LevitationParams, f64)>| {
-        (all.par_iter())
-            .map(|(params, sensitivity)| {
-                let make = |s: &Scene| levitation(*params, s);
-                let speed = recoverable_from(scene, "tuned", &make, FIRST_M_S)?;
-                Ok((speed, -*sensitivity, *params))
-            })
-            .collect::<Result<Vec<_>, RunError>>()
+        let rated = each(&all, |(params, sensitivity)| {
+            let make = |s: &Scene| levitation(*params, s);
+            let speed = recoverable_from(scene, "tuned", &make, FIRST_M_S)?;
+            Ok((speed, -*sensitivity, *params))
+        });
+        rated.into_iter().collect::<Result<Vec<_>, RunError>>()
     };
     let best = |all: &[(f64, f64, LevitationParams)]| {
         (all.iter().copied()).max_by(|a, b| {

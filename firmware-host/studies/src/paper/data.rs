@@ -3,10 +3,10 @@
 pub(super) use super::Kind::{self, *};
 pub(super) use super::Paper::*;
 pub(super) use super::{Chapter, PaperError, Row};
+use crate::campaign;
 pub(super) use crate::campaign::{Drawing, Extent, Figure, Table};
 pub(super) use firmware_bench::report::plot::chart::{Axis, Chart, Curve, HeatMap, Mark};
 pub(super) use plant_model::params::PlantParams;
-use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 pub(super) use std::f64::consts::TAU;
 
 /// Rows of a chapter. A line: item, unit, source, what the paper has `=>` what the model gives, how that came about, note.
@@ -109,7 +109,7 @@ pub(super) fn each<C: Sync, R: Send>(
     cases: &[C],
     run: impl Fn(&C) -> Result<R> + Sync + Send,
 ) -> Result<Vec<R>> {
-    cases.par_iter().map(run).collect()
+    campaign::each(cases, run).into_iter().collect()
 }
 
 /// Halves a bracket of where `below` turns from true to false until it is no wider than `width` says of its upper end.

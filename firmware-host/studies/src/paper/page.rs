@@ -4,9 +4,8 @@ use super::rows::{COLUMNS, values};
 use super::summary::sentences;
 use super::{CHAPTERS, Chapter, ChapterError, MISS, Paper, Row};
 use crate::campaign::{
-    Block, Chapter as Shown, Claim, Extent, Progress, Report, StudyError, Table,
+    Block, Chapter as Shown, Claim, Extent, Progress, Report, StudyError, Table, each,
 };
-use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 
 /// Every chapter, on the threads of the pool that it is called in.
 ///
@@ -14,13 +13,12 @@ use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 /// [`ChapterError`].
 pub fn chapters(extent: Extent, progress: &dyn Progress) -> Result<Vec<Chapter>, ChapterError> {
     progress.begin(CHAPTERS.len() as u64, "chapters");
-    (CHAPTERS.par_iter())
-        .map(|(name, compute)| {
-            let chapter = compute(extent).map_err(|reason| ChapterError { name, reason });
-            progress.add(1);
-            chapter
-        })
-        .collect()
+    let chapters = each(CHAPTERS, |(name, compute)| {
+        let chapter = compute(extent).map_err(|reason| ChapterError { name, reason });
+        progress.add(1);
+        chapter
+    });
+    chapters.into_iter().collect()
 }
 
 /// The paper as a study.

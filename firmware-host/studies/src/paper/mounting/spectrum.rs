@@ -1,8 +1,9 @@
 //! Full spectrum of a motion in the plane: x + iy, so that its sign tells forward from backward.
 
 use plant_model::V2;
-use rustfft::FftPlanner;
+use rustfft::algorithm::Radix4;
 use rustfft::num_complex::Complex;
+use rustfft::{Fft, FftDirection};
 use std::f64::consts::TAU;
 
 /// Amplitudes of rotating components.
@@ -38,7 +39,7 @@ impl Spectrum {
             weights += weight;
             *out = Complex::new(moved.x, moved.y);
         }
-        FftPlanner::new().plan_fft_forward(size).process(&mut data);
+        Radix4::new(size, FftDirection::Forward).process(&mut data);
         data.rotate_left(size / 2);
         let step_hz = 1.0 / (size as f64 * sample_s);
         let line = |(i, value): (usize, &Complex<f64>)| Line {
