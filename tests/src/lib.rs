@@ -1,14 +1,12 @@
 //! What several tests share: plants, scenes, golden tables.
 
 pub mod browser;
-pub mod cost;
 pub mod golden;
 pub mod parameters;
 pub mod per_unit;
 pub mod plants;
 pub mod recording;
 pub mod requirements;
-pub mod slurm;
 pub mod target;
 pub mod terminal;
 

@@ -3,8 +3,7 @@
 mod page;
 mod refusals;
 mod rows;
-mod slurm;
-mod workflows;
+mod salib;
 
 use std::fs;
 use std::path::{Path, PathBuf};

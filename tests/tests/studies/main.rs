@@ -1,7 +1,6 @@
 //! The studies: what they compute and what they claim.
 
 mod accuracy;
-mod cost_of_parts;
 mod drops;
 mod found_in_records;
 mod harm;

@@ -19,7 +19,7 @@ use std::collections::BTreeSet;
 
 /// Seeds of the sensor noise.
 fn seeds(extent: Extent) -> u64 {
-    extent.pick(3, 20)
+    extent.pick(1, 20)
 }
 
 /// Quick is one control rate and one cap for P1.
