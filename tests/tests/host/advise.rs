@@ -77,9 +77,7 @@ fn advise(args: &[&str]) -> Output {
 }
 
 fn stderr(output: &Output) -> String {
-    // Long lines are wrapped.
-    let text = String::from_utf8_lossy(&output.stderr).replace('│', " ");
-    text.split_whitespace().collect::<Vec<_>>().join(" ")
+    crate::refusals::flat(&output.stderr)
 }
 
 #[test]

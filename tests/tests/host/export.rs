@@ -31,18 +31,3 @@ fn a_trace_is_the_same_in_every_format() {
     let said = checked(&python, "tests/python/exports.py", &arguments);
     assert!(said.contains("rows the same three times"), "{said}");
 }
-
-#[test]
-fn what_is_no_trace_is_refused_and_leaves_nothing() {
-    let folder = TempDir::new().unwrap();
-    let out = folder.path().join("out");
-    let scene = scene_path("impact_at_40_hz");
-    for file in [scene, folder.path().join("nowhere.parquet")] {
-        let output = export(&file, &["--to", "csv", "--out", out.to_str().unwrap()]);
-        let said = String::from_utf8_lossy(&output.stderr);
-        let name = file.file_name().unwrap().to_str().unwrap();
-        assert_eq!(output.status.code(), Some(2), "{said}");
-        assert!(said.contains(name) && said.contains("a trace that run has written"));
-        assert!(!out.exists());
-    }
-}

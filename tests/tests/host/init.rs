@@ -1,5 +1,6 @@
 //! `init`: from numbers to a scene that runs.
 
+use crate::refusals::{all, command_line};
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
@@ -62,25 +63,8 @@ fn a_rotor_in_two_bearings_is_levitated() {
         assert_eq!(supervisor["outcome"], "recovered", "{verdict}");
         assert!(supervisor["impacts"].as_u64().unwrap() > 0);
     }
-    for (more, says) in [
-        ("", "without inertias"),
-        ("--length-m -1", "--length-m is -1"),
-        ("--bearings-m 0.1,0.3 --length-m 1", "both sides"),
-        (
-            "--length-m 0.5 --shaft-diameter-m 0.05",
-            "0.25 m from its middle",
-        ),
-        ("--length-m 0.8 --shaft-diameter-m 0.1", "weighs 49.3"),
-    ] {
-        let numbers = match more.contains("bearings") {
-            true => ROTOR.replace(" --bearings-m -0.2,0.3", "") + " ",
-            false => format!("{ROTOR} "),
-        };
-        let refused = init(&folder.path().join("none.toml"), &(numbers + more));
-        let error = String::from_utf8_lossy(&refused.stderr).into_owned();
-        assert_eq!(refused.status.code(), Some(2), "{error}");
-        assert!(error.contains(says), "{error}");
-    }
+    let rotor = format!("init none.toml {ROTOR} --length-m 0.8");
+    all("command_lines/init_rotor", 5, &rotor, command_line);
 }
 
 /// ki, ks and the largest current are the force cap and the stiffness that follow from them.
@@ -161,31 +145,8 @@ fn a_scene_from_nine_numbers_runs_and_is_levitated() {
 #[test]
 fn what_is_missing_or_wrong_is_named_and_nothing_is_written() {
     let folder = TempDir::new().unwrap();
-    let file = folder.path().join("machine.toml");
-    let cases = [
-        ("--mass-kg 10", "", "--mass-kg missing"),
-        (
-            "--mass-kg 10",
-            "--mass-kg -1",
-            "--mass-kg is -1, expected a finite number greater than 0",
-        ),
-        (
-            "--friction 0.15 --noise-rms-m 1e-6",
-            "",
-            "--friction, --noise-rms-m missing",
-        ),
-        // It falls away before a force can come, …
-        ("1.6e-4", "5e-2", "no levitation controller"),
-        // … and pulls more than the cap.
-        ("-2e5", "-2e9", "cannot lift the rotor off"),
-    ];
-    for (from, to, said) in cases {
-        assert!(SMALL.contains(from));
-        let refused = init(&file, &SMALL.replace(from, to));
-        let error = String::from_utf8_lossy(&refused.stderr);
-        assert_eq!(refused.status.code(), Some(2), "{error}");
-        assert!(error.contains(said), "{said} is not in\n{error}");
-    }
+    let line = format!("init machine.toml {SMALL}");
+    all("command_lines/init", 5, &line, command_line);
     let refused = init(&folder.path().join("none/machine.toml"), SMALL);
     let error = String::from_utf8_lossy(&refused.stderr);
     assert!(

@@ -1,5 +1,6 @@
 //! `init --shaft-file`: a drawing's list of steps becomes a scene with the frequencies of that shaft.
 
+use crate::refusals::{all, flat};
 use serde_json::Value;
 use std::f64::consts::{PI, TAU};
 use std::fs;
@@ -243,100 +244,24 @@ fn a_file_that_is_no_shaft_is_refused_by_line_and_column() {
     );
     let good = wheel_csv();
     let many = "length_m,outer_diameter_m\n".to_owned() + &"0.01,0.05\n".repeat(201);
-    let on_it = "--bearings-m 0.1,0.7";
-    for (text, more, says) in [
-        (
-            good.replace("0.2,0.06", "0.2,-0.06"),
-            on_it,
-            "line 4: outer_diameter_m is \"-0.06\", expected a finite number",
-        ),
-        (
-            good.replace("0.15,0.05,", "0.15,five,"),
-            on_it,
-            "line 7: outer_diameter_m is \"five\"",
-        ),
-        (
-            good.replace("0.15,0.05,", ",0.05,"),
-            on_it,
-            "line 7: length_m is missing",
-        ),
-        (
-            good.replace("0.05,0.09", "0.05,"),
-            on_it,
-            "line 5: a disc without mass or one of its inertias",
-        ),
-        (
-            good.replace("0.05,0.09", "0.05,NaN"),
-            on_it,
-            "line 5: disc_polar_inertia_kg_m2 is \"NaN\"",
-        ),
-        (
-            good.replace("outer_diameter_m", "diameter"),
-            on_it,
-            "\"diameter\" is no column",
-        ),
-        (
-            good.replace(",disc_mass_kg", ",length_m"),
-            on_it,
-            "two columns length_m",
-        ),
-        (
-            good.replace("length_m,", "poisson_ratio,"),
-            on_it,
-            "no column length_m",
-        ),
-        (
-            "length_m,outer_diameter_m,inner_diameter_m\n0.8,0.05,0.05\n".to_owned(),
-            on_it,
-            "line 2: inner_diameter_m is 0.05, expected less",
-        ),
-        (
-            "length_m,outer_diameter_m\n0.8\n".to_owned(),
-            on_it,
-            "line: 2",
-        ),
-        (
-            "length_m,outer_diameter_m\n".to_owned(),
-            on_it,
-            "no section",
-        ),
-        (String::new(), on_it, "no column"),
-        (many, on_it, "more than 200 sections"),
-        (
-            "length_m,outer_diameter_m\n200,0.05\n300,0.05\n".to_owned(),
-            on_it,
-            "length_m adds up to 500 m",
-        ),
-        (
-            good.clone(),
-            "--bearings-m 0.1,0.9",
-            "two places on the shaft of 0.8 m",
-        ),
-        (
-            good.clone(),
-            "--bearings-m=-0.3,0.3",
-            "two places on the shaft of 0.8 m",
-        ),
-        (
-            good.clone(),
-            "--bearings-m 0.1,0.7 --mass-kg 20",
-            "'--mass-kg",
-        ),
-        (
-            good.clone(),
-            "--bearings-m 0.1,0.7 --load-n 9 --gravity-m-s2 9",
-            "'--load-n",
-        ),
-        (good.clone(), "", "--bearings-m"),
-    ] {
+    let numbers = format!("{NUMBERS} --bearings-m 0.1,0.7");
+    let refused = |numbers: &str, steps: &Path| {
+        let refused = init(&file, numbers, Some(steps));
+        let said = flat(&refused.stderr);
+        assert_eq!(refused.status.code(), Some(2), "{numbers}: {said}");
+        assert!(!file.exists(), "{numbers}");
+        said
+    };
+    let of_file = |text: &str, _: &[String]| {
         fs::write(&steps, text).unwrap();
-        let refused = init(&file, &format!("{NUMBERS} {more}"), Some(&steps));
-        let error = String::from_utf8_lossy(&refused.stderr).into_owned();
-        assert_eq!(refused.status.code(), Some(2), "{says}: {error}");
-        assert!(error.contains(says), "{says} is not in\n{error}");
-        assert!(!file.exists());
-    }
-    let refused = init(&file, &format!("{NUMBERS} {on_it}"), Some(folder.path()));
-    let error = String::from_utf8_lossy(&refused.stderr).into_owned();
-    assert_eq!(refused.status.code(), Some(2), "{error}");
+        refused(&numbers, &steps)
+    };
+    all("files/shaft", 13, &good, of_file);
+    let said = of_file(&many, &[]);
+    assert!(said.contains("more than 200 sections"), "{said}");
+    fs::write(&steps, &good).unwrap();
+    all("files/numbers_beside_a_shaft", 5, &numbers, |line, _| {
+        refused(line, &steps)
+    });
+    refused(&numbers, folder.path());
 }

@@ -17,6 +17,7 @@ mod linear_loop;
 mod machine_scenes;
 mod map;
 mod own_controllers;
+mod refusals;
 mod release;
 mod report_page;
 mod requirements;

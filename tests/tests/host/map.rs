@@ -1,5 +1,6 @@
 //! `map`: the critical impact speed over two keys of a scene.
 
+use crate::refusals::{all, command_line};
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
@@ -133,56 +134,6 @@ fn percentiles_are_those_of_what_is_spread() {
 
 #[test]
 fn what_is_no_map_is_refused_and_leaves_nothing() {
-    let folder = TempDir::new().unwrap();
-    let point = scene_path("impact_at_40_hz");
-    let two = scene_path("machines/drop_of_both_ends");
-    let (point, two) = (point.to_str().unwrap(), two.to_str().unwrap());
-    for (scene, x, y, names) in [
-        (point, "friction.coef=0.1..0.2", Y, "friction.coef"),
-        (point, "friction.coefficient=0.6..0.1", Y, "FROM below TO"),
-        (point, "friction.coefficient=0.6", Y, "KEY=FROM..TO"),
-        (point, "friction.coefficient=-1..0.2", Y, "0 or greater"),
-        (point, X, X, "varies twice"),
-        (point, X, "rotor.gravity_m_s2[1]=-10..-5", "changes nothing"),
-        (point, X, "impact.inclination_deg=100..110", "-90 and 90"),
-        (
-            two,
-            "run.duration_s=0.1..0.2",
-            "spin.frequency_hz=10..20",
-            "one plane",
-        ),
-    ] {
-        let out = folder.path().join("map");
-        let (code, said, error) = map(&[scene, "--x", x, "--y", y, "--cells", "2x2"], &out);
-        assert_eq!(code, Some(2), "{error}");
-        assert!(said.is_empty() && error.contains(names), "{error}");
-        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
-    }
-    let spread = ["--spread", "rotor.mass_kg=8..12"];
-    for (more, names) in [
-        (&["--of", "p5"][..], "--spread"),
-        (&[spread[0], spread[1], "--of", "v_crit"], "p5, p50 or p95"),
-        (
-            &[spread[0], "friction.coefficient=0.1..0.2"],
-            "varies twice",
-        ),
-        (
-            &[spread[0], spread[1], "--cells", "200x200"],
-            "fewer --cells",
-        ),
-    ] {
-        let out = folder.path().join("map");
-        let (code, _, error) = map(&[&[point, "--x", X, "--y", Y], more].concat(), &out);
-        assert_eq!(code, Some(2), "{error}");
-        assert!(error.contains(names), "{error}");
-    }
-    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
-    for cells in ["0x5", "5", "2000x2000", "99999999999999999999x2"] {
-        let (code, _, error) = map(
-            &[point, "--x", X, "--y", Y, "--cells", cells],
-            &folder.path().join("map"),
-        );
-        assert_eq!(code, Some(2));
-        assert!(error.contains("200x200"), "{error}");
-    }
+    let line = format!("map @impact_at_40_hz --x {X} --y {Y} --cells 2x2 --json --out map");
+    all("command_lines/map", 16, &line, command_line);
 }

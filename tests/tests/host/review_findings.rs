@@ -1,5 +1,6 @@
 //! `review`: what it finds out of an event, and the event once more on a machine's scene.
 
+use crate::refusals::{all, command_line};
 use serde_json::Value;
 use std::path::Path;
 use std::process::Output;
@@ -87,27 +88,8 @@ fn what_cannot_be_simulated_is_named() {
     let text = std::fs::read_to_string(scene).unwrap();
     let text = text.replace("sample_rate_hz = 20000", "sample_rate_hz = 10000");
     std::fs::write(&slower, text).unwrap();
-    let refused: [(&[&str], &str); 5] = [
-        (&["--set", "supervisor.hold_share=0.3"], "--scene"),
-        (
-            &["--scene", scene, "--set", "hold_share"],
-            "expected KEY=VALUE",
-        ),
-        (
-            &["--scene", scene, "--set", "supervisor.hold=0.3"],
-            "supervisor.hold",
-        ),
-        (
-            &["--scene", scene, "--set", "supervisor.hold_share=3.0"],
-            "supervisor.hold_share",
-        ),
-        (&["--scene", slower.to_str().unwrap()], "run.sample_rate_hz"),
-    ];
-    for (arguments, word) in refused {
-        let shown = review(&file, arguments);
-        let said = String::from_utf8_lossy(&shown.stderr).into_owned();
-        assert_eq!(shown.status.code(), Some(2), "{arguments:?}: {said}");
-        assert!(said.contains(word), "{word} is not in\n{said}");
-        assert!(shown.stdout.is_empty());
-    }
+    let line = format!("review {} --json", file.display());
+    all("command_lines/review", 4, &line, command_line);
+    let slower = format!("{line} --scene {}", slower.display());
+    assert!(command_line(&slower, &[]).contains("run.sample_rate_hz"));
 }

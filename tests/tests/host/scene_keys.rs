@@ -1,5 +1,6 @@
 //! The one table of scene keys: what is written from it, what it answers, and values by their paths.
 
+use crate::refusals::all;
 use firmware_bench::scene::Scene;
 use firmware_bench::scene::keys::{Key, Kind};
 use firmware_bench::scene::spec::Spec;
@@ -113,30 +114,9 @@ fn the_schema_takes_every_scene_and_no_mistake() {
         assert_eq!(check(&text), None, "{name}");
     }
     let good = std::fs::read_to_string(scene_path("impact_at_40_hz")).unwrap();
-    let wrong = |from: &str, to: &str| {
-        let bad = good.replacen(from, to, 1);
-        assert_ne!(bad, good, "{from}");
-        check(&bad)
-    };
-    for (from, to, word) in [
-        ("mass_kg = ", "mass = ", ".rotor: "),
-        ("mass_kg = ", "mass_kg = -", ".rotor.mass_kg: minimum"),
-        (
-            "sample_rate_hz = ",
-            "sample_rate_hz = 99",
-            ".run.sample_rate_hz: maximum",
-        ),
-        ("\"passive\"", "\"pasive\"", ".run.policies.[]: enum"),
-        (
-            "velocity_m_s = [",
-            "velocity_m_s = [0.0, ",
-            ".start.velocity_m_s: maxItems",
-        ),
-        ("[contact]", "[contakt]", ": "),
-    ] {
-        let said = wrong(from, to).unwrap_or_default();
-        assert!(said.starts_with(word), "{to}: {said}");
-    }
+    all("scenes/schema", 6, &good, |bad, _| {
+        format!("schema{}", check(bad).unwrap_or_default())
+    });
 }
 
 /// Paths of the values below keys that a scene has or takes by default.

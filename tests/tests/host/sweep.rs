@@ -9,16 +9,12 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::time::{Duration, Instant};
-use system_tests::{host, root, scene_path};
+use system_tests::{host, root};
 use tempfile::TempDir;
 
 /// A sweep of a short scene, with these lines between its head and nothing else.
 fn sweep_file(folder: &Path, lines: &str) -> PathBuf {
-    let text = fs::read_to_string(scene_path("overload_then_release")).expect("a scene");
-    let text = text
-        .replace("duration_s = 0.2", "duration_s = 0.03")
-        .replace("duration_s = 0.05", "duration_s = 0.005");
-    fs::write(folder.join("short.toml"), text).expect("a writable folder");
+    fs::write(folder.join("short.toml"), crate::run::short()).expect("a writable folder");
     let path = folder.join("sweep.toml");
     let head = "scene = \"short.toml\"\npolicies = [\"levitation\", \"supervisor\"]\n";
     fs::write(&path, format!("{head}{lines}")).expect("a writable folder");

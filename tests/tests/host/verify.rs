@@ -320,38 +320,6 @@ fn the_method_that_ran_is_named() {
     assert!(report.contains("<td>collocation</td>"));
 }
 
-#[test]
-fn a_misspelt_name_is_answered_with_the_right_one() {
-    let folder = TempDir::new().unwrap();
-    for (from, to, meant) in [
-        ("restitution = ", "restituton = ", Some("`restitution`")),
-        ("mass_kg = ", "mass = ", Some("`mass_kg`")),
-        ("mass_kg = ", "mass_kq = ", Some("`mass_kg`")),
-        ("[contact]", "[contract]", Some("`contact`")),
-        ("seed = 1", "method = \"colocation\"", Some("`collocation`")),
-        ("\"radial\"", "\"raidal\"", Some("`radial`")),
-        (
-            "[sensor]",
-            "[supervisor]\nhold_shar = 0.5\n\n[sensor]",
-            Some("`hold_share`"),
-        ),
-        ("mass_kg = 10.0", "mass_kg = 10.0\ncolour = 3", None),
-    ] {
-        let scene = edited(folder.path(), "overload_then_release", &[(from, to)]);
-        let result = run_scene(&scene, &folder.path().join("out"), &[]);
-        let error = String::from_utf8(result.stderr).unwrap();
-        assert_eq!(result.status.code(), Some(2), "{error}");
-        let guess = meant.map(|name| format!("did you mean {name}?"));
-        let flat = error.split_whitespace().collect::<Vec<_>>().join(" ");
-        assert_eq!(
-            flat.contains("did you mean"),
-            guess.is_some(),
-            "{to}\n{error}"
-        );
-        assert!(guess.is_none_or(|g| flat.contains(&g)), "{to}\n{error}");
-    }
-}
-
 /// The supervisor is made for 10 to 50 kHz; other rates run, with a word of warning.
 #[test]
 fn control_rates_beyond_the_supervisors_are_warned_of() {

@@ -1,6 +1,7 @@
 //! The command line: what goes in, what comes out as JSON, what is refused.
 
 use super::{AMB, advise, stderr};
+use crate::refusals::{all, command_line};
 use serde_json::Value;
 use supervisor::PARAMETERS;
 use system_tests::scene_path;
@@ -75,66 +76,6 @@ fn json_has_its_keys_and_agrees_with_the_scene() {
 
 #[test]
 fn bad_numbers_end_with_code_2_and_say_what_is_wrong() {
-    let with = |more: &[&str]| -> Vec<String> {
-        let name = |arg: &str| arg.split('=').next().unwrap_or_default().to_owned();
-        let replaced: Vec<String> = more.iter().map(|arg| name(arg)).collect();
-        let kept = AMB.iter().filter(|arg| !replaced.contains(&name(arg)));
-        kept.chain(more).map(|arg| (*arg).to_owned()).collect()
-    };
-    let benchmark = scene_path("benchmark_b1");
-    let impact = scene_path("impact_at_40_hz");
-    let (benchmark, impact) = (benchmark.to_str().unwrap(), impact.to_str().unwrap());
-    let cases: Vec<(Vec<String>, &str)> = vec![
-        (vec![], "--mass-kg is missing"),
-        (
-            AMB[..6].iter().map(|s| (*s).to_owned()).collect(),
-            "--force-max-n is missing",
-        ),
-        (
-            with(&["--mass-kg=-1"]),
-            "--mass-kg is -1, expected a finite number greater than 0",
-        ),
-        (with(&["--mass-kg=nan"]), "--mass-kg is NaN"),
-        (
-            with(&["--centre-offset-m=1"]),
-            "--centre-offset-m is 1, expected a length below --clearance-m",
-        ),
-        (
-            with(&["--contact-mass-kg=1e3"]),
-            "--contact-mass-kg is 1000, expected at most the rotor's mass",
-        ),
-        (with(&["--clearance-m=0"]), "--clearance-m is 0"),
-        (with(&["--friction=-0.1"]), "--friction is -0.1"),
-        (with(&["--restitution=1.1"]), "--restitution is 1.1"),
-        (
-            with(&["--sample-rate-hz=0"]),
-            "--sample-rate-hz is 0, expected a number from 1 to 1e6",
-        ),
-        (
-            with(&["--delay-samples=8"]),
-            "--delay-samples is 8, expected a whole number from 0 to 7",
-        ),
-        (
-            with(&["--lag-s=0.5"]),
-            "--lag-s: the supervisor derives amplifier_lag_s = 0.5",
-        ),
-        (with(&["--mass-kg=ten"]), "--mass-kg"),
-        (vec![benchmark.to_owned()], "has no magnet"),
-        (
-            vec![impact.to_owned(), "--mass-kg=3".to_owned()],
-            "cannot be used with",
-        ),
-        (
-            vec!["nowhere.toml".to_owned()],
-            "cannot read scene nowhere.toml",
-        ),
-    ];
-    for (args, message) in cases {
-        let args: Vec<&str> = args.iter().map(String::as_str).collect();
-        let output = advise(&args);
-        let said = stderr(&output);
-        assert_eq!(output.status.code(), Some(2), "{args:?}: {said}");
-        assert!(said.contains(message), "{args:?}: {said}");
-        assert!(output.stdout.is_empty());
-    }
+    let line = format!("advise {}", AMB.join(" "));
+    all("command_lines/advise", 21, &line, command_line);
 }

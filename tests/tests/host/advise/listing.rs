@@ -137,24 +137,6 @@ fn a_short_listing_makes_the_same_configuration() {
     }
 }
 
-/// A scene has the nine numbers in its other tables.
-#[test]
-fn there_is_no_short_table() {
-    for (args, message) in [
-        (
-            &["--short", "--format", "toml"][..],
-            "--short is given with --format toml",
-        ),
-        (&["--short"][..], "--format"),
-    ] {
-        let output = advise(&[&AMB[..], args].concat());
-        let said = stderr(&output);
-        assert_eq!(output.status.code(), Some(2), "{said}");
-        assert!(said.contains(message), "{said}");
-        assert!(output.stdout.is_empty());
-    }
-}
-
 /// What a scene sets itself is in the listing, also where it does not run the supervisor, and warnings go beside it.
 #[test]
 fn a_listing_has_what_the_scene_sets() {

@@ -1,6 +1,7 @@
 //! Loads with a course, base motion, and the retainer bearing off the centre.
 
 use crate::instruments_and_events::{free_rotor, last, near, ridden, samples};
+use crate::refusals::rows;
 use firmware_bench::device::loads::{BaseMotion, Disturbance, Shape};
 use firmware_bench::run::closed_loop::{Keep, run};
 use firmware_bench::run::outcome::Outcome;
@@ -216,42 +217,10 @@ fn a_file_that_is_no_course_is_refused() {
         let error = firmware_bench::scene::Scene::load(&path).unwrap_err();
         format!("{:?}", miette::Report::new(error))
     };
-    let good = "t_s,force_x_n,force_y_n\n0,0,0\n1,1,1\n";
-    let cases = [
-        (
-            good,
-            "file = \"f.csv\"\nshape = \"sine\"",
-            "disturbance[0].shape",
-        ),
-        (good, "file = \"f.csv\"\nx_column = \"fx\"", "no column fx"),
-        (good, "file = \"g.csv\"", "g.csv"),
-        (
-            good,
-            "x_column = \"fx\"\nstart_s = 0\nduration_s = 1\nforce_n = [1, 1]",
-            "`file` only",
-        ),
-        (
-            good,
-            "start_s = 0\nduration_s = 1",
-            "disturbance[0].force_n: is missing",
-        ),
-        (
-            "t_s,force_x_n,force_y_n\n0,0,0\n0,1,1\n",
-            "file = \"f.csv\"",
-            "times that rise",
-        ),
-        (
-            "t_s,force_x_n,force_y_n\n0,0,0\n1,,1\n",
-            "file = \"f.csv\"",
-            "a number in each",
-        ),
-        (
-            "t_s,force_x_n,force_y_n\n0,0,0\n1,ten,1\n",
-            "file = \"f.csv\"",
-            "line 3",
-        ),
-    ];
-    for (file, keys, part) in cases {
+    for row in rows("files/course_of_a_load", 8) {
+        let [file, keys, part] = &row[..] else {
+            panic!("{row:?}")
+        };
         let said = refused(file, keys).replace('\n', " ");
         assert!(said.contains(part), "{part}: {said}");
     }

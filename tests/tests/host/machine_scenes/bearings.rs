@@ -1,6 +1,7 @@
 //! Ball bearings by their data, their drag and their heat, and amplifiers of second order.
 
 use super::{ONE_PLANE, as_machine, machine, planes};
+use crate::refusals::{all, parsed};
 use firmware_bench::scene::Scene;
 use firmware_bench::scene::policy_kind::PolicyKind;
 use plant_model::contact::ball_bearing::BallBearing;
@@ -42,60 +43,7 @@ fn balls_and_a_curve_give_the_law_that_follows_from_them() {
 
 #[test]
 fn contradictions_are_named() {
-    let cases = [
-        (
-            "stiffness_n_m = 1e8\nballs = { count = 14, diameter_m = 7e-3 }\n",
-            "contact.stiffness_n_m",
-            "given together with contact.balls",
-        ),
-        (
-            "balls = { count = 2, diameter_m = 7e-3 }\n",
-            "contact.balls.count",
-            "from 3",
-        ),
-        (
-            "exponent = 1.4\nballs = { count = 9, diameter_m = 7e-3 }\n",
-            "contact.exponent",
-            "follows from the balls",
-        ),
-        (
-            "balls = { count = 9, diameter_m = 7e-3 }\nrestitution = 0.5\n",
-            "contact.restitution",
-            "needs the impact speed",
-        ),
-        (
-            "deflections_m = [1e-6, 2e-6]\n",
-            "contact.deflections_m",
-            "needs forces_n",
-        ),
-        (
-            "forces_n = [1.0, 2.0]\n",
-            "contact.forces_n",
-            "needs deflections_m",
-        ),
-        (
-            "deflections_m = [1e-6, 2e-6]\nforces_n = [1.0]\n",
-            "contact.deflections_m",
-            "2 deflections, 1 forces",
-        ),
-        (
-            "deflections_m = [1e-6, 2e-6, 3e-6]\nforces_n = [1.0, 90.0, 100.0]\n",
-            "contact.forces_n",
-            "no power of the deflection",
-        ),
-        (
-            "deflections_m = [1e-6, 2e-6]\nforces_n = [1.0, -2.0]\n",
-            "contact.forces_n",
-            "-2",
-        ),
-    ];
-    for (contact, key, says) in cases {
-        let message = Scene::parse("scene.toml", &with(contact))
-            .unwrap_err()
-            .to_string();
-        let told = message.contains(key) && message.contains(says);
-        assert!(told, "{key}, {says}: {message}");
-    }
+    all("scenes/one_plane", 9, ONE_PLANE, parsed);
     // With a plane and without, and not by series.
     for (from, to, key) in [
         (
@@ -132,9 +80,6 @@ fn contradictions_are_named() {
             }
         }
     }
-    let whole = as_machine().replace("lag_s = 1.6e-4", "lag_damping_ratio = 0.7");
-    let message = Scene::parse("scene.toml", &whole).unwrap_err().to_string();
-    assert!(message.contains("magnet.lag_damping_ratio"), "{message}");
 }
 
 /// At ζ far above 1 an amplifier of second order is one of first order with 2ζτ.

@@ -1,6 +1,7 @@
 //! A rotor whose supervisor ticks one plane in a control sample and the other in the next.
 
 use super::{machine, planes};
+use crate::refusals::{all, parsed};
 use firmware_bench::record::file::RecordFile;
 use firmware_bench::run::closed_loop::{Recorders, Rigour, record};
 use firmware_bench::run::trace::Trace;
@@ -70,10 +71,5 @@ fn a_levitated_rotor_waits_for_no_turn() {
 #[test]
 fn a_point_mass_has_no_turns() {
     let text = fs::read_to_string(root().join("firmware-host/scenes/plants/p2.toml")).unwrap();
-    let text = text.replace("[run]\n", "[run]\nplanes_in_turn = true\n");
-    let error = Scene::parse("p2.toml", &text).unwrap_err().to_string();
-    assert!(
-        error.contains("planes_in_turn") && error.contains("two planes"),
-        "{error}"
-    );
+    all("scenes/p2", 1, &text, parsed);
 }

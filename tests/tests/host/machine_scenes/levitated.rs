@@ -1,6 +1,7 @@
 //! A whole rotor that is levitated: by mode, and by magnets with poles.
 
 use super::{apart, machine, planes};
+use crate::refusals::{all, parsed};
 use firmware_bench::run::trace::Trace;
 use firmware_bench::scene::Scene;
 use firmware_bench::scene::policy_kind::PolicyKind;
@@ -114,16 +115,5 @@ fn magnets_with_poles_levitate_as_their_linear_ones_near_the_middle() {
         "{a:?} {b:?}"
     );
 
-    for (more, says) in [
-        ("inductance_h = 0.02", "needs magnet.poles.voltage_max_v"),
-        ("voltage_max_v = 100.0", "needs magnet.poles.inductance_h"),
-        ("resistance_ohm = 1.0", "needs magnet.poles.inductance_h"),
-    ] {
-        let text = poles.replace("air_gap_m = 5e-3", &format!("air_gap_m = 5e-3, {more}"));
-        let error = Scene::parse("test", &text).unwrap_err().to_string();
-        assert!(error.contains(says), "{error}");
-    }
-    let both = poles.replace("poles =", "negative_stiffness_n_m = 1e5\npoles =");
-    let error = Scene::parse("test", &both).unwrap_err().to_string();
-    assert!(error.contains("follows from magnet.poles"), "{error}");
+    all("scenes/poles", 4, &poles, parsed);
 }

@@ -1,6 +1,7 @@
 //! Modes of scenes, and rotors that are described by their shaft.
 
 use super::{TWO_PLANES, machine};
+use crate::refusals::{all, parsed};
 use firmware_bench::scene::Scene;
 use serde_json::Value;
 use std::fs;
@@ -133,20 +134,7 @@ fn a_scene_has_the_modes_of_its_rotor() {
 }
 
 #[test]
-fn the_command_says_what_it_cannot_do() {
-    let drop = machine_scene_path("drop_of_both_ends");
-    let drop = drop.to_str().unwrap();
-    let one = scene_path("impact_at_40_hz");
-    for (args, says) in [
-        (&[one.to_str().unwrap()][..], "point mass in one plane"),
-        (&[drop, "--to-hz", "0"], "--to-hz is 0"),
-        (&[drop, "--points", "1"], "--points is 1"),
-    ] {
-        let output = modes(args);
-        let errors = String::from_utf8_lossy(&output.stderr);
-        assert_eq!(output.status.code(), Some(2), "{errors}");
-        assert!(errors.contains(says), "{errors}");
-    }
+fn the_command_draws_its_page() {
     let folder = TempDir::new().unwrap();
     let page = folder.path().join("page.html");
     let flexible = machine_scene_path("overload_of_a_flexible_rotor");
@@ -206,15 +194,10 @@ fn a_loop_is_judged() {
             "{errors}"
         );
     }
-    // A point mass has a loop, and no other modes; a program has no equations.
+    // A point mass has a loop, and no other modes.
     let one = scene_path("shock_15_g_on_amb");
     let found = json(&[one.to_str().unwrap(), "--levitated"]);
     assert_eq!(found["sensitivity"][0]["axis"], "x");
-    let program = scene_path("controllers/pid_in_python");
-    let output = modes(&[program.to_str().unwrap(), "--levitated"]);
-    let errors = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(2), "{errors}");
-    assert!(errors.contains("whose equations are not known"), "{errors}");
 }
 
 /// A uniform shaft between two planes.
@@ -257,44 +240,7 @@ fn a_shaft_is_the_rotor_that_it_weighs() {
 
 #[test]
 fn what_is_no_shaft_is_refused_with_its_key() {
-    for (from, to, key, says) in [
-        (
-            "bending_to_hz",
-            "mass_kg = 3.0\nbending_to_hz",
-            "rotor.mass_kg",
-            "follows from [[shaft]]",
-        ),
-        (
-            "outer_diameter_m = 0.06",
-            "outer_diameter_m = 0.06\ninner_diameter_m = 0.07",
-            "shaft[0].inner_diameter_m",
-            "less than the outer",
-        ),
-        (
-            "position_m = 1.0\n",
-            "position_m = 1.1\n",
-            "plane[1].position_m",
-            "a place on the shaft",
-        ),
-        (
-            "[[shaft]]",
-            "[[disc]]\nposition_m = 2.0\nmass_kg = 1.0\n[[shaft]]",
-            "disc[0].position_m",
-            "a place on the shaft",
-        ),
-    ] {
-        let text = shaft().replacen(from, to, 1);
-        let error = Scene::parse("scene.toml", &text).unwrap_err().to_string();
-        assert!(error.contains(key) && error.contains(says), "{error}");
-    }
-    let without = shaft().replace(SHAFT, "");
-    let error = Scene::parse("scene.toml", &without)
-        .unwrap_err()
-        .to_string();
-    assert!(
-        error.contains("rotor.bending_to_hz: is of a shaft"),
-        "{error}"
-    );
+    all("scenes/shaft", 5, &shaft(), parsed);
 }
 
 #[test]
@@ -322,19 +268,6 @@ fn advice_is_for_every_plane_or_for_one() {
         text.contains("coupling end struck") && text.contains("\nfar end\n"),
         "{text}"
     );
-    for args in [
-        &["--format", "rust"][..],
-        &["--format", "c", "--short"],
-        &["--plane", "nowhere"],
-    ] {
-        let refused = advise(args);
-        assert_eq!(refused.status.code(), Some(2));
-        let errors = String::from_utf8_lossy(&refused.stderr).into_owned();
-        assert!(
-            errors.contains("planes are far end, coupling end"),
-            "{errors}"
-        );
-    }
 }
 
 /// A slender shaft gives way by more than a magnet pulls: what pulls outwards stays what it is.

@@ -1,53 +1,8 @@
-//! Options and disks that are not what was hoped for.
+//! Disks that are not what was hoped for.
 
 use super::{names, short_scene};
-use system_tests::{host, scene_path};
+use system_tests::host;
 use tempfile::TempDir;
-
-/// A number below zero is a number, and what was expected is said of it.
-#[test]
-fn negative_numbers_reach_their_option() {
-    let path = scene_path("overload_then_release");
-    let scene = path.to_str().unwrap();
-    for (args, said) in [
-        (
-            vec!["sensitivity", scene, "--width", "-1"],
-            "expected a number from 0.1 to 4",
-        ),
-        (
-            vec!["sensitivity", scene, "--draws", "-1"],
-            "-1 is not in 0..=1000",
-        ),
-        (
-            vec!["sensitivity", scene, "--threads", "-1"],
-            "-1 is not in 1..=1024",
-        ),
-        (
-            vec!["run", scene, "--threads", "-1"],
-            "-1 is not in 1..=1024",
-        ),
-        (vec!["accuracy", "--threads", "-1"], "-1 is not in 1..=1024"),
-        (
-            vec!["overloads", "--threads", "-1"],
-            "-1 is not in 1..=1024",
-        ),
-        (
-            vec!["study", "paper", "--threads", "-1"],
-            "-1 is not in 1..=1024",
-        ),
-        (vec!["target", "--threads", "-1"], "-1 is not in 1..=1024"),
-        (
-            vec!["run", scene, "--threads", "--json"],
-            "a value is required",
-        ),
-    ] {
-        let output = host().args(&args).output().unwrap();
-        let error = String::from_utf8_lossy(&output.stderr);
-        assert_eq!(output.status.code(), Some(2), "{args:?}: {error}");
-        assert!(error.contains(said), "{args:?}: {error}");
-        assert!(!error.contains("tip:"), "{args:?}: {error}");
-    }
-}
 
 /// Where a file cannot be written to its end, the error names it in its final place, and nothing is left.
 #[test]

@@ -1,6 +1,7 @@
 //! Slips of the pen that are run, and said.
 
-use super::short_scene;
+use super::{short, short_scene};
+use crate::refusals::{all, rows};
 use std::fs;
 use system_tests::{host, root, run_scene, scene_path};
 use tempfile::TempDir;
@@ -9,150 +10,35 @@ use tempfile::TempDir;
 #[test]
 fn slips_are_warned_of() {
     let folder = TempDir::new().unwrap();
-    let warned = |from: &str, to: &str| {
-        let scene = short_scene(folder.path(), |t| {
-            let text = t.replacen(from, to, 1);
-            assert_ne!(text, t, "{from}");
-            text
-        });
+    let ran = |text: &str| {
+        let scene = short_scene(folder.path(), |_| text.to_owned());
         let result = run_scene(&scene, &folder.path().join("out"), &[]);
         String::from_utf8(result.stderr).unwrap()
     };
-    let slips = [
-        (
-            "[run]",
-            "[start]\nposition_m = [2.1e-3, 0.0]\n[run]",
-            "start.position_m",
-        ),
-        (
-            "[run]",
-            "[start]\nvelocity_m_s = [21.0, 0.0]\n[run]",
-            "start.velocity_m_s",
-        ),
-        (
-            "mass_kg = 10.0",
-            "mass_kg = 10.0\neccentricity_m = 2.1e-4",
-            "rotor.eccentricity_m",
-        ),
-        (
-            "contact_radius_m = 0.05",
-            "contact_radius_m = 1.9e-4",
-            "contact.clearance_m",
-        ),
-        ("[sensor]", "[sensor]\nrange_m = 1.9e-4", "sensor.range_m"),
-        (
-            "frequency_hz = 200.0",
-            "frequency_hz = 5001.0",
-            "spin.frequency_hz",
-        ),
-        (
-            "contact_radius_m = 0.05",
-            "contact_radius_m = 5.1",
-            "rotor.contact_radius_m",
-        ),
-        (
-            "[run]",
-            "[supervisor]\nmass_kg = 10.6\n[run]",
-            "supervisor.mass_kg",
-        ),
-        (
-            "[magnet]",
-            "[retainer]\ncentre_offset_m = [1.1e-6, 0.0]\n[magnet]",
-            "retainer.centre_offset_m",
-        ),
-        (
-            "coefficient = 0.15",
-            "coefficient = 0.15\nrolling_coefficient = 0.15",
-            "friction.rolling_coefficient",
-        ),
-        (
-            "proportional_n_m = 5e5",
-            "proportional_n_m = 2e5",
-            "levitation",
-        ),
-        (
-            "sample_rate_hz = 20000",
-            "sample_rate_hz = 9900",
-            "run.sample_rate_hz",
-        ),
-        (
-            "mass_kg = 10.0",
-            "mass_kg = 10.0\ngravity_m_s2 = [0.0, -9810.0]",
-            "rotor.gravity_m_s2",
-        ),
-        (
-            "mass_kg = 10.0",
-            "mass_kg = 10.0\ngravity_m_s2 = [0.0, -100.0]",
-            "magnet.force_max_n",
-        ),
-        ("[sensor]", "[sensor]\ngain = 0.0", "sensor.gain"),
-        ("[sensor]", "[sensor]\ngain = [1.0, -1.0]", "sensor.gain"),
-        (
-            "[sensor]",
-            "[[fault]]\nstart_s = 0.010_012\nduration_s = 1e-5\nkind = \"nan\"\n[sensor]",
-            "fault[0].start_s",
-        ),
-        (
-            "[sensor]",
-            "[[outage]]\nstart_s = 0.010_012\nduration_s = 1e-5\n[sensor]",
-            "outage[0].start_s",
-        ),
-        (
-            "[sensor]",
-            "[[change]]\nat_s = 0.010_01\neccentricity_m = 1e-6\n[[change]]\nat_s = 0.010_02\neccentricity_m = 0.0\n[sensor]",
-            "change[0].at_s",
-        ),
-    ];
     let page = fs::read_to_string(root().join("docs/src/host/keys.md")).unwrap();
     let (_, listed) = page.split_once("\n## Warnings\n").unwrap();
     let listed = listed.split("\n## ").next().unwrap();
-    for (from, to, key) in slips {
+    let warning = |text: &str, row: &[String]| {
+        let key = &row[2];
         let in_page = match key.split_once('.') {
             Some(("supervisor", _)) => "supervisor.<parameter>".to_owned(),
             _ => key.replace("[0]", "[]"),
         };
         assert!(listed.contains(&format!("`{in_page}`")), "{key}");
-        let said = warned(from, to);
+        let said = ran(text);
         let warning = said.lines().find(|l| l.starts_with("warning: "));
-        let warning = warning.unwrap_or_else(|| panic!("{to}: {said}"));
-        assert!(
-            warning.contains(key) && warning.contains("short.toml:"),
-            "{warning}"
-        );
-    }
-    // Two changes of a scene: the cap of an axis below the weight, and a change in the rest of a sample.
-    for (edits, key) in [
-        (
-            [
-                (
-                    "mass_kg = 10.0",
-                    "mass_kg = 30.0\ngravity_m_s2 = [0.0, -9.81]",
-                ),
-                ("[magnet]", "[magnet]\naxis_force_max_n = 280.0"),
-            ],
-            "magnet.axis_force_max_n",
-        ),
-        (
-            [
-                ("duration_s = 0.03", "duration_s = 0.030_02"),
-                (
-                    "[sensor]",
-                    "[[change]]\nat_s = 0.030_01\neccentricity_m = 1e-6\n[sensor]",
-                ),
-            ],
-            "change[0].at_s",
-        ),
-    ] {
-        let scene = short_scene(folder.path(), |t| {
-            (edits.iter()).fold(t, |t, (from, to)| t.replacen(from, to, 1))
-        });
-        let result = run_scene(&scene, &folder.path().join("out"), &[]);
-        let said = String::from_utf8(result.stderr).unwrap();
-        let warning = said.lines().find(|l| l.starts_with("warning: "));
-        assert!(warning.is_some_and(|w| w.contains(key)), "{key}: {said}");
-    }
+        let warning = warning.unwrap_or_else(|| panic!("{row:?}: {said}"));
+        assert!(warning.contains("short.toml:"), "{warning}");
+        warning.to_owned()
+    };
+    all("runs/slips", 19, &short(), warning);
+    // The cap of an axis below the weight, and a change in the rest of a sample.
+    let weak = short().replacen("[magnet]", "[magnet]\naxis_force_max_n = 280.0", 1);
+    all("runs/slip_of_an_axis", 1, &weak, warning);
+    let rest = short().replacen("duration_s = 0.03", "duration_s = 0.030_02", 1);
+    all("runs/slip_of_a_sample", 1, &rest, warning);
     // Refused at another key: the slip is told beside it.
-    let said = warned("clearance_m = 2e-4", "clearance_m = 0.2");
+    let said = ran(&short().replacen("clearance_m = 2e-4", "clearance_m = 0.2", 1));
     assert!(
         said.contains("look here first") && said.contains("contact.clearance_m: is larger"),
         "{said}"
@@ -175,39 +61,10 @@ fn slips_are_warned_of() {
             assert!(text.contains(key), "{key}: {said}");
         }
     }
-    for (from, to) in [
-        ("[run]", "[start]\nposition_m = [2.1e-4, 0.0]\n[run]"),
-        ("[run]", "[start]\nvelocity_m_s = [0.5, 0.0]\n[run]"),
-        ("mass_kg = 10.0", "mass_kg = 10.0\neccentricity_m = 1e-5"),
-        ("[sensor]", "[sensor]\nrange_m = 2.1e-4"),
-        (
-            "[magnet]",
-            "[retainer]\ncentre_offset_m = [0.9e-6, 0.0]\n[magnet]",
-        ),
-        (
-            "[run]",
-            "[supervisor]\nmass_kg = 10.4\ndamping_n_s_m = 100.0\n[run]",
-        ),
-        (
-            "coefficient = 0.15",
-            "coefficient = 0.15\nrolling_coefficient = 0.14",
-        ),
-        ("proportional_n_m = 5e5", "proportional_n_m = 3e5"),
-        ("sample_rate_hz = 20000", "sample_rate_hz = 10000"),
-        (
-            "mass_kg = 10.0",
-            "mass_kg = 10.0\ngravity_m_s2 = [0.0, -99.0]",
-        ),
-        (
-            "[sensor]",
-            "[[fault]]\nstart_s = 0.010_012\nduration_s = 4e-5\nkind = \"nan\"\n[sensor]",
-        ),
-        (
-            "[sensor]",
-            "[[change]]\nat_s = 0.010_01\neccentricity_m = 1e-6\n[[change]]\nat_s = 0.010_02\nfriction_coefficient = 0.1\n[sensor]",
-        ),
-    ] {
-        assert_eq!(warned(from, to), "", "{to}");
+    for row in rows("runs/no_slips", 12) {
+        let text = short().replacen(&row[0], &row[1], 1);
+        assert_ne!(text, short(), "{row:?}");
+        assert_eq!(ran(&text), "", "{row:?}");
     }
 }
 

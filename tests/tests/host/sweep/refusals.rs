@@ -1,158 +1,23 @@
 //! What is refused, and what it says then.
 
 use super::{DRAWS, contents, succeeds, sweep, sweep_file};
+use crate::refusals::all;
 use std::fs;
 use tempfile::TempDir;
 
-/// Sweep files: what is put in the place of what, the key that the error must name, and what it must say.
 #[test]
 fn bad_sweeps_are_refused_with_file_key_and_expectation() {
     let folder = TempDir::new().unwrap();
-    let uniform = "uniform = [0.05, 0.3]";
-    let cases = [
-        (
-            "\"friction.coefficient\"",
-            "\"friction.coeficient\"",
-            "vary[0].key",
-            "did you mean `coefficient`",
-        ),
-        (
-            uniform,
-            "uniform = [0.3, 0.05]",
-            "vary[0].uniform",
-            "the lower first",
-        ),
-        (
-            uniform,
-            "log_uniform = [0.0, 0.3]",
-            "vary[0].log_uniform",
-            "two positive numbers",
-        ),
-        (uniform, "", "vary[0]", "give values, linspace"),
-        (
-            uniform,
-            "values = [0.1]\nuniform = [0.1, 0.2]",
-            "vary[0].uniform",
-            "together with values",
-        ),
-        (
-            uniform,
-            "values = [\"slippery\"]",
-            "vary[0].values",
-            "expected a number",
-        ),
-        (
-            uniform,
-            "normal = { mean = 0.1, low = 0, high = 1 }",
-            "sweep.toml:8",
-            "standard_deviation",
-        ),
-        (
-            "\"run.method\"",
-            "\"friction.coefficient\"",
-            "vary[1].key",
-            "varies in vary[0] already",
-        ),
-        (
-            "\"run.method\"",
-            "\"run.policies\"",
-            "vary[1].key",
-            "give policies",
-        ),
-        (
-            "\"collocation\"]",
-            "\"exact\"]",
-            "vary[1].values",
-            "run.method",
-        ),
-        (
-            "\"monte_carlo\"",
-            "\"montecarlo\"",
-            "sweep.toml:3",
-            "did you mean `monte_carlo`",
-        ),
-        (
-            "\"monte_carlo\"",
-            "\"grid\"",
-            "runs",
-            "as many runs as combinations",
-        ),
-        (
-            "\"monte_carlo\"\nruns = 70",
-            "\"grid\"",
-            "vary[0].uniform",
-            "values, linspace or logspace",
-        ),
-        (
-            "\"monte_carlo\"\nruns = 70",
-            "\"sobol\"\nruns = 100000",
-            "runs",
-            "from 1 to 65536",
-        ),
-        ("runs = 70", "", "runs is missing", "runs = 1000"),
-        (
-            "\"monte_carlo\"",
-            "\"saltelli\"",
-            "design",
-            "\"sobol\" or \"monte_carlo\"",
-        ),
-        (
-            "seed = 7",
-            "seed = 7\nmaps = [[\"run.method\", \"friction.coeficient\"]]",
-            "maps",
-            "did you mean `friction.coefficient`",
-        ),
-        (
-            "seed = 7",
-            "seed = 7\nmaps = [[\"run.method\", \"run.method\"]]",
-            "maps",
-            "give two keys that vary",
-        ),
-        ("runs = 70", "runs = 0", "runs", "from 1"),
-        (
-            "runs = 70",
-            "runs = 70\nrepeats = 2",
-            "repeats",
-            "goes with grid, and not with monte_carlo",
-        ),
-        (
-            "seed = 7",
-            "seed = 7\nworst_by = \"severity\"",
-            "worst_by",
-            "severity_index",
-        ),
-        (
-            "seed = 7",
-            "seed = 7\nworst_policy = \"passive\"",
-            "worst_policy",
-            "levitation, supervisor",
-        ),
-        (
-            "seed = 7",
-            "sead = 7",
-            "sweep.toml:5",
-            "did you mean `seed`",
-        ),
-        // Last: of whole numbers no part is drawn.
-        (
-            uniform,
-            "uniform = [1, 3]\n[[vary]]\nkey = \"magnet.delay_samples\"\nuniform = [1, 3]",
-            "vary[1].uniform",
-            "whole number",
-        ),
-    ];
-    for (from, to, at, expected) in cases {
-        assert!(DRAWS.contains(from), "{from}");
-        let file = sweep_file(folder.path(), &DRAWS.replacen(from, to, 1));
+    all("sweeps/draws", 24, DRAWS, |bad, row| {
+        let file = sweep_file(folder.path(), bad);
         let out = folder.path().join("out");
         let refused = sweep(&file, &out, &[]);
-        let error = String::from_utf8_lossy(&refused.stderr);
-        assert_eq!(refused.status.code(), Some(2), "{to}: {error}");
-        for word in ["sweep.toml", at, expected] {
-            assert!(error.contains(word), "{to}: {word} is not in\n{error}");
-        }
-        assert!(!out.exists(), "{to}: something was written");
-    }
+        let error = String::from_utf8_lossy(&refused.stderr).into_owned();
+        assert_eq!(refused.status.code(), Some(2), "{row:?}: {error}");
+        assert!(error.contains("sweep.toml"), "{row:?}: {error}");
+        assert!(!out.exists(), "{row:?}: something was written");
+        error
+    });
     let refused = sweep(
         &folder.path().join("none.toml"),
         &folder.path().join("out"),
